@@ -1,0 +1,50 @@
+# The FMI 2.0 headers (from the fmpy package), the GUID (from modelDescription.xml), and the FMU archive.
+set(Python3_FIND_VIRTUALENV FIRST)
+if(NOT Python3_EXECUTABLE AND EXISTS ${CMAKE_SOURCE_DIR}/.venv/bin/python)
+  set(Python3_EXECUTABLE ${CMAKE_SOURCE_DIR}/.venv/bin/python)
+endif()
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+
+if(NOT FMI2_INCLUDE_DIR)
+  execute_process(
+    COMMAND
+      ${Python3_EXECUTABLE} -c "import importlib.util as u; print(u.find_spec('fmpy').submodule_search_locations[0])"
+    OUTPUT_VARIABLE fmpy_folder
+    OUTPUT_STRIP_TRAILING_WHITESPACE
+    ERROR_QUIET
+  )
+  find_path(FMI2_INCLUDE_DIR fmi2Functions.h HINTS ${fmpy_folder}/c-code NO_DEFAULT_PATH)
+endif()
+if(NOT FMI2_INCLUDE_DIR)
+  message(
+    FATAL_ERROR
+    "fmi2Functions.h was not found: run ./scripts/setup, or install the Python package fmpy, "
+    "or set FMI2_INCLUDE_DIR to a folder with the FMI 2.0 headers."
+  )
+endif()
+
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS modelDescription.xml)
+file(STRINGS modelDescription.xml guid_line REGEX "guid=")
+string(REGEX REPLACE ".*guid=\"([^\"]*)\".*" "\\1" WHEEL_GUID "${guid_line}")
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+  set(wheel_platform aarch64-linux)
+else()
+  set(wheel_platform linux64)
+endif()
+
+# wheel.fmu in the build folder: description, library, documentation, licences; same commit, same bytes.
+function(add_fmu target)
+  set(fmu ${CMAKE_BINARY_DIR}/wheel.fmu)
+  set(packer ${CMAKE_SOURCE_DIR}/scripts/pack_fmu.py)
+  file(GLOB_RECURSE contents CONFIGURE_DEPENDS fmu-src/archive/*)
+  add_custom_command(
+    OUTPUT ${fmu}
+    COMMAND
+      ${Python3_EXECUTABLE} ${packer} --output ${fmu} --sundials ${SUNDIALS_SOURCE} --binary
+      ${wheel_platform}=$<TARGET_FILE:${target}>
+    DEPENDS ${target} ${packer} ${contents} modelDescription.xml LICENSE
+    COMMENT "Packing wheel.fmu"
+  )
+  add_custom_target(fmu ALL DEPENDS ${fmu})
+endfunction()

@@ -1,0 +1,65 @@
+# Flags of every room. No -ffast-math and no contraction to fused multiply-add: the same bits from every compiler that
+# keeps IEEE rules. Exceptions and run-time types are not used; nothing throws across the C interface.
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_C_VISIBILITY_PRESET hidden)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+# No path of the building machine in the binary: two builds in two folders are the same bytes.
+add_compile_options(
+  -ffp-contract=off
+  -fno-math-errno
+  -ffile-prefix-map=${CMAKE_SOURCE_DIR}=.
+  -ffile-prefix-map=${CMAKE_BINARY_DIR}=.
+)
+
+include(CheckIPOSupported)
+check_ipo_supported(RESULT ipo OUTPUT reason LANGUAGES C CXX)
+if(ipo AND CMAKE_BUILD_TYPE STREQUAL Release AND NOT WHEEL_SANITIZE)
+  set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ON)
+endif()
+
+if(WHEEL_SANITIZE)
+  add_compile_options(-fsanitize=${WHEEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${WHEEL_SANITIZE})
+endif()
+if(WHEEL_COVERAGE)
+  add_compile_options(--coverage -fprofile-update=atomic)
+  add_link_options(--coverage)
+endif()
+
+add_library(wheel_options INTERFACE)
+target_compile_options(
+  wheel_options
+  INTERFACE
+    -Wall
+    -Wextra
+    -Wpedantic
+    -Wshadow
+    -Wconversion
+    -Wno-sign-conversion
+    $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions
+    -fno-rtti
+    -Wold-style-cast>
+    $<$<BOOL:${WHEEL_WERROR}>:-Werror>
+)
+
+# Needs libc and libm only, exports fmi2* only.
+function(link_self_contained target)
+  set_target_properties(${target} PROPERTIES PREFIX "")
+  if(APPLE OR WIN32)
+    return()
+  endif()
+  set(exports ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
+  target_link_options(
+    ${target}
+    PRIVATE -Wl,--version-script=${exports} -Wl,--gc-sections -Wl,--build-id=none $<$<CONFIG:Release>:-s>
+  )
+  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${exports})
+  if(NOT WHEEL_SANITIZE)
+    target_link_options(${target} PRIVATE -static-libgcc -static-libstdc++ -Wl,--no-undefined)
+  endif()
+endfunction()

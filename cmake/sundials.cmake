@@ -1,0 +1,71 @@
+# CVODE from source: fetched once by cargo from the Rust registry (the crate that vendors it), pinned by its SHA-256,
+# built with its own CMake as static, optimised, position-independent code. Alternatives:
+#   -DWHEEL_SUNDIALS_SOURCE=<folder>   a SUNDIALS 7.1.1 source tree you have
+set(WHEEL_SUNDIALS_SOURCE "" CACHE PATH "SUNDIALS 7.1.1 source tree; empty: fetch the pinned one")
+set(sundials_version 7.1.1)
+set(sundials_crate sundials-sys-0.6.2)
+set(sundials_sha256 6fbd1d53481b83fc758406097f07b668bf243945e2b1f7db93a8f997cf6b44c9)
+
+function(fetch_sundials source_dir)
+  set(cache ${CMAKE_BINARY_DIR}/_sundials)
+  set(${source_dir} ${cache}/${sundials_crate}/vendor PARENT_SCOPE)
+  if(EXISTS ${cache}/${sundials_crate}/vendor/CMakeLists.txt)
+    return()
+  endif()
+  find_program(CARGO cargo REQUIRED DOC "fetches the pinned SUNDIALS source")
+  message(STATUS "Fetching SUNDIALS ${sundials_version} (${sundials_crate})")
+  file(MAKE_DIRECTORY ${cache})
+  execute_process(
+    COMMAND ${CMAKE_COMMAND} -E env CARGO_HOME=${cache}/cargo ${CARGO} info sundials-sys@0.6.2
+    WORKING_DIRECTORY ${cache}
+    OUTPUT_QUIET
+    ERROR_VARIABLE trouble
+    RESULT_VARIABLE status
+  )
+  file(GLOB crate ${cache}/cargo/registry/cache/*/${sundials_crate}.crate)
+  if(NOT crate)
+    message(FATAL_ERROR "SUNDIALS could not be fetched (status ${status}): ${trouble}")
+  endif()
+  file(SHA256 ${crate} hash)
+  if(NOT hash STREQUAL "${sundials_sha256}")
+    message(FATAL_ERROR "${crate} has SHA-256 ${hash}, expected ${sundials_sha256}")
+  endif()
+  file(ARCHIVE_EXTRACT INPUT ${crate} DESTINATION ${cache})
+endfunction()
+
+function(add_sundials)
+  set(source ${WHEEL_SUNDIALS_SOURCE})
+  if(NOT source)
+    fetch_sundials(source)
+  endif()
+  foreach(
+    package
+    ARKODE
+    CVODES
+    IDA
+    IDAS
+    KINSOL
+  )
+    set(BUILD_${package} OFF CACHE INTERNAL "")
+  endforeach()
+  foreach(
+    off
+    BUILD_SHARED_LIBS
+    EXAMPLES_ENABLE_C
+    EXAMPLES_INSTALL
+    SUNDIALS_ENABLE_ERROR_CHECKS
+    SUNDIALS_BUILD_WITH_PROFILING
+    SUNDIALS_BUILD_WITH_MONITORING
+    ENABLE_MPI
+  )
+    set(${off} OFF CACHE INTERNAL "")
+  endforeach()
+  set(SUNDIALS_LOGGING_LEVEL 0 CACHE INTERNAL "")
+  set(CMAKE_POLICY_DEFAULT_CMP0069 NEW)
+  set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
+  add_subdirectory(${source} ${CMAKE_BINARY_DIR}/_sundials/build EXCLUDE_FROM_ALL SYSTEM)
+  # The private headers hold CVODE's memory record: integrator/history.cpp snapshots it.
+  add_library(sundials_private INTERFACE)
+  target_include_directories(sundials_private SYSTEM INTERFACE ${source}/src/cvode ${source}/src/sundials)
+  set(SUNDIALS_SOURCE ${source} PARENT_SCOPE)
+endfunction()

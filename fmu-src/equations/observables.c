@@ -1,0 +1,35 @@
+/* Quantities read off a motion, whatever formulation computed it: energy, required friction coefficient, residuals of
+ * the constraints (19) and (32). Fixed axes. */
+#include <math.h>
+
+#include "wheel_equations.h"
+
+double wheel_height(const WheelParameters* wheel, double theta) { return wheel->r_0 * sin(theta) + wheel->r; }
+
+double wheel_energy(const WheelParameters* wheel, const WheelKinematics* k) {
+  double s = sin(k->theta), sin_phi = sin(k->phi), cos_phi = cos(k->phi);
+  /* omega = [Q]{beta_dot}, (8), body axes */
+  double omega_x = k->psi_dot * s * sin_phi + k->theta_dot * cos_phi;
+  double omega_y = k->psi_dot * s * cos_phi - k->theta_dot * sin_phi;
+  double v_squared = k->X_O_dot * k->X_O_dot + k->Y_O_dot * k->Y_O_dot + k->Z_O_dot * k->Z_O_dot;
+  double turning =
+      wheel->J_x * omega_x * omega_x + wheel->J_y * omega_y * omega_y + wheel->J_z * k->omega_z * k->omega_z;
+  return 0.5 * (wheel->m * v_squared + turning) + wheel->m * wheel->g * k->Z_O;
+}
+
+double wheel_required_friction(const double lambda[3]) {
+  if (lambda[2] <= 0) return INFINITY;
+  return sqrt(lambda[0] * lambda[0] + lambda[1] * lambda[1]) / lambda[2];
+}
+
+void wheel_constraint_residuals(const WheelParameters* wheel, const WheelKinematics* k, double* velocity,
+                                double* height) {
+  double s = sin(k->theta), c = cos(k->theta), sin_psi = sin(k->psi), cos_psi = cos(k->psi);
+  double along = wheel->r * c * (k->psi_dot * s) - (wheel->r_0 + wheel->r * s) * k->omega_z;
+  double across = (wheel->r_0 * s + wheel->r) * k->theta_dot;
+  double X = fabs(k->X_O_dot - (along * cos_psi + across * sin_psi));
+  double Y = fabs(k->Y_O_dot - (along * sin_psi - across * cos_psi));
+  double Z = fabs(k->Z_O_dot - wheel->r_0 * c * k->theta_dot);
+  *velocity = fmax(X, fmax(Y, Z));
+  *height = fabs(k->Z_O - wheel_height(wheel, k->theta));
+}

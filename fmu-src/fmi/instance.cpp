@@ -1,0 +1,98 @@
+// Instances: creation, logging.
+#include "instance.hpp"
+
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+namespace fmi {
+namespace {
+
+constexpr fmi2Status status_of(wheel::Topic topic) {
+  switch (topic) {
+    case wheel::Topic::event:
+      return fmi2OK;
+    case wheel::Topic::warning:
+      return fmi2Warning;
+    case wheel::Topic::discard:
+      return fmi2Discard;
+    case wheel::Topic::error:
+      break;
+  }
+  return fmi2Error;
+}
+
+// A message is a format to the master, and '#' opens a variable name: both characters are doubled.
+void escape(const char* text, char* out, std::size_t size) {
+  std::size_t length = 0;
+  for (; *text && length + 2 < size; ++text) {
+    if (*text == '%' || *text == '#') out[length++] = *text;
+    out[length++] = *text;
+  }
+  out[length] = 0;
+}
+
+bool wanted(void* owner, wheel::Topic topic) { return static_cast<Instance*>(owner)->wants(topic); }
+
+void tell(void* owner, wheel::Topic topic, const char* sentence) {
+  static_cast<Instance*>(owner)->log(topic, "%s", sentence);
+}
+
+}  // namespace
+
+const char* category_of(wheel::Topic topic) {
+  switch (topic) {
+    case wheel::Topic::event:
+      return "logEvents";
+    case wheel::Topic::warning:
+      return "logStatusWarning";
+    case wheel::Topic::discard:
+      return "logStatusDiscard";
+    case wheel::Topic::error:
+      break;
+  }
+  return "logStatusError";
+}
+
+Instance::Instance(const fmi2CallbackFunctions* callbacks) : simulation({this, wanted, tell}) {
+  if (!callbacks) return;
+  logger_ = callbacks->logger;
+  environment_ = callbacks->componentEnvironment;
+}
+
+Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging) {
+  void* memory = std::calloc(1, sizeof(Instance));
+  if (!memory) return nullptr;
+  auto* instance = ::new (memory) Instance(callbacks);
+  const auto size = std::strlen(name) + 1;
+  instance->name_ = static_cast<char*>(std::malloc(size));
+  if (!instance->name_) {
+    destroy(instance);
+    return nullptr;
+  }
+  std::memcpy(instance->name_, name, size);
+  const unsigned all = 0xf, quiet = all & ~(1u << static_cast<unsigned>(wheel::Topic::event));
+  instance->logged_topics = logging ? all : quiet;
+  return instance;
+}
+
+void Instance::destroy(Instance* instance) {
+  std::free(instance->name_);
+  instance->~Instance();
+  std::free(instance);
+}
+
+void Instance::log(wheel::Topic topic, const char* format, ...) {
+  if (!logger_ || !wants(topic)) return;
+  char text[480], message[980];
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  escape(text, message, sizeof message);
+  logger_(environment_, name_, status_of(topic), category_of(topic), message);
+}
+
+}  // namespace fmi

@@ -1,0 +1,54 @@
+// One FMU instance: the master's callbacks, the call state, the simulation. And the guard every call passes.
+#pragma once
+
+#include "fmi2Functions.h"
+#include "legality.hpp"
+#include "simulation.hpp"
+
+namespace fmi {
+
+struct Instance {
+  // Null if memory is short.
+  static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging);
+  static void destroy(Instance* instance);
+
+  // Tells the master, if the category is switched on. Printf-like; the text is finished before the master sees it.
+  void log(wheel::Topic topic, const char* format, ...);
+  bool wants(wheel::Topic topic) const { return logged_topics & (1u << static_cast<unsigned>(topic)); }
+
+  wheel::Simulation simulation;
+  State state = State::instantiated;
+  bool busy = false;      // a call is under way: the logger must not call back into the instance
+  bool prepared = false;  // initialization mode: the start state fits the parameters
+  bool has_stop_time = false;
+  double stop_time = 0, start_time = 0;
+  fmi2Status last_step = fmi2OK;
+  unsigned logged_topics = 0;
+
+ private:
+  explicit Instance(const fmi2CallbackFunctions* callbacks);
+  fmi2CallbackLogger logger_ = nullptr;
+  fmi2ComponentEnvironment environment_ = nullptr;
+  char* name_ = nullptr;
+};
+
+// The category of a topic as modelDescription.xml names it.
+const char* category_of(wheel::Topic topic);
+
+// Every call on an instance: not null, not from within its own logger, legal in its state. An illegal call changes
+// nothing.
+template <class Body>
+fmi2Status guarded(fmi2Component component, Function function, const char* name, Body&& body) {
+  auto* instance = static_cast<Instance*>(component);
+  if (!instance || instance->busy) return fmi2Error;
+  instance->busy = true;
+  fmi2Status status = fmi2Error;
+  if (is_legal(function, instance->state))
+    status = body(*instance);
+  else
+    instance->log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", name, name_of(instance->state));
+  instance->busy = false;
+  return status;
+}
+
+}  // namespace fmi

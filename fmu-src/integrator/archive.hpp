@@ -1,0 +1,62 @@
+// Numbers to bytes and back: how snapshots are written, read and measured.
+//
+// Every number takes 8 bytes, a double or a 64-bit integer, whatever the platform's own integers are; little endian, as
+// all platforms of this FMU are.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace integrator {
+
+struct Writer {
+  unsigned char* at;
+  void operator()(const double& x) { put(x); }
+  template <class Integer>
+  void operator()(const Integer& i) {
+    put(static_cast<std::int64_t>(i));
+  }
+  template <class Word>
+  void put(Word word) {
+    std::memcpy(at, &word, sizeof word);
+    at += sizeof word;
+  }
+};
+
+struct Reader {
+  const unsigned char* at;
+  void operator()(double& x) { x = get<double>(); }
+  template <class Integer>
+  void operator()(Integer& i) {
+    i = static_cast<Integer>(get<std::int64_t>());
+  }
+  template <class Word>
+  Word get() {
+    Word word;
+    std::memcpy(&word, at, sizeof word);
+    at += sizeof word;
+    return word;
+  }
+};
+
+struct Measure {
+  std::size_t bytes = 0;
+  template <class Number>
+  void operator()(const Number&) {
+    bytes += 8;
+  }
+};
+
+// n numbers in a row.
+template <class Archive>
+void many(Archive& archive, double* x, int n) {
+  for (int i = 0; i < n; ++i) archive(x[i]);
+}
+
+template <class Archive, class... Fields>
+void all(Archive& archive, Fields&... fields) {
+  (archive(fields), ...);
+}
+
+}  // namespace integrator

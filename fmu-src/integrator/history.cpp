@@ -1,0 +1,105 @@
+// Snapshots: the solver's history as plain numbers, so that a restored solution goes on with the same bits.
+//
+// CVODE has no call for this. Its own memory record (private header of the pinned source, 7.1.1) is read and written
+// field by field: the Nordsieck array, the step and order selection, the root search and, for BDF, the factorised
+// Newton matrix. What CVODE computes anew at the start of each step (error weights, work vectors) is left out.
+#include "archive.hpp"
+#include "cvode_impl.h"
+#include "cvode_ls_impl.h"
+#include "implementation.hpp"
+#include "state_vector.hpp"
+#include "sunlinsol/sunlinsol_dense.h"
+#include "sunmatrix/sunmatrix_dense.h"
+#include "sunnonlinsol/sunnonlinsol_newton.h"
+
+namespace integrator {
+namespace {
+
+template <class Archive>
+void visit_progress(Archive& archive, Progress& p) {
+  all(archive, p.armed, p.pending, p.step_start, p.known_until, p.event_time, p.last_event_value);
+  all(archive, p.counters.steps, p.counters.rhs, p.counters.jacobians, p.counters.roots, p.counters.restarts);
+}
+
+template <class Archive>
+void visit_steps(Archive& archive, CVodeMemRec& m) {
+  all(archive, m.cv_q, m.cv_qprime, m.cv_next_q, m.cv_qwait, m.cv_L, m.cv_qu, m.cv_indx_acor);
+  all(archive, m.cv_h, m.cv_hprime, m.cv_next_h, m.cv_eta, m.cv_hscale, m.cv_tn, m.cv_tretlast, m.cv_hu, m.cv_h0u);
+  many(archive, m.cv_tau, L_MAX + 1);
+  many(archive, m.cv_tq, NUM_TESTS + 1);
+  many(archive, m.cv_l, L_MAX);
+  all(archive, m.cv_saved_tq5, m.cv_tolsf, m.cv_etamax);
+  all(archive, m.cv_etaqm1, m.cv_etaq, m.cv_etaqp1, m.cv_rl1, m.cv_gamma, m.cv_gammap, m.cv_gamrat);
+  all(archive, m.cv_nst, m.cv_nfe, m.cv_ncfn, m.cv_nni, m.cv_nnf, m.cv_netf, m.cv_nsetups, m.cv_nstlp, m.cv_nscon);
+}
+
+template <class Archive>
+void visit_corrector(Archive& archive, CVodeMemRec& m) {
+  all(archive, m.cv_crate, m.cv_delp, m.cv_acnrm, m.cv_acnrmcur, m.convfail, m.cv_jcur);
+}
+
+template <class Archive>
+void visit_roots(Archive& archive, CVodeMemRec& m) {
+  all(archive, m.cv_tlo, m.cv_thi, m.cv_trout, m.cv_ttol, m.cv_toutc, m.cv_irfnd, m.cv_nge, m.cv_taskc);
+  all(archive, m.cv_glo[0], m.cv_ghi[0], m.cv_grout[0], m.cv_iroots[0], m.cv_gactive[0]);
+}
+
+template <class Archive>
+void visit_newton(Archive& archive, Integrator::Implementation& self, CVodeMemRec& m) {
+  auto& interface = *static_cast<CVLsMem>(m.cv_lmem);
+  auto& newton = *static_cast<SUNNonlinearSolverContent_Newton>(m.NLS->content);
+  auto& dense = *static_cast<SUNLinearSolverContent_Dense>(self.linear->content);
+  const int n = self.system.states;
+  all(archive, interface.jbad, interface.nje, interface.nstlj, interface.tnlj, newton.jcur, dense.last_flag);
+  many(archive, SUNDenseMatrix_Data(interface.A), n * n);
+  many(archive, SUNDenseMatrix_Data(interface.savedJ), n * n);
+  for (int i = 0; i < n; ++i) archive(dense.pivots[i]);
+}
+
+template <class Archive>
+void visit(Archive& archive, Integrator::Implementation& self) {
+  auto& m = *static_cast<CVodeMem>(self.cvode);
+  visit_progress(archive, self.progress);
+  many(archive, data(self.y), self.system.states);
+  visit_steps(archive, m);
+  visit_corrector(archive, m);
+  for (int j = 0; j <= m.cv_qmax; ++j) many(archive, data(m.cv_zn[j]), self.system.states);
+  if (self.progress.armed) visit_roots(archive, m);
+  if (self.system.method == Method::bdf && m.cv_nst > 0) visit_newton(archive, self, m);
+}
+
+// A solver that has not stepped yet lacks what CVODE sets up in its first step: a step is made, and then forgotten.
+bool make_ready(Integrator& integrator, Integrator::Implementation& self, const unsigned char* bytes) {
+  Reader reader{bytes};
+  Progress saved;
+  double y[max_states], t_reached;
+  visit_progress(reader, saved);
+  many(reader, y, self.system.states);
+  const bool stepped = static_cast<CVodeMem>(self.cvode)->cv_nst > 0;
+  if (stepped && self.progress.armed == saved.armed) return true;
+  if (!integrator.restart(saved.known_until, y, saved.armed != 0)) return false;
+  CVode(self.cvode, saved.known_until + self.system.time_scale, self.y, &t_reached, CV_ONE_STEP);
+  return true;
+}
+
+}  // namespace
+
+std::size_t Integrator::history_size() const {
+  Measure measure;
+  visit(measure, *self);
+  return measure.bytes;
+}
+
+void Integrator::save_history(unsigned char* bytes) const {
+  Writer writer{bytes};
+  visit(writer, *self);
+}
+
+bool Integrator::restore_history(const unsigned char* bytes) {
+  if (!make_ready(*this, *self, bytes)) return false;
+  Reader reader{bytes};
+  visit(reader, *self);
+  return true;
+}
+
+}  // namespace integrator

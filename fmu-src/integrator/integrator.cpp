@@ -1,0 +1,192 @@
+// CVODE set up, restarted and stepped one internal step at a time.
+#include "integrator.hpp"
+
+#include <cvode/cvode_ls.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "implementation.hpp"
+#include "state_vector.hpp"
+
+namespace integrator {
+namespace {
+
+using Self = Integrator::Implementation;
+
+int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
+  Self& self = *static_cast<Self*>(user);
+  ++self.progress.counters.rhs;
+  return self.system.derivative(self.system.owner, t, data(y), data(y_dot)) ? 0 : 1;
+}
+
+int event(double t, N_Vector y, double* g, void* user) {
+  Self& self = *static_cast<Self*>(user);
+  ++self.progress.counters.roots;
+  *g = self.progress.last_event_value = self.system.event(self.system.owner, t, data(y));
+  return 0;
+}
+
+int weights(N_Vector y, N_Vector ewt, void* user) {
+  Self& self = *static_cast<Self*>(user);
+  self.system.weights(self.system.owner, data(y), data(ewt));
+  return 0;
+}
+
+// SUNDIALS' own messages: kept as the reason of a failure, never printed.
+void keep_message(int, const char*, const char*, const char* message, SUNErrCode, void* user, SUNContext) {
+  Self& self = *static_cast<Self*>(user);
+  std::snprintf(self.message, sizeof self.message, "%s", message ? message : "no reason given");
+}
+
+bool attach_solver(Self& self) {
+  if (self.system.method == Method::adams) {
+    self.nonlinear = SUNNonlinSol_FixedPoint(self.y, 0, self.context);
+    return self.nonlinear && CVodeSetNonlinearSolver(self.cvode, self.nonlinear) == CV_SUCCESS;
+  }
+  self.matrix = SUNDenseMatrix(self.system.states, self.system.states, self.context);
+  self.linear = self.matrix ? SUNLinSol_Dense(self.y, self.matrix, self.context) : nullptr;
+  return self.linear && CVodeSetLinearSolver(self.cvode, self.linear, self.matrix) == CV_SUCCESS;
+}
+
+bool set_up(Self& self) {
+  if (SUNContext_Create(SUN_COMM_NULL, &self.context) != SUN_SUCCESS) return false;
+  SUNContext_ClearErrHandlers(self.context);
+  if (SUNContext_PushErrHandler(self.context, keep_message, &self) != SUN_SUCCESS) return false;
+  self.y = make_state_vector(self.system.states, self.context);
+  self.scratch = make_state_vector(self.system.states, self.context);
+  self.cvode = CVodeCreate(self.system.method == Method::adams ? CV_ADAMS : CV_BDF, self.context);
+  if (!self.y || !self.scratch || !self.cvode) return false;
+  return CVodeInit(self.cvode, derivative, 0, self.y) == CV_SUCCESS &&
+         CVodeSetUserData(self.cvode, &self) == CV_SUCCESS && CVodeWFtolerances(self.cvode, weights) == CV_SUCCESS &&
+         attach_solver(self) && CVodeSetMaxHnilWarns(self.cvode, -1) == CV_SUCCESS &&
+         CVodeSetNoInactiveRootWarn(self.cvode) == CV_SUCCESS;
+}
+
+bool arm_event(Self& self, bool armed) {
+  if (self.progress.armed == int{armed}) return true;
+  int falling = -1;
+  self.progress.armed = armed;
+  if (CVodeRootInit(self.cvode, armed ? 1 : 0, armed ? event : nullptr) != CV_SUCCESS) return false;
+  return !armed || CVodeSetRootDirection(self.cvode, &falling) == CV_SUCCESS;
+}
+
+void stop_at(Progress& progress, double t, Outcome why) {
+  progress.known_until = progress.event_time = t;
+  progress.pending = static_cast<int>(why);
+}
+
+}  // namespace
+
+Integrator* Integrator::create(const System& system) {
+  auto* self = static_cast<Implementation*>(std::calloc(1, sizeof(Implementation)));
+  auto* memory = self ? std::malloc(sizeof(Integrator)) : nullptr;
+  if (!memory) {
+    std::free(self);
+    return nullptr;
+  }
+  self->system = system;
+  self->progress.counters.restarts = -1;  // the first start is none
+  auto* integrator = ::new (memory) Integrator(self);
+  if (set_up(*self)) return integrator;
+  destroy(integrator);
+  return nullptr;
+}
+
+void Integrator::destroy(Integrator* integrator) {
+  if (!integrator) return;
+  Implementation& self = *integrator->self;
+  if (self.cvode) CVodeFree(&self.cvode);
+  if (self.nonlinear) SUNNonlinSolFree(self.nonlinear);
+  if (self.linear) SUNLinSolFree(self.linear);
+  if (self.matrix) SUNMatDestroy(self.matrix);
+  if (self.y) N_VDestroy(self.y);
+  if (self.scratch) N_VDestroy(self.scratch);
+  if (self.context) SUNContext_Free(&self.context);
+  std::free(integrator->self);
+  std::free(integrator);
+}
+
+bool Integrator::restart(double t, const double* y, bool event_armed) {
+  std::copy_n(y, self->system.states, data(self->y));
+  Progress& progress = self->progress;
+  progress.step_start = progress.known_until = t;
+  progress.pending = static_cast<int>(Outcome::reached);
+  progress.last_event_value = event_armed ? self->system.event(self->system.owner, t, y) : 0;
+  ++progress.counters.restarts;
+  return arm_event(*self, event_armed) && CVodeReInit(self->cvode, t, self->y) == CV_SUCCESS;
+}
+
+namespace {
+
+// Endings and dips of the event function, which a change of sign between the ends of the step does not show.
+void watch_step(const Integrator& solution, Self& self, double event_before) {
+  Progress& progress = self.progress;
+  const System& system = self.system;
+  double t_zero;
+  if (progress.armed && progress.pending == static_cast<int>(Outcome::reached)) {
+    const Bracket step = {progress.step_start, event_before, progress.known_until, progress.last_event_value};
+    if (find_first_zero(solution, system, system.event, step, &t_zero)) stop_at(progress, t_zero, Outcome::event);
+  }
+  if (!system.near_boundary(system.owner, data(self.y))) return;
+  double y_lo[max_states];
+  solution.read(progress.step_start, y_lo);
+  const Bracket step = {progress.step_start, system.boundary(system.owner, progress.step_start, y_lo),
+                        progress.known_until, system.boundary(system.owner, progress.known_until, data(self.y))};
+  if (find_first_zero(solution, system, system.boundary, step, &t_zero)) stop_at(progress, t_zero, Outcome::ended);
+}
+
+bool take_step(const Integrator& solution, Self& self) {
+  Progress& progress = self.progress;
+  const double t = progress.known_until, event_before = progress.last_event_value;
+  double t_reached;
+  const int flag = CVode(self.cvode, t + self.system.time_scale, self.y, &t_reached, CV_ONE_STEP);
+  if (flag < 0) return false;
+  ++progress.counters.steps;
+  progress.step_start = t;
+  progress.known_until = t_reached;
+  if (flag == CV_ROOT_RETURN) stop_at(progress, t_reached, Outcome::event);
+  watch_step(solution, self, event_before);
+  return true;
+}
+
+}  // namespace
+
+Outcome Integrator::advance(double t) {
+  constexpr long long most_steps = 20'000'000;  // per call: some seconds of computing, more than any sane step needs
+  const long long limit = self->progress.counters.steps + most_steps;
+  while (self->progress.known_until < t) {
+    if (self->progress.pending != static_cast<int>(Outcome::reached))
+      return static_cast<Outcome>(self->progress.pending);
+    if (self->progress.counters.steps >= limit) {
+      std::snprintf(self->message, sizeof self->message, "more than %lld internal steps in one call", most_steps);
+      return Outcome::failed;
+    }
+    if (!take_step(*this, *self)) return Outcome::failed;
+  }
+  return Outcome::reached;
+}
+
+void Integrator::stop_before(double t) { CVodeSetStopTime(self->cvode, t); }
+
+void Integrator::read(double t, double* y) const {
+  const Progress& progress = self->progress;
+  const bool stepped = progress.known_until > progress.step_start;
+  t = std::clamp(t, progress.step_start, progress.known_until);
+  if (stepped && CVodeGetDky(self->cvode, t, 0, self->scratch) == CV_SUCCESS) {
+    std::copy_n(data(self->scratch), self->system.states, y);
+  } else {
+    std::copy_n(data(self->y), self->system.states, y);
+  }
+}
+
+double Integrator::known_until() const { return self->progress.known_until; }
+double Integrator::event_time() const { return self->progress.event_time; }
+const char* Integrator::failure() const { return self->message; }
+const Counters& Integrator::counters() const { return self->progress.counters; }
+
+}  // namespace integrator

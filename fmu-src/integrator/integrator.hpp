@@ -1,0 +1,76 @@
+// One initial-value problem y' = f(t, y) and its CVODE solver: steps, dense output, events, endings, snapshots.
+//
+// Knows no wheel and no FMI. Time is the owner's own clock (s); the choice of steps never sees the times at which the
+// owner asks for results, so the communication grid cannot change a bit of the solution.
+#pragma once
+
+#include <cstddef>
+
+namespace integrator {
+
+inline constexpr int max_states = 12;
+
+enum class Method { adams, bdf };
+
+// reached: the solution is known up to the time asked for;  event: `event` fell to zero at event_time();
+// ended: `boundary` fell to zero at event_time();           failed: see failure().
+enum class Outcome { reached, event, ended, failed };
+
+// What the owner provides. `owner` is handed back to each function.
+struct System {
+  int states;  // 8 or 12
+  Method method;
+  void* owner;
+  // y_dot = f(t, y); false where it is not finite (the solver tries a smaller step).
+  bool (*derivative)(void* owner, double t, const double* y, double* y_dot);
+  // Error weights: a step is accepted where the root mean square of weight times local error is below one.
+  void (*weights)(void* owner, const double* y, double* weights);
+  // Positive until the event; null: no root function is installed.
+  double (*event)(void* owner, double t, const double* y);
+  // Cheap test after each step, true where the boundary may be near; only then is `boundary` evaluated (> 0 inside).
+  bool (*near_boundary)(void* owner, const double* y);
+  double (*boundary)(void* owner, double t, const double* y);
+  double time_scale;  // s, > 0: bounds the first step from above
+};
+
+struct Counters {
+  long long steps, rhs, jacobians, roots, restarts;
+};
+
+class Integrator {
+ public:
+  // Null if memory is short.
+  static Integrator* create(const System& system);
+  static void destroy(Integrator* integrator);
+
+  // Starts anew from y at time t; history is dropped, counters go on. event_armed: whether a root function is watched.
+  bool restart(double t, const double* y, bool event_armed);
+
+  // Steps until the solution is known at t or something stops it. After `event` the owner restarts from event_time().
+  Outcome advance(double t);
+
+  // No step goes past t until then: what holds beyond is not known yet. t > known_until().
+  void stop_before(double t);
+
+  // y(t) for t between the start of the last step and known_until(); outside, the nearest of the two.
+  void read(double t, double* y) const;
+
+  double known_until() const;
+  double event_time() const;
+  const char* failure() const;
+  const Counters& counters() const;
+
+  // The complete history as numbers of 8 bytes; restored into a solver of the same System it goes on with the same
+  // bits.
+  std::size_t history_size() const;
+  void save_history(unsigned char* bytes) const;
+  bool restore_history(const unsigned char* bytes);
+
+  struct Implementation;
+
+ private:
+  explicit Integrator(Implementation* i) : self(i) {}
+  Implementation* self;
+};
+
+}  // namespace integrator

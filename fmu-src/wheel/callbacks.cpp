@@ -1,0 +1,76 @@
+// The simulation as the solver's problem: y' = f(t, y) with one event function and one boundary.
+#include "callbacks.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "scene.hpp"
+#include "simulation.hpp"
+
+namespace wheel {
+
+struct Callbacks {
+  static Simulation& of(void* owner) { return *static_cast<Simulation*>(owner); }
+
+  static bool derivative(void* owner, double t, const double* y, double* y_dot) {
+    Simulation& sim = of(owner);
+    if (sim.inputs_.varies()) sim.inputs_.load_at(t, &sim.scene_);
+    const double N = sim.formulation_->derivative(&sim.scene_, y, y_dot);
+    if (N < sim.lowest_force_) sim.lowest_force_ = N;
+    double sum = 0;
+    for (int i = 0; i < sim.formulation_->states; ++i) sum += y_dot[i];
+    return std::isfinite(sum);
+  }
+
+  // The states' own rounding is a floor: no step is asked to be more exact than the numbers can say.
+  static void weights(void* owner, const double* y, double* weights) {
+    const Simulation& sim = of(owner);
+    constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+    for (int i = 0; i < sim.formulation_->states; ++i)
+      weights[i] = 1 / (local_fraction * sim.tolerance_ * sim.scales_[i] + rounding * std::fabs(y[i]));
+  }
+
+  // Positive while the friction mode lasts: the spin in its sense, or what friction has left to hold it.
+  static double event(void* owner, double t, const double* y) {
+    Simulation& sim = of(owner);
+    if (sim.scene_.friction.kind == WHEEL_ROLLING) return sim.scene_.friction.sigma * sim.formulation_->spin(y);
+    if (sim.inputs_.varies()) sim.inputs_.load_at(t, &sim.scene_);
+    WheelDynamics held;
+    sim.formulation_->dynamics(&sim.scene_, y, &held);
+    return holding_margin(sim.scene_.wheel, held);
+  }
+
+  // The right-hand side has seen a normal force near zero, or the wheel lies low: time to look closely.
+  static bool near_boundary(void* owner, const double* y) {
+    Simulation& sim = of(owner);
+    const bool light = sim.lowest_force_ < 0.1 * sim.weight_;
+    sim.lowest_force_ = std::numeric_limits<double>::infinity();
+    const bool low = std::fabs(sim.formulation_->tilt(y) - 1.5707963267948966) > 1.5;
+    return light || low;
+  }
+
+  // Positive inside the model: above the ground, and pressed to it unless contact is kept.
+  static double boundary(void* owner, double t, const double* y) {
+    Simulation& sim = of(owner);
+    const double height = std::sin(sim.formulation_->tilt(y)) - flat_sine;
+    if (sim.stored_[keep_contact]) return height;
+    if (sim.inputs_.varies()) sim.inputs_.load_at(t, &sim.scene_);
+    WheelDynamics now;
+    sim.formulation_->dynamics(&sim.scene_, y, &now);
+    constexpr double rounding = 1e-9;  // of the weight: a force that only rounding makes negative is none
+    return std::fmin(height, (now.lambda[2] + rounding * sim.weight_) / sim.weight_);
+  }
+};
+
+integrator::System solver_system(Simulation& simulation) {
+  integrator::System system = {};
+  system.owner = &simulation;
+  system.derivative = Callbacks::derivative;
+  system.weights = Callbacks::weights;
+  system.event = Callbacks::event;
+  system.near_boundary = Callbacks::near_boundary;
+  system.boundary = Callbacks::boundary;
+  return system;
+}
+
+}  // namespace wheel

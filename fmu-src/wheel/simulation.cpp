@@ -1,0 +1,220 @@
+// The run: starting, stepping, passing events, ending. Rolling friction after Filippov, docs/equations.md.
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+#include "callbacks.hpp"
+#include "scene.hpp"
+
+namespace wheel {
+
+Simulation::Simulation(const Reporter& reporter) : reporter_(reporter) { reset(); }
+
+Simulation::~Simulation() { integrator::Integrator::destroy(solver_); }
+
+void Simulation::reset() {
+  integrator::Integrator::destroy(solver_);
+  solver_ = nullptr;
+  for (unsigned v = 0; v < stored_count; ++v) stored_[v] = row_of(v).start;
+  inputs_ = Inputs();
+  now_ = Reading();
+  start_time_ = 0;
+  tolerance_ = default_tolerance;
+  touched_ = false;
+  formulation_ = nullptr;
+}
+
+bool Simulation::tell(Topic topic, const char* format, ...) const {
+  if (!reporter_.wanted(reporter_.owner, topic)) return false;
+  char sentence[512];
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(sentence, sizeof sentence, format, arguments);
+  va_end(arguments);
+  reporter_.tell(reporter_.owner, topic, sentence);
+  return true;
+}
+
+void Simulation::set_experiment(double start_time, double tolerance) {
+  start_time_ = start_time;
+  tolerance_ = tolerance > 0 ? std::clamp(tolerance, tightest_tolerance, loosest_tolerance) : default_tolerance;
+  if (tolerance > 0 && tolerance != tolerance_)
+    tell(Topic::warning, "The tolerance %g is outside [%g, %g]; %g is used.", tolerance, tightest_tolerance,
+         loosest_tolerance, tolerance_);
+}
+
+void Simulation::store(unsigned variable, double value) {
+  if (stored_[variable] == value) return;
+  stored_[variable] = value;
+  if (variable >= first_input) {
+    inputs_.set_value(static_cast<int>(variable - first_input), value);
+  }
+  touched_ = true;
+  now_.forget_dynamics();
+}
+
+void Simulation::set_input_derivative(unsigned variable, int order, double value) {
+  inputs_.set_derivative(static_cast<int>(variable - first_input), order, value);
+  touched_ = true;
+  now_.forget_dynamics();
+}
+
+bool Simulation::prepare(bool report) {
+  if (!check_parameters(report)) return false;
+  formulation_ = &choose_formulation(stored_);
+  method_ = choose_method(stored_);
+  scene_ = {};
+  scene_.wheel = parameters_from(stored_);
+  const WheelMotion motion = initial_motion(stored_);
+  double y[WHEEL_MAX_STATES] = {};
+  formulation_->start(&scene_.wheel, &motion, y);
+  inputs_.take_over(0);
+  inputs_.load_at(0, &scene_);
+  scene_.friction = friction_at(stored_, *formulation_, scene_, y);
+  error_scales(scene_.wheel, *formulation_, y, scales_);
+  now_ = Reading(*formulation_, *this);
+  now_.set_state(0, y);
+  touched_ = false;
+  return true;
+}
+
+bool Simulation::start() {
+  integrator::System system = solver_system(*this);
+  system.states = formulation_->states;
+  system.method = method_;
+  system.time_scale = time_scale(scene_.wheel, now_.kinematics());
+  weight_ = scene_.wheel.m * (scene_.wheel.r_0 + scene_.wheel.r) / (system.time_scale * system.time_scale);
+  integrator::Integrator::destroy(solver_);
+  solver_ = integrator::Integrator::create(system);
+  return solver_ && restart_from(0, now_.state());
+}
+
+bool Simulation::restart_from(double t, const double* y) {
+  double start[WHEEL_MAX_STATES];
+  std::copy_n(y, formulation_->states, start);
+  now_.set_state(t, start);
+  lowest_force_ = 0;
+  return solver_->restart(t, start, watches_event(scene_));
+}
+
+// With what was set since the last step, if anything was.
+WheelScene Simulation::scene_at(double t, const double* y) const {
+  WheelScene scene = scene_;
+  if (touched_) {
+    scene.wheel.s = stored_[s];
+    inputs_.pending_load(&scene);
+    scene.friction = friction_at(stored_, *formulation_, scene, y);
+  } else {
+    inputs_.load_at(t, &scene);
+  }
+  return scene;
+}
+
+WheelLoad Simulation::load_rate_at(double t) const { return touched_ ? inputs_.pending_rate() : inputs_.rate_at(t); }
+
+// Inputs and tunable parameters set since the last step take effect: a restart only where something jumps, or where
+// the solver has already gone past this instant with the old ones.
+bool Simulation::settle_changes() {
+  if (!touched_) return true;
+  const double t = now_.time();
+  const bool retuned = scene_.wheel.s != stored_[s], inputs_changed = inputs_.differ_from_current(t);
+  const bool restarts = (retuned || inputs_changed) && (retuned || inputs_.jump(t) || solver_->known_until() > t);
+  const double* y = now_.state();
+  if (restarts) scene_ = scene_at(t, y);
+  touched_ = false;
+  if (inputs_changed) inputs_.take_over(t);
+  inputs_.load_at(t, &scene_);
+  now_.forget_dynamics();
+  return !restarts || restart_from(t, y);
+}
+
+// The solver stands at a transition of the friction: omega_z came to zero, or friction can hold it no longer.
+bool Simulation::pass_event() {
+  const double t = solver_->event_time();
+  double y[WHEEL_MAX_STATES];
+  solver_->read(t, y);
+  inputs_.load_at(t, &scene_);
+  const bool released = scene_.friction.kind == WHEEL_HELD;
+  if (released) {
+    WheelDynamics held;
+    formulation_->dynamics(&scene_, y, &held);
+    scene_.friction = {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0};
+  } else {
+    formulation_->stop_spin(&scene_.wheel, y);
+    scene_.friction = friction_at(stored_, *formulation_, scene_, y);
+  }
+  ++now_.events;
+  if (scene_.friction.kind == WHEEL_HELD)
+    tell(Topic::event, "t = %.9g s: stick, omega_z is held at zero.", start_time_ + t);
+  else
+    tell(Topic::event, "t = %.9g s: %s, omega_z becomes %s.", start_time_ + t, released ? "release" : "slip reverses",
+         scene_.friction.sigma > 0 ? "positive" : "negative");
+  return restart_from(t, y);
+}
+
+integrator::Outcome Simulation::run_to(double t) {
+  while (solver_->known_until() < t) {
+    if (inputs_.varies()) solver_->stop_before(t);
+    const integrator::Outcome outcome = solver_->advance(t);
+    if (outcome != integrator::Outcome::event) return outcome;
+    if (!pass_event()) return integrator::Outcome::failed;
+  }
+  return integrator::Outcome::reached;
+}
+
+Progressed Simulation::end_run() {
+  now_.move_to(solver_->event_time());
+  const double theta = formulation_->tilt(now_.state());
+  if (std::sin(theta) < 2 * flat_sine)
+    tell(Topic::discard, "The wheel fell flat at t = %.9g s: the model ends there.", time());
+  else
+    tell(Topic::discard, "The wheel lifted off the ground at t = %.9g s, theta = %.6g rad: the model ends there.",
+         time(), theta);
+  return Progressed::ended;
+}
+
+Progressed Simulation::advance(double t) {
+  t -= start_time_;
+  if (!settle_changes()) return Progressed::failed;
+  if (solver_->known_until() < t) {
+    const double t_before = now_.time();
+    double y_before[WHEEL_MAX_STATES];
+    std::copy_n(now_.state(), formulation_->states, y_before);
+    const integrator::Outcome outcome = run_to(t);
+    if (outcome == integrator::Outcome::ended) return end_run();
+    if (outcome == integrator::Outcome::failed) {
+      tell(Topic::error, "The solver stopped at t = %.9g s: %s.", start_time_ + solver_->known_until(),
+           solver_->failure());
+      now_.set_state(t_before, y_before);
+      return Progressed::failed;
+    }
+  }
+  now_.move_to(t);
+  if (inputs_.varies()) inputs_.hold_from(t), touched_ = true;
+  return Progressed::reached;
+}
+
+double Simulation::time() const { return start_time_ + now_.time(); }
+
+double Simulation::value(unsigned variable) {
+  return variable < stored_count ? stored_[variable] : row_of(variable).read(now_);
+}
+
+double Simulation::rate(unsigned variable) { return row_of(variable).read_rate(now_); }
+
+// Only the reactions answer an input at once. They are linear in the inputs: the rate that a unit rate of the input
+// adds is the derivative.
+double Simulation::sensitivity(unsigned output, unsigned input) {
+  if (output < lambda_1 || output > lambda_3) return 0;
+  WheelLoad still = {}, unit = {};
+  (input < M_1 ? unit.F[input - F_X] : unit.M[input - M_1]) = 1;
+  double with[3], without[3];
+  formulation_->reaction_rates(&now_.scene(), &unit, now_.state(), with);
+  formulation_->reaction_rates(&now_.scene(), &still, now_.state(), without);
+  return with[output - lambda_1] - without[output - lambda_1];
+}
+
+}  // namespace wheel

@@ -1,0 +1,1 @@
+"""Drawing tools shared by figures.py and picture.py; nothing here computes dynamics."""

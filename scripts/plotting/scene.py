@@ -1,0 +1,112 @@
+"""One simulated scene as `fmpy simulate` writes it: a CSV file with a named column per variable.
+
+Names and units are those of the model's variables: SI, fixed axes X, Y, Z, Z up; angles in rad.
+"""
+
+import csv
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import Akima1DInterpolator
+
+Array = NDArray[np.float64]
+
+
+class SceneError(Exception):
+    """A file cannot be drawn; the message is one sentence for the user."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """The columns of one simulation, one row per communication point."""
+
+    path: Path
+    columns: dict[str, Array]
+
+    def __getitem__(self, name: str) -> Array:
+        return self.columns[name]
+
+    @property
+    def time(self) -> Array:
+        return self.columns["time"]
+
+    @cached_property
+    def mode(self) -> NDArray[np.int_]:
+        """-1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero (it sticks).
+
+        Without the column friction_mode the sign of omega_z says the same, because omega_z is
+        exactly 0 while it sticks.
+        """
+        source = "friction_mode" if "friction_mode" in self.columns else "omega_z"
+        return np.sign(self[source]).astype(int)
+
+    @cached_property
+    def _changes(self) -> NDArray[np.int_]:
+        """Rows whose mode differs from the next row's."""
+        return np.flatnonzero(np.diff(self.mode))
+
+    @property
+    def n_transitions(self) -> int:
+        """Changes of mode that the rows show."""
+        return len(self._changes)
+
+    def _instant(self, row: int) -> float:
+        """A transition between row and row + 1, placed half-way."""
+        return 0.5 * float(self.time[row] + self.time[row + 1])
+
+    def stick_phases(self) -> list[tuple[float, float]]:
+        """Begin and end in s of every phase with omega_z held at zero."""
+        edges = [float(self.time[0])]
+        edges += [self._instant(row) for row in self._changes]
+        edges.append(float(self.time[-1]))
+        modes = [self.mode[0], *self.mode[self._changes + 1]]
+        spans = zip(modes, edges[:-1], edges[1:], strict=True)
+        return [(begin, end) for mode, begin, end in spans if mode == 0]
+
+    def reversals(self) -> list[float]:
+        """Instants in s at which omega_z changes sign without a stick phase."""
+        rows = self._changes
+        return [self._instant(row) for row in rows if self.mode[row] * self.mode[row + 1] < 0]
+
+    def smooth(self, subdivision: int, *names: str) -> tuple[Array, ...]:
+        """Columns with points between the rows, for curves that turn sharply.
+
+        Akima's cubic is local: a kink at a transition rings nowhere else.
+        """
+        rows = np.arange(len(self.time))
+        fine = np.linspace(0, rows[-1], rows[-1] * subdivision + 1)
+        return tuple(Akima1DInterpolator(rows, self[name])(fine) for name in names)
+
+
+def read_scene(path: Path, needed: tuple[str, ...], one_of: tuple[str, ...] = ()) -> Scene:
+    """Read a CSV file; every column of `needed` and one column of `one_of` must be there."""
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            header, *rows = [row for row in csv.reader(file) if row] or [[]]
+    except OSError as fault:
+        raise SceneError(f"{path} cannot be read ({fault.strerror}): simulate first.") from fault
+    missing = [name for name in needed if name not in header]
+    if one_of and not set(one_of) & set(header):
+        missing.append(" or ".join(one_of))
+    if missing:
+        raise SceneError(f"{path} lacks the column {', '.join(missing)}.")
+    if len(rows) < 2:
+        raise SceneError(f"{path} has {len(rows)} rows of data; a curve needs at least two.")
+    wanted = [name for name in header if name in {*needed, *one_of}]
+    return Scene(path, {name: _column(path, header.index(name), name, rows) for name in wanted})
+
+
+def _column(path: Path, index: int, name: str, rows: list[list[str]]) -> Array:
+    """One column as finite numbers."""
+    values = np.empty(len(rows))
+    for i, row in enumerate(rows):
+        try:
+            values[i] = float(row[index])
+        except (ValueError, IndexError):
+            values[i] = np.nan
+        if not np.isfinite(values[i]):
+            raise SceneError(f"{path} has no finite number for {name} in data row {i + 1}.")
+    return values

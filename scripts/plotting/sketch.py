@@ -1,0 +1,95 @@
+"""Lines, arrows, arcs and labels in space, drawn as vectors with the parts behind the wheel hidden.
+
+Points are in fixed axes X, Y, Z in m; the axes of the drawing are those of plotting.torus.View.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import FancyArrowPatch
+from matplotlib.patheffects import withStroke
+
+from plotting import style
+from plotting.scene import Array
+from plotting.torus import View, Wheel
+
+FINENESS = 2e-3  # m between the points at which a line is tested for visibility
+HALO = [withStroke(linewidth=1.7, foreground="white")]
+
+
+@dataclass(frozen=True)
+class Pen:
+    """How a line looks; `hidden` is the opacity of its dashed part behind the wheel."""
+
+    color: str
+    width: float = 1.0
+    style: str = "-"
+    hidden: float = 0.0
+    layer: float = 3.0
+
+
+@dataclass(frozen=True)
+class Sketch:
+    """A drawing of one wheel in one view."""
+
+    ax: Axes
+    wheel: Wheel
+    view: View
+
+    def line(self, points: Array, pen: Pen) -> None:
+        """A polyline; what the wheel covers is dashed or left out."""
+        points = _refine(np.asarray(points, dtype=float))
+        flat = self.view.project(points)
+        covered = self.view.hides(self.wheel, points)
+        look = {"color": pen.color, "linewidth": pen.width, "solid_capstyle": "butt"}
+        shown = np.where(covered[:, None], np.nan, flat)
+        self.ax.plot(*shown.T, linestyle=pen.style, zorder=pen.layer, **look)
+        if pen.hidden and covered.any():
+            behind = np.where(covered[:, None], flat, np.nan)
+            look |= {"alpha": pen.hidden, "dashes": (2.5, 1.8), "linewidth": 0.8 * pen.width}
+            self.ax.plot(*behind.T, zorder=pen.layer, **look)
+
+    def arrow(self, points: Array, pen: Pen, head: float = 8.0) -> None:
+        """A polyline with a head at its last point."""
+        points = _refine(np.asarray(points, dtype=float))
+        self.line(points, pen)
+        tail, tip = self.view.project(points[[-3, -1]])
+        self.ax.add_patch(
+            FancyArrowPatch(
+                tail,
+                tip + 0.3 * (tip - tail),
+                arrowstyle="-|>,head_length=0.45,head_width=0.17",
+                mutation_scale=head,
+                color=pen.color,
+                linewidth=0.0,
+                shrinkA=0.0,
+                shrinkB=0.0,
+                zorder=pen.layer,
+            )
+        )
+
+    def dot(self, point: Array, color: str, size: float = 4.0) -> None:
+        """A point, never hidden."""
+        flat = self.view.project(point)
+        self.ax.plot(
+            *flat,
+            "o",
+            color=color,
+            markersize=size,
+            zorder=6,
+            markeredgecolor="white",
+            markeredgewidth=0.6,
+        )
+
+    def label(self, point: Array, text: str, shift: tuple[float, float], **how: object) -> None:
+        """Text centred at a point, moved by `shift` in typographic points."""
+        look = {"ha": "center", "va": "center", "fontsize": 10.5, "path_effects": HALO} | how
+        style.note(self.ax, text, self.view.project(point), shift, zorder=7, **look)
+
+
+def _refine(points: Array) -> Array:
+    """The same polyline with points at most about FINENESS apart."""
+    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    fine = np.linspace(0.0, way[-1], max(int(way[-1] / FINENESS) + 1, 4))
+    return np.stack([np.interp(fine, way, column) for column in points.T], axis=1)

@@ -1,0 +1,99 @@
+"""One look for every figure: type, colours, sizes in millimetres, and files equal byte for byte.
+
+The type is STIX, which comes with matplotlib, so a figure looks the same on every machine.
+The colours are those of Okabe and Ito, told apart by colour-blind readers and in grey print.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+mpl.use("Agg")
+
+BLUE = "#0072B2"
+SKY = "#56B4E9"
+VERMILLION = "#D55E00"
+ORANGE = "#E69F00"
+GREEN = "#009E73"
+PURPLE = "#CC79A7"
+INK = "#1A1A1A"
+GREY = "#767676"
+BAND = "#F6D9BF"  # VERMILLION at about a quarter, opaque: SVG and PNG then show one tone
+
+MM = 1.0 / 25.4  # inch per millimetre
+COLUMN = 89.0  # mm, one journal column
+PAGE = 183.0  # mm, two journal columns
+
+_RC = {
+    "font.family": "STIXGeneral",
+    "mathtext.fontset": "stix",
+    "font.size": 8.5,
+    "axes.labelsize": 9.0,
+    "axes.linewidth": 0.6,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "axes.labelpad": 3.0,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "xtick.direction": "out",
+    "ytick.direction": "out",
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 2.6,
+    "ytick.major.size": 2.6,
+    "lines.linewidth": 1.0,
+    "lines.solid_joinstyle": "round",
+    "lines.solid_capstyle": "round",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "legend.fontsize": 7.5,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "svg.fonttype": "path",
+    "svg.hashsalt": "wheel",  # element ids follow from the drawing alone
+}
+
+
+def use_style() -> None:
+    """Set the look for all figures made afterwards."""
+    mpl.rcdefaults()
+    mpl.rcParams.update(_RC)
+
+
+def figure_mm(width: float, height: float) -> Figure:
+    """An empty figure of this size in mm."""
+    return Figure(figsize=(width * MM, height * MM))
+
+
+def axes_mm(fig: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
+    """Axes whose frame has this place and size in mm from the figure's lower left corner."""
+    w, h = (size / MM for size in fig.get_size_inches())
+    return fig.add_axes((left / w, bottom / h, width / w, height / h))
+
+
+def text_mm(fig: Figure, x: float, y: float, text: str, **how: object) -> None:
+    """Text whose anchor lies at this place in mm from the figure's lower left corner."""
+    w, h = (size / MM for size in fig.get_size_inches())
+    fig.text(x / w, y / h, text, **how)
+
+
+def note(ax: Axes, text: str, at: Sequence[float], shift: Sequence[float], **how: object) -> None:
+    """Small text beside the data point `at`, moved by `shift` in typographic points."""
+    look = {"fontsize": 7.5, "textcoords": "offset points"} | how
+    ax.annotate(text, at, xytext=shift, **look)
+
+
+def save(fig: Figure, stem: Path, dpi: int = 300) -> list[Path]:
+    """Write stem.svg and stem.png without date or program version; return both paths."""
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    svg, png = stem.with_suffix(".svg"), stem.with_suffix(".png")
+    fig.savefig(svg, metadata={"Date": None, "Creator": None})
+    fig.savefig(png, dpi=dpi, metadata={"Software": None})
+    return [svg, png]

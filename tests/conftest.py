@@ -1,0 +1,75 @@
+"""Shared pieces of the tests: the built FMU, and how a scene is simulated through fmpy."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import extract, read_model_description, simulate_fmu
+
+ROOT = Path(__file__).resolve().parent.parent
+HEADLINE = ("X_O", "theta", "phi_dot", "psi_dot")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "contract: quick tests of the C interface, run under sanitizers too")
+
+
+def build_folder() -> Path:
+    return Path(os.environ.get("WHEEL_BUILD", ROOT / "build" / "release"))
+
+
+@pytest.fixture(scope="session")
+def fmu_path() -> Path:
+    return build_folder() / "wheel.fmu"
+
+
+@pytest.fixture(scope="session")
+def fmu(fmu_path: Path) -> Iterator[str]:
+    """The unpacked FMU."""
+    folder = extract(str(fmu_path))
+    yield folder
+    shutil.rmtree(folder)
+
+
+@pytest.fixture(scope="session")
+def description(fmu: str):
+    return read_model_description(fmu)
+
+
+@pytest.fixture(scope="session")
+def simulate(fmu: str, description):
+    """simulate(step, stop, tolerance, **start values) -> record array of all outputs, by `fmpy.simulate_fmu`."""
+
+    def run(
+        step: float = 0.1,
+        stop: float = 10.0,
+        tolerance: float | None = None,
+        output: tuple[str, ...] = HEADLINE,
+        **start_values: float,
+    ) -> np.ndarray:
+        return simulate_fmu(
+            fmu,
+            model_description=description,
+            output_interval=step,
+            stop_time=stop,
+            relative_tolerance=tolerance,
+            start_values=start_values,
+            output=output,
+        )
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def reference_tables() -> dict[str, np.ndarray]:
+    """The trusted tables of the paper's two scenes, every 0.1 s."""
+    folder = ROOT.parent / "shared" / "reference"
+    return {
+        scene: np.genfromtxt(folder / f"paper_{scene}.csv", delimiter=",", names=True)
+        for scene in ("free", "friction")
+    }
