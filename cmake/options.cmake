@@ -26,6 +26,10 @@ if(WHEEL_SANITIZE)
   add_compile_options(-fsanitize=${WHEEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${WHEEL_SANITIZE})
 endif()
+if(WHEEL_FUZZ)
+  # Our own code only: the fuzzer is not to chase branches inside CVODE.
+  set(fuzzer_instrumentation -fsanitize=fuzzer-no-link)
+endif()
 if(WHEEL_COVERAGE)
   add_compile_options(--coverage -fprofile-update=atomic)
   add_link_options(--coverage)
@@ -45,6 +49,7 @@ target_compile_options(
     -fno-rtti
     -Wold-style-cast>
     $<$<BOOL:${WHEEL_WERROR}>:-Werror>
+    ${fuzzer_instrumentation}
 )
 
 # Needs libc and libm only, exports fmi2* only.
@@ -54,10 +59,7 @@ function(link_self_contained target)
     return()
   endif()
   set(exports ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
-  target_link_options(
-    ${target}
-    PRIVATE -Wl,--version-script=${exports} -Wl,--gc-sections -Wl,--build-id=none $<$<CONFIG:Release>:-s>
-  )
+  target_link_options(${target} PRIVATE -Wl,--version-script=${exports} -Wl,--gc-sections -Wl,--build-id=none)
   set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${exports})
   if(NOT WHEEL_SANITIZE)
     target_link_options(${target} PRIVATE -static-libgcc -static-libstdc++ -Wl,--no-undefined)

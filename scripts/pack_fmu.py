@@ -46,9 +46,7 @@ def pack(entries: dict[str, Path], output: Path) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, required=True)
-    parser.add_argument(
-        "--sundials", type=Path, required=True, help="SUNDIALS source, for its licence"
-    )
+    parser.add_argument("--sundials", type=Path, required=True, help="SUNDIALS source, for its licence")
     parser.add_argument("--binary", action="append", default=[], help="platform=library")
     arguments = parser.parse_args()
     binaries = {}

@@ -70,6 +70,5 @@ def reference_tables() -> dict[str, np.ndarray]:
     """The trusted tables of the paper's two scenes, every 0.1 s."""
     folder = ROOT.parent / "shared" / "reference"
     return {
-        scene: np.genfromtxt(folder / f"paper_{scene}.csv", delimiter=",", names=True)
-        for scene in ("free", "friction")
+        scene: np.genfromtxt(folder / f"paper_{scene}.csv", delimiter=",", names=True) for scene in ("free", "friction")
     }

@@ -1,4 +1,4 @@
-// The multibody formulation behind the C header: (24) as first-order system in y = (q, q_dot), any inertia.
+// The multibody formulation behind the C header: (24) as first-order system, any inertia.
 // Fixed axes for O, Euler angles for the attitude; see multibody.hpp for the equations.
 #include "multibody.hpp"
 
@@ -14,37 +14,34 @@ Vector3<double> rolling_velocity(const WheelParameters& wheel, const Attitude<do
   return -A(attitude) * r(wheel, attitude).transpose() * Q(attitude) * attitude.beta_dot;
 }
 
-Solution<double> solve_scene(const WheelScene& scene, const State& state) {
+struct External {
   Vector3<double> force = Vector3<double>::Zero(), moment = Vector3<double>::Zero();
-  if (scene.loaded) {
+  explicit External(const WheelScene& scene) {
+    if (!scene.loaded) return;
     force = Eigen::Map<const Vector3<double>>(scene.load.F);
     moment = Eigen::Map<const Vector3<double>>(scene.load.M);
   }
-  return solve<double>(scene.friction, state, force, moment);
-}
+};
 
 void set_rolling_velocity(const WheelParameters& wheel, double* y) {
-  const Attitude<double> attitude(y[3], y[4], y[5], {y[9], y[10], y[11]});
+  const Attitude<double> attitude(y[3], y[4], y[5], {y[9], y[10], y[11] - y[9] * std::cos(y[4])});
   Eigen::Map<Vector3<double>>(y + 6) = rolling_velocity(wheel, attitude);
 }
 
 void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
   y[0] = motion->X_O, y[1] = motion->Y_O, y[2] = wheel_height(wheel, motion->theta);
   y[3] = motion->psi, y[4] = motion->theta, y[5] = motion->phi;
-  y[9] = motion->psi_dot, y[10] = motion->theta_dot, y[11] = motion->phi_dot;
+  y[9] = motion->psi_dot, y[10] = motion->theta_dot;
+  y[11] = motion->phi_dot + motion->psi_dot * std::cos(motion->theta);
   set_rolling_velocity(*wheel, y);
 }
 
 double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  const Solution<double> solution = solve_scene(*scene, State(scene->wheel, y));
-  for (int i = 0; i < 6; ++i) {
-    y_dot[i] = y[6 + i];
-    y_dot[6 + i] = solution.unknowns[i];
-  }
-  return solution.unknowns[8];
+  const External external(*scene);
+  return state_rate<double>(*scene, external.force, external.moment, y, y_dot);
 }
 
-double spin(const double* y) { return y[11] + y[9] * std::cos(y[4]); }
+double spin(const double* y) { return y[11]; }
 double tilt(const double* y) { return y[4]; }
 
 void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
@@ -52,13 +49,15 @@ void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* 
   out->X_O = y[0], out->Y_O = y[1], out->Z_O = y[2];
   out->psi = y[3], out->theta = y[4], out->phi = y[5];
   out->X_O_dot = y[6], out->Y_O_dot = y[7], out->Z_O_dot = y[8];
-  out->psi_dot = y[9], out->theta_dot = y[10], out->phi_dot = y[11];
+  out->psi_dot = y[9], out->theta_dot = y[10], out->phi_dot = y[11] - y[9] * std::cos(y[4]);
   out->omega_z = spin(y);
 }
 
 void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   const State state(scene->wheel, y);
-  const Solution<double> solution = solve_scene(*scene, state);
+  const External external(*scene);
+  const Vector9<double> column = system_column<double>(state, external.force, external.moment);
+  const Solution<double> solution = solve<double>(scene->friction, state, column);
   const auto& x = solution.unknowns;
   out->X_O_ddot = x[0], out->Y_O_ddot = x[1], out->Z_O_ddot = x[2];
   out->psi_ddot = x[3], out->theta_ddot = x[4], out->phi_ddot = x[5];
@@ -68,7 +67,7 @@ void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
 }
 
 void stop_spin(const WheelParameters* wheel, double* y) {
-  y[11] = -y[9] * std::cos(y[4]);
+  y[11] = 0;
   set_rolling_velocity(*wheel, y);
 }
 
@@ -79,6 +78,7 @@ extern "C" {
 
 void wheel_multibody_reaction_rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y,
                                     double lambda_dot[3]);
+void wheel_multibody_jacobian(const WheelScene* scene, const double* y, double* J);
 
 extern const WheelFormulation wheel_multibody;
 const WheelFormulation wheel_multibody = {
@@ -91,6 +91,7 @@ const WheelFormulation wheel_multibody = {
     wheel::paper::kinematics,
     wheel::paper::dynamics,
     wheel_multibody_reaction_rates,
+    wheel_multibody_jacobian,
     wheel::paper::stop_spin,
 };
 

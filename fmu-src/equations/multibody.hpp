@@ -20,7 +20,7 @@ using Matrix36 = Eigen::Matrix<T, 3, 6>;
 template <class T>
 using Vector6 = Eigen::Matrix<T, 6, 1>;
 
-// A state y = (q, q_dot) with the matrices that (16)-(24) share.
+// A state y = (q, q_dot; omega_z in the place of phi_dot) with the matrices that (16)-(24) share.
 template <class T>
 struct Multibody {
   const WheelParameters& wheel;
@@ -30,8 +30,10 @@ struct Multibody {
 
   template <class Vector>
   Multibody(const WheelParameters& w, const Vector& y)
-      : wheel(w), attitude(y[3], y[4], y[5], Vector3<T>(y[9], y[10], y[11])) {
-    for (int i = 0; i < 6; ++i) q_dot[i] = y[6 + i];
+      : wheel(w), attitude(y[3], y[4], y[5], Vector3<T>(y[9], y[10], T(0))) {
+    attitude.beta_dot[2] = y[11] - y[9] * attitude.cos_theta;
+    for (int i = 0; i < 3; ++i) q_dot[i] = y[6 + i];
+    q_dot.template tail<3>() = attitude.beta_dot;
     A = paper::A(attitude);
     A_dot = paper::A_dot(A, attitude);
     Q = paper::Q(attitude);
@@ -131,13 +133,25 @@ T omega_z_dot(const Multibody<T>& s, const Vector9<T>& unknowns) {
   return s.Q.row(2).dot(unknowns.template segment<3>(3)) + s.Q_dot.row(2).dot(s.attitude.beta_dot);
 }
 
+// Linear systems with one matrix. Numbers that carry a derivative have a specialisation of their own (rates.cpp):
+// Eigen's triangular solver skips entries whose value is zero, and their derivative with them.
+template <class T>
+class Factors {
+ public:
+  explicit Factors(const Matrix9<T>& K) : lu_(K) {}
+  Vector9<T> solve(const Vector9<T>& column) const { return lu_.solve(column); }
+
+ private:
+  Eigen::PartialPivLU<Matrix9<T>> lu_;
+};
+
 // (24) with omega_z held: the moment tau about the axle is found from omega_z_dot = 0, linearly.
 template <class T>
 Solution<T> solve_held(const Multibody<T>& s, const Vector9<T>& column) {
-  const Eigen::PartialPivLU<Matrix9<T>> lu(system_matrix<T>(s, T(0)));
+  const Factors<T> factors(system_matrix<T>(s, T(0)));
   Vector9<T> about_axle = Vector9<T>::Zero();
   about_axle[5] = T(1);
-  const Vector9<T> free = lu.solve(column), unit = lu.solve(about_axle);
+  const Vector9<T> free = factors.solve(column), unit = factors.solve(about_axle);
   const T per_tau = s.Q.row(2).dot(unit.template segment<3>(3));
   const T tau = -omega_z_dot<T>(s, free) / per_tau;
   return {free + unit * tau, tau};
@@ -146,18 +160,16 @@ Solution<T> solve_held(const Multibody<T>& s, const Vector9<T>& column) {
 // (24) with the moment -s N kappa about the axle; without pressure (N <= 0) there is no friction.
 template <class T>
 Solution<T> solve_rolling(const Multibody<T>& s, const Vector9<T>& column, const T& kappa) {
-  Vector9<T> unknowns = system_matrix<T>(s, kappa).partialPivLu().solve(column);
+  const Vector9<T> unknowns = Factors<T>(system_matrix<T>(s, kappa)).solve(column);
   if (kappa == T(0)) return {unknowns, T(0)};
   if (unknowns[8] > T(0)) return {unknowns, -s.wheel.s * kappa * unknowns[8]};
-  return {system_matrix<T>(s, T(0)).partialPivLu().solve(column), T(0)};
+  return {Factors<T>(system_matrix<T>(s, T(0))).solve(column), T(0)};
 }
 
-// The scene's friction law at this state.
+// (24) with the friction law of the scene.
 template <class T>
-Solution<T> solve(const WheelFriction& friction, const Multibody<T>& s, const Vector3<T>& force,
-                  const Vector3<T>& moment) {
+Solution<T> solve(const WheelFriction& friction, const Multibody<T>& s, const Vector9<T>& column) {
   using std::tanh;
-  const Vector9<T> column = system_column<T>(s, force, moment);
   switch (friction.kind) {
     case WHEEL_HELD:
       return solve_held<T>(s, column);
@@ -169,6 +181,31 @@ Solution<T> solve(const WheelFriction& friction, const Multibody<T>& s, const Ve
       break;
   }
   return solve_rolling<T>(s, column, T(0));
+}
+
+// Rate at which errors of the constraints decay, 1/s: some times the rates of the motion itself, so that it is never
+// the stiffest part.
+template <class T>
+T decay_rate(const Multibody<T>& s) {
+  using std::sqrt;
+  const T omega_squared = (s.Q * s.attitude.beta_dot).squaredNorm();
+  return 5.0 * sqrt(s.wheel.g / (s.wheel.r_0 + s.wheel.r) + omega_squared);
+}
+
+// (24) with -[B_dot]{q_dot} - a [B]{q_dot} in the last rows, and the height drawn to that of (32) (Baumgarte): both
+// terms vanish on the constraints. Returns N.
+template <class T>
+T state_rate(const WheelScene& scene, const Vector3<T>& force, const Vector3<T>& moment, const T* y, T* y_dot) {
+  const Multibody<T> s(scene.wheel, y);
+  const T rate = decay_rate<T>(s);
+  Vector9<T> column = system_column<T>(s, force, moment);
+  column.template tail<3>() -= rate * (B<T>(s) * s.q_dot);
+  const Solution<T> solution = solve<T>(scene.friction, s, column);
+  for (int i = 0; i < 6; ++i) y_dot[i] = s.q_dot[i];
+  y_dot[2] -= rate * (y[2] - (scene.wheel.r_0 * s.attitude.sin_theta + scene.wheel.r));
+  for (int i = 0; i < 5; ++i) y_dot[6 + i] = solution.unknowns[i];
+  y_dot[11] = scene.friction.kind == WHEEL_HELD ? T(0) : omega_z_dot<T>(s, solution.unknowns);
+  return solution.unknowns[8];
 }
 
 }  // namespace wheel::paper

@@ -1,5 +1,5 @@
-// Rates of the reactions, d lambda/dt, for both formulations: the equations evaluated on numbers that carry their time
-// derivative (Eigen's automatic differentiation, one direction: along the motion).
+// Exact derivatives of both formulations: rates of the reactions along the motion, and Jacobians. The equations are
+// evaluated on numbers that carry a derivative in one direction (Eigen's automatic differentiation).
 #include <Eigen/Core>
 #include <cmath>
 #include <unsupported/Eigen/AutoDiff>
@@ -39,6 +39,39 @@ void moving_state(const WheelFormulation& formulation, const WheelScene& scene, 
 }
 
 }  // namespace
+
+// K x = b along the motion: K x_dot = b_dot - K_dot x.
+template <>
+class paper::Factors<real> {
+ public:
+  explicit Factors(const paper::Matrix9<real>& K) : lu_(K.unaryExpr(&value_of)), K_dot_(K.unaryExpr(&rate_of)) {}
+  paper::Vector9<real> solve(const paper::Vector9<real>& column) const {
+    const paper::Vector9<double> x = lu_.solve(column.unaryExpr(&value_of));
+    const paper::Vector9<double> x_dot = lu_.solve(column.unaryExpr(&rate_of) - K_dot_ * x);
+    return x.binaryExpr(x_dot, &moving);
+  }
+
+ private:
+  static double value_of(const real& x) { return x.value(); }
+  static double rate_of(const real& x) { return x.derivatives()[0]; }
+  Eigen::PartialPivLU<paper::Matrix9<double>> lu_;
+  paper::Matrix9<double> K_dot_;
+};
+
+namespace {
+
+// Column after column: f evaluated with a unit derivative in one entry of the state.
+template <int states, class F>
+void differentiate(const double* y, double* J, F&& f) {
+  for (int j = 0; j < states; ++j) {
+    real state[states], rate[states];
+    for (int i = 0; i < states; ++i) state[i] = moving(y[i], i == j);
+    f(state, rate);
+    for (int i = 0; i < states; ++i) J[i + states * j] = rate[i].derivatives()[0];
+  }
+}
+
+}  // namespace
 }  // namespace wheel
 
 extern "C" {
@@ -62,9 +95,25 @@ void wheel_multibody_reaction_rates(const WheelScene* scene, const WheelLoad* lo
   moving_state<WHEEL_MULTIBODY_STATES>(wheel_multibody, *scene, y, state);
   const Load load = moving_load(*scene, load_dot);
   const paper::Multibody<real> body(scene->wheel, state);
-  const paper::Solution<real> solution =
-      paper::solve<real>(scene->friction, body, {load.F[0], load.F[1], load.F[2]}, {load.M[0], load.M[1], load.M[2]});
+  const paper::Vector9<real> column =
+      paper::system_column<real>(body, {load.F[0], load.F[1], load.F[2]}, {load.M[0], load.M[1], load.M[2]});
+  const paper::Solution<real> solution = paper::solve<real>(scene->friction, body, column);
   for (int i = 0; i < 3; ++i) lambda_dot[i] = solution.unknowns[6 + i].derivatives()[0];
+}
+
+void wheel_reduced_jacobian(const WheelScene* scene, const double* y, double* J) {
+  using namespace wheel;
+  const Load load = moving_load(*scene, nullptr);
+  differentiate<WHEEL_REDUCED_STATES>(
+      y, J, [&](const real* state, real* rate) { derivative_of(scene, scene->loaded ? &load : nullptr, state, rate); });
+}
+
+void wheel_multibody_jacobian(const WheelScene* scene, const double* y, double* J) {
+  using namespace wheel;
+  const Load load = moving_load(*scene, nullptr);
+  const paper::Vector3<real> force(load.F[0], load.F[1], load.F[2]), moment(load.M[0], load.M[1], load.M[2]);
+  differentiate<WHEEL_MULTIBODY_STATES>(
+      y, J, [&](const real* state, real* rate) { paper::state_rate<real>(*scene, force, moment, state, rate); });
 }
 
 }  // extern "C"

@@ -14,14 +14,14 @@ typedef double real;
 #define real_tanh tanh
 #include "reduced_system.inc"
 
-static Motion motion_at(const WheelScene* scene, const Carrier* c, double psi) {
-  Load load;
-  if (!scene->loaded) return motion_of(scene, NULL, c, psi);
+/* The scene's load in this file's number type, or NULL where there is none. */
+static const Load* load_of(const WheelScene* scene, Load* load) {
+  if (!scene->loaded) return NULL;
   for (int i = 0; i < 3; ++i) {
-    load.F[i] = scene->load.F[i];
-    load.M[i] = scene->load.M[i];
+    load->F[i] = scene->load.F[i];
+    load->M[i] = scene->load.M[i];
   }
-  return motion_of(scene, &load, c, psi);
+  return load;
 }
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
@@ -36,26 +36,9 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
   y[7] = motion->Y_O;
 }
 
-/* Horizontal velocity of O: v_1 along e1 and -Z_O omega_1 across it. */
-static void horizontal_velocity(const WheelParameters* wheel, const Carrier* c, double psi, double* X_dot,
-                                double* Y_dot) {
-  double sin_psi = sin(psi), cos_psi = cos(psi);
-  double across = (wheel->r_0 * c->sin_theta + wheel->r) * c->omega_1;
-  *X_dot = c->v_1 * cos_psi + across * sin_psi;
-  *Y_dot = c->v_1 * sin_psi - across * cos_psi;
-}
-
 static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  Carrier c = carrier_of(&scene->wheel, y);
-  Motion a = motion_at(scene, &c, y[4]);
-  y_dot[0] = c.omega_1;
-  y_dot[1] = a.omega_1_dot;
-  y_dot[2] = a.omega_2_dot;
-  y_dot[3] = a.omega_3_dot;
-  y_dot[4] = c.psi_dot;
-  y_dot[5] = c.omega_3 - c.Omega_3;
-  horizontal_velocity(&scene->wheel, &c, y[4], &y_dot[6], &y_dot[7]);
-  return a.N;
+  Load load;
+  return derivative_of(scene, load_of(scene, &load), y, y_dot);
 }
 
 static double spin(const double* y) { return y[3]; }
@@ -80,7 +63,8 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   const WheelParameters* w = &scene->wheel;
   Carrier c = carrier_of(w, y);
-  Motion a = motion_at(scene, &c, y[4]);
+  Load load;
+  Motion a = motion_of(scene, load_of(scene, &load), &c, y[4]);
   turn_reaction(&c, &a, y[4], out->lambda);
   out->tau = a.tau;
   out->omega_z_dot = a.omega_3_dot;
@@ -98,8 +82,10 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
   y[3] = 0;
 }
 
+/* In rates.cpp, on numbers that carry a derivative. */
 void wheel_reduced_reaction_rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y,
                                   double lambda_dot[3]);
+void wheel_reduced_jacobian(const WheelScene* scene, const double* y, double* J);
 
 const WheelFormulation wheel_reduced = {
     .name = "reduced",
@@ -111,5 +97,6 @@ const WheelFormulation wheel_reduced = {
     .kinematics = kinematics,
     .dynamics = dynamics,
     .reaction_rates = wheel_reduced_reaction_rates,
+    .jacobian = wheel_reduced_jacobian,
     .stop_spin = stop_spin,
 };

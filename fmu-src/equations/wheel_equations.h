@@ -8,7 +8,7 @@
  *
  * Frames (docs/notation.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the carrier e1 (along
  * the line of nodes, the rolling direction), e2 (in the wheel plane, up the slope), e3 (the axle) does not spin with
- * the wheel; body axes x, y, z = e3 do. Domain: 0 < theta < pi, parameters as wheel_check_parameters demands. */
+ * the wheel; body axes x, y, z = e3 do. Domain: 0 < theta < pi, masses, radii and moments positive. */
 #ifndef WHEEL_EQUATIONS_H
 #define WHEEL_EQUATIONS_H
 
@@ -86,7 +86,7 @@ typedef struct WheelFormulation {
   int states;
   /* y (out, `states` entries) from the free initial values. */
   void (*start)(const WheelParameters* wheel, const WheelMotion* motion, double* y);
-  /* y_dot = f(y), and the normal force N that goes with it; non-finite where sin(theta) = 0. */
+  /* y_dot = f(y), and the normal force N that goes with it; non-finite or meaningless outside 0 < theta < pi. */
   double (*derivative)(const WheelScene* scene, const double* y, double* y_dot);
   /* omega_z, (21). */
   double (*spin)(const double* y);
@@ -96,6 +96,8 @@ typedef struct WheelFormulation {
   void (*dynamics)(const WheelScene* scene, const double* y, WheelDynamics* out);
   /* d lambda/dt along the motion, N/s; load_dot is the rate of the load (NULL: constant). */
   void (*reaction_rates)(const WheelScene* scene, const WheelLoad* load_dot, const double* y, double lambda_dot[3]);
+  /* J (states x states, column by column): J[i + states * j] = d f_i / d y_j, exact. */
+  void (*jacobian)(const WheelScene* scene, const double* y, double* J);
   /* Sets omega_z to exactly zero: the start of a phase in which it is held there. */
   void (*stop_spin)(const WheelParameters* wheel, double* y);
 } WheelFormulation;
@@ -103,7 +105,9 @@ typedef struct WheelFormulation {
 /* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Needs J_x = J_y (J_x is used). */
 extern const WheelFormulation wheel_reduced;
 
-/* y = q, q_dot with q = X_O, Y_O, Z_O, psi, theta, phi, (25). */
+/* y = q, q_dot with q = X_O, Y_O, Z_O, psi, theta, phi, (25), but with omega_z, (21), in the place of phi_dot: a wheel
+ * whose spin is held keeps it at exactly zero. The constraints are stabilised: what rounding and step errors leave of
+ * [B]{q_dot} and of Z_O - height decays, on the true motion nothing changes. */
 extern const WheelFormulation wheel_multibody;
 
 /* Total energy, J: translation, rotation, height of O above the ground. */

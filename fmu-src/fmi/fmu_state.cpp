@@ -1,19 +1,27 @@
 // FMI 2.0 functions: rollback. An FMU state is its own serialization: portable bytes that hold no pointers.
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 
+#include "archive.hpp"
 #include "instance.hpp"
 
 using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, wheel::Topic;
 
 namespace {
 
-// What the call state adds to the simulation's bytes.
+// What the call state adds to the simulation's bytes, which have their own checksum.
 struct CallState {
   unsigned char state, prepared, has_stop_time, last_step;
   unsigned char padding[4];
   double stop_time;
+  std::uint64_t checksum;  // of the fields above
 };
+
+std::uint64_t checksum_of(const CallState& call) {
+  return integrator::checksum_of(reinterpret_cast<const unsigned char*>(&call), offsetof(CallState, checksum));
+}
 
 struct Snapshot {
   std::size_t size;  // of the bytes behind this header
@@ -33,7 +41,8 @@ void write(Instance& i, unsigned char* bytes) {
   call.prepared = i.prepared;
   call.has_stop_time = i.has_stop_time;
   call.last_step = static_cast<unsigned char>(i.last_step);
-  call.stop_time = i.stop_time;
+  call.stop_time = i.has_stop_time ? i.stop_time : 0;
+  call.checksum = checksum_of(call);
   std::memcpy(bytes, &call, sizeof call);
   i.simulation.save_state(bytes + sizeof call);
 }
@@ -55,7 +64,10 @@ fmi2Status read(Instance& i, const unsigned char* bytes) {
 }
 
 bool is_sound(const unsigned char* bytes, std::size_t size) {
-  return size > sizeof(CallState) && bytes[0] <= static_cast<unsigned char>(State::error) &&
+  CallState call;
+  if (size < sizeof call) return false;
+  std::memcpy(&call, bytes, sizeof call);
+  return call.checksum == checksum_of(call) && call.state <= static_cast<unsigned char>(State::error) &&
          wheel::Simulation::is_state(bytes + sizeof(CallState), size - sizeof(CallState));
 }
 

@@ -21,7 +21,7 @@ struct Instance {
   bool busy = false;      // a call is under way: the logger must not call back into the instance
   bool prepared = false;  // initialization mode: the start state fits the parameters
   bool has_stop_time = false;
-  double stop_time = 0, start_time = 0;
+  double stop_time = 0;
   fmi2Status last_step = fmi2OK;
   unsigned logged_topics = 0;
 

@@ -31,7 +31,8 @@ constexpr Rule rules[] = {
     {Function::get_output_derivatives, C | F | T | X},
     {Function::do_step, C},
     {Function::cancel_step, 0},
-    {Function::get_status, C | F | T | X},
+    {Function::get_status, C | F | T},
+    {Function::model_exchange, I | M | C | F | T | X},  // refused with a sentence of their own
 };
 
 constexpr bool in_order() {

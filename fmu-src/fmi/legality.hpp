@@ -24,6 +24,7 @@ enum class Function : unsigned char {
   do_step,
   cancel_step,
   get_status,
+  model_exchange,
   count,
 };
 

@@ -10,12 +10,15 @@ using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, wheel::Topic;
 
 namespace {
 
-// Masters carry rounding in times: this much, relative to the times at hand, counts as equal.
-constexpr double time_rounding = 1e-9;
+// Masters carry rounding in times: this much, relative to the step and to the times at hand, counts as equal.
+constexpr double step_rounding = 1e-9, time_rounding = 1e-13;
 
 bool same_time(double a, double b, double step) {
-  return std::fabs(a - b) <= time_rounding * (std::fabs(a) + std::fabs(b) + step);
+  return std::fabs(a - b) <= step_rounding * step + time_rounding * (std::fabs(a) + std::fabs(b));
 }
+
+// A sum of many steps may miss the stop time by more.
+bool is_past(double t, double stop) { return t - stop > step_rounding * (std::fabs(t) + std::fabs(stop)); }
 
 bool is_blank(const char* text) { return !text || text[std::strspn(text, " \t\r\n")] == 0; }
 
@@ -42,7 +45,7 @@ fmi2Status check_step(Instance& i, double t, double h) {
     i.log(Topic::error, "fmi2DoStep from %.17g s: the wheel stands at %.17g s.", t, i.simulation.time());
     return fmi2Error;
   }
-  if (i.has_stop_time && t + h > i.stop_time && !same_time(t + h, i.stop_time, h)) {
+  if (i.has_stop_time && is_past(t + h, i.stop_time)) {
     i.log(Topic::error, "fmi2DoStep to %.17g s: the stop time is %.17g s.", t + h, i.stop_time);
     return fmi2Error;
   }
@@ -74,7 +77,10 @@ unsigned topics_of(const char* category) {
 }
 
 fmi2Status switch_logging(Instance& i, bool on, std::size_t count, const fmi2String categories[]) {
-  if (count && !categories) return fmi2Error;
+  if (count && !categories) {
+    i.log(Topic::error, "fmi2SetDebugLogging: the categories are a null pointer.");
+    return fmi2Error;
+  }
   unsigned topics = count ? 0 : topics_of("logAll");
   for (std::size_t k = 0; k < count; ++k) {
     topics |= topics_of(categories[k]);
@@ -83,6 +89,25 @@ fmi2Status switch_logging(Instance& i, bool on, std::size_t count, const fmi2Str
   }
   i.logged_topics = on ? (count ? topics : i.logged_topics | topics) : i.logged_topics & ~topics;
   return fmi2OK;
+}
+
+constexpr int no_status = -1;
+
+// One kind of status per function; for every other kind there is nothing to tell: Discard.
+template <class Value, class Read>
+fmi2Status get_status(fmi2Component c, const char* name, int kind, int known_kind, Value* value, Read read) {
+  return guarded(c, Function::get_status, name, [=](Instance& i) {
+    if (!value) {
+      i.log(Topic::error, "%s: the value is a null pointer.", name);
+      return fmi2Error;
+    }
+    if (kind != known_kind) {
+      i.log(Topic::discard, "%s: there is no status of kind %d.", name, kind);
+      return fmi2Discard;
+    }
+    *value = read(i);
+    return fmi2OK;
+  });
 }
 
 }  // namespace
@@ -179,39 +204,25 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
 }
 
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status* value) {
-  return guarded(c, Function::get_status, "fmi2GetStatus", [=](Instance& i) {
-    if (kind != fmi2DoStepStatus || !value) return fmi2Discard;
-    *value = i.last_step;
-    return fmi2OK;
-  });
+  return get_status(c, "fmi2GetStatus", kind, fmi2DoStepStatus, value, [](Instance& i) { return i.last_step; });
 }
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
-  return guarded(c, Function::get_status, "fmi2GetRealStatus", [=](Instance& i) {
-    if (kind != fmi2LastSuccessfulTime || !value) return fmi2Discard;
-    *value = i.simulation.time();
-    return fmi2OK;
-  });
+  return get_status(c, "fmi2GetRealStatus", kind, fmi2LastSuccessfulTime, value,
+                    [](Instance& i) { return i.simulation.time(); });
 }
 
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind, fmi2Integer*) {
-  return guarded(c, Function::get_status, "fmi2GetIntegerStatus", [](Instance&) { return fmi2Discard; });
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer* value) {
+  return get_status(c, "fmi2GetIntegerStatus", kind, no_status, value, [](Instance&) { return 0; });
 }
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
-  return guarded(c, Function::get_status, "fmi2GetBooleanStatus", [=](Instance& i) {
-    if (kind != fmi2Terminated || !value) return fmi2Discard;
-    *value = i.last_step == fmi2Discard ? fmi2True : fmi2False;
-    return fmi2OK;
-  });
+  return get_status(c, "fmi2GetBooleanStatus", kind, fmi2Terminated, value,
+                    [](Instance& i) { return i.last_step == fmi2Discard ? fmi2True : fmi2False; });
 }
 
 fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String* value) {
-  return guarded(c, Function::get_status, "fmi2GetStringStatus", [=](Instance&) {
-    if (kind != fmi2PendingStatus || !value) return fmi2Discard;
-    *value = "";
-    return fmi2OK;
-  });
+  return get_status(c, "fmi2GetStringStatus", kind, fmi2PendingStatus, value, [](Instance&) { return ""; });
 }
 
 }  // extern "C"

@@ -4,10 +4,10 @@
 namespace {
 
 fmi2Status unsupported(fmi2Component c, const char* name) {
-  auto* instance = static_cast<fmi::Instance*>(c);
-  if (instance && !instance->busy)
-    instance->log(wheel::Topic::error, "%s belongs to model exchange; this FMU is for co-simulation only.", name);
-  return fmi2Error;
+  return fmi::guarded(c, fmi::Function::model_exchange, name, [=](fmi::Instance& i) {
+    i.log(wheel::Topic::error, "%s belongs to model exchange; this FMU is for co-simulation only.", name);
+    return fmi2Error;
+  });
 }
 
 }  // namespace

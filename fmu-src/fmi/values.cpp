@@ -87,6 +87,17 @@ fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
   });
 }
 
+// There are no string variables: an empty request is all that can be met.
+fmi2Status refuse_strings(fmi2Component c, Function function, const char* name, const fmi2ValueReference variables[],
+                          std::size_t count, const void* values) {
+  return guarded(c, function, name, [=](Instance& i) {
+    if (!count) return fmi2OK;
+    if (check_arrays(i, name, count, variables, values))
+      i.log(Topic::error, "%s: no variable of this type has the value reference %u.", name, variables[0]);
+    return fmi2Error;
+  });
+}
+
 bool check_input(Instance& i, const char* name, fmi2ValueReference variable) {
   if (variable >= wheel::first_input && variable < wheel::stored_count) return true;
   i.log(Topic::error, "%s: value reference %u is not an input.", name, variable);
@@ -123,20 +134,11 @@ fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference v[], size_t 
   return set(c, "fmi2SetBoolean", Type::boolean, v, n, values);
 }
 
-// There are no string variables: an empty request is all that can be met.
-fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference v[], size_t n, fmi2String[]) {
-  return guarded(c, Function::get_values, "fmi2GetString", [=](Instance& i) {
-    if (!n) return fmi2OK;
-    i.log(Topic::error, "fmi2GetString: no variable of this type has the value reference %u.", v ? v[0] : 0u);
-    return fmi2Error;
-  });
+fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference v[], size_t n, fmi2String values[]) {
+  return refuse_strings(c, Function::get_values, "fmi2GetString", v, n, values);
 }
-fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2String[]) {
-  return guarded(c, Function::set_values, "fmi2SetString", [=](Instance& i) {
-    if (!n) return fmi2OK;
-    i.log(Topic::error, "fmi2SetString: no variable of this type has the value reference %u.", v ? v[0] : 0u);
-    return fmi2Error;
-  });
+fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2String values[]) {
+  return refuse_strings(c, Function::set_values, "fmi2SetString", v, n, values);
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference v[], size_t n,

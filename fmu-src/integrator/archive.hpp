@@ -48,6 +48,13 @@ struct Measure {
   }
 };
 
+// FNV-1a, 64 bit.
+inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+  return hash;
+}
+
 // n numbers in a row.
 template <class Archive>
 void many(Archive& archive, double* x, int n) {

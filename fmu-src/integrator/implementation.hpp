@@ -28,6 +28,7 @@ struct Integrator::Implementation {
   SUNNonlinearSolver nonlinear;
   SUNMatrix matrix;
   SUNLinearSolver linear;
+  long long last_step;  // the step counter must stay below
   char message[160];
 };
 

@@ -23,6 +23,8 @@ struct System {
   void* owner;
   // y_dot = f(t, y); false where it is not finite (the solver tries a smaller step).
   bool (*derivative)(void* owner, double t, const double* y, double* y_dot);
+  // J[i + states * j] = d f_i / d y_j; asked for by bdf only.
+  void (*jacobian)(void* owner, double t, const double* y, double* J);
   // Error weights: a step is accepted where the root mean square of weight times local error is below one.
   void (*weights)(void* owner, const double* y, double* weights);
   // Positive until the event; null: no root function is installed.
@@ -45,6 +47,9 @@ class Integrator {
 
   // Starts anew from y at time t; history is dropped, counters go on. event_armed: whether a root function is watched.
   bool restart(double t, const double* y, bool event_armed);
+
+  // The steps that the calls of `advance` from here on may take together.
+  void allow_steps(long long most);
 
   // Steps until the solution is known at t or something stops it. After `event` the owner restarts from event_time().
   Outcome advance(double t);

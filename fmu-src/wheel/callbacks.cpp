@@ -22,6 +22,12 @@ struct Callbacks {
     return std::isfinite(sum);
   }
 
+  static void jacobian(void* owner, double t, const double* y, double* J) {
+    Simulation& sim = of(owner);
+    if (sim.inputs_.varies()) sim.inputs_.load_at(t, &sim.scene_);
+    sim.formulation_->jacobian(&sim.scene_, y, J);
+  }
+
   // The states' own rounding is a floor: no step is asked to be more exact than the numbers can say.
   static void weights(void* owner, const double* y, double* weights) {
     const Simulation& sim = of(owner);
@@ -53,7 +59,7 @@ struct Callbacks {
   static double boundary(void* owner, double t, const double* y) {
     Simulation& sim = of(owner);
     const double height = std::sin(sim.formulation_->tilt(y)) - flat_sine;
-    if (sim.stored_[keep_contact]) return height;
+    if (sim.stored_[keep_contact] != 0) return height;
     if (sim.inputs_.varies()) sim.inputs_.load_at(t, &sim.scene_);
     WheelDynamics now;
     sim.formulation_->dynamics(&sim.scene_, y, &now);
@@ -66,6 +72,7 @@ integrator::System solver_system(Simulation& simulation) {
   integrator::System system = {};
   system.owner = &simulation;
   system.derivative = Callbacks::derivative;
+  system.jacobian = Callbacks::jacobian;
   system.weights = Callbacks::weights;
   system.event = Callbacks::event;
   system.near_boundary = Callbacks::near_boundary;

@@ -2,6 +2,8 @@
 // (15).
 #pragma once
 
+#include <initializer_list>
+
 #include "wheel_equations.h"
 
 namespace wheel {
@@ -12,6 +14,7 @@ class Inputs {
 
   // value(t) = c_0 + c_1 (t - origin) + ... with the origin at the current communication point.
   void set_value(int input, double value);
+  bool holds(int input, double value) const { return pending_[input][0] == value; }
   void set_derivative(int input, int order, double derivative);
   // Derivatives hold for one step; at its end, t, an input stays where its polynomial arrived until it is set again.
   void hold_from(double t);

@@ -66,13 +66,14 @@ void error_scales(const WheelParameters& wheel, const WheelFormulation& f, const
   WheelKinematics start;
   f.kinematics(&wheel, y, &start);
   const double length = wheel.r_0 + wheel.r;
-  const double omega_2 = start.psi_dot * std::sin(start.theta);
-  const double omega = std::sqrt(start.omega_z * start.omega_z + start.theta_dot * start.theta_dot + omega_2 * omega_2);
-  const double rate = std::max(1 / time_scale(wheel, start), omega);
+  const double slowest = 1 / time_scale(wheel, start), omega_2 = start.psi_dot * std::sin(start.theta);
+  const double tilting = start.theta_dot * start.theta_dot + omega_2 * omega_2;
+  const double turn = std::max(slowest, std::sqrt(tilting));
+  const double rate = std::max(slowest, std::sqrt(tilting + start.omega_z * start.omega_z));
   const bool reduced = f.states == WHEEL_REDUCED_STATES;
-  const double reduced_scales[] = {1, rate, rate, rate, 1, 1, length, length};
+  const double reduced_scales[] = {1, turn, turn, rate, 1, 1, length, length};
   const double multibody_scales[] = {length,        length,        length,        1,    1,    1,
-                                     rate * length, rate * length, rate * length, rate, rate, rate};
+                                     rate * length, rate * length, rate * length, turn, turn, rate};
   std::copy_n(reduced ? reduced_scales : multibody_scales, f.states, scales);
 }
 

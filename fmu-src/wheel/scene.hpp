@@ -26,7 +26,8 @@ double holding_margin(const WheelParameters& wheel, const WheelDynamics& held);
 // Only the exact law switches.
 bool watches_event(const WheelScene& scene);
 
-// Error of each state that counts as one: angles 1 rad, lengths r_0 + r, rates of the wheel's own time scale.
+// Error of each state that counts as one: angles 1 rad, lengths r_0 + r, rates that of the wheel's own time scale or
+// the initial one. A fast spin does not loosen the others: N answers to each of them times the spin.
 void error_scales(const WheelParameters& wheel, const WheelFormulation& formulation, const double* y, double* scales);
 
 // sqrt((r_0 + r) / g), s; without weight the time of a turn at the initial rate.

@@ -23,7 +23,9 @@ void Simulation::reset() {
   now_ = Reading();
   start_time_ = 0;
   tolerance_ = default_tolerance;
-  touched_ = false;
+  touched_ = lifted_ = false;
+  scene_ = {};
+  lowest_force_ = 0;
   formulation_ = nullptr;
 }
 
@@ -47,11 +49,12 @@ void Simulation::set_experiment(double start_time, double tolerance) {
 }
 
 void Simulation::store(unsigned variable, double value) {
-  if (stored_[variable] == value) return;
+  const bool is_input = variable >= first_input;
+  const int input = static_cast<int>(variable - first_input);
+  const bool same = is_input ? inputs_.holds(input, value) : stored_[variable] == value;
   stored_[variable] = value;
-  if (variable >= first_input) {
-    inputs_.set_value(static_cast<int>(variable - first_input), value);
-  }
+  if (same) return;
+  if (is_input) inputs_.set_value(input, value);
   touched_ = true;
   now_.forget_dynamics();
 }
@@ -138,12 +141,12 @@ bool Simulation::pass_event() {
   solver_->read(t, y);
   inputs_.load_at(t, &scene_);
   const bool released = scene_.friction.kind == WHEEL_HELD;
+  formulation_->stop_spin(&scene_.wheel, y);
   if (released) {
     WheelDynamics held;
     formulation_->dynamics(&scene_, y, &held);
     scene_.friction = {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0};
   } else {
-    formulation_->stop_spin(&scene_.wheel, y);
     scene_.friction = friction_at(stored_, *formulation_, scene_, y);
   }
   ++now_.events;
@@ -156,6 +159,8 @@ bool Simulation::pass_event() {
 }
 
 integrator::Outcome Simulation::run_to(double t) {
+  constexpr long long most_steps = 20'000'000;  // some seconds of computing, more than any sane step needs
+  solver_->allow_steps(most_steps);
   while (solver_->known_until() < t) {
     if (inputs_.varies()) solver_->stop_before(t);
     const integrator::Outcome outcome = solver_->advance(t);

@@ -13,13 +13,6 @@ struct Header {
   std::uint64_t mark, size, checksum;
 };
 
-// FNV-1a, 64 bit.
-std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
-  return hash;
-}
-
 }  // namespace
 
 // What the parameters do not determine. The archive passes through `this`, reading or writing it.
@@ -56,7 +49,7 @@ void Simulation::save_state(unsigned char* bytes) {
   visit(writer, moment);
   if (solver_) solver_->save_history(writer.at);
   const std::size_t size = state_size();
-  const Header header = {mark, size, checksum_of(bytes + sizeof(Header), size - sizeof(Header))};
+  const Header header = {mark, size, integrator::checksum_of(bytes + sizeof(Header), size - sizeof(Header))};
   std::memcpy(bytes, &header, sizeof header);
 }
 
@@ -65,7 +58,7 @@ bool Simulation::is_state(const unsigned char* bytes, std::size_t size) {
   if (size < sizeof header) return false;
   std::memcpy(&header, bytes, sizeof header);
   return header.mark == mark && header.size == size &&
-         header.checksum == checksum_of(bytes + sizeof header, size - sizeof header);
+         header.checksum == integrator::checksum_of(bytes + sizeof header, size - sizeof header);
 }
 
 bool Simulation::load_state(const unsigned char* bytes) {
@@ -76,7 +69,11 @@ bool Simulation::load_state(const unsigned char* bytes) {
     integrator::Integrator::destroy(solver_);
     solver_ = nullptr;
   }
-  if (!moment.prepared) return true;
+  if (!moment.prepared) {
+    formulation_ = nullptr;
+    now_ = Reading();
+    return true;
+  }
   const WheelFriction friction = scene_.friction;
   const double s_in_force = scene_.wheel.s, force = lowest_force_;
   const Inputs inputs = inputs_;

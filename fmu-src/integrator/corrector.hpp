@@ -1,0 +1,12 @@
+// The corrector of the Adams method as a SUNDIALS nonlinear solver of our own: CVODE's fixed-point iteration and
+// convergence test, on vectors of fixed length and in one loop.
+#pragma once
+
+#include <sundials/sundials_nonlinearsolver.h>
+
+namespace integrator {
+
+// For `states` 8 or 12; null if memory is short.
+SUNNonlinearSolver make_corrector(int states, SUNContext context);
+
+}  // namespace integrator
