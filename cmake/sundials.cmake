@@ -64,6 +64,14 @@ function(add_sundials)
   set(CMAKE_POLICY_DEFAULT_CMP0069 NEW)
   set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
   add_subdirectory(${source} ${CMAKE_BINARY_DIR}/_sundials/build EXCLUDE_FROM_ALL SYSTEM)
+  # CVODE's vector operations inline, for the one kind of vector it meets here. They are written in pairs already; left to
+  # itself the compiler also vectorises the short recurrences for the Adams coefficients, which makes them slower.
+  target_compile_options(
+    sundials_cvode_obj_static
+    PRIVATE
+      -DWHEEL_INLINE_VECTOR_OPERATIONS -include ${CMAKE_SOURCE_DIR}/fmu-src/integrator/state_vector.h
+      -fno-tree-vectorize -fno-tree-slp-vectorize
+  )
   # The private headers hold CVODE's memory record: integrator/history.cpp snapshots it.
   add_library(sundials_private INTERFACE)
   target_include_directories(sundials_private SYSTEM INTERFACE ${source}/src/cvode ${source}/src/sundials)

@@ -41,16 +41,13 @@ double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   return state_rate<double>(*scene, external.force, external.moment, y, y_dot);
 }
 
-double spin(const double* y) { return y[11]; }
-double tilt(const double* y) { return y[4]; }
-
 void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   (void)wheel;
   out->X_O = y[0], out->Y_O = y[1], out->Z_O = y[2];
   out->psi = y[3], out->theta = y[4], out->phi = y[5];
   out->X_O_dot = y[6], out->Y_O_dot = y[7], out->Z_O_dot = y[8];
   out->psi_dot = y[9], out->theta_dot = y[10], out->phi_dot = y[11] - y[9] * std::cos(y[4]);
-  out->omega_z = spin(y);
+  out->omega_z = y[11];
 }
 
 void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
@@ -86,8 +83,8 @@ const WheelFormulation wheel_multibody = {
     WHEEL_MULTIBODY_STATES,
     wheel::paper::start,
     wheel::paper::derivative,
-    wheel::paper::spin,
-    wheel::paper::tilt,
+    11,
+    4,
     wheel::paper::kinematics,
     wheel::paper::dynamics,
     wheel_multibody_reaction_rates,

@@ -41,9 +41,6 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
   return derivative_of(scene, load_of(scene, &load), y, y_dot);
 }
 
-static double spin(const double* y) { return y[3]; }
-static double tilt(const double* y) { return y[0]; }
-
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
   out->theta = y[0];
@@ -92,8 +89,8 @@ const WheelFormulation wheel_reduced = {
     .states = WHEEL_REDUCED_STATES,
     .start = start,
     .derivative = derivative,
-    .spin = spin,
-    .tilt = tilt,
+    .spin_index = 3,
+    .tilt_index = 0,
     .kinematics = kinematics,
     .dynamics = dynamics,
     .reaction_rates = wheel_reduced_reaction_rates,

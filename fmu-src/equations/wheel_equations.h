@@ -88,10 +88,8 @@ typedef struct WheelFormulation {
   void (*start)(const WheelParameters* wheel, const WheelMotion* motion, double* y);
   /* y_dot = f(y), and the normal force N that goes with it; non-finite or meaningless outside 0 < theta < pi. */
   double (*derivative)(const WheelScene* scene, const double* y, double* y_dot);
-  /* omega_z, (21). */
-  double (*spin)(const double* y);
-  /* theta. */
-  double (*tilt)(const double* y);
+  /* Where y holds omega_z, (21), and theta. */
+  int spin_index, tilt_index;
   void (*kinematics)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
   void (*dynamics)(const WheelScene* scene, const double* y, WheelDynamics* out);
   /* d lambda/dt along the motion, N/s; load_dot is the rate of the load (NULL: constant). */

@@ -105,8 +105,7 @@ bool check_input(Instance& i, const char* name, fmi2ValueReference variable) {
 }
 
 bool check_output(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (variable < wheel::variable_count && wheel::row_of(variable).role == Role::output)
-    return check_readable(i, name, variable);
+  if (variable < wheel::variable_count && wheel::row_of(variable).role == Role::output) return true;
   i.log(Topic::error, "%s: value reference %u is not an output.", name, variable);
   return false;
 }
@@ -165,7 +164,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
   return guarded(c, Function::get_output_derivatives, name, [=](Instance& i) {
     if (!check_arrays(i, name, n, v, values) || !check_arrays(i, name, n, orders, values)) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k) {
-      if (!check_output(i, name, v[k])) return fmi2Error;
+      if (!check_output(i, name, v[k]) || !check_readable(i, name, v[k])) return fmi2Error;
       if (orders[k] == 1) continue;
       i.log(Topic::error, "%s: order %d of %s: only the first derivative is provided.", name, orders[k],
             wheel::row_of(v[k]).name);
@@ -183,12 +182,13 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
   return guarded(c, Function::directional_derivative, name, [=](Instance& i) {
     if (!check_arrays(i, name, n_unknowns, unknowns, values) || !check_arrays(i, name, n_knowns, knowns, seeds))
       return fmi2Error;
-    if (prepare_reading(i) != fmi2OK) return fmi2Discard;
     for (std::size_t k = 0; k < n_knowns; ++k)
       if (!check_input(i, name, knowns[k])) return fmi2Error;
     for (std::size_t k = 0; k < n_unknowns; ++k)
       if (!check_output(i, name, unknowns[k])) return fmi2Error;
+    if (prepare_reading(i) != fmi2OK) return fmi2Discard;
     for (std::size_t u = 0; u < n_unknowns; ++u) {
+      if (!check_readable(i, name, unknowns[u])) return fmi2Error;
       values[u] = 0;
       for (std::size_t k = 0; k < n_knowns; ++k)
         values[u] += seeds[k] * i.simulation.sensitivity(unknowns[u], knowns[k]);

@@ -6,7 +6,7 @@
 
 namespace integrator {
 
-// For `states` 8 or 12; null if memory is short.
-SUNNonlinearSolver make_corrector(int states, SUNContext context);
+// Null if memory is short.
+SUNNonlinearSolver make_corrector(SUNContext context);
 
 }  // namespace integrator

@@ -84,6 +84,14 @@ bool make_ready(Integrator& integrator, Integrator::Implementation& self, const 
 
 }  // namespace
 
+bool Integrator::notices(const double* y_dot_before, const double* y_dot_after) const {
+  const auto& m = *static_cast<CVodeMem>(self->cvode);
+  if (m.cv_nst == 0) return true;
+  double* change = data(self->scratch);
+  for (int i = 0; i < self->system.states; ++i) change[i] = m.cv_h * (y_dot_after[i] - y_dot_before[i]);
+  return !(state_wrms_norm(self->scratch, m.cv_ewt) < 1);
+}
+
 std::size_t Integrator::history_size() const {
   Measure measure;
   visit(measure, *self);

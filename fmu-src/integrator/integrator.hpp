@@ -57,6 +57,9 @@ class Integrator {
   // No step goes past t until then: what holds beyond is not known yet. t > known_until().
   void stop_before(double t);
 
+  // Whether a jump of the right-hand side at known_until() is more than the error a step may make.
+  bool notices(const double* y_dot_before, const double* y_dot_after) const;
+
   // y(t) for t between the start of the last step and known_until(); outside, the nearest of the two.
   void read(double t, double* y) const;
 

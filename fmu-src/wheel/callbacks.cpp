@@ -28,18 +28,25 @@ struct Callbacks {
     sim.formulation_->jacobian(&sim.scene_, y, J);
   }
 
-  // The states' own rounding is a floor: no step is asked to be more exact than the numbers can say.
+  // The states' own rounding is a floor: no step is asked to be more exact than the numbers can say. The regularized
+  // law turns errors of omega_z into moments over its width omega_s: there the spin is weighed by that width.
   static void weights(void* owner, const double* y, double* weights) {
     const Simulation& sim = of(owner);
+    const double tolerance = local_fraction * sim.tolerance_;
     constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
     for (int i = 0; i < sim.formulation_->states; ++i)
-      weights[i] = 1 / (local_fraction * sim.tolerance_ * sim.scales_[i] + rounding * std::fabs(y[i]));
+      weights[i] = 1 / (tolerance * sim.scales_[i] + rounding * std::fabs(y[i]));
+    if (sim.scene_.friction.kind == WHEEL_REGULARIZED) {
+      const int i = sim.formulation_->spin_index;
+      const double width = 30 * sim.scene_.friction.omega_s + std::fabs(y[i]);
+      weights[i] = 1 / (tolerance * std::fmin(sim.scales_[i], width) + rounding * std::fabs(y[i]));
+    }
   }
 
   // Positive while the friction mode lasts: the spin in its sense, or what friction has left to hold it.
   static double event(void* owner, double t, const double* y) {
     Simulation& sim = of(owner);
-    if (sim.scene_.friction.kind == WHEEL_ROLLING) return sim.scene_.friction.sigma * sim.formulation_->spin(y);
+    if (sim.scene_.friction.kind == WHEEL_ROLLING) return sim.scene_.friction.sigma * y[sim.formulation_->spin_index];
     if (sim.inputs_.varies()) sim.inputs_.load_at(t, &sim.scene_);
     WheelDynamics held;
     sim.formulation_->dynamics(&sim.scene_, y, &held);
@@ -51,14 +58,14 @@ struct Callbacks {
     Simulation& sim = of(owner);
     const bool light = sim.lowest_force_ < 0.1 * sim.weight_;
     sim.lowest_force_ = std::numeric_limits<double>::infinity();
-    const bool low = std::fabs(sim.formulation_->tilt(y) - 1.5707963267948966) > 1.5;
+    const bool low = std::fabs(y[sim.formulation_->tilt_index] - 1.5707963267948966) > 1.5;
     return light || low;
   }
 
   // Positive inside the model: above the ground, and pressed to it unless contact is kept.
   static double boundary(void* owner, double t, const double* y) {
     Simulation& sim = of(owner);
-    const double height = std::sin(sim.formulation_->tilt(y)) - flat_sine;
+    const double height = std::sin(y[sim.formulation_->tilt_index]) - flat_sine;
     if (sim.stored_[keep_contact] != 0) return height;
     if (sim.inputs_.varies()) sim.inputs_.load_at(t, &sim.scene_);
     WheelDynamics now;

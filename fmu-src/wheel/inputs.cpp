@@ -2,7 +2,6 @@
 #include "inputs.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 namespace wheel {
@@ -39,15 +38,6 @@ bool Inputs::differ_from_current(double t) const {
     shifted[2] = c[2] + 3 * tau * c[3];
     shifted[3] = c[3];
     if (!std::equal(shifted, shifted + max_order + 1, pending_[i])) return true;
-  }
-  return false;
-}
-
-bool Inputs::jump(double t) const {
-  constexpr double rounding = 1e-12;
-  for (int i = 0; i < count; ++i) {
-    const double now = evaluate(current_[i], t - origin_), next = pending_[i][0];
-    if (std::fabs(next - now) > rounding * (std::fabs(now) + std::fabs(next))) return true;
   }
   return false;
 }

@@ -20,8 +20,6 @@ class Inputs {
   void hold_from(double t);
 
   bool differ_from_current(double t) const;
-  // Whether what was set jumps against the polynomials in force at time t, or merely bends.
-  bool jump(double t) const;
   // Makes what was set the polynomials in force from t on.
   void take_over(double t);
 

@@ -41,7 +41,7 @@ double holding_margin(const WheelParameters& wheel, const WheelDynamics& held) {
 WheelFriction friction_at(const double* v, const WheelFormulation& f, const WheelScene& scene, const double* y) {
   if (scene.wheel.s == 0) return {WHEEL_FRICTIONLESS, 0, 0};
   if (choice_of(v[friction_law]) == regularized_law) return {WHEEL_REGULARIZED, 0, v[omega_s]};
-  const double omega_z = f.spin(y);
+  const double omega_z = y[f.spin_index];
   if (omega_z != 0) return {WHEEL_ROLLING, omega_z > 0 ? 1.0 : -1.0, 0};
   WheelScene trial = scene;
   WheelDynamics held;

@@ -118,20 +118,45 @@ WheelScene Simulation::scene_at(double t, const double* y) const {
 
 WheelLoad Simulation::load_rate_at(double t) const { return touched_ ? inputs_.pending_rate() : inputs_.rate_at(t); }
 
-// Inputs and tunable parameters set since the last step take effect: a restart only where something jumps, or where
-// the solver has already gone past this instant with the old ones.
+// Whether the solver can go on with its history: it stands at t, and the new right-hand side joins the old one there.
+bool Simulation::joins(double t, const double* y, const WheelScene& next) const {
+  if (solver_->known_until() > t || next.friction.kind != scene_.friction.kind) return false;
+  WheelScene last = scene_;
+  inputs_.load_at(t, &last);
+  double before[WHEEL_MAX_STATES], after[WHEEL_MAX_STATES];
+  formulation_->derivative(&last, y, before);
+  formulation_->derivative(&next, y, after);
+  return !solver_->notices(before, after);
+}
+
+// Inputs and tunable parameters set since the last step take effect: a restart only where the solver would notice.
 bool Simulation::settle_changes() {
   if (!touched_) return true;
   const double t = now_.time();
-  const bool retuned = scene_.wheel.s != stored_[s], inputs_changed = inputs_.differ_from_current(t);
-  const bool restarts = (retuned || inputs_changed) && (retuned || inputs_.jump(t) || solver_->known_until() > t);
+  const bool changed = scene_.wheel.s != stored_[s] || inputs_.differ_from_current(t);
+  if (!changed) return touched_ = false, true;
   const double* y = now_.state();
-  if (restarts) scene_ = scene_at(t, y);
+  const WheelScene next = scene_at(t, y);
+  const bool goes_on = joins(t, y, next);
+  const WheelFrictionKind before = scene_.friction.kind;
+  scene_ = next;
   touched_ = false;
-  if (inputs_changed) inputs_.take_over(t);
+  inputs_.take_over(t);
   inputs_.load_at(t, &scene_);
   now_.forget_dynamics();
-  return !restarts || restart_from(t, y);
+  if (before != scene_.friction.kind) announce_transition(t, before);
+  return goes_on || restart_from(t, y);
+}
+
+void Simulation::announce_transition(double t, WheelFrictionKind before) {
+  const WheelFriction& friction = scene_.friction;
+  if (friction.kind != WHEEL_HELD && friction.kind != WHEEL_ROLLING) return;
+  ++now_.events;
+  if (friction.kind == WHEEL_HELD)
+    tell(Topic::event, "t = %.9g s: stick, omega_z is held at zero.", start_time_ + t);
+  else
+    tell(Topic::event, "t = %.9g s: %s, omega_z becomes %s.", start_time_ + t,
+         before == WHEEL_HELD ? "release" : "slip reverses", friction.sigma > 0 ? "positive" : "negative");
 }
 
 // The solver stands at a transition of the friction: omega_z came to zero, or friction can hold it no longer.
@@ -140,21 +165,16 @@ bool Simulation::pass_event() {
   double y[WHEEL_MAX_STATES];
   solver_->read(t, y);
   inputs_.load_at(t, &scene_);
-  const bool released = scene_.friction.kind == WHEEL_HELD;
+  const WheelFrictionKind before = scene_.friction.kind;
   formulation_->stop_spin(&scene_.wheel, y);
-  if (released) {
+  if (before == WHEEL_HELD) {
     WheelDynamics held;
     formulation_->dynamics(&scene_, y, &held);
     scene_.friction = {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0};
   } else {
     scene_.friction = friction_at(stored_, *formulation_, scene_, y);
   }
-  ++now_.events;
-  if (scene_.friction.kind == WHEEL_HELD)
-    tell(Topic::event, "t = %.9g s: stick, omega_z is held at zero.", start_time_ + t);
-  else
-    tell(Topic::event, "t = %.9g s: %s, omega_z becomes %s.", start_time_ + t, released ? "release" : "slip reverses",
-         scene_.friction.sigma > 0 ? "positive" : "negative");
+  announce_transition(t, before);
   return restart_from(t, y);
 }
 
@@ -172,7 +192,7 @@ integrator::Outcome Simulation::run_to(double t) {
 
 Progressed Simulation::end_run() {
   now_.move_to(solver_->event_time());
-  const double theta = formulation_->tilt(now_.state());
+  const double theta = now_.state()[formulation_->tilt_index];
   if (std::sin(theta) < 2 * flat_sine)
     tell(Topic::discard, "The wheel fell flat at t = %.9g s: the model ends there.", time());
   else

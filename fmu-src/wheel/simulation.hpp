@@ -16,7 +16,7 @@ namespace wheel {
 // Relative tolerance of the whole solution: over ten seconds of the paper's scenes the relative error of the energy
 // stays below it (measured: docs/results/accuracy.md). The local tolerance of a step is this fraction of it.
 inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, loosest_tolerance = 1e-2;
-inline constexpr double local_fraction = 0.01;
+inline constexpr double local_fraction = 0.003;
 
 enum class Topic { event, warning, error, discard };
 
@@ -93,7 +93,9 @@ class Simulation {
 
   bool tell(Topic topic, const char* format, ...) const;
   bool restart_from(double t, const double* y);
+  bool joins(double t, const double* y, const WheelScene& next) const;
   bool settle_changes();
+  void announce_transition(double t, WheelFrictionKind before);
   bool pass_event();
   integrator::Outcome run_to(double t);
   Progressed end_run();
