@@ -62,6 +62,7 @@ function(add_sundials)
   endforeach()
   set(SUNDIALS_LOGGING_LEVEL 0 CACHE INTERNAL "")
   set(CMAKE_POLICY_DEFAULT_CMP0069 NEW)
+  add_compile_options(-ffile-prefix-map=${source}=sundials)
   set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
   add_subdirectory(${source} ${CMAKE_BINARY_DIR}/_sundials/build EXCLUDE_FROM_ALL SYSTEM)
   # CVODE's vector operations inline, for the one kind of vector it meets here. They are written in pairs already; left to

@@ -24,6 +24,9 @@ using Self = Integrator::Implementation;
 // steps.
 constexpr double keep_step_above = 1, keep_step_below = 1.1;
 
+// A step that meets the thin layer of a regularized law shrinks many times over before it fits.
+constexpr int most_failures = 30;
+
 // Adams methods above this order gain nothing on these scenes, and prediction costs the square of the order.
 constexpr int highest_adams_order = 9;
 
@@ -85,6 +88,8 @@ bool set_up(Self& self) {
          CVodeSetUserData(self.cvode, &self) == CV_SUCCESS && CVodeWFtolerances(self.cvode, weights) == CV_SUCCESS &&
          attach_solver(self) && CVodeSetMaxHnilWarns(self.cvode, -1) == CV_SUCCESS &&
          CVodeSetNoInactiveRootWarn(self.cvode) == CV_SUCCESS &&
+         CVodeSetMaxErrTestFails(self.cvode, most_failures) == CV_SUCCESS &&
+         CVodeSetMaxConvFails(self.cvode, most_failures) == CV_SUCCESS &&
          CVodeSetEtaFixedStepBounds(self.cvode, keep_step_above, keep_step_below) == CV_SUCCESS;
 }
 

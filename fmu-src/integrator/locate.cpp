@@ -63,11 +63,16 @@ bool find_dip(const OnDenseOutput& g, const Bracket& step, double* t_below) {
   return false;
 }
 
-// A parabola through start, middle and end bottoms out between them, far below the end values or below zero.
-bool may_dip(double g_lo, double g_mid, double g_hi) {
-  const double bend = 0.5 * (g_lo + g_hi) - g_mid, slope = 0.5 * (g_hi - g_lo);
-  if (bend <= 0 || std::fabs(slope) >= 2 * bend) return false;
-  return g_mid - slope * slope / (4 * bend) < 0.25 * std::fmin(g_lo, g_hi);
+// Whether g may fall below zero inside a step at whose ends it does not: a parabola through start, middle and end
+// bottoms out between them far below the end values, or g starts from an end near zero downwards.
+bool may_dip(const OnDenseOutput& g, const Bracket& step, double g_mid) {
+  const double bend = 0.5 * (step.g_lo + step.g_hi) - g_mid, slope = 0.5 * (step.g_hi - step.g_lo);
+  const double lower = std::fmin(step.g_lo, step.g_hi), upper = std::fmax(g_mid, std::fmax(step.g_lo, step.g_hi));
+  if (bend > 0 && std::fabs(slope) < 2 * bend && g_mid - slope * slope / (4 * bend) < 0.25 * lower) return true;
+  constexpr double close = 0.02;
+  if (lower > close * upper) return false;
+  const double inside = close * (step.t_hi - step.t_lo);
+  return g(step.g_lo < step.g_hi ? step.t_lo + inside : step.t_hi - inside) < lower;
 }
 
 }  // namespace
@@ -79,7 +84,7 @@ bool find_first_zero(const Integrator& solution, const System& system, Watched g
   if (g_mid < 0) {
     first.t_hi = t_mid, first.g_hi = g_mid;
   } else if (step.g_hi >= 0) {
-    if (!may_dip(step.g_lo, g_mid, step.g_hi) || !find_dip(on_step, step, &first.t_hi)) return false;
+    if (!may_dip(on_step, step, g_mid) || !find_dip(on_step, step, &first.t_hi)) return false;
     first.g_hi = on_step(first.t_hi);
   }
   *t_zero = step.g_lo < 0 ? step.t_lo : fall_through(on_step, first);

@@ -29,7 +29,8 @@ struct Callbacks {
   }
 
   // The states' own rounding is a floor: no step is asked to be more exact than the numbers can say. The regularized
-  // law turns errors of omega_z into moments over its width omega_s: there the spin is weighed by that width.
+  // law turns errors of omega_z into moments over its width omega_s: the spin must be known to a fraction of that
+  // width.
   static void weights(void* owner, const double* y, double* weights) {
     const Simulation& sim = of(owner);
     const double tolerance = local_fraction * sim.tolerance_;
@@ -38,8 +39,8 @@ struct Callbacks {
       weights[i] = 1 / (tolerance * sim.scales_[i] + rounding * std::fabs(y[i]));
     if (sim.scene_.friction.kind == WHEEL_REGULARIZED) {
       const int i = sim.formulation_->spin_index;
-      const double width = 30 * sim.scene_.friction.omega_s + std::fabs(y[i]);
-      weights[i] = 1 / (tolerance * std::fmin(sim.scales_[i], width) + rounding * std::fabs(y[i]));
+      const double layer = std::sqrt(tolerance) * sim.scene_.friction.omega_s + tolerance * std::fabs(y[i]);
+      weights[i] = 1 / (std::fmin(tolerance * sim.scales_[i], layer) + rounding * std::fabs(y[i]));
     }
   }
 

@@ -25,11 +25,13 @@ integrator::Method choose_method(const double* v) {
   const int wish = choice_of(v[method]);
   if (wish != automatic_method) return wish == bdf_method ? integrator::Method::bdf : integrator::Method::adams;
   if (v[s] == 0 || choice_of(v[friction_law]) != regularized_law) return integrator::Method::adams;
-  // Fastest decay of the regularized law: slope s N / omega_s of the moment at omega_z = 0 over the spin inertia.
-  const double rho = v[r_0] + v[r];
-  const double decay = v[s] * v[m] * v[g] / (v[omega_s] * (v[J_z] + v[m] * rho * rho));
-  constexpr double stiff = 200;  // 1/s
-  return decay > stiff ? integrator::Method::bdf : integrator::Method::adams;
+  // Fastest decay of the regularized law, slope s N / omega_s of the moment at omega_z = 0 over the spin inertia, in
+  // units of the wheel's own time. Where Adams and bdf cost the same: measured in docs/results/stability.md.
+  const double length = v[r_0] + v[r];
+  const double decay = v[s] * v[m] * v[g] / (v[omega_s] * (v[J_z] + v[m] * length * length));
+  constexpr double stiff = 200;
+  const double own_time = v[g] > 0 ? std::sqrt(length / v[g]) : 0;
+  return decay * own_time > stiff ? integrator::Method::bdf : integrator::Method::adams;
 }
 
 double holding_margin(const WheelParameters& wheel, const WheelDynamics& held) {

@@ -138,25 +138,28 @@ bool Simulation::settle_changes() {
   const double* y = now_.state();
   const WheelScene next = scene_at(t, y);
   const bool goes_on = joins(t, y, next);
-  const WheelFrictionKind before = scene_.friction.kind;
+  const WheelFriction before = scene_.friction;
   scene_ = next;
   touched_ = false;
   inputs_.take_over(t);
   inputs_.load_at(t, &scene_);
   now_.forget_dynamics();
-  if (before != scene_.friction.kind) announce_transition(t, before);
+  announce_transition(t, before);
   return goes_on || restart_from(t, y);
 }
 
-void Simulation::announce_transition(double t, WheelFrictionKind before) {
+// Counts and tells a change between held, positive and negative spin; a change of the law itself is none.
+void Simulation::announce_transition(double t, const WheelFriction& before) {
+  const auto switches = [](const WheelFriction& f) { return f.kind == WHEEL_HELD || f.kind == WHEEL_ROLLING; };
   const WheelFriction& friction = scene_.friction;
-  if (friction.kind != WHEEL_HELD && friction.kind != WHEEL_ROLLING) return;
+  if (!switches(before) || !switches(friction)) return;
+  if (before.kind == friction.kind && before.sigma == friction.sigma) return;
   ++now_.events;
   if (friction.kind == WHEEL_HELD)
-    tell(Topic::event, "t = %.9g s: stick, omega_z is held at zero.", start_time_ + t);
+    tell(Topic::event, "t = %.9f s: stick, omega_z is held at zero.", start_time_ + t);
   else
-    tell(Topic::event, "t = %.9g s: %s, omega_z becomes %s.", start_time_ + t,
-         before == WHEEL_HELD ? "release" : "slip reverses", friction.sigma > 0 ? "positive" : "negative");
+    tell(Topic::event, "t = %.9f s: %s, omega_z becomes %s.", start_time_ + t,
+         before.kind == WHEEL_HELD ? "release" : "slip reverses", friction.sigma > 0 ? "positive" : "negative");
 }
 
 // The solver stands at a transition of the friction: omega_z came to zero, or friction can hold it no longer.
@@ -165,9 +168,9 @@ bool Simulation::pass_event() {
   double y[WHEEL_MAX_STATES];
   solver_->read(t, y);
   inputs_.load_at(t, &scene_);
-  const WheelFrictionKind before = scene_.friction.kind;
+  const WheelFriction before = scene_.friction;
   formulation_->stop_spin(&scene_.wheel, y);
-  if (before == WHEEL_HELD) {
+  if (before.kind == WHEEL_HELD) {
     WheelDynamics held;
     formulation_->dynamics(&scene_, y, &held);
     scene_.friction = {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0};
@@ -194,9 +197,9 @@ Progressed Simulation::end_run() {
   now_.move_to(solver_->event_time());
   const double theta = now_.state()[formulation_->tilt_index];
   if (std::sin(theta) < 2 * flat_sine)
-    tell(Topic::discard, "The wheel fell flat at t = %.9g s: the model ends there.", time());
+    tell(Topic::discard, "The wheel fell flat at t = %.9f s: the model ends there.", time());
   else
-    tell(Topic::discard, "The wheel lifted off the ground at t = %.9g s, theta = %.6g rad: the model ends there.",
+    tell(Topic::discard, "The wheel lifted off the ground at t = %.9f s, theta = %.6g rad: the model ends there.",
          time(), theta);
   return Progressed::ended;
 }
@@ -211,7 +214,7 @@ Progressed Simulation::advance(double t) {
     const integrator::Outcome outcome = run_to(t);
     if (outcome == integrator::Outcome::ended) return end_run();
     if (outcome == integrator::Outcome::failed) {
-      tell(Topic::error, "The solver stopped at t = %.9g s: %s.", start_time_ + solver_->known_until(),
+      tell(Topic::error, "The solver stopped at t = %.9f s: %s.", start_time_ + solver_->known_until(),
            solver_->failure());
       now_.set_state(t_before, y_before);
       return Progressed::failed;

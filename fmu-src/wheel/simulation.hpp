@@ -95,7 +95,7 @@ class Simulation {
   bool restart_from(double t, const double* y);
   bool joins(double t, const double* y, const WheelScene& next) const;
   bool settle_changes();
-  void announce_transition(double t, WheelFrictionKind before);
+  void announce_transition(double t, const WheelFriction& before);
   bool pass_event();
   integrator::Outcome run_to(double t);
   Progressed end_run();

@@ -1,0 +1,22 @@
+# Toolchain: cross compilation by zig (PyPI's ziglang carries clang, every libc and the linkers).
+#   -DWHEEL_ZIG=<the zig executable> -DWHEEL_ZIG_TARGET=x86_64-linux-gnu.2.17 | x86_64-windows-gnu | aarch64-macos.11.0 ...
+set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES WHEEL_ZIG WHEEL_ZIG_TARGET)
+string(REGEX MATCH "^([a-z0-9_]+)-([a-z]+)" _ "${WHEEL_ZIG_TARGET}")
+set(CMAKE_SYSTEM_PROCESSOR ${CMAKE_MATCH_1})
+if(CMAKE_MATCH_2 STREQUAL windows)
+  set(CMAKE_SYSTEM_NAME Windows)
+elseif(CMAKE_MATCH_2 STREQUAL macos)
+  set(CMAKE_SYSTEM_NAME Darwin)
+else()
+  set(CMAKE_SYSTEM_NAME Linux)
+endif()
+set(CMAKE_C_COMPILER ${WHEEL_ZIG} cc -target ${WHEEL_ZIG_TARGET})
+set(CMAKE_CXX_COMPILER ${WHEEL_ZIG} c++ -target ${WHEEL_ZIG_TARGET})
+foreach(language C CXX)
+  set(CMAKE_${language}_ARCHIVE_CREATE "${WHEEL_ZIG} ar qcD <TARGET> <OBJECTS>")
+  set(CMAKE_${language}_ARCHIVE_APPEND "${WHEEL_ZIG} ar qD <TARGET> <OBJECTS>")
+  set(CMAKE_${language}_ARCHIVE_FINISH "${WHEEL_ZIG} ranlib -D <TARGET>")
+endforeach()
+set(CMAKE_RC_COMPILER ${WHEEL_ZIG} rc)
+# zig brings the headers and libraries of the target itself; packages are the host's (Eigen is headers only).
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
