@@ -66,11 +66,12 @@ class Formulation(Structure):
         ("states", c_int),
         ("start", CFUNCTYPE(None, POINTER(Parameters), POINTER(Motion), DOUBLES)),
         ("derivative", CFUNCTYPE(c_double, POINTER(Scene), DOUBLES, DOUBLES)),
-        ("spin", CFUNCTYPE(c_double, DOUBLES)),
-        ("tilt", CFUNCTYPE(c_double, DOUBLES)),
+        ("spin_index", c_int),
+        ("tilt_index", c_int),
         ("kinematics", CFUNCTYPE(None, POINTER(Parameters), DOUBLES, POINTER(Kinematics))),
         ("dynamics", CFUNCTYPE(None, POINTER(Scene), DOUBLES, POINTER(Dynamics))),
         ("reaction_rates", CFUNCTYPE(None, POINTER(Scene), POINTER(Load), DOUBLES, DOUBLES)),
+        ("jacobian", CFUNCTYPE(None, POINTER(Scene), DOUBLES, DOUBLES)),
         ("stop_spin", CFUNCTYPE(None, POINTER(Parameters), DOUBLES)),
     ]
 
@@ -141,9 +142,7 @@ def dynamics(formulation: Formulation, scene: Scene, y: np.ndarray) -> Dynamics:
     return out
 
 
-def reaction_rates(
-    formulation: Formulation, scene: Scene, y: np.ndarray, load_dot: Load | None = None
-) -> np.ndarray:
+def reaction_rates(formulation: Formulation, scene: Scene, y: np.ndarray, load_dot: Load | None = None) -> np.ndarray:
     rates = np.zeros(3)
     formulation.reaction_rates(
         byref(scene),
@@ -184,9 +183,7 @@ def start_each(formulation: Formulation, scenes: np.ndarray, motions: np.ndarray
     return y
 
 
-def derivative_each(
-    formulation: Formulation, scenes: np.ndarray, y: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def derivative_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """y_dot and the normal force, row by row."""
     y_dot = np.zeros_like(y)
     normal = each(formulation.derivative, scenes, y, y_dot)
@@ -211,6 +208,13 @@ def reaction_rates_each(
     out = np.zeros((len(y), 3))
     each(formulation.reaction_rates, scenes, load_dots, y, out)
     return out
+
+
+def jacobian_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """One matrix per row, [row, i, j] = d f_i / d y_j; the product stores them column by column."""
+    out = np.zeros((len(y), formulation.states, formulation.states))
+    each(formulation.jacobian, scenes, y, out)
+    return out.swapaxes(1, 2)
 
 
 def columns(records: np.ndarray, *names: str) -> np.ndarray:

@@ -166,17 +166,25 @@ void watch_step(const Integrator& solution, Self& self, double event_before) {
   if (find_first_zero(solution, system, system.boundary, step, &t_zero)) stop_at(progress, t_zero, Outcome::ended);
 }
 
-bool take_step(const Integrator& solution, Self& self) {
+int step_once(Self& self, double t, double* t_reached) {
+  return CVode(self.cvode, t + self.system.time_scale, self.y, t_reached, CV_ONE_STEP);
+}
+
+bool take_step(Integrator& integrator, Self& self) {
   Progress& progress = self.progress;
   const double t = progress.known_until, event_before = progress.last_event_value;
   double t_reached;
-  const int flag = CVode(self.cvode, t + self.system.time_scale, self.y, &t_reached, CV_ONE_STEP);
+  int flag = step_once(self, t, &t_reached);
+  // A bend of the right-hand side (an input whose slope changed) can be too much for a history of high order.
+  if ((flag == CV_ERR_FAILURE || flag == CV_CONV_FAILURE) && self.progress.step_start < t &&
+      integrator.restart(t, data(self.y), progress.armed != 0))
+    flag = step_once(self, t, &t_reached);
   if (flag < 0) return false;
   ++progress.counters.steps;
   progress.step_start = t;
   progress.known_until = t_reached;
   if (flag == CV_ROOT_RETURN) stop_at(progress, t_reached, Outcome::event);
-  watch_step(solution, self, event_before);
+  watch_step(integrator, self, event_before);
   return true;
 }
 

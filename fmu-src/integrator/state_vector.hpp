@@ -1,9 +1,12 @@
 // Making vectors of fixed length; what they are and can do is in state_vector.h.
 #pragma once
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wold-style-cast"
 extern "C" {
 #include "state_vector.h"
 }
+#pragma GCC diagnostic pop
 
 namespace integrator {
 

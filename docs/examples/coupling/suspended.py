@@ -1,0 +1,102 @@
+"""Suspended wheel: a quarter car on its wheel, launched from rest by a step of the drive torque.
+
+Coupled through F_X, F_Y, F_Z, M_1, M_2, M_3 and the pose and velocity of O, by values held over the communication
+step or by straight lines (derivatives of first order); compared with the same system as one set of equations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from io import StringIO
+from math import pi
+from pathlib import Path
+
+import numpy as np
+from fmpy.fmi1 import FMICallException
+from reference.model import Start, Wheel
+
+from . import monolithic
+from .master import Component, Master, Signal
+
+STOP = 3.0  # s
+GRID = 0.05  # s, where runs are compared; every step below divides it
+STEPS = (0.005, 0.0025, 0.00125, 0.000625, 0.0003125)  # s
+LARGE_STEPS = (0.0125, 0.015, 0.02, 0.025)  # s, around the limit of stability
+POSE = ("X_O", "Y_O", "Z_O", "X_O_dot", "Y_O_dot", "Z_O_dot", "psi", "theta", "psi_dot", "theta_dot")
+LOAD = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+START = {"s": 0.01, "psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_start": 0.0, "X_O_start": 0.0}
+COMPARED = ("X_O", "theta", "phi_dot", "psi_dot", "X_B", "Z_B")
+RECORD: list[Signal] = [
+    *(("wheel", name) for name in ("X_O", "theta", "phi_dot", "psi_dot", "psi", "theta_dot", "omega_z", "lambda_3")),
+    *(("quarter_car", name) for name in ("X_B", "Y_B", "Z_B", *LOAD)),
+]
+CONNECTIONS: list[tuple[Signal, Signal]] = [
+    *((("wheel", name), ("quarter_car", name)) for name in POSE),
+    *((("quarter_car", name), ("wheel", name)) for name in LOAD),
+]
+
+
+def coupled(
+    fmus: dict[str, Path],
+    step: float,
+    derivatives: bool,
+    stop: float = STOP,
+    grid: float = GRID,
+    reject: bool = False,
+) -> dict[str, np.ndarray]:
+    """The co-simulation on the comparison grid, columns by variable name."""
+    components = [Component("wheel", fmus["wheel"], START), Component("quarter_car", fmus["quarter_car"])]
+    master = Master(components, CONNECTIONS)
+    try:
+        table = master.run(stop, step, RECORD, derivatives, round(grid / step), reject)
+    finally:
+        master.close()
+    return {name.split(".")[-1]: table[name] for name in table.dtype.names}
+
+
+def together(stop: float = STOP, grid: float = GRID) -> dict[str, np.ndarray]:
+    """The same system as one set of equations."""
+    start = Start(START["psi_start"], START["theta_start"], phi_dot=0.0, X_O=0.0)
+    return monolithic.solve(Wheel(s=START["s"]), start, np.arange(round(stop / grid) + 1) * grid)
+
+
+def distance(table: dict[str, np.ndarray], truth: dict[str, np.ndarray]) -> float:
+    """Largest difference over time and compared variables, each relative to the variable's range."""
+    return max(float(np.abs(table[n] - truth[n]).max() / np.ptp(truth[n])) for n in COMPARED)
+
+
+def ends(fmus: dict[str, Path], step: float, derivatives: bool) -> bool:
+    """Whether the coupled run breaks: the hopping wheel leaves the ground and its FMU ends the step."""
+    try:
+        with redirect_stdout(StringIO()):  # fmpy prints the wheel's farewell
+            coupled(fmus, step, derivatives, grid=step)
+    except FMICallException:
+        return True
+    return False
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """Error against communication step, for values held and for straight lines."""
+
+    steps: Sequence[float]
+    held: list[float]
+    linear: list[float]
+
+    def orders(self, errors: list[float]) -> list[float]:
+        """Observed order between neighbouring steps."""
+        return [
+            float(np.log(e / f) / np.log(h / k))
+            for e, f, h, k in zip(errors, errors[1:], self.steps, self.steps[1:], strict=False)
+        ]
+
+
+def convergence(
+    fmus: dict[str, Path], truth: dict[str, np.ndarray], steps: Sequence[float] = STEPS, stop: float = STOP
+) -> Convergence:
+    """Errors of the coupled runs."""
+    held = [distance(coupled(fmus, h, False, stop), truth) for h in steps]
+    linear = [distance(coupled(fmus, h, True, stop), truth) for h in steps]
+    return Convergence(steps, held, linear)

@@ -1,0 +1,97 @@
+"""Every function in every state: what the standard allows works, all else is an error with a sentence and no effect."""
+
+from __future__ import annotations
+
+import pytest
+
+from contract.call_states import STATES, TABLE, bring_to, call
+from contract.master import DISCARD, ERROR, OK
+
+pytestmark = pytest.mark.contract
+
+
+def measured_table(wheel) -> dict[str, set[str]]:
+    """The states in which a function does not answer fmi2Error."""
+    legal: dict[str, set[str]] = {function: set() for function in TABLE}
+    for state in STATES:
+        for function in TABLE:
+            w = bring_to(wheel(), state)
+            if call(w, function) != ERROR:
+                legal[function].add(state)
+            w.close()
+    return legal
+
+
+def test_each_function_is_legal_exactly_where_the_standard_says(wheel):
+    measured = measured_table(wheel)
+    assert measured == TABLE  # 228 cells
+    assert measured != TABLE | {"fmi2Terminate": TABLE["fmi2Terminate"] | {"error"}}
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_an_illegal_call_is_an_error_with_one_sentence_and_changes_nothing(wheel, state):
+    disturbed, undisturbed = bring_to(wheel(), state), bring_to(wheel(), state)
+    before = disturbed.serialized()
+    assert before == undisturbed.serialized()
+    illegal = [function for function, states in TABLE.items() if state not in states]
+    assert len(illegal) >= 13
+    for function in illegal:
+        assert call(disturbed, function) == ERROR
+        (message,) = disturbed.take_messages()
+        assert (message.status, message.category) == (ERROR, "logStatusError")
+        assert message.text.startswith(function) and message.text.endswith(".")
+        assert disturbed.serialized() == before, function
+    if state == "step complete":
+        assert disturbed.run([0.7, 1.0]) == undisturbed.run([0.7, 1.0])
+    assert call(disturbed, "fmi2Reset") == OK  # the partner: a legal call shows in the bytes
+    assert disturbed.serialized() != before or state == "instantiated"
+
+
+def test_in_every_state_reset_leads_to_a_run_with_the_bits_of_a_first_run(wheel):
+    first = wheel().start(s=0.03).run([0.5, 2.0])
+    for state in STATES:
+        w = bring_to(wheel(), state)
+        assert w.reset() == OK
+        assert w.start(s=0.03).run([0.5, 2.0]) == first, state
+    assert w.reset() == OK
+    assert w.start(s=0.031).run([0.5, 2.0]) != first
+
+
+def test_calls_on_no_instance_are_errors(wheel):
+    w = wheel()
+    assert {call(w, function, null=True) for function in TABLE} == {ERROR}
+    w.fmi2FreeInstance(None)  # without effect
+    assert call(w, "fmi2GetFMUstate") == OK
+
+
+def test_terminate_reset_and_free_of_a_freed_instance_do_no_harm(wheel):
+    w, other = wheel().start(), wheel().start()
+    freed = w.component
+    w.close()
+    assert (w.fmi2Terminate(freed), w.fmi2Reset(freed)) == (ERROR, ERROR)
+    w.fmi2FreeInstance(freed)
+    assert other.step(0.1) == OK
+    assert (other.terminate(), other.terminate()) == (OK, ERROR)  # the partner: a live instance answers
+
+
+def test_after_an_error_a_snapshot_or_a_reset_brings_the_instance_back(wheel):
+    w = bring_to(wheel(), "step complete")
+    good = w.serialized()
+    ahead = w.run([0.6, 1.0])
+    assert (w.set(M_3=1e308), w.step_to(1.1)) == (OK, ERROR)
+    assert w.step_to(1.1) == ERROR  # the partner: nothing goes on by itself
+    assert w.restore(good) == OK
+    w.time = 0.5
+    assert w.run([0.6, 1.0]) == ahead
+
+
+def test_after_a_discard_only_a_snapshot_or_a_reset_leads_on(wheel):
+    w = wheel().start(theta_start=1.3, phi_dot_start=0.0)
+    assert w.step_to(0.2) == OK
+    before = w.serialized()
+    assert (w.step_to(5.0), w.step_to(0.3)) == (DISCARD, ERROR)
+    assert w.restore(before) == OK
+    assert w.step_to(0.3) == OK
+    assert w.step_to(5.0) == DISCARD
+    assert (w.terminate(), w.reset()) == (OK, OK)
+    assert w.start().step_to(5.0) == OK

@@ -1,0 +1,152 @@
+"""Derivatives: of outputs in time and of outputs by inputs, exact, checked against differences of the FMU itself."""
+
+from __future__ import annotations
+
+from ctypes import c_double, c_int, c_uint
+
+import numpy as np
+import pytest
+
+from contract.master import ERROR, OK, SCENES, FMU2Wheel
+
+pytestmark = pytest.mark.contract
+
+INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+H = 2.0**-8  # s, between the points of the difference
+# d/dt at the first of seven points: coefficients of the one-sided difference of order 6.
+FORWARD = np.array([-49 / 20, 6, -15 / 2, 20 / 3, -15 / 4, 6 / 5, -1 / 6])
+
+
+def outputs(w: FMU2Wheel) -> list[str]:
+    return [name for name, v in w.variables.items() if v.causality == "output"]
+
+
+def rates(w: FMU2Wheel) -> np.ndarray:
+    names = outputs(w)
+    return np.array(w.getRealOutputDerivatives([w.references[name] for name in names], [1] * len(names)))
+
+
+def forward_difference(w: FMU2Wheel) -> np.ndarray:
+    """d/dt of all outputs from here on, with the inputs as polynomials that were just set; leaves the instance here."""
+    names, blob, t = outputs(w), w.serialized(), w.time
+    rows = [np.frombuffer(w.read(names))]
+    for k in range(1, len(FORWARD)):
+        assert w.restore(blob) == OK
+        w.time = t
+        assert w.step(k * H) == OK
+        rows.append(np.frombuffer(w.read(names)))
+    assert w.restore(blob) == OK
+    w.time = t
+    return FORWARD @ rows / H
+
+
+def push(w: FMU2Wheel, slope: float) -> None:
+    for k, name in enumerate(INPUTS):
+        assert w.set(**{name: 0.3 * (k + 1)}) == OK
+        w.setRealInputDerivatives([w.references[name]], [1], [slope * (1 - 0.4 * k)])
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_output_derivatives_are_those_of_the_motion(wheel, scene):
+    """Left alone, under inputs that jump, and under inputs with a slope, which the rates of the reactions contain."""
+    w = wheel().start(tolerance=1e-12, **SCENES[scene])
+    for t in (0.25, 0.9, 2.8):  # no transition of the friction within 24 ms
+        assert w.step_to(t) == OK
+        blob = w.serialized()
+        for slope in (None, 0.0, 5.0):
+            if slope is not None:
+                push(w, slope)
+            exact, difference = rates(w), forward_difference(w)
+            error = np.max(np.abs(exact - difference) / (1 + np.abs(exact)))
+            assert error < 5e-7, (t, slope)  # measured 1.4e-7, the difference's own error
+        push(w, 5.001)  # the partner: another slope of the inputs is seen in the reactions
+        assert np.max(np.abs(rates(w) - difference) / (1 + np.abs(exact))) > 5e-7
+        assert w.restore(blob) == OK
+        w.time = t
+
+
+def test_derivatives_of_pose_are_the_velocities_to_the_bit(wheel):
+    w = wheel().start(s=0.03)
+    assert w.step(0.6) == OK
+    names = outputs(w)
+    rate = dict(zip(names, rates(w), strict=True))
+    for pose in ("X_O", "Y_O", "Z_O", "psi", "theta", "phi"):
+        assert [rate[pose]] == w.get(f"{pose}_dot")
+    assert rate["omega_z"] != w.get("phi_dot")[0]
+
+
+def jacobian(w: FMU2Wheel) -> np.ndarray:
+    """d output / d input by fmi2GetDirectionalDerivative, one seed at a time."""
+    unknowns = [w.references[name] for name in outputs(w)]
+    columns = [w.getDirectionalDerivative(unknowns, [w.references[name]], [1.0]) for name in INPUTS]
+    return np.array(columns).T
+
+
+def difference_jacobian(w: FMU2Wheel, delta: float = 0.5) -> np.ndarray:
+    """The same by central differences; outputs are linear in the inputs as long as the friction keeps its mode."""
+    columns = []
+    for name in INPUTS:
+        (value,) = w.get(name)
+        ends = []
+        for sign in (1, -1):
+            assert w.set(**{name: value + sign * delta}) == OK
+            ends.append(np.frombuffer(w.read(outputs(w))))
+        assert w.set(**{name: value}) == OK
+        columns.append((ends[0] - ends[1]) / (2 * delta))
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_directional_derivatives_are_those_of_the_reactions(wheel, scene):
+    w = wheel()
+    assert w.set(**SCENES[scene]) == OK
+    assert (w.setupExperiment(), w.enterInitializationMode()) == (OK, OK)
+    checked = [(jacobian(w), difference_jacobian(w))]
+    assert w.exitInitializationMode() == OK
+    for t in (0.25, 1.0, 3.0):
+        assert w.step_to(t) == OK
+        checked.append((jacobian(w), difference_jacobian(w)))
+    for exact, difference in checked:
+        assert np.max(np.abs(exact - difference)) < 1e-12  # N/N and N/(N m): measured 1.4e-13
+        assert np.all(exact[:13] == 0) and np.linalg.matrix_rank(exact[13:], 1e-3) == 3
+    assert np.max(np.abs(checked[0][0] - checked[-1][1])) > 1e-12  # the partner: another instant
+
+
+def test_while_friction_holds_the_wheel_the_derivatives_are_those_of_a_held_wheel(wheel):
+    w, rolling = wheel().start(s=0.03), wheel().start()
+    assert w.step(1.26) == OK and w.get("friction_mode") == [0]
+    assert np.max(np.abs(jacobian(w) - difference_jacobian(w, 1e-3))) < 1e-10  # measured 1.5e-11
+    assert rolling.restore(w.serialized()) == OK
+    assert rolling.set(s=0.0) == OK
+    assert np.max(np.abs(jacobian(w) - jacobian(rolling))) > 0.1  # the partner: M_3 is not held without friction
+
+
+def test_directional_derivatives_add_up_the_seeds(wheel):
+    w = wheel().start()
+    unknowns, knowns = [w.references[name] for name in outputs(w)], [w.references[name] for name in INPUTS]
+    seeds = [1.0, -2.0, 0.5, 3.0, 0.0, 7.0]
+    together = np.array(w.getDirectionalDerivative(unknowns, knowns, seeds))
+    assert np.max(np.abs(together - jacobian(w) @ seeds)) < 1e-13  # measured 9e-16
+    twice = np.array(w.getDirectionalDerivative(unknowns[::-1], [knowns[0]] * 2, [1.0, 2.0]))
+    assert np.max(np.abs(twice[::-1] - 3 * jacobian(w)[:, 0])) < 1e-15
+    assert np.max(np.abs(together - jacobian(w) @ seeds[::-1])) > 1
+
+
+def test_wrong_requests_for_derivatives_are_refused(wheel):
+    w = wheel().start()
+    theta, force, mass, energy = (w.references[name] for name in ("theta", "F_X", "m", "E"))
+    value = (c_double * 1)()
+
+    def output_derivative(reference: int, order: int) -> int:
+        return w.fmi2GetRealOutputDerivatives(w.component, (c_uint * 1)(reference), 1, (c_int * 1)(order), value)
+
+    def directional(unknown: int, known: int) -> int:
+        arrays = ((c_uint * 1)(unknown), 1, (c_uint * 1)(known), 1, (c_double * 1)(1.0), value)
+        return w.fmi2GetDirectionalDerivative(w.component, *arrays)
+
+    wrong = [(theta, 0), (theta, 2), (force, 1), (mass, 1), (energy, 1), (52, 1)]
+    assert [output_derivative(*pair) for pair in wrong] == [ERROR] * 6
+    wrong = [(theta, mass), (theta, theta), (force, force), (energy, force), (52, force), (theta, 52)]
+    assert [directional(*pair) for pair in wrong] == [ERROR] * 6
+    assert len(w.take_messages()) == 12
+    assert output_derivative(theta, 1) == directional(theta, force) == OK

@@ -1,0 +1,209 @@
+"""The model description: valid, complete, and the same as what the library says when it is asked."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import attrs
+import numpy as np
+import pytest
+from fmpy import validation
+from lxml import etree
+
+from contract.master import OK
+
+pytestmark = pytest.mark.contract
+
+FULL_TURN = 2 * np.pi
+# interface.md: name, start, unit, variability; then inputs and outputs in the order in which a table shows them.
+PARAMETERS = {
+    "m": (20, "kg"),
+    "r_0": (0.3, "m"),
+    "r": (0.05, "m"),
+    "J_x": (0.9, "kg.m2"),
+    "J_y": (0.9, "kg.m2"),
+    "J_z": (1.8, "kg.m2"),
+    "g": (9.81, "m/s2"),
+    "s": (0, "m"),
+    "psi_start": (FULL_TURN / 4, "rad"),
+    "theta_start": (5 * FULL_TURN / 24, "rad"),
+    "phi_start": (0, "rad"),
+    "psi_dot_start": (0, "rad/s"),
+    "theta_dot_start": (0, "rad/s"),
+    "phi_dot_start": (-2, "rad/s"),
+    "X_O_start": (-0.3 * np.cos(5 * FULL_TURN / 24), "m"),
+    "Y_O_start": (0, "m"),
+    "formulation": (1, None),
+    "friction_law": (1, None),
+    "omega_s": (0.001, "rad/s"),
+    "method": (1, None),
+    "keep_contact": (0, None),
+}
+INPUTS = {"F_X": "N", "F_Y": "N", "F_Z": "N", "M_1": "N.m", "M_2": "N.m", "M_3": "N.m"}
+OUTPUTS = {
+    **{"X_O": "m", "theta": "rad", "phi_dot": "rad/s", "psi_dot": "rad/s", "Y_O": "m", "Z_O": "m"},
+    **{"psi": "rad", "phi": "rad", "theta_dot": "rad/s", "X_O_dot": "m/s", "Y_O_dot": "m/s", "Z_O_dot": "m/s"},
+    **{"omega_z": "rad/s", "lambda_1": "N", "lambda_2": "N", "lambda_3": "N"},
+}
+LOCALS = {
+    **{"E": "J", "mu_required": "1", "friction_mode": None, "n_steps": None, "n_rhs": None},
+    **{"n_jac": None, "n_roots": None, "n_events": None, "n_restarts": None},
+}
+ENUMERATIONS = {
+    "Formulation": ["automatic", "reduced", "multibody"],
+    "FrictionLaw": ["exact", "regularized"],
+    "Method": ["automatic", "adams", "bdf"],
+}
+
+
+def unit_of(variable) -> str | None:
+    return variable.unit or (variable.declaredType and variable.declaredType.unit) or None
+
+
+@pytest.fixture(scope="module")
+def xml(fmu: str) -> ElementTree.Element:
+    return ElementTree.parse(Path(fmu) / "modelDescription.xml").getroot()
+
+
+def test_description_and_archive_pass_fmpy_and_the_schema(fmu_path, fmu, tmp_path):
+    assert validation.validate_fmu(str(fmu_path)) == []
+    schema = Path(validation.__file__).parent / "schema" / "fmi2" / "fmi2ModelDescription.xsd"
+    valid = etree.XMLSchema(etree.parse(schema))
+    document = etree.parse(Path(fmu) / "modelDescription.xml")
+    assert valid.validate(document), valid.error_log
+    document.getroot().set("fmiVersion", "2.1")  # the partner
+    assert not valid.validate(document)
+
+
+def test_variables_are_those_of_the_contract_in_its_order_with_its_units_and_starts(description):
+    names = [v.name for v in description.modelVariables]
+    assert names == [*PARAMETERS, *INPUTS, *OUTPUTS, *LOCALS]
+    assert [v.valueReference for v in description.modelVariables] == list(range(len(names)))
+    for v in description.modelVariables:
+        expected = {n: u for n, (_, u) in PARAMETERS.items()} | INPUTS | OUTPUTS | LOCALS
+        assert unit_of(v) == expected[v.name], v.name
+        assert (v.declaredType.displayUnit if v.declaredType else v.displayUnit) in (None, "deg")
+        assert (v.displayUnit == "deg") == (unit_of(v) == "rad"), v.name
+        assert v.description and not v.description.endswith("."), v.name
+
+
+def test_causality_variability_and_initial_are_those_of_the_standard(description, xml):
+    rows = [v.attrib for v in xml.find("ModelVariables")]
+    kinds = {row["name"]: (row["causality"], row["variability"], row.get("initial")) for row in rows}
+    for name in PARAMETERS:
+        assert kinds.pop(name) == ("parameter", "tunable" if name == "s" else "fixed", "exact"), name
+    for name in INPUTS:
+        assert kinds.pop(name) == ("input", "continuous", None), name
+    for name in OUTPUTS:
+        assert kinds.pop(name) == ("output", "continuous", "calculated"), name
+    for name, kind in kinds.items():
+        assert kind == ("local", "continuous" if name in ("E", "mu_required") else "discrete", "calculated"), name
+    calculated = [v for v in description.modelVariables if v.initial == "calculated"]
+    assert all(v.start is None for v in calculated)
+
+
+def test_every_start_value_of_the_description_is_what_the_library_starts_with(wheel, description):
+    w = wheel()
+    assert (w.setupExperiment(), w.enterInitializationMode()) == (0, 0)
+    stored = {v.name: v for v in description.modelVariables if v.start is not None}
+    assert list(stored) == [*PARAMETERS, *INPUTS]
+    for name, v in stored.items():
+        start = {"true": 1, "false": 0}.get(v.start) if v.type == "Boolean" else float(v.start)
+        status, value = w.get_one(name)
+        assert (status, value) == (OK, start), name
+        expected = PARAMETERS[name][0] if name in PARAMETERS else 0
+        assert abs(value - expected) <= 1e-16, name  # measured 0
+    assert w.set(m=20.000000000000004) == OK and w.get("m") != [20.0]  # the partner: one unit in the last place
+
+
+def test_limits_of_the_description_are_those_the_library_enforces(wheel, description):
+    """A value one unit beyond a limit is refused at the end of initialization, the limit's inside is taken."""
+
+    def accepted(name: str, value: float) -> bool:
+        w = wheel()
+        assert w.set(**{name: value}) == OK
+        w.setupExperiment()
+        w.enterInitializationMode()
+        taken = w.exitInitializationMode() == OK
+        texts = [m.text for m in w.take_messages()]
+        assert taken or any(text.startswith(name) for text in texts), (name, value, texts)
+        w.close()
+        return taken
+
+    limited = 0
+    for v in description.modelVariables:
+        whole = v.type != "Real"
+        for limit, outwards in ((v.min, -1), (v.max, 1)):
+            if limit is None:
+                continue
+            limited += 1
+            outside = int(limit) + outwards if whole else float(limit) + outwards * 1e-3
+            assert not accepted(v.name, outside), (v.name, outside)
+        if v.min is not None:
+            factor = 0.99 if v.name == "J_z" else 1.01  # J_z is at its limit, J_x + J_y
+            assert accepted(v.name, int(v.min) if whole else float(v.start) * factor), v.name
+    assert limited == 17
+
+
+def test_every_unit_is_defined_by_base_units_and_used(description, xml):
+    defined = {u.name: u for u in description.unitDefinitions}
+    used = {unit_of(v) for v in description.modelVariables} - {None}
+    assert used == set(defined)
+    assert all(unit.find("BaseUnit") is not None for unit in xml.find("UnitDefinitions"))
+    exponents = {name: {k: n for k, n in attrs.asdict(u.baseUnit).items() if n} for name, u in defined.items()}
+    newton = {"kg": 1, "m": 1, "s": -2, "factor": 1.0}
+    assert exponents["N"] == newton and exponents["J"] == newton | {"m": 2} == exponents["N.m"]
+    (degree,) = defined["rad"].displayUnits
+    assert abs(degree.factor * FULL_TURN - 360) <= 1e-13  # measured 5.7e-14; 16 digits of 180/pi are needed
+    assert abs(57.295779513 * FULL_TURN - 360) > 1e-13
+
+
+def test_enumerations_are_spelled_as_the_contract_spells_them(description):
+    types = {t.name: [(item.name, int(item.value)) for item in t.items] for t in description.typeDefinitions}
+    assert types == {name: [(item, k + 1) for k, item in enumerate(items)] for name, items in ENUMERATIONS.items()}
+
+
+def test_outputs_are_listed_in_order_and_the_initial_unknowns_are_exactly_the_calculated_outputs(description):
+    listed = [unknown.variable.name for unknown in description.outputs]
+    assert listed == list(OUTPUTS)
+    assert [unknown.variable.name for unknown in description.initialUnknowns] == list(OUTPUTS)
+    assert not description.derivatives
+
+
+def test_default_experiment_is_complete_and_divides(description):
+    d = description.defaultExperiment
+    start, stop, step, tolerance = (float(x) for x in (d.startTime, d.stopTime, d.stepSize, d.tolerance))
+    assert (start, stop, step) == (0.0, 10.0, 0.01)
+    assert 1e-13 <= tolerance <= 1e-6
+    assert (stop - start) / step == round((stop - start) / step)
+
+
+def test_numbers_carry_sixteen_digits_and_the_header_is_right(xml, fmu):
+    assert xml.get("fmiVersion") == "2.0" and xml.get("variableNamingConvention") == "flat"
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", xml.get("generationDateAndTime"))
+    text = (Path(fmu) / "modelDescription.xml").read_text(encoding="utf-8")
+    assert text.startswith('<?xml version="1.0" encoding="UTF-8"?>')
+    assert not re.search(r'"[+-]?(nan|inf)', text, re.IGNORECASE)
+
+
+def test_capabilities_say_what_the_library_can_do(description, xml):
+    flags = xml.find("CoSimulation").attrib
+    true = {name for name, value in flags.items() if value == "true"}
+    assert true == {
+        *("canHandleVariableCommunicationStepSize", "canInterpolateInputs", "canNotUseMemoryManagementFunctions"),
+        *("canGetAndSetFMUstate", "canSerializeFMUstate", "providesDirectionalDerivative"),
+    }
+    assert flags["maxOutputDerivativeOrder"] == "1" and flags["modelIdentifier"] == "wheel"
+    assert xml.find("ModelExchange") is None
+
+
+def test_log_categories_are_those_the_library_knows(wheel, description):
+    names = [category.name for category in description.logCategories]
+    assert names == ["logEvents", "logStatusWarning", "logStatusDiscard", "logStatusError", "logAll"]
+    w = wheel()
+    w.setDebugLogging(True, [*names])
+    assert w.take_messages() == []
+    w.setDebugLogging(True, ["logAll", "logNothing"])
+    assert [m.text for m in w.take_messages()] == ['fmi2SetDebugLogging: there is no category "logNothing".']

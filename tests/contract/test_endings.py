@@ -1,0 +1,129 @@
+"""How a run ends: flat on the ground or lifted off. Discard, the instant, outputs there, and what is allowed after."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from contract.master import (
+    DISCARD,
+    DO_STEP_STATUS,
+    ERROR,
+    LAST_SUCCESSFUL_TIME,
+    OK,
+    TERMINATED,
+    FMU2Wheel,
+)
+
+contract = pytest.mark.contract
+
+DROP = {"theta_start": float(np.radians(75)), "phi_dot_start": 0.0}  # let go at rest
+
+
+def time_of_fall(theta: float, m: float = 20, r_0: float = 0.3, r: float = 0.05, J: float = 0.9, g: float = 9.81):
+    """Fall from rest at 75 deg to theta, s: one degree of freedom, by conservation of energy."""
+    top = np.radians(75)
+
+    def slowness(u: float) -> float:  # theta = top - (top - theta) u^2 takes the root singularity away
+        at = top - (top - theta) * u * u
+        inertia = m * (r_0**2 + r**2 + 2 * r_0 * r * np.sin(at)) + J
+        return 2 * (top - theta) * u * np.sqrt(inertia / (2 * m * g * r_0 * (np.sin(top) - np.sin(at))))
+
+    return quad(slowness, 1e-12, 1, epsabs=1e-13, epsrel=1e-13)[0]
+
+
+def ended(w: FMU2Wheel) -> float:
+    """The instant at which the run ended, after a check of all that a master can ask for."""
+    assert w.status(DO_STEP_STATUS) == DISCARD
+    assert w.status(TERMINATED) == 1
+    finite = np.isfinite(w.get(*w.reals))
+    assert all(finite[k] for k, name in enumerate(w.reals) if name != "mu_required")  # infinite where N vanishes
+    return w.status(LAST_SUCCESSFUL_TIME)
+
+
+@contract
+def test_a_wheel_let_go_falls_flat_at_the_instant_that_energy_gives(wheel):
+    w = wheel().start(**DROP)
+    assert w.step(10.0) == DISCARD
+    t = ended(w)
+    # It counts as flat at sin(theta) = 1e-7, 1.6e-8 s before theta = 0.
+    assert abs(t - time_of_fall(1e-7)) < 1e-9  # measured 8.9e-11
+    assert abs(t - time_of_fall(0.0)) > 1e-9
+    assert abs(w.get("theta")[0] - 1e-7) < 1e-12  # measured 9.2e-16
+    assert w.get("phi_dot", "psi_dot", "omega_z") == [0, 0, 0]
+
+
+@contract
+def test_the_end_does_not_depend_on_the_communication_grid(wheel):
+    at_once, in_steps = wheel().start(**DROP), wheel().start(**DROP)
+    assert at_once.step(10.0) == DISCARD
+    status = OK
+    while status == OK:
+        status = in_steps.step(0.01)
+    assert (status, in_steps.time) == (DISCARD, pytest.approx(0.59))
+    assert ended(at_once) == ended(in_steps)
+    assert at_once.bits() == in_steps.bits()
+    assert at_once.bits() != wheel().start(**DROP).run([0.59])[0]
+
+
+@contract
+def test_before_the_end_a_run_is_not_terminated(wheel):
+    w = wheel().start(**DROP)
+    assert w.step(0.5) == OK
+    assert (w.status(DO_STEP_STATUS), w.status(LAST_SUCCESSFUL_TIME), w.status(TERMINATED)) == (OK, 0.5, 0)
+    assert w.step(0.5) == DISCARD and w.status(TERMINATED) == 1
+
+
+@contract
+def test_after_the_end_the_wheel_can_be_read_terminated_and_reset(wheel):
+    w = wheel().start(start=100.0, **DROP)
+    assert w.step(10.0) == DISCARD
+    t, bits = ended(w), w.bits()
+    assert w.step(0.1) == ERROR and w.bits() == bits
+    assert abs(t - 100 - time_of_fall(1e-7)) < 1e-9
+    assert w.terminate() == OK
+    assert (ended(w), w.bits()) == (t, bits)
+    assert w.reset() == OK
+    assert w.start().run([2.0]) == wheel().start().run([2.0])
+
+
+@contract
+def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
+    """F_Z grows by 30 N/s against the weight of 196.2 N; the wheel's own motion shifts the instant."""
+    w = wheel().start()
+    reference, order, rate = w.references["F_Z"], 1, 30.0
+    w.setRealInputDerivatives([reference], [order], [rate])
+    assert w.step(10.0) == DISCARD
+    t = ended(w)
+    (normal,) = w.get("lambda_3")
+    assert abs(normal) < 1e-5  # N; measured 2.0e-7, a rounding of 1e-9 of the weight counts as contact
+    assert "lifted off" in w.take_messages()[-1].text
+    before = wheel().start()
+    before.setRealInputDerivatives([reference], [order], [rate])
+    assert before.step(t - 0.01) == OK and before.get("lambda_3")[0] > 0.1
+    kept = wheel().start(keep_contact=1)
+    kept.setRealInputDerivatives([reference], [order], [rate])
+    assert kept.step(t + 0.2) == OK and kept.get("lambda_3")[0] < 0  # the partner: the ground pulls
+
+
+def fmpy_simulate(fmu_path, output, *start_values: str) -> tuple[str, np.ndarray]:
+    command = [sys.executable, "-m", "fmpy", "simulate", str(fmu_path), "--output-file", str(output)]
+    values = ["--start-values", *start_values] if start_values else []
+    finished = subprocess.run([*command, *values], capture_output=True, text=True, check=True)
+    assert finished.stderr == ""
+    return finished.stdout, np.genfromtxt(output, delimiter=",", names=True)
+
+
+def test_fmpy_simulate_ends_where_the_wheel_falls_and_keeps_the_data(fmu_path, tmp_path):
+    said, rows = fmpy_simulate(
+        fmu_path, tmp_path / "drop.csv", "theta_start", "1.3089969389957472", "phi_dot_start", "0"
+    )
+    assert said.startswith("[DISCARD] The wheel fell flat at t = 0.5927504")
+    assert len(rows) == 61 and abs(rows["time"][-1] - time_of_fall(1e-7)) < 1e-9
+    assert abs(rows["theta"][-1] - 1e-7) < 1e-12
+    said, rows = fmpy_simulate(fmu_path, tmp_path / "paper.csv")  # the partner: the paper's wheel rolls on
+    assert (said, len(rows), rows["time"][-1]) == ("", 1001, 10.0)

@@ -1,0 +1,163 @@
+"""Inputs: followed as polynomials over a step, felt at once, held where they arrived, and no restart without a jump.
+
+The closed form used here is the upright wheel on a straight line (theta = 90 deg): M_3 turns it about the axle against
+J_z + m (r_0 + r)^2, and F_X, F_Y, M_1, M_2 are balanced by nothing but the ground.
+"""
+
+from __future__ import annotations
+
+from ctypes import c_double, c_int, c_uint
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+from contract.master import ERROR, OK, FMU2Wheel
+
+pytestmark = pytest.mark.contract
+
+UPRIGHT = {"theta_start": np.pi / 2, "phi_dot_start": 0.0}
+RHO = 0.35
+INERTIA = 1.8 + 20 * RHO**2  # about the contact, kg m2
+WEIGHT = 20 * 9.81
+
+
+def give(w: FMU2Wheel, name: str, derivatives: list[float]) -> None:
+    """Sets an input's value and its derivatives from the first order up."""
+    assert w.set(**{name: derivatives[0]}) == OK
+    for order, derivative in enumerate(derivatives[1:], 1):
+        w.setRealInputDerivatives([w.references[name]], [order], [derivative])
+
+
+def taylor(p: Polynomial, t: float, order: int) -> list[float]:
+    return [p(t), *(p.deriv(k)(t) for k in range(1, order + 1))]
+
+
+def follow(w: FMU2Wheel, p: Polynomial, times: np.ndarray, order: int) -> float:
+    """Drives with M_3 = p(t), of which each step sees the Taylor polynomial of that order; omega_z at the end."""
+    for t, t_next in zip(times, times[1:], strict=False):
+        give(w, "M_3", taylor(p, t, order))
+        assert w.step_to(t_next) == OK
+    return w.get("omega_z")[0]
+
+
+def test_a_cubic_input_is_followed_exactly_whatever_the_steps(wheel):
+    p = Polynomial([1.0, -2.0, 1.5, -0.25])
+    exact = p.integ()(2.0) / INERTIA
+    uneven = np.array([0.0, 0.1, 0.35, 1.2, 1.3, 2.0])
+    for times in (np.array([0.0, 2.0]), np.linspace(0, 2, 21), uneven):
+        assert abs(follow(wheel().start(tolerance=1e-12, **UPRIGHT), p, times, 3) - exact) < 1e-13  # measured 7e-16
+        assert abs(follow(wheel().start(tolerance=1e-12, **UPRIGHT), p, times, 2) - exact) > 1e-13  # 2.9e-5
+
+
+@pytest.mark.parametrize("order", [0, 1, 2, 3])
+def test_a_smooth_input_is_followed_with_the_order_of_its_derivatives(wheel, order):
+    """sin(2 t) by its Taylor polynomials: halving the step divides the error by 2^(order + 1)."""
+    sine = [lambda t, k=k: 2.0**k * np.sin(2 * t + k * np.pi / 2) for k in range(4)]
+    errors = []
+    for steps in (64, 128):
+        w = wheel().start(tolerance=1e-12, **UPRIGHT)
+        times = np.linspace(0, 2, steps + 1)
+        for t, t_next in zip(times, times[1:], strict=False):
+            give(w, "M_3", [f(t) for f in sine[: order + 1]])
+            assert w.step_to(t_next) == OK
+        errors.append(abs(w.get("omega_z")[0] - (1 - np.cos(4)) / 2 / INERTIA))
+    assert abs(np.log2(errors[0] / errors[1]) - (order + 1)) < 0.1
+
+
+def test_a_polynomial_that_goes_on_is_no_restart_and_a_jump_is_one(wheel):
+    p = Polynomial([1.0, -2.0, 1.5, -0.25])
+    times = np.linspace(0, 2, 21)
+    smooth, held = wheel().start(M_3=1.0, **UPRIGHT), wheel().start(M_3=1.0, **UPRIGHT)
+    follow(smooth, p, times, 3)
+    follow(held, p, times, 0)
+    assert smooth.get("n_restarts")[0] <= 1  # the bend at t = 0, where there is no history to keep
+    assert held.get("n_restarts")[0] >= 19  # the first value is that of the start
+
+
+def test_derivatives_hold_for_one_step_and_the_value_stays_where_it_arrived(wheel):
+    w = wheel().start(tolerance=1e-12, **UPRIGHT)
+    give(w, "M_3", [1.0, 2.0])
+    assert w.step(0.5) == OK
+    reached = w.get("omega_z")[0]
+    assert abs(reached - (0.5 + 0.25) / INERTIA) < 1e-13
+    assert w.step(0.5) == OK
+    assert abs(w.get("omega_z")[0] - reached - 0.5 * 2.0 / INERTIA) < 1e-13  # M_3 = 2 from there; measured 3e-17
+    assert abs(w.get("omega_z")[0] - reached - 0.5 * 1.0 / INERTIA) > 1e-13
+
+
+def test_an_input_rewritten_at_its_old_value_after_a_step_with_derivatives_jumps_back(wheel):
+    """A saw-tooth: the same value and slope at the start of each step."""
+    w = wheel().start(tolerance=1e-12, **UPRIGHT)
+    for _ in range(4):
+        give(w, "M_3", [1.0, 2.0])
+        assert w.step(0.5) == OK
+    assert abs(w.get("omega_z")[0] - 4 * (0.5 + 0.25) / INERTIA) < 1e-12  # measured 2.5e-14
+    assert w.get("n_restarts") == [4]
+
+
+def test_reactions_answer_an_input_before_the_step_and_the_motion_does_not(wheel):
+    w = wheel().start(s=0.03)
+    assert w.step(0.5) == OK
+    motion = [name for name in w.reals if not name.startswith(("lambda", "mu"))]
+    before, reactions = w.read(motion), w.get("lambda_1", "lambda_2", "lambda_3")
+    assert w.set(F_X=1.0, F_Y=-2.0, F_Z=3.0, M_1=0.5, M_2=0.4, M_3=-0.3) == OK
+    at_once = np.array(w.get("lambda_1", "lambda_2", "lambda_3"))
+    assert w.read(motion) == before
+    assert w.step(1e-9) == OK
+    assert np.max(np.abs(at_once - w.get("lambda_1", "lambda_2", "lambda_3"))) < 2e-6  # N, measured 7.5e-7: 1 ns
+    assert np.min(np.abs(at_once - reactions)) > 2e-6
+    assert w.read(motion) != before
+
+
+@pytest.mark.parametrize("formulation", [2, 3])
+def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(wheel, formulation):
+    """|M_3| <= s N holds it; 2 N m/s from zero lets it go at s N / 2 seconds."""
+    standing = wheel(logging=True).start(s=0.03, formulation=formulation, **UPRIGHT)
+    limit = 0.03 * WEIGHT
+    for torque in (0.999 * limit, -0.999 * limit, 0.0):
+        assert standing.set(M_3=torque) == OK
+        assert standing.step(0.5) == OK
+        assert standing.get("friction_mode") == [0]
+        assert standing.get("omega_z") == [0]
+        assert abs(standing.get("X_O_dot")[0]) < 1e-12  # m/s, measured 1.1e-14: theta starts off 90 deg by rounding
+    give(standing, "M_3", [0.0, 2.0])
+    t = standing.time
+    assert standing.step(4.0) == OK
+    release = float(standing.take_messages()[-1].text.split(" ")[2])
+    assert abs(release - t - limit / 2) < 1e-8  # s; measured 0, the message has nine decimals
+    spin = 2 * (4.0 - limit / 2) ** 2 / 2 / INERTIA
+    assert abs(standing.get("omega_z")[0] - spin) < 1e-8  # rad/s; measured 2.2e-10
+    assert abs(standing.get("omega_z")[0] - 2 * 4.0**2 / 2 / INERTIA) > 1e-8
+
+
+def test_a_held_wheel_stays_held_when_an_input_changes(wheel):
+    """The friction answers the new torque at once, in both formulations, and does so without slip."""
+    for formulation in (2, 3):
+        w = wheel().start(s=0.03, formulation=formulation)
+        assert w.step(1.26) == OK and w.get("friction_mode") == [0]  # stick lasts from 1.2255 s to 1.3298 s
+        assert w.set(M_3=0.1) == OK
+        assert w.get("friction_mode") == [0]
+        assert w.step(0.001) == OK
+        assert w.get("friction_mode") == [0] and abs(w.get("omega_z")[0]) < 1e-9
+        assert w.set(M_3=50.0) == OK
+        assert w.get("friction_mode") == [1]
+        assert w.step(0.001) == OK and w.get("omega_z")[0] > 1e-3
+
+
+def test_wrong_input_derivatives_are_refused_as_a_whole(wheel):
+    w = wheel().start()
+    before = w.serialized()
+    force, mass, theta = (w.references[name] for name in ("F_X", "m", "theta"))
+
+    def call(reference: int, order: int, value: float) -> int:
+        references, orders = (c_uint * 2)(force, reference), (c_int * 2)(1, order)
+        return w.fmi2SetRealInputDerivatives(w.component, references, 2, orders, (c_double * 2)(1.0, value))
+
+    wrong = [(force, 0, 1.0), (force, 4, 1.0), (force, -1, 1.0), (force, 1, np.nan), (force, 1, np.inf)]
+    for reference, order, value in [*wrong, (mass, 1, 1.0), (theta, 1, 1.0), (99, 1, 1.0)]:
+        assert call(reference, order, value) == ERROR
+        (message,) = w.take_messages()
+        assert message.text.startswith("fmi2SetRealInputDerivatives: ")
+    assert w.serialized() == before
+    assert call(force, 3, 1.0) == OK and w.serialized() != before

@@ -1,0 +1,144 @@
+"""Many instances at once: interleaved, in threads, from changing threads; each has the bits it has alone."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from ctypes import byref
+from threading import Thread
+
+import numpy as np
+import pytest
+from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+
+from contract.master import OK, SCENES, FMU2Wheel
+
+pytestmark = pytest.mark.contract
+
+TIMES = np.arange(1, 25) * 0.125
+SETTINGS = [values | {"phi_dot_start": -2.0 - 0.1 * k} for k in range(4) for values in SCENES.values()]
+
+
+@pytest.fixture
+def alone(wheel) -> list[list[bytes]]:
+    return [wheel().start(**values).run(TIMES) for values in SETTINGS]
+
+
+def test_every_instance_has_bits_of_its_own(alone):
+    assert len({bits[-1] for bits in alone}) == len(SETTINGS)
+
+
+def test_interleaved_in_any_order_each_instance_has_the_bits_it_has_alone(wheel, alone):
+    rng = np.random.default_rng(17)
+    wheels = [wheel() for _ in SETTINGS]
+    bits: list[list[bytes]] = [[] for _ in SETTINGS]
+    for k in rng.permutation(len(SETTINGS)):
+        wheels[k].start(**SETTINGS[k])
+    for k in rng.permutation(np.repeat(np.arange(len(SETTINGS)), len(TIMES))):
+        bits[k] += wheels[k].run([TIMES[len(bits[k])]])
+    assert bits == alone
+
+
+def test_in_threads_each_instance_has_the_bits_it_has_alone(wheel, alone):
+    def run(values: dict[str, float]) -> list[bytes]:
+        return wheel().start(**values).run(TIMES)
+
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(run, SETTINGS)) == alone
+
+
+def test_creation_stepping_and_freeing_may_each_happen_in_another_thread(wheel, alone):
+    wheels: list[FMU2Wheel] = []
+    bits: list[list[bytes]] = []
+    for work in (
+        lambda: wheels.append(wheel()),
+        lambda: wheels[0].start(**SETTINGS[1]),
+        lambda: bits.append(wheels[0].run(TIMES[:12])),
+        lambda: bits.append(wheels[0].run(TIMES[12:])),
+        lambda: wheels[0].close(),
+    ):
+        thread = Thread(target=work)
+        thread.start()
+        thread.join()
+    assert bits[0] + bits[1] == alone[1]
+    assert wheels[0].component is None
+
+
+def test_a_thousand_instances_live_side_by_side_and_can_be_freed_in_any_order(wheel):
+    w = wheel()
+    callbacks = fmi2CallbackFunctions()
+    made = [w.fmi2Instantiate(b"one of many", 1, w.guid.encode(), None, byref(callbacks), 0, 0) for _ in range(1000)]
+    assert len(set(made)) == 1000 and None not in made
+    rng = np.random.default_rng(23)
+    for component in rng.permutation(made)[:500]:
+        w.fmi2FreeInstance(int(component))
+        w.fmi2FreeInstance(int(component))  # a second time, without effect
+    again = [w.fmi2Instantiate(b"more", 1, w.guid.encode(), None, None, 0, 0) for _ in range(100)]
+    assert None not in again
+    for component in {*made, *again}:
+        w.fmi2FreeInstance(component)
+    assert w.start().step(1.0) == OK
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "guid", "why"),
+    [
+        (b"", 1, None, "the instance name is missing or blank"),
+        (b" \t", 1, None, "the instance name is missing or blank"),
+        (None, 1, None, "the instance name is missing or blank"),
+        (b"wheel", 0, None, "this FMU is for co-simulation only"),
+        (b"wheel", 1, b"{00000000-0000-0000-0000-000000000000}", "the GUID is not that of this FMU"),
+        (b"wheel", 1, b"", "the GUID is not that of this FMU"),
+    ],
+)
+def test_an_instantiation_that_is_wrong_is_refused_with_the_reason(wheel, name, kind, guid, why):
+    w = wheel()
+    told: list[tuple[int, bytes, bytes]] = []
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = fmi2CallbackLoggerTYPE(lambda environment, instance, *message: told.append(message))
+    right = w.guid.encode()
+
+    def instantiate(name: bytes | None, kind: int, guid: bytes | None, pointer) -> int | None:
+        return w.fmi2Instantiate(name, kind, guid, None, pointer, 0, 0)
+
+    assert instantiate(name, kind, right if guid is None else guid, byref(callbacks)) is None
+    ((status, category, text),) = told
+    assert (status, category) == (3, b"logStatusError")
+    assert text.startswith(b"fmi2Instantiate: " + why.encode()) and text.endswith(b".")
+    assert instantiate(name, kind, right if guid is None else guid, None) is None  # nobody to tell: still refused
+    assert instantiate(b"wheel", 1, None, byref(callbacks)) is None
+    good = instantiate(b"wheel", 1, right, byref(callbacks))
+    assert good is not None
+    w.fmi2FreeInstance(good)
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [None, "", "file:///x", "file:/x/", "file:////x", "file:///a b/é/", "file:///nowhere/resources", "C:\\x", "%s%n#"],
+)
+def test_any_resource_location_will_do(wheel, uri):
+    w = wheel()
+    location = None if uri is None else uri.encode()
+    component = w.fmi2Instantiate(b"wheel", 1, w.guid.encode(), location, None, 1, 0)
+    assert component is not None
+    w.fmi2FreeInstance(component)
+
+
+def test_version_and_platform_are_those_of_the_standard(wheel):
+    w = wheel()
+    assert (w.getVersion(), w.getTypesPlatform()) == ("2.0", "default")
+
+
+def test_the_environment_of_the_process_is_left_alone(wheel, tmp_path, monkeypatch):
+    """Rounding mode, working directory and locale after a run with events, errors and an ending."""
+    import locale
+    from pathlib import Path
+
+    monkeypatch.chdir(tmp_path)
+    before = (Path.cwd(), locale.setlocale(locale.LC_ALL), np.geterr(), 1.0 / 3.0, np.float64(1e-310) / 2)
+    w = wheel(logging=True).start(s=0.03)
+    w.run([3.0])
+    w.set(M_3=1e308)
+    w.step(1.0)
+    after = (Path.cwd(), locale.setlocale(locale.LC_ALL), np.geterr(), 1.0 / 3.0, np.float64(1e-310) / 2)
+    assert after == before and after[-1] == 5e-311  # no flush to zero
+    assert list(tmp_path.iterdir()) == []

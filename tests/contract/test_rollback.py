@@ -1,0 +1,154 @@
+"""Rollback: a restored instance goes on with the bits of the one that took the snapshot, whatever was going on."""
+
+from __future__ import annotations
+
+from ctypes import byref
+
+import numpy as np
+import pytest
+
+from contract.call_states import STATES, bring_to
+from contract.master import DISCARD, ERROR, OK, SCENES, FMU2Wheel
+
+pytestmark = pytest.mark.contract
+
+STEP = 0.125
+
+
+def drive(w: FMU2Wheel, k: int) -> int:
+    """Step k with all six inputs, some held, some linear, quadratic or cubic over the step."""
+    names = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+    t = k * STEP
+    for n, name in enumerate(names):
+        amplitude, rate = 2.0 / (n + 1), 1.0 + n
+        assert w.set(**{name: amplitude * np.sin(rate * t)}) == OK
+        for order in (1, 2, 3)[: n % 4]:
+            derivative = amplitude * rate**order * np.sin(rate * t + order * np.pi / 2)
+            w.setRealInputDerivatives([w.references[name]], [order], [derivative])
+    return w.step(STEP)
+
+
+def coast(w: FMU2Wheel, _: int) -> int:
+    return w.step(STEP)
+
+
+def bits_of(w: FMU2Wheel, step, ks: range) -> list[bytes]:
+    out = []
+    for k in ks:
+        assert step(w, k) == OK, w.messages
+        out.append(w.bits())
+    return out
+
+
+@pytest.mark.parametrize("step", [coast, drive])
+@pytest.mark.parametrize("scene", SCENES)
+def test_a_restored_instance_goes_on_with_the_same_bits(wheel, scene, step):
+    values = SCENES[scene]
+    w, other, fresh = wheel().start(**values), wheel().start(s=0.01, m=7.0), wheel()
+    bits_of(other, step, range(5))
+    for k in (0, 1, 10, 22, 23):
+        bits_of(w, step, range(round(w.time / STEP), k))
+        blob, now = w.serialized(), w.bits()
+        ahead = bits_of(w, step, range(k, k + 16))
+        for restored in (w, other, fresh):
+            assert restored.restore(blob) == OK
+            restored.time = k * STEP
+            assert restored.bits() == now
+            assert restored.serialized() == blob
+            assert bits_of(restored, step, range(k, k + 16)) == ahead
+        assert w.restore(blob) == OK
+        w.time = k * STEP
+        assert w.set(F_X=1e-9) == OK  # the partner: the smallest push shows
+        assert bits_of(w, coast, range(1))[-1] != ahead[0]
+        assert w.restore(blob) == OK
+        w.time = k * STEP
+
+
+def test_snapshots_just_before_and_after_every_friction_event_go_on_with_the_same_bits(wheel, reference_events):
+    undisturbed = wheel().start(s=0.03)
+    straight = undisturbed.run([10.0])
+    w, other = wheel().start(s=0.03), wheel().start(s=0.03)
+    modes = set()
+    for t in np.sort(np.concatenate([reference_events - 1e-7, reference_events + 1e-7])):
+        assert w.step_to(t) == OK
+        modes.add(w.get("friction_mode")[0])
+        assert other.restore(w.serialized()) == OK
+        other.time = w.time
+        assert other.run([10.0]) == straight
+    assert modes == {-1, 0, 1}
+    assert w.run([10.0]) == straight
+
+
+def test_a_snapshot_at_every_step_changes_no_bit_of_the_run(wheel):
+    for values in SCENES.values():
+        w, undisturbed = wheel().start(**values), wheel().start(**values)
+        state = w.snapshot()
+        for k in range(100):
+            assert w.step(0.03125) == OK
+            assert w.fmi2GetFMUstate(w.component, byref(state)) == OK
+            if k % 10 == 0:
+                assert w.fmi2SetFMUstate(w.component, state) == OK
+        assert w.run([4.0]) == undisturbed.run([4.0])
+
+
+def test_what_was_set_but_not_yet_stepped_is_part_of_the_state(wheel):
+    w = wheel().start(s=0.03)
+    assert w.step(0.5) == OK
+    assert w.set(F_X=3.0, s=0.02) == OK
+    w.setRealInputDerivatives([w.references["M_3"]], [2], [5.0])
+    blob = w.serialized()
+    ahead = bits_of(w, coast, range(8))
+    assert w.set(F_X=0.0, s=0.0) == OK and w.restore(blob) == OK
+    w.time = 0.5
+    assert w.get("F_X", "s") == [3.0, 0.02]
+    assert bits_of(w, coast, range(8)) == ahead
+
+
+def test_a_rejected_step_leaves_no_trace(wheel):
+    """Step, restore, two half steps: a variable-step master."""
+    for values in SCENES.values():
+        rejecting, careful = wheel().start(**values), wheel().start(**values)
+        for k in range(20):
+            state, t = rejecting.snapshot(), rejecting.time
+            assert drive(rejecting, k) == OK
+            assert rejecting.fmi2SetFMUstate(rejecting.component, state) == OK
+            assert rejecting.fmi2FreeFMUstate(rejecting.component, byref(state)) == OK and not state
+            rejecting.time = t
+            halves = [(w.step(STEP / 2), w.step(STEP / 2), w.bits()) for w in (rejecting, careful)]
+            assert halves[0] == halves[1]
+            assert halves[0][:2] == (OK, OK)
+
+
+def test_a_snapshot_before_the_end_of_a_run_leads_back_into_it(wheel):
+    w = wheel().start(theta_start=1.3, phi_dot_start=0.0)
+    before = w.serialized()
+    assert w.step_to(0.5) == OK
+    ahead, at_half = w.bits(), w.serialized()
+    assert w.step_to(1.0) == DISCARD
+    flat, at_end = w.bits(), w.serialized()
+    for blob, bits, t in ((at_half, ahead, 0.5), (at_end, flat, 1.0), (before, None, 0.0)):
+        assert w.restore(blob) == OK
+        w.time = t
+        assert bits is None or w.bits() == bits
+    assert w.step_to(0.5) == OK and w.bits() == ahead
+    assert w.restore(at_end) == OK and w.step(0.1) == ERROR
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_a_snapshot_brings_back_the_call_state_it_was_taken_in(wheel, state):
+    w = bring_to(wheel(), state)
+    blob = w.serialized()
+    for other_state in STATES:
+        other = bring_to(wheel(), other_state)
+        assert (other.serialized() == blob) == (other_state == state)
+        assert other.restore(blob) == OK
+        assert other.serialized() == blob
+        assert (other.setupExperiment() == OK) == (state == "instantiated")
+
+
+def test_stop_time_and_tolerance_are_part_of_the_state(wheel):
+    tight = wheel().start(stop=2.0, tolerance=1e-10)
+    loose = wheel().start(tolerance=1e-4)
+    assert loose.restore(tight.serialized()) == OK
+    assert loose.run([1.0, 2.0]) == tight.run([1.0, 2.0])
+    assert loose.step(0.1) == tight.step(0.1) == ERROR

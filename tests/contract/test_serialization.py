@@ -1,0 +1,140 @@
+"""Serialized states: bytes without pointers, the same in every process; damaged or foreign bytes are refused."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from ctypes import byref, c_size_t, create_string_buffer
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy.fmi2 import fmi2FMUstate
+
+from contract.elsewhere import continue_run
+from contract.master import ERROR, OK, SCENES, FMU2Wheel
+
+contract = pytest.mark.contract
+
+
+def deserialize(w: FMU2Wheel, blob: bytes, size: int | None = None) -> int:
+    state = fmi2FMUstate()
+    status = w.fmi2DeSerializeFMUstate(w.component, create_string_buffer(blob, len(blob) + 1), size or len(blob), state)
+    assert bool(state) == (status == OK)
+    w.fmi2FreeFMUstate(w.component, byref(state))
+    return status
+
+
+@contract
+def test_a_blob_with_any_one_bit_flipped_is_refused_and_the_instance_is_untouched(wheel):
+    w, other = wheel().start(stop=9.0, s=0.03), wheel().start(stop=9.0, s=0.03)
+    w.run([1.3])
+    other.run([1.3])
+    blob = w.serialized()
+    assert deserialize(w, blob) == OK
+    rng = np.random.default_rng(2)
+    for k in range(len(blob)):
+        damaged = bytearray(blob)
+        damaged[k] ^= 1 << int(rng.integers(8))
+        assert w.restore(bytes(damaged)) == ERROR, k
+        assert w.messages.pop().text == (
+            "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version."
+        )
+    assert w.serialized() == blob
+    assert w.run([3.0]) == other.run([3.0])
+
+
+@contract
+def test_truncated_prolonged_and_foreign_blobs_are_refused(wheel):
+    w = wheel().start()
+    blob = w.serialized()
+    assert deserialize(w, blob) == OK
+    for size in range(1, len(blob)):
+        assert w.restore(blob[:size]) == ERROR
+    assert w.restore(b"") == ERROR
+    rng = np.random.default_rng(3)
+    for foreign in (blob + b"\0", bytes(len(blob)), rng.bytes(len(blob)), blob[::-1], blob[8:] + blob[:8]):
+        assert w.restore(foreign) == ERROR
+    assert len(w.take_messages()) == len(blob) + 5
+    assert w.serialized() == blob
+
+
+@contract
+def test_too_small_an_array_is_refused_and_too_large_a_one_is_not(wheel):
+    w = wheel().start()
+    state, size = w.snapshot(), c_size_t()
+    assert w.fmi2SerializedFMUstateSize(w.component, state, byref(size)) == OK
+    blob = create_string_buffer(size.value + 8)
+    assert w.fmi2SerializeFMUstate(w.component, state, blob, size.value - 1) == ERROR
+    assert w.take_messages()[0].text == "fmi2SerializeFMUstate: the array is shorter than the state."
+    assert blob.raw == bytes(size.value + 8)
+    assert w.fmi2SerializeFMUstate(w.component, state, blob, size.value + 8) == OK
+    assert blob.raw[: size.value] == w.serialized() and blob.raw[size.value :] == bytes(8)
+
+
+@contract
+def test_a_state_is_reused_where_it_is_not_null(wheel):
+    """Ten thousand snapshots into one state: the memory stays one block, whatever its size."""
+    w, before_start = wheel().start(s=0.03), wheel()
+    state = w.snapshot()
+    place = state.value
+    for _ in range(10000):
+        assert w.fmi2GetFMUstate(w.component, byref(state)) == OK
+    assert state.value == place
+    early = before_start.snapshot()
+    assert w.fmi2GetFMUstate(w.component, byref(early)) == OK  # a smaller block grows
+    w.run([1.0])
+    ahead = w.bits()
+    assert w.fmi2SetFMUstate(w.component, early) == OK
+    w.time = 0.0
+    assert w.run([1.0]) == [ahead]
+
+
+@contract
+def test_freeing_no_state_is_without_effect_and_a_state_outlives_its_instance(wheel):
+    w, other = wheel().start(), wheel()
+    null = fmi2FMUstate()
+    assert w.fmi2FreeFMUstate(w.component, None) == OK
+    assert w.fmi2FreeFMUstate(w.component, byref(null)) == OK
+    state, ahead = w.snapshot(), w.run([1.0])
+    w.close()
+    assert other.fmi2SetFMUstate(other.component, state) == OK
+    assert other.run([1.0]) == ahead
+    assert other.fmi2FreeFMUstate(other.component, byref(state)) == OK and not state
+    assert other.fmi2FreeFMUstate(other.component, byref(state)) == OK
+    assert other.fmi2SetFMUstate(other.component, state) == ERROR
+
+
+@contract
+def test_the_bytes_depend_on_the_past_alone(wheel):
+    """No pointer and no leftover goes into them: another instance, elsewhere in memory, has the same bytes."""
+    for values in SCENES.values():
+        w, other = wheel().start(**values), wheel().start(m=3.0)
+        other.run([0.3])
+        assert other.reset() == OK
+        other.start(**values)
+        assert w.run([0.5, 2.0]) == other.run([0.5, 2.0])
+        assert w.serialized() == other.serialized()
+        assert w.step(1e-3) == OK and w.serialized() != other.serialized()
+
+
+def test_in_another_process_a_restored_wheel_goes_on_with_the_same_bits(wheel, fmu, tmp_path):
+    expected = {}
+    for number, values in enumerate(SCENES.values()):
+        w = wheel().start(**values)
+        w.run([1.75])
+        (tmp_path / f"{number}.state").write_bytes(w.serialized())
+        expected[f"{number}.state"] = sha256(continue_run(w, 1.75)).hexdigest()
+    tests = Path(__file__).resolve().parent.parent
+    finished = subprocess.run(
+        [sys.executable, "-m", "contract.elsewhere", fmu, str(tmp_path)],
+        cwd=tests,
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert dict(line.split(" ") for line in finished.stdout.splitlines()) == expected
+    assert len(set(expected.values())) == len(SCENES)  # the partner: each scene has bits of its own

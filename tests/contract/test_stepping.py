@@ -1,0 +1,132 @@
+"""Communication points: the master's grid changes no bit of the result; times carry rounding; nonsense is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contract.master import ERROR, OK, SCENES
+
+pytestmark = pytest.mark.contract
+
+SECONDS = [float(t) for t in range(1, 11)]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_communication_grid_changes_no_bit(wheel, scene):
+    """1 s steps, 1000 even steps, steps of random length and one step of 10 s: equal wherever they meet."""
+    values = SCENES[scene]
+    coarse = wheel().start(**values).run(SECONDS)
+    even = wheel().start(**values).run(np.arange(1, 1001) * 0.01)
+    ticks = np.random.default_rng(11).choice(10 * 2**20, 300, replace=False)
+    uneven_times = np.union1d(ticks / 2**20, SECONDS)
+    uneven = dict(zip(uneven_times, wheel().start(**values).run(uneven_times), strict=True))
+    assert even[99::100] == coarse
+    assert [uneven[t] for t in SECONDS] == coarse
+    assert wheel().start(**values).run([10.0]) == coarse[-1:]
+    assert wheel().start(tolerance=1.0000001e-8, **values).run(SECONDS)[-1] != coarse[-1]  # the partner
+
+
+def test_steps_with_rounding_in_them_are_taken(wheel):
+    """h = t_next - t as masters compute it, 0.09999999999999998 among them, up to a defined stop time."""
+    times = np.arange(101) * 0.1
+    steps = np.diff(times)
+    assert 0.09999999999999998 in steps
+    w, summing = wheel().start(stop=10.0), wheel().start(stop=10.0)
+    for t, h in zip(times, steps, strict=False):
+        assert w.fmi2DoStep(w.component, t, h, 1) == OK
+        assert summing.step(0.1) == OK  # t += 0.1 ends at 9.99999999999998
+    (exact,) = wheel().start().run([10.0])
+    theta = np.frombuffer(exact, count=2)[1]
+    assert abs(w.get("theta")[0] - theta) <= 1e-14  # rad, measured 0
+    assert 0 < abs(summing.get("theta")[0] - theta) < 1e-12  # measured 4.2e-15: the time is another
+
+
+def test_a_start_time_of_a_billion_seconds_costs_no_bit(wheel):
+    times = np.arange(1, 41) * 0.125
+    late = wheel().start(start=1e9, s=0.03)
+    assert late.run(1e9 + times) == wheel().start(s=0.03).run(times)
+    assert late.fmi2DoStep(late.component, 1e9 + 4.875, 0.125, 1) == ERROR  # the partner: a repeated step is noticed
+    assert late.take_messages()[0].text == "fmi2DoStep from 1000000004.875 s: the wheel stands at 1000000005 s."
+
+
+def test_a_step_of_no_length_changes_nothing(wheel):
+    w, other = wheel().start(s=0.03), wheel().start(s=0.03)
+    for t in (0.0, 0.7, 1.3):
+        assert w.step_to(t) == other.step_to(t) == OK
+        before = w.serialized()
+        assert w.step(0.0) == OK
+        assert w.serialized() == before
+    assert w.run([2.0]) == other.run([2.0])
+    assert w.step(1e-9) == OK and w.bits() != other.bits()
+
+
+def test_no_step_leads_past_the_stop_time(wheel):
+    w = wheel().start(stop=1.0)
+    assert w.step(0.5) == OK
+    before = w.serialized()
+    assert (w.step(0.6), w.step(0.5 + 1e-8)) == (ERROR, ERROR)
+    assert w.take_messages()[0].text == "fmi2DoStep to 1.1000000000000001 s: the stop time is 1 s."
+    assert w.serialized() == before
+    assert w.step(0.5 + 1e-10) == OK  # a relative rounding of the master's sum
+    assert w.step(0.1) == ERROR
+    assert wheel().start().step(1.1) == OK
+
+
+@pytest.mark.parametrize(
+    ("t", "h", "why"),
+    [
+        (0.5, -0.1, "times must be finite"),
+        (0.5, np.nan, "times must be finite"),
+        (np.nan, 0.1, "times must be finite"),
+        (0.5, np.inf, "times must be finite"),
+        (0.4, 0.1, "the wheel stands at 0.5 s"),
+        (0.5 + 1e-6, 0.1, "the wheel stands at 0.5 s"),
+    ],
+)
+def test_times_that_make_no_sense_are_refused_and_nothing_changes(wheel, t, h, why):
+    w, other = wheel().start(), wheel().start()
+    assert w.step(0.5) == other.step(0.5) == OK
+    assert w.fmi2DoStep(w.component, t, h, 1) == ERROR
+    (message,) = w.take_messages()
+    assert why in message.text and message.text.startswith("fmi2DoStep ")
+    assert w.run([1.0]) == other.run([1.0])
+    assert w.fmi2DoStep(w.component, 1.0 + 1e-14, 0.1, 1) == OK  # the partner: rounding is no fault
+
+
+def test_without_friction_there_are_no_events_and_no_restarts(wheel):
+    free, friction = wheel().start(), wheel().start(s=0.03)
+    free.run([10.0])
+    friction.run([10.0])
+    assert free.get("n_roots", "n_events", "n_restarts", "n_jac") == [0, 0, 0, 0]
+    assert friction.get("n_events", "n_restarts") == [37, 37] and friction.get("n_roots")[0] > 37
+
+
+def test_an_input_rewritten_at_its_value_is_no_restart_and_changes_no_bit(wheel):
+    rewritten, once, jumping = (wheel().start(F_Y=4.0) for _ in range(3))
+    for t in np.arange(1, 101) * 0.03125:
+        assert rewritten.set(F_X=0.0, F_Y=4.0, M_3=0.0, s=0.0) == OK
+        assert jumping.set(F_Y=4.0 + t) == OK
+        assert rewritten.run([t]) == once.run([t])
+        assert jumping.step_to(t) == OK
+    assert rewritten.get("n_restarts") == [0]
+    assert jumping.get("n_restarts") == [100]
+
+
+def test_the_hint_about_rollback_changes_no_bit(wheel):
+    w, other = wheel().start(s=0.03), wheel().start(s=0.03)
+    for k in range(20):
+        assert w.fmi2DoStep(w.component, k / 8, 0.125, 0) == other.fmi2DoStep(other.component, k / 8, 0.125, 1) == OK
+    assert w.bits() == other.bits()
+
+
+def test_counters_count_on_through_restarts(wheel):
+    w, last = wheel().start(s=0.03), [0] * 6
+    counters = ("n_steps", "n_rhs", "n_jac", "n_roots", "n_events", "n_restarts")
+    for t in SECONDS:
+        w.run([t])
+        now = w.get(*counters)
+        assert all(a >= b for a, b in zip(now, last, strict=True))
+        last = now
+    assert w.reset() == OK
+    assert w.start().get(*counters) == [0] * 6

@@ -1,0 +1,79 @@
+"""How far the FMU is from what is known. Each function gives a number (or a table) that is 0 for the exact motion."""
+
+from __future__ import annotations
+
+from ctypes import byref, c_double
+
+import equations as eq
+import numpy as np
+from numpy.typing import NDArray
+from reference.tables import read_table
+from scipy.integrate import solve_ivp
+
+from .product import HEADLINE, Product, Result
+
+FRICTION = {"free": 0.0, "friction": 0.03}  # s of the paper's two scenes, m
+
+
+def table_errors(product: Product, scene: str, tolerance: float | None = None, **start: float) -> dict[str, float]:
+    """Largest error of each headline output over the shared table's 101 rows, as a part of the output's range."""
+    want = read_table(f"paper_{scene}")
+    got = product.simulate(want["t"], tolerance, **{"s": FRICTION[scene], **start})
+    return {name: float(np.abs(got[name] - want[name]).max() / np.ptp(want[name])) for name in HEADLINE}
+
+
+def energy_error(product: Product, tolerance: float | None = None, **start: float) -> float:
+    """Largest relative change of the energy over 10 s, at 1001 instants."""
+    energy = product.simulate(np.linspace(0, 10, 1001), tolerance, **start)["E"]
+    return float(np.abs(energy / energy[0] - 1).max())
+
+
+def instants(product: Product, tolerance: float | None = None, **start: float) -> list[tuple[float, int]]:
+    """Transitions of the paper's friction scene in 10 s."""
+    return product.simulate([0.0, 10.0], tolerance, **{"s": 0.03, **start}).events
+
+
+def instants_error(found: list[tuple[float, int]]) -> float:
+    """Largest error of the 37 instants, s; infinite if a transition is missing, added or of another kind."""
+    want = read_table("paper_friction_events")
+    if [mode for _, mode in found] != want["mode"][1:].tolist():
+        return np.inf
+    return float(np.abs([t for t, _ in found] - want["t"][1:]).max())
+
+
+def residual(wheel: eq.Parameters, motion: eq.Kinematics) -> tuple[float, float]:
+    """|[B]{q_dot}| (largest entry, m/s) and |Z_O - r_0 sin(theta) - r| (m), (19) and (32)."""
+    velocity, height = c_double(), c_double()
+    eq.LIBRARY.wheel_constraint_residuals(byref(wheel), byref(motion), byref(velocity), byref(height))
+    return velocity.value, height.value
+
+
+def constraint_drift(
+    product: Product, times: NDArray[np.float64], tolerance: float | None, **start: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Result]:
+    """How far the FMU is off the constraints at each instant: velocity (m/s) and height (m)."""
+    run = product.simulate(times, tolerance, **start)
+    wheel = eq.paper_wheel(**{k: v for k, v in start.items() if k in dict(eq.Parameters._fields_)})
+    columns = np.column_stack([run[name] for name, _ in eq.Kinematics._fields_])
+    velocity, height = np.array([residual(wheel, eq.Kinematics(*row)) for row in columns]).T
+    return velocity, height, run
+
+
+def unstabilised_drift(times: NDArray[np.float64], tolerance: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The same for (24) as it stands, free wheel: its accelerations integrated by SciPy, nothing pulls back.
+
+    y = X_O, Y_O, Z_O, psi, theta, phi, the rates of the first five, omega_z.
+    """
+    scene = eq.scene(eq.paper_wheel())
+    motion = eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
+
+    def rate(_t: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
+        d = eq.dynamics(eq.MULTIBODY, scene, y)
+        phi_dot = y[11] - y[9] * np.cos(y[4])
+        accelerations = (d.X_O_ddot, d.Y_O_ddot, d.Z_O_ddot, d.psi_ddot, d.theta_ddot, d.omega_z_dot)
+        return np.array([*y[6:11], phi_dot, *accelerations])
+
+    start = eq.start(eq.MULTIBODY, scene.wheel, motion)
+    run = solve_ivp(rate, (0, times[-1]), start, "DOP853", times, rtol=tolerance, atol=0.1 * tolerance)
+    residuals = [residual(scene.wheel, eq.kinematics(eq.MULTIBODY, scene.wheel, y)) for y in run.y.T.copy()]
+    return tuple(np.array(residuals).T)

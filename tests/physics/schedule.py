@@ -1,0 +1,45 @@
+"""Inputs as cubic polynomials over intervals of time: exact for the FMU and for the reference alike."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from dataclasses import dataclass
+from math import factorial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from reference import Inputs
+
+INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """pieces: (from this instant on, polynomials by input name: coefficients of 1, t, t^2, t^3)."""
+
+    pieces: tuple[tuple[float, dict[str, ArrayLike]], ...] = ()
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        return tuple(t for t, _ in self.pieces[1:])
+
+    def derivatives(self, t: float) -> NDArray[np.float64]:
+        """Row k: the k-th derivative of the six inputs at t, from the right; k = 0 ... 3."""
+        piece = self.pieces[bisect_right([start for start, _ in self.pieces], t) - 1][1]
+        table = np.zeros((4, len(INPUTS)))
+        for name, coefficients in piece.items():
+            c = np.zeros(4)
+            c[: np.size(coefficients)] = coefficients
+            for k in range(4):
+                powers = [factorial(n) / factorial(n - k) * t ** (n - k) for n in range(k, 4)]
+                table[k, INPUTS.index(name)] = c[k:] @ powers
+        return table
+
+    def for_reference(self) -> Inputs:
+        if not self.pieces:
+            return Inputs()
+        return Inputs(
+            lambda t: tuple(self.derivatives(t)[0, :3].tolist()),
+            lambda t: tuple(self.derivatives(t)[0, 3:].tolist()),
+            self.jumps,
+        )

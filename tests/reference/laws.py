@@ -1,0 +1,91 @@
+"""Closed forms and integral laws that judge a motion by its outputs alone.
+
+Written with the Euler angles and the carrier axes of the outputs, on purpose: nothing here is
+shared with the equations that are judged. Fixed axes unless said.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import quad
+
+from .model import Inputs, Wheel
+from .outputs import Solution
+
+Array = NDArray[np.float64]
+
+
+def carrier_axes(psi: Array, theta: Array) -> tuple[Array, Array, Array]:
+    """e1 (line of nodes), e2 (up the slope), e3 (axle); rows are instants."""
+    zero = np.zeros_like(psi)
+    e1 = np.stack([np.cos(psi), np.sin(psi), zero], axis=1)
+    e3 = np.stack([np.sin(psi) * np.sin(theta), -np.cos(psi) * np.sin(theta), np.cos(theta)], 1)
+    return e1, np.cross(e3, e1), e3
+
+
+def momenta(wheel: Wheel, run: Solution) -> tuple[Array, Array]:
+    """Momentum and angular momentum about O; w = [Q] q' of (8) in body axes, general J."""
+    phi, theta = run["phi"], run["theta"]
+    e1, e2, e3 = carrier_axes(run["psi"], theta)
+    across = run["psi_dot"] * np.sin(theta)
+    L_x = wheel.J_x * (across * np.sin(phi) + run["theta_dot"] * np.cos(phi))
+    L_y = wheel.J_y * (across * np.cos(phi) - run["theta_dot"] * np.sin(phi))
+    x, y = (np.sin(phi), np.cos(phi))
+    L = (L_x * y - L_y * x)[:, None] * e1 + (L_x * x + L_y * y)[:, None] * e2
+    L += (wheel.J_z * run["omega_z"])[:, None] * e3
+    v = np.stack([run["X_O_dot"], run["Y_O_dot"], run["Z_O_dot"]], axis=1)
+    return wheel.m * v, L
+
+
+def loads(wheel: Wheel, run: Solution, inputs: Inputs) -> tuple[Array, Array]:
+    """Total force, and total moment about O, of ground, weight, inputs and rolling friction."""
+    e1, e2, e3 = carrier_axes(run["psi"], run["theta"])
+    ground = np.stack([run["lambda_1"], run["lambda_2"], run["lambda_3"]], axis=1)
+    F = np.array([inputs.force(t) for t in run.t])
+    M = np.array([inputs.moment(t) for t in run.t])
+    to_contact = -wheel.r_0 * e2 - np.array([0, 0, wheel.r])
+    moment = np.cross(to_contact, ground) + run["tau"][:, None] * e3
+    moment += M[:, :1] * e1 + M[:, 1:2] * e2 + M[:, 2:] * e3
+    return ground + F - np.array([0, 0, wheel.m * wheel.g]), moment
+
+
+def fall_speed(wheel: Wheel, theta_0: float, theta: float) -> float:
+    """|theta'| of the wheel that falls over sideways from rest at theta_0 (energy, J_x)."""
+    drop = wheel.r_0 * (sin(theta_0) - sin(theta))
+    return sqrt(2 * wheel.m * wheel.g * drop / _fall_inertia(wheel, theta))
+
+
+def _fall_inertia(wheel: Wheel, theta: float) -> float:
+    arm_squared = wheel.r_0**2 + wheel.r**2 + 2 * wheel.r_0 * wheel.r * sin(theta)
+    return wheel.J_x + wheel.m * arm_squared
+
+
+def fall_time(wheel: Wheel, theta_0: float, theta: float) -> float:
+    """Time of that fall from theta_0 to theta; theta_0 - u^2 takes out the root at rest."""
+
+    def per_u(u: float) -> float:
+        return 2 * u / fall_speed(wheel, theta_0, theta_0 - u * u)
+
+    return quad(per_u, 0, sqrt(theta_0 - theta), epsabs=1e-13, epsrel=1e-13)[0]
+
+
+def fall_normal_force(wheel: Wheel, theta_0: float, theta: float) -> float:
+    """N of that fall: m (g + Z_O'')."""
+    speed2 = fall_speed(wheel, theta_0, theta) ** 2
+    growth = 2 * wheel.m * wheel.r_0 * wheel.r * cos(theta)  # d(inertia)/d(theta)
+    pull = -wheel.m * wheel.g * wheel.r_0 * cos(theta) - growth * speed2 / 2
+    rise = wheel.r_0 * (cos(theta) * pull / _fall_inertia(wheel, theta) - sin(theta) * speed2)
+    return wheel.m * (wheel.g + rise)
+
+
+def circle_spin(disc: Wheel, theta: float, psi_dot: float) -> float:
+    """w_z of the thin disc's (r = 0) steady circle at theta and psi'.
+
+    (J_z + m r_0^2) w_z psi' sin = J_x psi'^2 sin cos - m g r_0 cos, sine and cosine of theta.
+    """
+    gyration = disc.J_x * psi_dot**2 * sin(theta) * cos(theta)
+    weight = disc.m * disc.g * disc.r_0 * cos(theta)
+    return (gyration - weight) / ((disc.J_z + disc.m * disc.r_0**2) * psi_dot * sin(theta))

@@ -1,0 +1,67 @@
+"""The wheel, its start and its inputs, as plain data (reference solution, no frame of its own).
+
+Symbols, defaults and units are those of the paper's (27)-(33); SI throughout.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import cos, inf, nextafter, pi
+
+Vector = tuple[float, float, float]
+ZERO: Vector = (0.0, 0.0, 0.0)
+
+
+def no_input(_t: float) -> Vector:
+    """The input that is never set."""
+    return ZERO
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """Parameters (27)-(31): any principal central moments; the body z axis is the axle."""
+
+    m: float = 20.0
+    r_0: float = 0.3
+    r: float = 0.05
+    J_x: float = 0.9
+    J_y: float = 0.9
+    J_z: float = 1.8
+    g: float = 9.81
+    s: float = 0.0
+
+
+@dataclass(frozen=True)
+class Start:
+    """Pose and Euler rates (32), (33); Z_O and the velocity of O follow from the contact."""
+
+    psi: float = pi / 2
+    theta: float = 5 * pi / 12
+    phi: float = 0.0
+    psi_dot: float = 0.0
+    theta_dot: float = 0.0
+    phi_dot: float = -2.0
+    X_O: float = -0.3 * cos(5 * pi / 12)
+    Y_O: float = 0.0
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """External load besides the weight.
+
+    force: (F_X, F_Y, F_Z) at O in fixed axes, N.  moment: (M_1, M_2, M_3) along the carrier axes
+    e1 (line of nodes), e2 (up the slope), e3 (axle), N.m.  jumps: instants at which either jumps
+    or has a kink; both are read as continuous from the right.
+    """
+
+    force: Callable[[float], Vector] = no_input
+    moment: Callable[[float], Vector] = no_input
+    jumps: tuple[float, ...] = field(default=())
+
+    def before(self, stop: float) -> Inputs:
+        """The same inputs up to a jump at `stop`: there and later, their values just before it."""
+        if not self.jumps:
+            return self
+        last, force, moment = nextafter(stop, -inf), self.force, self.moment
+        return Inputs(lambda t: force(min(t, last)), lambda t: moment(min(t, last)))

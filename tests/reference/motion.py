@@ -1,0 +1,155 @@
+"""State of the rolling wheel, its time derivative, and the pointwise accelerations.
+
+State, 17 floats: unit quaternion (w, x, y, z) of the body; angular velocity w in body axes;
+position and velocity of O in fixed axes; then quadratures: psi and phi (they only choose the
+turn of the angles read from the attitude), work of the inputs, work of rolling friction.
+The velocity of O is integrated from the accelerations, so v_O - w x p shows the drift.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .model import ZERO, Inputs, Start, Vector, Wheel
+from .newton_euler import (
+    Contact,
+    Law,
+    Matrix,
+    Response,
+    arm,
+    axle_moment,
+    carrier_moment,
+    cross,
+    quaternion,
+    rotation,
+    slope,
+    to_body,
+    to_fixed,
+)
+
+State = NDArray[np.float64]
+OMEGA_Z = 6
+ZERO_SPIN = 4e-16  # psi' cos(theta) + phi' below this fraction of its terms is meant to be 0
+
+
+@dataclass(frozen=True)
+class Accelerations:
+    """Second derivatives and reactions at one instant, fixed axes and Euler angles."""
+
+    X_O_ddot: float
+    Y_O_ddot: float
+    Z_O_ddot: float
+    psi_ddot: float
+    theta_ddot: float
+    phi_ddot: float
+    lambda_1: float
+    lambda_2: float
+    lambda_3: float
+    tau: float  # moment of rolling friction about the axle, N.m
+
+
+def angle_rates(n: Vector, w: Vector) -> Vector:
+    """(psi', theta', phi') from w = theta' e1 + psi' n + phi' k."""
+    ux, uy, s = slope(n)
+    psi_dot = (w[0] * ux + w[1] * uy) / s
+    return psi_dot, w[0] * uy - w[1] * ux, w[2] - psi_dot * n[2]
+
+
+def angle_accelerations(n: Vector, w: Vector, alpha: Vector) -> Vector:
+    """Time derivative of angle_rates, with dn/dt = n x w in body axes."""
+    _, _, s = slope(n)
+    dx, dy, dz = cross(n, w)
+    ds = (n[0] * dx + n[1] * dy) / s
+    up, across = w[0] * n[0] + w[1] * n[1], w[0] * n[1] - w[1] * n[0]
+    d_up = alpha[0] * n[0] + alpha[1] * n[1] + w[0] * dx + w[1] * dy
+    d_across = alpha[0] * n[1] - alpha[1] * n[0] + w[0] * dy - w[1] * dx
+    psi_ddot = (d_up - 2 * up * ds / s) / (s * s)
+    theta_ddot = (d_across - across * ds / s) / s
+    return psi_ddot, theta_ddot, alpha[2] - psi_ddot * n[2] - up / (s * s) * dz
+
+
+def body_rates(n: Vector, psi_dot: float, theta_dot: float, phi_dot: float) -> Vector:
+    """w in body axes from Euler rates: the inverse of angle_rates."""
+    ux, uy, s = slope(n)
+    return (
+        theta_dot * uy + psi_dot * s * ux,
+        psi_dot * s * uy - theta_dot * ux,
+        phi_dot + psi_dot * n[2],
+    )
+
+
+def initial_state(wheel: Wheel, start: Start) -> State:
+    """The start on the ground, rolling: Z_O from the height of O, v_O = w x p ((32), (33))."""
+    q = quaternion(start.psi, start.theta, start.phi)
+    R = rotation(*q)
+    w = body_rates(R[2], start.psi_dot, start.theta_dot, start.phi_dot)
+    if abs(w[2]) <= ZERO_SPIN * (abs(start.psi_dot) + abs(start.phi_dot)):
+        w = (w[0], w[1], 0.0)
+    p = arm(wheel, R[2])
+    place = (start.X_O, start.Y_O, to_fixed(R, p)[2])
+    velocity = to_fixed(R, cross(w, p))
+    return np.array([*q, *w, *place, *velocity, start.psi, start.phi, 0.0, 0.0])
+
+
+def respond(contact: Contact, inputs: Inputs, t: float, y: list[float]) -> tuple[Matrix, Response]:
+    """Attitude and answer of the 9 x 9 system at (t, y)."""
+    R = rotation(y[0], y[1], y[2], y[3])
+    F = to_body(R, inputs.force(t))
+    M = carrier_moment(R[2], inputs.moment(t))
+    return R, contact.respond(R[2], (y[4], y[5], y[6]), F, M)
+
+
+def derivative(contact: Contact, inputs: Inputs, law: Law) -> Callable[[float, State], State]:
+    """dy/dt on one branch of the friction law."""
+
+    def rate(t: float, state: State) -> State:
+        y = state.tolist()
+        R, answer = respond(contact, inputs, t, y)
+        tau = axle_moment(law, answer, y[6])
+        x, d = answer.base, answer.unit
+        a = to_fixed(R, (x[0] + tau * d[0], x[1] + tau * d[1], x[2] + tau * d[2]))
+        alpha_z = 0.0 if law.hold else x[5] + tau * d[5]
+        q0, q1, q2, q3, wx, wy, wz = y[:7]
+        psi_dot, _, phi_dot = angle_rates(R[2], (wx, wy, wz))
+        F, M, v = inputs.force(t), carrier_moment(R[2], inputs.moment(t)), y[10:13]
+        power = F[0] * v[0] + F[1] * v[1] + F[2] * v[2] + M[0] * wx + M[1] * wy + M[2] * wz
+        return np.array(
+            (
+                *(-0.5 * (q1 * wx + q2 * wy + q3 * wz), 0.5 * (q0 * wx + q2 * wz - q3 * wy)),
+                *(0.5 * (q0 * wy + q3 * wx - q1 * wz), 0.5 * (q0 * wz + q1 * wy - q2 * wx)),
+                *(x[3] + tau * d[3], x[4] + tau * d[4], alpha_z),
+                *v,
+                *a,
+                *(psi_dot, phi_dot, power, tau * wz),
+            )
+        )
+
+    return rate
+
+
+def accelerations(
+    wheel: Wheel,
+    angles: Vector,
+    rates: Vector,
+    F: Vector = ZERO,
+    M: Vector = ZERO,
+    sigma: float | None = 0.0,
+) -> Accelerations:
+    """Accelerations and reactions at (psi, theta, phi) and their rates.
+
+    The friction moment about the axle is -s N sigma, sigma in [-1, 1]; sigma None is the moment
+    that holds w_z, whatever its size.
+    """
+    R = rotation(*quaternion(*angles))
+    n = R[2]
+    w = body_rates(n, *rates)
+    answer = Contact(wheel).respond(n, w, to_body(R, F), carrier_moment(n, M))
+    law = Law(wheel.s, hold=True) if sigma is None else Law(wheel.s, sigma)
+    tau = axle_moment(law, answer, w[2])
+    x = [b + tau * u for b, u in zip(answer.base, answer.unit, strict=True)]
+    a, reaction = to_fixed(R, tuple(x[0:3])), to_fixed(R, tuple(x[6:9]))
+    return Accelerations(*a, *angle_accelerations(n, w, tuple(x[3:6])), *reaction, tau)

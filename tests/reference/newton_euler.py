@@ -1,0 +1,172 @@
+"""Newton and Euler for a body on one rolling contact; the counterpart of the paper's (24).
+
+All vectors are in body axes. The attitude enters only through n, the vertical seen from the
+body; no Euler angle appears. With k = (0, 0, 1) the axle and s = |n x k| the arm from the contact
+to O is p = r_0 e2 + r n, where e2 = (n - k (n.k)) / s points up the slope in the wheel plane.
+Unknowns: a (acceleration of O), alpha (angular acceleration), lambda (ground on wheel).
+
+    m a - lambda                     = F - m g n             Newton
+    J alpha + p x lambda             = M - w x J w + tau k   Euler about O; lambda acts at -p
+    a + p x alpha                    = w x dp/dt             v_O = w x p, differentiated
+
+The axle moment tau of rolling friction is left open: the system is solved for tau = 0 and for
+the response to a unit tau, and a friction law then fixes tau by a scalar linear equation.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin, sqrt, tanh
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg.lapack import dgesv
+
+from .model import Vector, Wheel
+
+Matrix = tuple[Vector, Vector, Vector]
+
+
+class Law(NamedTuple):
+    """One branch of the friction law: tau = -s N sigma, or the tau that holds w_z, or tanh."""
+
+    s: float  # m; the wheel's s, or its negative or 0 while the ground pulls
+    sigma: float = 0.0
+    hold: bool = False
+    omega_s: float = 0.0  # rad/s; > 0: sigma = tanh(w_z / omega_s)
+
+
+class Response(NamedTuple):
+    """Solution for tau = 0, and its change with tau (index 1); N = n.lambda."""
+
+    base: list[float]
+    unit: list[float]
+    N_0: float
+    N_1: float
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """a x b."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def quaternion(psi: float, theta: float, phi: float) -> tuple[float, float, float, float]:
+    """Unit quaternion (w, x, y, z) of the z-x-z turns psi, theta, phi: the matrix A of (4)."""
+    c, s = cos(theta / 2), sin(theta / 2)
+    plus, minus = (psi + phi) / 2, (psi - phi) / 2
+    return c * cos(plus), s * cos(minus), s * sin(minus), c * sin(plus)
+
+
+def rotation(w: float, x: float, y: float, z: float) -> Matrix:
+    """Body-to-fixed matrix; its last row is the vertical seen from the body. Any norm of q."""
+    f = 2 / (w * w + x * x + y * y + z * z)
+    return (
+        (1 - f * (y * y + z * z), f * (x * y - w * z), f * (x * z + w * y)),
+        (f * (x * y + w * z), 1 - f * (x * x + z * z), f * (y * z - w * x)),
+        (f * (x * z - w * y), f * (y * z + w * x), 1 - f * (x * x + y * y)),
+    )
+
+
+def to_fixed(R: Matrix, v: Vector) -> Vector:
+    """R v."""
+    (a, b, c), (d, e, f), (g, h, i) = R
+    x, y, z = v
+    return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
+
+
+def to_body(R: Matrix, v: Vector) -> Vector:
+    """R^T v."""
+    (a, b, c), (d, e, f), (g, h, i) = R
+    x, y, z = v
+    return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
+
+
+def slope(n: Vector) -> tuple[float, float, float]:
+    """e2 in body axes, and s = sin(theta) = |n x k|: (e2_x, e2_y, s)."""
+    s = sqrt(n[0] * n[0] + n[1] * n[1])
+    return n[0] / s, n[1] / s, s
+
+
+def arm(wheel: Wheel, n: Vector) -> Vector:
+    """p = r_0 e2 + r n, from the contact to O."""
+    ux, uy, _ = slope(n)
+    return (wheel.r_0 * ux + wheel.r * n[0], wheel.r_0 * uy + wheel.r * n[1], wheel.r * n[2])
+
+
+def arm_rate(wheel: Wheel, n: Vector, w: Vector) -> Vector:
+    """dp/dt in fixed space = r_0 de2/dt, since n is fixed there; seen along the body axes.
+
+    In the body n turns with dn/dt = n x w; e2 = n' / |n'| with n' the part of n in the wheel plane.
+    """
+    ux, uy, s = slope(n)
+    nx, ny, _ = cross(n, w)
+    along = ux * nx + uy * ny
+    ex, ey = (nx - along * ux) / s, (ny - along * uy) / s
+    wx, wy, wz = w
+    r_0 = wheel.r_0
+    return (r_0 * (ex - wz * uy), r_0 * (ey + wz * ux), r_0 * (wx * uy - wy * ux))
+
+
+def gyroscopic(wheel: Wheel, w: Vector) -> Vector:
+    """w x J w."""
+    return cross(w, (wheel.J_x * w[0], wheel.J_y * w[1], wheel.J_z * w[2]))
+
+
+def carrier_moment(n: Vector, M: Vector) -> Vector:
+    """M_1 e1 + M_2 e2 + M_3 e3 in body axes; e1 = e2 x k."""
+    ux, uy, _ = slope(n)
+    return (M[0] * uy + M[1] * ux, M[1] * uy - M[0] * ux, M[2])
+
+
+# (row, column) of the entries p_z, -p_y, -p_z, p_x, p_y, -p_x of [p x] in a 3 x 3 block, and of the
+# two blocks: the moment of lambda (rows 3-5, columns 6-8), the constraint (rows 6-8, columns 3-5).
+CROSS = ((1, 0), (2, 0), (0, 1), (2, 1), (0, 2), (1, 2))
+BLOCKS = ((3, 6), (6, 3))
+
+
+class Contact:
+    """The 9 x 9 system of one wheel. Holds a work matrix: one Contact to a thread."""
+
+    def __init__(self, wheel: Wheel) -> None:
+        self.wheel = wheel
+        one, none = np.eye(3), np.zeros((3, 3))
+        inertia = np.diag([wheel.J_x, wheel.J_y, wheel.J_z])
+        system = np.block([[wheel.m * one, none, -one], [none, inertia, none], [one, none, none]])
+        self._flat = system.ravel(order="F")
+        self._skew = np.array([i + u + 9 * (j + v) for i, j in BLOCKS for u, v in CROSS])
+
+    def respond(self, n: Vector, w: Vector, F: Vector, M: Vector) -> Response:
+        """Solve for (a, alpha, lambda) under force F and moment M, both in body axes."""
+        wheel = self.wheel
+        px, py, pz = arm(wheel, n)
+        flat = self._flat
+        flat[self._skew] = (pz, -py, -pz, px, py, -px) * 2
+        weight = wheel.m * wheel.g
+        gx, gy, gz = gyroscopic(wheel, w)
+        bx, by, bz = cross(w, arm_rate(wheel, n, w))
+        loads = np.array(
+            (F[0] - weight * n[0], F[1] - weight * n[1], F[2] - weight * n[2])
+            + (M[0] - gx, M[1] - gy, M[2] - gz, bx, by, bz)
+            + (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+        )
+        system = flat.reshape((9, 9), order="F")
+        x = dgesv(system, loads.reshape((9, 2), order="F"), 0, 1)[2]
+        base, unit = x.T.tolist()
+        N_0 = n[0] * base[6] + n[1] * base[7] + n[2] * base[8]
+        N_1 = n[0] * unit[6] + n[1] * unit[7] + n[2] * unit[8]
+        return Response(base, unit, N_0, N_1)
+
+
+def axle_moment(law: Law, answer: Response, w_z: float) -> float:
+    """tau of the law's branch, N depending on tau (general J) included."""
+    if law.hold:
+        return -answer.base[5] / answer.unit[5]
+    sigma = tanh(w_z / law.omega_s) if law.omega_s else law.sigma
+    grip = law.s * sigma
+    return -grip * answer.N_0 / (1 + grip * answer.N_1)
+
+
+def stick_margins(law: Law, answer: Response) -> tuple[float, float]:
+    """(s N + tau, s N - tau) with the tau that holds w_z: both >= 0 while the wheel can stick."""
+    tau = -answer.base[5] / answer.unit[5]
+    limit = law.s * (answer.N_0 + answer.N_1 * tau)
+    return limit + tau, limit - tau
