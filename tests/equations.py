@@ -69,6 +69,7 @@ class Formulation(Structure):
         ("spin_index", c_int),
         ("tilt_index", c_int),
         ("kinematics", CFUNCTYPE(None, POINTER(Parameters), DOUBLES, POINTER(Kinematics))),
+        ("pose", CFUNCTYPE(None, POINTER(Parameters), DOUBLES, POINTER(Kinematics))),
         ("dynamics", CFUNCTYPE(None, POINTER(Scene), DOUBLES, POINTER(Dynamics))),
         ("reaction_rates", CFUNCTYPE(None, POINTER(Scene), POINTER(Load), DOUBLES, DOUBLES)),
         ("jacobian", CFUNCTYPE(None, POINTER(Scene), DOUBLES, DOUBLES)),

@@ -86,6 +86,7 @@ const WheelFormulation wheel_multibody = {
     11,
     4,
     wheel::paper::kinematics,
+    wheel::paper::kinematics,  // the pose: its velocities are states
     wheel::paper::dynamics,
     wheel_multibody_reaction_rates,
     wheel_multibody_jacobian,

@@ -41,7 +41,7 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
   return derivative_of(scene, load_of(scene, &load), y, y_dot);
 }
 
-static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
+static Carrier read_pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
   out->theta = y[0];
   out->psi = y[4];
@@ -53,8 +53,17 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
   out->psi_dot = c.psi_dot;
   out->phi_dot = c.omega_3 - c.Omega_3;
   out->omega_z = c.omega_3;
-  horizontal_velocity(wheel, &c, y[4], &out->X_O_dot, &out->Y_O_dot);
   out->Z_O_dot = wheel->r_0 * c.cos_theta * c.omega_1;
+  return c;
+}
+
+static void pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
+  (void)read_pose(wheel, y, out);
+}
+
+static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
+  Carrier c = read_pose(wheel, y, out);
+  horizontal_velocity(wheel, &c, y[4], &out->X_O_dot, &out->Y_O_dot);
 }
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
@@ -92,6 +101,7 @@ const WheelFormulation wheel_reduced = {
     .spin_index = 3,
     .tilt_index = 0,
     .kinematics = kinematics,
+    .pose = pose,
     .dynamics = dynamics,
     .reaction_rates = wheel_reduced_reaction_rates,
     .jacobian = wheel_reduced_jacobian,

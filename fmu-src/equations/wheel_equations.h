@@ -91,6 +91,8 @@ typedef struct WheelFormulation {
   /* Where y holds omega_z, (21), and theta. */
   int spin_index, tilt_index;
   void (*kinematics)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
+  /* The same without X_O_dot and Y_O_dot, which cost the sine and cosine of psi. */
+  void (*pose)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
   void (*dynamics)(const WheelScene* scene, const double* y, WheelDynamics* out);
   /* d lambda/dt along the motion, N/s; load_dot is the rate of the load (NULL: constant). */
   void (*reaction_rates)(const WheelScene* scene, const WheelLoad* load_dot, const double* y, double lambda_dot[3]);

@@ -3,6 +3,9 @@
 // CVODE has no call for this. Its own memory record (private header of the pinned source, 7.1.1) is read and written
 // field by field: the Nordsieck array, the step and order selection, the root search and, for BDF, the factorised
 // Newton matrix. What CVODE computes anew at the start of each step (error weights, work vectors) is left out.
+#include <algorithm>
+#include <cstring>
+
 #include "archive.hpp"
 #include "cvode_impl.h"
 #include "cvode_ls_impl.h"
@@ -83,6 +86,20 @@ bool make_ready(Integrator& integrator, Integrator::Implementation& self, const 
 }
 
 }  // namespace
+
+// The interpolating polynomial in Nordsieck form, z_0 + s (z_1 + s (z_2 + ...)) with s = (t - t_n) / h: what
+// CVodeGetDky gives, without its checks and powers. It is what a master pays for at each communication point.
+void Integrator::read(double t, double* y) const {
+  const Progress& progress = self->progress;
+  const auto& m = *static_cast<CVodeMem>(self->cvode);
+  const int pairs = self->system.states / 2, order = progress.known_until > progress.step_start ? m.cv_q : 0;
+  const double s = (std::clamp(t, progress.step_start, progress.known_until) - m.cv_tn) / m.cv_h;
+  StatePair sum[max_states / 2];
+  std::copy_n(state_pairs(order > 0 ? m.cv_zn[order] : self->y), pairs, sum);
+  for (int j = order - 1; j >= 0; --j)
+    for (int i = 0; i < pairs; ++i) sum[i] = sum[i] * s + state_pairs(m.cv_zn[j])[i];
+  std::memcpy(y, sum, sizeof(StatePair) * static_cast<std::size_t>(pairs));
+}
 
 bool Integrator::notices(const double* y_dot_before, const double* y_dot_after) const {
   const auto& m = *static_cast<CVodeMem>(self->cvode);

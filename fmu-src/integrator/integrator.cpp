@@ -207,17 +207,6 @@ Outcome Integrator::advance(double t) {
 
 void Integrator::stop_before(double t) { CVodeSetStopTime(self->cvode, t); }
 
-void Integrator::read(double t, double* y) const {
-  const Progress& progress = self->progress;
-  const bool stepped = progress.known_until > progress.step_start;
-  t = std::clamp(t, progress.step_start, progress.known_until);
-  if (stepped && CVodeGetDky(self->cvode, t, 0, self->scratch) == CV_SUCCESS) {
-    std::copy_n(data(self->scratch), self->system.states, y);
-  } else {
-    std::copy_n(data(self->y), self->system.states, y);
-  }
-}
-
 double Integrator::known_until() const { return self->progress.known_until; }
 double Integrator::event_time() const { return self->progress.event_time; }
 const char* Integrator::failure() const { return self->message; }

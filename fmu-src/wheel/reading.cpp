@@ -30,8 +30,14 @@ const WheelScene& Reading::scene() {
   return scene_;
 }
 
+const WheelKinematics& Reading::pose() {
+  if (!(have_ & have_kinematics) && missing(have_pose))
+    formulation_->pose(&simulation_->wheel(), state(), &kinematics_);
+  return kinematics_;
+}
+
 const WheelKinematics& Reading::kinematics() {
-  if (missing(have_kinematics)) formulation_->kinematics(&scene().wheel, state(), &kinematics_);
+  if (missing(have_kinematics)) formulation_->kinematics(&simulation_->wheel(), state(), &kinematics_);
   return kinematics_;
 }
 

@@ -21,13 +21,14 @@ class Reading {
   // The instant t (own clock, s) of a running solution.
   void move_to(double t) { t_ = t, have_ = 0; }
   // The inputs changed: what depends on them is stale.
-  void forget_dynamics() { have_ &= have_state | have_kinematics; }
+  void forget_dynamics() { have_ &= have_state | have_pose | have_kinematics; }
   // A given state at time t instead of the solver's.
   void set_state(double t, const double* y);
 
   double time() const { return t_; }
   const double* state();
   const WheelScene& scene();
+  const WheelKinematics& pose();  // all of it but X_O_dot and Y_O_dot
   const WheelKinematics& kinematics();
   const WheelDynamics& dynamics();
   const double* reaction_rates();
@@ -37,7 +38,14 @@ class Reading {
   long long events = 0;
 
  private:
-  enum : unsigned { have_state = 1, have_kinematics = 2, have_dynamics = 4, have_rates = 8, have_scene = 16 };
+  enum : unsigned {
+    have_state = 1,
+    have_pose = 2,
+    have_kinematics = 4,
+    have_dynamics = 8,
+    have_rates = 16,
+    have_scene = 32,
+  };
   bool missing(unsigned part);
 
   const WheelFormulation* formulation_ = nullptr;

@@ -69,6 +69,7 @@ class Simulation {
 
   // What a Reading asks for.
   const integrator::Integrator* solution() const { return solver_; }
+  const WheelParameters& wheel() const { return scene_.wheel; }
   WheelScene scene_at(double t, const double* y) const;
   WheelLoad load_rate_at(double t) const;
 
