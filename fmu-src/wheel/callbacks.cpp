@@ -10,6 +10,8 @@
 namespace wheel {
 
 struct Callbacks {
+  static constexpr double upright = 1.5707963267948966, low_tilt = 1.5;  // rad; within 4 degrees of lying flat
+
   static Simulation& of(void* owner) { return *static_cast<Simulation*>(owner); }
 
   static bool derivative(void* owner, double t, const double* y, double* y_dot) {
@@ -59,8 +61,26 @@ struct Callbacks {
     Simulation& sim = of(owner);
     const bool light = sim.lowest_force_ < 0.1 * sim.weight_;
     sim.lowest_force_ = std::numeric_limits<double>::infinity();
-    const bool low = std::fabs(y[sim.formulation_->tilt_index] - 1.5707963267948966) > 1.5;
-    return light || low;
+    if (sim.stored_[keep_contact] != 0) watch_contact(sim, light, y);
+    return light || std::fabs(y[sim.formulation_->tilt_index] - upright) > low_tilt;
+  }
+
+  // With keep_contact a ground that pulls is told, once per excursion.
+  static void watch_contact(Simulation& sim, bool light, const double* y) {
+    if (!light) {
+      sim.lifted_ = false;
+      return;
+    }
+    WheelDynamics now;
+    const double t = sim.solver_->known_until();
+    if (sim.inputs_.varies()) sim.inputs_.load_at(t, &sim.scene_);
+    sim.formulation_->dynamics(&sim.scene_, y, &now);
+    const bool pulls = now.lambda[2] < 0;
+    if (pulls && !sim.lifted_)
+      sim.tell(Topic::warning,
+               "The ground pulls at t = %.9f s (N = %.4g N): keep_contact holds a wheel that would have lifted off.",
+               sim.start_time_ + t, now.lambda[2]);
+    sim.lifted_ = pulls;
   }
 
   // Positive inside the model: above the ground, and pressed to it unless contact is kept.

@@ -73,7 +73,8 @@ void error_scales(const WheelParameters& wheel, const WheelFormulation& f, const
   const double turn = std::max(slowest, std::sqrt(tilting));
   const double rate = std::max(slowest, std::sqrt(tilting + start.omega_z * start.omega_z));
   const bool reduced = f.states == WHEEL_REDUCED_STATES;
-  const double reduced_scales[] = {1, turn, turn, rate, 1, 1, length, length};
+  // psi, phi, X_O, Y_O feed nothing back: their errors do not grow, and may be larger.
+  const double reduced_scales[] = {1, turn, turn, rate, 3, 3, 3 * length, 3 * length};
   // The velocity of O is bound to the rates by the constraints: weighed lower, it strays less from them.
   const double speed = 0.15 * slowest * length;
   const double multibody_scales[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, rate};

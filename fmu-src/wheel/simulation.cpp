@@ -99,7 +99,7 @@ bool Simulation::restart_from(double t, const double* y) {
   double start[WHEEL_MAX_STATES];
   std::copy_n(y, formulation_->states, start);
   now_.set_state(t, start);
-  lowest_force_ = 0;
+  lowest_force_ = 0;  // the first step is looked at closely
   return solver_->restart(t, start, watches_event(scene_));
 }
 
