@@ -54,11 +54,10 @@ function(link_libm target)
     BEFORE
     PRIVATE ${shim} ${WHEEL_LIBM_SOURCE}/src/internal ${WHEEL_LIBM_SOURCE}/arch/generic
   )
-  target_compile_options(
-    musl_libm
-    PRIVATE -w -fno-builtin -U__FP_FAST_FMA -ffile-prefix-map=${WHEEL_LIBM_SOURCE}=musl
-  )
+  target_compile_options(musl_libm PRIVATE -w -fno-builtin -U__FP_FAST_FMA -ffile-prefix-map=${WHEEL_LIBM_SOURCE}=musl)
   target_sources(${target} PRIVATE $<TARGET_OBJECTS:musl_libm>)
+  # Eigen's vector code fuses multiply and add on arm.
+  target_compile_definitions(wheel_options INTERFACE EIGEN_DONT_VECTORIZE)
   # Apple's and mingw's compilers would merge sin and cos into a call of their own.
   target_compile_options(wheel_options INTERFACE -fno-builtin-sin -fno-builtin-cos)
 endfunction()

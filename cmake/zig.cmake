@@ -17,6 +17,6 @@ foreach(language C CXX)
   set(CMAKE_${language}_ARCHIVE_APPEND "${WHEEL_ZIG} ar qD <TARGET> <OBJECTS>")
   set(CMAKE_${language}_ARCHIVE_FINISH "${WHEEL_ZIG} ranlib -D <TARGET>")
 endforeach()
-set(CMAKE_RC_COMPILER ${WHEEL_ZIG} rc)
+set(CMAKE_RC_COMPILER ${WHEEL_ZIG}) # asked for by CMake, never used
 # zig brings the headers and libraries of the target itself; packages are the host's (Eigen is headers only).
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)

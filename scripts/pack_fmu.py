@@ -14,7 +14,7 @@ ENDINGS = {"linux64": ".so", "aarch64-linux": ".so", "win64": ".dll", "darwin64"
 FIGURES = ("wheel.png", "paper_diagrams.png")
 
 
-def contents(binaries: dict[str, Path], sundials: Path) -> dict[str, Path]:
+def contents(binaries: dict[str, Path], sundials: Path, musl: Path | None) -> dict[str, Path]:
     """Archive name of every entry and the file behind it."""
     entries = {
         "modelDescription.xml": ROOT / "modelDescription.xml",
@@ -22,6 +22,8 @@ def contents(binaries: dict[str, Path], sundials: Path) -> dict[str, Path]:
         "licenses/sundials-license.txt": sundials / "LICENSE",
         "licenses/sundials-notice.txt": sundials / "NOTICE",
     }
+    if musl:
+        entries["licenses/musl-license.txt"] = musl / "COPYRIGHT"
     archive = ROOT / "fmu-src" / "archive"
     for path in archive.rglob("*"):
         if path.is_file():
@@ -47,13 +49,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, required=True)
     parser.add_argument("--sundials", type=Path, required=True, help="SUNDIALS source, for its licence")
+    parser.add_argument("--musl", type=Path, help="musl's folder, for its licence, where its libm is linked in")
     parser.add_argument("--binary", action="append", default=[], help="platform=library")
     arguments = parser.parse_args()
     binaries = {}
     for pair in arguments.binary:
         platform, path = pair.split("=", 1)
         binaries[platform] = Path(path)
-    pack(contents(binaries, arguments.sundials), arguments.output)
+    pack(contents(binaries, arguments.sundials, arguments.musl), arguments.output)
 
 
 if __name__ == "__main__":

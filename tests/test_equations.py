@@ -90,6 +90,20 @@ def test_reduced_and_multibody_give_the_same_positions_and_velocities() -> None:
     assert relative(eq.columns(moved, *moved.dtype.names), b) > 1e-12  # r longer by 1 nm: 1.4e-9
 
 
+def test_the_pose_is_the_kinematics_without_the_horizontal_velocity() -> None:
+    scenes, motions = draw(2)
+    kept = [name for name, _ in eq.Kinematics._fields_ if name not in ("X_O_dot", "Y_O_dot")]
+    for formulation in (eq.REDUCED, eq.MULTIBODY):
+        y = eq.start_each(formulation, scenes, motions)
+        whole, pose = eq.kinematics_each(formulation, scenes, y), eq.table(eq.Kinematics, len(y))
+        eq.each(formulation.pose, scenes, y, pose)
+        assert (eq.columns(pose, *kept) == eq.columns(whole, *kept)).all()
+        assert (eq.columns(whole, *kept) != 0).all()  # nothing is equal for want of a value
+        y[:, formulation.spin_index] += 1e-9
+        eq.each(formulation.pose, scenes, y, pose)
+        assert (pose["omega_z"] != whole["omega_z"]).all()
+
+
 @each_kind
 def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(kind: int) -> None:
     scenes, motions = draw(3, kind)

@@ -18,8 +18,9 @@ struct Instance {
 
   wheel::Simulation simulation;
   State state = State::instantiated;
-  bool busy = false;      // a call is under way: the logger must not call back into the instance
-  bool prepared = false;  // initialization mode: the start state fits the parameters
+  bool busy = false;         // a call is under way: the logger must not call back into the instance
+  bool prepared = false;     // initialization mode: the start state fits the parameters
+  bool faults_told = false;  // the parameters' faults were told since one was set
   bool has_stop_time = false;
   double stop_time = 0;
   fmi2Status last_step = fmi2OK;

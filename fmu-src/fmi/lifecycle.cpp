@@ -189,7 +189,7 @@ fmi2Status fmi2Reset(fmi2Component c) {
   return guarded(c, Function::reset, "fmi2Reset", [](Instance& i) {
     i.simulation.reset();
     i.state = State::instantiated;
-    i.prepared = i.has_stop_time = false;
+    i.prepared = i.faults_told = i.has_stop_time = false;
     i.last_step = fmi2OK;
     return fmi2OK;
   });

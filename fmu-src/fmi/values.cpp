@@ -10,7 +10,8 @@ namespace {
 // The start state behind outputs read in initialization mode; Discard while the parameters are faulty.
 fmi2Status prepare_reading(Instance& i) {
   if (i.state != State::initialization || i.prepared) return fmi2OK;
-  i.prepared = i.simulation.prepare();
+  i.prepared = i.simulation.prepare(!i.faults_told);
+  i.faults_told = true;
   return i.prepared ? fmi2OK : fmi2Discard;
 }
 
@@ -82,7 +83,7 @@ fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
     for (std::size_t k = 0; k < count; ++k)
       if (!check_value(i, name, variables[k], static_cast<double>(values[k]))) return fmi2Discard;
     for (std::size_t k = 0; k < count; ++k) i.simulation.store(variables[k], static_cast<double>(values[k]));
-    i.prepared = false;
+    i.prepared = i.faults_told = false;
     return fmi2OK;
   });
 }

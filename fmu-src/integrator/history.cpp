@@ -66,7 +66,7 @@ void visit(Archive& archive, Integrator::Implementation& self) {
   many(archive, data(self.y), self.system.states);
   visit_steps(archive, m);
   visit_corrector(archive, m);
-  for (int j = 0; j <= m.cv_qmax; ++j) many(archive, data(m.cv_zn[j]), self.system.states);
+  for (int j = 0; j < L_MAX && j <= m.cv_qmax; ++j) many(archive, data(m.cv_zn[j]), self.system.states);
   if (self.progress.armed) visit_roots(archive, m);
   if (self.system.method == Method::bdf && m.cv_nst > 0) visit_newton(archive, self, m);
 }

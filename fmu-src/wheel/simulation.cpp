@@ -220,8 +220,9 @@ Progressed Simulation::advance(double t) {
       return Progressed::failed;
     }
   }
+  const bool moved = t > now_.time();
   now_.move_to(t);
-  if (inputs_.varies()) inputs_.hold_from(t), touched_ = true;
+  if (moved && inputs_.varies()) inputs_.hold_from(t), touched_ = true;
   return Progressed::reached;
 }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from contract.call_states import STATES, TABLE, bring_to, call
-from contract.master import DISCARD, ERROR, OK
+from contract.master import DISCARD, ERROR, OK, SCENES
 
 pytestmark = pytest.mark.contract
 
@@ -45,6 +45,17 @@ def test_an_illegal_call_is_an_error_with_one_sentence_and_changes_nothing(wheel
         assert disturbed.run([0.7, 1.0]) == undisturbed.run([0.7, 1.0])
     assert call(disturbed, "fmi2Reset") == OK  # the partner: a legal call shows in the bytes
     assert disturbed.serialized() != before or state == "instantiated"
+
+
+def test_a_reset_instance_is_a_new_one_to_the_last_byte(wheel):
+    new = wheel().serialized()
+    for values in SCENES.values():
+        w = wheel().start(stop=5.0, tolerance=1e-6, keep_contact=1, **values)
+        w.set(F_X=1.0)
+        w.run([2.0])
+        assert w.serialized() != new
+        assert w.reset() == OK
+        assert w.serialized() == new
 
 
 def test_in_every_state_reset_leads_to_a_run_with_the_bits_of_a_first_run(wheel):

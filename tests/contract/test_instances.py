@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 
-from contract.master import OK, SCENES, FMU2Wheel
+from contract.master import ERROR, OK, SCENES, FMU2Wheel
 
 pytestmark = pytest.mark.contract
 
@@ -69,12 +69,16 @@ def test_a_thousand_instances_live_side_by_side_and_can_be_freed_in_any_order(wh
     made = [w.fmi2Instantiate(b"one of many", 1, w.guid.encode(), None, byref(callbacks), 0, 0) for _ in range(1000)]
     assert len(set(made)) == 1000 and None not in made
     rng = np.random.default_rng(23)
-    for component in rng.permutation(made)[:500]:
-        w.fmi2FreeInstance(int(component))
-        w.fmi2FreeInstance(int(component))  # a second time, without effect
+    shuffled = [int(component) for component in rng.permutation(made)]
+    freed, kept = shuffled[:500], shuffled[500:]
+    for component in freed:
+        w.fmi2FreeInstance(component)
+        w.fmi2FreeInstance(component)  # a second time, without effect
+    assert {w.fmi2Reset(component) for component in kept} == {OK}
+    assert {w.fmi2Reset(component) for component in freed} == {ERROR}
     again = [w.fmi2Instantiate(b"more", 1, w.guid.encode(), None, None, 0, 0) for _ in range(100)]
     assert None not in again
-    for component in {*made, *again}:
+    for component in (*kept, *again):
         w.fmi2FreeInstance(component)
     assert w.start().step(1.0) == OK
 

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Writes the tables of variables in README.md and in the FMU's documentation from modelDescription.xml.
+
+No paper equation; frames and units are those of the description. Run it after a change of the variables;
+tests/test_readme.py fails while a table is stale. With --check it changes nothing and tells by its exit status.
+"""
+
+from __future__ import annotations
+
+import argparse
+import html
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+from xml.etree import ElementTree
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = (ROOT / "README.md", ROOT / "fmu-src" / "archive" / "documentation" / "index.html")
+TITLES = {
+    "parameter": "Parameters, set before the run (`s` also between steps)",
+    "input": "Inputs",
+    "output": "Outputs",
+    "local": "For inspection",
+}
+BEGIN, END = "<!-- variables: scripts/variable_tables.py -->", "<!-- end of variables -->"
+
+
+class Variable(NamedTuple):
+    name: str
+    causality: str
+    unit: str
+    start: str
+    meaning: str
+
+
+def read_variables(path: Path = ROOT / "modelDescription.xml") -> list[Variable]:
+    root = ElementTree.parse(path).getroot()
+    items = {
+        kind.get("name"): {item.get("value"): item.get("name") for item in kind.iter("Item")}
+        for kind in root.iter("SimpleType")
+    }
+    return [variable_of(row, items) for row in root.iter("ScalarVariable")]
+
+
+def variable_of(row: ElementTree.Element, items: dict[str, dict[str, str]]) -> Variable:
+    (typed,) = row
+    start = typed.get("start", "")
+    if typed.tag == "Enumeration":
+        start = items[typed.get("declaredType")][start]
+    elif typed.tag == "Real" and start:
+        start = f"{float(start):.6g}"
+    return Variable(row.get("name"), row.get("causality"), typed.get("unit", ""), start, row.get("description"))
+
+
+def tables(variables: list[Variable]) -> Iterator[tuple[str, list[str], list[list[str]]]]:
+    """Title, head and rows of the table of each kind; only parameters and inputs have a start value."""
+    for causality, title in TITLES.items():
+        of_kind = [v for v in variables if v.causality == causality]
+        started = any(v.start for v in of_kind)
+        head = ["name", "unit", "start", "meaning"] if started else ["name", "unit", "meaning"]
+        rows = [[f"`{v.name}`", v.unit, *([v.start] if started else []), v.meaning] for v in of_kind]
+        yield title, head, rows
+
+
+def in_markdown(variables: list[Variable]) -> str:
+    blocks = []
+    for title, head, rows in tables(variables):
+        lines = [" | ".join(cells) for cells in (head, ["---"] * len(head), *rows)]
+        blocks.append("\n".join([f"**{title}**", "", *(f"| {line} |" for line in lines)]))
+    return "\n\n".join(blocks)
+
+
+def in_html(variables: list[Variable]) -> str:
+    def cell(text: str, tag: str = "td") -> str:
+        return f"<{tag}>{marked(text)}</{tag}>"
+
+    def marked(text: str) -> str:
+        pieces = html.escape(text, quote=False).split("`")
+        return "".join(f"<code>{piece}</code>" if k % 2 else piece for k, piece in enumerate(pieces))
+
+    lines = []
+    for title, head, rows in tables(variables):
+        lines += [f"<h3>{marked(title)}</h3>", "<table>", f"<tr>{''.join(cell(c, 'th') for c in head)}</tr>"]
+        lines += [f"<tr>{''.join(map(cell, row))}</tr>" for row in rows] + ["</table>"]
+    return "\n".join(lines)
+
+
+def with_tables(text: str, variables: list[Variable], page: Path) -> str:
+    """The page's text with what stands between the two marks replaced."""
+    before, _, rest = text.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    render = in_html if page.suffix == ".html" else in_markdown
+    return f"{before}{BEGIN}\n\n{render(variables)}\n\n{END}{after}"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--check", action="store_true", help="change nothing; exit status 1 if a table is stale")
+    check = parser.parse_args().check
+    variables = read_variables()
+    stale = 0
+    for page in PAGES:
+        text = page.read_text(encoding="utf-8")
+        fresh = with_tables(text, variables, page)
+        stale += text != fresh
+        if not check:
+            page.write_text(fresh, encoding="utf-8")
+    return int(check and stale > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,55 @@
+// The fuzzer's bytes read as choices and numbers. When they run out every choice is 0 and every number 0.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+namespace fuzz {
+
+class Bytes {
+ public:
+  Bytes(const std::uint8_t* data, std::size_t size) : at_(data), end_(data + size) {}
+
+  bool empty() const { return at_ == end_; }
+  unsigned byte() { return empty() ? 0 : *at_++; }
+  unsigned below(unsigned n) { return byte() % n; }
+  // True in `sixteenths` of 16 cases.
+  bool chance(unsigned sixteenths) { return byte() % 16 < sixteenths; }
+
+  // One byte: a factor between 2^-4 and 2^4 around 1.
+  double factor() { return std::exp2((static_cast<double>(byte()) - 128) / 32); }
+
+  // Any double: a limit of the format, a decimal of ordinary size, or eight raw bytes.
+  double any() {
+    constexpr double limits[] = {0,
+                                 -0.0,
+                                 1,
+                                 -1,
+                                 1e-300,
+                                 1e300,
+                                 1.5707963267948966,
+                                 3.141592653589793,
+                                 std::numeric_limits<double>::infinity(),
+                                 -std::numeric_limits<double>::infinity(),
+                                 std::numeric_limits<double>::quiet_NaN(),
+                                 std::numeric_limits<double>::max(),
+                                 std::numeric_limits<double>::denorm_min()};
+    const unsigned kind = byte();
+    if (kind < 32) return limits[kind % (sizeof limits / sizeof *limits)];
+    if (kind < 224) return (static_cast<double>(byte()) - 128) * std::pow(10.0, static_cast<int>(kind % 9) - 5);
+    std::uint64_t raw = 0;
+    for (int i = 0; i < 8; ++i) raw = raw << 8 | byte();
+    double number;
+    std::memcpy(&number, &raw, sizeof number);
+    return number;
+  }
+
+ private:
+  const std::uint8_t* at_;
+  const std::uint8_t* end_;
+};
+
+}  // namespace fuzz
