@@ -48,10 +48,15 @@ struct Measure {
   }
 };
 
-// FNV-1a, 64 bit.
+// FNV-1a over words of 64 bits; a snapshot is a whole number of them. A change of any one word changes the sum.
 inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
   std::uint64_t hash = 0xcbf29ce484222325u;
-  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+  for (std::size_t i = 0; i < size; i += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes + i, size - i < 8 ? size - i : 8);
+    hash = (hash ^ word) * 0x100000001b3u;
+    hash ^= hash >> 29;
+  }
   return hash;
 }
 

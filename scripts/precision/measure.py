@@ -82,7 +82,9 @@ class Worker:
         if self.process is None or self.process.poll() is not None:
             script = Path(__file__).with_name("worker.py")
             command = [self.python, str(script), str(self.build.folder), str(self.build.program("rhs.so"))]
-            self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+            self.process = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, stderr=subprocess.DEVNULL
+            )
         assert self.process.stdin and self.process.stdout
         self.process.stdin.write(json.dumps(request) + "\n")
         self.process.stdin.flush()
