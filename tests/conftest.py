@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,17 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import extract, read_model_description, simulate_fmu
+from paths import ROOT, build_folder
 
-ROOT = Path(__file__).resolve().parent.parent
 HEADLINE = ("X_O", "theta", "phi_dot", "psi_dot")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "contract: quick tests of the C interface, run under sanitizers too")
-
-
-def build_folder() -> Path:
-    return Path(os.environ.get("WHEEL_BUILD", ROOT / "build" / "release"))
 
 
 @pytest.fixture(scope="session")

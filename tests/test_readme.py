@@ -13,7 +13,7 @@ from urllib.parse import unquote
 
 import numpy as np
 import pytest
-from conftest import ROOT, build_folder
+from paths import ROOT, build_folder
 
 sys.path.insert(0, str(ROOT / "scripts"))
 import variable_tables

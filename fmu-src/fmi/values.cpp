@@ -106,7 +106,7 @@ bool check_input(Instance& i, const char* name, fmi2ValueReference variable) {
 }
 
 bool check_output(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (variable < wheel::variable_count && wheel::row_of(variable).role == Role::output) return true;
+  if (variable < wheel::variable_count() && wheel::row_of(variable).role == Role::output) return true;
   i.log(Topic::error, "%s: value reference %u is not an output.", name, variable);
   return false;
 }

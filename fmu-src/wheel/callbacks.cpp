@@ -41,7 +41,8 @@ struct Callbacks {
       weights[i] = 1 / (tolerance * sim.scales_[i] + rounding * std::fabs(y[i]));
     if (sim.scene_.friction.kind == WHEEL_REGULARIZED) {
       const int i = sim.formulation_->spin_index;
-      const double layer = std::sqrt(tolerance) * sim.scene_.friction.omega_s + tolerance * std::fabs(y[i]);
+      const double share = std::fmin(3e-5, std::sqrt(tolerance));
+      const double layer = share * sim.scene_.friction.omega_s + tolerance * std::fabs(y[i]);
       weights[i] = 1 / (std::fmin(tolerance * sim.scales_[i], layer) + rounding * std::fabs(y[i]));
     }
   }

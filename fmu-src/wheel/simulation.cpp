@@ -237,13 +237,14 @@ double Simulation::rate(unsigned variable) { return row_of(variable).read_rate(n
 // Only the reactions answer an input at once. They are linear in the inputs: the rate that a unit rate of the input
 // adds is the derivative.
 double Simulation::sensitivity(unsigned output, unsigned input) {
-  if (output < lambda_1 || output > lambda_3) return 0;
+  const int reaction = row_of(output).reaction;
+  if (reaction == Row::none) return 0;
   WheelLoad still = {}, unit = {};
   (input < M_1 ? unit.F[input - F_X] : unit.M[input - M_1]) = 1;
   double with[3], without[3];
   formulation_->reaction_rates(&now_.scene(), &unit, now_.state(), with);
   formulation_->reaction_rates(&now_.scene(), &still, now_.state(), without);
-  return with[output - lambda_1] - without[output - lambda_1];
+  return with[reaction] - without[reaction];
 }
 
 }  // namespace wheel

@@ -1,6 +1,8 @@
 // The rows of the variable table. Start values are the paper's scene, (27)-(33), without friction.
 #include "variables.hpp"
 
+#include <iterator>
+
 #include "reading.hpp"
 
 namespace wheel {
@@ -19,13 +21,16 @@ constexpr Row input(const char* name) { return {name, Type::real, Role::input, 0
 constexpr Row output(const char* name, double (*read)(Reading&), double (*rate)(Reading&)) {
   return {name, Type::real, Role::output, 0, 0, 0, read, rate};
 }
+constexpr Row reaction(const char* name, int i, double (*read)(Reading&), double (*rate)(Reading&)) {
+  return {name, Type::real, Role::output, 0, 0, 0, read, rate, i};
+}
 constexpr Row local(const char* name, Type type, double (*read)(Reading&)) {
   return {name, type, Role::local, 0, 0, 0, read};
 }
 
 #define AT(expression) [](Reading& now) -> double { return expression; }
 
-constexpr std::array<Row, variable_count> variables = {{
+constexpr Row variables[] = {
     parameter("m", 20, 0),
     parameter("r_0", 0.3, 0),
     parameter("r", 0.05, 0),
@@ -66,9 +71,9 @@ constexpr std::array<Row, variable_count> variables = {{
     output("Y_O_dot", AT(now.kinematics().Y_O_dot), AT(now.dynamics().Y_O_ddot)),
     output("Z_O_dot", AT(now.pose().Z_O_dot), AT(now.dynamics().Z_O_ddot)),
     output("omega_z", AT(now.pose().omega_z), AT(now.dynamics().omega_z_dot)),
-    output("lambda_1", AT(now.dynamics().lambda[0]), AT(now.reaction_rates()[0])),
-    output("lambda_2", AT(now.dynamics().lambda[1]), AT(now.reaction_rates()[1])),
-    output("lambda_3", AT(now.dynamics().lambda[2]), AT(now.reaction_rates()[2])),
+    reaction("lambda_1", 0, AT(now.dynamics().lambda[0]), AT(now.reaction_rates()[0])),
+    reaction("lambda_2", 1, AT(now.dynamics().lambda[1]), AT(now.reaction_rates()[1])),
+    reaction("lambda_3", 2, AT(now.dynamics().lambda[2]), AT(now.reaction_rates()[2])),
     local("E", Type::real, AT(wheel_energy(&now.scene().wheel, &now.kinematics()))),
     local("mu_required", Type::real, AT(wheel_required_friction(now.dynamics().lambda))),
     local("friction_mode", Type::integer, AT(now.friction_mode())),
@@ -78,14 +83,18 @@ constexpr std::array<Row, variable_count> variables = {{
     local("n_roots", Type::integer, AT(double(now.counters().roots))),
     local("n_events", Type::integer, AT(double(now.counters().events))),
     local("n_restarts", Type::integer, AT(double(now.counters().restarts))),
-}};
+};
 
 #undef AT
 
 }  // namespace
 
+unsigned variable_count() { return static_cast<unsigned>(std::size(variables)); }
+
 const Row& row_of(unsigned variable) { return variables[variable]; }
 
-bool is_variable(unsigned variable, Type type) { return variable < variable_count && variables[variable].type == type; }
+bool is_variable(unsigned variable, Type type) {
+  return variable < variable_count() && variables[variable].type == type;
+}
 
 }  // namespace wheel

@@ -2,7 +2,6 @@
 // and limits (a test compares them row by row). Units and frames: docs/notation.md.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <limits>
 
@@ -13,7 +12,8 @@ class Reading;
 enum class Type : unsigned char { real, integer, boolean };
 enum class Role : unsigned char { parameter, tunable, input, output, local };
 
-// Value references. A new variable gets a row here, a row in `variables`, and an entry in modelDescription.xml.
+// Value references of what the program itself names. Outputs and locals follow: a row in `variables` and an entry in
+// modelDescription.xml are all that a new one needs.
 enum Variable : unsigned {
   m,
   r_0,
@@ -42,36 +42,10 @@ enum Variable : unsigned {
   M_1,
   M_2,
   M_3,
-  X_O,
-  theta,
-  phi_dot,
-  psi_dot,
-  Y_O,
-  Z_O,
-  psi,
-  phi,
-  theta_dot,
-  X_O_dot,
-  Y_O_dot,
-  Z_O_dot,
-  omega_z,
-  lambda_1,
-  lambda_2,
-  lambda_3,
-  E,
-  mu_required,
-  friction_mode,
-  n_steps,
-  n_rhs,
-  n_jac,
-  n_roots,
-  n_events,
-  n_restarts,
-  variable_count,
+  stored_count,  // parameters and inputs keep a value; the rest is computed on request
 };
 
-inline constexpr unsigned stored_count = X_O;  // parameters and inputs keep a value; the rest is computed on request
-inline constexpr unsigned first_input = F_X, input_count = X_O - F_X;
+inline constexpr unsigned first_input = F_X, input_count = stored_count - F_X;
 
 enum Formulation : int { automatic_formulation = 1, reduced_formulation, multibody_formulation };
 enum FrictionLaw { exact_law = 1, regularized_law };
@@ -84,8 +58,11 @@ struct Row {
   double start, min, max;                   // stored variables
   double (*read)(Reading&);                 // computed variables, else null
   double (*read_rate)(Reading&) = nullptr;  // d/dt of a continuous output, else null
+  int reaction = none;                      // i of lambda[i], which answers an input at once; else none
+  static constexpr int none = -1;
 };
 
+unsigned variable_count();
 const Row& row_of(unsigned variable);
 // Whether the value reference names a variable of this type.
 bool is_variable(unsigned variable, Type type);

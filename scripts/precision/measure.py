@@ -35,6 +35,8 @@ def run_json(command: list[str]) -> Record:
     try:
         return json.loads(result.stdout)
     except json.JSONDecodeError:
+        if result.returncode == 0:
+            return failed("no finite result")
         return failed(f"ended with status {result.returncode}: {result.stderr.strip()[:200]}")
 
 

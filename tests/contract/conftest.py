@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from paths import ROOT
 
 from contract.master import FMU2Wheel
 
