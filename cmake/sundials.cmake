@@ -70,8 +70,11 @@ function(add_sundials)
   target_compile_options(
     sundials_cvode_obj_static
     PRIVATE
-      -DWHEEL_INLINE_VECTOR_OPERATIONS -include ${CMAKE_SOURCE_DIR}/fmu-src/integrator/state_vector.h
-      -fno-tree-vectorize -fno-tree-slp-vectorize
+      -DWHEEL_INLINE_VECTOR_OPERATIONS
+      -include
+      ${CMAKE_SOURCE_DIR}/fmu-src/integrator/state_vector.h
+      -fno-tree-vectorize
+      -fno-tree-slp-vectorize
   )
   # The private headers hold CVODE's memory record: integrator/history.cpp snapshots it.
   add_library(sundials_private INTERFACE)
