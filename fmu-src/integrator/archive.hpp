@@ -55,7 +55,7 @@ inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
     std::uint64_t word = 0;
     std::memcpy(&word, bytes + i, size - i < 8 ? size - i : 8);
     hash = (hash ^ word) * 0x100000001b3u;
-    hash ^= hash >> 29;
+    hash ^= hash >> 29u;
   }
   return hash;
 }
