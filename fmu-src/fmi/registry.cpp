@@ -26,7 +26,7 @@ struct Table {
 
   std::size_t slot_of(const void* p) const {
     const auto key = reinterpret_cast<std::uintptr_t>(p);
-    std::size_t i = (key >> 4) * 0x9e3779b97f4a7c15u & (capacity - 1);
+    std::size_t i = (key >> 4u) * 0x9e3779b97f4a7c15u & (capacity - 1);
     while (slots[i] && slots[i] != p) i = (i + 1) & (capacity - 1);
     return i;
   }

@@ -29,7 +29,8 @@ void Inputs::hold_from(double t) {
 }
 
 bool Inputs::differ_from_current(double t) const {
-  if (!varies_) return std::memcmp(current_, pending_, sizeof current_) != 0;
+  constexpr int numbers = count * (max_order + 1);
+  if (!varies_) return !std::equal(*current_, *current_ + numbers, *pending_);
   double shifted[max_order + 1];
   for (int i = 0; i < count; ++i) {
     const double *c = current_[i], tau = t - origin_;
