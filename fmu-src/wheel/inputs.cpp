@@ -29,11 +29,9 @@ void Inputs::hold_from(double t) {
 }
 
 bool Inputs::differ_from_current(double t) const {
-  constexpr int numbers = count * (max_order + 1);
-  if (!varies_) return !std::equal(*current_, *current_ + numbers, *pending_);
   double shifted[max_order + 1];
   for (int i = 0; i < count; ++i) {
-    const double *c = current_[i], tau = t - origin_;
+    const double *c = current_[i], tau = varies_ ? t - origin_ : 0;
     shifted[0] = evaluate(c, tau);
     shifted[1] = c[1] + tau * (2 * c[2] + tau * 3 * c[3]);
     shifted[2] = c[2] + 3 * tau * c[3];
