@@ -91,6 +91,8 @@ const WheelFormulation wheel_multibody = {
     wheel_multibody_reaction_rates,
     wheel_multibody_jacobian,
     wheel::paper::stop_spin,
+    WHEEL_MULTIBODY_STATES,  // the velocities of O are states: no quadratures
+    wheel::paper::derivative,
 };
 
 }  // extern "C"

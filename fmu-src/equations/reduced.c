@@ -41,6 +41,12 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
   return derivative_of(scene, load_of(scene, &load), y, y_dot);
 }
 
+static double closed_derivative(const WheelScene* scene, const double* y, double* y_dot) {
+  Carrier c = carrier_of(&scene->wheel, y);
+  Load load;
+  return closed_derivative_of(scene, load_of(scene, &load), &c, y, y_dot);
+}
+
 static Carrier read_pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
   out->theta = y[0];
@@ -106,4 +112,6 @@ const WheelFormulation wheel_reduced = {
     .reaction_rates = wheel_reduced_reaction_rates,
     .jacobian = wheel_reduced_jacobian,
     .stop_spin = stop_spin,
+    .closed_states = 6,
+    .closed_derivative = closed_derivative,
 };

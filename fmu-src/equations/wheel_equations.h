@@ -100,6 +100,10 @@ typedef struct WheelFormulation {
   void (*jacobian)(const WheelScene* scene, const double* y, double* J);
   /* Sets omega_z to exactly zero: the start of a phase in which it is held there. */
   void (*stop_spin)(const WheelParameters* wheel, double* y);
+  /* The first closed_states rates know the first closed_states states alone; the rest are quadratures.
+   * closed_derivative gives these rates only: it spares the sine and cosine of psi where nothing else needs them. */
+  int closed_states;
+  double (*closed_derivative)(const WheelScene* scene, const double* y, double* y_dot);
 } WheelFormulation;
 
 /* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Needs J_x = J_y (J_x is used). */

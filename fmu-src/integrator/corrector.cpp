@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "cvode_impl.h"
+#include "implementation.hpp"
 #include "state_vector.hpp"
 
 namespace integrator {
@@ -20,21 +21,24 @@ struct Content {
 
 Content& content(SUNNonlinearSolver solver) { return *static_cast<Content*>(solver->content); }
 
-// One iteration: evaluates f at y = z_0 + correction, replaces the correction, returns the norm of its change.
-int iterate(CVodeMemRec& m, N_Vector correction, N_Vector weights, double* change) {
+// One iteration: evaluates f at y = z_0 + correction and replaces the correction of the first `wanted` states. The
+// change is the norm over the closed states: quadratures do not come back.
+int iterate(CVodeMemRec& m, N_Vector correction, N_Vector weights, int wanted, double* change) {
+  auto& self = *static_cast<Integrator::Implementation*>(m.cv_user_data);
+  const System& system = self.system;
   state_linear_sum(1, m.cv_zn[0], 1, correction, m.cv_y);
-  const int status = m.nls_f(m.cv_tn, m.cv_y, m.cv_ftemp, m.cv_user_data);
-  ++m.cv_nfe;
-  if (status != 0) return status < 0 ? CV_RHSFUNC_FAIL : RHSFUNC_RECVR;
+  ++m.cv_nfe, ++self.progress.counters.rhs;
+  if (!system.derivative(system.owner, m.cv_tn, data(m.cv_y), data(m.cv_ftemp), wanted)) return RHSFUNC_RECVR;
   const StatePair *f = state_pairs(m.cv_ftemp), *z_1 = state_pairs(m.cv_zn[1]), *w = state_pairs(weights);
   StatePair *x = state_pairs(correction), sum = {0, 0};
-  const int pairs = state_count(correction) / 2;
-  for (int i = 0; i < pairs; ++i) {
-    const StatePair next = m.cv_rl1 * (m.cv_h * f[i] - z_1[i]), weighted = (next - x[i]) * w[i];
-    x[i] = next;
+  const auto next = [&](int i) { return m.cv_rl1 * (m.cv_h * f[i] - z_1[i]); };
+  for (int i = 0; i < system.closed_states / 2; ++i) {
+    const StatePair weighted = (next(i) - x[i]) * w[i];
+    x[i] = next(i);
     sum += weighted * weighted;
   }
-  *change = std::sqrt((sum[0] + sum[1]) / (2 * pairs));
+  for (int i = system.closed_states / 2; i < wanted / 2; ++i) x[i] = next(i);
+  *change = std::sqrt((sum[0] + sum[1]) / system.closed_states);
   return 0;
 }
 
@@ -51,12 +55,14 @@ int solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction, N_Vector wei
   constexpr int most_iterations = 3;
   constexpr double divergence = 2;
   content(solver) = {};  // CVODE adds up what each solve reports
+  const System& system = static_cast<Integrator::Implementation*>(m.cv_user_data)->system;
   double change = 0;
   for (int i = 0; i < most_iterations; ++i) {
-    const int status = iterate(m, correction, weights, &change);
+    const int wanted = i == 0 ? system.closed_states : system.states;
+    const int status = iterate(m, correction, weights, wanted, &change);
     ++content(solver).iterations;
     if (status != 0) return status;
-    if (converged(m, i, change, tolerance)) {
+    if (converged(m, i, change, tolerance) && wanted == system.states) {
       m.cv_acnrm = i == 0 ? change : state_wrms_norm(correction, weights);
       m.cv_acnrmcur = SUNTRUE;
       return SUN_SUCCESS;

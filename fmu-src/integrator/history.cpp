@@ -10,6 +10,7 @@
 #include "cvode_impl.h"
 #include "cvode_ls_impl.h"
 #include "implementation.hpp"
+#include "start.hpp"
 #include "state_vector.hpp"
 #include "sunlinsol/sunlinsol_dense.h"
 #include "sunmatrix/sunmatrix_dense.h"
@@ -20,14 +21,16 @@ namespace {
 
 template <class Archive>
 void visit_progress(Archive& archive, Progress& p) {
-  all(archive, p.armed, p.pending, p.step_start, p.known_until, p.event_time, p.last_event_value);
+  all(archive, p.armed, p.pending, p.step_start, p.known_until, p.event_time, p.last_event_value, p.start_size);
+  all(archive, p.trend.error, p.trend.size, p.trend.order);
   all(archive, p.counters.steps, p.counters.rhs, p.counters.jacobians, p.counters.roots, p.counters.restarts);
 }
 
 template <class Archive>
 void visit_steps(Archive& archive, CVodeMemRec& m) {
   all(archive, m.cv_q, m.cv_qprime, m.cv_next_q, m.cv_qwait, m.cv_L, m.cv_qu, m.cv_indx_acor);
-  all(archive, m.cv_h, m.cv_hprime, m.cv_next_h, m.cv_eta, m.cv_hscale, m.cv_tn, m.cv_tretlast, m.cv_hu, m.cv_h0u);
+  all(archive, m.cv_h, m.cv_hprime, m.cv_next_h, m.cv_eta, m.cv_hscale, m.cv_tn, m.cv_tretlast, m.cv_hu, m.cv_h0u,
+      m.cv_hin);
   many(archive, m.cv_tau, L_MAX + 1);
   many(archive, m.cv_tq, NUM_TESTS + 1);
   many(archive, m.cv_l, L_MAX);
@@ -81,7 +84,7 @@ bool make_ready(Integrator& integrator, Integrator::Implementation& self, const 
   const bool stepped = static_cast<CVodeMem>(self.cvode)->cv_nst > 0;
   if (stepped && self.progress.armed == saved.armed) return true;
   if (!integrator.restart(saved.known_until, y, saved.armed != 0)) return false;
-  CVode(self.cvode, saved.known_until + self.system.time_scale, self.y, &t_reached, CV_ONE_STEP);
+  CVode(self.cvode, saved.known_until + self.system.longest_step, self.y, &t_reached, CV_ONE_STEP);
   return true;
 }
 
@@ -93,7 +96,7 @@ void Integrator::read(double t, double* y) const {
   const Progress& progress = self->progress;
   const auto& m = *static_cast<CVodeMem>(self->cvode);
   const int pairs = self->system.states / 2;
-  const int order = progress.known_until > progress.step_start ? m.cv_q : 0;
+  const int order = m.cv_tn > progress.step_start ? m.cv_q : 0;
   const double s = (std::clamp(t, progress.step_start, progress.known_until) - m.cv_tn) / m.cv_h;
   StatePair sum[max_states / 2];
   std::copy_n(state_pairs(order > 0 ? m.cv_zn[order] : self->y), pairs, sum);
@@ -105,7 +108,7 @@ void Integrator::read(double t, double* y) const {
 
 bool Integrator::notices(const double* y_dot_before, const double* y_dot_after) const {
   const auto& m = *static_cast<CVodeMem>(self->cvode);
-  if (m.cv_nst == 0) return true;
+  if (!has_history(m)) return true;
   double* change = data(self->scratch);
   for (int i = 0; i < self->system.states; ++i) change[i] = m.cv_h * (y_dot_after[i] - y_dot_before[i]);
   return !(state_wrms_norm(self->scratch, m.cv_ewt) < 1);

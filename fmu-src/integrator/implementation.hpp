@@ -10,12 +10,20 @@
 
 namespace integrator {
 
+// A step of CVODE as the control of the next one remembers it.
+struct Trend {
+  double error, size;  // in units of the tolerance; s
+  int order;           // 0: no step yet
+};
+
 // The last step, [step_start, known_until], and what stopped it; plain numbers, part of every snapshot.
 struct Progress {
   double step_start, known_until, event_time;
   double last_event_value;  // `event` at known_until
-  int pending;              // Outcome: reached, event or ended
-  int armed;                // 1: the root function is installed
+  double start_size;        // s, what the last start of high order would have liked; 0: none yet
+  Trend trend;
+  int pending;  // Outcome: reached, event or ended
+  int armed;    // 1: the root function is installed
   Counters counters;
 };
 
@@ -31,6 +39,9 @@ struct Integrator::Implementation {
   long long last_step;  // the step counter must stay below
   char message[160];
 };
+
+// One step, and what stops the solution inside it. False: failed.
+bool take_step(Integrator& solution);
 
 // First zero of g on [t_lo, t_hi] of the dense output, where g(t_lo) = g_lo >= 0: by sign, or by a dip below zero
 // between the ends that a parabola through start, middle and end gives away. False: none.

@@ -1,4 +1,4 @@
-// CVODE set up, restarted and stepped one internal step at a time.
+// CVODE set up, restarted, asked for more; how a step is taken is in step.cpp.
 #include "integrator.hpp"
 
 #include <cvode/cvode_ls.h>
@@ -19,9 +19,8 @@ namespace {
 
 using Self = Integrator::Implementation;
 
-// A step size is kept while the controller asks for a change by less than this. CVODE's own 0 and 1.5 spare set-up
-// costs of stiff problems; here a changed step costs nothing, and following the error closely saves a quarter of the
-// steps.
+// Where CVODE sizes a step itself (bdf; Adams where it changes the order), a step is kept while it would change by less
+// than this. CVODE's own 0 and 1.5 spare set-up costs of stiff problems; here a changed step costs nothing.
 constexpr double keep_step_above = 1, keep_step_below = 1.02;
 
 // A step that meets the thin layer of a regularized law shrinks many times over before it fits.
@@ -37,7 +36,7 @@ constexpr int highest_adams_order = 10;
 int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
   Self& self = *static_cast<Self*>(user);
   ++self.progress.counters.rhs;
-  return self.system.derivative(self.system.owner, t, data(y), data(y_dot)) ? 0 : 1;
+  return self.system.derivative(self.system.owner, t, data(y), data(y_dot), self.system.states) ? 0 : 1;
 }
 
 int jacobian(double t, N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vector, N_Vector, N_Vector) {
@@ -93,6 +92,7 @@ bool set_up(Self& self) {
          CVodeSetUserData(self.cvode, &self) == CV_SUCCESS && CVodeWFtolerances(self.cvode, weights) == CV_SUCCESS &&
          attach_solver(self) && CVodeSetMaxHnilWarns(self.cvode, -1) == CV_SUCCESS &&
          CVodeSetNoInactiveRootWarn(self.cvode) == CV_SUCCESS &&
+         CVodeSetMaxStep(self.cvode, self.system.longest_step) == CV_SUCCESS &&
          CVodeSetMaxErrTestFails(self.cvode, most_failures) == CV_SUCCESS &&
          CVodeSetMaxConvFails(self.cvode, most_failures) == CV_SUCCESS &&
          CVodeSetEtaFixedStepBounds(self.cvode, keep_step_above, keep_step_below) == CV_SUCCESS;
@@ -104,11 +104,6 @@ bool arm_event(Self& self, bool armed) {
   self.progress.armed = armed;
   if (CVodeRootInit(self.cvode, armed ? 1 : 0, armed ? event : nullptr) != CV_SUCCESS) return false;
   return !armed || CVodeSetRootDirection(self.cvode, &falling) == CV_SUCCESS;
-}
-
-void stop_at(Progress& progress, double t, Outcome why) {
-  progress.known_until = progress.event_time = t;
-  progress.pending = static_cast<int>(why);
 }
 
 }  // namespace
@@ -149,51 +144,9 @@ bool Integrator::restart(double t, const double* y, bool event_armed) {
   progress.pending = static_cast<int>(Outcome::reached);
   progress.last_event_value = event_armed ? self->system.event(self->system.owner, t, y) : 0;
   ++progress.counters.restarts;
-  return arm_event(*self, event_armed) && CVodeReInit(self->cvode, t, self->y) == CV_SUCCESS;
+  return arm_event(*self, event_armed) && CVodeSetInitStep(self->cvode, 0) == CV_SUCCESS &&
+         CVodeReInit(self->cvode, t, self->y) == CV_SUCCESS;
 }
-
-namespace {
-
-// Endings and dips of the event function, which a change of sign between the ends of the step does not show.
-void watch_step(const Integrator& solution, Self& self, double event_before) {
-  Progress& progress = self.progress;
-  const System& system = self.system;
-  double t_zero;
-  if (progress.armed && progress.pending == static_cast<int>(Outcome::reached)) {
-    const Bracket step = {progress.step_start, event_before, progress.known_until, progress.last_event_value};
-    if (find_first_zero(solution, system, system.event, step, &t_zero)) stop_at(progress, t_zero, Outcome::event);
-  }
-  if (!system.near_boundary(system.owner, data(self.y))) return;
-  double y_lo[max_states];
-  solution.read(progress.step_start, y_lo);
-  const Bracket step = {progress.step_start, system.boundary(system.owner, progress.step_start, y_lo),
-                        progress.known_until, system.boundary(system.owner, progress.known_until, data(self.y))};
-  if (find_first_zero(solution, system, system.boundary, step, &t_zero)) stop_at(progress, t_zero, Outcome::ended);
-}
-
-int step_once(Self& self, double t, double* t_reached) {
-  return CVode(self.cvode, t + self.system.time_scale, self.y, t_reached, CV_ONE_STEP);
-}
-
-bool take_step(Integrator& integrator, Self& self) {
-  Progress& progress = self.progress;
-  const double t = progress.known_until, event_before = progress.last_event_value;
-  double t_reached;
-  int flag = step_once(self, t, &t_reached);
-  // A bend of the right-hand side (an input whose slope changed) can be too much for a history of high order.
-  if ((flag == CV_ERR_FAILURE || flag == CV_CONV_FAILURE) && self.progress.step_start < t &&
-      integrator.restart(t, data(self.y), progress.armed != 0))
-    flag = step_once(self, t, &t_reached);
-  if (flag < 0) return false;
-  ++progress.counters.steps;
-  progress.step_start = t;
-  progress.known_until = t_reached;
-  if (flag == CV_ROOT_RETURN) stop_at(progress, t_reached, Outcome::event);
-  watch_step(integrator, self, event_before);
-  return true;
-}
-
-}  // namespace
 
 void Integrator::allow_steps(long long most) { self->last_step = self->progress.counters.steps + most; }
 
@@ -205,7 +158,7 @@ Outcome Integrator::advance(double t) {
       std::snprintf(self->message, sizeof self->message, "it took all the internal steps allowed in one call");
       return Outcome::failed;
     }
-    if (!take_step(*this, *self)) return Outcome::failed;
+    if (!take_step(*this)) return Outcome::failed;
   }
   return Outcome::reached;
 }

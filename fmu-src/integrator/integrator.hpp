@@ -18,11 +18,13 @@ enum class Outcome { reached, event, ended, failed };
 
 // What the owner provides. `owner` is handed back to each function.
 struct System {
-  int states;  // 8 or 12
+  int states;         // 8 or 12
+  int closed_states;  // even; the rates of the first closed_states states know these alone, the rest are quadratures
   Method method;
   void* owner;
-  // y_dot = f(t, y); false where it is not finite (the solver tries a smaller step).
-  bool (*derivative)(void* owner, double t, const double* y, double* y_dot);
+  // The first `wanted` entries (states or closed_states) of y_dot = f(t, y); false where they are not finite: the
+  // solver then tries a smaller step.
+  bool (*derivative)(void* owner, double t, const double* y, double* y_dot, int wanted);
   // J[i + states * j] = d f_i / d y_j; asked for by bdf only.
   void (*jacobian)(void* owner, double t, const double* y, double* J);
   // Error weights: a step is accepted where the root mean square of weight times local error is below one.
@@ -32,7 +34,7 @@ struct System {
   // Cheap test after each step, true where the boundary may be near; only then is `boundary` evaluated (> 0 inside).
   bool (*near_boundary)(void* owner, const double* y);
   double (*boundary)(void* owner, double t, const double* y);
-  double time_scale;  // s, > 0: bounds the first step from above
+  double longest_step;  // s, > 0: an unstable rest shows no error until it is too late
 };
 
 struct Counters {
@@ -77,6 +79,7 @@ class Integrator {
   struct Implementation;
 
  private:
+  friend bool take_step(Integrator& solution);
   explicit Integrator(Implementation* i) : self(i) {}
   Implementation* self;
 };

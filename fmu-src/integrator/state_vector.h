@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stddef.h>
+
 #include <sundials/sundials_nvector.h>
 
 typedef struct StateVector {
@@ -93,6 +94,37 @@ WHEEL_INLINE SUNErrCode state_add_to_each(int count, double* a, N_Vector x, N_Ve
 WHEEL_INLINE SUNErrCode state_scale_each(int count, double* c, N_Vector* x, N_Vector* z) {
   for (int j = 0; j < count; ++j) state_scale(c[j], x[j], z[j]);
   return SUN_SUCCESS;
+}
+
+/* Prediction over one step, z_(j-1) += z_j for k = 1 ... q and j = q ... k: the sums of CVODE's cvPredict in the same
+ * order, with the history of a pair of states in registers. */
+#define WHEEL_PREDICT(q)                                                                                    \
+  case q:                                                                                                   \
+    for (int i = 0; i < pairs; ++i) {                                                                       \
+      StatePair s[q + 1];                                                                                   \
+      WHEEL_UNROLL for (int j = 0; j <= q; ++j) s[j] = state_pairs(z[j])[i];                                \
+      WHEEL_UNROLL for (int k = 1; k <= q; ++k) WHEEL_UNROLL for (int j = q; j >= k; --j) s[j - 1] += s[j]; \
+      WHEEL_UNROLL for (int j = 0; j < q; ++j) state_pairs(z[j])[i] = s[j];                                 \
+    }                                                                                                       \
+    break
+#define WHEEL_UNROLL _Pragma("GCC unroll 16")
+
+static inline void state_predict(N_Vector* z, int order) {
+  const int pairs = state_count(z[0]) / 2;
+  switch (order) {
+    WHEEL_PREDICT(1);
+    WHEEL_PREDICT(2);
+    WHEEL_PREDICT(3);
+    WHEEL_PREDICT(4);
+    WHEEL_PREDICT(5);
+    WHEEL_PREDICT(6);
+    WHEEL_PREDICT(7);
+    WHEEL_PREDICT(8);
+    WHEEL_PREDICT(9);
+    WHEEL_PREDICT(10);
+    WHEEL_PREDICT(11);
+    WHEEL_PREDICT(12);
+  }
 }
 
 #ifdef WHEEL_INLINE_VECTOR_OPERATIONS

@@ -14,13 +14,15 @@ struct Callbacks {
 
   static Simulation& of(void* owner) { return *static_cast<Simulation*>(owner); }
 
-  static bool derivative(void* owner, double t, const double* y, double* y_dot) {
+  static bool derivative(void* owner, double t, const double* y, double* y_dot, int wanted) {
     Simulation& sim = of(owner);
+    const WheelFormulation& formulation = *sim.formulation_;
     if (sim.inputs_.varies()) sim.inputs_.load_at(t, &sim.scene_);
-    const double N = sim.formulation_->derivative(&sim.scene_, y, y_dot);
+    const bool all = wanted == formulation.states;
+    const double N = (all ? formulation.derivative : formulation.closed_derivative)(&sim.scene_, y, y_dot);
     if (N < sim.lowest_force_) sim.lowest_force_ = N;
     double sum = 0;
-    for (int i = 0; i < sim.formulation_->states; ++i) sum += y_dot[i];
+    for (int i = 0; i < wanted; ++i) sum += y_dot[i];
     return std::isfinite(sum);
   }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <limits>
 
 #include "callbacks.hpp"
 #include "scene.hpp"
@@ -87,9 +88,11 @@ bool Simulation::prepare(bool report) {
 bool Simulation::start() {
   integrator::System system = solver_system(*this);
   system.states = formulation_->states;
+  system.closed_states = formulation_->closed_states;
   system.method = method_;
-  system.time_scale = time_scale(scene_.wheel, now_.kinematics());
-  weight_ = scene_.wheel.m * (scene_.wheel.r_0 + scene_.wheel.r) / (system.time_scale * system.time_scale);
+  const double own_time = time_scale(scene_.wheel, now_.kinematics());
+  system.longest_step = 0.5 * own_time;
+  weight_ = scene_.wheel.m * (scene_.wheel.r_0 + scene_.wheel.r) / (own_time * own_time);
   integrator::Integrator::destroy(solver_);
   solver_ = integrator::Integrator::create(system);
   return solver_ && restart_from(0, now_.state());
@@ -99,7 +102,7 @@ bool Simulation::restart_from(double t, const double* y) {
   double start[WHEEL_MAX_STATES];
   std::copy_n(y, formulation_->states, start);
   now_.set_state(t, start);
-  lowest_force_ = 0;  // the first step is looked at closely
+  lowest_force_ = std::numeric_limits<double>::infinity();
   return solver_->restart(t, start, watches_event(scene_));
 }
 
