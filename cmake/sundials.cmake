@@ -87,16 +87,19 @@ function(add_sundials)
   set(SUNDIALS_LOGGING_LEVEL 0 CACHE INTERNAL "")
   set(CMAKE_POLICY_DEFAULT_CMP0069 NEW)
   add_compile_options(-ffile-prefix-map=${source}=sundials)
+  # Memory of SUNDIALS: the solver's room, see room.h.
+  get_directory_property(own_options COMPILE_OPTIONS)
+  add_compile_options(-DWHEEL_INSIDE_SUNDIALS "SHELL:-include \"${CMAKE_SOURCE_DIR}/fmu-src/integrator/room.h\"")
   set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
   add_subdirectory(${source} ${CMAKE_BINARY_DIR}/_sundials/build EXCLUDE_FROM_ALL SYSTEM)
+  set_directory_properties(PROPERTIES COMPILE_OPTIONS "${own_options}")
   # CVODE's vector operations inline, for the one kind of vector it meets here. They are written in pairs already; left to
   # itself the compiler also vectorises the short recurrences for the Adams coefficients, which makes them slower.
   target_compile_options(
     sundials_cvode_obj_static
     PRIVATE
       -DWHEEL_INLINE_VECTOR_OPERATIONS
-      -include
-      ${CMAKE_SOURCE_DIR}/fmu-src/integrator/state_vector.h
+      "SHELL:-include \"${CMAKE_SOURCE_DIR}/fmu-src/integrator/state_vector.h\""
       -fno-tree-vectorize
       -fno-tree-slp-vectorize
   )

@@ -51,7 +51,7 @@ fmi2Status read(Instance& i, const unsigned char* bytes) {
   CallState call;
   std::memcpy(&call, bytes, sizeof call);
   if (!i.simulation.load_state(bytes + sizeof call)) {
-    i.log(Topic::error, "fmi2SetFMUstate: memory is short.");
+    i.log(Topic::error, "fmi2SetFMUstate: the solver does not take the state.");
     i.state = State::error;
     return fmi2Error;
   }

@@ -63,23 +63,17 @@ Instance::Instance(const fmi2CallbackFunctions* callbacks) : simulation({this, w
 }
 
 Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging) {
-  void* memory = std::calloc(1, sizeof(Instance));
+  const auto name_size = std::strlen(name) + 1;
+  void* memory = std::malloc(sizeof(Instance) + name_size);
   if (!memory) return nullptr;
   auto* instance = ::new (memory) Instance(callbacks);
-  const auto size = std::strlen(name) + 1;
-  instance->name_ = static_cast<char*>(std::malloc(size));
-  if (!instance->name_) {
-    destroy(instance);
-    return nullptr;
-  }
-  std::memcpy(instance->name_, name, size);
+  instance->name_ = static_cast<char*>(std::memcpy(static_cast<char*>(memory) + sizeof(Instance), name, name_size));
   const unsigned all = 0xf, quiet = all & ~(1u << static_cast<unsigned>(wheel::Topic::event));
   instance->logged_topics = logging ? all : quiet;
   return instance;
 }
 
 void Instance::destroy(Instance* instance) {
-  std::free(instance->name_);
   instance->~Instance();
   std::free(instance);
 }

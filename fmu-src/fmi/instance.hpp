@@ -8,7 +8,8 @@
 namespace fmi {
 
 struct Instance {
-  // Null if memory is short.
+  // One block of memory, name and solver included: no later call but those that hand out a snapshot takes more. Null if
+  // memory is short.
   static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging);
   static void destroy(Instance* instance);
 
@@ -30,7 +31,7 @@ struct Instance {
   explicit Instance(const fmi2CallbackFunctions* callbacks);
   fmi2CallbackLogger logger_ = nullptr;
   fmi2ComponentEnvironment environment_ = nullptr;
-  char* name_ = nullptr;
+  const char* name_ = nullptr;  // behind the instance
 };
 
 // The category of a topic as modelDescription.xml names it.

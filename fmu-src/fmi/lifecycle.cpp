@@ -170,7 +170,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
   return guarded(c, Function::exit_initialization, "fmi2ExitInitializationMode", [](Instance& i) {
     const bool sound = i.simulation.prepare();
     const bool started = sound && i.simulation.start();
-    if (sound && !started) i.log(Topic::error, "fmi2ExitInitializationMode: memory is short.");
+    if (sound && !started) i.log(Topic::error, "fmi2ExitInitializationMode: the solver does not start.");
     i.state = started ? State::step_complete : State::error;
     return started ? fmi2OK : fmi2Error;
   });

@@ -1,24 +1,15 @@
 // A set of pointers behind a spin lock: an open hash table that doubles. Only the rare calls look into it.
 #include "registry.hpp"
 
-#include <atomic>
 #include <cstdint>
 #include <cstdlib>
+
+#include "spin_lock.hpp"
 
 namespace fmi {
 namespace {
 
-class Lock {
- public:
-  Lock() {
-    while (taken.test_and_set(std::memory_order_acquire)) {
-    }
-  }
-  ~Lock() { taken.clear(std::memory_order_release); }
-
- private:
-  static inline std::atomic_flag taken;
-};
+using integrator::SpinLock;
 
 struct Table {
   const void** slots = nullptr;
@@ -66,22 +57,23 @@ struct Table {
   }
 };
 
+std::atomic_flag taken;  // guards the table
 Table table;
 
 }  // namespace
 
 bool remember_instance(const void* instance) {
-  const Lock lock;
+  const SpinLock lock(taken);
   return table.insert(instance);
 }
 
 bool is_live_instance(const void* instance) {
-  const Lock lock;
+  const SpinLock lock(taken);
   return table.contains(instance);
 }
 
 bool forget_instance(const void* instance) {
-  const Lock lock;
+  const SpinLock lock(taken);
   if (!table.contains(instance)) return false;
   table.erase(instance);
   return true;

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "cvode_impl.h"
 #include "implementation.hpp"
+#include "room.hpp"
 #include "state_vector.hpp"
 
 namespace integrator {
@@ -93,13 +93,6 @@ SUNErrCode count_failures(SUNNonlinearSolver solver, long* count) {
   return SUN_SUCCESS;
 }
 
-SUNErrCode destroy(SUNNonlinearSolver solver) {
-  std::free(solver->content);
-  solver->content = nullptr;
-  SUNNonlinSolFreeEmpty(solver);
-  return SUN_SUCCESS;
-}
-
 }  // namespace
 
 SUNNonlinearSolver make_corrector(SUNContext context) {
@@ -111,11 +104,8 @@ SUNNonlinearSolver make_corrector(SUNContext context) {
   solver->ops->setsysfn = keep_system;
   solver->ops->getnumiters = count_iterations;
   solver->ops->getnumconvfails = count_failures;
-  solver->ops->free = destroy;
-  solver->content = std::calloc(1, sizeof(Content));
-  if (solver->content) return solver;
-  SUNNonlinSolFreeEmpty(solver);
-  return nullptr;
+  solver->content = wheel_room_calloc(1, sizeof(Content));
+  return solver->content ? solver : nullptr;
 }
 
 }  // namespace integrator

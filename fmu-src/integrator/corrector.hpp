@@ -6,7 +6,7 @@
 
 namespace integrator {
 
-// Null if memory is short.
+// In the room being furnished; null if that is full.
 SUNNonlinearSolver make_corrector(SUNContext context);
 
 }  // namespace integrator

@@ -6,12 +6,14 @@
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
+#include <cstdarg>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 
 #include "corrector.hpp"
+#include "cvode_impl.h"
 #include "implementation.hpp"
+#include "room.hpp"
 #include "state_vector.hpp"
 
 namespace integrator {
@@ -59,14 +61,6 @@ int weights(N_Vector y, N_Vector ewt, void* user) {
   return 0;
 }
 
-// SUNDIALS' own messages: kept as the reason of a failure, never printed.
-void keep_message(int, const char*, const char*, const char* message, SUNErrCode, void* user, SUNContext) {
-  Self& self = *static_cast<Self*>(user);
-  std::snprintf(self.message, sizeof self.message, "%s", message ? message : "no reason given");
-  for (std::size_t end = std::strlen(self.message); end > 0 && std::strchr(". \n", self.message[end - 1]); --end)
-    self.message[end - 1] = 0;
-}
-
 bool attach_solver(Self& self) {
   if (self.system.method == Method::adams) {
     self.nonlinear = make_corrector(self.context);
@@ -76,21 +70,28 @@ bool attach_solver(Self& self) {
   }
   self.matrix = SUNDenseMatrix(self.system.states, self.system.states, self.context);
   self.linear = self.matrix ? SUNLinSol_Dense(self.y, self.matrix, self.context) : nullptr;
-  return self.linear && CVodeSetLinearSolver(self.cvode, self.linear, self.matrix) == CV_SUCCESS &&
-         CVodeSetJacFn(self.cvode, jacobian) == CV_SUCCESS;
+  if (!self.linear || CVodeSetLinearSolver(self.cvode, self.linear, self.matrix) != CV_SUCCESS) return false;
+  auto* memory = static_cast<CVodeMem>(self.cvode);
+  // CVODE would make the copy of the Jacobian in its first step, when the room is closed.
+  return CVodeSetJacFn(self.cvode, jacobian) == CV_SUCCESS && memory->cv_linit(memory) == 0;
+}
+
+// CVODE keeps room for one root function from here on; whether it is watched is arm_event's.
+bool install_event(Self& self) {
+  int falling = -1;
+  return CVodeRootInit(self.cvode, 1, event) == CV_SUCCESS && CVodeSetRootDirection(self.cvode, &falling) == CV_SUCCESS;
 }
 
 bool set_up(Self& self) {
   if (SUNContext_Create(SUN_COMM_NULL, &self.context) != SUN_SUCCESS) return false;
   SUNContext_ClearErrHandlers(self.context);
-  if (SUNContext_PushErrHandler(self.context, keep_message, &self) != SUN_SUCCESS) return false;
   self.y = make_state_vector(self.system.states, self.context);
   self.scratch = make_state_vector(self.system.states, self.context);
   self.cvode = CVodeCreate(self.system.method == Method::adams ? CV_ADAMS : CV_BDF, self.context);
   if (!self.y || !self.scratch || !self.cvode) return false;
   return CVodeInit(self.cvode, derivative, 0, self.y) == CV_SUCCESS &&
          CVodeSetUserData(self.cvode, &self) == CV_SUCCESS && CVodeWFtolerances(self.cvode, weights) == CV_SUCCESS &&
-         attach_solver(self) && CVodeSetMaxHnilWarns(self.cvode, -1) == CV_SUCCESS &&
+         attach_solver(self) && install_event(self) && CVodeSetMaxHnilWarns(self.cvode, -1) == CV_SUCCESS &&
          CVodeSetNoInactiveRootWarn(self.cvode) == CV_SUCCESS &&
          CVodeSetMaxStep(self.cvode, self.system.longest_step) == CV_SUCCESS &&
          CVodeSetMaxErrTestFails(self.cvode, most_failures) == CV_SUCCESS &&
@@ -98,43 +99,23 @@ bool set_up(Self& self) {
          CVodeSetEtaFixedStepBounds(self.cvode, keep_step_above, keep_step_below) == CV_SUCCESS;
 }
 
-bool arm_event(Self& self, bool armed) {
-  if (self.progress.armed == int{armed}) return true;
-  int falling = -1;
-  self.progress.armed = armed;
-  if (CVodeRootInit(self.cvode, armed ? 1 : 0, armed ? event : nullptr) != CV_SUCCESS) return false;
-  return !armed || CVodeSetRootDirection(self.cvode, &falling) == CV_SUCCESS;
+// What CVodeRootInit does for one root function or none, without giving back memory and taking it again.
+void arm_event(Self& self, bool armed) {
+  auto& memory = *static_cast<CVodeMem>(self.cvode);
+  if (armed && memory.cv_nrtfn == 0) memory.cv_gactive[0] = SUNTRUE;
+  memory.cv_nrtfn = self.progress.armed = armed;
 }
 
 }  // namespace
 
-Integrator* Integrator::create(const System& system) {
-  auto* self = static_cast<Implementation*>(std::calloc(1, sizeof(Implementation)));
-  auto* memory = self ? std::malloc(sizeof(Integrator)) : nullptr;
-  if (!memory) {
-    std::free(self);
-    return nullptr;
-  }
+Integrator* Integrator::create(const System& system, Room& room) {
+  static_assert(2 * sizeof(Implementation) < sizeof room.bytes);
+  const Furnishing furnishing(room);
+  auto* self = ::new (wheel_room_malloc(sizeof(Implementation))) Implementation{};
   self->system = system;
   self->progress.counters.restarts = -1;  // the first start is none
-  auto* integrator = ::new (memory) Integrator(self);
-  if (set_up(*self)) return integrator;
-  destroy(integrator);
-  return nullptr;
-}
-
-void Integrator::destroy(Integrator* integrator) {
-  if (!integrator) return;
-  Implementation& self = *integrator->self;
-  if (self.cvode) CVodeFree(&self.cvode);
-  if (self.nonlinear) SUNNonlinSolFree(self.nonlinear);
-  if (self.linear) SUNLinSolFree(self.linear);
-  if (self.matrix) SUNMatDestroy(self.matrix);
-  if (self.y) N_VDestroy(self.y);
-  if (self.scratch) N_VDestroy(self.scratch);
-  if (self.context) SUNContext_Free(&self.context);
-  std::free(integrator->self);
-  std::free(integrator);
+  auto* integrator = ::new (wheel_room_malloc(sizeof(Integrator))) Integrator(self);
+  return set_up(*self) ? integrator : nullptr;
 }
 
 bool Integrator::restart(double t, const double* y, bool event_armed) {
@@ -144,8 +125,8 @@ bool Integrator::restart(double t, const double* y, bool event_armed) {
   progress.pending = static_cast<int>(Outcome::reached);
   progress.last_event_value = event_armed ? self->system.event(self->system.owner, t, y) : 0;
   ++progress.counters.restarts;
-  return arm_event(*self, event_armed) && CVodeSetInitStep(self->cvode, 0) == CV_SUCCESS &&
-         CVodeReInit(self->cvode, t, self->y) == CV_SUCCESS;
+  arm_event(*self, event_armed);
+  return CVodeSetInitStep(self->cvode, 0) == CV_SUCCESS && CVodeReInit(self->cvode, t, self->y) == CV_SUCCESS;
 }
 
 void Integrator::allow_steps(long long most) { self->last_step = self->progress.counters.steps + most; }
@@ -171,3 +152,15 @@ const char* Integrator::failure() const { return self->message; }
 const Counters& Integrator::counters() const { return self->progress.counters; }
 
 }  // namespace integrator
+
+// In place of CVODE's own (room.h): its messages are kept as the reason of a failure, never printed.
+void cvProcessError(CVodeMem memory, int status, int, const char*, const char*, const char* format, ...) {
+  if (!memory || !memory->cv_user_data || status == CV_WARNING) return;
+  auto& message = static_cast<integrator::Integrator::Implementation*>(memory->cv_user_data)->message;
+  std::va_list values;
+  va_start(values, format);
+  std::vsnprintf(message, sizeof message, format, values);
+  va_end(values);
+  for (std::size_t end = std::strlen(message); end > 0 && std::strchr(". \n", message[end - 1]); --end)
+    message[end - 1] = 0;
+}

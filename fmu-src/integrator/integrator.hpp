@@ -41,11 +41,17 @@ struct Counters {
   long long steps, rhs, jacobians, roots, restarts;
 };
 
+// Memory for one solver of any System. There is no other: a solver allocates nothing.
+inline constexpr std::size_t room_size = 10 * 1024;
+struct alignas(16) Room {
+  unsigned char bytes[room_size];
+};
+
 class Integrator {
  public:
-  // Null if memory is short.
-  static Integrator* create(const System& system);
-  static void destroy(Integrator* integrator);
+  // Made in `room`, and gone with it or with the next solver made there; there is nothing to free. Null if the room is
+  // too small for SUNDIALS (tests/contract/test_allocations.py has what is left of it).
+  static Integrator* create(const System& system, Room& room);
 
   // Starts anew from y at time t; history is dropped, counters go on. event_armed: whether a root function is watched.
   bool restart(double t, const double* y, bool event_armed);

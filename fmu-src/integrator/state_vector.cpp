@@ -2,7 +2,8 @@
 #include "state_vector.hpp"
 
 #include <cmath>
-#include <cstdlib>
+
+#include "room.hpp"
 
 namespace integrator {
 namespace {
@@ -11,7 +12,7 @@ N_Vector_Ops table();
 
 N_Vector make(int states, SUNContext context) {
   const std::size_t size = sizeof(StateVector) + sizeof(double) * static_cast<std::size_t>(states);
-  auto* v = static_cast<StateVector*>(std::calloc(1, size));
+  auto* v = static_cast<StateVector*>(wheel_room_calloc(1, size));
   if (!v) return nullptr;
   v->header = {v, table(), context};
   v->states = states;
@@ -19,7 +20,7 @@ N_Vector make(int states, SUNContext context) {
 }
 
 N_Vector clone(N_Vector w) { return make(state_count(w), w->sunctx); }
-void destroy(N_Vector v) { std::free(v); }
+void destroy(N_Vector) {}  // it goes with its room
 N_Vector_ID id(N_Vector) { return SUNDIALS_NVEC_CUSTOM; }
 sunindextype length(N_Vector v) { return state_count(v); }
 

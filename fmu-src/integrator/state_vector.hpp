@@ -10,7 +10,7 @@ extern "C" {
 
 namespace integrator {
 
-// A zeroed vector of `states` (8 or 12) doubles; null if memory is short or the length is another.
+// A zeroed vector of `states` (8 or 12) doubles; in the room being furnished. Null if the length is another.
 N_Vector make_state_vector(int states, SUNContext context);
 
 inline double* data(N_Vector v) { return state_data(v); }

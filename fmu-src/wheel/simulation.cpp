@@ -14,10 +14,7 @@ namespace wheel {
 
 Simulation::Simulation(const Reporter& reporter) : reporter_(reporter) { reset(); }
 
-Simulation::~Simulation() { integrator::Integrator::destroy(solver_); }
-
 void Simulation::reset() {
-  integrator::Integrator::destroy(solver_);
   solver_ = nullptr;
   for (unsigned v = 0; v < stored_count; ++v) stored_[v] = row_of(v).start;
   inputs_ = Inputs();
@@ -93,8 +90,7 @@ bool Simulation::start() {
   const double own_time = time_scale(scene_.wheel, now_.kinematics());
   system.longest_step = 0.5 * own_time;
   weight_ = scene_.wheel.m * (scene_.wheel.r_0 + scene_.wheel.r) / (own_time * own_time);
-  integrator::Integrator::destroy(solver_);
-  solver_ = integrator::Integrator::create(system);
+  solver_ = integrator::Integrator::create(system, room_);
   return solver_ && restart_from(0, now_.state());
 }
 

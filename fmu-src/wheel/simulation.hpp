@@ -32,7 +32,6 @@ enum class Progressed { reached, ended, failed };
 class Simulation {
  public:
   explicit Simulation(const Reporter& reporter);
-  ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
@@ -52,7 +51,7 @@ class Simulation {
 
   // The initial state from the current parameters; true if it exists.
   bool prepare(bool report = true);
-  // Starts the solver. False if memory is short.
+  // Starts the solver. False if SUNDIALS refuses it.
   bool start();
   // To the caller's time t. `ended`: the wheel fell flat or lifted off at time(); `failed`: time() is that of the
   // start.
@@ -74,7 +73,7 @@ class Simulation {
   WheelLoad load_rate_at(double t) const;
 
   // Complete state as portable bytes with a checksum. is_state: whether bytes are such a state, undamaged. load_state
-  // needs that; it returns false only where memory is short.
+  // needs that; it returns false only where start() does.
   std::size_t state_size();
   void save_state(unsigned char* bytes);
   static bool is_state(const unsigned char* bytes, std::size_t size);
@@ -116,6 +115,7 @@ class Simulation {
   double lowest_force_ = 0;  // N, smallest normal force the right-hand side has seen since the last step
   bool lifted_ = false;      // the ground is pulling, and that has been said
   bool touched_ = false;     // inputs or tunable parameters were set since the last step
+  integrator::Room room_;    // the solver's
 };
 
 }  // namespace wheel

@@ -65,10 +65,7 @@ bool Simulation::load_state(const unsigned char* bytes) {
   integrator::Reader reader{bytes + sizeof(Header)};
   Moment moment;
   visit(reader, moment);
-  if (!moment.started) {
-    integrator::Integrator::destroy(solver_);
-    solver_ = nullptr;
-  }
+  if (!moment.started) solver_ = nullptr;
   if (!moment.prepared) {
     formulation_ = nullptr;
     now_ = Reading();
