@@ -1,158 +1,172 @@
-/* Fails the n-th allocation of a process, for every n: malloc, calloc and realloc are wrapped in the FMU's library
-   only. faults LIBRARY GUID: prints how many allocations were failed and what came of it; status 1 if a promise is
-   broken.
-
-   Promises: no crash, no leak (live blocks counted), fmi2Instantiate gives null, calls give fmi2Error with a sentence,
-   and an instance whose call failed can be reset and run. */
-#include <dlfcn.h>
+/* Lives of one instance in which memory runs short: at each allocation in turn, once or from there on.
+ *
+ *   faults LIBRARY GUID FORMULATION LAW METHOD COMPANIONS SECONDS
+ *
+ * Companions are instances made before it; SECONDS are allowed for all. Prints as JSON what was counted. Status 1 and a
+ * sentence if a promise is broken: no crash, no hang, no leak; fmi2Instantiate gives null, other calls fmi2Error, with
+ * a sentence; once there is memory again, the same instance and a new one go on with the bits of an undisturbed life.
+ * No paper equation. */
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "fmi2FunctionTypes.h"
+#include "memory.h"
+#include "unit.h"
 
-/* The program's own definitions win over libc's for the library too. */
-extern void* __libc_malloc(size_t);
-extern void* __libc_calloc(size_t, size_t);
-extern void* __libc_realloc(void*, size_t);
-extern void __libc_free(void*);
+enum { STEPS = 30, OUTPUTS = 4, ROWS = STEPS + 4, MOST_COMPANIONS = 16 };
 
-static int watching;
-static long allocations, failing, live, messages;
+typedef struct Life {
+  double rows[ROWS][OUTPUTS];
+  int count;
+} Life;
 
-static int fails(void) { return watching && ++allocations == failing; }
-
-void* malloc(size_t size) {
-  if (fails()) return NULL;
-  live += watching;
-  return __libc_malloc(size);
-}
-void* calloc(size_t n, size_t size) {
-  if (fails()) return NULL;
-  live += watching;
-  return __libc_calloc(n, size);
-}
-void* realloc(void* old, size_t size) {
-  if (fails()) return NULL;
-  if (!old) live += watching;
-  return __libc_realloc(old, size);
-}
-void free(void* block) {
-  if (block) live -= watching;
-  __libc_free(block);
-}
-
-static struct {
-  fmi2InstantiateTYPE* instantiate;
-  fmi2FreeInstanceTYPE* free;
-  fmi2SetIntegerTYPE* set_integer;
-  fmi2SetRealTYPE* set_real;
-  fmi2EnterInitializationModeTYPE* enter;
-  fmi2ExitInitializationModeTYPE* leave;
-  fmi2DoStepTYPE* step;
-  fmi2ResetTYPE* reset;
-  fmi2GetFMUstateTYPE* get_state;
-  fmi2SetFMUstateTYPE* set_state;
-  fmi2FreeFMUstateTYPE* free_state;
-  fmi2SerializedFMUstateSizeTYPE* size;
-  fmi2SerializeFMUstateTYPE* serialize;
-  fmi2DeSerializeFMUstateTYPE* deserialize;
-} fmu;
+static Unit unit;
+static const char* guid;
+static int choices[3]; /* formulation, friction law, method */
+static int companions;
+static long sentences;
+static long taken_by_start, taken_by_run, taken_by_snapshots;
 
 static void receive(fmi2ComponentEnvironment e, fmi2String n, fmi2Status s, fmi2String c, fmi2String m, ...) {
-  (void)e, (void)n, (void)s, (void)c, (void)m;
-  ++messages;
+  (void)e, (void)n, (void)c;
+  sentences += s == fmi2Error && m && *m;
 }
 
-static void broken(const char* promise) {
-  watching = 0;
-  fprintf(stderr, "Failing allocation %ld: %s\n", failing, promise);
+static void require(int kept, const char* broken) {
+  if (kept) return;
+  const long number = memory.fail_first, last = memory.fail_last;
+  memory.watched = 0;
+  fprintf(stderr, "allocation %ld failing%s: %s\n", number, last > number ? " and all later ones" : "", broken);
   exit(1);
 }
 
-/* OK, or an error that was told. */
-static int went_well(fmi2Status status, long told) {
-  if (status == fmi2Error && messages == told) broken("an error without a sentence");
-  if (status != fmi2OK && status != fmi2Error) broken("neither OK nor Error");
+/* Whether a call went well; if not, it must have said so. */
+static int check(fmi2Status status, long sentences_before) {
+  require(status == fmi2OK || status == fmi2Error, "a call returned neither OK nor Error");
+  require(status == fmi2OK || sentences > sentences_before, "an error without a sentence");
   return status == fmi2OK;
 }
-#define TRY(call) (told = messages, went_well(call, told))
+#define WELL(call) (before = sentences, check(call, before))
 
-static int run(fmi2Component c, const int* choices) {
+static int step(fmi2Component c, int k, Life* life) {
+  static const fmi2ValueReference outputs[OUTPUTS] = {27, 28, 29, 30};
+  long before;
+  if (!WELL(unit.step(c, 0.1 * k, 0.1, fmi2True))) return 0;
+  return WELL(unit.get_real(c, outputs, OUTPUTS, life->rows[life->count++]));
+}
+
+/* From instantiated; passes sticks and slips. */
+static int run(fmi2Component c, Life* life) {
   static const fmi2ValueReference integers[] = {16, 17, 19}, s = 7;
-  const double friction = 0.03;
-  long told;
-  if (!TRY(fmu.set_integer(c, integers, 3, choices)) || !TRY(fmu.set_real(c, &s, 1, &friction))) return 0;
-  if (!TRY(fmu.enter(c)) || !TRY(fmu.leave(c))) return 0;
-  for (int k = 0; k < 20; ++k)
-    if (!TRY(fmu.step(c, 0.1 * k, 0.1, fmi2True))) return 0;
+  const double friction = 0.3;
+  long before;
+  life->count = 0;
+  if (!WELL(unit.set_integer(c, integers, 3, choices)) || !WELL(unit.set_real(c, &s, 1, &friction))) return 0;
+  if (!WELL(unit.enter(c)) || !WELL(unit.leave(c))) return 0;
+  for (int k = 0; k < STEPS; ++k)
+    if (!step(c, k, life)) return 0;
   return 1;
 }
 
-static int roll_back(fmi2Component c) {
-  static char bytes[16384];
+/* A step, back by a copy out of bytes, and the same step again. */
+static int roll_back(fmi2Component c, Life* life) {
+  static char bytes[1 << 15];
   fmi2FMUstate state = NULL, copy = NULL;
   size_t size = 0;
-  long told;
-  const int fine = TRY(fmu.get_state(c, &state)) && TRY(fmu.size(c, state, &size)) &&
-                   TRY(fmu.serialize(c, state, bytes, size)) && TRY(fmu.deserialize(c, bytes, size, &copy)) &&
-                   TRY(fmu.step(c, 2.0, 0.1, fmi2True)) && TRY(fmu.set_state(c, copy)) &&
-                   TRY(fmu.step(c, 2.0, 0.1, fmi2True));
-  fmu.free_state(c, &state);
-  fmu.free_state(c, &copy);
-  return fine;
+  long before;
+  life->count = STEPS;
+  const int well = WELL(unit.get_state(c, &state)) && WELL(unit.size(c, state, &size)) && size <= sizeof bytes &&
+                   WELL(unit.serialize(c, state, bytes, size)) && WELL(unit.deserialize(c, bytes, size, &copy)) &&
+                   WELL(unit.get_state(c, &state)) && step(c, STEPS, life) && WELL(unit.set_state(c, copy)) &&
+                   step(c, STEPS, life);
+  unit.free_state(c, &state);
+  unit.free_state(c, &copy);
+  return well;
 }
 
-/* One life with the n-th allocation failing; 1 if nothing failed any more. */
-static int live_once(const char* guid, const int* choices) {
+static void same_bits(const Life* life, const Life* undisturbed) {
+  if (!undisturbed) return;
+  require(life->count == undisturbed->count, "a life took another number of steps");
+  require(memcmp(life->rows, undisturbed->rows, sizeof life->rows[0] * (size_t)life->count) == 0, "other bits");
+}
+
+static fmi2Component begin(void) {
   static const fmi2CallbackFunctions functions = {receive, NULL, NULL, NULL, NULL};
-  allocations = live = messages = 0;
-  watching = 1;
-  const fmi2Component c = fmu.instantiate("wheel", fmi2CoSimulation, guid, "", &functions, 0, 0);
-  if (!c && !messages) broken("no instance and no sentence");
-  if (c) {
-    const int fine = run(c, choices) && roll_back(c);
-    if (!fine && (fmu.reset(c) != fmi2OK || !run(c, choices))) broken("a reset instance does not run");
-    fmu.free(c);
-  }
-  watching = 0;
-  if (live) broken("memory has leaked");
-  return allocations < failing;
+  const long before = sentences;
+  const fmi2Component c = unit.instantiate("wheel", fmi2CoSimulation, guid, "", &functions, 0, 0);
+  if (c) return c;
+  require(sentences > before, "no instance and no sentence");
+  const fmi2Component mute = unit.instantiate("wheel", fmi2CoSimulation, guid, "", NULL, 0, 0);
+  if (mute) unit.free(mute);
+  return NULL;
 }
 
-static void load(const char* path) {
-  void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-  if (!library) {
-    fprintf(stderr, "%s\n", dlerror());
-    exit(2);
+static long taken_since(long before) { return memory.taken - before; }
+
+/* Where a call fails for want of memory, there is memory again afterwards. */
+static void go_through(fmi2Component c, Life* life, const Life* undisturbed) {
+  const long before_run = memory.taken;
+  if (!run(c, life)) {
+    memory.fail_last = 0;
+    require(unit.reset(c) == fmi2OK && run(c, life), "a reset instance does not run");
   }
-  static const char* const names[] = {"fmi2Instantiate",
-                                      "fmi2FreeInstance",
-                                      "fmi2SetInteger",
-                                      "fmi2SetReal",
-                                      "fmi2EnterInitializationMode",
-                                      "fmi2ExitInitializationMode",
-                                      "fmi2DoStep",
-                                      "fmi2Reset",
-                                      "fmi2GetFMUstate",
-                                      "fmi2SetFMUstate",
-                                      "fmi2FreeFMUstate",
-                                      "fmi2SerializedFMUstateSize",
-                                      "fmi2SerializeFMUstate",
-                                      "fmi2DeSerializeFMUstate"};
-  void* pointers[sizeof names / sizeof *names];
-  for (unsigned i = 0; i < sizeof names / sizeof *names; ++i) pointers[i] = dlsym(library, names[i]);
-  memcpy(&fmu, pointers, sizeof fmu);
+  const long before_snapshots = memory.taken;
+  if (!roll_back(c, life)) {
+    memory.fail_last = 0;
+    require(roll_back(c, life), "no snapshot although there is memory again");
+  }
+  same_bits(life, undisturbed);
+  taken_by_run = before_snapshots - before_run;
+  taken_by_snapshots = taken_since(before_snapshots);
+  memory.fail_last = 0;
+  require(unit.reset(c) == fmi2OK && run(c, life) && roll_back(c, life), "a reset instance does not run");
+  same_bits(life, undisturbed);
+}
+
+/* Returns how many allocations failed. */
+static long live(unsigned char fill, long first, long last, Life* life, const Life* undisturbed) {
+  fmi2Component beside[MOST_COMPANIONS];
+  for (int i = 0; i < companions; ++i)
+    beside[i] = unit.instantiate("companion", fmi2CoSimulation, guid, "", NULL, 0, 0);
+  watch(fill, first, last);
+  const fmi2Component c = begin();
+  taken_by_start = memory.taken;
+  if (c) {
+    go_through(c, life, undisturbed);
+    unit.free(c);
+  }
+  memory.watched = 0;
+  require(memory.live == 0, "memory has leaked");
+  for (int i = 0; i < companions; ++i) unit.free(beside[i]);
+  return memory.failed;
+}
+
+/* Each allocation in turn; after each disturbed life an undisturbed one. Returns how many lives were disturbed. */
+static long disturb(int for_good, const Life* undisturbed) {
+  Life life;
+  for (long n = 1;; ++n) {
+    if (!live(0x5a, n, for_good ? LONG_MAX : n, &life, undisturbed)) return n - 1;
+    live(0xff, 0, 0, &life, undisturbed);
+  }
 }
 
 int main(int count, char** arguments) {
-  static const int scenes[][3] = {{1, 1, 1}, {3, 1, 1}, {1, 2, 3}, {3, 2, 3}}; /* formulation, friction law, method */
-  if (count < 3) return 2;
-  load(arguments[1]);
-  for (unsigned k = 0; k < sizeof scenes / sizeof *scenes; ++k) {
-    for (failing = 1; !live_once(arguments[2], scenes[k]); ++failing) {
-    }
-    printf("%ld allocations failed one by one\n", failing - 1);
-  }
+  static Life undisturbed, life;
+  if (count != 8) return 2;
+  alarm((unsigned)atoi(arguments[7]));
+  unit = load_unit(arguments[1]);
+  guid = arguments[2];
+  for (int i = 0; i < 3; ++i) choices[i] = atoi(arguments[3 + i]);
+  companions = atoi(arguments[6]);
+  if (companions > MOST_COMPANIONS) return 2;
+  live(0xa5, 0, 0, &undisturbed, NULL);
+  live(0x00, 0, 0, &life, &undisturbed);
+  live(0xa5, 0, 0, &life, &undisturbed);
+  printf("{\"start\": %ld, \"run\": %ld, \"snapshots\": %ld, ", taken_by_start, taken_by_run, taken_by_snapshots);
+  printf("\"bytes\": %zu, \"unused\": %zu, ", memory.largest, memory.largest_unused);
+  const long once = disturb(0, &undisturbed), for_good = disturb(1, &undisturbed);
+  printf("\"failed_once\": %ld, \"failed_for_good\": %ld}\n", once, for_good);
   return 0;
 }
