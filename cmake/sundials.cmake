@@ -98,6 +98,7 @@ function(add_sundials)
   target_compile_options(
     sundials_cvode_obj_static
     PRIVATE
+      -DWHEEL_INSIDE_CVODE
       -DWHEEL_INLINE_VECTOR_OPERATIONS
       "SHELL:-include \"${CMAKE_SOURCE_DIR}/fmu-src/integrator/state_vector.h\""
       -fno-tree-vectorize

@@ -17,6 +17,9 @@ void wheel_room_free(void* piece);
 #define malloc wheel_room_malloc
 #define calloc wheel_room_calloc
 #define free wheel_room_free
+#endif
+
+#ifdef WHEEL_INSIDE_CVODE
 /* CVODE writes each message into memory of its own first; integrator.cpp has a cvProcessError that needs none. */
 #pragma weak cvProcessError
 #endif
