@@ -99,11 +99,12 @@ void Integrator::read(double t, double* y) const {
   const int order = m.cv_tn > progress.step_start ? m.cv_q : 0;
   const double s = (std::clamp(t, progress.step_start, progress.known_until) - m.cv_tn) / m.cv_h;
   StatePair sum[max_states / 2];
-  std::copy_n(state_pairs(order > 0 ? m.cv_zn[order] : self->y), pairs, sum);
+  const auto bytes = sizeof(StatePair) * static_cast<std::size_t>(pairs);
+  std::memcpy(sum, data(order > 0 ? m.cv_zn[order] : self->y), bytes);
   for (int j = order - 1; j >= 0; --j)
     // The analyzer does not see that the order stays below the length of the history.
     for (int i = 0; i < pairs; ++i) sum[i] = sum[i] * s + state_pairs(m.cv_zn[j])[i];  // NOLINT(*-security.ArrayBound)
-  std::memcpy(y, sum, sizeof(StatePair) * static_cast<std::size_t>(pairs));
+  std::memcpy(y, sum, bytes);
 }
 
 bool Integrator::notices(const double* y_dot_before, const double* y_dot_after) const {

@@ -64,6 +64,16 @@ double time_scale(const WheelParameters& wheel, const WheelKinematics& start) {
   return rate > 0 ? 1 / rate : 1;
 }
 
+// Measured: 19 steps in the wheel's own time without friction and 42 with it at the tolerance 1e-8, 91 at 1e-12 in the
+// multibody form; 6 per radian of a fast spin. Rates no wheel has do not count.
+long long most_steps(const WheelParameters& wheel, double omega_z, double h) {
+  constexpr double in_any_call = 1e6, in_own_time = 500, per_radian = 50, highest_rate = 1e3, fastest_spin = 1e4;
+  const double own_rate = std::sqrt(wheel.g / (wheel.r_0 + wheel.r));
+  const double rate =
+      in_own_time * std::fmin(own_rate, highest_rate) + per_radian * std::fmin(std::fabs(omega_z), fastest_spin);
+  return static_cast<long long>(in_any_call + std::fmin(rate * h, 1e15));
+}
+
 void error_scales(const WheelParameters& wheel, const WheelFormulation& f, const double* y, double* scales) {
   WheelKinematics start;
   f.kinematics(&wheel, y, &start);

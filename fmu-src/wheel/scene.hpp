@@ -33,4 +33,8 @@ void error_scales(const WheelParameters& wheel, const WheelFormulation& formulat
 // sqrt((r_0 + r) / g), s; without weight the time of a turn at the initial rate.
 double time_scale(const WheelParameters& wheel, const WheelKinematics& start);
 
+// Internal steps that one call over h may take, s, from a spin omega_z: many times what a sane motion needs, and about
+// a second of computing for one that absurd loads set spinning.
+long long most_steps(const WheelParameters& wheel, double omega_z, double h);
+
 }  // namespace wheel

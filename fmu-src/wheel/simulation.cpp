@@ -181,8 +181,7 @@ bool Simulation::pass_event() {
 }
 
 integrator::Outcome Simulation::run_to(double t) {
-  constexpr long long most_steps = 20'000'000;  // some seconds of computing, more than any sane step needs
-  solver_->allow_steps(most_steps);
+  solver_->allow_steps(most_steps(scene_.wheel, now_.state()[formulation_->spin_index], t - now_.time()));
   while (solver_->known_until() < t) {
     if (inputs_.varies()) solver_->stop_before(t);
     const integrator::Outcome outcome = solver_->advance(t);
@@ -213,8 +212,9 @@ Progressed Simulation::advance(double t) {
     const integrator::Outcome outcome = run_to(t);
     if (outcome == integrator::Outcome::ended) return end_run();
     if (outcome == integrator::Outcome::failed) {
-      tell(Topic::error, "The solver stopped at t = %.9f s: %s.", start_time_ + solver_->known_until(),
-           solver_->failure());
+      now_.move_to(solver_->known_until());
+      tell(Topic::error, "The solver stopped at t = %.9f s, where omega_z = %.4g rad/s: %s.", time(),
+           now_.state()[formulation_->spin_index], solver_->failure());
       now_.set_state(t_before, y_before);
       return Progressed::failed;
     }

@@ -53,7 +53,8 @@ def reliance(results: Results) -> str:
         "  change is the size of the error of one nutation, and phase errors are larger by the number of nutations.",
         "- A ground that pulls (`keep_contact`, N < 0) has no rolling friction; contact holds both ways.",
         f"- The regularized law: {width_words(results.regularized)}",
-        "- One doStep takes at most 20 million internal steps; what needs more ends in fmi2Error with that reason.",
+        "- One doStep takes at most a million internal steps, more if it is long; then it ends in fmi2Error with that",
+        "  reason.",
         "- A run that starts at an unstable equilibrium (upright at rest) stays there until rounding makes it fall;",
         "  the instant of that fall is not physics.",
     ]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from stability_report import contract
-from stability_report.driver import OK, Library, Wheel
+from stability_report.driver import ERROR, OK, Library, Values, Wheel
 
 
 def test_bad_input_is_refused_with_a_sentence_per_fault_and_the_instance_lives(library: Library) -> None:
@@ -54,3 +56,28 @@ def test_watching_for_lift_off_adds_no_evaluation_where_none_can_occur(library: 
         wheel.initialise()
         wheel.step_to(10.0)
         assert wheel.integers(("n_roots",))[0] > 0  # friction has something to watch
+
+
+MILLION = 1_000_000
+
+
+@pytest.mark.parametrize("load", [{"M_3": 1e10}, {"F_X": 1e80}])
+def test_a_step_under_an_absurd_load_ends_within_a_million_internal_steps_and_says_why(
+    library: Library, load: Values
+) -> None:
+    with Wheel(library) as wheel:
+        assert wheel.set({"s": 0.03, "keep_contact": True}) == wheel.initialise() == wheel.set(load) == OK
+        assert wheel.step_to(0.01) == ERROR
+        assert re.fullmatch(
+            r"The solver stopped at t = 0\.\d+ s, where omega_z = \S+ rad/s: "
+            r"it took all the internal steps allowed in one call\.",
+            wheel.messages[-1],
+        )
+        assert wheel.integers(("n_steps",))[0] < 1.001 * MILLION  # 1,000,027: half a second to a second
+
+
+def test_a_long_call_may_take_more_internal_steps_than_a_short_one(library: Library) -> None:
+    with Wheel(library) as wheel:
+        assert wheel.set({"phi_dot_start": 1e4}) == wheel.initialise() == OK
+        assert wheel.step_to(20.0) == OK
+        assert wheel.integers(("n_steps",))[0] > 1.1 * MILLION  # 1.25 million, of 11 allowed
