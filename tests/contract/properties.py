@@ -1,0 +1,165 @@
+"""What the property tests draw, play and judge: scenes sound and unsound, instances freed whatever happens, energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from math import isfinite
+
+import numpy as np
+from fmpy.model_description import ModelDescription
+from hypothesis import HealthCheck, Phase, settings
+from hypothesis import strategies as st
+
+from contract.master import DISCARD, ERROR, OK, WARNING, FMU2Wheel
+
+INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+Values = dict[str, float]
+Make = Callable[[], FMU2Wheel]
+
+
+def quick(examples: int, *, shrink: bool = True) -> settings:
+    """The same examples in every run. Partners do not shrink: that they fail is all that is asked."""
+    return settings(
+        max_examples=examples,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        phases=(Phase.generate, Phase.shrink) if shrink else (Phase.generate,),
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
+    )
+
+
+def some(low: float, high: float) -> st.SearchStrategy[float]:
+    return st.floats(low, high, allow_subnormal=False)
+
+
+@st.composite
+def scenes(draw: st.DrawFn) -> Values:
+    """Sound start values of every kind: both formulations, every law, both methods, any inertia a body can have."""
+    across, share = draw(some(0.2, 2.0)), draw(st.sampled_from([1.0, 0.8, 1.3]))
+    J_x, J_y = across, across * share
+    forms = [1, 2, 3] if J_x == J_y else [1, 3]
+    return {
+        "m": draw(some(1.0, 100.0)),
+        "r_0": draw(some(0.1, 1.0)),
+        "r": draw(some(0.0, 0.1)),
+        "J_x": J_x,
+        "J_y": J_y,
+        "J_z": draw(some(abs(J_x - J_y), J_x + J_y)) or across,
+        "g": draw(some(1.0, 20.0)),
+        "s": draw(st.sampled_from([0.0, 0.01, 0.05])),
+        "theta_start": draw(some(0.7, 2.4)),
+        "psi_dot_start": draw(some(-1.0, 1.0)),
+        "theta_dot_start": draw(some(-1.0, 1.0)),
+        "phi_dot_start": draw(some(-6.0, 6.0)),
+        "formulation": draw(st.sampled_from(forms)),
+        "friction_law": draw(st.sampled_from([1, 2])),
+        "method": draw(st.sampled_from([1, 2, 3])),
+        "omega_s": draw(some(0.01, 1.0)),
+        "keep_contact": True,
+    }
+
+
+def loads(size: float = 5.0) -> st.SearchStrategy[Values]:
+    """All six inputs, N and N m."""
+    return st.fixed_dictionaries(dict.fromkeys(INPUTS, some(-size, size)))
+
+
+# Any number a program may pass by mistake: signs, zeros, limits of the format, not a number.
+anything = st.one_of(st.floats(), st.sampled_from([0.0, -0.0, -1.0, 1e-300, 1e300, 5e-324]), some(-10, 10))
+anything_whole = st.one_of(st.integers(0, 4), st.integers(-(2**31), 2**31 - 1))
+
+
+def grids(stop: float = 1.0) -> st.SearchStrategy[list[float]]:
+    """Communication points between 0 and `stop`, the last one at it."""
+    inside = st.lists(some(1e-6, stop - 1e-6), max_size=12, unique=True)
+    return inside.map(lambda points: [*sorted(points), stop])
+
+
+@contextmanager
+def crowd(fmu: str, description: ModelDescription, kind: type[FMU2Wheel] = FMU2Wheel) -> Iterator[Make]:
+    """make() -> a new instance; all are freed at the end."""
+    made: list[FMU2Wheel] = []
+
+    def make() -> FMU2Wheel:
+        made.append(kind(fmu, description))
+        return made[-1]
+
+    try:
+        yield make
+    finally:
+        for w in made:
+            w.close()
+
+
+def go(w: FMU2Wheel, times: list[float], load: Values | None = None) -> list[bytes]:
+    """The bits at the times under constant loads; an ending is part of the bits."""
+    assert w.set(**(load or {})) == OK
+    bits = []
+    for t in times:
+        status = w.step_to(t)
+        assert status in (OK, DISCARD), w.messages
+        bits.append(w.bits() + bytes([status]))
+        if status == DISCARD:
+            break
+    return bits
+
+
+def play_anything(w: FMU2Wheel, start: Values, load: Values) -> list[tuple[int, list[float], list[str]]]:
+    """One life with any values: after each call its status, the outputs where they can be read, what was logged."""
+    told: list[tuple[int, list[float], list[str]]] = []
+    finite = [name for name in w.reals if name != "mu_required"]  # infinite where the ground does not press
+
+    def note(status: int) -> int:
+        outputs = w.get(*finite) if status <= WARNING else []
+        told.append((status, outputs, [m.text for m in w.take_messages()]))
+        return status
+
+    assert w.set(**start) == w.setupExperiment(None, 0.0, None) == w.enterInitializationMode() == OK
+    if note(w.fmi2ExitInitializationMode(w.component)) > WARNING:
+        return told
+    note(w.set(**load))
+    for _ in range(3):
+        if note(w.step(0.02)) > WARNING:
+            break
+    return told
+
+
+def is_sentence(text: str) -> bool:
+    return text[:1].isalpha() and text.endswith(".") and 20 < len(text) < 1000
+
+
+def is_honest(told: list[tuple[int, list[float], list[str]]]) -> bool:
+    """Every call gave finite outputs, or said in a sentence why it did not."""
+    return all(
+        status in (OK, WARNING, DISCARD, ERROR)
+        and all(map(is_sentence, texts))
+        and (bool(texts) if status > WARNING else all(map(isfinite, outputs)))
+        for status, outputs, texts in told
+    )
+
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
+POWERS = ("X_O_dot", "Y_O_dot", "Z_O_dot", "theta", "psi_dot", "theta_dot", "omega_z", "lambda_3", "E")
+
+
+def energy_defect(w: FMU2Wheel, counted: Values, pieces: int = 8, width: float = 1 / 32) -> float:
+    """|change of E - work of the loads and of the smooth friction| over the size of what moves; quadrature of power.
+
+    P = F v + M omega (carrier axes) - s N tanh(omega_z / omega_s) omega_z, by six Gauss nodes a piece.
+    """
+    first = E = w.get("E")[0]
+    work = moved = 0.0
+    for k in range(pieces):
+        for node, weight in zip(NODES, WEIGHTS, strict=True):
+            assert w.step_to((k + 0.5 * (1 + node)) * width) == OK, w.messages
+            v_X, v_Y, v_Z, theta, psi_dot, theta_dot, omega_z, N, E = w.get(*POWERS)
+            friction = counted["s"] * max(N, 0.0) * np.tanh(omega_z / counted["omega_s"])
+            speeds = (v_X, v_Y, v_Z, theta_dot, psi_dot * np.sin(theta), omega_z)
+            powers = [counted[name] * v for name, v in zip(INPUTS, speeds, strict=True)] + [-friction * omega_z]
+            work += 0.5 * width * weight * sum(powers)
+            moved += 0.5 * width * weight * sum(map(abs, powers))
+        assert w.step_to((k + 1) * width) == OK
+        E = w.get("E")[0]
+    return abs(E - first - work) / (abs(first) + moved)
