@@ -19,11 +19,11 @@ void Simulation::reset() {
   for (unsigned v = 0; v < stored_count; ++v) stored_[v] = row_of(v).start;
   inputs_ = Inputs();
   now_ = Reading();
-  start_time_ = 0;
+  start_time_ = lowest_force_ = 0;
   tolerance_ = default_tolerance;
   touched_ = lifted_ = false;
   scene_ = {};
-  lowest_force_ = 0;
+  method_ = integrator::Method::adams;
   formulation_ = nullptr;
 }
 

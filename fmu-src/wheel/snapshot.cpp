@@ -7,7 +7,7 @@
 namespace wheel {
 namespace {
 
-constexpr std::uint64_t mark = 0x3130554d46484557;  // "WEHFMU01"; a change of the layout counts the last digits up
+constexpr std::uint64_t mark = 0x3230554d46484557;  // "WEHFMU02"; a change of the layout counts the last digits up
 
 struct Header {
   std::uint64_t mark, size, checksum;
@@ -15,11 +15,12 @@ struct Header {
 
 }  // namespace
 
-// What the parameters do not determine. The archive passes through `this`, reading or writing it.
+// What the parameters do not determine: the method neither, since `s` may have changed after it was chosen. The archive
+// passes through `this`, reading or writing it.
 template <class Archive>
 void Simulation::visit(Archive& archive, Moment& moment) {
   integrator::many(archive, stored_, stored_count);
-  integrator::all(archive, start_time_, tolerance_, touched_, lifted_, lowest_force_, scene_.wheel.s);
+  integrator::all(archive, start_time_, tolerance_, touched_, lifted_, lowest_force_, method_, scene_.wheel.s);
   integrator::all(archive, scene_.friction.kind, scene_.friction.sigma, scene_.friction.omega_s);
   inputs_.visit(archive);
   integrator::all(archive, moment.prepared, moment.started, moment.t, moment.events);
@@ -75,7 +76,10 @@ bool Simulation::load_state(const unsigned char* bytes) {
   const double s_in_force = scene_.wheel.s, force = lowest_force_;
   const Inputs inputs = inputs_;
   const bool touched = touched_;
-  if (!prepare(false) || (moment.started && !start())) return false;
+  const integrator::Method method = method_;
+  if (!prepare(false)) return false;
+  method_ = method;
+  if (moment.started && !start()) return false;
   scene_.friction = friction;
   scene_.wheel.s = s_in_force;
   inputs_ = inputs;

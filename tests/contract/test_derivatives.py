@@ -7,7 +7,7 @@ from ctypes import c_double, c_int, c_uint
 import numpy as np
 import pytest
 
-from contract.master import ERROR, OK, SCENES, FMU2Wheel
+from contract.master import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, SCENES, FMU2Wheel
 
 pytestmark = pytest.mark.contract
 
@@ -150,3 +150,23 @@ def test_wrong_requests_for_derivatives_are_refused(wheel):
     assert [directional(*pair) for pair in wrong] == [ERROR] * 6
     assert len(w.take_messages()) == 12
     assert output_derivative(theta, 1) == directional(theta, force) == OK
+
+
+def test_at_an_ending_the_rates_count_the_slope_that_led_there(wheel):
+    slope, lifted = 1000.0, wheel().start()
+    lifted.setRealInputDerivatives([lifted.references["F_Z"]], [1], [slope])
+    assert lifted.step(1.0) == DISCARD
+    end, reference = lifted.status(LAST_SUCCESSFUL_TIME), lifted.references["lambda_3"]
+    rate = lifted.getRealOutputDerivatives([reference], [1])[0]
+
+    def normal_force(t: float) -> float:
+        w = wheel().start()
+        w.setRealInputDerivatives([w.references["F_Z"]], [1], [slope])
+        assert w.step(t) == OK
+        return w.get("lambda_3")[0]
+
+    h = 1e-3
+    backward = (3 * lifted.get("lambda_3")[0] - 4 * normal_force(end - h) + normal_force(end - 2 * h)) / (2 * h)
+    assert abs(rate - backward) < 0.01  # N/s, of -933; measured 4e-4
+    assert abs(rate + slope - backward) > 0.01  # the partner: a rate that leaves the slope out
+    assert lifted.step(0.1) == ERROR

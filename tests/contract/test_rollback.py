@@ -152,3 +152,33 @@ def test_stop_time_and_tolerance_are_part_of_the_state(wheel):
     assert loose.restore(tight.serialized()) == OK
     assert loose.run([1.0, 2.0]) == tight.run([1.0, 2.0])
     assert loose.step(0.1) == tight.step(0.1) == ERROR
+
+
+@pytest.mark.parametrize(("s_before", "s_after"), [(0.0, 0.03), (0.03, 0.0)])
+def test_a_state_keeps_the_method_that_was_chosen_before_the_friction_changed(wheel, s_before, s_after):
+    law = {"friction_law": 2, "omega_s": 1e-4}  # automatic: Adams without friction, BDF where it makes the law stiff
+    w, other, partner = wheel().start(s=s_before, **law), wheel(), wheel().start(s=s_after, **law)
+    bits_of(w, coast, range(3))
+    assert w.set(s=s_after) == OK
+    bits_of(w, coast, range(3, 5))
+    blob = w.serialized()
+    ahead = bits_of(w, coast, range(5, 9))
+    for restored in (w, other):
+        assert restored.restore(blob) == OK
+        restored.time = 5 * STEP
+        assert restored.serialized() == blob
+        assert bits_of(restored, coast, range(5, 9)) == ahead
+    bits_of(partner, coast, range(9))
+    jacobians = [x.get("n_jac")[0] > 0 for x in (w, partner)]
+    assert jacobians in ([False, True], [True, False])  # the partner's method is the other one
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_bytes_of_a_state_before_the_first_step_depend_on_nothing_but_the_state(wheel, scene):
+    used = wheel().start(s=0.02, J_x=1.0)
+    used.run([1.0])
+    used.close()  # leaves its memory to the next ones
+    states = {wheel().start(**SCENES[scene]).serialized() for _ in range(10)}
+    assert len(states) == 1
+    moved = wheel().start(**SCENES[scene] | {"X_O_start": 1e-9}).serialized()
+    assert moved not in states
