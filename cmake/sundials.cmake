@@ -86,7 +86,9 @@ function(add_sundials)
   endforeach()
   set(SUNDIALS_LOGGING_LEVEL 0 CACHE INTERNAL "")
   set(CMAKE_POLICY_DEFAULT_CMP0069 NEW)
-  add_compile_options(-ffile-prefix-map=${source}=sundials)
+  if(NOT WHEEL_COVERAGE)
+    add_compile_options(-ffile-prefix-map=${source}=sundials)
+  endif()
   # Memory of SUNDIALS: the solver's room, see room.h.
   get_directory_property(own_options COMPILE_OPTIONS)
   add_compile_options(-DWHEEL_INSIDE_SUNDIALS "SHELL:-include \"${CMAKE_SOURCE_DIR}/fmu-src/integrator/room.h\"")
@@ -103,6 +105,7 @@ function(add_sundials)
       "SHELL:-include \"${CMAKE_SOURCE_DIR}/fmu-src/integrator/state_vector.h\""
       -fno-tree-vectorize
       -fno-tree-slp-vectorize
+      ${cvode_instrumentation}
   )
   exchange_prediction(${source})
   # The private headers hold CVODE's memory record: integrator/history.cpp snapshots it.

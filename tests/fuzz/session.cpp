@@ -35,7 +35,8 @@ void Session::run() {
   };
   constexpr Action always[] = {{"instantiate", &Session::instantiate},
                                {"free_instance", &Session::free_instance},
-                               {"start_quickly", &Session::start_quickly}};
+                               {"start_quickly", &Session::start_quickly},
+                               {"call_without_instance", &Session::call_without_instance}};
   constexpr Action with_instance[] = {
       {"step_often", &Session::step_often},
       {"do_step", &Session::do_step},

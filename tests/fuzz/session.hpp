@@ -46,10 +46,12 @@ class Session {
   void restore_state();
   void free_state();
   void serialize();
+  void without_arrays(const Saved& saved);
   void deserialize_damaged();
   void repeat_step_after_rollback();
   void repeat_step_in_new_instance();
   void compare_reset_with_new();
+  void call_without_instance();  // absent.cpp
 
   void start_quickly();
   void step_often();

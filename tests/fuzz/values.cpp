@@ -14,7 +14,7 @@ constexpr double usual[ref_first_output] = {20, 0.3, 0.05, 0.9, 0.9,   1.8, 9.81
 
 double Session::value_for(unsigned reference) {
   if (reference >= ref_first_output || in_.chance(2)) {
-    // Absurd loads are bounded: CVODE would honestly follow them through millions of steps.
+    // Absurd loads are bounded: CVODE would honestly follow them through the million steps that a call may take.
     const double value = in_.any();
     return reference >= ref_first_input && std::isfinite(value) ? std::remainder(value, 1e4) : value;
   }
@@ -80,36 +80,57 @@ void Session::strings() {
   checked(*now_, I | M | C, false, [&] { return fmi2SetString(c, &variable, count, &text); });
 }
 
+// Usually one, sometimes several or none; an array may be missing.
 void Session::set_input_derivatives() {
-  const unsigned input = in_.chance(14) ? ref_first_input + in_.below(6) : reference();
-  const int order = in_.chance(14) ? 1 + static_cast<int>(in_.below(3)) : static_cast<int>(in_.byte()) - 128;
-  const double value = value_for(input);
-  trace("  derivative %d of %u = %.17g\n", order, input, value);
-  const fmi2Status status = checked(
-      *now_, I | M | C, false, [&] { return fmi2SetRealInputDerivatives(now_->component, &input, 1, &order, &value); });
-  if (status == fmi2OK && value != 0) now_->model.free = false;
+  constexpr unsigned most = 4;
+  const unsigned count = in_.chance(12) ? 1 : in_.below(most + 1), null = in_.chance(1) ? in_.below(3) : 3;
+  unsigned inputs[most];
+  int orders[most];
+  double values[most];
+  for (unsigned k = 0; k < count; ++k) {
+    inputs[k] = in_.chance(14) ? ref_first_input + in_.below(6) : reference();
+    orders[k] = in_.chance(14) ? 1 + static_cast<int>(in_.below(3)) : static_cast<int>(in_.byte()) - 128;
+    values[k] = value_for(inputs[k]);
+    trace("  derivative %d of %u = %.17g\n", orders[k], inputs[k], values[k]);
+  }
+  const fmi2Status status = checked(*now_, I | M | C, false, [&] {
+    return fmi2SetRealInputDerivatives(now_->component, null == 0 ? nullptr : inputs, count,
+                                       null == 1 ? nullptr : orders, null == 2 ? nullptr : values);
+  });
+  if (status == fmi2OK && count > 0) now_->model.free = false;
 }
 
 void Session::get_output_derivatives() {
-  constexpr unsigned readable = C | F | T | X;
-  const unsigned output = in_.chance(14) ? ref_first_output + in_.below(16) : reference();
-  const int order = in_.chance(14) ? 1 : static_cast<int>(in_.byte()) - 128;
-  double value = 0;
+  constexpr unsigned readable = C | F | T | X, most = 4;
+  const unsigned count = in_.chance(8) ? 1 : in_.below(most + 1);
+  const bool null = in_.chance(1);
+  unsigned outputs[most];
+  int orders[most];
+  double values[most] = {};
+  for (unsigned k = 0; k < count; ++k) {
+    outputs[k] = in_.chance(14) ? ref_first_output + in_.below(16) : reference();
+    orders[k] = in_.chance(14) ? 1 : static_cast<int>(in_.byte()) - 128;
+  }
   const fmi2Status status = checked(*now_, readable, false, [&] {
-    return fmi2GetRealOutputDerivatives(now_->component, &output, 1, &order, &value);
+    return fmi2GetRealOutputDerivatives(now_->component, outputs, count, orders, null ? nullptr : values);
   });
-  expect(status != fmi2OK || std::isfinite(value), "an output derivative is finite");
+  for (const double value : values) expect(status != fmi2OK || std::isfinite(value), "an output derivative is finite");
 }
 
 void Session::directional_derivative() {
-  const unsigned unknown = in_.chance(14) ? ref_first_output + in_.below(16) : reference();
-  const unsigned known = in_.chance(14) ? ref_first_input + in_.below(6) : reference();
-  const double seed = 1;
-  double value = 0;
+  constexpr unsigned most = 3;
+  const unsigned rows = in_.chance(8) ? 1 : in_.below(most + 1), columns = in_.chance(8) ? 1 : in_.below(most + 1);
+  const bool null = in_.chance(1);
+  unsigned unknowns[most], knowns[most];
+  for (unsigned k = 0; k < rows; ++k) unknowns[k] = in_.chance(14) ? ref_first_output + in_.below(16) : reference();
+  for (unsigned k = 0; k < columns; ++k) knowns[k] = in_.chance(14) ? ref_first_input + in_.below(6) : reference();
+  const double seeds[most] = {1, -2, 0.5};
+  double values[most] = {};
   const fmi2Status status = checked(*now_, M | C | F | T | X, false, [&] {
-    return fmi2GetDirectionalDerivative(now_->component, &unknown, 1, &known, 1, &seed, &value);
+    return fmi2GetDirectionalDerivative(now_->component, unknowns, rows, knowns, columns, null ? nullptr : seeds,
+                                        values);
   });
-  expect(status != fmi2OK || std::isfinite(value), "a directional derivative is finite");
+  for (const double value : values) expect(status != fmi2OK || std::isfinite(value), "a derivative is finite");
 }
 
 }  // namespace fuzz
