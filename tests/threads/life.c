@@ -165,8 +165,8 @@ Life* begin_life(const Fmu* fmu, const char* guid, unsigned long number) {
 }
 
 int go_on(Life* life) {
-  static void (*const kinds[])(Life*) = {step,      step, step, step, read_outputs, read_outputs, push,
-                                         keep_state, roll_back, move_state, ask, talk};
+  static void (*const kinds[])(Life*) = {step, step,       step,      step,       read_outputs, read_outputs,
+                                         push, keep_state, roll_back, move_state, ask,          talk};
   const unsigned long long choice = draw(&life->dice) % 100;
   if (choice == 99)
     begin_again(life);
@@ -193,13 +193,32 @@ static void* find(void* library, const char* name) {
 }
 
 Fmu load_fmu(const char* path) {
-  static const char* const names[] = {
-      "fmi2Instantiate", "fmi2FreeInstance", "fmi2SetDebugLogging", "fmi2SetupExperiment",
-      "fmi2EnterInitializationMode", "fmi2ExitInitializationMode", "fmi2Terminate", "fmi2Reset", "fmi2SetReal",
-      "fmi2SetInteger", "fmi2SetBoolean", "fmi2GetReal", "fmi2GetInteger", "fmi2DoStep", "fmi2GetRealStatus",
-      "fmi2GetBooleanStatus", "fmi2SetRealInputDerivatives", "fmi2GetRealOutputDerivatives",
-      "fmi2GetDirectionalDerivative", "fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate",
-      "fmi2SerializedFMUstateSize", "fmi2SerializeFMUstate", "fmi2DeSerializeFMUstate", "fmi2CancelStep"};
+  static const char* const names[] = {"fmi2Instantiate",
+                                      "fmi2FreeInstance",
+                                      "fmi2SetDebugLogging",
+                                      "fmi2SetupExperiment",
+                                      "fmi2EnterInitializationMode",
+                                      "fmi2ExitInitializationMode",
+                                      "fmi2Terminate",
+                                      "fmi2Reset",
+                                      "fmi2SetReal",
+                                      "fmi2SetInteger",
+                                      "fmi2SetBoolean",
+                                      "fmi2GetReal",
+                                      "fmi2GetInteger",
+                                      "fmi2DoStep",
+                                      "fmi2GetRealStatus",
+                                      "fmi2GetBooleanStatus",
+                                      "fmi2SetRealInputDerivatives",
+                                      "fmi2GetRealOutputDerivatives",
+                                      "fmi2GetDirectionalDerivative",
+                                      "fmi2GetFMUstate",
+                                      "fmi2SetFMUstate",
+                                      "fmi2FreeFMUstate",
+                                      "fmi2SerializedFMUstateSize",
+                                      "fmi2SerializeFMUstate",
+                                      "fmi2DeSerializeFMUstate",
+                                      "fmi2CancelStep"};
   enum { COUNT = sizeof names / sizeof *names };
   void *pointers[COUNT], *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
   for (unsigned i = 0; i < COUNT; ++i) pointers[i] = find(library, names[i]);

@@ -62,8 +62,8 @@ int main(int argument_count, char** arguments) {
     different += end_life(alone) != sums[number];
     alike += number > 0 && sums[number] == sums[number - 1]; /* the partner: lives that differ have other sums */
   }
-  printf("%lu instances on %d threads, %lu calls, %lu with other bits than alone, %lu with those of a neighbour\n", count,
-         THREADS, calls_made(), different, alike);
+  printf("%lu instances on %d threads, %lu calls, %lu with other bits than alone, %lu with those of a neighbour\n",
+         count, THREADS, calls_made(), different, alike);
   free(sums);
   return different > 0 || alike > 0;
 }
