@@ -112,8 +112,8 @@ def main(report: Path) -> int:
         "# Coverage of fmu-src by the tests",
         "",
         "Made by `scripts/coverage`: gcov through gcovr, by the tests of contract, partners and equations, the quick",
-        "ones of physics, and the fuzzer's corpus. A line counts as reached if one instantiation of its template reaches",
-        "it. Branches are the compiler's: each way of each comparison, in state_vector.h once per place where it is inlined.",
+        "ones of physics, and the fuzzer's corpus. A line counts as reached if one instantiation of its template is.",
+        "Branches are the compiler's: each way of each comparison, in state_vector.h once per place of inlining.",
         "",
         *table(files),
         "",
@@ -123,9 +123,7 @@ def main(report: Path) -> int:
     PAGE.write_text("\n".join(lines) + "\n")
     hits = [hit for f in files for hit in f.lines.values()]
     percent = 100 * sum(hit > 0 for hit in hits) / len(hits)
-    print(
-        f"{share(hits)} of the lines of fmu-src are reached; {unknown} ranges without a reason. {PAGE.relative_to(ROOT)}"
-    )
+    print(f"{share(hits)} of the lines of fmu-src are reached; {unknown} ranges without a reason.")
     return int(percent < LEAST or unknown > 0)
 
 
