@@ -27,7 +27,12 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS modelDescription.
 file(STRINGS modelDescription.xml guid_line REGEX "guid=")
 string(REGEX REPLACE ".*guid=\"([^\"]*)\".*" "\\1" WHEEL_GUID "${guid_line}")
 
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+# The folder under binaries/: docs/decisions/platform_folders.md.
+if(WIN32)
+  set(wheel_platform win64)
+elseif(APPLE)
+  set(wheel_platform darwin64)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
   set(wheel_platform aarch64-linux)
 else()
   set(wheel_platform linux64)
@@ -38,10 +43,26 @@ function(add_fmu target)
   set(fmu ${CMAKE_BINARY_DIR}/wheel.fmu)
   set(packer ${CMAKE_SOURCE_DIR}/scripts/pack_fmu.py)
   file(GLOB_RECURSE contents CONFIGURE_DEPENDS fmu-src/archive/*)
+  # Eigen's licence: beside its headers, or in Debian's package.
+  get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+  find_file(
+    EIGEN_LICENSE
+    NAMES COPYING.MPL2 copyright
+    HINTS ${eigen} ${eigen}/../../share/doc/libeigen3-dev
+    NO_DEFAULT_PATH
+    NO_CMAKE_FIND_ROOT_PATH
+  )
+  set(licences --fmi-headers ${FMI2_INCLUDE_DIR})
+  if(EIGEN_LICENSE)
+    list(APPEND licences --eigen-license ${EIGEN_LICENSE})
+  endif()
+  if(WHEEL_LIBM_SOURCE)
+    list(APPEND licences --musl ${WHEEL_LIBM_SOURCE})
+  endif()
   add_custom_command(
     OUTPUT ${fmu}
     COMMAND
-      ${Python3_EXECUTABLE} ${packer} --output ${fmu} --sundials ${SUNDIALS_SOURCE} --binary
+      ${Python3_EXECUTABLE} ${packer} --output ${fmu} --sundials ${SUNDIALS_SOURCE} ${licences} --binary
       ${wheel_platform}=$<TARGET_FILE:${target}>
     DEPENDS ${target} ${packer} ${contents} modelDescription.xml LICENSE
     COMMENT "Packing wheel.fmu"

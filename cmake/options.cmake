@@ -56,6 +56,9 @@ target_compile_options(
 # Needs libc and libm only, exports fmi2* only.
 function(link_self_contained target)
   set_target_properties(${target} PROPERTIES PREFIX "")
+  if(APPLE) # no path of the building machine as the library's own name
+    set_target_properties(${target} PROPERTIES INSTALL_NAME_DIR @rpath BUILD_WITH_INSTALL_NAME_DIR ON)
+  endif()
   if(APPLE OR WIN32)
     return()
   endif()

@@ -1,29 +1,56 @@
 """Packs wheel.fmu: description, libraries, documentation and licences in one zip whose bytes depend on nothing else.
 
-Entries are sorted, dated 1980-01-01 and deflated; no time, owner or path of the building machine goes in.
+No part of the paper. Entries are sorted, dated 1980-01-01 and deflated; no time, owner or path of the building
+machine goes in. The licences of what is compiled in are taken from its sources, word for word.
 """
 
 from __future__ import annotations
 
 import argparse
+import textwrap
 import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ENDINGS = {"linux64": ".so", "aarch64-linux": ".so", "win64": ".dll", "darwin64": ".dylib"}
+ENDINGS = {"linux64": ".so", "aarch64-linux": ".so", "win64": ".dll", "darwin64": ".dylib", "aarch64-darwin": ".dylib"}
 FIGURES = ("wheel.png", "paper_diagrams.png")
+# What the cross compiler links in of its own: its run-time, and those of C++ and of Windows.
+ZIG_LICENCES = {
+    "zig-license.txt": "LICENSE",
+    "libcxx-license.txt": "lib/libcxx/LICENSE.TXT",
+    "mingw-w64-license.txt": "lib/libc/mingw/COPYING",
+    "musl-license.txt": "lib/libc/musl/COPYRIGHT",
+}
+Content = Path | bytes
 
 
-def contents(binaries: dict[str, Path], sundials: Path, musl: Path | None) -> dict[str, Path]:
-    """Archive name of every entry and the file behind it."""
-    entries = {
-        "modelDescription.xml": ROOT / "modelDescription.xml",
-        "licenses/license.txt": ROOT / "LICENSE",
-        "licenses/sundials-license.txt": sundials / "LICENSE",
-        "licenses/sundials-notice.txt": sundials / "NOTICE",
+def header_notice(header: Path) -> bytes:
+    """Copyright, conditions and disclaimer of an FMI header, as they stand in its opening comment."""
+    comment = header.read_text(encoding="utf-8").split("*/")[0]
+    start = comment.rindex("\n", 0, comment.index("Copyright (C)")) + 1
+    lines = [line.rstrip() for line in comment[start:].splitlines()]
+    return (textwrap.dedent("\n".join(lines)).strip() + "\n").encode()
+
+
+def licences(arguments: argparse.Namespace) -> dict[str, Content]:
+    entries: dict[str, Content] = {
+        "license.txt": ROOT / "LICENSE",
+        "sundials-license.txt": arguments.sundials / "LICENSE",
+        "sundials-notice.txt": arguments.sundials / "NOTICE",
+        "fmi-headers-notice.txt": header_notice(arguments.fmi_headers / "fmi2Functions.h"),
     }
-    if musl:
-        entries["licenses/musl-license.txt"] = musl / "COPYRIGHT"
+    if arguments.eigen_license:
+        entries["eigen-license.txt"] = arguments.eigen_license
+    if arguments.musl:
+        entries["musl-license.txt"] = arguments.musl / "COPYRIGHT"
+    if arguments.zig:
+        entries |= {name: arguments.zig / path for name, path in ZIG_LICENCES.items()}
+    return {f"licenses/{name}": content for name, content in entries.items()}
+
+
+def contents(binaries: dict[str, Path], licence_texts: dict[str, Content]) -> dict[str, Content]:
+    """Archive name of every entry and what goes into it."""
+    entries: dict[str, Content] = {"modelDescription.xml": ROOT / "modelDescription.xml", **licence_texts}
     archive = ROOT / "fmu-src" / "archive"
     for path in archive.rglob("*"):
         if path.is_file():
@@ -35,28 +62,32 @@ def contents(binaries: dict[str, Path], sundials: Path, musl: Path | None) -> di
     return entries
 
 
-def pack(entries: dict[str, Path], output: Path) -> None:
+def pack(entries: dict[str, Content], output: Path) -> None:
     with zipfile.ZipFile(output, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        for name, path in sorted(entries.items()):
+        for name, content in sorted(entries.items()):
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
             info.compress_type = zipfile.ZIP_DEFLATED
             info.create_system = 3  # Unix, so that the permissions below are read
             info.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
-            archive.writestr(info, path.read_bytes(), compresslevel=9)
+            data = content if isinstance(content, bytes) else content.read_bytes()
+            archive.writestr(info, data, compresslevel=9)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, required=True)
     parser.add_argument("--sundials", type=Path, required=True, help="SUNDIALS source, for its licence")
+    parser.add_argument("--fmi-headers", type=Path, required=True, help="folder of the FMI headers, for their notice")
+    parser.add_argument("--eigen-license", type=Path, help="Eigen's licence")
     parser.add_argument("--musl", type=Path, help="musl's folder, for its licence, where its libm is linked in")
+    parser.add_argument("--zig", type=Path, help="folder of ziglang where it is the compiler, for what it links in")
     parser.add_argument("--binary", action="append", default=[], help="platform=library")
     arguments = parser.parse_args()
     binaries = {}
     for pair in arguments.binary:
         platform, path = pair.split("=", 1)
         binaries[platform] = Path(path)
-    pack(contents(binaries, arguments.sundials, arguments.musl), arguments.output)
+    pack(contents(binaries, licences(arguments)), arguments.output)
 
 
 if __name__ == "__main__":

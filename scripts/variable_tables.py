@@ -1,21 +1,25 @@
 #!/usr/bin/env python3
-"""Writes the tables of variables in README.md and in the FMU's documentation from modelDescription.xml.
+"""Writes what follows from the variables in modelDescription.xml: its GUID, and the tables in README.md and in the
+FMU's documentation.
 
-No paper equation; frames and units are those of the description. Run it after a change of the variables;
-tests/test_readme.py fails while a table is stale. With --check it changes nothing and tells by its exit status.
+No paper equation; frames and units are those of the description. Run it after a change of the variables; the tests
+fail while the GUID or a table is stale. With --check it changes nothing and tells by its exit status.
 """
 
 from __future__ import annotations
 
 import argparse
 import html
+import re
 import sys
+import uuid
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parent.parent
+DESCRIPTION = ROOT / "modelDescription.xml"
 PAGES = (ROOT / "README.md", ROOT / "fmu-src" / "archive" / "documentation" / "index.html")
 TITLES = {
     "parameter": "Parameters, set before the run (`s` also between steps)",
@@ -23,6 +27,8 @@ TITLES = {
     "output": "Outputs",
     "local": "For inspection",
 }
+# What a master relies on: a library and a description that differ here do not belong together.
+BINDING = ("CoSimulation", "UnitDefinitions", "TypeDefinitions", "ModelVariables", "ModelStructure")
 BEGIN, END = "<!-- variables: scripts/variable_tables.py -->", "<!-- end of variables -->"
 
 
@@ -34,7 +40,7 @@ class Variable(NamedTuple):
     meaning: str
 
 
-def read_variables(path: Path = ROOT / "modelDescription.xml") -> list[Variable]:
+def read_variables(path: Path = DESCRIPTION) -> list[Variable]:
     root = ElementTree.parse(path).getroot()
     items = {
         kind.get("name"): {item.get("value"): item.get("name") for item in kind.iter("Item")}
@@ -51,6 +57,18 @@ def variable_of(row: ElementTree.Element, items: dict[str, dict[str, str]]) -> V
     elif typed.tag == "Real" and start:
         start = f"{float(start):.6g}"
     return Variable(row.get("name"), row.get("causality"), typed.get("unit", ""), start, row.get("description"))
+
+
+def guid_of(description: str) -> str:
+    """The GUID as a digest of all that binds library and description; comments, layout and prose do not count."""
+    root = ElementTree.fromstring(description.encode())
+    parts = [ElementTree.tostring(root.find(name), encoding="unicode") for name in BINDING]
+    text = "".join(ElementTree.canonicalize(part, strip_text=True, exclude_attrs=["description"]) for part in parts)
+    return "{" + str(uuid.uuid5(uuid.NAMESPACE_OID, text)) + "}"
+
+
+def with_guid(description: str) -> str:
+    return re.sub(r' guid="[^"]*"', f' guid="{guid_of(description)}"', description, count=1)
 
 
 def tables(variables: list[Variable]) -> Iterator[tuple[str, list[str], list[list[str]]]]:
@@ -100,9 +118,9 @@ def main() -> int:
     check = parser.parse_args().check
     variables = read_variables()
     stale = 0
-    for page in PAGES:
+    for page in (DESCRIPTION, *PAGES):
         text = page.read_text(encoding="utf-8")
-        fresh = with_tables(text, variables, page)
+        fresh = with_guid(text) if page == DESCRIPTION else with_tables(text, variables, page)
         stale += text != fresh
         if not check:
             page.write_text(fresh, encoding="utf-8")

@@ -1,0 +1,126 @@
+"""What is packed for a release: licences word for word, one library for both of Apple's processors, a GUID that tells.
+
+No part of the paper. The cross compiler is not needed here; scripts/release checks the libraries themselves.
+"""
+
+from __future__ import annotations
+
+import argparse
+import struct
+import sys
+from pathlib import Path
+
+import fmpy
+import pytest
+from paths import ROOT
+
+sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "releasing"))
+import pack_fmu
+import universal
+import variable_tables
+
+HEADERS = Path(fmpy.__file__).parent / "c-code"
+CLAUSES = (
+    "Redistributions of source code must retain the above copyright notice",
+    "Redistributions in binary form must reproduce the above copyright notice",
+    "THIS SOFTWARE IS PROVIDED BY THE COPYRIGHT HOLDERS AND CONTRIBUTORS",
+    "EVEN IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE",
+)
+PAGE = 1 << 14
+X86_64, ARM64 = 0x01000007, 0x0100000C
+DESCRIPTION = variable_tables.DESCRIPTION.read_text(encoding="utf-8")
+
+
+def words(text: str) -> list[str]:
+    return text.split()
+
+
+def contains(text: str, piece: str) -> bool:
+    return " ".join(words(piece)) in " ".join(words(text))
+
+
+def test_the_notice_of_the_fmi_headers_is_that_of_the_headers_word_for_word(fmu):
+    notice = (Path(fmu) / "licenses" / "fmi-headers-notice.txt").read_text(encoding="utf-8")
+    for header in ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"):
+        assert contains((HEADERS / header).read_text(encoding="utf-8"), notice), header
+    assert words(notice)[:2] == ["Copyright", "(C)"]
+    assert all(contains(notice, clause) for clause in CLAUSES)
+    changed = notice.replace("must reproduce", "should reproduce")  # the partner
+    assert not contains((HEADERS / "fmi2Functions.h").read_text(encoding="utf-8"), changed)
+
+
+def test_the_licence_of_eigen_is_packed_in_full(fmu):
+    text = (Path(fmu) / "licenses" / "eigen-license.txt").read_text(encoding="utf-8")
+    assert contains(text, "Mozilla Public License") and contains(text, '1.1. "Contributor"')
+    assert contains(text, "Limitation of Liability") and contains(text, "Exhibit A - Source Code Form License Notice")
+    notice = (Path(fmu) / "licenses" / "eigen-notice.txt").read_text(encoding="utf-8")
+    assert not contains(notice, "Limitation of Liability")  # the partner: our own words about it
+
+
+def release(tmp_path: Path, left_out: str = "") -> dict[str, pack_fmu.Content]:
+    """The licences of a release whose compiler is an empty shell of ziglang, without one of its files."""
+    for name in pack_fmu.ZIG_LICENCES.values():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        if name != left_out:
+            (tmp_path / name).write_text(name)
+    arguments = argparse.Namespace(sundials=tmp_path, fmi_headers=HEADERS, eigen_license=None, musl=None, zig=tmp_path)
+    (tmp_path / "NOTICE").write_text("NOTICE")
+    return pack_fmu.licences(arguments)
+
+
+def test_a_release_carries_the_licences_of_what_the_cross_compiler_links_in(tmp_path):
+    entries = release(tmp_path / "whole")
+    names = {"zig", "musl", "mingw-w64", "libcxx", "sundials"}
+    assert {f"licenses/{name}-license.txt" for name in names} <= set(entries)
+    pack_fmu.pack(entries, tmp_path / "whole.fmu")
+    with pytest.raises(FileNotFoundError):  # a licence that is not found is not passed over
+        pack_fmu.pack(release(tmp_path / "less", "lib/libc/musl/COPYRIGHT"), tmp_path / "less.fmu")
+
+
+def mach_o(processor: int, size: int) -> bytes:
+    return struct.pack("<III", universal.MACHO_64, processor, 0).ljust(size, bytes([processor & 0xFF]))
+
+
+def test_the_universal_library_holds_each_processors_library_whole_and_on_its_page():
+    libraries = {X86_64: mach_o(X86_64, PAGE + 5), ARM64: mach_o(ARM64, 3 * PAGE - 1)}
+    joined = universal.universal([*libraries.values()])
+    magic, count = struct.unpack_from(">II", joined)
+    assert (magic, count) == (0xCAFEBABE, 2)
+    for k, (processor, library) in enumerate(libraries.items()):
+        kind, _, offset, size, alignment = struct.unpack_from(">5I", joined, 8 + 20 * k)
+        assert (kind, size, offset % PAGE, 1 << alignment) == (processor, len(library), 0, PAGE)
+        assert joined[offset : offset + size] == library
+        assert joined[offset + 1 : offset + 1 + size] != library
+    with pytest.raises(ValueError, match="not a 64-bit Mach-O"):
+        universal.universal([b"\x7fELF".ljust(64, b"\0")])
+
+
+def test_the_guid_is_the_digest_of_the_variables(description):
+    assert description.guid == variable_tables.guid_of(DESCRIPTION), "run scripts/variable_tables.py"
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('name="theta_dot"', 'name="theta_rate"'),
+        ('valueReference="30"', 'valueReference="99"'),
+        ('start="20"', 'start="21"'),
+        ('unit="N.m"', 'unit="N"'),
+        ('variability="tunable"', 'variability="fixed"'),
+        ('name="adams" value="2"', 'name="adams" value="4"'),
+        ('maxOutputDerivativeOrder="1"', 'maxOutputDerivativeOrder="0"'),
+        ('dependencies=""', 'dependencies="1"'),
+    ],
+)
+def test_the_guid_changes_when_a_variable_does(old, new):
+    assert old in DESCRIPTION
+    changed = DESCRIPTION.replace(old, new, 1)
+    assert variable_tables.guid_of(changed) != variable_tables.guid_of(DESCRIPTION)
+    assert variable_tables.with_guid(variable_tables.with_guid(changed)) == variable_tables.with_guid(changed)
+
+
+def test_the_guid_stays_when_only_prose_or_layout_changes():
+    prose = DESCRIPTION.replace('description="Mass"', 'description="The mass"').replace("\n  ", "\n    ")
+    assert prose != DESCRIPTION
+    assert variable_tables.guid_of(prose) == variable_tables.guid_of(DESCRIPTION)
