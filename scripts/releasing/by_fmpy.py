@@ -15,6 +15,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 from fmpy.util import add_remoting
+from fmpy.validation import validate_fmu
 
 SCENES = {"free": 0.0, "friction": 0.03}  # s, m
 
@@ -37,6 +38,8 @@ def trajectory(folder: Path, s: float) -> np.ndarray:
 
 def main() -> None:
     fmu, report = (Path(argument) for argument in sys.argv[1:])
+    if problems := validate_fmu(str(fmu)):
+        raise SystemExit(f"{fmu}: {problems}")
     with tempfile.TemporaryDirectory() as scratch:
         linux = only(fmu, "linux64", Path(scratch) / "linux")
         windows = only(fmu, "win64", Path(scratch) / "windows")
@@ -45,9 +48,10 @@ def main() -> None:
             here, there = trajectory(linux, s), trajectory(windows, s)
             if len(here) != 1001 or here.tobytes() != there.tobytes():
                 raise SystemExit(f"FMPy under wine gives another {scene} wheel than on Linux.")
+    version = fmpy.__version__
     report.write_text(
-        f"FMPy {fmpy.__version__} simulated the paper's two scenes with the Windows library, through its remoting and\n"
-        "wine, and with the Linux library: 16 outputs at 1001 instants, all bits equal.\n"
+        f"FMPy {version} finds no fault in the archive. It simulated the paper's two scenes with the Windows library,\n"
+        "through its remoting and wine, and with the Linux library: 16 outputs at 1001 instants, all bits equal.\n"
     )
 
 
