@@ -47,6 +47,7 @@ function(link_libm target)
     WRITE ${shim}/math.h
     "#include <features.h>\ntypedef double double_t;\n#define isnan __builtin_isnan\n#define fabs __builtin_fabs\n"
     "#define scalbn __builtin_scalbn\n#define floor __builtin_floor\n"
+    "#ifndef INFINITY\n#define INFINITY __builtin_inff()\n#endif\n"
     "double sin(double), cos(double), tanh(double), cosh(double), exp(double), expm1(double), pow(double, double);\n"
   )
   target_include_directories(

@@ -63,11 +63,9 @@ def places(arguments: argparse.Namespace) -> list[Place]:
         Place("aarch64-linux, qemu", ARM, ["qemu-aarch64", "-L", arguments.arm_root], folder / ARM / "wheel.so"),
     ]
     if arguments.old_glibc:
-        loader = str(arguments.old_glibc / "ld-linux-x86-64.so.2")
-        start = [loader, "--library-path", str(arguments.old_glibc)]
-        version = subprocess.run([loader, "--version"], capture_output=True, text=True, check=True).stdout
-        name = f"linux64, glibc {version.split('release version ')[1][:4]}"
-        found.insert(1, Place(name, LINUX, start, folder / LINUX / "wheel.so"))
+        name, libc = arguments.old_glibc
+        start = [str(Path(libc) / "ld-linux-x86-64.so.2"), "--library-path", libc]
+        found.insert(1, Place(f"linux64, {name}", LINUX, start, folder / LINUX / "wheel.so"))
     return found
 
 
@@ -77,14 +75,16 @@ def main() -> None:
     parser.add_argument("--zig", type=Path, required=True)
     parser.add_argument("--wine", required=True)
     parser.add_argument("--arm-root", required=True, help="folder of the arm C library")
-    parser.add_argument("--old-glibc", type=Path, help="folder of an older C library than this machine's")
-    parser.add_argument("--own", type=Path, action="append", nargs=2, default=[], metavar=("NAME", "LIBRARY"))
+    parser.add_argument(
+        "--old-glibc", nargs=2, metavar=("NAME", "FOLDER"), help="an older C library than this machine's"
+    )
+    parser.add_argument("--own", action="append", nargs=2, default=[], metavar=("NAME", "LIBRARY"))
     parser.add_argument("--report", type=Path, required=True)
     arguments = parser.parse_args()
     folder = arguments.folder
     drivers = {target: build_driver(arguments.zig, target, folder) for target in (LINUX, ARM, WINDOWS)}
     released = {place.name: run_scenes(place, drivers[place.target]) for place in places(arguments)}
-    own = {str(n): run_scenes(Place(str(n), LINUX, [], library), drivers[LINUX]) for n, library in arguments.own}
+    own = {name: run_scenes(Place(name, LINUX, [], Path(path)), drivers[LINUX]) for name, path in arguments.own}
     parts = {name: (folder / f"{name}.md").read_text() for name in ("libraries", "fmpy", "twice")}
     arguments.report.write_text(page.write(parts, released, own, (folder / "wheel.fmu").stat().st_size, arguments.wine))
     if page.different(released):
