@@ -24,6 +24,9 @@ std::uint64_t checksum_of(const CallState& call) {
 }
 
 struct Snapshot {
+  // Null. fmi2FreeFMUstate frees what its argument points to; a caller that passes the state instead of its address
+  // (fmusim 0.0.39) points to this word, and nothing is freed.
+  void* nothing;
   std::size_t size;  // of the bytes behind this header
   unsigned char* bytes() { return reinterpret_cast<unsigned char*>(this + 1); }
 };
@@ -31,7 +34,7 @@ struct Snapshot {
 Snapshot* allocate(Snapshot* previous, std::size_t size) {
   if (previous && previous->size == size) return previous;
   auto* snapshot = static_cast<Snapshot*>(std::realloc(previous, sizeof(Snapshot) + size));
-  if (snapshot) snapshot->size = size;
+  if (snapshot) *snapshot = {nullptr, size};
   return snapshot;
 }
 

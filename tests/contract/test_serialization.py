@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from ctypes import byref, c_size_t, create_string_buffer
+from ctypes import POINTER, byref, c_size_t, cast, create_string_buffer
 from hashlib import sha256
 from pathlib import Path
 
@@ -105,6 +105,21 @@ def test_freeing_no_state_is_without_effect_and_a_state_outlives_its_instance(wh
     assert other.fmi2FreeFMUstate(other.component, byref(state)) == OK and not state
     assert other.fmi2FreeFMUstate(other.component, byref(state)) == OK
     assert other.fmi2SetFMUstate(other.component, state) == ERROR
+
+
+@contract
+def test_a_caller_that_passes_a_state_where_its_address_belongs_frees_nothing(wheel):
+    """fmusim 0.0.39 does so after saving and after restoring a state."""
+    w = wheel().start(s=0.03)
+    state = w.snapshot()
+    misread = cast(state, POINTER(fmi2FMUstate))
+    assert not misread.contents  # the word that fmi2FreeFMUstate takes for the state
+    assert w.fmi2FreeFMUstate(w.component, misread) == OK
+    ahead = w.run([1.5])
+    assert w.fmi2SetFMUstate(w.component, state) == OK
+    w.time = 0.0
+    assert w.run([1.5]) == ahead
+    assert w.fmi2FreeFMUstate(w.component, byref(state)) == OK and not state
 
 
 @contract
