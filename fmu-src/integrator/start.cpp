@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 #include <utility>
 
@@ -75,14 +76,14 @@ class StartStep {
       c[2][i] = 2 * c[0][i] - h_ * (f_[0][i] + f_[12][i]);
     }
     combine<table::d_3>(c[3]), combine<table::d_4>(c[4]), combine<table::d_5>(c[5]), combine<table::d_6>(c[6]);
-    std::fill_n(&p[0][0], (start_order + 1) * pairs, StatePair{0, 0});
+    std::memset(p, 0, sizeof *p * (start_order + 1));
     for (int i = 0; i < pairs; ++i)
       for (int k = 6; k >= 0; --k) {
         p[0][i] += c[k][i];
         for (int j = 7 - k; j > 0; --j) p[j][i] = k % 2 == 0 ? p[j][i] + p[j - 1][i] : -p[j - 1][i];  // by x or 1 - x
         if (k % 2 == 1) p[0][i] = StatePair{0, 0};
       }
-    std::copy_n(y_end_, pairs, p[0]);
+    std::memcpy(p[0], y_end_, sizeof *p);
   }
 
   const StatePair* end() const { return y_end_; }
@@ -167,7 +168,7 @@ bool start_with(Integrator::Implementation& self) {
   if (!step.evaluate_interior()) return false;
   step.expand_at_end(p);
   const double share = adams_share * std::fmin(1, progress.start_size / h);
-  std::copy_n(p[0], pairs, state_pairs(self.y));
+  std::memcpy(state_pairs(self.y), p[0], sizeof *p);
   if (CVodeReInit(self.cvode, h == room ? m.cv_tstop : t + h, self.y) != CV_SUCCESS) return false;
   hand_over<pairs>(m, p, self.scratch, share, share * h);
   progress.step_start = t;

@@ -17,7 +17,9 @@ constexpr Row parameter(const char* name, double start, double min = -none, doub
 constexpr Row choice(const char* name, double max) {
   return {name, Type::integer, Role::parameter, 1, 1, max, nullptr};
 }
-constexpr Row input(const char* name) { return {name, Type::real, Role::input, 0, -none, none, nullptr}; }
+// Far beyond any wheel: beyond it the products of loads and parameters would not be finite.
+constexpr double strongest = 1e300;  // N, N m
+constexpr Row input(const char* name) { return {name, Type::real, Role::input, 0, -strongest, strongest, nullptr}; }
 constexpr Row output(const char* name, double (*read)(Reading&), double (*rate)(Reading&)) {
   return {name, Type::real, Role::output, 0, 0, 0, read, rate};
 }

@@ -139,12 +139,12 @@ def test_limits_of_the_description_are_those_the_library_enforces(wheel, descrip
             if limit is None:
                 continue
             limited += 1
-            outside = int(limit) + outwards if whole else float(limit) + outwards * 1e-3
+            outside = int(limit) + outwards if whole else float(limit) + outwards * max(1e-3, 1e-3 * abs(float(limit)))
             assert not accepted(v.name, outside), (v.name, outside)
         if v.min is not None:
             factor = 0.99 if v.name == "J_z" else 1.01  # J_z is at its limit, J_x + J_y
             assert accepted(v.name, int(v.min) if whole else float(v.start) * factor), v.name
-    assert limited == 17
+    assert limited == 29
 
 
 def test_every_unit_is_defined_by_base_units_and_used(description, xml):
