@@ -70,8 +70,8 @@ class StartStep {
   // gives it as nested products: y = y_0 + x (c_0 + (1 - x) (c_1 + x (c_2 + ... + x c_6))), x = t / h.
   void expand_at_end(StatePair (*p)[pairs]) const {
     StatePair c[7][pairs];
+    combine<table::b>(c[0]);  // y_1 - y_0, without the rounding of y
     for (int i = 0; i < pairs; ++i) {
-      c[0][i] = y_end_[i] - y_[i];
       c[1][i] = h_ * f_[0][i] - c[0][i];
       c[2][i] = 2 * c[0][i] - h_ * (f_[0][i] + f_[12][i]);
     }
@@ -85,8 +85,6 @@ class StartStep {
       }
     std::memcpy(p[0], y_end_, sizeof *p);
   }
-
-  const StatePair* end() const { return y_end_; }
 
  private:
   bool evaluate(double after, const StatePair* y, StatePair* y_dot) {
@@ -157,19 +155,20 @@ bool start_with(Integrator::Implementation& self) {
   const double t = progress.known_until, room = m.cv_tstopset ? m.cv_tstop - t : INFINITY;
   const double longest = std::fmin(room, self.system.longest_step);
   double h = std::fmin(longest, progress.start_size > 0 ? progress.start_size : step.guess_size());
-  for (int failures = 0;; ++failures) {
+  for (int attempts = 0;; ++attempts) {
+    if (attempts == most_attempts || t + h == t) return false;
     const double error = step.attempt(h);
     progress.start_size = h * std::fmin(10, std::fmax(0.2, 0.9 * std::pow(error, -1.0 / 8)));
     if (error <= 1) break;
     h = std::fmin(longest, progress.start_size);
-    if (failures == most_attempts || t + h == t) return false;
   }
   StatePair p[start_order + 1][pairs];
   if (!step.evaluate_interior()) return false;
   step.expand_at_end(p);
-  const double share = adams_share * std::fmin(1, progress.start_size / h);
+  const double share = std::fmin(1, adams_share * progress.start_size / h);
   std::memcpy(state_pairs(self.y), p[0], sizeof *p);
   if (CVodeReInit(self.cvode, h == room ? m.cv_tstop : t + h, self.y) != CV_SUCCESS) return false;
+  if (h == room) m.cv_tstopset = SUNFALSE;  // reached
   hand_over<pairs>(m, p, self.scratch, share, share * h);
   progress.step_start = t;
   progress.trend = {};
