@@ -24,7 +24,7 @@ ASKED = "SUNDIALS asks for it only when it is built with its own error checks"
 FMI, INTEGRATOR = "fmu-src/fmi/", "fmu-src/integrator/"
 REASONS: tuple[tuple[str, str, str], ...] = (
     (FMI + "fmu_state.cpp", "memory is short", SHORT),
-    (FMI + "fmu_state.cpp", "the solver does not take", "CVODE would have to refuse a restart: no state tried leads there"),
+    (FMI + "fmu_state.cpp", "the solver does not", "CVODE would have to refuse a restart; nothing tried leads there"),
     (
         INTEGRATOR + "step.cpp",
         "solution.restart(t, data(self.y)",
