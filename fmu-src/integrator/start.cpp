@@ -48,7 +48,8 @@ class StartStep {
     if (!evaluate(h, y_end_, f_[1])) return h;
     StatePair bend[pairs];
     for (int i = 0; i < pairs; ++i) bend[i] = (f_[1][i] - f_[0][i]) / h;
-    return std::fmin(scale, std::pow(0.01 / std::fmax(speed, norm(bend)), 1.0 / 8));
+    const double change = std::fmax(scale * speed, scale * scale * norm(bend));  // over the longest step
+    return scale * std::fmin(1, std::pow(0.01 / change, 1.0 / 8));
   }
 
   // The error of the step over h in units of the weights; infinite where the right-hand side fails.
