@@ -54,8 +54,8 @@ def play(tmp_path_factory: pytest.TempPathFactory, description) -> Play:
 
 @pytest.fixture(scope="module")
 def library(fmu: str) -> Path:
-    (path,) = Path(fmu).glob("binaries/*linux*/wheel.so")
-    return path
+    paths = Path(fmu).glob("binaries/*linux*/wheel.so")  # a release also holds one for arm
+    return max(paths, key=lambda path: path.parent.name == "linux64")
 
 
 @pytest.fixture(scope="module")
