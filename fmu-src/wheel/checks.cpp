@@ -50,6 +50,23 @@ void formulation_fault(const double* v, char* sentence, std::size_t size) {
 
 }  // namespace
 
+// Values that are sound one by one can still have products that are no finite numbers.
+bool Simulation::check_start(bool report) {
+  const WheelDynamics& forces = now_.dynamics();
+  const double numbers[] = {wheel_energy(&scene_.wheel, &now_.kinematics()), forces.lambda[0], forces.lambda[1],
+                            forces.lambda[2], forces.tau};
+  for (const double number : numbers)
+    if (!std::isfinite(number)) {
+      if (report)
+        tell(Topic::error,
+             "The start has energy and forces beyond the range of numbers: m = %.3g kg, J_z = %.3g kg m2, r_0 = %.3g "
+             "m, g = %.3g m/s2, omega_z = %.3g rad/s.",
+             stored_[m], stored_[J_z], stored_[r_0], stored_[g], now_.kinematics().omega_z);
+      return false;
+    }
+  return true;
+}
+
 bool Simulation::check_parameters(bool report) const {
   bool sound = true;
   char sentence[256];

@@ -79,7 +79,8 @@ bool Simulation::prepare(bool report) {
   now_ = Reading(*formulation_, *this);
   now_.set_state(0, y);
   touched_ = false;
-  return true;
+  if (!check_start(report)) formulation_ = nullptr;
+  return exists();
 }
 
 bool Simulation::start() {

@@ -92,6 +92,7 @@ class Simulation {
   void visit(Archive& archive, Moment& moment);
 
   bool tell(Topic topic, const char* format, ...) const;
+  bool check_start(bool report);
   bool restart_from(double t, const double* y);
   bool joins(double t, const double* y, const WheelScene& next) const;
   bool settle_changes();

@@ -128,3 +128,15 @@ def test_experiments_that_make_no_sense_are_refused(wheel):
         assert len(w.take_messages()) == 1
     assert w.setupExperiment(np.nan) == ERROR
     assert w.setupExperiment(1e-8, 0.0, 0.0) == OK
+
+
+def test_sound_values_whose_products_are_no_numbers_are_refused_with_a_sentence(wheel):
+    w = wheel()
+    assert w.set(m=1.7e308) == OK
+    w.setupExperiment()
+    w.enterInitializationMode()
+    assert w.exitInitializationMode() == ERROR
+    assert [m.text.split(":")[0] for m in w.take_messages()] == [
+        "The start has energy and forces beyond the range of numbers"
+    ]
+    assert wheel().start(m=1e100, J_x=1e100, J_y=1e100, J_z=1.5e100).step(0.1) == OK
