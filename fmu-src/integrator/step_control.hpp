@@ -6,8 +6,8 @@
 
 namespace integrator {
 
-// After a step of CVODE that succeeded: sets the size of the next one, unless CVODE changes the order or has just seen
-// a step fail. `trend` is that of the step before.
+// After a step of CVODE that succeeded: sets the size of the next one, unless CVODE changes the order. `trend` is that
+// of the step before.
 void follow_trend(CVodeMemRec& m, Trend* trend);
 
 }  // namespace integrator

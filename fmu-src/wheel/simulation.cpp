@@ -64,7 +64,7 @@ void Simulation::set_input_derivative(unsigned variable, int order, double value
 }
 
 bool Simulation::prepare(bool report) {
-  if (!check_parameters(report)) return false;
+  if (!check_parameters(report)) return formulation_ = nullptr, false;
   formulation_ = &choose_formulation(stored_);
   method_ = choose_method(stored_);
   scene_ = {};

@@ -67,17 +67,17 @@ bool Simulation::load_state(const unsigned char* bytes) {
   Moment moment;
   visit(reader, moment);
   if (!moment.started) solver_ = nullptr;
-  if (!moment.prepared) {
-    formulation_ = nullptr;
-    now_ = Reading();
-    return true;
-  }
   const WheelFriction friction = scene_.friction;
   const double s_in_force = scene_.wheel.s, force = lowest_force_;
   const Inputs inputs = inputs_;
   const bool touched = touched_;
   const integrator::Method method = method_;
-  if (!prepare(false)) return false;
+  // Without a start: none yet, or parameters made faulty since.
+  if (!moment.prepared || !prepare(false)) {
+    formulation_ = nullptr;
+    now_ = Reading();
+    return !moment.started;
+  }
   method_ = method;
   if (moment.started && !start()) return false;
   scene_.friction = friction;

@@ -97,6 +97,19 @@ def test_faulty_parameters_can_be_corrected_in_initialization_mode(wheel):
     assert w.get("lambda_3") != wheel().start(m=20.1).get("lambda_3")
 
 
+def test_a_state_with_parameters_made_faulty_since_its_start_can_be_restored_and_corrected(wheel):
+    w = wheel()
+    assert (w.setupExperiment(), w.enterInitializationMode()) == (OK, OK)
+    at_start = w.get("lambda_3")
+    assert w.set(m=-1.0) == OK
+    state = w.getFMUState()
+    w.setFMUState(state)
+    assert w.get_one("lambda_3")[0] == DISCARD
+    assert w.set(m=20.0) == OK
+    assert w.get("lambda_3") == at_start
+    w.freeFMUState(state)
+
+
 def test_parameters_and_inputs_set_in_initialization_mode_act_at_once(wheel):
     late, early = wheel(), wheel().start(theta_start=1.0, s=0.02, F_X=3.0)
     assert (late.setupExperiment(), late.enterInitializationMode()) == (OK, OK)
