@@ -120,6 +120,8 @@ void Integrator::read(double t, double* y) const {
 bool Integrator::notices(const double* y_dot_before, const double* y_dot_after) const {
   const auto& m = *static_cast<CVodeMem>(self->cvode);
   if (!has_history(m)) return true;
+  // Not the weights of the last step: a snapshot does not keep them.
+  self->system.weights(self->system.owner, data(m.cv_zn[0]), data(m.cv_ewt));
   double* change = data(self->scratch);
   for (int i = 0; i < self->system.states; ++i) change[i] = m.cv_h * (y_dot_after[i] - y_dot_before[i]);
   return !(state_wrms_norm(self->scratch, m.cv_ewt) < 1);

@@ -145,6 +145,7 @@ Outcome Integrator::advance(double t) {
 }
 
 void Integrator::stop_before(double t) { CVodeSetStopTime(self->cvode, t); }
+void Integrator::stop_nowhere() { CVodeClearStopTime(self->cvode); }
 
 double Integrator::known_until() const { return self->progress.known_until; }
 double Integrator::event_time() const { return self->progress.event_time; }

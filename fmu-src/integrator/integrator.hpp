@@ -64,6 +64,8 @@ class Integrator {
 
   // No step goes past t until then: what holds beyond is not known yet. t > known_until().
   void stop_before(double t);
+  // A stop time left over from an event found exactly there would lie behind the restart: CVODE refuses that.
+  void stop_nowhere();
 
   // Whether a jump of the right-hand side at known_until() is more than the error a step may make.
   bool notices(const double* y_dot_before, const double* y_dot_after) const;

@@ -135,11 +135,10 @@ class StartStep {
 
 // The polynomial as CVODE's Nordsieck history at the end of the step, as if it had taken equal steps of size h.
 template <int pairs>
-void hand_over(CVodeMemRec& m, const StatePair (*p)[pairs], N_Vector weights, double share, double h) {
+void hand_over(CVodeMemRec& m, const StatePair (*p)[pairs], double share, double h) {
   double factor = 1;
   for (int j = 0; j <= start_order; ++j, factor *= share)
     for (int i = 0; i < pairs; ++i) state_pairs(m.cv_zn[j])[i] = factor * p[j][i];
-  state_scale(1, weights, m.cv_ewt);  // CVODE sets its own only when it steps
   m.cv_q = start_order;
   m.cv_L = m.cv_qwait = start_order + 1;
   m.cv_hin = m.cv_h = h;
@@ -170,7 +169,7 @@ bool start_with(Integrator::Implementation& self) {
   std::memcpy(state_pairs(self.y), p[0], sizeof *p);
   if (CVodeReInit(self.cvode, h == room ? m.cv_tstop : t + h, self.y) != CV_SUCCESS) return false;
   if (h == room) m.cv_tstopset = SUNFALSE;  // reached
-  hand_over<pairs>(m, p, self.scratch, share, share * h);
+  hand_over<pairs>(m, p, share, share * h);
   progress.step_start = t;
   progress.trend = {};
   progress.known_until = m.cv_tn;

@@ -184,7 +184,7 @@ bool Simulation::pass_event() {
 integrator::Outcome Simulation::run_to(double t) {
   solver_->allow_steps(most_steps(scene_.wheel, now_.state()[formulation_->spin_index], t - now_.time()));
   while (solver_->known_until() < t) {
-    if (inputs_.varies()) solver_->stop_before(t);
+    inputs_.varies() ? solver_->stop_before(t) : solver_->stop_nowhere();
     const integrator::Outcome outcome = solver_->advance(t);
     if (outcome != integrator::Outcome::event) return outcome;
     if (!pass_event()) return integrator::Outcome::failed;

@@ -158,6 +158,26 @@ def test_a_held_wheel_stays_held_when_an_input_changes(wheel):
         assert w.step(0.001) == OK and w.get("omega_z")[0] > 1e-3
 
 
+def ramp_and_hold(w: FMU2Wheel, h: float) -> tuple[float, int]:
+    """Held by friction, over h with M_3 = 3 t: whether it was released by then, and the status of going on from there."""
+    give(w.start(s=0.03, **UPRIGHT), "M_3", [0.0, 3.0])
+    assert w.step(h) == OK
+    return w.get("n_events")[0], w.step(0.1)
+
+
+def test_a_step_may_end_on_the_very_instant_of_a_release(wheel):
+    """An event found at the stop time leaves that stop time behind; held inputs then go on without one."""
+    early, late = 1.9, 2.0  # friction gives way at s m g / 3 = 1.962 s
+    while np.nextafter(early, late) < late:
+        middle = 0.5 * (early + late)
+        released = ramp_and_hold(wheel(), middle)[0]
+        early, late = (early, middle) if released else (middle, late)
+    ends = early + np.spacing(early) * np.arange(-20, 20)
+    told = [ramp_and_hold(wheel(), h) for h in ends]
+    assert {released for released, _ in told} == {0, 1}  # the instant lies among them
+    assert {status for _, status in told} == {OK}  # with the stop time kept, 8 of the 40 ended in an error
+
+
 def test_wrong_input_derivatives_are_refused_as_a_whole(wheel):
     w = wheel().start()
     before = w.serialized()
