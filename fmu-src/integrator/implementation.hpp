@@ -43,8 +43,8 @@ struct Integrator::Implementation {
 // One step, and what stops the solution inside it. False: failed.
 bool take_step(Integrator& solution);
 
-// First zero of g on [t_lo, t_hi] of the dense output, where g(t_lo) = g_lo >= 0: by sign, or by a dip below zero
-// between the ends that a parabola through start, middle and end gives away. False: none.
+// First zero of g on [t_lo, t_hi] of the dense output: t_lo where g(t_lo) = g_lo is negative already; else by sign, or
+// by a dip below zero between the ends that a parabola through start, middle and end gives away. False: none.
 struct Bracket {
   double t_lo, g_lo, t_hi, g_hi;
 };

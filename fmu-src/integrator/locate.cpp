@@ -78,6 +78,7 @@ bool may_dip(const OnDenseOutput& g, const Bracket& step, double g_mid) {
 }  // namespace
 
 bool find_first_zero(const Integrator& solution, const System& system, Watched g, const Bracket& step, double* t_zero) {
+  if (step.g_lo < 0) return *t_zero = step.t_lo, true;
   const OnDenseOutput on_step(solution, system, g);
   Bracket first = step;
   const double t_mid = 0.5 * (step.t_lo + step.t_hi), g_mid = on_step(t_mid);
@@ -87,7 +88,7 @@ bool find_first_zero(const Integrator& solution, const System& system, Watched g
     if (!may_dip(on_step, step, g_mid) || !find_dip(on_step, step, &first.t_hi)) return false;
     first.g_hi = on_step(first.t_hi);
   }
-  *t_zero = step.g_lo < 0 ? step.t_lo : fall_through(on_step, first);
+  *t_zero = fall_through(on_step, first);
   return true;
 }
 

@@ -110,6 +110,23 @@ def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
     assert kept.step(t + 0.2) == OK and kept.get("lambda_3")[0] < 0  # the partner: the ground pulls
 
 
+@contract
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-10])
+def test_a_wheel_that_is_off_the_ground_at_the_start_ends_there_however_soon_it_would_be_pressed_again(
+    wheel, tolerance
+):
+    """The force is back long before the solver's first step ends: both its ends, or its end alone, tell nothing."""
+    motion = {"theta_start": 1.0, "psi_dot_start": 6.0, "theta_dot_start": 4.0, "phi_dot_start": 2.0}
+    w, kept = wheel().start(tolerance=tolerance, **motion), wheel().start(keep_contact=1, **motion)
+    assert w.set(F_Z=-10.5) == kept.set(F_Z=-10.5) == OK
+    assert -3 < w.get("lambda_3")[0] < -2  # N; measured -2.7
+    assert kept.step(0.005) == OK and kept.get("lambda_3")[0] > 5  # 6.0: how soon
+    assert w.step(0.1) == DISCARD
+    assert ended(w) == 0
+    pressed = wheel().start(tolerance=tolerance, **motion)  # the partner: N = 0.7 N at the start
+    assert pressed.set(F_Z=-15.0) == OK and pressed.step(0.1) == OK
+
+
 def fmpy_simulate(fmu_path, output, *start_values: str) -> tuple[str, np.ndarray]:
     command = [sys.executable, "-m", "fmpy", "simulate", str(fmu_path), "--output-file", str(output)]
     values = ["--start-values", *start_values] if start_values else []
