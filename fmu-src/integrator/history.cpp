@@ -44,11 +44,13 @@ void visit_corrector(Archive& archive, CVodeMemRec& m) {
   all(archive, m.cv_crate, m.cv_delp, m.cv_acnrm, m.cv_acnrmcur, m.convfail, m.cv_jcur);
 }
 
-// The arrays hold nothing before the first step, which fills them.
+// All but the first two are what the last step of CVODE left; its first step after a restart sets them anew.
 template <class Archive>
 void visit_roots(Archive& archive, CVodeMemRec& m) {
-  all(archive, m.cv_tlo, m.cv_thi, m.cv_trout, m.cv_ttol, m.cv_toutc, m.cv_irfnd, m.cv_nge, m.cv_taskc);
-  if (m.cv_nst > 0) all(archive, m.cv_glo[0], m.cv_ghi[0], m.cv_grout[0], m.cv_iroots[0], m.cv_gactive[0]);
+  all(archive, m.cv_irfnd, m.cv_nge);
+  if (m.cv_nst == 0) return;
+  all(archive, m.cv_tlo, m.cv_thi, m.cv_trout, m.cv_ttol, m.cv_toutc, m.cv_taskc);
+  all(archive, m.cv_glo[0], m.cv_ghi[0], m.cv_grout[0], m.cv_iroots[0], m.cv_gactive[0]);
 }
 
 template <class Archive>

@@ -102,7 +102,7 @@ bool set_up(Self& self) {
 // What CVodeRootInit does for one root function or none, without giving back memory and taking it again.
 void arm_event(Self& self, bool armed) {
   auto& memory = *static_cast<CVodeMem>(self.cvode);
-  if (armed && memory.cv_nrtfn == 0) memory.cv_gactive[0] = SUNTRUE;
+  if (armed) memory.cv_gactive[0] = SUNTRUE;
   memory.cv_nrtfn = self.progress.armed = armed;
 }
 

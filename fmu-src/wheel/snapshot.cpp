@@ -7,7 +7,7 @@
 namespace wheel {
 namespace {
 
-constexpr std::uint64_t mark = 0x3230554d46484557;  // "WEHFMU02"; a change of the layout counts the last digits up
+constexpr std::uint64_t mark = 0x3330554d46484557;  // "WEHFMU03"; a change of the layout counts the last digits up
 
 struct Header {
   std::uint64_t mark, size, checksum;

@@ -173,6 +173,18 @@ def test_a_state_keeps_the_method_that_was_chosen_before_the_friction_changed(wh
     assert jacobians in ([False, True], [True, False])  # the partner's method is the other one
 
 
+@pytest.mark.parametrize("s", [0.01, 0.0])
+def test_a_restored_state_and_the_original_go_on_to_the_same_bytes_when_friction_sets_in(wheel, s):
+    """What the solver keeps of its root search starts anew with the friction, whatever it held before."""
+    w, other = wheel().start(), wheel().start(s=0.03)
+    assert w.step(1e-3) == other.step(0.1) == OK  # inside the first step
+    assert other.restore(w.serialized()) == OK
+    other.time = w.time
+    assert w.set(s=0.01) == OK and other.set(s=s) == OK  # the partner: friction in one of them only
+    assert w.step(1e-3) == other.step(1e-3) == OK
+    assert (w.serialized() == other.serialized()) == (s > 0)
+
+
 def notices(w: FMU2Wheel, push: float) -> bool:
     """Whether a jump of F_X by `push` makes the solver start anew."""
     before = w.get("n_restarts")
