@@ -124,7 +124,7 @@ class StartStep {
     StatePair e_3[pairs], e_5[pairs];
     combine<table::e_3>(e_3), combine<table::e_5>(e_5);
     const double high = norm(e_5), low = norm(e_3);
-    return high > 0 ? high * high / std::sqrt(high * high + 0.01 * low * low) : 0;
+    return high == 0 ? 0 : high * high / std::sqrt(high * high + 0.01 * low * low);
   }
 
   Integrator::Implementation& self_;
@@ -181,8 +181,14 @@ bool start_with(Integrator::Implementation& self) {
 bool has_history(const CVodeMemRec& m) { return m.cv_nst > 0 || m.cv_q > 1; }
 
 void fit_before_stop(CVodeMemRec& m) {
-  if (!has_history(m) || !m.cv_tstopset || m.cv_tn + m.cv_hin <= m.cv_tstop) return;
-  const double h = (m.cv_tstop - m.cv_tn) * (1 - 4 * m.cv_uround), shorter = h / m.cv_hin;
+  if (!m.cv_tstopset) return;
+  const double room = m.cv_tstop - m.cv_tn;
+  if (!has_history(m)) {
+    if (room < 4 * m.cv_uround * m.cv_tstop) m.cv_hin = room;
+    return;
+  }
+  if (m.cv_tn + m.cv_hin <= m.cv_tstop) return;
+  const double h = room * (1 - 4 * m.cv_uround), shorter = h / m.cv_hin;
   double factor = shorter;
   for (int j = 1; j <= m.cv_q; ++j, factor *= shorter) state_scale(factor, m.cv_zn[j], m.cv_zn[j]);
   m.cv_hin = m.cv_h = h;

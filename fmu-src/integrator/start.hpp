@@ -14,7 +14,8 @@ bool start_high(Integrator::Implementation& self);
 bool has_history(const CVodeMemRec& m);
 
 // Shortens the first step after a start of high order, and its history with it, so that it ends at the stop time; CVODE
-// by itself would shorten the step alone.
+// by itself would shorten the step alone. Without a history it gives the step where so few roundings of t are left that
+// CVODE refuses to guess one.
 void fit_before_stop(CVodeMemRec& m);
 
 }  // namespace integrator

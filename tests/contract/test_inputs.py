@@ -159,7 +159,7 @@ def test_a_held_wheel_stays_held_when_an_input_changes(wheel):
 
 
 def ramp_and_hold(w: FMU2Wheel, h: float) -> tuple[float, int]:
-    """Held by friction, over h with M_3 = 3 t: whether it was released by then, and the status of going on from there."""
+    """Held by friction, over h with M_3 = 3 t: whether it was released, and the status of going on from there."""
     give(w.start(s=0.03, **UPRIGHT), "M_3", [0.0, 3.0])
     assert w.step(h) == OK
     return w.get("n_events")[0], w.step(0.1)
@@ -176,6 +176,18 @@ def test_a_step_may_end_on_the_very_instant_of_a_release(wheel):
     told = [ramp_and_hold(wheel(), h) for h in ends]
     assert {released for released, _ in told} == {0, 1}  # the instant lies among them
     assert {status for _, status in told} == {OK}  # with the stop time kept, 8 of the 40 ended in an error
+
+
+@pytest.mark.parametrize("method", [2, 3])
+def test_after_a_jump_a_varying_input_is_followed_over_steps_of_single_roundings(wheel, method):
+    """Masters that add up their steps end with such ones; CVODE guesses no first step within two roundings of t."""
+    for roundings in (1, 2, 3, 8):
+        w = wheel().start(s=0.03, friction_law=2, method=method)
+        assert w.step(0.25) == OK
+        give(w, "M_3", [1.0, 5.0])
+        assert w.step(roundings * np.spacing(0.25)) == OK, w.messages  # bdf failed at 1
+        assert w.get("n_restarts") == [1]  # the partner: without the jump, 0
+        assert w.step(0.25) == OK
 
 
 def test_wrong_input_derivatives_are_refused_as_a_whole(wheel):
