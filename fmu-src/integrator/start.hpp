@@ -7,7 +7,7 @@
 namespace integrator {
 
 // Steps from (t, y) = (progress.known_until, self.y) and hands CVODE the step's polynomial as its history. False, with
-// nothing changed, where the right-hand side does not allow it: CVODE then starts by itself, at order one.
+// time and state as they were, where the right-hand side does not allow it: CVODE then starts by itself, at order one.
 bool start_high(Integrator::Implementation& self);
 
 // Whether CVODE has a polynomial to go on with: from its own steps or from a start of high order.

@@ -13,6 +13,7 @@
 namespace integrator {
 
 void follow_trend(CVodeMemRec& m, Trend* trend) {
+  // An error below the least one, as after a step cut short, says no more; the greatest change bounds what it asks for.
   constexpr double bias = 4, least_error = 1e-10, greatest_change = 10;
   const Trend last = *trend;
   const double error = std::fmax(m.cv_acnrm * m.cv_tq[2], least_error);
