@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from .cells import microseconds, number, table
 from .compare import ratio, time_at
 from .goals import OURS, YARDSTICKS, goals
 from .runner import Entry, Sheet
-from .scenes import TARGETS
+from .scenes import POINTS, TARGETS
+from .tables import cost_parts
 
 INTRODUCTION = """# Error against run time
 
@@ -22,20 +23,6 @@ the compiler and level of the product (native: for this very processor). heyoka:
 beforehand; what Python does between two events is left out. SciPy: the C right-hand side through ctypes. Peers with one
 tolerance use it as relative and as absolute tolerance.
 """
-
-
-def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    head = list(head)
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
-
-
-def number(value: float | None, form: str = ".3g") -> str:
-    return "—" if value is None else f"{value:{form}}"
-
-
-def microseconds(seconds: float | None) -> str:
-    return "—" if seconds is None else f"{1e6 * seconds:,.0f}"
 
 
 def goals_part(sheets: list[Sheet], extra: dict[str, Any]) -> str:
@@ -107,9 +94,6 @@ def scene_part(sheet: Sheet) -> str:
 
 
 def write(sheets: list[Sheet], extra: dict[str, Any], rounds: int, path: Path) -> None:
-    from .scenes import POINTS
-    from .tables import cost_parts
-
     limits = Path(__file__).with_name("limits.md")
     parts = [INTRODUCTION.format(points=POINTS, rounds=rounds), goals_part(sheets, extra)]
     parts += [limits.read_text()] if limits.exists() else []

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .report import microseconds, number, table
+from .cells import microseconds, number, table
 
 Extra = dict[str, Any]
 
