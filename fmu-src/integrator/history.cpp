@@ -96,7 +96,7 @@ bool make_ready(Integrator& integrator, Integrator::Implementation& self, const 
 // a master pays for at each communication point.
 template <int pairs>
 void evaluate(const N_Vector* z, int order, double s, double* y) {
-  const int odd = (order - 1) | 1, even = order & ~1;
+  const int even = order - order % 2, odd = order - 1 + order % 2;
   StatePair sum[2][pairs];
   std::memcpy(sum[0], state_pairs(z[even]), sizeof sum[0]);
   std::memcpy(sum[1], state_pairs(z[odd]), sizeof sum[1]);

@@ -124,6 +124,8 @@ static inline void state_predict(N_Vector* z, int order) {
     WHEEL_PREDICT(10);
     WHEEL_PREDICT(11);
     WHEEL_PREDICT(12);
+    default: /* CVODE has no higher order */
+      break;
   }
 }
 
