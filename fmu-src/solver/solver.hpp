@@ -64,15 +64,26 @@ class Solver {
   bool restore_history(const Problem& problem, const unsigned char* bytes, std::size_t size);
 
  private:
+  bool begin(double t, const double* y);
+  bool advance();
+  void expand() const;
+  void watch_event();
+  void watch_boundary();
+  void end_at(double t, Outcome why);
+  template <class Archive>
+  void visit(Archive& archive);
+
   Problem problem_ = {};
-  Counters counters_ = {};
   Method method_ = Method::adams;
   Outcome pending_ = Outcome::failed;
-  Step step_ = {};
-  double known_until_ = 0, event_time_ = 0, stop_time_ = 0, event_value_ = 0;
   bool armed_ = false;
   const char* failure_ = "it was not started";
-  RungeKutta runge_kutta_;
+  double known_until_ = 0, event_time_ = 0, stop_time_ = 0;  // s
+  double event_value_ = 0;                                   // at the end of the step
+  // The dense output of the last step is computed when it is first needed: a pure function of the step.
+  mutable Counters counters_ = {};
+  mutable Step step_ = {};
+  mutable RungeKutta runge_kutta_;
   Cvode cvode_;
 };
 
