@@ -1,4 +1,4 @@
-"""The equations room through ctypes: wheel_equations.h as Python sees it.
+"""The equations module through ctypes: wheel_equations.h as Python sees it.
 
 Names, order, frames and units are those of the header. `..._each` functions work on whole tables.
 """
@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
-FRICTIONLESS, ROLLING, HELD, REGULARIZED = range(4)
+NO_LAW, FRICTIONLESS, ROLLING, HELD, REGULARIZED = range(5)
+LAWS = {"frictionless": FRICTIONLESS, "rolling": ROLLING, "held": HELD, "regularized": REGULARIZED}
 
 
 def doubles(*names: str) -> list[tuple[str, type]]:
@@ -26,7 +27,7 @@ class Parameters(Structure):
 
 
 class Load(Structure):
-    _fields_ = [("F", c_double * 3), ("M", c_double * 3)]
+    _fields_ = [("F", c_double * 3), ("M", c_double * 3), *doubles("brake")]
 
 
 class Friction(Structure):
@@ -34,7 +35,7 @@ class Friction(Structure):
 
 
 class Scene(Structure):
-    _fields_ = [("wheel", Parameters), ("friction", Friction), ("load", Load), ("loaded", c_int)]
+    _fields_ = [("wheel", Parameters), ("friction", Friction), ("load", Load)]
 
 
 class Motion(Structure):
@@ -57,6 +58,14 @@ class Dynamics(Structure):
     ]
 
 
+class ReactionRates(Structure):
+    _fields_ = [("lambda_dot", c_double * 3), *doubles("tau_dot")]
+
+
+class Contact(Structure):
+    _fields_ = doubles("X_C", "Y_C", "X_C_dot", "Y_C_dot")
+
+
 DOUBLES = POINTER(c_double)
 
 
@@ -71,8 +80,8 @@ class Formulation(Structure):
         ("kinematics", CFUNCTYPE(None, POINTER(Parameters), DOUBLES, POINTER(Kinematics))),
         ("pose", CFUNCTYPE(None, POINTER(Parameters), DOUBLES, POINTER(Kinematics))),
         ("dynamics", CFUNCTYPE(None, POINTER(Scene), DOUBLES, POINTER(Dynamics))),
-        ("reaction_rates", CFUNCTYPE(None, POINTER(Scene), POINTER(Load), DOUBLES, DOUBLES)),
-        ("jacobian", CFUNCTYPE(None, POINTER(Scene), DOUBLES, DOUBLES)),
+        ("rates", CFUNCTYPE(None, POINTER(Scene), POINTER(Load), DOUBLES, POINTER(ReactionRates))),
+        ("response", CFUNCTYPE(None, POINTER(Scene), POINTER(Load), DOUBLES, POINTER(ReactionRates))),
         ("stop_spin", CFUNCTYPE(None, POINTER(Parameters), DOUBLES)),
     ]
 
@@ -89,6 +98,9 @@ LIBRARY.wheel_energy.restype = c_double
 LIBRARY.wheel_required_friction.restype = c_double
 LIBRARY.wheel_height.restype = c_double
 LIBRARY.wheel_height.argtypes = [POINTER(Parameters), c_double]
+LIBRARY.wheel_contact.restype = Contact
+LIBRARY.wheel_scene.restype = Scene
+LIBRARY.wheel_scene.argtypes = [POINTER(Parameters), POINTER(Load), Friction]
 
 
 def paper_wheel(**changes: float) -> Parameters:
@@ -113,10 +125,11 @@ def scene(
     omega_s: float = 1e-3,
     force: tuple[float, ...] = (0, 0, 0),
     moment: tuple[float, ...] = (0, 0, 0),
+    brake: float = 0,
 ) -> Scene:
-    load = Load((c_double * 3)(*force), (c_double * 3)(*moment))
-    loaded = int(any(force) or any(moment))
-    return Scene(wheel, Friction(kind, sigma, omega_s), load, loaded)
+    """By `wheel_scene`, which checks it."""
+    load = Load((c_double * 3)(*force), (c_double * 3)(*moment), brake)
+    return LIBRARY.wheel_scene(wheel, load, Friction(kind, sigma, omega_s))
 
 
 def start(formulation: Formulation, wheel: Parameters, motion: Motion) -> np.ndarray:
@@ -143,15 +156,12 @@ def dynamics(formulation: Formulation, scene: Scene, y: np.ndarray) -> Dynamics:
     return out
 
 
-def reaction_rates(formulation: Formulation, scene: Scene, y: np.ndarray, load_dot: Load | None = None) -> np.ndarray:
-    rates = np.zeros(3)
-    formulation.reaction_rates(
-        byref(scene),
-        byref(load_dot) if load_dot is not None else None,
-        y.ctypes.data_as(DOUBLES),
-        rates.ctypes.data_as(DOUBLES),
-    )
-    return rates
+def rates(formulation: Formulation, scene: Scene, y: np.ndarray, load_dot: Load | None = None) -> ReactionRates:
+    """Rates of lambda and tau along the motion; without load_dot the load is constant."""
+    out = ReactionRates()
+    change = byref(load_dot) if load_dot is not None else None
+    formulation.rates(byref(scene), change, y.ctypes.data_as(DOUBLES), byref(out))
+    return out
 
 
 def energy(wheel: Parameters, motion: Kinematics) -> float:
@@ -203,19 +213,18 @@ def dynamics_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray) -
     return out
 
 
-def reaction_rates_each(
-    formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray
-) -> np.ndarray:
-    out = np.zeros((len(y), 3))
-    each(formulation.reaction_rates, scenes, load_dots, y, out)
+def rates_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """lambda_dot and tau_dot, row by row."""
+    out = np.zeros((len(y), 4))
+    each(formulation.rates, scenes, load_dots, y, out)
     return out
 
 
-def jacobian_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """One matrix per row, [row, i, j] = d f_i / d y_j; the product stores them column by column."""
-    out = np.zeros((len(y), formulation.states, formulation.states))
-    each(formulation.jacobian, scenes, y, out)
-    return out.swapaxes(1, 2)
+def response_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """The part of load_dots in `rates_each`."""
+    out = np.zeros((len(y), 4))
+    each(formulation.response, scenes, load_dots, y, out)
+    return out
 
 
 def columns(records: np.ndarray, *names: str) -> np.ndarray:

@@ -6,6 +6,7 @@ The product's y has omega_z, (21), in the place of phi_dot, and its derivative d
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 
 import equations as eq
@@ -54,15 +55,22 @@ class Stabilised(Paper):
         return K, right
 
 
-def solved(paper: Paper, scenes: np.ndarray) -> np.ndarray:
-    """q_ddot, lambda and tau row by row, with each scene's friction law and load."""
-    load = np.where(scenes["loaded"], scenes["load"], np.zeros_like(scenes["load"]))
+def about_axle(load: Mapping, moment: np.ndarray) -> dict:
+    """The load with a further moment about the axle."""
+    return {"F": load["F"], "M": load["M"] + moment[..., None] * np.array([0, 0, 1])}
+
+
+def solved(paper: Paper, scenes: np.ndarray, load: Mapping | None = None) -> np.ndarray:
+    """q_ddot, lambda and tau row by row, with each scene's law and load, or another load (complex too)."""
+    load = scenes["load"] if load is None else load
+    brake = load["brake"]
     friction, kind = scenes["friction"], scenes["friction"]["kind"]
     soft = np.tanh(paper.omega_z / friction["omega_s"])
     kappa = np.select([kind == eq.ROLLING, kind == eq.REGULARIZED], [friction["sigma"], soft], 0)
-    kappa = np.where(paper.solve(kappa, load)[:, 8].real > 0, kappa, 0)  # no pressure, no friction
-    x = paper.solve(kappa, load)
-    x = np.column_stack([x, -scenes["wheel"]["s"] * kappa * x[:, 8]])
+    braked = about_axle(load, -brake * kappa)
+    grip = np.where(paper.solve(kappa, braked)[:, 8].real > 0, kappa, 0)  # no pressure, no friction but the brake's
+    x = paper.solve(grip, braked)
+    x = np.column_stack([x, -scenes["wheel"]["s"] * grip * x[:, 8] - brake * kappa])
     return np.where((kind == eq.HELD)[:, None], paper.solve_held(load), x)
 
 

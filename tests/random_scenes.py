@@ -39,16 +39,19 @@ def wheels(random: np.random.Generator, rows: int, symmetric: bool) -> np.ndarra
 def scenes(
     random: np.random.Generator, kind: int | None = None, symmetric: bool = True, rows: int = COUNT
 ) -> np.ndarray:
-    """Scenes under random loads; kind None draws one of the four friction kinds per row."""
+    """Scenes under random loads; kind None draws one of the four laws per row."""
     scene = eq.table(eq.Scene, rows)
     scene["wheel"] = wheels(random, rows, symmetric)
-    scene["friction"]["kind"] = random.integers(0, 4, rows) if kind is None else kind
+    scene["friction"]["kind"] = random.integers(eq.FRICTIONLESS, eq.REGULARIZED + 1, rows) if kind is None else kind
     scene["friction"]["sigma"] = random.choice([-1.0, 1.0], rows)
     scene["friction"]["omega_s"] = 10 ** random.uniform(-3, 1, rows)
     weight = scene["wheel"]["m"] * 9.81
     scene["load"]["F"] = weight[:, None] * random.normal(size=(rows, 3))
     scene["load"]["M"] = (weight * scene["wheel"]["r_0"])[:, None] * random.normal(size=(rows, 3))
-    scene["loaded"] = random.random(rows) < 0.9
+    braked = random.random(rows) < 0.5
+    scene["load"]["brake"] = braked * weight * scene["wheel"]["r_0"] * random.uniform(0, 0.5, rows)
+    unloaded = random.random(rows) < 0.1
+    scene["load"][unloaded] = 0
     return scene
 
 

@@ -20,7 +20,7 @@ def still(kind: int, seed: int = 11) -> tuple[np.ndarray, np.ndarray]:
     """Random wheels with J_x = J_y, no load, all rates zero."""
     random = np.random.default_rng(seed)
     scenes = random_scenes.scenes(random, kind, rows=ROWS)
-    scenes["load"], scenes["loaded"] = np.zeros(1, scenes["load"].dtype), 1
+    scenes["load"] = np.zeros(1, scenes["load"].dtype)
     scenes["wheel"]["g"] = random.uniform(1, 20, ROWS)
     motions = random_scenes.motions(random, ROWS)
     for rate in ("psi_dot", "theta_dot", "phi_dot"):

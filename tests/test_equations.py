@@ -8,6 +8,8 @@ and the axle, reactions.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import equations as eq
 import numpy as np
 import pytest
@@ -18,19 +20,13 @@ from reference.model import Wheel
 from reference.motion import accelerations
 
 BOUND = 1e-11
-KINDS = {
-    "frictionless": eq.FRICTIONLESS,
-    "rolling": eq.ROLLING,
-    "held": eq.HELD,
-    "regularized": eq.REGULARIZED,
-}
 GROUPS = (
     ("X_O_ddot", "Y_O_ddot", "Z_O_ddot"),
     ("psi_ddot", "theta_ddot", "phi_ddot", "omega_z_dot"),
     ("lambda_",),
 )
 ACCELERATIONS = (*GROUPS[0], *GROUPS[1][:3])
-each_kind = pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS.keys())
+each_kind = pytest.mark.parametrize("kind", eq.LAWS.values(), ids=eq.LAWS.keys())
 
 
 def draw(seed: int, kind: int | None = None, symmetric: bool = True) -> tuple[np.ndarray, np.ndarray]:
@@ -72,8 +68,10 @@ def test_the_random_states_include_both_signs_of_the_normal_force() -> None:
     dynamics = answer(eq.MULTIBODY, scenes, motions)
     pulls = dynamics["lambda_"][:, 2] <= 0
     assert 0.2 < pulls.mean() < 0.8  # 0.54
-    assert (dynamics["tau"][pulls] == 0).all()  # no pressure, no friction
-    assert (dynamics["tau"][~pulls] != 0).all()
+    braked = -scenes["friction"]["sigma"] * scenes["load"]["brake"]
+    assert (dynamics["tau"][pulls] == braked[pulls]).all()  # no pressure, no friction but the brake's
+    assert (dynamics["tau"][~pulls] != braked[~pulls]).all()
+    assert 0.3 < (braked[pulls] != 0).mean() < 0.6  # 0.45
 
 
 def test_reduced_and_multibody_give_the_same_positions_and_velocities() -> None:
@@ -170,18 +168,18 @@ def test_multibody_solves_the_papers_system_24_for_any_inertia(kind: int) -> Non
 
 
 def referenced(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    """WheelDynamics from the reference; without pressure there is no friction."""
+    """WheelDynamics from the reference; without pressure there is no friction but the brake's."""
     out = eq.table(eq.Dynamics, len(scenes))
     y = eq.start_each(eq.MULTIBODY, scenes, motions)
     omega_z = eq.kinematics_each(eq.MULTIBODY, scenes, y)["omega_z"]
     for row, scene, motion, spin in zip(out, scenes, motions, omega_z.tolist(), strict=True):
         wheel, friction = Wheel(*scene["wheel"].tolist()), scene["friction"]
-        sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])]
+        sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])][friction["kind"] - eq.FRICTIONLESS]
         angles, rates = motion.tolist()[:3], motion.tolist()[3:6]
-        loads = scene["load"].tolist() if scene["loaded"] else ((0.0,) * 3,) * 2
-        found = accelerations(wheel, angles, rates, *loads, sigma[friction["kind"]])
+        *loads, brake = scene["load"].tolist()
+        found = accelerations(wheel, angles, rates, *loads, sigma, brake)
         if friction["kind"] in (eq.ROLLING, eq.REGULARIZED) and found.lambda_3 <= 0:
-            found = accelerations(wheel, angles, rates, *loads, 0.0)
+            found = accelerations(replace(wheel, s=0.0), angles, rates, *loads, sigma, brake)
         for name in (*ACCELERATIONS, "tau"):
             row[name] = getattr(found, name)
         row["lambda_"] = found.lambda_1, found.lambda_2, found.lambda_3
@@ -195,7 +193,7 @@ def referenced(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
 def test_both_formulations_agree_with_the_independent_reference(symmetric: bool) -> None:
     scenes, motions = draw(6, symmetric=symmetric)
     reference = referenced(scenes, motions)
-    for formulation in [eq.REDUCED, eq.MULTIBODY] if symmetric else [eq.MULTIBODY]:
+    for formulation in (eq.REDUCED, eq.MULTIBODY):
         found = answer(formulation, scenes, motions)
         assert distance(found, reference, scenes) < BOUND  # measured 1.1e-13 to 1.4e-13
         disturbed = scenes.copy()

@@ -15,7 +15,7 @@ from multibody_transcription import Stabilised, papers_state, products_state, so
 from paper_transcription import Paper
 from scipy.integrate import solve_ivp
 
-KINDS = pytest.mark.parametrize("kind", range(4), ids=["free", "rolling", "held", "regularized"])
+KINDS = pytest.mark.parametrize("kind", eq.LAWS.values(), ids=eq.LAWS.keys())
 OFF_THE_CONSTRAINTS = np.array([0, 0, 1, 0, 0, 0, 1, 1, 1, 0, 0, 0])  # m in Z_O, m/s in the velocity of O
 PLANTED = np.array([0, 0, 2e-3, 0, 0, 0, 1e-2, -2e-2, 3e-2, 0, 0, 0])  # the same, of unlike sizes
 GENERAL = {"J_x": 0.7, "J_y": 1.1, "s": 0.03}

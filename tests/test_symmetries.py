@@ -159,24 +159,20 @@ def test_with_equal_J_x_and_J_y_the_moment_about_the_axle_does_not_change_N(
 ) -> None:
     def change_of_N(scenes: Table, motions: Table) -> float:
         before = dynamics(formulation, scenes, motions)["lambda_"]
-        scenes["loaded"] = 1
         scenes["load"]["M"][:, 2] += 10
         change = dynamics(formulation, scenes, motions)["lambda_"][:, 2] - before[:, 2]
         return float((np.abs(change) / np.abs(before).max(axis=1)).max())
 
     scenes, motions = draw(24, eq.REDUCED, eq.FRICTIONLESS)
-    scenes["loaded"] = 1
     assert change_of_N(scenes, motions) < BOUND  # measured 1.4e-14
     if formulation is eq.MULTIBODY:
         scenes, motions = draw(24, eq.MULTIBODY, eq.FRICTIONLESS)
-        scenes["loaded"] = 1
         assert change_of_N(scenes, motions) > 0.01  # J_x != J_y couples N to it: 4.3
 
 
 @BOTH
 def test_holding_is_a_moment_about_the_axle_like_any_other(formulation: eq.Formulation) -> None:
     scenes, motions = draw(25, formulation, eq.HELD)
-    scenes["loaded"] = 1
     held = dynamics(formulation, scenes, motions)
     scenes["friction"]["kind"] = eq.FRICTIONLESS
     scenes["load"]["M"][:, 2] += held["tau"]

@@ -49,7 +49,7 @@ class Accelerations:
     lambda_1: float
     lambda_2: float
     lambda_3: float
-    tau: float  # moment of rolling friction about the axle, N.m
+    tau: float  # moment of rolling friction and brake about the axle, N.m
 
 
 def angle_rates(n: Vector, w: Vector) -> Vector:
@@ -138,17 +138,18 @@ def accelerations(
     F: Vector = ZERO,
     M: Vector = ZERO,
     sigma: float | None = 0.0,
+    brake: float = 0.0,
 ) -> Accelerations:
     """Accelerations and reactions at (psi, theta, phi) and their rates.
 
-    The friction moment about the axle is -s N sigma, sigma in [-1, 1]; sigma None is the moment
-    that holds w_z, whatever its size.
+    The moment of ground and brake about the axle is -(s N + brake) sigma, sigma in [-1, 1]; sigma
+    None is the moment that holds w_z, whatever its size.
     """
     R = rotation(*quaternion(*angles))
     n = R[2]
     w = body_rates(n, *rates)
     answer = Contact(wheel).respond(n, w, to_body(R, F), carrier_moment(n, M))
-    law = Law(wheel.s, hold=True) if sigma is None else Law(wheel.s, sigma)
+    law = Law(wheel.s, hold=True) if sigma is None else Law(wheel.s, sigma, brake=brake)
     tau = axle_moment(law, answer, w[2])
     x = [b + tau * u for b, u in zip(answer.base, answer.unit, strict=True)]
     a, reaction = to_fixed(R, tuple(x[0:3])), to_fixed(R, tuple(x[6:9]))
