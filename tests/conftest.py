@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import extract, read_model_description, simulate_fmu
-from paths import ROOT, build_folder
-
-HEADLINE = ("X_O", "theta", "phi_dot", "psi_dot")
+from reference.tables import read_table
+from support.driver import HEADLINE
+from support.motion import Library
+from support.paths import build_folder
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -29,6 +30,12 @@ def fmu(fmu_path: Path) -> Iterator[str]:
     folder = extract(str(fmu_path))
     yield folder
     shutil.rmtree(folder)
+
+
+@pytest.fixture(scope="session")
+def library(fmu: str) -> Library:
+    """The unpacked FMU as a function from a scene to its motion; instances come and go."""
+    return Library(fmu)
 
 
 @pytest.fixture(scope="session")
@@ -61,9 +68,6 @@ def simulate(fmu: str, description):
 
 
 @pytest.fixture(scope="session")
-def reference_tables() -> dict[str, np.ndarray]:
+def reference_tables() -> dict[str, dict[str, np.ndarray]]:
     """The trusted tables of the paper's two scenes, every 0.1 s."""
-    folder = ROOT.parent / "shared" / "reference"
-    return {
-        scene: np.genfromtxt(folder / f"paper_{scene}.csv", delimiter=",", names=True) for scene in ("free", "friction")
-    }
+    return {scene: read_table(f"paper_{scene}") for scene in ("free", "friction")}

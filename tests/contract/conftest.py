@@ -6,9 +6,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from paths import ROOT
-
-from contract.master import FMU2Wheel
+from reference.tables import read_table
+from support.driver import FMU2Wheel
 
 
 @pytest.fixture
@@ -29,5 +28,4 @@ def wheel(fmu: str, description) -> Iterator[Callable[..., FMU2Wheel]]:
 @pytest.fixture(scope="session")
 def reference_events() -> np.ndarray:
     """The instants, s, of the 37 transitions of the paper's friction scene, from the trusted table."""
-    table = ROOT.parent / "shared" / "reference" / "paper_friction_events.csv"
-    return np.genfromtxt(table, delimiter=",", names=True)["t"][1:]
+    return read_table("paper_friction_events")["t"][1:]
