@@ -129,6 +129,14 @@ class FMU2Wheel(FMU2Slave):
             status = max(status, call(self.component, self.c_references([name]), 1, (c_type * 1)(number)))
         return status
 
+    def set_input_derivatives(self, names: Sequence[str], derivatives: Sequence[Sequence[float]]) -> int:
+        """derivatives: a row for each order from the first on, a column for each input."""
+        count = len(names) * len(derivatives)
+        orders = (c_int * count)(*(order + 1 for order in range(len(derivatives)) for _ in names))
+        values = (c_double * count)(*(float(value) for row in derivatives for value in row))
+        references = self.c_references([*names] * len(derivatives))
+        return self.fmi2SetRealInputDerivatives(self.component, references, count, orders, values)
+
     def get(self, *names: str) -> list[float]:
         """Values by name, each read by its own call."""
         return [self.get_one(name)[1] for name in names]

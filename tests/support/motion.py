@@ -95,11 +95,9 @@ def feed(wheel: FMU2Wheel, inputs: Schedule, t: float) -> int:
     if not inputs.pieces:
         return OK
     derivatives = inputs.derivatives(t)
-    references = [wheel.references[name] for name in INPUTS]
     status = wheel.set(**dict(zip(INPUTS, derivatives[0].tolist(), strict=True)))
     if derivatives[1:].any():
-        orders = [order for order in (1, 2, 3) for _ in INPUTS]
-        status = max(status, wheel.setRealInputDerivatives(references * 3, orders, derivatives[1:].ravel().tolist()))
+        status = max(status, wheel.set_input_derivatives(INPUTS, derivatives[1:]))
     return status
 
 
