@@ -50,7 +50,7 @@ struct alignas(16) Room {
 class Integrator {
  public:
   // Made in `room`, and gone with it or with the next solver made there; there is nothing to free. Null if the room is
-  // too small for SUNDIALS (tests/contract/test_allocations.py has what is left of it).
+  // too small for SUNDIALS (tests/robustness/test_allocations.py has what is left of it).
   static Integrator* create(const System& system, Room& room);
 
   // Starts anew from y at time t; history is dropped, counters go on. event_armed: whether a root function is watched.

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 from fmpy import validation
 from lxml import etree
-
-from contract.master import OK
+from support.driver import OK
 
 pytestmark = pytest.mark.contract
 

@@ -8,8 +8,7 @@ import sys
 import numpy as np
 import pytest
 from scipy.integrate import quad
-
-from contract.master import (
+from support.driver import (
     DISCARD,
     DO_STEP_STATUS,
     ERROR,

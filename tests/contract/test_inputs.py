@@ -11,8 +11,7 @@ from ctypes import c_double, c_int, c_uint
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
-
-from contract.master import ERROR, OK, FMU2Wheel
+from support.driver import ERROR, OK, FMU2Wheel
 
 pytestmark = pytest.mark.contract
 

@@ -8,9 +8,9 @@ from ctypes import byref, c_double, c_uint, c_void_p
 import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2String
+from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
 
 from contract.call_states import STATES, TABLE, bring_to, call
-from contract.master import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
 
 pytestmark = pytest.mark.contract
 

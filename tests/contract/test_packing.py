@@ -12,7 +12,7 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from paths import ROOT
+from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT / "scripts"))
 sys.path.insert(0, str(ROOT / "scripts" / "releasing"))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-from contract.master import OK, SCENES, FMU2Wheel
+from support.driver import OK, FMU2Wheel
+from support.scenes import KINDS
 
 pytestmark = pytest.mark.contract
 
@@ -48,8 +48,8 @@ def measured_dependencies(wheel, description) -> dict[str, set[str]]:
     depends: dict[str, set[str]] = {}
     # omega_z below omega_s, where the regularized law is neither zero nor one
     slow = {"phi_dot_start": -GENERAL["psi_dot_start"] * np.cos(GENERAL["theta_start"]) + 5e-4}
-    scenes = [SCENES["free"], SCENES["general inertia with friction"], SCENES["regularized"] | slow]
-    for scene in (*scenes, SCENES["general inertia"] | SCENES["regularized"] | slow):
+    scenes = [KINDS["free"], KINDS["general inertia, friction"], KINDS["regularized"] | slow]
+    for scene in (*scenes, KINDS["general inertia"] | KINDS["regularized"] | slow):
         w = initialized(wheel(), **GENERAL | {"J_z": 1.6} | scene)
         for known in knowns:
             if known != "formulation":  # reduced needs J_x = J_y
@@ -68,7 +68,7 @@ def test_initial_unknowns_list_exactly_what_moves_them(wheel, description):
 
 
 def test_outputs_list_exactly_the_inputs_that_move_them_at_once(wheel, description):
-    w = wheel().start(**GENERAL | SCENES["general inertia"])
+    w = wheel().start(**GENERAL | KINDS["general inertia"])
     assert w.step(0.1) == OK
     names = outputs(w)
     measured: dict[str, set[str]] = {name: set() for name in names}

@@ -7,8 +7,7 @@ from ctypes import c_double, c_int, c_uint
 
 import numpy as np
 import pytest
-
-from contract.master import DISCARD, ERROR, OK, FMU2Wheel
+from support.driver import DISCARD, ERROR, OK, FMU2Wheel
 
 pytestmark = pytest.mark.contract
 
