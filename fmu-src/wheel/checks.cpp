@@ -67,7 +67,7 @@ bool Simulation::check_parameters(bool report) {
   const auto tell_fault = [](void* owner, const char* sentence) {
     static_cast<Simulation*>(owner)->tell(Topic::error, "%s", sentence);
   };
-  return check_values(state_.parameters, state_.motion.inputs, this, report ? tell_fault : nullptr);
+  return check_values(state_.parameters, state_.motion.inputs, this, report ? +tell_fault : nullptr);
 }
 
 // Values that are sound one by one can still have products that are not finite.

@@ -16,7 +16,7 @@ void set_scales(Motion& motion, const double* y) {
   const double own_time = time_scale(wheel, start);
   motion.longest_step = 0.5 * own_time;
   motion.weight = wheel.m * (wheel.r_0 + wheel.r) / (own_time * own_time);
-  error_scales(wheel, *motion.formulation, y, motion.scales);
+  motion.scales = error_scales(wheel, *motion.formulation, y);
 }
 
 }  // namespace

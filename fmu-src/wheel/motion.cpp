@@ -39,14 +39,15 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
 void weights(void* owner, double share, const double* y, double* weights) {
   const Motion& motion = of(owner);
   const double tolerance = share * motion.tolerance;
+  const int states = motion.formulation->states, spin = motion.formulation->spin_index;
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  for (int i = 0; i < motion.formulation->states; ++i)
-    weights[i] = 1 / (tolerance * motion.scales[i] + rounding * std::fabs(y[i]));
+  double scales[WHEEL_MAX_STATES];
+  scales_at(motion.scales, *motion.formulation, y[spin], scales);
+  for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (motion.scene.friction.kind != WHEEL_REGULARIZED) return;
-  const int i = motion.formulation->spin_index;
   const double part = std::fmin(3e-5, std::sqrt(tolerance));
-  const double layer = part * motion.scene.friction.omega_s + tolerance * std::fabs(y[i]);
-  weights[i] = 1 / (std::fmin(tolerance * motion.scales[i], layer) + rounding * std::fabs(y[i]));
+  const double layer = part * motion.scene.friction.omega_s + tolerance * std::fabs(y[spin]);
+  weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
 }
 
 // Positive while the friction mode lasts: the spin in its sense, or what friction and brake have left to hold it.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "inputs.hpp"
+#include "scene.hpp"
 #include "solver.hpp"
 #include "wheel_equations.h"
 
@@ -16,10 +17,10 @@ struct Motion {
   const WheelFormulation* formulation = nullptr;
   WheelScene scene = {};  // the law in force; its load follows the inputs
   Inputs inputs;
-  double tolerance = 0;                  // relative, of the whole solution
-  double scales[WHEEL_MAX_STATES] = {};  // error of each state that counts like a tolerance of one
-  double weight = 0;                     // N, scale of the normal force
-  double longest_step = 0;               // s
+  double tolerance = 0;     // relative, of the whole solution
+  ErrorScales scales = {};
+  double weight = 0;        // N, scale of the normal force
+  double longest_step = 0;  // s
   bool keep_contact = false;
 };
 

@@ -87,21 +87,31 @@ double time_scale(const WheelParameters& wheel, const WheelKinematics& start) {
   return rate > 0 ? 1 / rate : 1;
 }
 
-void error_scales(const WheelParameters& wheel, const WheelFormulation& f, const double* y, double* scales) {
+ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& f, const double* y) {
   WheelKinematics start;
   f.kinematics(&wheel, y, &start);
   const double length = wheel.r_0 + wheel.r;
   const double slowest = 1 / time_scale(wheel, start), omega_2 = start.psi_dot * std::sin(start.theta);
-  const double tilting = start.theta_dot * start.theta_dot + omega_2 * omega_2;
-  const double turn = std::max(slowest, std::sqrt(tilting));
-  const double rate = std::max(slowest, std::sqrt(tilting + start.omega_z * start.omega_z));
-  const bool reduced = f.states == WHEEL_REDUCED_STATES;
+  const double tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
+  const double turn = std::max(slowest, tilting);
   // psi, phi, X_O, Y_O do not feed back into the closed states: their errors do not grow, and may be larger.
-  const double reduced_scales[] = {1, turn, turn, rate, 3, 3, 3 * length, 3 * length};
+  const double reduced[] = {1, turn, turn, turn, 3, 3, 3 * length, 3 * length};
   // The velocity of O is bound to the rates by the constraints: weighed lower, it strays less from them.
   const double speed = 0.15 * slowest * length;
-  const double multibody_scales[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, rate};
-  std::copy_n(reduced ? reduced_scales : multibody_scales, f.states, scales);
+  const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, turn};
+  ErrorScales scales = {{}, slowest, tilting};
+  std::copy_n(f.states == WHEEL_REDUCED_STATES ? reduced : multibody, f.states, scales.slow);
+  return scales;
+}
+
+void scales_at(const ErrorScales& scales, const WheelFormulation& f, double omega_z, double* out) {
+  std::copy_n(scales.slow, f.states, out);
+  const double spin = std::fabs(omega_z);
+  if (!(spin > scales.own_rate)) return;
+  const double turn = scales.own_rate * scales.own_rate / spin + scales.tilting;  // rad/s, of a nutation
+  out[f.tilt_index] = std::fmin(out[f.tilt_index], turn / spin);
+  const int last = f.spin_index;  // the three rates of rotation stand together, the spin last
+  for (int i = last - 2; i <= last; ++i) out[i] = std::fmin(out[i], turn);
 }
 
 }  // namespace wheel

@@ -31,9 +31,18 @@ double holding_margin(const WheelScene& scene, const WheelDynamics& held, double
 // Only the exact law switches.
 bool has_transitions(const WheelScene& scene);
 
-// Error of each state that counts as one: angles 1 rad, lengths r_0 + r, rates that of the wheel's own time scale or
-// the initial one.
-void error_scales(const WheelParameters& wheel, const WheelFormulation& formulation, const double* y, double* scales);
+// How errors of the states are weighed.
+struct ErrorScales {
+  double slow[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly
+  double own_rate, tilting;       // rad/s: of the wheel's own time scale; initial rate of turning about e1 and e2
+};
+
+// Angles count by 1 rad, lengths by r_0 + r, rates by the wheel's own time scale or the initial tilting.
+ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& formulation, const double* y);
+
+// The scales at the spin omega_z, rad/s. A fast wheel hardly tilts: the range of theta falls with the square of the spin,
+// that of the rates with the spin, and errors are weighed by these ranges.
+void scales_at(const ErrorScales& scales, const WheelFormulation& formulation, double omega_z, double* out);
 
 // sqrt((r_0 + r) / g), s; without weight the time of a turn at the initial rate.
 double time_scale(const WheelParameters& wheel, const WheelKinematics& start);
