@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-namespace integrator {
+namespace support {
 
 class SpinLock {
  public:
@@ -19,4 +19,4 @@ class SpinLock {
   std::atomic_flag& taken_;
 };
 
-}  // namespace integrator
+}  // namespace support
