@@ -33,30 +33,6 @@ function(fetch_sundials source_dir)
   file(ARCHIVE_EXTRACT INPUT ${crate} DESTINATION ${cache})
 endfunction()
 
-# CVODE's prediction, a fifth of the run time as a triangle of vector sums through memory, becomes one call that does the
-# same sums in registers (state_predict in state_vector.h; not a bit differs). The source itself stays as it is: a copy
-# in the build folder is compiled instead.
-function(exchange_prediction source)
-  file(READ ${source}/src/cvode/cvode.c text)
-  string(
-    CONCAT triangle
-    "  for (k = 1; k <= cv_mem->cv_q; k++)\n  {\n    for (j = cv_mem->cv_q; j >= k; j--)\n    {\n"
-    "      N_VLinearSum(ONE, cv_mem->cv_zn[j - 1], ONE, cv_mem->cv_zn[j],\n"
-    "                   cv_mem->cv_zn[j - 1]);\n    }\n  }\n"
-  )
-  string(FIND "${text}" "${triangle}" place)
-  if(place EQUAL -1)
-    message(FATAL_ERROR "${source} is not SUNDIALS ${sundials_version}: cvPredict differs")
-  endif()
-  string(REPLACE "${triangle}" "  (void)j, (void)k;\n  state_predict(cv_mem->cv_zn, cv_mem->cv_q);\n" text "${text}")
-  set(copy ${CMAKE_BINARY_DIR}/_sundials/cvode.c)
-  file(CONFIGURE OUTPUT ${copy} CONTENT "${text}" @ONLY)
-  get_target_property(sources sundials_cvode_obj_static SOURCES)
-  list(TRANSFORM sources REPLACE "^(.*/)?cvode[.]c$" ${copy})
-  set_target_properties(sundials_cvode_obj_static PROPERTIES SOURCES "${sources}")
-  target_include_directories(sundials_cvode_obj_static PRIVATE ${source}/src/cvode ${source}/src/sundials)
-endfunction()
-
 function(add_sundials)
   set(source ${WHEEL_SUNDIALS_SOURCE})
   if(NOT source)
@@ -89,26 +65,9 @@ function(add_sundials)
   if(NOT WHEEL_COVERAGE)
     add_compile_options(-ffile-prefix-map=${source}=sundials)
   endif()
-  # Memory of SUNDIALS: the solver's room, see room.h.
-  get_directory_property(own_options COMPILE_OPTIONS)
-  add_compile_options(-DWHEEL_INSIDE_SUNDIALS "SHELL:-include \"${CMAKE_SOURCE_DIR}/fmu-src/integrator/room.h\"")
   set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
   add_subdirectory(${source} ${CMAKE_BINARY_DIR}/_sundials/build EXCLUDE_FROM_ALL SYSTEM)
-  set_directory_properties(PROPERTIES COMPILE_OPTIONS "${own_options}")
-  # CVODE's vector operations inline, for the one kind of vector it meets here. They are written in pairs already; left to
-  # itself the compiler also vectorises the short recurrences for the Adams coefficients, which makes them slower.
-  target_compile_options(
-    sundials_cvode_obj_static
-    PRIVATE
-      -DWHEEL_INSIDE_CVODE
-      -DWHEEL_INLINE_VECTOR_OPERATIONS
-      "SHELL:-include \"${CMAKE_SOURCE_DIR}/fmu-src/integrator/state_vector.h\""
-      -fno-tree-vectorize
-      -fno-tree-slp-vectorize
-      ${cvode_instrumentation}
-  )
-  exchange_prediction(${source})
-  # The private headers hold CVODE's memory record: integrator/history.cpp snapshots it.
+  # The private headers hold CVODE's memory record: solver/cvode_history.cpp alone reads them, for snapshots.
   add_library(sundials_private INTERFACE)
   target_include_directories(sundials_private SYSTEM INTERFACE ${source}/src/cvode ${source}/src/sundials)
   set(SUNDIALS_SOURCE ${source} PARENT_SCOPE)

@@ -1,0 +1,2 @@
+// stub
+#include "cvode_engine.hpp"

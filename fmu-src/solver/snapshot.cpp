@@ -1,0 +1,2 @@
+// stub
+#include "solver.hpp"
