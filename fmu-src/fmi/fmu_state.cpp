@@ -9,7 +9,7 @@
 #include <cstring>
 #include <new>
 
-#include "archive.hpp"
+#include "bytes.hpp"
 #include "instance.hpp"
 #include "registry.hpp"
 

@@ -44,6 +44,7 @@ class Solver {
   void read(double t, double* y) const;
 
   double step_start() const { return step_.start; }
+  double step_end() const { return step_.end; }  // known_until() unless an event cut the step short
   double known_until() const { return known_until_; }
   double event_time() const { return event_time_; }
   Method method() const { return method_; }

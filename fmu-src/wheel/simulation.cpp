@@ -76,7 +76,7 @@ const double* Simulation::y_now() {
 // The counts of the run: those of the solver at work and those before it was last started from nothing.
 Counts Simulation::counts() const {
   const solver::Counters& a = state_.counted;
-  const solver::Counters b = state_.started && !state_.unfolded ? solver_.counters() : solver::Counters{};
+  const solver::Counters b = state_.moving && !state_.unfolded ? solver_.counters() : solver::Counters{};
   return {a.steps + b.steps, a.rhs + b.rhs,           a.jacobians + b.jacobians,
           a.roots + b.roots, state_.transitions, a.restarts + b.restarts};
 }
@@ -121,22 +121,6 @@ double Simulation::sensitivity(unsigned output, unsigned input) {
   reading_with.set(with);
   reading_without.set(without);
   return (row_of(output).read(reading_with) - row_of(output).read(reading_without)) / size;
-}
-
-double Simulation::start_sensitivity(unsigned variable, unsigned known) {
-  if (known >= first_input) return sensitivity(variable, known);
-  constexpr double part = 1e-5;  // of the parameter: truncation and rounding of the central difference are both 1e-10
-  const double size = part * std::fmax(std::fabs(state_.parameters[known]), 0.1);
-  const auto read_at = [&](double value) {
-    State shifted = state_;
-    shifted.parameters[known] = value;
-    set_initial_state(shifted);
-    Reading reading;
-    reading.set({shifted.motion.formulation, shifted.y, shifted.motion.scene, {}, {}});
-    return row_of(variable).read(reading);
-  };
-  const double here = state_.parameters[known], low = std::fmax(here - size, row_of(known).min);
-  return (read_at(here + size) - read_at(low)) / (here + size - low);
 }
 
 const char* Simulation::ending() const {

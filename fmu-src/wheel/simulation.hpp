@@ -39,7 +39,8 @@ struct State {
   solver::Method method = solver::Method::adams;
   Ending ending = Ending::none;
   bool prepared = false;         // there is a state y to read
-  bool started = false;          // the first step has been taken
+  bool started = false;          // initialization has ended
+  bool moving = false;           // the first step has been taken
   bool unfolded = false;         // the solution is read from the orbit, nothing is integrated
   bool jumped = false;           // an input or a tunable parameter changed during the run
   bool changes_pending = false;  // inputs or tunable parameters were set since the last step
@@ -73,6 +74,9 @@ class Simulation {
 
   // The initial state from the current parameters; true if it exists.
   bool prepare(bool report = true);
+  // Ends the initialization; needs a successful prepare.
+  void start() { state_.started = true; }
+  bool started() const { return state_.started; }
   // To the caller's time t. `ended`: the wheel fell flat or lifted off at time(); `failed`: the state is that before the
   // call.
   Progressed advance(double t);
@@ -88,8 +92,6 @@ class Simulation {
   double rate(unsigned variable);
   // d output / d input at this instant; zero for what depends on inputs only through time.
   double sensitivity(unsigned output, unsigned input);
-  // d variable / d parameter or input at the start; needs has_state() and no step taken.
-  double start_sensitivity(unsigned variable, unsigned known);
 
   // The complete state as portable bytes with a checksum. load_state refuses bytes that could not have been saved
   // (false) and leaves everything as it was.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "archive.hpp"
+#include "bytes.hpp"
 #include "checks.hpp"
 #include "decisions.hpp"
 #include "scene.hpp"
@@ -37,7 +37,7 @@ void visit(Archive& archive, State& state) {
   visit(archive, motion.inputs);
   support::choice(archive, state.method, solver::Method::adams, solver::Method::runge_kutta);
   support::choice(archive, state.ending, Ending::none, Ending::lifted_off);
-  support::all(archive, state.prepared, state.started, state.unfolded, state.jumped, state.changes_pending,
+  support::all(archive, state.prepared, state.started, state.moving, state.unfolded, state.jumped, state.changes_pending,
                state.pulling, state.t, state.last_change);
   support::many(archive, state.y, WHEEL_MAX_STATES);
   support::all(archive, state.transitions, state.counted.steps, state.counted.rhs, state.counted.jacobians,
@@ -77,7 +77,7 @@ bool run_is_sound(const State& state) {
   return inputs_are_sound(motion.inputs) && law_is_sound(motion.scene.friction, state.parameters[omega_s]) &&
          all_finite(state.y, motion.formulation->states) && motion.scene.wheel.s >= 0 &&
          std::isfinite(motion.scene.wheel.s) && std::isfinite(state.t) && state.last_change >= 0 &&
-         state.last_change <= state.t && (state.started || (state.t == 0 && state.ending == Ending::none)) &&
+         state.last_change <= state.t && (state.moving ? state.started : state.t == 0 && state.ending == Ending::none) &&
          (unfoldable || !state.unfolded);
 }
 
@@ -85,13 +85,13 @@ bool tolerance_is_sound(double tolerance) {
   return tolerance >= tightest_tolerance && tolerance <= loosest_tolerance;
 }
 
-bool is_stepping(const State& state) { return state.started && !state.unfolded; }
+bool is_stepping(const State& state) { return state.moving && !state.unfolded; }
 
 // The run that the bytes describe; what follows from its parameters is computed anew. False: no run was saved so.
 bool read_run(support::Reader& reader, State& state) {
   visit(reader, state);
   if (!reader.sound || !tolerance_is_sound(state.motion.tolerance) || !std::isfinite(state.start_time)) return false;
-  if (!state.prepared) return !state.started;
+  if (!state.prepared) return !state.started && !state.moving;
   if (!check_values(state.parameters, state.motion.inputs, nullptr, nullptr)) return false;
   State start = state;
   set_initial_state(start);

@@ -32,11 +32,11 @@ bool Simulation::settle_changes() {
   const WheelFriction before = state_.motion.scene.friction;
   const bool was_unfolded = state_.unfolded;
   const double* y = y_now();
-  state_.jumped = state_.started;
+  state_.jumped = state_.moving;
   take_changes(state_, y);
   reading_fresh_ = false;
   announce_transition(t, before);
-  if (!state_.started) return true;
+  if (!state_.moving) return true;
   solver_.change_interval(t - state_.last_change);
   state_.last_change = t;
   if (was_unfolded) return ++state_.counted.restarts, start_solver();
@@ -123,7 +123,7 @@ bool Simulation::build_orbit() {
 }
 
 bool Simulation::knows(double t) const {
-  if (!state_.started) return false;
+  if (!state_.moving) return false;
   return state_.unfolded ? orbit_is_ready() && t <= orbit_end_ : solver_.reaches(t);
 }
 
@@ -131,7 +131,7 @@ solver::Outcome Simulation::run_to(double t) {
   using solver::Outcome;
   if (state_.unfolded && !orbit_is_ready() && !build_orbit()) return Outcome::failed;
   if (state_.unfolded) return t <= orbit_end_ ? Outcome::stepped : Outcome::ended;
-  if (!state_.started && !start_solver()) return Outcome::failed;
+  if (!state_.moving && !start_solver()) return Outcome::failed;
   for (long long work = 0; !solver_.reaches(t);) {
     if (work >= most_work) return failure_ = "it took a million internal steps; ask for shorter steps", Outcome::failed;
     state_.motion.inputs.varies ? solver_.stop_before(t) : solver_.stop_nowhere();
@@ -182,7 +182,7 @@ solver::Outcome Simulation::extend_to(double t) {
   solver::Outcome outcome = settle_changes() ? solver::Outcome::stepped : solver::Outcome::failed;
   if (outcome == solver::Outcome::stepped && t > state_.t) {
     outcome = run_to(t);
-    state_.started = true;
+    state_.moving = true;
   }
   if (!failure_) failure_ = solver_.failure();
   return outcome;
