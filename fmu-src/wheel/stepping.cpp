@@ -135,9 +135,12 @@ solver::Outcome Simulation::run_to(double t) {
   for (long long work = 0; !solver_.reaches(t);) {
     if (work >= most_work) return failure_ = "it took a million internal steps; ask for shorter steps", Outcome::failed;
     state_.motion.inputs.varies ? solver_.stop_before(t) : solver_.stop_nowhere();
+    const double t_before = solver_.known_until();
     const Outcome outcome = solver_.step();
-    if (outcome == Outcome::failed || outcome == Outcome::ended) return outcome;
-    if (state_.motion.keep_contact) report_pulls();
+    if (state_.motion.keep_contact && solver_.known_until() > t_before) report_pulls();
+    if (outcome == Outcome::failed) return outcome;
+    if (solver_.reaches(t)) break;  // a transition or an ending after t waits until it is reached
+    if (outcome == Outcome::ended) return outcome;
     if (outcome == Outcome::event && !pass_transition()) return Outcome::failed;
     work += outcome == Outcome::event ? work_per_transition : 1;
   }
