@@ -73,6 +73,9 @@ class Solver {
   void end_at(double t, Outcome why);
   template <class Archive>
   void visit(Archive& archive);
+  bool has_cvode_history() const;
+  bool restored_fits() const;
+  bool restore_engine(Reader& reader);
 
   Problem problem_ = {};
   Method method_ = Method::adams;
