@@ -15,17 +15,10 @@ constexpr double pi = 3.141592653589793, pi_rest = 1.2246467991473532e-16;  // t
 
 // The error of the half period counts once for every half: it is integrated to a part of the tolerance, but not closer
 // than rounding allows.
-constexpr double finer = 0.01, finest = 1e-14;
+constexpr double finer = 0.1, finest = 1e-14;
 // A swing of omega_1 that is not this much more than the error of one step is noise; a state at the end of the run and
 // its mirror image may differ by so many tolerances.
-constexpr double least_swing = 1e3, most_difference = 100;
-
-// Value at x in [-1, 0] of component i of a polynomial of `degree`.
-double value_at(const double* c, int states, int degree, int i, double x) {
-  double sum = c[degree * states + i];
-  for (int k = degree - 1; k >= 0; --k) sum = sum * x + c[k * states + i];
-  return sum;
-}
+constexpr double least_swing = 3, most_difference = 100;
 
 // sin(n delta) / sin(delta) for |delta| <= pi / 2.
 double quotient(double n, double delta) { return delta == 0 ? n : std::sin(n * delta) / std::sin(delta); }
@@ -67,55 +60,52 @@ struct Orbit::Tightened {
 
 Orbit::Kind Orbit::build(const solver::Problem& given, double tolerance, Force force, const double* y0,
                          solver::Solver& solver) {
-  if (!table_) table_.reset(new (std::nothrow) Table);
-  pieces_ = piece_ = falls_ = rises_ = later_falls_ = 0;
-  half_ = {};
   Tightened tightened = {given, std::fmax(finer, finest / tolerance), force};
   const solver::Problem problem = tightened.problem();
-  if (!table_) return kind_ = Kind::refused;
+  falls_ = rises_ = later_falls_ = 0;
+  half_ = {};
+  kind_ = Kind::refused;
   if (rests(problem, y0)) return kind_ = Kind::folded;
-  if (!solver.start(problem, solver::Method::adams, 0, y0, false)) return kind_ = Kind::refused;
-  return kind_ = follow(problem, y0, solver);
+  kind_ = follow(problem, y0, solver);
+  return kind_;
 }
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
 Orbit::Kind Orbit::follow(const solver::Problem& problem, const double* y0, solver::Solver& solver) {
-  bool turned = y0[omega_1] == 0;
-  double before = y0[omega_1], swing = 0;
-  T1_ = 0;
-  while (pieces_ < most_pieces) {
+  double y[states], rate[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1];
+  bool turned = before == 0;
+  problem.derivative(problem.owner, 0, y0, rate);
+  if (!track_.begin(0, y0, rate) || !solver.start(problem, solver::Method::adams, 0, y0, false)) return Kind::refused;
+  for (;;) {
     const solver::Outcome outcome = solver.step();
     if (outcome == solver::Outcome::failed) return Kind::refused;
-    keep_step(solver);
     const double t = solver.known_until();
-    if (!keep_crossings(problem, y0, solver)) return Kind::refused;
-    double y[states];
-    evaluate(t, y);
+    solver.read(t, y);
+    problem.derivative(problem.owner, t, y, rate);
+    if (!track_.add(t, y, rate) || !keep_crossings(problem, y0, solver)) return Kind::refused;
     if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
-      if (turned) return fold(problem, solver, swing) ? Kind::folded : Kind::refused;
-      T1_ = turning_point(solver.step_start(), t);
+      if (turned) {
+        track_.finish();
+        T1_ = turning_point(T1[0], T1[1]);
+        T2_ = turning_point(solver.step_start(), t);
+        return fold(problem, t, y, swing) ? Kind::folded : Kind::refused;
+      }
+      T1[0] = solver.step_start();
+      T1[1] = t;
       turned = true;
       swing = 0;
     }
-    if (outcome == solver::Outcome::ended) return end_time_ = t, Kind::ended;
+    if (outcome == solver::Outcome::ended) return track_.finish(), end_time_ = t, Kind::ended;
     if (y[omega_1] != 0) before = y[omega_1];
     swing = std::fmax(swing, std::fabs(y[omega_1]));
   }
-  return Kind::refused;
-}
-
-void Orbit::keep_step(const solver::Solver& solver) {
-  Piece& piece = table_->pieces[pieces_++];
-  piece.until = piece.centre = solver.step_end();
-  piece.inverse = 1 / (solver.step_end() - solver.step_start());
-  piece.degree = solver.polynomial(piece.coefficients);
 }
 
 // Where N falls below zero and rises above it in the last step; false if that happens too often to be kept.
 bool Orbit::keep_crossings(const solver::Problem& problem, const double* y0, const solver::Solver& solver) {
   const Tightened& tightened = Tightened::of(problem.owner);
   if (!tightened.force) return true;
-  if (pieces_ == 1) pulls_at_start_ = Tightened::pressed(problem.owner, 0, y0) < 0;
+  if (solver.step_start() == 0) pulls_at_start_ = Tightened::pressed(problem.owner, 0, y0) < 0;
   double t = solver.step_start();
   for (;;) {
     const bool pulls = pulls_at_start_ != ((falls_ + rises_) % 2 != 0);
@@ -126,44 +116,44 @@ bool Orbit::keep_crossings(const solver::Problem& problem, const double* y0, con
   }
 }
 
-// The zero of omega_1 in the last piece, by regula falsi (Illinois) between t_lo and t_hi.
-double Orbit::turning_point(double t_lo, double t_hi) const {
-  const Piece& piece = table_->pieces[pieces_ - 1];
-  const auto rate = [&piece](double x) { return value_at(piece.coefficients, states, piece.degree, omega_1, x); };
-  double a = (t_lo - piece.centre) * piece.inverse, b = (t_hi - piece.centre) * piece.inverse;
+// The zero of omega_1 between two instants of the track, by regula falsi (Illinois).
+double Orbit::turning_point(double a, double b) const {
+  const auto rate = [this](double t) {
+    double y[states];
+    track_.read(t, y);
+    return y[omega_1];
+  };
   double f_a = rate(a), f_b = rate(b);
-  if (f_a == 0 || std::signbit(f_a) == std::signbit(f_b)) return t_lo;  // it fell into the joint of two pieces
-  for (int i = 0; i < 60 && f_b != 0 && std::fabs(b - a) > 1e-16; ++i) {
-    const double x = b - f_b * (b - a) / (f_b - f_a), f = rate(x);
+  if (f_a == 0 || a == b) return a;
+  for (int i = 0; i < 60 && f_b != 0 && a != b; ++i) {
+    const double t = b - f_b * (b - a) / (f_b - f_a), f = rate(t);
+    if (t == b) break;
     if (std::signbit(f) != std::signbit(f_b)) {
       a = b;
       f_a = f_b;
     } else {
       f_a *= 0.5;
     }
-    b = x;
+    b = t;
     f_b = f;
   }
-  return piece.centre + b / piece.inverse;
+  return b;
 }
 
-// Takes the last sign change of omega_1 for T2; false if the half from T1 to it cannot stand for the whole motion.
-bool Orbit::fold(const solver::Problem& problem, const solver::Solver& solver, double swing) {
-  const double t = solver.known_until();
-  double weights[states], direct[states], unfolded[states];
-  T2_ = turning_point(solver.step_start(), t);
-  evaluate(T1_, first_);
-  evaluate(T2_, second_);
+// Whether the half from T1 to T2 stands for the whole motion: y, reached at t past T2, is its mirror image.
+bool Orbit::fold(const solver::Problem& problem, double t, const double* y, double swing) {
+  double weights[states], unfolded[states];
+  track_.read(T1_, first_);
+  track_.read(T2_, second_);
   problem.weights(problem.owner, 1, second_, weights);
   if (!(T2_ > T1_) || swing * weights[omega_1] < least_swing) return false;
   take_half();
-  const Tightened& tightened = Tightened::of(problem.owner);
-  evaluate(t, direct);
   kind_ = Kind::folded;
   read(t, unfolded);
-  tightened.given.weights(tightened.given.owner, 1, direct, weights);
+  const solver::Problem& given = Tightened::of(problem.owner).given;
+  given.weights(given.owner, 1, y, weights);
   for (int i = 0; i < states; ++i)
-    if (!(std::fabs(direct[i] - unfolded[i]) * weights[i] <= most_difference)) return false;
+    if (!(std::fabs(y[i] - unfolded[i]) * weights[i] <= most_difference)) return false;
   return true;
 }
 
@@ -205,53 +195,38 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   if (!(stiffness > 1e-3 * slowest * slowest)) return false;
   const double swing = std::fabs(rate[omega_1]) / stiffness + std::fabs(y0[omega_1]) / std::sqrt(stiffness);
   if (!(swing * weights[theta] < 0.1)) return false;
-  keep_rest(y0, rate, problem.longest_step);
-  return true;
+  return keep_rest(y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
 }
 
-// The circle (or straight line) of a steady motion as one piece: a turn so small that the polynomial is exact.
-void Orbit::keep_rest(const double* y0, const double* rate, double longest) {
-  Piece& piece = table_->pieces[pieces_++];
-  double* c = piece.coefficients;
-  const double length = std::fmin(longest, 0.2 / std::fabs(rate[psi]));
-  piece = {length, 0, 1 / length, solver::max_degree, {}};
-  std::copy_n(y0, states, c);
-  c[omega_1] = 0;
-  c[states + psi] = rate[psi] * length;
-  c[states + phi] = rate[phi] * length;
-  Complex term = length * Complex(rate[X_O], rate[Y_O]);
-  for (int k = 1; k <= solver::max_degree; ++k, term *= Complex(0, rate[psi] * length) / double(k)) {
-    c[k * states + X_O] = term.real();
-    c[k * states + Y_O] = term.imag();
+// The circle (or straight line) of a steady motion over `length`, s, in which psi turns by 0.2 rad at most.
+bool Orbit::keep_rest(const double* y0, const double* rate, double length) {
+  constexpr int parts = 5;
+  double y[states], y_dot[states] = {};
+  std::copy_n(y0, states, y);
+  y[omega_1] = 0;
+  y_dot[psi] = rate[psi];
+  y_dot[phi] = rate[phi];
+  const Complex start(y0[X_O], y0[Y_O]), velocity(rate[X_O], rate[Y_O]);
+  for (int i = 0; i <= parts; ++i) {
+    const double t = length * i / parts, turn = rate[psi] * t;
+    const double shortened = turn == 0 ? 1 : std::sin(0.5 * turn) / (0.5 * turn);  // chord over arc
+    const Complex place = start + velocity * (t * shortened) * std::polar(1.0, 0.5 * turn);
+    const Complex now = velocity * std::polar(1.0, turn);
+    y[psi] = y0[psi] + turn;
+    y[phi] = y0[phi] + rate[phi] * t;
+    y[X_O] = place.real();
+    y[Y_O] = place.imag();
+    y_dot[X_O] = now.real();
+    y_dot[Y_O] = now.imag();
+    if (!(i == 0 ? track_.begin(t, y, y_dot) : track_.add(t, y, y_dot))) return false;
   }
+  track_.finish();
   T1_ = 0;
   T2_ = length;
-  evaluate(T1_, first_);
-  evaluate(T2_, second_);
+  track_.read(T1_, first_);
+  track_.read(T2_, second_);
   take_half();
-}
-
-const Orbit::Piece& Orbit::piece_at(double t) const {
-  const Piece* pieces = table_->pieces;
-  const auto holds = [&](int i) { return t <= pieces[i].until && (i == 0 || t > pieces[i - 1].until); };
-  if (!holds(piece_)) {
-    const auto before = [](const Piece& piece, double instant) { return piece.until < instant; };
-    piece_ = static_cast<int>(std::lower_bound(pieces, pieces + pieces_ - 1, t, before) - pieces);
-  }
-  return pieces[piece_];
-}
-
-void Orbit::evaluate(double t, double* y) const {
-  const Piece& piece = piece_at(t);
-  const double x = (t - piece.centre) * piece.inverse;
-  const double* c = piece.coefficients + piece.degree * states;
-  double sum[states];
-  std::copy_n(c, states, sum);
-  for (int k = piece.degree; k > 0; --k) {
-    c -= states;
-    for (int i = 0; i < states; ++i) sum[i] = sum[i] * x + c[i];
-  }
-  std::copy_n(sum, states, y);
+  return true;
 }
 
 // T1 + k L; `rest` is what its rounding took away.
@@ -292,10 +267,10 @@ const Orbit::Half& Orbit::half_of(double t) const {
 }
 
 void Orbit::read(double t, double* y) const {
-  if (kind_ != Kind::folded || t <= T2_) return evaluate(t, y);
+  if (kind_ != Kind::folded || t <= T2_) return track_.read(t, y);
   const Half& half = half_of(t);
   const double since = (t - half.begin) - half.rest;
-  evaluate(half.mirrored ? T2_ - since : T1_ + since, y);
+  track_.read(half.mirrored ? T2_ - since : T1_ + since, y);
   const double* centre = half.mirrored ? second_ : first_;
   Complex way(y[X_O] - centre[X_O], y[Y_O] - centre[Y_O]);
   if (half.mirrored) {

@@ -11,9 +11,8 @@
 #pragma once
 
 #include <complex>
-#include <memory>
-
 #include "solver.hpp"
+#include "track.hpp"
 
 namespace wheel {
 
@@ -37,7 +36,7 @@ class Orbit {
   void read(double t, double* y) const;
   double end_time() const { return end_time_; }
   double half_period() const { return T2_ - T1_; }
-  int pieces() const { return pieces_; }
+  int pieces() const { return track_.pieces(); }
 
   // The instants t > 0 at which N falls below zero, in order and numbered from 0: how many there are up to t, and when the
   // number n is (n below falls_until of some t). The cost does not depend on t or n.
@@ -46,17 +45,7 @@ class Orbit {
 
  private:
   using Complex = std::complex<double>;
-  static constexpr int states = 8, most_pieces = 112, most_crossings = 16;
-
-  // The states as polynomials in x = (t - centre) * inverse; the last instant is that of the next piece's begin.
-  struct Piece {
-    double until, centre, inverse;
-    int degree;
-    double coefficients[(solver::max_degree + 1) * states];
-  };
-  struct Table {
-    Piece pieces[most_pieces];
-  };
+  static constexpr int states = Track::states, most_crossings = 16;
 
   // The half nutation that starts at T1 + k L, L = T2 - T1: begin + rest, with more digits than one number has.
   struct Half {
@@ -68,22 +57,18 @@ class Orbit {
 
   struct Tightened;
   bool rests(const solver::Problem& problem, const double* y0);
-  void keep_rest(const double* y0, const double* rate, double longest);
+  bool keep_rest(const double* y0, const double* rate, double length);
   Kind follow(const solver::Problem& problem, const double* y0, solver::Solver& solver);
-  void keep_step(const solver::Solver& solver);
   bool keep_crossings(const solver::Problem& problem, const double* y0, const solver::Solver& solver);
   double turning_point(double t_lo, double t_hi) const;
-  bool fold(const solver::Problem& problem, const solver::Solver& solver, double swing);
+  bool fold(const solver::Problem& problem, double t, const double* y, double swing);
   void take_half();
 
-  const Piece& piece_at(double t) const;
-  void evaluate(double t, double* y) const;
   double begin_of(double k, double* rest) const;
   Half half_at(double k) const;
   const Half& half_of(double t) const;
 
-  std::unique_ptr<Table> table_;
-  int pieces_ = 0;
+  Track track_;  // from the start past T2
   Kind kind_ = Kind::refused;
   double end_time_ = 0;
   double T1_ = 0, T2_ = 0;
@@ -96,8 +81,7 @@ class Orbit {
   int falls_ = 0, rises_ = 0, later_falls_ = 0;
   double fall_[most_crossings] = {}, rise_[most_crossings] = {}, later_fall_[2 * most_crossings] = {};
 
-  mutable int piece_ = 0;  // where the last reading found its piece and its half: functions of t alone
-  mutable Half half_;
+  mutable Half half_;  // that of the last reading, a function of its number alone
 };
 
 }  // namespace wheel
