@@ -139,7 +139,7 @@ bool Simulation::restore_solver(const State& next, const unsigned char* history,
   State run = next;
   solver::Problem problem = problem_of(run.motion);
   problem.owner = &state_.motion;
-  return solver_.restore_history(problem, history, size);
+  return solver_.restore_history(problem, history, size) && solver_.step_start() <= next.t && solver_.reaches(next.t);
 }
 
 bool Simulation::load_state(const unsigned char* bytes, std::size_t size) {
