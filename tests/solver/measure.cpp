@@ -103,7 +103,7 @@ void dip(const Arguments& args) {
   while (!s.reaches(20)) {
     const Outcome outcome = run_to(s, 20);
     if (outcome != Outcome::event) break;
-    const double t = s.event_time(), past = 2 * std::acos(1 - args.a) + 1e-9;
+    const double t = s.event_time(), past = 2 * std::acos(1 - args.a) + 0.1;
     std::printf("%s%.17g", comma, t);
     comma = ", ";
     const double y[2] = {std::cos(t + past), -std::sin(t + past)};
