@@ -80,9 +80,8 @@ bool set_up(CvodeObjects& o, char* message) {
   o.y = make_vector(o.states, o.context);
   o.cvode = CVodeCreate(o.method == Method::adams ? CV_ADAMS : CV_BDF, o.context);
   return o.y && o.cvode && CVodeInit(o.cvode, derivative, 0, o.y) == CV_SUCCESS &&
-         CVodeSetUserData(o.cvode, &o.call) == CV_SUCCESS &&
-         CVodeWFtolerances(o.cvode, weights) == CV_SUCCESS && attach_solver(o) &&
-         CVodeSetMaxErrTestFails(o.cvode, most_failures) == CV_SUCCESS &&
+         CVodeSetUserData(o.cvode, &o.call) == CV_SUCCESS && CVodeWFtolerances(o.cvode, weights) == CV_SUCCESS &&
+         attach_solver(o) && CVodeSetMaxErrTestFails(o.cvode, most_failures) == CV_SUCCESS &&
          CVodeSetMaxConvFails(o.cvode, most_failures) == CV_SUCCESS &&
          CVodeSetEtaFixedStepBounds(o.cvode, keep_step_above, keep_step_below) == CV_SUCCESS;
 }

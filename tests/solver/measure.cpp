@@ -240,10 +240,21 @@ void forgeries(const Arguments& args) { measure_forgeries(args.method); }
 constexpr struct {
   const char* name;
   void (*measure)(const Arguments&);
-} all[] = {{"table", table},           {"order", order},           {"accuracy", accuracy},     {"grid", grid},
-           {"dip", dip},               {"double_dip", double_dip}, {"release", release},       {"bounces", bounces},
-           {"cuts", cuts},             {"failure", failure},       {"stiff", stiff},           {"polynomial", polynomial},
-           {"first_step", first_step}, {"snapshots", snapshots},   {"forgeries", forgeries}};
+} all[] = {{"table", table},
+           {"order", order},
+           {"accuracy", accuracy},
+           {"grid", grid},
+           {"dip", dip},
+           {"double_dip", double_dip},
+           {"release", release},
+           {"bounces", bounces},
+           {"cuts", cuts},
+           {"failure", failure},
+           {"stiff", stiff},
+           {"polynomial", polynomial},
+           {"first_step", first_step},
+           {"snapshots", snapshots},
+           {"forgeries", forgeries}};
 
 }  // namespace
 

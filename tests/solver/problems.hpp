@@ -18,11 +18,11 @@ struct Case {
   solver::Problem problem();
 };
 
-Case harmonic();                      // y = (cos t, -sin t) from t = 0
-Case growth(double rate);             // y' = rate y from 1
-Case van_der_pol(double mu);          // from (2, 0)
-Case bouncing(double height);         // (height, speed) under g = 9.81; event: the height
-Case clock_only(double longest_step); // y' = 1: event and boundary are functions of time
+Case harmonic();                       // y = (cos t, -sin t) from t = 0
+Case growth(double rate);              // y' = rate y from 1
+Case van_der_pol(double mu);           // from (2, 0)
+Case bouncing(double height);          // (height, speed) under g = 9.81; event: the height
+Case clock_only(double longest_step);  // y' = 1: event and boundary are functions of time
 
 // Steps until t is known or something else than a step happens.
 solver::Outcome run_to(solver::Solver& solver, double t, long long most_steps = 1000000);

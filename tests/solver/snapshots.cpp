@@ -59,8 +59,8 @@ void measure_snapshots(solver::Method method, int steps) {
   Solver once_more;
   const bool back = once_more.restore_history(c.problem(), bytes.data(), bytes.size()) &&
                     copy.restore_history(c.problem(), bytes.data(), bytes.size()) && same_steps(once_more, copy, 100);
-  std::printf("{\"restored\": %d, \"again\": %d, \"reads\": %d, \"same\": %d, \"back\": %d, \"bytes\": %zu}\n", restored,
-              again, reads, same, back, bytes.size());
+  std::printf("{\"restored\": %d, \"again\": %d, \"reads\": %d, \"same\": %d, \"back\": %d, \"bytes\": %zu}\n",
+              restored, again, reads, same, back, bytes.size());
 }
 
 void measure_forgeries(solver::Method method) {
