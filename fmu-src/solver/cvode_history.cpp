@@ -88,8 +88,7 @@ void Cvode::save(Writer& writer) { visit_history(writer); }
 bool Cvode::restore(const Problem& problem, Method method, Step* step, Reader& reader) {
   const Step saved = *step;
   int states = problem.states;
-  const Problem still = {states,  &states, rest, equal_weights,       nullptr,
-                         nullptr, nullptr, 0,    problem.longest_step};
+  const Problem still = {states, &states, rest, equal_weights, nullptr, nullptr, nullptr, 0, problem.longest_step};
   Counters uncounted = {};
   const int anew = starts_anew_;
   if (!start(still, method, saved.end, saved.y_end, step)) return false;

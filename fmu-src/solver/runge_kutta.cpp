@@ -221,7 +221,7 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
   for (int attempts = 0; attempts < most_attempts; ++attempts) {
     const bool stops = t + stretch * h >= stop;
     if (stops) h = stop - t;
-    if (t + h == t) break;
+    if (!stops && h <= rounding_at(t)) break;
     step->end = stops ? stop : t + h;
     step->lowest_margin = margin_;
     double error = attempt.try_size(h);
