@@ -123,7 +123,7 @@ def test_entries_that_are_zero_for_an_instant_keep_their_rates(motion: eq.Motion
     rows.load_dot = np.zeros(ROWS, np.dtype(eq.Load))
     rows.load_dot["F"], rows.load_dot["M"], rows.load_dot["brake"] = (1, 2, 3), (0.1, 0.2, 0.3), 0.4
     judge, found = rows.judged(), rows.rates(eq.REDUCED)
-    assert np.abs(found - judge).max() < 1e-10  # N/s; measured at most 1e-12
+    assert np.abs(found - judge).max() < 1e-9  # N/s; measured at most 6.3e-11
     rows.load_dot["brake"] = 0
     assert (np.abs(rows.rates(eq.REDUCED) - judge).max() > 0.01) == (law == eq.ROLLING)
 
