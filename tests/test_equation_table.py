@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-TESTS = "\n".join(path.read_text("utf-8") for path in (ROOT / "tests").glob("test_*.py"))
+TESTS = "\n".join(path.read_text("utf-8") for path in (ROOT / "tests").rglob("test_*.py"))
 EQUATIONS = [path for path in (ROOT / "fmu-src" / "equations").iterdir() if path.is_file()]
 SOURCES = "\n".join(path.read_text("utf-8") for path in EQUATIONS)
 ROW = re.compile(r"^\| (\([^|]*?) \| [^|]* \| ([^|]*) \| ([^|]*) \|$", re.MULTILINE)
