@@ -63,9 +63,7 @@ typedef struct Motion {
   double tau; /* moment of ground and brake about the axle */
 } Motion;
 
-static inline Heading heading_of(double psi) {
-  return (Heading){.sin_psi = sin(psi), .cos_psi = cos(psi)};
-}
+static inline Heading heading_of(double psi) { return (Heading){.sin_psi = sin(psi), .cos_psi = cos(psi)}; }
 
 static inline Carrier carrier_of(const WheelParameters* w, const double* y) {
   Carrier c = {.sin_theta = sin(y[0]), .cos_theta = cos(y[0]), .omega_1 = y[1], .omega_2 = y[2], .omega_3 = y[3]};
@@ -112,7 +110,7 @@ static inline Drift drift_of(const WheelParameters* w, const Inertia* I, const C
 
 /* Adds {F} of (15): F turned from fixed axes into the carrier, M already there. */
 static inline void add_load(Drift* d, const Carrier* c, const Heading* heading, const WheelLoad* load) {
-  double F_1 = 0, F_h = 0; /* horizontal: along e1 and across it */
+  double F_1 = 0, F_h = 0;                  /* horizontal: along e1 and across it */
   if (load->F[0] != 0 || load->F[1] != 0) { /* else the motion does not wait for sine and cosine of psi */
     F_1 = load->F[0] * heading->cos_psi + load->F[1] * heading->sin_psi;
     F_h = load->F[1] * heading->cos_psi - load->F[0] * heading->sin_psi;
