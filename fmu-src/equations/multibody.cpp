@@ -1,4 +1,4 @@
-// The multibody formulation behind the C header: (24) solved under a law of friction, as first-order system, any inertia.
+// The multibody formulation behind the C header: (24) under a law of friction, as first-order system, any inertia.
 // Fixed axes for O, Euler angles for the attitude; see multibody.hpp for the equations.
 #include "multibody.hpp"
 

@@ -24,7 +24,7 @@ struct Multibody {
   Matrix3 A, A_dot, Q, Q_dot, r, r_dot;
 
   Multibody(const WheelParameters& w, const double* y)
-      : wheel(w), attitude(y[3], y[4], y[5], {y[9], y[10], y[11] - y[9] * std::cos(y[4])}) {
+      : wheel(w), attitude{y[3], y[4], y[5], {y[9], y[10], y[11] - y[9] * std::cos(y[4])}} {
     q_dot << y[6], y[7], y[8], attitude.beta_dot;
     A = paper::A(attitude);
     A_dot = paper::A_dot(A, attitude);
@@ -58,13 +58,7 @@ inline double omega_z_dot(const Multibody& s, const Vector9& unknowns) {
 
 // (22): the moment -s N kappa about the axle as a matrix on lambda. The third component of lambda in body axes is not
 // N, so [B*] acts on lambda in fixed axes: row z, column Z.
-inline Matrix3 B_star(const WheelParameters& w, double kappa) {
-  return Matrix3{
-      {0, 0, 0},
-      {0, 0, 0},
-      {0, 0, -w.s * kappa},
-  };
-}
+inline Matrix3 B_star(const WheelParameters& w, double kappa) { return Vector3(0, 0, -w.s * kappa).asDiagonal(); }
 
 // (23): how lambda enters the equations of motion.
 inline Matrix63 B_tilde(const Multibody& s, double kappa) {

@@ -9,7 +9,7 @@
 
 enum { PSI = 4, PHI = 5, X_O = 6, Y_O = 7 };
 
-/* One state under a scene's load, ready for a law of friction. */
+/* One state under a scene's load, ready for a law of friction. Inlined: what a caller does not read is not computed. */
 typedef struct Instant {
   Carrier carrier;
   Heading heading;
@@ -17,7 +17,7 @@ typedef struct Instant {
   System system;
 } Instant;
 
-static inline Instant instant_of(const WheelScene* scene, const double* y) {
+__attribute__((always_inline)) static inline Instant instant_of(const WheelScene* scene, const double* y) {
   const WheelParameters* w = &scene->wheel;
   Inertia inertia = inertia_of(w, y[PHI]);
   Instant now = {.carrier = carrier_of(w, y), .heading = heading_of(y[PSI])};
@@ -118,6 +118,13 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
   y[3] = 0;
 }
 
+/* The law that holds at y, where the normal force is N: without its grip where the ground pulls. */
+static AxleLaw frozen_law(const WheelScene* scene, const double* y, double N) {
+  AxleLaw law = law_of(scene, y[3]);
+  if (N <= 0) law.grip = 0;
+  return law;
+}
+
 /* For a given pose, lambda and tau are linear in the load and in the moments of friction. The law's grip is kept; its
  * `brake` is the rate of the moment that does not follow N. */
 static void respond(const WheelScene* scene, const WheelLoad* load_dot, const AxleLaw* law, const double* y,
@@ -134,17 +141,9 @@ static void respond(const WheelScene* scene, const WheelLoad* load_dot, const Ax
   out->tau_dot = a.tau;
 }
 
-/* The law that holds at y, its grip gone where the ground pulls; fills the motion and, on request, y_dot. */
-static AxleLaw frozen_law(const WheelScene* scene, const double* y, Motion* a) {
-  Instant now = instant_of(scene, y);
-  AxleLaw law = law_of(scene, y[3]);
-  *a = move(&now.system, &law);
-  return law;
-}
-
 static void response(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
-  Motion a;
-  AxleLaw law = frozen_law(scene, y, &a);
+  double y_dot[WHEEL_REDUCED_STATES];
+  AxleLaw law = frozen_law(scene, y, derivative(scene, y, y_dot));
   law.brake = kappa_of(&scene->friction, y[3]) * load_dot->brake;
   respond(scene, load_dot, &law, y, out);
 }
@@ -161,9 +160,18 @@ static void add_reaction(const WheelScene* scene, const AxleLaw* law, const doub
   out->tau_dot += weight * a.tau;
 }
 
-/* Three parts: the load's rate, the law's own rate (kappa changes with omega_3), and the state's motion under a frozen
- * load and law. The first two are exact; the third is a difference quotient of fourth order, whose step is a small
- * part of the time in which the wheel itself moves. */
+/* Rate of (s N + brake) kappa at a constant N. */
+static double moment_rate(const WheelScene* scene, const WheelLoad* load_dot, double N, double omega_3,
+                          double omega_3_dot) {
+  double rate = kappa_of(&scene->friction, omega_3) * load_dot->brake;
+  if (scene->friction.kind != WHEEL_REGULARIZED) return rate;
+  double c = cosh(omega_3 / scene->friction.omega_s);
+  double kappa_dot = omega_3_dot / scene->friction.omega_s / c / c;
+  return rate + kappa_dot * (scene->wheel.s * fmax(N, 0) + scene->load.brake);
+}
+
+/* Three parts: the load's rate and the law's own rate, exact, and the state's motion under a frozen load and law, by a
+ * difference quotient of fourth order. Its step is a small part of the time in which the wheel itself moves. */
 static void rates(const WheelScene* scene, const WheelLoad* load_dot, const double* state, WheelReactionRates* out) {
   const double turn = 6.283185307179586, share = 1e-3;
   static const WheelLoad constant = {{0}, {0}, 0};
@@ -172,17 +180,10 @@ static void rates(const WheelScene* scene, const WheelLoad* load_dot, const doub
   memcpy(y, state, sizeof y);
   y[PSI] = remainder(y[PSI], turn); /* the steps are not to be lost in the rounding of large angles */
   y[PHI] = remainder(y[PHI], turn);
-  Motion a;
-  AxleLaw law = frozen_law(scene, y, &a), moving = law;
-  derivative(scene, y, y_dot);
-  double kappa = kappa_of(&scene->friction, y[3]), kappa_dot = 0;
-  if (scene->friction.kind == WHEEL_REGULARIZED) {
-    double c = cosh(y[3] / scene->friction.omega_s);
-    kappa_dot = a.omega_3_dot / scene->friction.omega_s / c / c;
-  }
-  double grip_N = a.N > 0 ? scene->wheel.s * a.N : 0;
-  moving.brake = (grip_N + scene->load.brake) * kappa_dot + kappa * load_dot->brake;
-  respond(scene, load_dot, &moving, y, out);
+  double N = derivative(scene, y, y_dot);
+  AxleLaw law = frozen_law(scene, y, N), changing = law;
+  changing.brake = moment_rate(scene, load_dot, N, y[3], y_dot[3]);
+  respond(scene, load_dot, &changing, y, out);
 
   double swing = fabs(y_dot[1]) + fabs(y_dot[2]) + fabs(y_dot[3]);
   double rate = (fabs(y[1]) + fabs(y[2])) / sin(y[0]) + fabs(y[3]) + sqrt(swing);

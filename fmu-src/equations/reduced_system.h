@@ -63,9 +63,7 @@ typedef struct Motion {
   double tau; /* moment of ground and brake about the axle */
 } Motion;
 
-static inline Heading heading_of(double psi) {
-  return (Heading){.sin_psi = sin(psi), .cos_psi = cos(psi)};
-}
+static inline Heading heading_of(double psi) { return (Heading){.sin_psi = sin(psi), .cos_psi = cos(psi)}; }
 
 static inline Carrier carrier_of(const WheelParameters* w, const double* y) {
   Carrier c = {.sin_theta = sin(y[0]), .cos_theta = cos(y[0]), .omega_1 = y[1], .omega_2 = y[2], .omega_3 = y[3]};
@@ -95,20 +93,28 @@ static inline Drift drift_of(const WheelParameters* w, const Inertia* I, const C
   double H_1 = I->I_11 * c->omega_1 + I->p * c->omega_2;
   double H_2 = I->p * c->omega_1 + I->I_22 * c->omega_2;
   double H_3 = w->J_z * c->omega_3;
-  return (Drift){
+  Drift d = {
       .k_1 = w->m * b_1,
       .k_2 = w->m * (b_2 + w->g * c->sin_theta),
       .k_3 = w->m * (b_3 + w->g * c->cos_theta),
-      .M_1 = c->Omega_3 * H_2 - c->omega_2 * H_3 + 2.0 * c->phi_dot * (I->p * c->omega_1 - I->q * c->omega_2),
-      .M_2 = c->omega_1 * H_3 - c->Omega_3 * H_1 - 2.0 * c->phi_dot * (I->q * c->omega_1 + I->p * c->omega_2),
+      .M_1 = c->Omega_3 * H_2 - c->omega_2 * H_3,
+      .M_2 = c->omega_1 * H_3 - c->Omega_3 * H_1,
       .M_3 = c->omega_2 * H_1 - c->omega_1 * H_2,
   };
+  if (w->J_x != w->J_y) { /* the inertia itself turns against the carrier */
+    d.M_1 += 2.0 * c->phi_dot * (I->p * c->omega_1 - I->q * c->omega_2);
+    d.M_2 -= 2.0 * c->phi_dot * (I->q * c->omega_1 + I->p * c->omega_2);
+  }
+  return d;
 }
 
 /* Adds {F} of (15): F turned from fixed axes into the carrier, M already there. */
 static inline void add_load(Drift* d, const Carrier* c, const Heading* heading, const WheelLoad* load) {
-  double F_1 = load->F[0] * heading->cos_psi + load->F[1] * heading->sin_psi;
-  double F_h = load->F[1] * heading->cos_psi - load->F[0] * heading->sin_psi; /* horizontal, across e1 */
+  double F_1 = 0, F_h = 0;                  /* horizontal: along e1 and across it */
+  if (load->F[0] != 0 || load->F[1] != 0) { /* else the motion does not wait for sine and cosine of psi */
+    F_1 = load->F[0] * heading->cos_psi + load->F[1] * heading->sin_psi;
+    F_h = load->F[1] * heading->cos_psi - load->F[0] * heading->sin_psi;
+  }
   d->k_1 -= F_1;
   d->k_2 -= c->cos_theta * F_h + c->sin_theta * load->F[2];
   d->k_3 -= c->cos_theta * load->F[2] - c->sin_theta * F_h;

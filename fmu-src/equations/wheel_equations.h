@@ -34,8 +34,8 @@ typedef struct WheelLoad {
   double brake; /* N m, >= 0: largest moment of a dry brake about the axle, which acts against omega_z */
 } WheelLoad;
 
-/* The moment tau of ground and brake about the axle: tau = -(s N + brake) kappa. N is the normal force lambda_3; a ground
- * that pulls (N <= 0) has no friction, and the brake's part alone is left. */
+/* The moment tau of ground and brake about the axle: tau = -(s N + brake) kappa. N is the normal force lambda_3; a
+ * ground that pulls (N <= 0) has no friction, and the brake's part alone is left. */
 typedef enum WheelFrictionKind {
   WHEEL_NO_LAW,       /* what a record filled with zeros holds: every acceleration and force is NaN */
   WHEEL_FRICTIONLESS, /* kappa = 0: no moment, whatever s and the brake are */
@@ -117,8 +117,8 @@ typedef struct WheelFormulation {
   void (*stop_spin)(const WheelParameters* wheel, double* y);
 } WheelFormulation;
 
-/* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Where J_x = J_y, phi enters nothing, and a simpler
- * elimination is taken. X_O and Y_O never enter, psi does only where F_X or F_Y is not zero. */
+/* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Where J_x = J_y, phi enters nothing, and a
+ * simpler elimination is taken. X_O and Y_O never enter, psi does only where F_X or F_Y is not zero. */
 extern const WheelFormulation wheel_reduced;
 
 /* y = q, q_dot with q = X_O, Y_O, Z_O, psi, theta, phi, (25), but with omega_z, (21), in the place of phi_dot: a wheel
@@ -141,7 +141,8 @@ typedef struct WheelContact {
 WheelContact wheel_contact(const WheelParameters* wheel, const WheelKinematics* motion);
 
 /* The ground's horizontal force in wheel axes, N: force[0] along e1 (lambda_x), force[1] across it, to the left of
- * somebody who looks along e1 (lambda_y). And its rates, N/s, from those of lambda; the wheel axes turn with psi_dot. */
+ * somebody who looks along e1 (lambda_y). And its rates, N/s, from those of lambda; the wheel axes turn with psi_dot.
+ */
 void wheel_horizontal_force(const WheelKinematics* motion, const double lambda[3], double force[2]);
 void wheel_horizontal_force_rates(const WheelKinematics* motion, const double lambda[3], const double lambda_dot[3],
                                   double force_dot[2]);

@@ -104,12 +104,12 @@ def respond(contact: Contact, inputs: Inputs, t: float, y: list[float]) -> tuple
 
 
 def derivative(contact: Contact, inputs: Inputs, law: Law) -> Callable[[float, State], State]:
-    """dy/dt on one branch of the friction law."""
+    """dy/dt on one branch of the friction law, the brake's capacity that of each instant."""
 
     def rate(t: float, state: State) -> State:
         y = state.tolist()
         R, answer = respond(contact, inputs, t, y)
-        tau = axle_moment(law, answer, y[6])
+        tau = axle_moment(law._replace(brake=inputs.brake(t)), answer, y[6])
         x, d = answer.base, answer.unit
         a = to_fixed(R, (x[0] + tau * d[0], x[1] + tau * d[1], x[2] + tau * d[2]))
         alpha_z = 0.0 if law.hold else x[5] + tau * d[5]
