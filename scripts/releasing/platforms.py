@@ -40,7 +40,18 @@ def build_driver(zig: Path, target: str, folder: Path) -> Path:
     subprocess.run([sys.executable, *map(str, rows)], check=True)
     driver = folder / target / ("driver.exe" if target == WINDOWS else "driver")
     source = Path(__file__).parent / "driver.c"
-    command = [str(zig / "zig"), "cc", "-target", target, "-O1", f"-I{HEADERS}", f"-I{folder}", str(source), "-o", str(driver)]
+    command = [
+        str(zig / "zig"),
+        "cc",
+        "-target",
+        target,
+        "-O1",
+        f"-I{HEADERS}",
+        f"-I{folder}",
+        str(source),
+        "-o",
+        str(driver),
+    ]
     subprocess.run([*command, *([] if target == WINDOWS else ["-ldl"])], check=True)
     return driver
 
