@@ -70,8 +70,8 @@ def counted(play: Play, library: Path) -> dict[str, dict[str, int]]:
 
 
 def test_no_failed_allocation_crashes_hangs_leaks_goes_untold_or_changes_a_later_bit(counted):
-    # the instance and the table of instances; a state and the table of states, the scratch instance that judges bytes, and
-    # the state that they become: each failed
+    # the instance and the table of instances; a state and the table of states, the scratch instance that judges bytes,
+    # and the state that they become: each failed
     assert {(n["failed_once"], n["failed_for_good"]) for n in counted.values()} == {(6, 6)}
 
 
