@@ -1,4 +1,4 @@
-"""Writes the variables of modelDescription.xml as rows for C and C++: what CMake and the release include as variables.inc.
+"""Writes the variables of modelDescription.xml as rows for C and C++: variables.inc, for the library and its tests.
 
 No paper equation; SI units as in the description. A row of a parameter or input, and of a calculated variable:
 
@@ -24,7 +24,9 @@ def check(variables: list[ElementTree.Element]) -> None:
     """One sentence for a description that the rows cannot follow."""
     kinds = [ROLES.index(v.get("causality")) for v in variables]
     if [int(v.get("valueReference")) for v in variables] != list(range(len(variables))):
-        raise SystemExit("The value references of modelDescription.xml must count from 0 in the order of the variables.")
+        raise SystemExit(
+            "The value references of modelDescription.xml must count from 0 in the order of the variables."
+        )
     if kinds != sorted(kinds):
         raise SystemExit(f"modelDescription.xml must list its variables in the order {', '.join(ROLES)}.")
     for variable in variables:

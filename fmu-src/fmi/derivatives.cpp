@@ -54,13 +54,16 @@ bool has_starts(Instance& i, unsigned parameter, double x, double h, const Stenc
                      [&](int place) { return start_at(i, parameter, x + place * h); });
 }
 
-void add_quotient(Instance& i, unsigned parameter, double x, double h, const Stencil& stencil, double seed,
-                  const Outputs& outputs) {
-  for (int k = 0; k < 5; ++k) {
-    start_at(i, parameter, x + stencil.places[k] * h);
-    for (std::size_t u = 0; u < outputs.count; ++u)
-      outputs.sums[u] += seed * stencil.weights[k] / h * i.simulation.value(outputs.references[u]);
-  }
+// Differences from the value at x itself, so that an output that a parameter does not move has the derivative zero.
+double quotient(Instance& i, unsigned output, unsigned parameter, double x, double h, const Stencil& stencil) {
+  const auto value_at = [&](double near_x) {
+    start_at(i, parameter, near_x);
+    return i.simulation.value(output);
+  };
+  const double centre = value_at(x);
+  double sum = 0;
+  for (int k = 0; k < 5; ++k) sum += stencil.weights[k] * (value_at(x + stencil.places[k] * h) - centre);
+  return sum / h;
 }
 
 // Adds seed * d output / d parameter of the start; choices have no small change and add nothing. Afterwards the
@@ -75,7 +78,8 @@ bool add_start_derivative(Instance& i, unsigned parameter, double seed, const Ou
   for (const double share : {1e-3, 1e-6, 1e-9})
     for (const Stencil& stencil : stencils) {
       if (found || !has_starts(i, parameter, x, share * scale, stencil)) continue;
-      add_quotient(i, parameter, x, share * scale, stencil, seed, outputs);
+      for (std::size_t u = 0; u < outputs.count; ++u)
+        outputs.sums[u] += seed * quotient(i, outputs.references[u], parameter, x, share * scale, stencil);
       found = true;
     }
   return start_at(i, parameter, x) && found;

@@ -108,7 +108,8 @@ def test_directional_derivatives_are_those_of_the_reactions(wheel, scene):
         checked.append((jacobian(w), difference_jacobian(w)))
     for exact, difference in checked:
         assert np.max(np.abs(exact - difference)) < 1e-12  # N/N and N/(N m): measured 1.4e-13
-        assert np.all(exact[:13] == 0) and np.linalg.matrix_rank(exact[13:], 1e-3) == 3
+        answers = [name.startswith(("lambda", "tau")) for name in outputs(w)]
+        assert np.all(exact[np.invert(answers)] == 0) and np.linalg.matrix_rank(exact[answers], 1e-3) >= 3
     assert np.max(np.abs(checked[0][0] - checked[-1][1])) > 1e-12  # the partner: another instant
 
 

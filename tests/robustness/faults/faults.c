@@ -22,6 +22,15 @@ typedef struct Life {
   int count;
 } Life;
 
+/* Value references by name, as modelDescription.xml has them. */
+enum {
+#define STORED(name, ...) ref_##name,
+#define COMPUTED(name, ...) ref_##name,
+#include "variables.inc"
+#undef STORED
+#undef COMPUTED
+};
+
 static Unit unit;
 static const char* guid;
 static int choices[3]; /* formulation, friction law, method */
@@ -51,7 +60,7 @@ static int check(fmi2Status status, long sentences_before) {
 #define WELL(call) (before = sentences, check(call, before))
 
 static int step(fmi2Component c, int k, Life* life) {
-  static const fmi2ValueReference outputs[OUTPUTS] = {27, 28, 29, 30};
+  static const fmi2ValueReference outputs[OUTPUTS] = {ref_X_O, ref_theta, ref_phi_dot, ref_psi_dot};
   long before;
   if (!WELL(unit.step(c, 0.1 * k, 0.1, fmi2True))) return 0;
   return WELL(unit.get_real(c, outputs, OUTPUTS, life->rows[life->count++]));
@@ -59,7 +68,7 @@ static int step(fmi2Component c, int k, Life* life) {
 
 /* From instantiated; passes sticks and slips. */
 static int run(fmi2Component c, Life* life) {
-  static const fmi2ValueReference integers[] = {16, 17, 19}, s = 7;
+  static const fmi2ValueReference integers[] = {ref_formulation, ref_friction_law, ref_method}, s = ref_s;
   const double friction = 0.3;
   long before;
   life->count = 0;
@@ -72,7 +81,7 @@ static int run(fmi2Component c, Life* life) {
 
 /* A step, back by a copy out of bytes, and the same step again. */
 static int roll_back(fmi2Component c, Life* life) {
-  static char bytes[1 << 15];
+  static char bytes[1 << 17];
   fmi2FMUstate state = NULL, copy = NULL;
   size_t size = 0;
   long before;

@@ -93,8 +93,8 @@ void Session::reset() {
 
 // A share of the shortest time in which the wheel moves noticeably: short steps keep the fuzzer fast.
 double Session::usual_step(const Slot& slot) {
-  constexpr double longest = 10, share = 0.25;          // s, and of the shortest time
-  const unsigned references[] = {1, 2, 6, 30, 35, 29};  // r_0, r, g, psi_dot, theta_dot, phi_dot
+  constexpr double longest = 10, share = 0.25;  // s, and of the shortest time
+  const unsigned references[] = {ref_r_0, ref_r, ref_g, ref_psi_dot, ref_theta_dot, ref_phi_dot};
   double v[6] = {};
   if (slot.model.state == instantiated || fmi2GetReal(slot.component, references, 6, v) != fmi2OK) return 0.01;
   const double rate = std::sqrt(v[2] / (v[0] + v[1])) + std::fabs(v[3]) + std::fabs(v[4]) + std::fabs(v[5]);

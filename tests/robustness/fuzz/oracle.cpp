@@ -46,9 +46,15 @@ void receive(fmi2ComponentEnvironment, fmi2String name, fmi2Status, fmi2String c
 
 }  // namespace
 
-bool is_integer(unsigned reference) {
-  return reference == ref_formulation || reference == ref_friction_law || reference == ref_method ||
-         (reference >= ref_friction_mode && reference <= ref_n_restarts);
+Type type_of(unsigned reference) {
+  constexpr Type types[] = {
+#define STORED(name, type, ...) Type::type,
+#define COMPUTED(name, type, ...) Type::type,
+#include "variables.inc"
+#undef STORED
+#undef COMPUTED
+  };
+  return types[reference];
 }
 
 Log& log() {
@@ -89,9 +95,9 @@ std::vector<double> readings(const Slot& slot) {
     fmi2Status status = fmi2OK;
     double real = 0;
     int whole = 0;
-    if (reference == ref_keep_contact)
+    if (type_of(reference) == Type::boolean)
       status = fmi2GetBoolean(slot.component, &reference, 1, &whole);
-    else if (is_integer(reference))
+    else if (type_of(reference) == Type::integer)
       status = fmi2GetInteger(slot.component, &reference, 1, &whole);
     else
       status = fmi2GetReal(slot.component, &reference, 1, &real);
@@ -124,7 +130,8 @@ void check_after_start(Slot& slot) {
   const std::vector<double> values = readings(slot);
   check_finite(values);
   slot.model.start_energy = values[ref_E];
-  slot.model.energy_scale = std::fabs(values[ref_E]) + values[0] * values[6] * (values[1] + values[2]);
+  slot.model.energy_scale =
+      std::fabs(values[ref_E]) + values[ref_m] * values[ref_g] * (values[ref_r_0] + values[ref_r]);
   for (unsigned input = ref_first_input; input < ref_first_output; ++input)
     if (values[input] != 0) slot.model.free = false;
   if (values[ref_s] != 0) slot.model.free = false;

@@ -9,24 +9,21 @@
 
 namespace fuzz {
 
-// Value references as modelDescription.xml numbers them.
+// Value references by name, as modelDescription.xml has them.
 enum : unsigned {
-  ref_s = 7,
-  ref_formulation = 16,
-  ref_friction_law,
-  ref_omega_s,
-  ref_method,
-  ref_keep_contact,
-  ref_first_input,
-  ref_first_output = 27,
-  ref_lambda_3 = 42,
-  ref_E = 43,
-  ref_mu_required,
-  ref_friction_mode,
-  ref_n_restarts = 51,
+#define STORED(name, ...) ref_##name,
+#define COMPUTED(name, ...) ref_##name,
+#include "variables.inc"
+#undef STORED
+#undef COMPUTED
   ref_count,
+  ref_first_input = ref_F_X,
+  ref_first_output = ref_X_O,
 };
-bool is_integer(unsigned reference);
+constexpr unsigned input_count = ref_first_output - ref_first_input, output_count = ref_E - ref_first_output;
+
+enum class Type { real, integer, boolean };
+Type type_of(unsigned reference);
 
 // Call states of FMI 2.0.5, section 4.2.4.
 enum State : unsigned { instantiated, initialization, step_complete, step_failed, terminated, error };

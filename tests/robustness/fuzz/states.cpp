@@ -30,17 +30,17 @@ void Session::free_state() {
 void Session::serialize() {
   const Saved& saved = saved_[in_.below(3)];
   std::size_t size = 0;
-  Digest bytes(16384);
+  Digest bytes(1u << 17u);
   const fmi2Component c = now_->component;
   const fmi2Status sized =
       checked(*now_, anywhere, false, [&] { return fmi2SerializedFMUstateSize(c, saved.state, &size); });
   expect(sized == (saved.state ? fmi2OK : fmi2Error), "the size of a state is known");
   expect(size <= bytes.size(), "a state is small");
-  const std::size_t room = in_.chance(4) ? size / 2 : size;
+  const std::size_t given = in_.chance(4) ? size / 2 : size;
   const unsigned null = in_.byte();
   const fmi2Status status =
-      checked(*now_, anywhere, false, [&] { return fmi2SerializeFMUstate(c, saved.state, bytes.data(), room); });
-  expect(status == (saved.state && room == size ? fmi2OK : fmi2Error), "a state fits into its size, and no less");
+      checked(*now_, anywhere, false, [&] { return fmi2SerializeFMUstate(c, saved.state, bytes.data(), given); });
+  expect(status == (saved.state && given == size ? fmi2OK : fmi2Error), "a state fits into its size, and no less");
   if (null < 32) without_arrays(saved);
 }
 
@@ -51,8 +51,8 @@ void Session::without_arrays(const Saved& saved) {
   const fmi2Status statuses[] = {
       checked(*now_, anywhere, false, [&] { return fmi2GetFMUstate(c, nullptr); }),
       checked(*now_, anywhere, false, [&] { return fmi2SerializedFMUstateSize(c, saved.state, nullptr); }),
-      checked(*now_, anywhere, false, [&] { return fmi2SerializeFMUstate(c, saved.state, nullptr, 16384); }),
-      checked(*now_, anywhere, false, [&] { return fmi2DeSerializeFMUstate(c, nullptr, 16384, &state); }),
+      checked(*now_, anywhere, false, [&] { return fmi2SerializeFMUstate(c, saved.state, nullptr, 1u << 17u); }),
+      checked(*now_, anywhere, false, [&] { return fmi2DeSerializeFMUstate(c, nullptr, 1u << 17u, &state); }),
       checked(*now_, anywhere, false, [&] { return fmi2DeSerializeFMUstate(c, &byte, 1, &state); }),
       checked(*now_, anywhere, false, [&] { return fmi2DeSerializeFMUstate(c, &byte, 1, nullptr); }),
   };

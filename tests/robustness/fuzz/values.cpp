@@ -6,9 +6,17 @@
 namespace fuzz {
 namespace {
 
-// Start values of the parameters and inputs, row by row as modelDescription.xml has them; inputs: a size that matters.
-constexpr double usual[ref_first_output] = {20, 0.3, 0.05, 0.9, 0.9,   1.8, 9.81, 0.03, 1.57, 1.3, 1, 1, 0.1, -2,
-                                            1,  1,   1,    1,   0.001, 1,   0,    30,   30,   30,  3, 3, 3};
+constexpr double usual_size(double start, bool is_input) { return is_input ? 10 : start == 0 ? 0.1 : start; }
+constexpr bool parameter = false, tunable = false, input = true;
+
+// Sizes that matter: the start values of the parameters as modelDescription.xml has them, and what moves a wheel.
+constexpr double usual[] = {
+#define STORED(name, type, role, start, ...) usual_size(start, role),
+#define COMPUTED(...)
+#include "variables.inc"
+#undef STORED
+#undef COMPUTED
+};
 
 }  // namespace
 
@@ -50,7 +58,7 @@ void Session::set_reals() {
 void Session::set_choices() {
   constexpr unsigned choices[] = {ref_formulation, ref_friction_law, ref_method};
   const unsigned variable = in_.chance(12) ? choices[in_.below(3)] : reference();
-  const int whole = in_.chance(12) ? 1 + static_cast<int>(in_.below(3)) : static_cast<int>(in_.byte() * 0x01010101u);
+  const int whole = in_.chance(12) ? 1 + static_cast<int>(in_.below(4)) : static_cast<int>(in_.byte() * 0x01010101u);
   const unsigned flag = in_.chance(14) ? unsigned{ref_keep_contact} : reference();
   const int truth = in_.chance(14) ? static_cast<int>(in_.below(2)) : static_cast<int>(in_.byte());
   trace("  %u = %d, %u = %d\n", variable, whole, flag, truth);
@@ -88,7 +96,7 @@ void Session::set_input_derivatives() {
   int orders[most];
   double values[most];
   for (unsigned k = 0; k < count; ++k) {
-    inputs[k] = in_.chance(14) ? ref_first_input + in_.below(6) : reference();
+    inputs[k] = in_.chance(14) ? ref_first_input + in_.below(input_count) : reference();
     orders[k] = in_.chance(14) ? 1 + static_cast<int>(in_.below(3)) : static_cast<int>(in_.byte()) - 128;
     values[k] = value_for(inputs[k]);
     trace("  derivative %d of %u = %.17g\n", orders[k], inputs[k], values[k]);
@@ -108,7 +116,7 @@ void Session::get_output_derivatives() {
   int orders[most];
   double values[most] = {};
   for (unsigned k = 0; k < count; ++k) {
-    outputs[k] = in_.chance(14) ? ref_first_output + in_.below(16) : reference();
+    outputs[k] = in_.chance(14) ? ref_first_output + in_.below(output_count) : reference();
     orders[k] = in_.chance(14) ? 1 : static_cast<int>(in_.byte()) - 128;
   }
   const fmi2Status status = checked(*now_, readable, false, [&] {
@@ -122,8 +130,10 @@ void Session::directional_derivative() {
   const unsigned rows = in_.chance(8) ? 1 : in_.below(most + 1), columns = in_.chance(8) ? 1 : in_.below(most + 1);
   const bool null = in_.chance(1);
   unsigned unknowns[most], knowns[most];
-  for (unsigned k = 0; k < rows; ++k) unknowns[k] = in_.chance(14) ? ref_first_output + in_.below(16) : reference();
-  for (unsigned k = 0; k < columns; ++k) knowns[k] = in_.chance(14) ? ref_first_input + in_.below(6) : reference();
+  for (unsigned k = 0; k < rows; ++k)
+    unknowns[k] = in_.chance(14) ? ref_first_output + in_.below(output_count) : reference();
+  for (unsigned k = 0; k < columns; ++k)
+    knowns[k] = in_.chance(14) ? ref_first_input + in_.below(input_count) : reference();
   const double seeds[most] = {1, -2, 0.5};
   double values[most] = {};
   const fmi2Status status = checked(*now_, M | C | F | T | X, false, [&] {

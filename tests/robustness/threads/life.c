@@ -8,7 +8,15 @@
 
 #include "threads.h"
 
-enum { CALLS = 60, OUTPUTS = 16, FIRST_OUTPUT = 27, FIRST_INPUT = 21, INPUTS = 6, COUNTERS = 46, STATE_ROOM = 16384 };
+/* Value references by name, as modelDescription.xml has them. */
+enum {
+#define STORED(name, ...) ref_##name,
+#define COMPUTED(name, ...) ref_##name,
+#include "variables.inc"
+#undef STORED
+#undef COMPUTED
+};
+enum { CALLS = 60, OUTPUTS = ref_E - ref_X_O, INPUTS = ref_X_O - ref_F_X, STATE_SIZE = 1 << 17 };
 
 struct Life {
   const Fmu* fmu;
@@ -59,10 +67,10 @@ static void must(Life* life, fmi2Status status, const char* call) {
 #define MUST_BARE(function) must(life, life->fmu->function(life->component), #function)
 
 static void read_outputs(Life* life) {
-  fmi2ValueReference outputs[OUTPUTS], counters[] = {COUNTERS, COUNTERS + 1, COUNTERS + 4};
+  fmi2ValueReference outputs[OUTPUTS], counters[] = {ref_n_steps, ref_n_rhs, ref_n_events};
   fmi2Integer ones[OUTPUTS], whole[3];
   double values[OUTPUTS];
-  for (unsigned i = 0; i < OUTPUTS; ++i) outputs[i] = FIRST_OUTPUT + i, ones[i] = 1;
+  for (unsigned i = 0; i < OUTPUTS; ++i) outputs[i] = ref_X_O + i, ones[i] = 1;
   MUST(get_real, outputs, OUTPUTS, values);
   add(life, values, sizeof values);
   MUST(get_integer, counters, 3, whole);
@@ -80,8 +88,10 @@ static void step(Life* life) {
 }
 
 static void push(Life* life) {
-  const fmi2ValueReference input = FIRST_INPUT + (unsigned)(draw(&life->dice) % INPUTS), s = 7;
-  const double force = 5 * draw_unit(life), slope = 10 * draw_unit(life), friction = 0.02 * (1 + draw_unit(life));
+  const fmi2ValueReference input = ref_F_X + (unsigned)(draw(&life->dice) % INPUTS), s = ref_s;
+  const int brakes = input == ref_M_brake; /* a brake is never negative */
+  const double force = brakes ? 2 : 5 * draw_unit(life), slope = brakes ? 0 : 10 * draw_unit(life),
+               friction = 0.02 * (1 + draw_unit(life));
   const fmi2Integer first = 1;
   MUST(set_real, &input, 1, &force);
   if (draw(&life->dice) % 2) MUST(set_input_derivatives, &input, 1, &first, &slope);
@@ -100,7 +110,7 @@ static void roll_back(Life* life) {
 }
 
 static void move_state(Life* life) {
-  fmi2Byte bytes[STATE_ROOM];
+  fmi2Byte bytes[STATE_SIZE];
   fmi2FMUstate copy = NULL;
   size_t size = 0;
   keep_state(life);
@@ -113,7 +123,7 @@ static void move_state(Life* life) {
 }
 
 static void ask(Life* life) {
-  const fmi2ValueReference lambda_3 = FIRST_OUTPUT + 15, F_Z = FIRST_INPUT + 2;
+  const fmi2ValueReference lambda_3 = ref_X_O + 15, F_Z = ref_F_X + 2;
   const double seed = 1;
   double slope = 0;
   fmi2Boolean ended = fmi2True;
@@ -131,7 +141,8 @@ static void talk(Life* life) {
 }
 
 static void initialize(Life* life) {
-  const fmi2ValueReference reals[] = {7, 4, 15, 13}, choices[] = {16, 17, 19}, keep = 20;
+  const fmi2ValueReference reals[] = {ref_s, ref_J_y, ref_Y_O_start, ref_phi_dot_start},
+                           choices[] = {ref_formulation, ref_friction_law, ref_method}, keep = ref_keep_contact;
   const int other = life->number % 3 == 1;
   const double values[] = {life->number % 2 ? 0.02 : 0.0, other ? 1.1 : 0.9, 1e-3 * (double)life->number, -2.5};
   const fmi2Integer picked[] = {1, life->number % 5 == 3 ? 2 : 1, life->number % 7 == 3 ? 3 : 1};
