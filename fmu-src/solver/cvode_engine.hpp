@@ -3,13 +3,14 @@
 // Its public interface alone; cvode_history.cpp is the exception, and can go with nothing lost but snapshots.
 #pragma once
 
-#include <cstddef>
-
 #include "step.hpp"
 
 namespace solver {
 
 struct CvodeObjects;
+struct Measure;
+struct Reader;
+struct Writer;
 
 class Cvode {
  public:
@@ -29,19 +30,24 @@ class Cvode {
 
   const char* failure() const { return failure_; }
 
-  // The history after the last step (cvode_history.cpp); objects of the same method and number of states.
-  template <class Archive>
-  void visit(Archive& archive, int states);
-  // Makes the objects of a solver that is to be restored.
-  bool prepare_restore(const Problem& problem, Method method, Step* step);
+  // The next step is the first after a start (1) or after a stop (2); else 0.
+  int& starts_anew() { return starts_anew_; }
+
+  // The history after the last step, which has a length (cvode_history.cpp). restore is given the step, and refuses
+  // numbers that could not belong to it.
+  void measure(Measure& measure);
+  void save(Writer& writer);
+  bool restore(const Problem& problem, Method method, Step* step, Reader& reader);
 
  private:
   bool make_objects(int states, Method method);
   void free_objects();
   bool restart(double t, const double* y);
+  template <class Archive>
+  void visit_history(Archive& archive);
 
   CvodeObjects* objects_ = nullptr;
-  int starts_anew_ = 1;  // 1: the next step is the first; 2: it is, because the last one ended at a stop; 0: it is not
+  int starts_anew_ = 1;
   char failure_[160] = "";
 };
 

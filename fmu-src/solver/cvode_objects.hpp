@@ -1,4 +1,4 @@
-// What SUNDIALS allocates for one solver.
+// What SUNDIALS allocates for one solver, and what the functions that CVODE calls are given.
 #pragma once
 
 #include <sundials/sundials_linearsolver.h>
@@ -9,7 +9,15 @@
 
 namespace solver {
 
+// Of the step under way. CVODE keeps copies of its address: it never moves.
+struct CvodeCall {
+  const Problem* problem;
+  Counters* counters;
+  double lowest_margin;
+};
+
 struct CvodeObjects {
+  CvodeCall call;
   Method method;
   int states;
   SUNContext context;

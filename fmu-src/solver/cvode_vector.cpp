@@ -5,33 +5,34 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 #include "step.hpp"
 
 namespace solver {
 namespace {
 
+// SUNDIALS's record comes first: its address is the vector's, and its content is the numbers.
 struct Vector {
   _generic_N_Vector record;
   int states;
-  double* x;  // `own`, or the memory of a matrix column
-  alignas(16) double own[max_states];
+  alignas(16) double x[max_states];
 };
 
-Vector& of(N_Vector v) { return *static_cast<Vector*>(v->content); }
+int states_of(N_Vector v) { return reinterpret_cast<Vector*>(v)->states; }
 
 N_Vector make(int states, N_Vector_Ops operations, SUNContext context) {
   auto* vector = static_cast<Vector*>(std::calloc(1, sizeof(Vector)));
   if (!vector) return nullptr;
-  vector->record = {vector, operations, context};
+  vector->record = {vector->x, operations, context};
   vector->states = states;
-  vector->x = vector->own;
   return &vector->record;
 }
 
-N_Vector clone(N_Vector v) { return make(of(v).states, v->ops, v->sunctx); }
-void destroy(N_Vector v) { std::free(v->content); }
-void set_data(double* x, N_Vector v) { of(v).x = x; }
+N_Vector clone(N_Vector v) { return make(states_of(v), v->ops, v->sunctx); }
+void destroy(N_Vector v) { std::free(v); }
+// A column of a matrix, for the difference quotients.
+void set_data(double* x, N_Vector v) { v->content = x; }
 N_Vector_ID kind(N_Vector) { return SUNDIALS_NVEC_CUSTOM; }
 
 template <int width>
@@ -40,8 +41,9 @@ struct Operations {
 
   template <class Function>
   static void each(N_Vector z, const Function& f) {
-    double* out = data(z);
-    for (int i = 0; i < width; ++i) out[i] = f(i);
+    double result[width];  // the operands may be z itself
+    for (int i = 0; i < width; ++i) result[i] = f(i);
+    std::memcpy(data(z), result, sizeof result);
   }
 
   static void linear_sum(double a, N_Vector x, double b, N_Vector y, N_Vector z) {
@@ -62,17 +64,17 @@ struct Operations {
 
   // Of zero padding nothing but zero may come.
   static void constant(double a, N_Vector z) {
-    each(z, [a, n = of(z).states](int i) { return i < n ? a : 0; });
+    each(z, [a, n = states_of(z)](int i) { return i < n ? a : 0; });
   }
   static void quotient(N_Vector x, N_Vector y, N_Vector z) {
     const double *u = data(x), *v = data(y);
-    each(z, [=, n = of(z).states](int i) { return i < n ? u[i] / v[i] : 0; });
+    each(z, [=, n = states_of(z)](int i) { return i < n ? u[i] / v[i] : 0; });
   }
   static void inverse(N_Vector x, N_Vector z) {
-    each(z, [u = data(x), n = of(z).states](int i) { return i < n ? 1 / u[i] : 0; });
+    each(z, [u = data(x), n = states_of(z)](int i) { return i < n ? 1 / u[i] : 0; });
   }
   static void add_constant(N_Vector x, double a, N_Vector z) {
-    each(z, [=, u = data(x), n = of(z).states](int i) { return i < n ? u[i] + a : 0; });
+    each(z, [=, u = data(x), n = states_of(z)](int i) { return i < n ? u[i] + a : 0; });
   }
   static void absolute(N_Vector x, N_Vector z) {
     each(z, [u = data(x)](int i) { return std::fabs(u[i]); });
@@ -89,7 +91,7 @@ struct Operations {
       even += (u[i] * w[i]) * (u[i] * w[i]);
       odd += (u[i + 1] * w[i + 1]) * (u[i + 1] * w[i + 1]);
     }
-    return std::sqrt((even + odd) / of(x).states);
+    return std::sqrt((even + odd) / states_of(x));
   }
 
   // z = sum of c_k x_k; CVODE's dense output. z may be x_0.
@@ -106,7 +108,7 @@ struct Operations {
     static const _generic_N_Vector_Ops operations = [] {
       _generic_N_Vector_Ops o = {};
       o.nvgetvectorid = kind, o.nvclone = clone, o.nvcloneempty = clone, o.nvdestroy = destroy;
-      o.nvgetarraypointer = data, o.nvsetarraypointer = set_data, o.nvgetlength = length;
+      o.nvgetarraypointer = [](N_Vector v) { return data(v); }, o.nvsetarraypointer = set_data, o.nvgetlength = length;
       o.nvlinearsum = linear_sum, o.nvconst = constant, o.nvprod = product, o.nvdiv = quotient, o.nvscale = scale;
       o.nvabs = absolute, o.nvinv = inverse, o.nvaddconst = add_constant, o.nvmaxnorm = largest;
       o.nvwrmsnorm = rms_norm, o.nvlinearcombination = combine;
@@ -117,8 +119,6 @@ struct Operations {
 };
 
 }  // namespace
-
-double* data(N_Vector v) { return of(v).x; }
 
 // SUNDIALS takes the table of operations by a pointer that could write, and does not.
 N_Vector make_vector(int states, SUNContext context) {

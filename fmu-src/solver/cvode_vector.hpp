@@ -8,6 +8,6 @@ namespace solver {
 // All entries zero; those beyond `states` stay zero and count in no norm. Null where there is no memory.
 N_Vector make_vector(int states, SUNContext context);
 
-double* data(N_Vector v);
+inline double* data(N_Vector v) { return static_cast<double*>(v->content); }
 
 }  // namespace solver

@@ -20,6 +20,12 @@ constexpr double share_of_tolerance = 0.03;
 
 constexpr int most_attempts = 40;
 
+// By square roots, which are the same on every platform.
+double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
+
+// A step is sized for an error of safety^8.
+constexpr double safety = 0.9;
+
 // A step that would end this much short of the stop, as a share of its size, ends there: it spares a step of a few
 // roundings, and costs no more than 8 % of the error that a step may make.
 constexpr double stretch = 1.01;
@@ -66,9 +72,11 @@ class RungeKutta::Attempt {
                       stage<10, table::a_10>(at_) && stage<11, table::a_11>(at_);
     if (!done) return INFINITY;
     step_.inside_share = time_of<table::a_9>();
-    advance<table::b>(step_.y_end);
+    end_step();
     return error();
   }
+
+  void end_step() { advance<table::b>(step_.y_end); }
 
   void set_size(double h) { h_ = h; }
 
@@ -101,9 +109,6 @@ class RungeKutta::Attempt {
     }
     step_.degree = 7;
   }
-
-  // 1 / 8-th power by square roots, which are the same on every platform.
-  static double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
  private:
   double norm(const double* x) const {
@@ -164,6 +169,16 @@ void RungeKutta::start(double t, const double* y, int states, Step* step) {
   limit_ = next_limit_;
   next_limit_ = 0;
   rates_ = 0;
+  last_error_ = 0;
+}
+
+// The error over h^8 changes along the motion, and is expected to change by the same factor once more (Gustafsson, ACM
+// TOMS 20 (1994) 496: predictive step control). On the wheel hardly a step is rejected then.
+double RungeKutta::next_size(double h, double error) {
+  error = std::fmax(error, 1e-6);  // below, as after a step cut short, it says no more
+  const double trend = last_error_ > 0 ? (h / size_) * eighth_root(last_error_ / error) : 1;
+  last_error_ = error;
+  return h * std::clamp(safety / eighth_root(error) * std::clamp(trend, 0.5, 2.0), 0.2, 10.0);
 }
 
 bool RungeKutta::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
@@ -202,21 +217,23 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
   if (limit_ > 0) longest = std::fmin(limit_, longest);
   const double t = step->start;
   double h = std::fmin(liked_, longest);
+  bool rejected = false;
   for (int attempts = 0; attempts < most_attempts; ++attempts) {
     const bool stops = t + stretch * h >= stop;
     if (stops) h = stop - t;
-    if (t + h == t) break;
+    if (!stops && h <= rounding_at(t)) break;
     step->end = stops ? stop : t + h;
     step->lowest_margin = margin_;
     double error = attempt.try_size(h);
     if (error <= 1 && !stops && !(attempt.evaluate_end(&margin_) && attempt.evaluate_interior())) error = INFINITY;
-    const double liked = h * std::fmin(10, std::fmax(0.2, 0.9 / attempt.eighth_root(error)));
-    if (error > 1 || std::isnan(error)) {
-      h = liked_ = liked;
+    if (!(error <= 1)) {
+      h = liked_ = h * std::fmax(0.2, safety / eighth_root(error));
+      rejected = true;
       continue;
     }
+    const double next = next_size(h, error);
     // A step cut short says little: what was liked before stays. After a rejection a step does not grow.
-    liked_ = attempts > 0 ? std::fmin(h, liked) : h < liked_ ? std::fmax(liked_, liked) : liked;
+    liked_ = rejected ? std::fmin(h, next) : h < liked_ ? std::fmax(liked_, next) : next;
     size_ = h;
     rates_ = stops ? 12 : 16;
     if (!stops) attempt.expand();
@@ -239,10 +256,22 @@ void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) 
     expand_wide(Attempt<max_states>(problem, counters, step, f_));
 }
 
-bool RungeKutta::fits(const Step& step) const {
-  if (rates_ != 0 && rates_ != 12 && rates_ != 13 && rates_ != 16) return false;
-  if (rates_ == 0) return step.start == step.end;
-  return size_ > 0 && std::fabs(step.end - step.start - size_) <= rounding_at(step.end) + rounding_at(step.start);
+bool RungeKutta::fits(const Problem& problem, Step* step) {
+  if (rates_ == 0) return step->start == step->end;
+  if (rates_ != 12 && rates_ != 13 && rates_ != 16) return false;
+  if (!(size_ > 0) || std::fabs(step->end - step->start - size_) > rounding_at(step->end)) return false;
+  Step same = *step;
+  const auto repeat = [&](auto attempt) {
+    attempt.set_size(size_);
+    attempt.end_step();
+    if (rates_ == 16) attempt.expand();
+  };
+  if (width_of(problem.states) == 8)
+    repeat(Attempt<8>(problem, nullptr, &same, f_));
+  else
+    repeat(Attempt<max_states>(problem, nullptr, &same, f_));
+  const bool fits = std::equal(step->y_end, step->y_end + problem.states, same.y_end);
+  return *step = same, fits;
 }
 
 }  // namespace solver

@@ -27,8 +27,8 @@ class RungeKutta {
   // All that is needed to go on; `rates` holds the evaluations of the last step that were made, 0, 1, 12, 13 or 16.
   template <class Archive>
   void visit(Archive& archive, int states);
-  // Whether the restored numbers could be those of the step.
-  bool fits(const Step& step) const;
+  // Whether the restored numbers are those of the step, to the bit; then the step has its polynomial again.
+  bool fits(const Problem& problem, Step* step);
 
  private:
   template <int width>
@@ -38,9 +38,12 @@ class RungeKutta {
   template <int width>
   const char* accept_step(Attempt<width>& attempt, double longest, double stop, Step* step);
 
-  double liked_ = 0;  // size of the next step, s; 0: none was made
+  double next_size(double h, double error);
+
+  double liked_ = 0;                   // size of the next step, s; 0: none was made
   double limit_ = 0, next_limit_ = 0;  // of the first step after the last and the next start, s; 0: none
   double size_ = 0;                    // of the last step, s
+  double last_error_ = 0;              // of the last step, in units of the weights; 0: there was none
   double margin_ = 0;                  // at the end of the last step
   int rates_ = 0;                      // evaluations of the last step that are known
   alignas(16) double f_[16][max_states] = {};
@@ -53,6 +56,7 @@ void RungeKutta::visit(Archive& archive, int states) {
   archive.range(limit_, 0, archive.greatest);
   archive.range(next_limit_, 0, archive.greatest);
   archive.range(size_, 0, archive.greatest);
+  archive.range(last_error_, 0, 1);
   archive.number(margin_);
   archive.count(rates_, 0, 16);
   for (int k = 0; k < rates_; ++k) archive.numbers(f_[k], states);

@@ -1,6 +1,7 @@
 // A change of sign between the ends of a step is not enough: a function may dip below zero and come back within one
 // step (a grazing slip, a wheel that leaves the ground for an instant). The search trusts a parabola through three
-// samples as far as g is simply shaped, halves where it is not, and never looks more often than a fixed number of times.
+// samples as far as g is simply shaped, halves where it is not, and never looks more often than a fixed number of
+// times.
 #include "search.hpp"
 
 #include <algorithm>
@@ -103,9 +104,9 @@ double Search::fall_through(Sample lo, Sample hi) const {
     a = next;
     const double xi = (a.t - b.t) / (c.t - b.t), phi = (a.g - b.g) / (c.g - b.g);
     const bool safe = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
-    x = !safe ? 0.5
-              : a.g / (b.g - a.g) * c.g / (b.g - c.g) +
-                    (c.t - a.t) / (b.t - a.t) * a.g / (c.g - a.g) * b.g / (c.g - b.g);
+    x = !safe
+            ? 0.5
+            : a.g / (b.g - a.g) * c.g / (b.g - c.g) + (c.t - a.t) / (b.t - a.t) * a.g / (c.g - a.g) * b.g / (c.g - b.g);
   }
   return a.g < 0 ? a.t : b.t;
 }

@@ -90,8 +90,9 @@ void Solver::watch_event() {
 // need have come near.
 void Solver::watch_boundary() {
   double instants[max_bends], lowest = step_.lowest_margin;
-  const int count =
-      problem_.bends && lowest >= problem_.near ? problem_.bends(problem_.owner, step_.start, known_until_, instants) : 0;
+  const int count = problem_.bends && lowest >= problem_.near
+                        ? problem_.bends(problem_.owner, step_.start, known_until_, instants)
+                        : 0;
   if (count > 0) expand();
   const Search search(problem_, step_, problem_.boundary, &counters_.roots);
   for (int i = 0; i < count; ++i) lowest = std::fmin(lowest, search.value(instants[i]));

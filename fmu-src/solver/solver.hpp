@@ -51,7 +51,8 @@ class Solver {
   const Counters& counters() const { return counters_; }
 
   // Taylor coefficients of the last step's dense output about its end (known_until() unless an event cut it short):
-  // c[k * states + i] = y_i^(k) h^k / k!, h = end - step_start(); (max_degree + 1) * states numbers. Returns the degree.
+  // c[k * states + i] = y_i^(k) h^k / k!, h = end - step_start(); (max_degree + 1) * states numbers. Returns the
+  // degree.
   int polynomial(double* c) const;
 
   // First instant in [t_lo, t_hi] at which g falls below zero on the dense output of the last step, dips included.
@@ -72,6 +73,9 @@ class Solver {
   void end_at(double t, Outcome why);
   template <class Archive>
   void visit(Archive& archive);
+  bool has_cvode_history() const;
+  bool restored_fits() const;
+  bool restore_engine(Reader& reader);
 
   Problem problem_ = {};
   Method method_ = Method::adams;
