@@ -18,7 +18,7 @@ constexpr double pi = 3.141592653589793, pi_rest = 1.2246467991473532e-16;  // t
 constexpr double finer = 0.1, finest = 1e-14;
 // A swing of omega_1 that is not this much more than the error of one step is noise; a state at the end of the run and
 // its mirror image may differ by so many tolerances.
-constexpr double least_swing = 3, most_difference = 100;
+constexpr double least_swing = 0.03, most_difference = 100;
 
 // sin(n delta) / sin(delta) for |delta| <= pi / 2.
 double quotient(double n, double delta) { return delta == 0 ? n : std::sin(n * delta) / std::sin(delta); }
@@ -194,7 +194,7 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   const double stiffness = (behind[omega_1] - ahead[omega_1]) / (2 * h);
   if (!(stiffness > 1e-3 * slowest * slowest)) return false;
   const double swing = std::fabs(rate[omega_1]) / stiffness + std::fabs(y0[omega_1]) / std::sqrt(stiffness);
-  if (!(swing * weights[theta] < 0.1)) return false;
+  if (!(swing * weights[theta] < least_swing)) return false;
   return keep_rest(y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
 }
 

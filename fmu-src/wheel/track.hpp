@@ -25,10 +25,11 @@ class Track {
   void read(double t, double* y) const;
 
  private:
-  static constexpr int most_pieces = 96, most_nodes = 6, terms = 2 * most_nodes;
+  static constexpr int most_pieces = 112, most_nodes = 6, terms = 2 * most_nodes;
 
   struct Node {
     double t, y[states], y_dot[states];
+    bool spans_two;  // the gap before it holds two steps
   };
   // y = c_0 + (x - x_0) (c_1 + (x - x_0) (c_2 + (x - x_1) (...))) up to the instant `until`, x = (t - begin) * inverse.
   struct Piece {
@@ -39,7 +40,9 @@ class Track {
     Node nodes[2 * most_nodes];
   };
 
-  bool thin(int first, int last);
+  void thin_start();
+  bool ends_piece() const;
+  bool close(int last);
   void interpolate(int first, int last);
 
   std::unique_ptr<Table> table_;
