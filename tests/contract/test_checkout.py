@@ -163,7 +163,7 @@ def test_setup_asks_for_cargo_only_where_sundials_is_neither_given_nor_fetched(c
     path = f"{tmp_path / 'bin'}:/usr/bin:/bin"
 
     def asked(**given: str) -> bool:
-        return "cargo" in run(checkout / "scripts" / "setup", path=path, **given).stderr
+        return "cargo-web" in run(checkout / "scripts" / "setup", path=path, **given).stderr
 
     assert asked(WHEEL_SUNDIALS_SOURCE="")
     assert not asked(WHEEL_SUNDIALS_SOURCE="given")
