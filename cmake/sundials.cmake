@@ -6,31 +6,60 @@ set(sundials_version 7.1.1)
 set(sundials_crate sundials-sys-0.6.2)
 set(sundials_sha256 6fbd1d53481b83fc758406097f07b668bf243945e2b1f7db93a8f997cf6b44c9)
 
+# The fetched source is shared by all build folders inside the project. It counts as there only when the stamp says so,
+# which is written last: whatever was interrupted before is fetched or unpacked again.
 function(fetch_sundials source_dir)
   set(cache ${CMAKE_BINARY_DIR}/_sundials)
+  cmake_path(IS_PREFIX CMAKE_SOURCE_DIR ${CMAKE_BINARY_DIR} NORMALIZE inside)
+  if(inside)
+    set(cache ${CMAKE_SOURCE_DIR}/build/sundials)
+  endif()
   set(${source_dir} ${cache}/${sundials_crate}/vendor PARENT_SCOPE)
-  if(EXISTS ${cache}/${sundials_crate}/vendor/CMakeLists.txt)
-    return()
-  endif()
-  find_program(CARGO cargo REQUIRED DOC "fetches the pinned SUNDIALS source")
-  message(STATUS "Fetching SUNDIALS ${sundials_version} (${sundials_crate})")
+  set(WHEEL_SUNDIALS_FETCHED ${cache}/${sundials_crate}/vendor CACHE INTERNAL "")
   file(MAKE_DIRECTORY ${cache})
-  execute_process(
-    COMMAND ${CMAKE_COMMAND} -E env CARGO_HOME=${cache}/cargo ${CARGO} info sundials-sys@0.6.2
-    WORKING_DIRECTORY ${cache}
-    OUTPUT_QUIET
-    ERROR_VARIABLE trouble
-    RESULT_VARIABLE status
-  )
-  file(GLOB crate ${cache}/cargo/registry/cache/*/${sundials_crate}.crate)
-  if(NOT crate)
-    message(FATAL_ERROR "SUNDIALS could not be fetched (status ${status}): ${trouble}")
+  file(LOCK ${cache}/lock GUARD FUNCTION TIMEOUT 900)
+  set(stamp ${cache}/complete)
+  if(EXISTS ${stamp} AND EXISTS ${cache}/${sundials_crate}/vendor/CMakeLists.txt)
+    file(READ ${stamp} unpacked)
+    if(unpacked STREQUAL "${sundials_sha256}")
+      return()
+    endif()
   endif()
-  file(SHA256 ${crate} hash)
-  if(NOT hash STREQUAL "${sundials_sha256}")
-    message(FATAL_ERROR "${crate} has SHA-256 ${hash}, expected ${sundials_sha256}")
-  endif()
+  fetch_crate(${cache} crate)
+  file(REMOVE_RECURSE ${stamp} ${cache}/${sundials_crate})
   file(ARCHIVE_EXTRACT INPUT ${crate} DESTINATION ${cache})
+  file(WRITE ${stamp} ${sundials_sha256})
+endfunction()
+
+# The archive of the registry, whole: one that an interrupted download left behind is fetched again.
+function(fetch_crate cache crate)
+  set(trouble "")
+  foreach(fetched IN ITEMS FALSE TRUE)
+    file(GLOB found ${cache}/cargo/registry/cache/*/${sundials_crate}.crate)
+    if(found)
+      file(SHA256 ${found} hash)
+      if(hash STREQUAL "${sundials_sha256}")
+        set(${crate} ${found} PARENT_SCOPE)
+        return()
+      endif()
+      string(APPEND trouble "${found} has SHA-256 ${hash}, expected ${sundials_sha256}")
+    endif()
+    if(fetched)
+      message(FATAL_ERROR "SUNDIALS could not be fetched: ${trouble}")
+    endif()
+    file(REMOVE_RECURSE ${cache}/cargo)
+    find_program(CARGO cargo DOC "fetches the pinned SUNDIALS source")
+    if(NOT CARGO)
+      message(FATAL_ERROR "cargo is missing: it fetches SUNDIALS. Or give -DWHEEL_SUNDIALS_SOURCE=<folder>.")
+    endif()
+    message(STATUS "Fetching SUNDIALS ${sundials_version} (${sundials_crate})")
+    execute_process(
+      COMMAND ${CMAKE_COMMAND} -E env CARGO_HOME=${cache}/cargo ${CARGO} info sundials-sys@0.6.2
+      WORKING_DIRECTORY ${cache}
+      OUTPUT_QUIET
+      ERROR_VARIABLE trouble
+    )
+  endforeach()
 endfunction()
 
 function(add_sundials)

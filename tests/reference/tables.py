@@ -1,4 +1,4 @@
-"""The trusted tables of the paper's two scenes, made by this reference: `python -m reference.tables` in tests/.
+"""The trusted tables of the paper's two scenes, made by this reference: PYTHONPATH=tests python -m reference.tables.
 
 paper_free.csv and paper_friction.csv: every 0.1 s of 10 s. paper_friction_events.csv: the instants at which the
 friction changes its mode (sign of omega_z, 0 held), the first line being the start. SI.

@@ -56,7 +56,7 @@ def arm_kept_fixed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 # ---- the trusted tables ----
 
-# The tables carry 12 digits. Measured 5e-13 where they were made; other processors and SciPy round otherwise.
+# Measured 3.8e-12, 3.7e-12: the rounding to 12 digits. Other processors and other versions of SciPy round otherwise.
 TABLE_BOUND = 1e-10
 
 
