@@ -68,7 +68,7 @@ def test_initial_unknowns_list_exactly_what_moves_them(wheel, description):
 
 
 def test_outputs_list_exactly_the_inputs_that_move_them_at_once(wheel, description):
-    w = wheel().start(**GENERAL | KINDS["general inertia with friction"])
+    w = wheel().start(**GENERAL | KINDS["general inertia, friction"])
     assert w.step(0.1) == OK
     names = outputs(w)
     measured: dict[str, set[str]] = {name: set() for name in names}

@@ -4,7 +4,7 @@ import json
 import subprocess
 
 import pytest
-from paths import build_folder
+from support.paths import build_folder
 
 METHODS = {"adams": 0, "bdf": 1, "runge_kutta": 2}
 
