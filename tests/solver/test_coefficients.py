@@ -1,4 +1,4 @@
-"""The table of DOP853 (dormand_prince.hpp) satisfies the order conditions: 200 trees up to order 8, and the dense output."""
+"""The table of DOP853 (dormand_prince.hpp) satisfies the order conditions: of the step and of the dense output."""
 
 import pytest
 import trees
