@@ -18,7 +18,7 @@ constexpr double pi = 3.141592653589793, pi_rest = 1.2246467991473532e-16;  // t
 constexpr double finer = 0.1, finest = 1e-14;
 // A swing of omega_1 that is not this much more than the error of one step is noise; a state at the end of the run and
 // its mirror image may differ by so many tolerances.
-constexpr double least_swing = 0.03, most_difference = 100;
+constexpr double least_swing = 0.01, largest_rest = 0.003, most_difference = 100;
 
 // sin(n delta) / sin(delta) for |delta| <= pi / 2.
 double quotient(double n, double delta) { return delta == 0 ? n : std::sin(n * delta) / std::sin(delta); }
@@ -194,7 +194,9 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   const double stiffness = (behind[omega_1] - ahead[omega_1]) / (2 * h);
   if (!(stiffness > 1e-3 * slowest * slowest)) return false;
   const double swing = std::fabs(rate[omega_1]) / stiffness + std::fabs(y0[omega_1]) / std::sqrt(stiffness);
-  if (!(swing * weights[theta] < least_swing)) return false;
+  const double most_weight = std::fmax(weights[theta], std::fmax(std::fabs(along[omega_2]) * weights[omega_2],
+                                                                std::fabs(along[omega_3]) * weights[omega_3]));
+  if (!(swing * most_weight < largest_rest)) return false;
   return keep_rest(y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
 }
 
@@ -269,7 +271,7 @@ const Orbit::Half& Orbit::half_of(double t) const {
 void Orbit::read(double t, double* y) const {
   if (kind_ != Kind::folded || t <= T2_) return track_.read(t, y);
   const Half& half = half_of(t);
-  const double since = (t - half.begin) - half.rest;
+  const double since = std::clamp((t - half.begin) - half.rest, 0.0, T2_ - T1_);
   track_.read(half.mirrored ? T2_ - since : T1_ + since, y);
   const double* centre = half.mirrored ? second_ : first_;
   Complex way(y[X_O] - centre[X_O], y[Y_O] - centre[Y_O]);

@@ -35,8 +35,7 @@ class Orbit {
   // The state (out, 8 entries) at t >= 0.
   void read(double t, double* y) const;
   double end_time() const { return end_time_; }
-  double half_period() const { return T2_ - T1_; }
-  int pieces() const { return track_.pieces(); }
+  double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; folded only
 
   // The instants t > 0 at which N falls below zero, in order and numbered from 0: how many there are up to t, and when the
   // number n is (n below falls_until of some t). The cost does not depend on t or n.

@@ -20,7 +20,6 @@ class Track {
   // Nothing more follows: from here on all of it can be read.
   void finish();
 
-  int pieces() const { return pieces_; }
   // y (out) at t, between the first instant and the last.
   void read(double t, double* y) const;
 
