@@ -21,7 +21,7 @@ void Solver::visit(Archive& archive) {
   archive.number(step_.start), archive.number(step_.end);
   archive.numbers(step_.y_start, problem_.states), archive.numbers(step_.y_end, problem_.states);
   runge_kutta_.visit(archive, problem_.states);
-  archive.count(cvode_.starts_anew(), 0, 2);
+  if (method_ != Method::runge_kutta) archive.count(cvode_.starts_anew(), 0, 2);
 }
 
 bool Solver::has_cvode_history() const { return method_ != Method::runge_kutta && step_.end > step_.start; }

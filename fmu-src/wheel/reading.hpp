@@ -40,6 +40,8 @@ class Reading {
   const WheelDynamics& dynamics();
   Reactions reactions();
   const ReactionRates& reaction_rates();
+  // How the reactions answer a change of the load alone, per unit of it.
+  ReactionRates response(const WheelLoad& load_dot);
   const WheelContact& contact();
   int friction_mode();
   const Counts& counters() const { return now_.counts; }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "decisions.hpp"
+#include "digits.hpp"
 #include "scene.hpp"
 #include "simulation.hpp"
 
@@ -56,10 +57,11 @@ void Simulation::announce_transition(double t, const WheelFriction& before) {
   if (!switches(before) || !switches(friction)) return;
   if (before.kind == friction.kind && before.sigma == friction.sigma) return;
   ++state_.transitions;
+  const support::Digits instant(state_.start_time + t);
   if (friction.kind == WHEEL_HELD)
-    tell(Topic::event, "t = %.9f s: stick, omega_z is held at zero.", state_.start_time + t);
+    tell(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
   else
-    tell(Topic::event, "t = %.9f s: %s, omega_z becomes %s.", state_.start_time + t,
+    tell(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
          before.kind == WHEEL_HELD ? "release" : "slip reverses", friction.sigma > 0 ? "positive" : "negative");
 }
 
@@ -95,8 +97,8 @@ void Simulation::report_pulls() {
 }
 
 void Simulation::tell_pull(double t) const {
-  tell(Topic::warning, "The ground pulls from t = %.9f s on: keep_contact holds a wheel that would have lifted off.",
-       state_.start_time + t);
+  tell(Topic::warning, "The ground pulls from t = %s s on: keep_contact holds a wheel that would have lifted off.",
+       support::Digits(state_.start_time + t).text);
 }
 
 // The key of the orbit: it was built for these parameters and this tolerance.
@@ -161,14 +163,14 @@ Progressed Simulation::end_run() {
   const double theta = y_now()[state_.motion.formulation->tilt_index];
   const bool flat = upright - std::fabs(theta - upright) < 2 * flat_angle;
   state_.ending = flat ? Ending::fell_flat : Ending::lifted_off;
-  tell(Topic::discard, flat ? "%s: the model ends there." : "%s, theta = %.6g rad: the model ends there.", ending(),
-       theta);
+  const char* sentence = flat ? "T%s: the model ends there." : "T%s, theta = %.6g rad: the model ends there.";
+  tell(Topic::discard, sentence, ending() + 1, theta);
   return Progressed::ended;
 }
 
 Progressed Simulation::fail(const State& before) {
   move_to(state_.unfolded ? state_.t : solver_.known_until());
-  tell(Topic::error, "The solver stopped at t = %.9f s, where omega_z = %.4g rad/s: %s.", time(),
+  tell(Topic::error, "The solver stopped at t = %s s, where omega_z = %.4g rad/s: %s.", support::Digits(time()).text,
        y_now()[state_.motion.formulation->spin_index], failure_);
   state_ = before;
   reading_fresh_ = false;

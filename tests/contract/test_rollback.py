@@ -186,38 +186,6 @@ def test_a_restored_state_and_the_original_go_on_to_the_same_bytes_when_friction
     assert (w.serialized() == other.serialized()) == (s > 0)
 
 
-def notices(w: FMU2Wheel, push: float) -> bool:
-    """Whether a jump of F_X by `push` makes the solver start anew."""
-    before = w.get("n_restarts")
-    assert w.set(F_X=0.03 + push) == OK and w.step(1e-9) == OK
-    return w.get("n_restarts") != before
-
-
-def test_a_restored_solver_notices_the_jumps_that_the_original_notices(wheel):
-    """The smallest jump that restarts the solver, where its last step ends at the communication point."""
-
-    def original() -> FMU2Wheel:
-        w = wheel().start(tolerance=1e-13, phi_dot_start=-20.0)
-        w.setRealInputDerivatives([w.references["F_X"]], [1], [1.0])
-        assert w.step(0.03) == OK
-        return w
-
-    def restored() -> FMU2Wheel:
-        w = wheel()
-        assert w.restore(original().serialized()) == OK
-        w.time = 0.03
-        return w
-
-    low, high = 1e-12, 1e-9
-    while high / low > 1 + 1e-6:
-        middle = np.sqrt(low * high)
-        low, high = (low, middle) if notices(original(), middle) else (middle, high)
-    for push, noticed in ((low, False), (high, True)):
-        assert notices(restored(), push) == notices(original(), push) == noticed
-    # The partner: with the weights of the last step the jumps differed by 2 %.
-    assert notices(restored(), 1.01 * low)
-
-
 @pytest.mark.parametrize("scene", KINDS)
 def test_the_bytes_of_a_state_before_the_first_step_depend_on_nothing_but_the_state(wheel, scene):
     used = wheel().start(s=0.02, J_x=1.0)
