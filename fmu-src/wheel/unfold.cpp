@@ -97,9 +97,10 @@ double Orbit::fall(long long n) const {
 long long Orbit::falls_until(double t) const {
   long long n = std::upper_bound(fall_, fall_ + falls_, t) - fall_;
   if (kind_ != Kind::folded || t <= T2_ || later_falls_ == 0) return n;
-  const double periods = std::floor((t - T2_) / (2 * (T2_ - T1_)));
+  constexpr double most_periods = 1e15;  // later, times have no more digits for them
+  const double periods = std::floor(std::fmin((t - T2_) / (2 * (T2_ - T1_)), most_periods));
   n += static_cast<long long>(std::fmax(periods - 1, 0)) * later_falls_;
-  while (fall(n) <= t) ++n;
+  while (periods < most_periods && fall(n) <= t) ++n;
   return n;
 }
 
