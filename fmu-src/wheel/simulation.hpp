@@ -132,7 +132,6 @@ class Simulation {
   State state_;
   solver::Solver solver_;
   Orbit orbit_;
-  solver::Counters orbit_counters_ = {};        // of its making
   double orbit_end_ = 0;                       // s: the end of the run, or infinite
   double orbit_origin_[first_input + 1] = {};  // parameters and tolerance that orbit_ was built for
   const char* failure_ = nullptr;  // why the last call failed

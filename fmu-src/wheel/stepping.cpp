@@ -118,7 +118,6 @@ bool Simulation::build_orbit() {
   orbit_end_ = kind == Orbit::Kind::ended ? orbit_.end_time() : std::numeric_limits<double>::infinity();
   state_.unfolded = kind != Orbit::Kind::refused;
   if (!state_.unfolded) return start_solver();
-  orbit_counters_ = solver_.counters();
   std::memcpy(orbit_origin_, state_.parameters, sizeof state_.parameters);
   orbit_origin_[first_input] = state_.motion.tolerance;
   return true;
@@ -132,7 +131,7 @@ bool Simulation::knows(double t) const {
 solver::Outcome Simulation::run_to(double t) {
   using solver::Outcome;
   if (state_.unfolded && !orbit_is_ready() && !build_orbit()) return Outcome::failed;
-  if (state_.unfolded) state_.counted = orbit_counters_;
+  if (state_.unfolded) state_.counted = orbit_.counters();
   if (state_.unfolded) return t <= orbit_end_ ? Outcome::stepped : Outcome::ended;
   if (!state_.moving && !start_solver()) return Outcome::failed;
   for (long long work = 0; !solver_.reaches(t);) {
