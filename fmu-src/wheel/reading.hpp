@@ -1,6 +1,6 @@
 // What can be read at one instant: positions, velocities, accelerations, reactions and their rates. Each group is
-// computed when it is first asked for and kept until the instant or the inputs change; nothing is computed for an output
-// that nobody reads. Fixed axes unless said.
+// computed when it is first asked for and kept until the instant or the inputs change; nothing is computed for an
+// output that nobody reads. Fixed axes unless said.
 #pragma once
 
 #include "wheel_equations.h"

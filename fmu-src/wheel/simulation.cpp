@@ -30,8 +30,7 @@ bool Simulation::tell(Topic topic, const char* format, ...) const {
 }
 
 void Simulation::set_experiment(double start_time, double tolerance) {
-  const double taken =
-      tolerance > 0 ? std::clamp(tolerance, tightest_tolerance, loosest_tolerance) : default_tolerance;
+  const double taken = tolerance > 0 ? std::clamp(tolerance, tightest_tolerance, loosest_tolerance) : default_tolerance;
   state_.start_time = start_time;
   state_.motion.tolerance = taken;
   if (tolerance > 0 && tolerance != taken)
@@ -78,7 +77,7 @@ const double* Simulation::y_now() {
 Counts Simulation::counts() const {
   const solver::Counters& a = state_.counted;
   const solver::Counters b = state_.moving && !state_.unfolded ? solver_.counters() : solver::Counters{};
-  return {a.steps + b.steps, a.rhs + b.rhs,           a.jacobians + b.jacobians,
+  return {a.steps + b.steps, a.rhs + b.rhs,      a.jacobians + b.jacobians,
           a.roots + b.roots, state_.transitions, a.restarts + b.restarts};
 }
 

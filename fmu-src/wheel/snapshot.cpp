@@ -1,5 +1,5 @@
-// The complete state of a run as portable bytes: a header (mark, size, checksum), then numbers of 8 bytes each, then the
-// solver's own history. Bytes may come from anywhere: each number is checked before it is used.
+// The complete state of a run as portable bytes: a header (mark, size, checksum), then numbers of 8 bytes each, then
+// the solver's own history. Bytes may come from anywhere: each number is checked before it is used.
 #include <cmath>
 #include <cstring>
 
@@ -25,8 +25,8 @@ void visit(Archive& archive, Inputs& inputs) {
     for (auto& polynomial : *block) support::many(archive, polynomial, Inputs::max_order + 1);
 }
 
-// What the parameters do not determine. Law and method are included because s and the inputs may have changed since they
-// were chosen.
+// What the parameters do not determine. Law and method are included because s and the inputs may have changed since
+// they were chosen.
 template <class Archive>
 void visit(Archive& archive, State& state) {
   Motion& motion = state.motion;
@@ -37,8 +37,8 @@ void visit(Archive& archive, State& state) {
   visit(archive, motion.inputs);
   support::choice(archive, state.method, solver::Method::adams, solver::Method::runge_kutta);
   support::choice(archive, state.ending, Ending::none, Ending::lifted_off);
-  support::all(archive, state.prepared, state.started, state.moving, state.unfolded, state.jumped, state.changes_pending,
-               state.pulling, state.t, state.last_change);
+  support::all(archive, state.prepared, state.started, state.moving, state.unfolded, state.jumped,
+               state.changes_pending, state.pulling, state.t, state.last_change);
   support::many(archive, state.y, WHEEL_MAX_STATES);
   support::all(archive, state.transitions, state.counted.steps, state.counted.rhs, state.counted.jacobians,
                state.counted.roots, state.counted.restarts);
@@ -77,13 +77,12 @@ bool run_is_sound(const State& state) {
   return inputs_are_sound(motion.inputs) && law_is_sound(motion.scene.friction, state.parameters[omega_s]) &&
          all_finite(state.y, motion.formulation->states) && motion.scene.wheel.s >= 0 &&
          std::isfinite(motion.scene.wheel.s) && std::isfinite(state.t) && state.last_change >= 0 &&
-         state.last_change <= state.t && (state.moving ? state.started : state.t == 0 && state.ending == Ending::none) &&
+         state.last_change <= state.t &&
+         (state.moving ? state.started : state.t == 0 && state.ending == Ending::none) &&
          (unfoldable || !state.unfolded);
 }
 
-bool tolerance_is_sound(double tolerance) {
-  return tolerance >= tightest_tolerance && tolerance <= loosest_tolerance;
-}
+bool tolerance_is_sound(double tolerance) { return tolerance >= tightest_tolerance && tolerance <= loosest_tolerance; }
 
 bool is_stepping(const State& state) { return state.moving && !state.unfolded; }
 

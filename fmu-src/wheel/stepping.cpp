@@ -20,6 +20,9 @@ constexpr long long work_per_transition = 20;
 
 constexpr double upright = 1.5707963267948966;
 
+// For messages: an instant is not found more exactly than that.
+double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 1e9) / 1e9 : t; }
+
 }  // namespace
 
 // Inputs and tunable parameters set since the last step take effect, if they differ from those in force.
@@ -57,7 +60,7 @@ void Simulation::announce_transition(double t, const WheelFriction& before) {
   if (!switches(before) || !switches(friction)) return;
   if (before.kind == friction.kind && before.sigma == friction.sigma) return;
   ++state_.transitions;
-  const support::Digits instant(state_.start_time + t);
+  const support::Digits instant(to_nanosecond(state_.start_time + t));
   if (friction.kind == WHEEL_HELD)
     tell(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
   else
@@ -79,8 +82,8 @@ bool Simulation::pass_transition() {
     motion.formulation->dynamics(&motion.scene, y, &held);
     motion.scene.friction = {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0};
   } else {
-    motion.scene.friction = friction_at(state_.parameters, *motion.formulation, motion.scene, motion.inputs.braked,
-                                        motion.weight, y);
+    motion.scene.friction =
+        friction_at(state_.parameters, *motion.formulation, motion.scene, motion.inputs.braked, motion.weight, y);
   }
   announce_transition(t, before);
   return solver_.restart(state_.method, t, y, has_transitions(motion.scene));
@@ -98,7 +101,7 @@ void Simulation::report_pulls() {
 
 void Simulation::tell_pull(double t) const {
   tell(Topic::warning, "The ground pulls from t = %s s on: keep_contact holds a wheel that would have lifted off.",
-       support::Digits(state_.start_time + t).text);
+       support::Digits(to_nanosecond(state_.start_time + t)).text);
 }
 
 // The key of the orbit: it was built for these parameters and this tolerance.

@@ -147,7 +147,5 @@ def test_sound_values_whose_products_are_no_numbers_are_refused_with_a_sentence(
     w.setupExperiment()
     w.enterInitializationMode()
     assert w.exitInitializationMode() == ERROR
-    assert [m.text.split(":")[0] for m in w.take_messages()] == [
-        "The initial energy or reaction force overflows"
-    ]
+    assert [m.text.split(":")[0] for m in w.take_messages()] == ["The initial energy or reaction force overflows"]
     assert wheel().start(m=1e100, J_x=1e100, J_y=1e100, J_z=1.5e100).step(0.1) == OK

@@ -156,7 +156,7 @@ def test_stop_time_and_tolerance_are_part_of_the_state(wheel):
 
 
 @pytest.mark.parametrize(("s_before", "s_after"), [(0.0, 0.03), (0.03, 0.0)])
-def test_a_state_keeps_the_method_that_was_chosen_before_the_friction_changed(wheel, s_before, s_after):
+def test_a_state_keeps_the_method_that_the_change_of_friction_chose(wheel, s_before, s_after):
     law = {"friction_law": 2, "omega_s": 1e-4}  # automatic: Adams without friction, BDF where it makes the law stiff
     w, other, partner = wheel().start(s=s_before, **law), wheel(), wheel().start(s=s_after, **law)
     bits_of(w, coast, range(3))
@@ -170,8 +170,7 @@ def test_a_state_keeps_the_method_that_was_chosen_before_the_friction_changed(wh
         assert restored.serialized() == blob
         assert bits_of(restored, coast, range(5, 9)) == ahead
     bits_of(partner, coast, range(9))
-    jacobians = [x.get("n_jac")[0] > 0 for x in (w, partner)]
-    assert jacobians in ([False, True], [True, False])  # the partner's method is the other one
+    assert w.bits() != partner.bits()  # the partner has had the later friction from the start
 
 
 @pytest.mark.parametrize("s", [0.01, 0.0])

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 from reference.tables import read_table
-
+from support.driver import HEADLINE
 from support.motion import Library, Run
-from support.scenes import HEADLINE
 
 from physics.measure import energy_error
 
