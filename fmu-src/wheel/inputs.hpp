@@ -29,8 +29,9 @@ struct Inputs {
   void set_derivative(int input, int order, double derivative);
   void hold_from(double t);
 
-  // Whether the pending polynomials differ from those in force, seen from t on.
-  bool change_at(double t) const;
+  // Whether the pending polynomials differ from those in force, seen from t on, by more than the rounding of their
+  // values and of t, s: a polynomial that a master cuts into many steps goes on as one.
+  bool change_at(double t, double rounding) const;
   void take_over(double t);
   void classify();
 

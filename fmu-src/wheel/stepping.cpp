@@ -29,7 +29,8 @@ double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 
 bool Simulation::settle_changes() {
   if (!state_.changes_pending) return true;
   const double t = state_.t;
-  if (state_.motion.scene.wheel.s == state_.parameters[s] && !state_.motion.inputs.change_at(t)) {
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(state_.start_time) + std::fabs(t));
+  if (state_.motion.scene.wheel.s == state_.parameters[s] && !state_.motion.inputs.change_at(t, rounding)) {
     state_.changes_pending = false;
     return true;
   }
@@ -139,7 +140,10 @@ solver::Outcome Simulation::run_to(double t) {
   if (!state_.moving && !start_solver()) return Outcome::failed;
   for (long long work = 0; !solver_.reaches(t);) {
     if (work >= most_work) return failure_ = "it took a million internal steps; ask for shorter steps", Outcome::failed;
-    state_.motion.inputs.varies ? solver_.stop_before(t) : solver_.stop_nowhere();
+    // CVODE steps past the end of a varying input's step: the polynomial may go on, and a history that was cut short is
+    // lost. Runge-Kutta has none to lose.
+    const bool stops = state_.motion.inputs.varies && solver_.method() == solver::Method::runge_kutta;
+    stops ? solver_.stop_before(t) : solver_.stop_nowhere();
     const double t_before = solver_.known_until();
     const Outcome outcome = solver_.step();
     if (state_.motion.keep_contact && solver_.known_until() > t_before) report_pulls();
