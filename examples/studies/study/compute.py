@@ -1,0 +1,209 @@
+"""Runs a study with Dask: an ordinary LocalCluster, or the cluster behind a scheduler's address.
+
+Every worker process unpacks the FMU once and keeps one instance. The caller hands out blocks, a few per worker at a
+time, and writes each result when it comes; workers need no common file system.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+import shutil
+import sys
+import tempfile
+import zipfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.metadata import version
+from io import BytesIO
+from itertools import islice
+from pathlib import Path
+from threading import Lock
+
+import dask
+import numpy as np
+import xarray as xr
+from distributed import Client, LocalCluster, Worker, WorkerPlugin, as_completed, get_worker
+from distributed.scheduler import KilledWorker
+from fmpy import read_model_description
+from fmpy.model_description import ModelDescription
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+from .instance import Status, counters_of
+from .plan import Study, StudyError
+from .runs import Job, Runner, empty_result
+from .store import Block, Store, study_attributes
+
+BLOCK = 256  # points: about a tenth of a second of work, a hundred times what handing it out costs
+AHEAD = 3  # blocks per worker on their way
+Points = Mapping[str, NDArray[np.float64]]
+
+
+class FmuPlugin(WorkerPlugin):
+    """Gives a worker process the unpacked FMU and its one instance; a lock keeps the worker's threads apart."""
+
+    def __init__(self, archive: bytes, sha256: str) -> None:
+        self.archive, self.name = archive, f"wheel-{sha256}"
+        self.lock, self.runner = None, None
+
+    def setup(self, worker: Worker) -> None:
+        self.lock = Lock()
+        self.folder = Path(tempfile.mkdtemp(prefix="wheel-", dir=worker.local_directory))
+        zipfile.ZipFile(BytesIO(self.archive)).extractall(self.folder)
+        self.runner = Runner(str(self.folder))
+
+    def teardown(self, worker: Worker) -> None:
+        if self.runner:
+            self.runner.close()
+            shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def run_block(plugin: str, job: Job, points: Points) -> dict[str, NDArray]:
+    """On a worker: the outcomes of some points."""
+    fmu = get_worker().plugins[plugin]
+    with fmu.lock:
+        return fmu.runner.run_block(job, points)
+
+
+@dataclass
+class Caller:
+    """The caller's side: hands out blocks, and writes what comes back."""
+
+    client: Client
+    study: Study
+    job: Job
+    store: Store
+    plugin: str
+    counters: list[str]
+    work: Callable[[str, Job, Points], dict[str, NDArray]]
+
+    def submit(self, block: Block | None, points: Points) -> object:
+        future = self.client.submit(self.work, self.plugin, self.job, points, pure=False)
+        future.block = block
+        return future
+
+    def run(self, bar: tqdm) -> None:
+        """All blocks that are missing; those that killed a worker come last, point by point."""
+        waiting = iter(self.store.missing())
+        ahead = AHEAD * max(1, len(self.client.scheduler_info(n_workers=-1)["workers"]))
+        first = [self.submit(b, self.store.points(self.study, b)) for b in islice(waiting, ahead)]
+        deadly, coming = [], as_completed(first)
+        for future in coming:
+            if isinstance(future.exception(), KilledWorker):
+                deadly.append(future.block)
+            else:
+                self._keep(future.block, future.result(), bar)
+            block = next(waiting, None)
+            if block is not None:
+                coming.add(self.submit(block, self.store.points(self.study, block)))
+        for block in deadly:
+            self._keep(block, self._one_by_one(block), bar)
+
+    def _keep(self, block: Block, result: Mapping[str, NDArray], bar: tqdm) -> None:
+        self.store.write(block, result, self.counters)
+        bar.update(len(result["status"]))
+
+    def _one_by_one(self, block: Block) -> dict[str, NDArray]:
+        """A block during which a worker died: one point at a time, so that the guilty one is known."""
+        points = self.store.points(self.study, block)
+        count = len(next(iter(points.values())))
+        result = empty_result(self.job, count, len(self.counters))
+        for i in range(count):
+            future = self.submit(None, {name: column[i : i + 1] for name, column in points.items()})
+            if isinstance(future.exception(), KilledWorker):
+                result["status"][i], result["message"][i] = Status.failed, "The worker process died during this run."
+            else:
+                for name, values in future.result().items():
+                    result[name][i] = values[0]
+        return result
+
+
+def run(
+    study: Study,
+    out: Path,
+    *,
+    fmu: str | Path = "wheel.fmu",
+    workers: int | None = None,
+    scheduler: str | None = None,
+    block: int = BLOCK,
+    overwrite: bool = False,
+    quiet: bool = False,
+    work: Callable[[str, Job, Points], dict[str, NDArray]] = run_block,
+) -> xr.Dataset:
+    """Runs what is missing in `out` and returns the results.
+
+    workers    processes of the LocalCluster; all cores if None
+    scheduler  address of a running Dask scheduler, tcp://host:port, instead of a LocalCluster
+    block      points that are handed out and written together (fixed when the results are begun)
+    work       what a worker does with a block; for tests
+    """
+    if not Path(fmu).is_file():
+        raise StudyError(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
+    archive = Path(fmu).read_bytes()
+    sha256 = hashlib.sha256(archive).hexdigest()
+    description = read_model_description(str(fmu), validate=False)
+    job = study.job(description)
+    store = None if overwrite else Store.open(out, study.fingerprint(sha256))
+    if store is None:
+        attributes = study_attributes(study, versions(description), sha256)
+        shutil.rmtree(out, ignore_errors=True)
+        store = Store.create(out, study, job, description, attributes, block)
+    if store.missing():
+        with cluster(workers, scheduler) as client, progress(store, quiet) as bar:
+            plugin = FmuPlugin(archive, sha256)
+            client.register_plugin(plugin, name=plugin.name)
+            Caller(client, study, job, store, plugin.name, counters_of(description), work).run(bar)
+    return store.dataset()
+
+
+@contextmanager
+def cluster(workers: int | None, scheduler: str | None) -> Iterator[Client]:
+    """A client of the scheduler at that address, or of a LocalCluster of its own with one thread per process."""
+    if scheduler:
+        with Client(scheduler, timeout="30s") as client:
+            client.upload_file(str(_packed_package()))
+            yield client
+        return
+    options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
+    with (
+        dask.config.set(options),
+        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None, memory_limit=0) as local,
+        Client(local) as client,
+    ):
+        yield client
+
+
+def _packed_package() -> Path:
+    """This package as a zip file, which a worker elsewhere can import."""
+    here = Path(__file__).parent
+    path = Path(tempfile.mkdtemp()) / f"{here.name}.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        for source in sorted(here.glob("*.py")):
+            archive.write(source, f"{here.name}/{source.name}")
+    return path
+
+
+@contextmanager
+def progress(store: Store, quiet: bool) -> Iterator[tqdm]:
+    """A bar with the time left; where the output is no terminal, a line every ten seconds."""
+    status = store.group["status"][:]
+    done = int((status != Status.not_computed).sum())
+    if done and not quiet:
+        print(f"{done} of {status.size} wheels are there already.", file=sys.stderr)
+    every = 0.2 if sys.stderr.isatty() else 10.0
+    with tqdm(total=status.size, initial=done, unit=" wheels", disable=quiet, mininterval=every, smoothing=0.1) as bar:
+        yield bar
+
+
+def versions(description: ModelDescription) -> dict[str, str]:
+    """Versions of all that the numbers may depend on."""
+    packages = ("fmpy", "numpy", "dask", "xarray", "zarr")
+    return {
+        "fmu_guid": description.guid,
+        "fmu_version": description.version or "",
+        "python_version": platform.python_version(),
+        "platform": f"{platform.system()} {platform.machine()}",
+        **{f"{name}_version": version(name) for name in packages},
+    }
