@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 
 from .plan import Study, StudyError
-from .summary import summarize
 
 EXAMPLES = Path(__file__).resolve().parent.parent
 ROOT = EXAMPLES.parent.parent
@@ -77,13 +76,13 @@ def study_of_options(arguments: argparse.Namespace) -> Study:
 
 
 def study_file(name: str) -> dict[str, object]:
-    """What a study's file defines: `study`, perhaps `table` and `draw`."""
+    """What a study's file defines: `study`, perhaps `table` and `draw`; or `measure`."""
     path = Path(name) if name.endswith(".py") else EXAMPLES / f"{name}.py"
     if not path.is_file():
         raise StudyError(f"There is no study {name}; the examples are {', '.join(example_names())}.")
     sys.path.insert(0, str(path.resolve().parent))
     content = runpy.run_path(str(path))
-    if not isinstance(content.get("study"), Study):
+    if not isinstance(content.get("study"), Study) and "measure" not in content:
         raise StudyError(f"{path} does not say study = Study(...).")
     return content | {"name": path.stem}
 
@@ -102,7 +101,13 @@ def arguments_of(argv: list[str] | None) -> argparse.Namespace:
     )
     add = parser.add_argument
     add("study", nargs="?", help="an example's name or a Python file")
-    add("--vary", action="append", default=[], metavar="NAME=VALUES", help="an axis of the grid: 1,2,3 or first:last:count")
+    add(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="NAME=VALUES",
+        help="an axis of the grid: 1,2,3 or first:last:count",
+    )
     add("--list", type=Path, metavar="CSV", help="one wheel per row instead of a grid")
     add("--set", action="append", default=[], metavar="NAME=VALUE", help="a value for all wheels")
     add("--measure", action="append", default=[], metavar="NAME=MEASURE", help="for instance 'lowest=min(theta)'")
@@ -126,8 +131,10 @@ def main(argv: list[str] | None = None) -> int:
     """Runs a study; a fault of the study is one sentence on stderr and exit status 2."""
     arguments = arguments_of(argv)
     try:
-        content = study_file(arguments.study) if arguments.study else {"study": study_of_options(arguments), "name": "study"}
-        conduct(content, arguments)
+        content = (
+            study_file(arguments.study) if arguments.study else {"study": study_of_options(arguments), "name": "study"}
+        )
+        measure(content, arguments) if "measure" in content else conduct(content, arguments)
     except StudyError as fault:
         print(f"study: {fault}", file=sys.stderr)
         return 2
@@ -141,6 +148,7 @@ def conduct(content: dict[str, object], arguments: argparse.Namespace) -> None:
     """Runs, exports, draws, and says what came out and where it is."""
     from .compute import run
     from .store import export
+    from .summary import summarize
 
     out = arguments.out or ROOT / "results" / "studies" / f"{content['name']}.zarr"
     begin = time.perf_counter()
@@ -161,6 +169,12 @@ def conduct(content: dict[str, object], arguments: argparse.Namespace) -> None:
     if "draw" in content:
         written += picture(content, results, out.with_suffix(""), arguments.publish)
     print("\n".join(f"Wrote {path}" for path in written))
+
+
+def measure(content: dict[str, object], arguments: argparse.Namespace) -> None:
+    """A file that measures something instead of saying what is to be run."""
+    folder = ROOT / "docs" / "results" if arguments.publish else ROOT / "results" / "studies"
+    print("\n".join(f"Wrote {path}" for path in content["measure"](arguments.fmu, folder)))
 
 
 def picture(content: dict[str, object], results: object, stem: Path, publish: bool) -> list[Path]:

@@ -1,6 +1,6 @@
 """Runs a study with Dask: an ordinary LocalCluster, or the cluster behind a scheduler's address.
 
-Every worker process unpacks the FMU once and keeps one instance. The caller hands out blocks, a few per worker at a
+The caller hands out blocks, a few per worker at a
 time, and writes each result when it comes; workers need no common file system.
 """
 
@@ -13,18 +13,15 @@ import sys
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from importlib.metadata import version
-from io import BytesIO
 from itertools import islice
 from pathlib import Path
-from threading import Lock
 
 import dask
-import numpy as np
 import xarray as xr
-from distributed import Client, LocalCluster, Worker, WorkerPlugin, as_completed, get_worker
+from distributed import Client, LocalCluster, as_completed
 from distributed.scheduler import KilledWorker
 from fmpy import read_model_description
 from fmpy.model_description import ModelDescription
@@ -33,38 +30,12 @@ from tqdm import tqdm
 
 from .instance import Status, counters_of
 from .plan import Study, StudyError
-from .runs import Job, Runner, empty_result
+from .runs import Job, empty_result
 from .store import Block, Store, study_attributes
+from .worker import FmuPlugin, Points, run_block
 
 BLOCK = 256  # points: about a tenth of a second of work, a hundred times what handing it out costs
 AHEAD = 3  # blocks per worker on their way
-Points = Mapping[str, NDArray[np.float64]]
-
-
-class FmuPlugin(WorkerPlugin):
-    """Gives a worker process the unpacked FMU and its one instance; a lock keeps the worker's threads apart."""
-
-    def __init__(self, archive: bytes, sha256: str) -> None:
-        self.archive, self.name = archive, f"wheel-{sha256}"
-        self.lock, self.runner = None, None
-
-    def setup(self, worker: Worker) -> None:
-        self.lock = Lock()
-        self.folder = Path(tempfile.mkdtemp(prefix="wheel-", dir=worker.local_directory))
-        zipfile.ZipFile(BytesIO(self.archive)).extractall(self.folder)
-        self.runner = Runner(str(self.folder))
-
-    def teardown(self, worker: Worker) -> None:
-        if self.runner:
-            self.runner.close()
-            shutil.rmtree(self.folder, ignore_errors=True)
-
-
-def run_block(plugin: str, job: Job, points: Points) -> dict[str, NDArray]:
-    """On a worker: the outcomes of some points."""
-    fmu = get_worker().plugins[plugin]
-    with fmu.lock:
-        return fmu.runner.run_block(job, points)
 
 
 @dataclass
@@ -127,6 +98,7 @@ def run(
     fmu: str | Path = "wheel.fmu",
     workers: int | None = None,
     scheduler: str | None = None,
+    client: Client | None = None,
     block: int = BLOCK,
     overwrite: bool = False,
     quiet: bool = False,
@@ -136,6 +108,7 @@ def run(
 
     workers    processes of the LocalCluster; all cores if None
     scheduler  address of a running Dask scheduler, tcp://host:port, instead of a LocalCluster
+    client     a Dask client that is open already, instead of both; it stays open
     block      points that are handed out and written together (fixed when the results are begun)
     work       what a worker does with a block; for tests
     """
@@ -151,10 +124,11 @@ def run(
         shutil.rmtree(out, ignore_errors=True)
         store = Store.create(out, study, job, description, attributes, block)
     if store.missing():
-        with cluster(workers, scheduler) as client, progress(store, quiet) as bar:
+        opened = nullcontext(client) if client else cluster(workers, scheduler)
+        with opened as user, progress(store, quiet) as bar:
             plugin = FmuPlugin(archive, sha256)
-            client.register_plugin(plugin, name=plugin.name)
-            Caller(client, study, job, store, plugin.name, counters_of(description), work).run(bar)
+            user.register_plugin(plugin, name=plugin.name)
+            Caller(user, study, job, store, plugin.name, counters_of(description), work).run(bar)
     return store.dataset()
 
 
@@ -169,7 +143,9 @@ def cluster(workers: int | None, scheduler: str | None) -> Iterator[Client]:
     options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
     with (
         dask.config.set(options),
-        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None, memory_limit=0) as local,
+        LocalCluster(
+            n_workers=workers, threads_per_worker=1, dashboard_address=":0", memory_limit=0, silence_logs="ERROR"
+        ) as local,
         Client(local) as client,
     ):
         yield client

@@ -67,7 +67,13 @@ class Store:
 
     @classmethod
     def create(
-        cls, path: Path, study: Study, job: Job, description: ModelDescription, attributes: Mapping[str, object], size: int
+        cls,
+        path: Path,
+        study: Study,
+        job: Job,
+        description: ModelDescription,
+        attributes: Mapping[str, object],
+        size: int,
     ) -> Store:
         """An empty group with all coordinates; it gets its name when it is complete."""
         begun = path.with_name(path.name + ".new")
@@ -108,9 +114,7 @@ class Store:
         array = self.group["status"]
         starts = (range(0, n, step) for n, step in zip(array.shape, array.chunks, strict=True))
         for begin in product(*starts):
-            ends = (
-                min(b + step, n) for b, step, n in zip(begin, array.chunks, array.shape, strict=True)
-            )
+            ends = (min(b + step, n) for b, step, n in zip(begin, array.chunks, array.shape, strict=True))
             yield tuple(slice(b, e) for b, e in zip(begin, ends, strict=True))
 
     def points(self, study: Study, block: Block) -> dict[str, NDArray[np.float64]]:

@@ -26,5 +26,7 @@ def summarize(results: xr.Dataset, seconds: float) -> str:
     wall, inside = (float(np.nansum(results[name])) for name in ("wall_time", "fmu_time"))
     if wall > 0:
         speed = np.isfinite(results["wall_time"].values).sum() / wall
-        lines.append(f"{speed:.0f} wheels per second and worker, {100 * inside / wall:.0f} % of the time inside the FMU.")
+        lines.append(
+            f"{speed:.0f} wheels per second and worker, {100 * inside / wall:.0f} % of the time inside the FMU."
+        )
     return "\n".join(lines)
