@@ -163,8 +163,8 @@ For the last row above the estimate is therefore:
 
 {guess}
 
-With many workers, make the blocks larger (`block=` of `Study.run`). Not in the estimate: the network, and the time until
-a scheduler has a thousand workers.
+With many workers, make the blocks larger (`block=` of `Study.run`). Not in the estimate: the network, and the time
+until a scheduler has a thousand workers.
 
 ---
 

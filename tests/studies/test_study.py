@@ -18,8 +18,8 @@ from paths import ROOT
 from study import Status, Study, StudyError
 from study.__main__ import study_file
 from study.compute import run
-from study.worker import run_block
 from study.store import open_results
+from study.worker import run_block
 
 FILE = """
 import numpy as np

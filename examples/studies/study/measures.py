@@ -1,4 +1,4 @@
-"""What is told of a run in one number: a value at its end, an extreme, a mean, or the time at which a limit is first passed.
+"""What is told of a run in one number: a value at its end, an extreme, a mean, or the time of a first passage.
 
 A measure is written as text, so that it can be kept with the results and compared when a study is started again:
 `theta` (at the end), `min(theta)`, `max(mu_required)`, `mean(E)`, `first(theta < 0.5)`, `first(theta > 1.6)`.

@@ -1,4 +1,4 @@
-"""What a study is: a grid, a list or a sample of start values, parameters and inputs, and what is to be known of each run."""
+"""What a study is: which start values, parameters and inputs are run, and what is to be known of each run."""
 
 from __future__ import annotations
 
