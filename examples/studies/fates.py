@@ -42,10 +42,10 @@ def draw(small: xr.Dataset, stem: Path) -> list[Path]:
         ax.set_xticks([0, 0.1, 1, 10], ["0", "0.1", "1", "10"])
         ax.set_xlim(0, 50)
         white = {"color": "white", "rotation": 90, "ha": "center", "va": "center", "fontsize": 8}
-        ax.text(0.02, 45, "falls flat", **white)
+        ax.text(0.012, 45, "no spin: falls flat", **white)
         ax.text(upright_limit() * 0.82, 22, "limit of upright rolling", **white)
         if s > 0:
-            ax.text(33, 10, "lifts off", **(white | {"rotation": 0}))
+            ax.text(35, 9, "lifts\noff", **(white | {"rotation": 0, "linespacing": 0.9}))
     label(axes, frictions)
     bar(fig, shades, "smallest angle to the ground within 10 s [deg]")
     return save(fig, stem)
