@@ -46,6 +46,6 @@ def draw(small: xr.Dataset, stem: Path) -> list[Path]:
         ax.text(upright_limit() * 0.82, 22, "limit of upright rolling", **white)
         if s > 0:
             ax.text(35, 9, "lifts\noff", **(white | {"rotation": 0, "linespacing": 0.9}))
-    label(axes, frictions)
+    label(axes, frictions, side="left")
     bar(fig, shades, "smallest angle to the ground within 10 s [deg]")
     return save(fig, stem)

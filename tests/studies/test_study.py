@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from paths import ROOT
-from study import Status, Study, StudyError
+from study import Status, Study, StudyError, compute
 from study.__main__ import study_file
 from study.compute import run
 from study.store import open_results
@@ -117,22 +117,23 @@ def test_a_worker_that_dies_costs_one_point(fmu_path: Path, tmp_path: Path) -> N
 
 
 @contextmanager
-def elsewhere(folder: Path) -> Iterator[str]:
-    """A scheduler and a worker with two threads as one starts them on other machines: without this package's path."""
+def elsewhere(folder: Path, workers: int = 1) -> Iterator[str]:
+    """A scheduler and workers with two threads as one starts them on other machines: without this package's path."""
     address_file = folder / "scheduler.json"
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     quiet = {"env": clean, "cwd": folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     dask = [sys.executable, "-m", "dask"]
     shared = ["--scheduler-file", str(address_file), "--no-dashboard", "--interface", "lo"]
     scheduler = subprocess.Popen([*dask, "scheduler", *shared, "--port", "0"], **quiet)
-    worker = subprocess.Popen([*dask, "worker", *shared, "--nthreads", "2", "--no-nanny"], **quiet)
+    worker = [*dask, "worker", *shared, "--nthreads", "2", "--no-nanny"]
+    started = [subprocess.Popen(worker, **quiet) for _ in range(workers)]
     try:
         give_up = time.monotonic() + 60
         while not address_file.exists() and time.monotonic() < give_up:
             time.sleep(0.05)
         yield next(part for part in address_file.read_text().split('"') if part.startswith("tcp://"))
     finally:
-        for process in (worker, scheduler):
+        for process in (*started, scheduler):
             process.terminate()
             process.wait(30)
 
@@ -141,6 +142,14 @@ def test_a_cluster_elsewhere_gives_the_same_bits(fates: Study, here: Path, fmu_p
     with elsewhere(tmp_path) as address:
         there = run(fates, tmp_path / "there.zarr", fmu=fmu_path, scheduler=address, quiet=True, block=8)
     assert same(there, open_results(here))
+
+
+def test_a_study_without_workers_says_so(
+    fates: Study, fmu_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compute, "LOST", 2.0)
+    with elsewhere(tmp_path, workers=0) as address, pytest.raises(StudyError, match="no worker"):
+        run(fates, tmp_path / "nobody.zarr", fmu=fmu_path, scheduler=address, quiet=True)
 
 
 def test_the_command_exports_tables_and_says_in_a_sentence_what_is_wrong(fmu_path: Path, tmp_path: Path) -> None:

@@ -59,13 +59,14 @@ def fill(ax: Axes, one: xr.DataArray, status: xr.DataArray, look: dict[str, obje
     return shades
 
 
-def label(axes: list[Axes], frictions: np.ndarray) -> None:
-    """Titles, axes and the paper's start."""
+def label(axes: list[Axes], frictions: np.ndarray, side: str = "right") -> None:
+    """Titles, axes and the paper's start, named at the side of its mark where the map is dark."""
+    beside = {"right": {"xytext": (6, 3), "ha": "left"}, "left": {"xytext": (-6, 3), "ha": "right"}}[side]
     for ax, s in zip(axes, frictions, strict=True):
         ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:g} m", fontsize=9)
         ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"spin at the start $|\dot\varphi|$ [rad/s]")
         ax.plot(*PAPER, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
-        ax.annotate("paper", PAPER, xytext=(6, 3), textcoords="offset points", color="white", fontsize=8)
+        ax.annotate("paper", PAPER, textcoords="offset points", color="white", fontsize=8, **beside)
     axes[0].set_ylabel(r"angle at the start $\theta$ [deg]")
     axes[1].set_yticklabels([])
 

@@ -13,11 +13,14 @@ import sys
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import CancelledError
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import version
 from itertools import islice
 from pathlib import Path
+from threading import Event, Thread
+from time import monotonic
 
 import dask
 import xarray as xr
@@ -36,6 +39,7 @@ from .worker import FmuPlugin, Points, run_block
 
 BLOCK = 256  # points: about a tenth of a second of work, a hundred times what handing it out costs
 AHEAD = 3  # blocks per worker on their way
+LOST = 60  # s without any worker after which a study gives up
 
 
 @dataclass
@@ -49,10 +53,12 @@ class Caller:
     plugin: str
     counters: list[str]
     work: Callable[[str, Job, Points], dict[str, NDArray]]
+    outstanding: set[object] = field(default_factory=set)
 
     def submit(self, block: Block | None, points: Points) -> object:
         future = self.client.submit(self.work, self.plugin, self.job, points, pure=False)
         future.block = block
+        self.outstanding.add(future)
         return future
 
     def run(self, bar: tqdm) -> None:
@@ -62,6 +68,7 @@ class Caller:
         first = [self.submit(b, self.store.points(self.study, b)) for b in islice(waiting, ahead)]
         deadly, coming = [], as_completed(first)
         for future in coming:
+            self.outstanding.discard(future)
             if isinstance(future.exception(), KilledWorker):
                 deadly.append(future.block)
             else:
@@ -128,8 +135,35 @@ def run(
         with opened as user, progress(store, quiet) as bar:
             plugin = FmuPlugin(archive, sha256)
             user.register_plugin(plugin, name=plugin.name)
-            Caller(user, study, job, store, plugin.name, counters_of(description), work).run(bar)
+            caller = Caller(user, study, job, store, plugin.name, counters_of(description), work)
+            with watch(caller):
+                caller.run(bar)
     return store.dataset()
+
+
+@contextmanager
+def watch(caller: Caller) -> Iterator[None]:
+    """Without any worker for LOST seconds, cancels what is waited for; StudyError instead of waiting for ever."""
+    over = Event()
+
+    def look() -> None:
+        since = monotonic()
+        while not over.wait(LOST / 20):
+            if caller.client.nthreads():
+                since = monotonic()
+            elif monotonic() - since > LOST:
+                caller.client.cancel(list(caller.outstanding), force=True)
+                return
+
+    watcher = Thread(target=look, daemon=True)
+    watcher.start()
+    try:
+        yield
+    except CancelledError:
+        raise StudyError(f"There has been no worker for {LOST} s; started again, the study goes on.") from None
+    finally:
+        over.set()
+        watcher.join()
 
 
 @contextmanager
