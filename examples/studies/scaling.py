@@ -136,6 +136,7 @@ def measure(fmu: Path, folder: Path) -> list[Path]:
         write=" and ".join(f"{1e3 * s:.1f} ms ({b:,} wheels)" for b, s in writing.items()),
         cores=os.cpu_count(),
         load=load,
+        busy=BUSY if load > 1 else "",
         system=platform.system(),
         machine=platform.machine(),
         date=datetime.now(UTC).date(),
@@ -145,6 +146,9 @@ def measure(fmu: Path, folder: Path) -> list[Path]:
     return [folder / "studies.md", data / "study_speed.csv", data / "study_estimate.csv"]
 
 
+BUSY = """
+Other programs kept the processors busy meanwhile (see the load below), so all speeds here are too low, and so is the
+gain of the second worker."""
 PAGE = """# How fast studies run
 
 Part of the map of fates: 1,280 wheels, 10 s each, with start values between 10 and 89 degrees, 0.5 and 12 rad/s. The
@@ -153,7 +157,7 @@ the results is not. The share is the part of a worker's time that is spent in ca
 
 {speeds}
 
-Two workers against one: {gained} times as fast.
+Two workers against one: {gained} times as fast.{busy}
 
 ## A thousand workers, estimated
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
@@ -9,7 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -101,11 +102,11 @@ def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(fates: Stu
     assert same(results, run(fates, here, fmu=fmu_path, scheduler="tcp://nobody:1", quiet=True))  # nothing left to run
 
 
-def die_at_upright(plugin: str, job: object, points: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def die_at_upright(upload: str, job: object, points: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """As a worker does it, but the process dies where a wheel starts at exactly 1.5 rad."""
     if (points["theta_start"] == 1.5).any():
         os._exit(1)
-    return run_block(plugin, job, points)
+    return run_block(upload, job, points)
 
 
 def test_a_worker_that_dies_costs_one_point(fmu_path: Path, tmp_path: Path) -> None:
@@ -116,6 +117,16 @@ def test_a_worker_that_dies_costs_one_point(fmu_path: Path, tmp_path: Path) -> N
     assert np.isfinite(results["theta_end"].values[:3]).all()
 
 
+def address_in(path: Path) -> str:
+    """The address that a scheduler has written into its file, as soon as the file is complete."""
+    give_up = time.monotonic() + 60
+    while time.monotonic() < give_up:
+        with suppress(OSError, json.JSONDecodeError):
+            return json.loads(path.read_text())["address"]
+        time.sleep(0.05)
+    raise TimeoutError("The scheduler did not start within a minute.")
+
+
 @contextmanager
 def elsewhere(folder: Path, workers: int = 1) -> Iterator[str]:
     """A scheduler and workers with two threads as one starts them on other machines: without this package's path."""
@@ -124,14 +135,13 @@ def elsewhere(folder: Path, workers: int = 1) -> Iterator[str]:
     quiet = {"env": clean, "cwd": folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     dask = [sys.executable, "-m", "dask"]
     shared = ["--scheduler-file", str(address_file), "--no-dashboard", "--interface", "lo"]
+    options = ["--nthreads", "2", "--no-nanny", "--no-dashboard", "--interface", "lo"]
     scheduler = subprocess.Popen([*dask, "scheduler", *shared, "--port", "0"], **quiet)
-    worker = [*dask, "worker", *shared, "--nthreads", "2", "--no-nanny"]
-    started = [subprocess.Popen(worker, **quiet) for _ in range(workers)]
+    started = []
     try:
-        give_up = time.monotonic() + 60
-        while not address_file.exists() and time.monotonic() < give_up:
-            time.sleep(0.05)
-        yield next(part for part in address_file.read_text().split('"') if part.startswith("tcp://"))
+        address = address_in(address_file)  # before the workers start: they stop at a file that is only half there
+        started += [subprocess.Popen([*dask, "worker", address, *options], **quiet) for _ in range(workers)]
+        yield address
     finally:
         for process in (*started, scheduler):
             process.terminate()

@@ -11,7 +11,6 @@ import platform
 import shutil
 import sys
 import tempfile
-import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, nullcontext
@@ -35,7 +34,7 @@ from .instance import Status, counters_of
 from .plan import Study, StudyError
 from .runs import Job, empty_result
 from .store import Block, Store, study_attributes
-from .worker import FmuPlugin, Points, run_block
+from .worker import Points, pack, run_block
 
 BLOCK = 256  # points: about a tenth of a second of work, a hundred times what handing it out costs
 AHEAD = 3  # blocks per worker on their way
@@ -50,13 +49,13 @@ class Caller:
     study: Study
     job: Job
     store: Store
-    plugin: str
+    upload: str
     counters: list[str]
     work: Callable[[str, Job, Points], dict[str, NDArray]]
     outstanding: set[object] = field(default_factory=set)
 
     def submit(self, block: Block | None, points: Points) -> object:
-        future = self.client.submit(self.work, self.plugin, self.job, points, pure=False)
+        future = self.client.submit(self.work, self.upload, self.job, points, pure=False)
         future.block = block
         self.outstanding.add(future)
         return future
@@ -133,9 +132,10 @@ def run(
     if store.missing():
         opened = nullcontext(client) if client else cluster(workers, scheduler)
         with opened as user, progress(store, quiet) as bar:
-            plugin = FmuPlugin(archive, sha256)
-            user.register_plugin(plugin, name=plugin.name)
-            caller = Caller(user, study, job, store, plugin.name, counters_of(description), work)
+            upload = f"wheel-{sha256[:16]}.zip"
+            with tempfile.TemporaryDirectory() as folder:
+                user.upload_file(str(pack(archive, Path(folder) / upload)))
+            caller = Caller(user, study, job, store, upload, counters_of(description), work)
             with watch(caller):
                 caller.run(bar)
     return store.dataset()
@@ -171,7 +171,6 @@ def cluster(workers: int | None, scheduler: str | None) -> Iterator[Client]:
     """A client of the scheduler at that address, or of a LocalCluster of its own with one thread per process."""
     if scheduler:
         with Client(scheduler, timeout="30s") as client:
-            client.upload_file(str(_packed_package()))
             yield client
         return
     options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
@@ -183,16 +182,6 @@ def cluster(workers: int | None, scheduler: str | None) -> Iterator[Client]:
         Client(local) as client,
     ):
         yield client
-
-
-def _packed_package() -> Path:
-    """This package as a zip file, which a worker elsewhere can import."""
-    here = Path(__file__).parent
-    path = Path(tempfile.mkdtemp()) / f"{here.name}.zip"
-    with zipfile.ZipFile(path, "w") as archive:
-        for source in sorted(here.glob("*.py")):
-            archive.write(source, f"{here.name}/{source.name}")
-    return path
 
 
 @contextmanager
