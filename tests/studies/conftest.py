@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import extract
-from paths import ROOT
 
+ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "examples" / "studies"))
 
 from study import Study  # noqa: E402

@@ -7,9 +7,8 @@ from pathlib import Path
 import nbformat
 import pytest
 from nbclient import NotebookClient
-from paths import ROOT
 
-NOTEBOOK = ROOT / "examples" / "wheel.ipynb"
+NOTEBOOK = Path(__file__).resolve().parents[2] / "examples" / "wheel.ipynb"
 
 
 @pytest.fixture(scope="module")

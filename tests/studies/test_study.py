@@ -16,13 +16,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from paths import ROOT
 from study import Status, Study, StudyError, compute
 from study.__main__ import study_file
 from study.compute import run
 from study.store import open_results
 from study.worker import run_block
 
+ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
 EXAMPLE = re.findall(r"^```python\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)[0]
 

@@ -132,13 +132,18 @@ def run(
     if store.missing():
         opened = nullcontext(client) if client else cluster(workers, scheduler)
         with opened as user, progress(store, quiet) as bar:
-            upload = f"wheel-{sha256[:16]}.zip"
-            with tempfile.TemporaryDirectory() as folder:
-                user.upload_file(str(pack(archive, Path(folder) / upload)))
+            upload = send(user, archive, f"wheel-{sha256[:16]}.zip")
             caller = Caller(user, study, job, store, upload, counters_of(description), work)
             with watch(caller):
                 caller.run(bar)
     return store.dataset()
+
+
+def send(client: Client, fmu: bytes, name: str) -> str:
+    """Uploads this package and the FMU as a file of that name to all workers, later ones included; returns the name."""
+    with tempfile.TemporaryDirectory() as folder:
+        client.upload_file(str(pack(fmu, Path(folder) / name)))
+    return name
 
 
 @contextmanager
