@@ -31,7 +31,7 @@ constexpr double corrector_share = 0.05;
 constexpr int most_failures = 30;
 
 // Adams methods above this order gain nothing on the wheel's scenes, and prediction costs the square of the order.
-constexpr int highest_adams_order = 10;
+constexpr int highest_adams_order = 9;
 
 int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
   CvodeCall& call = *static_cast<CvodeCall*>(user);

@@ -122,6 +122,21 @@ struct Operations {
     return each(z, [&](int i) { return sum[i]; }), SUN_SUCCESS;
   }
 
+  // z_k = a_k x + y_k: the end of a step, on all columns of the history at once.
+  static SUNErrCode add_to_each(int n, double* a, N_Vector x, N_Vector* y, N_Vector* z) {
+    const double* u = data(x);
+    for (int k = 0; k < n; ++k) {
+      const double* v = data(y[k]);
+      pairs(z[k], [=, factor = a[k]](int i) { return factor * pair_at(u + i) + pair_at(v + i); });
+    }
+    return SUN_SUCCESS;
+  }
+
+  static SUNErrCode scale_each(int n, double* a, N_Vector* x, N_Vector* z) {
+    for (int k = 0; k < n; ++k) scale(a[k], x[k], z[k]);
+    return SUN_SUCCESS;
+  }
+
   static const _generic_N_Vector_Ops& table() {
     static const _generic_N_Vector_Ops operations = [] {
       _generic_N_Vector_Ops o = {};
@@ -130,6 +145,7 @@ struct Operations {
       o.nvlinearsum = linear_sum, o.nvconst = constant, o.nvprod = product, o.nvdiv = quotient, o.nvscale = scale;
       o.nvabs = absolute, o.nvinv = inverse, o.nvaddconst = add_constant, o.nvmaxnorm = largest;
       o.nvwrmsnorm = rms_norm, o.nvlinearcombination = combine;
+      o.nvscaleaddmulti = add_to_each, o.nvscalevectorarray = scale_each;
       return o;
     }();
     return operations;

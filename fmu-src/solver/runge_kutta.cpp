@@ -78,11 +78,12 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
   for (int attempts = 0; attempts < most_attempts; ++attempts) {
     const bool stops = t + stretch * h >= stop;
     if (stops) h = stop - t;
+    const bool waits = stops || h == limit_;  // most often the problem changes where this step ends
     if (!stops && h <= rounding_at(t)) break;
     step->end = stops ? stop : t + h;
     step->lowest_margin = margin_;
     double error = attempt.try_size(h);
-    if (error <= 1 && !stops && !(attempt.evaluate_end(&margin_) && attempt.evaluate_interior())) error = INFINITY;
+    if (error <= 1 && !waits && !(attempt.evaluate_end(&margin_) && attempt.evaluate_interior())) error = INFINITY;
     if (!(error <= 1)) {
       h = liked_ = h * std::fmax(0.2, safety / eighth_root(error));
       rejected = true;
@@ -92,8 +93,8 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
     // A step cut short says little: what was liked before stays. After a rejection a step does not grow.
     liked_ = rejected ? std::fmin(h, next) : h < liked_ ? std::fmax(liked_, next) : next;
     size_ = h;
-    rates_ = stops ? 12 : 16;
-    if (!stops) attempt.expand();
+    rates_ = waits ? 12 : 16;
+    if (!waits) attempt.expand();
     return nullptr;
   }
   return "the step size became too small";

@@ -18,8 +18,9 @@ class RungeKutta {
   // One step that ends at `stop` (s) at the latest. False where no step is accepted: failure() says why.
   bool advance(const Problem& problem, double stop, Counters* counters, Step* step);
 
-  // The polynomial of the step, if it is not known yet. A step that ends at a stop leaves out the four evaluations that
-  // only the dense output and the next step need: most often the problem changes there, and nothing in it is read.
+  // The polynomial of the step, if it is not known yet. A step that ends at a stop or at the limit of a first step
+  // leaves out the four evaluations that only the dense output and the next step need: most often the problem changes
+  // there, and nothing in it is read.
   void expand(const Problem& problem, Counters* counters, Step* step);
 
   const char* failure() const { return failure_; }

@@ -15,7 +15,7 @@ void Simulation::reset() {
   state_ = State();
   for (unsigned v = 0; v < first_input; ++v) state_.parameters[v] = row_of(v).start;
   state_.motion.tolerance = default_tolerance;
-  reading_fresh_ = false;
+  reading_fresh_ = orbit_ready_ = false;
 }
 
 bool Simulation::tell(Topic topic, const char* format, ...) const {
@@ -58,7 +58,7 @@ void Simulation::set_input_derivative(unsigned variable, int order, double value
 
 bool Simulation::prepare(bool report) {
   state_.prepared = false;
-  reading_fresh_ = false;
+  reading_fresh_ = orbit_ready_ = false;
   if (!check_parameters(report)) return false;
   set_initial_state(state_);
   state_.prepared = true;

@@ -118,8 +118,9 @@ class Simulation {
   void report_pulls();
   void report_pulls_of_orbit(double t_from, double t_to) const;
   void tell_pull(double t) const;
-  bool orbit_is_ready() const;
-  bool build_orbit();
+  bool orbit_fits() const;
+  void enter_orbit();
+  void build_orbit();
   bool start_solver();
   bool knows(double t) const;
   solver::Outcome run_to(double t);
@@ -132,6 +133,7 @@ class Simulation {
   State state_;
   solver::Solver solver_;
   Orbit orbit_;
+  bool orbit_ready_ = false;                   // orbit_ is that of the present run
   double orbit_end_ = 0;                       // s: the end of the run, or infinite
   double orbit_origin_[first_input + 1] = {};  // parameters and tolerance that orbit_ was built for
   const char* failure_ = nullptr;              // why the last call failed

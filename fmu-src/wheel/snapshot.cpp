@@ -140,7 +140,7 @@ bool Simulation::load_state(const unsigned char* bytes, std::size_t size) {
                         : reader.at != reader.end)
     return false;
   state_ = next;
-  reading_fresh_ = false;
+  reading_fresh_ = orbit_ready_ = false;
   return true;
 }
 

@@ -105,37 +105,40 @@ void Simulation::tell_pull(double t) const {
        support::Digits(to_nanosecond(state_.start_time + t)).text);
 }
 
-// The key of the orbit: it was built for these parameters and this tolerance.
-bool Simulation::orbit_is_ready() const {
+// Whether the orbit is that of the present run, whatever the instance did before.
+bool Simulation::orbit_fits() const {
   return std::memcmp(orbit_origin_, state_.parameters, sizeof state_.parameters) == 0 &&
          orbit_origin_[first_input] == state_.motion.tolerance;
 }
 
-// From the start of the run; where the motion does not fold, the solver steps from there.
-bool Simulation::build_orbit() {
+// From the start of the run; where the motion does not fold, the solver has to step.
+void Simulation::build_orbit() {
   State start = state_;
   set_initial_state(start);
-  std::memset(orbit_origin_, 0, sizeof orbit_origin_);
   const Motion& motion = start.motion;
   const Orbit::Kind kind = orbit_.build(problem_of(start.motion), motion.tolerance,
                                         motion.keep_contact ? normal_force : nullptr, start.y, solver_);
   orbit_end_ = kind == Orbit::Kind::ended ? orbit_.end_time() : std::numeric_limits<double>::infinity();
   state_.unfolded = kind != Orbit::Kind::refused;
-  if (!state_.unfolded) return start_solver();
   std::memcpy(orbit_origin_, state_.parameters, sizeof state_.parameters);
-  orbit_origin_[first_input] = state_.motion.tolerance;
-  return true;
+  orbit_origin_[first_input] = state_.unfolded ? motion.tolerance : 0;
+}
+
+// Makes the orbit ready, if the run is on one.
+void Simulation::enter_orbit() {
+  if (!orbit_fits()) build_orbit();
+  orbit_ready_ = state_.unfolded;
+  if (state_.unfolded) state_.counted = orbit_.counters();
 }
 
 bool Simulation::knows(double t) const {
   if (!state_.moving) return false;
-  return state_.unfolded ? orbit_is_ready() && t <= orbit_end_ : solver_.reaches(t);
+  return state_.unfolded ? orbit_ready_ && t <= orbit_end_ : solver_.reaches(t);
 }
 
 solver::Outcome Simulation::run_to(double t) {
   using solver::Outcome;
-  if (state_.unfolded && !orbit_is_ready() && !build_orbit()) return Outcome::failed;
-  if (state_.unfolded) state_.counted = orbit_.counters();
+  if (state_.unfolded && !orbit_ready_) enter_orbit();
   if (state_.unfolded) return t <= orbit_end_ ? Outcome::stepped : Outcome::ended;
   if (!state_.moving && !start_solver()) return Outcome::failed;
   for (long long work = 0; !solver_.reaches(t);) {
