@@ -1,0 +1,129 @@
+// One wheel in the scene: a torus of ring radius r_0 and tube radius r in m, turned by psi about Z, theta about the line of
+// nodes e1, and phi about the axle e3 (paper, (3)); its contact path, carrier axes and the ground's force.
+import { THREE } from 'three';
+import { contactOf } from '#table';
+import { sticksAt } from '#phases';
+import { dispose, makeArrow, makeLabel, makeRibbon, pointArrow, showRibbon, tyreTexture } from '#shapes';
+
+const METAL = { color: '#c3c9d1', metalness: 0.85, roughness: 0.32 };
+const UP = new THREE.Vector3(0, 0, 1);
+const NODES = new THREE.Vector3(1, 0, 0);
+const turn = new THREE.Quaternion();
+
+/** Rubber, rim, spokes and hub about the axle z; spoke and mark at angle 0. */
+function makeBody(r_0, r, accent) {
+  const body = new THREE.Group();
+  const add = (geometry, material) => {
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.castShadow = true;
+    body.add(mesh);
+    return mesh;
+  };
+  const rubber = new THREE.MeshStandardMaterial({ map: tyreTexture(accent), roughness: 0.72 });
+  const metal = new THREE.MeshStandardMaterial(METAL);
+  const tube = Math.max(r, 0.012 * r_0); // the thin disc has no thickness: it is drawn with a fine edge
+  add(new THREE.TorusGeometry(r_0, tube, 40, 180), rubber);
+  const wide = Math.max(r, 0.06 * r_0);
+  const inner = r_0 - 0.72 * tube;
+  add(new THREE.TorusGeometry(inner, 0.42 * wide, 16, 120), metal);
+  const hub = add(new THREE.CylinderGeometry(0.2 * r_0, 0.2 * r_0, 1.1 * wide, 48), metal);
+  hub.rotation.x = Math.PI / 2;
+  const marked = new THREE.MeshStandardMaterial({ color: accent, roughness: 0.4 });
+  for (let i = 0; i < 5; ++i) {
+    const width = (i === 0 ? 0.2 : 0.13) * r_0;
+    const spoke = add(new THREE.BoxGeometry(inner - 0.1 * r_0, width, 0.55 * wide), i === 0 ? marked : metal);
+    const angle = (2 * Math.PI * i) / 5;
+    const middle = 0.5 * (inner + 0.1 * r_0);
+    spoke.position.set(middle * Math.cos(angle), middle * Math.sin(angle), 0);
+    spoke.rotation.z = angle;
+  }
+  return body;
+}
+
+/** e1, e2, e3 as arrows from O, with names. */
+function makeAxes(r_0, r, colours) {
+  const axes = new THREE.Group();
+  const reach = 1.5 * (r_0 + r);
+  const directions = [new THREE.Vector3(1, 0, 0), new THREE.Vector3(0, 1, 0), new THREE.Vector3(0, 0, 0.75)];
+  directions.forEach((direction, i) => {
+    const arrow = makeArrow(0.022 * r_0, colours[i]);
+    pointArrow(arrow, direction.multiplyScalar(reach));
+    const label = makeLabel(`e${i + 1}`, colours[i], 0.3 * r_0);
+    label.position.copy(direction).multiplyScalar(1 + 0.12 / direction.length());
+    axes.add(arrow, label);
+  });
+  return axes;
+}
+
+export class WheelModel {
+  /** wheel: {name, r_0, r, table, phases}; look: {accent, faint, force, axes: [3 colours]}, CSS colours. */
+  constructor(wheel, look) {
+    this.wheel = wheel;
+    this.look = look;
+    this.group = new THREE.Group();
+    this.carrier = new THREE.Group();
+    this.carrier.name = `wheel:${wheel.name}`;
+    this.body = makeBody(wheel.r_0, wheel.r, look.accent);
+    this.body.name = `spin:${wheel.name}`;
+    this.axes = makeAxes(wheel.r_0, wheel.r, look.axes);
+    this.carrier.add(this.body, this.axes);
+    this.force = makeArrow(0.03 * wheel.r_0, look.force);
+    this.group.add(this.carrier, this.force);
+    this.drawPath();
+    const N = wheel.table.columns.lambda_3;
+    this.weight = N ? N.reduce((sum, value) => sum + value, 0) / N.length : 0;
+  }
+
+  /** The contact path anew: all of it faintly, up to now strongly, stick phases in a colour of their own. */
+  drawPath() {
+    for (const old of [this.whole, this.past, ...(this.held ?? [])]) if (old) this.group.remove(old);
+    const { table, r_0, r, phases } = this.wheel;
+    const { X_O, Y_O, psi, theta } = table.columns;
+    const points = Array.from({ length: table.rows }, (_, i) => contactOf(r_0, r, X_O[i], Y_O[i], psi[i], theta[i]));
+    const flat = (colour, opacity) =>
+      new THREE.MeshBasicMaterial({ color: colour, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: false });
+    const width = 0.045 * r_0;
+    this.whole = makeRibbon(points, 0.5 * width, 0.001, flat(this.look.accent, 0.3));
+    this.past = makeRibbon(points, width, 0.002, flat(this.look.accent, 0.95));
+    this.held = phases.sticks.map(([begin, end]) => {
+      const first = table.row(begin);
+      const ribbon = makeRibbon(points.slice(first, table.row(end) + 2), 2.2 * width, 0.003, flat(this.look.force, 0.9));
+      ribbon.userData = { begin, first };
+      return ribbon;
+    });
+    this.group.add(this.whole, this.past, ...this.held);
+    [this.whole, this.past, ...this.held].forEach((ribbon, i) => (ribbon.renderOrder = 1 + Math.min(i, 2)));
+  }
+
+  /** Pose, path and force at t. show: {path, axes, force}. */
+  update(t, show) {
+    const { table, r_0, r } = this.wheel;
+    const at = (name) => table.value(name, t);
+    const [X, Y, psi, theta, phi] = ['X_O', 'Y_O', 'psi', 'theta', 'phi'].map(at);
+    this.carrier.position.set(X, Y, table.has('Z_O') ? at('Z_O') : r_0 * Math.sin(theta) + r);
+    this.carrier.quaternion.setFromAxisAngle(UP, psi).multiply(turn.setFromAxisAngle(NODES, theta));
+    this.body.rotation.z = phi;
+    this.axes.visible = show.axes;
+    const row = table.row(t) + (t >= table.end ? 1 : 0);
+    for (const ribbon of [this.whole, this.past, ...this.held]) ribbon.visible = show.path;
+    showRibbon(this.past, row);
+    for (const ribbon of this.held) {
+      ribbon.visible &&= t >= ribbon.userData.begin;
+      showRibbon(ribbon, row - ribbon.userData.first);
+    }
+    this.force.visible = show.force && table.has('lambda_3');
+    if (this.force.visible) {
+      const scale = (1.6 * (r_0 + r)) / (this.weight || 1);
+      this.force.position.set(...contactOf(r_0, r, X, Y, psi, theta), 0);
+      pointArrow(this.force, new THREE.Vector3(...['lambda_1', 'lambda_2', 'lambda_3'].map(at)).multiplyScalar(scale));
+    }
+  }
+
+  sticks(t) {
+    return sticksAt(this.wheel.phases, t);
+  }
+
+  dispose() {
+    dispose(this.group);
+  }
+}
