@@ -137,8 +137,8 @@ class Page {
     wheel.tag.lastChild.innerHTML = over ? wheel.ended : sticks ? 'held: ω<sub>z</sub> = 0' : '';
   }
 
-  /** The point a view looks at: between its bodies if it follows, else the middle of their paths. */
-  anchor(view, t) {
+  /** What a view looks at: between its bodies if it follows, else the middle of their paths; and from how far. */
+  aim(view, t) {
     const low = new THREE.Vector3(Infinity, Infinity, 0);
     const high = new THREE.Vector3(-Infinity, -Infinity, 0);
     for (const body of view) {
@@ -154,7 +154,9 @@ class Page {
         high.max(new THREE.Vector3(...point, 0));
       }
     }
-    return low.add(high).multiplyScalar(0.5).setZ(0.42 * data.size);
+    const away = Math.max(1, 0.5 + (0.5 * low.distanceTo(high)) / data.size);
+    return { models: this.stage.models.filter((model) => view.includes(model.wheel)), away,
+      anchor: low.add(high).multiplyScalar(0.5).setZ(data.height) };
   }
 
   frame(now) {
@@ -170,12 +172,7 @@ class Page {
   draw() {
     const { t } = this.player;
     for (const model of this.stage.models) model.update(Math.min(t, model.wheel.table.end), show);
-    this.stage.render(
-      this.views.map((view) => ({
-        models: this.stage.models.filter((model) => view.includes(model.wheel)),
-        anchor: this.anchor(view, t),
-      })),
-    );
+    this.stage.render(this.views.map((view) => this.aim(view, t)));
     this.plots.draw(t);
     for (const wheel of this.shown) this.label(wheel, t);
   }

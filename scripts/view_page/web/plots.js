@@ -94,7 +94,7 @@ class Plot {
   }
 
   frame(pen) {
-    const { ticks, digits } = ticksOf(this.low, this.high, Math.min(5, this.height / 32));
+    const { ticks, digits } = ticksOf(this.low, this.high, Math.min(5, this.height / 26));
     pen.font = '11px system-ui, sans-serif';
     pen.lineWidth = 1;
     pen.strokeStyle = colour('--rule');

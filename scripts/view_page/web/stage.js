@@ -41,7 +41,7 @@ export class Stage {
     this.scene = new THREE.Scene();
     this.scene.fog = new THREE.Fog('#fff', 4 * size, 14 * size);
     this.camera = new THREE.PerspectiveCamera(34, 1, 0.02 * size, 60 * size);
-    this.camera.position.set(1.7 * size, -2.6 * size, 1.25 * size);
+    this.camera.position.set(1.5 * size, -2.35 * size, 1.0 * size);
     this.controls = new OrbitControls(this.camera, canvas);
     Object.assign(this.controls, { maxPolarAngle: 1.54, minDistance: 0.8 * size, maxDistance: 12 * size });
     Object.assign(this.controls, { enableDamping: true, dampingFactor: 0.12, zoomSpeed: 0.8 });
@@ -133,15 +133,15 @@ export class Stage {
     this.dirty = true;
   }
 
-  /** Draws views [{models, anchor: Vector3}]: each shows its own models about its own anchor, seen from one direction. */
+  /** Draws views [{models, anchor: Vector3, away}]: each its own models about its own anchor, `away` times as far off. */
   render(views) {
     this.controls.update();
     this.renderer.setScissorTest(true);
     this.rectangles(views.length).forEach(({ x, y, w, h }, i) => {
-      const { models, anchor } = views[i];
+      const { models, anchor, away } = views[i];
       for (const model of this.models) model.group.visible = models.includes(model);
       this.eye.copy(this.camera);
-      this.eye.position.add(anchor);
+      this.eye.position.multiplyScalar(away).add(anchor);
       // A narrow view needs a wider lens, or the wheel would leave it.
       this.eye.fov = w < h ? 34 * Math.min(1.7, h / w) : 34;
       this.eye.aspect = w / h;

@@ -68,7 +68,10 @@ export class WheelModel {
     this.axes = makeAxes(wheel.r_0, wheel.r, look.axes);
     this.carrier.add(this.body, this.axes);
     this.force = makeArrow(0.03 * wheel.r_0, look.force);
-    this.group.add(this.carrier, this.force);
+    const ring = new THREE.RingGeometry(0.07 * wheel.r_0, 0.11 * wheel.r_0, 40);
+    this.spot = new THREE.Mesh(ring, new THREE.MeshBasicMaterial({ color: look.force, depthWrite: false }));
+    this.spot.renderOrder = 900;
+    this.group.add(this.carrier, this.force, this.spot);
     this.drawPath();
     const N = wheel.table.columns.lambda_3;
     this.weight = N ? N.reduce((sum, value) => sum + value, 0) / N.length : 0;
@@ -87,12 +90,12 @@ export class WheelModel {
     this.past = makeRibbon(points, width, 0.002, flat(this.look.accent, 0.95));
     this.held = phases.sticks.map(([begin, end]) => {
       const first = table.row(begin);
-      const ribbon = makeRibbon(points.slice(first, table.row(end) + 2), 2.2 * width, 0.003, flat(this.look.force, 0.9));
+      const ribbon = makeRibbon(points.slice(first, table.row(end) + 2), 5 * width, 0.0015, flat(this.look.stick, 0.9));
       ribbon.userData = { begin, first };
       return ribbon;
     });
     this.group.add(this.whole, this.past, ...this.held);
-    [this.whole, this.past, ...this.held].forEach((ribbon, i) => (ribbon.renderOrder = 1 + Math.min(i, 2)));
+    [this.whole, ...this.held, this.past].forEach((ribbon, i) => (ribbon.renderOrder = 1 + i));
   }
 
   /** Pose, path and force at t. show: {path, axes, force}. */
@@ -111,10 +114,13 @@ export class WheelModel {
       ribbon.visible &&= t >= ribbon.userData.begin;
       showRibbon(ribbon, row - ribbon.userData.first);
     }
+    const contact = contactOf(r_0, r, X, Y, psi, theta);
+    this.spot.visible = show.path;
+    this.spot.position.set(...contact, 0.004);
     this.force.visible = show.force && table.has('lambda_3');
     if (this.force.visible) {
-      const scale = (1.6 * (r_0 + r)) / (this.weight || 1);
-      this.force.position.set(...contactOf(r_0, r, X, Y, psi, theta), 0);
+      const scale = (1.1 * (r_0 + r)) / (this.weight || 1);
+      this.force.position.set(...contact, 0);
       pointArrow(this.force, new THREE.Vector3(...['lambda_1', 'lambda_2', 'lambda_3'].map(at)).multiplyScalar(scale));
     }
   }
