@@ -96,7 +96,6 @@ def write(
         "wheels": [entry for entry in every_body if "r_0" in entry],
         "bodies": [entry for entry in every_body if "size" in entry],
         "choices": [{"label": choice.label, "views": choice.views} for choice in choices],
-        "choice": 0,
         "live": live,
     } | scale_of(bodies)
     parts = {

@@ -41,6 +41,19 @@ export class LiveWheel {
     this.compute();
   }
 
+  /** Keeps the present motion beside those to come, or lets it go. */
+  keep(on) {
+    const { page } = this;
+    page.wheels.length = 1;
+    if (on) page.wheels.push({ ...page.wheels[0], name: 'kept', label: 'Kept', paint: 1 });
+    const [live, kept] = ['live', 'kept'];
+    const both = [{ label: 'Side by side', views: [[live], [kept]] }, { label: 'Together', views: [[live, kept]] }];
+    const alone = { label: 'This wheel', views: [[live]] };
+    page.choice = 0;
+    page.offer(on ? [...both, alone] : [alone]);
+    page.dress();
+  }
+
   setStart(name, value) {
     this.values[name] = value;
     this.wanted = true;
@@ -65,22 +78,23 @@ export class LiveWheel {
     const wheel = this.page.wheels[0];
     const { table, ended } = this.fmu.run({ values, changes, stop, step: STEP, record });
     this.took = performance.now() - begin;
-    this.message = ended;
-    wheel.ended = ended ? 'the run ends here' : null;
+    wheel.ended = ended;
     const [r_0, r] = [this.value('r_0'), this.value('r')];
     const reshaped = r_0 !== wheel.r_0 || r !== wheel.r;
     Object.assign(wheel, { r_0, r });
-    this.page.exchange(0, table);
+    const friction = this.value('s') > 0 || changes.some(({ name, value }) => name === 's' && value > 0);
+    this.page.exchange(0, table, friction);
     if (reshaped && wheel.colour) this.page.rebuild();
   }
 
   /** Once a frame: at most one run, however fast a slider moves. */
   frame() {
     if (this.wanted) {
+      this.trouble = null;
       try {
         this.compute();
       } catch (fault) {
-        this.message = fault.message;
+        this.trouble = fault.message; // the wheel's own sentence about a start that cannot be
       }
     }
     this.panel.show();

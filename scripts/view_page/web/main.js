@@ -30,7 +30,7 @@ class Page {
     this.player = new Player();
     this.stage = new Stage($('#stage'), data.size);
     this.plots = new Plots($('#plots'), this.player);
-    this.choice = data.choice;
+    this.choice = 0;
     this.last = 0;
   }
 
@@ -54,11 +54,18 @@ class Page {
     const toggle = (name) => () => flip(name, !show[name]);
     const actions = { f: toggle('follow'), p: toggle('path'), a: toggle('axes'), g: toggle('force') };
     actions.r = () => this.stage.home();
-    data.choices.forEach((_, i) => (actions[i + 1] = () => this.choose(i)));
+    for (let i = 0; i < 9; ++i) actions[i + 1] = () => i < this.choices.length && this.choose(i);
     setUpKeys(this.player, actions);
+    this.offer(data.choices);
+  }
+
+  /** What one can look at: [{label, views: lists of names}]. */
+  offer(choices) {
+    this.choices = choices;
     const host = $('#choice');
-    host.hidden = data.choices.length < 2;
-    data.choices.forEach((choice, i) => {
+    host.hidden = choices.length < 2;
+    host.replaceChildren();
+    choices.forEach((choice, i) => {
       const button = document.createElement('button');
       button.type = 'button';
       button.setAttribute('role', 'radio');
@@ -85,8 +92,8 @@ class Page {
   }
 
   /** New motion of one wheel, same colours: path and plots only. */
-  exchange(i, table) {
-    Object.assign(this.wheels[i], { table, phases: phasesOf(table) });
+  exchange(i, table, friction) {
+    Object.assign(this.wheels[i], { table, phases: phasesOf(table, friction) });
     this.stage.models[i]?.drawPath();
     this.choose(this.choice);
   }
@@ -95,7 +102,7 @@ class Page {
   choose(i) {
     this.choice = i;
     [...$('#choice').children].forEach((button, k) => button.setAttribute('aria-checked', k === i));
-    const names = data.choices[i].views;
+    const names = this.choices[i].views;
     const known = [...this.wheels, ...this.bodies];
     this.views = names.map((view) => known.filter(({ name }) => view.includes(name)));
     const shown = this.wheels.filter(({ name }) => names.flat().includes(name));
@@ -113,7 +120,11 @@ class Page {
     drawBands(this.shown, this.player);
     const host = $('#labels');
     host.replaceChildren();
-    this.stage.rectangles(this.views.length).forEach(({ x, y }, v) => {
+    this.stage.rectangles(this.views.length).forEach(({ x, y, w, h }, v) => {
+      const edge = document.createElement('div');
+      edge.className = 'edge';
+      Object.assign(edge.style, { left: `${x}px`, top: `${y}px`, width: `${w}px`, height: `${h}px` });
+      host.append(edge);
       const wheels = this.views[v].filter((body) => this.wheels.includes(body));
       wheels.forEach((wheel, i) => {
         const label = document.createElement('div');
@@ -134,7 +145,8 @@ class Page {
     const over = wheel.ended && t >= wheel.table.end;
     const sticks = sticksAt(wheel.phases, t);
     wheel.tag.dataset.state = over ? 'ended' : sticks ? 'sticks' : 'rolls';
-    wheel.tag.lastChild.innerHTML = over ? wheel.ended : sticks ? 'held: ω<sub>z</sub> = 0' : '';
+    if (over) wheel.tag.lastChild.textContent = wheel.ended;
+    else wheel.tag.lastChild.innerHTML = sticks ? 'held: ω<sub>z</sub> = 0' : '';
   }
 
   /** What a view looks at: between its bodies if it follows, else the middle of their paths; and from how far. */

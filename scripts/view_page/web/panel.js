@@ -65,7 +65,7 @@ export function setUpPanel(live, presets) {
   host.innerHTML =
     '<h2>Begin with</h2><div id="presets"></div><p class="note" id="about"></p>' +
     '<h2>Start</h2><div id="start"></div><h2>While it rolls, from now on</h2><div id="now"></div>' +
-    '<div class="row" id="push"></div><p class="note" id="message"></p>';
+    '<div class="row" id="push"></div><label class="keep"><input type="checkbox" id="keep"> Keep this motion to compare with</label><p class="note" id="message"></p>';
   const $ = (id) => host.querySelector(`#${id}`);
   const buttons = presets.map((preset) => {
     const button = document.createElement('button');
@@ -93,13 +93,14 @@ export function setUpPanel(live, presets) {
   })]);
   makePush($('push'), '◀ hold to push', -PUSH, live);
   makePush($('push'), 'hold to push ▶', PUSH, live);
+  $('keep').addEventListener('change', () => live.keep($('keep').checked));
   return {
     show() {
       for (const [name, set] of starts) set(live.value(name));
       for (const [name, set] of nows) set(live.present(name));
       const steps = `${live.stop} s computed in ${live.took?.toFixed(0) ?? '…'} ms, here in the page.`;
-      $('message').textContent = live.message ?? steps;
-      $('message').classList.toggle('ended', Boolean(live.message));
+      $('message').textContent = live.trouble ?? steps;
+      $('message').classList.toggle('trouble', Boolean(live.trouble));
     },
   };
 }

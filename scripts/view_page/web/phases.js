@@ -36,11 +36,20 @@ function instant(table, k, from) {
   return Number.isNaN(zero) ? middle : time[k] + zero;
 }
 
-/** {sticks: [[begin, end], ...], transitions: [{t, from, to}, ...]} in s, of a table with omega_z or friction_mode. */
-export function phasesOf(table) {
+/** Whether there may be friction: a wheel whose omega_z is zero from first to last may as well roll without any. */
+function mayHold(table) {
+  if (!table.has('omega_z') && !table.has('friction_mode')) return false;
+  return table.time.some((_, row) => modeAt(table, row) !== 0);
+}
+
+/**
+ * {sticks: [[begin, end], ...], transitions: [{t, from, to}, ...]} in s. friction: whether there is any, where it is known
+ * (without it omega_z = 0 holds nothing).
+ */
+export function phasesOf(table, friction = mayHold(table)) {
   const sticks = [];
   const transitions = [];
-  if (!table.has('omega_z') && !table.has('friction_mode')) return { sticks, transitions };
+  if (!friction) return { sticks, transitions };
   let mode = modeAt(table, 0);
   let begin = table.start;
   for (let k = 0; k + 1 < table.rows; ++k) {

@@ -67,8 +67,8 @@ export class Table {
   }
 }
 
-/** Point of contact with the ground, O - (r_0 + r sin theta) e2 - r cos theta e3, of one pose; Z is 0. */
-export function contactOf(r_0, r, X_O, Y_O, psi, theta) {
-  const across = r_0 * Math.cos(theta); // the arms along e2 and e3, seen from above
+/** Contact with the ground, O - (r_0 + r sin theta) e2 - r cos theta e3, seen from above; r drops out. */
+export function contactOf(r_0, X_O, Y_O, psi, theta) {
+  const across = r_0 * Math.cos(theta);
   return [X_O + across * Math.sin(psi), Y_O - across * Math.cos(psi)];
 }

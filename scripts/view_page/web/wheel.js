@@ -8,10 +8,12 @@ import { dispose, makeArrow, makeLabel, makeRibbon, pointArrow, showRibbon, tyre
 const METAL = { color: '#c3c9d1', metalness: 0.85, roughness: 0.32 };
 const UP = new THREE.Vector3(0, 0, 1);
 const NODES = new THREE.Vector3(1, 0, 0);
+const FINE = 3; // points of the path per row
+const POSE = ['X_O', 'Y_O', 'psi', 'theta'];
 const turn = new THREE.Quaternion();
 
-/** Rubber, rim, spokes and hub about the axle z; spoke and mark at angle 0. */
-function makeBody(r_0, r, accent) {
+/** A group, and a function that adds a body of this shape to it. */
+function workshop() {
   const body = new THREE.Group();
   const add = (geometry, material) => {
     const mesh = new THREE.Mesh(geometry, material);
@@ -19,24 +21,38 @@ function makeBody(r_0, r, accent) {
     body.add(mesh);
     return mesh;
   };
-  const rubber = new THREE.MeshStandardMaterial({ map: tyreTexture(accent), roughness: 0.72 });
+  return { body, add };
+}
+
+/** Tyre, rim, spokes and hub about the axle z; marked spoke and mark on the tyre at angle 0. */
+function makeBody(r_0, r, accent) {
+  const { body, add } = workshop();
   const metal = new THREE.MeshStandardMaterial(METAL);
-  const tube = Math.max(r, 0.012 * r_0); // the thin disc has no thickness: it is drawn with a fine edge
-  add(new THREE.TorusGeometry(r_0, tube, 40, 180), rubber);
-  const wide = Math.max(r, 0.06 * r_0);
-  const inner = r_0 - 0.72 * tube;
-  add(new THREE.TorusGeometry(inner, 0.42 * wide, 16, 120), metal);
-  const hub = add(new THREE.CylinderGeometry(0.2 * r_0, 0.2 * r_0, 1.1 * wide, 48), metal);
-  hub.rotation.x = Math.PI / 2;
+  add(new THREE.TorusGeometry(r_0, r, 40, 180), new THREE.MeshStandardMaterial({ map: tyreTexture(accent), roughness: 0.72 }));
+  const inner = r_0 - 0.72 * r;
+  add(new THREE.TorusGeometry(inner, 0.42 * r, 16, 120), metal);
+  add(new THREE.CylinderGeometry(0.2 * r_0, 0.2 * r_0, 1.1 * r, 48), metal).rotation.x = Math.PI / 2;
   const marked = new THREE.MeshStandardMaterial({ color: accent, roughness: 0.4 });
   for (let i = 0; i < 5; ++i) {
     const width = (i === 0 ? 0.2 : 0.13) * r_0;
-    const spoke = add(new THREE.BoxGeometry(inner - 0.1 * r_0, width, 0.55 * wide), i === 0 ? marked : metal);
+    const spoke = add(new THREE.BoxGeometry(inner - 0.1 * r_0, width, 0.55 * r), i === 0 ? marked : metal);
     const angle = (2 * Math.PI * i) / 5;
     const middle = 0.5 * (inner + 0.1 * r_0);
     spoke.position.set(middle * Math.cos(angle), middle * Math.sin(angle), 0);
     spoke.rotation.z = angle;
   }
+  return body;
+}
+
+/** The thin disc, r = 0, with a marked radius at angle 0; it is drawn as thick as a coin. */
+function makeDisc(r_0, accent) {
+  const { body, add } = workshop();
+  const thickness = 0.024 * r_0;
+  const face = new THREE.MeshStandardMaterial({ color: '#7d848f', metalness: 0.6, roughness: 0.38, envMapIntensity: 1.2 });
+  add(new THREE.CylinderGeometry(r_0, r_0, thickness, 160), face).rotation.x = Math.PI / 2;
+  const marked = new THREE.MeshStandardMaterial({ color: accent, roughness: 0.4 });
+  add(new THREE.BoxGeometry(0.995 * r_0, 0.16 * r_0, 1.3 * thickness), marked).position.x = 0.497 * r_0;
+  add(new THREE.TorusGeometry(r_0, 0.5 * thickness, 12, 160), new THREE.MeshStandardMaterial(METAL));
   return body;
 }
 
@@ -63,7 +79,7 @@ export class WheelModel {
     this.group = new THREE.Group();
     this.carrier = new THREE.Group();
     this.carrier.name = `wheel:${wheel.name}`;
-    this.body = makeBody(wheel.r_0, wheel.r, look.accent);
+    this.body = wheel.r > 0.01 * wheel.r_0 ? makeBody(wheel.r_0, wheel.r, look.accent) : makeDisc(wheel.r_0, look.accent);
     this.body.name = `spin:${wheel.name}`;
     this.axes = makeAxes(wheel.r_0, wheel.r, look.axes);
     this.carrier.add(this.body, this.axes);
@@ -80,22 +96,33 @@ export class WheelModel {
   /** The contact path anew: all of it faintly, up to now strongly, stick phases in a colour of their own. */
   drawPath() {
     for (const old of [this.whole, this.past, ...(this.held ?? [])]) if (old) this.group.remove(old);
-    const { table, r_0, r, phases } = this.wheel;
-    const { X_O, Y_O, psi, theta } = table.columns;
-    const points = Array.from({ length: table.rows }, (_, i) => contactOf(r_0, r, X_O[i], Y_O[i], psi[i], theta[i]));
+    const { table, r_0, phases } = this.wheel;
+    const points = Array.from({ length: FINE * (table.rows - 1) + 1 }, (_, i) => {
+      const row = Math.min(table.rows - 2, Math.floor(i / FINE));
+      const t = table.time[row] + (i / FINE - row) * (table.time[row + 1] - table.time[row]);
+      return contactOf(r_0, ...POSE.map((name) => table.value(name, t)));
+    });
     const flat = (colour, opacity) =>
       new THREE.MeshBasicMaterial({ color: colour, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: false });
     const width = 0.045 * r_0;
     this.whole = makeRibbon(points, 0.5 * width, 0.001, flat(this.look.accent, 0.3));
     this.past = makeRibbon(points, width, 0.002, flat(this.look.accent, 0.95));
     this.held = phases.sticks.map(([begin, end]) => {
-      const first = table.row(begin);
-      const ribbon = makeRibbon(points.slice(first, table.row(end) + 2), 5 * width, 0.0015, flat(this.look.stick, 0.9));
+      const first = this.point(begin);
+      const ribbon = makeRibbon(points.slice(first, this.point(end) + 1), 5 * width, 0.0015, flat(this.look.stick, 0.9));
       ribbon.userData = { begin, first };
       return ribbon;
     });
     this.group.add(this.whole, this.past, ...this.held);
     [this.whole, ...this.held, this.past].forEach((ribbon, i) => (ribbon.renderOrder = 1 + i));
+  }
+
+  /** The last point of the path at or before t. */
+  point(t) {
+    const { table } = this.wheel;
+    const row = table.row(t);
+    const share = (t - table.time[row]) / (table.time[row + 1] - table.time[row] || 1);
+    return FINE * row + Math.floor(FINE * Math.min(1, share) + 1e-6);
   }
 
   /** Pose, path and force at t. show: {path, axes, force}. */
@@ -107,14 +134,14 @@ export class WheelModel {
     this.carrier.quaternion.setFromAxisAngle(UP, psi).multiply(turn.setFromAxisAngle(NODES, theta));
     this.body.rotation.z = phi;
     this.axes.visible = show.axes;
-    const row = table.row(t) + (t >= table.end ? 1 : 0);
+    const now = this.point(t);
     for (const ribbon of [this.whole, this.past, ...this.held]) ribbon.visible = show.path;
-    showRibbon(this.past, row);
+    showRibbon(this.past, now);
     for (const ribbon of this.held) {
       ribbon.visible &&= t >= ribbon.userData.begin;
-      showRibbon(ribbon, row - ribbon.userData.first);
+      showRibbon(ribbon, now - ribbon.userData.first);
     }
-    const contact = contactOf(r_0, r, X, Y, psi, theta);
+    const contact = contactOf(r_0, X, Y, psi, theta);
     this.spot.visible = show.path;
     this.spot.position.set(...contact, 0.004);
     this.force.visible = show.force && table.has('lambda_3');
