@@ -72,7 +72,7 @@ export class LiveWheel {
 
   /** The motion of the present plan, on the page. */
   compute() {
-    this.wanted = false;
+    [this.wanted, this.trouble] = [false, null];
     const { values, changes, stop, record } = this;
     const begin = performance.now();
     const wheel = this.page.wheels[0];
@@ -90,7 +90,6 @@ export class LiveWheel {
   /** Once a frame: at most one run, however fast a slider moves. */
   frame() {
     if (this.wanted) {
-      this.trouble = null;
       try {
         this.compute();
       } catch (fault) {

@@ -13,17 +13,17 @@ export function criticalSpin({ m, g, r_0, r, J_x, J_z }) {
 /** The presets, for the wheel's parameters {m, g, r_0, r, J_x, J_z}. */
 export function presets(wheel) {
   const limit = criticalSpin(wheel);
-  const upright = { theta_start: 89 * DEGREE };
+  const upright = { theta_start: 89.5 * DEGREE };
   return [
     { label: 'Paper, no friction', stop: 10, values: {} },
     { label: 'Paper, s = 0.03 m', stop: 10, values: { s: 0.03 } },
     {
-      label: 'Just stable', stop: 10, values: { ...upright, phi_dot_start: -1.05 * limit },
-      about: `Upright rolling is stable above ${limit.toFixed(2)} rad/s; this wheel is 5 % faster, leans by 1° and stays up.`,
+      label: 'Just stable', stop: 10, values: { ...upright, phi_dot_start: -1.1 * limit },
+      about: `Upright rolling is stable above ${limit.toFixed(2)} rad/s; this wheel is 10 % faster, leans by half a degree and stays up.`,
     },
     {
-      label: 'Just unstable', stop: 10, values: { ...upright, phi_dot_start: -0.95 * limit },
-      about: `Upright rolling is stable above ${limit.toFixed(2)} rad/s; this wheel is 5 % slower, leans by 1° and tumbles.`,
+      label: 'Just unstable', stop: 10, values: { ...upright, phi_dot_start: -0.9 * limit },
+      about: `Upright rolling is stable above ${limit.toFixed(2)} rad/s; this wheel is 10 % slower, leans as much and tumbles.`,
     },
     {
       label: 'Thin disc', stop: 10, values: { r: 0, theta_start: 20 * DEGREE, psi_dot_start: 9, phi_dot_start: -9 },
