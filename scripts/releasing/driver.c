@@ -16,7 +16,7 @@ static void* symbol(void* library, const char* name) { return (void*)GetProcAddr
 #include "fmi2Functions.h"
 static void* open_library(const char* path) { return (void*)path; }
 static void* symbol(void* library, const char* name) {
-#define LINKED(function) {#function, (void*)(function)}
+#define LINKED(function) { #function, (void*)(function) }
   static const struct {
     const char* name;
     void* function;

@@ -26,8 +26,12 @@ def main() -> int:
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/view", description=__doc__)
     kinds = parser.add_subparsers(dest="kind", required=True)
-    shown = kinds.add_parser("recorded", prog="scripts/view", description="An offline 3-D page of results (docs/page.md).")
-    shown.add_argument("files", nargs="+", type=Path, metavar="FILE.csv", help="as `fmpy simulate --output-file` writes it")
+    shown = kinds.add_parser(
+        "recorded", prog="scripts/view", description="An offline 3-D page of results (docs/page.md)."
+    )
+    shown.add_argument(
+        "files", nargs="+", type=Path, metavar="FILE.csv", help="as `fmpy simulate --output-file` writes it"
+    )
     shown.add_argument("--output", "-o", type=Path, help="the page (default: the first file's name with .html)")
     shown.add_argument("--title", default="The wheel in motion")
     shown.add_argument("--labels", nargs="+", default=[], help="what the bodies are called on the page, in their order")
@@ -85,9 +89,7 @@ def live(arguments: argparse.Namespace) -> int:
     from view_page import live_wheel
 
     source = live_wheel.source(arguments.wasm, arguments.description)
-    return document.write(
-        arguments.output, "The wheel, live", [], {}, [Choice("This wheel", [["live"]])], live=source
-    )
+    return document.write(arguments.output, "The wheel, live", [], {}, [Choice("This wheel", [["live"]])], live=source)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Bodies in motion out of result files: wheels, and a car's body, from the CSV that `fmpy simulate` writes.
 
-SI units, fixed axes X, Y, Z, Z up, angles in rad and not wrapped. A column `name.X_O` belongs to the body `name`; a file
-whose columns have no such prefix is one wheel, called as the file.
+SI units, fixed axes X, Y, Z, Z up, angles in rad and not wrapped. A column `name.X_O` belongs to the body `name`; columns
+without such a prefix are one wheel, called as the file.
 """
 
 from __future__ import annotations
@@ -50,7 +50,9 @@ def read_columns(path: Path) -> dict[str, list[str]]:
         with path.open(newline="", encoding="utf-8") as file:
             header, *rows = [row for row in csv.reader(file) if row] or [[]]
     except (OSError, UnicodeDecodeError) as fault:
-        raise ViewError(f"{path} cannot be read: {getattr(fault, 'strerror', None) or 'it is no text file'}.") from fault
+        raise ViewError(
+            f"{path} cannot be read: {getattr(fault, 'strerror', None) or 'it is no text file'}."
+        ) from fault
     if "time" not in header:
         raise ViewError(f"{path} has no column time; a file as `fmpy simulate --output-file` writes it is needed.")
     if len(rows) < 2:
@@ -73,7 +75,7 @@ def numbers(path: Path, name: str, texts: list[str]) -> Array:
 
 
 def read_bodies(path: Path, shape: tuple[float, float] | None, box: tuple[float, float, float] | None) -> list[Body]:
-    """All bodies of one file. shape: r_0, r of the wheels in m, None: out of their motion; box: size of a car's body."""
+    """All bodies of one file. shape: r_0, r in m, None: out of the motion; box: length, width, height of a car's body."""
     groups: dict[str, dict[str, list[str]]] = defaultdict(dict)
     texts = read_columns(path)
     time = numbers(path, "time", texts.pop("time"))
@@ -85,24 +87,26 @@ def read_bodies(path: Path, shape: tuple[float, float] | None, box: tuple[float,
         groups[prefix][short] = column
     bodies = []
     for prefix, group in groups.items():
-        name = prefix or path.stem
-        if all(column in group for column in POSE):
-            wanted = [column for column in (*POSE, *SHOWN, *RATES) if column in group]
-        elif {"X", "Y", "Z"} <= group.keys():
-            group = {ALIASES.get(column, column): text for column, text in group.items()}
-            wanted = [column for column in BODY_POSE if column in group]
-        elif prefix:
-            continue  # another unit's results
-        else:
+        group, wanted = known(group)
+        if not wanted and not prefix and len(groups) == 1:
             missing = [column for column in POSE if column not in group]
-            if len(groups) > 1:
-                continue
             raise ViewError(f"{path} lacks the column {', '.join(missing)}.")
         columns = {column: numbers(path, column, group[column])[kept] for column in wanted}
-        bodies.append(make_body(name, {"time": time[kept]} | columns, shape, box))
+        if columns:
+            bodies.append(make_body(prefix or path.stem, {"time": time[kept]} | columns, shape, box))
     if not bodies:
         raise ViewError(f"{path} holds no body: a wheel needs the columns {', '.join(POSE)}, a car's body X, Y, Z.")
     return [fit_box(body, bodies, box) for body in bodies]
+
+
+def known(group: dict[str, list[str]]) -> tuple[dict[str, list[str]], list[str]]:
+    """A body's columns under the names used here, and those to show; none of a unit that is no body."""
+    if all(column in group for column in POSE):
+        return group, [column for column in (*POSE, *SHOWN, *RATES) if column in group]
+    if {"X", "Y", "Z"} <= group.keys():
+        group = {ALIASES.get(column, column): text for column, text in group.items()}
+        return group, [column for column in BODY_POSE if column in group]
+    return group, []
 
 
 def make_body(name: str, columns: dict[str, Array], shape: tuple[float, float] | None, box) -> Body:
@@ -111,7 +115,7 @@ def make_body(name: str, columns: dict[str, Array], shape: tuple[float, float] |
         r_0, r = shape or shape_of(columns)
         return Body(name, columns, r_0, r)
     zero = np.zeros_like(columns["time"])
-    return Body(name, {column: zero for column in BODY_POSE} | columns, size=box or (0.0, 0.0, 0.0))
+    return Body(name, dict.fromkeys(BODY_POSE, zero) | columns, size=box or (0.0, 0.0, 0.0))
 
 
 def shape_of(columns: dict[str, Array]) -> tuple[float, float]:
@@ -131,7 +135,7 @@ def shape_of(columns: dict[str, Array]) -> tuple[float, float]:
 
 
 def fit_box(body: Body, bodies: list[Body], box: tuple[float, float, float] | None) -> Body:
-    """A car's body without a given size spans its wheels: as long and wide as their centres stand apart at the start."""
+    """A car's body of no given size spans its wheels: as long and wide as their centres stand apart at the start."""
     if body.size is None or box:
         return body
     wheels = [other for other in bodies if other.size is None]

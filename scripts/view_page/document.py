@@ -87,7 +87,12 @@ def scale_of(bodies: list[Body]) -> dict[str, float]:
 
 
 def write(
-    output: Path, title: str, bodies: list[Body], labels: dict[str, str], choices: list[Choice], live: dict | None = None
+    output: Path,
+    title: str,
+    bodies: list[Body],
+    labels: dict[str, str],
+    choices: list[Choice],
+    live: dict | None = None,
 ) -> int:
     """Write the page and return its size in bytes."""
     three, notice = library()

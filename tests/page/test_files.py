@@ -7,8 +7,9 @@ import sys
 
 import numpy as np
 import pytest
-from page.conftest import POSE, view, write_csv
 from paths import ROOT
+
+from page.pages import POSE, view, write_csv
 
 sys.path.insert(0, str(ROOT / "scripts"))
 from view_page.bodies import read_bodies  # noqa: E402

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from page.conftest import POSE, opened, view, write_csv
+
+from page.pages import POSE, opened, view, write_csv
 
 INSTANTS = (0.0, 0.37, 1.0, 1.23, 2.5, 3.99, 5.0, 6.66, 8.01, 10.0)
 MATRIX = """([t, name]) => {

@@ -1,5 +1,5 @@
-/* The wheel inside a web page: what a page cannot give to fmi2Instantiate itself, a record of C functions. Messages go to
-   the page's function `log`; memory is the module's own. No part of the paper. */
+/* The wheel inside a web page: what a page cannot give to fmi2Instantiate itself, a record of C functions. Messages go
+   to the page's function `log`; memory is the module's own. No part of the paper. */
 #include <stdlib.h>
 
 #include "fmi2FunctionTypes.h"
