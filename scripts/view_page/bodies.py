@@ -1,7 +1,7 @@
 """Bodies in motion out of result files: wheels, and a car's body, from the CSV that `fmpy simulate` writes.
 
-SI units, fixed axes X, Y, Z, Z up, angles in rad and not wrapped. A column `name.X_O` belongs to the body `name`; columns
-without such a prefix are one wheel, called as the file.
+SI units, fixed axes X, Y, Z, Z up, angles in rad and not wrapped. A column `name.X_O` belongs to the body `name`;
+columns without such a prefix are one wheel, called as the file.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def numbers(path: Path, name: str, texts: list[str]) -> Array:
 
 
 def read_bodies(path: Path, shape: tuple[float, float] | None, box: tuple[float, float, float] | None) -> list[Body]:
-    """All bodies of one file. shape: r_0, r in m, None: out of the motion; box: length, width, height of a car's body."""
+    """All bodies of one file. shape: r_0, r in m, None: from the motion; box: size of a car's body in m."""
     groups: dict[str, dict[str, list[str]]] = defaultdict(dict)
     texts = read_columns(path)
     time = numbers(path, "time", texts.pop("time"))
