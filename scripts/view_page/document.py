@@ -82,7 +82,7 @@ def scale_of(bodies: list[Body]) -> dict[str, float]:
     wheels = [body for body in bodies if body.size is None]
     radius = max((wheel.r_0 + wheel.r for wheel in wheels), default=0.3)
     boxed = [body for body in bodies if body.size is not None]
-    size = max([2 * radius, *(1.25 * float(np.hypot(*body.size[:2])) for body in boxed)])
+    size = max([2 * radius, *(0.9 * float(np.hypot(*body.size[:2])) for body in boxed)])
     return {"size": size, "height": 0.8 * radius}
 
 

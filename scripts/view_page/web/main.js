@@ -85,6 +85,7 @@ class Page {
   /** Bodies, plots and clock after a change of data or colours. */
   rebuild() {
     const look = { force: colour('--force'), stick: colour('--stick'), body: colour('--body'), line: colour('--line') };
+    look.size = data.size;
     look.axes = ['--e1', '--e2', '--e3'].map(colour);
     const wheels = this.wheels.map((wheel) => new WheelModel(wheel, { ...look, accent: wheel.colour }));
     this.stage.put([...wheels, ...this.bodies.map((body) => new ChassisModel(body, look))]);
@@ -184,7 +185,8 @@ class Page {
   draw() {
     const { t } = this.player;
     for (const model of this.stage.models) model.update(Math.min(t, model.wheel.table.end), show);
-    this.stage.render(this.views.map((view) => this.aim(view, t)));
+    const views = this.views.map((view) => this.aim(view, t));
+    this.stage.render(views, Math.max(...views.map(({ away }) => away)));
     this.plots.draw(t);
     for (const wheel of this.shown) this.label(wheel, t);
   }
@@ -198,6 +200,6 @@ try {
 } catch (fault) {
   const trouble = $('#trouble');
   trouble.hidden = false;
-  trouble.textContent = `The page could not start: ${fault.message}.`;
+  trouble.textContent = `The page could not start: ${fault.message.replace(/\.+$/, '')}.`;
   console.error(fault);
 }

@@ -133,12 +133,12 @@ export class Stage {
     this.dirty = true;
   }
 
-  /** Draws views [{models, anchor: Vector3, away}]: each its own models about its own anchor, `away` times as far off. */
-  render(views) {
+  /** Draws views [{models, anchor: Vector3}]: each its own models about its own anchor, all `away` times as far off. */
+  render(views, away) {
     this.controls.update();
     this.renderer.setScissorTest(true);
     this.rectangles(views.length).forEach(({ x, y, w, h }, i) => {
-      const { models, anchor, away } = views[i];
+      const { models, anchor } = views[i];
       for (const model of this.models) model.group.visible = models.includes(model);
       this.eye.copy(this.camera);
       this.eye.position.multiplyScalar(away).add(anchor);

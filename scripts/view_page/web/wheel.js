@@ -72,7 +72,7 @@ function makeAxes(r_0, r, colours) {
 }
 
 export class WheelModel {
-  /** wheel: {name, r_0, r, table, phases}; look: {accent, faint, force, axes: [3 colours]}, CSS colours. */
+  /** wheel: {name, r_0, r, table, phases}; look: CSS colours {accent, stick, force, axes: [3]}, size of the scene in m. */
   constructor(wheel, look) {
     this.wheel = wheel;
     this.look = look;
@@ -104,7 +104,7 @@ export class WheelModel {
     });
     const flat = (colour, opacity) =>
       new THREE.MeshBasicMaterial({ color: colour, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: false });
-    const width = 0.045 * r_0;
+    const width = Math.max(0.045 * r_0, 0.006 * this.look.size);
     this.whole = makeRibbon(points, 0.5 * width, 0.001, flat(this.look.accent, 0.3));
     this.past = makeRibbon(points, width, 0.002, flat(this.look.accent, 0.95));
     this.held = phases.sticks.map(([begin, end]) => {
