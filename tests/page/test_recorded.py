@@ -150,6 +150,21 @@ def test_the_mouse_turns_the_view_and_the_force_points_along_lambda(recorded, sc
     assert direction @ force / np.linalg.norm(force) == pytest.approx(1, abs=1e-12)
 
 
+def test_arrow_keys_turn_the_scene_that_has_the_focus(recorded):
+    distance = "page.stage.camera.position.length()"
+    where = "[...page.stage.camera.position]"
+    before, far = recorded.evaluate(where), recorded.evaluate(distance)
+    recorded.evaluate("page.player.seek(2)")
+    recorded.locator("#stage").focus()
+    recorded.keyboard.press("ArrowLeft")
+    recorded.keyboard.press("ArrowUp")
+    recorded.evaluate("document.activeElement.blur()")
+    assert abs(np.subtract(recorded.evaluate(where), before)).max() > 0.02
+    assert recorded.evaluate(distance) == pytest.approx(far)
+    assert recorded.evaluate("page.player.t") == 2
+    recorded.keyboard.press("r")
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_a_phone_shows_everything_without_scrolling_sideways(browser, recorded_file, scheme):
     phone = {"viewport": {"width": 360, "height": 740}, "has_touch": True, "is_mobile": True, "color_scheme": scheme}

@@ -1,6 +1,6 @@
-// The FMU inside the page: wheel.fmu's own sources as WebAssembly, called as any master calls them (FMI 2.0 co-simulation).
-// Variables are found by name in the description, which is made from modelDescription.xml.
-import { bytesOf, Table } from '#table';
+// The FMU inside the page: wheel.fmu's own sources as WebAssembly, called as any master calls them (FMI 2.0
+// co-simulation). Variables are found by name in the description, which is made from modelDescription.xml.
+import {bytesOf, Table} from '#table';
 
 const [OK, WARNING, DISCARD, LAST_TIME] = [0, 1, 2, 2];
 
@@ -8,24 +8,24 @@ export class Fmu {
   /** wasm: base64 of the module; description: {guid, variables: {name: {reference, type, start, ...}}}. */
   static async load(wasm, description) {
     const fmu = new Fmu();
-    const unused = () => 0; // file functions of WASI that nothing here needs: 0 is success
-    const wasi = new Proxy({}, { get: () => unused });
-    const log = (status, category, message) => fmu.messages.push({ status, text: fmu.text(message) });
+    const unused = () => 0;  // file functions of WASI that nothing here needs: 0 is success
+    const wasi = new Proxy({}, {get: () => unused});
+    const log = (status, category, message) => fmu.messages.push({status, text: fmu.text(message)});
     const module = await WebAssembly.compile(bytesOf(wasm));
-    const imports = { page: { log }, wasi_snapshot_preview1: {} };
-    for (const { module: from, name } of WebAssembly.Module.imports(module)) imports[from][name] ??= wasi[name];
-    const { exports } = await WebAssembly.instantiate(module, imports);
+    const imports = {page: {log}, wasi_snapshot_preview1: {}};
+    for (const {module: from, name} of WebAssembly.Module.imports(module)) imports[from][name] ??= wasi[name];
+    const {exports} = await WebAssembly.instantiate(module, imports);
     exports._initialize();
     return fmu.instantiate(exports, description);
   }
 
   instantiate(exports, description) {
-    Object.assign(this, { api: exports, variables: description.variables, messages: [] });
+    Object.assign(this, {api: exports, variables: description.variables, messages: []});
     const [name, guid, place] = ['wheel', description.guid, ''].map((text) => this.keep(text));
     this.unit = this.api.fmi2Instantiate(name, 1, guid, place, this.api.page_callbacks(), 0, 0);
     if (!this.unit) throw new Error(`the wheel could not be made: ${this.messages.at(-1)?.text}`);
-    this.cell = this.api.malloc(8 * 64); // values of one call
-    this.list = this.api.malloc(4 * 64); // their value references
+    this.cell = this.api.malloc(8 * 64);  // values of one call
+    this.list = this.api.malloc(4 * 64);  // their value references
     return this;
   }
 
@@ -54,11 +54,13 @@ export class Fmu {
   }
 
   set(name, value) {
-    const { reference, type } = this.variable(name);
+    const {reference, type} = this.variable(name);
     const memory = new DataView(this.api.memory.buffer);
     memory.setUint32(this.list, reference, true);
-    if (type === 'Real') memory.setFloat64(this.cell, value, true);
-    else memory.setInt32(this.cell, Number(value), true);
+    if (type === 'Real')
+      memory.setFloat64(this.cell, value, true);
+    else
+      memory.setInt32(this.cell, Number(value), true);
     const call = type === 'Real' ? 'fmi2SetReal' : type === 'Boolean' ? 'fmi2SetBoolean' : 'fmi2SetInteger';
     this.demand(this.api[call](this.unit, this.list, 1, this.cell));
   }
@@ -70,14 +72,15 @@ export class Fmu {
     const call = real ? 'fmi2GetReal' : 'fmi2GetInteger';
     this.demand(this.api[call](this.unit, this.list, names.length, this.cell));
     const after = new DataView(this.api.memory.buffer);
-    return names.map((_, i) => (real ? after.getFloat64(this.cell + 8 * i, true) : after.getInt32(this.cell + 4 * i, true)));
+    return names.map(
+        (_, i) => (real ? after.getFloat64(this.cell + 8 * i, true) : after.getInt32(this.cell + 4 * i, true)));
   }
 
   /**
    * One run from time 0. plan: {values: {name: start value}, changes: [{t, name, value}, ...] by rising t, stop, step,
    * record: [names]}; the changes fall on communication points. Returns {table, ended: sentence or null}.
    */
-  run({ values, changes, stop, step, record, tolerance }) {
+  run({values, changes, stop, step, record, tolerance}) {
     this.messages = [];
     this.demand(this.api.fmi2Reset(this.unit));
     for (const [name, value] of Object.entries(values)) this.set(name, value);
@@ -92,15 +95,18 @@ export class Fmu {
     const steps = Math.round(stop / step);
     let [next, ended] = [0, null];
     for (let k = 0; k < steps && !ended; ++k) {
-      for (; next < changes.length && changes[next].t <= (k + 0.5) * step; ++next) this.set(changes[next].name, changes[next].value);
+      for (; next < changes.length && changes[next].t <= (k + 0.5) * step; ++next)
+        this.set(changes[next].name, changes[next].value);
       const status = this.api.fmi2DoStep(this.unit, k * step, step, 1);
-      if (status === DISCARD) ended = this.messages.at(-1)?.text ?? 'The run has ended.';
-      else this.demand(status);
+      if (status === DISCARD)
+        ended = this.messages.at(-1)?.text ?? 'The run has ended.';
+      else
+        this.demand(status);
       note(ended ? this.lastTime() : (k + 1) * step);
     }
     const columns = {};
     ['time', ...reals, ...whole].forEach((name, i) => (columns[name] = Float64Array.from(rows, (row) => row[i])));
-    return { table: new Table(columns), ended };
+    return {table: new Table(columns), ended};
   }
 
   /** The instant at which a discarded step stopped, s. */

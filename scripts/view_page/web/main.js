@@ -1,26 +1,31 @@
 // The page: recorded wheels, a car's body, or the wheel itself (live), shown on one stage with one clock.
-import { THREE } from 'three';
-import { Table } from '#table';
-import { phasesOf, sticksAt } from '#phases';
-import { Player } from '#player';
-import { WheelModel } from '#wheel';
-import { ChassisModel } from '#chassis';
-import { Stage } from '#stage';
-import { Plots } from '#plots';
-import { drawBands, setUpKeys, setUpTransport } from '#transport';
-import { colour, watchTheme, wheelColour } from '#theme';
-import { startLive } from '#live';
+import {ChassisModel} from '#chassis';
+import {startLive} from '#live';
+import {phasesOf, sticksAt} from '#phases';
+import {Player} from '#player';
+import {Plots} from '#plots';
+import {Stage} from '#stage';
+import {Table} from '#table';
+import {colour, watchTheme, wheelColour} from '#theme';
+import {drawBands, setUpKeys, setUpTransport} from '#transport';
+import {WheelModel} from '#wheel';
+import {THREE} from 'three';
 
 const $ = (selector) => document.querySelector(selector);
 const data = JSON.parse($('#data').textContent);
 
 /** What the reader has switched on. */
-const show = { follow: true, path: true, axes: false, force: false };
+const show = {
+  follow: true,
+  path: true,
+  axes: false,
+  force: false
+};
 
 /** A recorded body: {name, label, r_0, r | size, columns} -> with table and phases. */
 function decode(body) {
   const table = Table.decode(body.columns);
-  return { ...body, table, phases: phasesOf(table) };
+  return {...body, table, phases: phasesOf(table)};
 }
 
 class Page {
@@ -52,7 +57,7 @@ class Page {
     };
     for (const [name, box] of Object.entries(boxes)) box.addEventListener('change', () => flip(name, box.checked));
     const toggle = (name) => () => flip(name, !show[name]);
-    const actions = { f: toggle('follow'), p: toggle('path'), a: toggle('axes'), g: toggle('force') };
+    const actions = {f: toggle('follow'), p: toggle('path'), a: toggle('axes'), g: toggle('force')};
     actions.r = () => this.stage.home();
     for (let i = 0; i < 9; ++i) actions[i + 1] = () => i < this.choices.length && this.choose(i);
     setUpKeys(this.player, actions);
@@ -84,17 +89,17 @@ class Page {
 
   /** Bodies, plots and clock after a change of data or colours. */
   rebuild() {
-    const look = { force: colour('--force'), stick: colour('--stick'), body: colour('--body'), line: colour('--line') };
+    const look = {force: colour('--force'), stick: colour('--stick'), body: colour('--body'), line: colour('--line')};
     look.size = data.size;
     look.axes = ['--e1', '--e2', '--e3'].map(colour);
-    const wheels = this.wheels.map((wheel) => new WheelModel(wheel, { ...look, accent: wheel.colour }));
+    const wheels = this.wheels.map((wheel) => new WheelModel(wheel, {...look, accent: wheel.colour}));
     this.stage.put([...wheels, ...this.bodies.map((body) => new ChassisModel(body, look))]);
     this.choose(this.choice);
   }
 
   /** New motion of one wheel, same colours: path and plots only. */
   exchange(i, table, friction) {
-    Object.assign(this.wheels[i], { table, phases: phasesOf(table, friction) });
+    Object.assign(this.wheels[i], {table, phases: phasesOf(table, friction)});
     this.stage.models[i]?.drawPath();
     this.choose(this.choice);
   }
@@ -105,10 +110,10 @@ class Page {
     [...$('#choice').children].forEach((button, k) => button.setAttribute('aria-checked', k === i));
     const names = this.choices[i].views;
     const known = [...this.wheels, ...this.bodies];
-    this.views = names.map((view) => known.filter(({ name }) => view.includes(name)));
-    const shown = this.wheels.filter(({ name }) => names.flat().includes(name));
-    const tables = this.views.flat().map(({ table }) => table);
-    this.player.span(Math.min(...tables.map(({ start }) => start)), Math.max(...tables.map(({ end }) => end)));
+    this.views = names.map((view) => known.filter(({name}) => view.includes(name)));
+    const shown = this.wheels.filter(({name}) => names.flat().includes(name));
+    const tables = this.views.flat().map(({table}) => table);
+    this.player.span(Math.min(...tables.map(({start}) => start)), Math.max(...tables.map(({end}) => end)));
     this.plots.show(shown);
     this.shown = shown;
     this.layOut();
@@ -121,10 +126,10 @@ class Page {
     drawBands(this.shown, this.player);
     const host = $('#labels');
     host.replaceChildren();
-    this.stage.rectangles(this.views.length).forEach(({ x, y, w, h }, v) => {
+    this.stage.rectangles(this.views.length).forEach(({x, y, w, h}, v) => {
       const edge = document.createElement('div');
       edge.className = 'edge';
-      Object.assign(edge.style, { left: `${x}px`, top: `${y}px`, width: `${w}px`, height: `${h}px` });
+      Object.assign(edge.style, {left: `${x}px`, top: `${y}px`, width: `${w}px`, height: `${h}px`});
       host.append(edge);
       const wheels = this.views[v].filter((body) => this.wheels.includes(body));
       wheels.forEach((wheel, i) => {
@@ -146,8 +151,10 @@ class Page {
     const over = wheel.ended && t >= wheel.table.end;
     const sticks = sticksAt(wheel.phases, t);
     wheel.tag.dataset.state = over ? 'ended' : sticks ? 'sticks' : 'rolls';
-    if (over) wheel.tag.lastChild.textContent = wheel.ended;
-    else wheel.tag.lastChild.innerHTML = sticks ? 'held: ω<sub>z</sub> = 0' : '';
+    if (over)
+      wheel.tag.lastChild.textContent = wheel.ended;
+    else
+      wheel.tag.lastChild.innerHTML = sticks ? 'held: ω<sub>z</sub> = 0' : '';
   }
 
   /** What a view looks at: between its bodies if it follows, else the middle of their paths; and from how far. */
@@ -155,21 +162,22 @@ class Page {
     const low = new THREE.Vector3(Infinity, Infinity, 0);
     const high = new THREE.Vector3(-Infinity, -Infinity, 0);
     for (const body of view) {
-      const { table } = body;
+      const {table} = body;
       const [x, y] = table.has('X_O') ? ['X_O', 'Y_O'] : ['X', 'Y'];
-      const rows = show.follow ? [0] : Array.from({ length: 60 }, (_, k) => (k * (table.rows - 1)) / 59);
+      const rows = show.follow ? [0] : Array.from({length: 60}, (_, k) => (k * (table.rows - 1)) / 59);
       for (const row of rows) {
         const k = Math.round(row);
-        const point = show.follow
-          ? [table.value(x, t), table.value(y, t)]
-          : [table.columns[x][k], table.columns[y][k]];
+        const point = show.follow ? [table.value(x, t), table.value(y, t)] : [table.columns[x][k], table.columns[y][k]];
         low.min(new THREE.Vector3(...point, 0));
         high.max(new THREE.Vector3(...point, 0));
       }
     }
     const away = Math.max(1, 0.5 + (0.5 * low.distanceTo(high)) / data.size);
-    return { models: this.stage.models.filter((model) => view.includes(model.wheel)), away,
-      anchor: low.add(high).multiplyScalar(0.5).setZ(data.height) };
+    return {
+      models: this.stage.models.filter((model) => view.includes(model.wheel)),
+      away,
+      anchor: low.add(high).multiplyScalar(0.5).setZ(data.height)
+    };
   }
 
   frame(now) {
@@ -183,10 +191,10 @@ class Page {
 
   /** Everything at the present instant. */
   draw() {
-    const { t } = this.player;
+    const {t} = this.player;
     for (const model of this.stage.models) model.update(Math.min(t, model.wheel.table.end), show);
     const views = this.views.map((view) => this.aim(view, t));
-    this.stage.render(views, Math.max(...views.map(({ away }) => away)));
+    this.stage.render(views, Math.max(...views.map(({away}) => away)));
     this.plots.draw(t);
     for (const wheel of this.shown) this.label(wheel, t);
   }
@@ -194,7 +202,7 @@ class Page {
 
 try {
   const page = new Page();
-  window.page = page; // for the console and the tests
+  window.page = page;  // for the console and the tests
   if (data.live) await startLive(page, data.live);
   page.start();
 } catch (fault) {

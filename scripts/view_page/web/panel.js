@@ -3,22 +3,62 @@ const DEGREES = 180 / Math.PI;
 
 /** Sliders: shown value = variable * scale. */
 const START = [
-  { name: 'theta_start', label: 'θ', unit: '°', scale: DEGREES, low: 5, high: 175, step: 0.5, digits: 1, what: 'tilt; 90° is upright' },
-  { name: 'phi_dot_start', label: 'φ̇', unit: 'rad/s', scale: 1, low: -12, high: 12, step: 0.05, digits: 2, what: 'spin rate' },
-  { name: 'psi_dot_start', label: 'ψ̇', unit: 'rad/s', scale: 1, low: -12, high: 12, step: 0.05, digits: 2, what: 'precession rate' },
+  {
+    name: 'theta_start',
+    label: 'θ',
+    unit: '°',
+    scale: DEGREES,
+    low: 5,
+    high: 175,
+    step: 0.5,
+    digits: 1,
+    what: 'tilt; 90° is upright'
+  },
+  {
+    name: 'phi_dot_start',
+    label: 'φ̇',
+    unit: 'rad/s',
+    scale: 1,
+    low: -12,
+    high: 12,
+    step: 0.05,
+    digits: 2,
+    what: 'spin rate'
+  },
+  {
+    name: 'psi_dot_start',
+    label: 'ψ̇',
+    unit: 'rad/s',
+    scale: 1,
+    low: -12,
+    high: 12,
+    step: 0.05,
+    digits: 2,
+    what: 'precession rate'
+  },
 ];
 const NOW = [
-  { name: 's', label: 's', unit: 'm', scale: 1, low: 0, high: 0.1, step: 0.0005, digits: 4, what: 'rolling friction' },
-  { name: 'M_3', label: 'M₃', unit: 'N m', scale: 1, low: -8, high: 8, step: 0.1, digits: 1, what: 'torque about the axle' },
+  {name: 's', label: 's', unit: 'm', scale: 1, low: 0, high: 0.1, step: 0.0005, digits: 4, what: 'rolling friction'},
+  {
+    name: 'M_3',
+    label: 'M₃',
+    unit: 'N m',
+    scale: 1,
+    low: -8,
+    high: 8,
+    step: 0.1,
+    digits: 1,
+    what: 'torque about the axle'
+  },
+  {name: 'M_brake', label: 'M_b', unit: 'N m', scale: 1, low: 0, high: 8, step: 0.1, digits: 1, what: 'brake'},
 ];
-const PUSH = 6; // N m, of the buttons
+const PUSH = 6;  // N m, of the buttons
 
 function makeKnob(host, knob, take) {
   const label = document.createElement('label');
   label.className = 'knob';
-  label.innerHTML =
-    `<span><b><i>${knob.label}</i></b> <small>${knob.what}</small></span><output></output>` +
-    `<input type="range" name="${knob.name}" min="${knob.low}" max="${knob.high}" step="${knob.step}">`;
+  label.innerHTML = `<span><b><i>${knob.label}</i></b> <small>${knob.what}</small></span><output></output>` +
+      `<input type="range" name="${knob.name}" min="${knob.low}" max="${knob.high}" step="${knob.step}">`;
   host.append(label);
   const [output, input] = [label.querySelector('output'), label.querySelector('input')];
   input.addEventListener('input', () => take(Number(input.value) / knob.scale));
@@ -58,22 +98,15 @@ function makePush(host, text, torque, live) {
   button.addEventListener('keyup', (event) => isKey(event) && release());
 }
 
-/** Builds the panel; returns {show()}, called once a frame. */
-export function setUpPanel(live, presets) {
-  const host = document.querySelector('#live');
-  host.hidden = false;
-  host.innerHTML =
-    '<h2>Begin with</h2><div id="presets"></div><p class="note" id="about"></p>' +
-    '<h2>Start</h2><div id="start"></div><h2>While it rolls, from now on</h2><div id="now"></div>' +
-    '<div class="row" id="push"></div><label class="keep"><input type="checkbox" id="keep"> Keep this motion to compare with</label><p class="note" id="message"></p>';
-  const $ = (id) => host.querySelector(`#${id}`);
+/** A button for each preset, into #presets; returns a function that marks one of them, or none. */
+function makePresets($, presets, live) {
   const buttons = presets.map((preset) => {
     const button = document.createElement('button');
     button.type = 'button';
     button.textContent = preset.label;
     button.addEventListener('click', () => {
       $('about').textContent = preset.about ?? '';
-      buttons.forEach((other) => other.setAttribute('aria-pressed', other === button));
+      mark(button);
       live.page.player.seek(0);
       live.load(preset);
       live.page.player.play();
@@ -81,16 +114,29 @@ export function setUpPanel(live, presets) {
     $('presets').append(button);
     return button;
   });
-  buttons[0].setAttribute('aria-pressed', 'true');
-  const unmark = () => buttons.forEach((button) => button.setAttribute('aria-pressed', 'false'));
-  const starts = START.map((knob) => [knob.name, makeKnob($('start'), knob, (value) => {
-    unmark();
-    live.setStart(knob.name, value);
-  })]);
-  const nows = NOW.map((knob) => [knob.name, makeKnob($('now'), knob, (value) => {
-    unmark();
-    live.setNow(knob.name, value);
-  })]);
+  const mark = (chosen) => buttons.forEach((button) => button.setAttribute('aria-pressed', button === chosen));
+  mark(buttons[0]);
+  return mark;
+}
+
+/** Builds the panel; returns {show()}, called once a frame. */
+export function setUpPanel(live, presets) {
+  const host = document.querySelector('#live');
+  host.hidden = false;
+  host.innerHTML = '<h2>Begin with</h2><div id="presets"></div><p class="note" id="about"></p>' +
+      '<h2>Start</h2><div id="start"></div><h2>While it rolls, from now on</h2><div id="now"></div>' +
+      '<div class="row" id="push"></div>' +
+      '<label class="keep"><input type="checkbox" id="keep"> Keep this motion to compare with</label>' +
+      '<p class="note" id="message"></p>';
+  const $ = (id) => host.querySelector(`#${id}`);
+  const mark = makePresets($, presets, live);
+  const knobs = (place, list, take) => list.filter(({name}) => name in live.fmu.variables)
+                                           .map((knob) => [knob.name, makeKnob($(place), knob, (value) => {
+                                                             mark(null);
+                                                             take(knob.name, value);
+                                                           })]);
+  const starts = knobs('start', START, (name, value) => live.setStart(name, value));
+  const nows = knobs('now', NOW, (name, value) => live.setNow(name, value));
   makePush($('push'), '◀ hold to push', -PUSH, live);
   makePush($('push'), 'hold to push ▶', PUSH, live);
   $('keep').addEventListener('change', () => live.keep($('keep').checked));

@@ -1,5 +1,6 @@
 // When the rolling friction holds the wheel: stick phases and transitions, read off omega_z and friction_mode.
-// A transition lies between two rows; its instant is where omega_z, carried on from the rows on the rolling side, is zero.
+// A transition lies between two rows; its instant is where omega_z, carried on from the rows on the rolling side, is
+// zero.
 
 /** -1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero. */
 function modeAt(table, row) {
@@ -15,8 +16,10 @@ function zeroOfParabola(t, y, low, high) {
   const c = y[0] - slope * t[0] + bend * t[0] * t[1];
   const roots = [];
   const q = b * b - 4 * bend * c;
-  if (Math.abs(bend) * (high - low) < 1e-9 * Math.abs(b)) roots.push(-c / b);
-  else if (q >= 0) roots.push((-b - Math.sqrt(q)) / (2 * bend), (-b + Math.sqrt(q)) / (2 * bend));
+  if (Math.abs(bend) * (high - low) < 1e-9 * Math.abs(b))
+    roots.push(-c / b);
+  else if (q >= 0)
+    roots.push((-b - Math.sqrt(q)) / (2 * bend), (-b + Math.sqrt(q)) / (2 * bend));
   const slack = 0.02 * (high - low);
   const inside = roots.filter((root) => root >= low - slack && root <= high + slack);
   return inside.length ? Math.min(high, Math.max(low, inside[0])) : NaN;
@@ -24,7 +27,7 @@ function zeroOfParabola(t, y, low, high) {
 
 /** The instant of the transition between row k and row k + 1. */
 function instant(table, k, from) {
-  const { time, rows } = table;
+  const {time, rows} = table;
   const omega = table.columns.omega_z;
   const middle = 0.5 * (time[k] + time[k + 1]);
   const first = from === 0 ? k + 1 : k - 2;
@@ -43,28 +46,26 @@ function mayHold(table) {
 }
 
 /**
- * {sticks: [[begin, end], ...], transitions: [{t, from, to}, ...]} in s. friction: whether there is any, where it is known
- * (without it omega_z = 0 holds nothing).
+ * {sticks: [[begin, end], ...], transitions: [{t, from, to}, ...]} in s. friction: whether there is any, where it is
+ * known (without it omega_z = 0 holds nothing).
  */
 export function phasesOf(table, friction = mayHold(table)) {
   const sticks = [];
   const transitions = [];
-  if (!friction) return { sticks, transitions };
+  if (!friction) return {sticks, transitions};
   let mode = modeAt(table, 0);
   let begin = table.start;
   for (let k = 0; k + 1 < table.rows; ++k) {
     const next = modeAt(table, k + 1);
     if (next === mode) continue;
     const t = instant(table, k, mode);
-    transitions.push({ t, from: mode, to: next });
+    transitions.push({t, from: mode, to: next});
     if (mode === 0) sticks.push([begin, t]);
     [mode, begin] = [next, t];
   }
   if (mode === 0) sticks.push([begin, table.end]);
-  return { sticks, transitions };
+  return {sticks, transitions};
 }
 
 /** Whether the wheel is held at t. */
-export function sticksAt(phases, t) {
-  return phases.sticks.some(([begin, end]) => begin <= t && t < end);
-}
+export function sticksAt(phases, t) { return phases.sticks.some(([begin, end]) => begin <= t && t < end); }

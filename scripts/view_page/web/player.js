@@ -35,8 +35,10 @@ export class Player extends EventTarget {
   }
 
   toggle() {
-    if (this.playing) this.pause();
-    else this.play();
+    if (this.playing)
+      this.pause();
+    else
+      this.play();
   }
 
   setSpeed(speed) {
@@ -57,7 +59,5 @@ export class Player extends EventTarget {
     if (this.t >= this.end) this.pause();
   }
 
-  tell(what) {
-    this.dispatchEvent(new Event(what));
-  }
+  tell(what) { this.dispatchEvent(new Event(what)); }
 }

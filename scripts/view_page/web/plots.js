@@ -1,15 +1,20 @@
-// The diagrams over time: one canvas each, every wheel a curve, stick phases shaded, transitions as ticks at the top, and a
-// cursor at the present. What is still to come is drawn faintly. Angles in degrees, all else SI.
-import { colour } from '#theme';
+// The diagrams over time: one canvas each, every wheel a curve, stick phases shaded, transitions as ticks at the top,
+// and a cursor at the present. What is still to come is drawn faintly. Angles in degrees, all else SI.
+import {colour} from '#theme';
 
 const DEGREES = 180 / Math.PI;
 export const SIGNALS = [
-  { column: 'theta', symbol: 'θ', unit: '°', scale: DEGREES, digits: 1, what: 'tilt: angle between axle and vertical' },
-  { column: 'omega_z', symbol: 'ω_z', unit: 'rad/s', scale: 1, digits: 3, what: 'angular velocity about the axle' },
-  { column: 'lambda_3', symbol: 'N', unit: 'N', scale: 1, digits: 0, what: 'normal force of the ground' },
-  { column: 'E', symbol: 'E', unit: 'J', scale: 1, digits: 2, what: 'total energy' },
+  {column: 'theta', symbol: 'θ', unit: '°', scale: DEGREES, digits: 1, what: 'tilt: angle between axle and vertical'},
+  {column: 'omega_z', symbol: 'ω_z', unit: 'rad/s', scale: 1, digits: 3, what: 'angular velocity about the axle'},
+  {column: 'lambda_3', symbol: 'N', unit: 'N', scale: 1, digits: 0, what: 'normal force of the ground'},
+  {column: 'E', symbol: 'E', unit: 'J', scale: 1, digits: 2, what: 'total energy'},
 ];
-const MARGIN = { left: 46, right: 8, top: 10, bottom: 20 };
+const MARGIN = {
+  left: 46,
+  right: 8,
+  top: 10,
+  bottom: 20
+};
 
 /** Round numbers, at most about `count` of them, that span low to high. */
 export function ticksOf(low, high, count) {
@@ -18,7 +23,7 @@ export function ticksOf(low, high, count) {
   const step = [1, 2, 5, 10].map((factor) => factor * power).find((size) => size >= raw) ?? 10 * power;
   const ticks = [];
   for (let tick = Math.ceil(low / step - 1e-9) * step; tick <= high + 1e-9 * step; tick += step) ticks.push(tick);
-  return { ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
+  return {ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9))};
 }
 
 class Plot {
@@ -29,13 +34,14 @@ class Plot {
     figure.className = 'plot';
     const name = signal.symbol.replace(/_(.)/, '<sub>$1</sub>');
     figure.innerHTML =
-      `<figcaption><b><i>${name}</i></b> <span class="unit">${signal.unit}</span><output></output></figcaption>` +
-      `<canvas role="img" aria-label="${signal.what} over time" title="${signal.what}. Click or drag to go there"></canvas>`;
+        `<figcaption><b><i>${name}</i></b> <span class="unit">${signal.unit}</span><output></output></figcaption>` +
+        `<canvas role="img" aria-label="${signal.what} over time" title="${
+            signal.what}. Click or drag to go there"></canvas>`;
     host.append(figure);
     this.figure = figure;
     this.canvas = figure.querySelector('canvas');
     this.values = figure.querySelector('output');
-    this.layers = { faint: document.createElement('canvas'), strong: document.createElement('canvas') };
+    this.layers = {faint: document.createElement('canvas'), strong: document.createElement('canvas')};
     const seek = (event) => event.buttons && player.seek(this.timeAt(event.offsetX));
     this.canvas.addEventListener('pointerdown', (event) => {
       this.canvas.setPointerCapture(event.pointerId);
@@ -45,13 +51,13 @@ class Plot {
   }
 
   timeAt(x) {
-    const { start, end } = this.player;
+    const {start, end} = this.player;
     const share = (x - MARGIN.left) / (this.canvas.clientWidth - MARGIN.left - MARGIN.right);
     return start + share * (end - start);
   }
 
   x(t) {
-    const { start, end } = this.player;
+    const {start, end} = this.player;
     return MARGIN.left + ((t - start) / (end - start || 1)) * (this.width - MARGIN.left - MARGIN.right);
   }
 
@@ -61,9 +67,9 @@ class Plot {
 
   /** Draws both layers anew for these wheels. */
   prepare(wheels) {
-    this.wheels = wheels.filter(({ table }) => table.has(this.signal.column));
+    this.wheels = wheels.filter(({table}) => table.has(this.signal.column));
     this.figure.hidden = this.wheels.length === 0;
-    const { clientWidth, clientHeight } = this.canvas;
+    const {clientWidth, clientHeight} = this.canvas;
     if (this.figure.hidden || !clientWidth) return;
     [this.width, this.height, this.ratio] = [clientWidth, clientHeight, Math.min(2, devicePixelRatio)];
     this.range();
@@ -81,20 +87,21 @@ class Plot {
 
   range() {
     let [low, high] = [Infinity, -Infinity];
-    for (const { table } of this.wheels) {
+    for (const {table} of this.wheels) {
       for (const value of table.columns[this.signal.column]) {
         if (value < low) low = value;
         if (value > high) high = value;
       }
     }
     [low, high] = [low * this.signal.scale, high * this.signal.scale];
-    const least = 1e-3 * Math.max(1, Math.abs(low), Math.abs(high)); // an energy that is kept is a line, not its last digit
+    const least =
+        1e-3 * Math.max(1, Math.abs(low), Math.abs(high));  // an energy that is kept is a line, not its last digit
     const pad = 0.06 * Math.max(high - low, least) + 0.5 * Math.max(0, least - (high - low));
     [this.low, this.high] = [low - pad, high + pad];
   }
 
   frame(pen) {
-    const { ticks, digits } = ticksOf(this.low, this.high, Math.min(5, this.height / 26));
+    const {ticks, digits} = ticksOf(this.low, this.high, Math.min(5, this.height / 26));
     pen.font = '11px system-ui, sans-serif';
     pen.lineWidth = 1;
     pen.strokeStyle = colour('--rule');
@@ -114,30 +121,33 @@ class Plot {
     const seconds = ticksOf(this.player.start, this.player.end, Math.min(6, this.width / 48));
     for (const tick of seconds.ticks) {
       const text = tick.toFixed(seconds.digits);
-      pen.fillText(tick === seconds.ticks.at(-1) ? `${text} s` : text, Math.min(this.x(tick), this.width - 14), this.height - 15);
+      pen.fillText(
+          tick === seconds.ticks.at(-1) ? `${text} s` : text, Math.min(this.x(tick), this.width - 14),
+          this.height - 15);
     }
   }
 
   /** Stick phases as bands, transitions as ticks at the top. */
   bands(pen, strength) {
     const bottom = this.height - MARGIN.bottom;
-    for (const { phases } of this.wheels) {
+    for (const {phases} of this.wheels) {
       pen.globalAlpha = strength;
       pen.fillStyle = colour('--stick');
-      for (const [a, b] of phases.sticks) pen.fillRect(this.x(a), MARGIN.top, this.x(b) - this.x(a), bottom - MARGIN.top);
+      for (const [a, b] of phases.sticks)
+        pen.fillRect(this.x(a), MARGIN.top, this.x(b) - this.x(a), bottom - MARGIN.top);
       pen.globalAlpha = Math.min(1, 2.4 * strength);
       pen.fillStyle = colour('--force');
-      for (const { t } of phases.transitions) pen.fillRect(this.x(t) - 0.5, MARGIN.top - 7, 1, 7);
+      for (const {t} of phases.transitions) pen.fillRect(this.x(t) - 0.5, MARGIN.top - 7, 1, 7);
     }
     pen.globalAlpha = 1;
   }
 
   curves(pen, strength) {
-    const { column, scale } = this.signal;
+    const {column, scale} = this.signal;
     pen.globalAlpha = strength;
     pen.lineWidth = 1.6;
     pen.lineJoin = 'round';
-    for (const { table, colour: paint } of this.wheels) {
+    for (const {table, colour: paint} of this.wheels) {
       const values = table.columns[column];
       pen.strokeStyle = paint;
       pen.beginPath();
@@ -160,7 +170,7 @@ class Plot {
     pen.scale(this.ratio, this.ratio);
     pen.fillStyle = colour('--ink');
     pen.fillRect(x - 0.5, MARGIN.top - 4, 1, this.height - MARGIN.top - MARGIN.bottom + 4);
-    const texts = this.wheels.map(({ table, colour: paint }) => {
+    const texts = this.wheels.map(({table, colour: paint}) => {
       const value = table.value(this.signal.column, Math.min(t, table.end)) * this.signal.scale;
       pen.fillStyle = paint;
       pen.beginPath();

@@ -1,5 +1,5 @@
 // Shapes of the scene: tyre, arrows, ribbons on the ground, labels. Metres; Z up.
-import { THREE } from 'three';
+import {THREE} from 'three';
 
 /** The tyre's skin: tread on the outside, a stripe on each side wall, and the mark at phi = 0. x: along the ring. */
 export function tyreTexture(accent) {
@@ -33,7 +33,7 @@ export function tyreTexture(accent) {
 
 /** An arrow from the origin along +z, of length 1 until `pointArrow` is called; shaft radius in m. */
 export function makeArrow(radius, colour) {
-  const material = new THREE.MeshStandardMaterial({ color: colour, roughness: 0.5 });
+  const material = new THREE.MeshStandardMaterial({color: colour, roughness: 0.5});
   const shaft = new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, 1, 20), material);
   const head = new THREE.Mesh(new THREE.ConeGeometry(2.6 * radius, 7 * radius, 24), material);
   for (const part of [shaft, head]) {
@@ -42,7 +42,7 @@ export function makeArrow(radius, colour) {
   }
   const arrow = new THREE.Group();
   arrow.add(shaft, head);
-  arrow.userData = { shaft, head, headLength: 7 * radius };
+  arrow.userData = {shaft, head, headLength: 7 * radius};
   return arrow;
 }
 
@@ -50,7 +50,7 @@ const ALONG = new THREE.Vector3(0, 0, 1);
 
 /** Points an arrow of makeArrow along a vector whose length is that of the arrow in m. */
 export function pointArrow(arrow, vector) {
-  const { shaft, head, headLength } = arrow.userData;
+  const {shaft, head, headLength} = arrow.userData;
   const length = vector.length();
   arrow.visible = length > 1e-6;
   if (!arrow.visible) return;
@@ -86,9 +86,7 @@ export function makeRibbon(points, width, height, material) {
 }
 
 /** Shows a ribbon up to its row-th point. */
-export function showRibbon(ribbon, row) {
-  ribbon.geometry.setDrawRange(0, 6 * Math.max(0, row));
-}
+export function showRibbon(ribbon, row) { ribbon.geometry.setDrawRange(0, 6 * Math.max(0, row)); }
 
 /** A short text that always faces the reader; height in m. */
 export function makeLabel(text, colour, height) {
@@ -104,7 +102,7 @@ export function makeLabel(text, colour, height) {
   pen.fillText(text.slice(1), 86, 64);
   const texture = new THREE.CanvasTexture(canvas);
   texture.colorSpace = THREE.SRGBColorSpace;
-  const label = new THREE.Sprite(new THREE.SpriteMaterial({ map: texture, depthTest: false, transparent: true }));
+  const label = new THREE.Sprite(new THREE.SpriteMaterial({map: texture, depthTest: false, transparent: true}));
   label.scale.set((height * 128) / 96, height, 1);
   label.renderOrder = 5;
   return label;

@@ -1,9 +1,9 @@
 // The 3-D stage: ground, light, cameras, and one or more views side by side in one canvas. Fixed axes X, Y, Z, Z up.
-import { THREE, OrbitControls } from 'three';
-import { colour } from '#theme';
+import {colour} from '#theme';
+import {OrbitControls, THREE} from 'three';
 
 THREE.Object3D.DEFAULT_UP.set(0, 0, 1);
-const GROUND = 60; // m, edge of the drawn ground
+const GROUND = 60;  // m, edge of the drawn ground
 
 /** One square metre of the ground: lines every metre and, finer, every 0.1 m. */
 function groundTexture(base, fine, coarse) {
@@ -34,7 +34,7 @@ export class Stage {
   constructor(canvas, size) {
     this.canvas = canvas;
     this.size = size;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFSoftShadowMap;
@@ -43,9 +43,12 @@ export class Stage {
     this.camera = new THREE.PerspectiveCamera(34, 1, 0.02 * size, 60 * size);
     this.camera.position.set(1.5 * size, -2.35 * size, 1.0 * size);
     this.controls = new OrbitControls(this.camera, canvas);
-    Object.assign(this.controls, { maxPolarAngle: 1.54, minDistance: 0.8 * size, maxDistance: 12 * size });
-    Object.assign(this.controls, { enableDamping: true, dampingFactor: 0.12, zoomSpeed: 0.8 });
-    this.controls.listenToKeyEvents(canvas);
+    Object.assign(this.controls, {maxPolarAngle: 1.54, minDistance: 0.8 * size, maxDistance: 12 * size});
+    Object.assign(this.controls, {enableDamping: true, dampingFactor: 0.12, zoomSpeed: 0.8});
+    canvas.addEventListener('keydown', (event) => {
+      const way = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
+      if (way) this.turn(0.09 * way[0], 0.06 * way[1]);
+    });
     this.controls.addEventListener('change', () => (this.dirty = true));
     this.eye = new THREE.PerspectiveCamera();
     this.addGround();
@@ -56,7 +59,7 @@ export class Stage {
 
   addGround() {
     const plane = new THREE.PlaneGeometry(GROUND, GROUND);
-    this.ground = new THREE.Mesh(plane, new THREE.MeshLambertMaterial({ color: '#fff' }));
+    this.ground = new THREE.Mesh(plane, new THREE.MeshLambertMaterial({color: '#fff'}));
     this.ground.receiveShadow = true;
     this.scene.add(this.ground);
   }
@@ -71,13 +74,13 @@ export class Stage {
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.01;
     const reach = 1.6 * this.size;
-    Object.assign(this.sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach });
-    Object.assign(this.sun.shadow.camera, { near: 0.1 * this.size, far: 9 * this.size });
+    Object.assign(this.sun.shadow.camera, {left: -reach, right: reach, top: reach, bottom: -reach});
+    Object.assign(this.sun.shadow.camera, {near: 0.1 * this.size, far: 9 * this.size});
     this.scene.add(this.sky, this.sun, this.sun.target);
-    const room = new THREE.Scene(); // what the metal mirrors: a bright sky over a grey ground
+    const room = new THREE.Scene();  // what the metal mirrors: a bright sky over a grey ground
     const dome = new THREE.Mesh(
-      new THREE.SphereGeometry(10, 32, 16),
-      new THREE.MeshBasicMaterial({ side: THREE.BackSide, vertexColors: true }),
+        new THREE.SphereGeometry(10, 32, 16),
+        new THREE.MeshBasicMaterial({side: THREE.BackSide, vertexColors: true}),
     );
     const heights = dome.geometry.attributes.position;
     const shades = [];
@@ -122,11 +125,11 @@ export class Stage {
     const across = width >= 0.9 * height ? count : 1;
     const down = across === 1 ? count : 1;
     const [w, h] = [width / across, height / down];
-    return Array.from({ length: count }, (_, i) => ({ x: (i % across) * w, y: across === 1 ? i * h : 0, w, h }));
+    return Array.from({length: count}, (_, i) => ({x: (i % across) * w, y: across === 1 ? i * h : 0, w, h}));
   }
 
   resize() {
-    const { clientWidth, clientHeight } = this.canvas;
+    const {clientWidth, clientHeight} = this.canvas;
     const size = this.renderer.getSize(new THREE.Vector2());
     if (size.x === clientWidth && size.y === clientHeight) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
@@ -137,8 +140,8 @@ export class Stage {
   render(views, away) {
     this.controls.update();
     this.renderer.setScissorTest(true);
-    this.rectangles(views.length).forEach(({ x, y, w, h }, i) => {
-      const { models, anchor } = views[i];
+    this.rectangles(views.length).forEach(({x, y, w, h}, i) => {
+      const {models, anchor} = views[i];
       for (const model of this.models) model.group.visible = models.includes(model);
       this.eye.copy(this.camera);
       this.eye.position.multiplyScalar(away).add(anchor);
@@ -151,13 +154,25 @@ export class Stage {
       this.sun.position.x += 1.4 * this.size;
       this.sun.position.y -= 1.1 * this.size;
       this.sun.position.z += 3.6 * this.size;
-      this.ground.position.set(Math.round(anchor.x), Math.round(anchor.y), 0); // whole squares: the grid stands still
+      this.ground.position.set(Math.round(anchor.x), Math.round(anchor.y), 0);  // whole squares: the grid stands still
       const up = this.canvas.clientHeight - y - h;
       this.renderer.setViewport(x, up, w, h);
       this.renderer.setScissor(x, up, w, h);
       this.renderer.render(this.scene, this.eye);
     });
     this.dirty = false;
+  }
+
+  /** Turns the view about the vertical and up or down, in rad. */
+  turn(around, over) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const flat = Math.hypot(offset.x, offset.y);
+    const azimuth = Math.atan2(offset.y, offset.x) + around;
+    const polar = Math.min(1.5, Math.max(0.12, Math.atan2(flat, offset.z) + over));  // from the vertical
+    const length = offset.length();
+    offset.set(Math.cos(azimuth) * Math.sin(polar), Math.sin(azimuth) * Math.sin(polar), Math.cos(polar));
+    this.camera.position.copy(this.controls.target).addScaledVector(offset, length);
+    this.dirty = true;
   }
 
   /** The first camera again. */

@@ -1,11 +1,9 @@
 // One motion as columns over time (SI, fixed axes X, Y, Z, Z up), and its values between the rows.
-// Angles are never wrapped, so between two rows they are interpolated as numbers, not as attitudes: a slerp would take the
-// short way round, and a fast wheel would seem to run backwards.
+// Angles are never wrapped, so between two rows they are interpolated as numbers, not as attitudes: a slerp would take
+// the short way round, and a fast wheel would seem to run backwards.
 
 /** Bytes of a base64 text. */
-export function bytesOf(text) {
-  return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-}
+export function bytesOf(text) { return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)); }
 
 export class Table {
   /** columns: {name: Float64Array}, all of one length, `time` rising. */
@@ -23,29 +21,25 @@ export class Table {
     return new Table(columns);
   }
 
-  has(name) {
-    return name in this.columns;
-  }
+  has(name) { return name in this.columns; }
 
-  get start() {
-    return this.time[0];
-  }
+  get start() { return this.time[0]; }
 
-  get end() {
-    return this.time[this.rows - 1];
-  }
+  get end() { return this.time[this.rows - 1]; }
 
   /** The row at or before t, at most the last but one. */
   row(t) {
-    const { time, rows } = this;
+    const {time, rows} = this;
     let i = this.last;
     if (!(time[i] <= t && t < time[Math.min(i + 1, rows - 1)])) {
       let low = 0;
       let high = rows - 1;
       while (high - low > 1) {
         const middle = (low + high) >> 1;
-        if (time[middle] <= t) low = middle;
-        else high = middle;
+        if (time[middle] <= t)
+          low = middle;
+        else
+          high = middle;
       }
       i = low;
     }
@@ -53,7 +47,9 @@ export class Table {
     return this.last;
   }
 
-  /** A column at t: the cubic through both rows' values and rates where the column `<name>_dot` is there, else a line. */
+  /**
+   * A column at t: the cubic through both rows' values and rates where the column `<name>_dot` is there, else a line.
+   */
   value(name, t) {
     const values = this.columns[name];
     const i = this.row(t);

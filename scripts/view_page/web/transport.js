@@ -1,6 +1,6 @@
 // Play, pause, speed and the time slider with the stick phases behind it; the keys of the whole page. Time in s.
-import { SPEEDS } from '#player';
-import { colour } from '#theme';
+import {SPEEDS} from '#player';
+import {colour} from '#theme';
 
 const $ = (selector) => document.querySelector(selector);
 
@@ -8,13 +8,15 @@ const $ = (selector) => document.querySelector(selector);
 export function drawBands(wheels, player) {
   const canvas = $('#bands');
   const ratio = Math.min(2, devicePixelRatio);
-  const { clientWidth: width, clientHeight: height } = canvas;
+  const {clientWidth: width, clientHeight: height} = canvas;
   [canvas.width, canvas.height] = [width * ratio, height * ratio];
   const pen = canvas.getContext('2d');
   pen.scale(ratio, ratio);
-  const x = (t) => 8 + ((t - player.start) / (player.end - player.start || 1)) * (width - 16); // the thumb's half width: 8
+  const x = (t) =>
+      8 + ((t - player.start) / (player.end - player.start || 1)) * (width - 16);  // the thumb's half width: 8
   pen.fillStyle = colour('--stick');
-  for (const { phases } of wheels) for (const [a, b] of phases.sticks) pen.fillRect(x(a), 0, Math.max(1, x(b) - x(a)), height);
+  for (const {phases} of wheels)
+    for (const [a, b] of phases.sticks) pen.fillRect(x(a), 0, Math.max(1, x(b) - x(a)), height);
 }
 
 export function setUpTransport(player) {
@@ -39,7 +41,10 @@ export function setUpTransport(player) {
   state();
 }
 
-/** The page's keys; `actions` adds {key: function}. Fields and the scene (arrow keys turn it) keep their own. */
+/**
+ * The page's keys; `actions` adds {key: function}. Fields keep their own, and arrow keys turn the scene if it has the
+ * focus.
+ */
 export function setUpKeys(player, actions) {
   const step = (event) => (event.shiftKey ? 0.5 : 0.05) * (event.key === 'ArrowLeft' ? -1 : 1);
   addEventListener('keydown', (event) => {
@@ -47,13 +52,20 @@ export function setUpKeys(player, actions) {
     const target = event.target;
     const field = target.matches?.('input, select, summary, textarea, canvas');
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    if (key === ' ' && !target.matches?.('button, select, summary, input[type=checkbox]')) player.toggle();
-    else if (!field && (key === 'ArrowLeft' || key === 'ArrowRight')) player.seek(player.t + step(event));
-    else if (!field && key === 'Home') player.seek(player.start);
-    else if (!field && key === 'End') player.seek(player.end);
-    else if (key === '+' || key === '-') player.shift(key === '+' ? 1 : -1);
-    else if (key in actions) actions[key]();
-    else return;
+    if (key === ' ' && !target.matches?.('button, select, summary, input[type=checkbox]'))
+      player.toggle();
+    else if (!field && (key === 'ArrowLeft' || key === 'ArrowRight'))
+      player.seek(player.t + step(event));
+    else if (!field && key === 'Home')
+      player.seek(player.start);
+    else if (!field && key === 'End')
+      player.seek(player.end);
+    else if (key === '+' || key === '-')
+      player.shift(key === '+' ? 1 : -1);
+    else if (key in actions)
+      actions[key]();
+    else
+      return;
     event.preventDefault();
   });
 }
