@@ -73,6 +73,25 @@ def test_a_fast_wheel_never_seems_to_run_backwards(browser, tmp_path):
     assert np.allclose([np.arctan2(step[1, 0], step[0, 0]) for step in steps], -0.1)
 
 
+def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(browser, tmp_path):
+    t = np.arange(11) * 0.1
+    pose = {"X": t, "Y": 2 * t, "Z": 0.6 + 0 * t, "yaw": 0.8 * t, "pitch": 0.3 * t, "roll": -0.4 * t}
+    wheel = {"X_O": t, "Y_O": 2 * t, "psi": 0.8 * t, "theta": 0 * t + np.pi / 2, "phi": -t}
+    named = {f"body.{k}": v for k, v in pose.items()} | {f"wheel_fl.{k}": v for k, v in wheel.items()}
+    assert view(write_csv(tmp_path / "car.csv", {"time": t} | named)).returncode == 0
+    with opened(browser, tmp_path / "car.html", viewport={"width": 400, "height": 400}) as page:
+        page.evaluate("page.player.seek(0.7); page.draw()")
+        there = page.evaluate("""() => {
+          const box = page.stage.scene.getObjectByName('body:body');
+          box.updateWorldMatrix(true, false);
+          return box.matrixWorld.elements;
+        }""")
+    expected = np.eye(4)
+    expected[:3, :3] = turn(2, 0.56) @ turn(1, 0.21) @ turn(0, -0.28)
+    expected[:3, 3] = [0.7, 1.4, 0.6]
+    assert abs(np.reshape(there, (4, 4)).T - expected).max() < 1e-12
+
+
 def test_the_friction_wheel_sticks_at_its_instant(recorded):
     first = recorded.evaluate("page.wheels.find((wheel) => wheel.name === 'friction').phases.sticks[0]")
     assert abs(first[0] - 1.2255) < 1e-4  # measured: 2e-5; half-way between the rows: 5e-4

@@ -77,7 +77,7 @@ export class Stage {
     Object.assign(this.sun.shadow.camera, {left: -reach, right: reach, top: reach, bottom: -reach});
     Object.assign(this.sun.shadow.camera, {near: 0.1 * this.size, far: 9 * this.size});
     this.scene.add(this.sky, this.sun, this.sun.target);
-    const room = new THREE.Scene();  // what the metal mirrors: a bright sky over a grey ground
+    const surroundings = new THREE.Scene();  // what the metal mirrors: a bright sky over a grey ground
     const dome = new THREE.Mesh(
         new THREE.SphereGeometry(10, 32, 16),
         new THREE.MeshBasicMaterial({side: THREE.BackSide, vertexColors: true}),
@@ -89,9 +89,9 @@ export class Stage {
       shades.push(...Array(3).fill(up > 0 ? 0.55 + 0.9 * up : 0.28 + 0.2 * up));
     }
     dome.geometry.setAttribute('color', new THREE.Float32BufferAttribute(shades, 3));
-    room.add(dome);
+    surroundings.add(dome);
     const generator = new THREE.PMREMGenerator(this.renderer);
-    this.scene.environment = generator.fromScene(room, 0.04).texture;
+    this.scene.environment = generator.fromScene(surroundings, 0.04).texture;
     this.scene.environmentIntensity = 0.55;
     generator.dispose();
   }
