@@ -6,9 +6,10 @@ from ctypes import byref
 
 import numpy as np
 import pytest
+from support.driver import DISCARD, ERROR, OK, FMU2Wheel
+from support.scenes import KINDS
 
 from contract.call_states import STATES, bring_to
-from contract.master import DISCARD, ERROR, OK, SCENES, FMU2Wheel
 
 pytestmark = pytest.mark.contract
 
@@ -41,9 +42,9 @@ def bits_of(w: FMU2Wheel, step, ks: range) -> list[bytes]:
 
 
 @pytest.mark.parametrize("step", [coast, drive])
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", KINDS)
 def test_a_restored_instance_goes_on_with_the_same_bits(wheel, scene, step):
-    values = SCENES[scene]
+    values = KINDS[scene]
     w, other, fresh = wheel().start(**values), wheel().start(s=0.01, m=7.0), wheel()
     bits_of(other, step, range(5))
     for k in (0, 1, 10, 22, 23):
@@ -80,7 +81,7 @@ def test_snapshots_just_before_and_after_every_friction_event_go_on_with_the_sam
 
 
 def test_a_snapshot_at_every_step_changes_no_bit_of_the_run(wheel):
-    for values in SCENES.values():
+    for values in KINDS.values():
         w, undisturbed = wheel().start(**values), wheel().start(**values)
         state = w.snapshot()
         for k in range(100):
@@ -106,7 +107,7 @@ def test_what_was_set_but_not_yet_stepped_is_part_of_the_state(wheel):
 
 def test_a_rejected_step_leaves_no_trace(wheel):
     """Step, restore, two half steps: a variable-step master."""
-    for values in SCENES.values():
+    for values in KINDS.values():
         rejecting, careful = wheel().start(**values), wheel().start(**values)
         for k in range(20):
             state, t = rejecting.snapshot(), rejecting.time
@@ -155,7 +156,7 @@ def test_stop_time_and_tolerance_are_part_of_the_state(wheel):
 
 
 @pytest.mark.parametrize(("s_before", "s_after"), [(0.0, 0.03), (0.03, 0.0)])
-def test_a_state_keeps_the_method_that_was_chosen_before_the_friction_changed(wheel, s_before, s_after):
+def test_a_state_keeps_the_method_that_the_change_of_friction_chose(wheel, s_before, s_after):
     law = {"friction_law": 2, "omega_s": 1e-4}  # automatic: Adams without friction, BDF where it makes the law stiff
     w, other, partner = wheel().start(s=s_before, **law), wheel(), wheel().start(s=s_after, **law)
     bits_of(w, coast, range(3))
@@ -169,8 +170,7 @@ def test_a_state_keeps_the_method_that_was_chosen_before_the_friction_changed(wh
         assert restored.serialized() == blob
         assert bits_of(restored, coast, range(5, 9)) == ahead
     bits_of(partner, coast, range(9))
-    jacobians = [x.get("n_jac")[0] > 0 for x in (w, partner)]
-    assert jacobians in ([False, True], [True, False])  # the partner's method is the other one
+    assert w.bits() != partner.bits()  # the partner has had the later friction from the start
 
 
 @pytest.mark.parametrize("s", [0.01, 0.0])
@@ -185,44 +185,12 @@ def test_a_restored_state_and_the_original_go_on_to_the_same_bytes_when_friction
     assert (w.serialized() == other.serialized()) == (s > 0)
 
 
-def notices(w: FMU2Wheel, push: float) -> bool:
-    """Whether a jump of F_X by `push` makes the solver start anew."""
-    before = w.get("n_restarts")
-    assert w.set(F_X=0.03 + push) == OK and w.step(1e-9) == OK
-    return w.get("n_restarts") != before
-
-
-def test_a_restored_solver_notices_the_jumps_that_the_original_notices(wheel):
-    """The smallest jump that restarts the solver, where its last step ends at the communication point."""
-
-    def original() -> FMU2Wheel:
-        w = wheel().start(tolerance=1e-13, phi_dot_start=-20.0)
-        w.setRealInputDerivatives([w.references["F_X"]], [1], [1.0])
-        assert w.step(0.03) == OK
-        return w
-
-    def restored() -> FMU2Wheel:
-        w = wheel()
-        assert w.restore(original().serialized()) == OK
-        w.time = 0.03
-        return w
-
-    low, high = 1e-12, 1e-9
-    while high / low > 1 + 1e-6:
-        middle = np.sqrt(low * high)
-        low, high = (low, middle) if notices(original(), middle) else (middle, high)
-    for push, noticed in ((low, False), (high, True)):
-        assert notices(restored(), push) == notices(original(), push) == noticed
-    # The partner: with the weights of the last step the jumps differed by 2 %.
-    assert notices(restored(), 1.01 * low)
-
-
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", KINDS)
 def test_the_bytes_of_a_state_before_the_first_step_depend_on_nothing_but_the_state(wheel, scene):
     used = wheel().start(s=0.02, J_x=1.0)
     used.run([1.0])
     used.close()  # leaves its memory to the next ones
-    states = {wheel().start(**SCENES[scene]).serialized() for _ in range(10)}
+    states = {wheel().start(**KINDS[scene]).serialized() for _ in range(10)}
     assert len(states) == 1
-    moved = wheel().start(**SCENES[scene] | {"X_O_start": 1e-9}).serialized()
+    moved = wheel().start(**KINDS[scene] | {"X_O_start": 1e-9}).serialized()
     assert moved not in states

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from paths import ROOT
+from support.paths import ROOT
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from page.pages import FLAGS, RECORD, opened, view, write_csv

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from paths import ROOT
+from support.paths import ROOT
 from playwright.sync_api import Browser, Page
 
 POSE = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi")

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from paths import ROOT
+from support.paths import ROOT
 
 from page.pages import POSE, view, write_csv
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from io import StringIO
-from math import pi
+from math import exp, pi
 from pathlib import Path
 
 import numpy as np
@@ -100,3 +100,12 @@ def convergence(
     held = [distance(coupled(fmus, h, False, stop), truth) for h in steps]
     linear = [distance(coupled(fmus, h, True, stop), truth) for h in steps]
     return Convergence(steps, held, linear)
+
+
+def drag_share(h: float, k: float = 60e3, mass: float = 334.7, duration: float = 2.5) -> float:
+    """Share of the final speed lost to the drag k v h / 2 of a position held over the step.
+
+    mass (kg): sprung mass, wheel and J_z / R^2.  duration (s): of the drive.
+    """
+    x = k * h / 2 * duration / mass
+    return 1 - (1 - exp(-x)) / x

@@ -1,0 +1,1 @@
+"""The wheel coupled with other FMUs: the examples of docs/examples."""

@@ -1,0 +1,115 @@
+"""Suspended wheel: co-simulation against one set of equations; orders, standing start, SSP package."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from coupling import ssp, suspended
+from coupling.master import Master
+from fmpy.ssp.ssd import read_ssd, read_ssv
+
+STEPS = (0.0025, 0.00125, 0.000625)  # s
+
+
+@pytest.fixture(scope="module")
+def found(fmus: dict[str, Path], truth: dict[str, np.ndarray]) -> suspended.Convergence:
+    return suspended.convergence(fmus, truth, STEPS)
+
+
+def test_held_values_converge_with_order_one(found: suspended.Convergence) -> None:
+    assert found.orders(found.held)[-1] == pytest.approx(1, abs=0.1)  # measured 0.93; 0.97 at half the step
+
+
+def test_first_derivatives_converge_with_order_two(found: suspended.Convergence) -> None:
+    assert found.orders(found.linear) == pytest.approx([2, 2], abs=0.1)  # measured 2.05, 2.02
+
+
+def test_with_derivatives_the_coupled_run_meets_the_joint_equations(found: suspended.Convergence) -> None:
+    assert found.linear[-1] < 2e-4  # measured 1.1e-4 of the range at 0.625 ms
+    assert found.held[-1] > 100 * found.linear[-1]  # partner: held values miss it, measured 6.9e-2
+
+
+def test_the_error_of_held_values_is_the_drag_of_a_lagging_position(found: suspended.Convergence) -> None:
+    predicted = [suspended.drag_share(h) for h in found.steps]
+    assert found.held == pytest.approx(predicted, rel=0.05)  # measured within 3 %
+    assert found.held != pytest.approx([suspended.drag_share(2 * h) for h in found.steps], rel=0.05)  # partner
+
+
+def test_a_wrong_parameter_of_the_joint_equations_shows(fmus: dict[str, Path], truth: dict[str, np.ndarray]) -> None:
+    """Partner of the yardstick: 1 % of rolling friction moves the comparison far beyond its bound."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(suspended.START, "s", 0.0101)
+        other = suspended.together()
+    assert suspended.distance(other, truth) > 1e-3  # measured 2.7e-3
+
+
+def test_the_ground_pushes_all_the_time(truth: dict[str, np.ndarray]) -> None:
+    assert truth["lambda_3"].min() > 190  # N; measured 196, before the car rests on the wheel
+
+
+def test_the_coupled_wheel_stands_until_the_drive_pulls(fmus: dict[str, Path]) -> None:
+    table = suspended.coupled(fmus, 0.005, True, stop=0.6)
+    standing = table["time"] <= 0.5
+    assert np.all(table["omega_z"][standing] == 0)
+    assert np.all(table["omega_z"][~standing] < -0.01)  # rad/s; measured -0.16 at 0.6 s: it launches
+
+
+@pytest.mark.parametrize("derivatives", [False, True])
+def test_the_step_may_not_exceed_twice_the_inertia_over_the_damping(fmus: dict[str, Path], derivatives: bool) -> None:
+    """2 (J_x + m R^2) / (c_theta + c_h R^2) = 17 ms for the lean of this wheel on its suspension."""
+    assert not suspended.ends(fmus, 0.015, derivatives)
+    assert suspended.ends(fmus, 0.02, derivatives)  # partner
+
+
+def test_a_smaller_grid_of_records_changes_no_bit(fmus: dict[str, Path]) -> None:
+    coarse, fine = (suspended.coupled(fmus, 0.0025, True, 0.7, grid) for grid in (0.05, 0.0025))
+    for name in suspended.COMPARED:
+        assert np.array_equal(coarse[name], fine[name][::20])
+
+
+@pytest.mark.parametrize("derivatives", [False, True])
+def test_a_master_that_undoes_and_repeats_every_step_gets_the_same_bits(
+    fmus: dict[str, Path], derivatives: bool
+) -> None:
+    once, twice = (suspended.coupled(fmus, 0.0025, derivatives, 1.0, reject=reject) for reject in (False, True))
+    for name in once:
+        assert np.array_equal(once[name], twice[name])
+
+
+def test_the_master_refuses_an_algebraic_loop(fmus: dict[str, Path]) -> None:
+    """Partner: the order of exchange rests on declared dependencies; F_X -> lambda_1 -> X_O would be a loop."""
+    loop = [
+        (("quarter_car", "F_X"), ("wheel", "F_X")),
+        (("wheel", "lambda_1"), ("quarter_car", "X_O")),
+    ]
+    with pytest.raises(ValueError, match="cycle"):
+        Master(
+            [suspended.Component("wheel", fmus["wheel"]), suspended.Component("quarter_car", fmus["quarter_car"])], loop
+        )
+
+
+@pytest.fixture(scope="module")
+def package(fmus: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return ssp.build(fmus, tmp_path_factory.mktemp("ssp"))
+
+
+def test_the_package_is_valid_ssp(package: Path) -> None:
+    structure = read_ssd(str(package), validate=True)
+    assert structure.version == "1.0"
+    assert len(structure.system.connections) == len(suspended.CONNECTIONS)
+    assert len(read_ssv(str(package), ssp.PARAMETERS, validate=True).parameters) == len(suspended.START)
+
+
+def test_fmpy_runs_the_package_and_converges_with_order_one(package: Path, truth: dict[str, np.ndarray]) -> None:
+    coarse, fine = (ssp.distance(ssp.simulate(package, h), truth) for h in (0.00125, 0.000625))
+    assert np.log2(coarse / fine) == pytest.approx(1, abs=0.1)  # measured 1.06
+    assert fine < 0.06  # measured 0.051
+
+
+def test_a_package_without_its_parameters_is_another_system(package: Path, truth: dict[str, np.ndarray]) -> None:
+    """Partner: the start values come from the SSV."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ssp, "read_ssv", lambda *_: None)
+        assert ssp.distance(ssp.simulate(package, 0.005, stop=0.3), truth) > 0.5
