@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.paths import ROOT
 from playwright.sync_api import Browser, Page, sync_playwright
+from support.paths import ROOT
 
 from page.pages import FLAGS, RECORD, opened, view, write_csv
 

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from support.paths import ROOT
 from playwright.sync_api import Browser, Page
+from support.paths import ROOT
 
 POSE = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi")
 RATES = tuple(f"{name}_dot" for name in POSE)
