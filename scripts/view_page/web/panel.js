@@ -50,7 +50,17 @@ const NOW = [
     digits: 1,
     what: 'torque about the axle'
   },
-  {name: 'M_brake', label: 'M<sub>b</sub>', unit: 'N m', scale: 1, low: 0, high: 8, step: 0.1, digits: 1, what: 'brake'},
+  {
+    name: 'M_brake',
+    label: 'M<sub>b</sub>',
+    unit: 'N m',
+    scale: 1,
+    low: 0,
+    high: 8,
+    step: 0.1,
+    digits: 1,
+    what: 'brake'
+  },
 ];
 const PUSH = 6;  // N m, of the buttons
 
