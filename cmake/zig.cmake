@@ -1,5 +1,6 @@
 # Toolchain: cross compilation by zig (PyPI's ziglang carries clang, every libc and the linkers).
-#   -DWHEEL_ZIG=<the zig executable> -DWHEEL_ZIG_TARGET=x86_64-linux-gnu.2.17 | x86_64-windows-gnu | aarch64-macos.11.0 ...
+#   -DWHEEL_ZIG=<the zig executable> -DWHEEL_ZIG_TARGET=x86_64-linux-gnu.2.17 | x86_64-windows-gnu | aarch64-macos.11.0 |
+#   wasm32-wasi ...
 set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES WHEEL_ZIG WHEEL_ZIG_TARGET)
 string(REGEX MATCH "^([a-z0-9_]+)-([a-z]+)" _ "${WHEEL_ZIG_TARGET}")
 set(CMAKE_SYSTEM_PROCESSOR ${CMAKE_MATCH_1})
@@ -7,6 +8,8 @@ if(CMAKE_MATCH_2 STREQUAL windows)
   set(CMAKE_SYSTEM_NAME Windows)
 elseif(CMAKE_MATCH_2 STREQUAL macos)
   set(CMAKE_SYSTEM_NAME Darwin)
+elseif(CMAKE_MATCH_2 STREQUAL wasi)
+  set(CMAKE_SYSTEM_NAME Generic) # no shared libraries, no threads, no system of its own
 else()
   set(CMAKE_SYSTEM_NAME Linux)
 endif()

@@ -11,6 +11,32 @@
 #include <windows.h>
 static void* open_library(const char* path) { return (void*)LoadLibraryA(path); }
 static void* symbol(void* library, const char* name) { return (void*)GetProcAddress((HMODULE)library, name); }
+#elif defined(__wasi__) /* no libraries to open: the wheel is linked in */
+#include "fmi2Functions.h"
+static void* open_library(const char* path) { return (void*)path; }
+static void* symbol(void* library, const char* name) {
+#define LINKED(function) { #function, (void*)(function) }
+  static const struct {
+    const char* name;
+    void* function;
+  } functions[] = {
+      LINKED(fmi2Instantiate),
+      LINKED(fmi2FreeInstance),
+      LINKED(fmi2SetupExperiment),
+      LINKED(fmi2EnterInitializationMode),
+      LINKED(fmi2ExitInitializationMode),
+      LINKED(fmi2SetReal),
+      LINKED(fmi2SetInteger),
+      LINKED(fmi2SetBoolean),
+      LINKED(fmi2GetReal),
+      LINKED(fmi2DoStep),
+      LINKED(fmi2SetRealInputDerivatives),
+  };
+  (void)library;
+  for (unsigned i = 0; i < sizeof functions / sizeof *functions; ++i)
+    if (strcmp(name, functions[i].name) == 0) return functions[i].function;
+  return NULL;
+}
 #else
 #include <dlfcn.h>
 static void* open_library(const char* path) { return dlopen(path, RTLD_NOW | RTLD_LOCAL); }

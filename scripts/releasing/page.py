@@ -35,6 +35,7 @@ that fits its pages, without which Apple's processors load nothing.
 | linux64 | run here{old}; passes the contract's tests (`tests/contract`) |
 | win64 | run under {wine}, by the driver and by FMPy |
 | aarch64-linux | run under {qemu} |
+| wasm32 | no library of the archive: the wheel of the live page ([page.md](../page.md)), run in wasmtime |
 | darwin64, aarch64-darwin | **only built**, and checked as a file. Never loaded by a Mac |
 
 The floor of glibc 2.17 is read off the versions of the symbols. On glibc 2.17 itself the library was not run.

@@ -1,7 +1,7 @@
 """Runs ten scenes on every platform that this machine can run and writes docs/results/platforms.md.
 
-The driver (driver.c) is compiled by zig for each platform; Windows runs under wine, arm under qemu. macOS is only
-built. Scenes of the paper, SI units.
+The driver (driver.c) is compiled by zig for each platform; Windows runs under wine, arm under qemu, WebAssembly
+in wasmtime. macOS is only built. Scenes of the paper, SI units.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import page
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 HEADERS = Path(importlib.util.find_spec("fmpy").origin).parent / "c-code"
+WASM = "wasm32-wasi"
 LINUX, ARM, WINDOWS = "x86_64-linux-gnu.2.17", "aarch64-linux-gnu.2.17", "x86_64-windows-gnu"
 
 
@@ -76,6 +77,8 @@ def places(arguments: argparse.Namespace) -> list[Place]:
         Place("win64, wine", WINDOWS, [arguments.wine], folder / WINDOWS / "wheel.dll"),
         Place("aarch64-linux, qemu", ARM, ["qemu-aarch64", "-L", arguments.arm_root], folder / ARM / "wheel.so"),
     ]
+    wasm = [arguments.wasm_python, str(Path(__file__).with_name("run_wasm.py"))]
+    found.append(Place("wasm32, wasmtime", WASM, wasm, Path("linked in")))
     if arguments.old_glibc:
         name, libc = arguments.old_glibc
         start = [str(Path(libc) / "ld-linux-x86-64.so.2"), "--library-path", libc]
@@ -89,6 +92,8 @@ def main() -> None:
     parser.add_argument("--zig", type=Path, required=True)
     parser.add_argument("--wine", required=True)
     parser.add_argument("--arm-root", required=True, help="folder of the arm C library")
+    parser.add_argument("--wasm", type=Path, required=True, help="the driver with the wheel linked in")
+    parser.add_argument("--wasm-python", required=True, help="a Python with wasmtime")
     parser.add_argument(
         "--old-glibc", nargs=2, metavar=("NAME", "FOLDER"), help="an older C library than this machine's"
     )
@@ -97,6 +102,7 @@ def main() -> None:
     arguments = parser.parse_args()
     folder = arguments.folder
     drivers = {target: build_driver(arguments.zig, target, folder) for target in (LINUX, ARM, WINDOWS)}
+    drivers[WASM] = arguments.wasm
     released = {place.name: run_scenes(place, drivers[place.target]) for place in places(arguments)}
     own = {name: run_scenes(Place(name, LINUX, [], Path(path)), drivers[LINUX]) for name, path in arguments.own}
     parts = {name: (folder / f"{name}.md").read_text() for name in ("libraries", "fmpy", "twice")}

@@ -1,0 +1,65 @@
+"""An animated picture of a page, frame by frame in headless Chromium: animation.py PAGE.html PICTURE.webp."""
+
+from __future__ import annotations
+
+import io
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import sync_playwright
+
+FRAMES_PER_SECOND = 12.5
+WINDOW = {"width": 1080, "height": 560}  # CSS pixels
+WIDTH = 864  # of the picture
+LIMIT = 1_500_000  # bytes
+# Without the controls, and with a camera that stands still, nearer than usual: what does not move needs no bytes.
+STILL = """document.body.classList.add('bare');
+document.querySelector('[name=follow]').click();
+page.stage.camera.position.multiplyScalar(0.72)"""
+FLAGS = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
+FLAGS += ["--no-sandbox"] if os.geteuid() == 0 else []
+
+
+def frames(page_file: Path) -> list[Image.Image]:
+    """The page without its controls, from the first instant to the last."""
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        page = chromium.new_context(viewport=WINDOW, reduced_motion="reduce", offline=True).new_page()
+        page.set_default_timeout(120_000)
+        page.goto(page_file.resolve().as_uri())
+        page.wait_for_function("window.page && page.views")
+        page.evaluate(STILL)
+        page.wait_for_function("!page.stage.dirty")
+        end = page.evaluate("page.player.end")
+        shots = []
+        for k in range(round(end * FRAMES_PER_SECOND)):
+            page.evaluate("(t) => { page.player.seek(t); page.draw(); }", k / FRAMES_PER_SECOND)
+            image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+            shots.append(image.resize((WIDTH, round(WIDTH * image.height / image.width)), Image.Resampling.LANCZOS))
+        chromium.close()
+    return shots
+
+
+def write(shots: list[Image.Image], output: Path) -> int:
+    """The best quality whose file stays below LIMIT; its size in bytes."""
+    for quality in (80, 70, 60, 50, 40, 30):
+        buffer = io.BytesIO()
+        how = {"save_all": True, "append_images": shots[1:], "duration": 1000 / FRAMES_PER_SECOND, "loop": 0}
+        shots[0].save(buffer, "WEBP", quality=quality, method=4, **how)
+        if len(buffer.getvalue()) < LIMIT:
+            output.write_bytes(buffer.getvalue())
+            return len(buffer.getvalue())
+    raise SystemExit(f"{output} would be larger than {LIMIT} bytes.")
+
+
+def main() -> None:
+    page_file, output = (Path(argument) for argument in sys.argv[1:])
+    size = write(frames(page_file), output)
+    print(f"{output} ({size / 1e6:.1f} MB)")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,149 @@
+"""Bodies in motion out of result files: wheels, and a car's body, from the CSV that `fmpy simulate` writes.
+
+SI units, fixed axes X, Y, Z, Z up, angles in rad and not wrapped. A column `name.X_O` belongs to the body `name`;
+columns without such a prefix are one wheel, called as the file.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+POSE = ("X_O", "Y_O", "psi", "theta", "phi")
+SHOWN = ("Z_O", "omega_z", "friction_mode", "lambda_1", "lambda_2", "lambda_3", "E")
+RATES = tuple(f"{name}_dot" for name in (*POSE, "Z_O"))
+BODY_POSE = ("X", "Y", "Z", "yaw", "pitch", "roll")
+ALIASES = {"psi": "yaw", "theta": "pitch", "phi": "roll"}  # of a car's body
+PAPER_WHEEL = (0.3, 0.05)  # r_0, r in m, (27)
+
+
+class ViewError(Exception):
+    """A file cannot be shown; the message is one sentence for the user."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """A wheel (size None) or a box (size: length, width, height in m), one row per communication point."""
+
+    name: str
+    columns: dict[str, Array]
+    r_0: float = 0.0
+    r: float = 0.0
+    size: tuple[float, float, float] | None = None
+
+    @property
+    def start(self) -> Array:
+        """Position of the centre at the first row, in m."""
+        names = ("X_O", "Y_O", "Z_O") if self.size is None else ("X", "Y", "Z")
+        return np.array([self.columns[name][0] if name in self.columns else 0.0 for name in names])
+
+
+def read_columns(path: Path) -> dict[str, list[str]]:
+    """The columns of a CSV file with a header, as texts."""
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            header, *rows = [row for row in csv.reader(file) if row] or [[]]
+    except (OSError, UnicodeDecodeError) as fault:
+        raise ViewError(
+            f"{path} cannot be read: {getattr(fault, 'strerror', None) or 'it is no text file'}."
+        ) from fault
+    if "time" not in header:
+        raise ViewError(f"{path} has no column time; a file as `fmpy simulate --output-file` writes it is needed.")
+    if len(rows) < 2:
+        raise ViewError(f"{path} has {len(rows)} rows of data; a motion needs at least two.")
+    for number, row in enumerate(rows, 2):
+        if len(row) != len(header):
+            raise ViewError(f"{path}, line {number}: {len(row)} values under {len(header)} names.")
+    return dict(zip(header, map(list, zip(*rows, strict=True)), strict=True))
+
+
+def numbers(path: Path, name: str, texts: list[str]) -> Array:
+    """One column as finite numbers."""
+    try:
+        values = np.array(texts, dtype=float)
+    except ValueError:
+        values = np.array([np.nan])
+    if not np.isfinite(values).all():
+        raise ViewError(f"{path}: the column {name} holds something that is no finite number.")
+    return values
+
+
+def read_bodies(path: Path, shape: tuple[float, float] | None, box: tuple[float, float, float] | None) -> list[Body]:
+    """All bodies of one file. shape: r_0, r in m, None: from the motion; box: size of a car's body in m."""
+    groups: dict[str, dict[str, list[str]]] = defaultdict(dict)
+    texts = read_columns(path)
+    time = numbers(path, "time", texts.pop("time"))
+    if not (np.diff(time) >= 0).all() or time[-1] <= time[0]:
+        raise ViewError(f"{path}: the column time does not rise.")
+    kept = np.append(np.diff(time) > 0, True)  # of two rows at one instant the later
+    for name, column in texts.items():
+        prefix, _, short = name.rpartition(".")
+        groups[prefix][short] = column
+    bodies = []
+    for prefix, group in groups.items():
+        group, wanted = known(group)
+        if not wanted and not prefix and len(groups) == 1:
+            missing = [column for column in POSE if column not in group]
+            raise ViewError(f"{path} lacks the column {', '.join(missing)}.")
+        columns = {column: numbers(path, column, group[column])[kept] for column in wanted}
+        if columns:
+            bodies.append(make_body(prefix or path.stem, {"time": time[kept]} | columns, shape, box))
+    if not bodies:
+        raise ViewError(f"{path} holds no body: a wheel needs the columns {', '.join(POSE)}, a car's body X, Y, Z.")
+    return [fit_box(body, bodies, box) for body in bodies]
+
+
+def known(group: dict[str, list[str]]) -> tuple[dict[str, list[str]], list[str]]:
+    """A body's columns under the names used here, and those to show; none of a unit that is no body."""
+    if all(column in group for column in POSE):
+        return group, [column for column in (*POSE, *SHOWN, *RATES) if column in group]
+    if {"X", "Y", "Z"} <= group.keys():
+        group = {ALIASES.get(column, column): text for column, text in group.items()}
+        return group, [column for column in BODY_POSE if column in group]
+    return group, []
+
+
+def make_body(name: str, columns: dict[str, Array], shape: tuple[float, float] | None, box) -> Body:
+    """A wheel or a box out of its columns; angles of a box that are missing are zero."""
+    if "theta" in columns:
+        r_0, r = shape or shape_of(columns)
+        return Body(name, columns, r_0, r)
+    zero = np.zeros_like(columns["time"])
+    return Body(name, dict.fromkeys(BODY_POSE, zero) | columns, size=box or (0.0, 0.0, 0.0))
+
+
+def shape_of(columns: dict[str, Array]) -> tuple[float, float]:
+    """r_0 and r in m from contact, Z_O = r_0 sin theta + r (32); the paper's proportions where theta hardly changes."""
+    r_0, r = PAPER_WHEEL
+    if "Z_O" not in columns:
+        return PAPER_WHEEL
+    rise = np.sin(columns["theta"])
+    if np.ptp(rise) < 1e-4:
+        scale = float(columns["Z_O"].mean() / (r_0 * rise.mean() + r))
+        return r_0 * scale, r * scale
+    matrix = np.column_stack([rise, np.ones_like(rise)])
+    (r_0, r), *_ = np.linalg.lstsq(matrix, columns["Z_O"], rcond=None)
+    if not (r_0 > 0 and r > -1e-6 * r_0):
+        return PAPER_WHEEL
+    return float(r_0), float(r) if r > 1e-6 * r_0 else 0.0
+
+
+def fit_box(body: Body, bodies: list[Body], box: tuple[float, float, float] | None) -> Body:
+    """A car's body of no given size spans its wheels: as long and wide as their centres stand apart at the start."""
+    if body.size is None or box:
+        return body
+    wheels = [other for other in bodies if other.size is None]
+    size = (1.0, 0.6, 0.4)
+    if wheels:
+        yaw = body.columns["yaw"][0]
+        apart = np.array([wheel.start[:2] - body.start[:2] for wheel in wheels])
+        along, across = apart @ [np.cos(yaw), np.sin(yaw)], apart @ [-np.sin(yaw), np.cos(yaw)]
+        least = 2 * max(wheel.r_0 + wheel.r for wheel in wheels)
+        size = (max(np.ptp(along), least), max(0.8 * np.ptp(across), 0.5 * least), 0.7 * least)
+    return Body(body.name, body.columns, size=tuple(float(edge) for edge in size))

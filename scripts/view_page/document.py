@@ -1,0 +1,116 @@
+"""Puts a page together: text, style, scripts, three.js and data in one HTML file that loads nothing from elsewhere.
+
+The scripts are ECMAScript modules, each a data: address in an import map, so that the browser itself joins them.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+
+from view_page.bodies import Body
+
+WEB = Path(__file__).parent / "web"
+PAGE_LIMIT = 3_000_000  # bytes of a page
+RECORDED_LIMIT = 1_500_000  # bytes of them for recorded motions
+THREE = "nicegui/elements/scene/dist/index.js"  # three.js and its OrbitControls, minified, within PyPI's nicegui
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Something to look at: views side by side, each a list of bodies by name."""
+
+    label: str
+    views: list[list[str]]
+
+
+def base64_of(data: bytes) -> str:
+    return base64.b64encode(data).decode("ascii")
+
+
+def library() -> tuple[str, str]:
+    """three.js as the text of a module, and its notice."""
+    spec = find_spec("nicegui")
+    if spec is None or spec.origin is None:
+        raise SystemExit("three.js is missing: run ./scripts/setup, which fetches it with the package nicegui.")
+    site = Path(spec.origin).parent.parent
+    text = (site / THREE).read_text(encoding="utf-8")
+    revision = re.search(r'const \w+="(1\d\d)"', text)
+    licence = (site / f"nicegui-{version('nicegui')}.dist-info" / "licenses" / "LICENSE").read_text(encoding="utf-8")
+    name = f"three.js r{revision.group(1)}" if revision else "three.js"
+    notice = f"{name}, Copyright (c) 2010-2025 three.js authors, as bundled by NiceGUI {version('nicegui')}:\n{licence}"
+    return re.sub(r"\n//# sourceMappingURL=.*", "", text), notice.replace("--", "-")
+
+
+def modules(three: str) -> str:
+    """The import map: every module by its name."""
+    texts = {"three": three}
+    for path in sorted(WEB.glob("*.js")):
+        texts[f"#{path.stem}"] = f"{path.read_text(encoding='utf-8')}\n//# sourceURL=view_page/{path.name}\n"
+    head = "data:text/javascript;base64,"
+    return json.dumps({"imports": {name: head + base64_of(text.encode()) for name, text in texts.items()}})
+
+
+def thinned(bodies: list[Body], limit: int = RECORDED_LIMIT) -> tuple[list[Body], int]:
+    """Every n-th row of each body, so that all fit into `limit` bytes; and n, 1 if nothing was left out."""
+    total = sum(len(column) for body in bodies for column in body.columns.values()) * 8 * 4 / 3
+    every = max(1, int(np.ceil(total / limit)))
+    if every == 1:
+        return bodies, 1
+
+    def few(column: np.ndarray) -> np.ndarray:
+        return column[sorted({*range(0, len(column), every), len(column) - 1})]
+
+    return [replace(body, columns={n: few(c) for n, c in body.columns.items()}) for body in bodies], every
+
+
+def encoded(body: Body, label: str) -> dict:
+    columns = {name: base64_of(column.astype("<f8").tobytes()) for name, column in body.columns.items()}
+    entry = {"name": body.name, "label": label, "columns": columns}
+    return entry | ({"r_0": body.r_0, "r": body.r} if body.size is None else {"size": body.size})
+
+
+def scale_of(bodies: list[Body]) -> dict[str, float]:
+    """How large the thing is that one looks at, and how high its middle lies, in m."""
+    wheels = [body for body in bodies if body.size is None]
+    radius = max((wheel.r_0 + wheel.r for wheel in wheels), default=0.3)
+    boxed = [body for body in bodies if body.size is not None]
+    size = max([2 * radius, *(0.9 * float(np.hypot(*body.size[:2])) for body in boxed)])
+    return {"size": size, "height": 0.8 * radius}
+
+
+def write(
+    output: Path,
+    title: str,
+    bodies: list[Body],
+    labels: dict[str, str],
+    choices: list[Choice],
+    live: dict | None = None,
+) -> int:
+    """Write the page and return its size in bytes."""
+    three, notice = library()
+    every_body = [encoded(body, labels.get(body.name, body.name)) for body in bodies]
+    data = {
+        "wheels": [entry for entry in every_body if "r_0" in entry],
+        "bodies": [entry for entry in every_body if "size" in entry],
+        "choices": [{"label": choice.label, "views": choice.views} for choice in choices],
+        "live": live,
+    } | scale_of(bodies)
+    parts = {
+        "title": title.replace("&", "&amp;").replace("<", "&lt;"),
+        "licences": notice,
+        "style": (WEB / "style.css").read_text(encoding="utf-8"),
+        "data": json.dumps(data).replace("<", "\\u003c"),
+        "modules": modules(three),
+    }
+    page = re.sub(r"\{\{(\w+)\}\}", lambda m: parts[m.group(1)], (WEB / "page.html").read_text(encoding="utf-8"))
+    output.parent.mkdir(parents=True, exist_ok=True)
+    output.write_text(page, encoding="utf-8")
+    return len(page.encode())

@@ -1,0 +1,183 @@
+// The 3-D stage: ground, light, cameras, and one or more views side by side in one canvas. Fixed axes X, Y, Z, Z up.
+import {colour} from '#theme';
+import {OrbitControls, THREE} from 'three';
+
+THREE.Object3D.DEFAULT_UP.set(0, 0, 1);
+const GROUND = 60;  // m, edge of the drawn ground
+
+/** One square metre of the ground: lines every metre and, finer, every 0.1 m. */
+function groundTexture(base, fine, coarse) {
+  const canvas = document.createElement('canvas');
+  canvas.width = canvas.height = 1024;
+  const pen = canvas.getContext('2d');
+  pen.fillStyle = base;
+  pen.fillRect(0, 0, 1024, 1024);
+  pen.fillStyle = fine;
+  for (let i = 1; i < 10; ++i) {
+    pen.fillRect(102.4 * i - 1.5, 0, 3, 1024);
+    pen.fillRect(0, 102.4 * i - 1.5, 1024, 3);
+  }
+  pen.fillStyle = coarse;
+  for (const edge of [0, 1019]) {
+    pen.fillRect(edge, 0, 5, 1024);
+    pen.fillRect(0, edge, 1024, 5);
+  }
+  const texture = new THREE.CanvasTexture(canvas);
+  texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
+  texture.repeat.set(GROUND, GROUND);
+  texture.colorSpace = THREE.SRGBColorSpace;
+  return texture;
+}
+
+export class Stage {
+  /** size: m, how large the thing is that one looks at. */
+  constructor(canvas, size) {
+    this.canvas = canvas;
+    this.size = size;
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+    this.scene = new THREE.Scene();
+    this.scene.fog = new THREE.Fog('#fff', 4 * size, 14 * size);
+    this.camera = new THREE.PerspectiveCamera(34, 1, 0.02 * size, 60 * size);
+    this.camera.position.set(1.5 * size, -2.35 * size, 1.0 * size);
+    this.controls = new OrbitControls(this.camera, canvas);
+    Object.assign(this.controls, {maxPolarAngle: 1.54, minDistance: 0.8 * size, maxDistance: 12 * size});
+    Object.assign(this.controls, {enableDamping: true, dampingFactor: 0.12, zoomSpeed: 0.8});
+    canvas.addEventListener('keydown', (event) => {
+      const way = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
+      if (way) this.turn(0.09 * way[0], 0.06 * way[1]);
+    });
+    this.controls.addEventListener('change', () => (this.dirty = true));
+    this.eye = new THREE.PerspectiveCamera();
+    this.addGround();
+    this.addLight();
+    this.dirty = true;
+    this.models = [];
+  }
+
+  addGround() {
+    const plane = new THREE.PlaneGeometry(GROUND, GROUND);
+    this.ground = new THREE.Mesh(plane, new THREE.MeshLambertMaterial({color: '#fff'}));
+    this.ground.receiveShadow = true;
+    this.scene.add(this.ground);
+  }
+
+  addLight() {
+    this.sky = new THREE.HemisphereLight('#ffffff', '#8890a0', 1.5);
+    this.sky.position.set(0, 0, 1);
+    this.sun = new THREE.DirectionalLight('#fff6e8', 2.3);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.radius = 6;
+    this.sun.shadow.bias = -0.0004;
+    this.sun.shadow.normalBias = 0.01;
+    const reach = 1.6 * this.size;
+    Object.assign(this.sun.shadow.camera, {left: -reach, right: reach, top: reach, bottom: -reach});
+    Object.assign(this.sun.shadow.camera, {near: 0.1 * this.size, far: 9 * this.size});
+    this.scene.add(this.sky, this.sun, this.sun.target);
+    const surroundings = new THREE.Scene();  // what the metal mirrors: a bright sky over a grey ground
+    const dome = new THREE.Mesh(
+        new THREE.SphereGeometry(10, 32, 16),
+        new THREE.MeshBasicMaterial({side: THREE.BackSide, vertexColors: true}),
+    );
+    const heights = dome.geometry.attributes.position;
+    const shades = [];
+    for (let i = 0; i < heights.count; ++i) {
+      const up = heights.getZ(i) / 10;
+      shades.push(...Array(3).fill(up > 0 ? 0.55 + 0.9 * up : 0.28 + 0.2 * up));
+    }
+    dome.geometry.setAttribute('color', new THREE.Float32BufferAttribute(shades, 3));
+    surroundings.add(dome);
+    const generator = new THREE.PMREMGenerator(this.renderer);
+    this.scene.environment = generator.fromScene(surroundings, 0.04).texture;
+    this.scene.environmentIntensity = 0.55;
+    generator.dispose();
+  }
+
+  /** Takes the colours of the theme. */
+  dress() {
+    const air = new THREE.Color(colour('--sky'));
+    this.scene.background = air;
+    this.scene.fog.color = air;
+    this.ground.material.map?.dispose();
+    this.ground.material.map = groundTexture(colour('--ground'), colour('--grid-fine'), colour('--grid'));
+    this.ground.material.map.anisotropy = this.renderer.capabilities.getMaxAnisotropy();
+    this.ground.material.needsUpdate = true;
+    this.dirty = true;
+  }
+
+  /** Replaces the bodies: [WheelModel or ChassisModel]. */
+  put(models) {
+    for (const old of this.models) {
+      this.scene.remove(old.group);
+      old.dispose();
+    }
+    this.models = models;
+    for (const model of models) this.scene.add(model.group);
+    this.dirty = true;
+  }
+
+  /** The views' rectangles in CSS pixels: beside each other, above each other where the canvas is tall. */
+  rectangles(count) {
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    const across = width >= 0.9 * height ? count : 1;
+    const down = across === 1 ? count : 1;
+    const [w, h] = [width / across, height / down];
+    return Array.from({length: count}, (_, i) => ({x: (i % across) * w, y: across === 1 ? i * h : 0, w, h}));
+  }
+
+  resize() {
+    const {clientWidth, clientHeight} = this.canvas;
+    const size = this.renderer.getSize(new THREE.Vector2());
+    if (size.x === clientWidth && size.y === clientHeight) return;
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.dirty = true;
+  }
+
+  /** Draws views [{models, anchor: Vector3}]: each its own models about its own anchor, all `away` times as far off. */
+  render(views, away) {
+    this.controls.update();
+    this.renderer.setScissorTest(true);
+    this.rectangles(views.length).forEach(({x, y, w, h}, i) => {
+      const {models, anchor} = views[i];
+      for (const model of this.models) model.group.visible = models.includes(model);
+      this.eye.copy(this.camera);
+      this.eye.position.multiplyScalar(away).add(anchor);
+      // A narrow view needs a wider lens, or the wheel would leave it.
+      this.eye.fov = w < h ? 34 * Math.min(1.7, h / w) : 34;
+      this.eye.aspect = w / h;
+      this.eye.updateProjectionMatrix();
+      this.sun.target.position.copy(anchor).setZ(0);
+      this.sun.position.copy(this.sun.target.position);
+      this.sun.position.x += 1.4 * this.size;
+      this.sun.position.y -= 1.1 * this.size;
+      this.sun.position.z += 3.6 * this.size;
+      this.ground.position.set(Math.round(anchor.x), Math.round(anchor.y), 0);  // whole squares: the grid stands still
+      const up = this.canvas.clientHeight - y - h;
+      this.renderer.setViewport(x, up, w, h);
+      this.renderer.setScissor(x, up, w, h);
+      this.renderer.render(this.scene, this.eye);
+    });
+    this.dirty = false;
+  }
+
+  /** Turns the view about the vertical and up or down, in rad. */
+  turn(around, over) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const flat = Math.hypot(offset.x, offset.y);
+    const azimuth = Math.atan2(offset.y, offset.x) + around;
+    const polar = Math.min(1.5, Math.max(0.12, Math.atan2(flat, offset.z) + over));  // from the vertical
+    const length = offset.length();
+    offset.set(Math.cos(azimuth) * Math.sin(polar), Math.sin(azimuth) * Math.sin(polar), Math.cos(polar));
+    this.camera.position.copy(this.controls.target).addScaledVector(offset, length);
+    this.dirty = true;
+  }
+
+  /** The first camera again. */
+  home() {
+    this.controls.reset();
+    this.dirty = true;
+  }
+}

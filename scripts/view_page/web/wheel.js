@@ -1,0 +1,169 @@
+// One wheel in the scene: a torus of ring radius r_0 and tube radius r in m, turned by psi about Z, theta about the
+// line of nodes e1, and phi about the axle e3 (paper, (3)); its contact path, carrier axes and the ground's force.
+import {sticksAt} from '#phases';
+import {dispose, makeArrow, makeLabel, makeRibbon, pointArrow, showRibbon, tyreTexture} from '#shapes';
+import {contactOf} from '#table';
+import {THREE} from 'three';
+
+const METAL = {
+  color: '#c3c9d1',
+  metalness: 0.85,
+  roughness: 0.32
+};
+const UP = new THREE.Vector3(0, 0, 1);
+const NODES = new THREE.Vector3(1, 0, 0);
+const FINE = 3;  // points of the path per row
+const POSE = ['X_O', 'Y_O', 'psi', 'theta'];
+const turn = new THREE.Quaternion();
+
+/** A group, and a function that adds a body of this shape to it. */
+function workshop() {
+  const body = new THREE.Group();
+  const add = (geometry, material) => {
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.castShadow = true;
+    body.add(mesh);
+    return mesh;
+  };
+  return {body, add};
+}
+
+/** Tyre, rim, spokes and hub about the axle z; marked spoke and mark on the tyre at angle 0. */
+function makeBody(r_0, r, accent) {
+  const {body, add} = workshop();
+  const metal = new THREE.MeshStandardMaterial(METAL);
+  add(new THREE.TorusGeometry(r_0, r, 40, 180),
+      new THREE.MeshStandardMaterial({map: tyreTexture(accent), roughness: 0.72}));
+  const inner = r_0 - 0.72 * r;
+  add(new THREE.TorusGeometry(inner, 0.42 * r, 16, 120), metal);
+  add(new THREE.CylinderGeometry(0.2 * r_0, 0.2 * r_0, 1.1 * r, 48), metal).rotation.x = Math.PI / 2;
+  const marked = new THREE.MeshStandardMaterial({color: accent, roughness: 0.4});
+  for (let i = 0; i < 5; ++i) {
+    const width = (i === 0 ? 0.2 : 0.13) * r_0;
+    const spoke = add(new THREE.BoxGeometry(inner - 0.1 * r_0, width, 0.55 * r), i === 0 ? marked : metal);
+    const angle = (2 * Math.PI * i) / 5;
+    const middle = 0.5 * (inner + 0.1 * r_0);
+    spoke.position.set(middle * Math.cos(angle), middle * Math.sin(angle), 0);
+    spoke.rotation.z = angle;
+  }
+  return body;
+}
+
+/** The thin disc, r = 0, with a marked radius at angle 0; it is drawn as thick as a coin. */
+function makeDisc(r_0, accent) {
+  const {body, add} = workshop();
+  const thickness = 0.024 * r_0;
+  const face =
+      new THREE.MeshStandardMaterial({color: '#7d848f', metalness: 0.6, roughness: 0.38, envMapIntensity: 1.2});
+  add(new THREE.CylinderGeometry(r_0, r_0, thickness, 160), face).rotation.x = Math.PI / 2;
+  const marked = new THREE.MeshStandardMaterial({color: accent, roughness: 0.4});
+  add(new THREE.BoxGeometry(0.995 * r_0, 0.16 * r_0, 1.3 * thickness), marked).position.x = 0.497 * r_0;
+  add(new THREE.TorusGeometry(r_0, 0.5 * thickness, 12, 160), new THREE.MeshStandardMaterial(METAL));
+  return body;
+}
+
+/** e1, e2, e3 as arrows from O, with names. */
+function makeAxes(r_0, r, colours) {
+  const axes = new THREE.Group();
+  const reach = 1.5 * (r_0 + r);
+  const directions = [new THREE.Vector3(1, 0, 0), new THREE.Vector3(0, 1, 0), new THREE.Vector3(0, 0, 0.75)];
+  directions.forEach((direction, i) => {
+    const arrow = makeArrow(0.022 * r_0, colours[i]);
+    pointArrow(arrow, direction.multiplyScalar(reach));
+    const label = makeLabel(`e${i + 1}`, colours[i], 0.3 * r_0);
+    label.position.copy(direction).multiplyScalar(1 + 0.12 / direction.length());
+    axes.add(arrow, label);
+  });
+  return axes;
+}
+
+export class WheelModel {
+  /**
+   * wheel: {name, r_0, r, table, phases}; look: CSS colours {accent, stick, force, axes: [3]}, size of the scene in m.
+   */
+  constructor(wheel, look) {
+    this.wheel = wheel;
+    this.look = look;
+    this.group = new THREE.Group();
+    this.carrier = new THREE.Group();
+    this.carrier.name = `wheel:${wheel.name}`;
+    this.body =
+        wheel.r > 0.01 * wheel.r_0 ? makeBody(wheel.r_0, wheel.r, look.accent) : makeDisc(wheel.r_0, look.accent);
+    this.body.name = `spin:${wheel.name}`;
+    this.axes = makeAxes(wheel.r_0, wheel.r, look.axes);
+    this.carrier.add(this.body, this.axes);
+    this.force = makeArrow(0.03 * wheel.r_0, look.force);
+    const ring = new THREE.RingGeometry(0.07 * wheel.r_0, 0.11 * wheel.r_0, 40);
+    this.spot = new THREE.Mesh(ring, new THREE.MeshBasicMaterial({color: look.force, depthWrite: false}));
+    this.spot.renderOrder = 900;
+    this.group.add(this.carrier, this.force, this.spot);
+    this.drawPath();
+    const N = wheel.table.columns.lambda_3;
+    this.weight = N ? N.reduce((sum, value) => sum + value, 0) / N.length : 0;
+  }
+
+  /** The contact path anew: all of it faintly, up to now strongly, stick phases in a colour of their own. */
+  drawPath() {
+    for (const old of [this.whole, this.past, ...(this.held ?? [])])
+      if (old) this.group.remove(old);
+    const {table, r_0, phases} = this.wheel;
+    const points = Array.from({length: FINE * (table.rows - 1) + 1}, (_, i) => {
+      const row = Math.min(table.rows - 2, Math.floor(i / FINE));
+      const t = table.time[row] + (i / FINE - row) * (table.time[row + 1] - table.time[row]);
+      return contactOf(r_0, ...POSE.map((name) => table.value(name, t)));
+    });
+    const flat = (colour, opacity) => new THREE.MeshBasicMaterial(
+        {color: colour, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: false});
+    const width = Math.max(0.045 * r_0, 0.006 * this.look.size);
+    this.whole = makeRibbon(points, 0.5 * width, 0.001, flat(this.look.accent, 0.3));
+    this.past = makeRibbon(points, width, 0.002, flat(this.look.accent, 0.95));
+    this.held = phases.sticks.map(([begin, end]) => {
+      const first = this.point(begin);
+      const ribbon =
+          makeRibbon(points.slice(first, this.point(end) + 1), 5 * width, 0.0015, flat(this.look.stick, 0.9));
+      ribbon.userData = {begin, first};
+      return ribbon;
+    });
+    this.group.add(this.whole, this.past, ...this.held);
+    [this.whole, ...this.held, this.past].forEach((ribbon, i) => (ribbon.renderOrder = 1 + i));
+  }
+
+  /** The last point of the path at or before t. */
+  point(t) {
+    const {table} = this.wheel;
+    const row = table.row(t);
+    const share = (t - table.time[row]) / (table.time[row + 1] - table.time[row] || 1);
+    return FINE * row + Math.floor(FINE * Math.min(1, share) + 1e-6);
+  }
+
+  /** Pose, path and force at t. show: {path, axes, force}. */
+  update(t, show) {
+    const {table, r_0, r} = this.wheel;
+    const at = (name) => table.value(name, t);
+    const [X, Y, psi, theta, phi] = ['X_O', 'Y_O', 'psi', 'theta', 'phi'].map(at);
+    this.carrier.position.set(X, Y, table.has('Z_O') ? at('Z_O') : r_0 * Math.sin(theta) + r);
+    this.carrier.quaternion.setFromAxisAngle(UP, psi).multiply(turn.setFromAxisAngle(NODES, theta));
+    this.body.rotation.z = phi;
+    this.axes.visible = show.axes;
+    const now = this.point(t);
+    for (const ribbon of [this.whole, this.past, ...this.held]) ribbon.visible = show.path;
+    showRibbon(this.past, now);
+    for (const ribbon of this.held) {
+      ribbon.visible &&= t >= ribbon.userData.begin;
+      showRibbon(ribbon, now - ribbon.userData.first);
+    }
+    const contact = contactOf(r_0, X, Y, psi, theta);
+    this.spot.visible = show.path;
+    this.spot.position.set(...contact, 0.004);
+    this.force.visible = show.force && table.has('lambda_3');
+    if (this.force.visible) {
+      const scale = (1.1 * (r_0 + r)) / (this.weight || 1);
+      this.force.position.set(...contact, 0);
+      pointArrow(this.force, new THREE.Vector3(...['lambda_1', 'lambda_2', 'lambda_3'].map(at)).multiplyScalar(scale));
+    }
+  }
+
+  sticks(t) { return sticksAt(this.wheel.phases, t); }
+
+  dispose() { dispose(this.group); }
+}

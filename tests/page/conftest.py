@@ -1,0 +1,74 @@
+"""The pages, and headless Chromium to look at them."""
+
+from __future__ import annotations
+
+import fcntl
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+from support.paths import ROOT
+
+from page.pages import FLAGS, RECORD, opened, view, write_csv
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture(scope="session")
+def scenes(simulate) -> dict[str, np.ndarray]:
+    """The paper's two scenes as ./scripts/run records them."""
+    return {name: simulate(step=0.01, output=RECORD, s=s) for name, s in (("free", 0.0), ("friction", 0.03))}
+
+
+@pytest.fixture(scope="session")
+def recorded_file(scenes, tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("page")
+    files = [write_csv(folder / f"{n}.csv", {c: rows[c] for c in rows.dtype.names}) for n, rows in scenes.items()]
+    done = view(*files, "--output", folder / "wheel.html")
+    assert done.returncode == 0, done.stderr
+    return folder / "wheel.html"
+
+
+@pytest.fixture(scope="session")
+def recorded(browser, recorded_file) -> Iterator[Page]:
+    with opened(browser, recorded_file) as page:
+        yield page
+
+
+@pytest.fixture(scope="session")
+def locked() -> Callable:
+    """locked(name): one process at a time builds this folder of build/."""
+
+    @contextmanager
+    def lock(name: str) -> Iterator[Path]:
+        (ROOT / "build").mkdir(exist_ok=True)
+        with (ROOT / "build" / f"{name}.lock").open("w") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            yield ROOT / "build" / name
+
+    return lock
+
+
+@pytest.fixture(scope="session")
+def live_file(locked) -> Path:
+    with locked("wasm") as folder:
+        page = folder.with_name("wheel_live.html")
+        subprocess.run([ROOT / "scripts" / "page", page], check=True, capture_output=True)
+        return page
+
+
+@pytest.fixture(scope="session")
+def live(browser, live_file) -> Iterator[Page]:
+    with opened(browser, live_file) as page:
+        yield page

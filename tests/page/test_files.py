@@ -1,0 +1,104 @@
+"""What ./scripts/view makes of result files, without a browser."""
+
+from __future__ import annotations
+
+import re
+import sys
+
+import numpy as np
+import pytest
+from support.paths import ROOT
+
+from page.pages import POSE, view, write_csv
+
+sys.path.insert(0, str(ROOT / "scripts"))
+from view_page.bodies import read_bodies  # noqa: E402
+
+
+def columns_of(rows: np.ndarray, names=("time", *POSE)) -> dict[str, np.ndarray]:
+    return {name: np.asarray(rows[name], dtype=float) for name in names}
+
+
+@pytest.fixture
+def one(scenes, tmp_path):
+    return write_csv(tmp_path / "one.csv", columns_of(scenes["free"]))
+
+
+@pytest.mark.parametrize(("r_0", "r"), [(0.3, 0.05), (0.2, 0.0)])
+def test_the_wheels_radii_follow_from_its_motion(simulate, tmp_path, r_0, r):
+    rows = simulate(step=0.1, stop=2.0, output=POSE, r_0=r_0, r=r, J_x=0.4, J_y=0.4, J_z=0.8)
+    (body,) = read_bodies(write_csv(tmp_path / "wheel.csv", columns_of(rows)), None, None)
+    assert abs(body.r_0 - r_0) < 1e-12  # measured: 2e-16
+    assert abs(body.r - r) < 1e-12
+
+
+def test_a_wheel_that_stays_upright_gets_the_papers_proportions(tmp_path):
+    t = np.linspace(0, 1, 11)
+    pose = {"X_O": t, "Y_O": 0 * t, "Z_O": 0 * t + 0.7, "psi": 0 * t, "theta": 0 * t + np.pi / 2, "phi": -t / 0.7}
+    (body,) = read_bodies(write_csv(tmp_path / "upright.csv", {"time": t} | pose), None, None)
+    assert (body.r_0, body.r) == pytest.approx((0.6, 0.1))
+
+
+def test_prefixes_make_several_wheels_and_a_box_that_spans_them(scenes, tmp_path):
+    rows = columns_of(scenes["free"])
+    table = {"time": rows["time"]}
+    for name, x, y in (("wheel_fl", 2.6, 1.5), ("wheel_rr", 0.0, 0.0)):
+        moved = rows | {"X_O": rows["X_O"] + x, "Y_O": rows["Y_O"] + y}
+        table |= {f"{name}.{column}": moved[column] for column in POSE}
+    table |= {f"chassis.{column}": 0 * rows["time"] for column in ("X", "Y", "Z", "psi")}
+    table |= {"driver.speed": rows["time"]}
+    bodies = {body.name: body for body in read_bodies(write_csv(tmp_path / "car.csv", table), None, None)}
+    assert set(bodies) == {"wheel_fl", "wheel_rr", "chassis"}
+    assert bodies["chassis"].size[:2] == pytest.approx((2.6, 0.8 * 1.5))
+    assert "yaw" in bodies["chassis"].columns
+
+
+def broken(columns: dict[str, np.ndarray], fault: str) -> dict[str, np.ndarray]:
+    if fault == "no psi":
+        return {name: column for name, column in columns.items() if name != "psi"}
+    if fault == "a gap":
+        return columns | {"phi": np.where(columns["time"] > 5, np.nan, columns["phi"])}
+    return columns | {"time": -columns["time"]}
+
+
+@pytest.mark.parametrize(
+    ("fault", "sentence"),
+    [("no psi", "lacks the column psi"), ("a gap", "no finite number"), ("backwards", "time does not rise")],
+)
+def test_a_file_that_cannot_be_shown_is_refused_with_one_sentence(scenes, tmp_path, fault, sentence):
+    path = write_csv(tmp_path / "bad.csv", broken(columns_of(scenes["free"]), fault))
+    done = view(path)
+    assert done.returncode == 1
+    assert sentence in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not path.with_suffix(".html").exists()
+
+
+def test_a_missing_file_is_refused_with_one_sentence(tmp_path):
+    done = view(tmp_path / "none.csv")
+    assert done.returncode == 1
+    assert "cannot be read" in done.stderr
+
+
+def test_the_page_is_one_file_that_asks_for_nothing_else(recorded_file):
+    text = recorded_file.read_text()
+    addresses = re.findall(r"""(?:src|href|url|@import)\s*[=(]\s*["']?([^"')\s>]+)""", text)
+    assert all(address.startswith("data:") for address in addresses)
+    assert len(text.encode()) < 3_000_000
+
+
+def test_a_long_run_is_thinned_to_a_page_below_three_megabytes(scenes, one, tmp_path):
+    rows = columns_of(scenes["free"])
+    many = {name: np.tile(column, 120) for name, column in rows.items()}
+    many["time"] = np.arange(len(many["time"])) * 0.01
+    done = view(write_csv(tmp_path / "long.csv", many))
+    assert done.returncode == 0
+    assert "row is kept" in done.stdout
+    assert (tmp_path / "long.html").stat().st_size < 3_000_000
+    assert "row is kept" not in view(one).stdout
+
+
+def test_the_page_names_the_licence_of_three_js(recorded_file):
+    text = recorded_file.read_text()
+    assert "three.js authors" in text
+    assert "Permission is hereby granted" in text

@@ -1,0 +1,177 @@
+"""The live page in headless Chromium: the wheel itself in WebAssembly, and the FMU with the same libm beside it."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy.fmi2 import FMU2Slave
+from support.paths import ROOT
+
+NAMES = ("X_O", "Y_O", "psi", "theta", "phi", "omega_z", "lambda_3", "E")
+STEP = 0.01  # s
+SCENES = {
+    "free": ({}, []),
+    "friction": ({"s": 0.03}, []),
+    "thin disc": ({"r": 0.0, "psi_dot_start": 1.0}, []),
+    "pushed": ({"s": 0.01}, [(1.0, "M_3", -3.0), (2.0, "M_3", 0.0), (4.0, "s", 0.05)]),
+}
+RUN = """([values, changes, record]) => {
+  const { table, ended } = page.live.fmu.run({
+    values, changes: changes.map(([t, name, value]) => ({ t, name, value })), stop: 10, step: 0.01, record,
+  });
+  return [record.map((name) => [...table.columns[name]]), ended];
+}"""
+
+
+@pytest.fixture(scope="session")
+def same_libm(description, locked, tmp_path_factory) -> Path:
+    """The FMU, unpacked, with a library of this machine's compiler and the releases' libm."""
+    zig = subprocess.run(
+        [ROOT / "scripts/releasing/compiler"], check=True, capture_output=True, text=True
+    ).stdout.strip()
+    with locked("musl") as build:
+        log = {"check": True, "stdout": subprocess.DEVNULL}
+        options = [f"-DWHEEL_LIBM_SOURCE={zig}/lib/libc/musl", "-DCMAKE_BUILD_TYPE=Release"]
+        subprocess.run(["cmake", "-S", ROOT, "-B", build, *options], **log)
+        subprocess.run(["cmake", "--build", build, "--target", "wheel_fmu", "--parallel", "2"], **log)
+        folder = tmp_path_factory.mktemp("musl")
+        (folder / "binaries" / "linux64").mkdir(parents=True)
+        shutil.copy(build / "wheel.so", folder / "binaries" / "linux64")
+    return folder
+
+
+def by_fmu(folder: Path, description, values: dict, changes: list) -> np.ndarray:
+    """The same calls that the page makes, to the native library."""
+    reference = {variable.name: variable.valueReference for variable in description.modelVariables}
+    unit = FMU2Slave(guid=description.guid, unzipDirectory=str(folder), modelIdentifier="wheel", instanceName="wheel")
+    unit.instantiate()
+    for name, value in values.items():
+        unit.setReal([reference[name]], [value])
+    unit.setupExperiment()
+    unit.enterInitializationMode()
+    unit.exitInitializationMode()
+    wanted = [reference[name] for name in NAMES]
+    rows = [unit.getReal(wanted)]
+    for k in range(1000):
+        for _, name, value in [change for change in changes if round(change[0] / STEP) == k]:
+            unit.setReal([reference[name]], [value])
+        unit.doStep(k * STEP, STEP)
+        rows.append(unit.getReal(wanted))
+    unit.terminate()
+    unit.freeInstance()
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_wheel_in_the_page_has_the_bits_of_the_fmu(live, same_libm, description, scene):
+    values, changes = SCENES[scene]
+    columns, ended = live.evaluate(RUN, [values, changes, list(NAMES)])
+    assert ended is None
+    expected = by_fmu(same_libm, description, values, changes)
+    assert np.array(columns).T.tobytes() == expected.tobytes()
+    other = by_fmu(same_libm, description, {**values, "phi_dot_start": np.nextafter(-2.0, 0)}, changes)
+    assert other.tobytes() != expected.tobytes()
+
+
+def column(page, name: str) -> np.ndarray:
+    return np.array(page.evaluate("(name) => [...page.wheels[0].table.columns[name]]", name))
+
+
+def preset(page, label: str) -> None:
+    page.get_by_role("button", name=label, exact=True).click()
+    page.evaluate("page.player.pause()")
+
+
+def test_dragging_s_changes_the_motion_from_now_on_and_not_before(live):
+    preset(live, "Paper, no friction")
+    live.evaluate("page.player.seek(3)")
+    before = column(live, "theta")
+    slider = live.locator("#live [name=s]")
+    slider.scroll_into_view_if_needed()
+    box = slider.bounding_box()
+    live.mouse.move(box["x"] + 3, box["y"] + box["height"] / 2)
+    live.mouse.down()
+    live.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + box["height"] / 2, steps=4)
+    live.mouse.up()
+    live.wait_for_function("page.live.changes.length > 0 && !page.live.wanted")
+    after = column(live, "theta")
+    assert 0.02 < float(live.evaluate("page.live.present('s')")) < 0.06
+    assert (before[:301] == after[:301]).all()
+    assert abs(before - after)[400:].max() > 0.1
+
+
+def test_the_future_after_a_push_is_that_of_a_run_with_that_input(live):
+    preset(live, "Paper, no friction")
+    live.evaluate("page.player.seek(2); page.live.setNow('M_3', -2); page.live.compute()")
+    pushed = column(live, "omega_z")
+    columns, _ = live.evaluate(RUN, [{}, [[2.0, "M_3", -2.0]], ["omega_z"]])
+    assert (pushed == columns[0]).all()
+    live.evaluate("page.player.seek(1); page.live.setNow('M_3', 0); page.live.compute()")
+    assert (column(live, "omega_z") != pushed).any()  # what was planned for later is dropped
+    assert len(set(live.evaluate("page.live.changes.map(({ value }) => value)"))) == 1
+
+
+def test_a_push_lasts_as_long_as_the_button_is_held(live):
+    preset(live, "Paper, no friction")
+    live.evaluate("page.player.seek(1)")
+    live.locator(".push").first.scroll_into_view_if_needed()
+    box = live.locator(".push").first.bounding_box()
+    live.mouse.move(box["x"] + 20, box["y"] + 20)
+    live.mouse.down()
+    live.wait_for_function("page.player.t > 1.1")
+    live.mouse.up()
+    live.evaluate("page.player.pause()")
+    changes = live.evaluate("page.live.changes.map(({ t, name, value }) => [t, name, value])")
+    assert [change[1:] for change in changes] == [["M_3", -6], ["M_3", 0]]
+    assert changes[1][0] > changes[0][0] == pytest.approx(1.0)
+
+
+def test_a_wheel_let_go_falls_and_the_page_says_so(live):
+    preset(live, "Paper, no friction")
+    live.evaluate("page.live.setStart('phi_dot_start', 0); page.live.compute(); page.player.seek(10); page.draw()")
+    assert "flat" in live.locator(".label span").inner_text()
+    assert live.evaluate("page.player.end") == pytest.approx(0.59, abs=0.01)
+    assert live.evaluate("page.wheels[0].phases.sticks") == []  # no friction holds it, omega_z is zero by itself
+
+
+def test_an_impossible_start_is_refused_with_the_wheels_own_sentence(live):
+    preset(live, "Paper, no friction")
+    live.evaluate("page.live.setStart('r_0', -1); page.live.frame()")
+    assert "r_0" in live.locator("#message").inner_text()
+    preset(live, "Paper, no friction")
+    live.evaluate("page.live.frame()")
+    assert "computed in" in live.locator("#message").inner_text()
+
+
+def test_a_tenth_of_the_spin_decides_whether_upright_rolling_is_stable(live):
+    lean = {}
+    for label in ("Just stable", "Just unstable"):
+        preset(live, label)
+        lean[label] = np.degrees(abs(column(live, "theta") - np.pi / 2).max())
+    assert lean["Just stable"] < 10  # measured: 4.9
+    assert lean["Just unstable"] > 20  # measured: 30
+
+
+def test_every_preset_runs_to_its_end(live):
+    for button in live.locator("#presets button").all():
+        button.click()
+        assert live.evaluate("page.live.trouble ?? page.wheels[0].ended") is None
+        assert live.evaluate("page.wheels[0].table.end") == pytest.approx(10)
+    live.evaluate("page.player.pause()")
+
+
+def test_a_kept_motion_stays_beside_the_next(live):
+    preset(live, "Paper, no friction")
+    live.locator("#keep").click()
+    preset(live, "Paper, s = 0.03 m")
+    live.evaluate("page.draw()")
+    assert live.evaluate("page.views.length") == 2
+    kept, new = (live.evaluate(f"page.wheels[{i}].table.columns.E.at(-1)") for i in (1, 0))
+    assert kept == pytest.approx(75.117, abs=1e-2)
+    assert new < 60
+    live.locator("#keep").click()
+    assert live.evaluate("page.wheels.length") == 1

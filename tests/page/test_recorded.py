@@ -1,0 +1,196 @@
+"""The page of recorded motions in headless Chromium: paper's two scenes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from page.pages import POSE, opened, view, write_csv
+
+INSTANTS = (0.0, 0.37, 1.0, 1.23, 2.5, 3.99, 5.0, 6.66, 8.01, 10.0)
+MATRIX = """([t, name]) => {
+  page.player.seek(t);
+  page.draw();
+  const body = page.stage.scene.getObjectByName('spin:' + name);
+  body.updateWorldMatrix(true, false);
+  return body.matrixWorld.elements;
+}"""
+
+
+def turn(axis: int, angle: float) -> np.ndarray:
+    """Rotation about a coordinate axis."""
+    c, s = np.cos(angle), np.sin(angle)
+    i, j = [k for k in range(3) if k != axis]
+    matrix = np.eye(3)
+    sign = -1 if axis != 1 else 1
+    matrix[[i, j], [i, j]], matrix[i, j], matrix[j, i] = c, sign * s, -sign * s
+    return matrix
+
+
+def pose_of(row) -> np.ndarray:
+    """4 x 4 matrix of the body axes in fixed axes: z-x-z angles of the paper, (3)."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn(2, row["psi"]) @ turn(0, row["theta"]) @ turn(2, row["phi"])
+    matrix[:3, 3] = [row["X_O"], row["Y_O"], row["Z_O"]]
+    return matrix
+
+
+def shown(page, t: float, name: str) -> np.ndarray:
+    return np.reshape(page.evaluate(MATRIX, [t, name]), (4, 4)).T
+
+
+@pytest.mark.parametrize("name", ["free", "friction"])
+def test_the_wheels_pose_in_the_scene_is_that_of_the_file(recorded, scenes, name):
+    rows = scenes[name]
+    off = []
+    for t in INSTANTS:
+        k = round(t / 0.01)
+        there = shown(recorded, t, name)
+        assert abs(there - pose_of(rows[k])).max() < 1e-12  # measured: 4e-15
+        off.append(abs(there - pose_of(rows[max(1, k) - 1])).max())
+    assert max(off) > 1e-2  # the row before
+
+
+def test_between_the_rows_the_pose_is_that_of_the_fmu(recorded, scenes, simulate):
+    fine = simulate(step=0.005, output=POSE, s=0.03)
+    rows = scenes["friction"]
+    middles = [k for k in range(25, 2000, 50) if k % 2]
+    errors = [abs(shown(recorded, 0.005 * k, "friction") - pose_of(fine[k])).max() for k in middles]
+    assert max(errors) < 1e-5  # measured: 3.5e-6, where the friction changes sign within the interval
+    nearest = [abs(pose_of(rows[k // 2]) - pose_of(fine[k])).max() for k in middles]
+    assert max(nearest) > 1e-2
+
+
+def test_a_fast_wheel_never_seems_to_run_backwards(browser, tmp_path):
+    """Ten radians of spin from row to row: the short way between two attitudes would be 2.6 rad the other way."""
+    t = np.arange(11) * 0.1
+    still = {"X_O": 0 * t, "Y_O": 0 * t, "Z_O": 0 * t + 0.35, "psi": 0 * t, "theta": 0 * t + np.pi / 2}
+    path = write_csv(tmp_path / "fast.csv", {"time": t} | still | {"phi": -100 * t})
+    assert view(path).returncode == 0
+    with opened(browser, path.with_suffix(".html"), viewport={"width": 400, "height": 400}) as page:
+        matrices = [shown(page, 0.1 + 0.001 * k, "fast") for k in range(100)]
+    steps = [a[:3, :3].T @ b[:3, :3] for a, b in zip(matrices, matrices[1:], strict=False)]
+    assert np.allclose([np.arctan2(step[1, 0], step[0, 0]) for step in steps], -0.1)
+
+
+def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(browser, tmp_path):
+    t = np.arange(11) * 0.1
+    pose = {"X": t, "Y": 2 * t, "Z": 0.6 + 0 * t, "yaw": 0.8 * t, "pitch": 0.3 * t, "roll": -0.4 * t}
+    wheel = {"X_O": t, "Y_O": 2 * t, "psi": 0.8 * t, "theta": 0 * t + np.pi / 2, "phi": -t}
+    named = {f"body.{k}": v for k, v in pose.items()} | {f"wheel_fl.{k}": v for k, v in wheel.items()}
+    assert view(write_csv(tmp_path / "car.csv", {"time": t} | named)).returncode == 0
+    with opened(browser, tmp_path / "car.html", viewport={"width": 400, "height": 400}) as page:
+        page.evaluate("page.player.seek(0.7); page.draw()")
+        there = page.evaluate("""() => {
+          const box = page.stage.scene.getObjectByName('body:body');
+          box.updateWorldMatrix(true, false);
+          return box.matrixWorld.elements;
+        }""")
+    expected = np.eye(4)
+    expected[:3, :3] = turn(2, 0.56) @ turn(1, 0.21) @ turn(0, -0.28)
+    expected[:3, 3] = [0.7, 1.4, 0.6]
+    assert abs(np.reshape(there, (4, 4)).T - expected).max() < 1e-12
+
+
+def test_the_friction_wheel_sticks_at_its_instant(recorded):
+    first = recorded.evaluate("page.wheels.find((wheel) => wheel.name === 'friction').phases.sticks[0]")
+    assert abs(first[0] - 1.2255) < 1e-4  # measured: 2e-5; half-way between the rows: 5e-4
+    assert first[1] > 1.3
+
+
+def test_the_label_and_the_diagram_say_that_the_wheel_sticks(recorded):
+    state = """(t) => {
+      page.choose(3);
+      page.player.seek(t);
+      page.draw();
+      const plot = page.plots.plots[1];
+      const pixel = (at) => [...plot.layers.faint.getContext('2d')
+        .getImageData(plot.x(at) * plot.ratio, plot.y(-1.5) * plot.ratio + 3, 1, 1).data];
+      return [document.querySelector('.label').dataset.state, pixel(t)];
+    }"""
+    before, clear = recorded.evaluate(state, 1.15)
+    during, band = recorded.evaluate(state, 1.26)
+    recorded.evaluate("page.choose(0)")
+    assert (before, during) == ("rolls", "sticks")
+    assert clear[3] == 0
+    assert band[3] > 0
+
+
+def test_the_free_wheel_never_sticks(recorded):
+    assert recorded.evaluate("page.wheels[0].phases") == {"sticks": [], "transitions": []}
+
+
+def test_keys_move_the_time_and_switch_what_is_shown(recorded):
+    recorded.evaluate("page.player.seek(2); document.activeElement.blur()")
+    recorded.keyboard.press("ArrowRight")
+    recorded.keyboard.press("Shift+ArrowRight")
+    assert recorded.evaluate("page.player.t") == pytest.approx(2.55)
+    recorded.keyboard.press("Home")
+    assert recorded.evaluate("page.player.t") == 0
+    recorded.keyboard.press(" ")
+    recorded.wait_for_function("page.player.t > 0.05")
+    recorded.keyboard.press(" ")
+    assert not recorded.evaluate("page.player.playing")
+    recorded.keyboard.press("3")
+    assert recorded.evaluate("page.shown.map((wheel) => wheel.name)") == ["free"]
+    recorded.keyboard.press("g")
+    recorded.evaluate("page.draw()")
+    assert recorded.evaluate("page.stage.models[0].force.visible")
+    recorded.keyboard.press("g")
+    recorded.keyboard.press("1")
+
+
+def test_a_click_into_a_diagram_goes_there(recorded):
+    canvas = recorded.locator(".plot canvas").first
+    canvas.click(position={"x": 150, "y": 40})
+    expected = canvas.evaluate("() => page.plots.plots[0].timeAt(150)")
+    assert recorded.evaluate("page.player.t") == pytest.approx(expected)
+    assert 0.5 < expected < 9.5
+
+
+def test_the_mouse_turns_the_view_and_the_force_points_along_lambda(recorded, scenes):
+    where = "[...page.stage.camera.position]"
+    before = recorded.evaluate(where)
+    box = recorded.locator("#stage").bounding_box()
+    recorded.mouse.move(box["x"] + 100, box["y"] + 100)
+    recorded.mouse.down()
+    recorded.mouse.move(box["x"] + 220, box["y"] + 120, steps=3)
+    recorded.mouse.up()
+    assert abs(np.subtract(recorded.evaluate(where), before)).max() > 0.1
+    recorded.keyboard.press("r")
+    recorded.evaluate("page.player.seek(5); document.querySelector('[name=force]').click(); page.draw()")
+    direction = recorded.evaluate("""() => {
+      const { force } = page.stage.models[1];
+      return force.up.clone().set(0, 0, 1).applyQuaternion(force.quaternion).toArray();
+    }""")
+    recorded.evaluate("document.querySelector('[name=force]').click()")
+    row = scenes["friction"][500]
+    force = np.array([row["lambda_1"], row["lambda_2"], row["lambda_3"]])
+    assert direction @ force / np.linalg.norm(force) == pytest.approx(1, abs=1e-12)
+
+
+def test_arrow_keys_turn_the_scene_that_has_the_focus(recorded):
+    distance = "page.stage.camera.position.length()"
+    where = "[...page.stage.camera.position]"
+    before, far = recorded.evaluate(where), recorded.evaluate(distance)
+    recorded.evaluate("page.player.seek(2)")
+    recorded.locator("#stage").focus()
+    recorded.keyboard.press("ArrowLeft")
+    recorded.keyboard.press("ArrowUp")
+    recorded.evaluate("document.activeElement.blur()")
+    assert abs(np.subtract(recorded.evaluate(where), before)).max() > 0.02
+    assert recorded.evaluate(distance) == pytest.approx(far)
+    assert recorded.evaluate("page.player.t") == 2
+    recorded.keyboard.press("r")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_phone_shows_everything_without_scrolling_sideways(browser, recorded_file, scheme):
+    phone = {"viewport": {"width": 360, "height": 740}, "has_touch": True, "is_mobile": True, "color_scheme": scheme}
+    with opened(browser, recorded_file, **phone) as page:
+        assert page.evaluate("document.documentElement.scrollWidth") <= 360
+        assert page.evaluate("document.documentElement.dataset.theme") == scheme
+        one, other = page.evaluate("page.stage.rectangles(2)")
+        assert one["y"] != other["y"]  # above each other
+        page.locator("#play").tap()
+        page.wait_for_function("page.player.t > 0.05")
