@@ -1,5 +1,5 @@
-// The complete state of a run as portable bytes: a header (mark, size, checksum), then numbers of 8 bytes each, then the
-// solver's own history. Bytes may come from anywhere: each number is checked before it is used.
+// The complete state of a run as portable bytes: a header (mark, size, checksum), then numbers of 8 bytes each, then
+// the solver's own history. Bytes may come from anywhere: each number is checked before it is used.
 #include <cmath>
 #include <cstring>
 
@@ -25,8 +25,8 @@ void visit(Archive& archive, Inputs& inputs) {
     for (auto& polynomial : *block) support::many(archive, polynomial, Inputs::max_order + 1);
 }
 
-// What the parameters do not determine. Law and method are included because s and the inputs may have changed since they
-// were chosen.
+// What the parameters do not determine. Law and method are included because s and the inputs may have changed since
+// they were chosen.
 template <class Archive>
 void visit(Archive& archive, State& state) {
   Motion& motion = state.motion;
@@ -37,8 +37,8 @@ void visit(Archive& archive, State& state) {
   visit(archive, motion.inputs);
   support::choice(archive, state.method, solver::Method::adams, solver::Method::runge_kutta);
   support::choice(archive, state.ending, Ending::none, Ending::lifted_off);
-  support::all(archive, state.prepared, state.started, state.moving, state.unfolded, state.jumped, state.changes_pending,
-               state.pulling, state.t, state.last_change);
+  support::all(archive, state.prepared, state.started, state.moving, state.unfolded, state.jumped,
+               state.changes_pending, state.pulling, state.t, state.last_change);
   support::many(archive, state.y, WHEEL_MAX_STATES);
   support::all(archive, state.transitions, state.counted.steps, state.counted.rhs, state.counted.jacobians,
                state.counted.roots, state.counted.restarts);
@@ -70,6 +70,16 @@ bool law_is_sound(const WheelFriction& law, double width) {
   }
 }
 
+// Counts that a run can reach.
+bool counts_are_sound(const State& state) {
+  constexpr long long most = 1LL << 53;
+  const solver::Counters& counted = state.counted;
+  for (const long long count :
+       {state.transitions, counted.steps, counted.rhs, counted.jacobians, counted.roots, counted.restarts})
+    if (count < 0 || count > most) return false;
+  return true;
+}
+
 // Of a run that has an initial state; `state` has the scales that its parameters give.
 bool run_is_sound(const State& state) {
   const Motion& motion = state.motion;
@@ -77,20 +87,21 @@ bool run_is_sound(const State& state) {
   return inputs_are_sound(motion.inputs) && law_is_sound(motion.scene.friction, state.parameters[omega_s]) &&
          all_finite(state.y, motion.formulation->states) && motion.scene.wheel.s >= 0 &&
          std::isfinite(motion.scene.wheel.s) && std::isfinite(state.t) && state.last_change >= 0 &&
-         state.last_change <= state.t && (state.moving ? state.started : state.t == 0 && state.ending == Ending::none) &&
+         state.last_change <= state.t &&
+         (state.moving ? state.started : state.t == 0 && state.ending == Ending::none) &&
          (unfoldable || !state.unfolded);
 }
 
-bool tolerance_is_sound(double tolerance) {
-  return tolerance >= tightest_tolerance && tolerance <= loosest_tolerance;
-}
+bool tolerance_is_sound(double tolerance) { return tolerance >= tightest_tolerance && tolerance <= loosest_tolerance; }
 
 bool is_stepping(const State& state) { return state.moving && !state.unfolded; }
 
 // The run that the bytes describe; what follows from its parameters is computed anew. False: no run was saved so.
 bool read_run(support::Reader& reader, State& state) {
   visit(reader, state);
-  if (!reader.sound || !tolerance_is_sound(state.motion.tolerance) || !std::isfinite(state.start_time)) return false;
+  if (!reader.sound || !counts_are_sound(state) || !tolerance_is_sound(state.motion.tolerance) ||
+      !std::isfinite(state.start_time))
+    return false;
   if (!state.prepared) return !state.started && !state.moving;
   if (!check_values(state.parameters, state.motion.inputs, nullptr, nullptr)) return false;
   State start = state;
