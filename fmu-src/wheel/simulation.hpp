@@ -112,6 +112,7 @@ class Simulation {
   bool restore_solver(const State& next, const unsigned char* history, std::size_t size);
 
   // stepping.cpp
+  bool has_changed();
   bool settle_changes();
   void announce_transition(double t, const WheelFriction& before);
   bool pass_transition();

@@ -21,12 +21,22 @@ constexpr double upright = 1.5707963267948966;
 
 }  // namespace
 
-// Inputs and tunable parameters set since the last step take effect, if they differ from those in force.
+// Whether what was set since the last step differs from what is in force, or makes another method the right one.
+bool Simulation::has_changed() {
+  Motion& motion = state_.motion;
+  const double t = state_.t;
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(state_.start_time) + std::fabs(t));
+  if (motion.scene.wheel.s != state_.parameters[s] || motion.inputs.change_at(t, rounding)) return true;
+  if (!motion.inputs.varies || !state_.moving) return false;
+  motion.inputs.load_at(t, &motion.scene.load);
+  return choose_method(state_.parameters, motion.scene, true) != state_.method;
+}
+
+// Inputs and tunable parameters set since the last step take effect.
 bool Simulation::settle_changes() {
   if (!state_.changes_pending) return true;
   const double t = state_.t;
-  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(state_.start_time) + std::fabs(t));
-  if (state_.motion.scene.wheel.s == state_.parameters[s] && !state_.motion.inputs.change_at(t, rounding)) {
+  if (!has_changed()) {
     state_.changes_pending = false;
     return true;
   }
