@@ -116,7 +116,7 @@ class Simulation {
   bool settle_changes();
   void announce_transition(double t, const WheelFriction& before);
   bool pass_transition();
-  void report_pulls();
+  void report_pulls(double t_from, double t_to);
   void report_pulls_of_orbit(double t_from, double t_to) const;
   void tell_pull(double t) const;
   bool orbit_is_ready() const;
