@@ -160,9 +160,9 @@ solver::Outcome Simulation::run_to(double t) {
     if (outcome == Outcome::failed) return outcome;
     if (solver_.reaches(t)) break;  // a transition or an ending after t waits until it is reached
     if (outcome == Outcome::ended) return outcome;
-    // A transition at the instant of the last one: the step after it was too long to see the motion between them.
+    // A transition right behind the last one: the step was too long to see the motion between them.
     const double length = solver_.step_end() - t_before;
-    retry = outcome == Outcome::event && solver_.event_time() <= t_before
+    retry = outcome == Outcome::event && solver_.event_time() - t_before < 1e-6 * length
                 ? t_before + std::fmax(1e-3 * length, 4 * std::numeric_limits<double>::epsilon() * t_before)
                 : std::numeric_limits<double>::infinity();
     if (outcome == Outcome::event && !pass_transition()) return Outcome::failed;
