@@ -6,7 +6,6 @@ A checksum guards against accidents, not against bytes from elsewhere. Run under
 from __future__ import annotations
 
 import struct
-from itertools import pairwise
 from time import perf_counter
 
 import numpy as np
@@ -128,19 +127,6 @@ def test_a_number_that_is_not_finite_is_refused_or_has_no_effect(wheel, run):
         if w.restore(signed([*words[:place], as_word(np.nan), *words[place + 1 :]])) == OK:
             assert (w.fmi2DoStep(w.component, 0.7, 0.3, 0), w.bits()) == expected, place
         w.close()
-
-
-def test_states_cannot_be_mixed(wheel):
-    """The first half of one state and the second half of another are no state, unless both are the same run."""
-    blobs = [words_of(saved(wheel, "Runge-Kutta", stop)) for stop in (0.7, 1.9, 3.1)]
-    assert len({len(b) for b in blobs}) == 1
-    w = wheel()
-    for a, b in pairwise(blobs):
-        taken = 0
-        for cut in range(120, len(a) - 1, 7):
-            taken += w.restore(signed([*a[:cut], *b[cut:]])) == OK
-        assert taken == 0
-    assert w.restore(signed(blobs[0])) == OK
 
 
 def test_an_ended_run_stays_ended(wheel):

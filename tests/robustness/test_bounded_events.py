@@ -12,6 +12,7 @@ from support.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK
 from support.pieces import play
 
 KINDS = [(formulation, method) for formulation in (2, 3) for method in (1, 2, 3, 4)]
+NONE = 1e-24  # rad/s: what rounding leaves of phi_dot while omega_z is zero; measured 1e-37
 SOON = 5.0  # s of computing, many times what is needed: a scene that chatters takes for ever
 RISE = [(0.0, {"F_Z": (0.0, 4000.0)}), (0.1, {"F_Z": (400.0, -4000.0)}), (0.2, {"F_Z": (0.0,)})]
 
@@ -50,9 +51,9 @@ def test_a_brake_that_is_put_on_from_zero_stops_the_wheel_once(wheel, kind, torq
     """The torque turns the wheel until the brake, M_brake = 90 t, has overcome it: for 2e-11 s at the least torque."""
     pieces = [(0.0, {"M_brake": (0.0, 90.0), "M_3": (torque,)})]
     found = played(wheel, kind, pieces, 1.0, theta_start=pi / 2, phi_dot_start=0.0)
-    assert found[0] == OK and found[3] == 1 and found[2][4] == 0
+    assert found[0] == OK and found[3] == 1 and abs(found[2][4]) < NONE
     free = played(wheel, kind, [(0.0, {"M_3": (torque,)})], 1.0, theta_start=pi / 2, phi_dot_start=0.0)
-    assert free[2][4] != 0
+    assert abs(free[2][4]) > 1e12 * NONE
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=str)
@@ -64,8 +65,8 @@ def test_a_torque_exactly_at_the_limit_is_held(wheel, kind):
             played(wheel, kind, [(0.0, {"M_3": (m,)})], 1.0, theta_start=pi / 2, phi_dot_start=0.0, s=s)
             for m in (limit, limit * (1 + 1e-9))
         )
-        assert held[2][4] == 0 and held[3] == 0
-        assert moved[2][4] > 0
+        assert abs(held[2][4]) < NONE and held[3] == 0
+        assert moved[2][4] > 1e12 * NONE
 
 
 def random_scene(seed):
