@@ -138,7 +138,7 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
     if (starts_anew_ == 2) ++counters->restarts;
     if (first && !restart(step->end, step->y_end)) return false;
     std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
-    const long jacobians = first ? 0 : jacobians_of(o);
+    const long jacobians = first ? 0 : jacobians_of(o);  // CVODE's own count starts anew with its first step
     // The size of CVODE's first step depends on the time it is asked for: always the same time away.
     flag = CVode(o.cvode, step->end + problem.longest_step, o.y, &t, CV_ONE_STEP);
     counters->jacobians += std::max(0L, jacobians_of(o) - jacobians);

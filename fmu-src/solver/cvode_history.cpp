@@ -37,7 +37,7 @@ void visit_steps(Archive& archive, CVodeMemRec& m) {
   constexpr double least = std::numeric_limits<double>::min(), greatest = Archive::greatest;
   for (double* size : {&m.cv_h, &m.cv_hprime, &m.cv_next_h, &m.cv_eta, &m.cv_hscale, &m.cv_hu, &m.cv_h0u})
     archive.range(*size, least, greatest);
-  all_numbers(archive, m.cv_hin, m.cv_tn, m.cv_tretlast);
+  all_numbers(archive, m.cv_tn, m.cv_tretlast);
   archive.numbers(m.cv_tau, L_MAX + 1), archive.numbers(m.cv_tq, NUM_TESTS + 1), archive.numbers(m.cv_l, L_MAX);
   all_numbers(archive, m.cv_saved_tq5, m.cv_tolsf, m.cv_etamax, m.cv_etaqm1, m.cv_etaq, m.cv_etaqp1);
   all_numbers(archive, m.cv_rl1, m.cv_gamma, m.cv_gammap, m.cv_gamrat, m.cv_crate, m.cv_delp, m.cv_acnrm);
@@ -103,6 +103,7 @@ bool Cvode::restore(const Problem& problem, Method method, Step* step, support::
                 std::fabs(m.cv_hprime - m.cv_h * m.cv_eta) <= 1e-10 * m.cv_hprime;
   for (int i = 0; reader.good && method == Method::bdf && i < width_of(problem.states); ++i)
     reader.good = SUNDenseMatrix_Column(objects_->matrix, i)[i] != 0;
+  if (!reader.good) free_objects();  // nothing stays of numbers that no solver wrote
   return reader.good;
 }
 

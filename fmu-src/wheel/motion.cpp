@@ -38,9 +38,10 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
 // turns errors of omega_z into moments over its width omega_s: the spin must be known to a fraction of that width.
 void weights(void* owner, double share, const double* y, double* weights) {
   const Motion& motion = of(owner);
-  const double tolerance = share * motion.tolerance;
   const int states = motion.formulation->states, spin = motion.formulation->spin_index;
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  const double slow = share * motion.tolerance;
+  const double tolerance = std::fmax(slow * share_at(motion.scales, y[spin]), std::fmin(slow, rounding));
   double scales[WHEEL_MAX_STATES];
   scales_at(motion.scales, *motion.formulation, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));

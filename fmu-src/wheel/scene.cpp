@@ -115,4 +115,10 @@ void scales_at(const ErrorScales& scales, const WheelFormulation& f, double omeg
   for (int i = last - 2; i <= last; ++i) out[i] = std::fmin(out[i], turn);
 }
 
+double share_at(const ErrorScales& scales, double omega_z) {
+  constexpr double many = 12;
+  const double spin = std::fabs(omega_z);
+  return spin > many * scales.own_rate ? many * scales.own_rate / spin : 1;
+}
+
 }  // namespace wheel

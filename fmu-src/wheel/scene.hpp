@@ -44,6 +44,10 @@ ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& f
 // spin, that of the rates with the spin, and errors are weighed by these ranges.
 void scales_at(const ErrorScales& scales, const WheelFormulation& formulation, double omega_z, double* out);
 
+// Errors add up over the turns: the part of its error that a step may make at the spin omega_z, rad/s. Below one where
+// there are very many turns in the wheel's own time.
+double share_at(const ErrorScales& scales, double omega_z);
+
 // sqrt((r_0 + r) / g), s; without weight the time of a turn at the initial rate.
 double time_scale(const WheelParameters& wheel, const WheelKinematics& start);
 

@@ -112,10 +112,11 @@ class Simulation {
   bool restore_solver(const State& next, const unsigned char* history, std::size_t size);
 
   // stepping.cpp
+  bool has_changed();
   bool settle_changes();
   void announce_transition(double t, const WheelFriction& before);
   bool pass_transition();
-  void report_pulls();
+  void report_pulls(double t_from, double t_to);
   void report_pulls_of_orbit(double t_from, double t_to) const;
   void tell_pull(double t) const;
   bool orbit_fits() const;

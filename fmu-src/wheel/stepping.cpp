@@ -25,12 +25,22 @@ double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 
 
 }  // namespace
 
-// Inputs and tunable parameters set since the last step take effect, if they differ from those in force.
+// Whether what was set since the last step differs from what is in force, or makes another method the right one.
+bool Simulation::has_changed() {
+  Motion& motion = state_.motion;
+  const double t = state_.t;
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(state_.start_time) + std::fabs(t));
+  if (motion.scene.wheel.s != state_.parameters[s] || motion.inputs.change_at(t, rounding)) return true;
+  if (!motion.inputs.varies || !state_.moving) return false;
+  motion.inputs.load_at(t, &motion.scene.load);
+  return choose_method(state_.parameters, motion.scene, true) != state_.method;
+}
+
+// Inputs and tunable parameters set since the last step take effect.
 bool Simulation::settle_changes() {
   if (!state_.changes_pending) return true;
   const double t = state_.t;
-  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(state_.start_time) + std::fabs(t));
-  if (state_.motion.scene.wheel.s == state_.parameters[s] && !state_.motion.inputs.change_at(t, rounding)) {
+  if (!has_changed()) {
     state_.changes_pending = false;
     return true;
   }
@@ -90,10 +100,12 @@ bool Simulation::pass_transition() {
   return solver_.restart(state_.method, t, y, has_transitions(motion.scene));
 }
 
-// With keep_contact: tells each excursion of N below zero in the last step, at its instant.
-void Simulation::report_pulls() {
-  double t, t_from = solver_.step_start();
-  while (solver_.first_fall(state_.pulling ? pull : normal_force, t_from, solver_.known_until(), &t)) {
+// With keep_contact: tells each excursion of N below zero in the last step, at its instant, from t_from to t_to. What
+// the solver knows beyond the time that is asked for waits: an input may yet change it.
+void Simulation::report_pulls(double t_from, double t_to) {
+  if (!state_.motion.keep_contact || !(t_to > t_from)) return;
+  double t;
+  while (solver_.first_fall(state_.pulling ? pull : normal_force, t_from, t_to, &t)) {
     state_.pulling = !state_.pulling;
     if (state_.pulling) tell_pull(t);
     t_from = t;
@@ -141,18 +153,25 @@ solver::Outcome Simulation::run_to(double t) {
   if (state_.unfolded && !orbit_ready_) enter_orbit();
   if (state_.unfolded) return t <= orbit_end_ ? Outcome::stepped : Outcome::ended;
   if (!state_.moving && !start_solver()) return Outcome::failed;
+  report_pulls(state_.t, std::fmin(solver_.known_until(), t));
+  double retry = std::numeric_limits<double>::infinity();
   for (long long work = 0; !solver_.reaches(t);) {
     if (work >= most_work) return failure_ = "it took a million internal steps; ask for shorter steps", Outcome::failed;
     // CVODE steps past the end of a varying input's step: the polynomial may go on, and a history that was cut short is
     // lost. Runge-Kutta has none to lose.
     const bool stops = state_.motion.inputs.varies && solver_.method() == solver::Method::runge_kutta;
-    stops ? solver_.stop_before(t) : solver_.stop_nowhere();
+    stops ? solver_.stop_before(std::fmin(t, retry)) : solver_.stop_before(retry);
     const double t_before = solver_.known_until();
     const Outcome outcome = solver_.step();
-    if (state_.motion.keep_contact && solver_.known_until() > t_before) report_pulls();
+    report_pulls(t_before, std::fmin(solver_.known_until(), t));
     if (outcome == Outcome::failed) return outcome;
     if (solver_.reaches(t)) break;  // a transition or an ending after t waits until it is reached
     if (outcome == Outcome::ended) return outcome;
+    // A transition right behind the last one: the step was too long to see the motion between them.
+    const double length = solver_.step_end() - t_before;
+    retry = outcome == Outcome::event && solver_.event_time() - t_before < 1e-6 * length
+                ? t_before + std::fmax(1e-3 * length, 4 * std::numeric_limits<double>::epsilon() * t_before)
+                : std::numeric_limits<double>::infinity();
     if (outcome == Outcome::event && !pass_transition()) return Outcome::failed;
     work += outcome == Outcome::event ? work_per_transition : 1;
   }
@@ -206,7 +225,9 @@ solver::Outcome Simulation::extend_to(double t) {
 Progressed Simulation::advance(double t) {
   t -= state_.start_time;
   if (state_.ending != Ending::none) return Progressed::ended;
-  if (state_.changes_pending || !knows(t)) {
+  if (!state_.changes_pending && knows(t)) {
+    if (!state_.unfolded) report_pulls(state_.t, t);
+  } else {
     y_now();
     const State before = state_;
     switch (extend_to(t)) {

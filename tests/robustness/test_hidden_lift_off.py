@@ -1,0 +1,129 @@
+"""A lift-off that only the input's derivatives tell: the force at both ends of the step says nothing of it.
+
+The wheel rolls upright; F_Z then only carries it, so N = m g - F_Z and the lift-off is at the first root of a polynomial.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+from support.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK
+from support.pieces import give
+from support.scenes import PAPER
+
+WEIGHT = PAPER.m * PAPER.g  # N
+BEGIN, STEP = 0.3, 0.02  # s
+INSTANT = 1e-8  # s; measured 1e-12
+KINDS = [(formulation, method) for formulation in (2, 3) for method in (1, 2, 3, 4)]
+
+
+def parabola(ends, peak):
+    """In weights, over the step: `ends` at both its ends, `peak` in the middle."""
+    rise = 4 * (peak - ends) / STEP
+    return [ends, rise, -rise / STEP]
+
+
+def cubic(size, offset=0.0):
+    """size x (x - 1/2) (x - 1): zero at the ends of the step and in the middle, 0.048 of `size` between them."""
+    return [offset, 0.5 * size / STEP, -1.5 * size / STEP**2, size / STEP**3]
+
+
+SHAPES = {
+    "just above": parabola(0, 1.0001),
+    "1.1 weights": parabola(0, 1.1),
+    "3 weights": parabola(0, 3),
+    "300 weights": parabola(0, 300),
+    "pressed at both ends": parabola(-20, 1.001),
+    "pressed hard at both ends": parabola(-1000, 1.1),
+    "cubic": cubic(21.0),
+    "steep cubic": cubic(400.0),
+    "cubic, falling first": cubic(-40.0),
+    "pressed cubic": cubic(1000.0, -40.0),
+}
+
+
+def first_root(shape):
+    """The first instant in the step at which the force is the weight; None: never."""
+    roots = np.roots([*shape[::-1][:-1], shape[0] - 1])
+    inside = [x.real for x in roots if abs(x.imag) < 1e-12 and 0 < x.real < STEP]
+    return min(inside, default=None)
+
+
+def lift_off(wheel, kind, inputs, **values):
+    """One step with these inputs, N or N m; the instant in it at which the wheel lifted off, None: it did not."""
+    formulation, method = kind
+    start = {"theta_start": pi / 2, "phi_dot_start": -8.0} | values
+    w = wheel().start(formulation=formulation, method=method, **start)
+    assert w.step_to(BEGIN) == OK
+    give(w, inputs)
+    status = w.step_to(BEGIN + STEP)
+    if status == OK:
+        return None
+    assert status == DISCARD and "lifted off" in w.sentences[-1]
+    return w.status(LAST_SUCCESSFUL_TIME) - BEGIN
+
+
+@pytest.mark.parametrize("s", [0.0, 0.03])
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("kind", KINDS, ids=str)
+def test_a_peak_of_the_load_inside_one_step_lifts_the_wheel_at_its_instant(wheel, kind, name, s):
+    shape = SHAPES[name]
+    found = lift_off(wheel, kind, {"F_Z": [WEIGHT * c for c in shape]}, s=s)
+    assert found is not None and abs(found - first_root(shape)) < INSTANT
+
+
+@pytest.mark.parametrize("s", [0.0, 0.03])
+@pytest.mark.parametrize("kind", KINDS, ids=str)
+def test_a_peak_that_stays_below_the_weight_does_not(wheel, kind, s):
+    """The partner: a ten-thousandth of the weight less."""
+    for shape in (parabola(0, 0.9999), parabola(-20, 0.9999), cubic(0.9999 / 0.0481126)):
+        assert first_root(shape) is None
+        assert lift_off(wheel, kind, {"F_Z": [WEIGHT * c for c in shape]}, s=s) is None
+
+
+@pytest.mark.parametrize("s", [0.0, 0.03])
+@pytest.mark.parametrize("ramp", [100.0, 1e4])
+def test_two_inputs_that_nearly_cancel_hide_nothing(wheel, ramp, s):
+    """At theta = 1.2 rad a moment M_1 presses as well. Every kind of run sees the lift-off that 400 short steps see."""
+    formulation, method = 2, 4
+    start = {"theta_start": 1.2, "phi_dot_start": -8.0, "s": s}
+    probe = wheel().start(**start)
+    assert probe.step_to(BEGIN) == OK
+    pressed = probe.get("lambda_3")[0]
+    probe.set(F_Z=1.0)
+    by_force = probe.get("lambda_3")[0] - pressed
+    probe.set(F_Z=0.0, M_1=1.0)
+    by_moment = probe.get("lambda_3")[0] - pressed
+    force = [WEIGHT * c for c in cubic(60.0)]
+    slope = ramp * WEIGHT / STEP
+    inputs = {"F_Z": [force[0], force[1] + slope, *force[2:]], "M_1": [0.0, -slope * by_force / by_moment]}
+    w = wheel().start(formulation=formulation, method=method, **start)
+    w.step_to(BEGIN)
+    for k in range(400):
+        give(w, inputs, STEP * k / 400)
+        if w.step_to(BEGIN + STEP * (k + 1) / 400) != OK:
+            break
+    true = w.status(LAST_SUCCESSFUL_TIME) - BEGIN
+    assert 0 < true < STEP / 2
+    for kind in KINDS:
+        assert abs(lift_off(wheel, kind, inputs, **start) - true) < 1e-6, kind  # s; measured 3e-9
+    assert lift_off(wheel, KINDS[0], {"F_Z": [0.1 * c for c in force]}, **start) is None
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=str)
+def test_a_brake_that_gives_way_inside_one_step_lets_the_wheel_turn_at_its_instant(wheel, kind):
+    """A parabola of M_brake that sinks below the torque and comes back: the wheel is held at both ends of the step."""
+    formulation, method = kind
+    w = wheel(logging=True).start(theta_start=pi / 2, phi_dot_start=0.0, formulation=formulation, method=method)
+    inputs = {"M_3": [2.0], "M_brake": [5.0, -4 * 4 / STEP, 4 * 4 / STEP**2]}
+    give(w, inputs)
+    assert w.step_to(STEP) == OK
+    told = [m for m in w.sentences if "release" in m]
+    x = 0.5 * (1 - np.sqrt(0.25))  # 5 - 16 x (1 - x) = 2
+    assert len(told) == 1 and abs(float(told[0].split()[2]) - x * STEP) < 2e-9
+    assert w.get("phi")[0] != 0
+    held = wheel().start(theta_start=pi / 2, phi_dot_start=0.0, formulation=formulation, method=method)
+    give(held, inputs | {"M_brake": [6.1, -4 * 4 / STEP, 4 * 4 / STEP**2]})  # the partner: it sinks to 2.1
+    assert held.step_to(STEP) == OK and held.get("phi") == [0.0]
