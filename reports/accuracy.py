@@ -25,11 +25,11 @@ from physics.measure import (
 from reference import Wheel
 from support import equations as eq
 from support.closed_forms import critical_spin, upright_deceleration, upright_stiffness
-from support.driver import HEADLINE, WARNING
+from support.driver import HEADLINE
 from support.scenes import Scene
 
 from . import plots
-from .page import Report
+from .page import Report, number
 from .plots import style
 from .speed import long_error
 from .truth import kept_headline, range_error
@@ -77,8 +77,8 @@ def tolerance_row(report: Report, tolerance: float) -> dict[str, object]:
     errors = {scene: max(table_errors(report.library, scene, tolerance).values()) for scene in FRICTION}
     found = instants(report.library, tolerance)
     with report.library.wheel() as wheel:
-        status = wheel.initialise(tolerance)
-        said = "taken as the limit, with a warning" if status == WARNING else ""
+        wheel.initialise(tolerance)
+        said = " ".join(wheel.sentences)
     return {
         "tolerance": tolerance,
         **errors,
@@ -99,7 +99,7 @@ def spins(report: Report) -> None:
         for tolerance in (1e-6, 1e-8, 1e-10):
             run = report.library.simulate(np.linspace(0, 1, 101), tolerance, **start)
             ratio = range_error(np.column_stack([run[name] for name in HEADLINE]), want) / tolerance
-            row[f"at {tolerance:.0e}"] = ratio
+            row[f"at {number(tolerance)}"] = ratio
             worst = max(worst, ratio) if tolerance == 1e-8 else worst
         rows.append(row)
     report.table("spins", rows)
@@ -118,7 +118,7 @@ def scenes(report: Report) -> None:
     """other scenes against the reference"""
     rows = []
     for name, case in CASES.items():
-        errors = {f"at {t:.0e}": error(report.library, name, t) for t in (1e-8, 1e-10, 1e-12)}
+        errors = {f"at {number(t)}": error(report.library, name, t) for t in (1e-8, 1e-10, 1e-12)}
         rubs = case.wheel.s > 0
         rows.append(
             {
@@ -130,7 +130,7 @@ def scenes(report: Report) -> None:
             }
         )
     report.table("scenes", rows)
-    report.figure("scenes", "other scenes, default tolerance: error", max(r["at 1e-08"] for r in rows))
+    report.figure("scenes", "other scenes, default tolerance: error", max(r["at 1e-8"] for r in rows))
     report.figure("scenes_tight", "other scenes at 1e-12: error", max(r["at 1e-12"] for r in rows), "", 1e-8)
 
 
@@ -172,7 +172,9 @@ def stability_limit(report: Report) -> None:
     right.plot(line, [upright_stiffness(TORUS, f * critical) for f in line], color=style.GREY, label="linear theory")
     right.plot(factors, measured, "o", color=style.BLUE, ms=4, mfc="none", label="measured")
     right.axhline(0, color=style.INK, lw=0.5)
-    plots.label(left, "t [s]", r"|lean| / |lean at the start|", "a lean of 1e-6 rad below and above the limit", "y")
+    plots.label(
+        left, "t [s]", "amount of the lean / that at the start", "a lean of 1e-6 rad below and above the limit", "y"
+    )
     plots.label(right, r"$\omega_z / \omega_c$", r"$\kappa^2$ [1/s²]", "stiffness of the upright wheel")
     left.legend()
     right.legend()
@@ -203,13 +205,13 @@ def drift(report: Report) -> None:
         plain = unstabilised_drift(times, tolerance)
         *held, _ = constraint_drift(report.library, times, tolerance, formulation=3)
         for ax, (_, height) in zip(axes, (plain, held), strict=True):
-            ax.plot(times, np.maximum(height, 1e-18), color=colour, lw=0.7, label=f"tolerance {tolerance:.0e}")
+            ax.plot(times, np.maximum(height, 1e-18), color=colour, lw=0.7, label=f"tolerance {number(tolerance)}")
         names = ("(24) alone: m/s", "(24) alone: m", "FMU: m/s", "FMU: m")
         worst = [float(off.max()) for off in (*plain, *held)]
         rows.append({"tolerance": tolerance, **dict(zip(names, worst, strict=True))})
     report.table("drift", rows)
     for ax, title in zip(axes, ("(24) as it stands, by SciPy's DOP853", "the FMU, stabilised"), strict=True):
-        plots.label(ax, "t [s]", r"$|Z_O - r_0 \sin\theta - r|$ [m]", title, "y")
+        plots.label(ax, "t [s]", "height off the constraint [m]", title, "y")
         ax.set_ylim(1e-18, 1e-3)
     plots.legend_below(figure, axes[0])
     report.picture("drift", figure)
@@ -221,7 +223,7 @@ def dissipation(report: Report) -> None:
     free, rough = (report.library.simulate(times, s=s) for s in FRICTION.values())
     late = report.library.simulate([0.0, 10.0, 30.0, 80.0, 150.0], s=0.03)
     energies = zip(late.t, late["E"], strict=True)
-    report.table("energy", [{"t, s": t, "E, J": e, "transitions": events_until(late, t)} for t, e in energies])
+    report.table("energy", [{"t, s": t, "E, J": f"{e:.5f}", "transitions": events_until(late, t)} for t, e in energies])
     held = rough["friction_mode"] == 0
     report.figure("held_share", "share of 10 s in which friction holds the wheel", 100 * float(held.mean()), "%")
     figure, (ax,) = plots.sheet(1)
@@ -229,8 +231,8 @@ def dissipation(report: Report) -> None:
     ax.plot(times, free["E"], color=style.BLUE, label="s = 0")
     ax.plot(times, rough["E"], color=style.VERMILLION, label="s = 0.03 m")
     ax.set(xlim=(0, 10), ylim=(54, 77))
-    ax.legend(loc="center right")
     plots.label(ax, "t [s]", "E [J]", "energy of the paper's two scenes")
+    plots.legend_below(figure, ax, 3)
     report.picture("energy", figure)
 
 

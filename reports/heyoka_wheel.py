@@ -1,8 +1,8 @@
 """The reduced wheel (J_x = J_y) in heyoka's symbols: a Taylor integrator for each friction mode.
 
-Same equations as fmu-src/equations/reduced_system.h for J_x = J_y, carrier frame; state theta, omega_1, omega_2, omega_3, psi, phi,
-X_O, Y_O. Rolling friction exactly as there: a rolling mode ends where sigma omega_z falls to zero, the held mode where
-the moment tau reaches s N.
+Same equations as fmu-src/equations/reduced_system.h for J_x = J_y, carrier frame; state theta, omega_1, omega_2,
+omega_3, psi, phi, X_O, Y_O. Rolling friction exactly as there: a rolling mode ends where sigma omega_z falls to zero,
+the held mode where the moment tau reaches s N.
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
 from figures_in_pages import number
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -54,6 +55,7 @@ class Report:
     figures: dict[str, Figure] = field(default_factory=dict)
     tables: dict[str, list[Row]] = field(default_factory=dict)
     words: dict[str, str] = field(default_factory=dict)
+    kept: dict[str, Any] = field(default_factory=dict)  # what several parts of a report use
 
     def figure(self, figure: str, what: str, measured: float, unit: str = "", asked: float | None = None, **more: str):
         self.figures[figure] = Figure(figure, what, float(measured), unit, asked, **more)
@@ -166,7 +168,8 @@ def footer(name: str) -> str:
     lines = [
         f"Made by `./scripts/report {name}` on {datetime.now(UTC):%Y-%m-%d}.",
         f"Machine: {processor()}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {platform.system()}.",
-        f"Compiler: {said(cached('CMAKE_CXX_COMPILER'), '--version')}, {cached('CMAKE_CXX_FLAGS_RELEASE')}. {versions()}.",
+        f"Compiler: {said(cached('CMAKE_CXX_COMPILER'), '--version')}, {cached('CMAKE_CXX_FLAGS_RELEASE')}.",
+        f"Versions: {versions()}.",
         f"Commit: {said('git', 'rev-parse', '--short=12', 'HEAD')}{', with local changes' if changed else ''}.",
     ]
     return "---\n\n" + "  \n".join(lines)

@@ -1,7 +1,7 @@
 """Other solvers on the product's right-hand side: DOP853 in C++, SciPy, numbalsoda; and heyoka, which writes its own.
 
-Each is made for a scene, a tolerance and a number of grid points; `solve` gives the seconds that count, `rows` the headline
-outputs on the grid. What a solver cannot do is a RuntimeError or an ImportError that says so.
+Each is made for a scene, a tolerance and a number of grid points; `solve` gives the seconds that count, `rows` the
+headline outputs on the grid. What a solver cannot do is a RuntimeError or an ImportError that says so.
 """
 
 from __future__ import annotations
@@ -175,4 +175,3 @@ def peers(scene: Scene) -> dict[str, Callable[[Scene, float, int], Peer]]:
     for method in ("lsoda", "dop853"):
         found[f"numbalsoda {method}"] = lambda *a, m=method: InNumbalsoda(*a, m)
     return found
-

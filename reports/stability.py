@@ -1,7 +1,7 @@
 """Stiff and extreme wheels: every case of tests/robustness/sweep.py at five tolerances, the regularized law, long runs.
 
-Cases, judges and bounds are those of tests/robustness. An error is judged by the energy, Chaplygin's linear integrals, the
-independent reference or a closed form.
+Cases, judges and bounds are those of tests/robustness. An error is judged by the energy, Chaplygin's linear integrals,
+the independent reference or a closed form.
 """
 
 from __future__ import annotations
@@ -10,18 +10,17 @@ from collections.abc import Callable, Iterator
 from math import nan
 
 import numpy as np
-from robustness import checks, drift, long_runs, regularized
+from robustness import checks, drift, long_runs
 from robustness.case import Case
-from robustness.regularized import TOLERANCE_FACTOR, WIDTH_FACTOR
 from robustness.sweep import sweep
 from robustness.verdicts import TOLERANCES, Verdict, judge_case
 
 from . import plots
 from .isolated import Broken, call, call_each
-from .page import Report, Row
+from .law import crossings, law
+from .page import Report, Row, number
 from .plots import style
 
-THRESHOLD = 200.0  # decay number from which the automatic rule takes BDF, fmu-src/wheel/decisions.cpp
 DEADLINE = 120.0  # s
 JUDGES = {
     "energy": "energy",
@@ -34,14 +33,14 @@ JUDGES = {
 def cases(report: Report) -> None:
     """the sweep: each case at five tolerances, in a process of its own"""
     chosen = sweep()[:: 6 if report.quick else 1]
-    found = dict(call_each(lambda case: judge_case(report.library, case), chosen, DEADLINE))
-    report.table("cases", [row for case, verdicts in found.items() for row in case_rows(case, verdicts)])
+    found = list(call_each(lambda case: judge_case(report.library, case), chosen, DEADLINE))
+    report.table("cases", [row for case, verdicts in found for row in case_rows(case, verdicts)])
     faults = list(faults_of(found))
     report.table("faults", faults)
     report.words["cases"], report.words["runs"] = str(len(found)), str(len(found) * len(TOLERANCES))
-    judged = {case: verdicts for case, verdicts in found.items() if not isinstance(verdicts, Broken)}
+    judged = [(case, verdicts) for case, verdicts in found if not isinstance(verdicts, Broken)]
     report.table("amplification", [amplification(judged, judge) for judge in JUDGES])
-    report.table("loose", [{"case": str(c), "needs": c.loosest, "why": c.remark} for c in found if c.loosest < 1e-4])
+    report.table("loose", [{"case": str(c), "needs": c.loosest, "why": c.remark} for c, _ in found if c.loosest < 1e-4])
     what = "cases and tolerances that do not do as stated, hang or crash"
     report.figure("faults", what, len(faults), "", 0, relation="exactly")
     draw_cases(report, judged)
@@ -58,13 +57,13 @@ def case_rows(case: Case, verdicts: list[Verdict] | Broken) -> Iterator[Row]:
             "outcome": verdict.outcome if verdict else str(verdicts),
             "as expected": verdict.holds if verdict else False,
             "judges": " ".join(errors),
-            "errors": " ".join(f"{e:.1e}" for e in errors.values()),
+            "errors": " ".join(number(e) for e in errors.values()),
             "steps": verdict.steps if verdict else None,
         }
 
 
-def faults_of(found: dict[Case, list[Verdict] | Broken]) -> Iterator[Row]:
-    for case, verdicts in found.items():
+def faults_of(found: list[tuple[Case, list[Verdict] | Broken]]) -> Iterator[Row]:
+    for case, verdicts in found:
         if isinstance(verdicts, Broken):
             yield {"case": str(case), "tolerance": "", "what": str(verdicts)}
             continue
@@ -73,10 +72,10 @@ def faults_of(found: dict[Case, list[Verdict] | Broken]) -> Iterator[Row]:
                 yield {"case": str(case), "tolerance": v.tolerance, "what": "; ".join(v.faults)}
 
 
-def amplification(found: dict[Case, list[Verdict]], judge: str) -> Row:
+def amplification(found: list[tuple[Case, list[Verdict]]], judge: str) -> Row:
     """How many cases keep the error within the tolerance, and which exceed it most."""
     worst = {}
-    for case, verdicts in found.items():
+    for case, verdicts in found:
         seen = [(f, v.tolerance) for v in verdicts for f in v.errors if f.judge == judge and v.claimed]
         if seen:
             worst[str(case)] = max(max(f.error - f.floor, 0.0) / tolerance for f, tolerance in seen)
@@ -96,11 +95,11 @@ def seen_error(verdict: Verdict, judge: str) -> float:
     return found.error if found and found.error > 2 * found.floor else nan
 
 
-def draw_cases(report: Report, found: dict[Case, list[Verdict]]) -> None:
+def draw_cases(report: Report, found: list[tuple[Case, list[Verdict]]]) -> None:
     figure, axes = plots.sheet(2)
     titles = {"energy": "energy balance", "reference": "outputs against the independent reference"}
     for ax, (judge, title) in zip(axes, titles.items(), strict=True):
-        for case, verdicts in found.items():
+        for case, verdicts in found:
             hard = str(case).startswith(("brushing", "friction: s = 1", "past upright: theta = 170"))
             look = {"color": style.VERMILLION if hard else style.BLUE, "alpha": 0.6, "lw": 0.8, "ms": 3}
             ax.plot(TOLERANCES, [seen_error(v, judge) for v in verdicts], ".-", **look)
@@ -130,64 +129,6 @@ def contract(report: Report) -> None:
     report.figure("contract", "checks of the contract that fail", broken, "", 0, relation="exactly")
 
 
-def law(report: Report) -> None:
-    """the regularized law"""
-    points = regularized.study(report.library)
-    rows = [
-        {
-            "law": p.law,
-            "method": p.method,
-            "tolerance": p.tolerance,
-            "omega_s, rad/s": p.omega_s or "",
-            "error": p.error,
-            "ms": p.milliseconds,
-            "steps": p.steps,
-        }
-        for p in points
-    ]
-    report.table("law", rows)
-    bound = max(
-        p.error / (WIDTH_FACTOR * p.omega_s + TOLERANCE_FACTOR * p.tolerance) for p in points if p.law != "exact"
-    )
-    what = f"regularized law: error over {WIDTH_FACTOR:g} ω_s + {TOLERANCE_FACTOR:g} tolerance"
-    report.figure("law", what, bound, "", 1)
-    figure, axes = plots.sheet(2)
-    for colour, tolerance in zip(plots.COLOURS, regularized.TOLERANCES, strict=False):
-        for method, marker in (("bdf", "o-"), ("adams", "x--")):
-            chain = [p for p in points if (p.tolerance, p.method) == (tolerance, method) and p.law != "exact"]
-            for ax, x in zip(axes, ("omega_s", "milliseconds"), strict=True):
-                values = [getattr(p, x) for p in chain]
-                words = f"{method}, tolerance {tolerance:.0e}"
-                ax.plot(values, [p.error for p in chain], marker, color=colour, ms=4, lw=0.8, label=words)
-        exact = next(p for p in points if p.tolerance == tolerance and p.law == "exact")
-        axes[1].plot(exact.milliseconds, exact.error, "*", color=colour, ms=10)
-    plots.label(axes[0], r"$\omega_s$ [rad/s]", "error against the exact law", "convergence", "xy")
-    plots.label(axes[1], "time for 10 s [ms]", "error", "cost; stars: the exact law itself", "xy")
-    plots.legend_below(figure, axes[0], 3)
-    report.picture("law", figure)
-
-
-def crossings(report: Report) -> None:
-    """where BDF pays"""
-    found = regularized.crossings(report.library)
-    names = ("scene", "decay number", "Adams over BDF", "automatic takes")
-    report.table("crossings", [dict(zip(names, (c.scene, c.decay, c.ratio, c.chosen), strict=True)) for c in found])
-    lost = [max(c.ratio, 1 / c.ratio) for c in found if (c.chosen == "bdf") != (c.ratio > 1)]
-    report.figure("wrong_method", "automatic's time over the better method's, at worst", max(lost, default=1.0), "×")
-    figure, (ax,) = plots.sheet(1)
-    for colour, scene in zip(plots.COLOURS, dict.fromkeys(c.scene for c in found), strict=False):
-        chain = [c for c in found if c.scene == scene]
-        ax.plot([c.decay for c in chain], [c.ratio for c in chain], color=colour, lw=0.8, label=scene)
-        for c in chain:
-            ax.plot(c.decay, c.ratio, "o", color=colour, ms=5, mfc=colour if c.chosen == "bdf" else "white")
-    ax.axhline(1, color=style.INK, lw=0.8, ls="--")
-    ax.axvline(THRESHOLD, color=style.GREY, lw=0.9, ls=":", label=f"the rule's threshold, {THRESHOLD:g}")
-    ax.legend()
-    title = "above 1 BDF is faster; filled: automatic takes BDF"
-    plots.label(ax, "decay rate of the spin times the wheel's time", "time of Adams / time of BDF", title, "xy")
-    report.picture("methods", figure)
-
-
 def hours(report: Report) -> None:
     """an hour and a day"""
     runs = long_runs.study(report.library, not report.quick)
@@ -203,7 +144,7 @@ def hours(report: Report) -> None:
                 "energy change / E": change,
                 "largest rise, J": max(r.rise, 0.0),
                 "transitions": int(r.events[-1]),
-                "|ω_z| while held": r.held,
+                "amount of ω_z while held, rad/s": r.held,
                 "memory growth, KiB": r.memory / 1024,
                 "status": r.status,
             }
@@ -214,7 +155,7 @@ def hours(report: Report) -> None:
     rise = max(r.rise / (r.tolerance * r.energy[0]) for r in runs)
     report.figure("rise", "largest rise of the energy between readings / (tolerance E)", rise, "", 10)
     held = max(r.held for r in runs)
-    report.figure("held", "|ω_z| while held, rad/s", held, "", 0, relation="exactly")
+    report.figure("held", "amount of ω_z while held, rad/s", held, "", 0, relation="exactly")
     report.figure("memory", "growth of memory", max(r.memory for r in runs) / 2**20, "MiB", 4)
     resolved = long_runs.resolved(report.library, 600.0 if report.quick else 3600.0)
     names = ("tolerance", "transitions", "E, J")

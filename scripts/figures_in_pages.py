@@ -2,8 +2,8 @@
 """Writes measured figures into the marked places of the pages: no figure in prose is typed by hand.
 
 A place in Markdown or HTML is `<!-- = report.figure -->4e-8<!-- . -->`: the comment names a row of
-docs/results/data/report.csv, which `scripts/report` measures, and what stands up to the next comment is written here. With
---check it changes nothing and tells by its exit status whether a page and the data differ.
+docs/results/data/report.csv, which `scripts/report` measures, and what stands up to the next comment is written here.
+With --check it changes nothing and tells by its exit status whether a page and the data differ.
 """
 
 from __future__ import annotations

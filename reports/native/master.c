@@ -58,10 +58,18 @@ static double now(void) {
 }
 
 Fmu* load_fmu(const char* path) {
-  static const char* const names[] = {
-      "fmi2Instantiate", "fmi2FreeInstance", "fmi2SetupExperiment", "fmi2EnterInitializationMode",
-      "fmi2ExitInitializationMode", "fmi2SetReal", "fmi2SetInteger", "fmi2SetBoolean", "fmi2SetRealInputDerivatives",
-      "fmi2GetReal", "fmi2GetInteger", "fmi2DoStep"};
+  static const char* const names[] = {"fmi2Instantiate",
+                                      "fmi2FreeInstance",
+                                      "fmi2SetupExperiment",
+                                      "fmi2EnterInitializationMode",
+                                      "fmi2ExitInitializationMode",
+                                      "fmi2SetReal",
+                                      "fmi2SetInteger",
+                                      "fmi2SetBoolean",
+                                      "fmi2SetRealInputDerivatives",
+                                      "fmi2GetReal",
+                                      "fmi2GetInteger",
+                                      "fmi2DoStep"};
   Fmu* fmu = malloc(sizeof *fmu);
   _Static_assert(sizeof names / sizeof *names == sizeof *fmu / sizeof(void*), "one name per function");
   load_functions(path, names, sizeof names / sizeof *names, fmu);
@@ -196,9 +204,9 @@ static double bytes_in_use(void) {
   return (double)(info.uordblks + info.hblkhd);
 }
 
-/* `count` instances in one process, half of them stepped by a second thread. Out, per instance: bytes, seconds to create
- * and initialize, to step, to free. Returns how many ended with other bits than `alone`, the outputs of one by itself;
- * -1 where one could not be started. */
+/* `count` instances in one process, half of them stepped by a second thread. Out, per instance: bytes, seconds to
+ * create and initialize, to step, to free. Returns how many ended with other bits than `alone`, the outputs of one by
+ * itself; -1 where one could not be started. */
 long run_crowd(const Fmu* fmu, const Run* run, long count, const double* alone, double* out) {
   const size_t width = (size_t)run->output_count;
   fmi2Component* instances = calloc((size_t)count, sizeof *instances);
