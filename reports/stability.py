@@ -182,22 +182,14 @@ def draw_hours(report: Report, runs: list[long_runs.LongRun]) -> None:
 
 def constraints(report: Report) -> None:
     """drift of the multibody form off its constraints"""
-    found = drift.study(report.library)
-    rows, figure_axes = [], plots.sheet(1, 1, 85)
-    figure, (ax,) = figure_axes
-    for i, d in enumerate(found):
+    found, rows = drift.study(report.library), []
+    for d in found:
         half = len(d.t) // 2
         early, late = float(d.velocity[1:half].max()), float(d.velocity[half:].max())
         names = ("multibody, tolerance 1e-8", "velocity, first half", "velocity, second half", "height")
         rows.append(dict(zip(names, (d.name, early, late, float(d.height.max())), strict=True)))
-        residual = np.maximum(np.maximum(d.velocity, d.height), 1e-17)
-        look = {"color": plots.COLOURS[i % len(plots.COLOURS)], "ls": "-" if "1 h" in d.name else "--", "lw": 0.8}
-        ax.plot(d.t / d.t[-1], residual, label=d.name, **look)
     report.table("drift", rows)
     report.figure("drift", "constraint residual of the multibody form, relative", max(d.worst for d in found), "", 1e-9)
-    plots.label(ax, "share of the run", "relative constraint residual", "the multibody form at 1e-8", "y")
-    plots.legend_below(figure, ax, 3)
-    report.picture("drift", figure)
 
 
 PARTS: dict[Callable[[Report], None], float] = {

@@ -6,16 +6,7 @@
 #include <string.h>
 
 #include "fmi2FunctionTypes.h"
-
-#ifdef _WIN32
-#include <windows.h>
-static void* open_library(const char* path) { return (void*)LoadLibraryA(path); }
-static void* symbol(void* library, const char* name) { return (void*)GetProcAddress((HMODULE)library, name); }
-#else
-#include <dlfcn.h>
-static void* open_library(const char* path) { return dlopen(path, RTLD_NOW | RTLD_LOCAL); }
-static void* symbol(void* library, const char* name) { return dlsym(library, name); }
-#endif
+#include "load_library.h"
 
 /* Value references by name, as modelDescription.xml has them. */
 enum {
@@ -49,7 +40,7 @@ static const struct scene scenes[] = {
 static void* library;
 
 static void* need(const char* name) {
-  void* f = symbol(library, name);
+  void* f = find_symbol(library, name);
   if (!f) {
     fprintf(stderr, "%s is missing\n", name);
     exit(1);
