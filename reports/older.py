@@ -33,6 +33,6 @@ def built(revision: str) -> Older:
         choice = [f"-DWHEEL_SUNDIALS_SOURCE={source}"] if source else []
         setting = ["-DCMAKE_BUILD_TYPE=Release", f"-DPython3_EXECUTABLE={ROOT / '.venv' / 'bin' / 'python'}", *choice]
         subprocess.run(["cmake", "-S", folder, "-B", fmu.parent, *setting], check=True, capture_output=True)
-        make = ["cmake", "--build", fmu.parent, "--target", "wheel_fmu", "--parallel", "2"]
+        make = ["cmake", "--build", fmu.parent, "--parallel", "2"]
         subprocess.run(make, check=True, capture_output=True)
     return Older(fmu, of_core(folder))
