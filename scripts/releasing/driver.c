@@ -6,15 +6,11 @@
 #include <string.h>
 
 #include "fmi2FunctionTypes.h"
+#include "load_library.h"
 
-#ifdef _WIN32
-#include <windows.h>
-static void* open_library(const char* path) { return (void*)LoadLibraryA(path); }
-static void* symbol(void* library, const char* name) { return (void*)GetProcAddress((HMODULE)library, name); }
-#elif defined(__wasi__) /* no libraries to open: the wheel is linked in */
+#ifdef __wasi__
 #include "fmi2Functions.h"
-static void* open_library(const char* path) { return (void*)path; }
-static void* symbol(void* library, const char* name) {
+static void* find_symbol(void* library, const char* name) {
 #define LINKED(function) { #function, (void*)(function) }
   static const struct {
     const char* name;
@@ -37,10 +33,6 @@ static void* symbol(void* library, const char* name) {
     if (strcmp(name, functions[i].name) == 0) return functions[i].function;
   return NULL;
 }
-#else
-#include <dlfcn.h>
-static void* open_library(const char* path) { return dlopen(path, RTLD_NOW | RTLD_LOCAL); }
-static void* symbol(void* library, const char* name) { return dlsym(library, name); }
 #endif
 
 /* Value references by name, as modelDescription.xml has them. */
@@ -75,7 +67,7 @@ static const struct scene scenes[] = {
 static void* library;
 
 static void* need(const char* name) {
-  void* f = symbol(library, name);
+  void* f = find_symbol(library, name);
   if (!f) {
     fprintf(stderr, "%s is missing\n", name);
     exit(1);

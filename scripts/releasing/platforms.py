@@ -48,6 +48,7 @@ def build_driver(zig: Path, target: str, folder: Path) -> Path:
         target,
         "-O1",
         f"-I{HEADERS}",
+        f"-I{ROOT / 'tests' / 'support'}",
         f"-I{folder}",
         str(source),
         "-o",

@@ -36,7 +36,8 @@ def compile_c(output: Path, *sources: str, options: tuple[str, ...] = ()) -> Pat
     rows = [ROOT / "scripts" / "variable_rows.py", ROOT / "modelDescription.xml", output.parent / "variables.inc"]
     subprocess.run([sys.executable, *map(str, rows)], check=True)
     clean = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
-    flags = ["-std=c11", "-O1", "-g", "-Wall", "-Wextra", "-Werror", "-I", str(HEADERS), "-I", str(output.parent)]
+    folders = (HEADERS, output.parent, ROOT / "tests" / "support")
+    flags = ["-std=c11", "-O1", "-g", "-Wall", "-Wextra", "-Werror", *(f"-I{folder}" for folder in folders)]
     files = [str(FAULTS / source) for source in sources]
     subprocess.run(["cc", *flags, *options, *files, "-o", str(output), "-ldl"], check=True, env=clean)
     return output

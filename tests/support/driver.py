@@ -20,7 +20,7 @@ COUNTERS = ("n_steps", "n_rhs", "n_jac", "n_roots", "n_events", "n_restarts")
 CHOICES = {
     "formulation": {"automatic": 1, "reduced": 2, "multibody": 3},
     "friction_law": {"exact": 1, "regularized": 2},
-    "method": {"automatic": 1, "adams": 2, "bdf": 3},
+    "method": {"automatic": 1, "adams": 2, "bdf": 3, "runge_kutta": 4},
 }
 C_TYPES = {"Real": ("Real", c_double), "Boolean": ("Boolean", c_int)}  # all others are read and set as integers
 

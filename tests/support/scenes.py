@@ -6,7 +6,7 @@ Every scene can be given to the FMU (start values, inputs) and to the independen
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from math import pi
+from math import pi, sin
 
 from reference import Start, Wheel
 
@@ -62,12 +62,14 @@ PUSH = Schedule(
         ),
     )
 )
+LOAD = Schedule(((0.0, {"F_X": 3.0, "F_Y": -2.0, "F_Z": 5.0, "M_1": 0.3, "M_3": -0.2}),))
 BRAKE = Schedule(((0.0, {"M_3": 4.0}), (0.3, {"M_3": -2.0}), (1.0, {"M_3": (0, 2), "F_Y": 3.0})))
 
 SCENES = {
     "free": Scene(),
     "friction": Scene({"s": 0.03}),
     "regularized": Scene({"s": 0.03, "friction_law": "regularized", "method": "bdf"}),
+    "stiff law": Scene({"s": 0.03, "friction_law": "regularized", "omega_s": 1e-6}),
     "fast rolling": Scene({"phi_dot_start": -60.0}, 1.0),
     "fast spin the other way": Scene({"s": 0.001, "phi_dot_start": 60.0}, 1.0),
     "near flat": Scene({"theta_start": pi / 6, "psi_dot_start": 0.1, "phi_dot_start": 0.0}, 2.0),
@@ -78,10 +80,27 @@ SCENES = {
     "heavy friction": Scene({**GENERAL, "s": 0.2}, 5.0),
     "heavy friction, J_x = J_y": Scene({"s": 0.2}, 5.0),
     "past upright": Scene({"s": 0.03, "theta_start": 1.9, "psi_dot_start": 0.5, "phi_dot_start": 3.0}, 5.0),
+    "loaded": Scene({}, inputs=LOAD),
     "pushed": Scene({"s": 0.02}, 5.0, PUSH),
     "pushed, general inertia": Scene({**GENERAL, "s": 0.01}, 5.0, PUSH),
     "braked": Scene({"s": 0.01}, 2.0, BRAKE),
 }
+
+# Six inputs that change all the time: amplitude (N and N.m), rate (rad/s) and phase of a sine each.
+SINES = {
+    "F_X": (3.0, 2.0, 0.0),
+    "F_Y": (2.0, 3.0, pi / 2),
+    "F_Z": (-5.0, 1.0, 0.0),
+    "M_1": (0.3, 1.0, pi / 2),
+    "M_2": (0.2, 2.0, 0.0),
+    "M_3": (0.5, 3.0, 0.0),
+}
+
+
+def sines(t: float, order: int = 0) -> tuple[float, ...]:
+    """The six inputs at t, or their derivatives of this order."""
+    return tuple(a * w**order * sin(w * t + p + order * pi / 2) for a, w, p in SINES.values())
+
 
 # Start values of one scene of every kind: both formulations, both methods, every law of friction.
 KINDS: dict[str, Values] = {

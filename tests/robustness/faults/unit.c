@@ -1,10 +1,7 @@
 /* The functions of the library, by name. */
 #include "unit.h"
 
-#include <dlfcn.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "load_library.h"
 
 /* As the members of Unit. */
 static const char* const names[] = {"fmi2Instantiate",
@@ -26,14 +23,7 @@ enum { COUNT = sizeof names / sizeof *names };
 
 Unit load_unit(const char* path) {
   Unit unit;
-  void* pointers[COUNT];
-  void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-  for (int i = 0; library && i < COUNT; ++i) pointers[i] = dlsym(library, names[i]);
-  for (int i = 0; i < COUNT; ++i) {
-    if (library && pointers[i]) continue;
-    fprintf(stderr, "%s: %s\n", path, dlerror());
-    exit(2);
-  }
-  memcpy(&unit, pointers, sizeof unit);
+  _Static_assert(sizeof unit == COUNT * sizeof(void*), "one name per function");
+  load_functions(path, names, COUNT, &unit);
   return unit;
 }

@@ -1,11 +1,11 @@
 /* A life: begun, initialized with start values of its own, then sixty calls drawn from all kinds, then terminated. */
-#include <dlfcn.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "load_library.h"
 #include "threads.h"
 
 /* Value references by name, as modelDescription.xml has them. */
@@ -196,13 +196,6 @@ unsigned long long end_life(Life* life) {
   return sum;
 }
 
-static void* find(void* library, const char* name) {
-  void* symbol = library ? dlsym(library, name) : NULL;
-  if (symbol) return symbol;
-  fprintf(stderr, "%s is missing: %s\n", name, dlerror());
-  exit(2);
-}
-
 Fmu load_fmu(const char* path) {
   static const char* const names[] = {"fmi2Instantiate",
                                       "fmi2FreeInstance",
@@ -231,10 +224,8 @@ Fmu load_fmu(const char* path) {
                                       "fmi2DeSerializeFMUstate",
                                       "fmi2CancelStep"};
   enum { COUNT = sizeof names / sizeof *names };
-  void *pointers[COUNT], *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-  for (unsigned i = 0; i < COUNT; ++i) pointers[i] = find(library, names[i]);
   Fmu fmu;
-  _Static_assert(sizeof pointers == sizeof fmu, "one name per function");
-  memcpy(&fmu, pointers, sizeof fmu);
+  _Static_assert(sizeof fmu == COUNT * sizeof(void*), "one name per function");
+  load_functions(path, names, COUNT, &fmu);
   return fmu;
 }

@@ -1,0 +1,1 @@
+"""What the wheel does, measured: accuracy, stability, speed, inputs, partners. `./scripts/report` runs it."""

@@ -1,0 +1,137 @@
+"""The wheel among other FMUs: the examples of examples/vehicles, run and judged.
+
+Everything is measured by functions of that package, which the tests of the examples call too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from support.paths import ROOT
+
+from .page import Report
+
+
+def fmus(report: Report) -> dict[str, Path]:
+    """Every FMU of the examples, built."""
+    from vehicles.build import build_all
+
+    if "fmus" not in report.kept:
+        report.kept["fmus"] = build_all(ROOT / "build" / "examples")
+    return report.kept["fmus"]
+
+
+def driven_wheel(report: Report) -> None:
+    """the driven, balanced wheel"""
+    from vehicles import driven, figures
+
+    drive = driven.run(fmus(report))
+    verdict = driven.judge(drive)
+    report.figure("alone", "the wheel alone leans by 45° after", verdict.fall, "s")
+    report.figure("tilt", "straight line, last second: off upright", verdict.line_tilt, "°", 0.1)
+    what, off = f"circle of {driven.RADIUS} m: error of the radius driven", verdict.circle_radius - driven.RADIUS
+    report.figure("circle", what, abs(off), "m", 0.01)
+    report.figure("scatter", "off the circle driven", verdict.circle_scatter, "m", 1e-2)
+    report.figure("speed", "error of ω_z on the circle", verdict.speed_error, "rad/s", 1e-2)
+    figures.draw_drive(drive, report.folder / "partners_driven.png")
+
+
+def suspended_wheel(report: Report) -> None:
+    """the suspended wheel against one set of equations"""
+    from vehicles import figures, ssp, suspended
+
+    truth, units = suspended.together(), fmus(report)
+    steps = suspended.STEPS[:3] if report.quick else suspended.STEPS
+    found = suspended.convergence(units, truth, steps)
+    rows = [
+        {
+            "step, ms": 1000 * h,
+            "values held": held,
+            "positions that follow": followed,
+            "first derivatives": linear,
+            "share lost to the lag of a held position": suspended.drag_share(h),
+        }
+        for h, held, followed, linear in zip(found.steps, found.held, found.followed, found.linear, strict=True)
+    ]
+    report.table("orders", rows)
+    report.figure("order", "first derivatives: observed order below 2 by", 2 - min(found.orders(found.linear)), "", 0.3)
+    report.figure("linear", "error at the smallest step, first derivatives", found.linear[-1])
+    package = ssp.build(suspended.system(units), ROOT / "build" / "examples")
+    shares = [{"step, ms": 1000 * h, "error": suspended.package_distance(package, h, truth)} for h in steps[1:4]]
+    report.table("package", shares)
+    limits = [
+        {"step, ms": 1000 * h}
+        | {e: "breaks" if suspended.ends(units, h, e) else "runs" for e in ("held", "derivatives")}
+        for h in suspended.LARGE_STEPS
+    ]
+    report.table("limits", limits)
+    launch = suspended.coupled(units, 0.000625, "derivatives", grid=0.005)
+    figures.draw_launch(launch, found, report.folder / "partners_suspended.png")
+
+
+def ground(report: Report) -> None:
+    """standing, breaking away, sand"""
+    from vehicles import ground as on
+
+    wheel = fmus(report)["wheel"]
+    ramp, sand = on.ramp(wheel), on.sand(wheel)
+    still, moving = on.stand(wheel, 0.99), on.stand(wheel, 1.01)
+    of_ramp = np.abs(ramp.table["omega_z"] - on.ramp_speed(ramp.table["time"])).max()
+    of_sand = np.abs(sand.table["omega_z"] - on.sand_speed(sand.table["time"])).max()
+    standing, breaking = (float(np.abs(run.table["omega_z"]).max()) for run in (still, moving))
+    report.figure("standing", "torque 0.99 s N: largest ω_z", standing, "rad/s", 0, relation="exactly")
+    report.figure("breaking", "torque 1.01 s N: largest ω_z", breaking, "rad/s")
+    report.figure("ramp", "torque that grows to s N inside a step: error of ω_z", of_ramp, "rad/s", 1e-6)
+    report.figure("sand", "s from 0 to 50 mm while rolling: error of ω_z", of_sand, "rad/s", 1e-6)
+    report.words["log"] = "\n".join(moving.log + ramp.log)
+
+
+def axle(report: Report) -> None:
+    """two wheels on a beam axle"""
+    from vehicles import axle_study
+
+    rows, units = [], fmus(report)
+    scene = replace(axle_study.CLOTHOID, stop=0.5 if report.quick else 2.0)
+    for exchange in ("held", "derivatives", "rollback"):
+        errors = axle_study.step_errors(units, scene, exchange)
+        rows.append(
+            {"exchange": exchange} | dict(zip((f"{1000 * h:g} ms" for h in axle_study.STEPS), errors, strict=True))
+        )
+    report.table("axle", rows)
+    factors = (2.0, 4.0)
+    stiff = axle_study.stiffness_errors(units, scene, factors)
+    names = [f"{factor:g} × the stiffness" for factor in factors]
+    report.table("axle_stiffness", [dict(zip(names, stiff, strict=True))])
+    report.figure(
+        "axle_rigid", "axle at four times its stiffness: off the rigid axle's closed form", stiff[-1], "", 0.01
+    )
+
+
+def car(report: Report) -> None:
+    """four wheels, a chassis and a driver"""
+    from vehicles import car as of
+    from vehicles import car_judges
+
+    rows, roads = [], []
+    for name, manoeuvre in list(of.MANOEUVRES.items())[: 2 if report.quick else None]:
+        done = of.drive(fmus(report), manoeuvre)
+        demand = car_judges.demand(done.table)
+        least = min(float(done.table[f"{wheel}.lambda_3"].min()) for wheel in of.WHEELS)
+        road = {"needs friction coefficient": max(demand.values()), "smallest normal force, N": least}
+        roads.append({"manoeuvre": manoeuvre.title, **road, "ended early": done.ending or "no"})
+        if not done.ending:
+            found = car_judges.judge(done.table, manoeuvre)
+            rows += [
+                {"manoeuvre": name, "what": f.what, "unit": f.unit, "measured": f.measured, "closed form": f.exact}
+                for f in found
+            ]
+    report.table("car", rows)
+    report.table("roads", roads)
+
+
+PARTS: dict[Callable[[Report], None], float] = {
+    **{driven_wheel: 20, suspended_wheel: 25, ground: 3, axle: 20, car: 25},
+}

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Writes measured figures into the marked places of the pages: no figure in prose is typed by hand.
+
+A place in Markdown or HTML is `<!-- = report.figure -->4e-8<!-- . -->`: the comment names a row of
+docs/results/data/report.csv, which `scripts/report` measures, and what stands up to the next comment is written here.
+With --check it changes nothing and tells by its exit status whether a page and the data differ.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import re
+import subprocess
+import sys
+from collections.abc import Mapping
+from math import isfinite
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+DATA = ROOT / "docs" / "results" / "data"
+PLACE = re.compile(r"(<!-- = ([\w.]+) -->)(.*?)(<!-- \. -->)", re.DOTALL)
+
+
+class UnknownFigure(Exception):
+    """The message is one sentence for the writer of the page."""
+
+
+def number(value: object) -> str:
+    """Short text of a value: 3 digits of a float, or 2 and a plain exponent; integers and text as they are."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if not isinstance(value, float):
+        return "" if value is None else str(value)
+    if not isfinite(value):
+        return str(value)
+    if value == 0:
+        return "0"
+    if 1e-3 <= abs(value) < 1e5:
+        return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+
+
+def read_figures(folder: Path = DATA) -> dict[str, str]:
+    """Text of each figure by `report.figure`."""
+    figures = {}
+    for path in sorted(folder.glob("*.csv")):
+        with path.open(newline="", encoding="utf-8") as file:
+            rows = csv.DictReader(file)
+            if rows.fieldnames and {"figure", "measured"} <= set(rows.fieldnames):
+                figures |= {f"{path.stem}.{row['figure']}": number(float(row["measured"])) for row in rows}
+    return figures
+
+
+def with_figures(text: str, figures: Mapping[str, str], name: str = "the page") -> str:
+    """The page's text with every marked place filled."""
+
+    def fill(place: re.Match[str]) -> str:
+        if place[2] not in figures:
+            raise UnknownFigure(f"{name} asks for {place[2]}, which no report has measured.")
+        return f"{place[1]}{figures[place[2]]}{place[4]}"
+
+    return PLACE.sub(fill, text)
+
+
+def pages() -> list[Path]:
+    """Every page that is kept under version control."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "*.md", "*.html"]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return [ROOT / name for name in sorted(listed.stdout.split("\0")) if name and (ROOT / name).is_file()]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--check", action="store_true", help="change nothing; exit status 1 if a page is stale")
+    check = parser.parse_args().check
+    figures, stale = read_figures(), 0
+    for page in pages():
+        text = page.read_text(encoding="utf-8")
+        fresh = with_figures(text, figures, page.name)
+        if text != fresh:
+            stale += 1
+            print(f"{'Stale' if check else 'Filled'}: {page.relative_to(ROOT)}")
+            if not check:
+                page.write_text(fresh, encoding="utf-8")
+    return int(check and stale > 0)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except UnknownFigure as fault:
+        sys.exit(f"figures_in_pages: {fault}")

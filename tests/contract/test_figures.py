@@ -1,0 +1,110 @@
+"""Figures in prose are those of the data: marked places are filled from docs/results/data, none is typed by hand."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from support.paths import ROOT
+
+sys.path.insert(0, str(ROOT / "scripts"))
+import figures_in_pages
+from figures_in_pages import DATA, PLACE, UnknownFigure, number, pages, read_figures, with_figures
+
+RESULTS = ROOT / "docs" / "results"
+BY_HAND = ROOT / "docs" / "interoperability.md"  # runs of other programs, which no command of this project starts
+PROSE = [page for page in pages() if RESULTS not in page.parents and page != BY_HAND]
+DECISIONS = [*(ROOT / "docs" / "decisions").glob("*.md"), ROOT / "CHANGELOG.md"]
+CODE = re.compile(r"```.*?```|`[^`]*`|<pre>.*?</pre>|<code>.*?</code>|<math.*?</math>|<!--.*?-->|]\([^)]*\)", re.DOTALL)
+# What looks measured: a mantissa with an exponent (powers of ten are tolerances), or a time or size of computing.
+TYPED = re.compile(r"(?<![\w.])(?!1e)\d+(?:\.\d+)?e-?\d+\b|\b\d[\d.,]* ?(?:ns|µs|us|KiB|MiB)\b")
+# Figures that no report measures: the rounding of a constant, a limit that the code sets.
+GIVEN = {"docs/physics.md": {"6e-17"}, "docs/decisions/memory.md": {"128 KiB"}}
+HISTORY = {
+    "a commit": re.compile(r"\b(?=[0-9a-f]*\d)(?=[0-9a-f]*[a-f])[0-9a-f]{7,40}\b"),
+    "a time of day": re.compile(r"\b[0-2]\d:[0-5]\d\b"),
+    "a table of before and after": re.compile(r"\|\s*before\s*\|", re.IGNORECASE),
+}
+
+
+def typed(text: str) -> list[str]:
+    """What looks like a measured figure outside of marked places, code and links."""
+    return TYPED.findall(CODE.sub(" ", PLACE.sub(" ", text)))
+
+
+@pytest.mark.parametrize("page", pages(), ids=lambda page: str(page.relative_to(ROOT)))
+def test_the_figures_of_a_page_are_those_of_the_data(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    stale = "run scripts/figures_in_pages.py: the figures are not those of docs/results/data"
+    assert with_figures(text, read_figures(), page.name) == text, stale
+
+
+def test_the_readme_takes_its_figures_from_the_data_and_would_notice_another_one() -> None:
+    text, figures = (ROOT / "README.md").read_text(encoding="utf-8"), read_figures()
+    names = [place[1] for place in PLACE.findall(text)]
+    assert len(names) >= 5
+    changed = figures | {names[0]: "other"}
+    assert with_figures(text, changed) != text == with_figures(text, figures)
+
+
+@pytest.mark.parametrize("page", PROSE, ids=lambda page: str(page.relative_to(ROOT)))
+def test_no_measured_figure_is_typed_by_hand(page: Path) -> None:
+    given = GIVEN.get(str(page.relative_to(ROOT)), set())
+    assert [figure for figure in typed(page.read_text(encoding="utf-8")) if figure not in given] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "count"),
+    [
+        ("right to 4e-8 of the range", 1),
+        ("it takes 0.5 µs a step", 1),
+        ("a tolerance of 1e-8", 0),
+        ("run `x = 4e-8`", 0),
+        ("right to <!-- = accuracy.error_free -->4e-8<!-- . --> of the range", 0),
+        ("1,420 KiB and 94 ns", 2),
+    ],
+)
+def test_a_typed_figure_is_found(text: str, count: int) -> None:
+    assert len(typed(text)) == count
+
+
+@pytest.mark.parametrize("page", DECISIONS, ids=lambda page: page.name)
+@pytest.mark.parametrize("what", HISTORY)
+def test_decisions_and_changes_hold_no_history(page: Path, what: str) -> None:
+    assert HISTORY[what].findall(CODE.sub(" ", page.read_text(encoding="utf-8"))) == []
+
+
+def test_history_is_found() -> None:
+    texts = {
+        "a commit": "since c63086f",
+        "a time of day": "at 11:16",
+        "a table of before and after": "| x | Before | after |",
+    }
+    assert all(HISTORY[what].search(text) for what, text in texts.items())
+    assert not any(pattern.search("the deadbeef cafe at 1:100, a b c") for pattern in HISTORY.values())
+
+
+def test_an_unknown_figure_is_refused_and_a_known_one_is_filled(tmp_path: Path) -> None:
+    (tmp_path / "report.csv").write_text("figure,measured\nerror,4.04e-08\n")
+    (tmp_path / "report_rows.csv").write_text("t,x\n0,1\n")
+    figures = read_figures(tmp_path)
+    assert figures == {"report.error": "4e-8"}
+    page = "an error of <!-- = report.error -->?<!-- . -->."
+    assert with_figures(page, figures) == "an error of <!-- = report.error -->4e-8<!-- . -->."
+    with pytest.raises(UnknownFigure, match="asks for report.time"):
+        with_figures("<!-- = report.time --><!-- . -->", figures)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(4.04e-8, "4e-8"), (1.25e-3, "0.00125"), (0.0, "0"), (123456.0, "1.2e5"), (37, "37"), (float("inf"), "inf")],
+)
+def test_a_number_is_short(value: float, text: str) -> None:
+    assert number(value) == text
+
+
+def test_every_report_has_its_data() -> None:
+    assert {"accuracy", "stability", "speed", "inputs"} <= {path.stem for path in DATA.glob("*.csv")}
+    assert figures_in_pages.ROOT == ROOT
