@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 from fmpy import simulate_fmu
 
-from .master import Component, Master
+from .component import Component
+from .master import Master
 
 STOP, STEP = 22.0, 0.005  # s
 T_CIRCLE, RADIUS, SPEED = 5.0, 1.5, 0.7  # s, m, m/s: the parameters of balance.py
@@ -48,12 +49,9 @@ def controlled(fmus: dict[str, Path], stop: float = STOP) -> np.ndarray:
     wheel, balance = Component("wheel", fmus["wheel"], START), Component("balance", fmus["balance"])
     measured = [(("wheel", name), ("balance", name)) for name in MEASURED]
     set_by = [(("balance", name), ("wheel", name)) for name in ("M_1", "M_3")]
-    master = Master([wheel, balance], measured + set_by)
     record = [("wheel", name) for name in RECORD] + [("balance", "M_1"), ("balance", "M_3")]
-    try:
+    with Master([wheel, balance], measured + set_by) as master:
         table = master.run(stop, STEP, record)
-    finally:
-        master.close()
     table.dtype.names = ("time", *(variable for _, variable in record))
     return table
 

@@ -12,7 +12,7 @@ from .build import ROOT, build_all
 
 def package_errors(package: Path, truth: dict[str, np.ndarray]) -> list[tuple[float, float]]:
     """Error of fmpy's run of the SSP package at some steps."""
-    return [(h, ssp.distance(ssp.simulate(package, h), truth)) for h in suspended.STEPS[1:4]]
+    return [(h, suspended.package_distance(package, h, truth)) for h in suspended.STEPS[1:4]]
 
 
 def main() -> None:
@@ -23,10 +23,10 @@ def main() -> None:
     figures.draw_drive(drive, report.RESULTS / "partners_driven.png")
     truth = suspended.together()
     found = suspended.convergence(fmus, truth)
-    launch = suspended.coupled(fmus, 0.000625, True, grid=0.005)
+    launch = suspended.coupled(fmus, 0.000625, "derivatives", grid=0.005)
     figures.draw_launch(launch, found, report.RESULTS / "partners_suspended.png")
     picture.draw(ROOT / "docs" / "figures" / "vehicle")
-    errors = package_errors(ssp.build(fmus, folder), truth)
+    errors = package_errors(ssp.build(suspended.system(fmus), folder), truth)
     written = (
         report.write_partners(fmus, driven.judge(drive), found, truth, errors),
         report.write_inputs(inputs.measure(fmus["wheel"])),

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from coupling import driven
-from coupling.driven import Drive
-from coupling.master import Component, Master
+from vehicles import driven
+from vehicles.component import Component
+from vehicles.driven import Drive
+from vehicles.master import Master
 
 
 @pytest.fixture(scope="module")
@@ -66,9 +67,6 @@ def test_a_controller_of_the_speed_alone_lets_the_wheel_fall(fmus: dict[str, Pat
     balance = Component("balance", fmus["balance"], {"k_theta": 0.0, "c_theta": 0.0})
     connections = [(("wheel", name), ("balance", name)) for name in driven.MEASURED]
     connections += [(("balance", name), ("wheel", name)) for name in ("M_1", "M_3")]
-    master = Master([wheel, balance], connections)
-    try:
+    with Master([wheel, balance], connections) as master:
         table = master.run(3.0, driven.STEP, [("wheel", "theta")])
-    finally:
-        master.close()
     assert np.abs(table["wheel.theta"] - np.pi / 2).max() > np.pi / 4

@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT / "docs" / "examples", ROOT / "tests"):
+for folder in (ROOT / "examples", ROOT / "tests"):
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
-from coupling import build, suspended  # noqa: E402
+from vehicles import build, suspended  # noqa: E402
 
 
 @pytest.fixture(scope="session")
 def fmus(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """wheel, quarter_car (compiled from C) and balance (made by pythonfmu)."""
-    return build.build_all(tmp_path_factory.mktemp("partners"))
+    return build.build_all(tmp_path_factory.mktemp("examples"))
 
 
 @pytest.fixture(scope="session")

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from coupling import report, ssp, suspended
-from coupling.master import Master
-from fmpy.ssp.ssd import read_ssd, read_ssv
+from vehicles import report, suspended
+from vehicles.component import Component
+from vehicles.master import Master
 
 STEPS = (0.0025, 0.00125, 0.000625)  # s
 
@@ -50,30 +50,28 @@ def test_the_ground_pushes_all_the_time(truth: dict[str, np.ndarray]) -> None:
 
 
 def test_the_coupled_wheel_stands_until_the_drive_pulls(fmus: dict[str, Path]) -> None:
-    table = suspended.coupled(fmus, 0.005, True, stop=0.6)
+    table = suspended.coupled(fmus, 0.005, "derivatives", stop=0.6)
     standing = table["time"] <= 0.5
     assert np.all(table["omega_z"][standing] == 0)
     assert np.all(table["omega_z"][~standing] < -0.01)  # rad/s; measured -0.16 at 0.6 s: it launches
 
 
-@pytest.mark.parametrize("derivatives", [False, True])
-def test_the_step_may_not_exceed_twice_the_inertia_over_the_damping(fmus: dict[str, Path], derivatives: bool) -> None:
+@pytest.mark.parametrize("exchange", ["held", "derivatives"])
+def test_the_step_may_not_exceed_twice_the_inertia_over_the_damping(fmus: dict[str, Path], exchange: str) -> None:
     """2 (J_x + m R^2) / (c_theta + c_h R^2) = 17 ms for the lean of this wheel on its suspension."""
-    assert not suspended.ends(fmus, 0.015, derivatives)
-    assert suspended.ends(fmus, 0.02, derivatives)  # partner
+    assert not suspended.ends(fmus, 0.015, exchange)
+    assert suspended.ends(fmus, 0.02, exchange)  # partner
 
 
 def test_a_smaller_grid_of_records_changes_no_bit(fmus: dict[str, Path]) -> None:
-    coarse, fine = (suspended.coupled(fmus, 0.0025, True, 0.7, grid) for grid in (0.05, 0.0025))
+    coarse, fine = (suspended.coupled(fmus, 0.0025, "derivatives", 0.7, grid) for grid in (0.05, 0.0025))
     for name in suspended.COMPARED:
         assert np.array_equal(coarse[name], fine[name][::20])
 
 
-@pytest.mark.parametrize("derivatives", [False, True])
-def test_a_master_that_undoes_and_repeats_every_step_gets_the_same_bits(
-    fmus: dict[str, Path], derivatives: bool
-) -> None:
-    once, twice = (suspended.coupled(fmus, 0.0025, derivatives, 1.0, reject=reject) for reject in (False, True))
+@pytest.mark.parametrize("exchange", ["held", "derivatives"])
+def test_a_master_that_undoes_and_repeats_every_step_gets_the_same_bits(fmus: dict[str, Path], exchange: str) -> None:
+    once, twice = (suspended.coupled(fmus, 0.0025, exchange, 1.0, reject=reject) for reject in (False, True))
     for name in once:
         assert np.array_equal(once[name], twice[name])
 
@@ -85,31 +83,4 @@ def test_the_master_refuses_an_algebraic_loop(fmus: dict[str, Path]) -> None:
         (("wheel", "lambda_1"), ("quarter_car", "X_O")),
     ]
     with pytest.raises(ValueError, match="cycle"):
-        Master(
-            [suspended.Component("wheel", fmus["wheel"]), suspended.Component("quarter_car", fmus["quarter_car"])], loop
-        )
-
-
-@pytest.fixture(scope="module")
-def package(fmus: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return ssp.build(fmus, tmp_path_factory.mktemp("ssp"))
-
-
-def test_the_package_is_valid_ssp(package: Path) -> None:
-    structure = read_ssd(str(package), validate=True)
-    assert structure.version == "1.0"
-    assert len(structure.system.connections) == len(suspended.CONNECTIONS)
-    assert len(read_ssv(str(package), ssp.PARAMETERS, validate=True).parameters) == len(suspended.START)
-
-
-def test_fmpy_runs_the_package_and_converges_with_order_one(package: Path, truth: dict[str, np.ndarray]) -> None:
-    coarse, fine = (ssp.distance(ssp.simulate(package, h), truth) for h in (0.00125, 0.000625))
-    assert np.log2(coarse / fine) == pytest.approx(1, abs=0.1)  # measured 1.06
-    assert fine < 0.06  # measured 0.051
-
-
-def test_a_package_without_its_parameters_is_another_system(package: Path, truth: dict[str, np.ndarray]) -> None:
-    """Partner: the start values come from the SSV."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ssp, "read_ssv", lambda *_: None)
-        assert ssp.distance(ssp.simulate(package, 0.005, stop=0.3), truth) > 0.5
+        Master([Component("wheel", fmus["wheel"]), Component("quarter_car", fmus["quarter_car"])], loop)

@@ -7,7 +7,7 @@ from math import factorial
 from pathlib import Path
 
 import pytest
-from coupling.inputs import Bench, Case
+from vehicles.inputs import Bench, Case
 
 STOP = 2.0  # s, 2000 communication points
 ZERO = (0.0,) * 5

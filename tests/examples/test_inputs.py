@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from coupling import inputs
-from coupling.inputs import Outcome
+from vehicles import inputs
+from vehicles.inputs import Outcome
 
 STOP = 2.0  # s
 

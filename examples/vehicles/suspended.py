@@ -7,25 +7,25 @@ step or by straight lines (derivatives of first order); compared with the same s
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import redirect_stdout
 from dataclasses import dataclass
-from io import StringIO
 from math import pi
 from pathlib import Path
 
 import numpy as np
-from fmpy.fmi1 import FMICallException
 from reference.model import Start, Wheel
 
 from . import monolithic
-from .master import Component, Master, Signal
+from .component import Component, Ended
+from .hubs import FORCE, MOMENT, POSE
+from .master import Master, Signal
+from .ssp import System
+from .ssp import run as run_package
 
 STOP = 3.0  # s
 GRID = 0.05  # s, where runs are compared; every step below divides it
 STEPS = (0.005, 0.0025, 0.00125, 0.000625, 0.0003125)  # s
 LARGE_STEPS = (0.0125, 0.015, 0.02, 0.025)  # s, around the limit of stability
-POSE = ("X_O", "Y_O", "Z_O", "X_O_dot", "Y_O_dot", "Z_O_dot", "psi", "theta", "psi_dot", "theta_dot")
-LOAD = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+LOAD = FORCE + MOMENT
 START = {"s": 0.01, "psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_start": 0.0, "X_O_start": 0.0}
 COMPARED = ("X_O", "theta", "phi_dot", "psi_dot", "X_B", "Z_B")
 RECORD: list[Signal] = [
@@ -38,22 +38,30 @@ CONNECTIONS: list[tuple[Signal, Signal]] = [
 ]
 
 
+def components(fmus: dict[str, Path], parameters: dict[str, float] | None = None) -> list[Component]:
+    """Wheel and quarter car; `parameters` of either, by their names."""
+    car = Component("quarter_car", fmus["quarter_car"], parameters or {})
+    return [Component("wheel", fmus["wheel"], START), car]
+
+
 def coupled(
     fmus: dict[str, Path],
     step: float,
-    derivatives: bool,
+    exchange: str,
     stop: float = STOP,
     grid: float = GRID,
-    reject: bool = False,
+    parameters: dict[str, float] | None = None,
+    **how: bool,
 ) -> dict[str, np.ndarray]:
     """The co-simulation on the comparison grid, columns by variable name."""
-    components = [Component("wheel", fmus["wheel"], START), Component("quarter_car", fmus["quarter_car"])]
-    master = Master(components, CONNECTIONS)
-    try:
-        table = master.run(stop, step, RECORD, derivatives, round(grid / step), reject)
-    finally:
-        master.close()
+    with Master(components(fmus, parameters), CONNECTIONS) as master:
+        table = master.run(stop, step, RECORD, exchange, round(grid / step), **how)
     return {name.split(".")[-1]: table[name] for name in table.dtype.names}
+
+
+def system(fmus: dict[str, Path], parameters: dict[str, float] | None = None, step: float = 0.001) -> System:
+    """What suspended_wheel.ssp holds."""
+    return System("suspended_wheel", components(fmus, parameters), CONNECTIONS, step, STOP)
 
 
 def together(stop: float = STOP, grid: float = GRID) -> dict[str, np.ndarray]:
@@ -67,12 +75,18 @@ def distance(table: dict[str, np.ndarray], truth: dict[str, np.ndarray]) -> floa
     return max(float(np.abs(table[n] - truth[n]).max() / np.ptp(truth[n])) for n in COMPARED)
 
 
-def ends(fmus: dict[str, Path], step: float, derivatives: bool) -> bool:
+def package_distance(package: Path, step: float, truth: dict[str, np.ndarray], stop: float = STOP) -> float:
+    """Largest difference over time of X_O, theta and psi_dot in fmpy's run of the package, relative to their ranges."""
+    table = run_package(package, step, stop, GRID)
+    columns = {n: table[f"wheel.{n}"] for n in ("X_O", "theta", "psi_dot")}
+    return max(float(np.abs(c - truth[n][1 : 1 + len(c)]).max() / np.ptp(truth[n])) for n, c in columns.items())
+
+
+def ends(fmus: dict[str, Path], step: float, exchange: str) -> bool:
     """Whether the coupled run breaks: the hopping wheel leaves the ground and its FMU ends the step."""
     try:
-        with redirect_stdout(StringIO()):  # fmpy prints the wheel's farewell
-            coupled(fmus, step, derivatives, grid=step)
-    except FMICallException:
+        coupled(fmus, step, exchange, grid=step)
+    except Ended:
         return True
     return False
 
@@ -97,6 +111,6 @@ def convergence(
     fmus: dict[str, Path], truth: dict[str, np.ndarray], steps: Sequence[float] = STEPS, stop: float = STOP
 ) -> Convergence:
     """Errors of the coupled runs."""
-    held = [distance(coupled(fmus, h, False, stop), truth) for h in steps]
-    linear = [distance(coupled(fmus, h, True, stop), truth) for h in steps]
+    held = [distance(coupled(fmus, h, "held", stop), truth) for h in steps]
+    linear = [distance(coupled(fmus, h, "derivatives", stop), truth) for h in steps]
     return Convergence(steps, held, linear)

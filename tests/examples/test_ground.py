@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from coupling import ground
+from vehicles import ground
 
 
 def test_a_standing_wheel_stays_until_the_torque_beats_s_N(fmus: dict[str, Path]) -> None:
