@@ -4,7 +4,7 @@
 
 TABLE is a CSV file: causality, name, unit, start, depends, description. Its comments (#) come first; the first of them
 describes the model. A name with {wheel} stands for one variable per wheel of LAYOUT, a TOML file whose [wheel.NAME]
-tables also give start values: {x} is that wheel's x. `depends` lists the inputs that an output depends on directly
+tables also give start values: {x} is that wheel's x; for other variables they come from its table [NAME of the model]. `depends` lists the inputs that an output depends on directly
 (patterns with *); `-` is none. The value reference of a variable is its place in the table, and variables.h names it:
 of variables per wheel also by the name with `each`, the first wheel's; the next wheel's is wheel_parameters,
 wheel_inputs or wheel_outputs further on.
@@ -27,6 +27,7 @@ BASE = {
     "N.m": "kg=1 m=2 s=-2", "N.m/rad": "kg=1 m=2 s=-2 rad=-1", "N.m.s/rad": "kg=1 m=2 s=-1 rad=-1",
     "N.s": "kg=1 m=1 s=-1", "J": "kg=1 m=2 s=-2", "1/m": "m=-1", "1/s": "s=-1", "m/s3": "m=1 s=-3", "1": "",
 }  # fmt: skip
+Layout = dict[str, dict[str, dict[str, float | str]]]
 KINDS = ("parameter", "input", "output", "local")
 
 
@@ -43,29 +44,23 @@ class Variable:
     of: str = ""
 
 
-def read_wheels(layout: Path | None) -> dict[str, dict[str, float | str]]:
-    """Wheel names in order, with their properties."""
-    return tomllib.loads(layout.read_text())["wheel"] if layout else {}
-
-
-def read(table: Path, wheels: dict[str, dict[str, float | str]]) -> tuple[str, list[Variable]]:
+def read(name: str, table: Path, layout: Layout) -> tuple[str, list[Variable]]:
     """The model's description and all variables, those per wheel written out wheel by wheel."""
     lines = table.read_text().splitlines()
     about = next(line.lstrip("# ") for line in lines if line.startswith("#"))
-    rows = [row for row in csv.DictReader(line for line in lines if line and not line.startswith("#"))]
+    rows = list(csv.DictReader(line for line in lines if line and not line.startswith("#")))
     variables: list[Variable] = []
     for kind in KINDS:
         of_kind = [row for row in rows if row["causality"] == kind]
-        variables += [_variable(row) for row in of_kind if "{wheel}" not in row["name"]]
+        variables += [_variable(row, "", layout.get(name, {})) for row in of_kind if "{wheel}" not in row["name"]]
         each = [row for row in of_kind if "{wheel}" in row["name"]]
-        for wheel, properties in wheels.items():
+        for wheel, properties in layout.get("wheel", {}).items():
             variables += [_variable(row, wheel, properties) for row in each]
     return about, variables
 
 
-def _variable(row: dict[str, str], wheel: str = "", properties: dict[str, float | str] | None = None) -> Variable:
-    fields = {"wheel": wheel, **(properties or {})}
-    text = {key: (value or "").format(**fields) if wheel else value or "" for key, value in row.items()}
+def _variable(row: dict[str, str], wheel: str, properties: dict[str, float | str]) -> Variable:
+    text = {key: (value or "").format(wheel=wheel, **properties) for key, value in row.items()}
     return Variable(
         row["causality"],
         text["name"],
@@ -176,12 +171,12 @@ def header(name: str, variables: list[Variable], wheels: dict[str, dict[str, flo
 def main() -> None:
     """Writes both files."""
     name, table, folder, *layout = sys.argv[1:]
-    wheels = read_wheels(Path(layout[0]) if layout else None)
-    about, variables = read(Path(table), wheels)
+    given: Layout = tomllib.loads(Path(layout[0]).read_text()) if layout else {}
+    about, variables = read(name, Path(table), given)
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
     (target / "modelDescription.xml").write_text(description(name, about, variables))
-    (target / "variables.h").write_text(header(name, variables, wheels))
+    (target / "variables.h").write_text(header(name, variables, given.get("wheel", {})))
 
 
 if __name__ == "__main__":

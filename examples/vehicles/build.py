@@ -11,7 +11,7 @@ from pythonfmu.builder import FmuBuilder
 
 EXAMPLES = Path(__file__).resolve().parent.parent
 ROOT = EXAMPLES.parent
-IN_C = ("quarter_car", "axle")
+IN_C = ("quarter_car", "axle", "chassis", "driver")
 
 
 def wheel_fmu() -> Path:
