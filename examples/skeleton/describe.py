@@ -28,6 +28,7 @@ BASE = {
     "N.s": "kg=1 m=1 s=-1", "J": "kg=1 m=2 s=-2", "1/m": "m=-1", "1/s": "s=-1", "m/s3": "m=1 s=-3", "1": "",
 }  # fmt: skip
 Layout = dict[str, dict[str, dict[str, float | str]]]
+WITH_RATE = ("X_O", "Y_O", "Z_O", "psi", "theta", "delta")  # inputs that may have their rate beside them
 KINDS = ("parameter", "input", "output", "local")
 
 
@@ -140,6 +141,14 @@ def description(name: str, about: str, variables: list[Variable]) -> str:
     ])  # fmt: skip
 
 
+def rate_name(name: str) -> str:
+    """X_O_left -> X_O_dot_left, psi -> psi_dot; empty if an input of this name has no rate among the inputs."""
+    for stem in WITH_RATE:
+        if name == stem or (name.startswith(f"{stem}_") and not name.startswith(f"{stem}_dot")):
+            return f"{stem}_dot{name.removeprefix(stem)}"
+    return ""
+
+
 def header(name: str, variables: list[Variable], wheels: dict[str, dict[str, float | str]]) -> str:
     """variables.h as text."""
     of = [v.causality for v in variables]
@@ -156,6 +165,8 @@ def header(name: str, variables: list[Variable], wheels: dict[str, dict[str, flo
         **{f"wheel_{kind}s": count for kind, count in stride.items()},
     }
     starts = ", ".join(repr(v.start) for v in variables if v.causality in ("parameter", "input"))
+    inputs = {v.name: i for i, v in enumerate(v for v in variables if v.causality == "input")}
+    rates = [inputs.get(rate, -1) for rate in map(rate_name, inputs)]
     partner = [list(wheels).index(w["bar_to"]) if "bar_to" in w else -1 for w in wheels.values()]
     return "\n".join([
         f"/* Value references of {name}: generated from its table of variables. */",
@@ -163,6 +174,7 @@ def header(name: str, variables: list[Variable], wheels: dict[str, dict[str, flo
         f"#define MODEL_GUID \"{guid(name, variables)}\"",
         "enum {", *(f"  {key} = {value}," for key, value in numbers.items()), "};",
         f"static const double variable_starts[] = {{{starts}}};",
+        f"static const int rate_of[] = {{{', '.join(map(str, rates or [-1]))}}}; /* input that is the rate of an input */",
         *([f"static const int bar_partner[] = {{{', '.join(map(str, partner))}}};"] if first else []),
         "#endif", "",
     ])  # fmt: skip

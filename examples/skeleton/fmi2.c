@@ -106,7 +106,10 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
   for (size_t k = 0; k < n; ++k)
     if (v[k] < first_input || v[k] >= first_output || orders[k] < 1 || orders[k] > input_orders || !isfinite(values[k]))
       return refuse(i, "fmi2SetRealInputDerivatives: inputs have finite derivatives of order 1 to 3.");
-  for (size_t k = 0; k < n; ++k) i->of.simulation.slope[orders[k] - 1][v[k] - first_input] = values[k];
+  for (size_t k = 0; k < n; ++k) {
+    i->of.simulation.slope[orders[k] - 1][v[k] - first_input] = values[k];
+    i->of.simulation.given[v[k] - first_input] = 1;
+  }
   return fmi2OK;
 }
 

@@ -42,7 +42,13 @@ static void inner(Simulation* s, const Now* begin, const Now* middle, const Now*
   for (int i = 0; i < model_state_count; ++i) s->x[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
 }
 
+static void follow_rates(Simulation* s) {
+  for (int i = 0; i < input_count; ++i)
+    if (rate_of[i] >= 0 && !s->given[i]) s->slope[0][i] = s->now.u[first_input + rate_of[i]];
+}
+
 void simulation_step(Simulation* s, double h) {
+  if (s->now.u[follow] != 0) follow_rates(s);
   const int n = (int)fmax(1, ceil(h / s->now.u[inner_step] - 1e-6));
   Now begin = s->now;
   for (int i = 0; i < n; ++i) {
@@ -53,6 +59,7 @@ void simulation_step(Simulation* s, double h) {
   s->now = begin;
   s->now.begin = s->now.t;
   memset(s->slope, 0, sizeof s->slope);
+  memset(s->given, 0, sizeof s->given);
 }
 
 void simulation_outputs(const Simulation* s, double* y) { model_outputs(&s->now, s->x, y); }
@@ -62,8 +69,9 @@ void simulation_outputs(const Simulation* s, double* y) { model_outputs(&s->now,
 void simulation_output_rates(const Simulation* s, double* y_dot) {
   static const double e = 1e-4; /* s */
   double f[max_states], x[max_states], before[variable_count];
-  model_rates(&s->now, s->x, f);
   Simulation line = *s;
+  if (line.now.u[follow] != 0) follow_rates(&line);
+  model_rates(&s->now, s->x, f);
   memset(line.slope[1], 0, sizeof line.slope[1] * (input_orders - 1));
   Now now = later(&line, -e);
   add(s->x, -e, f, x);

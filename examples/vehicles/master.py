@@ -28,6 +28,7 @@ class Transfer:
     """Outputs of one component that can be read together, and the inputs they go to."""
 
     def __init__(self, source: Component, signals: list[Signal], connections: list[Connection], sinks: list[Component]):
+        self.source = source.name
         self.outputs = Values(source, [variable for _, variable in signals])
         self.value, self.rate = np.zeros(len(signals)), np.zeros(len(signals))
         self.sinks: list[tuple[Values, np.ndarray]] = []
