@@ -1,16 +1,16 @@
 /* Equations of the chassis: a rigid body (mechanics/rigid_body.h) on one hub (mechanics/hub.h) and strut per wheel.
  *
  * Body axes x forward, y left, z up, origin in the centre of mass B at the height h_B; the hub of wheel i at rest at
- * p = (x_i, y_i, R - h_B). Along x and y of the chassis the hub's bushing holds the wheel; along z the strut, with d the
- * wheel's way up from rest, e the way beyond the free travel, and F_i its share of the weight:
+ * p = (x_i, y_i, R - h_B). Along x and y of the chassis the hub's bushing holds the wheel; along z the strut, with d
+ * the wheel's way up from rest, e the way beyond the free travel, and F_i its share of the weight:
  *
  *   f_z = -(F_i + k d + c d' + k_stop |e| e + k_bar (d - d_other end of the bar))
  *
- * Steering (Ackermann): all wheels turn about one point on the line through the wheels that are not steered. With L from
- * that line to the steered wheels, tan delta_i = (x_i - x_R) tan delta / (L - y_i tan delta).
- * Drive: M_3 = -share M_drive, taken from the chassis. Brake: of the moment tau that the wheel feels, the share
- * B / (s N + B) is the brake's, which the chassis carries; B is its capacity, s N that of rolling friction.
- * Until t_couple the chassis runs on straight and each strut gives F_i alone. */
+ * Steering (Ackermann): all wheels turn about one point on the line through the wheels that are not steered. With L
+ * from that line to the steered wheels, tan delta_i = (x_i - x_R) tan delta / (L - y_i tan delta). Drive: M_3 = -share
+ * M_drive, taken from the chassis. Brake: of the moment tau that the wheel feels, the share B / (s N + B) is the
+ * brake's, which the chassis carries; B is its capacity, s N that of rolling friction. Until t_couple the chassis runs
+ * on straight and each strut gives F_i alone. */
 #include <math.h>
 #include <string.h>
 
@@ -41,8 +41,8 @@ static int weigh(const double* u, double* share) {
     }
   }
   for (int i = 0; i < wheel_count; ++i)
-    share[i] = A[0][3] / A[0][0] + *of_wheel(u, x_each, i) * A[1][3] / A[1][1] +
-               *of_wheel(u, y_each, i) * A[2][3] / A[2][2];
+    share[i] =
+        A[0][3] / A[0][0] + *of_wheel(u, x_each, i) * A[1][3] / A[1][1] + *of_wheel(u, y_each, i) * A[2][3] / A[2][2];
   return 1;
 }
 

@@ -1,13 +1,14 @@
 /* Equations of the driver. Fixed axes X, Y; angles to the left.
  *
  * Paths P(p), which begin at the origin along X:
- *   figure of eight  size (sin p, sin p cos p), turned by -45 degrees (Gerono's lemniscate)
+ *   figure of eight  size sin p (1, cos p) / D, D = 1 + cos^2 p, turned by -45 degrees (Bernoulli's lemniscate):
+ *                    |dP/dp| = size / sqrt(D), kappa = -3 sin p / (size sqrt(D))
  *   lane change      (p, width / 2 (tanh((p - x_out) / length) - tanh((p - x_back) / length)))
  * The parameter follows the car, p' = (velocity + k_p (r - P)) t / |dP/dp| with t the path's direction. With e the
  * distance to the left of the path, and the path's curvature kappa taken where the car will be after the lag T_delta:
  *
- *   delta_ref = atan(L (kappa - k_y e - k_psi sin(psi - heading))) + programme,   delta' = (delta_ref - delta) / T_delta
- *   M_drive = k_v (v_ref - v) + k_i integral (v_ref - v) + programme
+ *   delta_ref = atan(L (kappa - k_y e - k_psi sin(psi - heading))) + programme,   delta' = (delta_ref - delta) /
+ * T_delta M_drive = k_v (v_ref - v) + k_i integral (v_ref - v) + programme
  *
  * All programmes rise by q(x) = x^3 (10 - 15 x + 6 x^2), which has continuous second derivatives. */
 #include <math.h>
@@ -41,10 +42,10 @@ static double rise(double t, double from, double duration) {
 }
 
 static Place eight(double A, double p) {
-  static const double c = 0.70710678118654752440; /* cos 45 degrees */
-  const double x = A * sin(p), y = A * sin(2 * p) / 2, dx = A * cos(p), dy = A * cos(2 * p);
-  const double ddx = -A * sin(p), ddy = -2 * A * sin(2 * p);
-  return (Place){c * (x + y), c * (y - x), c * (dx + dy), c * (dy - dx), (dx * ddy - dy * ddx) / pow(hypot(dx, dy), 3)};
+  static const double turn = 0.70710678118654752440; /* cos 45 degrees */
+  const double s = sin(p), c = cos(p), D = 1 + c * c;
+  const double x = A * s / D, y = x * c, dx = A * c * (3 - c * c) / (D * D), dy = A * (3 * c * c - 1) / (D * D);
+  return (Place){turn * (x + y), turn * (y - x), turn * (dx + dy), turn * (dy - dx), -3 * s / (A * sqrt(D))};
 }
 
 static Place lane(const double* u, double p) {

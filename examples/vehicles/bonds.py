@@ -14,7 +14,11 @@ from .component import Component, Values
 from .hubs import FORCE
 from .master import Connection, Master
 
-BONDS = {**{name: f"{axis}_O_dot" for name, axis in zip(FORCE, "XYZ", strict=True)}, "M_1": "theta_dot", "M_2": "psi_dot"}
+BONDS = {
+    **{name: f"{axis}_O_dot" for name, axis in zip(FORCE, "XYZ", strict=True)},
+    "M_1": "theta_dot",
+    "M_2": "psi_dot",
+}
 
 
 class BondMaster(Master):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass, field, replace
-from math import atan, cos, sin
+from math import cos, sin
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +20,9 @@ from .master import Connection, Master, Signal
 
 LAYOUT = tomllib.loads((EXAMPLES / "car" / "car.toml").read_text())
 WHEELS: dict[str, dict[str, float | str]] = LAYOUT["wheel"]
-WHEELBASE, TRACK = 2.6, 1.5  # m
+X_REAR = float(np.mean([w["x"] for w in WHEELS.values() if not w["steer"]]))  # rear point from the centre of mass
+WHEELBASE = float(np.mean([w["x"] for w in WHEELS.values() if w["steer"]])) - X_REAR  # m
+TRACK = float(np.ptp([w["y"] for w in WHEELS.values() if w["steer"]]))  # m, of the steered wheels
 R, M_WHEEL, J_Z, G = 0.35, 20.0, 1.8, 9.81  # the wheels' defaults
 MASS = LAYOUT["chassis"]["m_B"] + M_WHEEL * len(WHEELS)
 
@@ -84,8 +86,9 @@ STEP = Manoeuvre(
     12.0,
     driver={**HOLD_SPEED, "delta_0": 0.07, "t_delta": 0.5, "ramp_delta": 0.5},
 )
-EIGHT = Manoeuvre("eight", "figure of eight", 24.0, 4.0, driver={**HOLD_SPEED, "path": 1.0, "size": 15.0})
-LANE = Manoeuvre("lane", "double lane change", 7.0, 15.0, driver={**HOLD_SPEED, "path": 2.0})
+AT_ORIGIN = {"X_start": -X_REAR}  # the rear point begins where the path does
+EIGHT = Manoeuvre("eight", "figure of eight", 22.0, 5.0, 0.0, {**HOLD_SPEED, "path": 1.0, "size": 20.0}, AT_ORIGIN)
+LANE = Manoeuvre("lane", "double lane change", 7.0, 15.0, 0.0, {**HOLD_SPEED, "path": 2.0, "length": 10.0}, AT_ORIGIN)
 TOO_FAST = replace(STEP, name="too_fast", title="the same step too fast", v=22.0)
 MANOEUVRES = {m.name: m for m in (STRAIGHT, CIRCLE, STEP, EIGHT, LANE, TOO_FAST)}
 

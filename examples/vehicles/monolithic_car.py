@@ -37,8 +37,8 @@ class Path:
         """X, Y."""
         o = self.o
         if o["path"] == 1:
-            x, y = o["size"] * np.sin(p), o["size"] * np.sin(p) * np.cos(p)
-            return np.array([x + y, y - x]) / np.sqrt(2)
+            x = o["size"] * np.sin(p) / (1 + np.cos(p) ** 2)
+            return np.array([x + x * np.cos(p), x * np.cos(p) - x]) / np.sqrt(2)
         out, back = (np.tanh((p - o[end]) / o["length"]) for end in ("x_out", "x_back"))
         return np.array([p, o["width"] / 2 * (out - back)])
 
@@ -46,10 +46,8 @@ class Path:
         """First and second, by p."""
         o = self.o
         if o["path"] == 1:
-            A = o["size"]
-            first = np.array([np.cos(p) + np.cos(2 * p), np.cos(2 * p) - np.cos(p)])
-            second = np.array([-np.sin(p) - 2 * np.sin(2 * p), np.sin(p) - 2 * np.sin(2 * p)])
-            return A * first / np.sqrt(2), A * second / np.sqrt(2)
+            step = 1e-30  # of the complex step, which has no error
+            return np.real(self._eight(p)), self._eight(p + 1j * step).imag / step
         slope = bend = 0.0
         for end, sign in (("x_out", 1.0), ("x_back", -1.0)):
             sech2 = 1 / np.cosh((p - o[end]) / o["length"]) ** 2
@@ -57,6 +55,12 @@ class Path:
             bend -= sign * 2 * sech2 * np.tanh((p - o[end]) / o["length"])
         half = o["width"] / 2
         return np.array([1.0, half * slope / o["length"]]), np.array([0.0, half * bend / o["length"] ** 2])
+
+    def _eight(self, p: complex) -> np.ndarray:
+        """dP/dp of the figure of eight."""
+        c = np.cos(p)
+        dx, dy = c * (3 - c**2), 3 * c**2 - 1
+        return self.o["size"] * np.array([dx + dy, dy - dx]) / (1 + c**2) ** 2 / np.sqrt(2)
 
     def curvature(self, p: float) -> float:
         """Positive to the left."""
@@ -90,16 +94,15 @@ class Car:
         weight = (MASS - self.n * self.kind.m) * self.kind.g
         self.share = base @ np.linalg.solve(base.T @ base, [weight, 0, 0])
         names = list(LAYOUT["wheel"])
-        self.bars = [
-            (i, names.index(w["bar_to"]), w["k_bar"]) for i, w in enumerate(wheels) if "bar_to" in w
-        ]
+        self.bars = [(i, names.index(w["bar_to"]), w["k_bar"]) for i, w in enumerate(wheels) if "bar_to" in w]
 
     def start(self) -> np.ndarray:
         """Level and upright, rolling along X."""
         a = np.tile([0.0, -1.0, 0.0], (self.n, 1))
         spin = np.tile([0.0, self.v / self.R_0, 0.0], (self.n, 1))
-        O = self.hub + [0.0, 0.0, self.c["h_B"]]
-        body = np.concatenate([[0, 0, self.c["h_B"], self.v, 0, 0], np.eye(3).ravel(), np.zeros(3)])
+        X = self.c.get("X_start", 0.0)
+        O = self.hub + [X, 0.0, self.c["h_B"]]
+        body = np.concatenate([[X, 0, self.c["h_B"], self.v, 0, 0], np.eye(3).ravel(), np.zeros(3)])
         return np.concatenate([body, np.zeros(DRIVER), O.ravel(), a.ravel(), spin.ravel()])
 
     def wheels(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
