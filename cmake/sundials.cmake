@@ -6,55 +6,60 @@ set(sundials_version 7.1.1)
 set(sundials_crate sundials-sys-0.6.2)
 set(sundials_sha256 6fbd1d53481b83fc758406097f07b668bf243945e2b1f7db93a8f997cf6b44c9)
 
+# The fetched source is shared by all build folders inside the project. It counts as there only when the stamp says so,
+# which is written last: whatever was interrupted before is fetched or unpacked again.
 function(fetch_sundials source_dir)
   set(cache ${CMAKE_BINARY_DIR}/_sundials)
+  cmake_path(IS_PREFIX CMAKE_SOURCE_DIR ${CMAKE_BINARY_DIR} NORMALIZE inside)
+  if(inside)
+    set(cache ${CMAKE_SOURCE_DIR}/build/sundials)
+  endif()
   set(${source_dir} ${cache}/${sundials_crate}/vendor PARENT_SCOPE)
-  if(EXISTS ${cache}/${sundials_crate}/vendor/CMakeLists.txt)
-    return()
-  endif()
-  find_program(CARGO cargo REQUIRED DOC "fetches the pinned SUNDIALS source")
-  message(STATUS "Fetching SUNDIALS ${sundials_version} (${sundials_crate})")
+  set(WHEEL_SUNDIALS_FETCHED ${cache}/${sundials_crate}/vendor CACHE INTERNAL "")
   file(MAKE_DIRECTORY ${cache})
-  execute_process(
-    COMMAND ${CMAKE_COMMAND} -E env CARGO_HOME=${cache}/cargo ${CARGO} info sundials-sys@0.6.2
-    WORKING_DIRECTORY ${cache}
-    OUTPUT_QUIET
-    ERROR_VARIABLE trouble
-    RESULT_VARIABLE status
-  )
-  file(GLOB crate ${cache}/cargo/registry/cache/*/${sundials_crate}.crate)
-  if(NOT crate)
-    message(FATAL_ERROR "SUNDIALS could not be fetched (status ${status}): ${trouble}")
+  file(LOCK ${cache}/lock GUARD FUNCTION TIMEOUT 900)
+  set(stamp ${cache}/complete)
+  if(EXISTS ${stamp} AND EXISTS ${cache}/${sundials_crate}/vendor/CMakeLists.txt)
+    file(READ ${stamp} unpacked)
+    if(unpacked STREQUAL "${sundials_sha256}")
+      return()
+    endif()
   endif()
-  file(SHA256 ${crate} hash)
-  if(NOT hash STREQUAL "${sundials_sha256}")
-    message(FATAL_ERROR "${crate} has SHA-256 ${hash}, expected ${sundials_sha256}")
-  endif()
+  fetch_crate(${cache} crate)
+  file(REMOVE_RECURSE ${stamp} ${cache}/${sundials_crate})
   file(ARCHIVE_EXTRACT INPUT ${crate} DESTINATION ${cache})
+  file(WRITE ${stamp} ${sundials_sha256})
 endfunction()
 
-# CVODE's prediction, a fifth of the run time as a triangle of vector sums through memory, becomes one call that does the
-# same sums in registers (state_predict in state_vector.h; not a bit differs). The source itself stays as it is: a copy
-# in the build folder is compiled instead.
-function(exchange_prediction source)
-  file(READ ${source}/src/cvode/cvode.c text)
-  string(
-    CONCAT triangle
-    "  for (k = 1; k <= cv_mem->cv_q; k++)\n  {\n    for (j = cv_mem->cv_q; j >= k; j--)\n    {\n"
-    "      N_VLinearSum(ONE, cv_mem->cv_zn[j - 1], ONE, cv_mem->cv_zn[j],\n"
-    "                   cv_mem->cv_zn[j - 1]);\n    }\n  }\n"
-  )
-  string(FIND "${text}" "${triangle}" place)
-  if(place EQUAL -1)
-    message(FATAL_ERROR "${source} is not SUNDIALS ${sundials_version}: cvPredict differs")
-  endif()
-  string(REPLACE "${triangle}" "  (void)j, (void)k;\n  state_predict(cv_mem->cv_zn, cv_mem->cv_q);\n" text "${text}")
-  set(copy ${CMAKE_BINARY_DIR}/_sundials/cvode.c)
-  file(CONFIGURE OUTPUT ${copy} CONTENT "${text}" @ONLY)
-  get_target_property(sources sundials_cvode_obj_static SOURCES)
-  list(TRANSFORM sources REPLACE "^(.*/)?cvode[.]c$" ${copy})
-  set_target_properties(sundials_cvode_obj_static PROPERTIES SOURCES "${sources}")
-  target_include_directories(sundials_cvode_obj_static PRIVATE ${source}/src/cvode ${source}/src/sundials)
+# The archive of the registry, whole: one that an interrupted download left behind is fetched again.
+function(fetch_crate cache crate)
+  set(trouble "")
+  foreach(fetched IN ITEMS FALSE TRUE)
+    file(GLOB found ${cache}/cargo/registry/cache/*/${sundials_crate}.crate)
+    if(found)
+      file(SHA256 ${found} hash)
+      if(hash STREQUAL "${sundials_sha256}")
+        set(${crate} ${found} PARENT_SCOPE)
+        return()
+      endif()
+      string(APPEND trouble "${found} has SHA-256 ${hash}, expected ${sundials_sha256}")
+    endif()
+    if(fetched)
+      message(FATAL_ERROR "SUNDIALS could not be fetched: ${trouble}")
+    endif()
+    file(REMOVE_RECURSE ${cache}/cargo)
+    find_program(CARGO cargo DOC "fetches the pinned SUNDIALS source")
+    if(NOT CARGO)
+      message(FATAL_ERROR "cargo is missing: it fetches SUNDIALS. Or give -DWHEEL_SUNDIALS_SOURCE=<folder>.")
+    endif()
+    message(STATUS "Fetching SUNDIALS ${sundials_version} (${sundials_crate})")
+    execute_process(
+      COMMAND ${CMAKE_COMMAND} -E env CARGO_HOME=${cache}/cargo ${CARGO} info sundials-sys@0.6.2
+      WORKING_DIRECTORY ${cache}
+      OUTPUT_QUIET
+      ERROR_VARIABLE trouble
+    )
+  endforeach()
 endfunction()
 
 function(add_sundials)
@@ -89,26 +94,9 @@ function(add_sundials)
   if(NOT WHEEL_COVERAGE)
     add_compile_options(-ffile-prefix-map=${source}=sundials)
   endif()
-  # Memory of SUNDIALS: the solver's room, see room.h.
-  get_directory_property(own_options COMPILE_OPTIONS)
-  add_compile_options(-DWHEEL_INSIDE_SUNDIALS "SHELL:-include \"${CMAKE_SOURCE_DIR}/fmu-src/integrator/room.h\"")
   set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
   add_subdirectory(${source} ${CMAKE_BINARY_DIR}/_sundials/build EXCLUDE_FROM_ALL SYSTEM)
-  set_directory_properties(PROPERTIES COMPILE_OPTIONS "${own_options}")
-  # CVODE's vector operations inline, for the one kind of vector it meets here. They are written in pairs already; left to
-  # itself the compiler also vectorises the short recurrences for the Adams coefficients, which makes them slower.
-  target_compile_options(
-    sundials_cvode_obj_static
-    PRIVATE
-      -DWHEEL_INSIDE_CVODE
-      -DWHEEL_INLINE_VECTOR_OPERATIONS
-      "SHELL:-include \"${CMAKE_SOURCE_DIR}/fmu-src/integrator/state_vector.h\""
-      -fno-tree-vectorize
-      -fno-tree-slp-vectorize
-      ${cvode_instrumentation}
-  )
-  exchange_prediction(${source})
-  # The private headers hold CVODE's memory record: integrator/history.cpp snapshots it.
+  # The private headers hold CVODE's memory record: solver/cvode_history.cpp alone reads them, for snapshots.
   add_library(sundials_private INTERFACE)
   target_include_directories(sundials_private SYSTEM INTERFACE ${source}/src/cvode ${source}/src/sundials)
   set(SUNDIALS_SOURCE ${source} PARENT_SCOPE)

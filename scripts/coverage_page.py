@@ -18,7 +18,7 @@ PAGE = ROOT / "docs" / "results" / "coverage.md"
 LEAST = 95.0  # per cent of lines
 
 # What no test reaches: file, a piece of the first line's text, and why. A reason holds for the range that starts there.
-SHORT = "only where memory is short: tests/faults"
+SHORT = "only where memory is short: tests/robustness/faults"
 CHECKED = "CVodeInit refuses a vector without this operation, and calls none of it in the set-ups used here"
 ASKED = "SUNDIALS asks for it only when it is built with its own error checks"
 FMI, INTEGRATOR = "fmu-src/fmi/", "fmu-src/integrator/"

@@ -28,7 +28,7 @@ TITLES = {
     "local": "For inspection",
 }
 # What a master relies on: a library and a description that differ here do not belong together.
-BINDING = ("CoSimulation", "UnitDefinitions", "TypeDefinitions", "ModelVariables", "ModelStructure")
+BINDING = ("CoSimulation", "UnitDefinitions", "ModelVariables", "ModelStructure")
 BEGIN, END = "<!-- variables: scripts/variable_tables.py -->", "<!-- end of variables -->"
 
 
@@ -41,20 +41,13 @@ class Variable(NamedTuple):
 
 
 def read_variables(path: Path = DESCRIPTION) -> list[Variable]:
-    root = ElementTree.parse(path).getroot()
-    items = {
-        kind.get("name"): {item.get("value"): item.get("name") for item in kind.iter("Item")}
-        for kind in root.iter("SimpleType")
-    }
-    return [variable_of(row, items) for row in root.iter("ScalarVariable")]
+    return [variable_of(row) for row in ElementTree.parse(path).getroot().iter("ScalarVariable")]
 
 
-def variable_of(row: ElementTree.Element, items: dict[str, dict[str, str]]) -> Variable:
+def variable_of(row: ElementTree.Element) -> Variable:
     (typed,) = row
     start = typed.get("start", "")
-    if typed.tag == "Enumeration":
-        start = items[typed.get("declaredType")][start]
-    elif typed.tag == "Real" and start:
+    if typed.tag == "Real" and start:
         start = f"{float(start):.6g}"
     return Variable(row.get("name"), row.get("causality"), typed.get("unit", ""), start, row.get("description"))
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fmpy import extract, read_model_description, simulate_fmu
-from paths import ROOT, build_folder
-
-HEADLINE = ("X_O", "theta", "phi_dot", "psi_dot")
+from reference.tables import read_table
+from support.driver import HEADLINE, FMU2Wheel
+from support.motion import Library
+from support.paths import build_folder
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -29,6 +30,12 @@ def fmu(fmu_path: Path) -> Iterator[str]:
     folder = extract(str(fmu_path))
     yield folder
     shutil.rmtree(folder)
+
+
+@pytest.fixture(scope="session")
+def library(fmu: str) -> Library:
+    """The unpacked FMU as a function from a scene to its motion; instances come and go."""
+    return Library(fmu)
 
 
 @pytest.fixture(scope="session")
@@ -61,9 +68,27 @@ def simulate(fmu: str, description):
 
 
 @pytest.fixture(scope="session")
-def reference_tables() -> dict[str, np.ndarray]:
+def reference_tables() -> dict[str, dict[str, np.ndarray]]:
     """The trusted tables of the paper's two scenes, every 0.1 s."""
-    folder = ROOT.parent / "shared" / "reference"
-    return {
-        scene: np.genfromtxt(folder / f"paper_{scene}.csv", delimiter=",", names=True) for scene in ("free", "friction")
-    }
+    return {scene: read_table(f"paper_{scene}") for scene in ("free", "friction")}
+
+
+@pytest.fixture
+def wheel(fmu: str, description) -> Iterator[Callable[..., FMU2Wheel]]:
+    """wheel(...) -> a new instance in the state "instantiated"; freed after the test."""
+    made: list[FMU2Wheel] = []
+
+    def make(**options) -> FMU2Wheel:
+        made.append(FMU2Wheel(fmu, description, **options))
+        return made[-1]
+
+    yield make
+    for instance in made:
+        if instance.component:
+            instance.close()
+
+
+@pytest.fixture(scope="session")
+def reference_events() -> np.ndarray:
+    """The instants, s, of the 37 transitions of the paper's friction scene, from the trusted table."""
+    return read_table("paper_friction_events")["t"][1:]

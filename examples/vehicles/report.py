@@ -6,7 +6,6 @@ import platform
 import subprocess
 from collections.abc import Iterable
 from importlib.metadata import version
-from math import exp
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,7 @@ import numpy as np
 from . import ground, inputs
 from .build import ROOT
 from .driven import RADIUS, TURN, Verdict
-from .suspended import COMPARED, LARGE_STEPS, Convergence, ends
+from .suspended import COMPARED, LARGE_STEPS, Convergence, drag_share, ends
 
 RESULTS = ROOT / "docs" / "results"
 TEMPLATES = Path(__file__).resolve().parent
@@ -45,15 +44,6 @@ def footer() -> str:
     return (
         f"\nMeasured on {processor}, {platform.system()}, {compiler}; Python {platform.python_version()}, {packages}."
     )
-
-
-def drag_share(h: float, k: float = 60e3, mass: float = 334.7, duration: float = 2.5) -> float:
-    """Share of the final speed lost to the drag k v h / 2 of a position held over the step.
-
-    mass (kg): sprung mass, wheel and J_z / R^2.  duration (s): of the drive.
-    """
-    x = k * h / 2 * duration / mass
-    return 1 - (1 - exp(-x)) / x
 
 
 def drive_table(v: Verdict) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi
+from math import exp, pi
 from pathlib import Path
 
 import numpy as np
@@ -114,3 +114,12 @@ def convergence(
     held = [distance(coupled(fmus, h, "held", stop), truth) for h in steps]
     linear = [distance(coupled(fmus, h, "derivatives", stop), truth) for h in steps]
     return Convergence(steps, held, linear)
+
+
+def drag_share(h: float, k: float = 60e3, mass: float = 334.7, duration: float = 2.5) -> float:
+    """Share of the final speed lost to the drag k v h / 2 of a position held over the step.
+
+    mass (kg): sprung mass, wheel and J_z / R^2.  duration (s): of the drive.
+    """
+    x = k * h / 2 * duration / mass
+    return 1 - (1 - exp(-x)) / x

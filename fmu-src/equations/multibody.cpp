@@ -1,31 +1,72 @@
-// The multibody formulation behind the C header: (24) as first-order system, any inertia.
+// The multibody formulation behind the C header: (24) under a law of friction, as first-order system, any inertia.
 // Fixed axes for O, Euler angles for the attitude; see multibody.hpp for the equations.
 #include "multibody.hpp"
 
-#include <cstddef>
+#include <Eigen/LU>
+
+#include "friction.h"
 
 namespace wheel::paper {
 namespace {
 
-using State = Multibody<double>;
+constexpr int about_axle = 5, N = 8;  // row of the moment about the axle in (24), and lambda_3 among its unknowns
 
-// (19) solved for the velocity of O: -[A][r]^T[Q]{beta_dot}.
-Vector3<double> rolling_velocity(const WheelParameters& wheel, const Attitude<double>& attitude) {
-  return -A(attitude) * r(wheel, attitude).transpose() * Q(attitude) * attitude.beta_dot;
-}
-
-struct External {
-  Vector3<double> force = Vector3<double>::Zero(), moment = Vector3<double>::Zero();
-  explicit External(const WheelScene& scene) {
-    if (!scene.loaded) return;
-    force = Eigen::Map<const Vector3<double>>(scene.load.F);
-    moment = Eigen::Map<const Vector3<double>>(scene.load.M);
-  }
+// Solution of (24) and the moment of ground and brake about the axle.
+struct Solution {
+  Vector9 unknowns;  // q_ddot, lambda
+  double tau;
 };
 
+// omega_z held: the moment tau about the axle is found from omega_z_dot = 0, linearly.
+Solution solve_held(const Multibody& s, const Vector9& column) {
+  const Eigen::PartialPivLU<Matrix9> K(system_matrix(s, 0));
+  const Vector9 free = K.solve(column), unit = K.solve(Vector9::Unit(about_axle));
+  const double tau = -omega_z_dot(s, free) / s.Q.row(2).dot(unit.segment<3>(3));
+  return {free + unit * tau, tau};
+}
+
+// The moment -(s N + brake) kappa about the axle; where the ground pulls (N <= 0), only the brake's part is left.
+Solution solve_rolling(const Multibody& s, Vector9 column, double kappa, double brake) {
+  column[about_axle] -= brake * kappa;
+  const Vector9 unknowns = system_matrix(s, kappa).partialPivLu().solve(column);
+  if (kappa == 0) return {unknowns, 0};
+  if (unknowns[N] > 0) return {unknowns, -(s.wheel.s * unknowns[N] + brake) * kappa};
+  return {system_matrix(s, 0).partialPivLu().solve(column), -brake * kappa};
+}
+
+// (24) under the scene's law of friction.
+Solution solve(const WheelScene& scene, const Multibody& s, const Vector9& column) {
+  if (scene.friction.kind == WHEEL_HELD) return solve_held(s, column);
+  return solve_rolling(s, column, kappa_of(&scene.friction, omega_z(s)), scene.load.brake);
+}
+
+// Rate at which errors of the constraints decay, 1/s: a few times the rates of the motion itself, so that it is never
+// the stiffest part.
+double decay_rate(const Multibody& s) {
+  const double omega_squared = (s.Q * s.attitude.beta_dot).squaredNorm();
+  return 5 * std::sqrt(s.wheel.g / (s.wheel.r_0 + s.wheel.r) + omega_squared);
+}
+
+// (24) with -[B_dot]{q_dot} - a [B]{q_dot} in the last rows, and the height drawn to that of (32) (Baumgarte): both
+// terms vanish on the constraints.
+double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+  const Multibody s(scene->wheel, y);
+  const double rate = decay_rate(s);
+  Vector9 column = system_column(s, scene->load);
+  column.tail<3>() -= rate * (B(s) * s.q_dot);
+  const Solution solution = solve(*scene, s, column);
+  Eigen::Map<Vector6> velocities(y_dot), accelerations(y_dot + 6);
+  velocities = s.q_dot;
+  velocities[2] -= rate * (y[2] - (scene->wheel.r_0 * s.attitude.sin_theta + scene->wheel.r));
+  accelerations = solution.unknowns.head<6>();
+  accelerations[5] = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, solution.unknowns);
+  return solution.unknowns[N];
+}
+
+// (19) solved for the velocity of O: -[A][r]^T[Q]{beta_dot}.
 void set_rolling_velocity(const WheelParameters& wheel, double* y) {
-  const Attitude<double> attitude(y[3], y[4], y[5], {y[9], y[10], y[11] - y[9] * std::cos(y[4])});
-  Eigen::Map<Vector3<double>>(y + 6) = rolling_velocity(wheel, attitude);
+  const Multibody s(wheel, y);
+  Eigen::Map<Vector3>(y + 6) = -s.A * s.r.transpose() * s.Q * s.attitude.beta_dot;
 }
 
 void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
@@ -34,11 +75,6 @@ void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
   y[9] = motion->psi_dot, y[10] = motion->theta_dot;
   y[11] = motion->phi_dot + motion->psi_dot * std::cos(motion->theta);
   set_rolling_velocity(*wheel, y);
-}
-
-double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  const External external(*scene);
-  return state_rate<double>(*scene, external.force, external.moment, y, y_dot);
 }
 
 void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
@@ -51,16 +87,13 @@ void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* 
 }
 
 void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  const State state(scene->wheel, y);
-  const External external(*scene);
-  const Vector9<double> column = system_column<double>(state, external.force, external.moment);
-  const Solution<double> solution = solve<double>(scene->friction, state, column);
-  const auto& x = solution.unknowns;
+  const Multibody s(scene->wheel, y);
+  const auto [x, tau] = solve(*scene, s, system_column(s, scene->load));
   out->X_O_ddot = x[0], out->Y_O_ddot = x[1], out->Z_O_ddot = x[2];
   out->psi_ddot = x[3], out->theta_ddot = x[4], out->phi_ddot = x[5];
   for (int i = 0; i < 3; ++i) out->lambda[i] = x[6 + i];
-  out->omega_z_dot = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(state, x);
-  out->tau = solution.tau;
+  out->omega_z_dot = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, x);
+  out->tau = tau;
 }
 
 void stop_spin(const WheelParameters* wheel, double* y) {
@@ -68,31 +101,39 @@ void stop_spin(const WheelParameters* wheel, double* y) {
   set_rolling_velocity(*wheel, y);
 }
 
+// The state of the reduced form with the same position and angular velocity.
+struct Reduced {
+  double y[WHEEL_REDUCED_STATES];
+  explicit Reduced(const double* b) : y{b[4], b[10], b[9] * std::sin(b[4]), b[11], b[3], b[5], b[0], b[1]} {}
+};
+
+void rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
+  wheel_reduced.rates(scene, load_dot, Reduced(y).y, out);
+}
+
+void response(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
+  wheel_reduced.response(scene, load_dot, Reduced(y).y, out);
+}
+
 }  // namespace
 }  // namespace wheel::paper
 
 extern "C" {
 
-void wheel_multibody_reaction_rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y,
-                                    double lambda_dot[3]);
-void wheel_multibody_jacobian(const WheelScene* scene, const double* y, double* J);
-
 extern const WheelFormulation wheel_multibody;
 const WheelFormulation wheel_multibody = {
-    "multibody",
-    WHEEL_MULTIBODY_STATES,
-    wheel::paper::start,
-    wheel::paper::derivative,
-    11,
-    4,
-    wheel::paper::kinematics,
-    wheel::paper::kinematics,  // the pose: its velocities are states
-    wheel::paper::dynamics,
-    wheel_multibody_reaction_rates,
-    wheel_multibody_jacobian,
-    wheel::paper::stop_spin,
-    WHEEL_MULTIBODY_STATES,  // the velocities of O are states: no quadratures
-    wheel::paper::derivative,
+    .name = "multibody",
+    .states = WHEEL_MULTIBODY_STATES,
+    .start = wheel::paper::start,
+    .derivative = wheel::paper::derivative,
+    .spin_index = 11,
+    .tilt_index = 4,
+    .kinematics = wheel::paper::kinematics,
+    .pose = wheel::paper::kinematics,  // the pose: its velocities are states
+    .dynamics = wheel::paper::dynamics,
+    .rates = wheel::paper::rates,
+    .response = wheel::paper::response,
+    .stop_spin = wheel::paper::stop_spin,
 };
 
 }  // extern "C"

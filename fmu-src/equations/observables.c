@@ -1,5 +1,5 @@
-/* Quantities read off a motion, whatever formulation computed it: energy, required friction coefficient, residuals of
- * the constraints (19) and (32). Fixed axes. */
+/* Quantities read off a motion, whatever formulation computed it: energy, contact point, force of the ground in wheel
+ * axes, required friction coefficient, residuals of the constraints (19) and (32). Fixed axes unless said. */
 #include <math.h>
 
 #include "wheel_equations.h"
@@ -15,6 +15,33 @@ double wheel_energy(const WheelParameters* wheel, const WheelKinematics* k) {
   double turning =
       wheel->J_x * omega_x * omega_x + wheel->J_y * omega_y * omega_y + wheel->J_z * k->omega_z * k->omega_z;
   return 0.5 * (wheel->m * v_squared + turning) + wheel->m * wheel->g * k->Z_O;
+}
+
+/* The contact lies r_0 cos(theta) to the right of O: across e1, on the side of (sin(psi), -cos(psi)). */
+WheelContact wheel_contact(const WheelParameters* wheel, const WheelKinematics* k) {
+  double sin_psi = sin(k->psi), cos_psi = cos(k->psi);
+  double right = wheel->r_0 * cos(k->theta), right_dot = -wheel->r_0 * sin(k->theta) * k->theta_dot;
+  return (WheelContact){
+      .X_C = k->X_O + right * sin_psi,
+      .Y_C = k->Y_O - right * cos_psi,
+      .X_C_dot = k->X_O_dot + right_dot * sin_psi + right * k->psi_dot * cos_psi,
+      .Y_C_dot = k->Y_O_dot - right_dot * cos_psi + right * k->psi_dot * sin_psi,
+  };
+}
+
+void wheel_horizontal_force(const WheelKinematics* k, const double lambda[3], double force[2]) {
+  double sin_psi = sin(k->psi), cos_psi = cos(k->psi);
+  force[0] = lambda[0] * cos_psi + lambda[1] * sin_psi;
+  force[1] = lambda[1] * cos_psi - lambda[0] * sin_psi;
+}
+
+void wheel_horizontal_force_rates(const WheelKinematics* k, const double lambda[3], const double lambda_dot[3],
+                                  double force_dot[2]) {
+  double force[2];
+  wheel_horizontal_force(k, lambda, force);
+  wheel_horizontal_force(k, lambda_dot, force_dot);
+  force_dot[0] += k->psi_dot * force[1];
+  force_dot[1] -= k->psi_dot * force[0];
 }
 
 double wheel_required_friction(const double lambda[3]) {

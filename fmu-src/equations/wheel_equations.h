@@ -1,9 +1,9 @@
 /* The wheel's equations behind one C header: "Dynamics of an automobile wheel" (Stanescu & Mihalcea).
  *
  * A torus-shaped wheel rolls without slip on the plane Z = 0, with or without rolling friction. Two formulations
- * compute the same motion:
- *   reduced    J_x = J_y; (theta, omega_1, omega_2, omega_3) closed, the rest quadratures: constraints hold exactly
- *   multibody  the paper's system (24), any J; unknowns q and q_dot, constraints held at acceleration level
+ * compute the same motion for any principal moments of inertia:
+ *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states
+ *   multibody  the paper's system (24); unknowns q and q_dot, constraints held at acceleration level; 12 states
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
  *
  * Frames (docs/notation.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the carrier e1 (along
@@ -27,18 +27,21 @@ typedef struct WheelParameters {
   double s;             /* m, coefficient of rolling friction, >= 0 */
 } WheelParameters;
 
-/* The external column {F} of (15) besides the weight. */
+/* What acts on the wheel besides weight and ground: the external column {F} of (15), and a brake. */
 typedef struct WheelLoad {
-  double F[3]; /* N at O, fixed axes X, Y, Z */
-  double M[3]; /* N m on the wheel, carrier axes e1, e2, e3: M[2] drives or brakes about the axle */
+  double F[3];  /* N at O, fixed axes X, Y, Z */
+  double M[3];  /* N m on the wheel, carrier axes e1, e2, e3: M[2] drives about the axle, whichever way it turns */
+  double brake; /* N m, >= 0: largest moment of a dry brake about the axle, which acts against omega_z */
 } WheelLoad;
 
-/* What the ground does about the axle. N is the normal force lambda_3; a ground that pulls (N < 0) has no friction. */
+/* The moment tau of ground and brake about the axle: tau = -(s N + brake) kappa. N is the normal force lambda_3; a
+ * ground that pulls (N <= 0) has no friction, and the brake's part alone is left. */
 typedef enum WheelFrictionKind {
-  WHEEL_FRICTIONLESS, /* moment 0 */
-  WHEEL_ROLLING,      /* moment -s N sigma, (22) with sigma = sign(omega_z) held fixed */
-  WHEEL_HELD,         /* the moment tau that keeps omega_z_dot = 0 (Filippov's sliding mode at omega_z = 0) */
-  WHEEL_REGULARIZED   /* moment -s N tanh(omega_z / omega_s) */
+  WHEEL_NO_LAW,       /* what a record filled with zeros holds: every acceleration and force is NaN */
+  WHEEL_FRICTIONLESS, /* kappa = 0: no moment, whatever s and the brake are */
+  WHEEL_ROLLING,      /* kappa = sigma, (22) with sigma = sign(omega_z) kept */
+  WHEEL_HELD,         /* the tau that keeps omega_z_dot = 0 (Filippov's sliding mode at omega_z = 0), of any size */
+  WHEEL_REGULARIZED   /* kappa = tanh(omega_z / omega_s) */
 } WheelFrictionKind;
 
 typedef struct WheelFriction {
@@ -47,13 +50,18 @@ typedef struct WheelFriction {
   double omega_s; /* rad/s, > 0, for WHEEL_REGULARIZED */
 } WheelFriction;
 
-/* All that a right-hand side needs besides the state. */
+/* All that a right-hand side needs besides the state. `wheel_scene` makes one and checks it. */
 typedef struct WheelScene {
   WheelParameters wheel;
   WheelFriction friction;
   WheelLoad load;
-  int loaded; /* 0: the load is zero and no term of it is evaluated */
 } WheelScene;
+
+/* The scene of a wheel under a load (NULL: none) and a law of friction, for example
+ *   wheel_scene(&wheel, NULL, (WheelFriction){.kind = WHEEL_ROLLING, .sigma = -1}).
+ * Where s or the brake is negative, sigma is not +1 or -1 though needed, or omega_s is not positive though needed, the
+ * scene has WHEEL_NO_LAW, and so every answer is NaN instead of a motion that was not meant. */
+WheelScene wheel_scene(const WheelParameters* wheel, const WheelLoad* load, WheelFriction friction);
 
 /* Position and velocity that may be chosen freely, (32), (33); the rest follows from the constraints. */
 typedef struct WheelMotion {
@@ -77,8 +85,14 @@ typedef struct WheelDynamics {
   double psi_ddot, theta_ddot, phi_ddot; /* rad/s2 */
   double omega_z_dot;                    /* rad/s2 */
   double lambda[3];                      /* N, force of the ground on the wheel, (26) */
-  double tau;                            /* N m, moment of the ground about the axle */
+  double tau;                            /* N m, moment of ground and brake about the axle */
 } WheelDynamics;
+
+/* How the answer of the ground changes. */
+typedef struct WheelReactionRates {
+  double lambda_dot[3]; /* N/s, fixed axes */
+  double tau_dot;       /* N m/s */
+} WheelReactionRates;
 
 /* One formulation: how its state vector y is started, moved and read. */
 typedef struct WheelFormulation {
@@ -94,19 +108,17 @@ typedef struct WheelFormulation {
   /* The same without X_O_dot and Y_O_dot, which cost the sine and cosine of psi. */
   void (*pose)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
   void (*dynamics)(const WheelScene* scene, const double* y, WheelDynamics* out);
-  /* d lambda/dt along the motion, N/s; load_dot is the rate of the load (NULL: constant). */
-  void (*reaction_rates)(const WheelScene* scene, const WheelLoad* load_dot, const double* y, double lambda_dot[3]);
-  /* J (states x states, column by column): J[i + states * j] = d f_i / d y_j, exact. */
-  void (*jacobian)(const WheelScene* scene, const double* y, double* J);
+  /* Time derivatives of lambda and tau along the motion, while the law and the sign of N last; load_dot is the rate of
+   * the load (NULL: constant). */
+  void (*rates)(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out);
+  /* The part of load_dot in `rates` alone: with a unit in one entry, the derivative of lambda and tau by this entry. */
+  void (*response)(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out);
   /* Sets omega_z to exactly zero: the start of a phase in which it is held there. */
   void (*stop_spin)(const WheelParameters* wheel, double* y);
-  /* The first closed_states rates know the first closed_states states alone; the rest are quadratures.
-   * closed_derivative gives these rates only: it spares the sine and cosine of psi where nothing else needs them. */
-  int closed_states;
-  double (*closed_derivative)(const WheelScene* scene, const double* y, double* y_dot);
 } WheelFormulation;
 
-/* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Needs J_x = J_y (J_x is used). */
+/* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Where J_x = J_y, phi enters nothing, and a
+ * simpler elimination is taken. X_O and Y_O never enter, psi does only where F_X or F_Y is not zero. */
 extern const WheelFormulation wheel_reduced;
 
 /* y = q, q_dot with q = X_O, Y_O, Z_O, psi, theta, phi, (25), but with omega_z, (21), in the place of phi_dot: a wheel
@@ -120,6 +132,20 @@ double wheel_energy(const WheelParameters* wheel, const WheelKinematics* motion)
 /* Tangential over normal force of the ground: the friction coefficient that rolling without slip needs.
  * Infinite where the ground does not press (lambda_3 <= 0). */
 double wheel_required_friction(const double lambda[3]);
+
+/* The point of the ground that the wheel touches, and how fast it moves along the ground (not the wheel's material
+ * point there, which rests). Fixed axes, m, m/s. */
+typedef struct WheelContact {
+  double X_C, Y_C, X_C_dot, Y_C_dot;
+} WheelContact;
+WheelContact wheel_contact(const WheelParameters* wheel, const WheelKinematics* motion);
+
+/* The ground's horizontal force in wheel axes, N: force[0] along e1 (lambda_x), force[1] across it, to the left of
+ * somebody who looks along e1 (lambda_y). And its rates, N/s, from those of lambda; the wheel axes turn with psi_dot.
+ */
+void wheel_horizontal_force(const WheelKinematics* motion, const double lambda[3], double force[2]);
+void wheel_horizontal_force_rates(const WheelKinematics* motion, const double lambda[3], const double lambda_dot[3],
+                                  double force_dot[2]);
 
 /* Height of O, m: r_0 sin(theta) + r, (32). */
 double wheel_height(const WheelParameters* wheel, double theta);

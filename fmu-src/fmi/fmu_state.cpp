@@ -1,11 +1,17 @@
 // FMI 2.0 functions: rollback. An FMU state is its own serialization: portable bytes that hold no pointers.
+//
+// A master may pass any pointer: only states that this library handed out are touched, and bytes from elsewhere become
+// a state only after a scratch instance has taken them.
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
-#include "archive.hpp"
+#include "bytes.hpp"
 #include "instance.hpp"
+#include "registry.hpp"
 
 using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, wheel::Topic;
 
@@ -19,23 +25,34 @@ struct CallState {
   std::uint64_t checksum;  // of the fields above
 };
 
-std::uint64_t checksum_of(const CallState& call) {
-  return integrator::checksum_of(reinterpret_cast<const unsigned char*>(&call), offsetof(CallState, checksum));
-}
+const unsigned char* bytes_of(const CallState& call) { return reinterpret_cast<const unsigned char*>(&call); }
+
+constexpr std::size_t summed = offsetof(CallState, checksum);
 
 struct Snapshot {
-  // Null. fmi2FreeFMUstate frees what its argument points to; a caller that passes the state instead of its address
-  // (fmusim 0.0.39) points to this word, and nothing is freed.
-  void* nothing;
   std::size_t size;  // of the bytes behind this header
   unsigned char* bytes() { return reinterpret_cast<unsigned char*>(this + 1); }
 };
 
-Snapshot* allocate(Snapshot* previous, std::size_t size) {
-  if (previous && previous->size == size) return previous;
-  auto* snapshot = static_cast<Snapshot*>(std::realloc(previous, sizeof(Snapshot) + size));
-  if (snapshot) *snapshot = {nullptr, size};
-  return snapshot;
+Snapshot* snapshot_of(fmi2FMUstate state) {
+  return fmi::fmu_states.holds(state) ? static_cast<Snapshot*>(state) : nullptr;
+}
+
+// Frees a state; a pointer that was never handed out is left alone.
+void release(fmi2FMUstate state) {
+  if (fmi::fmu_states.remove(state)) std::free(state);
+}
+
+// A state for `size` bytes in the place of a previous one, which is kept if it fits. Null: there is no memory, and the
+// previous one stays.
+Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
+  Snapshot* const old = snapshot_of(previous);
+  if (old && old->size == size) return old;
+  void* const memory = std::malloc(sizeof(Snapshot) + size);
+  if (!memory) return nullptr;
+  if (!fmi::fmu_states.add(memory)) return std::free(memory), nullptr;
+  release(previous);
+  return ::new (memory) Snapshot{size};
 }
 
 void write(Instance& i, unsigned char* bytes) {
@@ -44,35 +61,73 @@ void write(Instance& i, unsigned char* bytes) {
   call.prepared = i.prepared;
   call.has_stop_time = i.has_stop_time;
   call.last_step = static_cast<unsigned char>(i.last_step);
-  call.stop_time = i.has_stop_time ? i.stop_time : 0;
-  call.checksum = checksum_of(call);
+  call.stop_time = i.stop_time;
+  call.checksum = support::checksum_of(bytes_of(call), summed);
   std::memcpy(bytes, &call, sizeof call);
   i.simulation.save_state(bytes + sizeof call);
 }
 
-fmi2Status read(Instance& i, const unsigned char* bytes) {
+// False: the simulation cannot have been in this state; the instance stays as it was.
+bool read(Instance& i, const unsigned char* bytes, std::size_t size) {
   CallState call;
   std::memcpy(&call, bytes, sizeof call);
-  if (!i.simulation.load_state(bytes + sizeof call)) {
-    i.log(Topic::error, "fmi2SetFMUstate: the solver does not take the state.");
-    i.state = State::error;
-    return fmi2Error;
-  }
+  if (!i.simulation.load_state(bytes + sizeof call, size - sizeof call)) return false;
   i.state = static_cast<State>(call.state);
   i.prepared = call.prepared;
   i.has_stop_time = call.has_stop_time;
   i.last_step = static_cast<fmi2Status>(call.last_step);
   i.stop_time = call.stop_time;
-  return fmi2OK;
+  i.faults_told = false;
+  return true;
 }
 
-bool is_sound(const unsigned char* bytes, std::size_t size) {
-  CallState call;
-  if (size < sizeof call) return false;
-  std::memcpy(&call, bytes, sizeof call);
-  return call.checksum == checksum_of(call) && call.state <= static_cast<unsigned char>(State::error) &&
-         wheel::Simulation::is_state(bytes + sizeof(CallState), size - sizeof(CallState));
+// Each field by itself: one that `write` could have written.
+bool is_sound(const CallState& call) {
+  const unsigned char none[sizeof call.padding] = {};
+  const bool stops = call.has_stop_time != 0;
+  return support::has_checksum(bytes_of(call), summed, call.checksum) &&
+         call.state <= static_cast<unsigned char>(State::error) && call.prepared <= 1 && call.has_stop_time <= 1 &&
+         (call.last_step == fmi2OK || call.last_step == fmi2Discard || call.last_step == fmi2Error) &&
+         !std::memcmp(call.padding, none, sizeof none) && (stops ? std::isfinite(call.stop_time) : call.stop_time == 0);
 }
+
+// Call state and simulation together: what one says of the other is true.
+bool agrees(const Instance& i) {
+  const wheel::Simulation& simulation = i.simulation;
+  switch (i.state) {
+    case State::instantiated:
+      return !simulation.has_state() && !simulation.started();
+    case State::initialization:
+      return !simulation.started() && (simulation.has_state() || !i.prepared);
+    case State::step_complete:
+      return simulation.started() && !simulation.ending() && i.last_step == fmi2OK;
+    case State::step_failed:
+      return simulation.started() && simulation.ending() && i.last_step == fmi2Discard;
+    case State::terminated:
+      return simulation.started();
+    case State::error:
+      break;
+  }
+  return simulation.has_state() || !simulation.started();
+}
+
+enum class Judged { sound, unsound, no_memory };
+
+Judged judge(const unsigned char* bytes, std::size_t size) {
+  CallState call;
+  if (size < sizeof call) return Judged::unsound;
+  std::memcpy(&call, bytes, sizeof call);
+  if (!is_sound(call)) return Judged::unsound;
+  Instance* scratch = Instance::create("scratch", nullptr, false);
+  if (!scratch) return Judged::no_memory;
+  const bool sound = read(*scratch, bytes, size) && agrees(*scratch);
+  Instance::destroy(scratch);
+  return sound ? Judged::sound : Judged::unsound;
+}
+
+constexpr const char *null_pointer = "the state, the size or the bytes are a null pointer",
+                     *unknown_state = "the state is not one that this FMU handed out", *no_memory = "out of memory",
+                     *damaged = "the bytes are damaged or not a state of this FMU and version";
 
 fmi2Status refuse(Instance& i, const char* name, const char* why) {
   i.log(Topic::error, "%s: %s.", name, why);
@@ -84,11 +139,11 @@ fmi2Status refuse(Instance& i, const char* name, const char* why) {
 extern "C" {
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return guarded(c, Function::fmu_state, "fmi2GetFMUstate", [=](Instance& i) {
-    if (!state) return refuse(i, "fmi2GetFMUstate", "the state is a null pointer");
-    const std::size_t size = sizeof(CallState) + i.simulation.state_size();
-    Snapshot* snapshot = allocate(static_cast<Snapshot*>(*state), size);
-    if (!snapshot) return refuse(i, "fmi2GetFMUstate", "memory is short");
+  constexpr const char* name = "fmi2GetFMUstate";
+  return guarded(c, Function::fmu_state, name, [=](Instance& i) {
+    if (!state) return refuse(i, name, null_pointer);
+    Snapshot* snapshot = allocate(*state, sizeof(CallState) + i.simulation.state_size());
+    if (!snapshot) return refuse(i, name, no_memory);
     write(i, snapshot->bytes());
     *state = snapshot;
     return fmi2OK;
@@ -96,47 +151,55 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return guarded(c, Function::set_fmu_state, "fmi2SetFMUstate", [=](Instance& i) {
-    if (!state) return refuse(i, "fmi2SetFMUstate", "the state is a null pointer");
-    return read(i, static_cast<Snapshot*>(state)->bytes());
+  constexpr const char* name = "fmi2SetFMUstate";
+  return guarded(c, Function::set_fmu_state, name, [=](Instance& i) {
+    Snapshot* snapshot = snapshot_of(state);
+    if (!snapshot) return refuse(i, name, state ? unknown_state : null_pointer);
+    // What this library handed out is sound: only memory can be missing.
+    return read(i, snapshot->bytes(), snapshot->size) ? fmi2OK : refuse(i, name, no_memory);
   });
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, Function::free_fmu_state, "fmi2FreeFMUstate", [=](Instance&) {
-    if (state) {
-      std::free(*state);
-      *state = nullptr;
-    }
+    if (!state || !snapshot_of(*state)) return fmi2OK;
+    release(*state);
+    *state = nullptr;
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  return guarded(c, Function::fmu_state, "fmi2SerializedFMUstateSize", [=](Instance& i) {
-    if (!state || !size) return refuse(i, "fmi2SerializedFMUstateSize", "the state or the size is a null pointer");
-    *size = static_cast<Snapshot*>(state)->size;
+  constexpr const char* name = "fmi2SerializedFMUstateSize";
+  return guarded(c, Function::fmu_state, name, [=](Instance& i) {
+    if (!state || !size) return refuse(i, name, null_pointer);
+    const Snapshot* snapshot = snapshot_of(state);
+    if (!snapshot) return refuse(i, name, unknown_state);
+    *size = snapshot->size;
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  return guarded(c, Function::fmu_state, "fmi2SerializeFMUstate", [=](Instance& i) {
-    if (!state || !bytes) return refuse(i, "fmi2SerializeFMUstate", "the state or the bytes are a null pointer");
-    auto& snapshot = *static_cast<Snapshot*>(state);
-    if (size < snapshot.size) return refuse(i, "fmi2SerializeFMUstate", "the array is shorter than the state");
-    std::memcpy(bytes, snapshot.bytes(), snapshot.size);
+  constexpr const char* name = "fmi2SerializeFMUstate";
+  return guarded(c, Function::fmu_state, name, [=](Instance& i) {
+    if (!state || !bytes) return refuse(i, name, null_pointer);
+    Snapshot* snapshot = snapshot_of(state);
+    if (!snapshot) return refuse(i, name, unknown_state);
+    if (size < snapshot->size) return refuse(i, name, "the array is shorter than the state");
+    std::memcpy(bytes, snapshot->bytes(), snapshot->size);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
-  return guarded(c, Function::fmu_state, "fmi2DeSerializeFMUstate", [=](Instance& i) {
-    if (!state || !bytes) return refuse(i, "fmi2DeSerializeFMUstate", "the state or the bytes are a null pointer");
-    if (!is_sound(reinterpret_cast<const unsigned char*>(bytes), size))
-      return refuse(i, "fmi2DeSerializeFMUstate", "the bytes are damaged or not a state of this FMU and version");
-    Snapshot* snapshot = allocate(static_cast<Snapshot*>(*state), size);
-    if (!snapshot) return refuse(i, "fmi2DeSerializeFMUstate", "memory is short");
+  constexpr const char* name = "fmi2DeSerializeFMUstate";
+  return guarded(c, Function::fmu_state, name, [=](Instance& i) {
+    if (!state || !bytes) return refuse(i, name, null_pointer);
+    const Judged judged = judge(reinterpret_cast<const unsigned char*>(bytes), size);
+    if (judged == Judged::unsound) return refuse(i, name, damaged);
+    Snapshot* snapshot = judged == Judged::sound ? allocate(*state, size) : nullptr;
+    if (!snapshot) return refuse(i, name, no_memory);
     std::memcpy(snapshot->bytes(), bytes, size);
     *state = snapshot;
     return fmi2OK;

@@ -15,9 +15,8 @@ constexpr fmi2Status status_of(wheel::Topic topic) {
     case wheel::Topic::event:
       return fmi2OK;
     case wheel::Topic::warning:
+    case wheel::Topic::discard:  // at their default level many masters hide messages of the status Discard
       return fmi2Warning;
-    case wheel::Topic::discard:
-      return fmi2Discard;
     case wheel::Topic::error:
       break;
   }
@@ -76,6 +75,15 @@ Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callba
 void Instance::destroy(Instance* instance) {
   instance->~Instance();
   std::free(instance);
+}
+
+// After an ending the sentence says what happened: the name of a call state helps nobody.
+void Instance::refuse(const char* function) {
+  const char* ending = state == State::step_failed ? simulation.ending() : nullptr;
+  if (ending)
+    log(wheel::Topic::error, "%s: %s: restore a state or reset.", function, ending);
+  else
+    log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", function, name_of(state));
 }
 
 void Instance::log(wheel::Topic topic, const char* format, ...) {

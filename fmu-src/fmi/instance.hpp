@@ -9,12 +9,14 @@ namespace fmi {
 
 struct Instance {
   // One block of memory, name and solver included: no later call but those that hand out a snapshot takes more. Null if
-  // memory is short.
+  // there is no memory.
   static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging);
   static void destroy(Instance* instance);
 
   // Tells the master, if the category is switched on. Printf-like; the text is finished before the master sees it.
   void log(wheel::Topic topic, const char* format, ...);
+  // Tells that a function is not legal in the present state.
+  void refuse(const char* function);
   bool wants(wheel::Topic topic) const { return logged_topics & (1u << static_cast<unsigned>(topic)); }
 
   wheel::Simulation simulation;
@@ -48,7 +50,7 @@ fmi2Status guarded(fmi2Component component, Function function, const char* name,
   if (is_legal(function, instance->state))
     status = body(*instance);
   else
-    instance->log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", name, name_of(instance->state));
+    instance->refuse(name);
   instance->busy = false;
   return status;
 }

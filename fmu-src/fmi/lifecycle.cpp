@@ -1,24 +1,14 @@
-// FMI 2.0 functions: instantiation, initialization, termination, reset, logging, stepping, status.
+// FMI 2.0 functions: instantiation, initialization, termination, reset, logging.
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
+#include "digits.hpp"
 #include "instance.hpp"
 #include "registry.hpp"
 
-using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, wheel::Topic;
+using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, support::Digits, wheel::Topic;
 
 namespace {
-
-// Masters carry rounding in times: this much, relative to the step and to the times at hand, counts as equal.
-constexpr double step_rounding = 1e-9, time_rounding = 1e-13;
-
-bool same_time(double a, double b, double step) {
-  return std::fabs(a - b) <= step_rounding * step + time_rounding * (std::fabs(a) + std::fabs(b));
-}
-
-// A sum of many steps may miss the stop time by more.
-bool is_past(double t, double stop) { return t - stop > step_rounding * (std::fabs(t) + std::fabs(stop)); }
 
 bool is_blank(const char* text) { return !text || text[std::strspn(text, " \t\r\n")] == 0; }
 
@@ -34,37 +24,6 @@ const char* refusal(const char* name, fmi2Type type, const char* guid) {
   if (!guid || std::strcmp(guid, WHEEL_GUID) != 0)
     return "fmi2Instantiate: the GUID is not that of this FMU's modelDescription.xml (" WHEEL_GUID ").";
   return nullptr;
-}
-
-fmi2Status check_step(Instance& i, double t, double h) {
-  if (!std::isfinite(t) || !std::isfinite(h) || h < 0) {
-    i.log(Topic::error, "fmi2DoStep from %.17g s by %.17g s: times must be finite and the step not negative.", t, h);
-    return fmi2Error;
-  }
-  if (!same_time(t, i.simulation.time(), h)) {
-    i.log(Topic::error, "fmi2DoStep from %.17g s: the wheel stands at %.17g s.", t, i.simulation.time());
-    return fmi2Error;
-  }
-  if (i.has_stop_time && is_past(t + h, i.stop_time)) {
-    i.log(Topic::error, "fmi2DoStep to %.17g s: the stop time is %.17g s.", t + h, i.stop_time);
-    return fmi2Error;
-  }
-  return fmi2OK;
-}
-
-fmi2Status step(Instance& i, double t, double h) {
-  if (check_step(i, t, h) != fmi2OK) return fmi2Error;
-  switch (i.simulation.advance(t + h)) {
-    case wheel::Progressed::reached:
-      return i.last_step = fmi2OK;
-    case wheel::Progressed::ended:
-      i.state = State::step_failed;
-      return i.last_step = fmi2Discard;
-    case wheel::Progressed::failed:
-      break;
-  }
-  i.state = State::error;
-  return i.last_step = fmi2Error;
 }
 
 // Topics of one category; logAll names them all, an unknown one none.
@@ -91,25 +50,6 @@ fmi2Status switch_logging(Instance& i, bool on, std::size_t count, const fmi2Str
   return fmi2OK;
 }
 
-constexpr int no_status = -1;
-
-// One kind of status per function; for every other kind there is nothing to tell: Discard.
-template <class Value, class Read>
-fmi2Status get_status(fmi2Component c, const char* name, int kind, int known_kind, Value* value, Read read) {
-  return guarded(c, Function::get_status, name, [=](Instance& i) {
-    if (!value) {
-      i.log(Topic::error, "%s: the value is a null pointer.", name);
-      return fmi2Error;
-    }
-    if (kind != known_kind) {
-      i.log(Topic::discard, "%s: there is no status of kind %d.", name, kind);
-      return fmi2Discard;
-    }
-    *value = read(i);
-    return fmi2OK;
-  });
-}
-
 }  // namespace
 
 extern "C" {
@@ -124,15 +64,15 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     return nullptr;
   }
   Instance* instance = Instance::create(name, callbacks, logging != fmi2False);
-  if (instance && fmi::remember_instance(instance)) return instance;
+  if (instance && fmi::instances.add(instance)) return instance;
   if (instance) Instance::destroy(instance);
-  complain(callbacks, name, "fmi2Instantiate: memory is short.");
+  complain(callbacks, name, "fmi2Instantiate: out of memory.");
   return nullptr;
 }
 
 void fmi2FreeInstance(fmi2Component c) {
   auto* instance = static_cast<Instance*>(c);
-  if (instance && fmi::is_live_instance(instance) && !instance->busy && fmi::forget_instance(instance))
+  if (instance && fmi::instances.holds(instance) && !instance->busy && fmi::instances.remove(instance))
     Instance::destroy(instance);
 }
 
@@ -146,13 +86,13 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
   return guarded(c, Function::setup_experiment, "fmi2SetupExperiment", [&](Instance& i) {
     if (!std::isfinite(start) || (has_stop && !(stop >= start)) || (has_tolerance && !(tolerance > 0))) {
       i.log(Topic::error,
-            "fmi2SetupExperiment: start %g s, stop %g s, tolerance %g: start must be finite, stop not "
-            "before it, the tolerance positive.",
-            start, stop, tolerance);
+            "fmi2SetupExperiment: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the "
+            "tolerance positive.",
+            Digits(start).text, Digits(stop).text, Digits(tolerance).text);
       return fmi2Error;
     }
-    i.has_stop_time = has_stop;
-    i.stop_time = stop;
+    i.has_stop_time = has_stop && std::isfinite(stop);
+    i.stop_time = i.has_stop_time ? stop : 0;
     i.simulation.set_experiment(start, has_tolerance ? tolerance : 0);
     return fmi2OK;
   });
@@ -169,15 +109,14 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
   return guarded(c, Function::exit_initialization, "fmi2ExitInitializationMode", [](Instance& i) {
     const bool sound = i.simulation.prepare();
-    const bool started = sound && i.simulation.start();
-    if (sound && !started) i.log(Topic::error, "fmi2ExitInitializationMode: the solver does not start.");
-    i.state = started ? State::step_complete : State::error;
-    return started ? fmi2OK : fmi2Error;
+    if (sound) i.simulation.start();
+    i.state = sound ? State::step_complete : State::error;
+    return sound ? fmi2OK : fmi2Error;
   });
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-  if (!fmi::is_live_instance(c)) return fmi2Error;
+  if (!fmi::instances.holds(c)) return fmi2Error;
   return guarded(c, Function::terminate, "fmi2Terminate", [](Instance& i) {
     i.state = State::terminated;
     return fmi2OK;
@@ -185,44 +124,15 @@ fmi2Status fmi2Terminate(fmi2Component c) {
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-  if (!fmi::is_live_instance(c)) return fmi2Error;
+  if (!fmi::instances.holds(c)) return fmi2Error;
   return guarded(c, Function::reset, "fmi2Reset", [](Instance& i) {
     i.simulation.reset();
     i.state = State::instantiated;
     i.prepared = i.faults_told = i.has_stop_time = false;
+    i.stop_time = 0;
     i.last_step = fmi2OK;
     return fmi2OK;
   });
-}
-
-fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
-  return guarded(c, Function::do_step, "fmi2DoStep", [=](Instance& i) { return step(i, t, h); });
-}
-
-fmi2Status fmi2CancelStep(fmi2Component c) {
-  return guarded(c, Function::cancel_step, "fmi2CancelStep", [](Instance&) { return fmi2Error; });
-}
-
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status* value) {
-  return get_status(c, "fmi2GetStatus", kind, fmi2DoStepStatus, value, [](Instance& i) { return i.last_step; });
-}
-
-fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
-  return get_status(c, "fmi2GetRealStatus", kind, fmi2LastSuccessfulTime, value,
-                    [](Instance& i) { return i.simulation.time(); });
-}
-
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer* value) {
-  return get_status(c, "fmi2GetIntegerStatus", kind, no_status, value, [](Instance&) { return 0; });
-}
-
-fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
-  return get_status(c, "fmi2GetBooleanStatus", kind, fmi2Terminated, value,
-                    [](Instance& i) { return i.last_step == fmi2Discard ? fmi2True : fmi2False; });
-}
-
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String* value) {
-  return get_status(c, "fmi2GetStringStatus", kind, fmi2PendingStatus, value, [](Instance&) { return ""; });
 }
 
 }  // extern "C"

@@ -1,4 +1,4 @@
-// A set of pointers behind a spin lock: an open hash table that doubles. Only the rare calls look into it.
+// A set of pointers with linear probing.
 #include "registry.hpp"
 
 #include <cstdint>
@@ -7,75 +7,64 @@
 #include "spin_lock.hpp"
 
 namespace fmi {
-namespace {
 
-using integrator::SpinLock;
+using support::SpinLock;
 
-struct Table {
-  const void** slots = nullptr;
-  std::size_t capacity = 0, used = 0;  // capacity is a power of two; `used` counts live entries
+constinit Registry instances, fmu_states;
 
-  std::size_t slot_of(const void* p) const {
-    const auto key = reinterpret_cast<std::uintptr_t>(p);
-    std::size_t i = (key >> 4u) * 0x9e3779b97f4a7c15u & (capacity - 1);
-    while (slots[i] && slots[i] != p) i = (i + 1) & (capacity - 1);
-    return i;
-  }
-  bool contains(const void* p) const { return capacity && slots[slot_of(p)] == p; }
-
-  bool rebuild(std::size_t new_capacity) {
-    Table next;
-    next.slots = static_cast<const void**>(std::calloc(new_capacity, sizeof(void*)));
-    if (!next.slots) return false;
-    next.capacity = new_capacity;
-    for (std::size_t i = 0; i < capacity; ++i)
-      if (slots[i]) next.slots[next.slot_of(slots[i])] = slots[i];
-    std::free(slots);
-    slots = next.slots;
-    capacity = new_capacity;
-    return true;
-  }
-  bool insert(const void* p) {
-    if (2 * (used + 1) > capacity && !rebuild(capacity ? 2 * capacity : 16)) return false;
-    slots[slot_of(p)] = p;
-    ++used;
-    return true;
-  }
-  // Closes the gap, so that no search stops early at the freed slot.
-  void erase(const void* p) {
-    std::size_t gap = slot_of(p);
-    slots[gap] = nullptr;
-    for (std::size_t i = (gap + 1) & (capacity - 1); slots[i]; i = (i + 1) & (capacity - 1)) {
-      const void* moved = slots[i];
-      slots[i] = nullptr;
-      slots[slot_of(moved)] = moved;
-    }
-    if (--used == 0) {
-      std::free(slots);
-      *this = {};
-    }
-  }
-};
-
-std::atomic_flag taken;  // guards the table
-Table table;
-
-}  // namespace
-
-bool remember_instance(const void* instance) {
-  const SpinLock lock(taken);
-  return table.insert(instance);
+// Where the pointer is, or where it would be put. Needs a free slot.
+std::size_t Registry::slot_of(const void* pointer) const {
+  const auto key = reinterpret_cast<std::uintptr_t>(pointer);
+  std::size_t i = (key >> 4u) * 0x9e3779b97f4a7c15u & (capacity_ - 1);
+  while (slots_[i] && slots_[i] != pointer) i = (i + 1) & (capacity_ - 1);
+  return i;
 }
 
-bool is_live_instance(const void* instance) {
-  const SpinLock lock(taken);
-  return table.contains(instance);
+bool Registry::contains(const void* pointer) const {
+  return pointer && capacity_ && slots_[slot_of(pointer)] == pointer;
 }
 
-bool forget_instance(const void* instance) {
-  const SpinLock lock(taken);
-  if (!table.contains(instance)) return false;
-  table.erase(instance);
+bool Registry::rebuild(std::size_t capacity) {
+  auto** slots = static_cast<const void**>(std::calloc(capacity, sizeof(void*)));
+  if (!slots) return false;
+  const void** const old = slots_;
+  const std::size_t old_capacity = capacity_;
+  slots_ = slots;
+  capacity_ = capacity;
+  for (std::size_t i = 0; i < old_capacity; ++i)
+    if (old[i]) slots_[slot_of(old[i])] = old[i];
+  std::free(old);
+  return true;
+}
+
+bool Registry::add(const void* pointer) {
+  const SpinLock lock(taken_);
+  if (2 * (used_ + 1) > capacity_ && !rebuild(capacity_ ? 2 * capacity_ : 16)) return false;
+  slots_[slot_of(pointer)] = pointer;
+  ++used_;
+  return true;
+}
+
+bool Registry::holds(const void* pointer) {
+  const SpinLock lock(taken_);
+  return contains(pointer);
+}
+
+// Closes the gap, so that no search stops early at the freed slot. The last one takes the table with it.
+bool Registry::remove(const void* pointer) {
+  const SpinLock lock(taken_);
+  if (!contains(pointer)) return false;
+  const std::size_t gap = slot_of(pointer);
+  slots_[gap] = nullptr;
+  for (std::size_t i = (gap + 1) & (capacity_ - 1); slots_[i]; i = (i + 1) & (capacity_ - 1)) {
+    const void* moved = slots_[i];
+    slots_[i] = nullptr;
+    slots_[slot_of(moved)] = moved;
+  }
+  if (--used_ > 0) return true;
+  std::free(slots_);
+  slots_ = nullptr;
+  capacity_ = 0;
   return true;
 }
 

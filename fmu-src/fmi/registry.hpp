@@ -1,12 +1,31 @@
-// The live instances of this library: a master may terminate or free an instance twice, or after it is gone.
+// Pointers that this library handed out and that a master may bring back: instances and FMU states. It may also bring
+// one twice, after its end, or one that never was; only what a registry holds is touched.
 #pragma once
+
+#include <atomic>
+#include <cstddef>
 
 namespace fmi {
 
-// False if memory is short.
-bool remember_instance(const void* instance);
-bool is_live_instance(const void* instance);
-// False if it was not live.
-bool forget_instance(const void* instance);
+// A set of pointers, an open hash table that doubles, behind a spin lock: instances may live in many threads.
+class Registry {
+ public:
+  // False if there is no memory.
+  bool add(const void* pointer);
+  bool holds(const void* pointer);
+  // False if it was not held.
+  bool remove(const void* pointer);
+
+ private:
+  std::size_t slot_of(const void* pointer) const;
+  bool contains(const void* pointer) const;
+  bool rebuild(std::size_t capacity);
+
+  std::atomic_flag taken_;
+  const void** slots_ = nullptr;
+  std::size_t capacity_ = 0, used_ = 0;  // capacity is a power of two; `used_` counts live entries
+};
+
+extern Registry instances, fmu_states;
 
 }  // namespace fmi

@@ -1,37 +1,17 @@
-// FMI 2.0 functions: getting and setting variables, input and output derivatives, directional derivatives.
+// FMI 2.0 functions: getting and setting variables.
 #include <cmath>
 
-#include "instance.hpp"
+#include "arguments.hpp"
+#include "digits.hpp"
 
-using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, wheel::Role, wheel::Topic, wheel::Type;
+using fmi::check_arrays, fmi::check_readable, fmi::Function, fmi::guarded, fmi::Instance, fmi::prepare_reading;
+using fmi::State, support::Digits, wheel::Role, wheel::Topic, wheel::Type;
 
 namespace {
-
-// The start state behind outputs read in initialization mode; Discard while the parameters are faulty.
-fmi2Status prepare_reading(Instance& i) {
-  if (i.state != State::initialization || i.prepared) return fmi2OK;
-  i.prepared = i.simulation.prepare(!i.faults_told);
-  i.faults_told = true;
-  return i.prepared ? fmi2OK : fmi2Discard;
-}
-
-bool check_arrays(Instance& i, const char* name, std::size_t count, const void* references, const void* values) {
-  if (!count || (references && values)) return true;
-  i.log(Topic::error, "%s: an array is a null pointer.", name);
-  return false;
-}
 
 bool check_variable(Instance& i, const char* name, fmi2ValueReference variable, Type type) {
   if (wheel::is_variable(variable, type)) return true;
   i.log(Topic::error, "%s: no variable of this type has the value reference %u.", name, variable);
-  return false;
-}
-
-// Calculated variables can be read once they exist: before a successful start only parameters and inputs do.
-bool check_readable(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (variable < wheel::stored_count || i.simulation.exists()) return true;
-  i.log(Topic::error, "%s: \"%s\" has no value before a successful initialization.", name,
-        wheel::row_of(variable).name);
   return false;
 }
 
@@ -68,8 +48,8 @@ bool check_settable(Instance& i, const char* name, fmi2ValueReference variable) 
 bool check_value(Instance& i, const char* name, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
   if (i.state != State::step_complete || (std::isfinite(value) && value >= row.min && value <= row.max)) return true;
-  i.log(Topic::discard, "%s: %s = %.9g is not allowed; the value stays %.9g.", name, row.name, value,
-        i.simulation.stored(variable));
+  i.log(Topic::discard, "%s: %s = %s is not allowed; the value stays %s.", name, row.name, Digits(value).text,
+        Digits(i.simulation.value(variable)).text);
   return false;
 }
 
@@ -97,18 +77,6 @@ fmi2Status refuse_strings(fmi2Component c, Function function, const char* name, 
       i.log(Topic::error, "%s: no variable of this type has the value reference %u.", name, variables[0]);
     return fmi2Error;
   });
-}
-
-bool check_input(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (variable >= wheel::first_input && variable < wheel::stored_count) return true;
-  i.log(Topic::error, "%s: value reference %u is not an input.", name, variable);
-  return false;
-}
-
-bool check_output(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (variable < wheel::variable_count() && wheel::row_of(variable).role == Role::output) return true;
-  i.log(Topic::error, "%s: value reference %u is not an output.", name, variable);
-  return false;
 }
 
 }  // namespace
@@ -139,63 +107,6 @@ fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference v[], size_t n
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2String values[]) {
   return refuse_strings(c, Function::set_values, "fmi2SetString", v, n, values);
-}
-
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference v[], size_t n,
-                                       const fmi2Integer orders[], const fmi2Real values[]) {
-  constexpr const char* name = "fmi2SetRealInputDerivatives";
-  return guarded(c, Function::set_input_derivatives, name, [=](Instance& i) {
-    if (!check_arrays(i, name, n, v, values) || !check_arrays(i, name, n, orders, values)) return fmi2Error;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (!check_input(i, name, v[k])) return fmi2Error;
-      if (orders[k] < 1 || orders[k] > wheel::Inputs::max_order || !std::isfinite(values[k])) {
-        i.log(Topic::error, "%s: derivative %d = %g of %s: orders 1 to %d and finite values are allowed.", name,
-              orders[k], values[k], wheel::row_of(v[k]).name, wheel::Inputs::max_order);
-        return fmi2Error;
-      }
-    }
-    for (std::size_t k = 0; k < n; ++k) i.simulation.set_input_derivative(v[k], orders[k], values[k]);
-    return fmi2OK;
-  });
-}
-
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference v[], size_t n,
-                                        const fmi2Integer orders[], fmi2Real values[]) {
-  constexpr const char* name = "fmi2GetRealOutputDerivatives";
-  return guarded(c, Function::get_output_derivatives, name, [=](Instance& i) {
-    if (!check_arrays(i, name, n, v, values) || !check_arrays(i, name, n, orders, values)) return fmi2Error;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (!check_output(i, name, v[k]) || !check_readable(i, name, v[k])) return fmi2Error;
-      if (orders[k] == 1) continue;
-      i.log(Topic::error, "%s: order %d of %s: only the first derivative is provided.", name, orders[k],
-            wheel::row_of(v[k]).name);
-      return fmi2Error;
-    }
-    for (std::size_t k = 0; k < n; ++k) values[k] = i.simulation.rate(v[k]);
-    return fmi2OK;
-  });
-}
-
-fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[], size_t n_unknowns,
-                                        const fmi2ValueReference knowns[], size_t n_knowns, const fmi2Real seeds[],
-                                        fmi2Real values[]) {
-  constexpr const char* name = "fmi2GetDirectionalDerivative";
-  return guarded(c, Function::directional_derivative, name, [=](Instance& i) {
-    if (!check_arrays(i, name, n_unknowns, unknowns, values) || !check_arrays(i, name, n_knowns, knowns, seeds))
-      return fmi2Error;
-    for (std::size_t k = 0; k < n_knowns; ++k)
-      if (!check_input(i, name, knowns[k])) return fmi2Error;
-    for (std::size_t k = 0; k < n_unknowns; ++k)
-      if (!check_output(i, name, unknowns[k])) return fmi2Error;
-    if (prepare_reading(i) != fmi2OK) return fmi2Discard;
-    for (std::size_t u = 0; u < n_unknowns; ++u) {
-      if (!check_readable(i, name, unknowns[u])) return fmi2Error;
-      values[u] = 0;
-      for (std::size_t k = 0; k < n_knowns; ++k)
-        values[u] += seeds[k] * i.simulation.sensitivity(unknowns[u], knowns[k]);
-    }
-    return fmi2OK;
-  });
 }
 
 }  // extern "C"

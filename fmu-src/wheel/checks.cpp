@@ -1,8 +1,10 @@
 // Parameters and start values checked as a whole: one sentence per fault (what, which value, what is allowed).
+#include "checks.hpp"
+
 #include <cmath>
 #include <cstdio>
 
-#include "scene.hpp"
+#include "motion.hpp"
 #include "simulation.hpp"
 
 namespace wheel {
@@ -18,7 +20,7 @@ void fault_of(unsigned v, double value, char* sentence, std::size_t size) {
   sentence[0] = 0;
   if (!std::isfinite(value)) {
     std::snprintf(sentence, size, "%s = %g: a finite number is needed.", row.name, value);
-  } else if (v == theta_start && !(std::sin(value) > flat_sine && value > 0 && value < row.max)) {
+  } else if (v == theta_start && !(std::sin(value) > flat_angle && value > 0 && value < row.max)) {
     std::snprintf(sentence, size, "theta_start = %.9g rad: the wheel must stand above the ground, 0 < theta < pi.",
                   value);
   } else if (strictly_positive(v) ? value <= row.min : value < row.min) {
@@ -40,50 +42,51 @@ void inertia_fault(const double* v, char* sentence, std::size_t size) {
                 v[J_x], v[J_y], v[J_z]);
 }
 
-void formulation_fault(const double* v, char* sentence, std::size_t size) {
-  sentence[0] = 0;
-  if (choice_of(v[formulation]) == reduced_formulation && v[J_x] != v[J_y])
-    std::snprintf(sentence, size,
-                  "formulation = reduced needs J_x = J_y, not %.17g and %.17g; automatic or multibody take any.",
-                  v[J_x], v[J_y]);
-}
-
 }  // namespace
 
-// Values that are sound one by one can still have products that are no finite numbers.
-bool Simulation::check_start(bool report) {
-  const WheelDynamics& forces = now_.dynamics();
-  const double numbers[] = {wheel_energy(&scene_.wheel, &now_.kinematics()), forces.lambda[0], forces.lambda[1],
-                            forces.lambda[2], forces.tau};
-  for (const double number : numbers)
-    if (!std::isfinite(number)) {
-      if (report)
-        tell(Topic::error,
-             "The start has energy and forces beyond the range of numbers: m = %.3g kg, J_z = %.3g kg m2, r_0 = %.3g "
-             "m, g = %.3g m/s2, omega_z = %.3g rad/s.",
-             stored_[m], stored_[J_z], stored_[r_0], stored_[g], now_.kinematics().omega_z);
-      return false;
-    }
-  return true;
-}
-
-bool Simulation::check_parameters(bool report) const {
+bool check_values(const double* parameters, const Inputs& inputs, void* owner,
+                  void (*tell)(void* owner, const char* sentence)) {
   bool sound = true;
   char sentence[256];
   const auto conclude = [&] {
     if (!sentence[0]) return;
     sound = false;
-    if (report) tell(Topic::error, "%s", sentence);
+    if (tell) tell(owner, sentence);
   };
   for (unsigned v = 0; v < stored_count; ++v) {
-    fault_of(v, stored_[v], sentence, sizeof sentence);
+    const double value = v < first_input ? parameters[v] : inputs.value(static_cast<int>(v - first_input));
+    fault_of(v, value, sentence, sizeof sentence);
     conclude();
   }
-  inertia_fault(stored_, sentence, sizeof sentence);
-  conclude();
-  formulation_fault(stored_, sentence, sizeof sentence);
+  inertia_fault(parameters, sentence, sizeof sentence);
   conclude();
   return sound;
+}
+
+bool Simulation::check_parameters(bool report) {
+  const auto tell_fault = [](void* owner, const char* sentence) {
+    static_cast<Simulation*>(owner)->tell(Topic::error, "%s", sentence);
+  };
+  return check_values(state_.parameters, state_.motion.inputs, this, report ? +tell_fault : nullptr);
+}
+
+// Values that are sound one by one can still have products that are not finite.
+bool Simulation::check_start(bool report) {
+  Reading& start = reading();
+  const WheelDynamics& forces = start.dynamics();
+  const double numbers[] = {wheel_energy(&start.scene().wheel, &start.kinematics()), forces.lambda[0],
+                            forces.lambda[1], forces.lambda[2], forces.tau};
+  for (const double number : numbers)
+    if (!std::isfinite(number)) {
+      const double* v = state_.parameters;
+      if (report)
+        tell(Topic::error,
+             "The initial energy or reaction force overflows: m = %.3g kg, J_z = %.3g kg m2, r_0 = %.3g m, "
+             "g = %.3g m/s2, omega_z = %.3g rad/s.",
+             v[m], v[J_z], v[r_0], v[g], start.kinematics().omega_z);
+      return false;
+    }
+  return true;
 }
 
 }  // namespace wheel

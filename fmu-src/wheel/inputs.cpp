@@ -2,6 +2,7 @@
 #include "inputs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace wheel {
@@ -9,75 +10,117 @@ namespace {
 
 constexpr double factorial[] = {1, 1, 2, 6};
 
-double* entry(WheelLoad& load, int input) { return input < 3 ? &load.F[input] : &load.M[input - 3]; }
+double evaluate(const double* c, double tau) { return c[0] + tau * (c[1] + tau * (c[2] + tau * c[3])); }
+double slope(const double* c, double tau) { return c[1] + tau * (2 * c[2] + tau * 3 * c[3]); }
+
+// A brake cannot push: a capacity that a polynomial takes below zero is none.
+void limit_brake(WheelLoad& load) { load.brake = std::fmax(load.brake, 0); }
+
+bool is_zero(const double* c) { return c[0] == 0 && c[1] == 0 && c[2] == 0 && c[3] == 0; }
+
+// Real zeros of the slope c1 + 2 c2 x + 3 c3 x^2; returns their number.
+int zeros_of_slope(const double* c, double* zeros) {
+  const double a = 3 * c[3], half_b = c[2], d = half_b * half_b - a * c[1];
+  if (a == 0) {
+    if (half_b == 0) return 0;
+    zeros[0] = -c[1] / (2 * half_b);
+    return 1;
+  }
+  if (!(d > 0)) return 0;
+  const double q = -(half_b + std::copysign(std::sqrt(d), half_b));
+  zeros[0] = q / a;
+  if (q == 0) return 1;
+  zeros[1] = c[1] / q;
+  return 2;
+}
 
 }  // namespace
 
-void Inputs::set_value(int input, double value) { pending_[input][0] = value; }
-
-void Inputs::set_derivative(int input, int order, double derivative) {
-  pending_[input][order] = derivative / factorial[order];
+double* load_entry(WheelLoad& load, int input) {
+  if (input < 3) return &load.F[input];
+  return input < Inputs::brake ? &load.M[input - 3] : &load.brake;
 }
 
-double Inputs::evaluate(const double* c, double tau) { return c[0] + tau * (c[1] + tau * (c[2] + tau * c[3])); }
+bool Inputs::set_value(int input, double value) {
+  if (pending[input][0] == value) return false;
+  pending[input][0] = value;
+  return true;
+}
+
+void Inputs::set_derivative(int input, int order, double derivative) {
+  pending[input][order] = derivative / factorial[order];
+}
 
 void Inputs::hold_from(double t) {
   for (int i = 0; i < count; ++i) {
-    std::fill(pending_[i] + 1, pending_[i] + max_order + 1, 0.0);
-    pending_[i][0] = evaluate(current_[i], t - origin_);
+    std::fill(pending[i] + 1, pending[i] + max_order + 1, 0.0);
+    pending[i][0] = evaluate(in_force[i], t - origin);
   }
 }
 
-bool Inputs::differ_from_current(double t) const {
-  double shifted[max_order + 1];
+bool Inputs::change_at(double t) const {
+  const double tau = varies ? t - origin : 0;
   for (int i = 0; i < count; ++i) {
-    const double *c = current_[i], tau = varies_ ? t - origin_ : 0;
-    shifted[0] = evaluate(c, tau);
-    shifted[1] = c[1] + tau * (2 * c[2] + tau * 3 * c[3]);
-    shifted[2] = c[2] + 3 * tau * c[3];
-    shifted[3] = c[3];
-    if (!std::equal(shifted, shifted + max_order + 1, pending_[i])) return true;
+    const double* c = in_force[i];
+    const double shifted[] = {evaluate(c, tau), slope(c, tau), c[2] + 3 * tau * c[3], c[3]};
+    if (!std::equal(shifted, shifted + max_order + 1, pending[i])) return true;
   }
   return false;
 }
 
 void Inputs::take_over(double t) {
-  std::memcpy(current_, pending_, sizeof current_);
-  origin_ = t;
-  loaded_ = varies_ = false;
-  for (const auto& c : current_) {
-    loaded_ = loaded_ || c[0] != 0 || c[1] != 0 || c[2] != 0 || c[3] != 0;
-    varies_ = varies_ || c[1] != 0 || c[2] != 0 || c[3] != 0;
-  }
+  std::memcpy(in_force, pending, sizeof in_force);
+  origin = t;
+  classify();
 }
 
-void Inputs::load_at(double t, WheelScene* scene) const {
-  scene->loaded = loaded_;
-  for (int i = 0; loaded_ && i < count; ++i) *entry(scene->load, i) = evaluate(current_[i], t - origin_);
+void Inputs::classify() {
+  loaded = varies = false;
+  for (const auto& c : in_force) {
+    loaded = loaded || !is_zero(c);
+    varies = varies || c[1] != 0 || c[2] != 0 || c[3] != 0;
+  }
+  braked = !is_zero(in_force[brake]);
+}
+
+void Inputs::load_at(double t, WheelLoad* load) const {
+  for (int i = 0; i < count; ++i) *load_entry(*load, i) = evaluate(in_force[i], t - origin);
+  limit_brake(*load);
 }
 
 WheelLoad Inputs::rate_at(double t) const {
   WheelLoad rate = {};
-  const double tau = t - origin_;
-  for (int i = 0; varies_ && i < count; ++i) {
-    const double* c = current_[i];
-    *entry(rate, i) = c[1] + tau * (2 * c[2] + tau * 3 * c[3]);
-  }
+  if (!varies) return rate;
+  for (int i = 0; i < count; ++i) *load_entry(rate, i) = slope(in_force[i], t - origin);
+  if (evaluate(in_force[brake], t - origin) < 0) rate.brake = 0;
   return rate;
 }
 
-void Inputs::pending_load(WheelScene* scene) const {
-  scene->loaded = 0;
-  for (int i = 0; i < count; ++i) {
-    *entry(scene->load, i) = pending_[i][0];
-    if (pending_[i][0] != 0) scene->loaded = 1;
-  }
+void Inputs::pending_load(WheelLoad* load) const {
+  for (int i = 0; i < count; ++i) *load_entry(*load, i) = pending[i][0];
+  limit_brake(*load);
 }
 
 WheelLoad Inputs::pending_rate() const {
   WheelLoad rate = {};
-  for (int i = 0; i < count; ++i) *entry(rate, i) = pending_[i][1];
+  for (int i = 0; i < count; ++i) *load_entry(rate, i) = pending[i][1];
   return rate;
+}
+
+bool Inputs::pending_brake() const { return !is_zero(pending[brake]); }
+
+int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
+  if (!varies) return 0;
+  int found = 0;
+  for (const auto& c : in_force) {
+    double zeros[2];
+    for (int k = zeros_of_slope(c, zeros); k > 0; --k) {
+      const double t = origin + zeros[k - 1];
+      if (t > t_lo && t < t_hi) instants[found++] = t;
+    }
+  }
+  std::sort(instants, instants + found);
+  return found;
 }
 
 }  // namespace wheel

@@ -1,54 +1,52 @@
-// The six inputs, F_X F_Y F_Z (fixed axes, at O) and M_1 M_2 M_3 (carrier axes), as polynomials over a step: {F} of
-// (15).
+// The seven inputs as polynomials of time over one communication step: the external column {F} of (15) besides the
+// weight, and the brake.
+//
+// F_X, F_Y, F_Z [N] at O along the fixed axes; M_1, M_2, M_3 [N m] along the carrier axes e1, e2, e3; M_brake [N m], the
+// capacity of the dry brake. What the master sets is pending until the next step starts; then it is in force.
 #pragma once
-
-#include <initializer_list>
 
 #include "wheel_equations.h"
 
 namespace wheel {
 
-class Inputs {
- public:
-  static constexpr int count = 6, max_order = 3;
+struct Inputs {
+  static constexpr int count = 7, brake = 6, max_order = 3;
+  static constexpr int most_extremes = count * (max_order - 1);
 
-  // value(t) = c_0 + c_1 (t - origin) + ... with the origin at the current communication point.
-  void set_value(int input, double value);
-  bool holds(int input, double value) const { return pending_[input][0] == value; }
+  // c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
+  using Polynomials = double[count][max_order + 1];
+
+  double origin = 0;  // s, own clock
+  Polynomials in_force = {}, pending = {};
+  // Of the polynomials in force, by classify():
+  bool loaded = false;  // some input is not zero
+  bool braked = false;  // the brake is in use: its capacity or one of its derivatives is not zero
+  bool varies = false;  // some input depends on time
+
+  // Pending values. A derivative holds for one step: at its end, t, every input stays where its polynomial arrived.
+  double value(int input) const { return pending[input][0]; }
+  bool set_value(int input, double value);  // false: it had this value
   void set_derivative(int input, int order, double derivative);
-  // Derivatives hold for one step; at its end, t, an input stays where its polynomial arrived until it is set again.
   void hold_from(double t);
 
-  bool differ_from_current(double t) const;
-  // Makes what was set the polynomials in force from t on.
+  // Whether the pending polynomials differ from those in force, seen from t on.
+  bool change_at(double t) const;
   void take_over(double t);
+  void classify();
 
-  // False: all inputs are zero and no term of them is evaluated.
-  bool loaded() const { return loaded_; }
-  bool varies() const { return varies_; }
-  void load_at(double t, WheelScene* scene) const;
+  // The load of the polynomials in force at t, and its rate.
+  void load_at(double t, WheelLoad* load) const;
   WheelLoad rate_at(double t) const;
-  // What was set, at the instant it was set.
-  void pending_load(WheelScene* scene) const;
+  // The same of what is pending, at the instant it was set.
+  void pending_load(WheelLoad* load) const;
   WheelLoad pending_rate() const;
+  bool pending_brake() const;
 
-  template <class Archive>
-  void visit(Archive& archive) {
-    archive(origin_);
-    for (auto* block : {&current_, &pending_})
-      for (auto& polynomial : *block)
-        for (double& coefficient : polynomial) archive(coefficient);
-    archive(loaded_);
-    archive(varies_);
-  }
-
- private:
-  using Polynomials = double[count][max_order + 1];  // Taylor coefficients: derivative / order!
-  static double evaluate(const double* coefficients, double tau);
-
-  double origin_ = 0;
-  Polynomials current_ = {}, pending_ = {};
-  bool loaded_ = false, varies_ = false;
+  // Instants strictly inside (t_lo, t_hi), ascending, at which an input in force has an extreme; returns their number.
+  int extremes(double t_lo, double t_hi, double* instants) const;
 };
+
+// The entry of a load that one input sets.
+double* load_entry(WheelLoad& load, int input);
 
 }  // namespace wheel

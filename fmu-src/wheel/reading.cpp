@@ -1,9 +1,5 @@
-// Quantities at one instant, on request. Fixed axes.
+// Quantities at one instant, on request.
 #include "reading.hpp"
-
-#include <algorithm>
-
-#include "simulation.hpp"
 
 namespace wheel {
 
@@ -14,58 +10,52 @@ bool Reading::missing(unsigned part) {
   return absent;
 }
 
-void Reading::set_state(double t, const double* y) {
-  move_to(t);
-  std::copy_n(y, formulation_->states, y_);
-  have_ = have_state;
-}
-
-const double* Reading::state() {
-  if (missing(have_state)) simulation_->solution()->read(t_, y_);
-  return y_;
-}
-
-const WheelScene& Reading::scene() {
-  if (missing(have_scene)) scene_ = simulation_->scene_at(t_, state());
-  return scene_;
-}
-
 const WheelKinematics& Reading::pose() {
-  if (!(have_ & have_kinematics) && missing(have_pose))
-    formulation_->pose(&simulation_->wheel(), state(), &kinematics_);
+  if (!(have_ & have_kinematics) && missing(have_pose)) now_.formulation->pose(&now_.scene.wheel, now_.y, &kinematics_);
   return kinematics_;
 }
 
 const WheelKinematics& Reading::kinematics() {
-  if (missing(have_kinematics)) formulation_->kinematics(&simulation_->wheel(), state(), &kinematics_);
+  if (missing(have_kinematics)) now_.formulation->kinematics(&now_.scene.wheel, now_.y, &kinematics_);
   return kinematics_;
 }
 
 const WheelDynamics& Reading::dynamics() {
-  if (missing(have_dynamics)) formulation_->dynamics(&scene(), state(), &dynamics_);
+  if (missing(have_dynamics)) now_.formulation->dynamics(&now_.scene, now_.y, &dynamics_);
   return dynamics_;
 }
 
-const double* Reading::reaction_rates() {
+Reactions Reading::reactions() {
+  double force[2];
+  wheel_horizontal_force(&pose(), dynamics().lambda, force);
+  return {force[0], force[1], dynamics().tau};
+}
+
+const ReactionRates& Reading::reaction_rates() {
   if (missing(have_rates)) {
-    const WheelLoad load_dot = simulation_->load_rate_at(t_);
-    formulation_->reaction_rates(&scene(), &load_dot, state(), rates_);
+    WheelReactionRates rates;
+    double force_dot[2];
+    now_.formulation->rates(&now_.scene, &now_.load_rate, now_.y, &rates);
+    wheel_horizontal_force_rates(&pose(), dynamics().lambda, rates.lambda_dot, force_dot);
+    rates_ = {{rates.lambda_dot[0], rates.lambda_dot[1], rates.lambda_dot[2]},
+              force_dot[0],
+              force_dot[1],
+              rates.tau_dot};
   }
   return rates_;
 }
 
-int Reading::friction_mode() {
-  const WheelFriction& friction = scene().friction;
-  if (friction.kind == WHEEL_HELD) return 0;
-  if (friction.kind == WHEEL_ROLLING) return friction.sigma > 0 ? 1 : -1;
-  const double omega_z = kinematics().omega_z;
-  return (omega_z > 0) - (omega_z < 0);
+const WheelContact& Reading::contact() {
+  if (missing(have_contact)) contact_ = wheel_contact(&now_.scene.wheel, &kinematics());
+  return contact_;
 }
 
-Counts Reading::counters() const {
-  if (!simulation_->solution()) return {};
-  const integrator::Counters& c = simulation_->solution()->counters();
-  return {c.steps, c.rhs, c.jacobians, c.roots, events, c.restarts};
+int Reading::friction_mode() {
+  const WheelFriction& friction = now_.scene.friction;
+  if (friction.kind == WHEEL_HELD) return 0;
+  if (friction.kind == WHEEL_ROLLING) return friction.sigma > 0 ? 1 : -1;
+  const double omega_z = pose().omega_z;
+  return (omega_z > 0) - (omega_z < 0);
 }
 
 }  // namespace wheel

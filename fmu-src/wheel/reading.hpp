@@ -1,62 +1,59 @@
-// What can be read at one instant: positions, velocities, accelerations, reactions. Each group is computed when first
-// asked for and kept until the instant or the inputs change; nothing is computed for an output nobody reads.
+// What can be read at one instant: positions, velocities, accelerations, reactions and their rates. Each group is
+// computed when it is first asked for and kept until the instant or the inputs change; nothing is computed for an output
+// that nobody reads. Fixed axes unless said.
 #pragma once
 
 #include "wheel_equations.h"
 
 namespace wheel {
 
-class Simulation;
-
 struct Counts {
   long long steps, rhs, jacobians, roots, events, restarts;
 };
 
+// The instant to read; the scene and the rate of its load are those in force for what follows it.
+struct Instant {
+  const WheelFormulation* formulation;
+  const double* y;
+  WheelScene scene;
+  WheelLoad load_rate;
+  Counts counts;
+};
+
+// The ground's horizontal force along e1 and across it, N, and the moment of ground and brake about the axle, N m.
+struct Reactions {
+  double lambda_x, lambda_y, tau;
+};
+
+// Rates along the motion: of the ground's force in fixed axes, and of the above.
+struct ReactionRates {
+  double lambda[3], lambda_x, lambda_y, tau;
+};
+
 class Reading {
  public:
-  Reading() = default;
-  Reading(const WheelFormulation& formulation, const Simulation& simulation)
-      : formulation_(&formulation), simulation_(&simulation) {}
+  void set(const Instant& instant) { now_ = instant, have_ = 0; }
 
-  // The instant t (own clock, s) of a running solution.
-  void move_to(double t) { t_ = t, have_ = 0; }
-  // The inputs changed: what depends on them is stale.
-  void forget_dynamics() { have_ &= have_state | have_pose | have_kinematics; }
-  // A given state at time t instead of the solver's.
-  void set_state(double t, const double* y);
-
-  double time() const { return t_; }
-  const double* state();
-  const WheelScene& scene();
-  const WheelKinematics& pose();  // all of it but X_O_dot and Y_O_dot
+  const WheelScene& scene() const { return now_.scene; }
+  const WheelKinematics& pose();  // all of the kinematics but X_O_dot and Y_O_dot
   const WheelKinematics& kinematics();
   const WheelDynamics& dynamics();
-  const double* reaction_rates();
+  Reactions reactions();
+  const ReactionRates& reaction_rates();
+  const WheelContact& contact();
   int friction_mode();
-  Counts counters() const;
-
-  long long events = 0;
+  const Counts& counters() const { return now_.counts; }
 
  private:
-  enum : unsigned {
-    have_state = 1,
-    have_pose = 2,
-    have_kinematics = 4,
-    have_dynamics = 8,
-    have_rates = 16,
-    have_scene = 32,
-  };
+  enum : unsigned { have_pose = 1, have_kinematics = 2, have_dynamics = 4, have_rates = 8, have_contact = 16 };
   bool missing(unsigned part);
 
-  const WheelFormulation* formulation_ = nullptr;
-  const Simulation* simulation_ = nullptr;
-  double t_ = 0;
+  Instant now_ = {};
   unsigned have_ = 0;
-  double y_[WHEEL_MAX_STATES] = {};
-  WheelScene scene_ = {};
   WheelKinematics kinematics_ = {};
   WheelDynamics dynamics_ = {};
-  double rates_[3] = {};
+  ReactionRates rates_ = {};
+  WheelContact contact_ = {};
 };
 
 }  // namespace wheel

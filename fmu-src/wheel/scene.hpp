@@ -1,40 +1,50 @@
 // The choices of a scene: formulation, friction law, method, error scales. Pure functions of parameters and state.
 #pragma once
 
-#include "integrator.hpp"
-#include "variables.hpp"
+#include "solver.hpp"
 #include "wheel_equations.h"
 
 namespace wheel {
 
-// sin(theta) below which the wheel counts as lying flat: at the paper's scale some 1e-8 s before theta = 0.
-inline constexpr double flat_sine = 1e-7;
-
+// `stored` holds the parameters in the order of the variables.
 WheelParameters parameters_from(const double* stored);
 WheelMotion initial_motion(const double* stored);
 const WheelFormulation& choose_formulation(const double* stored);
-integrator::Method choose_method(const double* stored);
 
-// The friction law at state y under the scene's load; at omega_z = 0 after Filippov: held where the moment that holds
-// it is within s N, else slipping against that moment. The state is expected to have omega_z exactly 0 there.
+// Which method solves what follows. `jumps`: inputs or tunable parameters change during the run, and the motion is not
+// smooth where they do. `scene` has the law of friction in force.
+solver::Method choose_method(const double* stored, const WheelScene& scene, bool jumps);
+
+// Whether the motion repeats and can be unfolded from half a nutation: reduced form with J_x = J_y, no friction, no
+// brake, no load, formulation and method left to the program.
+bool is_unfoldable(const double* stored, const WheelScene& scene, bool loaded);
+
+// The friction law at state y under the scene's load; `braked`: the brake is in use. At omega_z = 0 after Filippov: held
+// where the moment that holds it is within s N + M_brake, else rolling against that moment.
 WheelFriction friction_at(const double* stored, const WheelFormulation& formulation, const WheelScene& scene,
-                          const double* y);
+                          bool braked, double weight, const double* y);
 
-// s N - |tau| of a held wheel, N m, with the rounding of tau on the side of holding.
-double holding_margin(const WheelParameters& wheel, const WheelDynamics& held);
+// s N + M_brake - |tau| of a held wheel, N m, with the rounding of tau on the side of holding. weight: N, the scale of
+// the normal force.
+double holding_margin(const WheelScene& scene, const WheelDynamics& held, double weight);
 
 // Only the exact law switches.
-bool watches_event(const WheelScene& scene);
+bool has_transitions(const WheelScene& scene);
 
-// Error of each state that counts as one: angles 1 rad, lengths r_0 + r, rates that of the wheel's own time scale or
-// the initial one. A fast spin does not loosen the others: N answers to each of them times the spin.
-void error_scales(const WheelParameters& wheel, const WheelFormulation& formulation, const double* y, double* scales);
+// How errors of the states are weighed.
+struct ErrorScales {
+  double slow[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly
+  double own_rate, tilting;       // rad/s: of the wheel's own time scale; initial rate of turning about e1 and e2
+};
+
+// Angles count by 1 rad, lengths by r_0 + r, rates by the wheel's own time scale or the initial tilting.
+ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& formulation, const double* y);
+
+// The scales at the spin omega_z, rad/s. A fast wheel hardly tilts: the range of theta falls with the square of the spin,
+// that of the rates with the spin, and errors are weighed by these ranges.
+void scales_at(const ErrorScales& scales, const WheelFormulation& formulation, double omega_z, double* out);
 
 // sqrt((r_0 + r) / g), s; without weight the time of a turn at the initial rate.
 double time_scale(const WheelParameters& wheel, const WheelKinematics& start);
-
-// Internal steps that one call over h may take, s, from a spin omega_z: many times what a sane motion needs, and about
-// a second of computing for one that absurd loads set spinning.
-long long most_steps(const WheelParameters& wheel, double omega_z, double h);
 
 }  // namespace wheel

@@ -1,4 +1,4 @@
-// One wheel in motion: parameters and inputs, the scene decided once, the solution, events and endings.
+// One wheel in motion: parameters and inputs, the scene decided once, the solution, transitions and endings.
 //
 // Knows no FMI. Times are the caller's; the solver runs on its own clock, zero at the start, so that a start time of
 // 1e9 s costs no digit. Messages go to the Reporter as finished sentences.
@@ -6,17 +6,17 @@
 
 #include <cstddef>
 
-#include "inputs.hpp"
-#include "integrator.hpp"
+#include "motion.hpp"
+#include "orbit.hpp"
 #include "reading.hpp"
+#include "solver.hpp"
 #include "variables.hpp"
 
 namespace wheel {
 
 // Relative tolerance of the whole solution: over ten seconds of the paper's scenes the relative error of the energy
-// stays below it (measured: docs/results/accuracy.md). The local tolerance of a step is this fraction of it.
-inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, loosest_tolerance = 1e-2;
-inline constexpr double local_fraction = 0.003;
+// stays below it (docs/results/accuracy.md).
+inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, loosest_tolerance = 1e-4;
 
 enum class Topic { event, warning, error, discard };
 
@@ -29,9 +29,33 @@ struct Reporter {
 
 enum class Progressed { reached, ended, failed };
 
+enum class Ending : int { none, fell_flat, lifted_off };
+
+// Everything that decides the future of a run, but the history of its solver. Plain numbers: to restore is to assign.
+struct State {
+  double parameters[first_input] = {};
+  double start_time = 0;
+  Motion motion;
+  solver::Method method = solver::Method::adams;
+  Ending ending = Ending::none;
+  bool prepared = false;         // there is a state y to read
+  bool started = false;          // initialization has ended
+  bool moving = false;           // the first step has been taken
+  bool unfolded = false;         // the solution is read from the orbit, nothing is integrated
+  bool jumped = false;           // an input or a tunable parameter changed during the run
+  bool changes_pending = false;  // inputs or tunable parameters were set since the last step
+  bool pulling = false;          // with keep_contact: N < 0, and a warning has said so
+  bool y_known = false;          // y is that of t; otherwise it is read from the solution when it is needed
+  double t = 0;                  // s, own clock: the instant that the caller has reached
+  double last_change = 0;        // s, own clock: when an input or a tunable parameter last changed
+  double y[WHEEL_MAX_STATES] = {};
+  long long transitions = 0;      // of the friction
+  solver::Counters counted = {};  // before the solver was last started from nothing
+};
+
 class Simulation {
  public:
-  explicit Simulation(const Reporter& reporter);
+  explicit Simulation(const Reporter& reporter) : reporter_(reporter) { reset(); }
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
@@ -41,82 +65,80 @@ class Simulation {
   // tolerance <= 0: the default one.
   void set_experiment(double start_time, double tolerance);
 
-  // Stored variables (parameters and inputs). Values are checked as a whole by check_parameters.
-  double stored(unsigned variable) const { return stored_[variable]; }
+  // Parameters and inputs: variables below stored_count. Values are checked as a whole by check_parameters.
   void store(unsigned variable, double value);
   void set_input_derivative(unsigned variable, int order, double value);
 
   // One sentence per fault, through the Reporter; true if there is none.
-  bool check_parameters(bool report = true) const;
+  bool check_parameters(bool report = true);
 
   // The initial state from the current parameters; true if it exists.
   bool prepare(bool report = true);
-  // Starts the solver. False if SUNDIALS refuses it.
-  bool start();
-  // To the caller's time t. `ended`: the wheel fell flat or lifted off at time(); `failed`: time() is that of the
-  // start.
+  // Ends the initialization; needs a successful prepare.
+  void start() { state_.started = true; }
+  bool started() const { return state_.started; }
+  // To the caller's time t. `ended`: the wheel fell flat or lifted off at time(); `failed`: the state is that before the
+  // call.
   Progressed advance(double t);
 
-  double time() const;
+  double time() const { return state_.start_time + state_.t; }
   // Whether there is a state to read: after a successful prepare.
-  bool exists() const { return formulation_ != nullptr; }
+  bool has_state() const { return state_.prepared; }
+  // What ended the run, as a sentence; null while it has not ended.
+  const char* ending() const;
   // The value of a variable now; inputs just set take effect at once.
   double value(unsigned variable);
+  // Its time derivative, for outputs.
   double rate(unsigned variable);
   // d output / d input at this instant; zero for what depends on inputs only through time.
   double sensitivity(unsigned output, unsigned input);
 
-  // What a Reading asks for.
-  const integrator::Integrator* solution() const { return solver_; }
-  const WheelParameters& wheel() const { return scene_.wheel; }
-  WheelScene scene_at(double t, const double* y) const;
-  WheelLoad load_rate_at(double t) const;
-
-  // Complete state as portable bytes with a checksum. is_state: whether bytes are such a state, undamaged. load_state
-  // needs that; it returns false only where start() does.
+  // The complete state as portable bytes with a checksum. load_state refuses bytes that could not have been saved
+  // (false) and leaves everything as it was.
   std::size_t state_size();
   void save_state(unsigned char* bytes);
-  static bool is_state(const unsigned char* bytes, std::size_t size);
-  bool load_state(const unsigned char* bytes);
+  static bool is_state(const unsigned char* bytes, std::size_t size);  // whole and undamaged
+  bool load_state(const unsigned char* bytes, std::size_t size);
 
  private:
-  friend struct Callbacks;
-  struct Moment {
-    bool prepared, started;
-    double t;
-    long long events;
-    double y[WHEEL_MAX_STATES];
-  };
-  Moment moment_now();
-  template <class Archive>
-  void visit(Archive& archive, Moment& moment);
-
   bool tell(Topic topic, const char* format, ...) const;
   bool check_start(bool report);
-  bool restart_from(double t, const double* y);
-  bool joins(double t, const double* y, const WheelScene& next) const;
+
+  const double* y_now();
+  Counts counts() const;
+  Instant instant();
+  Reading& reading();
+
+  bool restore_solver(const State& next, const unsigned char* history, std::size_t size);
+
+  // stepping.cpp
   bool settle_changes();
   void announce_transition(double t, const WheelFriction& before);
-  bool pass_event();
-  integrator::Outcome run_to(double t);
+  bool pass_transition();
+  void report_pulls();
+  void report_pulls_of_orbit(double t_from, double t_to) const;
+  void tell_pull(double t) const;
+  bool orbit_is_ready() const;
+  bool build_orbit();
+  bool start_solver();
+  bool knows(double t) const;
+  solver::Outcome run_to(double t);
+  solver::Outcome extend_to(double t);
+  void move_to(double t);
   Progressed end_run();
+  Progressed fail(const State& before);
 
   Reporter reporter_;
-  double stored_[stored_count];
-  Inputs inputs_;
-  double start_time_ = 0, tolerance_ = default_tolerance;
-
-  WheelScene scene_ = {};  // its load follows the solver's right-hand side
-  const WheelFormulation* formulation_ = nullptr;
-  integrator::Method method_ = integrator::Method::adams;
-  double scales_[WHEEL_MAX_STATES] = {};  // error of each state that weighs like a tolerance of one
-  integrator::Integrator* solver_ = nullptr;
-  Reading now_;
-  double weight_ = 0;        // N, the scale of the normal force
-  double lowest_force_ = 0;  // N, smallest normal force the right-hand side has seen since the last step
-  bool lifted_ = false;      // the ground is pulling, and that has been said
-  bool touched_ = false;     // inputs or tunable parameters were set since the last step
-  integrator::Room room_;    // the solver's
+  State state_;
+  solver::Solver solver_;
+  Orbit orbit_;
+  solver::Counters orbit_counters_ = {};        // of its making
+  double orbit_end_ = 0;                       // s: the end of the run, or infinite
+  double orbit_origin_[first_input + 1] = {};  // parameters and tolerance that orbit_ was built for
+  const char* failure_ = nullptr;  // why the last call failed
+  Reading reading_;
+  bool reading_fresh_ = false;  // reading_ holds the present instant
+  mutable char ending_[160] = {};
 };
 
 }  // namespace wheel

@@ -1,6 +1,8 @@
-// The rows of the variable table. Start values are the paper's scene, (27)-(33), without friction.
+// How each calculated variable is read, and its rate of change: what modelDescription.xml cannot say. A variable of the
+// description without a reader here does not compile, nor does a reader without its variable.
 #include "variables.hpp"
 
+#include <algorithm>
 #include <iterator>
 
 #include "reading.hpp"
@@ -8,95 +10,95 @@
 namespace wheel {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::infinity();
-constexpr double pi = 3.141592653589793;
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+// N, N m; far beyond any wheel: beyond it the products of loads and parameters would not be finite.
+constexpr double strongest = 1e300;
 
-constexpr Row parameter(const char* name, double start, double min = -none, double max = none) {
-  return {name, Type::real, Role::parameter, start, min, max, nullptr};
-}
-constexpr Row choice(const char* name, double max) {
-  return {name, Type::integer, Role::parameter, 1, 1, max, nullptr};
-}
-// Far beyond any wheel: beyond it the products of loads and parameters would not be finite.
-constexpr double strongest = 1e300;  // N, N m
-constexpr Row input(const char* name) { return {name, Type::real, Role::input, 0, -strongest, strongest, nullptr}; }
-constexpr Row output(const char* name, double (*read)(Reading&), double (*rate)(Reading&)) {
-  return {name, Type::real, Role::output, 0, 0, 0, read, rate};
-}
-constexpr Row reaction(const char* name, int i, double (*read)(Reading&), double (*rate)(Reading&)) {
-  return {name, Type::real, Role::output, 0, 0, 0, read, rate, i};
-}
-constexpr Row local(const char* name, Type type, double (*read)(Reading&)) {
-  return {name, type, Role::local, 0, 0, 0, read};
-}
-
-#define AT(expression) [](Reading& now) -> double { return expression; }
-
-constexpr Row variables[] = {
-    parameter("m", 20, 0),
-    parameter("r_0", 0.3, 0),
-    parameter("r", 0.05, 0),
-    parameter("J_x", 0.9, 0),
-    parameter("J_y", 0.9, 0),
-    parameter("J_z", 1.8, 0),
-    parameter("g", 9.81, 0),
-    {"s", Type::real, Role::tunable, 0, 0, none, nullptr},
-    parameter("psi_start", pi / 2),
-    parameter("theta_start", 5 * pi / 12, 0, pi),
-    parameter("phi_start", 0),
-    parameter("psi_dot_start", 0),
-    parameter("theta_dot_start", 0),
-    parameter("phi_dot_start", -2),
-    parameter("X_O_start", -0.07764571353075622),
-    parameter("Y_O_start", 0),
-    choice("formulation", multibody_formulation),
-    choice("friction_law", regularized_law),
-    parameter("omega_s", 0.001, 0),
-    choice("method", bdf_method),
-    {"keep_contact", Type::boolean, Role::parameter, 0, 0, 1, nullptr},
-    input("F_X"),
-    input("F_Y"),
-    input("F_Z"),
-    input("M_1"),
-    input("M_2"),
-    input("M_3"),
-    output("X_O", AT(now.pose().X_O), AT(now.kinematics().X_O_dot)),
-    output("theta", AT(now.pose().theta), AT(now.pose().theta_dot)),
-    output("phi_dot", AT(now.pose().phi_dot), AT(now.dynamics().phi_ddot)),
-    output("psi_dot", AT(now.pose().psi_dot), AT(now.dynamics().psi_ddot)),
-    output("Y_O", AT(now.pose().Y_O), AT(now.kinematics().Y_O_dot)),
-    output("Z_O", AT(now.pose().Z_O), AT(now.pose().Z_O_dot)),
-    output("psi", AT(now.pose().psi), AT(now.pose().psi_dot)),
-    output("phi", AT(now.pose().phi), AT(now.pose().phi_dot)),
-    output("theta_dot", AT(now.pose().theta_dot), AT(now.dynamics().theta_ddot)),
-    output("X_O_dot", AT(now.kinematics().X_O_dot), AT(now.dynamics().X_O_ddot)),
-    output("Y_O_dot", AT(now.kinematics().Y_O_dot), AT(now.dynamics().Y_O_ddot)),
-    output("Z_O_dot", AT(now.pose().Z_O_dot), AT(now.dynamics().Z_O_ddot)),
-    output("omega_z", AT(now.pose().omega_z), AT(now.dynamics().omega_z_dot)),
-    reaction("lambda_1", 0, AT(now.dynamics().lambda[0]), AT(now.reaction_rates()[0])),
-    reaction("lambda_2", 1, AT(now.dynamics().lambda[1]), AT(now.reaction_rates()[1])),
-    reaction("lambda_3", 2, AT(now.dynamics().lambda[2]), AT(now.reaction_rates()[2])),
-    local("E", Type::real, AT(wheel_energy(&now.scene().wheel, &now.kinematics()))),
-    local("mu_required", Type::real, AT(wheel_required_friction(now.dynamics().lambda))),
-    local("friction_mode", Type::integer, AT(now.friction_mode())),
-    local("n_steps", Type::integer, AT(double(now.counters().steps))),
-    local("n_rhs", Type::integer, AT(double(now.counters().rhs))),
-    local("n_jac", Type::integer, AT(double(now.counters().jacobians))),
-    local("n_roots", Type::integer, AT(double(now.counters().roots))),
-    local("n_events", Type::integer, AT(double(now.counters().events))),
-    local("n_restarts", Type::integer, AT(double(now.counters().restarts))),
+struct Reader {
+  Computed variable;
+  double (*read)(Reading&);
+  double (*read_rate)(Reading&) = nullptr;
+  double (*reaction_rate)(const ReactionRates&) = nullptr;
 };
 
+#define AT(expression) [](Reading& now) -> double { return expression; }
+#define REACTION(value, component) \
+  AT(now.value), AT(now.reaction_rates().component), [](const ReactionRates& rates) { return rates.component; }
+
+constexpr Reader readers[] = {
+    {Computed::X_O, AT(now.pose().X_O), AT(now.kinematics().X_O_dot)},
+    {Computed::Y_O, AT(now.pose().Y_O), AT(now.kinematics().Y_O_dot)},
+    {Computed::Z_O, AT(now.pose().Z_O), AT(now.pose().Z_O_dot)},
+    {Computed::psi, AT(now.pose().psi), AT(now.pose().psi_dot)},
+    {Computed::theta, AT(now.pose().theta), AT(now.pose().theta_dot)},
+    {Computed::phi, AT(now.pose().phi), AT(now.pose().phi_dot)},
+    {Computed::X_O_dot, AT(now.kinematics().X_O_dot), AT(now.dynamics().X_O_ddot)},
+    {Computed::Y_O_dot, AT(now.kinematics().Y_O_dot), AT(now.dynamics().Y_O_ddot)},
+    {Computed::Z_O_dot, AT(now.pose().Z_O_dot), AT(now.dynamics().Z_O_ddot)},
+    {Computed::psi_dot, AT(now.pose().psi_dot), AT(now.dynamics().psi_ddot)},
+    {Computed::theta_dot, AT(now.pose().theta_dot), AT(now.dynamics().theta_ddot)},
+    {Computed::phi_dot, AT(now.pose().phi_dot), AT(now.dynamics().phi_ddot)},
+    {Computed::omega_z, AT(now.pose().omega_z), AT(now.dynamics().omega_z_dot)},
+    {Computed::lambda_1, REACTION(dynamics().lambda[0], lambda[0])},
+    {Computed::lambda_2, REACTION(dynamics().lambda[1], lambda[1])},
+    {Computed::lambda_3, REACTION(dynamics().lambda[2], lambda[2])},
+    {Computed::X_C, AT(now.contact().X_C), AT(now.contact().X_C_dot)},
+    {Computed::Y_C, AT(now.contact().Y_C), AT(now.contact().Y_C_dot)},
+    {Computed::lambda_x, REACTION(reactions().lambda_x, lambda_x)},
+    {Computed::lambda_y, REACTION(reactions().lambda_y, lambda_y)},
+    {Computed::tau, REACTION(reactions().tau, tau)},
+    {Computed::E, AT(wheel_energy(&now.scene().wheel, &now.kinematics()))},
+    {Computed::mu_required, AT(wheel_required_friction(now.dynamics().lambda))},
+    {Computed::friction_mode, AT(now.friction_mode())},
+    {Computed::n_steps, AT(double(now.counters().steps))},
+    {Computed::n_rhs, AT(double(now.counters().rhs))},
+    {Computed::n_jac, AT(double(now.counters().jacobians))},
+    {Computed::n_roots, AT(double(now.counters().roots))},
+    {Computed::n_events, AT(double(now.counters().events))},
+    {Computed::n_restarts, AT(double(now.counters().restarts))},
+};
+
+#undef REACTION
 #undef AT
+
+constexpr int readers_of(Computed variable) {
+  int found = 0;
+  for (const Reader& reader : readers) found += reader.variable == variable;
+  return found;
+}
+
+constexpr Row stored(const char* name, Type type, Role role, double start, double min, double max) {
+  const double most = role == Role::input ? strongest : unlimited;
+  return {name, type, role, start, std::max(min, -most), std::min(max, most), nullptr, nullptr, nullptr};
+}
+
+template <Computed variable>
+constexpr Row computed(const char* name, Type type, Role role) {
+  static_assert(readers_of(variable) == 1, "a calculated variable has one reader");
+  for (const Reader& r : readers)
+    if (r.variable == variable) return {name, type, role, 0, 0, 0, r.read, r.read_rate, r.reaction_rate};
+  return {};
+}
+
+constexpr Row rows[] = {
+#define STORED(name, type, role, start, min, max) stored(#name, Type::type, Role::role, start, min, max),
+#define COMPUTED(name, type, role) computed<Computed::name>(#name, Type::type, Role::role),
+#include "variables.inc"
+#undef STORED
+#undef COMPUTED
+};
+
+constexpr bool outputs_have_rates() {
+  return std::all_of(std::begin(rows), std::end(rows),
+                     [](const Row& row) { return row.role != Role::output || row.read_rate; });
+}
+static_assert(std::size(rows) == variable_count && std::size(readers) == variable_count - stored_count);
+static_assert(outputs_have_rates());
 
 }  // namespace
 
-unsigned variable_count() { return static_cast<unsigned>(std::size(variables)); }
+const Row& row_of(unsigned variable) { return rows[variable]; }
 
-const Row& row_of(unsigned variable) { return variables[variable]; }
-
-bool is_variable(unsigned variable, Type type) {
-  return variable < variable_count() && variables[variable].type == type;
-}
+bool is_variable(unsigned variable, Type type) { return variable < variable_count && rows[variable].type == type; }
 
 }  // namespace wheel

@@ -49,11 +49,11 @@ static void measure(const WheelFormulation* f, const WheelScene* scene) {
 
 int main(void) {
   const WheelFormulation* formulations[] = {&wheel_reduced, &wheel_multibody};
-  const char* names[] = {"none", "rolling", "held", "regularized"};
+  const char* names[] = {"no law", "none", "rolling", "held", "regularized"};
   for (int i = 0; i < 2; ++i) {
     sweep_states(formulations[i]);
     for (int kind = WHEEL_FRICTIONLESS; kind <= WHEEL_REGULARIZED; ++kind) {
-      WheelScene scene = {paper, {(WheelFrictionKind)kind, -1, 1e-3}, {{0, 0, 0}, {0, 0, 0}}, 0};
+      WheelScene scene = wheel_scene(&paper, NULL, (WheelFriction){(WheelFrictionKind)kind, -1, 1e-3});
       measure(formulations[i], &scene);
       printf("%s %s %.2f %.2f\n", formulations[i]->name, names[kind], times[REPETITIONS / 2], times[0]);
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import zipfile
 from dataclasses import dataclass
@@ -87,12 +88,11 @@ def compile_all(folder: Path, work: Path, compilers: dict[str, str]) -> dict[str
 def read_description(fmu: Path) -> tuple[str, dict[str, tuple[str, int]], dict[str, int]]:
     with zipfile.ZipFile(fmu) as archive:
         root = ElementTree.fromstring(archive.read("modelDescription.xml"))
-    kinds = {"Real": "r", "Integer": "i", "Enumeration": "i", "Boolean": "b"}
-    references = {
-        v.attrib["name"]: (kinds[v[0].tag], int(v.attrib["valueReference"])) for v in root.iter("ScalarVariable")
-    }
-    items = root.iterfind(".//SimpleType[@name='Method']/Enumeration/Item")
-    return root.attrib["guid"], references, {i.attrib["name"]: int(i.attrib["value"]) for i in items}
+    kinds = {"Real": "r", "Integer": "i", "Boolean": "b"}
+    variables = {v.attrib["name"]: v for v in root.iter("ScalarVariable")}
+    references = {name: (kinds[v[0].tag], int(v.attrib["valueReference"])) for name, v in variables.items()}
+    methods = re.findall(r"\b(\d) (\w+)", variables["method"].attrib["description"])
+    return root.attrib["guid"], references, {name: int(number) for number, name in methods}
 
 
 def build(folder: Path) -> Build:

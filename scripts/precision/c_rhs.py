@@ -1,12 +1,12 @@
-"""The product's C right-hand side for Python solvers, by address through tests/equations.py."""
+"""The product's C right-hand side for Python solvers, by address through tests/support/equations.py."""
 
 from __future__ import annotations
 
 from ctypes import CFUNCTYPE, byref, c_double, c_void_p, cast
 from typing import Any
 
-import equations as eq
 import numpy as np
+from support import equations as eq
 
 
 class Problem:

@@ -1,6 +1,6 @@
 """What each omission saves: the same scene with the thing left out, and with it forced. docs/results/work_precision.md.
 
-The tests (tests/test_left_out.py) prove by counters that it is left out; here it is priced.
+The tests (tests/contract/test_left_out.py) prove by counters that it is left out; here it is priced.
 """
 
 from __future__ import annotations

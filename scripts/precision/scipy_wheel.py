@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import equations as eq
 import numpy as np
 from c_rhs import Problem
 from scipy.integrate import solve_ivp
+from support import equations as eq
 
 MOST_EVALUATIONS = 100_000
 NAIVE_WIDTH = 1e-3  # rad/s

@@ -81,9 +81,8 @@ def left_out(extra: Extra) -> str:
         )
     head = ("left out", "forced by", "without µs", "with µs", "factor", "counters")
     e = extra["events"]
-    text = (
-        "## What is left out, and what that saves\n\nFree wheel, 10 s, default tolerance; tests/test_left_out.py proves"
-    )
+    text = "## What is left out, and what that saves\n\nFree wheel, 10 s, default tolerance; "
+    text += "tests/contract/test_left_out.py proves"
     text += " by counters that it is left out.\n\n" + table(head, rows)
     text += (
         f"\nA restart costs {1e6 * e['each']:.1f} µs and {e['rhs_each']:.0f} right-hand sides (free wheel with as many"

@@ -1,6 +1,5 @@
 /* Runs ten scenes in one FMU library and prints a hash of every trajectory's bits: driver LIBRARY GUID.
-   The same source for every platform; the paper's equations are not here. Value references as in modelDescription.xml.
- */
+   The same source for every platform; the paper's equations are not here. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,23 +17,15 @@ static void* open_library(const char* path) { return dlopen(path, RTLD_NOW | RTL
 static void* symbol(void* library, const char* name) { return dlsym(library, name); }
 #endif
 
+/* Value references by name, as modelDescription.xml has them. */
 enum {
-  s = 7,
-  J_x = 3,
-  J_y,
-  r = 2,
-  psi_dot_start = 11,
-  theta_dot_start,
-  phi_dot_start,
-  formulation = 16,
-  friction_law,
-  method = 19,
-  keep_contact,
-  F_X,
-  M_3 = 26,
-  first_output = 27,
-  output_count = 16
+#define STORED(name, ...) ref_##name,
+#define COMPUTED(name, ...) ref_##name,
+#include "variables.inc"
+#undef STORED
+#undef COMPUTED
 };
+enum { first_output = ref_X_O, output_count = ref_E - ref_X_O };
 
 struct scene {
   const char* name;
@@ -82,8 +73,9 @@ static fmi2Component start(const struct scene* scene, const char* guid) {
   const fmi2Component c =
       ((fmi2InstantiateTYPE*)need("fmi2Instantiate"))("wheel", fmi2CoSimulation, guid, "", &functions, 0, 0);
   if (!c) exit(1);
-  const fmi2ValueReference reals[] = {s, J_y, r, psi_dot_start}, whole[] = {formulation, friction_law, method};
-  const fmi2ValueReference contact = keep_contact, torque = M_3;
+  const fmi2ValueReference reals[] = {ref_s, ref_J_y, ref_r, ref_psi_dot_start},
+                           whole[] = {ref_formulation, ref_friction_law, ref_method};
+  const fmi2ValueReference contact = ref_keep_contact, torque = ref_M_3;
   const double values[] = {scene->s, scene->J_y, scene->r, scene->rate};
   const fmi2Boolean kept = fmi2True;
   ((fmi2SetupExperimentTYPE*)need("fmi2SetupExperiment"))(c, 1, scene->tolerance, 0, 0, 0);
@@ -101,7 +93,7 @@ static void run(const struct scene* scene, const char* guid) {
   fmi2GetRealTYPE* get = (fmi2GetRealTYPE*)need("fmi2GetReal");
   fmi2SetRealInputDerivativesTYPE* derive = (fmi2SetRealInputDerivativesTYPE*)need("fmi2SetRealInputDerivatives");
   fmi2ValueReference outputs[output_count];
-  const fmi2ValueReference force = F_X;
+  const fmi2ValueReference force = ref_F_X;
   const fmi2Integer order = 1;
   double values[output_count] = {0};
   uint64_t hash = 0xcbf29ce484222325u;

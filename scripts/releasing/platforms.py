@@ -10,6 +10,7 @@ import argparse
 import importlib.util
 import os
 import subprocess
+import sys
 import xml.etree.ElementTree as xml
 from pathlib import Path
 from typing import NamedTuple
@@ -35,9 +36,22 @@ def guid() -> str:
 
 
 def build_driver(zig: Path, target: str, folder: Path) -> Path:
+    rows = [ROOT / "scripts" / "variable_rows.py", ROOT / "modelDescription.xml", folder / "variables.inc"]
+    subprocess.run([sys.executable, *map(str, rows)], check=True)
     driver = folder / target / ("driver.exe" if target == WINDOWS else "driver")
     source = Path(__file__).parent / "driver.c"
-    command = [str(zig / "zig"), "cc", "-target", target, "-O1", f"-I{HEADERS}", str(source), "-o", str(driver)]
+    command = [
+        str(zig / "zig"),
+        "cc",
+        "-target",
+        target,
+        "-O1",
+        f"-I{HEADERS}",
+        f"-I{folder}",
+        str(source),
+        "-o",
+        str(driver),
+    ]
     subprocess.run([*command, *([] if target == WINDOWS else ["-ldl"])], check=True)
     return driver
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from time import perf_counter_ns
 
 import numpy as np
-from fmpy.fmi1 import FMICallException
-from physics.product import COUNTERS, Product
+from support.driver import COUNTERS, WARNING
+from support.motion import Library
 
 from .machine import ROOT, build_folder, busy, cached
 from .markdown import table
@@ -49,31 +49,26 @@ The reduced formulation is {ratio:.0f} times as fast as the paper's (24), by the
     return Part(text)
 
 
-def solve_once(product: Product, start: dict[str, float], tolerance: float | None) -> tuple[float, dict[str, int]]:
+def solve_once(product: Library, start: dict[str, float], tolerance: float | None) -> tuple[float, dict[str, int]]:
     """Microseconds of one fmi2DoStep over 10 s, and the solver's counters after it."""
-    slave = product.slave()
-    try:
-        product.set_start(slave, start)
-        slave.setupExperiment(tolerance=tolerance, startTime=0.0)
-        slave.enterInitializationMode()
-        slave.exitInitializationMode()
+    with product.wheel() as wheel:
+        wheel.start(tolerance=tolerance, **start)
         begin = perf_counter_ns()
-        slave.doStep(0.0, 10.0)
+        status = wheel.step_to(10.0)
         spent = (perf_counter_ns() - begin) / 1e3
-        counters = slave.getInteger([product.reference[name] for name in COUNTERS])
-    finally:
-        slave.freeInstance()
-    return spent, dict(zip(COUNTERS, counters, strict=True))
+        if status > WARNING:
+            raise RuntimeError(" ".join(wheel.sentences[-1:]))
+        return spent, {name: int(wheel.get(name)[0]) for name in COUNTERS}
 
 
-def solutions(product: Product) -> Part:
+def solutions(product: Library) -> Part:
     rows = []
     for name, start in SCENES.items():
         for tolerance in (None, 1e-4, 1e-12) if "," not in name else (None,):
             used = "default" if tolerance is None else f"{tolerance:g}"
             try:
                 runs = [solve_once(product, start, tolerance) for _ in range(REPETITIONS)]
-            except FMICallException as fault:
+            except RuntimeError as fault:
                 rows.append((name, used, *["-"] * len(COUNTERS), f"failed: {fault}", "-"))
                 continue
             counters, times = runs[0][1], [spent for spent, _ in runs]
@@ -100,5 +95,5 @@ One fmi2DoStep of 10 s, called through fmpy in one process; microseconds: median
     return Part(text)
 
 
-def parts(product: Product, folder: Path) -> list[Part]:
+def parts(product: Library, folder: Path) -> list[Part]:
     return [right_hand_sides(), solutions(product)]

@@ -6,11 +6,11 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
-from physics.closed_forms import critical_spin, upright_deceleration, upright_stiffness
 from physics.exact_motions import UPRIGHT, circle_error, fall_error, lift_off_error, straight_error
 from physics.leaning import TORUS, lean_of, measured_critical_spin, stiffness
-from physics.product import Product
 from reference import Wheel
+from support.closed_forms import critical_spin, upright_deceleration, upright_stiffness
+from support.motion import Library
 
 from . import accuracy_figures as figures
 from .markdown import image, number, table
@@ -20,7 +20,7 @@ THIN, ROUGH = Wheel(r=0.0), Wheel(s=0.03)
 FORMULATIONS = (2, 3)  # reduced, multibody
 
 
-def closed_forms(product: Product) -> Part:
+def closed_forms(product: Library) -> Part:
     stop = 2 / upright_deceleration(ROUGH)
 
     def stop_error(formulation: int) -> float:
@@ -44,7 +44,7 @@ def closed_forms(product: Product) -> Part:
     tipped = run.t[np.argmax(np.abs(run["theta"] - pi / 2) > 0.5)]
     text = f"""## Closed forms
 
-Errors against motions known in closed form (derived in `tests/physics/closed_forms.py`). The upright wheel that has
+Errors against motions known in closed form (derived in `tests/support/closed_forms.py`). The upright wheel that has
 stopped stands on an unstable rest: rounding alone (cos(pi/2) is 6e-17) tips it, past half a radian at {tipped:.1f} s.
 
 {table(["motion: error", "reduced", "multibody"], rows)}"""
@@ -52,7 +52,7 @@ stopped stands on an unstable rest: rounding alone (cos(pi/2) is 6e-17) tips it,
     return Part(text, [Check("closed forms: any error", "at most", 1e-7, worst)])
 
 
-def stability(product: Product, folder: Path) -> Part:
+def stability(product: Library, folder: Path) -> Part:
     critical, found = critical_spin(TORUS), measured_critical_spin(product)
     factors = (0.5, 0.8, 0.9, 0.95, 0.99, 1.01, 1.05, 1.1, 1.2, 1.5)
     points = np.array([(spin, stiffness(product, spin, 0.5)) for spin in np.multiply(factors, critical)])
@@ -79,5 +79,5 @@ is within {number(float(np.abs(points[:, 1] - expected).max()))} 1/s^2 of the fo
     )
 
 
-def parts(product: Product, folder: Path) -> list[Part]:
+def parts(product: Library, folder: Path) -> list[Part]:
     return [closed_forms(product), stability(product, folder)]

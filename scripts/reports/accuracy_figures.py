@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from physics.product import Result
 from plotting import style
+from support.motion import Run
 
 from .markdown import number
 
@@ -56,7 +56,7 @@ def convergence(rows: Array, file: Path) -> None:
     save(fig, file)
 
 
-def energy(times: Array, free: Result, rough: Result, file: Path) -> None:
+def energy(times: Array, free: Run, rough: Run, file: Path) -> None:
     fig = style.figure_mm(style.PAGE, 58.0)
     ax = style.axes_mm(fig, 15.0, 12.0, 160.0, 40.0)
     held = rough["friction_mode"] == 0

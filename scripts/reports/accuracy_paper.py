@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 from physics.measure import FRICTION, energy_error, instants, instants_error, table_errors
-from physics.product import HEADLINE, Product
 from reference.tables import read_table
+from support.driver import HEADLINE
+from support.motion import Library
 
 from . import accuracy_figures as figures
 from .markdown import image, number, table
@@ -16,7 +17,7 @@ from .part import Check, Part
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13)
 
 
-def headline(product: Product) -> Part:
+def headline(product: Library) -> Part:
     errors = {scene: table_errors(product, scene) for scene in FRICTION}
     rows = [(f"`{name}`", *(errors[scene][name] for scene in FRICTION)) for name in HEADLINE]
     checks = [
@@ -35,7 +36,7 @@ wheel's lies between {number(min(near))} and {number(max(near))}, median {number
     return Part(text, checks)
 
 
-def convergence(product: Product, folder: Path) -> Part:
+def convergence(product: Library, folder: Path) -> Part:
     rows = []
     for tolerance in TOLERANCES:
         worst = [max(table_errors(product, scene, tolerance).values()) for scene in FRICTION]
@@ -64,7 +65,7 @@ and instants to 1e-9 s: errors below some 1e-10, and of instants below 1e-9 s, a
     return Part(text, checks)
 
 
-def transitions(product: Product) -> Part:
+def transitions(product: Library) -> Part:
     want, found = read_table("paper_friction_events"), instants(product)
     kind = {0: "held", 1: "omega_z > 0", -1: "omega_z < 0"}
     pairs = list(zip(want["t"][1:], found, strict=False))
@@ -83,7 +84,7 @@ def transitions(product: Product) -> Part:
     return Part(text, [Check("friction scene: error of the instants of all 37 transitions, s", "at most", 1e-6, error)])
 
 
-def dissipation(product: Product, folder: Path) -> Part:
+def dissipation(product: Library, folder: Path) -> Part:
     times = np.linspace(0, 10, 2001)
     free, rough = (product.simulate(times, s=s) for s in FRICTION.values())
     figures.energy(times, free, rough, folder / "accuracy_energy.png")
@@ -107,7 +108,7 @@ E(150 s) = {tight["E"][-1]:.5f} J, at the default tolerance:
     return Part(text)
 
 
-def parts(product: Product, folder: Path) -> list[Part]:
+def parts(product: Library, folder: Path) -> list[Part]:
     return [
         headline(product),
         convergence(product, folder),

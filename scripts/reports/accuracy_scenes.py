@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import equations as eq
 import numpy as np
-import test_equations as pointwise
+from equations import test_equations as pointwise
 from physics.cases import CASES, error, expected, transitions_gap
 from physics.measure import constraint_drift, unstabilised_drift
-from physics.product import Product
+from support import equations as eq
+from support.motion import Library
 
 from . import accuracy_figures as figures
 from .markdown import image, number, table
@@ -39,7 +39,7 @@ each kind of moment about the axle.
     return Part(text, checks)
 
 
-def scenes(product: Product) -> Part:
+def scenes(product: Library) -> Part:
     rows = []
     for name, case in CASES.items():
         errors = [error(product, name, tolerance) for tolerance in (None, 1e-10, 1e-12)]
@@ -55,11 +55,11 @@ default tolerance the worst is {number(max(row[2] for row in rows))}, at 1e-12 {
 
 {table(header, rows)}
 
-The scenes are data in `tests/physics/cases.py`."""
+The scenes are data in `tests/support/scenes.py`."""
     return Part(text, [Check("other scenes: error at tolerance 1e-12", "at most", 1e-8, max(row[4] for row in rows))])
 
 
-def drift(product: Product, folder: Path) -> Part:
+def drift(product: Library, folder: Path) -> Part:
     times = np.linspace(0, 10, 501)
     rows, plain, held = [], {}, {}
     for tolerance in (1e-6, 1e-8, 1e-10, 1e-12):
@@ -84,5 +84,5 @@ them built in: {number(float(velocity.max()))} m/s and {number(float(height.max(
     return Part(text)
 
 
-def parts(product: Product, folder: Path) -> list[Part]:
+def parts(product: Library, folder: Path) -> list[Part]:
     return [equations(), scenes(product), drift(product, folder)]

@@ -14,14 +14,15 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
 from plotting import style  # noqa: E402
+from robustness import checks, drift, long_runs, regularized  # noqa: E402
+from robustness.sweep import sweep  # noqa: E402
+from robustness.verdicts import judge_case  # noqa: E402
+from support.motion import Library  # noqa: E402
 
-from . import contract, drift, figures, long_runs, regularized  # noqa: E402
-from .cases import sweep  # noqa: E402
-from .driver import Library  # noqa: E402
+from . import figures  # noqa: E402
 from .isolated import Broken, call, call_each  # noqa: E402
 from .page import page  # noqa: E402
 from .report import Results  # noqa: E402
-from .verdicts import judge_case  # noqa: E402
 
 THRESHOLD = 200.0  # decay number of the automatic rule, fmu-src/wheel/scene.cpp
 DEADLINE = 120.0  # s for one case at all tolerances; the slowest needs ten
@@ -49,7 +50,7 @@ def run_study(name: str, work: Callable[[], Any], deadline: float) -> Any:
 
 
 def run_studies(library: Library, results: Results, full_day: bool) -> None:
-    for group, check in contract.GROUPS.items():
+    for group, check in checks.GROUPS.items():
         results.contract[group] = call(lambda _, check=check: check(library), None, DEADLINE)
     results.regularized = run_study("regularized law", lambda: regularized.study(library), 300)
     results.crossings = run_study("choice of method", lambda: regularized.crossings(library), 300)
@@ -78,14 +79,14 @@ def main() -> int:
     parser.add_argument("--short", action="store_true", help="leave the runs of 24 h out")
     arguments = parser.parse_args()
     before, results = perf_counter(), Results()
-    library = Library(arguments.fmu)
+    library = Library.unpacked(arguments.fmu)
     run_sweep(library, results, arguments.only)
     if not arguments.only:
         run_studies(library, results, not arguments.short)
         results.seconds = perf_counter() - before
         write(results, arguments.out)
         say(f"Written: {arguments.out / 'stability.md'}")
-    library.close()
+    library.remove()
     faults = results.faults()
     say("\n".join(faults) or "All as expected.")
     return 1 if faults else 0

@@ -8,11 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from plotting import style
-
-from .drift import Drift
-from .long_runs import LongRun
-from .regularized import Crossing, Point
-from .verdicts import TOLERANCES, Verdict
+from robustness.drift import Drift
+from robustness.long_runs import LongRun
+from robustness.regularized import Crossing, Point
+from robustness.verdicts import TOLERANCES, Verdict
 
 DPI = 110
 COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.ORANGE, style.SKY)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from .drift import Drift
-from .regularized import Crossing, Point
+from robustness.drift import Drift
+from robustness.regularized import TOLERANCE_FACTOR, WIDTH_FACTOR, Crossing, Point
+
 from .report import (
-    TOLERANCE_FACTOR,
-    WIDTH_FACTOR,
     Results,
     amplification,
     contract_tables,

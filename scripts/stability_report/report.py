@@ -8,16 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from robustness.case import Case
+from robustness.checks import Check
+from robustness.drift import Drift
+from robustness.long_runs import LongRun
+from robustness.regularized import TOLERANCE_FACTOR, WIDTH_FACTOR, Crossing, Point, observed_order
+from robustness.verdicts import TOLERANCES, Verdict
 
-from .case import Case
-from .contract import Check
-from .drift import Drift
 from .isolated import Broken
-from .long_runs import LongRun
-from .regularized import Crossing, Point, observed_order
-from .verdicts import TOLERANCES, Verdict
 
-WIDTH_FACTOR, TOLERANCE_FACTOR = 5.0, 100.0  # error of the regularized law: per rad/s of its width, per tolerance
 LARGEST_DRIFT = 1e-9
 
 ROOT = Path(__file__).resolve().parent.parent.parent

@@ -10,8 +10,7 @@ from ctypes import byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p,
 from typing import Any
 
 import numpy as np
-
-from contract.master import (
+from support.driver import (
     DISCARD,
     DO_STEP_STATUS,
     ERROR,

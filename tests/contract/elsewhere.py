@@ -7,8 +7,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from fmpy import read_model_description
-
-from contract.master import OK, FMU2Wheel
+from support.driver import OK, FMU2Wheel
 
 
 def continue_run(w: FMU2Wheel, t: float) -> bytes:

@@ -10,8 +10,7 @@ import numpy as np
 from fmpy.model_description import ModelDescription
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
-
-from contract.master import DISCARD, ERROR, OK, WARNING, FMU2Wheel
+from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
 
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 Values = dict[str, float]

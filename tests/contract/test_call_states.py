@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from support.driver import DISCARD, ERROR, OK
+from support.scenes import KINDS
 
 from contract.call_states import STATES, TABLE, bring_to, call
-from contract.master import DISCARD, ERROR, OK, SCENES
 
 pytestmark = pytest.mark.contract
 
@@ -49,7 +50,7 @@ def test_an_illegal_call_is_an_error_with_one_sentence_and_changes_nothing(wheel
 
 def test_a_reset_instance_is_a_new_one_to_the_last_byte(wheel):
     new = wheel().serialized()
-    for values in SCENES.values():
+    for values in KINDS.values():
         w = wheel().start(stop=5.0, tolerance=1e-6, keep_contact=1, **values)
         w.set(F_X=1.0)
         w.run([2.0])

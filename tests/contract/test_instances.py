@@ -9,13 +9,13 @@ from threading import Thread
 import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
-
-from contract.master import ERROR, OK, SCENES, FMU2Wheel
+from support.driver import ERROR, OK, FMU2Wheel
+from support.scenes import KINDS
 
 pytestmark = pytest.mark.contract
 
 TIMES = np.arange(1, 25) * 0.125
-SETTINGS = [values | {"phi_dot_start": -2.0 - 0.1 * k} for k in range(4) for values in SCENES.values()]
+SETTINGS = [values | {"phi_dot_start": -2.0 - 0.1 * k} for k in range(4) for values in KINDS.values()]
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from paths import ROOT
+from support.paths import ROOT
 
 from contract.call_states import TABLE
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-from contract.master import DISCARD, ERROR, OK, WARNING, FMU2Wheel
+from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
 
 pytestmark = pytest.mark.contract
 

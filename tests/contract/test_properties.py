@@ -8,8 +8,8 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.driver import ERROR, OK, FMU2Wheel
 
-from contract.master import ERROR, OK, FMU2Wheel
 from contract.properties import (
     INPUTS,
     Values,

@@ -6,9 +6,10 @@ from ctypes import byref
 
 import numpy as np
 import pytest
+from support.driver import DISCARD, ERROR, OK, FMU2Wheel
+from support.scenes import KINDS
 
 from contract.call_states import STATES, bring_to
-from contract.master import DISCARD, ERROR, OK, SCENES, FMU2Wheel
 
 pytestmark = pytest.mark.contract
 
@@ -41,9 +42,9 @@ def bits_of(w: FMU2Wheel, step, ks: range) -> list[bytes]:
 
 
 @pytest.mark.parametrize("step", [coast, drive])
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", KINDS)
 def test_a_restored_instance_goes_on_with_the_same_bits(wheel, scene, step):
-    values = SCENES[scene]
+    values = KINDS[scene]
     w, other, fresh = wheel().start(**values), wheel().start(s=0.01, m=7.0), wheel()
     bits_of(other, step, range(5))
     for k in (0, 1, 10, 22, 23):
@@ -80,7 +81,7 @@ def test_snapshots_just_before_and_after_every_friction_event_go_on_with_the_sam
 
 
 def test_a_snapshot_at_every_step_changes_no_bit_of_the_run(wheel):
-    for values in SCENES.values():
+    for values in KINDS.values():
         w, undisturbed = wheel().start(**values), wheel().start(**values)
         state = w.snapshot()
         for k in range(100):
@@ -106,7 +107,7 @@ def test_what_was_set_but_not_yet_stepped_is_part_of_the_state(wheel):
 
 def test_a_rejected_step_leaves_no_trace(wheel):
     """Step, restore, two half steps: a variable-step master."""
-    for values in SCENES.values():
+    for values in KINDS.values():
         rejecting, careful = wheel().start(**values), wheel().start(**values)
         for k in range(20):
             state, t = rejecting.snapshot(), rejecting.time
@@ -217,12 +218,12 @@ def test_a_restored_solver_notices_the_jumps_that_the_original_notices(wheel):
     assert notices(restored(), 1.01 * low)
 
 
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", KINDS)
 def test_the_bytes_of_a_state_before_the_first_step_depend_on_nothing_but_the_state(wheel, scene):
     used = wheel().start(s=0.02, J_x=1.0)
     used.run([1.0])
     used.close()  # leaves its memory to the next ones
-    states = {wheel().start(**SCENES[scene]).serialized() for _ in range(10)}
+    states = {wheel().start(**KINDS[scene]).serialized() for _ in range(10)}
     assert len(states) == 1
-    moved = wheel().start(**SCENES[scene] | {"X_O_start": 1e-9}).serialized()
+    moved = wheel().start(**KINDS[scene] | {"X_O_start": 1e-9}).serialized()
     assert moved not in states

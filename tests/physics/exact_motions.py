@@ -1,6 +1,6 @@
 """Whole motions of the FMU against closed forms: how far apart they are.
 
-`judged`: the wheel with whose constants the closed form is written (closed_forms.py, reference/laws.py).
+`judged`: the wheel with whose constants the closed form is written (support/closed_forms.py).
 """
 
 from __future__ import annotations
@@ -9,19 +9,17 @@ from math import cos, pi
 
 import numpy as np
 from reference import Start, Wheel
-from reference.laws import fall_normal_force, fall_time
 from scipy.optimize import brentq
-
-from .closed_forms import circle_spin, upright_deceleration
-from .product import Product, start_values
+from support.closed_forms import circle_spin, fall_normal_force, fall_time, upright_deceleration
+from support.motion import Library, start_values
 
 UPRIGHT = {"theta_start": pi / 2, "psi_start": 0.0, "X_O_start": 0.0}  # e1 along X
 
 
-def straight_error(product: Product, formulation: int, s: float, judged: Wheel) -> float:
+def straight_error(library: Library, formulation: int, s: float, judged: Wheel) -> float:
     """omega_z and X_O of upright rolling at 2 rad/s against uniform deceleration to rest, up to 2 s."""
     times = np.linspace(0, 2, 201)
-    run = product.simulate(times, s=s, formulation=formulation, **UPRIGHT)
+    run = library.simulate(times, s=s, formulation=formulation, **UPRIGHT)
     slowing, R = upright_deceleration(judged), judged.r_0 + judged.r
     rolled = np.minimum(times, 2 / slowing)
     omega_z = -2 + slowing * rolled
@@ -29,33 +27,33 @@ def straight_error(product: Product, formulation: int, s: float, judged: Wheel) 
     return float(max(np.abs(run["omega_z"] - omega_z).max(), np.abs(run["X_O"] - X_O).max()))
 
 
-def fall_error(product: Product, formulation: int, judged: Wheel) -> float:
+def fall_error(library: Library, formulation: int, judged: Wheel) -> float:
     """Instant at which the wheel released from rest lies flat, s; nan if it does not."""
-    run = product.simulate([0.0, 2.0], formulation=formulation, phi_dot_start=0.0)
+    run = library.simulate([0.0, 2.0], formulation=formulation, phi_dot_start=0.0)
     if run.ended is None or "fell flat" not in run.ended:
         return np.nan
     return abs(run.t[-1] - fall_time(judged, 5 * pi / 12, 1e-7))  # the model ends at sin(theta) = 1e-7
 
 
-def lift_off_error(product: Product, formulation: int, shift: float) -> float:
+def lift_off_error(library: Library, formulation: int, shift: float) -> float:
     """Instant (s) and angle (rad) at which a falling light rim loses contact; nan if it does not.
 
     shift: added to the angle at which N of the closed form is zero.
     """
     rim = Wheel(J_x=0.05, J_y=0.05, J_z=0.1)
     theta = brentq(lambda angle: fall_normal_force(rim, 1.4, angle), 0.3, 1.3) + shift
-    run = product.simulate([0.0, 2.0], formulation=formulation, **start_values(rim, Start(theta=1.4, phi_dot=0.0)))
+    run = library.simulate([0.0, 2.0], formulation=formulation, **start_values(rim, Start(theta=1.4, phi_dot=0.0)))
     if run.ended is None or "lifted off" not in run.ended:
         return np.nan
     return float(max(abs(run.t[-1] - fall_time(rim, 1.4, theta)), abs(run["theta"][-1] - theta)))
 
 
-def circle_error(product: Product, disc: Wheel, judged: Wheel, formulation: int, psi_dot: float, theta: float) -> float:
+def circle_error(library: Library, disc: Wheel, judged: Wheel, formulation: int, psi_dot: float, theta: float) -> float:
     """theta, the rates and the circle of O over 5 s from the steady circle of `judged`."""
     omega_z = circle_spin(judged, theta, psi_dot)
     begin = Start(theta=theta, psi_dot=psi_dot, phi_dot=omega_z - psi_dot * cos(theta))
     times = np.linspace(0, 5, 101)
-    run = product.simulate(times, 1e-11, formulation=formulation, **start_values(disc, begin))
+    run = library.simulate(times, 1e-11, formulation=formulation, **start_values(disc, begin))
     speed = np.hypot(run["X_O_dot"], run["Y_O_dot"])
     wander = [run["theta"] - theta, run["psi_dot"] - psi_dot, run["omega_z"] - omega_z, speed - speed[0]]
     wander.append(run["psi"] - run["psi"][0] - psi_dot * times)

@@ -4,33 +4,33 @@ from __future__ import annotations
 
 from ctypes import byref, c_double
 
-import equations as eq
 import numpy as np
 from numpy.typing import NDArray
 from reference.tables import read_table
 from scipy.integrate import solve_ivp
-
-from .product import HEADLINE, Product, Result
+from support import equations as eq
+from support.driver import HEADLINE
+from support.motion import Library, Run
 
 FRICTION = {"free": 0.0, "friction": 0.03}  # s of the paper's two scenes, m
 
 
-def table_errors(product: Product, scene: str, tolerance: float | None = None, **start: float) -> dict[str, float]:
-    """Largest error of each headline output over the shared table's 101 rows, as a part of the output's range."""
+def table_errors(library: Library, scene: str, tolerance: float | None = None, **start: float) -> dict[str, float]:
+    """Largest error of each headline output over the trusted table's 101 rows, as a part of the output's range."""
     want = read_table(f"paper_{scene}")
-    got = product.simulate(want["t"], tolerance, **{"s": FRICTION[scene], **start})
+    got = library.simulate(want["t"], tolerance, **{"s": FRICTION[scene], **start})
     return {name: float(np.abs(got[name] - want[name]).max() / np.ptp(want[name])) for name in HEADLINE}
 
 
-def energy_error(product: Product, tolerance: float | None = None, **start: float) -> float:
+def energy_error(library: Library, tolerance: float | None = None, **start: float) -> float:
     """Largest relative change of the energy over 10 s, at 1001 instants."""
-    energy = product.simulate(np.linspace(0, 10, 1001), tolerance, **start)["E"]
+    energy = library.simulate(np.linspace(0, 10, 1001), tolerance, **start)["E"]
     return float(np.abs(energy / energy[0] - 1).max())
 
 
-def instants(product: Product, tolerance: float | None = None, **start: float) -> list[tuple[float, int]]:
+def instants(library: Library, tolerance: float | None = None, **start: float) -> list[tuple[float, int]]:
     """Transitions of the paper's friction scene in 10 s."""
-    return product.simulate([0.0, 10.0], tolerance, **{"s": 0.03, **start}).events
+    return library.simulate([0.0, 10.0], tolerance, **{"s": 0.03, **start}).events
 
 
 def instants_error(found: list[tuple[float, int]]) -> float:
@@ -49,10 +49,10 @@ def residual(wheel: eq.Parameters, motion: eq.Kinematics) -> tuple[float, float]
 
 
 def constraint_drift(
-    product: Product, times: NDArray[np.float64], tolerance: float | None, **start: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], Result]:
+    library: Library, times: NDArray[np.float64], tolerance: float | None, **start: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Run]:
     """How far the FMU is off the constraints at each instant: velocity (m/s) and height (m)."""
-    run = product.simulate(times, tolerance, **start)
+    run = library.simulate(times, tolerance, **start)
     wheel = eq.paper_wheel(**{k: v for k, v in start.items() if k in dict(eq.Parameters._fields_)})
     columns = np.column_stack([run[name] for name, _ in eq.Kinematics._fields_])
     velocity, height = np.array([residual(wheel, eq.Kinematics(*row)) for row in columns]).T

@@ -1,6 +1,6 @@
 """Whole motions known in closed form: straight rolling, standing, tipping, falling, lifting off, steady circles.
 
-J_x = J_y; formulas and their derivations in closed_forms.py and tests/reference/laws.py.
+J_x = J_y; formulas and their derivations in support/closed_forms.py.
 """
 
 from __future__ import annotations
@@ -10,27 +10,27 @@ from math import cosh, pi
 import numpy as np
 import pytest
 from reference import Wheel
+from support.closed_forms import rolling_inertia, tipping_inertia, upright_deceleration
+from support.motion import Library
+from support.schedule import Schedule
 
-from .closed_forms import rolling_inertia, tipping_inertia, upright_deceleration
 from .exact_motions import UPRIGHT, circle_error, fall_error, lift_off_error, straight_error
-from .product import Product
-from .schedule import Schedule
 
 THIN = Wheel(r=0.0)
 formulations = pytest.mark.parametrize("formulation", [2, 3], ids=["reduced", "multibody"])
 
 
 @formulations
-def test_upright_rolling_slows_down_linearly_and_then_stands(wheel: Product, formulation: int) -> None:
+def test_upright_rolling_slows_down_linearly_and_then_stands(library: Library, formulation: int) -> None:
     rough = Wheel(s=0.03)
-    assert straight_error(wheel, formulation, 0.03, rough) < 1e-9  # measured 6.7e-16, multibody 8.0e-11
-    assert straight_error(wheel, formulation, 0.03, Wheel(s=0.03, r=0.0)) > 0.1  # measured 0.30
+    assert straight_error(library, formulation, 0.03, rough) < 1e-9  # measured 6.7e-16, multibody 8.0e-11
+    assert straight_error(library, formulation, 0.03, Wheel(s=0.03, r=0.0)) > 0.1  # measured 0.30
 
 
 @formulations
-def test_the_upright_wheel_stops_once_at_the_known_instant(wheel: Product, formulation: int) -> None:
+def test_the_upright_wheel_stops_once_at_the_known_instant(library: Library, formulation: int) -> None:
     def gap(s: float) -> float:
-        events = wheel.simulate([0.0, 6.0], s=s, formulation=formulation, **UPRIGHT).events
+        events = library.simulate([0.0, 6.0], s=s, formulation=formulation, **UPRIGHT).events
         assert [mode for _, mode in events] == [0]
         return abs(events[0][0] - 2 / upright_deceleration(Wheel(s=0.03)))
 
@@ -38,20 +38,20 @@ def test_the_upright_wheel_stops_once_at_the_known_instant(wheel: Product, formu
     assert gap(0.03 * (1 + 1e-6)) > 1e-7  # measured 1.4e-6
 
 
-def test_standing_is_an_unstable_rest_that_rounding_tips_after_some_seconds(wheel: Product) -> None:
-    run = wheel.simulate(np.linspace(0, 14, 1401), s=0.03, **UPRIGHT)
+def test_standing_is_an_unstable_rest_that_rounding_tips_after_some_seconds(library: Library) -> None:
+    run = library.simulate(np.linspace(0, 14, 1401), s=0.03, **UPRIGHT)
     lean = np.abs(run["theta"] - pi / 2)
     assert lean[run.t <= 5].max() < 1e-6  # measured 6.9e-12
     assert 8 < run.t[np.argmax(lean > 0.5)] < 14  # s; measured 11.4
-    pushed = wheel.simulate(np.linspace(0, 14, 1401), s=0.03, **{**UPRIGHT, "theta_start": pi / 2 - 1e-6})
+    pushed = library.simulate(np.linspace(0, 14, 1401), s=0.03, **{**UPRIGHT, "theta_start": pi / 2 - 1e-6})
     assert pushed.t[np.argmax(np.abs(pushed["theta"] - pi / 2) > 0.5)] < 8  # measured 3.4
 
 
-def test_a_standing_wheel_tips_by_the_hyperbolic_cosine(wheel: Product) -> None:
+def test_a_standing_wheel_tips_by_the_hyperbolic_cosine(library: Library) -> None:
     def gap(judged: Wheel) -> float:
         times = np.linspace(0, 1.5, 151)
         start = {**UPRIGHT, "theta_start": pi / 2 - 1e-6, "phi_dot_start": 0.0}
-        lean = pi / 2 - wheel.simulate(times, 1e-12, s=0.03, **start)["theta"]
+        lean = pi / 2 - library.simulate(times, 1e-12, s=0.03, **start)["theta"]
         growth = (58.86 / tipping_inertia(judged)) ** 0.5
         return float(np.abs(lean / [1e-6 * cosh(growth * t) for t in times] - 1).max())
 
@@ -59,12 +59,12 @@ def test_a_standing_wheel_tips_by_the_hyperbolic_cosine(wheel: Product) -> None:
     assert gap(THIN) > 0.1  # measured 0.51
 
 
-def test_drive_and_brake_torque_move_an_upright_wheel_as_a_roller(wheel: Product) -> None:
+def test_drive_and_brake_torque_move_an_upright_wheel_as_a_roller(library: Library) -> None:
     torque = Schedule(((0.0, {"M_3": (3.0, -4.0, 1.5)}), (1.0, {"M_3": -2.0})))
 
     def gap(judged: Wheel) -> float:
         times = np.linspace(0, 2, 41)
-        run = wheel.simulate(times, inputs=torque, **{**UPRIGHT, "phi_dot_start": -10.0})
+        run = library.simulate(times, inputs=torque, **{**UPRIGHT, "phi_dot_start": -10.0})
         smooth, late = np.minimum(times, 1), np.maximum(times - 1, 0)
         impulse = 3 * smooth - 2 * smooth**2 + 0.5 * smooth**3 - 2 * late
         return float(np.abs(run["omega_z"] + 10 - impulse / rolling_inertia(judged)).max())
@@ -74,31 +74,31 @@ def test_drive_and_brake_torque_move_an_upright_wheel_as_a_roller(wheel: Product
 
 
 @formulations
-def test_the_wheel_falls_flat_at_the_instant_of_the_closed_form(wheel: Product, formulation: int) -> None:
-    assert fall_error(wheel, formulation, Wheel()) < 1e-8  # s; measured 8.9e-11, multibody 1.2e-10
-    assert fall_error(wheel, formulation, THIN) > 1e-2  # measured 4.8e-2
+def test_the_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library, formulation: int) -> None:
+    assert fall_error(library, formulation, Wheel()) < 1e-8  # s; measured 8.9e-11, multibody 1.2e-10
+    assert fall_error(library, formulation, THIN) > 1e-2  # measured 4.8e-2
 
 
 @formulations
-def test_a_light_rim_lifts_off_where_the_normal_force_of_the_fall_vanishes(wheel: Product, formulation: int) -> None:
-    assert lift_off_error(wheel, formulation, 0.0) < 1e-7  # measured 1.0e-9, multibody 1.2e-9
-    assert lift_off_error(wheel, formulation, 1e-5) > 1e-6  # measured 1.0e-5
+def test_a_light_rim_lifts_off_where_the_normal_force_of_the_fall_vanishes(library: Library, formulation: int) -> None:
+    assert lift_off_error(library, formulation, 0.0) < 1e-7  # measured 1.0e-9, multibody 1.2e-9
+    assert lift_off_error(library, formulation, 1e-5) > 1e-6  # measured 1.0e-5
 
 
 @formulations
 @pytest.mark.parametrize(("psi_dot", "theta"), [(1.0, 1.1), (-2.0, 1.1), (6.0, 0.3)])
 def test_the_thin_disc_stays_in_the_steady_circle_of_the_textbooks(
-    wheel: Product, formulation: int, psi_dot: float, theta: float
+    library: Library, formulation: int, psi_dot: float, theta: float
 ) -> None:
-    assert circle_error(wheel, THIN, THIN, formulation, psi_dot, theta) < 1e-8  # measured at most 4.4e-11
-    assert circle_error(wheel, Wheel(), THIN, formulation, psi_dot, theta) > 1e-3  # a torus wanders: at least 0.84
+    assert circle_error(library, THIN, THIN, formulation, psi_dot, theta) < 1e-8  # measured at most 4.4e-11
+    assert circle_error(library, Wheel(), THIN, formulation, psi_dot, theta) > 1e-3  # a torus wanders: at least 0.84
 
 
 @formulations
 @pytest.mark.parametrize(("psi_dot", "theta"), [(1.0, 1.1), (-2.0, 1.9), (6.0, 0.5)])
 def test_the_torus_stays_in_its_own_steady_circle(
-    wheel: Product, formulation: int, psi_dot: float, theta: float
+    library: Library, formulation: int, psi_dot: float, theta: float
 ) -> None:
-    assert circle_error(wheel, Wheel(), Wheel(), formulation, psi_dot, theta) < 1e-8  # measured at most 1.1e-11
+    assert circle_error(library, Wheel(), Wheel(), formulation, psi_dot, theta) < 1e-8  # measured at most 1.1e-11
     off = Wheel(m=20 * (1 + 1e-5))
-    assert circle_error(wheel, off, Wheel(), formulation, psi_dot, theta) > 1e-8  # measured at least 2.5e-5
+    assert circle_error(library, off, Wheel(), formulation, psi_dot, theta) > 1e-8  # measured at least 2.5e-5

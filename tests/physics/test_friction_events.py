@@ -11,61 +11,61 @@ import numpy as np
 import pytest
 from reference import Start, Wheel, solve
 from reference.tables import read_table
+from support.motion import Library
 
 from .measure import instants, instants_error, table_errors
-from .product import Product
 
 EVENTS = read_table("paper_friction_events")
 
 
-def test_all_37_transitions_are_found_at_their_instants(wheel: Product) -> None:
-    assert len(instants(wheel)) == 37
-    assert instants_error(instants(wheel)) < 1e-6  # s; measured 1.4e-8
-    assert instants_error(instants(wheel, s=0.03 * (1 + 1e-5))) > 1e-6  # measured 2.0e-5
+def test_all_37_transitions_are_found_at_their_instants(library: Library) -> None:
+    assert len(instants(library)) == 37
+    assert instants_error(instants(library)) < 1e-6  # s; measured 1.4e-8
+    assert instants_error(instants(library, s=0.03 * (1 + 1e-5))) > 1e-6  # measured 2.0e-5
 
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6, 1e-10, 1e-13])
-def test_no_transition_is_lost_or_invented_at_any_tolerance(wheel: Product, tolerance: float) -> None:
-    modes = [mode for _, mode in instants(wheel, tolerance)]
+def test_no_transition_is_lost_or_invented_at_any_tolerance(library: Library, tolerance: float) -> None:
+    modes = [mode for _, mode in instants(library, tolerance)]
     assert modes == EVENTS["mode"][1:].tolist()
-    assert [mode for _, mode in instants(wheel, tolerance, s=0.05)] != modes
+    assert [mode for _, mode in instants(library, tolerance, s=0.05)] != modes
 
 
-def test_the_instants_converge_with_the_tolerance(wheel: Product) -> None:
-    assert instants_error(instants(wheel, 1e-10)) < 5e-9  # s; measured 1.0e-9: the table's last digit
-    assert instants_error(instants(wheel, 1e-5)) > 1e-6  # measured 4.9e-6
+def test_the_instants_converge_with_the_tolerance(library: Library) -> None:
+    assert instants_error(instants(library, 1e-10)) < 5e-9  # s; measured 1.0e-9: the table's last digit
+    assert instants_error(instants(library, 1e-5)) > 1e-6  # measured 4.9e-6
 
 
-def mode_error(product: Product, shift: float) -> int:
+def mode_error(library: Library, shift: float) -> int:
     """How many of 37 pairs of readings, 1e-7 s before and after a transition (shifted), show another mode."""
     times = np.sort(np.concatenate([EVENTS["t"][1:] - 1e-7, EVENTS["t"][1:] + 1e-7])) + shift
-    modes = product.simulate([0.0, *times], s=0.03)["friction_mode"][1:].reshape(-1, 2)
+    modes = library.simulate([0.0, *times], s=0.03)["friction_mode"][1:].reshape(-1, 2)
     expected = np.column_stack([EVENTS["mode"][:-1], EVENTS["mode"][1:]])
     return int((modes != expected).any(axis=1).sum())
 
 
-def test_the_friction_mode_read_between_steps_changes_at_the_same_instants(wheel: Product) -> None:
-    assert mode_error(wheel, 0.0) == 0
-    assert mode_error(wheel, 1e-6) == 37
+def test_the_friction_mode_read_between_steps_changes_at_the_same_instants(library: Library) -> None:
+    assert mode_error(library, 0.0) == 0
+    assert mode_error(library, 1e-6) == 37
 
 
-def test_a_held_wheel_has_no_spin_and_a_rolling_one_has_that_of_its_mode(wheel: Product) -> None:
-    run = wheel.simulate(np.linspace(0, 10, 5001), s=0.03)
+def test_a_held_wheel_has_no_spin_and_a_rolling_one_has_that_of_its_mode(library: Library) -> None:
+    run = library.simulate(np.linspace(0, 10, 5001), s=0.03)
     held = run["friction_mode"] == 0
     assert 0.15 < held.mean() < 0.17  # of the time; measured 0.160
     assert (run["omega_z"][held] == 0).all()
     assert (np.sign(run["omega_z"][~held]) == run["friction_mode"][~held]).all()
-    lighter = wheel.simulate(np.linspace(0, 10, 5001), s=0.02)
+    lighter = library.simulate(np.linspace(0, 10, 5001), s=0.02)
     assert (lighter["friction_mode"] == 0).mean() < 0.02  # measured 0.015
 
 
-def energy_gap(product: Product, s: float, judged: float) -> float:
+def energy_gap(library: Library, s: float, judged: float) -> float:
     """Largest gap over the rolling and held phases between the loss of energy and `judged` times the integral
     of N |omega_z|, by Gauss's rule within each phase; relative to the energy at the start."""
     nodes, weights = np.polynomial.legendre.leggauss(160)
-    ends = [0.0, *(t for t, _ in product.simulate([0.0, 10.0], 1e-12, s=s).events), 10.0]
+    ends = [0.0, *(t for t, _ in library.simulate([0.0, 10.0], 1e-12, s=s).events), 10.0]
     times = sorted({*ends, *((a + b) / 2 + (b - a) / 2 * x for a, b in pairwise(ends) for x in nodes)})
-    run = product.simulate(times, 1e-12, s=s)
+    run = library.simulate(times, 1e-12, s=s)
     power = run["lambda_3"] * np.abs(run["omega_z"])
     lost, gap = 0.0, 0.0
     for i, (a, b) in enumerate(pairwise(ends)):
@@ -75,45 +75,45 @@ def energy_gap(product: Product, s: float, judged: float) -> float:
     return gap / run["E"][0]
 
 
-def test_the_energy_falls_by_the_work_of_rolling_friction(wheel: Product) -> None:
-    assert energy_gap(wheel, 0.03, 0.03) < 1e-9  # measured 4.7e-13
-    assert energy_gap(wheel, 0.03, 0.03 * (1 + 1e-6)) > 1e-7  # measured 2.6e-7
+def test_the_energy_falls_by_the_work_of_rolling_friction(library: Library) -> None:
+    assert energy_gap(library, 0.03, 0.03) < 1e-9  # measured 4.7e-13
+    assert energy_gap(library, 0.03, 0.03 * (1 + 1e-6)) > 1e-7  # measured 2.6e-7
 
 
-def test_friction_takes_energy_only_while_the_wheel_rolls(wheel: Product) -> None:
-    run = wheel.simulate(np.linspace(0, 10, 2001), 1e-12, s=0.03)
+def test_friction_takes_energy_only_while_the_wheel_rolls(library: Library) -> None:
+    run = library.simulate(np.linspace(0, 10, 2001), 1e-12, s=0.03)
     change = np.diff(run["E"]) / run["E"][0]
     modes = run["friction_mode"]
     held = (modes[1:] == 0) & (modes[:-1] == 0)
     assert np.abs(change[held]).max() < 1e-13  # measured 1.5e-14
     assert (change[(modes[1:] != 0) & (modes[:-1] != 0)] < 0).all()
     assert run["E"][0] - run["E"][-1] > 19  # J; measured 19.4
-    free = wheel.simulate(np.linspace(0, 10, 2001), 1e-12)["E"]
+    free = library.simulate(np.linspace(0, 10, 2001), 1e-12)["E"]
     assert np.abs(free / free[0] - 1).max() < 1e-12  # measured 1.4e-13
 
 
-def late_slips(product: Product, tolerance: float | None, s: float = 0.03) -> tuple[list[int], float]:
+def late_slips(library: Library, tolerance: float | None, s: float = 0.03) -> tuple[list[int], float]:
     """Transitions in 30 s as modes, and the energy at 30 s, J."""
-    run = product.simulate([0.0, 30.0], tolerance, s=s)
+    run = library.simulate([0.0, 30.0], tolerance, s=s)
     return [mode for _, mode in run.events], run["E"][-1]
 
 
-def test_the_ever_weaker_slips_of_a_long_run_are_those_of_the_independent_reference(wheel: Product) -> None:
+def test_the_ever_weaker_slips_of_a_long_run_are_those_of_the_independent_reference(library: Library) -> None:
     want = solve(Wheel(s=0.03), Start(), [0.0, 30.0], rtol=1e-11)
-    modes, energy = late_slips(wheel, None)
+    modes, energy = late_slips(library, None)
     assert modes == [mode for _, mode in want.events[1:]]
     assert len(modes) == 150
     assert abs(energy - want["E"][-1]) < 5e-6  # J; measured 1.3e-6, most of it the reference's
-    assert abs(late_slips(wheel, None, s=0.03 * (1 + 1e-4))[1] - want["E"][-1]) > 5e-6  # measured 3.0e-4
+    assert abs(late_slips(library, None, s=0.03 * (1 + 1e-4))[1] - want["E"][-1]) > 5e-6  # measured 3.0e-4
 
 
-def late_instants(product: Product, tolerance: float | None) -> list[float]:
-    return [t for t, _ in product.simulate([0.0, 150.0], tolerance, s=0.03).events if t > 140]
+def late_instants(library: Library, tolerance: float | None) -> list[float]:
+    return [t for t, _ in library.simulate([0.0, 150.0], tolerance, s=0.03).events if t > 140]
 
 
-def test_no_weak_slip_is_lost_or_misplaced_between_seconds_140_and_150(wheel: Product) -> None:
+def test_no_weak_slip_is_lost_or_misplaced_between_seconds_140_and_150(library: Library) -> None:
     def gap(tolerance: float | None) -> float:
-        found, exact = late_instants(wheel, tolerance), late_instants(wheel, 1e-12)
+        found, exact = late_instants(library, tolerance), late_instants(library, 1e-12)
         assert len(exact) == 56  # where |omega_z| stays below 1e-4 rad/s
         return float(np.abs(np.subtract(found, exact)).max()) if len(found) == len(exact) else np.inf
 
@@ -121,13 +121,13 @@ def test_no_weak_slip_is_lost_or_misplaced_between_seconds_140_and_150(wheel: Pr
     assert gap(1e-3) > 1e-3  # measured 0.12
 
 
-def regularized_error(product: Product, omega_s: float) -> float:
-    return max(table_errors(product, "friction", 1e-10, friction_law=2, omega_s=omega_s).values())
+def regularized_error(library: Library, omega_s: float) -> float:
+    return max(table_errors(library, "friction", 1e-10, friction_law=2, omega_s=omega_s).values())
 
 
-def test_the_regularized_law_tends_to_the_exact_one_at_first_order(wheel: Product) -> None:
-    errors = [regularized_error(wheel, omega_s) for omega_s in (1e-3, 1e-4, 1e-5)]
+def test_the_regularized_law_tends_to_the_exact_one_at_first_order(library: Library) -> None:
+    errors = [regularized_error(library, omega_s) for omega_s in (1e-3, 1e-4, 1e-5)]
     assert 6 < errors[0] / errors[1] < 14  # measured 8.2, 8.5
     assert 6 < errors[1] / errors[2] < 14
-    exact = max(table_errors(wheel, "friction").values())
+    exact = max(table_errors(library, "friction").values())
     assert errors[2] > 10 * exact  # no width reaches the exact law: measured 3.9e-5 against 1.6e-8

@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 from reference import Wheel, accelerations
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from support.motion import Library
+from support.schedule import Schedule
 
 from .measure import constraint_drift, unstabilised_drift
-from .product import Product
-from .schedule import Schedule
 
 Array = NDArray[np.float64]
 
 
-def turning_point(product: Product) -> float:
+def turning_point(library: Library) -> float:
     """Half a period of theta: the first instant after the start at which theta_dot is 0 again, s."""
-    return brentq(lambda t: product.simulate([0.0, t], 1e-13)["theta_dot"][-1], 0.6, 1.2, xtol=1e-13)
+    return brentq(lambda t: library.simulate([0.0, t], 1e-13)["theta_dot"][-1], 0.6, 1.2, xtol=1e-13)
 
 
 def omegas(columns) -> Array:
@@ -33,27 +33,29 @@ def omegas(columns) -> Array:
     return np.array([columns["theta"], columns["psi_dot"] * np.sin(columns["theta"]), columns["omega_z"]])
 
 
-def mirror_gap(product: Product, centre: float) -> float:
+def mirror_gap(library: Library, centre: float) -> float:
     """theta, omega_2, omega_3 as long before as after `centre`, and theta_dot turned round."""
     shifts = np.linspace(0, centre, 101)
-    run = product.simulate(np.concatenate([centre - shifts[::-1], centre + shifts[1:]]), 1e-12)
+    run = library.simulate(np.concatenate([centre - shifts[::-1], centre + shifts[1:]]), 1e-12)
     even, odd = omegas(run), run["theta_dot"]
     return float(max(np.abs(even - even[:, ::-1]).max(), np.abs(odd + odd[::-1]).max()))
 
 
-def test_the_second_half_of_each_period_mirrors_the_first(wheel: Product) -> None:
-    half = turning_point(wheel)
-    assert mirror_gap(wheel, half) < 1e-9  # rad, rad/s; measured 7.5e-12
-    assert mirror_gap(wheel, half + 1e-6) > 1e-6  # measured 6.6e-5
+def test_the_second_half_of_each_period_mirrors_the_first(library: Library) -> None:
+    half = turning_point(library)
+    assert mirror_gap(library, half) < 1e-9  # rad, rad/s; measured 7.5e-12
+    assert mirror_gap(library, half + 1e-6) > 1e-6  # measured 6.6e-5
 
 
-def test_everything_repeats_after_a_period(wheel: Product) -> None:
+def test_everything_repeats_after_a_period(library: Library) -> None:
     def gap(period: float, s: float = 0.0) -> float:
         times = np.linspace(0, 0.7, 71)
-        first, later = (wheel.simulate([0.0, *(t + times)[1 if t == 0 else 0 :]], 1e-12, s=s) for t in (0, 5 * period))
+        first, later = (
+            library.simulate([0.0, *(t + times)[1 if t == 0 else 0 :]], 1e-12, s=s) for t in (0, 5 * period)
+        )
         return float(np.abs(omegas(first) - omegas(later)[:, 1:]).max())
 
-    period = 2 * turning_point(wheel)
+    period = 2 * turning_point(library)
     assert gap(period) < 1e-8  # after five periods; measured 5.5e-11
     assert gap(period, s=1e-6) > 1e-6  # measured 5.1e-3
 
@@ -72,9 +74,9 @@ def chaplygin_matrix(wheel: Wheel, theta: float) -> Array:
     return np.array(columns).T
 
 
-def chaplygin_gap(product: Product, judged: Wheel, s: float = 0.0) -> float:
+def chaplygin_gap(library: Library, judged: Wheel, s: float = 0.0) -> float:
     """(omega_2, omega_3) of 10 s of motion against the solution of Chaplygin's system at the same theta."""
-    theta, *found = omegas(product.simulate(np.linspace(0, 10, 1001), 1e-12, s=s))
+    theta, *found = omegas(library.simulate(np.linspace(0, 10, 1001), 1e-12, s=s))
     first, last = theta[0], theta.min()
     start = [found[0][0], found[1][0]]
     curve = solve_ivp(
@@ -89,29 +91,29 @@ def chaplygin_gap(product: Product, judged: Wheel, s: float = 0.0) -> float:
     return float(np.abs(np.array(found) - curve.sol(np.minimum(theta, first))).max())
 
 
-def test_omega_2_and_omega_3_are_functions_of_theta_that_obey_chaplygins_linear_system(wheel: Product) -> None:
-    assert chaplygin_gap(wheel, Wheel()) < 1e-8  # rad/s; measured 1.5e-11
-    assert chaplygin_gap(wheel, replace(Wheel(), r=0.05 * (1 + 1e-5))) > 1e-7  # measured 1.2e-6
-    assert chaplygin_gap(wheel, Wheel(), s=1e-7) > 1e-7  # friction leaves the curve: measured 5.6e-5
+def test_omega_2_and_omega_3_are_functions_of_theta_that_obey_chaplygins_linear_system(library: Library) -> None:
+    assert chaplygin_gap(library, Wheel()) < 1e-8  # rad/s; measured 1.5e-11
+    assert chaplygin_gap(library, replace(Wheel(), r=0.05 * (1 + 1e-5))) > 1e-7  # measured 1.2e-6
+    assert chaplygin_gap(library, Wheel(), s=1e-7) > 1e-7  # friction leaves the curve: measured 5.6e-5
 
 
 TIMES = np.linspace(0, 10, 201)
 
 
-def test_the_reduced_formulation_cannot_leave_its_constraints(wheel: Product) -> None:
-    velocity, height, _ = constraint_drift(wheel, TIMES, None)
+def test_the_reduced_formulation_cannot_leave_its_constraints(library: Library) -> None:
+    velocity, height, _ = constraint_drift(library, TIMES, None)
     assert height.max() < 1e-15  # m; measured 0
     assert velocity.max() < 1e-13  # m/s; measured 2.2e-16
-    multibody = constraint_drift(wheel, TIMES, None, formulation=3)
+    multibody = constraint_drift(library, TIMES, None, formulation=3)
     assert max(multibody[0].max(), multibody[1].max()) > 1e-11  # measured 2.0e-9
 
 
 DRIFT = {1e-6: 1e-5, 1e-8: 1e-7, 1e-10: 1e-9, 1e-12: 5e-11}  # m, m/s: bound by tolerance
 
 
-def test_the_drift_of_the_multibody_formulation_stays_small_and_falls_with_the_tolerance(wheel: Product) -> None:
+def test_the_drift_of_the_multibody_formulation_stays_small_and_falls_with_the_tolerance(library: Library) -> None:
     def drift(tolerance: float) -> float:
-        velocity, height, _ = constraint_drift(wheel, TIMES, tolerance, formulation=3)
+        velocity, height, _ = constraint_drift(library, TIMES, tolerance, formulation=3)
         return float(max(velocity.max(), height.max()))
 
     found = {tolerance: drift(tolerance) for tolerance in DRIFT}
@@ -127,14 +129,14 @@ def late_height_drift(offsets: Array) -> float:
     return float(np.median(offsets[-100:]) / np.median(offsets[:100]))
 
 
-def test_stabilised_constraints_do_not_drift_away_as_those_of_24_do(wheel: Product) -> None:
+def test_stabilised_constraints_do_not_drift_away_as_those_of_24_do(library: Library) -> None:
     times = np.linspace(0, 60, 601)
-    assert late_height_drift(constraint_drift(wheel, times, 1e-8, formulation=3)[1]) < 5  # measured 0.94
+    assert late_height_drift(constraint_drift(library, times, 1e-8, formulation=3)[1]) < 5  # measured 0.94
     assert late_height_drift(unstabilised_drift(times, 1e-8)[1]) > 5  # measured 46
 
 
-def test_the_height_that_is_watched_is_that_of_the_torus(wheel: Product) -> None:
-    run = wheel.simulate(TIMES, 1e-12, formulation=3)
+def test_the_height_that_is_watched_is_that_of_the_torus(library: Library) -> None:
+    run = library.simulate(TIMES, 1e-12, formulation=3)
     assert np.abs(run["Z_O"] - 0.3 * np.sin(run["theta"]) - 0.05).max() < 1e-11  # measured 4.6e-14
     assert np.abs(run["Z_O"] - 0.3 * np.sin(run["theta"])).max() > 1e-2  # the tube forgotten in (32)
 
@@ -142,22 +144,22 @@ def test_the_height_that_is_watched_is_that_of_the_torus(wheel: Product) -> None
 WEIGHTLESS = {"g": 0.0, "keep_contact": True}
 
 
-def test_without_weight_twice_the_speed_goes_the_same_way_in_half_the_time(wheel: Product) -> None:
+def test_without_weight_twice_the_speed_goes_the_same_way_in_half_the_time(library: Library) -> None:
     def gap(g: float) -> float:
         rates = {"psi_dot_start": 0.5, "theta_dot_start": -0.2, "phi_dot_start": -2.0}
-        slow = wheel.simulate(np.linspace(0, 2, 41), 1e-12, **{**WEIGHTLESS, "g": g}, **rates)
+        slow = library.simulate(np.linspace(0, 2, 41), 1e-12, **{**WEIGHTLESS, "g": g}, **rates)
         twice = {name: 2 * value for name, value in rates.items()}
-        fast = wheel.simulate(np.linspace(0, 1, 41), 1e-12, **{**WEIGHTLESS, "g": g}, **twice)
+        fast = library.simulate(np.linspace(0, 1, 41), 1e-12, **{**WEIGHTLESS, "g": g}, **twice)
         return max(float(np.abs(slow[name] - fast[name]).max()) for name in ("X_O", "Y_O", "psi", "theta", "phi"))
 
     assert gap(0.0) < 1e-9  # measured 0
     assert gap(1e-6) > 1e-8  # measured 1.8e-7
 
 
-def test_a_lift_of_the_weight_at_its_centre_is_as_no_weight(wheel: Product) -> None:
+def test_a_lift_of_the_weight_at_its_centre_is_as_no_weight(library: Library) -> None:
     def gap(lift: float) -> float:
-        lifted = wheel.simulate(TIMES[:41], 1e-12, Schedule(((0.0, {"F_Z": lift}),)), keep_contact=True)
-        free = wheel.simulate(TIMES[:41], 1e-12, **WEIGHTLESS)
+        lifted = library.simulate(TIMES[:41], 1e-12, Schedule(((0.0, {"F_Z": lift}),)), keep_contact=True)
+        free = library.simulate(TIMES[:41], 1e-12, **WEIGHTLESS)
         return max(float(np.abs(lifted[name] - free[name]).max()) for name in ("X_O", "Y_O", "psi", "theta", "phi"))
 
     assert gap(20 * 9.81) < 1e-9  # measured 8.9e-16
@@ -165,7 +167,7 @@ def test_a_lift_of_the_weight_at_its_centre_is_as_no_weight(wheel: Product) -> N
 
 
 @pytest.mark.parametrize("g", [0.0, 9.81])
-def test_upright_rolling_without_friction_goes_on_at_constant_speed(wheel: Product, g: float) -> None:
+def test_upright_rolling_without_friction_goes_on_at_constant_speed(library: Library, g: float) -> None:
     def gap(s: float) -> float:
         start = {
             "theta_start": pi / 2,
@@ -174,15 +176,15 @@ def test_upright_rolling_without_friction_goes_on_at_constant_speed(wheel: Produ
             "phi_dot_start": -10.0,
             "keep_contact": True,
         }
-        run = wheel.simulate(TIMES, g=g, s=s, **start)
+        run = library.simulate(TIMES, g=g, s=s, **start)
         return float(max(np.abs(run["omega_z"] + 10).max(), np.abs(run["X_O"] - 3.5 * TIMES).max()))
 
     assert gap(0.0) < 1e-11  # measured 5.0e-14
     assert (gap(1e-6) > 1e-5) == (g > 0)  # friction needs weight: measured 8.1e-4 with weight
 
 
-def test_a_little_friction_makes_a_proportional_change(wheel: Product) -> None:
-    free = wheel.simulate(TIMES[:41], 1e-13)["X_O"]
-    changes = [np.abs(wheel.simulate(TIMES[:41], 1e-13, s=s)["X_O"] - free).max() for s in (1e-5, 1e-6)]
+def test_a_little_friction_makes_a_proportional_change(library: Library) -> None:
+    free = library.simulate(TIMES[:41], 1e-13)["X_O"]
+    changes = [np.abs(library.simulate(TIMES[:41], 1e-13, s=s)["X_O"] - free).max() for s in (1e-5, 1e-6)]
     assert abs(changes[0] / changes[1] - 10) < 1e-2  # measured 1.6e-3
     assert changes[1] > 1e-8

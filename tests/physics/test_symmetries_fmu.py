@@ -11,9 +11,8 @@ from math import pi
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-
-from .product import Product, Result
-from .schedule import Schedule
+from support.motion import Library, Run
+from support.schedule import Schedule
 
 START = {
     **{"psi_start": 0.4, "theta_start": 1.2, "phi_start": 0.3, "psi_dot_start": 0.5, "theta_dot_start": -0.3},
@@ -75,7 +74,7 @@ def image_of_load(symmetry: Symmetry, moment: tuple[int, int, int]) -> Schedule:
     return Schedule(((0.0, turned),))
 
 
-def image_of_motion(symmetry: Symmetry, run: Result) -> dict[str, NDArray[np.float64]]:
+def image_of_motion(symmetry: Symmetry, run: Run) -> dict[str, NDArray[np.float64]]:
     out = dict(run.columns)
     for pair in (("X_O", "Y_O"), ("X_O_dot", "Y_O_dot"), ("lambda_1", "lambda_2")):
         out |= plane_image(run.columns, symmetry, *pair)
@@ -89,55 +88,55 @@ def image_of_motion(symmetry: Symmetry, run: Result) -> dict[str, NDArray[np.flo
     return out
 
 
-def difference(expected: dict[str, NDArray[np.float64]], found: Result) -> float:
+def difference(expected: dict[str, NDArray[np.float64]], found: Run) -> float:
     return max(float(np.abs(found[n] - expected[n]).max() / np.abs(expected[n]).max()) for n in expected)
 
 
 @wheels
 @pytest.mark.parametrize("name", SYMMETRIES)
 def test_the_motion_keeps_the_symmetries_of_plane_and_wheel(
-    wheel: Product, name: str, inertia: dict[str, float]
+    library: Library, name: str, inertia: dict[str, float]
 ) -> None:
     symmetry = SYMMETRIES[name]
     plain = Symmetry(np.eye(2))
-    before = wheel.simulate(TIMES, 1e-11, image_of_load(plain, (1, 1, 1)), **START, **inertia)
+    before = library.simulate(TIMES, 1e-11, image_of_load(plain, (1, 1, 1)), **START, **inertia)
     expected = image_of_motion(symmetry, before)
 
     def gap(moment: tuple[int, int, int]) -> float:
         load = image_of_load(symmetry, moment)
-        return difference(expected, wheel.simulate(TIMES, 1e-11, load, **image_of_start(symmetry), **inertia))
+        return difference(expected, library.simulate(TIMES, 1e-11, load, **image_of_start(symmetry), **inertia))
 
     assert gap(symmetry.moment) < 1e-8  # measured at most 1.5e-10
     assert gap(tuple(-sign for sign in symmetry.moment)) > 0.1  # the moments mapped wrongly: measured 2
 
 
-def test_with_equal_J_x_and_J_y_the_turn_phi_of_the_body_at_the_start_does_not_matter(wheel: Product) -> None:
+def test_with_equal_J_x_and_J_y_the_turn_phi_of_the_body_at_the_start_does_not_matter(library: Library) -> None:
     def gap(**inertia: float) -> float:
-        a, b = (wheel.simulate(TIMES, **{**START, "phi_start": phi}, **inertia) for phi in (0.0, 0.7))
+        a, b = (library.simulate(TIMES, **{**START, "phi_start": phi}, **inertia) for phi in (0.0, 0.7))
         return float(np.abs(a["theta"] - b["theta"]).max())
 
     assert gap() < 1e-7  # rad; measured 5.2e-9: phi takes part in the choice of steps
     assert gap(**UNEQUAL) > 1e-2  # measured 0.59
 
 
-def test_only_the_ratio_of_inertia_to_mass_matters(wheel: Product) -> None:
+def test_only_the_ratio_of_inertia_to_mass_matters(library: Library) -> None:
     def gap(J_z: float) -> float:
         heavy = {"m": 80.0, "J_x": 3.6, "J_y": 3.6, "J_z": J_z}
-        a, b = wheel.simulate(TIMES, **START), wheel.simulate(TIMES, **START, **heavy)
+        a, b = library.simulate(TIMES, **START), library.simulate(TIMES, **START, **heavy)
         return max(float(np.abs(a[name] - b[name]).max()) for name in ("X_O", "theta", "phi_dot", "omega_z"))
 
     assert gap(7.2) == 0  # a factor of 4 changes no digit
     assert gap(7.2 * (1 - 1e-6)) > 1e-8  # measured 3.9e-5
 
 
-def test_a_wheel_four_times_as_large_moves_alike_in_twice_the_time(wheel: Product) -> None:
+def test_a_wheel_four_times_as_large_moves_alike_in_twice_the_time(library: Library) -> None:
     large = {"r_0": 1.2, "r": 0.2, "J_x": 14.4, "J_y": 14.4, "J_z": 28.8, "s": 0.12}
     large |= {"X_O_start": 0.8, "Y_O_start": -0.4}
     large |= {f"{a}_dot_start": START[f"{a}_dot_start"] / 2 for a in ("psi", "theta", "phi")}
 
     def gap(**change: float) -> float:
-        a = wheel.simulate(TIMES, **START)
-        b = wheel.simulate(2 * TIMES, **{**START, **large, **change})
+        a = library.simulate(TIMES, **START)
+        b = library.simulate(2 * TIMES, **{**START, **large, **change})
         pairs = [(a["theta"], b["theta"]), (a["X_O"], b["X_O"] / 4), (a["omega_z"], 2 * b["omega_z"])]
         return float(max(np.abs(x - y).max() for x, y in pairs))
 
@@ -145,14 +144,14 @@ def test_a_wheel_four_times_as_large_moves_alike_in_twice_the_time(wheel: Produc
     assert gap(s=0.03) > 1e-2  # s is a length and must grow too: measured 3.0
 
 
-def test_the_free_wheel_run_backwards_returns_to_its_start(wheel: Product) -> None:
+def test_the_free_wheel_run_backwards_returns_to_its_start(library: Library) -> None:
     def gap(s: float) -> float:
-        forth = wheel.simulate([0.0, 4.0], 1e-12, **{**START, "s": s})
+        forth = library.simulate([0.0, 4.0], 1e-12, **{**START, "s": s})
         back = {"s": s, "keep_contact": True}
         for name in ("psi", "theta", "phi"):
             back |= {f"{name}_start": forth[name][-1], f"{name}_dot_start": -forth[f"{name}_dot"][-1]}
         back |= {f"{name}_start": forth[name][-1] for name in ("X_O", "Y_O")}
-        end = wheel.simulate([0.0, 4.0], 1e-12, **back)
+        end = library.simulate([0.0, 4.0], 1e-12, **back)
         names = ("X_O", "Y_O", "psi", "theta", "phi")
         return max(abs(end[name][-1] - START[f"{name}_start"]) for name in names)
 

@@ -77,7 +77,7 @@ class Run:
 
     def follow(self, stop: float) -> int | None:
         """Integrate the present mode up to `stop`, or to the fall of a margin: its number."""
-        rate = derivative(self.switch.contact, self.switch.inputs, self.switch.law(self.mode))
+        rate = derivative(self.switch.contact, self.switch.inputs, self.switch.law(self.mode, self.t))
         from_zero = self.mode.sigma != 0 and self.y[OMEGA_Z] == 0
         solver = self._solver(rate, stop, self.first_step)
         while self.t < stop:
@@ -173,7 +173,7 @@ def solve(
     """The motion from `start` at times[0], reported at `times` (rising).
 
     keep_contact False: N = 0 ends the run (lift-off).  friction: "exact", or
-    ("regularized", omega_s) for -s N tanh(w_z / omega_s).  flat: the sine of theta at which the
+    ("regularized", omega_s) for -(s N + brake) tanh(w_z / omega_s).  flat: the sine of theta at which the
     wheel counts as flat and the run ends; None: not watched.  An ended run has its last row at
     the ending.  method: any SciPy solver class; Radau for a very narrow regularized law.
     """

@@ -16,7 +16,7 @@ from .tables import read_table
 
 
 def table_error(table: str, wheel: Wheel, rtol: float = 1e-13) -> float:
-    """Largest error of a column of a shared table, relative to the column's largest value."""
+    """Largest error of a column of a trusted table, relative to the column's largest value."""
     want = read_table(table)
     got = solve(wheel, Start(), want["t"], rtol=rtol)
     return max(np.abs(got[c] - want[c]).max() / np.abs(want[c]).max() for c in want if c != "t")

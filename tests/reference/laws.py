@@ -1,4 +1,4 @@
-"""Closed forms and integral laws that judge a motion by its outputs alone.
+"""Integral laws that judge a motion by its outputs alone: momentum and angular momentum.
 
 Written with the Euler angles and the carrier axes of the outputs, on purpose: nothing here is
 shared with the equations that are judged. Fixed axes unless said.
@@ -6,11 +6,8 @@ shared with the equations that are judged. Fixed axes unless said.
 
 from __future__ import annotations
 
-from math import cos, sin, sqrt
-
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import quad
 
 from .model import Inputs, Wheel
 from .outputs import Solution
@@ -50,42 +47,3 @@ def loads(wheel: Wheel, run: Solution, inputs: Inputs) -> tuple[Array, Array]:
     moment = np.cross(to_contact, ground) + run["tau"][:, None] * e3
     moment += M[:, :1] * e1 + M[:, 1:2] * e2 + M[:, 2:] * e3
     return ground + F - np.array([0, 0, wheel.m * wheel.g]), moment
-
-
-def fall_speed(wheel: Wheel, theta_0: float, theta: float) -> float:
-    """|theta'| of the wheel that falls over sideways from rest at theta_0 (energy, J_x)."""
-    drop = wheel.r_0 * (sin(theta_0) - sin(theta))
-    return sqrt(2 * wheel.m * wheel.g * drop / _fall_inertia(wheel, theta))
-
-
-def _fall_inertia(wheel: Wheel, theta: float) -> float:
-    arm_squared = wheel.r_0**2 + wheel.r**2 + 2 * wheel.r_0 * wheel.r * sin(theta)
-    return wheel.J_x + wheel.m * arm_squared
-
-
-def fall_time(wheel: Wheel, theta_0: float, theta: float) -> float:
-    """Time of that fall from theta_0 to theta; theta_0 - u^2 takes out the root at rest."""
-
-    def per_u(u: float) -> float:
-        return 2 * u / fall_speed(wheel, theta_0, theta_0 - u * u)
-
-    return quad(per_u, 0, sqrt(theta_0 - theta), epsabs=1e-13, epsrel=1e-13)[0]
-
-
-def fall_normal_force(wheel: Wheel, theta_0: float, theta: float) -> float:
-    """N of that fall: m (g + Z_O'')."""
-    speed2 = fall_speed(wheel, theta_0, theta) ** 2
-    growth = 2 * wheel.m * wheel.r_0 * wheel.r * cos(theta)  # d(inertia)/d(theta)
-    pull = -wheel.m * wheel.g * wheel.r_0 * cos(theta) - growth * speed2 / 2
-    rise = wheel.r_0 * (cos(theta) * pull / _fall_inertia(wheel, theta) - sin(theta) * speed2)
-    return wheel.m * (wheel.g + rise)
-
-
-def circle_spin(disc: Wheel, theta: float, psi_dot: float) -> float:
-    """w_z of the thin disc's (r = 0) steady circle at theta and psi'.
-
-    (J_z + m r_0^2) w_z psi' sin = J_x psi'^2 sin cos - m g r_0 cos, sine and cosine of theta.
-    """
-    gyration = disc.J_x * psi_dot**2 * sin(theta) * cos(theta)
-    weight = disc.m * disc.g * disc.r_0 * cos(theta)
-    return (gyration - weight) / ((disc.J_z + disc.m * disc.r_0**2) * psi_dot * sin(theta))

@@ -18,6 +18,11 @@ def no_input(_t: float) -> Vector:
     return ZERO
 
 
+def released(_t: float) -> float:
+    """The brake that is never set, N m."""
+    return 0.0
+
+
 @dataclass(frozen=True)
 class Wheel:
     """Parameters (27)-(31): any principal central moments; the body z axis is the axle."""
@@ -51,17 +56,19 @@ class Inputs:
     """External load besides the weight.
 
     force: (F_X, F_Y, F_Z) at O in fixed axes, N.  moment: (M_1, M_2, M_3) along the carrier axes
-    e1 (line of nodes), e2 (up the slope), e3 (axle), N.m.  jumps: instants at which either jumps
-    or has a kink; both are read as continuous from the right.
+    e1 (line of nodes), e2 (up the slope), e3 (axle), N.m.  brake: capacity of a dry brake about the axle, N.m, >= 0.
+    jumps: instants at which one of them jumps or has a kink; all are read as continuous from the right.
     """
 
     force: Callable[[float], Vector] = no_input
     moment: Callable[[float], Vector] = no_input
     jumps: tuple[float, ...] = field(default=())
+    brake: Callable[[float], float] = released
 
     def before(self, stop: float) -> Inputs:
         """The same inputs up to a jump at `stop`: there and later, their values just before it."""
         if not self.jumps:
             return self
-        last, force, moment = nextafter(stop, -inf), self.force, self.moment
-        return Inputs(lambda t: force(min(t, last)), lambda t: moment(min(t, last)))
+        last, force, moment, brake = nextafter(stop, -inf), self.force, self.moment, self.brake
+        held = released if brake is released else lambda t: brake(min(t, last))
+        return Inputs(lambda t: force(min(t, last)), lambda t: moment(min(t, last)), brake=held)

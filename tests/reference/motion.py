@@ -49,7 +49,7 @@ class Accelerations:
     lambda_1: float
     lambda_2: float
     lambda_3: float
-    tau: float  # moment of rolling friction about the axle, N.m
+    tau: float  # moment of rolling friction and brake about the axle, N.m
 
 
 def angle_rates(n: Vector, w: Vector) -> Vector:
@@ -104,12 +104,12 @@ def respond(contact: Contact, inputs: Inputs, t: float, y: list[float]) -> tuple
 
 
 def derivative(contact: Contact, inputs: Inputs, law: Law) -> Callable[[float, State], State]:
-    """dy/dt on one branch of the friction law."""
+    """dy/dt on one branch of the friction law, the brake's capacity that of each instant."""
 
     def rate(t: float, state: State) -> State:
         y = state.tolist()
         R, answer = respond(contact, inputs, t, y)
-        tau = axle_moment(law, answer, y[6])
+        tau = axle_moment(law._replace(brake=inputs.brake(t)), answer, y[6])
         x, d = answer.base, answer.unit
         a = to_fixed(R, (x[0] + tau * d[0], x[1] + tau * d[1], x[2] + tau * d[2]))
         alpha_z = 0.0 if law.hold else x[5] + tau * d[5]
@@ -138,17 +138,18 @@ def accelerations(
     F: Vector = ZERO,
     M: Vector = ZERO,
     sigma: float | None = 0.0,
+    brake: float = 0.0,
 ) -> Accelerations:
     """Accelerations and reactions at (psi, theta, phi) and their rates.
 
-    The friction moment about the axle is -s N sigma, sigma in [-1, 1]; sigma None is the moment
-    that holds w_z, whatever its size.
+    The moment of ground and brake about the axle is -(s N + brake) sigma, sigma in [-1, 1]; sigma
+    None is the moment that holds w_z, whatever its size.
     """
     R = rotation(*quaternion(*angles))
     n = R[2]
     w = body_rates(n, *rates)
     answer = Contact(wheel).respond(n, w, to_body(R, F), carrier_moment(n, M))
-    law = Law(wheel.s, hold=True) if sigma is None else Law(wheel.s, sigma)
+    law = Law(wheel.s, hold=True) if sigma is None else Law(wheel.s, sigma, brake=brake)
     tau = axle_moment(law, answer, w[2])
     x = [b + tau * u for b, u in zip(answer.base, answer.unit, strict=True)]
     a, reaction = to_fixed(R, tuple(x[0:3])), to_fixed(R, tuple(x[6:9]))

@@ -27,12 +27,13 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 class Law(NamedTuple):
-    """One branch of the friction law: tau = -s N sigma, or the tau that holds w_z, or tanh."""
+    """One branch of the friction law: tau = -(s N + brake) sigma, or the tau that holds w_z, or tanh."""
 
     s: float  # m; the wheel's s, or its negative or 0 while the ground pulls
     sigma: float = 0.0
     hold: bool = False
     omega_s: float = 0.0  # rad/s; > 0: sigma = tanh(w_z / omega_s)
+    brake: float = 0.0  # N m, capacity of the dry brake
 
 
 class Response(NamedTuple):
@@ -161,12 +162,11 @@ def axle_moment(law: Law, answer: Response, w_z: float) -> float:
     if law.hold:
         return -answer.base[5] / answer.unit[5]
     sigma = tanh(w_z / law.omega_s) if law.omega_s else law.sigma
-    grip = law.s * sigma
-    return -grip * answer.N_0 / (1 + grip * answer.N_1)
+    return -sigma * (law.s * answer.N_0 + law.brake) / (1 + law.s * sigma * answer.N_1)
 
 
 def stick_margins(law: Law, answer: Response) -> tuple[float, float]:
-    """(s N + tau, s N - tau) with the tau that holds w_z: both >= 0 while the wheel can stick."""
+    """(L + tau, L - tau), L = s N + brake, tau the one that holds w_z: both >= 0 while the wheel can stick."""
     tau = -answer.base[5] / answer.unit[5]
-    limit = law.s * (answer.N_0 + answer.N_1 * tau)
+    limit = law.s * (answer.N_0 + answer.N_1 * tau) + law.brake
     return limit + tau, limit - tau

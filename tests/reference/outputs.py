@@ -63,7 +63,7 @@ def _row(switch: Switch, row: Row) -> dict[str, float]:
     wheel = switch.contact.wheel
     R, answer = respond(switch.contact, switch.inputs, t, y)
     n, w, v = R[2], tuple(y[4:7]), y[10:13]
-    tau = axle_moment(switch.law(mode), answer, w[2])
+    tau = axle_moment(switch.law(mode, t), answer, w[2])
     ground = tuple(b + tau * u for b, u in zip(answer.base[6:9], answer.unit[6:9], strict=True))
     reaction = to_fixed(R, ground)
     ux, uy, s = slope(n)

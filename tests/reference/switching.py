@@ -4,7 +4,7 @@ sigma: the sign of w_z while the wheel rolls, 0 while w_z is held at zero (exact
 ground: +1 while the ground pushes (N > 0), -1 while it pulls (two-sided contact, N < 0).
 While the ground pulls there is no rolling friction (a choice: the paper's -s N sign(w_z) would
 then drive the wheel and its zero would repel) and sigma is not watched; pulled_friction =
-"magnitude" takes s |N| instead.
+"magnitude" takes s |N| instead. A brake acts whatever the ground does.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .model import Inputs, Wheel
+from .model import Inputs, Wheel, released
 from .motion import OMEGA_Z, State, respond
 from .newton_euler import Contact, Law, axle_moment, rotation, slope, stick_margins
 
@@ -51,7 +51,8 @@ class Switch:
         self.contact = Contact(wheel)
         self.inputs = inputs
         self.options = options
-        self.switches = wheel.s > 0 and not options.omega_s
+        self.brakes = inputs.brake is not released
+        self.switches = (wheel.s > 0 or self.brakes) and not options.omega_s
         self._pull = {"none": 0.0, "magnitude": -wheel.s}[options.pulled_friction]
 
     def _s(self, ground: int) -> float:
@@ -59,19 +60,19 @@ class Switch:
 
     def watched(self, ground: int) -> bool:
         """True where sigma switches: exact law, and a friction to switch."""
-        return self.switches and self._s(ground) != 0
+        return self.switches and (self.brakes or self._s(ground) != 0)
 
-    def law(self, mode: Mode) -> Law:
-        """The friction branch of a mode."""
-        s = self._s(mode.ground)
+    def law(self, mode: Mode, t: float) -> Law:
+        """The friction branch of a mode, with the brake's capacity at t."""
+        s, brake = self._s(mode.ground), self.inputs.brake(t)
         if not self.watched(mode.ground):
-            return Law(s, omega_s=self.options.omega_s)
-        return Law(s, mode.sigma, hold=mode.sigma == 0)
+            return Law(s, omega_s=self.options.omega_s, brake=brake)
+        return Law(s, mode.sigma, hold=mode.sigma == 0, brake=brake)
 
     def choose(self, t: float, y: State, ground: int | None = None) -> Mode:
         """The mode in which the motion goes on from (t, y); w_z = 0 exactly asks Filippov's rule.
 
-        At w_z = 0: held if |tau| <= s N; else w_z takes the sign of -tau, tau the holding moment.
+        At w_z = 0: held if |tau| <= s N + brake; else w_z takes the sign of -tau, tau the holding moment.
         """
         values = y.tolist()
         answer = respond(self.contact, self.inputs, t, values)[1]
@@ -80,7 +81,7 @@ class Switch:
         w_z = values[OMEGA_Z]
         if w_z or not self.watched(ground):
             return Mode((w_z > 0) - (w_z < 0), ground)
-        rising, falling = stick_margins(self.law(Mode(0, ground)), answer)
+        rising, falling = stick_margins(self.law(Mode(0, ground), t), answer)
         return Mode(1 if rising < 0 else -1 if falling < 0 else 0, ground)
 
     def _rounding(self, w: list[float]) -> float:
@@ -100,7 +101,7 @@ class Switch:
         over = -1.0 if ux * side[0] + uy * side[1] < 0 else 1.0
         clear = 1.0 if self.options.flat is None else over * s - self.options.flat
         answer = respond(self.contact, self.inputs, t, values)[1]
-        law = self.law(mode)
+        law = self.law(mode, t)
         if law.s * abs(answer.N_1) >= 1:
             raise RuntimeError(f"the contact is indeterminate at t = {t!r} s: s |dN/dtau| >= 1")
         N = answer.N_0 + axle_moment(law, answer, values[OMEGA_Z]) * answer.N_1

@@ -1,0 +1,19 @@
+/* How a scene is made: wheel, load and a law of friction that is checked. */
+#include <stddef.h>
+
+#include "wheel_equations.h"
+
+/* Written so that NaN is refused too. */
+static int is_meant(const WheelParameters* wheel, double brake, const WheelFriction* friction) {
+  if (!(wheel->s >= 0 && brake >= 0)) return 0;
+  if (friction->kind == WHEEL_ROLLING) return friction->sigma == 1 || friction->sigma == -1;
+  if (friction->kind == WHEEL_REGULARIZED) return friction->omega_s > 0;
+  return friction->kind == WHEEL_FRICTIONLESS || friction->kind == WHEEL_HELD;
+}
+
+WheelScene wheel_scene(const WheelParameters* wheel, const WheelLoad* load, WheelFriction friction) {
+  WheelScene scene = {.wheel = *wheel, .friction = friction};
+  if (load) scene.load = *load;
+  if (!is_meant(wheel, scene.load.brake, &friction)) scene.friction.kind = WHEEL_NO_LAW;
+  return scene;
+}

@@ -1,0 +1,107 @@
+// FMI 2.0 functions: stepping and status.
+#include <cmath>
+
+#include "digits.hpp"
+#include "instance.hpp"
+
+using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, support::Digits, wheel::Topic;
+
+namespace {
+
+// Masters carry rounding in times: this much, relative to the step and to the times at hand, counts as equal.
+constexpr double step_rounding = 1e-9, time_rounding = 1e-13;
+
+bool same_time(double a, double b, double step) {
+  return std::fabs(a - b) <= step_rounding * step + time_rounding * (std::fabs(a) + std::fabs(b));
+}
+
+// A sum of many steps may miss the stop time by more.
+bool is_past(double t, double stop) { return t - stop > step_rounding * (std::fabs(t) + std::fabs(stop)); }
+
+fmi2Status check_step(Instance& i, double t, double h) {
+  if (!std::isfinite(t) || !std::isfinite(h) || h < 0) {
+    i.log(Topic::error, "fmi2DoStep from %s s by %s s: times must be finite and the step not negative.", Digits(t).text,
+          Digits(h).text);
+    return fmi2Error;
+  }
+  if (!same_time(t, i.simulation.time(), h)) {
+    i.log(Topic::error, "fmi2DoStep from %s s: the wheel stands at %s s.", Digits(t).text,
+          Digits(i.simulation.time()).text);
+    return fmi2Error;
+  }
+  if (i.has_stop_time && is_past(t + h, i.stop_time)) {
+    i.log(Topic::error, "fmi2DoStep to %s s: the stop time is %s s.", Digits(t + h).text, Digits(i.stop_time).text);
+    return fmi2Error;
+  }
+  return fmi2OK;
+}
+
+fmi2Status step(Instance& i, double t, double h) {
+  if (check_step(i, t, h) != fmi2OK) return fmi2Error;
+  switch (i.simulation.advance(t + h)) {
+    case wheel::Progressed::reached:
+      return i.last_step = fmi2OK;
+    case wheel::Progressed::ended:
+      i.state = State::step_failed;
+      return i.last_step = fmi2Discard;
+    case wheel::Progressed::failed:
+      break;
+  }
+  i.state = State::error;
+  return i.last_step = fmi2Error;
+}
+
+constexpr int no_status = -1;
+
+// One kind of status per function; for every other kind there is nothing to tell: Discard.
+template <class Value, class Read>
+fmi2Status get_status(fmi2Component c, const char* name, int kind, int known_kind, Value* value, Read read) {
+  return guarded(c, Function::get_status, name, [=](Instance& i) {
+    if (!value) {
+      i.log(Topic::error, "%s: the value is a null pointer.", name);
+      return fmi2Error;
+    }
+    if (kind != known_kind) {
+      i.log(Topic::discard, "%s: there is no status of kind %d.", name, kind);
+      return fmi2Discard;
+    }
+    *value = read(i);
+    return fmi2OK;
+  });
+}
+
+}  // namespace
+
+extern "C" {
+
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
+  return guarded(c, Function::do_step, "fmi2DoStep", [=](Instance& i) { return step(i, t, h); });
+}
+
+fmi2Status fmi2CancelStep(fmi2Component c) {
+  return guarded(c, Function::cancel_step, "fmi2CancelStep", [](Instance&) { return fmi2Error; });
+}
+
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status* value) {
+  return get_status(c, "fmi2GetStatus", kind, fmi2DoStepStatus, value, [](Instance& i) { return i.last_step; });
+}
+
+fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
+  return get_status(c, "fmi2GetRealStatus", kind, fmi2LastSuccessfulTime, value,
+                    [](Instance& i) { return i.simulation.time(); });
+}
+
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer* value) {
+  return get_status(c, "fmi2GetIntegerStatus", kind, no_status, value, [](Instance&) { return 0; });
+}
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
+  return get_status(c, "fmi2GetBooleanStatus", kind, fmi2Terminated, value,
+                    [](Instance& i) { return i.last_step == fmi2Discard ? fmi2True : fmi2False; });
+}
+
+fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String* value) {
+  return get_status(c, "fmi2GetStringStatus", kind, fmi2PendingStatus, value, [](Instance&) { return ""; });
+}
+
+}  // extern "C"

@@ -1,0 +1,177 @@
+// CVODE set up, restarted and asked for one step at a time.
+#include "cvode_engine.hpp"
+
+#include <cvode/cvode.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <new>
+
+#include "cvode_objects.hpp"
+
+namespace solver {
+namespace {
+
+// What one step may err, as a share of the tolerance of the whole solution: measured on the wheel's scenes.
+constexpr double share_of_tolerance = 0.003;
+
+// A step is kept while it would change by less than this. CVODE's own 0 and 1.5 spare set-up costs of stiff problems;
+// here a changed step costs nothing. 7.1.1 ignores a lower bound of 1.
+constexpr double keep_step_above = 0.9999, keep_step_below = 1.02;
+
+// Share of the step's error that the corrector may leave: half of CVODE's own 0.1, which makes two evaluations a step
+// the rule and saves more in steps than it costs.
+constexpr double corrector_share = 0.05;
+
+// A step that meets the thin layer of a regularized law shrinks many times over before it fits.
+constexpr int most_failures = 30;
+
+// Adams methods above this order gain nothing on the wheel's scenes, and prediction costs the square of the order.
+constexpr int highest_adams_order = 10;
+
+int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
+  CvodeCall& call = *static_cast<CvodeCall*>(user);
+  ++call.counters->rhs;
+  const double margin = call.problem->derivative(call.problem->owner, t, data(y), data(y_dot));
+  if (margin < call.lowest_margin) call.lowest_margin = margin;
+  return std::isnan(margin) ? 1 : 0;
+}
+
+int weights(N_Vector y, N_Vector w, void* user) {
+  const Problem& problem = *static_cast<CvodeCall*>(user)->problem;
+  std::fill_n(data(w), width_of(problem.states), 1.0);
+  problem.weights(problem.owner, share_of_tolerance, data(y), data(w));
+  return 0;
+}
+
+// SUNDIALS's messages are the reason of a failure, and are never printed.
+void keep_message(int, const char*, const char*, const char* message, SUNErrCode, void* text, SUNContext) {
+  std::snprintf(static_cast<char*>(text), 160, "%s", message ? message : "");
+}
+
+bool attach_solver(CvodeObjects& o) {
+  if (o.method == Method::adams) {
+    o.corrector = SUNNonlinSol_FixedPoint(o.y, 0, o.context);
+    return o.corrector && CVodeSetNonlinearSolver(o.cvode, o.corrector) == CV_SUCCESS &&
+           CVodeSetNonlinConvCoef(o.cvode, corrector_share) == CV_SUCCESS &&
+           CVodeSetMaxOrd(o.cvode, highest_adams_order) == CV_SUCCESS;
+  }
+  const int width = width_of(o.states);
+  o.matrix = SUNDenseMatrix(width, width, o.context);
+  o.linear = o.matrix ? SUNLinSol_Dense(o.y, o.matrix, o.context) : nullptr;
+  return o.linear && CVodeSetLinearSolver(o.cvode, o.linear, o.matrix) == CV_SUCCESS;
+}
+
+// CVODE counts from its last start on.
+long jacobians_of(const CvodeObjects& o) {
+  long count = 0;
+  if (o.method == Method::bdf) CVodeGetNumJacEvals(o.cvode, &count);
+  return count;
+}
+
+bool set_up(CvodeObjects& o, char* message) {
+  if (SUNContext_Create(SUN_COMM_NULL, &o.context) != SUN_SUCCESS) return false;
+  SUNContext_ClearErrHandlers(o.context);
+  SUNContext_PushErrHandler(o.context, keep_message, message);
+  o.y = make_vector(o.states, o.context);
+  o.cvode = CVodeCreate(o.method == Method::adams ? CV_ADAMS : CV_BDF, o.context);
+  return o.y && o.cvode && CVodeInit(o.cvode, derivative, 0, o.y) == CV_SUCCESS &&
+         CVodeSetUserData(o.cvode, &o.call) == CV_SUCCESS && CVodeWFtolerances(o.cvode, weights) == CV_SUCCESS &&
+         attach_solver(o) && CVodeSetMaxErrTestFails(o.cvode, most_failures) == CV_SUCCESS &&
+         CVodeSetMaxConvFails(o.cvode, most_failures) == CV_SUCCESS &&
+         CVodeSetEtaFixedStepBounds(o.cvode, keep_step_above, keep_step_below) == CV_SUCCESS;
+}
+
+}  // namespace
+
+void Cvode::free_objects() {
+  if (!objects_) return;
+  CvodeObjects& o = *objects_;
+  if (o.cvode) CVodeFree(&o.cvode);
+  if (o.corrector) SUNNonlinSolFree(o.corrector);
+  if (o.linear) SUNLinSolFree(o.linear);
+  if (o.matrix) SUNMatDestroy(o.matrix);
+  if (o.y) N_VDestroy(o.y);
+  if (o.context) SUNContext_Free(&o.context);
+  delete objects_;
+  objects_ = nullptr;
+}
+
+bool Cvode::make_objects(int states, Method method) {
+  if (objects_ && objects_->method == method && objects_->states == states) return true;
+  free_objects();
+  objects_ = new (std::nothrow) CvodeObjects{};
+  if (!objects_) return false;
+  objects_->method = method;
+  objects_->states = states;
+  if (set_up(*objects_, failure_)) return true;
+  free_objects();
+  return false;
+}
+
+bool Cvode::start(const Problem& problem, Method method, double t, const double* y, Step* step) {
+  step->set_point(t, y, problem.states);
+  if (!make_objects(problem.states, method))
+    return std::snprintf(failure_, sizeof failure_, "CVODE could not be set up"), false;
+  starts_anew_ = 1;
+  return CVodeSetMaxStep(objects_->cvode, problem.longest_step) == CV_SUCCESS;
+}
+
+bool Cvode::restart(double t, const double* y) {
+  std::copy_n(y, objects_->states, data(objects_->y));
+  starts_anew_ = 0;
+  return CVodeReInit(objects_->cvode, t, objects_->y) == CV_SUCCESS;
+}
+
+bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
+  CvodeObjects& o = *objects_;
+  o.call = {&problem, counters, INFINITY};
+  double t = step->end;
+  int flag = CV_SUCCESS;
+  // A bend of the right-hand side (an input whose slope changed) can be too much for a history of high order.
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const bool first = starts_anew_ != 0;
+    if (starts_anew_ == 2) ++counters->restarts;
+    if (first && !restart(step->end, step->y_end)) return false;
+    std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
+    const long jacobians = jacobians_of(o);
+    // The size of CVODE's first step depends on the time it is asked for: always the same time away.
+    flag = CVode(o.cvode, step->end + problem.longest_step, o.y, &t, CV_ONE_STEP);
+    counters->jacobians += std::max(0L, jacobians_of(o) - jacobians);
+    if (flag >= 0 || first || (flag != CV_ERR_FAILURE && flag != CV_CONV_FAILURE)) break;
+    starts_anew_ = 2;
+  }
+  // CVODE goes on with steps that do not move the time any more.
+  const bool stands = flag >= 0 && flag != CV_TSTOP_RETURN && t - step->end <= rounding_at(t);
+  if (stands) std::snprintf(failure_, sizeof failure_, "the step size became too small");
+  if (flag < 0 || stands) return starts_anew_ = 1, step->start = step->end, false;
+  step->start = step->end;
+  std::copy_n(step->y_end, max_states, step->y_start);
+  step->end = t;
+  std::copy_n(data(o.y), problem.states, step->y_end);
+  step->lowest_margin = o.call.lowest_margin;
+  step->inside_share = 0;
+  step->degree = -1;
+  starts_anew_ = flag == CV_TSTOP_RETURN ? 2 : 0;
+  return true;
+}
+
+void Cvode::expand(int states, Step* step) const {
+  if (step->degree >= 0 || step->end == step->start) return;
+  int order = 1;
+  CVodeGetLastOrder(objects_->cvode, &order);
+  const double h = step->end - step->start;
+  double factor = 1;
+  step->degree = 0;
+  for (int k = 0; k <= order; ++k, factor *= h / k) {
+    if (CVodeGetDky(objects_->cvode, step->end, k, objects_->y) != CV_SUCCESS) break;
+    for (int i = 0; i < states; ++i) step->c[k][i] = factor * data(objects_->y)[i];
+    step->degree = k;
+  }
+}
+
+}  // namespace solver

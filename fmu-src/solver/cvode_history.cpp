@@ -1,0 +1,109 @@
+// CVODE's history as plain numbers, so that a restored solution goes on with the same bits.
+//
+// CVODE has no call for this: its own memory record (private headers of the pinned source) is read and written field by
+// field. This file alone knows them; without it, and its two calls in snapshot.cpp, only snapshots of CVODE runs are
+// lost. What CVODE computes anew at the start of each step (error weights, work vectors) is left out.
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_newton.h>
+
+#include <algorithm>
+
+#include "archive.hpp"
+#include "cvode_engine.hpp"
+#include "cvode_impl.h"
+#include "cvode_ls_impl.h"
+#include "cvode_objects.hpp"
+
+namespace solver {
+namespace {
+
+constexpr long long most = 1LL << 53;
+
+template <class Archive, class... Fields>
+void all_numbers(Archive& archive, Fields&... fields) {
+  (archive.number(fields), ...);
+}
+template <class Archive, class... Fields>
+void all_counts(Archive& archive, long long greatest, Fields&... fields) {
+  (archive.count(fields, 0, greatest), ...);
+}
+
+template <class Archive>
+void visit_steps(Archive& archive, CVodeMemRec& m) {
+  archive.count(m.cv_q, 1, m.cv_qmax), archive.count(m.cv_qprime, 1, m.cv_qmax), archive.count(m.cv_qu, 1, m.cv_qmax);
+  archive.count(m.cv_next_q, 0, m.cv_qmax), archive.count(m.cv_L, m.cv_q + 1, m.cv_q + 1);
+  archive.count(m.cv_qwait, 0, L_MAX + 1), archive.count(m.cv_indx_acor, 0, m.cv_qmax);
+  constexpr double least = std::numeric_limits<double>::min(), greatest = Archive::greatest;
+  for (double* size : {&m.cv_h, &m.cv_hprime, &m.cv_next_h, &m.cv_eta, &m.cv_hscale, &m.cv_hu, &m.cv_h0u})
+    archive.range(*size, least, greatest);
+  all_numbers(archive, m.cv_hin, m.cv_tn, m.cv_tretlast);
+  archive.numbers(m.cv_tau, L_MAX + 1), archive.numbers(m.cv_tq, NUM_TESTS + 1), archive.numbers(m.cv_l, L_MAX);
+  all_numbers(archive, m.cv_saved_tq5, m.cv_tolsf, m.cv_etamax, m.cv_etaqm1, m.cv_etaq, m.cv_etaqp1);
+  all_numbers(archive, m.cv_rl1, m.cv_gamma, m.cv_gammap, m.cv_gamrat, m.cv_crate, m.cv_delp, m.cv_acnrm);
+  archive.count(m.cv_nst, 1, most);
+  all_counts(archive, most, m.cv_nfe, m.cv_ncfn, m.cv_nni, m.cv_nnf, m.cv_netf, m.cv_nsetups, m.cv_nstlp, m.cv_nscon);
+  all_counts(archive, 2, m.cv_acnrmcur, m.convfail, m.cv_jcur);
+}
+
+// The factorised Newton matrix of BDF.
+template <class Archive>
+void visit_newton(Archive& archive, CvodeObjects& o, CVodeMemRec& m) {
+  auto& interface = *static_cast<CVLsMem>(m.cv_lmem);
+  auto& newton = *static_cast<SUNNonlinearSolverContent_Newton>(m.NLS->content);
+  auto& dense = *static_cast<SUNLinearSolverContent_Dense>(o.linear->content);
+  const int n = width_of(o.states);
+  all_counts(archive, 1, interface.jbad, newton.jcur);
+  all_counts(archive, most, interface.nje, interface.nstlj, interface.nfeDQ);
+  archive.number(interface.tnlj);
+  archive.count(dense.last_flag, 0, 0);
+  archive.numbers(SUNDenseMatrix_Data(interface.A), n * n);
+  archive.numbers(SUNDenseMatrix_Data(interface.savedJ), n * n);
+  for (int i = 0; i < n; ++i) archive.count(dense.pivots[i], i, n - 1);
+}
+
+// A problem that stands still, for the step that makes CVODE set up what it sets up in its first step.
+double rest(void* states, double, const double*, double* y_dot) {
+  std::fill_n(y_dot, *static_cast<int*>(states), 0.0);
+  return 1;
+}
+void equal_weights(void* states, double, const double*, double* weights) {
+  std::fill_n(weights, *static_cast<int*>(states), 1.0);
+}
+
+}  // namespace
+
+template <class Archive>
+void Cvode::visit_history(Archive& archive) {
+  CvodeObjects& o = *objects_;
+  auto& m = *static_cast<CVodeMem>(o.cvode);
+  visit_steps(archive, m);
+  for (int j = 0; j <= m.cv_qmax; ++j) archive.numbers(data(m.cv_zn[j]), o.states);
+  if (o.method == Method::bdf) visit_newton(archive, o, m);
+}
+
+void Cvode::measure(Measure& measure) { visit_history(measure); }
+void Cvode::save(Writer& writer) { visit_history(writer); }
+
+bool Cvode::restore(const Problem& problem, Method method, Step* step, Reader& reader) {
+  const Step saved = *step;
+  int states = problem.states;
+  const Problem still = {states, &states, rest, equal_weights, nullptr, nullptr, nullptr, 0, problem.longest_step};
+  Counters uncounted = {};
+  const int anew = starts_anew_;
+  if (!start(still, method, saved.end, saved.y_end, step)) return false;
+  if (!advance(still, std::numeric_limits<double>::infinity(), &uncounted, step)) return false;
+  *step = saved;
+  starts_anew_ = anew;
+  visit_history(reader);
+  const auto& m = *static_cast<CVodeMem>(objects_->cvode);
+  const double rounding = 200 * m.cv_uround * (std::fabs(m.cv_tn) + m.cv_hu);
+  reader.good = reader.good && std::fabs(m.cv_tn - saved.end) <= rounding &&
+                std::fabs(saved.end - saved.start - m.cv_hu) <= rounding &&
+                std::fabs(m.cv_hprime - m.cv_h * m.cv_eta) <= 1e-10 * m.cv_hprime;
+  for (int i = 0; reader.good && method == Method::bdf && i < width_of(problem.states); ++i)
+    reader.good = SUNDenseMatrix_Column(objects_->matrix, i)[i] != 0;
+  return reader.good;
+}
+
+}  // namespace solver

@@ -1,0 +1,134 @@
+// Steps of DOP853: which sizes are tried, and what is remembered.
+//
+// Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, second edition, sections II.4 to II.6.
+#include "runge_kutta.hpp"
+
+#include <algorithm>
+
+#include "attempt.hpp"
+
+namespace solver {
+namespace {
+
+constexpr int most_attempts = 40;
+
+// A step is sized for an error of safety^8.
+constexpr double safety = 0.9;
+
+// A step that would end this much short of the stop, as a share of its size, ends there: it spares a step of a few
+// roundings, and costs no more than 8 % of the error that a step may make.
+constexpr double stretch = 1.01;
+
+}  // namespace
+
+void RungeKutta::start(double t, const double* y, int states, Step* step) {
+  step->set_point(t, y, states);
+  limit_ = next_limit_;
+  next_limit_ = 0;
+  rates_ = 0;
+  last_error_ = 0;
+}
+
+// The error over h^8 changes along the motion, and is expected to change by the same factor once more (Gustafsson, ACM
+// TOMS 20 (1994) 496: predictive step control). On the wheel hardly a step is rejected then.
+double RungeKutta::next_size(double h, double error) {
+  error = std::fmax(error, 1e-6);  // below, as after a step cut short, it says no more
+  const double trend = last_error_ > 0 ? (h / size_) * eighth_root(last_error_ / error) : 1;
+  last_error_ = error;
+  return h * std::clamp(safety / eighth_root(error) * std::clamp(trend, 0.5, 2.0), 0.2, 10.0);
+}
+
+bool RungeKutta::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
+  return width_of(problem.states) == 8 ? advance_wide<8>(problem, stop, counters, step)
+                                       : advance_wide<max_states>(problem, stop, counters, step);
+}
+
+template <int width>
+bool RungeKutta::advance_wide(const Problem& problem, double stop, Counters* counters, Step* step) {
+  step->start = step->end;
+  std::copy_n(step->y_end, width, step->y_start);
+  step->degree = -1;
+  Attempt<width> attempt(problem, counters, step, f_);
+  if (rates_ >= 13)
+    std::copy_n(f_[12], width, f_[0]);
+  else
+    margin_ = attempt.evaluate(0, step->start, step->y_start);
+  rates_ = 1;
+  failure_ = std::isnan(margin_) ? "the rates of the states are not finite" : nullptr;
+  if (!failure_) {
+    attempt.weigh();
+    if (liked_ == 0) liked_ = attempt.guess_size();
+    failure_ = accept_step(attempt, problem.longest_step, stop, step);
+  }
+  limit_ = 0;
+  if (!failure_) return true;
+  rates_ = 0;
+  step->end = step->start;
+  std::copy_n(step->y_start, width, step->y_end);
+  return false;
+}
+
+// Tries until a step is accepted, which is then done; null, or why none was.
+template <int width>
+const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, double stop, Step* step) {
+  if (limit_ > 0) longest = std::fmin(limit_, longest);
+  const double t = step->start;
+  double h = std::fmin(liked_, longest);
+  bool rejected = false;
+  for (int attempts = 0; attempts < most_attempts; ++attempts) {
+    const bool stops = t + stretch * h >= stop;
+    if (stops) h = stop - t;
+    if (!stops && h <= rounding_at(t)) break;
+    step->end = stops ? stop : t + h;
+    step->lowest_margin = margin_;
+    double error = attempt.try_size(h);
+    if (error <= 1 && !stops && !(attempt.evaluate_end(&margin_) && attempt.evaluate_interior())) error = INFINITY;
+    if (!(error <= 1)) {
+      h = liked_ = h * std::fmax(0.2, safety / eighth_root(error));
+      rejected = true;
+      continue;
+    }
+    const double next = next_size(h, error);
+    // A step cut short says little: what was liked before stays. After a rejection a step does not grow.
+    liked_ = rejected ? std::fmin(h, next) : h < liked_ ? std::fmax(liked_, next) : next;
+    size_ = h;
+    rates_ = stops ? 12 : 16;
+    if (!stops) attempt.expand();
+    return nullptr;
+  }
+  return "the step size became too small";
+}
+
+void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) {
+  if (step->degree >= 0 || rates_ < 12) return;
+  const auto expand_wide = [&](auto attempt) {
+    attempt.set_size(size_);
+    if (rates_ < 13) attempt.evaluate_end(&margin_), rates_ = 13;
+    if (rates_ < 16 && attempt.evaluate_interior()) rates_ = 16;
+    attempt.expand();
+  };
+  if (width_of(problem.states) == 8)
+    expand_wide(Attempt<8>(problem, counters, step, f_));
+  else
+    expand_wide(Attempt<max_states>(problem, counters, step, f_));
+}
+
+bool RungeKutta::fits(const Problem& problem, Step* step) {
+  if (rates_ == 0) return step->start == step->end;
+  if (rates_ != 12 && rates_ != 13 && rates_ != 16) return false;
+  if (!(size_ > 0) || std::fabs(step->end - step->start - size_) > rounding_at(step->end)) return false;
+  Step same = *step;
+  const auto repeat = [&](auto attempt) {
+    attempt.set_size(size_);
+    attempt.end_step();
+    if (rates_ == 16) attempt.expand();
+  };
+  if (width_of(problem.states) == 8)
+    repeat(Attempt<8>(problem, nullptr, &same, f_));
+  else
+    repeat(Attempt<max_states>(problem, nullptr, &same, f_));
+  const bool fits = std::equal(step->y_end, step->y_end + problem.states, same.y_end);
+  return *step = same, fits;
+}
+
+}  // namespace solver

@@ -1,0 +1,114 @@
+// A change of sign between the ends of a step is not enough: a function may dip below zero and come back within one
+// step (a grazing slip, a wheel that leaves the ground for an instant). The search trusts a parabola through three
+// samples as far as g is simply shaped, halves where it is not, and never looks more often than a fixed number of
+// times.
+#include "search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace solver {
+namespace {
+
+// Halvings of a step, and evaluations in the search for a value below zero between two bends.
+constexpr int most_halvings = 7, most_samples = 48;
+
+// g = lo.g + x (slope + bend (x - share)), x = (t - lo.t) / (hi.t - lo.t), through three samples.
+struct Parabola {
+  double share, slope, bend;
+  Parabola(Sample lo, Sample mid, Sample hi) {
+    share = (mid.t - lo.t) / (hi.t - lo.t);
+    slope = (mid.g - lo.g) / share;
+    bend = (hi.g - mid.g) / (1 - share) - slope;
+  }
+  // x of the minimum; outside (0, 1) where an end is the lowest.
+  double lowest_at() const { return bend > 0 ? 0.5 * (share - slope / bend) : -1; }
+  double value(double g_lo, double x) const { return g_lo + x * (slope + bend * (x - share)); }
+};
+
+}  // namespace
+
+double Search::value(double t) const {
+  double y[max_states];
+  step_.read(t, problem_.states, y);
+  ++*roots_;
+  return g_(problem_.owner, t, y);
+}
+
+// How far g may lie below the parabola: a quarter of its bend and a tenth of its range.
+bool Search::stays_above(Sample lo, Sample mid, Sample hi) {
+  double lowest = std::fmin(mid.g, std::fmin(lo.g, hi.g));
+  if (!(lowest > 0)) return lowest == 0 && lo.g == 0 && mid.g == 0 && hi.g == 0;
+  const Parabola p(lo, mid, hi);
+  const double x = p.lowest_at(), range = std::fmax(mid.g, std::fmax(lo.g, hi.g)) - lowest;
+  if (x > 0 && x < 1) lowest = std::fmin(lowest, p.value(lo.g, x));
+  return lowest > 0.25 * std::fabs(p.bend) + 0.1 * range;
+}
+
+// The first sample below zero that can be found, and the one before it. lo.g >= 0.
+bool Search::look(Sample lo, Sample mid, Sample hi, int depth, int* budget, Sample bracket[2]) const {
+  if (mid.g >= 0 && stays_above(lo, mid, hi)) return false;
+  const bool falls = mid.g < 0 || hi.g < 0;
+  const bool deeper = depth > 0 && *budget >= 2 && hi.t - lo.t > 8 * rounding_at(hi.t);
+  if (!deeper) {
+    if (falls) bracket[0] = mid.g < 0 ? lo : mid, bracket[1] = mid.g < 0 ? mid : hi;
+    return falls;
+  }
+  --*budget;
+  if (look(lo, sample(0.5 * (lo.t + mid.t)), mid, depth - 1, budget, bracket)) return true;
+  if (hi.g < 0) return bracket[0] = mid, bracket[1] = hi, true;
+  const double x = Parabola(lo, mid, hi).lowest_at();
+  const Sample low = x > 0 && x < 1 ? sample(lo.t + x * (hi.t - lo.t)) : mid;
+  if (low.g < 0) return bracket[0] = low.t < mid.t ? lo : mid, bracket[1] = low, true;
+  --*budget;
+  return look(mid, sample(0.5 * (mid.t + hi.t)), hi, depth - 1, budget, bracket);
+}
+
+bool Search::find_first_fall(Sample lo, Sample hi, double* t) const {
+  if (lo.g < 0) return *t = lo.t, true;
+  if (!(hi.t > lo.t)) return false;
+  double instants[max_bends + 1];
+  int pieces = problem_.bends ? problem_.bends(problem_.owner, lo.t, hi.t, instants) : 0;
+  instants[pieces++] = hi.t;
+  for (int i = 0; i < pieces; ++i) {
+    const Sample end = i + 1 < pieces ? sample(instants[i]) : hi;
+    int budget = most_samples;
+    Sample bracket[2];
+    if (look(lo, sample(0.5 * (lo.t + end.t)), end, most_halvings, &budget, bracket))
+      return *t = fall_through(bracket[0], bracket[1]), true;
+    lo = end;
+  }
+  return false;
+}
+
+// Chandrupatla, Advances in Engineering Software 28 (1997) 145: inverse quadratic interpolation where it is safe, else
+// halving. lo.g >= 0 > hi.g. Returns the first instant known to be below zero, a few roundings past the root.
+double Search::fall_through(Sample lo, Sample hi) const {
+  // A release: g starts at zero and rises before it falls.
+  for (int i = 0; i < 40 && lo.g == 0; ++i) {
+    const Sample next = sample(lo.t + 0.25 * (hi.t - lo.t));
+    (next.g < 0 ? hi : lo) = next;
+  }
+  Sample a = hi, b = lo, c = hi;  // a is the latest, b on the other side of the root
+  double x = 0.5;
+  for (int i = 0; i < 100; ++i) {
+    const double width = std::fabs(b.t - a.t), finest = 0.5 * rounding_at(std::fmax(a.t, b.t)) / width;
+    if (2 * finest >= 1) break;
+    const Sample next = sample(a.t + std::clamp(x, finest, 1 - finest) * (b.t - a.t));
+    if ((next.g < 0) == (a.g < 0)) {
+      c = a;
+    } else {
+      c = b;
+      b = a;
+    }
+    a = next;
+    const double xi = (a.t - b.t) / (c.t - b.t), phi = (a.g - b.g) / (c.g - b.g);
+    const bool safe = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
+    x = !safe
+            ? 0.5
+            : a.g / (b.g - a.g) * c.g / (b.g - c.g) + (c.t - a.t) / (b.t - a.t) * a.g / (c.g - a.g) * b.g / (c.g - b.g);
+  }
+  return a.g < 0 ? a.t : b.t;
+}
+
+}  // namespace solver

@@ -1,0 +1,129 @@
+// Steps of the chosen engine, and what is looked for inside each.
+#include "solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "search.hpp"
+
+namespace solver {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+bool Solver::start(const Problem& problem, Method method, double t, const double* y, bool armed) {
+  problem_ = problem;
+  runge_kutta_ = {};
+  counters_ = {};
+  counters_.restarts = -1;  // the first start is none
+  return restart(method, t, y, armed);
+}
+
+bool Solver::restart(Method method, double t, const double* y, bool armed) {
+  method_ = method;
+  known_until_ = event_time_ = t;
+  stop_time_ = never;
+  ++counters_.restarts;
+  if (!begin(t, y)) return pending_ = Outcome::failed, false;
+  pending_ = Outcome::stepped;
+  armed_ = armed;
+  if (armed) ++counters_.roots, event_value_ = problem_.event(problem_.owner, t, y);
+  return true;
+}
+
+bool Solver::begin(double t, const double* y) {
+  if (method_ == Method::runge_kutta) return runge_kutta_.start(t, y, problem_.states, &step_), true;
+  return cvode_.start(problem_, method_, t, y, &step_) || (failure_ = cvode_.failure(), false);
+}
+
+void Solver::stop_nowhere() { stop_time_ = never; }
+
+bool Solver::reaches(double t) const { return known_until_ >= t - rounding_at(t); }
+
+bool Solver::advance() {
+  if (method_ == Method::runge_kutta)
+    return runge_kutta_.advance(problem_, stop_time_, &counters_, &step_) || (failure_ = runge_kutta_.failure(), false);
+  return cvode_.advance(problem_, stop_time_, &counters_, &step_) || (failure_ = cvode_.failure(), false);
+}
+
+Outcome Solver::step() {
+  if (pending_ != Outcome::stepped) return pending_;
+  // A stop time that rounding alone sets apart from where the solution stands.
+  if (stop_time_ > known_until_ && reaches(stop_time_)) {
+    double y[max_states];
+    std::copy_n(step_.y_end, max_states, y);
+    if (!begin(stop_time_, y)) return pending_ = Outcome::failed;
+    known_until_ = stop_time_;
+    return Outcome::stepped;
+  }
+  if (!advance()) return pending_ = Outcome::failed;
+  ++counters_.steps;
+  known_until_ = step_.end;
+  watch_event();
+  watch_boundary();
+  return pending_;
+}
+
+void Solver::expand() const {
+  method_ == Method::runge_kutta ? runge_kutta_.expand(problem_, &counters_, &step_)
+                                 : cvode_.expand(problem_.states, &step_);
+}
+
+void Solver::watch_event() {
+  if (!armed_) return;
+  const Sample lo = {step_.start, event_value_};
+  const auto value = [&](double t, const double* y) {
+    ++counters_.roots;
+    return Sample{t, problem_.event(problem_.owner, t, y)};
+  };
+  const Sample hi = value(step_.end, step_.y_end);
+  event_value_ = hi.g;
+  // Most steps are far from an event: an approximation inside the step, free of charge, is enough to tell.
+  if (step_.inside_share > 0 && !problem_.bends &&
+      Search::stays_above(lo, value(step_.start + step_.inside_share * (step_.end - step_.start), step_.y_inside), hi))
+    return;
+  expand();
+  double t;
+  if (Search(problem_, step_, problem_.event, &counters_.roots).find_first_fall(lo, hi, &t)) end_at(t, Outcome::event);
+}
+
+// The boundary as far as the step is valid. Where inputs bend inside the step, it is looked at there too: no evaluation
+// need have come near.
+void Solver::watch_boundary() {
+  double instants[max_bends], lowest = step_.lowest_margin;
+  const int count = problem_.bends && lowest >= problem_.near
+                        ? problem_.bends(problem_.owner, step_.start, known_until_, instants)
+                        : 0;
+  if (count > 0) expand();
+  const Search search(problem_, step_, problem_.boundary, &counters_.roots);
+  for (int i = 0; i < count; ++i) lowest = std::fmin(lowest, search.value(instants[i]));
+  if (!(lowest < problem_.near)) return;
+  expand();
+  double t;
+  if (search.find_first_fall({step_.start, search.value(step_.start)}, {known_until_, search.value(known_until_)}, &t))
+    end_at(t, Outcome::ended);
+}
+
+void Solver::end_at(double t, Outcome why) {
+  known_until_ = event_time_ = t;
+  pending_ = why;
+}
+
+void Solver::read(double t, double* y) const {
+  t = std::clamp(t, step_.start, known_until_);
+  if (t > step_.start && t < step_.end) expand();
+  step_.read(t, problem_.states, y);
+}
+
+int Solver::polynomial(double* c) const {
+  expand();
+  for (int k = 0; k <= step_.degree; ++k) std::copy_n(step_.c[k], problem_.states, c + k * problem_.states);
+  return step_.degree;
+}
+
+bool Solver::first_fall(double (*g)(void*, double, const double*), double t_lo, double t_hi, double* t) const {
+  expand();
+  const Search search(problem_, step_, g, &counters_.roots);
+  return search.find_first_fall({t_lo, search.value(t_lo)}, {t_hi, search.value(t_hi)}, t);
+}
+
+}  // namespace solver

@@ -1,0 +1,95 @@
+// One initial-value problem y' = f(t, y) and its solution step by step: dense output, events, endings, snapshots.
+//
+// Two engines behind one interface: CVODE (Adams, BDF) for smooth and stiff motion, DOP853 for motion that jumps.
+// Knows no wheel and no FMI. Time is the owner's own clock (s). Steps never see the times at which results are read, so
+// the communication grid cannot change a bit of the solution; only a stop time that the owner sets ends a step.
+#pragma once
+
+#include <cstddef>
+
+#include "cvode_engine.hpp"
+#include "problem.hpp"
+#include "runge_kutta.hpp"
+#include "step.hpp"
+
+namespace solver {
+
+// stepped: one step was made;               event: `event` fell below zero at event_time();
+// ended: `boundary` fell below zero there;  failed: see failure(); the solution stays known until known_until().
+enum class Outcome { stepped, event, ended, failed };
+
+class Solver {
+ public:
+  // Starts, or starts anew, from y at time t (s); history is dropped. The first start sets the counters to zero, later
+  // ones go on counting (`restarts` counts all but the first). armed: the event is watched from here on. A stop time is
+  // dropped. Runge-Kutta keeps the step size that it last liked. False where SUNDIALS could not be set up: failure().
+  bool start(const Problem& problem, Method method, double t, const double* y, bool armed);
+  bool restart(Method method, double t, const double* y, bool armed);
+
+  // Runge-Kutta: the first step after the next restart is at most dt, s (the time between the last two changes).
+  void change_interval(double dt) { runge_kutta_.limit_first_step(dt); }
+
+  // One internal step. After `event` or `ended` known_until() is event_time(), and the owner restarts from there.
+  Outcome step();
+
+  // No step goes past t; one that would end within a few roundings of t ends at t. CVODE starts anew at a stop: a
+  // history that was cut short and grows again over nodes that lie close together is ruined by rounding.
+  void stop_before(double t) { stop_time_ = t; }
+  void stop_nowhere();
+
+  // Whether y(t) is known: known_until() is at t, up to a few roundings of t, or past it.
+  bool reaches(double t) const;
+
+  // Dense output y(t), step_start() <= t <= known_until(), clamped; t within a few roundings of an end is that end.
+  void read(double t, double* y) const;
+
+  double step_start() const { return step_.start; }
+  double step_end() const { return step_.end; }  // known_until() unless an event cut the step short
+  double known_until() const { return known_until_; }
+  double event_time() const { return event_time_; }
+  Method method() const { return method_; }
+  const char* failure() const { return failure_; }
+  const Counters& counters() const { return counters_; }
+
+  // Taylor coefficients of the last step's dense output about its end (known_until() unless an event cut it short):
+  // c[k * states + i] = y_i^(k) h^k / k!, h = end - step_start(); (max_degree + 1) * states numbers. Returns the
+  // degree.
+  int polynomial(double* c) const;
+
+  // First instant in [t_lo, t_hi] at which g falls below zero on the dense output of the last step, dips included.
+  bool first_fall(double (*g)(void*, double, const double*), double t_lo, double t_hi, double* t) const;
+
+  // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on with the same bits. restore
+  // refuses what could not have been saved (false; no solution then until start).
+  std::size_t history_size() const;
+  void save_history(unsigned char* bytes) const;
+  bool restore_history(const Problem& problem, const unsigned char* bytes, std::size_t size);
+
+ private:
+  bool begin(double t, const double* y);
+  bool advance();
+  void expand() const;
+  void watch_event();
+  void watch_boundary();
+  void end_at(double t, Outcome why);
+  template <class Archive>
+  void visit(Archive& archive);
+  bool has_cvode_history() const;
+  bool restored_fits() const;
+  bool restore_engine(Reader& reader);
+
+  Problem problem_ = {};
+  Method method_ = Method::adams;
+  Outcome pending_ = Outcome::failed;
+  bool armed_ = false;
+  const char* failure_ = "it was not started";
+  double known_until_ = 0, event_time_ = 0, stop_time_ = 0;  // s
+  double event_value_ = 0;                                   // at the end of the step
+  // The dense output of the last step is computed when it is first needed: a pure function of the step.
+  mutable Counters counters_ = {};
+  mutable Step step_ = {};
+  mutable RungeKutta runge_kutta_;
+  Cvode cvode_;
+};
+
+}  // namespace solver

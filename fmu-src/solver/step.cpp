@@ -1,0 +1,46 @@
+// Dense output, the same for both engines.
+#include "step.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace solver {
+namespace {
+
+// Even and odd powers apart: two chains of Horner that do not wait for each other. It is what a master pays for at each
+// communication point.
+template <int width>
+void evaluate(const double (*c)[max_states], int degree, double s, double* y) {
+  const int even = degree - degree % 2, odd = degree - 1 + degree % 2;
+  double sum[2][width];
+  std::memcpy(sum[0], c[even], sizeof sum[0]);
+  std::memcpy(sum[1], c[odd], sizeof sum[1]);
+  for (int k = even - 2; k >= 0; k -= 2)
+    for (int i = 0; i < width; ++i) sum[0][i] = sum[0][i] * (s * s) + c[k][i];
+  for (int k = odd - 2; k > 0; k -= 2)
+    for (int i = 0; i < width; ++i) sum[1][i] = sum[1][i] * (s * s) + c[k][i];
+  for (int i = 0; i < width; ++i) y[i] = sum[0][i] + sum[1][i] * s;
+}
+
+}  // namespace
+
+void Step::set_point(double t, const double* y, int states) {
+  *this = {};
+  start = end = t;
+  lowest_margin = std::numeric_limits<double>::infinity();
+  std::copy_n(y, states, y_start);
+  std::copy_n(y, states, y_end);
+}
+
+void Step::read(double t, int states, double* y) const {
+  const double rounding = rounding_at(t);
+  if (t >= end - rounding) return void(std::copy_n(y_end, states, y));
+  if (t <= start + rounding) return void(std::copy_n(y_start, states, y));
+  const double s = (t - end) / (end - start);
+  if (states == 8) return evaluate<8>(c, degree, s, y);
+  double wide[max_states];
+  states < 8 ? evaluate<8>(c, degree, s, wide) : evaluate<max_states>(c, degree, s, wide);
+  std::copy_n(wide, states, y);
+}
+
+}  // namespace solver

@@ -1,0 +1,37 @@
+// The last step of a solution, whichever engine made it, and its dense output: one Taylor polynomial about the end.
+//
+// Arrays have max_states entries; those beyond the problem's states are zero. Loops run over `width`, 8 or 12, so that
+// the compiler knows their length.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "problem.hpp"
+
+namespace solver {
+
+// Two times closer than this are the same instant, s.
+inline double rounding_at(double t) { return 8 * std::numeric_limits<double>::epsilon() * std::fabs(t); }
+
+constexpr int width_of(int states) { return states <= 8 ? 8 : max_states; }
+
+struct Step {
+  double start, end;  // s
+  alignas(16) double y_start[max_states], y_end[max_states];
+  double lowest_margin;  // of the evaluations in the step
+  // An approximation of y at start + inside_share (end - start), free of charge; share 0 where there is none.
+  double inside_share;
+  alignas(16) double y_inside[max_states];
+  // y(t) = sum of c_k s^k, s = (t - end) / (end - start) from -1 to 0; degree -1: not computed yet.
+  int degree;
+  alignas(16) double c[max_degree + 1][max_states];
+
+  // A step of no length: y is known at t alone.
+  void set_point(double t, const double* y, int states);
+
+  // y (states entries) at t inside the step; at its ends, up to a few roundings of t, what is kept there.
+  void read(double t, int states, double* y) const;
+};
+
+}  // namespace solver

@@ -1,0 +1,308 @@
+// Half a nutation of the free wheel, and the sums by which it holds the rest: docs/equations.md, carrier and fixed frame.
+#include "orbit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+namespace wheel {
+
+namespace {
+
+enum { theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O };
+
+constexpr double pi = 3.141592653589793, pi_rest = 1.2246467991473532e-16;  // their sum is pi to 32 digits
+
+// The error of the half period counts once for every half: it is integrated to a part of the tolerance, but not closer
+// than rounding allows.
+constexpr double finer = 0.1, finest = 1e-14;
+// A swing of omega_1 that is not this much more than the error of one step is noise; a state at the end of the run and
+// its mirror image may differ by so many tolerances.
+constexpr double least_swing = 0.01, largest_rest = 0.003, most_difference = 100;
+
+// sin(n delta) / sin(delta) for |delta| <= pi / 2.
+double quotient(double n, double delta) { return delta == 0 ? n : std::sin(n * delta) / std::sin(delta); }
+
+}  // namespace
+
+// The problem as the orbit's solver sees it: the same motion with smaller errors.
+struct Orbit::Tightened {
+  const solver::Problem& given;
+  double share;
+  Force force;
+
+  static const Tightened& of(void* owner) { return *static_cast<const Tightened*>(owner); }
+  static double derivative(void* owner, double t, const double* y, double* y_dot) {
+    return of(owner).given.derivative(of(owner).given.owner, t, y, y_dot);
+  }
+  static double boundary(void* owner, double t, const double* y) {
+    return of(owner).given.boundary(of(owner).given.owner, t, y);
+  }
+  static void weights(void* owner, double share, const double* y, double* weights) {
+    of(owner).given.weights(of(owner).given.owner, share * of(owner).share, y, weights);
+  }
+  static double pressed(void* owner, double t, const double* y) {
+    return of(owner).force(of(owner).given.owner, t, y);
+  }
+  static double pulled(void* owner, double t, const double* y) { return -pressed(owner, t, y); }
+
+  solver::Problem problem() {
+    solver::Problem p = given;
+    p.owner = this;
+    p.derivative = derivative;
+    p.boundary = boundary;
+    p.weights = weights;
+    p.event = nullptr;
+    p.bends = nullptr;
+    return p;
+  }
+};
+
+Orbit::Kind Orbit::build(const solver::Problem& given, double tolerance, Force force, const double* y0,
+                         solver::Solver& solver) {
+  Tightened tightened = {given, std::fmax(finer, finest / tolerance), force};
+  const solver::Problem problem = tightened.problem();
+  falls_ = rises_ = later_falls_ = 0;
+  half_ = {};
+  kind_ = Kind::refused;
+  if (rests(problem, y0)) return kind_ = Kind::folded;
+  kind_ = follow(problem, y0, solver);
+  return kind_;
+}
+
+// Steps past T1 and T2. A start with omega_1 = 0 is T1.
+Orbit::Kind Orbit::follow(const solver::Problem& problem, const double* y0, solver::Solver& solver) {
+  double y[states], rate[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1];
+  bool turned = before == 0;
+  problem.derivative(problem.owner, 0, y0, rate);
+  if (!track_.begin(0, y0, rate) || !solver.start(problem, solver::Method::adams, 0, y0, false)) return Kind::refused;
+  for (;;) {
+    const solver::Outcome outcome = solver.step();
+    if (outcome == solver::Outcome::failed) return Kind::refused;
+    const double t = solver.known_until();
+    solver.read(t, y);
+    problem.derivative(problem.owner, t, y, rate);
+    if (!track_.add(t, y, rate) || !keep_crossings(problem, y0, solver)) return Kind::refused;
+    if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
+      if (turned) {
+        track_.finish();
+        T1_ = turning_point(T1[0], T1[1]);
+        T2_ = turning_point(solver.step_start(), t);
+        return fold(problem, t, y, swing) ? Kind::folded : Kind::refused;
+      }
+      T1[0] = solver.step_start();
+      T1[1] = t;
+      turned = true;
+      swing = 0;
+    }
+    if (outcome == solver::Outcome::ended) return track_.finish(), end_time_ = t, Kind::ended;
+    if (y[omega_1] != 0) before = y[omega_1];
+    swing = std::fmax(swing, std::fabs(y[omega_1]));
+  }
+}
+
+// Where N falls below zero and rises above it in the last step; false if that happens too often to be kept.
+bool Orbit::keep_crossings(const solver::Problem& problem, const double* y0, const solver::Solver& solver) {
+  const Tightened& tightened = Tightened::of(problem.owner);
+  if (!tightened.force) return true;
+  if (solver.step_start() == 0) pulls_at_start_ = Tightened::pressed(problem.owner, 0, y0) < 0;
+  double t = solver.step_start();
+  for (;;) {
+    const bool pulls = pulls_at_start_ != ((falls_ + rises_) % 2 != 0);
+    if (!solver.first_fall(pulls ? Tightened::pulled : Tightened::pressed, t, solver.known_until(), &t)) return true;
+    int& count = pulls ? rises_ : falls_;
+    if (count == most_crossings) return false;
+    (pulls ? rise_ : fall_)[count++] = t;
+  }
+}
+
+// The zero of omega_1 between two instants of the track, by regula falsi (Illinois).
+double Orbit::turning_point(double a, double b) const {
+  const auto rate = [this](double t) {
+    double y[states];
+    track_.read(t, y);
+    return y[omega_1];
+  };
+  double f_a = rate(a), f_b = rate(b);
+  if (f_a == 0 || a == b) return a;
+  for (int i = 0; i < 60 && f_b != 0 && a != b; ++i) {
+    const double t = b - f_b * (b - a) / (f_b - f_a), f = rate(t);
+    if (t == b) break;
+    if (std::signbit(f) != std::signbit(f_b)) {
+      a = b;
+      f_a = f_b;
+    } else {
+      f_a *= 0.5;
+    }
+    b = t;
+    f_b = f;
+  }
+  return b;
+}
+
+// Whether the half from T1 to T2 stands for the whole motion: y, reached at t past T2, is its mirror image.
+bool Orbit::fold(const solver::Problem& problem, double t, const double* y, double swing) {
+  double weights[states], unfolded[states];
+  track_.read(T1_, first_);
+  track_.read(T2_, second_);
+  problem.weights(problem.owner, 1, second_, weights);
+  if (!(T2_ > T1_) || swing * weights[omega_1] < least_swing) return false;
+  take_half();
+  kind_ = Kind::folded;
+  read(t, unfolded);
+  const solver::Problem& given = Tightened::of(problem.owner).given;
+  given.weights(given.owner, 1, y, weights);
+  for (int i = 0; i < states; ++i)
+    if (!(std::fabs(y[i] - unfolded[i]) * weights[i] <= most_difference)) return false;
+  return true;
+}
+
+// What the sums need, from the states at T1 and T2; the falls of N in the two halves that follow T2, which is mirrored,
+// and the next.
+void Orbit::take_half() {
+  const double turn = second_[psi] - first_[psi], n = std::nearbyint(turn / pi), period = 2 * (T2_ - T1_);
+  delta_ = (turn - n * pi) - n * pi_rest;
+  const Complex path(second_[X_O] - first_[X_O], second_[Y_O] - first_[Y_O]);
+  step_ = path * std::polar(1.0, -first_[psi]);
+  while (falls_ > 0 && fall_[falls_ - 1] > T2_) --falls_;
+  for (int i = rises_ - 1; i >= 0; --i)
+    if (rise_[i] > T1_ && rise_[i] < T2_) later_fall_[later_falls_++] = T2_ - rise_[i];
+  for (int i = 0; i < falls_; ++i)
+    if (fall_[i] > T1_) later_fall_[later_falls_++] = period - (T2_ - fall_[i]);
+}
+
+// A wheel in steady motion: omega_1 = 0 but for rounding, and a small lean swings instead of growing. With omega_2 and
+// omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the state of the start stays.
+bool Orbit::rests(const solver::Problem& problem, const double* y0) {
+  const double h = 1e-4 * std::sin(y0[theta]), slowest = 0.5 / problem.longest_step;
+  double y[states], rate[states], along[states], ahead[states], behind[states], weights[states];
+  problem.derivative(problem.owner, 0, y0, rate);
+  problem.weights(problem.owner, 1, y0, weights);
+  if (!(std::fabs(y0[omega_1]) * weights[omega_1] < 1)) return false;
+  std::copy_n(y0, states, y);
+  y[omega_1] = 1;
+  problem.derivative(problem.owner, 0, y, along);
+  y[omega_1] = 0;
+  const auto lean = [&](double by, double* out) {
+    y[theta] = y0[theta] + by;
+    y[omega_2] = y0[omega_2] + by * along[omega_2];
+    y[omega_3] = y0[omega_3] + by * along[omega_3];
+    problem.derivative(problem.owner, 0, y, out);
+  };
+  lean(h, ahead);
+  lean(-h, behind);
+  const double stiffness = (behind[omega_1] - ahead[omega_1]) / (2 * h);
+  if (!(stiffness > 1e-3 * slowest * slowest)) return false;
+  const double swing = std::fabs(rate[omega_1]) / stiffness + std::fabs(y0[omega_1]) / std::sqrt(stiffness);
+  const double most_weight = std::fmax(weights[theta], std::fmax(std::fabs(along[omega_2]) * weights[omega_2],
+                                                                std::fabs(along[omega_3]) * weights[omega_3]));
+  if (!(swing * most_weight < largest_rest)) return false;
+  return keep_rest(y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
+}
+
+// The circle (or straight line) of a steady motion over `length`, s, in which psi turns by 0.2 rad at most.
+bool Orbit::keep_rest(const double* y0, const double* rate, double length) {
+  constexpr int parts = 5;
+  double y[states], y_dot[states] = {};
+  std::copy_n(y0, states, y);
+  y[omega_1] = 0;
+  y_dot[psi] = rate[psi];
+  y_dot[phi] = rate[phi];
+  const Complex start(y0[X_O], y0[Y_O]), velocity(rate[X_O], rate[Y_O]);
+  for (int i = 0; i <= parts; ++i) {
+    const double t = length * i / parts, turn = rate[psi] * t;
+    const double shortened = turn == 0 ? 1 : std::sin(0.5 * turn) / (0.5 * turn);  // chord over arc
+    const Complex place = start + velocity * (t * shortened) * std::polar(1.0, 0.5 * turn);
+    const Complex now = velocity * std::polar(1.0, turn);
+    y[psi] = y0[psi] + turn;
+    y[phi] = y0[phi] + rate[phi] * t;
+    y[X_O] = place.real();
+    y[Y_O] = place.imag();
+    y_dot[X_O] = now.real();
+    y_dot[Y_O] = now.imag();
+    if (!(i == 0 ? track_.begin(t, y, y_dot) : track_.add(t, y, y_dot))) return false;
+  }
+  track_.finish();
+  T1_ = 0;
+  T2_ = length;
+  track_.read(T1_, first_);
+  track_.read(T2_, second_);
+  take_half();
+  return true;
+}
+
+// T1 + k L; `rest` is what its rounding took away.
+double Orbit::begin_of(double k, double* rest) const {
+  const double length = T2_ - T1_, product = k * length, sum = T1_ + product;
+  const double back = sum - product;  // the part of T1 that went into the sum
+  *rest = std::fma(k, length, -product) + ((product - (sum - back)) + (T1_ - back));
+  return sum;
+}
+
+// The sum of k halves, of which each second one is the mirror image of the one before: with d the way of O in the first,
+// pairs add up to 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta), n = floor(k / 2).
+Orbit::Half Orbit::half_at(double k) const {
+  Half half;
+  half.k = k;
+  half.begin = begin_of(k, &half.rest);
+  double rest;
+  half.next = begin_of(k + 1, &rest);
+  const double n = std::floor(0.5 * k), turn = second_[psi] - first_[psi], roll = second_[phi] - first_[phi];
+  half.mirrored = k != 2 * n;
+  const double pair = 2 * (step_ * std::polar(1.0, -delta_)).real();
+  Complex way = pair * quotient(n, delta_) * std::polar(1.0, n * delta_);
+  const Complex pairs_turn = std::polar(1.0, 2 * n * delta_);
+  if (half.mirrored) way += step_ * pairs_turn;
+  half.place = Complex(first_[X_O], first_[Y_O]) + way * std::polar(1.0, first_[psi]);
+  half.turn = half.mirrored ? -pairs_turn * std::polar(1.0, 2 * second_[psi]) : pairs_turn;
+  half.psi = half.mirrored ? 2 * second_[psi] + (k - 1) * turn : k * turn;
+  half.phi = half.mirrored ? 2 * second_[phi] + (k - 1) * roll : k * roll;
+  return half;
+}
+
+const Orbit::Half& Orbit::half_of(double t) const {
+  if (t >= half_.begin && t < half_.next) return half_;
+  double rest, k = std::floor((t - T1_) / (T2_ - T1_));
+  if (t < begin_of(k, &rest)) k -= 1;
+  if (t >= begin_of(k + 1, &rest)) k += 1;
+  return half_ = half_at(k);
+}
+
+void Orbit::read(double t, double* y) const {
+  if (kind_ != Kind::folded || t <= T2_) return track_.read(t, y);
+  const Half& half = half_of(t);
+  const double since = std::clamp((t - half.begin) - half.rest, 0.0, T2_ - T1_);
+  track_.read(half.mirrored ? T2_ - since : T1_ + since, y);
+  const double* centre = half.mirrored ? second_ : first_;
+  Complex way(y[X_O] - centre[X_O], y[Y_O] - centre[Y_O]);
+  if (half.mirrored) {
+    way = std::conj(way);
+    y[omega_1] = -y[omega_1];
+    y[psi] = -y[psi];
+    y[phi] = -y[phi];
+  }
+  way = half.place + half.turn * way;
+  y[psi] += half.psi;
+  y[phi] += half.phi;
+  y[X_O] = way.real();
+  y[Y_O] = way.imag();
+}
+
+double Orbit::fall(long long n) const {
+  if (n < falls_) return fall_[n];
+  const long long periods = (n - falls_) / later_falls_;
+  double rest;
+  const double begin = begin_of(1 + 2 * static_cast<double>(periods), &rest);
+  return begin + (later_fall_[(n - falls_) % later_falls_] + rest);
+}
+
+long long Orbit::falls_until(double t) const {
+  long long n = std::upper_bound(fall_, fall_ + falls_, t) - fall_;
+  if (kind_ != Kind::folded || t <= T2_ || later_falls_ == 0) return n;
+  const double periods = std::floor((t - T2_) / (2 * (T2_ - T1_)));
+  n += static_cast<long long>(std::fmax(periods - 1, 0)) * later_falls_;
+  while (fall(n) <= t) ++n;
+  return n;
+}
+
+}  // namespace wheel

@@ -1,0 +1,217 @@
+// How a run moves on: changes of inputs, transitions of the rolling friction after Filippov (docs/equations.md), the
+// unfolded free wheel, endings.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "decisions.hpp"
+#include "scene.hpp"
+#include "simulation.hpp"
+
+namespace wheel {
+namespace {
+
+// Work that one call may do, in internal steps: one to two seconds of computing, whatever the length of the call.
+constexpr long long most_work = 1000000;
+// What passing a transition costs, in steps: its search, a new start, the short steps after it.
+constexpr long long work_per_transition = 20;
+
+constexpr double upright = 1.5707963267948966;
+
+}  // namespace
+
+// Inputs and tunable parameters set since the last step take effect, if they differ from those in force.
+bool Simulation::settle_changes() {
+  if (!state_.changes_pending) return true;
+  const double t = state_.t;
+  if (state_.motion.scene.wheel.s == state_.parameters[s] && !state_.motion.inputs.change_at(t)) {
+    state_.changes_pending = false;
+    return true;
+  }
+  const WheelFriction before = state_.motion.scene.friction;
+  const bool was_unfolded = state_.unfolded;
+  const double* y = y_now();
+  state_.jumped = state_.moving;
+  take_changes(state_, y);
+  reading_fresh_ = false;
+  announce_transition(t, before);
+  if (!state_.moving) return true;
+  solver_.change_interval(t - state_.last_change);
+  state_.last_change = t;
+  if (was_unfolded) return ++state_.counted.restarts, start_solver();
+  return solver_.restart(state_.method, t, y, has_transitions(state_.motion.scene));
+}
+
+// Starts the solver from nothing at the present instant.
+bool Simulation::start_solver() {
+  const solver::Problem problem = problem_of(state_.motion);
+  return solver_.start(problem, state_.method, state_.t, y_now(), has_transitions(state_.motion.scene));
+}
+
+// Counts and tells a change between held, positive and negative spin; a change of the law itself is none.
+void Simulation::announce_transition(double t, const WheelFriction& before) {
+  const auto switches = [](const WheelFriction& f) { return f.kind == WHEEL_HELD || f.kind == WHEEL_ROLLING; };
+  const WheelFriction& friction = state_.motion.scene.friction;
+  if (!switches(before) || !switches(friction)) return;
+  if (before.kind == friction.kind && before.sigma == friction.sigma) return;
+  ++state_.transitions;
+  if (friction.kind == WHEEL_HELD)
+    tell(Topic::event, "t = %.9f s: stick, omega_z is held at zero.", state_.start_time + t);
+  else
+    tell(Topic::event, "t = %.9f s: %s, omega_z becomes %s.", state_.start_time + t,
+         before.kind == WHEEL_HELD ? "release" : "slip reverses", friction.sigma > 0 ? "positive" : "negative");
+}
+
+// The solver stands at a transition: omega_z came to zero, or friction and brake can hold it no longer.
+bool Simulation::pass_transition() {
+  const double t = solver_.event_time();
+  Motion& motion = state_.motion;
+  double y[WHEEL_MAX_STATES];
+  solver_.read(t, y);
+  if (motion.inputs.varies) motion.inputs.load_at(t, &motion.scene.load);
+  const WheelFriction before = motion.scene.friction;
+  motion.formulation->stop_spin(&motion.scene.wheel, y);
+  if (before.kind == WHEEL_HELD) {
+    WheelDynamics held;
+    motion.formulation->dynamics(&motion.scene, y, &held);
+    motion.scene.friction = {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0};
+  } else {
+    motion.scene.friction = friction_at(state_.parameters, *motion.formulation, motion.scene, motion.inputs.braked,
+                                        motion.weight, y);
+  }
+  announce_transition(t, before);
+  return solver_.restart(state_.method, t, y, has_transitions(motion.scene));
+}
+
+// With keep_contact: tells each excursion of N below zero in the last step, at its instant.
+void Simulation::report_pulls() {
+  double t, t_from = solver_.step_start();
+  while (solver_.first_fall(state_.pulling ? pull : normal_force, t_from, solver_.known_until(), &t)) {
+    state_.pulling = !state_.pulling;
+    if (state_.pulling) tell_pull(t);
+    t_from = t;
+  }
+}
+
+void Simulation::tell_pull(double t) const {
+  tell(Topic::warning, "The ground pulls from t = %.9f s on: keep_contact holds a wheel that would have lifted off.",
+       state_.start_time + t);
+}
+
+// The key of the orbit: it was built for these parameters and this tolerance.
+bool Simulation::orbit_is_ready() const {
+  return std::memcmp(orbit_origin_, state_.parameters, sizeof state_.parameters) == 0 &&
+         orbit_origin_[first_input] == state_.motion.tolerance;
+}
+
+// From the start of the run; where the motion does not fold, the solver steps from there.
+bool Simulation::build_orbit() {
+  State start = state_;
+  set_initial_state(start);
+  std::memset(orbit_origin_, 0, sizeof orbit_origin_);
+  const Motion& motion = start.motion;
+  const Orbit::Kind kind = orbit_.build(problem_of(start.motion), motion.tolerance,
+                                        motion.keep_contact ? normal_force : nullptr, start.y, solver_);
+  orbit_end_ = kind == Orbit::Kind::ended ? orbit_.end_time() : std::numeric_limits<double>::infinity();
+  state_.unfolded = kind != Orbit::Kind::refused;
+  if (!state_.unfolded) return start_solver();
+  orbit_counters_ = solver_.counters();
+  std::memcpy(orbit_origin_, state_.parameters, sizeof state_.parameters);
+  orbit_origin_[first_input] = state_.motion.tolerance;
+  return true;
+}
+
+bool Simulation::knows(double t) const {
+  if (!state_.moving) return false;
+  return state_.unfolded ? orbit_is_ready() && t <= orbit_end_ : solver_.reaches(t);
+}
+
+solver::Outcome Simulation::run_to(double t) {
+  using solver::Outcome;
+  if (state_.unfolded && !orbit_is_ready() && !build_orbit()) return Outcome::failed;
+  if (state_.unfolded) state_.counted = orbit_counters_;
+  if (state_.unfolded) return t <= orbit_end_ ? Outcome::stepped : Outcome::ended;
+  if (!state_.moving && !start_solver()) return Outcome::failed;
+  for (long long work = 0; !solver_.reaches(t);) {
+    if (work >= most_work) return failure_ = "it took a million internal steps; ask for shorter steps", Outcome::failed;
+    state_.motion.inputs.varies ? solver_.stop_before(t) : solver_.stop_nowhere();
+    const double t_before = solver_.known_until();
+    const Outcome outcome = solver_.step();
+    if (state_.motion.keep_contact && solver_.known_until() > t_before) report_pulls();
+    if (outcome == Outcome::failed) return outcome;
+    if (solver_.reaches(t)) break;  // a transition or an ending after t waits until it is reached
+    if (outcome == Outcome::ended) return outcome;
+    if (outcome == Outcome::event && !pass_transition()) return Outcome::failed;
+    work += outcome == Outcome::event ? work_per_transition : 1;
+  }
+  return Outcome::stepped;
+}
+
+// With keep_contact on the orbit: the excursions of N below zero that begin in (t_from, t_to]; of very many in one step
+// the first are told.
+void Simulation::report_pulls_of_orbit(double t_from, double t_to) const {
+  constexpr long long most = 100;
+  const long long first = orbit_.falls_until(t_from), end = orbit_.falls_until(t_to);
+  for (long long n = first; n < std::min(end, first + most); ++n) tell_pull(orbit_.fall(n));
+}
+
+Progressed Simulation::end_run() {
+  move_to(state_.unfolded ? orbit_end_ : solver_.event_time());
+  const double theta = y_now()[state_.motion.formulation->tilt_index];
+  const bool flat = upright - std::fabs(theta - upright) < 2 * flat_angle;
+  state_.ending = flat ? Ending::fell_flat : Ending::lifted_off;
+  tell(Topic::discard, flat ? "%s: the model ends there." : "%s, theta = %.6g rad: the model ends there.", ending(),
+       theta);
+  return Progressed::ended;
+}
+
+Progressed Simulation::fail(const State& before) {
+  move_to(state_.unfolded ? state_.t : solver_.known_until());
+  tell(Topic::error, "The solver stopped at t = %.9f s, where omega_z = %.4g rad/s: %s.", time(),
+       y_now()[state_.motion.formulation->spin_index], failure_);
+  state_ = before;
+  reading_fresh_ = false;
+  return Progressed::failed;
+}
+
+void Simulation::move_to(double t) {
+  state_.t = t;
+  state_.y_known = reading_fresh_ = false;
+}
+
+// What a step needs beyond reading a solution that is known: changes taken over, internal steps.
+solver::Outcome Simulation::extend_to(double t) {
+  failure_ = nullptr;
+  solver::Outcome outcome = settle_changes() ? solver::Outcome::stepped : solver::Outcome::failed;
+  if (outcome == solver::Outcome::stepped && t > state_.t) {
+    outcome = run_to(t);
+    state_.moving = true;
+  }
+  if (!failure_) failure_ = solver_.failure();
+  return outcome;
+}
+
+Progressed Simulation::advance(double t) {
+  t -= state_.start_time;
+  if (state_.ending != Ending::none) return Progressed::ended;
+  if (state_.changes_pending || !knows(t)) {
+    y_now();
+    const State before = state_;
+    switch (extend_to(t)) {
+      case solver::Outcome::failed:
+        return fail(before);
+      case solver::Outcome::ended:
+        return end_run();
+      default:
+        break;
+    }
+  }
+  if (!(t > state_.t)) return Progressed::reached;
+  if (state_.motion.keep_contact && state_.unfolded) report_pulls_of_orbit(state_.t, t);
+  move_to(t);
+  if (state_.motion.inputs.varies) state_.motion.inputs.hold_from(t), state_.changes_pending = true;
+  return Progressed::reached;
+}
+
+}  // namespace wheel

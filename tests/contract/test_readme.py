@@ -1,0 +1,194 @@
+"""README.md and the FMU's documentation are true: examples run as written, tables are those of the description,
+links lead somewhere. No paper equation of its own; the scenes are the paper's, SI units."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote
+
+import numpy as np
+import pytest
+from support.paths import ROOT, build_folder
+
+sys.path.insert(0, str(ROOT / "scripts"))
+import variable_tables
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGE = ROOT / "fmu-src" / "archive" / "documentation" / "index.html"
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    """A folder that looks like the project's root after ./scripts/run."""
+    (tmp_path / "build").mkdir()
+    (tmp_path / "build" / "release").symlink_to(build_folder())
+    (tmp_path / "fmu-src").symlink_to(ROOT / "fmu-src")
+    (tmp_path / "wheel.fmu").symlink_to(build_folder() / "wheel.fmu")
+    return tmp_path
+
+
+def run(command: list[str], folder: Path) -> str:
+    """What the command prints. The environment is that of an activated .venv, without a screen."""
+    environment = os.environ | {"MPLBACKEND": "Agg", "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def table(path: Path) -> np.ndarray:
+    return np.genfromtxt(path, delimiter=",", names=True)
+
+
+def test_the_python_example_has_ten_lines_and_draws_the_papers_two_scenes(root, reference_tables):
+    (example,) = blocks("python")
+    assert len(example.splitlines()) == 10
+    keeping = example.replace("    plt.plot(", "    numpy.save(f'{s}.npy', run)\n    plt.plot(")
+    run([sys.executable, "-c", example], root)
+    assert (root / "theta.png").read_bytes().startswith(b"\x89PNG")
+    run([sys.executable, "-c", f"import numpy\n{keeping}"], root)
+    theta = {scene: np.load(root / f"{s}.npy")["theta"] for s, scene in ((0, "free"), (0.03, "friction"))}
+    for scene in theta:
+        error = np.abs(theta[scene][::10] - reference_tables[scene]["theta"])
+        assert error.max() < 1e-6  # measured 1.2e-8, 9.3e-9 rad
+    assert np.abs(theta["free"][::10] - reference_tables["friction"]["theta"]).max() > 1e-6
+
+
+def test_the_commands_for_fmpy_run_as_written_and_do_what_their_comments_say(root, reference_tables):
+    commands = blocks("bash")[0]
+    assert all(line.startswith(("fmpy ", "#", "printf ")) for line in commands.splitlines())
+    log = run(["bash", "-euc", commands], root)
+    assert "No problems found" in log
+    for word in ("stick", "release", "slip reverses", "fell flat"):
+        assert word in log, word
+    friction, reference = table(root / "friction.csv"), reference_tables["friction"]
+    error = np.abs(friction["X_O"][::10] - reference["X_O"]).max()
+    assert error < 1e-6  # measured 9.0e-9 m
+    assert np.abs(friction["X_O"][::10] - reference_tables["free"]["X_O"]).max() > 1e-6
+    assert table(root / "upright.csv")["time"][-1] == 20
+    energy = table(root / "energy.csv")
+    assert energy.dtype.names == ("time", "theta", "E")
+    assert np.ptp(energy["E"]) < 1e-9 * energy["E"][0]  # measured 2.5e-13; the friction scene loses a quarter
+    fall = table(root / "fall.csv")
+    assert round(fall["time"][-1], 2) == 0.59 and fall["theta"][-1] < 1e-6
+
+
+def test_the_drive_torque_of_the_example_speeds_the_wheel_up_as_newton_says(root):
+    commands = [line for line in blocks("bash")[0].splitlines() if line.startswith("printf") or "driven.csv" in line]
+    run(["bash", "-euc", "\n".join(commands)], root)
+    driven = table(root / "driven.csv")
+    late = 0.01 / 2  # FMPy holds an input over its step of 0.01 s: on the ramp it lags by half a step
+    m, R, J_z, impulse = 20, 0.35, 1.8, 2 * (0.5 - late) + 2 * 9
+    speed = R * impulse / (J_z + m * R * R)  # m/s, O of an upright wheel under a torque about its axle
+    velocity = np.hypot(driven["X_O_dot"][-1], driven["Y_O_dot"][-1])
+    assert abs(velocity / speed - 1) < 1e-6  # measured 2.2e-16
+    assert abs(velocity / (speed * 19 / impulse) - 1) > 1e-6  # the ramp without its lag
+
+
+def test_the_c_example_compiles_and_gives_the_accelerations_that_ctypes_gives(root):
+    (source,) = blocks("c")
+    (root / "example.c").write_text(source)
+    printed = run(["bash", "-euc", blocks("bash")[1]], root)
+    from support import equations
+
+    wheel = equations.paper_wheel()
+    motion = equations.Motion(psi=1.570796, theta=1.308997, phi_dot=-2)
+    state = equations.start(equations.REDUCED, wheel, motion)
+    acceleration = equations.derivative(equations.REDUCED, equations.scene(wheel), state)[1]
+    normal = equations.dynamics(equations.REDUCED, equations.scene(wheel), state).lambda_[2]
+    assert printed == f"theta_ddot = {acceleration:.6f} rad/s2, N = {normal:.4f} N\n"
+    assert f"{acceleration * (1 + 1e-5):.6f}" not in printed
+
+
+def test_the_first_commands_exist_and_can_be_run():
+    commands = blocks("")[0].split()
+    assert commands == ["./scripts/run", "./scripts/test"]
+    assert all(os.access(ROOT / command, os.X_OK) for command in commands)
+    assert not os.access(ROOT / "README.md", os.X_OK)
+
+
+@pytest.mark.parametrize("page", variable_tables.PAGES, ids=lambda page: page.name)
+def test_the_tables_of_variables_are_those_of_the_description(page, description):
+    variables = variable_tables.read_variables()
+    assert [v.name for v in variables] == [v.name for v in description.modelVariables]
+    text = page.read_text(encoding="utf-8")
+    stale = "run scripts/variable_tables.py: the tables are not those of modelDescription.xml"
+    assert text == variable_tables.with_tables(text, variables, page), stale
+    assert text != variable_tables.with_tables(text, variables[1:], page)
+    for v in variables:
+        assert v.meaning in text.replace("&lt;", "<").replace("&gt;", ">"), v.name
+
+
+def local_links(path: Path) -> list[Path]:
+    text = path.read_text(encoding="utf-8")
+    targets = re.findall(r"\]\(([^)#\s]+)", text)
+    return [path.parent / unquote(t) for t in targets if "://" not in t]
+
+
+def test_every_link_of_the_documents_leads_to_a_file():
+    documents = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+    documents += sorted((ROOT / "docs").rglob("*.md"))
+    links = {document: local_links(document) for document in documents}
+    broken = [(d.name, str(link)) for d, found in links.items() for link in found if not link.exists()]
+    assert broken == []
+    assert len(links[ROOT / "README.md"]) > 10  # measured 19
+    decisions = {path.resolve() for path in (ROOT / "docs" / "decisions").glob("*.md")}
+    assert decisions <= {link.resolve() for link in local_links(ROOT / "docs" / "README.md")}
+
+
+class Tags(HTMLParser):
+    """Open elements, and what the page refers to."""
+
+    EMPTY = ("meta", "img", "br")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.references: list[str] = []
+        self.names: list[str] = []
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+        found = dict(attributes)
+        self.references += [found[key] for key in ("src", "href") if found.get(key)]
+        self.names += [found["id"]] if found.get("id") else []
+
+    def handle_startendtag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        pass  # such as <mspace/>: opens nothing, refers to nothing
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag, (tag, self.getpos())
+
+
+def test_the_fmus_page_is_well_formed_and_complete_offline(fmu):
+    folder = Path(fmu) / "documentation"
+    tags = Tags()
+    tags.feed((folder / "index.html").read_text(encoding="utf-8"))
+    assert tags.open == [] and len(tags.references) == 9
+    for reference in tags.references:
+        known = reference[1:] in tags.names if reference.startswith("#") else (folder / reference).is_file()
+        assert known, reference
+    with pytest.raises(AssertionError):
+        Tags().feed("<p><b>crossed</p></b>")
+
+
+def test_the_archive_carries_a_notice_for_everything_compiled_in(fmu):
+    licences = {path.name: path.read_text(encoding="utf-8") for path in (Path(fmu) / "licenses").iterdir()}
+    needed = {
+        "license.txt": "wheel.fmu founders",
+        "sundials-license.txt": "Lawrence Livermore",
+        "eigen-notice.txt": "Mozilla Public",
+        "fmi-headers-notice.txt": "Modelica Association",
+    }
+    for name, words in needed.items():
+        assert words in licences.get(name, ""), name
+        assert "no such words" not in licences[name]

@@ -1,0 +1,228 @@
+"""The paper's matrices and its system, (1)-(26), written once more in numpy, misprints included.
+
+An independent transcription: nothing here calls the product. Fixed axes for O and forces, body axes
+for rotation, Euler angles psi, theta, phi. Works on whole tables of states (leading axes) and on
+complex angles, so that a complex step gives every derivative to rounding.
+
+`printed` names the misprints that are kept as the paper has them: "U_theta" (5), "Q_theta" (9),
+"F_beta" (16, no sign). "F_beta_bracket" sets the sign of (16) without the bracket, on its first
+term alone. Without any of them the mended equations stand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+
+import numpy as np
+from support import equations as eq
+
+
+def matrix(*entries: np.ndarray | float) -> np.ndarray:
+    """3 x 3 matrices, row by row, from nine numbers or tables of numbers."""
+    shape = np.broadcast_shapes(*(np.shape(x) for x in entries))
+    out = np.empty((*shape, 9), np.result_type(*entries, float))
+    for i, entry in enumerate(entries):
+        out[..., i] = entry
+    return out.reshape(*shape, 3, 3)
+
+
+def column(*entries: np.ndarray | float) -> np.ndarray:
+    return np.stack(np.broadcast_arrays(*entries), axis=-1)
+
+
+def transposed(a: np.ndarray) -> np.ndarray:
+    return np.swapaxes(a, -1, -2)
+
+
+def times(a: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Matrix times column, over tables of both."""
+    return (a @ x[..., None])[..., 0]
+
+
+def scaled(factor: np.ndarray, a: np.ndarray) -> np.ndarray:
+    return np.asarray(factor)[..., None, None] * a
+
+
+def rotation_z(angle: np.ndarray) -> np.ndarray:
+    """(3), [psi] and [phi]."""
+    s, c = np.sin(angle), np.cos(angle)
+    return matrix(c, -s, 0, s, c, 0, 0, 0, 1)
+
+
+def rotation_x(angle: np.ndarray) -> np.ndarray:
+    """(3), [theta]."""
+    s, c = np.sin(angle), np.cos(angle)
+    return matrix(1, 0, 0, 0, c, -s, 0, s, c)
+
+
+U_Z = matrix(0, -1, 0, 1, 0, 0, 0, 0, 0)  # (5), [U_psi] = [U_phi]
+U_THETA = matrix(0, 0, 0, 0, 0, -1, 0, 1, 0)  # (5) mended
+U_THETA_PRINTED = matrix(0, 0, 0, 0, 0, -1, 1, 0, 0)  # (5) as printed
+
+
+class Paper:
+    """The matrices at states y = (q, q_dot), (25), for wheels with the header's constants."""
+
+    def __init__(self, wheel: np.ndarray, y: np.ndarray, printed: Iterable[str] = ()) -> None:
+        self.wheel, self.printed = wheel, frozenset(printed)
+        self.height = y[..., 2]  # Z_O
+        self.psi, self.theta, self.phi = (y[..., i] for i in (3, 4, 5))
+        self.q_dot, self.beta_dot = y[..., 6:], y[..., 9:]
+        self.sin_theta, self.cos_theta = np.sin(self.theta), np.cos(self.theta)
+        self.sin_phi, self.cos_phi = np.sin(self.phi), np.cos(self.phi)
+        self.phi_matrix = rotation_z(self.phi)
+        self.rho = wheel["r_0"] + wheel["r"] * self.sin_theta
+
+    @cached_property
+    def J(self) -> np.ndarray:  # (2)
+        w = self.wheel
+        return matrix(w["J_x"], 0, 0, 0, w["J_y"], 0, 0, 0, w["J_z"])
+
+    @cached_property
+    def A(self) -> np.ndarray:  # (4)
+        return rotation_z(self.psi) @ rotation_x(self.theta) @ self.phi_matrix
+
+    @cached_property
+    def A_psi(self) -> np.ndarray:  # (6)
+        return U_Z @ self.A
+
+    @cached_property
+    def A_theta(self) -> np.ndarray:  # (6) with (5)
+        generator = U_THETA_PRINTED if "U_theta" in self.printed else U_THETA
+        return self.A @ transposed(self.phi_matrix) @ generator @ self.phi_matrix
+
+    @cached_property
+    def A_phi(self) -> np.ndarray:  # (6)
+        return self.A @ U_Z
+
+    @cached_property
+    def A_dot(self) -> np.ndarray:  # (7)
+        psi_dot, theta_dot, phi_dot = (self.beta_dot[..., i] for i in range(3))
+        return scaled(psi_dot, self.A_psi) + scaled(theta_dot, self.A_theta) + scaled(phi_dot, self.A_phi)
+
+    @cached_property
+    def Q(self) -> np.ndarray:  # (8)
+        s, sp, cp = self.sin_theta, self.sin_phi, self.cos_phi
+        return matrix(s * sp, cp, 0, s * cp, -sp, 0, self.cos_theta, 0, 1)
+
+    @cached_property
+    def Q_theta(self) -> np.ndarray:  # (9)
+        c, sp, cp = self.cos_theta, self.sin_phi, self.cos_phi
+        last = 0 if "Q_theta" in self.printed else -self.sin_theta
+        return matrix(c * sp, 0, 0, c * cp, 0, 0, last, 0, 0)
+
+    @cached_property
+    def Q_phi(self) -> np.ndarray:  # (9)
+        s, sp, cp = self.sin_theta, self.sin_phi, self.cos_phi
+        return matrix(s * cp, -sp, 0, -s * sp, -cp, 0, 0, 0, 0)
+
+    @cached_property
+    def Q_dot(self) -> np.ndarray:  # (10)
+        return scaled(self.beta_dot[..., 1], self.Q_theta) + scaled(self.beta_dot[..., 2], self.Q_phi)
+
+    @cached_property
+    def r(self) -> np.ndarray:  # (11)
+        rho, eta, sp, cp = self.rho, self.wheel["r"] * self.cos_theta, self.sin_phi, self.cos_phi
+        return matrix(0, eta, -rho * cp, -eta, 0, rho * sp, rho * cp, -rho * sp, 0)
+
+    @cached_property
+    def r_theta(self) -> np.ndarray:  # (12)
+        s, c = self.wheel["r"] * self.sin_theta, self.wheel["r"] * self.cos_theta
+        sp, cp = self.sin_phi, self.cos_phi
+        return matrix(0, -s, -c * cp, s, 0, c * sp, c * cp, -c * sp, 0)
+
+    @cached_property
+    def r_phi(self) -> np.ndarray:  # (12)
+        rho, sp, cp = self.rho, self.sin_phi, self.cos_phi
+        return matrix(0, 0, rho * sp, 0, 0, rho * cp, -rho * sp, -rho * cp, 0)
+
+    @cached_property
+    def r_dot(self) -> np.ndarray:  # (13)
+        return scaled(self.beta_dot[..., 1], self.r_theta) + scaled(self.beta_dot[..., 2], self.r_phi)
+
+    def F(self, load: np.ndarray | None = None) -> np.ndarray:  # (15), generalised
+        weight = column(0, 0, -self.wheel["m"] * self.wheel["g"])
+        if load is None:
+            return np.concatenate([weight, np.zeros_like(weight)], axis=-1)
+        moment = times(transposed(self.phi_matrix), load["M"])  # carrier to body axes
+        return np.concatenate([weight + load["F"], moment], axis=-1)
+
+    @cached_property
+    def F_beta(self) -> np.ndarray:  # (16)
+        first = times(self.J @ self.Q_dot, self.beta_dot)
+        second = times(transposed(self.A) @ self.A_dot @ self.J @ self.Q, self.beta_dot)
+        if "F_beta" in self.printed:
+            return first + second
+        return second - first if "F_beta_bracket" in self.printed else -(first + second)
+
+    @cached_property
+    def M(self) -> np.ndarray:  # (18)
+        out = np.zeros((*np.shape(self.theta), 6, 6), self.theta.dtype)
+        out[..., :3, :3] = scaled(self.wheel["m"], np.eye(3))
+        out[..., 3:, 3:] = self.J @ self.Q
+        return out
+
+    @cached_property
+    def B(self) -> np.ndarray:  # (19)
+        turning = self.A @ transposed(self.r) @ self.Q
+        return np.concatenate([np.broadcast_to(np.eye(3), turning.shape), turning], axis=-1)
+
+    @cached_property
+    def B_dot(self) -> np.ndarray:  # (20)
+        r_T, r_dot_T = transposed(self.r), transposed(self.r_dot)
+        turning = self.A_dot @ r_T @ self.Q + self.A @ r_dot_T @ self.Q + self.A @ r_T @ self.Q_dot
+        return np.concatenate([np.zeros_like(turning), turning], axis=-1)
+
+    @cached_property
+    def omega_z(self) -> np.ndarray:  # (21)
+        return (self.Q[..., 2, :] * self.beta_dot).sum(-1)
+
+    def B_tilde(self, kappa: np.ndarray | float) -> np.ndarray:  # (22), (23)
+        """kappa stands for omega_z / |omega_z|."""
+        B_star = matrix(0, 0, 0, 0, 0, 0, 0, 0, -self.wheel["s"] * kappa)
+        lower = self.r @ transposed(self.A) + B_star
+        return np.concatenate([np.broadcast_to(np.eye(3), lower.shape), lower], axis=-2)
+
+    def system(self, kappa: np.ndarray | float, load: np.ndarray | None = None) -> tuple:
+        """Matrix and column of (24)."""
+        K = np.zeros((*np.shape(self.theta), 9, 9), self.theta.dtype)
+        K[..., :6, :6], K[..., :6, 6:], K[..., 6:, :6] = self.M, -self.B_tilde(kappa), self.B
+        F_tilde = np.concatenate([np.zeros_like(self.F_beta), self.F_beta], axis=-1)  # (17)
+        forces = self.F(load) + F_tilde
+        return K, np.concatenate([forces, -times(self.B_dot, self.q_dot)], axis=-1)
+
+    def solve(self, kappa: np.ndarray | float = 0, load: np.ndarray | None = None) -> np.ndarray:
+        """q_ddot and lambda of (24) with the axle moment -s lambda_3 kappa."""
+        K, right = self.system(kappa, load)
+        return np.linalg.solve(K, right[..., None])[..., 0]
+
+    def solve_held(self, load: np.ndarray | None = None) -> np.ndarray:
+        """q_ddot, lambda and tau: (24) bordered by omega_z_dot = 0 and the axle moment tau."""
+        K, right = self.system(0, load)
+        bordered = np.zeros((*K.shape[:-2], 10, 10), K.dtype)
+        bordered[..., :9, :9] = K
+        bordered[..., 5, 9] = -self.wheel["J_z"]  # the unknown is tau / J_z: all columns of one size
+        bordered[..., 9, 3:6] = self.Q[..., 2, :]
+        drift = (self.Q_dot[..., 2, :] * self.beta_dot).sum(-1)
+        right = np.concatenate([right, -drift[..., None]], axis=-1)
+        size = np.abs(bordered).max(axis=-1, keepdims=True)  # and all rows: rounding stays small
+        x = np.linalg.solve(bordered / size, right[..., None] / size)[..., 0]
+        return np.concatenate([x[..., :9], (self.wheel["J_z"] * x[..., 9])[..., None]], axis=-1)
+
+    @cached_property
+    def omega(self) -> np.ndarray:
+        """Angular velocity in body axes, (8)."""
+        return times(self.Q, self.beta_dot)
+
+    @cached_property
+    def energy(self) -> np.ndarray:
+        v = self.q_dot[..., :3]
+        turning = (self.omega * times(self.J, self.omega)).sum(-1)
+        m, g = self.wheel["m"], self.wheel["g"]
+        return 0.5 * (m * (v * v).sum(-1) + turning) + m * g * self.height
+
+
+def paper_table(**changes: float) -> np.ndarray:
+    """The paper's wheel (27)-(31) as one row of a table of constants."""
+    return np.array([eq.values(eq.paper_wheel(**changes))]).view(np.dtype(eq.Parameters))[0, 0]

@@ -1,0 +1,180 @@
+"""Motions whose accelerations are known in closed form, for both formulations.
+
+Upright straight rolling, the standing wheel, release from rest, and steady circles, at a thousand
+random wheels each. Carrier axes e1 (rolling), e2 (up the slope), e3 (axle); fixed axes for lambda.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from support import equations as eq
+
+from equations import random_scenes
+
+ROWS = 1000
+BOUND = 1e-11
+FORMULATIONS = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
+
+
+def still(kind: int, seed: int = 11) -> tuple[np.ndarray, np.ndarray]:
+    """Random wheels with J_x = J_y, no load, all rates zero."""
+    random = np.random.default_rng(seed)
+    scenes = random_scenes.scenes(random, kind, rows=ROWS)
+    scenes["load"] = np.zeros(1, scenes["load"].dtype)
+    scenes["wheel"]["g"] = random.uniform(1, 20, ROWS)
+    motions = random_scenes.motions(random, ROWS)
+    for rate in ("psi_dot", "theta_dot", "phi_dot"):
+        motions[rate] = 0
+    return scenes, motions
+
+
+def dynamics(formulation: eq.Formulation, scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
+    return eq.dynamics_each(formulation, scenes, eq.start_each(formulation, scenes, motions))
+
+
+def error(found: np.ndarray, exact: np.ndarray, size: np.ndarray | float = 1) -> float:
+    return float((np.abs(found - exact) / size).max())
+
+
+def weight(scenes: np.ndarray) -> np.ndarray:
+    return scenes["wheel"]["m"] * scenes["wheel"]["g"]
+
+
+def rolling_inertia(scenes: np.ndarray, tube: float = 1) -> np.ndarray:
+    """J_z + m (r_0 + r)^2: about the contact, upright."""
+    w = scenes["wheel"]
+    return w["J_z"] + w["m"] * (w["r_0"] + tube * w["r"]) ** 2
+
+
+@FORMULATIONS
+def test_upright_straight_rolling_slows_down_linearly_under_friction(
+    formulation: eq.Formulation,
+) -> None:
+    scenes, motions = still(eq.ROLLING)
+    sigma = scenes["friction"]["sigma"]
+    motions["theta"], motions["phi_dot"] = np.pi / 2, 3 * sigma
+    d = dynamics(formulation, scenes, motions)
+    slowing = -sigma * scenes["wheel"]["s"] * weight(scenes) / rolling_inertia(scenes)
+    thin = -sigma * scenes["wheel"]["s"] * weight(scenes) / rolling_inertia(scenes, tube=0)
+    size = np.abs(slowing)
+    assert error(d["omega_z_dot"], slowing, size) < BOUND  # measured 3.9e-16, multibody 3.0e-13
+    assert error(d["omega_z_dot"], -slowing, size) > 1.9  # wrong sign of the friction
+    assert error(d["omega_z_dot"], thin, size) > 0.1  # wheel without tube
+    assert error(d["lambda_"][:, 2], weight(scenes), weight(scenes)) < BOUND  # 5.3e-15
+    assert error(eq.columns(d, "theta_ddot", "psi_ddot"), np.zeros((ROWS, 2))) < BOUND
+
+
+@FORMULATIONS
+def test_an_upright_wheel_answers_a_drive_torque_and_a_push_as_a_roller(
+    formulation: eq.Formulation,
+) -> None:
+    scenes, motions = still(eq.FRICTIONLESS)
+    motions["theta"], motions["psi"] = np.pi / 2, 0  # rolling direction along X
+    torque, push = weight(scenes) * scenes["wheel"]["r_0"], 0.3 * weight(scenes)
+    radius = scenes["wheel"]["r_0"] + scenes["wheel"]["r"]
+    scenes["load"]["M"][:, 2], scenes["load"]["F"][:, 0] = torque, push
+    d = dynamics(formulation, scenes, motions)
+    spin_up = (torque - radius * push) / rolling_inertia(scenes)
+    assert error(d["omega_z_dot"], spin_up, np.abs(spin_up)) < BOUND  # measured 1.2e-14
+    assert error(d["X_O_ddot"], -radius * spin_up, np.abs(radius * spin_up)) < BOUND
+    assert error(d["omega_z_dot"], spin_up + 2 * radius * push / rolling_inertia(scenes)) > 0.1
+
+
+@FORMULATIONS
+def test_a_held_upright_wheel_is_held_by_the_moment_that_balances_drive_and_push(
+    formulation: eq.Formulation,
+) -> None:
+    scenes, motions = still(eq.HELD)
+    motions["theta"], motions["psi"] = np.pi / 2, 0
+    torque, push = weight(scenes) * scenes["wheel"]["r_0"], 0.3 * weight(scenes)
+    radius = scenes["wheel"]["r_0"] + scenes["wheel"]["r"]
+    scenes["load"]["M"][:, 2], scenes["load"]["F"][:, 0] = torque, push
+    d = dynamics(formulation, scenes, motions)
+    assert (d["omega_z_dot"] == 0).all()
+    assert error(d["tau"], radius * push - torque, torque) < BOUND  # measured 4.8e-15
+    assert error(d["tau"], -radius * push - torque, torque) > 0.3  # push the other way
+    assert error(d["X_O_ddot"], np.zeros(ROWS)) < BOUND
+
+
+@FORMULATIONS
+def test_a_wheel_released_from_rest_tips_about_its_contact(formulation: eq.Formulation) -> None:
+    scenes, motions = still(eq.HELD)
+    w = scenes["wheel"]
+    s, c = np.sin(motions["theta"]), np.cos(motions["theta"])
+    lever = w["r_0"] ** 2 + 2 * w["r_0"] * w["r"] * s + w["r"] ** 2  # contact to O, squared
+    tipping = -weight(scenes) * w["r_0"] * c / (w["J_x"] + w["m"] * lever)
+    size = weight(scenes) * w["r_0"] / w["J_x"]
+    d = dynamics(formulation, scenes, motions)
+    assert error(d["theta_ddot"], tipping, size) < BOUND  # measured 5.9e-16
+    assert error(d["theta_ddot"], tipping * (1 + w["r"] / w["r_0"] * s), size) > 0.01  # r counts
+
+
+def steady_spin(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
+    """omega_z of the steady circle at (theta, psi_dot); r = 0 leaves the textbook's
+
+    (J_z + m a^2) omega_z psi_dot sin - J_x psi_dot^2 sin cos + m g a cos = 0, a = r_0.
+    """
+    w, turn = scenes["wheel"], motions["psi_dot"]
+    s, c = np.sin(motions["theta"]), np.cos(motions["theta"])
+    rho, eta = w["r_0"] + w["r"] * s, w["r"] * c
+    level = rho * s + eta * c  # height of O
+    known = (w["J_x"] * c + w["m"] * eta * level) * turn**2 * s - weight(scenes) * w["r_0"] * c
+    return known / (turn * (w["J_z"] * s + w["m"] * rho * level))
+
+
+def circling(kind: int, thin: bool) -> tuple[np.ndarray, np.ndarray]:
+    scenes, motions = still(kind)
+    if thin:
+        scenes["wheel"]["r"] = 0
+    random = np.random.default_rng(12)
+    motions["psi_dot"] = random.choice([-1, 1], ROWS) * random.uniform(0.5, 5, ROWS)
+    spin = steady_spin(scenes, motions)
+    motions["phi_dot"] = spin - motions["psi_dot"] * np.cos(motions["theta"])
+    return scenes, motions
+
+
+@FORMULATIONS
+def test_the_textbooks_steady_circle_of_the_thin_disc_is_steady(
+    formulation: eq.Formulation,
+) -> None:
+    scenes, motions = circling(eq.FRICTIONLESS, thin=True)
+    w, turn = scenes["wheel"], motions["psi_dot"]
+    s, c = np.sin(motions["theta"]), np.cos(motions["theta"])
+    omega_z, a = motions["phi_dot"] + turn * c, w["r_0"]
+    terms = [(w["J_z"] + w["m"] * a**2) * omega_z * turn * s, -w["J_x"] * turn**2 * s * c]
+    terms.append(weight(scenes) * a * c)
+    assert error(sum(terms), np.zeros(ROWS), np.abs(terms).max(axis=0)) < BOUND  # textbook
+    assert unsteadiness(formulation, scenes, motions) < BOUND  # 1.1e-13
+    motions["phi_dot"] *= 1 + 1e-6
+    assert unsteadiness(formulation, scenes, motions) > 1e-7  # 1.6e-5
+
+
+@FORMULATIONS
+def test_the_torus_circles_steadily_with_friction_balanced_by_the_drive(
+    formulation: eq.Formulation,
+) -> None:
+    scenes, motions = circling(eq.ROLLING, thin=False)
+    sigma = scenes["friction"]["sigma"]
+    scenes["load"]["M"][:, 2] = sigma * scenes["wheel"]["s"] * weight(scenes)
+    assert unsteadiness(formulation, scenes, motions) < BOUND  # 3.7e-14
+    scenes["friction"]["sigma"] = -sigma
+    assert unsteadiness(formulation, scenes, motions) > 0.1  # friction drives: 0.74
+
+
+def unsteadiness(formulation: eq.Formulation, scenes: np.ndarray, motions: np.ndarray) -> float:
+    """How far from: no angular acceleration, N = m g, ground pulls inwards by m v psi_dot."""
+    d = dynamics(formulation, scenes, motions)
+    k = eq.kinematics_each(formulation, scenes, eq.start_each(formulation, scenes, motions))
+    rates = np.abs(eq.columns(motions, "psi_dot", "phi_dot")).max(axis=1) ** 2
+    turning = eq.columns(d, "psi_ddot", "theta_ddot", "omega_z_dot")
+    turning[:, 0] *= np.sin(motions["theta"])
+    size = rates + scenes["wheel"]["g"] / scenes["wheel"]["r_0"]
+    speed = np.hypot(k["X_O_dot"], k["Y_O_dot"])
+    pull = scenes["wheel"]["m"] * speed * np.abs(motions["psi_dot"])
+    along_the_ground = np.hypot(d["lambda_"][:, 0], d["lambda_"][:, 1])
+    return max(
+        error(turning, np.zeros((ROWS, 3)), size[:, None]),
+        error(d["lambda_"][:, 2], weight(scenes), weight(scenes)),
+        error(along_the_ground, pull, pull + weight(scenes)),
+    )

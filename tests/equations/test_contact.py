@@ -1,0 +1,118 @@
+"""Contact point and the ground's force in wheel axes, against geometry and turned reactions. Fixed axes."""
+
+from __future__ import annotations
+
+from ctypes import byref, c_double
+
+from support import equations as eq
+import numpy as np
+import pytest
+from equations import random_scenes
+from equations.paper_transcription import Paper, times
+
+ROWS = 2000
+Table = np.ndarray
+
+
+def rolling() -> tuple[Table, Table, Table]:
+    """Scenes, the multibody form's kinematics and its dynamics, any inertia."""
+    random = np.random.default_rng(91)
+    scenes = random_scenes.scenes(random, eq.ROLLING, symmetric=False, rows=ROWS)
+    y = eq.start_each(eq.MULTIBODY, scenes, random_scenes.motions(random, ROWS))
+    return scenes, eq.kinematics_each(eq.MULTIBODY, scenes, y), eq.dynamics_each(eq.MULTIBODY, scenes, y)
+
+
+def contacts(scenes: Table, k: Table) -> Table:
+    """X_C, Y_C, X_C_dot, Y_C_dot row by row."""
+    rows = [
+        eq.LIBRARY.wheel_contact(
+            byref(eq.Parameters.from_buffer_copy(wheel)), byref(eq.Kinematics.from_buffer_copy(motion))
+        )
+        for wheel, motion in zip(scenes["wheel"], k, strict=True)
+    ]
+    return np.array([eq.values(row) for row in rows])
+
+
+def horizontal(k: Table, *lambdas: Table) -> Table:
+    """wheel_horizontal_force(lambda), or ..._rates(lambda, lambda_dot), row by row."""
+    function = (eq.LIBRARY.wheel_horizontal_force, eq.LIBRARY.wheel_horizontal_force_rates)[len(lambdas) - 1]
+    out = np.zeros((len(k), 2))
+    eq.each(function, k, *(np.ascontiguousarray(x) for x in lambdas), out)
+    return out
+
+
+def test_the_contact_is_the_lowest_point_of_the_torus() -> None:
+    scenes, k, _ = rolling()
+    paper = Paper(scenes["wheel"], eq.columns(k, *k.dtype.names[:12]))
+    to_contact = np.stack([paper.r[:, 2, 1], paper.r[:, 0, 2], paper.r[:, 1, 0]], axis=-1)  # body axes, (11)
+    place = eq.columns(k, "X_O", "Y_O", "Z_O") + times(paper.A, to_contact)
+    found = contacts(scenes, k)
+    assert np.abs(found[:, :2] - place[:, :2]).max() < 1e-13  # m; measured 8.9e-16
+    assert np.abs(place[:, 2]).max() < 1e-13  # it lies on the ground
+    k["theta"] += 1e-9
+    assert np.abs(contacts(scenes, k)[:, :2] - place[:, :2]).max() > 1e-10
+
+
+def test_the_velocity_of_the_contact_is_the_slope_of_its_place() -> None:
+    scenes, k, _ = rolling()
+    h = 1e-5
+    ahead, behind = k.copy(), k.copy()
+    for name in ("X_O", "Y_O", "psi", "theta"):
+        ahead[name] += h * k[name + "_dot"]
+        behind[name] -= h * k[name + "_dot"]
+    slope = (contacts(scenes, ahead) - contacts(scenes, behind))[:, :2] / (2 * h)
+    found = contacts(scenes, k)[:, 2:]
+    speed = np.abs(found).max()
+    assert np.abs(found - slope).max() / speed < 1e-8  # measured 4.1e-9, the difference's own error
+    k["theta_dot"] *= 1.001
+    assert np.abs(contacts(scenes, k)[:, 2:] - slope).max() / speed > 1e-5
+
+
+def test_an_upright_wheel_touches_below_its_centre() -> None:
+    wheel, motion = eq.paper_wheel(), eq.Motion(0.4, np.pi / 2, 0, 0, 0, -2, 3, 4)
+    k = eq.kinematics(eq.REDUCED, wheel, eq.start(eq.REDUCED, wheel, motion))
+    found = eq.values(eq.LIBRARY.wheel_contact(byref(wheel), byref(k)))
+    assert found == pytest.approx([3, 4, 0.7 * np.cos(0.4), 0.7 * np.sin(0.4)], abs=1e-15)
+    leaning = eq.Motion(0.4, 1.3, 0, 0, 0, -2, 3, 4)
+    k = eq.kinematics(eq.REDUCED, wheel, eq.start(eq.REDUCED, wheel, leaning))
+    assert abs(eq.LIBRARY.wheel_contact(byref(wheel), byref(k)).X_C - 3) > 0.01
+
+
+def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
+    scenes, k, d = rolling()
+    e1 = np.column_stack([np.cos(k["psi"]), np.sin(k["psi"]), np.zeros(ROWS)])
+    left = np.cross([0, 0, 1], e1)
+    expected = np.column_stack([(d["lambda_"] * e1).sum(axis=1), (d["lambda_"] * left).sum(axis=1)])
+    found = horizontal(k, d["lambda_"])
+    size = np.abs(d["lambda_"]).max()
+    assert np.abs(found - expected).max() / size < 1e-14  # measured 0
+    assert np.abs(found - expected * [1, -1]).max() / size > 0.1  # to the right
+    assert np.hypot(*found.T) == pytest.approx(np.hypot(*d["lambda_"][:, :2].T), rel=1e-13)
+
+
+def test_the_rates_of_the_force_in_wheel_axes_know_that_the_axes_turn() -> None:
+    scenes, k, d = rolling()
+    random, h = np.random.default_rng(92), 1e-6
+    lambda_dot = d["lambda_"] * random.normal(size=(ROWS, 3))
+
+    def after(time: float) -> Table:
+        moved = k.copy()
+        moved["psi"] += time * k["psi_dot"]
+        return horizontal(moved, d["lambda_"] + time * lambda_dot)
+
+    slope = (after(h) - after(-h)) / (2 * h)
+    found = horizontal(k, d["lambda_"], lambda_dot)
+    size = np.abs(slope).max()
+    assert np.abs(found - slope).max() / size < 1e-9  # measured 3.5e-11
+    assert np.abs(horizontal(k, lambda_dot) - slope).max() / size > 0.1  # axes that stand still
+
+
+def test_an_upright_driven_wheel_pushes_along_e1_only() -> None:
+    wheel = eq.paper_wheel()
+    scene = eq.scene(wheel, moment=(0, 0, -30))
+    y = eq.start(eq.REDUCED, wheel, eq.Motion(0.7, np.pi / 2, 0, 0, 0, -2, 0, 0))
+    k, d, force = eq.kinematics(eq.REDUCED, wheel, y), eq.dynamics(eq.REDUCED, scene, y), (c_double * 2)()
+    eq.LIBRARY.wheel_horizontal_force(byref(k), (c_double * 3)(*d.lambda_), force)
+    traction = 30 * 0.35 * wheel.m / (wheel.J_z + wheel.m * 0.35**2)
+    assert list(force) == pytest.approx([traction, 0], abs=1e-12)
+    assert abs(d.lambda_[0] - traction) > 1  # in fixed axes it is not along X

@@ -1,0 +1,227 @@
+"""Three formulations, one wheel: reduced, multibody (24), and two derivations that share no code.
+
+Pointwise, at ten thousand random states each: wheels, motions and loads of random_scenes.py. The
+numpy transcription of the paper and the rotation-matrix reference under reference/ judge the
+product. Errors are relative to the largest entry of their group: accelerations of O, of the angles
+and the axle, reactions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from reference.model import Wheel
+from reference.motion import accelerations
+from support import equations as eq
+
+from equations import random_scenes
+from equations.multibody_transcription import omega_z_dot, papers_state, solved
+from equations.paper_transcription import Paper
+
+BOUND = 1e-11
+GROUPS = (
+    ("X_O_ddot", "Y_O_ddot", "Z_O_ddot"),
+    ("psi_ddot", "theta_ddot", "phi_ddot", "omega_z_dot"),
+    ("lambda_",),
+)
+ACCELERATIONS = (*GROUPS[0], *GROUPS[1][:3])
+each_kind = pytest.mark.parametrize("kind", eq.LAWS.values(), ids=eq.LAWS.keys())
+
+
+def draw(seed: int, kind: int | None = None, symmetric: bool = True) -> tuple[np.ndarray, np.ndarray]:
+    random = np.random.default_rng(seed)
+    return random_scenes.scenes(random, kind, symmetric), random_scenes.motions(random)
+
+
+def answer(formulation: eq.Formulation, scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
+    return eq.dynamics_each(formulation, scenes, eq.start_each(formulation, scenes, motions))
+
+
+def relative(a: np.ndarray, b: np.ndarray) -> float:
+    """Largest error over the rows, each relative to the row's largest entry."""
+    size = np.abs(b).max(axis=1)
+    return float((np.abs(a - b).max(axis=1) / np.where(size > 0, size, 1)).max())
+
+
+def distance(a: np.ndarray, b: np.ndarray, scenes: np.ndarray) -> float:
+    """Largest relative error over all groups of WheelDynamics; tau is measured by r_0 lambda."""
+    errors = [relative(eq.columns(a, *names), eq.columns(b, *names)) for names in GROUPS]
+    force = scenes["wheel"]["r_0"] * np.abs(b["lambda_"]).max(axis=1)
+    errors.append(float((np.abs(a["tau"] - b["tau"]) / (force + np.abs(b["tau"]))).max()))
+    return max(errors)
+
+
+@each_kind
+def test_reduced_and_multibody_give_the_same_accelerations_and_reactions(kind: int) -> None:
+    scenes, motions = draw(1, kind)
+    multibody = answer(eq.MULTIBODY, scenes, motions)
+    reduced = answer(eq.REDUCED, scenes, motions)
+    assert distance(reduced, multibody, scenes) < BOUND  # measured 2.7e-14 to 5.0e-14
+    scenes["wheel"]["J_x"] *= 1 + 1e-9
+    disturbed = answer(eq.REDUCED, scenes, motions)
+    assert distance(disturbed, multibody, scenes) > 10 * BOUND  # 3.4e-8
+
+
+def test_the_random_states_include_both_signs_of_the_normal_force() -> None:
+    scenes, motions = draw(1, eq.ROLLING)
+    dynamics = answer(eq.MULTIBODY, scenes, motions)
+    pulls = dynamics["lambda_"][:, 2] <= 0
+    assert 0.2 < pulls.mean() < 0.8  # 0.54
+    braked = -scenes["friction"]["sigma"] * scenes["load"]["brake"]
+    assert (dynamics["tau"][pulls] == braked[pulls]).all()  # no pressure, no friction but the brake's
+    assert (dynamics["tau"][~pulls] != braked[~pulls]).all()
+    assert 0.3 < (braked[pulls] != 0).mean() < 0.6  # 0.45
+
+
+def test_reduced_and_multibody_give_the_same_positions_and_velocities() -> None:
+    scenes, motions = draw(2)
+    reduced, multibody = (
+        eq.kinematics_each(f, scenes, eq.start_each(f, scenes, motions)) for f in (eq.REDUCED, eq.MULTIBODY)
+    )
+    a, b = (eq.columns(k, *k.dtype.names) for k in (reduced, multibody))
+    assert relative(a, b) < 1e-13  # 9.1e-16
+    given = eq.columns(motions, *motions.dtype.names)
+    assert relative(eq.columns(reduced, *motions.dtype.names), given) < 1e-13  # 2.7e-16
+    scenes["wheel"]["r"] += 1e-9
+    moved = eq.kinematics_each(eq.REDUCED, scenes, eq.start_each(eq.REDUCED, scenes, motions))
+    assert relative(eq.columns(moved, *moved.dtype.names), b) > 1e-12  # r longer by 1 nm: 1.4e-9
+
+
+def test_the_pose_is_the_kinematics_without_the_horizontal_velocity() -> None:
+    scenes, motions = draw(2)
+    kept = [name for name, _ in eq.Kinematics._fields_ if name not in ("X_O_dot", "Y_O_dot")]
+    for formulation in (eq.REDUCED, eq.MULTIBODY):
+        y = eq.start_each(formulation, scenes, motions)
+        whole, pose = eq.kinematics_each(formulation, scenes, y), eq.table(eq.Kinematics, len(y))
+        eq.each(formulation.pose, scenes, y, pose)
+        assert (eq.columns(pose, *kept) == eq.columns(whole, *kept)).all()
+        assert (eq.columns(whole, *kept) != 0).all()  # nothing is equal for want of a value
+        y[:, formulation.spin_index] += 1e-9
+        eq.each(formulation.pose, scenes, y, pose)
+        assert (pose["omega_z"] != whole["omega_z"]).all()
+
+
+@each_kind
+def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(kind: int) -> None:
+    scenes, motions = draw(3, kind)
+    for formulation, rates in ((eq.REDUCED, reduced_rates), (eq.MULTIBODY, multibody_rates)):
+        y = eq.start_each(formulation, scenes, motions)
+        y_dot, normal = eq.derivative_each(formulation, scenes, y)
+        k = eq.kinematics_each(formulation, scenes, y)
+        dynamics = eq.dynamics_each(formulation, scenes, y)
+        stated = rates(k, dynamics)
+        exact = 8 if formulation is eq.REDUCED else 6  # multibody: the height drawn by rounding, else copies
+        assert relative(y_dot[:, :exact], stated[:, :exact]) < 1e-13  # 9.2e-16
+        assert relative(y_dot, stated * np.where(np.arange(y.shape[1]) == 0, 1.001, 1)) > 1e-5
+        force = dynamics["lambda_"]
+        if formulation is eq.REDUCED:
+            assert (normal == force[:, 2]).all()
+        # multibody: two solutions of (24), stabilised and pure, each with rounding of its own
+        assert relative(y_dot, stated) < 1e-12  # 1.4e-14, held 8.0e-14
+        assert (np.abs(normal - force[:, 2]) / np.abs(force).max(axis=1)).max() < 1e-12  # 2.1e-14
+
+
+def reduced_rates(k: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """y_dot from positions, velocities and accelerations; omega_2 = psi_dot sin(theta)."""
+    s, c = np.sin(k["theta"]), np.cos(k["theta"])
+    omega_2_dot = d["psi_ddot"] * s + k["psi_dot"] * k["theta_dot"] * c
+    first = [k["theta_dot"], d["theta_ddot"], omega_2_dot, d["omega_z_dot"]]
+    return np.column_stack([*first, eq.columns(k, "psi_dot", "phi_dot", "X_O_dot", "Y_O_dot")])
+
+
+def multibody_rates(k: np.ndarray, d: np.ndarray) -> np.ndarray:
+    rates = ("X_O_dot", "Y_O_dot", "Z_O_dot", "psi_dot", "theta_dot", "phi_dot")
+    return np.hstack([eq.columns(k, *rates), eq.columns(d, *ACCELERATIONS[:5], "omega_z_dot")])
+
+
+def test_spin_and_tilt_are_omega_z_and_theta() -> None:
+    scenes, motions = draw(4)
+    for formulation in (eq.REDUCED, eq.MULTIBODY):
+        y = eq.start_each(formulation, scenes, motions)
+        k = eq.kinematics_each(formulation, scenes, y)
+        assert (y[:, formulation.spin_index] == k["omega_z"]).all()
+        assert (y[:, formulation.tilt_index] == k["theta"]).all()
+        assert not np.allclose(k["omega_z"], k["phi_dot"])
+
+
+def transcribed(scenes: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """WheelDynamics at the product's states y from the numpy transcription of (24)."""
+    paper = Paper(scenes["wheel"], papers_state(y))
+    x = solved(paper, scenes)
+    out = eq.table(eq.Dynamics, len(x))
+    for i, name in enumerate(ACCELERATIONS):
+        out[name] = x[:, i]
+    out["lambda_"], out["tau"] = x[:, 6:9], x[:, 9]
+    out["omega_z_dot"] = omega_z_dot(paper, x, scenes)
+    return out
+
+
+@each_kind
+def test_multibody_solves_the_papers_system_24_for_any_inertia(kind: int) -> None:
+    scenes, motions = draw(5, kind, symmetric=False)
+    y = eq.start_each(eq.MULTIBODY, scenes, motions)
+    multibody = eq.dynamics_each(eq.MULTIBODY, scenes, y)
+    assert distance(multibody, transcribed(scenes, y), scenes) < BOUND  # 4.3e-14, held 1.0e-13
+    scenes["wheel"]["J_y"] *= 1 + 1e-9
+    assert distance(multibody, transcribed(scenes, y), scenes) > 10 * BOUND  # 3.8e-8
+
+
+def referenced(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
+    """WheelDynamics from the reference; without pressure there is no friction but the brake's."""
+    out = eq.table(eq.Dynamics, len(scenes))
+    y = eq.start_each(eq.MULTIBODY, scenes, motions)
+    omega_z = eq.kinematics_each(eq.MULTIBODY, scenes, y)["omega_z"]
+    for row, scene, motion, spin in zip(out, scenes, motions, omega_z.tolist(), strict=True):
+        wheel, friction = Wheel(*scene["wheel"].tolist()), scene["friction"]
+        sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])][friction["kind"] - eq.FRICTIONLESS]
+        angles, rates = motion.tolist()[:3], motion.tolist()[3:6]
+        *loads, brake = scene["load"].tolist()
+        found = accelerations(wheel, angles, rates, *loads, sigma, brake)
+        if friction["kind"] in (eq.ROLLING, eq.REGULARIZED) and found.lambda_3 <= 0:
+            found = accelerations(replace(wheel, s=0.0), angles, rates, *loads, sigma, brake)
+        for name in (*ACCELERATIONS, "tau"):
+            row[name] = getattr(found, name)
+        row["lambda_"] = found.lambda_1, found.lambda_2, found.lambda_3
+    s, c = np.sin(motions["theta"]), np.cos(motions["theta"])
+    turning = out["psi_ddot"] * c - motions["psi_dot"] * motions["theta_dot"] * s
+    out["omega_z_dot"] = out["phi_ddot"] + turning
+    return out
+
+
+@pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
+def test_both_formulations_agree_with_the_independent_reference(symmetric: bool) -> None:
+    scenes, motions = draw(6, symmetric=symmetric)
+    reference = referenced(scenes, motions)
+    for formulation in (eq.REDUCED, eq.MULTIBODY):
+        found = answer(formulation, scenes, motions)
+        assert distance(found, reference, scenes) < BOUND  # measured 1.1e-13 to 1.4e-13
+        disturbed = scenes.copy()
+        disturbed["wheel"]["J_z"] *= 1 + 1e-9
+        found = answer(formulation, disturbed, motions)
+        assert distance(found, reference, scenes) > 10 * BOUND  # 2.8e-8
+
+
+@pytest.mark.parametrize(("lever", "change"), [(0.2, 0.03), (1.0, 0.15), (10.0, 1.4)])
+def test_unequal_inertia_lets_friction_change_N_by_little_unless_s_is_absurd(lever: float, change: float) -> None:
+    scenes, motions = draw(1, eq.ROLLING, symmetric=False)
+    scenes["wheel"]["s"] = lever * scenes["wheel"]["r_0"]
+    paper = Paper(scenes["wheel"], papers_state(eq.start_each(eq.MULTIBODY, scenes, motions)))
+    free, rolling = (paper.solve(k, scenes["load"]) for k in (0, scenes["friction"]["sigma"]))
+    ratio = free[:, 8] / rolling[:, 8]  # 1 + s sigma N_1
+    assert np.abs(ratio - 1).max() < change  # measured 0.028, 0.140, 1.397
+    assert np.abs(ratio - 1).max() > 0.8 * change
+    assert (ratio.min() > 0) == (lever < 10)  # Painleve's paradox below 0
+
+
+@pytest.mark.parametrize("rates", [(0, 0, 0), (1, 0, -2), (1, 0.5, -2)])
+def test_a_wheel_that_lies_flat_has_no_finite_derivative(rates: tuple[float, float, float]) -> None:
+    scene = eq.scene(eq.paper_wheel())
+    for formulation in (eq.REDUCED, eq.MULTIBODY):
+        flat, nearly = (
+            eq.derivative(formulation, scene, eq.start(formulation, scene.wheel, eq.Motion(0, theta, 0.2, *rates)))
+            for theta in (0, 1e-6)
+        )
+        assert not np.isfinite(flat).all()
+        assert np.isfinite(nearly).all()

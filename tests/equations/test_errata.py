@@ -1,0 +1,205 @@
+"""The paper's misprints, each proven by what it does: docs/errata.md lists them.
+
+The numpy transcription of (1)-(24) keeps a misprint on request. Matrices are held against exact
+derivatives (complex step); the paper's free wheel (27)-(33) is set rolling with SciPy.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from support import equations as eq
+
+from equations.multibody_transcription import papers_state
+from equations.paper_transcription import Paper, paper_table, times, transposed
+
+STEP = 1e-40
+WHEEL = paper_table()
+ENERGY = 75.1168064  # J, at the start of the free wheel
+START = eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
+PSI, THETA, PHI = 3, 4, 5
+
+
+def papers_start() -> np.ndarray:
+    return papers_state(eq.start(eq.MULTIBODY, eq.paper_wheel(), START))
+
+
+def states() -> np.ndarray:
+    random = np.random.default_rng(24)
+    y = random.normal(0, 2, (1000, 12))
+    y[:, THETA] = random.uniform(0.05, np.pi - 0.05, len(y))
+    return y
+
+
+def worst(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.abs(a - b).max())
+
+
+def slope(name: str, angle: int) -> np.ndarray:
+    return getattr(Paper(WHEEL, states() + 1j * STEP * np.eye(12)[angle]), name).imag / STEP
+
+
+@cache
+def rolled(end: float, *printed: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Instants, states and energies of the free wheel, with the named misprints kept.
+
+    Ends early where O reaches the ground: Z_O = 0.
+    """
+
+    def rate(_t: float, y: np.ndarray) -> np.ndarray:
+        return np.concatenate([y[6:], Paper(WHEEL, y, printed).solve()[:6]])
+
+    def above_ground(_t: float, y: np.ndarray) -> float:
+        return y[2]
+
+    above_ground.terminal = True
+    times_out = np.linspace(0, end, 501)
+    run = solve_ivp(
+        rate,
+        (0, end),
+        papers_start(),
+        "DOP853",
+        times_out,
+        events=above_ground,
+        rtol=1e-9,
+        atol=1e-9,
+    )
+    return run.t, run.y.T, Paper(WHEEL, run.y.T).energy
+
+
+def test_mended_the_free_wheel_keeps_its_energy_and_stays_on_the_ground() -> None:
+    t, y, energy = rolled(10.0)
+    assert t[-1] == 10
+    assert worst(energy, ENERGY) < 1e-6  # J; measured 1.4e-7
+    assert worst(y[:, 2], 0.3 * np.sin(y[:, THETA]) + 0.05) < 1e-7  # m; measured 4.6e-10
+    assert np.degrees(y[:, THETA].min()) > 27  # 27.92
+
+
+def test_printed_U_theta_of_5_is_not_the_generator_of_A_theta() -> None:
+    paper = Paper(WHEEL, states(), ["U_theta"])
+    assert worst(Paper(WHEEL, states()).A_theta, slope("A", THETA)) < 1e-14  # measured 3.3e-16
+    assert worst(paper.A_theta, slope("A", THETA)) > 1
+    spin = transposed(paper.A) @ paper.A_dot
+    assert worst(spin, -transposed(spin)) > 1  # [A]^T[A_dot] is no angular velocity: 9.9
+
+
+def test_printed_U_theta_of_5_sinks_the_free_wheel_into_the_ground() -> None:
+    t, y, energy = rolled(10.0, "U_theta")
+    assert 1.5 < t[-1] < 1.7  # O on the ground at 1.607 s
+    assert worst(y[:, 2], 0.3 * np.sin(y[:, THETA]) + 0.05) > 0.2  # 0.242 m off the constraint
+    assert energy.min() < 20  # 18.8 J
+
+
+def test_printed_Q_theta_of_9_is_not_the_derivative_of_Q() -> None:
+    assert worst(Paper(WHEEL, states()).Q_theta, slope("Q", THETA)) < 1e-14  # measured 2.2e-16
+    printed = Paper(WHEEL, states(), ["Q_theta"]).Q_theta
+    difference = printed - slope("Q", THETA)
+    assert worst(difference[:, 2, 0], np.sin(states()[:, THETA])) < 1e-14  # there and only there
+    difference[:, 2, 0] = 0
+    assert np.abs(difference).max() < 1e-14  # measured 2.2e-16
+
+
+def test_printed_Q_theta_of_9_lets_the_energy_of_the_free_wheel_wander() -> None:
+    t, _, energy = rolled(10.0, "Q_theta")
+    assert t[-1] == 10
+    assert energy.min() < 0.8 * ENERGY  # 57.7 J
+    assert energy.max() > 2.4 * ENERGY  # 193.7 J
+
+
+def test_printed_sign_of_F_beta_16_turns_eulers_equations_round() -> None:
+    y = states()
+    mended, printed = Paper(WHEEL, y), Paper(WHEEL, y, ["F_beta"])
+    drift = times(mended.J @ mended.Q_dot, mended.beta_dot)
+    gyroscopic = drift + np.cross(mended.omega, times(mended.J, mended.omega))
+    assert worst(mended.F_beta, -gyroscopic) < 1e-12  # measured 1.8e-14
+    assert worst(printed.F_beta, -gyroscopic) > 1  # 102
+
+
+def test_printed_sign_of_F_beta_16_drives_the_free_wheel_through_the_ground() -> None:
+    t, y, energy = rolled(0.7, "F_beta")
+    flat = np.flatnonzero(y[:, THETA] < 0)[0]
+    assert 0.57 < t[flat] < 0.60  # 0.583 s
+    assert t[-1] < 0.62  # O itself reaches the ground at 0.606 s
+    assert energy.max() > 1.08 * ENERGY  # 81.3 J
+
+
+def test_a_sign_without_the_bracket_of_16_keeps_the_energy_but_not_the_motion() -> None:
+    _, y, energy = rolled(0.8, "F_beta_bracket")
+    assert worst(energy, ENERGY) < 1e-6  # the term at fault does no work; measured 1.0e-7
+    assert np.degrees(y[:, THETA].min()) < 1  # degrees; 0.25
+    _, y, _ = rolled(10.0)
+    assert np.degrees(y[:, THETA].min()) > 27  # 27.92
+
+
+def test_16_needs_its_bracket_for_both_terms_to_be_of_one_dimension() -> None:
+    y, faster = states(), states()
+    faster[:, 6:] *= 3  # a unit of time three times as long
+
+    def terms(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        paper = Paper(WHEEL, y)
+        gyroscopic = transposed(paper.A) @ paper.A_dot @ paper.J @ paper.Q
+        return paper.J @ paper.Q_dot, times(gyroscopic, paper.beta_dot)
+
+    (first, second), (first_faster, second_faster) = terms(y), terms(faster)
+    assert first.shape[1:] == (3, 3)  # a matrix
+    assert second.shape[1:] == (3,)  # plus a column
+    assert worst(first_faster, 3 * first) < 1e-12  # 1/s ...
+    assert worst(second_faster, 9 * second) < 1e-12  # ... plus 1/s2
+    assert worst(first_faster, 9 * first) > 1
+
+
+def test_24_taken_as_printed_for_q_dot_contradicts_the_constraint_19() -> None:
+    t, y, _ = rolled(10.0)
+    paper = Paper(WHEEL, y[t == 1][0])
+    assert np.abs(times(paper.B, paper.q_dot)).max() < 1e-8  # the wheel rolls
+    assert np.abs(times(paper.B_dot, paper.q_dot)).max() > 0.5  # so [B]{q_dot} != -[B_dot]{q_dot}
+    x = paper.solve()[:6]
+    assert worst(times(paper.B, x), -times(paper.B_dot, paper.q_dot)) < 1e-12
+    assert worst(x, paper.q_dot) > 1
+
+
+def test_24_yields_accelerations_by_their_dimension() -> None:
+    y, wheel = states(), WHEEL.copy()
+    slow = Paper(wheel, y).solve()
+    y[:, 6:] *= 3  # a unit of time three times as long
+    wheel["g"] *= 9
+    fast = Paper(wheel, y).solve()
+    size = np.abs(fast).max(axis=1, keepdims=True)
+    assert worst(fast / size, 9 * slow / size) < 1e-12  # 1/s2: accelerations and forces
+    assert worst(fast / size, 3 * slow / size) > 0.1  # not 1/s
+
+
+def test_the_minus_of_24_belongs_to_B_tilde_alone() -> None:
+    paper = Paper(WHEEL, papers_start())
+    assert paper.M.shape == (6, 6)
+    assert paper.B_tilde(0).shape == (6, 3)  # a block beside [M]; no difference is defined
+    K, column = paper.system(0)
+    weight = 20 * 9.81
+    assert 0.9 * weight < np.linalg.solve(K, column)[8] < weight  # the ground presses upwards
+    K[:6, 6:] *= -1
+    assert np.linalg.solve(K, column)[8] < -0.9 * weight
+
+
+def test_22_says_nothing_at_omega_z_zero_where_the_held_moment_is_finite() -> None:
+    y = papers_start()
+    y[[9, 11]] = 0
+    with np.errstate(invalid="ignore"):
+        sign = Paper(WHEEL, y).omega_z / np.abs(Paper(WHEEL, y).omega_z)
+    assert np.isnan(sign)
+    assert np.isfinite(Paper(WHEEL, y).solve_held()).all()
+
+
+def test_31_gives_the_inertia_of_the_ring_not_of_the_torus() -> None:
+    edges = (np.arange(60) + 0.5) / 60
+    a, b, u = np.meshgrid(0.05 * edges, 2 * np.pi * edges, 2 * np.pi * edges)
+    out, z = 0.3 + a * np.cos(b), a * np.sin(b)
+    mass = a * out / (a * out).sum() * 20  # equal density
+    J_x = (mass * ((out * np.sin(u)) ** 2 + z**2)).sum()
+    J_z = (mass * out**2).sum()
+    assert J_x == pytest.approx(20 * (0.3**2 / 2 + 5 / 8 * 0.05**2), rel=1e-4)
+    assert J_z == pytest.approx(20 * (0.3**2 + 3 / 4 * 0.05**2), rel=1e-4)
+    assert 1.03 < J_x / 0.9 < 1.04
+    assert 1.02 < J_z / 1.8 < 1.03

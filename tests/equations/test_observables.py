@@ -1,0 +1,147 @@
+"""Energy, height, required friction and constraint residuals against their definitions.
+
+Judged by the numpy transcription of the paper's matrices; fixed axes, body axes for omega.
+"""
+
+from __future__ import annotations
+
+from ctypes import byref, c_double
+
+import numpy as np
+import pytest
+from support import equations as eq
+
+from equations import random_scenes
+from equations.paper_transcription import Paper, times
+
+ROWS = 2000
+Table = np.ndarray
+
+
+def rolling_states(seed: int) -> tuple[Table, Table]:
+    """Wheels and their kinematics on the constraints, any inertia."""
+    random = np.random.default_rng(seed)
+    scenes = random_scenes.scenes(random, eq.FRICTIONLESS, symmetric=False, rows=ROWS)
+    y = eq.start_each(eq.MULTIBODY, scenes, random_scenes.motions(random, ROWS))
+    return scenes["wheel"].copy(), eq.kinematics_each(eq.MULTIBODY, scenes, y)
+
+
+def state(k: Table) -> Table:
+    """q, q_dot of (25)."""
+    return eq.columns(k, *k.dtype.names[:12])
+
+
+def energies(wheels: Table, k: Table) -> np.ndarray:
+    return np.array(eq.each(eq.LIBRARY.wheel_energy, wheels, k))
+
+
+def required_friction(*reaction: float) -> float:
+    return eq.LIBRARY.wheel_required_friction((c_double * 3)(*reaction))
+
+
+def residuals(wheels: Table, k: Table) -> tuple[Table, Table]:
+    velocity, height = np.zeros((len(k), 1)), np.zeros((len(k), 1))
+    eq.each(eq.LIBRARY.wheel_constraint_residuals, wheels, k, velocity, height)
+    return velocity[:, 0], height[:, 0]
+
+
+def test_energy_is_that_of_translation_rotation_and_height() -> None:
+    wheels, k = rolling_states(41)
+    expected = Paper(wheels, state(k)).energy
+    assert energies(wheels, k) == pytest.approx(expected, rel=1e-13)
+    k["phi"] += 1e-6  # J_x != J_y: the turn of the body counts
+    assert energies(wheels, k) != pytest.approx(expected, rel=1e-9)
+
+
+def test_energy_of_the_papers_start_is_75_117_J() -> None:
+    wheel = eq.paper_wheel()
+    motion = eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
+    sin = np.sin(5 * np.pi / 12)
+    by_hand = 0.5 * 20 * (2 * (0.3 + 0.05 * sin)) ** 2 + 0.5 * 1.8 * 2**2
+    by_hand += 20 * 9.81 * (0.3 * sin + 0.05)
+    for formulation in (eq.REDUCED, eq.MULTIBODY):
+        k = eq.kinematics(formulation, wheel, eq.start(formulation, wheel, motion))
+        assert eq.energy(wheel, k) == pytest.approx(by_hand, rel=1e-14)
+        assert eq.energy(wheel, k) == pytest.approx(75.117, abs=5e-4)  # 75.11681
+        k.Z_O = 0
+        assert eq.energy(wheel, k) < 10  # measured from the ground
+
+
+def test_height_of_O_is_that_of_a_torus_on_the_ground() -> None:
+    wheels, k = rolling_states(42)
+    thetas = k["theta"].tolist()
+    heights = np.array(
+        [
+            eq.LIBRARY.wheel_height(eq.Parameters.from_buffer_copy(wheel), theta)
+            for wheel, theta in zip(wheels, thetas, strict=True)
+        ]
+    )
+    paper = Paper(wheels, state(k))
+    to_contact = np.stack([paper.r[:, 2, 1], paper.r[:, 0, 2], paper.r[:, 1, 0]], axis=-1)
+    below = times(paper.A, to_contact)[:, 2]
+    assert heights == pytest.approx(-below, rel=1e-13)
+    assert heights == pytest.approx(k["Z_O"], rel=1e-13)
+    assert heights != pytest.approx(-below - wheels["r"] * 1e-6, rel=1e-9)
+
+
+def test_required_friction_is_tangential_over_normal_force() -> None:
+    assert required_friction(3, 4, 10) == 0.5
+    assert required_friction(-3, 4, 10) == 0.5
+    assert required_friction(0, 0, 10) == 0
+    assert required_friction(3, 4, 20) != 0.5
+
+
+@pytest.mark.parametrize("normal", [0.0, -1.0])
+def test_a_ground_that_does_not_press_needs_infinite_friction(normal: float) -> None:
+    assert required_friction(3, 4, normal) == np.inf
+    assert required_friction(0, 0, normal) == np.inf
+    assert np.isfinite(required_friction(3, 4, 1e-300 - normal))
+
+
+def test_required_friction_of_an_upright_wheel_under_drive_follows_from_its_torque() -> None:
+    wheel = eq.paper_wheel()
+    motion = eq.Motion(0, np.pi / 2, 0, 0, 0, -2, 0, 0)
+    torque, radius = 30.0, 0.35
+    traction = torque * radius * wheel.m / (wheel.J_z + wheel.m * radius**2)
+    for formulation in (eq.REDUCED, eq.MULTIBODY):
+        scene = eq.scene(wheel, moment=(0, 0, torque))
+        d = eq.dynamics(formulation, scene, eq.start(formulation, wheel, motion))
+        mu = required_friction(*d.lambda_)
+        assert mu == pytest.approx(traction / (wheel.m * wheel.g), rel=1e-13)
+        assert mu != pytest.approx(torque / radius / (wheel.m * wheel.g), rel=0.1)  # J_z = 0
+
+
+def test_rolling_states_are_on_the_constraints() -> None:
+    wheels, k = rolling_states(43)
+    velocity, height = residuals(wheels, k)
+    speed = np.abs(state(k)[:, 6:9]).max()
+    assert velocity.max() / speed < 1e-14  # measured 3.2e-16
+    assert height.max() < 1e-14  # measured 0
+    k["X_O_dot"] += 1e-9
+    k["Z_O"] += 1e-9
+    assert (np.minimum(*residuals(wheels, k)) > 0.9e-9).all()
+
+
+def test_residuals_are_the_slip_B_q_dot_and_the_error_in_height() -> None:
+    wheels, k = rolling_states(44)
+    random = np.random.default_rng(45)
+    for name in k.dtype.names[6:12]:
+        k[name] += random.normal(size=ROWS)
+    k["Z_O"] += random.normal(size=ROWS)
+    k["omega_z"] = k["phi_dot"] + k["psi_dot"] * np.cos(k["theta"])
+    paper = Paper(wheels, state(k))
+    velocity, height = residuals(wheels, k)
+    slip = np.abs(times(paper.B, paper.q_dot)).max(axis=1)
+    off = np.abs(k["Z_O"] - wheels["r_0"] * paper.sin_theta - wheels["r"])
+    assert np.abs(velocity - slip).max() / slip.max() < 1e-14  # measured 1.3e-15
+    assert height == pytest.approx(off, rel=1e-12, abs=1e-14)
+    assert np.abs(velocity - np.linalg.norm(times(paper.B, paper.q_dot), axis=1)).max() > 0.1
+
+
+def test_the_residual_functions_write_both_results() -> None:
+    wheel = eq.paper_wheel()
+    k = eq.Kinematics(theta=np.pi / 2, Z_O=1.35, X_O_dot=2, omega_z=0)
+    velocity, height = c_double(-1), c_double(-1)
+    eq.LIBRARY.wheel_constraint_residuals(byref(wheel), byref(k), byref(velocity), byref(height))
+    assert velocity.value == 2
+    assert height.value == pytest.approx(1, rel=1e-15)

@@ -1,0 +1,171 @@
+"""The paper's matrices (1)-(23) state what they should: the numpy transcription against geometry.
+
+Derivatives are taken by a complex step, which is exact to rounding. Body axes for rotation, fixed
+axes for O. test_equations.py then holds the product against this transcription; test_errata.py
+holds each misprint against it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from support import equations as eq
+
+from equations.multibody_transcription import products_state
+from equations.paper_transcription import Paper, column, matrix, paper_table, times, transposed
+
+STEP = 1e-40
+ROUNDING = 1e-12  # of entries of order 1 to 100; measured values stand beside each use
+PSI, THETA, PHI = 3, 4, 5
+WHEEL = paper_table(J_x=0.8, J_y=1.1, s=0.03)
+
+
+def states(rows: int = 1000) -> np.ndarray:
+    random = np.random.default_rng(26)
+    y = random.normal(0, 2, (rows, 12))
+    y[:, THETA] = random.uniform(0.05, np.pi - 0.05, rows)
+    return y
+
+
+def worst(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.abs(a - b).max())
+
+
+def slope(name: str, direction: np.ndarray) -> np.ndarray:
+    """Derivative of a matrix of the paper when the state moves along `direction`."""
+    return getattr(Paper(WHEEL, states() + 1j * STEP * direction), name).imag / STEP
+
+
+def along(index: int) -> np.ndarray:
+    return np.eye(12)[index]
+
+
+def along_the_motion() -> np.ndarray:
+    y = states()
+    return np.hstack([y[:, 6:], np.zeros((len(y), 6))])
+
+
+def cross_matrix(v: np.ndarray) -> np.ndarray:
+    x, y, z = v[..., 0], v[..., 1], v[..., 2]
+    return matrix(0, -z, y, z, 0, -x, -y, x, 0)
+
+
+def contact(paper: Paper) -> np.ndarray:
+    """O to the contact in body axes, read off the cross-product matrix (11)."""
+    return column(paper.r[..., 2, 1], paper.r[..., 0, 2], paper.r[..., 1, 0])
+
+
+PARTIALS = [
+    ("A", PSI, "A_psi"),
+    ("A", THETA, "A_theta"),
+    ("A", PHI, "A_phi"),
+    ("Q", THETA, "Q_theta"),
+    ("Q", PHI, "Q_phi"),
+    ("r", THETA, "r_theta"),
+    ("r", PHI, "r_phi"),
+]
+
+
+@pytest.mark.parametrize(("of", "angle", "name"), PARTIALS)
+def test_partial_derivatives_6_9_12_are_those_of_their_matrices(of: str, angle: int, name: str) -> None:
+    stated = getattr(Paper(WHEEL, states()), name)
+    assert worst(stated, slope(of, along(angle))) < ROUNDING  # measured 3.3e-16
+    other_angle = along(PSI if angle == PHI else PHI)
+    assert worst(stated, slope(of, other_angle)) > 1e-2  # the wrong angle: 0.35 and more
+
+
+@pytest.mark.parametrize("name", ["A", "Q", "r", "B"])
+def test_time_derivatives_7_10_13_20_are_those_along_the_motion(name: str) -> None:
+    stated = getattr(Paper(WHEEL, states()), f"{name}_dot")
+    assert worst(stated, slope(name, along_the_motion())) < ROUNDING  # measured 3.6e-15
+    assert worst(stated, slope(name, 1.001 * along_the_motion())) > 1e-4  # rates off by 0.1 %: 2e-3
+
+
+def test_A_of_4_turns_body_axes_into_fixed_axes_by_z_x_z_angles() -> None:
+    y = states()
+    angles = y[:, [PSI, THETA, PHI]]
+    A = Paper(WHEEL, y).A
+    assert worst(A, Rotation.from_euler("ZXZ", angles).as_matrix()) < ROUNDING  # 5.6e-16
+    assert worst(A, Rotation.from_euler("zxz", angles).as_matrix()) > 0.1  # order reversed
+
+
+def test_Q_of_8_gives_the_angular_velocity_in_body_axes() -> None:
+    paper = Paper(WHEEL, states())
+    spin = transposed(paper.A) @ paper.A_dot
+    assert worst(spin, cross_matrix(paper.omega)) < ROUNDING  # measured 2.7e-15
+    spin_fixed_axes = paper.A_dot @ transposed(paper.A)
+    assert worst(spin_fixed_axes, cross_matrix(paper.omega)) > 0.1
+
+
+def test_r_of_11_points_to_the_lowest_point_of_the_torus() -> None:
+    paper, r_0, r = Paper(WHEEL, states()), WHEEL["r_0"], WHEEL["r"]
+    assert worst(paper.r, cross_matrix(contact(paper))) < ROUNDING  # antisymmetric
+    below = times(paper.A, contact(paper))[:, 2]
+    around, along_tube = np.meshgrid(*2 * [np.linspace(0, 2 * np.pi, 100)])
+    out = r_0 + r * np.cos(along_tube)
+    surface = np.stack([out * np.cos(around), out * np.sin(around), r * np.sin(along_tube)], -1)
+    lowest = (surface.reshape(-1, 3) @ paper.A[:, 2].T).min(0)
+    assert (below <= lowest + 1e-12).all()  # no point of the torus lies lower
+    assert worst(below, lowest) < 5e-4  # and it is one of them; measured 1.9e-4, the grid
+    assert (0.98 * below > lowest).any()  # a point 2 % higher is not the lowest
+
+
+def test_B_of_19_gives_the_velocity_of_the_material_point_at_the_contact() -> None:
+    y = states()
+    paper = Paper(WHEEL, y)
+    velocity = y[:, 6:9] + times(paper.A, np.cross(paper.omega, contact(paper)))
+    assert worst(times(paper.B, y[:, 6:]), velocity) < ROUNDING  # measured 8.9e-16
+    untransposed = y[:, 6:9] + times(paper.A @ paper.r @ paper.Q, y[:, 9:])
+    assert worst(untransposed, velocity) > 0.1
+
+
+def test_omega_z_of_21_is_the_axle_component_of_the_angular_velocity() -> None:
+    y = states()
+    axle = Paper(WHEEL, y).omega[:, 2]
+    assert worst(Paper(WHEEL, y).omega_z, axle) < ROUNDING  # measured 0
+    scenes = eq.table(eq.Scene, len(y))
+    scenes["wheel"] = WHEEL
+    k = eq.kinematics_each(eq.MULTIBODY, scenes, products_state(y))
+    assert worst(k["omega_z"], axle) < ROUNDING  # measured 0
+    assert worst(k["phi_dot"], y[:, 11]) < ROUNDING  # 4.4e-16
+    assert worst(y[:, 11], axle) > 0.1  # phi_dot is not omega_z
+
+
+def test_M_and_F_beta_of_16_18_are_eulers_equations_in_body_axes() -> None:
+    y = states()
+    paper = Paper(WHEEL, y)
+    beta_ddot = np.random.default_rng(3).normal(size=(len(y), 3))
+    omega_dot = times(paper.Q, beta_ddot) + times(paper.Q_dot, paper.beta_dot)
+    spin = times(paper.J, paper.omega)
+    euler = times(paper.J, omega_dot) + np.cross(paper.omega, spin)
+    stated = times(paper.M, np.hstack([beta_ddot, beta_ddot]))[:, 3:] - paper.F_beta
+    assert worst(stated, euler) < ROUNDING  # measured 2.1e-14
+    assert worst(stated + np.cross(spin, paper.omega), euler) > 0.1  # without gyroscopic part
+
+
+def test_B_tilde_of_22_23_turns_lambda_into_force_and_moment_on_the_wheel() -> None:
+    paper = Paper(WHEEL, states())
+    force = np.random.default_rng(4).normal(size=(len(states()), 3))
+    moment = np.cross(contact(paper), times(transposed(paper.A), force))
+    without_friction = np.hstack([force, moment])
+    assert worst(times(paper.B_tilde(0), force), without_friction) < ROUNDING  # measured 2.2e-16
+    moment[:, 2] -= WHEEL["s"] * force[:, 2]
+    with_friction = np.hstack([force, moment])
+    assert worst(times(paper.B_tilde(1), force), with_friction) < ROUNDING  # measured 2.2e-16
+    assert worst(with_friction, without_friction) > 0.01
+
+
+def test_constants_and_start_values_of_27_to_33_are_those_the_paper_prints() -> None:
+    wheel = eq.paper_wheel(s=0.3 / 10)
+    motion = eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
+    assert (wheel.J_x, wheel.J_y) == pytest.approx((wheel.m * wheel.r_0**2 / 2,) * 2, rel=1e-15)
+    assert wheel.J_z == pytest.approx(wheel.m * wheel.r_0**2, rel=1e-15)
+    printed = [-0.07765, 0, 0.33978, 0, 0.69659, 0]
+    for formulation in (eq.REDUCED, eq.MULTIBODY):
+        k = eq.kinematics(formulation, wheel, eq.start(formulation, wheel, motion))
+        found = [k.X_O, k.Y_O, k.Z_O, k.X_O_dot, k.Y_O_dot, k.Z_O_dot]
+        assert found == pytest.approx(printed, abs=5e-6)  # the five digits printed; 4.4e-6
+        thin = eq.paper_wheel(r=0)
+        k = eq.kinematics(formulation, thin, eq.start(formulation, thin, motion))
+        assert abs(k.Y_O_dot - 0.69659) > 0.05  # (33) needs the tube

@@ -1,0 +1,102 @@
+"""Energy changes by the power of inputs and rolling friction and by nothing else, pointwise.
+
+dE/dt = m v a + omega J omega_dot + m g v_Z, from the accelerations of either formulation; power =
+F v + M omega (carrier) + tau omega_z. The reaction does no work: the contact point is at rest.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from support import equations as eq
+
+from equations import random_scenes
+from equations.paper_transcription import Paper, times
+
+BOUND = 1e-11
+Table = np.ndarray
+FORMULATIONS = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
+KINDS = pytest.mark.parametrize("kind", eq.LAWS.values(), ids=eq.LAWS.keys())
+
+
+class Instants:
+    """Random states with their velocities, accelerations and powers."""
+
+    def __init__(self, formulation: eq.Formulation, kind: int) -> None:
+        random = np.random.default_rng(31)
+        self.scenes = random_scenes.scenes(random, kind, symmetric=False)
+        y = eq.start_each(formulation, self.scenes, random_scenes.motions(random))
+        self.k = eq.kinematics_each(formulation, self.scenes, y)
+        self.d = eq.dynamics_each(formulation, self.scenes, y)
+
+    def input_power(self) -> np.ndarray:
+        k, load = self.k, self.scenes["load"]
+        velocity = eq.columns(k, "X_O_dot", "Y_O_dot", "Z_O_dot")
+        omega = np.column_stack([k["theta_dot"], k["psi_dot"] * np.sin(k["theta"]), k["omega_z"]])
+        return (load["F"] * velocity + load["M"] * omega).sum(axis=1)
+
+    def friction_power(self) -> np.ndarray:
+        return self.d["tau"] * self.k["omega_z"]
+
+    def energy_rates(self) -> tuple[np.ndarray, np.ndarray]:
+        """dE/dt, and the size of its terms."""
+        k, d, wheel = self.k, self.d, self.scenes["wheel"]
+        paper = Paper(wheel, eq.columns(k, *k.dtype.names[:12]))
+        a = eq.columns(d, "X_O_ddot", "Y_O_ddot", "Z_O_ddot")
+        a[:, 2] += wheel["g"]
+        beta_ddot = eq.columns(d, "psi_ddot", "theta_ddot", "phi_ddot")
+        omega_dot = times(paper.Q, beta_ddot) + times(paper.Q_dot, paper.beta_dot)
+        terms = np.hstack(
+            [
+                wheel["m"][:, None] * paper.q_dot[:, :3] * a,
+                paper.omega * times(paper.J, omega_dot),
+            ]
+        )
+        return terms.sum(axis=1), np.abs(terms).sum(axis=1)
+
+
+@FORMULATIONS
+@KINDS
+def test_energy_changes_by_the_power_of_inputs_and_friction(formulation: eq.Formulation, kind: int) -> None:
+    now = Instants(formulation, kind)
+    rate, size = now.energy_rates()
+    power = now.input_power() + now.friction_power()
+    assert (np.abs(rate - power) / size).max() < BOUND  # measured 2.4e-14
+    without_inputs = now.friction_power()
+    assert (np.abs(rate - without_inputs) / size).max() > 0.1
+    if kind in (eq.ROLLING, eq.REGULARIZED):
+        friction_reversed = now.input_power() - now.friction_power()
+        assert (np.abs(rate - friction_reversed) / size).max() > 0.1
+
+
+@FORMULATIONS
+def test_rolling_friction_takes_energy_and_holding_takes_none(formulation: eq.Formulation) -> None:
+    regularized = Instants(formulation, eq.REGULARIZED).friction_power()
+    assert (regularized <= 0).all()
+    assert (regularized < 0).mean() > 0.3  # 0.47: where the ground presses
+    rolling = Instants(formulation, eq.ROLLING)
+    against = rolling.scenes["friction"]["sigma"] * rolling.k["omega_z"] > 0
+    assert (rolling.friction_power()[against] <= 0).all()
+    assert (rolling.friction_power()[~against] >= 0).all()  # sigma of the wrong sign drives
+
+
+@FORMULATIONS
+def test_stop_spin_leaves_a_rolling_wheel_without_spin_that_holding_takes_no_energy_from(
+    formulation: eq.Formulation,
+) -> None:
+    random = np.random.default_rng(32)
+    scenes = random_scenes.scenes(random, eq.HELD, symmetric=False)
+    y = eq.start_each(formulation, scenes, random_scenes.motions(random))
+    before = eq.kinematics_each(formulation, scenes, y)
+    assert (before["omega_z"] != 0).all()
+    eq.each(formulation.stop_spin, scenes, y)
+    after = eq.kinematics_each(formulation, scenes, y)
+    kept = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi", "psi_dot", "theta_dot")
+    assert (after["omega_z"] == 0).all()
+    assert np.abs(eq.columns(after, *kept) - eq.columns(before, *kept)).max() < 1e-13
+    rolling = eq.columns(after, *after.dtype.names[:12])
+    slip = times(Paper(scenes["wheel"], rolling).B, rolling[:, 6:])
+    assert np.abs(slip).max() < 1e-12  # m/s; measured 2.1e-14
+    slid = np.hstack([rolling[:, :11], eq.columns(before, "phi_dot")])
+    assert np.abs(times(Paper(scenes["wheel"], slid).B, slid[:, 6:])).max() > 0.1
+    assert (eq.dynamics_each(formulation, scenes, y)["tau"] * after["omega_z"] == 0).all()

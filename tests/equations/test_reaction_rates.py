@@ -1,0 +1,179 @@
+"""Rates of lambda and tau along the motion, against a complex step through the numpy transcription of (24).
+
+The complex step is exact to rounding and shares no code with the product: state, load and law move along their rates
+by 1e-40 i. Fixed axes, N/s and N m/s; errors relative to the row's largest rate.
+"""
+
+from __future__ import annotations
+
+from support import equations as eq
+import numpy as np
+import pytest
+from equations import random_scenes
+from equations.multibody_transcription import papers_state, solved
+from equations.paper_transcription import Paper
+
+BOUND = 1e-9
+STEP = 1e-40
+ROWS = 5000
+FORMULATIONS = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
+LAWS = pytest.mark.parametrize("law", eq.LAWS.values(), ids=eq.LAWS.keys())
+INERTIA = pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
+Table = np.ndarray
+
+
+class Rows:
+    """Random states under loads and brakes that change; regularized laws of any width, some near zero spin."""
+
+    def __init__(self, law: int, symmetric: bool = False, width: tuple[float, float] = (-3, 1)) -> None:
+        random = np.random.default_rng(8)
+        self.scenes = random_scenes.scenes(random, law, symmetric, ROWS)
+        self.scenes["friction"]["omega_s"] = omega_s = 10 ** random.uniform(*width, ROWS)
+        self.motions = random_scenes.motions(random, ROWS)
+        if law == eq.REGULARIZED:  # within a few widths of zero spin
+            held = -self.motions["psi_dot"] * np.cos(self.motions["theta"])
+            near = held + omega_s * random.normal(0, 3, ROWS)
+            self.motions["phi_dot"] = np.where(random.random(ROWS) < 0.5, near, self.motions["phi_dot"])
+        self.load_dot = self.scenes["load"].copy()
+        for part in ("F", "M", "brake"):
+            self.load_dot[part] *= random.normal(size=self.load_dot[part].shape)
+
+    def states(self, formulation: eq.Formulation) -> Table:
+        return eq.start_each(formulation, self.scenes, self.motions)
+
+    def rates(self, formulation: eq.Formulation) -> Table:
+        return eq.rates_each(formulation, self.scenes, self.load_dot, self.states(formulation))
+
+    def judged(self) -> Table:
+        """lambda_dot and tau_dot by the complex step, along q_dot and the accelerations of the transcription."""
+        load, change = self.scenes["load"], self.load_dot
+        q = papers_state(self.states(eq.MULTIBODY))
+        accelerations = solved(Paper(self.scenes["wheel"], q), self.scenes)[:, :6]
+        moved = q + 1j * STEP * np.hstack([q[:, 6:], accelerations])
+        loads = {part: load[part] + 1j * STEP * change[part] for part in ("F", "M", "brake")}
+        return solved(Paper(self.scenes["wheel"], moved), self.scenes, loads)[:, 6:].imag / STEP
+
+    def error(self, rates: Table, judge: Table) -> float:
+        """lambda_dot and tau_dot / r_0 side by side."""
+        arm = np.column_stack([np.ones((ROWS, 3)), self.scenes["wheel"]["r_0"]])
+        return relative(rates / arm, judge / arm)
+
+
+def relative(a: Table, b: Table) -> float:
+    return float((np.abs(a - b).max(axis=1) / np.abs(b).max(axis=1)).max())
+
+
+@INERTIA
+@LAWS
+def test_rates_are_those_of_lambda_and_tau_along_the_motion(law: int, symmetric: bool) -> None:
+    rows = Rows(law, symmetric)
+    judge, found = rows.judged(), rows.rates(eq.REDUCED)
+    assert rows.error(found, judge) < BOUND  # measured 1.7e-11 to 7.6e-11
+    rows.load_dot["F"] *= 1 + 1e-5
+    assert rows.error(rows.rates(eq.REDUCED), judge) > 10 * BOUND  # the rate of the load counts: 3e-5 and more
+    rows.load_dot["F"] /= 1 + 1e-5
+    rows.scenes["wheel"]["J_x"] *= 1 + 1e-6
+    assert rows.error(rows.rates(eq.REDUCED), judge) > 10 * BOUND  # 1.3e-5 and more
+
+
+@pytest.mark.parametrize("width", [(-4, -3), (-7, -6), (-10, -9)], ids=["1e-3", "1e-6", "1e-9"])
+def test_rates_under_a_stiff_regularized_law_are_as_exact(width: tuple[float, float]) -> None:
+    rows = Rows(eq.REGULARIZED, width=width)
+    judge, found = rows.judged(), rows.rates(eq.REDUCED)
+    assert rows.error(found, judge) < BOUND  # measured 2.3e-11
+    rows.scenes["friction"]["omega_s"] *= 1 + 1e-6
+    assert rows.error(rows.rates(eq.REDUCED), judge) > 10 * BOUND  # 4.9e-5 and more
+
+
+@LAWS
+def test_the_multibody_form_gives_the_rates_of_the_reduced_form(law: int) -> None:
+    rows = Rows(law)
+    reduced, multibody = rows.rates(eq.REDUCED), rows.rates(eq.MULTIBODY)
+    assert rows.error(multibody, reduced) < 1e-10  # measured 0
+    rows.motions["theta_dot"] += 1e-6
+    assert rows.error(rows.rates(eq.MULTIBODY), reduced) > 1e-9  # 1.9e-5 and more
+
+
+def test_rates_do_not_fade_where_psi_and_phi_have_grown_large() -> None:
+    rows = Rows(eq.ROLLING)
+    near = rows.rates(eq.REDUCED)
+    turns = 2 * np.pi * 10_000
+    rows.motions["psi"] += turns
+    rows.motions["phi"] += turns
+    assert rows.error(rows.rates(eq.REDUCED), near) < BOUND  # measured 1.2e-10: the rounding of the angles themselves
+    rows.motions["psi"] += 1e-6
+    assert rows.error(rows.rates(eq.REDUCED), near) > 10 * BOUND  # 1.3e-5
+
+
+STILL_OR_STRAIGHT = {
+    "the paper's start": eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.0776, 0),
+    "upright straight rolling": eq.Motion(0, np.pi / 2, 0, 0, 0, -2, 0, 0),
+    "tilted, at rest": eq.Motion(0, 1.2, 0, 0, 0, 0, 0, 0),
+    "upright, at rest": eq.Motion(0, np.pi / 2, 0, 0, 0, 0, 0, 0),
+}
+
+
+@pytest.mark.parametrize("motion", STILL_OR_STRAIGHT.values(), ids=STILL_OR_STRAIGHT.keys())
+@pytest.mark.parametrize("law", [eq.FRICTIONLESS, eq.ROLLING, eq.HELD])
+def test_entries_that_are_zero_for_an_instant_keep_their_rates(motion: eq.Motion, law: int) -> None:
+    scene = eq.scene(eq.paper_wheel(s=0.03), law, -1, brake=2)
+    rows = Rows.__new__(Rows)
+    rows.scenes = np.frombuffer(bytes(scene) * ROWS, np.dtype(eq.Scene)).copy()
+    rows.motions = np.frombuffer(bytes(motion) * ROWS, np.dtype(eq.Motion)).copy()
+    rows.load_dot = np.zeros(ROWS, np.dtype(eq.Load))
+    rows.load_dot["F"], rows.load_dot["M"], rows.load_dot["brake"] = (1, 2, 3), (0.1, 0.2, 0.3), 0.4
+    judge, found = rows.judged(), rows.rates(eq.REDUCED)
+    assert np.abs(found - judge).max() < 1e-9  # N/s; measured at most 6.3e-11
+    rows.load_dot["brake"] = 0
+    assert (np.abs(rows.rates(eq.REDUCED) - judge).max() > 0.01) == (law == eq.ROLLING)
+
+
+@FORMULATIONS
+def test_a_load_without_a_rate_is_a_constant_load(formulation: eq.Formulation) -> None:
+    rows = Rows(eq.ROLLING)
+    changing = rows.rates(formulation)
+    rows.load_dot = np.zeros_like(rows.load_dot)
+    constant, y = rows.rates(formulation), rows.states(formulation)
+    for i in range(20):
+        without = eq.values(eq.rates(formulation, eq.Scene.from_buffer_copy(rows.scenes[i]), y[i]))
+        assert (without == constant[i]).all()
+    assert (changing != constant).any(axis=1).mean() > 0.8  # 0.9: a tenth has no load
+
+
+@FORMULATIONS
+@LAWS
+def test_the_response_to_a_load_is_what_it_adds_to_the_rates(formulation: eq.Formulation, law: int) -> None:
+    rows = Rows(law)
+    y = rows.states(formulation)
+    response = eq.response_each(formulation, rows.scenes, rows.load_dot, y)
+    with_change = rows.rates(formulation)
+    rows.load_dot, load_dot = np.zeros_like(rows.load_dot), rows.load_dot
+    difference = with_change - rows.rates(formulation)
+    size = np.abs(with_change).max(axis=1, keepdims=True)
+    assert (np.abs(response - difference) / size).max() < 1e-10  # measured 2.5e-12 to 1.1e-11
+    load_dot["brake"] *= 1.001
+    other = eq.response_each(formulation, rows.scenes, load_dot, y)
+    assert ((np.abs(other - difference) / size).max() > 1e-6) == (law in (eq.ROLLING, eq.REGULARIZED))
+
+
+@FORMULATIONS
+@LAWS
+def test_the_response_is_the_difference_that_a_load_makes(formulation: eq.Formulation, law: int) -> None:
+    """lambda and tau are linear in the load while the law and the sign of N last."""
+    rows = Rows(law)
+    y = rows.states(formulation)
+
+    def answer(scenes: Table) -> Table:
+        found = eq.dynamics_each(formulation, scenes, y)
+        return eq.columns(found, "lambda_", "tau")
+
+    loaded = rows.scenes.copy()
+    for part in ("F", "M", "brake"):
+        loaded["load"][part] += 0.1 * rows.load_dot[part]
+    before, after = answer(rows.scenes), answer(loaded)
+    same = np.sign(before[:, 2]) == np.sign(after[:, 2])
+    response = 0.1 * eq.response_each(formulation, rows.scenes, rows.load_dot, y)
+    gap = np.abs(after - before - response).max(axis=1) / np.abs(before).max(axis=1).clip(1e-300)
+    assert same.mean() > 0.8  # 0.99
+    assert gap[same].max() < 1e-11  # measured 2.0e-15 to 7.2e-14
+    assert (np.abs(after - before).max(axis=1) / np.abs(before).max(axis=1))[same].max() > 0.01

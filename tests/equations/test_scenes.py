@@ -1,0 +1,80 @@
+"""A scene that is not meant cannot be used in silence: `wheel_scene` refuses it, and every answer is NaN."""
+
+from __future__ import annotations
+
+from math import nan
+
+from support import equations as eq
+import numpy as np
+import pytest
+
+MOTION = eq.Motion(1, 1.2, 0.3, 0.5, -0.2, -2, 0, 0)
+FORMULATIONS = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
+MEANT = [
+    {"kind": eq.FRICTIONLESS},
+    {"kind": eq.ROLLING, "sigma": -1},
+    {"kind": eq.ROLLING, "sigma": 1, "brake": 5.0},
+    {"kind": eq.HELD, "sigma": 0, "omega_s": 0},
+    {"kind": eq.REGULARIZED, "omega_s": 1e-6},
+]
+NOT_MEANT = [
+    {"kind": eq.NO_LAW},
+    {"kind": 17},
+    {"kind": eq.ROLLING, "sigma": 0},
+    {"kind": eq.ROLLING, "sigma": 0.5},
+    {"kind": eq.ROLLING, "sigma": nan},
+    {"kind": eq.REGULARIZED, "omega_s": 0},
+    {"kind": eq.REGULARIZED, "omega_s": -1e-3},
+    {"kind": eq.REGULARIZED, "omega_s": nan},
+    {"kind": eq.ROLLING, "sigma": 1, "brake": -1.0},
+    {"kind": eq.HELD, "brake": nan},
+]
+
+
+def answers(formulation: eq.Formulation, scene: eq.Scene) -> np.ndarray:
+    return eq.values(eq.dynamics(formulation, scene, eq.start(formulation, scene.wheel, MOTION)))
+
+
+@FORMULATIONS
+@pytest.mark.parametrize("choice", MEANT, ids=str)
+def test_a_scene_that_is_meant_has_finite_answers(formulation: eq.Formulation, choice: dict) -> None:
+    scene = eq.scene(eq.paper_wheel(s=0.03), **choice)
+    assert scene.friction.kind == choice["kind"]
+    assert np.isfinite(answers(formulation, scene)).all()
+
+
+@FORMULATIONS
+@pytest.mark.parametrize("choice", NOT_MEANT, ids=str)
+def test_a_scene_that_is_not_meant_answers_nan(formulation: eq.Formulation, choice: dict) -> None:
+    scene = eq.scene(eq.paper_wheel(s=0.03), **choice)
+    assert scene.friction.kind == eq.NO_LAW
+    assert np.isnan(answers(formulation, scene)).all()
+
+
+@FORMULATIONS
+def test_a_negative_s_is_not_meant(formulation: eq.Formulation) -> None:
+    assert np.isnan(answers(formulation, eq.scene(eq.paper_wheel(s=-1e-3), eq.ROLLING))).all()
+    assert np.isfinite(answers(formulation, eq.scene(eq.paper_wheel(s=1e-3), eq.ROLLING))).all()
+
+
+@FORMULATIONS
+def test_a_record_with_a_coefficient_and_nothing_else_is_not_a_wheel_without_friction(
+    formulation: eq.Formulation,
+) -> None:
+    assert np.isnan(answers(formulation, eq.Scene(wheel=eq.paper_wheel(s=0.03)))).all()
+
+
+@FORMULATIONS
+def test_a_load_cannot_be_left_out_by_forgetting_a_flag(formulation: eq.Formulation) -> None:
+    scene = eq.scene(eq.paper_wheel())
+    free = answers(formulation, scene)
+    scene.load.M[2] = 1.0
+    assert (answers(formulation, scene) != free).any()
+
+
+def test_a_scene_without_a_load_has_none() -> None:
+    scene = eq.LIBRARY.wheel_scene(eq.paper_wheel(s=0.01), None, eq.Friction(eq.HELD, 0, 0))
+    assert list(scene.load.F) == list(scene.load.M) == [0, 0, 0]
+    assert scene.load.brake == 0
+    assert scene.wheel.s == 0.01
+    assert scene.friction.kind == eq.HELD

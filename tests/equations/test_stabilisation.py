@@ -1,0 +1,150 @@
+"""The multibody state and its stabilisation: omega_z is a state, and errors of the constraints decay.
+
+(24) fixes the constraints as accelerations: alone it keeps an error of [B]{q_dot} and lets that of the height grow. The
+product's derivative draws both to zero at the rate a = 5 sqrt(g / (r_0 + r) + |omega|^2): docs/decisions/
+multibody_state.md. Integrated by SciPy, so that no solver of the product takes part. Fixed axes for O.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from support import equations as eq
+
+from equations import random_scenes
+from equations.multibody_transcription import Stabilised, papers_state, products_state, solved, stabilised_rate
+from equations.paper_transcription import Paper
+
+KINDS = pytest.mark.parametrize("kind", eq.LAWS.values(), ids=eq.LAWS.keys())
+OFF_THE_CONSTRAINTS = np.array([0, 0, 1, 0, 0, 0, 1, 1, 1, 0, 0, 0])  # m in Z_O, m/s in the velocity of O
+PLANTED = np.array([0, 0, 2e-3, 0, 0, 0, 1e-2, -2e-2, 3e-2, 0, 0, 0])  # the same, of unlike sizes
+GENERAL = {"J_x": 0.7, "J_y": 1.1, "s": 0.03}
+SPIN = 11
+Table = np.ndarray
+
+
+def scene(kind: int) -> eq.Scene:
+    return eq.scene(eq.paper_wheel(**GENERAL), kind, sigma=-1, omega_s=2, moment=(0.1, -0.2, 0.3))
+
+
+def start(kind: int) -> Table:
+    y = eq.start(eq.MULTIBODY, scene(kind).wheel, eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0.5, 0, -2, 0, 0))
+    if kind == eq.HELD:
+        eq.MULTIBODY.stop_spin(scene(kind).wheel, y.ctypes.data_as(eq.DOUBLES))
+    return y
+
+
+def stabilised(
+    now: eq.Scene, y: Table, times: Table, tolerance: float = 1e-12, method: str = "DOP853"
+) -> tuple[Table, Table]:
+    """The product's states along its own derivative, and the integral of the decay rate."""
+    wheel = np.frombuffer(bytes(now.wheel), np.dtype(eq.Parameters))
+
+    def rate(_t: float, y: Table) -> Table:
+        q = papers_state(y[None, :-1])
+        return np.append(eq.derivative(eq.MULTIBODY, now, y[:-1].copy()), Stabilised(wheel, q).decay_rate)
+
+    run = solve_ivp(rate, times[[0, -1]], np.append(y, 0), method, times, rtol=tolerance, atol=tolerance)
+    return run.y.T[:, :-1], run.y.T[:, -1]
+
+
+def pure(now: eq.Scene, y: Table, times: Table, tolerance: float = 1e-12, method: str = "DOP853") -> Table:
+    """The product's states along the transcription of (24), integrated in the paper's own q, q_dot."""
+    scenes = np.frombuffer(bytes(now), np.dtype(eq.Scene))
+
+    def rate(_t: float, q: Table) -> Table:
+        return np.append(q[6:], solved(Paper(scenes["wheel"], q[None]), scenes)[0, :6])
+
+    run = solve_ivp(rate, times[[0, -1]], papers_state(y), method, times, rtol=tolerance, atol=tolerance)
+    return products_state(run.y.T)
+
+
+def residuals(now: eq.Scene, y: Table) -> tuple[Table, Table]:
+    """[B]{q_dot}, m/s, and the error of the height, m."""
+    wheel = np.frombuffer(bytes(now.wheel), np.dtype(eq.Parameters))
+    paper = Stabilised(wheel, papers_state(y))
+    return paper.slip, paper.height_error
+
+
+def relative(a: Table, b: Table) -> float:
+    return float((np.abs(a - b).max(axis=1) / np.abs(b).max(axis=1)).max())
+
+
+@KINDS
+def test_the_multibody_derivative_is_24_with_slip_and_height_drawn_to_zero(kind: int) -> None:
+    random = np.random.default_rng(61)
+    scenes = random_scenes.scenes(random, kind, symmetric=False, rows=2000)
+    rolling = eq.start_each(eq.MULTIBODY, scenes, random_scenes.motions(random, 2000))
+    off = random.normal(size=rolling.shape) * OFF_THE_CONSTRAINTS
+    y_dot, _ = eq.derivative_each(eq.MULTIBODY, scenes, rolling + off)
+    assert relative(y_dot, stabilised_rate(scenes, rolling + off)) < 1e-12  # measured 7.0e-15, held 2.9e-14
+    assert relative(y_dot, stabilised_rate(scenes, rolling + 0.999 * off)) > 1e-5  # errors 0.1 % smaller: 5.6e-3
+
+
+@KINDS
+def test_24_itself_sees_neither_slip_nor_height(kind: int) -> None:
+    random = np.random.default_rng(62)
+    scenes = random_scenes.scenes(random, kind, symmetric=False, rows=2000)
+    rolling = eq.start_each(eq.MULTIBODY, scenes, random_scenes.motions(random, 2000))
+    slipping = rolling + random.normal(size=rolling.shape) * OFF_THE_CONSTRAINTS
+    answers = [eq.dynamics_each(eq.MULTIBODY, scenes, y) for y in (rolling, slipping)]
+    assert (answers[0] == answers[1]).all()
+    rates = [eq.derivative_each(eq.MULTIBODY, scenes, y)[0][:, 6:] for y in (rolling, slipping)]
+    assert relative(*rates) > 0.1  # the stabilised derivative does: 8.6, held 22
+
+
+@KINDS
+def test_errors_of_the_constraints_decay_at_the_stated_rate(kind: int) -> None:
+    times = np.linspace(0, 0.25, 26)
+    y, decay = stabilised(scene(kind), start(kind) + PLANTED, times)
+    slip, height = residuals(scene(kind), y)
+
+    def gap(decay: Table) -> float:
+        """slip = planted exp(-decay); the height follows, driven by the vertical slip."""
+        expected = PLANTED[2] + PLANTED[8] * times
+        grown = np.column_stack([slip, height]) * np.exp(decay)[:, None]
+        return float(np.abs(grown - np.column_stack([np.tile(PLANTED[6:9], (len(times), 1)), expected])).max())
+
+    assert decay[-1] > 5  # 6.7 to 7.1
+    assert gap(decay) < 2e-8  # m, m/s; measured at most 2.0e-9
+    assert gap(1.001 * decay) > 1e-5  # a rate 0.1 % larger: 2e-4
+
+
+@KINDS
+def test_24_alone_keeps_the_slip_and_lets_the_height_run_away(kind: int) -> None:
+    times = np.linspace(0, 0.25, 26)
+    slip, height = residuals(scene(kind), pure(scene(kind), start(kind) + PLANTED, times))
+    assert np.abs(slip - PLANTED[6:9]).max() < 1e-11  # m/s; measured 1.5e-12
+    assert np.abs(height - PLANTED[2] - PLANTED[8] * times).max() < 1e-11  # m; measured 2.4e-13
+    y, _ = stabilised(scene(kind), start(kind) + PLANTED, times)
+    drawn_slip, drawn_height = residuals(scene(kind), y)
+    assert np.abs(drawn_slip[-1]).max() < 1e-2 * np.abs(slip[-1]).max()  # 1.2e-3
+    assert np.abs(drawn_height[-1]) < 1e-2 * height[-1]
+
+
+@KINDS
+def test_on_the_constraints_the_stabilised_motion_is_that_of_24(kind: int) -> None:
+    times = np.linspace(0, 1, 11)
+    alone = pure(scene(kind), start(kind), times)
+    drawn, _ = stabilised(scene(kind), start(kind), times)
+    disturbed, _ = stabilised(scene(kind), start(kind) + 1e-6 * PLANTED, times)
+    assert np.abs(drawn - alone).max() < 2e-10  # measured 1.5e-11
+    assert np.abs(disturbed - alone).max() > 5e-8  # a slip of 30 nm/s at the start: 2.5e-7 and more
+
+
+def test_a_held_wheel_keeps_omega_z_at_exactly_zero() -> None:
+    times = np.linspace(0, 1, 101)
+    y, _ = stabilised(scene(eq.HELD), start(eq.HELD), times, 1e-6)
+    assert (y[:, SPIN] == 0).all()
+    in_phi_dot = pure(scene(eq.HELD), start(eq.HELD), times, 1e-6)
+    assert np.abs(in_phi_dot[:, SPIN]).max() > 1e-8  # rad/s; phi_dot as a state lets it drift: 1.0e-6
+
+
+def test_at_one_tolerance_the_stabilised_system_keeps_its_height_where_24_drifts() -> None:
+    now, times = eq.scene(eq.paper_wheel()), np.linspace(0, 10, 1001)
+    y_0 = eq.start(eq.MULTIBODY, now.wheel, eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, 0, 0))
+    drawn, _ = stabilised(now, y_0, times, 1e-8, "LSODA")
+    height, height_of_24 = (np.abs(residuals(now, y)[1]) for y in (drawn, pure(now, y_0, times, 1e-8, "LSODA")))
+    assert height.max() < 5e-9  # m; measured 4.2e-10
+    assert height_of_24.max() > 1e-7  # 3.5e-7

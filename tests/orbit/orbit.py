@@ -1,0 +1,147 @@
+"""The product's Orbit as Python sees it, and the same motion by ways that share nothing with it.
+
+State: theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O (wheel_equations.h). SI units.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import POINTER, Structure, byref, c_double, c_int, c_longlong, c_void_p
+
+import numpy as np
+from numpy.typing import NDArray
+from reference import Start, Wheel
+from reference.motion import derivative, initial_state
+from reference.newton_euler import Contact, Law, rotation
+from reference.model import Inputs
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+Array = NDArray[np.float64]
+KINDS = ("refused", "folded", "ended")
+
+
+class Parameters(Structure):
+    _fields_ = [(name, c_double) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")]
+
+
+class Motion(Structure):
+    _fields_ = [(name, c_double) for name in ("psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot", "X_O", "Y_O")]
+
+
+class Orbit:
+    """One free wheel, built at once; `kind` says what came of it."""
+
+    def __init__(
+        self,
+        library: ctypes.CDLL,
+        wheel: Wheel | None = None,
+        start: Start | None = None,
+        tolerance: float = 1e-8,
+        keep_contact: bool = False,
+    ) -> None:
+        wheel, start = wheel or Wheel(), start or Start()
+        self.library = library
+        library.probe_make.restype = c_void_p
+        for name in ("probe_end_time", "probe_half_period", "probe_fall"):
+            getattr(library, name).restype = c_double
+        for name in ("probe_falls_until", "probe_steps"):
+            getattr(library, name).restype = c_longlong
+        parameters = Parameters(**{name: getattr(wheel, name) for name, _ in Parameters._fields_})
+        motion = Motion(**{name: getattr(start, name) for name, _ in Motion._fields_})
+        self.probe = c_void_p(
+            library.probe_make(byref(parameters), byref(motion), c_double(tolerance), c_int(keep_contact))
+        )
+        self.kind = KINDS[library.probe_build(self.probe)]
+
+    def __del__(self) -> None:
+        self.library.probe_free(self.probe)
+
+    def read(self, t: Array | list[float]) -> tuple[Array, Array]:
+        """States (rows) and N at the instants t."""
+        t = np.ascontiguousarray(t, float)
+        y, force = np.empty((len(t), 8)), np.empty(len(t))
+        pointer = POINTER(c_double)
+        self.library.probe_read(
+            self.probe, t.ctypes.data_as(pointer), len(t), y.ctypes.data_as(pointer), force.ctypes.data_as(pointer)
+        )
+        return y, force
+
+    def __call__(self, t: Array | list[float]) -> Array:
+        return self.read(t)[0]
+
+    def build(self) -> str:
+        return KINDS[self.library.probe_build(self.probe)]
+
+    @property
+    def end_time(self) -> float:
+        return self.library.probe_end_time(self.probe)
+
+    @property
+    def half_period(self) -> float:
+        return self.library.probe_half_period(self.probe)
+
+    @property
+    def steps(self) -> int:
+        return self.library.probe_steps(self.probe)
+
+    def falls_until(self, t: float) -> int:
+        return self.library.probe_falls_until(self.probe, c_double(t))
+
+    def fall(self, n: int) -> float:
+        return self.library.probe_fall(self.probe, c_longlong(n))
+
+
+def reduced(row: Array) -> Array:
+    """The reduced state of one row of the reference: quaternion, w, O, v_O, psi, phi, works."""
+    n = rotation(*row[:4])[2]
+    s = np.hypot(n[0], n[1])
+    ux, uy = n[0] / s, n[1] / s
+    w = row[4:7]
+    omega_1, omega_2 = w[0] * uy - w[1] * ux, w[0] * ux + w[1] * uy
+    return np.array([np.arctan2(s, n[2]), omega_1, omega_2, w[2], row[13], row[14], row[7], row[8]])
+
+
+def stepped(wheel: Wheel, start: Start, t: Array) -> Array:
+    """Every step of the way by the reference: Newton and Euler in body axes, 17 states, DOP853."""
+    rate = derivative(Contact(wheel), Inputs(), Law(0.0))
+    y0 = initial_state(wheel, start)
+    run = solve_ivp(rate, (0, t[-1]), y0, "DOP853", t, rtol=1e-13, atol=1e-14)
+    return np.array([reduced(row) for row in run.y.T])
+
+
+class Halves:
+    """The paper's wheel by the reference over half a nutation; the rest by laying half after half, one at a time."""
+
+    def __init__(self, wheel: Wheel, start: Start, mirrored: bool = True) -> None:
+        self.mirrored = mirrored
+        rate = derivative(Contact(wheel), Inputs(), Law(0.0))
+        y0 = initial_state(wheel, start)
+        run = solve_ivp(rate, (0, 0.7), y0, "DOP853", rtol=3e-14, atol=1e-15, max_step=0.01, dense_output=True)
+        self.at = lambda t: reduced(run.sol(t))
+        self.length = brentq(lambda t: self.at(t)[1], 0.5, 0.7, xtol=1e-16)
+
+    def read(self, t: Array) -> Array:
+        """States at rising instants t; theta_dot is zero at the start."""
+        L, first, last = self.length, self.at(0.0), self.at(self.length)
+        psi, phi, place, k = first[4], first[5], complex(*first[6:]), 0
+        way = (complex(*last[6:]) - place) * np.exp(-1j * psi)
+        turn = last[4] - psi
+        rows = []
+        for instant in t:
+            while instant >= (k + 1) * L:
+                back = self.mirrored and k % 2
+                place += np.exp(1j * psi) * (np.conj(way) * np.exp(1j * turn) if back else way)
+                psi, phi, k = psi + turn, phi + last[5] - first[5], k + 1
+            rows.append(self._inside(instant - k * L, psi, phi, place, bool(self.mirrored and k % 2)))
+        return np.array(rows)
+
+    def _inside(self, u: float, psi: float, phi: float, place: complex, back: bool) -> Array:
+        """Where the wheel is u after a turning point at which it had psi, phi and place."""
+        y = self.at(self.length - u if back else u)
+        edge = self.at(self.length if back else 0.0)
+        way = (complex(*y[6:]) - complex(*edge[6:])) * np.exp(-1j * edge[4])
+        sign = -1 if back else 1
+        spot = place + np.exp(1j * psi) * (-np.conj(way) if back else way)
+        angles = psi + sign * (y[4] - edge[4]), phi + sign * (y[5] - edge[5])
+        return np.array([y[0], sign * y[1], y[2], y[3], *angles, spot.real, spot.imag])

@@ -1,0 +1,202 @@
+"""The free wheel unfolded from half a nutation, against stepping through and against half after half laid end to end.
+
+J_x = J_y, no friction, no load; scaled errors: angles 1 rad, rates the largest of the motion, lengths 1 m.
+"""
+
+from __future__ import annotations
+
+import ctypes
+
+import numpy as np
+import pytest
+from reference import Start, Wheel
+
+from .orbit import Array, Halves, Orbit, stepped
+
+PAPER = Start()
+SLANTED = Start(psi=0.4, theta=1.2, psi_dot=0.5, theta_dot=0.3, phi_dot=-5.0, X_O=0.5, Y_O=-0.3)
+
+
+def error(got: Array, want: Array) -> float:
+    scales = np.array([1, *np.abs(want[:, 1:4]).max(axis=0).clip(1), 1, 1, 1, 1])
+    return float((np.abs(got - want) / scales).max())
+
+
+def headline(y: Array) -> Array:
+    """X_O, theta, phi_dot, psi_dot."""
+    psi_dot = y[:, 2] / np.sin(y[:, 0])
+    return np.column_stack([y[:, 6], y[:, 0], y[:, 3] - psi_dot * np.cos(y[:, 0]), psi_dot])
+
+
+def range_error(got: Array, want: Array) -> float:
+    return float((np.abs(headline(got) - headline(want)) / np.ptp(headline(want), axis=0)).max())
+
+
+def test_after_1000_s_each_output_is_right_to_a_millionth_of_its_range(library: ctypes.CDLL) -> None:
+    t = np.arange(0.05, 1000, 0.73)
+    want = Halves(Wheel(), PAPER).read(t)
+    orbit = Orbit(library)
+    assert orbit.kind == "folded"
+    assert range_error(orbit(t), want) < 1e-6  # measured 3.2e-7
+    assert range_error(Orbit(library, tolerance=1e-12)(t), want) < 1e-9  # measured M2
+    assert range_error(orbit(t), Halves(Wheel(), PAPER, mirrored=False).read(t)) > 0.1  # measured M3
+
+
+def test_the_half_period_has_thirteen_digits_and_the_error_of_a_long_run_is_its_error(library: ctypes.CDLL) -> None:
+    tight, loose = Orbit(library, tolerance=1e-12), Orbit(library, tolerance=1e-6)
+    assert abs(tight.half_period - 0.627987168255779) < 2e-14  # a Taylor method's; measured M4
+    lag = (loose.half_period - tight.half_period) / tight.half_period  # of a nutation, per nutation
+    t = np.array([100.0, 1000.0])
+    late = loose(t) - tight(t)
+    rate = tight(t)[:, 1]
+    assert np.abs(late[:, 0] + rate * lag * t).max() < 0.05 * np.abs(late[:, 0]).max()  # measured M5
+
+
+@pytest.mark.parametrize("wheel", [Wheel(), Wheel(r=0.0), Wheel(J_z=1.2, r=0.12)], ids=["paper", "disc", "fat"])
+@pytest.mark.parametrize("start", [PAPER, SLANTED], ids=["from rest", "slanted"])
+def test_it_is_the_motion_that_the_reference_steps_through(library: ctypes.CDLL, wheel: Wheel, start: Start) -> None:
+    t = np.linspace(0, 6, 61)
+    want = stepped(wheel, start, t)
+    orbit = Orbit(library, wheel, start, 1e-11)
+    assert orbit.kind == "folded"
+    assert error(orbit(t), want) < 1e-10  # measured at most M6
+    assert error(Orbit(library, wheel, start, 1e-5)(t), want) > 1e-9  # measured at least M7
+
+
+def test_two_thousand_random_starts_end_in_their_first_nutation_or_fold(library: ctypes.CDLL) -> None:
+    random = np.random.default_rng(7)
+    ended, worst = 0, 0.0
+    for _ in range(2000):
+        angles = dict(psi=random.uniform(0, 6), theta=random.uniform(0.3, np.pi - 0.3))
+        rates = dict(zip(("psi_dot", "theta_dot", "phi_dot"), random.normal(0, (3, 1.5, 6)), strict=True))
+        orbit = Orbit(library, start=Start(**angles, **rates))
+        assert orbit.kind != "refused"
+        if orbit.kind == "ended":
+            ended += 1
+            continue
+        L = orbit.half_period
+        y, N = orbit.read(np.linspace(0, 7 * L, 150))
+        assert (N > -1e-6 * 196.2).all()  # never lifts off later
+        again = orbit(np.linspace(2 * L, 9 * L, 150))
+        worst = max(worst, float(np.abs(again - y)[:, :4].max() / np.abs(y[:, :4]).max()))
+    assert 100 < ended < 1900  # measured M8
+    assert worst < 1e-6  # one period later the same tilt and rates; measured M9
+
+
+def test_a_wheel_that_ends_does_so_in_its_first_nutation(library: ctypes.CDLL) -> None:
+    start = Start(psi_dot=2.5, theta_dot=1.5, phi_dot=-9.0, theta=1.0)
+    orbit = Orbit(library, start=start)
+    assert orbit.kind == "ended"
+    assert abs(orbit.read([orbit.end_time])[1][0]) < 1e-6 * 196.2  # N; measured M10
+    assert orbit.read([0.9 * orbit.end_time])[1][0] > 1e-3 * 196.2
+
+
+def test_excursions_below_zero_are_told_at_their_instants_however_late(library: ctypes.CDLL) -> None:
+    start = Start(psi_dot=2.5, theta_dot=1.5, phi_dot=-9.0, theta=1.0)
+    orbit = Orbit(library, start=start, keep_contact=True)
+    assert orbit.kind == "folded"
+    t = np.linspace(0, 12 * orbit.half_period, 20_001)
+    N = orbit.read(t)[1]
+    falls = t[1:][(N[:-1] >= 0) & (N[1:] < 0)]
+    told = [orbit.fall(n) for n in range(orbit.falls_until(t[-1]))]
+    assert len(told) == len(falls) >= 6
+    assert (np.abs(falls - told) <= t[1]).all()
+    assert np.abs(orbit.read(told)[1]).max() < 1e-6 * 196.2  # measured M11
+    late = orbit.falls_until(1e6)
+    assert orbit.fall(late - 1) <= 1e6 < orbit.fall(late)
+    assert abs(orbit.fall(late - 1) - orbit.fall(late - 1 - len(told) // 6) - 2 * orbit.half_period) < 1e-9
+    assert orbit.falls_until(np.nextafter(orbit.fall(late - 1), 0)) == late - 1
+
+
+def test_where_a_period_turns_the_wheel_by_half_turns_it_walks_straight_on(library: ctypes.CDLL) -> None:
+    """Resonance: the turn of psi in half a nutation is a multiple of pi, and sin(n delta) / sin(delta) is n."""
+
+    def excess(psi_dot: float) -> float:
+        orbit = Orbit(library, start=Start(psi_dot=psi_dot, phi_dot=-6.0), tolerance=1e-12)
+        turn = np.diff(orbit([0, orbit.half_period])[:, 4])[0] if orbit.kind == "folded" else np.nan
+        return float(turn - np.pi * np.round(turn / np.pi))
+
+    tried = np.linspace(-4, 4, 161)
+    values = np.array([excess(x) for x in tried])
+    close = (values[:-1] * values[1:] < 0) & (np.abs(np.diff(values)) < 1)
+    low, high = tried[:-1][close][0], tried[1:][close][0]
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if excess(middle) * excess(low) > 0 else (low, middle)
+    orbit = Orbit(library, start=Start(psi_dot=low, phi_dot=-6.0), tolerance=1e-12)
+    periods = np.array([1.0, 1000, 1_000_000])
+    way = orbit(2 * orbit.half_period * periods)[:, 6:] - orbit([0])[0, 6:]
+    assert np.abs(way / (periods[:, None] * way[0]) - 1).max() < 1e-5  # measured M12
+    assert np.hypot(*way[-1]) > 1e4
+
+
+@pytest.mark.parametrize("phi_dot", [-9.0, -1000.0])
+def test_straight_rolling_above_the_critical_speed_needs_no_step(library: ctypes.CDLL, phi_dot: float) -> None:
+    orbit = Orbit(library, start=Start(theta=np.pi / 2, phi_dot=phi_dot))
+    assert (orbit.kind, orbit.steps) == ("folded", 0)
+    y = orbit([1e4])[0]
+    want = Start().X_O, -phi_dot * 0.35 * 1e4  # rolls along Y
+    assert abs(y[7] / want[1] - 1) < 1e-14
+    assert abs(y[6] - want[0]) < 1e-9 * abs(want[1])
+
+
+def test_below_the_critical_speed_straight_rolling_is_not_taken_for_steady(library: ctypes.CDLL) -> None:
+    for phi_dot in (0.0, -0.3, -1.0, -2.0):
+        orbit = Orbit(library, start=Start(theta=np.pi / 2, phi_dot=phi_dot))
+        assert orbit.kind == "refused" or orbit.steps > 100  # a nutation that begins by rounding takes its time
+    assert Orbit(library, start=Start(theta=np.pi / 2, phi_dot=0.0)).kind == "ended"  # it falls flat
+
+
+@pytest.mark.parametrize("lean", [1e-13, 1e-10, 1e-8, 1e-4])
+def test_next_to_a_steady_motion_the_small_nutation_is_kept_or_too_small_to_matter(
+    library: ctypes.CDLL, lean: float
+) -> None:
+    start = Start(theta=np.pi / 2 + lean, phi_dot=-9.0)
+    orbit = Orbit(library, start=start)
+    assert orbit.kind == "folded"
+    t = np.linspace(0, 6, 31)
+    assert error(orbit(t), stepped(Wheel(), start, t)) < 1e-9  # measured at most M13
+
+
+@pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-6])
+def test_a_long_nutation_beside_an_unstable_rest_folds(library: ctypes.CDLL, off: float) -> None:
+    start = Start(theta=np.pi / 2 + off, phi_dot=-2.5)
+    orbit = Orbit(library, start=start, tolerance=1e-11)
+    assert orbit.kind == "folded"
+    t = np.linspace(0, 2.5 * orbit.half_period, 41)
+    assert error(orbit(t), stepped(Wheel(), start, t)) < 1e-6 * (1e-2 / off) ** 0.5  # measured M14
+
+
+def test_spinning_at_1000_rad_per_s_folds(library: ctypes.CDLL) -> None:
+    start = Start(theta=1.2, phi_dot=-1000.0)
+    orbit = Orbit(library, start=start)
+    assert orbit.kind == "folded"
+    t = np.linspace(0, 0.5, 51)
+    assert error(orbit(t), stepped(Wheel(), start, t)) < 1e-7  # measured 1.2e-8
+
+
+@pytest.mark.parametrize("theta_dot", [0.0, 1e-17, -1e-17, 1e-9, -1e-9])
+def test_a_start_at_a_turning_point_or_beside_it_is_the_same_motion(library: ctypes.CDLL, theta_dot: float) -> None:
+    t = np.linspace(0, 20, 101)
+    want = Orbit(library, start=Start(phi_dot=-5.0), tolerance=1e-12)(t)
+    got = Orbit(library, start=Start(phi_dot=-5.0, theta_dot=theta_dot))(t)
+    assert error(got, want) < 1e-8 + 3 * abs(theta_dot)  # measured M16
+
+
+@pytest.mark.parametrize("t", [1e6, 1e9, 1e15, 1e300])
+def test_any_time_can_be_read(library: ctypes.CDLL, t: float) -> None:
+    orbit = Orbit(library, tolerance=1e-12)
+    y = orbit([t])[0]
+    assert np.isfinite(y).all()
+    one = orbit(np.linspace(0, orbit.half_period, 20_001))
+    assert np.abs(one[:, [0, 2, 3]] - y[[0, 2, 3]]).sum(axis=1).min() < 1e-3  # a state of the nutation
+
+
+def test_the_order_of_readings_does_not_change_a_bit(library: ctypes.CDLL) -> None:
+    first, second = Orbit(library, start=SLANTED), Orbit(library, start=SLANTED)
+    t = np.sort(np.random.default_rng(1).uniform(0, 500, 2000))
+    t = np.sort(np.concatenate([t, first.half_period * np.arange(1, 300)]))
+    assert np.array_equal(first(t), second(t[::-1])[::-1])
+    assert second.build() == "folded"
+    assert np.array_equal(first(t), second(t))
+    assert not np.array_equal(first(t), Orbit(library, start=SLANTED, tolerance=1.01e-8)(t))

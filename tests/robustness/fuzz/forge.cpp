@@ -1,0 +1,136 @@
+// The fuzzer of forged states: a state of a wheel on its way, some of its words changed, brought to another instance by
+// a library that takes every checksum as right (WHEEL_UNCHECKED_STATES). It is refused with a sentence and the instance
+// is as it was, or it is taken and whatever follows ends soon and without harm.
+#include <algorithm>
+#include <iterator>
+
+#include "bytes.hpp"
+#include "oracle.hpp"
+
+namespace fuzz {
+namespace {
+
+fmi2Component make_instance() {
+  const fmi2CallbackFunctions functions = callbacks();
+  return fmi2Instantiate("wheel", fmi2CoSimulation, WHEEL_GUID, nullptr, &functions, fmi2False, fmi2True);
+}
+
+// Every formulation, law and method; with and without friction, general inertia, inputs that vary.
+void start(fmi2Component c, Bytes& in) {
+  const unsigned choices[] = {ref_formulation, ref_friction_law, ref_method};
+  const int picked[] = {1 + static_cast<int>(in.below(3)), 1 + static_cast<int>(in.below(2)),
+                        1 + static_cast<int>(in.below(4))};
+  const unsigned reals[] = {ref_s, ref_J_x, ref_M_3, ref_M_brake}, keep = ref_keep_contact;
+  const double values[] = {in.chance(8) ? 0.03 : 0.0, in.chance(8) ? 0.9 : 1.0, in.chance(4) ? 0.2 : 0.0,
+                           in.chance(4) ? 0.1 : 0.0};
+  const int kept = in.chance(8);
+  fmi2SetInteger(c, choices, 3, picked);
+  fmi2SetReal(c, reals, 4, values);
+  fmi2SetBoolean(c, &keep, 1, &kept);
+  if (in.chance(1)) return;
+  fmi2EnterInitializationMode(c);
+  if (!in.chance(1)) fmi2ExitInitializationMode(c);
+}
+
+void push(fmi2Component c, Bytes& in) {
+  const unsigned input = ref_first_input + in.below(input_count);
+  const int order = 1 + static_cast<int>(in.below(3));
+  const double value = in.factor() - 1, slope = in.factor() - 1;
+  if (in.chance(8)) fmi2SetReal(c, &input, 1, &value);
+  if (in.chance(8)) fmi2SetRealInputDerivatives(c, &input, 1, &order, &slope);
+}
+
+double now(fmi2Component c) {
+  double t = 0;
+  return fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &t) == fmi2OK ? t : 0;
+}
+
+void step(fmi2Component c, Bytes& in, unsigned most) {
+  for (unsigned k = in.below(most); k > 0; --k) {
+    if (in.chance(4)) push(c, in);
+    fmi2DoStep(c, now(c), 0.05 * in.factor(), fmi2True);
+  }
+}
+
+// A header of whole words, then numbers of eight bytes: the same change is never made twice.
+void forge(Digest& bytes, Bytes& in) {
+  const std::size_t words = bytes.size() / 8;
+  for (unsigned k = 1 + in.below(3); k > 0; --k) {
+    unsigned char word[8];
+    auto* const place = bytes.data() + 8 * ((in.byte() << 8 | in.byte()) % words);
+    const double number = in.any();
+    const std::int64_t whole = static_cast<std::int64_t>(in.byte()) - 3;
+    std::memcpy(word, place, 8);
+    switch (in.below(4)) {
+      case 0:
+        std::memcpy(word, &number, 8);
+        break;
+      case 1:
+        std::memcpy(word, &whole, 8);
+        break;
+      case 2:
+        word[in.below(8)] ^= static_cast<unsigned char>(1u << in.below(8));
+        break;
+      default:
+        std::memcpy(word, bytes.data() + 8 * ((in.byte() << 8 | in.byte()) % words), 8);
+    }
+    std::memcpy(place, word, 8);
+  }
+  if (in.chance(1)) bytes.resize(bytes.size() - 8 * in.below(static_cast<unsigned>(std::min<std::size_t>(words, 200))));
+}
+
+// All that reads, in whatever state the instance is.
+void read_all(fmi2Component c) {
+  const int first = 1;
+  for (unsigned v = 0; v < ref_count; ++v) {
+    double real = 0;
+    int whole = 0;
+    const unsigned force = ref_F_X, mass = ref_m;
+    const double seed = 1;
+    fmi2GetReal(c, &v, 1, &real);
+    fmi2GetInteger(c, &v, 1, &whole);
+    fmi2GetRealOutputDerivatives(c, &v, 1, &first, &real);
+    fmi2GetDirectionalDerivative(c, &v, 1, &force, 1, &seed, &real);
+    fmi2GetDirectionalDerivative(c, &v, 1, &mass, 1, &seed, &real);
+  }
+}
+
+void go_on(fmi2Component c, Bytes& in) {
+  read_all(c);
+  step(c, in, 6);
+  read_all(c);
+  expect(!digest(c).empty(), "a state can always be taken");
+  push(c, in);
+  step(c, in, 6);
+  expect(fmi2Reset(c) == fmi2OK, "reset succeeds");
+}
+
+}  // namespace
+}  // namespace fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace fuzz;
+  Bytes in(data, size);
+  const fmi2Component origin = make_instance(), victim = make_instance();
+  start(origin, in);
+  step(origin, in, 20);
+  start(victim, in);
+  step(victim, in, 4);
+  Digest forged = digest(origin);
+  const Digest before = digest(victim);
+  forge(forged, in);
+  fmi2FMUstate state = nullptr;
+  log() = Log();
+  const fmi2Status status = fmi2DeSerializeFMUstate(victim, forged.data(), forged.size(), &state);
+  trace("%d\n", status);
+  expect(status == fmi2OK || (status == fmi2Error && log().messages == 1), "a refused state is told in one sentence");
+  expect(digest(victim) == before, "bytes that are only read change nothing");
+  if (status == fmi2OK) {
+    expect(fmi2SetFMUstate(victim, state) == fmi2OK, "a state that was taken can be restored");
+    expect(fmi2FreeFMUstate(victim, &state) == fmi2OK, "a state can be freed");
+  }
+  go_on(victim, in);
+  fmi2FreeInstance(origin);
+  fmi2FreeInstance(victim);
+  return 0;
+}

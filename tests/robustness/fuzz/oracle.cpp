@@ -1,0 +1,148 @@
+// The oracles: log messages, serialized state, finite readings, energy.
+#include "oracle.hpp"
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace fuzz {
+namespace {
+
+// A message is a printf format to the master, and # opens a reference to a variable: both are doubled.
+void check_message(const char* text) {
+  const std::size_t length = std::strlen(text);
+  expect(length > 0 && length < 1000, "a message has 1 to 999 bytes");
+  expect(text[length - 1] != '\n', "a message does not end in a new line");
+  for (const char special : {'%', '#'})
+    for (const char* at = std::strchr(text, special); at; at = std::strchr(at + 2, special))
+      expect(at[1] == special, "percent and number signs are doubled");
+}
+
+bool is_category(const char* category) {
+  for (const char* known : {"logEvents", "logStatusWarning", "logStatusDiscard", "logStatusError"})
+    if (!std::strcmp(category, known)) return true;
+  return false;
+}
+
+void call_back(fmi2Component c) {
+  const fmi2ValueReference reference = ref_E;
+  double value = 0;
+  expect(fmi2GetReal(c, &reference, 1, &value) == fmi2Error, "the logger cannot call into the FMU");
+  expect(fmi2DoStep(c, 0, 1, fmi2True) == fmi2Error, "the logger cannot step the FMU");
+  expect(fmi2Reset(c) == fmi2Error, "the logger cannot reset the FMU");
+  fmi2FreeInstance(c);
+}
+
+void receive(fmi2ComponentEnvironment, fmi2String name, fmi2Status, fmi2String category, fmi2String message, ...) {
+  ++log().messages;
+  trace("    %s\n", message);
+  expect(name && category && message, "the logger gets no null pointer");
+  expect(is_category(category), "the category is one of modelDescription.xml");
+  check_message(message);
+  if (log().calls_back && log().caller) call_back(log().caller);
+}
+
+}  // namespace
+
+Type type_of(unsigned reference) {
+  constexpr Type types[] = {
+#define STORED(name, type, ...) Type::type,
+#define COMPUTED(name, type, ...) Type::type,
+#include "variables.inc"
+#undef STORED
+#undef COMPUTED
+  };
+  return types[reference];
+}
+
+Log& log() {
+  static Log the_log;
+  return the_log;
+}
+
+void trace(const char* format, ...) {
+  static const bool wanted = std::getenv("WHEEL_FUZZ_TRACE");
+  if (!wanted) return;
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vfprintf(stderr, format, arguments);
+  va_end(arguments);
+}
+
+void fail(const char* expectation) {
+  std::fprintf(stderr, "Expectation broken: %s.\n", expectation);
+  std::abort();
+}
+
+fmi2CallbackFunctions callbacks() { return {receive, std::calloc, std::free, nullptr, nullptr}; }
+
+Digest digest(fmi2Component component) {
+  fmi2FMUstate state = nullptr;
+  std::size_t size = 0;
+  expect(fmi2GetFMUstate(component, &state) == fmi2OK, "a state can always be taken");
+  expect(fmi2SerializedFMUstateSize(component, state, &size) == fmi2OK, "a state has a size");
+  Digest bytes(size);
+  expect(fmi2SerializeFMUstate(component, state, bytes.data(), size) == fmi2OK, "a state can be serialized");
+  expect(fmi2FreeFMUstate(component, &state) == fmi2OK && !state, "a state can be freed");
+  return bytes;
+}
+
+std::vector<double> readings(const Slot& slot) {
+  std::vector<double> values;
+  for (unsigned reference = 0; reference < ref_count; ++reference) {
+    fmi2Status status = fmi2OK;
+    double real = 0;
+    int whole = 0;
+    if (type_of(reference) == Type::boolean)
+      status = fmi2GetBoolean(slot.component, &reference, 1, &whole);
+    else if (type_of(reference) == Type::integer)
+      status = fmi2GetInteger(slot.component, &reference, 1, &whole);
+    else
+      status = fmi2GetReal(slot.component, &reference, 1, &real);
+    expect(status == fmi2OK, "every variable can be read after the start");
+    values.push_back(real + whole);
+  }
+  return values;
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && !std::memcmp(a.data(), b.data(), a.size() * sizeof(double));
+}
+
+double time_of(fmi2Component component) {
+  double t = 0;
+  expect(fmi2GetRealStatus(component, fmi2LastSuccessfulTime, &t) == fmi2OK, "the last successful time is known");
+  return t;
+}
+
+namespace {
+
+void check_finite(const std::vector<double>& values) {
+  for (unsigned reference = ref_first_output; reference < ref_count; ++reference)
+    expect(std::isfinite(values[reference]) || reference == ref_mu_required, "what can be read is finite");
+}
+
+}  // namespace
+
+void check_after_start(Slot& slot) {
+  const std::vector<double> values = readings(slot);
+  check_finite(values);
+  slot.model.start_energy = values[ref_E];
+  slot.model.energy_scale =
+      std::fabs(values[ref_E]) + values[ref_m] * values[ref_g] * (values[ref_r_0] + values[ref_r]);
+  for (unsigned input = ref_first_input; input < ref_first_output; ++input)
+    if (values[input] != 0) slot.model.free = false;
+  if (values[ref_s] != 0) slot.model.free = false;
+}
+
+void check_after_step(const Slot& slot) {
+  const std::vector<double> values = readings(slot);
+  check_finite(values);
+  if (!slot.model.free) return;
+  const double change = std::fabs(values[ref_E] - slot.model.start_energy);
+  expect(change <= 1e4 * slot.model.tolerance * slot.model.energy_scale, "the energy of a free wheel stays");
+}
+
+}  // namespace fuzz

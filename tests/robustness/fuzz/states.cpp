@@ -1,0 +1,133 @@
+// Rollback, serialization, and their promise: the same bits after a restored state, here or in another instance.
+#include "session.hpp"
+
+namespace fuzz {
+
+void Session::take_state() {
+  Saved& saved = saved_[in_.below(3)];
+  const fmi2Status status =
+      checked(*now_, anywhere, false, [&] { return fmi2GetFMUstate(now_->component, &saved.state); });
+  expect(status == fmi2OK && saved.state, "a state can always be taken");
+  saved.model = now_->model;
+}
+
+void Session::restore_state() {
+  const Saved& saved = saved_[in_.below(3)];
+  const fmi2Status status =
+      checked(*now_, anywhere, false, [&] { return fmi2SetFMUstate(now_->component, saved.state); });
+  expect(status == (saved.state ? fmi2OK : fmi2Error), "a state that was taken can be restored");
+  if (saved.state) now_->model = saved.model;
+}
+
+void Session::free_state() {
+  Saved& saved = saved_[in_.below(3)];
+  fmi2FMUstate* null = nullptr;
+  fmi2FMUstate* state = in_.chance(2) ? null : &saved.state;
+  const fmi2Status status = checked(*now_, anywhere, false, [&] { return fmi2FreeFMUstate(now_->component, state); });
+  expect(status == fmi2OK, "freeing a state succeeds");
+}
+
+void Session::serialize() {
+  const Saved& saved = saved_[in_.below(3)];
+  std::size_t size = 0;
+  Digest bytes(1u << 17u);
+  const fmi2Component c = now_->component;
+  const fmi2Status sized =
+      checked(*now_, anywhere, false, [&] { return fmi2SerializedFMUstateSize(c, saved.state, &size); });
+  expect(sized == (saved.state ? fmi2OK : fmi2Error), "the size of a state is known");
+  expect(size <= bytes.size(), "a state is small");
+  const std::size_t given = in_.chance(4) ? size / 2 : size;
+  const unsigned null = in_.byte();
+  const fmi2Status status =
+      checked(*now_, anywhere, false, [&] { return fmi2SerializeFMUstate(c, saved.state, bytes.data(), given); });
+  expect(status == (saved.state && given == size ? fmi2OK : fmi2Error), "a state fits into its size, and no less");
+  if (null < 32) without_arrays(saved);
+}
+
+void Session::without_arrays(const Saved& saved) {
+  const fmi2Component c = now_->component;
+  const fmi2Byte byte = 0;
+  fmi2FMUstate state = nullptr;
+  const fmi2Status statuses[] = {
+      checked(*now_, anywhere, false, [&] { return fmi2GetFMUstate(c, nullptr); }),
+      checked(*now_, anywhere, false, [&] { return fmi2SerializedFMUstateSize(c, saved.state, nullptr); }),
+      checked(*now_, anywhere, false, [&] { return fmi2SerializeFMUstate(c, saved.state, nullptr, 1u << 17u); }),
+      checked(*now_, anywhere, false, [&] { return fmi2DeSerializeFMUstate(c, nullptr, 1u << 17u, &state); }),
+      checked(*now_, anywhere, false, [&] { return fmi2DeSerializeFMUstate(c, &byte, 1, &state); }),
+      checked(*now_, anywhere, false, [&] { return fmi2DeSerializeFMUstate(c, &byte, 1, nullptr); }),
+  };
+  for (const fmi2Status status : statuses) expect(status == fmi2Error, "a missing array is told");
+}
+
+// Any changed, missing or added byte is noticed.
+void Session::deserialize_damaged() {
+  Digest bytes = digest(now_->component);
+  const std::size_t place = (in_.byte() << 8 | in_.byte()) % bytes.size();
+  const unsigned change = in_.byte();
+  if (change == 0)
+    bytes.resize(place);
+  else if (change == 1)
+    bytes.push_back(0);
+  else
+    bytes[place] = static_cast<fmi2Byte>(static_cast<unsigned char>(bytes[place]) ^ change);
+  fmi2FMUstate state = nullptr;
+  const fmi2Status status = checked(*now_, anywhere, false, [&] {
+    return fmi2DeSerializeFMUstate(now_->component, bytes.data(), bytes.size(), &state);
+  });
+  const bool harmed = status != fmi2OK;
+  if (!harmed) fmi2FreeFMUstate(now_->component, &state);
+  expect(harmed && !state, "damaged bytes are refused");
+}
+
+void Session::repeat_step_after_rollback() {
+  if (now_->model.state != step_complete) return;
+  const Model before = now_->model;
+  const double t = time_of(now_->component), h = usual_step(*now_) * in_.factor();
+  const bool reads_between = in_.chance(8);
+  fmi2FMUstate state = nullptr;
+  expect(fmi2GetFMUstate(now_->component, &state) == fmi2OK, "a state can always be taken");
+  step(*now_, t, h);
+  const std::vector<double> first = readings(*now_);
+  if (now_->model.state == step_complete) step(*now_, time_of(now_->component), h);
+  expect(fmi2SetFMUstate(now_->component, state) == fmi2OK, "a state that was taken can be restored");
+  now_->model = before;
+  if (reads_between) readings(*now_);
+  step(*now_, t, h);
+  expect(same_bits(first, readings(*now_)), "the same bits follow after a rollback");
+  fmi2FreeFMUstate(now_->component, &state);
+}
+
+void Session::repeat_step_in_new_instance() {
+  if (now_->model.state != step_complete) return;
+  const double t = time_of(now_->component), h = usual_step(*now_) * in_.factor();
+  const Digest bytes = digest(now_->component);
+  Slot other = {make_instance(), now_->model};
+  fmi2FMUstate state = nullptr;
+  expect(fmi2DeSerializeFMUstate(other.component, bytes.data(), bytes.size(), &state) == fmi2OK,
+         "a serialized state is read");
+  expect(fmi2SetFMUstate(other.component, state) == fmi2OK, "a state of another instance can be set");
+  expect(fmi2FreeFMUstate(other.component, &state) == fmi2OK, "a state can be freed");
+  expect(digest(other.component) == bytes, "a restored state serializes to the same bytes");
+  expect(same_bits(readings(*now_), readings(other)), "a restored state reads the same bits");
+  step(*now_, t, h);
+  step(other, t, h);
+  expect(same_bits(readings(*now_), readings(other)), "the same bits follow in another instance");
+  fmi2FreeInstance(other.component);
+}
+
+// After a reset the instance is as new, whatever happened to it.
+void Session::compare_reset_with_new() {
+  reset();
+  Slot other = {make_instance(), {}};
+  expect(digest(now_->component) == digest(other.component), "a reset instance is as a new one");
+  Slot* const old = now_;
+  for (Slot* slot : {&other, old}) {
+    now_ = slot;
+    start_quickly();
+    step(*now_, 0, 0.5);
+  }
+  expect(same_bits(readings(*old), readings(other)), "a reset instance runs as a new one");
+  fmi2FreeInstance(other.component);
+}
+
+}  // namespace fuzz

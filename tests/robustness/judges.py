@@ -1,0 +1,143 @@
+"""Judges: each compares a run with what must hold, and returns one error, 0 for the exact motion.
+
+energy       change of the energy plus the friction's work, over the largest energy
+integrals    Chaplygin's two linear integrals (closed_forms.py), over the largest rate
+reference    headline outputs against tests/reference, over the range of each
+still        the wheel keeps its lean: |theta - theta_start|, rad
+straight     upright rolling: O moves at (r_0 + r) omega_z along a straight line, m over the path
+linear       small lean of the upright rolling wheel after linear stability theory, rad
+uniform      without weight: all rates stay as they are, over the largest
+fixed        omega_z is exactly zero wherever friction holds it, rad/s
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from reference import Wheel, solve
+from support.closed_forms import critical_spin, linear_integrals
+from support.driver import HEADLINE
+from support.motion import Run
+
+from .case import PI, Case
+
+
+def friction_work(run: Run, s: float) -> np.ndarray:
+    """Work taken out by rolling friction since the start, J: the integral of s N |omega_z|.
+
+    Between events Euler-Maclaurin (values and slopes, fourth order); at an event the power is zero, so the pieces next
+    to it are parabolas. Slips that begin and end within one interval are left out.
+    """
+    t, sign = run["t"], run["friction_mode"]
+    power = s * run["lambda_3"] * run["omega_z"] * sign
+    slope = s * sign * (run["lambda_3_dot"] * run["omega_z"] + run["lambda_3"] * run["omega_z_dot"])
+    h = np.diff(t)
+    pieces = h / 2 * (power[:-1] + power[1:]) + h**2 / 12 * (slope[:-1] - slope[1:])
+    events = np.array([instant for instant, _ in run.events])
+    for i in np.flatnonzero(np.diff(np.searchsorted(events, t, "right"))):
+        inside = events[(events > t[i]) & (events <= t[i + 1])]
+        before, after = inside[0] - t[i], t[i + 1] - inside[-1]
+        pieces[i] = before * power[i] * 2 / 3 + before**2 * slope[i] / 6
+        pieces[i] += after * power[i + 1] * 2 / 3 - after**2 * slope[i + 1] / 6
+    return np.concatenate([[0.0], np.cumsum(pieces)])
+
+
+def energy(case: Case, run: Run) -> float:
+    lost = friction_work(run, case.wheel.s) if case.wheel.s > 0 else 0.0
+    size = np.abs(run["E"]).max()
+    return float(np.abs(run["E"] - run["E"][0] + lost).max() / (size or 1.0))
+
+
+def work_uncertainty(case: Case, run: Run) -> float:
+    """How well friction_work knows itself, over the energy: every second sample against all."""
+    if case.wheel.s == 0:
+        return 0.0
+    every_second = Run({name: column[::2] for name, column in run.columns.items()}, run.messages, 0, None, 0.0)
+    coarse, fine = friction_work(every_second, case.wheel.s), friction_work(run, case.wheel.s)[::2]
+    return float(np.abs(coarse - fine).max() / np.abs(run["E"]).max())
+
+
+def integrals(case: Case, run: Run) -> float:
+    omega_2 = run["psi_dot"] * np.sin(run["theta"])
+    kept = np.sin(run["theta"]) > 1e-6  # an ending flat is left to its own instant
+    order = np.argsort(-np.sin(run["theta"][kept]), kind="stable")  # carried to the highest point: well conditioned
+    columns = (column[kept][order] for column in (run["theta"], omega_2, run["omega_z"]))
+    constants = linear_integrals(case.wheel, *columns)
+    size = max(np.abs(omega_2).max(), np.abs(run["omega_z"]).max(), np.abs(run["theta_dot"]).max())
+    start = constants[np.flatnonzero(order == 0)[0]]
+    return float(np.abs(constants - start).max() / (size or 1.0))
+
+
+def reference_rows(case: Case) -> np.ndarray:
+    """Rows of the case's times at which the reference is asked."""
+    return np.linspace(0, case.samples, 21).astype(int)
+
+
+def reference_table(case: Case) -> dict[str, np.ndarray]:
+    keep = bool(case.start.get("keep_contact", False))
+    times = case.times[reference_rows(case)] - case.start_time
+    flat = None if keep else 1e-7
+    found = solve(case.wheel, case.motion, times, rtol=1e-12, keep_contact=keep, flat=flat)
+    return {**found.columns, "t": found.t}
+
+
+def reference(case: Case, run: Run, table: dict[str, np.ndarray]) -> float:
+    rows = reference_rows(case)
+    rows = rows[rows < len(run["t"]) - (run.end is not None)]  # the ending has its own judge
+    wheel = case.wheel
+    rate = np.sqrt(wheel.g / (wheel.r_0 + wheel.r))
+    least = {"X_O": wheel.r_0, "theta": 1.0, "phi_dot": rate, "psi_dot": rate}
+    worst = 0.0
+    for name in HEADLINE:
+        want = table[name][: len(rows)]
+        worst = max(worst, np.abs(run[name][rows] - want).max() / max(np.abs(want).max(), least[name]))
+    return float(worst)
+
+
+def still(_: Case, run: Run) -> float:
+    return float(np.abs(run["theta"] - run["theta"][0]).max())
+
+
+def straight(case: Case, run: Run) -> float:
+    wheel, t = case.wheel, run["t"] - run["t"][0]
+    path = -(wheel.r_0 + wheel.r) * run["omega_z"][0] * t
+    off = np.hypot(run["X_O"] - run["X_O"][0] - path * np.cos(run["psi"][0]), run["Y_O"] - path * np.sin(run["psi"][0]))
+    return float(off.max() / np.abs(path).max())
+
+
+def linear(case: Case, run: Run) -> float:
+    wheel: Wheel = case.wheel
+    pull = wheel.m * wheel.g * wheel.r_0 / (wheel.J_x + wheel.m * (wheel.r_0 + wheel.r) ** 2)
+    gyro = pull * (run["omega_z"][0] / critical_spin(wheel)) ** 2
+    lean, t = run["theta"][0] - PI / 2, run["t"] - run["t"][0]
+    middle = lean * gyro / (gyro - pull)
+    law = middle + (lean - middle) * np.cos(np.emath.sqrt(gyro - pull) * t).real
+    return float(np.abs(run["theta"] - PI / 2 - law).max())
+
+
+def uniform(_: Case, run: Run) -> float:
+    rates = np.column_stack([run[name] for name in ("theta_dot", "psi_dot", "phi_dot")])
+    return float(np.abs(rates - rates[0]).max() / (np.abs(rates).max() or 1.0))
+
+
+def fixed(_: Case, run: Run) -> float:
+    held = run["friction_mode"] == 0
+    return float(np.abs(run["omega_z"][held]).max(initial=0.0))
+
+
+RATES = ("omega_z", "lambda_3")  # whose rates friction_work reads
+JUDGES = {
+    "energy": energy,
+    "integrals": integrals,
+    "reference": reference,
+    "still": still,
+    "straight": straight,
+    "linear": linear,
+    "uniform": uniform,
+    "fixed": fixed,
+}
+FLOORS = {"energy": 2e-12, "integrals": 1e-10, "reference": 1e-9, "straight": 1e-12, "linear": 3e-6, "uniform": 1e-12}
+
+
+def floor(name: str, case: Case, run: Run) -> float:
+    """What a judge cannot see: rounding, its own quadrature."""
+    return FLOORS.get(name, 0.0) + (work_uncertainty(case, run) if name == "energy" else 0.0)

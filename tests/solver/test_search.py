@@ -1,0 +1,58 @@
+"""Events and endings of the solver alone: every fall through zero is found, dips included, and none is invented."""
+
+from math import asin, pi, sqrt
+
+import pytest
+
+END = 20  # s, of the oscillator
+
+
+@pytest.mark.parametrize("depth", [1e-1, 1e-3, 1e-5])
+def test_every_dip_inside_a_step_is_found(measure, method, depth):
+    """g = 1 + sin t - depth falls below zero for 2 sqrt(2 depth) s around each 3 pi / 2."""
+    found = measure("dip", method, depth)["falls"]
+    first = pi + asin(1 - depth)
+    expected = [first + 2 * pi * k for k in range(3)]
+    assert len(found) == 3
+    # The tolerance is 1e-6; a wrong phase moves the edge of a shallow dip by error / slope.
+    for t, exact in zip(found, expected, strict=True):
+        assert t == pytest.approx(exact, abs=2e-4 / sqrt(depth) * 0.1 + 1e-5)
+
+
+def test_a_function_that_comes_near_zero_and_turns_is_no_event(measure, method):
+    assert measure("dip", method, -1e-4)["falls"] == []
+
+
+def test_the_work_of_the_search_is_bounded(measure, method):
+    run = measure("dip", method, 1e-5)
+    assert run["roots"] < 100 * run["steps"]  # measured: 5.3 a step by runge_kutta, 2.3 by the others
+
+
+@pytest.mark.parametrize("depth", [1e-3, 1e-4, 1e-5, 1e-8])
+def test_of_two_dips_between_bends_the_first_is_found(measure, method, depth):
+    """g = (t - 0.3)^2 (t - 0.7)^2 - depth, in a step of 1 s whose bends are told."""
+    end = measure("double_dip", method, depth, 1.0)
+    assert end["ended"]
+    # The first root: (t - 0.3) (0.7 - t) = -sqrt(depth).
+    assert end["time"] == pytest.approx(0.5 - sqrt(0.04 + sqrt(depth)), abs=1e-14)
+
+
+def test_above_zero_two_dips_end_nothing(measure, method):
+    assert not measure("double_dip", method, -1e-8, 1.0)["ended"]
+
+
+@pytest.mark.parametrize("last", [0.5, 1e-2, 1e-3, 1e-5])
+def test_a_release_with_rate_zero_is_no_event_but_the_fall_after_it_is(measure, method, last):
+    """g = t^2 (last - t): zero with zero rate at the start, and down through zero at `last`."""
+    found = measure("release", method, last)
+    assert found["event"]
+    assert found["time"] == pytest.approx(last, rel=1e-12)
+
+
+def test_a_bouncing_ball_bounces_when_it_should(measure, method):
+    keeps, g = 0.8, 9.81
+    fall = sqrt(2 / g)
+    expected = [fall + 2 * fall * sum(keeps**k for k in range(1, n + 1)) for n in range(10)]
+    run = measure("bounces", method, keeps)
+    assert run["times"] == pytest.approx(expected, abs=1e-8)  # measured: 3e-15, 1.4e-9 by bdf
+    assert run["restarts"] == 10

@@ -1,0 +1,90 @@
+"""The scenes of tests and reports as data: what differs from the paper's free wheel. SI; names of modelDescription.xml.
+
+Every scene can be given to the FMU (start values, inputs) and to the independent reference (wheel, motion, inputs).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from math import pi
+
+from reference import Start, Wheel
+
+from .driver import Values
+from .schedule import Schedule
+
+THETA_0 = 5 * pi / 12  # the paper's start
+PAPER = Wheel()
+
+
+def wheel_of(start: Values) -> Wheel:
+    """The reference's wheel with these start values of the FMU."""
+    known = {f.name for f in fields(Wheel)}
+    return Wheel(**{name: value for name, value in start.items() if name in known})
+
+
+def motion_of(start: Values) -> Start:
+    """The reference's start with these start values of the FMU."""
+    names = {f"{f.name}_start": f.name for f in fields(Start)}
+    return Start(**{names[name]: value for name, value in start.items() if name in names})
+
+
+@dataclass(frozen=True)
+class Scene:
+    """start: changes of the FMU's start values; duration in s."""
+
+    start: Values = field(default_factory=dict)
+    duration: float = 10.0
+    inputs: Schedule = Schedule()
+
+    @property
+    def wheel(self) -> Wheel:
+        return wheel_of(self.start)
+
+    @property
+    def motion(self) -> Start:
+        return motion_of(self.start)
+
+
+GENERAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
+PUSH = Schedule(
+    (
+        (
+            0.0,
+            {
+                "F_X": (0, 6, -2.5, 0.2),
+                "F_Y": (2, -1, -0.5, 0.1),
+                "F_Z": (0, -5, 2, -0.2),
+                "M_1": (0.3, 0, -0.1),
+                "M_2": (0, 0.4, -0.1),
+                "M_3": (0, 1.5, -0.6, 0.05),
+            },
+        ),
+    )
+)
+BRAKE = Schedule(((0.0, {"M_3": 4.0}), (0.3, {"M_3": -2.0}), (1.0, {"M_3": (0, 2), "F_Y": 3.0})))
+
+SCENES = {
+    "free": Scene(),
+    "friction": Scene({"s": 0.03}),
+    "regularized": Scene({"s": 0.03, "friction_law": "regularized", "method": "bdf"}),
+    "fast rolling": Scene({"phi_dot_start": -60.0}, 1.0),
+    "fast spin the other way": Scene({"s": 0.001, "phi_dot_start": 60.0}, 1.0),
+    "near flat": Scene({"theta_start": pi / 6, "psi_dot_start": 0.1, "phi_dot_start": 0.0}, 2.0),
+    "thin disc": Scene({"r": 0.0, "s": 0.01}, 5.0),
+    "general inertia": Scene(GENERAL, 5.0),
+    "general inertia, friction": Scene({**GENERAL, "s": 0.03}, 5.0),
+    "light friction": Scene({"s": 1e-4}, 5.0),
+    "heavy friction": Scene({**GENERAL, "s": 0.2}, 5.0),
+    "heavy friction, J_x = J_y": Scene({"s": 0.2}, 5.0),
+    "past upright": Scene({"s": 0.03, "theta_start": 1.9, "psi_dot_start": 0.5, "phi_dot_start": 3.0}, 5.0),
+    "pushed": Scene({"s": 0.02}, 5.0, PUSH),
+    "pushed, general inertia": Scene({**GENERAL, "s": 0.01}, 5.0, PUSH),
+    "braked": Scene({"s": 0.01}, 2.0, BRAKE),
+}
+
+# Start values of one scene of every kind: both formulations, both methods, every law of friction.
+KINDS: dict[str, Values] = {
+    name: SCENES[name].start
+    for name in ("free", "friction", "general inertia", "general inertia, friction", "regularized")
+}
