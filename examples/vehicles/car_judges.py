@@ -2,7 +2,7 @@
 
 With m all masses, R the wheels' radius, m_t = m + 4 J_z / R^2 (four wheels), L the wheelbase and T the track:
 
-    launch and braking   m_t a = (M_drive - s m g - brakes) / R; the rear axle gains a I / L
+    launch and braking   m_t a = (M_drive - s m g - brakes) / R; the rear axle gains (a I + m_B g (h_B - R) pitch) / L
     any bend             rear point on R = L / tan delta, so yaw rate = v tan(delta) / L at any speed: no understeer
     Ackermann            cot delta_outer - cot delta_inner = T / L
     steady circle        the outer wheels gain (a I + m_B g h_B roll) / T together
@@ -50,6 +50,11 @@ def load(table: Table, wheels: list[str], at: np.ndarray | int) -> float:
     return float(np.mean(sum(table[f"{w}.lambda_3"] for w in wheels)[at]))
 
 
+def dive(table: Table, at: np.ndarray) -> float:
+    """Moment of the chassis' weight as it pitches about its hubs, N m; positive towards the rear axle."""
+    return -M_B * G * (H_B - R) * float(np.mean(table["pitch"][at]))
+
+
 def mean_rate(table: Table, name: str, window: np.ndarray) -> float:
     """Slope of a straight line through a window."""
     return float(np.polyfit(table["time"][window], table[name][window], 1)[0])
@@ -57,7 +62,7 @@ def mean_rate(table: Table, name: str, window: np.ndarray) -> float:
 
 def launch(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     """Acceleration and load transfer in the last second of full torque."""
-    o = manoeuvre.driver
+    o = DRIVER_DEFAULTS | manoeuvre.driver
     t = table["time"]
     window = (t > o["t_off"] - 1) & (t < o["t_off"])
     drag = manoeuvre.s * MASS * G
@@ -65,7 +70,7 @@ def launch(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     gained = load(table, REAR, window) - load(table, REAR, 0)
     return [
         Finding("acceleration of the launch", mean_rate(table, "v", window), a, "m/s2"),
-        Finding("load moved to the rear axle by the launch", gained, (a * INERTIA + drag) / WHEELBASE, "N"),
+        Finding("load moved to the rear axle by the launch", gained, (a * INERTIA + drag + dive(table, window)) / WHEELBASE, "N"),
     ]
 
 
@@ -84,7 +89,7 @@ def braking(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     moved = load(table, FRONT, full) - load(table, FRONT, 0)
     spins = np.max([np.abs(table[f"{w}.omega_z"]) for w in WHEELS], axis=0)
     stopped = int(np.argmax((t > begin) & (spins == 0)))
-    expected = (a[-1] * INERTIA - manoeuvre.s * MASS * G) / WHEELBASE
+    expected = (a[-1] * INERTIA - manoeuvre.s * MASS * G - dive(table, full)) / WHEELBASE
     return [
         Finding("instant of the stop after the brakes come", float(t[stopped] - begin), float(fine[end] - begin), "s"),
         Finding("stopping distance", float(table["X"][-1] - table["X"][i]), way, "m"),
@@ -97,7 +102,6 @@ def bend(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     last = table["time"] > table["time"][-1] - 0.5
     delta, v = float(np.mean(table["delta"][last])), float(np.mean(table["v"][last]))
     omega, roll = float(np.mean(table["omega"][last])), float(np.mean(table["roll"][last]))
-    # lateral acceleration of the centre of mass, ahead of the rear point; the wheels' masses lie about it
     moved = (load(table, RIGHT, last) - load(table, LEFT, last)) / 2
     exact = (v * omega * INERTIA + M_B * G * H_B * roll) / TRACK
     headings = [np.mean((table[f"{w}.psi"] - table["psi"])[last]) for w in ("fr", "fl")]

@@ -93,10 +93,11 @@ def ends(fmus: dict[str, Path], step: float, exchange: str) -> bool:
 
 @dataclass(frozen=True)
 class Convergence:
-    """Error against communication step, for values held and for straight lines."""
+    """Error against communication step, by what the inputs do over the step."""
 
     steps: Sequence[float]
-    held: list[float]
+    held: list[float]  # with all inputs held
+    followed: list[float]  # with positions that follow the velocities beside them
     linear: list[float]
 
     def orders(self, errors: list[float]) -> list[float]:
@@ -111,9 +112,10 @@ def convergence(
     fmus: dict[str, Path], truth: dict[str, np.ndarray], steps: Sequence[float] = STEPS, stop: float = STOP
 ) -> Convergence:
     """Errors of the coupled runs."""
-    held = [distance(coupled(fmus, h, "held", stop), truth) for h in steps]
+    held = [distance(coupled(fmus, h, "held", stop, parameters={"follow": 0.0}), truth) for h in steps]
+    followed = [distance(coupled(fmus, h, "held", stop), truth) for h in steps]
     linear = [distance(coupled(fmus, h, "derivatives", stop), truth) for h in steps]
-    return Convergence(steps, held, linear)
+    return Convergence(steps, held, followed, linear)
 
 
 def drag_share(h: float, k: float = 60e3, mass: float = 334.7, duration: float = 2.5) -> float:

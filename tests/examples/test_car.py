@@ -97,10 +97,10 @@ LAUNCH = replace(car.STRAIGHT, stop=3.5, driver={**car.STRAIGHT.driver, "B_0": 0
 def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
     fmus: Fmus, manoeuvre: car.Manoeuvre, judge: object
 ) -> None:
-    soft, stiff = (judge(car.drive(fmus, stiffer(manoeuvre, f), 0.001).table, manoeuvre) for f in (1.0, 4.0))
+    soft, stiff = (judge(car.drive(fmus, stiffer(manoeuvre, f), 0.0005).table, manoeuvre) for f in (1.0, 3.0))
     for finding, nearer in zip(soft, stiff, strict=True):
         assert finding.error < 0.04, finding  # measured at most 0.032
-        assert nearer.error < max(0.4 * finding.error, 2e-4), nearer  # as 1 / k
+        assert nearer.error < max(0.45 * finding.error, 4e-4), nearer  # as 1 / k, but for roll squared
 
 
 def test_the_stopping_distance_is_that_of_the_closed_form(fmus: Fmus) -> None:
