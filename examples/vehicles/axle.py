@@ -9,7 +9,7 @@ middle and the yaw rate:
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from scipy.optimize import brentq
 from .component import Component
 from .hubs import upright, wire
 from .master import Master, Signal
+from .ssp import System
 
 WHEELS = ("left", "right")
 CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel)]
@@ -187,3 +188,9 @@ def gauss(begin: np.ndarray, end: np.ndarray, count: int = 8) -> tuple[np.ndarra
 def cumulative(weights: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Integrals from the first begin to each end, with 0 in front."""
     return np.concatenate([[0.0], np.cumsum((weights * values).sum(axis=1))])
+
+
+def system(fmus: dict[str, Path], scene: Scene, step: float = 0.001) -> System:
+    """What axle.ssp holds. A master that begins with zero inputs finds the hubs free for its first steps."""
+    parts = components(fmus, replace(scene, more={"t_couple": 3 * step, **scene.more}))
+    return System("axle", parts, CONNECTIONS, step, scene.stop)

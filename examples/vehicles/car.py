@@ -17,6 +17,7 @@ from .build import EXAMPLES
 from .component import Component, Ended
 from .hubs import FORCE, MOMENT, POSE, upright, wire
 from .master import Connection, Master, Signal
+from .ssp import System
 
 LAYOUT = tomllib.loads((EXAMPLES / "car" / "car.toml").read_text())
 WHEELS: dict[str, dict[str, float | str]] = LAYOUT["wheel"]
@@ -106,6 +107,12 @@ def components(fmus: dict[str, Path], manoeuvre: Manoeuvre) -> list[Component]:
     wheels = [Component(name, fmus["wheel"], wheel_start(manoeuvre, name)) for name in WHEELS]
     chassis = Component("chassis", fmus["chassis"], manoeuvre.chassis_start())
     return [*wheels, chassis, Component("driver", fmus["driver"], manoeuvre.driver_start())]
+
+
+def system(fmus: dict[str, Path], manoeuvre: Manoeuvre, step: float = 0.001) -> System:
+    """What car.ssp holds. A master that begins with zero inputs finds the chassis uncoupled for its first steps."""
+    waiting = replace(manoeuvre, chassis={"t_couple": 3 * step, **manoeuvre.chassis})
+    return System("car", components(fmus, waiting), CONNECTIONS, step, manoeuvre.stop)
 
 
 @dataclass(frozen=True)

@@ -59,11 +59,11 @@ def _text(root: ET.Element) -> str:
 
 
 def _component(elements: ET.Element, part: Component, description: ModelDescription, signals: set[Signal]) -> None:
-    """One FMU with the connectors that are used and its parameters."""
+    """One FMU with its outputs, the inputs that are connected, and its parameters."""
     component = _add(elements, "ssd:Component", name=part.name, source=f"resources/{part.path.name}", type=FMU)
     connectors = _add(component, "ssd:Connectors")
     for variable in description.modelVariables:
-        if (part.name, variable.name) in signals:
+        if (part.name, variable.name) in signals or (variable.causality == "output" and variable.type == "Real"):
             connector = _add(connectors, "ssd:Connector", name=variable.name, kind=variable.causality)
             _add(connector, "ssc:Real", unit=variable.unit)
     if part.start:
@@ -103,7 +103,8 @@ def _units(root: ET.Element, descriptions: dict[str, ModelDescription], signals:
     units = _add(root, "ssd:Units")
     written = set()
     for name, description in descriptions.items():
-        used = {v.unit for v in description.modelVariables if (name, v.name) in signals} - written
+        given = [v for v in description.modelVariables if (name, v.name) in signals or v.causality == "output"]
+        used = {v.unit for v in given} - written
         for unit in description.unitDefinitions:
             if unit.name in used:
                 powers = {n: getattr(unit.baseUnit, n) for n in ("kg", "m", "s", "rad")}
@@ -115,7 +116,7 @@ def _units(root: ET.Element, descriptions: dict[str, ModelDescription], signals:
 def parameters(component: Component) -> str:
     """A component's start values as an SSV parameter set."""
     kinds = {v.name: v.type for v in read_model_description(str(component.path), validate=False).modelVariables}
-    root = ET.Element(_tag("ssv:ParameterSet"), {"version": "1.0", "name": component.name})
+    root = ET.Element(_tag("ssv:ParameterSet"), {"version": "1.0", "name": "start"})  # ecos asks for it by name
     values = _add(root, "ssv:Parameters")
     for name, value in component.start.items():
         parameter = _add(values, "ssv:Parameter", name=name)
