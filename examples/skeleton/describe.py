@@ -4,10 +4,10 @@
 
 TABLE is a CSV file: causality, name, unit, start, depends, description. Its comments (#) come first; the first of them
 describes the model. A name with {wheel} stands for one variable per wheel of LAYOUT, a TOML file whose [wheel.NAME]
-tables also give start values: {x} is that wheel's x; for other variables they come from its table [NAME of the model]. `depends` lists the inputs that an output depends on directly
-(patterns with *); `-` is none. The value reference of a variable is its place in the table, and variables.h names it:
-of variables per wheel also by the name with `each`, the first wheel's; the next wheel's is wheel_parameters,
-wheel_inputs or wheel_outputs further on.
+tables also give start values: {x} is that wheel's x; for other variables they come from its table [NAME of the model].
+`depends` lists the inputs that an output depends on directly (patterns with *); `-` is none. The value reference of a
+variable is its place in the list, and variables.h names it: of variables per wheel also by the name with `each`, the
+first wheel's; the next wheel's is wheel_parameters, wheel_inputs or wheel_outputs further on.
 """
 
 from __future__ import annotations
@@ -174,7 +174,8 @@ def header(name: str, variables: list[Variable], wheels: dict[str, dict[str, flo
         f"#define MODEL_GUID \"{guid(name, variables)}\"",
         "enum {", *(f"  {key} = {value}," for key, value in numbers.items()), "};",
         f"static const double variable_starts[] = {{{starts}}};",
-        f"static const int rate_of[] = {{{', '.join(map(str, rates or [-1]))}}}; /* input that is the rate of an input */",
+        "/* Of each input the input that is its rate, or -1. */",
+        f"static const int rate_of[] = {{{', '.join(map(str, rates or [-1]))}}};",
         *([f"static const int bar_partner[] = {{{', '.join(map(str, partner))}}};"] if first else []),
         "#endif", "",
     ])  # fmt: skip

@@ -1,4 +1,4 @@
-"""The axle: two wheels and a rigid beam, coupled; the motion of the rigid axle on wheels that never slip in closed form.
+"""The axle: two wheels and a rigid beam, coupled; the rigid axle on wheels that never slip in closed form.
 
 With b half the track, R the wheels' radius, m all masses, S = m_B a the first moment of mass ahead of the axle,
 m_t = m + 2 J_z / R^2, I_t the moment of inertia about the axle's middle with 2 J_z b^2 / R^2, and v, w the speed of the
@@ -24,7 +24,7 @@ WHEELS = ("left", "right")
 CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel)]
 RECORD: list[Signal] = [
     *(("axle", name) for name in ("X", "Y", "psi", "v", "omega", "E", "W_loss")),
-    *((wheel, name) for wheel in WHEELS for name in ("omega_z", "lambda_3", "mu_required", "E", "X_O", "Y_O", "phi")),
+    *((wheel, name) for wheel in WHEELS for name in ("omega_z", "lambda_3", "mu_required", "E", "X_O", "Y_O", "psi")),
 ]
 COMPARED = ("X", "Y", "psi", "v", "omega")
 
@@ -130,8 +130,8 @@ def stops(scene: Scene) -> tuple[float, float]:
     """Instants at which the inner and the outer wheel stop, s: rolling friction, S = 0, no torque, v > b |omega| > 0.
 
     Both roll: v' = -A with A = s m g / (R m_t). The load moves outwards by dN = m_t R v w / (2 b) per wheel, so
-    w' = -(s m_t / I_t) v w and w = omega exp(-(s m_t / I_t) x), x = v t - A t^2 / 2. The inner wheel stops where v = b w.
-    Then the axle turns about it: w' = -D (1 + B w^2), B = m_t R / (m g), D = s b m g / (R (m_t b^2 + I_t)).
+    w' = -(s m_t / I_t) v w and w = omega exp(-(s m_t / I_t) x), x = v t - A t^2 / 2. The inner wheel stops where
+    v = b w. Then the axle turns about it: w' = -D (1 + B w^2), B = m_t R / (m g), D = s b m g / (R (m_t b^2 + I_t)).
     """
     A, D, B, w_1, t_1 = _rolling_out(scene)
     return t_1, t_1 + np.arctan(np.sqrt(B) * w_1) / (D * np.sqrt(B))

@@ -147,3 +147,14 @@ def sentence(end: Ended) -> str:
     if end.component not in WHEELS:
         return f"{end.component}: {end.sentence}"
     return f"The {WHEELS[end.component]['name']} wheel ended the run at t = {end.time:.3f} s: {end.sentence}"
+
+
+def report(table: dict[str, np.ndarray], manoeuvre: Manoeuvre) -> list[str]:
+    """What the manoeuvre asked of the road: in every report."""
+    demand = {str(w["name"]): float(np.nanmax(table[f"{n}.mu_required"])) for n, w in WHEELS.items()}
+    most = max(demand, key=demand.get)
+    each = ", ".join(f"{name} {mu:.2f}" for name, mu in demand.items())
+    lines = [f"{manoeuvre.title}: possible on a road with a friction coefficient of {demand[most]:.2f} ({each})."]
+    least = min(WHEELS, key=lambda w: table[f"{w}.lambda_3"].min())
+    lowest = table[f"{least}.lambda_3"].min()
+    return [*lines, f"Smallest normal force: {lowest:.0f} N at the {WHEELS[least]['name']} wheel."]

@@ -70,7 +70,12 @@ def launch(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     gained = load(table, REAR, window) - load(table, REAR, 0)
     return [
         Finding("acceleration of the launch", mean_rate(table, "v", window), a, "m/s2"),
-        Finding("load moved to the rear axle by the launch", gained, (a * INERTIA + drag + dive(table, window)) / WHEELBASE, "N"),
+        Finding(
+            "load moved to the rear axle by the launch",
+            gained,
+            (a * INERTIA + drag + dive(table, window)) / WHEELBASE,
+            "N",
+        ),
     ]
 
 

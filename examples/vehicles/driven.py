@@ -14,7 +14,8 @@ import numpy as np
 from fmpy import simulate_fmu
 
 from .component import Component
-from .master import Master
+from .master import Connection, Master
+from .ssp import System
 
 STOP, STEP = 22.0, 0.005  # s
 T_CIRCLE, RADIUS, SPEED = 5.0, 1.5, 0.7  # s, m, m/s: the parameters of balance.py
@@ -44,21 +45,34 @@ def alone(fmus: dict[str, Path], stop: float = STOP) -> np.ndarray:
     return simulate_fmu(str(fmus["wheel"]), start_values=START, stop_time=stop, output_interval=STEP, output=RECORD)
 
 
-def controlled(fmus: dict[str, Path], stop: float = STOP) -> np.ndarray:
+def parts(fmus: dict[str, Path], parameters: dict[str, float] | None = None) -> list[Component]:
+    """Wheel and controller."""
+    return [Component("wheel", fmus["wheel"], START), Component("balance", fmus["balance"], parameters or {})]
+
+
+CONNECTIONS: list[Connection] = [
+    *((("wheel", name), ("balance", name)) for name in MEASURED),
+    *((("balance", name), ("wheel", name)) for name in ("M_1", "M_3")),
+]
+
+
+def system(fmus: dict[str, Path], parameters: dict[str, float] | None = None) -> System:
+    """What balance.ssp holds."""
+    return System("balance", parts(fmus, parameters), CONNECTIONS, STEP, STOP)
+
+
+def controlled(fmus: dict[str, Path], parameters: dict[str, float] | None = None, stop: float = STOP) -> np.ndarray:
     """The wheel with the controller."""
-    wheel, balance = Component("wheel", fmus["wheel"], START), Component("balance", fmus["balance"])
-    measured = [(("wheel", name), ("balance", name)) for name in MEASURED]
-    set_by = [(("balance", name), ("wheel", name)) for name in ("M_1", "M_3")]
     record = [("wheel", name) for name in RECORD] + [("balance", "M_1"), ("balance", "M_3")]
-    with Master([wheel, balance], measured + set_by) as master:
+    with Master(parts(fmus, parameters), CONNECTIONS) as master:
         table = master.run(stop, STEP, record)
     table.dtype.names = ("time", *(variable for _, variable in record))
     return table
 
 
-def run(fmus: dict[str, Path]) -> Drive:
-    """Both runs."""
-    return Drive(alone(fmus), controlled(fmus))
+def run(fmus: dict[str, Path], parameters: dict[str, float] | None = None) -> Drive:
+    """Both runs, the controller with these parameters."""
+    return Drive(alone(fmus), controlled(fmus, parameters))
 
 
 @dataclass(frozen=True)

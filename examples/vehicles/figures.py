@@ -71,6 +71,7 @@ def _draw_orders(ax: Axes, found: Convergence) -> None:
     h = np.array(found.steps) * 1000
     ax.loglog(h, found.held, "o-", color=style.VERMILLION, markersize=3.5, label="values held")
     ax.loglog(h, found.linear, "s-", color=style.BLUE, markersize=3.5, label="with derivatives")
+    ax.loglog(h, found.followed, "d-", color=style.ORANGE, markersize=3.5, label="positions follow")
     for errors, order in ((found.held, 1), (found.linear, 2)):
         ax.loglog(h, errors[-1] * (h / h[-1]) ** order, color=style.GREY, linewidth=0.6, linestyle="--", zorder=0)
     style.note(ax, "order 1", (h[1], found.held[-1] * (h[1] / h[-1])), (0, 5), ha="right")

@@ -65,7 +65,7 @@ def _component(elements: ET.Element, part: Component, description: ModelDescript
     for variable in description.modelVariables:
         if (part.name, variable.name) in signals or (variable.causality == "output" and variable.type == "Real"):
             connector = _add(connectors, "ssd:Connector", name=variable.name, kind=variable.causality)
-            _add(connector, "ssc:Real", unit=variable.unit)
+            _add(connector, "ssc:Real", **({"unit": variable.unit} if variable.unit else {}))
     if part.start:
         bindings = _add(component, "ssd:ParameterBindings")
         _add(bindings, "ssd:ParameterBinding", source=f"resources/{part.name}.ssv", type=SSV)

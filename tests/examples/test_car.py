@@ -148,7 +148,18 @@ def test_the_c_master_gets_the_same_bits(fmus: Fmus, exchange: str) -> None:
 def test_a_fifth_wheel_is_a_change_of_one_file(tmp_path: Path) -> None:
     copy = tmp_path / "examples"
     shutil.copytree(build.EXAMPLES, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    fifth = '\n[wheel.spare]\nname = "fifth"\nx = -1.4\ny = 0.0\nk = 26e3\nc = 2800.0\nsteer = 0\ndrive = 0.2\nbrake = 0.1\nk_bar = 0.0\n'
+    fifth = """
+[wheel.spare]
+name = "fifth"
+x = -1.4
+y = 0.0
+k = 26e3
+c = 2800.0
+steer = 0
+drive = 0.2
+brake = 0.1
+k_bar = 0.0
+"""
     with (copy / "car" / "car.toml").open("a") as layout:
         layout.write(fifth)
     code = (

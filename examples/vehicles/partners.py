@@ -17,7 +17,7 @@ def package_errors(package: Path, truth: dict[str, np.ndarray]) -> list[tuple[fl
 
 def main() -> None:
     """All of it."""
-    folder = ROOT / "build" / "partners"
+    folder = ROOT / "build" / "examples"
     fmus = build_all(folder)
     drive = driven.run(fmus)
     figures.draw_drive(drive, report.RESULTS / "partners_driven.png")
