@@ -1,9 +1,9 @@
 """Energy that a coupling adds or takes, bond by bond.
 
 A bond is an effort (force, moment) that a body hands to a wheel, and the flow (velocity, angular velocity) that the
-wheel hands back. What the body gives is the integral of its own effort with the flow it was told; what the wheel receives is
-that of the effort it was told with its own flow. The difference is what the coupling added. Both are taken over each
-communication step with straight lines between the values at its ends.
+wheel hands back. What the body gives is the integral of its own effort with the flow it was told; what the wheel
+receives is that of the effort it was told with its own flow. The difference is what the coupling added. Both are taken
+over each communication step with straight lines between the values at its ends.
 """
 
 from __future__ import annotations

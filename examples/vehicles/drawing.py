@@ -1,4 +1,4 @@
-"""A vehicle's run drawn: path from above with its wheels, loads, steering or yaw, slip demand, error against the step."""
+"""A vehicle's run drawn: path from above with its wheels, loads, angles, slip demand, error against the step."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from plotting import style
 
 COLOURS = (style.BLUE, style.SKY, style.VERMILLION, style.ORANGE, style.PURPLE, style.GREY)
 MARKS = {"held": ("o-", style.VERMILLION), "derivatives": ("s-", style.BLUE), "rollback": ("^-", style.GREEN)}
+ABOVE = {"loc": "lower left", "bbox_to_anchor": (0, 0.98), "labelspacing": 0.2, "borderaxespad": 0.2}
 ORDERS = {"held": 1, "derivatives": 2, "rollback": None}
 
 
@@ -53,10 +54,10 @@ def draw(
     demand.set_ylim(0, None)
     _labels(demand, "time [s]", "friction coefficient required")
     if errors:
-        _lines(style.axes_mm(fig, 16, 12, 30, 50), t, *lines)
-        _errors(style.axes_mm(fig, 62, 12, 30, 50), errors)
+        _lines(style.axes_mm(fig, 16, 12, 30, 40), t, *lines)
+        _errors(style.axes_mm(fig, 62, 12, 30, 40), errors)
     else:
-        _lines(style.axes_mm(fig, 16, 12, 72, 50), t, *lines)
+        _lines(style.axes_mm(fig, 16, 12, 72, 40), t, *lines)
     path.parent.mkdir(parents=True, exist_ok=True)
     fig.savefig(path, dpi=200, metadata={"Software": None})
     return path
@@ -91,7 +92,7 @@ def _path(
 def _lines(ax: Axes, t: np.ndarray, label: str, lines: list[Line]) -> None:
     for line, colour in zip(lines, (style.INK, style.GREEN, style.PURPLE), strict=False):
         ax.plot(t, line.values, color=colour, label=line.label)
-    ax.legend(loc="best")
+    ax.legend(**ABOVE)
     _labels(ax, "time [s]", label)
 
 
@@ -104,5 +105,5 @@ def _errors(ax: Axes, errors: Errors) -> None:
             ax.loglog(h, values[-1] * (h / h[-1]) ** ORDERS[exchange], color=style.GREY, linewidth=0.6, linestyle="--")
     ax.set_xticks(h, [f"{x:g}" for x in h])
     ax.minorticks_off()
-    ax.legend(loc="best", fontsize=6.5)
+    ax.legend(**ABOVE)
     _labels(ax, "step [ms]", "error / range")

@@ -1,4 +1,4 @@
-"""How a wheel is wired to a body with hubs: the names are the wheel's, on the body's side with the wheel's name behind."""
+"""How a wheel is wired to a body with hubs: the body's names are the wheel's with the wheel's name behind."""
 
 from __future__ import annotations
 

@@ -101,9 +101,9 @@ class Car:
         a = np.tile([0.0, -1.0, 0.0], (self.n, 1))
         spin = np.tile([0.0, self.v / self.R_0, 0.0], (self.n, 1))
         X = self.c.get("X_start", 0.0)
-        O = self.hub + [X, 0.0, self.c["h_B"]]
+        centres = self.hub + [X, 0.0, self.c["h_B"]]
         body = np.concatenate([[X, 0, self.c["h_B"], self.v, 0, 0], np.eye(3).ravel(), np.zeros(3)])
-        return np.concatenate([body, np.zeros(DRIVER), O.ravel(), a.ravel(), spin.ravel()])
+        return np.concatenate([body, np.zeros(DRIVER), centres.ravel(), a.ravel(), spin.ravel()])
 
     def wheels(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """O, a, w."""
@@ -150,9 +150,9 @@ class Car:
     def links(self, y: np.ndarray, angle: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Forces and moments on the wheels in fixed axes, and the wheels' places from the chassis."""
         c, turn, w = self.c, y[6:15].reshape(3, 3), y[15:18]
-        O, a, spin = self.wheels(y)
+        centres, a, spin = self.wheels(y)
         rho = self._levers(a)
-        arm = O - y[:3]
+        arm = centres - y[:3]
         way = arm @ turn - self.hub
         way_dot = (cross(spin, rho) - y[3:6] - cross(w[None], arm)) @ turn
         f = np.empty_like(way)
@@ -211,7 +211,7 @@ class Car:
         turn = y[6:15].reshape(3, 3)
         point, v, heading = self.rear(y)
         answer = self.answer(t, y, sigma)[1]
-        O, a, spin = self.wheels(y)
+        _, a, spin = self.wheels(y)
         slip = np.hypot(answer.force[:, 0], answer.force[:, 1]) / answer.force[:, 2]
         return {
             **dict(zip(("X", "Y", "Z"), y[:3], strict=True)),

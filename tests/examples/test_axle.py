@@ -77,7 +77,7 @@ def test_held_values_have_order_one(fmus: Fmus, short: axle.Scene) -> None:
 
 
 def test_positions_that_do_not_follow_their_rates_drag(fmus: Fmus, short: axle.Scene) -> None:
-    """Partner: held positions lag by h / 2, a force k v h / 2 against the motion at each hub; the axle is soon at rest."""
+    """Partner: held positions lag by h / 2, a drag k v h / 2 at each hub; the axle is soon at rest."""
     follow = axle_study.step_errors(fmus, short, "held", (0.001,), 0.02)[0]
     held = axle_study.step_errors(fmus, replace(short, more={"follow": 0}), "held", (0.001,), 0.02)[0]
     assert held > 20 * follow  # measured 84 over 2 s
