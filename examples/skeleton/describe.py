@@ -1,4 +1,4 @@
-"""Writes an example's modelDescription.xml and variables.h from its table of variables.
+"""Writes an example's modelDescription.xml, terminalsAndIcons.xml and variables.h from its table of variables.
 
     python describe.py NAME TABLE FOLDER [LAYOUT]
 
@@ -181,14 +181,30 @@ def header(name: str, variables: list[Variable], wheels: dict[str, dict[str, flo
     ])  # fmt: skip
 
 
+def terminals(variables: list[Variable], wheels: list[str]) -> str:
+    """terminalsAndIcons.xml: per wheel what goes to its hub terminal, by the wheel's own names (rule `bus`)."""
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<fmiTerminalsAndIcons fmiVersion="3.0">', "  <Terminals>"]
+    for wheel in wheels:
+        lines.append(f'    <Terminal name="{wheel}" matchingRule="bus" description="To the terminal hub of the wheel">')
+        for v in variables:
+            if v.causality in ("input", "output") and v.of and v.name.endswith(f"_{wheel}"):
+                member = v.name.removesuffix(f"_{wheel}")
+                names = f'variableName="{v.name}" memberName="{member}"'
+                lines.append(f'      <TerminalMemberVariable {names} variableKind="signal"/>')
+        lines.append("    </Terminal>")
+    return "\n".join([*lines, "  </Terminals>", "</fmiTerminalsAndIcons>", ""])
+
+
 def main() -> None:
-    """Writes both files."""
+    """Writes the files; terminalsAndIcons.xml only where there are wheels."""
     name, table, folder, *layout = sys.argv[1:]
     given: Layout = tomllib.loads(Path(layout[0]).read_text()) if layout else {}
     about, variables = read(name, Path(table), given)
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
     (target / "modelDescription.xml").write_text(description(name, about, variables))
+    if given.get("wheel"):
+        (target / "terminalsAndIcons.xml").write_text(terminals(variables, list(given["wheel"])))
     (target / "variables.h").write_text(header(name, variables, given.get("wheel", {})))
 
 

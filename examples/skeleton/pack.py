@@ -21,6 +21,9 @@ def main() -> None:
     fmu, description, library = map(Path, sys.argv[1:])
     folder = FOLDERS[platform.system(), platform.machine()]
     entries = {"modelDescription.xml": description, f"binaries/{folder}/{library.name}": library}
+    terminals = description.parent / "terminalsAndIcons.xml"
+    if terminals.exists():
+        entries["terminalsAndIcons/terminalsAndIcons.xml"] = terminals
     with zipfile.ZipFile(fmu, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, path in entries.items():
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .car import J_Z, LAYOUT, M_WHEEL, MASS, TRACK, WHEELBASE, WHEELS, G, Manoeuvre, R
-from .monolithic_car import DRIVER_DEFAULTS, rise
+from .driver_path import DRIVER_DEFAULTS, rise
 
 Table = dict[str, np.ndarray]
 N_WHEELS = len(WHEELS)
