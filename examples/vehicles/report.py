@@ -64,12 +64,12 @@ def drive_table(v: Verdict) -> str:
 
 def order_table(found: Convergence) -> str:
     """Errors and observed orders against the communication step."""
-    orders = [["", *(f"{order:.2f}" for order in found.orders(e))] for e in (found.held, found.linear)]
-    rows = [
-        (f"{1000 * h:g}", f"{e:.2e}", o, f"{f:.2e}", p)
-        for h, e, o, f, p in zip(found.steps, found.held, orders[0], found.linear, orders[1], strict=True)
-    ]
-    return table(("step [ms]", "values held", "order", "with first derivatives", "order"), rows)
+    kinds = {"all held": found.held, "positions follow": found.followed, "first derivatives": found.linear}
+    head, columns = ["step [ms]"], [[f"{1000 * h:g}" for h in found.steps]]
+    for label, errors in kinds.items():
+        head += [label, "order"]
+        columns += [[f"{e:.2e}" for e in errors], ["", *(f"{order:.2f}" for order in found.orders(errors))]]
+    return table(head, zip(*columns, strict=True))
 
 
 def drag_table(found: Convergence) -> str:

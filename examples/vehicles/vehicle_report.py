@@ -1,7 +1,7 @@
 """The study of axle and car: docs/results/vehicles.md, its figures, and its numbers under docs/results/data/.
 
-`write(fmus, results)` is what a report command calls; `tools`, a Python interpreter that has libcosimpy and ecospy, adds
-those two to the table of packages.
+`write(fmus, results)` is what a report command calls; `tools`, a Python interpreter with libcosimpy and ecospy,
+adds those two to the table of packages.
 """
 
 from __future__ import annotations

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssd, read_ssv
-from vehicles import ssp, suspended
+from vehicles import axle, axle_study, car, ssp, suspended
 
 
 @pytest.fixture(scope="module")
@@ -37,3 +38,23 @@ def test_a_package_without_its_parameters_is_another_system(package: Path, truth
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ssp, "parameter_set", lambda _package: None)
         assert suspended.package_distance(package, 0.005, truth, stop=0.3) > 0.5
+
+
+@pytest.mark.parametrize("h", [0.001])
+def test_the_packages_of_axle_and_car_run_in_fmpy_and_converge_with_order_one(
+    fmus: dict[str, Path], tmp_path: Path, h: float
+) -> None:
+    scene, manoeuvre = replace(axle_study.TRAILING, stop=1.0), replace(car.LANE, stop=2.0)
+    along = axle.coupled(fmus, scene, h, "rollback", 0.05), car.drive(fmus, manoeuvre, h, "rollback", 0.05).table
+    makers = (
+        (lambda step: axle.system(fmus, scene, step), scene.stop, "axle.psi", along[0]["psi"]),
+        (lambda step: car.system(fmus, manoeuvre, step), manoeuvre.stop, "chassis.X_R", along[1]["X_R"]),
+    )
+    for make, stop, name, truth in makers:
+        errors = []
+        for step in (h, h / 2):
+            package = ssp.build(make(step), tmp_path)
+            read_ssd(str(package), validate=True)
+            errors.append(np.abs(ssp.run(package, step, stop, 0.05)[name] - truth[1:]).max())
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(1, abs=0.25)
+        assert errors[1] < 0.02

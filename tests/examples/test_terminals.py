@@ -1,4 +1,4 @@
-"""terminalsAndIcons.xml of the wheel and of the bodies: valid, true to the model, and it wires what the masters wire."""
+"""terminalsAndIcons.xml of the wheel and of the bodies: valid, true to the model, wiring what the masters wire."""
 
 from __future__ import annotations
 
