@@ -66,7 +66,7 @@ bool attach_solver(CvodeObjects& o) {
   return o.linear && CVodeSetLinearSolver(o.cvode, o.linear, o.matrix) == CV_SUCCESS;
 }
 
-// CVODE counts from its last start on.
+// CVODE counts from the first step after its last start on.
 long jacobians_of(const CvodeObjects& o) {
   long count = 0;
   if (o.method == Method::bdf) CVodeGetNumJacEvals(o.cvode, &count);
@@ -138,7 +138,7 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
     if (starts_anew_ == 2) ++counters->restarts;
     if (first && !restart(step->end, step->y_end)) return false;
     std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
-    const long jacobians = jacobians_of(o);
+    const long jacobians = first ? 0 : jacobians_of(o);
     // The size of CVODE's first step depends on the time it is asked for: always the same time away.
     flag = CVode(o.cvode, step->end + problem.longest_step, o.y, &t, CV_ONE_STEP);
     counters->jacobians += std::max(0L, jacobians_of(o) - jacobians);

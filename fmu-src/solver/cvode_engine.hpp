@@ -5,12 +5,15 @@
 
 #include "step.hpp"
 
-namespace solver {
-
-struct CvodeObjects;
+namespace support {
 struct Measure;
 struct Reader;
 struct Writer;
+}  // namespace support
+
+namespace solver {
+
+struct CvodeObjects;
 
 class Cvode {
  public:
@@ -35,9 +38,9 @@ class Cvode {
 
   // The history after the last step, which has a length (cvode_history.cpp). restore is given the step, and refuses
   // numbers that could not belong to it.
-  void measure(Measure& measure);
-  void save(Writer& writer);
-  bool restore(const Problem& problem, Method method, Step* step, Reader& reader);
+  void measure(support::Measure& measure);
+  void save(support::Writer& writer);
+  bool restore(const Problem& problem, Method method, Step* step, support::Reader& reader);
 
  private:
   bool make_objects(int states, Method method);

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-#include "archive.hpp"
+#include "bytes.hpp"
 #include "cvode_engine.hpp"
 #include "cvode_impl.h"
 #include "cvode_ls_impl.h"
@@ -82,10 +82,10 @@ void Cvode::visit_history(Archive& archive) {
   if (o.method == Method::bdf) visit_newton(archive, o, m);
 }
 
-void Cvode::measure(Measure& measure) { visit_history(measure); }
-void Cvode::save(Writer& writer) { visit_history(writer); }
+void Cvode::measure(support::Measure& measure) { visit_history(measure); }
+void Cvode::save(support::Writer& writer) { visit_history(writer); }
 
-bool Cvode::restore(const Problem& problem, Method method, Step* step, Reader& reader) {
+bool Cvode::restore(const Problem& problem, Method method, Step* step, support::Reader& reader) {
   const Step saved = *step;
   int states = problem.states;
   const Problem still = {states, &states, rest, equal_weights, nullptr, nullptr, nullptr, 0, problem.longest_step};

@@ -1,7 +1,7 @@
 // Snapshots: what an engine remembers, as numbers, each checked before it is used.
 #include <algorithm>
 
-#include "archive.hpp"
+#include "bytes.hpp"
 #include "solver.hpp"
 
 namespace solver {
@@ -21,14 +21,14 @@ void Solver::visit(Archive& archive) {
   archive.number(step_.start), archive.number(step_.end);
   archive.numbers(step_.y_start, problem_.states), archive.numbers(step_.y_end, problem_.states);
   runge_kutta_.visit(archive, problem_.states);
-  archive.count(cvode_.starts_anew(), 0, 2);
+  if (method_ != Method::runge_kutta) archive.count(cvode_.starts_anew(), 0, 2);
 }
 
 bool Solver::has_cvode_history() const { return method_ != Method::runge_kutta && step_.end > step_.start; }
 
 // The visitors write what they are given only when they read; a solver that is saved stays as it is.
 std::size_t Solver::history_size() const {
-  Measure measure;
+  support::Measure measure;
   auto& self = const_cast<Solver&>(*this);
   self.visit(measure);
   if (has_cvode_history()) self.cvode_.measure(measure);
@@ -36,14 +36,14 @@ std::size_t Solver::history_size() const {
 }
 
 void Solver::save_history(unsigned char* bytes) const {
-  Writer writer(bytes);
+  support::Writer writer(bytes);
   auto& self = const_cast<Solver&>(*this);
   self.visit(writer);
   if (has_cvode_history()) self.cvode_.save(writer);
 }
 
 bool Solver::restore_history(const Problem& problem, const unsigned char* bytes, std::size_t size) {
-  Reader reader(bytes, size);
+  support::Reader reader(bytes, size);
   problem_ = problem;
   failure_ = "it had failed before it was saved";
   step_ = {};
@@ -63,7 +63,7 @@ bool Solver::restored_fits() const {
   return known_until_ == event_time_;
 }
 
-bool Solver::restore_engine(Reader& reader) {
+bool Solver::restore_engine(support::Reader& reader) {
   if (method_ == Method::runge_kutta) return runge_kutta_.fits(problem_, &step_);
   if (has_cvode_history()) return cvode_.restore(problem_, method_, &step_, reader);
   double y[max_states];

@@ -94,7 +94,7 @@ void Solver::watch_boundary() {
                         ? problem_.bends(problem_.owner, step_.start, known_until_, instants)
                         : 0;
   if (count > 0) expand();
-  const Search search(problem_, step_, problem_.boundary, &counters_.roots);
+  const Search search(problem_, step_, problem_.boundary, &counters_.rhs);
   for (int i = 0; i < count; ++i) lowest = std::fmin(lowest, search.value(instants[i]));
   if (!(lowest < problem_.near)) return;
   expand();
@@ -122,7 +122,7 @@ int Solver::polynomial(double* c) const {
 
 bool Solver::first_fall(double (*g)(void*, double, const double*), double t_lo, double t_hi, double* t) const {
   expand();
-  const Search search(problem_, step_, g, &counters_.roots);
+  const Search search(problem_, step_, g, &counters_.rhs);
   return search.find_first_fall({t_lo, search.value(t_lo)}, {t_hi, search.value(t_hi)}, t);
 }
 

@@ -76,7 +76,7 @@ class Solver {
   void visit(Archive& archive);
   bool has_cvode_history() const;
   bool restored_fits() const;
-  bool restore_engine(Reader& reader);
+  bool restore_engine(support::Reader& reader);
 
   Problem problem_ = {};
   Method method_ = Method::adams;

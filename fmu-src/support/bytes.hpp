@@ -1,8 +1,8 @@
 // Numbers to bytes and back: how snapshots are written, read and measured.
 //
 // Every number takes 8 bytes, a double or a 64-bit integer, whatever the platform's own integers are; little endian, as
-// all platforms of this FMU are. Bytes to be read may come from anywhere: a Reader never leaves them, and says
-// afterwards whether each was one that a Writer could have written.
+// all platforms of this FMU are. Bytes to be read may come from anywhere: a Reader never leaves them, checks each
+// number against what it may be, and says afterwards whether all of them could have been written.
 #pragma once
 
 #include <cstddef>
@@ -12,74 +12,74 @@
 
 namespace support {
 
-struct Writer {
-  unsigned char* at;
-  void operator()(const double& x) { put(x); }
-  template <class Integer>
-  void operator()(const Integer& i) {
-    put(static_cast<std::int64_t>(i));
+// What a field may be; each name comes down to put(word, least, most) of a Writer, a Reader or a Measure.
+template <class Derived>
+struct Archive {
+  static constexpr double greatest = std::numeric_limits<double>::max();
+
+  void range(double& x, double least, double most) { self().put(x, least, most); }
+  void number(double& x) { range(x, -greatest, greatest); }  // finite
+  void numbers(double* x, int n) {
+    for (int i = 0; i < n; ++i) number(x[i]);
   }
+  template <class Integer>
+  void count(Integer& i, long long least, long long most) {
+    auto word = static_cast<std::int64_t>(i);
+    self().put(word, static_cast<std::int64_t>(least), static_cast<std::int64_t>(most));
+    i = static_cast<Integer>(word);
+  }
+  template <class... Truths>
+  void truths(Truths&... truth) {
+    (count(truth, 0, 1), ...);
+  }
+  // Any double at all, as a caller may have set it.
+  void anything(double& x) {
+    std::int64_t word;
+    std::memcpy(&word, &x, sizeof word);
+    count(word, std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
+    std::memcpy(&x, &word, sizeof x);
+  }
+
+ private:
+  Derived& self() { return static_cast<Derived&>(*this); }
+};
+
+struct Writer : Archive<Writer> {
+  unsigned char* at;
+  explicit Writer(unsigned char* bytes) : at(bytes) {}
   template <class Word>
-  void put(Word word) {
+  void put(Word& word, Word, Word) {
     std::memcpy(at, &word, sizeof word);
     at += sizeof word;
   }
 };
 
-struct Reader {
-  const unsigned char* at;
-  std::size_t left;  // bytes from `at` on
-  bool sound = true;
-
-  // Any double; who needs a finite one, or a limit, asks for it with `require`.
-  void operator()(double& x) { x = get<double>(); }
-  void operator()(bool& truth) { truth = whole(0, 1) != 0; }
-  template <class Integer>
-  void operator()(Integer& i) {
-    using limits = std::numeric_limits<Integer>;
-    static_assert(limits::is_integer && sizeof(Integer) <= 8);
-    if constexpr (limits::is_signed || sizeof(Integer) < 8)
-      i = static_cast<Integer>(whole(std::int64_t{limits::min()}, std::int64_t{limits::max()}));
-    else
-      i = static_cast<Integer>(get<std::int64_t>());
-  }
-  void require(bool truth) { sound = sound && truth; }
-
-  // An integer from low to high, low where the bytes hold none.
-  std::int64_t whole(std::int64_t low, std::int64_t high) {
-    const auto i = get<std::int64_t>();
-    require(i >= low && i <= high);
-    return i >= low && i <= high ? i : low;
-  }
+struct Reader : Archive<Reader> {
+  const unsigned char *at, *end;
+  bool good = true;
+  Reader(const unsigned char* bytes, std::size_t size) : at(bytes), end(bytes + size) {}
+  // A word outside its bounds, or beyond the end, leaves the least value allowed: what is read on is harmless.
   template <class Word>
-  Word get() {
-    Word word = {};
-    require(left >= sizeof word);
-    if (!sound) return word;
-    std::memcpy(&word, at, sizeof word);
-    at += sizeof word;
-    left -= sizeof word;
-    return word;
+  void put(Word& word, Word least, Word most) {
+    word = least;
+    if (end - at < 8) return void(good = false);
+    Word read;
+    std::memcpy(&read, at, sizeof read);
+    at += sizeof read;
+    if (read >= least && read <= most)
+      word = read;
+    else
+      good = false;
   }
 };
 
-struct Measure {
+struct Measure : Archive<Measure> {
   std::size_t bytes = 0;
-  template <class Number>
-  void operator()(const Number&) {
-    bytes += 8;
+  template <class Word>
+  void put(Word&, Word, Word) {
+    bytes += sizeof(Word);
   }
 };
-
-// An enumeration whose values are `first` to `last`, each an integer.
-template <class Archive, class Enum>
-void choice(Archive& archive, Enum& value, Enum first, Enum last) {
-  archive(static_cast<std::int64_t>(value)), static_cast<void>(first), static_cast<void>(last);
-}
-template <class Enum>
-void choice(Reader& reader, Enum& value, Enum first, Enum last) {
-  value = static_cast<Enum>(reader.whole(static_cast<std::int64_t>(first), static_cast<std::int64_t>(last)));
-}
 
 // FNV-1a over words of 64 bits; a snapshot is a whole number of them. A change of any one word changes the sum.
 inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
@@ -101,17 +101,6 @@ inline bool has_checksum(const unsigned char* bytes, std::size_t size, std::uint
 #else
   return checksum_of(bytes, size) == sum;
 #endif
-}
-
-// n numbers in a row.
-template <class Archive>
-void many(Archive& archive, double* x, int n) {
-  for (int i = 0; i < n; ++i) archive(x[i]);
-}
-
-template <class Archive, class... Fields>
-void all(Archive& archive, Fields&... fields) {
-  (archive(fields), ...);
 }
 
 }  // namespace support

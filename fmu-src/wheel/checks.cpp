@@ -74,8 +74,8 @@ bool Simulation::check_parameters(bool report) {
 bool Simulation::check_start(bool report) {
   Reading& start = reading();
   const WheelDynamics& forces = start.dynamics();
-  const double numbers[] = {wheel_energy(&start.scene().wheel, &start.kinematics()), forces.lambda[0],
-                            forces.lambda[1], forces.lambda[2], forces.tau};
+  const double numbers[] = {wheel_energy(&start.scene().wheel, &start.kinematics()), forces.lambda[0], forces.lambda[1],
+                            forces.lambda[2], forces.tau};
   for (const double number : numbers)
     if (!std::isfinite(number)) {
       const double* v = state_.parameters;

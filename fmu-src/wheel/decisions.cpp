@@ -56,8 +56,8 @@ WheelScene pending_scene(const State& state) {
   WheelScene scene = motion.scene;
   scene.wheel.s = state.parameters[s];
   motion.inputs.pending_load(&scene.load);
-  scene.friction = friction_at(state.parameters, *motion.formulation, scene, motion.inputs.pending_brake(),
-                               motion.weight, state.y);
+  scene.friction =
+      friction_at(state.parameters, *motion.formulation, scene, motion.inputs.pending_brake(), motion.weight, state.y);
   return scene;
 }
 

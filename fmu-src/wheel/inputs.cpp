@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace wheel {
 namespace {
@@ -34,6 +35,18 @@ int zeros_of_slope(const double* c, double* zeros) {
   return 2;
 }
 
+// Whether `next` is c seen from tau on.
+bool continues(const double* c, double tau, double rounding, const double* next) {
+  constexpr double relative = 64 * std::numeric_limits<double>::epsilon();
+  const double shifted[] = {evaluate(c, tau), slope(c, tau), c[2] + 3 * tau * c[3], c[3], 0};
+  const double size[] = {std::fabs(c[0]), std::fabs(c[1]), std::fabs(c[2]), std::fabs(c[3])}, length = std::fabs(tau);
+  const double sums[] = {evaluate(size, length), slope(size, length), size[2] + 3 * length * size[3], size[3]};
+  for (int k = 0; k <= Inputs::max_order; ++k)
+    if (!(std::fabs(shifted[k] - next[k]) <= relative * sums[k] + rounding * (k + 1) * std::fabs(shifted[k + 1])))
+      return false;
+  return true;
+}
+
 }  // namespace
 
 double* load_entry(WheelLoad& load, int input) {
@@ -58,13 +71,10 @@ void Inputs::hold_from(double t) {
   }
 }
 
-bool Inputs::change_at(double t) const {
+bool Inputs::change_at(double t, double rounding) const {
   const double tau = varies ? t - origin : 0;
-  for (int i = 0; i < count; ++i) {
-    const double* c = in_force[i];
-    const double shifted[] = {evaluate(c, tau), slope(c, tau), c[2] + 3 * tau * c[3], c[3]};
-    if (!std::equal(shifted, shifted + max_order + 1, pending[i])) return true;
-  }
+  for (int i = 0; i < count; ++i)
+    if (!continues(in_force[i], tau, rounding, pending[i])) return true;
   return false;
 }
 

@@ -1,8 +1,8 @@
 // The seven inputs as polynomials of time over one communication step: the external column {F} of (15) besides the
 // weight, and the brake.
 //
-// F_X, F_Y, F_Z [N] at O along the fixed axes; M_1, M_2, M_3 [N m] along the carrier axes e1, e2, e3; M_brake [N m], the
-// capacity of the dry brake. What the master sets is pending until the next step starts; then it is in force.
+// F_X, F_Y, F_Z [N] at O along the fixed axes; M_1, M_2, M_3 [N m] along the carrier axes e1, e2, e3; M_brake [N m],
+// the capacity of the dry brake. What the master sets is pending until the next step starts; then it is in force.
 #pragma once
 
 #include "wheel_equations.h"
@@ -29,8 +29,9 @@ struct Inputs {
   void set_derivative(int input, int order, double derivative);
   void hold_from(double t);
 
-  // Whether the pending polynomials differ from those in force, seen from t on.
-  bool change_at(double t) const;
+  // Whether the pending polynomials differ from those in force, seen from t on, by more than the rounding of their
+  // values and of t, s: a polynomial that a master cuts into many steps goes on as one.
+  bool change_at(double t, double rounding) const;
   void take_over(double t);
   void classify();
 

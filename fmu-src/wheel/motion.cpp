@@ -18,8 +18,8 @@ const WheelScene& scene_at(Motion& motion, double t) {
   return motion.scene;
 }
 
-// Positive inside the model: theta away from lying flat, rad, and N over the weight unless contact is kept. A force that
-// only rounding makes negative is none.
+// Positive inside the model: theta away from lying flat, rad, and N over the weight unless contact is kept. A force
+// that only rounding makes negative is none.
 double margin(const Motion& motion, const double* y, double N) {
   constexpr double rounding = 1e-9;
   const double height = upright - std::fabs(y[motion.formulation->tilt_index] - upright) - flat_angle;

@@ -1,5 +1,6 @@
-// The wheel in motion as an initial-value problem for the solver: y' = f(t, y), its error weights, the transition of the
-// rolling friction as event, the limits of the model as boundary. Reduced or multibody state, see wheel_equations.h.
+// The wheel in motion as an initial-value problem for the solver: y' = f(t, y), its error weights, the transition of
+// the rolling friction as event, the limits of the model as boundary. Reduced or multibody state, see
+// wheel_equations.h.
 #pragma once
 
 #include "inputs.hpp"
@@ -17,7 +18,7 @@ struct Motion {
   const WheelFormulation* formulation = nullptr;
   WheelScene scene = {};  // the law in force; its load follows the inputs
   Inputs inputs;
-  double tolerance = 0;     // relative, of the whole solution
+  double tolerance = 0;  // relative, of the whole solution
   ErrorScales scales = {};
   double weight = 0;        // N, scale of the normal force
   double longest_step = 0;  // s

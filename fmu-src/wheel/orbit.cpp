@@ -1,27 +1,21 @@
-// Half a nutation of the free wheel, and the sums by which it holds the rest: docs/equations.md, carrier and fixed frame.
+// Half a nutation of the free wheel is integrated and judged. Reduced form, carrier frame; it is read in unfold.cpp.
 #include "orbit.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 namespace wheel {
 
 namespace {
 
-enum { theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O };
-
-constexpr double pi = 3.141592653589793, pi_rest = 1.2246467991473532e-16;  // their sum is pi to 32 digits
-
 // The error of the half period counts once for every half: it is integrated to a part of the tolerance, but not closer
 // than rounding allows.
 constexpr double finer = 0.1, finest = 1e-14;
-// A swing of omega_1 that is not this much more than the error of one step is noise; a state at the end of the run and
-// its mirror image may differ by so many tolerances.
+// A loose tolerance gains nothing here: one nutation costs little, and steps that are long for it are not accurate.
+constexpr double loosest = 1e-8;
+// In units of that part: a swing of omega_1 below the first is noise (one step may err 0.003), a wheel that swings less
+// than the second is in steady motion. In tolerances: what the end of the run and its mirror image may differ by.
 constexpr double least_swing = 0.01, largest_rest = 0.003, most_difference = 100;
-
-// sin(n delta) / sin(delta) for |delta| <= pi / 2.
-double quotient(double n, double delta) { return delta == 0 ? n : std::sin(n * delta) / std::sin(delta); }
 
 }  // namespace
 
@@ -41,9 +35,7 @@ struct Orbit::Tightened {
   static void weights(void* owner, double share, const double* y, double* weights) {
     of(owner).given.weights(of(owner).given.owner, share * of(owner).share, y, weights);
   }
-  static double pressed(void* owner, double t, const double* y) {
-    return of(owner).force(of(owner).given.owner, t, y);
-  }
+  static double pressed(void* owner, double t, const double* y) { return of(owner).force(of(owner).given.owner, t, y); }
   static double pulled(void* owner, double t, const double* y) { return -pressed(owner, t, y); }
 
   solver::Problem problem() {
@@ -60,13 +52,15 @@ struct Orbit::Tightened {
 
 Orbit::Kind Orbit::build(const solver::Problem& given, double tolerance, Force force, const double* y0,
                          solver::Solver& solver) {
-  Tightened tightened = {given, std::fmax(finer, finest / tolerance), force};
+  Tightened tightened = {given, std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance), force};
   const solver::Problem problem = tightened.problem();
   falls_ = rises_ = later_falls_ = 0;
+  counters_ = {};
   half_ = {};
   kind_ = Kind::refused;
   if (rests(problem, y0)) return kind_ = Kind::folded;
   kind_ = follow(problem, y0, solver);
+  counters_ = solver.counters();
   return kind_;
 }
 
@@ -157,22 +151,9 @@ bool Orbit::fold(const solver::Problem& problem, double t, const double* y, doub
   return true;
 }
 
-// What the sums need, from the states at T1 and T2; the falls of N in the two halves that follow T2, which is mirrored,
-// and the next.
-void Orbit::take_half() {
-  const double turn = second_[psi] - first_[psi], n = std::nearbyint(turn / pi), period = 2 * (T2_ - T1_);
-  delta_ = (turn - n * pi) - n * pi_rest;
-  const Complex path(second_[X_O] - first_[X_O], second_[Y_O] - first_[Y_O]);
-  step_ = path * std::polar(1.0, -first_[psi]);
-  while (falls_ > 0 && fall_[falls_ - 1] > T2_) --falls_;
-  for (int i = rises_ - 1; i >= 0; --i)
-    if (rise_[i] > T1_ && rise_[i] < T2_) later_fall_[later_falls_++] = T2_ - rise_[i];
-  for (int i = 0; i < falls_; ++i)
-    if (fall_[i] > T1_) later_fall_[later_falls_++] = period - (T2_ - fall_[i]);
-}
-
 // A wheel in steady motion: omega_1 = 0 but for rounding, and a small lean swings instead of growing. With omega_2 and
-// omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the state of the start stays.
+// omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the state of the start
+// stays.
 bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   const double h = 1e-4 * std::sin(y0[theta]), slowest = 0.5 / problem.longest_step;
   double y[states], rate[states], along[states], ahead[states], behind[states], weights[states];
@@ -195,7 +176,7 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   if (!(stiffness > 1e-3 * slowest * slowest)) return false;
   const double swing = std::fabs(rate[omega_1]) / stiffness + std::fabs(y0[omega_1]) / std::sqrt(stiffness);
   const double most_weight = std::fmax(weights[theta], std::fmax(std::fabs(along[omega_2]) * weights[omega_2],
-                                                                std::fabs(along[omega_3]) * weights[omega_3]));
+                                                                 std::fabs(along[omega_3]) * weights[omega_3]));
   if (!(swing * most_weight < largest_rest)) return false;
   return keep_rest(y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
 }
@@ -229,80 +210,6 @@ bool Orbit::keep_rest(const double* y0, const double* rate, double length) {
   track_.read(T2_, second_);
   take_half();
   return true;
-}
-
-// T1 + k L; `rest` is what its rounding took away.
-double Orbit::begin_of(double k, double* rest) const {
-  const double length = T2_ - T1_, product = k * length, sum = T1_ + product;
-  const double back = sum - product;  // the part of T1 that went into the sum
-  *rest = std::fma(k, length, -product) + ((product - (sum - back)) + (T1_ - back));
-  return sum;
-}
-
-// The sum of k halves, of which each second one is the mirror image of the one before: with d the way of O in the first,
-// pairs add up to 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta), n = floor(k / 2).
-Orbit::Half Orbit::half_at(double k) const {
-  Half half;
-  half.k = k;
-  half.begin = begin_of(k, &half.rest);
-  double rest;
-  half.next = begin_of(k + 1, &rest);
-  const double n = std::floor(0.5 * k), turn = second_[psi] - first_[psi], roll = second_[phi] - first_[phi];
-  half.mirrored = k != 2 * n;
-  const double pair = 2 * (step_ * std::polar(1.0, -delta_)).real();
-  Complex way = pair * quotient(n, delta_) * std::polar(1.0, n * delta_);
-  const Complex pairs_turn = std::polar(1.0, 2 * n * delta_);
-  if (half.mirrored) way += step_ * pairs_turn;
-  half.place = Complex(first_[X_O], first_[Y_O]) + way * std::polar(1.0, first_[psi]);
-  half.turn = half.mirrored ? -pairs_turn * std::polar(1.0, 2 * second_[psi]) : pairs_turn;
-  half.psi = half.mirrored ? 2 * second_[psi] + (k - 1) * turn : k * turn;
-  half.phi = half.mirrored ? 2 * second_[phi] + (k - 1) * roll : k * roll;
-  return half;
-}
-
-const Orbit::Half& Orbit::half_of(double t) const {
-  if (t >= half_.begin && t < half_.next) return half_;
-  double rest, k = std::floor((t - T1_) / (T2_ - T1_));
-  if (t < begin_of(k, &rest)) k -= 1;
-  if (t >= begin_of(k + 1, &rest)) k += 1;
-  return half_ = half_at(k);
-}
-
-void Orbit::read(double t, double* y) const {
-  if (kind_ != Kind::folded || t <= T2_) return track_.read(t, y);
-  const Half& half = half_of(t);
-  const double since = std::clamp((t - half.begin) - half.rest, 0.0, T2_ - T1_);
-  track_.read(half.mirrored ? T2_ - since : T1_ + since, y);
-  const double* centre = half.mirrored ? second_ : first_;
-  Complex way(y[X_O] - centre[X_O], y[Y_O] - centre[Y_O]);
-  if (half.mirrored) {
-    way = std::conj(way);
-    y[omega_1] = -y[omega_1];
-    y[psi] = -y[psi];
-    y[phi] = -y[phi];
-  }
-  way = half.place + half.turn * way;
-  y[psi] += half.psi;
-  y[phi] += half.phi;
-  y[X_O] = way.real();
-  y[Y_O] = way.imag();
-}
-
-double Orbit::fall(long long n) const {
-  if (n < falls_) return fall_[n];
-  const long long periods = (n - falls_) / later_falls_;
-  double rest;
-  const double begin = begin_of(1 + 2 * static_cast<double>(periods), &rest);
-  return begin + (later_fall_[(n - falls_) % later_falls_] + rest);
-}
-
-long long Orbit::falls_until(double t) const {
-  long long n = std::upper_bound(fall_, fall_ + falls_, t) - fall_;
-  if (kind_ != Kind::folded || t <= T2_ || later_falls_ == 0) return n;
-  const double periods = std::floor((t - T2_) / (2 * (T2_ - T1_)));
-  n += static_cast<long long>(std::fmax(periods - 1, 0)) * later_falls_;
-  while (fall(n) <= t) ++n;
-  return n;
 }
 
 }  // namespace wheel

@@ -1,13 +1,14 @@
-// The free wheel unfolded: without friction, brake and load, and with J_x = J_y, half a nutation holds the whole motion.
+// The free wheel unfolded: without friction, brake and load, and with J_x = J_y, half a nutation holds the whole
+// motion.
 //
 // Along the motion omega_2 and omega_3 are functions of theta alone (Chaplygin), so theta swings to and fro between two
-// turning points (omega_1 = theta_dot = 0). The equations are the same with time reversed: about a turning point T, theta,
-// omega_2 and omega_3 are even in t - T and omega_1 is odd; psi and phi are odd about their values at T, and the path of O
-// is its own mirror image. Integrated is the motion up to the second turning point T2; every later instant is read from
-// the half nutation between T1 and T2. The error grows like t, the cost not at all.
+// turning points (omega_1 = theta_dot = 0). The equations are the same with time reversed: about a turning point T,
+// theta, omega_2 and omega_3 are even in t - T and omega_1 is odd; psi and phi are odd about their values at T, and the
+// path of O is its own mirror image. Integrated is the motion up to the second turning point T2; every later instant is
+// read from the half nutation between T1 and T2. The error grows like t, the cost not at all.
 //
-// State of the reduced form (wheel_equations.h): theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O. Time in s, zero at
-// the start.
+// State of the reduced form (wheel_equations.h): theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O. Time in s, zero
+// at the start.
 #pragma once
 
 #include <complex>
@@ -20,29 +21,33 @@ class Orbit {
  public:
   // folded:  read() is valid at every t >= 0: the motion never ends.
   // ended:   `boundary` fell below zero at end_time(), in the first nutation; read() is valid up to there.
-  // refused: no two turning points within a fixed number of steps, a swing too small to tell from errors, or one that is
-  //          not its mirror image: the caller steps on by itself from the start.
+  // refused: no two turning points within a fixed number of steps, a swing too small to tell from errors, or a half
+  // that
+  //          is not its own mirror image: the caller steps on by itself from the start.
   enum class Kind { refused, folded, ended };
 
   using Force = double (*)(void* owner, double t, const double* y);
 
-  // Integrates `problem` (the reduced form of a free wheel; its `event` and `bends` are not asked for) from y0 by CVODE's
-  // Adams method. force: the normal force N, where the instants at which it falls below zero are wanted, else null. The
-  // solver has to be started anew before anything else is asked of it; its counters are those of this run. A pure
-  // function of problem, tolerance and y0: the same bits in every process.
+  // Integrates `problem` (the reduced form of a free wheel; its `event` and `bends` are not asked for) from y0 by
+  // CVODE's Adams method. force: the normal force N, where the instants at which it falls below zero are wanted, else
+  // null. The solver has to be started anew before anything else is asked of it; its counters are those of this run. A
+  // pure function of problem, tolerance and y0: the same bits in every process.
   Kind build(const solver::Problem& problem, double tolerance, Force force, const double* y0, solver::Solver& solver);
 
   // The state (out, 8 entries) at t >= 0.
   void read(double t, double* y) const;
   double end_time() const { return end_time_; }
+  // What the integration took; nothing for a wheel in steady motion.
+  const solver::Counters& counters() const { return counters_; }
   double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; folded only
 
-  // The instants t > 0 at which N falls below zero, in order and numbered from 0: how many there are up to t, and when the
-  // number n is (n below falls_until of some t). The cost does not depend on t or n.
+  // The instants t > 0 at which N falls below zero, in order and numbered from 0: how many there are up to t, and when
+  // the number n is (n below falls_until of some t). The cost does not depend on t or n.
   long long falls_until(double t) const;
   double fall(long long n) const;
 
  private:
+  enum State { theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O };
   using Complex = std::complex<double>;
   static constexpr int states = Track::states, most_crossings = 16;
 
@@ -50,7 +55,7 @@ class Orbit {
   struct Half {
     double k = -1, begin = 0, rest = 0, next = 0;
     bool mirrored = false;
-    double psi = 0, phi = 0;
+    double psi_sum = 0, phi_sum = 0;
     Complex place, turn;
   };
 
@@ -70,6 +75,7 @@ class Orbit {
   Track track_;  // from the start past T2
   Kind kind_ = Kind::refused;
   double end_time_ = 0;
+  solver::Counters counters_ = {};
   double T1_ = 0, T2_ = 0;
   double first_[states] = {}, second_[states] = {};  // at T1 and T2
   double delta_ = 0;                                 // psi(T2) - psi(T1) less the nearest multiple of pi

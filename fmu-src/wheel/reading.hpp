@@ -1,6 +1,6 @@
 // What can be read at one instant: positions, velocities, accelerations, reactions and their rates. Each group is
-// computed when it is first asked for and kept until the instant or the inputs change; nothing is computed for an output
-// that nobody reads. Fixed axes unless said.
+// computed when it is first asked for and kept until the instant or the inputs change; nothing is computed for an
+// output that nobody reads. Fixed axes unless said.
 #pragma once
 
 #include "wheel_equations.h"
@@ -40,6 +40,8 @@ class Reading {
   const WheelDynamics& dynamics();
   Reactions reactions();
   const ReactionRates& reaction_rates();
+  // How the reactions answer a change of the load alone, per unit of it.
+  ReactionRates response(const WheelLoad& load_dot);
   const WheelContact& contact();
   int friction_mode();
   const Counts& counters() const { return now_.counts; }

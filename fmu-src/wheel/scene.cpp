@@ -22,7 +22,8 @@ const WheelFormulation& choose_formulation(const double* v) {
 namespace {
 
 // The fastest decay of the regularized law: slope (s N + M_brake) / omega_s of the moment at omega_z = 0 over the spin
-// inertia, in units of the wheel's own time. Adams and BDF cost the same where it is about 200 (docs/results/stability.md).
+// inertia, in units of the wheel's own time. Adams and BDF cost the same where it is about 200
+// (docs/results/stability.md).
 bool is_stiff(const double* v, const WheelScene& scene) {
   constexpr double stiff = 200;
   if (scene.friction.kind != WHEEL_REGULARIZED) return false;

@@ -19,8 +19,8 @@ solver::Method choose_method(const double* stored, const WheelScene& scene, bool
 // brake, no load, formulation and method left to the program.
 bool is_unfoldable(const double* stored, const WheelScene& scene, bool loaded);
 
-// The friction law at state y under the scene's load; `braked`: the brake is in use. At omega_z = 0 after Filippov: held
-// where the moment that holds it is within s N + M_brake, else rolling against that moment.
+// The friction law at state y under the scene's load; `braked`: the brake is in use. At omega_z = 0 after Filippov:
+// held where the moment that holds it is within s N + M_brake, else rolling against that moment.
 WheelFriction friction_at(const double* stored, const WheelFormulation& formulation, const WheelScene& scene,
                           bool braked, double weight, const double* y);
 
@@ -40,8 +40,8 @@ struct ErrorScales {
 // Angles count by 1 rad, lengths by r_0 + r, rates by the wheel's own time scale or the initial tilting.
 ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& formulation, const double* y);
 
-// The scales at the spin omega_z, rad/s. A fast wheel hardly tilts: the range of theta falls with the square of the spin,
-// that of the rates with the spin, and errors are weighed by these ranges.
+// The scales at the spin omega_z, rad/s. A fast wheel hardly tilts: the range of theta falls with the square of the
+// spin, that of the rates with the spin, and errors are weighed by these ranges.
 void scales_at(const ErrorScales& scales, const WheelFormulation& formulation, double omega_z, double* out);
 
 // sqrt((r_0 + r) / g), s; without weight the time of a turn at the initial rate.

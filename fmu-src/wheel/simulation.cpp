@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "decisions.hpp"
+#include "digits.hpp"
 
 namespace wheel {
 
@@ -29,8 +30,7 @@ bool Simulation::tell(Topic topic, const char* format, ...) const {
 }
 
 void Simulation::set_experiment(double start_time, double tolerance) {
-  const double taken =
-      tolerance > 0 ? std::clamp(tolerance, tightest_tolerance, loosest_tolerance) : default_tolerance;
+  const double taken = tolerance > 0 ? std::clamp(tolerance, tightest_tolerance, loosest_tolerance) : default_tolerance;
   state_.start_time = start_time;
   state_.motion.tolerance = taken;
   if (tolerance > 0 && tolerance != taken)
@@ -77,7 +77,7 @@ const double* Simulation::y_now() {
 Counts Simulation::counts() const {
   const solver::Counters& a = state_.counted;
   const solver::Counters b = state_.moving && !state_.unfolded ? solver_.counters() : solver::Counters{};
-  return {a.steps + b.steps, a.rhs + b.rhs,           a.jacobians + b.jacobians,
+  return {a.steps + b.steps, a.rhs + b.rhs,      a.jacobians + b.jacobians,
           a.roots + b.roots, state_.transitions, a.restarts + b.restarts};
 }
 
@@ -109,24 +109,25 @@ double Simulation::value(unsigned variable) {
 
 double Simulation::rate(unsigned variable) { return row_of(variable).read_rate(reading()); }
 
-// Reactions are affine in the inputs of the same instant; a difference over a load of their own size is exact but for
-// rounding.
+// Only the reactions answer an input at once.
 double Simulation::sensitivity(unsigned output, unsigned input) {
+  const auto component = row_of(output).reaction_rate;
+  if (!component) return 0;
   const int i = static_cast<int>(input - first_input);
-  Instant without = instant(), with = without;
-  const double size = std::fmax(state_.motion.weight, std::fabs(state_.motion.inputs.value(i)));
-  *load_entry(with.scene.load, i) += size;
-  if (i == Inputs::brake) with.scene.friction = without.scene.friction = braked_friction(state_, with.scene, with.y);
-  Reading reading_with, reading_without;
-  reading_with.set(with);
-  reading_without.set(without);
-  return (row_of(output).read(reading_with) - row_of(output).read(reading_without)) / size;
+  WheelLoad unit = {};
+  *load_entry(unit, i) = 1;
+  Instant now = instant();
+  if (i == Inputs::brake) now.scene.friction = braked_friction(state_, now.scene, now.y);
+  Reading answer;
+  answer.set(now);
+  return component(answer.response(unit));
 }
 
+// A clause, for a message that says more.
 const char* Simulation::ending() const {
-  const bool flat = state_.ending == Ending::fell_flat;
   if (state_.ending == Ending::none) return nullptr;
-  std::snprintf(ending_, sizeof ending_, "The wheel %s at t = %.9f s", flat ? "fell flat" : "lifted off the ground", time());
+  const char* what = state_.ending == Ending::fell_flat ? "fell flat" : "lifted off the ground";
+  std::snprintf(ending_, sizeof ending_, "the wheel %s at t = %s s", what, support::Digits(time()).text);
   return ending_;
 }
 

@@ -77,8 +77,8 @@ class Simulation {
   // Ends the initialization; needs a successful prepare.
   void start() { state_.started = true; }
   bool started() const { return state_.started; }
-  // To the caller's time t. `ended`: the wheel fell flat or lifted off at time(); `failed`: the state is that before the
-  // call.
+  // To the caller's time t. `ended`: the wheel fell flat or lifted off at time(); `failed`: the state is that before
+  // the call.
   Progressed advance(double t);
 
   double time() const { return state_.start_time + state_.t; }
@@ -132,10 +132,9 @@ class Simulation {
   State state_;
   solver::Solver solver_;
   Orbit orbit_;
-  solver::Counters orbit_counters_ = {};        // of its making
   double orbit_end_ = 0;                       // s: the end of the run, or infinite
   double orbit_origin_[first_input + 1] = {};  // parameters and tolerance that orbit_ was built for
-  const char* failure_ = nullptr;  // why the last call failed
+  const char* failure_ = nullptr;              // why the last call failed
   Reading reading_;
   bool reading_fresh_ = false;  // reading_ holds the present instant
   mutable char ending_[160] = {};

@@ -1,5 +1,5 @@
-// The complete state of a run as portable bytes: a header (mark, size, checksum), then numbers of 8 bytes each, then the
-// solver's own history. Bytes may come from anywhere: each number is checked before it is used.
+// The complete state of a run as portable bytes: a header (mark, size, checksum), then numbers of 8 bytes each, then
+// the solver's own history. Bytes may come from anywhere: each number is checked before it is used.
 #include <cmath>
 #include <cstring>
 
@@ -20,40 +20,35 @@ struct Header {
 
 template <class Archive>
 void visit(Archive& archive, Inputs& inputs) {
-  archive(inputs.origin);
-  for (auto* block : {&inputs.in_force, &inputs.pending})
-    for (auto& polynomial : *block) support::many(archive, polynomial, Inputs::max_order + 1);
+  archive.number(inputs.origin);
+  archive.numbers(inputs.in_force[0], Inputs::count * (Inputs::max_order + 1));
+  for (auto& polynomial : inputs.pending)
+    for (double& coefficient : polynomial) archive.anything(coefficient);
 }
 
-// What the parameters do not determine. Law and method are included because s and the inputs may have changed since they
-// were chosen.
+// What the parameters do not determine. Law and method are included because s and the inputs may have changed since
+// they were chosen.
 template <class Archive>
 void visit(Archive& archive, State& state) {
+  constexpr long long most = 1LL << 53;
   Motion& motion = state.motion;
-  support::many(archive, state.parameters, first_input);
-  support::all(archive, state.start_time, motion.tolerance, motion.scene.wheel.s);
-  support::choice(archive, motion.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
-  support::all(archive, motion.scene.friction.sigma, motion.scene.friction.omega_s);
+  for (double& parameter : state.parameters) archive.anything(parameter);
+  archive.number(state.start_time);
+  archive.range(motion.tolerance, tightest_tolerance, loosest_tolerance);
+  archive.range(motion.scene.wheel.s, 0, Archive::greatest);
+  archive.count(motion.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
+  archive.number(motion.scene.friction.sigma), archive.number(motion.scene.friction.omega_s);
   visit(archive, motion.inputs);
-  support::choice(archive, state.method, solver::Method::adams, solver::Method::runge_kutta);
-  support::choice(archive, state.ending, Ending::none, Ending::lifted_off);
-  support::all(archive, state.prepared, state.started, state.moving, state.unfolded, state.jumped, state.changes_pending,
-               state.pulling, state.t, state.last_change);
-  support::many(archive, state.y, WHEEL_MAX_STATES);
-  support::all(archive, state.transitions, state.counted.steps, state.counted.rhs, state.counted.jacobians,
-               state.counted.roots, state.counted.restarts);
-}
-
-template <class Number>
-bool all_finite(const Number* numbers, int count) {
-  for (int i = 0; i < count; ++i)
-    if (!std::isfinite(numbers[i])) return false;
-  return true;
-}
-
-bool inputs_are_sound(const Inputs& inputs) {
-  return all_finite(inputs.in_force[0], sizeof inputs.in_force / sizeof(double)) &&
-         all_finite(inputs.pending[0], sizeof inputs.pending / sizeof(double)) && std::isfinite(inputs.origin);
+  archive.count(state.method, 0, static_cast<int>(solver::Method::runge_kutta));
+  archive.count(state.ending, 0, static_cast<int>(Ending::lifted_off));
+  archive.truths(state.prepared, state.started, state.moving, state.unfolded, state.jumped, state.changes_pending,
+                 state.pulling);
+  archive.number(state.t), archive.number(state.last_change);
+  archive.numbers(state.y, WHEEL_MAX_STATES);
+  solver::Counters& counted = state.counted;
+  for (long long* count :
+       {&state.transitions, &counted.steps, &counted.rhs, &counted.jacobians, &counted.roots, &counted.restarts})
+    archive.count(*count, 0, most);
 }
 
 // Whether the law is one that friction_at could have chosen.
@@ -74,15 +69,9 @@ bool law_is_sound(const WheelFriction& law, double width) {
 bool run_is_sound(const State& state) {
   const Motion& motion = state.motion;
   const bool unfoldable = is_unfoldable(state.parameters, motion.scene, motion.inputs.loaded);
-  return inputs_are_sound(motion.inputs) && law_is_sound(motion.scene.friction, state.parameters[omega_s]) &&
-         all_finite(state.y, motion.formulation->states) && motion.scene.wheel.s >= 0 &&
-         std::isfinite(motion.scene.wheel.s) && std::isfinite(state.t) && state.last_change >= 0 &&
-         state.last_change <= state.t && (state.moving ? state.started : state.t == 0 && state.ending == Ending::none) &&
-         (unfoldable || !state.unfolded);
-}
-
-bool tolerance_is_sound(double tolerance) {
-  return tolerance >= tightest_tolerance && tolerance <= loosest_tolerance;
+  return law_is_sound(motion.scene.friction, state.parameters[omega_s]) && state.last_change >= 0 &&
+         state.last_change <= state.t && (unfoldable || !state.unfolded) &&
+         (state.moving ? state.started : state.t == 0 && state.ending == Ending::none);
 }
 
 bool is_stepping(const State& state) { return state.moving && !state.unfolded; }
@@ -90,7 +79,7 @@ bool is_stepping(const State& state) { return state.moving && !state.unfolded; }
 // The run that the bytes describe; what follows from its parameters is computed anew. False: no run was saved so.
 bool read_run(support::Reader& reader, State& state) {
   visit(reader, state);
-  if (!reader.sound || !tolerance_is_sound(state.motion.tolerance) || !std::isfinite(state.start_time)) return false;
+  if (!reader.good) return false;
   if (!state.prepared) return !state.started && !state.moving;
   if (!check_values(state.parameters, state.motion.inputs, nullptr, nullptr)) return false;
   State start = state;
@@ -118,7 +107,7 @@ std::size_t Simulation::state_size() {
 
 void Simulation::save_state(unsigned char* bytes) {
   if (state_.prepared) y_now();
-  support::Writer writer{bytes + sizeof(Header)};
+  support::Writer writer(bytes + sizeof(Header));
   visit(writer, state_);
   if (is_stepping(state_)) solver_.save_history(writer.at);
   const std::size_t size = state_size();
@@ -144,10 +133,12 @@ bool Simulation::restore_solver(const State& next, const unsigned char* history,
 
 bool Simulation::load_state(const unsigned char* bytes, std::size_t size) {
   if (!is_state(bytes, size)) return false;
-  support::Reader reader{bytes + sizeof(Header), size - sizeof(Header)};
+  support::Reader reader(bytes + sizeof(Header), size - sizeof(Header));
   State next;
   if (!read_run(reader, next)) return false;
-  if (is_stepping(next) ? !restore_solver(next, reader.at, reader.left) : reader.left != 0) return false;
+  if (is_stepping(next) ? !restore_solver(next, reader.at, static_cast<std::size_t>(reader.end - reader.at))
+                        : reader.at != reader.end)
+    return false;
   state_ = next;
   reading_fresh_ = false;
   return true;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "decisions.hpp"
+#include "digits.hpp"
 #include "scene.hpp"
 #include "simulation.hpp"
 
@@ -19,13 +20,17 @@ constexpr long long work_per_transition = 20;
 
 constexpr double upright = 1.5707963267948966;
 
+// For messages: an instant is not found more exactly than that.
+double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 1e9) / 1e9 : t; }
+
 }  // namespace
 
 // Inputs and tunable parameters set since the last step take effect, if they differ from those in force.
 bool Simulation::settle_changes() {
   if (!state_.changes_pending) return true;
   const double t = state_.t;
-  if (state_.motion.scene.wheel.s == state_.parameters[s] && !state_.motion.inputs.change_at(t)) {
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(state_.start_time) + std::fabs(t));
+  if (state_.motion.scene.wheel.s == state_.parameters[s] && !state_.motion.inputs.change_at(t, rounding)) {
     state_.changes_pending = false;
     return true;
   }
@@ -56,10 +61,11 @@ void Simulation::announce_transition(double t, const WheelFriction& before) {
   if (!switches(before) || !switches(friction)) return;
   if (before.kind == friction.kind && before.sigma == friction.sigma) return;
   ++state_.transitions;
+  const support::Digits instant(to_nanosecond(state_.start_time + t));
   if (friction.kind == WHEEL_HELD)
-    tell(Topic::event, "t = %.9f s: stick, omega_z is held at zero.", state_.start_time + t);
+    tell(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
   else
-    tell(Topic::event, "t = %.9f s: %s, omega_z becomes %s.", state_.start_time + t,
+    tell(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
          before.kind == WHEEL_HELD ? "release" : "slip reverses", friction.sigma > 0 ? "positive" : "negative");
 }
 
@@ -77,8 +83,8 @@ bool Simulation::pass_transition() {
     motion.formulation->dynamics(&motion.scene, y, &held);
     motion.scene.friction = {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0};
   } else {
-    motion.scene.friction = friction_at(state_.parameters, *motion.formulation, motion.scene, motion.inputs.braked,
-                                        motion.weight, y);
+    motion.scene.friction =
+        friction_at(state_.parameters, *motion.formulation, motion.scene, motion.inputs.braked, motion.weight, y);
   }
   announce_transition(t, before);
   return solver_.restart(state_.method, t, y, has_transitions(motion.scene));
@@ -95,8 +101,8 @@ void Simulation::report_pulls() {
 }
 
 void Simulation::tell_pull(double t) const {
-  tell(Topic::warning, "The ground pulls from t = %.9f s on: keep_contact holds a wheel that would have lifted off.",
-       state_.start_time + t);
+  tell(Topic::warning, "The ground pulls from t = %s s on: keep_contact holds a wheel that would have lifted off.",
+       support::Digits(to_nanosecond(state_.start_time + t)).text);
 }
 
 // The key of the orbit: it was built for these parameters and this tolerance.
@@ -116,7 +122,6 @@ bool Simulation::build_orbit() {
   orbit_end_ = kind == Orbit::Kind::ended ? orbit_.end_time() : std::numeric_limits<double>::infinity();
   state_.unfolded = kind != Orbit::Kind::refused;
   if (!state_.unfolded) return start_solver();
-  orbit_counters_ = solver_.counters();
   std::memcpy(orbit_origin_, state_.parameters, sizeof state_.parameters);
   orbit_origin_[first_input] = state_.motion.tolerance;
   return true;
@@ -130,12 +135,15 @@ bool Simulation::knows(double t) const {
 solver::Outcome Simulation::run_to(double t) {
   using solver::Outcome;
   if (state_.unfolded && !orbit_is_ready() && !build_orbit()) return Outcome::failed;
-  if (state_.unfolded) state_.counted = orbit_counters_;
+  if (state_.unfolded) state_.counted = orbit_.counters();
   if (state_.unfolded) return t <= orbit_end_ ? Outcome::stepped : Outcome::ended;
   if (!state_.moving && !start_solver()) return Outcome::failed;
   for (long long work = 0; !solver_.reaches(t);) {
     if (work >= most_work) return failure_ = "it took a million internal steps; ask for shorter steps", Outcome::failed;
-    state_.motion.inputs.varies ? solver_.stop_before(t) : solver_.stop_nowhere();
+    // CVODE steps past the end of a varying input's step: the polynomial may go on, and a history that was cut short is
+    // lost. Runge-Kutta has none to lose.
+    const bool stops = state_.motion.inputs.varies && solver_.method() == solver::Method::runge_kutta;
+    stops ? solver_.stop_before(t) : solver_.stop_nowhere();
     const double t_before = solver_.known_until();
     const Outcome outcome = solver_.step();
     if (state_.motion.keep_contact && solver_.known_until() > t_before) report_pulls();
@@ -161,14 +169,14 @@ Progressed Simulation::end_run() {
   const double theta = y_now()[state_.motion.formulation->tilt_index];
   const bool flat = upright - std::fabs(theta - upright) < 2 * flat_angle;
   state_.ending = flat ? Ending::fell_flat : Ending::lifted_off;
-  tell(Topic::discard, flat ? "%s: the model ends there." : "%s, theta = %.6g rad: the model ends there.", ending(),
-       theta);
+  const char* sentence = flat ? "T%s: the model ends there." : "T%s, theta = %.6g rad: the model ends there.";
+  tell(Topic::discard, sentence, ending() + 1, theta);
   return Progressed::ended;
 }
 
 Progressed Simulation::fail(const State& before) {
   move_to(state_.unfolded ? state_.t : solver_.known_until());
-  tell(Topic::error, "The solver stopped at t = %.9f s, where omega_z = %.4g rad/s: %s.", time(),
+  tell(Topic::error, "The solver stopped at t = %s s, where omega_z = %.4g rad/s: %s.", support::Digits(time()).text,
        y_now()[state_.motion.formulation->spin_index], failure_);
   state_ = before;
   reading_fresh_ = false;

@@ -7,8 +7,8 @@
 
 namespace wheel {
 
-// Parts of the length of a piece. Nodes closer than this magnify rounding: measured, 50 times at 0.06, 1e6 times at 0.02.
-// The first piece, which steps many times smaller than the motion needs lead up to, is spread better.
+// Parts of the length of a piece. Nodes closer than this magnify rounding: measured, 50 times at 0.06, 1e6 times at
+// 0.02. The first piece, which steps many times smaller than the motion needs lead up to, is spread better.
 static constexpr double least_gap = 0.06, least_first_gap = 0.14;
 // Of the largest gap: a motion whose steps shrink this fast is not to be seen from both sides by one polynomial.
 static constexpr double sudden = 0.25;

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING
 
 from contract.call_states import STATES, TABLE, bring_to, call
-from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING
 
 pytestmark = pytest.mark.contract
 

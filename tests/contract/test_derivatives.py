@@ -58,9 +58,9 @@ def test_output_derivatives_are_those_of_the_motion(wheel, scene):
                 push(w, slope)
             exact, difference = rates(w), forward_difference(w)
             error = np.max(np.abs(exact - difference) / (1 + np.abs(exact)))
-            assert error < 5e-7, (t, slope)  # measured 1.4e-7, the difference's own error
+            assert error < 2e-6, (t, slope)  # measured 9.1e-7 (lambda_y), the difference's own error
         push(w, 5.001)  # the partner: another slope of the inputs is seen in the reactions
-        assert np.max(np.abs(rates(w) - difference) / (1 + np.abs(exact))) > 5e-7
+        assert np.max(np.abs(rates(w) - difference) / (1 + np.abs(exact))) > 2e-6
         assert w.restore(blob) == OK
         w.time = t
 

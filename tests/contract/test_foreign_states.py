@@ -8,9 +8,9 @@ from ctypes import addressof, byref, c_size_t, create_string_buffer
 import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2FMUstate
+from support.driver import ERROR, OK
 
 from contract.call_states import STATES, bring_to
-from support.driver import ERROR, OK
 
 pytestmark = pytest.mark.contract
 

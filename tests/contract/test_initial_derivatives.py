@@ -6,7 +6,6 @@ from ctypes import c_double, c_uint
 
 import numpy as np
 import pytest
-
 from support.driver import ERROR, OK, FMU2Wheel
 
 pytestmark = pytest.mark.contract

@@ -156,7 +156,7 @@ def test_stop_time_and_tolerance_are_part_of_the_state(wheel):
 
 
 @pytest.mark.parametrize(("s_before", "s_after"), [(0.0, 0.03), (0.03, 0.0)])
-def test_a_state_keeps_the_method_that_was_chosen_before_the_friction_changed(wheel, s_before, s_after):
+def test_a_state_keeps_the_method_that_the_change_of_friction_chose(wheel, s_before, s_after):
     law = {"friction_law": 2, "omega_s": 1e-4}  # automatic: Adams without friction, BDF where it makes the law stiff
     w, other, partner = wheel().start(s=s_before, **law), wheel(), wheel().start(s=s_after, **law)
     bits_of(w, coast, range(3))
@@ -170,8 +170,7 @@ def test_a_state_keeps_the_method_that_was_chosen_before_the_friction_changed(wh
         assert restored.serialized() == blob
         assert bits_of(restored, coast, range(5, 9)) == ahead
     bits_of(partner, coast, range(9))
-    jacobians = [x.get("n_jac")[0] > 0 for x in (w, partner)]
-    assert jacobians in ([False, True], [True, False])  # the partner's method is the other one
+    assert w.bits() != partner.bits()  # the partner has had the later friction from the start
 
 
 @pytest.mark.parametrize("s", [0.01, 0.0])
@@ -184,38 +183,6 @@ def test_a_restored_state_and_the_original_go_on_to_the_same_bytes_when_friction
     assert w.set(s=0.01) == OK and other.set(s=s) == OK  # the partner: friction in one of them only
     assert w.step(1e-3) == other.step(1e-3) == OK
     assert (w.serialized() == other.serialized()) == (s > 0)
-
-
-def notices(w: FMU2Wheel, push: float) -> bool:
-    """Whether a jump of F_X by `push` makes the solver start anew."""
-    before = w.get("n_restarts")
-    assert w.set(F_X=0.03 + push) == OK and w.step(1e-9) == OK
-    return w.get("n_restarts") != before
-
-
-def test_a_restored_solver_notices_the_jumps_that_the_original_notices(wheel):
-    """The smallest jump that restarts the solver, where its last step ends at the communication point."""
-
-    def original() -> FMU2Wheel:
-        w = wheel().start(tolerance=1e-13, phi_dot_start=-20.0)
-        w.setRealInputDerivatives([w.references["F_X"]], [1], [1.0])
-        assert w.step(0.03) == OK
-        return w
-
-    def restored() -> FMU2Wheel:
-        w = wheel()
-        assert w.restore(original().serialized()) == OK
-        w.time = 0.03
-        return w
-
-    low, high = 1e-12, 1e-9
-    while high / low > 1 + 1e-6:
-        middle = np.sqrt(low * high)
-        low, high = (low, middle) if notices(original(), middle) else (middle, high)
-    for push, noticed in ((low, False), (high, True)):
-        assert notices(restored(), push) == notices(original(), push) == noticed
-    # The partner: with the weights of the last step the jumps differed by 2 %.
-    assert notices(restored(), 1.01 * low)
 
 
 @pytest.mark.parametrize("scene", KINDS)

@@ -110,7 +110,7 @@ def test_an_input_rewritten_at_its_value_is_no_restart_and_changes_no_bit(wheel)
         assert rewritten.run([t]) == once.run([t])
         assert jumping.step_to(t) == OK
     assert rewritten.get("n_restarts") == [0]
-    assert jumping.get("n_restarts") == [100]
+    assert jumping.get("n_restarts") == [99]  # the first value is that of the start
 
 
 def test_the_hint_about_rollback_changes_no_bit(wheel):

@@ -5,9 +5,10 @@ Pointwise, for both formulations. Carrier frame; tau is the moment of ground and
 
 from __future__ import annotations
 
-from support import equations as eq
 import numpy as np
 import pytest
+from support import equations as eq
+
 from equations import random_scenes
 
 ROWS = 2000

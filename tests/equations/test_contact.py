@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from ctypes import byref, c_double
 
-from support import equations as eq
 import numpy as np
 import pytest
+from support import equations as eq
+
 from equations import random_scenes
 from equations.paper_transcription import Paper, times
 

@@ -5,9 +5,10 @@ Twenty thousand random scenes for each law of friction, with loads and brakes (r
 
 from __future__ import annotations
 
-from support import equations as eq
 import numpy as np
 import pytest
+from support import equations as eq
+
 from equations import random_scenes
 
 ROWS = 20_000

@@ -6,9 +6,10 @@ by 1e-40 i. Fixed axes, N/s and N m/s; errors relative to the row's largest rate
 
 from __future__ import annotations
 
-from support import equations as eq
 import numpy as np
 import pytest
+from support import equations as eq
+
 from equations import random_scenes
 from equations.multibody_transcription import papers_state, solved
 from equations.paper_transcription import Paper

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import nan
 
-from support import equations as eq
 import numpy as np
 import pytest
+from support import equations as eq
 
 MOTION = eq.Motion(1, 1.2, 0.3, 0.5, -0.2, -2, 0, 0)
 FORMULATIONS = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import ctypes
-import subprocess
 
 import pytest
-from support.paths import build_folder
+from support.paths import build_target
 
 
 @pytest.fixture(scope="session")
 def library() -> ctypes.CDLL:
-    folder = build_folder()
-    subprocess.run(["cmake", "--build", folder, "--target", "orbit_probe"], check=True, capture_output=True)
+    folder = build_target("orbit_probe")
     return ctypes.CDLL(str(next((folder / "tests" / "orbit").glob("*orbit_probe.*"))))

@@ -11,9 +11,9 @@ from ctypes import POINTER, Structure, byref, c_double, c_int, c_longlong, c_voi
 import numpy as np
 from numpy.typing import NDArray
 from reference import Start, Wheel
+from reference.model import Inputs
 from reference.motion import derivative, initial_state
 from reference.newton_euler import Contact, Law, rotation
-from reference.model import Inputs
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 

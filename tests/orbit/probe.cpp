@@ -50,8 +50,7 @@ double boundary(void* owner, double t, const double* y) {
 void weights(void* owner, double share, const double* y, double* weights) {
   const Probe& probe = *static_cast<Probe*>(owner);
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  for (int i = 0; i < 8; ++i)
-    weights[i] = 1 / (share * probe.tolerance * probe.scales[i] + rounding * std::fabs(y[i]));
+  for (int i = 0; i < 8; ++i) weights[i] = 1 / (share * probe.tolerance * probe.scales[i] + rounding * std::fabs(y[i]));
 }
 
 // The scales of the product: angles 1 rad (psi and phi 3), rates those of the wheel or of its start, lengths r_0 + r.

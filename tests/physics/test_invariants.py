@@ -121,7 +121,7 @@ def test_the_drift_of_the_multibody_formulation_stays_small_and_falls_with_the_t
         assert found[tolerance] < bound  # measured 1.8e-7, 2.0e-9, 1.1e-11, 2.3e-13
     for coarse, fine in pairwise(DRIFT):
         assert found[fine] < 0.1 * found[coarse]
-    assert drift(1e-3) > DRIFT[1e-6]  # measured 4.2e-5
+    assert drift(1e-4) > 0.1 * DRIFT[1e-6]  # measured 4.0e-6; the bound of 1e-6 would be 1e-6 a tenth below
 
 
 def late_height_drift(offsets: Array) -> float:

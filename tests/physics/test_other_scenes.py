@@ -24,7 +24,7 @@ def test_every_output_agrees_with_the_independent_reference(library: Library, na
 @all_cases
 def test_the_agreement_deepens_with_the_tolerance(library: Library, name: str) -> None:
     assert error(library, name, 1e-12) < 5e-9  # measured at most 2.1e-10
-    assert error(library, name, 1e-5) > 5e-9  # measured at least 2.3e-6
+    assert error(library, name, 1e-4, method=4) > 5e-9  # stepped through; measured at least MEASURE
 
 
 @pytest.mark.parametrize("name", [n for n, case in CASES.items() if case.wheel.s > 0])

@@ -52,8 +52,10 @@ def test_rolling_without_slip_needs_a_friction_coefficient_of_up_to_0_49(library
 
 @both
 def test_the_error_falls_in_proportion_to_the_tolerance(library: Library, scene: str) -> None:
+    """Of a motion that is stepped through: Runge-Kutta for both."""
+
     def order(**start: float) -> float:
-        coarse, fine = worst(library, scene, 1e-5, **start), worst(library, scene, 1e-10, **start)
+        coarse, fine = (worst(library, scene, tolerance, method=4, **start) for tolerance in (1e-5, 1e-10))
         return float(np.log10(coarse / fine) / 5)
 
     assert 0.8 < order() < 1.25  # measured 0.98, 0.98
@@ -72,7 +74,7 @@ def test_the_other_formulation_and_the_other_method_reach_the_same_motion(
     library: Library, scene: str, choice: dict[str, int]
 ) -> None:
     assert worst(library, scene, 1e-11, **choice) < 2e-8  # measured at most 1.8e-9 (bdf, free)
-    assert worst(library, scene, 1e-5, **choice) > 1e-6  # measured at least 2.4e-5
+    assert worst(library, scene, 1e-4, **choice) > 1e-6  # measured at least MEASURE
 
 
 def test_the_free_wheel_keeps_its_energy_to_the_tolerance(library: Library) -> None:
@@ -83,8 +85,8 @@ def test_the_free_wheel_keeps_its_energy_to_the_tolerance(library: Library) -> N
 
 def test_the_energy_error_falls_with_the_tolerance(library: Library) -> None:
     tolerances = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
-    errors = np.array([energy_error(library, tolerance) for tolerance in tolerances])
+    errors = np.array([energy_error(library, tolerance, method=4) for tolerance in tolerances])
     assert (errors[1:] < 0.2 * errors[:-1]).all()  # measured factors at most 0.014
     assert (errors < tolerances).all()  # measured: at most 0.50 of the tolerance
-    broken = np.array([energy_error(library, tolerance, s=1e-8) for tolerance in tolerances[-2:]])
+    broken = np.array([energy_error(library, tolerance, method=4, s=1e-8) for tolerance in tolerances[-2:]])
     assert broken[1] > 0.2 * broken[0]  # a loss that no tolerance mends: measured 1.0

@@ -76,15 +76,19 @@ def image_of_load(symmetry: Symmetry, moment: tuple[int, int, int]) -> Schedule:
 
 def image_of_motion(symmetry: Symmetry, run: Run) -> dict[str, NDArray[np.float64]]:
     out = dict(run.columns)
-    for pair in (("X_O", "Y_O"), ("X_O_dot", "Y_O_dot"), ("lambda_1", "lambda_2")):
+    for pair in (("X_O", "Y_O"), ("X_O_dot", "Y_O_dot"), ("lambda_1", "lambda_2"), ("X_C", "Y_C")):
         out |= plane_image(run.columns, symmetry, *pair)
     for name, sign, shift in zip(("psi", "theta", "phi"), symmetry.signs, symmetry.shifts, strict=True):
         out[name] = sign * run[name] + shift
         out[f"{name}_dot"] = sign * run[f"{name}_dot"]
-    out["X_O"] = out["X_O"] + symmetry.move[0]
-    out["Y_O"] = out["Y_O"] + symmetry.move[1]
-    for name in ("omega_z", "friction_mode"):
+    for point in "OC":
+        out[f"X_{point}"] = out[f"X_{point}"] + symmetry.move[0]
+        out[f"Y_{point}"] = out[f"Y_{point}"] + symmetry.move[1]
+    for name in ("omega_z", "friction_mode", "tau"):
         out[name] = symmetry.signs[2] * run[name]
+    turned = -1 if symmetry.shifts[0] == pi else 1  # e1 points the other way than the image of e1
+    out["lambda_x"] = turned * run["lambda_x"]
+    out["lambda_y"] = turned * np.linalg.det(symmetry.plane) * run["lambda_y"]
     return out
 
 

@@ -34,7 +34,6 @@ REFUSED: dict[str, tuple[Values, int]] = {
     "theta_start = -0.2 (in the ground)": ({"theta_start": -0.2}, 1),
     "theta_start = NaN": ({"theta_start": nan}, 1),
     "phi_dot_start = infinity": ({"phi_dot_start": inf}, 1),
-    "reduced with J_x != J_y": ({"formulation": "reduced", "J_y": 1.0}, 1),
     "three faults at once": ({"m": -1.0, "s": nan, "theta_start": 4.0}, 3),
 }
 

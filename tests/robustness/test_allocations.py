@@ -20,13 +20,13 @@ pytestmark = pytest.mark.contract
 FAULTS = ROOT / "tests" / "robustness" / "faults"
 HEADERS = Path(importlib.util.find_spec("fmpy").submodule_search_locations[0]) / "c-code"
 
-# formulation, friction law, method: both formulations, both methods, events that are armed and disarmed
+# formulation, friction law, method (4: Runge-Kutta): here every allocation is our own. SUNDIALS does not survive each
+# of its own that fails (docs/decisions/memory.md), so its methods are not played with.
 SCENES = {
-    "reduced": (2, 1, 2),
-    "multibody": (3, 1, 2),
-    "reduced, BDF": (2, 2, 3),
-    "multibody, BDF": (3, 2, 3),
-    "multibody, BDF, exact friction": (3, 1, 3),
+    "reduced": (2, 1, 4),
+    "multibody": (3, 1, 4),
+    "reduced, regularized": (2, 2, 4),
+    "multibody, regularized": (3, 2, 4),
 }
 
 Play = Callable[..., subprocess.CompletedProcess[str]]
@@ -80,13 +80,6 @@ def test_an_instance_is_one_block_and_runs_without_any_more_memory(counted):
         assert n["run"] == 0
         assert n["snapshots"] == 4
         assert n["bytes"] < 12_500  # 11,736
-
-
-def test_the_room_of_the_solver_is_larger_than_the_largest_solver(counted):
-    # Bytes at its end that are never written: 1420, or 636 with the gaps of the address sanitizer.
-    assert counted["multibody, BDF"]["unused"] > 512
-    # The partner: the smallest solver leaves 4700, so the measure sees what a solver needs.
-    assert counted["reduced"]["unused"] > counted["multibody, BDF"]["unused"] + 2000
 
 
 def test_the_table_of_live_instances_grows_or_refuses_the_instance(play, library):

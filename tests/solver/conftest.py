@@ -4,16 +4,14 @@ import json
 import subprocess
 
 import pytest
-from support.paths import build_folder
+from support.paths import build_target
 
 METHODS = {"adams": 0, "bdf": 1, "runge_kutta": 2}
 
 
 @pytest.fixture(scope="session")
 def measure():
-    folder = build_folder()
-    subprocess.run(["cmake", "--build", folder, "--target", "solver_measure"], check=True, capture_output=True)
-    program = folder / "tests" / "solver" / "solver_measure"
+    program = build_target("solver_measure") / "tests" / "solver" / "solver_measure"
 
     def run(what, method="runge_kutta", *numbers):
         command = [str(program), what, str(METHODS[method]), *map(repr, numbers)]

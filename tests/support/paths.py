@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -11,3 +13,12 @@ ROOT = Path(__file__).resolve().parents[2]
 def build_folder() -> Path:
     """The build under test: WHEEL_BUILD, or that of the preset release."""
     return Path(os.environ.get("WHEEL_BUILD", ROOT / "build" / "release"))
+
+
+def build_target(name: str) -> Path:
+    """Builds one of the programs for tests; test processes wait for each other. Returns the build folder."""
+    folder = build_folder()
+    with (folder / "test_targets.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        subprocess.run(["cmake", "--build", folder, "--target", name], check=True, capture_output=True)
+    return folder

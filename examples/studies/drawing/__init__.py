@@ -1,0 +1,79 @@
+"""What the examples' figures share: two maps side by side, theta at the start over the spin at the start."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import Figure
+from plotting import style
+from study import Status
+
+PAPER = (2.0, 75.0)  # |phi_dot| in rad/s and theta in degrees of the paper's scenes
+WHEEL = {"m": 20.0, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_z": 1.8, "g": 9.81}  # SI; the FMU's defaults
+
+
+def rolling_inertia(m: float, r_0: float, r: float, J_z: float, **_: float) -> float:
+    """J_z + m R^2 [kg.m2], R = r_0 + r: upright rolling, about the contact."""
+    return J_z + m * (r_0 + r) ** 2
+
+
+def upright_limit() -> float:
+    """|omega_z| [rad/s] above which upright straight rolling is stable: (J_z + m R^2) J_z omega_z^2 = m g r_0 J_x."""
+    w = WHEEL
+    return float(np.sqrt(w["m"] * w["g"] * w["r_0"] * w["J_x"] / (w["J_z"] * rolling_inertia(**w))))
+
+
+def save(fig: Figure, stem: Path) -> list[Path]:
+    """Writes stem.png without date or program version."""
+    path = stem.with_suffix(".png")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fig.savefig(path, dpi=200, metadata={"Software": None})
+    return [path]
+
+
+def two_maps(height: float = 92.0) -> tuple[Figure, list[Axes]]:
+    """An empty figure with a map each for the free wheel and for the one with friction."""
+    style.use_style()
+    fig = style.figure_mm(style.PAGE, height)
+    return fig, [style.axes_mm(fig, 14.0 + 75.0 * k, 14.0, 70.0, height - 24.0) for k in range(2)]
+
+
+def scaled(name: str, levels: list[float]) -> dict[str, object]:
+    """Colour map in steps, one tone between each two levels and one above the last."""
+    colours = style.mpl.colormaps[name].resampled(len(levels))
+    return {"cmap": colours, "norm": BoundaryNorm(levels, len(levels), extend="max")}
+
+
+def fill(ax: Axes, one: xr.DataArray, status: xr.DataArray, look: dict[str, object]) -> ScalarMappable:
+    """A map of `one`, with flat colours where the wheel fell flat (black) or lifted off (red)."""
+    spin, angle = np.abs(one["phi_dot_start"].values), np.degrees(one["theta_start"].values)
+    shades = ax.pcolormesh(spin, angle, one.where(status == Status.reached), rasterized=True, **look)
+    for code, colour in ((Status.flat, style.INK), (Status.lifted_off, style.VERMILLION)):
+        fate = np.ma.masked_where(status.values != code, np.ones(status.shape))
+        ax.pcolormesh(spin, angle, fate, cmap=ListedColormap([colour]), rasterized=True)
+    return shades
+
+
+def label(axes: list[Axes], frictions: np.ndarray, side: str = "right") -> None:
+    """Titles, axes and the paper's start, named at the side of its mark where the map is dark."""
+    beside = {"right": {"xytext": (6, 3), "ha": "left"}, "left": {"xytext": (-6, 3), "ha": "right"}}[side]
+    for ax, s in zip(axes, frictions, strict=True):
+        ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:g} m", fontsize=9)
+        ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"spin at the start $|\dot\varphi|$ [rad/s]")
+        ax.plot(*PAPER, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
+        ax.annotate("paper", PAPER, textcoords="offset points", color="white", fontsize=8, **beside)
+    axes[0].set_ylabel(r"angle at the start $\theta$ [deg]")
+    axes[1].set_yticklabels([])
+
+
+def bar(fig: Figure, shades: ScalarMappable, text: str) -> None:
+    """The scale at the right."""
+    height = fig.get_size_inches()[1] / style.MM
+    scale = fig.colorbar(shades, cax=style.axes_mm(fig, 163.0, 14.0, 4.0, height - 24.0), spacing="uniform")
+    scale.set_label(text)
+    scale.ax.tick_params(size=0)

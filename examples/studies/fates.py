@@ -1,0 +1,51 @@
+"""The map of fates: start angle theta against spin phi_dot, without and with rolling friction; 10 s each.
+
+`./scripts/study fates` runs it and draws the map; `--publish` writes its data and its figure into docs/.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from drawing import bar, fill, label, save, scaled, two_maps, upright_limit
+from study import Study
+
+ANGLES, SPINS = 160, 125  # 2 * 160 * 125 = 40,000 wheels
+study = Study(
+    grid={
+        "s": [0.0, 0.03],  # m; the paper's two scenes
+        "theta_start": np.radians(90 * (np.arange(ANGLES) + 0.5) / ANGLES),
+        "phi_dot_start": -np.r_[0.0, np.geomspace(0.05, 50.0, SPINS - 1)],  # rad/s, rolling towards +e1
+    },
+    measures={"lowest": "min(theta)", "highest": "max(theta)"},
+)
+LEVELS = [0, 5, 15, 30, 45, 60, 75]  # degrees
+
+
+def table(results: xr.Dataset) -> xr.Dataset:
+    """Status, and the smallest angle between the wheel's plane and the ground [deg] to a tenth."""
+    small = results[["status"]].load()
+    angle = np.degrees(np.minimum(results["lowest"], np.pi - results["highest"])).round(1).astype("f4")
+    small["smallest_angle"] = angle.assign_attrs(units="deg", long_name="Smallest angle to the ground")
+    return small
+
+
+def draw(small: xr.Dataset, stem: Path) -> list[Path]:
+    """Two maps: how far the wheel goes down, and in flat colours where the model ends."""
+    fig, axes = two_maps()
+    frictions = small["s"].values
+    for ax, s in zip(axes, frictions, strict=True):
+        one = small.sel(s=s)
+        shades = fill(ax, one["smallest_angle"], one["status"], scaled("cividis", LEVELS))
+        ax.axvline(upright_limit(), color="white", linewidth=1.0, linestyle=(0, (4, 3)))
+        ax.set_xscale("symlog", linthresh=0.05, linscale=0.3)
+        ax.set_xticks([0, 0.1, 1, 10], ["0", "0.1", "1", "10"])
+        ax.set_xlim(0, 50)
+        white = {"color": "white", "rotation": 90, "ha": "center", "va": "center", "fontsize": 8}
+        ax.text(0.012, 45, "no spin: falls flat", **white)
+        ax.text(upright_limit() * 0.82, 22, "limit of upright rolling", **white)
+        if s > 0:
+            ax.text(35, 9, "lifts\noff", **(white | {"rotation": 0, "linespacing": 0.9}))
+    label(axes, frictions, side="left")
+    bar(fig, shades, "smallest angle to the ground within 10 s [deg]")
+    return save(fig, stem)

@@ -1,0 +1,45 @@
+"""How much friction rolling without slip needs: the largest mu_required within 10 s, and where it exceeds 0.8.
+
+`./scripts/study grip` runs it and draws the map; `--publish` writes its data and its figure into docs/.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from drawing import bar, fill, label, save, scaled, two_maps
+from study import Study
+
+SIDE = 100
+study = Study(
+    grid={
+        "s": [0.0, 0.03],  # m; the paper's two scenes
+        "theta_start": np.radians(90 * (np.arange(SIDE) + 0.5) / SIDE),
+        "phi_dot_start": -12 * (np.arange(SIDE) + 0.5) / SIDE,  # rad/s, rolling towards +e1
+    },
+    measures={"mu": "max(mu_required)"},
+)
+DRY_ASPHALT = 0.8  # a usual coefficient of friction of a tyre
+LEVELS = [0, 0.2, 0.4, 0.6, DRY_ASPHALT, 1, 2, 5]
+
+
+def table(results: xr.Dataset) -> xr.Dataset:
+    """Status and the largest mu_required, to three decimals."""
+    small = results[["status"]].load()
+    small["mu"] = results["mu"].round(3).astype("f4").assign_attrs(units="1", long_name="Largest mu_required")
+    return small
+
+
+def draw(small: xr.Dataset, stem: Path) -> list[Path]:
+    """Two maps in steps, with a line at 0.8."""
+    fig, axes = two_maps()
+    frictions = small["s"].values
+    for ax, s in zip(axes, frictions, strict=True):
+        one = small.sel(s=s)
+        shades = fill(ax, one["mu"], one["status"], scaled("viridis", LEVELS))
+        spin, angle = -one["phi_dot_start"].values, np.degrees(one["theta_start"].values)
+        ax.contour(spin, angle, one["mu"], levels=[DRY_ASPHALT], colors="white", linewidths=1.4)
+        ax.set(xlim=(0, 12), xticks=range(0, 13, 2))
+    label(axes, frictions)
+    bar(fig, shades, r"largest $\mu_\mathrm{required}$ within 10 s (white line: 0.8)")
+    return save(fig, stem)

@@ -1,0 +1,74 @@
+"""What is told of a run in one number: a value at its end, an extreme, a mean, or the time of a first passage.
+
+A measure is written as text, so that it can be kept with the results and compared when a study is started again:
+`theta` (at the end), `min(theta)`, `max(mu_required)`, `mean(E)`, `first(theta < 0.5)`, `first(theta > 1.6)`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_FORMS = re.compile(
+    rf"\s*(?:(?P<last>\w+)|(?P<kind>min|max|mean)\(\s*(?P<of>\w+)\s*\)"
+    rf"|first\(\s*(?P<watched>\w+)\s*(?P<side>[<>])\s*(?P<limit>{_NUMBER})\s*\))\s*"
+)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """One number of a run: `kind` is last, min, max, mean, < or >; SI units, `limit` in the variable's unit."""
+
+    kind: str
+    variable: str
+    limit: float = 0.0
+    text: str = ""
+
+    @property
+    def is_time(self) -> bool:
+        """Whether the number is a time in s; otherwise it has the variable's unit."""
+        return self.kind in "<>"
+
+    @property
+    def needs_samples(self) -> bool:
+        """Whether the run has to be read at each communication point."""
+        return self.kind != "last"
+
+    def of(self, t: Array, x: Array) -> float:
+        """The number for the samples x at the times t, the last of which is the end of the run."""
+        if self.is_time:
+            return first_passage(t, x, self.limit, below=self.kind == "<")
+        if self.kind == "mean":
+            return float(np.trapezoid(x, t) / (t[-1] - t[0])) if t[-1] > t[0] else float(x[-1])
+        return float({"last": lambda y: y[-1], "min": np.min, "max": np.max}[self.kind](x))
+
+
+def parse_measure(text: str) -> Measure:
+    """The measure that the text describes; ValueError if it describes none."""
+    found = _FORMS.fullmatch(text)
+    if not found:
+        raise ValueError(
+            f"'{text}' is no measure; write a variable's name, min(name), max(name), mean(name), "
+            "first(name < number) or first(name > number)."
+        )
+    if found["last"]:
+        return Measure("last", found["last"], text=text)
+    if found["kind"]:
+        return Measure(found["kind"], found["of"], text=text)
+    return Measure(found["side"], found["watched"], float(found["limit"]), text)
+
+
+def first_passage(t: Array, x: Array, limit: float, below: bool) -> float:
+    """First time at which x is beyond the limit, interpolated linearly between two samples; NaN if it never is."""
+    beyond = x < limit if below else x > limit
+    if not beyond.any():
+        return float("nan")
+    k = int(np.argmax(beyond))
+    if k == 0:
+        return float(t[0])
+    return float(t[k - 1] + (limit - x[k - 1]) / (x[k] - x[k - 1]) * (t[k] - t[k - 1]))

@@ -1,0 +1,59 @@
+"""How long a wheel stays up: started at 89 degrees with four spins, for a rolling friction s from 0 to 0.1 m.
+
+`./scripts/study uptime` runs it and draws it; `--publish` writes its data and its figure into docs/.
+It counts as up until it leans by more than 30 degrees. The spin of an upright wheel falls by s m g / (J_z + m R^2) per
+second; dashed: the time at which it comes down to the limit of upright rolling.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from drawing import WHEEL, rolling_inertia, save, upright_limit
+from plotting import style
+from study import Study
+
+study = Study(
+    grid={"phi_dot_start": [-3.0, -4.0, -6.0, -10.0], "s": np.linspace(0.0, 0.1, 401)},
+    values={"theta_start": np.radians(89.0)},
+    measures={"to_60": f"first(theta < {np.radians(60.0)})", "to_120": f"first(theta > {np.radians(120.0)})"},
+    stop_time=60.0,
+)
+
+
+def table(results: xr.Dataset) -> pd.DataFrame:
+    """One row per wheel: spin [rad/s], s [m], time until it leans by 30 degrees [s], empty if it never does."""
+    down = np.fmin(results["to_60"], results["to_120"]).rename("up_time")
+    return down.to_dataframe().reset_index()
+
+
+def time_to_limit(spin: float, s: np.ndarray) -> np.ndarray:
+    """Time [s] in which friction slows upright rolling down to the limit of stability."""
+    slowing = s * WHEEL["m"] * WHEEL["g"] / rolling_inertia(**WHEEL)
+    return (spin - upright_limit()) / slowing
+
+
+def draw(rows: pd.DataFrame, stem: Path) -> list[Path]:
+    """Time over s, one curve per spin, with the closed form dashed."""
+    style.use_style()
+    fig = style.figure_mm(116.0, 80.0)
+    ax = style.axes_mm(fig, 14.0, 12.0, 84.0, 62.0)
+    colours = (style.GREEN, style.ORANGE, style.BLUE, style.PURPLE)
+    for colour, (spin, group) in zip(colours, rows.groupby("phi_dot_start", sort=False), strict=True):
+        rolls = group[group["s"] > 0]
+        ax.plot(
+            rolls["s"], time_to_limit(-spin, rolls["s"].to_numpy()), color=colour, linestyle=(0, (4, 2)), linewidth=0.8
+        )
+        ax.plot(group["s"], group["up_time"], color=colour, linewidth=1.4)
+        last = group.iloc[-1]
+        at, apart = (
+            (last["s"], last["up_time"]),
+            {-3.0: -5, -4.0: 3}.get(spin, 0),
+        )  # points, so that labels do not touch
+        ax.annotate(f"{-spin:g} rad/s", at, xytext=(5, apart), textcoords="offset points", va="center", color=colour)
+    ax.set(yscale="log", xlim=(0, 0.1), ylim=(0.2, 60), xlabel="coefficient of rolling friction $s$ [m]")
+    ax.set_yticks([0.2, 0.5, 1, 2, 5, 10, 20, 50], ["0.2", "0.5", "1", "2", "5", "10", "20", "50"])
+    ax.set_ylabel("time until it leans by 30° [s]")
+    ax.set_title("solid: the wheel; dashed: spin down at the limit of upright rolling", fontsize=8.5)
+    return save(fig, stem)

@@ -1,0 +1,107 @@
+// Any later instant from half a nutation: reflections and sums. Path of O in fixed axes as X_O + i Y_O.
+#include <algorithm>
+#include <cmath>
+
+#include "orbit.hpp"
+
+namespace wheel {
+
+namespace {
+
+constexpr double pi = 3.141592653589793, pi_rest = 1.2246467991473532e-16;  // their sum is pi to 32 digits
+
+// sin(n delta) / sin(delta) for |delta| <= pi / 2.
+double quotient(double n, double delta) { return delta == 0 ? n : std::sin(n * delta) / std::sin(delta); }
+
+}  // namespace
+
+// What the sums need, from the states at T1 and T2; the falls of N in the two halves that follow T2, which is mirrored,
+// and the next.
+void Orbit::take_half() {
+  const double turn = second_[psi] - first_[psi], n = std::nearbyint(turn / pi), period = 2 * (T2_ - T1_);
+  delta_ = (turn - n * pi) - n * pi_rest;
+  const Complex path(second_[X_O] - first_[X_O], second_[Y_O] - first_[Y_O]);
+  step_ = path * std::polar(1.0, -first_[psi]);
+  while (falls_ > 0 && fall_[falls_ - 1] > T2_) --falls_;
+  for (int i = rises_ - 1; i >= 0; --i)
+    if (rise_[i] > T1_ && rise_[i] < T2_) later_fall_[later_falls_++] = T2_ - rise_[i];
+  for (int i = 0; i < falls_; ++i)
+    if (fall_[i] > T1_) later_fall_[later_falls_++] = period - (T2_ - fall_[i]);
+}
+
+// T1 + k L; `rest` is what its rounding took away.
+double Orbit::begin_of(double k, double* rest) const {
+  const double length = T2_ - T1_, product = k * length, sum = T1_ + product;
+  const double back = sum - product;  // the part of T1 that went into the sum
+  *rest = std::fma(k, length, -product) + ((product - (sum - back)) + (T1_ - back));
+  return sum;
+}
+
+// The sum of k halves, of which each second one is the mirror image of the one before: with d the way of O in the
+// first, pairs add up to 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta), n = floor(k / 2).
+Orbit::Half Orbit::half_at(double k) const {
+  Half half;
+  half.k = k;
+  half.begin = begin_of(k, &half.rest);
+  double rest;
+  half.next = begin_of(k + 1, &rest);
+  const double n = std::floor(0.5 * k), turn = second_[psi] - first_[psi], roll = second_[phi] - first_[phi];
+  half.mirrored = k != 2 * n;
+  const double pair = 2 * (step_ * std::polar(1.0, -delta_)).real();
+  Complex way = pair * quotient(n, delta_) * std::polar(1.0, n * delta_);
+  const Complex pairs_turn = std::polar(1.0, 2 * n * delta_);
+  if (half.mirrored) way += step_ * pairs_turn;
+  half.place = Complex(first_[X_O], first_[Y_O]) + way * std::polar(1.0, first_[psi]);
+  half.turn = half.mirrored ? -pairs_turn * std::polar(1.0, 2 * second_[psi]) : pairs_turn;
+  half.psi_sum = half.mirrored ? 2 * second_[psi] + (k - 1) * turn : k * turn;
+  half.phi_sum = half.mirrored ? 2 * second_[phi] + (k - 1) * roll : k * roll;
+  return half;
+}
+
+const Orbit::Half& Orbit::half_of(double t) const {
+  if (t >= half_.begin && t < half_.next) return half_;
+  double rest, k = std::floor((t - T1_) / (T2_ - T1_));
+  if (t < begin_of(k, &rest)) k -= 1;
+  if (t >= begin_of(k + 1, &rest)) k += 1;
+  return half_ = half_at(k);
+}
+
+void Orbit::read(double t, double* y) const {
+  if (kind_ != Kind::folded || t <= T2_) return track_.read(t, y);
+  const Half& half = half_of(t);
+  const double since = std::clamp((t - half.begin) - half.rest, 0.0, T2_ - T1_);
+  track_.read(half.mirrored ? T2_ - since : T1_ + since, y);
+  const double* centre = half.mirrored ? second_ : first_;
+  Complex way(y[X_O] - centre[X_O], y[Y_O] - centre[Y_O]);
+  if (half.mirrored) {
+    way = std::conj(way);
+    y[omega_1] = -y[omega_1];
+    y[psi] = -y[psi];
+    y[phi] = -y[phi];
+  }
+  way = half.place + half.turn * way;
+  y[psi] += half.psi_sum;
+  y[phi] += half.phi_sum;
+  y[X_O] = way.real();
+  y[Y_O] = way.imag();
+}
+
+double Orbit::fall(long long n) const {
+  if (n < falls_) return fall_[n];
+  const long long periods = (n - falls_) / later_falls_;
+  double rest;
+  const double begin = begin_of(1 + 2 * static_cast<double>(periods), &rest);
+  return begin + (later_fall_[(n - falls_) % later_falls_] + rest);
+}
+
+long long Orbit::falls_until(double t) const {
+  long long n = std::upper_bound(fall_, fall_ + falls_, t) - fall_;
+  if (kind_ != Kind::folded || t <= T2_ || later_falls_ == 0) return n;
+  constexpr double most_periods = 1e15;  // later, times have no more digits for them
+  const double periods = std::floor(std::fmin((t - T2_) / (2 * (T2_ - T1_)), most_periods));
+  n += static_cast<long long>(std::fmax(periods - 1, 0)) * later_falls_;
+  while (periods < most_periods && fall(n) <= t) ++n;
+  return n;
+}
+
+}  // namespace wheel

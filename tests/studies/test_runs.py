@@ -1,0 +1,147 @@
+"""What a worker does with its points: one instance, fmi2Reset between runs, a shared start, every fate a status."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from study import Status, Study, StudyError
+from study.measures import first_passage, parse_measure
+from study.plan import can_change
+from study.runs import Runner
+
+
+def run(runner: Runner, study: Study) -> dict[str, np.ndarray]:
+    """All points of a study in this process, in the order of its results."""
+    grid = np.meshgrid(*study.axes.values(), indexing="ij")
+    points = dict(zip(study.axes, (axis.ravel() for axis in grid), strict=True)) if study.grid else study.axes
+    return runner.run_block(study.job(runner.instance.description), points)
+
+
+def same(a: dict[str, np.ndarray], b: dict[str, np.ndarray], but: tuple[str, ...] = ()) -> bool:
+    """Whether two results agree to the bit, times of computing aside."""
+    skipped = ("wall_time", "fmu_time", *but)
+    return all(np.array_equal(a[n], b[n], equal_nan=a[n].dtype.kind == "f") for n in a if n not in skipped)
+
+
+def test_each_fate_is_a_status_with_the_words_of_the_fmu(runner: Runner) -> None:
+    study = Study(
+        list={
+            "theta_start": [1.3, 1.3, 0.26, 4.0, 1.3],
+            "phi_dot_start": [-2, 0, -40, -2, -2],
+            "s": [0, 0, 0.03, 0, -1],
+        },
+        measures={"lowest": "min(theta)"},
+    )
+    result = run(runner, study)
+    assert [Status(code).name for code in result["status"]] == ["reached", "flat", "lifted_off", "refused", "refused"]
+    for message, word in zip(result["message"], ("", "flat", "lifted off", "theta_start", "s"), strict=True):
+        assert word in message
+    assert (result["end_time"][:3] > 0).all()
+    assert result["end_time"][0] == 10
+    assert np.isnan(result["end_time"][3:]).all()
+    assert (result["counters"][:3, 0] > 0).all()
+
+
+def test_a_wheel_of_a_study_moves_as_fmpy_simulates_it(runner: Runner, fmu_path) -> None:
+    study = Study(grid={"s": [0.0, 0.03]}, measures={"theta_end": "theta"}, history=["theta", "X_O"], interval=0.1)
+    result = run(runner, study)
+    for k, s in enumerate((0.0, 0.03)):
+        expected = simulate_fmu(str(fmu_path), start_values={"s": s}, output_interval=0.1, output=["theta", "X_O"])
+        for name in ("theta", "X_O"):
+            np.testing.assert_allclose(result[name][k], expected[name], rtol=0, atol=1e-12)  # measured 0
+        assert result["theta_end"][k] == result["theta"][k, -1]
+    assert np.abs(result["theta"][0] - result["theta"][1]).max() > 0.1  # the two wheels differ: measured 0.8
+
+
+def test_a_run_has_the_same_bits_whatever_was_run_before_it(runner: Runner, fates: Study) -> None:
+    alone = [run(runner, replace(fates, grid={**fates.grid, "s": [s]})) for s in (0.03, 0.0)]
+    together = run(runner, fates)
+    for s, one in zip((1, 0), alone, strict=True):
+        rows = np.arange(24).reshape(3, 2, 4)[:, s].ravel()
+        assert same(one, {name: column[rows] for name, column in together.items()})
+    assert not same(*alone)
+
+
+def test_wheels_that_share_a_start_go_on_from_its_snapshot_with_the_same_bits(runner: Runner) -> None:
+    """Against runs that have the same communication points but fetch no snapshot: each in a block of its own."""
+    study = Study(
+        grid={"theta_start": [1.2, 1.3], "s": [0.0, 0.01, 0.03], "M_3": [0.0, -0.2]},
+        measures={"theta_end": "theta", "mu": "max(mu_required)"},
+        stop_time=4.0,
+        branch_at=1.5,
+    )
+    assert all(can_change(runner.instance.description, name) for name in ("s", "M_3"))
+    together = run(runner, study)
+    for k, (theta, s, M_3) in enumerate((a, b, c) for a in (1.2, 1.3) for b in (0.0, 0.01, 0.03) for c in (0.0, -0.2)):
+        runner._shared = None
+        alone = run(runner, replace(study, grid={"theta_start": [theta], "s": [s], "M_3": [M_3]}))
+        assert same(alone, {name: column[k : k + 1] for name, column in together.items()})
+    assert len(set(together["theta_end"])) == 12
+    starts = together["fmu_time"].reshape(2, 6)
+    assert (starts > 0).all()
+
+
+def test_a_shared_start_that_ends_is_the_end_of_all_that_share_it(runner: Runner) -> None:
+    study = Study(grid={"s": [0.0, 0.03]}, values={"phi_dot_start": 0.0}, branch_at=2.0)
+    result = run(runner, study)
+    assert (result["status"] == Status.flat).all()
+    assert (result["end_time"] < 2).all()
+
+
+def test_measures_tell_what_the_history_shows(runner: Runner) -> None:
+    measures = {"low": "min(theta)", "high": "max(theta)", "mean": "mean(theta)", "down": "first(theta < 0.8)"}
+    result = run(runner, Study(grid={"s": [0.0]}, measures=measures, history=["theta"]))
+    t, theta = np.linspace(0, 10, 1001), result["theta"][0]
+    assert (result["low"][0], result["high"][0]) == (theta.min(), theta.max())
+    assert result["mean"][0] == pytest.approx(np.trapezoid(theta, t) / 10, rel=1e-12)
+    k = int(np.argmax(theta < 0.8))
+    assert t[k - 1] < result["down"][0] <= t[k]
+    assert abs(np.interp(result["down"][0], t, theta) - 0.8) < 1e-9  # by its definition; the wheel passes 0.8 once here
+
+
+def test_a_passage_that_never_happens_is_no_number() -> None:
+    t, x = np.array([0.0, 1.0, 2.0]), np.array([3.0, 2.0, 1.0])
+    assert first_passage(t, x, 1.5, below=True) == 1.5
+    assert first_passage(t, x, 4.0, below=True) == 0.0
+    assert np.isnan(first_passage(t, x, 0.5, below=True))
+    assert np.isnan(first_passage(t, x, 3.5, below=False))
+
+
+def test_a_study_that_cannot_be_is_refused_with_a_sentence(runner: Runner) -> None:
+    good = Study(grid={"s": [0.0, 0.01]})
+    faults = {
+        "no parameter": replace(good, grid={"tetha_start": [1.0]}),
+        "no output": replace(good, measures={"low": "min(tetha)"}),
+        "no measure": replace(good, measures={"low": "least(theta)"}),
+        "exactly one": replace(good, list={"s": [0.0]}),
+        "one length": Study(list={"s": [0.0, 0.1], "theta_start": [1.0]}),
+        "two things": replace(good, measures={"s": "theta"}),
+        "whole number": replace(good, measures={"n": "max(n_steps)"}),
+        "above zero": replace(good, interval=0.0),
+        "at least one wheel": Study(sample={"s": (0.0, 0.1)}),
+        "stands in values": replace(good, values={"s": 0.0}),
+    }
+    for words, study in faults.items():
+        with pytest.raises(StudyError, match=words):
+            study.job(runner.instance.description)
+    good.job(runner.instance.description)
+
+
+def test_a_measure_is_read_as_it_is_written() -> None:
+    assert parse_measure(" first( theta < -1.5e-1 ) ").limit == -0.15
+    assert not parse_measure("theta").needs_samples
+    for text in ("", "theta <", "first(theta)", "min(theta", "min(a, b)", "first(theta < x)"):
+        with pytest.raises(ValueError, match="no measure"):
+            parse_measure(text)
+
+
+def test_a_sample_is_drawn_by_its_seed_and_within_its_bounds() -> None:
+    study = Study(sample={"theta_start": (1.0, 1.5), "s": (0.0, 0.1)}, count=50, seed=7)
+    again, other = replace(study), replace(study, seed=8)
+    assert study.spec() == again.spec()
+    assert study.fingerprint("") != other.fingerprint("")
+    theta = np.sort(study.axes["theta_start"])
+    assert (np.floor((theta - 1.0) / 0.01) == np.arange(50)).all()  # a Latin hypercube: one wheel in each fiftieth
