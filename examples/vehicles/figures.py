@@ -75,7 +75,7 @@ def _draw_orders(ax: Axes, found: Convergence) -> None:
     for errors, order in ((found.held, 1), (found.linear, 2)):
         ax.loglog(h, errors[-1] * (h / h[-1]) ** order, color=style.GREY, linewidth=0.6, linestyle="--", zorder=0)
     style.note(ax, "order 1", (h[1], found.held[-1] * (h[1] / h[-1])), (0, 5), ha="right")
-    style.note(ax, "order 2", (h[1], found.linear[-1] * (h[1] / h[-1]) ** 2), (6, -9))
+    style.note(ax, "order 2", (h[1], found.linear[-1] * (h[1] / h[-1]) ** 2), (-6, 6), ha="right")
     ax.set_xticks(h, [f"{step:g}" for step in h])
     ax.minorticks_off()
     ax.legend(loc="lower right")
