@@ -19,7 +19,7 @@ ROLLING_OUT = Scene(s=0.03, v=2.0, omega=1.0)
 SCENES = {"straight": STRAIGHT, "clothoid": CLOTHOID, "trailing": TRAILING, "rolling_out": ROLLING_OUT}
 STEPS = (0.002, 0.001, 0.0005)  # s
 STIFFNESSES = (1.0, 2.0, 4.0, 8.0)
-LIMIT_STEPS = (0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
+LIMIT_STEPS = (0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
 GRID = 0.048  # s, which all of them divide
 
 

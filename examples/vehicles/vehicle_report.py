@@ -29,16 +29,30 @@ Rows = list[list[object]]
 Fmus = dict[str, Path]
 
 
-def save(results: Path, name: str, head: Iterable[str], rows: Rows) -> str:
-    """data/NAME.csv, and the same as a Markdown table."""
+def save(results: Path, name: str, head: Iterable[str], rows: Rows) -> None:
+    """data/NAME.csv."""
     path = results / "data" / f"{name}.csv"
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([list(head), *rows])
-    return table(head, [[f"{x:.3g}" if isinstance(x, float) else x for x in row] for row in rows])
 
 
-def axle_steps(fmus: Fmus, results: Path) -> str:
+def as_table(results: Path, name: str) -> str:
+    """data/NAME.csv as a Markdown table, numbers to three digits, lengths of packages as they are."""
+    with (results / "data" / f"{name}.csv").open() as file:
+        head, *rows = csv.reader(file)
+    return table(head, rows if name == "vehicle_packages" else [[short(cell) for cell in row] for row in rows])
+
+
+def short(cell: str) -> str:
+    """Three digits if it is a number."""
+    try:
+        return f"{float(cell):.3g}"
+    except ValueError:
+        return cell
+
+
+def axle_steps(fmus: Fmus, results: Path) -> None:
     """Error against h."""
     scene = replace(axle_study.TRAILING, stop=2.0)
     kinds = {"held, positions lag": ("held", {"follow": 0.0}), **{e: (e, {}) for e in EXCHANGES}}
@@ -46,10 +60,10 @@ def axle_steps(fmus: Fmus, results: Path) -> str:
     for label, (exchange, more) in kinds.items():
         errors = axle_study.step_errors(fmus, replace(scene, more=more), exchange, STEPS)
         rows += [[label, 1000 * h, e] for h, e in zip(STEPS, errors, strict=True)]
-    return save(results, "axle_steps", ("inputs over the step", "step [ms]", "error / range"), rows)
+    save(results, "axle_steps", ("inputs over the step", "step [ms]", "error / range"), rows)
 
 
-def axle_stiffness(fmus: Fmus, results: Path) -> str:
+def axle_stiffness(fmus: Fmus, results: Path) -> None:
     """Error against k."""
     factors, rows = (1.0, 2.0, 4.0), []
     for name, scene in axle_study.SCENES.items():
@@ -57,20 +71,20 @@ def axle_stiffness(fmus: Fmus, results: Path) -> str:
         order = float(-axle_study.orders(factors, errors)[-1])
         rows.append([name, *errors, order])
     head = ("scene", *(f"stiffness x {f:g}" for f in factors), "order in 1/k")
-    return save(results, "axle_stiffness", head, rows)
+    save(results, "axle_stiffness", head, rows)
 
 
-def axle_limits(fmus: Fmus, results: Path) -> str:
+def axle_limits(fmus: Fmus, results: Path) -> None:
     """The longest step for each stiffness, beside 2 J_x / c_a."""
     rows = []
     for factor in (0.5, 1.0, 2.0, 4.0):
         scene = replace(axle_study.CLOTHOID, stop=1.0, stiffness=factor)
         found = [1000 * axle_study.longest_step(fmus, scene, exchange) for exchange in EXCHANGES]
         rows.append([factor, *found, 1000 * 2 * scene.J_x / (500.0 * factor)])
-    return save(results, "axle_limits", ("stiffness x", *(f"{e} [ms]" for e in EXCHANGES), "2 J_x / c_a [ms]"), rows)
+    save(results, "axle_limits", ("stiffness x", *(f"{e} [ms]" for e in EXCHANGES), "2 J_x / c_a [ms]"), rows)
 
 
-def axle_energy(fmus: Fmus, results: Path) -> str:
+def axle_energy(fmus: Fmus, results: Path) -> None:
     """Energy added per bond and second."""
     rows = []
     for exchange, follow in (("held", 0.0), ("held", 1.0), ("derivatives", 1.0)):
@@ -80,10 +94,10 @@ def axle_energy(fmus: Fmus, results: Path) -> str:
         sums = sum(found.bonds.values())
         rows.append([label, *(float(x) for x in sums), float(sums.sum()), found.drift])
     head = ("inputs over the step", *(f"{n} [J]" for n in ("F_X", "F_Y", "F_Z", "M_1", "M_2")), "sum [J]", "gain [J]")
-    return save(results, "axle_energy", head, rows)
+    save(results, "axle_energy", head, rows)
 
 
-def manoeuvres(fmus: Fmus, results: Path) -> dict[str, str]:
+def manoeuvres(fmus: Fmus, results: Path) -> None:
     """Every manoeuvre against its closed forms, what it asks of the road, and its figure."""
     found, demand, endings = [], [], []
     for name, manoeuvre in car.MANOEUVRES.items():
@@ -98,14 +112,12 @@ def manoeuvres(fmus: Fmus, results: Path) -> dict[str, str]:
         for f in car_judges.judge(run.table, manoeuvre):
             found.append([name, f.what, f.unit, float(f.measured), float(f.exact)])
     head = ("manoeuvre", "quantity", "unit", "measured", "closed form")
-    return {
-        "findings": save(results, "car_closed_forms", head, found),
-        "demand": save(results, "car_demand", ("manoeuvre", *(str(w["name"]) for w in car.WHEELS.values())), demand),
-        "ending": "\n".join(f"> {sentence}" for sentence in endings),
-    }
+    save(results, "car_closed_forms", head, found)
+    save(results, "car_demand", ("manoeuvre", *(str(w["name"]) for w in car.WHEELS.values())), demand)
+    save(results, "car_endings", ("how it ended",), [[sentence] for sentence in endings])
 
 
-def whole_car(fmus: Fmus, results: Path) -> str:
+def whole_car(fmus: Fmus, results: Path) -> None:
     """Error against the car as one set of equations, and real time over computing time in Python; the begin of each."""
     rows = []
     stop = replace(car.STRAIGHT, stop=4.0, driver={**car.STRAIGHT.driver, "t_off": 1.5, "t_brake": 1.8})
@@ -120,19 +132,19 @@ def whole_car(fmus: Fmus, results: Path) -> str:
                 apart = max(float(np.abs(run.table[n] - truth[n]).max()) / ranges[n] for n in car.COMPARED)
                 rows.append([manoeuvre.name, exchange, 1000 * h, apart, factor])
     head = ("manoeuvre", "inputs over the step", "step [ms]", "error / range", "times real time (Python)")
-    return save(results, "car_errors", head, rows)
+    save(results, "car_errors", head, rows)
 
 
-def longest(fmus: Fmus, results: Path) -> str:
+def longest(fmus: Fmus, results: Path) -> None:
     """The longest step at which the lane change runs to its end."""
     rows = []
     for exchange in EXCHANGES:
         runs = [h for h in LIMITS if not car.drive(fmus, replace(car.LANE, stop=1.5), h, exchange, h).ending]
         rows.append([exchange, 1000 * max(runs, default=float("nan"))])
-    return save(results, "car_longest_step", ("inputs over the step", "longest step [ms]"), rows)
+    save(results, "car_longest_step", ("inputs over the step", "longest step [ms]"), rows)
 
 
-def cost(fmus: Fmus, results: Path, repeats: int = 5) -> str:
+def cost(fmus: Fmus, results: Path, repeats: int = 5) -> None:
     """Microseconds per communication step of 1 ms in the C master: medians over the steps, of them over the runs."""
     rows = []
     for exchange in EXCHANGES[:2]:
@@ -143,10 +155,10 @@ def cost(fmus: Fmus, results: Path, repeats: int = 5) -> str:
         passed, whole = (float(np.median([getattr(run, n) for run in runs])) for n in ("exchange", "total"))
         rows.append([exchange, wheels, bodies, passed, whole, 1000 / whole])
     head = ("inputs over the step", "four wheels [us]", "chassis, driver [us]", "exchange [us]", "all [us]")
-    return save(results, "car_cost", (*head, "times real time"), rows)
+    save(results, "car_cost", (*head, "times real time"), rows)
 
 
-def packages(fmus: Fmus, results: Path, tools: str | None) -> str:
+def packages(fmus: Fmus, results: Path, tools: str | None) -> None:
     """The ends of both packages in each tool, beside the run with rollback."""
     folder, h = fmus["chassis"].parent, 0.0005
     scene, manoeuvre = replace(axle_study.TRAILING, stop=2.0), replace(car.LANE, stop=4.0)
@@ -166,7 +178,7 @@ def packages(fmus: Fmus, results: Path, tools: str | None) -> str:
             said = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
             ends = dict(line.split() for line in said if line.startswith(wanted))
             rows.append([package.name, tool, *(f"{float(ends[n]):.6f}" for n in wanted)])
-    return save(results, "vehicle_packages", ("package", "tool", "X at the end [m]", "Y at the end [m]"), rows)
+    save(results, "vehicle_packages", ("package", "tool", "X at the end [m]", "Y at the end [m]"), rows)
 
 
 def axle_figure(fmus: Fmus, results: Path) -> None:
@@ -178,16 +190,26 @@ def axle_figure(fmus: Fmus, results: Path) -> None:
     draw(run, wheels, ("middle of the axle", lines), None, results / "vehicles_axle.png", (exact["X"], exact["Y"]))
 
 
+TABLES = (
+    *("axle_steps", "axle_stiffness", "axle_limits", "axle_energy", "car_closed_forms", "car_demand", "car_endings"),
+    *("car_errors", "car_longest_step", "car_cost", "vehicle_packages"),
+)
+
+
+def page(results: Path = RESULTS) -> Path:
+    """docs/results/vehicles.md from the data."""
+    path, template = results / "vehicles.md", (Path(__file__).parent / "vehicles.md.in").read_text()
+    path.write_text(template.format(footer=footer(), step="0.5", **{name: as_table(results, name) for name in TABLES}))
+    return path
+
+
 def write(fmus: Fmus, results: Path = RESULTS, tools: str | None = None) -> Path:
-    """docs/results/vehicles.md."""
+    """All studies, and docs/results/vehicles.md."""
     axle_figure(fmus, results)
-    studies = (axle_steps, axle_stiffness, axle_limits, axle_energy, whole_car, longest, cost)
-    fields = {study.__name__: study(fmus, results) for study in studies}
-    fields |= manoeuvres(fmus, results) | {"packages": packages(fmus, results, tools)}
-    page = results / "vehicles.md"
-    template = (Path(__file__).parent / "vehicles.md.in").read_text()
-    page.write_text(template.format(footer=footer(), step="0.5", **fields))
-    return page
+    for study in (axle_steps, axle_stiffness, axle_limits, axle_energy, whole_car, longest, cost, manoeuvres):
+        study(fmus, results)
+    packages(fmus, results, tools)
+    return page(results)
 
 
 if __name__ == "__main__":
