@@ -38,16 +38,16 @@ def save(results: Path, name: str, head: Iterable[str], rows: Rows) -> None:
 
 
 def as_table(results: Path, name: str) -> str:
-    """data/NAME.csv as a Markdown table, numbers to three digits, lengths of packages as they are."""
+    """data/NAME.csv as a Markdown table, numbers to four digits, those of the packages as they are."""
     with (results / "data" / f"{name}.csv").open() as file:
         head, *rows = csv.reader(file)
     return table(head, rows if name == "vehicle_packages" else [[short(cell) for cell in row] for row in rows])
 
 
 def short(cell: str) -> str:
-    """Three digits if it is a number."""
+    """Four digits if it is a number."""
     try:
-        return f"{float(cell):.3g}"
+        return f"{float(cell):.4g}"
     except ValueError:
         return cell
 
