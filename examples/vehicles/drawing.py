@@ -1,0 +1,109 @@
+"""A vehicle's run drawn: path from above with its wheels, loads, angles, slip demand, error against the step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from plotting import style
+
+COLOURS = (style.BLUE, style.SKY, style.VERMILLION, style.ORANGE, style.PURPLE, style.GREY)
+MARKS = {"held": ("o-", style.VERMILLION), "derivatives": ("s-", style.BLUE), "rollback": ("^-", style.GREEN)}
+ABOVE = {"loc": "lower left", "bbox_to_anchor": (0, 0.98), "labelspacing": 0.2, "borderaxespad": 0.2}
+ORDERS = {"held": 1, "derivatives": 2, "rollback": None}
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Errors relative to the range against the communication step, by exchange; nan where a run broke off."""
+
+    steps: tuple[float, ...]
+    of: dict[str, list[float]]
+
+
+@dataclass(frozen=True)
+class Line:
+    """One curve beside the path: label, values, unit."""
+
+    label: str
+    values: np.ndarray
+
+
+def draw(
+    table: dict[str, np.ndarray],
+    wheels: dict[str, str],
+    lines: tuple[str, list[Line]],
+    errors: Errors | None,
+    path: Path,
+    exact: tuple[np.ndarray, np.ndarray] | None = None,
+) -> Path:
+    """`wheels`: component and what it is called; `lines`: axis label and curves; `exact`: a path in closed form."""
+    style.use_style()
+    fig = style.figure_mm(style.PAGE, 132)
+    _path(style.axes_mm(fig, 16, 76, 72, 50), table, wheels, exact)
+    t = table["time"]
+    load, demand = style.axes_mm(fig, 108, 76, 70, 50), style.axes_mm(fig, 108, 12, 70, 50)
+    for (name, label), colour in zip(wheels.items(), COLOURS, strict=False):
+        load.plot(t, table[f"{name}.lambda_3"] / 1000, color=colour, label=label)
+        demand.plot(t, table[f"{name}.mu_required"], color=colour, label=label)
+    load.legend(loc="best", ncols=2)
+    load.set_ylim(0, None)
+    _labels(load, "time [s]", "normal force [kN]")
+    demand.set_ylim(0, None)
+    _labels(demand, "time [s]", "friction coefficient required")
+    if errors:
+        _lines(style.axes_mm(fig, 16, 12, 30, 40), t, *lines)
+        _errors(style.axes_mm(fig, 62, 12, 30, 40), errors)
+    else:
+        _lines(style.axes_mm(fig, 16, 12, 72, 40), t, *lines)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fig.savefig(path, dpi=200, metadata={"Software": None})
+    return path
+
+
+def _labels(ax: Axes, x: str, y: str) -> None:
+    ax.set_xlabel(x)
+    ax.set_ylabel(y)
+
+
+def _path(
+    ax: Axes, table: dict[str, np.ndarray], wheels: dict[str, str], exact: tuple[np.ndarray, np.ndarray] | None
+) -> None:
+    """Tracks of the wheels' centres, and the wheels themselves a few times, 0.7 m long, along their headings."""
+    count = len(table["time"])
+    for (name, _), colour in zip(wheels.items(), COLOURS, strict=False):
+        x, y = table[f"{name}.X_O"], table[f"{name}.Y_O"]
+        ax.plot(x, y, color=colour, linewidth=0.7)
+        for i in np.unique(np.linspace(0, count - 1, 9).astype(int)):
+            psi = table[f"{name}.psi"][i]
+            along = 0.35 * np.array([np.cos(psi), np.sin(psi)])
+            ax.plot(
+                x[i] + along[0] * np.array([-1, 1]), y[i] + along[1] * np.array([-1, 1]), color=style.INK, linewidth=2
+            )
+    if exact:
+        ax.plot(*exact, color=style.GREY, linestyle="--", linewidth=0.8, label="rigid axle, closed form")
+        ax.legend(loc="best")
+    ax.set_aspect("equal", adjustable="datalim")
+    _labels(ax, "X [m]", "Y [m]")
+
+
+def _lines(ax: Axes, t: np.ndarray, label: str, lines: list[Line]) -> None:
+    for line, colour in zip(lines, (style.INK, style.GREEN, style.PURPLE), strict=False):
+        ax.plot(t, line.values, color=colour, label=line.label)
+    ax.legend(**ABOVE)
+    _labels(ax, "time [s]", label)
+
+
+def _errors(ax: Axes, errors: Errors) -> None:
+    h = 1000 * np.array(errors.steps)
+    for exchange, values in errors.of.items():
+        mark, colour = MARKS[exchange]
+        ax.loglog(h, values, mark, color=colour, markersize=3, label=exchange)
+        if ORDERS[exchange] and np.isfinite(values[-1]):
+            ax.loglog(h, values[-1] * (h / h[-1]) ** ORDERS[exchange], color=style.GREY, linewidth=0.6, linestyle="--")
+    ax.set_xticks(h, [f"{x:g}" for x in h])
+    ax.minorticks_off()
+    ax.legend(**ABOVE)
+    _labels(ax, "step [ms]", "error / range")

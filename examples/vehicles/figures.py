@@ -1,0 +1,82 @@
+"""Figures of the two coupled runs, in the project's style. Fixed axes X, Y; degrees for theta."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from plotting import style
+
+from .driven import Drive
+from .suspended import Convergence
+
+
+def _save(fig: Figure, path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fig.savefig(path, dpi=200, metadata={"Software": None})
+
+
+def _label(ax: Axes, x: str, y: str) -> None:
+    ax.set_xlabel(x)
+    ax.set_ylabel(y)
+
+
+def draw_drive(drive: Drive, path: Path) -> None:
+    """The path of the wheel's centre, its tilt and the controller's moments; alone and controlled."""
+    style.use_style()
+    fig = style.figure_mm(style.PAGE, 84)
+    ground = style.axes_mm(fig, 14, 12, 66, 66)
+    for table, color, label in (
+        (drive.alone, style.VERMILLION, "alone"),
+        (drive.controlled, style.BLUE, "with controller"),
+    ):
+        ground.plot(table["X_O"], table["Y_O"], color=color, label=label)
+    ground.set_aspect("equal", adjustable="datalim")
+    ground.legend(loc="upper left")
+    _label(ground, r"$X_O$ [m]", r"$Y_O$ [m]")
+    tilt = style.axes_mm(fig, 100, 50, 78, 28)
+    tilt.plot(drive.alone["time"], np.degrees(drive.alone["theta"]), color=style.VERMILLION)
+    tilt.plot(drive.controlled["time"], np.degrees(drive.controlled["theta"]), color=style.BLUE)
+    tilt.axhline(90, color=style.GREY, linewidth=0.5)
+    tilt.set_yticks([0, 45, 90, 135, 180])
+    tilt.set_ylabel(r"$\theta$ [deg]")
+    moments = style.axes_mm(fig, 100, 12, 78, 28)
+    for name, color in (("M_1", style.GREEN), ("M_3", style.PURPLE)):
+        moments.plot(drive.controlled["time"], drive.controlled[name], color=color, label=f"${name}$")
+    moments.legend(loc="upper right", ncols=2)
+    _label(moments, "time [s]", "moment [N m]")
+    _save(fig, path)
+
+
+def draw_launch(table: dict[str, np.ndarray], found: Convergence, path: Path) -> None:
+    """Forces of the launch, and the error against the communication step."""
+    style.use_style()
+    fig = style.figure_mm(style.PAGE, 84)
+    speed = style.axes_mm(fig, 16, 50, 66, 28)
+    speed.plot(table["time"], -0.35 * table["omega_z"], color=style.BLUE, label="wheel, $-(r_0 + r)\\,\\omega_z$")
+    speed.legend(loc="upper left")
+    speed.set_ylabel("speed [m/s]")
+    force = style.axes_mm(fig, 16, 12, 66, 28)
+    for name, color in (("lambda_3", style.INK), ("F_X", style.GREEN)):
+        force.plot(table["time"], table[name] / 1000, color=color, label={"lambda_3": "$N$", "F_X": "$F_X$"}[name])
+    force.legend(loc="center right", ncols=2)
+    _label(force, "time [s]", "force [kN]")
+    _draw_orders(style.axes_mm(fig, 104, 12, 74, 66), found)
+    _save(fig, path)
+
+
+def _draw_orders(ax: Axes, found: Convergence) -> None:
+    h = np.array(found.steps) * 1000
+    ax.loglog(h, found.held, "o-", color=style.VERMILLION, markersize=3.5, label="values held")
+    ax.loglog(h, found.linear, "s-", color=style.BLUE, markersize=3.5, label="with derivatives")
+    ax.loglog(h, found.followed, "d-", color=style.ORANGE, markersize=3.5, label="positions follow")
+    for errors, order in ((found.held, 1), (found.linear, 2)):
+        ax.loglog(h, errors[-1] * (h / h[-1]) ** order, color=style.GREY, linewidth=0.6, linestyle="--", zorder=0)
+    style.note(ax, "order 1", (h[1], found.held[-1] * (h[1] / h[-1])), (0, 5), ha="right")
+    style.note(ax, "order 2", (h[1], found.linear[-1] * (h[1] / h[-1]) ** 2), (-6, 6), ha="right")
+    ax.set_xticks(h, [f"{step:g}" for step in h])
+    ax.minorticks_off()
+    ax.legend(loc="lower right")
+    _label(ax, "communication step [ms]", "error / range")

@@ -1,0 +1,1 @@
+"""The examples: vehicles made of FMUs, judged."""

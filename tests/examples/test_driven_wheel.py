@@ -1,0 +1,72 @@
+"""Driven wheel: a pythonfmu controller keeps upright what alone would fall, along a line and a circle."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from vehicles import driven
+from vehicles.component import Component
+from vehicles.driven import Drive
+from vehicles.master import Master
+
+
+@pytest.fixture(scope="module")
+def drive(fmus: dict[str, Path]) -> Drive:
+    return driven.run(fmus)
+
+
+@pytest.fixture(scope="module")
+def verdict(drive: Drive) -> driven.Verdict:
+    return driven.judge(drive)
+
+
+def test_the_wheel_alone_falls_within_two_seconds(verdict: driven.Verdict) -> None:
+    assert verdict.fall < 2  # measured 1.47 s
+
+
+def test_the_controlled_wheel_never_falls(drive: Drive) -> None:
+    assert driven.fall_time(drive.controlled) == np.inf
+
+
+def test_it_rolls_upright_along_a_line(verdict: driven.Verdict) -> None:
+    assert verdict.line_tilt < 0.01  # deg; measured 0.0038
+    assert verdict.line_heading < 0.03  # deg; measured 0.0116
+
+
+def test_it_rolls_along_the_circle_asked_for(verdict: driven.Verdict) -> None:
+    assert abs(verdict.circle_radius - driven.RADIUS) < 0.01  # m; measured 0.0042
+    assert verdict.circle_scatter < 0.003  # m; measured 0.0009
+    assert verdict.circle_tilt < 10  # deg; measured 7.9: a wheel turns to the side it leans to
+
+
+def test_it_holds_its_speed_against_rolling_friction(verdict: driven.Verdict) -> None:
+    assert verdict.speed_error < 0.003  # rad/s; measured 0.0010
+
+
+def test_the_wheel_alone_fails_every_bound_of_the_course(drive: Drive) -> None:
+    """Partner: the same verdict on the run without controller."""
+    no_moments = [(name, drive.controlled[name] * 0) for name in ("M_1", "M_3")]
+    table = np.zeros(len(drive.alone), dtype=drive.controlled.dtype)
+    for name in drive.alone.dtype.names:
+        table[name] = drive.alone[name]
+    for name, zero in no_moments:
+        table[name] = zero[: len(table)]
+    alone = driven.judge(replace(drive, controlled=table))
+    assert alone.line_tilt > 1  # deg
+    assert alone.line_heading > 1  # deg
+    assert alone.circle_scatter > 0.1  # m
+    assert alone.speed_error > 0.1  # rad/s
+
+
+def test_a_controller_of_the_speed_alone_lets_the_wheel_fall(fmus: dict[str, Path]) -> None:
+    """Partner: it is M_1 that holds the wheel up."""
+    wheel = Component("wheel", fmus["wheel"], driven.START)
+    balance = Component("balance", fmus["balance"], {"k_theta": 0.0, "c_theta": 0.0})
+    connections = [(("wheel", name), ("balance", name)) for name in driven.MEASURED]
+    connections += [(("balance", name), ("wheel", name)) for name in ("M_1", "M_3")]
+    with Master([wheel, balance], connections) as master:
+        table = master.run(3.0, driven.STEP, [("wheel", "theta")])
+    assert np.abs(table["wheel.theta"] - np.pi / 2).max() > np.pi / 4

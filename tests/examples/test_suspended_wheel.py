@@ -1,0 +1,90 @@
+"""Suspended wheel: co-simulation against one set of equations; orders, standing start, SSP package."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from vehicles import suspended
+from vehicles.component import Component
+from vehicles.master import Master
+
+STEPS = (0.0025, 0.00125, 0.000625)  # s
+
+
+@pytest.fixture(scope="module")
+def found(fmus: dict[str, Path], truth: dict[str, np.ndarray]) -> suspended.Convergence:
+    return suspended.convergence(fmus, truth, STEPS)
+
+
+def test_held_values_converge_with_order_one(found: suspended.Convergence) -> None:
+    assert found.orders(found.held)[-1] == pytest.approx(1, abs=0.1)  # measured 0.93; 0.97 at half the step
+
+
+def test_positions_that_follow_their_velocities_leave_a_quarter_of_the_error(found: suspended.Convergence) -> None:
+    assert all(f < h / 4 for f, h in zip(found.followed, found.held, strict=True))  # measured a sixth
+
+
+def test_first_derivatives_converge_with_order_two(found: suspended.Convergence) -> None:
+    assert found.orders(found.linear) == pytest.approx([2, 2], abs=0.1)  # measured 2.05, 2.02
+
+
+def test_with_derivatives_the_coupled_run_meets_the_joint_equations(found: suspended.Convergence) -> None:
+    assert found.linear[-1] < 2e-4  # measured 1.1e-4 of the range at 0.625 ms
+    assert found.held[-1] > 100 * found.linear[-1]  # partner: held values miss it, measured 6.9e-2
+
+
+def test_the_error_of_held_values_is_the_drag_of_a_lagging_position(found: suspended.Convergence) -> None:
+    predicted = [suspended.drag_share(h) for h in found.steps]
+    assert found.held == pytest.approx(predicted, rel=0.05)  # measured within 3 %
+    assert found.held != pytest.approx([suspended.drag_share(2 * h) for h in found.steps], rel=0.05)  # partner
+
+
+def test_a_wrong_parameter_of_the_joint_equations_shows(fmus: dict[str, Path], truth: dict[str, np.ndarray]) -> None:
+    """Partner of the yardstick: 1 % of rolling friction moves the comparison far beyond its bound."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(suspended.START, "s", 0.0101)
+        other = suspended.together()
+    assert suspended.distance(other, truth) > 1e-3  # measured 2.7e-3
+
+
+def test_the_ground_pushes_all_the_time(truth: dict[str, np.ndarray]) -> None:
+    assert truth["lambda_3"].min() > 190  # N; measured 196, before the car rests on the wheel
+
+
+def test_the_coupled_wheel_stands_until_the_drive_pulls(fmus: dict[str, Path]) -> None:
+    table = suspended.coupled(fmus, 0.005, "derivatives", stop=0.6)
+    standing = table["time"] <= 0.5
+    assert np.all(table["omega_z"][standing] == 0)
+    assert np.all(table["omega_z"][~standing] < -0.01)  # rad/s; measured -0.16 at 0.6 s: it launches
+
+
+@pytest.mark.parametrize("exchange", ["held", "derivatives"])
+def test_the_step_may_not_exceed_twice_the_inertia_over_the_damping(fmus: dict[str, Path], exchange: str) -> None:
+    """2 (J_x + m R^2) / (c_theta + c_h R^2) = 17 ms for the lean of this wheel on its suspension."""
+    assert not suspended.ends(fmus, 0.015, exchange)
+    assert suspended.ends(fmus, 0.02, exchange)  # partner
+
+
+def test_a_smaller_grid_of_records_changes_no_bit(fmus: dict[str, Path]) -> None:
+    coarse, fine = (suspended.coupled(fmus, 0.0025, "derivatives", 0.7, grid) for grid in (0.05, 0.0025))
+    for name in suspended.COMPARED:
+        assert np.array_equal(coarse[name], fine[name][::20])
+
+
+@pytest.mark.parametrize("exchange", ["held", "derivatives"])
+def test_a_master_that_undoes_and_repeats_every_step_gets_the_same_bits(fmus: dict[str, Path], exchange: str) -> None:
+    once, twice = (suspended.coupled(fmus, 0.0025, exchange, 1.0, reject=reject) for reject in (False, True))
+    for name in once:
+        assert np.array_equal(once[name], twice[name])
+
+
+def test_the_master_refuses_an_algebraic_loop(fmus: dict[str, Path]) -> None:
+    """Partner: the order of exchange rests on declared dependencies; F_X -> lambda_1 -> X_O would be a loop."""
+    loop = [
+        (("quarter_car", "F_X"), ("wheel", "F_X")),
+        (("wheel", "lambda_1"), ("quarter_car", "X_O")),
+    ]
+    with pytest.raises(ValueError, match="cycle"):
+        Master([Component("wheel", fmus["wheel"]), Component("quarter_car", fmus["quarter_car"])], loop)

@@ -1,1 +1,0 @@
-"""The wheel coupled with other FMUs: the examples of docs/examples."""
