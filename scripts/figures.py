@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Draw the paper's six diagrams (Fig. 1-6) from the two scenes that `fmpy simulate` wrote.
+"""Draw the paper's six diagrams (Fig. 1-6) from the two scenes that `./scripts/run` simulated, the paper's or others.
 
-Reads free.csv (s = 0) and friction.csv (s = 0.03 m); writes the sheet paper_diagrams and the
-single files fig_1 ... fig_6, each as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees beside.
+Reads free.csv (s = 0) and friction.csv (s > 0), which hold the run's parameters as columns: titles and captions come from
+there. Writes the sheet paper_diagrams (diagrams, for values that are not the paper's) and the single files fig_1 ...
+fig_6, each as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees beside.
 """
 
 import argparse
@@ -11,25 +12,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from plotting import panels, style
 from plotting.scene import Scene, SceneError, read_scene
 
 ROOT = Path(__file__).resolve().parent.parent
-SIGNALS = ("time", "X_O", "theta", "phi_dot", "psi_dot")
+PAPER = {  # (27)-(33)
+    **{"m": 20, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_y": 0.9, "J_z": 1.8, "g": 9.81},
+    **{"psi_start": np.pi / 2, "theta_start": 5 * np.pi / 12, "phi_start": 0},
+    **{"psi_dot_start": 0, "theta_dot_start": 0, "phi_dot_start": -2},
+}
+PAPER_S = 0.03  # m, (29)
+SIGNALS = ("time", "X_O", "theta", "phi_dot", "psi_dot", "s", *PAPER)
 PITCH = 3.4  # mm from one line of a caption to the next
-
-# The numbers of (27)-(33).
-WHEEL = (
-    r"$m = 20$ kg, $r_0 = 0.3$ m, $r = 0.05$ m, "
-    r"$J_x = J_y = 0.9$ kg$\,$m$^2$, $J_z = 1.8$ kg$\,$m$^2$"
-)
-START = (
-    r"At $t = 0$: $\psi = \pi/2$, $\theta = 5\pi/12$, $\varphi = 0$, "
-    r"$\dot\psi = \dot\theta = 0$, $\dot\varphi = -2$ rad/s"
-)
-TITLES = {False: r"no rolling friction, $s = 0$", True: r"rolling friction, $s = 0.03$ m"}
 
 
 @dataclass(frozen=True)
@@ -64,33 +61,64 @@ DIAGRAMS = (
 )
 
 
-def draw_single(diagram: Diagram, scene: Scene, stem: Path) -> list[Path]:
+def is_paper(scenes: dict[bool, Scene]) -> bool:
+    """Whether the runs are the paper's."""
+    same = all(abs(scenes[True].value(name) - value) < 1e-12 for name, value in PAPER.items())
+    return same and scenes[True].value("s") == PAPER_S and scenes[True].time[-1] == 10
+
+
+def wheel_of(scene: Scene) -> str:
+    """The constants of (27)-(31) as the run had them."""
+    m, r_0, r, J_x, J_y, J_z, g = (f"{scene.value(name):.4g}" for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g"))
+    across = rf"$J_x = J_y = {J_x}$" if J_x == J_y else rf"$J_x = {J_x}$, $J_y = {J_y}$"
+    gravity = "" if g == "9.81" else rf", $g = {g}$ m/s$^2$"
+    return rf"$m = {m}$ kg, $r_0 = {r_0}$ m, $r = {r}$ m, {across}, $J_z = {J_z}$ kg$\,$m$^2${gravity}"
+
+
+def start_of(scene: Scene) -> str:
+    """The start, (32) and (33), as the run had it."""
+    angles = (("psi", r"\psi"), ("theta", r"\theta"), ("phi", r"\varphi"))
+    places = [rf"${symbol} = {np.degrees(scene.value(f'{name}_start')):.5g}°$" for name, symbol in angles]
+    rates = [rf"$\dot{symbol} = {scene.value(f'{name}_dot_start'):.4g}$" for name, symbol in angles]
+    return f"At $t = 0$: {', '.join(places)}; {', '.join(rates)} rad/s"
+
+
+def title_of(scene: Scene) -> str:
+    s = scene.value("s")
+    return rf"rolling friction, $s = {s:.4g}$ m" if s > 0 else r"no rolling friction, $s = 0$"
+
+
+def heading(diagram: Diagram, paper: bool) -> str:
+    """Number and subject; for values that are not the paper's, the figure that it corresponds to."""
+    return rf"{'' if paper else 'as '}$\mathbf{{Fig.\,{diagram.number}}}$   {diagram.subject}"
+
+
+def remark_of(diagram: Diagram, scene: Scene) -> str:
+    if diagram.number == 3 and scene.value("J_x") != scene.value("J_y"):
+        return ""  # the rates depend on phi too
+    return diagram.remark.format(n=scene.n_transitions) if diagram.friction else diagram.remark
+
+
+def draw_single(diagram: Diagram, scene: Scene, paper: bool, stem: Path) -> list[Path]:
     """One diagram, one journal column wide, with its caption."""
-    remark = diagram.remark.format(n=scene.n_transitions) if diagram.friction else diagram.remark
-    lines = [f"{WHEEL}.", f"{START}.", *remark.splitlines()]
+    lines = [f"{wheel_of(scene)}.", f"{start_of(scene)}.", *remark_of(diagram, scene).splitlines()]
     height = 46.0 if diagram.over_time else 62.0
     foot = 13.0 + PITCH * len(lines)
     fig = style.figure_mm(style.COLUMN, foot + height + 8.0)
     ax = style.axes_mm(fig, 13.5, foot, 63.0, height)
     diagram.draw(ax, scene, diagram.friction)
-    title = f"{heading(diagram)}, {TITLES[diagram.friction]}"
-    style.text_mm(fig, 2.0, foot + height + 4.0, title, fontsize=9)
-    write_caption(fig, lines)
+    style.text_mm(fig, 2.0, foot + height + 4.0, f"{heading(diagram, paper)}, {title_of(scene)}", fontsize=9)
+    write_caption(fig, lines, 7.0)
     return style.save(fig, stem)
 
 
-def heading(diagram: Diagram) -> str:
-    """Number and subject."""
-    return rf"$\mathbf{{Fig.\,{diagram.number}}}$   {diagram.subject}"
-
-
-def write_caption(fig: Figure, lines: list[str]) -> None:
+def write_caption(fig: Figure, lines: list[str], size: float = 7.5) -> None:
     """Lines of equal pitch, up from the figure's lower edge, whatever their heights."""
     for i, line in enumerate(reversed(lines)):
-        style.text_mm(fig, 2.0, 1.8 + PITCH * i, line, fontsize=7.5)
+        style.text_mm(fig, 2.0, 1.8 + PITCH * i, line, fontsize=size)
 
 
-def draw_sheet(scenes: dict[bool, Scene], stem: Path) -> list[Path]:
+def draw_sheet(scenes: dict[bool, Scene], paper: bool, stem: Path) -> list[Path]:
     """All six diagrams on one page: the free wheel on the left, with friction on the right."""
     fig = style.figure_mm(style.PAGE, 219.0)
     rows = ((163.0, 40.0), (105.0, 40.0), (28.0, 58.0))  # bottom and height in mm
@@ -99,26 +127,26 @@ def draw_sheet(scenes: dict[bool, Scene], stem: Path) -> list[Path]:
         left = 108.0 if diagram.friction else 14.0
         ax = style.axes_mm(fig, left, bottom, 62.0, height)
         diagram.draw(ax, scenes[diagram.friction], diagram.friction)
-        style.text_mm(fig, left - 12.0, bottom + height + 2.6, heading(diagram), fontsize=9)
+        style.text_mm(fig, left - 12.0, bottom + height + 2.6, heading(diagram, paper), fontsize=9)
     for friction, left in ((False, 2.0), (True, 96.0)):
-        title = TITLES[friction]
+        title = title_of(scenes[friction])
         style.text_mm(fig, left, 213.0, title[0].upper() + title[1:], fontsize=10.5)
-    write_caption(fig, sheet_caption(scenes[True]))
+    write_caption(fig, sheet_caption(scenes))
     return style.save(fig, stem)
 
 
-def sheet_caption(friction: Scene) -> list[str]:
+def sheet_caption(scenes: dict[bool, Scene]) -> list[str]:
     """The parameters and what the marks mean."""
-    count = f"{friction.n_transitions} transitions in {friction.time[-1]:g} s"
+    friction = scenes[True]
+    count = f"{friction.n_transitions} transitions in {friction.time[-1]:.3g} s"
     events = (
         f"Fig. 4–6: {count}. Bands, thick in Fig. 6: stick ($\\omega_z$ held at zero). "
         "Ticks at the top: $\\omega_z$ changes sign."
     )
-    rates = (
-        "Fig. 3: the rates depend on $\\theta$ alone, so the wheel runs to and fro on one arc. "
-        "Inset of Fig. 6: the same motion sheared, which opens the narrow bundle."
-    )
-    return [f"Torus wheel: {WHEEL}. {START}.", events, rates]
+    arc = "Fig. 3: the rates depend on $\\theta$ alone, so the wheel runs to and fro on one arc. "
+    inset = "Inset of Fig. 6: the same motion sheared, which opens the narrow bundle."
+    rates = inset if friction.value("J_x") != friction.value("J_y") else arc + inset
+    return [f"Torus wheel: {wheel_of(friction)}. {start_of(friction)}.", events, rates]
 
 
 def main() -> int:
@@ -138,9 +166,10 @@ def main() -> int:
     except SceneError as fault:
         print(f"figures: {fault}", file=sys.stderr)
         return 1
-    written = draw_sheet(scenes, out / "paper_diagrams")
+    paper = is_paper(scenes)
+    written = draw_sheet(scenes, paper, out / ("paper_diagrams" if paper else "diagrams"))
     for diagram in DIAGRAMS:
-        written += draw_single(diagram, scenes[diagram.friction], out / f"fig_{diagram.number}")
+        written += draw_single(diagram, scenes[diagram.friction], paper, out / f"fig_{diagram.number}")
     print("\n".join(str(path) for path in written))
     return 0
 

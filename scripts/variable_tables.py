@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes what follows from the variables in modelDescription.xml: its GUID, and the tables in README.md and in the
+"""Writes what follows from the variables in modelDescription.xml: its GUID, and the tables in docs/variables.md and in the
 FMU's documentation.
 
 No paper equation; frames and units are those of the description. Run it after a change of the variables; the tests
@@ -20,7 +20,7 @@ from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parent.parent
 DESCRIPTION = ROOT / "modelDescription.xml"
-PAGES = (ROOT / "README.md", ROOT / "fmu-src" / "archive" / "documentation" / "index.html")
+PAGES = (ROOT / "docs" / "variables.md", ROOT / "fmu-src" / "archive" / "documentation" / "index.html")
 TITLES = {
     "parameter": "Parameters, set before the run (`s` also between steps)",
     "input": "Inputs",

@@ -6,14 +6,16 @@ Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.patches import FancyArrowPatch
-from matplotlib.ticker import AutoMinorLocator, MultipleLocator
+from matplotlib.ticker import AutoMinorLocator, MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
 from plotting import style
 from plotting.scene import Array, Scene
 
-THETA_MARKS = (55, 45, 40, 35, 30)  # degrees, written along the arc of Fig. 3
+MARK_STEP = 5  # degrees of theta between the candidates for a mark along the arc of Fig. 3
+MARK_SIZE = np.array([50.0, 10.0])  # points: width and height that the name of a mark takes
 SUBDIVISION = 4  # drawn points per row in Fig. 6
 PSI_DOT = r"$\dot\psi$"
 PHI_DOT = r"$\dot\varphi$"
@@ -25,24 +27,22 @@ def draw_position(ax: Axes, scene: Scene, friction: bool) -> None:
     _time_axis(ax, scene, friction)
     ax.plot(scene.time, scene["X_O"], color=style.BLUE)
     ax.set_ylabel(r"position $X_O$ [m]")
-    step = 0.4 if friction else 0.2
-    ax.yaxis.set_major_locator(MultipleLocator(step))
-    ax.yaxis.set_minor_locator(AutoMinorLocator(2))
-    lowest = np.floor(scene["X_O"].min() / step - 0.05) * step
-    ax.set_ylim(lowest, max(0.0, scene["X_O"].max()) + 0.02 * abs(lowest))
+    ax.margins(y=0.06)
+    _ticks(ax.yaxis, 5)
 
 
 def draw_tilt(ax: Axes, scene: Scene, friction: bool) -> None:
     """Fig. 2, 5: theta over time, rad on the left and degrees on the right."""
     _time_axis(ax, scene, friction)
     ax.plot(scene.time, scene["theta"], color=style.BLUE)
-    ax.set_ylim(0.0, np.pi / 2)
+    past_upright = scene["theta"].max() > np.pi / 2
+    ax.set_ylim(0.0, np.pi if past_upright else np.pi / 2)
     ax.set_ylabel(r"angle $\theta$ [rad]")
     ax.yaxis.set_major_locator(MultipleLocator(0.5))
     ax.yaxis.set_minor_locator(MultipleLocator(0.1))
     degrees = ax.secondary_yaxis("right", functions=(np.degrees, np.radians))
     degrees.set_ylabel(r"$\theta$ [deg]")
-    degrees.yaxis.set_major_locator(MultipleLocator(15))
+    degrees.yaxis.set_major_locator(MultipleLocator(30 if past_upright else 15))
     degrees.spines["right"].set_visible(True)
 
 
@@ -51,20 +51,23 @@ def draw_rates(ax: Axes, scene: Scene, friction: bool) -> None:
     ax.set_xlabel(rf"precession rate {PSI_DOT} [rad/s]")
     ax.set_ylabel(rf"spin rate {PHI_DOT} [rad/s]")
     for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_locator(MultipleLocator(10 if friction else 4))
-        axis.set_minor_locator(AutoMinorLocator(2))
+        _ticks(axis, 5)
     if friction:
         _friction_rates(ax, scene)
     else:
         _free_arc(ax, scene)
 
 
+def _ticks(axis: Axis, most: int) -> None:
+    axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 4, 5, 10]))
+    axis.set_minor_locator(AutoMinorLocator(2))
+
+
 def _time_axis(ax: Axes, scene: Scene, friction: bool) -> None:
     """Time in s over the whole scene; with friction, its events behind the curve."""
     ax.set_xlim(scene.time[0], scene.time[-1])
     ax.set_xlabel("time $t$ [s]")
-    ax.xaxis.set_major_locator(MultipleLocator(2))
-    ax.xaxis.set_minor_locator(MultipleLocator(1))
+    _ticks(ax.xaxis, 6)
     if friction:
         _mark_events(ax, scene)
 
@@ -90,44 +93,53 @@ def _free_arc(ax: Axes, scene: Scene) -> None:
     All rows are drawn in the order of theta: one clean stroke, and a zigzag if the rates ever
     left the arc.
     """
+    if scene.value("J_x") != scene.value("J_y"):  # then they depend on phi too
+        ax.plot(scene["psi_dot"], scene["phi_dot"], color=style.BLUE, linewidth=0.6)
+        ax.margins(0.07)
+        return
     rows = np.argsort(scene["theta"])
     ax.plot(scene["psi_dot"][rows], scene["phi_dot"][rows], color=style.BLUE, linewidth=1.1)
-    swing = slice(0, _first_turn(scene["theta"]) + 1)
-    psi_dot, phi_dot = scene["psi_dot"][swing], scene["phi_dot"][swing]
-    theta = np.degrees(scene["theta"][swing])
-    named = {angle: rf"${angle}°$" for angle in THETA_MARKS if theta[-1] + 1 < angle < theta[0] - 1}
-    named |= {
-        theta[0]: rf"$\theta = {theta[0]:.0f}°$, start",
-        theta[-1]: f"{theta[-1]:.1f}°, lowest",
-    }
-    for angle, name in named.items():
-        at = tuple(np.interp(-angle, -theta, rate) for rate in (psi_dot, phi_dot))
-        end = angle in (theta[0], theta[-1])
-        ax.plot(
-            *at,
-            "o",
-            color=style.BLUE,
-            markersize=4.0 if end else 2.8,
-            markerfacecolor=style.BLUE if end else "white",
-            markeredgewidth=0.8,
-        )
-        if angle == theta[-1]:
-            style.note(ax, name, at, (-5, -4), ha="right")
-        else:
-            style.note(ax, name, at, (4.5, 2.5))
-    _to_and_fro(ax, psi_dot, phi_dot)
-    ax.margins(0.07)
+    ax.margins(0.12)
+    ax.autoscale_view()
+    arc = [scene[name][rows] for name in ("theta", "psi_dot", "phi_dot")]
+    start = scene["theta"][0]
+    ends = {np.degrees(arc[0][0]): "{:.1f}°, lowest", np.degrees(arc[0][-1]): "{:.1f}°, highest"}
+    ends = {angle: name for angle, name in ends.items() if abs(angle - np.degrees(start)) > 0.05}
+    ends |= {np.degrees(start): r"$\theta = {:.0f}°$, start"}
+    taken: list[Array] = []
+    for angle, name in ends.items():
+        _mark(ax, angle, name.format(angle), arc, taken, end=True)
+    first = MARK_STEP * np.ceil(np.degrees(arc[0][0]) / MARK_STEP)
+    for angle in np.arange(first, np.degrees(arc[0][-1]), MARK_STEP):
+        _mark(ax, angle, rf"${angle:g}°$", arc, taken, end=False)
+    _to_and_fro(ax, *arc[1:])
 
 
-def _first_turn(theta: Array) -> int:
-    """Row of the first lowest theta."""
-    rising = np.flatnonzero(np.diff(theta) > 0)
-    return int(rising[0]) if rising.size else len(theta) - 1
+def _mark(ax: Axes, angle: float, name: str, arc: list[Array], taken: list[Array], end: bool) -> None:
+    """A dot on the arc with theta beside it, unless it would overlap one that is there."""
+    at = tuple(float(np.interp(np.radians(angle), arc[0], rate)) for rate in arc[1:])
+    place = ax.transData.transform(at) * 72 / ax.figure.dpi  # points
+    if not end and any((abs(place - other) < MARK_SIZE).all() for other in taken):
+        return
+    taken.append(place)
+    ax.plot(
+        *at,
+        "o",
+        color=style.BLUE,
+        markersize=4.0 if end else 2.8,
+        markerfacecolor=style.BLUE if end else "white",
+        markeredgewidth=0.8,
+    )
+    # Names stand outside the axes' middle, so that they do not cross the arc.
+    left = end and ax.transAxes.inverted().transform(ax.transData.transform(at))[0] > 0.6
+    style.note(ax, name, at, (-5, -4) if left else (4.5, 2.5), ha="right" if left else "left")
 
 
 def _to_and_fro(ax: Axes, x: Array, y: Array) -> None:
     """A double arrow beside the middle of the arc."""
     span = np.ptp(x)
+    if span == 0:
+        return
     a, b = (int(np.argmin(abs(x - part * span))) for part in (0.36, 0.64))
     shift = 0.055 * span
     ends = [(x[i] - shift, y[i] - shift) for i in (a, b)]
@@ -151,22 +163,38 @@ def _friction_rates(ax: Axes, scene: Scene) -> None:
     time, psi_dot, phi_dot = scene.smooth(SUBDIVISION, "time", "psi_dot", "phi_dot")
     stick = np.any([(time > begin) & (time < end) for begin, end in scene.stick_phases()], axis=0)
     _with_stick(ax, psi_dot, phi_dot, stick)
-    ax.set_xlim(-6.0, None)
+    ax.margins(x=0.2, y=0.1)
+    ax.autoscale_view()
     for row, offset, line in ((0, (-4.0, -2.3), None), (-1, (-12.0, -26.0), _LEADER)):
-        instant = rf"$t = {time[row]:g}$" + (" s" if time[row] else "")
+        instant = rf"$t = {time[row]:.3g}$" + (" s" if time[row] else "")
         at = (psi_dot[row], phi_dot[row])
         style.note(ax, instant, at, offset, ha="right", arrowprops=line)
-    inset = ax.inset_axes((0.59, 0.60, 0.39, 0.40))
-    _with_stick(inset, psi_dot, phi_dot + psi_dot, stick)
+    if np.ptp(psi_dot) == 0:
+        return
+    shear = -np.sign(np.cos(scene["theta"].mean())) or -1.0
+    inset = ax.inset_axes(_free_corner(ax, psi_dot, phi_dot))
+    _with_stick(inset, psi_dot, phi_dot - shear * psi_dot, stick)
     inset.yaxis.tick_right()
     inset.yaxis.set_label_position("right")
     inset.spines["left"].set_visible(False)
     inset.spines["right"].set_visible(True)
     inset.set_xlabel(rf"{PSI_DOT} [rad/s]", fontsize=7.5, labelpad=1)
-    inset.set_ylabel(rf"{PHI_DOT} + {PSI_DOT} [rad/s]", fontsize=7.5, labelpad=3)
-    inset.xaxis.set_major_locator(MultipleLocator(10))
-    inset.yaxis.set_major_locator(MultipleLocator(1))
+    inset.set_ylabel(rf"{PHI_DOT} {'+' if shear < 0 else '−'} {PSI_DOT} [rad/s]", fontsize=7.5, labelpad=3)
+    _ticks(inset.xaxis, 4)
+    _ticks(inset.yaxis, 5)
     inset.tick_params(labelsize=7)
+
+
+def _free_corner(ax: Axes, x: Array, y: Array) -> tuple[float, float, float, float]:
+    """Of the corners that an inset may take, the one that covers the least of the curve."""
+    width, height = 0.39, 0.40
+    corners = ((0.59, 0.60), (0.12, 0.60), (0.50, 0.12), (0.12, 0.12))
+    u, v = ax.transAxes.inverted().transform(ax.transData.transform(np.column_stack([x, y]))).T
+
+    def covered(corner: tuple[float, float]) -> int:
+        return int(np.sum((u > corner[0]) & (u < corner[0] + width) & (v > corner[1]) & (v < corner[1] + height)))
+
+    return (*min(corners, key=covered), width, height)
 
 
 def _with_stick(ax: Axes, x: Array, y: Array, stick: NDArray[np.bool_]) -> None:

@@ -33,6 +33,10 @@ class Scene:
     def time(self) -> Array:
         return self.columns["time"]
 
+    def value(self, name: str) -> float:
+        """A parameter of the run, which the file holds as a column of equal numbers."""
+        return float(self[name][0])
+
     @cached_property
     def mode(self) -> NDArray[np.int_]:
         """-1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero (it sticks).
