@@ -11,7 +11,10 @@
 #ifdef __wasi__
 #include "fmi2Functions.h"
 static void* find_symbol(void* library, const char* name) {
-#define LINKED(function) { #function, (void*)(function) }
+#define LINKED(function)         \
+  {                              \
+    #function, (void*)(function) \
+  }
   static const struct {
     const char* name;
     void* function;

@@ -11,7 +11,8 @@ static inline void* open_library(const char* path) { return (void*)LoadLibraryA(
 static inline void* find_symbol(void* library, const char* name) {
   return (void*)GetProcAddress((HMODULE)library, name);
 }
-#elif defined(__wasi__) /* no libraries to open: the program has the wheel linked in, and finds its functions itself */
+#elif defined(__wasi__) /* no libraries to open: the program has the wheel linked in, and finds its functions itself \
+                         */
 static inline void* open_library(const char* path) { return (void*)path; }
 static void* find_symbol(void* library, const char* name);
 #else
