@@ -95,8 +95,8 @@ bool Simulation::pass_transition() {
   return solver_.restart(state_.method, t, y, has_transitions(motion.scene));
 }
 
-// With keep_contact: tells each excursion of N below zero in the last step, at its instant, from t_from to t_to. What the
-// solver knows beyond the time that is asked for waits: an input may yet change it.
+// With keep_contact: tells each excursion of N below zero in the last step, at its instant, from t_from to t_to. What
+// the solver knows beyond the time that is asked for waits: an input may yet change it.
 void Simulation::report_pulls(double t_from, double t_to) {
   if (!state_.motion.keep_contact || !(t_to > t_from)) return;
   double t;

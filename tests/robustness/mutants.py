@@ -3,8 +3,8 @@
     python tests/robustness/mutants.py [NAME ...]     all, or those whose name contains one of the words
 
 For each entry of mutants.toml a copy of the sources in build/mutants is changed, built and tested; the tests that are
-meant to notice come first. Tests that fail without any fault are left out. The table is tests/robustness/mutants.csv. About half
-a minute for each mutant on two cores, so it is no part of the default run.
+meant to notice come first. Tests that fail without any fault are left out. The table is tests/robustness/mutants.csv.
+About half a minute for each mutant on two cores, so it is no part of the default run.
 """
 
 from __future__ import annotations
