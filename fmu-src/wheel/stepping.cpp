@@ -100,6 +100,14 @@ bool Simulation::pass_transition() {
   return solver_.restart(state_.method, t, y, has_transitions(motion.scene));
 }
 
+// A transition right behind the one before, from which the solver's step starts: the step was too long to see the motion
+// between them. The end of the next one, s; infinite where there is no need of a shorter step.
+double Simulation::time_to_look_again() const {
+  const double t = solver_.event_time(), from = solver_.step_start(), length = solver_.step_end() - from;
+  if (!(t - from < 1e-6 * length)) return std::numeric_limits<double>::infinity();
+  return t + std::fmax(1e-3 * length, 4 * std::numeric_limits<double>::epsilon() * t);
+}
+
 // With keep_contact: tells each excursion of N below zero in the last step, at its instant, from t_from to t_to. What
 // the solver knows beyond the time that is asked for waits: an input may yet change it.
 void Simulation::report_pulls(double t_from, double t_to) {
@@ -155,7 +163,7 @@ solver::Outcome Simulation::run_to(double t) {
   if (!state_.moving && !start_solver()) return Outcome::failed;
   report_pulls(state_.t, std::fmin(solver_.known_until(), t));
   double retry = std::numeric_limits<double>::infinity();
-  for (long long work = 0; !solver_.reaches(t);) {
+  for (long long work = 0; std::isfinite(retry) || !solver_.reaches(t);) {
     if (work >= most_work) return failure_ = "it took a million internal steps; ask for shorter steps", Outcome::failed;
     // CVODE steps past the end of a varying input's step: the polynomial may go on, and a history that was cut short is
     // lost. Runge-Kutta has none to lose.
@@ -167,11 +175,7 @@ solver::Outcome Simulation::run_to(double t) {
     if (outcome == Outcome::failed) return outcome;
     if (solver_.reaches(t)) break;  // a transition or an ending after t waits until it is reached
     if (outcome == Outcome::ended) return outcome;
-    // A transition right behind the last one: the step was too long to see the motion between them.
-    const double length = solver_.step_end() - t_before;
-    retry = outcome == Outcome::event && solver_.event_time() - t_before < 1e-6 * length
-                ? t_before + std::fmax(1e-3 * length, 4 * std::numeric_limits<double>::epsilon() * t_before)
-                : std::numeric_limits<double>::infinity();
+    retry = outcome == Outcome::event ? time_to_look_again() : std::numeric_limits<double>::infinity();
     if (outcome == Outcome::event && !pass_transition()) return Outcome::failed;
     work += outcome == Outcome::event ? work_per_transition : 1;
   }

@@ -64,8 +64,14 @@ def as_word(x):
 
 def changes(word, seed):
     """What a word may be changed to: nonsense for a double, nonsense for an integer, and small slips."""
-    special = [as_word(x) for x in (np.nan, np.inf, -1.0, 0.0, 1e300, 5e-324)]
-    special += [2, 13, 2**31, 2**53, 2**63 - 1, 2**64 - 1]
+    special = [as_word(x) for x in (np.nan, np.inf, -1.0, 0.0, 1e300, 5e-324)] + [
+        2,
+        13,
+        2**31,
+        2**53,
+        2**63 - 1,
+        2**64 - 1,
+    ]
     slips = [(word + 1) % 2**64, (word - 1) % 2**64, word ^ 1 << 63, word ^ 1 << 52]
     chosen = np.random.default_rng(seed)
     return [int(chosen.choice(np.array(row, dtype=object))) for row in (special, slips)]

@@ -1,7 +1,7 @@
 """A lift-off that only the input's derivatives tell: the force at both ends of the step says nothing of it.
 
-The wheel rolls upright; F_Z then only carries it, so N = m g - F_Z, and the lift-off is at the first root of a
-polynomial.
+The wheel rolls upright; F_Z then only carries it, so N = m g - F_Z, and the lift-off is at the first root
+of a polynomial.
 """
 
 from __future__ import annotations

@@ -1,0 +1,184 @@
+"""What a master sees of inputs between two steps, of pulls, of counts: small things that are easily lost."""
+
+from __future__ import annotations
+
+import struct
+from math import pi
+
+import numpy as np
+import pytest
+from contract.test_forged_histories import as_word, saved, signed, words_of
+from support.driver import ERROR, OK
+from support.pieces import give
+from support.scenes import PAPER
+
+WEIGHT = PAPER.m * PAPER.g
+
+
+def rate_of(w, name="lambda_3"):
+    return w.rates([name])()[0]
+
+
+def test_the_rate_of_a_reaction_follows_all_orders_of_the_input(wheel):
+    """Upright, N = m g - F_Z: the rate of lambda_3 at the end of a step is that of the input, cubic term and all."""
+    for order in (1, 2, 3):
+        w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0)
+        shape = [0.0, 0.0, 0.0, 0.0]
+        shape[order] = 50.0
+        for k in range(2):  # the second step goes on along the same polynomial
+            give(w, {"F_Z": shape}, 0.5 * k)
+            assert abs(rate_of(w) + 50.0 * order * (0.5 * k) ** (order - 1)) < 1e-9
+            assert w.step_to(0.5 * (k + 1)) == OK
+
+
+def test_a_derivative_that_is_set_is_seen_at_once(wheel):
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0)
+    assert w.step_to(0.1) == OK and rate_of(w) == 0
+    assert w.set_input_derivatives(["F_Z"], [[7.0]]) == OK
+    assert abs(rate_of(w) + 7.0) < 1e-9
+    assert w.set_input_derivatives(["F_Z"], [[0.0]]) == OK
+    assert rate_of(w) == 0
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("method", [1, 2, 3, 4])
+def test_a_change_of_one_derivative_alone_is_taken(wheel, method, order):
+    """M_3 goes on with the same value and the same other derivatives."""
+    ends = []
+    for change in (0.0, 1e-3):
+        w = wheel().start(theta_start=1.2, s=0.0, method=method)
+        give(w, {"M_3": (0.3, 0.2, 0.1, 0.05)})
+        assert w.step_to(0.5) == OK
+        shape = [0.3 + 0.1 + 0.025 + 0.00625, 0.2 + 0.1 + 0.0375, 0.1 + 0.075, 0.05]
+        shape[order] += change
+        give(w, {"M_3": shape})
+        assert w.step_to(1.0) == OK
+        ends.append(w.get("phi_dot")[0])
+    assert abs(ends[1] - ends[0]) > 1e-6
+
+
+def test_a_small_change_of_a_value_is_taken(wheel):
+    ends = []
+    for torque in (1.0, 1.0 + 1e-6):
+        w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0, method=2)
+        for k, value in enumerate((1.0, torque)):
+            w.set(M_3=value)
+            assert w.step_to(0.5 * (k + 1)) == OK
+        ends.append(w.get("phi_dot")[0])
+    assert ends[1] > ends[0]
+
+
+def pulls(w):
+    return [float(m.split(" = ")[1].split()[0]) for m in w.sentences if "pulls" in m]
+
+
+@pytest.mark.parametrize("kind", [(2, 1, 0.03), (2, 2, 0.0), (3, 2, 0.0), (3, 4, 0.03)], ids=str)
+def test_each_pull_is_told_at_its_instant_and_none_that_an_input_prevents(wheel, kind):
+    formulation, method, s = kind
+    values = {"theta_start": pi / 2, "phi_dot_start": -8.0, "keep_contact": True, "formulation": formulation}
+    w = wheel().start(method=method, s=s, **values)
+    for begin, force in (
+        (0.0, (0.0,)),
+        (0.1, (0.0, WEIGHT / 0.025)),
+        (0.15, (0.0,)),
+        (0.3, (0.0, WEIGHT / 0.05)),
+        (0.4, (0.0,)),
+    ):
+        w.time = begin
+        give(w, {"F_Z": force})
+        assert w.step_to({0.0: 0.1, 0.1: 0.15, 0.15: 0.3, 0.3: 0.4, 0.4: 0.5}[begin]) == OK
+    assert np.allclose(pulls(w), [0.125, 0.35], rtol=0, atol=1e-8)
+    prevented = wheel().start(method=method, s=s, **values)
+    for k in range(20):  # a ramp that would lift the wheel, taken back at every step
+        give(prevented, {"F_Z": (0.0, WEIGHT / 0.006)})
+        assert prevented.step_to(0.005 * (k + 1)) == OK
+    assert pulls(prevented) == []
+
+
+def test_a_polynomial_that_takes_the_brake_below_zero_takes_it_off(wheel):
+    """A brake cannot push: M_brake = 1 - 10 t is none from 0.1 s on, and a wheel without a torque then rolls freely."""
+    braked, off = (wheel().start(theta_start=pi / 2, phi_dot_start=-8.0) for _ in range(2))
+    give(braked, {"M_brake": (1.0, -10.0)})
+    assert braked.step_to(1.0) == OK
+    give(off, {"M_brake": (1.0, -10.0)})
+    assert off.step_to(0.1) == OK
+    give(off, {"M_brake": (0.0,)})
+    assert off.step_to(1.0) == OK
+    assert abs(braked.get("phi_dot")[0] - off.get("phi_dot")[0]) < 1e-6
+    assert off.get("phi_dot")[0] > -8.0
+
+
+def test_a_derivative_lasts_for_one_step(wheel):
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0)
+    give(w, {"F_Z": (0.0, 10.0)})
+    assert w.step_to(1.0) == OK and w.step_to(2.0) == OK
+    assert w.get("F_Z") == [10.0] and abs(w.get("lambda_3")[0] - (WEIGHT - 10.0)) < 1e-9
+
+
+def test_a_brake_that_is_set_stops_the_wheel_though_nothing_braked_before(wheel):
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=-1.0)
+    assert w.step_to(0.5) == OK
+    w.set(M_brake=20.0)
+    assert w.step_to(3.0) == OK
+    assert w.get("n_events") == [1] and abs(w.get("phi_dot")[0]) < 1e-12
+
+
+def test_output_derivatives_wait_for_the_first_step(wheel):
+    w = wheel()
+    assert w.setupExperiment(None, 0.0, None) == OK and w.enterInitializationMode() == OK
+    values, orders = (np.ctypeslib.ctypes.c_double * 1)(), (np.ctypeslib.ctypes.c_int * 1)(1)
+    call = lambda: w.fmi2GetRealOutputDerivatives(w.component, w.c_references(["theta"]), 1, orders, values)  # noqa: E731
+    assert call() == ERROR
+    assert w.exitInitializationMode() == OK and call() == OK
+
+
+def test_a_sensitivity_belongs_to_the_inputs_that_were_just_set(wheel):
+    """d lambda_3 / d M_brake of a wheel whose torque holds or does not hold against the brake."""
+    w = wheel().start(theta_start=1.2, phi_dot_start=-5.0, s=0.05)
+    w.set(M_3=1.0)
+    assert w.step_to(0.1) == OK
+    slopes = []
+    for force in (0.0, 600.0):  # N < 0 under 600 N: the ground's friction is gone
+        w.set(F_Z=force)
+        known, unknown = [w.references["F_Y"]], [w.references["lambda_3"]]
+        slopes.append(w.getDirectionalDerivative(unknown, known, [1.0])[0])
+        h = 1e-3
+        w.set(F_Y=h)
+        up = w.get("lambda_3")[0]
+        w.set(F_Y=0.0)
+        assert abs(slopes[-1] - (up - w.get("lambda_3")[0]) / h) < 1e-6
+    assert slopes[0] != slopes[1]
+
+
+@pytest.mark.parametrize("method", [1, 3])
+def test_counts_are_the_same_after_a_return(wheel, method):
+    """Of a run that goes back to its start, and of one that never left it; the Jacobians of a new start too."""
+    counts = []
+    for returns in (False, True):
+        w = wheel().start(friction_law=2, s=0.03, omega_s=1e-3, method=method)
+        before = w.snapshot()
+        if returns:
+            assert w.step_to(0.7) == OK and w.fmi2SetFMUstate(w.component, before) == OK
+            w.time = 0.0
+        assert w.step_to(1.0) == OK
+        counts.append(w.get("n_steps", "n_rhs", "n_jac", "n_restarts"))
+    assert counts[0] == counts[1] and counts[0][2] > 0
+
+
+def test_impossible_counts_laws_and_steps_are_refused(wheel):
+    w = wheel()
+    blob = saved(wheel, "Runge-Kutta")
+    words = list(words_of(blob))
+    assert w.restore(blob) == OK
+    sigmas = [k for k, word in enumerate(words[:60]) if word == as_word(-1.0)]
+    for place in sigmas:
+        forged = signed([*words[:place], as_word(-0.5), *words[place + 1 :]])
+        if struct.unpack("<d", struct.pack("<Q", words[place]))[0] == -1.0 and place > 30:
+            assert w.restore(forged) == ERROR
+    y = w.get("theta")[0]
+    ends = [k for k in range(120, len(words)) if words[k] == as_word(y)]
+    for place in ends:  # the state at the end of the step, which follows from its stages
+        assert w.restore(signed([*words[:place], as_word(y + 1e-9), *words[place + 1 :]])) == ERROR
+    counts = [k for k, word in enumerate(words) if 0 < word < 2**20]
+    for place in counts:
+        assert w.restore(signed([*words[:place], 2**63 - 1, *words[place + 1 :]])) == ERROR, place
