@@ -2,7 +2,6 @@
 // unfolded free wheel, endings.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "decisions.hpp"
@@ -100,8 +99,8 @@ bool Simulation::pass_transition() {
   return solver_.restart(state_.method, t, y, has_transitions(motion.scene));
 }
 
-// A transition right behind the one before, from which the solver's step starts: the step was too long to see the motion
-// between them. The end of the next one, s; infinite where there is no need of a shorter step.
+// A transition right behind the one before, from which the solver's step starts: the step was too long to see the
+// motion between them. The end of the next one, s; infinite where there is no need of a shorter step.
 double Simulation::time_to_look_again() const {
   const double t = solver_.event_time(), from = solver_.step_start(), length = solver_.step_end() - from;
   if (!(t - from < 1e-6 * length)) return std::numeric_limits<double>::infinity();
@@ -123,32 +122,6 @@ void Simulation::report_pulls(double t_from, double t_to) {
 void Simulation::tell_pull(double t) const {
   tell(Topic::warning, "The ground pulls from t = %s s on: keep_contact holds a wheel that would have lifted off.",
        support::Digits(to_nanosecond(state_.start_time + t)).text);
-}
-
-// Whether the orbit is that of the present run, whatever the instance did before.
-bool Simulation::orbit_fits() const {
-  return std::memcmp(orbit_origin_, state_.parameters, sizeof state_.parameters) == 0 &&
-         orbit_origin_[first_input] == state_.motion.tolerance;
-}
-
-// From the start of the run; where the motion does not fold, the solver has to step.
-void Simulation::build_orbit() {
-  State start = state_;
-  set_initial_state(start);
-  const Motion& motion = start.motion;
-  const Orbit::Kind kind = orbit_.build(problem_of(start.motion), motion.tolerance,
-                                        motion.keep_contact ? normal_force : nullptr, start.y, solver_);
-  orbit_end_ = kind == Orbit::Kind::ended ? orbit_.end_time() : std::numeric_limits<double>::infinity();
-  state_.unfolded = kind != Orbit::Kind::refused;
-  std::memcpy(orbit_origin_, state_.parameters, sizeof state_.parameters);
-  orbit_origin_[first_input] = state_.unfolded ? motion.tolerance : 0;
-}
-
-// Makes the orbit ready, if the run is on one.
-void Simulation::enter_orbit() {
-  if (!orbit_fits()) build_orbit();
-  orbit_ready_ = state_.unfolded;
-  if (state_.unfolded) state_.counted = orbit_.counters();
 }
 
 bool Simulation::knows(double t) const {
@@ -180,14 +153,6 @@ solver::Outcome Simulation::run_to(double t) {
     work += outcome == Outcome::event ? work_per_transition : 1;
   }
   return Outcome::stepped;
-}
-
-// With keep_contact on the orbit: the excursions of N below zero that begin in (t_from, t_to]; of very many in one step
-// the first are told.
-void Simulation::report_pulls_of_orbit(double t_from, double t_to) const {
-  constexpr long long most = 100;
-  const long long first = orbit_.falls_until(t_from), end = orbit_.falls_until(t_to);
-  for (long long n = first; n < std::min(end, first + most); ++n) tell_pull(orbit_.fall(n));
 }
 
 Progressed Simulation::end_run() {

@@ -1,0 +1,45 @@
+// A run whose motion is unfolded: its orbit is built at the first step, kept while it is that of the run, and read.
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "decisions.hpp"
+#include "simulation.hpp"
+
+namespace wheel {
+
+// Whether the orbit is that of the present run, whatever the instance did before.
+bool Simulation::orbit_fits() const {
+  return std::memcmp(orbit_origin_, state_.parameters, sizeof state_.parameters) == 0 &&
+         orbit_origin_[first_input] == state_.motion.tolerance;
+}
+
+// From the start of the run; where the motion does not fold, the solver has to step.
+void Simulation::build_orbit() {
+  State start = state_;
+  set_initial_state(start);
+  const Motion& motion = start.motion;
+  const Orbit::Kind kind = orbit_.build(problem_of(start.motion), motion.tolerance,
+                                        motion.keep_contact ? normal_force : nullptr, start.y, solver_);
+  orbit_end_ = kind == Orbit::Kind::ended ? orbit_.end_time() : std::numeric_limits<double>::infinity();
+  state_.unfolded = kind != Orbit::Kind::refused;
+  std::memcpy(orbit_origin_, state_.parameters, sizeof state_.parameters);
+  orbit_origin_[first_input] = state_.unfolded ? motion.tolerance : 0;
+}
+
+// Makes the orbit ready, if the run is on one.
+void Simulation::enter_orbit() {
+  if (!orbit_fits()) build_orbit();
+  orbit_ready_ = state_.unfolded;
+  if (state_.unfolded) state_.counted = orbit_.counters();
+}
+
+// With keep_contact on the orbit: the excursions of N below zero that begin in (t_from, t_to]; of very many in one step
+// the first are told.
+void Simulation::report_pulls_of_orbit(double t_from, double t_to) const {
+  constexpr long long most = 100;
+  const long long first = orbit_.falls_until(t_from), end = orbit_.falls_until(t_to);
+  for (long long n = first; n < std::min(end, first + most); ++n) tell_pull(orbit_.fall(n));
+}
+
+}  // namespace wheel
