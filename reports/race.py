@@ -7,7 +7,7 @@ at each.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import exp, log
 
 import numpy as np
@@ -32,12 +32,6 @@ TITLES = {
     "near flat": "Near flat, θ from 30° down to 1°",
 }
 SLOW = 0.05  # s: what takes longer is measured once
-
-
-def scene_of(name: str) -> Scene:
-    """keep_contact, so that no solver has to know of endings."""
-    scene = SCENES[name]
-    return replace(scene, start={**scene.start, "keep_contact": True}, duration=max(scene.duration, 1.0))
 
 
 @dataclass
@@ -112,7 +106,7 @@ def try_once(entry: Entry, attempt: Attempt, seconds: float, want: np.ndarray) -
 
 def race(master: Master, name: str, quick: bool) -> list[Entry]:
     """Every set-up at every tolerance, in rounds, so that noise of the machine meets all alike."""
-    scene, rounds, seconds = scene_of(name), 1 if quick else 5, 0.004 if quick else 0.01
+    scene, rounds, seconds = SCENES[name], 1 if quick else 5, 0.004 if quick else 0.01
     want, attempts = kept_headline(scene, POINTS), setups(master, scene)
     entries = []
     for setup in attempts:

@@ -17,9 +17,12 @@ RESULTS = ROOT / "docs" / "results"
 BY_HAND = ROOT / "docs" / "interoperability.md"  # runs of other programs, which no command of this project starts
 PROSE = [page for page in pages() if RESULTS not in page.parents and page != BY_HAND]
 DECISIONS = [*(ROOT / "docs" / "decisions").glob("*.md"), ROOT / "CHANGELOG.md"]
-CODE = re.compile(r"```.*?```|`[^`]*`|<pre>.*?</pre>|<code>.*?</code>|<math.*?</math>|<!--.*?-->|]\([^)]*\)", re.DOTALL)
-# What looks measured: a mantissa with an exponent (powers of ten are tolerances), or a time or size of computing.
-TYPED = re.compile(r"(?<![\w.])(?!1e)\d+(?:\.\d+)?e-?\d+\b|\b\d[\d.,]* ?(?:ns|µs|us|KiB|MiB)\b")
+CODE = re.compile(
+    r"```.*?```|(?m:^ {4}[^\n]*$)|`[^`]*`|<pre>.*?</pre>|<code>.*?</code>|<math.*?</math>|<!--.*?-->|]\([^)]*\)",
+    re.DOTALL,
+)
+# What looks measured: a mantissa with a negative exponent (a power of ten is a tolerance), or a time or size.
+TYPED = re.compile(r"(?<![\w.])(?!1e)\d+(?:\.\d+)?e-\d+\b|\b\d[\d.,]* ?(?:ns|µs|us|KiB|MiB)\b")
 # Figures that no report measures: the rounding of a constant, a limit that the code sets.
 GIVEN = {"docs/physics.md": {"6e-17"}, "docs/decisions/memory.md": {"128 KiB"}}
 HISTORY = {

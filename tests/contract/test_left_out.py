@@ -1,6 +1,6 @@
 """What a scene does not need is not done: proved by the FMU's own counters, scene by scene.
 
-What each omission saves is in docs/results/work_precision.md. Each statement has a partner in which the thing is asked
+What each omission saves is in docs/results/speed.md. Each statement has a partner in which the thing is asked
 for and the same counter moves.
 """
 

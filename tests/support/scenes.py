@@ -72,7 +72,7 @@ SCENES = {
     "stiff law": Scene({"s": 0.03, "friction_law": "regularized", "omega_s": 1e-6}),
     "fast rolling": Scene({"phi_dot_start": -60.0}, 1.0),
     "fast spin the other way": Scene({"s": 0.001, "phi_dot_start": 60.0}, 1.0),
-    "near flat": Scene({"theta_start": pi / 6, "psi_dot_start": 0.1, "phi_dot_start": 0.0}, 2.0),
+    "near flat": Scene({"theta_start": pi / 6, "psi_dot_start": 0.1, "phi_dot_start": 0.0, "keep_contact": True}, 2.0),
     "thin disc": Scene({"r": 0.0, "s": 0.01}, 5.0),
     "general inertia": Scene(GENERAL, 5.0),
     "general inertia, friction": Scene({**GENERAL, "s": 0.03}, 5.0),
