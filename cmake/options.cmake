@@ -1,4 +1,4 @@
-# Flags of every room. No -ffast-math and no contraction to fused multiply-add: the same bits from every compiler that
+# Flags of every target. No -ffast-math and no contraction to fused multiply-add: the same bits from every compiler that
 # keeps IEEE rules. Exceptions and run-time types are not used; nothing throws across the C interface.
 set(CMAKE_C_STANDARD 11)
 set(CMAKE_CXX_STANDARD 20)

@@ -160,7 +160,11 @@ def tipping(fmu: Fmu) -> None:
     seed = np.cos(UPRIGHT)
     left.semilogy(run["time"][shown], lean[shown], color=style.BLUE, label="wheel.fmu")
     left.semilogy(
-        run["time"], seed * np.cosh(TIPPING * run["time"]), "--", color=style.ORANGE, label=r"$6\cdot10^{-17}\cosh\kappa t$"
+        run["time"],
+        seed * np.cosh(TIPPING * run["time"]),
+        "--",
+        color=style.ORANGE,
+        label=r"$6\cdot10^{-17}\cosh\kappa t$",
     )
     left.set(xlabel="time $t$ [s]", ylabel="size of the lean [rad]", xlim=(0, 10), ylim=(1e-17, 3))
     left.legend(loc="upper left")

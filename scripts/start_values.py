@@ -70,7 +70,9 @@ def outputs() -> list[str]:
     return [
         v.name
         for v in variables
-        if v.causality == "output" or v.name in ("E", "friction_mode") or (v.causality == "parameter" and v.type == "Real")
+        if v.causality == "output"
+        or v.name in ("E", "friction_mode")
+        or (v.causality == "parameter" and v.type == "Real")
     ]
 
 

@@ -12,7 +12,7 @@
 namespace wheel {
 namespace {
 
-constexpr std::uint64_t mark = 0x3430554d46484557;  // "WEHFMU04"; a change of the layout counts the last digits up
+constexpr std::uint64_t mark = 0x3430554d46484557;  // "WEHFMU04": a change of the layout raises the number
 
 struct Header {
   std::uint64_t mark, size, checksum;
@@ -25,8 +25,8 @@ void visit(Archive& archive, Inputs& inputs) {
     for (auto& polynomial : *block) support::many(archive, polynomial, Inputs::max_order + 1);
 }
 
-// What the parameters do not determine. Law and method are included because s and the inputs may have changed since
-// they were chosen.
+// State that cannot be rebuilt from the parameters. The law of friction and the method are included because s and the
+// inputs may have changed since they were chosen.
 template <class Archive>
 void visit(Archive& archive, State& state) {
   Motion& motion = state.motion;
@@ -70,7 +70,7 @@ bool law_is_sound(const WheelFriction& law, double width) {
   }
 }
 
-// Of a run that has an initial state; `state` has the scales that its parameters give.
+// For a run that has an initial state. `state` already has the scales that its parameters give.
 bool run_is_sound(const State& state) {
   const Motion& motion = state.motion;
   const bool unfoldable = is_unfoldable(state.parameters, motion.scene, motion.inputs.loaded);
@@ -86,7 +86,8 @@ bool tolerance_is_sound(double tolerance) { return tolerance >= tightest_toleran
 
 bool is_stepping(const State& state) { return state.moving && !state.unfolded; }
 
-// The run that the bytes describe; what follows from its parameters is computed anew. False: no run was saved so.
+// The run that the bytes describe; what follows from its parameters is computed anew. False where no run can have been
+// saved as these bytes.
 bool read_run(support::Reader& reader, State& state) {
   visit(reader, state);
   if (!reader.sound || !tolerance_is_sound(state.motion.tolerance) || !std::isfinite(state.start_time)) return false;
@@ -133,7 +134,7 @@ bool Simulation::is_state(const unsigned char* bytes, std::size_t size) {
          support::has_checksum(bytes + sizeof header, size - sizeof header, header.checksum);
 }
 
-// The solver's problem lives in this instance, its sizes are those of the run to come.
+// The solver's problem refers to this instance's state_, but its sizes are those of the run that is restored.
 bool Simulation::restore_solver(const State& next, const unsigned char* history, std::size_t size) {
   State run = next;
   solver::Problem problem = problem_of(run.motion);

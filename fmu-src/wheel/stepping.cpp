@@ -20,7 +20,7 @@ constexpr long long work_per_transition = 20;
 
 constexpr double upright = 1.5707963267948966;
 
-// For messages: an instant is not found more exactly than that.
+// For messages: instants are not found more exactly than to a nanosecond.
 double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 1e9) / 1e9 : t; }
 
 }  // namespace
@@ -152,8 +152,8 @@ solver::Outcome Simulation::run_to(double t) {
   return Outcome::stepped;
 }
 
-// With keep_contact on the orbit: the excursions of N below zero that begin in (t_from, t_to]; of very many in one step
-// the first are told.
+// For an unfolded wheel with keep_contact: tells the excursions of N below zero that begin in (t_from, t_to], at most a
+// hundred of them in one step.
 void Simulation::report_pulls_of_orbit(double t_from, double t_to) const {
   constexpr long long most = 100;
   const long long first = orbit_.falls_until(t_from), end = orbit_.falls_until(t_to);
