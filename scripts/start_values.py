@@ -14,7 +14,7 @@ import sys
 from fmpy import read_model_description
 
 DEGREE = math.pi / 180
-USAGE = """./scripts/run [name=value ...]   build wheel.fmu, simulate it without and with friction, draw the six diagrams
+USAGE = """./scripts/run [name=value ...]   build, simulate without and with rolling friction, draw the diagrams
 
   ./scripts/run                             the paper's two scenes
   ./scripts/run s=0.01 theta_start=60deg    other values; the scene without friction takes them too, but for s
