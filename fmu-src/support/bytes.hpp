@@ -31,7 +31,7 @@ struct Reader {
   std::size_t left;  // bytes from `at` on
   bool sound = true;
 
-  // Any double; callers that need a finite one, or a limit, check that with `require`.
+  // Any double; who needs a finite one, or a limit, asks for it with `require`.
   void operator()(double& x) { x = get<double>(); }
   void operator()(bool& truth) { truth = whole(0, 1) != 0; }
   template <class Integer>
@@ -94,7 +94,7 @@ inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
 }
 
 // Guards against accidents. A build with WHEEL_UNCHECKED_STATES, for the fuzzer of forged states, takes every sum as
-// right; then only the checks of the numbers themselves keep the instance safe.
+// right: what then keeps the instance safe are the checks of the numbers themselves.
 inline bool has_checksum(const unsigned char* bytes, std::size_t size, std::uint64_t sum) {
 #ifdef WHEEL_UNCHECKED_STATES
   return static_cast<void>(bytes), static_cast<void>(size), static_cast<void>(sum), true;
