@@ -29,9 +29,8 @@ if(WHEEL_FUZZ)
   set(fuzzer_instrumentation -fsanitize=fuzzer-no-link)
 endif()
 if(WHEEL_COVERAGE)
-  # Our own code, and of SUNDIALS only what state_vector.h is compiled into: more is slow and tells nothing.
+  # Our own code only: more is slow and tells nothing.
   set(coverage_instrumentation --coverage -fprofile-update=atomic -Og)
-  set(cvode_instrumentation --coverage)
   add_link_options(--coverage)
 endif()
 
