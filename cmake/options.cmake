@@ -1,4 +1,4 @@
-# Flags of every room. No -ffast-math and no contraction to fused multiply-add: the same bits from every compiler that
+# Flags of every target. No -ffast-math and no contraction to fused multiply-add: the same bits from every compiler that
 # keeps IEEE rules. Exceptions and run-time types are not used; nothing throws across the C interface.
 set(CMAKE_C_STANDARD 11)
 set(CMAKE_CXX_STANDARD 20)
@@ -29,9 +29,8 @@ if(WHEEL_FUZZ)
   set(fuzzer_instrumentation -fsanitize=fuzzer-no-link)
 endif()
 if(WHEEL_COVERAGE)
-  # Our own code, and of SUNDIALS only what state_vector.h is compiled into: more is slow and tells nothing.
+  # Our own code only: more is slow and tells nothing.
   set(coverage_instrumentation --coverage -fprofile-update=atomic -Og)
-  set(cvode_instrumentation --coverage)
   add_link_options(--coverage)
 endif()
 

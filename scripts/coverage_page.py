@@ -18,12 +18,12 @@ PAGE = ROOT / "docs" / "results" / "coverage.md"
 LEAST = 95.0  # per cent of lines
 
 # What no test reaches: file, a piece of the first line's text, and why. A reason holds for the range that starts there.
-SHORT = "only where memory is short: tests/robustness/faults"
+SHORT = "only where there is no memory left: tests/robustness/faults"
 CHECKED = "CVodeInit refuses a vector without this operation, and calls none of it in the set-ups used here"
 ASKED = "SUNDIALS asks for it only when it is built with its own error checks"
 FMI, INTEGRATOR = "fmu-src/fmi/", "fmu-src/integrator/"
 REASONS: tuple[tuple[str, str, str], ...] = (
-    (FMI + "fmu_state.cpp", "memory is short", SHORT),
+    (FMI + "fmu_state.cpp", "out of memory", SHORT),
     (FMI + "fmu_state.cpp", "the solver does not", "CVODE would have to refuse a restart; nothing tried leads there"),
     (
         INTEGRATOR + "step.cpp",

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Draw the paper's six diagrams (Fig. 1-6) from the two scenes that `./scripts/run` simulated, the paper's or others.
 
-Reads free.csv (s = 0) and friction.csv (s > 0), which hold the run's parameters as columns: titles and captions come from
-there. Writes the sheet paper_diagrams (diagrams, for values that are not the paper's) and the single files fig_1 ...
-fig_6, each as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees beside.
+Reads free.csv (s = 0) and friction.csv (s > 0), which hold the run's parameters as columns: titles and captions come
+from there. Writes the sheet paper_diagrams (named diagrams where the values are not the paper's) and the single files
+fig_1 ... fig_6, each as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees beside.
 """
 
 import argparse

@@ -83,7 +83,6 @@ def held(fmu: Fmu) -> None:
     theta, turn = np.radians(75), 4.0
     run = fmu.run(stop=2, h=2e-3, phi_dot_start=-turn * np.cos(theta), psi_dot_start=turn, M_brake=200)
     measured("held_loss", "energy lost by a held wheel", abs(np.ptp(run["E"])) / run["E"][0])
-    measured("held_turn", "turn of a held wheel in 2 s", np.degrees(run["psi"][-1] - run["psi"][0]), "deg")
     fig, left, right = pair()
     left.plot(run["time"], np.degrees(run["theta"]), color=style.BLUE, label=r"angle $\theta$: it nods")
     left.plot(run["time"], run["psi_dot"] * 10, color=style.ORANGE, label=r"$10\,\dot\psi$ [rad/s]: it turns")
@@ -160,7 +159,11 @@ def tipping(fmu: Fmu) -> None:
     seed = np.cos(UPRIGHT)
     left.semilogy(run["time"][shown], lean[shown], color=style.BLUE, label="wheel.fmu")
     left.semilogy(
-        run["time"], seed * np.cosh(TIPPING * run["time"]), "--", color=style.ORANGE, label=r"$6\cdot10^{-17}\cosh\kappa t$"
+        run["time"],
+        seed * np.cosh(TIPPING * run["time"]),
+        "--",
+        color=style.ORANGE,
+        label=r"$6\cdot10^{-17}\cosh\kappa t$",
     )
     left.set(xlabel="time $t$ [s]", ylabel="size of the lean [rad]", xlim=(0, 10), ylim=(1e-17, 3))
     left.legend(loc="upper left")
@@ -198,7 +201,6 @@ def brake_hold_steer(fmu: Fmu) -> None:
     left.set(xlabel="time $t$ [s]", ylabel="speed [m/s]", xlim=(0, 5))
     left.legend(loc="lower left")
     title(left, "A brake stops; a torque goes on")
-    measured("brake_way", "way of the braked wheel", ways[0][2]["X_O"][-1], "m")
     run = fmu.on_a_suspension()
     right.plot(run["time"], run["speed"], color=style.BLUE, label="speed [m/s]")
     right.plot(run["time"], np.degrees(run["psi"]) / 10, color=style.ORANGE, label="heading / 10 [deg]")

@@ -1,7 +1,8 @@
 """Turns arguments such as `s=0.01 theta_start=60deg` into checked start values of wheel.fmu, for ./scripts/run.
 
-Prints `name value` pairs in SI for `fmpy simulate --start-values`, one a line; `outputs` prints the variables to record,
-start values among them, so that a figure can say what was run. Names, units and limits are those of the description.
+Prints `name value` pairs in SI for `fmpy simulate --start-values`, one a line; `outputs` prints the variables to
+record, start values among them, so that a figure can say what was run. Names, units and limits are those of the
+description.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import sys
 from fmpy import read_model_description
 
 DEGREE = math.pi / 180
-USAGE = """./scripts/run [name=value ...]    build wheel.fmu, simulate without and with rolling friction, draw the six diagrams
+USAGE = """./scripts/run [name=value ...]   build, simulate without and with rolling friction, draw the diagrams
 
   ./scripts/run                             the paper's two scenes
   ./scripts/run s=0.01 theta_start=60deg    other values; the scene without friction takes them too, but for s
@@ -70,7 +71,9 @@ def outputs() -> list[str]:
     return [
         v.name
         for v in variables
-        if v.causality == "output" or v.name in ("E", "friction_mode") or (v.causality == "parameter" and v.type == "Real")
+        if v.causality == "output"
+        or v.name in ("E", "friction_mode")
+        or (v.causality == "parameter" and v.type == "Real")
     ]
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes what follows from the variables in modelDescription.xml: its GUID, and the tables in docs/variables.md and in the
-FMU's documentation.
+"""Writes what follows from the variables in modelDescription.xml: its GUID, and the tables in docs/variables.md and in
+the FMU's documentation.
 
 No paper equation; frames and units are those of the description. Run it after a change of the variables; the tests
 fail while the GUID or a table is stale. With --check it changes nothing and tells by its exit status.

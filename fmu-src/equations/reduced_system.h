@@ -111,7 +111,7 @@ static inline Drift drift_of(const WheelParameters* w, const Inertia* I, const C
 /* Adds {F} of (15): F turned from fixed axes into the carrier, M already there. */
 static inline void add_load(Drift* d, const Carrier* c, const Heading* heading, const WheelLoad* load) {
   double F_1 = 0, F_h = 0;                  /* horizontal: along e1 and across it */
-  if (load->F[0] != 0 || load->F[1] != 0) { /* else the motion does not wait for sine and cosine of psi */
+  if (load->F[0] != 0 || load->F[1] != 0) { /* otherwise sine and cosine of psi are not needed */
     F_1 = load->F[0] * heading->cos_psi + load->F[1] * heading->sin_psi;
     F_h = load->F[1] * heading->cos_psi - load->F[0] * heading->sin_psi;
   }
@@ -171,7 +171,7 @@ static inline Motion solve(const System* s, const AxleLaw* law) {
   };
 }
 
-/* The same where the ground may pull: then its part of the friction is gone from the law. */
+/* The same where the ground may pull (N <= 0): then the ground's part of the friction is zero. */
 static inline Motion move(const System* s, AxleLaw* law) {
   Motion a = solve(s, law);
   if (a.N > 0 || law->grip == 0) return a;

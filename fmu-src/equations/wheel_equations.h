@@ -37,7 +37,7 @@ typedef struct WheelLoad {
 /* The moment tau of ground and brake about the axle: tau = -(s N + brake) kappa. N is the normal force lambda_3; a
  * ground that pulls (N <= 0) has no friction, and the brake's part alone is left. */
 typedef enum WheelFrictionKind {
-  WHEEL_NO_LAW,       /* what a record filled with zeros holds: every acceleration and force is NaN */
+  WHEEL_NO_LAW,       /* what a record filled with zeros has: every acceleration and force is NaN */
   WHEEL_FRICTIONLESS, /* kappa = 0: no moment, whatever s and the brake are */
   WHEEL_ROLLING,      /* kappa = sigma, (22) with sigma = sign(omega_z) kept */
   WHEEL_HELD,         /* the tau that keeps omega_z_dot = 0 (Filippov's sliding mode at omega_z = 0), of any size */

@@ -22,7 +22,7 @@ bool check_output(Instance& i, const char* name, fmi2ValueReference variable) {
   return false;
 }
 
-// Once the wheel rolls, outputs answer inputs alone; at the start they answer the parameters too.
+// During the run outputs depend on inputs alone; in initialization mode they depend on the parameters too.
 bool check_known(Instance& i, const char* name, fmi2ValueReference variable) {
   if (i.state == State::initialization && variable < wheel::stored_count) return true;
   return check_input(i, name, variable);
@@ -67,12 +67,13 @@ double quotient(Instance& i, unsigned output, unsigned parameter, double x, doub
 }
 
 // Adds seed * d output / d parameter of the start; choices have no small change and add nothing. Afterwards the
-// instance stands at its own start again. False where no five starts lie near it.
+// instance has its own initial state again. False where no five allowed values lie near the parameter.
 bool add_start_derivative(Instance& i, unsigned parameter, double seed, const Outputs& outputs) {
   const wheel::Row& row = wheel::row_of(parameter);
   if (row.type != wheel::Type::real) return true;
   const double x = i.simulation.value(parameter), size = std::fabs(x);
-  // What cannot be negative is measured by itself, an angle, place or rate by 1 where it is smaller.
+  // The step is relative to the parameter where it cannot be negative; for an angle, a place or a rate it is relative
+  // to the parameter or to 1, whichever is larger.
   const double scale = row.min == 0 && x != 0 ? size : std::fmax(size, 1);
   bool found = false;
   for (const double share : {1e-3, 1e-6, 1e-9})

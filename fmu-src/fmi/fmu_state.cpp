@@ -17,7 +17,7 @@ using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, wheel::Topic;
 
 namespace {
 
-// What the call state adds to the simulation's bytes, which have their own checksum.
+// The call state stands in front of the simulation's bytes, which have their own checksum.
 struct CallState {
   unsigned char state, prepared, has_stop_time, last_step;
   unsigned char padding[4];
@@ -91,7 +91,7 @@ bool is_sound(const CallState& call) {
          !std::memcmp(call.padding, none, sizeof none) && (stops ? std::isfinite(call.stop_time) : call.stop_time == 0);
 }
 
-// Call state and simulation together: what one says of the other is true.
+// Whether call state and simulation fit together.
 bool agrees(const Instance& i) {
   const wheel::Simulation& simulation = i.simulation;
   switch (i.state) {
@@ -155,7 +155,7 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
   return guarded(c, Function::set_fmu_state, name, [=](Instance& i) {
     Snapshot* snapshot = snapshot_of(state);
     if (!snapshot) return refuse(i, name, state ? unknown_state : null_pointer);
-    // What this library handed out is sound: only memory can be missing.
+    // Bytes that this library handed out are sound, so only a lack of memory can make this fail.
     return read(i, snapshot->bytes(), snapshot->size) ? fmi2OK : refuse(i, name, no_memory);
   });
 }

@@ -77,7 +77,7 @@ void Instance::destroy(Instance* instance) {
   std::free(instance);
 }
 
-// After an ending the sentence says what happened: the name of a call state helps nobody.
+// After an ending the sentence says what happened, which tells a user more than the name of a call state.
 void Instance::refuse(const char* function) {
   const char* ending = state == State::step_failed ? simulation.ending() : nullptr;
   if (ending)

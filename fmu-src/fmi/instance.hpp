@@ -8,8 +8,7 @@
 namespace fmi {
 
 struct Instance {
-  // One block of memory, name and solver included: no later call but those that hand out a snapshot takes more. Null if
-  // there is no memory.
+  // One block of memory, the name included. What takes memory later: docs/decisions/memory.md. Null if there is none.
   static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging);
   static void destroy(Instance* instance);
 

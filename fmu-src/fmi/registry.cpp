@@ -50,7 +50,7 @@ bool Registry::holds(const void* pointer) {
   return contains(pointer);
 }
 
-// Closes the gap, so that no search stops early at the freed slot. The last one takes the table with it.
+// Closes the gap, so that no search stops early at the freed slot. With the last pointer the table is freed too.
 bool Registry::remove(const void* pointer) {
   const SpinLock lock(taken_);
   if (!contains(pointer)) return false;

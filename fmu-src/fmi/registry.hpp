@@ -1,5 +1,5 @@
-// Pointers that this library handed out and that a master may bring back: instances and FMU states. It may also bring
-// one twice, after its end, or one that never was; only what a registry holds is touched.
+// Pointers that this library handed out and that a master passes back: instances and FMU states. A faulty master passes
+// one twice, one that is already freed, or one that never was handed out; only what a registry holds is touched.
 #pragma once
 
 #include <atomic>

@@ -8,7 +8,8 @@ using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, support::Digits, w
 
 namespace {
 
-// Masters carry rounding in times: this much, relative to the step and to the times at hand, counts as equal.
+// Masters compute times with rounding errors. Times that differ by this much, relative to the step and to the times
+// themselves, count as equal.
 constexpr double step_rounding = 1e-9, time_rounding = 1e-13;
 
 bool same_time(double a, double b, double step) {
@@ -53,7 +54,7 @@ fmi2Status step(Instance& i, double t, double h) {
 
 constexpr int no_status = -1;
 
-// One kind of status per function; for every other kind there is nothing to tell: Discard.
+// Each function knows one kind of status and answers every other kind with Discard.
 template <class Value, class Read>
 fmi2Status get_status(fmi2Component c, const char* name, int kind, int known_kind, Value* value, Read read) {
   return guarded(c, Function::get_status, name, [=](Instance& i) {

@@ -43,8 +43,8 @@ bool check_settable(Instance& i, const char* name, fmi2ValueReference variable) 
   return false;
 }
 
-// While running a value out of bounds is refused at once; before, all faults are told together at the end of
-// initialization.
+// During the run a value out of bounds is refused at once. Before the run it is taken, and all faults are told together
+// at the end of initialization.
 bool check_value(Instance& i, const char* name, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
   if (i.state != State::step_complete || (std::isfinite(value) && value >= row.min && value <= row.max)) return true;
@@ -68,7 +68,7 @@ fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
   });
 }
 
-// There are no string variables: an empty request is all that can be met.
+// There are no string variables: only an empty request can be answered.
 fmi2Status refuse_strings(fmi2Component c, Function function, const char* name, const fmi2ValueReference variables[],
                           std::size_t count, const void* values) {
   return guarded(c, function, name, [=](Instance& i) {

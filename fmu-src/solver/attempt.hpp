@@ -16,7 +16,7 @@ namespace solver {
 
 namespace table = dormand_prince;
 
-// What one step may err, as a share of the tolerance of the whole solution: measured on the wheel's scenes.
+// The error allowed to one step, as a share of the tolerance of the whole solution: measured on the wheel's scenes.
 inline constexpr double share_of_tolerance = 0.03;
 
 // By square roots, which are the same on every platform.

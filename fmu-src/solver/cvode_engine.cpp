@@ -16,15 +16,15 @@
 namespace solver {
 namespace {
 
-// What one step may err, as a share of the tolerance of the whole solution: measured on the wheel's scenes.
+// The error allowed to one step, as a share of the tolerance of the whole solution: measured on the wheel's scenes.
 constexpr double share_of_tolerance = 0.003;
 
-// A step is kept while it would change by less than this. CVODE's own 0 and 1.5 spare set-up costs of stiff problems;
-// here a changed step costs nothing. 7.1.1 ignores a lower bound of 1.
+// The step size is kept while it would change by a factor between these two. CVODE's defaults, 0 and 1.5, avoid the
+// cost of a new matrix in stiff problems; here a changed step costs nothing. Version 7.1.1 ignores a lower bound of 1.
 constexpr double keep_step_above = 0.9999, keep_step_below = 1.02;
 
-// Share of the step's error that the corrector may leave: half of CVODE's own 0.1, which makes two evaluations a step
-// the rule and saves more in steps than it costs.
+// Share of the step's error that the corrector may leave: half of CVODE's default of 0.1. Two evaluations per step are
+// then the rule, which saves more in steps than it costs.
 constexpr double corrector_share = 0.05;
 
 // A step that meets the thin layer of a regularized law shrinks many times over before it fits.
@@ -66,7 +66,7 @@ bool attach_solver(CvodeObjects& o) {
   return o.linear && CVodeSetLinearSolver(o.cvode, o.linear, o.matrix) == CV_SUCCESS;
 }
 
-// CVODE counts from the first step after its last start on.
+// CVODE counts from its last start on.
 long jacobians_of(const CvodeObjects& o) {
   long count = 0;
   if (o.method == Method::bdf) CVodeGetNumJacEvals(o.cvode, &count);
@@ -139,13 +139,14 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
     if (first && !restart(step->end, step->y_end)) return false;
     std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
     const long jacobians = first ? 0 : jacobians_of(o);  // CVODE's own count starts anew with its first step
-    // The size of CVODE's first step depends on the time it is asked for: always the same time away.
+    // The size of CVODE's first step depends on the time it is asked for, so it is always asked for the same time
+    // ahead.
     flag = CVode(o.cvode, step->end + problem.longest_step, o.y, &t, CV_ONE_STEP);
     counters->jacobians += std::max(0L, jacobians_of(o) - jacobians);
     if (flag >= 0 || first || (flag != CV_ERR_FAILURE && flag != CV_CONV_FAILURE)) break;
     starts_anew_ = 2;
   }
-  // CVODE goes on with steps that do not move the time any more.
+  // CVODE reports success for steps so small that the time no longer changes.
   const bool stands = flag >= 0 && flag != CV_TSTOP_RETURN && t - step->end <= rounding_at(t);
   if (stands) std::snprintf(failure_, sizeof failure_, "the step size became too small");
   if (flag < 0 || stands) return starts_anew_ = 1, step->start = step->end, false;

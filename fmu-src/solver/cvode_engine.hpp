@@ -1,6 +1,7 @@
 // CVODE of SUNDIALS: Adams for smooth motion, backward differentiation (BDF) for stiff motion.
 //
-// Its public interface alone; cvode_history.cpp is the exception, and can go with nothing lost but snapshots.
+// Through its public interface only. cvode_history.cpp is the exception; without it only snapshots of CVODE runs would
+// be lost.
 #pragma once
 
 #include "step.hpp"

@@ -1,8 +1,8 @@
 // CVODE's history as plain numbers, so that a restored solution goes on with the same bits.
 //
-// CVODE has no call for this: its own memory record (private headers of the pinned source) is read and written field by
-// field. This file alone knows them; without it, and its two calls in snapshot.cpp, only snapshots of CVODE runs are
-// lost. What CVODE computes anew at the start of each step (error weights, work vectors) is left out.
+// CVODE has no call for this, so its memory record (private headers of the pinned source) is read and written field by
+// field. Only this file includes those headers; without it, and its two calls in snapshot.cpp, only snapshots of CVODE
+// runs would be lost. What CVODE computes anew at the start of each step (error weights, work vectors) is left out.
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_newton.h>
@@ -62,7 +62,7 @@ void visit_newton(Archive& archive, CvodeObjects& o, CVodeMemRec& m) {
   for (int i = 0; i < n; ++i) archive.count(dense.pivots[i], i, n - 1);
 }
 
-// A problem that stands still, for the step that makes CVODE set up what it sets up in its first step.
+// A problem that stands still: one step of it makes CVODE do what it does only in a first step.
 double rest(void* states, double, const double*, double* y_dot) {
   std::fill_n(y_dot, *static_cast<int*>(states), 0.0);
   return 1;

@@ -79,7 +79,7 @@ struct Operations {
     each(z, [=](int i) { return u[i] * v[i]; });
   }
 
-  // Of zero padding nothing but zero may come.
+  // The padding beyond `states` is zero and stays zero.
   static void constant(double a, N_Vector z) {
     each(z, [a, n = states_of(z)](int i) { return i < n ? a : 0; });
   }

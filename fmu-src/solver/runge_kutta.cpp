@@ -1,4 +1,4 @@
-// Steps of DOP853: which sizes are tried, and what is remembered.
+// Steps of DOP853: which step sizes are tried, and what is kept for the next step.
 //
 // Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, second edition, sections II.4 to II.6.
 #include "runge_kutta.hpp"
@@ -15,8 +15,8 @@ constexpr int most_attempts = 40;
 // A step is sized for an error of safety^8.
 constexpr double safety = 0.9;
 
-// A step that would end this much short of the stop, as a share of its size, ends there: it spares a step of a few
-// roundings, and costs no more than 8 % of the error that a step may make.
+// A step that would reach the stop if it were longer by this factor is made longer and ends there. This avoids a tiny
+// step, and adds at most 8 % to the step's error.
 constexpr double stretch = 1.01;
 
 }  // namespace
@@ -29,10 +29,10 @@ void RungeKutta::start(double t, const double* y, int states, Step* step) {
   last_error_ = 0;
 }
 
-// The error over h^8 changes along the motion, and is expected to change by the same factor once more (Gustafsson, ACM
-// TOMS 20 (1994) 496: predictive step control). On the wheel hardly a step is rejected then.
+// The error divided by h^8 changes along the motion, and is expected to change by the same factor once more
+// (Gustafsson, ACM TOMS 20 (1994) 496: predictive step control). On the wheel hardly any step is then rejected.
 double RungeKutta::next_size(double h, double error) {
-  error = std::fmax(error, 1e-6);  // below, as after a step cut short, it says no more
+  error = std::fmax(error, 1e-6);  // smaller errors, as after a step cut short, are mostly rounding
   const double trend = last_error_ > 0 ? (h / size_) * eighth_root(last_error_ / error) : 1;
   last_error_ = error;
   return h * std::clamp(safety / eighth_root(error) * std::clamp(trend, 0.5, 2.0), 0.2, 10.0);
@@ -68,7 +68,7 @@ bool RungeKutta::advance_wide(const Problem& problem, double stop, Counters* cou
   return false;
 }
 
-// Tries until a step is accepted, which is then done; null, or why none was.
+// Tries smaller and smaller steps until one is accepted. Null, or the reason why none was.
 template <int width>
 const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, double stop, Step* step) {
   if (limit_ > 0) longest = std::fmin(limit_, longest);
@@ -90,7 +90,8 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
       continue;
     }
     const double next = next_size(h, error);
-    // A step cut short says little: what was liked before stays. After a rejection a step does not grow.
+    // A step that was cut short tells little, so the size wanted before it is kept. After a rejection a step does not
+    // grow.
     liked_ = rejected ? std::fmin(h, next) : h < liked_ ? std::fmax(liked_, next) : next;
     size_ = h;
     rates_ = waits ? 12 : 16;

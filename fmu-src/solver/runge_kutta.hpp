@@ -1,6 +1,6 @@
 // DOP853: the Runge-Kutta pair of Dormand and Prince, order 8, dense output of order 7 (dormand_prince.hpp).
 //
-// A step remembers nothing but the size it would have liked: a restart is free and a snapshot is a copy.
+// Nothing is kept from step to step except the wanted size of the next one: a restart is free and a snapshot is a copy.
 #pragma once
 
 #include "step.hpp"
@@ -9,7 +9,7 @@ namespace solver {
 
 class RungeKutta {
  public:
-  // From y at t. The size of the first step is the one liked last, or a guess from state and tolerance.
+  // From y at t. The size of the first step is the one wanted last, or a guess from state and tolerance.
   void start(double t, const double* y, int states, Step* step);
 
   // The first step after the next start is at most dt, s.

@@ -47,7 +47,7 @@ bool Solver::advance() {
 
 Outcome Solver::step() {
   if (pending_ != Outcome::stepped) return pending_;
-  // A stop time that rounding alone sets apart from where the solution stands.
+  // The stop time differs from the time reached by rounding only.
   if (stop_time_ > known_until_ && reaches(stop_time_)) {
     double y[max_states];
     std::copy_n(step_.y_end, max_states, y);
@@ -77,7 +77,7 @@ void Solver::watch_event() {
   };
   const Sample hi = value(step_.end, step_.y_end);
   event_value_ = hi.g;
-  // Most steps are far from an event: an approximation inside the step, free of charge, is enough to tell.
+  // Most steps are far from an event, which a value inside the step that is known anyway is enough to tell.
   if (step_.inside_share > 0 && !problem_.bends &&
       Search::stays_above(lo, value(step_.start + step_.inside_share * (step_.end - step_.start), step_.y_inside), hi))
     return;
@@ -86,8 +86,8 @@ void Solver::watch_event() {
   if (Search(problem_, step_, problem_.event, &counters_.roots).find_first_fall(lo, hi, &t)) end_at(t, Outcome::event);
 }
 
-// The boundary as far as the step is valid. Where inputs bend inside the step, it is looked at there too: no evaluation
-// need have come near.
+// Watches the boundary as far as the step is valid. Where an input has an extreme inside the step, the boundary is
+// evaluated there too, because none of the step's own evaluations may have come near it.
 void Solver::watch_boundary() {
   double instants[max_bends], lowest = step_.lowest_margin;
   const int count = problem_.bends && lowest >= problem_.near

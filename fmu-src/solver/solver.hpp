@@ -22,7 +22,7 @@ class Solver {
  public:
   // Starts, or starts anew, from y at time t (s); history is dropped. The first start sets the counters to zero, later
   // ones go on counting (`restarts` counts all but the first). armed: the event is watched from here on. A stop time is
-  // dropped. Runge-Kutta keeps the step size that it last liked. False where SUNDIALS could not be set up: failure().
+  // dropped. Runge-Kutta keeps the step size that it wanted last. False where SUNDIALS could not be set up: failure().
   bool start(const Problem& problem, Method method, double t, const double* y, bool armed);
   bool restart(Method method, double t, const double* y, bool armed);
 
@@ -32,8 +32,8 @@ class Solver {
   // One internal step. After `event` or `ended` known_until() is event_time(), and the owner restarts from there.
   Outcome step();
 
-  // No step goes past t; one that would end within a few roundings of t ends at t. CVODE starts anew at a stop: a
-  // history that was cut short and grows again over nodes that lie close together is ruined by rounding.
+  // No step goes past t; one that would end within a few roundings of t ends at t. CVODE starts anew at a stop: the
+  // short last step would leave a history over nodes that lie close together, which rounding ruins.
   void stop_before(double t) { stop_time_ = t; }
   void stop_nowhere();
 

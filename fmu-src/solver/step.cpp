@@ -7,8 +7,8 @@
 namespace solver {
 namespace {
 
-// Even and odd powers apart: two chains of Horner that do not wait for each other. It is what a master pays for at each
-// communication point.
+// Even and odd powers apart: two Horner schemes that the processor can compute side by side. A master pays for this at
+// each communication point.
 template <int width>
 void evaluate(const double (*c)[max_states], int degree, double s, double* y) {
   const int even = degree - degree % 2, odd = degree - 1 + degree % 2;

@@ -20,7 +20,8 @@ struct Step {
   double start, end;  // s
   alignas(16) double y_start[max_states], y_end[max_states];
   double lowest_margin;  // of the evaluations in the step
-  // An approximation of y at start + inside_share (end - start), free of charge; share 0 where there is none.
+  // An approximation of y at start + inside_share (end - start), known without further work; share 0 where there is
+  // none.
   double inside_share;
   alignas(16) double y_inside[max_states];
   // y(t) = sum of c_k s^k, s = (t - end) / (end - start) from -1 to 0; degree -1: not computed yet.

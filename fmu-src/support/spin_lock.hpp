@@ -1,4 +1,4 @@
-// A lock held for some microseconds, by rare calls only. It needs neither memory nor the system.
+// A lock that is held for a few microseconds, by rare calls only. It needs neither memory nor the operating system.
 #pragma once
 
 #include <atomic>

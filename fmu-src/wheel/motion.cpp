@@ -34,7 +34,7 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   return std::isfinite(sum) ? margin(motion, y, N) : std::numeric_limits<double>::quiet_NaN();
 }
 
-// The states' own rounding is a floor: no step is asked to be more exact than the numbers can say. The regularized law
+// The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
 // turns errors of omega_z into moments over its width omega_s: the spin must be known to a fraction of that width.
 void weights(void* owner, double share, const double* y, double* weights) {
   const Motion& motion = of(owner);

@@ -8,13 +8,15 @@ namespace wheel {
 
 namespace {
 
-// The error of the half period counts once for every half: it is integrated to a part of the tolerance, but not closer
-// than rounding allows.
+// The error of the half period is added once for every half. The half is therefore integrated to a fraction of the
+// tolerance, but not more exactly than rounding allows.
 constexpr double finer = 0.1, finest = 1e-14;
-// A loose tolerance gains nothing here: one nutation costs little, and steps that are long for it are not accurate.
+// A looser tolerance than this would save little, since one nutation costs little, and its long steps would not be as
+// accurate as they estimate.
 constexpr double loosest = 1e-8;
-// In units of that part: a swing of omega_1 below the first is noise (one step may err 0.003), a wheel that swings less
-// than the second is in steady motion. In tolerances: what the end of the run and its mirror image may differ by.
+// least_swing and largest_rest are in units of that fraction: a swing of omega_1 below the first is noise (the error of
+// one step may be 0.003), and a wheel that swings less than the second is in steady motion. most_difference is in
+// tolerances: how much the state at the end of the integration may differ from its mirror image.
 constexpr double least_swing = 0.01, largest_rest = 0.003, most_difference = 100;
 
 }  // namespace
@@ -134,7 +136,7 @@ double Orbit::turning_point(double a, double b) const {
   return b;
 }
 
-// Whether the half from T1 to T2 stands for the whole motion: y, reached at t past T2, is its mirror image.
+// Whether the half from T1 to T2 represents the whole motion: whether y, reached at t past T2, is its mirror image.
 bool Orbit::fold(const solver::Problem& problem, double t, const double* y, double swing) {
   double weights[states], unfolded[states];
   track_.read(T1_, first_);
@@ -151,9 +153,9 @@ bool Orbit::fold(const solver::Problem& problem, double t, const double* y, doub
   return true;
 }
 
-// A wheel in steady motion: omega_1 = 0 but for rounding, and a small lean swings instead of growing. With omega_2 and
-// omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the state of the start
-// stays.
+// Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing.
+// With omega_2 and omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the initial
+// state repeats for ever.
 bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   const double h = 1e-4 * std::sin(y0[theta]), slowest = 0.5 / problem.longest_step;
   double y[states], rate[states], along[states], ahead[states], behind[states], weights[states];

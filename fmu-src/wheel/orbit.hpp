@@ -4,8 +4,8 @@
 // Along the motion omega_2 and omega_3 are functions of theta alone (Chaplygin), so theta swings to and fro between two
 // turning points (omega_1 = theta_dot = 0). The equations are the same with time reversed: about a turning point T,
 // theta, omega_2 and omega_3 are even in t - T and omega_1 is odd; psi and phi are odd about their values at T, and the
-// path of O is its own mirror image. Integrated is the motion up to the second turning point T2; every later instant is
-// read from the half nutation between T1 and T2. The error grows like t, the cost not at all.
+// path of O is its own mirror image. The motion is integrated up to the second turning point T2; every later instant is
+// read from the half nutation between T1 and T2. The error grows in proportion to t, and the cost does not grow.
 //
 // State of the reduced form (wheel_equations.h): theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O. Time in s, zero
 // at the start.
@@ -22,8 +22,7 @@ class Orbit {
   // folded:  read() is valid at every t >= 0: the motion never ends.
   // ended:   `boundary` fell below zero at end_time(), in the first nutation; read() is valid up to there.
   // refused: no two turning points within a fixed number of steps, a swing too small to tell from errors, or a half
-  // that
-  //          is not its own mirror image: the caller steps on by itself from the start.
+  //          that is not its own mirror image. The caller then steps through the motion from its start.
   enum class Kind { refused, folded, ended };
 
   using Force = double (*)(void* owner, double t, const double* y);
@@ -37,7 +36,7 @@ class Orbit {
   // The state (out, 8 entries) at t >= 0.
   void read(double t, double* y) const;
   double end_time() const { return end_time_; }
-  // What the integration took; nothing for a wheel in steady motion.
+  // What the integration took; zero for a wheel in steady motion.
   const solver::Counters& counters() const { return counters_; }
   double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; folded only
 

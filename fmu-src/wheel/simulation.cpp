@@ -81,7 +81,7 @@ Counts Simulation::counts() const {
           a.roots + b.roots, state_.transitions, a.restarts + b.restarts};
 }
 
-// With what was set since the last step, if anything was.
+// The present instant, with what was set since the last step.
 Instant Simulation::instant() {
   const Inputs& inputs = state_.motion.inputs;
   Instant now = {state_.motion.formulation, y_now(), state_.motion.scene, {}, counts()};
@@ -123,7 +123,7 @@ double Simulation::sensitivity(unsigned output, unsigned input) {
   return component(answer.response(unit));
 }
 
-// A clause, for a message that says more.
+// A clause that other messages continue.
 const char* Simulation::ending() const {
   if (state_.ending == Ending::none) return nullptr;
   const char* what = state_.ending == Ending::fell_flat ? "fell flat" : "lifted off the ground";

@@ -1,7 +1,7 @@
 // One wheel in motion: parameters and inputs, the scene decided once, the solution, transitions and endings.
 //
 // Knows no FMI. Times are the caller's; the solver runs on its own clock, zero at the start, so that a start time of
-// 1e9 s costs no digit. Messages go to the Reporter as finished sentences.
+// 1e9 s costs no digits. Messages go to the Reporter as finished sentences.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,8 @@ enum class Progressed { reached, ended, failed };
 
 enum class Ending : int { none, fell_flat, lifted_off };
 
-// Everything that decides the future of a run, but the history of its solver. Plain numbers: to restore is to assign.
+// Everything that decides the future of a run, except the history of its solver. Plain numbers: a run is restored by
+// assignment.
 struct State {
   double parameters[first_input] = {};
   double start_time = 0;
@@ -44,7 +45,7 @@ struct State {
   bool unfolded = false;         // the solution is read from the orbit, nothing is integrated
   bool jumped = false;           // an input or a tunable parameter changed during the run
   bool changes_pending = false;  // inputs or tunable parameters were set since the last step
-  bool pulling = false;          // with keep_contact: N < 0, and a warning has said so
+  bool pulling = false;          // with keep_contact: already warned that the ground pulls (N < 0)
   bool y_known = false;          // y is that of t; otherwise it is read from the solution when it is needed
   double t = 0;                  // s, own clock: the instant that the caller has reached
   double last_change = 0;        // s, own clock: when an input or a tunable parameter last changed

@@ -12,7 +12,7 @@
 namespace wheel {
 namespace {
 
-constexpr std::uint64_t mark = 0x3430554d46484557;  // "WEHFMU04"; a change of the layout counts the last digits up
+constexpr std::uint64_t mark = 0x3430554d46484557;  // "WEHFMU04": a change of the layout raises the number
 
 struct Header {
   std::uint64_t mark, size, checksum;
@@ -26,8 +26,8 @@ void visit(Archive& archive, Inputs& inputs) {
     for (double& coefficient : polynomial) archive.anything(coefficient);
 }
 
-// What the parameters do not determine. Law and method are included because s and the inputs may have changed since
-// they were chosen.
+// State that cannot be rebuilt from the parameters. The law of friction and the method are included because s and the
+// inputs may have changed since they were chosen.
 template <class Archive>
 void visit(Archive& archive, State& state) {
   constexpr long long most = 1LL << 53;
@@ -65,7 +65,7 @@ bool law_is_sound(const WheelFriction& law, double width) {
   }
 }
 
-// Of a run that has an initial state; `state` has the scales that its parameters give.
+// For a run that has an initial state. `state` already has the scales that its parameters give.
 bool run_is_sound(const State& state) {
   const Motion& motion = state.motion;
   const bool unfoldable = is_unfoldable(state.parameters, motion.scene, motion.inputs.loaded);
@@ -76,7 +76,8 @@ bool run_is_sound(const State& state) {
 
 bool is_stepping(const State& state) { return state.moving && !state.unfolded; }
 
-// The run that the bytes describe; what follows from its parameters is computed anew. False: no run was saved so.
+// The run that the bytes describe; what follows from its parameters is computed anew. False where no run can have been
+// saved as these bytes.
 bool read_run(support::Reader& reader, State& state) {
   visit(reader, state);
   if (!reader.good) return false;
@@ -123,7 +124,7 @@ bool Simulation::is_state(const unsigned char* bytes, std::size_t size) {
          support::has_checksum(bytes + sizeof header, size - sizeof header, header.checksum);
 }
 
-// The solver's problem lives in this instance, its sizes are those of the run to come.
+// The solver's problem refers to this instance's state_, but its sizes are those of the run that is restored.
 bool Simulation::restore_solver(const State& next, const unsigned char* history, std::size_t size) {
   State run = next;
   solver::Problem problem = problem_of(run.motion);

@@ -19,7 +19,7 @@ constexpr long long work_per_transition = 20;
 
 constexpr double upright = 1.5707963267948966;
 
-// For messages: an instant is not found more exactly than that.
+// For messages: instants are not found more exactly than to a nanosecond.
 double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 1e9) / 1e9 : t; }
 
 }  // namespace

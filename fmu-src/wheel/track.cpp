@@ -7,10 +7,11 @@
 
 namespace wheel {
 
-// Parts of the length of a piece. Nodes closer than this magnify rounding: measured, 50 times at 0.06, 1e6 times at
-// 0.02. The first piece, which steps many times smaller than the motion needs lead up to, is spread better.
+// As parts of the length of a piece. Nodes closer than this magnify rounding: measured, 50 times at 0.06, 1e6 times at
+// 0.02. The first piece starts with steps much smaller than the motion needs, and is spread more widely.
 static constexpr double least_gap = 0.06, least_first_gap = 0.14;
-// Of the largest gap: a motion whose steps shrink this fast is not to be seen from both sides by one polynomial.
+// As a part of the largest gap: where steps shrink this fast the motion changes its character, and one polynomial must
+// not span the change.
 static constexpr double sudden = 0.25;
 
 bool Track::begin(double t, const double* y, const double* y_dot) {
@@ -37,7 +38,7 @@ bool Track::add(double t, const double* y, const double* y_dot) {
 
 void Track::finish() { close(nodes_ - 1); }
 
-// Whether the last node is one too many for the open piece, or lies too close or too far from the others.
+// Whether the last node is one too many for the open piece, or too close to the others, or too far from them.
 bool Track::ends_piece() const {
   const Node* nodes = table_->nodes;
   if (nodes_ - open_ < 3) return false;
@@ -59,7 +60,7 @@ void Track::thin_start() {
   }
 }
 
-// A piece over the open nodes up to `last`. Few of them are helped by nodes of the piece before.
+// A piece over the open nodes up to `last`. Where these are few, nodes of the piece before are used too.
 bool Track::close(int last) {
   if (pieces_ == most_pieces) return false;
   Node* nodes = table_->nodes;

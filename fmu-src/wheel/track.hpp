@@ -1,5 +1,5 @@
 // A motion that was integrated once, kept to be read at any instant: polynomials through states and rates at the ends
-// of steps (Hermite), each over some five steps, in Newton's form. That is as exact as the solver's own dense output
+// of steps (Hermite), each over about five steps, in Newton's form. That is as exact as the solver's own dense output
 // and takes a fifth of its memory.
 //
 // State of the reduced form, 8 numbers; time in s.

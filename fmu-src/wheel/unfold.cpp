@@ -15,8 +15,8 @@ double quotient(double n, double delta) { return delta == 0 ? n : std::sin(n * d
 
 }  // namespace
 
-// What the sums need, from the states at T1 and T2; the falls of N in the two halves that follow T2, which is mirrored,
-// and the next.
+// What the sums need, from the states at T1 and T2, and the instants at which N falls below zero in the two halves
+// after T2, of which the first is mirrored.
 void Orbit::take_half() {
   const double turn = second_[psi] - first_[psi], n = std::nearbyint(turn / pi), period = 2 * (T2_ - T1_);
   delta_ = (turn - n * pi) - n * pi_rest;

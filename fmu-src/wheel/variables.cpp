@@ -11,7 +11,7 @@ namespace wheel {
 namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-// N, N m; far beyond any wheel: beyond it the products of loads and parameters would not be finite.
+// N, N m: far beyond any wheel. Above it the products of loads and parameters would not be finite.
 constexpr double strongest = 1e300;
 
 struct Reader {

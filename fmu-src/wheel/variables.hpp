@@ -13,7 +13,7 @@ struct ReactionRates;
 enum class Type : unsigned char { real, integer, boolean };
 enum class Role : unsigned char { parameter, tunable, input, output, local };
 
-// Value references of parameters and inputs, which keep a value; the rest is computed on request.
+// Value references of parameters and inputs, which keep a value; the others are computed on request.
 enum Variable : unsigned {
 #define STORED(name, ...) name,
 #define COMPUTED(...)

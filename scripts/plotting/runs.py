@@ -91,5 +91,3 @@ def table_of(names: Sequence[str], rows: Sequence[Sequence[float]]) -> Array:
     for name, column in zip(names, np.transpose(rows), strict=True):
         table[name] = column
     return table
-
-

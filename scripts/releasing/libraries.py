@@ -17,7 +17,7 @@ import lief
 GLIBC_FLOOR = (2, 17)
 MACOS_FLOOR = [11, 0, 0]
 FUNCTIONS = 44  # of FMI 2.0
-ROOM = 1 << 20  # bytes of a library in the archive
+LARGEST = 1 << 20  # bytes of a library in the archive
 # What the systems' own mathematics may be asked for: it is exact. All else is musl's, compiled in.
 EXACT = {"floor", "ceil", "trunc", "fabs", "sqrt", "fmod", "scalbn", "ldexp", "frexp", "modf", "copysign"}
 INEXACT = {"sin", "cos", "sincos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh"}
@@ -98,7 +98,7 @@ def signed(data: bytes, library: lief.MachO.Binary) -> bool:
 
 
 def judge(facts: Facts) -> None:
-    require(facts.name, facts.size < ROOM, f"has {facts.size} bytes")
+    require(facts.name, facts.size < LARGEST, f"has {facts.size} bytes")
     foreign = {name for name in facts.exports if not name.startswith("fmi2")}
     require(facts.name, not foreign, f"exports {sorted(foreign)[:9]}")
     require(facts.name, len(facts.exports) == FUNCTIONS, f"exports {len(facts.exports)} functions")

@@ -125,7 +125,7 @@ def test_a_sound_unit_passes_and_all_its_allocations_failed(play, tmp_path):
 
 
 def test_a_solver_that_gives_up_tells_its_reason_for_which_it_needs_no_memory(wheel):
-    # CVODE's own way would write the reason into memory that its room no longer gives.
+    # CVODE hands its reason to a function, which copies it into memory that the instance already has.
     w = wheel().start(method=2)
     assert (w.step(0.1), w.take_messages()) == (OK, [])
     assert (w.set(M_3=1e300), w.step(0.1)) == (OK, ERROR)

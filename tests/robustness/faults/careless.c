@@ -15,7 +15,7 @@ typedef struct Instance {
 
 static fmi2Status refuse(const fmi2CallbackFunctions* callbacks) {
   if (callbacks && callbacks->logger && FLAW != KEEPS_SILENT)
-    callbacks->logger(NULL, "careless", fmi2Error, "logStatusError", "memory is short");
+    callbacks->logger(NULL, "careless", fmi2Error, "logStatusError", "out of memory");
   return fmi2Error;
 }
 

@@ -22,7 +22,7 @@ constexpr double usual[] = {
 
 double Session::value_for(unsigned reference) {
   if (reference >= ref_first_output || in_.chance(2)) {
-    // Absurd loads are bounded: CVODE would honestly follow them through the million steps that a call may take.
+    // Extreme loads are limited: CVODE would honestly follow them through the million steps that a call may take.
     const double value = in_.any();
     return reference >= ref_first_input && std::isfinite(value) ? std::remainder(value, 1e4) : value;
   }
