@@ -68,6 +68,12 @@ void Solver::expand() const {
                                  : cvode_.expand(problem_.states, &step_);
 }
 
+// Whether an input has an extreme in the last step.
+bool Solver::bends_inside() const {
+  double instants[max_bends];
+  return problem_.bends && problem_.bends(problem_.owner, step_.start, step_.end, instants) > 0;
+}
+
 void Solver::watch_event() {
   if (!armed_) return;
   const Sample lo = {step_.start, event_value_};
@@ -78,7 +84,7 @@ void Solver::watch_event() {
   const Sample hi = value(step_.end, step_.y_end);
   event_value_ = hi.g;
   // Most steps are far from an event, which a value inside the step that is known anyway is enough to tell.
-  if (step_.inside_share > 0 && !problem_.bends &&
+  if (step_.inside_share > 0 && !bends_inside() &&
       Search::stays_above(lo, value(step_.start + step_.inside_share * (step_.end - step_.start), step_.y_inside), hi))
     return;
   expand();
@@ -122,7 +128,8 @@ int Solver::polynomial(double* c) const {
 
 bool Solver::first_fall(double (*g)(void*, double, const double*), double t_lo, double t_hi, double* t) const {
   expand();
-  const Search search(problem_, step_, g, &counters_.rhs);
+  long long evaluations = 0;  // the owner's own
+  const Search search(problem_, step_, g, &evaluations);
   return search.find_first_fall({t_lo, search.value(t_lo)}, {t_hi, search.value(t_hi)}, t);
 }
 

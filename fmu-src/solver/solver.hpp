@@ -69,6 +69,7 @@ class Solver {
   bool begin(double t, const double* y);
   bool advance();
   void expand() const;
+  bool bends_inside() const;
   void watch_event();
   void watch_boundary();
   void end_at(double t, Outcome why);

@@ -98,14 +98,6 @@ void Inputs::load_at(double t, WheelLoad* load) const {
   limit_brake(*load);
 }
 
-WheelLoad Inputs::rate_at(double t) const {
-  WheelLoad rate = {};
-  if (!varies) return rate;
-  for (int i = 0; i < count; ++i) *load_entry(rate, i) = slope(in_force[i], t - origin);
-  if (evaluate(in_force[brake], t - origin) < 0) rate.brake = 0;
-  return rate;
-}
-
 void Inputs::pending_load(WheelLoad* load) const {
   for (int i = 0; i < count; ++i) *load_entry(*load, i) = pending[i][0];
   limit_brake(*load);

@@ -35,10 +35,9 @@ struct Inputs {
   void take_over(double t);
   void classify();
 
-  // The load of the polynomials in force at t, and its rate.
+  // The load of the polynomials in force at t.
   void load_at(double t, WheelLoad* load) const;
-  WheelLoad rate_at(double t) const;
-  // The same of what is pending, at the instant it was set.
+  // The same of what is pending, at the instant it was set, and its rate.
   void pending_load(WheelLoad* load) const;
   WheelLoad pending_rate() const;
   bool pending_brake() const;

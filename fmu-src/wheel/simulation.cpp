@@ -84,14 +84,11 @@ Counts Simulation::counts() const {
 // The present instant, with what was set since the last step.
 Instant Simulation::instant() {
   const Inputs& inputs = state_.motion.inputs;
-  Instant now = {state_.motion.formulation, y_now(), state_.motion.scene, {}, counts()};
-  if (state_.changes_pending) {
+  Instant now = {state_.motion.formulation, y_now(), state_.motion.scene, inputs.pending_rate(), counts()};
+  if (state_.changes_pending)
     now.scene = pending_scene(state_);
-    now.load_rate = inputs.pending_rate();
-  } else if (inputs.varies) {
+  else if (inputs.varies)
     inputs.load_at(state_.t, &now.scene.load);
-    now.load_rate = inputs.rate_at(state_.t);
-  }
   return now;
 }
 

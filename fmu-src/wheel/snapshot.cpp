@@ -22,8 +22,10 @@ template <class Archive>
 void visit(Archive& archive, Inputs& inputs) {
   archive.number(inputs.origin);
   archive.numbers(inputs.in_force[0], Inputs::count * (Inputs::max_order + 1));
-  for (auto& polynomial : inputs.pending)
-    for (double& coefficient : polynomial) archive.anything(coefficient);
+  for (auto& polynomial : inputs.pending) {
+    archive.anything(polynomial[0]);
+    archive.numbers(polynomial + 1, Inputs::max_order);
+  }
 }
 
 // State that cannot be rebuilt from the parameters. The law of friction and the method are included because s and the

@@ -37,7 +37,8 @@ def checkout(tmp_path: Path) -> Path:
     for name in ("scripts/build", "scripts/setup", "cmake/sundials.cmake"):
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, place / name)
-    (place / "scripts" / "requirements.txt").write_text("")
+    for pins in ROOT.glob("scripts/*requirements.txt"):
+        (place / "scripts" / pins.name).write_text("")
     return place
 
 

@@ -51,10 +51,8 @@ def test_watching_for_lift_off_adds_no_evaluation_where_none_can_occur(library: 
             wheel.initialise()
             wheel.step_to(10.0)
             counts.append(wheel.get("n_steps", "n_rhs", "n_roots"))
-    (steps, rhs, roots), (steps_kept, rhs_kept, _) = counts
-    assert roots == 0
-    assert steps_kept == steps  # to keep contact changes no step: N is looked at a few times in each
-    assert rhs < rhs_kept < rhs + 5 * steps  # measured 203, 512 and 103 steps
+    assert counts[0] == counts[1]
+    assert counts[0][2] == 0
     with library.wheel() as wheel:
         wheel.set(**{"s": 0.03})
         wheel.initialise()
