@@ -16,6 +16,8 @@ namespace {
 constexpr long long most_work = 1000000;
 // What passing a transition costs, in steps: its search, a new start, the short steps after it.
 constexpr long long work_per_transition = 20;
+// A step of the multibody form, whose system is large.
+constexpr long long work_per_multibody_step = 8;
 
 constexpr double upright = 1.5707963267948966;
 
@@ -135,9 +137,12 @@ solver::Outcome Simulation::run_to(double t) {
   if (state_.unfolded) return t <= orbit_end_ ? Outcome::stepped : Outcome::ended;
   if (!state_.moving && !start_solver()) return Outcome::failed;
   report_pulls(state_.t, std::fmin(solver_.known_until(), t));
+  const bool large = state_.motion.formulation == &wheel_multibody;
+  const long long work_per_step = large ? work_per_multibody_step : 1;
   double retry = std::numeric_limits<double>::infinity();
   for (long long work = 0; std::isfinite(retry) || !solver_.reaches(t);) {
-    if (work >= most_work) return failure_ = "it took a million internal steps; ask for shorter steps", Outcome::failed;
+    if (work >= most_work)
+      return failure_ = "it took all the internal steps that one call may; ask for shorter steps", Outcome::failed;
     // CVODE steps past the end of a varying input's step: the polynomial may go on, and a history that was cut short is
     // lost. Runge-Kutta has none to lose.
     const bool stops = state_.motion.inputs.varies && solver_.method() == solver::Method::runge_kutta;
@@ -150,7 +155,7 @@ solver::Outcome Simulation::run_to(double t) {
     if (outcome == Outcome::ended) return outcome;
     retry = outcome == Outcome::event ? time_to_look_again() : std::numeric_limits<double>::infinity();
     if (outcome == Outcome::event && !pass_transition()) return Outcome::failed;
-    work += outcome == Outcome::event ? work_per_transition : 1;
+    work += (outcome == Outcome::event ? work_per_transition : 1) * work_per_step;
   }
   return Outcome::stepped;
 }
