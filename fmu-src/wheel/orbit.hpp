@@ -78,6 +78,8 @@ class Orbit {
   double T1_ = 0, T2_ = 0;
   double first_[states] = {}, second_[states] = {};  // at T1 and T2
   double delta_ = 0;                                 // psi(T2) - psi(T1) less the nearest multiple of pi
+  double pair_ = 0;                                  // factor of the sum over pairs of halves
+  Complex first_turn_, mirror_turn_;                 // exp(i psi(T1)), exp(2 i psi(T2))
   Complex step_;                                     // from O(T1) to O(T2), seen along psi(T1)
 
   bool pulls_at_start_ = false;

@@ -10,9 +10,6 @@ namespace {
 
 constexpr double pi = 3.141592653589793, pi_rest = 1.2246467991473532e-16;  // their sum is pi to 32 digits
 
-// sin(n delta) / sin(delta) for |delta| <= pi / 2.
-double quotient(double n, double delta) { return delta == 0 ? n : std::sin(n * delta) / std::sin(delta); }
-
 }  // namespace
 
 // What the sums need, from the states at T1 and T2, and the instants at which N falls below zero in the two halves
@@ -22,6 +19,9 @@ void Orbit::take_half() {
   delta_ = (turn - n * pi) - n * pi_rest;
   const Complex path(second_[X_O] - first_[X_O], second_[Y_O] - first_[Y_O]);
   step_ = path * std::polar(1.0, -first_[psi]);
+  pair_ = 2 * (step_ * std::polar(1.0, -delta_)).real();
+  first_turn_ = std::polar(1.0, first_[psi]);
+  mirror_turn_ = std::polar(1.0, 2 * second_[psi]);
   while (falls_ > 0 && fall_[falls_ - 1] > T2_) --falls_;
   for (int i = rises_ - 1; i >= 0; --i)
     if (rise_[i] > T1_ && rise_[i] < T2_) later_fall_[later_falls_++] = T2_ - rise_[i];
@@ -47,12 +47,12 @@ Orbit::Half Orbit::half_at(double k) const {
   half.next = begin_of(k + 1, &rest);
   const double n = std::floor(0.5 * k), turn = second_[psi] - first_[psi], roll = second_[phi] - first_[phi];
   half.mirrored = k != 2 * n;
-  const double pair = 2 * (step_ * std::polar(1.0, -delta_)).real();
-  Complex way = pair * quotient(n, delta_) * std::polar(1.0, n * delta_);
-  const Complex pairs_turn = std::polar(1.0, 2 * n * delta_);
+  const Complex turned = std::polar(1.0, n * delta_), pairs_turn = turned * turned;
+  const double quotient = delta_ == 0 ? n : turned.imag() / std::sin(delta_);
+  Complex way = pair_ * quotient * turned;
   if (half.mirrored) way += step_ * pairs_turn;
-  half.place = Complex(first_[X_O], first_[Y_O]) + way * std::polar(1.0, first_[psi]);
-  half.turn = half.mirrored ? -pairs_turn * std::polar(1.0, 2 * second_[psi]) : pairs_turn;
+  half.place = Complex(first_[X_O], first_[Y_O]) + way * first_turn_;
+  half.turn = half.mirrored ? -pairs_turn * mirror_turn_ : pairs_turn;
   half.psi_sum = half.mirrored ? 2 * second_[psi] + (k - 1) * turn : k * turn;
   half.phi_sum = half.mirrored ? 2 * second_[phi] + (k - 1) * roll : k * roll;
   return half;
