@@ -48,8 +48,14 @@ bool check_settable(Instance& i, const char* name, fmi2ValueReference variable) 
 bool check_value(Instance& i, const char* name, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
   if (i.state != State::step_complete || (std::isfinite(value) && value >= row.min && value <= row.max)) return true;
-  i.log(Topic::discard, "%s: %s = %s is not allowed; the value stays %s.", name, row.name, Digits(value).text,
-        Digits(i.simulation.value(variable)).text);
+  const bool low = value < row.min;
+  const Digits given(value), limit(low ? row.min : row.max), kept(i.simulation.value(variable));
+  if (std::isfinite(value))
+    i.log(Topic::discard, "%s: %s = %s: it must be at %s %s; the value stays %s.", name, row.name, given.text,
+          low ? "least" : "most", limit.text, kept.text);
+  else
+    i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", name, row.name, given.text,
+          kept.text);
   return false;
 }
 
