@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from reference import Inputs
 
-INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake")
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Schedule:
         return tuple(t for t, _ in self.pieces[1:])
 
     def derivatives(self, t: float) -> NDArray[np.float64]:
-        """Row k: the k-th derivative of the six inputs at t, from the right; k = 0 ... 3."""
+        """Row k: the k-th derivative of the inputs at t, from the right; k = 0 ... 3."""
         piece = self.pieces[bisect_right([start for start, _ in self.pieces], t) - 1][1]
         table = np.zeros((4, len(INPUTS)))
         for name, coefficients in piece.items():
@@ -40,6 +40,7 @@ class Schedule:
             return Inputs()
         return Inputs(
             lambda t: tuple(self.derivatives(t)[0, :3].tolist()),
-            lambda t: tuple(self.derivatives(t)[0, 3:].tolist()),
+            lambda t: tuple(self.derivatives(t)[0, 3:6].tolist()),
             self.jumps,
+            lambda t: float(self.derivatives(t)[0, 6]),
         )

@@ -1,0 +1,91 @@
+"""The dry brake M_brake on an upright wheel: stop, hold and release against closed forms.
+
+Upright (theta = 90 deg), heading along X (psi = 0): omega_z = phi_dot, v = -R omega_z, R = r_0 + r; the inertia that a
+moment about the axle turns is J = J_z + m R^2. SI units.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from support.driver import OK
+from support.motion import Library, Run
+from support.schedule import Schedule
+
+R, M, G = 0.35, 20.0, 9.81
+J = 1.8 + M * R**2
+UPRIGHT = {"theta_start": np.pi / 2, "psi_start": 0.0, "X_O_start": 0.0, "phi_dot_start": -5.0}
+BRAKE = 20.0  # N m
+
+
+def braked(library: Library, times: list[float], inputs: dict[str, tuple[float, ...]], **start: float) -> Run:
+    return library.simulate(times, 1e-10, Schedule(((0.0, inputs),)), **(UPRIGHT | start))
+
+
+def test_it_stops_the_wheel_at_its_instant_and_after_its_distance(library: Library) -> None:
+    run = braked(library, [0.0, 1.5, 2.0], {"M_brake": (BRAKE,)})
+    instant, distance = 5.0 * J / BRAKE, R * 5.0**2 * J / (2 * BRAKE)
+    ((t, mode),) = run.events
+    assert mode == 0
+    assert abs(t - instant) < 1e-9  # s; the log gives nanoseconds
+    assert abs(run["X_O"][-1] - distance) < 1e-9  # m
+    assert (run["omega_z"][1:] == 0).all()  # held without creep
+    assert abs(run["tau"][0] - BRAKE) < 1e-12  # against omega_z < 0
+    ((late, _),) = braked(library, [0.0, 2.0], {"M_brake": (BRAKE,)}, s=1e-6).events  # the partner: a trace of s N
+    assert abs(late - instant) > 1e-9
+
+
+def test_with_rolling_friction_the_capacities_add_up(library: Library) -> None:
+    ((t, _),) = braked(library, [0.0, 2.0], {"M_brake": (BRAKE,)}, s=0.01).events
+    assert abs(t - 5.0 * J / (BRAKE + 0.01 * M * G)) < 1e-9
+    assert abs(t - 5.0 * J / BRAKE) > 1e-3
+
+
+def park(library: Library, slope: float, seconds: float) -> tuple[list[float], list[str]]:
+    """omega_z, X_O and tau after a force along the slope; a suspension (M_1, M_2) keeps the wheel upright, every 50 ms."""
+    with library.wheel() as wheel:
+        wheel.set(**(UPRIGHT | {"phi_dot_start": 0.0}))
+        wheel.initialise(1e-10)
+        wheel.set(M_brake=BRAKE, F_X=slope)
+        for k in range(round(seconds / 0.05)):
+            tilt, tilt_rate, heading, turn = wheel.get("theta", "theta_dot", "psi", "psi_dot")
+            wheel.set(M_1=-120 * (tilt - np.pi / 2) - 20 * tilt_rate, M_2=-50 * heading - 20 * turn)
+            assert wheel.step_to((k + 1) * 0.05) == OK
+        return wheel.get("omega_z", "X_O", "tau"), wheel.sentences
+
+
+def test_a_parked_wheel_on_a_slope_does_not_creep_in_an_hour(library: Library) -> None:
+    slope = 0.99 * BRAKE / R
+    (spin, place, moment), _ = park(library, slope, 3600.0)
+    assert spin == 0
+    assert abs(place) < 1e-12  # m
+    assert abs(moment / (slope * R) - 1) < 1e-9
+    (_, rolled, _), _ = park(library, 1.02 * slope, 1.0)
+    assert rolled > 1e-3  # the partner: beyond its capacity the wheel rolls
+
+
+def test_it_lets_go_where_a_growing_force_exceeds_it(library: Library) -> None:
+    rate = 200.0  # N/s
+    run = braked(library, [0.0, 0.25, 0.5], {"M_brake": (BRAKE,), "F_X": (0.0, rate)}, phi_dot_start=0.0)
+    release = BRAKE / (R * rate)
+    (t, mode) = run.events[-1]
+    assert mode == -1
+    assert abs(t - release) < 1e-9
+    late = 0.5 - release
+    assert abs(run["omega_z"][-1] + rate * R * late**2 / (2 * J)) < 1e-9
+    assert abs(run["omega_z"][-1] + rate * R * 0.5**2 / (2 * J)) > 1e-2
+
+
+def test_a_brake_that_is_let_off_leaves_nothing_behind(library: Library) -> None:
+    off = Schedule(((0.0, {"M_brake": (BRAKE,)}), (0.1, {"M_brake": (0.0,)})))
+    run = library.simulate([0.0, 0.1, 0.5, 1.0], 1e-10, off, **UPRIGHT)
+    assert abs(run["omega_z"][1] - (-5.0 + BRAKE * 0.1 / J)) < 1e-12
+    assert (run["omega_z"][2:] == run["omega_z"][1]).all()
+    assert (run["tau"][2:] == 0).all()
+
+
+def test_tolerance_and_grid_do_not_move_the_stop(library: Library) -> None:
+    stops = []
+    for times in ([0.0, 2.0], list(np.linspace(0, 2, 333))):
+        ((t, _),) = braked(library, times, {"M_brake": (BRAKE,)}).events
+        stops.append(t)
+    assert stops[0] == stops[1]
