@@ -41,7 +41,7 @@ def test_with_rolling_friction_the_capacities_add_up(library: Library) -> None:
 
 
 def park(library: Library, slope: float, seconds: float) -> tuple[list[float], list[str]]:
-    """omega_z, X_O and tau after a force along the slope; a suspension (M_1, M_2) keeps the wheel upright, every 50 ms."""
+    """omega_z, X_O and tau after a force along the slope; M_1 and M_2, every 50 ms, keep the wheel upright."""
     with library.wheel() as wheel:
         wheel.set(**(UPRIGHT | {"phi_dot_start": 0.0}))
         wheel.initialise(1e-10)
