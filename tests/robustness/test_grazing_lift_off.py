@@ -15,8 +15,10 @@ STOP = 0.4  # s, with one dip; half a dozen steps of Runge-Kutta
 
 
 def least_normal_force(wheel, force, s):
-    """Of a wheel that is kept on the ground, by a parabola through a fine grid: the instant at which N is least, N there
-    and its bend, N/s^2."""
+    """Of a wheel that is kept on the ground: the instant at which N is least, N there and its bend, N/s^2.
+
+    By a parabola through three points of a fine grid.
+    """
     w = wheel().start(tolerance=1e-10, keep_contact=True, F_Z=force, s=s, **SCENE)
     times, found = np.linspace(0, STOP, 401), []
     for t in times[1:]:
