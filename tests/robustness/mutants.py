@@ -3,8 +3,8 @@
     python tests/robustness/mutants.py [WORD ...]     all, or those whose name contains one of the words
 
 For each entry of mutants.toml a copy of the sources in build/mutants is changed, built and tested up to the first
-failure: the tests that are meant to notice first, a wider suite only if they pass. Tests that fail without any fault
-are left out. The table is mutants.csv. It takes some ten seconds for each mutant, so it is no part of the default run.
+failure: the tests that are meant to notice first, a wider suite only if they pass. A test that fails without the fault
+too does not count. The table is mutants.csv. Some ten seconds for each mutant, so it is no part of the default run.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
@@ -27,6 +26,7 @@ BUILD = SCRATCH / "build" / "release"
 LIST, TABLE = (Path(__file__).with_suffix(suffix) for suffix in (".toml", ".csv"))
 SUITE = ("tests/contract", "tests/robustness", "tests/physics", "tests/equations", "tests/solver")
 LONGEST = 600  # s: tests that take longer count as a failure
+NOTHING_TO_TEST = 5  # exit status of pytest
 CORES = str(len(os.sched_getaffinity(0)))
 
 
@@ -74,46 +74,49 @@ def build() -> bool:
     return all(subprocess.run(command, cwd=SCRATCH, capture_output=True).returncode == 0 for command in commands)
 
 
-def failures(paths: Sequence[str], *options: str) -> list[str]:
-    """The tests that fail."""
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--no-header", "--tb=no", "-rfE"]
-    environment = os.environ | {"WHEEL_BUILD": str(BUILD)}
+def failure(root: Path, what: str, left_out: Sequence[str] = ()) -> str:
+    """The first test that fails of a file or a test, or the file itself if its tests crash or hang; empty: none."""
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--no-header", "--tb=no", "-rfE"]
+    command += [what, *(option for test in left_out for option in ("--deselect", test))]
+    environment = os.environ | {"WHEEL_BUILD": str(root / "build" / "release")}
     try:
         done = subprocess.run(
-            [*command, *options, *paths], cwd=SCRATCH, env=environment, capture_output=True, text=True, timeout=LONGEST
+            command, cwd=root, env=environment, capture_output=True, text=True, timeout=LONGEST, check=False
         )
     except subprocess.TimeoutExpired:
-        return ["(no end)"]
+        return what
+    if done.returncode in (0, NOTHING_TO_TEST):
+        return ""
     lines = [line.split(" - ")[0].split(maxsplit=1) for line in done.stdout.splitlines()]
-    failed = [words[1] for words in lines if words[:1] in (["FAILED"], ["ERROR"]) and len(words) > 1]
-    return failed or ([] if done.returncode == 0 else ["(no result)"])
+    return next((words[1] for words in lines if words[:1] in (["FAILED"], ["ERROR"])), what)
 
 
-@cache
-def failures_without_fault(paths: tuple[str, ...]) -> list[str]:
-    assert build(), "the project itself does not build"
-    return failures(paths)
-
-
-def first_failure(mutant: Mutant, paths: tuple[str, ...], usual: list[str]) -> str | None:
-    """The first test of `paths` that fails with the fault, those that fail as usual left out."""
-    left_out = [option for name in usual for option in ("--deselect", name)]
+def find_killer(mutant: Mutant, usual: list[str]) -> str:
+    """The first test that fails with the fault and passes without it; those that fail in any case join `usual`."""
     text = mutant.source().read_text()
+    suite = sorted(str(path.relative_to(SCRATCH)) for folder in SUITE for path in (SCRATCH / folder).glob("test_*.py"))
+    waiting = [*mutant.aimed(), *(path for path in suite if path not in mutant.aimed())]
     mutant.source().write_text(text.replace(mutant.old, mutant.new))
     try:
         assert build(), f"{mutant.name}: does not build"
-        return next(iter(failures(paths, "-x", *left_out)), None)
+        while waiting:
+            test = "" if waiting[0] in usual else failure(SCRATCH, waiting[0], usual)
+            if not test:
+                waiting.pop(0)
+            elif not failure(ROOT, test):
+                return test
+            else:
+                usual.append(test)
     finally:
         mutant.source().write_text(text)
+    return ""
 
 
 def judge(mutant: Mutant, usual: list[str]) -> Verdict:
     found = mutant.source().read_text().count(mutant.old)
     assert found == 1, f"{mutant.name}: {mutant.file} holds {mutant.old!r} {found} times, not once"
     begin = perf_counter()
-    test = first_failure(mutant, mutant.aimed(), usual)
-    if not test:
-        test = first_failure(mutant, SUITE, failures_without_fault(SUITE)) or ""
+    test = find_killer(mutant, usual)
     return Verdict(mutant.name, test, f"{perf_counter() - begin:.0f}")
 
 
@@ -125,7 +128,8 @@ def main(words: Sequence[str]) -> int:
         with TABLE.open(newline="") as file:
             table = {row["mutant"]: Verdict(**row) for row in csv.DictReader(file)}
     copy_sources()
-    usual = failures_without_fault(tuple(sorted({path for mutant in chosen for path in mutant.aimed()})))
+    subprocess.run([ROOT / "scripts" / "build", "release"], check=True)
+    usual: list[str] = []
     for mutant in chosen:
         verdict = table[mutant.name] = judge(mutant, usual)
         print(f"{mutant.name}: {verdict.killed_by or 'SURVIVED'} ({verdict.seconds} s)", flush=True)
