@@ -123,15 +123,6 @@ def test_a_brake_that_is_set_stops_the_wheel_though_nothing_braked_before(wheel)
     assert w.get("n_events") == [1] and abs(w.get("phi_dot")[0]) < 1e-12
 
 
-def test_output_derivatives_wait_for_the_first_step(wheel):
-    w = wheel()
-    assert w.setupExperiment(None, 0.0, None) == OK and w.enterInitializationMode() == OK
-    values, orders = (np.ctypeslib.ctypes.c_double * 1)(), (np.ctypeslib.ctypes.c_int * 1)(1)
-    call = lambda: w.fmi2GetRealOutputDerivatives(w.component, w.c_references(["theta"]), 1, orders, values)  # noqa: E731
-    assert call() == ERROR
-    assert w.exitInitializationMode() == OK and call() == OK
-
-
 def test_a_sensitivity_belongs_to_the_friction_that_was_just_set(wheel):
     """d tau / d F_Z: the friction moment is s N."""
     w = wheel().start(theta_start=1.2, phi_dot_start=-5.0, s=0.05)
