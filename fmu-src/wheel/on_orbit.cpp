@@ -31,10 +31,7 @@ void Simulation::build_orbit() {
 void Simulation::enter_orbit() {
   if (!orbit_fits()) build_orbit();
   orbit_ready_ = state_.unfolded;
-  if (state_.unfolded)
-    state_.counted = orbit_.counters();
-  else
-    state_.moving = false;  // the solver has to be started, wherever the run stands
+  if (state_.unfolded) state_.counted = orbit_.counters();
 }
 
 // With keep_contact on the orbit: the excursions of N below zero that begin in (t_from, t_to]; of very many in one step

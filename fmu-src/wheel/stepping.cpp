@@ -133,9 +133,10 @@ bool Simulation::knows(double t) const {
 
 solver::Outcome Simulation::run_to(double t) {
   using solver::Outcome;
+  const bool starts = !state_.moving || state_.unfolded;  // a restored state may claim a motion that does not unfold
   if (state_.unfolded && !orbit_ready_) enter_orbit();
   if (state_.unfolded) return t <= orbit_end_ ? Outcome::stepped : Outcome::ended;
-  if (!state_.moving && !start_solver()) return Outcome::failed;
+  if (starts && !start_solver()) return Outcome::failed;
   report_pulls(state_.t, std::fmin(solver_.known_until(), t));
   const bool large = state_.motion.formulation == &wheel_multibody;
   const long long work_per_step = large ? work_per_multibody_step : 1;

@@ -136,6 +136,20 @@ def test_a_number_that_is_not_finite_is_refused_or_has_no_effect(wheel, run):
         w.close()
 
 
+def test_a_run_that_claims_an_orbit_which_its_start_does_not_have_is_harmless(wheel):
+    """Any number that is zero in the state of an unfolded run, the inputs' derivatives among them, becomes -1."""
+    words = words_of(saved(wheel, "unfolded"))
+    taken = 0
+    for place in [k for k, word in enumerate(words) if word == 0]:
+        w = wheel().start(s=0.01)
+        if w.restore(signed([*words[:place], as_word(-1.0), *words[place + 1 :]])) == OK:
+            taken += 1
+            w.time = 0.7
+            assert is_harmless(w), place
+        w.close()
+    assert taken > 27  # the pending inputs with three derivatives each are among them; measured 39
+
+
 def test_an_ended_run_stays_ended(wheel):
     """Whatever its state brings: no forged word makes an ended run step on without a sentence."""
     w = wheel()
