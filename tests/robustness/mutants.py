@@ -4,7 +4,7 @@
 
 For each entry of mutants.toml a copy of the sources in build/mutants is changed, built and tested up to the first
 failure: the tests that are meant to notice first, a wider suite only if they pass. A test that fails without the fault
-too does not count. The table is mutants.csv. Some ten seconds for each mutant, so it is no part of the default run.
+too does not count. The table is mutants.csv. Some twenty seconds for each, so it is no part of the default run.
 """
 
 from __future__ import annotations
