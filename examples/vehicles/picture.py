@@ -49,3 +49,7 @@ def draw(stem: Path) -> None:
     _box(ax, 6, 4, 52, 32, "drive, brake, driver", "controller, motor\n(balance.fmu)", style.GREEN)
     _signals(ax)
     style.save(fig, stem)
+
+
+if __name__ == "__main__":
+    draw(Path(__file__).resolve().parents[2] / "docs" / "figures" / "vehicle")
