@@ -18,7 +18,7 @@
 namespace solver {
 namespace {
 
-constexpr long long most = 1LL << 53;
+constexpr long long most = 9007199254740992;
 
 template <class Archive, class... Fields>
 void all_numbers(Archive& archive, Fields&... fields) {

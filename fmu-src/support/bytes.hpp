@@ -41,6 +41,8 @@ struct Archive {
   }
 
  private:
+  Archive() = default;
+  friend Derived;
   Derived& self() { return static_cast<Derived&>(*this); }
 };
 

@@ -10,7 +10,7 @@ namespace wheel {
 
 // Whether the orbit is that of the present run, whatever the instance did before.
 bool Simulation::orbit_fits() const {
-  return std::memcmp(orbit_origin_, state_.parameters, sizeof state_.parameters) == 0 &&
+  return std::equal(state_.parameters, state_.parameters + first_input, orbit_origin_) &&
          orbit_origin_[first_input] == state_.motion.tolerance;
 }
 

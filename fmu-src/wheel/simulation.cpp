@@ -39,13 +39,12 @@ void Simulation::set_experiment(double start_time, double tolerance) {
 }
 
 void Simulation::store(unsigned variable, double value) {
-  if (variable >= first_input) {
-    if (!state_.motion.inputs.set_value(static_cast<int>(variable - first_input), value)) return;
-  } else {
-    if (state_.parameters[variable] == value) return;
-    state_.parameters[variable] = value;
-    if (variable != s) state_.prepared = false;  // the initial state belongs to other parameters
-  }
+  const bool is_input = variable >= first_input;
+  const bool changed = is_input ? state_.motion.inputs.set_value(static_cast<int>(variable - first_input), value)
+                                : state_.parameters[variable] != value;
+  if (!changed) return;
+  if (!is_input) state_.parameters[variable] = value;
+  if (!is_input && variable != s) state_.prepared = false;  // the initial state belongs to other parameters
   state_.changes_pending = true;
   reading_fresh_ = false;
 }

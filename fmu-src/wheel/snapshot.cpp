@@ -32,7 +32,7 @@ void visit(Archive& archive, Inputs& inputs) {
 // inputs may have changed since they were chosen.
 template <class Archive>
 void visit(Archive& archive, State& state) {
-  constexpr long long most = 1LL << 53;
+  constexpr long long most = 9007199254740992;
   Motion& motion = state.motion;
   for (double& parameter : state.parameters) archive.anything(parameter);
   archive.number(state.start_time);

@@ -26,7 +26,6 @@ SCENES = {
     "reduced": (2, 1, 4),
     "multibody": (3, 1, 4),
     "reduced, regularized": (2, 2, 4),
-    "multibody, regularized": (3, 2, 4),
 }
 
 Play = Callable[..., subprocess.CompletedProcess[str]]
