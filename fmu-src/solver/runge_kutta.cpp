@@ -95,7 +95,6 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
     liked_ = rejected ? std::fmin(h, next) : h < liked_ ? std::fmax(liked_, next) : next;
     size_ = h;
     rates_ = waits ? 12 : 16;
-    if (!waits) attempt.expand();
     return nullptr;
   }
   return "the step size became too small";
@@ -123,7 +122,6 @@ bool RungeKutta::fits(const Problem& problem, Step* step) {
   const auto repeat = [&](auto attempt) {
     attempt.set_size(size_);
     attempt.end_step();
-    if (rates_ == 16) attempt.expand();
   };
   if (width_of(problem.states) == 8)
     repeat(Attempt<8>(problem, nullptr, &same, f_));

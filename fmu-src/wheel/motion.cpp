@@ -23,7 +23,8 @@ const WheelScene& scene_at(Motion& motion, double t) {
 double margin(const Motion& motion, const double* y, double N) {
   constexpr double rounding = 1e-9;
   const double height = upright - std::fabs(y[motion.formulation->tilt_index] - upright) - flat_angle;
-  return motion.keep_contact ? height : std::fmin(height, N / motion.weight + rounding);
+  const double contact = N / motion.weight + rounding;
+  return motion.keep_contact || height < contact ? height : contact;
 }
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
