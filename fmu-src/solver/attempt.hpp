@@ -30,7 +30,7 @@ class RungeKutta::Attempt {
 
   void weigh() {
     std::fill_n(weights_, width, 0.0);
-    problem_.weights(problem_.owner, share_of_tolerance, step_.y_start, weights_);
+    problem_.weights(problem_.owner, share_of_tolerance * problem_.share, step_.y_start, weights_);
   }
 
   // f at t and y as stage i; returns the margin, NaN where the rates are not finite.

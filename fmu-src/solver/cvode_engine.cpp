@@ -44,7 +44,7 @@ int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
 int weights(N_Vector y, N_Vector w, void* user) {
   const Problem& problem = *static_cast<CvodeCall*>(user)->problem;
   std::fill_n(data(w), width_of(problem.states), 1.0);
-  problem.weights(problem.owner, share_of_tolerance, data(y), data(w));
+  problem.weights(problem.owner, share_of_tolerance * problem.share, data(y), data(w));
   return 0;
 }
 

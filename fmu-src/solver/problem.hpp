@@ -26,6 +26,7 @@ struct Problem {
   int (*bends)(void* owner, double t_lo, double t_hi, double* instants);
   double near;          // the boundary is searched inside a step where an evaluation in it saw a margin below this
   double longest_step;  // s, > 0: an unstable rest shows no error until it is too late
+  double share = 1;     // of the error that a step may otherwise make
 };
 
 // Of all steps since the first start. `rhs` counts every evaluation of f, those for difference quotients included.

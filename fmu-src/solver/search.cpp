@@ -32,7 +32,7 @@ double Search::value(double t) const {
   double y[max_states];
   step_.read(t, problem_.states, y);
   ++*roots_;
-  return g_(problem_.owner, t, y);
+  return sign_ * g_(problem_.owner, t, y);
 }
 
 // How far g may lie below the parabola: a quarter of its bend and a tenth of its range.

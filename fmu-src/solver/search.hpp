@@ -13,9 +13,9 @@ struct Sample {
 
 class Search {
  public:
-  // roots: counts the evaluations of g.
-  Search(const Problem& problem, const Step& step, Watched g, long long* roots)
-      : problem_(problem), step_(step), g_(g), roots_(roots) {}
+  // Watches sign * g. roots: counts the evaluations of g.
+  Search(const Problem& problem, const Step& step, Watched g, long long* roots, double sign = 1)
+      : problem_(problem), step_(step), g_(g), roots_(roots), sign_(sign) {}
 
   double value(double t) const;
 
@@ -34,6 +34,7 @@ class Search {
   const Step& step_;
   Watched g_;
   long long* roots_;
+  double sign_;
 };
 
 }  // namespace solver

@@ -12,6 +12,7 @@ constexpr double never = std::numeric_limits<double>::infinity();
 
 bool Solver::start(const Problem& problem, Method method, double t, const double* y, bool armed) {
   problem_ = problem;
+  pending_ = Outcome::failed;
   runge_kutta_ = {};
   counters_ = {};
   counters_.restarts = -1;  // the first start is none
@@ -19,9 +20,9 @@ bool Solver::start(const Problem& problem, Method method, double t, const double
 }
 
 bool Solver::restart(Method method, double t, const double* y, bool armed) {
+  stop_time_ = time_to_look_again(t);
   method_ = method;
   known_until_ = event_time_ = t;
-  stop_time_ = never;
   ++counters_.restarts;
   if (!begin(t, y)) return pending_ = Outcome::failed, false;
   pending_ = Outcome::stepped;
@@ -35,27 +36,35 @@ bool Solver::begin(double t, const double* y) {
   return cvode_.start(problem_, method_, t, y, &step_) || (failure_ = cvode_.failure(), false);
 }
 
-void Solver::stop_nowhere() { stop_time_ = never; }
+// After an event right behind the start of its step, most often another event: the step was too long to see the motion
+// between them, and the next one has to be shorter. Its latest end, s.
+double Solver::time_to_look_again(double t) const {
+  const double length = step_.end - step_.start;
+  if (pending_ != Outcome::event || t != event_time_ || !(t - step_.start < 1e-6 * length)) return never;
+  return t + std::fmax(1e-3 * length, 0.5 * rounding_at(t));
+}
 
 bool Solver::reaches(double t) const { return known_until_ >= t - rounding_at(t); }
 
-bool Solver::advance() {
+bool Solver::advance(double stop) {
   if (method_ == Method::runge_kutta)
-    return runge_kutta_.advance(problem_, stop_time_, &counters_, &step_) || (failure_ = runge_kutta_.failure(), false);
-  return cvode_.advance(problem_, stop_time_, &counters_, &step_) || (failure_ = cvode_.failure(), false);
+    return runge_kutta_.advance(problem_, stop, &counters_, &step_) || (failure_ = runge_kutta_.failure(), false);
+  return cvode_.advance(problem_, stop, &counters_, &step_) || (failure_ = cvode_.failure(), false);
 }
 
 Outcome Solver::step() {
   if (pending_ != Outcome::stepped) return pending_;
+  const double stop = stop_time_;
+  stop_time_ = never;
   // The stop time differs from the time reached by rounding only.
-  if (stop_time_ > known_until_ && reaches(stop_time_)) {
+  if (stop > known_until_ && reaches(stop)) {
     double y[max_states];
     std::copy_n(step_.y_end, max_states, y);
-    if (!begin(stop_time_, y)) return pending_ = Outcome::failed;
-    known_until_ = stop_time_;
+    if (!begin(stop, y)) return pending_ = Outcome::failed;
+    known_until_ = stop;
     return Outcome::stepped;
   }
-  if (!advance()) return pending_ = Outcome::failed;
+  if (!advance(stop)) return pending_ = Outcome::failed;
   ++counters_.steps;
   known_until_ = step_.end;
   watch_event();
@@ -120,16 +129,11 @@ void Solver::read(double t, double* y) const {
   step_.read(t, problem_.states, y);
 }
 
-int Solver::polynomial(double* c) const {
-  expand();
-  for (int k = 0; k <= step_.degree; ++k) std::copy_n(step_.c[k], problem_.states, c + k * problem_.states);
-  return step_.degree;
-}
-
-bool Solver::first_fall(double (*g)(void*, double, const double*), double t_lo, double t_hi, double* t) const {
+bool Solver::first_fall(double (*g)(void*, double, const double*), double sign, double t_lo, double t_hi,
+                        double* t) const {
   expand();
   long long evaluations = 0;  // the owner's own
-  const Search search(problem_, step_, g, &evaluations);
+  const Search search(problem_, step_, g, &evaluations, sign);
   return search.find_first_fall({t_lo, search.value(t_lo)}, {t_hi, search.value(t_hi)}, t);
 }
 

@@ -5,7 +5,9 @@
 // the communication grid cannot change a bit of the solution; only a stop time that the owner sets ends a step.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "cvode_engine.hpp"
 #include "problem.hpp"
@@ -21,8 +23,8 @@ enum class Outcome { stepped, event, ended, failed };
 class Solver {
  public:
   // Starts, or starts anew, from y at time t (s); history is dropped. The first start sets the counters to zero, later
-  // ones go on counting (`restarts` counts all but the first). armed: the event is watched from here on. A stop time is
-  // dropped. Runge-Kutta keeps the step size that it wanted last. False where SUNDIALS could not be set up: failure().
+  // ones go on counting (`restarts` counts all but the first). armed: the event is watched from here on. Runge-Kutta
+  // keeps the step size that it wanted last. False where SUNDIALS could not be set up: failure().
   bool start(const Problem& problem, Method method, double t, const double* y, bool armed);
   bool restart(Method method, double t, const double* y, bool armed);
 
@@ -32,10 +34,9 @@ class Solver {
   // One internal step. After `event` or `ended` known_until() is event_time(), and the owner restarts from there.
   Outcome step();
 
-  // No step goes past t; one that would end within a few roundings of t ends at t. CVODE starts anew at a stop: the
-  // short last step would leave a history over nodes that lie close together, which rounding ruins.
-  void stop_before(double t) { stop_time_ = t; }
-  void stop_nowhere();
+  // The next step ends at t, s, at the latest; one that would end within a few roundings of t ends at t. CVODE starts
+  // anew there: the short step would leave a history over nodes that lie close together, which rounding ruins.
+  void stop_before(double t) { stop_time_ = std::fmin(stop_time_, t); }
 
   // Whether y(t) is known: known_until() is at t, up to a few roundings of t, or past it.
   bool reaches(double t) const;
@@ -44,20 +45,15 @@ class Solver {
   void read(double t, double* y) const;
 
   double step_start() const { return step_.start; }
-  double step_end() const { return step_.end; }  // known_until() unless an event cut the step short
   double known_until() const { return known_until_; }
   double event_time() const { return event_time_; }
   Method method() const { return method_; }
   const char* failure() const { return failure_; }
   const Counters& counters() const { return counters_; }
 
-  // Taylor coefficients of the last step's dense output about its end (known_until() unless an event cut it short):
-  // c[k * states + i] = y_i^(k) h^k / k!, h = end - step_start(); (max_degree + 1) * states numbers. Returns the
-  // degree.
-  int polynomial(double* c) const;
-
-  // First instant in [t_lo, t_hi] at which g falls below zero on the dense output of the last step, dips included.
-  bool first_fall(double (*g)(void*, double, const double*), double t_lo, double t_hi, double* t) const;
+  // First instant in [t_lo, t_hi] at which sign * g falls below zero on the dense output of the last step, dips
+  // included.
+  bool first_fall(double (*g)(void*, double, const double*), double sign, double t_lo, double t_hi, double* t) const;
 
   // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on with the same bits. restore
   // refuses what could not have been saved (false; no solution then until start).
@@ -67,7 +63,8 @@ class Solver {
 
  private:
   bool begin(double t, const double* y);
-  bool advance();
+  double time_to_look_again(double t) const;
+  bool advance(double stop);
   void expand() const;
   bool bends_inside() const;
   void watch_event();
@@ -84,8 +81,9 @@ class Solver {
   Outcome pending_ = Outcome::failed;
   bool armed_ = false;
   const char* failure_ = "it was not started";
-  double known_until_ = 0, event_time_ = 0, stop_time_ = 0;  // s
-  double event_value_ = 0;                                   // at the end of the step
+  double known_until_ = 0, event_time_ = 0;  // s
+  double stop_time_ = 0;                     // s, of the next step
+  double event_value_ = 0;                   // at the end of the step
   // The dense output of the last step is computed when it is first needed: a pure function of the step.
   mutable Counters counters_ = {};
   mutable Step step_ = {};

@@ -96,6 +96,4 @@ double normal_force(void* owner, double t, const double* y) {
   return motion.formulation->derivative(&scene_at(motion, t), y, y_dot) / motion.weight;
 }
 
-double pull(void* owner, double t, const double* y) { return -normal_force(owner, t, y); }
-
 }  // namespace wheel

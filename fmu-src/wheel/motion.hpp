@@ -30,6 +30,5 @@ solver::Problem problem_of(Motion& motion);
 
 // Normal force N over the weight at state y; for solver::Solver::first_fall.
 double normal_force(void* motion, double t, const double* y);
-double pull(void* motion, double t, const double* y);  // the same with the other sign
 
 }  // namespace wheel

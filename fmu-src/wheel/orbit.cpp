@@ -21,53 +21,21 @@ constexpr double least_swing = 0.01, largest_rest = 0.003, most_difference = 100
 
 }  // namespace
 
-// The problem as the orbit's solver sees it: the same motion with smaller errors.
-struct Orbit::Tightened {
-  const solver::Problem& given;
-  double share;
-  Force force;
-
-  static const Tightened& of(void* owner) { return *static_cast<const Tightened*>(owner); }
-  static double derivative(void* owner, double t, const double* y, double* y_dot) {
-    return of(owner).given.derivative(of(owner).given.owner, t, y, y_dot);
-  }
-  static double boundary(void* owner, double t, const double* y) {
-    return of(owner).given.boundary(of(owner).given.owner, t, y);
-  }
-  static void weights(void* owner, double share, const double* y, double* weights) {
-    of(owner).given.weights(of(owner).given.owner, share * of(owner).share, y, weights);
-  }
-  static double pressed(void* owner, double t, const double* y) { return of(owner).force(of(owner).given.owner, t, y); }
-  static double pulled(void* owner, double t, const double* y) { return -pressed(owner, t, y); }
-
-  solver::Problem problem() {
-    solver::Problem p = given;
-    p.owner = this;
-    p.derivative = derivative;
-    p.boundary = boundary;
-    p.weights = weights;
-    p.event = nullptr;
-    p.bends = nullptr;
-    return p;
-  }
-};
-
-Orbit::Kind Orbit::build(const solver::Problem& given, double tolerance, Force force, const double* y0,
+Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Force force, const double* y0,
                          solver::Solver& solver) {
-  Tightened tightened = {given, std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance), force};
-  const solver::Problem problem = tightened.problem();
+  problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   falls_ = rises_ = later_falls_ = 0;
   counters_ = {};
   half_ = {};
   kind_ = Kind::refused;
   if (rests(problem, y0)) return kind_ = Kind::folded;
-  kind_ = follow(problem, y0, solver);
+  kind_ = follow(problem, force, y0, solver);
   counters_ = solver.counters();
   return kind_;
 }
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
-Orbit::Kind Orbit::follow(const solver::Problem& problem, const double* y0, solver::Solver& solver) {
+Orbit::Kind Orbit::follow(const solver::Problem& problem, Force force, const double* y0, solver::Solver& solver) {
   double y[states], rate[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1];
   bool turned = before == 0;
   problem.derivative(problem.owner, 0, y0, rate);
@@ -78,7 +46,7 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, const double* y0, solv
     const double t = solver.known_until();
     solver.read(t, y);
     problem.derivative(problem.owner, t, y, rate);
-    if (!track_.add(t, y, rate) || !keep_crossings(problem, y0, solver)) return Kind::refused;
+    if (!track_.add(t, y, rate) || !keep_crossings(problem, force, y0, solver)) return Kind::refused;
     if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
       if (turned) {
         track_.finish();
@@ -98,14 +66,14 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, const double* y0, solv
 }
 
 // Where N falls below zero and rises above it in the last step; false if that happens too often to be kept.
-bool Orbit::keep_crossings(const solver::Problem& problem, const double* y0, const solver::Solver& solver) {
-  const Tightened& tightened = Tightened::of(problem.owner);
-  if (!tightened.force) return true;
-  if (solver.step_start() == 0) pulls_at_start_ = Tightened::pressed(problem.owner, 0, y0) < 0;
+bool Orbit::keep_crossings(const solver::Problem& problem, Force force, const double* y0,
+                           const solver::Solver& solver) {
+  if (!force) return true;
+  if (solver.step_start() == 0) pulls_at_start_ = force(problem.owner, 0, y0) < 0;
   double t = solver.step_start();
   for (;;) {
     const bool pulls = pulls_at_start_ != ((falls_ + rises_) % 2 != 0);
-    if (!solver.first_fall(pulls ? Tightened::pulled : Tightened::pressed, t, solver.known_until(), &t)) return true;
+    if (!solver.first_fall(force, pulls ? -1 : 1, t, solver.known_until(), &t)) return true;
     int& count = pulls ? rises_ : falls_;
     if (count == most_crossings) return false;
     (pulls ? rise_ : fall_)[count++] = t;
@@ -141,13 +109,12 @@ bool Orbit::fold(const solver::Problem& problem, double t, const double* y, doub
   double weights[states], unfolded[states];
   track_.read(T1_, first_);
   track_.read(T2_, second_);
-  problem.weights(problem.owner, 1, second_, weights);
+  problem.weights(problem.owner, problem.share, second_, weights);
   if (!(T2_ > T1_) || swing * weights[omega_1] < least_swing) return false;
   take_half();
   kind_ = Kind::folded;
   read(t, unfolded);
-  const solver::Problem& given = Tightened::of(problem.owner).given;
-  given.weights(given.owner, 1, y, weights);
+  problem.weights(problem.owner, 1, y, weights);
   for (int i = 0; i < states; ++i)
     if (!(std::fabs(y[i] - unfolded[i]) * weights[i] <= most_difference)) return false;
   return true;
@@ -160,7 +127,7 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   const double h = 1e-4 * std::sin(y0[theta]), slowest = 0.5 / problem.longest_step;
   double y[states], rate[states], along[states], ahead[states], behind[states], weights[states];
   problem.derivative(problem.owner, 0, y0, rate);
-  problem.weights(problem.owner, 1, y0, weights);
+  problem.weights(problem.owner, problem.share, y0, weights);
   if (!(std::fabs(y0[omega_1]) * weights[omega_1] < 1)) return false;
   std::copy_n(y0, states, y);
   y[omega_1] = 1;

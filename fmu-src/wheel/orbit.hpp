@@ -31,7 +31,7 @@ class Orbit {
   // CVODE's Adams method. force: the normal force N, where the instants at which it falls below zero are wanted, else
   // null. The solver has to be started anew before anything else is asked of it; its counters are those of this run. A
   // pure function of problem, tolerance and y0: the same bits in every process.
-  Kind build(const solver::Problem& problem, double tolerance, Force force, const double* y0, solver::Solver& solver);
+  Kind build(solver::Problem problem, double tolerance, Force force, const double* y0, solver::Solver& solver);
 
   // The state (out, 8 entries) at t >= 0.
   void read(double t, double* y) const;
@@ -58,11 +58,10 @@ class Orbit {
     Complex place, turn;
   };
 
-  struct Tightened;
   bool rests(const solver::Problem& problem, const double* y0);
   bool keep_rest(const double* y0, const double* rate, double length);
-  Kind follow(const solver::Problem& problem, const double* y0, solver::Solver& solver);
-  bool keep_crossings(const solver::Problem& problem, const double* y0, const solver::Solver& solver);
+  Kind follow(const solver::Problem& problem, Force force, const double* y0, solver::Solver& solver);
+  bool keep_crossings(const solver::Problem& problem, Force force, const double* y0, const solver::Solver& solver);
   double turning_point(double t_lo, double t_hi) const;
   bool fold(const solver::Problem& problem, double t, const double* y, double swing);
   void take_half();

@@ -117,7 +117,6 @@ class Simulation {
   bool settle_changes();
   void announce_transition(double t, const WheelFriction& before);
   bool pass_transition();
-  double time_to_look_again() const;
   void report_pulls(double t_from, double t_to);
   void report_pulls_of_orbit(double t_from, double t_to) const;
   void tell_pull(double t) const;

@@ -101,20 +101,12 @@ bool Simulation::pass_transition() {
   return solver_.restart(state_.method, t, y, has_transitions(motion.scene));
 }
 
-// A transition right behind the one before, from which the solver's step starts: the step was too long to see the
-// motion between them. The end of the next one, s; infinite where there is no need of a shorter step.
-double Simulation::time_to_look_again() const {
-  const double t = solver_.event_time(), from = solver_.step_start(), length = solver_.step_end() - from;
-  if (!(t - from < 1e-6 * length)) return std::numeric_limits<double>::infinity();
-  return t + std::fmax(1e-3 * length, 4 * std::numeric_limits<double>::epsilon() * t);
-}
-
 // With keep_contact: tells each excursion of N below zero in the last step, at its instant, from t_from to t_to. What
 // the solver knows beyond the time that is asked for waits: an input may yet change it.
 void Simulation::report_pulls(double t_from, double t_to) {
   if (!state_.motion.keep_contact || !(t_to > t_from)) return;
   double t;
-  while (solver_.first_fall(state_.pulling ? pull : normal_force, t_from, t_to, &t)) {
+  while (solver_.first_fall(normal_force, state_.pulling ? -1 : 1, t_from, t_to, &t)) {
     state_.pulling = !state_.pulling;
     if (state_.pulling) tell_pull(t);
     t_from = t;
@@ -140,21 +132,18 @@ solver::Outcome Simulation::run_to(double t) {
   report_pulls(state_.t, std::fmin(solver_.known_until(), t));
   const bool large = state_.motion.formulation == &wheel_multibody;
   const long long work_per_step = large ? work_per_multibody_step : 1;
-  double retry = std::numeric_limits<double>::infinity();
-  for (long long work = 0; std::isfinite(retry) || !solver_.reaches(t);) {
+  for (long long work = 0; !solver_.reaches(t);) {
     if (work >= most_work)
       return failure_ = "it took all the internal steps that one call may; ask for shorter steps", Outcome::failed;
     // CVODE steps past the end of a varying input's step: the polynomial may go on, and a history that was cut short is
     // lost. Runge-Kutta has none to lose.
-    const bool stops = state_.motion.inputs.varies && solver_.method() == solver::Method::runge_kutta;
-    stops ? solver_.stop_before(std::fmin(t, retry)) : solver_.stop_before(retry);
+    if (state_.motion.inputs.varies && solver_.method() == solver::Method::runge_kutta) solver_.stop_before(t);
     const double t_before = solver_.known_until();
     const Outcome outcome = solver_.step();
     report_pulls(t_before, std::fmin(solver_.known_until(), t));
     if (outcome == Outcome::failed) return outcome;
     if (solver_.reaches(t)) break;  // a transition or an ending after t waits until it is reached
     if (outcome == Outcome::ended) return outcome;
-    retry = outcome == Outcome::event ? time_to_look_again() : std::numeric_limits<double>::infinity();
     if (outcome == Outcome::event && !pass_transition()) return Outcome::failed;
     work += (outcome == Outcome::event ? work_per_transition : 1) * work_per_step;
   }

@@ -139,8 +139,10 @@ void cuts(const Arguments& args) {
   bool exact = true;
   for (int i = 1; i <= 400; ++i) {
     const double t = i % 2 ? 0.05 * (i + 1) : 0.05 * i + args.a;
-    s.stop_before(t);
-    if (run_to(s, t) != Outcome::stepped) return void(std::printf("{\"failed\": \"%s\"}\n", s.failure()));
+    while (!s.reaches(t)) {
+      s.stop_before(t);
+      if (s.step() != Outcome::stepped) return void(std::printf("{\"failed\": \"%s\"}\n", s.failure()));
+    }
     exact = exact && std::fabs(s.known_until() - t) <= solver::rounding_at(t);
     s.read(t, y);
     error = std::fmax(error, std::hypot(y[0] - std::cos(t), y[1] + std::sin(t)));
@@ -179,24 +181,6 @@ void stiff(const Arguments& args) {
               s.counters().rhs, s.counters().jacobians);
 }
 
-// The polynomial of a step about its end against read(): largest difference over the step.
-void polynomial(const Arguments& args) {
-  Case c = harmonic();
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), false);
-  for (int i = 0; i < 40; ++i) s.step();
-  double p[(solver::max_degree + 1) * 2], largest = 0;
-  const int degree = s.polynomial(p);
-  for (int i = 0; i <= 100; ++i) {
-    const double x = -i / 100.0, t = s.known_until() + x * (s.known_until() - s.step_start());
-    double y[2], sum = 0;
-    s.read(t, y);
-    for (int k = degree; k >= 0; --k) sum = sum * x + p[2 * k];
-    largest = std::fmax(largest, std::fabs(sum - y[0]));
-  }
-  std::printf("{\"difference\": %.17g, \"degree\": %d}\n", largest, degree);
-}
-
 // Sizes of the first step: of a start, and after a restart with the interval a.
 void first_step(const Arguments& args) {
   Case c = harmonic();
@@ -232,7 +216,6 @@ constexpr struct {
            {"cuts", cuts},
            {"failure", failure},
            {"stiff", stiff},
-           {"polynomial", polynomial},
            {"first_step", first_step},
            {"snapshots", snapshots},
            {"forgeries", forgeries}};

@@ -37,12 +37,6 @@ def test_a_step_cut_at_any_instant_leaves_the_error_within_the_tolerance(measure
     assert cut["error"] < 10e-8  # measured: at most 9.9e-9, 3.5e-8, 1.2e-14
 
 
-def test_the_polynomial_about_the_end_is_the_dense_output(measure, method):
-    step = measure("polynomial", method)
-    assert step["difference"] < 1e-15  # measured: 3.3e-16
-    assert step["degree"] >= 3
-
-
 def test_after_a_change_runge_kutta_steps_no_further_than_the_last_interval_and_then_remembers(measure):
     sizes = measure("first_step", "runge_kutta", 0.01)
     assert sizes["limited"] == pytest.approx(0.01, rel=1e-12)
