@@ -49,11 +49,10 @@ bool RungeKutta::advance_wide(const Problem& problem, double stop, Counters* cou
   std::copy_n(step->y_end, width, step->y_start);
   step->degree = -1;
   Attempt<width> attempt(problem, counters, step, f_);
-  if (rates_ >= 13)
+  if (rates_ == 16)
     std::copy_n(f_[12], width, f_[0]);
   else
     margin_ = attempt.evaluate(0, step->start, step->y_start);
-  rates_ = 1;
   failure_ = std::isnan(margin_) ? "the rates of the states are not finite" : nullptr;
   if (!failure_) {
     attempt.weigh();
@@ -103,9 +102,9 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
 void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) {
   if (step->degree >= 0 || rates_ < 12) return;
   const auto expand_wide = [&](auto attempt) {
+    double margin;
     attempt.set_size(size_);
-    if (rates_ < 13) attempt.evaluate_end(&margin_), rates_ = 13;
-    if (rates_ < 16 && attempt.evaluate_interior()) rates_ = 16;
+    attempt.evaluate_end(&margin) && attempt.evaluate_interior();
     attempt.expand();
   };
   if (width_of(problem.states) == 8)
@@ -116,7 +115,7 @@ void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) 
 
 bool RungeKutta::fits(const Problem& problem, Step* step) {
   if (rates_ == 0) return step->start == step->end;
-  if (rates_ != 12 && rates_ != 13 && rates_ != 16) return false;
+  if (rates_ != 12 && rates_ != 16) return false;
   if (!(size_ > 0) || std::fabs(step->end - step->start - size_) > rounding_at(step->end)) return false;
   Step same = *step;
   const auto repeat = [&](auto attempt) {

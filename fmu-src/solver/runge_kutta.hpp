@@ -20,12 +20,12 @@ class RungeKutta {
 
   // The polynomial of the step, if it is not known yet. A step that ends at a stop or at the limit of a first step
   // leaves out the four evaluations that only the dense output and the next step need: most often the problem changes
-  // there, and nothing in it is read.
+  // there, and nothing in it is read. The next step does not use them, so that it costs the same whatever was read.
   void expand(const Problem& problem, Counters* counters, Step* step);
 
   const char* failure() const { return failure_; }
 
-  // All that is needed to go on; `rates` holds the evaluations of the last step that were made, 0, 1, 12, 13 or 16.
+  // All that is needed to go on; `rates` holds the evaluations of the last step that were made, 0, 12 or 16.
   template <class Archive>
   void visit(Archive& archive, int states);
   // Whether the restored numbers are those of the step, to the bit; then the step has its polynomial again.
@@ -46,7 +46,7 @@ class RungeKutta {
   double size_ = 0;                    // of the last step, s
   double last_error_ = 0;              // of the last step, in units of the weights; 0: there was none
   double margin_ = 0;                  // at the end of the last step
-  int rates_ = 0;                      // evaluations of the last step that are known
+  int rates_ = 0;                      // evaluations of the last step that the next one knows
   alignas(16) double f_[16][max_states] = {};
   const char* failure_ = nullptr;
 };

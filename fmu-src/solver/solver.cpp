@@ -72,8 +72,8 @@ Outcome Solver::step() {
   return pending_;
 }
 
-void Solver::expand() const {
-  method_ == Method::runge_kutta ? runge_kutta_.expand(problem_, &counters_, &step_)
+void Solver::expand(Counters* counters) const {
+  method_ == Method::runge_kutta ? runge_kutta_.expand(problem_, counters, &step_)
                                  : cvode_.expand(problem_.states, &step_);
 }
 
@@ -96,7 +96,7 @@ void Solver::watch_event() {
   if (step_.inside_share > 0 && !bends_inside() &&
       Search::stays_above(lo, value(step_.start + step_.inside_share * (step_.end - step_.start), step_.y_inside), hi))
     return;
-  expand();
+  expand(&counters_);
   double t;
   if (Search(problem_, step_, problem_.event, &counters_.roots).find_first_fall(lo, hi, &t)) end_at(t, Outcome::event);
 }
@@ -108,11 +108,11 @@ void Solver::watch_boundary() {
   const int count = problem_.bends && lowest >= problem_.near
                         ? problem_.bends(problem_.owner, step_.start, known_until_, instants)
                         : 0;
-  if (count > 0) expand();
+  if (count > 0) expand(&counters_);
   const Search search(problem_, step_, problem_.boundary, &counters_.rhs);
   for (int i = 0; i < count; ++i) lowest = std::fmin(lowest, search.value(instants[i]));
   if (!(lowest < problem_.near)) return;
-  expand();
+  expand(&counters_);
   double t;
   if (search.find_first_fall({step_.start, search.value(step_.start)}, {known_until_, search.value(known_until_)}, &t))
     end_at(t, Outcome::ended);
@@ -125,15 +125,17 @@ void Solver::end_at(double t, Outcome why) {
 
 void Solver::read(double t, double* y) const {
   t = std::clamp(t, step_.start, known_until_);
-  if (t > step_.start && t < step_.end) expand();
+  Counters uncounted = {};  // else the counts would depend on the instants that are read
+  const double rounding = rounding_at(t);
+  if (t > step_.start + rounding && t < step_.end - rounding) expand(&uncounted);
   step_.read(t, problem_.states, y);
 }
 
 bool Solver::first_fall(double (*g)(void*, double, const double*), double sign, double t_lo, double t_hi,
                         double* t) const {
-  expand();
-  long long evaluations = 0;  // the owner's own
-  const Search search(problem_, step_, g, &evaluations, sign);
+  Counters uncounted = {};
+  expand(&uncounted);
+  const Search search(problem_, step_, g, &uncounted.roots, sign);
   return search.find_first_fall({t_lo, search.value(t_lo)}, {t_hi, search.value(t_hi)}, t);
 }
 

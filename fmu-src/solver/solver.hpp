@@ -28,8 +28,9 @@ class Solver {
   bool start(const Problem& problem, Method method, double t, const double* y, bool armed);
   bool restart(Method method, double t, const double* y, bool armed);
 
-  // Runge-Kutta: the first step after the next restart is at most dt, s (the time between the last two changes).
-  void change_interval(double dt) { runge_kutta_.limit_first_step(dt); }
+  // Runge-Kutta: the first step after the next restart is at most dt, s (the time between the last two changes). Two
+  // changes at the same instant limit nothing.
+  void change_interval(double dt) { runge_kutta_.limit_first_step(dt > rounding_at(known_until_) ? dt : 0); }
 
   // One internal step. After `event` or `ended` known_until() is event_time(), and the owner restarts from there.
   Outcome step();
@@ -65,7 +66,7 @@ class Solver {
   bool begin(double t, const double* y);
   double time_to_look_again(double t) const;
   bool advance(double stop);
-  void expand() const;
+  void expand(Counters* counters) const;
   bool bends_inside() const;
   void watch_event();
   void watch_boundary();
@@ -84,8 +85,8 @@ class Solver {
   double known_until_ = 0, event_time_ = 0;  // s
   double stop_time_ = 0;                     // s, of the next step
   double event_value_ = 0;                   // at the end of the step
+  Counters counters_ = {};
   // The dense output of the last step is computed when it is first needed: a pure function of the step.
-  mutable Counters counters_ = {};
   mutable Step step_ = {};
   mutable RungeKutta runge_kutta_;
   Cvode cvode_;

@@ -3,13 +3,10 @@
 // output that nobody reads. Fixed axes unless said.
 #pragma once
 
+#include "problem.hpp"
 #include "wheel_equations.h"
 
 namespace wheel {
-
-struct Counts {
-  long long steps, rhs, jacobians, roots, events, restarts;
-};
 
 // The instant to read; the scene and the rate of its load are those in force for what follows it.
 struct Instant {
@@ -17,7 +14,8 @@ struct Instant {
   const double* y;
   WheelScene scene;
   WheelLoad load_rate;
-  Counts counts;
+  solver::Counters counters;
+  long long transitions;  // of the friction
 };
 
 // The ground's horizontal force along e1 and across it, N, and the moment of ground and brake about the axle, N m.
@@ -44,7 +42,8 @@ class Reading {
   ReactionRates response(const WheelLoad& load_dot);
   const WheelContact& contact();
   int friction_mode();
-  const Counts& counters() const { return now_.counts; }
+  const solver::Counters& counters() const { return now_.counters; }
+  long long transitions() const { return now_.transitions; }
 
  private:
   enum : unsigned { have_pose = 1, have_kinematics = 2, have_dynamics = 4, have_rates = 8, have_contact = 16 };

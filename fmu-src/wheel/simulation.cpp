@@ -73,17 +73,17 @@ const double* Simulation::y_now() {
 }
 
 // The counts of the run: those of the solver at work and those before it was last started from nothing.
-Counts Simulation::counts() const {
+solver::Counters Simulation::counters() const {
   const solver::Counters& a = state_.counted;
-  const solver::Counters b = state_.moving && !state_.unfolded ? solver_.counters() : solver::Counters{};
-  return {a.steps + b.steps, a.rhs + b.rhs,      a.jacobians + b.jacobians,
-          a.roots + b.roots, state_.transitions, a.restarts + b.restarts};
+  const solver::Counters b = state_.is_stepping() ? solver_.counters() : solver::Counters{};
+  return {a.steps + b.steps, a.rhs + b.rhs, a.jacobians + b.jacobians, a.roots + b.roots, a.restarts + b.restarts};
 }
 
 // The present instant, with what was set since the last step.
 Instant Simulation::instant() {
   const Inputs& inputs = state_.motion.inputs;
-  Instant now = {state_.motion.formulation, y_now(), state_.motion.scene, inputs.pending_rate(), counts()};
+  Instant now = {state_.motion.formulation, y_now(),    state_.motion.scene,
+                 inputs.pending_rate(),     counters(), state_.transitions};
   if (state_.changes_pending)
     now.scene = pending_scene(state_);
   else if (inputs.varies)

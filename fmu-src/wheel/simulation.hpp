@@ -52,6 +52,8 @@ struct State {
   double y[WHEEL_MAX_STATES] = {};
   long long transitions = 0;      // of the friction
   solver::Counters counted = {};  // before the solver was last started from nothing
+
+  bool is_stepping() const { return moving && !unfolded; }
 };
 
 class Simulation {
@@ -106,14 +108,14 @@ class Simulation {
   bool check_start(bool report);
 
   const double* y_now();
-  Counts counts() const;
+  solver::Counters counters() const;
   Instant instant();
   Reading& reading();
 
   bool restore_solver(const State& next, const unsigned char* history, std::size_t size);
 
   // stepping.cpp
-  bool has_changed();
+  bool has_changed() const;
   bool settle_changes();
   void announce_transition(double t, const WheelFriction& before);
   bool pass_transition();

@@ -76,8 +76,6 @@ bool run_is_sound(const State& state) {
          (state.moving ? state.started : state.t == 0 && state.ending == Ending::none);
 }
 
-bool is_stepping(const State& state) { return state.moving && !state.unfolded; }
-
 // The run that the bytes describe; what follows from its parameters is computed anew. False where no run can have been
 // saved as these bytes.
 bool read_run(support::Reader& reader, State& state) {
@@ -105,14 +103,14 @@ bool read_run(support::Reader& reader, State& state) {
 std::size_t Simulation::state_size() {
   support::Measure measure;
   visit(measure, state_);
-  return sizeof(Header) + measure.bytes + (is_stepping(state_) ? solver_.history_size() : 0);
+  return sizeof(Header) + measure.bytes + (state_.is_stepping() ? solver_.history_size() : 0);
 }
 
 void Simulation::save_state(unsigned char* bytes) {
   if (state_.prepared) y_now();
   support::Writer writer(bytes + sizeof(Header));
   visit(writer, state_);
-  if (is_stepping(state_)) solver_.save_history(writer.at);
+  if (state_.is_stepping()) solver_.save_history(writer.at);
   const std::size_t size = state_size();
   const Header header = {mark, size, support::checksum_of(bytes + sizeof(Header), size - sizeof(Header))};
   std::memcpy(bytes, &header, sizeof header);
@@ -139,8 +137,8 @@ bool Simulation::load_state(const unsigned char* bytes, std::size_t size) {
   support::Reader reader(bytes + sizeof(Header), size - sizeof(Header));
   State next;
   if (!read_run(reader, next)) return false;
-  if (is_stepping(next) ? !restore_solver(next, reader.at, static_cast<std::size_t>(reader.end - reader.at))
-                        : reader.at != reader.end)
+  if (next.is_stepping() ? !restore_solver(next, reader.at, static_cast<std::size_t>(reader.end - reader.at))
+                         : reader.at != reader.end)
     return false;
   state_ = next;
   reading_fresh_ = orbit_ready_ = false;

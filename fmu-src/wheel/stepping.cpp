@@ -27,14 +27,15 @@ double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 
 }  // namespace
 
 // Whether what was set since the last step differs from what is in force, or makes another method the right one.
-bool Simulation::has_changed() {
-  Motion& motion = state_.motion;
+bool Simulation::has_changed() const {
+  const Motion& motion = state_.motion;
   const double t = state_.t;
   const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(state_.start_time) + std::fabs(t));
   if (motion.scene.wheel.s != state_.parameters[s] || motion.inputs.change_at(t, rounding)) return true;
   if (!motion.inputs.varies || !state_.moving) return false;
-  motion.inputs.load_at(t, &motion.scene.load);
-  return choose_method(state_.parameters, motion.scene, true) != state_.method;
+  WheelScene now = motion.scene;
+  motion.inputs.load_at(t, &now.load);
+  return choose_method(state_.parameters, now, true) != state_.method;
 }
 
 // Inputs and tunable parameters set since the last step take effect.
@@ -166,6 +167,8 @@ Progressed Simulation::fail(const State& before) {
        y_now()[state_.motion.formulation->spin_index], failure_);
   state_ = before;
   reading_fresh_ = false;
+  // The solver has lost the history before the step. It stands at the state, and `counted` holds its counts.
+  if (state_.is_stepping()) solver_.start(problem_of(state_.motion), state_.method, state_.t, state_.y, false);
   return Progressed::failed;
 }
 
@@ -193,7 +196,8 @@ Progressed Simulation::advance(double t) {
     if (!state_.unfolded) report_pulls(state_.t, t);
   } else {
     y_now();
-    const State before = state_;
+    State before = state_;
+    before.counted = counters();
     switch (extend_to(t)) {
       case solver::Outcome::failed:
         return fail(before);

@@ -54,7 +54,7 @@ constexpr Reader readers[] = {
     {Computed::n_rhs, AT(double(now.counters().rhs))},
     {Computed::n_jac, AT(double(now.counters().jacobians))},
     {Computed::n_roots, AT(double(now.counters().roots))},
-    {Computed::n_events, AT(double(now.counters().events))},
+    {Computed::n_events, AT(double(now.transitions()))},
     {Computed::n_restarts, AT(double(now.counters().restarts))},
 };
 

@@ -27,6 +27,20 @@ def test_the_communication_grid_changes_no_bit(wheel, scene):
     assert wheel().start(tolerance=1.0000001e-8, **values).run(SECONDS)[-1] != coarse[-1]  # the partner
 
 
+@pytest.mark.parametrize("values", [{}, {"s": 0.02}, {"formulation": 3}], ids=["free", "friction", "multibody"])
+def test_what_is_read_between_two_changes_is_seen_in_no_counter(wheel, values):
+    """Two changes 0.02 s apart: the step after the second is 0.02 s long, and a fine grid reads inside it."""
+
+    def run(points: int) -> bytes:
+        w = wheel().start(**values)
+        for end, torque in ((0.5, 0.3), (0.52, 0.2), (1.0, 0.0)):
+            w.run(np.linspace(w.time, end, points + 1)[1:])
+            assert w.set(M_3=torque) == OK
+        return w.bits()
+
+    assert run(1) == run(7) == run(100)
+
+
 def test_steps_with_rounding_in_them_are_taken(wheel):
     """h = t_next - t as masters compute it, 0.09999999999999998 among them, up to a defined stop time."""
     times = np.arange(101) * 0.1
