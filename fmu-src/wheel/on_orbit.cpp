@@ -34,11 +34,11 @@ void Simulation::enter_orbit() {
   if (state_.unfolded) state_.counted = orbit_.counters();
 }
 
-// With keep_contact on the orbit: the excursions of N below zero that begin in (t_from, t_to]; of very many in one step
-// the first are told.
+// With keep_contact on the orbit: the excursions of N below zero that begin in (t_from, t_to] or at the start; of very
+// many in one step the first are told.
 void Simulation::report_pulls_of_orbit(double t_from, double t_to) const {
   constexpr long long most = 100;
-  const long long first = orbit_.falls_until(t_from), end = orbit_.falls_until(t_to);
+  const long long first = t_from == 0 ? 0 : orbit_.falls_until(t_from), end = orbit_.falls_until(t_to);
   for (long long n = first; n < std::min(end, first + most); ++n) tell_pull(orbit_.fall(n));
 }
 

@@ -25,6 +25,7 @@ Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Force force,
                          solver::Solver& solver) {
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   falls_ = rises_ = later_falls_ = 0;
+  if (force && force(problem.owner, 0, y0) < 0) fall_[falls_++] = 0;
   counters_ = {};
   half_ = {};
   kind_ = Kind::refused;
@@ -46,7 +47,7 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, Force force, const dou
     const double t = solver.known_until();
     solver.read(t, y);
     problem.derivative(problem.owner, t, y, rate);
-    if (!track_.add(t, y, rate) || !keep_crossings(problem, force, y0, solver)) return Kind::refused;
+    if (!track_.add(t, y, rate) || !keep_crossings(force, solver)) return Kind::refused;
     if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
       if (turned) {
         track_.finish();
@@ -66,13 +67,11 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, Force force, const dou
 }
 
 // Where N falls below zero and rises above it in the last step; false if that happens too often to be kept.
-bool Orbit::keep_crossings(const solver::Problem& problem, Force force, const double* y0,
-                           const solver::Solver& solver) {
+bool Orbit::keep_crossings(Force force, const solver::Solver& solver) {
   if (!force) return true;
-  if (solver.step_start() == 0) pulls_at_start_ = force(problem.owner, 0, y0) < 0;
   double t = solver.step_start();
   for (;;) {
-    const bool pulls = pulls_at_start_ != ((falls_ + rises_) % 2 != 0);
+    const bool pulls = falls_ > rises_;
     if (!solver.first_fall(force, pulls ? -1 : 1, t, solver.known_until(), &t)) return true;
     int& count = pulls ? rises_ : falls_;
     if (count == most_crossings) return false;

@@ -40,8 +40,8 @@ class Orbit {
   const solver::Counters& counters() const { return counters_; }
   double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; folded only
 
-  // The instants t > 0 at which N falls below zero, in order and numbered from 0: how many there are up to t, and when
-  // the number n is (n below falls_until of some t). The cost does not depend on t or n.
+  // The instants at which N falls below zero, in order and numbered from 0: how many there are up to t, and when the
+  // number n is (n below falls_until of some t). A start with N < 0 counts. The cost does not depend on t or n.
   long long falls_until(double t) const;
   double fall(long long n) const;
 
@@ -61,7 +61,7 @@ class Orbit {
   bool rests(const solver::Problem& problem, const double* y0);
   bool keep_rest(const double* y0, const double* rate, double length);
   Kind follow(const solver::Problem& problem, Force force, const double* y0, solver::Solver& solver);
-  bool keep_crossings(const solver::Problem& problem, Force force, const double* y0, const solver::Solver& solver);
+  bool keep_crossings(Force force, const solver::Solver& solver);
   double turning_point(double t_lo, double t_hi) const;
   bool fold(const solver::Problem& problem, double t, const double* y, double swing);
   void take_half();
@@ -81,7 +81,6 @@ class Orbit {
   Complex first_turn_, mirror_turn_;                 // exp(i psi(T1)), exp(2 i psi(T2))
   Complex step_;                                     // from O(T1) to O(T2), seen along psi(T1)
 
-  bool pulls_at_start_ = false;
   // Instants up to T2 at which N falls below zero and rises again; falls in one period from T2 on, counted from T2.
   int falls_ = 0, rises_ = 0, later_falls_ = 0;
   double fall_[most_crossings] = {}, rise_[most_crossings] = {}, later_fall_[2 * most_crossings] = {};

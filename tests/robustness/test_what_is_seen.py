@@ -95,6 +95,20 @@ def test_each_pull_is_told_at_its_instant_and_none_that_an_input_prevents(wheel,
     assert pulls(prevented) == []
 
 
+def test_a_ground_that_pulls_from_the_start_is_told_once_by_the_unfolded_wheel_too(wheel):
+    """A wheel that tips fast is off the ground at once; unfolded (method automatic) or stepped through, seven pulls."""
+    fast = {"theta_start": 1.48, "psi_dot_start": -1.52, "theta_dot_start": -6.5, "phi_dot_start": 4.4}
+    told = []
+    for method in (1, 1, 2, 4):
+        w = wheel().start(keep_contact=True, method=method, **fast)
+        steps = 1 if told else 20  # twice unfolded: whatever the steps
+        assert [w.step(2.0 / steps) for _ in range(steps)] == [OK] * steps
+        told.append(pulls(w))
+    assert told[0][0] == 0.0 and len(told[0]) == 7
+    for other in told[1:]:
+        assert other == pytest.approx(told[0], abs=1e-6)  # measured: 2e-9
+
+
 def test_a_polynomial_that_takes_the_brake_below_zero_takes_it_off(wheel):
     """A brake cannot push: M_brake = 1 - 10 t is none from 0.1 s on, and a wheel without a torque then rolls freely."""
     braked, off = (wheel().start(theta_start=pi / 2, phi_dot_start=-8.0) for _ in range(2))
