@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <new>
 
 #include "cvode_objects.hpp"
@@ -48,9 +47,21 @@ int weights(N_Vector y, N_Vector w, void* user) {
   return 0;
 }
 
-// SUNDIALS's messages are the reason of a failure, and are never printed.
-void keep_message(int, const char*, const char*, const char* message, SUNErrCode, void* text, SUNContext) {
-  std::snprintf(static_cast<char*>(text), 160, "%s", message ? message : "");
+// In words of our own: SUNDIALS's messages give times of the solver's clock.
+const char* reason_of(int flag) {
+  switch (flag) {
+    case CV_ERR_FAILURE:
+      return "the error stays too large however small the step";
+    case CV_CONV_FAILURE:
+      return "the corrector does not converge however small the step";
+    case CV_RHSFUNC_FAIL:
+    case CV_FIRST_RHSFUNC_ERR:
+    case CV_REPTD_RHSFUNC_ERR:
+    case CV_UNREC_RHSFUNC_ERR:
+      return "the rates of the states are not finite";
+    default:
+      return "CVODE gave up";
+  }
 }
 
 bool attach_solver(CvodeObjects& o) {
@@ -73,10 +84,9 @@ long jacobians_of(const CvodeObjects& o) {
   return count;
 }
 
-bool set_up(CvodeObjects& o, char* message) {
+bool set_up(CvodeObjects& o) {
   if (SUNContext_Create(SUN_COMM_NULL, &o.context) != SUN_SUCCESS) return false;
-  SUNContext_ClearErrHandlers(o.context);
-  SUNContext_PushErrHandler(o.context, keep_message, message);
+  SUNContext_ClearErrHandlers(o.context);  // nothing is printed
   o.y = make_vector(o.states, o.context);
   o.cvode = CVodeCreate(o.method == Method::adams ? CV_ADAMS : CV_BDF, o.context);
   return o.y && o.cvode && CVodeInit(o.cvode, derivative, 0, o.y) == CV_SUCCESS &&
@@ -108,15 +118,15 @@ bool Cvode::make_objects(int states, Method method) {
   if (!objects_) return false;
   objects_->method = method;
   objects_->states = states;
-  if (set_up(*objects_, failure_)) return true;
+  if (set_up(*objects_)) return true;
   free_objects();
   return false;
 }
 
 bool Cvode::start(const Problem& problem, Method method, double t, const double* y, Step* step) {
   step->set_point(t, y, problem.states);
-  if (!make_objects(problem.states, method))
-    return std::snprintf(failure_, sizeof failure_, "CVODE could not be set up"), false;
+  failure_ = "CVODE could not be set up";
+  if (!make_objects(problem.states, method)) return false;
   starts_anew_ = 1;
   return CVodeSetMaxStep(objects_->cvode, problem.longest_step) == CV_SUCCESS;
 }
@@ -148,7 +158,7 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
   }
   // CVODE reports success for steps so small that the time no longer changes.
   const bool stands = flag >= 0 && flag != CV_TSTOP_RETURN && t - step->end <= rounding_at(t);
-  if (stands) std::snprintf(failure_, sizeof failure_, "the step size became too small");
+  failure_ = stands ? "the step size became too small" : reason_of(flag);
   if (flag < 0 || stands) return starts_anew_ = 1, step->start = step->end, false;
   step->start = step->end;
   std::copy_n(step->y_end, max_states, step->y_start);

@@ -52,7 +52,7 @@ class Cvode {
 
   CvodeObjects* objects_ = nullptr;
   int starts_anew_ = 1;
-  char failure_[160] = "";
+  const char* failure_ = nullptr;
 };
 
 }  // namespace solver

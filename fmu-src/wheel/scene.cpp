@@ -83,8 +83,8 @@ bool has_transitions(const WheelScene& scene) {
 
 double time_scale(const WheelParameters& wheel, const WheelKinematics& start) {
   const double length = wheel.r_0 + wheel.r;
-  if (wheel.g > 0) return std::sqrt(length / wheel.g);
   const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
+  if (wheel.g > 1e-30 * length * rate * rate) return std::sqrt(length / wheel.g);  // else the weight moves nothing
   return rate > 0 ? 1 / rate : 1;
 }
 

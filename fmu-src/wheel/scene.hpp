@@ -48,7 +48,7 @@ void scales_at(const ErrorScales& scales, const WheelFormulation& formulation, d
 // there are very many turns in the wheel's own time.
 double share_at(const ErrorScales& scales, double omega_z);
 
-// sqrt((r_0 + r) / g), s; without weight the time of a turn at the initial rate.
+// sqrt((r_0 + r) / g), s; without a weight that matters the time of a turn at the initial rate.
 double time_scale(const WheelParameters& wheel, const WheelKinematics& start);
 
 }  // namespace wheel
