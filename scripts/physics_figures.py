@@ -103,7 +103,7 @@ def held(fmu: Fmu) -> None:
 
 
 def energy(fmu: Fmu) -> None:
-    """What friction takes; on the right the weak releases of a long run."""
+    """What friction takes; on the right the weak slips of a long run."""
     fig, left, right = pair()
     run, free = fmu.run(s=0.03), fmu.run()
     bands(left, run)
@@ -116,7 +116,7 @@ def energy(fmu: Fmu) -> None:
     late = long["time"] >= 10
     right.plot(long["time"][late], long["E"][late], color=style.BLUE)
     right.set(xlabel="time $t$ [s]", ylabel="energy $E$ [J]", xlim=(0, 150))
-    title(right, "The releases go on, ever weaker")
+    title(right, "The slips go on, ever weaker")
     save(fig, "physics_energy")
     measured("energy_start", "energy at the start", run["E"][0], "J")
     measured("energy_end", "friction scene: energy at 10 s", run["E"][-1], "J")
