@@ -111,7 +111,7 @@ class Taylor:
     def _integrator(self, moment: str, tolerance: float) -> Any:
         system, margin = equations(self.scene, moment)
         # At a release omega_z and its rate are zero but for rounding: watched a hair beyond zero, that is no event.
-        # No cool-down: the default one swallows slips shorter than itself, silently.
+        # No cool-down: the default one swallows releases shorter than itself, silently.
         watched = {"rolling": hy.par[0] * hy.make_vars("omega_3") + tolerance**2, "held": margin}.get(moment)
         falls = (
             [hy.t_event(watched, direction=hy.event_direction.negative, cooldown=0.0)] if watched is not None else []

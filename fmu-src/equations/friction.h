@@ -6,7 +6,7 @@
 
 #include "wheel_equations.h"
 
-/* kappa, the direction of the friction; NaN without a law. A held wheel has a moment of its own instead. */
+/* kappa, the direction of the friction; NaN without a law. The moment on a held wheel follows from omega_z_dot = 0. */
 static inline double kappa_of(const WheelFriction* friction, double omega_z) {
   switch (friction->kind) {
     case WHEEL_FRICTIONLESS:

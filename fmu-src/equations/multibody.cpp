@@ -47,8 +47,8 @@ double decay_rate(const Multibody& s) {
   return 5 * std::sqrt(s.wheel.g / (s.wheel.r_0 + s.wheel.r) + omega_squared);
 }
 
-// (24) with -[B_dot]{q_dot} - a [B]{q_dot} in the last rows, and the height drawn to that of (32) (Baumgarte): both
-// terms vanish on the constraints.
+// (24) with -[B_dot]{q_dot} - decay_rate [B]{q_dot} in the last rows, and a height that decays to that of (32)
+// (Baumgarte). Both added terms vanish on the constraints.
 double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   const Multibody s(scene->wheel, y);
   const double rate = decay_rate(s);

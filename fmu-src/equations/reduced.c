@@ -118,7 +118,7 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
   y[3] = 0;
 }
 
-/* The law that holds at y, where the normal force is N: without its grip where the ground pulls. */
+/* The law of friction at y, where the normal force is N. Where the ground pulls (N <= 0), it has no grip. */
 static AxleLaw frozen_law(const WheelScene* scene, const double* y, double N) {
   AxleLaw law = law_of(scene, y[3]);
   if (N <= 0) law.grip = 0;
@@ -178,7 +178,7 @@ static void rates(const WheelScene* scene, const WheelLoad* load_dot, const doub
   if (!load_dot) load_dot = &constant;
   double y[WHEEL_REDUCED_STATES], y_dot[WHEEL_REDUCED_STATES];
   memcpy(y, state, sizeof y);
-  y[PSI] = remainder(y[PSI], turn); /* the steps are not to be lost in the rounding of large angles */
+  y[PSI] = remainder(y[PSI], turn); /* a small step must not vanish in the rounding of a large angle */
   y[PHI] = remainder(y[PHI], turn);
   double N = derivative(scene, y, y_dot);
   AxleLaw law = frozen_law(scene, y, N), changing = law;
@@ -187,7 +187,7 @@ static void rates(const WheelScene* scene, const WheelLoad* load_dot, const doub
 
   double swing = fabs(y_dot[1]) + fabs(y_dot[2]) + fabs(y_dot[3]);
   double rate = (fabs(y[1]) + fabs(y[2])) / sin(y[0]) + fabs(y[3]) + sqrt(swing);
-  if (rate == 0) return; /* at rest for good */
+  if (rate == 0) return; /* the wheel is at rest and stays so */
   double h = share / rate;
   add_reaction(scene, &law, y, y_dot, h, 8 / (12 * h), out);
   add_reaction(scene, &law, y, y_dot, -h, -8 / (12 * h), out);

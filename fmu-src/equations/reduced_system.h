@@ -20,7 +20,7 @@ typedef struct Carrier {
   double omega_1, omega_2, omega_3;
   double Omega_3; /* psi_dot cos(theta), third component of the carrier's own angular velocity */
   double psi_dot, phi_dot;
-  double v_1, v_2, v_3; /* v_O = omega x (r_0 e2 + r k), k vertical: rolling without slip */
+  double v_1, v_2, v_3; /* v_O = omega x (r_0 e2 + r e_Z), e_Z vertical: rolling without slip */
 } Carrier;
 
 /* The inertia diag(J_x, J_y, J_z) of the body axes seen from the carrier, which it turns against by phi:
@@ -31,8 +31,8 @@ typedef struct Inertia {
   double I_11, I_22, p, q;
 } Inertia;
 
-/* What the motion would need without omega_dot: the force k = m b - F (b: acceleration of O without its part in
- * omega_dot, F: external force, weight included), N, and the external moment less the gyroscopic one, N m. */
+/* The terms of Newton's and Euler's equations without omega_dot: the force k = m b - F, N (b: acceleration of O without
+ * its part in omega_dot, F: external force, weight included), and the external less the gyroscopic moment, N m. */
 typedef struct Drift {
   double k_1, k_2, k_3;
   double M_1, M_2, M_3;
@@ -47,10 +47,10 @@ typedef struct System {
   double a_23, a_33, b_22, b_2, h_3;
   double inverse_determinant; /* of the 2 x 2 system */
   double omega_1_dot, N;      /* for tau = 0 */
-  double tilting, alpha;      /* what a unit of tau adds to omega_1_dot and to N: 0 where p = 0 */
+  double tilting, alpha;      /* change of omega_1_dot and of N per unit of tau: 0 where p = 0 */
 } System;
 
-/* The law of friction at one instant: tau = -(grip N + brake), or the tau that holds omega_3. */
+/* The law of friction at one instant: tau = -(grip N + brake), or, if held, the tau that keeps omega_3 constant. */
 typedef struct AxleLaw {
   int held;
   double grip;  /* m, s kappa */

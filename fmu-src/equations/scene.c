@@ -1,4 +1,4 @@
-/* How a scene is made: wheel, load and a law of friction that is checked. */
+/* Makes a scene of a wheel, a load and a law of friction, and checks the law. */
 #include <stddef.h>
 
 #include "wheel_equations.h"

@@ -30,14 +30,14 @@ typedef struct WheelParameters {
 /* What acts on the wheel besides weight and ground: the external column {F} of (15), and a brake. */
 typedef struct WheelLoad {
   double F[3];  /* N at O, fixed axes X, Y, Z */
-  double M[3];  /* N m on the wheel, carrier axes e1, e2, e3: M[2] drives about the axle, whichever way it turns */
+  double M[3];  /* N m on the wheel, carrier axes e1, e2, e3: M[2]: about the axle, whichever way the wheel turns */
   double brake; /* N m, >= 0: largest moment of a dry brake about the axle, which acts against omega_z */
 } WheelLoad;
 
 /* The moment tau of ground and brake about the axle: tau = -(s N + brake) kappa. N is the normal force lambda_3; a
  * ground that pulls (N <= 0) has no friction, and the brake's part alone is left. */
 typedef enum WheelFrictionKind {
-  WHEEL_NO_LAW,       /* what a record filled with zeros has: every acceleration and force is NaN */
+  WHEEL_NO_LAW,       /* the law of a struct filled with zeros: every acceleration and force is NaN */
   WHEEL_FRICTIONLESS, /* kappa = 0: no moment, whatever s and the brake are */
   WHEEL_ROLLING,      /* kappa = sigma, (22) with sigma = sign(omega_z) kept */
   WHEEL_HELD,         /* the tau that keeps omega_z_dot = 0 (Filippov's sliding mode at omega_z = 0), of any size */
@@ -59,8 +59,9 @@ typedef struct WheelScene {
 
 /* The scene of a wheel under a load (NULL: none) and a law of friction, for example
  *   wheel_scene(&wheel, NULL, (WheelFriction){.kind = WHEEL_ROLLING, .sigma = -1}).
- * Where s or the brake is negative, sigma is not +1 or -1 though needed, or omega_s is not positive though needed, the
- * scene has WHEEL_NO_LAW, and so every answer is NaN instead of a motion that was not meant. */
+ * The scene has WHEEL_NO_LAW, so that every result is NaN instead of a motion that was not meant, where s or the brake
+ * is negative, where WHEEL_ROLLING has another sigma than +1 or -1, or where omega_s of WHEEL_REGULARIZED is not
+ * positive. */
 WheelScene wheel_scene(const WheelParameters* wheel, const WheelLoad* load, WheelFriction friction);
 
 /* Position and velocity that may be chosen freely, (32), (33); the rest follows from the constraints. */
@@ -79,7 +80,7 @@ typedef struct WheelKinematics {
   double omega_z;                     /* rad/s, (21) */
 } WheelKinematics;
 
-/* Accelerations and the ground's answer, fixed axes. */
+/* Accelerations and reactions, fixed axes. */
 typedef struct WheelDynamics {
   double X_O_ddot, Y_O_ddot, Z_O_ddot;   /* m/s2 */
   double psi_ddot, theta_ddot, phi_ddot; /* rad/s2 */
@@ -88,7 +89,7 @@ typedef struct WheelDynamics {
   double tau;                            /* N m, moment of ground and brake about the axle */
 } WheelDynamics;
 
-/* How the answer of the ground changes. */
+/* Time derivatives of the reactions. */
 typedef struct WheelReactionRates {
   double lambda_dot[3]; /* N/s, fixed axes */
   double tau_dot;       /* N m/s */
@@ -129,7 +130,7 @@ extern const WheelFormulation wheel_multibody;
 /* Total energy, J: translation, rotation, height of O above the ground. */
 double wheel_energy(const WheelParameters* wheel, const WheelKinematics* motion);
 
-/* Tangential over normal force of the ground: the friction coefficient that rolling without slip needs.
+/* Ratio of tangential to normal force of the ground: the friction coefficient that rolling without slip needs.
  * Infinite where the ground does not press (lambda_3 <= 0). */
 double wheel_required_friction(const double lambda[3]);
 

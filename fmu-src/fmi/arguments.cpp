@@ -1,4 +1,4 @@
-// Checks that all functions share which read or set variables.
+// Checks shared by all functions that read or set variables.
 #include "arguments.hpp"
 
 using wheel::Topic;

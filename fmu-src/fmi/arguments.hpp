@@ -1,4 +1,4 @@
-// Checks that all functions share which read or set variables. Each tells what is wrong in one sentence.
+// Checks shared by all functions that read or set variables. Each logs what is wrong in one sentence.
 #pragma once
 
 #include <cstddef>

@@ -66,7 +66,7 @@ double quotient(Instance& i, unsigned output, unsigned parameter, double x, doub
   return sum / h;
 }
 
-// Adds seed * d output / d parameter of the start; choices have no small change and add nothing. Afterwards the
+// Adds seed * d output / d parameter in the initial state; an integer or boolean parameter adds nothing. Afterwards the
 // instance has its own initial state again. False where no five allowed values lie near the parameter.
 bool add_start_derivative(Instance& i, unsigned parameter, double seed, const Outputs& outputs) {
   const wheel::Row& row = wheel::row_of(parameter);
@@ -93,8 +93,8 @@ bool add_derivative(Instance& i, const char* name, unsigned known, double seed, 
     return true;
   }
   if (add_start_derivative(i, known, seed, outputs)) return true;
-  i.log(Topic::error, "%s: there is no start close to %s = %s on either side.", name, wheel::row_of(known).name,
-        Digits(i.simulation.value(known)).text);
+  i.log(Topic::error, "%s: no allowed initial values lie close enough to %s = %s for a derivative.", name,
+        wheel::row_of(known).name, Digits(i.simulation.value(known)).text);
   return false;
 }
 

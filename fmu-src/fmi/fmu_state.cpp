@@ -43,8 +43,8 @@ void release(fmi2FMUstate state) {
   if (fmi::fmu_states.remove(state)) std::free(state);
 }
 
-// A state for `size` bytes in the place of a previous one, which is kept if it fits. Null: there is no memory, and the
-// previous one stays.
+// A state for `size` bytes in place of a previous one, which is used again if its size fits. Null without memory: then
+// the previous one is kept.
 Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
   Snapshot* const old = snapshot_of(previous);
   if (old && old->size == size) return old;

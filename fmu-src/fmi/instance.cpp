@@ -77,11 +77,11 @@ void Instance::destroy(Instance* instance) {
   std::free(instance);
 }
 
-// After an ending the sentence says what happened, which tells a user more than the name of a call state.
+// After the end of a run the sentence says what happened to the wheel, which helps a user more than a call state.
 void Instance::refuse(const char* function) {
   const char* ending = state == State::step_failed ? simulation.ending() : nullptr;
   if (ending)
-    log(wheel::Topic::error, "%s: %s: restore a state or reset.", function, ending);
+    log(wheel::Topic::error, "%s: %s. Restore a state or reset.", function, ending);
   else
     log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", function, name_of(state));
 }

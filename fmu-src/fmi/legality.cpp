@@ -1,4 +1,4 @@
-// One row per function, one bit per state. Set of single variables depends on the variable too: see values.cpp.
+// One row per function, one bit per state. Whether a variable may be set depends on the variable too: see values.cpp.
 #include "legality.hpp"
 
 namespace fmi {

@@ -1,5 +1,5 @@
-// The call states of an FMI 2.0 co-simulation slave and which function is legal in which: section 4.2.4 of the
-// standard.
+// The call states of an FMI 2.0 co-simulation slave, and in which of them a function may be called: section 4.2.4 of
+// the standard.
 #pragma once
 
 namespace fmi {
@@ -30,7 +30,7 @@ enum class Function : unsigned char {
 
 bool is_legal(Function function, State state);
 
-// How the standard spells it, for messages.
+// The name that the standard uses, for messages.
 const char* name_of(State state);
 
 }  // namespace fmi

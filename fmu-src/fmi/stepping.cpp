@@ -16,7 +16,7 @@ bool same_time(double a, double b, double step) {
   return std::fabs(a - b) <= step_rounding * step + time_rounding * (std::fabs(a) + std::fabs(b));
 }
 
-// A sum of many steps may miss the stop time by more.
+// The sum of many steps carries more rounding errors than one step.
 bool is_past(double t, double stop) { return t - stop > step_rounding * (std::fabs(t) + std::fabs(stop)); }
 
 fmi2Status check_step(Instance& i, double t, double h) {
@@ -26,7 +26,7 @@ fmi2Status check_step(Instance& i, double t, double h) {
     return fmi2Error;
   }
   if (!same_time(t, i.simulation.time(), h)) {
-    i.log(Topic::error, "fmi2DoStep from %s s: the wheel stands at %s s.", Digits(t).text,
+    i.log(Topic::error, "fmi2DoStep from %s s: the FMU has reached %s s.", Digits(t).text,
           Digits(i.simulation.time()).text);
     return fmi2Error;
   }

@@ -38,7 +38,8 @@ bool check_settable(Instance& i, const char* name, fmi2ValueReference variable) 
   const wheel::Row& row = wheel::row_of(variable);
   const bool stored = row.role != Role::output && row.role != Role::local;
   if (stored && (i.state != State::step_complete || row.role != Role::parameter)) return true;
-  i.log(Topic::error, stored ? "%s: \"%s\" is fixed after initialization." : "%s: \"%s\" is calculated.", name,
+  i.log(Topic::error,
+        stored ? "%s: \"%s\" cannot be set after initialization." : "%s: \"%s\" is calculated and cannot be set.", name,
         row.name);
   return false;
 }

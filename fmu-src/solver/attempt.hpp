@@ -16,10 +16,10 @@ namespace solver {
 
 namespace table = dormand_prince;
 
-// The error allowed to one step, as a share of the tolerance of the whole solution: measured on the wheel's scenes.
+// The error that one step may make, as a fraction of the tolerance of the whole solution. Tuned on the wheel's scenes.
 inline constexpr double share_of_tolerance = 0.03;
 
-// By square roots, which are the same on every platform.
+// Made of square roots, because pow may differ between platforms in the last bit.
 inline double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
 template <int width>

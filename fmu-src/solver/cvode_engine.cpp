@@ -15,7 +15,7 @@
 namespace solver {
 namespace {
 
-// The error allowed to one step, as a share of the tolerance of the whole solution: measured on the wheel's scenes.
+// The error that one step may make, as a fraction of the tolerance of the whole solution. Tuned on the wheel's scenes.
 constexpr double share_of_tolerance = 0.003;
 
 // The step size is kept while it would change by a factor between these two. CVODE's defaults, 0 and 1.5, avoid the
@@ -142,7 +142,7 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
   o.call = {&problem, counters, INFINITY};
   double t = step->end;
   int flag = CV_SUCCESS;
-  // A bend of the right-hand side (an input whose slope changed) can be too much for a history of high order.
+  // Where the slope of an input has changed, a history of high order can fail. Then one more attempt starts anew.
   for (int attempt = 0; attempt < 2; ++attempt) {
     const bool first = starts_anew_ != 0;
     if (starts_anew_ == 2) ++counters->restarts;

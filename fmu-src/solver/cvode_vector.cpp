@@ -54,7 +54,7 @@ struct Operations {
     std::memcpy(data(z), result, sizeof result);
   }
 
-  // Two numbers at a time: CVODE makes about sixty such calls a step.
+  // Two numbers at a time: CVODE makes dozens of such calls in each step.
   template <class Function>
   static void pairs(N_Vector z, const Function& f) {
     double* out = data(z);

@@ -14,18 +14,18 @@ struct Problem {
   // y_dot = f(t, y). Returns the margin, the value of `boundary` at (t, y); NaN where the rates are not finite: the
   // solver then tries a smaller step.
   double (*derivative)(void* owner, double t, const double* y, double* y_dot);
-  // weights[i] = 1 / (error of y_i that counts as one), > 0, for a step that may err `share` of the tolerance of the
-  // solution: a step is accepted where the root mean square of weight times local error is below one.
+  // weights[i] = 1 / (largest error of y_i), > 0, for a step whose error may be `share` times the tolerance of the
+  // solution. A step is accepted where the root mean square of weight times local error is below one.
   void (*weights)(void* owner, double share, const double* y, double* weights);
   // Positive until the event; watched while armed.
   double (*event)(void* owner, double t, const double* y);
   // Positive inside the model.
   double (*boundary)(void* owner, double t, const double* y);
-  // Instants strictly inside (t_lo, t_hi), ascending, at which a given input has an extreme: between them event and
-  // boundary are simply shaped. Returns their number, at most max_bends; null where inputs are constant.
+  // Instants strictly inside (t_lo, t_hi), ascending, at which a prescribed input has an extreme: between two of them
+  // event and boundary have a simple shape. Returns their number, at most max_bends; null where inputs are constant.
   int (*bends)(void* owner, double t_lo, double t_hi, double* instants);
-  double near;          // the boundary is searched inside a step where an evaluation in it saw a margin below this
-  double longest_step;  // s, > 0: an unstable rest shows no error until it is too late
+  double near;          // a step is searched for the boundary where a margin below this was seen in it
+  double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
   double share = 1;     // of the error that a step may otherwise make
 };
 

@@ -1,7 +1,7 @@
 // A change of sign between the ends of a step is not enough: a function may dip below zero and come back within one
-// step (a grazing slip, a wheel that leaves the ground for an instant). The search trusts a parabola through three
-// samples as far as g is simply shaped, halves where it is not, and never looks more often than a fixed number of
-// times.
+// step (a held wheel is released for an instant, a wheel leaves the ground for an instant). The search trusts a
+// parabola through three samples where g has a simple shape, halves the interval where it has not, and evaluates g at
+// most a fixed number of times.
 #include "search.hpp"
 
 #include <algorithm>

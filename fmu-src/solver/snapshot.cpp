@@ -53,7 +53,7 @@ bool Solver::restore_history(const Problem& problem, const unsigned char* bytes,
   if (reader.good && restored_fits() && restore_engine(reader) && reader.at == reader.end) return true;
   failure_ = "its history could not be restored";
   const double none[max_states] = {};
-  step_.set_point(0, none, problem.states);  // what is read of it is harmless
+  step_.set_point(0, none, problem.states);  // reading it is harmless
   return pending_ = Outcome::failed, false;
 }
 

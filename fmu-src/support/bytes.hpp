@@ -60,7 +60,7 @@ struct Reader : Archive<Reader> {
   const unsigned char *at, *end;
   bool good = true;
   Reader(const unsigned char* bytes, std::size_t size) : at(bytes), end(bytes + size) {}
-  // A word outside its bounds, or beyond the end, leaves the least value allowed: what is read on is harmless.
+  // A word outside its bounds, or beyond the end, gives the least allowed value, so that reading on is harmless.
   template <class Word>
   void put(Word& word, Word least, Word most) {
     word = least;

@@ -9,7 +9,7 @@ namespace support {
 
 struct Digits {
   explicit Digits(double x) {
-    // Plain decimals for what people read as such; 1e+300 else.
+    // Plain decimals for ordinary sizes, an exponent, as in 1e+300, for all others.
     const double size = std::fabs(x);
     const bool plain = size == 0 || (size >= 1e-5 && size < 1e15);
     const auto format = plain ? std::chars_format::fixed : std::chars_format::general;

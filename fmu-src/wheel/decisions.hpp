@@ -15,7 +15,7 @@ void take_changes(State& state, const double* y);
 // The scene as it will be when the pending changes have taken effect.
 WheelScene pending_scene(const State& state);
 
-// The law of friction once the brake is in use.
+// The law of friction that holds as soon as the brake is in use.
 WheelFriction braked_friction(const State& state, const WheelScene& scene, const double* y);
 
 }  // namespace wheel

@@ -14,7 +14,7 @@ constexpr double factorial[] = {1, 1, 2, 6};
 double evaluate(const double* c, double tau) { return c[0] + tau * (c[1] + tau * (c[2] + tau * c[3])); }
 double slope(const double* c, double tau) { return c[1] + tau * (2 * c[2] + tau * 3 * c[3]); }
 
-// A brake cannot push: a capacity that a polynomial takes below zero is none.
+// A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
 void limit_brake(WheelLoad& load) { load.brake = std::fmax(load.brake, 0); }
 
 bool is_zero(const double* c) { return c[0] == 0 && c[1] == 0 && c[2] == 0 && c[3] == 0; }

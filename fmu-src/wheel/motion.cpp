@@ -18,8 +18,8 @@ const WheelScene& scene_at(Motion& motion, double t) {
   return motion.scene;
 }
 
-// Positive inside the model: theta away from lying flat, rad, and N over the weight unless contact is kept. A force
-// that only rounding makes negative is none.
+// Positive inside the model: the angle of the wheel from lying flat, rad, and, unless contact is kept, N over the
+// weight. A force that is negative only by rounding does not count.
 double margin(const Motion& motion, const double* y, double N) {
   constexpr double rounding = 1e-9;
   const double height = upright - std::fabs(y[motion.formulation->tilt_index] - upright) - flat_angle;
@@ -52,7 +52,8 @@ void weights(void* owner, double share, const double* y, double* weights) {
   weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
 }
 
-// Positive while the friction mode lasts: the spin in its sense, or what friction and brake have left to hold it.
+// Positive while the friction mode lasts: omega_z times the mode's sign; for a held wheel the part of s N + M_brake
+// that holding it leaves unused.
 double event(void* owner, double t, const double* y) {
   Motion& motion = of(owner);
   const WheelFriction& friction = motion.scene.friction;

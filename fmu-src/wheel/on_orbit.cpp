@@ -8,13 +8,13 @@
 
 namespace wheel {
 
-// Whether the orbit is that of the present run, whatever the instance did before.
+// Whether the stored orbit belongs to the present run; the instance may have computed other runs before.
 bool Simulation::orbit_fits() const {
   return std::equal(state_.parameters, state_.parameters + first_input, orbit_origin_) &&
          orbit_origin_[first_input] == state_.motion.tolerance;
 }
 
-// From the start of the run; where the motion does not fold, the solver has to step.
+// Builds the orbit from the start of the run. Where the motion cannot be unfolded, the solver has to step through it.
 void Simulation::build_orbit() {
   State start = state_;
   set_initial_state(start);
@@ -34,8 +34,8 @@ void Simulation::enter_orbit() {
   if (state_.unfolded) state_.counted = orbit_.counters();
 }
 
-// With keep_contact on the orbit: the excursions of N below zero that begin in (t_from, t_to] or at the start; of very
-// many in one step the first are told.
+// With keep_contact on the orbit: reports each instant in (t_from, t_to], and the start, at which N falls below zero.
+// Where one communication step has very many of them, only the first ones are reported.
 void Simulation::report_pulls_of_orbit(double t_from, double t_to) const {
   constexpr long long most = 100;
   const long long first = t_from == 0 ? 0 : orbit_.falls_until(t_from), end = orbit_.falls_until(t_to);

@@ -14,9 +14,10 @@ constexpr double finer = 0.1, finest = 1e-14;
 // A looser tolerance than this would save little, since one nutation costs little, and its long steps would not be as
 // accurate as they estimate.
 constexpr double loosest = 1e-8;
-// least_swing and largest_rest are in units of that fraction: a swing of omega_1 below the first is noise (the error of
-// one step may be 0.003), and a wheel that swings less than the second is in steady motion. most_difference is in
-// tolerances: how much the state at the end of the integration may differ from its mirror image.
+// least_swing and largest_rest are in units of that fraction. A swing of omega_1 below least_swing cannot be told from
+// the errors of a few steps (each may be 0.003), and a wheel that swings less than largest_rest is in steady motion.
+// most_difference, in units of the tolerance: how much the state at the end of the integration may differ from its
+// mirror image.
 constexpr double least_swing = 0.01, largest_rest = 0.003, most_difference = 100;
 
 }  // namespace

@@ -24,11 +24,11 @@ bool is_unfoldable(const double* stored, const WheelScene& scene, bool loaded);
 WheelFriction friction_at(const double* stored, const WheelFormulation& formulation, const WheelScene& scene,
                           bool braked, double weight, const double* y);
 
-// s N + M_brake - |tau| of a held wheel, N m, with the rounding of tau on the side of holding. weight: N, the scale of
-// the normal force.
+// s N + M_brake - |tau| of a held wheel, N m; where rounding alone decides, the wheel stays held. weight: N, the scale
+// of the normal force.
 double holding_margin(const WheelScene& scene, const WheelDynamics& held, double weight);
 
-// Only the exact law switches.
+// Only the exact law has transitions.
 bool has_transitions(const WheelScene& scene);
 
 // How errors of the states are weighed.
@@ -37,15 +37,16 @@ struct ErrorScales {
   double own_rate, tilting;       // rad/s: of the wheel's own time scale; initial rate of turning about e1 and e2
 };
 
-// Angles count by 1 rad, lengths by r_0 + r, rates by the wheel's own time scale or the initial tilting.
+// The scale of angles is 1 rad, of lengths r_0 + r, of rates the inverse of the wheel's own time scale or the initial
+// tilting, whichever is larger.
 ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& formulation, const double* y);
 
 // The scales at the spin omega_z, rad/s. A fast wheel hardly tilts: the range of theta falls with the square of the
 // spin, that of the rates with the spin, and errors are weighed by these ranges.
 void scales_at(const ErrorScales& scales, const WheelFormulation& formulation, double omega_z, double* out);
 
-// Errors add up over the turns: the part of its error that a step may make at the spin omega_z, rad/s. Below one where
-// there are very many turns in the wheel's own time.
+// Errors add up over the turns of a fast wheel. Returns the fraction of the usual error that a step may make at the
+// spin omega_z, rad/s: below one where the wheel turns very often within its own time scale.
 double share_at(const ErrorScales& scales, double omega_z);
 
 // sqrt((r_0 + r) / g), s; without a weight that matters the time of a turn at the initial rate.

@@ -105,7 +105,7 @@ double Simulation::value(unsigned variable) {
 
 double Simulation::rate(unsigned variable) { return row_of(variable).read_rate(reading()); }
 
-// Only the reactions answer an input at once.
+// Only the reactions depend on the inputs of the same instant.
 double Simulation::sensitivity(unsigned output, unsigned input) {
   const auto component = row_of(output).reaction_rate;
   if (!component) return 0;

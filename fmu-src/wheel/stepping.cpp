@@ -12,16 +12,17 @@
 namespace wheel {
 namespace {
 
-// Work that one call may do, in internal steps: one to two seconds of computing, whatever the length of the call.
+// The most work that one call may do, in internal steps, however long its communication step is: some seconds of
+// computing.
 constexpr long long most_work = 1000000;
-// What passing a transition costs, in steps: its search, a new start, the short steps after it.
+// The work of passing a transition, in internal steps: the search for it, a new start, the short steps after it.
 constexpr long long work_per_transition = 20;
-// A step of the multibody form, whose system is large.
+// The work of one internal step of the multibody form, whose system is larger.
 constexpr long long work_per_multibody_step = 8;
 
 constexpr double upright = 1.5707963267948966;
 
-// For messages: instants are not found more exactly than to a nanosecond.
+// For messages: an instant is not found more exactly than to a nanosecond.
 double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 1e9) / 1e9 : t; }
 
 }  // namespace
@@ -66,7 +67,7 @@ bool Simulation::start_solver() {
   return solver_.start(problem, state_.method, state_.t, y_now(), has_transitions(state_.motion.scene));
 }
 
-// Counts and tells a change between held, positive and negative spin; a change of the law itself is none.
+// Counts and reports a change between held, positive and negative spin. A change to another law is not a transition.
 void Simulation::announce_transition(double t, const WheelFriction& before) {
   const auto switches = [](const WheelFriction& f) { return f.kind == WHEEL_HELD || f.kind == WHEEL_ROLLING; };
   const WheelFriction& friction = state_.motion.scene.friction;
@@ -78,10 +79,10 @@ void Simulation::announce_transition(double t, const WheelFriction& before) {
     tell(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
   else
     tell(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
-         before.kind == WHEEL_HELD ? "release" : "slip reverses", friction.sigma > 0 ? "positive" : "negative");
+         before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
 }
 
-// The solver stands at a transition: omega_z came to zero, or friction and brake can hold it no longer.
+// The solver stands at a transition: omega_z has reached zero, or friction and brake can no longer hold it there.
 bool Simulation::pass_transition() {
   const double t = solver_.event_time();
   Motion& motion = state_.motion;
@@ -102,8 +103,8 @@ bool Simulation::pass_transition() {
   return solver_.restart(state_.method, t, y, has_transitions(motion.scene));
 }
 
-// With keep_contact: tells each excursion of N below zero in the last step, at its instant, from t_from to t_to. What
-// the solver knows beyond the time that is asked for waits: an input may yet change it.
+// With keep_contact: reports each instant in [t_from, t_to] at which N falls below zero in the last step. What the
+// solver has computed beyond the requested time is reported later, because an input may still change it.
 void Simulation::report_pulls(double t_from, double t_to) {
   if (!state_.motion.keep_contact || !(t_to > t_from)) return;
   double t;
@@ -135,9 +136,9 @@ solver::Outcome Simulation::run_to(double t) {
   const long long work_per_step = large ? work_per_multibody_step : 1;
   for (long long work = 0; !solver_.reaches(t);) {
     if (work >= most_work)
-      return failure_ = "it took all the internal steps that one call may; ask for shorter steps", Outcome::failed;
-    // CVODE steps past the end of a varying input's step: the polynomial may go on, and a history that was cut short is
-    // lost. Runge-Kutta has none to lose.
+      return failure_ = "one call may take no more internal steps; use shorter communication steps", Outcome::failed;
+    // CVODE may step past the communication point although an input varies: the input's polynomial may go on there, and
+    // a step that is cut short costs CVODE its history. Runge-Kutta has no history to lose.
     if (state_.motion.inputs.varies && solver_.method() == solver::Method::runge_kutta) solver_.stop_before(t);
     const double t_before = solver_.known_until();
     const Outcome outcome = solver_.step();
@@ -177,7 +178,8 @@ void Simulation::move_to(double t) {
   state_.y_known = reading_fresh_ = false;
 }
 
-// What a step needs beyond reading a solution that is known: changes taken over, internal steps.
+// What a communication step needs if the solution is not known up to t yet: pending changes take effect, and the
+// solver takes internal steps.
 solver::Outcome Simulation::extend_to(double t) {
   failure_ = nullptr;
   solver::Outcome outcome = settle_changes() ? solver::Outcome::stepped : solver::Outcome::failed;

@@ -7,11 +7,12 @@
 
 namespace wheel {
 
-// As parts of the length of a piece. Nodes closer than this magnify rounding: measured, 50 times at 0.06, 1e6 times at
-// 0.02. The first piece starts with steps much smaller than the motion needs, and is spread more widely.
+// Smallest distance of two nodes, as a fraction of the length of a piece. Close nodes magnify rounding errors: 50 times
+// at 0.06, a million times at 0.02. The first steps of a run are much smaller than the motion needs, so nodes of the
+// first piece are kept farther apart.
 static constexpr double least_gap = 0.06, least_first_gap = 0.14;
-// As a part of the largest gap: where steps shrink this fast the motion changes its character, and one polynomial must
-// not span the change.
+// As a fraction of the largest distance of two nodes: where steps shrink this fast the motion changes its character,
+// and one polynomial must not span the change.
 static constexpr double sudden = 0.25;
 
 bool Track::begin(double t, const double* y, const double* y_dot) {

@@ -29,7 +29,7 @@ void Orbit::take_half() {
     if (fall_[i] > T1_) later_fall_[later_falls_++] = period - (T2_ - fall_[i]);
 }
 
-// T1 + k L; `rest` is what its rounding took away.
+// T1 + k L, with L = T2 - T1; `rest` is the rounding error of the sum.
 double Orbit::begin_of(double k, double* rest) const {
   const double length = T2_ - T1_, product = k * length, sum = T1_ + product;
   const double back = sum - product;  // the part of T1 that went into the sum
@@ -37,7 +37,7 @@ double Orbit::begin_of(double k, double* rest) const {
   return sum;
 }
 
-// The sum of k halves, of which each second one is the mirror image of the one before: with d the way of O in the
+// The sum of k halves, each the mirror image of the one before: with d the displacement of O in the
 // first, pairs add up to 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta), n = floor(k / 2).
 Orbit::Half Orbit::half_at(double k) const {
   Half half;

@@ -11,7 +11,7 @@ namespace wheel {
 namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-// N, N m: far beyond any wheel. Above it the products of loads and parameters would not be finite.
+// Largest input, N or N m: far above any real load. Products of larger loads with the parameters would overflow.
 constexpr double strongest = 1e300;
 
 struct Reader {

@@ -57,7 +57,7 @@ class Solution {
     return spare;
   }
 
-  // The margin's fall through zero in the last step (Illinois). A slip starts at margin zero: left out.
+  // The margin's fall through zero in the last step (Illinois). Its zero at the start, after a release, is left out.
   double fall() {
     double hi = solver_.t(), g_hi = margin(solver_.y()), lo = hi, g_lo = -1;
     for (int i = 0; i < 40 && g_lo <= 0; ++i) {

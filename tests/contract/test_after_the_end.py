@@ -40,7 +40,7 @@ def test_after_an_ending_no_step_of_any_length_is_answered_with_ok_and_the_refus
     for h in (0.0, 1e-300, 1e-12, 0.1, 1e6):
         assert w.step(h) == ERROR
         (message,) = w.take_messages()
-        assert message.text == f"fmi2DoStep: the wheel {what} at t = {told(end)} s: restore a state or reset."
+        assert message.text == f"fmi2DoStep: the wheel {what} at t = {told(end)} s. Restore a state or reset."
     assert w.set(s=0.01) == ERROR and what in w.take_messages()[0].text
     assert (w.bits(), w.status(TERMINATED), w.status(LAST_SUCCESSFUL_TIME)) == (bits, 1, end)
 
@@ -68,7 +68,7 @@ def test_times_in_messages_have_the_digits_they_need(wheel):
     for t, text in ((0.3, "0.3"), (0.1 + 0.2, "0.30000000000000004"), (1e-7, "1e-07"), (100.0, "100"), (1e22, "1e+22")):
         w.time = t
         assert w.step(1.0) == ERROR
-        assert w.take_messages()[0].text == f"fmi2DoStep from {text} s: the wheel stands at 0.1 s."
+        assert w.take_messages()[0].text == f"fmi2DoStep from {text} s: the FMU has reached 0.1 s."
 
 
 def test_other_states_are_told_by_their_names(wheel):

@@ -29,7 +29,7 @@ def test_a_healthy_run_is_silent_unless_logging_is_switched_on(wheel):
     t, sentence = re.fullmatch(r"t = ([\d.]+) s: (.*)", events[0].text).groups()
     assert sentence == "stick, omega_z is held at zero."
     assert abs(float(t) - FIRST_STICK) < 1e-6  # measured 1e-9; the release that follows is 0.1 s later
-    assert {text.split(": ")[1].split(",")[0] for _, _, text in events} == {"stick", "release", "slip reverses"}
+    assert {text.split(": ")[1].split(",")[0] for _, _, text in events} == {"stick", "release", "reversal"}
 
 
 def test_nothing_is_written_to_the_standard_streams(wheel, capfd):

@@ -34,7 +34,7 @@ REALS = ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s", "theta_start", "psi_dot
 mistakes = st.fixed_dictionaries(
     {}, optional={**dict.fromkeys(REALS, anything), **dict.fromkeys(CHOICES, anything_whole)}
 )
-absurd_loads = st.fixed_dictionaries({}, optional=dict.fromkeys(INPUTS, anything))
+extreme_loads = st.fixed_dictionaries({}, optional=dict.fromkeys(INPUTS, anything))
 
 
 class FMU2SilentWheel(FMU2Wheel):
@@ -47,7 +47,7 @@ class FMU2SilentWheel(FMU2Wheel):
 @pytest.mark.parametrize("kind", [FMU2Wheel, FMU2SilentWheel])
 def test_any_values_give_finite_outputs_or_a_sentence(fmu, description, kind):
     @quick(60, shrink=kind is FMU2Wheel)
-    @given(mistakes, absurd_loads)
+    @given(mistakes, extreme_loads)
     def holds(start: Values, load: Values) -> None:
         with crowd(fmu, description, kind) as make:
             assert is_honest(play_anything(make(), start, load))

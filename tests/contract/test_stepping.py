@@ -61,7 +61,7 @@ def test_a_start_time_of_a_billion_seconds_costs_no_bit(wheel):
     late = wheel().start(start=1e9, s=0.03)
     assert late.run(1e9 + times) == wheel().start(s=0.03).run(times)
     assert late.fmi2DoStep(late.component, 1e9 + 4.875, 0.125, 1) == ERROR  # the partner: a repeated step is noticed
-    assert late.take_messages()[0].text == "fmi2DoStep from 1000000004.875 s: the wheel stands at 1000000005 s."
+    assert late.take_messages()[0].text == "fmi2DoStep from 1000000004.875 s: the FMU has reached 1000000005 s."
 
 
 def test_a_step_of_no_length_changes_nothing(wheel):
@@ -94,8 +94,8 @@ def test_no_step_leads_past_the_stop_time(wheel):
         (0.5, np.nan, "times must be finite"),
         (np.nan, 0.1, "times must be finite"),
         (0.5, np.inf, "times must be finite"),
-        (0.4, 0.1, "the wheel stands at 0.5 s"),
-        (0.5 + 1e-6, 0.1, "the wheel stands at 0.5 s"),
+        (0.4, 0.1, "the FMU has reached 0.5 s"),
+        (0.5 + 1e-6, 0.1, "the FMU has reached 0.5 s"),
     ],
 )
 def test_times_that_make_no_sense_are_refused_and_nothing_changes(wheel, t, h, why):

@@ -104,9 +104,9 @@ def test_fixed_parameters_and_calculated_variables_cannot_be_set_once_running(wh
         changeable = v.causality == "input" or v.variability == "tunable"
         assert w.set(**{v.name: w.get(v.name)[0]}) == (OK if changeable else ERROR), v.name
         told = [m.text for m in w.take_messages()]
-        why = "fixed after initialization" if v.causality == "parameter" else "calculated"
+        why = "cannot be set after initialization" if v.causality == "parameter" else "is calculated and cannot be set"
         kind = "Integer" if v.type == "Enumeration" else v.type
-        assert told == ([] if changeable else [f'fmi2Set{kind}: "{v.name}" is {why}.'])
+        assert told == ([] if changeable else [f'fmi2Set{kind}: "{v.name}" {why}.'])
     before = wheel()
     assert {before.set(**{name: 0}) for name in (*before.reals, *before.integers)} == {ERROR}
 

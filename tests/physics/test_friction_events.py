@@ -92,26 +92,26 @@ def test_friction_takes_energy_only_while_the_wheel_rolls(library: Library) -> N
     assert np.abs(free / free[0] - 1).max() < 1e-12  # measured 1.4e-13
 
 
-def late_slips(library: Library, tolerance: float | None, s: float = 0.03) -> tuple[list[int], float]:
+def late_releases(library: Library, tolerance: float | None, s: float = 0.03) -> tuple[list[int], float]:
     """Transitions in 30 s as modes, and the energy at 30 s, J."""
     run = library.simulate([0.0, 30.0], tolerance, s=s)
     return [mode for _, mode in run.events], run["E"][-1]
 
 
-def test_the_ever_weaker_slips_of_a_long_run_are_those_of_the_independent_reference(library: Library) -> None:
+def test_the_ever_weaker_releases_of_a_long_run_are_those_of_the_independent_reference(library: Library) -> None:
     want = solve(Wheel(s=0.03), Start(), [0.0, 30.0], rtol=1e-11)
-    modes, energy = late_slips(library, None)
+    modes, energy = late_releases(library, None)
     assert modes == [mode for _, mode in want.events[1:]]
     assert len(modes) == 150
     assert abs(energy - want["E"][-1]) < 5e-6  # J; measured 1.3e-6, most of it the reference's
-    assert abs(late_slips(library, None, s=0.03 * (1 + 1e-4))[1] - want["E"][-1]) > 5e-6  # measured 3.0e-4
+    assert abs(late_releases(library, None, s=0.03 * (1 + 1e-4))[1] - want["E"][-1]) > 5e-6  # measured 3.0e-4
 
 
 def late_instants(library: Library, tolerance: float | None) -> list[float]:
     return [t for t, _ in library.simulate([0.0, 150.0], tolerance, s=0.03).events if t > 140]
 
 
-def test_no_weak_slip_is_lost_or_misplaced_between_seconds_140_and_150(library: Library) -> None:
+def test_no_weak_release_is_lost_or_misplaced_between_seconds_140_and_150(library: Library) -> None:
     def gap(tolerance: float | None) -> float:
         found, exact = late_instants(library, tolerance), late_instants(library, 1e-12)
         assert len(exact) == 56  # where |omega_z| stays below 1e-4 rad/s

@@ -1,4 +1,4 @@
-"""Hours of the paper's wheel: energy, phase, memory and cost per simulated second; slips that grow ever weaker.
+"""Hours of the paper's wheel: energy, phase, memory and cost per simulated second; releases that grow ever weaker.
 
 Times in s of the model unless said. Memory is the process's own, from /proc/self/statm.
 """
@@ -116,7 +116,7 @@ def study(library: Library, full_day: bool) -> list[LongRun]:
 
 
 def resolved(library: Library, duration: float = HOUR) -> list[tuple[float, float, float]]:
-    """(tolerance, transitions, energy at the end in J) of the friction scene: how far the weak slips are resolved."""
+    """(tolerance, transitions, energy at the end in J) of the friction scene: are weak releases resolved?"""
     found = []
     for tolerance in (1e-6, 1e-8, 1e-10, 1e-12):
         with library.wheel() as wheel:

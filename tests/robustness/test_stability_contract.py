@@ -78,6 +78,6 @@ def test_one_call_takes_at_most_a_million_internal_steps_and_shorter_calls_go_on
         assert wheel.set(**values) == careful.set(**values) == OK
         assert wheel.initialise() == careful.initialise() == OK
         assert wheel.step_to(40.0) == ERROR
-        assert wheel.sentences[-1].endswith("it took all the internal steps that one call may; ask for shorter steps.")
+        assert wheel.sentences[-1].endswith("may take no more internal steps; use shorter communication steps.")
         for t in (5.0, 10.0):
             assert careful.step_to(t) == OK

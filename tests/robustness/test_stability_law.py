@@ -1,4 +1,4 @@
-"""The regularized law tends to the exact one at first order; the choice of method; hours of weak slips; drift."""
+"""The regularized law tends to the exact one at first order; the choice of method; hours of weak releases; drift."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_the_automatic_method_follows_the_decay_number(library: Library, factor:
     assert regularized.chosen_method(library, law) == method
 
 
-def test_ten_minutes_of_weak_slips_keep_energy_spin_and_cost(library: Library) -> None:
+def test_ten_minutes_of_weak_releases_keep_energy_spin_and_cost(library: Library) -> None:
     done = long_runs.long_run(library, "friction", FRICTION, 600.0)
     energy = done.energy[0]
     assert done.status == 0
@@ -68,7 +68,7 @@ def test_ten_minutes_of_weak_slips_keep_energy_spin_and_cost(library: Library) -
     assert np.diff(rhs)[-10:].mean() < 1.1 * np.diff(rhs)[5:15].mean()  # measured 0.97
 
 
-def test_the_slips_of_ten_minutes_do_not_depend_on_the_tolerance(library: Library) -> None:
+def test_the_releases_of_ten_minutes_do_not_depend_on_the_tolerance(library: Library) -> None:
     counts = []
     for tolerance in (1e-6, 1e-9):
         with library.wheel() as wheel:

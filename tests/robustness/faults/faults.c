@@ -66,7 +66,7 @@ static int step(fmi2Component c, int k, Life* life) {
   return WELL(unit.get_real(c, outputs, OUTPUTS, life->rows[life->count++]));
 }
 
-/* From instantiated; passes sticks and slips. */
+/* From instantiated; passes sticks and releases. */
 static int run(fmi2Component c, Life* life) {
   static const fmi2ValueReference integers[] = {ref_formulation, ref_friction_law, ref_method}, s = ref_s;
   const double friction = 0.3;
