@@ -104,7 +104,7 @@ void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) 
   const auto expand_wide = [&](auto attempt) {
     double margin;
     attempt.set_size(size_);
-    attempt.evaluate_end(&margin) && attempt.evaluate_interior();
+    if (rates_ == 12 && attempt.evaluate_end(&margin)) attempt.evaluate_interior();
     attempt.expand();
   };
   if (width_of(problem.states) == 8)

@@ -2,7 +2,7 @@
 //
 // Two engines behind one interface: CVODE (Adams, BDF) for smooth and stiff motion, DOP853 for motion that jumps.
 // Knows no wheel and no FMI. Time is the owner's own clock (s). Steps never see the times at which results are read, so
-// the communication grid cannot change a bit of the solution; only a stop time that the owner sets ends a step.
+// the communication grid cannot change a bit of the solution; only a stop time that the owner sets cuts a step short.
 #pragma once
 
 #include <cmath>

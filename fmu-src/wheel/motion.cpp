@@ -7,9 +7,13 @@
 #include "scene.hpp"
 
 namespace wheel {
-namespace {
 
-constexpr double upright = 1.5707963267948966;
+double angle_from_flat(double theta) {
+  constexpr double upright = 1.5707963267948966;
+  return upright - std::fabs(theta - upright);
+}
+
+namespace {
 
 Motion& of(void* owner) { return *static_cast<Motion*>(owner); }
 
@@ -22,7 +26,7 @@ const WheelScene& scene_at(Motion& motion, double t) {
 // weight. A force that is negative only by rounding does not count.
 double margin(const Motion& motion, const double* y, double N) {
   constexpr double rounding = 1e-9;
-  const double height = upright - std::fabs(y[motion.formulation->tilt_index] - upright) - flat_angle;
+  const double height = angle_from_flat(y[motion.formulation->tilt_index]) - flat_angle;
   const double contact = N / motion.weight + rounding;
   return motion.keep_contact || height < contact ? height : contact;
 }

@@ -13,6 +13,9 @@ namespace wheel {
 // Angle from lying flat, rad, below which the wheel counts as flat: at the paper's scale about 1e-8 s before theta = 0.
 inline constexpr double flat_angle = 1e-7;
 
+// rad, from the side that is nearer.
+double angle_from_flat(double theta);
+
 // What the right-hand side and the watched functions need besides time and state.
 struct Motion {
   const WheelFormulation* formulation = nullptr;

@@ -1,7 +1,6 @@
 // A run whose motion is unfolded: its orbit is built at the first step, kept while it is that of the run, and read.
 #include <algorithm>
 #include <cstring>
-#include <limits>
 
 #include "decisions.hpp"
 #include "simulation.hpp"
@@ -21,7 +20,6 @@ void Simulation::build_orbit() {
   const Motion& motion = start.motion;
   const Orbit::Kind kind = orbit_.build(problem_of(start.motion), motion.tolerance,
                                         motion.keep_contact ? normal_force : nullptr, start.y, solver_);
-  orbit_end_ = kind == Orbit::Kind::ended ? orbit_.end_time() : std::numeric_limits<double>::infinity();
   state_.unfolded = kind != Orbit::Kind::refused;
   std::memcpy(orbit_origin_, state_.parameters, sizeof state_.parameters);
   orbit_origin_[first_input] = state_.unfolded ? motion.tolerance : 0;

@@ -30,6 +30,7 @@ Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Force force,
   counters_ = {};
   half_ = {};
   kind_ = Kind::refused;
+  end_time_ = std::numeric_limits<double>::infinity();
   if (rests(problem, y0)) return kind_ = Kind::folded;
   kind_ = follow(problem, force, y0, solver);
   counters_ = solver.counters();

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <complex>
+#include <limits>
 #include "solver.hpp"
 #include "track.hpp"
 
@@ -27,7 +28,7 @@ class Orbit {
 
   using Force = double (*)(void* owner, double t, const double* y);
 
-  // Integrates `problem` (the reduced form of a free wheel; its `event` and `bends` are not asked for) from y0 by
+  // Integrates `problem` (the reduced form of a free wheel; its `event` is not asked for) from y0 by
   // CVODE's Adams method. force: the normal force N, where the instants at which it falls below zero are wanted, else
   // null. The solver has to be started anew before anything else is asked of it; its counters are those of this run. A
   // pure function of problem, tolerance and y0: the same bits in every process.
@@ -35,7 +36,7 @@ class Orbit {
 
   // The state (out, 8 entries) at t >= 0.
   void read(double t, double* y) const;
-  double end_time() const { return end_time_; }
+  double end_time() const { return end_time_; }  // s; infinite where the motion never ends
   // What the integration took; zero for a wheel in steady motion.
   const solver::Counters& counters() const { return counters_; }
   double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; folded only
@@ -72,7 +73,7 @@ class Orbit {
 
   Track track_;  // from the start past T2
   Kind kind_ = Kind::refused;
-  double end_time_ = 0;
+  double end_time_ = std::numeric_limits<double>::infinity();
   solver::Counters counters_ = {};
   double T1_ = 0, T2_ = 0;
   double first_[states] = {}, second_[states] = {};  // at T1 and T2

@@ -138,7 +138,6 @@ class Simulation {
   solver::Solver solver_;
   Orbit orbit_;
   bool orbit_ready_ = false;                   // orbit_ is that of the present run
-  double orbit_end_ = 0;                       // s: the end of the run, or infinite
   double orbit_origin_[first_input + 1] = {};  // parameters and tolerance that orbit_ was built for
   const char* failure_ = nullptr;              // why the last call failed
   Reading reading_;

@@ -20,8 +20,6 @@ constexpr long long work_per_transition = 20;
 // The work of one internal step of the multibody form, whose system is larger.
 constexpr long long work_per_multibody_step = 8;
 
-constexpr double upright = 1.5707963267948966;
-
 // For messages: an instant is not found more exactly than to a nanosecond.
 double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 1e9) / 1e9 : t; }
 
@@ -122,14 +120,14 @@ void Simulation::tell_pull(double t) const {
 
 bool Simulation::knows(double t) const {
   if (!state_.moving) return false;
-  return state_.unfolded ? orbit_ready_ && t <= orbit_end_ : solver_.reaches(t);
+  return state_.unfolded ? orbit_ready_ && t <= orbit_.end_time() : solver_.reaches(t);
 }
 
 solver::Outcome Simulation::run_to(double t) {
   using solver::Outcome;
   const bool starts = !state_.moving || state_.unfolded;  // a restored state may claim a motion that does not unfold
   if (state_.unfolded && !orbit_ready_) enter_orbit();
-  if (state_.unfolded) return t <= orbit_end_ ? Outcome::stepped : Outcome::ended;
+  if (state_.unfolded) return t <= orbit_.end_time() ? Outcome::stepped : Outcome::ended;
   if (starts && !start_solver()) return Outcome::failed;
   report_pulls(state_.t, std::fmin(solver_.known_until(), t));
   const bool large = state_.motion.formulation == &wheel_multibody;
@@ -153,9 +151,9 @@ solver::Outcome Simulation::run_to(double t) {
 }
 
 Progressed Simulation::end_run() {
-  move_to(state_.unfolded ? orbit_end_ : solver_.event_time());
+  move_to(state_.unfolded ? orbit_.end_time() : solver_.event_time());
   const double theta = y_now()[state_.motion.formulation->tilt_index];
-  const bool flat = upright - std::fabs(theta - upright) < 2 * flat_angle;
+  const bool flat = angle_from_flat(theta) < 2 * flat_angle;
   state_.ending = flat ? Ending::fell_flat : Ending::lifted_off;
   const char* sentence = flat ? "T%s: the model ends there." : "T%s, theta = %.6g rad: the model ends there.";
   tell(Topic::discard, sentence, ending() + 1, theta);

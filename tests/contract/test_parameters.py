@@ -82,6 +82,17 @@ def test_the_limits_that_are_allowed_are_taken(wheel):
     assert initialize(wheel(), J_z=1.8 * (1 + 1e-11))[0] == ERROR
 
 
+@pytest.mark.parametrize("s", [0.0, 0.03])
+def test_a_weight_that_moves_nothing_is_none(wheel, s):
+    """The time scale sqrt((r_0 + r) / g) of a wheel in motion is no measure of it where g is next to nothing."""
+    places = []
+    for g in (0.0, 1e-300):
+        w = wheel().start(g=g, s=s)
+        assert w.step(5.0) == OK, w.sentences
+        places.append(w.get("X_O", "theta", "psi", "phi"))
+    assert places[0] == pytest.approx(places[1], abs=1e-12)  # measured: 0
+
+
 def test_faulty_parameters_can_be_corrected_in_initialization_mode(wheel):
     w = wheel()
     assert w.set(m=-1.0) == OK
