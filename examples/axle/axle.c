@@ -19,10 +19,8 @@ const int model_state_count = state_count;
 
 const char* model_derive(const double* u, double* d) {
   (void)d;
-  for (int i = m_B; i <= J_3; ++i)
-    if (!(u[i] > 0)) return "m_B, J_1, J_2 and J_3 must be above 0.";
   if (!(u[b] > 0) || !(u[R] > 0)) return "b and R must be above 0 m.";
-  return 0;
+  return body_fault(u + m_B);
 }
 
 void model_start(const Now* now, double* x) {
@@ -37,8 +35,6 @@ void model_start(const Now* now, double* x) {
   x[x_psi] = u[psi_start];
 }
 
-static int coupled(const Now* now) { return now->begin >= now->u[t_couple] - 1e-9; }
-
 /* Both hubs with their forces; before t_couple they carry the weight alone. */
 static void hubs(const Now* now, const Body* body, Hub hub[wheel_count]) {
   const double* u = now->u;
@@ -47,9 +43,10 @@ static void hubs(const Now* now, const Body* body, Hub hub[wheel_count]) {
     const double p[3] = {-u[a], i ? -u[b] : u[b], 0};
     const double share = -u[m_B] * u[g] / wheel_count;
     hub_read(u + X_O_each + i * wheel_inputs, body, p, (Steer){0, 0}, bushing, &hub[i]);
-    if (!coupled(now)) hub[i].M_1 = hub[i].M_2 = 0;
+    const int coupled = reached(now, t_couple);
+    if (!coupled) hub[i].M_1 = hub[i].M_2 = 0;
     hub[i].M_3 = -u[M_each + i * wheel_parameters];
-    for (int j = 0; j < 3; ++j) hub[i].f[j] = coupled(now) ? -u[k] * hub[i].d[j] - u[c] * hub[i].d_dot[j] : 0;
+    for (int j = 0; j < 3; ++j) hub[i].f[j] = coupled ? -u[k] * hub[i].d[j] - u[c] * hub[i].d_dot[j] : 0;
     hub[i].f[2] += share;
   }
 }
@@ -74,7 +71,7 @@ void model_rates(const Now* now, const double* x, double* x_dot) {
   Hub hub[wheel_count];
   body_read(x, &body);
   for (int i = 0; i < state_count; ++i) x_dot[i] = 0;
-  if (!coupled(now)) {
+  if (!reached(now, t_couple)) {
     for (int i = 0; i < 3; ++i) x_dot[body_r + i] = body.v[i];
     return;
   }
@@ -108,16 +105,9 @@ void model_outputs(const Now* now, const double* x, double* y) {
   Hub hub[wheel_count];
   body_read(x, &body);
   hubs(now, &body, hub);
-  const double heading = atan2(body.R[1][0], body.R[0][0]), middle[3] = {-u[a], 0, 0};
-  double moving[3], to_middle[3], velocity[3];
-  cross(body.w, middle, moving);
-  to_fixed(body.R, middle, to_middle);
-  to_fixed(body.R, moving, velocity);
-  y[X] = body.r[0] + to_middle[0];
-  y[Y] = body.r[1] + to_middle[1];
-  y[psi] = x[x_psi] + remainder(heading - x[x_psi], 6.283185307179586);
-  y[v] = (body.v[0] + velocity[0]) * cos(heading) + (body.v[1] + velocity[1]) * sin(heading);
-  y[omega] = body.w_fixed[2];
+  const double middle[3] = {-u[a], 0, 0};
+  const Track track = body_track(&body, middle, x[x_psi]);
+  y[X] = track.X, y[Y] = track.Y, y[psi] = track.psi, y[v] = track.v, y[omega] = track.omega;
   for (int i = 0; i < wheel_count; ++i) {
     double* of = y + F_X_each + i * wheel_outputs;
     to_fixed(body.R, hub[i].f, of);

@@ -47,8 +47,8 @@ static int weigh(const double* u, double* share) {
 }
 
 const char* model_derive(const double* u, double* d) {
-  for (int i = m_B; i <= J_3; ++i)
-    if (!(u[i] > 0)) return "m_B, J_1, J_2 and J_3 must be above 0.";
+  const char* fault = body_fault(u + m_B);
+  if (fault) return fault;
   if (!weigh(u, d)) return "The hubs must not lie on one line.";
   double x[2] = {0, 0}, n[2] = {0, 0};
   for (int i = 0; i < wheel_count; ++i) {
@@ -68,8 +68,6 @@ void model_start(const Now* now, double* x) {
   body_place(x, r, u[psi_start], u[v_start]);
   x[x_psi] = u[psi_start];
 }
-
-static int coupled(const Now* now) { return now->begin >= now->u[t_couple] - 1e-9; }
 
 static Steer steering(const Now* now, int i) {
   const double* u = now->u;
@@ -95,18 +93,19 @@ static double braking(const double* u, int i) {
 static void hubs(const Now* now, const Body* body, Hub hub[wheel_count]) {
   const double* u = now->u;
   const Bushing bushing = {u[k_a], u[c_a]};
+  const int coupled = reached(now, t_couple);
   for (int i = 0; i < wheel_count; ++i) {
     const double p[3] = {*of_wheel(u, x_each, i), *of_wheel(u, y_each, i), u[R] - u[h_B]};
     hub_read(u + X_O_each + i * wheel_inputs, body, p, steering(now, i), bushing, &hub[i]);
     hub[i].f[2] = -now->d[i];
-    if (!coupled(now)) {
+    if (!coupled) {
       hub[i].M_1 = hub[i].M_2 = 0;
       continue;
     }
     for (int j = 0; j < 2; ++j) hub[i].f[j] = -u[k_h] * hub[i].d[j] - u[c_h] * hub[i].d_dot[j];
     hub[i].f[2] = -strut(u, i, now->d[i], &hub[i]);
   }
-  for (int i = 0; coupled(now) && i < wheel_count; ++i) {
+  for (int i = 0; coupled && i < wheel_count; ++i) {
     const int other = bar_partner[i];
     const double f = other < 0 ? 0 : *of_wheel(u, k_bar_each, i) * (hub[i].d[2] - hub[other].d[2]);
     hub[i].f[2] -= f;
@@ -121,7 +120,7 @@ void model_rates(const Now* now, const double* x, double* x_dot) {
   Hub hub[wheel_count];
   body_read(x, &body);
   memset(x_dot, 0, state_count * sizeof *x_dot);
-  if (!coupled(now)) {
+  if (!reached(now, t_couple)) {
     memcpy(x_dot + body_r, body.v, sizeof body.v);
     return;
   }
@@ -135,19 +134,12 @@ void model_rates(const Now* now, const double* x, double* x_dot) {
 }
 
 static void pose_outputs(const Now* now, const double* x, const Body* body, double* y) {
-  const double heading = atan2(body->R[1][0], body->R[0][0]);
   const double rear[3] = {now->d[at_x_R], 0, now->u[R] - now->u[h_B]};
-  double arm[3], turning[3], moving[3];
-  cross(body->w, rear, turning);
-  to_fixed((double (*)[3])body->R, rear, arm);
-  to_fixed((double (*)[3])body->R, turning, moving);
+  const Track track = body_track(body, rear, x[x_psi]);
   y[X] = body->r[0], y[Y] = body->r[1], y[Z] = body->r[2];
-  y[psi] = x[x_psi] + remainder(heading - x[x_psi], 6.283185307179586);
   y[roll] = asin(body->R[2][1]);
   y[pitch] = -asin(body->R[2][0]);
-  y[v] = (body->v[0] + moving[0]) * cos(heading) + (body->v[1] + moving[1]) * sin(heading);
-  y[omega] = body->w_fixed[2];
-  y[X_R] = body->r[0] + arm[0], y[Y_R] = body->r[1] + arm[1];
+  y[X_R] = track.X, y[Y_R] = track.Y, y[psi] = track.psi, y[v] = track.v, y[omega] = track.omega;
 }
 
 void model_outputs(const Now* now, const double* x, double* y) {

@@ -43,9 +43,19 @@ void component_load(Component* c, const char* name, const char* library, const c
   *(void**)&c->rates = function(handle, "fmi2GetRealOutputDerivatives");
   *(void**)&c->set_rates = function(handle, "fmi2SetRealInputDerivatives");
   *(void**)&c->step = function(handle, "fmi2DoStep");
+  *(void**)&c->status = function(handle, "fmi2GetRealStatus");
+  *(void**)&c->keep = function(handle, "fmi2GetFMUstate");
+  *(void**)&c->restore = function(handle, "fmi2SetFMUstate");
+  *(void**)&c->forget = function(handle, "fmi2FreeFMUstate");
   *(void**)&c->terminate = function(handle, "fmi2Terminate");
   *(void**)&c->release = function(handle, "fmi2FreeInstance");
   c->instance = c->instantiate(c->name, fmi2CoSimulation, guid, NULL, &c->callbacks, fmi2False, fmi2False);
   if (!c->instance) give_up("fmi2Instantiate gave no instance", name);
   c->setup(c->instance, fmi2False, 0, 0, fmi2False, 0);
+}
+
+void component_free(Component* c) {
+  c->forget(c->instance, &c->state);
+  c->terminate(c->instance);
+  c->release(c->instance);
 }

@@ -7,6 +7,7 @@
 typedef struct Component {
   char name[64];
   fmi2Component instance;
+  fmi2FMUstate state; /* the snapshot, kept from step to step */
   fmi2CallbackFunctions callbacks;
   fmi2InstantiateTYPE* instantiate;
   fmi2SetupExperimentTYPE* setup;
@@ -17,6 +18,10 @@ typedef struct Component {
   fmi2GetRealOutputDerivativesTYPE* rates;
   fmi2SetRealInputDerivativesTYPE* set_rates;
   fmi2DoStepTYPE* step;
+  fmi2GetRealStatusTYPE* status;
+  fmi2GetFMUstateTYPE* keep;
+  fmi2SetFMUstateTYPE* restore;
+  fmi2FreeFMUstateTYPE* forget;
   fmi2TerminateTYPE* terminate;
   fmi2FreeInstanceTYPE* release;
 } Component;
@@ -24,5 +29,6 @@ typedef struct Component {
 /* Says it and ends the program. */
 _Noreturn void give_up(const char* what, const char* of);
 void component_load(Component* c, const char* name, const char* library, const char* guid);
+void component_free(Component* c);
 
 #endif

@@ -1,17 +1,17 @@
-/* A co-simulation master in C, for what a step costs: master PLAN. plan.h has the plan.
+/* A co-simulation master in C: master PLAN. plan.h has the plan.
  *
- * Parallel master with fixed steps, as vehicles/master.py: values, and first derivatives if the plan says so. Prints
- * the recorded variables at the end, and medians over all steps of the time in the FMUs' calls. */
+ * Parallel master with fixed steps, as vehicles/master.py: values held, first derivatives, or rollback. Prints the
+ * table of recorded variables (`row`), which component ended the run and when if one did (`ended`), and medians over
+ * all steps of the time in the FMUs' calls. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
-#include "plan.h"
+#include "exchange.h"
 
 typedef struct Cost {
-  double *exchange, *steps, *of_component[max_components]; /* us, one per communication step */
+  double *steps, *of_component[max_components]; /* us, one per communication step */
 } Cost;
 
 static double microseconds(void) {
@@ -20,31 +20,7 @@ static double microseconds(void) {
   return 1e6 * (double)now.tv_sec + 1e-3 * (double)now.tv_nsec;
 }
 
-static void hand_over(const Transfer* t, int derivatives) {
-  static fmi2Integer ones[max_signals];
-  for (int i = 0; !ones[max_signals - 1] && i < max_signals; ++i) ones[i] = 1;
-  double values[max_signals], chosen[max_signals];
-  const Component* c = t->source;
-  if (derivatives)
-    c->rates(c->instance, t->outputs, (size_t)t->count, ones, values);
-  else
-    c->get(c->instance, t->outputs, (size_t)t->count, values);
-  for (int i = 0; i < t->sink_count; ++i) {
-    const Sink* s = &t->sinks[i];
-    for (int k = 0; k < s->count; ++k) chosen[k] = values[s->at[k]];
-    const Component* to = s->component;
-    const fmi2Status status = derivatives ? to->set_rates(to->instance, s->inputs, (size_t)s->count, ones, chosen)
-                                          : to->set(to->instance, s->inputs, (size_t)s->count, chosen);
-    if (status != fmi2OK) give_up("does not take an input", to->name);
-  }
-}
-
-static void exchange(const Plan* plan, int derivatives) {
-  for (int i = 0; i < plan->transfer_count; ++i) hand_over(&plan->transfers[i], 0);
-  for (int i = 0; derivatives && i < plan->transfer_count; ++i) hand_over(&plan->transfers[i], 1);
-}
-
-static void initialize(const Plan* plan) {
+static void initialize(Plan* plan) {
   for (int i = 0; i < plan->component_count; ++i)
     if (plan->components[i].enter(plan->components[i].instance) != fmi2OK)
       give_up("does not enter initialization mode", plan->components[i].name);
@@ -54,22 +30,74 @@ static void initialize(const Plan* plan) {
       give_up("does not leave initialization mode", plan->components[i].name);
 }
 
-static void run(const Plan* plan, long count, Cost* cost) {
-  for (long i = 0; i < count; ++i) {
-    const double t = (double)i * plan->step, h = (double)(i + 1) * plan->step - t, begin = microseconds();
-    exchange(plan, plan->derivatives);
-    double last = microseconds();
-    cost->exchange[i] = last - begin;
-    for (int k = 0; k < plan->component_count; ++k) {
-      const Component* c = &plan->components[k];
-      if (c->step(c->instance, t, h, fmi2True) != fmi2OK) give_up("ended the run", c->name);
-      const double now = microseconds();
-      cost->of_component[k][i] = now - last;
-      last = now;
-    }
-    cost->steps[i] = last - begin;
+static void print_row(const Plan* plan, double t) {
+  printf("row %.17g", t);
+  for (int i = 0; i < plan->record_count; ++i) {
+    const Record* r = &plan->records[i];
+    double value;
+    r->component->get(r->component->instance, &r->variable, 1, &value);
+    printf(" %.17g", value);
   }
-  exchange(plan, plan->derivatives);
+  printf("\n");
+}
+
+/* Takes or undoes a step of one component; 0 where it ended the run. */
+typedef int Act(Component* c, double t, double h);
+
+static int take(Component* c, double t, double h, fmi2Boolean for_good) {
+  if (c->step(c->instance, t, h, for_good) == fmi2OK) return 1;
+  double last = t;
+  c->status(c->instance, fmi2LastSuccessfulTime, &last);
+  printf("ended %s %.17g\n", c->name, last);
+  return 0;
+}
+
+static int take_for_good(Component* c, double t, double h) { return take(c, t, h, fmi2True); }
+static int take_again(Component* c, double t, double h) { return take(c, t, h, fmi2False); }
+static int try_out(Component* c, double t, double h) {
+  return c->keep(c->instance, &c->state) == fmi2OK && take(c, t, h, fmi2False);
+}
+static int undo(Component* c, double t, double h) {
+  (void)t, (void)h;
+  return c->restore(c->instance, c->state) == fmi2OK;
+}
+
+static int all(Plan* plan, Act* act, double t, double h, const Cost* cost, long i) {
+  double last = microseconds();
+  for (int k = 0; k < plan->component_count; ++k) {
+    if (!act(&plan->components[k], t, h)) return 0;
+    const double now = microseconds();
+    cost->of_component[k][i] += now - last;
+    last = now;
+  }
+  return 1;
+}
+
+static int step(Plan* plan, double t, double h, const Cost* cost, long i) {
+  if (plan->exchange != rollback) return all(plan, take_for_good, t, h, cost, i);
+  predict(plan, h, i == 0);
+  if (!all(plan, try_out, t, h, cost, i)) return 0;
+  exchange(plan, 1);
+  if (!all(plan, undo, t, h, cost, i)) return 0;
+  correct(plan, h);
+  return all(plan, take_again, t, h, cost, i);
+}
+
+/* Returns the number of whole steps. */
+static long run(Plan* plan, long count, const Cost* cost) {
+  for (long i = 0; i <= count; ++i) {
+    const double t = (double)i * plan->step, h = (double)(i + 1) * plan->step - t;
+    double begin = microseconds();
+    exchange(plan, plan->exchange != held);
+    if (i % plan->every == 0) {
+      const double before = microseconds();
+      print_row(plan, t);
+      begin += microseconds() - before;
+    }
+    if (i == count || !step(plan, t, h, cost, i)) return i;
+    cost->steps[i] = microseconds() - begin;
+  }
+  return count;
 }
 
 static int ascending(const void* a, const void* b) {
@@ -82,14 +110,15 @@ static double median(double* x, long n) {
   return x[n / 2];
 }
 
-static void print(const Plan* plan, long count, Cost* cost) {
-  for (int i = 0; i < plan->record_count; ++i) {
-    const Record* r = &plan->records[i];
-    double value;
-    r->component->get(r->component->instance, &r->variable, 1, &value);
-    printf("record %s %u %.17g\n", r->component->name, r->variable, value);
+static void print_costs(const Plan* plan, long count, const Cost* cost) {
+  double* rest = calloc((size_t)count, sizeof *rest);
+  if (!rest) give_up("out of memory", "master");
+  for (long i = 0; i < count; ++i) {
+    rest[i] = cost->steps[i];
+    for (int k = 0; k < plan->component_count; ++k) rest[i] -= cost->of_component[k][i];
   }
-  printf("exchange %.4f us\n", median(cost->exchange, count));
+  printf("exchange %.4f us\n", median(rest, count));
+  free(rest);
   for (int k = 0; k < plan->component_count; ++k)
     printf("step %s %.4f us\n", plan->components[k].name, median(cost->of_component[k], count));
   printf("total %.4f us\n", median(cost->steps, count));
@@ -101,18 +130,15 @@ int main(int argc, char** argv) {
   if (!plan) give_up("out of memory", argv[0]);
   plan_read(argv[1], plan);
   const long count = lround(plan->stop / plan->step);
-  double* all = calloc((size_t)count * (size_t)(plan->component_count + 2), sizeof *all);
-  if (!all) give_up("out of memory", argv[0]);
-  Cost cost = {.exchange = all, .steps = all + count};
-  for (int k = 0; k < plan->component_count; ++k) cost.of_component[k] = all + (k + 2) * count;
+  double* every = calloc((size_t)count * (size_t)(plan->component_count + 1), sizeof *every);
+  if (!every) give_up("out of memory", argv[0]);
+  Cost cost = {.steps = every};
+  for (int k = 0; k < plan->component_count; ++k) cost.of_component[k] = every + (k + 1) * count;
   initialize(plan);
-  run(plan, count, &cost);
-  print(plan, count, &cost);
-  for (int k = 0; k < plan->component_count; ++k) {
-    plan->components[k].terminate(plan->components[k].instance);
-    plan->components[k].release(plan->components[k].instance);
-  }
-  free(all);
+  const long done = run(plan, count, &cost);
+  if (done) print_costs(plan, done, &cost);
+  for (int k = 0; k < plan->component_count; ++k) component_free(&plan->components[k]);
+  free(every);
   free(plan);
   return 0;
 }

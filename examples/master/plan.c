@@ -65,7 +65,13 @@ static void read_record(Plan* plan) {
 static void read_run(Plan* plan) {
   plan->step = strtod(needed("run"), NULL);
   plan->stop = strtod(needed("run"), NULL);
-  plan->derivatives = !strcmp(needed("run"), "derivatives");
+  static const char* const names[] = {"held", "derivatives", "rollback"};
+  const char* name = needed("run");
+  int which = 0;
+  while (which < 3 && strcmp(name, names[which])) ++which;
+  if (which == 3) give_up("is not an exchange; held, derivatives and rollback are", name);
+  plan->exchange = (Exchange)which;
+  plan->every = strtol(needed("run"), NULL, 10);
 }
 
 void plan_read(const char* file, Plan* plan) {
@@ -83,5 +89,6 @@ void plan_read(const char* file, Plan* plan) {
       if (!strcmp(first, lines[i].word)) lines[i].read(plan);
   }
   fclose(input);
-  if (!(plan->step > 0) || !(plan->stop > 0)) give_up("the plan needs a line `run` with step and stop above 0", file);
+  if (!(plan->step > 0) || !(plan->stop > 0) || plan->every < 1)
+    give_up("the plan needs a line `run` with step, stop and every above 0", file);
 }

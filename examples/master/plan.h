@@ -4,8 +4,8 @@
  *   real NAME REFERENCE VALUE               a start value of it
  *   transfer NAME REFERENCE...              outputs of it that are read together ...
  *   sink NAME REFERENCE=INDEX...            ... and the inputs they go to, by their index among those outputs
- *   record NAME REFERENCE                   a variable that is printed at the end
- *   run STEP STOP EXCHANGE                  s, s, held or derivatives
+ *   record NAME REFERENCE                   a variable of the table that is printed
+ *   run STEP STOP EXCHANGE EVERY            s, s, held, derivatives or rollback; the table has every EVERYth step
  *
  * Transfers stand in an order in which each output is read after the inputs it depends on. */
 #ifndef PLAN_H
@@ -26,6 +26,8 @@ typedef struct Transfer {
   int count, sink_count;
   fmi2ValueReference outputs[max_signals];
   Sink sinks[max_sinks];
+  double value[max_signals], rate[max_signals];             /* as they were last read */
+  double begin_value[max_signals], begin_rate[max_signals]; /* at the begin of a step with rollback */
 } Transfer;
 
 typedef struct Record {
@@ -33,9 +35,13 @@ typedef struct Record {
   fmi2ValueReference variable;
 } Record;
 
+typedef enum Exchange { held, derivatives, rollback } Exchange;
+
 typedef struct Plan {
-  int component_count, transfer_count, record_count, derivatives;
+  int component_count, transfer_count, record_count;
+  Exchange exchange;
   double step, stop;
+  long every;
   Component components[max_components];
   Transfer transfers[max_transfers];
   Record records[max_records];

@@ -6,6 +6,12 @@
 
 #include "vector.h"
 
+const char* body_fault(const double masses[4]) {
+  for (int i = 0; i < 4; ++i)
+    if (!(masses[i] > 0)) return "m_B, J_1, J_2 and J_3 must be above 0.";
+  return 0;
+}
+
 void body_place(double* x, const double r[3], double heading, double speed) {
   memset(x, 0, body_states * sizeof *x);
   memcpy(x + body_r, r, 3 * sizeof *x);
@@ -30,6 +36,20 @@ void body_read(const double* x, Body* body) {
   memcpy(body->v, x + body_v, sizeof body->v);
   memcpy(body->w, x + body_w, sizeof body->w);
   to_fixed(body->R, body->w, body->w_fixed);
+}
+
+Track body_track(const Body* body, const double p[3], double near) {
+  const double heading = atan2(body->R[1][0], body->R[0][0]);
+  double turning[3], arm[3], velocity[3];
+  cross(body->w, p, turning);
+  to_fixed((double (*)[3])body->R, p, arm);
+  to_fixed((double (*)[3])body->R, turning, velocity);
+  for (int i = 0; i < 3; ++i) velocity[i] += body->v[i];
+  return (Track){.X = body->r[0] + arm[0],
+                 .Y = body->r[1] + arm[1],
+                 .psi = near + remainder(heading - near, 6.283185307179586),
+                 .v = velocity[0] * cos(heading) + velocity[1] * sin(heading),
+                 .omega = body->w_fixed[2]};
 }
 
 void body_pull(Body* body, const double arm[3], const double f[3]) {

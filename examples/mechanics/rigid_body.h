@@ -14,10 +14,18 @@ typedef struct Body {
   double M[3];       /* sum of moments about B, body axes */
 } Body;
 
+typedef struct Track {
+  double X, Y, psi, v, omega; /* m, rad, m/s along the heading, rad/s; psi is not wrapped */
+} Track;
+
+/* NULL, or the sentence that a mass or a moment of inertia is not above 0; given m_B, J_1, J_2, J_3. */
+const char* body_fault(const double masses[4]);
 /* Standing level at r with this heading and the velocity `speed` along it. */
 void body_place(double* x, const double r[3], double heading, double speed);
 /* The pose that the states x describe; F and M are cleared. The quaternion need not be exactly of unit length. */
 void body_read(const double* x, Body* body);
+/* How the point p of the body (body axes) moves. `near`: the heading to within half a turn. */
+Track body_track(const Body* body, const double p[3], double near);
 /* A force f (body axes) at the point `arm` from B (body axes). */
 void body_pull(Body* body, const double arm[3], const double f[3]);
 /* Rates of the states from F and M: Newton, Euler, and the quaternion's kinematics. J: principal moments. */

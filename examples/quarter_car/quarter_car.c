@@ -15,8 +15,6 @@
 enum { x_r = 0, x_v = 3, state_count = 6 };
 const int model_state_count = state_count;
 
-static const double rounding = 1e-9; /* s: a switching time counts as reached this much early */
-
 const char* model_derive(const double* u, double* d) {
   (void)d;
   return u[m_B] > 0 ? 0 : "m_B must be above 0 kg.";
@@ -26,8 +24,6 @@ void model_start(const Now* now, double* x) {
   memset(x, 0, state_count * sizeof *x);
   memcpy(x, now->u + X_B_start, 3 * sizeof *x);
 }
-
-static int reached(const Now* now, int time) { return now->begin >= now->u[time] - rounding; }
 
 static double link_force(const Now* now, const double* x, int axis) {
   const double* u = now->u;

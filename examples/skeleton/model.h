@@ -17,6 +17,9 @@ typedef struct Now {
   double d[max_derived];  /* derived once, at the start */
 } Now;
 
+/* Whether the time held by the parameter `time` had come at the last communication point, within rounding. */
+static inline int reached(const Now* now, int time) { return now->begin >= now->u[time] - 1e-9; }
+
 extern const int model_state_count;
 
 /* Derived quantities from the parameters; NULL, or one sentence that says which parameter is wrong. */

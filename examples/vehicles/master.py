@@ -170,7 +170,7 @@ class Master:
         for transfer, (value, rate) in zip(self.transfers, begin, strict=True):
             mean = (transfer.value - value) / h
             second = 2 * (3 * mean - 2 * rate - transfer.rate) / h
-            third = 6 * (rate + transfer.rate - 2 * mean) / h**2
+            third = 6 * (rate + transfer.rate - 2 * mean) / (h * h)
             transfer.hand_values(value)
             for order, derivative in enumerate((rate, second, third), 1):
                 transfer.hand(order, derivative)

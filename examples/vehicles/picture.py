@@ -26,10 +26,10 @@ def _arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float], text:
 def _signals(ax: Axes) -> None:
     """The arrows between the boxes."""
     pose = r"$X_O\;Y_O\;Z_O\;\dot X_O\;\dot Y_O\;\dot Z_O\;\psi\;\theta\;\dot\psi\;\dot\theta$"
-    motion = r"$\dot\varphi\;\omega_z\;\psi\;\dot\psi\;\theta\;\dot\theta\;\;\lambda_1\;\lambda_2\;\lambda_3$"
+    motion = r"$\dot\varphi\;\omega_z\;\psi\;\dot\psi\;\theta\;\dot\theta\;\;\lambda_x\;\lambda_y\;\lambda_3\;\tau$"
     _arrow(ax, (58, 70), (124, 70), r"$F_X\;F_Y\;F_Z$ at $O$;  $M_1$ camber, $M_2$ toe", style.BLUE)
     _arrow(ax, (124, 55), (58, 55), pose, style.INK)
-    _arrow(ax, (58, 31), (124, 31), r"$M_3$ drive or brake torque", style.GREEN)
+    _arrow(ax, (58, 31), (124, 31), r"$M_3$ drive torque;  $M_\mathrm{brake}$ capacity of the brake", style.GREEN)
     _arrow(ax, (124, 16), (58, 16), motion, style.INK)
     when = "values and first derivatives at every communication point"
     ax.text(91, 40.5, when, ha="center", fontsize=7.5, color=style.GREY)
