@@ -109,16 +109,17 @@ def guid(name: str, variables: list[Variable]) -> str:
     return f"{{{uuid5(NAMESPACE_URL, name + repr(variables))}}}"
 
 
+def _unknown(index: int, dependencies: list[int]) -> str:
+    return f'      <Unknown index="{index}" dependencies="{" ".join(map(str, dependencies))}"/>'
+
+
 def description(name: str, about: str, variables: list[Variable]) -> str:
     """modelDescription.xml as text."""
-    known = [i for i, v in enumerate(variables, 1) if v.causality in ("output", "local")]
-    unknown = {
-        i: f'      <Unknown index="{i}" dependencies="{" ".join(map(str, matching(variables[i - 1], variables)))}"/>'
-        for i in known
-    }
-    outside = [i for i in known if variables[i - 1].causality == "output"]
-    start = [f'      <Unknown index="{i}"/>' for i in outside]  # at the start all may depend on all
-    outputs = [unknown[i] for i in outside]
+    outside = {i: v for i, v in enumerate(variables, 1) if v.causality == "output"}
+    parameters = [i for i, v in enumerate(variables, 1) if v.causality == "parameter"]
+    outputs = [_unknown(i, matching(v, variables)) for i, v in outside.items()]
+    # The states at the start follow from the parameters.
+    start = [_unknown(i, parameters + matching(v, variables)) for i, v in outside.items()]
     return "\n".join([
         '<?xml version="1.0" encoding="UTF-8"?>',
         f'<fmiModelDescription fmiVersion="2.0" modelName="{name}" guid="{guid(name, variables)}"',

@@ -25,7 +25,7 @@ WHEELS: dict[str, dict[str, float | str]] = LAYOUT["wheel"]
 X_REAR = float(np.mean([w["x"] for w in WHEELS.values() if not w["steer"]]))  # rear point from the centre of mass
 WHEELBASE = float(np.mean([w["x"] for w in WHEELS.values() if w["steer"]])) - X_REAR  # m
 TRACK = float(np.ptp([w["y"] for w in WHEELS.values() if w["steer"]]))  # m, of the steered wheels
-R, M_WHEEL, J_Z, G = 0.35, 20.0, 1.8, 9.81  # the wheels' defaults
+R_0, R, M_WHEEL, J_Z, G = 0.3, 0.35, 20.0, 1.8, 9.81  # the wheels' defaults
 MASS = LAYOUT["chassis"]["m_B"] + M_WHEEL * len(WHEELS)
 
 CONNECTIONS: list[Connection] = [

@@ -5,9 +5,10 @@ With m all masses, R the wheels' radius, m_t = m + 4 J_z / R^2 (four wheels), L 
     launch and braking   m_t a = (M_drive - s m g - brakes) / R; the rear axle gains (a I + m_B g (h_B - R) pitch) / L
     any bend             rear point on R = L / tan delta, so yaw rate = v tan(delta) / L at any speed: no understeer
     Ackermann            cot delta_outer - cot delta_inner = T / L
-    steady circle        the outer wheels gain (a I + m_B g h_B roll) / T together
+    steady circle        the outer wheels gain (a I + g roll (m_B (h_B - r) + 4 m_w r_0)) / T together
 
-I = m_B h_B + 4 (m_w R + J_z / R): masses at their heights, and the wheels' spin that is sped up or turned.
+I = m_B h_B + 4 (m_w R + J_z / R): masses at their heights, and the wheels' spin that is sped up or turned. As the car
+leans by the roll angle the masses move outwards from the wheels' centres, and the contact points inwards, by r_0 roll.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .car import J_Z, LAYOUT, M_WHEEL, MASS, TRACK, WHEELBASE, WHEELS, G, Manoeuvre, R
+from .car import J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, G, Manoeuvre, R
 from .driver_path import DRIVER_DEFAULTS, rise
 
 Table = dict[str, np.ndarray]
@@ -24,6 +25,7 @@ N_WHEELS = len(WHEELS)
 M_T = MASS + N_WHEELS * J_Z / R**2
 H_B, M_B = LAYOUT["chassis"]["h_B"], LAYOUT["chassis"]["m_B"]
 INERTIA = M_B * H_B + N_WHEELS * (M_WHEEL * R + J_Z / R)  # kg m
+LEANING = M_B * (H_B - (R - R_0)) + N_WHEELS * M_WHEEL * R_0  # kg m, about the contact points, per roll angle
 LEFT = [name for name, wheel in WHEELS.items() if wheel["y"] > 0]
 RIGHT = [name for name, wheel in WHEELS.items() if wheel["y"] < 0]
 REAR = [name for name, wheel in WHEELS.items() if wheel["x"] < 0]
@@ -108,7 +110,7 @@ def bend(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     delta, v = float(np.mean(table["delta"][last])), float(np.mean(table["v"][last]))
     omega, roll = float(np.mean(table["omega"][last])), float(np.mean(table["roll"][last]))
     moved = (load(table, RIGHT, last) - load(table, LEFT, last)) / 2
-    exact = (v * omega * INERTIA + M_B * G * H_B * roll) / TRACK
+    exact = (v * omega * INERTIA + G * LEANING * roll) / TRACK
     headings = [np.mean((table[f"{w}.psi"] - table["psi"])[last]) for w in ("fr", "fl")]
     return [
         Finding("radius of the rear point's circle", v / omega, WHEELBASE / np.tan(delta), "m"),

@@ -160,11 +160,15 @@ class Car:
         answer = self.answer(t, y, sigma)[1]
         _, a, spin = self.wheels(y)
         slip = np.hypot(answer.force[:, 0], answer.force[:, 1]) / answer.force[:, 2]
+        back = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])  # along, to the left
+        along, left = back @ y[3:5]
         return {
             **dict(zip(("X", "Y", "Z"), y[:3], strict=True)),
+            "a_y": back[1] @ answer.force[:, :2].sum(axis=0) / MASS,
+            "beta": np.arctan(left / along) if abs(along) > 0.01 else 0.0,
             **{"psi": heading, "roll": np.arcsin(turn[2, 1]), "pitch": -np.arcsin(turn[2, 0])},
             **{"v": v, "omega": y[17], "X_R": point[0], "Y_R": point[1], "delta": y[BODY], "p": y[BODY + 2]},
-            **{f"{n}.lambda_3": N for n, N in zip(LAYOUT["wheel"], answer.force[:, 2], strict=True)},
+            **{f"{n}.lambda_{k}": answer.force[i, k - 1] for i, n in enumerate(LAYOUT["wheel"]) for k in (1, 2, 3)},
             **{f"{n}.mu_required": mu for n, mu in zip(LAYOUT["wheel"], slip, strict=True)},
             **{f"{n}.omega_z": x for n, x in zip(LAYOUT["wheel"], dot(a, spin)[:, 0], strict=True)},
         }
