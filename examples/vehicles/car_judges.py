@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .car import J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, G, Manoeuvre, R
+from .car import J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, X_REAR, G, Manoeuvre, R
 from .driver_path import DRIVER_DEFAULTS, rise
 
 Table = dict[str, np.ndarray]
@@ -111,18 +111,20 @@ def bend(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     omega, roll = float(np.mean(table["omega"][last])), float(np.mean(table["roll"][last]))
     moved = (load(table, RIGHT, last) - load(table, LEFT, last)) / 2
     exact = (v * omega * INERTIA + G * LEANING * roll) / TRACK
-    headings = [np.mean((table[f"{w}.psi"] - table["psi"])[last]) for w in ("fr", "fl")]
     return [
         Finding("radius of the rear point's circle", v / omega, WHEELBASE / np.tan(delta), "m"),
-        Finding("Ackermann, from the wheels' headings", *_ackermann(headings), "1"),
+        Finding("Ackermann, from the wheels' headings", *_ackermann(table, last), "1"),
         Finding("load moved outwards", moved, exact, "N"),
     ]
 
 
-def _ackermann(headings: list[float]) -> tuple[float, float]:
-    """cot delta_outer - cot delta_inner, and T / L, where the outer wheel is named first."""
-    outer, inner = headings
-    return float(1 / np.tan(outer) - 1 / np.tan(inner)), TRACK / WHEELBASE
+def _ackermann(table: Table, at: np.ndarray) -> tuple[float, float]:
+    """cot delta_outer - cot delta_inner of the foremost steered wheels, and T / L."""
+    x = max(w["x"] for w in WHEELS.values() if w["steer"])
+    inner, outer = sorted((n for n in WHEELS if WHEELS[n]["x"] == x), key=lambda n: -WHEELS[n]["y"])
+    turned = [float(np.mean((table[f"{n}.psi"] - table["psi"])[at])) for n in (inner, outer)]
+    apart = WHEELS[inner]["y"] - WHEELS[outer]["y"]
+    return 1 / np.tan(turned[1]) - 1 / np.tan(turned[0]), apart / (x - X_REAR)
 
 
 def understeer(table: Table) -> float:

@@ -63,6 +63,24 @@ def draw(
     return path
 
 
+def draw_orders(errors: dict[str, Errors], path: Path) -> Path:
+    """The errors of several runs, one panel each."""
+    style.use_style()
+    fig = style.figure_mm(style.PAGE, 62)
+    width = (style.PAGE - 16) / len(errors)
+    for i, (name, of) in enumerate(errors.items()):
+        ax = style.axes_mm(fig, 16 + i * width, 12, width - 5, 34)
+        _errors(ax, of, legend=False)
+        ax.set_title(name, fontsize=9)
+        ax.set_ylim(1e-10, 0.1)
+        if i:
+            ax.set_ylabel("")
+            ax.set_yticklabels([])
+    fig.legend(*ax.get_legend_handles_labels(), loc="upper center", ncols=3)
+    fig.savefig(path, dpi=200, metadata={"Software": None})
+    return path
+
+
 def _labels(ax: Axes, x: str, y: str) -> None:
     ax.set_xlabel(x)
     ax.set_ylabel(y)
@@ -96,7 +114,7 @@ def _lines(ax: Axes, t: np.ndarray, label: str, lines: list[Line]) -> None:
     _labels(ax, "time [s]", label)
 
 
-def _errors(ax: Axes, errors: Errors) -> None:
+def _errors(ax: Axes, errors: Errors, legend: bool = True) -> None:
     h = 1000 * np.array(errors.steps)
     for exchange, values in errors.of.items():
         mark, colour = MARKS[exchange]
@@ -105,5 +123,6 @@ def _errors(ax: Axes, errors: Errors) -> None:
             ax.loglog(h, values[-1] * (h / h[-1]) ** ORDERS[exchange], color=style.GREY, linewidth=0.6, linestyle="--")
     ax.set_xticks(h, [f"{x:g}" for x in h])
     ax.minorticks_off()
-    ax.legend(**ABOVE)
+    if legend:
+        ax.legend(**ABOVE)
     _labels(ax, "step [ms]", "error / range")

@@ -92,7 +92,7 @@ def run_car(fmus: dict[str, Path], arguments: list[str], folder: Path) -> list[s
         **own,
     )
     run = car.drive(fmus, manoeuvre, h, exchange, round(0.02 / h) * h, progress=True)
-    found = None if run.ending else errors(_short_car(fmus, manoeuvre), car.COMPARED)
+    found = None if run.ending else errors(_in_c(fmus, manoeuvre), car.COMPARED)
     degrees = [Line(name, np.degrees(run.table[name])) for name in ("delta", "roll", "pitch")]
     names = {w: str(wheel["name"]) for w, wheel in car.WHEELS.items()}
     draw(run.table, names, ("angle [deg]", degrees), found, folder / "car.png")
@@ -101,11 +101,9 @@ def run_car(fmus: dict[str, Path], arguments: list[str], folder: Path) -> list[s
     return [*([run.ending] if run.ending else []), *car.report(run.table, manoeuvre)]
 
 
-def _short_car(fmus: dict[str, Path], manoeuvre: car.Manoeuvre) -> Callable[[float, str], Table]:
-    short = replace(manoeuvre, stop=min(manoeuvre.stop, 3.0))
-
+def _in_c(fmus: dict[str, Path], manoeuvre: car.Manoeuvre) -> Callable[[float, str], Table]:
     def run(step: float, exchange: str) -> Table:
-        done = car.drive(fmus, short, step, exchange, 0.05)
+        done, _ = car.drive_in_c(fmus, manoeuvre, step, exchange, 0.05)
         if done.ending:
             raise Ended("car", float(done.table["time"][-1]), done.ending)
         return done.table

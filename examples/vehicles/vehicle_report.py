@@ -1,29 +1,26 @@
-"""The study of axle and car: docs/results/vehicles.md, its figures, and its numbers under docs/results/data/.
-
-`write(fmus, results)` is what a report command calls; `tools`, a Python interpreter with libcosimpy and ecospy,
-adds those two to the table of packages.
-"""
+"""The study of axle and car: docs/results/vehicles.md, its figures, and its numbers under docs/results/data/."""
 
 from __future__ import annotations
 
+import argparse
 import csv
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterable
 from dataclasses import replace
+from importlib.metadata import version
 from pathlib import Path
-from time import perf_counter
 
 import numpy as np
 
-from . import axle, axle_study, build, car, car_judges, monolithic_car, plan, ssp
+from . import axle, axle_study, build, car, car_study, ssp
 from .component import Ended
-from .drawing import Line, draw
+from .drawing import Errors, Line, draw, draw_orders
 from .master import EXCHANGES
 from .report import RESULTS, footer, table
 
 STEPS = (0.002, 0.001, 0.0005)  # s
-LIMITS = (0.001, 0.0015, 0.002, 0.0025, 0.003, 0.004)  # s
 GRID = 0.05  # s
 Rows = list[list[object]]
 Fmus = dict[str, Path]
@@ -38,9 +35,11 @@ def save(results: Path, name: str, head: Iterable[str], rows: Rows) -> None:
 
 
 def as_table(results: Path, name: str) -> str:
-    """data/NAME.csv as a Markdown table, numbers to four digits, those of the packages as they are."""
+    """data/NAME.csv as a Markdown table, numbers to four digits, those of the packages as they are; errors at 1 ms."""
     with (results / "data" / f"{name}.csv").open() as file:
         head, *rows = csv.reader(file)
+    if name == "car_errors":
+        rows = [row for row in rows if row[2] == "1.0"]
     return table(head, rows if name == "vehicle_packages" else [[short(cell) for cell in row] for row in rows])
 
 
@@ -97,88 +96,72 @@ def axle_energy(fmus: Fmus, results: Path) -> None:
     save(results, "axle_energy", head, rows)
 
 
-def manoeuvres(fmus: Fmus, results: Path) -> None:
-    """Every manoeuvre against its closed forms, what it asks of the road, and its figure."""
-    found, demand, endings = [], [], []
+def car_tables(fmus: Fmus, results: Path) -> None:
+    """All of the car but what it costs."""
+    for name in ("closed_forms", "demand", "endings", "figures", "longest"):
+        save(results, f"car_{name}", *getattr(car_study, name)(fmus))
+    found = car_study.errors(fmus)
+    save(results, "car_errors", *found)
+    save(results, "car_orders", *car_study.orders(found))
+
+
+def car_cost(fmus: Fmus, results: Path) -> None:
+    """Computing times: on a machine that does nothing else."""
+    save(results, "car_cost", *car_study.cost(fmus))
+
+
+def car_figures(fmus: Fmus, results: Path) -> None:
+    """A figure of each manoeuvre, and the one of car_orders."""
+    with (results / "data" / "car_orders.csv").open() as file:
+        _, *rows = csv.reader(file)
+    of: dict[str, dict[str, list[float]]] = {}
+    for name, exchange, *errors in rows:
+        of.setdefault(name, {})[exchange] = [float(e) for e in errors[: len(car_study.STEPS)]]
+    draw_orders({name: Errors(car_study.STEPS, e) for name, e in of.items()}, results / "vehicles_orders.png")
     for name, manoeuvre in car.MANOEUVRES.items():
-        run = car.drive(fmus, manoeuvre)
+        run, _ = car.drive_in_c(fmus, manoeuvre)
         degrees = [Line(n, np.degrees(run.table[n])) for n in ("delta", "roll", "pitch")]
-        names = {w: str(wheel["name"]) for w, wheel in car.WHEELS.items()}
-        draw(run.table, names, ("angle [deg]", degrees), None, results / f"vehicles_{name}.png")
-        if run.ending:
-            endings.append(run.ending)
-            continue
-        demand.append([manoeuvre.title, *car_judges.demand(run.table).values()])
-        for f in car_judges.judge(run.table, manoeuvre):
-            found.append([name, f.what, f.unit, float(f.measured), float(f.exact)])
-    head = ("manoeuvre", "quantity", "unit", "measured", "closed form")
-    save(results, "car_closed_forms", head, found)
-    save(results, "car_demand", ("manoeuvre", *(str(w["name"]) for w in car.WHEELS.values())), demand)
-    save(results, "car_endings", ("how it ended",), [[sentence] for sentence in endings])
+        draw(run.table, car_study.NAMES, ("angle [deg]", degrees), None, results / f"vehicles_{name}.png")
 
 
-def whole_car(fmus: Fmus, results: Path) -> None:
-    """Error against the car as one set of equations, and real time over computing time in Python; the begin of each."""
-    rows = []
-    stop = replace(car.STRAIGHT, stop=4.0, driver={**car.STRAIGHT.driver, "t_off": 1.5, "t_brake": 1.8})
-    for manoeuvre in (replace(car.STEP, stop=2.0), replace(car.LANE, stop=4.0), replace(car.EIGHT, stop=4.0), stop):
-        truth = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / GRID) + 1) * GRID, 1e-9)
-        ranges = {n: max(float(np.ptp(truth[n])), 0.01) for n in car.COMPARED}
-        for exchange in EXCHANGES:
-            for h in STEPS[:2]:
-                begin = perf_counter()
-                run = car.drive(fmus, manoeuvre, h, exchange, GRID)
-                factor = manoeuvre.stop / (perf_counter() - begin)
-                apart = max(float(np.abs(run.table[n] - truth[n]).max()) / ranges[n] for n in car.COMPARED)
-                rows.append([manoeuvre.name, exchange, 1000 * h, apart, factor])
-    head = ("manoeuvre", "inputs over the step", "step [ms]", "error / range", "times real time (Python)")
-    save(results, "car_errors", head, rows)
-
-
-def longest(fmus: Fmus, results: Path) -> None:
-    """The longest step at which the lane change runs to its end."""
-    rows = []
-    for exchange in EXCHANGES:
-        runs = [h for h in LIMITS if not car.drive(fmus, replace(car.LANE, stop=1.5), h, exchange, h).ending]
-        rows.append([exchange, 1000 * max(runs, default=float("nan"))])
-    save(results, "car_longest_step", ("inputs over the step", "longest step [ms]"), rows)
-
-
-def cost(fmus: Fmus, results: Path, repeats: int = 5) -> None:
-    """Microseconds per communication step of 1 ms in the C master: medians over the steps, of them over the runs."""
-    rows = []
-    for exchange in EXCHANGES[:2]:
-        parts, program = car.components(fmus, car.LANE), fmus["chassis"].parent / "master"
-        runs = [plan.run(program, parts, car.CONNECTIONS, [], 0.001, car.LANE.stop, exchange) for _ in range(repeats)]
-        wheels = float(np.median([sum(run.steps[w] for w in car.WHEELS) for run in runs]))
-        bodies = float(np.median([run.steps["chassis"] + run.steps["driver"] for run in runs]))
-        passed, whole = (float(np.median([getattr(run, n) for run in runs])) for n in ("exchange", "total"))
-        rows.append([exchange, wheels, bodies, passed, whole, 1000 / whole])
-    head = ("inputs over the step", "four wheels [us]", "chassis, driver [us]", "exchange [us]", "all [us]")
-    save(results, "car_cost", (*head, "times real time"), rows)
-
-
-def packages(fmus: Fmus, results: Path, tools: str | None) -> None:
-    """The ends of both packages in each tool, beside the run with rollback."""
+def packages(fmus: Fmus, results: Path, tools: str | None = None) -> None:
+    """The ends of both packages in each tool, beside the master of the examples."""
     folder, h = fmus["chassis"].parent, 0.0005
-    scene, manoeuvre = replace(axle_study.TRAILING, stop=2.0), replace(car.LANE, stop=4.0)
-    rolled = axle.coupled(fmus, scene, h, "rollback", GRID), car.drive(fmus, manoeuvre, h, "rollback", GRID).table
+    scene, wait = replace(axle_study.TRAILING, stop=2.0), {"t_couple": 3 * h}
+    waiting = replace(car.LANE, chassis={**car.LANE.chassis, **wait})
+    later = replace(scene, more=wait)
+    axles = [axle.coupled(fmus, s, h, e, GRID) for s, e in ((scene, "rollback"), (later, "held"))]
+    cars = [car.drive_in_c(fmus, m, h, e, GRID)[0].table for m, e in ((car.LANE, "rollback"), (waiting, "held"))]
     cases = (
-        (ssp.build(axle.system(fmus, scene, h), folder), scene.stop, ("axle.X", "axle.Y"), rolled[0]),
-        (ssp.build(car.system(fmus, manoeuvre, h), folder), manoeuvre.stop, ("chassis.X_R", "chassis.Y_R"), rolled[1]),
+        (ssp.build(axle.system(fmus, scene, h), folder), scene.stop, ("axle.X", "axle.Y"), axles),
+        (ssp.build(car.system(fmus, car.LANE, h), folder), car.LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
     )
     rows: Rows = []
-    for package, stop, wanted, truth in cases:
+    for package, stop, wanted, own in cases:
+        ends = [("master.py, rollback", "", [own[0][n.split(".")[1]][-1] for n in wanted])]
+        ends.append(("master.py, held", "", [own[1][n.split(".")[1]][-1] for n in wanted]))
         columns = ssp.run(package, h, stop, GRID)
-        rows.append([package.name, "reference", *(f"{truth[n.split('.')[1]][-1]:.6f}" for n in wanted)])
-        rows.append([package.name, "fmpy.ssp", *(f"{columns[n][-1]:.6f}" for n in wanted)])
-        for tool in ("libcosim", "ecos") if tools else ():
-            script = build.EXAMPLES / "tools" / f"by_{tool}.py"
-            command = [tools, str(script), str(package), repr(h), repr(stop), *wanted]
-            said = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
-            ends = dict(line.split() for line in said if line.startswith(wanted))
-            rows.append([package.name, tool, *(f"{float(ends[n]):.6f}" for n in wanted)])
-    save(results, "vehicle_packages", ("package", "tool", "X at the end [m]", "Y at the end [m]"), rows)
+        ends.append(("fmpy.ssp", f"FMPy {version('fmpy')}", [columns[n][-1] for n in wanted]))
+        for tool, number, command in _tools(results, tools):
+            said = subprocess.run([*command, package, repr(h), repr(stop), *wanted], capture_output=True, check=True)
+            found = dict(line.split() for line in said.stdout.decode().splitlines() if line.startswith(wanted))
+            ends.append((tool, number, [float(found[n]) for n in wanted]))
+        rows += [[package.name, tool, number, *(f"{x:.8f}" for x in values)] for tool, number, values in ends]
+    save(results, "vehicle_packages", ("package", "tool", "version", "X at the end [m]", "Y at the end [m]"), rows)
+
+
+def _tools(results: Path, python: str | None) -> list[tuple[str, str, list[str]]]:
+    """Name, version and command of the tools at hand: `python` has two of them, OMSimulator may be on the PATH."""
+    scripts, found = build.EXAMPLES / "tools", []
+    for tool, package in (("libcosim", "libcosimpy"), ("ecos", "ecospy")) if python else ():
+        ask = f"import importlib.metadata as m; print(m.version({package!r}))"
+        number = subprocess.run([python, "-c", ask], capture_output=True, text=True, check=True).stdout.strip()
+        found.append((tool, f"{package} {number}", [python, str(scripts / f"by_{tool}.py")]))
+    if program := shutil.which("OMSimulator"):
+        with (results / "data" / "interoperability.csv").open() as file:
+            number = next(row[1] for row in csv.reader(file) if row[0] == "OMSimulator")
+        found.append(("OMSimulator", number, [sys.executable, str(scripts / "by_omsimulator.py"), program]))
+    return found
 
 
 def axle_figure(fmus: Fmus, results: Path) -> None:
@@ -190,30 +173,49 @@ def axle_figure(fmus: Fmus, results: Path) -> None:
     draw(run, wheels, ("middle of the axle", lines), None, results / "vehicles_axle.png", (exact["X"], exact["Y"]))
 
 
+STUDIES = {
+    study.__name__: study
+    for study in (axle_steps, axle_stiffness, axle_limits, axle_energy, axle_figure, car_tables, car_figures, car_cost)
+}
+OF_CAR = ("closed_forms", "demand", "endings", "figures", "longest", "errors", "orders", "cost")
 TABLES = (
-    *("axle_steps", "axle_stiffness", "axle_limits", "axle_energy", "car_closed_forms", "car_demand", "car_endings"),
-    *("car_errors", "car_longest_step", "car_cost", "vehicle_packages"),
+    *("axle_steps", "axle_stiffness", "axle_limits", "axle_energy"),
+    *(f"car_{name}" for name in OF_CAR),
+    "vehicle_packages",
 )
 
 
 def page(results: Path = RESULTS) -> Path:
     """docs/results/vehicles.md from the data."""
     path, template = results / "vehicles.md", (Path(__file__).parent / "vehicles.md.in").read_text()
-    path.write_text(template.format(footer=footer(), step="0.5", **{name: as_table(results, name) for name in TABLES}))
+    path.write_text(template.format(footer=footer(), **{name: as_table(results, name) for name in TABLES}))
     return path
 
 
-def write(fmus: Fmus, results: Path = RESULTS, tools: str | None = None) -> Path:
-    """All studies, and docs/results/vehicles.md."""
-    axle_figure(fmus, results)
-    for study in (axle_steps, axle_stiffness, axle_limits, axle_energy, whole_car, longest, cost, manoeuvres):
-        study(fmus, results)
-    packages(fmus, results, tools)
+def write(
+    fmus: Fmus, results: Path = RESULTS, tools: str | None = None, parts: Iterable[str] = (*STUDIES, "packages")
+) -> Path:
+    """The studies named, and docs/results/vehicles.md.
+
+    tools: a Python interpreter with libcosimpy and ecospy, for the packages; OMSimulator is taken from the PATH.
+    """
+    for part in parts:
+        STUDIES[part](fmus, results) if part in STUDIES else packages(fmus, results, tools)
     return page(results)
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """python -m vehicles.vehicle_report [--tools PYTHON] [PART...]"""
+    parser = argparse.ArgumentParser(prog="vehicles.vehicle_report", description=__doc__)
+    parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join((*STUDIES, "packages")) + "; without: all")
+    parser.add_argument("--tools", metavar="PYTHON", help="an interpreter with libcosimpy and ecospy")
+    options = parser.parse_args()
     try:
-        print(write(build.build_all(build.ROOT / "build" / "examples"), tools=(sys.argv[1:] or [None])[0]))
+        parts = options.parts or (*STUDIES, "packages")
+        print(write(build.build_all(build.ROOT / "build" / "examples"), tools=options.tools, parts=parts))
     except Ended as end:
         sys.exit(f"A run of the study ended early: {end}")
+
+
+if __name__ == "__main__":
+    main()

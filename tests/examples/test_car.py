@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from vehicles import build, car, car_judges, car_table
+from vehicles import build, car, car_iso, car_judges, car_table
 from vehicles.master import EXCHANGES
 
 Fmus = dict[str, Path]
@@ -91,6 +91,17 @@ def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
     for finding, nearer in zip(soft, stiff, strict=True):
         assert finding.error < 0.04, finding  # measured at most 0.034
         assert nearer.error < max(0.45 * finding.error, 4e-4), nearer  # as 1 / k, but for roll squared
+
+
+def test_the_gains_of_a_step_are_those_of_rigid_links_up_to_the_compliance(fmus: Fmus) -> None:
+    def gains(factor: float) -> list[car_iso.Figure]:
+        table = car_iso.complete(drive(fmus, stiffer(car.STEP, factor), 0.0005).table)
+        return [figure for figure in car_iso.step(table) if figure.theory]
+
+    off, nearer = ([abs(f.value / f.theory - 1) for f in gains(factor)] for factor in (1.0, 3.0))
+    assert len(off) == 3
+    assert max(off) < 0.04  # of yaw rate 4e-4, lateral acceleration 7e-4, roll angle 0.036
+    assert all(b < max(0.45 * a, 1e-3) for a, b in zip(off, nearer, strict=True))  # as 1 / k; roll squared does not
 
 
 def test_the_stopping_distance_is_that_of_the_closed_form(fmus: Fmus) -> None:
