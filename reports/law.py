@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import pandas as pd
 from robustness import regularized
 from robustness.regularized import TOLERANCE_FACTOR, WIDTH_FACTOR
 
 from . import plots
-from .page import Report, number
+from .page import Report, Sheet, Tables, number
 from .plots import style
 
 THRESHOLD = 200.0  # decay number from which the automatic rule takes BDF: `stiff` in fmu-src/wheel/scene.cpp
@@ -14,57 +15,49 @@ THRESHOLD = 200.0  # decay number from which the automatic rule takes BDF: `stif
 
 def law(report: Report) -> None:
     """the regularized law"""
-    points = regularized.study(report.library)
-    rows = [
-        {
-            "law": p.law,
-            "method": p.method,
-            "tolerance": p.tolerance,
-            "omega_s, rad/s": p.omega_s or "",
-            "error": p.error,
-            "ms": p.milliseconds,
-            "steps": p.steps,
-        }
-        for p in points
-    ]
-    report.table("law", rows)
-    bound = max(
-        p.error / (WIDTH_FACTOR * p.omega_s + TOLERANCE_FACTOR * p.tolerance) for p in points if p.law != "exact"
-    )
+    points = pd.DataFrame(regularized.study(report.library)).drop(columns="rhs")
+    report.table("law", points.rename(columns={"omega_s": "omega_s, rad/s", "milliseconds": "ms"}))
+    found = points[points["law"] != "exact"]
+    bound = found["error"] / (WIDTH_FACTOR * found["omega_s"] + TOLERANCE_FACTOR * found["tolerance"])
     what = f"regularized law: error over {WIDTH_FACTOR:g} ω_s + {TOLERANCE_FACTOR:g} tolerance"
-    report.figure("law", what, bound, "", 1)
+    report.figure("law", what, bound.max(), "", 1)
+
+
+def draw_law(tables: Tables) -> Sheet:
     figure, axes = plots.sheet(2)
-    for colour, tolerance in zip(plots.COLOURS, regularized.TOLERANCES, strict=False):
+    for colour, (tolerance, points) in zip(plots.COLOURS, tables["law"].groupby("tolerance", sort=False), strict=False):
         for method, marker in (("bdf", "o-"), ("adams", "x--")):
-            chain = [p for p in points if (p.tolerance, p.method) == (tolerance, method) and p.law != "exact"]
-            for ax, x in zip(axes, ("omega_s", "milliseconds"), strict=True):
-                values = [getattr(p, x) for p in chain]
-                words = f"{method}, tolerance {number(tolerance)}"
-                ax.plot(values, [p.error for p in chain], marker, color=colour, ms=4, lw=0.8, label=words)
-        exact = next(p for p in points if p.tolerance == tolerance and p.law == "exact")
-        axes[1].plot(exact.milliseconds, exact.error, "*", color=colour, ms=10)
+            chain = points.query("law != 'exact' and method == @method")
+            words = f"{method}, tolerance {number(tolerance)}"
+            for ax, x in zip(axes, ("omega_s, rad/s", "ms"), strict=True):
+                ax.plot(chain[x], chain["error"], marker, color=colour, ms=4, lw=0.8, label=words)
+        exact = points.query("law == 'exact'")
+        axes[1].plot(exact["ms"], exact["error"], "*", color=colour, ms=10)
     plots.label(axes[0], r"$\omega_s$ [rad/s]", "error against the exact law", "convergence", "xy")
     plots.label(axes[1], "time for 10 s [ms]", "error", "cost; stars: the exact law itself", "xy")
     plots.legend_below(figure, axes[0], 3)
-    report.picture("law", figure)
+    return figure
 
 
 def crossings(report: Report) -> None:
     """where BDF pays"""
-    found = regularized.crossings(report.library)
-    names = ("scene", "decay number", "Adams over BDF", "automatic takes")
-    report.table("crossings", [dict(zip(names, (c.scene, c.decay, c.ratio, c.chosen), strict=True)) for c in found])
-    lost = [max(c.ratio, 1 / c.ratio) for c in found if (c.chosen == "bdf") != (c.ratio > 1)]
-    report.figure("wrong_method", "automatic's time over the better method's, at worst", max(lost, default=1.0), "×")
+    found = pd.DataFrame(regularized.crossings(report.library))
+    names = {"decay": "decay number", "ratio": "Adams over BDF", "chosen": "automatic takes"}
+    report.table("crossings", found.rename(columns=names))
+    lost = found["ratio"].where(found["chosen"] == "adams", 1 / found["ratio"])
+    what = "automatic's time over the better method's, at worst"
+    report.figure("wrong_method", what, max(lost.max(), 1.0), "×")
+
+
+def draw_methods(tables: Tables) -> Sheet:
     figure, (ax,) = plots.sheet(1)
-    for colour, scene in zip(plots.COLOURS, dict.fromkeys(c.scene for c in found), strict=False):
-        chain = [c for c in found if c.scene == scene]
-        ax.plot([c.decay for c in chain], [c.ratio for c in chain], color=colour, lw=0.8, label=scene)
-        for c in chain:
-            ax.plot(c.decay, c.ratio, "o", color=colour, ms=5, mfc=colour if c.chosen == "bdf" else "white")
+    for colour, (scene, chain) in zip(plots.COLOURS, tables["crossings"].groupby("scene", sort=False), strict=False):
+        x, ratio = chain["decay number"], chain["Adams over BDF"]
+        ax.plot(x, ratio, "o-", color=colour, lw=0.8, ms=5, mfc="white", label=scene)
+        ax.plot(x[chain["automatic takes"] == "bdf"], ratio[chain["automatic takes"] == "bdf"], "o", color=colour, ms=5)
     ax.axhline(1, color=style.INK, lw=0.8, ls="--")
     ax.axvline(THRESHOLD, color=style.GREY, lw=0.9, ls=":", label=f"the rule's threshold, {THRESHOLD:g}")
     ax.legend()
     title = "above 1 BDF is faster; filled: automatic takes BDF"
     plots.label(ax, "decay rate of the spin times the wheel's time", "time of Adams / time of BDF", title, "xy")
-    report.picture("methods", figure)
+    return figure

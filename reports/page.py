@@ -1,136 +1,114 @@
-"""A report: figures with what was asked of them, tables, pictures; CSV files out of them, and a page of Markdown."""
+"""A report: what it measures goes into CSV files, and out of these alone come its pictures and its page of Markdown.
+
+docs/results/data/NAME.csv has the figures with what was asked of them, NAME_TABLE.csv the tables, made.csv the machine,
+versions, commit and date of each report.
+"""
 
 from __future__ import annotations
 
-import csv
 import os
 import platform
 import re
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import distributions
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 from figures_in_pages import number
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure as Sheet
 from support.motion import Library
 from support.paths import ROOT, build_folder
-from tabulate import tabulate
 
 Row = Mapping[str, object]
+Tables = dict[str, pd.DataFrame]
+VERDICTS = {True: "yes", False: "**no**"}
 PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka", "numba", "numbalsoda")
-
-
-@dataclass(frozen=True)
-class Figure:
-    """A measured number. asked: its bound, None where nothing was asked; relation: "at most" or "exactly"."""
-
-    figure: str
-    what: str
-    measured: float
-    unit: str = ""
-    asked: float | None = None
-    relation: str = "at most"
-
-    @property
-    def met(self) -> bool:
-        if self.asked is None:
-            return True
-        return self.measured == self.asked if self.relation == "exactly" else self.measured <= self.asked
 
 
 @dataclass
 class Report:
-    """What one report has measured. quick: fewer cases and repetitions, to see that it works."""
+    """What one report measures. quick: fewer cases and repetitions, to see that it works."""
 
     name: str
     library: Library
     folder: Path
     quick: bool = False
-    options: dict[str, str] = field(default_factory=dict)
-    figures: dict[str, Figure] = field(default_factory=dict)
-    tables: dict[str, list[Row]] = field(default_factory=dict)
-    words: dict[str, str] = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)
+    figures: dict[str, dict[str, Any]] = field(default_factory=dict)
     kept: dict[str, Any] = field(default_factory=dict)  # what several parts of a report use
 
-    def figure(self, figure: str, what: str, measured: float, unit: str = "", asked: float | None = None, **more: str):
-        self.figures[figure] = Figure(figure, what, float(measured), unit, asked, **more)
+    def figure(self, figure: str, what: str, measured: float, unit: str = "", asked: float | None = None) -> None:
+        """A measured number. asked: its upper bound, zero included; None where nothing was asked."""
+        row = {"figure": figure, "measured": float(measured), "unit": unit, "asked": asked, "what": what}
+        self.figures[figure] = row
 
-    def table(self, name: str, rows: Sequence[Row]) -> None:
-        """Rows of a table of the page; also docs/results/data/<report>_<name>.csv."""
-        self.tables[name] = list(rows)
-        write_csv(self.folder / "data" / f"{self.name}_{name}.csv", self.tables[name])
+    def table(self, name: str, rows: pd.DataFrame | Sequence[Row]) -> None:
+        write_csv(self.folder, f"{self.name}_{name}", pd.DataFrame(rows))
 
-    def picture(self, name: str, sheet: Sheet) -> None:
-        """docs/results/<report>_<name>.png; the file holds no date."""
-        sheet.savefig(self.folder / f"{self.name}_{name}.png", dpi=150, metadata={"Software": None})
-
-    @property
-    def missed(self) -> list[Figure]:
-        return [f for f in self.figures.values() if not f.met]
-
-    def asked(self) -> list[Row]:
-        """What was asked beside what was measured."""
-        return [
-            {
-                "figure": f.what,
-                "asked": f"{'≤' if f.relation == 'at most' else '='} {number(float(f.asked))} {f.unit}".strip(),
-                "measured": f"{number(f.measured)} {f.unit}".strip(),
-                "met": "yes" if f.met else "**no**",
-            }
-            for f in self.figures.values()
-            if f.asked is not None
-        ]
-
-    def write(self) -> Path:
-        rows = [
-            {
-                "figure": f.figure,
-                "measured": f.measured,
-                "unit": f.unit,
-                "asked": f.asked,
-                "met": f.met,
-                "what": f.what,
-            }
-            for f in self.figures.values()
-        ]
-        write_csv(self.folder / "data" / f"{self.name}.csv", rows)
-        loader = FileSystemLoader(Path(__file__).with_name("templates"))
-        pages = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-        pages.filters |= {"table": markdown_table, "number": number}
-        figures = {name: number(f.measured) for name, f in self.figures.items()}
-        page = pages.get_template(f"{self.name}.md").render(
-            report=self, f=figures, t=self.tables, words=self.words, asked=self.asked(), missed=self.missed
-        )
-        path = self.folder / f"{self.name}.md"
-        path.write_text(re.sub(r"\n{3,}", "\n\n", page).strip() + f"\n\n{footer(self.name)}\n", encoding="utf-8")
-        return path
+    def write(self) -> None:
+        """The figures, and what they were measured with."""
+        write_csv(self.folder, self.name, pd.DataFrame(self.figures.values()))
+        path = self.folder / "data" / "made.csv"
+        others = pd.read_csv(path, dtype=str) if path.exists() else pd.DataFrame({"report": []})
+        rows = pd.concat([others[others["report"] != self.name], pd.DataFrame([made(self.name)])])
+        write_csv(self.folder, "made", rows.sort_values("report"))
 
 
-def plain(value: object) -> object:
-    """As it is kept in a CSV file: seven digits."""
-    return f"{value:.7g}" if isinstance(value, float) else value
+def write_csv(folder: Path, name: str, frame: pd.DataFrame) -> None:
+    """Floats with seven digits."""
+    (folder / "data").mkdir(parents=True, exist_ok=True)
+    short = frame.map(lambda cell: float(f"{cell:.7g}") if isinstance(cell, float) else cell)
+    short.to_csv(folder / "data" / f"{name}.csv", index=False, lineterminator="\n")
 
 
-def write_csv(path: Path, rows: Sequence[Row]) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0]) if rows else [], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({key: plain(value) for key, value in row.items()} for row in rows)
+def save(sheet: Sheet, folder: Path, name: str) -> None:
+    """NAME.png; the file holds no date."""
+    sheet.savefig(folder / f"{name}.png", dpi=150, metadata={"Software": None})
 
 
-def markdown_table(rows: Sequence[Row]) -> str:
+def read_tables(folder: Path, name: str) -> Tables:
+    """The tables of a report by name."""
+    files = sorted((folder / "data").glob(f"{name}_*.csv"))
+    return {file.stem.removeprefix(f"{name}_"): pd.read_csv(file) for file in files}
+
+
+def markdown_table(frame: pd.DataFrame) -> str:
     """The first column to the left, the others to the right."""
-    if not rows:
+    if frame.empty:
         return "None."
-    cells = [[number(cell).replace("|", "\\|") for cell in row.values()] for row in rows]
-    sides = ("left", *["right"] * (len(rows[0]) - 1))
-    return tabulate(cells, list(rows[0]), tablefmt="pipe", disable_numparse=True, colalign=sides)
+    cells = (
+        frame.convert_dtypes()
+        .astype(object)
+        .map(lambda cell: "" if pd.isna(cell) else number(cell).replace("|", "\\|"))
+    )
+    sides = ("left", *["right"] * (frame.shape[1] - 1))
+    return cells.to_markdown(index=False, disable_numparse=True, colalign=sides)
+
+
+def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) -> str:
+    """The page out of the data; views: adds the tables that follow from others. Returns what was not met, in words."""
+    figures = pd.read_csv(folder / "data" / f"{name}.csv").fillna({"unit": ""})
+    figures["shown"] = [f"{number(float(f.measured))} {f.unit}".strip() for f in figures.itertuples()]
+    asked = figures[figures["asked"].notna()]
+    met = asked["measured"] <= asked["asked"]
+    bounds = [f"{'≤' if f.asked else '='} {number(f.asked)} {f.unit}".strip() for f in asked.itertuples()]
+    table = {"figure": asked["what"], "asked": bounds, "measured": asked["shown"], "met": met.map(VERDICTS)}
+    missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
+    run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
+    values = {f.figure: number(float(f.measured)) for f in figures.itertuples()}
+    loader = FileSystemLoader(Path(__file__).with_name("templates"))
+    pages = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    pages.filters["table"] = markdown_table
+    page = pages.get_template(f"{name}.md").render(
+        name=name, f=values, t=views(read_tables(folder, name)), asked=pd.DataFrame(table), missed=missed, run=run
+    )
+    (folder / f"{name}.md").write_text(re.sub(r"\n{3,}", "\n\n", page).strip() + "\n", encoding="utf-8")
+    return "; ".join(missed)
 
 
 def said(*command: str) -> str:
@@ -146,30 +124,19 @@ def cached(name: str) -> str:
     return entry[1] if entry else ""
 
 
-def processor() -> str:
+def made(name: str) -> Row:
+    """Machine, versions, commit, date; no names of users or folders. Files that reports write are no change."""
     info = Path("/proc/cpuinfo")
     model = re.search(r"^model name\s*:\s*(.+)$", info.read_text(), re.MULTILINE) if info.exists() else None
-    return model[1] if model else platform.processor() or platform.machine()
-
-
-def versions() -> str:
-    found = [f"Python {platform.python_version()}"]
-    for name in PACKAGES:
-        try:
-            found.append(f"{name} {version(name)}")
-        except PackageNotFoundError:
-            found.append(f"no {name}")
-    return ", ".join(found)
-
-
-def footer(name: str) -> str:
-    """Machine, versions, commit, date; no names of users or folders. Files that reports write are no change."""
+    processor = model[1] if model else platform.processor() or platform.machine()
+    installed = {found.name.lower(): found.version for found in distributions()}
+    versions = [f"{p} {installed[p.lower()]}" if p.lower() in installed else f"no {p}" for p in PACKAGES]
     changed = said("git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs", ":!*.md", ":!*.html")
-    lines = [
-        f"Made by `./scripts/report {name}` on {datetime.now(UTC):%Y-%m-%d}.",
-        f"Machine: {processor()}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {platform.system()}.",
-        f"Compiler: {said(cached('CMAKE_CXX_COMPILER'), '--version')}, {cached('CMAKE_CXX_FLAGS_RELEASE')}.",
-        f"Versions: {versions()}.",
-        f"Commit: {said('git', 'rev-parse', '--short=12', 'HEAD')}{', with local changes' if changed else ''}.",
-    ]
-    return "---\n\n" + "  \n".join(lines)
+    return {
+        "report": name,
+        "date": f"{datetime.now(UTC):%Y-%m-%d}",
+        "machine": f"{processor}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {platform.system()}",
+        "compiler": f"{said(cached('CMAKE_CXX_COMPILER'), '--version')}, {cached('CMAKE_CXX_FLAGS_RELEASE')}",
+        "versions": ", ".join([f"Python {platform.python_version()}", *versions]),
+        "commit": said("git", "rev-parse", "--short=12", "HEAD") + (", with local changes" if changed else ""),
+    }

@@ -31,5 +31,7 @@ def label(ax: Axes, x: str, y: str, title: str = "", log: str = "") -> None:
 
 
 def legend_below(figure: Figure, ax: Axes, columns: int = 4) -> None:
+    """Each label once."""
     handles, labels = ax.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=columns)
+    once = dict(zip(labels, handles, strict=True))
+    figure.legend(once.values(), once.keys(), loc="outside lower center", ncols=columns)
