@@ -18,7 +18,7 @@ from tqdm import tqdm
 
 from .page import Report, read_tables, render, save
 
-NAMES = ("accuracy", "stability", "speed", "inputs", "partners", "vehicles")
+NAMES = ("accuracy", "stability", "speed", "inputs", "partners", "vehicles", "physics")
 
 
 def arguments() -> argparse.Namespace:
@@ -36,10 +36,10 @@ def measure(names: list[str], folder: Path, options: argparse.Namespace) -> None
     parts = [(name, part, seconds) for name in names for part, seconds in module(name).PARTS.items()]
     library = Library.unpacked(build_folder() / "wheel.fmu")
     reports = {name: Report(name, library, folder, options.quick, vars(options)) for name in names}
-    layout = "{desc}: {percentage:.0f} % |{bar}| {elapsed}, {remaining} left"
+    layout = "{percentage:3.0f} % |{bar:20}| {elapsed}, {remaining} left; {desc}"
     with tqdm(total=sum(seconds for *_, seconds in parts), bar_format=layout) as bar:
         for name, part, seconds in parts:
-            bar.set_description(f"{name}, {(part.__doc__ or part.__name__).splitlines()[0]}")
+            bar.set_description_str(f"{name}: {(part.__doc__ or part.__name__).splitlines()[0]}")
             part(reports[name])
             reports[name].write()
             bar.update(seconds)
@@ -56,7 +56,7 @@ def draw(name: str, folder: Path) -> bool:
     for picture, sheet in getattr(of, "PICTURES", {}).items():
         save(sheet(read_tables(folder, name)), folder, f"{name}_{picture}")
     missed = of.page(folder) if hasattr(of, "page") else render(name, folder, getattr(of, "views", dict))
-    print(f"Wrote {(folder / name).relative_to(ROOT)}.md. {f'Not met: {missed}.' if missed else 'All is as asked.'}")
+    print(f"{name}: {f'not met: {missed}' if missed else 'all is as asked'}.")
     return not missed
 
 

@@ -16,28 +16,15 @@ import numpy as np
 
 NAMES = ("theta", "omega_1", "omega_2", "omega_3", "psi", "phi", "X_O", "Y_O")
 MOST_EVENTS, MOST_STEPS = 1000, 100_000
+FALLING = hy.event_direction.negative
+Solution = tuple[float, np.ndarray, dict[str, int]]
 
 
 def start_state(scene: dict[str, float]) -> np.ndarray:
-    theta = scene["theta_start"]
-    return np.array(
-        [
-            theta,
-            scene["theta_dot_start"],
-            scene["psi_dot_start"] * np.sin(theta),
-            scene["phi_dot_start"] + scene["psi_dot_start"] * np.cos(theta),
-            scene["psi_start"],
-            scene["phi_start"],
-            scene["X_O_start"],
-            scene["Y_O_start"],
-        ]
-    )
-
-
-def outputs(y: np.ndarray) -> np.ndarray:
-    """X_O, theta, phi_dot, psi_dot from rows of the state."""
-    psi_dot = y[:, 2] / np.sin(y[:, 0])
-    return np.column_stack([y[:, 6], y[:, 0], y[:, 3] - psi_dot * np.cos(y[:, 0]), psi_dot])
+    theta, psi, phi, X_O, Y_O = (scene[f"{name}_start"] for name in ("theta", "psi", "phi", "X_O", "Y_O"))
+    theta_dot, psi_dot, phi_dot = (scene[f"{name}_dot_start"] for name in ("theta", "psi", "phi"))
+    spin = phi_dot + psi_dot * np.cos(theta)
+    return np.array([theta, theta_dot, psi_dot * np.sin(theta), spin, psi, phi, X_O, Y_O])
 
 
 def equations(scene: dict[str, float], moment: str) -> tuple[list[tuple[Any, Any]], Any]:
@@ -91,14 +78,14 @@ def tau_of(system: list[tuple[Any, Any]], scene: dict[str, float]) -> Any:
 class Taylor:
     """One scene at one tolerance, compiled once and solved as often as asked.
 
-    solve() returns the seconds spent inside heyoka: what Python does between two modes is not heyoka's cost.
+    solve() gives the seconds spent inside heyoka (what Python does between two modes is not heyoka's cost), the states
+    on the grid, and counts.
     """
 
     def __init__(self, scene: dict[str, float], grid: np.ndarray, tolerance: float) -> None:
         self.scene, self.grid = scene, grid
         self.y_0 = start_state(scene)
         exact = scene["s"] > 0 and not scene["regularized"]
-        self.steps = self.events = 0
         if exact:
             self.rolling = self._integrator("rolling", tolerance)
             self.held = self._integrator("held", tolerance)
@@ -113,9 +100,7 @@ class Taylor:
         # At a release omega_z and its rate are zero but for rounding: watched a hair beyond zero, that is no event.
         # No cool-down: the default one swallows slips shorter than itself, silently.
         watched = {"rolling": hy.par[0] * hy.make_vars("omega_3") + tolerance**2, "held": margin}.get(moment)
-        falls = (
-            [hy.t_event(watched, direction=hy.event_direction.negative, cooldown=0.0)] if watched is not None else []
-        )
+        falls = [] if watched is None else [hy.t_event(watched, direction=FALLING, cooldown=0.0)]
         return hy.taylor_adaptive(system, self.y_0, tol=tolerance, t_events=falls, pars=[0.0] * (moment == "rolling"))
 
     def _propagate(self, solver: Any, t: float, y: np.ndarray, grid: np.ndarray) -> tuple[Any, float]:
@@ -125,12 +110,11 @@ class Taylor:
         result = solver.propagate_grid(grid, max_steps=MOST_STEPS)
         return result, perf_counter() - start
 
-    def _solve_smooth(self) -> float:
+    def _solve_smooth(self) -> Solution:
         result, seconds = self._propagate(self.smooth, 0.0, self.y_0, self.grid)
         if result[0] != hy.taylor_outcome.time_limit:
             raise RuntimeError(f"{MOST_STEPS} steps, only t = {self.smooth.time:.4g} s reached")
-        self.steps, self.states = result[3], result[-1]
-        return seconds
+        return seconds, result[-1], {"steps": result[3], "events": 0}
 
     def _mode(self, y: np.ndarray) -> int:
         """Sign of omega_z, 0: held there; Filippov's choice at omega_z = 0."""
@@ -139,10 +123,10 @@ class Taylor:
         margin, tau = self.grip(y)
         return 0 if margin >= 0 else -int(np.sign(tau))
 
-    def _solve_modes(self) -> float:
+    def _solve_modes(self) -> Solution:
         """Mode after mode; each restarts at the instant where the last one ended."""
         rows, t, y, mode = [], 0.0, self.y_0.copy(), self._mode(self.y_0)
-        self.steps = self.events = done = 0
+        steps = events = done = 0
         seconds = 0.0
         while done < len(self.grid):
             solver = self.rolling if mode else self.held
@@ -153,24 +137,17 @@ class Taylor:
             seconds += spent
             rows.append(result[-1][skip:])
             done += len(rows[-1])
-            self.steps += result[3]
+            steps += result[3]
             if result[0] == hy.taylor_outcome.time_limit:
                 break
-            self.events += 1
-            if self.events > MOST_EVENTS:
+            events += 1
+            if events > MOST_EVENTS:
                 raise RuntimeError(f"{MOST_EVENTS} events, only t = {t:.4g} s reached")
             t, y = solver.time, solver.state.copy()
             if mode:
                 y[3] = 0.0
             mode = self._mode(y) if mode else -int(np.sign(self.grip(y)[1]))
-        self.states = np.concatenate(rows)
-        return seconds
-
-    def rows(self) -> np.ndarray:
-        return outputs(self.states)
-
-    def counts(self) -> dict[str, int]:
-        return {"steps": self.steps, "events": self.events}
+        return seconds, np.concatenate(rows), {"steps": steps, "events": events}
 
 
 @lru_cache(maxsize=64)

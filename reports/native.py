@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import subprocess
-import zipfile
 from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_int, c_long, c_uint, c_void_p
 from dataclasses import dataclass, field
 from functools import cache
@@ -12,9 +11,9 @@ from pathlib import Path
 
 import fmpy
 import numpy as np
-from fmpy import read_model_description
 from numpy.typing import NDArray
 from support.driver import CHOICES, COUNTERS, HEADLINE, WARNING, Values
+from support.motion import Library
 from support.paths import ROOT, build_folder
 
 from .page import cached
@@ -34,7 +33,7 @@ def compile_shared(name: str, compiler: str, *flags: str | Path) -> ctypes.CDLL:
     """The shared library of native/`name`, compiled for this process alone."""
     target = work_folder() / f"{Path(name).stem}.so"
     command = [compiler, "-shared", "-fPIC", "-Wall", "-Wextra", *flags, NATIVE / name, "-o", target]
-    link = ["-L", build_folder(), f"-Wl,-rpath,{build_folder()}", "-lwheel_equations", "-ldl", "-lpthread"]
+    link = ["-L", build_folder(), f"-Wl,-rpath,{build_folder()}", "-lwheel_equations", "-ldl"]
     target.unlink(missing_ok=True)  # a library that is still loaded somewhere keeps its file
     subprocess.run([*map(str, command), *map(str, link)], check=True)
     return ctypes.CDLL(str(target))
@@ -57,34 +56,6 @@ class Outcome(Structure):
     _fields_ = [("status", c_int), ("steps", c_long)]
 
 
-@dataclass
-class Timing:
-    """One run. rows: outputs at start and after each step; start, run, end: seconds of each repetition."""
-
-    status: int
-    steps: int
-    rows: Array
-    counters: dict[str, int]
-    times: Array = field(default_factory=lambda: np.zeros((0, 3)))
-
-    @property
-    def reached(self) -> bool:
-        return self.status <= WARNING and self.steps == len(self.rows) - 1
-
-    @property
-    def best(self) -> float:
-        return float(self.times[:, 1].min())
-
-    @property
-    def median(self) -> float:
-        return float(np.median(self.times[:, 1]))
-
-    @property
-    def life(self) -> float:
-        """Median seconds to create, initialise and free."""
-        return float(np.median(self.times[:, 0] + self.times[:, 2]))
-
-
 @dataclass(frozen=True)
 class Task:
     """What the master is to run. inputs: names, and a table of steps x (orders + 1) x names."""
@@ -98,20 +69,41 @@ class Task:
     table: Array | None = None
 
 
-class Master:
-    """The library out of a wheel.fmu, driven from C."""
+@dataclass
+class Timing:
+    """rows: outputs at start and after each step; paces: seconds of each step; costs, for each repetition: seconds to
+    create and initialise, to step, to free; bytes."""
 
-    def __init__(self, fmu: Path, name: str = "wheel") -> None:
-        description = read_model_description(str(fmu))
-        self.guid = description.guid.encode()
-        self.variables = {v.name: v for v in description.modelVariables}
-        self.file = work_folder() / f"{name}.so"
-        self.file.unlink(missing_ok=True)
-        with zipfile.ZipFile(fmu) as archive:
-            member = next(n for n in archive.namelist() if n.startswith("binaries/") and n.endswith(".so"))
-            self.file.write_bytes(archive.read(member))
+    status: int
+    steps: int
+    rows: Array
+    paces: Array
+    counters: dict[str, int]
+    costs: Array
+
+    @property
+    def reached(self) -> bool:
+        return self.status <= WARNING and self.steps == len(self.paces)
+
+    @property
+    def best(self) -> float:
+        return float(self.costs[:, 1].min())
+
+    @property
+    def life(self) -> float:
+        """Median seconds to create, initialise and free."""
+        return float(np.median(self.costs[:, 0] + self.costs[:, 2]))
+
+
+class Master:
+    """The library of an unpacked wheel.fmu, driven from C."""
+
+    def __init__(self, library: Library) -> None:
+        self.guid = library.description.guid.encode()
+        self.variables = {v.name: v for v in library.description.modelVariables}
         self.code = master_code()
-        self.fmu = c_void_p(self.code.load_fmu(str(self.file).encode()))
+        (file,) = Path(library.folder).glob("binaries/*/*.so")
+        self.fmu = c_void_p(self.code.load_fmu(str(file).encode()))
 
     def references(self, names: tuple[str, ...]) -> ctypes.Array:
         return (c_uint * max(1, len(names)))(*(self.variables[name].valueReference for name in names))
@@ -136,31 +128,19 @@ class Master:
         return run
 
     def run(self, task: Task, seconds: float = 0.0) -> Timing:
-        """One run for its outputs, and repetitions for `seconds` to time it."""
-        run, counters = self.options(task), (c_int * len(COUNTERS))()
-        rows = np.zeros((task.steps + 1, len(task.outputs)))
-        done = self.code.solve(self.fmu, byref(run), rows.ctypes.data_as(c_void_p), counters)
-        found = Timing(done.status, done.steps, rows, dict(zip(COUNTERS, counters, strict=True)))
-        if seconds > 0 and found.reached:
-            times = np.zeros((MOST_RUNS, 3))
-            count = self.code.measure(self.fmu, byref(run), seconds, MOST_RUNS, times.ctypes.data_as(c_void_p))
-            found.times = times[:count]
-        return found
-
-    def pace(self, task: Task) -> Array:
-        """Seconds of each single communication step."""
-        times = np.zeros(task.steps)
-        done = self.code.pace(self.fmu, byref(self.options(task)), times.ctypes.data_as(c_void_p))
-        if done.steps != task.steps:
-            raise RuntimeError(f"The run stopped after {done.steps} of {task.steps} steps.")
-        return times
-
-    def crowd(self, task: Task, count: int) -> dict[str, float]:
-        """Per instance of `count` in one process: bytes and seconds; how many ended with other bits than one alone."""
-        alone, out = np.ascontiguousarray(self.run(task).rows[-1]), np.zeros(4)
-        pointers = [array.ctypes.data_as(c_void_p) for array in (alone, out)]
-        different = self.code.run_crowd(self.fmu, byref(self.options(task)), count, *pointers)
-        return dict(zip(("bytes", "start", "run", "end"), out.tolist(), strict=True)) | {"different": different}
+        """Repetitions for `seconds`, then one run for its outputs and single steps."""
+        run, counters, cost = self.options(task), (c_int * len(COUNTERS))(), np.zeros(4)
+        rows, paces = np.zeros((task.steps + 1, len(task.outputs))), np.zeros(task.steps)
+        places = [array.ctypes.data_as(c_void_p) for array in (rows, paces, cost)]
+        costs, spent = [], 0.0
+        while len(costs) < MOST_RUNS and spent < seconds:
+            if self.code.solve(self.fmu, byref(run), None, None, None, places[2]).status > WARNING:
+                break
+            costs.append(cost.copy())
+            spent += cost[:3].sum()
+        done = self.code.solve(self.fmu, byref(run), *places[:2], counters, places[2])
+        counted = dict(zip(COUNTERS, counters, strict=True))
+        return Timing(done.status, done.steps, rows, paces, counted, np.array(costs or [cost]))
 
 
 @cache
@@ -168,11 +148,7 @@ def master_code() -> ctypes.CDLL:
     headers = Path(fmpy.__file__).parent / "c-code"
     support = ROOT / "tests" / "support"
     code = compile_shared("master.c", cached("CMAKE_C_COMPILER"), "-std=gnu11", "-O2", f"-I{headers}", f"-I{support}")
-    code.load_fmu.restype = c_void_p
-    code.solve.restype = code.pace.restype = Outcome
-    code.measure.restype = code.run_crowd.restype = c_long
-    code.measure.argtypes = [c_void_p, c_void_p, c_double, c_long, c_void_p]
-    code.run_crowd.argtypes = [c_void_p, c_void_p, c_long, c_void_p, c_void_p]
+    code.load_fmu.restype, code.solve.restype = c_void_p, Outcome
     return code
 
 

@@ -1,7 +1,7 @@
 """Other solvers on the product's right-hand side: DOP853 in C++, SciPy, numbalsoda; and heyoka, which writes its own.
 
-Each is made for a scene, a tolerance and a number of grid points; `solve` gives the seconds that count, `rows` the
-headline outputs on the grid. What a solver cannot do is a RuntimeError or an ImportError that says so.
+Each is made for a scene, a tolerance and a number of grid points. What a solver cannot do is a RuntimeError or an
+ImportError that says so.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ import warnings
 from collections.abc import Callable
 from ctypes import addressof, byref, c_long, c_void_p
 from dataclasses import asdict
+from functools import partial
 from time import perf_counter
-from typing import Any, Protocol
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -20,15 +20,14 @@ from support import equations as eq
 from support.scenes import Scene
 
 from .native import Array, dop853_code
+from .truth import headline_of
 
 MOST_EVALUATIONS = 60_000  # of a right-hand side through ctypes
 NAIVE_WIDTH = 1e-3  # rad/s
 
 
-class Peer(Protocol):
-    def solve(self) -> float: ...
-    def rows(self) -> Array: ...
-    def counts(self) -> dict[str, int]: ...
+Solve = Callable[[], tuple[float, Array, dict[str, int]]]  # seconds, states or outputs on the grid, counts
+Peer = tuple[Solve, Callable[[Array], Array]]  # the second makes headline outputs out of what the first gives
 
 
 def regularized(scene: Scene) -> bool:
@@ -53,125 +52,97 @@ class Problem:
         start = eq.Motion(**{name: motion[name] for name, _ in eq.Motion._fields_})
         self.y_0 = eq.start(eq.REDUCED, self.wheel, start)
 
-    def outputs(self, states: Array) -> Array:
-        rows = [eq.kinematics(eq.REDUCED, self.wheel, np.ascontiguousarray(y)) for y in states]
-        return np.array([[k.X_O, k.theta, k.phi_dot, k.psi_dot] for k in rows])
 
-
-class InCpp:
+def in_cpp(scene: Scene, tolerance: float, points: int) -> Peer:
     """DOP853, hand-inlined (native/dop853.cpp)."""
+    problem, rows, counts = Problem(scene), np.zeros((points, 4)), (c_long * 3)()
+    start, out = (array.ctypes.data_as(c_void_p) for array in (problem.y_0, rows))
+    arguments = (byref(problem.scene), start, tolerance, scene.duration, points, out, counts)
+    run = dop853_code().dop853
 
-    def __init__(self, scene: Scene, tolerance: float, points: int) -> None:
-        self.problem, self.found = Problem(scene), np.zeros((points, 4))
-        self.numbers = (c_long * 3)()
-        start, rows = (array.ctypes.data_as(c_void_p) for array in (self.problem.y_0, self.found))
-        self.arguments = (byref(self.problem.scene), start, tolerance, scene.duration, points, rows, self.numbers)
-        self.run = dop853_code().dop853
-
-    def solve(self) -> float:
+    def solve() -> tuple[float, Array, dict[str, int]]:
         begin = perf_counter()
-        reached = self.run(*self.arguments)
+        reached = run(*arguments)
         spent = perf_counter() - begin
         if not reached:
             raise RuntimeError("did not reach the end")
-        return spent
+        return spent, rows, dict(zip(("steps", "rhs", "events"), counts, strict=True))
 
-    def rows(self) -> Array:
-        return self.found
-
-    def counts(self) -> dict[str, int]:
-        return dict(zip(("steps", "rhs", "events"), self.numbers, strict=True))
+    return solve, np.array
 
 
-class InScipy:
+def in_scipy(scene: Scene, tolerance: float, points: int, method: str, naive: str = "") -> Peer:
     """solve_ivp; the friction a scientist writes first, sign() or tanh() inside the right-hand side, has no events."""
+    problem, grid, count = Problem(scene), np.linspace(0, scene.duration, points), 0
+    if naive == "tanh":
+        problem.scene.friction = eq.Friction(eq.REGULARIZED, 0, NAIVE_WIDTH)
+    y, y_dot = np.zeros_like(problem.y_0), np.zeros_like(problem.y_0)
+    places = (addressof(problem.scene), y.ctypes.data, y_dot.ctypes.data)
+    derivative = ctypes.cast(eq.REDUCED.derivative, c_void_p).value
+    evaluate = ctypes.CFUNCTYPE(ctypes.c_double, c_void_p, c_void_p, c_void_p)(derivative)
 
-    def __init__(self, scene: Scene, tolerance: float, points: int, method: str, naive: str = "") -> None:
-        self.problem, self.method, self.naive = Problem(scene), method, naive
-        self.grid = np.linspace(0, scene.duration, points)
-        self.limits = {"rtol": max(tolerance, 3e-14), "atol": tolerance}
-        if naive == "tanh":
-            self.problem.scene.friction = eq.Friction(eq.REGULARIZED, 0, NAIVE_WIDTH)
-        self.y, self.y_dot = np.zeros_like(self.problem.y_0), np.zeros_like(self.problem.y_0)
-        places = (addressof(self.problem.scene), self.y.ctypes.data, self.y_dot.ctypes.data)
-        derivative = ctypes.cast(eq.REDUCED.derivative, c_void_p).value
-        call = ctypes.CFUNCTYPE(ctypes.c_double, c_void_p, c_void_p, c_void_p)(derivative)
-        self.evaluate: Callable[[], float] = lambda: call(*places)
-
-    def rhs(self, t: float, y: Array) -> Array:
-        self.count += 1
-        if self.count > MOST_EVALUATIONS:
+    def rhs(t: float, state: Array) -> Array:
+        nonlocal count
+        count += 1
+        if count > MOST_EVALUATIONS:
             raise RuntimeError(f"{MOST_EVALUATIONS} right-hand sides, only t = {t:.4g} s reached")
-        if self.naive == "sign":
-            self.problem.scene.friction.sigma = float(np.sign(y[3]))
-        self.y[:] = y
-        self.evaluate()
-        return self.y_dot.copy()
+        if naive == "sign":
+            problem.scene.friction.sigma = float(np.sign(state[3]))
+        y[:] = state
+        evaluate(*places)
+        return y_dot.copy()
 
-    def solve(self) -> float:
-        self.count, begin = 0, perf_counter()
-        span = (0.0, float(self.grid[-1]))
+    def solve() -> tuple[float, Array, dict[str, int]]:
+        nonlocal count
+        count, begin = 0, perf_counter()
+        limits = {"rtol": max(tolerance, 3e-14), "atol": tolerance}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # of Radau's difference quotients
-            self.result = solve_ivp(self.rhs, span, self.problem.y_0, self.method, self.grid, **self.limits)
-        if not self.result.success:
-            raise RuntimeError(self.result.message)
-        return perf_counter() - begin
+            found = solve_ivp(rhs, (0.0, scene.duration), problem.y_0, method, grid, **limits)
+        if not found.success:
+            raise RuntimeError(found.message)
+        return perf_counter() - begin, found.y.T, {"rhs": count}
 
-    def rows(self) -> Array:
-        return self.problem.outputs(self.result.y.T)
-
-    def counts(self) -> dict[str, int]:
-        return {"rhs": self.count}
+    return solve, headline_of
 
 
-class InNumbalsoda:
+def in_numbalsoda(scene: Scene, tolerance: float, points: int, method: str) -> Peer:
     """LSODA and DOP853 of numbalsoda; no Python in the loop."""
+    import numbalsoda
 
-    def __init__(self, scene: Scene, tolerance: float, points: int, method: str) -> None:
-        import numbalsoda
+    problem, grid, code = Problem(scene), np.linspace(0, scene.duration, points), dop853_code()
+    run, count = getattr(numbalsoda, method), c_long.in_dll(code, "wheel_rhs_count")
+    rhs = ctypes.cast(code.wheel_rhs, c_void_p).value
+    data = np.array([addressof(problem.scene)], dtype=np.uint64).view(np.float64)
 
-        self.problem, self.grid, self.tolerance = Problem(scene), np.linspace(0, scene.duration, points), tolerance
-        self.run, code = getattr(numbalsoda, method), dop853_code()
-        self.rhs = ctypes.cast(code.wheel_rhs, c_void_p).value
-        self.count = c_long.in_dll(code, "wheel_rhs_count")
-        self.data = np.array([addressof(self.problem.scene)], dtype=np.uint64).view(np.float64)
-
-    def solve(self) -> float:
-        self.count.value, begin = 0, perf_counter()
-        limits = {"rtol": self.tolerance, "atol": self.tolerance, "mxstep": 20_000}
-        self.states, success = self.run(self.rhs, self.problem.y_0, self.grid, self.data, **limits)
+    def solve() -> tuple[float, Array, dict[str, int]]:
+        count.value, begin = 0, perf_counter()
+        states, success = run(rhs, problem.y_0, grid, data, rtol=tolerance, atol=tolerance, mxstep=20_000)
         if not success:
             raise RuntimeError("the solver gave up")
-        return perf_counter() - begin
+        return perf_counter() - begin, states, {"rhs": count.value}
 
-    def rows(self) -> Array:
-        return self.problem.outputs(self.states)
-
-    def counts(self) -> dict[str, int]:
-        return {"rhs": self.count.value}
+    return solve, headline_of
 
 
-def in_heyoka(scene: Scene, tolerance: float, points: int) -> Any:
+def in_heyoka(scene: Scene, tolerance: float, points: int) -> Peer:
     from . import heyoka_wheel
 
     if scene.wheel.J_x != scene.wheel.J_y:
         raise RuntimeError("written only for J_x = J_y")
     values: dict[str, float] = asdict(scene.wheel) | {f"{n}_start": v for n, v in asdict(scene.motion).items()}
     values |= {"omega_s": width(scene), "regularized": float(regularized(scene))}
-    return heyoka_wheel.compiled(tuple(sorted(values.items())), scene.duration, points, tolerance)
+    taylor = heyoka_wheel.compiled(tuple(sorted(values.items())), scene.duration, points, tolerance)
+    return taylor.solve, headline_of
 
 
 def peers(scene: Scene) -> dict[str, Callable[[Scene, float, int], Peer]]:
     """Those that can solve the scene as it stands, by name; with exact friction, those that know no events naively."""
-    found: dict[str, Callable[..., Peer]] = {"DOP853 C++": InCpp, "heyoka": in_heyoka}
+    found: dict[str, Callable[..., Peer]] = {"DOP853 C++": in_cpp, "heyoka": in_heyoka}
     if scene.wheel.s > 0 and not regularized(scene):
         for naive in ("sign", "tanh"):
             for method in ("DOP853", "LSODA"):
-                found[f"SciPy {method}, {naive}()"] = lambda *a, m=method, n=naive: InScipy(*a, m, n)
+                found[f"SciPy {method}, {naive}()"] = partial(in_scipy, method=method, naive=naive)
         return found
-    for method in ("DOP853", "LSODA", "Radau"):
-        found[f"SciPy {method}"] = lambda *a, m=method: InScipy(*a, m)
-    for method in ("lsoda", "dop853"):
-        found[f"numbalsoda {method}"] = lambda *a, m=method: InNumbalsoda(*a, m)
-    return found
+    found |= {f"SciPy {method}": partial(in_scipy, method=method) for method in ("DOP853", "LSODA", "Radau")}
+    return found | {f"numbalsoda {m}": partial(in_numbalsoda, method=m) for m in ("lsoda", "dop853")}

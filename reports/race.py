@@ -11,16 +11,16 @@ from dataclasses import dataclass, field
 from math import exp, log
 
 import numpy as np
-from matplotlib.figure import Figure
+import pandas as pd
 from support.scenes import SCENES, Scene
 
 from . import plots
-from .native import Master, Task
+from .native import Array, Master, Task
+from .page import Row, Sheet, Tables
 from .peers import peers
 from .truth import kept_headline, range_error
 
 POINTS = 101
-DEFAULT = 1e-8  # tolerance
 METHODS = ("automatic", "adams", "bdf", "runge_kutta")
 OURS, CPP, HEYOKA = "FMU automatic", "DOP853 C++", "heyoka"
 TITLES = {
@@ -32,6 +32,7 @@ TITLES = {
     "near flat": "Near flat, θ from 30° down to 1°",
 }
 SLOW = 0.05  # s: what takes longer is measured once
+Attempt = Callable[[float, float], tuple[list[float], Array, dict[str, int]]]  # tolerance, seconds
 
 
 @dataclass
@@ -46,54 +47,38 @@ class Entry:
     counts: dict[str, int] = field(default_factory=dict)
     seconds: list[float] = field(default_factory=list)
 
-    @property
-    def best(self) -> float:
-        return min(self.seconds)
-
-    def row(self) -> dict[str, object]:
-        solved = self.error is not None
-        times = {"best_us": 1e6 * self.best, "median_us": 1e6 * float(np.median(self.seconds))} if solved else {}
-        keys = ("steps", "rhs", "events")
-        return {
-            **{"scene": self.scene, "setup": self.setup, "tolerance": self.tolerance, "error": self.error},
-            **{key: times.get(key) for key in ("best_us", "median_us")},
-            **{key: self.counts.get(key) for key in keys},
-            "note": self.note,
-        }
-
-
-Attempt = Callable[[float, float], tuple[list[float], np.ndarray, dict[str, int]]]  # tolerance, seconds
+    def row(self) -> Row:
+        micro = 1e6 * np.array(self.seconds or [np.nan])
+        counts = {key: self.counts.get(key) for key in ("steps", "rhs", "events")}
+        head = {"scene": self.scene, "setup": self.setup, "tolerance": self.tolerance, "error": self.error}
+        return {**head, "best_us": micro.min(), "median_us": np.median(micro), **counts, "note": self.note}
 
 
 def by_fmu(master: Master, scene: Scene, method: str) -> Attempt:
-    def attempt(tolerance: float, seconds: float) -> tuple[list[float], np.ndarray, dict[str, int]]:
+    def attempt(tolerance: float, seconds: float) -> tuple[list[float], Array, dict[str, int]]:
         values = {**scene.start, "method": method}
         done = master.run(Task(values, scene.duration / (POINTS - 1), POINTS - 1, tolerance), seconds)
         if not done.reached:
             raise RuntimeError(f"stopped with status {done.status} after {done.steps} of {POINTS - 1} steps")
-        return done.times[:, 1].tolist(), done.rows, {k[2:]: v for k, v in done.counters.items()}
+        return done.costs[:, 1].tolist(), done.rows, {k[2:]: v for k, v in done.counters.items()}
 
     return attempt
 
 
 def by_peer(scene: Scene, make: Callable) -> Attempt:
-    def attempt(tolerance: float, seconds: float) -> tuple[list[float], np.ndarray, dict[str, int]]:
-        peer = make(scene, tolerance, POINTS)
-        peer.solve()  # compiles, warms up
-        times = [peer.solve()]
-        while sum(times) < seconds:
-            times.append(peer.solve())
-        return times, peer.rows(), peer.counts()
+    def attempt(tolerance: float, seconds: float) -> tuple[list[float], Array, dict[str, int]]:
+        solve, outputs = make(scene, tolerance, POINTS)
+        solve()  # compiles, warms up
+        times: list[float] = []
+        while not times or sum(times) < seconds:
+            spent, states, counts = solve()
+            times.append(spent)
+        return times, outputs(states), counts
 
     return attempt
 
 
-def setups(master: Master, scene: Scene) -> dict[str, Attempt]:
-    found = {f"FMU {method}": by_fmu(master, scene, method) for method in METHODS}
-    return found | {name: by_peer(scene, make) for name, make in peers(scene).items()}
-
-
-def try_once(entry: Entry, attempt: Attempt, seconds: float, want: np.ndarray) -> None:
+def try_once(entry: Entry, attempt: Attempt, seconds: float, want: Array) -> None:
     try:
         times, rows, entry.counts = attempt(entry.tolerance, seconds)
     except (RuntimeError, ImportError, ValueError, ArithmeticError) as trouble:
@@ -104,56 +89,47 @@ def try_once(entry: Entry, attempt: Attempt, seconds: float, want: np.ndarray) -
     entry.seconds += times
 
 
-def race(master: Master, name: str, quick: bool) -> list[Entry]:
-    """Every set-up at every tolerance, in rounds, so that noise of the machine meets all alike."""
+def race(master: Master, name: str, quick: bool) -> list[Row]:
+    """Every set-up at every tolerance, in rounds, so that noise of the machine meets all alike.
+
+    A peer that failed at a looser tolerance is not asked again: it is missing, or takes too long.
+    """
     scene, rounds, seconds = SCENES[name], 1 if quick else 5, 0.004 if quick else 0.01
-    want, attempts = kept_headline(scene, POINTS), setups(master, scene)
-    entries = []
+    want = kept_headline(scene, POINTS)
+    attempts = {f"FMU {method}": by_fmu(master, scene, method) for method in METHODS}
+    attempts |= {peer: by_peer(scene, make) for peer, make in peers(scene).items()}
+    entries: list[Entry] = []
     for setup in attempts:
         slow = setup.startswith("SciPy") or (name == "stiff law" and setup in ("FMU adams", "FMU runge_kutta"))
         decades = (4, 6, 8, 10) if quick or slow else range(3, 14)
         entries += [Entry(name, setup, 10.0**-k) for k in decades]
     for turn in range(rounds):
+        reasons: dict[str, str] = {}
         for entry in entries:
-            failed = turn and entry.error is None
-            if failed or (turn and entry.best > SLOW) or hopeless(entries, entry):
-                continue
-            try_once(entry, attempts[entry.setup], seconds, want)
-    return entries
+            entry.note = entry.note or reasons.get(entry.setup, "")
+            if not entry.note and not (turn and min(entry.seconds) > SLOW):
+                try_once(entry, attempts[entry.setup], seconds, want)
+            if entry.note and not entry.setup.startswith("FMU"):
+                reasons[entry.setup] = entry.note
+    return [entry.row() for entry in entries]
 
 
-def hopeless(entries: list[Entry], entry: Entry) -> bool:
-    """A set-up that failed at a looser tolerance is not asked again: it is missing, or takes too long."""
-    looser = [e for e in entries if e.setup == entry.setup and e.tolerance > entry.tolerance and e.note]
-    if looser and entry.error is None and not entry.setup.startswith("FMU"):
-        entry.note = looser[0].note
-    return bool(looser) and entry.error is None and not entry.setup.startswith("FMU")
+def time_at(runs: pd.DataFrame, setup: str, error: float) -> float:
+    """Seconds to this error or a smaller one, by lines through log(time) over log(error); nan out of reach.
+
+    A run that another one beats in both is left out.
+    """
+    points = runs[(runs["setup"] == setup) & runs["error"].notna()].sort_values(["error", "best_us"])
+    points = points[points["best_us"] < points["best_us"].cummin().shift(fill_value=np.inf)]
+    if points.empty:
+        return np.nan
+    line = np.log(points[["error", "best_us"]].to_numpy(float)).T
+    return 1e-6 * exp(np.interp(log(error), *line, left=np.nan))
 
 
-def frontier(entries: list[Entry], setup: str) -> list[tuple[float, float]]:
-    """(error, best time) of what solved, errors falling; a point that another beats in both is left out."""
-    points = sorted((e.error, e.best) for e in entries if e.setup == setup and e.error is not None)
-    kept: list[tuple[float, float]] = []
-    for error, seconds in points:
-        if not kept or seconds < kept[-1][1]:
-            kept.append((error, seconds))
-    return kept[::-1]
-
-
-def time_at(entries: list[Entry], setup: str, error: float) -> float:
-    """Seconds to this error or a smaller one, by lines through log(time) over log(error); nan out of reach."""
-    points = frontier(entries, setup)
-    if points and points[0][0] <= error:
-        return points[0][1]
-    for (e_0, t_0), (e_1, t_1) in zip(points, points[1:], strict=False):
-        if e_1 <= error <= e_0:
-            share = (log(e_0) - log(error)) / (log(e_0) - log(e_1))
-            return exp(log(t_0) + share * (log(t_1) - log(t_0)))
-    return np.nan
-
-
-def entry_at(entries: list[Entry], setup: str, tolerance: float = DEFAULT) -> Entry:
-    return next(e for e in entries if e.setup == setup and np.isclose(e.tolerance, tolerance, rtol=1e-6, atol=0))
+def at_default(runs: pd.DataFrame, setup: str) -> pd.Series:
+    """The run at the FMU's default tolerance."""
+    return runs[(runs["setup"] == setup) & np.isclose(runs["tolerance"], 1e-8, rtol=1e-6, atol=0)].iloc[0]
 
 
 LOOKS = {
@@ -167,21 +143,20 @@ LOOKS = {
 }
 
 
-def draw(races: dict[str, list[Entry]]) -> Figure:
+def draw_races(tables: Tables) -> Sheet:
     """Six sheets, one legend; automatic lies on top, thick and half transparent, so that what it equals shows."""
-    figure, axes = plots.sheet(2, (len(races) + 1) // 2, 68)
+    figure, axes = plots.sheet(2, len(TITLES) // 2, 68)
     shown: dict[str, object] = {}
-    for ax, (name, entries) in zip(axes, races.items(), strict=False):
-        for setup in dict.fromkeys(e.setup for e in entries):
-            points = [(1e6 * e.best, max(e.error, 1e-14)) for e in entries if e.setup == setup and e.error is not None]
-            if not points:
-                continue
+    for ax, (scene, title) in zip(axes, TITLES.items(), strict=True):
+        runs = tables["runs"]
+        solved = runs[(runs["scene"] == scene) & runs["error"].notna()]
+        for setup, points in solved.groupby("setup", sort=False):
             colour, line, marker = LOOKS.get(setup, (plots.style.INK, "-", "x"))
-            ours = setup == OURS
-            look = {"lw": 3.5 if ours else 1, "alpha": 0.55 if ours else 1, "ms": 5 if ours else 3}
-            (curve,) = ax.plot(*zip(*points, strict=True), color=colour, ls=line, marker=marker, label=setup, **look)
+            look = {"lw": 3.5, "alpha": 0.55, "ms": 5} if setup == OURS else {"lw": 1, "ms": 3}
+            x, y = points["best_us"], points["error"].clip(lower=1e-14)
+            (curve,) = ax.plot(x, y, color=colour, ls=line, marker=marker, label=setup, **look)
             shown.setdefault(setup, curve)
-        plots.label(ax, "best time [µs]", "error / range", TITLES[name], "xy")
+        plots.label(ax, "best time [µs]", "error / range", title, "xy")
         ax.set_ylim(1e-14, 3)
     figure.legend(list(shown.values()), list(shown), loc="outside lower center", ncols=4)
     return figure

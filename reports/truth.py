@@ -39,6 +39,13 @@ def kept_headline(scene: Scene, points: int, label: str = "", inputs: Inputs | N
     return np.load(path)
 
 
+def headline_of(states: Array) -> Array:
+    """The headline outputs of rows of the reduced state: theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O."""
+    theta, _, omega_2, omega_3, _, _, X_O, _ = states.T
+    psi_dot = omega_2 / np.sin(theta)
+    return np.column_stack([X_O, theta, omega_3 - psi_dot * np.cos(theta), psi_dot])
+
+
 def range_error(rows: Array, want: Array) -> float:
     """Largest difference of a column, relative to its range; infinite where the rows do not match."""
     if rows.shape != want.shape or not np.isfinite(rows).all():

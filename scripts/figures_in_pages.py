@@ -3,6 +3,7 @@
 
 A place in Markdown or HTML is `<!-- = report.figure -->4e-8<!-- . -->`: the comment names a row of
 docs/results/data/report.csv, which `scripts/report` measures, and what stands up to the next comment is written here.
+Between `<!-- table = name -->` and `<!-- end of table -->` stands docs/results/data/name.csv as a table.
 With --check it changes nothing and tells by its exit status whether a page and the data differ.
 """
 
@@ -20,6 +21,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 DATA = ROOT / "docs" / "results" / "data"
 PLACE = re.compile(r"(<!-- = ([\w.]+) -->)(.*?)(<!-- \. -->)", re.DOTALL)
+TABLE = re.compile(r"(<!-- table = (\w+) -->)(.*?)(<!-- end of table -->)", re.DOTALL)
+SCIENTIFIC = re.compile(r"[\d.]+e-?\d+")
 
 
 class UnknownFigure(Exception):
@@ -53,15 +56,26 @@ def read_figures(folder: Path = DATA) -> dict[str, str]:
     return figures
 
 
-def with_figures(text: str, figures: Mapping[str, str], name: str = "the page") -> str:
-    """The page's text with every marked place filled."""
+def table(path: Path) -> str:
+    """A CSV file in Markdown."""
+    with path.open(newline="", encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    shown = [[number(float(cell)) if SCIENTIFIC.fullmatch(cell) else cell for cell in row] for row in rows]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in (head, ["---"] * len(head), *shown))
+
+
+def with_figures(text: str, figures: Mapping[str, str], name: str = "the page", folder: Path = DATA) -> str:
+    """The page's text with every marked place and table filled."""
 
     def fill(place: re.Match[str]) -> str:
         if place[2] not in figures:
             raise UnknownFigure(f"{name} asks for {place[2]}, which no report has measured.")
         return f"{place[1]}{figures[place[2]]}{place[4]}"
 
-    return PLACE.sub(fill, text)
+    def fill_table(place: re.Match[str]) -> str:
+        return f"{place[1]}\n\n{table(folder / f'{place[2]}.csv')}\n\n{place[4]}"
+
+    return TABLE.sub(fill_table, PLACE.sub(fill, text))
 
 
 def pages() -> list[Path]:

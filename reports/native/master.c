@@ -1,9 +1,7 @@
-/* A small co-simulation master, called from Python (reports/native.py): runs a scene in the library out of wheel.fmu,
- * again and again, and says what it took. Times are wall-clock seconds. No paper equation, no frame; value references
- * and start values come from the caller. */
+/* A small co-simulation master, called from Python (reports/native.py): runs a scene in the library of the FMU and says
+ * what it took. Times are wall-clock seconds. No paper equation, no frame; value references and start values come from
+ * the caller. */
 #include <malloc.h>
-#include <pthread.h>
-#include <string.h>
 #include <time.h>
 
 #include "fmi2FunctionTypes.h"
@@ -124,112 +122,35 @@ static fmi2Status communicate(const Fmu* fmu, const Run* run, fmi2Component inst
   return status;
 }
 
-static Outcome go(const Fmu* fmu, const Run* run, fmi2Component instance, double* rows) {
-  Outcome outcome = {fmi2OK, 0};
-  double unread[MOST_OUTPUTS];
-  if (run->output_count) fmu->get_real(instance, run->outputs, (size_t)run->output_count, rows ? rows : unread);
-  while (outcome.steps < run->steps) {
-    double* row = rows ? rows + (outcome.steps + 1) * run->output_count : unread;
-    outcome.status = communicate(fmu, run, instance, outcome.steps, row);
-    if (outcome.status > fmi2Warning) break;
-    ++outcome.steps;
-  }
-  return outcome;
-}
-
-/* One run apart from the clock. rows: (steps + 1) x outputs, the first at the start; counters: at the end. */
-Outcome solve(const Fmu* fmu, const Run* run, double* rows, int* counters) {
-  fmi2Component instance = start_instance(fmu, run);
-  if (!instance) return (Outcome){fmi2Error, 0};
-  const Outcome outcome = go(fmu, run, instance, rows);
-  fmu->get_integer(instance, run->counters, (size_t)run->counter_count, counters);
-  fmu->free_instance(instance);
-  return outcome;
-}
-
-/* Runs for `seconds`, at least once and at most `most` times: times[0] to times[2] are start, run and end of the first,
- * and so on. Returns the number of runs. */
-long measure(const Fmu* fmu, const Run* run, double seconds, long most, double* times) {
-  const double begin = now();
-  long count = 0;
-  while (count < most && (count == 0 || now() - begin < seconds)) {
-    const double t_0 = now();
-    fmi2Component instance = start_instance(fmu, run);
-    const double t_1 = now();
-    if (!instance) return 0;
-    go(fmu, run, instance, NULL);
-    const double t_2 = now();
-    fmu->free_instance(instance);
-    double* row = times + 3 * count++;
-    row[0] = t_1 - t_0, row[1] = t_2 - t_1, row[2] = now() - t_2;
-  }
-  return count;
-}
-
-/* The time of each single communication step, the clock's own cost included. */
-Outcome pace(const Fmu* fmu, const Run* run, double* times) {
-  Outcome outcome = {fmi2Error, 0};
-  double unread[MOST_OUTPUTS];
-  fmi2Component instance = start_instance(fmu, run);
-  if (!instance) return outcome;
-  for (outcome.status = fmi2OK; outcome.steps < run->steps; ++outcome.steps) {
-    const double before = now();
-    outcome.status = communicate(fmu, run, instance, outcome.steps, unread);
-    times[outcome.steps] = now() - before;
-    if (outcome.status > fmi2Warning) break;
-  }
-  fmu->free_instance(instance);
-  return outcome;
-}
-
-typedef struct Crowd {
-  const Fmu* fmu;
-  const Run* run;
-  fmi2Component* instances;
-  long first, last; /* instances [first, last) */
-} Crowd;
-
-/* One step of each instance, then the next step of each: neighbours alternate as in a co-simulation. */
-static void* step_in_turn(void* data) {
-  const Crowd* crowd = data;
-  double unread[MOST_OUTPUTS];
-  for (long k = 0; k < crowd->run->steps; ++k)
-    for (long i = crowd->first; i < crowd->last; ++i)
-      communicate(crowd->fmu, crowd->run, crowd->instances[i], k, unread);
-  return NULL;
-}
-
 static double bytes_in_use(void) {
   const struct mallinfo2 info = mallinfo2();
   return (double)(info.uordblks + info.hblkhd);
 }
 
-/* `count` instances in one process, half of them stepped by a second thread. Out, per instance: bytes, seconds to
- * create and initialize, to step, to free. Returns how many ended with other bits than `alone`, the outputs of one by
- * itself; -1 where one could not be started. */
-long run_crowd(const Fmu* fmu, const Run* run, long count, const double* alone, double* out) {
-  const size_t width = (size_t)run->output_count;
-  fmi2Component* instances = calloc((size_t)count, sizeof *instances);
+/* One run. Out, where not null: rows, (steps + 1) x outputs, the first at the start; paces, seconds of each step, the
+ * clock's own cost included; counters at the end. cost: seconds to create and initialize, to step, to free; bytes. */
+Outcome solve(const Fmu* fmu, const Run* run, double* rows, double* paces, int* counters, double* cost) {
+  Outcome outcome = {fmi2Error, 0};
+  double unread[MOST_OUTPUTS];
   const double bytes = bytes_in_use(), t_0 = now();
-  for (long i = 0; i < count; ++i)
-    if (!(instances[i] = start_instance(fmu, run))) return -1;
+  fmi2Component instance = start_instance(fmu, run);
   const double t_1 = now();
-  Crowd halves[2] = {{fmu, run, instances, 0, count / 2}, {fmu, run, instances, count / 2, count}};
-  pthread_t other;
-  pthread_create(&other, NULL, step_in_turn, &halves[0]);
-  step_in_turn(&halves[1]);
-  pthread_join(other, NULL);
-  const double t_2 = now();
-  out[0] = (bytes_in_use() - bytes) / (double)count;
-  long different = 0;
-  for (long i = 0; i < count; ++i) {
-    double row[MOST_OUTPUTS] = {0};
-    fmu->get_real(instances[i], run->outputs, width, row);
-    different += memcmp(row, alone, width * sizeof *row) != 0;
+  if (!instance) return outcome;
+  outcome.status = fmi2OK;
+  if (run->output_count) fmu->get_real(instance, run->outputs, (size_t)run->output_count, rows ? rows : unread);
+  while (outcome.steps < run->steps) {
+    double* row = rows ? rows + (outcome.steps + 1) * run->output_count : unread;
+    const double before = paces ? now() : 0;
+    outcome.status = communicate(fmu, run, instance, outcome.steps, row);
+    if (paces) paces[outcome.steps] = now() - before;
+    if (outcome.status > fmi2Warning) break;
+    ++outcome.steps;
   }
+  const double t_2 = now();
+  cost[3] = bytes_in_use() - bytes;
+  if (counters) fmu->get_integer(instance, run->counters, (size_t)run->counter_count, counters);
   const double t_3 = now();
-  for (long i = 0; i < count; ++i) fmu->free_instance(instances[i]);
-  out[1] = (t_1 - t_0) / (double)count, out[2] = (t_2 - t_1) / (double)count, out[3] = (now() - t_3) / (double)count;
-  free(instances);
-  return different;
+  fmu->free_instance(instance);
+  cost[0] = t_1 - t_0, cost[1] = t_2 - t_1, cost[2] = now() - t_3;
+  return outcome;
 }

@@ -7,18 +7,20 @@ in wasmtime. macOS is only built. Scenes of the paper, SI units.
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import os
 import subprocess
 import sys
-import xml.etree.ElementTree as xml
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-import page
+import fmpy
+from jinja2 import Template
+from tabulate import tabulate
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-HEADERS = Path(importlib.util.find_spec("fmpy").origin).parent / "c-code"
+HERE = Path(__file__).parent
+DESCRIPTION = fmpy.read_model_description(str(ROOT), validate=False)
 WASM = "wasm32-wasi"
 LINUX, ARM, WINDOWS = "x86_64-linux-gnu.2.17", "aarch64-linux-gnu.2.17", "x86_64-windows-gnu"
 
@@ -32,43 +34,33 @@ class Place(NamedTuple):
     library: Path
 
 
-def guid() -> str:
-    return xml.parse(ROOT / "modelDescription.xml").getroot().attrib["guid"]
+class Row(NamedTuple):
+    digest: str  # of the trajectory, all bits
+    last: list[float]  # the four headline outputs at the end
+
+
+Scenes = dict[str, Row]
 
 
 def build_driver(zig: Path, target: str, folder: Path) -> Path:
     rows = [ROOT / "scripts" / "variable_rows.py", ROOT / "modelDescription.xml", folder / "variables.inc"]
     subprocess.run([sys.executable, *map(str, rows)], check=True)
     driver = folder / target / ("driver.exe" if target == WINDOWS else "driver")
-    source = Path(__file__).parent / "driver.c"
-    command = [
-        str(zig / "zig"),
-        "cc",
-        "-target",
-        target,
-        "-O1",
-        f"-I{HEADERS}",
-        f"-I{ROOT / 'tests' / 'support'}",
-        f"-I{folder}",
-        str(source),
-        "-o",
-        str(driver),
-    ]
-    subprocess.run([*command, *([] if target == WINDOWS else ["-ldl"])], check=True)
+    headers = (Path(fmpy.__file__).parent / "c-code", ROOT / "tests" / "support", folder)
+    command = [zig / "zig", "cc", "-target", target, "-O1", *(f"-I{path}" for path in headers), HERE / "driver.c"]
+    system = [] if target == WINDOWS else ["-ldl"]
+    subprocess.run([*map(str, command), "-o", str(driver), *system], check=True)
     return driver
 
 
-def run_scenes(place: Place, driver: Path) -> dict[str, page.Row]:
-    command = [*place.runner, str(driver), str(place.library), guid()]
+def run_scenes(place: Place, driver: Path) -> Scenes:
+    command = [*place.runner, str(driver), str(place.library), DESCRIPTION.guid]
     quiet = os.environ | {"WINEDEBUG": "-all"}
     result = subprocess.run(command, capture_output=True, text=True, timeout=900, check=False, env=quiet)
     if result.returncode:
         raise SystemExit(f"{place.name}: {' '.join(command)} failed: {result.stderr[-500:]}")
-    rows = {}
-    for line in result.stdout.splitlines():
-        scene, digest, *values = line.strip().split("\t")
-        rows[scene] = page.Row(digest, [float(value) for value in values])
-    return rows
+    rows = [line.strip().split("\t") for line in result.stdout.splitlines()]
+    return {scene: Row(digest, [float(value) for value in values]) for scene, digest, *values in rows}
 
 
 def places(arguments: argparse.Namespace) -> list[Place]:
@@ -78,13 +70,57 @@ def places(arguments: argparse.Namespace) -> list[Place]:
         Place("win64, wine", WINDOWS, [arguments.wine], folder / WINDOWS / "wheel.dll"),
         Place("aarch64-linux, qemu", ARM, ["qemu-aarch64", "-L", arguments.arm_root], folder / ARM / "wheel.so"),
     ]
-    wasm = [arguments.wasm_python, str(Path(__file__).with_name("run_wasm.py"))]
+    wasm = [arguments.wasm_python, str(HERE / "run_wasm.py")]
     found.append(Place("wasm32, wasmtime", WASM, wasm, Path("linked in")))
     if arguments.old_glibc:
         name, libc = arguments.old_glibc
         start = [str(Path(libc) / "ld-linux-x86-64.so.2"), "--library-path", libc]
         found.insert(1, Place(f"linux64, {name}", LINUX, start, folder / LINUX / "wheel.so"))
     return found
+
+
+def version_of(*command: str) -> str:
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[0].strip()
+    except (OSError, subprocess.CalledProcessError):
+        return command[0]
+
+
+def table(columns: dict[str, Scenes], cell: Callable[[str, Row], str]) -> str:
+    """A row for each scene, a column for each platform or build."""
+    scenes = next(iter(columns.values()))
+    rows = [[scene, *(cell(scene, column[scene]) for column in columns.values())] for scene in scenes]
+    return tabulate(rows, ["scene", *columns], tablefmt="github", disable_numparse=True)
+
+
+def digest(a: Row, b: Row) -> str:
+    return "equal" if a is not b and a.digest == b.digest else b.digest
+
+
+def apart(a: Row, b: Row) -> str:
+    """Largest relative difference of the last outputs."""
+    if a.digest == b.digest:
+        return "equal"
+    return f"{max(abs(x - y) / max(abs(x), 1e-3) for x, y in zip(a.last, b.last, strict=True)):.1e}"
+
+
+def write(arguments: argparse.Namespace, released: dict[str, Scenes], own: dict[str, Scenes], **found: object) -> None:
+    folder, reference = arguments.folder, released["linux64"]
+    template = Template((HERE / "platforms.md").read_text(encoding="utf-8"), keep_trailing_newline=True)
+    page = template.render(
+        commit=version_of("git", "-C", str(ROOT), "describe", "--always", "--dirty"),
+        size=(folder / "wheel.fmu").stat().st_size / 1e3,
+        outputs=sum(v.causality == "output" for v in DESCRIPTION.modelVariables),
+        compiler=version_of("c++", "--version"),
+        old=arguments.old_glibc and arguments.old_glibc[0],
+        wine=version_of(arguments.wine, "--version"),
+        qemu=version_of("qemu-aarch64", "--version").replace("qemu-aarch64 version", "qemu"),
+        released=table(released, lambda scene, row: digest(reference[scene], row)),
+        own=table(own, lambda scene, row: apart(reference[scene], row)),
+        **{name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in ("libraries", "fmpy", "twice")},
+        **found,
+    )
+    arguments.report.write_text(page, encoding="utf-8")
 
 
 def main() -> None:
@@ -106,12 +142,11 @@ def main() -> None:
     drivers[WASM] = arguments.wasm
     released = {place.name: run_scenes(place, drivers[place.target]) for place in places(arguments)}
     own = {name: run_scenes(Place(name, LINUX, [], Path(path)), drivers[LINUX]) for name, path in arguments.own}
-    parts = {name: (folder / f"{name}.md").read_text() for name in ("libraries", "fmpy", "twice")}
-    arguments.report.write_text(page.write(parts, released, own, (folder / "wheel.fmu").stat().st_size, arguments.wine))
-    if page.different(released):
-        raise SystemExit(
-            f"The trajectories differ between platforms: {page.different(released)}; see {arguments.report}"
-        )
+    reference = released["linux64"]
+    different = [s for s in reference if len({scenes[s].digest for scenes in released.values()}) > 1]
+    write(arguments, released, own, different=different)
+    if different:
+        raise SystemExit(f"The trajectories differ between platforms: {different}; see {arguments.report}")
 
 
 if __name__ == "__main__":

@@ -102,7 +102,15 @@ def test_an_unknown_figure_is_refused_and_a_known_one_is_filled(tmp_path: Path) 
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(4.04e-8, "4e-8"), (1.25e-3, "0.00125"), (0.0, "0"), (123456.0, "1.2e5"), (37, "37"), (float("inf"), "inf")],
+    [
+        (4.04e-8, "4e-8"),
+        (3.46e-9, "3.5e-9"),
+        (1.25e-3, "0.00125"),
+        (0.0, "0"),
+        (123456.0, "1.2e5"),
+        (37, "37"),
+        (float("inf"), "inf"),
+    ],
 )
 def test_a_number_is_short(value: float, text: str) -> None:
     assert number(value) == text
