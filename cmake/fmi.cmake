@@ -1,27 +1,5 @@
-# The FMI 2.0 headers (from the fmpy package), the GUID (from modelDescription.xml), and the FMU archive.
-set(Python3_FIND_VIRTUALENV FIRST)
-if(NOT Python3_EXECUTABLE AND EXISTS ${CMAKE_SOURCE_DIR}/.venv/bin/python)
-  set(Python3_EXECUTABLE ${CMAKE_SOURCE_DIR}/.venv/bin/python)
-endif()
-find_package(Python3 REQUIRED COMPONENTS Interpreter)
-
-if(NOT FMI2_INCLUDE_DIR)
-  execute_process(
-    COMMAND
-      ${Python3_EXECUTABLE} -c "import importlib.util as u; print(u.find_spec('fmpy').submodule_search_locations[0])"
-    OUTPUT_VARIABLE fmpy_folder
-    OUTPUT_STRIP_TRAILING_WHITESPACE
-    ERROR_QUIET
-  )
-  find_path(FMI2_INCLUDE_DIR fmi2Functions.h HINTS ${fmpy_folder}/c-code NO_DEFAULT_PATH)
-endif()
-if(NOT FMI2_INCLUDE_DIR)
-  message(
-    FATAL_ERROR
-    "fmi2Functions.h was not found: run ./scripts/setup, or install the Python package fmpy, "
-    "or set FMI2_INCLUDE_DIR to a folder with the FMI 2.0 headers."
-  )
-endif()
+# The FMI 2.0 headers, the GUID (from modelDescription.xml), and the FMU archive.
+include(fmi_headers)
 
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS modelDescription.xml)
 file(STRINGS modelDescription.xml guid_line REGEX "guid=")

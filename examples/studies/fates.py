@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import bar, fill, label, save, scaled, two_maps, upright_limit
+from drawing import save, scaled, two_maps, upright_limit
 from study import Study
 
 ANGLES, SPINS = 160, 125  # 2 * 160 * 125 = 40,000 wheels
@@ -32,11 +32,9 @@ def table(results: xr.Dataset) -> xr.Dataset:
 
 def draw(small: xr.Dataset, stem: Path) -> list[Path]:
     """Two maps: how far the wheel goes down, and in flat colours where the model ends."""
-    fig, axes = two_maps()
-    frictions = small["s"].values
-    for ax, s in zip(axes, frictions, strict=True):
-        one = small.sel(s=s)
-        shades = fill(ax, one["smallest_angle"], one["status"], scaled("cividis", LEVELS))
+    text = "smallest angle to the ground within 10 s [deg]"
+    fig, axes = two_maps(small, "smallest_angle", scaled("cividis", LEVELS), text, side="left")
+    for ax in axes:
         ax.axvline(upright_limit(), color="white", linewidth=1.0, linestyle=(0, (4, 3)))
         ax.set_xscale("symlog", linthresh=0.05, linscale=0.3)
         ax.set_xticks([0, 0.1, 1, 10], ["0", "0.1", "1", "10"])
@@ -44,8 +42,5 @@ def draw(small: xr.Dataset, stem: Path) -> list[Path]:
         white = {"color": "white", "rotation": 90, "ha": "center", "va": "center", "fontsize": 8}
         ax.text(0.012, 45, "no spin: falls flat", **white)
         ax.text(upright_limit() * 0.82, 22, "limit of upright rolling", **white)
-        if s > 0:
-            ax.text(35, 9, "lifts\noff", **(white | {"rotation": 0, "linespacing": 0.9}))
-    label(axes, frictions, side="left")
-    bar(fig, shades, "smallest angle to the ground within 10 s [deg]")
+    axes[1].text(35, 9, "lifts\noff", **(white | {"rotation": 0, "linespacing": 0.9}))
     return save(fig, stem)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import bar, fill, label, save, scaled, two_maps
+from drawing import save, scaled, two_maps
 from study import Study
 
 SIDE = 100
@@ -32,14 +32,10 @@ def table(results: xr.Dataset) -> xr.Dataset:
 
 def draw(small: xr.Dataset, stem: Path) -> list[Path]:
     """Two maps in steps, with a line at 0.8."""
-    fig, axes = two_maps()
-    frictions = small["s"].values
-    for ax, s in zip(axes, frictions, strict=True):
-        one = small.sel(s=s)
-        shades = fill(ax, one["mu"], one["status"], scaled("viridis", LEVELS))
-        spin, angle = -one["phi_dot_start"].values, np.degrees(one["theta_start"].values)
-        ax.contour(spin, angle, one["mu"], levels=[DRY_ASPHALT], colors="white", linewidths=1.4)
+    text = r"largest $\mu_\mathrm{required}$ within 10 s (white line: 0.8)"
+    fig, axes = two_maps(small, "mu", scaled("viridis", LEVELS), text)
+    spin, angle = -small["phi_dot_start"].values, np.degrees(small["theta_start"].values)
+    for ax, s in zip(axes, small["s"].values, strict=True):
+        ax.contour(spin, angle, small["mu"].sel(s=s), levels=[DRY_ASPHALT], colors="white", linewidths=1.4)
         ax.set(xlim=(0, 12), xticks=range(0, 13, 2))
-    label(axes, frictions)
-    bar(fig, shades, r"largest $\mu_\mathrm{required}$ within 10 s (white line: 0.8)")
     return save(fig, stem)

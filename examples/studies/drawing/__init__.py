@@ -14,6 +14,7 @@ from plotting import style
 from study import Status
 
 PAPER = (2.0, 75.0)  # |phi_dot| in rad/s and theta in degrees of the paper's scenes
+HEIGHT = 92.0  # mm, of a figure
 WHEEL = {"m": 20.0, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_z": 1.8, "g": 9.81}  # SI; the FMU's defaults
 
 
@@ -36,11 +37,23 @@ def save(fig: Figure, stem: Path) -> list[Path]:
     return [path]
 
 
-def two_maps(height: float = 92.0) -> tuple[Figure, list[Axes]]:
-    """An empty figure with a map each for the free wheel and for the one with friction."""
+def two_maps(small: xr.Dataset, name: str, look: dict[str, object], text: str, side: str = "right") -> tuple:
+    """Maps of the variable `name`, for the free wheel and for the one with friction, and a scale; figure and axes.
+
+    side: of the paper's mark on which its name stands.
+    """
     style.use_style()
-    fig = style.figure_mm(style.PAGE, height)
-    return fig, [style.axes_mm(fig, 14.0 + 75.0 * k, 14.0, 70.0, height - 24.0) for k in range(2)]
+    fig = style.figure_mm(style.PAGE, HEIGHT)
+    axes = [style.axes_mm(fig, 14.0 + 75.0 * k, 14.0, 70.0, HEIGHT - 24.0) for k in range(2)]
+    for ax, s in zip(axes, small["s"].values, strict=True):
+        shades = fill(ax, small[name].sel(s=s), small["status"].sel(s=s), look)
+        label(ax, s, side)
+    axes[0].set_ylabel(r"angle at the start $\theta$ [deg]")
+    axes[1].set_yticklabels([])
+    scale = fig.colorbar(shades, cax=style.axes_mm(fig, 163.0, 14.0, 4.0, HEIGHT - 24.0), spacing="uniform")
+    scale.set_label(text)
+    scale.ax.tick_params(size=0)
+    return fig, axes
 
 
 def scaled(name: str, levels: list[float]) -> dict[str, object]:
@@ -59,21 +72,10 @@ def fill(ax: Axes, one: xr.DataArray, status: xr.DataArray, look: dict[str, obje
     return shades
 
 
-def label(axes: list[Axes], frictions: np.ndarray, side: str = "right") -> None:
-    """Titles, axes and the paper's start, named at the side of its mark where the map is dark."""
+def label(ax: Axes, s: float, side: str) -> None:
+    """Title, axes and the paper's start."""
     beside = {"right": {"xytext": (6, 3), "ha": "left"}, "left": {"xytext": (-6, 3), "ha": "right"}}[side]
-    for ax, s in zip(axes, frictions, strict=True):
-        ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:g} m", fontsize=9)
-        ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"spin at the start $|\dot\varphi|$ [rad/s]")
-        ax.plot(*PAPER, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
-        ax.annotate("paper", PAPER, textcoords="offset points", color="white", fontsize=8, **beside)
-    axes[0].set_ylabel(r"angle at the start $\theta$ [deg]")
-    axes[1].set_yticklabels([])
-
-
-def bar(fig: Figure, shades: ScalarMappable, text: str) -> None:
-    """The scale at the right."""
-    height = fig.get_size_inches()[1] / style.MM
-    scale = fig.colorbar(shades, cax=style.axes_mm(fig, 163.0, 14.0, 4.0, height - 24.0), spacing="uniform")
-    scale.set_label(text)
-    scale.ax.tick_params(size=0)
+    ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:g} m", fontsize=9)
+    ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"spin at the start $|\dot\varphi|$ [rad/s]")
+    ax.plot(*PAPER, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
+    ax.annotate("paper", PAPER, textcoords="offset points", color="white", fontsize=8, **beside)
