@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import distributions
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -72,9 +73,12 @@ def save(sheet: Sheet, folder: Path, name: str) -> None:
 
 
 def read_tables(folder: Path, name: str) -> Tables:
-    """The tables of a report by name."""
-    files = sorted((folder / "data").glob(f"{name}_*.csv"))
-    return {file.stem.removeprefix(f"{name}_"): pd.read_csv(file) for file in files}
+    """The tables of a report by name; one without rows may lack its columns too."""
+    tables = {}
+    for file in sorted((folder / "data").glob(f"{name}_*.csv")):
+        text = file.read_text(encoding="utf-8")
+        tables[file.stem.removeprefix(f"{name}_")] = pd.read_csv(StringIO(text)) if text.strip() else pd.DataFrame()
+    return tables
 
 
 def markdown_table(frame: pd.DataFrame) -> str:
