@@ -17,7 +17,24 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "results" / "coverage.md"
 LEAST = 95.0  # per cent of lines
 # What no test reaches: file, a piece of the text of the first line of a range, and why.
-REASONS: tuple[tuple[str, str, str], ...] = ()
+MEMORY = "only where there is no memory left: tests/robustness/faults"
+UNUSED = "a vector of SUNDIALS must have it; nothing calls it in the set-ups used here"
+ENGINE, VECTOR = "fmu-src/solver/cvode_engine.cpp", "fmu-src/solver/cvode_vector.cpp"
+REASONS = (
+    (
+        "fmu-src/fmi/derivatives.cpp",
+        "there is no start close",
+        "no start is known of which both neighbours are refused",
+    ),
+    (ENGINE, "free_objects();", MEMORY),
+    (ENGINE, "could not be set up", MEMORY),
+    (VECTOR, "N_Vector_ID kind", UNUSED),
+    (VECTOR, "sunindextype length", UNUSED),
+    (VECTOR, "void product", UNUSED),
+    (VECTOR, "void add_constant", UNUSED),
+    ("fmu-src/solver/solver.cpp", "void Solver::stop_nowhere", "nothing calls it"),
+    ("fmu-src/solver/solver.cpp", "double y[max_states]", "a stop time within rounding of a step's end: none was met"),
+)
 TEXT = """# Coverage of fmu-src by the tests
 
 Made by `scripts/coverage`: gcov through gcovr, by the tests of contract, equations, orbit and solver, the quick ones of
@@ -40,8 +57,8 @@ def share(hits: pd.Series) -> str:
 def table(lines: pd.Series, branches: pd.Series) -> pd.DataFrame:
     columns = {"lines": lines, "branches": branches}
     shares = pd.DataFrame({name: hits.groupby("file").apply(share) for name, hits in columns.items()}).fillna("")
-    shares.loc["**all**"] = {name: f"**{share(hits)}**" for name, hits in columns.items()}
-    return shares.rename_axis("file").reset_index()
+    total = pd.DataFrame({name: f"**{share(hits)}**" for name, hits in columns.items()}, index=["**all**"])
+    return pd.concat([shares, total]).rename_axis("file").reset_index()
 
 
 def unreached(lines: pd.Series) -> pd.DataFrame:
@@ -61,7 +78,8 @@ def unreached(lines: pd.Series) -> pd.DataFrame:
 def main(report: Path) -> int:
     files = json.loads(report.read_text(encoding="utf-8"))["files"]
     found = pd.json_normalize(files, "lines", "file")
-    found = found[found.get("gcovr/noncode", pd.Series(False, found.index)).isna()]
+    found = found.reindex(columns=["file", "line_number", "count", "branches", "gcovr/noncode"])
+    found = found[found["gcovr/noncode"].isna()]
     lines = found.groupby(["file", "line_number"])["count"].sum()
     ways = found.explode("branches").dropna(subset="branches")
     ways = ways.assign(way=ways.groupby(level=0).cumcount(), count=[way["count"] for way in ways["branches"]])
