@@ -26,6 +26,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("names", nargs="+", metavar="NAME", choices=(*NAMES, "all"), help=", ".join((*NAMES, "all")))
     parser.add_argument("--quick", action="store_true", help="fewer cases, into build/report: to see that it works")
     parser.add_argument("--render", action="store_true", help="measure nothing: page and pictures out of the data")
+    parser.add_argument("--check", action="store_true", help="change nothing: are the pages those of the data?")
     parser.add_argument("--tools", metavar="PYTHON", help="vehicles: an interpreter with libcosimpy and ecospy")
     parser.add_argument("--against", default="", metavar="REVISION", help="speed: also measure this older version")
     return parser.parse_args()
@@ -52,12 +53,27 @@ def module(name: str) -> ModuleType:
 
 def draw(name: str, folder: Path) -> bool:
     """The pictures that are drawn from tables, and the page; whether all is as asked."""
-    of = module(name)
+    of, missed = module(name), ""
     for picture, sheet in getattr(of, "PICTURES", {}).items():
         save(sheet(read_tables(folder, name)), folder, f"{name}_{picture}")
-    missed = of.page(folder) if hasattr(of, "page") else render(name, folder, getattr(of, "views", dict))
+    if hasattr(of, "page"):
+        of.page(folder)
+    else:
+        text, missed = render(name, folder, getattr(of, "views", dict))
+        (folder / f"{name}.md").write_text(text, encoding="utf-8")
     print(f"{name}: {f'not met: {missed}' if missed else 'all is as asked'}.")
     return not missed
+
+
+def fresh(name: str, folder: Path) -> bool:
+    """Whether the page that is there is the one of the data."""
+    if hasattr(module(name), "page"):
+        return True
+    text, _ = render(name, folder, getattr(module(name), "views", dict))
+    same = text == (folder / f"{name}.md").read_text(encoding="utf-8")
+    if not same:
+        print(f"{name}.md is not the page of the data: run ./scripts/report {name} --render.")
+    return same
 
 
 def main() -> int:
@@ -65,6 +81,9 @@ def main() -> int:
     names = list(NAMES) if "all" in options.names else list(dict.fromkeys(options.names))
     folder = ROOT / "build" / "report" / "quick" if options.quick else ROOT / "docs" / "results"
     folder.mkdir(parents=True, exist_ok=True)
+    if options.check:
+        stale = [name for name in names if not fresh(name, folder)]
+        return int(bool(stale))
     if not options.render:
         measure(names, folder, options)
     met = [draw(name, folder) for name in names]

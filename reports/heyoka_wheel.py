@@ -27,8 +27,8 @@ def start_state(scene: dict[str, float]) -> np.ndarray:
     return np.array([theta, theta_dot, psi_dot * np.sin(theta), spin, psi, phi, X_O, Y_O])
 
 
-def equations(scene: dict[str, float], moment: str) -> tuple[list[tuple[Any, Any]], Any]:
-    """The system and s N - |tau| of the held mode (None in the others).
+def equations(scene: dict[str, float], moment: str) -> tuple[list[tuple[Any, Any]], Any, Any]:
+    """The system; in the held mode also (s N)^2 - tau^2 and tau, the moment of the ground that holds omega_z at zero.
 
     moment of the ground about the axle: "none"; "rolling", -s N par[0] with par[0] = sigma; "regularized"; "held".
     """
@@ -47,7 +47,7 @@ def equations(scene: dict[str, float], moment: str) -> tuple[list[tuple[Any, Any
     N = sin * (k_2 - m * eta * w_1_dot) + cos * (k_3 + m * rho * w_1_dot)
     a_11, a_12, a_22 = J_x + m * eta * eta, -m * eta * rho, J_z + m * rho * rho
     h_2, h_3 = w_1 * (J_z * w_3 - J_x * Omega_3) - eta * k_1, rho * k_1
-    margin = None
+    margin = tau = None
     if moment == "held":
         w_2_dot, w_3_dot = h_2 / a_11, hy.expression(0.0)
         tau = a_12 * w_2_dot - h_3
@@ -63,16 +63,7 @@ def equations(scene: dict[str, float], moment: str) -> tuple[list[tuple[Any, Any
     X_dot = v_1 * hy.cos(psi) + across * hy.sin(psi)
     Y_dot = v_1 * hy.sin(psi) - across * hy.cos(psi)
     rates = [w_1, w_1_dot, w_2_dot, w_3_dot, psi_dot, w_3 - Omega_3, X_dot, Y_dot]
-    return list(zip(symbols, rates, strict=True)), margin
-
-
-def tau_of(system: list[tuple[Any, Any]], scene: dict[str, float]) -> Any:
-    """Moment of the ground that holds omega_z at zero, from the held mode's omega_2_dot."""
-    m, r_0, r = scene["m"], scene["r_0"], scene["r"]
-    theta, w_1, w_2, w_3 = hy.make_vars(*NAMES[:4])
-    rho, eta = r_0 + r * hy.sin(theta), r * hy.cos(theta)
-    Omega_3 = w_2 / hy.sin(theta) * hy.cos(theta)
-    return -m * eta * rho * system[2][1] - rho * m * w_1 * (r_0 * w_2 + eta * (Omega_3 - w_3))
+    return list(zip(symbols, rates, strict=True)), margin, tau
 
 
 class Taylor:
@@ -89,16 +80,16 @@ class Taylor:
         if exact:
             self.rolling = self._integrator("rolling", tolerance)
             self.held = self._integrator("held", tolerance)
-            system, margin = equations(scene, "held")
-            self.grip = hy.cfunc([margin, tau_of(system, scene)], hy.make_vars(*NAMES))
+            _, *grip = equations(scene, "held")
+            self.grip = hy.cfunc(grip, hy.make_vars(*NAMES))
         else:
             self.smooth = self._integrator("none" if scene["s"] == 0 else "regularized", tolerance)
         self.solve = self._solve_modes if exact else self._solve_smooth
 
     def _integrator(self, moment: str, tolerance: float) -> Any:
-        system, margin = equations(self.scene, moment)
+        system, margin, _ = equations(self.scene, moment)
         # At a release omega_z and its rate are zero but for rounding: watched a hair beyond zero, that is no event.
-        # No cool-down: the default one swallows releases shorter than itself, silently.
+        # No cool-down: the default one swallows slips shorter than itself, silently.
         watched = {"rolling": hy.par[0] * hy.make_vars("omega_3") + tolerance**2, "held": margin}.get(moment)
         falls = [] if watched is None else [hy.t_event(watched, direction=FALLING, cooldown=0.0)]
         return hy.taylor_adaptive(system, self.y_0, tol=tolerance, t_events=falls, pars=[0.0] * (moment == "rolling"))

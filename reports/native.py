@@ -156,7 +156,8 @@ def master_code() -> ctypes.CDLL:
 def dop853_code() -> ctypes.CDLL:
     source = ROOT / "fmu-src"
     flags = ["-std=c++20", "-O3", "-fno-math-errno", "-Wno-missing-field-initializers"]
-    folders = [f"-I{source / name}" for name in ("equations", "solver")]
+    eigen = Path(cached("Eigen3_DIR")).parents[2] / "include" / "eigen3"  # as installed
+    folders = [f"-I{path}" for path in (source / "equations", source / "solver", eigen)]
     code = compile_shared("dop853.cpp", cached("CMAKE_CXX_COMPILER"), *flags, *folders)
     code.dop853.argtypes = [c_void_p, c_void_p, c_double, c_double, c_int, c_void_p, c_void_p]
     return code

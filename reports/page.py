@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import distributions
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -72,9 +73,12 @@ def save(sheet: Sheet, folder: Path, name: str) -> None:
 
 
 def read_tables(folder: Path, name: str) -> Tables:
-    """The tables of a report by name."""
-    files = sorted((folder / "data").glob(f"{name}_*.csv"))
-    return {file.stem.removeprefix(f"{name}_"): pd.read_csv(file) for file in files}
+    """The tables of a report by name; one without rows may lack its columns too."""
+    tables = {}
+    for file in sorted((folder / "data").glob(f"{name}_*.csv")):
+        text = file.read_text(encoding="utf-8")
+        tables[file.stem.removeprefix(f"{name}_")] = pd.read_csv(StringIO(text)) if text.strip() else pd.DataFrame()
+    return tables
 
 
 def markdown_table(frame: pd.DataFrame) -> str:
@@ -90,8 +94,8 @@ def markdown_table(frame: pd.DataFrame) -> str:
     return cells.to_markdown(index=False, disable_numparse=True, colalign=sides)
 
 
-def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) -> str:
-    """The page out of the data; views: adds the tables that follow from others. Returns what was not met, in words."""
+def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) -> tuple[str, str]:
+    """The page out of the data, and what was not met in words; views: adds the tables that follow from others."""
     figures = pd.read_csv(folder / "data" / f"{name}.csv").fillna({"unit": ""})
     figures["shown"] = [f"{number(float(f.measured))} {f.unit}".strip() for f in figures.itertuples()]
     asked = figures[figures["asked"].notna()]
@@ -107,8 +111,7 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     page = pages.get_template(f"{name}.md").render(
         name=name, f=values, t=views(read_tables(folder, name)), asked=pd.DataFrame(table), missed=missed, run=run
     )
-    (folder / f"{name}.md").write_text(re.sub(r"\n{3,}", "\n\n", page).strip() + "\n", encoding="utf-8")
-    return "; ".join(missed)
+    return re.sub(r"\n{3,}", "\n\n", page).strip() + "\n", "; ".join(missed)
 
 
 def said(*command: str) -> str:

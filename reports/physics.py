@@ -221,9 +221,8 @@ def on_a_suspension(report: Report, h: float = 1e-3, stop: float = 6.0) -> pd.Da
     return pd.DataFrame(rows, columns=names)
 
 
-def page(_: Path) -> str:
-    """The pages are written by hand; their figures are filled in from the data. Nothing is asked, so nothing missed."""
-    return ""
+def page(_: Path) -> None:
+    """The pages are written by hand; their figures are filled in from the data."""
 
 
 PARTS: dict[Callable[[Report], None], float] = {

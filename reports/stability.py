@@ -6,19 +6,21 @@ the independent reference or a closed form.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from math import nan
+from multiprocessing import get_context
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from pebble import ProcessExpired, ProcessFuture, ProcessPool
 from robustness import checks, drift, long_runs
 from robustness.case import Case
 from robustness.sweep import sweep
 from robustness.verdicts import TOLERANCES, Verdict, judge_case
 
 from . import plots
-from .isolated import Broken, call, call_each
 from .law import crossings, draw_law, draw_methods, law
 from .page import Report, Row, Sheet, number, save
 from .plots import style
@@ -33,10 +35,29 @@ JUDGES = {
 }
 
 
+class Broken(str):
+    """What went wrong with the process: "hangs", or "crashes" with the signal."""
+
+
+def isolated(work: Callable, items: Sequence[tuple]) -> list[Any]:
+    """work(*item), each in a process of its own with a deadline: a hang or a crash is a result, not the end."""
+    with ProcessPool(2, max_tasks=1, context=get_context("fork")) as pool:
+        return [answer(future) for future in [pool.schedule(work, item, timeout=DEADLINE) for item in items]]
+
+
+def answer(future: ProcessFuture) -> Any:
+    try:
+        return future.result()
+    except TimeoutError:
+        return Broken(f"hangs: no answer within {DEADLINE:g} s")
+    except ProcessExpired as end:
+        return Broken(f"crashes: the process ended with exit code {end.exitcode}")
+
+
 def cases(report: Report) -> None:
     """the sweep: each case at five tolerances, in a process of its own"""
     chosen = sweep()[:: 6 if report.quick else 1]
-    found = list(call_each(lambda case: judge_case(report.library, case), chosen, DEADLINE))
+    found = list(zip(chosen, isolated(judge_case, [(report.library, case) for case in chosen]), strict=True))
     report.table("cases", [row for case, verdicts in found for row in case_rows(case, verdicts)])
     faults = pd.DataFrame([row for case, verdicts in found for row in faults_of(case, verdicts)], columns=FAULT)
     report.table("faults", faults)
@@ -116,9 +137,8 @@ def contract(report: Report) -> None:
     """the contract at its edges"""
     rows = []
     for group, check in checks.GROUPS.items():
-        answer = call(lambda _, check=check: check(report.library), None, DEADLINE)
-        found = [("", "", str(answer), False)] if isinstance(answer, Broken) else answer
-        rows += [(group, *row) for row in found]
+        (found,) = isolated(check, [(report.library,)])
+        rows += [(group, *row) for row in ([("", "", found, False)] if isinstance(found, Broken) else found)]
     table = pd.DataFrame(rows, columns=["group", "what", "expected", "found", "holds"])
     report.table("contract", table)
     report.figure("checks", "checks of the contract", len(table))

@@ -23,10 +23,8 @@ def study(report: Report) -> None:
     vehicle_report.axle_steps(fmus(report), report.folder)
 
 
-def page(folder: Path) -> str:
-    """Nothing is asked there, so nothing is missed."""
+def page(folder: Path) -> None:
     vehicle_report.page(folder)
-    return ""
 
 
 PARTS: dict[Callable[[Report], None], float] = {study: 600}

@@ -161,7 +161,7 @@ def main() -> int:
     try:
         scenes = {
             False: read_scene(arguments.results / "free.csv", SIGNALS),
-            True: read_scene(arguments.results / "friction.csv", SIGNALS, ("friction_mode", "omega_z")),
+            True: read_scene(arguments.results / "friction.csv", (*SIGNALS, "friction_mode")),
         }
     except SceneError as fault:
         print(f"figures: {fault}", file=sys.stderr)

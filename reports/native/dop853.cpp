@@ -107,8 +107,7 @@ extern "C" {
 // rows: points x 4; counts: steps, right-hand sides, transitions. 0 where it did not reach the end.
 int dop853(const WheelScene* scene, const double* y_0, double tolerance, double stop, int points, double* rows,
            long* counts) {
-  State y;
-  for (int i = 0; i < size; ++i) y[i] = y_0[i];
+  const State y = Eigen::Map<const State>(y_0);
   counts[0] = counts[1] = counts[2] = 0;
   return Solution(*scene, y, tolerance, stop / (points - 1), points, rows).run(counts);
 }

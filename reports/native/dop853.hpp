@@ -4,9 +4,9 @@
 // tolerance for relative and absolute error.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <utility>
 
 extern "C" {
@@ -15,8 +15,7 @@ extern "C" {
 #include "dormand_prince.hpp"
 
 namespace pair = solver::dormand_prince;
-using State = std::array<double, WHEEL_REDUCED_STATES>;
-constexpr int size = WHEEL_REDUCED_STATES;
+using State = Eigen::Array<double, WHEEL_REDUCED_STATES, 1>;
 
 class Dop853 {
  public:
@@ -54,11 +53,9 @@ class Dop853 {
   State at(double t) {
     if (!interpolates_) prepare_interpolant();
     const double x = (t - t_old_) / h_done_;
-    State y{};
-    for (int i = 6; i >= 0; --i)
-      for (int c = 0; c < size; ++c) y[c] = (y[c] + F_[i][c]) * (i % 2 ? 1 - x : x);
-    for (int c = 0; c < size; ++c) y[c] += y_old_[c];
-    return y;
+    State y = State::Zero();
+    for (int i = 6; i >= 0; --i) y = (y + F_[i]) * (i % 2 ? 1 - x : x);
+    return y_old_ + y;
   }
 
   double t() const { return t_; }
@@ -76,21 +73,14 @@ class Dop853 {
   // The sum of a row's terms, unrolled at compile time.
   template <const auto& row>
   State combine() const {
-    State sum{};
-    [&]<std::size_t... j>(std::index_sequence<j...>) {
-      (([&] {
-         for (int c = 0; c < size; ++c) sum[c] += row[j].weight * f_[row[j].stage][c];
-       }()),
-       ...);
+    return [&]<std::size_t... j>(std::index_sequence<j...>) -> State {
+      return ((row[j].weight * f_[row[j].stage]) + ...);
     }(std::make_index_sequence<std::size(row)>());
-    return sum;
   }
 
   template <int stage, const auto& row>
   void evaluate_stage(const State& from, double h) {
-    State y = combine<row>();
-    for (int c = 0; c < size; ++c) y[c] = from[c] + h * y[c];
-    evaluate(y, f_[stage]);
+    evaluate(from + h * combine<row>(), f_[stage]);
   }
 
   void try_step() {
@@ -100,49 +90,41 @@ class Dop853 {
     evaluate_stage<7, pair::a_7>(y_, h_), evaluate_stage<8, pair::a_8>(y_, h_);
     evaluate_stage<9, pair::a_9>(y_, h_), evaluate_stage<10, pair::a_10>(y_, h_);
     evaluate_stage<11, pair::a_11>(y_, h_);
-    const State increment = combine<pair::b>();
-    for (int c = 0; c < size; ++c) y_new_[c] = y_[c] + h_ * increment[c];
+    y_new_ = y_ + h_ * combine<pair::b>();
     evaluate(y_new_, f_[12]);
   }
 
   double step_error() const {
-    const State e_5 = combine<pair::e_5>(), e_3 = combine<pair::e_3>();
-    double sum_5 = 0, sum_3 = 0;
-    for (int c = 0; c < size; ++c) {
-      const double scale = tolerance_ * (1 + std::fmax(std::fabs(y_[c]), std::fabs(y_new_[c])));
-      sum_5 += e_5[c] / scale * (e_5[c] / scale);
-      sum_3 += e_3[c] / scale * (e_3[c] / scale);
-    }
+    const State scale = tolerance_ * (1 + y_.abs().max(y_new_.abs()));
+    const double sum_5 = (combine<pair::e_5>() / scale).square().sum();
+    const double sum_3 = (combine<pair::e_3>() / scale).square().sum();
     const double both = sum_5 + 0.01 * sum_3;
     if (both == 0) return 1e-9;
-    const double error = h_ * sum_5 / std::sqrt(both * size);
+    const double error = h_ * sum_5 / std::sqrt(both * y_.size());
     return std::isfinite(error) ? std::fmax(error, 1e-9) : 1e9;
   }
 
   // A guess from the size of y' alone; the first steps correct it.
   double first_step() const {
-    double rate = 0;
-    for (int c = 0; c < size; ++c) rate = std::fmax(rate, std::fabs(f_[0][c]) / (1 + std::fabs(y_[c])));
+    const double rate = (f_[0].abs() / (1 + y_.abs())).maxCoeff();
     return 0.5 * std::pow(tolerance_, 1.0 / 8) / std::fmax(rate, 1e-3);
   }
 
   void prepare_interpolant() {
     evaluate_stage<13, pair::a_13>(y_old_, h_done_), evaluate_stage<14, pair::a_14>(y_old_, h_done_);
     evaluate_stage<15, pair::a_15>(y_old_, h_done_);
-    const State high[] = {combine<pair::d_3>(), combine<pair::d_4>(), combine<pair::d_5>(), combine<pair::d_6>()};
-    for (int c = 0; c < size; ++c) {
-      const double delta = y_[c] - y_old_[c];
-      F_[0][c] = delta;
-      F_[1][c] = h_done_ * f_[0][c] - delta;
-      F_[2][c] = 2 * delta - h_done_ * (f_[12][c] + f_[0][c]);
-      for (int i = 0; i < 4; ++i) F_[3 + i][c] = h_done_ * high[i][c];
-    }
+    const State delta = y_ - y_old_;
+    F_[0] = delta;
+    F_[1] = h_done_ * f_[0] - delta;
+    F_[2] = 2 * delta - h_done_ * (f_[12] + f_[0]);
+    F_[3] = h_done_ * combine<pair::d_3>(), F_[4] = h_done_ * combine<pair::d_4>();
+    F_[5] = h_done_ * combine<pair::d_5>(), F_[6] = h_done_ * combine<pair::d_6>();
     interpolates_ = true;
   }
 
   double tolerance_, t_, t_old_, h_ = 0, h_done_ = 0;
   bool interpolates_ = false;
-  State y_, y_old_{}, y_new_;
-  std::array<State, 16> f_{};
+  State y_, y_old_, y_new_;
+  std::array<State, 16> f_;
   std::array<State, 7> F_;
 };

@@ -4,23 +4,7 @@
 #include <malloc.h>
 #include <time.h>
 
-#include "fmi2FunctionTypes.h"
-#include "load_library.h"
-
-typedef struct Fmu {
-  fmi2InstantiateTYPE* instantiate;
-  fmi2FreeInstanceTYPE* free_instance;
-  fmi2SetupExperimentTYPE* setup_experiment;
-  fmi2EnterInitializationModeTYPE* enter_initialization;
-  fmi2ExitInitializationModeTYPE* exit_initialization;
-  fmi2SetRealTYPE* set_real;
-  fmi2SetIntegerTYPE* set_integer;
-  fmi2SetBooleanTYPE* set_boolean;
-  fmi2SetRealInputDerivativesTYPE* set_input_derivatives;
-  fmi2GetRealTYPE* get_real;
-  fmi2GetIntegerTYPE* get_integer;
-  fmi2DoStepTYPE* do_step;
-} Fmu;
+#include "fmu.h"
 
 /* A start value; kind: 'r', 'i' or 'b' (Real, Integer, Boolean). */
 typedef struct Start {
@@ -56,21 +40,8 @@ static double now(void) {
 }
 
 Fmu* load_fmu(const char* path) {
-  static const char* const names[] = {"fmi2Instantiate",
-                                      "fmi2FreeInstance",
-                                      "fmi2SetupExperiment",
-                                      "fmi2EnterInitializationMode",
-                                      "fmi2ExitInitializationMode",
-                                      "fmi2SetReal",
-                                      "fmi2SetInteger",
-                                      "fmi2SetBoolean",
-                                      "fmi2SetRealInputDerivatives",
-                                      "fmi2GetReal",
-                                      "fmi2GetInteger",
-                                      "fmi2DoStep"};
   Fmu* fmu = malloc(sizeof *fmu);
-  _Static_assert(sizeof names / sizeof *names == sizeof *fmu / sizeof(void*), "one name per function");
-  load_functions(path, names, sizeof names / sizeof *names, fmu);
+  *fmu = fmu_of(path);
   return fmu;
 }
 
@@ -81,22 +52,22 @@ static void log_message(fmi2ComponentEnvironment environment, fmi2String instanc
 
 static fmi2Status set_start(const Fmu* fmu, fmi2Component instance, const Start* start) {
   const int whole = (int)start->value;
-  if (start->kind == 'r') return fmu->set_real(instance, &start->variable, 1, &start->value);
-  if (start->kind == 'i') return fmu->set_integer(instance, &start->variable, 1, &whole);
-  return fmu->set_boolean(instance, &start->variable, 1, &whole);
+  if (start->kind == 'r') return fmu->SetReal(instance, &start->variable, 1, &start->value);
+  if (start->kind == 'i') return fmu->SetInteger(instance, &start->variable, 1, &whole);
+  return fmu->SetBoolean(instance, &start->variable, 1, &whole);
 }
 
 /* Instantiated, start values set, initialized. Null on failure. */
 static fmi2Component start_instance(const Fmu* fmu, const Run* run) {
   static const fmi2CallbackFunctions callbacks = {log_message, calloc, free, NULL, NULL};
-  fmi2Component instance = fmu->instantiate("wheel", fmi2CoSimulation, run->guid, "file:///none", &callbacks, 0, 0);
+  fmi2Component instance = fmu->Instantiate("wheel", fmi2CoSimulation, run->guid, "file:///none", &callbacks, 0, 0);
   if (!instance) return NULL;
-  fmi2Status worst = fmu->setup_experiment(instance, run->tolerance > 0, run->tolerance, 0, 0, 0);
+  fmi2Status worst = fmu->SetupExperiment(instance, run->tolerance > 0, run->tolerance, 0, 0, 0);
   for (int i = 0; i < run->start_count && worst <= fmi2Warning; ++i) worst = set_start(fmu, instance, &run->starts[i]);
-  if (worst <= fmi2Warning) worst = fmu->enter_initialization(instance);
-  if (worst <= fmi2Warning) worst = fmu->exit_initialization(instance);
+  if (worst <= fmi2Warning) worst = fmu->EnterInitializationMode(instance);
+  if (worst <= fmi2Warning) worst = fmu->ExitInitializationMode(instance);
   if (worst <= fmi2Warning) return instance;
-  fmu->free_instance(instance);
+  fmu->FreeInstance(instance);
   return NULL;
 }
 
@@ -104,11 +75,11 @@ static fmi2Status feed(const Fmu* fmu, const Run* run, fmi2Component instance, l
   if (!run->table) return fmi2OK;
   const size_t count = (size_t)run->input_count;
   const double* row = run->table + (size_t)step * count * (size_t)(run->orders + 1);
-  fmi2Status status = fmu->set_real(instance, run->inputs, count, row);
+  fmi2Status status = fmu->SetReal(instance, run->inputs, count, row);
   for (int order = 1; order <= run->orders && status <= fmi2Warning; ++order) {
     fmi2Integer orders[MOST_INPUTS];
     for (size_t i = 0; i < count; ++i) orders[i] = order;
-    status = fmu->set_input_derivatives(instance, run->inputs, count, orders, row + count * (size_t)order);
+    status = fmu->SetRealInputDerivatives(instance, run->inputs, count, orders, row + count * (size_t)order);
   }
   return status;
 }
@@ -116,9 +87,9 @@ static fmi2Status feed(const Fmu* fmu, const Run* run, fmi2Component instance, l
 /* One communication step: inputs in, doStep, outputs out. */
 static fmi2Status communicate(const Fmu* fmu, const Run* run, fmi2Component instance, long step, double* row) {
   fmi2Status status = feed(fmu, run, instance, step);
-  if (status <= fmi2Warning) status = fmu->do_step(instance, (double)step * run->step, run->step, fmi2True);
+  if (status <= fmi2Warning) status = fmu->DoStep(instance, (double)step * run->step, run->step, fmi2True);
   if (status <= fmi2Warning && run->output_count)
-    status = fmu->get_real(instance, run->outputs, (size_t)run->output_count, row);
+    status = fmu->GetReal(instance, run->outputs, (size_t)run->output_count, row);
   return status;
 }
 
@@ -137,7 +108,7 @@ Outcome solve(const Fmu* fmu, const Run* run, double* rows, double* paces, int* 
   const double t_1 = now();
   if (!instance) return outcome;
   outcome.status = fmi2OK;
-  if (run->output_count) fmu->get_real(instance, run->outputs, (size_t)run->output_count, rows ? rows : unread);
+  if (run->output_count) fmu->GetReal(instance, run->outputs, (size_t)run->output_count, rows ? rows : unread);
   while (outcome.steps < run->steps) {
     double* row = rows ? rows + (outcome.steps + 1) * run->output_count : unread;
     const double before = paces ? now() : 0;
@@ -148,9 +119,9 @@ Outcome solve(const Fmu* fmu, const Run* run, double* rows, double* paces, int* 
   }
   const double t_2 = now();
   cost[3] = bytes_in_use() - bytes;
-  if (counters) fmu->get_integer(instance, run->counters, (size_t)run->counter_count, counters);
+  if (counters) fmu->GetInteger(instance, run->counters, (size_t)run->counter_count, counters);
   const double t_3 = now();
-  fmu->free_instance(instance);
+  fmu->FreeInstance(instance);
   cost[0] = t_1 - t_0, cost[1] = t_2 - t_1, cost[2] = now() - t_3;
   return outcome;
 }

@@ -3,7 +3,6 @@
 Names and units are those of the model's variables: SI, fixed axes X, Y, Z, Z up; angles in rad.
 """
 
-import csv
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -39,13 +38,8 @@ class Scene:
 
     @cached_property
     def mode(self) -> NDArray[np.int_]:
-        """-1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero (it sticks).
-
-        Without the column friction_mode the sign of omega_z says the same, because omega_z is
-        exactly 0 while it sticks.
-        """
-        source = "friction_mode" if "friction_mode" in self.columns else "omega_z"
-        return np.sign(self[source]).astype(int)
+        """-1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero (it sticks)."""
+        return self["friction_mode"].astype(int)
 
     @cached_property
     def _changes(self) -> NDArray[np.int_]:
@@ -85,32 +79,21 @@ class Scene:
         return tuple(Akima1DInterpolator(rows, self[name])(fine) for name in names)
 
 
-def read_scene(path: Path, needed: tuple[str, ...], one_of: tuple[str, ...] = ()) -> Scene:
-    """Read a CSV file; every column of `needed` and one column of `one_of` must be there."""
+def read_scene(path: Path, needed: tuple[str, ...]) -> Scene:
+    """Read a CSV file; every column of `needed` must be there, with finite numbers."""
     try:
-        with path.open(newline="", encoding="utf-8") as file:
-            header, *rows = [row for row in csv.reader(file) if row] or [[]]
+        with path.open(encoding="utf-8") as file:
+            table = np.genfromtxt(file, delimiter=",", names=True, ndmin=1)
     except OSError as fault:
         raise SceneError(f"{path} cannot be read ({fault.strerror}): simulate first.") from fault
-    missing = [name for name in needed if name not in header]
-    if one_of and not set(one_of) & set(header):
-        missing.append(" or ".join(one_of))
-    if missing:
+    except ValueError as fault:
+        raise SceneError(f"{path} is not a table: its rows have different lengths.") from fault
+    if missing := [name for name in needed if name not in (table.dtype.names or ())]:
         raise SceneError(f"{path} lacks the column {', '.join(missing)}.")
-    if len(rows) < 2:
-        raise SceneError(f"{path} has {len(rows)} rows of data; a curve needs at least two.")
-    wanted = [name for name in header if name in {*needed, *one_of}]
-    return Scene(path, {name: _column(path, header.index(name), name, rows) for name in wanted})
-
-
-def _column(path: Path, index: int, name: str, rows: list[list[str]]) -> Array:
-    """One column as finite numbers."""
-    values = np.empty(len(rows))
-    for i, row in enumerate(rows):
-        try:
-            values[i] = float(row[index])
-        except (ValueError, IndexError):
-            values[i] = np.nan
-        if not np.isfinite(values[i]):
-            raise SceneError(f"{path} has no finite number for {name} in data row {i + 1}.")
-    return values
+    if len(table) < 2:
+        raise SceneError(f"{path} has {len(table)} rows of data; a curve needs at least two.")
+    for name in needed:
+        if not np.isfinite(table[name]).all():
+            row = np.flatnonzero(~np.isfinite(table[name]))[0] + 1
+            raise SceneError(f"{path} has no finite number for {name} in data row {row}.")
+    return Scene(path, {name: table[name] for name in needed})

@@ -106,7 +106,7 @@ def apart(a: Row, b: Row) -> str:
 
 def write(arguments: argparse.Namespace, released: dict[str, Scenes], own: dict[str, Scenes], **found: object) -> None:
     folder, reference = arguments.folder, released["linux64"]
-    template = Template((HERE / "platforms.md").read_text(encoding="utf-8"), keep_trailing_newline=True)
+    template = Template((HERE / "platforms.md.in").read_text(encoding="utf-8"), keep_trailing_newline=True)
     page = template.render(
         commit=version_of("git", "-C", str(ROOT), "describe", "--always", "--dirty"),
         size=(folder / "wheel.fmu").stat().st_size / 1e3,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -46,6 +48,17 @@ def test_the_figures_of_a_page_are_those_of_the_data(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     stale = "run scripts/figures_in_pages.py: the figures are not those of docs/results/data"
     assert with_figures(text, read_figures(), page.name) == text, stale
+
+
+def test_the_pages_of_the_reports_are_those_of_the_data() -> None:
+    found = subprocess.run(
+        [sys.executable, "-m", "reports", "all", "--check"],
+        cwd=ROOT,
+        env=os.environ | {"PYTHONPATH": ":".join([".", "examples", "tests", "scripts"])},
+        capture_output=True,
+        text=True,
+    )
+    assert found.returncode == 0, found.stdout + found.stderr
 
 
 def test_the_readme_takes_its_figures_from_the_data_and_would_notice_another_one() -> None:

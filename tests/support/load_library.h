@@ -11,10 +11,6 @@ static inline void* open_library(const char* path) { return (void*)LoadLibraryA(
 static inline void* find_symbol(void* library, const char* name) {
   return (void*)GetProcAddress((HMODULE)library, name);
 }
-#elif defined(__wasi__) /* no libraries to open: the program has the wheel linked in, and finds its functions itself \
-                         */
-static inline void* open_library(const char* path) { return (void*)path; }
-static void* find_symbol(void* library, const char* name);
 #else
 #include <dlfcn.h>
 static inline void* open_library(const char* path) { return dlopen(path, RTLD_NOW | RTLD_LOCAL); }
