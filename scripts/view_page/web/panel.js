@@ -24,6 +24,10 @@ function makeKnob(host, [name, symbol, unit, low, high, step, what], take) {
   host.append(label);
   const [output, input] = [label.querySelector('output'), label.querySelector('input')];
   input.addEventListener('input', () => take(Number(input.value) / scale));
+  // A finger that scrolls the page has first moved the slider that it began on.
+  let before = 0;
+  input.addEventListener('pointerdown', () => (before = Number(input.value)));
+  input.addEventListener('pointercancel', () => take(before / scale));
   return (value) => {
     input.value = value * scale;
     output.textContent = `${(value * scale).toFixed(digits).replace('-', '−')} ${unit}`;

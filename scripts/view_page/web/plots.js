@@ -65,10 +65,14 @@ class Plot {
     return MARGIN.top + ((this.high - value) / (this.high - this.low)) * (this.height - MARGIN.top - MARGIN.bottom);
   }
 
-  /** Draws both layers anew for these wheels. */
-  prepare(wheels) {
+  /** Takes the wheels that have this signal; without any it hides. */
+  take(wheels) {
     this.wheels = wheels.filter(({table}) => table.has(this.signal.column));
     this.figure.hidden = this.wheels.length === 0;
+  }
+
+  /** Draws both layers anew. */
+  prepare() {
     const {clientWidth, clientHeight} = this.canvas;
     if (this.figure.hidden || !clientWidth) return;
     [this.width, this.height, this.ratio] = [clientWidth, clientHeight, Math.min(2, devicePixelRatio)];
@@ -200,7 +204,8 @@ export class Plots {
   }
 
   prepare() {
-    for (const plot of this.plots) plot.prepare(this.wheels);
+    for (const plot of this.plots) plot.take(this.wheels);  // all of them first: they share the width
+    for (const plot of this.plots) plot.prepare();
     this.draw(this.player.t);
   }
 
