@@ -66,13 +66,13 @@ def pairs(arguments: list[str], known: dict) -> dict[str, str]:
 
 
 def outputs() -> list[str]:
-    """All that a figure or a page may need: outputs, energy, mode, and the values that were set."""
+    """All that a figure or a page may need: outputs, energy, friction, and the values that were set."""
     variables = read_model_description("wheel.fmu", validate=False).modelVariables
     return [
         v.name
         for v in variables
         if v.causality == "output"
-        or v.name in ("E", "friction_mode")
+        or v.name in ("E", "friction_mode", "n_events")
         or (v.causality == "parameter" and v.type == "Real")
     ]
 

@@ -24,7 +24,8 @@ WHEELS = ("left", "right")
 CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel)]
 RECORD: list[Signal] = [
     *(("axle", name) for name in ("X", "Y", "psi", "v", "omega", "E", "W_loss")),
-    *((wheel, name) for wheel in WHEELS for name in ("omega_z", "lambda_3", "mu_required", "E", "X_O", "Y_O", "psi")),
+    *((wheel, name) for wheel in WHEELS for name in ("omega_z", "lambda_3", "mu_required", "E")),
+    *((wheel, name) for wheel in WHEELS for name in ("X_O", "Y_O", "psi", "theta", "phi")),  # scripts/view needs these
 ]
 COMPARED = ("X", "Y", "psi", "v", "omega")
 

@@ -35,7 +35,7 @@ CONNECTIONS: list[Connection] = [
 ]
 OF_CHASSIS = ("X", "Y", "Z", "psi", "roll", "pitch", "v", "omega", "X_R", "Y_R")
 OF_DRIVER = ("delta", "M_drive", "M_brake", "p", "off")
-OF_WHEEL = ("X_O", "Y_O", "psi", "theta", "omega_z", "lambda_1", "lambda_2", "lambda_3", "mu_required", "tau")
+OF_WHEEL = ("X_O", "Y_O", "psi", "theta", "phi", "omega_z", "lambda_1", "lambda_2", "lambda_3", "mu_required", "tau")
 RECORD: list[Signal] = [
     *(("chassis", name) for name in OF_CHASSIS),
     *(("driver", name) for name in OF_DRIVER),

@@ -29,7 +29,7 @@ START = {
     "X_O_start": 0.0,
 }
 MEASURED = ("theta", "theta_dot", "psi", "psi_dot", "phi_dot")
-RECORD = ("X_O", "Y_O", *MEASURED, "omega_z", "lambda_3")
+RECORD = ("X_O", "Y_O", "phi", *MEASURED, "omega_z", "lambda_3")
 
 
 @dataclass(frozen=True)

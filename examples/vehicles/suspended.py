@@ -30,6 +30,7 @@ START = {"s": 0.01, "psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_sta
 COMPARED = ("X_O", "theta", "phi_dot", "psi_dot", "X_B", "Z_B")
 RECORD: list[Signal] = [
     *(("wheel", name) for name in ("X_O", "theta", "phi_dot", "psi_dot", "psi", "theta_dot", "omega_z", "lambda_3")),
+    *(("wheel", name) for name in ("Y_O", "phi")),  # scripts/view needs these too
     *(("quarter_car", name) for name in ("X_B", "Y_B", "Z_B", *LOAD)),
 ]
 CONNECTIONS: list[tuple[Signal, Signal]] = [

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 POSE = ("X_O", "Y_O", "psi", "theta", "phi")
-SHOWN = ("Z_O", "omega_z", "friction_mode", "lambda_1", "lambda_2", "lambda_3", "E")
+SHOWN = ("Z_O", "omega_z", "friction_mode", "n_events", "lambda_1", "lambda_2", "lambda_3", "E")
+SHAPE = ("r_0", "r")
 RATES = tuple(f"{name}_dot" for name in (*POSE, "Z_O"))
 BODY_POSE = ("X", "Y", "Z", "yaw", "pitch", "roll")
 ALIASES = {"psi": "yaw", "theta": "pitch", "phi": "roll"}  # of a car's body
@@ -102,7 +103,7 @@ def read_bodies(path: Path, shape: tuple[float, float] | None, box: tuple[float,
 def known(group: dict[str, list[str]]) -> tuple[dict[str, list[str]], list[str]]:
     """A body's columns under the names used here, and those to show; none of a unit that is no body."""
     if all(column in group for column in POSE):
-        return group, [column for column in (*POSE, *SHOWN, *RATES) if column in group]
+        return group, [column for column in (*POSE, *SHOWN, *RATES, *SHAPE) if column in group]
     if {"X", "Y", "Z"} <= group.keys():
         group = {ALIASES.get(column, column): text for column, text in group.items()}
         return group, [column for column in BODY_POSE if column in group]
@@ -112,7 +113,8 @@ def known(group: dict[str, list[str]]) -> tuple[dict[str, list[str]], list[str]]
 def make_body(name: str, columns: dict[str, Array], shape: tuple[float, float] | None, box) -> Body:
     """A wheel or a box out of its columns; angles of a box that are missing are zero."""
     if "theta" in columns:
-        r_0, r = shape or shape_of(columns)
+        recorded = tuple(float(columns.pop(edge)[0]) for edge in SHAPE if edge in columns)
+        r_0, r = shape or (recorded if len(recorded) == 2 else shape_of(columns))
         return Body(name, columns, r_0, r)
     zero = np.zeros_like(columns["time"])
     return Body(name, dict.fromkeys(BODY_POSE, zero) | columns, size=box or (0.0, 0.0, 0.0))

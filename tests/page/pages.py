@@ -15,7 +15,7 @@ from support.paths import ROOT
 
 POSE = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi")
 RATES = tuple(f"{name}_dot" for name in POSE)
-RECORD = (*POSE, *RATES, "omega_z", "lambda_1", "lambda_2", "lambda_3", "E", "friction_mode")
+RECORD = (*POSE, *RATES, "omega_z", "lambda_1", "lambda_2", "lambda_3", "E", "friction_mode", "n_events")
 # No graphics card is asked for; the rest keeps the browser from looking for hosts of its own.
 FLAGS = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
 FLAGS += ["--no-first-run", "--disable-component-update", "--disable-sync", "--disable-quic"]

@@ -39,6 +39,15 @@ def test_a_wheel_that_stays_upright_gets_the_papers_proportions(tmp_path):
     assert (body.r_0, body.r) == pytest.approx((0.6, 0.1))
 
 
+def test_the_radii_that_a_file_tells_are_taken(tmp_path):
+    t = np.linspace(0, 1, 11)
+    pose = {"X_O": t, "Y_O": 0 * t, "Z_O": 0 * t + 0.7, "psi": 0 * t, "theta": 0 * t + np.pi / 2, "phi": -t / 0.7}
+    told = {"r_0": 0 * t + 0.4, "r": 0 * t + 0.3}
+    (body,) = read_bodies(write_csv(tmp_path / "told.csv", {"time": t} | pose | told), None, None)
+    assert (body.r_0, body.r) == (0.4, 0.3)
+    assert not set(told) & set(body.columns)
+
+
 def test_prefixes_make_several_wheels_and_a_box_that_spans_them(scenes, tmp_path):
     rows = columns_of(scenes["free"])
     table = {"time": rows["time"]}
@@ -95,7 +104,9 @@ def test_a_long_run_is_thinned_to_a_page_below_three_megabytes(scenes, one, tmp_
     assert done.returncode == 0
     assert "row is kept" in done.stdout
     assert (tmp_path / "long.html").stat().st_size < 3_000_000
-    assert "row is kept" not in view(one).stdout
+    short = view(one).stdout
+    assert "row is kept" not in short
+    assert str(one.with_suffix(".html")) in short
 
 
 def test_the_page_names_the_licence_of_three_js(recorded_file):

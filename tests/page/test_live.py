@@ -130,6 +130,22 @@ def test_a_push_lasts_as_long_as_the_button_is_held(live):
     assert changes[1][0] > changes[0][0] == pytest.approx(1.0)
 
 
+def test_the_brake_stops_a_wheel_and_holds_it_as_long_as_the_button_is_held(live):
+    preset(live, "Paper, no friction")
+    live.evaluate("page.live.setStart('theta_start', Math.PI / 2); page.live.compute(); page.player.seek(1)")
+    button = live.get_by_role("button", name="brake", exact=True)
+    button.dispatch_event("pointerdown", {"pointerId": 1})
+    live.evaluate("page.player.pause(); page.live.compute()")
+    omega, t = column(live, "omega_z"), column(live, "time")
+    assert (omega[t <= 1] == -2).all()
+    stop = 1 + 2 * (1.8 + 20 * 0.35**2) / 6  # s: (J_z + m R^2) omega_z / M_brake after it is pressed
+    assert (omega[t > stop] == 0).all()
+    assert live.evaluate("page.wheels[0].phases.sticks") == [pytest.approx([stop, 10])]
+    button.dispatch_event("pointerup", {"pointerId": 1})
+    changes = live.evaluate("page.live.changes.map(({ name, value }) => [name, value])")
+    assert changes == [["M_brake", 0]]
+
+
 def test_a_wheel_let_go_falls_and_the_page_says_so(live):
     preset(live, "Paper, no friction")
     live.evaluate("page.live.setStart('phi_dot_start', 0); page.live.compute(); page.player.seek(10); page.draw()")

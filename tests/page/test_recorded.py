@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from reference.tables import read_table
 
-from page.pages import POSE, opened, view, write_csv
+from page.pages import POSE, RECORD, opened, view, write_csv
 
 INSTANTS = (0.0, 0.37, 1.0, 1.23, 2.5, 3.99, 5.0, 6.66, 8.01, 10.0)
 MATRIX = """([t, name]) => {
@@ -14,6 +15,13 @@ MATRIX = """([t, name]) => {
   const body = page.stage.scene.getObjectByName('spin:' + name);
   body.updateWorldMatrix(true, false);
   return body.matrixWorld.elements;
+}"""
+
+
+SPOT = """(t) => {
+  page.player.seek(t);
+  page.draw();
+  return page.stage.models.find(({ wheel }) => wheel.name === 'friction').spot.position.toArray().slice(0, 2);
 }"""
 
 
@@ -96,6 +104,47 @@ def test_the_friction_wheel_sticks_at_its_instant(recorded):
     first = recorded.evaluate("page.wheels.find((wheel) => wheel.name === 'friction').phases.sticks[0]")
     assert abs(first[0] - 1.2255) < 1e-4  # measured: 2e-5; half-way between the rows: 5e-4
     assert first[1] > 1.3
+
+
+PHASES = """async (texts) => {
+  const [{ Table }, { phasesOf }] = await Promise.all([import('#table'), import('#phases')]);
+  return phasesOf(new Table(Object.fromEntries(texts.map(([name, values]) => [name, Float64Array.from(values)]))));
+}"""
+
+
+def phases(page, rows: np.ndarray, leave_out: str = "") -> dict[str, list]:
+    """Stick phases and transitions as the page reads them from these rows."""
+    return page.evaluate(PHASES, [[n, rows[n].tolist()] for n in rows.dtype.names if n != leave_out])
+
+
+def test_transitions_between_two_rows_are_marked_though_no_row_lies_in_the_phase(recorded, simulate):
+    rows = simulate(step=0.1, output=RECORD, s=0.03)
+    found = phases(recorded, rows)
+    instants = read_table("paper_friction_events")["t"][1:]
+    assert len(found["transitions"]) == len(instants) == 37
+    assert abs(found["transitions"] - instants).max() < 0.1  # s, the distance of two rows; measured: 0.05
+    assert len(found["sticks"]) == (read_table("paper_friction_events")["mode"] == 0).sum()
+    assert len(phases(recorded, rows, leave_out="n_events")["transitions"]) < 37  # measured: 36
+
+
+def test_a_stick_shorter_than_the_rows_begins_and_ends_where_the_spin_is_zero(recorded):
+    """Held from 0.523 s to 0.527 s, between the rows at 0.52 s and 0.53 s."""
+    t = np.arange(101) * 0.01
+    omega = np.where(t < 0.525, t - 0.523, 0.527 - t)
+    names = ["time", "omega_z", "friction_mode", "n_events"]
+    rows = np.rec.fromarrays([t, omega, np.sign(omega), 2.0 * (t > 0.525)], names=names)
+    (stick,) = phases(recorded, rows)["sticks"]
+    assert stick == pytest.approx([0.523, 0.527], abs=1e-12)
+    assert phases(recorded, rows, leave_out="n_events")["sticks"] == []
+
+
+def test_the_path_on_the_ground_is_that_of_the_contact_point(recorded, simulate):
+    rows = simulate(step=0.005, output=("X_C", "Y_C"), s=0.03)
+    spots = [recorded.evaluate(SPOT, 0.005 * k) for k in range(1, 2000, 111)]  # on the file's rows and between them
+    there = np.column_stack([rows["X_C"], rows["Y_C"]])[1:2000:111]
+    assert abs(spots - there).max() < 1e-6  # m; measured 9e-8
+    centre = simulate(step=0.005, output=("X_O", "Y_O"), s=0.03)
+    assert abs(spots - np.column_stack([centre["X_O"], centre["Y_O"]])[1:2000:111]).max() > 0.1
 
 
 def test_the_label_and_the_diagram_say_that_the_wheel_sticks(recorded):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -17,7 +18,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from study import Status, Study, StudyError, compute
-from study.__main__ import study_file
+from study.__main__ import arguments_of, study_file, study_of_options
 from study.compute import run
 from study.store import open_results
 from study.worker import run_block
@@ -63,6 +64,13 @@ def kill(process: subprocess.Popen) -> None:
 
 def test_the_guide_keeps_its_promise_of_ten_lines() -> None:
     assert len(EXAMPLE.splitlines()) <= 10
+
+
+def test_the_guides_command_line_is_the_study_of_its_file(file: Path) -> None:
+    words = shlex.split(re.search(r"scripts/study (--vary.*?)```", GUIDE, re.DOTALL)[1].replace("\\\n", " "))
+    assert study_of_options(arguments_of(words)).spec() == study_file(str(file))["study"].spec()
+    other = ["s=0.02" if word == "s=0.01" else word for word in words]
+    assert study_of_options(arguments_of(other)).spec() != study_file(str(file))["study"].spec()
 
 
 def test_a_killed_study_goes_on_where_it_was_and_has_the_bits_of_one_worker(file: Path, fmu_path: Path) -> None:

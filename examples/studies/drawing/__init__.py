@@ -63,7 +63,7 @@ def scaled(name: str, levels: list[float]) -> dict[str, object]:
 
 
 def fill(ax: Axes, one: xr.DataArray, status: xr.DataArray, look: dict[str, object]) -> ScalarMappable:
-    """A map of `one`, with flat colours where the wheel fell flat (black) or lifted off (red)."""
+    """A map of `one`, with flat colours where the wheel fell flat (black) or lifted off (orange)."""
     spin, angle = np.abs(one["phi_dot_start"].values), np.degrees(one["theta_start"].values)
     shades = ax.pcolormesh(spin, angle, one.where(status == Status.reached), rasterized=True, **look)
     for code, colour in ((Status.flat, style.INK), (Status.lifted_off, style.VERMILLION)):

@@ -31,10 +31,12 @@ def number(text: str) -> float:
 
 
 def numbers(text: str) -> list[float]:
-    """`1,2,3` or `first:last:count`."""
+    """`1,2,3` or `first:last:count`; a range in degrees is even in degrees, to the last digit."""
     if ":" not in text:
         return [number(part) for part in text.split(",")]
     first, last, count = text.split(":")
+    if first.endswith("deg") and last.endswith("deg"):
+        return np.radians(numbers(f"{first[:-3]}:{last[:-3]}:{count}")).tolist()
     return np.linspace(number(first), number(last), int(count)).tolist()
 
 

@@ -7,7 +7,7 @@ import {presets} from '#presets';
 const STEP = 0.01;  // s, between two rows
 const RECORD =
     ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi', 'X_O_dot', 'Y_O_dot', 'Z_O_dot', 'psi_dot', 'theta_dot', 'phi_dot'];
-const SIGNALS = ['omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode'];
+const SIGNALS = ['omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode', 'n_events'];
 
 /** What holds the wheel at omega_z = 0, and what may change while it rolls. */
 const HOLDING = ['s', 'M_brake'];

@@ -1,102 +1,57 @@
 // The controls of the live page: presets, the start, and what the reader does to the wheel while it rolls.
-const DEGREES = 180 / Math.PI;
-
-/** Sliders: shown value = variable * scale. */
+/** Sliders: name, symbol, unit, lowest, highest and step as shown (angles in degrees), and what it is. */
 const START = [
-  {
-    name: 'theta_start',
-    label: 'θ',
-    unit: '°',
-    scale: DEGREES,
-    low: 5,
-    high: 175,
-    step: 0.5,
-    digits: 1,
-    what: 'tilt; 90° is upright'
-  },
-  {
-    name: 'phi_dot_start',
-    label: 'φ̇',
-    unit: 'rad/s',
-    scale: 1,
-    low: -12,
-    high: 12,
-    step: 0.05,
-    digits: 2,
-    what: 'spin rate'
-  },
-  {
-    name: 'psi_dot_start',
-    label: 'ψ̇',
-    unit: 'rad/s',
-    scale: 1,
-    low: -12,
-    high: 12,
-    step: 0.05,
-    digits: 2,
-    what: 'precession rate'
-  },
+  ['theta_start', 'θ', '°', 5, 175, 0.5, 'tilt'],
+  ['phi_dot_start', 'φ̇', 'rad/s', -12, 12, 0.05, 'spin'],
+  ['psi_dot_start', 'ψ̇', 'rad/s', -12, 12, 0.05, 'precession'],
 ];
 const NOW = [
-  {name: 's', label: 's', unit: 'm', scale: 1, low: 0, high: 0.1, step: 0.0005, digits: 4, what: 'rolling friction'},
-  {
-    name: 'M_3',
-    label: 'M₃',
-    unit: 'N m',
-    scale: 1,
-    low: -8,
-    high: 8,
-    step: 0.1,
-    digits: 1,
-    what: 'torque about the axle'
-  },
-  {
-    name: 'M_brake',
-    label: 'M<sub>b</sub>',
-    unit: 'N m',
-    scale: 1,
-    low: 0,
-    high: 8,
-    step: 0.1,
-    digits: 1,
-    what: 'brake'
-  },
+  ['s', 's', 'm', 0, 0.1, 0.0005, 'friction'],
+  ['M_3', 'M₃', 'N m', -8, 8, 0.1, 'axle torque'],
+  ['M_brake', 'M<sub>b</sub>', 'N m', 0, 8, 0.1, 'brake'],
 ];
-const PUSH = 6;  // N m, of the buttons
+/** Buttons that act as long as they are held: text, variable, value in N m. */
+const HELD = [['◀ push', 'M_3', -6], ['brake', 'M_brake', 6], ['push ▶', 'M_3', 6]];
 
-function makeKnob(host, knob, take) {
+/** One slider; take(value in SI) when it moves. Returns a function that shows a value in SI. */
+function makeKnob(host, [name, symbol, unit, low, high, step, what], take) {
+  const scale = unit === '°' ? 180 / Math.PI : 1;
+  const digits = Math.ceil(-Math.log10(step) - 1e-9);
   const label = document.createElement('label');
   label.className = 'knob';
-  label.innerHTML = `<span><b><i>${knob.label}</i></b> <small>${knob.what}</small></span><output></output>` +
-      `<input type="range" name="${knob.name}" min="${knob.low}" max="${knob.high}" step="${knob.step}">`;
+  label.innerHTML = `<span><b><i>${symbol}</i></b> <small>${what}</small></span>` +
+      `<input type="range" name="${name}" min="${low}" max="${high}" step="${step}"><output></output>`;
   host.append(label);
   const [output, input] = [label.querySelector('output'), label.querySelector('input')];
-  input.addEventListener('input', () => take(Number(input.value) / knob.scale));
+  input.addEventListener('input', () => take(Number(input.value) / scale));
+  // A finger that scrolls the page has first moved the slider that it began on.
+  let before = 0;
+  input.addEventListener('pointerdown', () => (before = Number(input.value)));
+  input.addEventListener('pointercancel', () => take(before / scale));
   return (value) => {
-    const shown = value * knob.scale;
-    input.value = shown;
-    output.textContent = `${shown.toFixed(knob.digits).replace('-', '−')} ${knob.unit}`;
+    input.value = value * scale;
+    output.textContent = `${(value * scale).toFixed(digits).replace('-', '−')} ${unit}`;
   };
 }
 
-/** A button that pushes as long as it is held, by pointer or by key. */
-function makePush(host, text, torque, live) {
+/** A button that sets a variable as long as it is held, by pointer or by key. */
+function makeHeld(host, [text, name, value], live) {
   const button = document.createElement('button');
   button.type = 'button';
   button.className = 'push';
-  button.innerHTML = text;
+  button.textContent = text;
   host.append(button);
-  let held = false;
+  let before = null;  // the value to return to; null while the button is not held
   const press = () => {
-    if (held) return;
-    held = true;
-    live.setNow('M_3', torque);
+    if (before !== null) return;
+    before = live.present(name);
+    live.setNow(name, value);
     live.page.player.play();
   };
   const release = () => {
-    if (!held) return;
-    held = false;
-    live.setNow('M_3', 0);
+    if (before === null) return;
+    live.setNow(name, before);
+    before = null;
   };
   button.addEventListener('pointerdown', (event) => {
     button.setPointerCapture(event.pointerId);
@@ -133,22 +88,24 @@ function makePresets($, presets, live) {
 export function setUpPanel(live, presets) {
   const host = document.querySelector('#live');
   host.hidden = false;
+  document.body.classList.add('live');
   host.innerHTML = '<h2>Begin with</h2><div id="presets"></div><p class="note" id="about"></p>' +
       '<h2>Start</h2><div id="start"></div><h2>While it rolls, from now on</h2><div id="now"></div>' +
-      '<div class="row" id="push"></div>' +
+      '<div class="row" id="push" title="As long as you hold it"></div>' +
       '<label class="keep"><input type="checkbox" id="keep"> Keep this motion to compare with</label>' +
       '<p class="note" id="message"></p>';
   const $ = (id) => host.querySelector(`#${id}`);
   const mark = makePresets($, presets, live);
-  const knobs = (place, list, take) => list.filter(({name}) => name in live.fmu.variables)
-                                           .map((knob) => [knob.name, makeKnob($(place), knob, (value) => {
-                                                             mark(null);
-                                                             take(knob.name, value);
-                                                           })]);
+  const knobs = (place, list, change) => list.map((knob) => {
+    const take = (value) => {
+      mark(null);
+      change(knob[0], value);
+    };
+    return [knob[0], makeKnob($(place), knob, take)];
+  });
   const starts = knobs('start', START, (name, value) => live.setStart(name, value));
   const nows = knobs('now', NOW, (name, value) => live.setNow(name, value));
-  makePush($('push'), '◀ hold to push', -PUSH, live);
-  makePush($('push'), 'hold to push ▶', PUSH, live);
+  for (const held of HELD) makeHeld($('push'), held, live);
   $('keep').addEventListener('change', () => live.keep($('keep').checked));
   return {
     show() {

@@ -1,6 +1,6 @@
-// When the rolling friction holds the wheel: stick phases and transitions, read off omega_z and friction_mode.
-// A transition lies between two rows; its instant is where omega_z, carried on from the rows on the rolling side, is
-// zero.
+// When the rolling friction holds the wheel: stick phases and transitions, read off friction_mode (or the sign of
+// omega_z) and n_events, the wheel's own count of transitions. A transition lies between two rows; its instant is where
+// omega_z, carried on from the rows on a rolling side, is zero.
 
 /** -1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero. */
 function modeAt(table, row) {
@@ -25,45 +25,76 @@ function zeroOfParabola(t, y, low, high) {
   return inside.length ? Math.min(high, Math.max(low, inside[0])) : NaN;
 }
 
-/** The instant of the transition between row k and row k + 1. */
-function instant(table, k, from) {
-  const {time, rows} = table;
-  const omega = table.columns.omega_z;
-  const middle = 0.5 * (time[k] + time[k + 1]);
-  const first = from === 0 ? k + 1 : k - 2;
-  if (!omega || first < 0 || first + 2 >= rows) return middle;
+/** Where omega_z, carried on through rows first to first + 2, is zero between rows k and k + 1; NaN if nowhere. */
+function zeroBetween(table, k, first) {
+  const {time, rows, columns: {omega_z: omega}} = table;
+  if (!omega || first < 0 || first + 2 >= rows) return NaN;
   const three = [first, first + 1, first + 2];
-  if (three.some((row) => modeAt(table, row) !== modeAt(table, from === 0 ? k + 1 : k))) return middle;
-  const t = three.map((row) => time[row] - time[k]);
-  const zero = zeroOfParabola(t, three.map((row) => omega[row]), 0, time[k + 1] - time[k]);
-  return Number.isNaN(zero) ? middle : time[k] + zero;
+  const near = modeAt(table, first === k + 1 ? first : k);
+  if (near === 0 || three.some((row) => modeAt(table, row) !== near)) return NaN;
+  return time[k] +
+      zeroOfParabola(three.map((row) => time[row] - time[k]), three.map((row) => omega[row]), 0, time[k + 1] - time[k]);
+}
+
+/** How many transitions lie between rows k and k + 1: as the wheel counts them, else one where the mode changes. */
+function countBetween(table, k) {
+  const count = table.columns.n_events;
+  return count ? count[k + 1] - count[k] : Number(modeAt(table, k) !== modeAt(table, k + 1));
+}
+
+/**
+ * The instants of the n transitions between rows k and k + 1: the first and the last from the rolling rows on their
+ * side, where there are such, the others evenly between them.
+ */
+function instants(table, k, n) {
+  const [low, high] = [table.time[k], table.time[k + 1]];
+  const [before, after] = [zeroBetween(table, k, k - 2), zeroBetween(table, k, k + 1)];
+  if (n === 1) return [[before, after].find((t) => !Number.isNaN(t)) ?? 0.5 * (low + high)];
+  const even = (high - low) / (n + 1);
+  let first = Number.isNaN(before) ? low + even : before;
+  let last = Number.isNaN(after) ? high - even : after;
+  if (first > last) [first, last] = [low + even, high - even];
+  return Array.from({length: n}, (_, i) => first + ((last - first) * i) / (n - 1));
+}
+
+/**
+ * Whether the wheel is held after i of the n transitions that lead from one mode to the next: the modes between are not
+ * recorded, so stick and slip take turns.
+ */
+function heldAfter(i, n, from, to) {
+  if (i === 0) return from === 0;
+  const held = (n - i) % 2 === (to === 0 ? 0 : 1);
+  return held && !(i === 1 && from === 0);
 }
 
 /** Whether there may be friction: a wheel whose omega_z is zero from first to last may as well roll without any. */
 function mayHold(table) {
+  const count = table.columns.n_events;
+  if (count) return count.at(-1) > count[0];
   if (!table.has('omega_z') && !table.has('friction_mode')) return false;
   return table.time.some((_, row) => modeAt(table, row) !== 0);
 }
 
 /**
- * {sticks: [[begin, end], ...], transitions: [{t, from, to}, ...]} in s. friction: whether there is any, where it is
- * known (without it omega_z = 0 holds nothing).
+ * {sticks: [[begin, end], ...], transitions: [t, ...]} in s. friction: whether there is any, where it is known (without
+ * it omega_z = 0 holds nothing).
  */
 export function phasesOf(table, friction = mayHold(table)) {
   const sticks = [];
   const transitions = [];
   if (!friction) return {sticks, transitions};
-  let mode = modeAt(table, 0);
   let begin = table.start;
   for (let k = 0; k + 1 < table.rows; ++k) {
-    const next = modeAt(table, k + 1);
-    if (next === mode) continue;
-    const t = instant(table, k, mode);
-    transitions.push({t, from: mode, to: next});
-    if (mode === 0) sticks.push([begin, t]);
-    [mode, begin] = [next, t];
+    const [from, to] = [modeAt(table, k), modeAt(table, k + 1)];
+    const n = countBetween(table, k);
+    if (n === 0 && from !== to) begin = table.time[k + 1];  // there was no friction yet
+    for (const [i, t] of (n > 0 ? instants(table, k, n) : []).entries()) {
+      transitions.push(t);
+      if (heldAfter(i, n, from, to)) sticks.push([begin, t]);
+      begin = t;
+    }
   }
-  if (mode === 0) sticks.push([begin, table.end]);
+  if (modeAt(table, table.rows - 1) === 0) sticks.push([begin, table.end]);
   return {sticks, transitions};
 }
 

@@ -65,10 +65,14 @@ class Plot {
     return MARGIN.top + ((this.high - value) / (this.high - this.low)) * (this.height - MARGIN.top - MARGIN.bottom);
   }
 
-  /** Draws both layers anew for these wheels. */
-  prepare(wheels) {
+  /** Takes the wheels that have this signal; without any it hides. */
+  take(wheels) {
     this.wheels = wheels.filter(({table}) => table.has(this.signal.column));
     this.figure.hidden = this.wheels.length === 0;
+  }
+
+  /** Draws both layers anew. */
+  prepare() {
     const {clientWidth, clientHeight} = this.canvas;
     if (this.figure.hidden || !clientWidth) return;
     [this.width, this.height, this.ratio] = [clientWidth, clientHeight, Math.min(2, devicePixelRatio)];
@@ -137,7 +141,7 @@ class Plot {
         pen.fillRect(this.x(a), MARGIN.top, this.x(b) - this.x(a), bottom - MARGIN.top);
       pen.globalAlpha = Math.min(1, 2.4 * strength);
       pen.fillStyle = colour('--force');
-      for (const {t} of phases.transitions) pen.fillRect(this.x(t) - 0.5, MARGIN.top - 7, 1, 7);
+      for (const t of phases.transitions) pen.fillRect(this.x(t) - 0.5, MARGIN.top - 7, 1, 7);
     }
     pen.globalAlpha = 1;
   }
@@ -170,13 +174,16 @@ class Plot {
     pen.scale(this.ratio, this.ratio);
     pen.fillStyle = colour('--ink');
     pen.fillRect(x - 0.5, MARGIN.top - 4, 1, this.height - MARGIN.top - MARGIN.bottom + 4);
+    const many = this.wheels.length > 3;  // then their values are shorter and smaller, to fit beside each other
+    const digits = Math.max(0, this.signal.digits - Number(many));
+    this.values.classList.toggle('many', many);
     const texts = this.wheels.map(({table, colour: paint}) => {
       const value = table.value(this.signal.column, Math.min(t, table.end)) * this.signal.scale;
       pen.fillStyle = paint;
       pen.beginPath();
       pen.arc(this.x(Math.min(t, table.end)), this.y(value), 3.6, 0, 7);
       pen.fill();
-      return `<span style="color:${paint}">${value.toFixed(this.signal.digits).replace('-', '−')}</span>`;
+      return `<span style="color:${paint}">${value.toFixed(digits).replace('-', '−')}</span>`;
     });
     this.values.innerHTML = texts.join('');
   }
@@ -197,7 +204,8 @@ export class Plots {
   }
 
   prepare() {
-    for (const plot of this.plots) plot.prepare(this.wheels);
+    for (const plot of this.plots) plot.take(this.wheels);  // all of them first: they share the width
+    for (const plot of this.plots) plot.prepare();
     this.draw(this.player.t);
   }
 

@@ -43,10 +43,10 @@ export function presets(wheel) {
       stop: 10,
       values: {theta_start: 88 * DEGREE, phi_dot_start: -4},
       changes: [
-        {t: 1, name: 'M_3', value: -4}, {t: 3, name: 'M_3', value: 0}, {t: 6, name: 'M_3', value: 4},
-        {t: 7.5, name: 'M_3', value: 0}
+        {t: 1, name: 'M_3', value: -4}, {t: 3, name: 'M_3', value: 0}, {t: 6, name: 'M_brake', value: 4},
+        {t: 7.5, name: 'M_brake', value: 0}
       ],
-      about: 'A motor pushes with M₃ = −4 N m from 1 s to 3 s, and a brake with 4 N m from 6 s to 7.5 s.',
+      about: 'A motor pushes with M₃ = −4 N m from 1 s to 3 s, and the brake acts with 4 N m from 6 s to 7.5 s.',
     },
   ];
 }

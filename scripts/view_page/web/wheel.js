@@ -14,6 +14,7 @@ const UP = new THREE.Vector3(0, 0, 1);
 const NODES = new THREE.Vector3(1, 0, 0);
 const FINE = 3;  // points of the path per row
 const POSE = ['X_O', 'Y_O', 'psi', 'theta'];
+const FORCE = ['lambda_1', 'lambda_2', 'lambda_3'];  // of the ground, fixed axes
 const turn = new THREE.Quaternion();
 
 /** A group, and a function that adds a body of this shape to it. */
@@ -155,11 +156,11 @@ export class WheelModel {
     const contact = contactOf(r_0, X, Y, psi, theta);
     this.spot.visible = show.path;
     this.spot.position.set(...contact, 0.004);
-    this.force.visible = show.force && table.has('lambda_3');
+    this.force.visible = show.force && FORCE.every((name) => table.has(name));
     if (this.force.visible) {
       const scale = (1.1 * (r_0 + r)) / (this.weight || 1);
       this.force.position.set(...contact, 0);
-      pointArrow(this.force, new THREE.Vector3(...['lambda_1', 'lambda_2', 'lambda_3'].map(at)).multiplyScalar(scale));
+      pointArrow(this.force, new THREE.Vector3(...FORCE.map(at)).multiplyScalar(scale));
     }
   }
 
