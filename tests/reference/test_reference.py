@@ -1,4 +1,4 @@
-"""The reference solution judged: the trusted tables, integral laws, closed forms, its own convergence.
+"""The reference solution judged: its search for events, integral laws, closed forms; its tables in test_tables.py.
 
 Every bound has its measured value beside it, and a partner that breaks something (an equation, a
 parameter, a law) and must exceed the bound.
@@ -21,7 +21,7 @@ from support.scenes import SCENES as ALL_SCENES
 
 from reference import Inputs, Solution, Start, Wheel, newton_euler, solve
 from reference.crossing import NODES, first_fall
-from reference.judge import accelerations_gap, contact_gap, energy_gap, impulse_gap, table_error
+from reference.judge import accelerations_gap, contact_gap, energy_gap, impulse_gap
 from reference.tables import read_table
 
 SCENES = {name: scene for name, scene in ALL_SCENES.items() if name != "regularized"}
@@ -29,9 +29,6 @@ PUSHED = Inputs(
     force=lambda t: (3 * sin(2 * t), 2 * cos(3 * t), -5 * sin(t)),
     moment=lambda t: (0.3 * cos(t), 0.2 * sin(2 * t), 0.5 * sin(3 * t)),
 )
-FRICTION = Wheel(s=0.03)
-PAPER = {"paper_free": Wheel(), "paper_friction": FRICTION}
-both_tables = pytest.mark.parametrize("table", PAPER)
 all_scenes = pytest.mark.parametrize("scene", SCENES)
 
 
@@ -42,63 +39,12 @@ def run(scene: str) -> Solution:
 
 
 @pytest.fixture
-def wrong_gyroscopic_sign(monkeypatch: pytest.MonkeyPatch) -> None:
-    """w x J w with the sign turned, as (16) prints it."""
-    right = newton_euler.gyroscopic
-    monkeypatch.setattr(newton_euler, "gyroscopic", lambda *of: tuple(-c for c in right(*of)))
-
-
-@pytest.fixture
 def arm_kept_fixed(monkeypatch: pytest.MonkeyPatch) -> None:
     """The constraint differentiated as if the arm p did not turn with the wheel."""
     monkeypatch.setattr(newton_euler, "arm_rate", lambda wheel, n, w: (0.0, 0.0, 0.0))
 
 
-# ---- the trusted tables ----
-
-# Measured 3.8e-12, 3.7e-12: the rounding to 12 digits. Other processors and other versions of SciPy round otherwise.
-TABLE_BOUND = 1e-10
-
-
-def order(table: str) -> float:
-    """Decades of error per decade of rtol, from 1e-6 to 1e-10."""
-    coarse, fine = (table_error(table, PAPER[table], rtol) for rtol in (1e-6, 1e-10))
-    return np.log10(coarse / fine) / 4
-
-
-@both_tables
-def test_the_trusted_tables_are_made_again(table: str) -> None:
-    assert table_error(table, PAPER[table]) < TABLE_BOUND
-
-
-@both_tables
-def test_the_error_falls_in_proportion_to_the_tolerance(table: str) -> None:
-    assert 0.85 < order(table) < 1.15  # measured 1.04, 0.93
-
-
-@both_tables
-@pytest.mark.usefixtures("wrong_gyroscopic_sign")
-def test_a_wrong_gyroscopic_sign_neither_meets_nor_approaches_the_tables(table: str) -> None:
-    assert table_error(table, PAPER[table], rtol=1e-9) > 1e9 * TABLE_BOUND  # measured 3.4, 3.9
-    assert abs(order(table)) < 0.1  # measured below 1e-6
-
-
-def instants_error(s: float) -> float:
-    want = read_table("paper_friction_events")
-    events = np.array(solve(Wheel(s=s), Start(), [0.0, 10.0]).events)
-    assert events[:, 1].tolist() == want["mode"].tolist()
-    return np.abs(events[:, 0] - want["t"]).max()
-
-
-def test_all_transitions_of_the_friction_scene_are_at_their_instants() -> None:
-    assert instants_error(0.03) < 1e-9  # measured 5e-11: the rounding of the table
-    assert instants_error(0.03 * (1 + 1e-6)) > 1e-6  # measured 2.0e-6
-
-
-@pytest.mark.parametrize("rtol", [1e-4, 1e-6])
-def test_no_transition_is_lost_at_a_coarse_tolerance(rtol: float) -> None:
-    events = solve(FRICTION, Start(), [0.0, 10.0], rtol=rtol).events
-    assert [mode for _, mode in events] == read_table("paper_friction_events")["mode"].tolist()
+# ---- the search for events ----
 
 
 def test_a_brief_dip_between_two_samples_is_found_and_a_near_miss_is_not() -> None:

@@ -126,9 +126,10 @@ def run(
     job = study.job(description)
     store = None if overwrite else Store.open(out, study.fingerprint(sha256))
     if store is None:
-        attributes = study_attributes(study, versions(description), sha256)
         shutil.rmtree(out, ignore_errors=True)
-        store = Store.create(out, study, job, description, attributes, block)
+        store = Store.create(
+            out, study, job, description, study_attributes(study, versions(description), sha256), block
+        )
     if store.missing():
         opened = nullcontext(client) if client else cluster(workers, scheduler)
         with opened as user, progress(store, quiet) as bar:

@@ -28,16 +28,13 @@ Session::~Session() {
   for (Slot& slot : slots_) fmi2FreeInstance(slot.component);
 }
 
-void Session::run() {
-  struct Action {
-    const char* name;
-    void (Session::*act)();
-  };
-  constexpr Action always[] = {{"instantiate", &Session::instantiate},
-                               {"free_instance", &Session::free_instance},
-                               {"start_quickly", &Session::start_quickly},
-                               {"call_without_instance", &Session::call_without_instance}};
-  constexpr Action with_instance[] = {
+// The action that a byte stands for: each call of the interface while there is an instance, else few.
+const Session::Action& Session::action(unsigned choice) const {
+  static constexpr Action always[] = {{"instantiate", &Session::instantiate},
+                                      {"free_instance", &Session::free_instance},
+                                      {"start_quickly", &Session::start_quickly},
+                                      {"call_without_instance", &Session::call_without_instance}};
+  static constexpr Action with_instance[] = {
       {"step_often", &Session::step_often},
       {"do_step", &Session::do_step},
       {"set_reals", &Session::set_reals},
@@ -68,14 +65,17 @@ void Session::run() {
       {"instantiate", &Session::instantiate},
       {"free_instance", &Session::free_instance},
   };
+  return now_->component ? with_instance[choice % std::size(with_instance)] : always[choice % std::size(always)];
+}
+
+void Session::run() {
   constexpr unsigned most_actions = 40;
   for (unsigned count = 0; count < most_actions && !in_.empty(); ++count) {
     const unsigned choice = in_.byte();
     now_ = slots_ + (choice & 1);
-    constexpr unsigned n_always = std::size(always), n_with = std::size(with_instance);
-    const Action& action = now_->component ? with_instance[choice / 2 % n_with] : always[choice / 2 % n_always];
-    trace("%u: %s\n", choice & 1, action.name);
-    (this->*action.act)();
+    const Action& chosen = action(choice / 2);
+    trace("%u: %s\n", choice & 1, chosen.name);
+    (this->*chosen.act)();
   }
 }
 

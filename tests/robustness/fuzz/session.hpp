@@ -20,6 +20,12 @@ class Session {
   void run();
 
  private:
+  struct Action {
+    const char* name;
+    void (Session::*act)();
+  };
+  const Action& action(unsigned choice) const;
+
   // calls.cpp: one call each, with sound or unsound arguments.
   void instantiate();
   void free_instance();
