@@ -44,8 +44,7 @@ class BondMaster(Master):
         for wheel, (effort, flow) in self.ends.items():
             rates = np.zeros((2, len(BONDS)))
             if self.lines:
-                effort.rates(rates[0])
-                flow.rates(rates[1])
+                rates[:] = effort.rates(), flow.rates()
             begin[wheel] = effort.get().copy(), flow.get().copy(), *rates
         super()._step(t, h, rollback, reject)
         for wheel, (effort, flow) in self.ends.items():

@@ -26,39 +26,40 @@ class Ended(Exception):  # noqa: N818 - an ending, such as a wheel's lift-off, i
 
 
 class Values:
-    """A list of variables of one component with a buffer for their values."""
+    """A list of variables of one component, with buffers for their values and derivatives."""
 
     def __init__(self, component: Component, names: Sequence[str]) -> None:
         self.names, self.fmu = list(names), component.fmu
         self.count = len(self.names)
         self.references = (c_uint * self.count)(*component.references(self.names))
-        self.values = np.zeros(self.count)
+        self.values, self.derivatives = np.zeros(self.count), np.zeros(self.count)
         self.orders = {order: (c_int * self.count)(*[order] * self.count) for order in (1, 2, 3)}
+        # Made once: a pointer to a numpy array takes longer than the call it is for.
+        self._values, self._derivatives = (x.ctypes.data_as(_doubles) for x in (self.values, self.derivatives))
 
     def get(self) -> np.ndarray:
         """Read into the buffer, and return it."""
-        self.fmu.dll.fmi2GetReal(self.fmu.component, self.references, self.count, _buffer(self.values))
+        self.fmu.dll.fmi2GetReal(self.fmu.component, self.references, self.count, self._values)
         return self.values
 
     def set(self, values: np.ndarray) -> None:
         """fmi2SetReal."""
-        status = self.fmu.dll.fmi2SetReal(self.fmu.component, self.references, self.count, _buffer(values))
+        self.values[:] = values
+        status = self.fmu.dll.fmi2SetReal(self.fmu.component, self.references, self.count, self._values)
         if status != OK:
             raise ValueError(f"{self.fmu.instanceName} does not take {dict(zip(self.names, values, strict=True))}.")
 
-    def rates(self, into: np.ndarray) -> None:
-        """First derivatives of outputs."""
+    def rates(self) -> np.ndarray:
+        """Read first derivatives of outputs into their buffer, and return it."""
         dll, c = self.fmu.dll, self.fmu.component
-        dll.fmi2GetRealOutputDerivatives(c, self.references, self.count, self.orders[1], _buffer(into))
+        dll.fmi2GetRealOutputDerivatives(c, self.references, self.count, self.orders[1], self._derivatives)
+        return self.derivatives
 
     def set_derivative(self, order: int, values: np.ndarray) -> None:
         """Derivative of inputs."""
         dll, c = self.fmu.dll, self.fmu.component
-        dll.fmi2SetRealInputDerivatives(c, self.references, self.count, self.orders[order], _buffer(values))
-
-
-def _buffer(values: np.ndarray) -> object:
-    return values.ctypes.data_as(_doubles)
+        self.derivatives[:] = values
+        dll.fmi2SetRealInputDerivatives(c, self.references, self.count, self.orders[order], self._derivatives)
 
 
 @dataclass

@@ -45,7 +45,7 @@ class Transfer:
 
     def hand_rates(self) -> None:
         """Read and set the first derivatives."""
-        self.outputs.rates(self.rate)
+        self.rate[:] = self.outputs.rates()
         self.hand(1, self.rate)
 
     def hand(self, order: int, values: np.ndarray) -> None:
