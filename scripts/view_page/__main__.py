@@ -42,7 +42,10 @@ def parse() -> argparse.Namespace:
     page.add_argument("--wasm", type=Path, required=True)
     page.add_argument("--description", type=Path, required=True)
     page.add_argument("--output", "-o", type=Path, required=True)
-    return parser.parse_args()
+    arguments = parser.parse_args()
+    if arguments.output is None:
+        arguments.output = arguments.files[0].with_suffix(".html")
+    return arguments
 
 
 def recorded(arguments: argparse.Namespace) -> int:
@@ -56,9 +59,8 @@ def recorded(arguments: argparse.Namespace) -> int:
     bodies, every = document.thinned(bodies)
     if every > 1:
         print(f"Every {every}th row is kept, so that the page stays below {document.PAGE_LIMIT / 1e6:g} MB.")
-    output = arguments.output or arguments.files[0].with_suffix(".html")
     labels = {body.name: label for body, label in zip(bodies, arguments.labels, strict=False)}
-    return document.write(output, arguments.title, bodies, labels, choices(bodies, labels))
+    return document.write(arguments.output, arguments.title, bodies, labels, choices(bodies, labels))
 
 
 def unlike(bodies: list[Body]) -> list[Body]:
