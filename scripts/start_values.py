@@ -1,8 +1,8 @@
 """Turns arguments such as `s=0.01 theta_start=60deg` into checked start values of wheel.fmu, for ./scripts/run.
 
 Prints `name value` pairs in SI for `fmpy simulate --start-values`, one a line; `outputs` prints the variables to
-record, start values among them, so that a figure can say what was run. Names, units and limits are those of the
-description.
+record, start values among them, so that a figure can say what was run. Names, units and start values are those of
+modelDescription.xml. It needs no package, so that `--help` works before anything is installed.
 """
 
 from __future__ import annotations
@@ -10,9 +10,12 @@ from __future__ import annotations
 import math
 import re
 import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+from xml.etree import ElementTree
 
-from fmpy import read_model_description
-
+DESCRIPTION = Path(__file__).resolve().parent.parent / "modelDescription.xml"
 DEGREE = math.pi / 180
 USAGE = """./scripts/run [name=value ...]   build, simulate without and with rolling friction, draw the diagrams
 
@@ -29,13 +32,28 @@ class Fault(Exception):
     """The message is one sentence for the user."""
 
 
-def parameters() -> dict:
-    variables = read_model_description("wheel.fmu", validate=False).modelVariables
-    return {v.name: v for v in variables if v.causality == "parameter"}
+class Variable(NamedTuple):
+    name: str
+    causality: str
+    type: str
+    unit: str
+    start: str
+    description: str
 
 
-def usage(known: dict) -> str:
-    rows = [f"  {v.name:16s}{v.unit or '':8s}{v.start:>22s}   {v.description}" for v in known.values()]
+def variables() -> Iterator[Variable]:
+    for row in ElementTree.parse(DESCRIPTION).getroot().iter("ScalarVariable"):
+        (typed,) = row
+        texts = (typed.get("unit", ""), typed.get("start", ""), row.get("description", ""))
+        yield Variable(row.get("name", ""), row.get("causality", ""), typed.tag, *texts)
+
+
+def parameters() -> dict[str, Variable]:
+    return {v.name: v for v in variables() if v.causality == "parameter"}
+
+
+def usage(known: dict[str, Variable]) -> str:
+    rows = [f"  {v.name:16s}{v.unit:8s}{v.start:>22s}   {v.description}" for v in known.values()]
     return "\n".join([USAGE, *rows])
 
 
@@ -51,7 +69,7 @@ def value_of(name: str, text: str) -> str:
     return repr(int(number)) if number == int(number) and not match[2] else repr(number)
 
 
-def pairs(arguments: list[str], known: dict) -> dict[str, str]:
+def pairs(arguments: list[str], known: dict[str, Variable]) -> dict[str, str]:
     values = {}
     for argument in arguments:
         name, equals, text = argument.partition("=")
@@ -67,10 +85,9 @@ def pairs(arguments: list[str], known: dict) -> dict[str, str]:
 
 def outputs() -> list[str]:
     """All that a figure or a page may need: outputs, energy, friction, and the values that were set."""
-    variables = read_model_description("wheel.fmu", validate=False).modelVariables
     return [
         v.name
-        for v in variables
+        for v in variables()
         if v.causality == "output"
         or v.name in ("E", "friction_mode", "n_events")
         or (v.causality == "parameter" and v.type == "Real")

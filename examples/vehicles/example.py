@@ -19,7 +19,7 @@ from . import axle, axle_study, build, car, driven, figures, ssp, suspended
 from .component import Ended
 from .drawing import Errors, Line, draw
 from .master import EXCHANGES
-from .options import Refused, read
+from .options import Asked, Refused, read
 
 RESULTS = build.ROOT / "results" / "examples"
 STEPS = (0.002, 0.001, 0.0005)  # s, for the error against the step
@@ -151,12 +151,17 @@ def main() -> int:
     """One example."""
     name, *arguments = sys.argv[1:] or [""]
     if name not in EXAMPLES:
-        print(f"Usage: ./scripts/example {'|'.join(EXAMPLES)} [parameter=value ...]", file=sys.stderr)
-        return 2
+        print(f"Usage: ./scripts/example {'|'.join(EXAMPLES)} [parameter=value ...]")
+        print(*(f"  {run.__doc__}" for run in EXAMPLES.values()), sep="\n")
+        print("./scripts/example NAME --help lists the parameters of one example.")
+        return 0 if name in ("-h", "--help") else 2
     fmus, folder = build.build_all(build.ROOT / "build" / "examples"), RESULTS / name
     folder.mkdir(parents=True, exist_ok=True)
     try:
         said = EXAMPLES[name](fmus, arguments, folder)
+    except Asked as options:
+        print(EXAMPLES[name].__doc__, options, sep="\n")
+        return 0
     except (Refused, Ended, ValueError) as reason:
         print(reason, file=sys.stderr)
         return 1

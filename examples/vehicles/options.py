@@ -23,8 +23,15 @@ def number(name: str, text: str) -> float:
     return float(match[1]) * UNITS[match[2]]
 
 
+class Asked(Exception):  # noqa: N818 - the list of all options
+    """The command line asks for help."""
+
+
 def read(arguments: list[str], words: dict[str, tuple[str, ...]], numbers: set[str]) -> dict[str, str | float]:
     """The options by name: `words` take one of the values given, `numbers` a number."""
+    if {"-h", "--help"} & set(arguments):
+        choices = [f"  {name}={'|'.join(values)}" for name, values in words.items()]
+        raise Asked("\n".join(["It takes:", *choices, f"  and numbers, such as h=1ms: {', '.join(sorted(numbers))}."]))
     given: dict[str, str | float] = {}
     for argument in arguments:
         name, equals, text = argument.partition("=")

@@ -42,7 +42,10 @@ def parse() -> argparse.Namespace:
     page.add_argument("--wasm", type=Path, required=True)
     page.add_argument("--description", type=Path, required=True)
     page.add_argument("--output", "-o", type=Path, required=True)
-    return parser.parse_args()
+    arguments = parser.parse_args()
+    if arguments.output is None:
+        arguments.output = arguments.files[0].with_suffix(".html")
+    return arguments
 
 
 def recorded(arguments: argparse.Namespace) -> int:

@@ -86,7 +86,7 @@ def test_friction_does_cost_evaluations(counters):
 @pytest.mark.parametrize("scene", SCENES)
 def test_reading_every_output_costs_no_evaluation(counters, description, scene):
     outputs = tuple(v.name for v in description.modelVariables if v.causality == "output")
-    assert len(outputs) == 21
+    assert {"theta", "lambda_3", "X_C", "tau"} <= set(outputs)
     assert counters(output=(*outputs, "E", "mu_required"), **SCENES[scene]) == counters(**SCENES[scene])
 
 

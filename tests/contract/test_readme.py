@@ -149,10 +149,32 @@ def local_links(path: Path) -> list[Path]:
     return [path.parent / unquote(t) for t in targets if "://" not in t]
 
 
+def documents() -> list[Path]:
+    named = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+    return [*named, *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "examples").rglob("*.md"))]
+
+
+def anchors(path: Path) -> set[str]:
+    """What a link may name behind '#': the headings, in the spelling of GitHub."""
+    headings = re.findall(r"^#+ (.*)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def broken_anchors(path: Path) -> list[str]:
+    found = re.findall(r"\]\(([^)#\s]*)#([^)\s]+)\)", path.read_text(encoding="utf-8"))
+    targets = [(path.parent / unquote(file) if file else path, anchor) for file, anchor in found if "://" not in file]
+    return [f"{target.name}#{anchor}" for target, anchor in targets if anchor not in anchors(target)]
+
+
+def test_every_link_to_a_heading_leads_to_one(tmp_path):
+    assert [(d.name, link) for d in documents() for link in broken_anchors(d)] == []
+    page = tmp_path / "page.md"
+    page.write_text("# A heading\n[here](#a-heading), [nowhere](#no-heading)\n")
+    assert broken_anchors(page) == ["page.md#no-heading"]
+
+
 def test_every_link_of_the_documents_leads_to_a_file():
-    documents = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
-    documents += sorted((ROOT / "docs").rglob("*.md"))
-    links = {document: local_links(document) for document in documents}
+    links = {document: local_links(document) for document in documents()}
     broken = [(d.name, str(link)) for d, found in links.items() for link in found if not link.exists()]
     assert broken == []
     assert len(links[ROOT / "README.md"]) > 10  # measured 23

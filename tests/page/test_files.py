@@ -109,6 +109,13 @@ def test_a_long_run_is_thinned_to_a_page_below_three_megabytes(scenes, one, tmp_
     assert str(one.with_suffix(".html")) in short
 
 
+def test_without_a_name_the_page_stands_beside_the_first_file_and_the_command_says_where(one):
+    page = one.with_suffix(".html")
+    assert view(one).stdout.startswith(f"{page} (") and page.stat().st_size > 1e5
+    other = one.with_name("other.html")
+    assert view(one, "--output", other).stdout.startswith(f"{other} (") and other.exists()
+
+
 def test_the_page_names_the_licence_of_three_js(recorded_file):
     text = recorded_file.read_text()
     assert "three.js authors" in text
