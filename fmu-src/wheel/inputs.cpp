@@ -69,6 +69,7 @@ void Inputs::hold_from(double t) {
     std::fill(pending[i] + 1, pending[i] + max_order + 1, 0.0);
     pending[i][0] = evaluate(in_force[i], t - origin);
   }
+  pending[brake][0] = std::fmax(pending[brake][0], 0);  // like any brake that is set
 }
 
 bool Inputs::change_at(double t, double rounding) const {

@@ -136,6 +136,18 @@ def test_a_step_that_fails_late_leaves_the_instance_as_it_was_and_its_state_can_
     assert w.step(0.5) == OK and w.bits() != bits
 
 
+def test_a_brake_whose_derivative_carried_it_below_zero_is_released_and_its_state_can_be_taken(wheel):
+    w, other = wheel().start(phi_dot_start=-2.0), wheel()
+    assert w.set(M_brake=1.0) == OK and w.set_input_derivatives(["M_brake"], [[-20.0]]) == OK
+    assert w.step(0.125) == OK  # the polynomial arrives at -1.5 N m
+    assert w.get("M_brake") == [0.0]
+    blob = w.serialized()
+    assert other.restore(blob) == OK and w.restore(blob) == OK
+    other.time = w.time
+    assert w.step(0.5) == other.step(0.5) == OK
+    assert w.bits() == other.bits()
+
+
 def test_a_snapshot_before_the_end_of_a_run_leads_back_into_it(wheel):
     w = wheel().start(theta_start=1.3, phi_dot_start=0.0)
     before = w.serialized()
