@@ -35,7 +35,7 @@ def draw_drive(drive: Drive, path: Path) -> None:
     moments = style.axes_mm(fig, 100, 12, 78, 28)
     for name, color in (("M_1", style.GREEN), ("M_3", style.PURPLE)):
         moments.plot(drive.controlled["time"], drive.controlled[name], color=color, label=f"${name}$")
-    moments.legend(loc="upper right", ncols=2)
+    moments.legend(loc="best", ncols=2)
     moments.set(xlabel="time [s]", ylabel="moment [N m]")
     save(fig, path)
 
