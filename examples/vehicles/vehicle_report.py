@@ -142,7 +142,7 @@ def packages(fmus: Fmus, results: Path, tools: str | None = None) -> None:
         ends.append(("master.py, held", "", [own[1][n.split(".")[1]][-1] for n in wanted]))
         columns = ssp.run(package, h, stop, GRID)
         ends.append(("fmpy.ssp", f"FMPy {version('fmpy')}", [columns[n][-1] for n in wanted]))
-        for tool, number, command in _tools(results, tools):
+        for tool, number, command in _tools(tools):
             said = subprocess.run([*command, package, repr(h), repr(stop), *wanted], capture_output=True, check=True)
             found = dict(line.split() for line in said.stdout.decode().splitlines() if line.startswith(wanted))
             ends.append((tool, number, [float(found[n]) for n in wanted]))
@@ -150,7 +150,7 @@ def packages(fmus: Fmus, results: Path, tools: str | None = None) -> None:
     save(results, "vehicle_packages", ("package", "tool", "version", "X at the end [m]", "Y at the end [m]"), rows)
 
 
-def _tools(results: Path, python: str | None) -> list[tuple[str, str, list[str]]]:
+def _tools(python: str | None) -> list[tuple[str, str, list[str]]]:
     """Name, version and command of the tools at hand: `python` has two of them, OMSimulator may be on the PATH."""
     scripts, found = build.EXAMPLES / "tools", []
     for tool, package in (("libcosim", "libcosimpy"), ("ecos", "ecospy")) if python else ():
@@ -158,7 +158,7 @@ def _tools(results: Path, python: str | None) -> list[tuple[str, str, list[str]]
         number = subprocess.run([python, "-c", ask], capture_output=True, text=True, check=True).stdout.strip()
         found.append((tool, f"{package} {number}", [python, str(scripts / f"by_{tool}.py")]))
     if program := shutil.which("OMSimulator"):
-        with (results / "data" / "interoperability.csv").open() as file:
+        with (RESULTS / "data" / "interoperability.csv").open() as file:
             number = next(row[1] for row in csv.reader(file) if row[0] == "OMSimulator")
         found.append(("OMSimulator", number, [sys.executable, str(scripts / "by_omsimulator.py"), program]))
     return found
