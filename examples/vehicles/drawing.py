@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from plotting import style
 
 COLOURS = (style.BLUE, style.SKY, style.VERMILLION, style.ORANGE, style.PURPLE, style.GREY)
@@ -31,6 +32,13 @@ class Line:
     values: np.ndarray
 
 
+def save(fig: Figure, path: Path) -> Path:
+    """As PNG, the same bytes for the same picture."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fig.savefig(path, dpi=200, metadata={"Software": None})
+    return path
+
+
 def draw(
     table: dict[str, np.ndarray],
     wheels: dict[str, str],
@@ -50,17 +58,15 @@ def draw(
         demand.plot(t, table[f"{name}.mu_required"], color=colour, label=label)
     load.legend(loc="best", ncols=2)
     load.set_ylim(0, None)
-    _labels(load, "time [s]", "normal force [kN]")
+    load.set(xlabel="time [s]", ylabel="normal force [kN]")
     demand.set_ylim(0, None)
-    _labels(demand, "time [s]", "friction coefficient required")
+    demand.set(xlabel="time [s]", ylabel="friction coefficient required")
     if errors:
         _lines(style.axes_mm(fig, 16, 12, 30, 40), t, *lines)
         _errors(style.axes_mm(fig, 62, 12, 30, 40), errors)
     else:
         _lines(style.axes_mm(fig, 16, 12, 72, 40), t, *lines)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(path, dpi=200, metadata={"Software": None})
-    return path
+    return save(fig, path)
 
 
 def draw_orders(errors: dict[str, Errors], path: Path) -> Path:
@@ -77,13 +83,7 @@ def draw_orders(errors: dict[str, Errors], path: Path) -> Path:
             ax.set_ylabel("")
             ax.set_yticklabels([])
     fig.legend(*ax.get_legend_handles_labels(), loc="upper center", ncols=3)
-    fig.savefig(path, dpi=200, metadata={"Software": None})
-    return path
-
-
-def _labels(ax: Axes, x: str, y: str) -> None:
-    ax.set_xlabel(x)
-    ax.set_ylabel(y)
+    return save(fig, path)
 
 
 def _path(
@@ -104,14 +104,14 @@ def _path(
         ax.plot(*exact, color=style.GREY, linestyle="--", linewidth=0.8, label="rigid axle, closed form")
         ax.legend(loc="best")
     ax.set_aspect("equal", adjustable="datalim")
-    _labels(ax, "X [m]", "Y [m]")
+    ax.set(xlabel="X [m]", ylabel="Y [m]")
 
 
 def _lines(ax: Axes, t: np.ndarray, label: str, lines: list[Line]) -> None:
     for line, colour in zip(lines, (style.INK, style.GREEN, style.PURPLE), strict=False):
         ax.plot(t, line.values, color=colour, label=line.label)
     ax.legend(**ABOVE)
-    _labels(ax, "time [s]", label)
+    ax.set(xlabel="time [s]", ylabel=label)
 
 
 def _errors(ax: Axes, errors: Errors, legend: bool = True) -> None:
@@ -125,4 +125,4 @@ def _errors(ax: Axes, errors: Errors, legend: bool = True) -> None:
     ax.minorticks_off()
     if legend:
         ax.legend(**ABOVE)
-    _labels(ax, "step [ms]", "error / range")
+    ax.set(xlabel="step [ms]", ylabel="error / range")

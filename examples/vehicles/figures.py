@@ -6,21 +6,11 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from plotting import style
 
+from .drawing import save
 from .driven import Drive
 from .suspended import Convergence
-
-
-def _save(fig: Figure, path: Path) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(path, dpi=200, metadata={"Software": None})
-
-
-def _label(ax: Axes, x: str, y: str) -> None:
-    ax.set_xlabel(x)
-    ax.set_ylabel(y)
 
 
 def draw_drive(drive: Drive, path: Path) -> None:
@@ -35,7 +25,7 @@ def draw_drive(drive: Drive, path: Path) -> None:
         ground.plot(table["X_O"], table["Y_O"], color=color, label=label)
     ground.set_aspect("equal", adjustable="datalim")
     ground.legend(loc="upper left")
-    _label(ground, r"$X_O$ [m]", r"$Y_O$ [m]")
+    ground.set(xlabel=r"$X_O$ [m]", ylabel=r"$Y_O$ [m]")
     tilt = style.axes_mm(fig, 100, 50, 78, 28)
     tilt.plot(drive.alone["time"], np.degrees(drive.alone["theta"]), color=style.VERMILLION)
     tilt.plot(drive.controlled["time"], np.degrees(drive.controlled["theta"]), color=style.BLUE)
@@ -45,9 +35,9 @@ def draw_drive(drive: Drive, path: Path) -> None:
     moments = style.axes_mm(fig, 100, 12, 78, 28)
     for name, color in (("M_1", style.GREEN), ("M_3", style.PURPLE)):
         moments.plot(drive.controlled["time"], drive.controlled[name], color=color, label=f"${name}$")
-    moments.legend(loc="upper right", ncols=2)
-    _label(moments, "time [s]", "moment [N m]")
-    _save(fig, path)
+    moments.legend(loc="best", ncols=2)
+    moments.set(xlabel="time [s]", ylabel="moment [N m]")
+    save(fig, path)
 
 
 def draw_launch(table: dict[str, np.ndarray], found: Convergence, path: Path) -> None:
@@ -62,9 +52,9 @@ def draw_launch(table: dict[str, np.ndarray], found: Convergence, path: Path) ->
     for name, color in (("lambda_3", style.INK), ("F_X", style.GREEN)):
         force.plot(table["time"], table[name] / 1000, color=color, label={"lambda_3": "$N$", "F_X": "$F_X$"}[name])
     force.legend(loc="center right", ncols=2)
-    _label(force, "time [s]", "force [kN]")
+    force.set(xlabel="time [s]", ylabel="force [kN]")
     _draw_orders(style.axes_mm(fig, 104, 12, 74, 66), found)
-    _save(fig, path)
+    save(fig, path)
 
 
 def _draw_orders(ax: Axes, found: Convergence) -> None:
@@ -79,4 +69,4 @@ def _draw_orders(ax: Axes, found: Convergence) -> None:
     ax.set_xticks(h, [f"{step:g}" for step in h])
     ax.minorticks_off()
     ax.legend(loc="lower right")
-    _label(ax, "communication step [ms]", "error / range")
+    ax.set(xlabel="communication step [ms]", ylabel="error / range")

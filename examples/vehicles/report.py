@@ -1,4 +1,4 @@
-"""What the page of axle and car is written with: a Markdown table and a footer."""
+"""What the page of axle and car is written with: a Markdown table, and what it was made with."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
-def footer() -> str:
+def made() -> dict[str, str]:
     """Machine and versions."""
-    packages = ", ".join(f"{name} {version(name)}" for name in ("FMPy", "numpy", "scipy", "pythonfmu"))
     cpu_info = Path("/proc/cpuinfo")
     models = [line for line in cpu_info.read_text().splitlines() if "model name" in line] if cpu_info.exists() else []
-    processor = models[0].split(":", 1)[1].strip() if models else platform.machine()
-    compiler = subprocess.run(["cc", "--version"], capture_output=True, text=True).stdout.split("\n")[0]
-    return (
-        f"\nMeasured on {processor}, {platform.system()}, {compiler}; Python {platform.python_version()}, {packages}."
-    )
+    return {
+        "measured on": models[0].split(":", 1)[1].strip() if models else platform.machine(),
+        "compiler": subprocess.run(["cc", "--version"], capture_output=True, text=True).stdout.split("\n")[0],
+        "Python": platform.python_version(),
+        **{name: version(name) for name in ("FMPy", "numpy", "scipy")},
+    }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import io
 import shutil
 import subprocess
 import sys
@@ -18,7 +19,7 @@ from . import axle, axle_study, build, car, car_study, ssp
 from .component import Ended
 from .drawing import Errors, Line, draw, draw_orders
 from .master import EXCHANGES
-from .report import RESULTS, footer, table
+from .report import RESULTS, made, table
 
 STEPS = (0.002, 0.001, 0.0005)  # s
 GRID = 0.05  # s
@@ -35,12 +36,12 @@ def save(results: Path, name: str, head: Iterable[str], rows: Rows) -> None:
 
 
 def as_table(results: Path, name: str) -> str:
-    """data/NAME.csv as a Markdown table, numbers to four digits, those of the packages as they are; errors at 1 ms."""
+    """data/NAME.csv as a Markdown table, numbers to four digits, those of vehicle_* as they are; errors at 1 ms."""
     with (results / "data" / f"{name}.csv").open() as file:
         head, *rows = csv.reader(file)
     if name == "car_errors":
         rows = [row for row in rows if row[2] == "1.0"]
-    return table(head, rows if name == "vehicle_packages" else [[short(cell) for cell in row] for row in rows])
+    return table(head, rows if name.startswith("vehicle_") else [[short(cell) for cell in row] for row in rows])
 
 
 def short(cell: str) -> str:
@@ -142,15 +143,25 @@ def packages(fmus: Fmus, results: Path, tools: str | None = None) -> None:
         ends.append(("master.py, held", "", [own[1][n.split(".")[1]][-1] for n in wanted]))
         columns = ssp.run(package, h, stop, GRID)
         ends.append(("fmpy.ssp", f"FMPy {version('fmpy')}", [columns[n][-1] for n in wanted]))
-        for tool, number, command in _tools(results, tools):
+        for tool, number, command in _tools(tools):
             said = subprocess.run([*command, package, repr(h), repr(stop), *wanted], capture_output=True, check=True)
             found = dict(line.split() for line in said.stdout.decode().splitlines() if line.startswith(wanted))
             ends.append((tool, number, [float(found[n]) for n in wanted]))
-        rows += [[package.name, tool, number, *(f"{x:.8f}" for x in values)] for tool, number, values in ends]
+        new = [[package.name, tool, number, *(f"{x:.8f}" for x in values)] for tool, number, values in ends]
+        rows += new + _kept(results, new)
     save(results, "vehicle_packages", ("package", "tool", "version", "X at the end [m]", "Y at the end [m]"), rows)
 
 
-def _tools(results: Path, python: str | None) -> list[tuple[str, str, list[str]]]:
+def _kept(results: Path, new: Rows) -> Rows:
+    """Rows of tools that are not at hand now, from a table in which all that is at hand had the values of now."""
+    path = results / "data" / "vehicle_packages.csv"
+    with path.open() if path.exists() else io.StringIO() as file:
+        old = {row[1]: row for row in csv.reader(file) if row[0] == new[0][0]}
+    same = all(old.get(row[1]) == row for row in new)
+    return [row for tool, row in old.items() if same and tool not in [row[1] for row in new]]
+
+
+def _tools(python: str | None) -> list[tuple[str, str, list[str]]]:
     """Name, version and command of the tools at hand: `python` has two of them, OMSimulator may be on the PATH."""
     scripts, found = build.EXAMPLES / "tools", []
     for tool, package in (("libcosim", "libcosimpy"), ("ecos", "ecospy")) if python else ():
@@ -158,7 +169,7 @@ def _tools(results: Path, python: str | None) -> list[tuple[str, str, list[str]]
         number = subprocess.run([python, "-c", ask], capture_output=True, text=True, check=True).stdout.strip()
         found.append((tool, f"{package} {number}", [python, str(scripts / f"by_{tool}.py")]))
     if program := shutil.which("OMSimulator"):
-        with (results / "data" / "interoperability.csv").open() as file:
+        with (RESULTS / "data" / "interoperability.csv").open() as file:
             number = next(row[1] for row in csv.reader(file) if row[0] == "OMSimulator")
         found.append(("OMSimulator", number, [sys.executable, str(scripts / "by_omsimulator.py"), program]))
     return found
@@ -181,14 +192,14 @@ OF_CAR = ("closed_forms", "demand", "endings", "figures", "longest", "errors", "
 TABLES = (
     *("axle_steps", "axle_stiffness", "axle_limits", "axle_energy"),
     *(f"car_{name}" for name in OF_CAR),
-    "vehicle_packages",
+    *("vehicle_packages", "vehicle_made"),
 )
 
 
 def page(results: Path = RESULTS) -> Path:
     """docs/results/vehicles.md from the data."""
     path, template = results / "vehicles.md", (Path(__file__).parent / "vehicles.md.in").read_text()
-    path.write_text(template.format(footer=footer(), **{name: as_table(results, name) for name in TABLES}))
+    path.write_text(template.format(**{name: as_table(results, name) for name in TABLES}))
     return path
 
 
@@ -199,6 +210,7 @@ def write(
 
     tools: a Python interpreter with libcosimpy and ecospy, for the packages; OMSimulator is taken from the PATH.
     """
+    save(results, "vehicle_made", made(), [list(made().values())])
     for part in parts:
         STUDIES[part](fmus, results) if part in STUDIES else packages(fmus, results, tools)
     return page(results)

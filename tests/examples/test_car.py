@@ -149,7 +149,8 @@ def test_the_c_master_gets_the_same_bits(fmus: Fmus, exchange: str) -> None:
 
 def test_a_fifth_wheel_is_a_change_of_one_file(tmp_path: Path) -> None:
     copy = tmp_path / "examples"
-    shutil.copytree(build.EXAMPLES, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    for folder in ("examples", "cmake"):
+        shutil.copytree(build.ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
     fifth = """
 [wheel.spare]
 name = "fifth"
