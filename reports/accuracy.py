@@ -14,7 +14,15 @@ from equations import test_equations as pointwise
 from physics.cases import CASES, error, expected, transitions_gap
 from physics.exact_motions import UPRIGHT, circle_error, fall_error, lift_off_error, straight_error
 from physics.leaning import TORUS, measured_critical_spin
-from physics.measure import FRICTION, energy_error, instants, instants_error, table_errors
+from physics.measure import (
+    FRICTION,
+    constraint_drift,
+    energy_error,
+    instants,
+    instants_error,
+    table_errors,
+    unstabilised_drift,
+)
 from reference import Wheel
 from support import equations as eq
 from support.closed_forms import critical_spin, upright_deceleration
@@ -170,8 +178,19 @@ def equations(report: Report) -> None:
     report.figure("equations", "accelerations and reactions: forms and reference apart", worst, "", 1e-11)
 
 
+def drift(report: Report) -> None:
+    """drift of the multibody form off its constraints"""
+    times, rows = np.linspace(0, 10, 501), []
+    names = ("(24) alone: m/s", "(24) alone: m", "FMU: m/s", "FMU: m")
+    for tolerance in (1e-6, 1e-8, 1e-10, 1e-12):
+        *held, _ = constraint_drift(report.library, times, tolerance, formulation=3)
+        worst = [off.max() for off in (*unstabilised_drift(times, tolerance), *held)]
+        rows.append({"tolerance": tolerance, **dict(zip(names, worst, strict=True))})
+    report.table("drift", rows)
+
+
 PARTS: dict[Callable[[Report], None], float] = {
     **{paper: 2, tolerances: 12, spins: 20, long: 8, scenes: 40, closed_forms: 6},
-    **{stability_limit: 4, equations: 20},
+    **{stability_limit: 4, equations: 20, drift: 15},
 }
 PICTURES = {"tolerances": draw_tolerances}

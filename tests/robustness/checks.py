@@ -156,16 +156,18 @@ def watching(library: Library) -> list[Check]:
 
 
 def cliffs(library: Library) -> list[Check]:
-    """J_x and J_y that differ by 1e-12 take the multibody form: the same motion, at a price that is no cliff."""
-    split, grid = {"J_y": 0.9 * (1 - 1e-12)}, np.linspace(0, 10, 101)
-    whole, parted = (run(library, values, grid, 1e-8) for values in ({}, split))
+    """J_x and J_y that differ by 1e-12: the same motion, at a price that is no cliff. Both are stepped, because only a
+    wheel with J_x = J_y is unfolded."""
+    equal, grid = {"method": "adams"}, np.linspace(0, 10, 101)
+    split = equal | {"J_y": 0.9 * (1 - 1e-12)}
+    whole, parted = (run(library, values, grid, 1e-8) for values in (equal, split))
     apart = max(float(np.abs(whole[n] - parted[n]).max() / np.ptp(whole[n])) for n in ("X_O", "theta", "psi_dot"))
     calls = parted.counters["n_rhs"] / whole.counters["n_rhs"]
-    price = best_time(library, split, 1e-8, 10.0, 30) / best_time(library, {}, 1e-8, 10.0, 30)
+    price = best_time(library, split, 1e-8, 10.0, 30) / best_time(library, equal, 1e-8, 10.0, 30)
     found = f"{calls:.1f}; in time {price:.1f}"
     return [
         ("outputs apart, tolerance 1e-8", "below 1e-6", f"{apart:.1e}", apart < 1e-6),
-        ("right-hand sides of multibody over reduced", "below 3", found, calls < 3),
+        ("right-hand sides over those for J_x = J_y", "below 3", found, calls < 3),
     ]
 
 
