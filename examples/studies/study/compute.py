@@ -95,6 +95,7 @@ class Caller:
             else:
                 for name, values in future.result().items():
                     result[name][i] = values[0]
+            self.outstanding.discard(future)
         return result
 
 
@@ -181,6 +182,9 @@ def cluster(workers: int | None, scheduler: str | None) -> Iterator[Client]:
             yield client
         return
     options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
+    # A worker that died is started again by its nanny. LocalCluster would close it for good if, this long after a
+    # death, it happened to be starting again after another one.
+    options["distributed.deploy.lost-worker-timeout"] = "1000 hours"
     processes = {"n_workers": workers, "threads_per_worker": 1, "memory_limit": 0}
     with dask.config.set(options):
         with uninterrupted():
