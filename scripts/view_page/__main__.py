@@ -54,7 +54,6 @@ def recorded(arguments: argparse.Namespace) -> int:
     shape = None if arguments.r_0 is None else (arguments.r_0, arguments.r)
     if shape and not (shape[0] > 0 and shape[1] >= 0):
         raise ViewError(f"--r_0 {shape[0]:g} --r {shape[1]:g}: r_0 must be positive and r not negative.")
-    arguments.output = arguments.output or arguments.files[0].with_suffix(".html")
     files = [read_bodies(path, shape, tuple(arguments.box) if arguments.box else None) for path in arguments.files]
     bodies = unlike([body for file in files for body in file])
     bodies, every = document.thinned(bodies)

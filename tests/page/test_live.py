@@ -143,7 +143,7 @@ def test_the_brake_stops_a_wheel_and_holds_it_as_long_as_the_button_is_held(live
     assert live.evaluate("page.wheels[0].phases.sticks") == [pytest.approx([stop, 10])]
     button.dispatch_event("pointerup", {"pointerId": 1})
     changes = live.evaluate("page.live.changes.map(({ name, value }) => [name, value])")
-    assert changes == [["M_brake", 0]]
+    assert changes[-1] == ["M_brake", 0]
 
 
 def test_a_wheel_let_go_falls_and_the_page_says_so(live):

@@ -117,6 +117,15 @@ def die_at_upright(upload: str, job: object, points: dict[str, np.ndarray]) -> d
     return run_block(upload, job, points)
 
 
+def test_an_interrupt_is_for_the_caller_alone() -> None:
+    ask = [sys.executable, "-c", "import signal; print(signal.getsignal(signal.SIGINT).name)"]
+    with compute.uninterrupted():
+        assert subprocess.check_output(ask, text=True).strip() == "SIG_IGN"
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+    assert subprocess.run(ask, capture_output=True, check=False).returncode == 1  # Python's own handler has no name
+
+
 def test_a_worker_that_dies_costs_one_point(fmu_path: Path, tmp_path: Path) -> None:
     study = Study(grid={"theta_start": [1.2, 1.3, 1.4, 1.5]}, stop_time=1.0)
     results = run(study, tmp_path / "d.zarr", fmu=fmu_path, workers=1, quiet=True, block=4, work=die_at_upright)

@@ -1,7 +1,7 @@
 """Runs a study with Dask: an ordinary LocalCluster, or the cluster behind a scheduler's address.
 
-The caller hands out blocks, a few per worker at a
-time, and writes each result when it comes; workers need no common file system.
+The caller hands out blocks, a few per worker at a time, and writes each result when it comes; workers need no common
+file system.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import platform
 import shutil
+import signal
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
@@ -18,7 +19,7 @@ from dataclasses import dataclass, field
 from importlib.metadata import version
 from itertools import islice
 from pathlib import Path
-from threading import Event, Thread
+from threading import Event, Thread, current_thread, main_thread
 from time import monotonic
 
 import dask
@@ -94,6 +95,7 @@ class Caller:
             else:
                 for name, values in future.result().items():
                     result[name][i] = values[0]
+            self.outstanding.discard(future)
         return result
 
 
@@ -180,14 +182,28 @@ def cluster(workers: int | None, scheduler: str | None) -> Iterator[Client]:
             yield client
         return
     options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
-    with (
-        dask.config.set(options),
-        LocalCluster(
-            n_workers=workers, threads_per_worker=1, dashboard_address=":0", memory_limit=0, silence_logs="ERROR"
-        ) as local,
-        Client(local) as client,
-    ):
-        yield client
+    # A worker that died is started again by its nanny. LocalCluster would close it for good if, this long after a
+    # death, it happened to be starting again after another one.
+    options["distributed.deploy.lost-worker-timeout"] = "1000 hours"
+    processes = {"n_workers": workers, "threads_per_worker": 1, "memory_limit": 0}
+    with dask.config.set(options):
+        with uninterrupted():
+            local = LocalCluster(**processes, dashboard_address=":0", silence_logs="ERROR")
+        with local, Client(local) as client:
+            yield client
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Processes that are started meanwhile ignore Ctrl-C: it is for the caller, who then stops them."""
+    if current_thread() is not main_thread():  # no other thread may change this
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @contextmanager

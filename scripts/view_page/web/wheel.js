@@ -6,9 +6,9 @@ import {contactOf} from '#table';
 import {THREE} from 'three';
 
 const METAL = {
-  color: '#c3c9d1',
-  metalness: 0.85,
-  roughness: 0.32
+  color: '#9aa2ac',
+  metalness: 0.5,
+  roughness: 0.5
 };
 const UP = new THREE.Vector3(0, 0, 1);
 const NODES = new THREE.Vector3(1, 0, 0);
@@ -38,7 +38,7 @@ function makeBody(r_0, r, accent) {
   const inner = r_0 - 0.72 * r;
   add(new THREE.TorusGeometry(inner, 0.42 * r, 16, 120), metal);
   add(new THREE.CylinderGeometry(0.2 * r_0, 0.2 * r_0, 1.1 * r, 48), metal).rotation.x = Math.PI / 2;
-  const marked = new THREE.MeshStandardMaterial({color: accent, roughness: 0.4});
+  const marked = new THREE.MeshStandardMaterial({color: accent, roughness: 0.7});
   for (let i = 0; i < 5; ++i) {
     const width = (i === 0 ? 0.2 : 0.13) * r_0;
     const spoke = add(new THREE.BoxGeometry(inner - 0.1 * r_0, width, 0.55 * r), i === 0 ? marked : metal);
@@ -57,7 +57,7 @@ function makeDisc(r_0, accent) {
   const face =
       new THREE.MeshStandardMaterial({color: '#7d848f', metalness: 0.6, roughness: 0.38, envMapIntensity: 1.2});
   add(new THREE.CylinderGeometry(r_0, r_0, thickness, 160), face).rotation.x = Math.PI / 2;
-  const marked = new THREE.MeshStandardMaterial({color: accent, roughness: 0.4});
+  const marked = new THREE.MeshStandardMaterial({color: accent, roughness: 0.7});
   add(new THREE.BoxGeometry(0.995 * r_0, 0.16 * r_0, 1.3 * thickness), marked).position.x = 0.497 * r_0;
   add(new THREE.TorusGeometry(r_0, 0.5 * thickness, 12, 160), new THREE.MeshStandardMaterial(METAL));
   return body;
