@@ -52,7 +52,7 @@ def module(name: str) -> ModuleType:
 
 
 def draw(name: str, folder: Path) -> bool:
-    """The pictures that are drawn from tables, and the page; whether all is as asked."""
+    """The pictures that are drawn from tables, and the page; whether all requirements are met."""
     of, missed = module(name), ""
     for picture, sheet in getattr(of, "PICTURES", {}).items():
         save(sheet(read_tables(folder, name)), folder, f"{name}_{picture}")
@@ -61,7 +61,7 @@ def draw(name: str, folder: Path) -> bool:
     else:
         text, missed = render(name, folder, getattr(of, "views", dict))
         (folder / f"{name}.md").write_text(text, encoding="utf-8")
-    print(f"{name}: {f'not met: {missed}' if missed else 'all is as asked'}.")
+    print(f"{name}: {f'not met: {missed}' if missed else 'all requirements are met'}.")
     return not missed
 
 

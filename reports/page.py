@@ -101,7 +101,7 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     asked = figures[figures["asked"].notna()]
     met = asked["measured"] <= asked["asked"]
     bounds = [f"{'≤' if f.asked else '='} {number(f.asked)} {f.unit}".strip() for f in asked.itertuples()]
-    table = {"figure": asked["what"], "asked": bounds, "measured": asked["shown"], "met": met.map(VERDICTS)}
+    table = {"figure": asked["what"], "required": bounds, "measured": asked["shown"], "met": met.map(VERDICTS)}
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
     values = {f.figure: number(float(f.measured)) for f in figures.itertuples()}

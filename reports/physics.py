@@ -100,7 +100,7 @@ def from_above(ax: Axes, title: str, margin: float) -> None:
 
 
 def energy(report: Report) -> None:
-    """what friction takes, and the weak slips of a long run"""
+    """what friction takes, and the weak releases of a long run"""
     sheet, (left, right) = plots.sheet(2)
     rough, free, long = run(report, **FRICTION), run(report), run(report, 150, 0.05, **FRICTION)
     sticks = rough["friction_mode"] == 0
@@ -113,7 +113,7 @@ def energy(report: Report) -> None:
     plots.label(left, "time $t$ [s]", "energy $E$ [J]", title)
     right.plot(long.t[long.t >= 10], long["E"][long.t >= 10], color=style.BLUE)
     right.set(xlim=(0, 150))
-    plots.label(right, "time $t$ [s]", "energy $E$ [J]", "The slips go on, ever weaker")
+    plots.label(right, "time $t$ [s]", "energy $E$ [J]", "The releases go on, ever weaker")
     picture(report, sheet, "physics_energy")
     report.figure("energy_start", "energy at the start", rough["E"][0], "J")
     report.figure("energy_end", "friction scene: energy at 10 s", rough["E"][-1], "J")

@@ -122,7 +122,7 @@ def run_suspended(fmus: dict[str, Path], arguments: list[str], folder: Path) -> 
     write_table(table, folder / "suspended.csv")
     ssp.build(suspended.system(fmus, given, h), folder)
     lines = [f"Speed at the end: {-0.35 * table['omega_z'][-1]:.4f} m/s; smallest N: {table['lambda_3'].min():.1f} N."]
-    return [*lines, "The errors in the figure are those of the parameters as they come."] if given else lines
+    return [*lines, "The errors in the figure are those for the default parameters."] if given else lines
 
 
 def run_balance(fmus: dict[str, Path], arguments: list[str], folder: Path) -> list[str]:
