@@ -1,6 +1,7 @@
-"""./scripts/report NAME…|all: measures, and writes docs/results/NAME.md, its pictures and docs/results/data/NAME*.csv.
+"""./scripts/report NAME…|all: measures, and writes the page NAME.md, its pictures and data into build/report/latest.
 
-These files are kept under version control; then the figures in all pages are filled in from the data.
+With --publish they go to docs/results, which is kept under version control, and the figures in all pages are filled in
+from them.
 """
 
 from __future__ import annotations
@@ -24,8 +25,10 @@ NAMES = ("accuracy", "stability", "speed", "inputs", "partners", "vehicles", "ph
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/report", description=__doc__)
     parser.add_argument("names", nargs="+", metavar="NAME", choices=(*NAMES, "all"), help=", ".join((*NAMES, "all")))
-    parser.add_argument("--quick", action="store_true", help="fewer cases, into build/report: to see that it works")
-    parser.add_argument("--render", action="store_true", help="measure nothing: page and pictures out of the data")
+    target = parser.add_mutually_exclusive_group()
+    target.add_argument("--publish", action="store_true", help="write docs/results and the figures in the pages")
+    target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick: to try it out")
+    parser.add_argument("--render", action="store_true", help="measure nothing: publish what the data in docs/ say")
     parser.add_argument("--check", action="store_true", help="change nothing: are the pages those of the data?")
     parser.add_argument("--tools", metavar="PYTHON", help="vehicles: an interpreter with libcosimpy and ecospy")
     parser.add_argument("--against", default="", metavar="REVISION", help="speed: also measure this older version")
@@ -79,7 +82,10 @@ def fresh(name: str, folder: Path) -> bool:
 def main() -> int:
     options = arguments()
     names = list(NAMES) if "all" in options.names else list(dict.fromkeys(options.names))
-    folder = ROOT / "build" / "report" / "quick" if options.quick else ROOT / "docs" / "results"
+    published = options.publish or options.render or options.check
+    folder = ROOT / "docs" / "results"
+    if not published:
+        folder = ROOT / "build" / "report" / ("quick" if options.quick else "latest")
     folder.mkdir(parents=True, exist_ok=True)
     if options.check:
         stale = [name for name in names if not fresh(name, folder)]
@@ -87,7 +93,9 @@ def main() -> int:
     if not options.render:
         measure(names, folder, options)
     met = [draw(name, folder) for name in names]
-    if not options.quick:
+    if not published:
+        print(f"Written into {folder.relative_to(ROOT)}.")
+    else:
         sys.argv = sys.argv[:1]
         figures_in_pages.main()
     return int(not all(met))
