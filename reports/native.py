@@ -124,6 +124,7 @@ class Master:
         run.tolerance = task.tolerance or 0.0
         if task.table is not None:
             run.kept = table = np.ascontiguousarray(task.table)
+            assert table.shape[2] == len(task.inputs)
             run.table, run.orders = table.ctypes.data, table.shape[1] - 1
         return run
 
