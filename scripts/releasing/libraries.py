@@ -17,9 +17,10 @@ import lief
 GLIBC_FLOOR = (2, 17)
 MACOS_FLOOR = [11, 0, 0]
 FUNCTIONS = 44  # of FMI 2.0
-LARGEST = 1 << 20  # bytes of a library in the archive
+LARGEST = 1 << 20  # bytes of a library for one processor
 # What the systems' own mathematics may be asked for: it is exact. All else is musl's, compiled in.
 EXACT = {"floor", "ceil", "trunc", "fabs", "sqrt", "fmod", "scalbn", "ldexp", "frexp", "modf", "copysign"}
+EXACT |= {"nearbyint", "remainder"}
 INEXACT = {"sin", "cos", "sincos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh"}
 INEXACT |= {"atanh", "exp", "exp2", "expm1", "log", "log2", "log10", "log1p", "pow", "cbrt", "hypot", "fma"}
 
@@ -42,7 +43,9 @@ def linux(name: str, path: Path, machine: lief.ELF.ARCH) -> Facts:
     library = lief.ELF.parse(str(path))
     require(name, library.header.machine_type == machine, "is for another processor")
     needs = set(library.libraries)
-    allowed = {"libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
+    # All are glibc, which had its threads and its loader in libraries of their own up to 2.33.
+    glibc = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2"}
+    allowed = glibc | {"ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
     require(name, needs <= allowed, f"needs {needs - allowed}")
     asked = {v.name for r in library.symbols_version_requirement for v in r.get_auxiliary_symbols()}
     versions = [tuple(int(n) for n in version.removeprefix("GLIBC_").split(".")) for version in asked]
@@ -79,7 +82,7 @@ def macos(name: str, path: Path, processor: lief.MachO.Header.CPU_TYPE) -> Facts
     exports = {s.name.removeprefix("_") for s in library.exported_symbols}
     imports = {s.name.removeprefix("_") for s in library.imported_symbols}
     exports -= {"_mh_dylib_header", "__dso_handle"}  # every library of this linker has these
-    return Facts(name, path.stat().st_size, exports, imports, set(needs), "macOS 11.0")
+    return Facts(name, library.original_size, exports, imports, set(needs), "macOS 11.0")
 
 
 def signed(data: bytes, library: lief.MachO.Binary) -> bool:
