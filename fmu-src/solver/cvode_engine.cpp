@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
+#include <cstdlib>
 
 #include "cvode_objects.hpp"
 
@@ -107,14 +107,14 @@ void Cvode::free_objects() {
   if (o.matrix) SUNMatDestroy(o.matrix);
   if (o.y) N_VDestroy(o.y);
   if (o.context) SUNContext_Free(&o.context);
-  delete objects_;
+  std::free(objects_);
   objects_ = nullptr;
 }
 
 bool Cvode::make_objects(int states, Method method) {
   if (objects_ && objects_->method == method && objects_->states == states) return true;
   free_objects();
-  objects_ = new (std::nothrow) CvodeObjects{};
+  objects_ = static_cast<CvodeObjects*>(std::calloc(1, sizeof(CvodeObjects)));
   if (!objects_) return false;
   objects_->method = method;
   objects_->states = states;

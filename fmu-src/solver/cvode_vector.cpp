@@ -138,7 +138,7 @@ struct Operations {
   }
 
   static const _generic_N_Vector_Ops& table() {
-    static const _generic_N_Vector_Ops operations = [] {
+    static constexpr _generic_N_Vector_Ops operations = [] {
       _generic_N_Vector_Ops o = {};
       o.nvgetvectorid = kind, o.nvclone = clone, o.nvcloneempty = clone, o.nvdestroy = destroy;
       o.nvgetarraypointer = [](N_Vector v) { return data(v); }, o.nvsetarraypointer = set_data, o.nvgetlength = length;

@@ -1,19 +1,22 @@
-// A number for a message with as many digits as it needs: the shortest that reads back as the same double, with a point
-// whatever the host's locale is. Times are given in this way, so that a master can be told exactly when something was.
+// A number for a message with as many digits as it needs: the shortest of 15 to 17 that reads back as the same double,
+// with a point whatever the host's locale is. Times are given in this way, so that a master can be told exactly when
+// something was.
 #pragma once
 
-#include <charconv>
-#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
 namespace support {
 
 struct Digits {
+  // By the C library: std::to_chars would bring C++'s run-time library, with exceptions, into a release.
   explicit Digits(double x) {
-    // Plain decimals for ordinary sizes, an exponent, as in 1e+300, for all others.
-    const double size = std::fabs(x);
-    const bool plain = size == 0 || (size >= 1e-5 && size < 1e15);
-    const auto format = plain ? std::chars_format::fixed : std::chars_format::general;
-    *std::to_chars(text, text + sizeof text - 1, x, format).ptr = 0;
+    for (int digits = 15; digits <= 17; ++digits) {
+      std::snprintf(text, sizeof text, "%.*g", digits, x);
+      if (std::strtod(text, nullptr) == x) break;
+    }
+    if (char* comma = std::strchr(text, ',')) *comma = '.';
   }
   char text[32];
 };

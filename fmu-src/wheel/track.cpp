@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 namespace wheel {
 
@@ -16,7 +15,7 @@ static constexpr double least_gap = 0.06, least_first_gap = 0.14;
 static constexpr double sudden = 0.25;
 
 bool Track::begin(double t, const double* y, const double* y_dot) {
-  if (!table_) table_.reset(new (std::nothrow) Table);
+  if (!table_) table_.reset(static_cast<Table*>(std::calloc(1, sizeof(Table))));
   pieces_ = nodes_ = open_ = latest_ = 0;
   return table_ && add(t, y, y_dot);
 }

@@ -5,6 +5,7 @@
 // State of the reduced form, 8 numbers; time in s.
 #pragma once
 
+#include <cstdlib>
 #include <memory>
 
 namespace wheel {
@@ -44,7 +45,10 @@ class Track {
   bool close(int last);
   void interpolate(int first, int last);
 
-  std::unique_ptr<Table> table_;
+  struct Free {
+    void operator()(Table* table) const { std::free(table); }
+  };
+  std::unique_ptr<Table, Free> table_;
   int pieces_ = 0, nodes_ = 0;
   int open_ = 0;            // the node at which the last piece ended
   mutable int latest_ = 0;  // the piece read last

@@ -43,9 +43,7 @@ def linux(name: str, path: Path, machine: lief.ELF.ARCH) -> Facts:
     library = lief.ELF.parse(str(path))
     require(name, library.header.machine_type == machine, "is for another processor")
     needs = set(library.libraries)
-    # All are glibc, which had its threads and its loader in libraries of their own up to 2.33.
-    glibc = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2"}
-    allowed = glibc | {"ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
+    allowed = {"libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
     require(name, needs <= allowed, f"needs {needs - allowed}")
     asked = {v.name for r in library.symbols_version_requirement for v in r.get_auxiliary_symbols()}
     versions = [tuple(int(n) for n in version.removeprefix("GLIBC_").split(".")) for version in asked]
