@@ -16,9 +16,9 @@ endif()
 set(CMAKE_C_COMPILER ${WHEEL_ZIG} cc -target ${WHEEL_ZIG_TARGET})
 set(CMAKE_CXX_COMPILER ${WHEEL_ZIG} c++ -target ${WHEEL_ZIG_TARGET})
 foreach(language C CXX)
-  set(CMAKE_${language}_ARCHIVE_CREATE "${WHEEL_ZIG} ar qcD <TARGET> <OBJECTS>")
-  set(CMAKE_${language}_ARCHIVE_APPEND "${WHEEL_ZIG} ar qD <TARGET> <OBJECTS>")
-  set(CMAKE_${language}_ARCHIVE_FINISH "${WHEEL_ZIG} ranlib -D <TARGET>")
+  set(CMAKE_${language}_ARCHIVE_CREATE "\"${WHEEL_ZIG}\" ar qcD <TARGET> <OBJECTS>")
+  set(CMAKE_${language}_ARCHIVE_APPEND "\"${WHEEL_ZIG}\" ar qD <TARGET> <OBJECTS>")
+  set(CMAKE_${language}_ARCHIVE_FINISH "\"${WHEEL_ZIG}\" ranlib -D <TARGET>")
 endforeach()
 set(CMAKE_RC_COMPILER ${WHEEL_ZIG}) # asked for by CMake, never used
 # zig brings the headers and libraries of the target itself; packages are the host's (Eigen is headers only).

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import extract, read_model_description, simulate_fmu
 from reference.tables import read_table
-from support.driver import HEADLINE, FMU2Wheel
+from support.driver import FMU2Wheel
+from support.fixtures import description, fmu, fmu_path, simulate
 from support.motion import Library
-from support.paths import build_folder
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -20,51 +17,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 @pytest.fixture(scope="session")
-def fmu_path() -> Path:
-    return build_folder() / "wheel.fmu"
-
-
-@pytest.fixture(scope="session")
-def fmu(fmu_path: Path) -> Iterator[str]:
-    """The unpacked FMU."""
-    folder = extract(str(fmu_path))
-    yield folder
-    shutil.rmtree(folder)
-
-
-@pytest.fixture(scope="session")
 def library(fmu: str) -> Library:
     """The unpacked FMU as a function from a scene to its motion; instances come and go."""
     return Library(fmu)
-
-
-@pytest.fixture(scope="session")
-def description(fmu: str):
-    return read_model_description(fmu)
-
-
-@pytest.fixture(scope="session")
-def simulate(fmu: str, description):
-    """simulate(step, stop, tolerance, **start values) -> record array of all outputs, by `fmpy.simulate_fmu`."""
-
-    def run(
-        step: float = 0.1,
-        stop: float = 10.0,
-        tolerance: float | None = None,
-        output: tuple[str, ...] = HEADLINE,
-        **start_values: float,
-    ) -> np.ndarray:
-        return simulate_fmu(
-            fmu,
-            model_description=description,
-            output_interval=step,
-            stop_time=stop,
-            relative_tolerance=tolerance,
-            start_values=start_values,
-            output=output,
-        )
-
-    return run
 
 
 @pytest.fixture(scope="session")

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from view_page.bodies import Body
+from page.bodies import Body
 
 WEB = Path(__file__).parent / "web"
 PAGE_LIMIT = 3_000_000  # bytes of a page
@@ -53,7 +53,7 @@ def modules(three: str) -> str:
     """The import map: every module by its name."""
     texts = {"three": three}
     for path in sorted(WEB.glob("*.js")):
-        texts[f"#{path.stem}"] = f"{path.read_text(encoding='utf-8')}\n//# sourceURL=view_page/{path.name}\n"
+        texts[f"#{path.stem}"] = f"{path.read_text(encoding='utf-8')}\n//# sourceURL=page/{path.name}\n"
     head = "data:text/javascript;base64,"
     return json.dumps({"imports": {name: head + base64_of(text.encode()) for name, text in texts.items()}})
 

@@ -6,9 +6,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from view_page import document
-from view_page.bodies import Body, ViewError, read_bodies
-from view_page.document import Choice
+from page import document
+from page.bodies import Body, ViewError, read_bodies
+from page.document import Choice
 
 
 def main() -> int:
@@ -88,7 +88,7 @@ def choices(bodies: list[Body], labels: dict[str, str]) -> list[Choice]:
 
 
 def live(arguments: argparse.Namespace) -> int:
-    from view_page import live_wheel
+    from page import live_wheel
 
     source = live_wheel.source(arguments.wasm, arguments.description)
     return document.write(arguments.output, "The wheel, live", [], {}, [Choice("This wheel", [["live"]])], live=source)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from reference.tables import read_table
 
-from page.pages import POSE, RECORD, opened, view, write_csv
+from page.tests.pages import POSE, RECORD, opened, view, write_csv
 
 INSTANTS = (0.0, 0.37, 1.0, 1.23, 2.5, 3.99, 5.0, 6.66, 8.01, 10.0)
 MATRIX = """([t, name]) => {

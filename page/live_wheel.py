@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-from view_page.document import base64_of
+from page.document import base64_of
 
 READ = {"Real": float, "Integer": int, "Enumeration": int, "Boolean": lambda text: text == "true"}
 

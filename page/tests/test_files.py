@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import re
-import sys
 
 import numpy as np
 import pytest
-from support.paths import ROOT
 
-from page.pages import POSE, view, write_csv
-
-sys.path.insert(0, str(ROOT / "scripts"))
-from view_page.bodies import read_bodies  # noqa: E402
+from page.bodies import read_bodies
+from page.tests.pages import POSE, view, write_csv
 
 
 def columns_of(rows: np.ndarray, names=("time", *POSE)) -> dict[str, np.ndarray]:

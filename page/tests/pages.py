@@ -53,6 +53,6 @@ def write_csv(path: Path, columns: dict[str, np.ndarray]) -> Path:
 
 def view(*arguments: object) -> subprocess.CompletedProcess[str]:
     """What ./scripts/view does, once all is set up."""
-    command = [sys.executable, "-m", "view_page", "recorded", *map(str, arguments)]
-    environment = os.environ | {"PYTHONPATH": str(ROOT / "scripts")}
+    command = [sys.executable, "-P", "-m", "page", "recorded", *map(str, arguments)]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
     return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
