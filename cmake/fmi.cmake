@@ -19,7 +19,7 @@ endif()
 # wheel.fmu in the build folder: description, library, documentation, licences; same commit, same bytes.
 function(add_fmu target)
   set(fmu ${CMAKE_BINARY_DIR}/wheel.fmu)
-  set(packer ${CMAKE_SOURCE_DIR}/scripts/pack_fmu.py)
+  set(packer ${CMAKE_SOURCE_DIR}/cmake/pack_fmu.py)
   file(GLOB_RECURSE contents CONFIGURE_DEPENDS fmu-src/archive/*)
   # Eigen's licence: beside its headers, or in Debian's package.
   get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)

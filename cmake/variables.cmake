@@ -5,8 +5,8 @@ file(MAKE_DIRECTORY ${VARIABLE_ROWS_FOLDER})
 add_custom_command(
   OUTPUT ${VARIABLE_ROWS}
   COMMAND
-    ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/scripts/variable_rows.py ${CMAKE_SOURCE_DIR}/modelDescription.xml
+    ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/cmake/variable_rows.py ${CMAKE_SOURCE_DIR}/modelDescription.xml
     ${VARIABLE_ROWS}
-  DEPENDS ${CMAKE_SOURCE_DIR}/scripts/variable_rows.py ${CMAKE_SOURCE_DIR}/modelDescription.xml
+  DEPENDS ${CMAKE_SOURCE_DIR}/cmake/variable_rows.py ${CMAKE_SOURCE_DIR}/modelDescription.xml
   COMMENT "Writing the rows of modelDescription.xml"
 )

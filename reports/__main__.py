@@ -12,10 +12,11 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-import figures_in_pages
 from support.motion import Library
 from support.paths import ROOT, build_folder
 from tqdm import tqdm
+
+from publishing import figures_in_pages
 
 from .page import Report, read_tables, render, save
 

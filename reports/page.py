@@ -19,11 +19,12 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-from figures_in_pages import number
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure as Sheet
 from support.motion import Library
 from support.paths import ROOT, build_folder
+
+from publishing.figures_in_pages import number
 
 Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]

@@ -1,10 +1,11 @@
-"""The look of the reports' pictures: plotting/style.py, a page wide (1080 pixels), PNG."""
+"""The look of the reports' pictures: diagrams/style.py, a page wide (1080 pixels), PNG."""
 
 from __future__ import annotations
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from plotting import style
+
+from diagrams import style
 
 COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.ORANGE, style.SKY, style.GREY, style.INK)
 

@@ -11,8 +11,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from drawing import WHEEL, rolling_inertia, save, upright_limit
-from plotting import style
 from study import Study
+
+from diagrams import style
 
 study = Study(
     grid={"phi_dot_start": [-3.0, -4.0, -6.0, -10.0], "s": np.linspace(0.0, 0.1, 401)},

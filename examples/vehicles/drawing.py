@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from plotting import style
+
+from diagrams import style
 
 COLOURS = (style.BLUE, style.SKY, style.VERMILLION, style.ORANGE, style.PURPLE, style.GREY)
 MARKS = {"held": ("o-", style.VERMILLION), "derivatives": ("s-", style.BLUE), "rollback": ("^-", style.GREEN)}

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from plotting import style
+
+from diagrams import style
 
 from .drawing import save
 from .driven import Drive

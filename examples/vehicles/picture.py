@@ -6,7 +6,8 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyBboxPatch
-from plotting import style
+
+from diagrams import style
 
 ARROW = {"arrowstyle": "-|>,head_width=0.18,head_length=0.36", "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0}
 

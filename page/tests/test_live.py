@@ -30,9 +30,7 @@ RUN = """([values, changes, record]) => {
 @pytest.fixture(scope="session")
 def same_libm(description, locked, tmp_path_factory) -> Path:
     """The FMU, unpacked, with a library of this machine's compiler and the releases' libm."""
-    zig = subprocess.run(
-        [ROOT / "scripts/releasing/compiler"], check=True, capture_output=True, text=True
-    ).stdout.strip()
+    zig = subprocess.run([ROOT / "release/compiler"], check=True, capture_output=True, text=True).stdout.strip()
     with locked("musl") as build:
         log = {"check": True, "stdout": subprocess.DEVNULL}
         options = [f"-DWHEEL_LIBM_SOURCE={zig}/lib/libc/musl", "-DCMAKE_BUILD_TYPE=Release"]

@@ -37,8 +37,7 @@ def checkout(tmp_path: Path) -> Path:
     for name in ("scripts/build", "scripts/setup", "scripts/help", "cmake/sundials.cmake"):
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, place / name)
-    for pins in ROOT.glob("scripts/*requirements.txt"):
-        (place / "scripts" / pins.name).write_text("")
+    (place / "requirements.txt").write_text("")
     return place
 
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from support.paths import ROOT
 
-sys.path.insert(0, str(ROOT / "scripts"))
-import figures_in_pages
-from figures_in_pages import DATA, PLACE, UnknownFigure, number, pages, read_figures, with_figures
+sys.path.insert(0, str(ROOT))
+from publishing import figures_in_pages
+from publishing.figures_in_pages import DATA, PLACE, UnknownFigure, number, pages, read_figures, with_figures
 
 RESULTS = ROOT / "docs" / "results"
 BY_HAND = ROOT / "docs" / "interoperability.md"  # runs of other programs, which no command of this project starts
@@ -42,7 +42,7 @@ def typed(text: str) -> list[str]:
 @pytest.mark.parametrize("page", pages(), ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_figures_of_a_page_are_those_of_the_data(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
-    stale = "run scripts/figures_in_pages.py: the figures are not those of docs/results/data"
+    stale = "run ./scripts/documents: the figures are not those of docs/results/data"
     assert with_figures(text, read_figures(), page.name) == text, stale
 
 
@@ -50,7 +50,7 @@ def test_the_pages_of_the_reports_are_those_of_the_data() -> None:
     found = subprocess.run(
         [sys.executable, "-m", "reports", "all", "--check"],
         cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": ":".join([".", "examples", "tests", "scripts"])},
+        env=os.environ | {"PYTHONPATH": ":".join([".", "examples", "tests"])},
         capture_output=True,
         text=True,
     )

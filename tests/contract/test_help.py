@@ -15,8 +15,9 @@ COMMANDS = sorted(p.name for p in (ROOT / "scripts").iterdir() if p.is_file() an
 
 @pytest.fixture
 def bare(tmp_path: Path) -> Path:
-    """The scripts and the description, nothing else."""
-    shutil.copytree(ROOT / "scripts", tmp_path / "scripts", ignore=shutil.ignore_patterns("__pycache__"))
+    """The commands, what `run` lists its values with, and the description; nothing else."""
+    for folder in ("scripts", "diagrams"):
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(ROOT / "modelDescription.xml", tmp_path)
     return tmp_path
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from support.paths import ROOT
 
-sys.path.insert(0, str(ROOT / "scripts"))
-from figures_in_pages import DATA, with_figures
+sys.path.insert(0, str(ROOT))
+from publishing.figures_in_pages import DATA, with_figures
 
 RUNS = DATA / "interoperability.csv"
 
@@ -36,7 +36,7 @@ def too_large(runs: list[dict[str, str]]) -> list[str]:
 
 def test_the_table_of_the_page_is_that_of_the_data_and_would_show_another_figure(tmp_path: Path) -> None:
     page, data = (ROOT / "docs" / "interoperability.md").read_text(encoding="utf-8"), RUNS.read_text(encoding="utf-8")
-    assert with_figures(page, {}) == page, "run scripts/figures_in_pages.py: the page is not that of the data"
+    assert with_figures(page, {}) == page, "run ./scripts/documents: the page is not that of the data"
     (tmp_path / RUNS.name).write_text(data.replace("4.13e-5", "7e-3", 1), encoding="utf-8")
     assert with_figures(page, {}, folder=tmp_path) != page
 

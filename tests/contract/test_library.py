@@ -83,7 +83,7 @@ def test_the_archive_is_laid_out_as_the_standard_says(fmu_path):
 
 
 def test_packing_the_same_content_gives_the_same_bytes(fmu_path, fmu, tmp_path):
-    specification = importlib.util.spec_from_file_location("pack_fmu", ROOT / "scripts" / "pack_fmu.py")
+    specification = importlib.util.spec_from_file_location("pack_fmu", ROOT / "cmake" / "pack_fmu.py")
     packer = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(packer)
     files = {p.relative_to(fmu).as_posix(): p for p in sorted(Path(fmu).rglob("*"), reverse=True) if p.is_file()}

@@ -14,11 +14,13 @@ import fmpy
 import pytest
 from support.paths import ROOT
 
-sys.path.insert(0, str(ROOT / "scripts"))
-sys.path.insert(0, str(ROOT / "scripts" / "releasing"))
+sys.path.insert(0, str(ROOT))
+sys.path.insert(0, str(ROOT / "cmake"))
+sys.path.insert(0, str(ROOT / "release"))
 import pack_fmu
 import universal
-import variable_tables
+
+from publishing import variable_tables
 
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 CLAUSES = (
@@ -97,7 +99,7 @@ def test_the_universal_library_holds_each_processors_library_whole_and_on_its_pa
 
 
 def test_the_guid_is_the_digest_of_the_variables(description):
-    assert description.guid == variable_tables.guid_of(DESCRIPTION), "run scripts/variable_tables.py"
+    assert description.guid == variable_tables.guid_of(DESCRIPTION), "run ./scripts/documents"
 
 
 @pytest.mark.parametrize(

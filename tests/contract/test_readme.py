@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from support.paths import ROOT, build_folder
 
-sys.path.insert(0, str(ROOT / "scripts"))
-import variable_tables
+sys.path.insert(0, str(ROOT))
+from publishing import variable_tables
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 HEADER_PAGE = (ROOT / "docs" / "c_header.md").read_text(encoding="utf-8")
@@ -136,7 +136,7 @@ def test_the_tables_of_variables_are_those_of_the_description(page, description)
     variables = variable_tables.read_variables()
     assert [v.name for v in variables] == [v.name for v in description.modelVariables]
     text = page.read_text(encoding="utf-8")
-    stale = "run scripts/variable_tables.py: the tables are not those of modelDescription.xml"
+    stale = "run ./scripts/documents: the tables are not those of modelDescription.xml"
     assert text == variable_tables.with_tables(text, variables, page), stale
     assert text != variable_tables.with_tables(text, variables[1:], page)
     for v in variables:

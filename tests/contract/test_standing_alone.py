@@ -17,7 +17,7 @@ UPWARDS = re.compile(r"(?<![\w./])(?:\./)?(?:[\w-]+/)*(?:\.\./)+[\w./-]*")
 ABOVE_THE_ROOT = re.compile(r"\bROOT\.parent\b|CMAKE_SOURCE_DIR\}/\.\.")
 PARENTS = re.compile(r"__file__\)(?:\.resolve\(\))?(?:\.parents\[(\d+)\]|((?:\.parent\b)+))")
 HOMES = re.compile(r"(?<![\w./])/(?:work|home|root|Users)/[\w.-]+")
-REPORTS = {"reports", "plotting", "figures", "coverage_page"}
+REPORTS = {"reports", "diagrams"}
 
 
 def leaves(folder: PurePosixPath, path: str) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.paths import ROOT
 
-for folder in (ROOT / "examples", ROOT / "tests", ROOT / "scripts"):
+for folder in (ROOT / "examples", ROOT / "tests", ROOT):
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 

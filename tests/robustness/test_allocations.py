@@ -32,7 +32,7 @@ Play = Callable[..., subprocess.CompletedProcess[str]]
 
 
 def compile_c(output: Path, *sources: str, options: tuple[str, ...] = ()) -> Path:
-    rows = [ROOT / "scripts" / "variable_rows.py", ROOT / "modelDescription.xml", output.parent / "variables.inc"]
+    rows = [ROOT / "cmake" / "variable_rows.py", ROOT / "modelDescription.xml", output.parent / "variables.inc"]
     subprocess.run([sys.executable, *map(str, rows)], check=True)
     clean = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
     folders = (HEADERS, output.parent, ROOT / "tests" / "support")

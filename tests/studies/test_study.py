@@ -36,7 +36,7 @@ def same(a: xr.Dataset, b: xr.Dataset) -> bool:
 
 def command(*options: object, **more: object) -> subprocess.Popen:
     """The command behind ./scripts/study, in the Python of the tests."""
-    path = os.pathsep.join(str(ROOT / folder) for folder in ("examples/studies", "scripts"))
+    path = os.pathsep.join(str(ROOT / folder) for folder in ("examples/studies", "."))
     words = [sys.executable, "-m", "study", *map(str, options)]
     return subprocess.Popen(words, env=os.environ | {"PYTHONPATH": path}, stderr=subprocess.PIPE, text=True, **more)
 

@@ -18,7 +18,7 @@ import fmpy
 from jinja2 import Template
 from tabulate import tabulate
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parent.parent
 HERE = Path(__file__).parent
 DESCRIPTION = fmpy.read_model_description(str(ROOT), validate=False)
 WASM = "wasm32-wasi"
@@ -43,7 +43,7 @@ Scenes = dict[str, Row]
 
 
 def build_driver(zig: Path, target: str, folder: Path) -> Path:
-    rows = [ROOT / "scripts" / "variable_rows.py", ROOT / "modelDescription.xml", folder / "variables.inc"]
+    rows = [ROOT / "cmake" / "variable_rows.py", ROOT / "modelDescription.xml", folder / "variables.inc"]
     subprocess.run([sys.executable, *map(str, rows)], check=True)
     driver = folder / target / ("driver.exe" if target == WINDOWS else "driver")
     headers = (Path(fmpy.__file__).parent / "c-code", ROOT / "tests" / "support", folder)
@@ -106,7 +106,9 @@ def apart(a: Row, b: Row) -> str:
 
 def write(arguments: argparse.Namespace, released: dict[str, Scenes], own: dict[str, Scenes], **found: object) -> None:
     folder, reference = arguments.folder, released["linux64"]
-    template = Template((HERE / "platforms.md.in").read_text(encoding="utf-8"), keep_trailing_newline=True)
+    template = Template(
+        (ROOT / "publishing" / "templates" / "platforms.md").read_text(encoding="utf-8"), keep_trailing_newline=True
+    )
     page = template.render(
         commit=version_of("git", "-C", str(ROOT), "describe", "--always", "--dirty"),
         size=(folder / "wheel.fmu").stat().st_size / 1e3,
@@ -125,7 +127,7 @@ def write(arguments: argparse.Namespace, released: dict[str, Scenes], own: dict[
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--folder", type=Path, required=True, help="of the release, as scripts/releasing/build left it")
+    parser.add_argument("--folder", type=Path, required=True, help="of the release, as release/build left it")
     parser.add_argument("--zig", type=Path, required=True)
     parser.add_argument("--wine", required=True)
     parser.add_argument("--arm-root", required=True, help="folder of the arm C library")

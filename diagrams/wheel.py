@@ -12,10 +12,11 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from plotting import style
-from plotting.scene import Array, Scene, SceneError, read_scene
-from plotting.sketch import Pen, Sketch
-from plotting.torus import Paint, View, Wheel, render, window_of
+
+from diagrams import style
+from diagrams.scene import Array, Scene, SceneError, read_scene
+from diagrams.sketch import Pen, Sketch
+from diagrams.torus import Paint, View, Wheel, render, window_of
 
 ROOT = Path(__file__).resolve().parent.parent
 POSE = ("X_O", "Y_O", "psi", "theta", "phi")

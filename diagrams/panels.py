@@ -11,8 +11,8 @@ from matplotlib.patches import FancyArrowPatch
 from matplotlib.ticker import AutoMinorLocator, MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
-from plotting import style
-from plotting.scene import Array, Scene
+from diagrams import style
+from diagrams.scene import Array, Scene
 
 MARK_STEP = 5  # degrees of theta between the candidates for a mark along the arc of Fig. 3
 MARK_SIZE = np.array([50.0, 10.0])  # points: width and height that the name of a mark takes

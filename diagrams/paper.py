@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from plotting import panels, style
-from plotting.scene import Scene, SceneError, read_scene
+
+from diagrams import panels, style
+from diagrams.scene import Scene, SceneError, read_scene
 
 ROOT = Path(__file__).resolve().parent.parent
 PAPER = {  # (27)-(33)

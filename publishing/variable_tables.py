@@ -29,7 +29,7 @@ TITLES = {
 }
 # What a master relies on: a library and a description that differ here do not belong together.
 BINDING = ("CoSimulation", "UnitDefinitions", "ModelVariables", "ModelStructure")
-BEGIN, END = "<!-- variables: scripts/variable_tables.py -->", "<!-- end of variables -->"
+BEGIN, END = "<!-- variables -->", "<!-- end of variables -->"
 
 
 class Variable(NamedTuple):

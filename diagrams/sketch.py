@@ -1,6 +1,6 @@
 """Lines, arrows, arcs and labels in space, drawn as vectors with the parts behind the wheel hidden.
 
-Points are in fixed axes X, Y, Z in m; the axes of the drawing are those of plotting.torus.View.
+Points are in fixed axes X, Y, Z in m; the axes of the drawing are those of diagrams.torus.View.
 """
 
 from dataclasses import dataclass
@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch
 from matplotlib.patheffects import withStroke
 
-from plotting import style
-from plotting.scene import Array
-from plotting.torus import View, Wheel
+from diagrams import style
+from diagrams.scene import Array
+from diagrams.torus import View, Wheel
 
 FINENESS = 2e-3  # m between the points at which a line is tested for visibility
 HALO = [withStroke(linewidth=1.7, foreground="white")]

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from plotting.scene import Array
+from diagrams.scene import Array
 
 STEPS = 80  # of sphere tracing; a grazing ray that needs more is taken as a miss
 SURFACE = 1e-5  # m, a ray this close has hit

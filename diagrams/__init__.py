@@ -1,0 +1,1 @@
+"""What ./scripts/run draws, and the look of every picture; nothing here computes dynamics."""

@@ -1,1 +1,0 @@
-"""Drawing tools shared by figures.py and picture.py; nothing here computes dynamics."""
