@@ -23,7 +23,7 @@ def doubles(*names: str) -> list[tuple[str, type]]:
 
 
 class Parameters(Structure):
-    _fields_ = doubles("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")
+    _fields_ = doubles("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s", "g_X", "g_Y")
 
 
 class Load(Structure):
@@ -101,6 +101,7 @@ LIBRARY.wheel_energy.restype = c_double
 LIBRARY.wheel_required_friction.restype = c_double
 LIBRARY.wheel_height.restype = c_double
 LIBRARY.wheel_height.argtypes = [POINTER(Parameters), c_double]
+LIBRARY.wheel_set_slope.argtypes = [POINTER(Parameters), c_double, c_double, c_double]
 LIBRARY.wheel_contact.restype = Contact
 LIBRARY.wheel_scene.restype = Scene
 LIBRARY.wheel_scene.argtypes = [POINTER(Parameters), POINTER(Load), Friction]
@@ -108,7 +109,7 @@ LIBRARY.wheel_scene.argtypes = [POINTER(Parameters), POINTER(Load), Friction]
 
 def paper_wheel(**changes: float) -> Parameters:
     """The wheel of (27)-(31) without friction, with the named constants changed."""
-    constants = {"m": 20, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_y": 0.9, "J_z": 1.8, "g": 9.81, "s": 0}
+    constants = {"m": 20, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_y": 0.9, "J_z": 1.8, "g": 9.81, "s": 0, "g_X": 0, "g_Y": 0}
     return Parameters(**{**constants, **changes})
 
 

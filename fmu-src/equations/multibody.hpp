@@ -67,11 +67,12 @@ inline Matrix63 B_tilde(const Multibody& s, double kappa) {
   return B_tilde;
 }
 
-// (15), generalised: weight, F at O (fixed axes), M turned from the carrier into body axes by [phi]^T.
+// (15), generalised: weight (tilted on a slope), F at O (fixed axes), M turned from the carrier into body axes by
+// [phi]^T.
 inline Vector6 F(const Multibody& s, const WheelLoad& load) {
   const Matrix3 phi = rotation_z(s.attitude.sin_phi, s.attitude.cos_phi);
   Vector6 F;
-  F << Vector3(load.F) - Vector3(0, 0, s.wheel.m * s.wheel.g), phi.transpose() * Vector3(load.M);
+  F << Vector3(load.F) + s.wheel.m * Vector3(s.wheel.g_X, s.wheel.g_Y, -s.wheel.g), phi.transpose() * Vector3(load.M);
   return F;
 }
 

@@ -14,7 +14,8 @@ double wheel_energy(const WheelParameters* wheel, const WheelKinematics* k) {
   double v_squared = k->X_O_dot * k->X_O_dot + k->Y_O_dot * k->Y_O_dot + k->Z_O_dot * k->Z_O_dot;
   double turning =
       wheel->J_x * omega_x * omega_x + wheel->J_y * omega_y * omega_y + wheel->J_z * k->omega_z * k->omega_z;
-  return 0.5 * (wheel->m * v_squared + turning) + wheel->m * wheel->g * k->Z_O;
+  return 0.5 * (wheel->m * v_squared + turning) +
+         wheel->m * (wheel->g * k->Z_O - wheel->g_X * k->X_O - wheel->g_Y * k->Y_O);
 }
 
 /* The contact lies r_0 cos(theta) to the right of O: across e1, on the side of (sin(psi), -cos(psi)). */

@@ -22,7 +22,7 @@ __attribute__((always_inline)) static inline Instant instant_of(const WheelScene
   Inertia inertia = inertia_of(w, y[PHI]);
   Instant now = {.carrier = carrier_of(w, y), .heading = heading_of(y[PSI])};
   now.drift = drift_of(w, &inertia, &now.carrier);
-  add_load(&now.drift, &now.carrier, &now.heading, &scene->load);
+  add_load(&now.drift, &now.carrier, &now.heading, &scene->load, w->m * w->g_X, w->m * w->g_Y);
   now.system = system_of(w, &inertia, &now.carrier, &now.drift);
   return now;
 }
@@ -108,8 +108,8 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   out->psi_ddot = (a.omega_2_dot - c->omega_1 * c->Omega_3) / c->sin_theta;
   out->phi_ddot = a.omega_3_dot - out->psi_ddot * c->cos_theta + c->omega_1 * c->omega_2;
   /* m a = lambda + F + weight */
-  out->X_O_ddot = (out->lambda[0] + scene->load.F[0]) / w->m;
-  out->Y_O_ddot = (out->lambda[1] + scene->load.F[1]) / w->m;
+  out->X_O_ddot = (out->lambda[0] + scene->load.F[0]) / w->m + w->g_X;
+  out->Y_O_ddot = (out->lambda[1] + scene->load.F[1]) / w->m + w->g_Y;
   out->Z_O_ddot = (out->lambda[2] + scene->load.F[2]) / w->m - w->g;
 }
 
@@ -134,7 +134,7 @@ static void respond(const WheelScene* scene, const WheelLoad* load_dot, const Ax
   Carrier c = carrier_of(w, y);
   Heading heading = heading_of(y[PSI]);
   Drift drift = {0};
-  add_load(&drift, &c, &heading, load_dot);
+  add_load(&drift, &c, &heading, load_dot, 0, 0);
   System system = system_of(w, &inertia, &c, &drift);
   Motion a = solve(&system, law);
   reaction_of(w, &c, &heading, &drift, &a, out->lambda_dot);

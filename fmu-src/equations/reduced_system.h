@@ -85,7 +85,7 @@ static inline Inertia inertia_of(const WheelParameters* w, double phi) {
   return (Inertia){.I_11 = mean + q, .I_22 = mean - q, .p = p, .q = q};
 }
 
-/* Drift under the weight alone. H: angular momentum about O. */
+/* Drift under the weight's part across the road alone. H: angular momentum about O. */
 static inline Drift drift_of(const WheelParameters* w, const Inertia* I, const Carrier* c) {
   double b_1 = c->omega_1 * (w->r_0 * c->omega_2 - c->eta * c->phi_dot);
   double b_2 = w->r * c->sin_theta * (c->omega_1 * c->omega_1) + c->Omega_3 * c->v_1 - c->omega_1 * c->v_3;
@@ -108,12 +108,14 @@ static inline Drift drift_of(const WheelParameters* w, const Inertia* I, const C
   return d;
 }
 
-/* Adds {F} of (15): F turned from fixed axes into the carrier, M already there. */
-static inline void add_load(Drift* d, const Carrier* c, const Heading* heading, const WheelLoad* load) {
-  double F_1 = 0, F_h = 0;                  /* horizontal: along e1 and across it */
-  if (load->F[0] != 0 || load->F[1] != 0) { /* otherwise sine and cosine of psi are not needed */
-    F_1 = load->F[0] * heading->cos_psi + load->F[1] * heading->sin_psi;
-    F_h = load->F[1] * heading->cos_psi - load->F[0] * heading->sin_psi;
+/* Adds {F} of (15), F turned from fixed axes into the carrier, M already there; and a weight (N) along the road. */
+static inline void add_load(Drift* d, const Carrier* c, const Heading* heading, const WheelLoad* load, double weight_X,
+                            double weight_Y) {
+  double F_X = load->F[0] + weight_X, F_Y = load->F[1] + weight_Y;
+  double F_1 = 0, F_h = 0;    /* in the road's plane: along e1 and across it */
+  if (F_X != 0 || F_Y != 0) { /* otherwise sine and cosine of psi are not needed */
+    F_1 = F_X * heading->cos_psi + F_Y * heading->sin_psi;
+    F_h = F_Y * heading->cos_psi - F_X * heading->sin_psi;
   }
   d->k_1 -= F_1;
   d->k_2 -= c->cos_theta * F_h + c->sin_theta * load->F[2];

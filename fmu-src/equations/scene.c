@@ -1,4 +1,5 @@
-/* Makes a scene of a wheel, a load and a law of friction, and checks the law. */
+/* Makes a scene of a wheel, a load and a law of friction, and checks the law; puts a wheel on a slope. */
+#include <math.h>
 #include <stddef.h>
 
 #include "wheel_equations.h"
@@ -16,4 +17,10 @@ WheelScene wheel_scene(const WheelParameters* wheel, const WheelLoad* load, Whee
   if (load) scene.load = *load;
   if (!is_meant(wheel, scene.load.brake, &friction)) scene.friction.kind = WHEEL_NO_LAW;
   return scene;
+}
+
+void wheel_set_slope(WheelParameters* wheel, double g, double slope, double direction) {
+  wheel->g = g * cos(slope);
+  wheel->g_X = -g * sin(slope) * cos(direction);
+  wheel->g_Y = -g * sin(slope) * sin(direction);
 }

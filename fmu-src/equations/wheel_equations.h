@@ -23,9 +23,15 @@ typedef struct WheelParameters {
   double m;             /* kg, > 0 */
   double r_0, r;        /* m; radius of the ring of tube centres > 0, radius of the tube >= 0 */
   double J_x, J_y, J_z; /* kg m2, principal central moments, z is the axle */
-  double g;             /* m/s2, >= 0 */
+  double g;             /* m/s2, >= 0, gravity across the road: against Z */
   double s;             /* m, coefficient of rolling friction, >= 0 */
+  double g_X, g_Y;      /* m/s2, gravity along the road: zero where it is level */
 } WheelParameters;
+
+/* Puts the wheel on a road that rises by `slope` (rad, 0 <= slope < pi/2) towards `direction` (rad in the X-Y plane,
+ * from X to Y). The axes stay the road's, Z across it, and the weight tilts: g (the whole of gravity, m/s2) is
+ * distributed to the wheel's g, g_X, g_Y. */
+void wheel_set_slope(WheelParameters* wheel, double g, double slope, double direction);
 
 /* What acts on the wheel besides weight and ground: the external column {F} of (15), and a brake. */
 typedef struct WheelLoad {
@@ -127,7 +133,7 @@ extern const WheelFormulation wheel_reduced;
  * [B]{q_dot} and of Z_O - height decays, on the true motion nothing changes. */
 extern const WheelFormulation wheel_multibody;
 
-/* Total energy, J: translation, rotation, height of O above the ground. */
+/* Total energy, J: translation, rotation, height of O against gravity, zero at the origin. */
 double wheel_energy(const WheelParameters* wheel, const WheelKinematics* motion);
 
 /* Ratio of tangential to normal force of the ground: the friction coefficient that rolling without slip needs.

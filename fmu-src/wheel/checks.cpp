@@ -26,6 +26,8 @@ void fault_of(unsigned v, double value, char* sentence, std::size_t size) {
   } else if (strictly_positive(v) ? value <= row.min : value < row.min) {
     std::snprintf(sentence, size, "%s = %.9g: it must be %s %g.", row.name, value,
                   strictly_positive(v) ? "greater than" : "at least", row.min);
+  } else if (v == slope && value >= row.max) {
+    std::snprintf(sentence, size, "slope = %.9g rad: it must be less than pi/2.", value);
   } else if (value > row.max) {
     std::snprintf(sentence, size, "%s = %.9g: it must be at most %g.", row.name, value, row.max);
   }

@@ -15,7 +15,7 @@ void set_scales(Motion& motion, const double* y) {
   motion.formulation->kinematics(&wheel, y, &start);
   const double own_time = time_scale(wheel, start);
   motion.longest_step = 0.5 * own_time;
-  motion.weight = wheel.m * (wheel.r_0 + wheel.r) / (own_time * own_time);
+  motion.weight = force_scale(wheel, own_time);
   motion.scales = error_scales(wheel, *motion.formulation, y);
 }
 

@@ -8,7 +8,11 @@
 
 namespace wheel {
 
-WheelParameters parameters_from(const double* v) { return {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], v[s]}; }
+WheelParameters parameters_from(const double* v) {
+  WheelParameters wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], v[s], 0, 0};
+  if (v[slope] != 0) wheel_set_slope(&wheel, v[g], v[slope], v[slope_direction]);
+  return wheel;
+}
 
 WheelMotion initial_motion(const double* v) {
   return {v[psi_start],       v[theta_start],   v[phi_start], v[psi_dot_start],
@@ -51,7 +55,7 @@ solver::Method choose_method(const double* v, const WheelScene& scene, bool jump
 }
 
 bool is_unfoldable(const double* v, const WheelScene& scene, bool loaded) {
-  return scene.friction.kind == WHEEL_FRICTIONLESS && !loaded && v[J_x] == v[J_y] &&
+  return scene.friction.kind == WHEEL_FRICTIONLESS && !loaded && v[J_x] == v[J_y] && v[slope] == 0 &&
          choice_of(v[formulation]) == automatic_formulation && choice_of(v[method]) == automatic_method;
 }
 
@@ -81,11 +85,23 @@ bool has_transitions(const WheelScene& scene) {
   return scene.friction.kind == WHEEL_ROLLING || scene.friction.kind == WHEEL_HELD;
 }
 
+namespace {
+
+double gravity_of(const WheelParameters& wheel) { return std::hypot(wheel.g, wheel.g_X, wheel.g_Y); }
+
+}  // namespace
+
 double time_scale(const WheelParameters& wheel, const WheelKinematics& start) {
-  const double length = wheel.r_0 + wheel.r;
+  const double length = wheel.r_0 + wheel.r, gravity = gravity_of(wheel);
   const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
-  if (wheel.g > 1e-30 * length * rate * rate) return std::sqrt(length / wheel.g);  // else the weight moves nothing
+  if (gravity > 1e-30 * length * rate * rate) return std::sqrt(length / gravity);  // else the weight moves nothing
   return rate > 0 ? 1 / rate : 1;
+}
+
+double force_scale(const WheelParameters& wheel, double own_time) {
+  const double gravity = gravity_of(wheel);
+  const double across = gravity > 0 ? wheel.g / gravity : 1;
+  return wheel.m * (wheel.r_0 + wheel.r) / (own_time * own_time) * across;
 }
 
 ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& f, const double* y) {

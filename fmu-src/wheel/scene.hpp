@@ -16,7 +16,7 @@ const WheelFormulation& choose_formulation(const double* stored);
 solver::Method choose_method(const double* stored, const WheelScene& scene, bool jumps);
 
 // Whether the motion repeats and can be unfolded from half a nutation: reduced form with J_x = J_y, no friction, no
-// brake, no load, formulation and method left to the program.
+// brake, no load, a level road, formulation and method left to the program.
 bool is_unfoldable(const double* stored, const WheelScene& scene, bool loaded);
 
 // The friction law at state y under the scene's load; `braked`: the brake is in use. At omega_z = 0 after Filippov:
@@ -49,7 +49,10 @@ void scales_at(const ErrorScales& scales, const WheelFormulation& formulation, d
 // spin omega_z, rad/s: below one where the wheel turns very often within its own time scale.
 double share_at(const ErrorScales& scales, double omega_z);
 
-// sqrt((r_0 + r) / g), s; without a weight that matters the time of a turn at the initial rate.
+// sqrt((r_0 + r) / g), s, g the whole of gravity; without a weight that matters the time of a turn at the initial rate.
 double time_scale(const WheelParameters& wheel, const WheelKinematics& start);
+
+// N, scale of the normal force: the weight's part across the road, or what its time scale stands for without a weight.
+double force_scale(const WheelParameters& wheel, double own_time);
 
 }  // namespace wheel

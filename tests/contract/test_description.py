@@ -26,6 +26,8 @@ PARAMETERS = {
     "J_z": (1.8, "kg.m2"),
     "g": (9.81, "m/s2"),
     "s": (0, "m"),
+    "slope": (0, "rad"),
+    "slope_direction": (0, "rad"),
     "psi_start": (FULL_TURN / 4, "rad"),
     "theta_start": (5 * FULL_TURN / 24, "rad"),
     "phi_start": (0, "rad"),
@@ -153,7 +155,7 @@ def test_limits_of_the_description_are_those_the_library_enforces(wheel, descrip
         if v.min is not None:
             factor = 0.99 if v.name == "J_z" else 1.01  # J_z is at its limit, J_x + J_y
             assert accepted(v.name, int(v.min) if whole else float(v.start) * factor), v.name
-    assert limited == 18
+    assert limited == 20
 
 
 def test_every_unit_is_defined_by_base_units_and_used(description, xml):

@@ -66,6 +66,7 @@ class Paper:
 
     def __init__(self, wheel: np.ndarray, y: np.ndarray, printed: Iterable[str] = ()) -> None:
         self.wheel, self.printed = wheel, frozenset(printed)
+        self.place = y[..., 0], y[..., 1], y[..., 2]
         self.height = y[..., 2]  # Z_O
         self.psi, self.theta, self.phi = (y[..., i] for i in (3, 4, 5))
         self.q_dot, self.beta_dot = y[..., 6:], y[..., 9:]
@@ -142,7 +143,8 @@ class Paper:
         return scaled(self.beta_dot[..., 1], self.r_theta) + scaled(self.beta_dot[..., 2], self.r_phi)
 
     def F(self, load: np.ndarray | None = None) -> np.ndarray:  # (15), generalised
-        weight = column(0, 0, -self.wheel["m"] * self.wheel["g"])
+        w = self.wheel
+        weight = column(w["m"] * w["g_X"], w["m"] * w["g_Y"], -w["m"] * w["g"])
         if load is None:
             return np.concatenate([weight, np.zeros_like(weight)], axis=-1)
         moment = times(transposed(self.phi_matrix), load["M"])  # carrier to body axes
@@ -219,8 +221,9 @@ class Paper:
     def energy(self) -> np.ndarray:
         v = self.q_dot[..., :3]
         turning = (self.omega * times(self.J, self.omega)).sum(-1)
-        m, g = self.wheel["m"], self.wheel["g"]
-        return 0.5 * (m * (v * v).sum(-1) + turning) + m * g * self.height
+        w = self.wheel
+        fallen = w["g_X"] * self.place[0] + w["g_Y"] * self.place[1] - w["g"] * self.place[2]
+        return 0.5 * (w["m"] * (v * v).sum(-1) + turning) - w["m"] * fallen
 
 
 def paper_table(**changes: float) -> np.ndarray:

@@ -32,8 +32,16 @@ def wheels(random: np.random.Generator, rows: int, symmetric: bool) -> np.ndarra
     inertias = physical_inertias(random, wheel["m"] * wheel["r_0"] ** 2, symmetric)
     wheel["J_x"], wheel["J_y"], wheel["J_z"] = inertias
     wheel["g"] = random.uniform(0, 20, rows)
+    sloping = random.random(rows) < 0.5
+    for axis in ("g_X", "g_Y"):
+        wheel[axis] = np.where(sloping, random.normal(0, 5, rows), 0)
     wheel["s"] = wheel["r_0"] * random.uniform(0, 0.2, rows)
     return wheel
+
+
+def level(scene: np.ndarray) -> None:
+    """Takes the slope out of the scenes."""
+    scene["wheel"]["g_X"] = scene["wheel"]["g_Y"] = 0
 
 
 def scenes(

@@ -38,6 +38,7 @@ def upright(law: int) -> tuple[Table, Table]:
     """Straight rolling at omega_z against sigma's friction, no load but the brake."""
     scenes, motions = draw(law)
     scenes["load"]["F"], scenes["load"]["M"] = 0, 0
+    random_scenes.level(scenes)
     motions["theta"], motions["psi_dot"], motions["theta_dot"] = np.pi / 2, 0, 0
     scenes["friction"]["sigma"] = np.sign(motions["phi_dot"])
     return scenes, motions

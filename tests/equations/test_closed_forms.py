@@ -22,6 +22,7 @@ def still(kind: int, seed: int = 11) -> tuple[np.ndarray, np.ndarray]:
     random = np.random.default_rng(seed)
     scenes = random_scenes.scenes(random, kind, rows=ROWS)
     scenes["load"] = np.zeros(1, scenes["load"].dtype)
+    random_scenes.level(scenes)
     scenes["wheel"]["g"] = random.uniform(1, 20, ROWS)
     motions = random_scenes.motions(random, ROWS)
     for rate in ("psi_dot", "theta_dot", "phi_dot"):

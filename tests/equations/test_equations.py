@@ -168,13 +168,20 @@ def test_multibody_solves_the_papers_system_24_for_any_inertia(kind: int) -> Non
     assert distance(multibody, transcribed(scenes, y), scenes) > 10 * BOUND  # 3.8e-8
 
 
+def reference_wheel(wheel: np.ndarray) -> Wheel:
+    """One row of constants, its gravity as slope and direction."""
+    *constants, g, s, g_X, g_Y = wheel.tolist()
+    along = np.hypot(g_X, g_Y)
+    return Wheel(*constants, np.hypot(g, along), s, np.arctan2(along, g), np.arctan2(-g_Y, -g_X))
+
+
 def referenced(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
     """WheelDynamics from the reference; without pressure there is no friction but the brake's."""
     out = eq.table(eq.Dynamics, len(scenes))
     y = eq.start_each(eq.MULTIBODY, scenes, motions)
     omega_z = eq.kinematics_each(eq.MULTIBODY, scenes, y)["omega_z"]
     for row, scene, motion, spin in zip(out, scenes, motions, omega_z.tolist(), strict=True):
-        wheel, friction = Wheel(*scene["wheel"].tolist()), scene["friction"]
+        wheel, friction = reference_wheel(scene["wheel"]), scene["friction"]
         sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])][friction["kind"] - eq.FRICTIONLESS]
         angles, rates = motion.tolist()[:3], motion.tolist()[3:6]
         *loads, brake = scene["load"].tolist()

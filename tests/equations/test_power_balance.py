@@ -43,7 +43,7 @@ class Instants:
         k, d, wheel = self.k, self.d, self.scenes["wheel"]
         paper = Paper(wheel, eq.columns(k, *k.dtype.names[:12]))
         a = eq.columns(d, "X_O_ddot", "Y_O_ddot", "Z_O_ddot")
-        a[:, 2] += wheel["g"]
+        a += eq.columns(wheel, "g_X", "g_Y", "g") * [-1, -1, 1]  # the energy counts the height against gravity
         beta_ddot = eq.columns(d, "psi_ddot", "theta_ddot", "phi_ddot")
         omega_dot = times(paper.Q, beta_ddot) + times(paper.Q_dot, paper.beta_dot)
         terms = np.hstack(

@@ -52,6 +52,7 @@ def on_plane(symmetry: Symmetry, table: Table, x: str, y: str) -> None:
 def map_scenes(symmetry: Symmetry, scenes: Table) -> Table:
     out = scenes.copy()
     out["load"]["F"][:, :2] = scenes["load"]["F"][:, :2] @ symmetry.plane.T
+    on_plane(symmetry, out["wheel"], "g_X", "g_Y")
     out["load"]["M"] *= symmetry.moment
     out["friction"]["sigma"] *= symmetry.spin
     return out

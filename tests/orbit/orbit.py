@@ -22,7 +22,7 @@ KINDS = ("refused", "folded", "ended")
 
 
 class Parameters(Structure):
-    _fields_ = [(name, c_double) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")]
+    _fields_ = [(name, c_double) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s", "g_X", "g_Y")]
 
 
 class Motion(Structure):
@@ -47,7 +47,7 @@ class Orbit:
             getattr(library, name).restype = c_double
         for name in ("probe_falls_until", "probe_steps"):
             getattr(library, name).restype = c_longlong
-        parameters = Parameters(**{name: getattr(wheel, name) for name, _ in Parameters._fields_})
+        parameters = Parameters(**{name: getattr(wheel, name, 0) for name, _ in Parameters._fields_})
         motion = Motion(**{name: getattr(start, name) for name, _ in Motion._fields_})
         self.probe = c_void_p(
             library.probe_make(byref(parameters), byref(motion), c_double(tolerance), c_int(keep_contact))

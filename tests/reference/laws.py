@@ -46,4 +46,4 @@ def loads(wheel: Wheel, run: Solution, inputs: Inputs) -> tuple[Array, Array]:
     to_contact = -wheel.r_0 * e2 - np.array([0, 0, wheel.r])
     moment = np.cross(to_contact, ground) + run["tau"][:, None] * e3
     moment += M[:, :1] * e1 + M[:, 1:2] * e2 + M[:, 2:] * e3
-    return ground + F - np.array([0, 0, wheel.m * wheel.g]), moment
+    return ground + F + wheel.m * np.array(wheel.gravity), moment

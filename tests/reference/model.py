@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import cos, inf, nextafter, pi
+from math import cos, inf, nextafter, pi, sin
 
 Vector = tuple[float, float, float]
 ZERO: Vector = (0.0, 0.0, 0.0)
@@ -25,7 +25,7 @@ def released(_t: float) -> float:
 
 @dataclass(frozen=True)
 class Wheel:
-    """Parameters (27)-(31): any principal central moments; the body z axis is the axle."""
+    """Parameters (27)-(31): any principal central moments; the body z axis is the axle; the road may slope."""
 
     m: float = 20.0
     r_0: float = 0.3
@@ -35,6 +35,14 @@ class Wheel:
     J_z: float = 1.8
     g: float = 9.81
     s: float = 0.0
+    slope: float = 0.0  # rad, of the road, which stays the plane Z = 0: the weight tilts
+    slope_direction: float = 0.0  # rad, where the road rises in X-Y
+
+    @property
+    def gravity(self) -> Vector:
+        """Acceleration of a free fall, fixed axes."""
+        along = -self.g * sin(self.slope)
+        return (along * cos(self.slope_direction), along * sin(self.slope_direction), -self.g * cos(self.slope))
 
 
 @dataclass(frozen=True)

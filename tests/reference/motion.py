@@ -95,10 +95,16 @@ def initial_state(wheel: Wheel, start: Start) -> State:
     return np.array([*q, *w, *place, *velocity, start.psi, start.phi, 0.0, 0.0])
 
 
+def with_weight(wheel: Wheel, F: Vector) -> Vector:
+    """F and the weight, fixed axes."""
+    x, y, z = wheel.gravity
+    return (F[0] + wheel.m * x, F[1] + wheel.m * y, F[2] + wheel.m * z)
+
+
 def respond(contact: Contact, inputs: Inputs, t: float, y: list[float]) -> tuple[Matrix, Response]:
     """Attitude and answer of the 9 x 9 system at (t, y)."""
     R = rotation(y[0], y[1], y[2], y[3])
-    F = to_body(R, inputs.force(t))
+    F = to_body(R, with_weight(contact.wheel, inputs.force(t)))
     M = carrier_moment(R[2], inputs.moment(t))
     return R, contact.respond(R[2], (y[4], y[5], y[6]), F, M)
 
@@ -148,7 +154,7 @@ def accelerations(
     R = rotation(*quaternion(*angles))
     n = R[2]
     w = body_rates(n, *rates)
-    answer = Contact(wheel).respond(n, w, to_body(R, F), carrier_moment(n, M))
+    answer = Contact(wheel).respond(n, w, to_body(R, with_weight(wheel, F)), carrier_moment(n, M))
     law = Law(wheel.s, hold=True) if sigma is None else Law(wheel.s, sigma, brake=brake)
     tau = axle_moment(law, answer, w[2])
     x = [b + tau * u for b, u in zip(answer.base, answer.unit, strict=True)]

@@ -5,7 +5,7 @@ body; no Euler angle appears. With k = (0, 0, 1) the axle and s = |n x k| the ar
 to O is p = r_0 e2 + r n, where e2 = (n - k (n.k)) / s points up the slope in the wheel plane.
 Unknowns: a (acceleration of O), alpha (angular acceleration), lambda (ground on wheel).
 
-    m a - lambda                     = F - m g n             Newton
+    m a - lambda                     = F                     Newton; F: the weight and the inputs
     J alpha + p x lambda             = M - w x J w + tau k   Euler about O; lambda acts at -p
     a + p x alpha                    = w x dp/dt             v_O = w x p, differentiated
 
@@ -136,16 +136,15 @@ class Contact:
         self._skew = np.array([i + u + 9 * (j + v) for i, j in BLOCKS for u, v in CROSS])
 
     def respond(self, n: Vector, w: Vector, F: Vector, M: Vector) -> Response:
-        """Solve for (a, alpha, lambda) under force F and moment M, both in body axes."""
+        """Solve for (a, alpha, lambda) under force F, weight included, and moment M, both in body axes."""
         wheel = self.wheel
         px, py, pz = arm(wheel, n)
         flat = self._flat
         flat[self._skew] = (pz, -py, -pz, px, py, -px) * 2
-        weight = wheel.m * wheel.g
         gx, gy, gz = gyroscopic(wheel, w)
         bx, by, bz = cross(w, arm_rate(wheel, n, w))
         loads = np.array(
-            (F[0] - weight * n[0], F[1] - weight * n[1], F[2] - weight * n[2])
+            F
             + (M[0] - gx, M[1] - gy, M[2] - gz, bx, by, bz)
             + (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
         )

@@ -81,7 +81,8 @@ def _row(switch: Switch, row: Row) -> dict[str, float]:
         **{"psi_dot": psi_dot, "theta_dot": theta_dot, "phi_dot": phi_dot},
         "omega_z": w[2],
         **dict(zip(("lambda_1", "lambda_2", "lambda_3"), reaction, strict=True)),
-        "E": (wheel.m * sum(c * c for c in v) + spin) / 2 + wheel.m * wheel.g * y[9],
+        "E": (wheel.m * sum(c * c for c in v) + spin) / 2
+        - wheel.m * sum(a * b for a, b in zip(wheel.gravity, y[7:10], strict=True)),
         "mu_required": hypot(reaction[0], reaction[1]) / (reaction[2] or nan),
         "friction_mode": mode.sigma if switch.watched(mode.ground) else np.sign(y[OMEGA_Z]),
         "tau": tau,

@@ -1,0 +1,158 @@
+"""A road that slopes: rolling down, standing and braked against closed forms, constant forces and the reference.
+
+The axes are the road's, Z across it; the weight is m g (-sin a cos b, -sin a sin b, -cos a) for a slope a that rises
+towards b. Upright wheels head along X (psi = 0), R = r_0 + r. SI units.
+"""
+
+from __future__ import annotations
+
+from math import atan, cos, pi, sin
+
+import numpy as np
+import pytest
+from reference import Start, Wheel, solve
+from support.closed_forms import rolling_inertia
+from support.driver import OK
+from support.motion import Library, Run, start_values
+from support.schedule import Schedule
+
+from .exact_motions import UPRIGHT
+
+R, WEIGHT = 0.35, 20 * 9.81
+REST = {**UPRIGHT, "phi_dot_start": 0.0}
+DOWNHILL = {"slope_direction": pi}  # the road falls towards X
+formulations = pytest.mark.parametrize("formulation", [2, 3], ids=["reduced", "multibody"])
+
+
+def rolled(library: Library, formulation: int, slope: float, s: float) -> float:
+    """X_O at 1.5 s over the way of a uniform acceleration by R m g (R sin a - s cos a) / (J_z + m R^2), less one."""
+    acceleration = R * WEIGHT * (R * sin(0.2) - s * cos(0.2)) / rolling_inertia(Wheel())
+    run = library.simulate([0.0, 1.5], 1e-10, slope=slope, s=s, formulation=formulation, **DOWNHILL, **REST)
+    return abs(run["X_O"][-1] / (acceleration * 1.5**2 / 2) - 1)
+
+
+@formulations
+@pytest.mark.parametrize("s", [0.0, 0.03], ids=["free", "friction"])
+def test_a_wheel_rolls_straight_down_with_uniform_acceleration(library: Library, formulation: int, s: float) -> None:
+    assert rolled(library, formulation, 0.2, s) < 1e-10
+    assert rolled(library, formulation, 0.2 * (1 + 1e-8), s) > 1e-9
+
+
+@pytest.mark.parametrize("s", [0.01, 0.03])
+def test_a_wheel_set_down_stays_exactly_while_the_rolling_friction_can_hold_it(library: Library, s: float) -> None:
+    steepest = atan(s / R)
+    stays = library.simulate([0.0, 5.0], slope=steepest * (1 - 1e-9), s=s, **REST)
+    assert (stays["omega_z"] == 0).all() and np.abs(stays["X_O"]).max() < 1e-15
+    rolls = library.simulate([0.0, 5.0], slope=steepest * (1 + 1e-9), s=s, **REST)
+    assert rolls["X_O"][-1] < 0 and rolls["friction_mode"][-1] == 1  # downhill, away from X
+
+
+def parked(library: Library, slope: float, seconds: float) -> float:
+    """X_O of an upright wheel with a brake of 20 N m; M_1 and M_2, every 50 ms, keep it upright and straight."""
+    with library.wheel() as wheel:
+        wheel.set(slope=slope, **REST)
+        wheel.initialise(1e-10)
+        wheel.set(M_brake=20.0)
+        for k in range(round(seconds / 0.05)):
+            tilt, tilt_rate, heading, turn = wheel.get("theta", "theta_dot", "psi", "psi_dot")
+            wheel.set(M_1=-120 * (tilt - pi / 2) - 20 * tilt_rate, M_2=-50 * heading - 20 * turn)
+            assert wheel.step_to((k + 1) * 0.05) == OK
+        return wheel.get("X_O")[0]
+
+
+def test_a_brake_holds_exactly_up_to_its_capacity_and_lets_go_beyond(library: Library) -> None:
+    steepest = np.arcsin(20.0 / (R * WEIGHT))
+    assert abs(parked(library, steepest * (1 - 1e-9), 600.0)) < 1e-12
+    assert parked(library, steepest * (1 + 1e-6), 5.0) < -1e-7
+
+
+def on_slope(library: Library, slope: float, direction: float, **values: float) -> Run:
+    return library.simulate(np.linspace(0, 5, 51), 1e-10, slope=slope, slope_direction=direction, **values)
+
+
+MOTION = {"theta_start": 1.2, "psi_start": 0.4, "phi_dot_start": -6.0, "psi_dot_start": 0.5}
+
+
+def test_a_slope_is_the_same_motion_as_a_constant_force(library: Library) -> None:
+    slope, direction = 0.3, 0.7
+
+    def gap(tilt: float) -> float:
+        along = -WEIGHT * sin(tilt)
+        force = {"F_X": along * cos(direction), "F_Y": along * sin(direction), "F_Z": WEIGHT * (1 - cos(tilt))}
+        times = np.linspace(0, 5, 51)
+        pushed = library.simulate(times, 1e-10, Schedule(((0.0, {k: (v,) for k, v in force.items()}),)), **MOTION)
+        run = on_slope(library, slope, direction, **MOTION)
+        return max(float(np.abs(run[c] - pushed[c]).max()) for c in ("X_O", "Y_O", "theta", "omega_z"))
+
+    assert gap(slope) < 1e-10
+    assert gap(slope * (1 + 1e-8)) > 1e-9
+
+
+def test_the_energy_contains_the_height_along_the_slope(library: Library) -> None:
+    run = on_slope(library, 0.3, 0.7, **MOTION)
+    fallen = WEIGHT * sin(0.3) * (run["X_O"] * cos(0.7) + run["Y_O"] * sin(0.7))
+    assert np.ptp(run["E"]) < 1e-8 * abs(run["E"]).max()
+    assert np.ptp(run["E"] - fallen) > 1
+
+
+def test_a_slope_turned_with_the_wheel_turns_the_motion(library: Library) -> None:
+    turn = 1.1
+    here = on_slope(library, 0.2, 0.0, **MOTION)
+    there = on_slope(library, 0.2, turn, **{**MOTION, "psi_start": 0.4 + turn, "X_O_start": 0.0, "Y_O_start": 0.0})
+    path = [(run["X_O"] - run["X_O"][0]) + 1j * (run["Y_O"] - run["Y_O"][0]) for run in (here, there)]
+    assert np.abs(path[0] * np.exp(1j * turn) - path[1]).max() < 1e-10
+    assert np.abs(path[0] - path[1]).max() > 1e-2
+
+
+def test_a_level_road_has_no_direction(library: Library) -> None:
+    level, turned = (on_slope(library, 0.0, direction, **MOTION) for direction in (0.0, 0.7))
+    assert all((level[c] == turned[c]).all() for c in level.columns)
+
+
+def random_scene(random: np.random.Generator) -> tuple[Wheel, Start]:
+    """Light to heavy friction or none, any inertia, any slope to 50 degrees, rates of a few rad/s."""
+    a, b, c = random.uniform(0.2, 0.9, 3)
+    wheel = Wheel(
+        r=random.uniform(0, 0.1), J_x=b + c, J_y=a + c, J_z=a + b,
+        s=random.choice([0, random.uniform(0, 0.05)]),
+        slope=random.uniform(0, 0.9), slope_direction=random.uniform(-pi, pi),
+    )  # fmt: skip
+    rates = dict(zip(("psi_dot", "theta_dot", "phi_dot"), random.normal(0, 2, 3), strict=True))
+    return wheel, Start(psi=random.uniform(-pi, pi), theta=random.uniform(0.8, 2.3), phi=random.uniform(-pi, pi), **rates)
+
+
+def reference_gap(library: Library, seed: int, formulation: int) -> tuple[float, float]:
+    """Largest difference from the reference after 0.5 s and 1 s; and from that of a slope that is 1e-6 steeper."""
+    wheel, start = random_scene(np.random.default_rng(seed))
+    names = ("X_O", "Y_O", "theta", "psi", "phi", "omega_z", "E")
+    times = [0.0, 0.5, 1.0]
+    run = library.simulate(times, 1e-11, keep_contact=True, formulation=formulation, **start_values(wheel, start))
+    gaps = []
+    for judged in (wheel, Wheel(**{**vars(wheel), "slope": wheel.slope * (1 + 1e-6)})):
+        want = solve(judged, start, list(run.t), rtol=1e-12)
+        gaps.append(max(float(np.abs(run[c] - want[c]).max() / (1 + np.abs(want[c]).max())) for c in names))
+    return gaps[0], gaps[1]
+
+
+@pytest.mark.parametrize("decade", range(10))
+def test_a_hundred_random_slopes_agree_with_the_independent_reference(library: Library, decade: int) -> None:
+    gaps = [reference_gap(library, 10 * decade + k, 2 + k % 2) for k in range(10)]
+    assert max(found for found, _ in gaps) < 1e-8
+    assert max(steeper for _, steeper in gaps) > 1e-7
+
+
+def test_multibody_jls_wheel_on_45_degrees_gains_the_same_spin_in_each_half_second(library: Library) -> None:
+    """Its test_wheels.jl asserts that the gain is constant, above 5 and below 9.81 rad/s; m 2, R 0.3, J 0.12 and 0.06."""
+    wheel = Wheel(m=2.0, r_0=0.3, r=0.0, J_x=0.12, J_y=0.12, J_z=0.06, g=9.80665, slope=pi / 4, slope_direction=pi)
+    run = library.simulate(np.linspace(0, 4, 9), 1e-10, **{**start_values(wheel, Start()), **REST})
+    gains = np.diff(run["omega_z"])
+    assert np.ptp(gains) < 1e-10
+    assert 5 < abs(gains[0]) < 9.81
+    assert abs(gains[0] + 0.5 * 9.80665 * sin(pi / 4) / 0.3 / (1 + 0.06 / (2 * 0.3**2))) < 1e-10
+
+
+def test_a_road_of_ninety_degrees_is_refused_with_a_sentence(library: Library) -> None:
+    with library.wheel(logging=True) as wheel:
+        wheel.set(slope=pi / 2)
+        wheel.initialise()
+        assert any("slope = 1.57079633 rad: it must be less than pi/2." in sentence for sentence in wheel.sentences)
