@@ -13,7 +13,8 @@ INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake")
 # Values off every symmetry, so that no dependency hides behind a zero.
 GENERAL = {
     **{"theta_start": 1.1, "psi_start": 0.7, "phi_start": 0.4, "psi_dot_start": 0.9, "theta_dot_start": -0.6},
-    **{"slope": 0.2, "slope_direction": 0.6, "phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "F_X": 1.0, "M_2": 0.5, "M_brake": 0.2},
+    **{"slope": 0.2, "slope_direction": 0.6},
+    **{"phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "F_X": 1.0, "M_2": 0.5, "M_brake": 0.2},
 }
 # The formulation changes rounding only, yet is listed; solver and contact have no part in a value.
 CHOICES = {"formulation"}
