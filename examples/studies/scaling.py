@@ -24,8 +24,8 @@ from study import Study
 REPEATS = 3
 ASKED = {
     "state at the end": {"measures": {"theta_end": "theta"}},
-    "extremes over steps of 0.1 s": {"measures": {"lowest": "min(theta)"}, "interval": 0.1},
-    "extremes over steps of 0.01 s": {"measures": {"lowest": "min(theta)"}, "interval": 0.01},
+    "extremes over steps of 0.1 s": {"measures": {"lowest": "lowest"}, "interval": 0.1},
+    "extremes over steps of 0.01 s": {"measures": {"lowest": "lowest"}, "interval": 0.01},
 }
 BLOCKS = (256, 4096)
 

@@ -18,15 +18,14 @@ from diagrams import style
 study = Study(
     grid={"phi_dot_start": [-3.0, -4.0, -6.0, -10.0], "s": np.linspace(0.0, 0.1, 401)},
     values={"theta_start": np.radians(89.0)},
-    measures={"to_60": f"first(theta < {np.radians(60.0)})", "to_120": f"first(theta > {np.radians(120.0)})"},
+    measures={"up_time": f"first(plane_angle < {np.radians(60.0)})"},
     stop_time=60.0,
 )
 
 
 def table(results: xr.Dataset) -> pd.DataFrame:
     """One row per wheel: spin [rad/s], s [m], time until it leans by 30 degrees [s], empty if it never does."""
-    down = np.fmin(results["to_60"], results["to_120"]).rename("up_time")
-    return down.to_dataframe().reset_index()
+    return results["up_time"].to_dataframe().reset_index()
 
 
 def time_to_limit(spin: float, s: np.ndarray) -> np.ndarray:

@@ -20,7 +20,7 @@ USAGE = """examples:
   ./scripts/study fates                     one of the examples: {names}
   ./scripts/study my_study.py               a file that says study = Study(...); docs/studies.md shows how
   ./scripts/study --vary theta_start=60deg:90deg:31 --vary s=0,0.01,0.03 --set phi_dot_start=-3 \\
-      --measure 'lowest=min(theta)' --out results/studies/lean.zarr --csv
+      --measure lowest=lowest --out results/studies/lean.zarr --csv
   ./scripts/study --list starts.csv         one wheel per row; the first row has the names
 """
 
@@ -66,7 +66,7 @@ def study_of_options(arguments: argparse.Namespace) -> Study:
     """The study that the options describe."""
     options = {"stop_time": arguments.stop_time, "interval": arguments.interval, "tolerance": arguments.tolerance}
     if arguments.measure:
-        options["measures"] = named(arguments.measure, str, "--measure", "'NAME=min(theta)'")
+        options["measures"] = named(arguments.measure, str, "--measure", "'NAME=max(theta)'")
     return Study(
         grid=named(arguments.vary, numbers, "--vary", "NAME=1,2,3 or NAME=first:last:count"),
         list=read_list(arguments.list) if arguments.list else {},
@@ -112,7 +112,7 @@ def arguments_of(argv: list[str] | None) -> argparse.Namespace:
     )
     add("--list", type=Path, metavar="CSV", help="one wheel per row instead of a grid")
     add("--set", action="append", default=[], metavar="NAME=VALUE", help="a value for all wheels")
-    add("--measure", action="append", default=[], metavar="NAME=MEASURE", help="for instance 'lowest=min(theta)'")
+    add("--measure", action="append", default=[], metavar="NAME=MEASURE", help="for instance 'highest=max(theta)'")
     add("--history", nargs="+", default=[], metavar="NAME", help="variables to keep at every communication point")
     add("--stop-time", type=float, default=10.0, help="s (10)")
     add("--interval", type=float, default=0.01, help="s between communication points (0.01)")

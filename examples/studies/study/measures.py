@@ -1,7 +1,8 @@
 """What is told of a run in one number: a value at its end, an extreme, a mean, or the time of a first passage.
 
 A measure is written as text, so that it can be kept with the results and compared when a study is started again:
-`theta` (at the end), `min(theta)`, `max(mu_required)`, `mean(E)`, `first(theta < 0.5)`, `first(theta > 1.6)`.
+`theta` (at the end), `lowest`, `min(Z_O)`, `max(mu_required)`, `mean(E)`, `first(theta > 1.6)`. Besides the FMU's
+variables there is `plane_angle`, the angle of the wheel's plane to the ground on either side; `lowest` is its least.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+PLANE_ANGLE = "plane_angle"
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _FORMS = re.compile(
     rf"\s*(?:(?P<last>\w+)|(?P<kind>min|max|mean)\(\s*(?P<of>\w+)\s*\)"
@@ -25,9 +27,14 @@ class Measure:
     """One number of a run: `kind` is last, min, max, mean, < or >; SI units, `limit` in the variable's unit."""
 
     kind: str
-    variable: str
+    quantity: str
     limit: float = 0.0
     text: str = ""
+
+    @property
+    def variable(self) -> str:
+        """The FMU's variable that has to be read."""
+        return "theta" if self.quantity == PLANE_ANGLE else self.quantity
 
     @property
     def is_time(self) -> bool:
@@ -40,7 +47,9 @@ class Measure:
         return self.kind != "last"
 
     def of(self, t: Array, x: Array) -> float:
-        """The number for the samples x at the times t, the last of which is the end of the run."""
+        """The number for samples x of the variable at the times t, the last of which is the end of the run."""
+        if self.quantity == PLANE_ANGLE:
+            x = plane_angle(x)
         if self.is_time:
             return first_passage(t, x, self.limit, below=self.kind == "<")
         if self.kind == "mean":
@@ -50,10 +59,10 @@ class Measure:
 
 def parse_measure(text: str) -> Measure:
     """The measure that the text describes; ValueError if it describes none."""
-    found = _FORMS.fullmatch(text)
+    found = _FORMS.fullmatch(f"min({PLANE_ANGLE})" if text.strip() == "lowest" else text)
     if not found:
         raise ValueError(
-            f"'{text}' is no measure; write a variable's name, min(name), max(name), mean(name), "
+            f"'{text}' is no measure; write lowest, a variable's name, min(name), max(name), mean(name), "
             "first(name < number) or first(name > number)."
         )
     if found["last"]:
@@ -61,6 +70,11 @@ def parse_measure(text: str) -> Measure:
     if found["kind"]:
         return Measure(found["kind"], found["of"], text=text)
     return Measure(found["side"], found["watched"], float(found["limit"]), text)
+
+
+def plane_angle(theta: Array) -> Array:
+    """Angle [rad] of the wheel's plane to the ground, 0 to pi/2: 90 deg - |theta - 90 deg|."""
+    return np.pi / 2 - np.abs(theta - np.pi / 2)
 
 
 def first_passage(t: Array, x: Array, limit: float, below: bool) -> float:

@@ -148,7 +148,7 @@ class Runner:
         outcome.counters = self.instance.read(self.instance.counters)
         for name, measure in job.measures.items():
             if not measure.needs_samples:
-                outcome.measures[name] = self.instance.read([measure.variable])[0]
+                outcome.measures[name] = measure.of(np.array([stop]), self.instance.read([measure.variable]))
         return outcome
 
     def close(self) -> None:

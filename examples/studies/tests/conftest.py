@@ -1,7 +1,8 @@
-"""The package of ./scripts/study on the import path, and small studies to run."""
+"""The package of ./scripts/study on the import path, the built FMU, and small studies to run."""
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,11 +11,16 @@ import numpy as np
 import pytest
 from fmpy import extract
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "examples" / "studies"))
+STUDIES = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(STUDIES))
 
 from study import Study  # noqa: E402
 from study.runs import Runner  # noqa: E402
+
+
+@pytest.fixture(scope="session")
+def fmu_path() -> Path:
+    return Path(os.environ.get("WHEEL_BUILD", STUDIES.parents[1] / "build" / "release")) / "wheel.fmu"
 
 
 @pytest.fixture(scope="session")

@@ -145,3 +145,16 @@ def test_a_sample_is_drawn_by_its_seed_and_within_its_bounds() -> None:
     assert study.fingerprint("") != other.fingerprint("")
     theta = np.sort(study.axes["theta_start"])
     assert (np.floor((theta - 1.0) / 0.01) == np.arange(50)).all()  # a Latin hypercube: one wheel in each fiftieth
+
+
+def test_a_wheel_that_leans_to_the_other_side_is_as_low_as_its_mirror_image(runner: Runner) -> None:
+    measures = {"low": "lowest", "down": "first(plane_angle < 0.9)", "end": "plane_angle"}
+    lean = Study(list={"theta_start": [1.3, np.pi - 1.3], "phi_dot_start": [-2.0, -2.0]}, measures=measures)
+    result = run(runner, replace(lean, history=["theta"]))
+    for k, theta in enumerate(result["theta"]):
+        angle = np.minimum(theta, np.pi - theta)
+        assert result["low"][k] == pytest.approx(angle.min(), abs=1e-15)
+        assert result["end"][k] == pytest.approx(angle[-1], abs=1e-15)
+    assert result["low"][0] == pytest.approx(result["low"][1], abs=1e-6)
+    assert result["down"][0] == pytest.approx(result["down"][1], abs=1e-6)
+    assert abs(result["theta"][:, 0] - np.array([1.3, np.pi - 1.3])).max() < 1e-12

@@ -8,7 +8,7 @@ import nbformat
 import pytest
 from nbclient import NotebookClient
 
-NOTEBOOK = Path(__file__).resolve().parents[2] / "examples" / "wheel.ipynb"
+NOTEBOOK = Path(__file__).resolve().parents[2] / "wheel.ipynb"
 
 
 @pytest.fixture(scope="module")
