@@ -144,9 +144,7 @@ class Contact:
         gx, gy, gz = gyroscopic(wheel, w)
         bx, by, bz = cross(w, arm_rate(wheel, n, w))
         loads = np.array(
-            F
-            + (M[0] - gx, M[1] - gy, M[2] - gz, bx, by, bz)
-            + (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+            F + (M[0] - gx, M[1] - gy, M[2] - gz, bx, by, bz) + (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
         )
         system = flat.reshape((9, 9), order="F")
         x = dgesv(system, loads.reshape((9, 2), order="F"), 0, 1)[2]
