@@ -96,6 +96,7 @@ def load_library() -> ctypes.CDLL:
 
 LIBRARY = load_library()
 REDUCED = Formulation.in_dll(LIBRARY, "wheel_reduced")
+EULER = Formulation.in_dll(LIBRARY, "wheel_euler")
 MULTIBODY = Formulation.in_dll(LIBRARY, "wheel_multibody")
 LIBRARY.wheel_energy.restype = c_double
 LIBRARY.wheel_required_friction.restype = c_double

@@ -2,7 +2,8 @@
  *
  * A torus-shaped wheel rolls without slip on the plane Z = 0, with or without rolling friction. Two formulations
  * compute the same motion for any principal moments of inertia:
- *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states
+ *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states; as `euler` with
+ *              the Euler angles' rates in the place of the angular velocity
  *   multibody  the paper's system (24); unknowns q and q_dot, constraints held at acceleration level; 12 states
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
  *
@@ -127,6 +128,10 @@ typedef struct WheelFormulation {
 /* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Where J_x = J_y, phi enters nothing, and a
  * simpler elimination is taken. X_O and Y_O never enter, psi does only where F_X or F_Y is not zero. */
 extern const WheelFormulation wheel_reduced;
+
+/* y = X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z: the reduced equations in the paper's own variables, the
+ * state of model exchange. */
+extern const WheelFormulation wheel_euler;
 
 /* y = q, q_dot with q = X_O, Y_O, Z_O, psi, theta, phi, (25), but with omega_z, (21), in the place of phi_dot: a wheel
  * whose spin is held keeps it at exactly zero. The constraints are stabilised: what rounding and step errors leave of

@@ -103,20 +103,37 @@ def test_the_pose_is_the_kinematics_without_the_horizontal_velocity() -> None:
         assert (pose["omega_z"] != whole["omega_z"]).all()
 
 
+def test_the_euler_form_reads_its_state_back_to_the_bit_and_moves_as_the_reduced_form() -> None:
+    scenes, motions = draw(2)
+    y, reduced = (eq.start_each(form, scenes, motions) for form in (eq.EULER, eq.REDUCED))
+    k = eq.kinematics_each(eq.EULER, scenes, y)
+    names = ("X_O", "Y_O", "psi", "theta", "phi", "theta_dot", "psi_dot", "omega_z")
+    assert (eq.columns(k, *names) == y).all()
+    of_reduced = eq.kinematics_each(eq.REDUCED, scenes, reduced)
+    assert not (eq.columns(of_reduced, *names) == y).all()  # its psi_dot is computed anew
+    assert relative(eq.columns(k, *k.dtype.names), eq.columns(of_reduced, *k.dtype.names)) < 1e-13
+    assert distance(*(eq.dynamics_each(f, scenes, s) for f, s in ((eq.EULER, y), (eq.REDUCED, reduced))), scenes) < BOUND
+    load_dots = np.ascontiguousarray(scenes["load"])
+    for each in (eq.rates_each, eq.response_each):
+        a, b = (each(f, scenes, load_dots, s) for f, s in ((eq.EULER, y), (eq.REDUCED, reduced)))
+        assert relative(a, b) < 1e-6  # differences of fourth order, at states that differ by rounding
+
+
 @each_kind
 def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(kind: int) -> None:
     scenes, motions = draw(3, kind)
-    for formulation, rates in ((eq.REDUCED, reduced_rates), (eq.MULTIBODY, multibody_rates)):
+    forms = ((eq.REDUCED, reduced_rates), (eq.EULER, euler_rates), (eq.MULTIBODY, multibody_rates))
+    for formulation, rates in forms:
         y = eq.start_each(formulation, scenes, motions)
         y_dot, normal = eq.derivative_each(formulation, scenes, y)
         k = eq.kinematics_each(formulation, scenes, y)
         dynamics = eq.dynamics_each(formulation, scenes, y)
         stated = rates(k, dynamics)
-        exact = 8 if formulation is eq.REDUCED else 6  # multibody: the height drawn by rounding, else copies
+        exact = 6 if formulation is eq.MULTIBODY else 8  # multibody: the height drawn by rounding, else copies
         assert relative(y_dot[:, :exact], stated[:, :exact]) < 1e-13  # 9.2e-16
         assert relative(y_dot, stated * np.where(np.arange(y.shape[1]) == 0, 1.001, 1)) > 1e-5
         force = dynamics["lambda_"]
-        if formulation is eq.REDUCED:
+        if formulation is not eq.MULTIBODY:
             assert (normal == force[:, 2]).all()
         # multibody: two solutions of (24), stabilised and pure, each with rounding of its own
         assert relative(y_dot, stated) < 1e-12  # 1.4e-14, held 8.0e-14
@@ -131,6 +148,11 @@ def reduced_rates(k: np.ndarray, d: np.ndarray) -> np.ndarray:
     return np.column_stack([*first, eq.columns(k, "psi_dot", "phi_dot", "X_O_dot", "Y_O_dot")])
 
 
+def euler_rates(k: np.ndarray, d: np.ndarray) -> np.ndarray:
+    rates = ("X_O_dot", "Y_O_dot", "psi_dot", "theta_dot", "phi_dot")
+    return np.hstack([eq.columns(k, *rates), eq.columns(d, "theta_ddot", "psi_ddot", "omega_z_dot")])
+
+
 def multibody_rates(k: np.ndarray, d: np.ndarray) -> np.ndarray:
     rates = ("X_O_dot", "Y_O_dot", "Z_O_dot", "psi_dot", "theta_dot", "phi_dot")
     return np.hstack([eq.columns(k, *rates), eq.columns(d, *ACCELERATIONS[:5], "omega_z_dot")])
@@ -138,7 +160,7 @@ def multibody_rates(k: np.ndarray, d: np.ndarray) -> np.ndarray:
 
 def test_spin_and_tilt_are_omega_z_and_theta() -> None:
     scenes, motions = draw(4)
-    for formulation in (eq.REDUCED, eq.MULTIBODY):
+    for formulation in (eq.REDUCED, eq.EULER, eq.MULTIBODY):
         y = eq.start_each(formulation, scenes, motions)
         k = eq.kinematics_each(formulation, scenes, y)
         assert (y[:, formulation.spin_index] == k["omega_z"]).all()

@@ -1,0 +1,99 @@
+/* The formulation of model exchange: the reduced equations in the paper's own variables, Euler angles and their rates.
+ * State y = X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z; fixed axes, SI. Nothing of it is computed anew when
+ * it is read, so a state that was set is read back to the bit. Domain: 0 < theta < pi, see wheel_equations.h. */
+#include <math.h>
+
+#include "wheel_equations.h"
+
+enum { X_O, Y_O, PSI, THETA, PHI, THETA_DOT, PSI_DOT, SPIN };
+
+/* The same position and velocity as a state of the reduced form. */
+static void reduce(const double* y, double* reduced) {
+  const double same[] = {y[THETA], y[THETA_DOT], y[PSI_DOT] * sin(y[THETA]), y[SPIN], y[PSI], y[PHI], y[X_O], y[Y_O]};
+  for (int i = 0; i < WHEEL_REDUCED_STATES; ++i) reduced[i] = same[i];
+}
+
+static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
+  (void)wheel;
+  y[X_O] = motion->X_O;
+  y[Y_O] = motion->Y_O;
+  y[PSI] = motion->psi;
+  y[THETA] = motion->theta;
+  y[PHI] = motion->phi;
+  y[THETA_DOT] = motion->theta_dot;
+  y[PSI_DOT] = motion->psi_dot;
+  y[SPIN] = motion->phi_dot + motion->psi_dot * cos(motion->theta);
+}
+
+/* psi_dot = omega_2 / sin(theta), differentiated. */
+static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+  double reduced[WHEEL_REDUCED_STATES], rates[WHEEL_REDUCED_STATES];
+  reduce(y, reduced);
+  double N = wheel_reduced.derivative(scene, reduced, rates);
+  y_dot[X_O] = rates[6];
+  y_dot[Y_O] = rates[7];
+  y_dot[PSI] = y[PSI_DOT];
+  y_dot[THETA] = y[THETA_DOT];
+  y_dot[PHI] = y[SPIN] - y[PSI_DOT] * cos(y[THETA]);
+  y_dot[THETA_DOT] = rates[1];
+  y_dot[PSI_DOT] = (rates[2] - y[THETA_DOT] * y[PSI_DOT] * cos(y[THETA])) / sin(y[THETA]);
+  y_dot[SPIN] = rates[3];
+  return N;
+}
+
+static void set_rates(const double* y, WheelKinematics* out) {
+  out->psi_dot = y[PSI_DOT];
+  out->phi_dot = y[SPIN] - y[PSI_DOT] * cos(y[THETA]);
+}
+
+static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
+  double reduced[WHEEL_REDUCED_STATES];
+  reduce(y, reduced);
+  wheel_reduced.kinematics(wheel, reduced, out);
+  set_rates(y, out);
+}
+
+static void pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
+  double reduced[WHEEL_REDUCED_STATES];
+  reduce(y, reduced);
+  wheel_reduced.pose(wheel, reduced, out);
+  set_rates(y, out);
+}
+
+static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
+  double reduced[WHEEL_REDUCED_STATES];
+  reduce(y, reduced);
+  wheel_reduced.dynamics(scene, reduced, out);
+}
+
+static void rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
+  double reduced[WHEEL_REDUCED_STATES];
+  reduce(y, reduced);
+  wheel_reduced.rates(scene, load_dot, reduced, out);
+}
+
+static void response(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
+  double reduced[WHEEL_REDUCED_STATES];
+  reduce(y, reduced);
+  wheel_reduced.response(scene, load_dot, reduced, out);
+}
+
+static void stop_spin(const WheelParameters* wheel, double* y) {
+  (void)wheel;
+  y[SPIN] = 0;
+}
+
+const WheelFormulation wheel_euler = {
+    .name = "euler",
+    .states = WHEEL_REDUCED_STATES,
+    .start = start,
+    .derivative = derivative,
+    .spin_index = SPIN,
+    .tilt_index = THETA,
+    .kinematics = kinematics,
+    .pose = pose,
+    .dynamics = dynamics,
+    .rates = rates,
+    .response = response,
+    .stop_spin = stop_spin,
+};
