@@ -23,7 +23,8 @@ USAGE = """./scripts/run [name=value ...]   build, simulate without and with rol
   ./scripts/run s=0.01 theta_start=60deg    other values; the scene without friction takes them too, but for s
   ./scripts/run stop_time=20                longer than 10 s
 
-Results go into results/: free.csv, friction.csv, and the diagrams. Angles and their rates may end in deg.
+Results go into results/: wheel.html, the motion to play and to turn; the diagrams; free.csv and friction.csv.
+Angles and their rates may end in deg.
 The values that can be given (SI; docs/variables.md):
 """
 
@@ -38,14 +39,16 @@ class Variable(NamedTuple):
     type: str
     unit: str
     start: str
+    low: str
+    high: str
     description: str
 
 
 def variables() -> Iterator[Variable]:
     for row in ElementTree.parse(DESCRIPTION).getroot().iter("ScalarVariable"):
         (typed,) = row
-        texts = (typed.get("unit", ""), typed.get("start", ""), row.get("description", ""))
-        yield Variable(row.get("name", ""), row.get("causality", ""), typed.tag, *texts)
+        texts = [typed.get(attribute, "") for attribute in ("unit", "start", "min", "max")]
+        yield Variable(row.get("name", ""), row.get("causality", ""), typed.tag, *texts, row.get("description", ""))
 
 
 def parameters() -> dict[str, Variable]:
@@ -57,27 +60,46 @@ def usage(known: dict[str, Variable]) -> str:
     return "\n".join([USAGE, *rows])
 
 
-def value_of(name: str, text: str) -> str:
-    """The number in SI as text."""
+def number_of(name: str, text: str) -> tuple[float, str]:
+    """The number in SI, and as text for FMPy."""
     match = re.fullmatch(r"(.+?)\s*(deg)?", text)
     try:
         number = float(match[1]) * (DEGREE if match[2] else 1)
-    except (TypeError, ValueError):
-        if text in ("true", "false"):
-            return text
+        whole = number == int(number) and not match[2]
+    except (TypeError, ValueError, OverflowError):
         raise Fault(f'{name} = "{text}" is not a number.') from None
-    return repr(int(number)) if number == int(number) and not match[2] else repr(number)
+    return number, repr(int(number)) if whole else repr(number)
+
+
+def value_of(variable: Variable, text: str) -> str:
+    """The value in SI as text; Fault outside of the limits that the description sets."""
+    if variable.type == "Boolean":
+        if text not in ("true", "false"):
+            raise Fault(f'{variable.name} = "{text}" must be true or false.')
+        return text
+    number, short = number_of(variable.name, text)
+    above = variable.description.endswith("above 0") or ", above 0;" in variable.description
+    low, high = float(variable.low or "-inf"), float(variable.high or "inf")
+    if not (low < number if above else low <= number) or not number <= high or not math.isfinite(number):
+        limits = [f"{'above' if above else 'at least'} {low:g}"] * math.isfinite(low) + [
+            f"at most {high:g}"
+        ] * math.isfinite(high)
+        raise Fault(f"{variable.name} = {number:g} must be {' and '.join(limits) or 'finite'}.")
+    if variable.type == "Integer" and number != int(number):
+        raise Fault(f"{variable.name} = {number:g} must be a whole number.")
+    return short
 
 
 def pairs(arguments: list[str], known: dict[str, Variable]) -> dict[str, str]:
+    stop = Variable("stop_time", "parameter", "Real", "s", "10", "0", "", "End of the runs, above 0")
     values = {}
     for argument in arguments:
         name, equals, text = argument.partition("=")
         if not equals:
             raise Fault(f'"{argument}" is not of the form name=value; ./scripts/run --help lists the names.')
-        if name not in known and name != "stop_time":
+        if name not in known and name != stop.name:
             raise Fault(f'wheel.fmu has no parameter "{name}"; ./scripts/run --help lists the names.')
-        values[name] = value_of(name, text)
+        values[name] = value_of(known.get(name, stop), text)
     if float(values.get("s", 1)) <= 0:
         raise Fault("s must be above 0 here: the scene without friction is drawn beside it anyway.")
     return values

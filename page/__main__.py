@@ -6,16 +6,17 @@ import argparse
 import sys
 from pathlib import Path
 
-from page import document
+from page import document, options
 from page.bodies import Body, ViewError, read_bodies
 from page.document import Choice
 
 
 def main() -> int:
     """Write a page; a fault of the input is one sentence on stderr and exit status 1."""
-    arguments = parse()
+    kind, *words = sys.argv[1:]
+    arguments = live_arguments(words) if kind == "live" else options.arguments(words)
     try:
-        size = live(arguments) if arguments.kind == "live" else recorded(arguments)
+        size = live(arguments) if kind == "live" else recorded(arguments)
     except ViewError as fault:
         print(f"view: {fault}", file=sys.stderr)
         return 1
@@ -23,39 +24,21 @@ def main() -> int:
     return 0
 
 
-def parse() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="scripts/view", description=__doc__)
-    kinds = parser.add_subparsers(dest="kind", required=True)
-    shown = kinds.add_parser(
-        "recorded", prog="scripts/view", description="An offline 3-D page of results (docs/page.md)."
-    )
-    shown.add_argument(
-        "files", nargs="+", type=Path, metavar="FILE.csv", help="as `fmpy simulate --output-file` writes it"
-    )
-    shown.add_argument("--output", "-o", type=Path, help="the page (default: the first file's name with .html)")
-    shown.add_argument("--title", default="The wheel in motion")
-    shown.add_argument("--labels", nargs="+", default=[], help="what the bodies are called on the page, in their order")
-    shown.add_argument("--r_0", type=float, help="ring radius in m (default: from Z_O and theta)")
-    shown.add_argument("--r", type=float, help="tube radius in m (default: from Z_O and theta)")
-    shown.add_argument("--box", nargs=3, type=float, metavar=("L", "W", "H"), help="size of a car's body in m")
-    page = kinds.add_parser("live", prog="scripts/page", description="The page that holds the wheel itself.")
-    page.add_argument("--wasm", type=Path, required=True)
-    page.add_argument("--description", type=Path, required=True)
-    page.add_argument("--output", "-o", type=Path, required=True)
-    arguments = parser.parse_args()
-    if arguments.output is None:
-        arguments.output = arguments.files[0].with_suffix(".html")
-    return arguments
+def live_arguments(words: list[str]) -> argparse.Namespace:
+    """What ./scripts/page gives."""
+    parser = argparse.ArgumentParser(prog="scripts/page", description="The page that holds the wheel itself.")
+    parser.add_argument("--wasm", type=Path, required=True)
+    parser.add_argument("--description", type=Path, required=True)
+    parser.add_argument("--output", "-o", type=Path, required=True)
+    return parser.parse_args(words)
 
 
 def recorded(arguments: argparse.Namespace) -> int:
-    if (arguments.r_0 is None) != (arguments.r is None):
-        raise ViewError("--r_0 and --r are given together or not at all.")
     shape = None if arguments.r_0 is None else (arguments.r_0, arguments.r)
-    if shape and not (shape[0] > 0 and shape[1] >= 0):
-        raise ViewError(f"--r_0 {shape[0]:g} --r {shape[1]:g}: r_0 must be positive and r not negative.")
     files = [read_bodies(path, shape, tuple(arguments.box) if arguments.box else None) for path in arguments.files]
     bodies = unlike([body for file in files for body in file])
+    if len(arguments.labels) > len(bodies):
+        raise ViewError(f"--labels: there are {len(arguments.labels)} labels for {len(bodies)} bodies.")
     bodies, every = document.thinned(bodies)
     if every > 1:
         print(f"Every {every}th row is kept, so that the page stays below {document.PAGE_LIMIT / 1e6:g} MB.")

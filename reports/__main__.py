@@ -6,8 +6,8 @@ from them.
 
 from __future__ import annotations
 
-import argparse
 import sys
+from argparse import Namespace
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -18,25 +18,11 @@ from tqdm import tqdm
 
 from publishing import figures_in_pages
 
+from .options import NAMES, arguments
 from .page import Report, read_tables, render, save
 
-NAMES = ("accuracy", "stability", "speed", "inputs", "partners", "vehicles", "physics")
 
-
-def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="scripts/report", description=__doc__)
-    parser.add_argument("names", nargs="+", metavar="NAME", choices=(*NAMES, "all"), help=", ".join((*NAMES, "all")))
-    target = parser.add_mutually_exclusive_group()
-    target.add_argument("--publish", action="store_true", help="write docs/results and the figures in the pages")
-    target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick: to try it out")
-    parser.add_argument("--render", action="store_true", help="measure nothing: publish what the data in docs/ say")
-    parser.add_argument("--check", action="store_true", help="change nothing: are the pages those of the data?")
-    parser.add_argument("--tools", metavar="PYTHON", help="vehicles: an interpreter with libcosimpy and ecospy")
-    parser.add_argument("--against", default="", metavar="REVISION", help="speed: also measure this older version")
-    return parser.parse_args()
-
-
-def measure(names: list[str], folder: Path, options: argparse.Namespace) -> None:
+def measure(names: list[str], folder: Path, options: Namespace) -> None:
     """Each part of each report says how many seconds it takes, so that the bar can tell the time left."""
     parts = [(name, part, seconds) for name in names for part, seconds in module(name).PARTS.items()]
     library = Library.unpacked(build_folder() / "wheel.fmu")

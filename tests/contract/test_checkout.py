@@ -34,7 +34,7 @@ def run(*command: str | Path, path: str | None = None, **variables: str) -> subp
 def checkout(tmp_path: Path) -> Path:
     """The scripts that build and set up, alone in a folder."""
     place = tmp_path / "checkout"
-    for name in ("scripts/build", "scripts/setup", "scripts/help", "cmake/sundials.cmake"):
+    for name in ("scripts/build", "scripts/setup", "scripts/help", "cmake/sundials.cmake", "CMakePresets.json"):
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, place / name)
     (place / "requirements.txt").write_text("")

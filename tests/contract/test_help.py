@@ -1,7 +1,8 @@
-"""Every command under scripts/ explains itself with --help, at once, in a checkout where nothing is installed."""
+"""Every command under scripts/ answers --help and a typing error at once, in a checkout where nothing is installed."""
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -10,30 +11,82 @@ import pytest
 from support.paths import ROOT
 
 SHELL = "#!/usr/bin/env bash\n"
-COMMANDS = sorted(p.name for p in (ROOT / "scripts").iterdir() if p.is_file() and p.read_text().startswith(SHELL))
+COMMANDS = sorted(p.name for p in (ROOT / "scripts").iterdir())
+READERS = ("diagrams/start_values.py", "page/options.py", "reports/options.py")  # of arguments, before all else
+WRONG = {
+    "build": ("relase",),
+    "documents": ("--chek",),
+    "fuzz": ("a minute",),
+    "lint": ("--fixx",),
+    "page": ("--output",),
+    "report": ("sped",),
+    "run": ("m=-5",),
+    "setup": ("tests",),
+    "view": ("there_is_no_such_file.csv",),
+}
 
 
 @pytest.fixture
 def bare(tmp_path: Path) -> Path:
-    """The commands, what `run` lists its values with, and the description; nothing else."""
-    for folder in ("scripts", "diagrams"):
-        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(ROOT / "modelDescription.xml", tmp_path)
+    """The commands, what reads their arguments, and two lists of names; nothing else."""
+    shutil.copytree(ROOT / "scripts", tmp_path / "scripts", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in (*READERS, "modelDescription.xml", "CMakePresets.json"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
     return tmp_path
 
 
 def files(folder: Path) -> set[Path]:
-    return {p for p in folder.rglob("*") if "__pycache__" not in p.parts}
+    return {p for p in folder.rglob("*") if p.is_file()} - {folder / "build"}
+
+
+def call(folder: Path, name: str, *words: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    environment = os.environ | variables
+    command = [folder / "scripts" / name, *words]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=20)
+
+
+def test_the_folder_holds_commands_alone() -> None:
+    for name in COMMANDS:
+        path = ROOT / "scripts" / name
+        assert path.is_file() and os.access(path, os.X_OK), f"scripts/{name} cannot be typed"
+        assert path.read_text().startswith(SHELL)
 
 
 @pytest.mark.parametrize("option", ["--help", "-h"])
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_tells_what_a_command_does_and_does_nothing(bare: Path, name: str, option: str) -> None:
     before = files(bare)
-    done = subprocess.run([bare / "scripts" / name, option], cwd=bare, capture_output=True, text=True, timeout=20)
+    done = call(bare, name, option)
     assert done.returncode == 0 and not done.stderr
     assert len(done.stdout.split()) >= 10
     assert files(bare) == before
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_typing_error_is_told_before_anything_is_installed(bare: Path, name: str) -> None:
+    before = files(bare)
+    done = call(bare, name, *WRONG[name])
+    assert done.returncode in (1, 2) and not done.stdout
+    said = done.stderr.strip().splitlines()[-1]
+    assert WRONG[name][0].split("=")[-1] in said or "one file" in said
+    assert files(bare) == before
+
+
+def test_help_of_run_names_what_it_makes_where_there_is_no_python(bare: Path) -> None:
+    tools = bare / "tools"
+    tools.mkdir()
+    for tool in ("bash", "basename", "dirname", "sed", "env"):
+        (tools / tool).symlink_to(shutil.which(tool))
+    done = call(bare, "run", "--help", PATH=str(tools))
+    assert done.returncode == 0 and "results/" in done.stdout and "wheel.html" in done.stdout
+    assert "theta_start=60deg" in done.stdout and "docs/variables.md" in done.stdout
+
+
+def test_help_lists_every_command(bare: Path) -> None:
+    listed = call(bare, "help").stdout.splitlines()
+    assert [line.split()[0] for line in listed] == COMMANDS
+    assert all(len(line.split()) > 3 for line in listed)
 
 
 def test_the_commands_are_those_that_newcomers_are_told_of() -> None:
