@@ -88,7 +88,9 @@ void Cvode::save(support::Writer& writer) { visit_history(writer); }
 bool Cvode::restore(const Problem& problem, Method method, Step* step, support::Reader& reader) {
   const Step saved = *step;
   int states = problem.states;
-  const Problem still = {states, &states, rest, equal_weights, nullptr, nullptr, nullptr, 0, problem.longest_step};
+  Problem still = {};
+  still.states = states, still.owner = &states, still.derivative = rest, still.weights = equal_weights;
+  still.longest_step = problem.longest_step;
   Counters uncounted = {};
   const int anew = starts_anew_;
   if (!start(still, method, saved.end, saved.y_end, step)) return false;

@@ -3,30 +3,41 @@
 
 namespace solver {
 
-inline constexpr int max_states = 12, max_bends = 16, max_degree = 12;
+inline constexpr int max_states = 12, max_bends = 16, max_degree = 12, max_watched = 4;
 
 enum class Method : int { adams, bdf, runge_kutta };
 
-// `owner` is handed back to each function. All functions are pure: the solver may ask at any (t, y) in any order.
+// A function whose first fall below zero is an event: the solver finds its instant and stops there.
+struct Watched {
+  int event;  // what the event is called
+  double (*value)(void* owner, double t, const double* y);
+  // Whether the margins that `derivative` returns count this function in. It is then looked at only in steps in which
+  // a margin came near zero, else at each step. It must be scaled as they are.
+  bool by_margin;
+};
+
+// `owner` is handed back to each function. The solver may ask at any (t, y) in any order, and the answer depends on
+// nothing else.
 struct Problem {
   int states;  // 1 to max_states
   void* owner;
-  // y_dot = f(t, y). Returns the margin, the value of `boundary` at (t, y); NaN where the rates are not finite: the
-  // solver then tries a smaller step.
+  // y_dot = f(t, y). Returns the margin, the least value of the functions watched by it at (t, y), infinite if there is
+  // none; NaN where the rates are not finite: the solver then tries a smaller step.
   double (*derivative)(void* owner, double t, const double* y, double* y_dot);
   // weights[i] = 1 / (largest error of y_i), > 0, for a step whose error may be `share` times the tolerance of the
   // solution. A step is accepted where the root mean square of weight times local error is below one.
   void (*weights)(void* owner, double share, const double* y, double* weights);
-  // Positive until the event; watched while armed.
-  double (*event)(void* owner, double t, const double* y);
-  // Positive inside the model.
-  double (*boundary)(void* owner, double t, const double* y);
+  // Of two events at the same instant the later one in the list counts.
+  Watched watched[max_watched];
+  int watched_count;
   // Instants strictly inside (t_lo, t_hi), ascending, at which a prescribed input has an extreme: between two of them
-  // event and boundary have a simple shape. Returns their number, at most max_bends; null where inputs are constant.
+  // the watched functions have a simple shape. Returns their number, at most max_bends; null where inputs are constant.
   int (*bends)(void* owner, double t_lo, double t_hi, double* instants);
-  double near;          // a step is searched for the boundary where a margin below this was seen in it
+  double near;          // margins below this are near zero
   double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
   double share = 1;     // of the error that a step may otherwise make
+
+  void watch(const Watched& function) { watched[watched_count++] = function; }
 };
 
 // Of all steps since the first start. `rhs` counts every evaluation of f, those for difference quotients included.

@@ -28,11 +28,10 @@ struct Parabola {
 
 }  // namespace
 
-double Search::value(double t) const {
+Sample Search::sample(double t) const {
   double y[max_states];
   step_.read(t, problem_.states, y);
-  ++*roots_;
-  return sign_ * g_(problem_.owner, t, y);
+  return sample(t, y);
 }
 
 // How far g may lie below the parabola: a quarter of its bend and a tenth of its range.

@@ -5,19 +5,18 @@
 
 namespace solver {
 
-using Watched = double (*)(void* owner, double t, const double* y);
-
 struct Sample {
   double t, g;
 };
 
 class Search {
  public:
-  // Watches sign * g. roots: counts the evaluations of g.
-  Search(const Problem& problem, const Step& step, Watched g, long long* roots, double sign = 1)
-      : problem_(problem), step_(step), g_(g), roots_(roots), sign_(sign) {}
+  // roots: counts the evaluations of the function.
+  Search(const Problem& problem, const Step& step, const Watched& watched, long long* roots)
+      : problem_(problem), step_(step), watched_(watched), roots_(roots) {}
 
-  double value(double t) const;
+  Sample sample(double t) const;
+  Sample sample(double t, const double* y) const { return ++*roots_, Sample{t, watched_.value(problem_.owner, t, y)}; }
 
   // The first instant in [lo.t, hi.t] at which g is below zero; false where there is none. lo.g below zero: lo.t.
   bool find_first_fall(Sample lo, Sample hi, double* t) const;
@@ -28,13 +27,11 @@ class Search {
  private:
   bool look(Sample lo, Sample mid, Sample hi, int depth, int* budget, Sample bracket[2]) const;
   double fall_through(Sample lo, Sample hi) const;
-  Sample sample(double t) const { return {t, value(t)}; }
 
   const Problem& problem_;
   const Step& step_;
-  Watched g_;
+  const Watched& watched_;
   long long* roots_;
-  double sign_;
 };
 
 }  // namespace solver

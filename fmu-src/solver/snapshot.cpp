@@ -12,8 +12,8 @@ void Solver::visit(Archive& archive) {
   constexpr double never = std::numeric_limits<double>::infinity();
   archive.count(method_, 0, static_cast<int>(Method::runge_kutta));
   archive.count(pending_, 0, static_cast<int>(Outcome::failed));
-  archive.count(armed_, 0, 1);
-  archive.number(known_until_), archive.number(event_time_), archive.number(event_value_);
+  archive.count(event_, 0, std::numeric_limits<int>::max());
+  archive.number(known_until_), archive.number(event_time_), archive.numbers(values_, max_watched);
   archive.range(stop_time_, -Archive::greatest, never);
   for (long long* count :
        {&counters_.steps, &counters_.rhs, &counters_.jacobians, &counters_.roots, &counters_.restarts})
@@ -60,9 +60,8 @@ bool Solver::restore_history(const Problem& problem, const unsigned char* bytes,
 // Times in order, and those that one outcome goes with.
 bool Solver::restored_fits() const {
   if (!(step_.start <= known_until_ && known_until_ <= step_.end)) return false;
-  if (pending_ == Outcome::stepped) return known_until_ == step_.end;
   if (pending_ == Outcome::failed) return step_.start == step_.end;
-  return known_until_ == event_time_;
+  return known_until_ == event_time_ || (pending_ == Outcome::stepped && known_until_ == step_.end);
 }
 
 bool Solver::restore_engine(support::Reader& reader) {

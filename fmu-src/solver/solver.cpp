@@ -4,31 +4,39 @@
 #include <algorithm>
 #include <cmath>
 
-#include "search.hpp"
-
 namespace solver {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-bool Solver::start(const Problem& problem, Method method, double t, const double* y, bool armed) {
-  problem_ = problem;
+bool Solver::start(const Problem& problem, Method method, double t, const double* y) {
   pending_ = Outcome::failed;
   runge_kutta_ = {};
   counters_ = {};
-  counters_.restarts = -1;  // the first start is none
-  return restart(method, t, y, armed);
+  counters_.restarts = -1;  // the restart below does not count
+  return restart(problem, method, t, y);
 }
 
-bool Solver::restart(Method method, double t, const double* y, bool armed) {
+bool Solver::restart(const Problem& problem, Method method, double t, const double* y) {
   stop_time_ = time_to_look_again(t);
+  problem_ = problem;
   method_ = method;
   known_until_ = event_time_ = t;
   ++counters_.restarts;
   if (!begin(t, y)) return pending_ = Outcome::failed, false;
-  pending_ = Outcome::stepped;
-  armed_ = armed;
-  if (armed) ++counters_.roots, event_value_ = problem_.event(problem_.owner, t, y);
+  resume();
   return true;
+}
+
+void Solver::resume() {
+  pending_ = Outcome::stepped;
+  double y[max_states];
+  read(known_until_, y);
+  for (int i = 0; i < problem_.watched_count; ++i) {
+    const Watched& watched = problem_.watched[i];
+    if (watched.by_margin) continue;
+    ++counters_.roots;
+    values_[i] = watched.value(problem_.owner, known_until_, y);
+  }
 }
 
 bool Solver::begin(double t, const double* y) {
@@ -54,22 +62,25 @@ bool Solver::advance(double stop) {
 
 Outcome Solver::step() {
   if (pending_ != Outcome::stepped) return pending_;
+  const double from = known_until_;
+  if (known_until_ == step_.end && !make_step()) return pending_ = Outcome::failed;
+  known_until_ = step_.end;
+  if (step_.end > step_.start) look_for_events(from);
+  return pending_;
+}
+
+bool Solver::make_step() {
   const double stop = stop_time_;
   stop_time_ = never;
-  // The stop time differs from the time reached by rounding only.
+  // Where the stop time differs from the time reached by rounding only, the solution is moved there.
   if (stop > known_until_ && reaches(stop)) {
     double y[max_states];
     std::copy_n(step_.y_end, max_states, y);
-    if (!begin(stop, y)) return pending_ = Outcome::failed;
-    known_until_ = stop;
-    return Outcome::stepped;
+    return begin(stop, y);
   }
-  if (!advance(stop)) return pending_ = Outcome::failed;
+  if (!advance(stop)) return false;
   ++counters_.steps;
-  known_until_ = step_.end;
-  watch_event();
-  watch_boundary();
-  return pending_;
+  return true;
 }
 
 void Solver::expand(Counters* counters) const {
@@ -77,50 +88,49 @@ void Solver::expand(Counters* counters) const {
                                  : cvode_.expand(problem_.states, &step_);
 }
 
-// Whether an input has an extreme in the last step.
-bool Solver::bends_inside() const {
-  double instants[max_bends];
-  return problem_.bends && problem_.bends(problem_.owner, step_.start, step_.end, instants) > 0;
+// Looks from `from` to the end of the step for the first event.
+void Solver::look_for_events(double from) {
+  for (int i = 0; i < problem_.watched_count; ++i) {
+    const Watched& watched = problem_.watched[i];
+    const Search search(problem_, step_, watched, &counters_.roots);
+    Sample lo = {from, values_[i]}, hi = {};
+    if (watched.by_margin) {
+      if (!comes_near(search, from)) continue;
+      expand(&counters_);
+      lo = search.sample(from);
+    } else {
+      hi = search.sample(step_.end, step_.y_end);
+      values_[i] = hi.g;
+      if (stays_above(search, lo, hi)) continue;
+      expand(&counters_);
+    }
+    if (hi.t != known_until_) hi = search.sample(known_until_);
+    double t;
+    if (!search.find_first_fall(lo, hi, &t)) continue;
+    known_until_ = event_time_ = t;
+    event_ = watched.event;
+    pending_ = Outcome::event;
+  }
 }
 
-void Solver::watch_event() {
-  if (!armed_) return;
-  const Sample lo = {step_.start, event_value_};
-  const auto value = [&](double t, const double* y) {
-    ++counters_.roots;
-    return Sample{t, problem_.event(problem_.owner, t, y)};
-  };
-  const Sample hi = value(step_.end, step_.y_end);
-  event_value_ = hi.g;
-  // Most steps are far from an event, which a value inside the step that is known anyway is enough to tell.
-  if (step_.inside_share > 0 && !bends_inside() &&
-      Search::stays_above(lo, value(step_.start + step_.inside_share * (step_.end - step_.start), step_.y_inside), hi))
-    return;
-  expand(&counters_);
-  double t;
-  if (Search(problem_, step_, problem_.event, &counters_.roots).find_first_fall(lo, hi, &t)) end_at(t, Outcome::event);
-}
-
-// Watches the boundary as far as the step is valid. Where an input has an extreme inside the step, the boundary is
+// Whether a function watched by the margin may fall. Where an input has an extreme inside the step, the function is
 // evaluated there too, because none of the step's own evaluations may have come near it.
-void Solver::watch_boundary() {
-  double instants[max_bends], lowest = step_.lowest_margin;
-  const int count = problem_.bends && lowest >= problem_.near
-                        ? problem_.bends(problem_.owner, step_.start, known_until_, instants)
-                        : 0;
+bool Solver::comes_near(const Search& search, double from) {
+  if (step_.lowest_margin < problem_.near) return true;
+  double instants[max_bends];
+  const int count = problem_.bends ? problem_.bends(problem_.owner, from, known_until_, instants) : 0;
   if (count > 0) expand(&counters_);
-  const Search search(problem_, step_, problem_.boundary, &counters_.rhs);
-  for (int i = 0; i < count; ++i) lowest = std::fmin(lowest, search.value(instants[i]));
-  if (!(lowest < problem_.near)) return;
-  expand(&counters_);
-  double t;
-  if (search.find_first_fall({step_.start, search.value(step_.start)}, {known_until_, search.value(known_until_)}, &t))
-    end_at(t, Outcome::ended);
+  return std::any_of(instants, instants + count, [&](double t) { return search.sample(t).g < problem_.near; });
 }
 
-void Solver::end_at(double t, Outcome why) {
-  known_until_ = event_time_ = t;
-  pending_ = why;
+// Most steps are far from an event, which a value inside the step that is known anyway is enough to tell.
+bool Solver::stays_above(const Search& search, Sample lo, Sample hi) const {
+  double instants[max_bends];
+  if (!(step_.inside_share > 0) || lo.t != step_.start ||
+      (problem_.bends && problem_.bends(problem_.owner, lo.t, hi.t, instants) > 0))
+    return false;
+  const double t = step_.start + step_.inside_share * (step_.end - step_.start);
+  return Search::stays_above(lo, search.sample(t, step_.y_inside), hi);
 }
 
 void Solver::read(double t, double* y) const {
@@ -129,14 +139,6 @@ void Solver::read(double t, double* y) const {
   const double rounding = rounding_at(t);
   if (t > step_.start + rounding && t < step_.end - rounding) expand(&uncounted);
   step_.read(t, problem_.states, y);
-}
-
-bool Solver::first_fall(double (*g)(void*, double, const double*), double sign, double t_lo, double t_hi,
-                        double* t) const {
-  Counters uncounted = {};
-  expand(&uncounted);
-  const Search search(problem_, step_, g, &uncounted.roots, sign);
-  return search.find_first_fall({t_lo, search.value(t_lo)}, {t_hi, search.value(t_hi)}, t);
 }
 
 }  // namespace solver

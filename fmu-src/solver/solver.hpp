@@ -12,27 +12,32 @@
 #include "cvode_engine.hpp"
 #include "problem.hpp"
 #include "runge_kutta.hpp"
+#include "search.hpp"
 #include "step.hpp"
 
 namespace solver {
 
-// stepped: one step was made;               event: `event` fell below zero at event_time();
-// ended: `boundary` fell below zero there;  failed: see failure(); the solution stays known until known_until().
-enum class Outcome { stepped, event, ended, failed };
+// stepped: one step was made;  event: a watched function fell below zero at event_time(), which event() names;
+// failed: see failure(); the solution stays known until known_until().
+enum class Outcome { stepped, event, failed };
 
 class Solver {
  public:
   // Starts, or starts anew, from y at time t (s); history is dropped. The first start sets the counters to zero, later
-  // ones go on counting (`restarts` counts all but the first). armed: the event is watched from here on. Runge-Kutta
-  // keeps the step size that it wanted last. False where SUNDIALS could not be set up: failure().
-  bool start(const Problem& problem, Method method, double t, const double* y, bool armed);
-  bool restart(Method method, double t, const double* y, bool armed);
+  // ones go on counting (`restarts` counts all but the first). Runge-Kutta keeps the step size that it wanted last.
+  // False where SUNDIALS could not be set up: failure().
+  bool start(const Problem& problem, Method method, double t, const double* y);
+  bool restart(const Problem& problem, Method method, double t, const double* y);
+
+  // After an event that changes nothing of the motion, only what is watched: the same step goes on.
+  void resume();
 
   // Runge-Kutta: the first step after the next restart is at most dt, s (the time between the last two changes). Two
   // changes at the same instant limit nothing.
   void change_interval(double dt) { runge_kutta_.limit_first_step(dt > rounding_at(known_until_) ? dt : 0); }
 
-  // One internal step. After `event` or `ended` known_until() is event_time(), and the owner restarts from there.
+  // One internal step, or the rest of one that was resumed. After an event known_until() is event_time(), and the owner
+  // restarts from there, resumes or ends.
   Outcome step();
 
   // The next step ends at t, s, at the latest; one that would end within a few roundings of t ends at t. CVODE starts
@@ -48,13 +53,10 @@ class Solver {
   double step_start() const { return step_.start; }
   double known_until() const { return known_until_; }
   double event_time() const { return event_time_; }
+  int event() const { return event_; }
   Method method() const { return method_; }
   const char* failure() const { return failure_; }
   const Counters& counters() const { return counters_; }
-
-  // First instant in [t_lo, t_hi] at which sign * g falls below zero on the dense output of the last step, dips
-  // included.
-  bool first_fall(double (*g)(void*, double, const double*), double sign, double t_lo, double t_hi, double* t) const;
 
   // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on with the same bits. restore
   // refuses what could not have been saved (false; no solution then until start).
@@ -65,12 +67,12 @@ class Solver {
  private:
   bool begin(double t, const double* y);
   double time_to_look_again(double t) const;
+  bool make_step();
   bool advance(double stop);
   void expand(Counters* counters) const;
-  bool bends_inside() const;
-  void watch_event();
-  void watch_boundary();
-  void end_at(double t, Outcome why);
+  void look_for_events(double from);
+  bool comes_near(const Search& search, double from);
+  bool stays_above(const Search& search, Sample lo, Sample hi) const;
   template <class Archive>
   void visit(Archive& archive);
   bool has_cvode_history() const;
@@ -80,11 +82,11 @@ class Solver {
   Problem problem_ = {};
   Method method_ = Method::adams;
   Outcome pending_ = Outcome::failed;
-  bool armed_ = false;
   const char* failure_ = "it was not started";
   double known_until_ = 0, event_time_ = 0;  // s
-  double stop_time_ = 0;                     // s, of the next step
-  double event_value_ = 0;                   // at the end of the step
+  int event_ = 0;
+  double stop_time_ = 0;             // s, of the next step
+  double values_[max_watched] = {};  // at known_until_ of what is watched at each step
   Counters counters_ = {};
   // The dense output of the last step is computed when it is first needed: a pure function of the step.
   mutable Step step_ = {};

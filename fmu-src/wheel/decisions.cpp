@@ -6,21 +6,6 @@
 #include "scene.hpp"
 
 namespace wheel {
-namespace {
-
-// Scales of errors, forces and steps, from the parameters and the initial state.
-void set_scales(Motion& motion, const double* y) {
-  const WheelParameters& wheel = motion.scene.wheel;
-  WheelKinematics start;
-  motion.formulation->kinematics(&wheel, y, &start);
-  const double own_time = time_scale(wheel, start);
-  motion.longest_step = 0.5 * own_time;
-  motion.weight = force_scale(wheel, own_time);
-  motion.scales = error_scales(wheel, *motion.formulation, y);
-}
-
-}  // namespace
-
 void set_initial_state(State& state) {
   State start;
   std::copy_n(state.parameters, first_input, start.parameters);

@@ -22,13 +22,15 @@ const WheelScene& scene_at(Motion& motion, double t) {
   return motion.scene;
 }
 
-// Positive inside the model: the angle of the wheel from lying flat, rad, and, unless contact is kept, N over the
-// weight. A force that is negative only by rounding does not count.
-double margin(const Motion& motion, const double* y, double N) {
+// Zero where the wheel lies flat, rad.
+double height(const Motion& motion, const double* y) {
+  return angle_from_flat(y[motion.formulation->tilt_index]) - flat_angle;
+}
+
+// N over the weight, or its negative while the ground pulls. What is below zero only by rounding does not count.
+double contact(const Motion& motion, double N) {
   constexpr double rounding = 1e-9;
-  const double height = angle_from_flat(y[motion.formulation->tilt_index]) - flat_angle;
-  const double contact = N / motion.weight + rounding;
-  return motion.keep_contact || height < contact ? height : contact;
+  return (motion.pulling ? -N : N) / motion.weight + rounding;
 }
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
@@ -36,7 +38,9 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   const double N = motion.formulation->derivative(&scene_at(motion, t), y, y_dot);
   double sum = 0;
   for (int i = 0; i < motion.formulation->states; ++i) sum += y_dot[i];
-  return std::isfinite(sum) ? margin(motion, y, N) : std::numeric_limits<double>::quiet_NaN();
+  if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
+  const double high = height(motion, y), pressed = contact(motion, N);
+  return high < pressed ? high : pressed;
 }
 
 // The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
@@ -56,21 +60,24 @@ void weights(void* owner, double share, const double* y, double* weights) {
   weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
 }
 
-// Positive while the friction mode lasts: omega_z times the mode's sign; for a held wheel the part of s N + M_brake
-// that holding it leaves unused.
-double event(void* owner, double t, const double* y) {
+double spin_watched(void* owner, double, const double* y) {
+  const Motion& motion = of(owner);
+  return motion.scene.friction.sigma * y[motion.formulation->spin_index];
+}
+
+double holding_watched(void* owner, double t, const double* y) {
   Motion& motion = of(owner);
-  const WheelFriction& friction = motion.scene.friction;
-  if (friction.kind == WHEEL_ROLLING) return friction.sigma * y[motion.formulation->spin_index];
   WheelDynamics held;
   motion.formulation->dynamics(&scene_at(motion, t), y, &held);
   return holding_margin(motion.scene, held, motion.weight);
 }
 
-double boundary(void* owner, double t, const double* y) {
+double height_watched(void* owner, double, const double* y) { return height(of(owner), y); }
+
+double contact_watched(void* owner, double t, const double* y) {
   Motion& motion = of(owner);
-  if (motion.keep_contact) return margin(motion, y, 0);
-  return margin(motion, y, normal_force(owner, t, y) * motion.weight);
+  double y_dot[WHEEL_MAX_STATES];
+  return contact(motion, motion.formulation->derivative(&scene_at(motion, t), y, y_dot));
 }
 
 int bends(void* owner, double t_lo, double t_hi, double* instants) {
@@ -80,6 +87,16 @@ int bends(void* owner, double t_lo, double t_hi, double* instants) {
 
 }  // namespace
 
+void set_scales(Motion& motion, const double* y) {
+  const WheelParameters& wheel = motion.scene.wheel;
+  WheelKinematics start;
+  motion.formulation->kinematics(&wheel, y, &start);
+  const double own_time = time_scale(wheel, start);
+  motion.longest_step = 0.5 * own_time;
+  motion.weight = force_scale(wheel, own_time);
+  motion.scales = error_scales(wheel, *motion.formulation, y);
+}
+
 solver::Problem problem_of(Motion& motion) {
   constexpr double near = 0.1;  // of the weight, or rad from lying flat
   solver::Problem problem = {};
@@ -87,18 +104,18 @@ solver::Problem problem_of(Motion& motion) {
   problem.owner = &motion;
   problem.derivative = derivative;
   problem.weights = weights;
-  problem.event = event;
-  problem.boundary = boundary;
   problem.bends = bends;
   problem.near = near;
   problem.longest_step = motion.longest_step;
+  const auto watch = [&](Event event, double (*value)(void*, double, const double*), bool by_margin) {
+    problem.watch({static_cast<int>(event), value, by_margin});
+  };
+  const WheelFrictionKind law = motion.scene.friction.kind;
+  if (law == WHEEL_ROLLING) watch(Event::spin_changes, spin_watched, false);
+  if (law == WHEEL_HELD) watch(Event::spin_changes, holding_watched, false);
+  watch(motion.keep_contact ? Event::contact_changes : Event::lifted_off, contact_watched, true);
+  watch(Event::fell_flat, height_watched, true);
   return problem;
-}
-
-double normal_force(void* owner, double t, const double* y) {
-  Motion& motion = of(owner);
-  double y_dot[WHEEL_MAX_STATES];
-  return motion.formulation->derivative(&scene_at(motion, t), y, y_dot) / motion.weight;
 }
 
 }  // namespace wheel

@@ -1,6 +1,5 @@
-// The wheel in motion as an initial-value problem for the solver: y' = f(t, y), its error weights, the transition of
-// the rolling friction as event, the limits of the model as boundary. Reduced or multibody state, see
-// wheel_equations.h.
+// The wheel in motion as an initial-value problem for the solver: y' = f(t, y), its error weights, and the functions
+// whose fall below zero is an event. Reduced or multibody state, see wheel_equations.h.
 #pragma once
 
 #include "inputs.hpp"
@@ -16,6 +15,15 @@ inline constexpr double flat_angle = 1e-7;
 // rad, from the side that is nearer.
 double angle_from_flat(double theta);
 
+// What can happen at an instant that is not known beforehand.
+enum class Event : int {
+  none,
+  spin_changes,     // omega_z reaches zero, or friction and brake can no longer hold it there
+  contact_changes,  // with keep_contact: the ground begins to pull or to press
+  lifted_off,
+  fell_flat
+};
+
 // What the right-hand side and the watched functions need besides time and state.
 struct Motion {
   const WheelFormulation* formulation = nullptr;
@@ -26,12 +34,17 @@ struct Motion {
   double weight = 0;        // N, scale of the normal force
   double longest_step = 0;  // s
   bool keep_contact = false;
+  bool pulling = false;  // with keep_contact: N < 0
 };
 
-// The problem refers to the motion and changes nothing of it but the load of its scene.
-solver::Problem problem_of(Motion& motion);
+// Scales of errors, forces and steps, from the parameters and the initial state.
+void set_scales(Motion& motion, const double* y);
 
-// Normal force N over the weight at state y; for solver::Solver::first_fall.
-double normal_force(void* motion, double t, const double* y);
+// The ground begins to pull, or to press.
+inline void change_contact(Motion& motion) { motion.pulling = !motion.pulling; }
+
+// The problem refers to the motion and changes nothing of it but the load of its scene. What is watched goes with the
+// law in force.
+solver::Problem problem_of(Motion& motion);
 
 }  // namespace wheel

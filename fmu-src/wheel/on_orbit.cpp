@@ -17,9 +17,11 @@ bool Simulation::orbit_fits() const {
 void Simulation::build_orbit() {
   State start = state_;
   set_initial_state(start);
-  const Motion& motion = start.motion;
-  const Orbit::Kind kind = orbit_.build(problem_of(start.motion), motion.tolerance,
-                                        motion.keep_contact ? normal_force : nullptr, start.y, solver_);
+  Motion& motion = start.motion;
+  const auto pass = [](void* owner, int event) {
+    return event == static_cast<int>(Event::contact_changes) && (change_contact(*static_cast<Motion*>(owner)), true);
+  };
+  const Orbit::Kind kind = orbit_.build(problem_of(motion), motion.tolerance, pass, start.y, solver_);
   state_.unfolded = kind != Orbit::Kind::refused;
   std::memcpy(orbit_origin_, state_.parameters, sizeof state_.parameters);
   orbit_origin_[first_input] = state_.unfolded ? motion.tolerance : 0;

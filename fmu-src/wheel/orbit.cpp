@@ -22,62 +22,63 @@ constexpr double least_swing = 0.01, largest_rest = 0.003, most_difference = 100
 
 }  // namespace
 
-Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Force force, const double* y0,
+Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
                          solver::Solver& solver) {
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   falls_ = rises_ = later_falls_ = 0;
-  if (force && force(problem.owner, 0, y0) < 0) fall_[falls_++] = 0;
   counters_ = {};
   half_ = {};
   kind_ = Kind::refused;
   end_time_ = std::numeric_limits<double>::infinity();
   if (rests(problem, y0)) return kind_ = Kind::folded;
-  kind_ = follow(problem, force, y0, solver);
+  kind_ = follow(problem, pass, y0, solver);
   counters_ = solver.counters();
   return kind_;
 }
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
-Orbit::Kind Orbit::follow(const solver::Problem& problem, Force force, const double* y0, solver::Solver& solver) {
-  double y[states], rate[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1];
+Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
+  double y[states], rate[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1], t = 0;
   bool turned = before == 0;
   problem.derivative(problem.owner, 0, y0, rate);
-  if (!track_.begin(0, y0, rate) || !solver.start(problem, solver::Method::adams, 0, y0, false)) return Kind::refused;
+  if (!track_.begin(0, y0, rate) || !solver.start(problem, solver::Method::adams, 0, y0)) return Kind::refused;
   for (;;) {
-    const solver::Outcome outcome = solver.step();
+    const solver::Outcome outcome = step(problem, pass, solver);
     if (outcome == solver::Outcome::failed) return Kind::refused;
-    const double t = solver.known_until();
+    const double t_before = t;
+    t = solver.known_until();
     solver.read(t, y);
     problem.derivative(problem.owner, t, y, rate);
-    if (!track_.add(t, y, rate) || !keep_crossings(force, solver)) return Kind::refused;
+    if (!track_.add(t, y, rate)) return Kind::refused;
     if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
       if (turned) {
         track_.finish();
         T1_ = turning_point(T1[0], T1[1]);
-        T2_ = turning_point(solver.step_start(), t);
+        T2_ = turning_point(t_before, t);
         return fold(problem, t, y, swing) ? Kind::folded : Kind::refused;
       }
-      T1[0] = solver.step_start();
+      T1[0] = t_before;
       T1[1] = t;
       turned = true;
       swing = 0;
     }
-    if (outcome == solver::Outcome::ended) return track_.finish(), end_time_ = t, Kind::ended;
+    if (outcome == solver::Outcome::event)
+      return track_.finish(), end_time_ = t, event_ = solver.event(), Kind::ended;
     if (y[omega_1] != 0) before = y[omega_1];
     swing = std::fmax(swing, std::fabs(y[omega_1]));
   }
 }
 
-// Where N falls below zero and rises above it in the last step; false if that happens too often to be kept.
-bool Orbit::keep_crossings(Force force, const solver::Solver& solver) {
-  if (!force) return true;
-  double t = solver.step_start();
+// To the end of a step, past the events that change nothing; fails if these are too many to be kept.
+solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::Solver& solver) {
   for (;;) {
-    const bool pulls = falls_ > rises_;
-    if (!solver.first_fall(force, pulls ? -1 : 1, t, solver.known_until(), &t)) return true;
-    int& count = pulls ? rises_ : falls_;
-    if (count == most_crossings) return false;
-    (pulls ? rise_ : fall_)[count++] = t;
+    const solver::Outcome outcome = solver.step();
+    if (outcome != solver::Outcome::event || !pass || !pass(problem.owner, solver.event())) return outcome;
+    const bool falls = falls_ == rises_;
+    int& count = falls ? falls_ : rises_;
+    if (count == most_crossings) return solver::Outcome::failed;
+    (falls ? fall_ : rise_)[count++] = solver.event_time();
+    solver.resume();
   }
 }
 

@@ -21,22 +21,24 @@ namespace wheel {
 class Orbit {
  public:
   // folded:  read() is valid at every t >= 0: the motion never ends.
-  // ended:   `boundary` fell below zero at end_time(), in the first nutation; read() is valid up to there.
+  // ended:   event() happened at end_time(), in the first nutation; read() is valid up to there.
   // refused: no two turning points within a fixed number of steps, a swing too small to tell from errors, or a half
   //          that is not its own mirror image. The caller then steps through the motion from its start.
   enum class Kind { refused, folded, ended };
 
-  using Force = double (*)(void* owner, double t, const double* y);
+  // What the owner does at an event: true where the motion goes on unchanged. The first such event is the fall of a
+  // function that rises at the second and falls again at the third: here N. Their instants are kept.
+  using Pass = bool (*)(void* owner, int event);
 
-  // Integrates `problem` (the reduced form of a free wheel; its `event` is not asked for) from y0 by
-  // CVODE's Adams method. force: the normal force N, where the instants at which it falls below zero are wanted, else
-  // null. The solver has to be started anew before anything else is asked of it; its counters are those of this run. A
-  // pure function of problem, tolerance and y0: the same bits in every process.
-  Kind build(solver::Problem problem, double tolerance, Force force, const double* y0, solver::Solver& solver);
+  // Integrates `problem` (the reduced form of a free wheel) from y0 by CVODE's Adams method. The solver has to be
+  // started anew before anything else is asked of it; its counters are those of this run. A function of problem,
+  // tolerance and y0 alone: the same bits in every process.
+  Kind build(solver::Problem problem, double tolerance, Pass pass, const double* y0, solver::Solver& solver);
 
   // The state (out, 8 entries) at t >= 0.
   void read(double t, double* y) const;
   double end_time() const { return end_time_; }  // s; infinite where the motion never ends
+  int event() const { return event_; }
   // What the integration took; zero for a wheel in steady motion.
   const solver::Counters& counters() const { return counters_; }
   double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; folded only
@@ -61,8 +63,8 @@ class Orbit {
 
   bool rests(const solver::Problem& problem, const double* y0);
   bool keep_rest(const double* y0, const double* rate, double length);
-  Kind follow(const solver::Problem& problem, Force force, const double* y0, solver::Solver& solver);
-  bool keep_crossings(Force force, const solver::Solver& solver);
+  Kind follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
+  solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
   double turning_point(double t_lo, double t_hi) const;
   bool fold(const solver::Problem& problem, double t, const double* y, double swing);
   void take_half();
@@ -74,6 +76,7 @@ class Orbit {
   Track track_;  // from the start past T2
   Kind kind_ = Kind::refused;
   double end_time_ = std::numeric_limits<double>::infinity();
+  int event_ = 0;
   solver::Counters counters_ = {};
   double T1_ = 0, T2_ = 0;
   double first_[states] = {}, second_[states] = {};  // at T1 and T2

@@ -121,8 +121,8 @@ double Simulation::sensitivity(unsigned output, unsigned input) {
 
 // A clause that other messages continue.
 const char* Simulation::ending() const {
-  if (state_.ending == Ending::none) return nullptr;
-  const char* what = state_.ending == Ending::fell_flat ? "fell flat" : "lifted off the ground";
+  if (state_.ending == Event::none) return nullptr;
+  const char* what = state_.ending == Event::fell_flat ? "fell flat" : "lifted off the ground";
   std::snprintf(ending_, sizeof ending_, "the wheel %s at t = %s s", what, support::Digits(time()).text);
   return ending_;
 }

@@ -29,8 +29,6 @@ struct Reporter {
 
 enum class Progressed { reached, ended, failed };
 
-enum class Ending : int { none, fell_flat, lifted_off };
-
 // Everything that decides the future of a run, except the history of its solver. Plain numbers: a run is restored by
 // assignment.
 struct State {
@@ -38,14 +36,13 @@ struct State {
   double start_time = 0;
   Motion motion;
   solver::Method method = solver::Method::adams;
-  Ending ending = Ending::none;
+  Event ending = Event::none;
   bool prepared = false;         // there is a state y to read
   bool started = false;          // initialization has ended
   bool moving = false;           // the first step has been taken
   bool unfolded = false;         // the solution is read from the orbit, nothing is integrated
   bool jumped = false;           // an input or a tunable parameter changed during the run
   bool changes_pending = false;  // inputs or tunable parameters were set since the last step
-  bool pulling = false;          // with keep_contact: already warned that the ground pulls (N < 0)
   bool y_known = false;          // y is that of t; otherwise it is read from the solution when it is needed
   double t = 0;                  // s, own clock: the instant that the caller has reached
   double last_change = 0;        // s, own clock: when an input or a tunable parameter last changed
@@ -119,7 +116,8 @@ class Simulation {
   bool settle_changes();
   void announce_transition(double t, const WheelFriction& before);
   bool pass_transition();
-  void report_pulls(double t_from, double t_to);
+  bool pass_contact();
+  solver::Outcome pass_event();
   void report_pulls_of_orbit(double t_from, double t_to) const;
   void tell_pull(double t) const;
   bool orbit_fits() const;

@@ -12,7 +12,7 @@
 namespace wheel {
 namespace {
 
-constexpr std::uint64_t mark = 0x3430554d46484557;  // "WEHFMU04": a change of the layout raises the number
+constexpr std::uint64_t mark = 0x3530554d46484557;  // "WEHFMU05": a change of the layout raises the number
 
 struct Header {
   std::uint64_t mark, size, checksum;
@@ -42,9 +42,9 @@ void visit(Archive& archive, State& state) {
   archive.number(motion.scene.friction.sigma), archive.number(motion.scene.friction.omega_s);
   visit(archive, motion.inputs);
   archive.count(state.method, 0, static_cast<int>(solver::Method::runge_kutta));
-  archive.count(state.ending, 0, static_cast<int>(Ending::lifted_off));
+  archive.count(state.ending, 0, static_cast<int>(Event::fell_flat));
   archive.truths(state.prepared, state.started, state.moving, state.unfolded, state.jumped, state.changes_pending,
-                 state.pulling);
+                 motion.pulling);
   archive.number(state.t), archive.number(state.last_change);
   archive.numbers(state.y, WHEEL_MAX_STATES);
   solver::Counters& counted = state.counted;
@@ -73,7 +73,7 @@ bool run_is_sound(const State& state) {
   const bool unfoldable = is_unfoldable(state.parameters, motion.scene, motion.inputs.loaded);
   return law_is_sound(motion.scene.friction, state.parameters[omega_s]) && state.last_change >= 0 &&
          state.last_change <= state.t && (unfoldable || !state.unfolded) &&
-         (state.moving ? state.started : state.t == 0 && state.ending == Ending::none);
+         (state.moving ? state.started : state.t == 0 && state.ending == Event::none);
 }
 
 // The run that the bytes describe; what follows from its parameters is computed anew. False where no run can have been
@@ -88,10 +88,12 @@ bool read_run(support::Reader& reader, State& state) {
   const WheelFriction law = state.motion.scene.friction;
   const double s_in_force = state.motion.scene.wheel.s;
   const Inputs inputs = state.motion.inputs;
+  const bool pulling = state.motion.pulling;
   state.motion = start.motion;
   state.motion.scene.friction = law;
   state.motion.scene.wheel.s = s_in_force;
   state.motion.inputs = inputs;
+  state.motion.pulling = pulling;
   state.motion.inputs.classify();
   state.motion.inputs.load_at(state.t, &state.motion.scene.load);
   state.y_known = true;

@@ -15,8 +15,8 @@ namespace {
 // The most work that one call may do, in internal steps, however long its communication step is: some seconds of
 // computing.
 constexpr long long most_work = 1000000;
-// The work of passing a transition, in internal steps: the search for it, a new start, the short steps after it.
-constexpr long long work_per_transition = 20;
+// The work of passing an event, in internal steps: the search for it, a new start, the short steps after it.
+constexpr long long work_per_event = 20;
 // The work of one internal step of the multibody form, whose system is larger.
 constexpr long long work_per_multibody_step = 8;
 
@@ -56,13 +56,12 @@ bool Simulation::settle_changes() {
   solver_.change_interval(t - state_.last_change);
   state_.last_change = t;
   if (was_unfolded) return ++state_.counted.restarts, start_solver();
-  return solver_.restart(state_.method, t, y, has_transitions(state_.motion.scene));
+  return solver_.restart(problem_of(state_.motion), state_.method, t, y);
 }
 
 // Starts the solver from nothing at the present instant.
 bool Simulation::start_solver() {
-  const solver::Problem problem = problem_of(state_.motion);
-  return solver_.start(problem, state_.method, state_.t, y_now(), has_transitions(state_.motion.scene));
+  return solver_.start(problem_of(state_.motion), state_.method, state_.t, y_now());
 }
 
 // Counts and reports a change between held, positive and negative spin. A change to another law is not a transition.
@@ -98,18 +97,26 @@ bool Simulation::pass_transition() {
         friction_at(state_.parameters, *motion.formulation, motion.scene, motion.inputs.braked, motion.weight, y);
   }
   announce_transition(t, before);
-  return solver_.restart(state_.method, t, y, has_transitions(motion.scene));
+  return solver_.restart(problem_of(motion), state_.method, t, y);
 }
 
-// With keep_contact: reports each instant in [t_from, t_to] at which N falls below zero in the last step. What the
-// solver has computed beyond the requested time is reported later, because an input may still change it.
-void Simulation::report_pulls(double t_from, double t_to) {
-  if (!state_.motion.keep_contact || !(t_to > t_from)) return;
-  double t;
-  while (solver_.first_fall(normal_force, state_.pulling ? -1 : 1, t_from, t_to, &t)) {
-    state_.pulling = !state_.pulling;
-    if (state_.pulling) tell_pull(t);
-    t_from = t;
+// The solver stands where the ground begins to pull or to press. Nothing of a motion without friction changes there.
+bool Simulation::pass_contact() {
+  change_contact(state_.motion);
+  if (state_.motion.pulling) tell_pull(solver_.event_time());
+  return solver_.resume(), true;
+}
+
+// `event`: it ends the run.
+solver::Outcome Simulation::pass_event() {
+  const auto passed = [](bool well) { return well ? solver::Outcome::stepped : solver::Outcome::failed; };
+  switch (static_cast<Event>(solver_.event())) {
+    case Event::spin_changes:
+      return passed(pass_transition());
+    case Event::contact_changes:
+      return passed(pass_contact());
+    default:
+      return solver::Outcome::event;
   }
 }
 
@@ -127,9 +134,8 @@ solver::Outcome Simulation::run_to(double t) {
   using solver::Outcome;
   const bool starts = !state_.moving || state_.unfolded;  // a restored state may claim a motion that does not unfold
   if (state_.unfolded && !orbit_ready_) enter_orbit();
-  if (state_.unfolded) return t <= orbit_.end_time() ? Outcome::stepped : Outcome::ended;
+  if (state_.unfolded) return t <= orbit_.end_time() ? Outcome::stepped : Outcome::event;
   if (starts && !start_solver()) return Outcome::failed;
-  report_pulls(state_.t, std::fmin(solver_.known_until(), t));
   const bool large = state_.motion.formulation == &wheel_multibody;
   const long long work_per_step = large ? work_per_multibody_step : 1;
   for (long long work = 0; !solver_.reaches(t);) {
@@ -138,24 +144,22 @@ solver::Outcome Simulation::run_to(double t) {
     // CVODE may step past the communication point although an input varies: the input's polynomial may go on there, and
     // a step that is cut short costs CVODE its history. Runge-Kutta has no history to lose.
     if (state_.motion.inputs.varies && solver_.method() == solver::Method::runge_kutta) solver_.stop_before(t);
-    const double t_before = solver_.known_until();
     const Outcome outcome = solver_.step();
-    report_pulls(t_before, std::fmin(solver_.known_until(), t));
     if (outcome == Outcome::failed) return outcome;
-    if (solver_.reaches(t)) break;  // a transition or an ending after t waits until it is reached
-    if (outcome == Outcome::ended) return outcome;
-    if (outcome == Outcome::event && !pass_transition()) return Outcome::failed;
-    work += (outcome == Outcome::event ? work_per_transition : 1) * work_per_step;
+    if (solver_.reaches(t)) break;  // an event after t waits until it is reached
+    work += (outcome == Outcome::event ? work_per_event : 1) * work_per_step;
+    if (outcome != Outcome::event) continue;
+    const Outcome passed = pass_event();
+    if (passed != Outcome::stepped) return passed;
   }
   return Outcome::stepped;
 }
 
 Progressed Simulation::end_run() {
   move_to(state_.unfolded ? orbit_.end_time() : solver_.event_time());
+  state_.ending = static_cast<Event>(state_.unfolded ? orbit_.event() : solver_.event());
   const double theta = y_now()[state_.motion.formulation->tilt_index];
-  const bool flat = angle_from_flat(theta) < 2 * flat_angle;
-  state_.ending = flat ? Ending::fell_flat : Ending::lifted_off;
-  const char* sentence = flat ? "T%s: the model ends there." : "T%s, theta = %.6g rad: the model ends there.";
+  const char* sentence = state_.ending == Event::fell_flat ? "T%s: the model ends there." : "T%s, theta = %.6g rad: the model ends there.";
   tell(Topic::discard, sentence, ending() + 1, theta);
   return Progressed::ended;
 }
@@ -167,7 +171,7 @@ Progressed Simulation::fail(const State& before) {
   state_ = before;
   reading_fresh_ = false;
   // The solver has lost the history before the step. It stands at the state, and `counted` holds its counts.
-  if (state_.is_stepping()) solver_.start(problem_of(state_.motion), state_.method, state_.t, state_.y, false);
+  if (state_.is_stepping()) solver_.start(problem_of(state_.motion), state_.method, state_.t, state_.y);
   return Progressed::failed;
 }
 
@@ -191,17 +195,15 @@ solver::Outcome Simulation::extend_to(double t) {
 
 Progressed Simulation::advance(double t) {
   t -= state_.start_time;
-  if (state_.ending != Ending::none) return Progressed::ended;
-  if (!state_.changes_pending && knows(t)) {
-    if (!state_.unfolded) report_pulls(state_.t, t);
-  } else {
+  if (state_.ending != Event::none) return Progressed::ended;
+  if (state_.changes_pending || !knows(t)) {
     y_now();
     State before = state_;
     before.counted = counters();
     switch (extend_to(t)) {
       case solver::Outcome::failed:
         return fail(before);
-      case solver::Outcome::ended:
+      case solver::Outcome::event:
         return end_run();
       default:
         break;

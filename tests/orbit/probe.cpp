@@ -1,12 +1,12 @@
 // One free wheel and its orbit behind a C interface, for ctypes. State and units as in wheel_equations.h.
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <new>
 
+#include "motion.hpp"
 #include "orbit.hpp"
-#include "wheel_equations.h"
+#include "scene.hpp"
 
 #ifdef _WIN32
 #define PUBLIC extern "C" __declspec(dllexport)
@@ -17,53 +17,21 @@
 namespace {
 
 struct Probe {
-  WheelScene scene = {};
-  double tolerance = 0, scales[8] = {}, weight = 0, start[8] = {};
-  bool keep_contact = false;
-  solver::Problem problem = {};
+  wheel::Motion motion;
+  double start[8] = {};
   solver::Solver solver;
   wheel::Orbit orbit;
 };
 
-double margin(const Probe& probe, const double* y, double N) {
-  const double height = std::sin(y[0]) - 1e-7;
-  return probe.keep_contact ? height : std::fmin(height, N / probe.weight + 1e-9);
-}
-
-double derivative(void* owner, double, const double* y, double* y_dot) {
-  const Probe& probe = *static_cast<Probe*>(owner);
-  const double N = wheel_reduced.derivative(&probe.scene, y, y_dot);
-  double sum = 0;
-  for (int i = 0; i < 8; ++i) sum += y_dot[i];
-  return std::isfinite(sum) ? margin(probe, y, N) : std::numeric_limits<double>::quiet_NaN();
-}
-
-double force(void* owner, double, const double* y) {
+double force(const Probe& probe, const double* y) {
   double y_dot[8];
-  return wheel_reduced.derivative(&static_cast<Probe*>(owner)->scene, y, y_dot);
+  return wheel_reduced.derivative(&probe.motion.scene, y, y_dot);
 }
 
-double boundary(void* owner, double t, const double* y) {
-  return margin(*static_cast<Probe*>(owner), y, force(owner, t, y));
-}
-
-void weights(void* owner, double share, const double* y, double* weights) {
-  const Probe& probe = *static_cast<Probe*>(owner);
-  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  for (int i = 0; i < 8; ++i) weights[i] = 1 / (share * probe.tolerance * probe.scales[i] + rounding * std::fabs(y[i]));
-}
-
-// The scales of the product: angles 1 rad (psi and phi 3), rates those of the wheel or of its start, lengths r_0 + r.
-void scale(Probe& probe) {
-  const WheelParameters& wheel = probe.scene.wheel;
-  const double* y = probe.start;
-  const double length = wheel.r_0 + wheel.r, tilting = std::hypot(y[1], y[2]), spinning = std::hypot(tilting, y[3]);
-  const double slowest = wheel.g > 0 ? std::sqrt(wheel.g / length) : spinning > 0 ? spinning : 1;
-  const double turn = std::fmax(slowest, tilting), rate = std::fmax(slowest, spinning);
-  const double scales[] = {1, turn, turn, rate, 3, 3, 3 * length, 3 * length};
-  std::copy_n(scales, 8, probe.scales);
-  probe.weight = wheel.m * length * slowest * slowest;
-  probe.problem.longest_step = 0.5 / slowest;
+bool pass(void* owner, int event) {
+  if (event != static_cast<int>(wheel::Event::contact_changes)) return false;
+  wheel::change_contact(*static_cast<wheel::Motion*>(owner));
+  return true;
 }
 
 }  // namespace
@@ -71,18 +39,14 @@ void scale(Probe& probe) {
 PUBLIC Probe* probe_make(const WheelParameters* wheel, const WheelMotion* motion, double tolerance, int keep_contact) {
   Probe* probe = new (std::nothrow) Probe;
   if (!probe) return nullptr;
-  probe->scene.wheel = *wheel;
-  probe->scene.friction.kind = WHEEL_FRICTIONLESS;
-  probe->tolerance = tolerance;
-  probe->keep_contact = keep_contact != 0;
+  wheel::Motion& m = probe->motion;
+  m.formulation = &wheel_reduced;
+  m.scene.wheel = *wheel;
+  m.scene.friction.kind = WHEEL_FRICTIONLESS;
+  m.tolerance = tolerance;
+  m.keep_contact = keep_contact != 0;
   wheel_reduced.start(wheel, motion, probe->start);
-  probe->problem.states = 8;
-  probe->problem.owner = probe;
-  probe->problem.derivative = derivative;
-  probe->problem.weights = weights;
-  probe->problem.boundary = boundary;
-  probe->problem.near = 0.1;
-  scale(*probe);
+  wheel::set_scales(m, probe->start);
   return probe;
 }
 
@@ -90,15 +54,16 @@ PUBLIC void probe_free(Probe* probe) { delete probe; }
 
 // 0 refused, 1 folded, 2 ended.
 PUBLIC int probe_build(Probe* probe) {
-  return static_cast<int>(probe->orbit.build(probe->problem, probe->tolerance, probe->keep_contact ? force : nullptr,
-                                             probe->start, probe->solver));
+  wheel::Motion motion = probe->motion;
+  return static_cast<int>(
+      probe->orbit.build(wheel::problem_of(motion), motion.tolerance, pass, probe->start, probe->solver));
 }
 
 // States at `count` instants, 8 numbers each, and N.
 PUBLIC void probe_read(Probe* probe, const double* t, int count, double* y, double* N) {
   for (int i = 0; i < count; ++i) {
     probe->orbit.read(t[i], y + 8 * i);
-    N[i] = force(probe, t[i], y + 8 * i);
+    N[i] = force(*probe, y + 8 * i);
   }
 }
 

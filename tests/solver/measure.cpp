@@ -27,7 +27,7 @@ void order(const Arguments& args) {
   c.tolerance = 1e20;
   c.longest_step = args.a;
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), false);
+  s.start(c.problem(), args.method, 0, c.y.data());
   double at_ends = 0, inside = 0, y[2];
   while (s.known_until() < 4) {
     s.step();
@@ -47,7 +47,7 @@ void accuracy(const Arguments& args) {
   Case c = harmonic();
   c.tolerance = args.a;
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), false);
+  s.start(c.problem(), args.method, 0, c.y.data());
   double error = 0;
   for (int i = 1; i <= 1000; ++i) {
     const double t = args.b * i / 1000;
@@ -62,9 +62,9 @@ void accuracy(const Arguments& args) {
 // a: points of the reading grid over 20 s. What is left must not know it.
 void grid(const Arguments& args) {
   Case c = harmonic();
-  c.event = [](double, const double* y) { return y[0] + 2; };
+  c.each_step = [](double, const double* y) { return y[0] + 2; };
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), true);
+  s.start(c.problem(), args.method, 0, c.y.data());
   const int points = static_cast<int>(args.a);
   double y[2];
   for (int i = 1; i <= points; ++i) run_to(s, 20.0 * i / points), s.read(20.0 * i / points, y);
@@ -76,9 +76,9 @@ void grid(const Arguments& args) {
 void dip(const Arguments& args) {
   Case c = harmonic();
   c.tolerance = 1e-6;
-  c.event = [&](double, const double* y) { return 1 - y[1] - args.a; };
+  c.each_step = [&](double, const double* y) { return 1 - y[1] - args.a; };
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), true);
+  s.start(c.problem(), args.method, 0, c.y.data());
   std::printf("{\"falls\": [");
   const char* comma = "";
   while (!s.reaches(20)) {
@@ -88,7 +88,7 @@ void dip(const Arguments& args) {
     std::printf("%s%.17g", comma, t);
     comma = ", ";
     const double y[2] = {std::cos(t + past), -std::sin(t + past)};
-    s.restart(args.method, t + past, y, true);
+    s.restart(c.problem(), args.method, t + past, y);
   }
   std::printf("], \"steps\": %lld, \"roots\": %lld}\n", s.counters().steps, s.counters().roots);
 }
@@ -96,20 +96,20 @@ void dip(const Arguments& args) {
 // g = (t - 0.3)^2 (t - 0.7)^2 - a with the bends told (b = 1) or not: the first fall as `ended`.
 void double_dip(const Arguments& args) {
   Case c = clock_only(1);
-  c.boundary = [&](double t, const double*) { return std::pow((t - 0.3) * (t - 0.7), 2) - args.a; };
+  c.by_margin = [&](double t, const double*) { return std::pow((t - 0.3) * (t - 0.7), 2) - args.a; };
   if (args.b != 0) c.bends = {0.3, 0.5, 0.7};
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), false);
+  s.start(c.problem(), args.method, 0, c.y.data());
   const Outcome outcome = run_to(s, 2);
-  std::printf("{\"ended\": %s, \"time\": %.17g}\n", outcome == Outcome::ended ? "true" : "false", s.event_time());
+  std::printf("{\"ended\": %s, \"time\": %.17g}\n", s.event() == 2 && outcome == Outcome::event ? "true" : "false", s.event_time());
 }
 
 // A release: g = t^2 (a - t) starts at zero with rate zero, rises, and falls at a.
 void release(const Arguments& args) {
   Case c = clock_only(1);
-  c.event = [&](double, const double* y) { return y[0] * y[0] * (args.a - y[0]); };
+  c.each_step = [&](double, const double* y) { return y[0] * y[0] * (args.a - y[0]); };
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), true);
+  s.start(c.problem(), args.method, 0, c.y.data());
   const Outcome outcome = run_to(s, 10 * args.a);
   std::printf("{\"event\": %s, \"time\": %.17g}\n", outcome == Outcome::event ? "true" : "false", s.event_time());
 }
@@ -118,14 +118,14 @@ void release(const Arguments& args) {
 void bounces(const Arguments& args) {
   Case c = bouncing(1);
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), true);
+  s.start(c.problem(), args.method, 0, c.y.data());
   std::printf("{\"times\": [");
   for (int i = 0; i < 10 && run_to(s, 100) == Outcome::event; ++i) {
     double y[2];
     s.read(s.event_time(), y);
     std::printf("%s%.17g", i ? ", " : "", s.event_time());
     y[0] = 0, y[1] *= -args.a;
-    s.restart(args.method, s.event_time(), y, true);
+    s.restart(c.problem(), args.method, s.event_time(), y);
   }
   std::printf("], \"restarts\": %lld}\n", s.counters().restarts);
 }
@@ -134,7 +134,7 @@ void bounces(const Arguments& args) {
 void cuts(const Arguments& args) {
   Case c = harmonic();
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), false);
+  s.start(c.problem(), args.method, 0, c.y.data());
   double error = 0, y[2];
   bool exact = true;
   for (int i = 1; i <= 400; ++i) {
@@ -159,7 +159,7 @@ void failure(const Arguments& args) {
   else
     c.rates = [](double, const double* y, double* d) { d[0] = y[0] * y[0]; };
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), false);
+  s.start(c.problem(), args.method, 0, c.y.data());
   const Outcome outcome = run_to(s, 2, 100000);
   double y[1];
   s.read(s.known_until(), y);
@@ -173,7 +173,7 @@ void stiff(const Arguments& args) {
   c.tolerance = 1e-7;
   c.longest_step = 1000;
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), false);
+  s.start(c.problem(), args.method, 0, c.y.data());
   run_to(s, args.b, 200000);
   double y[2];
   s.read(args.b, y);
@@ -185,13 +185,13 @@ void stiff(const Arguments& args) {
 void first_step(const Arguments& args) {
   Case c = harmonic();
   Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data(), false);
+  s.start(c.problem(), args.method, 0, c.y.data());
   for (int i = 0; i < 5; ++i) s.step();
   double y[2];
   s.read(s.known_until(), y);
   const double free_size = s.known_until() - s.step_start();
   s.change_interval(args.a);
-  s.restart(args.method, s.known_until(), y, false);
+  s.restart(c.problem(), args.method, s.known_until(), y);
   s.step();
   const double limited = s.known_until() - s.step_start();
   s.step();

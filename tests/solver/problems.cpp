@@ -9,7 +9,7 @@ Case& of(void* owner) { return *static_cast<Case*>(owner); }
 
 double margin(void* owner, double t, const double* y) {
   const Case& c = of(owner);
-  return c.boundary ? c.boundary(t, y) : 1;
+  return c.by_margin ? c.by_margin(t, y) : 1;
 }
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
@@ -25,7 +25,7 @@ void weights(void* owner, double share, const double* y, double* w) {
   for (int i = 0; i < c.states; ++i) w[i] = 1 / (share * c.tolerance * (1 + std::fabs(y[i])));
 }
 
-double watched(void* owner, double t, const double* y) { return of(owner).event(t, y); }
+double watched(void* owner, double t, const double* y) { return of(owner).each_step(t, y); }
 
 int bends_inside(void* owner, double t_lo, double t_hi, double* instants) {
   int count = 0;
@@ -39,8 +39,10 @@ int bends_inside(void* owner, double t_lo, double t_hi, double* instants) {
 solver::Problem Case::problem() {
   states = static_cast<int>(y.size());
   solver::Problem p = {};
-  p.states = states, p.owner = this, p.derivative = derivative, p.weights = weights, p.boundary = margin;
-  p.event = watched, p.bends = bends.empty() ? nullptr : bends_inside, p.near = near, p.longest_step = longest_step;
+  p.states = states, p.owner = this, p.derivative = derivative, p.weights = weights;
+  if (each_step) p.watch({1, watched, false});
+  if (by_margin) p.watch({2, margin, true});
+  p.bends = bends.empty() ? nullptr : bends_inside, p.near = near, p.longest_step = longest_step;
   return p;
 }
 
@@ -69,7 +71,7 @@ Case bouncing(double height) {
   Case c;
   c.y = {height, 0};
   c.rates = [](double, const double* y, double* d) { d[0] = y[1], d[1] = -9.81; };
-  c.event = [](double, const double* y) { return y[0]; };
+  c.each_step = [](double, const double* y) { return y[0]; };
   return c;
 }
 

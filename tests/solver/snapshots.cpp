@@ -17,7 +17,7 @@ namespace {
 
 Case watched() {
   Case c = van_der_pol(3);
-  c.event = [](double, const double* y) { return y[0] + 10; };
+  c.each_step = [](double, const double* y) { return y[0] + 10; };
   return c;
 }
 
@@ -45,7 +45,7 @@ bool same_steps(Solver& a, Solver& b, int steps) {
 void measure_snapshots(solver::Method method, int steps) {
   Case c = watched();
   Solver original, copy;
-  original.start(c.problem(), method, 0, c.y.data(), true);
+  original.start(c.problem(), method, 0, c.y.data());
   for (int i = 0; i < steps; ++i) original.step();
   const auto bytes = save(original);
   const bool restored = copy.restore_history(c.problem(), bytes.data(), bytes.size());
@@ -66,7 +66,7 @@ void measure_snapshots(solver::Method method, int steps) {
 void measure_forgeries(solver::Method method) {
   Case c = watched();
   Solver original;
-  original.start(c.problem(), method, 0, c.y.data(), true);
+  original.start(c.problem(), method, 0, c.y.data());
   for (int i = 0; i < 60; ++i) original.step();
   const auto bytes = save(original);
   std::vector<std::uint64_t> words = {0, 1, 2, 13, 1u << 20, ~0ull, 1ull << 63, 1ull << 62};
