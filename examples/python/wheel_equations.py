@@ -35,7 +35,7 @@ class Friction(Structure):
 
 
 class Scene(Structure):
-    _fields_ = [("wheel", Parameters), ("friction", Friction), ("load", Load)]
+    _fields_ = [("wheel", Parameters), ("friction", Friction), ("load", Load), ("ground", c_int)]
 
 
 class Motion(Structure):

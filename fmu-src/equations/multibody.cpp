@@ -25,19 +25,22 @@ Solution solve_held(const Multibody& s, const Vector9& column) {
   return {free + unit * tau, tau};
 }
 
-// The moment -(s N + brake) kappa about the axle; where the ground pulls (N <= 0), only the brake's part is left.
-Solution solve_rolling(const Multibody& s, Vector9 column, double kappa, double brake) {
+// The moment -(s N + brake) kappa about the axle; where the ground pulls, only the brake's part is left.
+Solution solve_rolling(const WheelScene& scene, const Multibody& s, Vector9 column) {
+  const double kappa = kappa_of(&scene.friction, omega_z(s)), brake = scene.load.brake;
   column[about_axle] -= brake * kappa;
-  const Vector9 unknowns = system_matrix(s, kappa).partialPivLu().solve(column);
-  if (kappa == 0) return {unknowns, 0};
-  if (unknowns[N] > 0) return {unknowns, -(s.wheel.s * unknowns[N] + brake) * kappa};
+  if (scene.ground != WHEEL_GROUND_PULLS) {
+    const Vector9 unknowns = system_matrix(s, kappa).partialPivLu().solve(column);
+    if (kappa == 0) return {unknowns, 0};
+    if (unknowns[N] > 0 || scene.ground == WHEEL_GROUND_PRESSES)
+      return {unknowns, -(s.wheel.s * unknowns[N] + brake) * kappa};
+  }
   return {system_matrix(s, 0).partialPivLu().solve(column), -brake * kappa};
 }
 
 // (24) under the scene's law of friction.
 Solution solve(const WheelScene& scene, const Multibody& s, const Vector9& column) {
-  if (scene.friction.kind == WHEEL_HELD) return solve_held(s, column);
-  return solve_rolling(s, column, kappa_of(&scene.friction, omega_z(s)), scene.load.brake);
+  return scene.friction.kind == WHEEL_HELD ? solve_held(s, column) : solve_rolling(scene, s, column);
 }
 
 // Rate at which errors of the constraints decay, 1/s: a few times the rates of the motion itself, so that it is never

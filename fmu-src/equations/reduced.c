@@ -31,7 +31,8 @@ static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
   double kappa = kappa_of(&scene->friction, omega_3);
   return (AxleLaw){
       .held = scene->friction.kind == WHEEL_HELD,
-      .grip = scene->wheel.s * kappa,
+      .branch_kept = scene->ground == WHEEL_GROUND_PRESSES,
+      .grip = scene->ground == WHEEL_GROUND_PULLS ? 0.0 : scene->wheel.s * kappa,
       .brake = scene->load.brake * kappa,
   };
 }
@@ -121,7 +122,7 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
 /* The law of friction at y, where the normal force is N. Where the ground pulls (N <= 0), it has no grip. */
 static AxleLaw frozen_law(const WheelScene* scene, const double* y, double N) {
   AxleLaw law = law_of(scene, y[3]);
-  if (N <= 0) law.grip = 0;
+  if (N <= 0 && !law.branch_kept) law.grip = 0;
   return law;
 }
 

@@ -53,8 +53,9 @@ typedef struct System {
 /* The law of friction at one instant: tau = -(grip N + brake), or, if held, the tau that keeps omega_3 constant. */
 typedef struct AxleLaw {
   int held;
-  double grip;  /* m, s kappa */
-  double brake; /* N m, capacity of the brake times kappa */
+  int branch_kept; /* the grip stays where N < 0 */
+  double grip;     /* m, s kappa */
+  double brake;    /* N m, capacity of the brake times kappa */
 } AxleLaw;
 
 typedef struct Motion {
@@ -176,7 +177,7 @@ static inline Motion solve(const System* s, const AxleLaw* law) {
 /* The same where the ground may pull (N <= 0): then the ground's part of the friction is zero. */
 static inline Motion move(const System* s, AxleLaw* law) {
   Motion a = solve(s, law);
-  if (a.N > 0 || law->grip == 0) return a;
+  if (a.N > 0 || law->grip == 0 || law->branch_kept) return a;
   law->grip = 0;
   return solve(s, law);
 }

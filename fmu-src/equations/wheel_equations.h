@@ -42,7 +42,7 @@ typedef struct WheelLoad {
 } WheelLoad;
 
 /* The moment tau of ground and brake about the axle: tau = -(s N + brake) kappa. N is the normal force lambda_3; a
- * ground that pulls (N <= 0) has no friction, and the brake's part alone is left. */
+ * ground that pulls (N <= 0) has no friction, and the brake's part alone is left (WheelGround). */
 typedef enum WheelFrictionKind {
   WHEEL_NO_LAW,       /* the law of a struct filled with zeros: every acceleration and force is NaN */
   WHEEL_FRICTIONLESS, /* kappa = 0: no moment, whatever s and the brake are */
@@ -57,11 +57,20 @@ typedef struct WheelFriction {
   double omega_s; /* rad/s, > 0, for WHEEL_REGULARIZED */
 } WheelFriction;
 
+/* Where the ground has friction. A solver that finds the instants at which N = 0 keeps one branch between two of them,
+ * so that no trial step meets the corner of the law. */
+typedef enum WheelGround {
+  WHEEL_GROUND_BY_FORCE, /* where N > 0 */
+  WHEEL_GROUND_PRESSES,  /* s N whatever the sign of N */
+  WHEEL_GROUND_PULLS     /* nowhere */
+} WheelGround;
+
 /* All that a right-hand side needs besides the state. `wheel_scene` makes one and checks it. */
 typedef struct WheelScene {
   WheelParameters wheel;
   WheelFriction friction;
   WheelLoad load;
+  WheelGround ground;
 } WheelScene;
 
 /* The scene of a wheel under a load (NULL: none) and a law of friction, for example

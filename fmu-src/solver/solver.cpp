@@ -92,7 +92,7 @@ void Solver::expand(Counters* counters) const {
 void Solver::look_for_events(double from) {
   for (int i = 0; i < problem_.watched_count; ++i) {
     const Watched& watched = problem_.watched[i];
-    const Search search(problem_, step_, watched, &counters_.roots);
+    const Search search(problem_, step_, watched, watched.by_margin ? &counters_.rhs : &counters_.roots);
     Sample lo = {from, values_[i]}, hi = {};
     if (watched.by_margin) {
       if (!comes_near(search, from)) continue;

@@ -16,6 +16,7 @@ void set_initial_state(State& state) {
   start.motion.formulation = &choose_formulation(state.parameters);
   start.motion.keep_contact = state.parameters[keep_contact] != 0;
   start.motion.scene.wheel = parameters_from(state.parameters);
+  start.motion.scene.ground = WHEEL_GROUND_PRESSES;
   const WheelMotion motion = initial_motion(state.parameters);
   start.motion.formulation->start(&start.motion.scene.wheel, &motion, start.y);
   start.y_known = true;

@@ -30,7 +30,7 @@ double height(const Motion& motion, const double* y) {
 // N over the weight, or its negative while the ground pulls. What is below zero only by rounding does not count.
 double contact(const Motion& motion, double N) {
   constexpr double rounding = 1e-9;
-  return (motion.pulling ? -N : N) / motion.weight + rounding;
+  return (pulls(motion) ? -N : N) / motion.weight + rounding;
 }
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
@@ -96,6 +96,8 @@ void set_scales(Motion& motion, const double* y) {
   motion.weight = force_scale(wheel, own_time);
   motion.scales = error_scales(wheel, *motion.formulation, y);
 }
+
+void change_contact(Motion& motion) { motion.scene.ground = pulls(motion) ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS; }
 
 solver::Problem problem_of(Motion& motion) {
   constexpr double near = 0.1;  // of the weight, or rad from lying flat

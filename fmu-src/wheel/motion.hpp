@@ -34,14 +34,15 @@ struct Motion {
   double weight = 0;        // N, scale of the normal force
   double longest_step = 0;  // s
   bool keep_contact = false;
-  bool pulling = false;  // with keep_contact: N < 0
 };
 
 // Scales of errors, forces and steps, from the parameters and the initial state.
 void set_scales(Motion& motion, const double* y);
 
+inline bool pulls(const Motion& motion) { return motion.scene.ground == WHEEL_GROUND_PULLS; }
+
 // The ground begins to pull, or to press.
-inline void change_contact(Motion& motion) { motion.pulling = !motion.pulling; }
+void change_contact(Motion& motion);
 
 // The problem refers to the motion and changes nothing of it but the load of its scene. What is watched goes with the
 // law in force.

@@ -62,8 +62,7 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const doubl
       turned = true;
       swing = 0;
     }
-    if (outcome == solver::Outcome::event)
-      return track_.finish(), end_time_ = t, event_ = solver.event(), Kind::ended;
+    if (outcome == solver::Outcome::event) return track_.finish(), end_time_ = t, event_ = solver.event(), Kind::ended;
     if (y[omega_1] != 0) before = y[omega_1];
     swing = std::fmax(swing, std::fabs(y[omega_1]));
   }

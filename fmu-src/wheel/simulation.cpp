@@ -88,6 +88,7 @@ Instant Simulation::instant() {
     now.scene = pending_scene(state_);
   else if (inputs.varies)
     inputs.load_at(state_.t, &now.scene.load);
+  now.scene.ground = WHEEL_GROUND_BY_FORCE;
   return now;
 }
 

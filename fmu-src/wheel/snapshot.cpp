@@ -43,8 +43,8 @@ void visit(Archive& archive, State& state) {
   visit(archive, motion.inputs);
   archive.count(state.method, 0, static_cast<int>(solver::Method::runge_kutta));
   archive.count(state.ending, 0, static_cast<int>(Event::fell_flat));
-  archive.truths(state.prepared, state.started, state.moving, state.unfolded, state.jumped, state.changes_pending,
-                 motion.pulling);
+  archive.truths(state.prepared, state.started, state.moving, state.unfolded, state.jumped, state.changes_pending);
+  archive.count(motion.scene.ground, WHEEL_GROUND_BY_FORCE, WHEEL_GROUND_PULLS);
   archive.number(state.t), archive.number(state.last_change);
   archive.numbers(state.y, WHEEL_MAX_STATES);
   solver::Counters& counted = state.counted;
@@ -71,8 +71,10 @@ bool law_is_sound(const WheelFriction& law, double width) {
 bool run_is_sound(const State& state) {
   const Motion& motion = state.motion;
   const bool unfoldable = is_unfoldable(state.parameters, motion.scene, motion.inputs.loaded);
-  return law_is_sound(motion.scene.friction, state.parameters[omega_s]) && state.last_change >= 0 &&
-         state.last_change <= state.t && (unfoldable || !state.unfolded) &&
+  const WheelGround ground = motion.scene.ground;
+  return law_is_sound(motion.scene.friction, state.parameters[omega_s]) &&
+         (ground == WHEEL_GROUND_PRESSES || (motion.keep_contact && ground == WHEEL_GROUND_PULLS)) &&
+         state.last_change >= 0 && state.last_change <= state.t && (unfoldable || !state.unfolded) &&
          (state.moving ? state.started : state.t == 0 && state.ending == Event::none);
 }
 
@@ -88,12 +90,12 @@ bool read_run(support::Reader& reader, State& state) {
   const WheelFriction law = state.motion.scene.friction;
   const double s_in_force = state.motion.scene.wheel.s;
   const Inputs inputs = state.motion.inputs;
-  const bool pulling = state.motion.pulling;
+  const WheelGround ground = state.motion.scene.ground;
   state.motion = start.motion;
   state.motion.scene.friction = law;
   state.motion.scene.wheel.s = s_in_force;
   state.motion.inputs = inputs;
-  state.motion.pulling = pulling;
+  state.motion.scene.ground = ground;
   state.motion.inputs.classify();
   state.motion.inputs.load_at(state.t, &state.motion.scene.load);
   state.y_known = true;

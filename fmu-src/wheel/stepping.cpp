@@ -60,9 +60,7 @@ bool Simulation::settle_changes() {
 }
 
 // Starts the solver from nothing at the present instant.
-bool Simulation::start_solver() {
-  return solver_.start(problem_of(state_.motion), state_.method, state_.t, y_now());
-}
+bool Simulation::start_solver() { return solver_.start(problem_of(state_.motion), state_.method, state_.t, y_now()); }
 
 // Counts and reports a change between held, positive and negative spin. A change to another law is not a transition.
 void Simulation::announce_transition(double t, const WheelFriction& before) {
@@ -100,11 +98,16 @@ bool Simulation::pass_transition() {
   return solver_.restart(problem_of(motion), state_.method, t, y);
 }
 
-// The solver stands where the ground begins to pull or to press. Nothing of a motion without friction changes there.
+// The solver stands where the ground begins to pull or to press. Without friction the motion goes on as it was.
 bool Simulation::pass_contact() {
-  change_contact(state_.motion);
-  if (state_.motion.pulling) tell_pull(solver_.event_time());
-  return solver_.resume(), true;
+  Motion& motion = state_.motion;
+  const double t = solver_.event_time();
+  change_contact(motion);
+  if (pulls(motion)) tell_pull(t);
+  if (motion.scene.friction.kind == WHEEL_FRICTIONLESS) return solver_.resume(), true;
+  double y[WHEEL_MAX_STATES];
+  solver_.read(t, y);
+  return solver_.restart(problem_of(motion), state_.method, t, y);
 }
 
 // `event`: it ends the run.
@@ -159,7 +162,8 @@ Progressed Simulation::end_run() {
   move_to(state_.unfolded ? orbit_.end_time() : solver_.event_time());
   state_.ending = static_cast<Event>(state_.unfolded ? orbit_.event() : solver_.event());
   const double theta = y_now()[state_.motion.formulation->tilt_index];
-  const char* sentence = state_.ending == Event::fell_flat ? "T%s: the model ends there." : "T%s, theta = %.6g rad: the model ends there.";
+  const char* sentence =
+      state_.ending == Event::fell_flat ? "T%s: the model ends there." : "T%s, theta = %.6g rad: the model ends there.";
   tell(Topic::discard, sentence, ending() + 1, theta);
   return Progressed::ended;
 }
@@ -170,8 +174,11 @@ Progressed Simulation::fail(const State& before) {
        y_now()[state_.motion.formulation->spin_index], failure_);
   state_ = before;
   reading_fresh_ = false;
+  if (!state_.is_stepping()) return Progressed::failed;
   // The solver has lost the history before the step. It stands at the state, and `counted` holds its counts.
-  if (state_.is_stepping()) solver_.start(problem_of(state_.motion), state_.method, state_.t, state_.y);
+  solver::Problem problem = problem_of(state_.motion);
+  problem.watched_count = 0;
+  solver_.start(problem, state_.method, state_.t, state_.y);
   return Progressed::failed;
 }
 

@@ -43,6 +43,7 @@ PUBLIC Probe* probe_make(const WheelParameters* wheel, const WheelMotion* motion
   m.formulation = &wheel_reduced;
   m.scene.wheel = *wheel;
   m.scene.friction.kind = WHEEL_FRICTIONLESS;
+  m.scene.ground = WHEEL_GROUND_PRESSES;
   m.tolerance = tolerance;
   m.keep_contact = keep_contact != 0;
   wheel_reduced.start(wheel, motion, probe->start);

@@ -101,7 +101,8 @@ void double_dip(const Arguments& args) {
   Solver s;
   s.start(c.problem(), args.method, 0, c.y.data());
   const Outcome outcome = run_to(s, 2);
-  std::printf("{\"ended\": %s, \"time\": %.17g}\n", s.event() == 2 && outcome == Outcome::event ? "true" : "false", s.event_time());
+  std::printf("{\"ended\": %s, \"time\": %.17g}\n", s.event() == 2 && outcome == Outcome::event ? "true" : "false",
+              s.event_time());
 }
 
 // A release: g = t^2 (a - t) starts at zero with rate zero, rises, and falls at a.
