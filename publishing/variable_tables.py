@@ -1,18 +1,15 @@
 #!/usr/bin/env python3
-"""Writes what follows from the variables in modelDescription.xml: its GUID, and the tables in docs/variables.md and in
-the FMU's documentation.
+"""Writes the tables of the variables of modelDescription.xml into docs/variables.md and the FMU's documentation.
 
-No paper equation; frames and units are those of the description. Run it after a change of the variables; the tests
-fail while the GUID or a table is stale. With --check it changes nothing and tells by its exit status.
+No paper equation; frames and units are those of the description. With --check it changes nothing and tells by its exit
+status. Numbers and GUID: cmake/description.
 """
 
 from __future__ import annotations
 
 import argparse
 import html
-import re
 import sys
-import uuid
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -22,13 +19,11 @@ ROOT = Path(__file__).resolve().parent.parent
 DESCRIPTION = ROOT / "modelDescription.xml"
 PAGES = (ROOT / "docs" / "variables.md", ROOT / "fmu-src" / "archive" / "documentation" / "index.html")
 TITLES = {
-    "parameter": "Parameters, set before the run (`s` also between steps)",
+    "parameter": "Parameters, set before the run ({tunable} also between steps)",
     "input": "Inputs",
     "output": "Outputs",
     "local": "For inspection",
 }
-# What a master relies on: a library and a description that differ here do not belong together.
-BINDING = ("CoSimulation", "UnitDefinitions", "ModelVariables", "ModelStructure")
 BEGIN, END = "<!-- variables -->", "<!-- end of variables -->"
 
 
@@ -38,6 +33,7 @@ class Variable(NamedTuple):
     unit: str
     start: str
     meaning: str
+    tunable: bool
 
 
 def read_variables(path: Path = DESCRIPTION) -> list[Variable]:
@@ -49,29 +45,19 @@ def variable_of(row: ElementTree.Element) -> Variable:
     start = typed.get("start", "")
     if typed.tag == "Real" and start:
         start = f"{float(start):.6g}"
-    return Variable(row.get("name"), row.get("causality"), typed.get("unit", ""), start, row.get("description"))
-
-
-def guid_of(description: str) -> str:
-    """The GUID as a digest of all that binds library and description; comments, layout and prose do not count."""
-    root = ElementTree.fromstring(description.encode())
-    parts = [ElementTree.tostring(root.find(name), encoding="unicode") for name in BINDING]
-    text = "".join(ElementTree.canonicalize(part, strip_text=True, exclude_attrs=["description"]) for part in parts)
-    return "{" + str(uuid.uuid5(uuid.NAMESPACE_OID, text)) + "}"
-
-
-def with_guid(description: str) -> str:
-    return re.sub(r' guid="[^"]*"', f' guid="{guid_of(description)}"', description, count=1)
+    texts = (row.get("name"), row.get("causality"), typed.get("unit", ""), start, row.get("description"))
+    return Variable(*texts, row.get("variability") == "tunable")
 
 
 def tables(variables: list[Variable]) -> Iterator[tuple[str, list[str], list[list[str]]]]:
     """Title, head and rows of the table of each kind; only parameters and inputs have a start value."""
+    tunable = ", ".join(f"`{v.name}`" for v in variables if v.tunable)
     for causality, title in TITLES.items():
         of_kind = [v for v in variables if v.causality == causality]
         started = any(v.start for v in of_kind)
         head = ["name", "unit", "start", "meaning"] if started else ["name", "unit", "meaning"]
         rows = [[f"`{v.name}`", v.unit, *([v.start] if started else []), v.meaning] for v in of_kind]
-        yield title, head, rows
+        yield title.format(tunable=tunable), head, rows
 
 
 def in_markdown(variables: list[Variable]) -> str:
@@ -111,9 +97,9 @@ def main() -> int:
     check = parser.parse_args().check
     variables = read_variables()
     stale = 0
-    for page in (DESCRIPTION, *PAGES):
+    for page in PAGES:
         text = page.read_text(encoding="utf-8")
-        fresh = with_guid(text) if page == DESCRIPTION else with_tables(text, variables, page)
+        fresh = with_tables(text, variables, page)
         stale += text != fresh
         if not check:
             page.write_text(fresh, encoding="utf-8")

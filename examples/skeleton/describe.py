@@ -5,9 +5,10 @@
 TABLE is a CSV file: causality, name, unit, start, depends, description. Its comments (#) come first; the first of them
 describes the model. A name with {wheel} stands for one variable per wheel of LAYOUT, a TOML file whose [wheel.NAME]
 tables also give start values: {x} is that wheel's x; for other variables they come from its table [NAME of the model].
-`depends` lists the inputs that an output depends on directly (patterns with *); `-` is none. The value reference of a
-variable is its place in the list, and variables.h names it: of variables per wheel also by the name with `each`, the
-first wheel's; the next wheel's is wheel_parameters, wheel_inputs or wheel_outputs further on.
+`depends` lists the inputs that an output depends on directly (patterns with *); `-` is none. Numbers and GUID are
+written as those of the wheel are (cmake/description/numbering.py). variables.h names the value references: of
+variables per wheel also by the name with `each`, the first wheel's; the next wheel's is wheel_parameters, wheel_inputs
+or wheel_outputs further on.
 """
 
 from __future__ import annotations
@@ -18,8 +19,11 @@ import tomllib
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
-from uuid import NAMESPACE_URL, uuid5
+from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "cmake"))
+from description.numbering import numbered
 
 BASE = {
     "kg": "kg=1", "m": "m=1", "s": "s=1", "rad": "rad=1", "kg.m2": "kg=1 m=2", "m/s": "m=1 s=-1", "m/s2": "m=1 s=-2",
@@ -73,16 +77,13 @@ def _variable(row: dict[str, str], wheel: str, properties: dict[str, float | str
     )
 
 
-def matching(variable: Variable, variables: list[Variable]) -> list[int]:
-    """Indices (from 1) of the inputs that an output depends on."""
-    return [
-        i
-        for i, v in enumerate(variables, 1)
-        if v.causality == "input" and any(fnmatchcase(v.name, pattern) for pattern in variable.depends)
-    ]
+def matching(variable: Variable, variables: list[Variable]) -> list[str]:
+    """The inputs that an output depends on."""
+    inputs = [v.name for v in variables if v.causality == "input"]
+    return [name for name in inputs if any(fnmatchcase(name, pattern) for pattern in variable.depends)]
 
 
-def _scalar(reference: int, v: Variable) -> str:
+def _scalar(v: Variable) -> str:
     how = {
         "parameter": 'causality="parameter" variability="fixed" initial="exact"',
         "input": 'causality="input" variability="continuous"',
@@ -91,7 +92,7 @@ def _scalar(reference: int, v: Variable) -> str:
     }[v.causality]
     start = f' start="{v.start!r}"' if v.causality in ("parameter", "input") else ""
     return (
-        f'    <ScalarVariable name="{v.name}" valueReference="{reference}" {how}\n'
+        f'    <ScalarVariable name="{v.name}" {how}\n'
         f'      description={quoteattr(v.description)}><Real unit="{v.unit}"{start}/></ScalarVariable>'
     )
 
@@ -104,25 +105,15 @@ def _units(variables: list[Variable]) -> list[str]:
     return lines
 
 
-def guid(name: str, variables: list[Variable]) -> str:
-    """The same table, the same GUID."""
-    return f"{{{uuid5(NAMESPACE_URL, name + repr(variables))}}}"
-
-
-def _unknown(index: int, dependencies: list[int]) -> str:
-    return f'      <Unknown index="{index}" dependencies="{" ".join(map(str, dependencies))}"/>'
-
-
 def description(name: str, about: str, variables: list[Variable]) -> str:
     """modelDescription.xml as text."""
-    outside = {i: v for i, v in enumerate(variables, 1) if v.causality == "output"}
-    parameters = [i for i, v in enumerate(variables, 1) if v.causality == "parameter"]
-    outputs = [_unknown(i, matching(v, variables)) for i, v in outside.items()]
+    parameters = [v.name for v in variables if v.causality == "parameter"]
+    outputs = {v.name: matching(v, variables) for v in variables if v.causality == "output"}
     # The states at the start follow from the parameters.
-    start = [_unknown(i, parameters + matching(v, variables)) for i, v in outside.items()]
-    return "\n".join([
+    start = {name: parameters + inputs for name, inputs in outputs.items()}
+    text = "\n".join([
         '<?xml version="1.0" encoding="UTF-8"?>',
-        f'<fmiModelDescription fmiVersion="2.0" modelName="{name}" guid="{guid(name, variables)}"',
+        f'<fmiModelDescription fmiVersion="2.0" modelName="{name}" guid=""',
         f"  description={quoteattr(about)}",
         '  generationDateAndTime="2026-11-21T00:00:00Z" variableNamingConvention="flat" numberOfEventIndicators="0">',
         f'  <CoSimulation modelIdentifier="{name}" canHandleVariableCommunicationStepSize="true"',
@@ -133,13 +124,11 @@ def description(name: str, about: str, variables: list[Variable]) -> str:
         '    <Category name="logStatusError" description="what was wrong with a call or a parameter"/>',
         "  </LogCategories>",
         '  <DefaultExperiment startTime="0" stopTime="10" stepSize="0.001"/>',
-        "  <ModelVariables>", *(_scalar(i, v) for i, v in enumerate(variables)), "  </ModelVariables>",
-        "  <ModelStructure>",
-        "    <Outputs>", *outputs, "    </Outputs>",
-        "    <InitialUnknowns>", *start, "    </InitialUnknowns>",
-        "  </ModelStructure>",
+        "  <ModelVariables>", *map(_scalar, variables), "  </ModelVariables>",
+        "  <ModelStructure/>",
         "</fmiModelDescription>", "",
     ])  # fmt: skip
+    return numbered(text, {"Outputs": outputs, "InitialUnknowns": start})
 
 
 def rate_name(name: str) -> str:
@@ -150,7 +139,7 @@ def rate_name(name: str) -> str:
     return ""
 
 
-def header(name: str, variables: list[Variable], wheels: dict[str, dict[str, float | str]]) -> str:
+def header(guid: str, variables: list[Variable], wheels: dict[str, dict[str, float | str]]) -> str:
     """variables.h as text."""
     of = [v.causality for v in variables]
     first = next(iter(wheels), None)
@@ -170,9 +159,9 @@ def header(name: str, variables: list[Variable], wheels: dict[str, dict[str, flo
     rates = [inputs.get(rate, -1) for rate in map(rate_name, inputs)]
     partner = [list(wheels).index(w["bar_to"]) if "bar_to" in w else -1 for w in wheels.values()]
     return "\n".join([
-        f"/* Value references of {name}: generated from its table of variables. */",
+        "/* Value references of an example: generated from its table of variables. */",
         "#ifndef VARIABLES_H", "#define VARIABLES_H",
-        f"#define MODEL_GUID \"{guid(name, variables)}\"",
+        f"#define MODEL_GUID \"{guid}\"",
         "enum {", *(f"  {key} = {value}," for key, value in numbers.items()), "};",
         f"static const double variable_starts[] = {{{starts}}};",
         "/* Of each input the input that is its rate, or -1. */",
@@ -203,10 +192,12 @@ def main() -> None:
     about, variables = read(name, Path(table), given)
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
-    (target / "modelDescription.xml").write_text(description(name, about, variables))
+    xml = description(name, about, variables)
+    (target / "modelDescription.xml").write_text(xml)
     if given.get("wheel"):
         (target / "terminalsAndIcons.xml").write_text(terminals(variables, list(given["wheel"])))
-    (target / "variables.h").write_text(header(name, variables, given.get("wheel", {})))
+    guid = ElementTree.fromstring(xml.encode()).get("guid")
+    (target / "variables.h").write_text(header(guid, variables, given.get("wheel", {})))
 
 
 if __name__ == "__main__":

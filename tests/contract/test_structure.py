@@ -1,86 +1,85 @@
-"""ModelStructure tells the truth: an output depends on what it lists and on nothing else."""
+"""The numbers of a description: ModelStructure lists what was measured and nothing else, and whoever adds, moves or
+removes a variable numbers nothing by hand."""
 
 from __future__ import annotations
 
-import numpy as np
+import re
+import sys
+
 import pytest
-from support.driver import OK, FMU2Wheel
-from support.scenes import KINDS
+from support.paths import ROOT
+
+sys.path.insert(0, str(ROOT / "cmake"))
+from description.measuring import measured
+from description.numbering import numbered
 
 pytestmark = pytest.mark.contract
 
-INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake")
-# Values off every symmetry, so that no dependency hides behind a zero.
-GENERAL = {
-    **{"theta_start": 1.1, "psi_start": 0.7, "phi_start": 0.4, "psi_dot_start": 0.9, "theta_dot_start": -0.6},
-    **{"slope": 0.2, "slope_direction": 0.6},
-    **{"phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "F_X": 1.0, "M_2": 0.5, "M_brake": 0.2},
-}
-# The formulation changes rounding only, yet is listed; solver and contact have no part in a value.
-CHOICES = {"formulation"}
+TEXT = (ROOT / "modelDescription.xml").read_text(encoding="utf-8")
+LOADS = {"F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake"}
+NEW = """    <ScalarVariable name="drag" causality="parameter" variability="fixed" initial="exact"
+      description="Added first"><Real unit="m" start="0"/></ScalarVariable>
+"""
 
 
-def initialized(w: FMU2Wheel, **values: float) -> FMU2Wheel:
-    assert w.set(**values) == OK
-    assert (w.setupExperiment(), w.enterInitializationMode()) == (OK, OK)
-    return w
+@pytest.fixture(scope="module")
+def depends(fmu_path):
+    return measured(fmu_path)
 
 
-def outputs(w: FMU2Wheel) -> list[str]:
-    return [name for name, v in w.variables.items() if v.causality == "output"]
+def test_the_measurement_finds_the_dependencies_that_the_equations_have(depends):
+    start, now = depends["InitialUnknowns"], depends["Outputs"]
+    assert start["theta"] == {"theta_start"} and start["Z_O"] == {"r_0", "r", "theta_start"}
+    assert start["tau"] > LOADS | {"s", "friction_law", "omega_s", "J_x", "J_y", "g"}
+    assert now["lambda_3"] == LOADS and now["theta"] == now["omega_z"] == set()
 
 
-def moved(w: FMU2Wheel, name: str, relative: float = 0.01) -> set[str]:
-    """The outputs that a small change of one parameter or input moves, in initialization mode."""
-    names = outputs(w)
-    before = np.frombuffer(w.read(names))
-    (value,) = w.get(name)
-    kind = w.variables[name].type
-    changed = {"Boolean": 1 - value, "Integer": 1 if value == 2 else 2}.get(kind, value * (1 + relative) + 1e-3)
-    assert w.set(**{name: changed}) == OK
-    after = np.frombuffer(w.read(names))
-    assert w.set(**{name: value}) == OK
-    assert w.read(names) == before.tobytes()
-    return {names[k] for k in np.flatnonzero(np.abs(after - before) > 1e-11)}
+def test_the_description_is_numbered_and_lists_exactly_the_dependencies_that_are_measured(depends):
+    assert numbered(TEXT, depends) == TEXT, "run scripts/variables"
+    without = {**depends, "Outputs": {**depends["Outputs"], "theta": {"M_1"}}}
+    assert numbered(TEXT, without) != TEXT  # a false algebraic loop would be seen
 
 
-def measured_dependencies(wheel, description) -> dict[str, set[str]]:
-    knowns = [v.name for v in description.modelVariables if v.causality in ("parameter", "input")]
-    depends: dict[str, set[str]] = {}
-    # omega_z below omega_s, where the regularized law is neither zero nor one
-    slow = {"phi_dot_start": -GENERAL["psi_dot_start"] * np.cos(GENERAL["theta_start"]) + 5e-4}
-    scenes = [KINDS["free"], KINDS["general inertia, friction"], KINDS["regularized"] | slow]
-    for scene in (*scenes, KINDS["general inertia"] | KINDS["regularized"] | slow):
-        w = initialized(wheel(), **GENERAL | {"J_z": 1.6} | scene)
-        for known in knowns:
-            if known != "formulation":  # reduced needs J_x = J_y
-                for output in moved(w, known):
-                    depends.setdefault(output, set()).add(known)
-    return depends
+def index_of(text: str, name: str) -> int:
+    return 1 + int(re.search(rf'name="{name}" valueReference="(\d+)"', text)[1])
 
 
-def test_initial_unknowns_list_exactly_what_moves_them(wheel, description):
-    measured = measured_dependencies(wheel, description)
-    assert measured["theta"] == {"theta_start"} != {"theta_start", "m"}
-    for unknown in description.initialUnknowns:
-        declared = {v.name for v in unknown.dependencies}
-        name = unknown.variable.name
-        assert declared - CHOICES == measured[name], (name, declared ^ measured[name])
+def without_numbers(text: str) -> str:
+    return re.sub(r'( guid| valueReference|index|dependencies)="[^"]*"', "", text)
 
 
-def test_outputs_list_exactly_the_inputs_that_move_them_at_once(wheel, description):
-    w = wheel().start(**GENERAL | KINDS["general inertia, friction"])
-    assert w.step(0.1) == OK
-    names = outputs(w)
-    measured: dict[str, set[str]] = {name: set() for name in names}
-    for known in INPUTS:
-        before = np.frombuffer(w.read(names))
-        (value,) = w.get(known)
-        assert w.set(**{known: value + 0.5}) == OK
-        after = np.frombuffer(w.read(names))
-        assert w.set(**{known: value}) == OK
-        for k in np.flatnonzero(after != before):
-            measured[names[k]].add(known)
-    declared = {u.variable.name: {v.name for v in u.dependencies} for u in description.outputs}
-    assert declared == measured
-    assert declared != measured | {"theta": {"M_1"}}  # a false algebraic loop would be seen
+def test_a_variable_that_comes_or_goes_changes_numbers_alone(depends):
+    added = numbered(TEXT.replace("  <ModelVariables>\n", f"  <ModelVariables>\n{NEW}"))
+    assert 'name="drag" valueReference="0"' in added and 'name="m" valueReference="1"' in added
+    assert without_numbers(added) == without_numbers(TEXT.replace("  <ModelVariables>\n", f"  <ModelVariables>\n{NEW}"))
+    numbers = re.compile(r'index="(\d+)" dependencies="([^"]*)"')
+    before, after = numbers.findall(TEXT), numbers.findall(added)
+    assert [[int(i) + 1 for i in f"{index} {of}".split()] for index, of in before] == [
+        [int(i) for i in f"{index} {of}".split()] for index, of in after
+    ]
+    removed = re.sub(r' *<ScalarVariable name="drag".*?</ScalarVariable>\n', "", added, flags=re.DOTALL)
+    assert numbered(removed) == TEXT != removed
+    added_again = numbered(removed, {"Outputs": depends["Outputs"]})
+    assert f'index="{index_of(TEXT, "theta")}"/>' in added_again  # what was not measured is not stated
+
+
+def test_states_and_derivatives_are_numbered_by_name():
+    moved = TEXT.replace('<Real unit="m/s"/></', '<Real unit="m/s" derivative="X_O"/></', 1)
+    states = numbered(moved.replace("  <ModelVariables>\n", f"  <ModelVariables>\n{NEW}"))
+    position, rate = index_of(states, "X_O"), index_of(states, "X_O_dot")
+    assert position == index_of(TEXT, "X_O") + 1 and f'derivative="{position}"' in states
+    assert re.search(rf'<Derivatives>\s*<Unknown index="{rate}"/><!-- X_O_dot -->\s*</Derivatives>', states)
+    assert numbered(states) == states
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ('valueReference="1"', 'valueReference="0"', "m and r_0 have one valueReference"),
+        ('name="r_0"', 'name="m"', "two variables of one name"),
+        ('dependencies=""', 'dependencies="mass"', "refers to mass, which is none of its variables"),
+    ],
+)
+def test_a_description_that_cannot_be_numbered_is_refused_with_a_sentence(old, new, sentence):
+    with pytest.raises(SystemExit, match=sentence):
+        numbered(TEXT.replace(old, new, 1))

@@ -1,0 +1,32 @@
+"""Numbers modelDescription.xml: value references, indices, ModelStructure and the GUID. For scripts/variables."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from . import numbering
+
+DESCRIPTION = Path(__file__).resolve().parents[2] / "modelDescription.xml"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="scripts/variables", description=__doc__)
+    parser.add_argument("--check", action="store_true", help="change nothing; exit status 1 if a number is stale")
+    parser.add_argument("--measure", type=Path, metavar="FMU", help="take the dependencies from this built FMU")
+    arguments = parser.parse_args()
+    depends = None
+    if arguments.measure:
+        from .measuring import measured
+
+        depends = measured(arguments.measure)
+    text = DESCRIPTION.read_text(encoding="utf-8")
+    fresh = numbering.numbered(text, depends)
+    if not arguments.check:
+        DESCRIPTION.write_text(fresh, encoding="utf-8")
+    return int(arguments.check and fresh != text)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
