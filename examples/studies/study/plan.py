@@ -14,6 +14,7 @@ from fmpy.model_description import ModelDescription
 from numpy.typing import NDArray
 
 from .measures import Measure, parse_measure
+from .options import StudyError
 from .runs import Job
 
 if TYPE_CHECKING:
@@ -22,10 +23,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 POINT = "wheel"  # the dimension of a list or a sample
 OWN = ("status", "message", "end_time", "wall_time", "fmu_time", "time", POINT)
-
-
-class StudyError(ValueError):
-    """The study cannot be run as it is written; the text is one sentence."""
 
 
 @dataclass(frozen=True, kw_only=True)
