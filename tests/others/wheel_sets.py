@@ -1,0 +1,124 @@
+"""Modelica's wheel sets (RollingWheelSetDriving and RollingWheelSetPulling of the Modelica Standard Library 4.0).
+
+Two knife-edged wheels upright on one rigid axle, a small body 0.2 m ahead of its middle; either the wheels are driven by
+torques, or the body is pulled by a force in fixed axes. Wheel 1 is the left one. In the limit of rigid links only the
+generalised forces along the heading and about the vertical count: a force (l, t) at the body is the pair of drive torques
+R (l -+ a t / b) / 2. So both scenes become drive torques, which depend on time and heading alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from math import cos, pi, sin
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from vehicles.axle import CONNECTIONS, WHEELS
+from vehicles.component import Component, Values
+from vehicles.hubs import upright
+from vehicles.master import Master
+
+from .numbers import read
+
+Array = NDArray[np.float64]
+Torques = Callable[[float, float], tuple[float, float]]  # of time and heading: left and right, positive forwards
+R, B, A = 0.1, 0.25, 0.2  # m: wheels' radius, half the track, body ahead of the middle
+WHEEL = {"m": 0.5, "r_0": R, "r": 0.0, "J_x": 0.02, "J_y": 0.02, "J_z": 0.01, "keep_contact": True}
+BODY = {"m_B": 0.01, "J_1": 0.001, "J_2": 0.001, "J_3": 0.001, "a": A, "b": B, "R": R}
+START = 0.1  # m, X and Y of the middle
+SOFT = 300.0  # N/m, the unit of stiffness
+COMPARED = ("x", "y", "phi")
+
+
+def driving(t: float, _psi: float) -> tuple[float, float]:
+    return -2 * sin(2 * pi * t), -2 * cos(2 * pi * t)
+
+
+def pulling(t: float, psi: float) -> tuple[float, float]:
+    """1 N along X until 1 s, 2 N along Y from 2 s on, on straight lines between."""
+    share = min(max(t - 1, 0.0), 1.0)
+    X, Y = 1 - share, 2 * share
+    along, across = X * cos(psi) + Y * sin(psi), Y * cos(psi) - X * sin(psi)
+    return R * (along - A * across / B) / 2, R * (along + A * across / B) / 2
+
+
+SCENES: dict[str, Torques] = {"driving": driving, "pulling": pulling}
+
+
+def table(scene: str) -> dict[str, Array]:
+    """Their result, thinned."""
+    return read(f"modelica_{scene}")
+
+
+@cache
+def rigid(scene: str) -> dict[str, Array]:
+    """The rigid wheel set at the table's instants, in five quantities: x, y, heading, speed, yaw rate.
+
+    m_t v' = S w^2 + (M_l + M_r) / R and I_t w' = -S v w + b (M_r - M_l) / R, as in examples/axle.
+    """
+    times, torques = table(scene)["time"], SCENES[scene]
+    m, J_x, J_z = WHEEL["m"], WHEEL["J_x"], WHEEL["J_z"]
+    m_t, S = 2 * m + BODY["m_B"] + 2 * J_z / R**2, BODY["m_B"] * A
+    I_t = 2 * (J_x + m * B**2 + J_z * (B / R) ** 2) + BODY["J_3"] + BODY["m_B"] * A**2
+
+    def rate(t: float, y: Array) -> list[float]:
+        _, _, psi, v, w = y
+        left, right = torques(t, psi)
+        forces = (S * w * w + (left + right) / R) / m_t, (-S * v * w + B * (right - left) / R) / I_t
+        return [v * cos(psi), v * sin(psi), w, *forces]
+
+    y, columns = np.array([START, START, 0.0, 0.0, 0.0]), []
+    for begin, end in ((0.0, 1.0), (1.0, 2.0), (2.0, 3.0)):  # the pull has kinks there
+        at = times[(times >= begin) & (times < end)] if end < 3 else times[times >= begin]
+        done = solve_ivp(rate, (begin, end), y, "DOP853", np.union1d(at, [end]), rtol=1e-13, atol=1e-14)
+        y = done.y[:, -1]
+        columns.append(done.y[:, : len(at)])
+    return dict(zip(("x", "y", "phi", "v", "w"), np.hstack(columns), strict=True))
+
+
+class DrivenMaster(Master):
+    """Sets the drive torques at every communication point, with their first derivatives."""
+
+    def __init__(self, components: list[Component], torques: Torques) -> None:
+        free = [(source, sink) for source, sink in CONNECTIONS if sink[1] != "M_3"]
+        super().__init__(components, free)
+        self.torques, self.t = torques, 0.0
+        self.heading = Values(self.components["axle"], ["psi", "omega"])
+        self.drive = [Values(self.components[wheel], ["M_3"]) for wheel in WHEELS]
+
+    def _exchange(self, rates: bool) -> None:
+        super()._exchange(rates)
+        psi, omega = self.heading.get()
+        h = 1e-6  # s, of the central difference that gives the rate
+        now, before, after = (self.torques(self.t + d, psi + omega * d) for d in (0.0, -h, h))
+        for wheel, inputs in enumerate(self.drive):
+            inputs.set(-np.array([now[wheel]]))
+            if rates:
+                inputs.set_derivative(1, -np.array([(after[wheel] - before[wheel]) / (2 * h)]))
+
+    def _step(self, t: float, h: float, rollback: bool, reject: bool) -> None:
+        super()._step(t, h, rollback, reject)
+        self.t = t + h
+
+
+def coupled(fmus: dict[str, Path], scene: str, factor: float, step: float, stop: float = 3.0) -> dict[str, Array]:
+    """Two wheel.fmu on axle.fmu with links `factor` times as stiff as SOFT, at the table's instants up to `stop`."""
+    k = SOFT * factor
+    links = {"k": k, "c": k / 100, "k_a": k / 10, "c_a": k / 1000, "k_p": k / 10, "c_p": k / 1000}
+    place = {"X_start": START, "Y_start": START, "inner_step": step / 4, **links}
+    wheels = [
+        Component(wheel, fmus["wheel"], {**WHEEL, **upright(START, START + y, 0.0, 0.0, 0.0, R)})
+        for wheel, y in zip(WHEELS, (B, -B), strict=True)
+    ]
+    with DrivenMaster([*wheels, Component("axle", fmus["axle"], {**BODY, **place})], SCENES[scene]) as master:
+        record = [("axle", name) for name in ("X", "Y", "psi")]
+        rows = master.run(stop, step, record, "derivatives", round(0.3 / step))
+    return {name: rows[f"axle.{of}"] for name, of in zip(COMPARED, ("X", "Y", "psi"), strict=True)}
+
+
+def distance(found: dict[str, Array], truth: dict[str, Array]) -> float:
+    """Largest difference of x, y (m) and heading (rad)."""
+    return max(float(np.abs(found[name] - truth[name][: len(found[name])]).max()) for name in COMPARED)

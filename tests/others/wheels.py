@@ -1,0 +1,125 @@
+"""One wheel of other people: Modelica's RollingWheel, Exudyn's rolling coin, SymPy's disc, and the disc by Legendre functions.
+
+Each function gives the differences, in SI units, between their number and that of wheel.fmu, of the independent reference,
+or of a closed form.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from math import pi, sin
+
+import mpmath
+import numpy as np
+from numpy.typing import NDArray
+from reference import Start, Wheel, solve
+from support.motion import Library, Run, start_values
+
+from .numbers import read
+
+Array = NDArray[np.float64]
+# Modelica's default world has 9.80665 m/s2 as its gravity.
+MODELICA = Wheel(m=2.0, r_0=0.3, r=0.0, J_x=0.12, J_y=0.12, J_z=0.06, g=9.80665)
+MODELICA_START = Start(psi=0.0, theta=pi / 2, theta_dot=1.0, phi_dot=-5.0, X_O=0.2, Y_O=0.2)
+COIN_RADIUS, COIN_LEAN, COIN_SPIN = 0.01, pi / 180, 10 * pi  # m, rad, rad/s about the vertical
+COIN = Wheel(m=1.0, r_0=COIN_RADIUS, r=0.0, J_x=2.5e-5, J_y=2.5e-5, J_z=5e-5)
+COIN_START = Start(
+    psi=-pi / 2, theta=pi / 2 - COIN_LEAN, psi_dot=COIN_SPIN, phi_dot=0.0, X_O=COIN_RADIUS * sin(COIN_LEAN)
+)
+SYMPY_DISC = Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.25, J_y=0.25, J_z=0.5, g=1.0)
+SYMPY_CRITICAL_SPIN = 1 / np.sqrt(3)  # sympy 1.14.0, test_linearize.py: all eigenvalues vanish at q3' = 1/sqrt(3)
+DISCS = (Wheel(r=0.0), MODELICA, SYMPY_DISC, Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.5, J_y=0.5, J_z=1.0))
+DISC_START = Start(theta=1.2, theta_dot=0.3, psi_dot=1.0, phi_dot=-4.0)
+
+
+def motion(library: Library, wheel: Wheel, start: Start, times: Array, tolerance: float | None = None) -> Run:
+    return library.simulate(times, tolerance, keep_contact=True, **start_values(wheel, start))
+
+
+def modelica(library: Library, tolerance: float | None = None) -> Run:
+    """Their wheel, at the instants of their table."""
+    return motion(library, MODELICA, MODELICA_START, read("modelica_wheel")["time"], tolerance)
+
+
+@cache
+def modelica_reference() -> dict[str, Array]:
+    """The same by tests/reference."""
+    return solve(MODELICA, MODELICA_START, read("modelica_wheel")["time"]).columns
+
+
+def apart(table: dict[str, Array], other: Run | dict[str, Array]) -> float:
+    """Largest distance between the centres, m."""
+    return float(np.hypot(table["x"] - other["X_O"], table["y"] - other["Y_O"]).max())
+
+
+def modelica_energy() -> Array:
+    """Energy along their table, J.
+
+    Their angles turn about z, y, x; the axle is the body's y axis, and w in body axes follows from the angles' rates. A
+    knife-edged wheel that rolls has the kinetic energy (J_x w_1^2 + J_z w_3^2 + J_x w_2^2 + m r_0^2 (w_1^2 + w_3^2)) / 2,
+    w_3 along the axle, w_1 along the line of nodes.
+    """
+    t = read("modelica_wheel")
+    (_, s_2, s_3), (_, c_2, c_3) = (
+        [f(t[name]) for name in ("a_1", "a_2", "a_3")] for f in (np.sin, np.cos)
+    )
+    w_x = t["d_3"] - t["d_1"] * s_2
+    w_y = t["d_2"] * c_3 + t["d_1"] * c_2 * s_3  # about the axle
+    w_z = -t["d_2"] * s_3 + t["d_1"] * c_2 * c_3
+    up = np.array([-s_2, c_2 * s_3, c_2 * c_3])  # the vertical in body axes
+    steep = np.hypot(up[0], up[2])  # sine of the angle between axle and vertical
+    tipping = (w_x * up[2] - w_z * up[0]) / steep  # about the line of nodes
+    wheel, across = MODELICA, w_x**2 + w_z**2
+    spin = wheel.J_x * across + wheel.J_z * w_y**2 + wheel.m * wheel.r_0**2 * (tipping**2 + w_y**2)
+    return spin / 2 + wheel.m * wheel.g * wheel.r_0 * steep
+
+
+def coin_limit(table: dict[str, Array]) -> Array:
+    """Richardson's limit of a method of second order from the two smallest steps: (x, y), m."""
+    x, y = table["x"], table["y"]
+    return np.array([(4 * c[-1] - c[-2]) / 3 for c in (x, y)])
+
+
+def coin(library: Library, tolerance: float | None = None) -> Array:
+    """(x, y) of the contact point after 0.5 s, m."""
+    run = motion(library, COIN, COIN_START, np.array([0.0, 0.5]), tolerance)
+    return np.array([run["X_C"][-1], run["Y_C"][-1]])
+
+
+def degree(wheel: Wheel) -> complex:
+    """nu of the Legendre functions, nu (nu + 1) = -J_z m r_0^2 / (J_x (J_z + m r_0^2))."""
+    rolled = mpmath.mpf(wheel.m) * mpmath.mpf(wheel.r_0) ** 2
+    product = -mpmath.mpf(wheel.J_z) * rolled / (mpmath.mpf(wheel.J_x) * (wheel.J_z + rolled))
+    return mpmath.sqrt(mpmath.mpf(1) / 4 + product) - mpmath.mpf(1) / 2
+
+
+def solutions(wheel: Wheel, theta: float) -> mpmath.matrix:
+    """The two solutions P_nu(cos theta), P_nu(-cos theta) for omega_3 (row 0), and for omega_2 (row 1).
+
+    With r = 0 and theta as the variable, d omega_3 = share omega_2 and J_x d omega_2 = J_z omega_3 - J_x cot omega_2,
+    share = m r_0^2 / (J_z + m r_0^2): Legendre's equation for omega_3 (Chaplygin, Appell, Korteweg).
+    """
+    nu, angle = degree(wheel), mpmath.mpf(theta)
+    x, slope = mpmath.cos(angle), mpmath.sin(angle)
+    rolled = mpmath.mpf(wheel.m) * mpmath.mpf(wheel.r_0) ** 2
+    share = rolled / (wheel.J_z + rolled)
+
+    def legendre(y: mpmath.mpf) -> mpmath.mpf:
+        return mpmath.legenp(nu, 0, y).real
+
+    rates = [-sign * slope * mpmath.diff(legendre, sign * x) / share for sign in (1, -1)]
+    return mpmath.matrix([[legendre(x), legendre(-x)], rates])
+
+
+def legendre_error(library: Library, wheel: Wheel, judged: Wheel | None = None) -> float:
+    """omega_2 and omega_3 of 10 s of the free disc against the closed form in theta, relative to their largest value.
+
+    judged: the wheel with whose constants the closed form is written.
+    """
+    run = motion(library, wheel, DISC_START, np.linspace(0, 10, 21), 1e-14)
+    theta, spins = run["theta"], np.array([run["omega_z"], run["psi_dot"] * np.sin(run["theta"])])
+    with mpmath.workdps(30):
+        weights = mpmath.lu_solve(solutions(judged or wheel, theta[0]), mpmath.matrix(spins[:, 0].tolist()))
+        closed = [solutions(judged or wheel, angle) * weights for angle in theta]
+        found = np.array([[float(c) for c in column] for column in closed]).T
+    return float(np.abs(found - spins).max() / np.abs(spins).max())
