@@ -6,7 +6,7 @@ import argparse
 
 DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its data into build/report/latest, or with
 --publish into docs/results, which is kept under version control, and then the figures in all pages are filled in."""
-NAMES = ("accuracy", "stability", "speed", "inputs", "partners", "vehicles", "physics")
+NAMES = ("accuracy", "stability", "speed", "inputs", "partners", "vehicles", "others", "physics")
 
 
 def arguments() -> argparse.Namespace:

@@ -1,7 +1,6 @@
-"""One wheel of other people: Modelica's RollingWheel, Exudyn's rolling coin, SymPy's disc, and the disc by Legendre functions.
+"""One wheel of other people: Modelica's RollingWheel, Exudyn's coin, SymPy's disc, and the disc by Legendre functions.
 
-Each function gives the differences, in SI units, between their number and that of wheel.fmu, of the independent reference,
-or of a closed form.
+What they found, the same by wheel.fmu and by the independent reference, and how far they are apart; SI units.
 """
 
 from __future__ import annotations
@@ -32,8 +31,10 @@ DISCS = (Wheel(r=0.0), MODELICA, SYMPY_DISC, Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.
 DISC_START = Start(theta=1.2, theta_dot=0.3, psi_dot=1.0, phi_dot=-4.0)
 
 
-def motion(library: Library, wheel: Wheel, start: Start, times: Array, tolerance: float | None = None) -> Run:
-    return library.simulate(times, tolerance, keep_contact=True, **start_values(wheel, start))
+def motion(
+    library: Library, wheel: Wheel, start: Start, times: Array, tolerance: float | None = None, **more: float
+) -> Run:
+    return library.simulate(times, tolerance, keep_contact=True, **start_values(wheel, start), **more)
 
 
 def modelica(library: Library, tolerance: float | None = None) -> Run:
@@ -55,14 +56,12 @@ def apart(table: dict[str, Array], other: Run | dict[str, Array]) -> float:
 def modelica_energy() -> Array:
     """Energy along their table, J.
 
-    Their angles turn about z, y, x; the axle is the body's y axis, and w in body axes follows from the angles' rates. A
-    knife-edged wheel that rolls has the kinetic energy (J_x w_1^2 + J_z w_3^2 + J_x w_2^2 + m r_0^2 (w_1^2 + w_3^2)) / 2,
-    w_3 along the axle, w_1 along the line of nodes.
+    Their angles turn about z, y, x; the axle is the body's y axis, and w in body axes follows from the angles' rates.
+    A knife edge that rolls has the kinetic energy (J_x (w_1^2 + w_2^2) + J_z w_3^2 + m r_0^2 (w_1^2 + w_3^2)) / 2, w_3
+    along the axle, w_1 along the line of nodes.
     """
     t = read("modelica_wheel")
-    (_, s_2, s_3), (_, c_2, c_3) = (
-        [f(t[name]) for name in ("a_1", "a_2", "a_3")] for f in (np.sin, np.cos)
-    )
+    (s_2, s_3), (c_2, c_3) = ([f(t[name]) for name in ("a_2", "a_3")] for f in (np.sin, np.cos))
     w_x = t["d_3"] - t["d_1"] * s_2
     w_y = t["d_2"] * c_3 + t["d_1"] * c_2 * s_3  # about the axle
     w_z = -t["d_2"] * s_3 + t["d_1"] * c_2 * c_3
