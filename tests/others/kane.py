@@ -1,9 +1,9 @@
 """The torus wheel by Kane's method, derived by symbrim (TU Delft's package of bicycle models, with SymPy).
 
-symbrim's fixed axes are x = X, y = -Y, z = -Z (down), its angles yaw = -psi, roll = theta - pi/2, pitch = phi about the
-axle. Its wheel has one moment of inertia across the axle; here its body is given two. The ground's horizontal force does
-not appear in Kane's equations; its normal force is asked for through an auxiliary speed. Rolling friction and brake are
-one open moment tau about the axle, in which everything is linear.
+symbrim's fixed axes are x = X, y = -Y, z = -Z (down), its angles yaw = -psi, roll = theta - pi/2, pitch = phi about
+the axle. Its wheel has one moment of inertia across the axle; here its body is given two. Kane's equations leave the
+ground's force out; its normal part is asked for through an auxiliary speed. Rolling friction and brake are one open
+moment tau about the axle, in which everything is linear.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def model() -> RollingDisc:
 
 @cache
 def numeric() -> Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """(angles, rates, parameters, loads) -> matrix, right side at tau = 0 and its rate with tau; unknowns u_dot, lambda_3."""
+    """(angles, rates, parameters, loads) -> matrix, right side, its rate with tau; unknowns u_dot, lambda_3."""
     disc = model()
     system = disc.to_system()
     system.q_ind, system.q_dep = disc.q, []
@@ -78,13 +78,14 @@ def numeric() -> Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]]:
     per_tau = right.diff(tau)
     wheel = disc.wheel
     parameters = (wheel.body.mass, wheel.radius, wheel.transverse_radius, *INERTIAS, sp.Symbol("g"))
-    return sp.lambdify((disc.q[2:], disc.u, parameters, LOADS[:-1]), (matrix, right.subs(tau, 0), per_tau), "numpy", cse=True)
+    given = disc.q[2:], disc.u, parameters, LOADS[:-1]
+    return sp.lambdify(given, (matrix, right.subs(tau, 0), per_tau), "numpy", cse=True)
 
 
 def accelerations(
     wheel: Wheel, angles: Vector, rates: Vector, F: Vector, M: Vector, sigma: float | None = 0.0, brake: float = 0.0
 ) -> Motion:
-    """At (psi, theta, phi) and their rates; tau = -(s lambda_3 + brake) sigma, or with sigma None the one that holds."""
+    """At (psi, theta, phi) and their rates; tau = -(s lambda_3 + brake) sigma, sigma None: the tau that holds."""
     (psi, theta, phi), (psi_dot, theta_dot, phi_dot) = angles, rates
     yaw, roll, pitch = -psi, theta - np.pi / 2, phi
     parameters = (wheel.m, wheel.r_0, wheel.r, wheel.J_x, wheel.J_y, wheel.J_z, wheel.g)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from equations import random_scenes
 from reference import Wheel
@@ -14,17 +16,17 @@ NAMES = ("psi_ddot", "theta_ddot", "phi_ddot")
 
 def by_kane(scene: np.void, motion: np.void) -> kane.Motion:
     """One random scene; where the ground pulls there is no rolling friction, only the brake's."""
-    wheel, friction = Wheel(*scene["wheel"].tolist()), scene["friction"]
+    *constants, g_X, g_Y = scene["wheel"].tolist()
+    wheel, friction = Wheel(*constants), scene["friction"]
     F, M, brake = scene["load"].tolist()
+    F = (F[0] + wheel.m * g_X, F[1] + wheel.m * g_Y, F[2])  # the weight along a slope
     angles, rates = motion.tolist()[:3], motion.tolist()[3:6]
     spin = rates[2] + rates[0] * np.cos(angles[1])
     laws = {eq.FRICTIONLESS: 0.0, eq.ROLLING: friction["sigma"], eq.REGULARIZED: np.tanh(spin / friction["omega_s"])}
-    sigma = laws.get(friction["kind"])
-    brake = 0.0 if friction["kind"] == eq.FRICTIONLESS else brake
+    sigma = laws.get(friction["kind"])  # None: held
     found = kane.accelerations(wheel, angles, rates, F, M, sigma, brake)
     if sigma is not None and found.lambda_3 <= 0:
-        wheel = Wheel(*scene["wheel"].tolist()[:-1], s=0.0)
-        found = kane.accelerations(wheel, angles, rates, F, M, sigma, brake)
+        found = kane.accelerations(replace(wheel, s=0.0), angles, rates, F, M, sigma, brake)
     return found
 
 

@@ -1,9 +1,9 @@
 """Modelica's wheel sets (RollingWheelSetDriving and RollingWheelSetPulling of the Modelica Standard Library 4.0).
 
-Two knife-edged wheels upright on one rigid axle, a small body 0.2 m ahead of its middle; either the wheels are driven
-by torques, or the body is pulled by a force in fixed axes. Wheel 1 is the left one. In the limit of rigid links only the
-forces along the heading and the moments about the vertical count: a force (l, t) at the body is the pair of drive
-torques R (l -+ a t / b) / 2. So both scenes become drive torques, which depend on time and heading alone.
+Two knife-edged wheels upright on one rigid axle, a small body 0.2 m ahead of its middle; either torques drive the
+wheels, or a force in fixed axes pulls the body. Wheel 1 is the left one. With rigid links only the forces along the
+heading and the moments about the vertical count: a force (l, t) at the body is the pair of drive torques
+R (l -+ a t / b) / 2. So both scenes become drive torques, which depend on time and heading alone.
 """
 
 from __future__ import annotations
