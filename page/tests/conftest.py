@@ -5,7 +5,6 @@ from __future__ import annotations
 import fcntl
 import shutil
 import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,12 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
+from support.paths import ROOT
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
-from support.fixtures import description, fmu, fmu_path, simulate  # noqa: E402
-from support.paths import ROOT  # noqa: E402
-
-from page.tests.pages import FLAGS, RECORD, opened, view, write_csv  # noqa: E402
+from page.tests.pages import FLAGS, RECORD, opened, view, write_csv
 
 
 @pytest.fixture(scope="session")

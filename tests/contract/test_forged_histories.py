@@ -147,7 +147,7 @@ def test_a_run_that_claims_an_orbit_which_its_start_does_not_have_is_harmless(wh
             w.time = 0.7
             assert is_harmless(w), place
         w.close()
-    assert taken > 27  # the pending inputs with three derivatives each are among them; measured 39
+    assert taken > 27  # the pending inputs with three derivatives each are among them
 
 
 def test_an_ended_run_stays_ended(wheel):

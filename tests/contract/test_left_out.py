@@ -11,6 +11,7 @@ from math import pi
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
+from support.bounds import within
 
 COUNTERS = ("n_steps", "n_rhs", "n_jac", "n_roots", "n_events", "n_restarts")
 WITHOUT_FRICTION = {
@@ -63,7 +64,7 @@ def test_a_smooth_scene_evaluates_no_root_function_and_restarts_nothing(counters
 
 def test_the_least_friction_installs_the_root_function(counters):
     free, touched = counters(method=4), counters(s=1e-15)
-    assert touched["n_roots"] >= touched["n_steps"]  # measured: 330 and 329
+    assert touched["n_roots"] >= touched["n_steps"]
     assert touched["n_rhs"] == free["n_rhs"]  # the motion is the same to the last step
 
 
@@ -80,7 +81,7 @@ def test_the_communication_grid_costs_no_evaluation(counters, scene):
 
 
 def test_friction_does_cost_evaluations(counters):
-    assert counters(s=0.03)["n_rhs"] != counters()["n_rhs"]  # measured: 1018 and 653
+    assert counters(s=0.03)["n_rhs"] != counters()["n_rhs"]
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -113,7 +114,7 @@ def test_a_constant_force_set_again_at_each_step_restarts_nothing(counters):
 def test_each_jump_of_an_input_is_one_restart(counters):
     steady, jumping = counters(input=force([0.5])), counters(input=force([0.5, 1.0, 0.5, 1.0]))
     assert jumping["n_restarts"] - steady["n_restarts"] == 3
-    assert jumping["n_rhs"] > steady["n_rhs"]  # measured: 38 more for each
+    assert jumping["n_rhs"] > steady["n_rhs"]
 
 
 @pytest.mark.parametrize("moments", [{"J_x": 0.7, "J_y": 1.2}, {"J_x": 0.9, "J_y": 0.9}], ids=["any J", "J_x = J_y"])
@@ -126,4 +127,4 @@ def test_the_large_system_is_left_out_whatever_the_moments_of_inertia_are(counte
 def test_the_free_wheel_is_integrated_over_one_nutation_only(counters):
     unfolded, stepped = counters(stop=10.0), counters(stop=10.0, formulation=2)
     assert counters(stop=1000.0, step=100.0) == unfolded
-    assert 5 * unfolded["n_rhs"] < stepped["n_rhs"]  # measured: 203 and 2058
+    within(unfolded["n_rhs"] / stepped["n_rhs"], 0.2, "evaluations")

@@ -13,6 +13,7 @@ from urllib.parse import unquote
 
 import numpy as np
 import pytest
+from support.bounds import beyond, within
 from support.paths import ROOT, build_folder
 
 sys.path.insert(0, str(ROOT))
@@ -60,8 +61,8 @@ def test_the_python_example_has_ten_lines_and_draws_the_papers_two_scenes(root, 
     theta = {scene: np.load(root / f"{s}.npy")["theta"] for s, scene in ((0, "free"), (0.03, "friction"))}
     for scene in theta:
         error = np.abs(theta[scene][::10] - reference_tables[scene]["theta"])
-        assert error.max() < 1e-6  # measured 1.2e-8, 9.3e-9 rad
-    assert np.abs(theta["free"][::10] - reference_tables["friction"]["theta"]).max() > 1e-6
+        within(error.max(), 1e-6, "error")
+    beyond(np.abs(theta["free"][::10] - reference_tables["friction"]["theta"]).max(), 0.08, "theta")
 
 
 def test_the_commands_for_fmpy_run_as_written_and_do_what_their_comments_say(root, reference_tables):
@@ -73,13 +74,14 @@ def test_the_commands_for_fmpy_run_as_written_and_do_what_their_comments_say(roo
         assert word in log, word
     friction, reference = table(root / "friction.csv"), reference_tables["friction"]
     error = np.abs(friction["X_O"][::10] - reference["X_O"]).max()
-    assert error < 1e-6  # measured 9.0e-9 m
-    assert np.abs(friction["X_O"][::10] - reference_tables["free"]["X_O"]).max() > 1e-6
+    within(error, 1e-6, "error")
+    beyond(np.abs(friction["X_O"][::10] - reference_tables["free"]["X_O"]).max(), 0.1, "X_O")
     energy = table(root / "energy.csv")
     assert energy.dtype.names == ("time", "theta", "E")
-    assert np.ptp(energy["E"]) < 1e-9 * energy["E"][0]  # measured 2.5e-13; the friction scene loses a quarter
+    within(np.ptp(energy["E"]) / energy["E"][0], 2e-12, "E")  # the friction scene loses a quarter
     fall = table(root / "fall.csv")
-    assert round(fall["time"][-1], 2) == 0.59 and fall["theta"][-1] < 1e-6
+    assert round(fall["time"][-1], 2) == 0.59
+    within(fall["theta"][-1], 1e-6, "theta")
 
 
 def test_the_drive_torque_of_the_example_speeds_the_wheel_up_as_newton_says(root):
@@ -90,8 +92,8 @@ def test_the_drive_torque_of_the_example_speeds_the_wheel_up_as_newton_says(root
     m, R, J_z, impulse = 20, 0.35, 1.8, 2 * (0.5 - late) + 2 * 9
     speed = R * impulse / (J_z + m * R * R)  # m/s, O of an upright wheel under a torque about its axle
     velocity = np.hypot(driven["X_O_dot"][-1], driven["Y_O_dot"][-1])
-    assert abs(velocity / speed - 1) < 1e-6  # measured 2.2e-16
-    assert abs(velocity / (speed * 19 / impulse) - 1) > 1e-6  # the ramp without its lag
+    within(abs(velocity / speed - 1), 9e-15, "velocity")
+    beyond(abs(velocity / (speed * 19 / impulse) - 1), 4e-5, "velocity")  # the ramp without its lag
 
 
 def test_the_c_example_compiles_anywhere_and_prints_what_the_python_example_prints(root, tmp_path_factory):
@@ -106,8 +108,8 @@ def test_the_c_example_compiles_anywhere_and_prints_what_the_python_example_prin
     from support.scenes import PAPER
 
     fall = -PAPER.m * PAPER.g * PAPER.r_0 * np.cos(1.308997) / closed_forms.fall_inertia(PAPER, 1.308997)
-    assert abs(theta_ddot[3] - fall) < 1e-4  # released from rest, held: measured 4.5e-5, the rounding of the print
-    assert abs(theta_ddot[3] - fall * 1.001) > 1e-4
+    within(abs(theta_ddot[3] - fall), 1e-4, "fall")  # released from rest, held
+    beyond(abs(theta_ddot[3] - fall * 1.001), 3e-4, "theta ddot")
     assert equations.LIBRARY
 
 
@@ -177,7 +179,7 @@ def test_every_link_of_the_documents_leads_to_a_file():
     links = {document: local_links(document) for document in documents()}
     broken = [(d.name, str(link)) for d, found in links.items() for link in found if not link.exists()]
     assert broken == []
-    assert len(links[ROOT / "README.md"]) > 10  # measured 23
+    assert len(links[ROOT / "README.md"]) > 10
     decisions = {path.resolve() for path in (ROOT / "docs" / "decisions").glob("*.md")}
     assert decisions <= {link.resolve() for link in local_links(ROOT / "docs" / "README.md")}
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from support import equations as eq
+from support.bounds import beyond, within
 
 from equations import random_scenes
 
@@ -59,11 +60,11 @@ def test_upright_straight_rolling_slows_down_linearly_under_friction(
     slowing = -sigma * scenes["wheel"]["s"] * weight(scenes) / rolling_inertia(scenes)
     thin = -sigma * scenes["wheel"]["s"] * weight(scenes) / rolling_inertia(scenes, tube=0)
     size = np.abs(slowing)
-    assert error(d["omega_z_dot"], slowing, size) < BOUND  # measured 3.9e-16, multibody 3.0e-13
-    assert error(d["omega_z_dot"], -slowing, size) > 1.9  # wrong sign of the friction
-    assert error(d["omega_z_dot"], thin, size) > 0.1  # wheel without tube
-    assert error(d["lambda_"][:, 2], weight(scenes), weight(scenes)) < BOUND  # 5.3e-15
-    assert error(eq.columns(d, "theta_ddot", "psi_ddot"), np.zeros((ROWS, 2))) < BOUND
+    within(error(d["omega_z_dot"], slowing, size), BOUND, "omega_z_dot")
+    beyond(error(d["omega_z_dot"], -slowing, size), 1.9, "omega_z_dot")  # wrong sign of the friction
+    beyond(error(d["omega_z_dot"], thin, size), 0.1, "omega_z_dot, 2")  # wheel without tube
+    within(error(d["lambda_"][:, 2], weight(scenes), weight(scenes)), 5e-14, "lambda_")
+    within(error(eq.columns(d, "theta_ddot", "psi_ddot"), np.zeros((ROWS, 2))), 2e-13, "error")
 
 
 @FORMULATIONS
@@ -77,9 +78,9 @@ def test_an_upright_wheel_answers_a_drive_torque_and_a_push_as_a_roller(
     scenes["load"]["M"][:, 2], scenes["load"]["F"][:, 0] = torque, push
     d = dynamics(formulation, scenes, motions)
     spin_up = (torque - radius * push) / rolling_inertia(scenes)
-    assert error(d["omega_z_dot"], spin_up, np.abs(spin_up)) < BOUND  # measured 1.2e-14
-    assert error(d["X_O_ddot"], -radius * spin_up, np.abs(radius * spin_up)) < BOUND
-    assert error(d["omega_z_dot"], spin_up + 2 * radius * push / rolling_inertia(scenes)) > 0.1
+    within(error(d["omega_z_dot"], spin_up, np.abs(spin_up)), 2e-13, "omega_z_dot")
+    within(error(d["X_O_ddot"], -radius * spin_up, np.abs(radius * spin_up)), 2e-14, "X_O_ddot")
+    beyond(error(d["omega_z_dot"], spin_up + 2 * radius * push / rolling_inertia(scenes)), 7, "omega_z_dot")
 
 
 @FORMULATIONS
@@ -93,9 +94,9 @@ def test_a_held_upright_wheel_is_held_by_the_moment_that_balances_drive_and_push
     scenes["load"]["M"][:, 2], scenes["load"]["F"][:, 0] = torque, push
     d = dynamics(formulation, scenes, motions)
     assert (d["omega_z_dot"] == 0).all()
-    assert error(d["tau"], radius * push - torque, torque) < BOUND  # measured 4.8e-15
-    assert error(d["tau"], -radius * push - torque, torque) > 0.3  # push the other way
-    assert error(d["X_O_ddot"], np.zeros(ROWS)) < BOUND
+    within(error(d["tau"], radius * push - torque, torque), 5e-14, "tau")
+    beyond(error(d["tau"], -radius * push - torque, torque), 0.3, "tau")  # push the other way
+    within(error(d["X_O_ddot"], np.zeros(ROWS)), 4e-13, "X_O_ddot")
 
 
 @FORMULATIONS
@@ -107,8 +108,8 @@ def test_a_wheel_released_from_rest_tips_about_its_contact(formulation: eq.Formu
     tipping = -weight(scenes) * w["r_0"] * c / (w["J_x"] + w["m"] * lever)
     size = weight(scenes) * w["r_0"] / w["J_x"]
     d = dynamics(formulation, scenes, motions)
-    assert error(d["theta_ddot"], tipping, size) < BOUND  # measured 5.9e-16
-    assert error(d["theta_ddot"], tipping * (1 + w["r"] / w["r_0"] * s), size) > 0.01  # r counts
+    within(error(d["theta_ddot"], tipping, size), 7e-15, "theta_ddot")
+    beyond(error(d["theta_ddot"], tipping * (1 + w["r"] / w["r_0"] * s), size), 0.01, "theta_ddot")  # r counts
 
 
 def steady_spin(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
@@ -145,10 +146,10 @@ def test_the_textbooks_steady_circle_of_the_thin_disc_is_steady(
     omega_z, a = motions["phi_dot"] + turn * c, w["r_0"]
     terms = [(w["J_z"] + w["m"] * a**2) * omega_z * turn * s, -w["J_x"] * turn**2 * s * c]
     terms.append(weight(scenes) * a * c)
-    assert error(sum(terms), np.zeros(ROWS), np.abs(terms).max(axis=0)) < BOUND  # textbook
-    assert unsteadiness(formulation, scenes, motions) < BOUND  # 1.1e-13
+    within(error(sum(terms), np.zeros(ROWS), np.abs(terms).max(axis=0)), 7e-15, "error")  # textbook
+    within(unsteadiness(formulation, scenes, motions), 2e-12, "unsteadiness")
     motions["phi_dot"] *= 1 + 1e-6
-    assert unsteadiness(formulation, scenes, motions) > 1e-7  # 1.6e-5
+    beyond(unsteadiness(formulation, scenes, motions), 1e-6, "unsteadiness")
 
 
 @FORMULATIONS
@@ -158,9 +159,9 @@ def test_the_torus_circles_steadily_with_friction_balanced_by_the_drive(
     scenes, motions = circling(eq.ROLLING, thin=False)
     sigma = scenes["friction"]["sigma"]
     scenes["load"]["M"][:, 2] = sigma * scenes["wheel"]["s"] * weight(scenes)
-    assert unsteadiness(formulation, scenes, motions) < BOUND  # 3.7e-14
+    within(unsteadiness(formulation, scenes, motions), 5e-13, "unsteadiness")
     scenes["friction"]["sigma"] = -sigma
-    assert unsteadiness(formulation, scenes, motions) > 0.1  # friction drives: 0.74
+    beyond(unsteadiness(formulation, scenes, motions), 0.1, "unsteadiness")  # friction drives
 
 
 def unsteadiness(formulation: eq.Formulation, scenes: np.ndarray, motions: np.ndarray) -> float:

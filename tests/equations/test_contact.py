@@ -5,8 +5,8 @@ from __future__ import annotations
 from ctypes import byref, c_double
 
 import numpy as np
-import pytest
 from support import equations as eq
+from support.bounds import absolute_error, beyond, relative_error, within
 
 from equations import random_scenes
 from equations.paper_transcription import Paper, times
@@ -48,10 +48,10 @@ def test_the_contact_is_the_lowest_point_of_the_torus() -> None:
     to_contact = np.stack([paper.r[:, 2, 1], paper.r[:, 0, 2], paper.r[:, 1, 0]], axis=-1)  # body axes, (11)
     place = eq.columns(k, "X_O", "Y_O", "Z_O") + times(paper.A, to_contact)
     found = contacts(scenes, k)
-    assert np.abs(found[:, :2] - place[:, :2]).max() < 1e-13  # m; measured 8.9e-16
-    assert np.abs(place[:, 2]).max() < 1e-13  # it lies on the ground
+    within(np.abs(found[:, :2] - place[:, :2]).max(), 2e-14, "found")  # m
+    within(np.abs(place[:, 2]).max(), 2e-14, "place")  # it lies on the ground
     k["theta"] += 1e-9
-    assert np.abs(contacts(scenes, k)[:, :2] - place[:, :2]).max() > 1e-10
+    beyond(np.abs(contacts(scenes, k)[:, :2] - place[:, :2]).max(), 1e-10, "contacts")
 
 
 def test_the_velocity_of_the_contact_is_the_slope_of_its_place() -> None:
@@ -64,19 +64,19 @@ def test_the_velocity_of_the_contact_is_the_slope_of_its_place() -> None:
     slope = (contacts(scenes, ahead) - contacts(scenes, behind))[:, :2] / (2 * h)
     found = contacts(scenes, k)[:, 2:]
     speed = np.abs(found).max()
-    assert np.abs(found - slope).max() / speed < 1e-8  # measured 4.1e-9, the difference's own error
+    within(np.abs(found - slope).max() / speed, 1e-8, "speed")
     k["theta_dot"] *= 1.001
-    assert np.abs(contacts(scenes, k)[:, 2:] - slope).max() / speed > 1e-5
+    beyond(np.abs(contacts(scenes, k)[:, 2:] - slope).max() / speed, 5e-5, "contacts")
 
 
 def test_an_upright_wheel_touches_below_its_centre() -> None:
     wheel, motion = eq.paper_wheel(), eq.Motion(0.4, np.pi / 2, 0, 0, 0, -2, 3, 4)
     k = eq.kinematics(eq.REDUCED, wheel, eq.start(eq.REDUCED, wheel, motion))
     found = eq.values(eq.LIBRARY.wheel_contact(byref(wheel), byref(k)))
-    assert found == pytest.approx([3, 4, 0.7 * np.cos(0.4), 0.7 * np.sin(0.4)], abs=1e-15)
+    within(absolute_error(found, [3, 4, 0.7 * np.cos(0.4), 0.7 * np.sin(0.4)]), 1e-15, "found")
     leaning = eq.Motion(0.4, 1.3, 0, 0, 0, -2, 3, 4)
     k = eq.kinematics(eq.REDUCED, wheel, eq.start(eq.REDUCED, wheel, leaning))
-    assert abs(eq.LIBRARY.wheel_contact(byref(wheel), byref(k)).X_C - 3) > 0.01
+    beyond(abs(eq.LIBRARY.wheel_contact(byref(wheel), byref(k)).X_C - 3), 0.01, "wheel contact")
 
 
 def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
@@ -86,9 +86,9 @@ def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
     expected = np.column_stack([(d["lambda_"] * e1).sum(axis=1), (d["lambda_"] * left).sum(axis=1)])
     found = horizontal(k, d["lambda_"])
     size = np.abs(d["lambda_"]).max()
-    assert np.abs(found - expected).max() / size < 1e-14  # measured 0
-    assert np.abs(found - expected * [1, -1]).max() / size > 0.1  # to the right
-    assert np.hypot(*found.T) == pytest.approx(np.hypot(*d["lambda_"][:, :2].T), rel=1e-13)
+    within(np.abs(found - expected).max() / size, 1e-14, "size")
+    beyond(np.abs(found - expected * [1, -1]).max() / size, 0.1, "size")  # to the right
+    within(relative_error(np.hypot(*found.T), np.hypot(*d["lambda_"][:, :2].T)), 1e-14, "found")
 
 
 def test_the_rates_of_the_force_in_wheel_axes_know_that_the_axes_turn() -> None:
@@ -104,8 +104,8 @@ def test_the_rates_of_the_force_in_wheel_axes_know_that_the_axes_turn() -> None:
     slope = (after(h) - after(-h)) / (2 * h)
     found = horizontal(k, d["lambda_"], lambda_dot)
     size = np.abs(slope).max()
-    assert np.abs(found - slope).max() / size < 1e-9  # measured 3.5e-11
-    assert np.abs(horizontal(k, lambda_dot) - slope).max() / size > 0.1  # axes that stand still
+    within(np.abs(found - slope).max() / size, 1e-9, "size")
+    beyond(np.abs(horizontal(k, lambda_dot) - slope).max() / size, 0.1, "horizontal")  # axes that stand still
 
 
 def test_an_upright_driven_wheel_pushes_along_e1_only() -> None:
@@ -115,5 +115,5 @@ def test_an_upright_driven_wheel_pushes_along_e1_only() -> None:
     k, d, force = eq.kinematics(eq.REDUCED, wheel, y), eq.dynamics(eq.REDUCED, scene, y), (c_double * 2)()
     eq.LIBRARY.wheel_horizontal_force(byref(k), (c_double * 3)(*d.lambda_), force)
     traction = 30 * 0.35 * wheel.m / (wheel.J_z + wheel.m * 0.35**2)
-    assert list(force) == pytest.approx([traction, 0], abs=1e-12)
-    assert abs(d.lambda_[0] - traction) > 1  # in fixed axes it is not along X
+    within(absolute_error(list(force), [traction, 0]), 2e-13, "list")
+    beyond(abs(d.lambda_[0] - traction), 1, "traction")  # in fixed axes it is not along X

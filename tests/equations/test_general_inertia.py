@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from support import equations as eq
+from support.bounds import beyond, within
 
 from equations import random_scenes
 
@@ -44,10 +45,10 @@ def test_reduced_and_multibody_agree_for_any_inertia(law: int, symmetric: bool) 
     scenes, motions = draw(law, symmetric)
     multibody, reduced = (dynamics(f, scenes, motions) for f in (eq.MULTIBODY, eq.REDUCED))
     found = errors(reduced, multibody, scenes)
-    assert max(found.values()) < BOUND, found  # measured 4.0e-14 to 9.5e-13
+    within(max(found.values()), 9e-13, "values")
     scenes["wheel"]["J_y"] *= 1 + 1e-9
     motions["phi"] += 1e-9
-    assert max(errors(dynamics(eq.REDUCED, scenes, motions), multibody, scenes).values()) > 10 * BOUND  # 2.8e-8
+    beyond(max(errors(dynamics(eq.REDUCED, scenes, motions), multibody, scenes).values()), 2e-9, "values")
 
 
 @each_law
@@ -57,9 +58,9 @@ def test_a_difference_of_rounding_between_J_x_and_J_y_changes_nothing_but_roundi
     equal = dynamics(eq.REDUCED, scenes, motions)
     scenes["wheel"]["J_y"] *= 1 + 1e-15
     assert (scenes["wheel"]["J_x"] != scenes["wheel"]["J_y"]).all()
-    assert max(errors(dynamics(eq.REDUCED, scenes, motions), equal, scenes).values()) < BOUND  # 5.4e-14
+    within(max(errors(dynamics(eq.REDUCED, scenes, motions), equal, scenes).values()), 7e-13, "values")
     scenes["wheel"]["J_y"] *= 1 + 1e-8
-    assert max(errors(dynamics(eq.REDUCED, scenes, motions), equal, scenes).values()) > 10 * BOUND
+    beyond(max(errors(dynamics(eq.REDUCED, scenes, motions), equal, scenes).values()), 2e-8, "values")
 
 
 def answer_of_N(scenes: Table, motions: Table) -> Table:
@@ -83,9 +84,9 @@ def test_N_answers_a_moment_about_the_axle_by_alpha(formulation: eq.Formulation)
     driven = dynamics(formulation, scenes, motions)["lambda_"]
     alpha = answer_of_N(scenes, motions)
     size = np.abs(driven).max(axis=1) / moment
-    assert (np.abs((driven[:, 2] - free) / moment - alpha) / size).max() < 1e-11  # measured 3.5e-15
-    assert np.abs(alpha * scenes["wheel"]["r_0"]).max() > 0.1  # it does answer
-    assert (np.abs((driven[:, 2] - free) / moment + alpha) / size).max() > 1e-2  # the other sign
+    within((np.abs((driven[:, 2] - free) / moment - alpha) / size).max(), 5e-14, "size")
+    beyond(np.abs(alpha * scenes["wheel"]["r_0"]).max(), 0.1, "r_0")  # it does answer
+    beyond((np.abs((driven[:, 2] - free) / moment + alpha) / size).max(), 0.05, "size")  # the other sign
     scenes["wheel"]["J_y"] = scenes["wheel"]["J_x"]
     assert (answer_of_N(scenes, motions) == 0).all()
 
@@ -103,13 +104,13 @@ def test_N_under_rolling_friction_and_brake_follows_from_that_of_the_free_wheel(
     size = np.abs(found["lambda_"]).max(axis=1)
     unpressed = N_free - alpha * kappa * brake
     N = np.where(unpressed > 0, unpressed / (1 + alpha * kappa * s), unpressed)
-    assert (np.abs(found["lambda_"][:, 2] - N) / size).max() < BOUND  # measured 3.5e-15
+    within((np.abs(found["lambda_"][:, 2] - N) / size).max(), 5e-14, "lambda_")
     tau = -kappa * (s * np.maximum(N, 0) + brake)
-    assert (np.abs(found["tau"] - tau) / (scenes["wheel"]["r_0"] * size)).max() < BOUND  # 4.4e-16
+    within((np.abs(found["tau"] - tau) / (scenes["wheel"]["r_0"] * size)).max(), 6e-15, "r_0")
     without_alpha = np.abs(found["lambda_"][:, 2] - N_free) / size
-    assert without_alpha.max() > 1e-2  # 0.093
+    beyond(without_alpha.max(), 1e-2, "without alpha")
     without_brake = np.where(N_free > 0, N_free / (1 + alpha * kappa * s), N_free)
-    assert (np.abs(found["lambda_"][:, 2] - without_brake) / size).max() > 1e-2  # 0.090
+    beyond((np.abs(found["lambda_"][:, 2] - without_brake) / size).max(), 1e-2, "lambda_")
 
 
 def test_phi_matters_where_J_x_differs_from_J_y_and_only_there() -> None:
@@ -117,7 +118,7 @@ def test_phi_matters_where_J_x_differs_from_J_y_and_only_there() -> None:
         scenes, motions = draw(eq.ROLLING, symmetric, 2000)
         before = dynamics(eq.REDUCED, scenes, motions)
         motions["phi"] += np.pi  # half a turn of the body changes nothing, but its rounding
-        assert max(errors(dynamics(eq.REDUCED, scenes, motions), before, scenes).values()) < BOUND  # measured 3.4e-15
+        within(max(errors(dynamics(eq.REDUCED, scenes, motions), before, scenes).values()), 5e-14, "values")
         motions["phi"] += 1.0
         change = max(errors(dynamics(eq.REDUCED, scenes, motions), before, scenes).values())
         assert change == 0 if symmetric else change > 0.1

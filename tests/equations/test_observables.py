@@ -10,6 +10,7 @@ from ctypes import byref, c_double
 import numpy as np
 import pytest
 from support import equations as eq
+from support.bounds import absolute_error, beyond, relative_error, within
 
 from equations import random_scenes
 from equations.paper_transcription import Paper, times
@@ -48,9 +49,9 @@ def residuals(wheels: Table, k: Table) -> tuple[Table, Table]:
 def test_energy_is_that_of_translation_rotation_and_height() -> None:
     wheels, k = rolling_states(41)
     expected = Paper(wheels, state(k)).energy
-    assert energies(wheels, k) == pytest.approx(expected, rel=1e-13)
+    within(relative_error(energies(wheels, k), expected), 5e-13, "energies")
     k["phi"] += 1e-6  # J_x != J_y: the turn of the body counts
-    assert energies(wheels, k) != pytest.approx(expected, rel=1e-9)
+    beyond(relative_error(energies(wheels, k), expected), 9e-7, "energies")
 
 
 def test_energy_of_the_papers_start_is_75_117_J() -> None:
@@ -61,10 +62,10 @@ def test_energy_of_the_papers_start_is_75_117_J() -> None:
     by_hand += 20 * 9.81 * (0.3 * sin + 0.05)
     for formulation in (eq.REDUCED, eq.MULTIBODY):
         k = eq.kinematics(formulation, wheel, eq.start(formulation, wheel, motion))
-        assert eq.energy(wheel, k) == pytest.approx(by_hand, rel=1e-14)
-        assert eq.energy(wheel, k) == pytest.approx(75.117, abs=5e-4)  # 75.11681
+        within(relative_error(eq.energy(wheel, k), by_hand), 1e-14, "energy")
+        within(absolute_error(eq.energy(wheel, k), 75.117), 5e-4, "energy, 2")
         k.Z_O = 0
-        assert eq.energy(wheel, k) < 10  # measured from the ground
+        within(eq.energy(wheel, k), 10, "energy, 3")
 
 
 def test_height_of_O_is_that_of_a_torus_on_the_ground() -> None:
@@ -79,9 +80,9 @@ def test_height_of_O_is_that_of_a_torus_on_the_ground() -> None:
     paper = Paper(wheels, state(k))
     to_contact = np.stack([paper.r[:, 2, 1], paper.r[:, 0, 2], paper.r[:, 1, 0]], axis=-1)
     below = times(paper.A, to_contact)[:, 2]
-    assert heights == pytest.approx(-below, rel=1e-13)
-    assert heights == pytest.approx(k["Z_O"], rel=1e-13)
-    assert heights != pytest.approx(-below - wheels["r"] * 1e-6, rel=1e-9)
+    within(relative_error(heights, -below), 6e-15, "heights")
+    within(relative_error(heights, k["Z_O"]), 1e-14, "heights, 2")
+    beyond(relative_error(heights, -below - wheels["r"] * 1e-6), 7e-8, "heights")
 
 
 def test_required_friction_is_tangential_over_normal_force() -> None:
@@ -107,19 +108,19 @@ def test_required_friction_of_an_upright_wheel_under_drive_follows_from_its_torq
         scene = eq.scene(wheel, moment=(0, 0, torque))
         d = eq.dynamics(formulation, scene, eq.start(formulation, wheel, motion))
         mu = required_friction(*d.lambda_)
-        assert mu == pytest.approx(traction / (wheel.m * wheel.g), rel=1e-13)
-        assert mu != pytest.approx(torque / radius / (wheel.m * wheel.g), rel=0.1)  # J_z = 0
+        within(relative_error(mu, traction / (wheel.m * wheel.g)), 1e-14, "mu")
+        beyond(relative_error(mu, torque / radius / (wheel.m * wheel.g)), 0.1, "mu")  # J_z = 0
 
 
 def test_rolling_states_are_on_the_constraints() -> None:
     wheels, k = rolling_states(43)
     velocity, height = residuals(wheels, k)
     speed = np.abs(state(k)[:, 6:9]).max()
-    assert velocity.max() / speed < 1e-14  # measured 3.2e-16
-    assert height.max() < 1e-14  # measured 0
+    within(velocity.max() / speed, 1e-14, "speed")
+    within(height.max(), 1e-14, "height")
     k["X_O_dot"] += 1e-9
     k["Z_O"] += 1e-9
-    assert (np.minimum(*residuals(wheels, k)) > 0.9e-9).all()
+    beyond(np.minimum(*residuals(wheels, k)).min(), 0.9e-9, "residuals")
 
 
 def test_residuals_are_the_slip_B_q_dot_and_the_error_in_height() -> None:
@@ -133,9 +134,9 @@ def test_residuals_are_the_slip_B_q_dot_and_the_error_in_height() -> None:
     velocity, height = residuals(wheels, k)
     slip = np.abs(times(paper.B, paper.q_dot)).max(axis=1)
     off = np.abs(k["Z_O"] - wheels["r_0"] * paper.sin_theta - wheels["r"])
-    assert np.abs(velocity - slip).max() / slip.max() < 1e-14  # measured 1.3e-15
+    within(np.abs(velocity - slip).max() / slip.max(), 1e-14, "slip")
     assert height == pytest.approx(off, rel=1e-12, abs=1e-14)
-    assert np.abs(velocity - np.linalg.norm(times(paper.B, paper.q_dot), axis=1)).max() > 0.1
+    beyond(np.abs(velocity - np.linalg.norm(times(paper.B, paper.q_dot), axis=1)).max(), 0.2, "norm")
 
 
 def test_the_residual_functions_write_both_results() -> None:
@@ -144,4 +145,4 @@ def test_the_residual_functions_write_both_results() -> None:
     velocity, height = c_double(-1), c_double(-1)
     eq.LIBRARY.wheel_constraint_residuals(byref(wheel), byref(k), byref(velocity), byref(height))
     assert velocity.value == 2
-    assert height.value == pytest.approx(1, rel=1e-15)
+    within(relative_error(height.value, 1), 1e-15, "height")

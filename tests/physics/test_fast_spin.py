@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.bounds import beyond, within
 from support.driver import OK, Values
 
 STATES = ("X_O", "Y_O", "theta", "psi", "phi", "psi_dot", "theta_dot", "phi_dot")
@@ -12,7 +13,7 @@ SCENES: dict[str, tuple[Values, Values]] = {
     "friction": ({"s": 0.03}, {}),
     "loaded": ({}, {"F_Z": -30.0, "M_1": 1.0}),
 }
-BOUND = 100  # tolerances of the range; measured 90 by BDF at 1000 rad/s, 18 by Adams, 5 by Runge-Kutta
+BOUND = 100  # tolerances of the range
 KINDS = [(1, 1), (2, 2), (2, 3), (2, 4), (3, 1), (3, 2), (3, 3), (3, 4)]
 
 
@@ -39,8 +40,8 @@ def error(found, true, tolerance):
 def test_the_error_of_a_second_stays_below_a_hundred_tolerances_of_the_range(wheel, scene, spin):
     true = rows(wheel, scene, spin, (2, 4), 1e-13)
     confirmed = rows(wheel, scene, spin, (3, 4), 1e-13)
-    assert error(confirmed, true, 1e-8) < 5  # measured 2.1 at 1000 rad/s
+    within(error(confirmed, true, 1e-8), 5, "error")
     for tolerance in (1e-8, 1e-5):
         for kind in KINDS:
-            assert error(rows(wheel, scene, spin, kind, tolerance), true, tolerance) < BOUND, (kind, tolerance)
-    assert error(rows(wheel, scene, spin, (2, 4), 1e-8, lean=1.4 + 1e-5), true, 1e-8) > BOUND  # the partner
+            within(error(rows(wheel, scene, spin, kind, tolerance), true, tolerance), BOUND, "error, 2")
+    beyond(error(rows(wheel, scene, spin, (2, 4), 1e-8, lean=1.4 + 1e-5), true, 1e-8), 3000, "error")  # the partner

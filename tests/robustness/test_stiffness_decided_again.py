@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from support.bounds import within
 from support.driver import OK
 
 FRICTION = 0.03  # m
@@ -25,9 +26,10 @@ def counted(wheel, omega_s, tune):
 @pytest.mark.parametrize("tune", ["before the first step", "during the run"])
 @pytest.mark.parametrize("omega_s", [1e-5, 1e-7])
 def test_a_coefficient_that_is_tuned_later_costs_no_more_steps(wheel, omega_s, tune):
-    steps, jacobians = counted(wheel, omega_s, "from the start")  # measured 9,700 and 12,200
+    steps, jacobians = counted(wheel, omega_s, "from the start")
     tuned, of_tuned = counted(wheel, omega_s, tune)
-    assert tuned < 1.1 * steps and min(jacobians, of_tuned) > 0  # measured 1.0; with the first choice kept, 36
+    within(tuned / steps, 1.1, "tuned")
+    assert min(jacobians, of_tuned) > 0  # with the first choice kept, 36
 
 
 def test_a_brake_that_grows_along_one_polynomial_makes_the_law_stiff(wheel):

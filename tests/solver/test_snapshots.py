@@ -1,6 +1,7 @@
 """Histories of the solver alone: restored they go on with the same bits; what could not have been saved is refused."""
 
 import pytest
+from support.bounds import within
 
 
 @pytest.mark.parametrize("steps", [0, 1, 2, 7, 60, 300])
@@ -10,7 +11,7 @@ def test_a_restored_solver_goes_on_with_the_same_bits(measure, method, steps):
 
 
 def test_a_history_is_small(measure, method):
-    assert measure("snapshots", method, 60)["bytes"] < 4096  # measured: 984, 2048, 464 for two states
+    within(measure("snapshots", method, 60)["bytes"], 4096, "bytes")
 
 
 def test_forged_histories_are_refused_or_harmless(measure, method):
@@ -18,5 +19,5 @@ def test_forged_histories_are_refused_or_harmless(measure, method):
     run = measure("forgeries", method)
     assert run["not_numbers"] == 0
     assert run["cut"] == 0
-    assert run["taken"] < 0.65 * run["tried"]  # measured: 54, 59, 33 %: other states, counts and sizes are possible
+    within(run["taken"] / run["tried"], 0.65, "taken")  # other states, counts and sizes are possible
     assert run["stepped"] > 0

@@ -1,17 +1,23 @@
-"""Fixtures for every suite, also for those of folders of their own: the built FMU and a run of it by fmpy."""
+"""Fixtures of every folder of tests: the built FMU, and how a scene is simulated through fmpy."""
 
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fmpy import extract, read_model_description, simulate_fmu
+from reference.tables import read_table
 
-from support.driver import HEADLINE
+from support.driver import HEADLINE, FMU2Wheel
+from support.motion import Library
 from support.paths import build_folder
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "contract: quick tests of the C interface, run under sanitizers too")
 
 
 @pytest.fixture(scope="session")
@@ -25,6 +31,12 @@ def fmu(fmu_path: Path) -> Iterator[str]:
     folder = extract(str(fmu_path))
     yield folder
     shutil.rmtree(folder)
+
+
+@pytest.fixture(scope="session")
+def library(fmu: str) -> Library:
+    """The unpacked FMU as a function from a scene to its motion; instances come and go."""
+    return Library(fmu)
 
 
 @pytest.fixture(scope="session")
@@ -54,3 +66,30 @@ def simulate(fmu: str, description):
         )
 
     return run
+
+
+@pytest.fixture(scope="session")
+def reference_tables() -> dict[str, dict[str, np.ndarray]]:
+    """The trusted tables of the paper's two scenes, every 0.1 s."""
+    return {scene: read_table(f"paper_{scene}") for scene in ("free", "friction")}
+
+
+@pytest.fixture
+def wheel(fmu: str, description) -> Iterator[Callable[..., FMU2Wheel]]:
+    """wheel(...) -> a new instance in the state "instantiated"; freed after the test."""
+    made: list[FMU2Wheel] = []
+
+    def make(**options) -> FMU2Wheel:
+        made.append(FMU2Wheel(fmu, description, **options))
+        return made[-1]
+
+    yield make
+    for instance in made:
+        if instance.component:
+            instance.close()
+
+
+@pytest.fixture(scope="session")
+def reference_events() -> np.ndarray:
+    """The instants, s, of the 37 transitions of the paper's friction scene, from the trusted table."""
+    return read_table("paper_friction_events")["t"][1:]
