@@ -111,8 +111,9 @@ def test_the_euler_form_reads_its_state_back_to_the_bit_and_moves_as_the_reduced
     assert (eq.columns(k, *names) == y).all()
     of_reduced = eq.kinematics_each(eq.REDUCED, scenes, reduced)
     assert not (eq.columns(of_reduced, *names) == y).all()  # its psi_dot is computed anew
-    assert relative(eq.columns(k, *k.dtype.names), eq.columns(of_reduced, *k.dtype.names)) < 1e-13
-    assert distance(*(eq.dynamics_each(f, scenes, s) for f, s in ((eq.EULER, y), (eq.REDUCED, reduced))), scenes) < BOUND
+    within(relative(eq.columns(k, *k.dtype.names), eq.columns(of_reduced, *k.dtype.names)), 3e-15, "kinematics")
+    euler, moved = (eq.dynamics_each(f, scenes, s) for f, s in ((eq.EULER, y), (eq.REDUCED, reduced)))
+    within(distance(euler, moved, scenes), 1e-13, "dynamics")
     load_dots = np.ascontiguousarray(scenes["load"])
     for each in (eq.rates_each, eq.response_each):
         a, b = (each(f, scenes, load_dots, s) for f, s in ((eq.EULER, y), (eq.REDUCED, reduced)))
