@@ -12,14 +12,15 @@ from matplotlib.ticker import AutoMinorLocator, MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
 from diagrams import style
+from diagrams.labels import Labels, dense, free_corner
 from diagrams.scene import Array, Scene
 
 MARK_STEP = 5  # degrees of theta between the candidates for a mark along the arc of Fig. 3
-MARK_SIZE = np.array([50.0, 10.0])  # points: width and height that the name of a mark takes
+MARK_ROOM = np.array([50.0, 10.0])  # points: no second mark within this width and height
+NARROW = 0.25  # a bundle is narrow, and shown sheared in an inset, if shearing leaves less of its height
 SUBDIVISION = 4  # drawn points per row in Fig. 6
 PSI_DOT = r"$\dot\psi$"
 PHI_DOT = r"$\dot\varphi$"
-_LEADER = {"arrowstyle": "-", "linewidth": 0.5, "shrinkA": 0.0, "shrinkB": 2.5}
 
 
 def draw_position(ax: Axes, scene: Scene, friction: bool) -> None:
@@ -28,6 +29,7 @@ def draw_position(ax: Axes, scene: Scene, friction: bool) -> None:
     ax.plot(scene.time, scene["X_O"], color=style.BLUE)
     ax.set_ylabel(r"position $X_O$ [m]")
     ax.margins(y=0.06)
+    _widen(ax, "y", scene["X_O"], 1e-4 * scene.value("r_0"))
     _ticks(ax.yaxis, 5)
 
 
@@ -35,11 +37,11 @@ def draw_tilt(ax: Axes, scene: Scene, friction: bool) -> None:
     """Fig. 2, 5: theta over time, rad on the left and degrees on the right."""
     _time_axis(ax, scene, friction)
     ax.plot(scene.time, scene["theta"], color=style.BLUE)
-    past_upright = scene["theta"].max() > np.pi / 2
+    past_upright = scene["theta"].max() > np.pi / 2 - 0.02  # a line at the frame cannot be seen
     ax.set_ylim(0.0, np.pi if past_upright else np.pi / 2)
     ax.set_ylabel(r"angle $\theta$ [rad]")
     ax.yaxis.set_major_locator(MultipleLocator(0.5))
-    ax.yaxis.set_minor_locator(MultipleLocator(0.1))
+    ax.yaxis.set_minor_locator(MultipleLocator(0.25 if past_upright else 0.1))
     degrees = ax.secondary_yaxis("right", functions=(np.degrees, np.radians))
     degrees.set_ylabel(r"$\theta$ [deg]")
     degrees.yaxis.set_major_locator(MultipleLocator(30 if past_upright else 15))
@@ -56,6 +58,13 @@ def draw_rates(ax: Axes, scene: Scene, friction: bool) -> None:
         _friction_rates(ax, scene)
     else:
         _free_arc(ax, scene)
+
+
+def _widen(ax: Axes, name: str, values: Array, least: float) -> None:
+    """Values that differ by rounding alone are a straight line."""
+    if np.ptp(values) < least:
+        middle = float(values.mean())
+        ax.set(**{f"{name}lim": (middle - 50 * least, middle + 50 * least)})
 
 
 def _ticks(axis: Axis, most: int) -> None:
@@ -87,92 +96,121 @@ def _mark_events(ax: Axes, scene: Scene) -> None:
     )
 
 
+def still(scene: Scene) -> bool:
+    """Whether the rates keep their values."""
+    return max(np.ptp(scene["psi_dot"]), np.ptp(scene["phi_dot"])) <= 1e-9
+
+
+def one_arc(scene: Scene) -> bool:
+    """Whether the rates are a function of theta, and move."""
+    return scene.value("J_x") == scene.value("J_y") and np.ptp(scene["psi_dot"]) > 1e-9
+
+
 def _free_arc(ax: Axes, scene: Scene) -> None:
     """The rates depend on theta alone: one arc, run to and fro, with theta written along it.
 
     All rows are drawn in the order of theta: one clean stroke, and a zigzag if the rates ever
     left the arc.
     """
-    if scene.value("J_x") != scene.value("J_y"):  # then they depend on phi too
-        ax.plot(scene["psi_dot"], scene["phi_dot"], color=style.BLUE, linewidth=0.6)
+    if not one_arc(scene):
+        x, y = scene["psi_dot"], scene["phi_dot"]
+        ax.plot(x, y, color=style.BLUE, linewidth=0.6)
         ax.margins(0.07)
+        if still(scene):
+            _still_point(ax, x[0], y[0])
         return
     rows = np.argsort(scene["theta"])
-    ax.plot(scene["psi_dot"][rows], scene["phi_dot"][rows], color=style.BLUE, linewidth=1.1)
-    ax.margins(0.12)
+    theta, x, y = arc = [scene[name][rows] for name in ("theta", "psi_dot", "phi_dot")]
+    ax.plot(x, y, color=style.BLUE, linewidth=1.1)
+    ax.margins(0.14)
     ax.autoscale_view()
-    arc = [scene[name][rows] for name in ("theta", "psi_dot", "phi_dot")]
-    start = scene["theta"][0]
-    ends = {np.degrees(arc[0][0]): "{:.1f}°, lowest", np.degrees(arc[0][-1]): "{:.1f}°, highest"}
-    ends = {angle: name for angle, name in ends.items() if abs(angle - np.degrees(start)) > 0.05}
-    ends |= {np.degrees(start): r"$\theta = {:.0f}°$, start"}
+    labels = Labels(ax, np.column_stack([x, y]))
+    side = _to_and_fro(ax, labels, x, y)
+    start = np.degrees(scene["theta"][0])
+    ends = zip(np.degrees([theta[0], theta[-1]]), ("{:.1f}°, lowest", "{:.1f}°, highest"), strict=True)
+    marks = {start: r"$\theta = {:.4g}°$, start"} | {angle: name for angle, name in ends if abs(angle - start) > 0.05}
+    first = MARK_STEP * np.ceil(np.degrees(theta[0]) / MARK_STEP)
     taken: list[Array] = []
-    for angle, name in ends.items():
-        _mark(ax, angle, name.format(angle), arc, taken, end=True)
-    first = MARK_STEP * np.ceil(np.degrees(arc[0][0]) / MARK_STEP)
-    for angle in np.arange(first, np.degrees(arc[0][-1]), MARK_STEP):
-        _mark(ax, angle, rf"${angle:g}°$", arc, taken, end=False)
-    _to_and_fro(ax, *arc[1:])
+    for angle in [*marks, *np.arange(first, np.degrees(theta[-1]), MARK_STEP)]:
+        at = tuple(float(np.interp(np.radians(angle), theta, rate)) for rate in arc[1:])
+        place = ax.transData.transform(at) * 72 / ax.figure.dpi
+        solid = len(taken) < len(marks)
+        if not solid and any((abs(place - other) < MARK_ROOM).all() for other in taken):
+            continue
+        taken.append(place)
+        _mark(ax, at, solid)
+        labels.put((marks[angle] if solid else "${:g}°$").format(angle), at, side)
 
 
-def _mark(ax: Axes, angle: float, name: str, arc: list[Array], taken: list[Array], end: bool) -> None:
-    """A dot on the arc with theta beside it, unless it would overlap one that is there."""
-    at = tuple(float(np.interp(np.radians(angle), arc[0], rate)) for rate in arc[1:])
-    place = ax.transData.transform(at) * 72 / ax.figure.dpi  # points
-    if not end and any((abs(place - other) < MARK_SIZE).all() for other in taken):
-        return
-    taken.append(place)
-    ax.plot(
-        *at,
-        "o",
-        color=style.BLUE,
-        markersize=4.0 if end else 2.8,
-        markerfacecolor=style.BLUE if end else "white",
-        markeredgewidth=0.8,
-    )
-    # Names stand outside the axes' middle, so that they do not cross the arc.
-    left = end and ax.transAxes.inverted().transform(ax.transData.transform(at))[0] > 0.6
-    style.note(ax, name, at, (-5, -4) if left else (4.5, 2.5), ha="right" if left else "left")
+def _still_point(ax: Axes, x: float, y: float) -> None:
+    """Rates that keep their values are one point."""
+    _mark(ax, (x, y), solid=True)
+    ax.set(xlim=(x - 1, x + 1), ylim=(y - 1, y + 1))
+    style.note(ax, "both rates keep\ntheir values", (x, y), (6, 6))
 
 
-def _to_and_fro(ax: Axes, x: Array, y: Array) -> None:
-    """A double arrow beside the middle of the arc."""
-    span = np.ptp(x)
-    if span == 0:
-        return
-    a, b = (int(np.argmin(abs(x - part * span))) for part in (0.36, 0.64))
-    shift = 0.055 * span
-    ends = [(x[i] - shift, y[i] - shift) for i in (a, b)]
-    ax.add_patch(
-        FancyArrowPatch(
-            *ends,
-            arrowstyle="<|-|>",
-            mutation_scale=6,
-            color=style.GREY,
-            linewidth=0.7,
-            shrinkA=0,
-            shrinkB=0,
-        )
-    )
-    middle = np.mean(ends, axis=0)
-    style.note(ax, "run to and fro", middle, (-4, -4), ha="right", va="top", color=style.GREY)
+def _mark(ax: Axes, at: tuple[float, float], solid: bool) -> None:
+    """A dot on the arc."""
+    face, size = (style.BLUE, 4.0) if solid else ("white", 2.8)
+    ax.plot(*at, "o", color=style.BLUE, markersize=size, markerfacecolor=face, markeredgewidth=0.8)
+
+
+def _to_and_fro(ax: Axes, labels: Labels, x: Array, y: Array) -> float:
+    """A double arrow beside the middle of the arc; the direction of the other side, in degrees."""
+    to_dots = ax.transData.transform
+    curve = dense(to_dots(np.column_stack([x, y])))
+    a, b = (curve[int(part * (len(curve) - 1))] for part in (0.36, 0.64))
+    along = (b - a) / max(np.hypot(*(b - a)), 1e-9)
+    normal = np.array([-along[1], along[0]])
+    normal *= -np.sign(normal @ [0.1, 1.0]) or 1.0  # below, where both sides are as free
+    middle = curve[len(curve) // 2]
+    if (middle - (a + b) / 2) @ normal > 1.0:
+        normal = -normal  # the arc bends to this side
+    shift = (11.0 * ax.figure.dpi / 72) * normal
+    ends = [tuple(ax.transData.inverted().transform(end + shift)) for end in (a, b)]
+    look = {"mutation_scale": 6, "color": style.GREY, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
+    ax.add_patch(FancyArrowPatch(*ends, arrowstyle="<|-|>", **look))
+    labels.keep_free(np.array([a + shift, b + shift]))
+    away = float(np.degrees(np.arctan2(normal[1], normal[0])))
+    labels.put("run to and fro", tuple(np.mean(ends, axis=0)), away, color=style.GREY)
+    return away + 180.0
+
+
+def narrow(scene: Scene) -> bool:
+    """Whether the rates run in a bundle that has to be sheared to be seen."""
+    sheared = scene["phi_dot"] - _shear(scene) * scene["psi_dot"]
+    return 0 < np.ptp(sheared) < NARROW * np.ptp(scene["phi_dot"])
+
+
+def _shear(scene: Scene) -> float:
+    """Slope of the bundle: omega_z = phi_dot + psi_dot cos(theta) is small, and so is the angle at which it lies."""
+    return float(-np.sign(np.cos(scene["theta"].mean())) or -1.0)
 
 
 def _friction_rates(ax: Axes, scene: Scene) -> None:
-    """The rates spiral in; stick phases are thick. The inset stretches the narrow bundle."""
+    """The rates spiral in; stick phases are thick. An inset stretches a narrow bundle."""
     time, psi_dot, phi_dot = scene.smooth(SUBDIVISION, "time", "psi_dot", "phi_dot")
+    if still(scene):
+        _still_point(ax, psi_dot[0], phi_dot[0])
+        return
     stick = np.any([(time > begin) & (time < end) for begin, end in scene.stick_phases()], axis=0)
     _with_stick(ax, psi_dot, phi_dot, stick)
     ax.margins(x=0.2, y=0.1)
     ax.autoscale_view()
-    for row, offset, line in ((0, (-4.0, -2.3), None), (-1, (-12.0, -26.0), _LEADER)):
-        instant = rf"$t = {time[row]:.3g}$" + (" s" if time[row] else "")
-        at = (psi_dot[row], phi_dot[row])
-        style.note(ax, instant, at, offset, ha="right", arrowprops=line)
-    if np.ptp(psi_dot) == 0:
-        return
-    shear = -np.sign(np.cos(scene["theta"].mean())) or -1.0
-    inset = ax.inset_axes(_free_corner(ax, psi_dot, phi_dot))
+    for name, rate in (("x", psi_dot), ("y", phi_dot)):
+        _widen(ax, name, rate, 0.01)
+    inset = _sheared(ax, scene, psi_dot, phi_dot, stick) if narrow(scene) else None
+    labels = Labels(ax, np.column_stack([psi_dot, phi_dot]))
+    if inset is not None:
+        box = inset.get_tightbbox()
+        labels.boxes.append((box.x0, box.x1, box.y0, box.y1))
+    for row, first in ((0, 180.0), (-1, -135.0)):
+        labels.put(rf"$t = {time[row]:.3g}$" + (" s" if time[row] else ""), (psi_dot[row], phi_dot[row]), first)
+
+
+def _sheared(ax: Axes, scene: Scene, psi_dot: Array, phi_dot: Array, stick: NDArray[np.bool_]) -> Axes:
+    shear = _shear(scene)
+    inset = ax.inset_axes(free_corner(ax, psi_dot, phi_dot))
     _with_stick(inset, psi_dot, phi_dot - shear * psi_dot, stick)
     inset.yaxis.tick_right()
     inset.yaxis.set_label_position("right")
@@ -183,18 +221,7 @@ def _friction_rates(ax: Axes, scene: Scene) -> None:
     _ticks(inset.xaxis, 4)
     _ticks(inset.yaxis, 5)
     inset.tick_params(labelsize=7)
-
-
-def _free_corner(ax: Axes, x: Array, y: Array) -> tuple[float, float, float, float]:
-    """Of the corners that an inset may take, the one that covers the least of the curve."""
-    width, height = 0.39, 0.40
-    corners = ((0.59, 0.60), (0.12, 0.60), (0.50, 0.12), (0.12, 0.12))
-    u, v = ax.transAxes.inverted().transform(ax.transData.transform(np.column_stack([x, y]))).T
-
-    def covered(corner: tuple[float, float]) -> int:
-        return int(np.sum((u > corner[0]) & (u < corner[0] + width) & (v > corner[1]) & (v < corner[1] + height)))
-
-    return (*min(corners, key=covered), width, height)
+    return inset
 
 
 def _with_stick(ax: Axes, x: Array, y: Array, stick: NDArray[np.bool_]) -> None:

@@ -39,26 +39,18 @@ class Diagram:
     draw: Callable[[Axes, Scene, bool], None]
     subject: str
     over_time: bool
-    remark: str
 
 
-ARC = "$\\theta$ is written along the arc; the rates depend on it alone."
-EVENTS = "{n} transitions. Bands: stick ($\\omega_z = 0$). Ticks: $\\omega_z$ changes sign."
-SPIRAL = (
-    "Thick: stick ($\\omega_z = 0$), within the {n} transitions. Dot: start; square: end.\n"
-    "Inset: the same motion sheared, which opens the narrow bundle."
-)
 POSITION = (panels.draw_position, r"$X_O(t)$", True)
 TILT = (panels.draw_tilt, r"$\theta(t)$", True)
 RATES = (panels.draw_rates, r"$\dot\varphi(\dot\psi)$", False)
-
 DIAGRAMS = (
-    Diagram(1, False, *POSITION, ""),
-    Diagram(2, False, *TILT, ""),
-    Diagram(3, False, *RATES, ARC),
-    Diagram(4, True, *POSITION, EVENTS),
-    Diagram(5, True, *TILT, EVENTS),
-    Diagram(6, True, *RATES, SPIRAL),
+    Diagram(1, False, *POSITION),
+    Diagram(2, False, *TILT),
+    Diagram(3, False, *RATES),
+    Diagram(4, True, *POSITION),
+    Diagram(5, True, *TILT),
+    Diagram(6, True, *RATES),
 )
 
 
@@ -68,9 +60,15 @@ def is_paper(scenes: dict[bool, Scene]) -> bool:
     return same and scenes[True].value("s") == PAPER_S and scenes[True].time[-1] == 10
 
 
+def short(value: float) -> str:
+    """Four digits, a power of ten as such."""
+    mantissa, _, exponent = f"{value:.4g}".partition("e")
+    return rf"{mantissa}\cdot 10^{{{int(exponent)}}}" if exponent else mantissa
+
+
 def wheel_of(scene: Scene) -> str:
     """The constants of (27)-(31) as the run had them."""
-    m, r_0, r, J_x, J_y, J_z, g = (f"{scene.value(name):.4g}" for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g"))
+    m, r_0, r, J_x, J_y, J_z, g = (short(scene.value(name)) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g"))
     across = rf"$J_x = J_y = {J_x}$" if J_x == J_y else rf"$J_x = {J_x}$, $J_y = {J_y}$"
     gravity = "" if g == "9.81" else rf", $g = {g}$ m/s$^2$"
     return rf"$m = {m}$ kg, $r_0 = {r_0}$ m, $r = {r}$ m, {across}, $J_z = {J_z}$ kg$\,$m$^2${gravity}"
@@ -94,15 +92,41 @@ def heading(diagram: Diagram, paper: bool) -> str:
     return rf"{'' if paper else 'as '}$\mathbf{{Fig.\,{diagram.number}}}$   {diagram.subject}"
 
 
-def remark_of(diagram: Diagram, scene: Scene) -> str:
-    if diagram.number == 3 and scene.value("J_x") != scene.value("J_y"):
-        return ""  # the rates depend on phi too
-    return diagram.remark.format(n=scene.n_transitions) if diagram.friction else diagram.remark
+def arc_remark(scene: Scene) -> str:
+    """Of Fig. 3, if there is an arc."""
+    arc = r"the rates depend on $\theta$ alone, so the wheel runs to and fro on one arc."
+    return arc if panels.one_arc(scene) else ""
+
+
+def events_remark(scene: Scene, marks: str, ticks: bool = True) -> str:
+    """What the friction did, and the marks that are there."""
+    if scene.stick_phases() and not scene.n_transitions:
+        return r"$\omega_z$ is held at zero all the time (stick)."
+    count = f"{scene.n_transitions or 'no'} transition{'s' * (scene.n_transitions != 1)} in {scene.time[-1]:.3g} s."
+    bands = rf" {marks}: stick ($\omega_z$ held at zero)." if scene.stick_phases() else ""
+    return count + bands + (r" Ticks at the top: $\omega_z$ changes sign." if ticks and scene.reversals() else "")
+
+
+def inset_remark(scene: Scene) -> str:
+    return "the same motion sheared, which opens the narrow bundle." if panels.narrow(scene) else ""
+
+
+def remarks_of(diagram: Diagram, scene: Scene) -> list[str]:
+    """What stands below a single diagram."""
+    remarks = [arc_remark(scene)] if diagram.number == 3 else []
+    if diagram.friction:
+        over_time = diagram.over_time
+        remarks.append(events_remark(scene, "Bands" if over_time else "Thick", over_time))
+    if diagram.number == 6 and not panels.still(scene):
+        inset = inset_remark(scene)
+        remarks += ["Dot: start; square: end.", inset and f"Inset: {inset}"]
+    remarks.append(scene.ending and f"The wheel {scene.ending}, where the model ends.")
+    return [remark[0].upper() + remark[1:] for remark in remarks if remark]
 
 
 def draw_single(diagram: Diagram, scene: Scene, paper: bool, stem: Path) -> list[Path]:
     """One diagram, one journal column wide, with its caption."""
-    lines = [f"{wheel_of(scene)}.", f"{start_of(scene)}.", *remark_of(diagram, scene).splitlines()]
+    lines = [f"{wheel_of(scene)}.", f"{start_of(scene)}.", *remarks_of(diagram, scene)]
     height = 46.0 if diagram.over_time else 62.0
     foot = 13.0 + PITCH * len(lines)
     fig = style.figure_mm(style.COLUMN, foot + height + 8.0)
@@ -130,24 +154,22 @@ def draw_sheet(scenes: dict[bool, Scene], paper: bool, stem: Path) -> list[Path]
         diagram.draw(ax, scenes[diagram.friction], diagram.friction)
         style.text_mm(fig, left - 12.0, bottom + height + 2.6, heading(diagram, paper), fontsize=9)
     for friction, left in ((False, 2.0), (True, 96.0)):
-        title = title_of(scenes[friction])
+        scene = scenes[friction]
+        title = title_of(scene)
         style.text_mm(fig, left, 213.0, title[0].upper() + title[1:], fontsize=10.5)
+        ending = f"The wheel {scene.ending}, where the model ends." if scene.ending else ""
+        style.text_mm(fig, left, 209.3, ending, fontsize=8, color=style.VERMILLION)
     write_caption(fig, sheet_caption(scenes))
     return style.save(fig, stem)
 
 
 def sheet_caption(scenes: dict[bool, Scene]) -> list[str]:
     """The parameters and what the marks mean."""
-    friction = scenes[True]
-    count = f"{friction.n_transitions} transitions in {friction.time[-1]:.3g} s"
-    events = (
-        f"Fig. 4–6: {count}. Bands, thick in Fig. 6: stick ($\\omega_z$ held at zero). "
-        "Ticks at the top: $\\omega_z$ changes sign."
-    )
-    arc = "Fig. 3: the rates depend on $\\theta$ alone, so the wheel runs to and fro on one arc. "
-    inset = "Inset of Fig. 6: the same motion sheared, which opens the narrow bundle."
-    rates = inset if friction.value("J_x") != friction.value("J_y") else arc + inset
-    return [f"Torus wheel: {wheel_of(friction)}. {start_of(friction)}.", events, rates]
+    friction, arc, inset = scenes[True], arc_remark(scenes[False]), inset_remark(scenes[True])
+    rates = [f"Fig. 3: {arc}" if arc else "", f"Inset of Fig. 6: {inset}" if inset else ""]
+    lines = [f"Torus wheel: {wheel_of(friction)}. {start_of(friction)}."]
+    lines += [f"Fig. 4–6: {events_remark(friction, 'Bands, thick in Fig. 6')}", " ".join(filter(None, rates))]
+    return list(filter(None, lines))
 
 
 def main() -> int:
@@ -165,7 +187,7 @@ def main() -> int:
             True: read_scene(arguments.results / "friction.csv", (*SIGNALS, "friction_mode")),
         }
     except SceneError as fault:
-        print(f"figures: {fault}", file=sys.stderr)
+        print(f"run: {fault}", file=sys.stderr)
         return 1
     paper = is_paper(scenes)
     written = draw_sheet(scenes, paper, out / ("paper_diagrams" if paper else "diagrams"))

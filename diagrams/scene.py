@@ -3,6 +3,7 @@
 Names and units are those of the model's variables: SI, fixed axes X, Y, Z, Z up; angles in rad.
 """
 
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -31,6 +32,13 @@ class Scene:
     @property
     def time(self) -> Array:
         return self.columns["time"]
+
+    @cached_property
+    def ending(self) -> str:
+        """What ended the run before its time, such as `fell flat at t = 0.593 s`: from the log beside the table."""
+        log = self.path.with_suffix(".log")
+        said = re.search(r"The wheel (.+?) at t = (\S+) s", log.read_text(encoding="utf-8")) if log.exists() else None
+        return f"{said[1]} at $t$ = {float(said[2]):.3g} s" if said else ""
 
     def value(self, name: str) -> float:
         """A parameter of the run, which the file holds as a column of equal numbers."""
@@ -96,4 +104,8 @@ def read_scene(path: Path, needed: tuple[str, ...]) -> Scene:
         if not np.isfinite(table[name]).all():
             row = np.flatnonzero(~np.isfinite(table[name]))[0] + 1
             raise SceneError(f"{path} has no finite number for {name} in data row {row}.")
-    return Scene(path, {name: table[name] for name in needed})
+    scene = Scene(path, {name: table[name] for name in needed})
+    if scene.time[-1] <= scene.time[0]:
+        why = (scene.ending or "stands at one instant").replace("$", "")
+        raise SceneError(f"{path} has no motion to draw: the wheel {why}.")
+    return scene

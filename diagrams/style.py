@@ -24,6 +24,7 @@ GREY = "#767676"
 BAND = "#F6D9BF"  # VERMILLION at about a quarter, opaque: SVG and PNG then show one tone
 
 MM = 1.0 / 25.4  # inch per millimetre
+NOTE = 7.5  # points, the size of a note
 COLUMN = 89.0  # mm, one journal column
 PAGE = 183.0  # mm, two journal columns
 
@@ -86,7 +87,7 @@ def text_mm(fig: Figure, x: float, y: float, text: str, **how: object) -> None:
 
 def note(ax: Axes, text: str, at: Sequence[float], shift: Sequence[float], **how: object) -> None:
     """Small text beside the data point `at`, moved by `shift` in typographic points."""
-    look = {"fontsize": 7.5, "textcoords": "offset points"} | how
+    look = {"fontsize": NOTE, "textcoords": "offset points"} | how
     ax.annotate(text, at, xytext=shift, **look)
 
 
