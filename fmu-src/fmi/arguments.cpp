@@ -1,7 +1,7 @@
 // Checks shared by all functions that read or set variables.
 #include "arguments.hpp"
 
-using wheel::Topic;
+using wheel::Phase, wheel::Topic;
 
 namespace fmi {
 
@@ -12,14 +12,13 @@ bool check_arrays(Instance& i, const char* name, std::size_t count, const void* 
 }
 
 fmi2Status prepare_reading(Instance& i) {
-  if (i.state != State::initialization || i.prepared) return fmi2OK;
-  i.prepared = i.simulation.prepare(!i.faults_told);
-  i.faults_told = true;
-  return i.prepared ? fmi2OK : fmi2Discard;
+  const Phase phase = i.simulation.phase();
+  if (phase != Phase::initializing && phase != Phase::faulty) return fmi2OK;
+  return i.simulation.prepare(phase == Phase::initializing) ? fmi2OK : fmi2Discard;
 }
 
 bool check_readable(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (variable < wheel::stored_count || i.simulation.has_state()) return true;
+  if (variable < wheel::stored_count || has_state(i.simulation.phase())) return true;
   i.log(Topic::error, "%s: \"%s\" has no value before a successful initialization.", name,
         wheel::row_of(variable).name);
   return false;

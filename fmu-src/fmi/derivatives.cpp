@@ -6,7 +6,7 @@
 #include "digits.hpp"
 
 using fmi::check_arrays, fmi::check_readable, fmi::Function, fmi::guarded, fmi::Instance, fmi::prepare_reading;
-using fmi::State, support::Digits, wheel::Role, wheel::Topic;
+using support::Digits, wheel::Phase, wheel::Role, wheel::Topic;
 
 namespace {
 
@@ -24,7 +24,7 @@ bool check_output(Instance& i, const char* name, fmi2ValueReference variable) {
 
 // During the run outputs depend on inputs alone; in initialization mode they depend on the parameters too.
 bool check_known(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (i.state == State::initialization && variable < wheel::stored_count) return true;
+  if (!has_begun(i.simulation.phase()) && variable < wheel::stored_count) return true;
   return check_input(i, name, variable);
 }
 
@@ -109,9 +109,9 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     if (!check_arrays(i, name, n, v, values) || !check_arrays(i, name, n, orders, values)) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k) {
       if (!check_input(i, name, v[k])) return fmi2Error;
-      if (orders[k] < 1 || orders[k] > wheel::Inputs::max_order || !std::isfinite(values[k])) {
+      if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k])) {
         i.log(Topic::error, "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed.", name,
-              orders[k], Digits(values[k]).text, wheel::row_of(v[k]).name, wheel::Inputs::max_order);
+              orders[k], Digits(values[k]).text, wheel::row_of(v[k]).name, wheel::max_order);
         return fmi2Error;
       }
     }

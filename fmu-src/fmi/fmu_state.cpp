@@ -2,32 +2,17 @@
 //
 // A master may pass any pointer: only states that this library handed out are touched, and bytes from elsewhere become
 // a state only after a scratch instance has taken them.
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <new>
 
-#include "bytes.hpp"
 #include "instance.hpp"
 #include "registry.hpp"
 
-using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, wheel::Topic;
+using fmi::Function, fmi::guarded, fmi::Instance, wheel::Topic;
 
 namespace {
-
-// The call state stands in front of the simulation's bytes, which have their own checksum.
-struct CallState {
-  unsigned char state, prepared, has_stop_time, last_step;
-  unsigned char padding[4];
-  double stop_time;
-  std::uint64_t checksum;  // of the fields above
-};
-
-const unsigned char* bytes_of(const CallState& call) { return reinterpret_cast<const unsigned char*>(&call); }
-
-constexpr std::size_t summed = offsetof(CallState, checksum);
 
 struct Snapshot {
   std::size_t size;  // of the bytes behind this header
@@ -43,8 +28,8 @@ void release(fmi2FMUstate state) {
   if (fmi::fmu_states.remove(state)) std::free(state);
 }
 
-// A state for `size` bytes in place of a previous one, which is used again if its size fits. Null without memory: then
-// the previous one is kept.
+// A state of `size` bytes: the previous one where its size fits, else a new one, and the previous one is freed. Null
+// without memory: then the previous one is kept.
 Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
   Snapshot* const old = snapshot_of(previous);
   if (old && old->size == size) return old;
@@ -55,79 +40,8 @@ Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
   return ::new (memory) Snapshot{size};
 }
 
-void write(Instance& i, unsigned char* bytes) {
-  CallState call = {};
-  call.state = static_cast<unsigned char>(i.state);
-  call.prepared = i.prepared;
-  call.has_stop_time = i.has_stop_time;
-  call.last_step = static_cast<unsigned char>(i.last_step);
-  call.stop_time = i.stop_time;
-  call.checksum = support::checksum_of(bytes_of(call), summed);
-  std::memcpy(bytes, &call, sizeof call);
-  i.simulation.save_state(bytes + sizeof call);
-}
-
-// False: the simulation cannot have been in this state; the instance stays as it was.
-bool read(Instance& i, const unsigned char* bytes, std::size_t size) {
-  CallState call;
-  std::memcpy(&call, bytes, sizeof call);
-  if (!i.simulation.load_state(bytes + sizeof call, size - sizeof call)) return false;
-  i.state = static_cast<State>(call.state);
-  i.prepared = call.prepared;
-  i.has_stop_time = call.has_stop_time;
-  i.last_step = static_cast<fmi2Status>(call.last_step);
-  i.stop_time = call.stop_time;
-  i.faults_told = false;
-  return true;
-}
-
-// Each field by itself: one that `write` could have written.
-bool is_sound(const CallState& call) {
-  const unsigned char none[sizeof call.padding] = {};
-  const bool stops = call.has_stop_time != 0;
-  return support::has_checksum(bytes_of(call), summed, call.checksum) &&
-         call.state <= static_cast<unsigned char>(State::error) && call.prepared <= 1 && call.has_stop_time <= 1 &&
-         (call.last_step == fmi2OK || call.last_step == fmi2Discard || call.last_step == fmi2Error) &&
-         !std::memcmp(call.padding, none, sizeof none) && (stops ? std::isfinite(call.stop_time) : call.stop_time == 0);
-}
-
-// Whether call state and simulation fit together.
-bool agrees(const Instance& i) {
-  const wheel::Simulation& simulation = i.simulation;
-  switch (i.state) {
-    case State::instantiated:
-      return !simulation.has_state() && !simulation.started();
-    case State::initialization:
-      return !simulation.started() && (simulation.has_state() || !i.prepared);
-    case State::step_complete:
-      return simulation.started() && !simulation.ending() && i.last_step == fmi2OK;
-    case State::step_failed:
-      return simulation.started() && simulation.ending() && i.last_step == fmi2Discard;
-    case State::terminated:
-      return simulation.started();
-    case State::error:
-      break;
-  }
-  return simulation.has_state() || !simulation.started();
-}
-
-enum class Judged { sound, unsound, no_memory };
-
-Judged judge(const unsigned char* bytes, std::size_t size) {
-  CallState call;
-  if (size < sizeof call) return Judged::unsound;
-  std::memcpy(&call, bytes, sizeof call);
-  if (!is_sound(call)) return Judged::unsound;
-  Instance* scratch = Instance::create("scratch", nullptr, false);
-  if (!scratch) return Judged::no_memory;
-  const bool sound = read(*scratch, bytes, size) && agrees(*scratch);
-  Instance::destroy(scratch);
-  return sound ? Judged::sound : Judged::unsound;
-}
-
 constexpr const char *null_pointer = "the state, the size or the bytes are a null pointer",
-                     *unknown_state = "the state is not one that this FMU handed out", *no_memory = "out of memory",
-                     *damaged = "the bytes are damaged or not a state of this FMU and version";
+                     *unknown_state = "the state is not one that this FMU handed out", *no_memory = "out of memory";
 
 fmi2Status refuse(Instance& i, const char* name, const char* why) {
   i.log(Topic::error, "%s: %s.", name, why);
@@ -142,9 +56,9 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
   constexpr const char* name = "fmi2GetFMUstate";
   return guarded(c, Function::fmu_state, name, [=](Instance& i) {
     if (!state) return refuse(i, name, null_pointer);
-    Snapshot* snapshot = allocate(*state, sizeof(CallState) + i.simulation.state_size());
+    Snapshot* snapshot = allocate(*state, i.simulation.state_size());
     if (!snapshot) return refuse(i, name, no_memory);
-    write(i, snapshot->bytes());
+    i.simulation.save_state(snapshot->bytes());
     *state = snapshot;
     return fmi2OK;
   });
@@ -156,7 +70,7 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
     Snapshot* snapshot = snapshot_of(state);
     if (!snapshot) return refuse(i, name, state ? unknown_state : null_pointer);
     // Bytes that this library handed out are sound, so only a lack of memory can make this fail.
-    return read(i, snapshot->bytes(), snapshot->size) ? fmi2OK : refuse(i, name, no_memory);
+    return i.simulation.load_state(snapshot->bytes(), snapshot->size) ? refuse(i, name, no_memory) : fmi2OK;
   });
 }
 
@@ -196,9 +110,15 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
   constexpr const char* name = "fmi2DeSerializeFMUstate";
   return guarded(c, Function::fmu_state, name, [=](Instance& i) {
     if (!state || !bytes) return refuse(i, name, null_pointer);
-    const Judged judged = judge(reinterpret_cast<const unsigned char*>(bytes), size);
-    if (judged == Judged::unsound) return refuse(i, name, damaged);
-    Snapshot* snapshot = judged == Judged::sound ? allocate(*state, size) : nullptr;
+    Instance* scratch = Instance::create("scratch", nullptr, false);
+    if (!scratch) return refuse(i, name, no_memory);
+    const char* fault = scratch->simulation.load_state(reinterpret_cast<const unsigned char*>(bytes), size);
+    Instance::destroy(scratch);
+    if (fault) {
+      i.log(Topic::error, "%s: the bytes are damaged or not a state of this FMU and version (%s).", name, fault);
+      return fmi2Error;
+    }
+    Snapshot* snapshot = allocate(*state, size);
     if (!snapshot) return refuse(i, name, no_memory);
     std::memcpy(snapshot->bytes(), bytes, size);
     *state = snapshot;

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <new>
 
+#include "digits.hpp"
+
 namespace fmi {
 namespace {
 
@@ -79,11 +81,11 @@ void Instance::destroy(Instance* instance) {
 
 // After the end of a run the sentence says what happened to the wheel, which helps a user more than a call state.
 void Instance::refuse(const char* function) {
-  const char* ending = state == State::step_failed ? simulation.ending() : nullptr;
-  if (ending)
-    log(wheel::Topic::error, "%s: %s. Restore a state or reset.", function, ending);
+  if (has_ended(simulation.phase()))
+    log(wheel::Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", function, simulation.ending(),
+        support::Digits(simulation.time()).text);
   else
-    log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", function, name_of(state));
+    log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", function, state_of(simulation.phase()));
 }
 
 void Instance::log(wheel::Topic topic, const char* format, ...) {

@@ -1,4 +1,4 @@
-// One FMU instance: the master's callbacks, the call state, the simulation. And the guard every call passes.
+// One FMU instance: the master's callbacks and the simulation. And the guard every call passes.
 #pragma once
 
 #include "fmi2Functions.h"
@@ -19,13 +19,7 @@ struct Instance {
   bool wants(wheel::Topic topic) const { return logged_topics & (1u << static_cast<unsigned>(topic)); }
 
   wheel::Simulation simulation;
-  State state = State::instantiated;
-  bool busy = false;         // a call is under way: the logger must not call back into the instance
-  bool prepared = false;     // initialization mode: the start state fits the parameters
-  bool faults_told = false;  // the parameters' faults were told since one was set
-  bool has_stop_time = false;
-  double stop_time = 0;
-  fmi2Status last_step = fmi2OK;
+  bool busy = false;  // a call is under way: the logger must not call back into the instance
   unsigned logged_topics = 0;
 
  private:
@@ -46,7 +40,7 @@ fmi2Status guarded(fmi2Component component, Function function, const char* name,
   if (!instance || instance->busy) return fmi2Error;
   instance->busy = true;
   fmi2Status status = fmi2Error;
-  if (is_legal(function, instance->state))
+  if (is_legal(function, instance->simulation.phase()))
     status = body(*instance);
   else
     instance->refuse(name);

@@ -1,17 +1,26 @@
-// One row per function, one bit per state. Whether a variable may be set depends on the variable too: see values.cpp.
+// One row per function, one bit per phase. Whether a variable may be set depends on the variable too: see values.cpp.
 #include "legality.hpp"
 
 namespace fmi {
 namespace {
 
-constexpr unsigned bit(State state) { return 1u << static_cast<unsigned>(state); }
+using wheel::Phase;
 
-constexpr unsigned I = bit(State::instantiated), M = bit(State::initialization), C = bit(State::step_complete),
-                   F = bit(State::step_failed), T = bit(State::terminated), X = bit(State::error);
+template <class... Phases>
+constexpr unsigned bits(Phases... phases) {
+  return ((1u << static_cast<unsigned>(phases)) | ...);
+}
+
+// The call states.
+constexpr unsigned I = bits(Phase::created), M = bits(Phase::initializing, Phase::faulty, Phase::initial),
+                   C = bits(Phase::at_start, Phase::stepping, Phase::unfolded),
+                   F = bits(Phase::fell_flat, Phase::lifted_off), T = bits(Phase::closed, Phase::closed_after_end),
+                   X = bits(Phase::failed, Phase::without_start);
+static_assert((I | M | C | F | T | X) + 1 == bits(Phase::count) && (I ^ M ^ C ^ F ^ T ^ X) == (I | M | C | F | T | X));
 
 struct Rule {
   Function function;
-  unsigned states;
+  unsigned phases;
 };
 
 constexpr Rule rules[] = {
@@ -45,12 +54,17 @@ static_assert(in_order());
 
 }  // namespace
 
-bool is_legal(Function function, State state) { return rules[static_cast<unsigned>(function)].states & bit(state); }
+bool is_legal(Function function, Phase phase) { return rules[static_cast<unsigned>(function)].phases & bits(phase); }
 
-const char* name_of(State state) {
-  constexpr const char* names[] = {"instantiated", "initialization mode", "step complete",
-                                   "step failed",  "terminated",          "error"};
-  return names[static_cast<unsigned>(state)];
+const char* state_of(Phase phase) {
+  constexpr struct {
+    unsigned phases;
+    const char* name;
+  } states[] = {{I, "instantiated"}, {M, "initialization mode"}, {C, "step complete"},
+                {F, "step failed"},  {T, "terminated"},          {X, "error"}};
+  const auto* state = states;
+  while (!(state->phases & bits(phase))) ++state;
+  return state->name;
 }
 
 }  // namespace fmi

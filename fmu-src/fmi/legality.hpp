@@ -1,10 +1,10 @@
-// The call states of an FMI 2.0 co-simulation slave, and in which of them a function may be called: section 4.2.4 of
-// the standard.
+// In which phases of a run a function may be called: the call states of an FMI 2.0 co-simulation slave, section 4.2.4
+// of the standard.
 #pragma once
 
-namespace fmi {
+#include "phase.hpp"
 
-enum class State : unsigned char { instantiated, initialization, step_complete, step_failed, terminated, error };
+namespace fmi {
 
 enum class Function : unsigned char {
   set_debug_logging,
@@ -28,9 +28,9 @@ enum class Function : unsigned char {
   count,
 };
 
-bool is_legal(Function function, State state);
+bool is_legal(Function function, wheel::Phase phase);
 
-// The name that the standard uses, for messages.
-const char* name_of(State state);
+// The call state that the phase stands for, by the name that the standard uses, for messages.
+const char* state_of(wheel::Phase phase);
 
 }  // namespace fmi

@@ -6,7 +6,7 @@
 #include "instance.hpp"
 #include "registry.hpp"
 
-using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, support::Digits, wheel::Topic;
+using fmi::Function, fmi::guarded, fmi::Instance, support::Digits, wheel::Topic;
 
 namespace {
 
@@ -91,34 +91,27 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
             Digits(start).text, Digits(stop).text, Digits(tolerance).text);
       return fmi2Error;
     }
-    i.has_stop_time = has_stop && std::isfinite(stop);
-    i.stop_time = i.has_stop_time ? stop : 0;
-    i.simulation.set_experiment(start, has_tolerance ? tolerance : 0);
+    i.simulation.set_experiment(start, has_stop ? stop : wheel::Demand::never, has_tolerance ? tolerance : 0);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
   return guarded(c, Function::enter_initialization, "fmi2EnterInitializationMode", [](Instance& i) {
-    i.state = State::initialization;
-    i.prepared = false;
+    i.simulation.initialize();
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  return guarded(c, Function::exit_initialization, "fmi2ExitInitializationMode", [](Instance& i) {
-    const bool sound = i.simulation.prepare();
-    if (sound) i.simulation.start();
-    i.state = sound ? State::step_complete : State::error;
-    return sound ? fmi2OK : fmi2Error;
-  });
+  return guarded(c, Function::exit_initialization, "fmi2ExitInitializationMode",
+                 [](Instance& i) { return i.simulation.start() ? fmi2OK : fmi2Error; });
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
   if (!fmi::instances.holds(c)) return fmi2Error;
   return guarded(c, Function::terminate, "fmi2Terminate", [](Instance& i) {
-    i.state = State::terminated;
+    i.simulation.close();
     return fmi2OK;
   });
 }
@@ -127,10 +120,6 @@ fmi2Status fmi2Reset(fmi2Component c) {
   if (!fmi::instances.holds(c)) return fmi2Error;
   return guarded(c, Function::reset, "fmi2Reset", [](Instance& i) {
     i.simulation.reset();
-    i.state = State::instantiated;
-    i.prepared = i.faults_told = i.has_stop_time = false;
-    i.stop_time = 0;
-    i.last_step = fmi2OK;
     return fmi2OK;
   });
 }

@@ -4,7 +4,7 @@
 #include "digits.hpp"
 #include "instance.hpp"
 
-using fmi::Function, fmi::guarded, fmi::Instance, fmi::State, support::Digits, wheel::Topic;
+using fmi::Function, fmi::guarded, fmi::Instance, support::Digits, wheel::Phase, wheel::Topic;
 
 namespace {
 
@@ -30,8 +30,9 @@ fmi2Status check_step(Instance& i, double t, double h) {
           Digits(i.simulation.time()).text);
     return fmi2Error;
   }
-  if (i.has_stop_time && is_past(t + h, i.stop_time)) {
-    i.log(Topic::error, "fmi2DoStep to %s s: the stop time is %s s.", Digits(t + h).text, Digits(i.stop_time).text);
+  if (is_past(t + h, i.simulation.stop_time())) {
+    i.log(Topic::error, "fmi2DoStep to %s s: the stop time is %s s.", Digits(t + h).text,
+          Digits(i.simulation.stop_time()).text);
     return fmi2Error;
   }
   return fmi2OK;
@@ -41,15 +42,19 @@ fmi2Status step(Instance& i, double t, double h) {
   if (check_step(i, t, h) != fmi2OK) return fmi2Error;
   switch (i.simulation.advance(t + h)) {
     case wheel::Progressed::reached:
-      return i.last_step = fmi2OK;
+      return fmi2OK;
     case wheel::Progressed::ended:
-      i.state = State::step_failed;
-      return i.last_step = fmi2Discard;
+      return fmi2Discard;
     case wheel::Progressed::failed:
       break;
   }
-  i.state = State::error;
-  return i.last_step = fmi2Error;
+  return fmi2Error;
+}
+
+// Of the last step, where its status may be asked for.
+fmi2Status last_status(const Instance& i) {
+  const Phase phase = i.simulation.phase();
+  return has_ended(phase) || phase == Phase::closed_after_end ? fmi2Discard : fmi2OK;
 }
 
 constexpr int no_status = -1;
@@ -84,7 +89,7 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
 }
 
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status* value) {
-  return get_status(c, "fmi2GetStatus", kind, fmi2DoStepStatus, value, [](Instance& i) { return i.last_step; });
+  return get_status(c, "fmi2GetStatus", kind, fmi2DoStepStatus, value, last_status);
 }
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
@@ -98,7 +103,7 @@ fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
   return get_status(c, "fmi2GetBooleanStatus", kind, fmi2Terminated, value,
-                    [](Instance& i) { return i.last_step == fmi2Discard ? fmi2True : fmi2False; });
+                    [](Instance& i) { return last_status(i) == fmi2Discard ? fmi2True : fmi2False; });
 }
 
 fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String* value) {

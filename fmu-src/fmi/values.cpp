@@ -5,7 +5,7 @@
 #include "digits.hpp"
 
 using fmi::check_arrays, fmi::check_readable, fmi::Function, fmi::guarded, fmi::Instance, fmi::prepare_reading;
-using fmi::State, support::Digits, wheel::Role, wheel::Topic, wheel::Type;
+using support::Digits, wheel::Role, wheel::Topic, wheel::Type;
 
 namespace {
 
@@ -37,7 +37,7 @@ fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
 bool check_settable(Instance& i, const char* name, fmi2ValueReference variable) {
   const wheel::Row& row = wheel::row_of(variable);
   const bool stored = row.role != Role::output && row.role != Role::local;
-  if (stored && (i.state != State::step_complete || row.role != Role::parameter)) return true;
+  if (stored && (!is_running(i.simulation.phase()) || row.role != Role::parameter)) return true;
   i.log(Topic::error,
         stored ? "%s: \"%s\" cannot be set after initialization." : "%s: \"%s\" is calculated and cannot be set.", name,
         row.name);
@@ -48,7 +48,7 @@ bool check_settable(Instance& i, const char* name, fmi2ValueReference variable) 
 // at the end of initialization.
 bool check_value(Instance& i, const char* name, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
-  if (i.state != State::step_complete || (std::isfinite(value) && value >= row.min && value <= row.max)) return true;
+  if (!is_running(i.simulation.phase()) || (std::isfinite(value) && value >= row.min && value <= row.max)) return true;
   const bool low = value < row.min;
   const Digits given(value), limit(low ? row.min : row.max), kept(i.simulation.value(variable));
   if (std::isfinite(value))
@@ -70,7 +70,6 @@ fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
     for (std::size_t k = 0; k < count; ++k)
       if (!check_value(i, name, variables[k], static_cast<double>(values[k]))) return fmi2Discard;
     for (std::size_t k = 0; k < count; ++k) i.simulation.store(variables[k], static_cast<double>(values[k]));
-    i.prepared = i.faults_told = false;
     return fmi2OK;
   });
 }

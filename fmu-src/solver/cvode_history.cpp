@@ -100,13 +100,13 @@ bool Cvode::restore(const Problem& problem, Method method, Step* step, support::
   visit_history(reader);
   const auto& m = *static_cast<CVodeMem>(objects_->cvode);
   const double rounding = 200 * m.cv_uround * (std::fabs(m.cv_tn) + m.cv_hu);
-  reader.good = reader.good && std::fabs(m.cv_tn - saved.end) <= rounding &&
-                std::fabs(saved.end - saved.start - m.cv_hu) <= rounding &&
-                std::fabs(m.cv_hprime - m.cv_h * m.cv_eta) <= 1e-10 * m.cv_hprime;
-  for (int i = 0; reader.good && method == Method::bdf && i < width_of(problem.states); ++i)
-    reader.good = SUNDenseMatrix_Column(objects_->matrix, i)[i] != 0;
-  if (!reader.good) free_objects();  // nothing stays of numbers that no solver wrote
-  return reader.good;
+  bool sound = !reader.fault && std::fabs(m.cv_tn - saved.end) <= rounding &&
+               std::fabs(saved.end - saved.start - m.cv_hu) <= rounding &&
+               std::fabs(m.cv_hprime - m.cv_h * m.cv_eta) <= 1e-10 * m.cv_hprime;
+  for (int i = 0; sound && method == Method::bdf && i < width_of(problem.states); ++i)
+    sound = SUNDenseMatrix_Column(objects_->matrix, i)[i] != 0;
+  if (!sound) free_objects();  // nothing stays of numbers that no solver wrote
+  return sound;
 }
 
 }  // namespace solver

@@ -50,7 +50,7 @@ bool Solver::restore_history(const Problem& problem, const unsigned char* bytes,
   step_.degree = -1;
   runge_kutta_ = {};
   visit(reader);
-  if (reader.good && restored_fits() && restore_engine(reader) && reader.at == reader.end) return true;
+  if (!reader.fault && restored_fits() && restore_engine(reader) && reader.at == reader.end) return true;
   failure_ = "its history could not be restored";
   const double none[max_states] = {};
   step_.set_point(0, none, problem.states);  // reading it is harmless

@@ -16,7 +16,9 @@ namespace support {
 template <class Derived>
 struct Archive {
   static constexpr double greatest = std::numeric_limits<double>::max();
+  const char* row = "";  // what is read or written now, in words
 
+  Derived& operator()(const char* what) { return row = what, self(); }
   void range(double& x, double least, double most) { self().put(x, least, most); }
   void number(double& x) { range(x, -greatest, greatest); }  // finite
   void numbers(double* x, int n) {
@@ -58,20 +60,18 @@ struct Writer : Archive<Writer> {
 
 struct Reader : Archive<Reader> {
   const unsigned char *at, *end;
-  bool good = true;
+  const char* fault = nullptr;  // the first row that could not have been written
   Reader(const unsigned char* bytes, std::size_t size) : at(bytes), end(bytes + size) {}
   // A word outside its bounds, or beyond the end, gives the least allowed value, so that reading on is harmless.
   template <class Word>
   void put(Word& word, Word least, Word most) {
-    word = least;
-    if (end - at < 8) return void(good = false);
-    Word read;
-    std::memcpy(&read, at, sizeof read);
-    at += sizeof read;
-    if (read >= least && read <= most)
-      word = read;
-    else
-      good = false;
+    Word read = least;
+    const bool complete = end - at >= 8;
+    if (complete) std::memcpy(&read, at, sizeof read);
+    if (complete) at += sizeof read;
+    const bool sound = complete && read >= least && read <= most;
+    if (!sound && !fault) fault = row;
+    word = sound ? read : least;
   }
 };
 

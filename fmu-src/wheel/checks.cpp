@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "motion.hpp"
 #include "simulation.hpp"
 
 namespace wheel {
@@ -46,8 +45,7 @@ void inertia_fault(const double* v, char* sentence, std::size_t size) {
 
 }  // namespace
 
-bool check_values(const double* parameters, const Inputs& inputs, void* owner,
-                  void (*tell)(void* owner, const char* sentence)) {
+bool check_values(const Demand& demand, void* owner, void (*tell)(void* owner, const char* sentence)) {
   bool sound = true;
   char sentence[256];
   const auto conclude = [&] {
@@ -56,11 +54,10 @@ bool check_values(const double* parameters, const Inputs& inputs, void* owner,
     if (tell) tell(owner, sentence);
   };
   for (unsigned v = 0; v < stored_count; ++v) {
-    const double value = v < first_input ? parameters[v] : inputs.value(static_cast<int>(v - first_input));
-    fault_of(v, value, sentence, sizeof sentence);
+    fault_of(v, v < first_input ? demand.parameters[v] : demand.inputs[v - first_input][0], sentence, sizeof sentence);
     conclude();
   }
-  inertia_fault(parameters, sentence, sizeof sentence);
+  inertia_fault(demand.parameters, sentence, sizeof sentence);
   conclude();
   return sound;
 }
@@ -69,26 +66,25 @@ bool Simulation::check_parameters(bool report) {
   const auto tell_fault = [](void* owner, const char* sentence) {
     static_cast<Simulation*>(owner)->tell(Topic::error, "%s", sentence);
   };
-  return check_values(state_.parameters, state_.motion.inputs, this, report ? +tell_fault : nullptr);
+  return check_values(demand_, this, report ? +tell_fault : nullptr);
+}
+
+bool is_inside(Reading& now) {
+  double sum = wheel_energy(&now.scene().wheel, &now.kinematics()) + now.dynamics().tau;
+  for (const double force : now.dynamics().lambda) sum += force;
+  return angle_from_flat(now.pose().theta) > 0 && std::isfinite(sum);
 }
 
 // Values that are sound one by one can still have products that are not finite.
 bool Simulation::check_start(bool report) {
-  Reading& start = reading();
-  const WheelDynamics& forces = start.dynamics();
-  const double numbers[] = {wheel_energy(&start.scene().wheel, &start.kinematics()), forces.lambda[0], forces.lambda[1],
-                            forces.lambda[2], forces.tau};
-  for (const double number : numbers)
-    if (!std::isfinite(number)) {
-      const double* v = state_.parameters;
-      if (report)
-        tell(Topic::error,
-             "The initial energy or reaction force overflows: m = %.3g kg, J_z = %.3g kg m2, r_0 = %.3g m, "
-             "g = %.3g m/s2, omega_z = %.3g rad/s.",
-             v[m], v[J_z], v[r_0], v[g], start.kinematics().omega_z);
-      return false;
-    }
-  return true;
+  if (is_inside(reading())) return true;
+  const double* v = demand_.parameters;
+  if (report)
+    tell(Topic::error,
+         "The initial energy or reaction force overflows: m = %.3g kg, J_z = %.3g kg m2, r_0 = %.3g m, "
+         "g = %.3g m/s2, omega_z = %.3g rad/s.",
+         v[m], v[J_z], v[r_0], v[g], reading().kinematics().omega_z);
+  return false;
 }
 
 }  // namespace wheel

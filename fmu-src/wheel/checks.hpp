@@ -1,12 +1,15 @@
-// Whether parameters and inputs describe a wheel.
+// Whether parameters and inputs describe a wheel, and a state is one of it.
 #pragma once
 
-#include "inputs.hpp"
+#include "demand.hpp"
+#include "reading.hpp"
 
 namespace wheel {
 
 // One sentence per fault goes to `tell` (null: nowhere); true if there is none.
-bool check_values(const double* parameters, const Inputs& inputs, void* owner,
-                  void (*tell)(void* owner, const char* sentence));
+bool check_values(const Demand& demand, void* owner, void (*tell)(void* owner, const char* sentence));
+
+// Whether the wheel stands, and its energy and reactions are finite.
+bool is_inside(Reading& now);
 
 }  // namespace wheel

@@ -1,9 +1,8 @@
-// Input polynomials: set at a communication point, in force from there on.
+// Input polynomials and what is asked of them.
 #include "inputs.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace wheel {
@@ -14,8 +13,13 @@ constexpr double factorial[] = {1, 1, 2, 6};
 double evaluate(const double* c, double tau) { return c[0] + tau * (c[1] + tau * (c[2] + tau * c[3])); }
 double slope(const double* c, double tau) { return c[1] + tau * (2 * c[2] + tau * 3 * c[3]); }
 
-// A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
-void limit_brake(WheelLoad& load) { load.brake = std::fmax(load.brake, 0); }
+// tau: s, from the origin. A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
+WheelLoad load_after(const Polynomials& inputs, double tau) {
+  WheelLoad load;
+  for (int i = 0; i < inputs_count; ++i) *load_entry(load, i) = evaluate(inputs[i], tau);
+  load.brake = std::fmax(load.brake, 0);
+  return load;
+}
 
 bool is_zero(const double* c) { return c[0] == 0 && c[1] == 0 && c[2] == 0 && c[3] == 0; }
 
@@ -41,7 +45,7 @@ bool continues(const double* c, double tau, double rounding, const double* next)
   const double shifted[] = {evaluate(c, tau), slope(c, tau), c[2] + 3 * tau * c[3], c[3], 0};
   const double size[] = {std::fabs(c[0]), std::fabs(c[1]), std::fabs(c[2]), std::fabs(c[3])}, length = std::fabs(tau);
   const double sums[] = {evaluate(size, length), slope(size, length), size[2] + 3 * length * size[3], size[3]};
-  for (int k = 0; k <= Inputs::max_order; ++k)
+  for (int k = 0; k <= max_order; ++k)
     if (!(std::fabs(shifted[k] - next[k]) <= relative * sums[k] + rounding * (k + 1) * std::fabs(shifted[k + 1])))
       return false;
   return true;
@@ -51,73 +55,59 @@ bool continues(const double* c, double tau, double rounding, const double* next)
 
 double* load_entry(WheelLoad& load, int input) {
   if (input < 3) return &load.F[input];
-  return input < Inputs::brake ? &load.M[input - 3] : &load.brake;
+  return input < brake_input ? &load.M[input - 3] : &load.brake;
 }
 
-bool Inputs::set_value(int input, double value) {
-  if (pending[input][0] == value) return false;
-  pending[input][0] = value;
-  return true;
+void set_derivative(Polynomials& inputs, int input, int order, double derivative) {
+  inputs[input][order] = derivative / factorial[order];
 }
 
-void Inputs::set_derivative(int input, int order, double derivative) {
-  pending[input][order] = derivative / factorial[order];
+WheelLoad load_of(const Polynomials& inputs) { return load_after(inputs, 0); }
+
+WheelLoad load_rate_of(const Polynomials& inputs) {
+  WheelLoad rate = {};
+  for (int i = 0; i < inputs_count; ++i) *load_entry(rate, i) = inputs[i][1];
+  return rate;
 }
 
-void Inputs::hold_from(double t) {
-  for (int i = 0; i < count; ++i) {
-    std::fill(pending[i] + 1, pending[i] + max_order + 1, 0.0);
-    pending[i][0] = evaluate(in_force[i], t - origin);
-  }
-  pending[brake][0] = std::fmax(pending[brake][0], 0);  // like any brake that is set
-}
-
-bool Inputs::change_at(double t, double rounding) const {
-  const double tau = varies ? t - origin : 0;
-  for (int i = 0; i < count; ++i)
-    if (!continues(in_force[i], tau, rounding, pending[i])) return true;
-  return false;
-}
-
-void Inputs::take_over(double t) {
-  std::memcpy(in_force, pending, sizeof in_force);
+void Inputs::take_over(double t, const Polynomials& asked) {
   origin = t;
+  std::copy_n(asked[0], sizeof c / sizeof c[0][0], c[0]);
   classify();
 }
 
 void Inputs::classify() {
   loaded = varies = false;
-  for (const auto& c : in_force) {
-    loaded = loaded || !is_zero(c);
-    varies = varies || c[1] != 0 || c[2] != 0 || c[3] != 0;
+  for (const auto& polynomial : c) {
+    loaded = loaded || !is_zero(polynomial);
+    varies = varies || polynomial[1] != 0 || polynomial[2] != 0 || polynomial[3] != 0;
   }
-  braked = !is_zero(in_force[brake]);
+  braked = !is_zero(c[brake_input]);
 }
 
-void Inputs::load_at(double t, WheelLoad* load) const {
-  for (int i = 0; i < count; ++i) *load_entry(*load, i) = evaluate(in_force[i], t - origin);
-  limit_brake(*load);
+bool Inputs::change_at(double t, double rounding, const Polynomials& asked) const {
+  const double tau = varies ? t - origin : 0;
+  for (int i = 0; i < inputs_count; ++i)
+    if (!continues(c[i], tau, rounding, asked[i])) return true;
+  return false;
 }
 
-void Inputs::pending_load(WheelLoad* load) const {
-  for (int i = 0; i < count; ++i) *load_entry(*load, i) = pending[i][0];
-  limit_brake(*load);
-}
+WheelLoad Inputs::load_at(double t) const { return load_after(c, t - origin); }
 
-WheelLoad Inputs::pending_rate() const {
-  WheelLoad rate = {};
-  for (int i = 0; i < count; ++i) *load_entry(rate, i) = pending[i][1];
-  return rate;
+void Inputs::hold(double t, Polynomials& asked) const {
+  for (int i = 0; i < inputs_count; ++i) {
+    std::fill_n(asked[i] + 1, max_order, 0.0);
+    asked[i][0] = evaluate(c[i], t - origin);
+  }
+  asked[brake_input][0] = std::fmax(asked[brake_input][0], 0);  // like any brake that is set
 }
-
-bool Inputs::pending_brake() const { return !is_zero(pending[brake]); }
 
 int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
   if (!varies) return 0;
   int found = 0;
-  for (const auto& c : in_force) {
+  for (const auto& polynomial : c) {
     double zeros[2];
-    for (int k = zeros_of_slope(c, zeros); k > 0; --k) {
+    for (int k = zeros_of_slope(polynomial, zeros); k > 0; --k) {
       const double t = origin + zeros[k - 1];
       if (t > t_lo && t < t_hi) instants[found++] = t;
     }

@@ -2,10 +2,8 @@
 // whose fall below zero is an event. Reduced or multibody state, see wheel_equations.h.
 #pragma once
 
-#include "inputs.hpp"
-#include "scene.hpp"
+#include "law.hpp"
 #include "solver.hpp"
-#include "wheel_equations.h"
 
 namespace wheel {
 
@@ -24,28 +22,17 @@ enum class Event : int {
   fell_flat
 };
 
-// What the right-hand side and the watched functions need besides time and state.
-struct Motion {
-  const WheelFormulation* formulation = nullptr;
-  WheelScene scene = {};  // the law in force; its load follows the inputs
-  Inputs inputs;
-  double tolerance = 0;  // relative, of the whole solution
-  ErrorScales scales = {};
-  double weight = 0;        // N, scale of the normal force
-  double longest_step = 0;  // s
-  bool keep_contact = false;
+// What the functions of the problem need besides time and state. They only read it.
+struct Owner {
+  const Setup& setup;
+  InForce& in_force;
 };
 
-// Scales of errors, forces and steps, from the parameters and the initial state.
-void set_scales(Motion& motion, const double* y);
+// What is watched goes with what is in force.
+solver::Problem problem_of(Owner& owner);
 
-inline bool pulls(const Motion& motion) { return motion.scene.ground == WHEEL_GROUND_PULLS; }
-
-// The ground begins to pull, or to press.
-void change_contact(Motion& motion);
-
-// The problem refers to the motion and changes nothing of it but the load of its scene. What is watched goes with the
-// law in force.
-solver::Problem problem_of(Motion& motion);
+// Zero where the ground begins to pull, or to press while it pulls, over the weight. What is below zero only by
+// rounding does not count.
+double contact_margin(const Owner& owner, double t, const double* y);
 
 }  // namespace wheel

@@ -2,36 +2,33 @@
 #include <algorithm>
 #include <cstring>
 
-#include "decisions.hpp"
 #include "simulation.hpp"
 
 namespace wheel {
 
 // Whether the stored orbit belongs to the present run; the instance may have computed other runs before.
 bool Simulation::orbit_fits() const {
-  return std::equal(state_.parameters, state_.parameters + first_input, orbit_origin_) &&
-         orbit_origin_[first_input] == state_.motion.tolerance;
+  return std::equal(demand_.parameters, demand_.parameters + first_input, orbit_origin_) &&
+         orbit_origin_[first_input] == demand_.tolerance;
 }
 
-// Builds the orbit from the start of the run. Where the motion cannot be unfolded, the solver has to step through it.
-void Simulation::build_orbit() {
-  State start = state_;
-  set_initial_state(start);
-  Motion& motion = start.motion;
-  const auto pass = [](void* owner, int event) {
-    return event == static_cast<int>(Event::contact_changes) && (change_contact(*static_cast<Motion*>(owner)), true);
-  };
-  const Orbit::Kind kind = orbit_.build(problem_of(motion), motion.tolerance, pass, start.y, solver_);
-  state_.unfolded = kind != Orbit::Kind::refused;
-  std::memcpy(orbit_origin_, state_.parameters, sizeof state_.parameters);
-  orbit_origin_[first_input] = state_.unfolded ? motion.tolerance : 0;
-}
-
-// Makes the orbit ready, if the run is on one.
-void Simulation::enter_orbit() {
-  if (!orbit_fits()) build_orbit();
-  orbit_ready_ = state_.unfolded;
-  if (state_.unfolded) state_.counted = orbit_.counters();
+// Makes the orbit of the run ready, built from its start. False where the motion cannot be unfolded: the solver has to
+// step through it.
+bool Simulation::enter_orbit() {
+  if (!orbit_fits()) {
+    InForce start = run_.in_force;
+    Owner owner = {setup_, start};
+    const auto pass = [](void* of, int event) {
+      if (event == static_cast<int>(Event::contact_changes)) static_cast<Owner*>(of)->in_force.change_contact();
+      return event == static_cast<int>(Event::contact_changes);
+    };
+    const Orbit::Kind kind = orbit_.build(problem_of(owner), demand_.tolerance, pass, setup_.start, solver_);
+    std::memcpy(orbit_origin_, demand_.parameters, sizeof demand_.parameters);
+    orbit_origin_[first_input] = kind == Orbit::Kind::refused ? 0 : demand_.tolerance;
+  }
+  orbit_ready_ = orbit_origin_[first_input] != 0;
+  if (orbit_ready_) run_.counted = orbit_.counters();
+  return orbit_ready_;
 }
 
 // With keep_contact on the orbit: reports each instant in (t_from, t_to], and the start, at which N falls below zero.

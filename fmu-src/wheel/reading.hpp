@@ -8,8 +8,8 @@
 
 namespace wheel {
 
-// The instant to read; the scene and the rate of its load are those in force for what follows it.
-struct Instant {
+// The instant to read; scene and rate of the load are those that hold for what follows it.
+struct Present {
   const WheelFormulation* formulation;
   const double* y;
   WheelScene scene;
@@ -30,7 +30,7 @@ struct ReactionRates {
 
 class Reading {
  public:
-  void set(const Instant& instant) { now_ = instant, have_ = 0; }
+  void set(const Present& now) { now_ = now, have_ = 0; }
 
   const WheelScene& scene() const { return now_.scene; }
   const WheelKinematics& pose();  // all of the kinematics but X_O_dot and Y_O_dot
@@ -49,7 +49,7 @@ class Reading {
   enum : unsigned { have_pose = 1, have_kinematics = 2, have_dynamics = 4, have_rates = 8, have_contact = 16 };
   bool missing(unsigned part);
 
-  Instant now_ = {};
+  Present now_ = {};
   unsigned have_ = 0;
   WheelKinematics kinematics_ = {};
   WheelDynamics dynamics_ = {};

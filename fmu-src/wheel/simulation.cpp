@@ -1,4 +1,4 @@
-// A run from its parameters to its initial state, and what is read of it. How it moves on is in stepping.cpp.
+// A run from its parameters to its initial state, and what is read of it. How it moves on is in advance.cpp.
 #include "simulation.hpp"
 
 #include <algorithm>
@@ -6,17 +6,7 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "decisions.hpp"
-#include "digits.hpp"
-
 namespace wheel {
-
-void Simulation::reset() {
-  state_ = State();
-  for (unsigned v = 0; v < first_input; ++v) state_.parameters[v] = row_of(v).start;
-  state_.motion.tolerance = default_tolerance;
-  reading_fresh_ = orbit_ready_ = false;
-}
 
 bool Simulation::tell(Topic topic, const char* format, ...) const {
   if (!reporter_.wanted(reporter_.owner, topic)) return false;
@@ -29,78 +19,102 @@ bool Simulation::tell(Topic topic, const char* format, ...) const {
   return true;
 }
 
-void Simulation::set_experiment(double start_time, double tolerance) {
+void Simulation::reset() {
+  demand_ = Demand();
+  run_ = Run();
+  fresh_ = Fresh::nothing;
+}
+
+void Simulation::set_experiment(double start_time, double stop_time, double tolerance) {
   const double taken = tolerance > 0 ? std::clamp(tolerance, tightest_tolerance, loosest_tolerance) : default_tolerance;
-  state_.start_time = start_time;
-  state_.motion.tolerance = taken;
+  demand_.start_time = start_time;
+  demand_.stop_time = stop_time;
+  demand_.tolerance = taken;
   if (tolerance > 0 && tolerance != taken)
     tell(Topic::warning, "The tolerance %g is outside [%g, %g]; %g is used.", tolerance, tightest_tolerance,
          loosest_tolerance, taken);
 }
 
 void Simulation::store(unsigned variable, double value) {
-  const bool is_input = variable >= first_input;
-  const bool changed = is_input ? state_.motion.inputs.set_value(static_cast<int>(variable - first_input), value)
-                                : state_.parameters[variable] != value;
-  if (!changed) return;
-  if (!is_input) state_.parameters[variable] = value;
-  if (!is_input && variable != s) state_.prepared = false;  // the initial state belongs to other parameters
-  state_.changes_pending = true;
-  reading_fresh_ = false;
+  if (run_.phase == Phase::faulty || run_.phase == Phase::initial) run_.phase = Phase::initializing;
+  double& stored =
+      variable < first_input ? demand_.parameters[variable] : demand_.inputs[variable - first_input][0];
+  if (stored == value) return;
+  stored = value;
+  demand_.changed = true;
+  fresh_ = std::min(fresh_, Fresh::state);
 }
 
 void Simulation::set_input_derivative(unsigned variable, int order, double value) {
-  state_.motion.inputs.set_derivative(static_cast<int>(variable - first_input), order, value);
-  state_.changes_pending = true;
-  reading_fresh_ = false;
+  set_derivative(demand_.inputs, static_cast<int>(variable - first_input), order, value);
+  demand_.changed = true;
+  fresh_ = std::min(fresh_, Fresh::state);
 }
 
 bool Simulation::prepare(bool report) {
-  state_.prepared = false;
-  reading_fresh_ = orbit_ready_ = false;
+  run_ = Run();
+  run_.phase = Phase::faulty;
   if (!check_parameters(report)) return false;
-  set_initial_state(state_);
-  state_.prepared = true;
-  return state_.prepared = check_start(report);
+  setup_ = setup_of(demand_);
+  run_.in_force = in_force_from(setup_, demand_, WHEEL_GROUND_PRESSES, 0, setup_.start);
+  std::copy_n(setup_.start, setup_.formulation->states, run_.y);
+  demand_.changed = orbit_ready_ = false;
+  fresh_ = Fresh::state;
+  if (check_start(report)) run_.phase = Phase::initial;
+  return run_.phase == Phase::initial;
+}
+
+bool Simulation::start() {
+  const bool sound = prepare();
+  run_.phase = sound ? Phase::at_start : Phase::without_start;
+  return sound;
+}
+
+void Simulation::close() { freeze(has_ended(run_.phase) ? Phase::closed_after_end : Phase::closed); }
+
+// To a phase without further steps: the solution is not needed any more.
+void Simulation::freeze(Phase phase) {
+  y_now();
+  run_.counted = counters();
+  run_.phase = phase;
 }
 
 const double* Simulation::y_now() {
-  if (!state_.y_known) {
-    state_.unfolded ? orbit_.read(state_.t, state_.y) : solver_.read(state_.t, state_.y);
-    state_.y_known = true;
+  if (fresh_ == Fresh::nothing) {
+    run_.phase == Phase::unfolded ? orbit_.read(run_.t, run_.y) : solver_.read(run_.t, run_.y);
+    fresh_ = Fresh::state;
   }
-  return state_.y;
+  return run_.y;
 }
 
 // The counts of the run: those of the solver at work and those before it was last started from nothing.
 solver::Counters Simulation::counters() const {
-  const solver::Counters& a = state_.counted;
-  const solver::Counters b = state_.is_stepping() ? solver_.counters() : solver::Counters{};
+  const solver::Counters& a = run_.counted;
+  const solver::Counters b = run_.phase == Phase::stepping ? solver_.counters() : solver::Counters{};
   return {a.steps + b.steps, a.rhs + b.rhs, a.jacobians + b.jacobians, a.roots + b.roots, a.restarts + b.restarts};
 }
 
-// The present instant, with what was set since the last step.
-Instant Simulation::instant() {
-  const Inputs& inputs = state_.motion.inputs;
-  Instant now = {state_.motion.formulation, y_now(),    state_.motion.scene,
-                 inputs.pending_rate(),     counters(), state_.transitions};
-  if (state_.changes_pending)
-    now.scene = pending_scene(state_);
-  else if (inputs.varies)
-    inputs.load_at(state_.t, &now.scene.load);
-  now.scene.ground = WHEEL_GROUND_BY_FORCE;
-  return now;
+// The scene at the present instant, with what was set since the last step.
+WheelScene Simulation::scene_now() {
+  WheelScene scene = run_.in_force.scene_at(run_.t);
+  if (demand_.changed) scene = in_force_from(setup_, demand_, scene.ground, run_.t, y_now()).scene;
+  scene.ground = WHEEL_GROUND_BY_FORCE;
+  return scene;
+}
+
+Present Simulation::present() {
+  return {setup_.formulation, y_now(), scene_now(), load_rate_of(demand_.inputs), counters(), run_.transitions};
 }
 
 Reading& Simulation::reading() {
-  if (!reading_fresh_) reading_.set(instant());
-  reading_fresh_ = true;
+  if (fresh_ != Fresh::reading) reading_.set(present());
+  fresh_ = Fresh::reading;
   return reading_;
 }
 
 double Simulation::value(unsigned variable) {
-  if (variable < first_input) return state_.parameters[variable];
-  if (variable < stored_count) return state_.motion.inputs.value(static_cast<int>(variable - first_input));
+  if (variable < first_input) return demand_.parameters[variable];
+  if (variable < stored_count) return demand_.inputs[variable - first_input][0];
   return row_of(variable).read(reading());
 }
 
@@ -113,19 +127,12 @@ double Simulation::sensitivity(unsigned output, unsigned input) {
   const int i = static_cast<int>(input - first_input);
   WheelLoad unit = {};
   *load_entry(unit, i) = 1;
-  Instant now = instant();
-  if (i == Inputs::brake) now.scene.friction = braked_friction(state_, now.scene, now.y);
+  Present now = present();
+  if (i == brake_input && now.scene.friction.kind == WHEEL_FRICTIONLESS)
+    now.scene.friction = friction_at(setup_, now.scene, true, now.y);
   Reading answer;
   answer.set(now);
   return component(answer.response(unit));
-}
-
-// A clause that other messages continue.
-const char* Simulation::ending() const {
-  if (state_.ending == Event::none) return nullptr;
-  const char* what = state_.ending == Event::fell_flat ? "fell flat" : "lifted off the ground";
-  std::snprintf(ending_, sizeof ending_, "the wheel %s at t = %s s", what, support::Digits(time()).text);
-  return ending_;
 }
 
 }  // namespace wheel

@@ -1,12 +1,11 @@
 // The complete state of a run as portable bytes: a header (mark, size, checksum), then numbers of 8 bytes each, then
 // the solver's own history. Bytes may come from anywhere: each number is checked before it is used.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "bytes.hpp"
 #include "checks.hpp"
-#include "decisions.hpp"
-#include "scene.hpp"
 #include "simulation.hpp"
 
 namespace wheel {
@@ -18,135 +17,129 @@ struct Header {
   std::uint64_t mark, size, checksum;
 };
 
+// The table of what is saved: what the caller has set, and what of the run does not follow from it. A row is a kind
+// with its bounds, the field, and a sentence about it.
 template <class Archive>
-void visit(Archive& archive, Inputs& inputs) {
-  archive.number(inputs.origin);
-  archive.numbers(inputs.in_force[0], Inputs::count * (Inputs::max_order + 1));
-  for (auto& polynomial : inputs.pending) {
-    archive.anything(polynomial[0]);
-    archive.numbers(polynomial + 1, Inputs::max_order);
-  }
-}
-
-// State that cannot be rebuilt from the parameters. The law of friction and the method are included because s and the
-// inputs may have changed since they were chosen.
-template <class Archive>
-void visit(Archive& archive, State& state) {
+void visit(Archive& archive, Demand& demand, Run& run) {
+  constexpr double never = Demand::never;
   constexpr long long most = 9007199254740992;
-  Motion& motion = state.motion;
-  for (double& parameter : state.parameters) archive.anything(parameter);
-  archive.number(state.start_time);
-  archive.range(motion.tolerance, tightest_tolerance, loosest_tolerance);
-  archive.range(motion.scene.wheel.s, 0, Archive::greatest);
-  archive.count(motion.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
-  archive.number(motion.scene.friction.sigma), archive.number(motion.scene.friction.omega_s);
-  visit(archive, motion.inputs);
-  archive.count(state.method, 0, static_cast<int>(solver::Method::runge_kutta));
-  archive.count(state.ending, 0, static_cast<int>(Event::fell_flat));
-  archive.truths(state.prepared, state.started, state.moving, state.unfolded, state.jumped, state.changes_pending);
-  archive.count(motion.scene.ground, WHEEL_GROUND_BY_FORCE, WHEEL_GROUND_PULLS);
-  archive.number(state.t), archive.number(state.last_change);
-  archive.numbers(state.y, WHEEL_MAX_STATES);
-  solver::Counters& counted = state.counted;
-  for (long long* count :
-       {&state.transitions, &counted.steps, &counted.rhs, &counted.jacobians, &counted.roots, &counted.restarts})
-    archive.count(*count, 0, most);
+  InForce& now = run.in_force;
+  solver::Counters& counted = run.counted;
+  archive("parameters as they were set, `s` asked for among them");
+  for (double& parameter : demand.parameters) archive.anything(parameter);
+  archive("start time, s").number(demand.start_time);
+  archive("stop time, s; infinite for none").range(demand.stop_time, -Archive::greatest, never);
+  archive("tolerance").range(demand.tolerance, tightest_tolerance, loosest_tolerance);
+  archive("inputs asked for, with their derivatives");
+  for (auto& input : demand.inputs) archive.anything(input[0]), archive.numbers(input + 1, max_order);
+  archive("something was set since the last step").count(demand.changed, 0, 1);
+  archive("phase").count(run.phase, 0, static_cast<int>(Phase::count) - 1);
+  archive("s in force, m").range(now.scene.wheel.s, 0, Archive::greatest);
+  archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
+  archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
+  archive("origin of the inputs in force, s").number(now.inputs.origin);
+  archive("inputs in force").numbers(now.inputs.c[0], inputs_count * (max_order + 1));
+  archive("time reached, s").range(run.t, 0, Archive::greatest);
+  archive("time of the last change, s").range(run.last_change, 0, Archive::greatest);
+  archive("state").numbers(run.y, WHEEL_MAX_STATES);
+  archive("whether the ground presses or pulls").count(now.scene.ground, WHEEL_GROUND_BY_FORCE, WHEEL_GROUND_PULLS);
+  archive("transitions of the friction").count(run.transitions, 0, most);
+  archive("steps before the solver started").count(counted.steps, 0, most);
+  archive("evaluations before the solver started").count(counted.rhs, 0, most);
+  archive("Jacobians before the solver started").count(counted.jacobians, 0, most);
+  archive("values of watched functions before the solver started").count(counted.roots, 0, most);
+  archive("new starts before the solver started").count(counted.restarts, 0, most);
 }
 
 // Whether the law is one that friction_at could have chosen.
-bool law_is_sound(const WheelFriction& law, double width) {
-  switch (law.kind) {
-    case WHEEL_ROLLING:
-      return std::fabs(law.sigma) == 1;
+bool law_fits(const Setup& setup, const InForce& now) {
+  const bool none = now.scene.wheel.s == 0 && !now.inputs.braked, exact = setup.friction_law == exact_law;
+  switch (now.scene.friction.kind) {
+    case WHEEL_FRICTIONLESS:
+      return none;
     case WHEEL_REGULARIZED:
-      return law.omega_s == width;
+      return !none && !exact;
+    case WHEEL_ROLLING:
+      return !none && exact && std::fabs(now.scene.friction.sigma) == 1;
+    case WHEEL_HELD:
+      return !none && exact;
     case WHEEL_NO_LAW:
-      return false;
-    default:
-      return true;
+      break;
   }
+  return false;
 }
 
-// For a run that has an initial state. `state` already has the scales that its parameters give.
-bool run_is_sound(const State& state) {
-  const Motion& motion = state.motion;
-  const bool unfoldable = is_unfoldable(state.parameters, motion.scene, motion.inputs.loaded);
-  const WheelGround ground = motion.scene.ground;
-  return law_is_sound(motion.scene.friction, state.parameters[omega_s]) &&
-         (ground == WHEEL_GROUND_PRESSES || (motion.keep_contact && ground == WHEEL_GROUND_PULLS)) &&
-         state.last_change >= 0 && state.last_change <= state.t && (unfoldable || !state.unfolded) &&
-         (state.moving ? state.started : state.t == 0 && state.ending == Event::none);
-}
-
-// The run that the bytes describe; what follows from its parameters is computed anew. False where no run can have been
-// saved as these bytes.
-bool read_run(support::Reader& reader, State& state) {
-  visit(reader, state);
-  if (!reader.good) return false;
-  if (!state.prepared) return !state.started && !state.moving;
-  if (!check_values(state.parameters, state.motion.inputs, nullptr, nullptr)) return false;
-  State start = state;
-  set_initial_state(start);
-  const WheelFriction law = state.motion.scene.friction;
-  const double s_in_force = state.motion.scene.wheel.s;
-  const Inputs inputs = state.motion.inputs;
-  const WheelGround ground = state.motion.scene.ground;
-  state.motion = start.motion;
-  state.motion.scene.friction = law;
-  state.motion.scene.wheel.s = s_in_force;
-  state.motion.inputs = inputs;
-  state.motion.scene.ground = ground;
-  state.motion.inputs.classify();
-  state.motion.inputs.load_at(state.t, &state.motion.scene.load);
-  state.y_known = true;
-  return run_is_sound(state);
+// Completes a run that was read by what follows from its demand. Null where a run can have been in this state, else
+// what is wrong with it.
+const char* complete(const Demand& demand, Setup& setup, Run& run) {
+  if (run.phase == Phase::faulty) run.phase = Phase::initializing;  // the faults are told again
+  if (!has_state(run.phase)) return nullptr;
+  if (!check_values(demand, nullptr, nullptr)) return "parameters and inputs describe no wheel";
+  setup = setup_of(demand);
+  InForce& now = run.in_force;
+  const double s_in_force = now.scene.wheel.s;
+  now.scene.wheel = setup.wheel;
+  now.scene.wheel.s = s_in_force;
+  now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
+  now.scene.load = load_of(now.inputs.c);
+  now.inputs.classify();
+  if (!law_fits(setup, now)) return "the law of friction does not fit s and the brake";
+  const bool by_force = now.scene.ground == WHEEL_GROUND_BY_FORCE, may_pull = setup.keep_contact;
+  if (by_force || (now.pulls() && !may_pull)) return "the ground neither presses nor pulls";
+  if (run.phase == Phase::unfolded && !is_unfoldable(setup, now)) return "what acts cannot be unfolded";
+  if (run.last_change > run.t || now.inputs.origin > run.t) return "a change lies ahead of the time reached";
+  const bool starts = run.phase == Phase::initial || run.phase == Phase::at_start;
+  if (starts && !(run.t == 0 && std::equal(setup.start, setup.start + WHEEL_MAX_STATES, run.y)))
+    return "a run that has not begun stands at its start";
+  Reading reading;
+  reading.set({setup.formulation, run.y, now.scene_at(run.t), {}, {}, 0});
+  return is_inside(reading) ? nullptr : "the state is outside the model";
 }
 
 }  // namespace
 
 std::size_t Simulation::state_size() {
   support::Measure measure;
-  visit(measure, state_);
-  return sizeof(Header) + measure.bytes + (state_.is_stepping() ? solver_.history_size() : 0);
+  visit(measure, demand_, run_);
+  return sizeof(Header) + measure.bytes + (run_.phase == Phase::stepping ? solver_.history_size() : 0);
 }
 
 void Simulation::save_state(unsigned char* bytes) {
-  if (state_.prepared) y_now();
+  if (has_state(run_.phase)) y_now();
   support::Writer writer(bytes + sizeof(Header));
-  visit(writer, state_);
-  if (state_.is_stepping()) solver_.save_history(writer.at);
+  visit(writer, demand_, run_);
+  if (run_.phase == Phase::stepping) solver_.save_history(writer.at);
   const std::size_t size = state_size();
   const Header header = {mark, size, support::checksum_of(bytes + sizeof(Header), size - sizeof(Header))};
   std::memcpy(bytes, &header, sizeof header);
 }
 
-bool Simulation::is_state(const unsigned char* bytes, std::size_t size) {
+const char* Simulation::load_state(const unsigned char* bytes, std::size_t size) {
   Header header;
-  if (size < sizeof header) return false;
+  if (size < sizeof header) return "they are too few";
   std::memcpy(&header, bytes, sizeof header);
-  return header.mark == mark && header.size == size &&
-         support::has_checksum(bytes + sizeof header, size - sizeof header, header.checksum);
-}
-
-// The solver's problem refers to this instance's state_, but its sizes are those of the run that is restored.
-bool Simulation::restore_solver(const State& next, const unsigned char* history, std::size_t size) {
-  State run = next;
-  solver::Problem problem = problem_of(run.motion);
-  problem.owner = &state_.motion;
-  return solver_.restore_history(problem, history, size) && solver_.step_start() <= next.t && solver_.reaches(next.t);
-}
-
-bool Simulation::load_state(const unsigned char* bytes, std::size_t size) {
-  if (!is_state(bytes, size)) return false;
-  support::Reader reader(bytes + sizeof(Header), size - sizeof(Header));
-  State next;
-  if (!read_run(reader, next)) return false;
-  if (next.is_stepping() ? !restore_solver(next, reader.at, static_cast<std::size_t>(reader.end - reader.at))
-                         : reader.at != reader.end)
-    return false;
-  state_ = next;
-  reading_fresh_ = orbit_ready_ = false;
-  return true;
+  support::Reader reader(bytes + sizeof header, size - sizeof header);
+  if (header.mark != mark) return "the mark of this version is missing";
+  if (header.size != size) return "the size is another";
+  if (!support::has_checksum(reader.at, size - sizeof header, header.checksum)) return "the checksum is wrong";
+  Demand demand;
+  Setup setup = {};
+  Run run;
+  visit(reader, demand, run);
+  if (reader.fault) return reader.fault;
+  if (const char* fault = complete(demand, setup, run)) return fault;
+  const auto left = static_cast<std::size_t>(reader.end - reader.at);
+  if (run.phase != Phase::stepping && left > 0) return "bytes are left over";
+  demand_ = demand;
+  setup_ = setup;
+  run_ = run;
+  fresh_ = Fresh::state;
+  orbit_ready_ = false;
+  if (run.phase != Phase::stepping || (solver_.restore_history(problem_of(owner_), reader.at, left) &&
+                                       solver_.step_start() <= run.t && solver_.reaches(run.t)))
+    return nullptr;
+  run_.phase = Phase::failed;
+  return "the history of the solver could not be restored";
 }
 
 }  // namespace wheel

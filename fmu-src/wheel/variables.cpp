@@ -14,7 +14,7 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 // Largest input, N or N m: far above any real load. Products of larger loads with the parameters would overflow.
 constexpr double strongest = 1e300;
 
-struct Reader {
+struct Access {
   Computed variable;
   double (*read)(Reading&);
   double (*read_rate)(Reading&) = nullptr;
@@ -25,7 +25,7 @@ struct Reader {
 #define REACTION(value, component) \
   AT(now.value), AT(now.reaction_rates().component), [](const ReactionRates& rates) { return rates.component; }
 
-constexpr Reader readers[] = {
+constexpr Access readers[] = {
     {Computed::X_O, AT(now.pose().X_O), AT(now.kinematics().X_O_dot)},
     {Computed::Y_O, AT(now.pose().Y_O), AT(now.kinematics().Y_O_dot)},
     {Computed::Z_O, AT(now.pose().Z_O), AT(now.pose().Z_O_dot)},
@@ -63,7 +63,7 @@ constexpr Reader readers[] = {
 
 constexpr int readers_of(Computed variable) {
   int found = 0;
-  for (const Reader& reader : readers) found += reader.variable == variable;
+  for (const Access& reader : readers) found += reader.variable == variable;
   return found;
 }
 
@@ -75,7 +75,7 @@ constexpr Row stored(const char* name, Type type, Role role, double start, doubl
 template <Computed variable>
 constexpr Row computed(const char* name, Type type, Role role) {
   static_assert(readers_of(variable) == 1, "a calculated variable has one reader");
-  for (const Reader& r : readers)
+  for (const Access& r : readers)
     if (r.variable == variable) return {name, type, role, 0, 0, 0, r.read, r.read_rate, r.reaction_rate};
   return {};
 }

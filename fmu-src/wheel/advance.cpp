@@ -1,0 +1,206 @@
+// How a run moves on by one communication step: `advance` lists the stages, the functions below it are the stages.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "digits.hpp"
+#include "simulation.hpp"
+
+namespace wheel {
+namespace {
+
+using solver::Outcome;
+
+// The most work that one call may do, in internal steps, however long its communication step is: some seconds of
+// computing.
+constexpr long long most_work = 1000000;
+// The work of passing an event, in internal steps: the search for it, a new start, the short steps after it.
+constexpr long long work_per_event = 20;
+// The work of one internal step of the multibody form, whose system is larger.
+constexpr long long work_per_multibody_step = 8;
+
+// For messages: an instant is not found more exactly than to a nanosecond.
+double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 1e9) / 1e9 : t; }
+
+}  // namespace
+
+Progressed Simulation::advance(double caller_time) {
+  const double t = caller_time - demand_.start_time;
+  if (!demand_.changed && knows(t)) return arrive(t);
+  y_now();
+  Run before = run_;
+  before.counted = counters();
+  const bool changed = demand_.changed;
+  failure_ = nullptr;
+  Outcome outcome = take_demand() ? Outcome::stepped : Outcome::failed;
+  if (outcome == Outcome::stepped && t > run_.t) outcome = begin() ? proceed(t) : Outcome::failed;
+  if (outcome == Outcome::failed) return fail(before, changed);
+  if (outcome == Outcome::event) return end_run();
+  return arrive(t);
+}
+
+bool Simulation::knows(double t) const {
+  if (run_.phase == Phase::stepping) return solver_.reaches(t);
+  return run_.phase == Phase::unfolded && orbit_ready_ && t <= orbit_.end_time();
+}
+
+// Whether what was set since the last step differs from what is in force, or makes another method the right one.
+bool Simulation::has_changed() const {
+  const InForce& now = run_.in_force;
+  const double t = run_.t;
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(demand_.start_time) + std::fabs(t));
+  if (now.scene.wheel.s != demand_.parameters[s] || now.inputs.change_at(t, rounding, demand_.inputs)) return true;
+  return now.inputs.varies && run_.phase == Phase::stepping &&
+         choose_method(setup_, now.scene_at(t), true) != solver_.method();
+}
+
+// Stage 1: what was set since the last step takes effect.
+bool Simulation::take_demand() {
+  if (!demand_.changed) return true;
+  const bool changed = has_changed();
+  demand_.changed = false;
+  if (!changed) return true;
+  const WheelFriction before = run_.in_force.scene.friction;
+  run_.in_force = in_force_from(setup_, demand_, run_.in_force.scene.ground, run_.t, run_.y);
+  fresh_ = Fresh::state;
+  announce_transition(before);
+  if (run_.phase == Phase::at_start) return true;
+  solver_.change_interval(run_.t - run_.last_change);
+  run_.last_change = run_.t;
+  if (run_.phase == Phase::stepping) {
+    const WheelScene& scene = run_.in_force.scene;
+    return solver_.restart(problem_of(owner_), choose_method(setup_, scene, true), run_.t, run_.y);
+  }
+  run_.phase = Phase::stepping;
+  ++run_.counted.restarts;
+  return start_solver(true);
+}
+
+// Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
+bool Simulation::begin() {
+  if (run_.phase == Phase::stepping || (run_.phase == Phase::unfolded && orbit_ready_)) return true;
+  if (is_unfoldable(setup_, run_.in_force) && enter_orbit()) return run_.phase = Phase::unfolded, true;
+  run_.phase = Phase::stepping;
+  return start_solver(run_.in_force.inputs.varies);
+}
+
+// Starts the solver from nothing at the present instant.
+bool Simulation::start_solver(bool jumps) {
+  return solver_.start(problem_of(owner_), choose_method(setup_, run_.in_force.scene, jumps), run_.t, run_.y);
+}
+
+// Stage 3: the solution becomes known up to t, or up to an event that ends the run.
+Outcome Simulation::proceed(double t) {
+  if (run_.phase == Phase::stepping) return step_to(t);
+  return t <= orbit_.end_time() ? Outcome::stepped : Outcome::event;
+}
+
+Outcome Simulation::step_to(double t) {
+  const bool large = setup_.formulation == &wheel_multibody;
+  const long long work_per_step = large ? work_per_multibody_step : 1;
+  for (long long work = 0; !solver_.reaches(t);) {
+    if (work >= most_work)
+      return failure_ = "one call may take no more internal steps; use shorter communication steps", Outcome::failed;
+    // CVODE may step past the communication point although an input varies: the input's polynomial may go on there, and
+    // a step that is cut short costs CVODE its history. Runge-Kutta has no history to lose.
+    if (run_.in_force.inputs.varies && solver_.method() == solver::Method::runge_kutta) solver_.stop_before(t);
+    Outcome outcome = solver_.step();
+    if (outcome == Outcome::failed) return outcome;
+    work += (outcome == Outcome::event ? work_per_event : 1) * work_per_step;
+    if (outcome != Outcome::event || solver_.reaches(t)) continue;  // an event after t waits until it is reached
+    move_to(solver_.event_time());
+    outcome = pass_event();
+    if (outcome != Outcome::stepped) return outcome;
+  }
+  return Outcome::stepped;
+}
+
+// The run stands at an event. `event`: it ends the run.
+Outcome Simulation::pass_event() {
+  const auto event = static_cast<Event>(solver_.event());
+  if (event != Event::spin_changes && event != Event::contact_changes) return Outcome::event;
+  const bool passed = event == Event::spin_changes ? pass_transition() : pass_contact();
+  return passed ? Outcome::stepped : Outcome::failed;
+}
+
+// omega_z has reached zero, or friction and brake can no longer hold it there.
+bool Simulation::pass_transition() {
+  const WheelScene scene = run_.in_force.scene_at(run_.t);
+  const WheelFriction before = scene.friction;
+  y_now();
+  setup_.formulation->stop_spin(&scene.wheel, run_.y);
+  WheelFriction& friction = run_.in_force.scene.friction;
+  friction = before.kind == WHEEL_HELD ? released(setup_, scene, run_.y)
+                                       : friction_at(setup_, scene, run_.in_force.inputs.braked, run_.y);
+  announce_transition(before);
+  return solver_.restart(problem_of(owner_), solver_.method(), run_.t, run_.y);
+}
+
+// The ground begins to pull or to press. Without friction the motion goes on as it was.
+bool Simulation::pass_contact() {
+  run_.in_force.change_contact();
+  if (run_.in_force.pulls()) tell_pull(run_.t);
+  if (run_.in_force.scene.friction.kind == WHEEL_FRICTIONLESS) return solver_.resume(), true;
+  return solver_.restart(problem_of(owner_), solver_.method(), run_.t, y_now());
+}
+
+// Counts and reports a change between held, positive and negative spin. A change to another law is not a transition.
+void Simulation::announce_transition(const WheelFriction& before) {
+  const WheelFriction& friction = run_.in_force.scene.friction;
+  if (!has_transitions(before) || !has_transitions(friction)) return;
+  if (before.kind == friction.kind && before.sigma == friction.sigma) return;
+  ++run_.transitions;
+  const support::Digits instant(to_nanosecond(time()));
+  if (friction.kind == WHEEL_HELD)
+    tell(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
+  else
+    tell(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
+         before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
+}
+
+// Stage 4: the run stands at t, up to which the solution is known. Inputs that vary stay where they arrived, unless
+// they are set again.
+Progressed Simulation::arrive(double t) {
+  if (!(t > run_.t)) return Progressed::reached;
+  move_to(t);
+  const Inputs& inputs = run_.in_force.inputs;
+  if (inputs.varies) inputs.hold(t, demand_.inputs), demand_.changed = true;
+  return Progressed::reached;
+}
+
+void Simulation::move_to(double t) {
+  if (setup_.keep_contact && run_.phase == Phase::unfolded) report_pulls_of_orbit(run_.t, t);
+  run_.t = t;
+  fresh_ = Fresh::nothing;
+}
+
+void Simulation::tell_pull(double t) const {
+  tell(Topic::warning, "The ground pulls from t = %s s on: keep_contact holds a wheel that would have lifted off.",
+       support::Digits(to_nanosecond(demand_.start_time + t)).text);
+}
+
+Progressed Simulation::end_run() {
+  const bool unfolded = run_.phase == Phase::unfolded;
+  if (unfolded) move_to(orbit_.end_time());
+  const bool flat = (unfolded ? orbit_.event() : solver_.event()) == static_cast<int>(Event::fell_flat);
+  freeze(flat ? Phase::fell_flat : Phase::lifted_off);
+  tell(Topic::discard,
+       flat ? "The wheel %s at t = %s s: the model ends there."
+            : "The wheel %s at t = %s s, theta = %.6g rad: the model ends there.",
+       ending(), support::Digits(time()).text, run_.y[setup_.formulation->tilt_index]);
+  return Progressed::ended;
+}
+
+// The state is that before the step, and stays so.
+Progressed Simulation::fail(const Run& before, bool changed) {
+  if (run_.phase == Phase::stepping) move_to(solver_.known_until());
+  tell(Topic::error, "The solver stopped at t = %s s, where omega_z = %.4g rad/s: %s.", support::Digits(time()).text,
+       y_now()[setup_.formulation->spin_index], failure_ ? failure_ : solver_.failure());
+  run_ = before;
+  run_.phase = Phase::failed;
+  demand_.changed = changed;
+  fresh_ = Fresh::state;
+  return Progressed::failed;
+}
+
+}  // namespace wheel

@@ -1,0 +1,33 @@
+// What is in force from an instant on: the law of friction, the method that solves what follows, and whether the
+// motion can be unfolded. Pure functions of setup, load and state.
+#pragma once
+
+#include "run.hpp"
+#include "setup.hpp"
+
+namespace wheel {
+
+// What is asked for, at the state y: `s`, inputs from t on, and the law of friction that goes with them.
+InForce in_force_from(const Setup& setup, const Demand& demand, WheelGround ground, double t, const double* y);
+
+// The friction law at state y under the scene's load; `braked`: the brake is in use. At omega_z = 0 after Filippov:
+// held where the moment that holds it is within s N + M_brake, else rolling against that moment.
+WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y);
+
+// The law of a held wheel that is let go.
+WheelFriction released(const Setup& setup, const WheelScene& held, const double* y);
+
+// s N + M_brake - |tau| of a held wheel, N m; where rounding alone decides, the wheel stays held.
+double holding_margin(const Setup& setup, const WheelScene& scene, const double* y);
+
+// Only the exact law has transitions.
+bool has_transitions(const WheelFriction& friction);
+
+// Which method solves what follows. `jumps`: inputs or tunable parameters change during the run, and the motion is not
+// smooth where they do. `scene` has the law of friction in force.
+solver::Method choose_method(const Setup& setup, const WheelScene& scene, bool jumps);
+
+// Whether the motion repeats and can be unfolded from half a nutation.
+bool is_unfoldable(const Setup& setup, const InForce& in_force);
+
+}  // namespace wheel

@@ -1,0 +1,36 @@
+// What is in force, and how far a run has come. Plain numbers: a run is restored by assignment.
+#pragma once
+
+#include "inputs.hpp"
+#include "phase.hpp"
+#include "problem.hpp"
+#include "wheel_equations.h"
+
+namespace wheel {
+
+// What acts on the wheel.
+struct InForce {
+  WheelScene scene = {};  // `s`, law of friction, ground; the load is that at the origin of the inputs
+  Inputs inputs;
+
+  bool pulls() const { return scene.ground == WHEEL_GROUND_PULLS; }
+  void change_contact() { scene.ground = pulls() ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS; }
+
+  WheelScene scene_at(double t) const {
+    WheelScene scene_then = scene;
+    if (inputs.varies) scene_then.load = inputs.load_at(t);
+    return scene_then;
+  }
+};
+
+struct Run {
+  Phase phase = Phase::created;
+  InForce in_force;
+  double t = 0;            // s, own clock: the instant reached
+  double last_change = 0;  // s, own clock: when an input or a tunable parameter last changed
+  double y[WHEEL_MAX_STATES] = {};
+  long long transitions = 0;      // of the friction
+  solver::Counters counted = {};  // before the solver was last started from nothing
+};
+
+}  // namespace wheel

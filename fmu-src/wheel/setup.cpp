@@ -1,0 +1,88 @@
+// The setup from the parameters: formulation, initial state, scales of time, force, errors and steps.
+#include "setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wheel {
+namespace {
+
+double gravity_of(const WheelParameters& wheel) { return std::hypot(wheel.g, wheel.g_X, wheel.g_Y); }
+
+// sqrt((r_0 + r) / g), s, g the whole of gravity; without a weight that matters the time of a turn at the initial rate.
+double time_scale(const WheelParameters& wheel, const WheelKinematics& start) {
+  const double length = wheel.r_0 + wheel.r, gravity = gravity_of(wheel);
+  const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
+  if (gravity > 1e-30 * length * rate * rate) return std::sqrt(length / gravity);  // else the weight moves nothing
+  return rate > 0 ? 1 / rate : 1;
+}
+
+// N, scale of the normal force: the weight's part across the road, or what its time scale stands for without a weight.
+double force_scale(const WheelParameters& wheel, double own_time) {
+  const double gravity = gravity_of(wheel);
+  const double across = gravity > 0 ? wheel.g / gravity : 1;
+  return wheel.m * (wheel.r_0 + wheel.r) / (own_time * own_time) * across;
+}
+
+// The scale of angles is 1 rad, of lengths r_0 + r, of rates the inverse of the wheel's own time scale or the initial
+// tilting, whichever is larger.
+ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& f, double own_time,
+                         const WheelKinematics& start) {
+  const double length = wheel.r_0 + wheel.r;
+  const double slowest = 1 / own_time, omega_2 = start.psi_dot * std::sin(start.theta);
+  const double tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
+  const double turn = std::max(slowest, tilting);
+  // psi, phi, X_O, Y_O do not feed back into the closed states: their errors do not grow, and may be larger.
+  const double reduced[] = {1, turn, turn, turn, 3, 3, 3 * length, 3 * length};
+  // The velocity of O is bound to the rates by the constraints: weighed lower, it strays less from them.
+  const double speed = 0.15 * slowest * length;
+  const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, turn};
+  ErrorScales scales = {{}, slowest, tilting};
+  std::copy_n(f.states == WHEEL_REDUCED_STATES ? reduced : multibody, f.states, scales.slow);
+  return scales;
+}
+
+}  // namespace
+
+Setup setup_of(const Demand& demand) {
+  const double* v = demand.parameters;
+  Setup setup = {};
+  setup.formulation = choice_of(v[formulation]) == multibody_formulation ? &wheel_multibody : &wheel_reduced;
+  setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
+  if (v[slope] != 0) wheel_set_slope(&setup.wheel, v[g], v[slope], v[slope_direction]);
+  setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
+  setup.omega_s = v[omega_s];
+  setup.method = static_cast<SolverMethod>(choice_of(v[method]));
+  setup.unfolds = v[J_x] == v[J_y] && v[slope] == 0 && choice_of(v[formulation]) == automatic_formulation &&
+                  choice_of(v[method]) == automatic_method;
+  setup.keep_contact = v[keep_contact] != 0;
+  setup.tolerance = demand.tolerance;
+  const WheelMotion motion = {v[psi_start],       v[theta_start],   v[phi_start], v[psi_dot_start],
+                              v[theta_dot_start], v[phi_dot_start], v[X_O_start], v[Y_O_start]};
+  WheelKinematics start;
+  setup.formulation->start(&setup.wheel, &motion, setup.start);
+  setup.formulation->kinematics(&setup.wheel, setup.start, &start);
+  setup.own_time = time_scale(setup.wheel, start);
+  setup.longest_step = 0.5 * setup.own_time;
+  setup.weight = force_scale(setup.wheel, setup.own_time);
+  setup.scales = error_scales(setup.wheel, *setup.formulation, setup.own_time, start);
+  return setup;
+}
+
+void scales_at(const ErrorScales& scales, const WheelFormulation& f, double omega_z, double* out) {
+  std::copy_n(scales.slow, f.states, out);
+  const double spin = std::fabs(omega_z);
+  if (!(spin > scales.own_rate)) return;
+  const double turn = scales.own_rate * scales.own_rate / spin + scales.tilting;  // rad/s, of a nutation
+  out[f.tilt_index] = std::fmin(out[f.tilt_index], turn / spin);
+  const int last = f.spin_index;  // the three rates of rotation stand together, the spin last
+  for (int i = last - 2; i <= last; ++i) out[i] = std::fmin(out[i], turn);
+}
+
+double share_at(const ErrorScales& scales, double omega_z) {
+  constexpr double many = 12;
+  const double spin = std::fabs(omega_z);
+  return spin > many * scales.own_rate ? many * scales.own_rate / spin : 1;
+}
+
+}  // namespace wheel
