@@ -19,9 +19,9 @@ struct Setup {
   FrictionLaw friction_law;
   double omega_s;  // rad/s, width of the regularized law
   SolverMethod method;
-  bool unfolds;  // free of friction, brake and load the motion repeats: J_x = J_y, a level road; choices automatic
+  bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y, a level road, choices automatic
   bool keep_contact;
-  double tolerance;  // relative, of the whole solution
+  double tolerance;                // relative, of the whole solution
   double start[WHEEL_MAX_STATES];  // the initial state
   double own_time;                 // s, the wheel's own time scale
   double longest_step;             // s

@@ -37,8 +37,7 @@ void Simulation::set_experiment(double start_time, double stop_time, double tole
 
 void Simulation::store(unsigned variable, double value) {
   if (run_.phase == Phase::faulty || run_.phase == Phase::initial) run_.phase = Phase::initializing;
-  double& stored =
-      variable < first_input ? demand_.parameters[variable] : demand_.inputs[variable - first_input][0];
+  double& stored = variable < first_input ? demand_.parameters[variable] : demand_.inputs[variable - first_input][0];
   if (stored == value) return;
   stored = value;
   demand_.changed = true;

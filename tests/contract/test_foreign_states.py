@@ -15,7 +15,7 @@ from contract.call_states import STATES, bring_to
 pytestmark = pytest.mark.contract
 
 UNKNOWN = "the state is not one that this FMU handed out"
-DAMAGED = "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version."
+DAMAGED = "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version ({})."
 
 
 OWN = create_string_buffer(64)  # memory of the caller's
@@ -76,11 +76,11 @@ def test_hundreds_of_states_are_kept_apart(wheel):
         assert w.fmi2FreeFMUstate(w.component, byref(state)) == OK and not state
 
 
-CALL = struct.Struct("<4B4sdQ")  # call state, prepared, has a stop time, last status, nothing, stop time, checksum
+HEADER = 3  # words: mark, size, checksum of what follows
 
 
 def checksum(data: bytes) -> int:
-    """FNV-1a over words of 64 bits with a mixing shift, as support/archive.hpp has it."""
+    """FNV-1a over words of 64 bits with a mixing shift, as support/bytes.hpp has it."""
     total = 0xCBF29CE484222325
     for (word,) in struct.iter_unpack("<Q", data):
         total = (total ^ word) * 0x100000001B3 % 2**64
@@ -88,38 +88,95 @@ def checksum(data: bytes) -> int:
     return total
 
 
-def forged(blob: bytes, **changes) -> bytes:
-    """The blob with fields of its call state changed and their checksum set right."""
-    names = ("state", "prepared", "has_stop", "last", "nothing", "stop", "sum")
-    fields = dict(zip(names, CALL.unpack_from(blob), strict=True)) | changes
-    head = CALL.pack(*fields.values())
-    return head[:16] + struct.pack("<Q", checksum(head[:16])) + blob[CALL.size :]
+def words_of(blob: bytes) -> tuple[int, ...]:
+    return struct.unpack(f"<{len(blob) // 8}Q", blob)
 
 
-def test_a_call_state_that_no_instance_can_have_been_in_is_refused(wheel):
+def signed(words) -> bytes:
+    """The bytes of these words with the checksum right."""
+    head, body = words[: HEADER - 1], struct.pack(f"<{len(words) - HEADER}Q", *words[HEADER:])
+    return struct.pack("<3Q", *head, checksum(body)) + body
+
+
+def as_word(x: float) -> int:
+    return struct.unpack("<Q", struct.pack("<d", x))[0]
+
+
+def place_of(w, row: str) -> int:
+    """The word of a row of the table in wheel/snapshot.cpp."""
+    parameters, inputs = w.references["F_X"], 7 * 4
+    after = HEADER + parameters
+    stop, asked = after + 1, after + 3
+    phase = asked + inputs + 1
+    friction, in_force = phase + 2, phase + 4
+    t = in_force + 1 + inputs - 1 + 1
+    return {
+        "stop time": stop,
+        "tolerance": stop + 1,
+        "phase": phase,
+        "s": phase + 1,
+        "law": friction,
+        "sigma": friction + 1,
+        "origin": in_force,
+        "t": t,
+        "last change": t + 1,
+        "y": t + 2,
+        "pulling": t + 14,
+    }[row]
+
+
+def forged(w, blob: bytes, **changes: int | float) -> bytes:
+    """The blob with rows changed, whole numbers or doubles, and its checksum set right."""
+    words = list(words_of(blob))
+    for row, value in changes.items():
+        words[place_of(w, row.replace("_", " "))] = as_word(value) if isinstance(value, float) else value
+    return signed(words)
+
+
+CREATED, INITIALIZING, FAULTY, INITIAL, AT_START, STEPPING, UNFOLDED, FLAT, LIFTED = range(9)
+RUN_TO = 0.5  # s, by bring_to
+
+
+def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
     running, fresh = bring_to(wheel(), "step complete"), bring_to(wheel(), "instantiated")
     before, blob, young = running.serialized(), running.serialized(), fresh.serialized()
-    assert forged(blob) == blob
-    wrong = [
-        {"state": 6},
-        {"state": 255},
-        {"prepared": 2},
-        {"has_stop": 2},
-        {"has_stop": 255},
-        {"last": 1},
-        {"last": 4},
-    ]
-    wrong += [{"last": 77}, {"nothing": b"\0\0\1\0"}, {"stop": 3.0}, {"last": 2}, {"state": 0}, {"state": 1}]
-    wrong += [{"state": 3}, *({"has_stop": 1, "stop": x} for x in (np.nan, np.inf, -np.inf))]
+    assert forged(running, blob) == blob
+    assert words_of(blob)[place_of(running, "phase")] == UNFOLDED
+    wrong = [{"phase": 13}, {"phase": 2**63}, {"phase": AT_START}, {"phase": INITIAL}, {"phase": STEPPING}]
+    wrong += [{"stop_time": np.nan}, {"stop_time": -np.inf}, {"tolerance": 1.0}, {"t": -1.0}, {"t": np.inf}]
+    wrong += [{"last_change": 9.0}, {"origin": 9.0}, {"s": -1.0}, {"s": 0.1}, {"law": 0}, {"law": 2}, {"pulling": 2}]
     for changes in wrong:
-        assert running.restore(forged(blob, **changes)) == ERROR, changes
-        assert running.take_messages()[-1].text == DAMAGED
-    for state in (2, 3, 4):  # never started: a step from there would use a solver that is not there
-        assert running.restore(forged(young, state=state)) == ERROR
-    assert running.restore(forged(young, state=1, prepared=1)) == ERROR
+        assert running.restore(forged(running, blob, **changes)) == ERROR, changes
+        assert running.take_messages()[-1].text.startswith(DAMAGED.split(" (")[0]), changes
+    assert running.restore(forged(running, blob, t=-1.0)) == ERROR
+    assert running.take_messages()[-1].text == DAMAGED.format("time reached, s")
+    for phase in (INITIAL, AT_START, STEPPING, UNFOLDED, FLAT):  # a step would use a solver that is not there
+        assert running.restore(forged(running, young, phase=phase)) == ERROR
     assert running.serialized() == before
-    assert running.restore(forged(blob, has_stop=1, stop=9.0)) == OK  # the partner: it can have been in this one
+    assert running.restore(forged(running, blob, stop_time=9.0)) == OK  # the partner: it can have been in this one
     assert running.step_to(1.0) == OK and running.step_to(9.5) == ERROR
+
+
+@pytest.mark.parametrize("changes", [(0, 0.0), (0, -0.5), (0, 3.2), (0, 1e-320), (1, 1e300), (2, -1e300), (3, 1e200)])
+@pytest.mark.parametrize("start", [{}, {"s": 0.03}, {"s": 0.03, "method": "adams"}])
+def test_a_state_that_is_no_state_of_a_wheel_is_refused(wheel, start, changes):
+    """theta outside (0, pi), rates whose energy is infinite: the check of the initial state, for any state."""
+    w = wheel().start(**start)
+    assert w.run([0.5])
+    blob, (entry, value) = w.serialized(), changes
+    words = list(words_of(blob))
+    words[place_of(w, "y") + entry] = as_word(value)
+    assert w.restore(signed(words)) == ERROR
+    assert w.take_messages()[-1].text == DAMAGED.format("the state is outside the model")
+
+
+def test_a_state_of_another_version_is_refused_with_a_sentence(wheel):
+    """Version 2.0.0 had a header for the call state in front of the mark; later ones have another mark."""
+    w = wheel().start()
+    words = list(words_of(w.serialized()))
+    for old in ([2, as_word(np.inf), 77, 0x3430554D46484557, *words[1:]], [words[0] - (1 << 56), *words[1:]]):
+        assert w.restore(struct.pack(f"<{len(old)}Q", *old)) == ERROR
+        assert w.take_messages()[-1].text == DAMAGED.format("the mark of this version is missing")
 
 
 @pytest.mark.parametrize("state", STATES)

@@ -40,8 +40,8 @@ def test_a_blob_with_any_one_bit_flipped_is_refused_and_the_instance_is_untouche
         damaged = bytearray(blob)
         damaged[k] ^= 1 << int(rng.integers(8))
         assert w.restore(bytes(damaged)) == ERROR, k
-        assert w.messages.pop().text == (
-            "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version."
+        assert w.messages.pop().text.startswith(
+            "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version ("
         )
     assert w.serialized() == blob
     assert w.run([3.0]) == other.run([3.0])
