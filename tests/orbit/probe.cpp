@@ -6,7 +6,6 @@
 
 #include "motion.hpp"
 #include "orbit.hpp"
-#include "scene.hpp"
 
 #ifdef _WIN32
 #define PUBLIC extern "C" __declspec(dllexport)
@@ -17,37 +16,52 @@
 namespace {
 
 struct Probe {
-  wheel::Motion motion;
-  double start[8] = {};
+  wheel::Setup setup;
+  wheel::InForce in_force;
   solver::Solver solver;
   wheel::Orbit orbit;
 };
 
 double force(const Probe& probe, const double* y) {
   double y_dot[8];
-  return wheel_reduced.derivative(&probe.motion.scene, y, y_dot);
+  return wheel_reduced.derivative(&probe.in_force.scene, y, y_dot);
 }
 
 bool pass(void* owner, int event) {
   if (event != static_cast<int>(wheel::Event::contact_changes)) return false;
-  wheel::change_contact(*static_cast<wheel::Motion*>(owner));
+  static_cast<wheel::Owner*>(owner)->in_force.change_contact();
   return true;
 }
 
 }  // namespace
 
-PUBLIC Probe* probe_make(const WheelParameters* wheel, const WheelMotion* motion, double tolerance, int keep_contact) {
+PUBLIC Probe* probe_make(const WheelParameters* w, const WheelMotion* start, double tolerance, int keep_contact) {
   Probe* probe = new (std::nothrow) Probe;
   if (!probe) return nullptr;
-  wheel::Motion& m = probe->motion;
-  m.formulation = &wheel_reduced;
-  m.scene.wheel = *wheel;
-  m.scene.friction.kind = WHEEL_FRICTIONLESS;
-  m.scene.ground = WHEEL_GROUND_PRESSES;
-  m.tolerance = tolerance;
-  m.keep_contact = keep_contact != 0;
-  wheel_reduced.start(wheel, motion, probe->start);
-  wheel::set_scales(m, probe->start);
+  wheel::Demand demand;
+  const struct {
+    wheel::Variable parameter;
+    double value;
+  } given[] = {{wheel::m, w->m},
+               {wheel::r_0, w->r_0},
+               {wheel::r, w->r},
+               {wheel::J_x, w->J_x},
+               {wheel::J_y, w->J_y},
+               {wheel::J_z, w->J_z},
+               {wheel::g, w->g},
+               {wheel::psi_start, start->psi},
+               {wheel::theta_start, start->theta},
+               {wheel::phi_start, start->phi},
+               {wheel::psi_dot_start, start->psi_dot},
+               {wheel::theta_dot_start, start->theta_dot},
+               {wheel::phi_dot_start, start->phi_dot},
+               {wheel::X_O_start, start->X_O},
+               {wheel::Y_O_start, start->Y_O},
+               {wheel::keep_contact, static_cast<double>(keep_contact)}};
+  for (const auto& [parameter, value] : given) demand.parameters[parameter] = value;
+  demand.tolerance = tolerance;
+  probe->setup = wheel::setup_of(demand);
+  probe->in_force = wheel::in_force_from(probe->setup, demand, WHEEL_GROUND_PRESSES, 0, probe->setup.start);
   return probe;
 }
 
@@ -55,9 +69,10 @@ PUBLIC void probe_free(Probe* probe) { delete probe; }
 
 // 0 refused, 1 folded, 2 ended.
 PUBLIC int probe_build(Probe* probe) {
-  wheel::Motion motion = probe->motion;
-  return static_cast<int>(
-      probe->orbit.build(wheel::problem_of(motion), motion.tolerance, pass, probe->start, probe->solver));
+  wheel::InForce in_force = probe->in_force;
+  wheel::Owner owner = {probe->setup, in_force};
+  return static_cast<int>(probe->orbit.build(wheel::problem_of(owner), probe->setup.tolerance, pass,
+                                             probe->setup.start, probe->solver));
 }
 
 // States at `count` instants, 8 numbers each, and N.
