@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import fmpy
-from jinja2 import Template
-from tabulate import tabulate
+
+from publishing import markdown
 
 ROOT = Path(__file__).resolve().parent.parent
 HERE = Path(__file__).parent
@@ -90,7 +90,7 @@ def table(columns: dict[str, Scenes], cell: Callable[[str, Row], str]) -> str:
     """A row for each scene, a column for each platform or build."""
     scenes = next(iter(columns.values()))
     rows = [[scene, *(cell(scene, column[scene]) for column in columns.values())] for scene in scenes]
-    return tabulate(rows, ["scene", *columns], tablefmt="github", disable_numparse=True)
+    return markdown.table(["scene", *columns], rows)
 
 
 def digest(a: Row, b: Row) -> str:
@@ -106,10 +106,8 @@ def apart(a: Row, b: Row) -> str:
 
 def write(arguments: argparse.Namespace, released: dict[str, Scenes], own: dict[str, Scenes], **found: object) -> None:
     folder, reference = arguments.folder, released["linux64"]
-    template = Template(
-        (ROOT / "publishing" / "templates" / "platforms.md").read_text(encoding="utf-8"), keep_trailing_newline=True
-    )
-    page = template.render(
+    text = markdown.page(
+        "platforms.md",
         commit=version_of("git", "-C", str(ROOT), "describe", "--always", "--dirty"),
         size=(folder / "wheel.fmu").stat().st_size / 1e3,
         outputs=sum(v.causality == "output" for v in DESCRIPTION.modelVariables),
@@ -122,7 +120,7 @@ def write(arguments: argparse.Namespace, released: dict[str, Scenes], own: dict[
         **{name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in ("libraries", "fmpy", "twice")},
         **found,
     )
-    arguments.report.write_text(page, encoding="utf-8")
+    arguments.report.write_text(text, encoding="utf-8")
 
 
 def main() -> None:

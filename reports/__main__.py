@@ -16,7 +16,7 @@ from support.motion import Library
 from support.paths import ROOT, build_folder
 from tqdm import tqdm
 
-from publishing import figures_in_pages
+from publishing import documents
 
 from .options import NAMES, arguments
 from .page import Report, read_tables, render, save
@@ -84,7 +84,7 @@ def main() -> int:
         print(f"Written into {folder.relative_to(ROOT)}.")
     else:
         sys.argv = sys.argv[:1]
-        figures_in_pages.main()
+        documents.main()
     return int(not all(met))
 
 

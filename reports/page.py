@@ -19,12 +19,11 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure as Sheet
 from support.motion import Library
 from support.paths import ROOT, build_folder
 
-from publishing.figures_in_pages import number
+from publishing.markdown import number, page
 
 Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]
@@ -82,19 +81,6 @@ def read_tables(folder: Path, name: str) -> Tables:
     return tables
 
 
-def markdown_table(frame: pd.DataFrame) -> str:
-    """The first column to the left, the others to the right."""
-    if frame.empty:
-        return "None."
-    cells = (
-        frame.convert_dtypes()
-        .astype(object)
-        .map(lambda cell: "" if pd.isna(cell) else number(cell).replace("|", "\\|"))
-    )
-    sides = ("left", *["right"] * (frame.shape[1] - 1))
-    return cells.to_markdown(index=False, disable_numparse=True, colalign=sides)
-
-
 def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) -> tuple[str, str]:
     """The page out of the data, and what was not met in words; views: adds the tables that follow from others."""
     figures = pd.read_csv(folder / "data" / f"{name}.csv").fillna({"unit": ""})
@@ -106,13 +92,12 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
     values = {f.figure: number(float(f.measured)) for f in figures.itertuples()}
-    loader = FileSystemLoader(Path(__file__).with_name("templates"))
-    pages = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    pages.filters["table"] = markdown_table
-    page = pages.get_template(f"{name}.md").render(
-        name=name, f=values, t=views(read_tables(folder, name)), asked=pd.DataFrame(table), missed=missed, run=run
+    text = page(
+        f"{name}.md",
+        **{"name": name, "f": values, "t": views(read_tables(folder, name))},
+        **{"asked": pd.DataFrame(table), "missed": missed, "run": run},
     )
-    return re.sub(r"\n{3,}", "\n\n", page).strip() + "\n", "; ".join(missed)
+    return text, "; ".join(missed)
 
 
 def said(*command: str) -> str:

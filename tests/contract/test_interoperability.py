@@ -12,7 +12,7 @@ from pathlib import Path
 from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT))
-from publishing.figures_in_pages import DATA, with_figures
+from publishing.documents import DATA, with_figures
 
 RUNS = DATA / "interoperability.csv"
 

@@ -17,7 +17,7 @@ from support.bounds import beyond, within
 from support.paths import ROOT, build_folder
 
 sys.path.insert(0, str(ROOT))
-from publishing import variable_tables
+from publishing import variables as variable_tables
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 HEADER_PAGE = (ROOT / "docs" / "c_header.md").read_text(encoding="utf-8")
@@ -124,6 +124,17 @@ def test_the_lines_of_python_and_c_for_the_header_are_those_that_run(root):
     assert len(python.splitlines()) <= 10
     in_python = run([sys.executable, "-c", f"import sys; sys.path.insert(0, 'examples/python')\n{python}"], root)
     assert in_c == in_python and "tau = 5.6728" in in_c
+
+
+def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_its_snapshot(root):
+    printed = run([sys.executable, str(ROOT / "examples" / "python" / "master.py")], root)
+    found = dict(re.findall(r"A brake of (\d+) N m stops the wheel at t = ([\d.]+) s", printed))
+    inertia, omega = 1.8 + 20 * 0.35**2, 10.0  # J_z + m R^2 of an upright wheel; rad/s
+    assert len(found) == 2
+    for brake, stopped in found.items():
+        late = float(stopped) - (1.0 + inertia * omega / float(brake))  # seen at the next step of 1 ms
+        assert 0 <= late <= 0.001
+    assert found["30"] != found["60"]
 
 
 def test_the_first_commands_exist_and_can_be_run():

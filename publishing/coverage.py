@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 """docs/results/coverage.md out of gcovr's JSON: lines and branches of fmu-src, and why the rest is not reached.
 
 A line or branch counts as reached if any instantiation of its function reaches it. Status 1 if less than 95 % of the
-lines are reached, or a line that is not has no reason below.
+lines are reached, a line that is not has no reason below, or a reason names code that is gone.
 """
 
 from __future__ import annotations
@@ -13,7 +12,8 @@ from pathlib import Path
 
 import pandas as pd
 
-ROOT = Path(__file__).resolve().parent.parent
+from publishing.markdown import ROOT, page
+
 PAGE = ROOT / "docs" / "results" / "coverage.md"
 LEAST = 95.0  # per cent of lines
 # What no test reaches: file, a piece of the text of the first line of a range, and why.
@@ -21,32 +21,14 @@ MEMORY = "only where there is no memory left: tests/robustness/faults"
 UNUSED = "a vector of SUNDIALS must have it; nothing calls it in the set-ups used here"
 ENGINE, VECTOR = "fmu-src/solver/cvode_engine.cpp", "fmu-src/solver/cvode_vector.cpp"
 REASONS = (
-    (
-        "fmu-src/fmi/derivatives.cpp",
-        "there is no start close",
-        "no start is known of which both neighbours are refused",
-    ),
     (ENGINE, "free_objects();", MEMORY),
     (ENGINE, "could not be set up", MEMORY),
     (VECTOR, "N_Vector_ID kind", UNUSED),
     (VECTOR, "sunindextype length", UNUSED),
     (VECTOR, "void product", UNUSED),
     (VECTOR, "void add_constant", UNUSED),
-    ("fmu-src/solver/solver.cpp", "void Solver::stop_nowhere", "nothing calls it"),
     ("fmu-src/solver/solver.cpp", "double y[max_states]", "a stop time within rounding of a step's end: none was met"),
 )
-TEXT = """# Coverage of fmu-src by the tests
-
-Made by `scripts/coverage`: gcov through gcovr, by the tests of contract, equations, orbit and solver, the quick ones of
-physics and robustness, and the fuzzer's corpus. A line counts as reached if one instantiation of its template is.
-Branches are the compiler's: each way of each comparison, once for each place of inlining.
-
-{files}
-
-## What no test reaches
-
-{unreached}
-"""
 
 
 def share(hits: pd.Series) -> str:
@@ -85,11 +67,12 @@ def main(report: Path) -> int:
     ways = ways.assign(way=ways.groupby(level=0).cumcount(), count=[way["count"] for way in ways["branches"]])
     branches = ways.groupby(["file", "line_number", "way"])["count"].sum()
     missing = unreached(lines)
-    shown = (frame.to_markdown(index=False, tablefmt="github") for frame in (table(lines, branches), missing))
-    PAGE.write_text(TEXT.format(**dict(zip(("files", "unreached"), shown, strict=True))), encoding="utf-8")
+    PAGE.write_text(page("coverage.md", files=table(lines, branches), unreached=missing), encoding="utf-8")
     unknown = missing["why"].str.startswith("**").sum()
+    gone = [f"{name}: {piece}" for name, piece, _ in REASONS if piece not in (ROOT / name).read_text(encoding="utf-8")]
     print(f"{share(lines)} of the lines of fmu-src are reached; {unknown} ranges without a reason.")
-    return int(100 * (lines > 0).mean() < LEAST or unknown > 0)
+    print(*(f"A reason names code that is gone: {reason}." for reason in gone), sep="\n", end="\n" if gone else "")
+    return int(100 * (lines > 0).mean() < LEAST or unknown > 0 or len(gone) > 0)
 
 
 if __name__ == "__main__":

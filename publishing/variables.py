@@ -1,21 +1,15 @@
-#!/usr/bin/env python3
-"""Writes the tables of the variables of modelDescription.xml into docs/variables.md and the FMU's documentation.
-
-No paper equation; frames and units are those of the description. With --check it changes nothing and tells by its exit
-status. Numbers and GUID: cmake/description.
-"""
+"""The variables of modelDescription.xml as tables, for docs/variables.md and the FMU's documentation."""
 
 from __future__ import annotations
 
-import argparse
 import html
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-ROOT = Path(__file__).resolve().parent.parent
+from publishing.markdown import ROOT, table
+
 DESCRIPTION = ROOT / "modelDescription.xml"
 PAGES = (ROOT / "docs" / "variables.md", ROOT / "fmu-src" / "archive" / "documentation" / "index.html")
 TITLES = {
@@ -61,11 +55,7 @@ def tables(variables: list[Variable]) -> Iterator[tuple[str, list[str], list[lis
 
 
 def in_markdown(variables: list[Variable]) -> str:
-    blocks = []
-    for title, head, rows in tables(variables):
-        lines = [" | ".join(cells) for cells in (head, ["---"] * len(head), *rows)]
-        blocks.append("\n".join([f"**{title}**", "", *(f"| {line} |" for line in lines)]))
-    return "\n\n".join(blocks)
+    return "\n\n".join(f"**{title}**\n\n{table(head, rows)}" for title, head, rows in tables(variables))
 
 
 def in_html(variables: list[Variable]) -> str:
@@ -84,27 +74,10 @@ def in_html(variables: list[Variable]) -> str:
 
 
 def with_tables(text: str, variables: list[Variable], page: Path) -> str:
-    """The page's text with what stands between the two marks replaced."""
-    before, _, rest = text.partition(BEGIN)
+    """The page's text with what stands between the two marks replaced, if it has them."""
+    before, mark, rest = text.partition(BEGIN)
+    if not mark:
+        return text
     _, _, after = rest.partition(END)
     render = in_html if page.suffix == ".html" else in_markdown
     return f"{before}{BEGIN}\n\n{render(variables)}\n\n{END}{after}"
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true", help="change nothing; exit status 1 if a table is stale")
-    check = parser.parse_args().check
-    variables = read_variables()
-    stale = 0
-    for page in PAGES:
-        text = page.read_text(encoding="utf-8")
-        fresh = with_tables(text, variables, page)
-        stale += text != fresh
-        if not check:
-            page.write_text(fresh, encoding="utf-8")
-    return int(check and stale > 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

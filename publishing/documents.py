@@ -1,9 +1,9 @@
-#!/usr/bin/env python3
-"""Writes measured figures into the marked places of the pages: no figure in prose is typed by hand.
+"""Writes into the marked places of the documents what is measured or stands elsewhere: no figure is typed by hand.
 
 A place in Markdown or HTML is `<!-- = report.figure -->4e-8<!-- . -->`: the comment names a row of
 docs/results/data/report.csv, which `scripts/report` measures, and what stands up to the next comment is written here.
-Between `<!-- table = name -->` and `<!-- end of table -->` stands docs/results/data/name.csv as a table.
+Between `<!-- table = name -->` and `<!-- end of table -->` stands docs/results/data/name.csv as a table; between
+`<!-- file = path -->` and `<!-- end of file -->` a file as code; after `<!-- variables -->` all variables.
 With --check it changes nothing and tells by its exit status whether a page and the data differ.
 """
 
@@ -15,34 +15,20 @@ import re
 import subprocess
 import sys
 from collections.abc import Mapping
-from math import isfinite
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from publishing import variables
+from publishing.markdown import ROOT, number, table
+
 DATA = ROOT / "docs" / "results" / "data"
 PLACE = re.compile(r"(<!-- = ([\w.]+) -->)(.*?)(<!-- \. -->)", re.DOTALL)
 TABLE = re.compile(r"(<!-- table = (\w+) -->)(.*?)(<!-- end of table -->)", re.DOTALL)
+FILE = re.compile(r"(<!-- file = ([\w./]+) -->)(.*?)(<!-- end of file -->)", re.DOTALL)
 SCIENTIFIC = re.compile(r"[\d.]+e-?\d+")
 
 
 class UnknownFigure(Exception):
     """The message is one sentence for the writer of the page."""
-
-
-def number(value: object) -> str:
-    """Short text of a value: 3 digits of a float, or 2 and a plain exponent; integers and text as they are."""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if not isinstance(value, float):
-        return "" if value is None else str(value)
-    if not isfinite(value):
-        return str(value)
-    if value == 0:
-        return "0"
-    if 1e-3 <= abs(value) < 1e5:
-        return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
-    mantissa, exponent = f"{value:.1e}".split("e")
-    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
 
 
 def read_figures(folder: Path = DATA) -> dict[str, str]:
@@ -56,12 +42,11 @@ def read_figures(folder: Path = DATA) -> dict[str, str]:
     return figures
 
 
-def table(path: Path) -> str:
+def csv_table(path: Path) -> str:
     """A CSV file in Markdown."""
     with path.open(newline="", encoding="utf-8") as file:
         head, *rows = csv.reader(file)
-    shown = [[number(float(cell)) if SCIENTIFIC.fullmatch(cell) else cell for cell in row] for row in rows]
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in (head, ["---"] * len(head), *shown))
+    return table(head, [[float(cell) if SCIENTIFIC.fullmatch(cell) else cell for cell in row] for row in rows])
 
 
 def with_figures(text: str, figures: Mapping[str, str], name: str = "the page", folder: Path = DATA) -> str:
@@ -73,9 +58,13 @@ def with_figures(text: str, figures: Mapping[str, str], name: str = "the page", 
         return f"{place[1]}{figures[place[2]]}{place[4]}"
 
     def fill_table(place: re.Match[str]) -> str:
-        return f"{place[1]}\n\n{table(folder / f'{place[2]}.csv')}\n\n{place[4]}"
+        return f"{place[1]}\n\n{csv_table(folder / f'{place[2]}.csv')}\n\n{place[4]}"
 
-    return TABLE.sub(fill_table, PLACE.sub(fill, text))
+    def fill_file(place: re.Match[str]) -> str:
+        source = ROOT / place[2]
+        return f"{place[1]}\n\n```{source.suffix[1:]}\n{source.read_text(encoding='utf-8')}```\n\n{place[4]}"
+
+    return FILE.sub(fill_file, TABLE.sub(fill_table, PLACE.sub(fill, text)))
 
 
 def pages() -> list[Path]:
@@ -89,10 +78,10 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="change nothing; exit status 1 if a page is stale")
     check = parser.parse_args().check
-    figures, stale = read_figures(), 0
+    figures, known, stale = read_figures(), variables.read_variables(), 0
     for page in pages():
         text = page.read_text(encoding="utf-8")
-        fresh = with_figures(text, figures, page.name)
+        fresh = variables.with_tables(with_figures(text, figures, page.name), known, page)
         if text != fresh:
             stale += 1
             print(f"{'Stale' if check else 'Filled'}: {page.relative_to(ROOT)}")
@@ -105,4 +94,4 @@ if __name__ == "__main__":
     try:
         sys.exit(main())
     except UnknownFigure as fault:
-        sys.exit(f"figures_in_pages: {fault}")
+        sys.exit(f"documents: {fault}")

@@ -1,0 +1,48 @@
+"""A master of one's own on plain FMPy: a wheel on a suspension is braked to a stop; then again from a snapshot, harder.
+
+python master.py [wheel.fmu]. SI units, angles in rad; signs: docs/brake_hold_steer.md.
+"""
+
+import shutil
+import sys
+from math import pi
+
+from fmpy import extract, read_model_description
+from fmpy.fmi2 import FMU2Slave
+
+path, h = (sys.argv[1:] or ["wheel.fmu"])[0], 0.001  # the FMU; the communication step, s
+description = read_model_description(path)
+number = {v.name: v.valueReference for v in description.modelVariables}
+inputs = [number[name] for name in ("M_1", "M_brake")]
+outputs = [number[name] for name in ("theta", "theta_dot", "omega_z")]
+
+folder = extract(path)
+wheel = FMU2Slave(guid=description.guid, unzipDirectory=folder, modelIdentifier="wheel")
+wheel.instantiate()
+wheel.setupExperiment(startTime=0.0)
+wheel.enterInitializationMode()
+wheel.setReal([number["theta_start"], number["phi_dot_start"]], [pi / 2, -10.0])  # upright, forward at 3.5 m/s
+wheel.exitInitializationMode()
+
+
+def drive(begin: int, end: int, brake: float) -> float | None:
+    """Steps from `begin` to `end` under a brake of this capacity; the first time at which the wheel stands."""
+    for step in range(begin, end):
+        theta, theta_dot, omega_z = wheel.getReal(outputs)
+        if omega_z == 0.0:
+            return step * h
+        camber = -3000.0 * (theta - pi / 2) - 100.0 * theta_dot  # the suspension's moment about e1
+        wheel.setReal(inputs, [camber, brake])
+        wheel.doStep(step * h, h)  # raises where the wheel falls flat or lifts off
+    return None
+
+
+drive(0, 1000, 0.0)
+snapshot = wheel.getFMUState()
+for brake in (30.0, 60.0):
+    wheel.setFMUState(snapshot)
+    print(f"A brake of {brake:g} N m stops the wheel at t = {drive(1000, 5000, brake):.3f} s.")
+wheel.freeFMUState(snapshot)
+wheel.terminate()
+wheel.freeInstance()
+shutil.rmtree(folder, ignore_errors=True)
