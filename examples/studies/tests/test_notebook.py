@@ -1,37 +1,66 @@
-"""The notebook runs from the first cell to the last and shows what its text says."""
+"""The notebook is kept with what its cells give: they run from the first to the last, and give that again."""
 
 from __future__ import annotations
 
+import re
+import sys
+from base64 import b64decode
+from io import BytesIO
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
-from nbclient import NotebookClient
+from PIL import Image
 
-NOTEBOOK = Path(__file__).resolve().parents[2] / "wheel.ipynb"
+sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
+from publishing.notebook import NOTEBOOK, executed
+
+Outputs = list[nbformat.NotebookNode]
+
+
+def outputs(notebook: nbformat.NotebookNode) -> Outputs:
+    return [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
+
+
+def words(kept: Outputs) -> list[str]:
+    """What was printed, with nine digits: the last ones are the machine's."""
+    texts = [output.get("text") or output.get("data", {}).get("text/plain", "") for output in kept]
+    return [re.sub(r"(\d\.\d{9})\d+", r"\1", text) for text in texts]
+
+
+def pictures(kept: Outputs) -> list[np.ndarray]:
+    found = [output.data["image/png"] for output in kept if "image/png" in output.get("data", {})]
+    return [np.asarray(Image.open(BytesIO(b64decode(png))).convert("L"), dtype=float) for png in found]
 
 
 @pytest.fixture(scope="module")
-def notebook() -> nbformat.NotebookNode:
-    return nbformat.read(NOTEBOOK, as_version=4)
+def kept() -> Outputs:
+    return outputs(nbformat.read(NOTEBOOK, as_version=4))
 
 
-def test_the_notebook_is_kept_without_outputs(notebook: nbformat.NotebookNode) -> None:
-    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    assert code
-    assert all(not cell.outputs and cell.execution_count is None for cell in code)
+@pytest.fixture(scope="module")
+def fresh(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Outputs:
+    return outputs(executed(str(fmu_path), str(tmp_path_factory.mktemp("notebook"))))
 
 
-def test_the_notebook_runs_from_the_first_cell_to_the_last(
-    notebook: nbformat.NotebookNode, fmu_path: Path, tmp_path: Path
-) -> None:
-    for cell in notebook.cells:
-        cell.source = cell.source.replace("../wheel.fmu", str(fmu_path)).replace("../results", str(tmp_path))
-    NotebookClient(notebook, timeout=120, resources={"metadata": {"path": NOTEBOOK.parent}}).execute()
-    outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
-    pictures = [output for output in outputs if "image/png" in output.get("data", {})]
-    assert len(pictures) == 3
-    printed = "".join(output.text for output in outputs if output.output_type == "stream" and output.name == "stdout")
-    assert "ended at t = 0.59" in printed
-    assert printed.count("of 40 wheels") == 3
-    assert "nan" not in printed
+def test_what_the_notebook_keeps_is_what_its_cells_give(kept: Outputs, fresh: Outputs) -> None:
+    assert words(kept) == words(fresh), "run ./scripts/notebook --write"
+    for one, other in zip(pictures(kept), pictures(fresh), strict=True):
+        assert one.shape == other.shape
+        assert abs(one - other).mean() < 0.5  # of 255 tones of grey
+    first, second, *_ = pictures(kept)
+    height, width = (min(one, other) for one, other in zip(first.shape, second.shape, strict=True))
+    assert abs(first[:height, :width] - second[:height, :width]).mean() > 5  # the partner: another picture
+
+
+def test_the_notebook_shows_what_its_text_says(kept: Outputs) -> None:
+    printed = "".join(words(kept))
+    assert len(pictures(kept)) == 3
+    assert "ended at t = 0.59" in printed and printed.count("of 40 wheels") == 3 and "nan" not in printed
+
+
+def test_the_notebook_keeps_no_run_times_and_no_progress_bars(kept: Outputs) -> None:
+    text = NOTEBOOK.read_text(encoding="utf-8")
+    assert "it/s" not in text and "iopub" not in text and "stderr" not in text
+    assert all(set(output.get("data", {})) <= {"text/plain", "image/png"} for output in kept)
