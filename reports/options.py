@@ -6,7 +6,7 @@ import argparse
 
 DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its data into build/report/latest, or with
 --publish into docs/results, which is kept under version control, and then the figures in all pages are filled in."""
-NAMES = ("accuracy", "stability", "speed", "inputs", "partners", "vehicles", "others", "physics")
+NAMES = ("accuracy", "stability", "speed", "inputs", "partners", "vehicles", "others", "benchmark", "physics")
 
 
 def arguments() -> argparse.Namespace:
@@ -14,7 +14,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("names", nargs="+", metavar="NAME", choices=(*NAMES, "all"), help=", ".join((*NAMES, "all")))
     target = parser.add_mutually_exclusive_group()
     target.add_argument("--publish", action="store_true", help="write docs/results and the figures in the pages")
-    parser.add_argument("--peers", action="store_true", help="speed: first install the solvers of reports/peers.txt")
+    parser.add_argument("--peers", action="store_true", help="first install the programs of reports/peers.txt")
     target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick: to try it out")
     parser.add_argument("--render", action="store_true", help="measure nothing: publish what the data in docs/ say")
     parser.add_argument("--check", action="store_true", help="change nothing: are the pages those of the data?")

@@ -1,7 +1,7 @@
 """Numbers of other people, beside those of wheel.fmu: derivations, reference results, closed forms (tests/others).
 
-Each row says whose number it is, which scene, and whose error the difference is. Exudyn runs where it is installed; else
-its rows are those kept in tests/others.
+Each row says whose number it is, which scene, and whose error the difference is. Exudyn runs where it is installed;
+else its rows are those kept in tests/others.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ def wheel_sets(report: Report) -> None:
     printed, exact = read("multibody_jl_driving"), sets.rigid_at("driving", read("multibody_jl_driving")["time"])
     apart = float(np.hypot(printed["x"] - exact["x"], printed["y"] - exact["y"]).max())
     last = tuple(digits(source["x"][-1], source["y"][-1], places=6) for source in (printed, exact))
-    row(report, "Multibody.jl, test_wheels.jl", "DrivingWheelSet, 11 instants to 1 s: x, y", last, apart, "theirs: 1e-3")
+    row(report, "Multibody.jl, test_wheels.jl", "DrivingWheelSet, 11 instants, 1 s: x, y", last, apart, "theirs: 1e-3")
 
 
 PARTS: dict[Callable[[Report], None], float] = {

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from physics.leaning import measured_critical_spin
+from support.bounds import beyond, within
 from support.motion import Library
 
 from . import kane_states, wheels
@@ -15,13 +16,13 @@ from .numbers import read
 
 @pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
 def test_kanes_method_gives_the_same_accelerations_and_normal_force(symmetric: bool) -> None:
-    assert kane_states.distance(symmetric=symmetric) < 1e-11  # measured 2.6e-13
-    assert kane_states.distance(10, symmetric, stretched=1 + 1e-9) > 1e-10  # partner: the tube 1e-9 thicker
+    within(kane_states.distance(symmetric=symmetric), 5e-12, "symbrim: relative")
+    beyond(kane_states.distance(10, symmetric, stretched=1 + 1e-9), 2e-11, "symbrim, a tube 1e-9 thicker: relative")
 
 
 def test_modelicas_wheel_is_as_far_from_ours_as_from_an_independent_integration(library: Library) -> None:
     true, ours = wheels.modelica_reference(), wheels.modelica(library)
-    assert wheels.apart({"x": true["X_O"], "y": true["Y_O"]}, ours) < 1e-8  # m; measured 8.1e-10
+    within(wheels.apart({"x": true["X_O"], "y": true["Y_O"]}, ours), 1e-8, "reference and FMU apart, m")
     for other in (true, ours):
         assert wheels.apart(read("modelica_wheel"), other) == pytest.approx(5.84e-4, abs=1e-6)  # m
 
@@ -29,27 +30,27 @@ def test_modelicas_wheel_is_as_far_from_ours_as_from_an_independent_integration(
 def test_the_drift_of_modelicas_wheel_is_seen_in_its_energy(library: Library) -> None:
     energy, ours = wheels.modelica_energy(), wheels.modelica(library)["E"]
     assert energy[0] == pytest.approx(ours[0], rel=1e-14)
-    assert np.ptp(ours) < 1e-8 * ours[0]  # measured 1e-10
-    assert 5e-6 < np.abs(energy / energy[0] - 1).max() < 5e-5  # measured 1.3e-5: the table's error, not ours
+    within(np.ptp(ours) / ours[0], 4e-10, "our energy: drift, relative")
+    beyond(np.abs(energy / energy[0] - 1).max(), 5e-6, "the table's energy: drift, relative")
 
 
 def test_exudyns_coin_converges_to_ours(library: Library) -> None:
     table, ours = read("exudyn_coin"), wheels.coin(library, 1e-12)
-    assert np.abs(wheels.coin_limit(table) - ours).max() < 1e-12  # m; measured 3.5e-14
+    within(np.abs(wheels.coin_limit(table) - ours).max(), 1e-12, "contact points apart, m")
     off = np.abs(table["x"] - ours[0])
-    assert off[:-1] / off[1:] == pytest.approx(4, rel=1e-3)  # second order; measured 4.0000
-    assert off[0] > 1e-7  # partner: at its own step it is 8.4e-7 away
+    assert off[:-1] / off[1:] == pytest.approx(4, rel=1e-3)  # a method of second order
+    beyond(off[-1], 1e-10, "the smallest step without extrapolation, m")
 
 
 def test_the_critical_spin_is_that_of_sympys_disc(library: Library) -> None:
-    found = measured_critical_spin(library, wheels.SYMPY_DISC)
-    assert found == pytest.approx(wheels.SYMPY_CRITICAL_SPIN, abs=1e-8)  # measured 1.5e-10
-    tube = replace(wheels.SYMPY_DISC, r=0.01)
-    assert measured_critical_spin(library, tube) != pytest.approx(wheels.SYMPY_CRITICAL_SPIN, abs=1e-4)
+    off = measured_critical_spin(library, wheels.SYMPY_DISC) - wheels.SYMPY_CRITICAL_SPIN
+    within(abs(off), 4e-9, "critical spin, rad/s")
+    tube = measured_critical_spin(library, replace(wheels.SYMPY_DISC, r=0.01)) - wheels.SYMPY_CRITICAL_SPIN
+    beyond(abs(tube), 3e-4, "critical spin with a tube of 1 cm, rad/s")
 
 
 @pytest.mark.parametrize("disc", wheels.DISCS, ids=lambda disc: f"m = {disc.m:g}, r_0 = {disc.r_0:g}")
 def test_the_rolling_disc_follows_legendre_functions(library: Library, disc: wheels.Wheel) -> None:
-    assert wheels.legendre_error(library, disc) < 1e-12  # measured 4e-15 to 6e-14
+    within(wheels.legendre_error(library, disc), 1e-12, "omega_2, omega_3: relative")
     judged = replace(disc, J_x=disc.J_x * (1 + 1e-9))
-    assert wheels.legendre_error(library, disc, judged) > 1e-11  # partner
+    beyond(wheels.legendre_error(library, disc, judged), 2e-11, "judged by J_x 1e-9 larger: relative")

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from examples.conftest import fmus
+from support.bounds import beyond, within
 
 from . import wheel_sets as sets
 from .numbers import read
@@ -16,10 +17,10 @@ __all__ = ["fmus"]
 
 @pytest.mark.parametrize("scene", sets.SCENES)
 def test_the_rigid_wheel_set_has_modelicas_numbers(scene: str) -> None:
-    assert sets.distance(sets.table(scene), sets.rigid(scene)) < 1e-5  # m, rad; measured 2.0e-6, 4.5e-6
+    within(sets.distance(sets.table(scene), sets.rigid(scene)), 1e-5, "Modelica's table, m, rad")
     at = read("multibody_jl_driving")
     exact = sets.rigid_at("driving", at["time"])
-    assert np.hypot(at["x"] - exact["x"], at["y"] - exact["y"]).max() < 1e-3  # m: the bound of their test
+    within(np.hypot(at["x"] - exact["x"], at["y"] - exact["y"]).max(), 1e-3, "Multibody.jl's test, m")
 
 
 @pytest.mark.parametrize("scene", sets.SCENES)
@@ -29,5 +30,5 @@ def test_the_error_falls_as_one_over_the_stiffness_to_modelicas_numbers(fmus: di
     errors = [sets.distance(run, sets.rigid(scene)) for run in runs]
     assert np.array(errors[:-1]) / errors[1:] == pytest.approx(2, rel=0.05)
     limit = sets.distance(sets.limit(runs), sets.rigid(scene))
-    assert limit < 1e-4
-    assert errors[-1] > 10 * limit  # partner: no single stiffness comes as near
+    within(limit / errors[-1], 0.02, "error of the limit over that of the stiffest links")
+    beyond(errors[0] / errors[-1], 3.5, "error of the softest links over that of the stiffest")

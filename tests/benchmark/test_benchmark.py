@@ -1,0 +1,56 @@
+"""The reference values of docs/benchmark.md, met by the FMU, its system (24) and the independent reference."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.bounds import beyond, within
+from support.motion import Library
+
+from .problems import INSTANTS, OUTPUTS, PROBLEMS, RESULTS, Problem, by_fmu, by_reference, errors, table, transitions
+
+each = pytest.mark.parametrize("name", PROBLEMS)
+
+
+def check(name: str, found: tuple[float, float | None], program: str) -> None:
+    error, instants = found
+    within(error, 2e-11, f"{name}, {program}: error / range")
+    if instants is not None:
+        within(instants, 2e-9 if program == "FMU" else 2e-11, f"{name}, {program}: instants, s")
+
+
+@each
+def test_the_fmu_has_the_reference_values(library: Library, name: str) -> None:
+    check(name, errors(name, by_fmu(library, PROBLEMS[name], 1e-14)), "FMU")
+
+
+@each
+def test_the_papers_system_has_the_reference_values(library: Library, name: str) -> None:
+    multibody = replace(PROBLEMS[name], start={**PROBLEMS[name].start, "formulation": 3})
+    error, _ = errors(name, by_fmu(library, multibody, 1e-13))
+    within(error, 2e-11, f"{name}: error / range")
+
+
+@each
+def test_the_independent_reference_has_the_reference_values(name: str) -> None:
+    check(name, errors(name, by_reference(PROBLEMS[name], 1e-13)), "reference")
+
+
+@each
+def test_a_parameter_that_is_off_by_a_billionth_shows(library: Library, name: str) -> None:
+    off: Problem = replace(PROBLEMS[name], start={**PROBLEMS[name].start, "r": 0.05 * (1 + 1e-9)})
+    beyond(errors(name, by_fmu(library, off, 1e-14))[0], 6e-10, f"{name}: error / range")
+
+
+def test_the_tables_have_thirteen_digits_and_all_transitions() -> None:
+    for name in PROBLEMS:
+        text = (RESULTS / "data" / f"benchmark_{name}.csv").read_text(encoding="utf-8").splitlines()
+        assert len(text) == 1 + len(INSTANTS)
+        for cell in text[1].split(",")[1:]:
+            assert len(cell.lstrip("-0.").replace(".", "")) == 13
+        assert table(name).shape == (len(INSTANTS), len(OUTPUTS))
+    instants = [t for t, _ in transitions("friction")]
+    assert len(instants) == 37
+    assert (np.diff(instants) > 0).all()
