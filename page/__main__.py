@@ -10,6 +10,8 @@ from page import document, options
 from page.bodies import Body, ViewError, read_bodies
 from page.document import Choice
 
+PLACES = {"fl": "front left", "fr": "front right", "rl": "rear left", "rr": "rear right"}
+
 
 def main() -> int:
     """Write a page; a fault of the input is one sentence on stderr and exit status 1."""
@@ -42,8 +44,8 @@ def recorded(arguments: argparse.Namespace) -> int:
     bodies, every = document.thinned(bodies)
     if every > 1:
         print(f"Every {every}th row is kept, so that the page stays below {document.PAGE_LIMIT / 1e6:g} MB.")
-    labels = {body.name: label for body, label in zip(bodies, arguments.labels, strict=False)}
-    return document.write(arguments.output, arguments.title, bodies, labels, choices(bodies, labels))
+    labels = labels_of(bodies, arguments.labels)
+    return document.write(arguments.output, arguments.title, bodies, labels, choices(bodies, labels, len(files)))
 
 
 def unlike(bodies: list[Body]) -> list[Body]:
@@ -57,8 +59,17 @@ def unlike(bodies: list[Body]) -> list[Body]:
     return named
 
 
-def choices(bodies: list[Body], labels: dict[str, str]) -> list[Choice]:
-    """What one can look at: wheels side by side, all together, and each wheel alone."""
+def labels_of(bodies: list[Body], given: list[str]) -> dict[str, str]:
+    """What each body is called: as given, in their order, else by its place on a car, else by its name."""
+    if len(given) > len(bodies):
+        count = f"{len(bodies)} {'body' if len(bodies) == 1 else 'bodies'}"
+        raise ViewError(f"--labels names {len(given)} bodies, but the files hold {count}.")
+    places = {body.name: PLACES.get(body.name.removeprefix("wheel_"), body.name) for body in bodies}
+    return places | {body.name: label for body, label in zip(bodies, given, strict=False)}
+
+
+def choices(bodies: list[Body], labels: dict[str, str], files: int) -> list[Choice]:
+    """What one can look at: all together, wheels of several files side by side, and each wheel alone."""
     names = [body.name for body in bodies]
     wheels = [body.name for body in bodies if body.size is None]
     alone = [Choice(labels.get(name, name), [[name]]) for name in wheels]
@@ -66,7 +77,8 @@ def choices(bodies: list[Body], labels: dict[str, str]) -> list[Choice]:
         return [Choice(labels.get(names[0], names[0]), [names])]
     together = [Choice("Together", [names])]
     if len(wheels) == len(names) <= 3:
-        return [Choice("Side by side", [[name] for name in names]), *together, *alone]
+        beside = [Choice("Side by side", [[name] for name in names])]
+        return [*together, *beside, *alone] if files == 1 else [*beside, *together, *alone]
     return [*together, *(alone if len(alone) <= 8 else [])]
 
 

@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 POSE = ("X_O", "Y_O", "psi", "theta", "phi")
 SHOWN = ("Z_O", "omega_z", "friction_mode", "n_events", "lambda_1", "lambda_2", "lambda_3", "E")
 SHAPE = ("r_0", "r")
+SLOPE = ("slope", "slope_direction")
 RATES = tuple(f"{name}_dot" for name in (*POSE, "Z_O"))
 BODY_POSE = ("X", "Y", "Z", "yaw", "pitch", "roll")
 ALIASES = {"psi": "yaw", "theta": "pitch", "phi": "roll"}  # of a car's body
@@ -30,13 +31,17 @@ class ViewError(Exception):
 
 @dataclass(frozen=True)
 class Body:
-    """A wheel (size None) or a box (size: length, width, height in m), one row per communication point."""
+    """A wheel (size None) or a box (size: length, width, height in m), one row per communication point.
+
+    slope: of a wheel's road and the direction in which it rises, in rad, if the file holds them.
+    """
 
     name: str
     columns: dict[str, Array]
     r_0: float = 0.0
     r: float = 0.0
     size: tuple[float, float, float] | None = None
+    slope: tuple[float, ...] = ()
 
     @property
     def start(self) -> Array:
@@ -103,7 +108,7 @@ def read_bodies(path: Path, shape: tuple[float, float] | None, box: tuple[float,
 def known(group: dict[str, list[str]]) -> tuple[dict[str, list[str]], list[str]]:
     """A body's columns under the names used here, and those to show; none of a unit that is no body."""
     if all(column in group for column in POSE):
-        return group, [column for column in (*POSE, *SHOWN, *RATES, *SHAPE) if column in group]
+        return group, [column for column in (*POSE, *SHOWN, *RATES, *SHAPE, *SLOPE) if column in group]
     if {"X", "Y", "Z"} <= group.keys():
         group = {ALIASES.get(column, column): text for column, text in group.items()}
         return group, [column for column in BODY_POSE if column in group]
@@ -115,7 +120,8 @@ def make_body(name: str, columns: dict[str, Array], shape: tuple[float, float] |
     if "theta" in columns:
         recorded = tuple(float(columns.pop(edge)[0]) for edge in SHAPE if edge in columns)
         r_0, r = shape or (recorded if len(recorded) == 2 else shape_of(columns))
-        return Body(name, columns, r_0, r)
+        slope = tuple(float(columns.pop(name)[0]) for name in SLOPE if name in columns)
+        return Body(name, columns, r_0, r, slope=slope)
     zero = np.zeros_like(columns["time"])
     return Body(name, dict.fromkeys(BODY_POSE, zero) | columns, size=box or (0.0, 0.0, 0.0))
 

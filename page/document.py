@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from page.bodies import Body
+from page.bodies import SLOPE, Body
 
 WEB = Path(__file__).parent / "web"
 PAGE_LIMIT = 3_000_000  # bytes of a page
@@ -74,7 +74,9 @@ def thinned(bodies: list[Body], limit: int = RECORDED_LIMIT) -> tuple[list[Body]
 def encoded(body: Body, label: str) -> dict:
     columns = {name: base64_of(column.astype("<f8").tobytes()) for name, column in body.columns.items()}
     entry = {"name": body.name, "label": label, "columns": columns}
-    return entry | ({"r_0": body.r_0, "r": body.r} if body.size is None else {"size": body.size})
+    if body.size is not None:
+        return entry | {"size": body.size}
+    return entry | {"r_0": body.r_0, "r": body.r} | dict(zip(SLOPE, body.slope, strict=False))
 
 
 def scale_of(bodies: list[Body]) -> dict[str, float]:
@@ -106,6 +108,7 @@ def write(
     parts = {
         "title": title.replace("&", "&amp;").replace("<", "&lt;"),
         "licences": notice,
+        "help": (WEB / "help.html").read_text(encoding="utf-8"),
         "style": (WEB / "style.css").read_text(encoding="utf-8"),
         "data": json.dumps(data).replace("<", "\\u003c"),
         "modules": modules(three),

@@ -16,7 +16,7 @@ def variables(description: Path) -> tuple[str, dict[str, dict]]:
     found = {}
     for variable in root.iterfind("ModelVariables/ScalarVariable"):
         kind = next(child for child in variable if child.tag in READ)
-        entry = {"reference": int(variable.attrib["valueReference"]), "type": kind.tag}
+        entry = {"reference": int(variable.attrib["valueReference"]), "type": kind.tag, "unit": kind.get("unit", "")}
         if "start" in kind.attrib:
             entry["start"] = READ[kind.tag](kind.attrib["start"])
         found[variable.attrib["name"]] = entry

@@ -17,6 +17,13 @@ from support.paths import ROOT
 from page.tests.pages import FLAGS, RECORD, opened, view, write_csv
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """With `--dist loadgroup` one worker runs them all, so browser and pages are made once."""
+    for item in items:
+        if item.path.is_relative_to(Path(__file__).parent):
+            item.add_marker(pytest.mark.xdist_group("page"))
+
+
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
@@ -72,3 +79,18 @@ def live_file(locked) -> Path:
 def live(browser, live_file) -> Iterator[Page]:
     with opened(browser, live_file) as page:
         yield page
+
+
+@pytest.fixture(scope="session")
+def same_libm(description, locked, tmp_path_factory) -> Path:
+    """The FMU, unpacked, with a library of this machine's compiler and the releases' libm."""
+    zig = subprocess.run([ROOT / "release/compiler"], check=True, capture_output=True, text=True).stdout.strip()
+    with locked("musl") as build:
+        log = {"check": True, "stdout": subprocess.DEVNULL}
+        options = [f"-DWHEEL_LIBM_SOURCE={zig}/lib/libc/musl", "-DCMAKE_BUILD_TYPE=Release"]
+        subprocess.run(["cmake", "-S", ROOT, "-B", build, *options], **log)
+        subprocess.run(["cmake", "--build", build, "--target", "wheel_fmu", "--parallel", "2"], **log)
+        folder = tmp_path_factory.mktemp("musl")
+        (folder / "binaries" / "linux64").mkdir(parents=True)
+        shutil.copy(build / "wheel.so", folder / "binaries" / "linux64")
+    return folder

@@ -22,12 +22,15 @@ FLAGS += ["--no-first-run", "--disable-component-update", "--disable-sync", "--d
 FLAGS += ["--no-sandbox"] if os.geteuid() == 0 else []
 # Advice of the browser on how the tests look at pictures.
 NOISE = ("GPU stall due to ReadPixels", "willReadFrequently")
-PATIENCE = 120_000  # ms; a page is drawn by the processor here
+PATIENCE = 60_000  # ms; a page is drawn by the processor here
 
 
 @contextmanager
-def opened(browser: Browser, path: Path, **context: object) -> Iterator[Page]:
-    """A page that stands still at its start; afterwards its console must hold no error and no warning."""
+def opened(browser: Browser, path: Path, address: str = "", **context: object) -> Iterator[Page]:
+    """A page that stands still at its start; afterwards its console must hold no error and no warning.
+
+    address: what stands after the # of the page's address.
+    """
     look = {"viewport": {"width": 900, "height": 640}, "reduced_motion": "reduce"} | context
     surroundings = browser.new_context(offline=True, **look)
     surroundings.set_default_timeout(PATIENCE)
@@ -35,7 +38,7 @@ def opened(browser: Browser, path: Path, **context: object) -> Iterator[Page]:
     said: list[str] = []
     page.on("console", lambda message: said.append(message.text) if message.type in ("error", "warning") else None)
     page.on("pageerror", lambda fault: said.append(str(fault)))
-    page.goto(path.as_uri())
+    page.goto(f"{path.as_uri()}#{address}" if address else path.as_uri())
     page.wait_for_function("window.page && page.views && !page.stage.dirty")
     yield page
     surroundings.close()
@@ -56,3 +59,13 @@ def view(*arguments: object) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-P", "-m", "page", "recorded", *map(str, arguments)]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+
+
+def column(page, name: str) -> np.ndarray:
+    return np.array(page.evaluate("(name) => [...page.wheels[0].table.columns[name]]", name))
+
+
+def preset(page, label: str) -> None:
+    page.locator("#live [name=scenes]").click()
+    page.get_by_role("button", name=label, exact=True).click()
+    page.evaluate("page.player.pause()")

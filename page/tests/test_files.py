@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import numpy as np
@@ -116,3 +117,26 @@ def test_the_page_names_the_licence_of_three_js(recorded_file):
     text = recorded_file.read_text()
     assert "three.js authors" in text
     assert "Permission is hereby granted" in text
+
+
+def test_more_labels_than_bodies_are_refused_with_one_sentence(one):
+    done = view(one, "--labels", "a", "b", "c")
+    assert done.returncode == 1
+    assert done.stderr == "view: --labels names 3 bodies, but the files hold 1 body.\n"
+    assert view(one, "--labels", "a").returncode == 0
+
+
+def data_of(path) -> dict:
+    """What a page carries."""
+    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', path.read_text())[1])
+
+
+def test_wheels_of_one_file_open_together_and_those_of_several_side_by_side(scenes, one, tmp_path):
+    rows = columns_of(scenes["free"])
+    both = {f"{name}.{column}": rows[column] for name in ("fl", "wheel_rr") for column in POSE}
+    path = write_csv(tmp_path / "axle.csv", {"time": rows["time"]} | both)
+    assert view(path).returncode == view(path, one, "--output", tmp_path / "two.html").returncode == 0
+    first, *_ = data_of(tmp_path / "axle.html")["choices"]
+    assert (first["label"], first["views"]) == ("Together", [["fl", "wheel_rr"]])
+    assert data_of(tmp_path / "two.html")["choices"][0]["label"] == "Side by side"
+    assert [wheel["label"] for wheel in data_of(tmp_path / "axle.html")["wheels"]] == ["front left", "rear right"]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Slave
-from support.paths import ROOT
+
+from page.tests.pages import column, preset
 
 NAMES = ("X_O", "Y_O", "psi", "theta", "phi", "omega_z", "lambda_3", "E")
 STEP = 0.01  # s
@@ -25,21 +25,6 @@ RUN = """([values, changes, record]) => {
   });
   return [record.map((name) => [...table.columns[name]]), ended];
 }"""
-
-
-@pytest.fixture(scope="session")
-def same_libm(description, locked, tmp_path_factory) -> Path:
-    """The FMU, unpacked, with a library of this machine's compiler and the releases' libm."""
-    zig = subprocess.run([ROOT / "release/compiler"], check=True, capture_output=True, text=True).stdout.strip()
-    with locked("musl") as build:
-        log = {"check": True, "stdout": subprocess.DEVNULL}
-        options = [f"-DWHEEL_LIBM_SOURCE={zig}/lib/libc/musl", "-DCMAKE_BUILD_TYPE=Release"]
-        subprocess.run(["cmake", "-S", ROOT, "-B", build, *options], **log)
-        subprocess.run(["cmake", "--build", build, "--target", "wheel_fmu", "--parallel", "2"], **log)
-        folder = tmp_path_factory.mktemp("musl")
-        (folder / "binaries" / "linux64").mkdir(parents=True)
-        shutil.copy(build / "wheel.so", folder / "binaries" / "linux64")
-    return folder
 
 
 def by_fmu(folder: Path, description, values: dict, changes: list) -> np.ndarray:
@@ -73,15 +58,6 @@ def test_the_wheel_in_the_page_has_the_bits_of_the_fmu(live, same_libm, descript
     assert np.array(columns).T.tobytes() == expected.tobytes()
     other = by_fmu(same_libm, description, {**values, "phi_dot_start": np.nextafter(-2.0, 0)}, changes)
     assert other.tobytes() != expected.tobytes()
-
-
-def column(page, name: str) -> np.ndarray:
-    return np.array(page.evaluate("(name) => [...page.wheels[0].table.columns[name]]", name))
-
-
-def preset(page, label: str) -> None:
-    page.get_by_role("button", name=label, exact=True).click()
-    page.evaluate("page.player.pause()")
 
 
 def test_dragging_s_changes_the_motion_from_now_on_and_not_before(live):
@@ -124,7 +100,7 @@ def test_a_push_lasts_as_long_as_the_button_is_held(live):
     live.mouse.up()
     live.evaluate("page.player.pause()")
     changes = live.evaluate("page.live.changes.map(({ t, name, value }) => [t, name, value])")
-    assert [change[1:] for change in changes] == [["M_3", -6], ["M_3", 0]]
+    assert [change[1:] for change in changes] == [["M_3", 6], ["M_3", 0]]
     assert changes[1][0] > changes[0][0] == pytest.approx(1.0)
 
 
@@ -146,8 +122,11 @@ def test_the_brake_stops_a_wheel_and_holds_it_as_long_as_the_button_is_held(live
 
 def test_a_wheel_let_go_falls_and_the_page_says_so(live):
     preset(live, "Paper, no friction")
-    live.evaluate("page.live.setStart('phi_dot_start', 0); page.live.compute(); page.player.seek(10); page.draw()")
-    assert "flat" in live.locator(".label span").inner_text()
+    live.evaluate("page.live.setStart('phi_dot_start', 0); page.live.compute(); page.player.seek(10)")
+    live.evaluate("page.labels.tell(page.shown, 10)")
+    told = live.locator(".label span").inner_text()
+    assert "flat" in told and "0.588" in told
+    assert max(len(number) for number in re.findall(r"[\d.]+", told)) <= 8
     assert live.evaluate("page.player.end") == pytest.approx(0.59, abs=0.01)
     assert live.evaluate("page.wheels[0].phases.sticks") == []  # no friction holds it, omega_z is zero by itself
 
@@ -171,6 +150,7 @@ def test_a_tenth_of_the_spin_decides_whether_upright_rolling_is_stable(live):
 
 
 def test_every_preset_runs_to_its_end(live):
+    live.locator("#live [name=scenes]").click()
     for button in live.locator("#presets button").all():
         button.click()
         assert live.evaluate("page.live.trouble ?? page.wheels[0].ended") is None
@@ -182,10 +162,77 @@ def test_a_kept_motion_stays_beside_the_next(live):
     preset(live, "Paper, no friction")
     live.locator("#keep").click()
     preset(live, "Paper, s = 0.03 m")
-    live.evaluate("page.draw()")
     assert live.evaluate("page.views.length") == 2
     kept, new = (live.evaluate(f"page.wheels[{i}].table.columns.E.at(-1)") for i in (1, 0))
     assert kept == pytest.approx(75.117, abs=1e-2)
     assert new < 60
     live.locator("#keep").click()
     assert live.evaluate("page.wheels.length") == 1
+
+
+@pytest.mark.parametrize("spin", [-2.0, 3.0])
+def test_forward_is_the_way_the_wheel_rolls_and_back_is_against_it(live, spin):
+    energy = {}
+    for way in ("forward", "back"):
+        preset(live, "Paper, no friction")
+        live.evaluate(
+            """(spin) => {
+              page.live.setStart('theta_start', Math.PI / 2);
+              page.live.setStart('phi_dot_start', spin);
+              page.live.compute();
+              page.player.seek(1);
+            }""",
+            spin,
+        )
+        button = live.locator(".push", has_text=way)
+        button.dispatch_event("pointerdown", {"pointerId": 1})
+        live.evaluate("page.player.pause(); page.live.compute()")
+        energy[way] = column(live, "E")[[100, 120]]
+        button.dispatch_event("pointerup", {"pointerId": 1})
+    assert energy["forward"][1] > energy["forward"][0] == energy["back"][0] > energy["back"][1]
+
+
+def test_while_a_button_is_held_the_diagrams_keep_their_axes(live):
+    axes = """() => [[page.player.start, page.player.end],
+      ...page.plots.plots.map(({ low, high }) => [low, high]), ...page.plots.portrait.ranges]"""
+    preset(live, "Paper, no friction")
+    live.evaluate("page.player.seek(1)")
+    before = live.evaluate(axes)
+    button = live.locator(".push", has_text="forward")
+    button.dispatch_event("pointerdown", {"pointerId": 1})
+    live.evaluate("page.player.pause(); page.live.compute()")
+    assert live.evaluate("page.wheels[0].table.columns.E.at(-1)") > before[4][1]  # the future leaves the frame
+    assert live.evaluate(axes) == before
+    button.dispatch_event("pointerup", {"pointerId": 1})
+    live.evaluate("page.live.compute()")
+    assert all(low <= a and high >= b for (low, high), (a, b) in zip(live.evaluate(axes), before, strict=True))
+    preset(live, "Driven")
+    assert live.evaluate(axes) != before
+
+
+def test_every_button_has_a_tooltip_and_the_help_names_it(live):
+    buttons = "button, summary, input[type=range], #toggles label"
+    titles = live.eval_on_selector_all(
+        buttons, "all => all.map((x) => x.title || x.closest('label')?.title || x.textContent)"
+    )
+    untold = live.eval_on_selector_all(
+        buttons, "all => all.filter((x) => !x.title && !x.closest('label')?.title).map((x) => x.outerHTML)"
+    )
+    assert len(titles) > 30 and untold == []
+    live.locator("#help summary").click()
+    text = live.locator("#help .card").inner_text()
+    names = (
+        "Follow,Path,Axes,Force,Push forward,push back,brake,Keep this motion,Scenes,Story,Take with you,colours,play"
+    )
+    assert [name for name in names.split(",") if name not in text] == []
+    live.locator("#help summary").click()
+
+
+@pytest.mark.parametrize("way", ["Escape", "a click elsewhere"])
+def test_a_card_closes(live, way):
+    live.evaluate("document.querySelector('#help').open = true")
+    if way == "Escape":
+        live.keyboard.press("Escape")
+    else:
+        live.locator("h1").click()
+    assert not live.evaluate("document.querySelector('#help').open")

@@ -11,7 +11,7 @@ from page.tests.pages import POSE, RECORD, opened, view, write_csv
 INSTANTS = (0.0, 0.37, 1.0, 1.23, 2.5, 3.99, 5.0, 6.66, 8.01, 10.0)
 MATRIX = """([t, name]) => {
   page.player.seek(t);
-  page.draw();
+  page.pose();
   const body = page.stage.scene.getObjectByName('spin:' + name);
   body.updateWorldMatrix(true, false);
   return body.matrixWorld.elements;
@@ -20,7 +20,7 @@ MATRIX = """([t, name]) => {
 
 SPOT = """(t) => {
   page.player.seek(t);
-  page.draw();
+  page.pose();
   return page.stage.models.find(({ wheel }) => wheel.name === 'friction').spot.position.toArray().slice(0, 2);
 }"""
 
@@ -88,7 +88,7 @@ def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(browser, tmp_path):
     named = {f"body.{k}": v for k, v in pose.items()} | {f"wheel_fl.{k}": v for k, v in wheel.items()}
     assert view(write_csv(tmp_path / "car.csv", {"time": t} | named)).returncode == 0
     with opened(browser, tmp_path / "car.html", viewport={"width": 400, "height": 400}) as page:
-        page.evaluate("page.player.seek(0.7); page.draw()")
+        page.evaluate("page.player.seek(0.7); page.pose()")
         there = page.evaluate("""() => {
           const box = page.stage.scene.getObjectByName('body:body');
           box.updateWorldMatrix(true, false);
@@ -151,7 +151,7 @@ def test_the_label_and_the_diagram_say_that_the_wheel_sticks(recorded):
     state = """(t) => {
       page.choose(3);
       page.player.seek(t);
-      page.draw();
+      page.labels.tell(page.shown, t);
       const plot = page.plots.plots[1];
       const pixel = (at) => [...plot.layers.faint.getContext('2d')
         .getImageData(plot.x(at) * plot.ratio, plot.y(-1.5) * plot.ratio + 3, 1, 1).data];
@@ -183,7 +183,7 @@ def test_keys_move_the_time_and_switch_what_is_shown(recorded):
     recorded.keyboard.press("3")
     assert recorded.evaluate("page.shown.map((wheel) => wheel.name)") == ["free"]
     recorded.keyboard.press("g")
-    recorded.evaluate("page.draw()")
+    recorded.evaluate("page.pose()")
     assert recorded.evaluate("page.stage.models[0].force.visible")
     recorded.keyboard.press("g")
     recorded.keyboard.press("1")
@@ -191,8 +191,8 @@ def test_keys_move_the_time_and_switch_what_is_shown(recorded):
 
 def test_a_click_into_a_diagram_goes_there(recorded):
     canvas = recorded.locator(".plot canvas").first
-    canvas.click(position={"x": 150, "y": 40})
-    expected = canvas.evaluate("() => page.plots.plots[0].timeAt(150)")
+    canvas.click(position={"x": 100, "y": 40})
+    expected = canvas.evaluate("() => page.plots.plots[0].timeAt(100)")
     assert recorded.evaluate("page.player.t") == pytest.approx(expected)
     assert 0.5 < expected < 9.5
 
@@ -207,7 +207,7 @@ def test_the_mouse_turns_the_view_and_the_force_points_along_lambda(recorded, sc
     recorded.mouse.up()
     assert abs(np.subtract(recorded.evaluate(where), before)).max() > 0.1
     recorded.keyboard.press("r")
-    recorded.evaluate("page.player.seek(5); document.querySelector('[name=force]').click(); page.draw()")
+    recorded.evaluate("page.player.seek(5); document.querySelector('[name=force]').click(); page.pose()")
     direction = recorded.evaluate("""() => {
       const { force } = page.stage.models[1];
       return force.up.clone().set(0, 0, 1).applyQuaternion(force.quaternion).toArray();

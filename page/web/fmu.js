@@ -20,7 +20,8 @@ export class Fmu {
   }
 
   instantiate(exports, description) {
-    Object.assign(this, {api: exports, variables: description.variables, messages: []});
+    const {guid: id, variables} = description;
+    Object.assign(this, {api: exports, guid: id, variables, messages: []});
     const [name, guid, place] = ['wheel', description.guid, ''].map((text) => this.keep(text));
     this.unit = this.api.fmi2Instantiate(name, 1, guid, place, this.api.page_callbacks(), 0, 0);
     if (!this.unit) throw new Error(`the wheel could not be made: ${this.messages.at(-1)?.text}`);

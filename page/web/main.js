@@ -1,31 +1,34 @@
 // The page: recorded wheels, a car's body, or the wheel itself (live), shown on one stage with one clock.
 import {ChassisModel} from '#chassis';
+import {endingOf, Labels} from '#labels';
 import {startLive} from '#live';
-import {phasesOf, sticksAt} from '#phases';
+import {phasesOf} from '#phases';
 import {Player} from '#player';
 import {Plots} from '#plots';
+import {setUpPopups} from '#popups';
 import {Stage} from '#stage';
+import {setUpSwitches} from '#switches';
 import {Table} from '#table';
+import {setUpTaking} from '#take';
 import {colour, watchTheme, wheelColour} from '#theme';
-import {drawBands, setUpKeys, setUpTransport} from '#transport';
+import {drawBands, setUpTransport} from '#transport';
 import {WheelModel} from '#wheel';
 import {THREE} from 'three';
 
 const $ = (selector) => document.querySelector(selector);
 const data = JSON.parse($('#data').textContent);
-
-/** What the reader has switched on. */
-const show = {
-  follow: true,
-  path: true,
-  axes: false,
-  force: false
-};
+const CALM = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 /** A recorded body: {name, label, r_0, r | size, columns} -> with table and phases. */
 function decode(body) {
   const table = Table.decode(body.columns);
   return {...body, table, phases: phasesOf(table)};
+}
+
+/** The vertical in the road's axes of a body with a slope {slope, slope_direction} in rad, or of none. */
+function verticalOf({slope = 0, slope_direction: uphill = 0} = {}) {
+  const along = Math.sin(slope);
+  return new THREE.Vector3(along * Math.cos(uphill), along * Math.sin(uphill), Math.cos(slope));
 }
 
 class Page {
@@ -35,33 +38,26 @@ class Page {
     this.player = new Player();
     this.stage = new Stage($('#stage'), data.size);
     this.plots = new Plots($('#plots'), this.player);
+    this.labels = new Labels($('#labels'));
     this.choice = 0;
     this.last = 0;
+    const ends = this.wheels.map(({table}) => table.end);
+    for (const wheel of this.wheels) wheel.ended = endingOf(wheel.table, Math.max(...ends));
   }
 
   start() {
     setUpTransport(this.player);
-    this.setUpSwitches();
+    this.switches = setUpSwitches(this);
+    this.show = this.switches.show;
+    this.offer(data.choices);
+    this.taking = setUpTaking(this);
+    setUpPopups();
     watchTheme($('#theme'), () => this.dress());
     this.player.addEventListener('time', () => (this.stage.dirty = true));
     new ResizeObserver(() => this.layOut()).observe($('#stage'));
-    if (!data.live && !matchMedia('(prefers-reduced-motion: reduce)').matches) this.player.play();
+    this.live?.begin();
+    if (!CALM && this.player.t === this.player.start) this.player.play();
     requestAnimationFrame((now) => this.frame(now));
-  }
-
-  setUpSwitches() {
-    const boxes = Object.fromEntries(Object.keys(show).map((name) => [name, $(`#toggles [name=${name}]`)]));
-    const flip = (name, on) => {
-      boxes[name].checked = show[name] = on;
-      this.stage.dirty = true;
-    };
-    for (const [name, box] of Object.entries(boxes)) box.addEventListener('change', () => flip(name, box.checked));
-    const toggle = (name) => () => flip(name, !show[name]);
-    const actions = {f: toggle('follow'), p: toggle('path'), a: toggle('axes'), g: toggle('force')};
-    actions.r = () => this.stage.home();
-    for (let i = 0; i < 9; ++i) actions[i + 1] = () => i < this.choices.length && this.choose(i);
-    setUpKeys(this.player, actions);
-    this.offer(data.choices);
   }
 
   /** What one can look at: [{label, views: lists of names}]. */
@@ -72,9 +68,8 @@ class Page {
     host.replaceChildren();
     choices.forEach((choice, i) => {
       const button = document.createElement('button');
-      button.type = 'button';
+      Object.assign(button, {type: 'button', textContent: choice.label, title: `Show: ${choice.label} (key ${i + 1})`});
       button.setAttribute('role', 'radio');
-      button.textContent = choice.label;
       button.addEventListener('click', () => this.choose(i));
       host.append(button);
     });
@@ -106,16 +101,17 @@ class Page {
 
   /** Shows choice i: a list of views, each a list of names. */
   choose(i) {
-    this.choice = i;
-    [...$('#choice').children].forEach((button, k) => button.setAttribute('aria-checked', k === i));
-    const names = this.choices[i].views;
+    this.choice = Math.min(i, this.choices.length - 1);
+    [...$('#choice').children].forEach((button, k) => button.setAttribute('aria-checked', k === this.choice));
+    const names = this.choices[this.choice].views;
     const known = [...this.wheels, ...this.bodies];
     this.views = names.map((view) => known.filter(({name}) => view.includes(name)));
-    const shown = this.wheels.filter(({name}) => names.flat().includes(name));
+    this.shown = this.wheels.filter(({name}) => names.flat().includes(name));
     const tables = this.views.flat().map(({table}) => table);
-    this.player.span(Math.min(...tables.map(({start}) => start)), Math.max(...tables.map(({end}) => end)));
-    this.plots.show(shown);
-    this.shown = shown;
+    const end = Math.max(...tables.map(({end}) => end));
+    const kept = this.plots.axis === 'fitted' ? end : Math.max(end, this.player.end);
+    this.player.span(Math.min(...tables.map(({start}) => start)), kept);
+    this.plots.show(this.shown);
     this.layOut();
   }
 
@@ -124,50 +120,21 @@ class Page {
     this.stage.resize();
     if (!this.views) return;
     drawBands(this.shown, this.player);
-    const host = $('#labels');
-    host.replaceChildren();
-    this.stage.rectangles(this.views.length).forEach(({x, y, w, h}, v) => {
-      const edge = document.createElement('div');
-      edge.className = 'edge';
-      Object.assign(edge.style, {left: `${x}px`, top: `${y}px`, width: `${w}px`, height: `${h}px`});
-      host.append(edge);
-      const wheels = this.views[v].filter((body) => this.wheels.includes(body));
-      wheels.forEach((wheel, i) => {
-        const label = document.createElement('div');
-        label.className = 'label card';
-        label.style.left = `${x}px`;
-        label.style.top = `${y + 40 * i}px`;
-        label.innerHTML = `<i style="background:${wheel.colour}"></i><b></b><span></span>`;
-        label.querySelector('b').textContent = wheel.label;
-        wheel.tag = label;
-        host.append(label);
-      });
-    });
+    const wheels = this.views.map((view) => view.filter((body) => this.wheels.includes(body)));
+    this.labels.layOut(this.stage.rectangles(this.views.length), wheels);
     this.stage.dirty = true;
-  }
-
-  /** What the wheel does at t, in a few words. */
-  label(wheel, t) {
-    const over = wheel.ended && t >= wheel.table.end;
-    const sticks = sticksAt(wheel.phases, t);
-    wheel.tag.dataset.state = over ? 'ended' : sticks ? 'sticks' : 'rolls';
-    if (over)
-      wheel.tag.lastChild.textContent = wheel.ended;
-    else
-      wheel.tag.lastChild.innerHTML = sticks ? 'held: ω<sub>z</sub> = 0' : '';
   }
 
   /** What a view looks at: between its bodies if it follows, else the middle of their paths; and from how far. */
   aim(view, t) {
+    const {follow} = this.show;
     const low = new THREE.Vector3(Infinity, Infinity, 0);
     const high = new THREE.Vector3(-Infinity, -Infinity, 0);
-    for (const body of view) {
-      const {table} = body;
+    for (const {table} of view) {
       const [x, y] = table.has('X_O') ? ['X_O', 'Y_O'] : ['X', 'Y'];
-      const rows = show.follow ? [0] : Array.from({length: 60}, (_, k) => (k * (table.rows - 1)) / 59);
+      const rows = follow ? [0] : Array.from({length: 60}, (_, k) => Math.round((k * (table.rows - 1)) / 59));
       for (const row of rows) {
-        const k = Math.round(row);
-        const point = show.follow ? [table.value(x, t), table.value(y, t)] : [table.columns[x][k], table.columns[y][k]];
+        const point = follow ? [table.value(x, t), table.value(y, t)] : [table.columns[x][row], table.columns[y][row]];
         low.min(new THREE.Vector3(...point, 0));
         high.max(new THREE.Vector3(...point, 0));
       }
@@ -176,7 +143,8 @@ class Page {
     return {
       models: this.stage.models.filter((model) => view.includes(model.wheel)),
       away,
-      anchor: low.add(high).multiplyScalar(0.5).setZ(data.height)
+      anchor: low.add(high).multiplyScalar(0.5).setZ(data.height),
+      up: verticalOf(view.find(({slope}) => slope))
     };
   }
 
@@ -189,14 +157,22 @@ class Page {
     requestAnimationFrame((next) => this.frame(next));
   }
 
+  /** The bodies where they are at the present instant; nothing is drawn. */
+  pose() {
+    const {t} = this.player;
+    for (const model of this.stage.models) model.update(Math.min(t, model.wheel.table.end), this.show);
+  }
+
   /** Everything at the present instant. */
   draw() {
     const {t} = this.player;
-    for (const model of this.stage.models) model.update(Math.min(t, model.wheel.table.end), show);
+    this.pose();
     const views = this.views.map((view) => this.aim(view, t));
     this.stage.render(views, Math.max(...views.map(({away}) => away)));
     this.plots.draw(t);
-    for (const wheel of this.shown) this.label(wheel, t);
+    this.labels.tell(this.shown, t);
+    this.first ??= performance.now();  // ms from the opening of the page to its first picture
+    this.taking.frame();
   }
 }
 

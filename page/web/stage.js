@@ -39,6 +39,8 @@ export class Stage {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFSoftShadowMap;
     this.scene = new THREE.Scene();
+    this.road = new THREE.Group();  // what is given in the road's axes: ground and bodies
+    this.scene.add(this.road);
     this.scene.fog = new THREE.Fog('#fff', 4 * size, 14 * size);
     this.camera = new THREE.PerspectiveCamera(34, 1, 0.02 * size, 60 * size);
     this.camera.position.set(1.5 * size, -2.35 * size, 1.0 * size);
@@ -61,7 +63,7 @@ export class Stage {
     const plane = new THREE.PlaneGeometry(GROUND, GROUND);
     this.ground = new THREE.Mesh(plane, new THREE.MeshLambertMaterial({color: '#fff'}));
     this.ground.receiveShadow = true;
-    this.scene.add(this.ground);
+    this.road.add(this.ground);
   }
 
   addLight() {
@@ -111,11 +113,11 @@ export class Stage {
   /** Replaces the bodies: [WheelModel or ChassisModel]. */
   put(models) {
     for (const old of this.models) {
-      this.scene.remove(old.group);
+      this.road.remove(old.group);
       old.dispose();
     }
     this.models = models;
-    for (const model of models) this.scene.add(model.group);
+    for (const model of models) this.road.add(model.group);
     this.dirty = true;
   }
 
@@ -136,25 +138,47 @@ export class Stage {
     this.dirty = true;
   }
 
-  /** Draws views [{models, anchor: Vector3}]: each its own models about its own anchor, all `away` times as far off. */
+  /**
+   * Turns the road so that `up`, the vertical in the road's axes, is the scene's Z; returns the anchor there.
+   */
+  tilt(up, anchor) {
+    this.road.quaternion.setFromUnitVectors(up, THREE.Object3D.DEFAULT_UP);
+    return anchor.clone().applyQuaternion(this.road.quaternion);
+  }
+
+  /** Places the eye; on a slope it stays above the road. */
+  look(anchor, away) {
+    this.eye.copy(this.camera);
+    this.eye.position.multiplyScalar(away).add(anchor);
+    const normal = new THREE.Vector3(0, 0, 1).applyQuaternion(this.road.quaternion);
+    const missing = 0.25 * this.size - this.eye.position.dot(normal);
+    if (missing <= 0) return;
+    this.eye.position.addScaledVector(normal, missing);
+    this.eye.lookAt(anchor);
+  }
+
+  /**
+   * Draws views [{models, anchor, up}], vectors in the road's axes: each its own models about its own anchor, all
+   * `away` times as far off.
+   */
   render(views, away) {
     this.controls.update();
     this.renderer.setScissorTest(true);
     this.rectangles(views.length).forEach(({x, y, w, h}, i) => {
-      const {models, anchor} = views[i];
+      const {models, anchor: there, up: vertical} = views[i];
       for (const model of this.models) model.group.visible = models.includes(model);
-      this.eye.copy(this.camera);
-      this.eye.position.multiplyScalar(away).add(anchor);
+      const anchor = this.tilt(vertical, there);
+      this.look(anchor, away);
       // A narrow view needs a wider lens, or the wheel would leave it.
       this.eye.fov = w < h ? 34 * Math.min(1.7, h / w) : 34;
       this.eye.aspect = w / h;
       this.eye.updateProjectionMatrix();
-      this.sun.target.position.copy(anchor).setZ(0);
+      this.sun.target.position.copy(anchor);
       this.sun.position.copy(this.sun.target.position);
       this.sun.position.x += 1.4 * this.size;
       this.sun.position.y -= 1.1 * this.size;
       this.sun.position.z += 3.6 * this.size;
-      this.ground.position.set(Math.round(anchor.x), Math.round(anchor.y), 0);  // whole squares: the grid stands still
+      this.ground.position.set(Math.round(there.x), Math.round(there.y), 0);  // whole squares: the grid stands still
       const up = this.canvas.clientHeight - y - h;
       this.renderer.setViewport(x, up, w, h);
       this.renderer.setScissor(x, up, w, h);

@@ -1,0 +1,110 @@
+"""A link is a state: what was chosen on the live page is in its address, and opened elsewhere it is the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from page.tests.pages import column, opened, preset
+
+LINK = "page.live.link.write()"
+BITS = (
+    """() => page.wheels.map(({ table }) => Object.values(table.columns).map((column) => [...column].join()).join())"""
+)
+CHOSEN = """() => {
+  const { live, player } = page;
+  player.seek(0);
+  live.setStart('theta_start', 61.5 / (180 / Math.PI));
+  live.setStart('psi_dot_start', 0.1 + 0.2);
+  live.compute();
+  live.keep(true);
+  for (const [t, name, value] of [[0, 's', 0.0125], [1.23, 'M_3', -3.1], [2.57, 'M_3', 0], [4.01, 'M_brake', 2]]) {
+    player.seek(t);
+    live.setNow(name, value);
+    live.compute();
+  }
+  page.switches.flip('force', true);
+  page.switches.flip('follow', false);
+  page.plots.portrait.choose('path');
+  page.choose(1);
+  player.seek(3.37);
+}"""
+SHOWN = "() => [page.switches.show, page.plots.portrait.kind.name, page.choice, page.player.t, page.live.plan]"
+
+
+def test_a_link_opened_elsewhere_shows_the_same_motion_to_the_bit(live, live_file, browser):
+    preset(live, "Paper, no friction")
+    live.evaluate(CHOSEN)
+    link = live.evaluate(LINK)
+    assert link == (
+        "theta=61.5deg&psi_dot=0.30000000000000004&s=0.0125&M_3=1.23:-3.1,2.57:0&M_brake=4.01:2&kept=yes"
+        "&kept.theta=61.5deg&kept.psi_dot=0.30000000000000004&show=path+force&diagram=path&view=2&t=3.37"
+    )
+    bits, shown = live.evaluate(BITS), live.evaluate(SHOWN)
+    with opened(browser, live_file, address=link) as other:
+        assert other.evaluate(BITS) == bits
+        assert other.evaluate(SHOWN) == shown
+        assert other.evaluate(LINK) == link
+        other.evaluate("page.live.setStart('psi_dot_start', 0.3); page.live.compute()")
+        assert other.evaluate(BITS) != bits
+    live.evaluate("page.live.keep(false); page.switches.flip('force', false); page.switches.flip('follow', true)")
+
+
+def follow(page, text: str) -> None:
+    page.evaluate("(text) => { location.hash = text; }", text)
+    page.wait_for_function("(text) => page.live.link.text === text || page.live.refusal", arg=text)
+
+
+@pytest.mark.parametrize("step", [2, 8])
+def test_the_address_names_the_step_of_the_story_that_is_shown(live, step):
+    follow(live, f"step={step}")
+    assert live.evaluate("page.live.panel.story.step") == step - 1
+    assert live.evaluate(LINK) == f"step={step}"
+    live.evaluate("page.live.setStart('phi_dot_start', -1); page.live.compute()")
+    assert live.evaluate(LINK).startswith(("theta=", "phi_dot=-1"))
+
+
+def test_the_page_writes_what_the_reader_does_into_its_address(live):
+    preset(live, "Paper, s = 0.03 m")
+    live.wait_for_function(
+        "location.hash === '#s=0.03&t=' + Number(page.player.t.toFixed(2)) || location.hash === '#s=0.03'"
+    )
+    live.evaluate("page.player.seek(2.5)")
+    live.wait_for_function("location.hash === '#s=0.03&t=2.5'")
+
+
+WRONG = {
+    "no number": ("s=abc", "s = abc is no number"),
+    "not a number at all": ("s=NaN", "s = NaN is no number"),
+    "infinite": ("phi_dot=1e999", "not between"),
+    "beyond the slider": ("s=5", "s = 5 is not between 0 and 0.1"),
+    "an unknown name": ("speed=3", "speed, which the wheel has not"),
+    "what may not be set": ("formulation=3", "formulation, which cannot be set"),
+    "an output": ("lambda_3=3", "lambda_3, which cannot be set"),
+    "a name of the language": ("__proto__=3", "__proto__, which the wheel has not"),
+    "a script": ("s=<img src=x onerror=alert(1)>", "is no part of an address"),
+    "twice": ("s=0.01&s=0.02", "stands in it twice"),
+    "too long": ("M_3=" + ",".join(["1:1"] * 2000), "more than 4000 characters"),
+    "after the end": ("M_3=11:1", "the time of M_3 = 11"),
+    "a start that changes": ("theta=1:1.2", "cannot be set"),
+    "no such step": ("step=99", "no step 99"),
+    "no such diagram": ("diagram=pie", "no diagram pie"),
+    "no such part": ("show=path+ghost", "ghost"),
+    "a stray escape": ("%E0%A4%A", "is no part of an address"),
+    "an impossible wheel": ("J_x=90", "J_x"),
+}
+
+
+@pytest.mark.parametrize("fault", WRONG)
+def test_a_wrong_address_gives_the_first_scene_and_one_sentence(live, fault):
+    text, sentence = WRONG[fault]
+    follow(live, "s=0.02")
+    live.evaluate("(text) => { location.hash = text; }", text)
+    live.wait_for_function("page.live.refusal")
+    live.evaluate("page.live.frame()")
+    told = live.locator("#refusal").inner_text()
+    assert sentence in told and told.startswith("This address cannot be shown: ")
+    assert "\n" not in told and len(told) < 250
+    assert live.evaluate("[page.live.panel.story.step, page.live.trouble]") == [0, None]
+    assert column(live, "phi_dot")[0] == -5
+    preset(live, "Paper, no friction")
+    assert live.locator("#refusal").is_hidden()

@@ -1,0 +1,80 @@
+"""The diagrams beside the curves: phase portrait, angular velocities, path from above."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+POINTS = """(name) => {
+  page.plots.portrait.choose(name);
+  const found = page.plots.portrait.points;
+  page.plots.portrait.choose('phase');
+  return found;
+}"""
+
+
+def points(page, name: str) -> dict[str, np.ndarray]:
+    found = page.evaluate(POINTS, name)
+    wheels = page.evaluate("page.plots.portrait.wheels.map(({ name }) => name)")
+    return {wheel: np.array(rows) for wheel, rows in zip(wheels, found, strict=True)}
+
+
+def test_the_phase_portrait_is_the_rate_of_the_tilt_over_the_tilt(recorded, scenes):
+    for name, rows in points(recorded, "phase").items():
+        expected = np.degrees(np.column_stack([scenes[name]["theta"], scenes[name]["theta_dot"]]))
+        assert abs(rows - expected).max() < 1e-9
+
+
+def test_the_angular_velocities_are_those_along_e2_and_e3(recorded, simulate):
+    rates = simulate(step=0.01, output=("psi_dot", "phi_dot", "theta"), s=0.03)
+    along_e2 = rates["psi_dot"] * np.sin(rates["theta"])
+    along_e3 = rates["phi_dot"] + rates["psi_dot"] * np.cos(rates["theta"])
+    found = points(recorded, "spin")
+    assert abs(found["friction"] - np.column_stack([along_e2, along_e3])).max() < 1e-9
+    assert abs(found["free"] - found["friction"]).max() > 1
+
+
+def test_without_friction_both_rates_lie_on_one_curve_and_with_friction_it_shrinks(recorded, scenes):
+    """Chaplygin: without friction both are functions of theta alone."""
+    found = points(recorded, "spin")
+    theta = scenes["free"]["theta"]
+    order = np.argsort(theta)
+    rough = {name: abs(np.diff(found[name][order, 1], 2)).max() for name in found}
+    assert rough["free"] < 0.05 * rough["friction"]
+    ends = {name: np.ptp(found[name][-300:], axis=0) for name in found}
+    assert (ends["friction"] < ends["free"]).all()
+
+
+def test_the_path_from_above_is_that_of_the_contact_point(recorded, simulate):
+    rows = simulate(step=0.01, output=("X_C", "Y_C"), s=0.03)
+    assert abs(points(recorded, "path")["friction"] - np.column_stack([rows["X_C"], rows["Y_C"]])).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", ["spin", "path", "phase"])
+def test_a_button_chooses_the_diagram_and_the_present_is_marked(recorded, name):
+    recorded.locator(f".portrait [data-name={name}]").click()
+    assert recorded.locator(".portrait [aria-checked=true]").get_attribute("data-name") == name
+    mark = """(t) => {
+      const {plots, player} = page;
+      player.seek(t);
+      plots.portrait.draw(t);
+      const [wheel] = plots.portrait.wheels;
+      const point = plots.portrait.points[0][Math.round(t / 0.01)];
+      const {x, y, ratio, canvas} = {x: plots.portrait.x(point[0]), y: plots.portrait.y(point[1]), ...plots.portrait};
+      const colour = [...canvas.getContext('2d').getImageData(x * ratio, y * ratio, 1, 1).data].slice(0, 3);
+      return ['#' + colour.map((part) => part.toString(16).padStart(2, '0')).join(''), wheel.colour];
+    }"""
+    recorded.evaluate("page.choose(2)")
+    shown, wanted = recorded.evaluate(mark, 3.0)
+    recorded.evaluate("page.choose(0)")
+    assert shown == wanted
+
+
+def test_both_axes_of_the_path_have_one_scale(recorded):
+    recorded.evaluate("page.plots.portrait.choose('path')")
+    (x, y), (width, height) = recorded.evaluate("""() => {
+      const {ranges, width, height} = page.plots.portrait;
+      return [ranges.map(([low, high]) => high - low), [width - 54, height - 30]];
+    }""")
+    recorded.evaluate("page.plots.portrait.choose('phase')")
+    assert x / width == pytest.approx(y / height)

@@ -1,0 +1,122 @@
+"""The story of the live page: every step is a scene, and what its text says holds for the scene's motion."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from page.tests.pages import column
+
+STEPS = 8
+UPRIGHT = np.pi / 2
+
+
+@pytest.fixture
+def story(live):
+    """story(k): the page at step k; returns what its card says."""
+
+    def at(k: int) -> str:
+        live.evaluate(
+            "(k) => { page.live.panel.story.step = k; page.live.panel.story.open = true;"
+            "page.live.panel.story.move(0); page.player.pause(); }",
+            k - 1,
+        )
+        assert live.locator("#story .count").inner_text() == f"{k} of {STEPS}"
+        return live.locator("#story .text").inner_text()
+
+    return at
+
+
+def numbers(text: str) -> list[float]:
+    return [float(number) for number in re.findall(r"\d+(?:\.\d+)?", text)]
+
+
+def test_the_wheel_rolls_straight_on_and_keeps_its_speed(live, story):
+    spin, radius, speed = numbers(story(1).split("straight on")[1])
+    path = np.hypot(*(np.diff(column(live, name)[[0, -1]])[0] for name in ("X_O", "Y_O")))
+    assert path == pytest.approx(10 * speed) == pytest.approx(10 * spin * radius)
+
+
+def test_a_leaning_wheel_turns_and_does_not_fall(live, story):
+    start, most = numbers(story(2))[:2]
+    lean = np.degrees(abs(column(live, "theta") - UPRIGHT))
+    assert lean[0] == pytest.approx(start) and lean.max() == pytest.approx(most, abs=0.05) and most < 30
+    assert abs(column(live, "psi")[-1] - column(live, "psi")[0]) > np.pi  # it runs in a circle
+    live.evaluate("page.live.setStart('phi_dot_start', 0); page.live.compute()")
+    assert "flat" in live.evaluate("page.wheels[0].ended")
+
+
+def test_the_critical_spin_parts_two_wheels(live, story):
+    limit, high, low = numbers(story(3))
+    kept = np.array(live.evaluate("[...page.wheels[1].table.columns.theta]"))
+    assert np.degrees(abs(kept - UPRIGHT)).max() == pytest.approx(high, abs=0.05) and high < 10
+    assert np.degrees(abs(column(live, "theta") - UPRIGHT)).max() == pytest.approx(low, abs=0.05) and low > 20
+    assert column(live, "phi_dot")[0] == pytest.approx(-0.9 * limit, rel=1e-2)
+    assert live.evaluate("page.shown.map(({ label }) => label)") == ["10 % slower", "10 % faster"]
+
+
+def test_without_friction_the_phase_portrait_is_one_closed_curve(live, story):
+    assert numbers(story(4))[1] == pytest.approx(np.degrees(column(live, "theta").min()), abs=0.05)
+    theta, rate = column(live, "theta"), column(live, "theta_dot")
+    start = np.array([theta[0], rate[0]])
+    away = np.hypot(theta - start[0], (rate - start[1]) / 5)
+    returns = [k for k in range(50, 1000) if away[k] == away[k - 20 : k + 21].min()]
+    assert len(returns) >= 6 and away[returns].max() < 0.03  # rad; a row is 0.01 s
+    assert away.max() > 0.4
+
+
+def test_friction_stops_the_spin_and_holds_it(live, story):
+    first, _, count = numbers(story(5).split("At ")[1])
+    assert first == pytest.approx(1.2255, abs=5e-3)  # s, the trusted table
+    assert count == 37 == live.evaluate("page.wheels[0].phases.transitions.length")
+    live.evaluate("page.player.seek(0); page.live.setNow('s', 0.01); page.live.compute()")
+    assert live.evaluate("page.wheels[0].phases.sticks[0]?.[0] ?? 99") > first
+
+
+def test_a_held_wheel_nods_and_turns_and_loses_no_energy(live, story):
+    _, turned = numbers(story(6).split("orange band")[1])[:2]
+    begin, end = live.evaluate("page.wheels[0].phases.sticks[0]")
+    t = column(live, "time")
+    held = (t >= begin) & (t <= end)
+    assert (column(live, "omega_z")[held] == 0).all()
+    assert (
+        np.ptp(column(live, "theta")[held]) > 0.01 and np.degrees(np.ptp(column(live, "psi")[held])) > 0.5 * turned > 1
+    )
+    energy = column(live, "E")
+    assert np.ptp(energy[held]) < 1e-6 * energy[0] < 0.1 < np.ptp(energy)
+
+
+def test_a_motor_adds_energy_and_the_brake_takes_it(live, story):
+    before, after, last = (float(joules) for joules in re.findall(r"([\d.]+) J", story(7)))
+    energy, t = column(live, "E"), column(live, "time")
+    at = [energy[np.argmin(abs(t - instant))] for instant in (1, 3, 7.5)]
+    assert [before, after, last] == pytest.approx(at, abs=0.051)
+    assert before < after > last
+    for begin, end in ((0, 1), (3, 6), (7.5, 10)):
+        level = energy[(t >= begin) & (t <= end)]
+        assert np.ptp(level) < 1e-6 * level[0]
+
+
+def test_without_spin_it_lies_flat_and_the_run_ends(live, story):
+    assert numbers(story(8))[0] == pytest.approx(column(live, "time")[-1], abs=5e-3)
+    assert column(live, "theta")[-1] < 1e-6
+    live.evaluate("page.player.seek(10); page.labels.tell(page.shown, 10)")
+    assert live.locator(".label").first.get_attribute("data-state") == "ended"
+
+
+def test_keys_and_buttons_lead_on_and_back(live, story):
+    story(1)
+    live.evaluate("document.activeElement.blur()")
+    live.keyboard.press("n")
+    assert live.locator("#story .count").inner_text() == "2 of 8"
+    live.keyboard.press("b")
+    live.keyboard.press("b")
+    assert live.locator("#story .count").inner_text() == "1 of 8"
+    assert live.locator("#story [name=back]").is_disabled()
+    for _ in range(STEPS - 1):
+        live.locator("#story [name=next]").click()
+    assert live.locator("#story .count").inner_text() == "8 of 8"
+    assert live.locator("#story [name=next]").is_disabled()
+    live.evaluate("page.player.pause()")

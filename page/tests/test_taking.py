@@ -1,0 +1,137 @@
+"""What a reader takes from a page: values, picture, film, and the commands that make the same run."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from page.bodies import read_bodies
+from page.tests.pages import column, preset, view
+
+PLAN = """() => {
+  page.player.seek(0);
+  page.live.load({values: {theta_start: 1.4, phi_dot_start: -3, s: 0.02}, stop: 4, changes: [
+    {t: 1, name: 'M_3', value: -2}, {t: 1.5, name: 'M_3', value: 0}, {t: 2, name: 's', value: 0.005}]});
+}"""
+
+
+def taken(page, name: str, tmp_path):
+    """The file that a button of the card hands over."""
+    page.evaluate("document.querySelector('#take').open = true")
+    with page.expect_download() as download:
+        page.locator(f"#take button[name={name}]").click()
+    path = tmp_path / download.value.suggested_filename
+    download.value.save_as(path)
+    page.keyboard.press("Escape")
+    return path
+
+
+def test_the_values_are_read_back_to_the_bit(live, tmp_path):
+    preset(live, "Thin disc")
+    (body,) = read_bodies(taken(live, "csv", tmp_path), None, None)
+    assert (body.r_0, body.r) == (0.3, 0.0)
+    for name in ("time", "X_O", "theta", "phi", "omega_z", "E", "theta_dot"):
+        assert (body.columns[name] == column(live, name)).all(), name
+    assert view(tmp_path / "motion.csv").returncode == 0
+
+
+def test_two_wheels_that_are_shown_are_two_wheels_of_the_file(recorded, scenes, tmp_path):
+    recorded.evaluate("page.choose(1)")
+    bodies = {body.name: body for body in read_bodies(taken(recorded, "csv", tmp_path), None, None)}
+    recorded.evaluate("page.choose(0)")
+    assert set(bodies) == {"free", "friction"}
+    assert (bodies["friction"].columns["psi"] == scenes["friction"]["psi"]).all()
+
+
+def test_a_picture_shows_scene_and_diagrams(live, tmp_path):
+    preset(live, "Paper, s = 0.03 m")
+    live.evaluate("page.player.seek(1.3); page.draw()")
+    path = taken(live, "png", tmp_path)
+    assert path.name == "wheel_1.30s.png"
+    picture = np.asarray(Image.open(io.BytesIO(path.read_bytes())).convert("RGB"), dtype=int)
+    height = live.evaluate("page.stage.canvas.clientHeight")
+    scene, diagrams = picture[:height], picture[height:]
+    assert diagrams.shape[0] > 100
+    for part in (scene, diagrams):
+        assert len(np.unique(part.reshape(-1, 3), axis=0)) > 50
+
+
+def test_a_film_is_a_webm_file_that_shows_the_motion(live, tmp_path):
+    live.evaluate("page.live.load({values: {phi_dot_start: 0}, changes: [], stop: 10}); page.player.setSpeed(0.5)")
+    path = taken(live, "film", tmp_path)  # half a second of falling, at half the speed
+    live.evaluate("page.player.setSpeed(1)")
+    data = path.read_bytes()
+    assert data.startswith(b"\x1a\x45\xdf\xa3") and b"webm" in data[:64]  # EBML, of the kind webm
+    film = """async (bytes) => {
+      const video = document.createElement('video');
+      video.src = URL.createObjectURL(new Blob([Uint8Array.from(bytes)], {type: 'video/webm'}));
+      await new Promise((done) => video.addEventListener('loadeddata', done));
+      const pen = Object.assign(new OffscreenCanvas(64, 64), {}).getContext('2d');
+      const look = () => (pen.drawImage(video, 0, 0, 64, 64), [...pen.getImageData(0, 0, 64, 64).data]);
+      const first = look();
+      video.currentTime = 1e9;
+      await new Promise((done) => video.addEventListener('seeked', done));
+      const last = look();
+      return [video.currentTime, Math.max(...first.map((value, i) => Math.abs(value - last[i])))];
+    }"""
+    seconds, change = live.evaluate(film, list(data))
+    assert 0.5 < seconds < 60
+    assert change > 20
+
+
+def command(page, kind: str) -> str:
+    page.evaluate("document.querySelector('#take').open = true")
+    page.locator(f"#take .tabs [name={kind}]").click()
+    text = page.locator("#take pre").inner_text()
+    page.keyboard.press("Escape")
+    return text
+
+
+@pytest.fixture
+def planned(live):
+    preset(live, "Paper, no friction")
+    live.evaluate(PLAN)
+    return live
+
+
+def folder_with(fmu_path, tmp_path):
+    (tmp_path / "wheel.fmu").symlink_to(fmu_path)
+    return tmp_path
+
+
+def run(words: list[str], folder) -> str:
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_the_command_of_fmpy_makes_the_same_run(planned, fmu_path, tmp_path):
+    words = command(planned, "fmpy").replace("fmpy simulate", f"{sys.executable} -m fmpy.command_line simulate")
+    run(["bash", "-euc", words.replace("fmpy.command_line", "fmpy")], folder_with(fmu_path, tmp_path))
+    motion = np.genfromtxt(tmp_path / "motion.csv", delimiter=",", names=True)
+    t = column(planned, "time")
+    at = [np.argmin(abs(motion["time"] - instant)) for instant in t]
+    for name in ("theta", "X_O", "psi_dot"):
+        assert abs(motion[name][at] - column(planned, name)).max() < 1e-7, name
+    assert abs(motion["theta"][at] - column(planned, "theta")[::-1]).max() > 0.1
+
+
+def test_the_python_script_makes_the_same_run(planned, fmu_path, tmp_path):
+    last = float(run([sys.executable, "-c", command(planned, "Python")], folder_with(fmu_path, tmp_path)))
+    assert last == pytest.approx(column(planned, "theta")[-1], abs=1e-7)
+
+
+def test_the_c_program_makes_the_same_run_to_the_bit(planned, same_libm, tmp_path):
+    (tmp_path / "run.c").write_text(command(planned, "C"))
+    run(
+        ["cc", "-Wall", "-Werror", "run.c", str(same_libm / "binaries" / "linux64" / "wheel.so"), "-o", "run"], tmp_path
+    )
+    rows = np.array([line.split() for line in run([tmp_path / "run"], tmp_path).splitlines()], dtype=float)
+    assert len(rows) == 400
+    for k, name in enumerate(("theta", "omega_z", "X_O", "Y_O"), 1):
+        assert rows[:, k].tobytes() == column(planned, name)[1:].tobytes(), name
