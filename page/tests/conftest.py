@@ -48,9 +48,15 @@ def recorded_file(scenes, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def recorded(browser, recorded_file) -> Iterator[Page]:
+def recorded_page(browser, recorded_file) -> Iterator[Page]:
     with opened(browser, recorded_file) as page:
         yield page
+
+
+@pytest.fixture
+def recorded(recorded_page) -> Page:
+    recorded_page.bring_to_front()  # of several pages the browser draws the one in front
+    return recorded_page
 
 
 @pytest.fixture(scope="session")
@@ -76,9 +82,15 @@ def live_file(locked) -> Path:
 
 
 @pytest.fixture(scope="session")
-def live(browser, live_file) -> Iterator[Page]:
+def live_page(browser, live_file) -> Iterator[Page]:
     with opened(browser, live_file) as page:
         yield page
+
+
+@pytest.fixture
+def live(live_page) -> Page:
+    live_page.bring_to_front()  # of several pages the browser draws the one in front
+    return live_page
 
 
 @pytest.fixture(scope="session")

@@ -241,5 +241,35 @@ def test_a_phone_shows_everything_without_scrolling_sideways(browser, recorded_f
         assert page.evaluate("document.documentElement.dataset.theme") == scheme
         one, other = page.evaluate("page.stage.rectangles(2)")
         assert one["y"] != other["y"]  # above each other
+        scene, switches = (page.locator(place).bounding_box() for place in ("#scene", "#toggles"))
+        assert switches["y"] >= scene["y"] + scene["height"] - 2.5  # px; the switches cover no part of the scene
         page.locator("#play").tap()
         page.wait_for_function("page.player.t > 0.05")
+
+
+ENDING = """async (columns) => {
+  const [{ Table }, { endingOf }] = await Promise.all([import('#table'), import('#labels')]);
+  const table = Object.fromEntries(Object.entries(columns).map(([name, list]) => [name, Float64Array.from(list)]));
+  return endingOf(new Table(table), 10);
+}"""
+
+
+@pytest.mark.parametrize(
+    ("start", "sentence"),
+    [
+        ({"phi_dot_start": 0.0}, "fell flat at 0.5888 s"),
+        ({"theta_start": 0.3, "psi_dot_start": -9.0, "phi_dot_start": 9.0, "r": 0.0}, None),
+        ({"theta_start": 2.5, "phi_dot_start": 0.0}, "fell flat at "),
+    ],
+)
+def test_a_motion_that_ends_early_says_why(recorded, simulate, start, sentence):
+    rows = simulate(step=0.01, output=RECORD, **start)
+    told = recorded.evaluate(ENDING, {name: rows[name].tolist() for name in rows.dtype.names})
+    assert told == sentence if sentence is None else told.startswith(sentence)
+
+
+def test_a_wheel_without_normal_force_has_lifted_off_and_a_short_record_ends(recorded):
+    t, ones = [0.0, 0.5, 1.25], [1.0, 1.0, 1.0]
+    assert recorded.evaluate(ENDING, {"time": t, "theta": ones, "lambda_3": [196, 150, 0]}) == "lifted off at 1.25 s"
+    assert recorded.evaluate(ENDING, {"time": t, "theta": ones}) == "its record ends at 1.25 s"
+    assert recorded.evaluate(ENDING, {"time": [0.0, 5.0, 10.0], "theta": ones}) is None
