@@ -39,8 +39,6 @@ def recorded(arguments: argparse.Namespace) -> int:
     shape = None if arguments.r_0 is None else (arguments.r_0, arguments.r)
     files = [read_bodies(path, shape, tuple(arguments.box) if arguments.box else None) for path in arguments.files]
     bodies = unlike([body for file in files for body in file])
-    if len(arguments.labels) > len(bodies):
-        raise ViewError(f"--labels: there are {len(arguments.labels)} labels for {len(bodies)} bodies.")
     bodies, every = document.thinned(bodies)
     if every > 1:
         print(f"Every {every}th row is kept, so that the page stays below {document.PAGE_LIMIT / 1e6:g} MB.")

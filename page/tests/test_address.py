@@ -94,17 +94,39 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("fault", WRONG)
-def test_a_wrong_address_gives_the_first_scene_and_one_sentence(live, fault):
+READ = """async (text) => {
+  const {read} = await import('#address');
+  try {
+    return read(text, page.live.steps.map(({state}) => state), ['phase', 'spin', 'path'], page.live.fmu.variables);
+  } catch (fault) {
+    return fault.message;
+  }
+}"""
+
+
+@pytest.mark.parametrize("fault", [fault for fault in WRONG if fault != "an impossible wheel"])
+def test_a_wrong_address_is_refused_with_one_sentence(live, fault):
+    text, sentence = WRONG[fault]
+    told = live.evaluate(READ, text)
+    assert sentence in told
+    assert "\n" not in told and told.endswith(".") and len(told) < 150
+
+
+def test_a_right_address_is_read(live):
+    plan = live.evaluate(READ, "s=0.02&M_3=1:-6,1.5:0")["state"]["plan"]
+    push = [{"t": 1, "name": "M_3", "value": -6}, {"t": 1.5, "name": "M_3", "value": 0}]
+    assert plan == {"values": {"s": 0.02}, "changes": push, "stop": 10}
+
+
+@pytest.mark.parametrize("fault", ["a script", "an impossible wheel"])
+def test_a_wrong_address_gives_the_first_scene_and_says_why(live, fault):
     text, sentence = WRONG[fault]
     follow(live, "s=0.02")
     live.evaluate("(text) => { location.hash = text; }", text)
-    live.wait_for_function("page.live.refusal")
-    live.evaluate("page.live.frame()")
+    live.wait_for_function("!document.querySelector('#refusal').hidden")
     told = live.locator("#refusal").inner_text()
     assert sentence in told and told.startswith("This address cannot be shown: ")
-    assert "\n" not in told and len(told) < 250
     assert live.evaluate("[page.live.panel.story.step, page.live.trouble]") == [0, None]
     assert column(live, "phi_dot")[0] == -5
     preset(live, "Paper, no friction")
-    assert live.locator("#refusal").is_hidden()
+    live.wait_for_function("document.querySelector('#refusal').hidden")

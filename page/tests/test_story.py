@@ -115,8 +115,8 @@ def test_keys_and_buttons_lead_on_and_back(live, story):
     live.keyboard.press("b")
     assert live.locator("#story .count").inner_text() == "1 of 8"
     assert live.locator("#story [name=back]").is_disabled()
-    for _ in range(STEPS - 1):
-        live.locator("#story [name=next]").click()
+    live.locator("#story [name=next]").click()
+    live.evaluate("(n) => { for (; n > 0; --n) document.querySelector('#story [name=next]').click(); }", STEPS - 2)
     assert live.locator("#story .count").inner_text() == "8 of 8"
     assert live.locator("#story [name=next]").is_disabled()
     live.evaluate("page.player.pause()")

@@ -11,14 +11,14 @@ export class ChassisModel {
     this.box = new THREE.Group();
     this.box.name = `body:${chassis.name}`;
     const shape = new THREE.BoxGeometry(...chassis.size);
-    const skin = new THREE.MeshStandardMaterial({color: look.body, transparent: true, opacity: 0.45, roughness: 0.5});
+    const skin = new THREE.MeshPhongMaterial({color: look.body, transparent: true, opacity: 0.45});
     const solid = new THREE.Mesh(shape, skin);
     solid.castShadow = true;
     const edges =
         new THREE.LineSegments(new THREE.EdgesGeometry(shape), new THREE.LineBasicMaterial({color: look.line}));
     const nose = new THREE.Mesh(
         new THREE.ConeGeometry(0.12 * chassis.size[1], 0.2 * chassis.size[1], 4),
-        new THREE.MeshStandardMaterial({color: look.line}),
+        new THREE.MeshPhongMaterial({color: look.line}),
     );
     nose.rotation.z = -Math.PI / 2;
     nose.position.x = 0.5 * chassis.size[0] + 0.1 * chassis.size[1];

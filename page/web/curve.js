@@ -74,7 +74,7 @@ export class Curve {
 
   range(axis) {
     const {column, scale} = this.signal;
-    const rows = ({table}) => (axis === 'held' ? table.row(this.player.t) + 2 : table.rows);
+    const rows = ({table}) => (axis === 'held' ? table.row(this.player.t) + 1 : table.rows);
     const [low, high] =
         extent(this.wheels.flatMap((wheel) => extent(wheel.table.columns[column].subarray(0, rows(wheel)))))
             .map((value) => value * scale);

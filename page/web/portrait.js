@@ -112,7 +112,7 @@ export class Portrait {
   }
 
   range(axis) {
-    const until = (k) => (axis === 'held' ? this.wheels[k].table.row(this.player.t) + 2 : Infinity);
+    const until = (k) => (axis === 'held' ? this.wheels[k].table.row(this.player.t) + 1 : Infinity);
     const points = this.points.flatMap((list, k) => list.slice(0, until(k)));
     const before = axis !== 'fitted' && this.ranges;
     this.ranges = [0, 1].map((axis) => {

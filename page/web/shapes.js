@@ -5,7 +5,7 @@ import {THREE} from 'three';
 export function tyreTexture(accent) {
   const canvas = document.createElement('canvas');
   [canvas.width, canvas.height] = [2048, 256];
-  const pen = canvas.getContext('2d');
+  const pen = canvas.getContext('2d', {willReadFrequently: true});
   pen.fillStyle = '#2b2e34';
   pen.fillRect(0, 0, 2048, 256);
   // The tube's angle runs down the picture: 0 and 256 the outside, 128 the inside.
@@ -33,7 +33,7 @@ export function tyreTexture(accent) {
 
 /** An arrow from the origin along +z, of length 1 until `pointArrow` is called; shaft radius in m. */
 export function makeArrow(radius, colour) {
-  const material = new THREE.MeshStandardMaterial({color: colour, roughness: 0.5});
+  const material = new THREE.MeshPhongMaterial({color: colour});
   const shaft = new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, 1, 20), material);
   const head = new THREE.Mesh(new THREE.ConeGeometry(2.6 * radius, 7 * radius, 24), material);
   for (const part of [shaft, head]) {
@@ -92,7 +92,7 @@ export function showRibbon(ribbon, row) { ribbon.geometry.setDrawRange(0, 6 * Ma
 export function makeLabel(text, colour, height) {
   const canvas = document.createElement('canvas');
   [canvas.width, canvas.height] = [128, 96];
-  const pen = canvas.getContext('2d');
+  const pen = canvas.getContext('2d', {willReadFrequently: true});
   pen.font = 'italic 600 72px Georgia, "Times New Roman", serif';
   pen.textBaseline = 'middle';
   pen.textAlign = 'center';

@@ -3,13 +3,13 @@ import {colour} from '#theme';
 import {OrbitControls, THREE} from 'three';
 
 THREE.Object3D.DEFAULT_UP.set(0, 0, 1);
-const GROUND = 60;  // m, edge of the drawn ground
+const GROUND = 60;  // m, edge of the drawn ground at the least
 
 /** One square metre of the ground: lines every metre and, finer, every 0.1 m. */
 function groundTexture(base, fine, coarse) {
   const canvas = document.createElement('canvas');
   canvas.width = canvas.height = 1024;
-  const pen = canvas.getContext('2d');
+  const pen = canvas.getContext('2d', {willReadFrequently: true});
   pen.fillStyle = base;
   pen.fillRect(0, 0, 1024, 1024);
   pen.fillStyle = fine;
@@ -61,13 +61,13 @@ export class Stage {
 
   addGround() {
     const plane = new THREE.PlaneGeometry(GROUND, GROUND);
-    this.ground = new THREE.Mesh(plane, new THREE.MeshLambertMaterial({color: '#fff'}));
+    this.ground = new THREE.Mesh(plane, new THREE.MeshPhongMaterial({color: '#fff', shininess: 0, specular: '#000'}));
     this.ground.receiveShadow = true;
     this.road.add(this.ground);
   }
 
   addLight() {
-    this.sky = new THREE.HemisphereLight('#ffffff', '#8890a0', 1.5);
+    this.sky = new THREE.HemisphereLight('#ffffff', '#9aa3b2', 1.8);
     this.sky.position.set(0, 0, 1);
     this.sun = new THREE.DirectionalLight('#fff6e8', 2.3);
     this.sun.castShadow = true;
@@ -79,23 +79,6 @@ export class Stage {
     Object.assign(this.sun.shadow.camera, {left: -reach, right: reach, top: reach, bottom: -reach});
     Object.assign(this.sun.shadow.camera, {near: 0.1 * this.size, far: 9 * this.size});
     this.scene.add(this.sky, this.sun, this.sun.target);
-    const surroundings = new THREE.Scene();  // what the metal mirrors: a bright sky over a grey ground
-    const dome = new THREE.Mesh(
-        new THREE.SphereGeometry(10, 32, 16),
-        new THREE.MeshBasicMaterial({side: THREE.BackSide, vertexColors: true}),
-    );
-    const heights = dome.geometry.attributes.position;
-    const shades = [];
-    for (let i = 0; i < heights.count; ++i) {
-      const up = heights.getZ(i) / 10;
-      shades.push(...Array(3).fill(up > 0 ? 0.55 + 0.9 * up : 0.28 + 0.2 * up));
-    }
-    dome.geometry.setAttribute('color', new THREE.Float32BufferAttribute(shades, 3));
-    surroundings.add(dome);
-    const generator = new THREE.PMREMGenerator(this.renderer);
-    this.scene.environment = generator.fromScene(surroundings, 0.04).texture;
-    this.scene.environmentIntensity = 0.55;
-    generator.dispose();
   }
 
   /** Takes the colours of the theme. */
@@ -146,9 +129,19 @@ export class Stage {
     return anchor.clone().applyQuaternion(this.road.quaternion);
   }
 
+  /** Air and ground reach as far as an eye that is `away` times as far off can see; squares stay square metres. */
+  widen(away) {
+    Object.assign(this.scene.fog, {near: 4 * this.size * away, far: 14 * this.size * away});
+    const times = Math.ceil((14 * this.size * away) / (GROUND / 2));
+    this.ground.scale.set(times, times, 1);
+    this.ground.material.map.repeat.set(GROUND * times, GROUND * times);
+    this.reach = 60 * this.size * away;
+  }
+
   /** Places the eye; on a slope it stays above the road. */
   look(anchor, away) {
     this.eye.copy(this.camera);
+    this.eye.far = this.reach;
     this.eye.position.multiplyScalar(away).add(anchor);
     const normal = new THREE.Vector3(0, 0, 1).applyQuaternion(this.road.quaternion);
     const missing = 0.25 * this.size - this.eye.position.dot(normal);
@@ -163,6 +156,7 @@ export class Stage {
    */
   render(views, away) {
     this.controls.update();
+    this.widen(away);
     this.renderer.setScissorTest(true);
     this.rectangles(views.length).forEach(({x, y, w, h}, i) => {
       const {models, anchor: there, up: vertical} = views[i];

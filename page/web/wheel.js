@@ -7,8 +7,8 @@ import {THREE} from 'three';
 
 const METAL = {
   color: '#9aa2ac',
-  metalness: 0.5,
-  roughness: 0.5
+  specular: '#6a7078',
+  shininess: 40
 };
 const UP = new THREE.Vector3(0, 0, 1);
 const NODES = new THREE.Vector3(1, 0, 0);
@@ -32,13 +32,13 @@ function workshop() {
 /** Tyre, rim, spokes and hub about the axle z; marked spoke and mark on the tyre at angle 0. */
 function makeBody(r_0, r, accent) {
   const {body, add} = workshop();
-  const metal = new THREE.MeshStandardMaterial(METAL);
+  const metal = new THREE.MeshPhongMaterial(METAL);
   add(new THREE.TorusGeometry(r_0, r, 40, 180),
-      new THREE.MeshStandardMaterial({map: tyreTexture(accent), roughness: 0.72}));
+      new THREE.MeshPhongMaterial({map: tyreTexture(accent), specular: '#26282c', shininess: 12}));
   const inner = r_0 - 0.72 * r;
   add(new THREE.TorusGeometry(inner, 0.42 * r, 16, 120), metal);
   add(new THREE.CylinderGeometry(0.2 * r_0, 0.2 * r_0, 1.1 * r, 48), metal).rotation.x = Math.PI / 2;
-  const marked = new THREE.MeshStandardMaterial({color: accent, roughness: 0.7});
+  const marked = new THREE.MeshPhongMaterial({color: accent, specular: '#222', shininess: 15});
   for (let i = 0; i < 5; ++i) {
     const width = (i === 0 ? 0.2 : 0.13) * r_0;
     const spoke = add(new THREE.BoxGeometry(inner - 0.1 * r_0, width, 0.55 * r), i === 0 ? marked : metal);
@@ -54,12 +54,11 @@ function makeBody(r_0, r, accent) {
 function makeDisc(r_0, accent) {
   const {body, add} = workshop();
   const thickness = 0.024 * r_0;
-  const face =
-      new THREE.MeshStandardMaterial({color: '#7d848f', metalness: 0.6, roughness: 0.38, envMapIntensity: 1.2});
+  const face = new THREE.MeshPhongMaterial({color: '#8d949f', specular: '#8a9098', shininess: 60});
   add(new THREE.CylinderGeometry(r_0, r_0, thickness, 160), face).rotation.x = Math.PI / 2;
-  const marked = new THREE.MeshStandardMaterial({color: accent, roughness: 0.7});
+  const marked = new THREE.MeshPhongMaterial({color: accent, specular: '#222', shininess: 15});
   add(new THREE.BoxGeometry(0.995 * r_0, 0.16 * r_0, 1.3 * thickness), marked).position.x = 0.497 * r_0;
-  add(new THREE.TorusGeometry(r_0, 0.5 * thickness, 12, 160), new THREE.MeshStandardMaterial(METAL));
+  add(new THREE.TorusGeometry(r_0, 0.5 * thickness, 12, 160), new THREE.MeshPhongMaterial(METAL));
   return body;
 }
 
@@ -95,7 +94,9 @@ export class WheelModel {
     this.carrier.add(this.body, this.axes);
     this.force = makeArrow(0.03 * wheel.r_0, look.force);
     const ring = new THREE.RingGeometry(0.07 * wheel.r_0, 0.11 * wheel.r_0, 40);
-    this.spot = new THREE.Mesh(ring, new THREE.MeshBasicMaterial({color: look.force, depthWrite: false}));
+    this.spot = new THREE.Mesh(
+        ring,
+        new THREE.MeshBasicMaterial({color: look.force, transparent: true, side: THREE.DoubleSide, depthWrite: false}));
     this.spot.renderOrder = 900;
     this.group.add(this.carrier, this.force, this.spot);
     this.drawPath();
