@@ -14,7 +14,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, Page, sync_playwright
 
 DATA = Path(__file__).parents[1] / "docs" / "results" / "data" / "page.csv"
-FRAMES = 60
+FRAMES = 20
 LOOK = {
     "viewport": {"width": 1280, "height": 800},
     "device_scale_factor": 2,
@@ -56,12 +56,12 @@ def measure(browser: Browser, name: str, path: Path) -> dict[str, float]:
     """Figures of one page; the first opening fills the browser's caches as any page before it does."""
     opened(browser, path).close()
     firsts = []
-    for _ in range(3):
+    for _ in range(2):
         page = opened(browser, path)
         firsts.append(page.evaluate("page.first") / 1000)
-        if len(firsts) < 3:
+        if len(firsts) < 2:
             page.close()
-    page.evaluate(DRAW, 5)
+    page.evaluate(DRAW, 2)
     before = processor_time(browser)
     own = page.evaluate(DRAW, FRAMES)
     spent = processor_time(browser) - before

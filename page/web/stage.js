@@ -37,7 +37,7 @@ export class Stage {
     this.renderer = new THREE.WebGLRenderer({canvas, antialias: true});
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.scene = new THREE.Scene();
     this.road = new THREE.Group();  // what is given in the road's axes: ground and bodies
     this.scene.add(this.road);
@@ -88,7 +88,7 @@ export class Stage {
     this.scene.fog.color = air;
     this.ground.material.map?.dispose();
     this.ground.material.map = groundTexture(colour('--ground'), colour('--grid-fine'), colour('--grid'));
-    this.ground.material.map.anisotropy = this.renderer.capabilities.getMaxAnisotropy();
+    this.ground.material.map.anisotropy = Math.min(4, this.renderer.capabilities.getMaxAnisotropy());
     this.ground.material.needsUpdate = true;
     this.dirty = true;
   }
