@@ -60,10 +60,13 @@ def dependencies_of(root: ElementTree.Element) -> Dependencies:
 
 
 def unknowns_of(root: ElementTree.Element) -> dict[str, list[str]]:
-    """The unknowns of each section of ModelStructure, and the continuous states in the order of their derivatives."""
+    """The unknowns of each section of ModelStructure, and the continuous states in the order of their derivatives: that
+    of the section Derivatives, new ones last."""
     variables = variables_of(root)
     names = names_by_index(root)
     state_of = {v.get("name"): state for v in variables for state in names(v[0].get("derivative", ""))}
+    known = [n for row in root.findall("ModelStructure/Derivatives/Unknown") for n in names(row.get("index"))]
+    state_of = {name: state_of[name] for name in dict.fromkeys([*known, *state_of]) if name in state_of}
     calculated = {v.get("name") for v in variables if v.get("initial") in ("approx", "calculated")}
     outputs = [v.get("name") for v in variables if v.get("causality") == "output"]
     parameters = [v.get("name") for v in variables if v.get("causality") == "calculatedParameter"]

@@ -16,14 +16,27 @@ bool check_input(Instance& i, const char* name, fmi2ValueReference variable) {
   return false;
 }
 
+// Of a directional derivative: a calculated real variable.
+bool check_unknown(Instance& i, const char* name, fmi2ValueReference variable) {
+  if (variable >= wheel::stored_count && wheel::is_variable(variable, wheel::Type::real)) return true;
+  i.log(Topic::error, "%s: value reference %u is not a calculated real variable.", name, variable);
+  return false;
+}
+
 bool check_output(Instance& i, const char* name, fmi2ValueReference variable) {
   if (variable < wheel::variable_count && wheel::row_of(variable).role == Role::output) return true;
   i.log(Topic::error, "%s: value reference %u is not an output.", name, variable);
   return false;
 }
 
-// During the run outputs depend on inputs alone; in initialization mode they depend on the parameters too.
+bool is_exchanged(const Instance& i) {
+  return i.simulation.kind() == wheel::Kind::model_exchange && has_begun(i.simulation.phase());
+}
+
+// During the run outputs depend on inputs alone, in model exchange on the states too; in initialization mode they
+// depend on the parameters.
 bool check_known(Instance& i, const char* name, fmi2ValueReference variable) {
+  if (is_exchanged(i) && wheel::state_of(variable) >= 0) return true;
   if (!has_begun(i.simulation.phase()) && variable < wheel::stored_count) return true;
   return check_input(i, name, variable);
 }
@@ -87,6 +100,11 @@ bool add_start_derivative(Instance& i, unsigned parameter, double seed, const Ou
 }
 
 bool add_derivative(Instance& i, const char* name, unsigned known, double seed, const Outputs& outputs) {
+  if (is_exchanged(i)) {
+    for (std::size_t u = 0; u < outputs.count; ++u)
+      outputs.sums[u] += seed * i.simulation.partial(outputs.references[u], known);
+    return true;
+  }
   if (known >= wheel::first_input) {
     for (std::size_t u = 0; u < outputs.count; ++u)
       outputs.sums[u] += seed * i.simulation.sensitivity(outputs.references[u], known);
@@ -147,7 +165,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     for (std::size_t k = 0; k < n_knowns; ++k)
       if (!check_known(i, name, knowns[k])) return fmi2Error;
     for (std::size_t k = 0; k < n_unknowns; ++k)
-      if (!check_output(i, name, unknowns[k])) return fmi2Error;
+      if (!check_unknown(i, name, unknowns[k])) return fmi2Error;
     if (prepare_reading(i) != fmi2OK) return fmi2Discard;
     for (std::size_t u = 0; u < n_unknowns; ++u)
       if (!check_readable(i, name, unknowns[u])) return fmi2Error;

@@ -69,8 +69,8 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
   return guarded(c, Function::set_fmu_state, name, [=](Instance& i) {
     Snapshot* snapshot = snapshot_of(state);
     if (!snapshot) return refuse(i, name, state ? unknown_state : null_pointer);
-    // Bytes that this library handed out are sound, so only a lack of memory can make this fail.
-    return i.simulation.load_state(snapshot->bytes(), snapshot->size) ? refuse(i, name, no_memory) : fmi2OK;
+    const char* fault = i.simulation.load_state(snapshot->bytes(), snapshot->size);
+    return fault ? refuse(i, name, fault) : fmi2OK;
   });
 }
 
@@ -110,7 +110,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
   constexpr const char* name = "fmi2DeSerializeFMUstate";
   return guarded(c, Function::fmu_state, name, [=](Instance& i) {
     if (!state || !bytes) return refuse(i, name, null_pointer);
-    Instance* scratch = Instance::create("scratch", nullptr, false);
+    Instance* scratch = Instance::create("scratch", nullptr, false, i.simulation.kind());
     if (!scratch) return refuse(i, name, no_memory);
     const char* fault = scratch->simulation.load_state(reinterpret_cast<const unsigned char*>(bytes), size);
     Instance::destroy(scratch);

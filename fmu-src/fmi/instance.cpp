@@ -57,17 +57,17 @@ const char* category_of(wheel::Topic topic) {
   return "logStatusError";
 }
 
-Instance::Instance(const fmi2CallbackFunctions* callbacks) : simulation({this, wanted, tell}) {
+Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind) : simulation({this, wanted, tell}, kind) {
   if (!callbacks) return;
   logger_ = callbacks->logger;
   environment_ = callbacks->componentEnvironment;
 }
 
-Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging) {
+Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind) {
   const auto name_size = std::strlen(name) + 1;
   void* memory = std::malloc(sizeof(Instance) + name_size);
   if (!memory) return nullptr;
-  auto* instance = ::new (memory) Instance(callbacks);
+  auto* instance = ::new (memory) Instance(callbacks, kind);
   instance->name_ = static_cast<char*>(std::memcpy(static_cast<char*>(memory) + sizeof(Instance), name, name_size));
   const unsigned all = 0xf, quiet = all & ~(1u << static_cast<unsigned>(wheel::Topic::event));
   instance->logged_topics = logging ? all : quiet;
@@ -80,12 +80,16 @@ void Instance::destroy(Instance* instance) {
 }
 
 // After the end of a run the sentence says what happened to the wheel, which helps a user more than a call state.
-void Instance::refuse(const char* function) {
-  if (has_ended(simulation.phase()))
-    log(wheel::Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", function, simulation.ending(),
+void Instance::refuse(Function function, const char* name) {
+  const bool slave = simulation.kind() == wheel::Kind::co_simulation;
+  if (!is_of_kind(function, simulation.kind()))
+    log(wheel::Topic::error, "%s belongs to %s; this instance was made for %s.", name,
+        slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
+  else if (has_ended(simulation.phase()))
+    log(wheel::Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", name, simulation.ending(),
         support::Digits(simulation.time()).text);
   else
-    log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", function, state_of(simulation.phase()));
+    log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", name, state_of(simulation.phase()));
 }
 
 void Instance::log(wheel::Topic topic, const char* format, ...) {

@@ -9,13 +9,13 @@ namespace fmi {
 
 struct Instance {
   // One block of memory, the name included. What takes memory later: docs/decisions/memory.md. Null if there is none.
-  static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging);
+  static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind);
   static void destroy(Instance* instance);
 
   // Tells the master, if the category is switched on. Printf-like; the text is finished before the master sees it.
   void log(wheel::Topic topic, const char* format, ...);
-  // Tells that a function is not legal in the present state.
-  void refuse(const char* function);
+  // Tells that a function is not legal in the present state, or belongs to the other kind of instance.
+  void refuse(Function function, const char* name);
   bool wants(wheel::Topic topic) const { return logged_topics & (1u << static_cast<unsigned>(topic)); }
 
   wheel::Simulation simulation;
@@ -23,7 +23,7 @@ struct Instance {
   unsigned logged_topics = 0;
 
  private:
-  explicit Instance(const fmi2CallbackFunctions* callbacks);
+  Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind);
   fmi2CallbackLogger logger_ = nullptr;
   fmi2ComponentEnvironment environment_ = nullptr;
   const char* name_ = nullptr;  // behind the instance
@@ -40,10 +40,10 @@ fmi2Status guarded(fmi2Component component, Function function, const char* name,
   if (!instance || instance->busy) return fmi2Error;
   instance->busy = true;
   fmi2Status status = fmi2Error;
-  if (is_legal(function, instance->simulation.phase()))
+  if (is_of_kind(function, instance->simulation.kind()) && is_legal(function, instance->simulation.phase()))
     status = body(*instance);
   else
-    instance->refuse(name);
+    instance->refuse(function, name);
   instance->busy = false;
   return status;
 }

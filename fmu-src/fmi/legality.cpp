@@ -13,35 +13,45 @@ constexpr unsigned bits(Phases... phases) {
 
 // The call states.
 constexpr unsigned I = bits(Phase::created), M = bits(Phase::initializing, Phase::faulty, Phase::initial),
-                   C = bits(Phase::at_start, Phase::stepping, Phase::unfolded),
-                   F = bits(Phase::fell_flat, Phase::lifted_off), T = bits(Phase::closed, Phase::closed_after_end),
-                   X = bits(Phase::failed, Phase::without_start);
-static_assert((I | M | C | F | T | X) + 1 == bits(Phase::count) && (I ^ M ^ C ^ F ^ T ^ X) == (I | M | C | F | T | X));
+                   C = bits(Phase::at_start, Phase::stepping, Phase::unfolded), E = bits(Phase::event_mode),
+                   N = bits(Phase::continuous_time), F = bits(Phase::fell_flat, Phase::lifted_off),
+                   T = bits(Phase::closed, Phase::closed_after_end), X = bits(Phase::failed, Phase::without_start);
+constexpr unsigned all = I | M | C | E | N | F | T | X;
+static_assert(all + 1 == bits(Phase::count) && (I ^ M ^ C ^ E ^ N ^ F ^ T ^ X) == all);
+
+enum Kinds { both, of_co_simulation, of_model_exchange };
 
 struct Rule {
   Function function;
   unsigned phases;
+  Kinds kinds = both;
 };
 
 constexpr Rule rules[] = {
-    {Function::set_debug_logging, I | M | C | F | T | X},
+    {Function::set_debug_logging, all},
     {Function::setup_experiment, I},
     {Function::enter_initialization, I},
     {Function::exit_initialization, M},
-    {Function::terminate, C | F},
-    {Function::reset, I | M | C | F | T | X},
-    {Function::get_values, M | C | F | T | X},
-    {Function::set_values, I | M | C},
-    {Function::fmu_state, I | M | C | F | T | X},
-    {Function::set_fmu_state, I | M | C | F | T | X},
-    {Function::free_fmu_state, I | M | C | F | T | X},
-    {Function::directional_derivative, M | C | F | T | X},
-    {Function::set_input_derivatives, I | M | C},
-    {Function::get_output_derivatives, C | F | T | X},
-    {Function::do_step, C},
-    {Function::cancel_step, 0},
-    {Function::get_status, C | F | T},
-    {Function::model_exchange, I | M | C | F | T | X},  // refused with a sentence of their own
+    {Function::terminate, C | E | N | F},
+    {Function::reset, all},
+    {Function::get_values, M | C | E | N | F | T | X},
+    {Function::set_values, I | M | C | E | N},
+    {Function::fmu_state, all},
+    {Function::set_fmu_state, all},
+    {Function::free_fmu_state, all},
+    {Function::directional_derivative, M | C | E | N | F | T | X},
+    {Function::set_input_derivatives, I | M | C, of_co_simulation},
+    {Function::get_output_derivatives, C | F | T | X, of_co_simulation},
+    {Function::do_step, C, of_co_simulation},
+    {Function::cancel_step, 0, of_co_simulation},
+    {Function::get_status, C | F | T, of_co_simulation},
+    {Function::enter_event_mode, N, of_model_exchange},
+    {Function::new_discrete_states, E, of_model_exchange},
+    {Function::enter_continuous_time, E, of_model_exchange},
+    {Function::completed_step, N, of_model_exchange},
+    {Function::set_time, E | N, of_model_exchange},
+    {Function::set_states, N, of_model_exchange},
+    {Function::get_states, M | E | N | F | T | X, of_model_exchange},
 };
 
 constexpr bool in_order() {
@@ -56,12 +66,18 @@ static_assert(in_order());
 
 bool is_legal(Function function, Phase phase) { return rules[static_cast<unsigned>(function)].phases & bits(phase); }
 
+bool is_of_kind(Function function, wheel::Kind kind) {
+  const Kinds own = kind == wheel::Kind::co_simulation ? of_co_simulation : of_model_exchange;
+  const Kinds kinds = rules[static_cast<unsigned>(function)].kinds;
+  return kinds == both || kinds == own;
+}
+
 const char* state_of(Phase phase) {
   constexpr struct {
     unsigned phases;
     const char* name;
-  } states[] = {{I, "instantiated"}, {M, "initialization mode"}, {C, "step complete"},
-                {F, "step failed"},  {T, "terminated"},          {X, "error"}};
+  } states[] = {{I, "instantiated"},         {M, "initialization mode"}, {C, "step complete"}, {E, "event mode"},
+                {N, "continuous-time mode"}, {F, "step failed"},         {T, "terminated"},    {X, "error"}};
   const auto* state = states;
   while (!(state->phases & bits(phase))) ++state;
   return state->name;

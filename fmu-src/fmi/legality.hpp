@@ -1,7 +1,8 @@
-// In which phases of a run a function may be called: the call states of an FMI 2.0 co-simulation slave, section 4.2.4
-// of the standard.
+// In which phases of a run a function may be called: the call states of FMI 2.0, section 3.2.3 of the standard for
+// model exchange and 4.2.4 for co-simulation.
 #pragma once
 
+#include "demand.hpp"
 #include "phase.hpp"
 
 namespace fmi {
@@ -24,11 +25,19 @@ enum class Function : unsigned char {
   do_step,
   cancel_step,
   get_status,
-  model_exchange,
+  enter_event_mode,
+  new_discrete_states,
+  enter_continuous_time,
+  completed_step,
+  set_time,
+  set_states,
+  get_states,
   count,
 };
 
 bool is_legal(Function function, wheel::Phase phase);
+// Whether the function belongs to this kind of instance, or to both.
+bool is_of_kind(Function function, wheel::Kind kind);
 
 // The call state that the phase stands for, by the name that the standard uses, for messages.
 const char* state_of(wheel::Phase phase);

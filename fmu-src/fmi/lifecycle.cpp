@@ -20,7 +20,7 @@ void complain(const fmi2CallbackFunctions* callbacks, const char* name, const ch
 // Null where the instance may be created, else the reason why not.
 const char* refusal(const char* name, fmi2Type type, const char* guid) {
   if (is_blank(name)) return "fmi2Instantiate: the instance name is missing or blank.";
-  if (type != fmi2CoSimulation) return "fmi2Instantiate: this FMU is for co-simulation only.";
+  if (type != fmi2CoSimulation && type != fmi2ModelExchange) return "fmi2Instantiate: the type is not known.";
   if (!guid || std::strcmp(guid, WHEEL_GUID) != 0)
     return "fmi2Instantiate: the GUID is not that of this FMU's modelDescription.xml (" WHEEL_GUID ").";
   return nullptr;
@@ -63,7 +63,8 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     complain(callbacks, name, reason);
     return nullptr;
   }
-  Instance* instance = Instance::create(name, callbacks, logging != fmi2False);
+  const auto kind = type == fmi2CoSimulation ? wheel::Kind::co_simulation : wheel::Kind::model_exchange;
+  Instance* instance = Instance::create(name, callbacks, logging != fmi2False, kind);
   if (instance && fmi::instances.add(instance)) return instance;
   if (instance) Instance::destroy(instance);
   complain(callbacks, name, "fmi2Instantiate: out of memory.");

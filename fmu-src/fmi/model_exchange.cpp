@@ -1,12 +1,35 @@
-// FMI 2.0 functions of model exchange: this FMU is for co-simulation only, and says so.
-#include "instance.hpp"
+// FMI 2.0 functions of model exchange: the caller's solver asks for derivatives, event indicators and events.
+#include <algorithm>
+#include <cmath>
+
+#include "arguments.hpp"
+#include "digits.hpp"
+
+using fmi::Function, fmi::guarded, fmi::Instance, fmi::prepare_reading, support::Digits, wheel::Phase, wheel::Topic;
 
 namespace {
 
-fmi2Status unsupported(fmi2Component c, const char* name) {
-  return fmi::guarded(c, fmi::Function::model_exchange, name, [=](fmi::Instance& i) {
-    i.log(wheel::Topic::error, "%s belongs to model exchange; this FMU is for co-simulation only.", name);
-    return fmi2Error;
+bool check_count(Instance& i, const char* name, const void* values, std::size_t count, int needed) {
+  if (values && count == static_cast<std::size_t>(needed)) return true;
+  i.log(Topic::error, "%s: an array of %d numbers is needed, not of %zu%s.", name, needed, count,
+        values ? "" : ", and it is a null pointer");
+  return false;
+}
+
+// Reads state_count numbers, in initialization mode from the start values.
+template <class Read>
+fmi2Status read_states(fmi2Component c, const char* name, fmi2Real values[], std::size_t count, Read read) {
+  return guarded(c, Function::get_states, name, [=](Instance& i) {
+    if (!check_count(i, name, values, count, wheel::state_count)) return fmi2Error;
+    if (prepare_reading(i) != fmi2OK || !has_state(i.simulation.phase())) return fmi2Discard;
+    return read(i);
+  });
+}
+
+fmi2Status enter(fmi2Component c, Function function, const char* name, Phase mode) {
+  return guarded(c, function, name, [=](Instance& i) {
+    i.simulation.enter(mode);
+    return fmi2OK;
   });
 }
 
@@ -14,25 +37,98 @@ fmi2Status unsupported(fmi2Component c, const char* name) {
 
 extern "C" {
 
-fmi2Status fmi2EnterEventMode(fmi2Component c) { return unsupported(c, "fmi2EnterEventMode"); }
-fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo*) { return unsupported(c, "fmi2NewDiscreteStates"); }
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return unsupported(c, "fmi2EnterContinuousTimeMode"); }
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean*, fmi2Boolean*) {
-  return unsupported(c, "fmi2CompletedIntegratorStep");
+fmi2Status fmi2EnterEventMode(fmi2Component c) {
+  return enter(c, Function::enter_event_mode, "fmi2EnterEventMode", Phase::event_mode);
 }
-fmi2Status fmi2SetTime(fmi2Component c, fmi2Real) { return unsupported(c, "fmi2SetTime"); }
-fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real[], size_t) {
-  return unsupported(c, "fmi2SetContinuousStates");
+
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
+  return enter(c, Function::enter_continuous_time, "fmi2EnterContinuousTimeMode", Phase::continuous_time);
 }
-fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real[], size_t) { return unsupported(c, "fmi2GetDerivatives"); }
-fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real[], size_t) {
-  return unsupported(c, "fmi2GetEventIndicators");
+
+// One pass is enough: the law that is decided holds.
+fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
+  constexpr const char* name = "fmi2NewDiscreteStates";
+  return guarded(c, Function::new_discrete_states, name, [=](Instance& i) {
+    if (!info) {
+      i.log(Topic::error, "%s: the event info is a null pointer.", name);
+      return fmi2Error;
+    }
+    *info = {};
+    info->valuesOfContinuousStatesChanged = i.simulation.decide() ? fmi2True : fmi2False;
+    info->terminateSimulation = has_ended(i.simulation.phase()) ? fmi2True : fmi2False;
+    return fmi2OK;
+  });
 }
-fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real[], size_t) {
-  return unsupported(c, "fmi2GetContinuousStates");
+
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* enter_event_mode,
+                                       fmi2Boolean* terminate) {
+  constexpr const char* name = "fmi2CompletedIntegratorStep";
+  return guarded(c, Function::completed_step, name, [=](Instance& i) {
+    if (!enter_event_mode || !terminate) {
+      i.log(Topic::error, "%s: an answer is a null pointer.", name);
+      return fmi2Error;
+    }
+    *enter_event_mode = i.simulation.has_event() ? fmi2True : fmi2False;
+    *terminate = fmi2False;
+    return fmi2OK;
+  });
 }
-fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real[], size_t) {
-  return unsupported(c, "fmi2GetNominalsOfContinuousStates");
+
+fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
+  return guarded(c, Function::set_time, "fmi2SetTime", [=](Instance& i) {
+    if (!std::isfinite(t)) {
+      i.log(Topic::error, "fmi2SetTime: %s s: the time must be finite.", Digits(t).text);
+      return fmi2Error;
+    }
+    i.simulation.set_time(t);
+    return fmi2OK;
+  });
+}
+
+fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
+  constexpr const char* name = "fmi2SetContinuousStates";
+  return guarded(c, Function::set_states, name, [=](Instance& i) {
+    if (!check_count(i, name, x, n, wheel::state_count)) return fmi2Error;
+    if (!std::all_of(x, x + n, [](double value) { return std::isfinite(value); })) {
+      i.log(Topic::discard, "%s: a state is not finite.", name);
+      return fmi2Discard;
+    }
+    i.simulation.set_states(x);
+    return fmi2OK;
+  });
+}
+
+fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
+  return read_states(c, "fmi2GetContinuousStates", x, n, [=](Instance& i) {
+    std::copy_n(i.simulation.states(), n, x);
+    return fmi2OK;
+  });
+}
+
+fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
+  return read_states(c, "fmi2GetNominalsOfContinuousStates", x, n, [=](Instance& i) {
+    i.simulation.nominals(x);
+    return fmi2OK;
+  });
+}
+
+fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
+  constexpr const char* name = "fmi2GetDerivatives";
+  return read_states(c, name, x_dot, n, [=](Instance& i) {
+    if (i.simulation.derivatives(x_dot)) return fmi2OK;
+    i.log(Topic::discard, "%s: at t = %s s the derivatives are not finite.", name, Digits(i.simulation.time()).text);
+    return fmi2Discard;
+  });
+}
+
+fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
+  constexpr const char* name = "fmi2GetEventIndicators";
+  return guarded(c, Function::get_states, name, [=](Instance& i) {
+    if (!check_count(i, name, z, n, wheel::indicator_count)) return fmi2Error;
+    if (prepare_reading(i) != fmi2OK || !has_state(i.simulation.phase())) return fmi2Discard;
+    i.simulation.indicators(z);
+    return fmi2OK;
+  });
 }
 
 }  // extern "C"

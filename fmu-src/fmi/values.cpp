@@ -36,7 +36,10 @@ fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
 
 bool check_settable(Instance& i, const char* name, fmi2ValueReference variable) {
   const wheel::Row& row = wheel::row_of(variable);
-  const bool stored = row.role != Role::output && row.role != Role::local;
+  const bool stored = variable < wheel::stored_count;
+  if (!stored && i.simulation.kind() == wheel::Kind::model_exchange && is_running(i.simulation.phase()) &&
+      wheel::state_of(variable) >= 0)
+    return true;
   if (stored && (!is_running(i.simulation.phase()) || row.role != Role::parameter)) return true;
   i.log(Topic::error,
         stored ? "%s: \"%s\" cannot be set after initialization." : "%s: \"%s\" is calculated and cannot be set.", name,
@@ -48,7 +51,9 @@ bool check_settable(Instance& i, const char* name, fmi2ValueReference variable) 
 // at the end of initialization.
 bool check_value(Instance& i, const char* name, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
-  if (!is_running(i.simulation.phase()) || (std::isfinite(value) && value >= row.min && value <= row.max)) return true;
+  const bool bounded = variable < wheel::stored_count;
+  const bool inside = std::isfinite(value) && (!bounded || (value >= row.min && value <= row.max));
+  if (!is_running(i.simulation.phase()) || inside) return true;
   const bool low = value < row.min;
   const Digits given(value), limit(low ? row.min : row.max), kept(i.simulation.value(variable));
   if (std::isfinite(value))
@@ -69,7 +74,13 @@ fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
       if (!check_variable(i, name, variables[k], type) || !check_settable(i, name, variables[k])) return fmi2Error;
     for (std::size_t k = 0; k < count; ++k)
       if (!check_value(i, name, variables[k], static_cast<double>(values[k]))) return fmi2Discard;
-    for (std::size_t k = 0; k < count; ++k) i.simulation.store(variables[k], static_cast<double>(values[k]));
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto value = static_cast<double>(values[k]);
+      if (variables[k] < wheel::stored_count)
+        i.simulation.store(variables[k], value);
+      else
+        i.simulation.set_state(wheel::state_of(variables[k]), value);
+    }
     return fmi2OK;
   });
 }

@@ -183,12 +183,16 @@ Progressed Simulation::end_run() {
   const bool unfolded = run_.phase == Phase::unfolded;
   if (unfolded) move_to(orbit_.end_time());
   const bool flat = (unfolded ? orbit_.event() : solver_.event()) == static_cast<int>(Event::fell_flat);
-  freeze(flat ? Phase::fell_flat : Phase::lifted_off);
-  tell(Topic::discard,
-       flat ? "The wheel %s at t = %s s: the model ends there."
-            : "The wheel %s at t = %s s, theta = %.6g rad: the model ends there.",
-       ending(), support::Digits(time()).text, run_.y[setup_.formulation->tilt_index]);
+  end_as(flat ? Phase::fell_flat : Phase::lifted_off);
   return Progressed::ended;
+}
+
+void Simulation::end_as(Phase phase) {
+  freeze(phase);
+  tell(Topic::discard,
+       phase == Phase::fell_flat ? "The wheel %s at t = %s s: the model ends there."
+                                 : "The wheel %s at t = %s s, theta = %.6g rad: the model ends there.",
+       ending(), support::Digits(time()).text, run_.y[setup_.formulation->tilt_index]);
 }
 
 // The state is that before the step, and stays so.

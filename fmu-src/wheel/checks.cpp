@@ -32,6 +32,13 @@ void fault_of(unsigned v, double value, char* sentence, std::size_t size) {
   }
 }
 
+// Only the reduced equations are offered to another solver.
+void kind_fault(const Demand& demand, char* sentence, std::size_t size) {
+  sentence[0] = 0;
+  if (demand.kind == Kind::model_exchange && choice_of(demand.parameters[formulation]) == multibody_formulation)
+    std::snprintf(sentence, size, "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
+}
+
 // No mass distribution has one principal moment above the sum of the others; the limit is the flat disc.
 void inertia_fault(const double* v, char* sentence, std::size_t size) {
   sentence[0] = 0;
@@ -58,6 +65,8 @@ bool check_values(const Demand& demand, void* owner, void (*tell)(void* owner, c
     conclude();
   }
   inertia_fault(demand.parameters, sentence, sizeof sentence);
+  conclude();
+  kind_fault(demand, sentence, sizeof sentence);
   conclude();
   return sound;
 }

@@ -13,12 +13,16 @@ namespace wheel {
 // stays below it (docs/results/accuracy.md).
 inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, loosest_tolerance = 1e-4;
 
+// Who integrates the motion.
+enum class Kind : int { co_simulation, model_exchange };
+
 struct Demand {
   static constexpr double never = std::numeric_limits<double>::infinity();
 
   double parameters[first_input];  // in the order of the variables; `s` is the one asked for
   Polynomials inputs = {};         // from the instant at which they take effect
   double start_time = 0, stop_time = never, tolerance = default_tolerance;
+  Kind kind = Kind::co_simulation;
   bool changed = false;  // something has been set since the last step
 
   Demand() {

@@ -12,6 +12,8 @@ enum class Phase : int {
   at_start,          // initialization has ended, and no step has been made
   stepping,          // the solver steps through the motion
   unfolded,          // the motion is read from the orbit; nothing is integrated
+  event_mode,        // model exchange: the law of friction is decided
+  continuous_time,   // model exchange: the caller's solver moves the states
   fell_flat,         // the model has ended: the wheel lies flat
   lifted_off,        // the model has ended: the wheel has left the ground
   closed,            // the caller has ended the run
@@ -22,7 +24,7 @@ enum class Phase : int {
 };
 
 constexpr bool has_begun(Phase p) { return p >= Phase::at_start; }
-constexpr bool is_running(Phase p) { return p == Phase::at_start || p == Phase::stepping || p == Phase::unfolded; }
+constexpr bool is_running(Phase p) { return p >= Phase::at_start && p <= Phase::continuous_time; }
 constexpr bool has_ended(Phase p) { return p == Phase::fell_flat || p == Phase::lifted_off; }
 constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::without_start; }
 

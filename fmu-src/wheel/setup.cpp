@@ -38,8 +38,14 @@ ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& f
   const double speed = 0.15 * slowest * length;
   const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, turn};
   ErrorScales scales = {{}, slowest, tilting};
-  std::copy_n(f.states == WHEEL_REDUCED_STATES ? reduced : multibody, f.states, scales.slow);
+  const double euler[] = {3 * length, 3 * length, 3, 1, 3, turn, turn, turn};
+  std::copy_n(&f == &wheel_reduced ? reduced : &f == &wheel_euler ? euler : multibody, f.states, scales.slow);
   return scales;
+}
+
+const WheelFormulation* formulation_of(const Demand& demand) {
+  if (demand.kind == Kind::model_exchange) return &wheel_euler;
+  return choice_of(demand.parameters[formulation]) == multibody_formulation ? &wheel_multibody : &wheel_reduced;
 }
 
 }  // namespace
@@ -47,7 +53,7 @@ ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& f
 Setup setup_of(const Demand& demand) {
   const double* v = demand.parameters;
   Setup setup = {};
-  setup.formulation = choice_of(v[formulation]) == multibody_formulation ? &wheel_multibody : &wheel_reduced;
+  setup.formulation = formulation_of(demand);
   setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
   if (v[slope] != 0) wheel_set_slope(&setup.wheel, v[g], v[slope], v[slope_direction]);
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));

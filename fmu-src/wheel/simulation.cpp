@@ -20,7 +20,9 @@ bool Simulation::tell(Topic topic, const char* format, ...) const {
 }
 
 void Simulation::reset() {
+  const Kind kind = demand_.kind;
   demand_ = Demand();
+  demand_.kind = kind;
   run_ = Run();
   fresh_ = Fresh::nothing;
 }
@@ -42,6 +44,7 @@ void Simulation::store(unsigned variable, double value) {
   stored = value;
   demand_.changed = true;
   fresh_ = std::min(fresh_, Fresh::state);
+  if (demand_.kind == Kind::model_exchange && is_running(run_.phase)) take_at_once();
 }
 
 void Simulation::set_input_derivative(unsigned variable, int order, double value) {
@@ -64,8 +67,9 @@ bool Simulation::prepare(bool report) {
 }
 
 bool Simulation::start() {
-  const bool sound = prepare();
-  run_.phase = sound ? Phase::at_start : Phase::without_start;
+  const bool exchanged = demand_.kind == Kind::model_exchange;
+  const bool sound = prepare() && (!exchanged || starts_inside());
+  run_.phase = !sound ? Phase::without_start : exchanged ? Phase::event_mode : Phase::at_start;
   return sound;
 }
 
@@ -122,7 +126,7 @@ double Simulation::rate(unsigned variable) { return row_of(variable).read_rate(r
 // Only the reactions depend on the inputs of the same instant.
 double Simulation::sensitivity(unsigned output, unsigned input) {
   const auto component = row_of(output).reaction_rate;
-  if (!component) return 0;
+  if (!component) return row_of(output).role == Role::local ? partial(output, input) : 0;
   const int i = static_cast<int>(input - first_input);
   WheelLoad unit = {};
   *load_entry(unit, i) = 1;

@@ -25,9 +25,14 @@ struct Reporter {
 
 enum class Progressed { reached, ended, failed };
 
+// Of model exchange.
+inline constexpr int state_count = WHEEL_REDUCED_STATES, indicator_count = 3;
+// The place of a variable among the states, or -1.
+int state_of(unsigned variable);
+
 class Simulation {
  public:
-  explicit Simulation(const Reporter& reporter) : reporter_(reporter) {}
+  Simulation(const Reporter& reporter, Kind kind) : reporter_(reporter) { demand_.kind = kind; }
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
@@ -39,6 +44,7 @@ class Simulation {
   // The caller ends the run.
   void close();
   Phase phase() const { return run_.phase; }
+  Kind kind() const { return demand_.kind; }
 
   // stop_time: infinite for none. tolerance <= 0: the default one.
   void set_experiment(double start_time, double stop_time, double tolerance);
@@ -64,6 +70,21 @@ class Simulation {
   double rate(unsigned variable);
   // d output / d input at this instant; zero for what depends on inputs only through time.
   double sensitivity(unsigned output, unsigned input);
+
+  // Model exchange (exchange.cpp): x are the state_count states of wheel_euler; derivatives are false where they are
+  // not finite. An event mode decides the law of friction and whether the model ends: true where it changed a state.
+  void enter(Phase mode) { run_.phase = mode; }
+  void set_time(double t);
+  void set_states(const double* x);
+  void set_state(int index, double value);
+  const double* states() { return y_now(); }
+  void nominals(double* x) const;
+  bool derivatives(double* x_dot);
+  void indicators(double* z);
+  bool has_event();
+  bool decide();
+  // d unknown / d known at this instant, of a calculated variable by a state of model exchange or an input.
+  double partial(unsigned unknown, unsigned known);
 
   // Demand, run and the solver's history as portable bytes with a checksum. load_state returns null, or why the bytes
   // could not have been saved: everything is then as it was, unless it is the solver's history that is wrong.
@@ -99,7 +120,20 @@ class Simulation {
   void move_to(double t);
   Progressed arrive(double t);
   Progressed end_run();
+  void end_as(Phase phase);
   Progressed fail(const Run& before, bool changed);
+
+  // exchange.cpp
+  struct Margins {
+    double friction, flat, contact;
+  };
+  void take_at_once();
+  void decide_law();
+  double friction_margin() const;
+  double friction_rate();
+  Margins margins();
+  void decide_contact(double time);
+  bool starts_inside();
 
   // on_orbit.cpp
   bool orbit_fits() const;

@@ -32,6 +32,7 @@ void visit(Archive& archive, Demand& demand, Run& run) {
   archive("tolerance").range(demand.tolerance, tightest_tolerance, loosest_tolerance);
   archive("inputs asked for, with their derivatives");
   for (auto& input : demand.inputs) archive.anything(input[0]), archive.numbers(input + 1, max_order);
+  archive("whose solver moves the wheel").count(demand.kind, 0, 1);
   archive("something was set since the last step").count(demand.changed, 0, 1);
   archive("phase").count(run.phase, 0, static_cast<int>(Phase::count) - 1);
   archive("s in force, m").range(now.scene.wheel.s, 0, Archive::greatest);
@@ -53,16 +54,18 @@ void visit(Archive& archive, Demand& demand, Run& run) {
 
 // Whether the law is one that friction_at could have chosen.
 bool law_fits(const Setup& setup, const InForce& now) {
-  const bool none = now.scene.wheel.s == 0 && !now.inputs.braked, exact = setup.friction_law == exact_law;
+  const bool exact = setup.friction_law == exact_law;
+  const bool waits = setup.formulation == &wheel_euler;  // model exchange: the law waits for the next event
+  const bool none = now.scene.wheel.s == 0 && !now.inputs.braked, some = waits || !none;
   switch (now.scene.friction.kind) {
     case WHEEL_FRICTIONLESS:
-      return none;
+      return none || waits;
     case WHEEL_REGULARIZED:
-      return !none && !exact;
+      return some && !exact;
     case WHEEL_ROLLING:
-      return !none && exact && std::fabs(now.scene.friction.sigma) == 1;
+      return some && exact && std::fabs(now.scene.friction.sigma) == 1;
     case WHEEL_HELD:
-      return !none && exact;
+      return some && exact;
     case WHEEL_NO_LAW:
       break;
   }
@@ -88,6 +91,9 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   if (by_force || (now.pulls() && !may_pull)) return "the ground neither presses nor pulls";
   if (run.phase == Phase::unfolded && !is_unfoldable(setup, now)) return "what acts cannot be unfolded";
   if (run.last_change > run.t || now.inputs.origin > run.t) return "a change lies ahead of the time reached";
+  const bool exchanged = run.phase == Phase::event_mode || run.phase == Phase::continuous_time;
+  const bool stepped = run.phase == Phase::at_start || run.phase == Phase::stepping || run.phase == Phase::unfolded;
+  if (demand.kind == Kind::model_exchange ? stepped : exchanged) return "the phase is one of the other kind of run";
   const bool starts = run.phase == Phase::initial || run.phase == Phase::at_start;
   if (starts && !(run.t == 0 && std::equal(setup.start, setup.start + WHEEL_MAX_STATES, run.y)))
     return "a run that has not begun stands at its start";
@@ -128,6 +134,7 @@ const char* Simulation::load_state(const unsigned char* bytes, std::size_t size)
   visit(reader, demand, run);
   if (reader.fault) return reader.fault;
   if (const char* fault = complete(demand, setup, run)) return fault;
+  if (demand.kind != demand_.kind) return "they belong to an instance of the other kind";
   const auto left = static_cast<std::size_t>(reader.end - reader.at);
   if (run.phase != Phase::stepping && left > 0) return "bytes are left over";
   demand_ = demand;

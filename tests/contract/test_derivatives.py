@@ -139,7 +139,7 @@ def test_directional_derivatives_add_up_the_seeds(wheel):
 
 def test_wrong_requests_for_derivatives_are_refused(wheel):
     w = wheel().start()
-    theta, force, mass, energy = (w.references[name] for name in ("theta", "F_X", "m", "E"))
+    theta, force, mass, energy, mode = (w.references[n] for n in ("theta", "F_X", "m", "E", "friction_mode"))
     value = (c_double * 1)()
 
     def output_derivative(reference: int, order: int) -> int:
@@ -149,9 +149,9 @@ def test_wrong_requests_for_derivatives_are_refused(wheel):
         arrays = ((c_uint * 1)(unknown), 1, (c_uint * 1)(known), 1, (c_double * 1)(1.0), value)
         return w.fmi2GetDirectionalDerivative(w.component, *arrays)
 
-    wrong = [(theta, 0), (theta, 2), (force, 1), (mass, 1), (energy, 1), (52, 1)]
+    wrong = [(theta, 0), (theta, 2), (force, 1), (mass, 1), (energy, 1), (99, 1)]
     assert [output_derivative(*pair) for pair in wrong] == [ERROR] * 6
-    wrong = [(theta, mass), (theta, theta), (force, force), (energy, force), (52, force), (theta, 52)]
+    wrong = [(theta, mass), (theta, theta), (force, force), (mode, force), (99, force), (theta, 99)]
     assert [directional(*pair) for pair in wrong] == [ERROR] * 6
     assert len(w.take_messages()) == 12
     assert output_derivative(theta, 1) == directional(theta, force) == OK

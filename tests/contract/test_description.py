@@ -13,6 +13,7 @@ from fmpy import validation
 from lxml import etree
 from support.bounds import beyond, within
 from support.driver import DISCARD, OK
+from support.exchange import DERIVATIVES, INDICATORS, STATES
 
 pytestmark = pytest.mark.contract
 
@@ -52,6 +53,7 @@ OUTPUTS = {
     **{"X_C": "m", "Y_C": "m", "lambda_x": "N", "lambda_y": "N", "tau": "N.m"},
 }
 LOCALS = {
+    **{"theta_ddot": "rad/s2", "psi_ddot": "rad/s2", "phi_ddot": "rad/s2", "omega_z_dot": "rad/s2"},
     **{"E": "J", "mu_required": "1", "friction_mode": None, "n_steps": None, "n_rhs": None},
     **{"n_jac": None, "n_roots": None, "n_events": None, "n_restarts": None},
 }
@@ -111,7 +113,7 @@ def test_causality_variability_and_initial_are_those_of_the_standard(description
     for name in outputs_of(description):
         assert kinds.pop(name) == ("output", "continuous", "calculated"), name
     for name, kind in kinds.items():
-        assert kind == ("local", "continuous" if name in ("E", "mu_required") else "discrete", "calculated"), name
+        assert kind == ("local", "discrete" if LOCALS[name] is None else "continuous", "calculated"), name
     calculated = [v for v in description.modelVariables if v.initial == "calculated"]
     assert all(v.start is None for v in calculated)
 
@@ -195,8 +197,11 @@ def test_forces_and_moments_have_no_limits_in_the_description_and_the_library_re
 def test_outputs_are_listed_in_order_and_the_initial_unknowns_are_exactly_the_calculated_outputs(description):
     listed = [unknown.variable.name for unknown in description.outputs]
     assert listed == outputs_of(description)
-    assert [unknown.variable.name for unknown in description.initialUnknowns] == listed
-    assert not description.derivatives
+    derivatives = [unknown.variable.name for unknown in description.derivatives]
+    assert derivatives == list(DERIVATIVES)
+    assert [d.derivative.name for d in (u.variable for u in description.derivatives)] == list(STATES)
+    accelerations = [name for name in derivatives if name not in listed]
+    assert [unknown.variable.name for unknown in description.initialUnknowns] == [*listed, *accelerations]
 
 
 def test_default_experiment_is_complete_and_divides(description):
@@ -223,7 +228,12 @@ def test_capabilities_say_what_the_library_can_do(description, xml):
         *("canGetAndSetFMUstate", "canSerializeFMUstate", "providesDirectionalDerivative"),
     }
     assert flags["maxOutputDerivativeOrder"] == "1" and flags["modelIdentifier"] == "wheel"
-    assert xml.find("ModelExchange") is None
+    exchange = xml.find("ModelExchange").attrib
+    assert {name for name, value in exchange.items() if value == "true"} == {
+        *("canNotUseMemoryManagementFunctions", "canGetAndSetFMUstate", "canSerializeFMUstate"),
+        "providesDirectionalDerivative",
+    }
+    assert (exchange["modelIdentifier"], xml.get("numberOfEventIndicators")) == ("wheel", str(INDICATORS))
 
 
 def test_log_categories_are_those_the_library_knows(wheel, description):

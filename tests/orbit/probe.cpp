@@ -71,8 +71,8 @@ PUBLIC void probe_free(Probe* probe) { delete probe; }
 PUBLIC int probe_build(Probe* probe) {
   wheel::InForce in_force = probe->in_force;
   wheel::Owner owner = {probe->setup, in_force};
-  return static_cast<int>(probe->orbit.build(wheel::problem_of(owner), probe->setup.tolerance, pass,
-                                             probe->setup.start, probe->solver));
+  return static_cast<int>(
+      probe->orbit.build(wheel::problem_of(owner), probe->setup.tolerance, pass, probe->setup.start, probe->solver));
 }
 
 // States at `count` instants, 8 numbers each, and N.

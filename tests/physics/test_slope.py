@@ -11,6 +11,7 @@ from math import atan, cos, pi, sin
 import numpy as np
 import pytest
 from reference import Start, Wheel, solve
+from support.bounds import beyond, within
 from support.closed_forms import rolling_inertia
 from support.driver import OK
 from support.motion import Library, Run, start_values
@@ -34,15 +35,16 @@ def rolled(library: Library, formulation: int, slope: float, s: float) -> float:
 @formulations
 @pytest.mark.parametrize("s", [0.0, 0.03], ids=["free", "friction"])
 def test_a_wheel_rolls_straight_down_with_uniform_acceleration(library: Library, formulation: int, s: float) -> None:
-    assert rolled(library, formulation, 0.2, s) < 1e-10
-    assert rolled(library, formulation, 0.2 * (1 + 1e-8), s) > 1e-9
+    within(rolled(library, formulation, 0.2, s), 1e-14, "way")
+    beyond(rolled(library, formulation, 0.2 * (1 + 1e-8), s), 1e-9, "way on a steeper road")
 
 
 @pytest.mark.parametrize("s", [0.01, 0.03])
 def test_a_wheel_set_down_stays_exactly_while_the_rolling_friction_can_hold_it(library: Library, s: float) -> None:
     steepest = atan(s / R)
     stays = library.simulate([0.0, 5.0], slope=steepest * (1 - 1e-9), s=s, **REST)
-    assert (stays["omega_z"] == 0).all() and np.abs(stays["X_O"]).max() < 1e-15
+    assert (stays["omega_z"] == 0).all()
+    within(np.abs(stays["X_O"]).max(), 5e-19, "creep, m")
     rolls = library.simulate([0.0, 5.0], slope=steepest * (1 + 1e-9), s=s, **REST)
     assert rolls["X_O"][-1] < 0 and rolls["friction_mode"][-1] == 1  # downhill, away from X
 
@@ -62,8 +64,8 @@ def parked(library: Library, slope: float, seconds: float) -> float:
 
 def test_a_brake_holds_exactly_up_to_its_capacity_and_lets_go_beyond(library: Library) -> None:
     steepest = np.arcsin(20.0 / (R * WEIGHT))
-    assert abs(parked(library, steepest * (1 - 1e-9), 600.0)) < 1e-12
-    assert parked(library, steepest * (1 + 1e-6), 5.0) < -1e-7
+    within(abs(parked(library, steepest * (1 - 1e-9), 600.0)), 2e-30, "creep, m")
+    beyond(-parked(library, steepest * (1 + 1e-6), 5.0), 2e-6, "way beyond the capacity, m")
 
 
 def on_slope(library: Library, slope: float, direction: float, **values: float) -> Run:
@@ -84,15 +86,15 @@ def test_a_slope_is_the_same_motion_as_a_constant_force(library: Library) -> Non
         run = on_slope(library, slope, direction, **MOTION)
         return max(float(np.abs(run[c] - pushed[c]).max()) for c in ("X_O", "Y_O", "theta", "omega_z"))
 
-    assert gap(slope) < 1e-10
-    assert gap(slope * (1 + 1e-8)) > 1e-9
+    within(gap(slope), 2e-12, "gap")
+    beyond(gap(slope * (1 + 1e-8)), 2e-8, "gap to a steeper road")
 
 
 def test_the_energy_contains_the_height_along_the_slope(library: Library) -> None:
     run = on_slope(library, 0.3, 0.7, **MOTION)
     fallen = WEIGHT * sin(0.3) * (run["X_O"] * cos(0.7) + run["Y_O"] * sin(0.7))
-    assert np.ptp(run["E"]) < 1e-8 * abs(run["E"]).max()
-    assert np.ptp(run["E"] - fallen) > 1
+    within(np.ptp(run["E"]) / abs(run["E"]).max(), 3e-11, "energy")
+    beyond(np.ptp(run["E"] - fallen), 50, "energy without the height along the slope, J")
 
 
 def test_a_slope_turned_with_the_wheel_turns_the_motion(library: Library) -> None:
@@ -100,8 +102,8 @@ def test_a_slope_turned_with_the_wheel_turns_the_motion(library: Library) -> Non
     here = on_slope(library, 0.2, 0.0, **MOTION)
     there = on_slope(library, 0.2, turn, **{**MOTION, "psi_start": 0.4 + turn, "X_O_start": 0.0, "Y_O_start": 0.0})
     path = [(run["X_O"] - run["X_O"][0]) + 1j * (run["Y_O"] - run["Y_O"][0]) for run in (here, there)]
-    assert np.abs(path[0] * np.exp(1j * turn) - path[1]).max() < 1e-10
-    assert np.abs(path[0] - path[1]).max() > 1e-2
+    within(np.abs(path[0] * np.exp(1j * turn) - path[1]).max(), 1e-11, "path, m")
+    beyond(np.abs(path[0] - path[1]).max(), 1, "path not turned, m")
 
 
 def test_a_level_road_has_no_direction(library: Library) -> None:
@@ -138,8 +140,8 @@ def reference_gap(library: Library, seed: int, formulation: int) -> tuple[float,
 @pytest.mark.parametrize("decade", range(10))
 def test_a_hundred_random_slopes_agree_with_the_independent_reference(library: Library, decade: int) -> None:
     gaps = [reference_gap(library, 10 * decade + k, 2 + k % 2) for k in range(10)]
-    assert max(found for found, _ in gaps) < 1e-8
-    assert max(steeper for _, steeper in gaps) > 1e-7
+    within(max(found for found, _ in gaps), 3e-10, "gap")
+    beyond(max(steeper for _, steeper in gaps), 1e-7, "gap to a steeper road")
 
 
 def test_multibody_jls_wheel_on_45_degrees_gains_the_same_spin_in_each_half_second(library: Library) -> None:
@@ -147,9 +149,9 @@ def test_multibody_jls_wheel_on_45_degrees_gains_the_same_spin_in_each_half_seco
     wheel = Wheel(m=2.0, r_0=0.3, r=0.0, J_x=0.12, J_y=0.12, J_z=0.06, g=9.80665, slope=pi / 4, slope_direction=pi)
     run = library.simulate(np.linspace(0, 4, 9), 1e-10, **{**start_values(wheel, Start()), **REST})
     gains = np.diff(run["omega_z"])
-    assert np.ptp(gains) < 1e-10
+    within(np.ptp(gains), 1e-12, "change of the gain, rad/s")
     assert 5 < abs(gains[0]) < 9.81
-    assert abs(gains[0] + 0.5 * 9.80665 * sin(pi / 4) / 0.3 / (1 + 0.06 / (2 * 0.3**2))) < 1e-10
+    within(abs(gains[0] + 0.5 * 9.80665 * sin(pi / 4) / 0.3 / (1 + 0.06 / (2 * 0.3**2))), 3e-14, "gain, rad/s")
 
 
 def test_a_road_of_ninety_degrees_is_refused_with_a_sentence(library: Library) -> None:

@@ -1,0 +1,275 @@
+"""Model exchange, call by call: states to the bit, derivatives, snapshots, endings, refusals."""
+
+from __future__ import annotations
+
+from ctypes import byref, c_double, c_int
+
+import numpy as np
+import pytest
+from equations.multibody_transcription import omega_z_dot, solved
+from equations.paper_transcription import Paper, times
+from fmpy.fmi2 import fmi2EventInfo
+from support import equations as eq
+from support.bounds import beyond, within
+from support.driver import DISCARD, ERROR, OK, FMU2Wheel
+from support.exchange import DERIVATIVES, STATES, FMU2Exchange, Run, exchange, no_inputs
+from support.motion import Library
+
+pytestmark = pytest.mark.contract
+
+GENERAL = {"J_x": 0.7, "J_y": 1.2, "slope": 0.2, "slope_direction": 0.7, "psi_dot_start": 0.5, "F_X": 3.0, "M_2": 0.4}
+ODD = np.array([0.1, -0.2, 0.3, 1.1, 0.7, 0.9, 1 / 3, -1.7])  # a state off every symmetry
+
+
+def at_odd(library: Library, **values: float) -> FMU2Exchange:
+    wheel = exchange(library, **{**GENERAL, **values})
+    wheel.place(0.3, ODD)
+    return wheel
+
+
+def test_states_are_read_back_to_the_bit_also_after_a_restored_state(library: Library) -> None:
+    with at_odd(library) as wheel, exchange(library) as other:
+        assert (wheel.x() == ODD).all()
+        assert wheel.get(*STATES) == ODD.tolist()
+        assert other.restore(wheel.serialized()) == OK
+        assert (other.x() == ODD).all()
+        assert other.bits() == wheel.bits()
+        assert (other.derivatives() == wheel.derivatives()).all()
+        wheel.place(0.3, np.nextafter(ODD, np.inf))
+        assert other.bits() != wheel.bits()
+
+
+def test_the_derivatives_are_the_variables_of_that_name(library: Library) -> None:
+    with at_odd(library, s=0.02) as wheel:
+        assert wheel.derivatives().tolist() == wheel.get(*DERIVATIVES)
+        beyond(np.abs(wheel.derivatives() - wheel.get(*reversed(DERIVATIVES))).max(), 1, "in another order")
+
+
+def test_a_restored_wheel_goes_on_with_the_same_bits(library: Library) -> None:
+    with exchange(library, s=0.03) as wheel, exchange(library) as other:
+        Run(wheel, 1e-9, no_inputs).to(2.0)
+        assert wheel.get("n_events")[0] > 2
+        blob = wheel.serialized()
+        ends = []
+        for restored in (wheel, other):
+            assert restored.restore(blob) == OK
+            run = Run(restored, 1e-9, no_inputs)
+            run.t = 2.0
+            restored.place(2.0, restored.x())
+            run.to(4.0)
+            ends.append(restored.bits())
+        run.to(4.5)
+        assert ends[0] == ends[1] != other.bits()
+
+
+def test_a_state_of_one_kind_is_refused_by_the_other(library: Library) -> None:
+    with exchange(library) as wheel, library.wheel(logging=True) as slave:
+        slave.start()
+        assert slave.restore(wheel.serialized()) == ERROR
+        assert "other kind" in slave.sentences[-1]
+        assert wheel.restore(slave.serialized()) == ERROR
+        assert slave.step(0.1) == OK
+
+
+def accelerations(constants: dict, load: dict, x: np.ndarray) -> np.ndarray:
+    """The eight derivatives by the transcription of the paper's (24), for real or complex states."""
+    scene = eq.table(eq.Scene, 1)
+    for name, value in constants.items():
+        scene["wheel"][name] = value
+    scene["friction"]["kind"], scene["friction"]["omega_s"] = eq.FRICTIONLESS, 1
+    X, Y, psi, theta, phi, theta_dot, psi_dot, omega_z = x
+    phi_dot = omega_z - psi_dot * np.cos(theta)
+    y = np.array([[X, Y, 0, psi, theta, phi, 0, 0, 0, psi_dot, theta_dot, phi_dot]])
+    paper = Paper(scene["wheel"], y)
+    y[:, 6:9] = -times(paper.B[..., 3:], y[:, 9:])  # rolling, (19)
+    paper = Paper(scene["wheel"], y)
+    q = solved(paper, scene, {name: np.array([value]) for name, value in load.items()})
+    return np.array([y[0, 6], y[0, 7], psi_dot, theta_dot, phi_dot, q[0, 4], q[0, 3], omega_z_dot(paper, q, scene)[0]])
+
+
+def complex_jacobian(constants: dict, load: dict) -> np.ndarray:
+    """d derivatives / d (states, F_X, M_2) by complex steps."""
+    h, columns = 1e-30, []
+    for k in range(8):
+        columns.append(accelerations(constants, load, ODD + 1j * h * np.eye(8)[k]).imag / h)
+    for name, entry in (("F", 0), ("M", 1)):
+        moved = {key: np.array(value, complex) for key, value in load.items()}
+        moved[name][entry] += 1j * h
+        columns.append(accelerations(constants, moved, ODD.astype(complex)).imag / h)
+    return np.array(columns).T
+
+
+def test_directional_derivatives_agree_with_complex_steps_through_the_papers_system(library: Library) -> None:
+    wheel = eq.paper_wheel(J_x=0.7, J_y=1.2)
+    eq.LIBRARY.wheel_set_slope(byref(wheel), 9.81, 0.2, 0.7)
+    constants = {name: getattr(wheel, name) for name, _ in eq.Parameters._fields_}
+    load = {"F": np.array([3.0, 0, 0]), "M": np.array([0, 0.4, 0]), "brake": np.array(0.0)}
+    want = complex_jacobian(constants, load)
+    with at_odd(library) as w:
+        got = w.jacobian(DERIVATIVES, (*STATES, "F_X", "M_2"))
+    within(np.abs(got - want).max() / np.abs(want).max(), 2e-10, "Jacobian")
+    beyond(np.abs(got * (1 + 1e-6) - want).max() / np.abs(want).max(), 2e-7, "Jacobian, a millionth larger")
+
+
+@pytest.mark.parametrize("law", [{"s": 0.03}, {"s": 0.03, "friction_law": 2, "omega_s": 0.01, "M_brake": 1.0}])
+def test_directional_derivatives_of_outputs_are_their_differences_under_every_law(library: Library, law: dict) -> None:
+    outputs = ("X_O_dot", "lambda_1", "lambda_3", "tau", "X_C", "E", "omega_z_dot")
+    with at_odd(library, **law) as wheel:
+        slow = ODD + np.array([0, 0, 0, 0, 0, 0, 0, ODD[-1] * (0.002 / 1.7 - 1)])  # inside the layer of the law
+        wheel.place(0.3, slow)
+        got = wheel.jacobian(outputs, STATES)
+        for k, name in enumerate(STATES):
+            h = 1e-6 * (1e-2 if name == "omega_z" else 1)
+            sides = []
+            for sign in (1, -1):
+                wheel.place(0.3, slow + sign * h * np.eye(8)[k])
+                sides.append(np.array(wheel.get(*outputs)))
+            want = (sides[0] - sides[1]) / (2 * h)
+            within(np.abs(got[:, k] - want).max() / (1 + np.abs(want).max()), 1e-5, "column of the Jacobian")
+            if want.any():
+                beyond(np.abs(1.01 * got[:, k] - want).max(), 1e-3, "column, a hundredth larger")
+
+
+def test_state_and_friction_may_be_set_at_any_time_and_the_law_follows(library: Library) -> None:
+    with exchange(library) as wheel:
+        frictionless = wheel.derivatives()
+        assert wheel.set(s=0.03) == OK
+        assert wheel.get("friction_mode") == [-1]
+        assert (wheel.derivatives() != frictionless).any()
+        assert wheel.set(theta=1.2, psi_dot=0.4, omega_z=0.5) == OK
+        assert wheel.get("theta", "psi_dot", "omega_z", "friction_mode") == [1.2, 0.4, 0.5, 1]
+        assert wheel.set(phi_dot=1.0) == ERROR
+        assert wheel.set(m=21.0) == ERROR
+
+
+def test_a_held_wheel_stays_at_exactly_zero(library: Library) -> None:
+    with exchange(library, s=0.03, theta_start=np.pi / 2, phi_dot_start=0.0) as wheel:
+        assert wheel.get("friction_mode") == [0]
+        x = wheel.x()
+        assert wheel.derivatives()[-1] == 0
+        wheel.place(0.1, x + np.array([0, 0, 0, 0, 0, 0, 0, 1e-19]))
+        assert wheel.event().valuesOfContinuousStatesChanged
+        assert wheel.x()[-1] == 0
+
+
+@pytest.mark.parametrize("theta", [0.0, -0.1, np.pi, 3.3])
+def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: Library, theta: float) -> None:
+    with exchange(library, s=0.03) as wheel:
+        x = wheel.x()
+        x[STATES.index("theta")] = theta
+        wheel.place(0.1, x)
+        assert np.isfinite(wheel.derivatives()).all()
+        assert wheel.indicators()[1] <= 0 and wheel.wants_event()
+        assert wheel.event().terminateSimulation
+        assert wheel.fmi2EnterContinuousTimeMode(wheel.component) == ERROR
+
+
+def test_a_wheel_off_the_ground_at_the_start_is_a_fault_of_initialization(library: Library) -> None:
+    wheel = FMU2Exchange(library.folder, library.description, True)
+    assert wheel.set(F_Z=500.0) == OK
+    assert wheel.initialise() == ERROR
+    assert "does not press" in wheel.sentences[-1]
+    wheel.close()
+
+
+def test_the_multibody_form_is_refused_with_a_sentence(library: Library) -> None:
+    wheel = FMU2Exchange(library.folder, library.description, True)
+    assert wheel.set(formulation="multibody") == OK
+    assert wheel.initialise() == ERROR
+    assert wheel.sentences[-1].startswith("formulation = 3 (multibody): model exchange needs")
+    wheel.close()
+
+
+def test_calls_of_the_other_kind_are_refused(library: Library) -> None:
+    with exchange(library, logging=True) as wheel, library.wheel(logging=True) as slave:
+        assert wheel.fmi2DoStep(wheel.component, 0.0, 0.1, 0) == ERROR
+        assert "fmi2DoStep" in wheel.sentences[-1] and "model exchange" in wheel.sentences[-1]
+        assert wheel.set_input_derivatives(["F_X"], [[1.0]]) == ERROR
+        slave.start()
+        for call, *arguments in OF_EXCHANGE:
+            assert getattr(wheel, call)(slave.component, *arguments) == ERROR
+            assert call in slave.sentences[-1] and "co-simulation" in slave.sentences[-1]
+        assert slave.step(0.1) == OK
+
+
+OF_EXCHANGE = (
+    ("fmi2SetTime", 1.0),
+    ("fmi2EnterEventMode",),
+    ("fmi2EnterContinuousTimeMode",),
+    ("fmi2NewDiscreteStates", byref(fmi2EventInfo())),
+    ("fmi2CompletedIntegratorStep", 1, byref(c_int()), byref(c_int())),
+    ("fmi2SetContinuousStates", (c_double * 8)(), 8),
+    ("fmi2GetContinuousStates", (c_double * 8)(), 8),
+    ("fmi2GetNominalsOfContinuousStates", (c_double * 8)(), 8),
+    ("fmi2GetDerivatives", (c_double * 8)(), 8),
+    ("fmi2GetEventIndicators", (c_double * 3)(), 3),
+)
+
+
+# Section 3.2.3 of the standard, by hand: in which states a function of model exchange may be called.
+RUNNING = {"event mode", "continuous-time mode"}
+READING = RUNNING | {"initialization mode", "terminated"}
+LEGAL = {
+    "fmi2EnterEventMode": {"continuous-time mode"},
+    "fmi2NewDiscreteStates": {"event mode"},
+    "fmi2EnterContinuousTimeMode": {"event mode"},
+    "fmi2CompletedIntegratorStep": {"continuous-time mode"},
+    "fmi2SetTime": RUNNING,
+    "fmi2SetContinuousStates": {"continuous-time mode"},
+    **{f"fmi2Get{name}": READING for name in ("ContinuousStates", "NominalsOfContinuousStates", "Derivatives")},
+    "fmi2GetEventIndicators": READING,
+}
+
+
+def brought_to(library: Library, state: str) -> FMU2Exchange:
+    wheel = FMU2Exchange(library.folder, library.description)
+    steps = (
+        ("initialization mode", lambda: (wheel.setupExperiment(), wheel.enterInitializationMode())),
+        ("event mode", lambda: (wheel.exitInitializationMode(),)),
+        ("continuous-time mode", lambda: (wheel.fmi2EnterContinuousTimeMode(wheel.component),)),
+        ("terminated", lambda: (wheel.terminate(),)),
+    )
+    for name, step in steps if state != "instantiated" else ():
+        assert set(step()) == {OK}
+        if name == state:
+            break
+    return wheel
+
+
+@pytest.mark.parametrize("state", ["instantiated", *sorted(READING)])
+def test_each_function_is_legal_exactly_where_the_standard_says(library: Library, state: str) -> None:
+    for call, *arguments in OF_EXCHANGE:
+        with brought_to(library, state) as wheel:
+            if call == "fmi2SetContinuousStates":
+                arguments = [(c_double * 8)(*ODD), 8]
+            legal = getattr(wheel, call)(wheel.component, *arguments) == OK
+            assert legal == (state in LEGAL[call]), call
+
+
+def test_wrong_arrays_and_numbers_are_refused_and_change_nothing(library: Library) -> None:
+    with at_odd(library) as wheel:
+        call = wheel.component
+        assert wheel.fmi2SetContinuousStates(call, (c_double * 7)(), 7) == ERROR
+        assert wheel.fmi2GetDerivatives(call, None, 8) == ERROR
+        assert wheel.fmi2GetEventIndicators(call, (c_double * 4)(), 4) == ERROR
+        assert wheel.fmi2SetContinuousStates(call, (c_double * 8)(*[np.nan] * 8), 8) == DISCARD
+        assert wheel.fmi2SetTime(call, np.inf) == ERROR
+        assert (wheel.x() == ODD).all()
+
+
+def test_nominal_values_are_the_scales_of_the_error(library: Library) -> None:
+    nominals = (c_double * 8)()
+    with exchange(library) as wheel:
+        assert wheel.fmi2GetNominalsOfContinuousStates(wheel.component, nominals, 8) == OK
+    assert all(value > 0 for value in nominals)
+    assert list(nominals)[:2] == pytest.approx([1.05, 1.05])  # three heights of the upright wheel
+
+
+def test_co_simulation_is_untouched_by_the_second_kind(library: Library) -> None:
+    assert FMU2Wheel.__mro__[1].__name__ == "FMU2Slave"
+    with library.wheel() as slave:
+        slave.start(s=0.03)
+        assert slave.step(1.0) == OK
+        assert len(slave.get("theta_ddot", "psi_ddot", "phi_ddot", "omega_z_dot")) == 4
+        x = dict(zip(("theta_ddot", "psi_ddot"), slave.rates(("theta_dot", "psi_dot"))(), strict=True))
+        assert slave.get("theta_ddot", "psi_ddot") == pytest.approx(list(x.values()), rel=1e-13)

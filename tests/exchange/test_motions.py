@@ -1,0 +1,171 @@
+"""Model exchange: the wheel moved by solvers that are not ours, with our events, against tables and closed forms.
+
+SciPy's DOP853 with the events of support/exchange.py, and FMPy's CVODE. SI units.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from physics.exact_motions import UPRIGHT
+from physics.measure import instants_error
+from reference import Start, Wheel, solve
+from reference.tables import read_table
+from support.bounds import beyond, within
+from support.closed_forms import fall_time, rolling_inertia
+from support.driver import HEADLINE
+from support.exchange import Run, exchange, no_inputs
+from support.motion import Library, start_values
+from support.scenes import PUSH
+
+FRICTION = {"free": 0.0, "friction": 0.03}
+RIM = start_values(Wheel(J_x=0.05, J_y=0.05, J_z=0.1), Start(theta=1.4, phi_dot=0.0))
+
+
+def moved(library: Library, times: list[float], rtol: float = 1e-11, inputs=no_inputs, **values: float):
+    """The run, its rows of all outputs and local variables at the times that it reached, and its sentences."""
+    with exchange(library, logging=True, **values) as wheel:
+        run, rows = Run(wheel, rtol, inputs), []
+        for t in times:
+            run.to(t)
+            rows.append(wheel.reader(wheel.reals)())
+            if run.ended is not None:
+                break
+        return run, dict(zip(wheel.reals, np.array(rows).T, strict=True)), wheel.sentences
+
+
+@pytest.mark.parametrize("scene", FRICTION)
+def test_the_papers_scenes_come_out_of_another_solver(library: Library, scene: str) -> None:
+    want = read_table(f"paper_{scene}")
+
+    def error(s: float, rtol: float = 1e-11) -> float:
+        _, got, _ = moved(library, list(want["t"]), rtol, s=s)
+        return max(float(np.abs(got[name] - want[name]).max() / np.ptp(want[name])) for name in HEADLINE)
+
+    within(error(FRICTION[scene]), 1e-8, "error")
+    beyond(error(FRICTION[scene], 1e-5), 5e-5, "error at a loose tolerance")
+    beyond(error(FRICTION[scene] + 1e-6), 3e-5, "error of another s")
+
+
+def test_all_37_transitions_fall_on_their_instants(library: Library) -> None:
+    def instants(s: float) -> float:
+        run, _, sentences = moved(library, [10.0], s=s)
+        words = {"stick": 0, "positive.": 1, "negative.": -1}
+        modes = [next(mode for word, mode in words.items() if word in sentence) for sentence in sentences]
+        return instants_error(list(zip(run.events, modes, strict=True)))
+
+    within(instants(0.03), 1e-9, "instants, s")
+    beyond(instants(0.03 * (1 + 1e-6)), 2e-7, "instants of another s, s")
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-10])
+def test_fmpys_cvode_finds_them_too_within_some_thousand_of_its_tolerances(library: Library, tolerance: float) -> None:
+    want, sentences = read_table("paper_friction"), []
+    run = simulate_fmu(
+        library.folder,
+        fmi_type="ModelExchange",
+        start_values={"s": 0.03},
+        stop_time=10,
+        output_interval=0.1,
+        relative_tolerance=tolerance,
+        output=list(HEADLINE),
+        record_events=False,
+        debug_logging=True,
+        logger=lambda _c, _n, _s, _k, text: sentences.append(text.decode()),
+    )
+    error = max(float(np.abs(run[n] - want[n]).max() / np.ptp(want[n])) for n in HEADLINE)
+    within(error / tolerance, 1e4, "error over tolerance")
+    found = [float(sentence.split()[2]) for sentence in sentences]
+    assert len(found) == 37
+    late = np.abs(np.array(found) - read_table("paper_friction_events")["t"][1:]).max()
+    within(late / tolerance, 1e4, "instants over tolerance, s")
+
+
+def test_the_slips_of_150_seconds_are_all_found(library: Library) -> None:
+    run = simulate_fmu(
+        library.folder,
+        fmi_type="ModelExchange",
+        start_values={"s": 0.03},
+        stop_time=150,
+        output_interval=0.5,
+        relative_tolerance=1e-10,
+        output=["n_events", "E"],
+        record_events=False,
+    )
+    assert run["n_events"][-1] == 825
+    within(abs(run["E"][-1] / 55.641452 - 1), 1e-5, "energy at the end")
+
+
+def test_a_released_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library) -> None:
+    run, _, sentences = moved(library, [2.0], phi_dot_start=0.0)
+    assert "fell flat" in sentences[-1]
+    within(abs(run.ended - fall_time(Wheel(), 5 * pi / 12, 1e-7)), 3e-11, "instant, s")
+    beyond(abs(run.ended - fall_time(Wheel(r=0.051), 5 * pi / 12, 1e-7)), 1e-4, "instant of another wheel, s")
+
+
+def test_a_light_rim_lifts_off_where_co_simulation_ends(library: Library) -> None:
+    done = library.simulate([0.0, 2.0], 1e-12, **RIM)
+    run, _, sentences = moved(library, [2.0], **RIM)
+    assert "lifted off" in sentences[-1]
+    within(abs(run.ended - done.end), 1e-10, "instant, s")
+    other = moved(library, [2.0], **{**RIM, "r": 0.051})[0]
+    beyond(abs(other.ended - done.end), 2e-4, "instant of another wheel, s")
+
+
+def test_a_brake_put_on_by_a_continuous_input_stops_and_holds(library: Library) -> None:
+    def brake(t: float) -> dict[str, float]:
+        return {"M_brake": max(0.0, 40.0 * (t - 0.5))}
+
+    run, got, sentences = moved(library, [0.4, 3.0], inputs=brake, **{**UPRIGHT, "phi_dot_start": -5.0})
+    stop = 0.5 + (2 * 5.0 * rolling_inertia(Wheel()) / 40.0) ** 0.5
+    assert "stick" in sentences[0] and len(sentences) == 1
+    within(abs(run.events[-1] - stop), 1e-11, "instant, s")
+    assert got["omega_z"][-1] == 0
+    late, _, _ = moved(library, [3.0], inputs=brake, s=1e-5, **{**UPRIGHT, "phi_dot_start": -5.0})
+    beyond(abs(late.events[-1] - stop), 1e-5, "instant with a trace of rolling friction, s")
+
+
+def test_a_held_wheel_is_let_go_where_a_growing_force_exceeds_the_brake(library: Library) -> None:
+    def push(t: float) -> dict[str, float]:
+        return {"M_brake": 20.0, "F_X": 200.0 * t}
+
+    run, _, sentences = moved(library, [0.4], inputs=push, **{**UPRIGHT, "phi_dot_start": 0.0})
+    assert "release" in sentences[-1]
+    within(abs(run.events[-1] - 20.0 / (0.35 * 200.0)), 2e-11, "instant, s")
+    beyond(abs(run.events[-1] - 20.0 / (0.34 * 200.0)), 1e-3, "instant of a smaller wheel, s")
+
+
+def test_a_solver_that_stops_a_little_early_still_passes_the_event(library: Library) -> None:
+    first = float(read_table("paper_friction_events")["t"][1])
+    for early in (1e-9, -1e-9):
+        with exchange(library, s=0.03) as wheel:
+            run = Run(wheel, 1e-11, no_inputs)
+            run.to(first - early)
+            if not run.events:
+                assert wheel.event().valuesOfContinuousStatesChanged
+            assert wheel.get("friction_mode") == [0] and wheel.x()[-1] == 0
+    with exchange(library, s=0.03) as wheel:  # the partner: a microsecond is not the same instant
+        Run(wheel, 1e-11, no_inputs).to(first - 1e-6)
+        assert not wheel.event().valuesOfContinuousStatesChanged
+        assert wheel.get("friction_mode") == [-1]
+
+
+def test_a_driven_wheel_on_a_slope_agrees_with_the_reference(library: Library) -> None:
+    wheel, start = Wheel(J_x=0.7, J_y=1.2, s=0.02, slope=0.1, slope_direction=0.5), Start(psi_dot=0.4)
+    times = list(np.linspace(0, 3, 7))
+    names = ("X_O", "Y_O", "theta", "psi", "omega_z", "lambda_3", "E")
+
+    def push(t: float) -> dict[str, float]:
+        values = PUSH.derivatives(t)[0]
+        return dict(zip(("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3"), values.tolist(), strict=False))
+
+    def gap(judged: Wheel) -> float:
+        want = solve(judged, start, times, PUSH.for_reference(), rtol=1e-12)
+        _, got, _ = moved(library, times, 1e-11, push, keep_contact=True, **start_values(wheel, start))
+        return max(float(np.abs(got[n] - want[n]).max() / (1 + np.abs(want[n]).max())) for n in names)
+
+    within(gap(wheel), 1e-9, "gap")
+    beyond(gap(Wheel(**{**vars(wheel), "slope": 0.1 + 1e-6})), 5e-6, "gap to a steeper road")

@@ -1,0 +1,155 @@
+"""The FMU in model exchange: an instance, and whole motions by a solver of SciPy with the FMU's events.
+
+The solver is not ours and knows nothing of the wheel: it asks for derivatives and event indicators, searches the dense
+output of each step for the first sign change, and hands the state at that instant to the event mode of the FMU. SI.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from ctypes import POINTER, byref, c_double, c_int
+
+import numpy as np
+from fmpy.fmi2 import FMU2Model, fmi2EventInfo
+from numpy.typing import NDArray
+from scipy.integrate import DOP853
+from scipy.optimize import brentq
+
+from .driver import OK, FMU2Wheel, Value
+from .motion import Library
+
+Array = NDArray[np.float64]
+STATES = ("X_O", "Y_O", "psi", "theta", "phi", "theta_dot", "psi_dot", "omega_z")
+DERIVATIVES = ("X_O_dot", "Y_O_dot", "psi_dot", "theta_dot", "phi_dot", "theta_ddot", "psi_ddot", "omega_z_dot")
+INDICATORS = 3
+SAMPLES = np.linspace(0, 1, 12)[1:]  # of each step, for the search of an indicator's fall
+
+
+class FMU2Exchange(FMU2Wheel, FMU2Model):
+    """One instance for model exchange: fmpy asks for the type that this class inherits from last."""
+
+    def x(self) -> Array:
+        x = np.zeros(len(STATES))
+        assert self.fmi2GetContinuousStates(self.component, self._pointer(x), len(x)) == OK
+        return x
+
+    def place(self, t: float, x: Array) -> None:
+        assert self.fmi2SetTime(self.component, t) == OK
+        x = np.ascontiguousarray(x)
+        assert self.fmi2SetContinuousStates(self.component, self._pointer(x), len(x)) == OK
+
+    def derivatives(self) -> Array:
+        x_dot = np.zeros(len(STATES))
+        assert self.fmi2GetDerivatives(self.component, self._pointer(x_dot), len(x_dot)) == OK
+        return x_dot
+
+    def indicators(self) -> Array:
+        z = np.zeros(INDICATORS)
+        assert self.fmi2GetEventIndicators(self.component, self._pointer(z), len(z)) == OK
+        return z
+
+    def decide(self) -> fmi2EventInfo:
+        """One pass of the event mode, which is enough."""
+        info = fmi2EventInfo()
+        assert self.fmi2NewDiscreteStates(self.component, byref(info)) == OK
+        assert not info.newDiscreteStatesNeeded
+        return info
+
+    def event(self) -> fmi2EventInfo:
+        """Into event mode, and out of it unless the model ends."""
+        assert self.fmi2EnterEventMode(self.component) == OK
+        info = self.decide()
+        if not info.terminateSimulation:
+            assert self.fmi2EnterContinuousTimeMode(self.component) == OK
+        return info
+
+    def wants_event(self) -> bool:
+        answers = c_int(), c_int()
+        assert self.fmi2CompletedIntegratorStep(self.component, 1, *map(byref, answers)) == OK
+        return bool(answers[0].value)
+
+    def jacobian(self, unknowns: Sequence[str], knowns: Sequence[str]) -> Array:
+        """d unknown / d known, by one directional derivative per known."""
+        columns = []
+        for known in knowns:
+            values = (c_double * len(unknowns))()
+            references = self.c_references(unknowns), self.c_references([known])
+            call, seed = self.fmi2GetDirectionalDerivative, (c_double * 1)(1)
+            assert call(self.component, references[0], len(unknowns), references[1], 1, seed, values) == OK
+            columns.append(list(values))
+        return np.array(columns).T
+
+    @staticmethod
+    def _pointer(numbers: Array):
+        return numbers.ctypes.data_as(POINTER(c_double))
+
+
+def exchange(library: Library, logging: bool = False, **values: Value) -> FMU2Exchange:
+    """A new instance in continuous-time mode at t = 0."""
+    wheel = FMU2Exchange(library.folder, library.description, logging)
+    assert wheel.set(**values) == OK
+    assert wheel.initialise() == OK, wheel.sentences
+    assert not wheel.decide().terminateSimulation
+    assert wheel.fmi2EnterContinuousTimeMode(wheel.component) == OK
+    return wheel
+
+
+def no_inputs(_t: float) -> dict[str, float]:
+    return {}
+
+
+class Run:
+    """One motion: rows of the states and of `also` at the times asked for, instants of all events, the ending."""
+
+    def __init__(self, wheel: FMU2Exchange, rtol: float, inputs: Callable[[float], dict[str, float]]) -> None:
+        self.wheel, self.rtol, self.inputs = wheel, rtol, inputs
+        self.t, self.events, self.ended, self.rhs = 0.0, [], None, 0
+        self.at(0.0, wheel.x())
+
+    def at(self, t: float, x: Array) -> None:
+        values = self.inputs(t)
+        if values:
+            assert self.wheel.set(**values) == OK
+        self.wheel.place(t, x)
+
+    def rate(self, t: float, x: Array) -> Array:
+        self.rhs += 1
+        self.at(t, x)
+        return self.wheel.derivatives()
+
+    def lowest(self, t: float, x: Array) -> float:
+        self.at(t, x)
+        return float(self.wheel.indicators().min())
+
+    def to(self, stop: float) -> Array:
+        """The states at `stop`, or at the end of the model before it."""
+        x = self.wheel.x()
+        while self.t < stop and self.ended is None:
+            scale = self.rtol * np.maximum(1, np.abs(x))
+            solver = DOP853(self.rate, self.t, x, stop, rtol=self.rtol, atol=scale, max_step=0.1)
+            fall = None
+            while solver.status == "running" and fall is None:
+                assert solver.step() is None
+                fall = self.fall(solver)
+            x = solver.y if fall is None else fall[1]
+            self.t = solver.t if fall is None else fall[0]
+            self.at(self.t, x)
+            if fall is not None or self.wheel.wants_event():
+                info = self.wheel.event()
+                self.events.append(self.t)
+                self.ended = self.t if info.terminateSimulation else None
+                x = self.wheel.x()
+        return x
+
+    def fall(self, solver: DOP853) -> tuple[float, Array] | None:
+        """The first instant in the last step at which an indicator falls below zero."""
+        dense, t_0, h = solver.dense_output(), solver.t_old, solver.t - solver.t_old
+        before = t_0
+        for t in t_0 + h * SAMPLES:
+            if self.lowest(t, dense(t)) <= 0:
+                root = t
+                if self.lowest(before, dense(before)) > 0:
+                    root = brentq(lambda s: self.lowest(s, dense(s)), before, t, xtol=1e-15, rtol=1e-15)
+                return root, dense(root)
+            before = t
+        return None
