@@ -72,22 +72,24 @@ def held(report: Report) -> None:
     start = {"theta_start": theta, "phi_dot_start": -turn * np.cos(theta), "psi_dot_start": turn}
     found = run(report, 2, 2e-3, Schedule(((0.0, {"M_brake": 200.0}),)), **start)
     report.figure("held_loss", "energy lost by a held wheel", np.ptp(found["E"]) / found["E"][0])
-    sheet, (left, right) = plots.sheet(2)
-    curves = {
-        r"angle $\theta$: it nods": (style.BLUE, np.degrees(found["theta"])),
-        r"$10\,\dot\psi$ [rad/s]: it turns": (style.ORANGE, found["psi_dot"] * 10),
-        "energy $E$ [J]: constant": (style.GREEN, found["E"]),
-        r"$\omega_z$ [rad/s]: held at zero": (style.VERMILLION, found["omega_z"]),
-    }
-    for label, (colour, values) in curves.items():
-        left.plot(found.t, values, color=colour, label=label)
-    left.margins(x=0, y=0.28)
-    left.legend(loc="upper right", ncols=2)
-    title = "A wheel held at $\\omega_z = 0$ by a strong brake"
-    plots.label(left, "time $t$ [s]", r"$\theta$ [deg]; others as named", title)
+    sheet, axes = plots.sheet(2, 3, height=30.0)
+    right = sheet.add_subplot(axes[0].get_gridspec()[:, 1])
+    right.grid(alpha=0.3, linewidth=0.4)
+    curves = (
+        (r"$\theta$ [deg]", np.degrees(found["theta"]), "it nods"),
+        (r"$\dot\psi$ [rad/s]", found["psi_dot"], "it turns"),
+        ("energy $E$ [J]", found["E"], "it loses nothing"),
+    )
+    for (name, values, what), left, spare in zip(curves, axes[::2], axes[1::2], strict=True):
+        spare.remove()
+        left.plot(found.t, values, color=style.BLUE)
+        plots.label(left, "", name, what)
+        left.set(xlim=(0, 2), ylim=(0, 1.15 * values.max()))
+    axes[4].set_xlabel("time $t$ [s]")
+    sheet.suptitle("A wheel held at $\\omega_z = 0$ by a strong brake", fontsize=9.5)
     right.plot(found["X_C"], found["Y_C"], color=style.BLUE, label="contact point")
     right.plot(found["X_O"], found["Y_O"], color=style.VERMILLION, label="centre O, seen from above")
-    from_above(right, "It pivots like a coin", 0.2)
+    from_above(right, "it pivots like a coin", 0.2)
     right.legend(loc="upper left")
     picture(report, sheet, "physics_held")
 
