@@ -11,6 +11,8 @@ namespace {
 // Masters compute times with rounding errors. Times that differ by this much, relative to the step and to the times
 // themselves, count as equal.
 constexpr double step_rounding = 1e-9, time_rounding = 1e-13;
+// Of the step: how much of it may be lost in the rounding of the time reached.
+constexpr double step_digits = 0.1;
 
 bool same_time(double a, double b, double step) {
   return std::fabs(a - b) <= step_rounding * step + time_rounding * (std::fabs(a) + std::fabs(b));
@@ -23,6 +25,11 @@ fmi2Status check_step(Instance& i, double t, double h) {
   if (!std::isfinite(t) || !std::isfinite(h) || h < 0) {
     i.log(Topic::error, "fmi2DoStep from %s s by %s s: times must be finite and the step not negative.", Digits(t).text,
           Digits(h).text);
+    return fmi2Error;
+  }
+  if (std::fabs(t + h - t - h) > step_digits * h) {
+    i.log(Topic::error, "fmi2DoStep from %s s by %s s: a time of this size has no digits left for the step.",
+          Digits(t).text, Digits(h).text);
     return fmi2Error;
   }
   if (!same_time(t, i.simulation.time(), h)) {

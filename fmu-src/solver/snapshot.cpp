@@ -17,7 +17,7 @@ void Solver::visit(Archive& archive) {
   archive.range(stop_time_, -Archive::greatest, never);
   for (long long* count :
        {&counters_.steps, &counters_.rhs, &counters_.jacobians, &counters_.roots, &counters_.restarts})
-    archive.count(*count, 0, 9007199254740992);
+    archive.tally(*count);
   archive.number(step_.start), archive.number(step_.end);
   archive.numbers(step_.y_start, problem_.states), archive.numbers(step_.y_end, problem_.states);
   runge_kutta_.visit(archive, problem_.states);

@@ -30,9 +30,11 @@ struct Archive {
     self().put(word, static_cast<std::int64_t>(least), static_cast<std::int64_t>(most));
     i = static_cast<Integer>(word);
   }
-  template <class... Truths>
-  void truths(Truths&... truth) {
-    (count(truth, 0, 1), ...);
+  // A count stays at the largest that is saved: what goes on counting can be saved again.
+  void tally(long long& n) {
+    constexpr long long most = 9007199254740992;
+    n = n < most ? n : most;
+    count(n, 0, most);
   }
   // Any double at all, as a caller may have set it.
   void anything(double& x) {

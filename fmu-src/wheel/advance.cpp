@@ -26,7 +26,10 @@ double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 
 
 Progressed Simulation::advance(double caller_time) {
   const double t = caller_time - demand_.start_time;
-  if (!demand_.changed && knows(t)) return arrive(t);
+  return !demand_.changed && knows(t) ? arrive(t) : advance_by_stages(t);
+}
+
+Progressed Simulation::advance_by_stages(double t) {
   y_now();
   Run before = run_;
   before.counted = counters();
@@ -41,7 +44,7 @@ Progressed Simulation::advance(double caller_time) {
 
 bool Simulation::knows(double t) const {
   if (run_.phase == Phase::stepping) return solver_.reaches(t);
-  return run_.phase == Phase::unfolded && orbit_ready_ && t <= orbit_.end_time();
+  return run_.phase == Phase::unfolded && orbit_ready_ && t <= orbit_until_;
 }
 
 // Whether what was set since the last step differs from what is in force, or makes another method the right one.
@@ -61,6 +64,8 @@ bool Simulation::take_demand() {
   demand_.changed = false;
   if (!changed) return true;
   const WheelFriction before = run_.in_force.scene.friction;
+  const bool leaves_orbit = run_.phase == Phase::unfolded;
+  if (leaves_orbit && setup_.keep_contact && contact_margin(owner_, run_.t, run_.y) < 0) run_.in_force.change_contact();
   run_.in_force = in_force_from(setup_, demand_, run_.in_force.scene.ground, run_.t, run_.y);
   fresh_ = Fresh::state;
   announce_transition(before);
@@ -92,7 +97,9 @@ bool Simulation::start_solver(bool jumps) {
 // Stage 3: the solution becomes known up to t, or up to an event that ends the run.
 Outcome Simulation::proceed(double t) {
   if (run_.phase == Phase::stepping) return step_to(t);
-  return t <= orbit_.end_time() ? Outcome::stepped : Outcome::event;
+  if (t <= orbit_until_) return Outcome::stepped;
+  if (orbit_until_ == orbit_.end_time()) return Outcome::event;
+  return failure_ = "psi or phi would turn so far that the angle has too few digits", Outcome::failed;
 }
 
 Outcome Simulation::step_to(double t) {
@@ -169,14 +176,23 @@ Progressed Simulation::arrive(double t) {
 }
 
 void Simulation::move_to(double t) {
-  if (setup_.keep_contact && run_.phase == Phase::unfolded) report_pulls_of_orbit(run_.t, t);
+  if (setup_.keep_contact && run_.phase == Phase::unfolded) report_pulls_of_orbit(t);
   run_.t = t;
   fresh_ = Fresh::nothing;
 }
 
-void Simulation::tell_pull(double t) const {
+void Simulation::tell_pull(double t) {
+  run_.last_pull = t;
+  if (run_.pulls++ >= told_pulls) return;
   tell(Topic::warning, "The ground pulls from t = %s s on: keep_contact holds a wheel that would have lifted off.",
        support::Digits(to_nanosecond(demand_.start_time + t)).text);
+}
+
+// At the end of a run: the pulls that were not told one by one.
+void Simulation::sum_up() const {
+  if (run_.pulls > told_pulls)
+    tell(Topic::warning, "The ground has pulled %lld times, of which the first %lld were told; last from t = %s s on.",
+         run_.pulls, told_pulls, support::Digits(to_nanosecond(demand_.start_time + run_.last_pull)).text);
 }
 
 Progressed Simulation::end_run() {
@@ -189,6 +205,7 @@ Progressed Simulation::end_run() {
 
 void Simulation::end_as(Phase phase) {
   freeze(phase);
+  sum_up();
   tell(Topic::discard,
        phase == Phase::fell_flat ? "The wheel %s at t = %s s: the model ends there."
                                  : "The wheel %s at t = %s s, theta = %.6g rad: the model ends there.",

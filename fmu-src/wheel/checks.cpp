@@ -22,6 +22,8 @@ void fault_of(unsigned v, double value, char* sentence, std::size_t size) {
   } else if (v == theta_start && !(std::sin(value) > flat_angle && value > 0 && value < row.max)) {
     std::snprintf(sentence, size, "theta_start = %.9g rad: the wheel must stand above the ground, 0 < theta < pi.",
                   value);
+  } else if ((v == psi_start || v == phi_start) && std::fabs(value) > largest_angle) {
+    std::snprintf(sentence, size, "%s = %.9g rad: beyond 1e12 rad an angle has too few digits.", row.name, value);
   } else if (strictly_positive(v) ? value <= row.min : value < row.min) {
     std::snprintf(sentence, size, "%s = %.9g: it must be %s %g.", row.name, value,
                   strictly_positive(v) ? "greater than" : "at least", row.min);

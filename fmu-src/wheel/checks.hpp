@@ -6,6 +6,9 @@
 
 namespace wheel {
 
+// rad: the digits of a larger angle do not tell where the wheel points.
+inline constexpr double largest_angle = 1e12;
+
 // One sentence per fault goes to `tell` (null: nowhere); true if there is none.
 bool check_values(const Demand& demand, void* owner, void (*tell)(void* owner, const char* sentence));
 

@@ -67,6 +67,7 @@ WheelLoad load_of(const Polynomials& inputs) { return load_after(inputs, 0); }
 WheelLoad load_rate_of(const Polynomials& inputs) {
   WheelLoad rate = {};
   for (int i = 0; i < inputs_count; ++i) *load_entry(rate, i) = inputs[i][1];
+  if (inputs[brake_input][0] <= 0) rate.brake = std::fmax(rate.brake, 0);
   return rate;
 }
 

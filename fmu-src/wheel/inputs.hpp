@@ -36,7 +36,7 @@ struct Inputs {
 };
 
 void set_derivative(Polynomials& inputs, int input, int order, double derivative);
-// The load at the origin of the polynomials, and its rate there.
+// The load at the origin of the polynomials, and its rate from there on: a brake at zero can only be put on.
 WheelLoad load_of(const Polynomials& inputs);
 WheelLoad load_rate_of(const Polynomials& inputs);
 

@@ -1,7 +1,9 @@
 // A run whose motion is unfolded: its orbit is built at the first step, kept while it is that of the run, and read.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
+#include "checks.hpp"
 #include "simulation.hpp"
 
 namespace wheel {
@@ -27,16 +29,32 @@ bool Simulation::enter_orbit() {
     orbit_origin_[first_input] = kind == Orbit::Kind::refused ? 0 : demand_.tolerance;
   }
   orbit_ready_ = orbit_origin_[first_input] != 0;
-  if (orbit_ready_) run_.counted = orbit_.counters();
-  return orbit_ready_;
+  if (!orbit_ready_) return false;
+  run_.counted = orbit_.counters();
+  orbit_until_ = std::fmin(orbit_.end_time(), largest_angle / fastest_turn());
+  return true;
 }
 
-// With keep_contact on the orbit: reports each instant in (t_from, t_to], and the start, at which N falls below zero.
-// Where one communication step has very many of them, only the first ones are reported.
-void Simulation::report_pulls_of_orbit(double t_from, double t_to) const {
-  constexpr long long most = 100;
-  const long long first = t_from == 0 ? 0 : orbit_.falls_until(t_from), end = orbit_.falls_until(t_to);
-  for (long long n = first; n < std::min(end, first + most); ++n) tell_pull(orbit_.fall(n));
+// rad/s: the larger of the mean rates of psi and phi along a motion that repeats.
+double Simulation::fastest_turn() const {
+  const double period = 2 * orbit_.half_period();
+  double first[WHEEL_REDUCED_STATES], second[WHEEL_REDUCED_STATES];
+  if (orbit_.end_time() < Demand::never) return 0;
+  orbit_.read(0, first);
+  orbit_.read(period, second);
+  WheelKinematics from, to;
+  setup_.formulation->pose(&setup_.wheel, first, &from);
+  setup_.formulation->pose(&setup_.wheel, second, &to);
+  return std::fmax(std::fabs(to.psi - from.psi), std::fabs(to.phi - from.phi)) / period;
+}
+
+// With keep_contact on the orbit: reports each instant up to t at which N falls below zero. Those that are not told one
+// by one are counted, however many they are.
+void Simulation::report_pulls_of_orbit(double t) {
+  const long long falls = orbit_.falls_until(t);
+  while (run_.pulls < std::min(falls, told_pulls)) tell_pull(orbit_.fall(run_.pulls));
+  if (falls > run_.pulls) run_.last_pull = orbit_.fall(falls - 1);
+  run_.pulls = falls;
 }
 
 }  // namespace wheel

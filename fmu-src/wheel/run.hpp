@@ -23,12 +23,17 @@ struct InForce {
   }
 };
 
+// Pulls of the ground that are told one by one; a rule that no communication grid changes.
+inline constexpr long long told_pulls = 100;
+
 struct Run {
   Phase phase = Phase::created;
   InForce in_force;
   double t = 0;            // s, own clock: the instant reached
   double last_change = 0;  // s, own clock: when an input or a tunable parameter last changed
   double y[WHEEL_MAX_STATES] = {};
+  long long pulls = 0;            // with keep_contact: how often the ground began to pull
+  double last_pull = 0;           // s, own clock: when it last did
   long long transitions = 0;      // of the friction
   solver::Counters counted = {};  // before the solver was last started from nothing
 };

@@ -73,7 +73,10 @@ bool Simulation::start() {
   return sound;
 }
 
-void Simulation::close() { freeze(has_ended(run_.phase) ? Phase::closed_after_end : Phase::closed); }
+void Simulation::close() {
+  if (!has_ended(run_.phase)) sum_up();
+  freeze(has_ended(run_.phase) ? Phase::closed_after_end : Phase::closed);
+}
 
 // To a phase without further steps: the solution is not needed any more.
 void Simulation::freeze(Phase phase) {

@@ -116,8 +116,10 @@ class Simulation {
   bool pass_transition();
   bool pass_contact();
   void announce_transition(const WheelFriction& before);
-  void tell_pull(double t) const;
+  void tell_pull(double t);
+  void sum_up() const;
   void move_to(double t);
+  Progressed advance_by_stages(double t);
   Progressed arrive(double t);
   Progressed end_run();
   void end_as(Phase phase);
@@ -138,7 +140,8 @@ class Simulation {
   // on_orbit.cpp
   bool orbit_fits() const;
   bool enter_orbit();
-  void report_pulls_of_orbit(double t_from, double t_to) const;
+  double fastest_turn() const;
+  void report_pulls_of_orbit(double t);
 
   Reporter reporter_;
   Demand demand_;
@@ -148,6 +151,7 @@ class Simulation {
   solver::Solver solver_;
   Orbit orbit_;
   bool orbit_ready_ = false;                   // orbit_ is that of the present run
+  double orbit_until_ = 0;                     // s, own clock: how far it can be read
   double orbit_origin_[first_input + 1] = {};  // parameters and tolerance that orbit_ was built for
   const char* failure_ = nullptr;              // why the last call failed
   Reading reading_;

@@ -21,14 +21,12 @@ struct Header {
 // with its bounds, the field, and a sentence about it.
 template <class Archive>
 void visit(Archive& archive, Demand& demand, Run& run) {
-  constexpr double never = Demand::never;
-  constexpr long long most = 9007199254740992;
   InForce& now = run.in_force;
   solver::Counters& counted = run.counted;
   archive("parameters as they were set, `s` asked for among them");
   for (double& parameter : demand.parameters) archive.anything(parameter);
   archive("start time, s").number(demand.start_time);
-  archive("stop time, s; infinite for none").range(demand.stop_time, -Archive::greatest, never);
+  archive("stop time, s; infinite for none").range(demand.stop_time, -Archive::greatest, Demand::never);
   archive("tolerance").range(demand.tolerance, tightest_tolerance, loosest_tolerance);
   archive("inputs asked for, with their derivatives");
   for (auto& input : demand.inputs) archive.anything(input[0]), archive.numbers(input + 1, max_order);
@@ -44,12 +42,14 @@ void visit(Archive& archive, Demand& demand, Run& run) {
   archive("time of the last change, s").range(run.last_change, 0, Archive::greatest);
   archive("state").numbers(run.y, WHEEL_MAX_STATES);
   archive("whether the ground presses or pulls").count(now.scene.ground, WHEEL_GROUND_BY_FORCE, WHEEL_GROUND_PULLS);
-  archive("transitions of the friction").count(run.transitions, 0, most);
-  archive("steps before the solver started").count(counted.steps, 0, most);
-  archive("evaluations before the solver started").count(counted.rhs, 0, most);
-  archive("Jacobians before the solver started").count(counted.jacobians, 0, most);
-  archive("values of watched functions before the solver started").count(counted.roots, 0, most);
-  archive("new starts before the solver started").count(counted.restarts, 0, most);
+  archive("pulls of the ground").tally(run.pulls);
+  archive("time of the last pull, s").range(run.last_pull, 0, Archive::greatest);
+  archive("transitions of the friction").tally(run.transitions);
+  archive("steps before the solver started").tally(counted.steps);
+  archive("evaluations before the solver started").tally(counted.rhs);
+  archive("Jacobians before the solver started").tally(counted.jacobians);
+  archive("values of watched functions before the solver started").tally(counted.roots);
+  archive("new starts before the solver started").tally(counted.restarts);
 }
 
 // Whether the law is one that friction_at could have chosen.

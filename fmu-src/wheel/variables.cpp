@@ -25,6 +25,9 @@ struct Access {
 #define REACTION(value, component) \
   AT(now.value), AT(now.reaction_rates().component), [](const ReactionRates& rates) { return rates.component; }
 
+// An integer of FMI ends where a long run may still count.
+#define TALLY(count) AT(double(std::min<long long>(count, std::numeric_limits<int>::max())))
+
 constexpr Access readers[] = {
     {Computed::X_O, AT(now.pose().X_O), AT(now.kinematics().X_O_dot)},
     {Computed::Y_O, AT(now.pose().Y_O), AT(now.kinematics().Y_O_dot)},
@@ -54,14 +57,15 @@ constexpr Access readers[] = {
     {Computed::E, AT(wheel_energy(&now.scene().wheel, &now.kinematics()))},
     {Computed::mu_required, AT(wheel_required_friction(now.dynamics().lambda))},
     {Computed::friction_mode, AT(now.friction_mode())},
-    {Computed::n_steps, AT(double(now.counters().steps))},
-    {Computed::n_rhs, AT(double(now.counters().rhs))},
-    {Computed::n_jac, AT(double(now.counters().jacobians))},
-    {Computed::n_roots, AT(double(now.counters().roots))},
-    {Computed::n_events, AT(double(now.transitions()))},
-    {Computed::n_restarts, AT(double(now.counters().restarts))},
+    {Computed::n_steps, TALLY(now.counters().steps)},
+    {Computed::n_rhs, TALLY(now.counters().rhs)},
+    {Computed::n_jac, TALLY(now.counters().jacobians)},
+    {Computed::n_roots, TALLY(now.counters().roots)},
+    {Computed::n_events, TALLY(now.transitions())},
+    {Computed::n_restarts, TALLY(now.counters().restarts)},
 };
 
+#undef TALLY
 #undef REACTION
 #undef AT
 

@@ -121,7 +121,9 @@ def place_of(w, row: str) -> int:
         "t": t,
         "last change": t + 1,
         "y": t + 2,
-        "pulling": t + 14,
+        "ground": t + 14,
+        "pulls": t + 15,
+        "transitions": t + 17,
     }[row]
 
 
@@ -144,7 +146,7 @@ def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
     assert words_of(blob)[place_of(running, "phase")] == UNFOLDED
     wrong = [{"phase": 13}, {"phase": 2**63}, {"phase": AT_START}, {"phase": INITIAL}, {"phase": STEPPING}]
     wrong += [{"stop_time": np.nan}, {"stop_time": -np.inf}, {"tolerance": 1.0}, {"t": -1.0}, {"t": np.inf}]
-    wrong += [{"last_change": 9.0}, {"origin": 9.0}, {"s": -1.0}, {"s": 0.1}, {"law": 0}, {"law": 2}, {"pulling": 2}]
+    wrong += [{"last_change": 9.0}, {"origin": 9.0}, {"s": -1.0}, {"s": 0.1}, {"law": 0}, {"law": 2}, {"ground": 3}, {"ground": 0}]
     for changes in wrong:
         assert running.restore(forged(running, blob, **changes)) == ERROR, changes
         assert running.take_messages()[-1].text.startswith(DAMAGED.split(" (")[0]), changes

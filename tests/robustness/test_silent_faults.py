@@ -1,0 +1,228 @@
+"""Small faults that would be silent: one test for each, found by faults that were put in by hand and not noticed."""
+
+from __future__ import annotations
+
+from ctypes import c_double
+from math import pi
+
+import numpy as np
+import pytest
+from contract.test_foreign_states import forged, place_of, signed, words_of
+from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
+from support.pieces import give
+from support.scenes import PAPER
+
+WEIGHT = PAPER.m * PAPER.g
+PULLING = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}
+MANY = 100  # pulls that are told one by one
+
+
+def stepped(w, times):
+    for t in times:
+        assert w.step_to(t) == OK
+    return w
+
+
+def told(w):
+    return [sentence for sentence in w.sentences if "pull" in sentence]
+
+
+@pytest.mark.parametrize("method", [1, 4], ids=["unfolded", "stepped"])
+def test_the_log_of_a_ground_that_pulls_often_does_not_depend_on_the_grid(wheel, method):
+    logs = []
+    for step in (0.25, 4.0, 100.0):
+        w = stepped(wheel().start(method=method, **PULLING), np.arange(step, 100.0 + step / 2, step))
+        assert len(told(w)) == MANY
+        assert w.terminate() == OK
+        logs.append(told(w))
+    assert logs[0] == logs[1] == logs[2] and len(logs[0]) == MANY + 1
+    words = logs[0][-1].split()
+    assert logs[0][-1].startswith("The ground has pulled ") and int(words[4]) > 300
+    assert 99 < float(words[-3]) < 100
+
+
+def test_few_pulls_are_not_summed_up(wheel):
+    w = stepped(wheel().start(**PULLING), [1.0])
+    assert 0 < len(told(w)) < MANY and w.terminate() == OK
+    assert not any("has pulled" in sentence for sentence in told(w))
+
+
+@pytest.mark.parametrize("phi_dot", [-2.0, -2e4])
+def test_a_ground_that_pulls_by_rounding_alone_is_not_told(wheel, phi_dot):
+    """Without weight N is zero but for rounding."""
+    w = wheel().start(g=0.0, keep_contact=True, formulation=3, phi_dot_start=phi_dot, theta_start=pi / 2)
+    stepped(w, [0.01, 0.1])
+    assert told(w) == []
+
+
+@pytest.mark.parametrize("method", [1, 2, 4])
+@pytest.mark.parametrize("t", [0.3, 0.35, 0.4, 0.45, 0.5, 0.55])
+def test_a_restored_run_tells_the_same_pulls(wheel, method, t):
+    """Saved while the ground pulls or presses; afterwards a small push, which takes the run off the orbit."""
+    w = stepped(wheel().start(method=method, **PULLING), [t])
+    blob = w.serialized()
+    other = wheel()
+    assert other.restore(blob) == OK
+    other.time = t
+    w.take_messages()
+    for each in (w, other):
+        each.set(M_1=1e-6)
+        stepped(each, [1.0, 3.0])
+    assert told(w) == told(other) and len(told(w)) > 5
+    assert w.bits() == other.bits()
+    starts = [float(sentence.split(" = ")[1].split()[0]) for sentence in told(w)]
+    assert min(starts) > t  # a pull that had begun before is not told again
+
+
+@pytest.mark.parametrize("braked", [0.0, 2.0])
+@pytest.mark.parametrize("slope", [5.0, -5.0])
+def test_the_rate_of_tau_counts_the_brake(wheel, braked, slope):
+    """Rolling straight with phi_dot < 0: tau is M_brake; a brake at zero can only be put on."""
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=-2.0)
+    stepped(w, [0.1])
+    give(w, {"M_brake": (braked, slope)})
+    assert abs(w.get("tau")[0]) == braked
+    expected = 0.0 if braked == 0 and slope < 0 else slope
+    assert abs(w.rates(["tau"])()[0]) == abs(expected)
+
+
+@pytest.mark.parametrize(("start", "step"), [(1e17, 1.0), (-1e17, 1.0), (1e9, 1e-8)])
+def test_a_step_that_is_lost_in_the_rounding_of_time_is_refused(wheel, start, step):
+    w = wheel().start(start=start)
+    before = w.bits()
+    assert w.fmi2DoStep(w.component, start, step, 0) == ERROR
+    assert "has no digits left for the step" in w.sentences[-1]
+    assert w.bits() == before
+    assert w.fmi2DoStep(w.component, start, abs(start) / 1e8, 0) == OK  # the partner
+
+
+def test_a_step_past_the_digits_of_the_angles_is_refused(wheel):
+    w = wheel().start()
+    stepped(w, [1e6])
+    before = w.get("psi", "phi")
+    assert w.step(1e300) == ERROR
+    assert "too few digits" in w.sentences[-1] and w.get("psi", "phi") == before
+    for angle in ("psi_start", "phi_start"):
+        faulty = wheel()
+        assert faulty.set(**{angle: -1e13}) == OK and faulty.initialise() == ERROR
+        assert "too few digits" in faulty.sentences[-1]
+
+
+@pytest.mark.parametrize("start", [{}, {"s": 0.03}])
+def test_a_run_whose_counts_are_as_large_as_can_be_can_be_saved_again(wheel, start):
+    w = stepped(wheel().start(**start), [0.5])
+    words = list(words_of(w.serialized()))
+    first = place_of(w, "transitions")
+    words[first : first + 6] = [2**53] * 6
+    assert w.restore(signed(words)) == OK
+    w.set(M_3=0.1)
+    stepped(w, [1.0])
+    assert wheel().restore(w.serialized()) == OK
+    assert w.get("n_steps") == [2**31 - 1]
+
+
+def test_another_tolerance_makes_another_orbit(wheel):
+    """After a reset too: the instance may have the orbit of the same wheel with another tolerance."""
+    w = stepped(wheel().start(tolerance=1e-5), [1.0])
+    assert w.reset() == OK
+    w.start(tolerance=1e-10)
+    fresh = wheel().start(tolerance=1e-10)
+    assert stepped(w, [5.0]).bits() == stepped(fresh, [5.0]).bits()
+
+
+def test_the_time_of_the_last_change_is_part_of_a_state(wheel):
+    """It limits the first step after the next change."""
+    differs = 0
+    for k in range(40):
+        w = wheel().start(s=0.03, method=4)
+        t = 0.5 + 0.001 * k
+        stepped(w, [t])
+        w.set(M_3=0.5)
+        stepped(w, [t + 0.002])
+        other, without = wheel(), wheel()
+        blob = w.serialized()
+        assert other.restore(blob) == OK
+        assert without.restore(forged(w, blob, last_change=0.0)) == OK
+        ends = []
+        for each in (w, other, without):
+            each.time = t + 0.002
+            each.set(M_3=0.1)
+            ends.append(stepped(each, [t + 0.004, 3.0]).bits())
+        assert ends[0] == ends[1]
+        differs += ends[0] != ends[2]
+    assert differs > 5  # the partner
+
+
+def test_the_ground_of_a_state_must_press_or_pull(wheel):
+    w = stepped(wheel().start(s=0.03), [0.5])
+    for ground in (0, 2):
+        assert w.restore(forged(w, w.serialized(), ground=ground)) == ERROR
+    kept = stepped(wheel().start(s=0.03, keep_contact=True), [0.5])
+    assert kept.restore(forged(kept, kept.serialized(), ground=0)) == ERROR
+
+
+def test_a_derivative_by_a_parameter_at_its_upper_limit_is_one_sided(wheel):
+    """J_z of the default wheel is the largest that goes with J_x and J_y."""
+    w = wheel()
+    assert w.set(psi_dot_start=2.0, theta_start=1.2) == OK
+    w.setupExperiment(None, 0.0, None)
+    assert w.enterInitializationMode() == OK
+    names, delta = ("lambda_1", "lambda_3", "lambda_y"), 1e-5
+    given = (c_double * 3)()
+    arrays = w.c_references(names), 3, w.c_references(["J_z"]), 1, (c_double * 1)(1.0), given
+    assert w.fmi2GetDirectionalDerivative(w.component, *arrays) == OK
+    centre = w.get(*names)
+    assert w.set(J_z=1.8 - delta) == OK
+    quotient = (np.array(centre) - w.get(*names)) / delta
+    assert np.allclose(given, quotient, rtol=1e-4, atol=1e-6) and np.abs(given).max() > 0.1
+
+
+def test_the_contact_s_velocity_needs_nothing_read_before(wheel):
+    w, other = (stepped(wheel().start(), [0.7]) for _ in range(2))
+    assert other.get("X_O_dot", "Y_O_dot")
+    assert w.rates(["X_C"])() == other.rates(["X_C"])() != [0.0]
+
+
+def test_cuts_of_a_polynomial_at_a_late_start_time_are_no_changes(wheel):
+    """At 1e9 s the times of the caller are rounded to 1e-7 s, and so are the values that it sets."""
+    w = wheel().start(start=1e9, method=2, theta_start=pi / 2, phi_dot_start=-8.0)
+    for k in range(20):
+        give(w, {"M_3": (1.0 + 3.0 * 0.03 * k, 3.0)})
+        assert w.step_to(1e9 + 0.03 * (k + 1)) == OK
+    assert w.get("n_restarts") == [0]
+
+
+def test_a_ground_that_pulls_does_not_hold_the_wheel(wheel):
+    """N = -m g: friction has no capacity, and the smallest moment rolls the wheel."""
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0, s=0.03, keep_contact=True)
+    w.set(F_Z=2 * WEIGHT, M_3=0.01)
+    stepped(w, [0.5])
+    inertia = PAPER.J_z + PAPER.m * (PAPER.r_0 + PAPER.r) ** 2
+    assert w.get("phi_dot")[0] == pytest.approx(0.01 * 0.5 / inertia, rel=1e-6)
+    pressed = wheel().start(theta_start=pi / 2, phi_dot_start=0.0, s=0.03, keep_contact=True)  # the partner
+    pressed.set(M_3=0.01)
+    assert stepped(pressed, [0.5]).get("phi_dot") == [0.0]
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_lift_off_is_found_between_the_extremes_of_an_input(wheel, seed):
+    """Upright N = m g - F_Z(t): the first root of a cubic with two extremes inside one internal step."""
+    rng, T = np.random.default_rng(seed), 0.06
+    missed = []
+    for _ in range(40):
+        lo, hi = np.sort(rng.uniform(0.1, 0.9, 2))
+        sign = rng.choice([-1.0, 1.0])
+        cubic = np.polynomial.Polynomial([0, lo * hi, -(lo + hi) / 2, 1 / 3]) * sign
+        peak = max(cubic(lo), cubic(hi), cubic(1.0))
+        force = 0.5 + (cubic - peak) * rng.uniform(2, 20) + rng.uniform(0.45, 0.55)  # in weights
+        roots = [r.real for r in (force - 1).roots() if abs(r.imag) < 1e-12 and 0 < r.real < 1]
+        w = wheel().start(theta_start=pi / 2, phi_dot_start=-3.0, method=4)
+        if force(0) > 0.99:
+            continue
+        give(w, {"F_Z": tuple(WEIGHT * force.coef / T ** np.arange(4))}, 0.0)
+        status = w.step_to(T)
+        t = w.status(LAST_SUCCESSFUL_TIME)
+        ok = status == DISCARD and abs(t - T * min(roots)) < 1e-6 if roots else status == OK
+        if not ok:
+            missed.append((force.coef, roots, status, t))
+    assert missed == []
