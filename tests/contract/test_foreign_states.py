@@ -107,7 +107,7 @@ def place_of(w, row: str) -> int:
     parameters, inputs = w.references["F_X"], 7 * 4
     after = HEADER + parameters
     stop, asked = after + 1, after + 3
-    phase = asked + inputs + 1
+    phase = asked + inputs + 2
     friction, in_force = phase + 2, phase + 4
     t = in_force + 1 + inputs - 1 + 1
     return {
@@ -135,8 +135,7 @@ def forged(w, blob: bytes, **changes: int | float) -> bytes:
     return signed(words)
 
 
-CREATED, INITIALIZING, FAULTY, INITIAL, AT_START, STEPPING, UNFOLDED, FLAT, LIFTED = range(9)
-RUN_TO = 0.5  # s, by bring_to
+CREATED, INITIALIZING, FAULTY, INITIAL, AT_START, STEPPING, UNFOLDED, EVENT_MODE, CONTINUOUS_TIME, FLAT = range(10)
 
 
 def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
@@ -144,7 +143,7 @@ def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
     before, blob, young = running.serialized(), running.serialized(), fresh.serialized()
     assert forged(running, blob) == blob
     assert words_of(blob)[place_of(running, "phase")] == UNFOLDED
-    wrong = [{"phase": 13}, {"phase": 2**63}, {"phase": AT_START}, {"phase": INITIAL}, {"phase": STEPPING}]
+    wrong = [{"phase": 15}, {"phase": EVENT_MODE}, {"phase": 2**63}, {"phase": AT_START}, {"phase": INITIAL}, {"phase": STEPPING}]
     wrong += [{"stop_time": np.nan}, {"stop_time": -np.inf}, {"tolerance": 1.0}, {"t": -1.0}, {"t": np.inf}]
     wrong += [{"last_change": 9.0}, {"origin": 9.0}, {"s": -1.0}, {"s": 0.1}, {"law": 0}, {"law": 2}]
     wrong += [{"ground": 0}, {"ground": 3}]
