@@ -59,7 +59,7 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   Instant now = instant_of(scene, y);
   AxleLaw law = law_of(scene, y[3]);
-  Motion a = move(&now.system, &law);
+  Accelerations a = move(&now.system, &law);
   y_dot[0] = now.carrier.omega_1;
   y_dot[1] = a.omega_1_dot;
   y_dot[2] = a.omega_2_dot;
@@ -101,7 +101,7 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   Instant now = instant_of(scene, y);
   const Carrier* c = &now.carrier;
   AxleLaw law = law_of(scene, y[3]);
-  Motion a = move(&now.system, &law);
+  Accelerations a = move(&now.system, &law);
   reaction_of(w, c, &now.heading, &now.drift, &a, out->lambda);
   out->tau = a.tau;
   out->omega_z_dot = a.omega_3_dot;
@@ -137,7 +137,7 @@ static void respond(const WheelScene* scene, const WheelLoad* load_dot, const Ax
   Drift drift = {0};
   add_load(&drift, &c, &heading, load_dot, 0, 0);
   System system = system_of(w, &inertia, &c, &drift);
-  Motion a = solve(&system, law);
+  Accelerations a = solve(&system, law);
   reaction_of(w, &c, &heading, &drift, &a, out->lambda_dot);
   out->tau_dot = a.tau;
 }
@@ -155,7 +155,7 @@ static void add_reaction(const WheelScene* scene, const AxleLaw* law, const doub
   double moved[WHEEL_REDUCED_STATES], lambda[3];
   for (int i = 0; i < WHEEL_REDUCED_STATES; ++i) moved[i] = y[i] + h * y_dot[i];
   Instant now = instant_of(scene, moved);
-  Motion a = solve(&now.system, law);
+  Accelerations a = solve(&now.system, law);
   reaction_of(&scene->wheel, &now.carrier, &now.heading, &now.drift, &a, lambda);
   for (int i = 0; i < 3; ++i) out->lambda_dot[i] += weight * lambda[i];
   out->tau_dot += weight * a.tau;

@@ -58,11 +58,11 @@ typedef struct AxleLaw {
   double brake;    /* N m, capacity of the brake times kappa */
 } AxleLaw;
 
-typedef struct Motion {
+typedef struct Accelerations {
   double omega_1_dot, omega_2_dot, omega_3_dot;
   double N;   /* normal force */
   double tau; /* moment of ground and brake about the axle */
-} Motion;
+} Accelerations;
 
 static inline Heading heading_of(double psi) { return (Heading){.sin_psi = sin(psi), .cos_psi = cos(psi)}; }
 
@@ -163,9 +163,9 @@ static inline double axle_moment(const System* s, const AxleLaw* law) {
   return -(law->grip * N + law->brake);
 }
 
-static inline Motion solve(const System* s, const AxleLaw* law) {
+static inline Accelerations solve(const System* s, const AxleLaw* law) {
   double tau = axle_moment(s, law), h_3 = s->h_3 + tau;
-  return (Motion){
+  return (Accelerations){
       .omega_1_dot = s->omega_1_dot + s->tilting * tau,
       .omega_2_dot = (s->a_33 * s->b_2 - s->a_23 * h_3) * s->inverse_determinant,
       .omega_3_dot = law->held ? 0.0 : (s->b_22 * h_3 - s->a_23 * s->b_2) * s->inverse_determinant,
@@ -175,8 +175,8 @@ static inline Motion solve(const System* s, const AxleLaw* law) {
 }
 
 /* The same where the ground may pull (N <= 0): then the ground's part of the friction is zero. */
-static inline Motion move(const System* s, AxleLaw* law) {
-  Motion a = solve(s, law);
+static inline Accelerations move(const System* s, AxleLaw* law) {
+  Accelerations a = solve(s, law);
   if (a.N > 0 || law->grip == 0 || law->branch_kept) return a;
   law->grip = 0;
   return solve(s, law);
@@ -184,7 +184,7 @@ static inline Motion move(const System* s, AxleLaw* law) {
 
 /* The reaction R = m a - F turned into fixed axes: lambda_1, lambda_2, lambda_3. */
 static inline void reaction_of(const WheelParameters* w, const Carrier* c, const Heading* heading, const Drift* d,
-                               const Motion* a, double lambda[3]) {
+                               const Accelerations* a, double lambda[3]) {
   double R_1 = d->k_1 + w->m * (c->eta * a->omega_2_dot - c->rho * a->omega_3_dot);
   double R_2 = d->k_2 - w->m * (c->eta * a->omega_1_dot);
   double R_3 = d->k_3 + w->m * (c->rho * a->omega_1_dot);

@@ -1,5 +1,6 @@
-// Pointers that this library handed out and that a master passes back: instances and FMU states. A faulty master passes
-// one twice, one that is already freed, or one that never was handed out; only what a registry holds is touched.
+// Pointers that this library handed out and that a master passes back. A faulty master passes one twice, one that is
+// already freed, or one that never was handed out. An FMU state is touched only if its registry holds it; an instance
+// is looked up where it is freed, terminated or reset.
 #pragma once
 
 #include <atomic>

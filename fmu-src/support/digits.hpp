@@ -1,6 +1,6 @@
-// A number for a message with as many digits as it needs: the shortest of 15 to 17 that reads back as the same double,
-// with a point whatever the host's locale is. Times are given in this way, so that a master can be told exactly when
-// something was.
+// A number for a message: as many digits as it needs, the shortest of 15 to 17 that reads back as the same double, or
+// as many as are asked for; with a point whatever the host's locale is. All numbers of messages that are not whole are
+// written by it. Times are given with all digits, so that a caller can be told exactly when something was.
 #pragma once
 
 #include <cstdio>
@@ -10,15 +10,21 @@
 namespace support {
 
 struct Digits {
-  // By the C library: std::to_chars would bring C++'s run-time library, with exceptions, into a release.
   explicit Digits(double x) {
-    for (int digits = 15; digits <= 17; ++digits) {
-      std::snprintf(text, sizeof text, "%.*g", digits, x);
-      if (std::strtod(text, nullptr) == x) break;
-    }
+    int digits = 15;
+    do write(x, digits);
+    while (std::strtod(text, nullptr) != x && ++digits <= 17);
+    point();
+  }
+  Digits(double x, int digits) { write(x, digits), point(); }
+  char text[32];
+
+ private:
+  // By the C library: std::to_chars would bring C++'s run-time library, with exceptions, into a release.
+  void write(double x, int digits) { std::snprintf(text, sizeof text, "%.*g", digits, x); }
+  void point() {
     if (char* comma = std::strchr(text, ',')) *comma = '.';
   }
-  char text[32];
 };
 
 }  // namespace support

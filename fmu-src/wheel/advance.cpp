@@ -208,15 +208,15 @@ void Simulation::end_as(Phase phase) {
   sum_up();
   tell(Topic::discard,
        phase == Phase::fell_flat ? "The wheel %s at t = %s s: the model ends there."
-                                 : "The wheel %s at t = %s s, theta = %.6g rad: the model ends there.",
-       ending(), support::Digits(time()).text, run_.y[setup_.formulation->tilt_index]);
+                                 : "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
+       ending(), support::Digits(time()).text, support::Digits(run_.y[setup_.formulation->tilt_index], 6).text);
 }
 
 // The state is that before the step, and stays so.
 Progressed Simulation::fail(const Run& before, bool changed) {
   if (run_.phase == Phase::stepping) move_to(solver_.known_until());
-  tell(Topic::error, "The solver stopped at t = %s s, where omega_z = %.4g rad/s: %s.", support::Digits(time()).text,
-       y_now()[setup_.formulation->spin_index], failure_ ? failure_ : solver_.failure());
+  tell(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.", support::Digits(time()).text,
+       support::Digits(y_now()[setup_.formulation->spin_index], 4).text, failure_ ? failure_ : solver_.failure());
   run_ = before;
   run_.phase = Phase::failed;
   demand_.changed = changed;

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "digits.hpp"
 #include "simulation.hpp"
 
 namespace wheel {
 namespace {
+
+using support::Digits;
 
 bool strictly_positive(unsigned v) {
   return v == m || v == r_0 || v == J_x || v == J_y || v == J_z || v == omega_s || v == theta_start;
@@ -18,19 +21,21 @@ void fault_of(unsigned v, double value, char* sentence, std::size_t size) {
   const Row& row = row_of(v);
   sentence[0] = 0;
   if (!std::isfinite(value)) {
-    std::snprintf(sentence, size, "%s = %g: a finite number is needed.", row.name, value);
+    std::snprintf(sentence, size, "%s = %s: a finite number is needed.", row.name, Digits(value, 9).text);
   } else if (v == theta_start && !(std::sin(value) > flat_angle && value > 0 && value < row.max)) {
-    std::snprintf(sentence, size, "theta_start = %.9g rad: the wheel must stand above the ground, 0 < theta < pi.",
-                  value);
+    std::snprintf(sentence, size, "theta_start = %s rad: the wheel must stand above the ground, 0 < theta < pi.",
+                  Digits(value, 9).text);
   } else if ((v == psi_start || v == phi_start) && std::fabs(value) > largest_angle) {
-    std::snprintf(sentence, size, "%s = %.9g rad: beyond 1e12 rad an angle has too few digits.", row.name, value);
+    std::snprintf(sentence, size, "%s = %s rad: beyond 1e12 rad an angle has too few digits.", row.name,
+                  Digits(value, 9).text);
   } else if (strictly_positive(v) ? value <= row.min : value < row.min) {
-    std::snprintf(sentence, size, "%s = %.9g: it must be %s %g.", row.name, value,
-                  strictly_positive(v) ? "greater than" : "at least", row.min);
+    std::snprintf(sentence, size, "%s = %s: it must be %s %s.", row.name, Digits(value, 9).text,
+                  strictly_positive(v) ? "greater than" : "at least", Digits(row.min, 6).text);
   } else if (v == slope && value >= row.max) {
-    std::snprintf(sentence, size, "slope = %.9g rad: it must be less than pi/2.", value);
+    std::snprintf(sentence, size, "slope = %s rad: it must be less than pi/2.", Digits(value, 9).text);
   } else if (value > row.max) {
-    std::snprintf(sentence, size, "%s = %.9g: it must be at most %g.", row.name, value, row.max);
+    std::snprintf(sentence, size, "%s = %s: it must be at most %s.", row.name, Digits(value, 9).text,
+                  Digits(row.max, 6).text);
   }
 }
 
@@ -48,8 +53,8 @@ void inertia_fault(const double* v, char* sentence, std::size_t size) {
   const double sum = v[J_x] + v[J_y] + v[J_z];
   const double largest = std::fmax(v[J_x], std::fmax(v[J_y], v[J_z]));
   if (largest <= (sum - largest) * (1 + rounding) || !std::isfinite(sum)) return;
-  std::snprintf(sentence, size, "J_x, J_y, J_z = %.9g, %.9g, %.9g kg m2: none may exceed the sum of the other two.",
-                v[J_x], v[J_y], v[J_z]);
+  std::snprintf(sentence, size, "J_x, J_y, J_z = %s, %s, %s kg m2: none may exceed the sum of the other two.",
+                Digits(v[J_x], 9).text, Digits(v[J_y], 9).text, Digits(v[J_z], 9).text);
 }
 
 }  // namespace
@@ -92,9 +97,10 @@ bool Simulation::check_start(bool report) {
   const double* v = demand_.parameters;
   if (report)
     tell(Topic::error,
-         "The initial energy or reaction force overflows: m = %.3g kg, J_z = %.3g kg m2, r_0 = %.3g m, "
-         "g = %.3g m/s2, omega_z = %.3g rad/s.",
-         v[m], v[J_z], v[r_0], v[g], reading().kinematics().omega_z);
+         "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, g = %s m/s2, "
+         "omega_z = %s rad/s.",
+         Digits(v[m], 3).text, Digits(v[J_z], 3).text, Digits(v[r_0], 3).text, Digits(v[g], 3).text,
+         Digits(reading().kinematics().omega_z, 3).text);
   return false;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "digits.hpp"
 #include "simulation.hpp"
 
 namespace wheel {
@@ -113,9 +114,9 @@ bool Simulation::starts_inside() {
   const Margins start = margins();
   if (start.flat > 0 && (start.contact > 0 || setup_.keep_contact)) return true;
   tell(Topic::error,
-       start.flat > 0 ? "The ground does not press on the wheel at the start: N = %.6g N."
-                      : "The wheel lies flat at the start: N = %.6g N.",
-       reading().dynamics().lambda[2]);
+       start.flat > 0 ? "The ground does not press on the wheel at the start: N = %s N."
+                      : "The wheel lies flat at the start: N = %s N.",
+       support::Digits(reading().dynamics().lambda[2], 6).text);
   return false;
 }
 

@@ -32,7 +32,8 @@ ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& f
   const double slowest = 1 / own_time, omega_2 = start.psi_dot * std::sin(start.theta);
   const double tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
   const double turn = std::max(slowest, tilting);
-  // psi, phi, X_O, Y_O do not feed back into the closed states: their errors do not grow, and may be larger.
+  // Errors of X_O and Y_O do not feed back into the motion, those of psi only under a force along the road, those of
+  // phi only where J_x differs from J_y: they grow little, and may be larger.
   const double reduced[] = {1, turn, turn, turn, 3, 3, 3 * length, 3 * length};
   // The velocity of O is bound to the rates by the constraints: weighed lower, it strays less from them.
   const double speed = 0.15 * slowest * length;

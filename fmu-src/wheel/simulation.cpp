@@ -6,6 +6,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "digits.hpp"
+
 namespace wheel {
 
 bool Simulation::tell(Topic topic, const char* format, ...) const {
@@ -33,8 +35,8 @@ void Simulation::set_experiment(double start_time, double stop_time, double tole
   demand_.stop_time = stop_time;
   demand_.tolerance = taken;
   if (tolerance > 0 && tolerance != taken)
-    tell(Topic::warning, "The tolerance %g is outside [%g, %g]; %g is used.", tolerance, tightest_tolerance,
-         loosest_tolerance, taken);
+    tell(Topic::warning, "The tolerance %s is outside [1e-13, 0.0001]; %s is used.", support::Digits(tolerance, 6).text,
+         support::Digits(taken, 6).text);
 }
 
 void Simulation::store(unsigned variable, double value) {
