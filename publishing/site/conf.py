@@ -51,22 +51,25 @@ CONTENTS = """
 ```
 """
 CHAPTERS = {
-    "The wheel": "docs/physics docs/variables docs/brake_hold_steer docs/notation docs/equations docs/errata",
-    "Use it": "docs/in_your_tool docs/vehicle docs/c_header docs/page docs/studies examples/wheel examples/README "
-    "docs/interoperability",
+    "The wheel": "docs/README docs/physics docs/variables docs/brake_hold_steer docs/notation docs/equations "
+    "docs/errata",
+    "Use it": "docs/in_your_tool docs/vehicle examples/wheel docs/*",
+    "Examples": "examples/README examples/*/README",
     "Measured": "docs/results/*",
-    "Make it": "CONTRIBUTING docs/README CHANGELOG SECURITY docs/decisions/*",
+    "Make it": "CONTRIBUTING */README CHANGELOG SECURITY docs/decisions/*",
 }
 
 
 def contents() -> str:
-    """The chapters of the site, below the README."""
-    found = []
+    """The chapters of the site, below the README: each document stands where it is named first."""
+    found, seen = [], set()
     for caption, names in CHAPTERS.items():
         kinds = [f"{name}{kind}" for name in names.split() for kind in (".md", ".ipynb")]
         paths = [path.relative_to(ROOT) for kind in kinds for path in sorted(ROOT.glob(kind))]
-        pages = "\n".join(f"/{path.with_suffix('')}" for path in paths)
-        found.append(CONTENTS.format(caption=caption, pages=pages))
+        pages = [str(path.with_suffix("")) for path in paths]
+        pages = [page for page in dict.fromkeys(pages) if page not in seen]
+        seen.update(pages)
+        found.append(CONTENTS.format(caption=caption, pages="\n".join(f"/{page}" for page in pages)))
     return "".join(found)
 
 
