@@ -8,12 +8,14 @@ from __future__ import annotations
 import sys
 
 from libcosimpy.CosimExecution import CosimExecution
+from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimObserver import CosimObserver
 
 
 def main() -> None:
     """One run."""
     package, step, stop, *wanted = sys.argv[1:]
+    log_output_level(CosimLogLevel.WARNING)  # else each call of its own libraries is told
     execution = CosimExecution.from_ssp_file(package, round(float(step) * 1e9))  # nanoseconds
     observer = CosimObserver.create_last_value()
     execution.add_observer(observer)
