@@ -92,7 +92,7 @@ class Fetch:
             tar.add(folder / CRATE, CRATE)
         digest = hashlib.sha256(self.archive.read_bytes()).hexdigest()
         (folder / "fetch.cmake").write_text(
-            f"include({ROOT}/cmake/sundials.cmake)\nset(sundials_sha256 {digest})\nfetch_sundials(source)\n"
+            f'include("{ROOT}/cmake/sundials.cmake")\nset(sundials_sha256 {digest})\nfetch_sundials(source)\n'
         )
         self.bin.mkdir()
         (self.bin / "cmake").symlink_to(shutil.which("cmake"))
