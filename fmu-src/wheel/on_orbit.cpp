@@ -24,9 +24,9 @@ bool Simulation::enter_orbit() {
       if (event == static_cast<int>(Event::contact_changes)) static_cast<Owner*>(of)->in_force.change_contact();
       return event == static_cast<int>(Event::contact_changes);
     };
-    const Orbit::Kind kind = orbit_.build(problem_of(owner), demand_.tolerance, pass, setup_.start, solver_);
+    const auto kind = orbit_.build(problem_of(owner), demand_.tolerance, pass, setup_.start, solver_);
     std::memcpy(orbit_origin_, demand_.parameters, sizeof demand_.parameters);
-    orbit_origin_[first_input] = kind == Orbit::Kind::refused ? 0 : demand_.tolerance;
+    orbit_origin_[first_input] = kind == orbit::Orbit::Kind::refused ? 0 : demand_.tolerance;
   }
   orbit_ready_ = orbit_origin_[first_input] != 0;
   if (!orbit_ready_) return false;

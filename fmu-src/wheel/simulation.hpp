@@ -149,7 +149,7 @@ class Simulation {
   Run run_;
   Owner owner_ = {setup_, run_.in_force};
   solver::Solver solver_;
-  Orbit orbit_;
+  orbit::Orbit orbit_;
   bool orbit_ready_ = false;                   // orbit_ is that of the present run
   double orbit_until_ = 0;                     // s, own clock: how far it can be read
   double orbit_origin_[first_input + 1] = {};  // parameters and tolerance that orbit_ was built for

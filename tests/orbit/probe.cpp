@@ -19,12 +19,29 @@ struct Probe {
   wheel::Setup setup;
   wheel::InForce in_force;
   solver::Solver solver;
-  wheel::Orbit orbit;
+  orbit::Orbit orbit;
 };
 
 double force(const Probe& probe, const double* y) {
   double y_dot[8];
   return wheel_reduced.derivative(&probe.in_force.scene, y, y_dot);
+}
+
+// What is added to the rates of the wheel, of size `added`: no wheel with such a force may be unfolded.
+enum { drag, towards_north, unbalanced, growing, wind };
+int kind = 0;
+double added = 0;
+decltype(solver::Problem::derivative) rates_of_wheel = nullptr;
+
+double disturbed(void* owner, double t, const double* y, double* y_dot) {
+  const double margin = rates_of_wheel(owner, t, y, y_dot);
+  if (kind == drag)
+    for (int i = 1; i < 4; ++i) y_dot[i] -= added * y[i];
+  if (kind == towards_north) y_dot[2] += added * std::cos(y[4]);
+  if (kind == unbalanced) y_dot[3] += added * std::cos(y[5]);
+  if (kind == growing) y_dot[3] += added * t;
+  if (kind == wind) y_dot[6] += added;
+  return margin;
 }
 
 bool pass(void* owner, int event) {
@@ -67,12 +84,18 @@ PUBLIC Probe* probe_make(const WheelParameters* w, const WheelMotion* start, dou
 
 PUBLIC void probe_free(Probe* probe) { delete probe; }
 
+// For all builds that follow.
+PUBLIC void probe_disturb(int what, double size) { kind = what, added = size; }
+
 // 0 refused, 1 folded, 2 ended.
 PUBLIC int probe_build(Probe* probe) {
   wheel::InForce in_force = probe->in_force;
   wheel::Owner owner = {probe->setup, in_force};
-  return static_cast<int>(
-      probe->orbit.build(wheel::problem_of(owner), probe->setup.tolerance, pass, probe->setup.start, probe->solver));
+  solver::Problem problem = wheel::problem_of(owner);
+  rates_of_wheel = problem.derivative;
+  if (added != 0) problem.derivative = disturbed;
+  const wheel::Setup& setup = probe->setup;
+  return static_cast<int>(probe->orbit.build(problem, setup.tolerance, pass, setup.start, probe->solver));
 }
 
 // States at `count` instants, 8 numbers each, and N.

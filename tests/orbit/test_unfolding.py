@@ -207,3 +207,26 @@ def test_the_order_of_readings_does_not_change_a_bit(library: ctypes.CDLL) -> No
     assert second.build() == "folded"
     assert np.array_equal(first(t), second(t))
     assert not np.array_equal(first(t), Orbit(library, start=SLANTED, tolerance=1.01e-8)(t))
+
+
+DISTURBANCES = ("drag", "towards north", "unbalanced", "growing", "wind")  # the order of probe.cpp
+BROKEN = [(kind, PAPER) for kind in range(5)]
+# A steady wind keeps straight rolling straight.
+BROKEN += [(kind, Start(psi=0.4, theta=np.pi / 2, phi_dot=-9.0)) for kind in range(4)]
+
+
+@pytest.mark.parametrize(
+    ("kind", "start"), BROKEN, ids=[f"{DISTURBANCES[k]}, {'swinging' if s == PAPER else 'steady'}" for k, s in BROKEN]
+)
+def test_what_breaks_the_symmetry_is_noticed_whatever_it_is(library: ctypes.CDLL, kind: int, start: Start) -> None:
+    """Nobody tells the orbit what acts on the wheel: a force that a list of conditions forgets must not be lost."""
+    orbit = Orbit(library, start=start)
+    assert orbit.kind == "folded"
+    try:
+        for size in (1e-2, 1e-5, 1e-7):
+            library.probe_disturb(kind, ctypes.c_double(size))
+            assert orbit.build() == "refused", size
+        library.probe_disturb(kind, ctypes.c_double(1e-12))  # less than the tolerance can tell
+        assert orbit.build() == "folded"
+    finally:
+        library.probe_disturb(kind, ctypes.c_double(0))

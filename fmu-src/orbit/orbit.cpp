@@ -1,10 +1,11 @@
-// Half a nutation of the free wheel is integrated and judged. Reduced form, carrier frame; it is read in unfold.cpp.
+// Half a nutation of the free wheel is integrated, and its symmetry is tested against the right-hand side. Reduced
+// form, carrier frame; it is read in unfold.cpp.
 #include "orbit.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace wheel {
+namespace orbit {
 
 namespace {
 
@@ -14,11 +15,14 @@ constexpr double finer = 0.1, finest = 1e-14;
 // A looser tolerance than this would save little, since one nutation costs little, and its long steps would not be as
 // accurate as they estimate.
 constexpr double loosest = 1e-8;
-// least_swing and largest_rest are in units of that fraction. A swing of omega_1 below least_swing cannot be told from
-// the errors of a few steps (each may be 0.003), and a wheel that swings less than largest_rest is in steady motion.
-// most_difference, in units of the tolerance: how much the state at the end of the integration may differ from its
-// mirror image.
-constexpr double least_swing = 0.01, largest_rest = 0.003, most_difference = 100;
+// In units of that fraction: a swing of omega_1 below least_swing cannot be told from the errors of a few steps (each
+// may be 0.003), and a wheel that swings less than largest_rest is in steady motion. largest_break: how much a state
+// may change within the longest step by what breaks the symmetry, which rounding does too.
+constexpr double least_swing = 0.01, largest_rest = 0.003, largest_break = 0.1;
+
+bool agree(const solver::Problem& problem, int i, const double* weights, double rate, double expected) {
+  return std::fabs(rate - expected) * problem.longest_step * weights[i] <= largest_break;
+}
 
 }  // namespace
 
@@ -55,7 +59,7 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const doubl
         track_.finish();
         T1_ = turning_point(T1[0], T1[1]);
         T2_ = turning_point(t_before, t);
-        return fold(problem, t, y, swing) ? Kind::folded : Kind::refused;
+        return fold(problem, swing) ? Kind::folded : Kind::refused;
       }
       T1[0] = t_before;
       T1[1] = t;
@@ -105,19 +109,35 @@ double Orbit::turning_point(double a, double b) const {
   return b;
 }
 
-// Whether the half from T1 to T2 represents the whole motion: whether y, reached at t past T2, is its mirror image.
-bool Orbit::fold(const solver::Problem& problem, double t, const double* y, double swing) {
-  double weights[states], unfolded[states];
+// Whether the half from T1 to T2 represents the whole motion.
+bool Orbit::fold(const solver::Problem& problem, double swing) {
+  constexpr int samples = 8;
+  double weights[states];
   track_.read(T1_, first_);
   track_.read(T2_, second_);
   problem.weights(problem.owner, problem.share, second_, weights);
   if (!(T2_ > T1_) || swing * weights[omega_1] < least_swing) return false;
   take_half();
   kind_ = Kind::folded;
-  read(t, unfolded);
-  problem.weights(problem.owner, 1, y, weights);
+  for (int i = 0; i < samples; ++i)
+    if (!is_mirrored(problem, (i + 0.5) / samples * (T2_ - T1_))) return false;
+  return true;
+}
+
+// Whether the right-hand side, as long after T2 as the state was before, is the mirror image with time reversed.
+bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
+  double y[states], rate[states], image[states], image_rate[states], weights[states];
+  track_.read(T2_ - since, y);
+  read(T2_ + since, image);
+  problem.derivative(problem.owner, T2_ - since, y, rate);
+  problem.derivative(problem.owner, T2_ + since, image, image_rate);
+  problem.weights(problem.owner, problem.share, y, weights);
+  for (const State i : {theta, omega_2, omega_3}) rate[i] = -rate[i];
+  const Complex velocity = -half_of(T2_ + since).turn * Complex(rate[X_O], -rate[Y_O]);
+  rate[X_O] = velocity.real();
+  rate[Y_O] = velocity.imag();
   for (int i = 0; i < states; ++i)
-    if (!(std::fabs(y[i] - unfolded[i]) * weights[i] <= most_difference)) return false;
+    if (!agree(problem, i, weights, image_rate[i], rate[i])) return false;
   return true;
 }
 
@@ -148,13 +168,15 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   const double most_weight = std::fmax(weights[theta], std::fmax(std::fabs(along[omega_2]) * weights[omega_2],
                                                                  std::fabs(along[omega_3]) * weights[omega_3]));
   if (!(swing * most_weight < largest_rest)) return false;
-  return keep_rest(y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
+  return keep_rest(problem, y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
 }
 
-// The circle (or straight line) of a steady motion over `length`, s, in which psi turns by 0.2 rad at most.
-bool Orbit::keep_rest(const double* y0, const double* rate, double length) {
+// The circle (or straight line) of a steady motion over `length`, s, in which psi turns by 0.2 rad at most; false where
+// the right-hand side leads off it.
+bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length) {
   constexpr int parts = 5;
-  double y[states], y_dot[states] = {};
+  double y[states], y_dot[states] = {}, found[states], weights[states];
+  problem.weights(problem.owner, problem.share, y0, weights);
   std::copy_n(y0, states, y);
   y[omega_1] = 0;
   y_dot[psi] = rate[psi];
@@ -171,6 +193,9 @@ bool Orbit::keep_rest(const double* y0, const double* rate, double length) {
     y[Y_O] = place.imag();
     y_dot[X_O] = now.real();
     y_dot[Y_O] = now.imag();
+    problem.derivative(problem.owner, t, y, found);
+    for (int k = 0; k < states; ++k)  // `rests` has seen to omega_1
+      if (k != omega_1 && !agree(problem, k, weights, found[k], y_dot[k])) return false;
     if (!(i == 0 ? track_.begin(t, y, y_dot) : track_.add(t, y, y_dot))) return false;
   }
   track_.finish();
@@ -182,4 +207,4 @@ bool Orbit::keep_rest(const double* y0, const double* rate, double length) {
   return true;
 }
 
-}  // namespace wheel
+}  // namespace orbit

@@ -4,7 +4,7 @@
 
 #include "orbit.hpp"
 
-namespace wheel {
+namespace orbit {
 
 namespace {
 
@@ -104,4 +104,4 @@ long long Orbit::falls_until(double t) const {
   return n;
 }
 
-}  // namespace wheel
+}  // namespace orbit

@@ -16,21 +16,21 @@
 #include "solver.hpp"
 #include "track.hpp"
 
-namespace wheel {
+namespace orbit {
 
 class Orbit {
  public:
   // folded:  read() is valid at every t >= 0: the motion never ends.
   // ended:   event() happened at end_time(), in the first nutation; read() is valid up to there.
-  // refused: no two turning points within a fixed number of steps, a swing too small to tell from errors, or a half
-  //          that is not its own mirror image. The caller then steps through the motion from its start.
+  // refused: no two turning points within a fixed number of steps, a swing too small to tell from errors, or rates
+  //          that have not the symmetry. The caller then steps through the motion from its start.
   enum class Kind { refused, folded, ended };
 
   // What the owner does at an event: true where the motion goes on unchanged. The first such event is the fall of a
   // function that rises at the second and falls again at the third: here N. Their instants are kept.
   using Pass = bool (*)(void* owner, int event);
 
-  // Integrates `problem` (the reduced form of a free wheel) from y0 by CVODE's Adams method. The solver has to be
+  // Integrates `problem` (the reduced form of a wheel) from y0 by CVODE's Adams method. The solver has to be
   // started anew before anything else is asked of it; its counters are those of this run. A function of problem,
   // tolerance and y0 alone: the same bits in every process.
   Kind build(solver::Problem problem, double tolerance, Pass pass, const double* y0, solver::Solver& solver);
@@ -62,11 +62,12 @@ class Orbit {
   };
 
   bool rests(const solver::Problem& problem, const double* y0);
-  bool keep_rest(const double* y0, const double* rate, double length);
+  bool keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length);
   Kind follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
   solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
   double turning_point(double t_lo, double t_hi) const;
-  bool fold(const solver::Problem& problem, double t, const double* y, double swing);
+  bool fold(const solver::Problem& problem, double swing);
+  bool is_mirrored(const solver::Problem& problem, double since) const;
   void take_half();
 
   double begin_of(double k, double* rest) const;
@@ -92,4 +93,4 @@ class Orbit {
   mutable Half half_;  // that of the last reading, a function of its number alone
 };
 
-}  // namespace wheel
+}  // namespace orbit

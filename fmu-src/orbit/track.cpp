@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wheel {
+namespace orbit {
 
 // Smallest distance of two nodes, as a fraction of the length of a piece. Close nodes magnify rounding errors: 50 times
 // at 0.06, a million times at 0.02. The first steps of a run are much smaller than the motion needs, so nodes of the
@@ -119,4 +119,4 @@ void Track::read(double t, double* y) const {
   std::copy_n(sum, states, y);
 }
 
-}  // namespace wheel
+}  // namespace orbit

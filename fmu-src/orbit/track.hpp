@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <memory>
 
-namespace wheel {
+namespace orbit {
 
 class Track {
  public:
@@ -54,4 +54,4 @@ class Track {
   mutable int latest_ = 0;  // the piece read last
 };
 
-}  // namespace wheel
+}  // namespace orbit
