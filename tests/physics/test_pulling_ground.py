@@ -1,0 +1,69 @@
+"""A ground that pulls, with rolling friction: at N = 0 the law has a corner, and each such instant is an event.
+
+Violent starts: two to eight times the rates of the paper's wheel, keep_contact, exact law. Judged by the reference,
+which ends each mode at N = 0 too, and by the unit's own tightest run; errors relative to the range of each headline
+output, over the factor by which the motion makes errors grow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from reference import Start, Wheel, solve
+from support.bounds import beyond, within
+from support.driver import HEADLINE
+from support.motion import Library, Run, start_values
+
+TIMES = np.linspace(0, 2, 41)
+WHEEL = Wheel(s=0.03)
+
+
+def violent(seed: int) -> Start:
+    random = np.random.default_rng(seed)
+    times = random.uniform(2, 8)
+    psi_dot, theta_dot = times * random.normal(0, (1, 0.7))
+    rates = {"psi_dot": psi_dot, "theta_dot": theta_dot, "phi_dot": 2 * times * random.choice([-1, 1])}
+    return Start(theta=random.uniform(0.6, np.pi - 0.6), **rates)
+
+
+def motion(library: Library, start: Start, tolerance: float) -> Run:
+    return library.simulate(TIMES, tolerance, keep_contact=True, **start_values(WHEEL, start))
+
+
+def distance(one: Run, other: Run) -> float:
+    rows = min(len(one.t), len(other.t)) - 1  # an ending is not a row of TIMES
+    return max(np.abs(one[name][:rows] - other[name][:rows]).max() / np.ptp(other[name][:rows]) for name in HEADLINE)
+
+
+def pulled(run: Run) -> bool:
+    return bool((run["lambda_3"] < 0).any())
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-11])
+def test_a_ground_that_pulls_costs_no_accuracy(library: Library, tolerance: float) -> None:
+    worst, pulling = 0.0, 0
+    for seed in range(60):
+        start = violent(seed)
+        exact = motion(library, start, 1e-13)
+        growth = max(1.0, distance(motion(library, replace(start, theta=start.theta + 1e-9), 1e-13), exact) / 1e-9)
+        run = motion(library, start, tolerance)
+        pulling += pulled(run)
+        worst = max(worst, distance(run, exact) / tolerance / growth)
+    assert pulling > 20
+    within(worst, 5, "error over tolerance and growth")  # of the first 1,000 seeds the largest is below 1
+
+
+@pytest.mark.parametrize("seed", [3, 8, 9, 10])  # in the last three the ground pulls
+def test_the_reference_goes_the_same_way(library: Library, seed: int) -> None:
+    start = violent(seed)
+    got = motion(library, start, 1e-11)
+    want, other = (
+        solve(WHEEL, start, TIMES[: len(got.t) - 1], rtol=1e-12, pulled_friction=friction)
+        for friction in ("none", "magnitude")
+    )
+    within(distance(got, want), 1e-10, "distance from the reference")
+    assert pulled(got) == (seed != 3)
+    if pulled(got):
+        beyond(distance(got, other), 1e-2, "distance with s |N| while the ground pulls")
