@@ -56,8 +56,9 @@ bool RungeKutta::advance_wide(const Problem& problem, double stop, Counters* cou
   failure_ = std::isnan(margin_) ? "the rates of the states are not finite" : nullptr;
   if (!failure_) {
     attempt.weigh();
-    if (liked_ == 0) liked_ = attempt.guess_size();
-    failure_ = accept_step(attempt, problem.longest_step, stop, step);
+    double& liked = liked_[problem.passage];
+    if (liked == 0) liked = attempt.guess_size();
+    failure_ = accept_step(attempt, problem.longest_step, stop, &liked, step);
   }
   limit_ = 0;
   if (!failure_) return true;
@@ -69,10 +70,10 @@ bool RungeKutta::advance_wide(const Problem& problem, double stop, Counters* cou
 
 // Tries smaller and smaller steps until one is accepted. Null, or the reason why none was.
 template <int width>
-const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, double stop, Step* step) {
+const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, double stop, double* liked, Step* step) {
   if (limit_ > 0) longest = std::fmin(limit_, longest);
   const double t = step->start;
-  double h = std::fmin(liked_, longest);
+  double h = std::fmin(*liked, longest);
   bool rejected = false;
   for (int attempts = 0; attempts < most_attempts; ++attempts) {
     const bool stops = t + stretch * h >= stop;
@@ -84,14 +85,14 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
     double error = attempt.try_size(h);
     if (error <= 1 && !waits && !(attempt.evaluate_end(&margin_) && attempt.evaluate_interior())) error = INFINITY;
     if (!(error <= 1)) {
-      h = liked_ = h * std::fmax(0.2, safety / eighth_root(error));
+      h = *liked = h * std::fmax(0.2, safety / eighth_root(error));
       rejected = true;
       continue;
     }
     const double next = next_size(h, error);
     // A step that was cut short tells little, so the size wanted before it is kept. After a rejection a step does not
     // grow.
-    liked_ = rejected ? std::fmin(h, next) : h < liked_ ? std::fmax(liked_, next) : next;
+    *liked = rejected ? std::fmin(h, next) : h < *liked ? std::fmax(*liked, next) : next;
     size_ = h;
     rates_ = waits ? 12 : 16;
     return nullptr;

@@ -37,11 +37,11 @@ class RungeKutta {
   template <int width>
   bool advance_wide(const Problem& problem, double stop, Counters* counters, Step* step);
   template <int width>
-  const char* accept_step(Attempt<width>& attempt, double longest, double stop, Step* step);
+  const char* accept_step(Attempt<width>& attempt, double longest, double stop, double* liked, Step* step);
 
   double next_size(double h, double error);
 
-  double liked_ = 0;                   // size of the next step, s; 0: none was made
+  double liked_[2] = {};               // size of the next step, s, outside of passages and inside; 0: none was made
   double limit_ = 0, next_limit_ = 0;  // of the first step after the last and the next start, s; 0: none
   double size_ = 0;                    // of the last step, s
   double last_error_ = 0;              // of the last step, in units of the weights; 0: there was none
@@ -53,7 +53,7 @@ class RungeKutta {
 
 template <class Archive>
 void RungeKutta::visit(Archive& archive, int states) {
-  archive.range(liked_, 0, archive.greatest);
+  for (double& size : liked_) archive.range(size, 0, archive.greatest);
   archive.range(limit_, 0, archive.greatest);
   archive.range(next_limit_, 0, archive.greatest);
   archive.range(size_, 0, archive.greatest);

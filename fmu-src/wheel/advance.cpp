@@ -47,14 +47,16 @@ bool Simulation::knows(double t) const {
   return run_.phase == Phase::unfolded && orbit_ready_ && t <= orbit_until_;
 }
 
-// Whether what was set since the last step differs from what is in force, or makes another method the right one.
+// Whether what was set since the last step differs from what is in force, or makes a regularized law stiff.
 bool Simulation::has_changed() const {
   const InForce& now = run_.in_force;
   const double t = run_.t;
   const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(demand_.start_time) + std::fabs(t));
   if (now.scene.wheel.s != demand_.parameters[s] || now.inputs.change_at(t, rounding, demand_.inputs)) return true;
-  return now.inputs.varies && run_.phase == Phase::stepping &&
-         choose_method(setup_, now.scene_at(t), true) != solver_.method();
+  if (setup_.friction_law == exact_law || !now.inputs.varies || run_.phase != Phase::stepping) return false;
+  WheelScene scene = now.scene_at(t);
+  scene.friction = friction_at(setup_, scene, now.inputs.braked, run_.y);
+  return needs_layer(setup_, scene, run_.y) != (now.layer != Layer::none);
 }
 
 // Stage 1: what was set since the last step takes effect.
@@ -72,13 +74,10 @@ bool Simulation::take_demand() {
   if (run_.phase == Phase::at_start) return true;
   solver_.change_interval(run_.t - run_.last_change);
   run_.last_change = run_.t;
-  if (run_.phase == Phase::stepping) {
-    const WheelScene& scene = run_.in_force.scene;
-    return solver_.restart(problem_of(owner_), choose_method(setup_, scene, true), run_.t, run_.y);
-  }
+  if (run_.phase == Phase::stepping) return restart_solver();
   run_.phase = Phase::stepping;
   ++run_.counted.restarts;
-  return start_solver(true);
+  return start_solver();
 }
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
@@ -86,12 +85,17 @@ bool Simulation::begin() {
   if (run_.phase == Phase::stepping || (run_.phase == Phase::unfolded && orbit_ready_)) return true;
   if (is_unfoldable(setup_, run_.in_force) && enter_orbit()) return run_.phase = Phase::unfolded, true;
   run_.phase = Phase::stepping;
-  return start_solver(run_.in_force.inputs.varies);
+  return start_solver();
 }
 
 // Starts the solver from nothing at the present instant.
-bool Simulation::start_solver(bool jumps) {
-  return solver_.start(problem_of(owner_), choose_method(setup_, run_.in_force.scene, jumps), run_.t, run_.y);
+bool Simulation::start_solver() {
+  return solver_.start(problem_of(owner_), method_of(setup_, run_.in_force), run_.t, run_.y);
+}
+
+// The same where it goes on counting.
+bool Simulation::restart_solver() {
+  return solver_.restart(problem_of(owner_), method_of(setup_, run_.in_force), run_.t, run_.y);
 }
 
 // Stage 3: the solution becomes known up to t, or up to an event that ends the run.
@@ -124,9 +128,20 @@ Outcome Simulation::step_to(double t) {
 
 // The run stands at an event. `event`: it ends the run.
 Outcome Simulation::pass_event() {
-  const auto event = static_cast<Event>(solver_.event());
-  if (event != Event::spin_changes && event != Event::contact_changes) return Outcome::event;
-  const bool passed = event == Event::spin_changes ? pass_transition() : pass_contact();
+  bool passed;
+  switch (static_cast<Event>(solver_.event())) {
+    case Event::spin_changes:
+      passed = pass_transition();
+      break;
+    case Event::layer_changes:
+      passed = pass_layer();
+      break;
+    case Event::contact_changes:
+      passed = pass_contact();
+      break;
+    default:
+      return Outcome::event;
+  }
   return passed ? Outcome::stepped : Outcome::failed;
 }
 
@@ -140,7 +155,13 @@ bool Simulation::pass_transition() {
   friction = before.kind == WHEEL_HELD ? released(setup_, scene, run_.y)
                                        : friction_at(setup_, scene, run_.in_force.inputs.braked, run_.y);
   announce_transition(before);
-  return solver_.restart(problem_of(owner_), solver_.method(), run_.t, run_.y);
+  return restart_solver();
+}
+
+// omega_z has entered or left the layer of a stiff regularized law, or begins to stick in it.
+bool Simulation::pass_layer() {
+  enter_layer(setup_, run_.in_force, run_.t, y_now());
+  return restart_solver();
 }
 
 // The ground begins to pull or to press. Without friction the motion goes on as it was.
@@ -148,7 +169,8 @@ bool Simulation::pass_contact() {
   run_.in_force.change_contact();
   if (run_.in_force.pulls()) tell_pull(run_.t);
   if (run_.in_force.scene.friction.kind == WHEEL_FRICTIONLESS) return solver_.resume(), true;
-  return solver_.restart(problem_of(owner_), solver_.method(), run_.t, y_now());
+  y_now();
+  return restart_solver();
 }
 
 // Counts and reports a change between held, positive and negative spin. A change to another law is not a transition.

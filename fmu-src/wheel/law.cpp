@@ -26,20 +26,6 @@ double margin_of(const Setup& setup, const WheelScene& scene, const WheelDynamic
 // Rolling against the moment that would hold the wheel.
 WheelFriction against(const WheelDynamics& held) { return {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0}; }
 
-// The fastest decay of the regularized law: slope (s N + M_brake) / omega_s of the moment at omega_z = 0 over the spin
-// inertia, in units of the wheel's own time. Adams and BDF cost the same where it is about 200
-// (docs/results/stability.md).
-bool is_stiff(const Setup& setup, const WheelScene& scene) {
-  constexpr double stiff = 200;
-  if (scene.friction.kind != WHEEL_REGULARIZED) return false;
-  const WheelParameters& wheel = scene.wheel;
-  const double length = wheel.r_0 + wheel.r;
-  const double decay =
-      (wheel.s * wheel.m * wheel.g + scene.load.brake) / (setup.omega_s * (wheel.J_z + wheel.m * length * length));
-  const double own_time = wheel.g > 0 ? std::sqrt(length / wheel.g) : 0;
-  return decay * own_time > stiff;
-}
-
 }  // namespace
 
 InForce in_force_from(const Setup& setup, const Demand& demand, WheelGround ground, double t, const double* y) {
@@ -50,6 +36,7 @@ InForce in_force_from(const Setup& setup, const Demand& demand, WheelGround grou
   next.scene.load = load_of(demand.inputs);
   next.inputs.take_over(t, demand.inputs);
   next.scene.friction = friction_at(setup, next.scene, next.inputs.braked, y);
+  if (needs_layer(setup, next.scene, y)) enter_layer(setup, next, t, y);
   return next;
 }
 
@@ -75,19 +62,34 @@ bool has_transitions(const WheelFriction& friction) {
   return friction.kind == WHEEL_ROLLING || friction.kind == WHEEL_HELD;
 }
 
-solver::Method choose_method(const Setup& setup, const WheelScene& scene, bool jumps) {
-  switch (setup.method) {
-    case adams_method:
-      return solver::Method::adams;
-    case bdf_method:
-      return solver::Method::bdf;
-    case runge_kutta_method:
-      return solver::Method::runge_kutta;
-    case automatic_method:
-      break;
+// The fastest decay of the law is that at omega_z = 0: (s N + M_brake) / omega_s over the spin inertia. The wheel's own
+// time scale tells whether that is fast; below the limit DOP853 alone is faster (docs/results/stability.md).
+bool needs_layer(const Setup& setup, const WheelScene& scene, const double* y) {
+  constexpr double stiff = 1000;
+  const bool asked = setup.method == automatic_method && setup.formulation != &wheel_euler;
+  if (!asked || scene.friction.kind != WHEEL_REGULARIZED) return false;
+  const WheelParameters& wheel = scene.wheel;
+  const double length = wheel.r_0 + wheel.r, inertia = wheel.J_z + wheel.m * length * length;
+  double y_dot[WHEEL_MAX_STATES];
+  const double N = std::max(setup.weight, setup.formulation->derivative(&scene, y, y_dot));
+  return (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia) * setup.own_time > stiff;
+}
+
+void enter_layer(const Setup& setup, InForce& now, double t, const double* y) {
+  const double omega_z = y[setup.formulation->spin_index];
+  if (std::fabs(omega_z) > layer_edge(setup)) {
+    now.layer = Layer::outside;
+    now.scene.friction = {WHEEL_ROLLING, omega_z > 0 ? 1.0 : -1.0, 0};
+  } else {
+    now.layer = holding_margin(setup, now.scene_at(t), y) >= 0 ? Layer::sticking : Layer::passing;
+    now.scene.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
   }
-  if (is_stiff(setup, scene)) return solver::Method::bdf;
-  return jumps || has_transitions(scene.friction) ? solver::Method::runge_kutta : solver::Method::adams;
+}
+
+solver::Method method_of(const Setup& setup, const InForce& now) {
+  if (setup.method == adams_method) return solver::Method::adams;
+  const bool stiff = setup.method == bdf_method || now.layer == Layer::sticking;
+  return stiff ? solver::Method::bdf : solver::Method::runge_kutta;
 }
 
 bool is_unfoldable(const Setup& setup, const InForce& in_force) {

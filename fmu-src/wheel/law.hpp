@@ -23,9 +23,17 @@ double holding_margin(const Setup& setup, const WheelScene& scene, const double*
 // Only the exact law has transitions.
 bool has_transitions(const WheelFriction& friction);
 
-// Which method solves what follows. `jumps`: inputs or tunable parameters change during the run, and the motion is not
-// smooth where they do. `scene` has the law of friction in force.
-solver::Method choose_method(const Setup& setup, const WheelScene& scene, bool jumps);
+// rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last digit.
+inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
+
+// Whether a regularized law is so steep that it is solved by its layer and, around it, by the exact law.
+bool needs_layer(const Setup& setup, const WheelScene& scene, const double* y);
+
+// Where omega_z stands in the layer at t and y, and the law of friction there.
+void enter_layer(const Setup& setup, InForce& in_force, double t, const double* y);
+
+// What solves the motion that is not unfolded.
+solver::Method method_of(const Setup& setup, const InForce& in_force);
 
 // Whether the motion repeats and can be unfolded from half a nutation.
 bool is_unfoldable(const Setup& setup, const InForce& in_force);

@@ -56,7 +56,7 @@ void weights(void* owner, double share, const double* y, double* weights) {
   scales_at(setup.scales, *setup.formulation, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (of(owner).in_force.scene.friction.kind != WHEEL_REGULARIZED) return;
-  const double part = std::fmin(3e-5, std::sqrt(tolerance));
+  const double part = 10 * std::sqrt(tolerance);
   const double layer = part * setup.omega_s + tolerance * std::fabs(y[spin]);
   weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
 }
@@ -70,6 +70,17 @@ double holding_watched(void* owner, double t, const double* y) {
   const auto& [setup, in_force] = of(owner);
   return holding_margin(setup, in_force.scene_at(t), y);
 }
+
+double outside_watched(void* owner, double t, const double* y) {
+  return spin_watched(owner, t, y) - layer_edge(of(owner).setup);
+}
+
+double inside_watched(void* owner, double, const double* y) {
+  const Setup& setup = of(owner).setup;
+  return layer_edge(setup) - std::fabs(y[setup.formulation->spin_index]);
+}
+
+double passing_watched(void* owner, double t, const double* y) { return -holding_watched(owner, t, y); }
 
 double height_watched(void* owner, double, const double* y) { return height(of(owner).setup, y); }
 
@@ -101,7 +112,12 @@ solver::Problem problem_of(Owner& owner) {
     problem.watch({static_cast<int>(event), value, by_margin});
   };
   const WheelFrictionKind law = owner.in_force.scene.friction.kind;
-  if (law == WHEEL_ROLLING) watch(Event::spin_changes, spin_watched, false);
+  const Layer layer = owner.in_force.layer;
+  problem.passage = layer == Layer::passing;
+  if (layer == Layer::outside) watch(Event::layer_changes, outside_watched, false);
+  if (layer == Layer::passing) watch(Event::layer_changes, passing_watched, false);
+  if (layer > Layer::outside) watch(Event::layer_changes, inside_watched, false);
+  if (law == WHEEL_ROLLING && layer == Layer::none) watch(Event::spin_changes, spin_watched, false);
   if (law == WHEEL_HELD) watch(Event::spin_changes, holding_watched, false);
   watch(owner.setup.keep_contact ? Event::contact_changes : Event::lifted_off, contact_watched, true);
   watch(Event::fell_flat, height_watched, true);

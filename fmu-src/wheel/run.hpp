@@ -8,10 +8,15 @@
 
 namespace wheel {
 
+// Where omega_z stands in the layer of a stiff regularized law: outside of it, where the law is the exact one; on its way
+// through; or kept inside by friction and brake, where alone the motion is stiff.
+enum class Layer : int { none, outside, passing, sticking };
+
 // What acts on the wheel.
 struct InForce {
   WheelScene scene = {};  // `s`, law of friction, ground; the load is that at the origin of the inputs
   Inputs inputs;
+  Layer layer = Layer::none;
 
   bool pulls() const { return scene.ground == WHEEL_GROUND_PULLS; }
   void change_contact() { scene.ground = pulls() ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS; }

@@ -109,11 +109,13 @@ class Simulation {
   bool has_changed() const;
   bool take_demand();
   bool begin();
-  bool start_solver(bool jumps);
+  bool start_solver();
+  bool restart_solver();
   solver::Outcome proceed(double t);
   solver::Outcome step_to(double t);
   solver::Outcome pass_event();
   bool pass_transition();
+  bool pass_layer();
   bool pass_contact();
   void announce_transition(const WheelFriction& before);
   void tell_pull(double t);

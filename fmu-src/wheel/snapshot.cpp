@@ -36,6 +36,7 @@ void visit(Archive& archive, Demand& demand, Run& run) {
   archive("s in force, m").range(now.scene.wheel.s, 0, Archive::greatest);
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
+  archive("place in the layer of a stiff law").count(now.layer, 0, static_cast<int>(Layer::sticking));
   archive("origin of the inputs in force, s").number(now.inputs.origin);
   archive("inputs in force").numbers(now.inputs.c[0], inputs_count * (max_order + 1));
   archive("time reached, s").range(run.t, 0, Archive::greatest);
@@ -52,18 +53,19 @@ void visit(Archive& archive, Demand& demand, Run& run) {
   archive("new starts before the solver started").tally(counted.restarts);
 }
 
-// Whether the law is one that friction_at could have chosen.
+// Whether the law is one that in_force_from could have chosen.
 bool law_fits(const Setup& setup, const InForce& now) {
-  const bool exact = setup.friction_law == exact_law;
+  const bool exact = setup.friction_law == exact_law, outside = now.layer == Layer::outside;
   const bool waits = setup.formulation == &wheel_euler;  // model exchange: the law waits for the next event
   const bool none = now.scene.wheel.s == 0 && !now.inputs.braked, some = waits || !none;
+  if (now.layer != Layer::none && (none || waits || exact || setup.method != automatic_method)) return false;
   switch (now.scene.friction.kind) {
     case WHEEL_FRICTIONLESS:
       return none || waits;
     case WHEEL_REGULARIZED:
-      return some && !exact;
+      return some && !exact && !outside;
     case WHEEL_ROLLING:
-      return some && exact && std::fabs(now.scene.friction.sigma) == 1;
+      return some && exact != outside && std::fabs(now.scene.friction.sigma) == 1;
     case WHEEL_HELD:
       return some && exact;
     case WHEEL_NO_LAW:
