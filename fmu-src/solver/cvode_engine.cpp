@@ -111,22 +111,22 @@ void Cvode::free_objects() {
   objects_ = nullptr;
 }
 
-bool Cvode::make_objects(int states, Method method) {
-  if (objects_ && objects_->method == method && objects_->states == states) return true;
+bool Cvode::make_objects(int states) {
+  if (objects_ && objects_->states == states) return true;
   free_objects();
   objects_ = static_cast<CvodeObjects*>(std::calloc(1, sizeof(CvodeObjects)));
   if (!objects_) return false;
-  objects_->method = method;
+  objects_->method = method_;
   objects_->states = states;
   if (set_up(*objects_)) return true;
   free_objects();
   return false;
 }
 
-bool Cvode::start(const Problem& problem, Method method, double t, const double* y, Step* step) {
+bool Cvode::start(const Problem& problem, double t, const double* y, Step* step) {
   step->set_point(t, y, problem.states);
   failure_ = "CVODE could not be set up";
-  if (!make_objects(problem.states, method)) return false;
+  if (!make_objects(problem.states)) return false;
   starts_anew_ = 1;
   return CVodeSetMaxStep(objects_->cvode, problem.longest_step) == CV_SUCCESS;
 }
@@ -171,8 +171,7 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
   return true;
 }
 
-void Cvode::expand(int states, Step* step) const {
-  if (step->degree >= 0 || step->end == step->start) return;
+void Cvode::expand(const Problem& problem, Counters*, Step* step) {
   int order = 1;
   CVodeGetLastOrder(objects_->cvode, &order);
   const double h = step->end - step->start;
@@ -180,7 +179,7 @@ void Cvode::expand(int states, Step* step) const {
   step->degree = 0;
   for (int k = 0; k <= order; ++k, factor *= h / k) {
     if (CVodeGetDky(objects_->cvode, step->end, k, objects_->y) != CV_SUCCESS) break;
-    for (int i = 0; i < states; ++i) step->c[k][i] = factor * data(objects_->y)[i];
+    for (int i = 0; i < problem.states; ++i) step->c[k][i] = factor * data(objects_->y)[i];
     step->degree = k;
   }
 }

@@ -4,55 +4,37 @@
 // be lost.
 #pragma once
 
-#include "step.hpp"
-
-namespace support {
-struct Measure;
-struct Reader;
-struct Writer;
-}  // namespace support
+#include "engine.hpp"
 
 namespace solver {
 
 struct CvodeObjects;
 
-class Cvode {
+class Cvode final : public Engine {
  public:
-  Cvode() = default;
+  explicit Cvode(Method method) : method_(method) {}
   Cvode(const Cvode&) = delete;
   Cvode& operator=(const Cvode&) = delete;
   ~Cvode() { free_objects(); }
 
-  // From y at t. SUNDIALS's objects are made at the first start of a method. False where they could not be.
-  bool start(const Problem& problem, Method method, double t, const double* y, Step* step);
-
-  // One step that ends at `stop` (s) at the latest. False where CVODE gives up: failure() says why.
-  bool advance(const Problem& problem, double stop, Counters* counters, Step* step);
-
-  // The polynomial of the step, if it is not known yet.
-  void expand(int states, Step* step) const;
-
-  const char* failure() const { return failure_; }
-
-  // The next step is the first after a start (1) or after a stop (2); else 0.
-  int& starts_anew() { return starts_anew_; }
-
-  // The history after the last step, which has a length (cvode_history.cpp). restore is given the step, and refuses
-  // numbers that could not belong to it.
-  void measure(support::Measure& measure);
-  void save(support::Writer& writer);
-  bool restore(const Problem& problem, Method method, Step* step, support::Reader& reader);
+  // SUNDIALS's objects are made at the first start.
+  bool start(const Problem& problem, double t, const double* y, Step* step) override;
+  bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
+  void expand(const Problem& problem, Counters* counters, Step* step) override;
+  void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) override;
 
  private:
-  bool make_objects(int states, Method method);
+  bool make_objects(int states);
   void free_objects();
   bool restart(double t, const double* y);
-  template <class Archive>
-  void visit_history(Archive& archive);
+  // cvode_history.cpp
+  bool imitate_step(const Problem& problem, const Step& step);
+  void visit_history(support::Archive& archive);
+  bool fits(const Step& step) const;
 
+  const Method method_;  // adams or bdf
   CvodeObjects* objects_ = nullptr;
-  int starts_anew_ = 1;
-  const char* failure_ = nullptr;
+  int starts_anew_ = 1;  // the next step is the first after a start (1) or after a stop (2); else 0
 };
 
 }  // namespace solver

@@ -1,8 +1,7 @@
 // CVODE's history as plain numbers, so that a restored solution goes on with the same bits.
 //
 // CVODE has no call for this, so its memory record (private headers of the pinned source) is read and written field by
-// field. Only this file includes those headers; without it, and its two calls in snapshot.cpp, only snapshots of CVODE
-// runs would be lost. What CVODE computes anew at the start of each step (error weights, work vectors) is left out.
+// field. Only this file includes those headers; without it only snapshots of CVODE runs would be lost. What CVODE computes anew at the start of each step (error weights, work vectors) is left out.
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_newton.h>
@@ -20,16 +19,17 @@ namespace {
 
 constexpr long long most = 9007199254740992;
 
-template <class Archive, class... Fields>
+using support::Archive;
+
+template <class... Fields>
 void all_numbers(Archive& archive, Fields&... fields) {
   (archive.number(fields), ...);
 }
-template <class Archive, class... Fields>
+template <class... Fields>
 void all_counts(Archive& archive, long long greatest, Fields&... fields) {
   (archive.count(fields, 0, greatest), ...);
 }
 
-template <class Archive>
 void visit_steps(Archive& archive, CVodeMemRec& m) {
   archive.count(m.cv_q, 1, m.cv_qmax), archive.count(m.cv_qprime, 1, m.cv_qmax), archive.count(m.cv_qu, 1, m.cv_qmax);
   archive.count(m.cv_next_q, 0, m.cv_qmax), archive.count(m.cv_L, m.cv_q + 1, m.cv_q + 1);
@@ -47,7 +47,6 @@ void visit_steps(Archive& archive, CVodeMemRec& m) {
 }
 
 // The factorised Newton matrix of BDF.
-template <class Archive>
 void visit_newton(Archive& archive, CvodeObjects& o, CVodeMemRec& m) {
   auto& interface = *static_cast<CVLsMem>(m.cv_lmem);
   auto& newton = *static_cast<SUNNonlinearSolverContent_Newton>(m.NLS->content);
@@ -62,7 +61,7 @@ void visit_newton(Archive& archive, CvodeObjects& o, CVodeMemRec& m) {
   for (int i = 0; i < n; ++i) archive.count(dense.pivots[i], i, n - 1);
 }
 
-// A problem that stands still: one step of it makes CVODE do what it does only in a first step.
+// A problem that stands still.
 double rest(void* states, double, const double*, double* y_dot) {
   std::fill_n(y_dot, *static_cast<int*>(states), 0.0);
   return 1;
@@ -73,7 +72,6 @@ void equal_weights(void* states, double, const double*, double* weights) {
 
 }  // namespace
 
-template <class Archive>
 void Cvode::visit_history(Archive& archive) {
   CvodeObjects& o = *objects_;
   auto& m = *static_cast<CVodeMem>(o.cvode);
@@ -82,31 +80,46 @@ void Cvode::visit_history(Archive& archive) {
   if (o.method == Method::bdf) visit_newton(archive, o, m);
 }
 
-void Cvode::measure(support::Measure& measure) { visit_history(measure); }
-void Cvode::save(support::Writer& writer) { visit_history(writer); }
-
-bool Cvode::restore(const Problem& problem, Method method, Step* step, support::Reader& reader) {
-  const Step saved = *step;
+// Sets CVODE up for numbers that are read: a step of a problem that stands still makes it do what it does only in a
+// first step.
+bool Cvode::imitate_step(const Problem& problem, const Step& step) {
   int states = problem.states;
   Problem still = {};
   still.states = states, still.owner = &states, still.derivative = rest, still.weights = equal_weights;
   still.longest_step = problem.longest_step;
   Counters uncounted = {};
-  const int anew = starts_anew_;
-  if (!start(still, method, saved.end, saved.y_end, step)) return false;
-  if (!advance(still, std::numeric_limits<double>::infinity(), &uncounted, step)) return false;
-  *step = saved;
-  starts_anew_ = anew;
-  visit_history(reader);
+  Step imitation;
+  return start(still, step.end, step.y_end, &imitation) &&
+         advance(still, std::numeric_limits<double>::infinity(), &uncounted, &imitation);
+}
+
+// Whether the history is that of the step.
+bool Cvode::fits(const Step& step) const {
   const auto& m = *static_cast<CVodeMem>(objects_->cvode);
   const double rounding = 200 * m.cv_uround * (std::fabs(m.cv_tn) + m.cv_hu);
-  bool sound = !reader.fault && std::fabs(m.cv_tn - saved.end) <= rounding &&
-               std::fabs(saved.end - saved.start - m.cv_hu) <= rounding &&
-               std::fabs(m.cv_hprime - m.cv_h * m.cv_eta) <= 1e-10 * m.cv_hprime;
-  for (int i = 0; sound && method == Method::bdf && i < width_of(problem.states); ++i)
-    sound = SUNDenseMatrix_Column(objects_->matrix, i)[i] != 0;
-  if (!sound) free_objects();  // nothing stays of numbers that no solver wrote
-  return sound;
+  bool fits = std::fabs(m.cv_tn - step.end) <= rounding && std::fabs(step.end - step.start - m.cv_hu) <= rounding &&
+              std::fabs(m.cv_hprime - m.cv_h * m.cv_eta) <= 1e-10 * m.cv_hprime;
+  for (int i = 0; method_ == Method::bdf && i < width_of(objects_->states); ++i)
+    fits = fits && SUNDenseMatrix_Column(objects_->matrix, i)[i] != 0;
+  return fits;
+}
+
+void Cvode::visit(Archive& archive, const Problem& problem, Step* step, bool active) {
+  if (!active) return;
+  int anew = starts_anew_;
+  archive("history of CVODE").count(anew, 0, 2);
+  const bool has_history = step->end > step->start;
+  if (archive.reads()) {
+    Step point;
+    const bool ready = has_history ? imitate_step(problem, *step)
+                                   : anew != 0 && start(problem, step->end, step->y_end, &point);
+    if (!ready) return archive.refuse();
+    starts_anew_ = anew;
+  }
+  if (has_history) visit_history(archive);
+  if (!archive.reads()) return;
+  if (has_history && !fits(*step)) archive.refuse();
+  if (archive.fault()) free_objects();  // nothing stays of numbers that no solver wrote
 }
 
 }  // namespace solver

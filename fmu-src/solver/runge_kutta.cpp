@@ -21,12 +21,13 @@ constexpr double stretch = 1.01;
 
 }  // namespace
 
-void RungeKutta::start(double t, const double* y, int states, Step* step) {
-  step->set_point(t, y, states);
+bool RungeKutta::start(const Problem& problem, double t, const double* y, Step* step) {
+  step->set_point(t, y, problem.states);
   limit_ = next_limit_;
   next_limit_ = 0;
   rates_ = 0;
   last_error_ = 0;
+  return true;
 }
 
 // The error divided by h^8 changes along the motion, and is expected to change by the same factor once more
@@ -101,7 +102,7 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
 }
 
 void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) {
-  if (step->degree >= 0 || rates_ < 12) return;
+  if (rates_ < 12) return;
   const auto expand_wide = [&](auto attempt) {
     double margin;
     attempt.set_size(size_);
@@ -114,6 +115,18 @@ void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) 
     expand_wide(Attempt<max_states>(problem, counters, step, f_));
 }
 
+// `rates` holds the evaluations of the last step that were made, 0, 12 or 16.
+void RungeKutta::visit(support::Archive& archive, const Problem& problem, Step* step, bool active) {
+  archive("step sizes of Runge-Kutta");
+  for (double* size : {&liked_[0], &liked_[1], &limit_, &next_limit_, &size_}) archive.range(*size, 0, archive.greatest);
+  archive.range(last_error_, 0, 1);
+  archive.number(margin_);
+  archive("stages of Runge-Kutta").count(rates_, 0, 16);
+  for (int k = 0; k < rates_; ++k) archive.numbers(f_[k], problem.states);
+  if (active && archive.reads() && !fits(problem, step)) archive.refuse();
+}
+
+// Whether the restored numbers are those of the step, to the bit; then the step has its polynomial again.
 bool RungeKutta::fits(const Problem& problem, Step* step) {
   if (rates_ == 0) return step->start == step->end;
   if (rates_ != 12 && rates_ != 16) return false;

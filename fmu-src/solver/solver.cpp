@@ -40,8 +40,7 @@ void Solver::resume() {
 }
 
 bool Solver::begin(double t, const double* y) {
-  if (method_ == Method::runge_kutta) return runge_kutta_.start(t, y, problem_.states, &step_), true;
-  return cvode_.start(problem_, method_, t, y, &step_) || (failure_ = cvode_.failure(), false);
+  return engine().start(problem_, t, y, &step_) || (failure_ = engine().failure(), false);
 }
 
 // After an event right behind the start of its step, most often another event: the step was too long to see the motion
@@ -53,12 +52,6 @@ double Solver::time_to_look_again(double t) const {
 }
 
 bool Solver::reaches(double t) const { return known_until_ >= t - rounding_at(t); }
-
-bool Solver::advance(double stop) {
-  if (method_ == Method::runge_kutta)
-    return runge_kutta_.advance(problem_, stop, &counters_, &step_) || (failure_ = runge_kutta_.failure(), false);
-  return cvode_.advance(problem_, stop, &counters_, &step_) || (failure_ = cvode_.failure(), false);
-}
 
 Outcome Solver::step() {
   if (pending_ != Outcome::stepped) return pending_;
@@ -78,14 +71,13 @@ bool Solver::make_step() {
     std::copy_n(step_.y_end, max_states, y);
     return begin(stop, y);
   }
-  if (!advance(stop)) return false;
+  if (!engine().advance(problem_, stop, &counters_, &step_)) return failure_ = engine().failure(), false;
   ++counters_.steps;
   return true;
 }
 
 void Solver::expand(Counters* counters) const {
-  method_ == Method::runge_kutta ? runge_kutta_.expand(problem_, counters, &step_)
-                                 : cvode_.expand(problem_.states, &step_);
+  if (step_.degree < 0 && step_.end > step_.start) engine().expand(problem_, counters, &step_);
 }
 
 // Looks from `from` to the end of the step for the first event.

@@ -1,6 +1,6 @@
 // One initial-value problem y' = f(t, y) and its solution step by step: dense output, events, endings, snapshots.
 //
-// Two engines behind one interface: CVODE (Adams, BDF) for smooth and stiff motion, DOP853 for motion that jumps.
+// Engines behind one interface (engine.hpp): CVODE's Adams and BDF, and DOP853.
 // Knows no wheel and no FMI. Time is the owner's own clock (s). Steps never see the times at which results are read, so
 // the communication grid cannot change a bit of the solution; only a stop time that the owner sets cuts a step short.
 #pragma once
@@ -65,19 +65,16 @@ class Solver {
   bool restore_history(const Problem& problem, const unsigned char* bytes, std::size_t size);
 
  private:
+  Engine& engine() const { return *engines_[static_cast<int>(method_)]; }
   bool begin(double t, const double* y);
   double time_to_look_again(double t) const;
   bool make_step();
-  bool advance(double stop);
   void expand(Counters* counters) const;
   void look_for_events(double from);
   bool comes_near(const Search& search, double from);
   bool stays_above(const Search& search, Sample lo, Sample hi) const;
-  template <class Archive>
-  void visit(Archive& archive);
-  bool has_cvode_history() const;
+  void visit(support::Archive& archive);
   bool restored_fits() const;
-  bool restore_engine(support::Reader& reader);
 
   Problem problem_ = {};
   Method method_ = Method::adams;
@@ -90,8 +87,9 @@ class Solver {
   Counters counters_ = {};
   // The dense output of the last step is computed when it is first needed: a pure function of the step.
   mutable Step step_ = {};
-  mutable RungeKutta runge_kutta_;
-  Cvode cvode_;
+  Cvode adams_{Method::adams}, bdf_{Method::bdf};
+  RungeKutta runge_kutta_;
+  Engine* const engines_[3] = {&adams_, &bdf_, &runge_kutta_};  // in the order of Method
 };
 
 }  // namespace solver

@@ -1,7 +1,7 @@
 // Numbers to bytes and back: how snapshots are written, read and measured.
 //
 // Every number takes 8 bytes, a double or a 64-bit integer, whatever the platform's own integers are; little endian, as
-// all platforms of this FMU are. Bytes to be read may come from anywhere: a Reader never leaves them, checks each
+// all platforms of this FMU are. Bytes to be read may come from anywhere: reading never leaves them, checks each
 // number against what it may be, and says afterwards whether all of them could have been written.
 #pragma once
 
@@ -12,14 +12,25 @@
 
 namespace support {
 
-// What a field may be; each name comes down to put(word, least, most) of a Writer, a Reader or a Measure.
-template <class Derived>
-struct Archive {
+// What is done with each field that is shown to it: its bytes are counted, written, or read and checked.
+class Archive {
+ public:
   static constexpr double greatest = std::numeric_limits<double>::max();
-  const char* row = "";  // what is read or written now, in words
 
-  Derived& operator()(const char* what) { return row = what, self(); }
-  void range(double& x, double least, double most) { self().put(x, least, most); }
+  static Archive counting() { return {nullptr, nullptr, 0}; }
+  static Archive writing(unsigned char* to) { return {to, nullptr, 0}; }
+  static Archive reading(const unsigned char* from, std::size_t size) { return {nullptr, from, size}; }
+
+  bool reads() const { return from_ != nullptr; }
+  std::size_t bytes() const { return bytes_; }  // of the fields so far
+  const char* fault() const { return fault_; }  // the first row that could not have been written
+  void refuse() { fault_ = fault_ ? fault_ : row_; }
+  // All bytes are read, and each could have been written.
+  bool is_sound() const { return !fault_ && bytes_ == size_; }
+
+  // What the fields that follow are, in words.
+  Archive& operator()(const char* row) { return row_ = row, *this; }
+  void range(double& x, double least, double most) { put(x, least, most); }
   void number(double& x) { range(x, -greatest, greatest); }  // finite
   void numbers(double* x, int n) {
     for (int i = 0; i < n; ++i) number(x[i]);
@@ -27,7 +38,7 @@ struct Archive {
   template <class Integer>
   void count(Integer& i, long long least, long long most) {
     auto word = static_cast<std::int64_t>(i);
-    self().put(word, static_cast<std::int64_t>(least), static_cast<std::int64_t>(most));
+    put(word, static_cast<std::int64_t>(least), static_cast<std::int64_t>(most));
     i = static_cast<Integer>(word);
   }
   // A count stays at the largest that is saved: what goes on counting can be saved again.
@@ -45,44 +56,27 @@ struct Archive {
   }
 
  private:
-  Archive() = default;
-  friend Derived;
-  Derived& self() { return static_cast<Derived&>(*this); }
-};
+  Archive(unsigned char* to, const unsigned char* from, std::size_t size) : to_(to), from_(from), size_(size) {}
 
-struct Writer : Archive<Writer> {
-  unsigned char* at;
-  explicit Writer(unsigned char* bytes) : at(bytes) {}
-  template <class Word>
-  void put(Word& word, Word, Word) {
-    std::memcpy(at, &word, sizeof word);
-    at += sizeof word;
-  }
-};
-
-struct Reader : Archive<Reader> {
-  const unsigned char *at, *end;
-  const char* fault = nullptr;  // the first row that could not have been written
-  Reader(const unsigned char* bytes, std::size_t size) : at(bytes), end(bytes + size) {}
-  // A word outside its bounds, or beyond the end, gives the least allowed value, so that reading on is harmless.
+  // A word outside its bounds, or beyond the end, is read as the least allowed value, so that reading on is harmless.
   template <class Word>
   void put(Word& word, Word least, Word most) {
+    const std::size_t at = bytes_;
+    bytes_ += sizeof word;
+    if (to_) std::memcpy(to_ + at, &word, sizeof word);
+    if (!from_) return;
     Word read = least;
-    const bool complete = end - at >= 8;
-    if (complete) std::memcpy(&read, at, sizeof read);
-    if (complete) at += sizeof read;
+    const bool complete = bytes_ <= size_;
+    if (complete) std::memcpy(&read, from_ + at, sizeof read);
     const bool sound = complete && read >= least && read <= most;
-    if (!sound && !fault) fault = row;
+    if (!sound) refuse();
     word = sound ? read : least;
   }
-};
 
-struct Measure : Archive<Measure> {
-  std::size_t bytes = 0;
-  template <class Word>
-  void put(Word&, Word, Word) {
-    bytes += sizeof(Word);
-  }
+  unsigned char* to_;
+  const unsigned char* from_;
+  std::size_t size_, bytes_ = 0;
+  const char *row_ = "", *fault_ = nullptr;
 };
 
 // FNV-1a over words of 64 bits; a snapshot is a whole number of them. A change of any one word changes the sum.

@@ -19,32 +19,31 @@ struct Header {
 
 // The table of what is saved: what the caller has set, and what of the run does not follow from it. A row is a kind
 // with its bounds, the field, and a sentence about it.
-template <class Archive>
-void visit(Archive& archive, Demand& demand, Run& run) {
+void visit(support::Archive& archive, Demand& demand, Run& run) {
   InForce& now = run.in_force;
   solver::Counters& counted = run.counted;
   archive("parameters as they were set, `s` asked for among them");
   for (double& parameter : demand.parameters) archive.anything(parameter);
   archive("start time, s").number(demand.start_time);
-  archive("stop time, s; infinite for none").range(demand.stop_time, -Archive::greatest, Demand::never);
+  archive("stop time, s; infinite for none").range(demand.stop_time, -archive.greatest, Demand::never);
   archive("tolerance").range(demand.tolerance, tightest_tolerance, loosest_tolerance);
   archive("inputs asked for, with their derivatives");
   for (auto& input : demand.inputs) archive.anything(input[0]), archive.numbers(input + 1, max_order);
   archive("whose solver moves the wheel").count(demand.kind, 0, 1);
   archive("something was set since the last step").count(demand.changed, 0, 1);
   archive("phase").count(run.phase, 0, static_cast<int>(Phase::count) - 1);
-  archive("s in force, m").range(now.scene.wheel.s, 0, Archive::greatest);
+  archive("s in force, m").range(now.scene.wheel.s, 0, archive.greatest);
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
   archive("place in the layer of a stiff law").count(now.layer, 0, static_cast<int>(Layer::sticking));
   archive("origin of the inputs in force, s").number(now.inputs.origin);
   archive("inputs in force").numbers(now.inputs.c[0], inputs_count * (max_order + 1));
-  archive("time reached, s").range(run.t, 0, Archive::greatest);
-  archive("time of the last change, s").range(run.last_change, 0, Archive::greatest);
+  archive("time reached, s").range(run.t, 0, archive.greatest);
+  archive("time of the last change, s").range(run.last_change, 0, archive.greatest);
   archive("state").numbers(run.y, WHEEL_MAX_STATES);
   archive("whether the ground presses or pulls").count(now.scene.ground, WHEEL_GROUND_BY_FORCE, WHEEL_GROUND_PULLS);
   archive("pulls of the ground").tally(run.pulls);
-  archive("time of the last pull, s").range(run.last_pull, 0, Archive::greatest);
+  archive("time of the last pull, s").range(run.last_pull, 0, archive.greatest);
   archive("transitions of the friction").tally(run.transitions);
   archive("steps before the solver started").tally(counted.steps);
   archive("evaluations before the solver started").tally(counted.rhs);
@@ -107,16 +106,16 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
 }  // namespace
 
 std::size_t Simulation::state_size() {
-  support::Measure measure;
-  visit(measure, demand_, run_);
-  return sizeof(Header) + measure.bytes + (run_.phase == Phase::stepping ? solver_.history_size() : 0);
+  support::Archive archive = support::Archive::counting();
+  visit(archive, demand_, run_);
+  return sizeof(Header) + archive.bytes() + (run_.phase == Phase::stepping ? solver_.history_size() : 0);
 }
 
 void Simulation::save_state(unsigned char* bytes) {
   if (has_state(run_.phase)) y_now();
-  support::Writer writer(bytes + sizeof(Header));
-  visit(writer, demand_, run_);
-  if (run_.phase == Phase::stepping) solver_.save_history(writer.at);
+  support::Archive archive = support::Archive::writing(bytes + sizeof(Header));
+  visit(archive, demand_, run_);
+  if (run_.phase == Phase::stepping) solver_.save_history(bytes + sizeof(Header) + archive.bytes());
   const std::size_t size = state_size();
   const Header header = {mark, size, support::checksum_of(bytes + sizeof(Header), size - sizeof(Header))};
   std::memcpy(bytes, &header, sizeof header);
@@ -126,25 +125,26 @@ const char* Simulation::load_state(const unsigned char* bytes, std::size_t size)
   Header header;
   if (size < sizeof header) return "they are too few";
   std::memcpy(&header, bytes, sizeof header);
-  support::Reader reader(bytes + sizeof header, size - sizeof header);
+  const unsigned char* fields = bytes + sizeof header;
+  support::Archive archive = support::Archive::reading(fields, size - sizeof header);
   if (header.mark != mark) return "the mark of this version is missing";
   if (header.size != size) return "the size is another";
-  if (!support::has_checksum(reader.at, size - sizeof header, header.checksum)) return "the checksum is wrong";
+  if (!support::has_checksum(fields, size - sizeof header, header.checksum)) return "the checksum is wrong";
   Demand demand;
   Setup setup = {};
   Run run;
-  visit(reader, demand, run);
-  if (reader.fault) return reader.fault;
+  visit(archive, demand, run);
+  if (archive.fault()) return archive.fault();
   if (const char* fault = complete(demand, setup, run)) return fault;
   if (demand.kind != demand_.kind) return "they belong to an instance of the other kind";
-  const auto left = static_cast<std::size_t>(reader.end - reader.at);
+  const std::size_t left = size - sizeof header - archive.bytes();
   if (run.phase != Phase::stepping && left > 0) return "bytes are left over";
   demand_ = demand;
   setup_ = setup;
   run_ = run;
   fresh_ = Fresh::state;
   orbit_ready_ = false;
-  if (run.phase != Phase::stepping || (solver_.restore_history(problem_of(owner_), reader.at, left) &&
+  if (run.phase != Phase::stepping || (solver_.restore_history(problem_of(owner_), bytes + size - left, left) &&
                                        solver_.step_start() <= run.t && solver_.reaches(run.t)))
     return nullptr;
   run_.phase = Phase::failed;
