@@ -85,7 +85,7 @@ void Instance::refuse(Function function, const char* name) {
   if (!is_of_kind(function, simulation.kind()))
     log(wheel::Topic::error, "%s belongs to %s; this instance was made for %s.", name,
         slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
-  else if (has_ended(simulation.phase()))
+  else if (simulation.phase() == wheel::Phase::ended)
     log(wheel::Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", name, simulation.ending(),
         support::Digits(simulation.time()).text);
   else

@@ -14,8 +14,8 @@ constexpr unsigned bits(Phases... phases) {
 // The call states.
 constexpr unsigned I = bits(Phase::created), M = bits(Phase::initializing, Phase::faulty, Phase::initial),
                    C = bits(Phase::at_start, Phase::stepping, Phase::unfolded), E = bits(Phase::event_mode),
-                   N = bits(Phase::continuous_time), F = bits(Phase::fell_flat, Phase::lifted_off),
-                   T = bits(Phase::closed, Phase::closed_after_end), X = bits(Phase::failed, Phase::without_start);
+                   N = bits(Phase::continuous_time), F = bits(Phase::ended), T = bits(Phase::closed),
+                   X = bits(Phase::failed, Phase::without_start);
 constexpr unsigned all = I | M | C | E | N | F | T | X;
 static_assert(all + 1 == bits(Phase::count) && (I ^ M ^ C ^ E ^ N ^ F ^ T ^ X) == all);
 

@@ -55,7 +55,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
     }
     *info = {};
     info->valuesOfContinuousStatesChanged = i.simulation.decide() ? fmi2True : fmi2False;
-    info->terminateSimulation = has_ended(i.simulation.phase()) ? fmi2True : fmi2False;
+    info->terminateSimulation = i.simulation.ending() ? fmi2True : fmi2False;
     return fmi2OK;
   });
 }

@@ -59,10 +59,7 @@ fmi2Status step(Instance& i, double t, double h) {
 }
 
 // Of the last step, where its status may be asked for.
-fmi2Status last_status(const Instance& i) {
-  const Phase phase = i.simulation.phase();
-  return has_ended(phase) || phase == Phase::closed_after_end ? fmi2Discard : fmi2OK;
-}
+fmi2Status last_status(const Instance& i) { return i.simulation.ending() ? fmi2Discard : fmi2OK; }
 
 constexpr int no_status = -1;
 

@@ -1,7 +1,8 @@
 // CVODE's history as plain numbers, so that a restored solution goes on with the same bits.
 //
 // CVODE has no call for this, so its memory record (private headers of the pinned source) is read and written field by
-// field. Only this file includes those headers; without it only snapshots of CVODE runs would be lost. What CVODE computes anew at the start of each step (error weights, work vectors) is left out.
+// field. Only this file includes those headers; without it only snapshots of CVODE runs would be lost. What CVODE
+// computes anew at the start of each step (error weights, work vectors) is left out.
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_newton.h>
@@ -111,8 +112,8 @@ void Cvode::visit(Archive& archive, const Problem& problem, Step* step, bool act
   const bool has_history = step->end > step->start;
   if (archive.reads()) {
     Step point;
-    const bool ready = has_history ? imitate_step(problem, *step)
-                                   : anew != 0 && start(problem, step->end, step->y_end, &point);
+    const bool ready =
+        has_history ? imitate_step(problem, *step) : anew != 0 && start(problem, step->end, step->y_end, &point);
     if (!ready) return archive.refuse();
     starts_anew_ = anew;
   }

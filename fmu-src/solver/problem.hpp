@@ -3,7 +3,7 @@
 
 namespace solver {
 
-inline constexpr int max_states = 12, max_bends = 16, max_degree = 12, max_watched = 4;
+inline constexpr int max_states = 12, max_bends = 16, max_degree = 12, max_watched = 6;
 
 enum class Method : int { adams, bdf, runge_kutta };
 
@@ -35,8 +35,8 @@ struct Problem {
   int (*bends)(void* owner, double t_lo, double t_hi, double* instants);
   double near;          // margins below this are near zero
   double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
-  bool passage;         // brief: Runge-Kutta keeps the step size that it wants outside of passages for the time after it
-  double share = 1;     // of the error that a step may otherwise make
+  bool passage;      // brief: Runge-Kutta keeps the step size that it wants outside of passages for the time after it
+  double share = 1;  // of the error that a step may otherwise make
 
   void watch(const Watched& function) { watched[watched_count++] = function; }
 };

@@ -220,16 +220,16 @@ void Simulation::sum_up() const {
 Progressed Simulation::end_run() {
   const bool unfolded = run_.phase == Phase::unfolded;
   if (unfolded) move_to(orbit_.end_time());
-  const bool flat = (unfolded ? orbit_.event() : solver_.event()) == static_cast<int>(Event::fell_flat);
-  end_as(flat ? Phase::fell_flat : Phase::lifted_off);
+  end_as(static_cast<Event>(unfolded ? orbit_.event() : solver_.event()));
   return Progressed::ended;
 }
 
-void Simulation::end_as(Phase phase) {
-  freeze(phase);
+void Simulation::end_as(Event event) {
+  run_.ended_by = event;
+  freeze(Phase::ended);
   sum_up();
   tell(Topic::discard,
-       phase == Phase::fell_flat ? "The wheel %s at t = %s s: the model ends there."
+       event == Event::fell_flat ? "The wheel %s at t = %s s: the model ends there."
                                  : "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
        ending(), support::Digits(time()).text, support::Digits(run_.y[setup_.formulation->tilt_index], 6).text);
 }

@@ -148,7 +148,7 @@ bool Simulation::decide() {
   if (before.kind == WHEEL_HELD || stops) setup_.formulation->stop_spin(&scene.wheel, run_.y);
   fresh_ = Fresh::state;
   decide_contact(time);
-  if (has_ended(run_.phase)) return false;
+  if (run_.phase == Phase::ended) return false;
   decide_law();
   if (scene.friction.kind == WHEEL_HELD && falls(friction_margin(), friction_rate(), time))
     scene.friction = released(setup_, scene, run_.y);
@@ -162,9 +162,9 @@ void Simulation::decide_contact(double time) {
   const Margins now = margins();
   const WheelKinematics& pose = reading().pose();
   const double upright = 1.5707963267948966, sign = run_.in_force.pulls() ? -1 : 1;
-  if (falls(now.flat, pose.theta < upright ? pose.theta_dot : -pose.theta_dot, time)) return end_as(Phase::fell_flat);
+  if (falls(now.flat, pose.theta < upright ? pose.theta_dot : -pose.theta_dot, time)) return end_as(Event::fell_flat);
   if (!falls(now.contact, sign * reading().reaction_rates().lambda[2] / setup_.weight, time)) return;
-  if (!setup_.keep_contact) return end_as(Phase::lifted_off);
+  if (!setup_.keep_contact) return end_as(Event::lifted_off);
   run_.in_force.change_contact();
   if (run_.in_force.pulls()) tell_pull(run_.t);
   fresh_ = Fresh::state;

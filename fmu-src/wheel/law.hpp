@@ -23,7 +23,8 @@ double holding_margin(const Setup& setup, const WheelScene& scene, const double*
 // Only the exact law has transitions.
 bool has_transitions(const WheelFriction& friction);
 
-// rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last digit.
+// rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last
+// digit.
 inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
 
 // Whether a regularized law is so steep that it is solved by its layer and, around it, by the exact law.

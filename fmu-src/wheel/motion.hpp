@@ -2,6 +2,7 @@
 // whose fall below zero is an event. Reduced or multibody state, see wheel_equations.h.
 #pragma once
 
+#include "event.hpp"
 #include "law.hpp"
 #include "solver.hpp"
 
@@ -12,16 +13,6 @@ inline constexpr double flat_angle = 1e-7;
 
 // rad, from the side that is nearer.
 double angle_from_flat(double theta);
-
-// What can happen at an instant that is not known beforehand.
-enum class Event : int {
-  none,
-  spin_changes,     // omega_z reaches zero, or friction and brake can no longer hold it there
-  layer_changes,    // omega_z enters or leaves the layer of a stiff regularized law, or begins to stick in it
-  contact_changes,  // with keep_contact: the ground begins to pull or to press
-  lifted_off,
-  fell_flat
-};
 
 // What the functions of the problem need besides time and state. They only read it.
 struct Owner {

@@ -1,6 +1,7 @@
 // What is in force, and how far a run has come. Plain numbers: a run is restored by assignment.
 #pragma once
 
+#include "event.hpp"
 #include "inputs.hpp"
 #include "phase.hpp"
 #include "problem.hpp"
@@ -8,8 +9,8 @@
 
 namespace wheel {
 
-// Where omega_z stands in the layer of a stiff regularized law: outside of it, where the law is the exact one; on its way
-// through; or kept inside by friction and brake, where alone the motion is stiff.
+// Where omega_z stands in the layer of a stiff regularized law: outside of it, where the law is the exact one; on its
+// way through; or kept inside by friction and brake, where alone the motion is stiff.
 enum class Layer : int { none, outside, passing, sticking };
 
 // What acts on the wheel.
@@ -33,6 +34,7 @@ inline constexpr long long told_pulls = 100;
 
 struct Run {
   Phase phase = Phase::created;
+  Event ended_by = Event::none;
   InForce in_force;
   double t = 0;            // s, own clock: the instant reached
   double last_change = 0;  // s, own clock: when an input or a tunable parameter last changed

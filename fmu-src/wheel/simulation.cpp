@@ -76,8 +76,8 @@ bool Simulation::start() {
 }
 
 void Simulation::close() {
-  if (!has_ended(run_.phase)) sum_up();
-  freeze(has_ended(run_.phase) ? Phase::closed_after_end : Phase::closed);
+  if (run_.phase != Phase::ended) sum_up();
+  freeze(Phase::closed);
 }
 
 // To a phase without further steps: the solution is not needed any more.

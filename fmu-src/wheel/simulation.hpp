@@ -62,8 +62,8 @@ class Simulation {
 
   double time() const { return demand_.start_time + run_.t; }
   double stop_time() const { return demand_.stop_time; }
-  // What ended the model, to stand behind "the wheel".
-  const char* ending() const { return run_.phase == Phase::fell_flat ? "fell flat" : "lifted off the ground"; }
+  // What ended the model, to stand behind "the wheel"; null while nothing has.
+  const char* ending() const { return ending_of(run_.ended_by); }
   // The value of a variable now; inputs just set take effect at once.
   double value(unsigned variable);
   // Its time derivative, for outputs.
@@ -124,7 +124,7 @@ class Simulation {
   Progressed advance_by_stages(double t);
   Progressed arrive(double t);
   Progressed end_run();
-  void end_as(Phase phase);
+  void end_as(Event event);
   Progressed fail(const Run& before, bool changed);
 
   // exchange.cpp

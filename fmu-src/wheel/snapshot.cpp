@@ -32,6 +32,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("whose solver moves the wheel").count(demand.kind, 0, 1);
   archive("something was set since the last step").count(demand.changed, 0, 1);
   archive("phase").count(run.phase, 0, static_cast<int>(Phase::count) - 1);
+  archive("event that ended the model").count(run.ended_by, 0, static_cast<int>(Event::fell_flat));
   archive("s in force, m").range(now.scene.wheel.s, 0, archive.greatest);
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
@@ -77,6 +78,9 @@ bool law_fits(const Setup& setup, const InForce& now) {
 // what is wrong with it.
 const char* complete(const Demand& demand, Setup& setup, Run& run) {
   if (run.phase == Phase::faulty) run.phase = Phase::initializing;  // the faults are told again
+  const bool over = run.phase == Phase::ended || run.phase == Phase::closed;
+  if ((run.phase == Phase::ended || run.ended_by != Event::none) && !(over && ending_of(run.ended_by)))
+    return "no such event ends a run";
   if (!has_state(run.phase)) return nullptr;
   if (!check_values(demand, nullptr, nullptr)) return "parameters and inputs describe no wheel";
   setup = setup_of(demand);
