@@ -53,9 +53,9 @@ class Orbit {
   using Complex = std::complex<double>;
   static constexpr int states = Track::states, most_crossings = 16;
 
-  // The half nutation that starts at T1 + k L, L = T2 - T1: begin + rest, with more digits than one number has.
+  // The half nutation from T1 + k L to T1 + (k + 1) L, L = T2 - T1.
   struct Half {
-    double k = -1, begin = 0, rest = 0, next = 0;
+    double k = -1, begin = 0, next = 0;
     bool mirrored = false;
     double psi_sum = 0, phi_sum = 0;
     Complex place, turn;
@@ -70,7 +70,7 @@ class Orbit {
   bool is_mirrored(const solver::Problem& problem, double since) const;
   void take_half();
 
-  double begin_of(double k, double* rest) const;
+  double begin_of(double k) const { return T1_ + k * (T2_ - T1_); }
   Half half_at(double k) const;
   const Half& half_of(double t) const;
 

@@ -1,22 +1,17 @@
 // Any later instant from half a nutation: reflections and sums. Path of O in fixed axes as X_O + i Y_O.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "orbit.hpp"
 
 namespace orbit {
 
-namespace {
-
-constexpr double pi = 3.141592653589793, pi_rest = 1.2246467991473532e-16;  // their sum is pi to 32 digits
-
-}  // namespace
-
 // What the sums need, from the states at T1 and T2, and the instants at which N falls below zero in the two halves
 // after T2, of which the first is mirrored.
 void Orbit::take_half() {
-  const double turn = second_[psi] - first_[psi], n = std::nearbyint(turn / pi), period = 2 * (T2_ - T1_);
-  delta_ = (turn - n * pi) - n * pi_rest;
+  const double period = 2 * (T2_ - T1_);
+  delta_ = std::remainder(second_[psi] - first_[psi], std::numbers::pi);
   const Complex path(second_[X_O] - first_[X_O], second_[Y_O] - first_[Y_O]);
   step_ = path * std::polar(1.0, -first_[psi]);
   pair_ = 2 * (step_ * std::polar(1.0, -delta_)).real();
@@ -29,22 +24,13 @@ void Orbit::take_half() {
     if (fall_[i] > T1_) later_fall_[later_falls_++] = period - (T2_ - fall_[i]);
 }
 
-// T1 + k L, with L = T2 - T1; `rest` is the rounding error of the sum.
-double Orbit::begin_of(double k, double* rest) const {
-  const double length = T2_ - T1_, product = k * length, sum = T1_ + product;
-  const double back = sum - product;  // the part of T1 that went into the sum
-  *rest = std::fma(k, length, -product) + ((product - (sum - back)) + (T1_ - back));
-  return sum;
-}
-
 // The sum of k halves, each the mirror image of the one before: with d the displacement of O in the
 // first, pairs add up to 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta), n = floor(k / 2).
 Orbit::Half Orbit::half_at(double k) const {
   Half half;
   half.k = k;
-  half.begin = begin_of(k, &half.rest);
-  double rest;
-  half.next = begin_of(k + 1, &rest);
+  half.begin = begin_of(k);
+  half.next = begin_of(k + 1);
   const double n = std::floor(0.5 * k), turn = second_[psi] - first_[psi], roll = second_[phi] - first_[phi];
   half.mirrored = k != 2 * n;
   const Complex turned = std::polar(1.0, n * delta_), pairs_turn = turned * turned;
@@ -60,16 +46,16 @@ Orbit::Half Orbit::half_at(double k) const {
 
 const Orbit::Half& Orbit::half_of(double t) const {
   if (t >= half_.begin && t < half_.next) return half_;
-  double rest, k = std::floor((t - T1_) / (T2_ - T1_));
-  if (t < begin_of(k, &rest)) k -= 1;
-  if (t >= begin_of(k + 1, &rest)) k += 1;
+  double k = std::floor((t - T1_) / (T2_ - T1_));
+  if (t < begin_of(k)) k -= 1;
+  if (t >= begin_of(k + 1)) k += 1;
   return half_ = half_at(k);
 }
 
 void Orbit::read(double t, double* y) const {
   if (kind_ != Kind::folded || t <= T2_) return track_.read(t, y);
   const Half& half = half_of(t);
-  const double since = std::clamp((t - half.begin) - half.rest, 0.0, T2_ - T1_);
+  const double since = std::clamp(t - half.begin, 0.0, T2_ - T1_);
   track_.read(half.mirrored ? T2_ - since : T1_ + since, y);
   const double* centre = half.mirrored ? second_ : first_;
   Complex way(y[X_O] - centre[X_O], y[Y_O] - centre[Y_O]);
@@ -89,19 +75,17 @@ void Orbit::read(double t, double* y) const {
 double Orbit::fall(long long n) const {
   if (n < falls_) return fall_[n];
   const long long periods = (n - falls_) / later_falls_;
-  double rest;
-  const double begin = begin_of(1 + 2 * static_cast<double>(periods), &rest);
-  return begin + (later_fall_[(n - falls_) % later_falls_] + rest);
+  return begin_of(1 + 2 * static_cast<double>(periods)) + later_fall_[(n - falls_) % later_falls_];
 }
 
 long long Orbit::falls_until(double t) const {
-  long long n = std::upper_bound(fall_, fall_ + falls_, t) - fall_;
-  if (kind_ != Kind::folded || t <= T2_ || later_falls_ == 0) return n;
+  if (kind_ != Kind::folded || t <= T2_ || later_falls_ == 0) return std::upper_bound(fall_, fall_ + falls_, t) - fall_;
   constexpr double most_periods = 1e15;  // later, times have no more digits for them
   const double periods = std::floor(std::fmin((t - T2_) / (2 * (T2_ - T1_)), most_periods));
-  n += static_cast<long long>(std::fmax(periods - 1, 0)) * later_falls_;
-  while (periods < most_periods && fall(n) <= t) ++n;
-  return n;
+  const double begin = begin_of(1 + 2 * periods);
+  const auto is_before = [begin](double instant, double fall) { return instant < begin + fall; };
+  const long long last = std::upper_bound(later_fall_, later_fall_ + later_falls_, t, is_before) - later_fall_;
+  return falls_ + static_cast<long long>(periods) * later_falls_ + last;
 }
 
 }  // namespace orbit

@@ -23,8 +23,7 @@ constexpr double stretch = 1.01;
 
 bool RungeKutta::start(const Problem& problem, double t, const double* y, Step* step) {
   step->set_point(t, y, problem.states);
-  limit_ = next_limit_;
-  next_limit_ = 0;
+  limit_ = 0;
   rates_ = 0;
   last_error_ = 0;
   return true;
@@ -118,8 +117,7 @@ void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) 
 // `rates` holds the evaluations of the last step that were made, 0, 12 or 16.
 void RungeKutta::visit(support::Archive& archive, const Problem& problem, Step* step, bool active) {
   archive("step sizes of Runge-Kutta");
-  for (double* size : {&liked_[0], &liked_[1], &limit_, &next_limit_, &size_})
-    archive.range(*size, 0, archive.greatest);
+  for (double* size : {&liked_[0], &liked_[1], &limit_, &size_}) archive.range(*size, 0, archive.greatest);
   archive.range(last_error_, 0, 1);
   archive.number(margin_);
   archive("stages of Runge-Kutta").count(rates_, 0, 16);

@@ -19,8 +19,8 @@ class RungeKutta final : public Engine {
   void expand(const Problem& problem, Counters* counters, Step* step) override;
   void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) override;
 
-  // The first step after the next start is at most dt, s.
-  void limit_first_step(double dt) { next_limit_ = dt; }
+  // The first step after the last start is at most dt, s.
+  void limit_first_step(double dt) { limit_ = dt; }
 
  private:
   template <int width>
@@ -33,12 +33,12 @@ class RungeKutta final : public Engine {
   double next_size(double h, double error);
   bool fits(const Problem& problem, Step* step);
 
-  double liked_[2] = {};               // size of the next step, s, outside of passages and inside; 0: none was made
-  double limit_ = 0, next_limit_ = 0;  // of the first step after the last and the next start, s; 0: none
-  double size_ = 0;                    // of the last step, s
-  double last_error_ = 0;              // of the last step, in units of the weights; 0: there was none
-  double margin_ = 0;                  // at the end of the last step
-  int rates_ = 0;                      // evaluations of the last step that the next one knows
+  double liked_[2] = {};   // size of the next step, s, outside of passages and inside; 0: none was made
+  double limit_ = 0;       // of the first step after the last start, s; 0: none
+  double size_ = 0;        // of the last step, s
+  double last_error_ = 0;  // of the last step, in units of the weights; 0: there was none
+  double margin_ = 0;      // at the end of the last step
+  int rates_ = 0;          // evaluations of the last step that the next one knows
   alignas(16) double f_[16][max_states] = {};
 };
 

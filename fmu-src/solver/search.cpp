@@ -83,11 +83,6 @@ bool Search::find_first_fall(Sample lo, Sample hi, double* t) const {
 // Chandrupatla, Advances in Engineering Software 28 (1997) 145: inverse quadratic interpolation where it is safe, else
 // halving. lo.g >= 0 > hi.g. Returns the first instant known to be below zero, a few roundings past the root.
 double Search::fall_through(Sample lo, Sample hi) const {
-  // A release: g starts at zero and rises before it falls.
-  for (int i = 0; i < 40 && lo.g == 0; ++i) {
-    const Sample next = sample(lo.t + 0.25 * (hi.t - lo.t));
-    (next.g < 0 ? hi : lo) = next;
-  }
   Sample a = hi, b = lo, c = hi;  // a is the latest, b on the other side of the root
   double x = 0.5;
   for (int i = 0; i < 100; ++i) {

@@ -72,9 +72,9 @@ bool Simulation::take_demand() {
   fresh_ = Fresh::state;
   announce_transition(before);
   if (run_.phase == Phase::at_start) return true;
-  solver_.change_interval(run_.t - run_.last_change);
+  const double interval = run_.t - run_.last_change;
   run_.last_change = run_.t;
-  if (run_.phase == Phase::stepping) return restart_solver();
+  if (run_.phase == Phase::stepping) return restart_solver() && (solver_.limit_first_step(interval), true);
   run_.phase = Phase::stepping;
   ++run_.counted.restarts;
   return start_solver();

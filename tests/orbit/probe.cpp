@@ -28,7 +28,7 @@ double force(const Probe& probe, const double* y) {
 }
 
 // What is added to the rates of the wheel, of size `added`: no wheel with such a force may be unfolded.
-enum { drag, towards_north, unbalanced, growing, wind };
+enum { drag, towards_north, unbalanced, growing, wind, turning, rolling, drifting };
 int kind = 0;
 double added = 0;
 decltype(solver::Problem::derivative) rates_of_wheel = nullptr;
@@ -41,6 +41,9 @@ double disturbed(void* owner, double t, const double* y, double* y_dot) {
   if (kind == unbalanced) y_dot[3] += added * std::cos(y[5]);
   if (kind == growing) y_dot[3] += added * t;
   if (kind == wind) y_dot[6] += added;
+  if (kind == turning) y_dot[4] += added * y[1];
+  if (kind == rolling) y_dot[5] += added * y[1];
+  if (kind == drifting) y_dot[7] += added * y[1];
   return margin;
 }
 

@@ -210,8 +210,9 @@ def test_the_order_of_readings_does_not_change_a_bit(library: ctypes.CDLL) -> No
     assert not np.array_equal(first(t), Orbit(library, start=SLANTED, tolerance=1.01e-8)(t))
 
 
-DISTURBANCES = ("drag", "towards north", "unbalanced", "growing", "wind")  # the order of probe.cpp
-BROKEN = [(kind, PAPER) for kind in range(5)]
+# In the order of probe.cpp. The last three change psi, phi and Y_O alone, with the rate of theta.
+DISTURBANCES = ("drag", "towards north", "unbalanced", "growing", "wind", "turning", "rolling", "drifting")
+BROKEN = [(kind, PAPER) for kind in range(8)]
 # A steady wind keeps straight rolling straight.
 BROKEN += [(kind, Start(psi=0.4, theta=np.pi / 2, phi_dot=-9.0)) for kind in range(4)]
 

@@ -48,11 +48,32 @@ def test_adams_and_bdf_agree_where_both_are_affordable(library: Library, truth: 
     beyond(abs(adams - law_error(library, truth, 1.1e-4, 1e-8)), 2e-6, "law error")  # a tenth wider
 
 
-@pytest.mark.parametrize(("factor", "method"), [(0.5, "adams"), (2.0, "bdf")])
-def test_the_automatic_method_follows_the_decay_number(library: Library, factor: float, method: str) -> None:
+@pytest.mark.parametrize(("factor", "layered"), [(0.5, False), (2.0, True)])
+def test_the_automatic_method_follows_the_decay_number(library: Library, factor: float, layered: bool) -> None:
     at_one = regularized.decay_number({**FRICTION, "omega_s": 1.0})
-    law = {**FRICTION, "friction_law": "regularized", "omega_s": at_one / (factor * 200.0)}
-    assert regularized.chosen_method(library, law) == method
+    law = {**FRICTION, "friction_law": "regularized", "omega_s": at_one / (factor * regularized.THRESHOLD)}
+    assert regularized.is_layered(library, law) == layered
+
+
+def random_law(seed: int) -> tuple[Values, float]:
+    """A stiff regularized law on a random wheel: start values and width."""
+    random = np.random.default_rng(seed)
+    start = {"theta_start": random.uniform(0.8, np.pi - 0.8), "s": random.uniform(0.005, 0.05)}
+    start |= dict(zip(("psi_dot_start", "theta_dot_start"), random.normal(0, (1, 0.5)), strict=True))
+    start["phi_dot_start"] = random.normal(0, 4)
+    return start, 10 ** random.uniform(-6, -5)
+
+
+def test_a_stiff_law_is_solved_within_its_tolerance(library: Library) -> None:
+    """Against the same law at a much tighter tolerance by BDF alone, which knows no layer."""
+    times, tolerance, errors = np.linspace(0, 3, 31), 1e-8, []
+    for seed in range(60):
+        start, omega_s = random_law(seed)
+        law = {**start, "keep_contact": True, "friction_law": "regularized", "omega_s": omega_s}
+        exact = run(library, {**law, "method": "bdf"}, times, 1e-12)
+        errors.append(regularized.error_against(exact, run(library, law, times, tolerance)) / tolerance)
+    within(float(np.nanmedian(errors)), 5, "median error over tolerance")
+    within(float(np.nanmax(errors)), 1000, "largest error over tolerance")
 
 
 def test_ten_minutes_of_weak_releases_keep_energy_spin_and_cost(library: Library) -> None:

@@ -105,6 +105,25 @@ void double_dip(const Arguments& args) {
               s.event_time());
 }
 
+// g = (t - c)^2 - w^2 on [0, 1] for a hundred centres c and half widths w from `a` down to 1e-7 `a`: the
+// largest error of the first fall, at c - w, in units of w; infinite where a dip is missed.
+void dips(const Arguments& args) {
+  double worst = 0;
+  long long roots = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double centre = std::fmod(0.5 + 0.6180339887 * i, 0.8) + 0.1, width = args.a * std::pow(10, -0.07 * i);
+    Case c = clock_only(1);
+    c.each_step = [=](double t, const double*) { return (t - centre) * (t - centre) - width * width; };
+    Solver s;
+    s.start(c.problem(), args.method, 0, c.y.data());
+    const Outcome outcome = run_to(s, 1);
+    worst =
+        std::fmax(worst, outcome == Outcome::event ? std::fabs(s.event_time() - (centre - width)) / width : INFINITY);
+    roots += s.counters().roots;
+  }
+  std::printf("{\"worst\": %.17g, \"roots\": %lld}\n", worst, roots);
+}
+
 // A release: g = t^2 (a - t) starts at zero with rate zero, rises, and falls at a.
 void release(const Arguments& args) {
   Case c = clock_only(1);
@@ -148,8 +167,8 @@ void cuts(const Arguments& args) {
     s.read(t, y);
     error = std::fmax(error, std::hypot(y[0] - std::cos(t), y[1] + std::sin(t)));
   }
-  std::printf("{\"error\": %.17g, \"exact\": %s, \"steps\": %lld}\n", error, exact ? "true" : "false",
-              s.counters().steps);
+  std::printf("{\"error\": %.17g, \"exact\": %s, \"steps\": %lld, \"restarts\": %lld}\n", error,
+              exact ? "true" : "false", s.counters().steps, s.counters().restarts);
 }
 
 // y' = y^2 from 1 ends at t = 1; rates that are no numbers beyond t = 1 end there too (a = 1).
@@ -191,8 +210,8 @@ void first_step(const Arguments& args) {
   double y[2];
   s.read(s.known_until(), y);
   const double free_size = s.known_until() - s.step_start();
-  s.change_interval(args.a);
   s.restart(c.problem(), args.method, s.known_until(), y);
+  s.limit_first_step(args.a);
   s.step();
   const double limited = s.known_until() - s.step_start();
   s.step();
@@ -212,6 +231,7 @@ constexpr struct {
            {"grid", grid},
            {"dip", dip},
            {"double_dip", double_dip},
+           {"dips", dips},
            {"release", release},
            {"bounces", bounces},
            {"cuts", cuts},

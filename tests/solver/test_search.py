@@ -18,6 +18,13 @@ def test_every_dip_inside_a_step_is_found(measure, method, depth):
         within(absolute_error(t, exact), 2e-4 / sqrt(depth) * 0.1 + 1e-5, "t")
 
 
+def test_of_a_dip_however_brief_the_first_instant_is_found(measure, method):
+    """A hundred parabolas that are below zero for 0.1 s down to 1e-8 s of a second."""
+    found = measure("dips", method, 0.05)
+    within(found["worst"], 1e-5, "worst")
+    within(found["roots"] / 100, 60, "roots")
+
+
 def test_a_function_that_comes_near_zero_and_turns_is_no_event(measure, method):
     assert measure("dip", method, -1e-4)["falls"] == []
 

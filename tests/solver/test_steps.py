@@ -35,6 +35,8 @@ def test_other_tolerances_change_the_counts_that_grids_do_not(measure, method):
 def test_a_step_cut_at_any_instant_leaves_the_error_within_the_tolerance(measure, method, gap):
     cut = measure("cuts", method, gap)
     assert cut["exact"]
+    stops = 400 if gap > 1e-12 else 200  # closer instants are the same one
+    assert method == "runge_kutta" or cut["restarts"] >= stops - 1  # a history over nodes this close is dropped
     within(cut["error"], 10e-8, "error")
 
 
