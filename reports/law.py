@@ -1,4 +1,4 @@
-"""The regularized law -s N tanh(omega_z / omega_s) against the exact one, and where the layer pays; a part of `stability`."""
+"""The regularized law -s N tanh(omega_z / omega_s) against the exact one, and where its layer pays, for `stability`."""
 
 from __future__ import annotations
 

@@ -21,6 +21,7 @@ from .page import cached
 Array = NDArray[np.float64]
 NATIVE = Path(__file__).with_name("native")
 MOST_RUNS = 20_000
+LEAST_RUNS, LONG = 5, 0.1  # runs; s: the best of two or three runs of some milliseconds still scatters by a quarter
 
 
 def work_folder() -> Path:
@@ -129,12 +130,13 @@ class Master:
         return run
 
     def run(self, task: Task, seconds: float = 0.0) -> Timing:
-        """Repetitions for `seconds`, then one run for its outputs and single steps."""
+        """Repetitions for `seconds`, but not fewer than LEAST_RUNS of a run that is not very long, then one run for its
+        outputs and single steps."""
         run, counters, cost = self.options(task), (c_int * len(COUNTERS))(), np.zeros(4)
         rows, paces = np.zeros((task.steps + 1, len(task.outputs))), np.zeros(task.steps)
         places = [array.ctypes.data_as(c_void_p) for array in (rows, paces, cost)]
         costs, spent = [], 0.0
-        while len(costs) < MOST_RUNS and spent < seconds:
+        while len(costs) < MOST_RUNS and (spent < seconds or (seconds and len(costs) < LEAST_RUNS and spent < LONG)):
             if self.code.solve(self.fmu, byref(run), None, None, None, places[2]).status > WARNING:
                 break
             costs.append(cost.copy())

@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 import subprocess
-from dataclasses import dataclass
 from pathlib import Path
 
 from support.paths import ROOT
 
-from .code_lines import of_core
 from .native import work_folder
 from .page import cached
 
 
-@dataclass(frozen=True)
-class Older:
-    fmu: Path
-    lines: int
-
-
-def built(revision: str) -> Older:
-    """revision: anything Git knows. Built once for each commit."""
+def built(revision: str) -> Path:
+    """revision: anything Git knows. Its wheel.fmu, built once for each commit."""
     git = ["git", "-C", str(ROOT)]
     commit = subprocess.run([*git, "rev-parse", "--short=12", revision], check=True, capture_output=True, text=True)
     folder = work_folder() / f"older_{commit.stdout.strip()}"
@@ -35,4 +27,4 @@ def built(revision: str) -> Older:
         subprocess.run(["cmake", "-S", folder, "-B", fmu.parent, *setting], check=True, capture_output=True)
         make = ["cmake", "--build", fmu.parent, "--parallel", "2"]
         subprocess.run(make, check=True, capture_output=True)
-    return Older(fmu, of_core(folder))
+    return fmu

@@ -16,7 +16,7 @@ from support.paths import build_folder
 from support.scenes import SCENES, SINES, sines
 from support.schedule import INPUTS
 
-from . import code_lines, older
+from . import older
 from .native import Master, Task, Timing
 from .page import Report, Row, Tables, number
 from .race import CPP, HEYOKA, METHODS, OURS, TITLES, at_default, draw_races, race, time_at
@@ -202,22 +202,17 @@ def instances(report: Report) -> None:
 
 
 def older_release(report: Report) -> None:
-    """beside an older version, and the size of the core"""
+    """beside an older version"""
     task = Task({**SCENES["loaded"].start, "method": "adams"}, 0.1, 100)
-    lines = code_lines.of_core()
     revision = report.options["against"]
-    asked: float | None = None
     if revision:
-        old = older.built(revision)
-        then, now = Master(Library.unpacked(old.fmu)), master_of(report)
+        then, now = Master(Library.unpacked(older.built(revision))), master_of(report)
         columns = [INPUTS.index(name) for name in SINES]  # the older version has no brake
         loads = SCENES["loaded"].inputs.derivatives(0.0)[:1, columns]
         task = replace(task, inputs=tuple(SINES), table=np.repeat(loads[None], 100, axis=0))
         times = [(best_of(now, task, 0.1).best, best_of(then, task, 0.1).best) for _ in range(5)]
         ratio = min(a for a, _ in times) / min(b for _, b in times)
         report.figure("loaded", f"smooth loaded scene, CVODE Adams: over {revision}", ratio, "×", 2)
-        asked = old.lines
-    report.figure("lines", "code lines of equations, solver, wheel, FMI", lines, "", asked)
 
 
 PARTS: dict[Callable[[Report], None], float] = {

@@ -186,7 +186,8 @@ def constraints(report: Report) -> None:
         for d in found
     ]
     report.table("drift", rows)
-    report.figure("drift", "constraint residual of the multibody form, relative", max(d.worst for d in found), "", 1e-9)
+    worst = max(d.worst for d in found)
+    report.figure("drift", "constraint residual of the multibody form, relative", worst, "", drift.TOLERANCE)
 
 
 PARTS: dict[Callable[[Report], None], float] = {

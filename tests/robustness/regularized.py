@@ -1,4 +1,4 @@
-"""The regularized law -s N tanh(omega_z / omega_s) against the exact one: error and cost over omega_s, automatic and BDF.
+"""The regularized law -s N tanh(omega_z / omega_s) against the exact one: error and cost over omega_s, by two methods.
 
 Scene: the paper's wheel with friction, 10 s. Error: largest of the headline outputs over 101 times, relative to the
 output's range, against the exact law at tolerance 1e-12.
