@@ -108,15 +108,17 @@ def place_of(w, row: str) -> int:
     after = HEADER + parameters
     stop, asked = after + 1, after + 3
     phase = asked + inputs + 2
-    friction, in_force = phase + 2, phase + 4
-    t = in_force + 1 + inputs - 1 + 1
+    friction, in_force = phase + 3, phase + 6
+    t = in_force + 1 + inputs
     return {
         "stop time": stop,
         "tolerance": stop + 1,
         "phase": phase,
-        "s": phase + 1,
+        "ended by": phase + 1,
+        "s": phase + 2,
         "law": friction,
         "sigma": friction + 1,
+        "layer": friction + 2,
         "origin": in_force,
         "t": t,
         "last change": t + 1,
@@ -135,7 +137,8 @@ def forged(w, blob: bytes, **changes: int | float) -> bytes:
     return signed(words)
 
 
-CREATED, INITIALIZING, FAULTY, INITIAL, AT_START, STEPPING, UNFOLDED, EVENT_MODE, CONTINUOUS_TIME, FLAT = range(10)
+CREATED, INITIALIZING, FAULTY, INITIAL, AT_START, STEPPING, UNFOLDED, EVENT_MODE, CONTINUOUS_TIME, ENDED = range(10)
+SPIN_CHANGES, FELL_FLAT = 1, 5
 
 
 def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
@@ -143,16 +146,24 @@ def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
     before, blob, young = running.serialized(), running.serialized(), fresh.serialized()
     assert forged(running, blob) == blob
     assert words_of(blob)[place_of(running, "phase")] == UNFOLDED
-    wrong = [{"phase": 15}, {"phase": EVENT_MODE}, {"phase": 2**63}, {"phase": AT_START}, {"phase": INITIAL}, {"phase": STEPPING}]
+    wrong = [
+        {"phase": 13},
+        {"phase": EVENT_MODE},
+        {"phase": 2**63},
+        {"phase": AT_START},
+        {"phase": INITIAL},
+        {"phase": STEPPING},
+    ]
     wrong += [{"stop_time": np.nan}, {"stop_time": -np.inf}, {"tolerance": 1.0}, {"t": -1.0}, {"t": np.inf}]
     wrong += [{"last_change": 9.0}, {"origin": 9.0}, {"s": -1.0}, {"s": 0.1}, {"law": 0}, {"law": 2}]
     wrong += [{"ground": 0}, {"ground": 3}]
+    wrong += [{"phase": ENDED}, {"ended_by": FELL_FLAT}, {"phase": ENDED, "ended_by": SPIN_CHANGES}, {"layer": 1}]
     for changes in wrong:
         assert running.restore(forged(running, blob, **changes)) == ERROR, changes
         assert running.take_messages()[-1].text.startswith(DAMAGED.split(" (")[0]), changes
     assert running.restore(forged(running, blob, t=-1.0)) == ERROR
     assert running.take_messages()[-1].text == DAMAGED.format("time reached, s")
-    for phase in (INITIAL, AT_START, STEPPING, UNFOLDED, FLAT):  # a step would use a solver that is not there
+    for phase in (INITIAL, AT_START, STEPPING, UNFOLDED, ENDED):  # a step would use a solver that is not there
         assert running.restore(forged(running, young, phase=phase)) == ERROR
     assert running.serialized() == before
     assert running.restore(forged(running, blob, stop_time=9.0)) == OK  # the partner: it can have been in this one

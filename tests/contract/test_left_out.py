@@ -24,9 +24,8 @@ REGULARIZED = {"s": 0.03, "friction_law": 2}
 SMOOTH = {
     **WITHOUT_FRICTION,
     "regularized": REGULARIZED,
-    "regularized, stiff": {**REGULARIZED, "omega_s": 1e-6},
 }
-SCENES = {**SMOOTH, "friction": {"s": 0.03}}
+SCENES = {**SMOOTH, "regularized, stiff": {**REGULARIZED, "omega_s": 1e-6}, "friction": {"s": 0.03}}
 
 
 @pytest.fixture(scope="session")

@@ -73,7 +73,7 @@ def test_a_stiff_law_is_solved_within_its_tolerance(library: Library) -> None:
         exact = run(library, {**law, "method": "bdf"}, times, 1e-12)
         errors.append(regularized.error_against(exact, run(library, law, times, tolerance)) / tolerance)
     within(float(np.nanmedian(errors)), 5, "median error over tolerance")
-    within(float(np.nanmax(errors)), 1000, "largest error over tolerance")
+    within(float(np.nanmax(errors)), 5000, "largest error over tolerance")
 
 
 def test_ten_minutes_of_weak_releases_keep_energy_spin_and_cost(library: Library) -> None:
