@@ -79,7 +79,8 @@ class Archive {
   const char *row_ = "", *fault_ = nullptr;
 };
 
-// FNV-1a over words of 64 bits; a snapshot is a whole number of them. A change of any one word changes the sum.
+// FNV-1a over words of 64 bits; a snapshot is a whole number of them. A change of any one word changes the sum. It guards
+// against accidents: what is forged is told by the checks of the numbers themselves.
 inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (std::size_t i = 0; i < size; i += 8) {
@@ -89,16 +90,6 @@ inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
     hash ^= hash >> 29u;
   }
   return hash;
-}
-
-// Guards against accidents. A build with WHEEL_UNCHECKED_STATES, for the fuzzer of forged states, takes every sum as
-// right: what then keeps the instance safe are the checks of the numbers themselves.
-inline bool has_checksum(const unsigned char* bytes, std::size_t size, std::uint64_t sum) {
-#ifdef WHEEL_UNCHECKED_STATES
-  return static_cast<void>(bytes), static_cast<void>(size), static_cast<void>(sum), true;
-#else
-  return checksum_of(bytes, size) == sum;
-#endif
 }
 
 }  // namespace support

@@ -133,7 +133,7 @@ const char* Simulation::load_state(const unsigned char* bytes, std::size_t size)
   support::Archive archive = support::Archive::reading(fields, size - sizeof header);
   if (header.mark != mark) return "the mark of this version is missing";
   if (header.size != size) return "the size is another";
-  if (!support::has_checksum(fields, size - sizeof header, header.checksum)) return "the checksum is wrong";
+  if (support::checksum_of(fields, size - sizeof header) != header.checksum) return "the checksum is wrong";
   Demand demand;
   Setup setup = {};
   Run run;

@@ -53,7 +53,7 @@ void Session::free_instance() {
 
 void Session::set_up_experiment() {
   const bool has_tolerance = in_.chance(8), has_stop = in_.chance(4);
-  const double tolerance = in_.chance(12) ? std::pow(10.0, -2.0 - in_.below(11)) : in_.any();
+  const double tolerance = in_.chance(12) ? std::pow(10.0, -3.0 - in_.below(11)) : in_.any();
   const double start = in_.chance(12) ? 0 : in_.any();
   const double stop = in_.chance(12) ? start + 100 * in_.factor() : in_.any();
   const fmi2Status status = checked(*now_, I, false, [&] {
@@ -63,7 +63,7 @@ void Session::set_up_experiment() {
   if (now_->model.state != instantiated) return;
   expect((status == fmi2Error) == !sound, "only a sound experiment is accepted");
   if (status == fmi2Error) return;
-  now_->model.tolerance = has_tolerance ? std::clamp(tolerance, 1e-13, 1e-2) : 1e-8;
+  now_->model.tolerance = has_tolerance ? std::clamp(tolerance, 1e-13, 1e-4) : 1e-8;
   now_->model.has_stop = has_stop;
   now_->model.stop = stop;
 }

@@ -1,18 +1,22 @@
-// The fuzzer's entry: bytes to a sequence of calls. The first byte chooses how much is watched (see Log).
+// The fuzzer's entry: bytes to a sequence of calls, or to a forged state. The first byte chooses which, and how much is
+// watched (see Log).
 #include <iterator>
 
 #include "session.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  fuzz::Session session(data, size);
-  session.run();
+  fuzz::Bytes in(data, size);
+  const unsigned first = in.byte();
+  if (first & 128)
+    fuzz::play_forged(in);
+  else
+    fuzz::Session(in, first).run();
   return 0;
 }
 
 namespace fuzz {
 
-Session::Session(const std::uint8_t* data, std::size_t size) : in_(data, size) {
-  const unsigned watched = in_.byte();
+Session::Session(const Bytes& in, unsigned watched) : in_(in) {
   log() = Log();
   log().digests = watched & 1;
   log().calls_back = watched & 2;

@@ -1,7 +1,7 @@
 // One fuzzed session: two instances, a few saved states, and the calls that the bytes choose.
 #pragma once
 
-#include "bytes.hpp"
+#include "choices.hpp"
 #include "oracle.hpp"
 
 namespace fuzz {
@@ -13,7 +13,7 @@ struct Saved {
 
 class Session {
  public:
-  Session(const std::uint8_t* data, std::size_t size);
+  Session(const Bytes& in, unsigned watched);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -74,5 +74,6 @@ class Session {
 };
 
 fmi2Component make_instance();
+void play_forged(Bytes& in);  // forge.cpp
 
 }  // namespace fuzz
