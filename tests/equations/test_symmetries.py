@@ -15,7 +15,9 @@ from support.bounds import beyond, within
 
 from equations import random_scenes
 
-BOTH = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
+FORMULATIONS = pytest.mark.parametrize(
+    "formulation", [eq.REDUCED, eq.EULER, eq.MULTIBODY], ids=["reduced", "Euler", "multibody"]
+)
 Table = np.ndarray
 
 
@@ -82,9 +84,8 @@ def dynamics(formulation: eq.Formulation, scenes: Table, motions: Table) -> Tabl
     return eq.dynamics_each(formulation, scenes, eq.start_each(formulation, scenes, motions))
 
 
-def draw(seed: int, formulation: eq.Formulation, kind: int | None = None) -> tuple[Table, Table]:
+def draw(seed: int, kind: int | None = None, symmetric: bool = False) -> tuple[Table, Table]:
     random = np.random.default_rng(seed)
-    symmetric = formulation is eq.REDUCED
     scenes = random_scenes.scenes(random, kind, symmetric, 2000)
     return scenes, random_scenes.motions(random, 2000)
 
@@ -101,12 +102,12 @@ def error(found: Table, expected: Table) -> float:
     return float(max(errors))
 
 
-@BOTH
+@FORMULATIONS
 @pytest.mark.parametrize("symmetry", SYMMETRIES.values(), ids=SYMMETRIES.keys())
 def test_the_equations_keep_the_symmetries_of_plane_wheel_and_time(
     formulation: eq.Formulation, symmetry: Symmetry
 ) -> None:
-    scenes, motions = draw(21, formulation)
+    scenes, motions = draw(21)
     mapped = dynamics(formulation, map_scenes(symmetry, scenes), map_motions(symmetry, motions))
     before = dynamics(formulation, scenes, motions)
     expected = map_dynamics(symmetry, before)
@@ -117,12 +118,12 @@ def test_the_equations_keep_the_symmetries_of_plane_wheel_and_time(
     beyond(error(dynamics(formulation, wrong, map_motions(symmetry, motions)), expected), 1, "error")
 
 
-@BOTH
+@FORMULATIONS
 @pytest.mark.parametrize("kind", [eq.FRICTIONLESS, eq.ROLLING, eq.HELD])
 def test_reversed_velocities_give_the_same_accelerations_under_the_same_moment(
     formulation: eq.Formulation, kind: int
 ) -> None:
-    scenes, motions = draw(26, formulation, kind)
+    scenes, motions = draw(26, kind)
     before = dynamics(formulation, scenes, motions)
     for rate in ("psi_dot", "theta_dot", "phi_dot"):
         motions[rate] *= -1
@@ -131,9 +132,9 @@ def test_reversed_velocities_give_the_same_accelerations_under_the_same_moment(
     beyond(error(dynamics(formulation, scenes, motions), before), 4, "error")
 
 
-@BOTH
+@FORMULATIONS
 def test_the_place_on_the_plane_does_not_matter(formulation: eq.Formulation) -> None:
-    scenes, motions = draw(22, formulation)
+    scenes, motions = draw(22)
     before = dynamics(formulation, scenes, motions)
     motions["X_O"] += 1000
     motions["Y_O"] -= 0.1
@@ -142,20 +143,19 @@ def test_the_place_on_the_plane_does_not_matter(formulation: eq.Formulation) -> 
     assert (dynamics(formulation, scenes, motions) != before).any()
 
 
-@BOTH
+@FORMULATIONS
 def test_with_equal_J_x_and_J_y_the_turn_phi_of_the_body_does_not_matter(
     formulation: eq.Formulation,
 ) -> None:
-    scenes, motions = draw(23, eq.REDUCED)
+    scenes, motions = draw(23, symmetric=True)
     before = dynamics(formulation, scenes, motions)
     motions["phi"] += 0.7
     within(error(dynamics(formulation, scenes, motions), before), 3e-13, "error")
-    if formulation is eq.MULTIBODY:
-        scenes["wheel"]["J_y"] *= 1 + 1e-6
-        beyond(error(dynamics(formulation, scenes, motions), before), 8e-7, "error")
+    scenes["wheel"]["J_y"] *= 1 + 1e-6
+    beyond(error(dynamics(formulation, scenes, motions), before), 8e-7, "error")
 
 
-@BOTH
+@FORMULATIONS
 def test_with_equal_J_x_and_J_y_the_moment_about_the_axle_does_not_change_N(
     formulation: eq.Formulation,
 ) -> None:
@@ -165,16 +165,15 @@ def test_with_equal_J_x_and_J_y_the_moment_about_the_axle_does_not_change_N(
         change = dynamics(formulation, scenes, motions)["lambda_"][:, 2] - before[:, 2]
         return float((np.abs(change) / np.abs(before).max(axis=1)).max())
 
-    scenes, motions = draw(24, eq.REDUCED, eq.FRICTIONLESS)
+    scenes, motions = draw(24, eq.FRICTIONLESS, symmetric=True)
     within(change_of_N(scenes, motions), 2e-13, "change of N")
-    if formulation is eq.MULTIBODY:
-        scenes, motions = draw(24, eq.MULTIBODY, eq.FRICTIONLESS)
-        beyond(change_of_N(scenes, motions), 0.3, "change of N")  # J_x != J_y couples N to it
+    scenes, motions = draw(24, eq.FRICTIONLESS)
+    beyond(change_of_N(scenes, motions), 0.3, "change of N")  # J_x != J_y couples N to it
 
 
-@BOTH
+@FORMULATIONS
 def test_holding_is_a_moment_about_the_axle_like_any_other(formulation: eq.Formulation) -> None:
-    scenes, motions = draw(25, formulation, eq.HELD)
+    scenes, motions = draw(25, eq.HELD)
     held = dynamics(formulation, scenes, motions)
     scenes["friction"]["kind"] = eq.FRICTIONLESS
     scenes["load"]["M"][:, 2] += held["tau"]

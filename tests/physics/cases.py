@@ -9,6 +9,7 @@ from functools import cache
 
 import numpy as np
 from reference import Solution, solve
+from support.kept import kept
 from support.motion import Library, Run
 from support.scenes import SCENES
 
@@ -34,7 +35,8 @@ CASES = {name: SCENES[name] for name in NAMES}
 def expected(name: str) -> Solution:
     case = CASES[name]
     times = np.linspace(0, case.duration, 51)
-    return solve(case.wheel, case.motion, times, case.inputs.for_reference(), rtol=1e-12)
+    question = ("case", name, case.duration)
+    return kept(question, lambda: solve(case.wheel, case.motion, times, case.inputs.for_reference(), rtol=1e-12))
 
 
 def found(library: Library, name: str, tolerance: float | None = None, **changes: float) -> Run:

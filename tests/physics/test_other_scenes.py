@@ -1,6 +1,6 @@
 """Scenes beside the paper's, against the independent reference of tests/reference.
 
-Fast rolling, near flat, thin disc, J_x != J_y (multibody), heavy and light friction, past upright, spin either way,
+Fast rolling, near flat, thin disc, J_x != J_y, heavy and light friction, past upright, spin either way,
 and the six inputs: the cases of cases.py.
 """
 

@@ -6,6 +6,7 @@ towards b. Upright wheels head along X (psi = 0), R = r_0 + r. SI units.
 
 from __future__ import annotations
 
+from functools import partial
 from math import atan, cos, pi, sin
 
 import numpy as np
@@ -14,6 +15,7 @@ from reference import Start, Wheel, solve
 from support.bounds import beyond, within
 from support.closed_forms import rolling_inertia
 from support.driver import OK
+from support.kept import kept
 from support.motion import Library, Run, start_values
 from support.schedule import Schedule
 
@@ -132,7 +134,8 @@ def reference_gap(library: Library, seed: int, formulation: int) -> tuple[float,
     run = library.simulate(times, 1e-11, keep_contact=True, formulation=formulation, **start_values(wheel, start))
     gaps = []
     for judged in (wheel, Wheel(**{**vars(wheel), "slope": wheel.slope * (1 + 1e-6)})):
-        want = solve(judged, start, list(run.t), rtol=1e-12)
+        question = (judged, start, list(run.t))
+        want = kept(question, partial(solve, *question, rtol=1e-12))
         gaps.append(max(float(np.abs(run[c] - want[c]).max() / (1 + np.abs(want[c]).max())) for c in names))
     return gaps[0], gaps[1]
 

@@ -28,8 +28,9 @@ LOAD = {
     "M_3": (0.5, -0.4),
 }
 TIMES = np.linspace(0, 4, 81)
-UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8, "formulation": 3}
-wheels = pytest.mark.parametrize("inertia", [{}, UNEQUAL], ids=["reduced", "multibody, J_x != J_y"])
+UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
+WHEELS = {"J_x = J_y": {}, "J_x != J_y": UNEQUAL, "J_x != J_y, multibody": {**UNEQUAL, "formulation": 3}}
+wheels = pytest.mark.parametrize("inertia", WHEELS.values(), ids=WHEELS)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from support.bounds import beyond, within
 from support.closed_forms import circle_spin, fall_normal_force, fall_time
+from support.kept import kept
 from support.scenes import GENERAL
 from support.scenes import SCENES as ALL_SCENES
 
@@ -36,7 +37,8 @@ all_scenes = pytest.mark.parametrize("scene", SCENES)
 @cache
 def run(scene: str) -> Solution:
     s = SCENES[scene]
-    return solve(s.wheel, s.motion, np.linspace(0, s.duration, 51), s.inputs.for_reference())
+    times = np.linspace(0, s.duration, 51)
+    return kept(("scene", scene), lambda: solve(s.wheel, s.motion, times, s.inputs.for_reference()))
 
 
 @pytest.fixture

@@ -69,7 +69,7 @@ def relative_error(found: ArrayLike, expected: ArrayLike) -> float:
 
 
 def _note(value: float, bound: float, quantity: str, side: str) -> None:
-    place = os.environ.get("PYTEST_CURRENT_TEST", "").rsplit(" (", 1)[0].split("[")[0]
+    place = os.environ.get("PYTEST_CURRENT_TEST", "").rsplit(" (", 1)[0].split("[")[0].split("@")[0]
     if "::" in place:
         file, test = place.split("::")
         note((file, test, quantity, side), Row(bound, value))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import resource
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -13,7 +15,21 @@ from reference.tables import read_table
 
 from support.driver import HEADLINE, FMU2Wheel
 from support.motion import Library
-from support.paths import build_folder
+from support.paths import ROOT, build_folder
+
+LARGEST = 4 << 30  # bytes that a test may take, many times what one needs
+
+
+@pytest.fixture(autouse=True)
+def bounded_memory(request: pytest.FixtureRequest) -> Iterator[None]:
+    """A fault that takes memory without end fails its test, not the machine. (Browsers and sanitizers reserve more.)"""
+    if request.path.relative_to(ROOT).parts[0] != "tests" or "LD_PRELOAD" in os.environ:
+        yield
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    resource.setrlimit(resource.RLIMIT_DATA, (LARGEST, hard))
+    yield
+    resource.setrlimit(resource.RLIMIT_DATA, (soft, hard))
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -102,8 +102,14 @@ def sines(t: float, order: int = 0) -> tuple[float, ...]:
     return tuple(a * w**order * sin(w * t + p + order * pi / 2) for a, w, p in SINES.values())
 
 
-# Start values of one scene of every kind: both formulations, both methods, every law of friction.
+# Start values of one scene of every kind: every formulation, every method, every law of friction.
 KINDS: dict[str, Values] = {
     name: SCENES[name].start
     for name in ("free", "friction", "general inertia", "general inertia, friction", "regularized")
+} | {
+    "multibody": {**GENERAL, "formulation": "multibody", "s": 0.03},
+    "multibody, adams": {**GENERAL, "formulation": "multibody", "method": "adams"},
+    "multibody, bdf": {"formulation": "multibody", "method": "bdf", "friction_law": "regularized", "s": 0.03},
+    "adams": {"method": "adams", "s": 0.03},
+    "runge_kutta": {"method": "runge_kutta"},
 }

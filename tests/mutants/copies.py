@@ -1,0 +1,89 @@
+"""Copies of the project in which one fault is put in, built, and judged by the quick tests."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDERS = ("contract", "physics", "orbit", "robustness", "solver", "equations")  # what runs the core
+LONGEST = 600  # s: tests that take longer count as a failure
+NOTHING_TO_TEST = 5  # exit status of pytest
+# Without link-time optimisation, which costs more than it tells; the bits are the same.
+OPTIONS = ["-DCMAKE_BUILD_TYPE=RelWithDebInfo"] + [
+    f"-DCMAKE_{language}_FLAGS_RELWITHDEBINFO=-O2 -DNDEBUG" for language in ("C", "CXX")
+]
+
+
+class Copy:
+    """One copy, in build/mutants/NUMBER."""
+
+    def __init__(self, number: int = 0):
+        self.root = ROOT / "build" / "mutants" / str(number)
+        self.build_folder = self.root / "build" / "release"
+        self._copy_sources()
+        assert self.build(), "the project itself does not build"
+        self.binary = self.digest()
+
+    def _copy_sources(self) -> None:
+        """Unchanged files keep their times, so that little is built again."""
+        listed = subprocess.run(
+            ["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True
+        )
+        for name in listed.stdout.splitlines():
+            path, target = ROOT / name, self.root / name
+            if path.is_file() and not (target.exists() and target.read_bytes() == path.read_bytes()):
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(path, target)
+        if not (self.root / ".venv").exists():
+            (self.root / ".venv").symlink_to(ROOT / ".venv")
+
+    def build(self) -> bool:
+        commands = [["cmake", "--build", self.build_folder]]
+        if not (self.build_folder / "Makefile").exists():
+            sundials = next((ROOT / "build" / "sundials").glob("*/vendor"), "")
+            commands.insert(0, ["cmake", "--preset", "release", f"-DWHEEL_SUNDIALS_SOURCE={sundials}", *OPTIONS])
+        return all(subprocess.run(command, cwd=self.root, capture_output=True).returncode == 0 for command in commands)
+
+    def digest(self) -> str:
+        return hashlib.sha256((self.build_folder / "wheel.so").read_bytes()).hexdigest()
+
+    def source(self, name: str) -> Path:
+        return self.root / "fmu-src" / name
+
+    def suite(self) -> list[str]:
+        """The files of the quick tests that run the core."""
+        paths = (path for folder in FOLDERS for path in (self.root / "tests" / folder).glob("test_*.py"))
+        return sorted(str(path.relative_to(self.root)) for path in paths)
+
+    def failure(self, tests: Sequence[str], left_out: Sequence[str] = ()) -> str:
+        """The first test that fails, or the first file if its tests crash or hang; empty: none."""
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-q",
+            "-x",
+            "-p",
+            "no:cacheprovider",
+            "--no-header",
+            "--tb=no",
+            "-rfE",
+        ]
+        command += [*tests, "--timeout=60", *(option for test in left_out for option in ("--deselect", test))]
+        environment = os.environ | {"WHEEL_BUILD": str(self.build_folder)}
+        try:
+            done = subprocess.run(
+                command, cwd=self.root, env=environment, capture_output=True, text=True, timeout=LONGEST, check=False
+            )
+        except subprocess.TimeoutExpired:
+            return tests[0]
+        if done.returncode in (0, NOTHING_TO_TEST):
+            return ""
+        lines = [line.split(" - ")[0].split(maxsplit=1) for line in done.stdout.splitlines()]
+        return next((words[1] for words in lines if words[:1] in (["FAILED"], ["ERROR"])), tests[0])

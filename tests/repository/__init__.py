@@ -1,0 +1,1 @@
+"""The repository itself: its checkout, commands, documents and releases."""

@@ -1,0 +1,112 @@
+"""Lives of one instance in which memory runs short, at each allocation in turn, once or from there on.
+
+    LD_PRELOAD=short_memory.so python -m robustness.short_memory FOLDER FORMULATION LAW METHOD COMPANIONS
+
+FOLDER holds the unpacked FMU; companions are instances made before. Prints as JSON what was counted. It fails where a
+promise is broken: no crash, no leak; an error has its sentence; once there is memory again, the same instance and a new
+one go on with the bits of an undisturbed life.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from ctypes import CDLL, c_long
+
+from fmpy import read_model_description
+from support.driver import ERROR, FMU2Wheel
+
+HOOK = CDLL(None)
+FOR_GOOD = 2**62
+
+
+def counted(name: str) -> c_long:
+    return c_long.in_dll(HOOK, name)
+
+
+def fail(first: int, last: int) -> None:
+    """Only the allocations first to last fail, counted from now on; 0, 0: none."""
+    for name, value in (("number", 0), ("failed", 0), ("first_failing", first), ("last_failing", last)):
+        counted(name).value = value
+
+
+class Lives:
+    def __init__(self, folder: str, choices: list[int], companions: int):
+        self.folder, self.description = folder, read_model_description(folder)
+        self.values = dict(zip(("formulation", "friction_law", "method"), choices, strict=True)) | {"s": 0.3}
+        self.companions = companions
+
+    def begin(self) -> FMU2Wheel | None:
+        """An instance, or none: then it was told why."""
+        told: list[str] = []
+
+        class FMU2Telling(FMU2Wheel):
+            def keep_message(self, _, name, status, category, text):
+                told.append(text.decode())
+                super().keep_message(_, name, status, category, text)
+
+        try:
+            return FMU2Telling(self.folder, self.description)
+        except Exception:
+            assert told, "no instance and no sentence"
+            return None
+
+    def run(self, w: FMU2Wheel) -> list[bytes]:
+        """From instantiated, through sticks and releases, then back by a copy out of bytes."""
+        rows = w.start(**self.values).run([0.1 * k for k in range(1, 31)])
+        blob = w.serialized()
+        rows += w.run([3.1])
+        assert w.restore(blob) != ERROR
+        w.time = 3.0
+        return rows + w.run([3.1])
+
+    def live(self, first: int, last: int, undisturbed: list[bytes] | None) -> list[bytes]:
+        fail(0, 0)
+        beside = [FMU2Wheel(self.folder, self.description) for _ in range(self.companions)]
+        fail(first, last)
+        w = self.begin()
+        if w:
+            try:
+                rows = self.run(w)
+            except AssertionError:
+                assert w.sentences and counted("failed").value, "an error without a sentence or a cause"
+            counted("last_failing").value = 0
+            assert w.reset() == 0, "an instance that was short of memory cannot be reset"
+            rows = self.run(w)
+            assert undisturbed in (None, rows), "other bits"
+            w.close()
+        for other in beside:
+            other.close()
+        assert counted("live").value == 0, "memory has leaked"
+        return rows if w else []
+
+    def disturbed(self, for_good: bool) -> int:
+        """How many lives were: after each an undisturbed one."""
+        usual = self.live(0, 0, None)
+        n = 0
+        while True:
+            self.live(n + 1, FOR_GOOD if for_good else n + 1, usual)
+            if not counted("failed").value:
+                return n
+            self.live(0, 0, usual)
+            n += 1
+
+    def taken(self) -> dict[str, int]:
+        """Allocations of the start, of a run, and of a snapshot that comes back from bytes."""
+        beside = [FMU2Wheel(self.folder, self.description) for _ in range(self.companions)]
+        fail(0, 0)
+        w = self.begin()
+        start = counted("number").value
+        w.start(**self.values).run([0.1 * k for k in range(1, 31)])
+        run = counted("number").value
+        assert w.restore(w.serialized()) == 0
+        snapshots = counted("number").value
+        for instance in (w, *beside):
+            instance.close()
+        return {"start": start, "run": run - start, "snapshots": snapshots - run}
+
+
+if __name__ == "__main__":
+    lives = Lives(sys.argv[1], [int(word) for word in sys.argv[2:5]], int(sys.argv[5]))
+    failures = {"failed once": lives.disturbed(False), "failed for good": lives.disturbed(True)}
+    print(json.dumps(lives.taken() | failures))
