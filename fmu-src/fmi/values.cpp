@@ -1,5 +1,7 @@
 // FMI 2.0 functions: getting and setting variables.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "arguments.hpp"
 #include "digits.hpp"
@@ -15,6 +17,14 @@ bool check_variable(Instance& i, const char* name, fmi2ValueReference variable, 
   return false;
 }
 
+// A count that outgrows an Integer stays at the largest one.
+template <class Value>
+Value represented(double value) {
+  using Limits = std::numeric_limits<Value>;
+  if constexpr (Limits::is_integer) return static_cast<Value>(std::clamp<double>(value, Limits::min(), Limits::max()));
+  return static_cast<Value>(value);
+}
+
 template <class Value>
 fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueReference variables[], std::size_t count,
                Value values[]) {
@@ -28,7 +38,7 @@ fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
     if (computed && prepare_reading(i) != fmi2OK) return fmi2Discard;
     for (std::size_t k = 0; k < count; ++k) {
       if (!check_readable(i, name, variables[k])) return fmi2Error;
-      values[k] = static_cast<Value>(i.simulation.value(variables[k]));
+      values[k] = represented<Value>(i.simulation.value(variables[k]));
     }
     return fmi2OK;
   });
