@@ -36,6 +36,14 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "contract: quick tests of the C interface, run under sanitizers too")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """With --dist loadgroup the tests of a folder beside tests/ share a process, and with it a browser or a cluster."""
+    for item in items:
+        folder = item.path.relative_to(ROOT).parent
+        if folder.parts[0] != "tests":
+            item.add_marker(pytest.mark.xdist_group(str(folder)))
+
+
 @pytest.fixture(scope="session")
 def fmu_path() -> Path:
     return build_folder() / "wheel.fmu"
