@@ -81,6 +81,11 @@ def note(key: Key, row: Row) -> None:
         seen[key] = row
 
 
+def rounded(row: Row) -> Row:
+    """To the digits of the table."""
+    return replace(row, bound=float(f"{row.bound:.2g}"), measured=float(f"{row.measured:.2g}"))
+
+
 def table_of(file: str) -> str:
     """The table of a file of tests; both from the project's root."""
     return str(Path(file).parent / "bounds.csv")
@@ -118,7 +123,7 @@ def recorded(old: dict[Key, Row], files: set[str]) -> dict[Key, Row]:
         if key[0] in files:
             was = old.get(key)
             measured = was.measured if was and not row.differs(was, STILL) else row.measured
-            rows[key] = replace(row, measured=measured, reason=was.reason if was else "")
+            rows[key] = rounded(replace(row, measured=measured, reason=was.reason if was else ""))
     return rows
 
 
