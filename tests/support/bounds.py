@@ -47,14 +47,14 @@ seen: dict[Key, Row] = {}
 
 def within(value: float, bound: float, quantity: str) -> None:
     """The value lies below the bound; `quantity` names what it is, once in a test."""
-    _note(float(value), float(bound), quantity, "below")
     assert value < bound, f"{quantity} is {value:.3g} and must be below {bound:.3g}"
+    _note(float(value), float(bound), quantity, "below")
 
 
 def beyond(value: float, bound: float, quantity: str) -> None:
     """The value lies above the bound: what something broken must show, or what a quantity must at least reach."""
-    _note(float(value), float(bound), quantity, "above")
     assert value > bound, f"{quantity} is {value:.3g} and must be above {bound:.3g}"
+    _note(float(value), float(bound), quantity, "above")
 
 
 def absolute_error(found: ArrayLike, expected: ArrayLike) -> float:
