@@ -173,7 +173,9 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     std::fill_n(values, n_unknowns, 0.0);
     for (std::size_t k = 0; k < n_knowns; ++k)
       if (!add_derivative(i, name, knowns[k], seeds[k], outputs)) return fmi2Error;
-    return fmi2OK;
+    if (std::all_of(values, values + n_unknowns, [](double value) { return std::isfinite(value); })) return fmi2OK;
+    i.log(Topic::discard, "%s: a derivative is not finite here.", name);
+    return fmi2Discard;
   });
 }
 

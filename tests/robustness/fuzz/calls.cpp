@@ -26,7 +26,7 @@ void Session::instantiate() {
   const fmi2Component component = fmi2Instantiate(flaw == 1   ? " \t"
                                                   : flaw == 2 ? nullptr
                                                               : "100 % #1#",
-                                                  flaw == 3 ? fmi2ModelExchange : fmi2CoSimulation,
+                                                  flaw == 3 ? static_cast<fmi2Type>(7) : fmi2CoSimulation,
                                                   flaw == 4   ? "{0}"
                                                   : flaw == 5 ? nullptr
                                                               : guid,

@@ -20,7 +20,7 @@ enum : unsigned {
   ref_first_input = ref_F_X,
   ref_first_output = ref_X_O,
 };
-constexpr unsigned input_count = ref_first_output - ref_first_input, output_count = ref_E - ref_first_output;
+constexpr unsigned input_count = ref_first_output - ref_first_input, output_count = ref_theta_ddot - ref_first_output;
 
 enum class Type { real, integer, boolean };
 Type type_of(unsigned reference);

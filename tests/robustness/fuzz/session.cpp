@@ -65,6 +65,7 @@ const Session::Action& Session::action(unsigned choice) const {
       {"switch_logging", &Session::switch_logging},
       {"strings", &Session::strings},
       {"call_model_exchange", &Session::call_model_exchange},
+      {"exchange", &Session::exchange},
       {"cancel_step", &Session::cancel_step},
       {"instantiate", &Session::instantiate},
       {"free_instance", &Session::free_instance},

@@ -57,6 +57,7 @@ class Session {
   void repeat_step_after_rollback();
   void repeat_step_in_new_instance();
   void compare_reset_with_new();
+  void exchange();               // exchange.cpp
   void call_without_instance();  // absent.cpp
 
   void start_quickly();
