@@ -23,10 +23,8 @@ void Session::instantiate() {
   if (now_->component) return;
   const unsigned flaw = in_.below(8);
   const fmi2CallbackFunctions functions = callbacks(), silent = {};
-  const fmi2Component component = fmi2Instantiate(flaw == 1   ? " \t"
-                                                  : flaw == 2 ? nullptr
-                                                              : "100 % #1#",
-                                                  flaw == 3 ? static_cast<fmi2Type>(7) : fmi2CoSimulation,
+  const char* names[] = {"100 % #1#", " \t", nullptr, ""};
+  const fmi2Component component = fmi2Instantiate(flaw < 4 ? names[flaw] : names[0], fmi2CoSimulation,
                                                   flaw == 4   ? "{0}"
                                                   : flaw == 5 ? nullptr
                                                               : guid,

@@ -57,7 +57,8 @@ void move(Wheel& wheel, Bytes& in) {
     expect(fmi2GetContinuousStates(wheel.component, back, states) == fmi2OK, "states can be read");
     expect(std::equal(back, back + states, wheel.x), "states are read back to the bit");
   } else {
-    expect(!std::all_of(wheel.x, wheel.x + states, [](double v) { return std::isfinite(v); }), "finite states are taken");
+    expect(!std::all_of(wheel.x, wheel.x + states, [](double v) { return std::isfinite(v); }),
+           "finite states are taken");
     fmi2GetContinuousStates(wheel.component, wheel.x, states);
   }
 }
