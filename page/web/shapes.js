@@ -27,7 +27,7 @@ export function tyreTexture(accent) {
   const texture = new THREE.CanvasTexture(canvas);
   texture.colorSpace = THREE.SRGBColorSpace;
   texture.wrapS = THREE.RepeatWrapping;
-  texture.anisotropy = 8;
+  texture.anisotropy = 2;
   return texture;
 }
 

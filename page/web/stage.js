@@ -34,7 +34,7 @@ export class Stage {
   constructor(canvas, size) {
     this.canvas = canvas;
     this.size = size;
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true});
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: devicePixelRatio < 2});
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
@@ -71,8 +71,8 @@ export class Stage {
     this.sky.position.set(0, 0, 1);
     this.sun = new THREE.DirectionalLight('#fff6e8', 2.3);
     this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(2048, 2048);
-    this.sun.shadow.radius = 6;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.radius = 4;
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.01;
     const reach = 1.6 * this.size;
@@ -88,7 +88,7 @@ export class Stage {
     this.scene.fog.color = air;
     this.ground.material.map?.dispose();
     this.ground.material.map = groundTexture(colour('--ground'), colour('--grid-fine'), colour('--grid'));
-    this.ground.material.map.anisotropy = Math.min(4, this.renderer.capabilities.getMaxAnisotropy());
+    this.ground.material.map.anisotropy = 2;
     this.ground.material.needsUpdate = true;
     this.dirty = true;
   }
