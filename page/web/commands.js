@@ -1,6 +1,6 @@
 // The commands that make the same run outside of the page: fmpy's command line, Python with FMPy, and C.
 
-const quoted = (value) => String(value);
+const instant = (t) => Number(t.toFixed(4));  // s, a communication point in plain digits
 
 /** Start values that differ from the description's: [[name, value], ...]. */
 function starts({values}, variables) {
@@ -12,7 +12,7 @@ function byFmpy({plan, step}, variables) {
   const {changes, stop} = plan;
   const names = [...new Set(changes.map(({name}) => name))];
   const now = Object.fromEntries(names.map((name) => [name, plan.values[name] ?? variables[name].start ?? 0]));
-  const row = (t) => [t, ...names.map((name) => now[name])].map(quoted).join(',');
+  const row = (t) => [instant(t), ...names.map((name) => now[name])].join(',');
   const rows = [['time', ...names].join(','), row(0)];
   for (const {t, name, value} of changes) {
     rows.push(row(t));
@@ -31,7 +31,7 @@ function byFmpy({plan, step}, variables) {
 
 function byPython({plan, step}, variables) {
   const values = starts(plan, variables).map(([name, value]) => `"${name}": ${value}`);
-  const changes = plan.changes.map(({t, name, value}) => `(${Number(t.toFixed(4))}, "${name}", ${value})`);
+  const changes = plan.changes.map(({t, name, value}) => `(${instant(t)}, "${name}", ${value})`);
   const end = `stop_time=${plan.stop}, output_interval=${step}, start_values={${values.join(', ')}}`;
   if (!changes.length)
     return `from fmpy import simulate_fmu\n\nmotion = simulate_fmu("wheel.fmu", ${end})\nprint(motion["theta"][-1])`;
@@ -53,7 +53,12 @@ print(motion["theta"][-1])`;
 }
 
 const DECLARATIONS = `typedef void (*logger)(void*, const char*, int, const char*, const char*, ...);
-typedef struct { logger log; void* (*allocate)(size_t, size_t); void (*release)(void*); void* done; void* environment; } callbacks;
+typedef struct {
+  logger log;
+  void* (*allocate)(size_t, size_t);
+  void (*release)(void*);
+  void *done, *environment;
+} callbacks;
 void* fmi2Instantiate(const char*, int, const char*, const char*, const callbacks*, int, int);
 int fmi2SetupExperiment(void*, int, double, double, int, double), fmi2EnterInitializationMode(void*);
 int fmi2ExitInitializationMode(void*), fmi2DoStep(void*, double, double, int), fmi2Terminate(void*);
@@ -66,19 +71,24 @@ function byC({plan, step, guid}, variables) {
   const given = starts(plan, variables).map(([name, value]) => [0, reference(name), value]);
   const later = plan.changes.map(({t, name, value}) => [Math.round(t / step), reference(name), value]);
   const shown = ['theta', 'omega_z', 'X_O', 'Y_O'];
-  return `/* unzip wheel.fmu 'binaries/*' && cc run.c ./binaries/linux64/wheel.so -o run && ./run */
+  const rows = list([...given, ...later, [-1, 0, 0]]);
+  return `// unzip wheel.fmu 'binaries/*' && cc run.c ./binaries/linux64/wheel.so -o run && ./run
 #include <stdio.h>
 #include <stdlib.h>
 
 ${DECLARATIONS}
 
-static void tell(void* e, const char* name, int status, const char* category, const char* text, ...) { fprintf(stderr, "%s\\n", text); }
+static void tell(void* e, const char* name, int status, const char* category, const char* text, ...) {
+  fprintf(stderr, "%s\\n", text);
+}
 
 int main(void) {
   static const callbacks functions = {tell, calloc, free, NULL, NULL};
-  static const struct { int step; unsigned reference; double value; } set[] = {${list([
-    ...given, ...later, [-1, 0, 0]
-  ])}};
+  static const struct {
+    int step;
+    unsigned reference;
+    double value;
+  } set[] = {${rows}};
   static const unsigned shown[] = {${shown.map(reference).join(', ')}}; /* ${shown.join(', ')} */
   double value[${shown.length}];
   void* wheel = fmi2Instantiate("wheel", 1, "${guid}", "", &functions, 0, 0);
