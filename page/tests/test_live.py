@@ -18,7 +18,7 @@ SCENES = {
     "free": ({}, []),
     "friction": ({"s": 0.03}, []),
     "thin disc": ({"r": 0.0, "psi_dot_start": 1.0}, []),
-    "slope": ({"slope": 0.15, "slope_direction": 0.5, "s": 0.01}, []),
+    "slope": ({"slope": 0.05, "slope_direction": 0.5, "s": 0.01}, []),
     "pushed": ({"s": 0.01}, [(1.0, "M_3", -3.0), (2.0, "M_3", 0.0), (4.0, "s", 0.05)]),
 }
 RUN = """([values, changes, record]) => {

@@ -25,7 +25,6 @@ function state(values, more = {}) {
 export function chapters(parameters) {
   const {m, r_0, r} = parameters;
   const limit = criticalSpin(parameters);
-  const slow = Math.abs(EMPTY.plan.values.phi_dot_start ?? 2);
   return [
     {
       title: 'It rolls',
@@ -58,8 +57,9 @@ export function chapters(parameters) {
     {
       title: 'Half a swing, for ever',
       state: state({}),
-      text: (wheel) =>
-          `The paper's wheel has ${slow} rad/s, too little to stay up. It comes down to θ = ${lowest(wheel)}°, ` +
+      text: (wheel) => `The paper's wheel has ${
+                           Math.abs(wheel.table.value('omega_z', 0))
+                               .toFixed(0)} rad/s, too little to stay up. It comes down to θ = ${lowest(wheel)}°, ` +
           'turns faster, and comes up again. Without friction every half swing is the one before, turned and mirrored: ' +
           '(θ, θ̇) is one closed curve, run through for ever.',
       attempt: 'Choose ω<sub>3</sub> (ω<sub>2</sub>) in the diagram: one arc, run to and fro. Then the path: a ring.',
