@@ -108,7 +108,7 @@ def test_directional_derivatives_are_those_of_the_reactions(wheel, scene):
         assert w.step_to(t) == OK
         checked.append((jacobian(w), difference_jacobian(w)))
     for exact, difference in checked:
-        within(np.max(np.abs(exact - difference)), 1e-12, "exact")  # N/N and N/(N m)
+        within(np.max(np.abs(exact - difference)), 1e-12, "difference")  # N/N and N/(N m)
         answers = [name.startswith(("lambda", "tau")) for name in outputs(w)]
         assert np.all(exact[np.invert(answers)] == 0)
         assert np.linalg.matrix_rank(exact[answers], 1e-3) >= 3

@@ -128,7 +128,7 @@ def test_every_start_value_of_the_description_is_what_the_library_starts_with(wh
         status, value = w.get_one(name)
         assert (status, value) == (OK, start), name
         expected = PARAMETERS[name][0] if name in PARAMETERS else 0
-        within(abs(value - expected), 1e-16, "value")
+        within(abs(value - expected), 1e-16, "difference")
     assert w.set(m=20.000000000000004) == OK and w.get("m") != [20.0]  # the partner: one unit in the last place
 
 
@@ -170,8 +170,8 @@ def test_every_unit_is_defined_by_base_units_and_used(description, xml):
     newton = {"kg": 1, "m": 1, "s": -2, "factor": 1.0}
     assert exponents["N"] == newton and exponents["J"] == newton | {"m": 2} == exponents["N.m"]
     (degree,) = defined["rad"].displayUnits
-    within(abs(degree.factor * FULL_TURN - 360), 1e-14, "FULL TURN")  # 16 digits of 180/pi are needed
-    beyond(abs(57.295779513 * FULL_TURN - 360), 4e-11, "FULL TURN")
+    within(abs(degree.factor * FULL_TURN - 360), 1e-14, "full turn, degrees")  # 16 digits of 180/pi are needed
+    beyond(abs(57.295779513 * FULL_TURN - 360), 4e-11, "full turn, degrees")
 
 
 def test_choices_are_integers_with_limits_and_their_meanings(description, xml):

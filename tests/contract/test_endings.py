@@ -100,7 +100,7 @@ def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
     assert w.step(10.0) == DISCARD
     t = ended(w)
     (normal,) = w.get("lambda_3")
-    within(abs(normal), 3e-6, "normal")  # N
+    within(abs(normal), 3e-6, "normal force")  # N
     assert "lifted off" in w.take_messages()[-1].text
     before = wheel().start()
     before.setRealInputDerivatives([reference], [order], [rate])

@@ -65,7 +65,7 @@ def test_every_declared_pair_is_answered_and_right(wheel, description, scene):
         size = 1 + abs(exact)
         worst = max(worst, abs(exact - difference) / size)
         moved += abs(exact) > 1e-6
-        within(abs(exact - difference) / size, 2e-5, "size")
+        within(abs(exact - difference) / size, 2e-5, "relative error")
     assert moved > 60
     assert w.messages == []
 
@@ -86,7 +86,7 @@ def test_known_slopes_of_the_start_are_met(wheel):
     for (unknown, known), slope in expected.items():
         status, value = derivative(w, unknown, known)
         assert status == OK, (unknown, known)
-        within(abs(value - slope), 2e-12, "value")
+        within(abs(value - slope), 2e-12, "difference")
         assert derivative(w, unknown, known, -2.0)[1] == -2 * value
     beyond(abs(derivative(w, "Z_O", "theta_start")[1] - 0.3 * np.sin(theta)), 1e-2, "derivative")  # the partner
 

@@ -29,7 +29,9 @@ def test_a_healthy_run_is_silent_unless_logging_is_switched_on(wheel):
     assert {(m.status, m.category) for m in events} == {(OK, "logEvents")}
     t, sentence = re.fullmatch(r"t = ([\d.]+) s: (.*)", events[0].text).groups()
     assert sentence == "stick, omega_z is held at zero."
-    within(abs(float(t) - FIRST_STICK), 1e-6, "FIRST STICK")  # the release that follows is 0.1 s later
+    within(
+        abs(float(t) - FIRST_STICK), 1e-6, "instant of the first stick, s"
+    )  # the release that follows is 0.1 s later
     assert {text.split(": ")[1].split(",")[0] for _, _, text in events} == {"stick", "release", "reversal"}
 
 

@@ -96,8 +96,8 @@ def test_a_held_wheel_asks_for_the_same_moment_whatever_the_brake_can_give(formu
     scenes["load"]["M"][:, 2] += drive
     moved = dynamics(formulation, scenes, motions)["tau"] - weak["tau"]
     size = scenes["wheel"]["r_0"] * np.abs(weak["lambda_"]).max(axis=1) + np.abs(weak["tau"])
-    within((np.abs(moved + drive) / size).max(), 2e-13, "size")  # it holds what drives it
-    beyond((np.abs(moved) / size).max(), 0.1, "size")
+    within((np.abs(moved + drive) / size).max(), 2e-13, "relative error")  # it holds what drives it
+    beyond((np.abs(moved) / size).max(), 0.1, "relative error")
 
 
 @FORMULATIONS

@@ -24,7 +24,7 @@ def test_the_wheel_stops_at_the_instant_and_place_of_constant_deceleration_and_s
     stop, way = 20 / deceleration, R * 20**2 / (2 * deceleration)
     run = solve(wheel, ROLLING, [0, stop / 2, stop + 1, stop + 2], Inputs(brake=lambda t: brake))
     assert [mode for _, mode in run.events] == [-1, 0]
-    within(relative_error(run.events[1][0], stop), 1e-14, "run")
+    within(relative_error(run.events[1][0], stop), 1e-14, "instant")
     within(relative_error(run["X_O"][1:], [0.75 * way, way, way]), 2e-14, "X_O")
     assert run["omega_z"][2:].tolist() == [0, 0]
     without = solve(wheel, ROLLING, [0, stop + 1])
@@ -35,7 +35,7 @@ def test_a_held_wheel_goes_where_a_ramp_of_force_exceeds_the_brake() -> None:
     inputs = Inputs(force=lambda t: (10 * t, 0.0, 0.0), brake=lambda t: 7.0)
     run = solve(Wheel(), RESTING, np.array([0, 1, 3]), inputs)
     assert [mode for _, mode in run.events] == [0, -1]
-    within(relative_error(run.events[1][0], 7 / (R * 10)), 1e-14, "run")  # R F = brake at 2 s
+    within(relative_error(run.events[1][0], 7 / (R * 10)), 1e-14, "instant")  # R F = brake at 2 s
     within(absolute_error(run["X_O"][1], 0), 1e-15, "X_O")
     within(relative_error(run["tau"][1], R * 10), 1e-14, "tau")
     beyond(run["X_O"][2], 0.01, "X_O")

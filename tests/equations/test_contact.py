@@ -48,7 +48,7 @@ def test_the_contact_is_the_lowest_point_of_the_torus() -> None:
     to_contact = np.stack([paper.r[:, 2, 1], paper.r[:, 0, 2], paper.r[:, 1, 0]], axis=-1)  # body axes, (11)
     place = eq.columns(k, "X_O", "Y_O", "Z_O") + times(paper.A, to_contact)
     found = contacts(scenes, k)
-    within(np.abs(found[:, :2] - place[:, :2]).max(), 2e-14, "found")  # m
+    within(np.abs(found[:, :2] - place[:, :2]).max(), 2e-14, "difference")  # m
     within(np.abs(place[:, 2]).max(), 2e-14, "place")  # it lies on the ground
     k["theta"] += 1e-9
     beyond(np.abs(contacts(scenes, k)[:, :2] - place[:, :2]).max(), 1e-10, "contacts")
@@ -73,7 +73,7 @@ def test_an_upright_wheel_touches_below_its_centre() -> None:
     wheel, motion = eq.paper_wheel(), eq.Motion(0.4, np.pi / 2, 0, 0, 0, -2, 3, 4)
     k = eq.kinematics(eq.REDUCED, wheel, eq.start(eq.REDUCED, wheel, motion))
     found = eq.values(eq.LIBRARY.wheel_contact(byref(wheel), byref(k)))
-    within(absolute_error(found, [3, 4, 0.7 * np.cos(0.4), 0.7 * np.sin(0.4)]), 1e-15, "found")
+    within(absolute_error(found, [3, 4, 0.7 * np.cos(0.4), 0.7 * np.sin(0.4)]), 1e-15, "difference")
     leaning = eq.Motion(0.4, 1.3, 0, 0, 0, -2, 3, 4)
     k = eq.kinematics(eq.REDUCED, wheel, eq.start(eq.REDUCED, wheel, leaning))
     beyond(abs(eq.LIBRARY.wheel_contact(byref(wheel), byref(k)).X_C - 3), 0.01, "wheel contact")
@@ -86,9 +86,9 @@ def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
     expected = np.column_stack([(d["lambda_"] * e1).sum(axis=1), (d["lambda_"] * left).sum(axis=1)])
     found = horizontal(k, d["lambda_"])
     size = np.abs(d["lambda_"]).max()
-    within(np.abs(found - expected).max() / size, 1e-14, "size")
-    beyond(np.abs(found - expected * [1, -1]).max() / size, 0.1, "size")  # to the right
-    within(relative_error(np.hypot(*found.T), np.hypot(*d["lambda_"][:, :2].T)), 1e-14, "found")
+    within(np.abs(found - expected).max() / size, 1e-14, "relative error")
+    beyond(np.abs(found - expected * [1, -1]).max() / size, 0.1, "relative error")  # to the right
+    within(relative_error(np.hypot(*found.T), np.hypot(*d["lambda_"][:, :2].T)), 1e-14, "difference")
 
 
 def test_the_rates_of_the_force_in_wheel_axes_know_that_the_axes_turn() -> None:
@@ -104,7 +104,7 @@ def test_the_rates_of_the_force_in_wheel_axes_know_that_the_axes_turn() -> None:
     slope = (after(h) - after(-h)) / (2 * h)
     found = horizontal(k, d["lambda_"], lambda_dot)
     size = np.abs(slope).max()
-    within(np.abs(found - slope).max() / size, 1e-9, "size")
+    within(np.abs(found - slope).max() / size, 1e-9, "relative error")
     beyond(np.abs(horizontal(k, lambda_dot) - slope).max() / size, 0.1, "horizontal")  # axes that stand still
 
 
@@ -115,5 +115,5 @@ def test_an_upright_driven_wheel_pushes_along_e1_only() -> None:
     k, d, force = eq.kinematics(eq.REDUCED, wheel, y), eq.dynamics(eq.REDUCED, scene, y), (c_double * 2)()
     eq.LIBRARY.wheel_horizontal_force(byref(k), (c_double * 3)(*d.lambda_), force)
     traction = 30 * 0.35 * wheel.m / (wheel.J_z + wheel.m * 0.35**2)
-    within(absolute_error(list(force), [traction, 0]), 2e-13, "list")
+    within(absolute_error(list(force), [traction, 0]), 2e-13, "force")
     beyond(abs(d.lambda_[0] - traction), 1, "traction")  # in fixed axes it is not along X

@@ -81,12 +81,12 @@ def test_reduced_and_multibody_give_the_same_positions_and_velocities() -> None:
         eq.kinematics_each(f, scenes, eq.start_each(f, scenes, motions)) for f in (eq.REDUCED, eq.MULTIBODY)
     )
     a, b = (eq.columns(k, *k.dtype.names) for k in (reduced, multibody))
-    within(relative(a, b), 8e-15, "relative")
+    within(relative(a, b), 8e-15, "relative difference")
     given = eq.columns(motions, *motions.dtype.names)
-    within(relative(eq.columns(reduced, *motions.dtype.names), given), 1e-14, "relative, 2")
+    within(relative(eq.columns(reduced, *motions.dtype.names), given), 1e-14, "relative difference, 2")
     scenes["wheel"]["r"] += 1e-9
     moved = eq.kinematics_each(eq.REDUCED, scenes, eq.start_each(eq.REDUCED, scenes, motions))
-    beyond(relative(eq.columns(moved, *moved.dtype.names), b), 1e-10, "relative")  # r longer by 1 nm
+    beyond(relative(eq.columns(moved, *moved.dtype.names), b), 1e-10, "relative difference")  # r longer by 1 nm
 
 
 def test_the_pose_is_the_kinematics_without_the_horizontal_velocity() -> None:
@@ -131,14 +131,14 @@ def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(k
         dynamics = eq.dynamics_each(formulation, scenes, y)
         stated = rates(k, dynamics)
         exact = 6 if formulation is eq.MULTIBODY else 8  # multibody: the height drawn by rounding, else copies
-        within(relative(y_dot[:, :exact], stated[:, :exact]), 2e-14, "relative")
-        beyond(relative(y_dot, stated * np.where(np.arange(y.shape[1]) == 0, 1.001, 1)), 8e-5, "relative")
+        within(relative(y_dot[:, :exact], stated[:, :exact]), 2e-14, "relative difference")
+        beyond(relative(y_dot, stated * np.where(np.arange(y.shape[1]) == 0, 1.001, 1)), 8e-5, "relative difference")
         force = dynamics["lambda_"]
         if formulation is not eq.MULTIBODY:
             assert (normal == force[:, 2]).all()
         # multibody: two solutions of (24), stabilised and pure, each with rounding of its own
-        within(relative(y_dot, stated), 4e-13, "relative, 2")
-        within((np.abs(normal - force[:, 2]) / np.abs(force).max(axis=1)).max(), 2e-13, "normal")
+        within(relative(y_dot, stated), 4e-13, "relative difference, 2")
+        within((np.abs(normal - force[:, 2]) / np.abs(force).max(axis=1)).max(), 2e-13, "normal force")
 
 
 def reduced_rates(k: np.ndarray, d: np.ndarray) -> np.ndarray:

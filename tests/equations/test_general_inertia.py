@@ -45,10 +45,10 @@ def test_reduced_and_multibody_agree_for_any_inertia(law: int, symmetric: bool) 
     scenes, motions = draw(law, symmetric)
     multibody, reduced = (dynamics(f, scenes, motions) for f in (eq.MULTIBODY, eq.REDUCED))
     found = errors(reduced, multibody, scenes)
-    within(max(found.values()), 9e-13, "values")
+    within(max(found.values()), 9e-13, "relative error")
     scenes["wheel"]["J_y"] *= 1 + 1e-9
     motions["phi"] += 1e-9
-    beyond(max(errors(dynamics(eq.REDUCED, scenes, motions), multibody, scenes).values()), 2e-9, "values")
+    beyond(max(errors(dynamics(eq.REDUCED, scenes, motions), multibody, scenes).values()), 2e-9, "relative error")
 
 
 @each_law
@@ -58,9 +58,9 @@ def test_a_difference_of_rounding_between_J_x_and_J_y_changes_nothing_but_roundi
     equal = dynamics(eq.REDUCED, scenes, motions)
     scenes["wheel"]["J_y"] *= 1 + 1e-15
     assert (scenes["wheel"]["J_x"] != scenes["wheel"]["J_y"]).all()
-    within(max(errors(dynamics(eq.REDUCED, scenes, motions), equal, scenes).values()), 7e-13, "values")
+    within(max(errors(dynamics(eq.REDUCED, scenes, motions), equal, scenes).values()), 7e-13, "relative error")
     scenes["wheel"]["J_y"] *= 1 + 1e-8
-    beyond(max(errors(dynamics(eq.REDUCED, scenes, motions), equal, scenes).values()), 2e-8, "values")
+    beyond(max(errors(dynamics(eq.REDUCED, scenes, motions), equal, scenes).values()), 2e-8, "relative error")
 
 
 def answer_of_N(scenes: Table, motions: Table) -> Table:
@@ -84,9 +84,9 @@ def test_N_answers_a_moment_about_the_axle_by_alpha(formulation: eq.Formulation)
     driven = dynamics(formulation, scenes, motions)["lambda_"]
     alpha = answer_of_N(scenes, motions)
     size = np.abs(driven).max(axis=1) / moment
-    within((np.abs((driven[:, 2] - free) / moment - alpha) / size).max(), 5e-14, "size")
+    within((np.abs((driven[:, 2] - free) / moment - alpha) / size).max(), 5e-14, "relative error")
     beyond(np.abs(alpha * scenes["wheel"]["r_0"]).max(), 0.1, "r_0")  # it does answer
-    beyond((np.abs((driven[:, 2] - free) / moment + alpha) / size).max(), 0.05, "size")  # the other sign
+    beyond((np.abs((driven[:, 2] - free) / moment + alpha) / size).max(), 0.05, "relative error")  # the other sign
     scenes["wheel"]["J_y"] = scenes["wheel"]["J_x"]
     assert (answer_of_N(scenes, motions) == 0).all()
 
@@ -118,7 +118,7 @@ def test_phi_matters_where_J_x_differs_from_J_y_and_only_there() -> None:
         scenes, motions = draw(eq.ROLLING, symmetric, 2000)
         before = dynamics(eq.REDUCED, scenes, motions)
         motions["phi"] += np.pi  # half a turn of the body changes nothing, but its rounding
-        within(max(errors(dynamics(eq.REDUCED, scenes, motions), before, scenes).values()), 5e-14, "values")
+        within(max(errors(dynamics(eq.REDUCED, scenes, motions), before, scenes).values()), 5e-14, "relative error")
         motions["phi"] += 1.0
         change = max(errors(dynamics(eq.REDUCED, scenes, motions), before, scenes).values())
         assert change == 0 if symmetric else change > 0.1

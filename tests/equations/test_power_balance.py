@@ -61,12 +61,12 @@ def test_energy_changes_by_the_power_of_inputs_and_friction(formulation: eq.Form
     now = Instants(formulation, kind)
     rate, size = now.energy_rates()
     power = now.input_power() + now.friction_power()
-    within((np.abs(rate - power) / size).max(), 4e-13, "size")
+    within((np.abs(rate - power) / size).max(), 4e-13, "relative error")
     without_inputs = now.friction_power()
-    beyond((np.abs(rate - without_inputs) / size).max(), 0.1, "size")
+    beyond((np.abs(rate - without_inputs) / size).max(), 0.1, "relative error")
     if kind in (eq.ROLLING, eq.REGULARIZED):
         friction_reversed = now.input_power() - now.friction_power()
-        beyond((np.abs(rate - friction_reversed) / size).max(), 1, "size, 2")
+        beyond((np.abs(rate - friction_reversed) / size).max(), 1, "relative error, 2")
 
 
 @FORMULATIONS

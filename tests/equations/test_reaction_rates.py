@@ -125,7 +125,7 @@ def test_entries_that_are_zero_for_an_instant_keep_their_rates(motion: eq.Motion
     rows.load_dot = np.zeros(ROWS, np.dtype(eq.Load))
     rows.load_dot["F"], rows.load_dot["M"], rows.load_dot["brake"] = (1, 2, 3), (0.1, 0.2, 0.3), 0.4
     judge, found = rows.judged(), rows.rates(eq.REDUCED)
-    within(np.abs(found - judge).max(), 1e-9, "found")  # N/s
+    within(np.abs(found - judge).max(), 1e-9, "difference")  # N/s
     rows.load_dot["brake"] = 0
     assert (np.abs(rows.rates(eq.REDUCED) - judge).max() > 0.01) == (law == eq.ROLLING)
 
@@ -152,7 +152,7 @@ def test_the_response_to_a_load_is_what_it_adds_to_the_rates(formulation: eq.For
     rows.load_dot, load_dot = np.zeros_like(rows.load_dot), rows.load_dot
     difference = with_change - rows.rates(formulation)
     size = np.abs(with_change).max(axis=1, keepdims=True)
-    within((np.abs(response - difference) / size).max(), 4e-11, "size")
+    within((np.abs(response - difference) / size).max(), 4e-11, "relative error")
     load_dot["brake"] *= 1.001
     other = eq.response_each(formulation, rows.scenes, load_dot, y)
     assert ((np.abs(other - difference) / size).max() > 1e-6) == (law in (eq.ROLLING, eq.REGULARIZED))

@@ -50,7 +50,7 @@ def test_the_half_period_has_thirteen_digits_and_the_error_of_a_long_run_is_its_
     t = np.array([100.0, 1000.0])
     late = loose(t) - tight(t)
     rate = tight(t)[:, 1]
-    within(np.abs(late[:, 0] + rate * lag * t).max() / np.abs(late[:, 0]).max(), 0.005, "late")
+    within(np.abs(late[:, 0] + rate * lag * t).max() / np.abs(late[:, 0]).max(), 0.005, "change")
 
 
 @pytest.mark.parametrize("wheel", [Wheel(), Wheel(r=0.0), Wheel(J_z=1.2, r=0.12)], ids=["paper", "disc", "fat"])
@@ -90,8 +90,8 @@ def test_a_wheel_that_ends_does_so_in_its_first_nutation(library: ctypes.CDLL) -
     start = Start(theta=0.7, psi_dot=-4.0, theta_dot=3.0, phi_dot=-3.0)
     orbit = Orbit(library, start=start)
     assert orbit.kind == "ended"
-    within(abs(orbit.read([orbit.end_time])[1][0]), 3e-6, "read")  # N
-    beyond(orbit.read([0.9 * orbit.end_time])[1][0], 1e-2 * 196.2, "read")
+    within(abs(orbit.read([orbit.end_time])[1][0]), 3e-6, "normal force, N")  # N
+    beyond(orbit.read([0.9 * orbit.end_time])[1][0], 1e-2 * 196.2, "normal force, N")
 
 
 def test_excursions_below_zero_are_told_at_their_instants_however_late(library: ctypes.CDLL) -> None:
@@ -105,7 +105,7 @@ def test_excursions_below_zero_are_told_at_their_instants_however_late(library: 
     assert len(told) == len(falls) >= 6
     assert (np.abs(falls - told) <= t[1]).all()
     # Less than one part in 1e9 of the weight, 196 N, counts as zero.
-    within(np.abs(orbit.read(told)[1]).max(), 4e-7, "read")
+    within(np.abs(orbit.read(told)[1]).max(), 4e-7, "normal force, N")
     late = orbit.falls_until(1e6)
     assert orbit.fall(late - 1) <= 1e6 < orbit.fall(late)
     within(abs(orbit.fall(late - 1) - orbit.fall(late - 1 - len(told) // 6) - 2 * orbit.half_period), 1e-9, "fall")
@@ -143,8 +143,8 @@ def test_straight_rolling_above_the_critical_speed_needs_no_step(library: ctypes
     assert (orbit.kind, orbit.steps) == ("folded", 0)
     y = orbit([1e4])[0]
     want = Start().X_O, -phi_dot * 0.35 * 1e4  # rolls along Y
-    within(abs(y[7] / want[1] - 1), 1e-14, "y")
-    within(abs(y[6] - want[0]) / abs(want[1]), 1e-14, "y, 2")
+    within(abs(y[7] / want[1] - 1), 1e-14, "state")
+    within(abs(y[6] - want[0]) / abs(want[1]), 1e-14, "state, 2")
 
 
 def test_below_the_critical_speed_straight_rolling_is_not_taken_for_steady(library: ctypes.CDLL) -> None:
@@ -197,7 +197,9 @@ def test_any_time_can_be_read(library: ctypes.CDLL, t: float) -> None:
     y = orbit([t])[0]
     assert np.isfinite(y).all()
     one = orbit(np.linspace(0, orbit.half_period, 20_001))
-    within(np.abs(one[:, [0, 2, 3]] - y[[0, 2, 3]]).sum(axis=1).min(), 1e-3, "one")  # a state of the nutation
+    within(
+        np.abs(one[:, [0, 2, 3]] - y[[0, 2, 3]]).sum(axis=1).min(), 1e-3, "distance to a state of the nutation"
+    )  # a state of the nutation
 
 
 def test_the_order_of_readings_does_not_change_a_bit(library: ctypes.CDLL) -> None:

@@ -27,18 +27,18 @@ def test_it_stops_the_wheel_at_its_instant_and_after_its_distance(library: Libra
     instant, distance = 5.0 * J / BRAKE, R * 5.0**2 * J / (2 * BRAKE)
     ((t, mode),) = run.events
     assert mode == 0
-    within(abs(t - instant), 1e-14, "t")  # s; the log gives nanoseconds
+    within(abs(t - instant), 1e-14, "instant, s")  # s; the log gives nanoseconds
     within(abs(run["X_O"][-1] - distance), 1e-14, "X_O")  # m
     assert (run["omega_z"][1:] == 0).all()  # held without creep
     within(abs(run["tau"][0] - BRAKE), 1e-14, "tau")  # against omega_z < 0
     ((late, _),) = braked(library, [0.0, 2.0], {"M_brake": (BRAKE,)}, s=1e-6).events  # the partner: a trace of s N
-    beyond(abs(late - instant), 8e-7, "late")
+    beyond(abs(late - instant), 8e-7, "instant, s")
 
 
 def test_with_rolling_friction_the_capacities_add_up(library: Library) -> None:
     ((t, _),) = braked(library, [0.0, 2.0], {"M_brake": (BRAKE,)}, s=0.01).events
-    within(abs(t - 5.0 * J / (BRAKE + 0.01 * M * G)), 1e-9, "t")
-    beyond(abs(t - 5.0 * J / BRAKE), 0.007, "t")
+    within(abs(t - 5.0 * J / (BRAKE + 0.01 * M * G)), 1e-9, "instant, s")
+    beyond(abs(t - 5.0 * J / BRAKE), 0.007, "instant, s")
 
 
 def park(library: Library, slope: float, seconds: float) -> tuple[list[float], list[str]]:
@@ -70,7 +70,7 @@ def test_it_lets_go_where_a_growing_force_exceeds_it(library: Library) -> None:
     release = BRAKE / (R * rate)
     (t, mode) = run.events[-1]
     assert mode == -1
-    within(abs(t - release), 1e-9, "t")
+    within(abs(t - release), 1e-9, "instant, s")
     late = 0.5 - release
     within(abs(run["omega_z"][-1] + rate * R * late**2 / (2 * J)), 2e-14, "omega_z")
     beyond(abs(run["omega_z"][-1] + rate * R * 0.5**2 / (2 * J)), 0.1, "omega_z")

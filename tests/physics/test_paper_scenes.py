@@ -25,8 +25,8 @@ def worst(library: Library, scene: str, tolerance: float | None = None, **start:
 def test_each_headline_output_is_right_to_a_millionth_of_its_range_at_the_default_tolerance(
     library: Library, scene: str
 ) -> None:
-    within(worst(library, scene), BOUND, "worst")
-    beyond(worst(library, scene, J_z=1.8 * (1 - 1e-5)), BOUND, "worst")
+    within(worst(library, scene), BOUND, "difference")
+    beyond(worst(library, scene, J_z=1.8 * (1 - 1e-5)), BOUND, "difference")
 
 
 @both
@@ -65,8 +65,8 @@ def test_the_error_falls_in_proportion_to_the_tolerance(library: Library, scene:
 
 @both
 def test_at_the_tightest_tolerance_only_the_tables_rounding_is_left(library: Library, scene: str) -> None:
-    within(worst(library, scene, 1e-13), 2e-10, "worst")
-    beyond(worst(library, scene, 1e-8), 2e-10, "worst")
+    within(worst(library, scene, 1e-13), 2e-10, "difference")
+    beyond(worst(library, scene, 1e-8), 2e-10, "difference")
 
 
 @both
@@ -74,8 +74,8 @@ def test_at_the_tightest_tolerance_only_the_tables_rounding_is_left(library: Lib
 def test_the_other_formulation_and_the_other_method_reach_the_same_motion(
     library: Library, scene: str, choice: dict[str, int]
 ) -> None:
-    within(worst(library, scene, 1e-11, **choice), 2e-8, "worst")
-    beyond(worst(library, scene, 1e-4, **choice), 1e-6, "worst")
+    within(worst(library, scene, 1e-11, **choice), 2e-8, "difference")
+    beyond(worst(library, scene, 1e-4, **choice), 1e-6, "difference")
 
 
 def test_the_free_wheel_keeps_its_energy_to_the_tolerance(library: Library) -> None:

@@ -37,7 +37,7 @@ def test_after_1000_s_the_error_is_a_millionth_of_the_range(library: Library) ->
 def test_the_energy_neither_grows_nor_wears_off(library: Library) -> None:
     within(energy_error(library), 1e-8, "energy error")
     late = library.simulate([0.0, 1e3, 1e6])["E"]
-    within(np.abs(late / late[0] - 1).max(), 4e-11, "late")
+    within(np.abs(late / late[0] - 1).max(), 4e-11, "change")
 
 
 def test_the_cost_does_not_grow_with_the_horizon(library: Library) -> None:

@@ -54,7 +54,7 @@ def test_a_brake_that_is_put_on_from_zero_stops_the_wheel_once(wheel, kind, torq
     found = played(wheel, kind, pieces, 1.0, theta_start=pi / 2, phi_dot_start=0.0)
     assert found[0] == OK
     assert found[3] == 1
-    within(abs(found[2][4]), NONE, "found")
+    within(abs(found[2][4]), NONE, "difference")
     free = played(wheel, kind, [(0.0, {"M_3": (torque,)})], 1.0, theta_start=pi / 2, phi_dot_start=0.0)
     beyond(abs(free[2][4]), 2e-11, "free")
 

@@ -76,7 +76,7 @@ def test_random_cuts_change_nothing(wheel, kind, pieces):
     @given(random_cuts)
     def check(drawn):
         worst.append(defect(wheel, kind, pieces, with_gaps(drawn)))
-        within(worst[-1], BOUND, "worst")
+        within(worst[-1], BOUND, "difference")
 
     check()
     assert len(worst) > 4

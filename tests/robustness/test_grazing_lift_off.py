@@ -57,7 +57,7 @@ def test_a_dip_of_the_normal_force_inside_one_step_ends_the_run(wheel, depth, s)
         w = wheel().start(F_Z=force, **kind, **SCENE)
         assert w.step_to(STOP) == DISCARD and "lifted off" in w.sentences[-1], kind
         found = w.status(LAST_SUCCESSFUL_TIME)
-        within(abs(found - (instant - half)) / half, 0.04, "found")
-        beyond(abs(found - instant) / half, 0.9, "found")  # the partner
+        within(abs(found - (instant - half)) / half, 0.04, "difference")
+        beyond(abs(found - instant) / half, 0.9, "difference")  # the partner
         w = wheel().start(F_Z=above, **kind, **SCENE)  # another: N stays as far above zero
         assert w.step_to(STOP) == OK, kind

@@ -15,7 +15,7 @@ def test_every_dip_inside_a_step_is_found(measure, method, depth):
     assert len(found) == 3
     # The tolerance is 1e-6; a wrong phase moves the edge of a shallow dip by error / slope.
     for t, exact in zip(found, expected, strict=True):
-        within(absolute_error(t, exact), 2e-4 / sqrt(depth) * 0.1 + 1e-5, "t")
+        within(absolute_error(t, exact), 2e-4 / sqrt(depth) * 0.1 + 1e-5, "instant, s")
 
 
 def test_of_a_dip_however_brief_the_first_instant_is_found(measure, method):

@@ -56,7 +56,7 @@ def test_a_solution_that_cannot_go_on_fails_with_a_sentence_where_it_ends(measur
 
 def test_bdf_solves_a_stiff_problem_in_a_hundredth_of_the_steps_of_an_explicit_method(measure):
     stiff, explicit = (measure("stiff", name, 1000.0, 100.0) for name in ("bdf", "runge_kutta"))
-    within(absolute_error(stiff["y"], explicit["y"]), 4e-8, "y")
+    within(absolute_error(stiff["y"], explicit["y"]), 4e-8, "state")
     assert 100 * stiff["steps"] < explicit["steps"]
     assert stiff["jacobians"] > 0
     # An evaluation for each column of each difference quotient, besides those of the steps.
