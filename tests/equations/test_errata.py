@@ -99,7 +99,7 @@ def test_printed_Q_theta_of_9_is_not_the_derivative_of_Q() -> None:
     difference = printed - slope("Q", THETA)
     within(worst(difference[:, 2, 0], np.sin(states()[:, THETA])), 1e-14, "difference, 2")  # there and only there
     difference[:, 2, 0] = 0
-    within(np.abs(difference).max(), 1e-14, "difference elsewhere")
+    within(np.abs(difference).max(), 5e-15, "difference elsewhere")
 
 
 def test_printed_Q_theta_of_9_lets_the_energy_of_the_free_wheel_wander() -> None:
