@@ -4,14 +4,15 @@
 #include <dlfcn.h>
 #include <string.h>
 
-/* Allocations of these numbers fail, counted since `number` was set to zero; `live`: blocks not given back. */
-long number, first_failing, last_failing, failed, live;
+/* While `watching`, allocations of these numbers fail, counted since `number` was set to zero; `live`: blocks not given
+ * back. */
+long watching, number, first_failing, last_failing, failed, live;
 static void* blocks[1 << 12];
 enum { MOST = sizeof blocks / sizeof *blocks };
 
 static int is_of_the_library(const void* caller) {
   Dl_info info;
-  return dladdr(caller, &info) && info.dli_fname && strstr(info.dli_fname, "wheel.so");
+  return watching && dladdr(caller, &info) && info.dli_fname && strstr(info.dli_fname, "wheel.so");
 }
 
 static int fails(int watched) {
@@ -36,25 +37,27 @@ static void forget(const void* block) {
     }
 }
 
-static void* next(const char* name) { return dlsym(RTLD_NEXT, name); }
+/* Those behind: of the address sanitizer where it is loaded, else of the C library; found without asking the loader,
+ * which takes memory itself. */
+#define BEHIND(result, name, ...)    \
+  result __libc_##name(__VA_ARGS__); \
+  __attribute__((weak)) result __interceptor_##name(__VA_ARGS__)
+BEHIND(void*, malloc, size_t);
+BEHIND(void*, calloc, size_t, size_t);
+BEHIND(void, free, void*);
+#define NEXT(name) (__interceptor_##name ? __interceptor_##name : __libc_##name)
 
 void* malloc(size_t size) {
-  static void* (*real)(size_t);
-  if (!real) *(void**)&real = next("malloc");
   const int watched = is_of_the_library(__builtin_return_address(0));
-  return fails(watched) ? NULL : keep(watched, real(size));
+  return fails(watched) ? NULL : keep(watched, NEXT(malloc)(size));
 }
 
 void* calloc(size_t count, size_t size) {
-  static void* (*real)(size_t, size_t);
-  if (!real) *(void**)&real = next("calloc");
   const int watched = is_of_the_library(__builtin_return_address(0));
-  return fails(watched) ? NULL : keep(watched, real(count, size));
+  return fails(watched) ? NULL : keep(watched, NEXT(calloc)(count, size));
 }
 
 void free(void* block) {
-  static void (*real)(void*);
-  if (!real) *(void**)&real = next("free");
   forget(block);
-  real(block);
+  NEXT(free)(block);
 }
