@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FOLDERS = ("contract", "physics", "orbit", "robustness", "solver", "equations")  # what runs the core
+FOLDERS = ("contract", "physics", "orbit", "robustness", "solver", "exchange", "equations")  # what runs the core
 LONGEST = 600  # s: tests that take longer count as a failure
 NOTHING_TO_TEST = 5  # exit status of pytest
 # Without link-time optimisation, which costs more than it tells; the bits are the same.
