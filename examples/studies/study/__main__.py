@@ -8,30 +8,14 @@ import sys
 import time
 from pathlib import Path
 
-from .options import EXAMPLES, ROOT, arguments_of, example_names, named, number, numbers, read_list
-from .plan import Study, StudyError
-
-
-def study_of_options(arguments: argparse.Namespace) -> Study:
-    """The study that the options describe."""
-    options = {"stop_time": arguments.stop_time, "interval": arguments.interval, "tolerance": arguments.tolerance}
-    if arguments.measure:
-        options["measures"] = named(arguments.measure, str, "measure")
-    return Study(
-        grid=named(arguments.vary, numbers, "vary"),
-        list=read_list(arguments.list) if arguments.list else {},
-        values=named(arguments.set, number, "set"),
-        history=arguments.history,
-        branch_at=arguments.branch_at,
-        **options,
-    )
+from .measures import StudyError
+from .options import ROOT, arguments_of, check, fields_of, file_of
+from .plan import Study
 
 
 def study_file(name: str) -> dict[str, object]:
     """What a study's file defines: `study`, perhaps `table` and `draw`; or `measure`."""
-    path = Path(name) if name.endswith(".py") else EXAMPLES / f"{name}.py"
-    if not path.is_file():
-        raise StudyError(f"There is no study {name}; the examples are {', '.join(example_names())}.")
+    path = file_of(name)
     sys.path.insert(0, str(path.resolve().parent))
     content = runpy.run_path(str(path))
     if not isinstance(content.get("study"), Study) and "measure" not in content:
@@ -43,12 +27,18 @@ def main(argv: list[str] | None = None) -> int:
     """Runs a study; a fault of the study is one sentence on stderr and exit status 2."""
     arguments = arguments_of(argv)
     try:
+        check(arguments)
         content = (
-            study_file(arguments.study) if arguments.study else {"study": study_of_options(arguments), "name": "study"}
+            study_file(arguments.study)
+            if arguments.study
+            else {"study": Study(**fields_of(arguments)), "name": "study"}
         )
         measure(content, arguments) if "measure" in content else conduct(content, arguments)
     except StudyError as fault:
         print(f"study: {fault}", file=sys.stderr)
+        return 2
+    except OSError as fault:  # a full disk, or one that cannot be reached any more
+        print(f"study: {fault}; what is written stays, and the same command goes on from here.", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("study: stopped; the same command goes on from here.", file=sys.stderr)
@@ -59,10 +49,12 @@ def main(argv: list[str] | None = None) -> int:
 def conduct(content: dict[str, object], arguments: argparse.Namespace) -> None:
     """Runs, exports, draws, and says what came out and where it is."""
     from .compute import run
-    from .store import export
-    from .summary import summarize
+    from .results import export, summarize
 
-    out = arguments.out or ROOT / "results" / "studies" / f"{content['name']}.zarr"
+    stem = ROOT / "results" / "studies" / content["name"]
+    out = arguments.out or str(stem.with_suffix(".zarr"))
+    if "://" not in out:
+        stem = Path(out).with_suffix("")
     begin = time.perf_counter()
     results = run(
         content["study"],
@@ -75,11 +67,11 @@ def conduct(content: dict[str, object], arguments: argparse.Namespace) -> None:
     print(summarize(results, time.perf_counter() - begin))
     written = [out]
     if arguments.netcdf:
-        written.append(export(results, out.with_suffix(".nc")))
+        written.append(export(results, stem.with_suffix(".nc")))
     if arguments.csv:
-        written.append(export(results, out.with_suffix(".csv")))
+        written.append(export(results, stem.with_suffix(".csv")))
     if "draw" in content:
-        written += picture(content, results, out.with_suffix(""), arguments.publish)
+        written += picture(content, results, stem, arguments.publish)
     print("\n".join(f"Wrote {path}" for path in written))
 
 
@@ -102,7 +94,7 @@ def picture(content: dict[str, object], results: object, stem: Path, publish: bo
 
 def keep(table: object, stem: Path) -> Path:
     """A pandas table as CSV, an xarray dataset as NetCDF."""
-    from .store import export
+    from .results import export
 
     if hasattr(table, "to_csv"):
         path = stem.with_suffix(".csv")

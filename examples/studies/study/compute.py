@@ -1,221 +1,210 @@
 """Runs a study with Dask: an ordinary LocalCluster, or the cluster behind a scheduler's address.
 
-The caller hands out blocks, a few per worker at a time, and writes each result when it comes; workers need no common
-file system.
+The caller hands out chunks, some seconds of work at a time. Workers write the results themselves where they see the
+store; else the results come back, and the caller writes them.
 """
 
 from __future__ import annotations
 
 import hashlib
 import platform
-import shutil
-import signal
-import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import CancelledError
-from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field
+import uuid
+from collections import deque
+from collections.abc import Callable
+from contextlib import nullcontext
+from dataclasses import dataclass
 from importlib.metadata import version
-from itertools import islice
+from math import prod
 from pathlib import Path
-from threading import Event, Thread, current_thread, main_thread
-from time import monotonic
 
-import dask
+import numpy as np
 import xarray as xr
-from distributed import Client, LocalCluster, as_completed
+from distributed import Client, Future, as_completed
 from distributed.scheduler import KilledWorker
 from fmpy import read_model_description
 from fmpy.model_description import ModelDescription
-from numpy.typing import NDArray
-from tqdm import tqdm
 
+from .crew import Crew, cluster
 from .instance import Status, counters_of
-from .plan import Study, StudyError
-from .runs import Job, empty_result
-from .store import Block, Store, study_attributes
-from .worker import Points, pack, run_block
+from .measures import StudyError
+from .plan import Study
+from .results import open_results
+from .runs import empty_result
+from .session import Session, session
+from .store import MARK, Chunk, Store, study_attributes
+from .worker import Errand, Part, Result, pace, pack, run_parts
 
-BLOCK = 256  # points: about a tenth of a second of work, a hundred times what handing it out costs
-AHEAD = 3  # blocks per worker on their way
-LOST = 60  # s without any worker after which a study gives up
+SECONDS = 2.0  # of work in a task, a thousand times what handing it out costs the caller
+RATE = 50  # tasks per second that the caller hands out at most: with more than 100 workers tasks are longer
+CHUNK = 1.0  # s of work in a chunk, whose writing takes some ms
+FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
+AHEAD = 2  # tasks per worker on their way
+PIECES = 16  # a chunk during which a worker died is divided into so many
 
 
 @dataclass
 class Caller:
-    """The caller's side: hands out blocks, and writes what comes back."""
+    """The caller's side: hands out chunks, and keeps what comes back."""
 
-    client: Client
+    crew: Crew
     study: Study
-    job: Job
     store: Store
-    upload: str
+    errand: Errand
     counters: list[str]
-    work: Callable[[str, Job, Points], dict[str, NDArray]]
-    outstanding: set[object] = field(default_factory=set)
+    work: Callable[[Errand, list[Part]], tuple[list[Result | None], float]]
+    session: Session
+    pace: float | None = None  # s per wheel, of the last tasks
 
-    def submit(self, block: Block | None, points: Points) -> object:
-        future = self.client.submit(self.work, self.upload, self.job, points, pure=False)
-        future.block = block
-        self.outstanding.add(future)
+    def run(self) -> None:
+        """All chunks that are missing; those that killed a worker come last, in ever smaller pieces."""
+        waiting, deadly = deque(self.store.missing()), []
+        coming = as_completed(loop=self.crew.client.loop)
+        while waiting or self.crew.outstanding:
+            while waiting and len(self.crew.outstanding) < AHEAD * self.crew.size:
+                coming.add(self.submit([self.part(chunk) for chunk in self.next(waiting)]))
+            future = next(coming)
+            if isinstance(self.crew.exception(future), KilledWorker):
+                deadly += future.parts
+            else:
+                returned, seconds = future.result()
+                self.pace = seconds if self.pace is None else (self.pace + seconds) / 2
+                for part, result in zip(future.parts, returned, strict=True):
+                    self.keep(part.chunk, result)
+        for part in deadly:
+            if not self.store.has(part.chunk):  # written before the worker died
+                self.keep(part.chunk, self.narrowed(part))
+
+    def submit(self, parts: list[Part]) -> Future:
+        future = self.crew.submit(self.work, self.errand, parts)
+        future.parts = parts
         return future
 
-    def run(self, bar: tqdm) -> None:
-        """All blocks that are missing; those that killed a worker come last, point by point."""
-        waiting = iter(self.store.missing())
-        ahead = AHEAD * max(1, len(self.client.scheduler_info(n_workers=-1)["workers"]))
-        first = [self.submit(b, self.store.points(self.study, b)) for b in islice(waiting, ahead)]
-        deadly, coming = [], as_completed(first)
-        for future in coming:
-            self.outstanding.discard(future)
-            if isinstance(future.exception(), KilledWorker):
-                deadly.append(future.block)
-            else:
-                self._keep(future.block, future.result(), bar)
-            block = next(waiting, None)
-            if block is not None:
-                coming.add(self.submit(block, self.store.points(self.study, block)))
-        for block in deadly:
-            self._keep(block, self._one_by_one(block), bar)
+    def part(self, chunk: Chunk) -> Part:
+        """A chunk with the values that a worker needs to run it."""
+        pieces = chunk if self.study.grid else chunk * len(self.axes)
+        axes = {name: axis[piece] for (name, axis), piece in zip(self.axes.items(), pieces, strict=True)}
+        return Part(chunk, axes, bool(self.study.grid))
 
-    def _keep(self, block: Block, result: Mapping[str, NDArray], bar: tqdm) -> None:
-        self.store.write(block, result, self.counters)
-        bar.update(len(result["status"]))
+    def __post_init__(self) -> None:
+        self.axes = self.study.axes
 
-    def _one_by_one(self, block: Block) -> dict[str, NDArray]:
-        """A block during which a worker died: one point at a time, so that the guilty one is known."""
-        points = self.store.points(self.study, block)
-        count = len(next(iter(points.values())))
-        result = empty_result(self.job, count, len(self.counters))
-        for i in range(count):
-            future = self.submit(None, {name: column[i : i + 1] for name, column in points.items()})
-            if isinstance(future.exception(), KilledWorker):
-                result["status"][i], result["message"][i] = Status.failed, "The worker process died during this run."
-            else:
-                for name, values in future.result().items():
-                    result[name][i] = values[0]
-            self.outstanding.discard(future)
+    def next(self, waiting: deque[Chunk]) -> list[Chunk]:
+        """The next chunks for one worker: about SECONDS of work, less towards the end, so that all end together."""
+        most, seconds = max(1, len(waiting) // (2 * self.crew.size)), task_seconds(self.crew.size)
+        chunks, work = [], 0.0
+        while waiting and len(chunks) < most and work < seconds:
+            chunks.append(waiting.popleft())
+            work += seconds if self.pace is None else self.pace * size(chunks[-1])
+        return chunks
+
+    def keep(self, chunk: Chunk, result: Result | None) -> None:
+        """Writes what the worker could not write."""
+        if result is not None:
+            try:
+                self.store.write(chunk, result, self.counters)
+            except Exception as fault:
+                raise StudyError(
+                    f"{self.store.place} cannot be written ({fault}); what is there stays, the same command goes on."
+                ) from fault
+        self.session.update(size(chunk))
+
+    def narrowed(self, part: Part) -> Result:
+        """A chunk during which a worker died, in ever smaller pieces, so that the guilty wheels are known.
+
+        Pieces of one wheel run one at a time: a worker takes innocent tasks with it.
+        """
+        points, count = part.points, size(part.chunk)
+        result, pieces = empty_result(self.errand.job, count, len(self.counters)), [np.arange(count)]
+        while pieces:
+            rows = pieces.pop()
+            for piece in np.array_split(rows, min(len(rows), PIECES)):
+                columns = {name: column[piece] for name, column in points.items()}
+                future = self.crew.submit(self.work, self.errand._replace(place=""), [Part((), columns, False)])
+                if not isinstance(self.crew.exception(future), KilledWorker):
+                    for name, values in future.result()[0][0].items():
+                        result[name][piece] = values
+                elif len(piece) > 1:
+                    pieces.append(piece)
+                else:
+                    result["status"][piece] = Status.failed
+                    result["message"][piece] = "The worker process died during this run."
         return result
+
+
+def task_seconds(workers: int) -> float:
+    """Work [s] in a task."""
+    return max(SECONDS, workers / RATE)
+
+
+def size(chunk: Chunk) -> int:
+    """The number of wheels in a chunk."""
+    return prod(part.stop - part.start for part in chunk)
 
 
 def run(
     study: Study,
-    out: Path,
+    out: str | Path,
     *,
     fmu: str | Path = "wheel.fmu",
     workers: int | None = None,
     scheduler: str | None = None,
     client: Client | None = None,
-    block: int = BLOCK,
+    chunk: int | None = None,
     overwrite: bool = False,
     quiet: bool = False,
-    work: Callable[[str, Job, Points], dict[str, NDArray]] = run_block,
+    work: Callable[[Errand, list[Part]], tuple[list[Result | None], float]] = run_parts,
 ) -> xr.Dataset:
-    """Runs what is missing in `out` and returns the results.
+    """Runs what is missing in `out`, a folder or a URL, and returns the results.
 
     workers    processes of the LocalCluster; all cores if None
     scheduler  address of a running Dask scheduler, tcp://host:port, instead of a LocalCluster
     client     a Dask client that is open already, instead of both; it stays open
-    block      points that are handed out and written together (fixed when the results are begun)
-    work       what a worker does with a block; for tests
+    chunk      wheels that are run and written together; about a second of work if None
+    work       what a worker does with a task; for tests
     """
     if not Path(fmu).is_file():
         raise StudyError(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
     archive = Path(fmu).read_bytes()
     sha256 = hashlib.sha256(archive).hexdigest()
     description = read_model_description(str(fmu), validate=False)
-    job = study.job(description)
-    store = None if overwrite else Store.open(out, study.fingerprint(sha256))
-    if store is None:
-        shutil.rmtree(out, ignore_errors=True)
-        store = Store.create(
-            out, study, job, description, study_attributes(study, versions(description), sha256), block
-        )
-    if store.missing():
-        opened = nullcontext(client) if client else cluster(workers, scheduler)
-        with opened as user, progress(store, quiet) as bar:
-            upload = send(user, archive, f"wheel-{sha256[:16]}.zip")
-            caller = Caller(user, study, job, store, upload, counters_of(description), work)
-            with watch(caller):
-                caller.run(bar)
-    return store.dataset()
+    place = str(out) if "://" in str(out) else str(Path(out).resolve())
+    errand = Errand(f"wheel-{sha256[:16]}.zip", study.job(description), place, uuid.uuid4().hex)
+    about = study_attributes(study, versions(description), sha256)
+    store = Store.open(place, about["fingerprint"], overwrite)
+    if store and not store.missing():
+        return open_results(place)
+    with nullcontext(client) if client else cluster(workers, scheduler) as user:
+        send(user, archive, errand.upload)
+        crew = Crew(user)
+        with crew.watched():
+            if store is None:
+                wheels = chunk or chunk_size(crew, study, errand)
+                store = Store.create(place, study, errand.job, description, about, wheels)
+            store.group.attrs[MARK] = errand.mark
+            with session(crew, store, quiet) as now:
+                Caller(crew, study, store, errand, counters_of(description), work, now).run()
+    return open_results(place)
 
 
-def send(client: Client, fmu: bytes, name: str) -> str:
-    """Uploads this package and the FMU as a file of that name to all workers, later ones included; returns the name."""
+def chunk_size(crew: Crew, study: Study, errand: Errand) -> int:
+    """Wheels of about a second of work, by some of the study that a worker runs first."""
+    lengths, count = study.shape.values(), prod(study.shape.values())
+    some = np.random.default_rng(0).choice(count, min(count, 256), replace=False)
+    index = np.unravel_index(some, tuple(lengths)) if study.grid else [some] * len(study.axes)
+    points = {name: axis[k] for (name, axis), k in zip(study.axes.items(), index, strict=True)}
+    trial = crew.submit(pace, errand, points, CHUNK / 10)
+    if isinstance(crew.exception(trial), KilledWorker):
+        return FEWEST
+    history = 8 * len(errand.job.times) * len(errand.job.history)
+    most = min(count // (4 * crew.size), LARGEST // max(history, 1))
+    return max(FEWEST, min(int(CHUNK / trial.result()), most))
+
+
+def send(client: Client, fmu: bytes, name: str) -> None:
+    """Uploads this package and the FMU as a file of that name to all workers, later ones included."""
     with tempfile.TemporaryDirectory() as folder:
         client.upload_file(str(pack(fmu, Path(folder) / name)))
-    return name
-
-
-@contextmanager
-def watch(caller: Caller) -> Iterator[None]:
-    """Without any worker for LOST seconds, cancels what is waited for; StudyError instead of waiting for ever."""
-    over = Event()
-
-    def look() -> None:
-        since = monotonic()
-        while not over.wait(LOST / 20):
-            if caller.client.nthreads():
-                since = monotonic()
-            elif monotonic() - since > LOST:
-                caller.client.cancel(list(caller.outstanding), force=True)
-                return
-
-    watcher = Thread(target=look, daemon=True)
-    watcher.start()
-    try:
-        yield
-    except CancelledError:
-        raise StudyError(f"There has been no worker for {LOST} s; started again, the study goes on.") from None
-    finally:
-        over.set()
-        watcher.join()
-
-
-@contextmanager
-def cluster(workers: int | None, scheduler: str | None) -> Iterator[Client]:
-    """A client of the scheduler at that address, or of a LocalCluster of its own with one thread per process."""
-    if scheduler:
-        with Client(scheduler, timeout="30s") as client:
-            yield client
-        return
-    options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
-    # A worker that died is started again by its nanny. LocalCluster would close it for good if, this long after a
-    # death, it happened to be starting again after another one.
-    options["distributed.deploy.lost-worker-timeout"] = "1000 hours"
-    processes = {"n_workers": workers, "threads_per_worker": 1, "memory_limit": 0}
-    with dask.config.set(options):
-        with uninterrupted():
-            local = LocalCluster(**processes, dashboard_address=":0", silence_logs="ERROR")
-        with local, Client(local) as client:
-            yield client
-
-
-@contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Processes that are started meanwhile ignore Ctrl-C: it is for the caller, who then stops them."""
-    if current_thread() is not main_thread():  # no other thread may change this
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-@contextmanager
-def progress(store: Store, quiet: bool) -> Iterator[tqdm]:
-    """A bar with the time left; where the output is no terminal, a line every ten seconds."""
-    status = store.group["status"][:]
-    done = int((status != Status.not_computed).sum())
-    if done and not quiet:
-        print(f"{done} of {status.size} wheels are there already.", file=sys.stderr)
-    every = 0.2 if sys.stderr.isatty() else 10.0
-    with tqdm(total=status.size, initial=done, unit=" wheels", disable=quiet, mininterval=every, smoothing=0.1) as bar:
-        yield bar
 
 
 def versions(description: ModelDescription) -> dict[str, str]:

@@ -1,16 +1,16 @@
 """One instance of wheel.fmu that runs one wheel after the other: fmi2Reset between runs, never a second instance.
 
-Built on the signatures and the loading of fmpy's FMU2Slave. The functions that are called once per communication step
-are taken from the library directly: fmpy's wrapper around them costs more than a step of the wheel.
+Built on the signatures and the loading of fmpy's FMU2Slave. The functions that are called for each wheel are taken from
+the library directly, with arguments that are prepared once per block: fmpy's wrappers cost more than the wheel.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from ctypes import byref, c_double, c_int, c_size_t, c_uint, c_void_p
+from collections.abc import Sequence
+from ctypes import CDLL, byref, c_double, c_int, c_size_t, c_void_p, cast
 from enum import IntEnum
-from time import perf_counter
+from pathlib import Path
 
 import numpy as np
 from fmpy import read_model_description
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)  # fmi2Status
 LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # fmi2StatusKind
+MARCH = "march.library"  # march.c, compiled (Dask would take a .so for a module), beside the FMU's modelDescription.xml
 
 
 class Status(IntEnum):
@@ -37,8 +38,36 @@ class Status(IntEnum):
 ENDINGS = {"fell flat": Status.flat, "lifted off": Status.lifted_off}
 
 
-class Refused(Exception):
-    """The FMU refuses these start values; the text is its own."""
+class Table:
+    """Values of some variables for many wheels: a row goes to or from the FMU by one call per type."""
+
+    def __init__(self, unit: FMU2Instance, names: Sequence[str], rows: int, access: str) -> None:
+        """access: Get or Set."""
+        self._unit, self.names, self._parts, self._column = unit, tuple(names), [], {}
+        for kind in ("Real", "Integer", "Boolean"):
+            mine = [name for name in names if unit.variables[name].type == kind]
+            if mine:
+                values = np.zeros((rows, len(mine)), np.float64 if kind == "Real" else np.int32)
+                references = np.array([unit.variables[name].valueReference for name in mine], np.uint32)
+                call = unit.raw(f"fmi2{access}{kind}", c_void_p, c_void_p, c_size_t, c_void_p)
+                fixed = (call, references.ctypes.data, len(mine), values.ctypes.data, values.strides[0])
+                self._parts.append((*fixed, values, references))
+                self._column |= {name: values[:, k] for k, name in enumerate(mine)}
+
+    def __getitem__(self, name: str) -> NDArray:
+        """All rows of one variable, to read or to fill."""
+        return self._column[name]
+
+    def move(self, row: int) -> int:
+        """Sets or gets one row; the worst status."""
+        worst = OK
+        for call, references, count, address, stride, *_ in self._parts:
+            worst = max(worst, call(self._unit.component, references, count, address + row * stride))
+        return worst
+
+    def key(self, row: int) -> bytes:
+        """Equal for rows of equal values."""
+        return b"".join(part[5][row].tobytes() for part in self._parts)
 
 
 class FMU2Instance(FMU2Slave):
@@ -55,14 +84,19 @@ class FMU2Instance(FMU2Slave):
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.counters = counters_of(self.description)
         self.sentences: list[str] = []
-        self.spent = 0.0  # s inside the FMU, since the count was last set to zero
-        self._do_step = self._raw("fmi2DoStep", c_void_p, c_double, c_double, c_int)
-        self._get_real = self._raw("fmi2GetReal", c_void_p, c_void_p, c_size_t, c_void_p)
         self._own_callbacks = fmi2CallbackFunctions()
         self._own_callbacks.logger = fmi2CallbackLoggerTYPE(self._listen)
         self.instantiate(callbacks=self._own_callbacks)
+        self._reset, self._enter, self._exit = (
+            self.raw(f"fmi2{name}", c_void_p) for name in ("Reset", "EnterInitializationMode", "ExitInitializationMode")
+        )
+        self._set_up = self.raw("fmi2SetupExperiment", c_void_p, c_int, c_double, c_double, c_int, c_double)
+        self._march = CDLL(str(Path(folder) / MARCH)).march
+        self._march.argtypes = (c_void_p,) * 4 + (c_size_t, c_void_p, c_size_t, c_void_p, c_void_p)
+        self._functions_of_march = [cast(self.dll[name], c_void_p) for name in ("fmi2DoStep", "fmi2GetReal")]
 
-    def _raw(self, name: str, *argtypes: type):
+    def raw(self, name: str, *argtypes: type):
+        """A function of the library that returns its status."""
         function = self.dll[name]  # a new function object each time, so fmpy's own keeps its types
         function.argtypes, function.restype = argtypes, c_int
         return function
@@ -71,74 +105,40 @@ class FMU2Instance(FMU2Slave):
         if status != OK:
             self.sentences.append(text.decode())
 
-    def _call(self, fname: str, *args: object) -> int:
-        """Every call through fmpy: timed, and its status given back where fmpy would raise."""
-        begin = perf_counter()
-        status = self._functions[fname](*args)
-        self.spent += perf_counter() - begin
-        return status
-
     def take_message(self) -> str:
         """What the FMU has said since this was last asked, as one line."""
         message, self.sentences = " ".join(self.sentences), []
         return message
 
-    def begin(self, values: Mapping[str, float], tolerance: float | None) -> None:
-        """From whatever went before to t = 0 with these values by name; raises Refused."""
+    def begin(self, values: Table, row: int, tolerance: float | None) -> int:
+        """From whatever went before to t = 0 with these values; the worst status."""
         self.sentences = []
-        if self.fmi2Reset(self.component) > WARNING:  # the standard allows nothing more to an instance after fmi2Fatal
+        if self._reset(self.component) > WARNING:  # the standard allows nothing more to an instance after fmi2Fatal
             self.instantiate(callbacks=self._own_callbacks)
-        status = max(self.set(values), self.setupExperiment(tolerance, 0.0, None))
-        if status <= WARNING:
-            status = max(self.enterInitializationMode(), self.exitInitializationMode())
-        if status > WARNING:
-            raise Refused(self.take_message() or f"A value is outside its limits: {dict(values)}.")
+        worst = values.move(row)
+        given = tolerance is not None
+        worst = max(worst, self._set_up(self.component, given, tolerance if given else 0.0, 0.0, 0, 0.0))
+        if worst <= WARNING:
+            worst = max(worst, self._enter(self.component), self._exit(self.component))
+        return worst
 
-    def set(self, values: Mapping[str, float]) -> int:
-        """Sets values by name, each with the function of its type; the worst status."""
-        status = OK
-        for name, value in values.items():
-            variable = self.variables[name]
-            reference = (c_uint * 1)(variable.valueReference)
-            if variable.type == "Real":
-                status = max(status, self.fmi2SetReal(self.component, reference, 1, (c_double * 1)(value)))
-            else:
-                call = self.fmi2SetBoolean if variable.type == "Boolean" else self.fmi2SetInteger
-                status = max(status, call(self.component, reference, 1, (c_int * 1)(int(value))))
-        return status
+    def march(self, times: Array, references: NDArray[np.uint32], rows: Array) -> tuple[int, int]:
+        """Steps along the times from times[0], where the instance stands, and fills a row at each time that is reached.
 
-    def read(self, names: Sequence[str]) -> Array:
-        """Values by name now, all as floating-point numbers."""
-        row = np.empty(len(names))
-        for i, name in enumerate(names):
-            reference = (c_uint * 1)(self.variables[name].valueReference)
-            real = self.variables[name].type == "Real"
-            value = ((c_double if real else c_int) * 1)()
-            call = self.fmi2GetReal if real else self.fmi2GetInteger
-            row[i] = value[0] if call(self.component, reference, 1, value) <= WARNING else math.nan
-        return row
-
-    def march(self, times: Array, names: Sequence[str]) -> tuple[int, Array]:
-        """Steps along the times from times[0], where the instance stands.
-
-        Returns the FMI status of the last step and the rows of `names` (Real variables) at all times that were reached,
-        times[0] included.
+        Returns the FMI status of the last step and the number of rows. `references` are of Real variables.
         """
-        rows = np.empty((len(times), len(names)))
-        references = (c_uint * len(names))(*(self.variables[name].valueReference for name in names))
-        step, get, component, count = self._do_step, self._get_real, self.component, len(names)
-        address, stride, points = rows.ctypes.data, rows.strides[0], times.tolist()
-        reached, status = 1, get(component, references, count, address) if count else OK
-        begin = perf_counter()
-        for k in range(1, len(points)):
-            status = step(component, points[k - 1], points[k] - points[k - 1], 0)
-            if status > WARNING:
-                break
-            if count:
-                get(component, references, count, address + k * stride)
-            reached += 1
-        self.spent += perf_counter() - begin
-        return status, rows[:reached]
+        reached = c_size_t()
+        status = self._march(
+            *self._functions_of_march,
+            self.component,
+            times.ctypes.data,
+            len(times),
+            references.ctypes.data,
+            len(references),
+            rows.ctypes.data,
+            byref(reached),
+        )
+        return status, reached.value
 
     def ending(self, status: int) -> tuple[Status, float]:
         """After a step that was not completed: what happened, and when [s] (NaN if the FMU does not say)."""

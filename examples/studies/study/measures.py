@@ -10,10 +10,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
 PLANE_ANGLE = "plane_angle"
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _FORMS = re.compile(
@@ -22,9 +18,13 @@ _FORMS = re.compile(
 )
 
 
+class StudyError(ValueError):
+    """The study cannot be run as it is written; the text is one sentence."""
+
+
 @dataclass(frozen=True)
 class Measure:
-    """One number of a run: `kind` is last, min, max, mean, < or >; SI units, `limit` in the variable's unit."""
+    """One number of a run: `kind` is last, min, max, mean, < or >; SI units, `limit` in the quantity's unit."""
 
     kind: str
     quantity: str
@@ -46,22 +46,12 @@ class Measure:
         """Whether the run has to be read at each communication point."""
         return self.kind != "last"
 
-    def of(self, t: Array, x: Array) -> float:
-        """The number for samples x of the variable at the times t, the last of which is the end of the run."""
-        if self.quantity == PLANE_ANGLE:
-            x = plane_angle(x)
-        if self.is_time:
-            return first_passage(t, x, self.limit, below=self.kind == "<")
-        if self.kind == "mean":
-            return float(np.trapezoid(x, t) / (t[-1] - t[0])) if t[-1] > t[0] else float(x[-1])
-        return float({"last": lambda y: y[-1], "min": np.min, "max": np.max}[self.kind](x))
-
 
 def parse_measure(text: str) -> Measure:
-    """The measure that the text describes; ValueError if it describes none."""
+    """The measure that the text describes; StudyError if it describes none."""
     found = _FORMS.fullmatch(f"min({PLANE_ANGLE})" if text.strip() == "lowest" else text)
     if not found:
-        raise ValueError(
+        raise StudyError(
             f"'{text}' is no measure; write lowest, a variable's name, min(name), max(name), mean(name), "
             "first(name < number) or first(name > number)."
         )
@@ -70,19 +60,3 @@ def parse_measure(text: str) -> Measure:
     if found["kind"]:
         return Measure(found["kind"], found["of"], text=text)
     return Measure(found["side"], found["watched"], float(found["limit"]), text)
-
-
-def plane_angle(theta: Array) -> Array:
-    """Angle [rad] of the wheel's plane to the ground, 0 to pi/2: 90 deg - |theta - 90 deg|."""
-    return np.pi / 2 - np.abs(theta - np.pi / 2)
-
-
-def first_passage(t: Array, x: Array, limit: float, below: bool) -> float:
-    """First time at which x is beyond the limit, interpolated linearly between two samples; NaN if it never is."""
-    beyond = x < limit if below else x > limit
-    if not beyond.any():
-        return float("nan")
-    k = int(np.argmax(beyond))
-    if k == 0:
-        return float(t[0])
-    return float(t[k - 1] + (limit - x[k - 1]) / (x[k] - x[k - 1]) * (t[k] - t[k - 1]))

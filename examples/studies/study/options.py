@@ -1,22 +1,26 @@
-"""The options of ./scripts/study, read and checked before anything is built or installed."""
+"""The arguments of ./scripts/study: read, and refused where wrong, by Python alone, before anything is installed.
+
+Names are checked against the FMU's modelDescription.xml. Values are in SI units, or in degrees with `deg` behind them.
+"""
 
 from __future__ import annotations
 
 import argparse
 import csv
 import sys
+from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from math import radians
 from pathlib import Path
 from xml.etree import ElementTree
+from zipfile import BadZipFile, ZipFile
 
 EXAMPLES = Path(__file__).resolve().parent.parent
 ROOT = EXAMPLES.parent.parent
-FORMS = {  # how an option is written
-    "vary": "NAME=1,2,3 or NAME=first:last:count",
-    "set": "NAME=1.5 or NAME=85deg",
-    "measure": "'NAME=max(theta)'",
-}
+if not __package__:  # run as a file, by scripts/help
+    sys.path.insert(0, str(EXAMPLES))
+from study.measures import PLANE_ANGLE, StudyError, parse_measure  # noqa: E402
+
 USAGE = """examples:
   ./scripts/study fates                     one of the examples: {names}
   ./scripts/study my_study.py               a file that says study = Study(...); docs/studies.md shows how
@@ -24,10 +28,6 @@ USAGE = """examples:
       --measure lowest=lowest --out results/studies/lean.zarr --csv
   ./scripts/study --list starts.csv         one wheel per row; the first row has the names
 """
-
-
-class StudyError(ValueError):
-    """The study cannot be run as it is written; the text is one sentence."""
 
 
 def number(text: str) -> float:
@@ -41,20 +41,25 @@ def numbers(text: str) -> list[float]:
         return [number(part) for part in text.split(",")]
     first, last, count = text.split(":")
     if first.endswith("deg") and last.endswith("deg"):
-        return [radians(degree) for degree in numbers(f"{first[:-3]}:{last[:-3]}:{count}")]
-    begin, end, steps = number(first), number(last), int(count) - 1
-    return [begin + k * ((end - begin) / steps) for k in range(steps)] + [end] if steps > 0 else [begin]
+        return [radians(value) for value in numbers(f"{first[:-3]}:{last[:-3]}:{count}")]
+    first, last, count = number(first), number(last), int(count)
+    if count < 2:
+        raise ValueError(count)
+    step = (last - first) / (count - 1)
+    return [*(first + k * step for k in range(count - 1)), last]
 
 
-def named(texts: list[str], convert: object, option: str) -> dict[str, object]:
+def named(texts: list[str], convert: Callable[[str], object], option: str, form: str) -> dict[str, object]:
     """NAME=VALUE options as a dictionary; StudyError with the form that is expected."""
     pairs = {}
     for text in texts:
         name, _, value = text.partition("=")
         try:
             pairs[name] = convert(value)
+        except StudyError:
+            raise
         except ValueError:
-            raise StudyError(f"--{option} {text}: write --{option} {FORMS[option]}.") from None
+            raise StudyError(f"{option} {text}: write {option} {form}.") from None
     return pairs
 
 
@@ -68,30 +73,82 @@ def read_list(path: Path) -> dict[str, list[float]]:
         raise StudyError(f"--list {path}: a row of names, then rows of numbers, are expected ({fault}).") from None
 
 
+def fields_of(arguments: argparse.Namespace) -> dict[str, object]:
+    """What the options say, as the fields of a Study."""
+    measures = named(arguments.measure, lambda text: parse_measure(text).text, "--measure", "'NAME=max(theta)'")
+    return {
+        "grid": named(arguments.vary, numbers, "--vary", "NAME=1,2,3 or NAME=first:last:count"),
+        "list": read_list(arguments.list) if arguments.list else {},
+        "values": named(arguments.set, number, "--set", "NAME=1.5 or NAME=85deg"),
+        "history": arguments.history,
+        **({"measures": measures} if measures else {}),
+        **{name: getattr(arguments, name) for name in ("stop_time", "interval", "tolerance", "branch_at")},
+    }
+
+
+def variables(fmu: Path) -> dict[str, str]:
+    """Name -> causality, of the FMU or, before it is built, of the project's modelDescription.xml."""
+    try:
+        text = ZipFile(fmu).read("modelDescription.xml")
+    except (OSError, BadZipFile, KeyError):
+        text = (ROOT / "modelDescription.xml").read_bytes()
+    return {v.get("name"): v.get("causality", "local") for v in ElementTree.fromstring(text).iter("ScalarVariable")}
+
+
+def check(arguments: argparse.Namespace) -> None:
+    """StudyError if a study of that name is not there, or an option is not to be understood."""
+    if arguments.study:
+        return file_of(arguments.study)
+    fields, known = fields_of(arguments), variables(arguments.fmu)
+    if bool(fields["grid"]) == bool(fields["list"]):
+        raise StudyError(
+            "Say which wheels: an example, a file, --vary NAME=VALUES, or --list CSV; --help has examples."
+        )
+    for name in [*fields["grid"], *fields["list"], *fields["values"]]:
+        if known.get(name) not in ("parameter", "input"):
+            raise StudyError(unknown(name, "parameter or input", known, ("parameter", "input")))
+    watched = [parse_measure(text).quantity for text in fields.get("measures", {}).values()]
+    for name in [*watched, *fields["history"]]:
+        if known.get(name) not in ("output", "local") and (name != PLANE_ANGLE or name in fields["history"]):
+            raise StudyError(unknown(name, "output or local variable", known, ("output", "local")))
+    return None
+
+
+def unknown(name: str, kind: str, known: dict[str, str], wanted: Iterable[str]) -> str:
+    """The sentence about a name that is not there."""
+    there = [n for n in known if known[n] in wanted]
+    near = get_close_matches(name, there)
+    return f"'{name}' is no {kind} of this FMU; " + (
+        f"do you mean {', '.join(near)}?" if near else f"there are {', '.join(there)}."
+    )
+
+
+def file_of(name: str) -> Path:
+    """The file of a study that is given by its path or as an example's name."""
+    path = Path(name) if name.endswith(".py") else EXAMPLES / f"{name}.py"
+    if not path.is_file():
+        raise StudyError(f"There is no study {name}; the examples are {', '.join(example_names())}.")
+    return path
+
+
 def example_names() -> list[str]:
     """The studies that lie beside this package."""
     return sorted(path.stem for path in EXAMPLES.glob("*.py"))
 
 
-def arguments_of(argv: list[str] | None) -> argparse.Namespace:
+def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="./scripts/study",
         description="Runs many wheels on all cores or on a Dask cluster. Started again, it goes on where it was.",
         epilog=USAGE.format(names=", ".join(example_names())),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add = parser.add_argument
+    add, several = parser.add_argument, {"action": "append", "default": []}
     add("study", nargs="?", help="an example's name or a Python file")
-    add(
-        "--vary",
-        action="append",
-        default=[],
-        metavar="NAME=VALUES",
-        help="an axis of the grid: 1,2,3 or first:last:count",
-    )
+    add("--vary", **several, metavar="NAME=VALUES", help="an axis of the grid: 1,2,3 or first:last:count")
     add("--list", type=Path, metavar="CSV", help="one wheel per row instead of a grid")
-    add("--set", action="append", default=[], metavar="NAME=VALUE", help="a value for all wheels")
-    add("--measure", action="append", default=[], metavar="NAME=MEASURE", help="for instance 'highest=max(theta)'")
+    add("--set", **several, metavar="NAME=VALUE", help="a value for all wheels")
+    add("--measure", **several, metavar="NAME=MEASURE", help="for instance 'highest=max(theta)', or lowest=lowest")
     add("--history", nargs="+", default=[], metavar="NAME", help="variables to keep at every communication point")
     add("--stop-time", type=float, default=10.0, help="s (10)")
     add("--interval", type=float, default=0.01, help="s between communication points (0.01)")
@@ -100,7 +157,7 @@ def arguments_of(argv: list[str] | None) -> argparse.Namespace:
     add("--workers", type=int, help="processes on this machine; all cores if not given")
     add("--scheduler", metavar="tcp://HOST:PORT", help="a running Dask scheduler instead")
     add("--fmu", type=Path, default=ROOT / "wheel.fmu")
-    add("--out", type=Path, help="Zarr folder of the results (results/studies/NAME.zarr)")
+    add("--out", metavar="PLACE", help="Zarr folder of the results, or its URL (results/studies/NAME.zarr)")
     add("--overwrite", action="store_true", help="throw away what is there and begin again")
     add("--netcdf", action="store_true", help="a copy as NetCDF beside the Zarr folder")
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
@@ -108,29 +165,9 @@ def arguments_of(argv: list[str] | None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def check(arguments: argparse.Namespace) -> None:
-    """StudyError for an option that cannot be read, and for a name that the description does not have."""
-    for option, convert in (("vary", numbers), ("set", number), ("measure", str)):
-        named(getattr(arguments, option), convert, option)
-    if arguments.list:
-        read_list(arguments.list)
-    name = arguments.study
-    if name and not name.endswith(".py") and name not in example_names():
-        raise StudyError(f"There is no study {name}; the examples are {', '.join(example_names())}.")
-    if name and name.endswith(".py") and not Path(name).is_file():
-        raise StudyError(f"There is no file {name}.")
-    if arguments.fmu == ROOT / "wheel.fmu":
-        rows = list(ElementTree.parse(ROOT / "modelDescription.xml").getroot().iter("ScalarVariable"))
-        known = [str(row.get("name")) for row in rows]
-        asked = [text.partition("=")[0] for text in (*arguments.vary, *arguments.set)] + arguments.history
-        for unknown in [name for name in asked if name not in known]:
-            near = ", ".join(get_close_matches(unknown, known, 3, 0.5))
-            raise StudyError(f"wheel.fmu has no variable {unknown}{f'; do you mean {near}' if near else ''}.")
-
-
 if __name__ == "__main__":
     try:
-        check(arguments_of(None))
+        check(arguments_of())
     except StudyError as fault:
         print(f"study: {fault}", file=sys.stderr)
         sys.exit(2)

@@ -13,8 +13,7 @@ import numpy as np
 from fmpy.model_description import ModelDescription
 from numpy.typing import NDArray
 
-from .measures import Measure, parse_measure
-from .options import StudyError
+from .measures import Measure, StudyError, parse_measure
 from .runs import Job
 
 if TYPE_CHECKING:
@@ -55,10 +54,10 @@ class Study:
     branch_at: float | None = None
 
     def run(self, out: str | Path, **how: object) -> xarray.Dataset:
-        """Runs what is missing in `out` (a Zarr folder) and returns the results; options as in compute.run."""
+        """Runs what is missing in `out` (a Zarr folder or its URL), returns the results; options as in compute.run."""
         from .compute import run  # not needed by a worker, and slow to load
 
-        return run(self, Path(out), **how)
+        return run(self, out, **how)
 
     @property
     def axes(self) -> dict[str, Array]:
@@ -83,10 +82,7 @@ class Study:
 
     def parsed_measures(self) -> dict[str, Measure]:
         """The measures by the name of their result; StudyError if one cannot be understood."""
-        try:
-            return {name: parse_measure(text) for name, text in self.measures.items()}
-        except ValueError as fault:
-            raise StudyError(str(fault)) from None
+        return {name: parse_measure(text) for name, text in self.measures.items()}
 
     def times(self, sampled: bool) -> tuple[float, ...]:
         """The communication points in s; only the first and the last if nothing looks at those between."""

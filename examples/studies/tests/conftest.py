@@ -7,15 +7,20 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import fsspec
 import numpy as np
 import pytest
+from distributed import Client
 from fmpy import extract
+from moto.server import ThreadedMotoServer
 
 STUDIES = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(STUDIES))
 
 from study import Study  # noqa: E402
+from study.crew import cluster  # noqa: E402
 from study.runs import Runner  # noqa: E402
+from study.worker import compiled  # noqa: E402
 
 
 @pytest.fixture(scope="session")
@@ -26,9 +31,31 @@ def fmu_path() -> Path:
 @pytest.fixture(scope="session")
 def runner(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Runner]:
     """One instance in this process, as a worker has it."""
-    runner = Runner(extract(str(fmu_path), str(tmp_path_factory.mktemp("fmu"))))
+    folder = extract(str(fmu_path), str(tmp_path_factory.mktemp("fmu")))
+    compiled(Path(folder))
+    runner = Runner(folder)
     yield runner
     runner.close()
+
+
+@pytest.fixture(scope="session")
+def bucket() -> Iterator[str]:
+    """The URL of a bucket in an object store on this machine; set before workers start, who find it there."""
+    server = ThreadedMotoServer(ip_address="127.0.0.1", port=0, verbose=False)
+    server.start()
+    host, port = server.get_host_and_port()
+    keys = {"AWS_ACCESS_KEY_ID": "a", "AWS_SECRET_ACCESS_KEY": "b", "AWS_DEFAULT_REGION": "us-east-1"}
+    os.environ.update(keys, AWS_ENDPOINT_URL=f"http://{host}:{port}")
+    fsspec.filesystem("s3").mkdir("studies")
+    yield "s3://studies"
+    server.stop()
+
+
+@pytest.fixture(scope="session")
+def crew(bucket: str) -> Iterator[Client]:
+    """Two workers on this machine, for all tests of a process."""
+    with cluster(2, None) as client:
+        yield client
 
 
 @pytest.fixture(scope="session")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from study import Status, Study, StudyError
-from study.measures import first_passage, parse_measure
+from study.measures import parse_measure
 from study.plan import can_change
-from study.runs import Runner
+from study.runs import Runner, first_passage
 
 
 def run(runner: Runner, study: Study) -> dict[str, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Studies on clusters: the same bits with one worker and with many, after a kill, and on a scheduler elsewhere."""
+"""Studies with many workers: the same bits as with one, on a scheduler elsewhere, and in an object store."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import json
 import os
 import re
 import shlex
-import signal
 import subprocess
 import sys
 import time
@@ -14,85 +13,63 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
-from study import Status, Study, StudyError, compute
-from study.__main__ import arguments_of, study_file, study_of_options
+from distributed import Client, LocalCluster
+from studies_support import ROOT, as_one_worker, command, same
+from study import Status, Study, StudyError, curves, in_degrees
+from study import crew as crew_module
+from study.__main__ import study_file
 from study.compute import run
-from study.store import open_results
-from study.worker import run_block
+from study.options import arguments_of, fields_of
+from study.results import open_results
+from study.runs import Runner
+from study.worker import Errand, Part, run_parts
 
-ROOT = Path(__file__).resolve().parents[3]
 GUIDE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
 EXAMPLE = re.findall(r"^```python\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)[0]
 
 
-def same(a: xr.Dataset, b: xr.Dataset) -> bool:
-    """Whether two results agree to the bit, times of computing aside."""
-    timed = ["wall_time", "fmu_time"]
-    return a.drop_vars(timed).load().identical(b.drop_vars(timed).load())
-
-
-def command(*options: object, **more: object) -> subprocess.Popen:
-    """The command behind ./scripts/study, in the Python of the tests."""
-    path = os.pathsep.join(str(ROOT / folder) for folder in ("examples/studies", "."))
-    words = [sys.executable, "-m", "study", *map(str, options)]
-    return subprocess.Popen(words, env=os.environ | {"PYTHONPATH": path}, stderr=subprocess.PIPE, text=True, **more)
-
-
 @pytest.fixture(scope="module")
-def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("study") / "grid.py"
-    path.write_text(EXAMPLE)
-    return path
-
-
-@pytest.fixture(scope="module")
-def here(fates: Study, fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The study of all fates, run by one worker on this machine."""
+def here(fates: Study, fmu_path: Path, crew: Client, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The study of all fates, run by two workers on this machine, which write it."""
     out = tmp_path_factory.mktemp("here") / "fates.zarr"
-    run(fates, out, fmu=fmu_path, workers=1, quiet=True, block=4)
+    run(fates, out, fmu=fmu_path, client=crew, quiet=True, chunk=4, work=nothing_returned)
     return out
 
 
-def kill(process: subprocess.Popen) -> None:
-    """SIGKILL to the process and to its workers, which are in its session."""
-    os.killpg(process.pid, signal.SIGKILL)
-    process.communicate()
+def nothing_returned(errand: Errand, parts: list[Part]) -> tuple[list[None], float]:
+    """As a worker does it, but an error if it has not written all itself."""
+    returned, seconds = run_parts(errand, parts)
+    assert returned == [None] * len(parts)
+    return returned, seconds
+
+
+def without_the_store(errand: Errand, parts: list[Part]) -> tuple[list[object], float]:
+    """As a worker does it that does not see the caller's store."""
+    return run_parts(errand._replace(place="/nowhere"), parts)
 
 
 def test_the_guide_keeps_its_promise_of_ten_lines() -> None:
     assert len(EXAMPLE.splitlines()) <= 10
 
 
-def test_the_guides_command_line_is_the_study_of_its_file(file: Path) -> None:
+def test_the_guides_command_line_is_the_study_of_its_file(tmp_path: Path) -> None:
+    file = tmp_path / "grid.py"
+    file.write_text(EXAMPLE)
     words = shlex.split(re.search(r"scripts/study (--vary.*?)```", GUIDE, re.DOTALL)[1].replace("\\\n", " "))
-    assert study_of_options(arguments_of(words)).spec() == study_file(str(file))["study"].spec()
+    assert Study(**fields_of(arguments_of(words))).spec() == study_file(str(file))["study"].spec()
     other = ["s=0.02" if word == "s=0.01" else word for word in words]
-    assert study_of_options(arguments_of(other)).spec() != study_file(str(file))["study"].spec()
+    assert Study(**fields_of(arguments_of(other))).spec() != study_file(str(file))["study"].spec()
 
 
-def test_a_killed_study_goes_on_where_it_was_and_has_the_bits_of_one_worker(file: Path, fmu_path: Path) -> None:
-    first, whole = file.with_name("killed.zarr"), file.with_name("whole.zarr")
-    options = (file, "--fmu", fmu_path, "--out")
-    process = command(*options, first, "--workers", 2, start_new_session=True)
-    give_up = time.monotonic() + 60
-    while not list(first.glob("status/c/*/*")) and time.monotonic() < give_up:
-        time.sleep(0.02)
-    kill(process)
-    done = open_results(first)["status"].load()
-    left = int((done == Status.not_computed).sum())
-    assert 0 < left < done.size
-    kept = {path: path.stat().st_mtime_ns for path in first.glob("lowest/c/*/*")}
-    process = command(*options, first, "--workers", 2)
-    _, errors = process.communicate(timeout=120)
-    assert process.returncode == 0
-    assert f"{done.size - left} of {done.size} wheels are there already" in errors
-    untouched = [path for path, when in kept.items() if path.stat().st_mtime_ns == when]
-    assert 252 * len(untouched) >= done.size - left  # the blocks are 7 x 36 wheels
-    study = study_file(str(file))["study"]
-    assert same(open_results(first), run(study, whole, fmu=fmu_path, workers=1, quiet=True))
+def test_many_workers_give_the_bits_of_one(fates: Study, here: Path, runner: Runner) -> None:
+    assert as_one_worker(runner, fates, open_results(here))
+    other = open_results(here).load()
+    other["theta"][2, 1, 3, 100] = 0.0
+    assert not as_one_worker(runner, fates, other)
 
 
 def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(fates: Study, here: Path, fmu_path: Path) -> None:
@@ -105,33 +82,42 @@ def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(fates: Stu
     assert set(results.attrs) >= {"fmu_sha256", "fmu_version", "fmu_guid", "seed", "numpy_version", "study"}
     begun = results.sel(theta_start=np.radians(75.0), s=0.03, phi_dot_start=-2.0)
     assert float(begun["theta"][0]) == np.radians(75.0)
-    with pytest.raises(StudyError, match="another study"):
+    with pytest.raises(StudyError, match=r"another study .* --out, .* --overwrite"):
         run(Study(grid={"s": [0.0]}), here, fmu=fmu_path, quiet=True)
     assert same(results, run(fates, here, fmu=fmu_path, scheduler="tcp://nobody:1", quiet=True))  # nothing left to run
 
 
-def die_at_upright(upload: str, job: object, points: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """As a worker does it, but the process dies where a wheel starts at exactly 1.5 rad."""
-    if (points["theta_start"] == 1.5).any():
-        os._exit(1)
-    return run_block(upload, job, points)
+def test_labels_are_short_and_the_description_is_kept(here: Path) -> None:
+    results = open_results(here)
+    labels = {name: values.attrs["long_name"] for name, values in results.variables.items()}
+    assert labels["theta_start"] == "θ at the start"
+    assert labels["s"] == "s"
+    assert labels["phi_dot_start"] == "φ\N{COMBINING DOT ABOVE} at the start"
+    assert labels["down"] == "first(θ < 0.5)"
+    assert max(map(len, labels.values())) <= 30
+    assert "upright" in results["theta_start"].attrs["description"]
+    turned = in_degrees(results)
+    assert turned["theta_start"].attrs["units"] == turned["lowest"].attrs["units"] == "deg"
+    np.testing.assert_allclose(turned["theta_start"], [15, 75, 200], rtol=1e-15)
+    np.testing.assert_array_equal(turned["energy"], results["energy"])
 
 
-def test_an_interrupt_is_for_the_caller_alone() -> None:
-    ask = [sys.executable, "-c", "import signal; print(signal.getsignal(signal.SIGINT).name)"]
-    with compute.uninterrupted():
-        assert subprocess.check_output(ask, text=True).strip() == "SIG_IGN"
-    with pytest.raises(KeyboardInterrupt):
-        signal.raise_signal(signal.SIGINT)
-    assert subprocess.run(ask, capture_output=True, check=False).returncode == 1  # Python's own handler has no name
+def test_a_legend_stands_beside_the_curves(here: Path) -> None:
+    figure, axes = plt.subplots()
+    curves(in_degrees(open_results(here))["theta"].isel(theta_start=1, phi_dot_start=0), x="time", hue="s")
+    figure.canvas.draw()
+    legend = axes.get_legend()
+    assert legend.get_title().get_text() == "s [m]"
+    assert [text.get_text() for text in legend.get_texts()] == ["0", "0.03"]
+    assert legend.get_window_extent().x0 > axes.bbox.x1
+    plt.close(figure)
 
 
-def test_a_worker_that_dies_costs_one_point(fmu_path: Path, tmp_path: Path) -> None:
-    study = Study(grid={"theta_start": [1.2, 1.3, 1.4, 1.5]}, stop_time=1.0)
-    results = run(study, tmp_path / "d.zarr", fmu=fmu_path, workers=1, quiet=True, block=4, work=die_at_upright)
-    assert results["status"].values.tolist() == [Status.reached] * 3 + [Status.failed]
-    assert "died" in results["message"].values[3]
-    assert np.isfinite(results["theta_end"].values[:3]).all()
+def test_only_a_study_is_overwritten(fmu_path: Path, tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("years of work")
+    with pytest.raises(StudyError, match="is no Zarr group"):
+        run(Study(grid={"s": [0.0]}), tmp_path, fmu=fmu_path, overwrite=True, scheduler="tcp://nobody:1")
+    assert (tmp_path / "thesis.tex").exists()
 
 
 def address_in(path: Path) -> str:
@@ -145,38 +131,71 @@ def address_in(path: Path) -> str:
 
 
 @contextmanager
-def elsewhere(folder: Path, workers: int = 1) -> Iterator[str]:
-    """A scheduler and workers with two threads as one starts them on other machines: without this package's path."""
+def elsewhere(folder: Path) -> Iterator[str]:
+    """A scheduler and a worker with two threads as one starts them on other machines: without this package's path."""
     address_file = folder / "scheduler.json"
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     quiet = {"env": clean, "cwd": folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     dask = [sys.executable, "-m", "dask"]
     shared = ["--scheduler-file", str(address_file), "--no-dashboard", "--interface", "lo"]
     options = ["--nthreads", "2", "--no-nanny", "--no-dashboard", "--interface", "lo"]
-    scheduler = subprocess.Popen([*dask, "scheduler", *shared, "--port", "0"], **quiet)
-    started = []
+    started = [subprocess.Popen([*dask, "scheduler", *shared, "--port", "0"], **quiet)]
     try:
-        address = address_in(address_file)  # before the workers start: they stop at a file that is only half there
-        started += [subprocess.Popen([*dask, "worker", address, *options], **quiet) for _ in range(workers)]
+        address = address_in(address_file)  # before the worker starts: it stops at a file that is only half there
+        started.append(subprocess.Popen([*dask, "worker", address, *options], **quiet))
         yield address
     finally:
-        for process in (*started, scheduler):
+        for process in reversed(started):
             process.terminate()
             process.wait(30)
 
 
 def test_a_cluster_elsewhere_gives_the_same_bits(fates: Study, here: Path, fmu_path: Path, tmp_path: Path) -> None:
     with elsewhere(tmp_path) as address:
-        there = run(fates, tmp_path / "there.zarr", fmu=fmu_path, scheduler=address, quiet=True, block=8)
+        there = run(fates, tmp_path / "there.zarr", fmu=fmu_path, scheduler=address, quiet=True, chunk=8)
     assert same(there, open_results(here))
+
+
+def test_the_caller_writes_for_workers_that_do_not_see_its_store(
+    fates: Study, here: Path, fmu_path: Path, crew: Client, tmp_path: Path
+) -> None:
+    out = tmp_path / "sent.zarr"
+    assert same(run(fates, out, fmu=fmu_path, client=crew, quiet=True, work=without_the_store), open_results(here))
+
+
+def test_workers_write_into_an_object_store(
+    fates: Study, here: Path, fmu_path: Path, crew: Client, bucket: str
+) -> None:
+    out = f"{bucket}/fates.zarr"
+    stored = run(fates, out, fmu=fmu_path, client=crew, quiet=True, chunk=8, work=nothing_returned)
+    assert same(stored, open_results(here))
+    assert same(run(fates, out, fmu=fmu_path, scheduler="tcp://nobody:1", quiet=True), stored)  # nothing left to run
+    with pytest.raises(StudyError, match="another study"):
+        run(Study(grid={"s": [0.0]}), out, fmu=fmu_path, quiet=True)
+
+
+def test_a_list_is_cut_into_chunks_of_its_rows(fmu_path: Path, crew: Client, tmp_path: Path) -> None:
+    s = np.linspace(0.0, 0.03, 50)
+    study = Study(list={"s": s, "theta_start": np.linspace(1.2, 1.4, 50)}, stop_time=1.0)
+    results = run(study, tmp_path / "list.zarr", fmu=fmu_path, client=crew, quiet=True)
+    assert results["status"].encoding["chunks"] == (16,)
+    np.testing.assert_array_equal(results["s"], s)
+    assert len(np.unique(results["theta_end"])) == 50
+    back = Study(list={name: values[::-1] for name, values in study.list.items()}, stop_time=1.0)
+    turned = run(back, tmp_path / "back.zarr", fmu=fmu_path, client=crew, quiet=True)
+    np.testing.assert_array_equal(turned["theta_end"][::-1], results["theta_end"])
 
 
 def test_a_study_without_workers_says_so(
     fates: Study, fmu_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(compute, "LOST", 2.0)
-    with elsewhere(tmp_path, workers=0) as address, pytest.raises(StudyError, match="no worker"):
-        run(fates, tmp_path / "nobody.zarr", fmu=fmu_path, scheduler=address, quiet=True)
+    monkeypatch.setattr(crew_module, "LOST", 1.0)
+    with (
+        LocalCluster(n_workers=0, processes=False, dashboard_address=None) as nobody,
+        Client(nobody) as client,
+        pytest.raises(StudyError, match="no worker"),
+    ):
+        run(fates, tmp_path / "nobody.zarr", fmu=fmu_path, client=client, quiet=True)
 
 
 def test_the_command_exports_tables_and_says_in_a_sentence_what_is_wrong(fmu_path: Path, tmp_path: Path) -> None:
@@ -191,7 +210,27 @@ def test_the_command_exports_tables_and_says_in_a_sentence_what_is_wrong(fmu_pat
     assert len(table) == 3
     assert table[0].startswith("wheel,")
     assert xr.open_dataset(tmp_path / "list.nc")["theta_start"].values[0] == np.radians(75)
-    process = command("--vary", "s=zero", *out)
-    _, errors = process.communicate(timeout=60)
-    assert process.returncode == 2
-    assert errors.strip().startswith("study: --vary s=zero: write")
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--vary", "s=zero"], "study: --vary s=zero: write"),
+        (
+            ["--vary", "theta_strat=1,2"],
+            "study: 'theta_strat' is no parameter or input of this FMU; do you mean theta_start",
+        ),
+        (["--vary", "s=0,1", "--measure", "low=least(theta)"], "study: 'least(theta)' is no measure"),
+        (["--vary", "s=0,1", "--measure", "low=min(teta)"], "study: 'teta' is no output or local variable"),
+        (["--vary", "s=0,1", "--history", "plane_angle"], "study: 'plane_angle' is no output or local variable"),
+        (["fate"], "study: There is no study fate; the examples are fates, grip"),
+        ([], "study: Say which wheels"),
+    ],
+)
+def test_typing_errors_are_told_by_python_alone(words: list[str], sentence: str) -> None:
+    """Isolated, so without any installed package, as scripts/help asks before anything is built."""
+    options = ROOT / "examples" / "studies" / "study" / "options.py"
+    told = subprocess.run([sys.executable, "-I", "-S", options, *words], capture_output=True, text=True, check=False)
+    assert told.returncode == 2
+    assert told.stderr.startswith(sentence)
+    assert len(told.stderr.splitlines()) == 1

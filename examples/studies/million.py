@@ -1,0 +1,30 @@
+"""A million wheels in one study: how long it takes, and how much memory and disk.
+
+`./scripts/study million` runs it, about a minute on two cores; stopped, it goes on where it was. `--publish` writes its
+data for docs/results/studies.md, one row for each time that it was started.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from study import Study
+
+study = Study(
+    grid={
+        "theta_start": np.radians(np.linspace(10, 89, 1000)),
+        "phi_dot_start": -np.linspace(0.5, 12, 1000),  # rad/s
+    },
+)
+
+
+def table(results: xr.Dataset) -> pd.DataFrame:
+    """One row for each time that the study was started."""
+    return pd.DataFrame(json.loads(results.attrs["sessions"]))
+
+
+def draw(rows: pd.DataFrame, stem: Path) -> list[Path]:
+    """No picture."""
+    return []
