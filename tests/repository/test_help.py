@@ -14,7 +14,8 @@ SHELL = "#!/usr/bin/env bash\n"
 PARTS = {"page": "page", "view": "page", "study": "examples/studies"}  # commands of folders that can be deleted whole
 GONE = [name for name, folder in PARTS.items() if not (ROOT / folder).exists()]
 COMMANDS = sorted({p.name for p in (ROOT / "scripts").iterdir()} - set(GONE))
-READERS = ("diagrams/start_values.py", "page/options.py", "reports/options.py", "examples/studies/study/options.py")
+STUDY = tuple(f"examples/studies/study/{name}.py" for name in ("options", "measures", "__init__"))
+READERS = ("diagrams/start_values.py", "page/options.py", "reports/options.py", *STUDY)
 WRONG = {
     "build": ("relase",),
     "documents": ("--chek",),

@@ -1,4 +1,4 @@
-"""The package of ./scripts/study on the import path, the built FMU, and small studies to run."""
+"""The package of ./scripts/study on the import path, workers and an object store, and small studies to run."""
 
 from __future__ import annotations
 
@@ -21,11 +21,6 @@ from study import Study  # noqa: E402
 from study.crew import cluster  # noqa: E402
 from study.runs import Runner  # noqa: E402
 from study.worker import compiled  # noqa: E402
-
-
-@pytest.fixture(scope="session")
-def fmu_path() -> Path:
-    return Path(os.environ.get("WHEEL_BUILD", STUDIES.parents[1] / "build" / "release")) / "wheel.fmu"
 
 
 @pytest.fixture(scope="session")
