@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from reference.tables import read_table
+from support.bounds import absolute_error, beyond, within
 
 from page.tests.pages import POSE, RECORD, opened, view, write_csv
 
@@ -54,9 +55,9 @@ def test_the_wheels_pose_in_the_scene_is_that_of_the_file(recorded, scenes, name
     for t in INSTANTS:
         k = round(t / 0.01)
         there = shown(recorded, t, name)
-        assert abs(there - pose_of(rows[k])).max() < 1e-12  # measured: 4e-15
+        within(absolute_error(there, pose_of(rows[k])), 1e-14, "pose")
         off.append(abs(there - pose_of(rows[max(1, k) - 1])).max())
-    assert max(off) > 1e-2  # the row before
+    beyond(max(off), 1e-2, "pose of the row before")
 
 
 def test_between_the_rows_the_pose_is_that_of_the_fmu(recorded, scenes, simulate):
@@ -64,9 +65,9 @@ def test_between_the_rows_the_pose_is_that_of_the_fmu(recorded, scenes, simulate
     rows = scenes["friction"]
     middles = [k for k in range(25, 2000, 50) if k % 2]
     errors = [abs(shown(recorded, 0.005 * k, "friction") - pose_of(fine[k])).max() for k in middles]
-    assert max(errors) < 1e-5  # measured: 3.5e-6, where the friction changes sign within the interval
+    within(max(errors), 1e-5, "pose")  # largest where the friction changes sign within the interval
     nearest = [abs(pose_of(rows[k // 2]) - pose_of(fine[k])).max() for k in middles]
-    assert max(nearest) > 1e-2
+    beyond(max(nearest), 1e-2, "pose of the nearest row")
 
 
 def test_a_fast_wheel_never_seems_to_run_backwards(browser, tmp_path):
@@ -102,7 +103,7 @@ def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(browser, tmp_path):
 
 def test_the_friction_wheel_sticks_at_its_instant(recorded):
     first = recorded.evaluate("page.wheels.find((wheel) => wheel.name === 'friction').phases.sticks[0]")
-    assert abs(first[0] - 1.2255) < 1e-4  # measured: 2e-5; half-way between the rows: 5e-4
+    within(abs(first[0] - read_table("paper_friction_events")["t"][1]), 1e-4, "instant, s")  # rows are 0.01 s apart
     assert first[1] > 1.3
 
 
@@ -122,9 +123,9 @@ def test_transitions_between_two_rows_are_marked_though_no_row_lies_in_the_phase
     found = phases(recorded, rows)
     instants = read_table("paper_friction_events")["t"][1:]
     assert len(found["transitions"]) == len(instants) == 37
-    assert abs(found["transitions"] - instants).max() < 0.1  # s, the distance of two rows; measured: 0.05
+    within(absolute_error(found["transitions"], instants), 0.1, "instants, s")  # the distance of two rows
     assert len(found["sticks"]) == (read_table("paper_friction_events")["mode"] == 0).sum()
-    assert len(phases(recorded, rows, leave_out="n_events")["transitions"]) < 37  # measured: 36
+    assert len(phases(recorded, rows, leave_out="n_events")["transitions"]) < 37
 
 
 def test_a_stick_shorter_than_the_rows_begins_and_ends_where_the_spin_is_zero(recorded):
@@ -142,7 +143,7 @@ def test_the_path_on_the_ground_is_that_of_the_contact_point(recorded, simulate)
     rows = simulate(step=0.005, output=("X_C", "Y_C"), s=0.03)
     spots = [recorded.evaluate(SPOT, 0.005 * k) for k in range(1, 2000, 111)]  # on the file's rows and between them
     there = np.column_stack([rows["X_C"], rows["Y_C"]])[1:2000:111]
-    assert abs(spots - there).max() < 1e-6  # m; measured 9e-8
+    within(absolute_error(spots, there), 1e-6, "contact point, m")
     centre = simulate(step=0.005, output=("X_O", "Y_O"), s=0.03)
     assert abs(spots - np.column_stack([centre["X_O"], centre["Y_O"]])[1:2000:111]).max() > 0.1
 
