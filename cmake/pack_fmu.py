@@ -48,13 +48,17 @@ def licences(arguments: argparse.Namespace) -> dict[str, Content]:
     return {f"licenses/{name}": content for name, content in entries.items()}
 
 
-def contents(binaries: dict[str, Path], licence_texts: dict[str, Content]) -> dict[str, Content]:
+def contents(
+    binaries: dict[str, Path], licence_texts: dict[str, Content], evidence: Path | None = None
+) -> dict[str, Content]:
     """Archive name of every entry and what goes into it."""
     entries: dict[str, Content] = {"modelDescription.xml": ROOT / "modelDescription.xml", **licence_texts}
     archive = ROOT / "fmu-src" / "archive"
     for path in archive.rglob("*"):
         if path.is_file():
             entries[path.relative_to(archive).as_posix()] = path
+    for path in sorted(evidence.iterdir()) if evidence else ():
+        entries[f"extra/org.fmi-standard.fmi-ls-ref/{path.name}"] = path
     for name in FIGURES:
         entries[f"documentation/{name}"] = ROOT / "docs" / "figures" / name
     for platform, path in binaries.items():
@@ -81,13 +85,14 @@ def main() -> None:
     parser.add_argument("--eigen-license", type=Path, help="Eigen's licence")
     parser.add_argument("--musl", type=Path, help="musl's folder, for its licence, where its libm is linked in")
     parser.add_argument("--zig", type=Path, help="folder of ziglang where it is the compiler, for what it links in")
+    parser.add_argument("--evidence", type=Path, help="what cmake/evidence.py wrote")
     parser.add_argument("--binary", action="append", default=[], help="platform=library")
     arguments = parser.parse_args()
     binaries = {}
     for pair in arguments.binary:
         platform, path = pair.split("=", 1)
         binaries[platform] = Path(path)
-    pack(contents(binaries, licences(arguments)), arguments.output)
+    pack(contents(binaries, licences(arguments), arguments.evidence), arguments.output)
 
 
 if __name__ == "__main__":

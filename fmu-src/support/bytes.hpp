@@ -79,8 +79,8 @@ class Archive {
   const char *row_ = "", *fault_ = nullptr;
 };
 
-// FNV-1a over words of 64 bits; a snapshot is a whole number of them. A change of any one word changes the sum. It guards
-// against accidents: what is forged is told by the checks of the numbers themselves.
+// FNV-1a over words of 64 bits; a snapshot is a whole number of them. A change of any one word changes the sum. It
+// guards against accidents: what is forged is told by the checks of the numbers themselves.
 inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (std::size_t i = 0; i < size; i += 8) {

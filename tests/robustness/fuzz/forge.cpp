@@ -1,6 +1,6 @@
-// Forged states: a state of a wheel on its way, some of its words changed and its checksums made right again, brought to
-// another instance. It is refused with a sentence and the instance is as it was, or it is taken and whatever follows ends
-// soon and without harm.
+// Forged states: a state of a wheel on its way, some of its words changed and its checksums made right again, brought
+// to another instance. It is refused with a sentence and the instance is as it was, or it is taken and whatever follows
+// ends soon and without harm.
 #include <algorithm>
 #include <iterator>
 
@@ -79,9 +79,9 @@ void forge(Digest& bytes, Bytes& in) {
 void sign(Digest& bytes) {
   constexpr std::size_t header = 24;
   if (bytes.size() < header) return;
-  const std::uint64_t words[] = {bytes.size(),
-                                 support::checksum_of(reinterpret_cast<const unsigned char*>(bytes.data()) + header,
-                                                      bytes.size() - header)};
+  const std::uint64_t words[] = {
+      bytes.size(),
+      support::checksum_of(reinterpret_cast<const unsigned char*>(bytes.data()) + header, bytes.size() - header)};
   std::memcpy(bytes.data() + 8, words, sizeof words);
 }
 

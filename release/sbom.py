@@ -1,0 +1,61 @@
+"""Prints the software bill of materials of wheel.fmu (CycloneDX): what is linked in, or gave headers.
+
+PYTHONPATH=. .venv/bin/python release/sbom.py >fmu-src/archive/extra/org.fmi-standard.fmi-ls-ref/sbom.cdx.json
+A test makes it again and compares. Nothing in it depends on the time or the machine.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from uuid import UUID
+
+from cyclonedx.model.bom import Bom
+from cyclonedx.model.component import Component, ComponentType
+from cyclonedx.model.license import LicenseExpression
+from cyclonedx.output.json import JsonV1Dot6
+from packageurl import PackageURL
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def found(file: str, pattern: str) -> str:
+    """A version, where the build has it from."""
+    match = re.search(pattern, (ROOT / file).read_text(encoding="utf-8"), re.MULTILINE)
+    if match is None:
+        raise ValueError(f"{file} holds no {pattern}.")
+    return match[1]
+
+
+def component(
+    name: str, version: str, licence: str, text: str, kind: ComponentType = ComponentType.LIBRARY
+) -> Component:
+    url = PackageURL("generic", name=name.lower().replace(" ", "-"), version=version)
+    licences = [LicenseExpression(licence)]
+    return Component(
+        name=name, version=version, type=kind, licenses=licences, description=text, purl=url, bom_ref=str(url)
+    )
+
+
+def bill() -> str:
+    wheel = component(
+        "wheel.fmu", found("CMakeLists.txt", r"^project\(wheel VERSION ([\d.]+)"), "BSD-3-Clause", "The FMU"
+    )
+    parts = [
+        component("SUNDIALS", found("cmake/sundials.cmake", r"(\d+\.\d+\.\d+)"), "BSD-3-Clause", "CVODE, linked in"),
+        component("Eigen", "3.4.0", "MPL-2.0", "Headers, of Debian's libeigen3-dev"),
+        component("FMI headers", "2.0.1", "BSD-2-Clause", "As FMPy carries them"),
+        component("musl", "1.2.5", "MIT", "Mathematical functions, in the release for all platforms"),
+        component(
+            "ziglang", found("release/requirements.txt", r"^ziglang==([\d.]+)"), "MIT", "Run-time, in the release"
+        ),
+    ]
+    bom = Bom(components=parts, serial_number=UUID(int=0x2F0C5A4E9B7D4E0C8D1A6B3F5E7C9D02))
+    bom.metadata.component = wheel
+    bom.register_dependency(wheel, parts)
+    text = JsonV1Dot6(bom).output_as_string(indent=2)
+    return re.sub(r'\n *"timestamp": "[^"]*",?', "", text) + "\n"
+
+
+if __name__ == "__main__":
+    print(bill(), end="")

@@ -1,0 +1,95 @@
+"""The evidence in the archive (FMI-LS-REF): all files are named, parameter sets are valid, results come again."""
+
+from __future__ import annotations
+
+import csv
+import sys
+from ctypes import CDLL
+from pathlib import Path
+from xml.etree import ElementTree
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from fmpy.validation import validate_fmu
+from lxml import etree
+from support.motion import Library
+from support.paths import ROOT
+
+sys.path.insert(0, str(ROOT / "cmake"))
+sys.path.insert(0, str(ROOT / "release"))
+import evidence
+
+SCHEMA = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
+
+
+@pytest.fixture(scope="module")
+def folder(fmu: str) -> Path:
+    found = Path(fmu) / "extra" / "org.fmi-standard.fmi-ls-ref"
+    if not (found / "state.bin").exists():
+        pytest.skip("built with a sanitizer or for another platform: the library cannot run while it is packed")
+    return found
+
+
+def test_the_manifest_names_every_file_and_no_other(folder: Path) -> None:
+    related = [entry.get("source", "") for entry in ElementTree.parse(folder / "fmi-ls-manifest.xml").iter("Related")]
+    assert all((folder / source).exists() for source in related)
+    inside = {source for source in related if "/" not in source}
+    assert inside == {path.name for path in folder.iterdir()} - {"fmi-ls-manifest.xml"}
+
+
+def test_the_archive_with_its_evidence_is_valid_and_below_a_megabyte(folder: Path, fmu_path: Path) -> None:
+    assert validate_fmu(str(fmu_path)) == []
+    assert fmu_path.stat().st_size < 1e6
+
+
+def values_of(path: Path) -> dict[str, str]:
+    """Start values of a parameter set."""
+    return {
+        parameter.get("name", ""): parameter[0].get("value", "") for parameter in etree.parse(path).iter("{*}Parameter")
+    }
+
+
+@pytest.mark.parametrize("name", evidence.SETS)
+def test_a_parameter_set_is_valid_and_gives_its_result_in_fmpy(folder: Path, fmu: str, name: str) -> None:
+    schema = etree.XMLSchema(etree.parse(SCHEMA))
+    assert schema.validate(etree.parse(folder / f"{name}.ssv")), schema.error_log
+    values = values_of(folder / f"{name}.ssv")
+    torque = np.genfromtxt(folder / "driven_in.csv", delimiter=",", names=True) if name == "driven" else None
+    run = simulate_fmu(
+        fmu, start_values=values, input=torque, output_interval=0.1, stop_time=10.0, relative_tolerance=1e-8,
+        output=evidence.OUTPUTS,
+    )  # fmt: skip
+    kept = np.genfromtxt(folder / f"{name}_out.csv", delimiter=",", names=True)
+    assert len(kept) == len(run) == 101
+    for output in evidence.OUTPUTS:
+        assert kept[output] == pytest.approx(run[output], rel=1e-8, abs=1e-8), output
+    assert values != values_of(folder / "paper_free.ssv") or name == "paper_free"
+
+
+def test_the_state_continues_with_the_bits_of_its_result(folder: Path, library: Library) -> None:
+    _, row = csv.reader((folder / "state_out.csv").read_text(encoding="utf-8").splitlines())
+    with library.wheel() as wheel:
+        wheel.start(tolerance=1e-8)
+        assert wheel.restore((folder / "state.bin").read_bytes()) == 0
+        wheel.time = evidence.STATE_AT
+        assert wheel.step_to(evidence.STATE_TO) == 0
+        assert wheel.get(*evidence.OUTPUTS) == [float(cell) for cell in row[1:]]
+        wheel.step_to(2.1)
+        assert wheel.get(*evidence.OUTPUTS) != [float(cell) for cell in row[1:]]
+
+
+def test_the_evidence_is_written_twice_with_the_same_bytes(folder: Path, fmu: str, tmp_path: Path) -> None:
+    description = ElementTree.parse(f"{fmu}/modelDescription.xml").getroot()
+    (shared,) = (path for path in Path(fmu).glob("binaries/*/wheel.so"))
+    evidence.write(CDLL(str(shared)), description, tmp_path)
+    again = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    assert again == {name: (folder / name).read_bytes() for name in again}
+
+
+def test_the_bill_of_materials_is_that_of_the_pins() -> None:
+    import sbom
+
+    kept = ROOT / "fmu-src" / "archive" / "extra" / "org.fmi-standard.fmi-ls-ref" / "sbom.cdx.json"
+    assert kept.read_text(encoding="utf-8") == sbom.bill(), "run release/sbom.py"
