@@ -75,7 +75,7 @@ def ground(report: Report) -> None:
     """standing, breaking away, sand"""
     from vehicles import ground as on
 
-    wheel = fmus(report)["wheel"]
+    wheel = fmus(report)
     ramp, sand = on.ramp(wheel), on.sand(wheel)
     still, moving = on.stand(wheel, 0.99), on.stand(wheel, 1.01)
     of_ramp = np.abs(ramp.table["omega_z"] - on.ramp_speed(ramp.table["time"])).max()

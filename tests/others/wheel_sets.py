@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from vehicles.axle import CONNECTIONS, WHEELS
-from vehicles.component import Component, Values
+from vehicles.component import Component
 from vehicles.hubs import upright
 from vehicles.master import Master
 
@@ -62,7 +62,7 @@ def rigid(scene: str) -> dict[str, Array]:
 def rigid_at(scene: str, times: Array) -> dict[str, Array]:
     """x, y, heading, speed and yaw rate of the rigid wheel set at `times`, rising from 0.
 
-    m_t v' = S w^2 + (M_l + M_r) / R and I_t w' = -S v w + b (M_r - M_l) / R, as in examples/axle.
+    m_t v' = S w^2 + (M_l + M_r) / R and I_t w' = -S v w + b (M_r - M_l) / R, as in examples/vehicles/axle.
     """
     torques = SCENES[scene]
     m, J_x, J_z = WHEEL["m"], WHEEL["J_x"], WHEEL["J_z"]
@@ -84,29 +84,20 @@ def rigid_at(scene: str, times: Array) -> dict[str, Array]:
     return dict(zip(("x", "y", "phi", "v", "w"), np.hstack(columns), strict=True))
 
 
-class DrivenMaster(Master):
-    """Sets the drive torques at every communication point, with their first derivatives."""
+def driver(master: Master, torques: Torques) -> Callable[[float], None]:
+    """Sets the drive torques at a communication point, with their first derivatives."""
+    axle, wheels = master.components["axle"], [master.components[wheel] for wheel in WHEELS]
+    heading, (torque,) = axle.references(["psi", "omega"]), wheels[0].references(["M_3"])
+    h = 1e-6  # s, of the central difference that gives the rate
 
-    def __init__(self, components: list[Component], torques: Torques) -> None:
-        free = [(source, sink) for source, sink in CONNECTIONS if sink[1] != "M_3"]
-        super().__init__(components, free)
-        self.torques, self.t = torques, 0.0
-        self.heading = Values(self.components["axle"], ["psi", "omega"])
-        self.drive = [Values(self.components[wheel], ["M_3"]) for wheel in WHEELS]
+    def act(t: float) -> None:
+        psi, omega = axle.fmu.getReal(heading)
+        now, before, after = (torques(t + d, psi + omega * d) for d in (0.0, -h, h))
+        for k, wheel in enumerate(wheels):
+            wheel.fmu.setReal([torque], [-now[k]])
+            wheel.fmu.setRealInputDerivatives([torque], [1], [-(after[k] - before[k]) / (2 * h)])
 
-    def _exchange(self, rates: bool) -> None:
-        super()._exchange(rates)
-        psi, omega = self.heading.get()
-        h = 1e-6  # s, of the central difference that gives the rate
-        now, before, after = (self.torques(self.t + d, psi + omega * d) for d in (0.0, -h, h))
-        for wheel, inputs in enumerate(self.drive):
-            inputs.set(-np.array([now[wheel]]))
-            if rates:
-                inputs.set_derivative(1, -np.array([(after[wheel] - before[wheel]) / (2 * h)]))
-
-    def _step(self, t: float, h: float, rollback: bool, reject: bool) -> None:
-        super()._step(t, h, rollback, reject)
-        self.t = t + h
+    return act
 
 
 def coupled(fmus: dict[str, Path], scene: str, factor: float, step: float, stop: float = 3.0) -> dict[str, Array]:
@@ -118,9 +109,10 @@ def coupled(fmus: dict[str, Path], scene: str, factor: float, step: float, stop:
         Component(wheel, fmus["wheel"], {**WHEEL, **upright(START, START + y, 0.0, 0.0, 0.0, R)})
         for wheel, y in zip(WHEELS, (B, -B), strict=True)
     ]
-    with DrivenMaster([*wheels, Component("axle", fmus["axle"], {**BODY, **place})], SCENES[scene]) as master:
-        record = [("axle", name) for name in ("X", "Y", "psi")]
-        rows = master.run(stop, step, record, "derivatives", round(0.3 / step))
+    free = [(source, sink) for source, sink in CONNECTIONS if sink[1] != "M_3"]
+    with Master([*wheels, Component("axle", fmus["axle"], {**BODY, **place})], free) as master:
+        record, act = [("axle", name) for name in ("X", "Y", "psi")], driver(master, SCENES[scene])
+        rows = master.run(stop, step, record, "derivatives", round(0.3 / step), act=act)
     return {name: rows[f"axle.{of}"] for name, of in zip(COMPARED, ("X", "Y", "psi"), strict=True)}
 
 

@@ -53,7 +53,7 @@ def test_the_pages_of_the_reports_are_those_of_the_data() -> None:
     found = subprocess.run(
         [sys.executable, "-m", "reports", "all", "--check"],
         cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": ":".join([".", "examples", "tests"])},
+        env=os.environ | {"PYTHONPATH": ":".join([".", "examples/vehicles", "tests"])},
         capture_output=True,
         text=True,
     )

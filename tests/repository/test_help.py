@@ -11,14 +11,25 @@ import pytest
 from support.paths import ROOT
 
 SHELL = "#!/usr/bin/env bash\n"
-PARTS = {"page": "page", "view": "page", "study": "examples/studies"}  # commands of folders that can be deleted whole
+# Commands of folders that can be deleted whole.
+PARTS = {"page": "page", "view": "page", "study": "examples/studies", "example": "examples/vehicles"}
 GONE = [name for name, folder in PARTS.items() if not (ROOT / folder).exists()]
 COMMANDS = sorted({p.name for p in (ROOT / "scripts").iterdir()} - set(GONE))
 STUDY = tuple(f"examples/studies/study/{name}.py" for name in ("options", "measures", "__init__"))
-READERS = ("diagrams/start_values.py", "page/options.py", "reports/options.py", *STUDY)
+VEHICLES = (
+    *(f"examples/vehicles/{name}" for name in ("vehicles/options.py", "skeleton/describe.py", "balance/balance.py")),
+    *(
+        f"examples/vehicles/{name}.csv"
+        for name in ("axle/axle", "car/chassis", "car/driver", "quarter_car/quarter_car")
+    ),
+    *(f"examples/vehicles/{name}.toml" for name in ("axle/axle", "car/car")),
+    *(f"cmake/description/{name}.py" for name in ("__init__", "numbering")),
+)
+READERS = ("diagrams/start_values.py", "page/options.py", "reports/options.py", *STUDY, *VEHICLES)
 WRONG = {
     "build": ("relase",),
     "documents": ("--chek",),
+    "example": ("car", "m_B=-1"),
     "fuzz": ("a minute",),
     "lint": ("--fixx",),
     "page": ("--output",),

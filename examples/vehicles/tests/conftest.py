@@ -1,0 +1,28 @@
+"""The example FMUs, built once per session, and the folders the examples are imported from."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.paths import ROOT
+
+for folder in (ROOT / "examples" / "vehicles", ROOT):
+    if str(folder) not in sys.path:
+        sys.path.insert(0, str(folder))
+
+from vehicles import build, suspended  # noqa: E402
+
+
+@pytest.fixture(scope="session")
+def fmus(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """wheel, the FMUs compiled from C, and balance (made by pythonfmu)."""
+    return build.build_all(tmp_path_factory.mktemp("examples"))
+
+
+@pytest.fixture(scope="session")
+def truth() -> dict[str, np.ndarray]:
+    """Wheel and quarter car as one set of equations."""
+    return suspended.together()

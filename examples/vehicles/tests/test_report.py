@@ -1,0 +1,35 @@
+"""What the data of the report on axle and car say is what is claimed."""
+
+from __future__ import annotations
+
+import csv
+
+import pytest
+from support.paths import ROOT
+from vehicles import car_study, car_table
+
+RESULTS = ROOT / "docs" / "results"
+
+
+def rows(name: str) -> list[dict[str, str]]:
+    with (RESULTS / "data" / f"{name}.csv").open() as file:
+        return list(csv.DictReader(file))
+
+
+def test_every_manoeuvre_is_there_with_every_master() -> None:
+    found = {
+        (row["manoeuvre"], row["inputs over the step"], float(row["step [ms]"])) for row in rows("vehicles_car_errors")
+    }
+    steps = [1000 * h for h in car_study.STEPS]
+    assert found == {(n, e, h) for n in car_table.NAMES for e in ("held", "derivatives", "rollback") for h in steps}
+
+
+@pytest.mark.parametrize("package", ["axle.ssp", "car.ssp"])
+def test_omsimulator_has_the_values_of_the_master_of_the_examples(package: str) -> None:
+    ends = {
+        row["tool"]: [float(row[f"{axis} at the end, m"]) for axis in "XY"]
+        for row in rows("vehicles_packages")
+        if row["package"] == package
+    }
+    assert ends["OMSimulator"] == pytest.approx(ends["master.py, held"], abs=2e-8)  # what the table's digits tell
+    assert ends["OMSimulator"] != pytest.approx(ends["fmpy.ssp"], abs=1e-5)  # partner

@@ -1,0 +1,94 @@
+"""One FMU of a system: loaded, instantiated and freed by FMPy; what it says, and how it ended."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from ctypes import byref, c_double
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from fmpy import extract, read_model_description
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+
+LAST_SUCCESSFUL = 2  # fmi2StatusKind
+KINDS = {"Real": ("Real", float), "Boolean": ("Boolean", bool), "Integer": ("Integer", int)}
+
+
+class Ended(Exception):  # noqa: N818 - an ending, such as a wheel's lift-off, is no error
+    """A component ended the run. `component`, `time` [s], `sentence`: its own words."""
+
+    def __init__(self, component: str, time: float, sentence: str) -> None:
+        super().__init__(f"{component}: {sentence}")
+        self.component, self.time, self.sentence = component, time, sentence
+
+
+@dataclass
+class Component:
+    """One FMU: its name in the system, its file, and the start values of its parameters."""
+
+    name: str
+    path: Path
+    start: dict[str, float] = field(default_factory=dict)
+    fmu: FMU2Slave | None = field(default=None, init=False)
+
+    def load(self) -> None:
+        """Unpack, instantiate and initialize up to initialization mode; a ValueError has the FMU's own sentence."""
+        self.folder, self.log = extract(str(self.path)), []
+        self.description = read_model_description(self.folder)
+        self.variable = {v.name: v for v in self.description.modelVariables}
+        self.fmu = FMU2Slave(
+            guid=self.description.guid,
+            unzipDirectory=self.folder,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            instanceName=self.name,
+        )
+        self.callbacks = fmi2CallbackFunctions()
+        self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
+        self.fmu.instantiate(callbacks=self.callbacks)
+        self.fmu.setupExperiment(startTime=0.0)
+        for name, value in self.start.items():
+            kind, convert = KINDS[self.variable_of(name).type]
+            self.asked(getattr(self.fmu, f"set{kind}"), self.references([name]), [convert(value)])
+        self.asked(self.fmu.enterInitializationMode)
+
+    def asked(self, function, *arguments: object) -> None:
+        """Calls a function of the FMU; where it refuses, a ValueError with its last sentence."""
+        try:
+            function(*arguments)
+        except FMICallException as refusal:
+            raise ValueError(f"{self.name}: {self.last_words(str(refusal))}") from refusal
+
+    def last_words(self, otherwise: str) -> str:
+        """FMI 2.0 doubles the characters % and # of a message."""
+        return self.log[-1].replace("%%", "%").replace("##", "#") if self.log else otherwise
+
+    def free(self) -> None:
+        """End the run and remove the unpacked files."""
+        if self.fmu:
+            self.fmu.freeInstance()
+            shutil.rmtree(self.folder, ignore_errors=True)
+
+    def variable_of(self, name: str):
+        """Its row of the model description."""
+        if name not in self.variable:
+            raise ValueError(f"{self.name} has no variable {name}.")
+        return self.variable[name]
+
+    def references(self, names: Sequence[str]) -> list[int]:
+        """Value references of variables."""
+        return [self.variable_of(name).valueReference for name in names]
+
+    def feeds(self, output: str) -> list[str]:
+        """Inputs on which an output depends directly; undeclared dependencies mean all."""
+        unknown = [u for u in self.description.outputs if u.variable.name == output]
+        if not unknown or unknown[0].dependencies is None:
+            return [v.name for v in self.description.modelVariables if v.causality == "input"]
+        return [v.name for v in unknown[0].dependencies]
+
+    def ended(self, t: float) -> Ended:
+        """How it ended the run in a step from t on."""
+        last = c_double(t)
+        self.fmu.dll.fmi2GetRealStatus(self.fmu.component, LAST_SUCCESSFUL, byref(last))
+        return Ended(self.name, last.value, self.last_words("it refused a call"))

@@ -1,0 +1,73 @@
+"""The driver's programmes and paths, written again for the independent check: nothing of driver.c is used.
+
+Fixed axes X, Y; both paths begin at the origin along X.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def rise(t: float, begin: float, duration: float) -> float:
+    """From 0 to 1, with continuous second derivatives."""
+    z = min(max((t - begin) / duration, 0.0), 1.0)
+    return z**3 * (10 - 15 * z + 6 * z**2)
+
+
+class Path:
+    """Point, tangent and curvature of the driver's path as functions of its parameter."""
+
+    def __init__(self, o: dict[str, float]) -> None:
+        self.o = o
+
+    def point(self, p: float) -> np.ndarray:
+        """X, Y."""
+        o = self.o
+        if o["path"] == 1:
+            x = o["size"] * np.sin(p) / (1 + np.cos(p) ** 2)
+            return np.array([x + x * np.cos(p), x * np.cos(p) - x]) / np.sqrt(2)
+        out, back = (np.tanh((p - o[end]) / o["length"]) for end in ("x_out", "x_back"))
+        return np.array([p, o["width"] / 2 * (out - back)])
+
+    def derivatives(self, p: float) -> tuple[np.ndarray, np.ndarray]:
+        """First and second, by p."""
+        o = self.o
+        if o["path"] == 1:
+            step = 1e-30  # of the complex step, which has no error
+            return np.real(self._eight(p)), self._eight(p + 1j * step).imag / step
+        slope = bend = 0.0
+        for end, sign in (("x_out", 1.0), ("x_back", -1.0)):
+            sech2 = 1 / np.cosh((p - o[end]) / o["length"]) ** 2
+            slope += sign * sech2
+            bend -= sign * 2 * sech2 * np.tanh((p - o[end]) / o["length"])
+        half = o["width"] / 2
+        return np.array([1.0, half * slope / o["length"]]), np.array([0.0, half * bend / o["length"] ** 2])
+
+    def _eight(self, p: complex) -> np.ndarray:
+        """dP/dp of the figure of eight."""
+        c = np.cos(p)
+        dx, dy = c * (3 - c**2), 3 * c**2 - 1
+        return self.o["size"] * np.array([dx + dy, dy - dx]) / (1 + c**2) ** 2 / np.sqrt(2)
+
+    def curvature(self, p: float) -> float:
+        """Positive to the left."""
+        d, dd = self.derivatives(p)
+        return float((d[0] * dd[1] - d[1] * dd[0]) / np.hypot(*d) ** 3)
+
+
+DRIVER_DEFAULTS = {
+    **{"T_delta": 0.08, "delta_0": 0.0, "t_delta": 1.0, "ramp_delta": 0.3, "path": 0.0, "size": 15.0, "width": 3.0},
+    **{"x_out": 30.0, "x_back": 65.0, "length": 8.0, "k_y": 0.02, "k_psi": 0.25, "t_v": 1.0, "ramp_v": 2.0},
+    **{
+        "k_v": 0.0,
+        "k_i": 0.0,
+        "M_0": 0.0,
+        "t_on": 0.5,
+        "t_off": 1e6,
+        "B_0": 0.0,
+        "t_brake": 1e6,
+        "B_hold": 0.0,
+        "t_release": 0.0,
+        "ramp_M": 0.2,
+    },
+}

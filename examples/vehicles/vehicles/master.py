@@ -1,0 +1,183 @@
+"""A parallel (Jacobi) master for FMI 2.0 co-simulation with fixed steps; the connections are a table.
+
+At every communication point all outputs are brought up to date with the inputs just set, in the order that the
+dependencies in the model descriptions allow, and then all FMUs step alone. What the inputs do over the step is one of
+
+    held         they keep their values: order 1
+    derivatives  straight lines, from the first derivatives of the sources' outputs: order 2
+    rollback     parabolas whose second derivatives are predicted from the last step; the step is undone, and taken
+                 again on the cubics through the values and first derivatives at both ends
+
+Loading, order and initialization are here; the loop over the steps is in C (../master).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from ctypes import c_void_p, cast
+from functools import cache
+from graphlib import TopologicalSorter
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from cffi import FFI
+from fmpy import sharedLibraryExtension
+from tqdm import tqdm
+
+from .component import Component
+
+Signal = tuple[str, str]  # component, variable
+Connection = tuple[Signal, Signal]  # source, sink
+EXCHANGES = ("held", "derivatives", "rollback")
+KINDS = ("value", "rate", "at_end")  # of a record, as in master.h
+FUNCTIONS = {
+    **{"get": "GetReal", "set": "SetReal", "rates": "GetRealOutputDerivatives", "set_rates": "SetRealInputDerivatives"},
+    **{"step": "DoStep", "keep": "GetFMUstate", "restore": "SetFMUstate", "forget": "FreeFMUstate"},
+}
+HEADER = Path(__file__).resolve().parents[1] / "master" / "master.h"
+PIECES = 100  # of a run, between which the progress is shown and Ctrl-C is heard
+ffi = FFI()
+
+
+@cache
+def library(folder: Path):
+    """The loop in C, and what its header says."""
+    text = HEADER.read_text()
+    types = "".join(f"typedef void fmi2{name}TYPE;" for name in FUNCTIONS.values())
+    types += "typedef void* fmi2Component; typedef unsigned fmi2ValueReference;"
+    declared = "\n".join(line for line in text.splitlines() if not line.startswith("#")).replace("MASTER_API", "")
+    ffi.cdef(types + declared, override=True)
+    return ffi.dlopen(str(folder / f"master{sharedLibraryExtension}"))
+
+
+class Master:
+    """Components and connections [(source, output), (sink, input)], stepped together by the loop in C: in `folder`, or
+    beside one of the FMUs."""
+
+    def __init__(
+        self, components: list[Component], connections: Iterable[Connection], folder: Path | None = None
+    ) -> None:
+        self.components = {c.name: c for c in components}
+        self.places = {name: place for place, name in enumerate(self.components)}
+        self.connections, self.loop = list(connections), None
+        self.loaded: list[Component] = []
+        try:
+            for component in components:
+                self.loaded.append(component)
+                component.load()
+            self.transfers = self._order()
+        except BaseException:
+            self.__exit__()
+            raise
+        folders = [folder] if folder else [c.path.parent for c in components]
+        self.c = library(next(f for f in folders if (f / f"master{sharedLibraryExtension}").exists()))
+
+    def __enter__(self) -> Master:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.loop:
+            self.c.master_free(self.loop)
+        self.loop = None
+        for component in self.loaded:
+            component.free()
+
+    def _order(self) -> list[tuple[str, list[Signal]]]:
+        """Outputs of one component that are read together, each after the inputs it depends on; refuses algebraic
+        loops."""
+        source_of = {sink: source for source, sink in self.connections}
+        graph: dict[Signal, set[Signal]] = {}
+        for source in source_of.values():
+            inputs = [(source[0], name) for name in self.components[source[0]].feeds(source[1])]
+            graph[source] = {source_of[i] for i in inputs if i in source_of}
+        sorter, transfers = TopologicalSorter(graph), []
+        sorter.prepare()
+        while sorter.is_active():
+            ready = sorter.get_ready()
+            for name in dict.fromkeys(signal[0] for signal in ready):
+                transfers.append((name, [s for s in ready if s[0] == name]))
+            sorter.done(*ready)
+        return transfers
+
+    def _prepare(self, exchange: str, reject: bool, record: list[Signal]) -> None:
+        """Hands components, transfers and records to the loop."""
+        self.loop, room = self.c.master_new(EXCHANGES.index(exchange), reject), []
+        for component in self.components.values():
+            dll = component.fmu.dll
+            functions = {key: address(getattr(dll, f"fmi2{name}")) for key, name in FUNCTIONS.items()}
+            instance = ffi.cast("void *", component.fmu.component)
+            room.append(self.c.master_component(self.loop, instance, ffi.new("Functions *", functions)))
+        for name, signals in self.transfers:
+            outputs = self.components[name].references([variable for _, variable in signals])
+            room.append(self.c.master_transfer(self.loop, self.places[name], len(outputs), outputs))
+            for sink in self.components.values():
+                pairs = [(t[1], signals.index(s)) for s, t in self.connections if s in signals and t[0] == sink.name]
+                if pairs:
+                    inputs, at = sink.references([p[0] for p in pairs]), [p[1] for p in pairs]
+                    room.append(self.c.master_sink(self.loop, self.places[sink.name], len(at), inputs, at))
+        for name, variable in record:
+            *kind, variable = variable.split()
+            reference = self.components[name].references([variable])[0]
+            which = KINDS.index(kind[0] if kind else "value")
+            room.append(self.c.master_record(self.loop, self.places[name], reference, which))
+        if not all(room):
+            raise ValueError("The system has more components, signals or records than master/master.c has room for.")
+
+    def run(
+        self,
+        stop: float,
+        step: float,
+        record: list[Signal],
+        exchange: str = "held",
+        every: int = 1,
+        reject: bool = False,
+        progress: bool = False,
+        act: Callable[[float], None] | None = None,
+    ) -> np.ndarray:
+        """Simulate from 0 to `stop`; a record array of time and "component.variable", every `every` steps.
+
+        act(t) is called after the exchange at every communication point and may set inputs that are not connected.
+        reject: every step is taken, undone from a snapshot, and taken again, as an error-controlled master may do.
+        A variable after "rate " or "at_end " is its derivative, or its value at the end of the step that begins there.
+        Raises component.Ended; what was recorded until then is `self.table()`.
+        """
+        if exchange not in EXCHANGES:
+            raise ValueError(f"exchange is {exchange}; it is one of {', '.join(EXCHANGES)}.")
+        self._prepare(exchange, reject, record)
+        self.names = ["time", *(f"{c}.{v}" for c, v in record)]
+        count = round(stop / step)
+        self.rows = np.full((count // every + 1, len(self.names)), np.nan)
+        self.spent = np.zeros((count + 1, len(self.components) + 1))
+        if not self.c.master_exchange(self.loop, 0):
+            raise self._refusal(0.0)
+        for component in self.components.values():
+            component.asked(component.fmu.exitInitializationMode)
+        rows, spent = (ffi.from_buffer("double[]", x) for x in (self.rows, self.spent))
+        pieces = np.unique(np.linspace(0, count, (count if act else PIECES) + 1).astype(int)).tolist()
+        for begin, end in tqdm([(0, 0), *pairwise(pieces)], disable=not progress, leave=False):
+            if act and end:
+                act(begin * step)
+            done = self.c.master_run(self.loop, step, begin, end, every, rows, spent)
+            if done < end:
+                raise self._refusal(done * step)
+        return self.table()
+
+    def _refusal(self, t: float) -> Exception:
+        return list(self.components.values())[self.c.master_refused(self.loop)].ended(t)
+
+    def table(self) -> np.ndarray:
+        """What was recorded."""
+        known = self.rows[np.isfinite(self.rows[:, 0])]
+        return known.view([(name, float) for name in self.names])[:, 0]
+
+    def cost(self) -> dict[str, float]:
+        """Medians over the steps in microseconds: of all, of the exchange, and of each component."""
+        total, *each = np.median(self.spent[:-1], axis=0)
+        exchange = float(np.median(self.spent[:-1, 0] - self.spent[:-1, 1:].sum(axis=1)))
+        return {"total": float(total), "exchange": exchange, **dict(zip(self.components, each, strict=True))}
+
+
+def address(function) -> object:
+    """Of a C function that ctypes loaded, for cffi."""
+    return ffi.cast("void *", cast(function, c_void_p).value)

@@ -1,1 +1,0 @@
-"""The examples: vehicles made of FMUs, judged."""
