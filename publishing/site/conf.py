@@ -105,6 +105,12 @@ def formula(display: str):
     return visit
 
 
+def front(app: Sphinx, name: str, template: str, context: dict, doctree: object) -> None:
+    """The front page shows the live page where ./scripts/site has put one."""
+    context["live"] = (Path(app.outdir) / "live.html").exists()
+
+
 def setup(app: Sphinx) -> None:
+    app.connect("html-page-context", front)
     app.connect("source-read", read)
     app.add_html_math_renderer("mathml", (formula("inline"), None), (formula("block"), None))
