@@ -44,3 +44,18 @@ def test_a_brake_that_grows_along_one_polynomial_makes_the_law_stiff(wheel):
     assert w.get("n_jac")[0] > 0
     loose = wheel().start(friction_law="regularized", omega_s=1.0)  # the partner: never stiff
     assert loose.step_to(4.0) == OK and loose.get("n_jac") == [0]
+
+
+WITHOUT_WEIGHT = {"g": 0.0, "omega_s": 1e-6}, {"M_brake": 30.0}
+PRESSED = {"s": FRICTION, "omega_s": 2e-3}, {"F_Z": -5e4}
+
+
+@pytest.mark.parametrize(("start", "inputs"), [WITHOUT_WEIGHT, PRESSED], ids=["brake without weight", "pressed"])
+def test_the_moment_that_acts_decides_and_not_the_weight(wheel, start, inputs):
+    steps = []
+    for method in ("automatic", "bdf"):
+        w = wheel().start(friction_law="regularized", keep_contact=True, method=method, **start)
+        w.set(**inputs)
+        assert w.step_to(10.0) == OK, w.sentences
+        steps.append(w.get("n_steps")[0])
+    within(steps[0] / steps[1], 1.5, "steps over those of BDF")
