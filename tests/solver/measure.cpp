@@ -124,6 +124,17 @@ void dips(const Arguments& args) {
   std::printf("{\"worst\": %.17g, \"roots\": %lld}\n", worst, roots);
 }
 
+// g = 1 up to t = 0.5, a bend that is told, then 25 (t - 0.7)^2 - a: the first fall in a step of 1 s.
+void later_piece(const Arguments& args) {
+  Case c = clock_only(1);
+  c.each_step = [&](double t, const double*) { return t < 0.5 ? 1 : 25 * (t - 0.7) * (t - 0.7) - args.a; };
+  c.bends = {0.5};
+  Solver s;
+  s.start(c.problem(), args.method, 0, c.y.data());
+  const Outcome outcome = run_to(s, 1);
+  std::printf("{\"event\": %s, \"time\": %.17g}\n", outcome == Outcome::event ? "true" : "false", s.event_time());
+}
+
 // A release: g = t^2 (a - t) starts at zero with rate zero, rises, and falls at a.
 void release(const Arguments& args) {
   Case c = clock_only(1);
@@ -225,21 +236,10 @@ void forgeries(const Arguments& args) { measure_forgeries(args.method); }
 constexpr struct {
   const char* name;
   void (*measure)(const Arguments&);
-} all[] = {{"table", table},
-           {"order", order},
-           {"accuracy", accuracy},
-           {"grid", grid},
-           {"dip", dip},
-           {"double_dip", double_dip},
-           {"dips", dips},
-           {"release", release},
-           {"bounces", bounces},
-           {"cuts", cuts},
-           {"failure", failure},
-           {"stiff", stiff},
-           {"first_step", first_step},
-           {"snapshots", snapshots},
-           {"forgeries", forgeries}};
+} all[] = {{"table", table},     {"order", order},           {"accuracy", accuracy},   {"grid", grid},
+           {"dip", dip},         {"double_dip", double_dip}, {"dips", dips},           {"later_piece", later_piece},
+           {"release", release}, {"bounces", bounces},       {"cuts", cuts},           {"failure", failure},
+           {"stiff", stiff},     {"first_step", first_step}, {"snapshots", snapshots}, {"forgeries", forgeries}};
 
 }  // namespace
 

@@ -43,6 +43,14 @@ def test_of_two_dips_between_bends_the_first_is_found(measure, method, depth):
     within(absolute_error(end["time"], 0.5 - sqrt(0.04 + sqrt(depth))), 1e-14, "time")
 
 
+@pytest.mark.parametrize("depth", [1e-2, 1e-6, 1e-10])
+def test_each_piece_between_bends_is_searched_by_itself(measure, method, depth):
+    """Over both pieces together three samples show no dip."""
+    found = measure("later_piece", method, depth)
+    assert found["event"]
+    within(absolute_error(found["time"], 0.7 - sqrt(depth) / 5), 1e-9, "time")
+
+
 def test_above_zero_two_dips_end_nothing(measure, method):
     assert not measure("double_dip", method, -1e-8, 1.0)["ended"]
 
