@@ -58,4 +58,4 @@ def test_the_moment_that_acts_decides_and_not_the_weight(wheel, start, inputs):
         w.set(**inputs)
         assert w.step_to(1.0) == OK, w.sentences
         steps.append(w.get("n_steps")[0])
-    within(steps[0] / steps[1], 1.5, "steps over those of BDF")
+    assert steps[0] < 1.5 * steps[1]
