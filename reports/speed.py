@@ -17,6 +17,7 @@ from support.scenes import SCENES, SINES, sines
 from support.schedule import INPUTS
 
 from . import older
+from .exchange import model_exchange
 from .native import Master, Task, Timing
 from .page import Report, Row, Tables, number
 from .race import CPP, HEYOKA, METHODS, OURS, TITLES, at_default, draw_races, race, time_at
@@ -217,6 +218,14 @@ def older_release(report: Report) -> None:
 
 PARTS: dict[Callable[[Report], None], float] = {
     **{run_race(name): 18.0 for name in TITLES},
-    **{compare: 3, long_and_general: 4, small_steps: 14, left_out: 1, instances: 4, older_release: 5},
+    **{
+        compare: 3,
+        long_and_general: 4,
+        small_steps: 14,
+        left_out: 1,
+        model_exchange: 3,
+        instances: 4,
+        older_release: 5,
+    },
 }
 PICTURES = {"races": draw_races}
