@@ -16,7 +16,7 @@ enum {
 #undef STORED
 #undef COMPUTED
 };
-enum { CALLS = 60, OUTPUTS = ref_E - ref_X_O, INPUTS = ref_X_O - ref_F_X, STATE_SIZE = 1 << 17 };
+enum { CALLS = 60, OUTPUTS = ref_theta_ddot - ref_X_O, INPUTS = ref_X_O - ref_F_X, STATE_SIZE = 1 << 17 };
 
 struct Life {
   const Fmu* fmu;
@@ -123,7 +123,7 @@ static void move_state(Life* life) {
 }
 
 static void ask(Life* life) {
-  const fmi2ValueReference lambda_3 = ref_X_O + 15, F_Z = ref_F_X + 2;
+  const fmi2ValueReference lambda_3 = ref_lambda_3, F_Z = ref_F_Z;
   const double seed = 1;
   double slope = 0;
   fmi2Boolean ended = fmi2True;
