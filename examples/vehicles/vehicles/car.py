@@ -107,7 +107,7 @@ LANE = Manoeuvre(
 )
 HILL = Manoeuvre(
     "hill",
-    "hill start on 15 %, stop and park",
+    "hill start, stop and park",
     9.0,
     s=0.004,
     slope=atan(0.15),
@@ -182,7 +182,7 @@ def sentence(end: Ended) -> str:
 def title(run: Run, manoeuvre: Manoeuvre) -> str:
     """Of a picture: the manoeuvre, its speed, and what ended it early."""
     ended = f"; ended at {run.ending.time:.2f} s" if run.ending else ""
-    slope = f", slope {100 * tan(manoeuvre.slope):.3g} %" if manoeuvre.slope and manoeuvre.name != HILL.name else ""
+    slope = f", slope {100 * tan(manoeuvre.slope):.3g} %" if manoeuvre.slope else ""
     return f"Car: {manoeuvre.title}, from {3.6 * manoeuvre.v:.0f} km/h{slope}{ended}"
 
 
@@ -198,7 +198,7 @@ def missed(table: dict[str, np.ndarray], manoeuvre: Manoeuvre) -> str:
         return f"the run ends after {100 * max(table['p'][-1], 0) / end:.0f} % of the path"
     back = rolled_back(table)
     if manoeuvre.name == HILL.name and back > ROLL_BACK:
-        return f"a wheel rolls back by {1000 * back:.3g} mm"
+        return f"a wheel rolls back by {back:.3g} m"
     if manoeuvre.name in (STRAIGHT.name, HILL.name) and any(table[f"{w}.omega_z"][-1] for w in WHEELS):
         return f"the car does not stand at the end: it rolls at {table['v'][-1]:.2g} m/s"
     return ""
