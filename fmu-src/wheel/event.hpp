@@ -10,7 +10,8 @@ enum class Event : int {
   layer_changes,    // omega_z enters or leaves the layer of a stiff regularized law, or begins to stick in it
   contact_changes,  // with keep_contact: the ground begins to pull or to press
   lifted_off,
-  fell_flat
+  fell_flat,
+  count
 };
 
 // Events that end the model, and what is said of them, to stand behind "the wheel".

@@ -32,7 +32,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("whose solver moves the wheel").count(demand.kind, 0, 1);
   archive("something was set since the last step").count(demand.changed, 0, 1);
   archive("phase").count(run.phase, 0, static_cast<int>(Phase::count) - 1);
-  archive("event that ended the model").count(run.ended_by, 0, static_cast<int>(Event::fell_flat));
+  archive("event that ended the model").count(run.ended_by, 0, static_cast<int>(Event::count) - 1);
   archive("s in force, m").range(now.scene.wheel.s, 0, archive.greatest);
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
