@@ -86,4 +86,6 @@ class Copy:
         if done.returncode in (0, NOTHING_TO_TEST):
             return ""
         lines = [line.split(" - ")[0].split(maxsplit=1) for line in done.stdout.splitlines()]
-        return next((words[1] for words in lines if words[:1] in (["FAILED"], ["ERROR"])), tests[0])
+        failed = [words[1] for words in lines if words[:1] in (["FAILED"], ["ERROR"])]
+        out_of_bounds = [line.split(", ")[0] for line in done.stdout.splitlines() if line.startswith("tests/")]
+        return next(iter([*failed, *out_of_bounds, tests[0]]))

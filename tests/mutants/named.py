@@ -56,6 +56,7 @@ def usual_failures(copy: Copy, tests: Sequence[str]) -> list[str]:
     """What fails of these without a fault."""
     usual: list[str] = []
     while failing := copy.failure(tests, usual):
+        assert failing not in usual, f"{failing} fails without any fault, even when it is left out"
         usual.append(failing)
     return usual
 

@@ -18,7 +18,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def whole(config: pytest.Config) -> bool:
     """Whole files were run: no test was picked out."""
     options = config.option
-    return not (options.keyword or options.markexpr or getattr(options, "lf", False) or "::" in " ".join(config.args))
+    chosen = options.keyword or options.markexpr or options.deselect or getattr(options, "lf", False)
+    return not (chosen or "::" in " ".join(config.args))
 
 
 def pytest_configure(config: pytest.Config) -> None:
