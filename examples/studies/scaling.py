@@ -140,9 +140,9 @@ Two workers against one: {gained} times as fast.{busy}
 
 ## A million wheels
 
-One study, stopped and continued: one row for each time that it was started. The wheels are free of friction; their
-states at the end are kept, with the FMU's counters and messages. Memory is the largest of a process, and the disk is
-what the results occupy at the end.
+One study of free wheels, stopped and continued: one row for each time that it was started and not killed. The states at
+the end are kept, with the FMU's counters and messages. Memory is the largest of a process, and the disk is what the
+results occupy at the end.
 
 {million}
 
