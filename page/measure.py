@@ -14,7 +14,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, Page, sync_playwright
 
 DATA = Path(__file__).parents[1] / "docs" / "results" / "data" / "page.csv"
-FRAMES = 20
+FRAMES = 10
 LOOK = {
     "viewport": {"width": 1280, "height": 800},
     "device_scale_factor": 2,
