@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <new>
 
 #include "digits.hpp"
@@ -12,18 +13,10 @@
 namespace fmi {
 namespace {
 
-constexpr fmi2Status status_of(wheel::Topic topic) {
-  switch (topic) {
-    case wheel::Topic::event:
-      return fmi2OK;
-    case wheel::Topic::warning:
-    case wheel::Topic::discard:  // at their default level many masters hide messages of the status Discard
-      return fmi2Warning;
-    case wheel::Topic::error:
-      break;
-  }
-  return fmi2Error;
-}
+// In the order of the topics. At their default level many masters hide messages of the status Discard.
+constexpr fmi2Status statuses[] = {fmi2OK, fmi2Warning, fmi2Error, fmi2Warning};
+constexpr const char* categories[] = {"logEvents", "logStatusWarning", "logStatusError", "logStatusDiscard"};
+static_assert(std::size(statuses) == std::size(categories) && static_cast<int>(wheel::Topic::discard) == 3);
 
 // A message is a format to the master, and '#' opens a variable name: both characters are doubled.
 void escape(const char* text, char* out, std::size_t size) {
@@ -43,19 +36,7 @@ void tell(void* owner, wheel::Topic topic, const char* sentence) {
 
 }  // namespace
 
-const char* category_of(wheel::Topic topic) {
-  switch (topic) {
-    case wheel::Topic::event:
-      return "logEvents";
-    case wheel::Topic::warning:
-      return "logStatusWarning";
-    case wheel::Topic::discard:
-      return "logStatusDiscard";
-    case wheel::Topic::error:
-      break;
-  }
-  return "logStatusError";
-}
+const char* category_of(wheel::Topic topic) { return categories[static_cast<unsigned>(topic)]; }
 
 Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind) : simulation({this, wanted, tell}, kind) {
   if (!callbacks) return;
@@ -100,7 +81,7 @@ void Instance::log(wheel::Topic topic, const char* format, ...) {
   std::vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
   escape(text, message, sizeof message);
-  logger_(environment_, name_, status_of(topic), category_of(topic), message);
+  logger_(environment_, name_, statuses[static_cast<unsigned>(topic)], category_of(topic), message);
 }
 
 }  // namespace fmi

@@ -47,15 +47,8 @@ fmi2Status check_step(Instance& i, double t, double h) {
 
 fmi2Status step(Instance& i, double t, double h) {
   if (check_step(i, t, h) != fmi2OK) return fmi2Error;
-  switch (i.simulation.advance(t + h)) {
-    case wheel::Progressed::reached:
-      return fmi2OK;
-    case wheel::Progressed::ended:
-      return fmi2Discard;
-    case wheel::Progressed::failed:
-      break;
-  }
-  return fmi2Error;
+  constexpr fmi2Status statuses[] = {fmi2OK, fmi2Discard, fmi2Error};  // reached, ended, failed
+  return statuses[static_cast<unsigned>(i.simulation.advance(t + h))];
 }
 
 // Of the last step, where its status may be asked for.
