@@ -69,7 +69,7 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
   return guarded(c, Function::set_fmu_state, name, [=](Instance& i) {
     Snapshot* snapshot = snapshot_of(state);
     if (!snapshot) return refuse(i, name, state ? unknown_state : null_pointer);
-    const char* fault = i.simulation.load_state(snapshot->bytes(), snapshot->size);
+    const char* fault = i.simulation.load_state(snapshot->bytes(), snapshot->size, false);
     return fault ? refuse(i, name, fault) : fmi2OK;
   });
 }
@@ -112,7 +112,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     if (!state || !bytes) return refuse(i, name, null_pointer);
     Instance* scratch = Instance::create("scratch", nullptr, false, i.simulation.kind());
     if (!scratch) return refuse(i, name, no_memory);
-    const char* fault = scratch->simulation.load_state(reinterpret_cast<const unsigned char*>(bytes), size);
+    const char* fault = scratch->simulation.load_state(reinterpret_cast<const unsigned char*>(bytes), size, true);
     Instance::destroy(scratch);
     if (fault) {
       i.log(Topic::error, "%s: the bytes are damaged or not a state of this FMU and version (%s).", name, fault);

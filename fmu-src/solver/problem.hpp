@@ -3,7 +3,7 @@
 
 namespace solver {
 
-inline constexpr int max_states = 12, max_bends = 16, max_degree = 12, max_watched = 6;
+inline constexpr int max_states = 12, max_extremes = 16, max_degree = 12, max_watched = 6;
 
 enum class Method : int { adams, bdf, runge_kutta };
 
@@ -31,8 +31,9 @@ struct Problem {
   Watched watched[max_watched];
   int watched_count;
   // Instants strictly inside (t_lo, t_hi), ascending, at which a prescribed input has an extreme: between two of them
-  // the watched functions have a simple shape. Returns their number, at most max_bends; null where inputs are constant.
-  int (*bends)(void* owner, double t_lo, double t_hi, double* instants);
+  // the watched functions have a simple shape. Returns their number, at most max_extremes; null where inputs are
+  // constant.
+  int (*extremes)(void* owner, double t_lo, double t_hi, double* instants);
   double near;          // margins below this are near zero
   double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
   bool passage;      // brief: Runge-Kutta keeps the step size that it wants outside of passages for the time after it

@@ -10,7 +10,7 @@
 namespace solver {
 namespace {
 
-// Halvings of a step, and evaluations in the search for a value below zero between two bends.
+// Halvings of a step, and evaluations in the search for a value below zero between two extremes.
 constexpr int most_halvings = 7, most_samples = 48;
 
 // g = lo.g + x (slope + bend (x - share)), x = (t - lo.t) / (hi.t - lo.t), through three samples.
@@ -66,8 +66,8 @@ bool Search::look(Sample lo, Sample mid, Sample hi, int depth, int* budget, Samp
 bool Search::find_first_fall(Sample lo, Sample hi, double* t) const {
   if (lo.g < 0) return *t = lo.t, true;
   if (!(hi.t > lo.t)) return false;
-  double instants[max_bends + 1];
-  int pieces = problem_.bends ? problem_.bends(problem_.owner, lo.t, hi.t, instants) : 0;
+  double instants[max_extremes + 1];
+  int pieces = problem_.extremes ? problem_.extremes(problem_.owner, lo.t, hi.t, instants) : 0;
   instants[pieces++] = hi.t;
   for (int i = 0; i < pieces; ++i) {
     const Sample end = i + 1 < pieces ? sample(instants[i]) : hi;

@@ -109,17 +109,17 @@ void Solver::look_for_events(double from) {
 // evaluated there too, because none of the step's own evaluations may have come near it.
 bool Solver::comes_near(const Search& search, double from) {
   if (step_.lowest_margin < problem_.near) return true;
-  double instants[max_bends];
-  const int count = problem_.bends ? problem_.bends(problem_.owner, from, known_until_, instants) : 0;
+  double instants[max_extremes];
+  const int count = problem_.extremes ? problem_.extremes(problem_.owner, from, known_until_, instants) : 0;
   if (count > 0) expand(&counters_);
   return std::any_of(instants, instants + count, [&](double t) { return search.sample(t).g < problem_.near; });
 }
 
 // Most steps are far from an event, which a value inside the step that is known anyway is enough to tell.
 bool Solver::stays_above(const Search& search, Sample lo, Sample hi) const {
-  double instants[max_bends];
+  double instants[max_extremes];
   if (!(step_.inside_share > 0) || lo.t != step_.start ||
-      (problem_.bends && problem_.bends(problem_.owner, lo.t, hi.t, instants) > 0))
+      (problem_.extremes && problem_.extremes(problem_.owner, lo.t, hi.t, instants) > 0))
     return false;
   const double t = step_.start + step_.inside_share * (step_.end - step_.start);
   return Search::stays_above(lo, search.sample(t, step_.y_inside), hi);

@@ -86,8 +86,8 @@ double height_watched(void* owner, double, const double* y) { return height(of(o
 
 double contact_watched(void* owner, double t, const double* y) { return contact_margin(of(owner), t, y); }
 
-int bends(void* owner, double t_lo, double t_hi, double* instants) {
-  static_assert(most_extremes <= solver::max_bends);
+int extremes(void* owner, double t_lo, double t_hi, double* instants) {
+  static_assert(most_extremes <= solver::max_extremes);
   return of(owner).in_force.inputs.extremes(t_lo, t_hi, instants);
 }
 
@@ -105,7 +105,7 @@ solver::Problem problem_of(Owner& owner) {
   problem.owner = &owner;
   problem.derivative = derivative;
   problem.weights = weights;
-  problem.bends = bends;
+  problem.extremes = extremes;
   problem.near = near;
   problem.longest_step = owner.setup.longest_step;
   const auto watch = [&](Event event, double (*value)(void*, double, const double*), bool by_margin) {

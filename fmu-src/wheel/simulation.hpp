@@ -88,9 +88,10 @@ class Simulation {
 
   // Demand, run and the solver's history as portable bytes with a checksum. load_state returns null, or why the bytes
   // could not have been saved: everything is then as it was, unless it is the solver's history that is wrong.
+  // foreign: they come from outside of this library, so the state itself is judged too.
   std::size_t state_size();
   void save_state(unsigned char* bytes);
-  const char* load_state(const unsigned char* bytes, std::size_t size);
+  const char* load_state(const unsigned char* bytes, std::size_t size, bool foreign);
 
  private:
   bool tell(Topic topic, const char* format, ...) const;

@@ -102,9 +102,13 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   const bool starts = run.phase == Phase::initial || run.phase == Phase::at_start;
   if (starts && !(run.t == 0 && std::equal(setup.start, setup.start + WHEEL_MAX_STATES, run.y)))
     return "a run that has not begun stands at its start";
+  return nullptr;
+}
+
+bool is_inside(const Setup& setup, const Run& run) {
   Reading reading;
-  reading.set({setup.formulation, run.y, now.scene_at(run.t), {}, {}, 0});
-  return is_inside(reading) ? nullptr : "the state is outside the model";
+  reading.set({setup.formulation, run.y, run.in_force.scene_at(run.t), {}, {}, 0});
+  return is_inside(reading);
 }
 
 }  // namespace
@@ -125,7 +129,7 @@ void Simulation::save_state(unsigned char* bytes) {
   std::memcpy(bytes, &header, sizeof header);
 }
 
-const char* Simulation::load_state(const unsigned char* bytes, std::size_t size) {
+const char* Simulation::load_state(const unsigned char* bytes, std::size_t size, bool foreign) {
   Header header;
   if (size < sizeof header) return "they are too few";
   std::memcpy(&header, bytes, sizeof header);
@@ -140,6 +144,7 @@ const char* Simulation::load_state(const unsigned char* bytes, std::size_t size)
   visit(archive, demand, run);
   if (archive.fault()) return archive.fault();
   if (const char* fault = complete(demand, setup, run)) return fault;
+  if (foreign && has_state(run.phase) && !is_inside(setup, run)) return "the state is outside the model";
   if (demand.kind != demand_.kind) return "they belong to an instance of the other kind";
   const std::size_t left = size - sizeof header - archive.bytes();
   if (run.phase != Phase::stepping && left > 0) return "bytes are left over";

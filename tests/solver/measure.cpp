@@ -93,11 +93,11 @@ void dip(const Arguments& args) {
   std::printf("], \"steps\": %lld, \"roots\": %lld}\n", s.counters().steps, s.counters().roots);
 }
 
-// g = (t - 0.3)^2 (t - 0.7)^2 - a with the bends told (b = 1) or not: the first fall as `ended`.
+// g = (t - 0.3)^2 (t - 0.7)^2 - a with the extremes told (b = 1) or not: the first fall as `ended`.
 void double_dip(const Arguments& args) {
   Case c = clock_only(1);
   c.by_margin = [&](double t, const double*) { return std::pow((t - 0.3) * (t - 0.7), 2) - args.a; };
-  if (args.b != 0) c.bends = {0.3, 0.5, 0.7};
+  if (args.b != 0) c.extremes = {0.3, 0.5, 0.7};
   Solver s;
   s.start(c.problem(), args.method, 0, c.y.data());
   const Outcome outcome = run_to(s, 2);

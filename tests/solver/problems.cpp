@@ -27,9 +27,9 @@ void weights(void* owner, double share, const double* y, double* w) {
 
 double watched(void* owner, double t, const double* y) { return of(owner).each_step(t, y); }
 
-int bends_inside(void* owner, double t_lo, double t_hi, double* instants) {
+int extremes_inside(void* owner, double t_lo, double t_hi, double* instants) {
   int count = 0;
-  for (double t : of(owner).bends)
+  for (double t : of(owner).extremes)
     if (t > t_lo && t < t_hi) instants[count++] = t;
   return count;
 }
@@ -42,7 +42,7 @@ solver::Problem Case::problem() {
   p.states = states, p.owner = this, p.derivative = derivative, p.weights = weights;
   if (each_step) p.watch({1, watched, false});
   if (by_margin) p.watch({2, margin, true});
-  p.bends = bends.empty() ? nullptr : bends_inside, p.near = near, p.longest_step = longest_step;
+  p.extremes = extremes.empty() ? nullptr : extremes_inside, p.near = near, p.longest_step = longest_step;
   return p;
 }
 

@@ -13,7 +13,7 @@ struct Case {
   std::vector<double> y;
   std::function<void(double, const double*, double*)> rates;
   std::function<double(double, const double*)> each_step, by_margin;  // watched: events 1 and 2
-  std::vector<double> bends;
+  std::vector<double> extremes;
 
   solver::Problem problem();
 };

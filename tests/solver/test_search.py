@@ -36,7 +36,7 @@ def test_the_work_of_the_search_is_bounded(measure, method):
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-4, 1e-5, 1e-8])
 def test_of_two_dips_between_bends_the_first_is_found(measure, method, depth):
-    """g = (t - 0.3)^2 (t - 0.7)^2 - depth, in a step of 1 s whose bends are told."""
+    """g = (t - 0.3)^2 (t - 0.7)^2 - depth, in a step of 1 s whose extremes are told."""
     end = measure("double_dip", method, depth, 1.0)
     assert end["ended"]
     # The first root: (t - 0.3) (0.7 - t) = -sqrt(depth).
