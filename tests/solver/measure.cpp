@@ -128,7 +128,7 @@ void dips(const Arguments& args) {
 void later_piece(const Arguments& args) {
   Case c = clock_only(1);
   c.each_step = [&](double t, const double*) { return t < 0.5 ? 1 : 25 * (t - 0.7) * (t - 0.7) - args.a; };
-  c.bends = {0.5};
+  c.extremes = {0.5};
   Solver s;
   s.start(c.problem(), args.method, 0, c.y.data());
   const Outcome outcome = run_to(s, 1);

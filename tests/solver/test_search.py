@@ -22,7 +22,7 @@ def test_of_a_dip_however_brief_the_first_instant_is_found(measure, method):
     """A hundred parabolas that are below zero for 0.1 s down to 1e-8 s of a second."""
     found = measure("dips", method, 0.05)
     assert found["worst"] < 1e-5  # five digits of the width, down to the last that the time has
-    assert found["roots"] < 60 * 100  # a halved step costs two values, and at most 48 are spent between two bends
+    assert found["roots"] < 60 * 100  # a halved step costs two values, and at most 48 are spent between two extremes
 
 
 def test_a_function_that_comes_near_zero_and_turns_is_no_event(measure, method):
