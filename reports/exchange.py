@@ -1,7 +1,7 @@
 """Model exchange beside co-simulation: the same archive, through other people's solvers.
 
 FMPy drives both kinds with the same loop in Python; its CVODE moves the wheel in model exchange. SciPy's DOP853 does so
-with the event search of tests/support/exchange.py. Errors as in speed.py; times are whole runs, instances made included.
+with the event search of tests/support/exchange.py. Errors as in speed.py; times are whole runs, instances included.
 """
 
 from __future__ import annotations

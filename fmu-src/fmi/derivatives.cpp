@@ -6,7 +6,7 @@
 #include "digits.hpp"
 
 using fmi::check_arrays, fmi::check_readable, fmi::Function, fmi::guarded, fmi::Instance, fmi::prepare_reading;
-using support::Digits, wheel::Phase, wheel::Role, wheel::Topic;
+using support::Digits, wheel::Role, wheel::Topic;
 
 namespace {
 

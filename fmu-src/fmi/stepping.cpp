@@ -4,7 +4,7 @@
 #include "digits.hpp"
 #include "instance.hpp"
 
-using fmi::Function, fmi::guarded, fmi::Instance, support::Digits, wheel::Phase, wheel::Topic;
+using fmi::Function, fmi::guarded, fmi::Instance, support::Digits, wheel::Topic;
 
 namespace {
 

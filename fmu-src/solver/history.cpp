@@ -1,5 +1,6 @@
 // Snapshots: what an engine remembers, as numbers, each checked before it is used.
-#include <algorithm>
+#include <initializer_list>
+#include <limits>
 
 #include "bytes.hpp"
 #include "solver.hpp"
@@ -57,9 +58,9 @@ bool Solver::restore_history(const Problem& problem, const unsigned char* bytes,
 
 // Times in order, and those that one outcome goes with; an event that is watched.
 bool Solver::restored_fits() const {
-  const Watched* watched = problem_.watched;
-  const auto happened = [this](const Watched& w) { return w.event == event_; };
-  if (pending_ == Outcome::event && std::none_of(watched, watched + problem_.watched_count, happened)) return false;
+  bool watched = false;
+  for (int i = 0; i < problem_.watched_count; ++i) watched = watched || problem_.watched[i].event == event_;
+  if (pending_ == Outcome::event && !watched) return false;
   if (!(step_.start <= known_until_ && known_until_ <= step_.end)) return false;
   if (pending_ == Outcome::failed) return step_.start == step_.end;
   return known_until_ == event_time_ || (pending_ == Outcome::stepped && known_until_ == step_.end);

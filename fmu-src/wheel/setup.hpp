@@ -16,9 +16,9 @@ struct ErrorScales {
 struct Setup {
   const WheelFormulation* formulation;
   WheelParameters wheel;  // its `s` is zero here: the one in force is part of the run
-  FrictionLaw friction_law;
+  FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
-  SolverMethod method;
+  SolverMethod method = automatic_method;
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y, a level road, choices automatic
   bool keep_contact;
   double tolerance;                // relative, of the whole solution
