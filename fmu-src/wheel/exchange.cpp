@@ -176,7 +176,7 @@ double Simulation::partial(unsigned unknown, unsigned known) {
   double y[WHEEL_MAX_STATES], scales[WHEEL_MAX_STATES];
   std::copy_n(y_now(), WHEEL_MAX_STATES, y);
   scales_at(setup_.scales, *setup_.formulation, 0, scales);
-  Present now = present();
+  Present now = present_for(known);
   now.y = y;
   const int state = setup_.formulation == &wheel_euler ? state_of(known) : -1;
   double& place = state >= 0 ? y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));

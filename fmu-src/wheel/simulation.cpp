@@ -128,6 +128,16 @@ double Simulation::value(unsigned variable) {
 
 double Simulation::rate(unsigned variable) { return row_of(variable).read_rate(reading()); }
 
+// The same as it answers a change of one known: a brake that is not in use has the law that it would have in use. In model
+// exchange that law waits for an event.
+Present Simulation::present_for(unsigned known) {
+  Present now = present();
+  const bool brake = known == first_input + brake_input && demand_.kind == Kind::co_simulation;
+  if (brake && now.scene.friction.kind == WHEEL_FRICTIONLESS)
+    now.scene.friction = friction_at(setup_, now.scene, true, now.y);
+  return now;
+}
+
 // Only the reactions depend on the inputs of the same instant.
 double Simulation::sensitivity(unsigned output, unsigned input) {
   const auto component = row_of(output).reaction_rate;
@@ -135,11 +145,8 @@ double Simulation::sensitivity(unsigned output, unsigned input) {
   const int i = static_cast<int>(input - first_input);
   WheelLoad unit = {};
   *load_entry(unit, i) = 1;
-  Present now = present();
-  if (i == brake_input && now.scene.friction.kind == WHEEL_FRICTIONLESS)
-    now.scene.friction = friction_at(setup_, now.scene, true, now.y);
   Reading answer;
-  answer.set(now);
+  answer.set(present_for(input));
   return component(answer.response(unit));
 }
 

@@ -103,6 +103,7 @@ class Simulation {
   solver::Counters counters() const;
   WheelScene scene_now();
   Present present();
+  Present present_for(unsigned known);
   Reading& reading();
 
   // advance.cpp

@@ -66,7 +66,7 @@ def contents() -> str:
     for caption, names in CHAPTERS.items():
         kinds = [f"{name}{kind}" for name in names.split() for kind in (".md", ".ipynb")]
         paths = [path.relative_to(ROOT) for kind in kinds for path in sorted(ROOT.glob(kind))]
-        pages = [str(path.with_suffix("")) for path in paths]
+        pages = [str(path.with_suffix("")) for path in paths if not path.parts[0].startswith(".")]
         pages = [page for page in dict.fromkeys(pages) if page not in seen]
         seen.update(pages)
         found.append(CONTENTS.format(caption=caption, pages="\n".join(f"/{page}" for page in pages)))

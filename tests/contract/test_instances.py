@@ -89,7 +89,7 @@ def test_a_thousand_instances_live_side_by_side_and_can_be_freed_in_any_order(wh
         (b"", 1, None, "the instance name is missing or blank"),
         (b" \t", 1, None, "the instance name is missing or blank"),
         (None, 1, None, "the instance name is missing or blank"),
-        (b"wheel", 0, None, "this FMU is for co-simulation only"),
+        (b"wheel", 0, b"{0}", "the GUID is not that of this FMU"),
         (b"wheel", 1, b"{00000000-0000-0000-0000-000000000000}", "the GUID is not that of this FMU"),
         (b"wheel", 1, b"", "the GUID is not that of this FMU"),
     ],

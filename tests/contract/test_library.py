@@ -69,7 +69,7 @@ def test_the_archive_is_laid_out_as_the_standard_says(fmu_path):
     entries = entries_of(fmu_path)
     names = [entry.filename for entry in entries]
     assert len(names) == len(set(names)) and names == sorted(names)
-    folders = {"binaries", "documentation", "licenses", "resources", "sources", "terminalsAndIcons"}
+    folders = {"binaries", "documentation", "extra", "licenses", "resources", "sources", "terminalsAndIcons"}
     top = {"modelDescription.xml", "model.png", *folders}
     assert {name.split("/")[0] for name in names} <= top
     assert {"modelDescription.xml", "model.png", "documentation/index.html", "licenses/license.txt"} <= set(names)

@@ -161,12 +161,12 @@ def test_counts_are_the_same_after_a_return(wheel, method):
     """Of a run that goes back to its start, and of one that never left it; the Jacobians of a new start too."""
     counts = []
     for returns in (False, True):
-        w = wheel().start(friction_law=2, s=0.03, omega_s=1e-3, method=method)
+        w = wheel().start(friction_law=2, s=0.03, omega_s=1e-5, method=method)
         before = w.snapshot()
         if returns:
-            assert w.step_to(0.7) == OK and w.fmi2SetFMUstate(w.component, before) == OK
+            assert w.step_to(1.4) == OK and w.fmi2SetFMUstate(w.component, before) == OK
             w.time = 0.0
-        assert w.step_to(1.0) == OK
+        assert w.step_to(2.0) == OK  # the wheel has stuck: there automatic takes BDF
         counts.append(w.get("n_steps", "n_rhs", "n_jac", "n_restarts"))
     assert counts[0] == counts[1] and counts[0][2] > 0
 
