@@ -128,8 +128,8 @@ double Simulation::value(unsigned variable) {
 
 double Simulation::rate(unsigned variable) { return row_of(variable).read_rate(reading()); }
 
-// The same as it answers a change of one known: a brake that is not in use has the law that it would have in use. In model
-// exchange that law waits for an event.
+// The same as it answers a change of one known: a brake that is not in use has the law that it would have in use. In
+// model exchange that law waits for an event.
 Present Simulation::present_for(unsigned known) {
   Present now = present();
   const bool brake = known == first_input + brake_input && demand_.kind == Kind::co_simulation;
