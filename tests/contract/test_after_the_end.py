@@ -65,7 +65,8 @@ def test_a_restored_ending_is_still_an_ending_in_any_instance(wheel):
 def test_times_in_messages_have_the_digits_they_need(wheel):
     w = wheel().start()
     w.run([0.1])
-    for t, text in ((0.3, "0.3"), (0.1 + 0.2, "0.30000000000000004"), (1e-7, "1e-07"), (100.0, "100"), (1e-300, "1e-300")):
+    times = {0.3: "0.3", 0.1 + 0.2: "0.30000000000000004", 1e-7: "1e-07", 100.0: "100", 1e-300: "1e-300"}
+    for t, text in times.items():
         w.time = t
         assert w.step(1.0) == ERROR
         assert w.take_messages()[0].text == f"fmi2DoStep from {text} s: the FMU has reached 0.1 s."

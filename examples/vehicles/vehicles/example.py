@@ -19,7 +19,8 @@ def interrupted(*_: object) -> None:
     sys.exit(130)
 
 
-signal.signal(signal.SIGINT, interrupted)
+if __name__ == "__main__":  # also while the packages below are loaded
+    signal.signal(signal.SIGINT, interrupted)
 
 import numpy as np  # noqa: E402
 from tqdm import tqdm  # noqa: E402
