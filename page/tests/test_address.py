@@ -65,12 +65,9 @@ def test_the_address_names_the_step_of_the_story_that_is_shown(live, step):
 
 def test_the_page_writes_what_the_reader_does_into_its_address(live):
     preset(live, "Paper, s = 0.03 m")
-    live.evaluate("page.player.pause()")  # the address is written at rest
-    live.wait_for_function(
-        "location.hash === '#s=0.03&t=' + Number(page.player.t.toFixed(2)) || location.hash === '#s=0.03'"
-    )
+    live.wait_for_function("location.hash.startsWith('#s=0.03') && !location.hash.endsWith('t=2.5')")
     live.evaluate("page.player.seek(2.5)")
-    live.wait_for_function("location.hash === '#s=0.03&t=2.5'")
+    live.wait_for_function("location.hash.startsWith('#s=0.03') && location.hash.endsWith('&t=2.5')")
 
 
 WRONG = {
