@@ -43,7 +43,9 @@ class Problem:
 
     def __init__(self, scene: Scene) -> None:
         constants = asdict(scene.wheel)
-        self.wheel = eq.paper_wheel(**{name: constants[name] for name, _ in eq.Parameters._fields_})
+        self.wheel = eq.paper_wheel(
+            **{name: constants[name] for name, _ in eq.Parameters._fields_ if name in constants}
+        )
         kind = eq.FRICTIONLESS
         if self.wheel.s > 0:
             kind = eq.REGULARIZED if regularized(scene) else eq.ROLLING
