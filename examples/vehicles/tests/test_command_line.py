@@ -101,7 +101,8 @@ def test_an_axle_without_a_closed_form_is_not_compared_with_one(
 
 
 def test_ctrl_c_ends_a_run_with_one_word(fmus: dict[str, Path]) -> None:
-    code = "import sys; from vehicles import example; sys.argv[1:] = ['balance']; print('ready'); example.main()"
+    start = "runpy.run_module('vehicles.example', run_name='__main__')"
+    code = f"import runpy, sys; sys.argv = ['example', 'balance']; print('ready'); {start}"
     folders = [str(ROOT / name) for name in ("", "examples/vehicles", "tests")]
     run = subprocess.Popen(
         [sys.executable, "-u", "-c", f"import sys; sys.path[:0] = {folders}; {code}"],
