@@ -15,12 +15,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
-from robustness import checks, drift, long_runs
 from robustness.case import Case
 from robustness.sweep import sweep
 from robustness.verdicts import TOLERANCES, Verdict, judge_case
 
-from . import plots
+from . import drift, edges, long_runs, plots
 from .law import crossings, draw_law, draw_methods, law
 from .page import Report, Row, Sheet, number, save
 from .plots import style
@@ -136,13 +135,13 @@ def draw_cases(judged: list[tuple[Case, Verdict]]) -> Sheet:
 def contract(report: Report) -> None:
     """the contract at its edges"""
     rows = []
-    for group, check in checks.GROUPS.items():
+    for group, check in edges.GROUPS.items():
         (found,) = isolated(check, [(report.library,)])
         rows += [(group, *row) for row in ([("", "", found, False)] if isinstance(found, Broken) else found)]
     table = pd.DataFrame(rows, columns=["group", "what", "expected", "found", "holds"])
     report.table("contract", table)
-    report.figure("checks", "checks of the contract", len(table))
-    report.figure("contract", "checks of the contract that fail", (~table["holds"].astype(bool)).sum(), "", 0)
+    report.figure("checks", "checks of what edges cost", len(table))
+    report.figure("contract", "checks that fail", (~table["holds"].astype(bool)).sum(), "", 0)
 
 
 def hours(report: Report) -> None:

@@ -63,7 +63,9 @@ def test_each_fault_alone_is_told_and_after_a_reset_and_a_correction_the_wheel_r
         ({"theta_start": np.pi}, "theta_start = 3.14159265 rad"),
         ({"theta_start": 4.0}, "theta_start = 4 rad"),
         ({"m": 0.0}, "m = 0: it must be greater than 0."),
+        ({"r_0": -0.3}, "r_0 = -0.3: it must be greater than 0."),
         ({"J_x": -1e-9}, "J_x = -1e-09: it must be greater than 0."),
+        ({"J_x": 0.0}, "J_x = 0: it must be greater than 0."),
         ({"J_x": 3.0}, "J_x, J_y, J_z = 3, 0.9, 1.8 kg m2"),
     ],
 )
@@ -71,7 +73,7 @@ def test_impossible_wheels_are_refused_and_their_neighbours_roll(wheel, values, 
     status, sentences = initialize(wheel(), **values)
     assert status == ERROR
     assert any(sentence.startswith(told) for sentence in sentences)
-    neighbours = {"theta_start": 3.1, "m": 1e-3, "J_x": 0.95}
+    neighbours = {"theta_start": 3.1, "m": 1e-3, "r_0": 0.01, "J_x": 0.95}
     name = next(iter(values))
     assert initialize(wheel(), **{name: neighbours[name]}) == (OK, [])
 

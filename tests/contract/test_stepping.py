@@ -28,6 +28,16 @@ def test_the_communication_grid_changes_no_bit(wheel, scene):
     assert wheel().start(tolerance=1.0000001e-8, **values).run(SECONDS)[-1] != coarse[-1]  # the partner
 
 
+def test_steps_of_no_length_of_a_nanosecond_and_of_an_hour_change_no_bit(wheel):
+    def end(*times: float) -> bytes:
+        return wheel().start(s=0.03).run(times)[-1]
+
+    once = end(10.0)
+    assert end(*np.sort([*10 * np.linspace(0, 1, 77) ** 2, 5.0, 5.0])) == once
+    assert end(*1e-6 * np.arange(1001), 10.0) == end(*(5.0 + 1e-9 * np.arange(20001)), 10.0) == once
+    assert end(3600.0) == end(*np.arange(1.0, 3601.0)) != once
+
+
 @pytest.mark.parametrize("values", [{}, {"s": 0.02}, {"formulation": 3}], ids=["free", "friction", "multibody"])
 def test_what_is_read_between_two_changes_is_seen_in_no_counter(wheel, values):
     """Two changes 0.02 s apart: the step after the second is 0.02 s long, and a fine grid reads inside it."""

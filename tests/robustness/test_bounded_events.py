@@ -1,7 +1,8 @@
-"""Scenes whose transitions come thick and fast end their event work soon, with a result that another run confirms."""
+"""No call works for ever: transitions that come thick and fast, enormous loads, a million internal steps."""
 
 from __future__ import annotations
 
+import re
 from math import pi
 from random import Random
 from time import perf_counter
@@ -9,7 +10,7 @@ from time import perf_counter
 import numpy as np
 import pytest
 from support.bounds import beyond, within
-from support.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK
+from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
 from support.pieces import play
 
 KINDS = [(formulation, method) for formulation in (2, 3) for method in (1, 2, 3, 4)]
@@ -98,3 +99,18 @@ def test_random_scenes_with_many_transitions_end_soon(wheel, block):
     for seed in range(125 * block, 125 * (block + 1)):
         start, pieces = random_scene(seed)
         played(wheel, KINDS[seed % len(KINDS)], pieces, 0.6, **start)
+
+
+@pytest.mark.parametrize("load", [{"M_3": 1e13}, {"F_X": 1e80}])
+def test_a_step_under_an_enormous_load_ends_in_bounded_time_and_says_why(wheel, load):
+    w = wheel().start(s=0.03, keep_contact=True)
+    assert (w.set(**load), w.step_to(0.01)) == (OK, ERROR)
+    assert re.fullmatch(r"The solver stopped at t = \S+ s, where omega_z = \S+ rad/s: .+\.", w.sentences[-1])
+    assert w.get("n_steps")[0] < 1.001e6
+
+
+def test_one_call_takes_at_most_a_million_internal_steps_and_shorter_calls_go_on(wheel):
+    w, careful = (wheel().start(phi_dot_start=1e4, s=1e-9) for _ in range(2))
+    assert w.step_to(40.0) == ERROR
+    assert w.sentences[-1].endswith("may take no more internal steps; use shorter communication steps.")
+    assert careful.step_to(5.0) == careful.step_to(10.0) == OK

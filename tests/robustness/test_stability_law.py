@@ -1,18 +1,15 @@
-"""The regularized law tends to the exact one at first order; the choice of method; hours of weak releases; drift."""
+"""The regularized law: its error, the choice of method; and ten minutes of weak releases."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from reference import Wheel as ReferenceWheel
-from support.bounds import absolute_error, beyond, within
+from support.bounds import beyond, within
 from support.driver import Values
 from support.motion import Library, Run, run
 
-from robustness import drift, long_runs, regularized
-from robustness.regularized import TOLERANCE_FACTOR, WIDTH_FACTOR
-
-FRICTION: Values = {"s": 0.03}
+from robustness import regularized
+from robustness.regularized import FRICTION, TOLERANCE_FACTOR, WIDTH_FACTOR
 
 
 @pytest.fixture(scope="module")
@@ -23,14 +20,6 @@ def truth(library: Library) -> Run:
 def law_error(library: Library, truth: Run, omega_s: float, tolerance: float, method: str = "automatic") -> float:
     values = {**FRICTION, "friction_law": "regularized", "omega_s": omega_s, "method": method}
     return regularized.error_against(truth, run(library, values, regularized.TIMES, tolerance))
-
-
-def test_the_regularized_law_converges_at_first_order(library: Library, truth: Run) -> None:
-    errors = [law_error(library, truth, omega_s, 1e-9) for omega_s in (1e-3, 1e-4, 1e-5, 1e-6)]
-    orders = np.log10(np.array(errors[:-1]) / errors[1:])
-    within(np.abs(orders - 1).max(), 0.15, "orders")
-    slow = np.log10(law_error(library, truth, 1e-1, 1e-9) / law_error(library, truth, 1e-2, 1e-9))
-    beyond(abs(slow - 1), 0.15, "slow")  # too wide to be asymptotic
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
@@ -77,41 +66,17 @@ def test_a_stiff_law_is_solved_within_its_tolerance(library: Library) -> None:
 
 
 def test_ten_minutes_of_weak_releases_keep_energy_spin_and_cost(library: Library) -> None:
-    done = long_runs.long_run(library, "friction", FRICTION, 600.0)
-    energy = done.energy[0]
-    assert done.status == 0
-    assert done.held == 0
-    within(done.rise / energy, 1e-8, "done")  # it never rises between two readings
-    coarse = long_runs.long_run(library, "free", {"method": "adams"}, 600.0, tolerance=1e-4)
-    beyond(coarse.rise / energy, 9e-8, "coarse")  # nothing dissipates, a looser tolerance
-    per_stretch = np.diff(done.events)
-    within(absolute_error(per_stretch[-10:].sum(), 562), 6, "per stretch")
-    rhs = done.column(8)
-    within(np.diff(rhs)[-10:].mean() / np.diff(rhs)[5:15].mean(), 1.1, "rhs")
+    times = np.linspace(0, 600, 601)
+    done = run(library, FRICTION, times, 1e-8)
+    assert done.t[-1] == 600 and (done["omega_z"][done["friction_mode"] == 0] == 0).all()
+    within(np.diff(done["E"]).max() / done["E"][0], 1e-8, "rise")  # it never rises between two readings
+    free = run(library, {"method": "adams"}, times, 1e-4)
+    beyond(np.diff(free["E"]).max() / free["E"][0], 9e-8, "rise")  # nothing dissipates, a looser tolerance
+    within(abs(sum(t > 500 for t, _ in done.events) - 562), 6, "events of the last 100 s")
+    rhs = [run(library, FRICTION, [0.0, stop], 1e-8).counters["n_rhs"] for stop in (50.0, 150.0, 500.0, 600.0)]
+    within((rhs[3] - rhs[2]) / (rhs[1] - rhs[0]), 1.1, "evaluations, late over early")
 
 
 def test_the_releases_of_ten_minutes_do_not_depend_on_the_tolerance(library: Library) -> None:
-    counts = []
-    for tolerance in (1e-6, 1e-9):
-        with library.wheel() as wheel:
-            wheel.set(**FRICTION)
-            wheel.initialise(tolerance)
-            wheel.step_to(600.0)
-            counts.append(wheel.get("n_events")[0])
-    assert counts[0] == counts[1] == 3353
-
-
-def test_the_multibody_form_stays_on_its_constraints(library: Library) -> None:
-    values: Values = {**FRICTION, "J_x": 1.8, "formulation": "multibody"}
-    done = run(library, values, np.linspace(0, 120, 1201))
-    wheel = ReferenceWheel(J_x=1.8, s=0.03)
-    within(max(r.max() for r in drift.residuals(wheel, done)), 3e-9, "residuals")
-    beyond(max(r.max() for r in drift.residuals(ReferenceWheel(r=0.05 + 1e-7), done)), 3e-9, "residuals")
-
-
-def test_a_free_wheel_drifts_in_energy_no_faster_than_its_tolerance(library: Library) -> None:
-    done = run(library, {}, np.linspace(0, 600, 601), 1e-8)
-    change = np.abs(done["E"] / done["E"][0] - 1).max()
-    within(change, 1e-10, "change")  # one tolerance in ten seconds
-    loose = run(library, {"method": "adams"}, np.linspace(0, 600, 601), 1e-5)
-    beyond(np.abs(loose["E"] / loose["E"][0] - 1).max(), 4e-6, "E")
+    counts = {run(library, FRICTION, [0.0, 600.0], tolerance).counters["n_events"] for tolerance in (1e-6, 1e-9)}
+    assert counts == {3353}

@@ -16,7 +16,6 @@ from support.driver import COUNTERS, WARNING, FMU2Wheel, Values
 from support.motion import Library
 
 HOUR = 3600.0
-SIGNALS = ("E", "theta", "omega_z", "psi", "phi")
 
 
 @dataclass
@@ -36,10 +35,6 @@ class LongRun:
         return np.array([row[i] for row in self.rows])
 
     @property
-    def times(self) -> np.ndarray:
-        return self.column(0)
-
-    @property
     def cost(self) -> np.ndarray:
         return self.column(1)
 
@@ -49,7 +44,7 @@ class LongRun:
 
     @property
     def events(self) -> np.ndarray:
-        return self.column(3 + len(SIGNALS) - 1 + COUNTERS.index("n_events"))
+        return self.column(3 + COUNTERS.index("n_events"))
 
 
 def resident() -> int:
@@ -82,7 +77,7 @@ def long_run(library: Library, name: str, values: Values, duration: float, toler
         wheel.set(**values)
         wheel.initialise(tolerance)
         wheel.step_to(0.0)
-        start, read = resident(), wheel.reader(SIGNALS)
+        start, read = resident(), wheel.reader(("E",))
         result.rows.append([0.0, np.nan, *read(), *wheel.get(*COUNTERS)])
         for end, spent in stretch(wheel, length * np.arange(1, 61), length, result):
             result.rows.append([end, 1e6 * spent / length, *read(), *wheel.get(*COUNTERS)])
@@ -90,17 +85,6 @@ def long_run(library: Library, name: str, values: Values, duration: float, toler
                 break
         result.memory = resident() - start
     return result
-
-
-def phase_error(library: Library, duration: float, tolerance: float) -> float:
-    """theta at the end of the free wheel's run against tolerance 1e-13, rad."""
-    angles = []
-    for t in (tolerance, 1e-13):
-        with library.wheel() as wheel:
-            wheel.initialise(t)
-            wheel.step_to(duration)
-            angles.append(wheel.reader(("theta",))()[0])
-    return abs(angles[0] - angles[1])
 
 
 def study(library: Library, full_day: bool) -> list[LongRun]:
