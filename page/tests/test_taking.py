@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import shlex
 import subprocess
 import sys
 
@@ -111,8 +112,8 @@ def run(words: list[str], folder) -> str:
 
 
 def test_the_command_of_fmpy_makes_the_same_run(planned, fmu_path, tmp_path):
-    words = command(planned, "fmpy").replace("fmpy simulate", f"{sys.executable} -m fmpy.command_line simulate")
-    run(["bash", "-euc", words.replace("fmpy.command_line", "fmpy")], folder_with(fmu_path, tmp_path))
+    words = command(planned, "fmpy").replace("fmpy simulate", f"{shlex.quote(sys.executable)} -m fmpy simulate")
+    run(["bash", "-euc", words], folder_with(fmu_path, tmp_path))
     motion = np.genfromtxt(tmp_path / "motion.csv", delimiter=",", names=True)
     t = column(planned, "time")
     at = [np.argmin(abs(motion["time"] - instant)) for instant in t]
