@@ -1,20 +1,18 @@
-"""What the property tests draw, play and judge: scenes sound and unsound, instances freed whatever happens, energy."""
+"""What the property tests draw, play and judge: scenes sound and unsound, energy."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from math import isfinite
 
 import numpy as np
-from fmpy.model_description import ModelDescription
-from hypothesis import HealthCheck, Phase, settings
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
 
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 Values = dict[str, float]
-Make = Callable[[], FMU2Wheel]
 
 
 def quick(examples: int, *, shrink: bool = True) -> settings:
@@ -27,6 +25,16 @@ def quick(examples: int, *, shrink: bool = True) -> settings:
         phases=(Phase.generate, Phase.shrink) if shrink else (Phase.generate,),
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
     )
+
+
+def check(holds: Callable[..., None], examples: int, *drawn: st.SearchStrategy, broken: bool = False) -> None:
+    """Whether it holds for all examples, or, broken on purpose, not."""
+    played = quick(examples, shrink=not broken)(given(*drawn)(holds))
+    if not broken:
+        played()
+        return
+    with pytest.raises(AssertionError):
+        played()
 
 
 def some(low: float, high: float) -> st.SearchStrategy[float]:
@@ -73,22 +81,6 @@ def grids(stop: float = 1.0) -> st.SearchStrategy[list[float]]:
     """Communication points between 0 and `stop`, the last one at it."""
     inside = st.lists(some(1e-6, stop - 1e-6), max_size=12, unique=True)
     return inside.map(lambda points: [*sorted(points), stop])
-
-
-@contextmanager
-def crowd(fmu: str, description: ModelDescription, kind: type[FMU2Wheel] = FMU2Wheel) -> Iterator[Make]:
-    """make() -> a new instance; all are freed at the end."""
-    made: list[FMU2Wheel] = []
-
-    def make() -> FMU2Wheel:
-        made.append(kind(fmu, description))
-        return made[-1]
-
-    try:
-        yield make
-    finally:
-        for w in made:
-            w.close()
 
 
 def go(w: FMU2Wheel, times: list[float], load: Values | None = None) -> list[bytes]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
-from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING
+from support.driver import DISCARD, DO_STEP_STATUS, ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING
 
 from contract.call_states import STATES, TABLE, bring_to, call
 
@@ -26,7 +28,7 @@ def test_an_ending_is_a_message_that_masters_show_with_every_digit_of_its_instan
     (message,) = w.take_messages()
     assert (message.status, message.category) == (WARNING, "logStatusDiscard")
     end = w.status(LAST_SUCCESSFUL_TIME)
-    assert message.text.startswith(f"The wheel {what} at t = {told(end)} s")
+    assert re.match(rf"The wheel {what} at t = {told(end)} s[,:] .*the model ends there\.$", message.text)
     assert float(message.text.split("t = ")[1].split(" s")[0]) == end
 
 
@@ -42,24 +44,29 @@ def test_after_an_ending_no_step_of_any_length_is_answered_with_ok_and_the_refus
         (message,) = w.take_messages()
         assert message.text == f"fmi2DoStep: the wheel {what} at t = {told(end)} s. Restore a state or reset."
     assert w.set(s=0.01) == ERROR and what in w.take_messages()[0].text
-    assert (w.bits(), w.status(TERMINATED), w.status(LAST_SUCCESSFUL_TIME)) == (bits, 1, end)
+    for leaving in (lambda: OK, w.terminate):
+        assert leaving() == OK
+        assert (w.bits(), w.status(TERMINATED), w.status(LAST_SUCCESSFUL_TIME)) == (bits, 1, end)
+    assert w.reset() == OK
+    assert w.start().run([2.0]) == wheel().start().run([2.0])
 
 
 def test_a_restored_ending_is_still_an_ending_in_any_instance(wheel):
     w, other = wheel().start(**DROP), wheel().start()
     assert w.step_to(0.5) == OK
+    assert (w.status(DO_STEP_STATUS), w.status(LAST_SUCCESSFUL_TIME), w.status(TERMINATED)) == (OK, 0.5, 0)
     before = w.serialized()
     assert w.step(10.0) == DISCARD
-    ended, end = w.serialized(), w.status(LAST_SUCCESSFUL_TIME)
+    ended, end, bits = w.serialized(), w.status(LAST_SUCCESSFUL_TIME), w.bits()
     assert other.restore(ended) == OK
     other.time = end
     other.take_messages()
-    assert (other.step(0.0), other.status(TERMINATED)) == (ERROR, 1)
+    assert (other.bits(), other.step(0.0), other.status(TERMINATED)) == (bits, ERROR, 1)
     assert "fell flat" in other.take_messages()[0].text
     assert other.restore(before) == OK  # the partner: a state from before leads on, to the same end
     other.time = 0.5
     assert (other.status(TERMINATED), other.step(0.0), other.step(0.05)) == (0, OK, OK)
-    assert (other.step(1.0), other.status(LAST_SUCCESSFUL_TIME)) == (DISCARD, end)
+    assert (other.step(1.0), other.status(LAST_SUCCESSFUL_TIME), other.bits()) == (DISCARD, end, bits)
 
 
 def test_times_in_messages_have_the_digits_they_need(wheel):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from support.driver import DISCARD, ERROR, OK
+from support.driver import ERROR, OK
 from support.scenes import KINDS
 
 from contract.call_states import STATES, TABLE, bring_to, call
@@ -95,15 +95,3 @@ def test_after_an_error_a_snapshot_or_a_reset_brings_the_instance_back(wheel):
     assert w.restore(good) == OK
     w.time = 0.5
     assert w.run([0.6, 1.0]) == ahead
-
-
-def test_after_a_discard_only_a_snapshot_or_a_reset_leads_on(wheel):
-    w = wheel().start(theta_start=1.3, phi_dot_start=0.0)
-    assert w.step_to(0.2) == OK
-    before = w.serialized()
-    assert (w.step_to(5.0), w.step_to(0.3)) == (DISCARD, ERROR)
-    assert w.restore(before) == OK
-    assert w.step_to(0.3) == OK
-    assert w.step_to(5.0) == DISCARD
-    assert (w.terminate(), w.reset()) == (OK, OK)
-    assert w.start().step_to(5.0) == OK

@@ -75,22 +75,6 @@ def test_a_polynomial_that_goes_on_is_no_restart_and_a_jump_is_one(wheel):
     assert held.get("n_restarts")[0] >= 19  # the first value is that of the start
 
 
-def test_a_smooth_input_with_its_derivatives_is_followed_to_the_tolerance(wheel):
-    """0.3 N m sin(2 t) on the free wheel for 2 s: theta after steps of 10 ms against steps of 2.5 ms."""
-
-    def theta(step: float, orders: int) -> float:
-        w = wheel().start()
-        for k in range(round(2 / step)):
-            sine = [0.3 * 2.0**n * np.sin(2 * step * k + n * np.pi / 2) for n in range(orders)]
-            give(w, "M_3", sine)
-            assert w.step_to(step * (k + 1)) == OK
-        return w.get("theta")[0]
-
-    fine = theta(0.0025, 4)
-    within(abs(theta(0.01, 4) - fine), 7e-10, "theta")  # rad
-    beyond(abs(theta(0.01, 1) - fine), 1e-5, "theta")  # held over each step
-
-
 def test_derivatives_hold_for_one_step_and_the_value_stays_where_it_arrived(wheel):
     w = wheel().start(tolerance=1e-12, **UPRIGHT)
     give(w, "M_3", [1.0, 2.0])

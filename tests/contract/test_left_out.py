@@ -10,10 +10,9 @@ from math import pi
 
 import numpy as np
 import pytest
-from fmpy import simulate_fmu
 from support.bounds import within
+from support.driver import COUNTERS, OK
 
-COUNTERS = ("n_steps", "n_rhs", "n_jac", "n_roots", "n_events", "n_restarts")
 WITHOUT_FRICTION = {
     "free": {},
     "fast spin": {"phi_dot_start": -60.0},
@@ -21,38 +20,22 @@ WITHOUT_FRICTION = {
     "general inertia": {"J_x": 0.7, "J_y": 1.2},
 }
 REGULARIZED = {"s": 0.03, "friction_law": 2}
-SMOOTH = {
-    **WITHOUT_FRICTION,
-    "regularized": REGULARIZED,
-}
+SMOOTH = {**WITHOUT_FRICTION, "regularized": REGULARIZED}
 SCENES = {**SMOOTH, "regularized, stiff": {**REGULARIZED, "omega_s": 1e-6}, "friction": {"s": 0.03}}
 
 
-@pytest.fixture(scope="session")
-def counters(fmu: str, description):
-    """counters(step, stop, output, input, **start values) -> the counters at the stop time."""
+@pytest.fixture
+def counters(wheel):
+    """counters(step, stop, read, **start values) -> the counters at the stop time; `read`: at each step."""
 
-    def run(step: float = 0.1, stop: float = 2.0, output: tuple[str, ...] = (), input=None, **values) -> dict[str, int]:
-        result = simulate_fmu(
-            fmu,
-            model_description=description,
-            output_interval=step,
-            stop_time=stop,
-            start_values=values,
-            output=[*output, *COUNTERS],
-            input=input,
-        )
-        assert result["time"][-1] == pytest.approx(stop), "the run ended early"
-        return {name: int(result[name][-1]) for name in COUNTERS}
+    def run(step: float = 0.1, stop: float = 2.0, read: tuple[str, ...] = (), **values) -> dict[str, float]:
+        w = wheel().start(**values)
+        for t in np.arange(1, round(stop / step) + 1) * step:
+            assert w.step_to(t) == OK
+            w.get(*read)
+        return dict(zip(COUNTERS, w.get(*COUNTERS), strict=True))
 
     return run
-
-
-def force(values: list[float], stop: float = 2.0) -> np.ndarray:
-    """F_X, constant between equally spaced jumps: two rows at each jump."""
-    times = np.linspace(0, stop, len(values) + 1)
-    rows = [(t, f) for i, f in enumerate(values) for t in (times[i], times[i + 1])]
-    return np.array(rows, dtype=[("time", float), ("F_X", float)])
 
 
 @pytest.mark.parametrize("scene", SMOOTH)
@@ -87,7 +70,7 @@ def test_friction_does_cost_evaluations(counters):
 def test_reading_every_output_costs_no_evaluation(counters, description, scene):
     outputs = tuple(v.name for v in description.modelVariables if v.causality == "output")
     assert {"theta", "lambda_3", "X_C", "tau"} <= set(outputs)
-    assert counters(output=(*outputs, "E", "mu_required"), **SCENES[scene]) == counters(**SCENES[scene])
+    assert counters(read=(*outputs, "E", "mu_required"), **SCENES[scene]) == counters(**SCENES[scene])
 
 
 @pytest.mark.parametrize("scene", [name for name in SCENES if name != "regularized, stiff"])
@@ -100,20 +83,6 @@ def test_only_a_stiff_scene_gets_jacobians_by_itself(counters):
     with_jacobian = [name for name in SCENES if counters(**SCENES[name])["n_jac"] > 0]
     assert set(with_jacobian) <= {"regularized", "regularized, stiff"}
     assert "regularized, stiff" in with_jacobian
-
-
-def test_an_input_set_to_the_value_it_has_costs_nothing(counters):
-    assert counters(step=0.01, input=force([0.0])) == counters(step=0.01)
-
-
-def test_a_constant_force_set_again_at_each_step_restarts_nothing(counters):
-    assert counters(step=0.01, input=force([0.5]))["n_restarts"] == 0
-
-
-def test_each_jump_of_an_input_is_one_restart(counters):
-    steady, jumping = counters(input=force([0.5])), counters(input=force([0.5, 1.0, 0.5, 1.0]))
-    assert jumping["n_restarts"] - steady["n_restarts"] == 3
-    assert jumping["n_rhs"] > steady["n_rhs"]
 
 
 @pytest.mark.parametrize("moments", [{"J_x": 0.7, "J_y": 1.2}, {"J_x": 0.9, "J_y": 0.9}], ids=["any J", "J_x = J_y"])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2String
 from support.bounds import within
-from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, WARNING
+from support.driver import DISCARD, ERROR, OK
 
 from contract.call_states import STATES, TABLE, bring_to, call
 
@@ -84,19 +84,6 @@ def test_percent_and_hash_signs_are_doubled_and_texts_stay_short_and_without_new
     assert long.text.replace("##", "").replace("%%", "").startswith("fmi2SetDebugLogging: there is no category ")
     assert "#" not in long.text.replace("##", "") and "%" not in long.text.replace("%%", "")
     assert not long.text.endswith("\n")
-
-
-def test_the_end_of_a_run_is_told_in_one_sentence_with_its_instant(wheel):
-    flat = wheel().start(theta_start=float(np.radians(75)), phi_dot_start=0.0)
-    assert flat.step(10.0) == DISCARD
-    (message,) = flat.take_messages()
-    # Warning: at their default level many masters hide messages of the status Discard.
-    assert (message.status, message.category) == (WARNING, "logStatusDiscard")
-    assert message.text == f"The wheel fell flat at t = {flat.status(LAST_SUCCESSFUL_TIME)!r} s: the model ends there."
-    lifted = wheel().start(F_Z=250.0)
-    assert lifted.step(10.0) == DISCARD
-    (message,) = lifted.take_messages()
-    assert re.match(r"The wheel lifted off the ground at t = 0 s[,:] ", message.text)
 
 
 def test_a_logger_that_calls_back_is_answered_with_an_error_and_nothing_hangs(wheel):

@@ -6,7 +6,7 @@ from ctypes import byref
 
 import numpy as np
 import pytest
-from support.driver import DISCARD, ERROR, OK, FMU2Wheel
+from support.driver import ERROR, OK, FMU2Wheel
 from support.scenes import KINDS
 
 from contract.call_states import STATES, bring_to
@@ -146,21 +146,6 @@ def test_a_brake_whose_derivative_carried_it_below_zero_is_released_and_its_stat
     other.time = w.time
     assert w.step(0.5) == other.step(0.5) == OK
     assert w.bits() == other.bits()
-
-
-def test_a_snapshot_before_the_end_of_a_run_leads_back_into_it(wheel):
-    w = wheel().start(theta_start=1.3, phi_dot_start=0.0)
-    before = w.serialized()
-    assert w.step_to(0.5) == OK
-    ahead, at_half = w.bits(), w.serialized()
-    assert w.step_to(1.0) == DISCARD
-    flat, at_end = w.bits(), w.serialized()
-    for blob, bits, t in ((at_half, ahead, 0.5), (at_end, flat, 1.0), (before, None, 0.0)):
-        assert w.restore(blob) == OK
-        w.time = t
-        assert bits is None or w.bits() == bits
-    assert w.step_to(0.5) == OK and w.bits() == ahead
-    assert w.restore(at_end) == OK and w.step(0.1) == ERROR
 
 
 @pytest.mark.parametrize("state", STATES)

@@ -12,20 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2FMUstate
-from support.driver import ERROR, OK, FMU2Wheel
+from support.driver import ERROR, OK
 from support.scenes import KINDS
 
 from contract.elsewhere import continue_run
 
 contract = pytest.mark.contract
-
-
-def deserialize(w: FMU2Wheel, blob: bytes, size: int | None = None) -> int:
-    state = fmi2FMUstate()
-    status = w.fmi2DeSerializeFMUstate(w.component, create_string_buffer(blob, len(blob) + 1), size or len(blob), state)
-    assert bool(state) == (status == OK)
-    w.fmi2FreeFMUstate(w.component, byref(state))
-    return status
 
 
 @contract
@@ -34,7 +26,7 @@ def test_a_blob_with_any_one_bit_flipped_is_refused_and_the_instance_is_untouche
     w.run([1.3])
     other.run([1.3])
     blob = w.serialized()
-    assert deserialize(w, blob) == OK
+    assert w.restore(blob) == OK
     rng = np.random.default_rng(2)
     for k in range(len(blob)):
         damaged = bytearray(blob)
@@ -51,7 +43,7 @@ def test_a_blob_with_any_one_bit_flipped_is_refused_and_the_instance_is_untouche
 def test_truncated_prolonged_and_foreign_blobs_are_refused(wheel):
     w = wheel().start()
     blob = w.serialized()
-    assert deserialize(w, blob) == OK
+    assert w.restore(blob) == OK
     for size in range(1, len(blob)):
         assert w.restore(blob[:size]) == ERROR
     assert w.restore(b"") == ERROR

@@ -120,14 +120,6 @@ def test_times_that_make_no_sense_are_refused_and_nothing_changes(wheel, t, h, w
     assert w.fmi2DoStep(w.component, 1.0 + 1e-14, 0.1, 1) == OK  # the partner: rounding is no fault
 
 
-def test_without_friction_there_are_no_events_and_no_restarts(wheel):
-    free, friction = wheel().start(), wheel().start(s=0.03)
-    free.run([10.0])
-    friction.run([10.0])
-    assert free.get("n_roots", "n_events", "n_restarts", "n_jac") == [0, 0, 0, 0]
-    assert friction.get("n_events", "n_restarts") == [37, 37] and friction.get("n_roots")[0] > 37
-
-
 def test_an_input_rewritten_at_its_value_is_no_restart_and_changes_no_bit(wheel):
     rewritten, once, jumping = (wheel().start(F_Y=4.0) for _ in range(3))
     for t in np.arange(1, 101) * 0.03125:

@@ -129,22 +129,6 @@ def test_a_value_out_of_bounds_is_discarded_while_running_and_the_old_one_stays(
     assert w.set(s=0.0) == OK and w.run([1.0]) != wheel().start(s=0.03, F_X=2.0).run([0.5, 1.0])[1:]
 
 
-def test_what_is_read_and_in_which_order_changes_no_bit(wheel, description):
-    names = [v.name for v in description.modelVariables]
-    rng = np.random.default_rng(5)
-    for scene in ({"s": 0.03}, {"J_x": 0.8, "J_y": 1.0}):
-        silent, curious = wheel().start(**scene), wheel().start(**scene)
-        for t in np.arange(1, 41) / 8:
-            assert (silent.step_to(t), curious.step_to(t)) == (OK, OK)
-            for order in (names, names[::-1], list(rng.permutation(names))):
-                curious.get(*order[: rng.integers(1, len(order))])
-                curious.read(curious.reals[::-1])
-        assert silent.bits() == curious.bits()
-        assert silent.get(*names) == curious.get(*names[::-1])[::-1]
-        # The partner: the smallest change of the tolerance shows.
-        assert silent.bits() != wheel().start(tolerance=1.0000001e-8, **scene).run([5.0])[0]
-
-
 def test_the_friction_is_tunable_and_acts_from_the_present_instant_on(wheel):
     w, untouched, sandy = (wheel().start() for _ in range(3))
     assert w.run([1.0]) == untouched.run([1.0])

@@ -210,6 +210,7 @@ class FMU2Wheel(FMU2Slave):
         """Puts the instance into a serialized state; the status of reading the bytes, or else of setting the state."""
         state = fmi2FMUstate()
         status = self.fmi2DeSerializeFMUstate(self.component, create_string_buffer(blob, len(blob)), len(blob), state)
+        assert bool(state) == (status == OK)
         if status != OK:
             return status
         status = self.fmi2SetFMUstate(self.component, state)
