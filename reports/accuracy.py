@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pandas as pd
-from equations import test_equations as pointwise
+from equations import pointwise
 from physics.cases import CASES, error, expected, transitions_gap
 from physics.exact_motions import UPRIGHT, circle_error, fall_error, lift_off_error, straight_error
 from physics.leaning import TORUS, measured_critical_spin
@@ -168,7 +168,7 @@ def equations(report: Report) -> None:
     for name, kind in eq.LAWS.items():
         for words, symmetric in (("J_x = J_y", True), ("any J", False)):
             drawn, motions = pointwise.draw(6, kind, symmetric=symmetric)
-            pair = [pointwise.answer(f, drawn, motions) for f in (eq.REDUCED, eq.MULTIBODY)]
+            pair = [pointwise.dynamics(f, drawn, motions) for f in (eq.REDUCED, eq.MULTIBODY)]
             rows[f"reduced − multibody, {words}", name] = pointwise.distance(*pair, drawn)
         apart = pointwise.distance(pair[1], pointwise.referenced(drawn, motions), drawn)
         rows["multibody − reference, any J", name] = apart

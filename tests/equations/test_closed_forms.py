@@ -7,18 +7,18 @@ random wheels each. Carrier axes e1 (rolling), e2 (up the slope), e3 (axle); fix
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from support import equations as eq
 from support.bounds import beyond, within
+from support.closed_forms import circle_spin, rolling_inertia
 
 from equations import random_scenes
+from equations.pointwise import BOTH, Table, dynamics
 
 ROWS = 1000
 BOUND = 1e-11
-FORMULATIONS = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
 
 
-def still(kind: int, seed: int = 11) -> tuple[np.ndarray, np.ndarray]:
+def still(kind: int, seed: int = 11) -> tuple[Table, Table]:
     """Random wheels with J_x = J_y, no load, all rates zero."""
     random = np.random.default_rng(seed)
     scenes = random_scenes.scenes(random, kind, rows=ROWS)
@@ -31,25 +31,23 @@ def still(kind: int, seed: int = 11) -> tuple[np.ndarray, np.ndarray]:
     return scenes, motions
 
 
-def dynamics(formulation: eq.Formulation, scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    return eq.dynamics_each(formulation, scenes, eq.start_each(formulation, scenes, motions))
-
-
-def error(found: np.ndarray, exact: np.ndarray, size: np.ndarray | float = 1) -> float:
+def error(found: Table, exact: Table, size: Table | float = 1) -> float:
     return float((np.abs(found - exact) / size).max())
 
 
-def weight(scenes: np.ndarray) -> np.ndarray:
+def constants(scenes: Table, **changes: float) -> np.recarray:
+    """The wheels with their constants as attributes, as closed_forms.py reads them."""
+    wheels = scenes["wheel"].copy()
+    for name, value in changes.items():
+        wheels[name] = value
+    return wheels.view(np.recarray)
+
+
+def weight(scenes: Table) -> Table:
     return scenes["wheel"]["m"] * scenes["wheel"]["g"]
 
 
-def rolling_inertia(scenes: np.ndarray, tube: float = 1) -> np.ndarray:
-    """J_z + m (r_0 + r)^2: about the contact, upright."""
-    w = scenes["wheel"]
-    return w["J_z"] + w["m"] * (w["r_0"] + tube * w["r"]) ** 2
-
-
-@FORMULATIONS
+@BOTH
 def test_upright_straight_rolling_slows_down_linearly_under_friction(
     formulation: eq.Formulation,
 ) -> None:
@@ -57,8 +55,8 @@ def test_upright_straight_rolling_slows_down_linearly_under_friction(
     sigma = scenes["friction"]["sigma"]
     motions["theta"], motions["phi_dot"] = np.pi / 2, 3 * sigma
     d = dynamics(formulation, scenes, motions)
-    slowing = -sigma * scenes["wheel"]["s"] * weight(scenes) / rolling_inertia(scenes)
-    thin = -sigma * scenes["wheel"]["s"] * weight(scenes) / rolling_inertia(scenes, tube=0)
+    slowing = -sigma * scenes["wheel"]["s"] * weight(scenes) / rolling_inertia(constants(scenes))
+    thin = -sigma * scenes["wheel"]["s"] * weight(scenes) / rolling_inertia(constants(scenes, r=0))
     size = np.abs(slowing)
     within(error(d["omega_z_dot"], slowing, size), BOUND, "omega_z_dot")
     beyond(error(d["omega_z_dot"], -slowing, size), 1.9, "omega_z_dot")  # wrong sign of the friction
@@ -67,7 +65,7 @@ def test_upright_straight_rolling_slows_down_linearly_under_friction(
     within(error(eq.columns(d, "theta_ddot", "psi_ddot"), np.zeros((ROWS, 2))), 2e-13, "error")
 
 
-@FORMULATIONS
+@BOTH
 def test_an_upright_wheel_answers_a_drive_torque_and_a_push_as_a_roller(
     formulation: eq.Formulation,
 ) -> None:
@@ -77,13 +75,13 @@ def test_an_upright_wheel_answers_a_drive_torque_and_a_push_as_a_roller(
     radius = scenes["wheel"]["r_0"] + scenes["wheel"]["r"]
     scenes["load"]["M"][:, 2], scenes["load"]["F"][:, 0] = torque, push
     d = dynamics(formulation, scenes, motions)
-    spin_up = (torque - radius * push) / rolling_inertia(scenes)
+    spin_up = (torque - radius * push) / rolling_inertia(constants(scenes))
     within(error(d["omega_z_dot"], spin_up, np.abs(spin_up)), 2e-13, "omega_z_dot")
     within(error(d["X_O_ddot"], -radius * spin_up, np.abs(radius * spin_up)), 2e-14, "X_O_ddot")
-    beyond(error(d["omega_z_dot"], spin_up + 2 * radius * push / rolling_inertia(scenes)), 7, "omega_z_dot")
+    beyond(error(d["omega_z_dot"], spin_up + 2 * radius * push / rolling_inertia(constants(scenes))), 7, "omega_z_dot")
 
 
-@FORMULATIONS
+@BOTH
 def test_a_held_upright_wheel_is_held_by_the_moment_that_balances_drive_and_push(
     formulation: eq.Formulation,
 ) -> None:
@@ -99,7 +97,7 @@ def test_a_held_upright_wheel_is_held_by_the_moment_that_balances_drive_and_push
     within(error(d["X_O_ddot"], np.zeros(ROWS)), 4e-13, "X_O_ddot")
 
 
-@FORMULATIONS
+@BOTH
 def test_a_wheel_released_from_rest_tips_about_its_contact(formulation: eq.Formulation) -> None:
     scenes, motions = still(eq.HELD)
     w = scenes["wheel"]
@@ -112,31 +110,18 @@ def test_a_wheel_released_from_rest_tips_about_its_contact(formulation: eq.Formu
     beyond(error(d["theta_ddot"], tipping * (1 + w["r"] / w["r_0"] * s), size), 0.01, "theta_ddot")  # r counts
 
 
-def steady_spin(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    """omega_z of the steady circle at (theta, psi_dot); r = 0 leaves the textbook's
-
-    (J_z + m a^2) omega_z psi_dot sin - J_x psi_dot^2 sin cos + m g a cos = 0, a = r_0.
-    """
-    w, turn = scenes["wheel"], motions["psi_dot"]
-    s, c = np.sin(motions["theta"]), np.cos(motions["theta"])
-    rho, eta = w["r_0"] + w["r"] * s, w["r"] * c
-    level = rho * s + eta * c  # height of O
-    known = (w["J_x"] * c + w["m"] * eta * level) * turn**2 * s - weight(scenes) * w["r_0"] * c
-    return known / (turn * (w["J_z"] * s + w["m"] * rho * level))
-
-
-def circling(kind: int, thin: bool) -> tuple[np.ndarray, np.ndarray]:
+def circling(kind: int, thin: bool) -> tuple[Table, Table]:
     scenes, motions = still(kind)
     if thin:
         scenes["wheel"]["r"] = 0
     random = np.random.default_rng(12)
     motions["psi_dot"] = random.choice([-1, 1], ROWS) * random.uniform(0.5, 5, ROWS)
-    spin = steady_spin(scenes, motions)
+    spin = circle_spin(constants(scenes), motions["theta"], motions["psi_dot"])
     motions["phi_dot"] = spin - motions["psi_dot"] * np.cos(motions["theta"])
     return scenes, motions
 
 
-@FORMULATIONS
+@BOTH
 def test_the_textbooks_steady_circle_of_the_thin_disc_is_steady(
     formulation: eq.Formulation,
 ) -> None:
@@ -152,7 +137,7 @@ def test_the_textbooks_steady_circle_of_the_thin_disc_is_steady(
     beyond(unsteadiness(formulation, scenes, motions), 1e-6, "unsteadiness")
 
 
-@FORMULATIONS
+@BOTH
 def test_the_torus_circles_steadily_with_friction_balanced_by_the_drive(
     formulation: eq.Formulation,
 ) -> None:
@@ -164,7 +149,7 @@ def test_the_torus_circles_steadily_with_friction_balanced_by_the_drive(
     beyond(unsteadiness(formulation, scenes, motions), 0.1, "unsteadiness")  # friction drives
 
 
-def unsteadiness(formulation: eq.Formulation, scenes: np.ndarray, motions: np.ndarray) -> float:
+def unsteadiness(formulation: eq.Formulation, scenes: Table, motions: Table) -> float:
     """How far from: no angular acceleration, N = m g, ground pulls inwards by m v psi_dot."""
     d = dynamics(formulation, scenes, motions)
     k = eq.kinematics_each(formulation, scenes, eq.start_each(formulation, scenes, motions))

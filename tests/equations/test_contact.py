@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ctypes import byref, c_double
+from ctypes import byref
 
 import numpy as np
 from support import equations as eq
-from support.bounds import absolute_error, beyond, relative_error, within
+from support.bounds import beyond, relative_error, within
 
 from equations import random_scenes
 from equations.paper_transcription import Paper, times
@@ -69,16 +69,6 @@ def test_the_velocity_of_the_contact_is_the_slope_of_its_place() -> None:
     beyond(np.abs(contacts(scenes, k)[:, 2:] - slope).max() / speed, 5e-5, "contacts")
 
 
-def test_an_upright_wheel_touches_below_its_centre() -> None:
-    wheel, motion = eq.paper_wheel(), eq.Motion(0.4, np.pi / 2, 0, 0, 0, -2, 3, 4)
-    k = eq.kinematics(eq.REDUCED, wheel, eq.start(eq.REDUCED, wheel, motion))
-    found = eq.values(eq.LIBRARY.wheel_contact(byref(wheel), byref(k)))
-    within(absolute_error(found, [3, 4, 0.7 * np.cos(0.4), 0.7 * np.sin(0.4)]), 1e-15, "difference")
-    leaning = eq.Motion(0.4, 1.3, 0, 0, 0, -2, 3, 4)
-    k = eq.kinematics(eq.REDUCED, wheel, eq.start(eq.REDUCED, wheel, leaning))
-    beyond(abs(eq.LIBRARY.wheel_contact(byref(wheel), byref(k)).X_C - 3), 0.01, "wheel contact")
-
-
 def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
     scenes, k, d = rolling()
     e1 = np.column_stack([np.cos(k["psi"]), np.sin(k["psi"]), np.zeros(ROWS)])
@@ -106,14 +96,3 @@ def test_the_rates_of_the_force_in_wheel_axes_know_that_the_axes_turn() -> None:
     size = np.abs(slope).max()
     within(np.abs(found - slope).max() / size, 1e-9, "relative error")
     beyond(np.abs(horizontal(k, lambda_dot) - slope).max() / size, 0.1, "horizontal")  # axes that stand still
-
-
-def test_an_upright_driven_wheel_pushes_along_e1_only() -> None:
-    wheel = eq.paper_wheel()
-    scene = eq.scene(wheel, moment=(0, 0, -30))
-    y = eq.start(eq.REDUCED, wheel, eq.Motion(0.7, np.pi / 2, 0, 0, 0, -2, 0, 0))
-    k, d, force = eq.kinematics(eq.REDUCED, wheel, y), eq.dynamics(eq.REDUCED, scene, y), (c_double * 2)()
-    eq.LIBRARY.wheel_horizontal_force(byref(k), (c_double * 3)(*d.lambda_), force)
-    traction = 30 * 0.35 * wheel.m / (wheel.J_z + wheel.m * 0.35**2)
-    within(absolute_error(list(force), [traction, 0]), 2e-13, "force")
-    beyond(abs(d.lambda_[0] - traction), 1, "traction")  # in fixed axes it is not along X

@@ -2,76 +2,41 @@
 
 Pointwise, at ten thousand random states each: wheels, motions and loads of random_scenes.py. The
 numpy transcription of the paper and the rotation-matrix reference under reference/ judge the
-product. Errors are relative to the largest entry of their group: accelerations of O, of the angles
-and the axle, reactions.
+product.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from reference.model import Wheel
-from reference.motion import accelerations
 from support import equations as eq
 from support.bounds import beyond, within
 
-from equations import random_scenes
 from equations.multibody_transcription import omega_z_dot, papers_state, solved
 from equations.paper_transcription import Paper
-
-GROUPS = (
-    ("X_O_ddot", "Y_O_ddot", "Z_O_ddot"),
-    ("psi_ddot", "theta_ddot", "phi_ddot", "omega_z_dot"),
-    ("lambda_",),
-)
-ACCELERATIONS = (*GROUPS[0], *GROUPS[1][:3])
-each_kind = pytest.mark.parametrize("kind", eq.LAWS.values(), ids=eq.LAWS.keys())
+from equations.pointwise import ACCELERATIONS, INERTIA, LAWS, distance, draw, dynamics, referenced, relative
 
 
-def draw(seed: int, kind: int | None = None, symmetric: bool = True) -> tuple[np.ndarray, np.ndarray]:
-    random = np.random.default_rng(seed)
-    return random_scenes.scenes(random, kind, symmetric), random_scenes.motions(random)
-
-
-def answer(formulation: eq.Formulation, scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    return eq.dynamics_each(formulation, scenes, eq.start_each(formulation, scenes, motions))
-
-
-def relative(a: np.ndarray, b: np.ndarray) -> float:
-    """Largest error over the rows, each relative to the row's largest entry."""
-    size = np.abs(b).max(axis=1)
-    return float((np.abs(a - b).max(axis=1) / np.where(size > 0, size, 1)).max())
-
-
-def distance(a: np.ndarray, b: np.ndarray, scenes: np.ndarray) -> float:
-    """Largest relative error over all groups of WheelDynamics; tau is measured by r_0 lambda."""
-    errors = [relative(eq.columns(a, *names), eq.columns(b, *names)) for names in GROUPS]
-    force = scenes["wheel"]["r_0"] * np.abs(b["lambda_"]).max(axis=1)
-    errors.append(float((np.abs(a["tau"] - b["tau"]) / (force + np.abs(b["tau"]))).max()))
-    return max(errors)
-
-
-@each_kind
-def test_reduced_and_multibody_give_the_same_accelerations_and_reactions(kind: int) -> None:
-    scenes, motions = draw(1, kind)
-    multibody = answer(eq.MULTIBODY, scenes, motions)
-    reduced = answer(eq.REDUCED, scenes, motions)
+@LAWS
+@INERTIA
+def test_reduced_and_multibody_give_the_same_accelerations_and_reactions(law: int, symmetric: bool) -> None:
+    scenes, motions = draw(1, law, symmetric)
+    multibody = dynamics(eq.MULTIBODY, scenes, motions)
+    reduced = dynamics(eq.REDUCED, scenes, motions)
     within(distance(reduced, multibody, scenes), 9e-13, "distance")
     scenes["wheel"]["J_x"] *= 1 + 1e-9
-    disturbed = answer(eq.REDUCED, scenes, motions)
+    disturbed = dynamics(eq.REDUCED, scenes, motions)
     beyond(distance(disturbed, multibody, scenes), 5e-9, "distance")
 
 
 def test_the_random_states_include_both_signs_of_the_normal_force() -> None:
     scenes, motions = draw(1, eq.ROLLING)
-    dynamics = answer(eq.MULTIBODY, scenes, motions)
-    pulls = dynamics["lambda_"][:, 2] <= 0
+    found = dynamics(eq.MULTIBODY, scenes, motions)
+    pulls = found["lambda_"][:, 2] <= 0
     within(abs(pulls.mean() - 0.5), 0.3, "pulls")
     braked = -scenes["friction"]["sigma"] * scenes["load"]["brake"]
-    assert (dynamics["tau"][pulls] == braked[pulls]).all()  # no pressure, no friction but the brake's
-    assert (dynamics["tau"][~pulls] != braked[~pulls]).all()
+    assert (found["tau"][pulls] == braked[pulls]).all()  # no pressure, no friction but the brake's
+    assert (found["tau"][~pulls] != braked[~pulls]).all()
     within(abs((braked[pulls] != 0).mean() - 0.45), 0.15, "braked")
 
 
@@ -120,20 +85,20 @@ def test_the_euler_form_reads_its_state_back_to_the_bit_and_moves_as_the_reduced
         within(relative(a, b), 1e-9, "rates")  # differences of fourth order, at states that differ by rounding
 
 
-@each_kind
-def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(kind: int) -> None:
-    scenes, motions = draw(3, kind)
+@LAWS
+def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(law: int) -> None:
+    scenes, motions = draw(3, law)
     forms = ((eq.REDUCED, reduced_rates), (eq.EULER, euler_rates), (eq.MULTIBODY, multibody_rates))
     for formulation, rates in forms:
         y = eq.start_each(formulation, scenes, motions)
         y_dot, normal = eq.derivative_each(formulation, scenes, y)
         k = eq.kinematics_each(formulation, scenes, y)
-        dynamics = eq.dynamics_each(formulation, scenes, y)
-        stated = rates(k, dynamics)
+        found = eq.dynamics_each(formulation, scenes, y)
+        stated = rates(k, found)
         exact = 6 if formulation is eq.MULTIBODY else 8  # multibody: the height drawn by rounding, else copies
         within(relative(y_dot[:, :exact], stated[:, :exact]), 2e-14, "relative difference")
         beyond(relative(y_dot, stated * np.where(np.arange(y.shape[1]) == 0, 1.001, 1)), 8e-5, "relative difference")
-        force = dynamics["lambda_"]
+        force = found["lambda_"]
         if formulation is not eq.MULTIBODY:
             assert (normal == force[:, 2]).all()
         # multibody: two solutions of (24), stabilised and pure, each with rounding of its own
@@ -181,9 +146,9 @@ def transcribed(scenes: np.ndarray, y: np.ndarray) -> np.ndarray:
     return out
 
 
-@each_kind
-def test_multibody_solves_the_papers_system_24_for_any_inertia(kind: int) -> None:
-    scenes, motions = draw(5, kind, symmetric=False)
+@LAWS
+def test_multibody_solves_the_papers_system_24_for_any_inertia(law: int) -> None:
+    scenes, motions = draw(5, law, symmetric=False)
     y = eq.start_each(eq.MULTIBODY, scenes, motions)
     multibody = eq.dynamics_each(eq.MULTIBODY, scenes, y)
     within(distance(multibody, transcribed(scenes, y), scenes), 9e-13, "distance")
@@ -191,45 +156,16 @@ def test_multibody_solves_the_papers_system_24_for_any_inertia(kind: int) -> Non
     beyond(distance(multibody, transcribed(scenes, y), scenes), 3e-9, "distance")
 
 
-def reference_wheel(wheel: np.ndarray) -> Wheel:
-    """One row of constants, its gravity as slope and direction."""
-    *constants, g, s, g_X, g_Y = wheel.tolist()
-    along = np.hypot(g_X, g_Y)
-    return Wheel(*constants, np.hypot(g, along), s, np.arctan2(along, g), np.arctan2(-g_Y, -g_X))
-
-
-def referenced(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    """WheelDynamics from the reference; without pressure there is no friction but the brake's."""
-    out = eq.table(eq.Dynamics, len(scenes))
-    y = eq.start_each(eq.MULTIBODY, scenes, motions)
-    omega_z = eq.kinematics_each(eq.MULTIBODY, scenes, y)["omega_z"]
-    for row, scene, motion, spin in zip(out, scenes, motions, omega_z.tolist(), strict=True):
-        wheel, friction = reference_wheel(scene["wheel"]), scene["friction"]
-        sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])][friction["kind"] - eq.FRICTIONLESS]
-        angles, rates = motion.tolist()[:3], motion.tolist()[3:6]
-        *loads, brake = scene["load"].tolist()
-        found = accelerations(wheel, angles, rates, *loads, sigma, brake)
-        if friction["kind"] in (eq.ROLLING, eq.REGULARIZED) and found.lambda_3 <= 0:
-            found = accelerations(replace(wheel, s=0.0), angles, rates, *loads, sigma, brake)
-        for name in (*ACCELERATIONS, "tau"):
-            row[name] = getattr(found, name)
-        row["lambda_"] = found.lambda_1, found.lambda_2, found.lambda_3
-    s, c = np.sin(motions["theta"]), np.cos(motions["theta"])
-    turning = out["psi_ddot"] * c - motions["psi_dot"] * motions["theta_dot"] * s
-    out["omega_z_dot"] = out["phi_ddot"] + turning
-    return out
-
-
-@pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
+@INERTIA
 def test_both_formulations_agree_with_the_independent_reference(symmetric: bool) -> None:
     scenes, motions = draw(6, symmetric=symmetric)
     reference = referenced(scenes, motions)
     for formulation in (eq.REDUCED, eq.MULTIBODY):
-        found = answer(formulation, scenes, motions)
+        found = dynamics(formulation, scenes, motions)
         within(distance(found, reference, scenes), 2e-12, "distance")
         disturbed = scenes.copy()
         disturbed["wheel"]["J_z"] *= 1 + 1e-9
-        found = answer(formulation, disturbed, motions)
+        found = dynamics(formulation, disturbed, motions)
         beyond(distance(found, reference, scenes), 5e-9, "distance")
 
 

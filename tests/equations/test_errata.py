@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 from scipy.integrate import solve_ivp
 from support import equations as eq
-from support.bounds import beyond, relative_error, within
+from support.bounds import absolute_error, beyond, relative_error, within
 
 from equations.multibody_transcription import papers_state
 from equations.paper_transcription import Paper, paper_table, times, transposed
@@ -32,10 +32,6 @@ def states() -> np.ndarray:
     y = random.normal(0, 2, (1000, 12))
     y[:, THETA] = random.uniform(0.05, np.pi - 0.05, len(y))
     return y
-
-
-def worst(a: np.ndarray, b: np.ndarray) -> float:
-    return float(np.abs(a - b).max())
 
 
 def slope(name: str, angle: int) -> np.ndarray:
@@ -73,31 +69,33 @@ def rolled(end: float, *printed: str) -> tuple[np.ndarray, np.ndarray, np.ndarra
 def test_mended_the_free_wheel_keeps_its_energy_and_stays_on_the_ground() -> None:
     t, y, energy = rolled(10.0)
     assert t[-1] == 10
-    within(worst(energy, ENERGY), 1e-6, "difference")  # J
-    within(worst(y[:, 2], 0.3 * np.sin(y[:, THETA]) + 0.05), 6e-9, "difference, 2")  # m
+    within(absolute_error(energy, ENERGY), 1e-6, "difference")  # J
+    within(absolute_error(y[:, 2], 0.3 * np.sin(y[:, THETA]) + 0.05), 6e-9, "difference, 2")  # m
     beyond(np.degrees(y[:, THETA].min()), 27, "state")
 
 
 def test_printed_U_theta_of_5_is_not_the_generator_of_A_theta() -> None:
     paper = Paper(WHEEL, states(), ["U_theta"])
-    within(worst(Paper(WHEEL, states()).A_theta, slope("A", THETA)), 5e-15, "difference")
-    beyond(worst(paper.A_theta, slope("A", THETA)), 1, "difference")
+    within(absolute_error(Paper(WHEEL, states()).A_theta, slope("A", THETA)), 5e-15, "difference")
+    beyond(absolute_error(paper.A_theta, slope("A", THETA)), 1, "difference")
     spin = transposed(paper.A) @ paper.A_dot
-    beyond(worst(spin, -transposed(spin)), 1, "difference, 2")  # [A]^T[A_dot] is no angular velocity
+    beyond(absolute_error(spin, -transposed(spin)), 1, "difference, 2")  # [A]^T[A_dot] is no angular velocity
 
 
 def test_printed_U_theta_of_5_sinks_the_free_wheel_into_the_ground() -> None:
     t, y, energy = rolled(10.0, "U_theta")
     within(abs(t[-1] - 1.6), 0.1, "instant, s")  # O reaches the ground
-    beyond(worst(y[:, 2], 0.3 * np.sin(y[:, THETA]) + 0.05), 0.2, "difference")
+    beyond(absolute_error(y[:, 2], 0.3 * np.sin(y[:, THETA]) + 0.05), 0.2, "difference")
     within(energy.min(), 20, "energy")
 
 
 def test_printed_Q_theta_of_9_is_not_the_derivative_of_Q() -> None:
-    within(worst(Paper(WHEEL, states()).Q_theta, slope("Q", THETA)), 1e-14, "difference")
+    within(absolute_error(Paper(WHEEL, states()).Q_theta, slope("Q", THETA)), 1e-14, "difference")
     printed = Paper(WHEEL, states(), ["Q_theta"]).Q_theta
     difference = printed - slope("Q", THETA)
-    within(worst(difference[:, 2, 0], np.sin(states()[:, THETA])), 1e-14, "difference, 2")  # there and only there
+    within(
+        absolute_error(difference[:, 2, 0], np.sin(states()[:, THETA])), 1e-14, "difference, 2"
+    )
     difference[:, 2, 0] = 0
     within(np.abs(difference).max(), 5e-15, "difference elsewhere")
 
@@ -114,8 +112,8 @@ def test_printed_sign_of_F_beta_16_turns_eulers_equations_round() -> None:
     mended, printed = Paper(WHEEL, y), Paper(WHEEL, y, ["F_beta"])
     drift = times(mended.J @ mended.Q_dot, mended.beta_dot)
     gyroscopic = drift + np.cross(mended.omega, times(mended.J, mended.omega))
-    within(worst(mended.F_beta, -gyroscopic), 3e-13, "difference")
-    beyond(worst(printed.F_beta, -gyroscopic), 8, "difference")
+    within(absolute_error(mended.F_beta, -gyroscopic), 3e-13, "difference")
+    beyond(absolute_error(printed.F_beta, -gyroscopic), 8, "difference")
 
 
 def test_printed_sign_of_F_beta_16_drives_the_free_wheel_through_the_ground() -> None:
@@ -128,7 +126,7 @@ def test_printed_sign_of_F_beta_16_drives_the_free_wheel_through_the_ground() ->
 
 def test_a_sign_without_the_bracket_of_16_keeps_the_energy_but_not_the_motion() -> None:
     _, y, energy = rolled(0.8, "F_beta_bracket")
-    within(worst(energy, ENERGY), 1e-6, "difference")  # the term at fault does no work
+    within(absolute_error(energy, ENERGY), 1e-6, "difference")  # the term at fault does no work
     within(np.degrees(y[:, THETA].min()), 1, "state")  # degrees
     _, y, _ = rolled(10.0)
     beyond(np.degrees(y[:, THETA].min()), 27, "state")
@@ -146,9 +144,9 @@ def test_16_needs_its_bracket_for_both_terms_to_be_of_one_dimension() -> None:
     (first, second), (first_faster, second_faster) = terms(y), terms(faster)
     assert first.shape[1:] == (3, 3)  # a matrix
     assert second.shape[1:] == (3,)  # plus a column
-    within(worst(first_faster, 3 * first), 9e-14, "difference")  # 1/s
-    within(worst(second_faster, 9 * second), 1e-12, "difference, 2")  # plus 1/s2
-    beyond(worst(first_faster, 9 * first), 4, "difference")
+    within(absolute_error(first_faster, 3 * first), 9e-14, "difference")  # 1/s
+    within(absolute_error(second_faster, 9 * second), 1e-12, "difference, 2")  # plus 1/s2
+    beyond(absolute_error(first_faster, 9 * first), 4, "difference")
 
 
 def test_24_taken_as_printed_for_q_dot_contradicts_the_constraint_19() -> None:
@@ -157,8 +155,8 @@ def test_24_taken_as_printed_for_q_dot_contradicts_the_constraint_19() -> None:
     within(np.abs(times(paper.B, paper.q_dot)).max(), 1e-9, "times")  # the wheel rolls
     beyond(np.abs(times(paper.B_dot, paper.q_dot)).max(), 0.5, "times")  # so [B]{q_dot} != -[B_dot]{q_dot}
     x = paper.solve()[:6]
-    within(worst(times(paper.B, x), -times(paper.B_dot, paper.q_dot)), 9e-15, "difference")
-    beyond(worst(x, paper.q_dot), 1, "difference")
+    within(absolute_error(times(paper.B, x), -times(paper.B_dot, paper.q_dot)), 9e-15, "difference")
+    beyond(absolute_error(x, paper.q_dot), 1, "difference")
 
 
 def test_24_yields_accelerations_by_their_dimension() -> None:
@@ -168,8 +166,8 @@ def test_24_yields_accelerations_by_their_dimension() -> None:
     wheel["g"] *= 9
     fast = Paper(wheel, y).solve()
     size = np.abs(fast).max(axis=1, keepdims=True)
-    within(worst(fast / size, 9 * slow / size), 2e-14, "difference")  # 1/s2: accelerations and forces
-    beyond(worst(fast / size, 3 * slow / size), 0.1, "difference")  # not 1/s
+    within(absolute_error(fast / size, 9 * slow / size), 2e-14, "difference")  # 1/s2: accelerations and forces
+    beyond(absolute_error(fast / size, 3 * slow / size), 0.1, "difference")  # not 1/s
 
 
 def test_the_minus_of_24_belongs_to_B_tilde_alone() -> None:

@@ -5,7 +5,7 @@ Judged by the numpy transcription of the paper's matrices; fixed axes, body axes
 
 from __future__ import annotations
 
-from ctypes import byref, c_double
+from ctypes import c_double
 
 import numpy as np
 import pytest
@@ -137,12 +137,3 @@ def test_residuals_are_the_slip_B_q_dot_and_the_error_in_height() -> None:
     within(np.abs(velocity - slip).max() / slip.max(), 1e-14, "slip")
     assert height == pytest.approx(off, rel=1e-12, abs=1e-14)
     beyond(np.abs(velocity - np.linalg.norm(times(paper.B, paper.q_dot), axis=1)).max(), 0.2, "norm")
-
-
-def test_the_residual_functions_write_both_results() -> None:
-    wheel = eq.paper_wheel()
-    k = eq.Kinematics(theta=np.pi / 2, Z_O=1.35, X_O_dot=2, omega_z=0)
-    velocity, height = c_double(-1), c_double(-1)
-    eq.LIBRARY.wheel_constraint_residuals(byref(wheel), byref(k), byref(velocity), byref(height))
-    assert velocity.value == 2
-    within(relative_error(height.value, 1), 1e-15, "height")

@@ -28,10 +28,6 @@ def states(rows: int = 1000) -> np.ndarray:
     return y
 
 
-def worst(a: np.ndarray, b: np.ndarray) -> float:
-    return float(np.abs(a - b).max())
-
-
 def slope(name: str, direction: np.ndarray) -> np.ndarray:
     """Derivative of a matrix of the paper when the state moves along `direction`."""
     return getattr(Paper(WHEEL, states() + 1j * STEP * direction), name).imag / STEP
@@ -70,44 +66,44 @@ PARTIALS = [
 @pytest.mark.parametrize(("of", "angle", "name"), PARTIALS)
 def test_partial_derivatives_6_9_12_are_those_of_their_matrices(of: str, angle: int, name: str) -> None:
     stated = getattr(Paper(WHEEL, states()), name)
-    within(worst(stated, slope(of, along(angle))), 1e-14, "difference")
+    within(absolute_error(stated, slope(of, along(angle))), 1e-14, "difference")
     other_angle = along(PSI if angle == PHI else PHI)
-    beyond(worst(stated, slope(of, other_angle)), 0.02, "difference")  # the wrong angle
+    beyond(absolute_error(stated, slope(of, other_angle)), 0.02, "difference")  # the wrong angle
 
 
 @pytest.mark.parametrize("name", ["A", "Q", "r", "B"])
 def test_time_derivatives_7_10_13_20_are_those_along_the_motion(name: str) -> None:
     stated = getattr(Paper(WHEEL, states()), f"{name}_dot")
-    within(worst(stated, slope(name, along_the_motion())), 4e-14, "difference")
-    beyond(worst(stated, slope(name, 1.001 * along_the_motion())), 1e-4, "difference")  # rates off by 0.1 %
+    within(absolute_error(stated, slope(name, along_the_motion())), 4e-14, "difference")
+    beyond(absolute_error(stated, slope(name, 1.001 * along_the_motion())), 1e-4, "difference")  # rates off by 0.1 %
 
 
 def test_A_of_4_turns_body_axes_into_fixed_axes_by_z_x_z_angles() -> None:
     y = states()
     angles = y[:, [PSI, THETA, PHI]]
     A = Paper(WHEEL, y).A
-    within(worst(A, Rotation.from_euler("ZXZ", angles).as_matrix()), 7e-15, "difference")
-    beyond(worst(A, Rotation.from_euler("zxz", angles).as_matrix()), 0.1, "difference")  # order reversed
+    within(absolute_error(A, Rotation.from_euler("ZXZ", angles).as_matrix()), 7e-15, "difference")
+    beyond(absolute_error(A, Rotation.from_euler("zxz", angles).as_matrix()), 0.1, "difference")  # order reversed
 
 
 def test_Q_of_8_gives_the_angular_velocity_in_body_axes() -> None:
     paper = Paper(WHEEL, states())
     spin = transposed(paper.A) @ paper.A_dot
-    within(worst(spin, cross_matrix(paper.omega)), 4e-14, "difference")
+    within(absolute_error(spin, cross_matrix(paper.omega)), 4e-14, "difference")
     spin_fixed_axes = paper.A_dot @ transposed(paper.A)
-    beyond(worst(spin_fixed_axes, cross_matrix(paper.omega)), 1, "difference")
+    beyond(absolute_error(spin_fixed_axes, cross_matrix(paper.omega)), 1, "difference")
 
 
 def test_r_of_11_points_to_the_lowest_point_of_the_torus() -> None:
     paper, r_0, r = Paper(WHEEL, states()), WHEEL["r_0"], WHEEL["r"]
-    within(worst(paper.r, cross_matrix(contact(paper))), 1e-14, "difference")  # antisymmetric
+    within(absolute_error(paper.r, cross_matrix(contact(paper))), 1e-14, "difference")  # antisymmetric
     below = times(paper.A, contact(paper))[:, 2]
     around, along_tube = np.meshgrid(*2 * [np.linspace(0, 2 * np.pi, 100)])
     out = r_0 + r * np.cos(along_tube)
     surface = np.stack([out * np.cos(around), out * np.sin(around), r * np.sin(along_tube)], -1)
     lowest = (surface.reshape(-1, 3) @ paper.A[:, 2].T).min(0)
     assert (below <= lowest + 1e-12).all()  # no point of the torus lies lower
-    within(worst(below, lowest), 5e-4, "difference, 2")  # and it is one of them
+    within(absolute_error(below, lowest), 5e-4, "difference, 2")  # and it is one of them
     assert (0.98 * below > lowest).any()  # a point 2 % higher is not the lowest
 
 
@@ -115,21 +111,21 @@ def test_B_of_19_gives_the_velocity_of_the_material_point_at_the_contact() -> No
     y = states()
     paper = Paper(WHEEL, y)
     velocity = y[:, 6:9] + times(paper.A, np.cross(paper.omega, contact(paper)))
-    within(worst(times(paper.B, y[:, 6:]), velocity), 2e-14, "difference")
+    within(absolute_error(times(paper.B, y[:, 6:]), velocity), 2e-14, "difference")
     untransposed = y[:, 6:9] + times(paper.A @ paper.r @ paper.Q, y[:, 9:])
-    beyond(worst(untransposed, velocity), 0.5, "difference")
+    beyond(absolute_error(untransposed, velocity), 0.5, "difference")
 
 
 def test_omega_z_of_21_is_the_axle_component_of_the_angular_velocity() -> None:
     y = states()
     axle = Paper(WHEEL, y).omega[:, 2]
-    within(worst(Paper(WHEEL, y).omega_z, axle), 1e-14, "difference")
+    within(absolute_error(Paper(WHEEL, y).omega_z, axle), 1e-14, "difference")
     scenes = eq.table(eq.Scene, len(y))
     scenes["wheel"] = WHEEL
     k = eq.kinematics_each(eq.MULTIBODY, scenes, products_state(y))
-    within(worst(k["omega_z"], axle), 1e-14, "omega_z")
-    within(worst(k["phi_dot"], y[:, 11]), 6e-15, "phi_dot")
-    beyond(worst(y[:, 11], axle), 0.6, "difference")  # phi_dot is not omega_z
+    within(absolute_error(k["omega_z"], axle), 1e-14, "omega_z")
+    within(absolute_error(k["phi_dot"], y[:, 11]), 6e-15, "phi_dot")
+    beyond(absolute_error(y[:, 11], axle), 0.6, "difference")  # phi_dot is not omega_z
 
 
 def test_M_and_F_beta_of_16_18_are_eulers_equations_in_body_axes() -> None:
@@ -140,8 +136,8 @@ def test_M_and_F_beta_of_16_18_are_eulers_equations_in_body_axes() -> None:
     spin = times(paper.J, paper.omega)
     euler = times(paper.J, omega_dot) + np.cross(paper.omega, spin)
     stated = times(paper.M, np.hstack([beta_ddot, beta_ddot]))[:, 3:] - paper.F_beta
-    within(worst(stated, euler), 3e-13, "difference")
-    beyond(worst(stated + np.cross(spin, paper.omega), euler), 2, "difference")  # without gyroscopic part
+    within(absolute_error(stated, euler), 3e-13, "difference")
+    beyond(absolute_error(stated + np.cross(spin, paper.omega), euler), 2, "difference")  # without gyroscopic part
 
 
 def test_B_tilde_of_22_23_turns_lambda_into_force_and_moment_on_the_wheel() -> None:
@@ -149,11 +145,11 @@ def test_B_tilde_of_22_23_turns_lambda_into_force_and_moment_on_the_wheel() -> N
     force = np.random.default_rng(4).normal(size=(len(states()), 3))
     moment = np.cross(contact(paper), times(transposed(paper.A), force))
     without_friction = np.hstack([force, moment])
-    within(worst(times(paper.B_tilde(0), force), without_friction), 1e-14, "difference")
+    within(absolute_error(times(paper.B_tilde(0), force), without_friction), 1e-14, "difference")
     moment[:, 2] -= WHEEL["s"] * force[:, 2]
     with_friction = np.hstack([force, moment])
-    within(worst(times(paper.B_tilde(1), force), with_friction), 1e-14, "difference, 2")
-    beyond(worst(with_friction, without_friction), 0.01, "difference")
+    within(absolute_error(times(paper.B_tilde(1), force), with_friction), 1e-14, "difference, 2")
+    beyond(absolute_error(with_friction, without_friction), 0.01, "difference")
 
 
 def test_constants_and_start_values_of_27_to_33_are_those_the_paper_prints() -> None:

@@ -7,16 +7,12 @@ F v + M omega (carrier) + tau omega_z. The reaction does no work: the contact po
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from support import equations as eq
 from support.bounds import beyond, within
 
 from equations import random_scenes
 from equations.paper_transcription import Paper, times
-
-Table = np.ndarray
-FORMULATIONS = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
-KINDS = pytest.mark.parametrize("kind", eq.LAWS.values(), ids=eq.LAWS.keys())
+from equations.pointwise import BOTH, LAWS
 
 
 class Instants:
@@ -55,21 +51,21 @@ class Instants:
         return terms.sum(axis=1), np.abs(terms).sum(axis=1)
 
 
-@FORMULATIONS
-@KINDS
-def test_energy_changes_by_the_power_of_inputs_and_friction(formulation: eq.Formulation, kind: int) -> None:
-    now = Instants(formulation, kind)
+@BOTH
+@LAWS
+def test_energy_changes_by_the_power_of_inputs_and_friction(formulation: eq.Formulation, law: int) -> None:
+    now = Instants(formulation, law)
     rate, size = now.energy_rates()
     power = now.input_power() + now.friction_power()
     within((np.abs(rate - power) / size).max(), 4e-13, "relative error")
     without_inputs = now.friction_power()
     beyond((np.abs(rate - without_inputs) / size).max(), 0.1, "relative error")
-    if kind in (eq.ROLLING, eq.REGULARIZED):
+    if law in (eq.ROLLING, eq.REGULARIZED):
         friction_reversed = now.input_power() - now.friction_power()
         beyond((np.abs(rate - friction_reversed) / size).max(), 1, "relative error, 2")
 
 
-@FORMULATIONS
+@BOTH
 def test_rolling_friction_takes_energy_and_holding_takes_none(formulation: eq.Formulation) -> None:
     regularized = Instants(formulation, eq.REGULARIZED).friction_power()
     assert (regularized <= 0).all()
@@ -80,7 +76,7 @@ def test_rolling_friction_takes_energy_and_holding_takes_none(formulation: eq.Fo
     assert (rolling.friction_power()[~against] >= 0).all()  # sigma of the wrong sign drives
 
 
-@FORMULATIONS
+@BOTH
 def test_stop_spin_leaves_a_rolling_wheel_without_spin_that_holding_takes_no_energy_from(
     formulation: eq.Formulation,
 ) -> None:

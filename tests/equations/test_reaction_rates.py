@@ -14,14 +14,11 @@ from support.bounds import beyond, within
 from equations import random_scenes
 from equations.multibody_transcription import papers_state, solved
 from equations.paper_transcription import Paper
+from equations.pointwise import BOTH, INERTIA, LAWS, Table, relative
 
 BOUND = 1e-9
 STEP = 1e-40
 ROWS = 5000
-FORMULATIONS = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
-LAWS = pytest.mark.parametrize("law", eq.LAWS.values(), ids=eq.LAWS.keys())
-INERTIA = pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
-Table = np.ndarray
 
 
 class Rows:
@@ -59,10 +56,6 @@ class Rows:
         """lambda_dot and tau_dot / r_0 side by side."""
         arm = np.column_stack([np.ones((ROWS, 3)), self.scenes["wheel"]["r_0"]])
         return relative(rates / arm, judge / arm)
-
-
-def relative(a: Table, b: Table) -> float:
-    return float((np.abs(a - b).max(axis=1) / np.abs(b).max(axis=1)).max())
 
 
 @INERTIA
@@ -130,7 +123,7 @@ def test_entries_that_are_zero_for_an_instant_keep_their_rates(motion: eq.Motion
     assert (np.abs(rows.rates(eq.REDUCED) - judge).max() > 0.01) == (law == eq.ROLLING)
 
 
-@FORMULATIONS
+@BOTH
 def test_a_load_without_a_rate_is_a_constant_load(formulation: eq.Formulation) -> None:
     rows = Rows(eq.ROLLING)
     changing = rows.rates(formulation)
@@ -142,7 +135,7 @@ def test_a_load_without_a_rate_is_a_constant_load(formulation: eq.Formulation) -
     beyond((changing != constant).any(axis=1).mean(), 0.8, "changing")  # a tenth has no load
 
 
-@FORMULATIONS
+@BOTH
 @LAWS
 def test_the_response_to_a_load_is_what_it_adds_to_the_rates(formulation: eq.Formulation, law: int) -> None:
     rows = Rows(law)
@@ -158,7 +151,7 @@ def test_the_response_to_a_load_is_what_it_adds_to_the_rates(formulation: eq.For
     assert ((np.abs(other - difference) / size).max() > 1e-6) == (law in (eq.ROLLING, eq.REGULARIZED))
 
 
-@FORMULATIONS
+@BOTH
 @LAWS
 def test_the_response_is_the_difference_that_a_load_makes(formulation: eq.Formulation, law: int) -> None:
     """lambda and tau are linear in the load while the law and the sign of N last."""

@@ -8,7 +8,6 @@ multibody_state.md. Integrated by SciPy, so that no solver of the product takes 
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from scipy.integrate import solve_ivp
 from support import equations as eq
 from support.bounds import beyond, within
@@ -16,23 +15,22 @@ from support.bounds import beyond, within
 from equations import random_scenes
 from equations.multibody_transcription import Stabilised, papers_state, products_state, solved, stabilised_rate
 from equations.paper_transcription import Paper
+from equations.pointwise import LAWS, Table, relative
 
-KINDS = pytest.mark.parametrize("kind", eq.LAWS.values(), ids=eq.LAWS.keys())
 OFF_THE_CONSTRAINTS = np.array([0, 0, 1, 0, 0, 0, 1, 1, 1, 0, 0, 0])  # m in Z_O, m/s in the velocity of O
 PLANTED = np.array([0, 0, 2e-3, 0, 0, 0, 1e-2, -2e-2, 3e-2, 0, 0, 0])  # the same, of unlike sizes
 GENERAL = {"J_x": 0.7, "J_y": 1.1, "s": 0.03}
 SPIN = 11
-Table = np.ndarray
 
 
-def scene(kind: int) -> eq.Scene:
-    return eq.scene(eq.paper_wheel(**GENERAL), kind, sigma=-1, omega_s=2, moment=(0.1, -0.2, 0.3))
+def scene(law: int) -> eq.Scene:
+    return eq.scene(eq.paper_wheel(**GENERAL), law, sigma=-1, omega_s=2, moment=(0.1, -0.2, 0.3))
 
 
-def start(kind: int) -> Table:
-    y = eq.start(eq.MULTIBODY, scene(kind).wheel, eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0.5, 0, -2, 0, 0))
-    if kind == eq.HELD:
-        eq.MULTIBODY.stop_spin(scene(kind).wheel, y.ctypes.data_as(eq.DOUBLES))
+def start(law: int) -> Table:
+    y = eq.start(eq.MULTIBODY, scene(law).wheel, eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0.5, 0, -2, 0, 0))
+    if law == eq.HELD:
+        eq.MULTIBODY.stop_spin(scene(law).wheel, y.ctypes.data_as(eq.DOUBLES))
     return y
 
 
@@ -68,14 +66,10 @@ def residuals(now: eq.Scene, y: Table) -> tuple[Table, Table]:
     return paper.slip, paper.height_error
 
 
-def relative(a: Table, b: Table) -> float:
-    return float((np.abs(a - b).max(axis=1) / np.abs(b).max(axis=1)).max())
-
-
-@KINDS
-def test_the_multibody_derivative_is_24_with_slip_and_height_drawn_to_zero(kind: int) -> None:
+@LAWS
+def test_the_multibody_derivative_is_24_with_slip_and_height_drawn_to_zero(law: int) -> None:
     random = np.random.default_rng(61)
-    scenes = random_scenes.scenes(random, kind, symmetric=False, rows=2000)
+    scenes = random_scenes.scenes(random, law, symmetric=False, rows=2000)
     rolling = eq.start_each(eq.MULTIBODY, scenes, random_scenes.motions(random, 2000))
     off = random.normal(size=rolling.shape) * OFF_THE_CONSTRAINTS
     y_dot, _ = eq.derivative_each(eq.MULTIBODY, scenes, rolling + off)
@@ -85,10 +79,10 @@ def test_the_multibody_derivative_is_24_with_slip_and_height_drawn_to_zero(kind:
     )  # errors 0.1 % smaller
 
 
-@KINDS
-def test_24_itself_sees_neither_slip_nor_height(kind: int) -> None:
+@LAWS
+def test_24_itself_sees_neither_slip_nor_height(law: int) -> None:
     random = np.random.default_rng(62)
-    scenes = random_scenes.scenes(random, kind, symmetric=False, rows=2000)
+    scenes = random_scenes.scenes(random, law, symmetric=False, rows=2000)
     rolling = eq.start_each(eq.MULTIBODY, scenes, random_scenes.motions(random, 2000))
     slipping = rolling + random.normal(size=rolling.shape) * OFF_THE_CONSTRAINTS
     answers = [eq.dynamics_each(eq.MULTIBODY, scenes, y) for y in (rolling, slipping)]
@@ -97,11 +91,11 @@ def test_24_itself_sees_neither_slip_nor_height(kind: int) -> None:
     beyond(relative(*rates), 0.6, "relative difference")  # the stabilised derivative does
 
 
-@KINDS
-def test_errors_of_the_constraints_decay_at_the_stated_rate(kind: int) -> None:
+@LAWS
+def test_errors_of_the_constraints_decay_at_the_stated_rate(law: int) -> None:
     times = np.linspace(0, 0.25, 26)
-    y, decay = stabilised(scene(kind), start(kind) + PLANTED, times)
-    slip, height = residuals(scene(kind), y)
+    y, decay = stabilised(scene(law), start(law) + PLANTED, times)
+    slip, height = residuals(scene(law), y)
 
     def gap(decay: Table) -> float:
         """slip = planted exp(-decay); the height follows, driven by the vertical slip."""
@@ -114,24 +108,24 @@ def test_errors_of_the_constraints_decay_at_the_stated_rate(kind: int) -> None:
     beyond(gap(1.001 * decay), 1e-5, "gap")  # a rate 0.1 % larger
 
 
-@KINDS
-def test_24_alone_keeps_the_slip_and_lets_the_height_run_away(kind: int) -> None:
+@LAWS
+def test_24_alone_keeps_the_slip_and_lets_the_height_run_away(law: int) -> None:
     times = np.linspace(0, 0.25, 26)
-    slip, height = residuals(scene(kind), pure(scene(kind), start(kind) + PLANTED, times))
+    slip, height = residuals(scene(law), pure(scene(law), start(law) + PLANTED, times))
     within(np.abs(slip - PLANTED[6:9]).max(), 1e-11, "slip")  # m/s
     within(np.abs(height - PLANTED[2] - PLANTED[8] * times).max(), 3e-12, "height")  # m
-    y, _ = stabilised(scene(kind), start(kind) + PLANTED, times)
-    drawn_slip, drawn_height = residuals(scene(kind), y)
+    y, _ = stabilised(scene(law), start(law) + PLANTED, times)
+    drawn_slip, drawn_height = residuals(scene(law), y)
     within(np.abs(drawn_slip[-1]).max() / np.abs(slip[-1]).max(), 1e-2, "drawn slip")
     within(np.abs(drawn_height[-1]) / height[-1], 1e-2, "drawn height")
 
 
-@KINDS
-def test_on_the_constraints_the_stabilised_motion_is_that_of_24(kind: int) -> None:
+@LAWS
+def test_on_the_constraints_the_stabilised_motion_is_that_of_24(law: int) -> None:
     times = np.linspace(0, 1, 11)
-    alone = pure(scene(kind), start(kind), times)
-    drawn, _ = stabilised(scene(kind), start(kind), times)
-    disturbed, _ = stabilised(scene(kind), start(kind) + 1e-6 * PLANTED, times)
+    alone = pure(scene(law), start(law), times)
+    drawn, _ = stabilised(scene(law), start(law), times)
+    disturbed, _ = stabilised(scene(law), start(law) + 1e-6 * PLANTED, times)
     within(np.abs(drawn - alone).max(), 2e-10, "drawn")
     beyond(np.abs(disturbed - alone).max(), 5e-8, "disturbed")  # a slip of 30 nm/s at the start
 

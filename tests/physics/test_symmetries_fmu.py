@@ -5,7 +5,6 @@ Friction and inputs are on unless said. Fixed axes for places and forces, carrie
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from support.bounds import beyond, within
 from support.motion import Library, Run
 from support.schedule import Schedule
+from support.symmetries import SYMMETRIES, Symmetry
 
 START = {
     **{"psi_start": 0.4, "theta_start": 1.2, "phi_start": 0.3, "psi_dot_start": 0.5, "theta_dot_start": -0.3},
@@ -33,34 +33,9 @@ WHEELS = {"J_x = J_y": {}, "J_x != J_y": UNEQUAL, "J_x != J_y, multibody": {**UN
 wheels = pytest.mark.parametrize("inertia", WHEELS.values(), ids=WHEELS)
 
 
-@dataclass(frozen=True)
-class Symmetry:
-    """plane: on (X, Y); signs, shifts: z -> sign z + shift of psi, theta, phi; moment: signs of M_1..3; move: X, Y."""
-
-    plane: NDArray[np.float64]
-    signs: tuple[int, int, int] = (1, 1, 1)
-    shifts: tuple[float, float, float] = (0, 0, 0)
-    moment: tuple[int, int, int] = (1, 1, 1)
-    move: tuple[float, float] = (0, 0)
-
-
-TURN = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
-SYMMETRIES = {
-    "rotation": Symmetry(TURN, shifts=(0.7, 0, 0)),
-    "translation": Symmetry(np.eye(2), move=(100.0, -30.0)),
-    "mirror": Symmetry(np.diag([1, -1]), (-1, 1, -1), (pi, 0, 0), (1, -1, -1)),
-    "axle named the other way": Symmetry(np.eye(2), (1, -1, -1), (pi, pi, pi), (-1, 1, -1)),
-    "half a turn of the body": Symmetry(np.eye(2), shifts=(0, 0, pi)),
-}
-
-
-def plane_image(table: dict, symmetry: Symmetry, x: str, y: str) -> dict:
-    return dict(zip((x, y), symmetry.plane @ np.array([table[x], table[y]]), strict=True))
-
-
 def image_of_start(symmetry: Symmetry) -> dict[str, float]:
-    out = START | plane_image(START, symmetry, "X_O_start", "Y_O_start")
-    for name, sign, shift in zip(("psi", "theta", "phi"), symmetry.signs, symmetry.shifts, strict=True):
+    out = START | symmetry.on_plane(START, "X_O_start", "Y_O_start")
+    for name, sign, shift in symmetry.angles:
         out[f"{name}_start"] = sign * START[f"{name}_start"] + shift
         out[f"{name}_dot_start"] = sign * START[f"{name}_dot_start"]
     out["X_O_start"] += symmetry.move[0]
@@ -70,7 +45,7 @@ def image_of_start(symmetry: Symmetry) -> dict[str, float]:
 
 def image_of_load(symmetry: Symmetry, moment: tuple[int, int, int]) -> Schedule:
     load = {name: np.pad(c, (0, 4 - len(c))) for name, c in LOAD.items()}
-    turned = load | plane_image(load, symmetry, "F_X", "F_Y")
+    turned = load | symmetry.on_plane(load, "F_X", "F_Y")
     for name, sign in zip(("M_1", "M_2", "M_3"), moment, strict=True):
         turned[name] = sign * load[name]
     return Schedule(((0.0, turned),))
@@ -79,8 +54,8 @@ def image_of_load(symmetry: Symmetry, moment: tuple[int, int, int]) -> Schedule:
 def image_of_motion(symmetry: Symmetry, run: Run) -> dict[str, NDArray[np.float64]]:
     out = dict(run.columns)
     for pair in (("X_O", "Y_O"), ("X_O_dot", "Y_O_dot"), ("lambda_1", "lambda_2"), ("X_C", "Y_C")):
-        out |= plane_image(run.columns, symmetry, *pair)
-    for name, sign, shift in zip(("psi", "theta", "phi"), symmetry.signs, symmetry.shifts, strict=True):
+        out |= symmetry.on_plane(run, *pair)
+    for name, sign, shift in symmetry.angles:
         out[name] = sign * run[name] + shift
         for rate in (f"{name}_dot", f"{name}_ddot"):
             out[rate] = sign * run[rate]

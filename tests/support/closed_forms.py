@@ -73,7 +73,7 @@ def circle_spin(wheel: Wheel, theta: float, psi_dot: float) -> float:
       (J_z sin + m rho Z) omega_3 psi_dot = (J_x cos + m eta Z) psi_dot^2 sin - m g r_0 cos.
     With r = 0: the textbook's (J_z + m r_0^2) omega_3 psi_dot sin = J_x psi_dot^2 sin cos - m g r_0 cos.
     """
-    s, c = sin(theta), cos(theta)
+    s, c = np.sin(theta), np.cos(theta)
     rho, eta, Z = wheel.r_0 + wheel.r * s, wheel.r * c, wheel.r_0 * s + wheel.r
     turning = (wheel.J_x * c + wheel.m * eta * Z) * psi_dot**2 * s
     return (turning - wheel.m * wheel.g * wheel.r_0 * c) / ((wheel.J_z * s + wheel.m * rho * Z) * psi_dot)

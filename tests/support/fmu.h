@@ -1,4 +1,4 @@
-/* The functions of the FMU that the small masters call, by FMI's names without "fmi2". No paper equation, no frame. */
+/* The functions of the FMU that the C programs call, by FMI's names without "fmi2". No paper equation, no frame. */
 #ifndef SUPPORT_FMU_H
 #define SUPPORT_FMU_H
 
@@ -11,8 +11,11 @@
 
 /* clang-format off */
 #define FMU_FUNCTIONS(F) \
-  F(Instantiate) F(FreeInstance) F(SetupExperiment) F(EnterInitializationMode) F(ExitInitializationMode) F(SetReal) \
-  F(SetInteger) F(SetBoolean) F(SetRealInputDerivatives) F(GetReal) F(GetInteger) F(DoStep)
+  F(Instantiate) F(FreeInstance) F(SetDebugLogging) F(SetupExperiment) F(EnterInitializationMode) \
+  F(ExitInitializationMode) F(Terminate) F(Reset) F(SetReal) F(SetInteger) F(SetBoolean) F(GetReal) F(GetInteger) \
+  F(DoStep) F(CancelStep) F(GetRealStatus) F(GetBooleanStatus) F(SetRealInputDerivatives) F(GetRealOutputDerivatives) \
+  F(GetDirectionalDerivative) F(GetFMUstate) F(SetFMUstate) F(FreeFMUstate) F(SerializedFMUstateSize) \
+  F(SerializeFMUstate) F(DeSerializeFMUstate)
 /* clang-format on */
 
 typedef struct Fmu {

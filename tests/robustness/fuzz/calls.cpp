@@ -167,26 +167,4 @@ void Session::switch_logging() {
   log().on = was_on && fmi2SetDebugLogging(now_->component, fmi2True, 0, nullptr) == fmi2OK;
 }
 
-void Session::call_model_exchange() {
-  const fmi2Component c = now_->component;
-  double x[2] = {};
-  const fmi2Status statuses[] = {
-      checked(*now_, 0, false, [&] { return fmi2EnterEventMode(c); }),
-      checked(*now_, 0, false, [&] { return fmi2NewDiscreteStates(c, nullptr); }),
-      checked(*now_, 0, false, [&] { return fmi2EnterContinuousTimeMode(c); }),
-      checked(*now_, 0, false, [&] { return fmi2SetTime(c, 0); }),
-      checked(*now_, 0, false, [&] { return fmi2SetContinuousStates(c, x, 2); }),
-      checked(*now_, 0, false, [&] { return fmi2GetDerivatives(c, x, 2); }),
-      checked(*now_, 0, false, [&] { return fmi2GetEventIndicators(c, x, 2); }),
-      checked(*now_, 0, false, [&] { return fmi2GetContinuousStates(c, x, 2); }),
-      checked(*now_, 0, false, [&] { return fmi2GetNominalsOfContinuousStates(c, nullptr, 2); }),
-      checked(*now_, 0, false, [&] { return fmi2CompletedIntegratorStep(c, 0, nullptr, nullptr); }),
-  };
-  for (const fmi2Status status : statuses) expect(status == fmi2Error, "model exchange is refused");
-}
-
-void Session::cancel_step() {
-  checked(*now_, 0, false, [&] { return fmi2CancelStep(now_->component); });
-}
-
 }  // namespace fuzz

@@ -32,44 +32,12 @@ Session::~Session() {
   for (Slot& slot : slots_) fmi2FreeInstance(slot.component);
 }
 
-// The action that a byte stands for: each call of the interface while there is an instance, else few.
+// Without an instance few of them have a meaning.
 const Session::Action& Session::action(unsigned choice) const {
-  static constexpr Action always[] = {{"instantiate", &Session::instantiate},
-                                      {"free_instance", &Session::free_instance},
-                                      {"start_quickly", &Session::start_quickly},
-                                      {"call_without_instance", &Session::call_without_instance}};
-  static constexpr Action with_instance[] = {
-      {"step_often", &Session::step_often},
-      {"do_step", &Session::do_step},
-      {"set_reals", &Session::set_reals},
-      {"set_choices", &Session::set_choices},
-      {"start_quickly", &Session::start_quickly},
-      {"repeat_step_after_rollback", &Session::repeat_step_after_rollback},
-      {"repeat_step_in_new_instance", &Session::repeat_step_in_new_instance},
-      {"set_input_derivatives", &Session::set_input_derivatives},
-      {"get_values", &Session::get_values},
-      {"take_state", &Session::take_state},
-      {"restore_state", &Session::restore_state},
-      {"set_up_experiment", &Session::set_up_experiment},
-      {"enter_initialization", &Session::enter_initialization},
-      {"exit_initialization", &Session::exit_initialization},
-      {"get_output_derivatives", &Session::get_output_derivatives},
-      {"directional_derivative", &Session::directional_derivative},
-      {"terminate", &Session::terminate},
-      {"reset", &Session::reset},
-      {"compare_reset_with_new", &Session::compare_reset_with_new},
-      {"ask_status", &Session::ask_status},
-      {"free_state", &Session::free_state},
-      {"serialize", &Session::serialize},
-      {"deserialize_damaged", &Session::deserialize_damaged},
-      {"switch_logging", &Session::switch_logging},
-      {"strings", &Session::strings},
-      {"call_model_exchange", &Session::call_model_exchange},
-      {"exchange", &Session::exchange},
-      {"cancel_step", &Session::cancel_step},
-      {"instantiate", &Session::instantiate},
-      {"free_instance", &Session::free_instance},
-  };
+#define ROW(name) {#name, &Session::name},
+  static constexpr Action with_instance[] = {FUZZ_ACTIONS(ROW, ROW)};
+  static constexpr Action always[] = {ROW(instantiate) ROW(free_instance) ROW(start_quickly) ROW(start_quickly)};
+#undef ROW
   return now_->component ? with_instance[choice % std::size(with_instance)] : always[choice % std::size(always)];
 }
 

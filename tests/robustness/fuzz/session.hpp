@@ -4,6 +4,18 @@
 #include "choices.hpp"
 #include "oracle.hpp"
 
+// What a byte stands for while there is an instance, in the order of the corpus; AGAIN: a place that is taken twice.
+// One call each, with sound or unsound arguments (calls.cpp, values.cpp, states.cpp), or several (session.cpp).
+/* clang-format off */
+#define FUZZ_ACTIONS(ONCE, AGAIN) \
+  ONCE(step_often) ONCE(do_step) ONCE(set_reals) ONCE(set_choices) ONCE(start_quickly) \
+  ONCE(repeat_step_after_rollback) ONCE(repeat_step_in_new_instance) ONCE(set_input_derivatives) ONCE(get_values) \
+  ONCE(take_state) ONCE(restore_state) ONCE(set_up_experiment) ONCE(enter_initialization) ONCE(exit_initialization) \
+  ONCE(get_output_derivatives) ONCE(directional_derivative) ONCE(terminate) ONCE(reset) ONCE(compare_reset_with_new) \
+  ONCE(ask_status) ONCE(free_state) ONCE(serialize) ONCE(deserialize_damaged) ONCE(switch_logging) ONCE(strings) \
+  AGAIN(enter_initialization) ONCE(exchange) AGAIN(enter_initialization) ONCE(instantiate) ONCE(free_instance)
+/* clang-format on */
+
 namespace fuzz {
 
 struct Saved {
@@ -26,42 +38,13 @@ class Session {
   };
   const Action& action(unsigned choice) const;
 
-  // calls.cpp: one call each, with sound or unsound arguments.
-  void instantiate();
-  void free_instance();
-  void set_up_experiment();
-  void enter_initialization();
-  void exit_initialization();
-  void terminate();
-  void reset();
-  void do_step();
-  void ask_status();
-  void switch_logging();
-  void call_model_exchange();
-  void cancel_step();
-  // values.cpp
-  void set_reals();
-  void set_choices();
-  void get_values();
-  void strings();
-  void set_input_derivatives();
-  void get_output_derivatives();
-  void directional_derivative();
-  // states.cpp
-  void take_state();
-  void restore_state();
-  void free_state();
-  void serialize();
-  void without_arrays(const Saved& saved);
-  void deserialize_damaged();
-  void repeat_step_after_rollback();
-  void repeat_step_in_new_instance();
-  void compare_reset_with_new();
-  void exchange();               // exchange.cpp
-  void call_without_instance();  // absent.cpp
+#define DECLARE(name) void name();
+#define NOTHING(name)
+  FUZZ_ACTIONS(DECLARE, NOTHING)
+#undef DECLARE
+#undef NOTHING
 
-  void start_quickly();
-  void step_often();
+  void without_arrays(const Saved& saved);
   fmi2Status step(Slot& slot, double t, double h);
   double usual_step(const Slot& slot);
   double value_for(unsigned reference);

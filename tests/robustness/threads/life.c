@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "load_library.h"
 #include "threads.h"
 
 /* Value references by name, as modelDescription.xml has them. */
@@ -71,19 +70,19 @@ static void read_outputs(Life* life) {
   fmi2Integer ones[OUTPUTS], whole[3];
   double values[OUTPUTS];
   for (unsigned i = 0; i < OUTPUTS; ++i) outputs[i] = ref_X_O + i, ones[i] = 1;
-  MUST(get_real, outputs, OUTPUTS, values);
+  MUST(GetReal, outputs, OUTPUTS, values);
   add(life, values, sizeof values);
-  MUST(get_integer, counters, 3, whole);
+  MUST(GetInteger, counters, 3, whole);
   add(life, whole, sizeof whole);
   if (life->t <= 0) return;
-  MUST(get_output_derivatives, outputs, OUTPUTS, ones, values);
+  MUST(GetRealOutputDerivatives, outputs, OUTPUTS, ones, values);
   add(life, values, sizeof values);
 }
 
 static void step(Life* life) {
   const double h = 0.01 * (1 + draw_unit(life) * 0.9);
-  MUST(do_step, life->t, h, fmi2True);
-  MUST(get_real_status, fmi2LastSuccessfulTime, &life->t);
+  MUST(DoStep, life->t, h, fmi2True);
+  MUST(GetRealStatus, fmi2LastSuccessfulTime, &life->t);
   add(life, &life->t, sizeof life->t);
 }
 
@@ -93,19 +92,19 @@ static void push(Life* life) {
   const double force = brakes ? 2 : 5 * draw_unit(life), slope = brakes ? 0 : 10 * draw_unit(life),
                friction = 0.02 * (1 + draw_unit(life));
   const fmi2Integer first = 1;
-  MUST(set_real, &input, 1, &force);
-  if (draw(&life->dice) % 2) MUST(set_input_derivatives, &input, 1, &first, &slope);
-  if (draw(&life->dice) % 4 == 0) MUST(set_real, &s, 1, &friction);
+  MUST(SetReal, &input, 1, &force);
+  if (draw(&life->dice) % 2) MUST(SetRealInputDerivatives, &input, 1, &first, &slope);
+  if (draw(&life->dice) % 4 == 0) MUST(SetReal, &s, 1, &friction);
 }
 
 static void keep_state(Life* life) {
-  MUST(get_state, &life->kept);
+  MUST(GetFMUstate, &life->kept);
   life->kept_t = life->t;
 }
 
 static void roll_back(Life* life) {
   if (!life->kept) return;
-  MUST(set_state, life->kept);
+  MUST(SetFMUstate, life->kept);
   life->t = life->kept_t;
 }
 
@@ -114,12 +113,12 @@ static void move_state(Life* life) {
   fmi2FMUstate copy = NULL;
   size_t size = 0;
   keep_state(life);
-  MUST(state_size, life->kept, &size);
-  MUST(serialize, life->kept, bytes, size);
+  MUST(SerializedFMUstateSize, life->kept, &size);
+  MUST(SerializeFMUstate, life->kept, bytes, size);
   add(life, bytes, size);
-  MUST(deserialize, bytes, size, &copy);
-  MUST(set_state, copy);
-  MUST(free_state, &copy);
+  MUST(DeSerializeFMUstate, bytes, size, &copy);
+  MUST(SetFMUstate, copy);
+  MUST(FreeFMUstate, &copy);
 }
 
 static void ask(Life* life) {
@@ -127,16 +126,16 @@ static void ask(Life* life) {
   const double seed = 1;
   double slope = 0;
   fmi2Boolean ended = fmi2True;
-  MUST(directional_derivative, &lambda_3, 1, &F_Z, 1, &seed, &slope);
-  MUST(get_boolean_status, fmi2Terminated, &ended);
+  MUST(GetDirectionalDerivative, &lambda_3, 1, &F_Z, 1, &seed, &slope);
+  MUST(GetBooleanStatus, fmi2Terminated, &ended);
   add(life, &slope, sizeof slope);
 }
 
 /* An illegal call that talks, and a switch of the log. */
 static void talk(Life* life) {
   const fmi2Boolean on = draw(&life->dice) % 2 ? fmi2True : fmi2False;
-  MUST(set_debug_logging, on, 0, NULL);
-  const fmi2Status refused = life->fmu->cancel_step(life->component);
+  MUST(SetDebugLogging, on, 0, NULL);
+  const fmi2Status refused = life->fmu->CancelStep(life->component);
   add(life, &refused, sizeof refused);
 }
 
@@ -148,17 +147,17 @@ static void initialize(Life* life) {
   const fmi2Integer picked[] = {1, life->number % 5 == 3 ? 2 : 1, life->number % 7 == 3 ? 3 : 1};
   const fmi2Boolean yes = fmi2True;
   life->t = 0;
-  MUST(set_real, reals, 4, values);
-  MUST(set_integer, choices, 3, picked);
-  MUST(set_boolean, &keep, 1, &yes);
-  MUST(setup_experiment, fmi2True, 1e-6, 0, fmi2False, 0);
-  MUST_BARE(enter_initialization);
+  MUST(SetReal, reals, 4, values);
+  MUST(SetInteger, choices, 3, picked);
+  MUST(SetBoolean, &keep, 1, &yes);
+  MUST(SetupExperiment, fmi2True, 1e-6, 0, fmi2False, 0);
+  MUST_BARE(EnterInitializationMode);
   read_outputs(life);
-  MUST_BARE(exit_initialization);
+  MUST_BARE(ExitInitializationMode);
 }
 
 static void begin_again(Life* life) {
-  MUST_BARE(reset);
+  MUST_BARE(Reset);
   initialize(life);
 }
 
@@ -166,7 +165,7 @@ Life* begin_life(const Fmu* fmu, const char* guid, unsigned long number) {
   Life* life = calloc(1, sizeof *life);
   const fmi2CallbackFunctions callbacks = {receive, NULL, NULL, NULL, life};
   *life = (Life){.fmu = fmu, .number = number, .dice = 0x2545f4914f6cdd1du * (number + 1), .calls_left = CALLS};
-  life->component = fmu->instantiate("wheel", fmi2CoSimulation, guid, "", &callbacks, fmi2False, fmi2True);
+  life->component = fmu->Instantiate("wheel", fmi2CoSimulation, guid, "", &callbacks, fmi2False, fmi2True);
   if (!life->component) {
     fprintf(stderr, "Instance %lu was refused.\n", number);
     exit(1);
@@ -188,44 +187,10 @@ int go_on(Life* life) {
 
 unsigned long long end_life(Life* life) {
   read_outputs(life);
-  MUST_BARE(terminate);
-  if (life->kept) MUST(free_state, &life->kept);
-  life->fmu->free_instance(life->component);
+  MUST_BARE(Terminate);
+  if (life->kept) MUST(FreeFMUstate, &life->kept);
+  life->fmu->FreeInstance(life->component);
   const unsigned long long sum = life->sum;
   free(life);
   return sum;
-}
-
-Fmu load_fmu(const char* path) {
-  static const char* const names[] = {"fmi2Instantiate",
-                                      "fmi2FreeInstance",
-                                      "fmi2SetDebugLogging",
-                                      "fmi2SetupExperiment",
-                                      "fmi2EnterInitializationMode",
-                                      "fmi2ExitInitializationMode",
-                                      "fmi2Terminate",
-                                      "fmi2Reset",
-                                      "fmi2SetReal",
-                                      "fmi2SetInteger",
-                                      "fmi2SetBoolean",
-                                      "fmi2GetReal",
-                                      "fmi2GetInteger",
-                                      "fmi2DoStep",
-                                      "fmi2GetRealStatus",
-                                      "fmi2GetBooleanStatus",
-                                      "fmi2SetRealInputDerivatives",
-                                      "fmi2GetRealOutputDerivatives",
-                                      "fmi2GetDirectionalDerivative",
-                                      "fmi2GetFMUstate",
-                                      "fmi2SetFMUstate",
-                                      "fmi2FreeFMUstate",
-                                      "fmi2SerializedFMUstateSize",
-                                      "fmi2SerializeFMUstate",
-                                      "fmi2DeSerializeFMUstate",
-                                      "fmi2CancelStep"};
-  enum { COUNT = sizeof names / sizeof *names };
-  Fmu fmu;
-  _Static_assert(sizeof fmu == COUNT * sizeof(void*), "one name per function");
-  load_functions(path, names, COUNT, &fmu);
-  return fmu;
 }

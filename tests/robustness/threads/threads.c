@@ -44,7 +44,7 @@ static void* live_together(void* data) {
 
 int main(int argument_count, char** arguments) {
   if (argument_count < 4) return 2;
-  const Fmu fmu = load_fmu(arguments[1]);
+  const Fmu fmu = fmu_of(arguments[1]);
   const unsigned long count = strtoul(arguments[3], NULL, 10);
   unsigned long long* sums = calloc(2 * count, sizeof *sums);
   Crowd halves[THREADS];
