@@ -93,9 +93,7 @@ def test_printed_Q_theta_of_9_is_not_the_derivative_of_Q() -> None:
     within(absolute_error(Paper(WHEEL, states()).Q_theta, slope("Q", THETA)), 1e-14, "difference")
     printed = Paper(WHEEL, states(), ["Q_theta"]).Q_theta
     difference = printed - slope("Q", THETA)
-    within(
-        absolute_error(difference[:, 2, 0], np.sin(states()[:, THETA])), 1e-14, "difference, 2"
-    )
+    within(absolute_error(difference[:, 2, 0], np.sin(states()[:, THETA])), 1e-14, "difference, 2")
     difference[:, 2, 0] = 0
     within(np.abs(difference).max(), 5e-15, "difference elsewhere")
 
