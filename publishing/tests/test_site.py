@@ -65,7 +65,9 @@ def test_the_reference_of_the_c_header_has_every_function(site: Path) -> None:
     assert {name for name in functions if f'id="{name.replace("_", "-")}' not in text and name not in text} == set()
 
 
-@pytest.mark.parametrize("page", ["[gone](gone.md)", "[gone](#gone)", "![gone](gone.png)"])
+@pytest.mark.parametrize(
+    "page", ["[gone](gone.md)", "[gone](#gone)", "[gone](gone.py)", "[gone](gone/)", "![gone](gone.png)"]
+)
 def test_a_link_that_leads_nowhere_stops_the_site(tmp_path: Path, page: str) -> None:
     (tmp_path / "README.md").write_text(f"# A page\n\n{page}\n")
     done = build(tmp_path, tmp_path / "out", "-D", "html_favicon=")

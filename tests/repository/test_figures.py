@@ -12,8 +12,7 @@ import pytest
 from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT))
-from publishing import documents
-from publishing.documents import DATA, PLACE, UnknownFigure, pages, read_figures, with_figures
+from publishing.documents import PLACE, UnknownFigure, pages, read_figures, with_figures
 from publishing.markdown import number
 
 RESULTS = ROOT / "docs" / "results"
@@ -130,8 +129,3 @@ def test_an_unknown_figure_is_refused_and_a_known_one_is_filled(tmp_path: Path) 
 )
 def test_a_number_is_short(value: float, text: str) -> None:
     assert number(value) == text
-
-
-def test_every_report_has_its_data() -> None:
-    assert {"accuracy", "stability", "speed", "inputs"} <= {path.stem for path in DATA.glob("*.csv")}
-    assert documents.ROOT == ROOT

@@ -62,7 +62,8 @@ def call(folder: Path, name: str, *words: str, **variables: str) -> subprocess.C
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=20)
 
 
-def test_the_folder_holds_commands_alone() -> None:
+def test_the_folder_holds_commands_alone_among_them_those_that_newcomers_are_told_of() -> None:
+    assert {"run", "test", "build", "setup", "lint", "release", "report", *PARTS} <= {*COMMANDS, *GONE}
     for name in COMMANDS:
         path = ROOT / "scripts" / name
         assert path.is_file() and os.access(path, os.X_OK), f"scripts/{name} cannot be typed"
@@ -103,10 +104,3 @@ def test_help_lists_every_command(bare: Path) -> None:
     listed = call(bare, "help").stdout.splitlines()
     assert [line.split()[0] for line in listed] == COMMANDS
     assert all(len(line.split()) > 3 for line in listed)
-
-
-def test_the_commands_are_those_that_newcomers_are_told_of() -> None:
-    assert {"run", "test", "build", "setup", "lint", "release", "report", "example", "study", "view"} <= {
-        *COMMANDS,
-        *GONE,
-    }

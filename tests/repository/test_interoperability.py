@@ -1,4 +1,4 @@
-"""The table of masters and checkers on docs/interoperability.md is that of its data, and its errors are small.
+"""The masters and checkers on docs/interoperability.md: their errors are small, and each run says what happened.
 
 The runs themselves are made by hand, with programs that are not part of this project.
 """
@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import csv
 import sys
-from pathlib import Path
 
 from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT))
-from publishing.documents import DATA, with_figures
+from publishing.documents import DATA
 
 RUNS = DATA / "interoperability.csv"
 
@@ -32,13 +31,6 @@ def too_large(runs: list[dict[str, str]]) -> list[str]:
     scenes = ("default scene", "friction")
     errors = [(run["tool"], run["tolerance passed"], run[scene]) for run in runs for scene in scenes]
     return [tool for tool, tolerance, error in errors if error and not 0 < float(error) < ALLOWED.get(tolerance, 1e-8)]
-
-
-def test_the_table_of_the_page_is_that_of_the_data_and_would_show_another_figure(tmp_path: Path) -> None:
-    page, data = (ROOT / "docs" / "interoperability.md").read_text(encoding="utf-8"), RUNS.read_text(encoding="utf-8")
-    assert with_figures(page, {}) == page, "run ./scripts/documents: the page is not that of the data"
-    (tmp_path / RUNS.name).write_text(data.replace("4.13e-5", "7e-3", 1), encoding="utf-8")
-    assert with_figures(page, {}, folder=tmp_path) != page
 
 
 def test_every_master_agrees_with_the_trusted_tables_within_the_tolerance() -> None:

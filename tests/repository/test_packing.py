@@ -33,29 +33,32 @@ X86_64, ARM64 = 0x01000007, 0x0100000C
 DESCRIPTION = (ROOT / "modelDescription.xml").read_text(encoding="utf-8")
 
 
-def words(text: str) -> list[str]:
-    return text.split()
-
-
 def contains(text: str, piece: str) -> bool:
-    return " ".join(words(piece)) in " ".join(words(text))
+    return " ".join(piece.split()) in " ".join(text.split())
+
+
+def licence(fmu: str, name: str) -> str:
+    return (Path(fmu) / "licenses" / name).read_text(encoding="utf-8")
 
 
 def test_the_notice_of_the_fmi_headers_is_that_of_the_headers_word_for_word(fmu):
-    notice = (Path(fmu) / "licenses" / "fmi-headers-notice.txt").read_text(encoding="utf-8")
+    notice = licence(fmu, "fmi-headers-notice.txt")
     for header in ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"):
         assert contains((HEADERS / header).read_text(encoding="utf-8"), notice), header
-    assert words(notice)[:2] == ["Copyright", "(C)"]
+    assert notice.split()[:2] == ["Copyright", "(C)"]
     assert all(contains(notice, clause) for clause in CLAUSES)
     changed = notice.replace("must reproduce", "should reproduce")  # the partner
     assert not contains((HEADERS / "fmi2Functions.h").read_text(encoding="utf-8"), changed)
 
 
-def test_the_licence_of_eigen_is_packed_in_full(fmu):
-    text = (Path(fmu) / "licenses" / "eigen-license.txt").read_text(encoding="utf-8")
+def test_the_licence_of_eigen_is_packed_in_full_beside_ours_and_that_of_sundials(fmu):
+    assert contains(licence(fmu, "license.txt"), "wheel.fmu founders")
+    assert contains(licence(fmu, "sundials-license.txt"), "Lawrence Livermore")
+    text = licence(fmu, "eigen-license.txt")
     assert contains(text, "Mozilla Public License") and contains(text, '1.1. "Contributor"')
     assert contains(text, "Limitation of Liability") and contains(text, "Exhibit A - Source Code Form License Notice")
-    notice = (Path(fmu) / "licenses" / "eigen-notice.txt").read_text(encoding="utf-8")
+    notice = licence(fmu, "eigen-notice.txt")
+    assert contains(notice, "Mozilla Public")
     assert not contains(notice, "Limitation of Liability")  # the partner: our own words about it
 
 

@@ -1,5 +1,7 @@
-"""README.md and the FMU's documentation are true: examples run as written, tables are those of the description,
-links lead somewhere. No paper equation of its own; the scenes are the paper's, SI units."""
+"""README.md and the FMU's documentation are true: examples run as written, tables are those of the description.
+
+The test of the site checks the links. The scenes are the paper's, SI units.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +9,15 @@ import os
 import re
 import subprocess
 import sys
-from html.parser import HTMLParser
 from pathlib import Path
-from urllib.parse import unquote
 
 import numpy as np
 import pytest
+from lxml import etree
 from support.bounds import beyond, within
+from support.closed_forms import fall_inertia
 from support.paths import ROOT, build_folder
+from support.scenes import PAPER
 
 sys.path.insert(0, str(ROOT))
 from publishing import variables as variable_tables
@@ -83,12 +86,10 @@ def test_the_commands_for_fmpy_run_as_written_and_do_what_their_comments_say(roo
     fall = table(root / "results" / "fall.csv")
     assert round(fall["time"][-1], 2) == 0.59
     within(fall["theta"][-1], 1e-6, "theta")
+    speeds_up_as_newton_says(table(root / "results" / "driven.csv"))
 
 
-def test_the_drive_torque_of_the_example_speeds_the_wheel_up_as_newton_says(root):
-    commands = [line for line in blocks("bash")[0].splitlines() if line.startswith("printf") or "driven.csv" in line]
-    run(["bash", "-euc", "\n".join(commands)], root)
-    driven = table(root / "results" / "driven.csv")
+def speeds_up_as_newton_says(driven: np.ndarray) -> None:
     late = 0.01 / 2  # FMPy holds an input over its step of 0.01 s: on the ramp it lags by half a step
     m, R, J_z, impulse = 20, 0.35, 1.8, 2 * (0.5 - late) + 2 * 9
     speed = R * impulse / (J_z + m * R * R)  # m/s, O of an upright wheel under a torque about its axle
@@ -105,13 +106,9 @@ def test_the_c_example_compiles_anywhere_and_prints_what_the_python_example_prin
     python = run([sys.executable, str(ROOT / "examples" / "python" / "accelerations.py")], here)
     assert printed == python and len(printed.splitlines()) == 4
     theta_ddot = [float(x) for x in re.findall(r"theta_ddot = *(-?[\d.]+)", printed)]
-    from support import closed_forms, equations
-    from support.scenes import PAPER
-
-    fall = -PAPER.m * PAPER.g * PAPER.r_0 * np.cos(1.308997) / closed_forms.fall_inertia(PAPER, 1.308997)
+    fall = -PAPER.m * PAPER.g * PAPER.r_0 * np.cos(1.308997) / fall_inertia(PAPER, 1.308997)
     within(abs(theta_ddot[3] - fall), 1e-4, "fall")  # released from rest, held
     beyond(abs(theta_ddot[3] - fall * 1.001), 3e-4, "theta ddot")
-    assert equations.LIBRARY
 
 
 def test_the_lines_of_python_and_c_for_the_header_are_those_that_run(root):
@@ -167,100 +164,18 @@ def test_the_tables_of_variables_are_those_of_the_description(page, description)
         assert v.meaning in text.replace("&lt;", "<").replace("&gt;", ">"), v.name
 
 
-def local_links(path: Path) -> list[Path]:
-    text = path.read_text(encoding="utf-8")
-    targets = re.findall(r"\]\(([^)#\s]+)", text)
-    return [path.parent / unquote(t) for t in targets if "://" not in t]
-
-
-def documents() -> list[Path]:
-    named = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
-    return [*named, *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "examples").rglob("*.md"))]
-
-
-def anchors(path: Path) -> set[str]:
-    """What a link may name behind '#': the headings, in the spelling of GitHub."""
-    headings = re.findall(r"^#+ (.*)$", path.read_text(encoding="utf-8"), re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
-
-
-def broken_anchors(path: Path) -> list[str]:
-    found = re.findall(r"\]\(([^)#\s]*)#([^)\s]+)\)", path.read_text(encoding="utf-8"))
-    targets = [(path.parent / unquote(file) if file else path, anchor) for file, anchor in found if "://" not in file]
-    return [f"{target.name}#{anchor}" for target, anchor in targets if anchor not in anchors(target)]
-
-
-def test_every_link_to_a_heading_leads_to_one(tmp_path):
-    assert [(d.name, link) for d in documents() for link in broken_anchors(d)] == []
-    page = tmp_path / "page.md"
-    page.write_text("# A heading\n[here](#a-heading), [nowhere](#no-heading)\n")
-    assert broken_anchors(page) == ["page.md#no-heading"]
-
-
-# Folders that may be deleted, each whole: links into one that is not there count for nothing.
-DELETABLE = [ROOT / "page", *(ROOT / "examples" / name for name in ("vehicles", "studies", "control", "importer"))]
-
-
-def leads_nowhere(link: Path) -> bool:
-    gone = [folder for folder in DELETABLE if not folder.exists()]
-    return not link.exists() and not any(link.resolve().is_relative_to(folder) for folder in gone)
-
-
-def test_every_link_of_the_documents_leads_to_a_file():
-    links = {document: local_links(document) for document in documents()}
-    broken = [(d.name, str(link)) for d, found in links.items() for link in found if leads_nowhere(link)]
-    assert broken == []
-    assert leads_nowhere(ROOT / "page" / "none.md")
-    assert len(links[ROOT / "README.md"]) > 10
-    decisions = {path.resolve() for path in (ROOT / "docs" / "decisions").glob("*.md")}
-    assert decisions <= {link.resolve() for link in local_links(ROOT / "docs" / "README.md")}
-
-
-class Tags(HTMLParser):
-    """Open elements, and what the page refers to."""
-
-    EMPTY = ("meta", "img", "br")
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.references: list[str] = []
-        self.names: list[str] = []
-
-    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
-        if tag not in self.EMPTY:
-            self.open.append(tag)
-        found = dict(attributes)
-        self.references += [found[key] for key in ("src", "href") if found.get(key)]
-        self.names += [found["id"]] if found.get("id") else []
-
-    def handle_startendtag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
-        pass  # such as <mspace/>: opens nothing, refers to nothing
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag, (tag, self.getpos())
+def test_every_decision_is_listed() -> None:
+    listed = re.findall(r"\]\((decisions/\w+\.md)\)", (ROOT / "docs" / "README.md").read_text(encoding="utf-8"))
+    assert set(listed) == {f"decisions/{path.name}" for path in (ROOT / "docs" / "decisions").glob("*.md")}
 
 
 def test_the_fmus_page_is_well_formed_and_complete_offline(fmu):
-    folder = Path(fmu) / "documentation"
-    tags = Tags()
-    tags.feed((folder / "index.html").read_text(encoding="utf-8"))
-    assert tags.open == [] and len(tags.references) == 9
-    for reference in tags.references:
-        known = reference[1:] in tags.names if reference.startswith("#") else (folder / reference).is_file()
+    folder, strict = Path(fmu) / "documentation", etree.HTMLParser(recover=False)
+    page = etree.parse(folder / "index.html", strict)
+    references = page.xpath("//@src | //@href")
+    assert len(references) == 9
+    for reference in references:
+        known = reference[1:] in page.xpath("//@id") if reference.startswith("#") else (folder / reference).is_file()
         assert known, reference
-    with pytest.raises(AssertionError):
-        Tags().feed("<p><b>crossed</p></b>")
-
-
-def test_the_archive_carries_a_notice_for_everything_compiled_in(fmu):
-    licences = {path.name: path.read_text(encoding="utf-8") for path in (Path(fmu) / "licenses").iterdir()}
-    needed = {
-        "license.txt": "wheel.fmu founders",
-        "sundials-license.txt": "Lawrence Livermore",
-        "eigen-notice.txt": "Mozilla Public",
-        "fmi-headers-notice.txt": "Modelica Association",
-    }
-    for name, words in needed.items():
-        assert words in licences.get(name, ""), name
-        assert "no such words" not in licences[name]
+    with pytest.raises(etree.XMLSyntaxError):
+        etree.fromstring(b"<p><b>crossed</p></b>", strict)
