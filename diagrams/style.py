@@ -93,8 +93,13 @@ def note(ax: Axes, text: str, at: Sequence[float], shift: Sequence[float], **how
 
 def save(fig: Figure, stem: Path, dpi: int = 300) -> list[Path]:
     """Write stem.svg and stem.png without date or program version; return both paths."""
-    stem.parent.mkdir(parents=True, exist_ok=True)
-    svg, png = stem.with_suffix(".svg"), stem.with_suffix(".png")
-    fig.savefig(svg, metadata={"Date": None, "Creator": None})
-    fig.savefig(png, dpi=dpi, metadata={"Software": None})
-    return [svg, png]
+    png = save_png(fig, stem.with_suffix(".png"), dpi)
+    fig.savefig(stem.with_suffix(".svg"), metadata={"Date": None, "Creator": None})
+    return [stem.with_suffix(".svg"), png]
+
+
+def save_png(fig: Figure, path: Path, dpi: int = 200) -> Path:
+    """The same bytes for the same picture."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fig.savefig(path, dpi=dpi, metadata={"Software": None})
+    return path

@@ -16,10 +16,12 @@ from support.motion import Library
 from support.paths import ROOT, build_folder
 from tqdm import tqdm
 
+from diagrams import style
 from publishing import documents
 
+from . import plots
 from .options import NAMES, arguments
-from .page import Report, read_tables, render, save
+from .page import Report, read_tables, render
 
 
 def measure(names: list[str], folder: Path, options: Namespace) -> None:
@@ -45,7 +47,7 @@ def draw(name: str, folder: Path) -> bool:
     """The pictures that are drawn from tables, and the page; whether all requirements are met."""
     of, missed = module(name), ""
     for picture, sheet in getattr(of, "PICTURES", {}).items():
-        save(sheet(read_tables(folder, name)), folder, f"{name}_{picture}")
+        style.save_png(sheet(read_tables(folder, name)), folder / f"{name}_{picture}.png", plots.DPI)
     if hasattr(of, "page"):
         of.page(folder)
     else:

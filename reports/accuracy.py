@@ -30,8 +30,8 @@ from support.driver import HEADLINE
 from support.scenes import Scene
 
 from . import plots
-from .page import Report, Row, Sheet, Tables, number
-from .plots import style
+from .page import Report, Row, Tables, number
+from .plots import Sheet, style
 from .speed import long_error
 from .truth import kept_headline, range_error
 

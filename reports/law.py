@@ -21,8 +21,8 @@ from support.driver import Values
 from support.motion import Library, Run, run
 
 from . import plots
-from .page import Report, Sheet, Tables, number
-from .plots import style
+from .page import Report, Tables, number
+from .plots import Sheet, style
 
 WIDTHS = tuple(10.0**-k for k in range(1, 9))
 TOLERANCES = (1e-4, 1e-6, 1e-8)

@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-from matplotlib.figure import Figure as Sheet
 from support.motion import Library
 from support.paths import ROOT, build_folder
 
@@ -65,11 +64,6 @@ def write_csv(folder: Path, name: str, frame: pd.DataFrame) -> None:
     (folder / "data").mkdir(parents=True, exist_ok=True)
     short = frame.map(lambda cell: float(f"{cell:.7g}") if isinstance(cell, float) else cell)
     short.to_csv(folder / "data" / f"{name}.csv", index=False, lineterminator="\n")
-
-
-def save(sheet: Sheet, folder: Path, name: str) -> None:
-    """NAME.png; the file holds no date."""
-    sheet.savefig(folder / f"{name}.png", dpi=150, metadata={"Software": None})
 
 
 def read_tables(folder: Path, name: str) -> Tables:

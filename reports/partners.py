@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from support.paths import ROOT
 
 from .page import Report
@@ -40,24 +41,19 @@ def driven_wheel(report: Report) -> None:
 
 def suspended_wheel(report: Report) -> None:
     """the suspended wheel against one set of equations"""
-    from vehicles import figures, ssp, suspended
+    from vehicles import errors, figures, ssp, suspended
 
     truth, units = suspended.together(), fmus(report)
     steps = suspended.STEPS[:3] if report.quick else suspended.STEPS
     found = suspended.convergence(units, truth, steps)
-    rows = [
-        {
-            "step, ms": 1000 * h,
-            "values held": held,
-            "positions that follow": followed,
-            "first derivatives": linear,
-            "share lost to the lag of a held position": suspended.drag_share(h),
-        }
-        for h, held, followed, linear in zip(found.steps, found.held, found.followed, found.linear, strict=True)
-    ]
-    report.table("orders", rows)
-    report.figure("order", "first derivatives: observed order below 2 by", 2 - min(found.orders(found.linear)), "", 0.3)
-    report.figure("linear", "error at the smallest step, first derivatives", found.linear[-1])
+    names = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
+    columns = {"step, ms": 1000 * np.array(steps)} | {names[kind]: values for kind, values in found.of.items()}
+    columns["share lost to the lag of a held position"] = [suspended.drag_share(h) for h in steps]
+    report.table("orders", pd.DataFrame(columns))
+    linear = found.of["derivatives"]
+    least = min(errors.orders(steps, linear))
+    report.figure("order", "first derivatives: observed order below 2 by", 2 - least, "", 0.3)
+    report.figure("linear", "error at the smallest step, first derivatives", linear[-1])
     package = ssp.build(suspended.system(units), ROOT / "build" / "examples")
     shares = [{"step, ms": 1000 * h, "error": suspended.package_distance(package, h, truth)} for h in steps[1:4]]
     report.table("package", shares)

@@ -17,8 +17,8 @@ from support.scenes import PAPER
 from support.schedule import Schedule
 
 from . import plots
-from .page import Report, Sheet, save
-from .plots import style
+from .page import Report
+from .plots import Sheet, style
 
 HEIGHT = PAPER.r_0 + PAPER.r  # m, of O when upright
 UPRIGHT = np.pi / 2
@@ -36,9 +36,7 @@ def lean(found: Run) -> np.ndarray:
 
 
 def picture(report: Report, sheet: Sheet, name: str) -> None:
-    folder = report.folder.parent / "figures"
-    folder.mkdir(exist_ok=True)
-    save(sheet, folder, name)
+    style.save_png(sheet, report.folder.parent / "figures" / f"{name}.png", plots.DPI)
 
 
 def stays_up(report: Report) -> None:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure as Sheet
 
 from diagrams import style
 
+DPI = 150
 COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.ORANGE, style.SKY, style.GREY, style.INK)
 
 
-def sheet(columns: int = 1, rows: int = 1, height: float = 70.0) -> tuple[Figure, list[Axes]]:
+def sheet(columns: int = 1, rows: int = 1, height: float = 70.0) -> tuple[Sheet, list[Axes]]:
     """A figure of the page's width, `height` mm for each row of axes."""
     style.use_style()
     figure = style.figure_mm(style.PAGE, height * rows)
@@ -31,7 +32,7 @@ def label(ax: Axes, x: str, y: str, title: str = "", log: str = "") -> None:
         ax.set_yscale("log")
 
 
-def legend_below(figure: Figure, ax: Axes, columns: int = 4) -> None:
+def legend_below(figure: Sheet, ax: Axes, columns: int = 4) -> None:
     """Each label once."""
     handles, labels = ax.get_legend_handles_labels()
     once = dict(zip(labels, handles, strict=True))

@@ -16,8 +16,9 @@ from support.scenes import SCENES, Scene
 
 from . import plots
 from .native import Array, Master, Task
-from .page import Row, Sheet, Tables
+from .page import Row, Tables
 from .peers import peers
+from .plots import Sheet
 from .truth import kept_headline, range_error
 
 POINTS = 101

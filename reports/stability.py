@@ -21,8 +21,8 @@ from robustness.verdicts import TOLERANCES, Verdict, judge_case
 
 from . import drift, edges, long_runs, plots
 from .law import crossings, draw_law, draw_methods, law
-from .page import Report, Row, Sheet, number, save
-from .plots import style
+from .page import Report, Row, number
+from .plots import Sheet, style
 
 DEADLINE = 120.0  # s
 FAULT = ["case", "tolerance", "what"]
@@ -66,7 +66,7 @@ def cases(report: Report) -> None:
     report.figure("cases", "cases of the sweep", len(found))
     report.figure("runs", "cases times tolerances", len(found) * len(TOLERANCES))
     report.figure("faults", "cases and tolerances that do not do as stated, hang or crash", len(faults), "", 0)
-    save(draw_cases(judged), report.folder, "stability_cases")
+    style.save_png(draw_cases(judged), report.folder / "stability_cases.png", plots.DPI)
 
 
 def case_rows(case: Case, verdicts: list[Verdict] | Broken) -> Iterator[Row]:

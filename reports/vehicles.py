@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
-from importlib.metadata import version
 
+import numpy as np
 import pandas as pd
-from support.paths import ROOT
-from vehicles import axle, axle_study, build, car, car_study, ssp
-from vehicles.drawing import Errors, draw_orders
+from vehicles import axle, axle_study, car, car_iso, car_judges, car_table, monolithic_car
+from vehicles.car import MANOEUVRES
+from vehicles.drawing import draw_orders
+from vehicles.errors import STEPS, Errors, orders
 from vehicles.example import draw_axle, draw_car
 from vehicles.master import EXCHANGES
 
+from .packages import packages
 from .page import Report, Tables
 from .partners import fmus
 
-STEPS = (0.002, 0.001, 0.0005)  # s
-GRID = 0.05  # s
+LIMITS = (0.001, 0.00125, 0.002, 0.0025, 0.003125, 0.004, 0.005)  # s; each divides the grid of the tables
+BUDGET = 10.0  # us per step of 1 ms for four wheels
 BONDS = ("F_X", "F_Y", "F_Z", "M_1", "M_2")
 
 
@@ -46,7 +45,7 @@ def axle_stiffness(report: Report) -> None:
     factors, rows = (1.0, 2.0, 4.0), []
     for name, scene in axle_study.SCENES.items():
         errors = axle_study.stiffness_errors(fmus(report), replace(scene, stop=2.0), factors)
-        order = float(-axle_study.orders(factors, errors)[-1])
+        order = float(-orders(factors, errors)[-1])
         of_factors = {f"stiffness x {f:g}": e for f, e in zip(factors, errors, strict=True)}
         rows.append({"scene": name, **of_factors, "order in 1/k": order})
     report.table("axle_stiffness", rows)
@@ -74,98 +73,112 @@ def axle_energy(report: Report) -> None:
     report.table("axle_energy", rows)
 
 
-def manoeuvres(report: Report, table: str) -> list[tuple[str, ...]]:
-    """Which ones a table is made of, where it is made of all."""
-    return [("step",)] if report.quick and table not in ("endings", "figures") else []
+def manoeuvres(report: Report) -> tuple[str, ...]:
+    return ("step",) if report.quick else car_table.NAMES
 
 
-def of_car(name: str) -> Callable[[Report], None]:
-    def table(report: Report) -> None:
-        head, rows = getattr(car_study, name)(fmus(report), *manoeuvres(report, name))
-        report.table(f"car_{name}", pd.DataFrame(rows, columns=head))
+def car_closed_forms(report: Report) -> None:
+    """the car: what follows from rigid links and wheels that never slip"""
+    rows = []
+    for name in manoeuvres(report):
+        run = car.drive(fmus(report), MANOEUVRES[name])
+        rows += [(name, f.what, f.unit, f.measured, f.exact) for f in car_judges.judge(run.table, MANOEUVRES[name])]
+    head = ["manoeuvre", "quantity", "unit", "measured", "closed form"]
+    report.table("car_closed_forms", pd.DataFrame(rows, columns=head))
 
-    table.__doc__ = f"the car: {name.replace('_', ' ')}"
-    return table
+
+def car_demand(report: Report) -> None:
+    """the car: the road that each manoeuvre needs, and where it needs it most"""
+    rows = []
+    for name in manoeuvres(report):
+        table = car.drive(fmus(report), MANOEUVRES[name]).table
+        at = car.worst(table)[1]
+        where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]
+        rows.append((MANOEUVRES[name].title, *car.demand(table).values(), *where))
+    head = ["manoeuvre", *car.NAMES.values(), "most at t [s]", "X [m]", "Y [m]"]
+    report.table("car_demand", pd.DataFrame(rows, columns=head))
+
+
+def car_endings(report: Report) -> None:
+    """the car: what ends the manoeuvre that is too fast, and the same of one set of equations"""
+    run = car.drive(fmus(report), car.TOO_FAST, exchange="rollback")
+    wheel, time = car_table.lift_off(car.TOO_FAST)
+    whole = f"The {car.NAMES[wheel]} wheel's normal force is zero at t = {time:.7f} s."
+    rows = [("coupled FMUs", car.sentence(run.ending)), ("one set of equations", whole)]
+    report.table("car_endings", pd.DataFrame(rows, columns=["system", "how it ended"]))
+
+
+def car_figures(report: Report) -> None:
+    """the car: the figures of road tests, of the coupled car and of one set of equations on the same grid"""
+    rows = []
+    for name, grid in (("circle", 0.01), ("step", 0.001), ("lane", 0.005)):
+        manoeuvre = MANOEUVRES[name]
+        coupled = car_iso.complete(car.drive(fmus(report), manoeuvre, grid=grid).table)
+        whole = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / grid) + 1) * grid, 1e-9)
+        both = (car_iso.FIGURES[name](table) for table in (coupled, whole))
+        rows += [(name, a.what, a.unit, a.value, b.value, a.theory) for a, b in zip(*both, strict=True)]
+    head = ["manoeuvre", "quantity", "unit", "coupled FMUs", "one set of equations", "rigid links"]
+    report.table("car_figures", pd.DataFrame(rows, columns=head))
+
+
+def car_longest(report: Report) -> None:
+    """the car: the longest step with which a manoeuvre runs to its end with errors below 10 % of the ranges"""
+    names = manoeuvres(report)
+    rows = [(e, *(1000 * longest_step(report, name, e) for name in names)) for e in EXCHANGES]
+    head = ["inputs over the step", *(f"{name} [ms]" for name in names)]
+    report.table("car_longest", pd.DataFrame(rows, columns=head))
+
+
+def longest_step(report: Report, name: str, exchange: str) -> float:
+    truth, found = car_table.read(name), 0.0
+    for h in LIMITS:
+        run = car.drive(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID)
+        if run.ending or not max(car_table.apart(run.table, truth).values()) < 0.1:
+            break
+        found = h
+    return found
 
 
 def car_errors(report: Report) -> None:
-    """the car: error against the step"""
-    head, rows = car_study.errors(fmus(report), *manoeuvres(report, "errors"))
-    report.table("car_errors", pd.DataFrame(rows, columns=head))
-    at = {(name, exchange, h): error for name, exchange, h, *_, error, _ in rows}
-    largest = max(at[name, "rollback", 2.0] for name, *_ in rows if name not in ("straight", "hill"))
-    report.figure("rollback", "car, rollback at 2 ms, but for standstills: error / range", largest, "", 1e-5)
-    of: dict[str, dict[str, list[float]]] = {}
-    for name, exchange, *_, error, _ in rows:
-        of.setdefault(name, {}).setdefault(exchange, []).append(error)
-    draw_orders({n: Errors(STEPS, e) for n, e in of.items()}, report.folder / "vehicles_orders.png")
-    for name, manoeuvre in car.MANOEUVRES.items():
+    """the car: error against one set of equations, by manoeuvre, master, step and output"""
+    rows, largest = [], {}
+    for name in manoeuvres(report):
+        truth, of = car_table.read(name), largest.setdefault(name, {})
+        for exchange in EXCHANGES:
+            runs = [car.drive(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID) for h in STEPS]
+            found = [car_table.apart(run.table, truth) for run in runs]
+            of[exchange] = [max(errors.values()) for errors in found]
+            order = [None, *-np.diff(np.log2(of[exchange]))]
+            rows += [
+                {"manoeuvre": name, "inputs over the step": exchange, "step [ms]": 1000 * h}
+                | errors
+                | {"largest": worst, "order": p}
+                for h, errors, worst, p in zip(STEPS, found, of[exchange], order, strict=True)
+            ]
+    report.table("car_errors", rows)
+    moving = [of["rollback"][0] for name, of in largest.items() if name not in ("straight", "hill")]
+    report.figure("rollback", "car, rollback at 2 ms, but for standstills: error / range", max(moving), "", 1e-5)
+    draw_orders({n: Errors(STEPS, of) for n, of in largest.items()}, report.folder / "vehicles_orders.png")
+    for name, manoeuvre in MANOEUVRES.items():
         draw_car(car.drive(fmus(report), manoeuvre), manoeuvre, None, report.folder / f"vehicles_{name}.png")
 
 
 def car_cost(report: Report) -> None:
-    """the car: computing times"""
-    head, rows = car_study.cost(fmus(report))
-    report.table("car_cost", pd.DataFrame(rows, columns=head))
-    for exchange, wheels, *_ in rows[:2]:
-        what = f"four wheels, a step of 1 ms, {exchange}"
-        report.figure(f"cost_{exchange}", what, wheels, "µs", car_study.BUDGET)
-
-
-def packages(report: Report) -> None:
-    """the packages in other tools, beside the master of the examples"""
-    units, h = fmus(report), 0.0005
-    folder, scene, wait = units["chassis"].parent, replace(axle_study.TRAILING, stop=2.0), {"t_couple": 3 * h}
-    waiting = replace(car.LANE, chassis={**car.LANE.chassis, **wait})
-    later = replace(scene, more=wait)
-    axles = [axle.coupled(units, s, h, e, GRID) for s, e in ((scene, "rollback"), (later, "held"))]
-    cars = [car.drive(units, m, h, e, GRID).table for m, e in ((car.LANE, "rollback"), (waiting, "held"))]
-    cases = (
-        (ssp.build(axle.system(units, scene, h), folder), scene.stop, ("axle.X", "axle.Y"), axles),
-        (ssp.build(car.system(units, car.LANE, h), folder), car.LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
-    )
-    rows: list[dict[str, object]] = []
-    for package, stop, wanted, own in cases:
-        ends = [
-            (f"master.py, {e}", "", [run[n.split(".")[1]][-1] for n in wanted])
-            for e, run in zip(("rollback", "held"), own, strict=True)
-        ]
-        columns = ssp.run(package, h, stop, GRID)
-        ends.append(("fmpy.ssp", f"FMPy {version('fmpy')}", [columns[n][-1] for n in wanted]))
-        for tool, number, command in tools_at_hand(report.options["tools"]):
-            said = subprocess.run([*command, package, repr(h), repr(stop), *wanted], capture_output=True, check=True)
-            found = dict(line.split() for line in said.stdout.decode().splitlines() if line.startswith(wanted))
-            ends.append((tool, number, [float(found[n]) for n in wanted]))
-        new = [
-            {"package": package.name, "tool": tool, "version": number}
-            | {f"{axis} at the end, m": f"{x:.8f}" for axis, x in zip("XY", values, strict=True)}
-            for tool, number, values in ends
-        ]
-        rows += new + of_other_tools(new)
-    report.table("packages", rows)
-
-
-def of_other_tools(new: list[dict[str, object]]) -> list[dict[str, object]]:
-    """Published rows of tools that are not at hand now, if all that is at hand has the values that it had then."""
-    path = ROOT / "docs" / "results" / "data" / "vehicles_packages.csv"
-    old = pd.read_csv(path, dtype=str, keep_default_na=False).to_dict("records") if path.exists() else []
-    old = {row["tool"]: row for row in old if row["package"] == new[0]["package"]}
-    same = all(old.get(row["tool"]) == row for row in new)
-    return [row for tool, row in old.items() if same and tool not in [row["tool"] for row in new]]
-
-
-def tools_at_hand(python: str | None) -> list[tuple[str, str, list[str]]]:
-    """Name, version and command: the interpreter `python` has two of them, OMSimulator may be on the PATH."""
-    scripts, found = build.EXAMPLES / "tools", []
-    for tool, package in (("libcosim", "libcosimpy"), ("ecos", "ecospy")) if python else ():
-        ask = f"import importlib.metadata as m; print(m.version({package!r}))"
-        number = subprocess.run([python, "-c", ask], capture_output=True, text=True, check=True).stdout.strip()
-        found.append((tool, f"{package} {number}", [python, str(scripts / f"by_{tool}.py")]))
-    if program := shutil.which("OMSimulator"):
-        tried = pd.read_csv(ROOT / "docs" / "results" / "data" / "interoperability.csv", dtype=str)
-        number = tried.loc[tried.iloc[:, 0] == "OMSimulator"].iloc[0, 1]
-        found.append(("OMSimulator", number, [sys.executable, str(scripts / "by_omsimulator.py"), program]))
-    return found
+    """the car: microseconds per step of 1 ms: medians over the steps of the change of lanes, and over runs"""
+    rows = []
+    for exchange in EXCHANGES:
+        runs = pd.DataFrame([car.drive(fmus(report), car.LANE, exchange=exchange, grid=1.0).cost for _ in range(5)])
+        wheels, bodies = runs[list(car.WHEELS)].sum(axis=1).median(), runs[["chassis", "driver"]].sum(axis=1).median()
+        whole = runs["total"].median()
+        row = {"inputs over the step": exchange, "four wheels [us]": wheels}
+        row |= {f"within {BUDGET:g} us": "yes" if wheels <= BUDGET else "no", "chassis, driver [us]": bodies}
+        rows.append(
+            row | {"exchange [us]": runs["exchange"].median(), "all [us]": whole, "times real time": 1000 / whole}
+        )
+    report.table("car_cost", rows)
+    for row in rows[:2]:
+        exchange, wheels = row["inputs over the step"], row["four wheels [us]"]
+        report.figure(f"cost_{exchange}", f"four wheels, a step of 1 ms, {exchange}", wheels, "µs", BUDGET)
 
 
 def views(tables: Tables) -> Tables:
@@ -182,6 +195,6 @@ def views(tables: Tables) -> Tables:
 
 PARTS: dict[Callable[[Report], None], float] = {
     **{axle_steps: 30, axle_stiffness: 30, axle_limits: 30, axle_energy: 10, car_errors: 120, car_cost: 20},
-    **{of_car(name): 40 for name in ("closed_forms", "demand", "endings", "figures", "longest")},
+    **dict.fromkeys((car_closed_forms, car_demand, car_endings, car_figures, car_longest), 40),
     packages: 120,
 }

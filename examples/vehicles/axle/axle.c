@@ -11,15 +11,14 @@
  * Until t_couple the beam runs on straight and the hubs carry the weight alone. */
 #include <math.h>
 
-#include "hub.h"
-#include "model.h"
 #include "vector.h"
+#include "vehicle.h"
 
-enum { x_loss = body_states, x_psi, state_count };
+enum { x_loss = vehicle_states, state_count };
 const int model_state_count = state_count;
 
 const char* model_derive(const double* u, double* d) {
-  gravity(u[g], u[slope], u[slope_direction], d);
+  gravity(u[g], u[slope], u[slope_direction], d + at_g);
   return 0;
 }
 
@@ -35,8 +34,7 @@ void model_start(const Now* now, double* x) {
   x[x_psi] = u[psi_start];
 }
 
-/* Both hubs with their forces; before t_couple they carry the weight alone. */
-static void hubs(const Now* now, const Body* body, Hub hub[wheel_count]) {
+void hubs(const Now* now, const Body* body, Hub hub[wheel_count]) {
   const double* u = now->u;
   const Bushing bushing = {u[k_a], u[c_a]};
   for (int i = 0; i < wheel_count; ++i) {
@@ -64,21 +62,11 @@ static double support(const Now* now, Body* body) {
   return u[c_p] * rate * rate;
 }
 
-void model_rates(const Now* now, const double* x, double* x_dot) {
+void further(const Now* now, const Hub hub[wheel_count], Body* body, double* x_dot) {
   const double* u = now->u;
-  const double J[3] = {u[J_1], u[J_2], u[J_3]};
-  Body body;
-  Hub hub[wheel_count];
-  body_read(x, &body);
-  if (body_runs_on(reached(now, t_couple), &body, x_dot, state_count)) return;
-  hubs(now, &body, hub);
-  x_dot[x_loss] = support(now, &body);
-  for (int i = 0; i < wheel_count; ++i) {
-    hub_react(&hub[i], &body);
+  x_dot[x_loss] = support(now, body);
+  for (int i = 0; i < wheel_count; ++i)
     x_dot[x_loss] += u[c] * dot(hub[i].d_dot, hub[i].d_dot) + u[c_a] * hub[i].turn_rate2;
-  }
-  body_rates(x, &body, u[m_B], J, now->d, x_dot);
-  x_dot[x_psi] = body.w_fixed[2];
 }
 
 /* Kinetic and potential energy; the constant shares of the weight, and M_0, are potentials too. */

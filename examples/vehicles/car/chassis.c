@@ -12,15 +12,11 @@
  * brake's, which the chassis carries; B is its capacity, s N that of rolling friction. Until t_couple the chassis runs
  * on straight and each strut gives F_i alone. */
 #include <math.h>
-#include <string.h>
 
-#include "hub.h"
-#include "model.h"
-#include "vector.h"
+#include "vehicle.h"
 
-enum { x_psi = body_states, state_count };
-enum { at_x_R = wheel_count, at_L, at_g, derived_count = at_g + 3 }; /* derived; first: shares of the weight */
-const int model_state_count = state_count;
+enum { at_share = vehicle_derived, at_x_R = at_share + wheel_count, at_L, derived_count };
+const int model_state_count = vehicle_states;
 _Static_assert((int)derived_count <= (int)max_derived, "too many wheels");
 
 static const double* of_wheel(const double* u, int first, int i) { return u + first + i * wheel_parameters; }
@@ -48,12 +44,12 @@ static int weigh(const double* u, double* share) {
 
 const char* model_derive(const double* u, double* d) {
   gravity(u[g], u[slope], u[slope_direction], d + at_g);
-  if (!weigh(u, d)) return "The hubs must not lie on one line.";
+  if (!weigh(u, d + at_share)) return "The hubs must not lie on one line.";
   double x[2] = {0, 0}, n[2] = {0, 0};
   for (int i = 0; i < wheel_count; ++i) {
     const int steered = *of_wheel(u, steer_each, i) > 0.5;
     x[steered] += *of_wheel(u, x_each, i), n[steered] += 1;
-    if (!(d[i] > 0)) return "The centre of mass must lie between the wheels.";
+    if (!(d[at_share + i] > 0)) return "The centre of mass must lie between the wheels.";
   }
   if (n[0] == 0 || n[1] == 0) return "Some wheels must be steered, and some not.";
   d[at_x_R] = x[0] / n[0];
@@ -89,20 +85,21 @@ static double braking(const double* u, int i) {
   return B > 0 ? *tau * B / (B + u[s] * fmax(*N, 0)) : 0;
 }
 
-static void hubs(const Now* now, const Body* body, Hub hub[wheel_count]) {
+void hubs(const Now* now, const Body* body, Hub hub[wheel_count]) {
   const double* u = now->u;
   const Bushing bushing = {u[k_a], u[c_a]};
   const int coupled = reached(now, t_couple);
   for (int i = 0; i < wheel_count; ++i) {
     const double p[3] = {*of_wheel(u, x_each, i), *of_wheel(u, y_each, i), u[R] - u[h_B]};
     hub_read(u + X_O_each + i * wheel_inputs, body, p, steering(now, i), bushing, &hub[i]);
-    hub[i].f[2] = -now->d[i];
+    hub[i].M_3 = braking(u, i) - u[M_drive] * *of_wheel(u, drive_each, i);
+    hub[i].f[2] = -now->d[at_share + i];
     if (!coupled) {
       hub[i].M_1 = hub[i].M_2 = 0;
       continue;
     }
     for (int j = 0; j < 2; ++j) hub[i].f[j] = -u[k_h] * hub[i].d[j] - u[c_h] * hub[i].d_dot[j];
-    hub[i].f[2] = -strut(u, i, now->d[i], &hub[i]);
+    hub[i].f[2] = -strut(u, i, now->d[at_share + i], &hub[i]);
   }
   for (int i = 0; coupled && i < wheel_count; ++i) {
     const int other = bar_partner[i];
@@ -112,20 +109,8 @@ static void hubs(const Now* now, const Body* body, Hub hub[wheel_count]) {
   }
 }
 
-void model_rates(const Now* now, const double* x, double* x_dot) {
-  const double* u = now->u;
-  const double J[3] = {u[J_1], u[J_2], u[J_3]};
-  Body body;
-  Hub hub[wheel_count];
-  body_read(x, &body);
-  if (body_runs_on(reached(now, t_couple), &body, x_dot, state_count)) return;
-  hubs(now, &body, hub);
-  for (int i = 0; i < wheel_count; ++i) {
-    hub[i].M_3 = -u[M_drive] * *of_wheel(u, drive_each, i) + braking(u, i);
-    hub_react(&hub[i], &body);
-  }
-  body_rates(x, &body, u[m_B], J, now->d + at_g, x_dot);
-  x_dot[x_psi] = body.w_fixed[2];
+void further(const Now* now, const Hub hub[wheel_count], Body* body, double* x_dot) {
+  (void)now, (void)hub, (void)body, (void)x_dot;
 }
 
 static void pose_outputs(const Now* now, const double* x, const Body* body, double* y) {

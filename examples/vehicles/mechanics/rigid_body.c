@@ -59,12 +59,6 @@ void gravity(double g, double slope, double direction, double a[3]) {
   a[2] = -g * cos(slope);
 }
 
-int body_runs_on(int coupled, const Body* body, double* x_dot, int states) {
-  memset(x_dot, 0, (size_t)states * sizeof *x_dot);
-  if (!coupled) memcpy(x_dot + body_r, body->v, sizeof body->v);
-  return !coupled;
-}
-
 /* J w' = M - w x J w;  q' = q (0, w) / 2 */
 void body_rates(const double* x, const Body* body, double m, const double J[3], const double g[3], double* x_dot) {
   const double* q = x + body_q;

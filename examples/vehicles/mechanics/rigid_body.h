@@ -31,7 +31,5 @@ void gravity(double g, double slope, double direction, double a[3]);
 /* Rates of the states from F and M: Newton, Euler, and the quaternion's kinematics. J: principal moments; g: gravity.
  */
 void body_rates(const double* x, const Body* body, double m, const double J[3], const double g[3], double* x_dot);
-/* Before a body is coupled it runs on straight: whether it does, and then its rates. */
-int body_runs_on(int coupled, const Body* body, double* x_dot, int states);
 
 #endif

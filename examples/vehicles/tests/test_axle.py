@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from vehicles import axle, axle_study
+from support.bounds import beyond, relative_error, within
+from vehicles import axle, axle_study, errors
 from vehicles.axle_study import CLOTHOID, ROLLING_OUT, SCENES, STRAIGHT, TRAILING
 
 Fmus = dict[str, Path]
@@ -19,8 +20,8 @@ Fmus = dict[str, Path]
 def test_the_error_of_the_closed_form_falls_as_one_over_the_stiffness(fmus: Fmus, name: str) -> None:
     scene = replace(SCENES[name], stop=2.0)
     soft, stiff = axle_study.stiffness_errors(fmus, scene, (2.0, 4.0), 0.0005)
-    assert stiff < 0.008  # of the range; measured 1.6e-4, 6.8e-4, 6.2e-3, 3.8e-3
-    assert np.log2(soft / stiff) == pytest.approx(1.0, abs=0.25)  # measured 1.20, 1.00, 1.02, 1.03
+    within(stiff, 0.008, "error of links four times as stiff / range")
+    within(abs(np.log2(soft / stiff) - 1), 0.25, "order in 1/k off 1")
 
 
 @pytest.mark.parametrize("changed", [{"J_z": 1.7}, {"J_x": 0.5}, {"J_3": 15.0}, {"m_B": 117.0}, {"a": 0.19}])
@@ -29,16 +30,16 @@ def test_a_wrong_constant_of_the_closed_form_shows(fmus: Fmus, changed: dict[str
     scene = replace(TRAILING, stop=2.0)
     times = np.arange(101) * 0.02
     off = axle_study.distance(axle.rigid(replace(scene, **changed), times), axle.rigid(scene, times))
-    assert off > 0.0062  # the measured error of the trailing axle at four times the stiffness
+    beyond(off, 0.0062, "error of a wrong constant / range")  # more than that of links four times as stiff
 
 
 def test_equal_torques_drive_straight(fmus: Fmus) -> None:
     table = axle.coupled(fmus, replace(STRAIGHT, stop=2.0), 0.0005)
-    assert np.abs(table["Y"]).max() < 1e-12  # m; measured 1e-15
+    within(np.abs(table["Y"]).max(), 1e-15, "off the line, m")
     slope = np.polyfit(table["time"][50:], table["v"][50:], 1)[0]
     exact = 2 * 30.0 / (STRAIGHT.R * STRAIGHT.m_t)
-    assert slope == pytest.approx(exact, rel=1e-3)
-    assert slope != pytest.approx(60.0 / (STRAIGHT.R * (STRAIGHT.m_B + 40.0)), rel=0.1)  # partner: without J_z
+    within(relative_error(slope, exact), 1e-3, "acceleration, relative")
+    beyond(relative_error(slope, 60.0 / (STRAIGHT.R * (STRAIGHT.m_B + 40.0))), 0.1, "without J_z, relative")
 
 
 def test_on_a_slope_the_axle_rolls_as_the_closed_form_says(fmus: Fmus) -> None:
@@ -46,17 +47,18 @@ def test_on_a_slope_the_axle_rolls_as_the_closed_form_says(fmus: Fmus) -> None:
     table = axle.coupled(fmus, scene, 0.0005)
     slope = np.polyfit(table["time"][50:], table["v"][50:], 1)[0]
     exact = (2 * 30.0 / scene.R - (scene.m_B + 40.0) * scene.g * np.sin(0.1)) / scene.m_t
-    assert slope == pytest.approx(exact, rel=1e-3) and exact < 0.2
+    within(relative_error(slope, exact), 1e-3, "acceleration, relative")
     drift = axle_study.energy(fmus, replace(scene, M_left=0.0, M_right=0.0), 0.0005, "derivatives").drift
-    assert abs(drift) < 0.1  # J, measured 0.034; the height along the slope is worth 150 J
+    within(abs(drift), 0.1, "drift of the energy, J")  # the height along the slope is worth 150 J
     level = replace(scene, slope=0.0, M_left=0.0, M_right=0.0, v=1.0)
-    assert np.abs(axle.coupled(fmus, level, 0.0005)["v"] - 1.0).max() < 1e-9  # partner
+    within(np.abs(axle.coupled(fmus, level, 0.0005)["v"] - 1.0).max(), 1e-9, "change of speed on the level, m/s")
 
 
 def test_unequal_torques_draw_a_clothoid(fmus: Fmus) -> None:
     table = axle.coupled(fmus, replace(CLOTHOID, stop=2.0), 0.0005)
     yaw_acceleration = np.polyfit(table["time"], table["omega"], 1)[0]
-    assert yaw_acceleration == pytest.approx(6.0 * CLOTHOID.b / (CLOTHOID.R * CLOTHOID.I_t), rel=6e-3)  # measured 4e-3
+    exact = 6.0 * CLOTHOID.b / (CLOTHOID.R * CLOTHOID.I_t)
+    within(relative_error(yaw_acceleration, exact), 6e-3, "yaw acceleration, relative")
 
 
 @pytest.mark.parametrize("v", [-1.0, 0.0, 0.5])
@@ -64,8 +66,8 @@ def test_whatever_the_start_it_ends_with_the_mass_in_front(fmus: Fmus, v: float)
     scene = replace(TRAILING, v=v, omega=2.0, a=0.3, stop=8.0)
     table = axle.coupled(fmus, scene, 0.002)
     V = np.sqrt(scene.v**2 + scene.I_t / scene.m_t * scene.omega**2)
-    assert table["v"][-1] == pytest.approx(V, rel=0.02)
-    assert abs(table["omega"][-1]) < 0.02 * abs(scene.omega)
+    within(relative_error(table["v"][-1], V), 0.01, "speed at the end, relative")
+    within(abs(table["omega"][-1] / scene.omega), 0.02, "yaw rate at the end / at the start")
     behind = axle.coupled(fmus, replace(scene, a=-0.3, v=abs(v) + 0.1, stop=8.0), 0.002)
     assert behind["v"][-1] < 0  # partner: with the mass behind it turns round
 
@@ -74,8 +76,8 @@ def test_each_wheel_of_a_turning_axle_stops_at_its_own_instant(fmus: Fmus) -> No
     inner, outer = axle.stops(ROLLING_OUT)
     table = axle.coupled(fmus, replace(ROLLING_OUT, stiffness=4.0), 0.0005, grid=0.005)
     still = {w: float(table["time"][np.argmax(table[f"{w}.omega_z"] == 0)]) for w in axle.WHEELS}
-    assert still["left"] == pytest.approx(inner, abs=0.02)  # s; on a grid of 5 ms
-    assert still["right"] == pytest.approx(outer, abs=0.02)
+    within(abs(still["left"] - inner), 0.02, "the inner wheel stops, s")  # on a grid of 5 ms
+    within(abs(still["right"] - outer), 0.02, "the outer wheel stops, s")
     assert outer - inner > 1  # partner: the instants are far apart
     assert table["left.omega_z"][-1] == table["right.omega_z"][-1] == 0
 
@@ -93,8 +95,8 @@ def error(fmus: Fmus, short: axle.Scene) -> Callable[[str, float], float]:
 
 
 def test_held_values_have_order_one(error: Callable[[str, float], float]) -> None:
-    errors = [error("held", h) for h in (0.002, 0.001)]
-    assert axle_study.orders((0.002, 0.001), errors) == pytest.approx([1], abs=0.15)  # measured 0.97 over 2 s
+    (order,) = errors.orders((0.002, 0.001), [error("held", h) for h in (0.002, 0.001)])
+    within(abs(order - 1), 0.15, "order off 1")
 
 
 def test_positions_that_do_not_follow_their_rates_drag(
@@ -102,16 +104,16 @@ def test_positions_that_do_not_follow_their_rates_drag(
 ) -> None:
     """Partner: held positions lag by h / 2, a drag k v h / 2 at each hub; the axle is soon at rest."""
     held = axle_study.step_errors(fmus, replace(short, more={"follow": 0}), "held", (0.001,), 0.02)[0]
-    assert held > 20 * error("held", 0.001)  # measured 84 over 2 s
+    beyond(held / error("held", 0.001), 20, "error of positions that lag over that of those that follow")
 
 
 def test_first_derivatives_have_order_two(error: Callable[[str, float], float]) -> None:
-    errors = [error("derivatives", h) for h in (0.002, 0.001)]
-    assert axle_study.orders((0.002, 0.001), errors) == pytest.approx([2], abs=0.25)
+    (order,) = errors.orders((0.002, 0.001), [error("derivatives", h) for h in (0.002, 0.001)])
+    within(abs(order - 2), 0.25, "order off 2")
 
 
 def test_rollback_beats_first_derivatives_a_hundredfold(error: Callable[[str, float], float]) -> None:
-    assert error("rollback", 0.001) < error("derivatives", 0.001) / 100  # measured 350 over 2 s
+    within(error("rollback", 0.001) / error("derivatives", 0.001), 0.01, "error of rollback over that of derivatives")
 
 
 def test_the_energy_that_the_bonds_add_is_what_the_whole_gains(fmus: Fmus, short: axle.Scene) -> None:
@@ -119,7 +121,7 @@ def test_the_energy_that_the_bonds_add_is_what_the_whole_gains(fmus: Fmus, short
     scene = replace(short, more={"follow": 0})
     found = axle_study.energy(fmus, scene, 0.0005, "held")
     counted = sum(bonds.sum() for bonds in found.bonds.values())
-    assert found.drift < -10  # J, of some 90 J
-    assert counted == pytest.approx(found.drift, rel=0.1)
+    beyond(-found.drift, 10, "energy taken, J")  # of some 90 J
+    within(relative_error(counted, found.drift), 0.1, "bonds beside the sum, relative")
     lines = axle_study.energy(fmus, scene, 0.0005, "derivatives")
-    assert abs(lines.drift) < 1e-3 * abs(found.drift)  # partner: straight lines add next to nothing
+    within(abs(lines.drift / found.drift), 5e-4, "drift of straight lines over that of held positions")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.bounds import beyond, within
 from vehicles import driven
 from vehicles.component import Component
 from vehicles.driven import Drive
@@ -24,7 +25,7 @@ def verdict(drive: Drive) -> driven.Verdict:
 
 
 def test_the_wheel_alone_falls_within_two_seconds(verdict: driven.Verdict) -> None:
-    assert verdict.fall < 2  # measured 1.47 s
+    within(verdict.fall, 2, "falls, s")
 
 
 def test_the_controlled_wheel_never_falls(drive: Drive) -> None:
@@ -32,18 +33,18 @@ def test_the_controlled_wheel_never_falls(drive: Drive) -> None:
 
 
 def test_it_rolls_upright_along_a_line(verdict: driven.Verdict) -> None:
-    assert verdict.line_tilt < 0.01  # deg; measured 0.0038
-    assert verdict.line_heading < 0.03  # deg; measured 0.0116
+    within(verdict.line_tilt, 0.01, "tilt, deg")
+    within(verdict.line_heading, 0.03, "off the heading, deg")
 
 
 def test_it_rolls_along_the_circle_asked_for(verdict: driven.Verdict) -> None:
-    assert abs(verdict.circle_radius - driven.RADIUS) < 0.01  # m; measured 0.0042
-    assert verdict.circle_scatter < 0.003  # m; measured 0.0009
-    assert verdict.circle_tilt < 10  # deg; measured 7.9: a wheel turns to the side it leans to
+    within(abs(verdict.circle_radius - driven.RADIUS), 0.01, "radius off, m")
+    within(verdict.circle_scatter, 0.003, "off the circle, m")
+    within(verdict.circle_tilt, 10, "tilt, deg")  # a wheel turns to the side it leans to
 
 
 def test_it_holds_its_speed_against_rolling_friction(verdict: driven.Verdict) -> None:
-    assert verdict.speed_error < 0.003  # rad/s; measured 0.0010
+    within(verdict.speed_error, 0.003, "spin off, rad/s")
 
 
 def test_the_wheel_alone_fails_every_bound_of_the_course(drive: Drive) -> None:
@@ -55,10 +56,10 @@ def test_the_wheel_alone_fails_every_bound_of_the_course(drive: Drive) -> None:
     for name, zero in no_moments:
         table[name] = zero[: len(table)]
     alone = driven.judge(replace(drive, controlled=table))
-    assert alone.line_tilt > 1  # deg
-    assert alone.line_heading > 1  # deg
-    assert alone.circle_scatter > 0.1  # m
-    assert alone.speed_error > 0.1  # rad/s
+    beyond(alone.line_tilt, 10, "tilt, deg")
+    beyond(alone.line_heading, 30, "off the heading, deg")
+    beyond(alone.circle_scatter, 0.1, "off the circle, m")
+    beyond(alone.speed_error, 0.1, "spin off, rad/s")
 
 
 def test_a_controller_of_the_speed_alone_lets_the_wheel_fall(fmus: dict[str, Path]) -> None:
@@ -69,4 +70,4 @@ def test_a_controller_of_the_speed_alone_lets_the_wheel_fall(fmus: dict[str, Pat
     connections += [(("balance", name), ("wheel", name)) for name in ("M_1", "M_3")]
     with Master([wheel, balance], connections) as master:
         table = master.run(3.0, driven.STEP, [("wheel", "theta")])
-    assert np.abs(table["wheel.theta"] - np.pi / 2).max() > np.pi / 4
+    beyond(np.abs(table["wheel.theta"] - np.pi / 2).max(), np.pi / 4, "tilt, rad")

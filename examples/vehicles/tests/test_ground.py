@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.bounds import beyond, within
 from vehicles import ground
 
 
@@ -21,7 +22,7 @@ def test_beyond_s_N_it_moves_as_the_closed_form_says(fmus: dict[str, Path], shar
     table = ground.stand(fmus, share).table
     on = (table["time"] > 0.1) & (table["time"] < 0.495)
     exact = -(share - 1) * 0.01 * ground.M * ground.G / ground.J * (table["time"][on] - 0.1)
-    assert np.abs(table["omega_z"][on] - exact).max() < 1e-12  # rad/s; measured 5e-17 and 1e-16
+    within(np.abs(table["omega_z"][on] - exact).max(), 1e-15, "spin off, rad/s")
 
 
 def test_it_rolls_out_and_stands_again(fmus: dict[str, Path]) -> None:
@@ -36,18 +37,17 @@ def test_it_rolls_out_and_stands_again(fmus: dict[str, Path]) -> None:
 def test_a_growing_torque_releases_the_wheel_inside_a_step(fmus: dict[str, Path]) -> None:
     """The torque is given with its derivative: the release is found between communication points."""
     run = ground.ramp(fmus)
-    error = np.abs(run.table["omega_z"] - ground.ramp_speed(run.table["time"])).max()
-    assert error < 1e-8  # rad/s; measured 2.2e-10
+    within(np.abs(run.table["omega_z"] - ground.ramp_speed(run.table["time"])).max(), 1e-15, "spin off, rad/s")
     late = np.abs(run.table["omega_z"] - ground.ramp_speed(run.table["time"], release=0.506)).max()
-    assert late > 1e-4  # partner: 1 ms late would show
+    beyond(late, 1e-4, "spin off, released 1 ms late, rad/s")
     assert run.log == ["t = 0.505 s: release, omega_z becomes negative."]
 
 
 def test_a_wheel_that_rolls_onto_sand_slows_down_from_there(fmus: dict[str, Path]) -> None:
     run = ground.sand(fmus)
-    error = np.abs(run.table["omega_z"] - ground.sand_speed(run.table["time"])).max()
-    assert error < 1e-10  # rad/s; measured 3.2e-14
-    assert np.abs(run.table["omega_z"] - ground.sand_speed(run.table["time"], at=0.51)).max() > 1e-3  # partner
+    within(np.abs(run.table["omega_z"] - ground.sand_speed(run.table["time"])).max(), 2e-13, "spin off, rad/s")
+    late = np.abs(run.table["omega_z"] - ground.sand_speed(run.table["time"], at=0.51)).max()
+    beyond(late, 1e-3, "spin off, sand 10 ms late, rad/s")
     assert run.log == []  # it rolls on as before: no transition of the slip
 
 

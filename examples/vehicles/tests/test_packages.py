@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssd, read_ssv
+from support.bounds import beyond, within
 from vehicles import axle, axle_study, car, ssp, suspended
 
 
@@ -29,15 +30,15 @@ def test_the_package_is_valid_ssp_and_its_parameters_are_bound_at_the_component(
 
 def test_fmpy_runs_the_package_and_converges_with_order_one(package: Path, truth: dict[str, np.ndarray]) -> None:
     coarse, fine = (suspended.package_distance(package, h, truth) for h in (0.00125, 0.000625))
-    assert np.log2(coarse / fine) == pytest.approx(1, abs=0.1)  # measured 1.06
-    assert fine < 0.06  # measured 0.051
+    within(abs(np.log2(coarse / fine) - 1), 0.1, "order off 1")
+    within(fine, 0.06, "error / range")
 
 
 def test_a_package_without_its_parameters_is_another_system(package: Path, truth: dict[str, np.ndarray]) -> None:
     """Partner: the start values come from the SSV."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ssp, "parameter_set", lambda _package: None)
-        assert suspended.package_distance(package, 0.005, truth, stop=0.3) > 0.5
+        beyond(suspended.package_distance(package, 0.005, truth, stop=0.3), 100, "error / range")
 
 
 def at_the_end(package: Path, names: tuple[str, ...], step: float, stop: float) -> np.ndarray:
@@ -54,8 +55,8 @@ def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(
         abs(at_the_end(ssp.build(car.system(fmus, manoeuvre, h), tmp_path), ("chassis.X_R",), h, 1.5)[0] - truth)
         for h in (0.001, 0.0005)
     ]
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(1, abs=0.1)
-    assert errors[1] < 0.01  # m of 22 m
+    within(abs(np.log2(errors[0] / errors[1]) - 1), 0.005, "order off 1")
+    within(errors[1], 0.01, "off the end, m")  # of 22 m
 
 
 def test_the_package_of_the_axle_runs_in_fmpy(fmus: dict[str, Path], tmp_path: Path) -> None:
@@ -63,4 +64,4 @@ def test_the_package_of_the_axle_runs_in_fmpy(fmus: dict[str, Path], tmp_path: P
     table = axle.coupled(fmus, scene, 0.0005, "rollback", 0.05)
     package = ssp.build(axle.system(fmus, scene, 0.0005), tmp_path)
     ends = at_the_end(package, tuple(f"axle.{n}" for n in names), 0.0005, 1.0)
-    assert np.abs(ends - [table[n][-1] for n in names]).max() < 0.01  # m, m, rad; measured 4e-3
+    within(np.abs(ends - [table[n][-1] for n in names]).max(), 0.01, "off the end, m, rad")

@@ -5,8 +5,10 @@ from __future__ import annotations
 import csv
 
 import pytest
+from support.bounds import absolute_error, beyond, within
 from support.paths import ROOT
-from vehicles import car_study, car_table
+from vehicles import car_table
+from vehicles.errors import STEPS
 
 RESULTS = ROOT / "docs" / "results"
 
@@ -20,7 +22,7 @@ def test_every_manoeuvre_is_there_with_every_master() -> None:
     found = {
         (row["manoeuvre"], row["inputs over the step"], float(row["step [ms]"])) for row in rows("vehicles_car_errors")
     }
-    steps = [1000 * h for h in car_study.STEPS]
+    steps = [1000 * h for h in STEPS]
     assert found == {(n, e, h) for n in car_table.NAMES for e in ("held", "derivatives", "rollback") for h in steps}
 
 
@@ -31,5 +33,5 @@ def test_omsimulator_has_the_values_of_the_master_of_the_examples(package: str) 
         for row in rows("vehicles_packages")
         if row["package"] == package
     }
-    assert ends["OMSimulator"] == pytest.approx(ends["master.py, held"], abs=2e-8)  # what the table's digits tell
-    assert ends["OMSimulator"] != pytest.approx(ends["fmpy.ssp"], abs=1e-5)  # partner
+    within(absolute_error(ends["OMSimulator"], ends["master.py, held"]), 2e-8, "at the end, m")  # the table's digits
+    beyond(absolute_error(ends["OMSimulator"], ends["fmpy.ssp"]), 1e-3, "fmpy.ssp, which begins later, m")

@@ -10,14 +10,17 @@ middle and the yaw rate:
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from .component import Component
 from .hubs import upright, wire
 from .master import Master, Signal
+from .options import starts
 from .ssp import System
 
 WHEELS = ("left", "right")
@@ -69,17 +72,11 @@ class Scene:
         """First moment of mass ahead of the axle, kg m."""
         return self.m_B * self.a
 
-    def wheel_break(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Begins and ends of the intervals between the times, cut where a wheel stops."""
-        cuts = [t for t in stops(self) if 0 < t < times[-1]] if self.s and self.omega else []
-        edges = np.union1d(times, cuts)
-        return edges[:-1], edges[1:]
-
     def axle_start(self) -> dict[str, float]:
         """Parameters of axle.fmu."""
-        links = {"k": 300e3, "c": 4e3, "k_a": 40e3, "c_a": 500.0, "k_p": 200e3, "c_p": 1500.0}
+        links = starts("axle")
         return {
-            **{name: value * self.stiffness for name, value in links.items()},
+            **{name: links[name] * self.stiffness for name in ("k", "c", "k_a", "c_a", "k_p", "c_p")},
             "inner_step": min(5e-4, 5e-4 / self.stiffness),
             **{"m_B": self.m_B, "J_3": self.J_3, "a": self.a, "b": self.b, "M_left": self.M_left},
             **{"M_right": self.M_right, "v_start": self.v, "omega_start": self.omega, "slope": self.slope},
@@ -178,31 +175,21 @@ def rolling_out(scene: Scene, times: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def rigid(scene: Scene, times: np.ndarray) -> dict[str, np.ndarray]:
-    """X, Y, psi, v, omega of the rigid axle at `times` (rising from 0); the path by quadrature of v and omega."""
+    """X, Y, psi, v, omega of the rigid axle at `times` (rising from 0); the path from v and omega by SciPy."""
+
+    def rate(t: float, y: np.ndarray) -> tuple[float, float, float]:
+        v, omega = velocities(scene, t)
+        return v * np.cos(y[2]), v * np.sin(y[2]), omega
+
+    cuts = [t for t in stops(scene) if 0 < t < times[-1]] if scene.s and scene.omega else []  # where a wheel stops
+    y, path = np.zeros(3), []
+    for begin, end in pairwise([0.0, *cuts, times[-1]]):
+        at = times[(times >= begin) & ((times < end) | (end == times[-1]))]
+        found = solve_ivp(rate, (begin, end), y, "DOP853", np.union1d(at, [end]), rtol=1e-12, atol=1e-12)
+        y = found.y[:, -1]
+        path.append(found.y[:, : len(at)])
     v, omega = velocities(scene, times)
-    begin, end = scene.wheel_break(times)
-    at, weights = gauss(begin, end)
-    turned = cumulative(weights, velocities(scene, at)[1])
-    inner_at, inner_weights = gauss(np.repeat(begin, at.shape[1]), at.ravel())
-    part = (inner_weights * velocities(scene, inner_at)[1]).sum(axis=1).reshape(at.shape)
-    heading = turned[:-1, None] + part
-    speed = velocities(scene, at)[0]
-    on_grid = np.searchsorted(end, times[1:] - 1e-12) + 1
-    pick = np.concatenate([[0], on_grid])
-    x, y = (cumulative(weights, speed * turn(heading))[pick] for turn in (np.cos, np.sin))
-    return {"time": times, "X": x, "Y": y, "psi": turned[pick], "v": v, "omega": omega}
-
-
-def gauss(begin: np.ndarray, end: np.ndarray, count: int = 8) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and weights between each begin and end."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    half = ((end - begin) / 2)[:, None]
-    return (begin + end)[:, None] / 2 + half * nodes, half * weights
-
-
-def cumulative(weights: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Integrals from the first begin to each end, with 0 in front."""
-    return np.concatenate([[0.0], np.cumsum((weights * values).sum(axis=1))])
+    return {"time": times, **dict(zip(("X", "Y", "psi"), np.hstack(path), strict=True)), "v": v, "omega": omega}
 
 
 def system(fmus: dict[str, Path], scene: Scene, step: float = 0.001) -> System:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from . import axle, bonds, options
+from . import axle, bonds, errors, options
 from .axle import CONNECTIONS, WHEELS, Scene, components, coupled, rigid
 from .component import Ended
 from .master import Master
@@ -17,24 +18,16 @@ CLOTHOID = Scene(M_left=24.0, M_right=30.0, v=1.0)
 TRAILING = Scene(a=0.2, v=-0.5, omega=2.0)
 ROLLING_OUT = Scene(s=0.03, v=2.0, omega=1.0)
 SCENES = dict(zip(options.SCENES, (STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT), strict=True))
-STEPS = (0.002, 0.001, 0.0005)  # s
 STIFFNESSES = (1.0, 2.0, 4.0, 8.0)
 LIMIT_STEPS = (0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
 GRID = 0.048  # s, which all of them divide
 
 
-def distance(table: dict[str, np.ndarray], truth: dict[str, np.ndarray]) -> float:
-    """Largest difference over time and compared variables, each relative to its range (at least 1 % of the unit)."""
-    return max(float(np.abs(table[n] - truth[n]).max() / max(np.ptp(truth[n]), 0.01)) for n in axle.COMPARED)
-
-
-def orders(steps: tuple[float, ...], errors: list[float]) -> list[float]:
-    """Observed order between neighbours."""
-    return list(np.diff(np.log(errors)) / np.diff(np.log(steps)))
+distance = partial(errors.distance, names=axle.COMPARED)
 
 
 def step_errors(
-    fmus: dict[str, Path], scene: Scene, exchange: str, steps: tuple[float, ...] = STEPS, grid: float = 0.02
+    fmus: dict[str, Path], scene: Scene, exchange: str, steps: tuple[float, ...] = errors.STEPS, grid: float = 0.02
 ) -> list[float]:
     """Error against h at this stiffness: the truth is the run with rollback at a quarter of the smallest step."""
     truth = coupled(fmus, scene, min(steps) / 4, "rollback", grid)

@@ -23,6 +23,7 @@ from .ssp import System
 
 LAYOUT = tomllib.loads((EXAMPLES / "car" / "car.toml").read_text())
 WHEELS: dict[str, dict[str, float | str]] = LAYOUT["wheel"]
+NAMES = {wheel: str(of["name"]) for wheel, of in WHEELS.items()}
 X_REAR = float(np.mean([w["x"] for w in WHEELS.values() if not w["steer"]]))  # rear point from the centre of mass
 WHEELBASE = float(np.mean([w["x"] for w in WHEELS.values() if w["steer"]])) - X_REAR  # m
 TRACK = float(np.ptp([w["y"] for w in WHEELS.values() if w["steer"]]))  # m, of the steered wheels
@@ -175,7 +176,7 @@ def columns(table: np.ndarray) -> dict[str, np.ndarray]:
 
 def sentence(end: Ended) -> str:
     """Which wheel ended the run, and when."""
-    name = f"{WHEELS[end.component]['name']} wheel" if end.component in WHEELS else end.component
+    name = f"{NAMES[end.component]} wheel" if end.component in WHEELS else end.component
     return f"The {name} ended the run at t = {end.time:.3f} s: {end.sentence}"
 
 
@@ -209,19 +210,31 @@ def rolled_back(table: dict[str, np.ndarray]) -> float:
     return max(float((np.maximum.accumulate(x) - x).max()) for x in (table[f"{w}.X_O"] for w in WHEELS))
 
 
+def demand(table: dict[str, np.ndarray]) -> dict[str, float]:
+    """Largest mu_required of each wheel: the road on which the manoeuvre would have been possible."""
+    return {w: float(np.nanmax(table[f"{w}.mu_required"])) for w in WHEELS}
+
+
+def worst(table: dict[str, np.ndarray]) -> tuple[str, int]:
+    """The wheel that asks most of the road, and the row in which it does."""
+    asked = demand(table)
+    wheel = max(asked, key=asked.get)
+    return wheel, int(np.nanargmax(table[f"{wheel}.mu_required"]))
+
+
 def verdict(run: Run, manoeuvre: Manoeuvre) -> list[str]:
     """What the run says of the manoeuvre: that it is none, or what it asks of the road."""
     table = run.table
     why = sentence(run.ending) if run.ending else missed(table, manoeuvre)
     if why:
         return [f"This is no {manoeuvre.title}: {why}" + ("" if why.endswith(".") else ".")]
-    demand = {str(w["name"]): float(np.nanmax(table[f"{n}.mu_required"])) for n, w in WHEELS.items()}
-    most = max(demand, key=demand.get)
-    each = ", ".join(f"{name} {mu:.2f}" for name, mu in demand.items())
-    possible = "possible" if demand[most] <= DRY_ROAD else f"not possible even on a dry road, about {DRY_ROAD:g}, but"
-    lines = [f"{manoeuvre.title}: {possible} on a road with a friction coefficient of {demand[most]:.2f} ({each})."]
+    asked = demand(table)
+    most = max(asked.values())
+    each = ", ".join(f"{NAMES[w]} {mu:.2f}" for w, mu in asked.items())
+    possible = "possible" if most <= DRY_ROAD else f"not possible even on a dry road, about {DRY_ROAD:g}, but"
+    lines = [f"{manoeuvre.title}: {possible} on a road with a friction coefficient of {most:.2f} ({each})."]
     if manoeuvre.name == HILL.name:
         lines.append(f"No wheel rolls back by more than {1000 * rolled_back(table):.3g} mm.")
     least = min(WHEELS, key=lambda w: table[f"{w}.lambda_3"].min())
     lowest = table[f"{least}.lambda_3"].min()
-    return [*lines, f"Smallest normal force: {lowest:.0f} N at the {WHEELS[least]['name']} wheel."]
+    return [*lines, f"Smallest normal force: {lowest:.0f} N at the {NAMES[least]} wheel."]

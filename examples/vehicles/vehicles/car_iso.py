@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .car import MASS, WHEELBASE, WHEELS, X_REAR, G
+from .car import MASS, NAMES, WHEELBASE, WHEELS, X_REAR, G, worst
 from .car_judges import INERTIA, LEANING
 
 Table = dict[str, np.ndarray]
@@ -101,15 +101,12 @@ def step(table: Table) -> list[Figure]:
 
 def lane(table: Table) -> list[Figure]:
     """How hard the change of lanes is, and where it asks most of the road."""
-    demand = {w: table[f"{w}.mu_required"] for w in WHEELS}
-    most = max(demand, key=lambda w: demand[w].max())
-    at = int(demand[most].argmax())
-    name = WHEELS[most]["name"]
+    wheel, at = worst(table)
     return [
         Figure("largest lateral acceleration", "m/s2", float(np.abs(table["a_y"]).max())),
         Figure("largest yaw rate", "rad/s", float(np.abs(table["omega"]).max())),
         Figure("largest roll angle", "rad", float(np.abs(table["roll"]).max())),
-        Figure(f"largest mu_required, at the {name} wheel", "1", float(demand[most][at])),
+        Figure(f"largest mu_required, at the {NAMES[wheel]} wheel", "1", float(table[f"{wheel}.mu_required"][at])),
         Figure("where: rear point, X", "m", float(table["X_R"][at])),
         Figure("when", "s", float(table["time"][at])),
     ]

@@ -163,11 +163,6 @@ def closure(table: Table) -> Finding:
     )
 
 
-def demand(table: Table) -> dict[str, float]:
-    """Largest mu_required of each wheel: the road on which the manoeuvre would have been possible."""
-    return {w: float(np.nanmax(table[f"{w}.mu_required"])) for w in WHEELS}
-
-
 JUDGES = {
     **{"straight": (launch, braking), "hill": (standing, launch, braking), "circle": (bend,), "step": (bend,)},
     **{"eight": (), "lane": (), "too_fast": ()},

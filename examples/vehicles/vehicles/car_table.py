@@ -13,7 +13,7 @@ import numpy as np
 from reference.tables import read_table, write_table
 from scipy.integrate import solve_ivp
 
-from . import car, monolithic_car
+from . import car, errors, monolithic_car
 from .build import EXAMPLES
 from .car import MANOEUVRES, TOO_FAST, WHEELS, Manoeuvre
 
@@ -38,13 +38,10 @@ def read(name: str) -> dict[str, np.ndarray]:
 
 
 def apart(table: dict[str, np.ndarray], truth: dict[str, np.ndarray]) -> dict[str, float]:
-    """Largest difference over time of each compared variable, relative to its range (at least 1 % of the unit)."""
-    every = round(GRID / (table["time"][1] - table["time"][0]))
-    count = len(truth["time"])
-    return {
-        name: float(np.abs(table[name][::every][:count] - truth[name]).max() / max(np.ptp(truth[name]), 0.01))
-        for name in car.COMPARED
-    }
+    """Error of each compared variable."""
+    every, count = round(GRID / (table["time"][1] - table["time"][0])), len(truth["time"])
+    on_grid = {name: table[name][::every][:count] for name in car.COMPARED}
+    return errors.apart(on_grid, truth, car.COMPARED)
 
 
 def lift_off(manoeuvre: Manoeuvre) -> tuple[str, float]:

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from diagrams import style
+
+from .errors import Errors
 
 COLOURS = (style.BLUE, style.SKY, style.VERMILLION, style.ORANGE, style.PURPLE, style.GREY)
 MARKS = {
@@ -26,26 +27,11 @@ ORDERS = {"positions held": 1, "held": 1, "derivatives": 2, "rollback": None}
 
 
 @dataclass(frozen=True)
-class Errors:
-    """Errors relative to the range against the communication step, by exchange; nan where a run broke off."""
-
-    steps: tuple[float, ...]
-    of: dict[str, list[float]]
-
-
-@dataclass(frozen=True)
 class Line:
     """One curve beside the path: label, values, unit."""
 
     label: str
     values: np.ndarray
-
-
-def save(fig: Figure, path: Path) -> Path:
-    """As PNG, the same bytes for the same picture."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(path, dpi=200, metadata={"Software": None})
-    return path
 
 
 def draw(
@@ -77,7 +63,7 @@ def draw(
     _lines(curves, t, *lines)
     if errors:
         draw_errors(style.axes_mm(fig, 124, 12, 54, 30), errors, BESIDE)
-    return save(fig, path)
+    return style.save_png(fig, path)
 
 
 def draw_orders(errors: dict[str, Errors], path: Path) -> Path:
@@ -94,7 +80,7 @@ def draw_orders(errors: dict[str, Errors], path: Path) -> Path:
             ax.set_ylabel("")
             ax.set_yticklabels([])
     fig.legend(*ax.get_legend_handles_labels(), loc="upper center", ncols=5)
-    return save(fig, path)
+    return style.save_png(fig, path)
 
 
 def _path(

@@ -86,9 +86,6 @@ class Verdict:
     circle_scatter: float  # m, largest departure from that circle
     circle_tilt: float  # deg, largest departure from upright on the circle
     speed_error: float  # rad/s, largest departure of omega_z from -2 in the last turn
-    largest_M_1: float  # N.m
-    largest_M_3: float  # N.m
-    lowest_N: float  # N
 
 
 def fall_time(table: np.ndarray) -> float:
@@ -114,9 +111,6 @@ def judge(drive: Drive) -> Verdict:
         circle_scatter=float(np.abs(np.hypot(x - a / 2, y - b / 2) - radius).max()),
         circle_tilt=float(tilt[t > T_CIRCLE].max()),
         speed_error=float(np.abs(table["omega_z"][turn] + 2).max()),
-        largest_M_1=float(np.abs(table["M_1"]).max()),
-        largest_M_3=float(np.abs(table["M_3"]).max()),
-        lowest_N=float(table["lambda_3"].min()),
     )
 
 

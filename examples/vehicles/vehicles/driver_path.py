@@ -1,4 +1,4 @@
-"""The driver's programmes and paths, written again for the independent check: nothing of driver.c is used.
+"""The driver's programmes and paths, written again for the independent check: of the driver its start values alone.
 
 Fixed axes X, Y; both paths begin at the origin along X.
 """
@@ -6,6 +6,10 @@ Fixed axes X, Y; both paths begin at the origin along X.
 from __future__ import annotations
 
 import numpy as np
+
+from .options import starts
+
+DRIVER_DEFAULTS = starts("driver")
 
 
 def rise(t: float, begin: float, duration: float) -> float:
@@ -53,21 +57,3 @@ class Path:
         """Positive to the left."""
         d, dd = self.derivatives(p)
         return float((d[0] * dd[1] - d[1] * dd[0]) / np.hypot(*d) ** 3)
-
-
-DRIVER_DEFAULTS = {
-    **{"T_delta": 0.08, "delta_0": 0.0, "t_delta": 1.0, "ramp_delta": 0.3, "path": 0.0, "size": 15.0, "width": 3.0},
-    **{"x_out": 30.0, "x_back": 65.0, "length": 8.0, "k_y": 0.02, "k_psi": 0.25, "t_v": 1.0, "ramp_v": 2.0},
-    **{
-        "k_v": 0.0,
-        "k_i": 0.0,
-        "M_0": 0.0,
-        "t_on": 0.5,
-        "t_off": 1e6,
-        "B_0": 0.0,
-        "t_brake": 1e6,
-        "B_hold": 0.0,
-        "t_release": 0.0,
-        "ramp_M": 0.2,
-    },
-}

@@ -23,15 +23,12 @@ if __name__ == "__main__":  # also while the packages below are loaded
     signal.signal(signal.SIGINT, interrupted)
 
 import numpy as np  # noqa: E402
-from tqdm import tqdm  # noqa: E402
 
-from . import axle, axle_study, build, car, driven, figures, options, ssp, suspended  # noqa: E402
+from . import axle, axle_study, build, car, driven, errors, figures, options, ssp, suspended  # noqa: E402
 from .component import Ended  # noqa: E402
-from .drawing import Errors, Line, draw  # noqa: E402
-from .master import EXCHANGES  # noqa: E402
+from .drawing import Line, draw  # noqa: E402
 
 RESULTS = build.ROOT / "results" / "examples"
-STEPS = (0.002, 0.001, 0.0005)  # s, for the error against the step
 Table = dict[str, np.ndarray]
 Values = options.Values
 
@@ -48,24 +45,6 @@ def multiple(h: float, grid: float) -> float:
     return max(1, round(grid / h)) * h
 
 
-def errors(run, compared: tuple[str, ...]) -> Errors | None:
-    """Error of each master against the run with rollback at half the smallest step; None where that breaks off."""
-    try:
-        truth = run(STEPS[-1] / 2, "rollback")
-    except Ended:
-        return None
-    ranges = {n: max(float(np.ptp(truth[n])), 0.01) for n in compared}
-    found: dict[str, list[float]] = {exchange: [] for exchange in EXCHANGES}
-    for exchange, h in tqdm([(e, h) for e in EXCHANGES for h in STEPS], leave=False, unit=" runs"):
-        try:
-            table = run(h, exchange)
-        except Ended:
-            found[exchange].append(float("nan"))
-            continue
-        found[exchange].append(max(float(np.abs(table[n] - truth[n]).max()) / ranges[n] for n in compared))
-    return Errors(STEPS, found)
-
-
 def run_axle(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:
     """The axle: a scene of axle_study.SCENES, with numbers of axle.Scene or parameters of axle.fmu changed."""
     own = {f.name for f in fields(axle.Scene)} - {"more"}
@@ -75,7 +54,7 @@ def run_axle(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:
     scene = replace(scene, more=more, **{name: value for name, value in given.items() if name in own})
     table = axle.coupled(fmus, scene, h, exchange, multiple(h, 0.02), progress=True)
     short = replace(scene, stop=min(scene.stop, 2.0))
-    found = errors(lambda step, how: axle.coupled(fmus, short, step, how, 0.02), axle.COMPARED)
+    found = errors.of_masters(lambda step, how: axle.coupled(fmus, short, step, how, 0.02), axle.COMPARED)
     exact = None if axle.without_closed_form(scene) else axle.rigid(scene, table["time"])
     draw_axle(table, exact, found, folder / "axle.png", f"Axle: {name}, step {1000 * h:g} ms")
     write_table(table, folder / "axle.csv")
@@ -86,7 +65,7 @@ def run_axle(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:
     return [f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."]
 
 
-def draw_axle(table: Table, exact: Table | None, found: Errors | None, path: Path, title: str) -> None:
+def draw_axle(table: Table, exact: Table | None, found: errors.Errors | None, path: Path, title: str) -> None:
     lines = [Line("speed [m/s]", table["v"]), Line("yaw rate [rad/s]", table["omega"])]
     closed = (exact["X"], exact["Y"]) if exact else None
     draw(table, {w: w for w in axle.WHEELS}, ("middle of the axle", lines), found, path, title, closed)
@@ -106,17 +85,16 @@ def run_car(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:
         **own,
     )
     run = car.drive(fmus, manoeuvre, h, exchange, multiple(h, 0.02), progress=True)
-    found = None if run.ending else errors(_whole(fmus, manoeuvre), car.COMPARED)
+    found = None if run.ending else errors.of_masters(_whole(fmus, manoeuvre), car.COMPARED)
     draw_car(run, manoeuvre, found, folder / "car.png")
     write_table(run.table, folder / "car.csv")
     ssp.build(car.system(fmus, manoeuvre, min(h, 0.0005)), folder)
     return car.verdict(run, manoeuvre)
 
 
-def draw_car(run: car.Run, manoeuvre: car.Manoeuvre, found: Errors | None, path: Path) -> None:
+def draw_car(run: car.Run, manoeuvre: car.Manoeuvre, found: errors.Errors | None, path: Path) -> None:
     degrees = [Line(name, np.degrees(run.table[name])) for name in ("delta", "roll", "pitch")]
-    names = {w: str(wheel["name"]) for w, wheel in car.WHEELS.items()}
-    draw(run.table, names, ("angle [deg]", degrees), found, path, car.title(run, manoeuvre))
+    draw(run.table, car.NAMES, ("angle [deg]", degrees), found, path, car.title(run, manoeuvre))
 
 
 def _whole(fmus: dict[str, Path], manoeuvre: car.Manoeuvre):

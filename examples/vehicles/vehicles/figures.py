@@ -8,9 +8,9 @@ import numpy as np
 
 from diagrams import style
 
-from .drawing import Errors, draw_errors, save
+from .drawing import draw_errors
 from .driven import Drive
-from .suspended import Convergence
+from .errors import Errors
 
 
 def draw_drive(drive: Drive, path: Path) -> None:
@@ -37,10 +37,10 @@ def draw_drive(drive: Drive, path: Path) -> None:
         moments.plot(drive.controlled["time"], drive.controlled[name], color=color, label=f"${name}$")
     moments.legend(loc="best", ncols=2)
     moments.set(xlabel="time [s]", ylabel="moment [N m]")
-    save(fig, path)
+    style.save_png(fig, path)
 
 
-def draw_launch(table: dict[str, np.ndarray], found: Convergence, path: Path) -> None:
+def draw_launch(table: dict[str, np.ndarray], found: Errors, path: Path) -> None:
     """Forces of the launch, and the error against the communication step."""
     style.use_style()
     fig = style.figure_mm(style.PAGE, 84)
@@ -53,10 +53,5 @@ def draw_launch(table: dict[str, np.ndarray], found: Convergence, path: Path) ->
         force.plot(table["time"], table[name] / 1000, color=color, label={"lambda_3": "$N$", "F_X": "$F_X$"}[name])
     force.legend(loc="center right", ncols=2)
     force.set(xlabel="time [s]", ylabel="force [kN]")
-    kinds = {"positions held": found.held, "held": found.followed, "derivatives": found.linear}
-    draw_errors(
-        style.axes_mm(fig, 104, 12, 74, 66),
-        Errors(found.steps, kinds),
-        {"loc": "center left", "bbox_to_anchor": (0.02, 0.32)},
-    )
-    save(fig, path)
+    draw_errors(style.axes_mm(fig, 104, 12, 74, 66), found, {"loc": "center left", "bbox_to_anchor": (0.02, 0.32)})
+    style.save_png(fig, path)

@@ -16,6 +16,7 @@ from scipy.integrate import solve_ivp
 
 from .car import LAYOUT, MASS, Manoeuvre
 from .driver_path import DRIVER_DEFAULTS, Path, rise
+from .options import starts
 from .rolling_wheels import Answer, Kind, Law, cross, dot, respond
 
 TOLERANCE = 1e-9
@@ -28,7 +29,7 @@ class Car:
     def __init__(self, manoeuvre: Manoeuvre) -> None:
         wheels = list(LAYOUT["wheel"].values())
         self.o = DRIVER_DEFAULTS | manoeuvre.driver_start()
-        self.c = LAYOUT["chassis"] | {"travel": 0.08, "k_stop": 8e6, "v_start": 0.0} | manoeuvre.chassis_start()
+        self.c = starts("chassis") | manoeuvre.chassis_start()
         self.path, self.kind, self.n = (
             Path(self.o),
             Kind(s=manoeuvre.s, slope=manoeuvre.slope, direction=manoeuvre.slope_direction),

@@ -94,16 +94,25 @@ LIST = {
 }
 
 
+def in_table(model: str) -> list[Variable]:
+    """The parameters of a model in C."""
+    layout = tomllib.loads((EXAMPLES / LAYOUTS[model]).read_text()) if model in LAYOUTS else {}
+    return [v for v in read(model, EXAMPLES / TABLES[model], layout)[1] if v.causality == "parameter"]
+
+
+def starts(model: str) -> dict[str, float]:
+    """Their start values by name."""
+    return {v.name: v.start for v in in_table(model)}
+
+
 def parameters(model: str) -> dict[str, Variable]:
     """The parameters of a model that a user may set, from its table; those of balance.fmu from its list in Python."""
     if model == "balance":
         text = (EXAMPLES / "balance" / "balance.py").read_text()
         rows = re.findall(r'^    "(\w+)": ([-\d.]+),  # (\S+?)(?:, (.*))?$', text, re.MULTILINE)
         return {n: Variable("parameter", n, unit, float(start), "", (), about) for n, start, unit, about in rows}
-    layout = tomllib.loads((EXAMPLES / LAYOUTS[model]).read_text()) if model in LAYOUTS else {}
-    _, variables = read(model, EXAMPLES / TABLES[model], layout)
     fixed = FIXED | ({"slope_direction"} if model == "axle" else set())
-    return {v.name: v for v in variables if v.causality == "parameter" and v.name not in fixed}
+    return {v.name: v for v in in_table(model) if v.name not in fixed}
 
 
 def known(example: Example) -> dict[str, Variable]:

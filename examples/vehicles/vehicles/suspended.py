@@ -7,17 +7,17 @@ step or by straight lines (derivatives of first order); compared with the same s
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import partial
 from math import exp, pi
 from pathlib import Path
 
 import numpy as np
-from reference.model import Start, Wheel
 
-from . import monolithic
+from . import errors, monolithic
 from .component import Component, Ended
 from .hubs import FORCE, MOMENT, POSE
 from .master import Master, Signal
+from .rolling_wheels import Kind
 from .ssp import System
 from .ssp import run as run_package
 
@@ -67,20 +67,17 @@ def system(fmus: dict[str, Path], parameters: dict[str, float] | None = None, st
 
 def together(stop: float = STOP, grid: float = GRID) -> dict[str, np.ndarray]:
     """The same system as one set of equations."""
-    start = Start(START["psi_start"], START["theta_start"], phi_dot=0.0, X_O=0.0)
-    return monolithic.solve(Wheel(s=START["s"]), start, np.arange(round(stop / grid) + 1) * grid)
+    return monolithic.solve(Kind(s=START["s"]), START["theta_start"], np.arange(round(stop / grid) + 1) * grid)
 
 
-def distance(table: dict[str, np.ndarray], truth: dict[str, np.ndarray]) -> float:
-    """Largest difference over time and compared variables, each relative to the variable's range."""
-    return max(float(np.abs(table[n] - truth[n]).max() / np.ptp(truth[n])) for n in COMPARED)
+distance = partial(errors.distance, names=COMPARED, least=0)
 
 
 def package_distance(package: Path, step: float, truth: dict[str, np.ndarray], stop: float = STOP) -> float:
     """Largest difference over time of X_O, theta and psi_dot in fmpy's run of the package, relative to their ranges."""
-    table = run_package(package, step, stop, GRID)
-    columns = {n: table[f"wheel.{n}"] for n in ("X_O", "theta", "psi_dot")}
-    return max(float(np.abs(c - truth[n][1 : 1 + len(c)]).max() / np.ptp(truth[n])) for n, c in columns.items())
+    table, names = run_package(package, step, stop, GRID), ("X_O", "theta", "psi_dot")
+    columns = {n: np.concatenate([truth[n][:1], table[f"wheel.{n}"], truth[n][1 + len(table) :]]) for n in names}
+    return errors.distance(columns, truth, names, 0)
 
 
 def ends(fmus: dict[str, Path], step: float, exchange: str) -> bool:
@@ -92,31 +89,18 @@ def ends(fmus: dict[str, Path], step: float, exchange: str) -> bool:
     return False
 
 
-@dataclass(frozen=True)
-class Convergence:
-    """Error against communication step, by what the inputs do over the step."""
-
-    steps: Sequence[float]
-    held: list[float]  # with all inputs held
-    followed: list[float]  # with positions that follow the velocities beside them
-    linear: list[float]
-
-    def orders(self, errors: list[float]) -> list[float]:
-        """Observed order between neighbouring steps."""
-        return [
-            float(np.log(e / f) / np.log(h / k))
-            for e, f, h, k in zip(errors, errors[1:], self.steps, self.steps[1:], strict=False)
-        ]
-
-
 def convergence(
     fmus: dict[str, Path], truth: dict[str, np.ndarray], steps: Sequence[float] = STEPS, stop: float = STOP
-) -> Convergence:
-    """Errors of the coupled runs."""
-    held = [distance(coupled(fmus, h, "held", stop, parameters={"follow": 0.0}), truth) for h in steps]
-    followed = [distance(coupled(fmus, h, "held", stop), truth) for h in steps]
-    linear = [distance(coupled(fmus, h, "derivatives", stop), truth) for h in steps]
-    return Convergence(steps, held, followed, linear)
+) -> errors.Errors:
+    """With all inputs held, with positions that follow the velocities beside them, and on straight lines."""
+    kinds = {"positions held": ("held", {"follow": 0.0}), "held": ("held", {}), "derivatives": ("derivatives", {})}
+    return errors.Errors(
+        steps,
+        {
+            name: [distance(coupled(fmus, h, exchange, stop, parameters=more), truth) for h in steps]
+            for name, (exchange, more) in kinds.items()
+        },
+    )
 
 
 def drag_share(h: float, k: float = 60e3, mass: float = 334.7, duration: float = 2.5) -> float:

@@ -1,0 +1,53 @@
+"""Errors of coupled runs: relative to each variable's range, over the communication step, and their order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from tqdm import tqdm
+
+from .component import Ended
+from .master import EXCHANGES
+
+STEPS = (0.002, 0.001, 0.0005)  # s
+Table = dict[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Errors relative to the range over the communication step, by exchange; nan where a run broke off."""
+
+    steps: Sequence[float]
+    of: dict[str, list[float]]
+
+
+def apart(table: Table, truth: Table, names: Sequence[str], least: float = 0.01) -> dict[str, float]:
+    """Largest difference over time of each variable, relative to its range, or to `least` where that is larger."""
+    return {n: float(np.abs(table[n] - truth[n]).max() / max(np.ptp(truth[n]), least)) for n in names}
+
+
+def distance(table: Table, truth: Table, names: Sequence[str], least: float = 0.01) -> float:
+    """The largest of them."""
+    return max(apart(table, truth, names, least).values())
+
+
+def orders(steps: Sequence[float], errors: Sequence[float]) -> list[float]:
+    """Observed order between neighbours."""
+    return list(np.diff(np.log(errors)) / np.diff(np.log(steps)))
+
+
+def of_masters(run: Callable[[float, str], Table], names: Sequence[str]) -> Errors | None:
+    """Of run(step, exchange) against rollback at half the smallest step; None where that breaks off."""
+    try:
+        truth = run(STEPS[-1] / 2, "rollback")
+    except Ended:
+        return None
+    found: dict[str, list[float]] = {exchange: [] for exchange in EXCHANGES}
+    for exchange, h in tqdm([(e, h) for e in EXCHANGES for h in STEPS], leave=False, unit=" runs"):
+        try:
+            found[exchange].append(distance(run(h, exchange), truth, names))
+        except Ended:
+            found[exchange].append(float("nan"))
+    return Errors(STEPS, found)

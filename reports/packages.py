@@ -1,0 +1,74 @@
+"""The packages of axle and car in other tools, beside the master of the examples, for `vehicles`."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from importlib.metadata import version
+
+import pandas as pd
+from support.paths import ROOT
+from vehicles import axle, axle_study, build, car, ssp
+
+from .page import Report
+from .partners import fmus
+
+GRID = 0.05  # s
+
+
+def packages(report: Report) -> None:
+    """the packages in other tools, beside the master of the examples"""
+    units, h = fmus(report), 0.0005
+    folder, scene, wait = units["chassis"].parent, replace(axle_study.TRAILING, stop=2.0), {"t_couple": 3 * h}
+    waiting = replace(car.LANE, chassis={**car.LANE.chassis, **wait})
+    later = replace(scene, more=wait)
+    axles = [axle.coupled(units, s, h, e, GRID) for s, e in ((scene, "rollback"), (later, "held"))]
+    cars = [car.drive(units, m, h, e, GRID).table for m, e in ((car.LANE, "rollback"), (waiting, "held"))]
+    cases = (
+        (ssp.build(axle.system(units, scene, h), folder), scene.stop, ("axle.X", "axle.Y"), axles),
+        (ssp.build(car.system(units, car.LANE, h), folder), car.LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
+    )
+    rows: list[dict[str, object]] = []
+    for package, stop, wanted, own in cases:
+        ends = [
+            (f"master.py, {e}", "", [run[n.split(".")[1]][-1] for n in wanted])
+            for e, run in zip(("rollback", "held"), own, strict=True)
+        ]
+        columns = ssp.run(package, h, stop, GRID)
+        ends.append(("fmpy.ssp", f"FMPy {version('fmpy')}", [columns[n][-1] for n in wanted]))
+        for tool, number, command in tools_at_hand(report.options["tools"]):
+            said = subprocess.run([*command, package, repr(h), repr(stop), *wanted], capture_output=True, check=True)
+            found = dict(line.split() for line in said.stdout.decode().splitlines() if line.startswith(wanted))
+            ends.append((tool, number, [float(found[n]) for n in wanted]))
+        new = [
+            {"package": package.name, "tool": tool, "version": number}
+            | {f"{axis} at the end, m": f"{x:.8f}" for axis, x in zip("XY", values, strict=True)}
+            for tool, number, values in ends
+        ]
+        rows += new + of_other_tools(new)
+    report.table("packages", rows)
+
+
+def of_other_tools(new: list[dict[str, object]]) -> list[dict[str, object]]:
+    """Published rows of tools that are not at hand now, if all that is at hand has the values that it had then."""
+    path = ROOT / "docs" / "results" / "data" / "vehicles_packages.csv"
+    old = pd.read_csv(path, dtype=str, keep_default_na=False).to_dict("records") if path.exists() else []
+    old = {row["tool"]: row for row in old if row["package"] == new[0]["package"]}
+    same = all(old.get(row["tool"]) == row for row in new)
+    return [row for tool, row in old.items() if same and tool not in [row["tool"] for row in new]]
+
+
+def tools_at_hand(python: str | None) -> list[tuple[str, str, list[str]]]:
+    """Name, version and command: the interpreter `python` has two of them, OMSimulator may be on the PATH."""
+    scripts, found = build.EXAMPLES / "tools", []
+    for tool, package in (("libcosim", "libcosimpy"), ("ecos", "ecospy")) if python else ():
+        ask = f"import importlib.metadata as m; print(m.version({package!r}))"
+        number = subprocess.run([python, "-c", ask], capture_output=True, text=True, check=True).stdout.strip()
+        found.append((tool, f"{package} {number}", [python, str(scripts / f"by_{tool}.py")]))
+    if program := shutil.which("OMSimulator"):
+        tried = pd.read_csv(ROOT / "docs" / "results" / "data" / "interoperability.csv", dtype=str)
+        number = tried.loc[tried.iloc[:, 0] == "OMSimulator"].iloc[0, 1]
+        found.append(("OMSimulator", number, [sys.executable, str(scripts / "by_omsimulator.py"), program]))
+    return found
