@@ -6,10 +6,11 @@ Every call here has arguments that are sound by themselves, so that the state al
 
 from __future__ import annotations
 
-from ctypes import byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, create_string_buffer
+from ctypes import CFUNCTYPE, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, create_string_buffer
 from typing import Any
 
 import numpy as np
+from fmpy.fmi2 import fmi2EventInfo
 from support.driver import (
     DISCARD,
     DO_STEP_STATUS,
@@ -45,21 +46,34 @@ TABLE: dict[str, set[str]] = {
     "fmi2DoStep": {"step complete"},
     "fmi2CancelStep": set(),
     **{f"fmi2Get{kind}Status": _STATUS for kind in ("", "Real", "Integer", "Boolean", "String")},
-    # model exchange, never legal in co-simulation
-    **dict.fromkeys(("fmi2EnterEventMode", "fmi2NewDiscreteStates", "fmi2EnterContinuousTimeMode"), set()),
-    **dict.fromkeys(("fmi2CompletedIntegratorStep", "fmi2SetTime", "fmi2SetContinuousStates"), set()),
-    **dict.fromkeys(("fmi2GetDerivatives", "fmi2GetEventIndicators", "fmi2GetContinuousStates"), set()),
-    "fmi2GetNominalsOfContinuousStates": set(),
 }
+# Section 3.2.3, a function of model exchange in an instance of that kind: never legal in co-simulation.
+_RUNNING = {"event mode", "continuous-time mode"}
+_EXCHANGING = {"initialization mode", "terminated"} | _RUNNING
+EXCHANGE: dict[str, set[str]] = {
+    "fmi2EnterEventMode": {"continuous-time mode"},
+    "fmi2NewDiscreteStates": {"event mode"},
+    "fmi2EnterContinuousTimeMode": {"event mode"},
+    "fmi2CompletedIntegratorStep": {"continuous-time mode"},
+    "fmi2SetTime": _RUNNING,
+    "fmi2SetContinuousStates": {"continuous-time mode"},
+    **{f"fmi2Get{name}": _EXCHANGING for name in ("ContinuousStates", "NominalsOfContinuousStates", "Derivatives")},
+    "fmi2GetEventIndicators": _EXCHANGING,
+}
+TABLE |= dict.fromkeys(EXCHANGE, set())
 
-
-# What follows the component, where nothing but the call itself matters: (pointer, size) or (number).
-_MODEL_EXCHANGE_ARGUMENTS = {
-    "fmi2NewDiscreteStates": (None,),
-    "fmi2CompletedIntegratorStep": (1, None, None),
+# What follows the component: pointers raw, as no signature is declared for a slave.
+_EXCHANGE_ARGUMENTS = {
+    "fmi2NewDiscreteStates": (byref(fmi2EventInfo()),),
+    "fmi2CompletedIntegratorStep": (1, byref(c_int()), byref(c_int())),
     "fmi2SetTime": (c_double(1.0),),
-    **{f"fmi2{name}": (None, c_size_t(0)) for name in ("SetContinuousStates", "GetContinuousStates", "GetDerivatives")},
-    **{f"fmi2{name}": (None, c_size_t(0)) for name in ("GetEventIndicators", "GetNominalsOfContinuousStates")},
+    "fmi2SetContinuousStates": ((c_double * 8)(0, 0, 0, 1.2, 0, 0, 0, -2.0), c_size_t(8)),
+    **{
+        f: ((c_double * 8)(), c_size_t(8))
+        for f in EXCHANGE
+        if f.startswith("fmi2Get") and f != "fmi2GetEventIndicators"
+    },
+    "fmi2GetEventIndicators": ((c_double * 3)(), c_size_t(3)),
 }
 
 
@@ -82,12 +96,10 @@ def bring_to(w: FMU2Wheel, state: str) -> FMU2Wheel:
 def call(w: FMU2Wheel, function: str, null: bool = False) -> int:
     """Calls one function of TABLE with sound arguments, inputs at their present value; `null`: on no instance."""
     component = None if null else w.component
-    arguments = _arguments(w).get(function)
-    if arguments is not None:
-        return getattr(w, function)(component, *arguments)
-    raw = getattr(w.dll, function)
-    raw.restype = c_int
-    return raw(c_void_p(component), *_MODEL_EXCHANGE_ARGUMENTS.get(function, ()))
+    if function not in EXCHANGE:
+        return getattr(w, function)(component, *_arguments(w)[function])
+    raw = CFUNCTYPE(c_int)((function, w.dll))
+    return raw(c_void_p(component), *_EXCHANGE_ARGUMENTS.get(function, ()))
 
 
 def _arguments(w: FMU2Wheel) -> dict[str, tuple[Any, ...]]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from ctypes import byref, c_double, c_int
+from ctypes import byref, c_double
 
 import numpy as np
 import pytest
+from contract.call_states import EXCHANGE, call
 from equations.multibody_transcription import omega_z_dot, solved
 from equations.paper_transcription import Paper, times
-from fmpy.fmi2 import fmi2EventInfo
 from support import equations as eq
 from support.bounds import beyond, within
 from support.driver import DISCARD, ERROR, OK, FMU2Wheel
@@ -180,45 +180,11 @@ def test_the_multibody_form_is_refused_with_a_sentence(library: Library) -> None
     wheel.close()
 
 
-def test_calls_of_the_other_kind_are_refused(library: Library) -> None:
-    with exchange(library, logging=True) as wheel, library.wheel(logging=True) as slave:
+def test_calls_of_co_simulation_are_refused(library: Library) -> None:
+    with exchange(library, logging=True) as wheel:
         assert wheel.fmi2DoStep(wheel.component, 0.0, 0.1, 0) == ERROR
         assert "fmi2DoStep" in wheel.sentences[-1] and "model exchange" in wheel.sentences[-1]
         assert wheel.set_input_derivatives(["F_X"], [[1.0]]) == ERROR
-        slave.start()
-        for call, *arguments in OF_EXCHANGE:
-            assert getattr(wheel, call)(slave.component, *arguments) == ERROR
-            assert call in slave.sentences[-1] and "co-simulation" in slave.sentences[-1]
-        assert slave.step(0.1) == OK
-
-
-OF_EXCHANGE = (
-    ("fmi2SetTime", 1.0),
-    ("fmi2EnterEventMode",),
-    ("fmi2EnterContinuousTimeMode",),
-    ("fmi2NewDiscreteStates", byref(fmi2EventInfo())),
-    ("fmi2CompletedIntegratorStep", 1, byref(c_int()), byref(c_int())),
-    ("fmi2SetContinuousStates", (c_double * 8)(), 8),
-    ("fmi2GetContinuousStates", (c_double * 8)(), 8),
-    ("fmi2GetNominalsOfContinuousStates", (c_double * 8)(), 8),
-    ("fmi2GetDerivatives", (c_double * 8)(), 8),
-    ("fmi2GetEventIndicators", (c_double * 3)(), 3),
-)
-
-
-# Section 3.2.3 of the standard, by hand: in which states a function of model exchange may be called.
-RUNNING = {"event mode", "continuous-time mode"}
-READING = RUNNING | {"initialization mode", "terminated"}
-LEGAL = {
-    "fmi2EnterEventMode": {"continuous-time mode"},
-    "fmi2NewDiscreteStates": {"event mode"},
-    "fmi2EnterContinuousTimeMode": {"event mode"},
-    "fmi2CompletedIntegratorStep": {"continuous-time mode"},
-    "fmi2SetTime": RUNNING,
-    "fmi2SetContinuousStates": {"continuous-time mode"},
-    **{f"fmi2Get{name}": READING for name in ("ContinuousStates", "NominalsOfContinuousStates", "Derivatives")},
-    "fmi2GetEventIndicators": READING,
-}
 
 
 def brought_to(library: Library, state: str) -> FMU2Exchange:
@@ -236,24 +202,20 @@ def brought_to(library: Library, state: str) -> FMU2Exchange:
     return wheel
 
 
-@pytest.mark.parametrize("state", ["instantiated", *sorted(READING)])
+@pytest.mark.parametrize("state", ["instantiated", *sorted(EXCHANGE["fmi2GetDerivatives"])])
 def test_each_function_is_legal_exactly_where_the_standard_says(library: Library, state: str) -> None:
-    for call, *arguments in OF_EXCHANGE:
+    for function, states in EXCHANGE.items():
         with brought_to(library, state) as wheel:
-            if call == "fmi2SetContinuousStates":
-                arguments = [(c_double * 8)(*ODD), 8]
-            legal = getattr(wheel, call)(wheel.component, *arguments) == OK
-            assert legal == (state in LEGAL[call]), call
+            assert (call(wheel, function) == OK) == (state in states), function
 
 
 def test_wrong_arrays_and_numbers_are_refused_and_change_nothing(library: Library) -> None:
     with at_odd(library) as wheel:
-        call = wheel.component
-        assert wheel.fmi2SetContinuousStates(call, (c_double * 7)(), 7) == ERROR
-        assert wheel.fmi2GetDerivatives(call, None, 8) == ERROR
-        assert wheel.fmi2GetEventIndicators(call, (c_double * 4)(), 4) == ERROR
-        assert wheel.fmi2SetContinuousStates(call, (c_double * 8)(*[np.nan] * 8), 8) == DISCARD
-        assert wheel.fmi2SetTime(call, np.inf) == ERROR
+        assert wheel.fmi2SetContinuousStates(wheel.component, (c_double * 7)(), 7) == ERROR
+        assert wheel.fmi2GetDerivatives(wheel.component, None, 8) == ERROR
+        assert wheel.fmi2GetEventIndicators(wheel.component, (c_double * 4)(), 4) == ERROR
+        assert wheel.fmi2SetContinuousStates(wheel.component, (c_double * 8)(*[np.nan] * 8), 8) == DISCARD
+        assert wheel.fmi2SetTime(wheel.component, np.inf) == ERROR
         assert (wheel.x() == ODD).all()
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 from support.bounds import beyond, within
-from support.driver import OK
 from support.motion import Library, Run
 from support.schedule import Schedule
 
@@ -39,29 +38,6 @@ def test_with_rolling_friction_the_capacities_add_up(library: Library) -> None:
     ((t, _),) = braked(library, [0.0, 2.0], {"M_brake": (BRAKE,)}, s=0.01).events
     within(abs(t - 5.0 * J / (BRAKE + 0.01 * M * G)), 1e-9, "instant, s")
     beyond(abs(t - 5.0 * J / BRAKE), 0.007, "instant, s")
-
-
-def park(library: Library, slope: float, seconds: float) -> tuple[list[float], list[str]]:
-    """omega_z, X_O and tau after a force along the slope; M_1 and M_2, every 50 ms, keep the wheel upright."""
-    with library.wheel() as wheel:
-        wheel.set(**(UPRIGHT | {"phi_dot_start": 0.0}))
-        wheel.initialise(1e-10)
-        wheel.set(M_brake=BRAKE, F_X=slope)
-        for k in range(round(seconds / 0.05)):
-            tilt, tilt_rate, heading, turn = wheel.get("theta", "theta_dot", "psi", "psi_dot")
-            wheel.set(M_1=-120 * (tilt - np.pi / 2) - 20 * tilt_rate, M_2=-50 * heading - 20 * turn)
-            assert wheel.step_to((k + 1) * 0.05) == OK
-        return wheel.get("omega_z", "X_O", "tau"), wheel.sentences
-
-
-def test_a_parked_wheel_on_a_slope_does_not_creep_in_an_hour(library: Library) -> None:
-    slope = 0.99 * BRAKE / R
-    (spin, place, moment), _ = park(library, slope, 3600.0)
-    assert spin == 0
-    within(abs(place), 1e-14, "place")  # m
-    within(abs(moment / (slope * R) - 1), 1e-14, "moment")
-    (_, rolled, _), _ = park(library, 1.02 * slope, 1.0)
-    beyond(rolled, 1e-3, "rolled")  # the partner: beyond its capacity the wheel rolls
 
 
 def test_it_lets_go_where_a_growing_force_exceeds_it(library: Library) -> None:

@@ -6,12 +6,9 @@ s = 0, no input, J_x = J_y, method automatic. A forced method (2: adams) steps t
 from __future__ import annotations
 
 import numpy as np
-from reference.tables import read_table
 from support.bounds import beyond, within
 from support.driver import HEADLINE
 from support.motion import Library, Run
-
-from physics.measure import energy_error
 
 ADAMS = 2
 
@@ -32,12 +29,8 @@ def test_after_1000_s_the_error_is_a_millionth_of_the_range(library: Library) ->
     want = library.simulate(t, 1e-12)
     within(range_error(library.simulate(t), want), 1e-6, "range error")  # the orbit alone
     beyond(range_error(library.simulate(t, method=ADAMS), want), 1e-6, "range error")
-
-
-def test_the_energy_neither_grows_nor_wears_off(library: Library) -> None:
-    within(energy_error(library), 1e-8, "energy error")
     late = library.simulate([0.0, 1e3, 1e6])["E"]
-    within(np.abs(late / late[0] - 1).max(), 4e-11, "change")
+    within(np.abs(late / late[0] - 1).max(), 4e-11, "change of the energy in 1e6 s")
 
 
 def test_the_cost_does_not_grow_with_the_horizon(library: Library) -> None:
@@ -45,17 +38,3 @@ def test_the_cost_does_not_grow_with_the_horizon(library: Library) -> None:
     assert steps[0] == steps[1] == steps[2] < 300
     stepped = [library.simulate([0.0, stop], method=ADAMS).counters["n_steps"] for stop in (1.0, 10.0)]
     beyond(stepped[1] / stepped[0], 5, "stepped")
-
-
-def test_the_communication_grid_does_not_change_a_bit(library: Library) -> None:
-    coarse = library.simulate([0.0, 7.0, 50.0])
-    fine = library.simulate(sorted({*np.linspace(0, 50, 1501), 7.0}))
-    for name in HEADLINE:
-        assert coarse[name][-1] == fine[name][-1]
-
-
-def test_the_paper_table_is_met_by_reading_alone(library: Library) -> None:
-    want = read_table("paper_free")
-    got = library.simulate(want["t"], 1e-11)
-    for name in HEADLINE:
-        within(np.abs(got[name] - want[name]).max(), 1e-9, "got")
