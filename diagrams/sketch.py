@@ -55,32 +55,14 @@ class Sketch:
         points = _refine(np.asarray(points, dtype=float))
         self.line(points, pen)
         tail, tip = self.view.project(points[[-3, -1]])
-        self.ax.add_patch(
-            FancyArrowPatch(
-                tail,
-                tip + 0.3 * (tip - tail),
-                arrowstyle="-|>,head_length=0.45,head_width=0.17",
-                mutation_scale=head,
-                color=pen.color,
-                linewidth=0.0,
-                shrinkA=0.0,
-                shrinkB=0.0,
-                zorder=pen.layer,
-            )
-        )
+        look = {"mutation_scale": head, "color": pen.color, "linewidth": 0, "shrinkA": 0, "shrinkB": 0}
+        shape = "-|>,head_length=0.45,head_width=0.17"
+        self.ax.add_patch(FancyArrowPatch(tail, tip + 0.3 * (tip - tail), arrowstyle=shape, zorder=pen.layer, **look))
 
     def dot(self, point: Array, color: str, size: float = 4.0) -> None:
         """A point, never hidden."""
-        flat = self.view.project(point)
-        self.ax.plot(
-            *flat,
-            "o",
-            color=color,
-            markersize=size,
-            zorder=6,
-            markeredgecolor="white",
-            markeredgewidth=0.6,
-        )
+        edge = {"markeredgecolor": "white", "markeredgewidth": 0.6}
+        self.ax.plot(*self.view.project(point), "o", color=color, markersize=size, zorder=6, **edge)
 
     def label(self, point: Array, text: str, shift: tuple[float, float], **how: object) -> None:
         """Text centred at a point, moved by `shift` in typographic points."""

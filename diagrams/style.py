@@ -94,7 +94,7 @@ def note(ax: Axes, text: str, at: Sequence[float], shift: Sequence[float], **how
 def save(fig: Figure, stem: Path, dpi: int = 300) -> list[Path]:
     """Write stem.svg and stem.png without date or program version; return both paths."""
     png = save_png(fig, stem.with_suffix(".png"), dpi)
-    fig.savefig(stem.with_suffix(".svg"), metadata={"Date": None, "Creator": None})
+    fig.savefig(stem.with_suffix(".svg"), dpi=dpi, metadata={"Date": None, "Creator": None})
     return [stem.with_suffix(".svg"), png]
 
 

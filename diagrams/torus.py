@@ -1,4 +1,4 @@
-"""The wheel as a body in space: its frames, its surface, and a ray-traced image of it.
+"""The wheel as a body in space: its frames, its surface in shaded facets, its shadow, and a camera.
 
 Fixed axes X, Y, Z, Z up; carrier axes e1 (line of nodes), e2 (up the slope), e3 (axle), paper (3).
 All projections are orthographic, so that parallel lengths keep their ratios.
@@ -8,11 +8,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 
 from diagrams.scene import Array
 
-STEPS = 80  # of sphere tracing; a grazing ray that needs more is taken as a miss
-SURFACE = 1e-5  # m, a ray this close has hit
+FACETS = 480, 96  # around the axle, around the tube
+SIGHT = np.linspace(2e-3, 1.0, 600)  # m from a point towards the eye, where the wheel may stand
+TYRE, MARK = np.array([0.72, 0.79, 0.86]), np.array([1.0, 0.66, 0.12])
+SHADOW = "#D2D4D6"
 
 
 @dataclass(frozen=True)
@@ -54,37 +58,16 @@ class Wheel:
         angle = np.asarray(angle)[..., None]
         return np.cos(angle) * self.carrier[:, 0] + np.sin(angle) * self.carrier[:, 1]
 
-    def distance(self, points: Array) -> Array:
-        """Signed distance in m from points in fixed axes to the surface, negative inside."""
+    def surface(self, turn: Array, around: Array) -> tuple[Array, Array]:
+        """Points and outward normals at angles from the body's x axis and around the tube; shape (turn, around, 3)."""
+        outward = self.rim(turn + self.phi)[:, None]
+        normal = np.cos(around)[:, None] * outward + np.sin(around)[:, None] * self.carrier[:, 2]
+        return self.centre + self.r_0 * outward + self.r * normal, normal
+
+    def holds(self, points: Array) -> Array:
+        """Whether points lie inside."""
         x, y, z = np.moveaxis((points - self.centre) @ self.carrier, -1, 0)
-        return np.hypot(np.hypot(x, y) - self.r_0, z) - self.r
-
-    def normal(self, points: Array) -> Array:
-        """Outward unit normals at points of the surface."""
-        local = (points - self.centre) @ self.carrier
-        ring = local * (1.0, 1.0, 0.0)
-        ring *= self.r_0 / np.linalg.norm(ring, axis=-1, keepdims=True)
-        outward = local - ring
-        outward /= np.linalg.norm(outward, axis=-1, keepdims=True)
-        return outward @ self.carrier.T
-
-    def march(self, start: Array, direction: Array, reach: float) -> tuple[Array, Array]:
-        """Follow rays (n, 3) up to `reach` in m: length to the surface (inf: none), and openness.
-
-        Sphere tracing: each step is as long as the distance to the surface, so it cannot pass it.
-        Openness is the least distance/length met on the way: 0 in the core of a shadow.
-        """
-        length, found = np.zeros(len(start)), np.full(len(start), np.inf)
-        openness = np.full(len(start), np.inf)
-        live = np.arange(len(start))
-        for _ in range(STEPS):
-            gap = self.distance(start[live] + length[live, None] * direction)
-            openness[live] = np.minimum(openness[live], gap / np.maximum(length[live], 1e-3))
-            hit = gap < SURFACE
-            found[live[hit]] = length[live[hit]]
-            length[live] += gap
-            live = live[~hit & (length[live] < reach)]
-        return found, np.where(np.isfinite(found), 0.0, openness)
+        return np.hypot(np.hypot(x, y) - self.r_0, z) < self.r
 
 
 @dataclass(frozen=True)
@@ -106,89 +89,50 @@ class View:
         """Unit vector towards the eye."""
         return self.axes[2]
 
+    @property
+    def lamp(self) -> Array:
+        """Unit vector towards the lamp: above and left of the eye."""
+        light = -0.55 * self.axes[0] + [0.0, 0.0, 1.0] + 0.55 * self.eye
+        return light / np.linalg.norm(light)
+
     def project(self, points: Array) -> Array:
         """Image coordinates (right, up) in m."""
         return np.asarray(points) @ self.axes[:2].T
 
     def hides(self, wheel: Wheel, points: Array) -> Array:
         """True where the wheel stands between a point and the eye."""
-        start = np.asarray(points) + 2e-3 * self.eye
-        return np.isfinite(wheel.march(start, self.eye, 3.0)[0])
+        return wheel.holds(np.asarray(points)[:, None] + SIGHT[:, None] * self.eye).any(axis=1)
 
 
-@dataclass(frozen=True)
-class Paint:
-    """Colours (RGB, 0 to 1) of the image and the half-width in rad of the mark on the tyre."""
-
-    tyre: tuple[float, float, float]
-    mark: tuple[float, float, float]
-    mark_width: float = 0.05
-    shadow: float = 0.24
-
-
-def render(wheel: Wheel, view: View, window: Array, pixels: int, paint: Paint) -> Array:
-    """RGBA image, rows downwards, of window (left, right, bottom, top in m), `pixels` per m.
-
-    The ground is transparent but for the wheel's shadow.
-    """
-    left, right, bottom, top = window
-    nu, nv = round((right - left) * pixels), round((top - bottom) * pixels)
-    u = left + (np.arange(2 * nu) + 0.5) / (2 * pixels)  # 2 x 2 rays per pixel
-    v = top - (np.arange(2 * nv) + 0.5) / (2 * pixels)
-    plane = u[None, :, None] * view.axes[0] + v[:, None, None] * view.axes[1]
-    start = (plane + 2.0 * view.eye).reshape(-1, 3)
-    length, _ = wheel.march(start, -view.eye, 4.0)
-    body = np.isfinite(length)
-    light = lamp(view)
-    rgba = np.zeros((len(start), 4))
-    rgba[body] = _tyre(wheel, view, start[body] - length[body, None] * view.eye, light, paint)
-    ground = start[~body] - (start[~body, 2:] / view.eye[2]) * view.eye
-    rgba[~body] = _ground(wheel, ground, light, paint)
-    rgba[:, :3] *= rgba[:, 3:]  # average in premultiplied colours
-    small = rgba.reshape(nv, 2, nu, 2, 4).mean(axis=(1, 3))
-    small[..., :3] /= np.maximum(small[..., 3:], 1e-9)
-    return np.clip(small, 0.0, 1.0)
+def draw(ax: Axes, wheel: Wheel, view: View, mark: float = 0.05, shadow: bool = True) -> None:
+    """The wheel as a raster image, over its shadow on the ground; mark: half its width on the tyre, rad."""
+    turn, around = (np.linspace(0, 2 * np.pi, count + 1) for count in FACETS)
+    points, _ = wheel.surface(turn, around)
+    middles, normals = wheel.surface(turn[:-1] + turn[1] / 2, around[:-1] + around[1] / 2)
+    from_back = np.argsort((middles @ view.eye).ravel())
+    on_mark = (np.abs(np.angle(np.exp(1j * (turn[:-1] + turn[1] / 2)))) < mark)[:, None, None]
+    colours = shaded(normals, np.where(on_mark, MARK, TYRE), view)
+    _fill(ax, _quads(view.project(points))[from_back], colours.reshape(-1, 3)[from_back], 2)
+    if shadow:
+        on_ground = points - points[..., 2:] / view.lamp[2] * view.lamp
+        _fill(ax, _quads(view.project(on_ground)), SHADOW, -1)
 
 
-def window_of(wheel: Wheel, view: View, margin: float, pixels: int) -> Array:
-    """The least window, on whole pixels, with the wheel, its shadow and a margin in m."""
-    ring = wheel.centre + (wheel.r_0 + wheel.r) * wheel.rim(np.linspace(0, 2 * np.pi, 90))
-    light = lamp(view)
-    flat = view.project(np.concatenate([ring, ring - (ring[:, 2:] / light[2]) * light]))
-    low = np.floor((flat.min(axis=0) - margin) * pixels) / pixels
-    high = np.ceil((flat.max(axis=0) + margin) * pixels) / pixels
-    return np.array([low[0], high[0], low[1], high[1]])
+def shaded(normal: Array, base: Array, view: View) -> Array:
+    """Soft diffuse light, a dark edge, a small highlight."""
+    half = (view.lamp + view.eye) / np.linalg.norm(view.lamp + view.eye)
+    diffuse, facing, shine = (np.clip(normal @ to, 0.0, 1.0)[..., None] for to in (view.lamp, view.eye, half))
+    edge = np.clip(facing / 0.35, 0.0, 1.0) ** 0.6
+    shade = (0.45 + 0.11 * normal[..., 2:] + 0.52 * diffuse) * (0.45 + 0.55 * edge)
+    return np.clip(base * shade + 0.30 * shine**40, 0.0, 1.0)
 
 
-def lamp(view: View) -> Array:
-    """Unit vector towards the lamp: above and left of the eye."""
-    light = -0.55 * view.axes[0] + 1.0 * np.array([0.0, 0.0, 1.0]) + 0.55 * view.eye
-    return light / np.linalg.norm(light)
+def _quads(grid: Array) -> Array:
+    """The facets of a grid of points, four corners each."""
+    return np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=2).reshape(-1, 4, 2)
 
 
-def _tyre(wheel: Wheel, view: View, points: Array, light: Array, paint: Paint) -> Array:
-    """Colours of points on the tyre: soft diffuse light, a dark edge, a small highlight."""
-    normal = wheel.normal(points)
-    local = (points - wheel.centre) @ wheel.carrier
-    turn = np.arctan2(local[:, 1], local[:, 0]) - wheel.phi
-    marked = abs(np.angle(np.exp(1j * turn))) < paint.mark_width
-    base = np.where(marked[:, None], paint.mark, paint.tyre)
-    lit, _ = wheel.march(points + 3e-3 * normal, light, 1.5)
-    diffuse = np.clip(normal @ light, 0.0, 1.0) * np.where(np.isfinite(lit), 0.35, 1.0)
-    sky = 0.5 + 0.5 * normal[:, 2]
-    edge = np.clip((normal @ view.eye) / 0.35, 0.0, 1.0) ** 0.6
-    half = (light + view.eye) / np.linalg.norm(light + view.eye)
-    shine = 0.30 * np.clip(normal @ half, 0.0, 1.0) ** 40
-    shade = (0.34 + 0.22 * sky + 0.52 * diffuse) * (0.45 + 0.55 * edge)
-    colour = base * shade[:, None] + shine[:, None]
-    return np.concatenate([np.clip(colour, 0, 1), np.ones((len(points), 1))], axis=1)
-
-
-def _ground(wheel: Wheel, points: Array, light: Array, paint: Paint) -> Array:
-    """Black with the shadow's strength as opacity, dense where the tyre is near the ground."""
-    _, openness = wheel.march(points + np.array([0.0, 0.0, 2e-3]), light, 2.5)
-    cast = 1.0 - np.clip(openness / 0.10, 0.0, 1.0)
-    near = np.exp(-wheel.distance(points) / 0.02)
-    rgba = np.zeros((len(points), 4))
-    rgba[:, 3] = np.clip(paint.shadow * cast * cast * (3 - 2 * cast) + 0.3 * near, 0.0, 0.6)
-    return rgba
+def _fill(ax: Axes, quads: Array, colours: Array | str, layer: int) -> None:
+    ax.add_collection(
+        PolyCollection(quads, facecolors=colours, edgecolors="face", lw=0.3, rasterized=True, zorder=layer)
+    )

@@ -1,22 +1,23 @@
-#!/usr/bin/env python3
-"""Draw the README's picture (wheel.svg, wheel.png) and the FMU's icon (model.png).
+"""python -m diagrams.wheel: the picture of the wheel and its axes (wheel.svg, wheel.png), the FMU's icon (model.png).
 
-The picture shows the paper's free wheel at one instant of free.csv, and the path of its contact
+The picture shows the paper's free wheel at one instant of results/free.csv, and the path of its contact
 point up to then: fixed axes X, Y, Z; carrier axes e1, e2, e3; angles psi, theta, phi of (3);
 r_0, r and O as in (27) and (32). Orthographic, so that lengths in one direction compare.
 """
 
-import argparse
 import sys
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from PIL import Image
 
 from diagrams import style
 from diagrams.scene import Array, Scene, SceneError, read_scene
 from diagrams.sketch import Pen, Sketch
-from diagrams.torus import Paint, View, Wheel, render, window_of
+from diagrams.torus import View, Wheel, draw
 
 ROOT = Path(__file__).resolve().parent.parent
 POSE = ("X_O", "Y_O", "psi", "theta", "phi")
@@ -25,24 +26,17 @@ INSTANT = 2.86  # s
 VIEW = View(azimuth=np.radians(36.0), elevation=np.radians(17.0))
 WINDOW = np.array([-0.52, 1.12, -0.25, 0.75])  # m in the image plane: left, right, bottom, top
 WIDTH = 165.0  # mm
-PIXELS = 1000  # per m in the image plane
-ICON = 176  # pixels; with 64 tones per colour the file stays below 20 KiB
+PIXELS = 730  # per m in the image plane
+ICON = 176  # pixels
+SUBDIVISION = 5  # drawn points of the path per row
+ICON_FILE = ROOT / "fmu-src" / "archive" / "model.png"
 GROUND = ((-0.9, 0.3), (-0.4, 0.7))  # m, X and Y of the grid
 Z = np.array([0.0, 0.0, 1.0])
 
-TYRE = (0.72, 0.79, 0.86)
-MARK = (1.0, 0.66, 0.12)
 CARRIER = "#00507C"
 ANGLE = "#00704F"
 PATH = style.VERMILLION
 SMALL = {"fontsize": 8.0, "color": "#5A5A5A"}
-
-
-def poses(scene: Scene, last: int, subdivision: int) -> list[Wheel]:
-    """The wheel's poses from row 0 to row `last`, and between the rows."""
-    columns = scene.smooth(subdivision, *POSE)
-    rows = zip(*(column[: last * subdivision + 1] for column in columns), strict=True)
-    return [Wheel(R_0, R, *map(float, row)) for row in rows]
 
 
 def draw_ground(sketch: Sketch, path: Array) -> None:
@@ -55,15 +49,8 @@ def draw_ground(sketch: Sketch, path: Array) -> None:
         sketch.line([(x0, y, 0), (x1, y, 0)], pen)
     sketch.line(path, Pen(PATH, 1.3, layer=1.5))
     leftmost = path[np.argmin(sketch.view.project(path)[:, 0])]
-    sketch.label(
-        leftmost,
-        "path of the\ncontact point",
-        (14, 0),
-        ha="left",
-        fontsize=8.5,
-        color=PATH,
-        linespacing=1.0,
-    )
+    look = {"ha": "left", "fontsize": 8.5, "color": PATH, "linespacing": 1.0}
+    sketch.label(leftmost, "path of the\ncontact point", (14, 0), **look)
     for axis, name, shift in zip(np.eye(3), "XYZ", ((-7, -5), (9, -3), (0, 8)), strict=True):
         sketch.arrow([0 * axis, 0.25 * axis], Pen(style.INK, 1.2))
         sketch.label(0.25 * axis, f"${name}$", shift)
@@ -126,62 +113,56 @@ def draw_radii(sketch: Sketch) -> None:
 
 
 def draw_picture(scene: Scene, stem: Path) -> list[Path]:
-    """The README's picture."""
+    """docs/figures/wheel: the paper's free wheel at one instant, and its path up to then."""
     row = int(np.argmin(abs(scene.time - INSTANT)))
-    history = poses(scene, row, subdivision=5)
-    wheel = history[-1]
+    wheel = Wheel(R_0, R, *(float(scene[name][row]) for name in POSE))
     left, right, bottom, top = WINDOW
     height = WIDTH * (top - bottom) / (right - left)
     fig = style.figure_mm(WIDTH, height)
-    ax = style.axes_mm(fig, 0.0, 0.0, WIDTH, height)
-    ax.set_axis_off()
-    window = window_of(wheel, VIEW, 0.12, PIXELS)
-    image = render(wheel, VIEW, window, PIXELS, Paint(TYRE, MARK))
-    ax.imshow(image, extent=window, interpolation="none", zorder=2, aspect="auto")
-    ax.set(xlim=(left, right), ylim=(bottom, top))
+    ax = whole(fig, WINDOW)
+    draw(ax, wheel, VIEW)
     sketch = Sketch(ax, wheel, VIEW)
-    draw_ground(sketch, np.array([pose.contact for pose in history]))
+    x, y = (column[: SUBDIVISION * row + 1] for column in scene.smooth(SUBDIVISION, "X_C", "Y_C"))
+    draw_ground(sketch, np.column_stack([x, y, 0 * x]))
     draw_carrier(sketch)
     draw_angles(sketch)
     draw_radii(sketch)
     note = f"The paper’s free wheel at $t$ = {scene.time[row]:.2f} s. Grid: 0.1 m."
     style.text_mm(fig, 3.0, 3.0, note, fontsize=8.5, color=style.GREY)
-    return style.save(fig, stem, dpi=round(PIXELS * (right - left) / (WIDTH * style.MM)))
+    svg, png = style.save(fig, stem, dpi=round(PIXELS * (right - left) / (WIDTH * style.MM)))
+    Image.open(png).convert("RGB").quantize(256).save(png, optimize=True)  # it goes into the archive
+    return [svg, png]
+
+
+def whole(fig: Figure, window: Array) -> Axes:
+    """Axes without a frame that fill the figure; window: left, right, bottom, top in m."""
+    ax = fig.add_axes((0, 0, 1, 1))
+    ax.set_axis_off()
+    ax.set(xlim=window[:2], ylim=window[2:])
+    return ax
 
 
 def draw_icon(path: Path) -> Path:
-    """The FMU's icon: the wheel alone, leaning; transparent, and no shadow but at its foot."""
+    """The FMU's icon: the wheel alone, leaning, transparent around it."""
     pose = {"psi": np.radians(166.0), "theta": np.radians(66.0), "phi": np.radians(40.0)}
     wheel = Wheel(R_0, 0.07, 0.0, 0.0, **pose)  # a thicker tyre reads better when small
-    side = 0.80  # m
-    u, v = VIEW.project(wheel.centre)
-    window = np.array([u - side / 2, u + side / 2, v - side / 2, v + side / 2])
-    paint = Paint(TYRE, MARK, mark_width=0.08, shadow=0.0)
-    large = 255 * render(wheel, VIEW, window, round(2 * ICON / side), paint)
-    image = Image.fromarray(large.round().astype(np.uint8))
-    image = image.resize((ICON, ICON), Image.Resampling.LANCZOS)
-    tones = np.asarray(image) // 4 * 4 + 2
-    tones[..., 3] = np.asarray(image)[..., 3]
-    tones[tones[..., 3] == 0] = 0
-    path.parent.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(tones).save(path, optimize=True)
+    (u, v), half = VIEW.project(wheel.centre), 0.40  # m
+    fig, large = Figure(figsize=(1, 1)), BytesIO()
+    draw(whole(fig, (u - half, u + half, v - half, v + half)), wheel, VIEW, mark=0.08, shadow=False)
+    fig.savefig(large, dpi=4 * ICON, transparent=True)
+    Image.open(large).resize((ICON, ICON), Image.Resampling.LANCZOS).save(path, optimize=True)
     return path
 
 
 def main() -> int:
-    """Draw both; a fault of the input is one sentence on stderr and exit status 1."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--scene", type=Path, default=ROOT / "results" / "free.csv")
-    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "figures" / "wheel")
-    parser.add_argument("--icon", type=Path, default=ROOT / "fmu-src" / "archive" / "model.png")
-    arguments = parser.parse_args()
+    """Both, from what `./scripts/run` left; a fault of the input is one sentence on stderr and exit status 1."""
     style.use_style()
     try:
-        scene = read_scene(arguments.scene, ("time", *POSE))
+        scene = read_scene(ROOT / "results" / "free.csv", ("time", "X_C", "Y_C", *POSE))
     except SceneError as fault:
         print(f"picture: {fault}", file=sys.stderr)
         return 1
-    written = [*draw_picture(scene, arguments.out), draw_icon(arguments.icon)]
+    written = [*draw_picture(scene, ROOT / "docs" / "figures" / "wheel"), draw_icon(ICON_FILE)]
     print("\n".join(str(path) for path in written))
     return 0
 
