@@ -8,9 +8,13 @@
 enum { X_O, Y_O, PSI, THETA, PHI, THETA_DOT, PSI_DOT, SPIN };
 
 /* The same position and velocity as a state of the reduced form. */
-static void reduce(const double* y, double* reduced) {
-  const double same[] = {y[THETA], y[THETA_DOT], y[PSI_DOT] * sin(y[THETA]), y[SPIN], y[PSI], y[PHI], y[X_O], y[Y_O]};
-  for (int i = 0; i < WHEEL_REDUCED_STATES; ++i) reduced[i] = same[i];
+typedef struct Reduced {
+  double y[WHEEL_REDUCED_STATES];
+} Reduced;
+
+static Reduced reduced(const double* y) {
+  double omega_2 = y[PSI_DOT] * sin(y[THETA]);
+  return (Reduced){{y[THETA], y[THETA_DOT], omega_2, y[SPIN], y[PSI], y[PHI], y[X_O], y[Y_O]}};
 }
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
@@ -27,9 +31,8 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 
 /* psi_dot = omega_2 / sin(theta), differentiated. */
 static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  double reduced[WHEEL_REDUCED_STATES], rates[WHEEL_REDUCED_STATES];
-  reduce(y, reduced);
-  double N = wheel_reduced.derivative(scene, reduced, rates);
+  double rates[WHEEL_REDUCED_STATES];
+  double N = wheel_reduced.derivative(scene, reduced(y).y, rates);
   y_dot[X_O] = rates[6];
   y_dot[Y_O] = rates[7];
   y_dot[PSI] = y[PSI_DOT];
@@ -47,35 +50,25 @@ static void set_rates(const double* y, WheelKinematics* out) {
 }
 
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  double reduced[WHEEL_REDUCED_STATES];
-  reduce(y, reduced);
-  wheel_reduced.kinematics(wheel, reduced, out);
+  wheel_reduced.kinematics(wheel, reduced(y).y, out);
   set_rates(y, out);
 }
 
 static void pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  double reduced[WHEEL_REDUCED_STATES];
-  reduce(y, reduced);
-  wheel_reduced.pose(wheel, reduced, out);
+  wheel_reduced.pose(wheel, reduced(y).y, out);
   set_rates(y, out);
 }
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  double reduced[WHEEL_REDUCED_STATES];
-  reduce(y, reduced);
-  wheel_reduced.dynamics(scene, reduced, out);
+  wheel_reduced.dynamics(scene, reduced(y).y, out);
 }
 
 static void rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
-  double reduced[WHEEL_REDUCED_STATES];
-  reduce(y, reduced);
-  wheel_reduced.rates(scene, load_dot, reduced, out);
+  wheel_reduced.rates(scene, load_dot, reduced(y).y, out);
 }
 
 static void response(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
-  double reduced[WHEEL_REDUCED_STATES];
-  reduce(y, reduced);
-  wheel_reduced.response(scene, load_dot, reduced, out);
+  wheel_reduced.response(scene, load_dot, reduced(y).y, out);
 }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {

@@ -5,9 +5,9 @@ using wheel::Phase, wheel::Topic;
 
 namespace fmi {
 
-bool check_arrays(Instance& i, const char* name, std::size_t count, const void* references, const void* values) {
+bool check_arrays(Instance& i, std::size_t count, const void* references, const void* values) {
   if (!count || (references && values)) return true;
-  i.log(Topic::error, "%s: an array is a null pointer.", name);
+  i.log(Topic::error, "%s: an array is a null pointer.", i.called);
   return false;
 }
 
@@ -17,9 +17,9 @@ fmi2Status prepare_reading(Instance& i) {
   return i.simulation.prepare(phase == Phase::initializing) ? fmi2OK : fmi2Discard;
 }
 
-bool check_readable(Instance& i, const char* name, fmi2ValueReference variable) {
+bool check_readable(Instance& i, fmi2ValueReference variable) {
   if (variable < wheel::stored_count || has_state(i.simulation.phase())) return true;
-  i.log(Topic::error, "%s: \"%s\" has no value before a successful initialization.", name,
+  i.log(Topic::error, "%s: \"%s\" has no value before a successful initialization.", i.called,
         wheel::row_of(variable).name);
   return false;
 }

@@ -10,35 +10,32 @@ using support::Digits, wheel::Role, wheel::Topic;
 
 namespace {
 
-bool check_input(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (variable >= wheel::first_input && variable < wheel::stored_count) return true;
-  i.log(Topic::error, "%s: value reference %u is not an input.", name, variable);
-  return false;
+bool check(Instance& i, fmi2ValueReference variable, bool fits, const char* what) {
+  if (!fits) i.log(Topic::error, "%s: value reference %u is not %s.", i.called, variable, what);
+  return fits;
 }
 
-// Of a directional derivative: a calculated real variable.
-bool check_unknown(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (variable >= wheel::stored_count && wheel::is_variable(variable, wheel::Type::real)) return true;
-  i.log(Topic::error, "%s: value reference %u is not a calculated real variable.", name, variable);
-  return false;
+bool check_input(Instance& i, fmi2ValueReference variable) {
+  return check(i, variable, variable >= wheel::first_input && variable < wheel::stored_count, "an input");
 }
 
-bool check_output(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (variable < wheel::variable_count && wheel::row_of(variable).role == Role::output) return true;
-  i.log(Topic::error, "%s: value reference %u is not an output.", name, variable);
-  return false;
+// Of a directional derivative.
+bool check_unknown(Instance& i, fmi2ValueReference variable) {
+  const bool computed = variable >= wheel::stored_count && wheel::is_variable(variable, wheel::Type::real);
+  return check(i, variable, computed, "a calculated real variable");
 }
 
-bool is_exchanged(const Instance& i) {
-  return i.simulation.kind() == wheel::Kind::model_exchange && has_begun(i.simulation.phase());
+bool check_output(Instance& i, fmi2ValueReference variable) {
+  const bool output = variable < wheel::variable_count && wheel::row_of(variable).role == Role::output;
+  return check(i, variable, output, "an output");
 }
 
 // During the run outputs depend on inputs alone, in model exchange on the states too; in initialization mode they
 // depend on the parameters.
-bool check_known(Instance& i, const char* name, fmi2ValueReference variable) {
-  if (is_exchanged(i) && wheel::state_of(variable) >= 0) return true;
-  if (!has_begun(i.simulation.phase()) && variable < wheel::stored_count) return true;
-  return check_input(i, name, variable);
+bool check_known(Instance& i, fmi2ValueReference variable) {
+  const bool exchanged = i.simulation.kind() == wheel::Kind::model_exchange, begun = has_begun(i.simulation.phase());
+  if (begun ? exchanged && wheel::state_of(variable) >= 0 : variable < wheel::stored_count) return true;
+  return check_input(i, variable);
 }
 
 struct Outputs {
@@ -99,19 +96,14 @@ bool add_start_derivative(Instance& i, unsigned parameter, double seed, const Ou
   return start_at(i, parameter, x) && found;
 }
 
-bool add_derivative(Instance& i, const char* name, unsigned known, double seed, const Outputs& outputs) {
-  if (is_exchanged(i)) {
-    for (std::size_t u = 0; u < outputs.count; ++u)
-      outputs.sums[u] += seed * i.simulation.partial(outputs.references[u], known);
-    return true;
-  }
+bool add_derivative(Instance& i, unsigned known, double seed, const Outputs& outputs) {
   if (known >= wheel::first_input) {
     for (std::size_t u = 0; u < outputs.count; ++u)
       outputs.sums[u] += seed * i.simulation.sensitivity(outputs.references[u], known);
     return true;
   }
   if (add_start_derivative(i, known, seed, outputs)) return true;
-  i.log(Topic::error, "%s: no allowed initial values lie close enough to %s = %s for a derivative.", name,
+  i.log(Topic::error, "%s: no allowed initial values lie close enough to %s = %s for a derivative.", i.called,
         wheel::row_of(known).name, Digits(i.simulation.value(known)).text);
   return false;
 }
@@ -122,16 +114,13 @@ extern "C" {
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference v[], size_t n,
                                        const fmi2Integer orders[], const fmi2Real values[]) {
-  constexpr const char* name = "fmi2SetRealInputDerivatives";
-  return guarded(c, Function::set_input_derivatives, name, [=](Instance& i) {
-    if (!check_arrays(i, name, n, v, values) || !check_arrays(i, name, n, orders, values)) return fmi2Error;
+  return guarded(c, Function::set_input_derivatives, "fmi2SetRealInputDerivatives", [=](Instance& i) {
+    if (!check_arrays(i, n, v, values) || !check_arrays(i, n, orders, values)) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k) {
-      if (!check_input(i, name, v[k])) return fmi2Error;
-      if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k])) {
-        i.log(Topic::error, "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed.", name,
-              orders[k], Digits(values[k]).text, wheel::row_of(v[k]).name, wheel::max_order);
-        return fmi2Error;
-      }
+      if (!check_input(i, v[k])) return fmi2Error;
+      if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k]))
+        return i.log(Topic::error, "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed.",
+                     i.called, orders[k], Digits(values[k]).text, wheel::row_of(v[k]).name, wheel::max_order);
     }
     for (std::size_t k = 0; k < n; ++k) i.simulation.set_input_derivative(v[k], orders[k], values[k]);
     return fmi2OK;
@@ -140,15 +129,13 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference v[], size_t n,
                                         const fmi2Integer orders[], fmi2Real values[]) {
-  constexpr const char* name = "fmi2GetRealOutputDerivatives";
-  return guarded(c, Function::get_output_derivatives, name, [=](Instance& i) {
-    if (!check_arrays(i, name, n, v, values) || !check_arrays(i, name, n, orders, values)) return fmi2Error;
+  return guarded(c, Function::get_output_derivatives, "fmi2GetRealOutputDerivatives", [=](Instance& i) {
+    if (!check_arrays(i, n, v, values) || !check_arrays(i, n, orders, values)) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k) {
-      if (!check_output(i, name, v[k]) || !check_readable(i, name, v[k])) return fmi2Error;
-      if (orders[k] == 1) continue;
-      i.log(Topic::error, "%s: order %d of %s: only the first derivative is provided.", name, orders[k],
-            wheel::row_of(v[k]).name);
-      return fmi2Error;
+      if (!check_output(i, v[k]) || !check_readable(i, v[k])) return fmi2Error;
+      if (orders[k] != 1)
+        return i.log(Topic::error, "%s: order %d of %s: only the first derivative is provided.", i.called, orders[k],
+                     wheel::row_of(v[k]).name);
     }
     for (std::size_t k = 0; k < n; ++k) values[k] = i.simulation.rate(v[k]);
     return fmi2OK;
@@ -158,24 +145,21 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[], size_t n_unknowns,
                                         const fmi2ValueReference knowns[], size_t n_knowns, const fmi2Real seeds[],
                                         fmi2Real values[]) {
-  constexpr const char* name = "fmi2GetDirectionalDerivative";
-  return guarded(c, Function::directional_derivative, name, [=](Instance& i) {
-    if (!check_arrays(i, name, n_unknowns, unknowns, values) || !check_arrays(i, name, n_knowns, knowns, seeds))
-      return fmi2Error;
+  return guarded(c, Function::directional_derivative, "fmi2GetDirectionalDerivative", [=](Instance& i) {
+    if (!check_arrays(i, n_unknowns, unknowns, values) || !check_arrays(i, n_knowns, knowns, seeds)) return fmi2Error;
     for (std::size_t k = 0; k < n_knowns; ++k)
-      if (!check_known(i, name, knowns[k])) return fmi2Error;
+      if (!check_known(i, knowns[k])) return fmi2Error;
     for (std::size_t k = 0; k < n_unknowns; ++k)
-      if (!check_unknown(i, name, unknowns[k])) return fmi2Error;
+      if (!check_unknown(i, unknowns[k])) return fmi2Error;
     if (prepare_reading(i) != fmi2OK) return fmi2Discard;
     for (std::size_t u = 0; u < n_unknowns; ++u)
-      if (!check_readable(i, name, unknowns[u])) return fmi2Error;
+      if (!check_readable(i, unknowns[u])) return fmi2Error;
     const Outputs outputs = {unknowns, n_unknowns, values};
     std::fill_n(values, n_unknowns, 0.0);
     for (std::size_t k = 0; k < n_knowns; ++k)
-      if (!add_derivative(i, name, knowns[k], seeds[k], outputs)) return fmi2Error;
+      if (!add_derivative(i, knowns[k], seeds[k], outputs)) return fmi2Error;
     if (std::all_of(values, values + n_unknowns, [](double value) { return std::isfinite(value); })) return fmi2OK;
-    i.log(Topic::discard, "%s: a derivative is not finite here.", name);
-    return fmi2Discard;
+    return i.log(Topic::discard, "%s: a derivative is not finite here.", i.called);
   });
 }
 

@@ -43,21 +43,17 @@ Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
 constexpr const char *null_pointer = "the state, the size or the bytes are a null pointer",
                      *unknown_state = "the state is not one that this FMU handed out", *no_memory = "out of memory";
 
-fmi2Status refuse(Instance& i, const char* name, const char* why) {
-  i.log(Topic::error, "%s: %s.", name, why);
-  return fmi2Error;
-}
+fmi2Status refuse(Instance& i, const char* why) { return i.log(Topic::error, "%s: %s.", i.called, why); }
 
 }  // namespace
 
 extern "C" {
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  constexpr const char* name = "fmi2GetFMUstate";
-  return guarded(c, Function::fmu_state, name, [=](Instance& i) {
-    if (!state) return refuse(i, name, null_pointer);
+  return guarded(c, Function::fmu_state, "fmi2GetFMUstate", [=](Instance& i) {
+    if (!state) return refuse(i, null_pointer);
     Snapshot* snapshot = allocate(*state, i.simulation.state_size());
-    if (!snapshot) return refuse(i, name, no_memory);
+    if (!snapshot) return refuse(i, no_memory);
     i.simulation.save_state(snapshot->bytes());
     *state = snapshot;
     return fmi2OK;
@@ -65,61 +61,55 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  constexpr const char* name = "fmi2SetFMUstate";
-  return guarded(c, Function::set_fmu_state, name, [=](Instance& i) {
+  return guarded(c, Function::set_fmu_state, "fmi2SetFMUstate", [=](Instance& i) {
     Snapshot* snapshot = snapshot_of(state);
-    if (!snapshot) return refuse(i, name, state ? unknown_state : null_pointer);
+    if (!snapshot) return refuse(i, state ? unknown_state : null_pointer);
     const char* fault = i.simulation.load_state(snapshot->bytes(), snapshot->size, false);
-    return fault ? refuse(i, name, fault) : fmi2OK;
+    return fault ? refuse(i, fault) : fmi2OK;
   });
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, Function::free_fmu_state, "fmi2FreeFMUstate", [=](Instance&) {
-    if (!state || !snapshot_of(*state)) return fmi2OK;
+    if (!state || !snapshot_of(*state)) return;
     release(*state);
     *state = nullptr;
-    return fmi2OK;
   });
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  constexpr const char* name = "fmi2SerializedFMUstateSize";
-  return guarded(c, Function::fmu_state, name, [=](Instance& i) {
-    if (!state || !size) return refuse(i, name, null_pointer);
+  return guarded(c, Function::fmu_state, "fmi2SerializedFMUstateSize", [=](Instance& i) {
+    if (!state || !size) return refuse(i, null_pointer);
     const Snapshot* snapshot = snapshot_of(state);
-    if (!snapshot) return refuse(i, name, unknown_state);
+    if (!snapshot) return refuse(i, unknown_state);
     *size = snapshot->size;
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  constexpr const char* name = "fmi2SerializeFMUstate";
-  return guarded(c, Function::fmu_state, name, [=](Instance& i) {
-    if (!state || !bytes) return refuse(i, name, null_pointer);
+  return guarded(c, Function::fmu_state, "fmi2SerializeFMUstate", [=](Instance& i) {
+    if (!state || !bytes) return refuse(i, null_pointer);
     Snapshot* snapshot = snapshot_of(state);
-    if (!snapshot) return refuse(i, name, unknown_state);
-    if (size < snapshot->size) return refuse(i, name, "the array is shorter than the state");
+    if (!snapshot) return refuse(i, unknown_state);
+    if (size < snapshot->size) return refuse(i, "the array is shorter than the state");
     std::memcpy(bytes, snapshot->bytes(), snapshot->size);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
-  constexpr const char* name = "fmi2DeSerializeFMUstate";
-  return guarded(c, Function::fmu_state, name, [=](Instance& i) {
-    if (!state || !bytes) return refuse(i, name, null_pointer);
+  return guarded(c, Function::fmu_state, "fmi2DeSerializeFMUstate", [=](Instance& i) {
+    if (!state || !bytes) return refuse(i, null_pointer);
     Instance* scratch = Instance::create("scratch", nullptr, false, i.simulation.kind());
-    if (!scratch) return refuse(i, name, no_memory);
+    if (!scratch) return refuse(i, no_memory);
     const char* fault = scratch->simulation.load_state(reinterpret_cast<const unsigned char*>(bytes), size, true);
     Instance::destroy(scratch);
-    if (fault) {
-      i.log(Topic::error, "%s: the bytes are damaged or not a state of this FMU and version (%s).", name, fault);
-      return fmi2Error;
-    }
+    if (fault)
+      return i.log(Topic::error, "%s: the bytes are damaged or not a state of this FMU and version (%s).", i.called,
+                   fault);
     Snapshot* snapshot = allocate(*state, size);
-    if (!snapshot) return refuse(i, name, no_memory);
+    if (!snapshot) return refuse(i, no_memory);
     std::memcpy(snapshot->bytes(), bytes, size);
     *state = snapshot;
     return fmi2OK;

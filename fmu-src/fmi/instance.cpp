@@ -13,10 +13,16 @@
 namespace fmi {
 namespace {
 
-// In the order of the topics. At their default level many masters hide messages of the status Discard.
-constexpr fmi2Status statuses[] = {fmi2OK, fmi2Warning, fmi2Error, fmi2Warning};
-constexpr const char* categories[] = {"logEvents", "logStatusWarning", "logStatusError", "logStatusDiscard"};
-static_assert(std::size(statuses) == std::size(categories) && static_cast<int>(wheel::Topic::discard) == 3);
+// In the order of the topics: the category, the status of the message, and that of a call that ends with it. At their
+// default level many masters hide messages of the status Discard.
+constexpr struct {
+  const char* category;
+  fmi2Status message, call;
+} topics[] = {{"logEvents", fmi2OK, fmi2OK},
+              {"logStatusWarning", fmi2Warning, fmi2OK},
+              {"logStatusError", fmi2Error, fmi2Error},
+              {"logStatusDiscard", fmi2Warning, fmi2Discard}};
+static_assert(std::size(topics) == static_cast<std::size_t>(wheel::Topic::discard) + 1);
 
 // A message is a format to the master, and '#' opens a variable name: both characters are doubled.
 void escape(const char* text, char* out, std::size_t size) {
@@ -36,7 +42,7 @@ void tell(void* owner, wheel::Topic topic, const char* sentence) {
 
 }  // namespace
 
-const char* category_of(wheel::Topic topic) { return categories[static_cast<unsigned>(topic)]; }
+const char* category_of(wheel::Topic topic) { return topics[static_cast<unsigned>(topic)].category; }
 
 Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind) : simulation({this, wanted, tell}, kind) {
   if (!callbacks) return;
@@ -61,27 +67,28 @@ void Instance::destroy(Instance* instance) {
 }
 
 // After the end of a run the sentence says what happened to the wheel, which helps a user more than a call state.
-void Instance::refuse(Function function, const char* name) {
+fmi2Status Instance::refuse(Function function) {
   const bool slave = simulation.kind() == wheel::Kind::co_simulation;
   if (!is_of_kind(function, simulation.kind()))
-    log(wheel::Topic::error, "%s belongs to %s; this instance was made for %s.", name,
-        slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
-  else if (simulation.phase() == wheel::Phase::ended)
-    log(wheel::Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", name, simulation.ending(),
-        support::Digits(simulation.time()).text);
-  else
-    log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", name, state_of(simulation.phase()));
+    return log(wheel::Topic::error, "%s belongs to %s; this instance was made for %s.", called,
+               slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
+  if (simulation.phase() == wheel::Phase::ended)
+    return log(wheel::Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", called,
+               simulation.ending(), support::Digits(simulation.time()).text);
+  return log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", called, state_of(simulation.phase()));
 }
 
-void Instance::log(wheel::Topic topic, const char* format, ...) {
-  if (!logger_ || !wants(topic)) return;
+fmi2Status Instance::log(wheel::Topic topic, const char* format, ...) {
+  const fmi2Status status = topics[static_cast<unsigned>(topic)].call;
+  if (!logger_ || !wants(topic)) return status;
   char text[480], message[980];
   std::va_list arguments;
   va_start(arguments, format);
   std::vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
   escape(text, message, sizeof message);
-  logger_(environment_, name_, statuses[static_cast<unsigned>(topic)], category_of(topic), message);
+  logger_(environment_, name_, topics[static_cast<unsigned>(topic)].message, category_of(topic), message);
+  return status;
 }
 
 }  // namespace fmi

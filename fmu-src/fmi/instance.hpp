@@ -1,6 +1,8 @@
 // One FMU instance: the master's callbacks and the simulation. And the guard every call passes.
 #pragma once
 
+#include <type_traits>
+
 #include "fmi2Functions.h"
 #include "legality.hpp"
 #include "simulation.hpp"
@@ -13,13 +15,15 @@ struct Instance {
   static void destroy(Instance* instance);
 
   // Tells the master, if the category is switched on. Printf-like; the text is finished before the master sees it.
-  void log(wheel::Topic topic, const char* format, ...);
+  // Returns the status of a call that ends with this message.
+  fmi2Status log(wheel::Topic topic, const char* format, ...);
   // Tells that a function is not legal in the present state, or belongs to the other kind of instance.
-  void refuse(Function function, const char* name);
+  fmi2Status refuse(Function function);
   bool wants(wheel::Topic topic) const { return logged_topics & (1u << static_cast<unsigned>(topic)); }
 
   wheel::Simulation simulation;
-  bool busy = false;  // a call is under way: the logger must not call back into the instance
+  // The function that is under way, for messages; null: none is. The logger must not call back into the instance.
+  const char* called = nullptr;
   unsigned logged_topics = 0;
 
  private:
@@ -33,18 +37,20 @@ struct Instance {
 const char* category_of(wheel::Topic topic);
 
 // Every call on an instance: not null, not from within its own logger, legal in its state. An illegal call changes
-// nothing.
+// nothing. A body without a result cannot fail.
 template <class Body>
 fmi2Status guarded(fmi2Component component, Function function, const char* name, Body&& body) {
   auto* instance = static_cast<Instance*>(component);
-  if (!instance || instance->busy) return fmi2Error;
-  instance->busy = true;
-  fmi2Status status = fmi2Error;
-  if (is_of_kind(function, instance->simulation.kind()) && is_legal(function, instance->simulation.phase()))
-    status = body(*instance);
+  if (!instance || instance->called) return fmi2Error;
+  instance->called = name;
+  fmi2Status status = fmi2OK;
+  if (!is_legal(function, instance->simulation.kind(), instance->simulation.phase()))
+    status = instance->refuse(function);
+  else if constexpr (std::is_void_v<decltype(body(*instance))>)
+    body(*instance);
   else
-    instance->refuse(function, name);
-  instance->busy = false;
+    status = body(*instance);
+  instance->called = nullptr;
   return status;
 }
 

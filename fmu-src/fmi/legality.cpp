@@ -64,12 +64,14 @@ static_assert(in_order());
 
 }  // namespace
 
-bool is_legal(Function function, Phase phase) { return rules[static_cast<unsigned>(function)].phases & bits(phase); }
-
 bool is_of_kind(Function function, wheel::Kind kind) {
   const Kinds own = kind == wheel::Kind::co_simulation ? of_co_simulation : of_model_exchange;
   const Kinds kinds = rules[static_cast<unsigned>(function)].kinds;
   return kinds == both || kinds == own;
+}
+
+bool is_legal(Function function, wheel::Kind kind, Phase phase) {
+  return is_of_kind(function, kind) && rules[static_cast<unsigned>(function)].phases & bits(phase);
 }
 
 const char* state_of(Phase phase) {

@@ -35,9 +35,9 @@ enum class Function : unsigned char {
   count,
 };
 
-bool is_legal(Function function, wheel::Phase phase);
 // Whether the function belongs to this kind of instance, or to both.
 bool is_of_kind(Function function, wheel::Kind kind);
+bool is_legal(Function function, wheel::Kind kind, wheel::Phase phase);
 
 // The call state that the phase stands for, by the name that the standard uses, for messages.
 const char* state_of(wheel::Phase phase);

@@ -36,15 +36,12 @@ unsigned topics_of(const char* category) {
 }
 
 fmi2Status switch_logging(Instance& i, bool on, std::size_t count, const fmi2String categories[]) {
-  if (count && !categories) {
-    i.log(Topic::error, "fmi2SetDebugLogging: the categories are a null pointer.");
-    return fmi2Error;
-  }
+  if (count && !categories) return i.log(Topic::error, "%s: the categories are a null pointer.", i.called);
   unsigned topics = count ? 0 : topics_of("logAll");
   for (std::size_t k = 0; k < count; ++k) {
     topics |= topics_of(categories[k]);
     if (!topics_of(categories[k]))
-      i.log(Topic::warning, "fmi2SetDebugLogging: there is no category \"%s\".", categories[k] ? categories[k] : "");
+      i.log(Topic::warning, "%s: there is no category \"%s\".", i.called, categories[k] ? categories[k] : "");
   }
   i.logged_topics = on ? (count ? topics : i.logged_topics | topics) : i.logged_topics & ~topics;
   return fmi2OK;
@@ -73,7 +70,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
 
 void fmi2FreeInstance(fmi2Component c) {
   auto* instance = static_cast<Instance*>(c);
-  if (instance && fmi::instances.holds(instance) && !instance->busy && fmi::instances.remove(instance))
+  if (instance && fmi::instances.holds(instance) && !instance->called && fmi::instances.remove(instance))
     Instance::destroy(instance);
 }
 
@@ -85,23 +82,19 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, co
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean has_stop, fmi2Real stop) {
   return guarded(c, Function::setup_experiment, "fmi2SetupExperiment", [&](Instance& i) {
-    if (!std::isfinite(start) || (has_stop && !(stop >= start)) || (has_tolerance && !(tolerance > 0))) {
-      i.log(Topic::error,
-            "fmi2SetupExperiment: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the "
-            "tolerance positive.",
-            Digits(start).text, Digits(stop).text, Digits(tolerance).text);
-      return fmi2Error;
-    }
+    if (!std::isfinite(start) || (has_stop && !(stop >= start)) || (has_tolerance && !(tolerance > 0)))
+      return i.log(Topic::error,
+                   "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
+                   "positive.",
+                   i.called, Digits(start).text, Digits(stop).text, Digits(tolerance).text);
     i.simulation.set_experiment(start, has_stop ? stop : wheel::Demand::never, has_tolerance ? tolerance : 0);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  return guarded(c, Function::enter_initialization, "fmi2EnterInitializationMode", [](Instance& i) {
-    i.simulation.initialize();
-    return fmi2OK;
-  });
+  return guarded(c, Function::enter_initialization, "fmi2EnterInitializationMode",
+                 [](Instance& i) { i.simulation.enter(wheel::Phase::initializing); });
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
@@ -111,18 +104,12 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
 
 fmi2Status fmi2Terminate(fmi2Component c) {
   if (!fmi::instances.holds(c)) return fmi2Error;
-  return guarded(c, Function::terminate, "fmi2Terminate", [](Instance& i) {
-    i.simulation.close();
-    return fmi2OK;
-  });
+  return guarded(c, Function::terminate, "fmi2Terminate", [](Instance& i) { i.simulation.close(); });
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
   if (!fmi::instances.holds(c)) return fmi2Error;
-  return guarded(c, Function::reset, "fmi2Reset", [](Instance& i) {
-    i.simulation.reset();
-    return fmi2OK;
-  });
+  return guarded(c, Function::reset, "fmi2Reset", [](Instance& i) { i.simulation.reset(); });
 }
 
 }  // extern "C"

@@ -9,9 +9,9 @@ using fmi::Function, fmi::guarded, fmi::Instance, fmi::prepare_reading, support:
 
 namespace {
 
-bool check_count(Instance& i, const char* name, const void* values, std::size_t count, int needed) {
+bool check_count(Instance& i, const void* values, std::size_t count, int needed) {
   if (values && count == static_cast<std::size_t>(needed)) return true;
-  i.log(Topic::error, "%s: an array of %d numbers is needed, not of %zu%s.", name, needed, count,
+  i.log(Topic::error, "%s: an array of %d numbers is needed, not of %zu%s.", i.called, needed, count,
         values ? "" : ", and it is a null pointer");
   return false;
 }
@@ -20,17 +20,14 @@ bool check_count(Instance& i, const char* name, const void* values, std::size_t 
 template <class Read>
 fmi2Status read_states(fmi2Component c, const char* name, fmi2Real values[], std::size_t count, Read read) {
   return guarded(c, Function::get_states, name, [=](Instance& i) {
-    if (!check_count(i, name, values, count, wheel::state_count)) return fmi2Error;
+    if (!check_count(i, values, count, wheel::state_count)) return fmi2Error;
     if (prepare_reading(i) != fmi2OK || !has_state(i.simulation.phase())) return fmi2Discard;
     return read(i);
   });
 }
 
 fmi2Status enter(fmi2Component c, Function function, const char* name, Phase mode) {
-  return guarded(c, function, name, [=](Instance& i) {
-    i.simulation.enter(mode);
-    return fmi2OK;
-  });
+  return guarded(c, function, name, [=](Instance& i) { i.simulation.enter(mode); });
 }
 
 }  // namespace
@@ -47,12 +44,8 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
 
 // One pass is enough: the law that is decided holds.
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
-  constexpr const char* name = "fmi2NewDiscreteStates";
-  return guarded(c, Function::new_discrete_states, name, [=](Instance& i) {
-    if (!info) {
-      i.log(Topic::error, "%s: the event info is a null pointer.", name);
-      return fmi2Error;
-    }
+  return guarded(c, Function::new_discrete_states, "fmi2NewDiscreteStates", [=](Instance& i) {
+    if (!info) return i.log(Topic::error, "%s: the event info is a null pointer.", i.called);
     *info = {};
     info->valuesOfContinuousStatesChanged = i.simulation.decide() ? fmi2True : fmi2False;
     info->terminateSimulation = i.simulation.ending() ? fmi2True : fmi2False;
@@ -62,12 +55,8 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* enter_event_mode,
                                        fmi2Boolean* terminate) {
-  constexpr const char* name = "fmi2CompletedIntegratorStep";
-  return guarded(c, Function::completed_step, name, [=](Instance& i) {
-    if (!enter_event_mode || !terminate) {
-      i.log(Topic::error, "%s: an answer is a null pointer.", name);
-      return fmi2Error;
-    }
+  return guarded(c, Function::completed_step, "fmi2CompletedIntegratorStep", [=](Instance& i) {
+    if (!enter_event_mode || !terminate) return i.log(Topic::error, "%s: an answer is a null pointer.", i.called);
     *enter_event_mode = i.simulation.has_event() ? fmi2True : fmi2False;
     *terminate = fmi2False;
     return fmi2OK;
@@ -76,23 +65,17 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
   return guarded(c, Function::set_time, "fmi2SetTime", [=](Instance& i) {
-    if (!std::isfinite(t)) {
-      i.log(Topic::error, "fmi2SetTime: %s s: the time must be finite.", Digits(t).text);
-      return fmi2Error;
-    }
+    if (!std::isfinite(t)) return i.log(Topic::error, "%s: %s s: the time must be finite.", i.called, Digits(t).text);
     i.simulation.set_time(t);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
-  constexpr const char* name = "fmi2SetContinuousStates";
-  return guarded(c, Function::set_states, name, [=](Instance& i) {
-    if (!check_count(i, name, x, n, wheel::state_count)) return fmi2Error;
-    if (!std::all_of(x, x + n, [](double value) { return std::isfinite(value); })) {
-      i.log(Topic::discard, "%s: a state is not finite.", name);
-      return fmi2Discard;
-    }
+  return guarded(c, Function::set_states, "fmi2SetContinuousStates", [=](Instance& i) {
+    if (!check_count(i, x, n, wheel::state_count)) return fmi2Error;
+    if (!std::all_of(x, x + n, [](double value) { return std::isfinite(value); }))
+      return i.log(Topic::discard, "%s: a state is not finite.", i.called);
     i.simulation.set_states(x);
     return fmi2OK;
   });
@@ -113,18 +96,16 @@ fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
-  constexpr const char* name = "fmi2GetDerivatives";
-  return read_states(c, name, x_dot, n, [=](Instance& i) {
+  return read_states(c, "fmi2GetDerivatives", x_dot, n, [=](Instance& i) {
     if (i.simulation.derivatives(x_dot)) return fmi2OK;
-    i.log(Topic::discard, "%s: at t = %s s the derivatives are not finite.", name, Digits(i.simulation.time()).text);
-    return fmi2Discard;
+    return i.log(Topic::discard, "%s: at t = %s s the derivatives are not finite.", i.called,
+                 Digits(i.simulation.time()).text);
   });
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  constexpr const char* name = "fmi2GetEventIndicators";
-  return guarded(c, Function::get_states, name, [=](Instance& i) {
-    if (!check_count(i, name, z, n, wheel::indicator_count)) return fmi2Error;
+  return guarded(c, Function::get_states, "fmi2GetEventIndicators", [=](Instance& i) {
+    if (!check_count(i, z, n, wheel::indicator_count)) return fmi2Error;
     if (prepare_reading(i) != fmi2OK || !has_state(i.simulation.phase())) return fmi2Discard;
     i.simulation.indicators(z);
     return fmi2OK;

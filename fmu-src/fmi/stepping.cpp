@@ -22,32 +22,24 @@ bool same_time(double a, double b, double step) {
 bool is_past(double t, double stop) { return t - stop > step_rounding * (std::fabs(t) + std::fabs(stop)); }
 
 fmi2Status check_step(Instance& i, double t, double h) {
-  if (!std::isfinite(t) || !std::isfinite(h) || h < 0) {
-    i.log(Topic::error, "fmi2DoStep from %s s by %s s: times must be finite and the step not negative.", Digits(t).text,
-          Digits(h).text);
-    return fmi2Error;
-  }
-  if (std::fabs(t + h - t - h) > step_digits * h) {
-    i.log(Topic::error, "fmi2DoStep from %s s by %s s: a time of this size has no digits left for the step.",
-          Digits(t).text, Digits(h).text);
-    return fmi2Error;
-  }
-  if (!same_time(t, i.simulation.time(), h)) {
-    i.log(Topic::error, "fmi2DoStep from %s s: the FMU has reached %s s.", Digits(t).text,
-          Digits(i.simulation.time()).text);
-    return fmi2Error;
-  }
-  if (is_past(t + h, i.simulation.stop_time())) {
-    i.log(Topic::error, "fmi2DoStep to %s s: the stop time is %s s.", Digits(t + h).text,
-          Digits(i.simulation.stop_time()).text);
-    return fmi2Error;
-  }
+  if (!std::isfinite(t) || !std::isfinite(h) || h < 0)
+    return i.log(Topic::error, "%s from %s s by %s s: times must be finite and the step not negative.", i.called,
+                 Digits(t).text, Digits(h).text);
+  if (std::fabs(t + h - t - h) > step_digits * h)
+    return i.log(Topic::error, "%s from %s s by %s s: a time of this size has no digits left for the step.", i.called,
+                 Digits(t).text, Digits(h).text);
+  const double reached = i.simulation.time(), stop = i.simulation.stop_time();
+  if (!same_time(t, reached, h))
+    return i.log(Topic::error, "%s from %s s: the FMU has reached %s s.", i.called, Digits(t).text,
+                 Digits(reached).text);
+  if (is_past(t + h, stop))
+    return i.log(Topic::error, "%s to %s s: the stop time is %s s.", i.called, Digits(t + h).text, Digits(stop).text);
   return fmi2OK;
 }
 
 fmi2Status step(Instance& i, double t, double h) {
   if (check_step(i, t, h) != fmi2OK) return fmi2Error;
-  constexpr fmi2Status statuses[] = {fmi2OK, fmi2Discard, fmi2Error};  // reached, ended, failed
+  constexpr fmi2Status statuses[] = {fmi2OK, fmi2Discard, fmi2Error};  // of the outcomes
   return statuses[static_cast<unsigned>(i.simulation.advance(t + h))];
 }
 
@@ -60,14 +52,8 @@ constexpr int no_status = -1;
 template <class Value, class Read>
 fmi2Status get_status(fmi2Component c, const char* name, int kind, int known_kind, Value* value, Read read) {
   return guarded(c, Function::get_status, name, [=](Instance& i) {
-    if (!value) {
-      i.log(Topic::error, "%s: the value is a null pointer.", name);
-      return fmi2Error;
-    }
-    if (kind != known_kind) {
-      i.log(Topic::discard, "%s: there is no status of kind %d.", name, kind);
-      return fmi2Discard;
-    }
+    if (!value) return i.log(Topic::error, "%s: the value is a null pointer.", i.called);
+    if (kind != known_kind) return i.log(Topic::discard, "%s: there is no status of kind %d.", i.called, kind);
     *value = read(i);
     return fmi2OK;
   });

@@ -11,9 +11,9 @@ using support::Digits, wheel::Role, wheel::Topic, wheel::Type;
 
 namespace {
 
-bool check_variable(Instance& i, const char* name, fmi2ValueReference variable, Type type) {
+bool check_variable(Instance& i, fmi2ValueReference variable, Type type) {
   if (wheel::is_variable(variable, type)) return true;
-  i.log(Topic::error, "%s: no variable of this type has the value reference %u.", name, variable);
+  i.log(Topic::error, "%s: no variable of this type has the value reference %u.", i.called, variable);
   return false;
 }
 
@@ -29,22 +29,22 @@ template <class Value>
 fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueReference variables[], std::size_t count,
                Value values[]) {
   return guarded(c, Function::get_values, name, [=](Instance& i) {
-    if (!check_arrays(i, name, count, variables, values)) return fmi2Error;
+    if (!check_arrays(i, count, variables, values)) return fmi2Error;
     bool computed = false;
     for (std::size_t k = 0; k < count; ++k) {
-      if (!check_variable(i, name, variables[k], type)) return fmi2Error;
+      if (!check_variable(i, variables[k], type)) return fmi2Error;
       computed = computed || variables[k] >= wheel::stored_count;
     }
     if (computed && prepare_reading(i) != fmi2OK) return fmi2Discard;
     for (std::size_t k = 0; k < count; ++k) {
-      if (!check_readable(i, name, variables[k])) return fmi2Error;
+      if (!check_readable(i, variables[k])) return fmi2Error;
       values[k] = represented<Value>(i.simulation.value(variables[k]));
     }
     return fmi2OK;
   });
 }
 
-bool check_settable(Instance& i, const char* name, fmi2ValueReference variable) {
+bool check_settable(Instance& i, fmi2ValueReference variable) {
   const wheel::Row& row = wheel::row_of(variable);
   const bool stored = variable < wheel::stored_count;
   if (!stored && i.simulation.kind() == wheel::Kind::model_exchange && is_running(i.simulation.phase()) &&
@@ -52,14 +52,14 @@ bool check_settable(Instance& i, const char* name, fmi2ValueReference variable) 
     return true;
   if (stored && (!is_running(i.simulation.phase()) || row.role != Role::parameter)) return true;
   i.log(Topic::error,
-        stored ? "%s: \"%s\" cannot be set after initialization." : "%s: \"%s\" is calculated and cannot be set.", name,
-        row.name);
+        stored ? "%s: \"%s\" cannot be set after initialization." : "%s: \"%s\" is calculated and cannot be set.",
+        i.called, row.name);
   return false;
 }
 
 // During the run a value out of bounds is refused at once. Before the run it is taken, and all faults are told together
 // at the end of initialization.
-bool check_value(Instance& i, const char* name, fmi2ValueReference variable, double value) {
+bool check_value(Instance& i, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
   const bool bounded = variable < wheel::stored_count;
   const bool inside = std::isfinite(value) && (!bounded || (value >= row.min && value <= row.max));
@@ -67,10 +67,10 @@ bool check_value(Instance& i, const char* name, fmi2ValueReference variable, dou
   const bool low = value < row.min;
   const Digits given(value), limit(low ? row.min : row.max), kept(i.simulation.value(variable));
   if (std::isfinite(value))
-    i.log(Topic::discard, "%s: %s = %s: it must be at %s %s; the value stays %s.", name, row.name, given.text,
+    i.log(Topic::discard, "%s: %s = %s: it must be at %s %s; the value stays %s.", i.called, row.name, given.text,
           low ? "least" : "most", limit.text, kept.text);
   else
-    i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", name, row.name, given.text,
+    i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", i.called, row.name, given.text,
           kept.text);
   return false;
 }
@@ -79,11 +79,11 @@ template <class Value>
 fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueReference variables[], std::size_t count,
                const Value values[]) {
   return guarded(c, Function::set_values, name, [=](Instance& i) {
-    if (!check_arrays(i, name, count, variables, values)) return fmi2Error;
+    if (!check_arrays(i, count, variables, values)) return fmi2Error;
     for (std::size_t k = 0; k < count; ++k)
-      if (!check_variable(i, name, variables[k], type) || !check_settable(i, name, variables[k])) return fmi2Error;
+      if (!check_variable(i, variables[k], type) || !check_settable(i, variables[k])) return fmi2Error;
     for (std::size_t k = 0; k < count; ++k)
-      if (!check_value(i, name, variables[k], static_cast<double>(values[k]))) return fmi2Discard;
+      if (!check_value(i, variables[k], static_cast<double>(values[k]))) return fmi2Discard;
     for (std::size_t k = 0; k < count; ++k) {
       const auto value = static_cast<double>(values[k]);
       if (variables[k] < wheel::stored_count)
@@ -100,9 +100,8 @@ fmi2Status refuse_strings(fmi2Component c, Function function, const char* name, 
                           std::size_t count, const void* values) {
   return guarded(c, function, name, [=](Instance& i) {
     if (!count) return fmi2OK;
-    if (check_arrays(i, name, count, variables, values))
-      i.log(Topic::error, "%s: no variable of this type has the value reference %u.", name, variables[0]);
-    return fmi2Error;
+    if (!check_arrays(i, count, variables, values)) return fmi2Error;
+    return i.log(Topic::error, "%s: no variable of this type has the value reference %u.", i.called, variables[0]);
   });
 }
 

@@ -82,18 +82,21 @@ void Solver::expand(Counters* counters) const {
 
 // Looks from `from` to the end of the step for the first event.
 void Solver::look_for_events(double from) {
+  double instants[max_extremes];
+  const int count = problem_.extremes ? problem_.extremes(problem_.owner, from, step_.end, instants) : 0;
+  const std::span<const double> extremes(instants, static_cast<std::size_t>(count));
   for (int i = 0; i < problem_.watched_count; ++i) {
     const Watched& watched = problem_.watched[i];
     const Search search(problem_, step_, watched, watched.by_margin ? &counters_.rhs : &counters_.roots);
     Sample lo = {from, values_[i]}, hi = {};
     if (watched.by_margin) {
-      if (!comes_near(search, from)) continue;
+      if (!comes_near(search, extremes)) continue;
       expand(&counters_);
       lo = search.sample(from);
     } else {
       hi = search.sample(step_.end, step_.y_end);
       values_[i] = hi.g;
-      if (stays_above(search, lo, hi)) continue;
+      if (extremes.empty() && stays_above(search, lo, hi)) continue;
       expand(&counters_);
     }
     if (hi.t != known_until_) hi = search.sample(known_until_);
@@ -107,20 +110,16 @@ void Solver::look_for_events(double from) {
 
 // Whether a function watched by the margin may fall. Where an input has an extreme inside the step, the function is
 // evaluated there too, because none of the step's own evaluations may have come near it.
-bool Solver::comes_near(const Search& search, double from) {
+bool Solver::comes_near(const Search& search, std::span<const double> extremes) {
   if (step_.lowest_margin < problem_.near) return true;
-  double instants[max_extremes];
-  const int count = problem_.extremes ? problem_.extremes(problem_.owner, from, known_until_, instants) : 0;
-  if (count > 0) expand(&counters_);
-  return std::any_of(instants, instants + count, [&](double t) { return search.sample(t).g < problem_.near; });
+  if (!extremes.empty()) expand(&counters_);
+  const auto is_near = [&](double t) { return t < known_until_ && search.sample(t).g < problem_.near; };
+  return std::any_of(extremes.begin(), extremes.end(), is_near);
 }
 
 // Most steps are far from an event, which a value inside the step that is known anyway is enough to tell.
 bool Solver::stays_above(const Search& search, Sample lo, Sample hi) const {
-  double instants[max_extremes];
-  if (!(step_.inside_share > 0) || lo.t != step_.start ||
-      (problem_.extremes && problem_.extremes(problem_.owner, lo.t, hi.t, instants) > 0))
-    return false;
+  if (!(step_.inside_share > 0) || lo.t != step_.start) return false;
   const double t = step_.start + step_.inside_share * (step_.end - step_.start);
   return Search::stays_above(lo, search.sample(t, step_.y_inside), hi);
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "cvode_engine.hpp"
 #include "problem.hpp"
@@ -71,7 +72,7 @@ class Solver {
   bool make_step();
   void expand(Counters* counters) const;
   void look_for_events(double from);
-  bool comes_near(const Search& search, double from);
+  bool comes_near(const Search& search, std::span<const double> extremes);
   bool stays_above(const Search& search, Sample lo, Sample hi) const;
   void visit(support::Archive& archive);
   bool restored_fits() const;

@@ -24,22 +24,26 @@ double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 
 
 }  // namespace
 
-Progressed Simulation::advance(double caller_time) {
+Outcome Simulation::advance(double caller_time) {
   const double t = caller_time - demand_.start_time;
-  return !demand_.changed && knows(t) ? arrive(t) : advance_by_stages(t);
+  if (demand_.changed || !knows(t)) return advance_by_stages(t);
+  return arrive(t), Outcome::stepped;
 }
 
-Progressed Simulation::advance_by_stages(double t) {
+Outcome Simulation::advance_by_stages(double t) {
   y_now();
   Run before = run_;
   before.counted = counters();
   const bool changed = demand_.changed;
   failure_ = nullptr;
-  Outcome outcome = take_demand() ? Outcome::stepped : Outcome::failed;
-  if (outcome == Outcome::stepped && t > run_.t) outcome = begin() ? proceed(t) : Outcome::failed;
-  if (outcome == Outcome::failed) return fail(before, changed);
-  if (outcome == Outcome::event) return end_run();
-  return arrive(t);
+  const bool moves = t > run_.t;
+  Outcome outcome = take_demand();
+  if (outcome == Outcome::stepped && moves) outcome = begin();
+  if (outcome == Outcome::stepped && moves) outcome = proceed(t);
+  if (outcome == Outcome::stepped) arrive(t);
+  if (outcome == Outcome::event) end_run();
+  if (outcome == Outcome::failed) fail(before, changed);
+  return outcome;
 }
 
 bool Simulation::knows(double t) const {
@@ -60,42 +64,40 @@ bool Simulation::has_changed() const {
 }
 
 // Stage 1: what was set since the last step takes effect.
-bool Simulation::take_demand() {
-  if (!demand_.changed) return true;
-  const bool changed = has_changed();
+Outcome Simulation::take_demand() {
+  const bool changed = demand_.changed && has_changed();
   demand_.changed = false;
-  if (!changed) return true;
+  if (!changed) return Outcome::stepped;
   const WheelFriction before = run_.in_force.scene.friction;
   const bool leaves_orbit = run_.phase == Phase::unfolded;
   if (leaves_orbit && setup_.keep_contact && contact_margin(owner_, run_.t, run_.y) < 0) run_.in_force.change_contact();
   run_.in_force = in_force_from(setup_, demand_, run_.in_force.scene.ground, run_.t, run_.y);
   fresh_ = Fresh::state;
   announce_transition(before);
-  if (run_.phase == Phase::at_start) return true;
+  if (run_.phase == Phase::at_start) return Outcome::stepped;
   const double interval = run_.t - run_.last_change;
   run_.last_change = run_.t;
-  if (run_.phase == Phase::stepping) return restart_solver() && (solver_.limit_first_step(interval), true);
+  const bool again = run_.phase == Phase::stepping;
+  if (!again) ++run_.counted.restarts;
   run_.phase = Phase::stepping;
-  ++run_.counted.restarts;
-  return start_solver();
+  const Outcome outcome = start_solver(again);
+  if (again) solver_.limit_first_step(interval);
+  return outcome;
 }
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
-bool Simulation::begin() {
-  if (run_.phase == Phase::stepping || (run_.phase == Phase::unfolded && orbit_ready_)) return true;
-  if (is_unfoldable(setup_, run_.in_force) && enter_orbit()) return run_.phase = Phase::unfolded, true;
-  run_.phase = Phase::stepping;
-  return start_solver();
+Outcome Simulation::begin() {
+  if (run_.phase == Phase::stepping || (run_.phase == Phase::unfolded && orbit_ready_)) return Outcome::stepped;
+  const bool unfolds = is_unfoldable(setup_, run_.in_force) && enter_orbit();
+  run_.phase = unfolds ? Phase::unfolded : Phase::stepping;
+  return unfolds ? Outcome::stepped : start_solver(false);
 }
 
-// Starts the solver from nothing at the present instant.
-bool Simulation::start_solver() {
-  return solver_.start(problem_of(owner_), method_of(setup_, run_.in_force), run_.t, run_.y);
-}
-
-// The same where it goes on counting.
-bool Simulation::restart_solver() {
-  return solver_.restart(problem_of(owner_), method_of(setup_, run_.in_force), run_.t, run_.y);
+// Starts the solver at the present instant, from nothing or, again, where it goes on counting.
+Outcome Simulation::start_solver(bool again) {
+  const auto start = again ? &solver::Solver::restart : &solver::Solver::start;
+  const bool started = (solver_.*start)(problem_of(owner_), method_of(setup_, run_.in_force), run_.t, run_.y);
+  return started ? Outcome::stepped : Outcome::failed;
 }
 
 // Stage 3: the solution becomes known up to t, or up to an event that ends the run.
@@ -128,25 +130,20 @@ Outcome Simulation::step_to(double t) {
 
 // The run stands at an event. `event`: it ends the run.
 Outcome Simulation::pass_event() {
-  bool passed;
   switch (static_cast<Event>(solver_.event())) {
     case Event::spin_changes:
-      passed = pass_transition();
-      break;
+      return pass_transition();
     case Event::layer_changes:
-      passed = pass_layer();
-      break;
+      return pass_layer();
     case Event::contact_changes:
-      passed = pass_contact();
-      break;
+      return pass_contact();
     default:
       return Outcome::event;
   }
-  return passed ? Outcome::stepped : Outcome::failed;
 }
 
 // omega_z has reached zero, or friction and brake can no longer hold it there.
-bool Simulation::pass_transition() {
+Outcome Simulation::pass_transition() {
   const WheelScene scene = run_.in_force.scene_at(run_.t);
   const WheelFriction before = scene.friction;
   y_now();
@@ -155,46 +152,47 @@ bool Simulation::pass_transition() {
   friction = before.kind == WHEEL_HELD ? released(setup_, scene, run_.y)
                                        : friction_at(setup_, scene, run_.in_force.inputs.braked, run_.y);
   announce_transition(before);
-  return restart_solver();
+  return start_solver(true);
 }
 
 // omega_z has entered or left the layer of a stiff regularized law, or begins to stick in it.
-bool Simulation::pass_layer() {
+Outcome Simulation::pass_layer() {
   enter_layer(setup_, run_.in_force, run_.t, y_now());
-  return restart_solver();
+  return start_solver(true);
 }
 
 // The ground begins to pull or to press. Without friction the motion goes on as it was.
-bool Simulation::pass_contact() {
+Outcome Simulation::pass_contact() {
   run_.in_force.change_contact();
   if (run_.in_force.pulls()) tell_pull(run_.t);
-  if (run_.in_force.scene.friction.kind == WHEEL_FRICTIONLESS) return solver_.resume(), true;
+  if (run_.in_force.scene.friction.kind == WHEEL_FRICTIONLESS) return solver_.resume(), Outcome::stepped;
   y_now();
-  return restart_solver();
+  return start_solver(true);
 }
 
 // Counts and reports a change between held, positive and negative spin. A change to another law is not a transition.
 void Simulation::announce_transition(const WheelFriction& before) {
   const WheelFriction& friction = run_.in_force.scene.friction;
-  if (!has_transitions(before) || !has_transitions(friction)) return;
+  const auto is_exact = [](WheelFrictionKind law) { return law == WHEEL_ROLLING || law == WHEEL_HELD; };
+  if (!is_exact(before.kind) || !is_exact(friction.kind)) return;
   if (before.kind == friction.kind && before.sigma == friction.sigma) return;
   ++run_.transitions;
+  if (!reporter_.wants(Topic::event)) return;
   const support::Digits instant(to_nanosecond(time()));
   if (friction.kind == WHEEL_HELD)
-    tell(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
+    reporter_.tell(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
   else
-    tell(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
-         before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
+    reporter_.tell(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
+                   before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
 }
 
 // Stage 4: the run stands at t, up to which the solution is known. Inputs that vary stay where they arrived, unless
 // they are set again.
-Progressed Simulation::arrive(double t) {
-  if (!(t > run_.t)) return Progressed::reached;
+void Simulation::arrive(double t) {
+  if (!(t > run_.t)) return;
   move_to(t);
   const Inputs& inputs = run_.in_force.inputs;
   if (inputs.varies) inputs.hold(t, demand_.inputs), demand_.changed = true;
-  return Progressed::reached;
 }
 
 void Simulation::move_to(double t) {
@@ -206,44 +204,46 @@ void Simulation::move_to(double t) {
 void Simulation::tell_pull(double t) {
   run_.last_pull = t;
   if (run_.pulls++ >= told_pulls) return;
-  tell(Topic::warning, "The ground pulls from t = %s s on: keep_contact holds a wheel that would have lifted off.",
-       support::Digits(to_nanosecond(demand_.start_time + t)).text);
+  reporter_.tell(Topic::warning,
+                 "The ground pulls from t = %s s on: keep_contact holds a wheel that would have lifted off.",
+                 support::Digits(to_nanosecond(demand_.start_time + t)).text);
 }
 
 // At the end of a run: the pulls that were not told one by one.
 void Simulation::sum_up() const {
   if (run_.pulls > told_pulls)
-    tell(Topic::warning, "The ground has pulled %lld times, of which the first %lld were told; last from t = %s s on.",
-         run_.pulls, told_pulls, support::Digits(to_nanosecond(demand_.start_time + run_.last_pull)).text);
+    reporter_.tell(Topic::warning,
+                   "The ground has pulled %lld times, of which the first %lld were told; last from t = %s s on.",
+                   run_.pulls, told_pulls, support::Digits(to_nanosecond(demand_.start_time + run_.last_pull)).text);
 }
 
-Progressed Simulation::end_run() {
+void Simulation::end_run() {
   const bool unfolded = run_.phase == Phase::unfolded;
   if (unfolded) move_to(orbit_.end_time());
   end_as(static_cast<Event>(unfolded ? orbit_.event() : solver_.event()));
-  return Progressed::ended;
 }
 
 void Simulation::end_as(Event event) {
   run_.ended_by = event;
   freeze(Phase::ended);
   sum_up();
-  tell(Topic::discard,
-       event == Event::fell_flat ? "The wheel %s at t = %s s: the model ends there."
-                                 : "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
-       ending(), support::Digits(time()).text, support::Digits(run_.y[setup_.formulation->tilt_index], 6).text);
+  reporter_.tell(Topic::discard,
+                 event == Event::fell_flat ? "The wheel %s at t = %s s: the model ends there."
+                                           : "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
+                 ending(), support::Digits(time()).text,
+                 support::Digits(run_.y[setup_.formulation->tilt_index], 6).text);
 }
 
 // The state is that before the step, and stays so.
-Progressed Simulation::fail(const Run& before, bool changed) {
+void Simulation::fail(const Run& before, bool changed) {
   if (run_.phase == Phase::stepping) move_to(solver_.known_until());
-  tell(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.", support::Digits(time()).text,
-       support::Digits(y_now()[setup_.formulation->spin_index], 4).text, failure_ ? failure_ : solver_.failure());
+  reporter_.tell(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.",
+                 support::Digits(time()).text, support::Digits(y_now()[setup_.formulation->spin_index], 4).text,
+                 failure_ ? failure_ : solver_.failure());
   run_ = before;
   run_.phase = Phase::failed;
   demand_.changed = changed;
   fresh_ = Fresh::state;
-  return Progressed::failed;
 }
 
 }  // namespace wheel

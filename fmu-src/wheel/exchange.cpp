@@ -75,9 +75,7 @@ bool Simulation::derivatives(double* x_dot) {
   return std::all_of(x_dot, x_dot + state_count, [](double rate) { return std::isfinite(rate); });
 }
 
-void Simulation::nominals(double* x) const {
-  scales_at(setup_.scales, *setup_.formulation, run_.y[setup_.formulation->spin_index], x);
-}
+void Simulation::nominals(double* x) const { scales_at(setup_, run_.y[setup_.formulation->spin_index], x); }
 
 // How far the mode of friction is from its end: rolling, omega_z over the wheel's own rate; held, what holding leaves
 // unused; without friction, the brake, which asks for a law as soon as it is set.
@@ -104,8 +102,8 @@ double Simulation::friction_rate() {
   Reading& now = reading();
   if (scene.friction.kind == WHEEL_ROLLING) return scene.friction.sigma * now.dynamics().omega_z_dot * setup_.own_time;
   if (scene.friction.kind != WHEEL_HELD) return 0;
-  const double grip_dot = now.dynamics().lambda[2] > 0 ? scene.wheel.s * now.reaction_rates().lambda[2] : 0;
-  const double tau_dot = std::copysign(now.reaction_rates().tau, now.dynamics().tau * now.reaction_rates().tau);
+  const double grip_dot = now.dynamics().lambda[2] > 0 ? scene.wheel.s * now.reaction_rates().lambda_dot[2] : 0;
+  const double tau_dot = std::copysign(now.reaction_rates().tau_dot, now.dynamics().tau * now.reaction_rates().tau_dot);
   return (grip_dot - tau_dot) / (setup_.weight * (scene.wheel.r_0 + scene.wheel.r));
 }
 
@@ -113,10 +111,10 @@ double Simulation::friction_rate() {
 bool Simulation::starts_inside() {
   const Margins start = margins();
   if (start.flat > 0 && (start.contact > 0 || setup_.keep_contact)) return true;
-  tell(Topic::error,
-       start.flat > 0 ? "The ground does not press on the wheel at the start: N = %s N."
-                      : "The wheel lies flat at the start: N = %s N.",
-       support::Digits(reading().dynamics().lambda[2], 6).text);
+  reporter_.tell(Topic::error,
+                 start.flat > 0 ? "The ground does not press on the wheel at the start: N = %s N."
+                                : "The wheel lies flat at the start: N = %s N.",
+                 support::Digits(reading().dynamics().lambda[2], 6).text);
   return false;
 }
 
@@ -163,7 +161,7 @@ void Simulation::decide_contact(double time) {
   const WheelKinematics& pose = reading().pose();
   const double upright = 1.5707963267948966, sign = run_.in_force.pulls() ? -1 : 1;
   if (falls(now.flat, pose.theta < upright ? pose.theta_dot : -pose.theta_dot, time)) return end_as(Event::fell_flat);
-  if (!falls(now.contact, sign * reading().reaction_rates().lambda[2] / setup_.weight, time)) return;
+  if (!falls(now.contact, sign * reading().reaction_rates().lambda_dot[2] / setup_.weight, time)) return;
   if (!setup_.keep_contact) return end_as(Event::lifted_off);
   run_.in_force.change_contact();
   if (run_.in_force.pulls()) tell_pull(run_.t);
@@ -175,7 +173,7 @@ double Simulation::partial(unsigned unknown, unsigned known) {
   constexpr double share = 1e-3;
   double y[WHEEL_MAX_STATES], scales[WHEEL_MAX_STATES];
   std::copy_n(y_now(), WHEEL_MAX_STATES, y);
-  scales_at(setup_.scales, *setup_.formulation, 0, scales);
+  scales_at(setup_, 0, scales);
   Present now = present_for(known);
   now.y = y;
   const int state = setup_.formulation == &wheel_euler ? state_of(known) : -1;

@@ -8,8 +8,6 @@
 namespace wheel {
 namespace {
 
-constexpr double factorial[] = {1, 1, 2, 6};
-
 double evaluate(const double* c, double tau) { return c[0] + tau * (c[1] + tau * (c[2] + tau * c[3])); }
 double slope(const double* c, double tau) { return c[1] + tau * (2 * c[2] + tau * 3 * c[3]); }
 
@@ -17,7 +15,7 @@ double slope(const double* c, double tau) { return c[1] + tau * (2 * c[2] + tau 
 WheelLoad load_after(const Polynomials& inputs, double tau) {
   WheelLoad load;
   for (int i = 0; i < inputs_count; ++i) *load_entry(load, i) = evaluate(inputs[i], tau);
-  load.brake = std::fmax(load.brake, 0);
+  if (!(load.brake > 0)) load.brake = 0;
   return load;
 }
 
@@ -56,10 +54,6 @@ bool continues(const double* c, double tau, double rounding, const double* next)
 double* load_entry(WheelLoad& load, int input) {
   if (input < 3) return &load.F[input];
   return input < brake_input ? &load.M[input - 3] : &load.brake;
-}
-
-void set_derivative(Polynomials& inputs, int input, int order, double derivative) {
-  inputs[input][order] = derivative / factorial[order];
 }
 
 WheelLoad load_of(const Polynomials& inputs) { return load_after(inputs, 0); }

@@ -12,6 +12,7 @@ namespace wheel {
 inline constexpr int inputs_count = 7, brake_input = 6, max_order = 3, most_extremes = inputs_count * (max_order - 1);
 
 // c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
+inline constexpr double factorial[] = {1, 1, 2, 6};
 using Polynomials = double[inputs_count][max_order + 1];
 
 // The inputs in force.
@@ -35,7 +36,6 @@ struct Inputs {
   int extremes(double t_lo, double t_hi, double* instants) const;
 };
 
-void set_derivative(Polynomials& inputs, int input, int order, double derivative);
 // The load at the origin of the polynomials, and its rate from there on: a brake at zero can only be put on.
 WheelLoad load_of(const Polynomials& inputs);
 WheelLoad load_rate_of(const Polynomials& inputs);

@@ -58,10 +58,6 @@ double holding_margin(const Setup& setup, const WheelScene& scene, const double*
   return margin_of(setup, scene, dynamics_of_held(setup, scene, y));
 }
 
-bool has_transitions(const WheelFriction& friction) {
-  return friction.kind == WHEEL_ROLLING || friction.kind == WHEEL_HELD;
-}
-
 // The fastest decay of the law is that at omega_z = 0: (s N + M_brake) / omega_s over the spin inertia. The wheel's own
 // time scale tells whether that is fast; below the limit DOP853 alone is faster (docs/results/stability.md).
 bool needs_layer(const Setup& setup, const WheelScene& scene, const double* y) {

@@ -20,9 +20,6 @@ WheelFriction released(const Setup& setup, const WheelScene& held, const double*
 // s N + M_brake - |tau| of a held wheel, N m; where rounding alone decides, the wheel stays held.
 double holding_margin(const Setup& setup, const WheelScene& scene, const double* y);
 
-// Only the exact law has transitions.
-bool has_transitions(const WheelFriction& friction);
-
 // rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last
 // digit.
 inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }

@@ -15,14 +15,6 @@ namespace {
 
 const Owner& of(void* owner) { return *static_cast<const Owner*>(owner); }
 
-// y_dot (out) at t and y; returns N.
-double evaluate(const Owner& owner, double t, const double* y, double* y_dot) {
-  const InForce& now = owner.in_force;
-  if (!now.inputs.varies) return owner.setup.formulation->derivative(&now.scene, y, y_dot);
-  const WheelScene scene = now.scene_at(t);
-  return owner.setup.formulation->derivative(&scene, y, y_dot);
-}
-
 // Zero where the wheel lies flat, rad.
 double height(const Setup& setup, const double* y) {
   return angle_from_flat(y[setup.formulation->tilt_index]) - flat_angle;
@@ -35,8 +27,9 @@ double contact(const Owner& owner, double N) {
 }
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
-  const Setup& setup = of(owner).setup;
-  const double N = evaluate(of(owner), t, y, y_dot);
+  const auto& [setup, now] = of(owner);
+  const auto rates = [&](const WheelScene& scene) { return setup.formulation->derivative(&scene, y, y_dot); };
+  const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
   double sum = 0;
   for (int i = 0; i < setup.formulation->states; ++i) sum += y_dot[i];
   if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
@@ -51,9 +44,9 @@ void weights(void* owner, double share, const double* y, double* weights) {
   const int states = setup.formulation->states, spin = setup.formulation->spin_index;
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const double slow = share * setup.tolerance;
-  const double tolerance = std::fmax(slow * share_at(setup.scales, y[spin]), std::fmin(slow, rounding));
+  const double tolerance = std::fmax(slow * share_at(setup, y[spin]), std::fmin(slow, rounding));
   double scales[WHEEL_MAX_STATES];
-  scales_at(setup.scales, *setup.formulation, y[spin], scales);
+  scales_at(setup, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (of(owner).in_force.scene.friction.kind != WHEEL_REGULARIZED) return;
   const double part = 10 * std::sqrt(tolerance);
@@ -95,7 +88,8 @@ int extremes(void* owner, double t_lo, double t_hi, double* instants) {
 
 double contact_margin(const Owner& owner, double t, const double* y) {
   double y_dot[WHEEL_MAX_STATES];
-  return contact(owner, evaluate(owner, t, y, y_dot));
+  const WheelScene scene = owner.in_force.scene_at(t);
+  return contact(owner, owner.setup.formulation->derivative(&scene, y, y_dot));
 }
 
 solver::Problem problem_of(Owner& owner) {

@@ -35,10 +35,10 @@ const ReactionRates& Reading::reaction_rates() {
   if (missing(have_rates)) {
     WheelReactionRates rates;
     double force_dot[2];
-    now_.formulation->rates(&now_.scene, &now_.load_rate, now_.y, &rates);
+    const WheelLoad load_rate = load_rate_of(*now_.inputs);
+    now_.formulation->rates(&now_.scene, &load_rate, now_.y, &rates);
     wheel_horizontal_force_rates(&pose(), dynamics().lambda, rates.lambda_dot, force_dot);
-    rates_ = {
-        {rates.lambda_dot[0], rates.lambda_dot[1], rates.lambda_dot[2]}, force_dot[0], force_dot[1], rates.tau_dot};
+    rates_ = {rates, force_dot[0], force_dot[1]};
   }
   return rates_;
 }
@@ -48,7 +48,7 @@ ReactionRates Reading::response(const WheelLoad& load_dot) {
   double force_dot[2];
   now_.formulation->response(&now_.scene, &load_dot, now_.y, &rates);
   wheel_horizontal_force(&pose(), rates.lambda_dot, force_dot);
-  return {{rates.lambda_dot[0], rates.lambda_dot[1], rates.lambda_dot[2]}, force_dot[0], force_dot[1], rates.tau_dot};
+  return {rates, force_dot[0], force_dot[1]};
 }
 
 const WheelContact& Reading::contact() {

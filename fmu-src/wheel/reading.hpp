@@ -3,17 +3,18 @@
 // output that nobody reads. Fixed axes unless said.
 #pragma once
 
+#include "inputs.hpp"
 #include "problem.hpp"
 #include "wheel_equations.h"
 
 namespace wheel {
 
-// The instant to read; scene and rate of the load are those that hold for what follows it.
+// The instant to read; scene and inputs are those that hold for what follows it.
 struct Present {
   const WheelFormulation* formulation;
   const double* y;
   WheelScene scene;
-  WheelLoad load_rate;
+  const Polynomials* inputs;
   solver::Counters counters;
   long long transitions;  // of the friction
 };
@@ -23,9 +24,9 @@ struct Reactions {
   double lambda_x, lambda_y, tau;
 };
 
-// Rates along the motion: of the ground's force in fixed axes, and of the above.
-struct ReactionRates {
-  double lambda[3], lambda_x, lambda_y, tau;
+// Rates along the motion: of the ground's force in fixed axes and of the moment, N/s and N m/s, and of the above.
+struct ReactionRates : WheelReactionRates {
+  double lambda_x_dot, lambda_y_dot;
 };
 
 class Reading {

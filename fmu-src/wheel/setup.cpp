@@ -26,22 +26,18 @@ double force_scale(const WheelParameters& wheel, double own_time) {
 
 // The scale of angles is 1 rad, of lengths r_0 + r, of rates the inverse of the wheel's own time scale or the initial
 // tilting, whichever is larger.
-ErrorScales error_scales(const WheelParameters& wheel, const WheelFormulation& f, double own_time,
-                         const WheelKinematics& start) {
-  const double length = wheel.r_0 + wheel.r;
-  const double slowest = 1 / own_time, omega_2 = start.psi_dot * std::sin(start.theta);
-  const double tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
-  const double turn = std::max(slowest, tilting);
+void set_scales(Setup& setup) {
+  const WheelFormulation* const f = setup.formulation;
+  const double length = setup.wheel.r_0 + setup.wheel.r, slowest = 1 / setup.own_time;
+  const double turn = std::max(slowest, setup.tilting);
   // Errors of X_O and Y_O do not feed back into the motion, those of psi only under a force along the road, those of
   // phi only where J_x differs from J_y: they grow little, and may be larger.
   const double reduced[] = {1, turn, turn, turn, 3, 3, 3 * length, 3 * length};
   // The velocity of O is bound to the rates by the constraints: weighed lower, it strays less from them.
   const double speed = 0.15 * slowest * length;
   const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, turn};
-  ErrorScales scales = {{}, slowest, tilting};
   const double euler[] = {3 * length, 3 * length, 3, 1, 3, turn, turn, turn};
-  std::copy_n(&f == &wheel_reduced ? reduced : &f == &wheel_euler ? euler : multibody, f.states, scales.slow);
-  return scales;
+  std::copy_n(f == &wheel_reduced ? reduced : f == &wheel_euler ? euler : multibody, f->states, setup.slow_scales);
 }
 
 const WheelFormulation* formulation_of(const Demand& demand) {
@@ -72,24 +68,27 @@ Setup setup_of(const Demand& demand) {
   setup.own_time = time_scale(setup.wheel, start);
   setup.longest_step = 0.5 * setup.own_time;
   setup.weight = force_scale(setup.wheel, setup.own_time);
-  setup.scales = error_scales(setup.wheel, *setup.formulation, setup.own_time, start);
+  const double omega_2 = start.psi_dot * std::sin(start.theta);
+  setup.tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
+  set_scales(setup);
   return setup;
 }
 
-void scales_at(const ErrorScales& scales, const WheelFormulation& f, double omega_z, double* out) {
-  std::copy_n(scales.slow, f.states, out);
-  const double spin = std::fabs(omega_z);
-  if (!(spin > scales.own_rate)) return;
-  const double turn = scales.own_rate * scales.own_rate / spin + scales.tilting;  // rad/s, of a nutation
+void scales_at(const Setup& setup, double omega_z, double* out) {
+  const WheelFormulation& f = *setup.formulation;
+  std::copy_n(setup.slow_scales, f.states, out);
+  const double spin = std::fabs(omega_z), own_rate = 1 / setup.own_time;
+  if (!(spin > own_rate)) return;
+  const double turn = own_rate * own_rate / spin + setup.tilting;  // rad/s, of a nutation
   out[f.tilt_index] = std::fmin(out[f.tilt_index], turn / spin);
   const int last = f.spin_index;  // the three rates of rotation stand together, the spin last
   for (int i = last - 2; i <= last; ++i) out[i] = std::fmin(out[i], turn);
 }
 
-double share_at(const ErrorScales& scales, double omega_z) {
+double share_at(const Setup& setup, double omega_z) {
   constexpr double many = 12;
-  const double spin = std::fabs(omega_z);
-  return spin > many * scales.own_rate ? many * scales.own_rate / spin : 1;
+  const double spin = std::fabs(omega_z), own_rate = 1 / setup.own_time;
+  return spin > many * own_rate ? many * own_rate / spin : 1;
 }
 
 }  // namespace wheel

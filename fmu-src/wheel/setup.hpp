@@ -7,12 +7,6 @@
 
 namespace wheel {
 
-// How errors of the states are weighed.
-struct ErrorScales {
-  double slow[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly
-  double own_rate, tilting;       // rad/s: of the wheel's own time scale; initial rate of turning about e1 and e2
-};
-
 struct Setup {
   const WheelFormulation* formulation;
   WheelParameters wheel;  // its `s` is zero here: the one in force is part of the run
@@ -21,22 +15,23 @@ struct Setup {
   SolverMethod method = automatic_method;
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y, a level road, choices automatic
   bool keep_contact;
-  double tolerance;                // relative, of the whole solution
-  double start[WHEEL_MAX_STATES];  // the initial state
-  double own_time;                 // s, the wheel's own time scale
-  double longest_step;             // s
-  double weight;                   // N, scale of the normal force
-  ErrorScales scales;
+  double tolerance;                      // relative, of the whole solution
+  double start[WHEEL_MAX_STATES];        // the initial state
+  double tilting;                        // rad/s, initial rate of turning about e1 and e2
+  double own_time;                       // s, the wheel's own time scale
+  double longest_step;                   // s
+  double weight;                         // N, scale of the normal force
+  double slow_scales[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly
 };
 
 Setup setup_of(const Demand& demand);
 
 // The scales at the spin omega_z, rad/s. A fast wheel hardly tilts: the range of theta falls with the square of the
 // spin, that of the rates with the spin, and errors are weighed by these ranges.
-void scales_at(const ErrorScales& scales, const WheelFormulation& formulation, double omega_z, double* out);
+void scales_at(const Setup& setup, double omega_z, double* out);
 
 // Errors add up over the turns of a fast wheel. Returns the fraction of the usual error that a step may make at the
 // spin omega_z, rad/s: below one where the wheel turns very often within its own time scale.
-double share_at(const ErrorScales& scales, double omega_z);
+double share_at(const Setup& setup, double omega_z);
 
 }  // namespace wheel

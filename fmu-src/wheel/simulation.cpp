@@ -6,19 +6,19 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "checks.hpp"
 #include "digits.hpp"
 
 namespace wheel {
 
-bool Simulation::tell(Topic topic, const char* format, ...) const {
-  if (!reporter_.wanted(reporter_.owner, topic)) return false;
+void Reporter::tell(Topic topic, const char* format, ...) const {
+  if (!wants(topic)) return;
   char sentence[512];
   std::va_list arguments;
   va_start(arguments, format);
   std::vsnprintf(sentence, sizeof sentence, format, arguments);
   va_end(arguments);
-  reporter_.tell(reporter_.owner, topic, sentence);
-  return true;
+  take(owner, topic, sentence);
 }
 
 void Simulation::reset() {
@@ -35,8 +35,8 @@ void Simulation::set_experiment(double start_time, double stop_time, double tole
   demand_.stop_time = stop_time;
   demand_.tolerance = taken;
   if (tolerance > 0 && tolerance != taken)
-    tell(Topic::warning, "The tolerance %s is outside [1e-13, 0.0001]; %s is used.", support::Digits(tolerance, 6).text,
-         support::Digits(taken, 6).text);
+    reporter_.tell(Topic::warning, "The tolerance %s is outside [1e-13, 0.0001]; %s is used.",
+                   support::Digits(tolerance, 6).text, support::Digits(taken, 6).text);
 }
 
 void Simulation::store(unsigned variable, double value) {
@@ -50,21 +50,22 @@ void Simulation::store(unsigned variable, double value) {
 }
 
 void Simulation::set_input_derivative(unsigned variable, int order, double value) {
-  set_derivative(demand_.inputs, static_cast<int>(variable - first_input), order, value);
+  demand_.inputs[variable - first_input][order] = value / factorial[order];
   demand_.changed = true;
   fresh_ = std::min(fresh_, Fresh::state);
 }
 
 bool Simulation::prepare(bool report) {
+  const Reporter reporter = report ? reporter_ : Reporter();
   run_ = Run();
   run_.phase = Phase::faulty;
-  if (!check_parameters(report)) return false;
+  if (!check_values(demand_, reporter)) return false;
   setup_ = setup_of(demand_);
   run_.in_force = in_force_from(setup_, demand_, WHEEL_GROUND_PRESSES, 0, setup_.start);
   std::copy_n(setup_.start, setup_.formulation->states, run_.y);
   demand_.changed = orbit_ready_ = false;
   fresh_ = Fresh::state;
-  if (check_start(report)) run_.phase = Phase::initial;
+  if (check_start(reporter)) run_.phase = Phase::initial;
   return run_.phase == Phase::initial;
 }
 
@@ -111,7 +112,7 @@ WheelScene Simulation::scene_now() {
 }
 
 Present Simulation::present() {
-  return {setup_.formulation, y_now(), scene_now(), load_rate_of(demand_.inputs), counters(), run_.transitions};
+  return {setup_.formulation, y_now(), scene_now(), &demand_.inputs, counters(), run_.transitions};
 }
 
 Reading& Simulation::reading() {
@@ -138,15 +139,16 @@ Present Simulation::present_for(unsigned known) {
   return now;
 }
 
-// Only the reactions depend on the inputs of the same instant.
-double Simulation::sensitivity(unsigned output, unsigned input) {
-  const auto component = row_of(output).reaction_rate;
-  if (!component) return row_of(output).role == Role::local ? partial(output, input) : 0;
-  const int i = static_cast<int>(input - first_input);
+// Of co-simulation's outputs only the reactions depend on the inputs of the same instant.
+double Simulation::sensitivity(unsigned unknown, unsigned known) {
+  const auto component = row_of(unknown).reaction_rate;
+  const bool exchanged = demand_.kind == Kind::model_exchange && has_begun(run_.phase);
+  if (exchanged || (!component && row_of(unknown).role == Role::local)) return partial(unknown, known);
+  if (!component) return 0;
   WheelLoad unit = {};
-  *load_entry(unit, i) = 1;
+  *load_entry(unit, static_cast<int>(known - first_input)) = 1;
   Reading answer;
-  answer.set(present_for(input));
+  answer.set(present_for(known));
   return component(answer.response(unit));
 }
 

@@ -9,21 +9,11 @@
 #include "motion.hpp"
 #include "orbit.hpp"
 #include "reading.hpp"
+#include "reporter.hpp"
 #include "solver.hpp"
 #include "variables.hpp"
 
 namespace wheel {
-
-enum class Topic { event, warning, error, discard };
-
-// Where sentences go; `wanted` spares their formatting.
-struct Reporter {
-  void* owner;
-  bool (*wanted)(void* owner, Topic topic);
-  void (*tell)(void* owner, Topic topic, const char* sentence);
-};
-
-enum class Progressed { reached, ended, failed };
 
 // Of model exchange.
 inline constexpr int state_count = WHEEL_REDUCED_STATES, indicator_count = 3;
@@ -38,8 +28,9 @@ class Simulation {
 
   // As new: start values, nothing computed.
   void reset();
-  // Initialization begins; it ends with start(): false if there is no initial state.
-  void initialize() { run_.phase = Phase::initializing; }
+  // What the caller begins: initialization, or a mode of model exchange.
+  void enter(Phase phase) { run_.phase = phase; }
+  // The end of initialization: false if there is no initial state.
   bool start();
   // The caller ends the run.
   void close();
@@ -57,8 +48,9 @@ class Simulation {
   // sentence per fault through the Reporter.
   bool prepare(bool report = true);
 
-  // To the caller's time t. `ended`: the model ended at time(); `failed`: the state is that before the call.
-  Progressed advance(double t);
+  // To the caller's time t. `stepped`: it was reached; `event`: the model ended at time(); `failed`: the state is that
+  // before the call.
+  solver::Outcome advance(double t);
 
   double time() const { return demand_.start_time + run_.t; }
   double stop_time() const { return demand_.stop_time; }
@@ -68,12 +60,12 @@ class Simulation {
   double value(unsigned variable);
   // Its time derivative, for outputs.
   double rate(unsigned variable);
-  // d output / d input at this instant; zero for what depends on inputs only through time.
-  double sensitivity(unsigned output, unsigned input);
+  // d unknown / d known at this instant, of a calculated variable by an input, during a run in model exchange by a
+  // state too; zero for what depends on inputs only through time.
+  double sensitivity(unsigned unknown, unsigned known);
 
   // Model exchange (exchange.cpp): x are the state_count states of wheel_euler; derivatives are false where they are
   // not finite. An event mode decides the law of friction and whether the model ends: true where it changed a state.
-  void enter(Phase mode) { run_.phase = mode; }
   void set_time(double t);
   void set_states(const double* x);
   void set_state(int index, double value);
@@ -83,8 +75,6 @@ class Simulation {
   void indicators(double* z);
   bool has_event();
   bool decide();
-  // d unknown / d known at this instant, of a calculated variable by a state of model exchange or an input.
-  double partial(unsigned unknown, unsigned known);
 
   // Demand, run and the solver's history as portable bytes with a checksum. load_state returns null, or why the bytes
   // could not have been saved: everything is then as it was, unless it is the solver's history that is wrong.
@@ -94,9 +84,7 @@ class Simulation {
   const char* load_state(const unsigned char* bytes, std::size_t size, bool foreign);
 
  private:
-  bool tell(Topic topic, const char* format, ...) const;
-  bool check_parameters(bool report);
-  bool check_start(bool report);
+  bool check_start(const Reporter& reporter);
 
   const double* y_now();
   void freeze(Phase phase);
@@ -109,25 +97,24 @@ class Simulation {
   // advance.cpp
   bool knows(double t) const;
   bool has_changed() const;
-  bool take_demand();
-  bool begin();
-  bool start_solver();
-  bool restart_solver();
+  solver::Outcome take_demand();
+  solver::Outcome begin();
+  solver::Outcome start_solver(bool again);
   solver::Outcome proceed(double t);
   solver::Outcome step_to(double t);
   solver::Outcome pass_event();
-  bool pass_transition();
-  bool pass_layer();
-  bool pass_contact();
+  solver::Outcome pass_transition();
+  solver::Outcome pass_layer();
+  solver::Outcome pass_contact();
   void announce_transition(const WheelFriction& before);
   void tell_pull(double t);
   void sum_up() const;
   void move_to(double t);
-  Progressed advance_by_stages(double t);
-  Progressed arrive(double t);
-  Progressed end_run();
+  solver::Outcome advance_by_stages(double t);
+  void arrive(double t);
+  void end_run();
   void end_as(Event event);
-  Progressed fail(const Run& before, bool changed);
+  void fail(const Run& before, bool changed);
 
   // exchange.cpp
   struct Margins {
@@ -140,6 +127,7 @@ class Simulation {
   Margins margins();
   void decide_contact(double time);
   bool starts_inside();
+  double partial(unsigned unknown, unsigned known);
 
   // on_orbit.cpp
   bool orbit_fits() const;

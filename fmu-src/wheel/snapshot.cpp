@@ -82,7 +82,7 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   if ((run.phase == Phase::ended || run.ended_by != Event::none) && !(over && ending_of(run.ended_by)))
     return "no such event ends a run";
   if (!has_state(run.phase)) return nullptr;
-  if (!check_values(demand, nullptr, nullptr)) return "parameters and inputs describe no wheel";
+  if (!check_values(demand, Reporter())) return "parameters and inputs describe no wheel";
   setup = setup_of(demand);
   InForce& now = run.in_force;
   const double s_in_force = now.scene.wheel.s;
