@@ -1,6 +1,6 @@
 """What wheel.fmu carries as evidence (layered standard FMI-LS-REF), written by the library that was just built.
 
-With nothing but Python's own modules: for each parameter set an SSV file and the result of 10 s, one serialized state
+For each parameter set an SSV file and the result of 10 s, one serialized state
 with what must come out of it, and the manifest that names them.
 """
 
@@ -8,22 +8,11 @@ from __future__ import annotations
 
 import argparse
 import csv
-from ctypes import (
-    CDLL,
-    CFUNCTYPE,
-    Structure,
-    byref,
-    c_char_p,
-    c_double,
-    c_int,
-    c_size_t,
-    c_uint,
-    c_void_p,
-    create_string_buffer,
-)
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
+
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 
 MODELICA = {"m": 2, "r_0": 0.3, "r": 0, "J_x": 0.12, "J_y": 0.12, "J_z": 0.06, "g": 9.80665, "phi_dot_start": -5}
 MODELICA |= {
@@ -48,62 +37,44 @@ OUTPUTS = ("X_O", "Y_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot
 STEP, STOP, STATE_AT, STATE_TO = 0.1, 10.0, 1.2, 2.0  # s
 LAYER = 'fmi-ls:fmi-ls-name="org.fmi-standard.fmi-ls-ref" fmi-ls:fmi-ls-version="1.0.0-alpha.1"'
 WHAT = "Layered Standard providing information on related files included in an FMU."
-LOGGER = CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p)
-
-
-class Callbacks(Structure):
-    _fields_ = [("logger", LOGGER), *((name, c_void_p) for name in ("allocate", "free", "finished", "environment"))]
 
 
 class Wheel:
-    """One instance of the library; every call but the last step of a run has to succeed."""
+    """One instance of the library, by FMPy: every call has to succeed."""
 
-    def __init__(self, library: CDLL, description: ElementTree.Element) -> None:
-        self.library = library
-        self.variables = {v.get("name"): v for v in description.iter("ScalarVariable")}
-        self.callbacks = Callbacks(LOGGER(lambda *_: None))
-        library.fmi2Instantiate.restype = c_void_p
-        guid = description.get("guid", "").encode()
-        self.instance = c_void_p(library.fmi2Instantiate(b"evidence", 1, guid, None, byref(self.callbacks), 0, 0))
+    def __init__(self, library: Path, description: Path) -> None:
+        root = ElementTree.parse(description).getroot()
+        self.variables = {v.get("name"): v for v in root.iter("ScalarVariable")}
+        place = {"unzipDirectory": str(library.resolve().parent), "libraryPath": str(library.resolve())}
+        self.fmu = FMU2Slave(guid=root.get("guid"), modelIdentifier="wheel", instanceName="evidence", **place)
+        self.callbacks = fmi2CallbackFunctions()
+        self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda *_: None)
+        self.fmu.instantiate(callbacks=self.callbacks)
 
-    def call(self, name: str, *arguments: object) -> None:
-        status = getattr(self.library, f"fmi2{name}")(self.instance, *arguments)
-        if status > 1:
-            raise RuntimeError(f"fmi2{name} gave status {status}")
+    def __enter__(self) -> Wheel:
+        return self
 
-    def references(self, names: tuple[str, ...]) -> object:
-        return (c_uint * len(names))(*(int(self.variables[name].get("valueReference", "")) for name in names))
+    def __exit__(self, *_: object) -> None:
+        self.fmu.freeInstance()
 
     def kind(self, name: str) -> str:
         return "Integer" if self.variables[name][0].tag == "Enumeration" else self.variables[name][0].tag
 
+    def reference(self, name: str) -> int:
+        return int(self.variables[name].get("valueReference", ""))
+
     def set(self, **values: float) -> None:
         for name, value in values.items():
-            c_type = c_double if self.kind(name) == "Real" else c_int
-            self.call(f"Set{self.kind(name)}", self.references((name,)), c_size_t(1), byref(c_type(value)))
+            getattr(self.fmu, f"set{self.kind(name)}")([self.reference(name)], [value])
 
     def start(self, values: dict[str, float]) -> None:
         self.set(**values)
-        self.call("SetupExperiment", 1, c_double(1e-8), c_double(0), 0, c_double(0))
-        self.call("EnterInitializationMode")
-        self.call("ExitInitializationMode")
-
-    def step(self, t: float, to: float) -> None:
-        self.call("DoStep", c_double(t), c_double(to - t), 1)
+        self.fmu.setupExperiment(tolerance=1e-8, startTime=0.0)
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
 
     def read(self) -> list[float]:
-        values = (c_double * len(OUTPUTS))()
-        self.call("GetReal", self.references(OUTPUTS), c_size_t(len(OUTPUTS)), values)
-        return list(values)
-
-    def serialized(self) -> bytes:
-        state, size = c_void_p(), c_size_t()
-        self.call("GetFMUstate", byref(state))
-        self.call("SerializedFMUstateSize", state, byref(size))
-        content = create_string_buffer(size.value)
-        self.call("SerializeFMUstate", state, content, size)
-        self.call("FreeFMUstate", byref(state))
-        return content.raw
+        return self.fmu.getReal([self.reference(name) for name in OUTPUTS])
 
 
 def write_csv(path: Path, rows: list[tuple[object, ...]]) -> None:
@@ -121,7 +92,7 @@ def result(wheel: Wheel, name: str, values: dict[str, float]) -> list[tuple[obje
         t = k * STEP
         rows.append((f"{t:.1f}", *(f"{value:.10g}" for value in wheel.read())))
         if k < round(STOP / STEP):
-            wheel.step(t, t + STEP)
+            wheel.fmu.doStep(t, t + STEP - t)
     return rows
 
 
@@ -148,26 +119,28 @@ def manifest(related: list[tuple[str, str, str, str]]) -> str:
     return "\n".join([*lines, "</fmiReferences>", ""])
 
 
-def state(library: CDLL, description: ElementTree.Element, folder: Path) -> None:
+def state(library: Path, description: Path, folder: Path) -> None:
     """The paper's wheel with friction at 1.2 s, and its outputs at 2 s, over a stick and a release, to the bit."""
-    wheel = Wheel(library, description)
-    wheel.start({"s": 0.03})
-    wheel.step(0.0, STATE_AT)
-    (folder / "state.bin").write_bytes(wheel.serialized())
-    wheel.step(STATE_AT, STATE_TO)
-    write_csv(folder / "state_out.csv", [("time", *OUTPUTS), (STATE_TO, *map(repr, wheel.read()))])
+    with Wheel(library, description) as wheel:
+        wheel.start({"s": 0.03})
+        wheel.fmu.doStep(0.0, STATE_AT)
+        kept = wheel.fmu.getFMUstate()
+        (folder / "state.bin").write_bytes(bytes(wheel.fmu.serializeFMUstate(kept)))
+        wheel.fmu.freeFMUstate(kept)
+        wheel.fmu.doStep(STATE_AT, STATE_TO - STATE_AT)
+        write_csv(folder / "state_out.csv", [("time", *OUTPUTS), (STATE_TO, *map(repr, wheel.read()))])
 
 
-def write(library: CDLL, description: ElementTree.Element, folder: Path) -> None:
+def write(library: Path, description: Path, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     related = [("application/x-srmd-meta-data", "credibility.srmd", "meta-data", "Use, validity, verification")]
     related.append(
         ("application/vnd.cyclonedx+json", "sbom.cdx.json", "other", "Bill of materials of what is linked in")
     )
     for name, (text, values) in SETS.items():
-        wheel = Wheel(library, description)
-        (folder / f"{name}.ssv").write_text(parameter_set(wheel, name, values), encoding="utf-8")
-        write_csv(folder / f"{name}_out.csv", result(wheel, name, values))
+        with Wheel(library, description) as wheel:
+            (folder / f"{name}.ssv").write_text(parameter_set(wheel, name, values), encoding="utf-8")
+            write_csv(folder / f"{name}_out.csv", result(wheel, name, values))
         related.append(("application/x-ssp-parameter-set", f"{name}.ssv", "parameter", text))
         related.append(("text/csv", f"{name}_out.csv", "result", f"{name}.ssv, 10 s, tolerance 1e-8, steps of 0.1 s"))
     write_csv(folder / "driven_in.csv", [("time", "M_3"), (0, TORQUE), (STOP, TORQUE)])
@@ -184,7 +157,7 @@ def main() -> None:
     parser.add_argument("--description", type=Path, required=True, help="modelDescription.xml")
     parser.add_argument("--output", type=Path, required=True, help="folder")
     arguments = parser.parse_args()
-    write(CDLL(str(arguments.library)), ElementTree.parse(arguments.description).getroot(), arguments.output)
+    write(arguments.library, arguments.description, arguments.output)
 
 
 if __name__ == "__main__":

@@ -14,9 +14,7 @@ from support.driver import HEADLINE
 from support.motion import Library
 from support.paths import build_folder
 from support.scenes import SCENES, SINES, sines
-from support.schedule import INPUTS
 
-from . import older
 from .exchange import model_exchange
 from .native import Master, Task, Timing
 from .page import Report, Row, Tables, number
@@ -202,20 +200,6 @@ def instances(report: Report) -> None:
     report.figure("archive", "wheel.fmu of this machine alone", size / 1024, "KiB")
 
 
-def older_release(report: Report) -> None:
-    """beside an older version"""
-    task = Task({**SCENES["loaded"].start, "method": "adams"}, 0.1, 100)
-    revision = report.options["against"]
-    if revision:
-        then, now = Master(Library.unpacked(older.built(revision))), master_of(report)
-        columns = [INPUTS.index(name) for name in SINES]  # the older version has no brake
-        loads = SCENES["loaded"].inputs.derivatives(0.0)[:1, columns]
-        task = replace(task, inputs=tuple(SINES), table=np.repeat(loads[None], 100, axis=0))
-        times = [(best_of(now, task, 0.1).best, best_of(then, task, 0.1).best) for _ in range(5)]
-        ratio = min(a for a, _ in times) / min(b for _, b in times)
-        report.figure("loaded", f"smooth loaded scene, CVODE Adams: over {revision}", ratio, "×", 2)
-
-
 PARTS: dict[Callable[[Report], None], float] = {
     **{run_race(name): 18.0 for name in TITLES},
     **{
@@ -225,7 +209,6 @@ PARTS: dict[Callable[[Report], None], float] = {
         left_out: 1,
         model_exchange: 3,
         instances: 4,
-        older_release: 5,
     },
 }
 PICTURES = {"races": draw_races}
