@@ -66,28 +66,21 @@ class Copy:
         paths = (path for folder in FOLDERS for path in (self.root / "tests" / folder).glob("test_*.py"))
         return sorted(str(path.relative_to(self.root)) for path in paths)
 
-    def failure(self, tests: Sequence[str], left_out: Sequence[str] = ()) -> str:
-        """The first test that fails, or the first file if its tests crash or hang; empty: none."""
-        command = [
-            sys.executable,
-            "-m",
-            "pytest",
-            "-q",
-            "-x",
-            "-p",
-            "no:cacheprovider",
-            "--no-header",
-            "--tb=no",
-            "-rfE",
-        ]
-        command += [*tests, *(option for test in left_out for option in ("--deselect", test))]
+    def failures(self, tests: Sequence[str], left_out: Sequence[str] = (), *options: str) -> list[str]:
+        """The tests that fail, or the first file if its tests crash or hang."""
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--no-header", "--tb=no", "-rfE"]
+        command += [*options, *tests, *(option for test in left_out for option in ("--deselect", test))]
         environment = os.environ | {"WHEEL_BUILD": str(self.build_folder)}
         done = subprocess.run(
             command, cwd=self.root, env=environment, capture_output=True, text=True, check=False, preexec_fn=limit
         )
         if done.returncode in (0, NOTHING_TO_TEST):
-            return ""
+            return []
         lines = [line.split(" - ")[0].split(maxsplit=1) for line in done.stdout.splitlines()]
         failed = [words[1] for words in lines if words[:1] in (["FAILED"], ["ERROR"])]
         out_of_bounds = [line.split(", ")[0] for line in done.stdout.splitlines() if line.startswith("tests/")]
-        return next(iter([*failed, *out_of_bounds, tests[0]]))
+        return failed or out_of_bounds or [tests[0]]
+
+    def failure(self, tests: Sequence[str], left_out: Sequence[str] = ()) -> str:
+        """The first test that fails; empty: none."""
+        return next(iter(self.failures(tests, left_out, "-x")), "")

@@ -55,9 +55,9 @@ def judge(fault: Fault, copy: Copy, usual: Sequence[str]) -> Verdict:
 def usual_failures(copy: Copy, tests: Sequence[str]) -> list[str]:
     """What fails of these without a fault."""
     usual: list[str] = []
-    while failing := copy.failure(tests, usual):
-        assert failing not in usual, f"{failing} fails without any fault, even when it is left out"
-        usual.append(failing)
+    while failing := copy.failures(tests, usual):
+        assert not set(failing) & set(usual), f"{failing} fail without any fault, even when they are left out"
+        usual += failing
     return usual
 
 

@@ -1,13 +1,15 @@
 """Random mutants of the core, judged by the quick tests; docs/results/mutants.md tells what share of them is noticed.
 
-A copy of the project for each core; the tests that noticed most so far run first, and the first failure ends a mutant.
-Mutants that do not compile or leave the library as it was, bit by bit, do not count. Each survivor has a line in
-survivors.csv, which says why it may stay.
+A copy of the project for each core; the tests that noticed most so far, of this file and then of all, run first, and
+the first failure ends a mutant. Mutants that do not compile or leave the library as it was, bit by bit, do not count.
+Each survivor has a line in survivors.csv, which says why it may stay. An interrupted run goes on where it stopped: what
+was judged stands in build/mutants/random.csv, and is kept as long as that file of the core is the same.
 """
 
 from __future__ import annotations
 
 import csv
+import hashlib
 import os
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
@@ -21,7 +23,8 @@ from mutants.syntax import Mutant, sample
 
 LOG, REASONS = ROOT / "build" / "mutants" / "random.csv", Path(__file__).with_name("survivors.csv")
 PAGE, DATA = ROOT / "docs" / "results" / "mutants.md", ROOT / "docs" / "results" / "data" / "mutants.csv"
-AT_FIRST = 6  # files of tests that are asked before all others
+AT_FIRST = 3  # files of tests that are asked before all others
+BATCH = 100  # judged between two writings of the page
 SPARE = 1.4  # drawn for each that is wanted: some do not compile or change nothing
 
 
@@ -39,7 +42,7 @@ class Judge:
 
     def __init__(self) -> None:
         self.copies: Queue[Copy] = Queue()
-        self.noticed: Counter[str] = Counter()
+        self.noticed: Counter[tuple[str, str]] = Counter()  # (file of the core or "", file of tests)
         self.usual: list[str] = []
 
     def prepare(self, cores: int) -> None:
@@ -47,6 +50,13 @@ class Judge:
             for copy in pool.map(Copy, range(cores)):
                 self.copies.put(copy)
         self.usual = usual_failures(copy, copy.suite())
+
+    def order(self, files: list[str], mutated: str) -> list[str]:
+        return sorted(files, key=lambda file: (-self.noticed[mutated, file], -self.noticed["", file]))
+
+    def note(self, judged: Judged) -> None:
+        for file in (judged.file, ""):
+            self.noticed[file, judged.killed_by.split("::")[0]] += 1
 
     def __call__(self, mutant: Mutant) -> Judged | None:
         copy = self.copies.get()
@@ -56,14 +66,14 @@ class Judge:
             source.write_bytes(text[: mutant.begin] + mutant.new.encode() + text[mutant.end :])
             if not copy.build() or copy.digest() == copy.binary:
                 return None
-            files = sorted(copy.suite(), key=lambda file: -self.noticed[file])
+            files = self.order(copy.suite(), mutant.file)
             killer = copy.failure(files[:AT_FIRST], self.usual) or copy.failure(files[AT_FIRST:], self.usual)
         finally:
             source.write_bytes(text)
             self.copies.put(copy)
-        self.noticed[killer.split("::")[0]] += 1
-        code = " ".join(text.decode().split("\n")[mutant.line - 1].split())
-        return Judged(mutant.file, code, mutant.title(), killer)
+        judged = Judged(mutant.file, code_of(text, mutant.line), mutant.title(), killer)
+        self.note(judged)
+        return judged
 
 
 def reasons() -> dict[tuple[str, str, str], str]:
@@ -101,21 +111,49 @@ def cell(code: str) -> str:
     return code.replace("|", "\\|").replace("`", "")
 
 
+def code_of(text: bytes, line: int) -> str:
+    return " ".join(text.decode().split("\n")[line - 1].split())
+
+
+def key_of(mutant: Mutant) -> str:
+    """The change and the file that it changes."""
+    text = (ROOT / "fmu-src" / mutant.file).read_bytes()
+    return f"{hashlib.sha256(text).hexdigest()[:16]} {mutant.begin} {mutant.end} {mutant.new}"
+
+
+def known() -> dict[str, Judged | None]:
+    """What an earlier run judged; None: a change that does not count."""
+    if not LOG.exists():
+        return {}
+    with LOG.open(newline="", encoding="utf-8") as file:
+        return {key: Judged(*judged) if judged else None for key, *judged in csv.reader(file)}
+
+
+def judge_all(drawn: list[Mutant], judge: Judge, cores: int) -> list[Judged]:
+    found = known()
+    for judged in filter(None, found.values()):
+        judge.note(judged)
+    missing = [mutant for mutant in drawn if key_of(mutant) not in found]
+    with LOG.open("a", newline="", encoding="utf-8") as file, ThreadPoolExecutor(cores) as pool:
+        log = csv.writer(file, lineterminator="\n")
+        for mutant, judged in zip(missing, pool.map(judge, missing), strict=True):
+            found[key_of(mutant)] = judged
+            log.writerow([key_of(mutant), *(judged or ())])
+            file.flush()
+            if judged:
+                print(f"{judged.file}: {judged.change}: {judged.killed_by or 'SURVIVED'}", flush=True)
+    return [judged for mutant in drawn if (judged := found[key_of(mutant)])]
+
+
 def main(count: int, seed: int) -> int:
-    judge, judged = Judge(), []
+    judge = Judge()
     cores = len(os.sched_getaffinity(0))
     judge.prepare(cores)
     drawn = sample(ROOT, ROOT / "build" / "release", int(SPARE * count), seed)
-    drawn.sort()  # a file at a time: less to build again
-    with LOG.open("w", newline="", encoding="utf-8") as file, ThreadPoolExecutor(cores) as pool:
-        log = csv.writer(file, lineterminator="\n")
-        for verdict in pool.map(judge, drawn):
-            if verdict:
-                judged.append(verdict)
-                log.writerow(verdict)
-                file.flush()
-                print(f"{len(judged)}: {verdict.file}: {verdict.change}: {verdict.killed_by or 'SURVIVED'}", flush=True)
-    write(judged)
+    judged: list[Judged] = []
+    for begin in range(0, len(drawn), BATCH):
+        judged += judge_all(sorted(drawn[begin : begin + BATCH]), judge, cores)  # a file at a time: less to build again
+        write(judged)
     without = [j for j in judged if not j.killed_by and not reasons().get(j[:3])]
     survived = sum(not j.killed_by for j in judged)
     print(f"{len(judged)} mutants, {survived} survived, {len(without)} of these without a reason.")
