@@ -40,7 +40,7 @@ void Session::instantiate() {
 
 void Session::free_instance() {
   for (const Slot& slot : slots_)
-    if (slot.component == freed_) freed_ = nullptr;  // its place in memory lives again
+    if (slot.component == freed_ || log().shared) freed_ = nullptr;  // its place in memory may live again
   expect(fmi2Terminate(freed_) == fmi2Error, "an instance that is gone cannot be terminated");
   fmi2FreeInstance(freed_);
   if (!now_->component) return;

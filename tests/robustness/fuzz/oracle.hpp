@@ -2,6 +2,7 @@
 // that compare the two after every call. A broken expectation aborts with a sentence, which the fuzzer records.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -46,14 +47,19 @@ struct Slot {
   Model model;
 };
 
-// Log of all instances: how many messages came, and whether the logger calls back into the FMU.
+// Log of a session's instances: how many messages came, and whether the logger calls back into the FMU.
 struct Log {
-  unsigned messages = 0;
+  unsigned messages = 0, calls = 0;
   bool on = true, calls_back = false;
   fmi2Component caller = nullptr;  // while one of its calls is under way
   bool digests = false;            // serialize before and after every call that must change nothing
+  bool shared = false;             // other sessions are under way in other threads
+  std::uint64_t sum = 0;           // of all that was seen: statuses, messages, readings, states
+
+  void add(const void* data, std::size_t size);
 };
-Log& log();
+Log& log();  // of the session that this thread plays
+void use(Log& log);
 
 // With WHEEL_FUZZ_TRACE in the environment: a line on stderr, so that an artifact can be read as a sequence of calls.
 [[gnu::format(printf, 1, 2)]] void trace(const char* format, ...);
@@ -87,6 +93,8 @@ fmi2Status checked(Slot& slot, unsigned legal_in, bool may_fail, Call&& call) {
   log().caller = slot.component;
   const fmi2Status status = call();
   log().caller = nullptr;
+  ++log().calls;
+  log().add(&status, sizeof status);
   expect(status >= fmi2OK && status <= fmi2Error, "the status is OK, Warning, Discard or Error");
   if (!legal) expect(status == fmi2Error, "an illegal call returns fmi2Error");
   if (status != fmi2Error) return status;

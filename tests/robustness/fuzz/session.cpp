@@ -7,23 +7,27 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Bytes in(data, size);
   const unsigned first = in.byte();
-  if (first & 128)
+  if (first & 128) {
     fuzz::play_forged(in);
-  else
-    fuzz::Session(in, first).run();
+  } else {
+    fuzz::Session session(in, first);
+    while (session.go_on()) {
+    }
+  }
   return 0;
 }
 
 namespace fuzz {
 
-Session::Session(const Bytes& in, unsigned watched) : in_(in) {
-  log() = Log();
-  log().digests = watched & 1;
-  log().calls_back = watched & 2;
-  log().on = !(watched & 4);
+Session::Session(const Bytes& in, unsigned watched, bool shared) : in_(in) {
+  log_.digests = watched & 1;
+  log_.calls_back = watched & 2;
+  log_.on = !(watched & 4);
+  log_.shared = shared;
 }
 
 Session::~Session() {
+  use(log_);
   for (Saved& saved : saved_) {
     Slot any = {make_instance(), {}};
     expect(fmi2FreeFMUstate(any.component, &saved.state) == fmi2OK, "a state outlives its instance");
@@ -41,15 +45,16 @@ const Session::Action& Session::action(unsigned choice) const {
   return now_->component ? with_instance[choice % std::size(with_instance)] : always[choice % std::size(always)];
 }
 
-void Session::run() {
-  constexpr unsigned most_actions = 40;
-  for (unsigned count = 0; count < most_actions && !in_.empty(); ++count) {
-    const unsigned choice = in_.byte();
-    now_ = slots_ + (choice & 1);
-    const Action& chosen = action(choice / 2);
-    trace("%u: %s\n", choice & 1, chosen.name);
-    (this->*chosen.act)();
-  }
+bool Session::go_on() {
+  if (in_.empty() || actions_left_ == 0) return false;
+  use(log_);
+  --actions_left_;
+  const unsigned choice = in_.byte();
+  now_ = slots_ + (choice & 1);
+  const Action& chosen = action(choice / 2);
+  trace("%u: %s\n", choice & 1, chosen.name);
+  (this->*chosen.act)();
+  return true;
 }
 
 // From wherever the instance is to step complete, if its parameters allow.

@@ -25,11 +25,12 @@ struct Saved {
 
 class Session {
  public:
-  Session(const Bytes& in, unsigned watched);
+  Session(const Bytes& in, unsigned watched, bool shared = false);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
-  void run();
+  bool go_on();  // one action; false where there is none left
+  const Log& seen() const { return log_; }
 
  private:
   struct Action {
@@ -51,6 +52,8 @@ class Session {
   unsigned reference();
 
   Bytes in_;
+  Log log_;
+  unsigned actions_left_ = 40;
   Slot slots_[2];
   Slot* now_ = slots_;
   Saved saved_[3];
