@@ -23,8 +23,7 @@ def outputs(w: FMU2Wheel) -> list[str]:
 
 
 def rates(w: FMU2Wheel) -> np.ndarray:
-    names = outputs(w)
-    return np.array(w.getRealOutputDerivatives([w.references[name] for name in names], [1] * len(names)))
+    return np.array(w.rates(outputs(w))())
 
 
 def forward_difference(w: FMU2Wheel) -> np.ndarray:
@@ -77,10 +76,7 @@ def test_derivatives_of_pose_are_the_velocities_to_the_bit(wheel):
 
 
 def jacobian(w: FMU2Wheel) -> np.ndarray:
-    """d output / d input by fmi2GetDirectionalDerivative, one seed at a time."""
-    unknowns = [w.references[name] for name in outputs(w)]
-    columns = [w.getDirectionalDerivative(unknowns, [w.references[name]], [1.0]) for name in INPUTS]
-    return np.array(columns).T
+    return w.jacobian(outputs(w), INPUTS)
 
 
 def difference_jacobian(w: FMU2Wheel, delta: float = 0.5) -> np.ndarray:

@@ -11,7 +11,6 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from fmpy.validation import validate_fmu
 from lxml import etree
 from support.motion import Library
 from support.paths import ROOT
@@ -38,8 +37,7 @@ def test_the_manifest_names_every_file_and_no_other(folder: Path) -> None:
     assert inside == {path.name for path in folder.iterdir()} - {"fmi-ls-manifest.xml"}
 
 
-def test_the_archive_with_its_evidence_is_valid_and_below_a_megabyte(folder: Path, fmu_path: Path) -> None:
-    assert validate_fmu(str(fmu_path)) == []
+def test_the_archive_with_its_evidence_is_below_a_megabyte(folder: Path, fmu_path: Path) -> None:
     assert fmu_path.stat().st_size < 1e6
 
 

@@ -17,6 +17,8 @@ from functools import cached_property
 import numpy as np
 from support import equations as eq
 
+PSI, THETA, PHI = 3, 4, 5  # places of the angles in (25)
+
 
 def matrix(*entries: np.ndarray | float) -> np.ndarray:
     """3 x 3 matrices, row by row, from nine numbers or tables of numbers."""
@@ -224,6 +226,19 @@ class Paper:
         w = self.wheel
         fallen = w["g_X"] * self.place[0] + w["g_Y"] * self.place[1] - w["g"] * self.place[2]
         return 0.5 * (w["m"] * (v * v).sum(-1) + turning) - w["m"] * fallen
+
+
+def states() -> np.ndarray:
+    """A thousand random q, q_dot."""
+    random = np.random.default_rng(24)
+    y = random.normal(0, 2, (1000, 12))
+    y[:, THETA] = random.uniform(0.05, np.pi - 0.05, len(y))
+    return y
+
+
+def derivative(wheel: np.ndarray, y: np.ndarray, name: str, direction: np.ndarray) -> np.ndarray:
+    """Of a matrix of the paper when the state moves along `direction`: a complex step, exact to rounding."""
+    return getattr(Paper(wheel, y + 1e-40j * direction), name).imag / 1e-40
 
 
 def paper_table(**changes: float) -> np.ndarray:

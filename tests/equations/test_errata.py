@@ -14,28 +14,19 @@ from support import equations as eq
 from support.bounds import absolute_error, beyond, relative_error, within
 
 from equations.multibody_transcription import papers_state
-from equations.paper_transcription import Paper, paper_table, times, transposed
+from equations.paper_transcription import THETA, Paper, derivative, paper_table, states, times, transposed
 
-STEP = 1e-40
 WHEEL = paper_table()
 ENERGY = 75.1168064  # J, at the start of the free wheel
 START = eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
-PSI, THETA, PHI = 3, 4, 5
 
 
 def papers_start() -> np.ndarray:
     return papers_state(eq.start(eq.MULTIBODY, eq.paper_wheel(), START))
 
 
-def states() -> np.ndarray:
-    random = np.random.default_rng(24)
-    y = random.normal(0, 2, (1000, 12))
-    y[:, THETA] = random.uniform(0.05, np.pi - 0.05, len(y))
-    return y
-
-
 def slope(name: str, angle: int) -> np.ndarray:
-    return getattr(Paper(WHEEL, states() + 1j * STEP * np.eye(12)[angle]), name).imag / STEP
+    return derivative(WHEEL, states(), name, np.eye(12)[angle])
 
 
 @cache

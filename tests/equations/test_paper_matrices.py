@@ -14,23 +14,25 @@ from support import equations as eq
 from support.bounds import absolute_error, beyond, relative_error, within
 
 from equations.multibody_transcription import products_state
-from equations.paper_transcription import Paper, column, matrix, paper_table, times, transposed
+from equations.paper_transcription import (
+    PHI,
+    PSI,
+    THETA,
+    Paper,
+    column,
+    derivative,
+    matrix,
+    paper_table,
+    states,
+    times,
+    transposed,
+)
 
-STEP = 1e-40
-PSI, THETA, PHI = 3, 4, 5
 WHEEL = paper_table(J_x=0.8, J_y=1.1, s=0.03)
 
 
-def states(rows: int = 1000) -> np.ndarray:
-    random = np.random.default_rng(26)
-    y = random.normal(0, 2, (rows, 12))
-    y[:, THETA] = random.uniform(0.05, np.pi - 0.05, rows)
-    return y
-
-
 def slope(name: str, direction: np.ndarray) -> np.ndarray:
-    """Derivative of a matrix of the paper when the state moves along `direction`."""
-    return getattr(Paper(WHEEL, states() + 1j * STEP * direction), name).imag / STEP
+    return derivative(WHEEL, states(), name, direction)
 
 
 def along(index: int) -> np.ndarray:

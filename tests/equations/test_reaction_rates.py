@@ -149,26 +149,3 @@ def test_the_response_to_a_load_is_what_it_adds_to_the_rates(formulation: eq.For
     load_dot["brake"] *= 1.001
     other = eq.response_each(formulation, rows.scenes, load_dot, y)
     assert ((np.abs(other - difference) / size).max() > 1e-6) == (law in (eq.ROLLING, eq.REGULARIZED))
-
-
-@BOTH
-@LAWS
-def test_the_response_is_the_difference_that_a_load_makes(formulation: eq.Formulation, law: int) -> None:
-    """lambda and tau are linear in the load while the law and the sign of N last."""
-    rows = Rows(law)
-    y = rows.states(formulation)
-
-    def answer(scenes: Table) -> Table:
-        found = eq.dynamics_each(formulation, scenes, y)
-        return eq.columns(found, "lambda_", "tau")
-
-    loaded = rows.scenes.copy()
-    for part in ("F", "M", "brake"):
-        loaded["load"][part] += 0.1 * rows.load_dot[part]
-    before, after = answer(rows.scenes), answer(loaded)
-    same = np.sign(before[:, 2]) == np.sign(after[:, 2])
-    response = 0.1 * eq.response_each(formulation, rows.scenes, rows.load_dot, y)
-    gap = np.abs(after - before - response).max(axis=1) / np.abs(before).max(axis=1).clip(1e-300)
-    beyond(same.mean(), 0.8, "same")
-    within(gap[same].max(), 9e-13, "gap")
-    beyond((np.abs(after - before).max(axis=1) / np.abs(before).max(axis=1))[same].max(), 0.06, "same, 2")

@@ -11,7 +11,7 @@ from equations.multibody_transcription import omega_z_dot, solved
 from equations.paper_transcription import Paper, times
 from support import equations as eq
 from support.bounds import beyond, within
-from support.driver import DISCARD, ERROR, OK, FMU2Wheel
+from support.driver import DISCARD, ERROR, OK
 from support.exchange import DERIVATIVES, STATES, FMU2Exchange, Run, exchange, no_inputs
 from support.motion import Library
 
@@ -225,13 +225,3 @@ def test_nominal_values_are_the_scales_of_the_error(library: Library) -> None:
         assert wheel.fmi2GetNominalsOfContinuousStates(wheel.component, nominals, 8) == OK
     assert all(value > 0 for value in nominals)
     assert list(nominals)[:2] == pytest.approx([1.05, 1.05])  # three heights of the upright wheel
-
-
-def test_co_simulation_is_untouched_by_the_second_kind(library: Library) -> None:
-    assert FMU2Wheel.__mro__[1].__name__ == "FMU2Slave"
-    with library.wheel() as slave:
-        slave.start(s=0.03)
-        assert slave.step(1.0) == OK
-        assert len(slave.get("theta_ddot", "psi_ddot", "phi_ddot", "omega_z_dot")) == 4
-        x = dict(zip(("theta_ddot", "psi_ddot"), slave.rates(("theta_dot", "psi_dot"))(), strict=True))
-        assert slave.get("theta_ddot", "psi_ddot") == pytest.approx(list(x.values()), rel=1e-13)

@@ -6,7 +6,8 @@ State: theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O (wheel_equations.h).
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, Structure, byref, c_double, c_int, c_longlong, c_void_p
+from ctypes import POINTER, c_double, c_longlong, c_uint, c_void_p
+from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,17 +17,13 @@ from reference.motion import derivative, initial_state
 from reference.newton_euler import Contact, Law, rotation
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from support.motion import start_values
+from support.paths import ROOT
 
 Array = NDArray[np.float64]
 KINDS = ("refused", "folded", "ended")
-
-
-class Parameters(Structure):
-    _fields_ = [(name, c_double) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s", "g_X", "g_Y")]
-
-
-class Motion(Structure):
-    _fields_ = [(name, c_double) for name in ("psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot", "X_O", "Y_O")]
+VARIABLES = ElementTree.parse(ROOT / "modelDescription.xml").iter("ScalarVariable")
+REFERENCES = {variable.get("name"): int(variable.get("valueReference")) for variable in VARIABLES}
 
 
 class Orbit:
@@ -47,11 +44,10 @@ class Orbit:
             getattr(library, name).restype = c_double
         for name in ("probe_falls_until", "probe_steps"):
             getattr(library, name).restype = c_longlong
-        parameters = Parameters(**{name: getattr(wheel, name, 0) for name, _ in Parameters._fields_})
-        motion = Motion(**{name: getattr(start, name) for name, _ in Motion._fields_})
-        self.probe = c_void_p(
-            library.probe_make(byref(parameters), byref(motion), c_double(tolerance), c_int(keep_contact))
-        )
+        given = start_values(wheel, start) | {"keep_contact": float(keep_contact)}
+        references = (c_uint * len(given))(*(REFERENCES[name] for name in given))
+        values = (c_double * len(given))(*given.values())
+        self.probe = c_void_p(library.probe_make(references, values, len(given), c_double(tolerance)))
         self.kind = KINDS[library.probe_build(self.probe)]
 
     def __del__(self) -> None:

@@ -55,30 +55,12 @@ bool pass(void* owner, int event) {
 
 }  // namespace
 
-PUBLIC Probe* probe_make(const WheelParameters* w, const WheelMotion* start, double tolerance, int keep_contact) {
+// A wheel with these parameters, by value reference.
+PUBLIC Probe* probe_make(const unsigned* references, const double* values, int count, double tolerance) {
   Probe* probe = new (std::nothrow) Probe;
   if (!probe) return nullptr;
   wheel::Demand demand;
-  const struct {
-    wheel::Variable parameter;
-    double value;
-  } given[] = {{wheel::m, w->m},
-               {wheel::r_0, w->r_0},
-               {wheel::r, w->r},
-               {wheel::J_x, w->J_x},
-               {wheel::J_y, w->J_y},
-               {wheel::J_z, w->J_z},
-               {wheel::g, w->g},
-               {wheel::psi_start, start->psi},
-               {wheel::theta_start, start->theta},
-               {wheel::phi_start, start->phi},
-               {wheel::psi_dot_start, start->psi_dot},
-               {wheel::theta_dot_start, start->theta_dot},
-               {wheel::phi_dot_start, start->phi_dot},
-               {wheel::X_O_start, start->X_O},
-               {wheel::Y_O_start, start->Y_O},
-               {wheel::keep_contact, static_cast<double>(keep_contact)}};
-  for (const auto& [parameter, value] : given) demand.parameters[parameter] = value;
+  for (int i = 0; i < count; ++i) demand.parameters[references[i]] = values[i];
   demand.tolerance = tolerance;
   probe->setup = wheel::setup_of(demand);
   probe->in_force = wheel::in_force_from(probe->setup, demand, WHEEL_GROUND_PRESSES, 0, probe->setup.start);

@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
-from math import cos, pi, sin
+from math import cos, sin
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 from reference import Wheel, accelerations
 from scipy.integrate import solve_ivp
@@ -165,26 +164,6 @@ def test_a_lift_of_the_weight_at_its_centre_is_as_no_weight(library: Library) ->
 
     within(gap(20 * 9.81), 2e-14, "gap")
     beyond(gap(20 * 9.81 + 1e-5), 1e-8, "gap")
-
-
-@pytest.mark.parametrize("g", [0.0, 9.81])
-def test_upright_rolling_without_friction_goes_on_at_constant_speed(library: Library, g: float) -> None:
-    def gap(s: float) -> float:
-        start = {
-            "theta_start": pi / 2,
-            "psi_start": 0.0,
-            "X_O_start": 0.0,
-            "phi_dot_start": -10.0,
-            "keep_contact": True,
-        }
-        run = library.simulate(TIMES, g=g, s=s, **start)
-        return float(max(np.abs(run["omega_z"] + 10).max(), np.abs(run["X_O"] - 3.5 * TIMES).max()))
-
-    within(gap(0.0), 9e-14, "gap")
-    if g > 0:  # friction needs weight
-        beyond(gap(1e-6), 6e-5, "gap")
-    else:
-        within(gap(1e-6), 2e-12, "gap without weight")
 
 
 def test_a_little_friction_makes_a_proportional_change(library: Library) -> None:

@@ -24,11 +24,7 @@ def test_unfolding_is_the_motion_that_stepping_gives(library: Library) -> None:
     beyond(range_error(library.simulate(t, 1e-5), want), 1e-9, "range error")
 
 
-def test_after_1000_s_the_error_is_a_millionth_of_the_range(library: Library) -> None:
-    t = np.linspace(0, 1000, 1001)
-    want = library.simulate(t, 1e-12)
-    within(range_error(library.simulate(t), want), 1e-6, "range error")  # the orbit alone
-    beyond(range_error(library.simulate(t, method=ADAMS), want), 1e-6, "range error")
+def test_the_energy_neither_grows_nor_wears_off(library: Library) -> None:
     late = library.simulate([0.0, 1e3, 1e6])["E"]
     within(np.abs(late / late[0] - 1).max(), 4e-11, "change of the energy in 1e6 s")
 

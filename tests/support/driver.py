@@ -10,8 +10,10 @@ from collections.abc import Callable, Iterable, Sequence
 from ctypes import byref, c_double, c_int, c_size_t, c_uint, create_string_buffer
 from typing import Any, NamedTuple
 
+import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2FMUstate
 from fmpy.model_description import ModelDescription
+from numpy.typing import NDArray
 
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
 DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED = range(4)
@@ -159,6 +161,17 @@ class FMU2Wheel(FMU2Slave):
         orders[:] = [1] * len(names)
         call = self.fmi2GetRealOutputDerivatives
         return lambda: (call(self.component, references, len(names), orders, values), list(values))[1]
+
+    def jacobian(self, unknowns: Sequence[str], knowns: Sequence[str]) -> NDArray[np.float64]:
+        """d unknown / d known, by one directional derivative per known."""
+        columns = []
+        for known in knowns:
+            values = (c_double * len(unknowns))()
+            references = self.c_references(unknowns), self.c_references([known])
+            call, seed = self.fmi2GetDirectionalDerivative, (c_double * 1)(1)
+            assert call(self.component, references[0], len(unknowns), references[1], 1, seed, values) == OK
+            columns.append(list(values))
+        return np.array(columns).T
 
     def read(self, names: Sequence[str]) -> bytes:
         """Real variables by one call, as bits."""

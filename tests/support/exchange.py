@@ -6,7 +6,7 @@ output of each step for the first sign change, and hands the state at that insta
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from ctypes import POINTER, byref, c_double, c_int
 
 import numpy as np
@@ -67,17 +67,6 @@ class FMU2Exchange(FMU2Wheel, FMU2Model):
         answers = c_int(), c_int()
         assert self.fmi2CompletedIntegratorStep(self.component, 1, *map(byref, answers)) == OK
         return bool(answers[0].value)
-
-    def jacobian(self, unknowns: Sequence[str], knowns: Sequence[str]) -> Array:
-        """d unknown / d known, by one directional derivative per known."""
-        columns = []
-        for known in knowns:
-            values = (c_double * len(unknowns))()
-            references = self.c_references(unknowns), self.c_references([known])
-            call, seed = self.fmi2GetDirectionalDerivative, (c_double * 1)(1)
-            assert call(self.component, references[0], len(unknowns), references[1], 1, seed, values) == OK
-            columns.append(list(values))
-        return np.array(columns).T
 
     @staticmethod
     def _pointer(numbers: Array):

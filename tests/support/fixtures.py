@@ -1,4 +1,4 @@
-"""Fixtures of every folder of tests: the built FMU, and how a scene is simulated through fmpy."""
+"""Fixtures of every folder of tests: the built FMU and its instances, the trusted tables."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import extract, read_model_description, simulate_fmu
+from fmpy import extract, read_model_description
 from reference.tables import read_table
 
-from support.driver import HEADLINE, FMU2Wheel
+from support.driver import FMU2Wheel
 from support.motion import Library
 from support.paths import ROOT, build_folder
 
@@ -66,30 +66,6 @@ def library(fmu: str) -> Library:
 @pytest.fixture(scope="session")
 def description(fmu: str):
     return read_model_description(fmu)
-
-
-@pytest.fixture(scope="session")
-def simulate(fmu: str, description):
-    """simulate(step, stop, tolerance, **start values) -> record array of all outputs, by `fmpy.simulate_fmu`."""
-
-    def run(
-        step: float = 0.1,
-        stop: float = 10.0,
-        tolerance: float | None = None,
-        output: tuple[str, ...] = HEADLINE,
-        **start_values: float,
-    ) -> np.ndarray:
-        return simulate_fmu(
-            fmu,
-            model_description=description,
-            output_interval=step,
-            stop_time=stop,
-            relative_tolerance=tolerance,
-            start_values=start_values,
-            output=output,
-        )
-
-    return run
 
 
 @pytest.fixture(scope="session")
