@@ -17,6 +17,7 @@ from support.scenes import SCENES, SINES, sines
 
 from .exchange import model_exchange
 from .native import Master, Task, Timing
+from .older import beside_older
 from .page import Report, Row, Tables, number
 from .race import CPP, HEYOKA, METHODS, OURS, TITLES, at_default, draw_races, race, time_at
 from .truth import headline_of, range_error
@@ -209,6 +210,7 @@ PARTS: dict[Callable[[Report], None], float] = {
         left_out: 1,
         model_exchange: 3,
         instances: 4,
+        beside_older: 10,
     },
 }
 PICTURES = {"races": draw_races}
