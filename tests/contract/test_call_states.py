@@ -76,16 +76,6 @@ def test_calls_on_no_instance_are_errors(wheel):
     assert call(w, "fmi2GetFMUstate") == OK
 
 
-def test_terminate_reset_and_free_of_a_freed_instance_do_no_harm(wheel):
-    w, other = wheel().start(), wheel().start()
-    freed = w.component
-    w.close()
-    assert (w.fmi2Terminate(freed), w.fmi2Reset(freed)) == (ERROR, ERROR)
-    w.fmi2FreeInstance(freed)
-    assert other.step(0.1) == OK
-    assert (other.terminate(), other.terminate()) == (OK, ERROR)  # the partner: a live instance answers
-
-
 def test_after_an_error_a_snapshot_or_a_reset_brings_the_instance_back(wheel):
     w = bring_to(wheel(), "step complete")
     good = w.serialized()

@@ -170,6 +170,20 @@ def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
     assert running.step_to(1.0) == OK and running.step_to(9.5) == ERROR
 
 
+@pytest.mark.parametrize("keep_contact", [False, True])
+def test_a_law_a_ground_or_a_count_that_no_rolling_wheel_has_is_refused(wheel, keep_contact):
+    w = wheel().start(s=0.03, keep_contact=keep_contact)
+    assert w.run([0.7])
+    blob = w.serialized()
+    grounds = (0, 3) if keep_contact else (0, 2)
+    for changes in (*({"ground": k} for k in grounds), *({"sigma": x} for x in (-0.5, 0.5, 2.0, np.nan)), {"law": 1}):
+        assert w.restore(forged(w, blob, **changes)) == ERROR, changes
+    first, words = place_of(w, "transitions"), words_of(blob)
+    for place in range(first, first + 6):  # the counters
+        assert w.restore(signed([*words[:place], 2**63 - 1, *words[place + 1 :]])) == ERROR, place
+    assert w.restore(blob) == OK  # the partner
+
+
 @pytest.mark.parametrize("changes", [(0, 0.0), (0, -0.5), (0, 3.2), (0, 1e-320), (1, 1e300), (2, -1e300), (3, 1e200)])
 @pytest.mark.parametrize("start", [{}, {"s": 0.03}, {"s": 0.03, "method": "adams"}])
 def test_a_state_that_is_no_state_of_a_wheel_is_refused(wheel, start, changes):

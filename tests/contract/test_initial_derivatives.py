@@ -6,7 +6,7 @@ from ctypes import c_double, c_uint
 
 import numpy as np
 import pytest
-from support.bounds import beyond, within
+from support.bounds import within
 from support.driver import ERROR, OK, FMU2Wheel
 
 pytestmark = pytest.mark.contract
@@ -68,27 +68,6 @@ def test_every_declared_pair_is_answered_and_right(wheel, description, scene):
         within(abs(exact - difference) / size, 2e-5, "relative error")
     assert moved > 60
     assert w.messages == []
-
-
-def test_known_slopes_of_the_start_are_met(wheel):
-    """Z_O = r_0 sin(theta) + r and omega_z = phi_dot + psi_dot cos(theta): closed forms."""
-    w = initialized(wheel(), **GENERAL)
-    theta, rate = GENERAL["theta_start"], GENERAL["psi_dot_start"]
-    expected = {
-        ("Z_O", "r_0"): np.sin(theta),
-        ("Z_O", "r"): 1.0,
-        ("Z_O", "theta_start"): 0.3 * np.cos(theta),
-        ("omega_z", "theta_start"): -rate * np.sin(theta),
-        ("omega_z", "psi_dot_start"): np.cos(theta),
-        ("X_O", "X_O_start"): 1.0,
-        ("X_O", "m"): 0.0,
-    }
-    for (unknown, known), slope in expected.items():
-        status, value = derivative(w, unknown, known)
-        assert status == OK, (unknown, known)
-        within(abs(value - slope), 2e-12, "difference")
-        assert derivative(w, unknown, known, -2.0)[1] == -2 * value
-    beyond(abs(derivative(w, "Z_O", "theta_start")[1] - 0.3 * np.sin(theta)), 1e-2, "derivative")  # the partner
 
 
 def test_asking_leaves_the_start_as_it_was(wheel):

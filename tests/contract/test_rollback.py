@@ -80,18 +80,6 @@ def test_snapshots_just_before_and_after_every_friction_event_go_on_with_the_sam
     assert w.run([10.0]) == straight
 
 
-def test_a_snapshot_at_every_step_changes_no_bit_of_the_run(wheel):
-    for values in KINDS.values():
-        w, undisturbed = wheel().start(**values), wheel().start(**values)
-        state = w.snapshot()
-        for k in range(100):
-            assert w.step(0.03125) == OK
-            assert w.fmi2GetFMUstate(w.component, byref(state)) == OK
-            if k % 10 == 0:
-                assert w.fmi2SetFMUstate(w.component, state) == OK
-        assert w.run([4.0]) == undisturbed.run([4.0])
-
-
 def test_what_was_set_but_not_yet_stepped_is_part_of_the_state(wheel):
     w = wheel().start(s=0.03)
     assert w.step(0.5) == OK

@@ -18,11 +18,7 @@ Table = np.ndarray
 BOTH = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
 LAWS = pytest.mark.parametrize("law", eq.LAWS.values(), ids=eq.LAWS.keys())
 INERTIA = pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
-GROUPS = (
-    ("X_O_ddot", "Y_O_ddot", "Z_O_ddot"),
-    ("psi_ddot", "theta_ddot", "phi_ddot", "omega_z_dot"),
-    ("lambda_",),
-)
+GROUPS = (("X_O_ddot", "Y_O_ddot", "Z_O_ddot"), ("psi_ddot", "theta_ddot", "phi_ddot", "omega_z_dot"), ("lambda_",))
 ACCELERATIONS = (*GROUPS[0], *GROUPS[1][:3])
 
 

@@ -48,9 +48,7 @@ def weight(scenes: Table) -> Table:
 
 
 @BOTH
-def test_upright_straight_rolling_slows_down_linearly_under_friction(
-    formulation: eq.Formulation,
-) -> None:
+def test_upright_straight_rolling_slows_down_linearly_under_friction(formulation: eq.Formulation) -> None:
     scenes, motions = still(eq.ROLLING)
     sigma = scenes["friction"]["sigma"]
     motions["theta"], motions["phi_dot"] = np.pi / 2, 3 * sigma
@@ -111,9 +109,7 @@ def circling(kind: int) -> tuple[Table, Table]:
 
 
 @BOTH
-def test_the_torus_circles_steadily_with_friction_balanced_by_the_drive(
-    formulation: eq.Formulation,
-) -> None:
+def test_the_torus_circles_steadily_with_friction_balanced_by_the_drive(formulation: eq.Formulation) -> None:
     scenes, motions = circling(eq.ROLLING)
     sigma = scenes["friction"]["sigma"]
     scenes["load"]["M"][:, 2] = sigma * scenes["wheel"]["s"] * weight(scenes)

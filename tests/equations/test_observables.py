@@ -99,19 +99,6 @@ def test_a_ground_that_does_not_press_needs_infinite_friction(normal: float) -> 
     assert np.isfinite(required_friction(3, 4, 1e-300 - normal))
 
 
-def test_required_friction_of_an_upright_wheel_under_drive_follows_from_its_torque() -> None:
-    wheel = eq.paper_wheel()
-    motion = eq.Motion(0, np.pi / 2, 0, 0, 0, -2, 0, 0)
-    torque, radius = 30.0, 0.35
-    traction = torque * radius * wheel.m / (wheel.J_z + wheel.m * radius**2)
-    for formulation in (eq.REDUCED, eq.MULTIBODY):
-        scene = eq.scene(wheel, moment=(0, 0, torque))
-        d = eq.dynamics(formulation, scene, eq.start(formulation, wheel, motion))
-        mu = required_friction(*d.lambda_)
-        within(relative_error(mu, traction / (wheel.m * wheel.g)), 1e-14, "mu")
-        beyond(relative_error(mu, torque / radius / (wheel.m * wheel.g)), 0.1, "mu")  # J_z = 0
-
-
 def test_rolling_states_are_on_the_constraints() -> None:
     wheels, k = rolling_states(43)
     velocity, height = residuals(wheels, k)

@@ -175,14 +175,6 @@ def test_a_long_nutation_beside_an_unstable_rest_folds(library: ctypes.CDLL, off
     within(error(orbit(t), stepped(Wheel(), start, t)), bound, "error")
 
 
-def test_spinning_at_1000_rad_per_s_folds(library: ctypes.CDLL) -> None:
-    start = Start(theta=1.2, phi_dot=-1000.0)
-    orbit = Orbit(library, start=start)
-    assert orbit.kind == "folded"
-    t = np.linspace(0, 0.5, 51)
-    within(error(orbit(t), stepped(Wheel(), start, t)), 5e-10, "error")
-
-
 @pytest.mark.parametrize("theta_dot", [0.0, 1e-17, -1e-17, 1e-9, -1e-9])
 def test_a_start_at_a_turning_point_or_beside_it_is_the_same_motion(library: ctypes.CDLL, theta_dot: float) -> None:
     t = np.linspace(0, 20, 101)

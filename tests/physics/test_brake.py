@@ -58,11 +58,3 @@ def test_a_brake_that_is_let_off_leaves_nothing_behind(library: Library) -> None
     within(abs(run["omega_z"][1] - (-5.0 + BRAKE * 0.1 / J)), 1e-14, "omega_z")
     assert (run["omega_z"][2:] == run["omega_z"][1]).all()
     assert (run["tau"][2:] == 0).all()
-
-
-def test_tolerance_and_grid_do_not_move_the_stop(library: Library) -> None:
-    stops = []
-    for times in ([0.0, 2.0], list(np.linspace(0, 2, 333))):
-        ((t, _),) = braked(library, times, {"M_brake": (BRAKE,)}).events
-        stops.append(t)
-    assert stops[0] == stops[1]

@@ -39,15 +39,6 @@ def test_the_upright_wheel_stops_once_at_the_known_instant(library: Library, for
     beyond(gap(0.03 * (1 + 1e-6)), 1e-7, "gap")
 
 
-def test_standing_is_an_unstable_rest_that_rounding_tips_after_some_seconds(library: Library) -> None:
-    run = library.simulate(np.linspace(0, 14, 1401), s=0.03, **UPRIGHT)
-    lean = np.abs(run["theta"] - pi / 2)
-    within(lean[run.t <= 5].max(), 1e-6, "lean")
-    within(abs(run.t[np.argmax(lean > 0.5)] - 11), 3, "instant")  # s
-    pushed = library.simulate(np.linspace(0, 14, 1401), s=0.03, **{**UPRIGHT, "theta_start": pi / 2 - 1e-6})
-    within(pushed.t[np.argmax(np.abs(pushed["theta"] - pi / 2) > 0.5)], 8, "theta")
-
-
 def test_a_standing_wheel_tips_by_the_hyperbolic_cosine(library: Library) -> None:
     def gap(judged: Wheel) -> float:
         times = np.linspace(0, 1.5, 151)

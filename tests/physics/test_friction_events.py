@@ -82,18 +82,6 @@ def test_the_energy_falls_by_the_work_of_rolling_friction(library: Library) -> N
     beyond(energy_gap(library, 0.03, 0.03 * (1 + 1e-6)), 1e-7, "energy gap")
 
 
-def test_friction_takes_energy_only_while_the_wheel_rolls(library: Library) -> None:
-    run = library.simulate(np.linspace(0, 10, 2001), 1e-12, s=0.03)
-    change = np.diff(run["E"]) / run["E"][0]
-    modes = run["friction_mode"]
-    held = (modes[1:] == 0) & (modes[:-1] == 0)
-    within(np.abs(change[held]).max(), 1e-13, "change")
-    assert (change[(modes[1:] != 0) & (modes[:-1] != 0)] < 0).all()
-    beyond(run["E"][0] - run["E"][-1], 19, "energy lost")  # J
-    free = library.simulate(np.linspace(0, 10, 2001), 1e-12)["E"]
-    within(np.abs(free / free[0] - 1).max(), 3e-13, "free")
-
-
 def late_releases(library: Library, tolerance: float | None, s: float = 0.03) -> tuple[list[int], float]:
     """Transitions in 30 s as modes, and the energy at 30 s, J."""
     run = library.simulate([0.0, 30.0], tolerance, s=s)

@@ -5,6 +5,7 @@ Friction and inputs are on unless said. Fixed axes for places and forces, carrie
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import pi
 
 import numpy as np
@@ -13,7 +14,6 @@ from numpy.typing import NDArray
 from support.bounds import beyond, within
 from support.motion import Library, Run
 from support.schedule import Schedule
-from support.symmetries import SYMMETRIES, Symmetry
 
 START = {
     **{"psi_start": 0.4, "theta_start": 1.2, "phi_start": 0.3, "psi_dot_start": 0.5, "theta_dot_start": -0.3},
@@ -31,6 +31,35 @@ TIMES = np.linspace(0, 4, 81)
 UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 WHEELS = {"J_x = J_y": {}, "J_x != J_y": UNEQUAL, "J_x != J_y, multibody": {**UNEQUAL, "formulation": 3}}
 wheels = pytest.mark.parametrize("inertia", WHEELS.values(), ids=WHEELS)
+
+
+@dataclass(frozen=True)
+class Symmetry:
+    """plane: on (X, Y); signs, shifts: z -> sign z + shift of psi, theta, phi; moment: signs of M_1..3; move: X, Y."""
+
+    plane: NDArray[np.float64]
+    signs: tuple[int, int, int] = (1, 1, 1)
+    shifts: tuple[float, float, float] = (0, 0, 0)
+    moment: tuple[int, int, int] = (1, 1, 1)
+    move: tuple[float, float] = (0, 0)
+
+    @property
+    def angles(self) -> list[tuple[str, int, float]]:
+        return list(zip(("psi", "theta", "phi"), self.signs, self.shifts, strict=True))
+
+    def on_plane(self, table, x: str, y: str) -> dict[str, NDArray[np.float64]]:
+        """The images of two columns."""
+        return dict(zip((x, y), self.plane @ np.array([table[x], table[y]]), strict=True))
+
+
+TURN = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
+SYMMETRIES = {
+    "rotation": Symmetry(TURN, shifts=(0.7, 0, 0)),
+    "translation": Symmetry(np.eye(2), move=(100.0, -30.0)),
+    "mirror": Symmetry(np.diag([1, -1]), (-1, 1, -1), (pi, 0, 0), (1, -1, -1)),
+    "axle named the other way": Symmetry(np.eye(2), (1, -1, -1), (pi, pi, pi), (-1, 1, -1)),
+    "half a turn of the body": Symmetry(np.eye(2), shifts=(0, 0, pi)),
+}
 
 
 def image_of_start(symmetry: Symmetry) -> dict[str, float]:

@@ -9,13 +9,4 @@ from .model import Inputs, Start, Wheel
 from .motion import Accelerations, accelerations
 from .outputs import Ending, Solution
 
-__all__ = [
-    "Accelerations",
-    "Ending",
-    "Inputs",
-    "Solution",
-    "Start",
-    "Wheel",
-    "accelerations",
-    "solve",
-]
+__all__ = ["Accelerations", "Ending", "Inputs", "Solution", "Start", "Wheel", "accelerations", "solve"]

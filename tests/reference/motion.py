@@ -75,11 +75,7 @@ def angle_accelerations(n: Vector, w: Vector, alpha: Vector) -> Vector:
 def body_rates(n: Vector, psi_dot: float, theta_dot: float, phi_dot: float) -> Vector:
     """w in body axes from Euler rates: the inverse of angle_rates."""
     ux, uy, s = slope(n)
-    return (
-        theta_dot * uy + psi_dot * s * ux,
-        psi_dot * s * uy - theta_dot * ux,
-        phi_dot + psi_dot * n[2],
-    )
+    return (theta_dot * uy + psi_dot * s * ux, psi_dot * s * uy - theta_dot * ux, phi_dot + psi_dot * n[2])
 
 
 def initial_state(wheel: Wheel, start: Start) -> State:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ctypes import c_double
 from math import pi
 
 import numpy as np
@@ -151,30 +150,6 @@ def test_the_time_of_the_last_change_is_part_of_a_state(wheel):
         assert ends[0] == ends[1]
         differs += ends[0] != ends[2]
     assert differs > 5  # the partner
-
-
-def test_the_ground_of_a_state_must_press_or_pull(wheel):
-    w = stepped(wheel().start(s=0.03), [0.5])
-    for ground in (0, 2):
-        assert w.restore(forged(w, w.serialized(), ground=ground)) == ERROR
-    kept = stepped(wheel().start(s=0.03, keep_contact=True), [0.5])
-    assert kept.restore(forged(kept, kept.serialized(), ground=0)) == ERROR
-
-
-def test_a_derivative_by_a_parameter_at_its_upper_limit_is_one_sided(wheel):
-    """J_z of the default wheel is the largest that goes with J_x and J_y."""
-    w = wheel()
-    assert w.set(psi_dot_start=2.0, theta_start=1.2) == OK
-    w.setupExperiment(None, 0.0, None)
-    assert w.enterInitializationMode() == OK
-    names, delta = ("lambda_1", "lambda_3", "lambda_y"), 1e-5
-    given = (c_double * 3)()
-    arrays = w.c_references(names), 3, w.c_references(["J_z"]), 1, (c_double * 1)(1.0), given
-    assert w.fmi2GetDirectionalDerivative(w.component, *arrays) == OK
-    centre = w.get(*names)
-    assert w.set(J_z=1.8 - delta) == OK
-    quotient = (np.array(centre) - w.get(*names)) / delta
-    assert np.allclose(given, quotient, rtol=1e-4, atol=1e-6) and np.abs(given).max() > 0.1
 
 
 def test_the_contact_s_velocity_needs_nothing_read_before(wheel):

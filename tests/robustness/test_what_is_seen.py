@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from math import pi
 
 import numpy as np
@@ -169,21 +168,6 @@ def test_counts_are_the_same_after_a_return(wheel, method):
         assert w.step_to(2.0) == OK  # the wheel has stuck: there automatic takes BDF
         counts.append(w.get("n_steps", "n_rhs", "n_jac", "n_restarts"))
     assert counts[0] == counts[1] and counts[0][2] > 0
-
-
-def test_impossible_counts_and_laws_are_refused(wheel):
-    w = wheel()
-    blob = saved(wheel, "Runge-Kutta")
-    words = list(words_of(blob))
-    assert w.restore(blob) == OK
-    sigmas = [k for k, word in enumerate(words[:60]) if word == as_word(-1.0)]
-    for place in sigmas:
-        forged = signed([*words[:place], as_word(-0.5), *words[place + 1 :]])
-        if struct.unpack("<d", struct.pack("<Q", words[place]))[0] == -1.0 and place > 30:
-            assert w.restore(forged) == ERROR
-    counts = [k for k, word in enumerate(words) if 0 < word < 2**20]
-    for place in counts:
-        assert w.restore(signed([*words[:place], 2**63 - 1, *words[place + 1 :]])) == ERROR, place
 
 
 def test_a_step_that_does_not_end_where_its_stages_lead_is_refused(wheel):

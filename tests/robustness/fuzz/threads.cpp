@@ -1,6 +1,6 @@
 // Sessions of the fuzzer in two threads, sixteen under way in each at a time, in random order: every status, message,
 // reading and serialized byte is that of the same session alone. threads ROUNDS INPUT...: status 1 where one differs.
-// For the thread sanitizer and for valgrind.
+// For the thread sanitizer, for valgrind and, with no rounds, for the coverage of the inputs.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -13,6 +13,8 @@
 #include <thread>
 
 #include "session.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {
 
@@ -60,7 +62,10 @@ int main(int count, char** words) {
   for (int i = 2; i < count; ++i) {
     std::ifstream file(words[i], std::ios::binary);
     const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
-    if (bytes.empty() || bytes[0] & 128) continue;  // forged states are no sessions
+    if (bytes.empty() || bytes[0] & 128) {  // forged states are no sessions
+      LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+      continue;
+    }
     Input& input = inputs.emplace_back(Input{bytes});
     const auto alone = input.session();
     while (alone->go_on()) {
