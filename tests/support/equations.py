@@ -66,15 +66,17 @@ def dynamics_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray) -
 
 def rates_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray) -> np.ndarray:
     """lambda_dot and tau_dot, row by row."""
-    out = np.zeros((len(y), 4))
-    each(formulation.rates, scenes, load_dots, y, out)
-    return out
+    return _rates(formulation.rates, scenes, load_dots, y)
 
 
 def response_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray) -> np.ndarray:
     """The part of load_dots in `rates_each`."""
-    out = np.zeros((len(y), 4))
-    each(formulation.response, scenes, load_dots, y, out)
+    return _rates(formulation.response, scenes, load_dots, y)
+
+
+def _rates(function: Callable, *tables: np.ndarray) -> np.ndarray:
+    out = np.zeros((len(tables[0]), 4))
+    each(function, *tables, out)
     return out
 
 

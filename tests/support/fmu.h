@@ -2,11 +2,20 @@
 #ifndef SUPPORT_FMU_H
 #define SUPPORT_FMU_H
 
+#include <stdio.h>
+#include <stdlib.h>
+
 #include "fmi2FunctionTypes.h"
 #ifdef __wasi__ /* no libraries to open: the program has the wheel linked in */
 #include "fmi2Functions.h"
+#elif defined _WIN32
+#include <windows.h>
+#define OPEN_LIBRARY(path) (void*)LoadLibraryA(path)
+#define FIND_SYMBOL(library, name) (void*)GetProcAddress((HMODULE)(library), name)
 #else
-#include "load_library.h"
+#include <dlfcn.h>
+#define OPEN_LIBRARY(path) dlopen(path, RTLD_NOW | RTLD_LOCAL)
+#define FIND_SYMBOL dlsym
 #endif
 
 /* clang-format off */
@@ -36,7 +45,15 @@ static inline Fmu fmu_of(const char* path) {
   static const char* const names[] = {FMU_FUNCTIONS(NAME)};
 #undef NAME
   Fmu fmu;
-  load_functions(path, names, sizeof names / sizeof *names, &fmu);
+  void* const library = OPEN_LIBRARY(path);
+  for (unsigned i = 0; i < sizeof names / sizeof *names; ++i) {
+    void* const symbol = library ? FIND_SYMBOL(library, names[i]) : NULL;
+    if (!symbol) {
+      fprintf(stderr, library ? "%s: %s is missing\n" : "%s could not be loaded\n", path, names[i]);
+      exit(2);
+    }
+    ((void**)&fmu)[i] = symbol;
+  }
   return fmu;
 #endif
 }
