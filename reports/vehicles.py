@@ -10,7 +10,7 @@ import pandas as pd
 from vehicles import axle, axle_study, car, car_iso, car_judges, car_table, monolithic_car
 from vehicles.car import MANOEUVRES
 from vehicles.drawing import draw_orders
-from vehicles.errors import STEPS, Errors, orders
+from vehicles.errors import STEPS, Errors, longest, orders
 from vehicles.example import draw_axle, draw_car
 from vehicles.master import EXCHANGES
 
@@ -130,13 +130,11 @@ def car_longest(report: Report) -> None:
 
 
 def longest_step(report: Report, name: str, exchange: str) -> float:
-    truth, found = car_table.read(name), 0.0
-    for h in LIMITS:
-        run = car.drive(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID)
-        if run.ending or not max(car_table.apart(run.table, truth).values()) < 0.1:
-            break
-        found = h
-    return found
+    def error(h: float) -> float:
+        table = car.whole(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID)
+        return max(car_table.apart(table, car_table.read(name)).values())
+
+    return longest(LIMITS, error)
 
 
 def car_errors(report: Report) -> None:

@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from support.bounds import beyond, within
 from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT / "examples" / "control"))
@@ -18,22 +19,23 @@ def folder(fmu) -> str:
 
 
 def test_the_eigenvalues_vanish_at_the_critical_spin_of_the_closed_form(folder):
-    for spin, unstable in ((control.CRITICAL - 1e-6, True), (control.CRITICAL + 1e-6, False)):
-        A, _ = control.linearized(folder, -spin, ())
-        assert (np.linalg.eigvals(A).real.max() > 5e-4) == unstable
+    for check, aside in ((beyond, -1e-6), (within, 1e-6)):
+        A, _ = control.linearized(folder, -(control.CRITICAL + aside), ())
+        check(np.linalg.eigvals(A).real.max(), 5e-4, "largest real part, 1/s")
 
 
 def test_the_regulator_holds_a_wheel_that_falls_alone(folder):
     gains = control.regulator(folder, -1.5)
-    assert np.abs(control.rolled(folder, None, -1.5)[2]).max() > 45  # degrees
+    beyond(np.abs(control.rolled(folder, None, -1.5)[2]).max(), 45, "lean alone, deg")
     _, off, lean = control.rolled(folder, gains, -1.5)
-    assert abs(lean[-1]) < 0.1 and abs(off[-1]) < 0.01
+    within(abs(lean[-1]), 0.1, "lean at the end, deg")
+    within(abs(off[-1]), 0.01, "off the line at the end, m")
 
 
 def test_the_optimal_moments_stay_in_their_bounds_and_lead_to_the_line(folder):
     t, x, moments = control.optimal(folder)
-    assert (np.abs(moments).max(axis=1) <= np.array(control.BOUNDS) * (1 + 1e-6)).all()
+    within((np.abs(moments).max(axis=1) / control.BOUNDS).max(), 1 + 1e-6, "moment over its bound")
     end = control.checked(folder, t, x, moments)
     off = np.abs(end - x[:, -1])[[1, 2, 3]]  # Y_O, psi, theta
-    assert off.max() < 0.05  # the midpoint rule with steps of 50 ms
-    assert np.abs(control.checked(folder, t, x, 0 * moments) - x[:, -1])[[1, 2, 3]].max() > 0.1
+    within(off.max(), 0.05, "off the end, m, rad")  # the midpoint rule with steps of 50 ms
+    beyond(np.abs(control.checked(folder, t, x, 0 * moments) - x[:, -1])[[1, 2, 3]].max(), 1, "without moments")

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import platform
 import sys
-import zipfile
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "cmake"))
+from pack_fmu import pack
 
 FOLDERS = {
     ("Linux", "x86_64"): "linux64",
@@ -24,12 +26,7 @@ def main() -> None:
     terminals = description.parent / "terminalsAndIcons.xml"
     if terminals.exists():
         entries["terminalsAndIcons/terminalsAndIcons.xml"] = terminals
-    with zipfile.ZipFile(fmu, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, path in entries.items():
-            info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
-            info.compress_type = zipfile.ZIP_DEFLATED
-            info.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
-            archive.writestr(info, path.read_bytes())
+    pack(entries, fmu)
 
 
 if __name__ == "__main__":

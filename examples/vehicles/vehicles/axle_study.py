@@ -10,7 +10,6 @@ import numpy as np
 
 from . import axle, bonds, errors, options
 from .axle import CONNECTIONS, WHEELS, Scene, components, coupled, rigid
-from .component import Ended
 from .master import Master
 
 STRAIGHT = Scene(M_left=30.0, M_right=30.0)
@@ -62,16 +61,8 @@ def energy(fmus: dict[str, Path], scene: Scene, step: float, exchange: str) -> E
     return Energy(bonds.added(counted, "axle", WHEELS, step, exchange == "derivatives"), float(total[-1] - total[0]))
 
 
-def longest_step(fmus: dict[str, Path], scene: Scene, exchange: str, steps: tuple[float, ...] = LIMIT_STEPS) -> float:
-    """The longest of `steps` up to which the coupled run neither ends early nor strays beyond 10 % of the range, s."""
+def longest_step(fmus: dict[str, Path], scene: Scene, exchange: str) -> float:
+    """Of LIMIT_STEPS, s."""
     truth = rigid(scene, np.arange(int(scene.stop / GRID) + 1) * GRID)
-    scene, longest = replace(scene, stop=float(truth["time"][-1])), 0.0
-    for step in steps:
-        try:
-            table = coupled(fmus, scene, step, exchange, GRID)
-        except Ended:
-            break
-        if not distance(table, truth) < 0.1:
-            break
-        longest = step
-    return longest
+    scene = replace(scene, stop=float(truth["time"][-1]))
+    return errors.longest(LIMIT_STEPS, lambda h: distance(coupled(fmus, scene, h, exchange, GRID), truth))

@@ -169,6 +169,16 @@ def drive(
         return Run(columns(master.table()), ending, master.cost())
 
 
+def whole(
+    fmus: dict[str, Path], manoeuvre: Manoeuvre, step: float, exchange: str, grid: float
+) -> dict[str, np.ndarray]:
+    """The table of a manoeuvre; raises Ended where it does not reach its end."""
+    run = drive(fmus, manoeuvre, step, exchange, grid)
+    if run.ending:
+        raise run.ending
+    return run.table
+
+
 def columns(table: np.ndarray) -> dict[str, np.ndarray]:
     """By name, those of chassis and driver without the component."""
     return {n.removeprefix("chassis.").removeprefix("driver."): table[n] for n in table.dtype.names}

@@ -33,27 +33,18 @@ class Path:
         out, back = (np.tanh((p - o[end]) / o["length"]) for end in ("x_out", "x_back"))
         return np.array([p, o["width"] / 2 * (out - back)])
 
-    def derivatives(self, p: float) -> tuple[np.ndarray, np.ndarray]:
-        """First and second, by p."""
+    def tangent(self, p: complex) -> np.ndarray:
+        """dP/dp."""
         o = self.o
         if o["path"] == 1:
-            step = 1e-30  # of the complex step, which has no error
-            return np.real(self._eight(p)), self._eight(p + 1j * step).imag / step
-        slope = bend = 0.0
-        for end, sign in (("x_out", 1.0), ("x_back", -1.0)):
-            sech2 = 1 / np.cosh((p - o[end]) / o["length"]) ** 2
-            slope += sign * sech2
-            bend -= sign * 2 * sech2 * np.tanh((p - o[end]) / o["length"])
-        half = o["width"] / 2
-        return np.array([1.0, half * slope / o["length"]]), np.array([0.0, half * bend / o["length"] ** 2])
-
-    def _eight(self, p: complex) -> np.ndarray:
-        """dP/dp of the figure of eight."""
-        c = np.cos(p)
-        dx, dy = c * (3 - c**2), 3 * c**2 - 1
-        return self.o["size"] * np.array([dx + dy, dy - dx]) / (1 + c**2) ** 2 / np.sqrt(2)
+            c = np.cos(p)
+            dx, dy = c * (3 - c**2), 3 * c**2 - 1
+            return o["size"] * np.array([dx + dy, dy - dx]) / (1 + c**2) ** 2 / np.sqrt(2)
+        out, back = (np.cosh((p - o[end]) / o["length"]) ** -2 for end in ("x_out", "x_back"))
+        return np.array([1.0, o["width"] / 2 * (out - back) / o["length"]])
 
     def curvature(self, p: float) -> float:
         """Positive to the left."""
-        d, dd = self.derivatives(p)
+        h = 1e-30  # of the complex step, which has no error
+        d, dd = self.tangent(p), self.tangent(p + 1j * h).imag / h
         return float((d[0] * dd[1] - d[1] * dd[0]) / np.hypot(*d) ** 3)

@@ -38,6 +38,20 @@ def orders(steps: Sequence[float], errors: Sequence[float]) -> list[float]:
     return list(np.diff(np.log(errors)) / np.diff(np.log(steps)))
 
 
+def longest(steps: Sequence[float], error: Callable[[float], float]) -> float:
+    """The longest of rising steps up to which a run neither ends early nor strays beyond 10 % of the range, s."""
+    found = 0.0
+    for h in steps:
+        try:
+            near = error(h) < 0.1
+        except Ended:
+            break
+        if not near:
+            break
+        found = h
+    return found
+
+
 def of_masters(run: Callable[[float, str], Table], names: Sequence[str]) -> Errors | None:
     """Of run(step, exchange) against rollback at half the smallest step; None where that breaks off."""
     try:

@@ -85,7 +85,9 @@ def run_car(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:
         **own,
     )
     run = car.drive(fmus, manoeuvre, h, exchange, multiple(h, 0.02), progress=True)
-    found = None if run.ending else errors.of_masters(_whole(fmus, manoeuvre), car.COMPARED)
+    found = None
+    if not run.ending:
+        found = errors.of_masters(lambda step, how: car.whole(fmus, manoeuvre, step, how, 0.05), car.COMPARED)
     draw_car(run, manoeuvre, found, folder / "car.png")
     write_table(run.table, folder / "car.csv")
     ssp.build(car.system(fmus, manoeuvre, min(h, 0.0005)), folder)
@@ -95,18 +97,6 @@ def run_car(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:
 def draw_car(run: car.Run, manoeuvre: car.Manoeuvre, found: errors.Errors | None, path: Path) -> None:
     degrees = [Line(name, np.degrees(run.table[name])) for name in ("delta", "roll", "pitch")]
     draw(run.table, car.NAMES, ("angle [deg]", degrees), found, path, car.title(run, manoeuvre))
-
-
-def _whole(fmus: dict[str, Path], manoeuvre: car.Manoeuvre):
-    """A manoeuvre by step and exchange; raises Ended where it does not reach its end."""
-
-    def run(step: float, exchange: str) -> Table:
-        done = car.drive(fmus, manoeuvre, step, exchange, 0.05)
-        if done.ending:
-            raise done.ending
-        return done.table
-
-    return run
 
 
 def run_suspended(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:

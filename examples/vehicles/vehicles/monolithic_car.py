@@ -76,7 +76,7 @@ class Car:
         point, v, heading = self.rear(y)
         wanted, p_dot = o["delta_0"] * rise(t, o["t_delta"], o["ramp_delta"]), 0.0
         if o["path"]:
-            d, _ = self.path.derivatives(p)
+            d = self.path.tangent(p)
             away = point[:2] - self.path.point(p)
             along = d / np.hypot(*d)
             ahead = self.path.curvature(p + o["T_delta"] * v / np.hypot(*d))
