@@ -58,8 +58,8 @@ def draw(name: str, folder: Path) -> bool:
 
 
 def fresh(name: str, folder: Path) -> bool:
-    """Whether the page that is there is the one of the data."""
-    if hasattr(module(name), "page"):
+    """Whether the page that is there is the one of the data; a report that was not published yet has none."""
+    if hasattr(module(name), "page") or not (folder / "data" / f"{name}.csv").exists():
         return True
     text, _ = render(name, folder, getattr(module(name), "views", dict))
     same = text == (folder / f"{name}.md").read_text(encoding="utf-8")

@@ -7,11 +7,10 @@ from pathlib import Path
 
 DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its data into build/report/latest, or with
 --publish into docs/results, which is kept under version control, and then the figures in all pages are filled in."""
-OF_VEHICLES = ("partners", "vehicles")  # of a folder that may be deleted
-VEHICLES = Path(__file__).resolve().parents[1] / "examples" / "vehicles"
-NAMES = ("accuracy", "stability", "speed", "inputs", *OF_VEHICLES, "others", "benchmark", "physics")
-if not VEHICLES.exists():
-    NAMES = tuple(name for name in NAMES if name not in OF_VEHICLES)
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+OF = {"partners": "vehicles", "vehicles": "vehicles", "others": "vehicles", "studies": "studies"}  # may be deleted
+EVERY = "accuracy stability speed inputs partners vehicles studies others benchmark physics"
+NAMES = tuple(name for name in EVERY.split() if (EXAMPLES / OF.get(name, "")).exists())
 
 
 def arguments() -> argparse.Namespace:

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import save, scaled, two_maps, upright_limit
+from drawing import scaled, two_maps, upright_limit
 from study import Study
+
+from diagrams import style
 
 ANGLES, SPINS = 160, 125  # 2 * 160 * 125 = 40,000 wheels
 study = Study(
@@ -43,4 +45,4 @@ def draw(small: xr.Dataset, stem: Path) -> list[Path]:
         ax.text(0.012, 45, "no spin: falls flat", **white)
         ax.text(upright_limit() * 0.82, 22, "limit of upright rolling", **white)
     axes[1].text(35, 9, "lifts\noff", **(white | {"rotation": 0, "linespacing": 0.9}))
-    return save(fig, stem)
+    return [style.save_png(fig, stem.with_suffix(".png"))]

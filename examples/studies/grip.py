@@ -7,8 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import save, scaled, two_maps
+from drawing import scaled, two_maps
 from study import Study
+
+from diagrams import style
 
 SIDE = 100
 study = Study(
@@ -38,4 +40,4 @@ def draw(small: xr.Dataset, stem: Path) -> list[Path]:
     for ax, s in zip(axes, small["s"].values, strict=True):
         ax.contour(spin, angle, small["mu"].sel(s=s), levels=[DRY_ASPHALT], colors="white", linewidths=1.4)
         ax.set(xlim=(0, 12), xticks=range(0, 13, 2))
-    return save(fig, stem)
+    return [style.save_png(fig, stem.with_suffix(".png"))]

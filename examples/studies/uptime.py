@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import xarray as xr
-from drawing import WHEEL, rolling_inertia, save, upright_limit
+from drawing import WHEEL, rolling_inertia, upright_limit
 from study import Study
 
 from diagrams import style
@@ -56,4 +56,4 @@ def draw(rows: pd.DataFrame, stem: Path) -> list[Path]:
     ax.set_yticks([0.2, 0.5, 1, 2, 5, 10, 20, 50], ["0.2", "0.5", "1", "2", "5", "10", "20", "50"])
     ax.set_ylabel("time until it leans by 30° [s]")
     ax.set_title("solid: the wheel; dashed: spin down at the limit of upright rolling", fontsize=8.5)
-    return save(fig, stem)
+    return [style.save_png(fig, stem.with_suffix(".png"))]

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
-from matplotlib.figure import Figure
 from study import Status
 
 from diagrams import style
@@ -28,14 +25,6 @@ def upright_limit() -> float:
     """|omega_z| [rad/s] above which upright straight rolling is stable: (J_z + m R^2) J_z omega_z^2 = m g r_0 J_x."""
     w = WHEEL
     return float(np.sqrt(w["m"] * w["g"] * w["r_0"] * w["J_x"] / (w["J_z"] * rolling_inertia(**w))))
-
-
-def save(fig: Figure, stem: Path) -> list[Path]:
-    """Writes stem.png without date or program version."""
-    path = stem.with_suffix(".png")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(path, dpi=200, metadata={"Software": None})
-    return [path]
 
 
 def two_maps(small: xr.Dataset, name: str, look: dict[str, object], text: str, side: str = "right") -> tuple:

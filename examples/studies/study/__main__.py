@@ -14,11 +14,11 @@ from .plan import Study
 
 
 def study_file(name: str) -> dict[str, object]:
-    """What a study's file defines: `study`, perhaps `table` and `draw`; or `measure`."""
+    """What a study's file defines: `study`, perhaps `table` and `draw`."""
     path = file_of(name)
     sys.path.insert(0, str(path.resolve().parent))
     content = runpy.run_path(str(path))
-    if not isinstance(content.get("study"), Study) and "measure" not in content:
+    if not isinstance(content.get("study"), Study):
         raise StudyError(f"{path} does not say study = Study(...).")
     return content | {"name": path.stem}
 
@@ -33,7 +33,7 @@ def main(argv: list[str] | None = None) -> int:
             if arguments.study
             else {"study": Study(**fields_of(arguments)), "name": "study"}
         )
-        measure(content, arguments) if "measure" in content else conduct(content, arguments)
+        conduct(content, arguments)
     except StudyError as fault:
         print(f"study: {fault}", file=sys.stderr)
         return 2
@@ -73,12 +73,6 @@ def conduct(content: dict[str, object], arguments: argparse.Namespace) -> None:
     if "draw" in content:
         written += picture(content, results, stem, arguments.publish)
     print("\n".join(f"Wrote {path}" for path in written))
-
-
-def measure(content: dict[str, object], arguments: argparse.Namespace) -> None:
-    """A file that measures something instead of saying what is to be run."""
-    folder = ROOT / "docs" / "results" if arguments.publish else ROOT / "results" / "studies"
-    print("\n".join(f"Wrote {path}" for path in content["measure"](arguments.fmu, folder)))
 
 
 def picture(content: dict[str, object], results: object, stem: Path, publish: bool) -> list[Path]:

@@ -14,6 +14,8 @@ import pytest
 from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
+from support.bounds import beyond, within
+
 from publishing.notebook import NOTEBOOK, executed
 
 Outputs = list[nbformat.NotebookNode]
@@ -48,10 +50,11 @@ def test_what_the_notebook_keeps_is_what_its_cells_give(kept: Outputs, fresh: Ou
     assert words(kept) == words(fresh), "run ./scripts/notebook --write"
     for one, other in zip(pictures(kept), pictures(fresh), strict=True):
         assert one.shape == other.shape
-        assert abs(one - other).mean() < 0.5  # of 255 tones of grey
+        within(abs(one - other).mean(), 0.5, "pictures apart, of 255 tones of grey")
     first, second, *_ = pictures(kept)
     height, width = (min(one, other) for one, other in zip(first.shape, second.shape, strict=True))
-    assert abs(first[:height, :width] - second[:height, :width]).mean() > 5  # the partner: another picture
+    apart = abs(first[:height, :width] - second[:height, :width]).mean()
+    beyond(apart, 5, "another picture apart, of 255 tones of grey")
 
 
 def test_the_notebook_shows_what_its_text_says(kept: Outputs) -> None:

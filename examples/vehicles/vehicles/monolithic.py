@@ -11,10 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from reference.model import Wheel
 from scipy.integrate import solve_ivp
 
 from .options import starts
-from .rolling_wheels import Answer, Kind, Law, cross, lever, respond
+from .rolling_wheels import Answer, Law, cross, lever, respond
 
 TOLERANCE = 1e-11  # relative, of each step: the solution is then good to about 1e-9
 CAR = starts("quarter_car")
@@ -26,7 +27,7 @@ UP = np.array([0.0, 0.0, 1.0])
 class Phase:
     """From `begin` on [s]. Until the motor pulls, the friction holds the wheel; then it rolls forward."""
 
-    wheel: Kind
+    wheel: Wheel
     begin: float
     coupled: bool
     driven: bool
@@ -79,7 +80,7 @@ def attitude(a: np.ndarray, w: np.ndarray) -> tuple[float, float, float, float]:
     return np.arctan2(a[0], -a[1]), np.arctan2(flat, a[2]), psi_dot, -a_dot[2] / flat
 
 
-def solve(wheel: Kind, theta: float, times: np.ndarray) -> dict[str, np.ndarray]:
+def solve(wheel: Wheel, theta: float, times: np.ndarray) -> dict[str, np.ndarray]:
     """The motion from rest at `times` (rising from 0), phase by phase."""
     B = [CAR[f"{axis}_B_start"] for axis in "XYZ"]
     centre, a = [0.0, 0.0, wheel.r_0 * np.sin(theta) + wheel.r], [0.0, -np.sin(theta), np.cos(theta)]

@@ -12,12 +12,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from reference.model import Wheel
 from scipy.integrate import solve_ivp
 
 from .car import LAYOUT, MASS, Manoeuvre
 from .driver_path import DRIVER_DEFAULTS, Path, rise
 from .options import starts
-from .rolling_wheels import Answer, Kind, Law, cross, dot, respond
+from .rolling_wheels import Answer, Law, cross, dot, respond
 
 TOLERANCE = 1e-9
 BODY, DRIVER = 18, 3
@@ -32,7 +33,7 @@ class Car:
         self.c = starts("chassis") | manoeuvre.chassis_start()
         self.path, self.kind, self.n = (
             Path(self.o),
-            Kind(s=manoeuvre.s, slope=manoeuvre.slope, direction=manoeuvre.slope_direction),
+            Wheel(s=manoeuvre.s, slope=manoeuvre.slope, slope_direction=manoeuvre.slope_direction),
             len(wheels),
         )
         of = {key: np.array([w[key] for w in wheels]) for key in ("x", "y", "k", "c", "steer", "drive", "brake")}

@@ -16,6 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from reference.model import Wheel
 
 Z = np.array([0.0, 0.0, 1.0])
 
@@ -31,27 +32,6 @@ def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Kind:
-    """Parameters of equal wheels; the FMU's defaults."""
-
-    m: float = 20.0
-    r_0: float = 0.3
-    r: float = 0.05
-    J_x: float = 0.9
-    J_z: float = 1.8
-    g: float = 9.81
-    s: float = 0.0
-    slope: float = 0.0  # rad; the road rises towards `direction`, rad from X to the left
-    direction: float = 0.0
-
-    @property
-    def gravity(self) -> np.ndarray:
-        """Acceleration in fixed axes, which are the road's."""
-        across = np.sin(self.slope) * np.array([np.cos(self.direction), np.sin(self.direction), 0.0])
-        return -self.g * (across + np.cos(self.slope) * Z)
-
-
-@dataclass(frozen=True)
 class Answer:
     """What a load does: w', lambda, tau and the velocity of O; (wheels, 3), tau (wheels,)."""
 
@@ -61,7 +41,7 @@ class Answer:
     v: np.ndarray
 
 
-def lever(kind: Kind, a: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def lever(kind: Wheel, a: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """rho and its rate."""
     a_dot = cross(w, a)
     across = Z - a[:, 2:] * a
@@ -71,14 +51,14 @@ def lever(kind: Kind, a: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndar
     return kind.r_0 * u + kind.r * Z, kind.r_0 * (rate - u * dot(u, rate)) / length
 
 
-def respond(kind: Kind, a: np.ndarray, w: np.ndarray, load: tuple[np.ndarray, np.ndarray], law: Law) -> Answer:
+def respond(kind: Wheel, a: np.ndarray, w: np.ndarray, load: tuple[np.ndarray, np.ndarray], law: Law) -> Answer:
     """Accelerations and reactions under the forces and moments `load` = (F, M)."""
     F, M = load
     rho, rho_dot = lever(kind, a, w)
     spin = dot(a, w)
     matrix = (kind.J_x + kind.m * dot(rho, rho))[:, :, None] * np.eye(3)
     matrix += (kind.J_z - kind.J_x) * a[:, :, None] * a[:, None, :] - kind.m * rho[:, :, None] * rho[:, None, :]
-    at_rest = kind.m * cross(w, rho_dot) - F - kind.m * kind.gravity
+    at_rest = kind.m * cross(w, rho_dot) - F - np.multiply(kind.m, kind.gravity)
     right = M - (kind.J_z - kind.J_x) * spin * cross(w, a) - cross(rho, at_rest)
     solved = np.linalg.solve(matrix, np.stack([right, a], axis=2))
     free, per_tau = solved[:, :, 0], solved[:, :, 1]

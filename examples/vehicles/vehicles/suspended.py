@@ -12,12 +12,12 @@ from math import exp, pi
 from pathlib import Path
 
 import numpy as np
+from reference.model import Wheel
 
 from . import errors, monolithic
 from .component import Component, Ended
 from .hubs import FORCE, MOMENT, POSE
 from .master import Master, Signal
-from .rolling_wheels import Kind
 from .ssp import System
 from .ssp import run as run_package
 
@@ -67,7 +67,7 @@ def system(fmus: dict[str, Path], parameters: dict[str, float] | None = None, st
 
 def together(stop: float = STOP, grid: float = GRID) -> dict[str, np.ndarray]:
     """The same system as one set of equations."""
-    return monolithic.solve(Kind(s=START["s"]), START["theta_start"], np.arange(round(stop / grid) + 1) * grid)
+    return monolithic.solve(Wheel(s=START["s"]), START["theta_start"], np.arange(round(stop / grid) + 1) * grid)
 
 
 distance = partial(errors.distance, names=COMPARED, least=0)
