@@ -2,6 +2,7 @@
  * State y = X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z; fixed axes, SI. Nothing of it is computed anew when
  * it is read, so a state that was set is read back to the bit. Domain: 0 < theta < pi, see wheel_equations.h. */
 #include <math.h>
+#include <string.h>
 
 #include "wheel_equations.h"
 
@@ -19,14 +20,10 @@ static Reduced reduced(const double* y) {
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
   (void)wheel;
-  y[X_O] = motion->X_O;
-  y[Y_O] = motion->Y_O;
-  y[PSI] = motion->psi;
-  y[THETA] = motion->theta;
-  y[PHI] = motion->phi;
-  y[THETA_DOT] = motion->theta_dot;
-  y[PSI_DOT] = motion->psi_dot;
-  y[SPIN] = motion->phi_dot + motion->psi_dot * cos(motion->theta);
+  double spin = motion->phi_dot + motion->psi_dot * cos(motion->theta);
+  const double same[] = {motion->X_O, motion->Y_O,       motion->psi,     motion->theta,
+                         motion->phi, motion->theta_dot, motion->psi_dot, spin};
+  memcpy(y, same, sizeof same);
 }
 
 /* psi_dot = omega_2 / sin(theta), differentiated. */

@@ -8,18 +8,9 @@
 
 /* kappa, the direction of the friction; NaN without a law. The moment on a held wheel follows from omega_z_dot = 0. */
 static inline double kappa_of(const WheelFriction* friction, double omega_z) {
-  switch (friction->kind) {
-    case WHEEL_FRICTIONLESS:
-    case WHEEL_HELD:
-      return 0.0;
-    case WHEEL_ROLLING:
-      return friction->sigma;
-    case WHEEL_REGULARIZED:
-      return tanh(omega_z / friction->omega_s);
-    case WHEEL_NO_LAW:
-      break;
-  }
-  return NAN;
+  if (friction->kind == WHEEL_ROLLING) return friction->sigma;
+  if (friction->kind == WHEEL_REGULARIZED) return tanh(omega_z / friction->omega_s);
+  return friction->kind == WHEEL_FRICTIONLESS || friction->kind == WHEEL_HELD ? 0.0 : NAN;
 }
 
 #endif

@@ -1,6 +1,9 @@
 // One row per function, one bit per phase. Whether a variable may be set depends on the variable too: see values.cpp.
 #include "legality.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace fmi {
 namespace {
 
@@ -54,13 +57,9 @@ constexpr Rule rules[] = {
     {Function::get_states, M | E | N | F | T | X, of_model_exchange},
 };
 
-constexpr bool in_order() {
-  unsigned row = 0;
-  for (const Rule& rule : rules)
-    if (static_cast<unsigned>(rule.function) != row++) return false;
-  return row == static_cast<unsigned>(Function::count);
-}
-static_assert(in_order());
+constexpr auto not_behind = [](const Rule& a, const Rule& b) { return a.function <= b.function; };
+static_assert(std::is_sorted(std::begin(rules), std::end(rules), not_behind));  // strictly: none stands twice
+static_assert(std::size(rules) == static_cast<std::size_t>(Function::count));
 
 }  // namespace
 

@@ -16,11 +16,12 @@ bool check_count(Instance& i, const void* values, std::size_t count, int needed)
   return false;
 }
 
-// Reads state_count numbers, in initialization mode from the start values.
+// Reads as many numbers as are needed, in initialization mode from the start values.
 template <class Read>
-fmi2Status read_states(fmi2Component c, const char* name, fmi2Real values[], std::size_t count, Read read) {
+fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], std::size_t count, int needed,
+                        Read read) {
   return guarded(c, Function::get_states, name, [=](Instance& i) {
-    if (!check_count(i, values, count, wheel::state_count)) return fmi2Error;
+    if (!check_count(i, values, count, needed)) return fmi2Error;
     if (prepare_reading(i) != fmi2OK || !has_state(i.simulation.phase())) return fmi2Discard;
     return read(i);
   });
@@ -82,21 +83,21 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_states(c, "fmi2GetContinuousStates", x, n, [=](Instance& i) {
+  return read_numbers(c, "fmi2GetContinuousStates", x, n, wheel::state_count, [=](Instance& i) {
     std::copy_n(i.simulation.states(), n, x);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_states(c, "fmi2GetNominalsOfContinuousStates", x, n, [=](Instance& i) {
+  return read_numbers(c, "fmi2GetNominalsOfContinuousStates", x, n, wheel::state_count, [=](Instance& i) {
     i.simulation.nominals(x);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
-  return read_states(c, "fmi2GetDerivatives", x_dot, n, [=](Instance& i) {
+  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count, [=](Instance& i) {
     if (i.simulation.derivatives(x_dot)) return fmi2OK;
     return i.log(Topic::discard, "%s: at t = %s s the derivatives are not finite.", i.called,
                  Digits(i.simulation.time()).text);
@@ -104,9 +105,7 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  return guarded(c, Function::get_states, "fmi2GetEventIndicators", [=](Instance& i) {
-    if (!check_count(i, z, n, wheel::indicator_count)) return fmi2Error;
-    if (prepare_reading(i) != fmi2OK || !has_state(i.simulation.phase())) return fmi2Discard;
+  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count, [=](Instance& i) {
     i.simulation.indicators(z);
     return fmi2OK;
   });

@@ -37,12 +37,6 @@ fmi2Status check_step(Instance& i, double t, double h) {
   return fmi2OK;
 }
 
-fmi2Status step(Instance& i, double t, double h) {
-  if (check_step(i, t, h) != fmi2OK) return fmi2Error;
-  constexpr fmi2Status statuses[] = {fmi2OK, fmi2Discard, fmi2Error};  // of the outcomes
-  return statuses[static_cast<unsigned>(i.simulation.advance(t + h))];
-}
-
 // Of the last step, where its status may be asked for.
 fmi2Status last_status(const Instance& i) { return i.simulation.ending() ? fmi2Discard : fmi2OK; }
 
@@ -64,7 +58,11 @@ fmi2Status get_status(fmi2Component c, const char* name, int kind, int known_kin
 extern "C" {
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
-  return guarded(c, Function::do_step, "fmi2DoStep", [=](Instance& i) { return step(i, t, h); });
+  return guarded(c, Function::do_step, "fmi2DoStep", [=](Instance& i) {
+    if (check_step(i, t, h) != fmi2OK) return fmi2Error;
+    constexpr fmi2Status statuses[] = {fmi2OK, fmi2Discard, fmi2Error};  // of the outcomes
+    return statuses[static_cast<unsigned>(i.simulation.advance(t + h))];
+  });
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {

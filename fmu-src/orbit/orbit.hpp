@@ -55,7 +55,7 @@ class Orbit {
 
   // The half nutation from T1 + k L to T1 + (k + 1) L, L = T2 - T1.
   struct Half {
-    double k = -1, begin = 0, next = 0;
+    double begin = 0, next = 0;
     bool mirrored = false;
     double psi_sum = 0, phi_sum = 0;
     Complex place, turn;

@@ -28,7 +28,6 @@ void Orbit::take_half() {
 // first, pairs add up to 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta), n = floor(k / 2).
 Orbit::Half Orbit::half_at(double k) const {
   Half half;
-  half.k = k;
   half.begin = begin_of(k);
   half.next = begin_of(k + 1);
   const double n = std::floor(0.5 * k), turn = second_[psi] - first_[psi], roll = second_[phi] - first_[phi];

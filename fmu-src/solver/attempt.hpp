@@ -25,8 +25,9 @@ inline double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x)));
 template <int width>
 class RungeKutta::Attempt {
  public:
-  Attempt(const Problem& problem, Counters* counters, Step* step, double (*f)[max_states])
-      : problem_(problem), counters_(counters), step_(*step), f_(f) {}
+  // f: its evaluations; h: its size, s.
+  Attempt(const Problem& problem, Counters* counters, Step* step, double (*f)[max_states], double h)
+      : problem_(problem), counters_(counters), step_(*step), f_(f), h_(h) {}
 
   void weigh() {
     std::fill_n(weights_, width, 0.0);
@@ -68,8 +69,6 @@ class RungeKutta::Attempt {
 
   void end_step() { advance<table::b>(step_.y_end); }
 
-  void set_size(double h) { h_ = h; }
-
   bool evaluate_end(double* margin) { return !std::isnan(*margin = evaluate(12, step_.end, step_.y_end)); }
 
   // The three evaluations that only the dense output needs.
@@ -101,14 +100,7 @@ class RungeKutta::Attempt {
   }
 
  private:
-  double norm(const double* x) const {
-    double even = 0, odd = 0;
-    for (int i = 0; i < width; i += 2) {
-      even += (x[i] * weights_[i]) * (x[i] * weights_[i]);
-      odd += (x[i + 1] * weights_[i + 1]) * (x[i + 1] * weights_[i + 1]);
-    }
-    return std::sqrt((even + odd) / problem_.states);
-  }
+  double norm(const double* x) const { return weighted_norm<width>(x, weights_, problem_.states); }
 
   // h sum of row_j f_j.
   template <const auto& row, std::size_t... j>
@@ -150,7 +142,7 @@ class RungeKutta::Attempt {
   Counters* counters_;
   Step& step_;
   double (*f_)[max_states];
-  double h_ = 0;
+  double h_;
   alignas(16) double weights_[width], at_[width] = {};
 };
 

@@ -23,10 +23,6 @@ constexpr long long most = 9007199254740992;
 using support::Archive;
 
 template <class... Fields>
-void all_numbers(Archive& archive, Fields&... fields) {
-  (archive.number(fields), ...);
-}
-template <class... Fields>
 void all_counts(Archive& archive, long long greatest, Fields&... fields) {
   (archive.count(fields, 0, greatest), ...);
 }
@@ -38,10 +34,10 @@ void visit_steps(Archive& archive, CVodeMemRec& m) {
   constexpr double least = std::numeric_limits<double>::min(), greatest = Archive::greatest;
   for (double* size : {&m.cv_h, &m.cv_hprime, &m.cv_next_h, &m.cv_eta, &m.cv_hscale, &m.cv_hu, &m.cv_h0u})
     archive.range(*size, least, greatest);
-  all_numbers(archive, m.cv_tn, m.cv_tretlast);
+  archive.number(m.cv_tn, m.cv_tretlast);
   archive.numbers(m.cv_tau, L_MAX + 1), archive.numbers(m.cv_tq, NUM_TESTS + 1), archive.numbers(m.cv_l, L_MAX);
-  all_numbers(archive, m.cv_saved_tq5, m.cv_tolsf, m.cv_etamax, m.cv_etaqm1, m.cv_etaq, m.cv_etaqp1);
-  all_numbers(archive, m.cv_rl1, m.cv_gamma, m.cv_gammap, m.cv_gamrat, m.cv_crate, m.cv_delp, m.cv_acnrm);
+  archive.number(m.cv_saved_tq5, m.cv_tolsf, m.cv_etamax, m.cv_etaqm1, m.cv_etaq, m.cv_etaqp1);
+  archive.number(m.cv_rl1, m.cv_gamma, m.cv_gammap, m.cv_gamrat, m.cv_crate, m.cv_delp, m.cv_acnrm);
   archive.count(m.cv_nst, 1, most);
   all_counts(archive, most, m.cv_nfe, m.cv_ncfn, m.cv_nni, m.cv_nnf, m.cv_netf, m.cv_nsetups, m.cv_nstlp, m.cv_nscon);
   all_counts(archive, 2, m.cv_acnrmcur, m.convfail, m.cv_jcur);
@@ -90,8 +86,7 @@ bool Cvode::imitate_step(const Problem& problem, const Step& step) {
   still.longest_step = problem.longest_step;
   Counters uncounted = {};
   Step imitation;
-  return start(still, step.end, step.y_end, &imitation) &&
-         advance(still, std::numeric_limits<double>::infinity(), &uncounted, &imitation);
+  return start(still, step.end, step.y_end, &imitation) && advance(still, never, &uncounted, &imitation);
 }
 
 // Whether the history is that of the step.

@@ -35,14 +35,6 @@ void destroy(N_Vector v) { std::free(v); }
 void set_data(double* x, N_Vector v) { v->content = x; }
 N_Vector_ID kind(N_Vector) { return SUNDIALS_NVEC_CUSTOM; }
 
-using Pair = double __attribute__((vector_size(16)));
-
-Pair pair_at(const double* x) {
-  Pair pair;
-  std::memcpy(&pair, x, sizeof pair);
-  return pair;
-}
-
 template <int width>
 struct Operations {
   static sunindextype length(N_Vector) { return width; }
@@ -54,24 +46,14 @@ struct Operations {
     std::memcpy(data(z), result, sizeof result);
   }
 
-  // Two numbers at a time: CVODE makes dozens of such calls in each step.
-  template <class Function>
-  static void pairs(N_Vector z, const Function& f) {
-    double* out = data(z);
-    for (int i = 0; i < width; i += 2) {
-      const Pair result = f(i);
-      std::memcpy(out + i, &result, sizeof result);
-    }
-  }
-
   static void linear_sum(double a, N_Vector x, double b, N_Vector y, N_Vector z) {
     const double *u = data(x), *v = data(y);
-    if (a == 1 && b == 1) return pairs(z, [=](int i) { return pair_at(u + i) + pair_at(v + i); });
-    pairs(z, [=](int i) { return a * pair_at(u + i) + b * pair_at(v + i); });
+    if (a == 1 && b == 1) return each(z, [=](int i) { return u[i] + v[i]; });
+    each(z, [=](int i) { return a * u[i] + b * v[i]; });
   }
 
   static void scale(double a, N_Vector x, N_Vector z) {
-    pairs(z, [a, u = data(x)](int i) { return a * pair_at(u + i); });
+    each(z, [a, u = data(x)](int i) { return a * u[i]; });
   }
 
   static void product(N_Vector x, N_Vector y, N_Vector z) {
@@ -102,13 +84,7 @@ struct Operations {
   }
 
   static double rms_norm(N_Vector x, N_Vector weights) {
-    const double *u = data(x), *w = data(weights);
-    double even = 0, odd = 0;
-    for (int i = 0; i < width; i += 2) {
-      even += (u[i] * w[i]) * (u[i] * w[i]);
-      odd += (u[i + 1] * w[i + 1]) * (u[i + 1] * w[i + 1]);
-    }
-    return std::sqrt((even + odd) / states_of(x));
+    return weighted_norm<width>(data(x), data(weights), states_of(x));
   }
 
   // z = sum of c_k x_k; CVODE's dense output. z may be x_0.
@@ -127,7 +103,7 @@ struct Operations {
     const double* u = data(x);
     for (int k = 0; k < n; ++k) {
       const double* v = data(y[k]);
-      pairs(z[k], [=, factor = a[k]](int i) { return factor * pair_at(u + i) + pair_at(v + i); });
+      each(z[k], [=, factor = a[k]](int i) { return factor * u[i] + v[i]; });
     }
     return SUN_SUCCESS;
   }

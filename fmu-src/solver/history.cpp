@@ -9,7 +9,6 @@ namespace solver {
 
 // Fields are written only when they are read; a solver that is saved stays as it is.
 void Solver::visit(support::Archive& archive) {
-  constexpr double never = std::numeric_limits<double>::infinity();
   archive("method").count(method_, 0, static_cast<int>(Method::runge_kutta));
   archive("outcome of the last step").count(pending_, 0, static_cast<int>(Outcome::failed));
   archive("event").count(event_, 0, std::numeric_limits<int>::max());
@@ -30,19 +29,9 @@ void Solver::visit(support::Archive& archive) {
     if (!archive.fault()) one->visit(archive, problem_, &step_, one == &engine());
 }
 
-std::size_t Solver::history_size() const {
-  support::Archive archive = support::Archive::counting();
-  const_cast<Solver&>(*this).visit(archive);
-  return archive.bytes();
-}
+void Solver::save_history(support::Archive& archive) const { const_cast<Solver&>(*this).visit(archive); }
 
-void Solver::save_history(unsigned char* bytes) const {
-  support::Archive archive = support::Archive::writing(bytes);
-  const_cast<Solver&>(*this).visit(archive);
-}
-
-bool Solver::restore_history(const Problem& problem, const unsigned char* bytes, std::size_t size) {
-  support::Archive archive = support::Archive::reading(bytes, size);
+bool Solver::restore_history(const Problem& problem, support::Archive& archive) {
   problem_ = problem;
   failure_ = "it had failed before it was saved";
   step_ = {};

@@ -38,17 +38,23 @@ double RungeKutta::next_size(double h, double error) {
   return h * std::clamp(safety / eighth_root(error) * std::clamp(trend, 0.5, 2.0), 0.2, 10.0);
 }
 
+// What `body` makes of an attempt as wide as the state.
+template <class Body>
+auto RungeKutta::with_attempt(const Problem& problem, Counters* counters, Step* step, const Body& body) {
+  if (width_of(problem.states) == 8) return body(Attempt<8>(problem, counters, step, f_, size_));
+  return body(Attempt<max_states>(problem, counters, step, f_, size_));
+}
+
 bool RungeKutta::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
-  return width_of(problem.states) == 8 ? advance_wide<8>(problem, stop, counters, step)
-                                       : advance_wide<max_states>(problem, stop, counters, step);
+  return with_attempt(problem, counters, step,
+                      [&](auto attempt) { return advance_wide(attempt, problem, stop, step); });
 }
 
 template <int width>
-bool RungeKutta::advance_wide(const Problem& problem, double stop, Counters* counters, Step* step) {
+bool RungeKutta::advance_wide(Attempt<width>& attempt, const Problem& problem, double stop, Step* step) {
   step->start = step->end;
   std::copy_n(step->y_end, width, step->y_start);
   step->degree = -1;
-  Attempt<width> attempt(problem, counters, step, f_);
   if (rates_ == 16)
     std::copy_n(f_[12], width, f_[0]);
   else
@@ -102,16 +108,11 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
 
 void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) {
   if (rates_ < 12) return;
-  const auto expand_wide = [&](auto attempt) {
+  with_attempt(problem, counters, step, [&](auto attempt) {
     double margin;
-    attempt.set_size(size_);
     if (rates_ == 12 && attempt.evaluate_end(&margin)) attempt.evaluate_interior();
     attempt.expand();
-  };
-  if (width_of(problem.states) == 8)
-    expand_wide(Attempt<8>(problem, counters, step, f_));
-  else
-    expand_wide(Attempt<max_states>(problem, counters, step, f_));
+  });
 }
 
 // `rates` holds the evaluations of the last step that were made, 0, 12 or 16.
@@ -131,14 +132,7 @@ bool RungeKutta::fits(const Problem& problem, Step* step) {
   if (rates_ != 12 && rates_ != 16) return false;
   if (!(size_ > 0) || std::fabs(step->end - step->start - size_) > rounding_at(step->end)) return false;
   Step same = *step;
-  const auto repeat = [&](auto attempt) {
-    attempt.set_size(size_);
-    attempt.end_step();
-  };
-  if (width_of(problem.states) == 8)
-    repeat(Attempt<8>(problem, nullptr, &same, f_));
-  else
-    repeat(Attempt<max_states>(problem, nullptr, &same, f_));
+  with_attempt(problem, nullptr, &same, [](auto attempt) { attempt.end_step(); });
   const bool fits = std::equal(step->y_end, step->y_end + problem.states, same.y_end);
   return *step = same, fits;
 }

@@ -25,8 +25,10 @@ class RungeKutta final : public Engine {
  private:
   template <int width>
   class Attempt;
+  template <class Body>
+  auto with_attempt(const Problem& problem, Counters* counters, Step* step, const Body& body);
   template <int width>
-  bool advance_wide(const Problem& problem, double stop, Counters* counters, Step* step);
+  bool advance_wide(Attempt<width>& attempt, const Problem& problem, double stop, Step* step);
   template <int width>
   const char* accept_step(Attempt<width>& attempt, double longest, double stop, double* liked, Step* step);
 

@@ -6,8 +6,6 @@
 
 namespace solver {
 
-constexpr double never = std::numeric_limits<double>::infinity();
-
 bool Solver::start(const Problem& problem, Method method, double t, const double* y) {
   pending_ = Outcome::failed;
   runge_kutta_ = {};

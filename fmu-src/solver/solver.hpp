@@ -59,11 +59,10 @@ class Solver {
   const char* failure() const { return failure_; }
   const Counters& counters() const { return counters_; }
 
-  // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on with the same bits. restore
-  // refuses what could not have been saved (false; no solution then until start).
-  std::size_t history_size() const;
-  void save_history(unsigned char* bytes) const;
-  bool restore_history(const Problem& problem, const unsigned char* bytes, std::size_t size);
+  // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on with the same bits. It is
+  // the last part of an archive; restore refuses what could not have been saved (false; no solution then until start).
+  void save_history(support::Archive& archive) const;
+  bool restore_history(const Problem& problem, support::Archive& archive);
 
  private:
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }

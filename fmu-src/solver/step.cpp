@@ -25,11 +25,11 @@ void evaluate(const double (*c)[max_states], int degree, double s, double* y) {
 }  // namespace
 
 void Step::set_point(double t, const double* y, int states) {
-  *this = {};
   start = end = t;
-  lowest_margin = std::numeric_limits<double>::infinity();
-  std::copy_n(y, states, y_start);
-  std::copy_n(y, states, y_end);
+  lowest_margin = never;
+  inside_share = 0;
+  degree = 0;
+  for (double* place : {y_start, y_end}) std::fill(std::copy_n(y, states, place), place + max_states, 0.0);
 }
 
 void Step::read(double t, int states, double* y) const {

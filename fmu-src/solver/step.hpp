@@ -11,10 +11,23 @@
 
 namespace solver {
 
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
 // Two times closer than this are the same instant, s.
 inline double rounding_at(double t) { return 8 * std::numeric_limits<double>::epsilon() * std::fabs(t); }
 
 constexpr int width_of(int states) { return states <= 8 ? 8 : max_states; }
+
+// Root mean square of weight times entry: even and odd ones apart, which the processor sums side by side.
+template <int width>
+double weighted_norm(const double* x, const double* weights, int states) {
+  double even = 0, odd = 0;
+  for (int i = 0; i < width; i += 2) {
+    even += (x[i] * weights[i]) * (x[i] * weights[i]);
+    odd += (x[i + 1] * weights[i + 1]) * (x[i + 1] * weights[i + 1]);
+  }
+  return std::sqrt((even + odd) / states);
+}
 
 struct Step {
   double start, end;  // s

@@ -31,7 +31,10 @@ class Archive {
   // What the fields that follow are, in words.
   Archive& operator()(const char* row) { return row_ = row, *this; }
   void range(double& x, double least, double most) { put(x, least, most); }
-  void number(double& x) { range(x, -greatest, greatest); }  // finite
+  template <class... Doubles>
+  void number(Doubles&... x) {  // finite
+    (range(x, -greatest, greatest), ...);
+  }
   void numbers(double* x, int n) {
     for (int i = 0; i < n; ++i) number(x[i]);
   }

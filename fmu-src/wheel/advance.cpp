@@ -71,7 +71,7 @@ Outcome Simulation::take_demand() {
   const WheelFriction before = run_.in_force.scene.friction;
   const bool leaves_orbit = run_.phase == Phase::unfolded;
   if (leaves_orbit && setup_.keep_contact && contact_margin(owner_, run_.t, run_.y) < 0) run_.in_force.change_contact();
-  run_.in_force = in_force_from(setup_, demand_, run_.in_force.scene.ground, run_.t, run_.y);
+  put_in_force(setup_, demand_, run_.t, run_.y, run_.in_force);
   fresh_ = Fresh::state;
   announce_transition(before);
   if (run_.phase == Phase::at_start) return Outcome::stepped;

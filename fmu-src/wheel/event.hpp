@@ -14,20 +14,10 @@ enum class Event : int {
   count
 };
 
-// Events that end the model, and what is said of them, to stand behind "the wheel".
-struct Ending {
-  Event event;
-  const char* said;
-};
-inline constexpr Ending endings[] = {
-    {Event::lifted_off, "lifted off the ground"},
-    {Event::fell_flat, "fell flat"},
-};
-
-// Null for an event that ends nothing.
+// What is said of an event that ends the model, to stand behind "the wheel"; null for one that ends nothing.
 constexpr const char* ending_of(Event event) {
-  for (const Ending& ending : endings)
-    if (ending.event == event) return ending.said;
+  if (event == Event::lifted_off) return "lifted off the ground";
+  if (event == Event::fell_flat) return "fell flat";
   return nullptr;
 }
 

@@ -82,18 +82,10 @@ void Simulation::nominals(double* x) const { scales_at(setup_, run_.y[setup_.for
 double Simulation::friction_margin() const {
   const WheelScene& scene = run_.in_force.scene;
   const double moment = setup_.weight * (scene.wheel.r_0 + scene.wheel.r);
-  switch (scene.friction.kind) {
-    case WHEEL_ROLLING:
-      return scene.friction.sigma * run_.y[setup_.formulation->spin_index] * setup_.own_time;
-    case WHEEL_HELD:
-      return holding_margin(setup_, scene, run_.y) / moment;
-    case WHEEL_FRICTIONLESS:
-      return -scene.load.brake / moment;
-    case WHEEL_REGULARIZED:
-    case WHEEL_NO_LAW:
-      break;
-  }
-  return 1;
+  const WheelFriction& law = scene.friction;
+  if (law.kind == WHEEL_ROLLING) return law.sigma * run_.y[setup_.formulation->spin_index] * setup_.own_time;
+  if (law.kind == WHEEL_HELD) return holding_margin(setup_, scene, run_.y) / moment;
+  return law.kind == WHEEL_FRICTIONLESS ? -scene.load.brake / moment : 1;
 }
 
 // Its rate along the motion, 1/s.
@@ -132,9 +124,8 @@ void Simulation::indicators(double* z) {
 }
 
 bool Simulation::has_event() {
-  double z[indicator_count];
-  indicators(z);
-  return std::any_of(z, z + indicator_count, [](double indicator) { return indicator <= 0; });
+  const Margins now = margins();
+  return std::fmin(now.friction, std::fmin(now.flat, now.contact)) + distance <= 0;
 }
 
 // Event mode: the law that holds from here on, and whether the model ends here. True where a state was changed.

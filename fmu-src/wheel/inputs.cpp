@@ -19,8 +19,6 @@ WheelLoad load_after(const Polynomials& inputs, double tau) {
   return load;
 }
 
-bool is_zero(const double* c) { return c[0] == 0 && c[1] == 0 && c[2] == 0 && c[3] == 0; }
-
 // Real zeros of the slope c1 + 2 c2 x + 3 c3 x^2; returns their number.
 int zeros_of_slope(const double* c, double* zeros) {
   const double a = 3 * c[3], half_b = c[2], d = half_b * half_b - a * c[1];
@@ -74,10 +72,11 @@ void Inputs::take_over(double t, const Polynomials& asked) {
 void Inputs::classify() {
   loaded = varies = false;
   for (const auto& polynomial : c) {
-    loaded = loaded || !is_zero(polynomial);
-    varies = varies || polynomial[1] != 0 || polynomial[2] != 0 || polynomial[3] != 0;
+    const bool slopes = polynomial[1] != 0 || polynomial[2] != 0 || polynomial[3] != 0;
+    varies = varies || slopes;
+    loaded = loaded || slopes || polynomial[0] != 0;
   }
-  braked = !is_zero(c[brake_input]);
+  braked = std::any_of(c[brake_input], c[brake_input] + max_order + 1, [](double part) { return part != 0; });
 }
 
 bool Inputs::change_at(double t, double rounding, const Polynomials& asked) const {

@@ -28,16 +28,14 @@ WheelFriction against(const WheelDynamics& held) { return {WHEEL_ROLLING, held.t
 
 }  // namespace
 
-InForce in_force_from(const Setup& setup, const Demand& demand, WheelGround ground, double t, const double* y) {
-  InForce next;
-  next.scene.ground = ground;
-  next.scene.wheel = setup.wheel;
-  next.scene.wheel.s = demand.parameters[s];
-  next.scene.load = load_of(demand.inputs);
-  next.inputs.take_over(t, demand.inputs);
-  next.scene.friction = friction_at(setup, next.scene, next.inputs.braked, y);
-  if (needs_layer(setup, next.scene, y)) enter_layer(setup, next, t, y);
-  return next;
+void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& now) {
+  now.scene.wheel = setup.wheel;
+  now.scene.wheel.s = demand.parameters[s];
+  now.scene.load = load_of(demand.inputs);
+  now.inputs.take_over(t, demand.inputs);
+  now.scene.friction = friction_at(setup, now.scene, now.inputs.braked, y);
+  now.layer = Layer::none;
+  if (needs_layer(setup, now.scene, y)) enter_layer(setup, now, t, y);
 }
 
 WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {

@@ -7,8 +7,8 @@
 
 namespace wheel {
 
-// What is asked for, at the state y: `s`, inputs from t on, and the law of friction that goes with them.
-InForce in_force_from(const Setup& setup, const Demand& demand, WheelGround ground, double t, const double* y);
+// Puts in force, at the state y, what is asked for: `s`, inputs from t on, and the law of friction that goes with them.
+void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& in_force);
 
 // The friction law at state y under the scene's load; `braked`: the brake is in use. At omega_z = 0 after Filippov:
 // held where the moment that holds it is within s N + M_brake, else rolling against that moment.

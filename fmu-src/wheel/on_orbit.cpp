@@ -8,16 +8,11 @@
 
 namespace wheel {
 
-// Whether the stored orbit belongs to the present run; the instance may have computed other runs before.
-bool Simulation::orbit_fits() const {
-  return std::equal(demand_.parameters, demand_.parameters + first_input, orbit_origin_) &&
-         orbit_origin_[first_input] == demand_.tolerance;
-}
-
-// Makes the orbit of the run ready, built from its start. False where the motion cannot be unfolded: the solver has to
-// step through it.
+// Makes the orbit of the run ready, built from its start, unless it is kept from an earlier run. False where the motion
+// cannot be unfolded: the solver has to step through it.
 bool Simulation::enter_orbit() {
-  if (!orbit_fits()) {
+  if (orbit_origin_[first_input] != demand_.tolerance ||
+      !std::equal(demand_.parameters, demand_.parameters + first_input, orbit_origin_)) {
     InForce start = run_.in_force;
     Owner owner = {setup_, start};
     const auto pass = [](void* of, int event) {

@@ -15,7 +15,7 @@ enum class Layer : int { none, outside, passing, sticking };
 
 // What acts on the wheel.
 struct InForce {
-  WheelScene scene = {};  // `s`, law of friction, ground; the load is that at the origin of the inputs
+  WheelScene scene = {.ground = WHEEL_GROUND_PRESSES};  // its load is that at the origin of the inputs
   Inputs inputs;
   Layer layer = Layer::none;
 

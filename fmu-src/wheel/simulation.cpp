@@ -61,7 +61,7 @@ bool Simulation::prepare(bool report) {
   run_.phase = Phase::faulty;
   if (!check_values(demand_, reporter)) return false;
   setup_ = setup_of(demand_);
-  run_.in_force = in_force_from(setup_, demand_, WHEEL_GROUND_PRESSES, 0, setup_.start);
+  put_in_force(setup_, demand_, 0, setup_.start, run_.in_force);
   std::copy_n(setup_.start, setup_.formulation->states, run_.y);
   demand_.changed = orbit_ready_ = false;
   fresh_ = Fresh::state;
@@ -106,7 +106,11 @@ solver::Counters Simulation::counters() const {
 // The scene at the present instant, with what was set since the last step.
 WheelScene Simulation::scene_now() {
   WheelScene scene = run_.in_force.scene_at(run_.t);
-  if (demand_.changed) scene = in_force_from(setup_, demand_, scene.ground, run_.t, y_now()).scene;
+  if (demand_.changed) {
+    InForce next = run_.in_force;
+    put_in_force(setup_, demand_, run_.t, y_now(), next);
+    scene = next.scene;
+  }
   scene.ground = WHEEL_GROUND_BY_FORCE;
   return scene;
 }

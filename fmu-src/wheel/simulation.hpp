@@ -85,6 +85,7 @@ class Simulation {
 
  private:
   bool check_start(const Reporter& reporter);
+  void write(support::Archive& archive);
 
   const double* y_now();
   void freeze(Phase phase);
@@ -130,7 +131,6 @@ class Simulation {
   double partial(unsigned unknown, unsigned known);
 
   // on_orbit.cpp
-  bool orbit_fits() const;
   bool enter_orbit();
   double fastest_turn() const;
   void report_pulls_of_orbit(double t);

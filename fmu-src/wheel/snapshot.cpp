@@ -53,7 +53,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("new starts before the solver started").tally(counted.restarts);
 }
 
-// Whether the law is one that in_force_from could have chosen.
+// Whether the law is one that put_in_force could have chosen.
 bool law_fits(const Setup& setup, const InForce& now) {
   const bool exact = setup.friction_law == exact_law, outside = now.layer == Layer::outside;
   const bool waits = setup.formulation == &wheel_euler;  // model exchange: the law waits for the next event
@@ -105,27 +105,25 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   return nullptr;
 }
 
-bool is_inside(const Setup& setup, const Run& run) {
-  Reading reading;
-  reading.set({setup.formulation, run.y, run.in_force.scene_at(run.t), {}, {}, 0});
-  return is_inside(reading);
-}
-
 }  // namespace
+
+void Simulation::write(support::Archive& archive) {
+  visit(archive, demand_, run_);
+  if (run_.phase == Phase::stepping) solver_.save_history(archive);
+}
 
 std::size_t Simulation::state_size() {
   support::Archive archive = support::Archive::counting();
-  visit(archive, demand_, run_);
-  return sizeof(Header) + archive.bytes() + (run_.phase == Phase::stepping ? solver_.history_size() : 0);
+  write(archive);
+  return sizeof(Header) + archive.bytes();
 }
 
 void Simulation::save_state(unsigned char* bytes) {
   if (has_state(run_.phase)) y_now();
   support::Archive archive = support::Archive::writing(bytes + sizeof(Header));
-  visit(archive, demand_, run_);
-  if (run_.phase == Phase::stepping) solver_.save_history(bytes + sizeof(Header) + archive.bytes());
-  const std::size_t size = state_size();
-  const Header header = {mark, size, support::checksum_of(bytes + sizeof(Header), size - sizeof(Header))};
+  write(archive);
+  const std::size_t size = archive.bytes();
+  const Header header = {mark, sizeof header + size, support::checksum_of(bytes + sizeof header, size)};
   std::memcpy(bytes, &header, sizeof header);
 }
 
@@ -144,17 +142,18 @@ const char* Simulation::load_state(const unsigned char* bytes, std::size_t size,
   visit(archive, demand, run);
   if (archive.fault()) return archive.fault();
   if (const char* fault = complete(demand, setup, run)) return fault;
-  if (foreign && has_state(run.phase) && !is_inside(setup, run)) return "the state is outside the model";
+  Reading reading;
+  reading.set({setup.formulation, run.y, run.in_force.scene_at(run.t), nullptr, {}, 0});
+  if (foreign && has_state(run.phase) && !is_inside(reading)) return "the state is outside the model";
   if (demand.kind != demand_.kind) return "they belong to an instance of the other kind";
-  const std::size_t left = size - sizeof header - archive.bytes();
-  if (run.phase != Phase::stepping && left > 0) return "bytes are left over";
+  if (run.phase != Phase::stepping && !archive.is_sound()) return "bytes are left over";
   demand_ = demand;
   setup_ = setup;
   run_ = run;
   fresh_ = Fresh::state;
   orbit_ready_ = false;
-  if (run.phase != Phase::stepping || (solver_.restore_history(problem_of(owner_), bytes + size - left, left) &&
-                                       solver_.step_start() <= run.t && solver_.reaches(run.t)))
+  if (run.phase != Phase::stepping ||
+      (solver_.restore_history(problem_of(owner_), archive) && solver_.step_start() <= run.t && solver_.reaches(run.t)))
     return nullptr;
   run_.phase = Phase::failed;
   return "the history of the solver could not be restored";

@@ -25,9 +25,6 @@ struct Access {
 #define REACTION(value, component) \
   AT(now.value), AT(now.reaction_rates().component), [](const ReactionRates& rates) { return rates.component; }
 
-// An integer of FMI ends where a long run may still count.
-#define TALLY(count) AT(double(std::min<long long>(count, std::numeric_limits<int>::max())))
-
 constexpr Access readers[] = {
     {Computed::X_O, AT(now.pose().X_O), AT(now.kinematics().X_O_dot)},
     {Computed::Y_O, AT(now.pose().Y_O), AT(now.kinematics().Y_O_dot)},
@@ -57,23 +54,16 @@ constexpr Access readers[] = {
     {Computed::E, AT(wheel_energy(&now.scene().wheel, &now.kinematics()))},
     {Computed::mu_required, AT(wheel_required_friction(now.dynamics().lambda))},
     {Computed::friction_mode, AT(now.friction_mode())},
-    {Computed::n_steps, TALLY(now.counters().steps)},
-    {Computed::n_rhs, TALLY(now.counters().rhs)},
-    {Computed::n_jac, TALLY(now.counters().jacobians)},
-    {Computed::n_roots, TALLY(now.counters().roots)},
-    {Computed::n_events, TALLY(now.transitions())},
-    {Computed::n_restarts, TALLY(now.counters().restarts)},
+    {Computed::n_steps, AT(double(now.counters().steps))},
+    {Computed::n_rhs, AT(double(now.counters().rhs))},
+    {Computed::n_jac, AT(double(now.counters().jacobians))},
+    {Computed::n_roots, AT(double(now.counters().roots))},
+    {Computed::n_events, AT(double(now.transitions()))},
+    {Computed::n_restarts, AT(double(now.counters().restarts))},
 };
 
-#undef TALLY
 #undef REACTION
 #undef AT
-
-constexpr int readers_of(Computed variable) {
-  int found = 0;
-  for (const Access& reader : readers) found += reader.variable == variable;
-  return found;
-}
 
 constexpr Row stored(const char* name, Type type, Role role, double start, double min, double max) {
   const double most = role == Role::input ? strongest : unlimited;
@@ -82,10 +72,10 @@ constexpr Row stored(const char* name, Type type, Role role, double start, doubl
 
 template <Computed variable>
 constexpr Row computed(const char* name, Type type, Role role) {
-  static_assert(readers_of(variable) == 1, "a calculated variable has one reader");
-  for (const Access& r : readers)
-    if (r.variable == variable) return {name, type, role, 0, 0, 0, r.read, r.read_rate, r.reaction_rate};
-  return {};
+  constexpr auto reads_it = [](const Access& reader) { return reader.variable == variable; };
+  static_assert(std::count_if(std::begin(readers), std::end(readers), reads_it) == 1, "one reader for each");
+  const Access& r = *std::find_if(std::begin(readers), std::end(readers), reads_it);
+  return {name, type, role, 0, 0, 0, r.read, r.read_rate, r.reaction_rate};
 }
 
 constexpr Row rows[] = {
@@ -96,12 +86,9 @@ constexpr Row rows[] = {
 #undef COMPUTED
 };
 
-constexpr bool outputs_have_rates() {
-  return std::all_of(std::begin(rows), std::end(rows),
-                     [](const Row& row) { return row.role != Role::output || row.read_rate; });
-}
+constexpr auto has_rate = [](const Row& row) { return row.role != Role::output || row.read_rate; };
 static_assert(std::size(rows) == variable_count && std::size(readers) == variable_count - stored_count);
-static_assert(outputs_have_rates());
+static_assert(std::all_of(std::begin(rows), std::end(rows), has_rate));
 
 }  // namespace
 

@@ -37,7 +37,7 @@ enum class Computed : unsigned {
 inline constexpr unsigned variable_count = static_cast<unsigned>(Computed::end);
 
 // F_X F_Y F_Z M_1 M_2 M_3 M_brake, the last of the stored variables.
-inline constexpr unsigned first_input = F_X, input_count = stored_count - first_input;
+inline constexpr unsigned first_input = F_X;
 
 enum Formulation : int { automatic_formulation = 1, reduced_formulation, multibody_formulation };
 enum FrictionLaw { exact_law = 1, regularized_law };

@@ -63,7 +63,7 @@ PUBLIC Probe* probe_make(const unsigned* references, const double* values, int c
   for (int i = 0; i < count; ++i) demand.parameters[references[i]] = values[i];
   demand.tolerance = tolerance;
   probe->setup = wheel::setup_of(demand);
-  probe->in_force = wheel::in_force_from(probe->setup, demand, WHEEL_GROUND_PRESSES, 0, probe->setup.start);
+  wheel::put_in_force(probe->setup, demand, 0, probe->setup.start, probe->in_force);
   return probe;
 }
 

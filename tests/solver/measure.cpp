@@ -19,6 +19,10 @@ struct Arguments {
   double a, b;
 };
 
+struct Started : Solver {
+  Started(Case& c, Method method) { start(c.problem(), method, 0, c.y.data()); }
+};
+
 void table(const Arguments&) { print_table(); }
 
 // a: size of every step. Largest error of harmonic() at the ends of the steps and halfway between.
@@ -26,8 +30,7 @@ void order(const Arguments& args) {
   Case c = harmonic();
   c.tolerance = 1e20;
   c.longest_step = args.a;
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   double at_ends = 0, inside = 0, y[2];
   while (s.known_until() < 4) {
     s.step();
@@ -46,8 +49,7 @@ void order(const Arguments& args) {
 void accuracy(const Arguments& args) {
   Case c = harmonic();
   c.tolerance = args.a;
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   double error = 0;
   for (int i = 1; i <= 1000; ++i) {
     const double t = args.b * i / 1000;
@@ -63,8 +65,7 @@ void accuracy(const Arguments& args) {
 void grid(const Arguments& args) {
   Case c = harmonic();
   c.each_step = [](double, const double* y) { return y[0] + 2; };
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   const int points = static_cast<int>(args.a);
   double y[2];
   for (int i = 1; i <= points; ++i) run_to(s, 20.0 * i / points), s.read(20.0 * i / points, y);
@@ -77,8 +78,7 @@ void dip(const Arguments& args) {
   Case c = harmonic();
   c.tolerance = 1e-6;
   c.each_step = [&](double, const double* y) { return 1 - y[1] - args.a; };
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   std::printf("{\"falls\": [");
   const char* comma = "";
   while (!s.reaches(20)) {
@@ -98,8 +98,7 @@ void double_dip(const Arguments& args) {
   Case c = clock_only(1);
   c.by_margin = [&](double t, const double*) { return std::pow((t - 0.3) * (t - 0.7), 2) - args.a; };
   if (args.b != 0) c.extremes = {0.3, 0.5, 0.7};
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   const Outcome outcome = run_to(s, 2);
   std::printf("{\"ended\": %s, \"time\": %.17g}\n", s.event() == 2 && outcome == Outcome::event ? "true" : "false",
               s.event_time());
@@ -114,8 +113,7 @@ void dips(const Arguments& args) {
     const double centre = std::fmod(0.5 + 0.6180339887 * i, 0.8) + 0.1, width = args.a * std::pow(10, -0.07 * i);
     Case c = clock_only(1);
     c.each_step = [=](double t, const double*) { return (t - centre) * (t - centre) - width * width; };
-    Solver s;
-    s.start(c.problem(), args.method, 0, c.y.data());
+    Started s(c, args.method);
     const Outcome outcome = run_to(s, 1);
     worst =
         std::fmax(worst, outcome == Outcome::event ? std::fabs(s.event_time() - (centre - width)) / width : INFINITY);
@@ -129,8 +127,7 @@ void later_piece(const Arguments& args) {
   Case c = clock_only(1);
   c.each_step = [&](double t, const double*) { return t < 0.5 ? 1 : 25 * (t - 0.7) * (t - 0.7) - args.a; };
   c.extremes = {0.5};
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   const Outcome outcome = run_to(s, 1);
   std::printf("{\"event\": %s, \"time\": %.17g}\n", outcome == Outcome::event ? "true" : "false", s.event_time());
 }
@@ -139,8 +136,7 @@ void later_piece(const Arguments& args) {
 void release(const Arguments& args) {
   Case c = clock_only(1);
   c.each_step = [&](double, const double* y) { return y[0] * y[0] * (args.a - y[0]); };
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   const Outcome outcome = run_to(s, 10 * args.a);
   std::printf("{\"event\": %s, \"time\": %.17g}\n", outcome == Outcome::event ? "true" : "false", s.event_time());
 }
@@ -148,8 +144,7 @@ void release(const Arguments& args) {
 // A ball dropped from 1 m keeps the share a of its speed at each of ten bounces. Instants of the bounces.
 void bounces(const Arguments& args) {
   Case c = bouncing(1);
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   std::printf("{\"times\": [");
   for (int i = 0; i < 10 && run_to(s, 100) == Outcome::event; ++i) {
     double y[2];
@@ -164,8 +159,7 @@ void bounces(const Arguments& args) {
 // harmonic() over 20 s at tolerance 1e-8, cut every 0.1 s and again `a` s later.
 void cuts(const Arguments& args) {
   Case c = harmonic();
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   double error = 0, y[2];
   bool exact = true;
   for (int i = 1; i <= 400; ++i) {
@@ -189,8 +183,7 @@ void failure(const Arguments& args) {
     c.rates = [](double t, const double*, double* d) { d[0] = t > 1 ? NAN : 1; };
   else
     c.rates = [](double, const double* y, double* d) { d[0] = y[0] * y[0]; };
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   const Outcome outcome = run_to(s, 2, 100000);
   double y[1];
   s.read(s.known_until(), y);
@@ -203,8 +196,7 @@ void stiff(const Arguments& args) {
   Case c = van_der_pol(args.a);
   c.tolerance = 1e-7;
   c.longest_step = 1000;
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   run_to(s, args.b, 200000);
   double y[2];
   s.read(args.b, y);
@@ -215,8 +207,7 @@ void stiff(const Arguments& args) {
 // Sizes of the first step: of a start, and after a restart with the interval a.
 void first_step(const Arguments& args) {
   Case c = harmonic();
-  Solver s;
-  s.start(c.problem(), args.method, 0, c.y.data());
+  Started s(c, args.method);
   for (int i = 0; i < 5; ++i) s.step();
   double y[2];
   s.read(s.known_until(), y);

@@ -12,6 +12,7 @@
 
 using solver::Outcome;
 using solver::Solver;
+using support::Archive;
 
 namespace {
 
@@ -22,9 +23,17 @@ Case watched() {
 }
 
 std::vector<unsigned char> save(const Solver& s) {
-  std::vector<unsigned char> bytes(s.history_size());
-  s.save_history(bytes.data());
+  Archive counting = Archive::counting();
+  s.save_history(counting);
+  std::vector<unsigned char> bytes(counting.bytes());
+  Archive writing = Archive::writing(bytes.data());
+  s.save_history(writing);
   return bytes;
+}
+
+bool restore(Solver& s, Case& c, const std::vector<unsigned char>& bytes) {
+  Archive reading = Archive::reading(bytes.data(), bytes.size());
+  return s.restore_history(c.problem(), reading);
 }
 
 // Steps on; true while the other does the same to the bit.
@@ -48,7 +57,7 @@ void measure_snapshots(solver::Method method, int steps) {
   original.start(c.problem(), method, 0, c.y.data());
   for (int i = 0; i < steps; ++i) original.step();
   const auto bytes = save(original);
-  const bool restored = copy.restore_history(c.problem(), bytes.data(), bytes.size());
+  const bool restored = restore(copy, c, bytes);
   const bool again = restored && save(copy) == bytes;
   double y[2], z[2];
   const double t = original.step_start() + 0.3 * (original.known_until() - original.step_start());
@@ -57,8 +66,7 @@ void measure_snapshots(solver::Method method, int steps) {
   const bool same = restored && same_steps(original, copy, 200);
   // Back to the past, in a solver that has gone on.
   Solver once_more;
-  const bool back = once_more.restore_history(c.problem(), bytes.data(), bytes.size()) &&
-                    copy.restore_history(c.problem(), bytes.data(), bytes.size()) && same_steps(once_more, copy, 100);
+  const bool back = restore(once_more, c, bytes) && restore(copy, c, bytes) && same_steps(once_more, copy, 100);
   std::printf("{\"restored\": %d, \"again\": %d, \"reads\": %d, \"same\": %d, \"back\": %d, \"bytes\": %zu}\n",
               restored, again, reads, same, back, bytes.size());
 }
@@ -82,7 +90,7 @@ void measure_forgeries(solver::Method method) {
       if (forged == bytes) continue;
       ++tried;
       Solver s;
-      if (!s.restore_history(c.problem(), forged.data(), forged.size())) continue;
+      if (!restore(s, c, forged)) continue;
       ++taken;
       double value;
       std::memcpy(&value, &word, sizeof value);
@@ -93,7 +101,8 @@ void measure_forgeries(solver::Method method) {
     }
   Solver s;
   int cut = 0;
-  for (std::size_t size = 0; size < bytes.size(); size += 8) cut += s.restore_history(c.problem(), bytes.data(), size);
+  for (std::size_t size = 0; size < bytes.size(); size += 8)
+    cut += restore(s, c, std::vector<unsigned char>(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)));
   std::printf("{\"tried\": %d, \"taken\": %d, \"not_numbers\": %d, \"stepped\": %d, \"cut\": %d}\n", tried, taken,
               not_numbers, stepped, cut);
 }
