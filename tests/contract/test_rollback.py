@@ -184,14 +184,3 @@ def test_a_restored_state_and_the_original_go_on_to_the_same_bytes_when_friction
     assert w.set(s=0.01) == OK and other.set(s=s) == OK  # the partner: friction in one of them only
     assert w.step(1e-3) == other.step(1e-3) == OK
     assert (w.serialized() == other.serialized()) == (s > 0)
-
-
-@pytest.mark.parametrize("scene", KINDS)
-def test_the_bytes_of_a_state_before_the_first_step_depend_on_nothing_but_the_state(wheel, scene):
-    used = wheel().start(s=0.02, J_x=1.0)
-    used.run([1.0])
-    used.close()  # leaves its memory to the next ones
-    states = {wheel().start(**KINDS[scene]).serialized() for _ in range(10)}
-    assert len(states) == 1
-    moved = wheel().start(**KINDS[scene] | {"X_O_start": 1e-9}).serialized()
-    assert moved not in states

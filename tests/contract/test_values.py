@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from ctypes import c_double, c_int, c_uint
+from ctypes import byref, c_double, c_int, c_uint, c_void_p
 
 import numpy as np
 import pytest
@@ -56,10 +56,14 @@ def test_null_arrays_are_refused_and_empty_arrays_are_not(wheel):
     no_value = [w.fmi2GetStatus, w.fmi2GetRealStatus, w.fmi2GetIntegerStatus, w.fmi2GetBooleanStatus]
     assert [call(w.component, 0, None) for call in [*no_value, w.fmi2GetStringStatus]] == [ERROR] * 5
     states = [w.fmi2GetFMUstate(w.component, None), w.fmi2SetFMUstate(w.component, None)]
-    assert [*states, w.fmi2SerializeFMUstate(w.component, None, None, 0)] == [ERROR] * 3
+    states += [w.fmi2SerializedFMUstateSize(w.component, w.snapshot(), None)]
+    states += [w.fmi2SerializeFMUstate(w.component, state, None, 1 << 17) for state in (None, w.snapshot())]
+    states += [w.fmi2DeSerializeFMUstate(w.component, None, 1 << 17, byref(c_void_p()))]
+    states += [w.fmi2DeSerializeFMUstate(w.component, b"0", 1, state) for state in (None, byref(c_void_p()))]
+    assert states == [ERROR] * 8
     assert w.fmi2FreeFMUstate(w.component, None) == OK
     assert w.fmi2SetDebugLogging(w.component, 1, 1, None) == ERROR
-    assert len(w.take_messages()) == 9
+    assert len(w.take_messages()) == 14
 
 
 def test_unknown_references_and_wrong_types_are_errors_and_leave_the_array_alone(wheel):

@@ -45,7 +45,6 @@ class Session {
 #undef DECLARE
 #undef NOTHING
 
-  void without_arrays(const Saved& saved);
   fmi2Status step(Slot& slot, double t, double h);
   double usual_step(const Slot& slot);
   double value_for(unsigned reference);
