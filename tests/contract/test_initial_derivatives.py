@@ -17,6 +17,7 @@ GENERAL = {
 }
 SCENES = {
     "paper": {},  # J_z is at its limit, J_x + J_y; r, s and others at zero
+    "turning": {"psi_dot_start": 2.0, "theta_start": 1.2},  # J_z too, and it counts
     "general": GENERAL | {"J_z": 1.6, "J_x": 0.8, "s": 0.03},
     "regularized": GENERAL | {"J_z": 1.6, "s": 0.03, "friction_law": 2, "omega_s": 0.5},
     "thin disc": {"r": 0.0, "theta_start": 0.9},

@@ -1,8 +1,8 @@
 """What a scene does not need is not done: proved by the FMU's own counters, scene by scene.
 
-What each omission saves is in docs/results/speed.md. Each statement has a partner in which the thing is asked for and the
-same counter moves. That neither the grid nor a reading costs an evaluation is told where their bits are compared, counters
-among them: test_stepping.py, test_properties.py.
+What each omission saves is in docs/results/speed.md. Each statement has a partner in which the thing is asked for and
+the same counter moves. That neither the grid nor a reading costs an evaluation is told where their bits are compared,
+counters among them: test_stepping.py, test_properties.py.
 """
 
 from __future__ import annotations
