@@ -11,7 +11,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fmpy import simulate_fmu
 from playwright.sync_api import Browser, Page, sync_playwright
+from support.driver import HEADLINE
 from support.paths import ROOT
 
 from page.tests.pages import FLAGS, RECORD, opened, view, write_csv
@@ -30,6 +32,17 @@ def browser() -> Iterator[Browser]:
         chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
         yield chromium
         chromium.close()
+
+
+@pytest.fixture(scope="session")
+def simulate(fmu: str, description):
+    """simulate(step, stop, output, **start values) -> record array of these outputs, by `fmpy.simulate_fmu`."""
+
+    def run(step: float = 0.1, stop: float = 10.0, output: tuple[str, ...] = HEADLINE, **start: float) -> np.ndarray:
+        options = {"model_description": description, "output_interval": step, "stop_time": stop, "output": output}
+        return simulate_fmu(fmu, start_values=start, **options)
+
+    return run
 
 
 @pytest.fixture(scope="session")
