@@ -71,16 +71,34 @@ def views(tables: Tables) -> Tables:
     heads = {"setup": "set-up", "note": "why", "tolerance": "tolerances"}
     return tables | {
         "fastest": pd.DataFrame([fastest_row(name, runs) for name, runs in scenes]),
+        "behind": pd.DataFrame([row for name, runs in scenes if name != "stiff law" for row in behind(name, runs)]),
         "methods": pd.DataFrame([method_row(name, runs) for name, runs in scenes]),
         "failed": tolerances.reset_index().rename(columns=heads),
     }
+
+
+def times_at(runs: pd.DataFrame, error: float) -> pd.Series:
+    """Seconds of each set-up that gets there."""
+    return pd.Series({setup: time_at(runs, setup, error) for setup in runs["setup"].unique()}).dropna()
+
+
+def behind(name: str, runs: pd.DataFrame) -> list[Row]:
+    """The fastest peer at each error, where it is more than 10 % faster than the FMU."""
+    rows = []
+    for error in TARGETS:
+        times = times_at(runs, error)
+        peers = times[[not setup.startswith("FMU") for setup in times.index]]
+        if len(peers) and times[OURS] > 1.1 * peers.min():
+            row = {"scene": TITLES[name], "error": number(error), "fastest peer": peers.idxmin()}
+            rows.append({**row, "FMU over the peer": times[OURS] / peers.min()})
+    return rows
 
 
 def fastest_row(name: str, runs: pd.DataFrame) -> Row:
     """Who is fastest at each error, and the FMU's time over that of each peer that gets there."""
     row = {"scene": TITLES[name]}
     for error in TARGETS:
-        times = pd.Series({setup: time_at(runs, setup, error) for setup in runs["setup"].unique()}).dropna()
+        times = times_at(runs, error)
         best = times.idxmin() if len(times) else "none"
         ratios = [f"{p} {times[OURS] / times[p]:.2f}" for p in (CPP, HEYOKA) if {p, OURS} <= set(times.index)]
         row[f"fastest at {number(error)} (FMU over {CPP}, heyoka)"] = f"{best} ({', '.join(ratios) or 'no peer'})"
