@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.bounds import absolute_error, beyond, within
 
 POINTS = """(name) => {
   page.plots.portrait.choose(name);
@@ -22,7 +23,7 @@ def points(page, name: str) -> dict[str, np.ndarray]:
 def test_the_phase_portrait_is_the_rate_of_the_tilt_over_the_tilt(recorded, scenes):
     for name, rows in points(recorded, "phase").items():
         expected = np.degrees(np.column_stack([scenes[name]["theta"], scenes[name]["theta_dot"]]))
-        assert abs(rows - expected).max() < 1e-9
+        within(absolute_error(rows, expected), 1e-9, "points off, deg")
 
 
 def test_the_angular_velocities_are_those_along_e2_and_e3(recorded, simulate):
@@ -30,8 +31,8 @@ def test_the_angular_velocities_are_those_along_e2_and_e3(recorded, simulate):
     along_e2 = rates["psi_dot"] * np.sin(rates["theta"])
     along_e3 = rates["phi_dot"] + rates["psi_dot"] * np.cos(rates["theta"])
     found = points(recorded, "spin")
-    assert abs(found["friction"] - np.column_stack([along_e2, along_e3])).max() < 1e-9
-    assert abs(found["free"] - found["friction"]).max() > 1
+    within(absolute_error(found["friction"], np.column_stack([along_e2, along_e3])), 1e-9, "points off, rad/s")
+    beyond(absolute_error(found["free"], found["friction"]), 1, "the two wheels apart, rad/s")
 
 
 def test_without_friction_both_rates_lie_on_one_curve_and_with_friction_it_shrinks(recorded, scenes):
@@ -40,14 +41,15 @@ def test_without_friction_both_rates_lie_on_one_curve_and_with_friction_it_shrin
     theta = scenes["free"]["theta"]
     order = np.argsort(theta)
     rough = {name: abs(np.diff(found[name][order, 1], 2)).max() for name in found}
-    assert rough["free"] < 0.05 * rough["friction"]
+    within(rough["free"] / rough["friction"], 0.05, "roughness without friction over that with it")
     ends = {name: np.ptp(found[name][-300:], axis=0) for name in found}
     assert (ends["friction"] < ends["free"]).all()
 
 
 def test_the_path_from_above_is_that_of_the_contact_point(recorded, simulate):
     rows = simulate(step=0.01, output=("X_C", "Y_C"), s=0.03)
-    assert abs(points(recorded, "path")["friction"] - np.column_stack([rows["X_C"], rows["Y_C"]])).max() < 1e-9
+    off = absolute_error(points(recorded, "path")["friction"], np.column_stack([rows["X_C"], rows["Y_C"]]))
+    within(off, 1e-9, "points off, m")
 
 
 @pytest.mark.parametrize("name", ["spin", "path", "phase"])
