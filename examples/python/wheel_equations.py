@@ -1,6 +1,6 @@
 """The wheel's equations from Python: wheel_equations.h through ctypes.
 
-Names, order, frames and units are those of the header (fmu-src/equations/wheel_equations.h): accelerations and the
+Structs, names, frames and units are read from the header (fmu-src/equations/wheel_equations.h): accelerations and the
 ground's force at a state, in SI. `./scripts/run` or `./scripts/build` builds the library; the environment variable
 WHEEL_BUILD names its folder where that is another than build/release.
 """
@@ -9,7 +9,10 @@ from __future__ import annotations
 
 import ctypes
 import os
+import re
+from collections.abc import Iterator
 from ctypes import CFUNCTYPE, POINTER, Structure, byref, c_char_p, c_double, c_int
+from keyword import iskeyword
 from pathlib import Path
 
 import numpy as np
@@ -18,72 +21,39 @@ NO_LAW, FRICTIONLESS, ROLLING, HELD, REGULARIZED = range(5)
 LAWS = {"frictionless": FRICTIONLESS, "rolling": ROLLING, "held": HELD, "regularized": REGULARIZED}
 
 
-def doubles(*names: str) -> list[tuple[str, type]]:
-    return [(name, c_double) for name in names]
+HEADER = Path(__file__).resolve().parents[2] / "fmu-src" / "equations" / "wheel_equations.h"
 
 
-class Parameters(Structure):
-    _fields_ = doubles("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s", "g_X", "g_Y")
+def read_header(text: str) -> dict[str, type]:
+    """The structs by their names without Wheel, as ctypes has them."""
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    enums = re.findall(r"typedef enum Wheel(\w+)", text)
+    types = {"void": None, "double": c_double, "int": c_int, **dict.fromkeys(enums, c_int)}
+    for name, body in re.findall(r"typedef struct Wheel(\w+) \{(.*?)\} Wheel\1;", text, re.DOTALL):
+        types[name] = type(name, (Structure,), {"_fields_": list(fields_of(body, types))})
+    return types
 
 
-class Load(Structure):
-    _fields_ = [("F", c_double * 3), ("M", c_double * 3), *doubles("brake")]
+def fields_of(body: str, types: dict[str, type]) -> Iterator[tuple[str, type]]:
+    """What a struct declares: a string, pointers to functions, numbers, arrays, structs; `lambda` becomes `lambda_`."""
+    for line in body.split(";")[:-1]:
+        kind, rest = re.fullmatch(r"\s*(?:const )?(?:Wheel)?(\w+\*?) (.*)", line, re.DOTALL).groups()
+        if kind == "char*":
+            yield rest, c_char_p
+        elif rest.startswith("("):
+            name, arguments = re.fullmatch(r"\(\*(\w+)\)\((.*)\)", rest, re.DOTALL).groups()
+            kinds = re.findall(r"(?:Wheel)?(\w+)\*", arguments)
+            yield name, CFUNCTYPE(types[kind], *(POINTER(types[of]) for of in kinds))
+        else:
+            for name, length in re.findall(r"(\w+)(?:\[(\d)\])?", rest):
+                member = types[kind] * int(length) if length else types[kind]
+                yield f"{name}_" if iskeyword(name) else name, member
 
 
-class Friction(Structure):
-    _fields_ = [("kind", c_int), *doubles("sigma", "omega_s")]
-
-
-class Scene(Structure):
-    _fields_ = [("wheel", Parameters), ("friction", Friction), ("load", Load), ("ground", c_int)]
-
-
-class Motion(Structure):
-    _fields_ = doubles("psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot", "X_O", "Y_O")
-
-
-class Kinematics(Structure):
-    _fields_ = doubles(
-        *("X_O", "Y_O", "Z_O", "psi", "theta", "phi", "X_O_dot", "Y_O_dot", "Z_O_dot"),
-        *("psi_dot", "theta_dot", "phi_dot", "omega_z"),
-    )
-
-
-class Dynamics(Structure):
-    _fields_ = [
-        *doubles("X_O_ddot", "Y_O_ddot", "Z_O_ddot", "psi_ddot", "theta_ddot", "phi_ddot"),
-        *doubles("omega_z_dot"),
-        ("lambda_", c_double * 3),
-        *doubles("tau"),
-    ]
-
-
-class ReactionRates(Structure):
-    _fields_ = [("lambda_dot", c_double * 3), *doubles("tau_dot")]
-
-
-class Contact(Structure):
-    _fields_ = doubles("X_C", "Y_C", "X_C_dot", "Y_C_dot")
-
-
-DOUBLES = POINTER(c_double)
-
-
-class Formulation(Structure):
-    _fields_ = [
-        ("name", c_char_p),
-        ("states", c_int),
-        ("start", CFUNCTYPE(None, POINTER(Parameters), POINTER(Motion), DOUBLES)),
-        ("derivative", CFUNCTYPE(c_double, POINTER(Scene), DOUBLES, DOUBLES)),
-        ("spin_index", c_int),
-        ("tilt_index", c_int),
-        ("kinematics", CFUNCTYPE(None, POINTER(Parameters), DOUBLES, POINTER(Kinematics))),
-        ("pose", CFUNCTYPE(None, POINTER(Parameters), DOUBLES, POINTER(Kinematics))),
-        ("dynamics", CFUNCTYPE(None, POINTER(Scene), DOUBLES, POINTER(Dynamics))),
-        ("rates", CFUNCTYPE(None, POINTER(Scene), POINTER(Load), DOUBLES, POINTER(ReactionRates))),
-        ("response", CFUNCTYPE(None, POINTER(Scene), POINTER(Load), DOUBLES, POINTER(ReactionRates))),
-        ("stop_spin", CFUNCTYPE(None, POINTER(Parameters), DOUBLES)),
-    ]
+TYPES = read_header(HEADER.read_text(encoding="utf-8"))
+Parameters, Load, Friction, Scene, Motion = map(TYPES.get, ("Parameters", "Load", "Friction", "Scene", "Motion"))
+Kinematics, Dynamics, ReactionRates = map(TYPES.get, ("Kinematics", "Dynamics", "ReactionRates"))
+Contact, Formulation, DOUBLES = TYPES["Contact"], TYPES["Formulation"], POINTER(c_double)
 
 
 def load_library() -> ctypes.CDLL:
