@@ -16,7 +16,6 @@ from support.motion import Library
 from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT / "cmake"))
-sys.path.insert(0, str(ROOT / "release"))
 import evidence
 
 SCHEMA = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
@@ -82,10 +81,3 @@ def test_the_evidence_is_written_twice_with_the_same_bytes(folder: Path, fmu: st
     evidence.write(shared, Path(fmu) / "modelDescription.xml", tmp_path)
     again = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     assert again == {name: (folder / name).read_bytes() for name in again}
-
-
-def test_the_bill_of_materials_is_that_of_the_pins() -> None:
-    import sbom
-
-    kept = ROOT / "fmu-src" / "archive" / "extra" / "org.fmi-standard.fmi-ls-ref" / "sbom.cdx.json"
-    assert kept.read_text(encoding="utf-8") == sbom.bill(), "run release/sbom.py"
