@@ -31,7 +31,7 @@ def test_the_angular_velocities_are_those_along_e2_and_e3(recorded, simulate):
     along_e2 = rates["psi_dot"] * np.sin(rates["theta"])
     along_e3 = rates["phi_dot"] + rates["psi_dot"] * np.cos(rates["theta"])
     found = points(recorded, "spin")
-    within(absolute_error(found["friction"], np.column_stack([along_e2, along_e3])), 1e-9, "points off, rad/s")
+    within(absolute_error(found["friction"], np.column_stack([along_e2, along_e3])), 5e-14, "points off, rad/s")
     beyond(absolute_error(found["free"], found["friction"]), 1, "the two wheels apart, rad/s")
 
 
@@ -41,7 +41,7 @@ def test_without_friction_both_rates_lie_on_one_curve_and_with_friction_it_shrin
     theta = scenes["free"]["theta"]
     order = np.argsort(theta)
     rough = {name: abs(np.diff(found[name][order, 1], 2)).max() for name in found}
-    within(rough["free"] / rough["friction"], 0.05, "roughness without friction over that with it")
+    within(rough["free"] / rough["friction"], 0.03, "roughness without friction over that with it")
     ends = {name: np.ptp(found[name][-300:], axis=0) for name in found}
     assert (ends["friction"] < ends["free"]).all()
 
@@ -49,7 +49,7 @@ def test_without_friction_both_rates_lie_on_one_curve_and_with_friction_it_shrin
 def test_the_path_from_above_is_that_of_the_contact_point(recorded, simulate):
     rows = simulate(step=0.01, output=("X_C", "Y_C"), s=0.03)
     off = absolute_error(points(recorded, "path")["friction"], np.column_stack([rows["X_C"], rows["Y_C"]]))
-    within(off, 1e-9, "points off, m")
+    within(off, 1e-14, "points off, m")
 
 
 @pytest.mark.parametrize("name", ["spin", "path", "phase"])

@@ -98,7 +98,7 @@ def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(browser, tmp_path):
     expected = np.eye(4)
     expected[:3, :3] = turn(2, 0.56) @ turn(1, 0.21) @ turn(0, -0.28)
     expected[:3, 3] = [0.7, 1.4, 0.6]
-    within(absolute_error(np.reshape(there, (4, 4)).T, expected), 1e-12, "pose off")
+    within(absolute_error(np.reshape(there, (4, 4)).T, expected), 3e-15, "pose off")
 
 
 def test_the_friction_wheel_sticks_at_its_instant(recorded):
