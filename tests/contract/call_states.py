@@ -68,11 +68,7 @@ _EXCHANGE_ARGUMENTS = {
     "fmi2CompletedIntegratorStep": (1, byref(c_int()), byref(c_int())),
     "fmi2SetTime": (c_double(1.0),),
     "fmi2SetContinuousStates": ((c_double * 8)(0, 0, 0, 1.2, 0, 0, 0, -2.0), c_size_t(8)),
-    **{
-        f: ((c_double * 8)(), c_size_t(8))
-        for f in EXCHANGE
-        if f.startswith("fmi2Get") and f != "fmi2GetEventIndicators"
-    },
+    **{function: ((c_double * 8)(), c_size_t(8)) for function in EXCHANGE if function.startswith("fmi2Get")},
     "fmi2GetEventIndicators": ((c_double * 3)(), c_size_t(3)),
 }
 
