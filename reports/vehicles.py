@@ -116,7 +116,7 @@ def car_figures(report: Report) -> None:
         coupled = car_iso.complete(car.drive(fmus(report), manoeuvre, grid=grid).table)
         whole = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / grid) + 1) * grid, 1e-9)
         both = (car_iso.FIGURES[name](table) for table in (coupled, whole))
-        rows += [(name, a.what, a.unit, a.value, b.value, a.theory) for a, b in zip(*both, strict=True)]
+        rows += [(name, a.what, a.unit, a.measured, b.measured, a.exact) for a, b in zip(*both, strict=True)]
     head = ["manoeuvre", "quantity", "unit", "coupled FMUs", "one set of equations", "rigid links"]
     report.table("car_figures", pd.DataFrame(rows, columns=head))
 

@@ -112,11 +112,11 @@ def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
 
 
 def test_the_gains_of_a_step_are_those_of_rigid_links_up_to_the_compliance(fmus: Fmus) -> None:
-    def gains(factor: float) -> list[car_iso.Figure]:
+    def gains(factor: float) -> list[car_judges.Finding]:
         table = car_iso.complete(car.drive(fmus, stiffer(car.STEP, factor), 0.0005).table)
-        return [figure for figure in car_iso.step(table) if figure.theory]
+        return [finding for finding in car_iso.step(table) if finding.exact]
 
-    off, nearer = ([abs(f.value / f.theory - 1) for f in gains(factor)] for factor in (1.0, 3.0))
+    off, nearer = ([finding.error for finding in gains(factor)] for factor in (1.0, 3.0))
     assert len(off) == 3
     within(max(off), 0.04, "error, relative")
     for a, b in zip(off, nearer, strict=True):  # as 1 / k; roll squared does not

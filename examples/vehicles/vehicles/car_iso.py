@@ -7,24 +7,12 @@ a_y and beta, and mu_required of each wheel; `complete` adds a_y and beta to one
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .car import MASS, NAMES, WHEELBASE, WHEELS, X_REAR, G, worst
-from .car_judges import INERTIA, LEANING
+from .car_judges import INERTIA, LEANING, Finding
 
 Table = dict[str, np.ndarray]
-
-
-@dataclass(frozen=True)
-class Figure:
-    """One figure; `theory`: of rigid links and wheels that never slip, where there is one."""
-
-    what: str
-    unit: str
-    value: float
-    theory: float | None = None
 
 
 def complete(table: Table) -> Table:
@@ -48,7 +36,7 @@ def roll_gradient() -> float:
     return INERTIA / (roll_stiffness() - G * LEANING)
 
 
-def circle(table: Table) -> list[Figure]:
+def circle(table: Table) -> list[Finding]:
     """Gradients over lateral acceleration while the speed rises at a constant steer angle."""
     steady = (table["time"] > 5.0) & (table["time"] < 22.0)
     a, kappa = table["a_y"][steady], (table["omega"] / table["v"])[steady]
@@ -58,12 +46,12 @@ def circle(table: Table) -> list[Figure]:
 
     delta, beta = table["delta"][steady], table["beta"][steady]
     return [
-        Figure("largest lateral acceleration", "m/s2", float(a.max())),
-        Figure("understeer gradient", "rad s2/m", gradient(delta - np.arctan(WHEELBASE * kappa)), 0.0),
-        Figure("gradient of the curvature", "s2/m2", gradient(kappa), 0.0),
-        Figure("sideslip angle where the speed is least", "rad", *_drift(beta[0], delta[0])),
-        Figure("gradient of the sideslip angle", "rad s2/m", gradient(beta), 0.0),
-        Figure("gradient of the roll angle", "rad s2/m", gradient(table["roll"][steady]), roll_gradient()),
+        Finding("largest lateral acceleration", "m/s2", float(a.max())),
+        Finding("understeer gradient", "rad s2/m", gradient(delta - np.arctan(WHEELBASE * kappa)), 0.0),
+        Finding("gradient of the curvature", "s2/m2", gradient(kappa), 0.0),
+        Finding("sideslip angle where the speed is least", "rad", *_drift(beta[0], delta[0])),
+        Finding("gradient of the sideslip angle", "rad s2/m", gradient(beta), 0.0),
+        Finding("gradient of the roll angle", "rad s2/m", gradient(table["roll"][steady]), roll_gradient()),
     ]
 
 
@@ -78,7 +66,7 @@ def _first(t: np.ndarray, x: np.ndarray, level: float) -> float:
     return float(t[i - 1] + (level - x[i - 1]) / (x[i] - x[i - 1]) * (t[i] - t[i - 1]))
 
 
-def step(table: Table) -> list[Figure]:
+def step(table: Table) -> list[Finding]:
     """Response times from the instant at which the steering has gone half its way, overshoot and gains."""
     t, last = table["time"], table["time"] > table["time"][-1] - 0.5
     end = {name: float(np.mean(table[name][last])) for name in ("delta", "v", "omega", "a_y", "roll")}
@@ -86,29 +74,29 @@ def step(table: Table) -> list[Figure]:
     half, tenth, most = (_first(t, table["delta"], share * angle) for share in (0.5, 0.1, 0.9))
     yaw = end["v"] * np.tan(angle) / WHEELBASE
     theory = {"omega": yaw, "a_y": end["v"] * yaw, "roll": roll_gradient() * end["v"] * yaw}
-    found = [Figure("time of the steer angle from 10 to 90 %", "s", most - tenth)]
+    found = [Finding("time of the steer angle from 10 to 90 %", "s", most - tenth)]
     for name, what in (("omega", "yaw rate"), ("a_y", "lateral acceleration"), ("roll", "roll angle")):
         x, level, unit = table[name], end[name], {"omega": "1/s", "a_y": "m/s2/rad", "roll": "1"}[name]
         peak = int(np.argmax(x))
         found += [
-            Figure(f"gain of the {what}", unit, level / angle, float(theory[name] / angle)),
-            Figure(f"response time of the {what} (90 %)", "s", _first(t, x, 0.9 * level) - half),
-            Figure(f"time to the peak of the {what}", "s", float(t[peak]) - half),
-            Figure(f"overshoot of the {what}", "1", float(x[peak]) / level - 1),
+            Finding(f"gain of the {what}", unit, level / angle, float(theory[name] / angle)),
+            Finding(f"response time of the {what} (90 %)", "s", _first(t, x, 0.9 * level) - half),
+            Finding(f"time to the peak of the {what}", "s", float(t[peak]) - half),
+            Finding(f"overshoot of the {what}", "1", float(x[peak]) / level - 1),
         ]
     return found
 
 
-def lane(table: Table) -> list[Figure]:
+def lane(table: Table) -> list[Finding]:
     """How hard the change of lanes is, and where it asks most of the road."""
     wheel, at = worst(table)
     return [
-        Figure("largest lateral acceleration", "m/s2", float(np.abs(table["a_y"]).max())),
-        Figure("largest yaw rate", "rad/s", float(np.abs(table["omega"]).max())),
-        Figure("largest roll angle", "rad", float(np.abs(table["roll"]).max())),
-        Figure(f"largest mu_required, at the {NAMES[wheel]} wheel", "1", float(table[f"{wheel}.mu_required"][at])),
-        Figure("where: rear point, X", "m", float(table["X_R"][at])),
-        Figure("when", "s", float(table["time"][at])),
+        Finding("largest lateral acceleration", "m/s2", float(np.abs(table["a_y"]).max())),
+        Finding("largest yaw rate", "rad/s", float(np.abs(table["omega"]).max())),
+        Finding("largest roll angle", "rad", float(np.abs(table["roll"]).max())),
+        Finding(f"largest mu_required, at the {NAMES[wheel]} wheel", "1", float(table[f"{wheel}.mu_required"][at])),
+        Finding("where: rear point, X", "m", float(table["X_R"][at])),
+        Finding("when", "s", float(table["time"][at])),
     ]
 
 

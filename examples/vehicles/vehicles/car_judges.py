@@ -35,12 +35,12 @@ FRONT = [name for name, wheel in WHEELS.items() if wheel["x"] > 0]
 
 @dataclass(frozen=True)
 class Finding:
-    """One quantity as measured in a run and in closed form."""
+    """One quantity as measured in a run, and of rigid links and wheels that never slip, where that is known."""
 
     what: str
-    measured: float
-    exact: float
     unit: str
+    measured: float
+    exact: float | None = None
 
     @property
     def error(self) -> float:
@@ -71,14 +71,10 @@ def launch(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     drag, grade = manoeuvre.s * MASS * G * np.cos(manoeuvre.slope), G * np.sin(manoeuvre.slope)
     a = (o["M_0"] - drag - R * MASS * grade) / (R * M_T)
     gained = load(table, REAR, window) - load(table, REAR, 0)
+    expected = (a * INERTIA + drag + grade * HEIGHTS + dive(table, window)) / WHEELBASE
     return [
-        Finding("acceleration of the launch", mean_rate(table, "v", window), a, "m/s2"),
-        Finding(
-            "load moved to the rear axle by the launch",
-            gained,
-            (a * INERTIA + drag + grade * HEIGHTS + dive(table, window)) / WHEELBASE,
-            "N",
-        ),
+        Finding("acceleration of the launch", "m/s2", mean_rate(table, "v", window), a),
+        Finding("load moved to the rear axle by the launch", "N", gained, expected),
     ]
 
 
@@ -91,8 +87,8 @@ def standing(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
         push = float(np.mean(sum(table[f"{w}.lambda_1"] for w in WHEELS)[at]))
         moved = load(table, REAR, at) - load(table, REAR, 0)
         expected = (grade * HEIGHTS + dive(table, at)) / WHEELBASE
-        found.append(Finding(f"force of the road that holds the car, {when}", push, MASS * grade, "N"))
-        found.append(Finding(f"load moved to the rear axle by the slope, {when}", moved, expected, "N"))
+        found.append(Finding(f"force of the road that holds the car, {when}", "N", push, MASS * grade))
+        found.append(Finding(f"load moved to the rear axle by the slope, {when}", "N", moved, expected))
     return found
 
 
@@ -112,13 +108,13 @@ def braking(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     spins = np.max([np.abs(table[f"{w}.omega_z"]) for w in WHEELS], axis=0)
     stopped = int(np.argmax((t > begin) & (spins == 0)))
     found = [
-        Finding("instant of the stop after the brakes come", float(t[stopped] - begin), float(fine[end] - begin), "s"),
-        Finding("stopping distance", float(table["X"][-1] - table["X"][i]), way, "m"),
+        Finding("instant of the stop after the brakes come", "s", float(t[stopped] - begin), float(fine[end] - begin)),
+        Finding("stopping distance", "m", float(table["X"][-1] - table["X"][i]), way),
     ]
     if full.any():
         moved = load(table, FRONT, full) - load(table, FRONT, 0)
         expected = (a[-1] * INERTIA - drag - grade * HEIGHTS - dive(table, full)) / WHEELBASE
-        found.append(Finding("load moved to the front axle by the brakes", moved, expected, "N"))
+        found.append(Finding("load moved to the front axle by the brakes", "N", moved, expected))
     return found
 
 
@@ -130,9 +126,9 @@ def bend(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     moved = (load(table, RIGHT, last) - load(table, LEFT, last)) / 2
     exact = (v * omega * INERTIA + G * LEANING * roll) / TRACK
     return [
-        Finding("radius of the rear point's circle", v / omega, WHEELBASE / np.tan(delta), "m"),
-        Finding("Ackermann, from the wheels' headings", *_ackermann(table, last), "1"),
-        Finding("load moved outwards", moved, exact, "N"),
+        Finding("radius of the rear point's circle", "m", v / omega, WHEELBASE / np.tan(delta)),
+        Finding("Ackermann, from the wheels' headings", "1", *_ackermann(table, last)),
+        Finding("load moved outwards", "N", moved, exact),
     ]
 
 
@@ -158,9 +154,8 @@ def closure(table: Table) -> Finding:
     p = table["p"]
     x, y = (np.interp(2 * np.pi, p, table[name]) for name in ("X_R", "Y_R"))
     way = float(np.hypot(np.diff(table["X_R"]), np.diff(table["Y_R"]))[p[1:] <= 2 * np.pi].sum())
-    return Finding(
-        "figure of eight: gap after one lap, and its length", float(np.hypot(x - table["X_R"][0], y)), way, "m"
-    )
+    gap = float(np.hypot(x - table["X_R"][0], y))
+    return Finding("figure of eight: gap after one lap, and its length", "m", gap, way)
 
 
 JUDGES = {
