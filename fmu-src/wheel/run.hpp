@@ -15,7 +15,8 @@ enum class Layer : int { none, outside, passing, sticking };
 
 // What acts on the wheel.
 struct InForce {
-  WheelScene scene = {.ground = WHEEL_GROUND_PRESSES};  // its load is that at the origin of the inputs
+  // Its load is that at the origin of the inputs.
+  WheelScene scene = {.wheel = {}, .friction = {}, .load = {}, .ground = WHEEL_GROUND_PRESSES};
   Inputs inputs;
   Layer layer = Layer::none;
 
