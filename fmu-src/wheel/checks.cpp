@@ -33,10 +33,9 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
   return true;
 }
 
-// Only the reduced equations are offered to another solver.
+// Only the reduced equations are offered to another solver. The number may be any: a restored state is judged here too.
 bool check_kind(const Reporter& reporter, const Demand& demand) {
-  if (demand.kind == Kind::co_simulation || choice_of(demand.parameters[formulation]) != multibody_formulation)
-    return true;
+  if (demand.kind == Kind::co_simulation || demand.parameters[formulation] != int{multibody_formulation}) return true;
   reporter.tell(Topic::error, "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
   return false;
 }

@@ -11,10 +11,9 @@ constexpr const char* guid = WHEEL_GUID;
 
 }  // namespace
 
-fmi2Component make_instance() {
+fmi2Component make_instance(fmi2Type kind) {
   const fmi2CallbackFunctions functions = callbacks();
-  const fmi2Component component =
-      fmi2Instantiate("wheel", fmi2CoSimulation, guid, nullptr, &functions, fmi2False, log().on);
+  const fmi2Component component = fmi2Instantiate("wheel", kind, guid, nullptr, &functions, fmi2False, log().on);
   expect(component, "a sound fmi2Instantiate succeeds");
   return component;
 }

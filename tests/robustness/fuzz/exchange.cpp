@@ -15,10 +15,7 @@ struct Wheel {
 };
 
 fmi2Component make_wheel(Bytes& in) {
-  const fmi2CallbackFunctions functions = callbacks();
-  const fmi2Component c =
-      fmi2Instantiate("wheel", fmi2ModelExchange, WHEEL_GUID, nullptr, &functions, fmi2False, log().on);
-  expect(c, "a sound fmi2Instantiate succeeds");
+  const fmi2Component c = make_instance(fmi2ModelExchange);
   const unsigned choices[] = {ref_friction_law, ref_formulation}, reals[] = {ref_s, ref_J_x, ref_slope};
   const int picked[] = {1 + static_cast<int>(in.below(2)), 1 + static_cast<int>(in.below(3))};
   const double values[] = {in.chance(8) ? 0.03 : 0.0, in.chance(8) ? 0.9 : 1.0, in.chance(4) ? 0.2 : 0.0};

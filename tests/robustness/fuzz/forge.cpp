@@ -2,6 +2,7 @@
 // to another instance. It is refused with a sentence and the instance is as it was, or it is taken and whatever follows
 // ends soon and without harm.
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "bytes.hpp"
@@ -11,7 +12,7 @@
 namespace fuzz {
 namespace {
 
-// Every formulation, law and method; with and without friction, general inertia, inputs that vary.
+// Every formulation, law and method of either kind; with and without friction, general inertia, inputs that vary.
 void start(fmi2Component c, Bytes& in) {
   const unsigned choices[] = {ref_formulation, ref_friction_law, ref_method};
   const int picked[] = {1 + static_cast<int>(in.below(3)), 1 + static_cast<int>(in.below(2)),
@@ -41,10 +42,36 @@ double now(fmi2Component c) {
   return fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &t) == fmi2OK ? t : 0;
 }
 
-void step(fmi2Component c, Bytes& in, unsigned most) {
+// Model exchange: modes are entered and left, and Euler's step is taken, whatever the instance answers.
+void exchange(fmi2Component c, Bytes& in, double& t) {
+  constexpr std::size_t states = 8, indicators = 3;
+  double x[states], rates[states], z[indicators];
+  fmi2EventInfo info = {};
+  fmi2Boolean wanted = fmi2False, ends = fmi2False;
+  if (in.chance(4)) fmi2EnterEventMode(c);
+  if (in.chance(12) && fmi2NewDiscreteStates(c, &info) == fmi2OK)
+    expect(!info.newDiscreteStatesNeeded, "one pass is enough");
+  if (in.chance(12)) fmi2EnterContinuousTimeMode(c);
+  if (fmi2GetDerivatives(c, rates, states) != fmi2OK) return;
+  expect(std::all_of(rates, rates + states, [](double rate) { return std::isfinite(rate); }), "derivatives are finite");
+  expect(fmi2GetContinuousStates(c, x, states) == fmi2OK, "states can be read where derivatives can");
+  const double h = 0.01 * in.factor();
+  for (std::size_t i = 0; i < states; ++i) x[i] += h * rates[i];
+  fmi2SetTime(c, t += h);
+  fmi2SetContinuousStates(c, x, states);
+  fmi2GetEventIndicators(c, z, indicators);
+  fmi2GetNominalsOfContinuousStates(c, x, states);
+  fmi2CompletedIntegratorStep(c, fmi2True, &wanted, &ends);
+}
+
+void step(fmi2Component c, Bytes& in, unsigned most, fmi2Type kind) {
+  double t = 0;
   for (unsigned k = in.below(most); k > 0; --k) {
     if (in.chance(4)) push(c, in);
-    fmi2DoStep(c, now(c), 0.05 * in.factor(), fmi2True);
+    if (kind == fmi2ModelExchange)
+      exchange(c, in, t);
+    else
+      fmi2DoStep(c, now(c), 0.05 * in.factor(), fmi2True);
   }
 }
 
@@ -101,26 +128,26 @@ void read_all(fmi2Component c) {
   }
 }
 
-void go_on(fmi2Component c, Bytes& in) {
+void go_on(fmi2Component c, Bytes& in, fmi2Type kind) {
   read_all(c);
-  step(c, in, 6);
+  step(c, in, 6, kind);
   read_all(c);
   expect(!digest(c).empty(), "a state can always be taken");
   push(c, in);
-  step(c, in, 6);
+  step(c, in, 6, kind);
   expect(fmi2Reset(c) == fmi2OK, "reset succeeds");
 }
 
 }  // namespace
 
-void play_forged(Bytes& in) {
+void play_forged(Bytes& in, fmi2Type kind) {
   Log log;
   use(log);
-  const fmi2Component origin = make_instance(), victim = make_instance();
+  const fmi2Component origin = make_instance(kind), victim = make_instance(kind);
   start(origin, in);
-  step(origin, in, 20);
+  step(origin, in, 20, kind);
   start(victim, in);
-  step(victim, in, 4);
+  step(victim, in, 4, kind);
   Digest forged = digest(origin);
   const Digest before = digest(victim), honest = forged;
   sign(forged);
@@ -137,7 +164,7 @@ void play_forged(Bytes& in) {
     expect(fmi2SetFMUstate(victim, state) == fmi2OK, "a state that was taken can be restored");
     expect(fmi2FreeFMUstate(victim, &state) == fmi2OK, "a state can be freed");
   }
-  go_on(victim, in);
+  go_on(victim, in, kind);
   fmi2FreeInstance(origin);
   fmi2FreeInstance(victim);
 }

@@ -1,5 +1,5 @@
-// The fuzzer's entry: bytes to a sequence of calls, or to a forged state. The first byte chooses which, and how much is
-// watched (see Log).
+// The fuzzer's entry: bytes to a sequence of calls, or to a forged state. The first byte chooses which, of what kind,
+// and how much is watched (see Log).
 #include <iterator>
 
 #include "session.hpp"
@@ -8,7 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Bytes in(data, size);
   const unsigned first = in.byte();
   if (first & 128) {
-    fuzz::play_forged(in);
+    fuzz::play_forged(in, first & 64 ? fmi2ModelExchange : fmi2CoSimulation);
   } else {
     fuzz::Session session(in, first);
     while (session.go_on()) {

@@ -59,7 +59,7 @@ class Session {
   fmi2Component freed_ = nullptr;
 };
 
-fmi2Component make_instance();
-void play_forged(Bytes& in);  // forge.cpp
+fmi2Component make_instance(fmi2Type kind = fmi2CoSimulation);
+void play_forged(Bytes& in, fmi2Type kind);  // forge.cpp
 
 }  // namespace fuzz
