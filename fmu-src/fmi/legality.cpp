@@ -50,7 +50,7 @@ constexpr Rule rules[] = {
     {Function::get_status, C | F | T, of_co_simulation},
     {Function::enter_event_mode, N, of_model_exchange},
     {Function::new_discrete_states, E, of_model_exchange},
-    {Function::enter_continuous_time, E, of_model_exchange},
+    {Function::enter_continuous_time, E | F, of_model_exchange},
     {Function::completed_step, N, of_model_exchange},
     {Function::set_time, E | N, of_model_exchange},
     {Function::set_states, N, of_model_exchange},

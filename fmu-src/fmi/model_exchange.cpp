@@ -27,8 +27,11 @@ fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], st
   });
 }
 
+// A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
 fmi2Status enter(fmi2Component c, Function function, const char* name, Phase mode) {
-  return guarded(c, function, name, [=](Instance& i) { i.simulation.enter(mode); });
+  return guarded(c, function, name, [=](Instance& i) {
+    if (i.simulation.phase() != Phase::ended) i.simulation.enter(mode);
+  });
 }
 
 }  // namespace

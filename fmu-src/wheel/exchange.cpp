@@ -128,10 +128,12 @@ bool Simulation::has_event() {
   return std::fmin(now.friction, std::fmin(now.flat, now.contact)) + distance <= 0;
 }
 
-// Event mode: the law that holds from here on, and whether the model ends here. True where a state was changed.
+// Event mode: the law that holds from here on, and whether the model ends here. True where the motion bends here, a
+// state or the law: some solvers go on from a step that they took under the old law, unless the states are called new.
 bool Simulation::decide() {
   WheelScene& scene = run_.in_force.scene;
   const WheelFriction before = scene.friction;
+  const bool pulled = run_.in_force.pulls();
   const double time = soon * setup_.own_time, spin = run_.y[setup_.formulation->spin_index];
   const bool stops = before.kind == WHEEL_ROLLING && falls(friction_margin(), friction_rate(), time);
   if (before.kind == WHEEL_HELD || stops) setup_.formulation->stop_spin(&scene.wheel, run_.y);
@@ -143,7 +145,8 @@ bool Simulation::decide() {
     scene.friction = released(setup_, scene, run_.y);
   fresh_ = Fresh::state;
   announce_transition(before);
-  return run_.y[setup_.formulation->spin_index] != spin;
+  return run_.y[setup_.formulation->spin_index] != spin || before.kind != scene.friction.kind ||
+         before.sigma != scene.friction.sigma || pulled != run_.in_force.pulls();
 }
 
 // The wheel lies flat or lifts off, or, with keep_contact, the ground begins to pull or to press.

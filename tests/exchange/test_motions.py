@@ -114,6 +114,16 @@ def test_a_light_rim_lifts_off_where_co_simulation_ends(library: Library) -> Non
     beyond(abs(other.ended - done.end), 2e-4, "instant of another wheel, s")
 
 
+def test_every_event_that_bends_the_motion_calls_the_states_changed(library: Library) -> None:
+    """fmusim restarts its solver only there, and else goes on from a step that it took under the old law."""
+    slipping, _, _ = moved(library, [3.0], s=0.03)
+    pulling, _, _ = moved(library, [0.5], keep_contact=True, **RIM)
+    for run in (slipping, pulling):
+        assert run.events and run.changed == [True] * len(run.events)
+    with exchange(library, s=0.03) as wheel:  # the partner: nothing happens
+        assert not wheel.event().valuesOfContinuousStatesChanged
+
+
 def test_a_brake_put_on_by_a_continuous_input_stops_and_holds(library: Library) -> None:
     def brake(t: float) -> dict[str, float]:
         return {"M_brake": max(0.0, 40.0 * (t - 0.5))}

@@ -88,11 +88,13 @@ def no_inputs(_t: float) -> dict[str, float]:
 
 
 class Run:
-    """One motion: rows of the states and of `also` at the times asked for, instants of all events, the ending."""
+    """One motion: rows of the states and of `also` at the times asked for, instants of all events, and the
+    ending; `changed`: which events called the states changed.
+    """
 
     def __init__(self, wheel: FMU2Exchange, rtol: float, inputs: Callable[[float], dict[str, float]]) -> None:
         self.wheel, self.rtol, self.inputs = wheel, rtol, inputs
-        self.t, self.events, self.ended, self.rhs = 0.0, [], None, 0
+        self.t, self.events, self.changed, self.ended, self.rhs = 0.0, [], [], None, 0
         self.at(0.0, wheel.x())
 
     def at(self, t: float, x: Array) -> None:
@@ -126,6 +128,7 @@ class Run:
             if fall is not None or self.wheel.wants_event():
                 info = self.wheel.event()
                 self.events.append(self.t)
+                self.changed.append(bool(info.valuesOfContinuousStatesChanged))
                 self.ended = self.t if info.terminateSimulation else None
                 x = self.wheel.x()
         return x
