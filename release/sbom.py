@@ -1,15 +1,18 @@
 """Prints the software bill of materials of wheel.fmu (CycloneDX): what is linked in, or gave headers.
 
 PYTHONPATH=. .venv/bin/python release/sbom.py >fmu-src/archive/extra/org.fmi-standard.fmi-ls-ref/sbom.cdx.json
-A test makes it again and compares. Nothing in it depends on the time or the machine.
+A test makes it again and compares. Every version is read where the build has it from: the pins, or the headers
+themselves. musl comes with the cross compiler; before ./scripts/release has fetched that, its version is the kept one.
 """
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 from uuid import UUID
 
+import fmpy
 from cyclonedx.model.bom import Bom
 from cyclonedx.model.component import Component, ComponentType
 from cyclonedx.model.license import LicenseExpression
@@ -17,10 +20,11 @@ from cyclonedx.output.json import JsonV1Dot6
 from packageurl import PackageURL
 
 ROOT = Path(__file__).resolve().parent.parent
+KEPT = ROOT / "fmu-src" / "archive" / "extra" / "org.fmi-standard.fmi-ls-ref" / "sbom.cdx.json"
 
 
-def found(file: str, pattern: str) -> str:
-    """A version, where the build has it from."""
+def found(file: str | Path, pattern: str) -> str:
+    """A version, where the build has it from; `file` is in this project unless it is absolute."""
     match = re.search(pattern, (ROOT / file).read_text(encoding="utf-8"), re.MULTILINE)
     if match is None:
         raise ValueError(f"{file} holds no {pattern}.")
@@ -37,15 +41,30 @@ def component(
     )
 
 
+def eigen() -> str:
+    """CMake finds Eigen in Eigen3_DIR, PREFIX/share/eigen3/cmake, or as Debian has it."""
+    prefix = Path(os.environ.get("Eigen3_DIR", "/usr/share/eigen3/cmake")).parents[2]  # noqa: SIM112 (CMake names it so)
+    macros = prefix / "include" / "eigen3" / "Eigen" / "src" / "Core" / "util" / "Macros.h"
+    return ".".join(found(macros, rf"^#define EIGEN_{part}_VERSION (\d+)") for part in ("WORLD", "MAJOR", "MINOR"))
+
+
+def musl() -> str:
+    sources = ROOT.glob(".venv-release/lib/*/site-packages/ziglang/lib/libc/musl/src/internal/version.h")
+    for version in sources:
+        return found(version, r'VERSION "([\d.]+)"')
+    return found(KEPT, r"pkg:generic/musl@([\d.]+)")
+
+
 def bill() -> str:
+    headers = Path(fmpy.__file__).parent / "c-code" / "fmi2Functions.h"
     wheel = component(
         "wheel.fmu", found("CMakeLists.txt", r"^project\(wheel VERSION ([\d.]+)"), "BSD-3-Clause", "The FMU"
     )
     parts = [
         component("SUNDIALS", found("cmake/sundials.cmake", r"(\d+\.\d+\.\d+)"), "BSD-3-Clause", "CVODE, linked in"),
-        component("Eigen", "3.4.0", "MPL-2.0", "Headers, of Debian's libeigen3-dev"),
-        component("FMI headers", "2.0.1", "BSD-2-Clause", "As FMPy carries them"),
-        component("musl", "1.2.5", "MIT", "Mathematical functions, in the release for all platforms"),
+        component("Eigen", eigen(), "MPL-2.0", "Headers, of Debian's libeigen3-dev"),
+        component("FMI headers", found(headers, r"FMI (2[\d.]+\d) "), "BSD-2-Clause", "As FMPy carries them"),
+        component("musl", musl(), "MIT", "Mathematical functions, in the release for all platforms"),
         component(
             "ziglang", found("release/requirements.txt", r"^ziglang==([\d.]+)"), "MIT", "Run-time, in the release"
         ),

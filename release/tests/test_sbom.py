@@ -5,11 +5,20 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 from release import sbom  # noqa: E402
 
 
 def test_the_bill_of_materials_is_that_of_the_pins() -> None:
-    kept = ROOT / "fmu-src" / "archive" / "extra" / "org.fmi-standard.fmi-ls-ref" / "sbom.cdx.json"
-    assert kept.read_text(encoding="utf-8") == sbom.bill(), "run release/sbom.py"
+    assert sbom.KEPT.read_text(encoding="utf-8") == sbom.bill(), "run release/sbom.py"
+
+
+def test_another_eigen_would_be_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    macros = tmp_path / "include" / "eigen3" / "Eigen" / "src" / "Core" / "util" / "Macros.h"
+    macros.parent.mkdir(parents=True)
+    macros.write_text("".join(f"#define EIGEN_{part}_VERSION 9\n" for part in ("WORLD", "MAJOR", "MINOR")))
+    monkeypatch.setenv("Eigen3_DIR", str(tmp_path / "share" / "eigen3" / "cmake"))
+    assert "pkg:generic/eigen@9.9.9" in sbom.bill() != sbom.KEPT.read_text(encoding="utf-8")
