@@ -50,6 +50,8 @@ CONTENTS = """
 {pages}
 ```
 """
+DELETABLE = ("page", "examples/vehicles", "examples/studies", "examples/control", "examples/importer")
+GONE = [ROOT / part for part in DELETABLE if not (ROOT / part).exists()]
 CHAPTERS = {
     "The wheel": "docs/README docs/physics docs/variables docs/brake_hold_steer docs/notation docs/equations "
     "docs/errata",
@@ -74,10 +76,12 @@ def contents() -> str:
 
 
 def folders(text: str, page: Path) -> str:
-    """Links to a folder lead to its README; where it has none, the words stay."""
+    """Links to a folder lead to its README; where it has none, and of parts that were deleted, the words stay."""
 
     def mended(link: re.Match[str]) -> str:
         words, target = link[1], link[2]
+        if any((page.parent / target).resolve().is_relative_to(part) for part in GONE):
+            return words
         if "://" in target or not (page.parent / target).is_dir():
             return link[0]
         return f"[{words}]({target.rstrip('/')}/README.md)" if (page.parent / target / "README.md").exists() else words
