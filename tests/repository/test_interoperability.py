@@ -44,3 +44,23 @@ def test_every_run_says_what_happened_at_the_early_end() -> None:
     runs = [run for run in read_runs() if run["friction"]]
     assert {run["early end"].split(",")[0] for run in runs} == {"told", "silent"}, RUNS
     assert all(run["version"] and run["rollback"] or "Checker" in run["tool"] for run in runs)
+
+
+# Runs in model exchange with a solver that controls its error; Euler's step is too coarse for all transitions.
+def far_off(runs: list[dict[str, str]]) -> list[str]:
+    """Solvers with more than ten thousand tolerances of error, or another number of transitions than the reference."""
+    controlled = [run for run in runs if run["friction"] and run["tolerance"].startswith("1e-")]
+    return [
+        run["solver"]
+        for run in controlled
+        if max(float(run["default scene"]), float(run["friction"])) > 1e4 * float(run["tolerance"])
+        or run["transitions"] != "37"
+    ]
+
+
+def test_every_solver_with_a_tolerance_finds_the_37_transitions_in_model_exchange() -> None:
+    with (DATA / "interoperability_exchange.csv").open(newline="", encoding="utf-8") as file:
+        runs = list(csv.DictReader(file))
+    assert len({run["tool"] for run in runs}) >= 5
+    assert far_off([]) == far_off(runs) == []
+    assert len(far_off([run | {"transitions": "36"} for run in runs])) >= 8
