@@ -14,6 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("contract", "physics", "orbit", "robustness", "solver", "exchange", "equations")  # what runs the core
 LONGEST = 200  # s of processor time, however busy the machine is: tests that take longer count as a failure
+THE_BUILD = "the build, which runs the paper's scenes"
 NOTHING_TO_TEST = 5  # exit status of pytest
 # Without link-time optimisation, which costs more than it tells; the bits are the same.
 OPTIONS = ["-DCMAKE_BUILD_TYPE=RelWithDebInfo"] + [
@@ -32,7 +33,7 @@ class Copy:
         self.root = ROOT / "build" / "mutants" / str(number)
         self.build_folder = self.root / "build" / "release"
         self._copy_sources()
-        assert self.build(), "the project itself does not build"
+        assert self.compiles() and self.packs(), "the project itself does not build"
         self.binary = self.digest()
 
     def _copy_sources(self) -> None:
@@ -48,12 +49,20 @@ class Copy:
         if not (self.root / ".venv").exists():
             (self.root / ".venv").symlink_to(ROOT / ".venv")
 
-    def build(self) -> bool:
-        commands = [["cmake", "--build", self.build_folder]]
+    def compiles(self) -> bool:
+        """The library alone."""
         if not (self.build_folder / "Makefile").exists():
             sundials = next((ROOT / "build" / "sundials").glob("*/vendor"), "")
-            commands.insert(0, ["cmake", "--preset", "release", f"-DWHEEL_SUNDIALS_SOURCE={sundials}", *OPTIONS])
-        return all(subprocess.run(command, cwd=self.root, capture_output=True).returncode == 0 for command in commands)
+            setting = [f"-DWHEEL_SUNDIALS_SOURCE={sundials}", *OPTIONS]
+            self.call(["cmake", "--preset", "release", *setting])
+        return self.call(["cmake", "--build", self.build_folder, "--target", "wheel_fmu"])
+
+    def packs(self) -> bool:
+        """The rest of the build, which runs the paper's scenes for the archive's evidence: a fault may fail there."""
+        return self.call(["cmake", "--build", self.build_folder])
+
+    def call(self, command: Sequence[str | Path]) -> bool:
+        return subprocess.run(command, cwd=self.root, capture_output=True, check=False).returncode == 0
 
     def digest(self) -> str:
         return hashlib.sha256((self.build_folder / "wheel.so").read_bytes()).hexdigest()

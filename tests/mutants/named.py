@@ -12,7 +12,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
-from mutants.copies import Copy
+from mutants.copies import THE_BUILD, Copy
 
 LIST, TABLE = (Path(__file__).with_suffix(suffix) for suffix in (".toml", ".csv"))
 
@@ -44,9 +44,9 @@ def judge(fault: Fault, copy: Copy, usual: Sequence[str]) -> Verdict:
     aimed = [f"tests/{name}" for name in fault.tests]
     source.write_text(text.replace(fault.old, fault.new))
     try:
-        assert copy.build(), f"{fault.name}: does not build"
+        assert copy.compiles(), f"{fault.name}: does not compile"
         others = [file for file in copy.suite() if file not in aimed]
-        killer = copy.failure(aimed, usual) or copy.failure(others, usual)
+        killer = copy.failure(aimed, usual) or copy.failure(others, usual) if copy.packs() else THE_BUILD
     finally:
         source.write_text(text)
     return Verdict(fault.name, killer, f"{perf_counter() - begin:.0f}")

@@ -17,7 +17,7 @@ from pathlib import Path
 from queue import Queue
 from typing import NamedTuple
 
-from mutants.copies import ROOT, Copy
+from mutants.copies import ROOT, THE_BUILD, Copy
 from mutants.named import usual_failures
 from mutants.syntax import Mutant, sample
 
@@ -58,16 +58,21 @@ class Judge:
         for file in (judged.file, ""):
             self.noticed[file, judged.killed_by.split("::")[0]] += 1
 
+    def killer(self, copy: Copy, mutated: str) -> str:
+        if not copy.packs():
+            return THE_BUILD
+        files = self.order(copy.suite(), mutated)
+        return copy.failure(files[:AT_FIRST], self.usual) or copy.failure(files[AT_FIRST:], self.usual)
+
     def __call__(self, mutant: Mutant) -> Judged | None:
         copy = self.copies.get()
         source = copy.source(mutant.file)
         text = source.read_bytes()
         try:
             source.write_bytes(text[: mutant.begin] + mutant.new.encode() + text[mutant.end :])
-            if not copy.build() or copy.digest() == copy.binary:
+            if not copy.compiles() or copy.digest() == copy.binary:
                 return None
-            files = self.order(copy.suite(), mutant.file)
-            killer = copy.failure(files[:AT_FIRST], self.usual) or copy.failure(files[AT_FIRST:], self.usual)
+            killer = self.killer(copy, mutant.file)
         finally:
             source.write_bytes(text)
             self.copies.put(copy)
