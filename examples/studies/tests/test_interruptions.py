@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -132,6 +133,15 @@ def test_a_worker_that_dies_costs_one_point(fmu_path: Path, crew: Client, tmp_pa
     assert np.isfinite(np.delete(results["theta_end"].values, 32)).all()
 
 
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Interrupts raise, also where the shell that started the tests had them ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 def test_an_interrupt_is_for_the_caller_alone() -> None:
     ask = [sys.executable, "-c", "import signal; print(signal.getsignal(signal.SIGINT).name)"]
     with uninterrupted():
