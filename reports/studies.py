@@ -21,10 +21,10 @@ from .page import Report, Tables
 REPEATS = 3
 STATE, EXTREME = {"measures": {"theta_end": "theta"}}, {"measures": {"lowest": "lowest"}}
 ASKED = {  # what is asked, and of how many wheels
-    "state at the end": (STATE, 48_000),
-    "state at the end, with friction": (STATE | {"values": {"s": 0.03}}, 9_600),
-    "lowest angle over steps of 0.1 s": (EXTREME | {"interval": 0.1}, 24_000),
-    "lowest angle over steps of 0.01 s": (EXTREME | {"interval": 0.01}, 24_000),
+    "state at the end": (STATE, 96_000),
+    "state at the end, with friction": (STATE | {"values": {"s": 0.03}}, 19_200),
+    "lowest angle over steps of 0.1 s": (EXTREME | {"interval": 0.1}, 48_000),
+    "lowest angle over steps of 0.01 s": (EXTREME | {"interval": 0.01}, 48_000),
 }
 COLUMNS = ["wheels_per_s", "fmu_share", "caller_busy"]
 MILLION = ROOT / "docs" / "results" / "data" / "study_million.csv"
@@ -93,4 +93,4 @@ def words(column: str) -> str:
     return column.replace("_per_s", "/s").replace("_MB", ", MB").replace("_", " ")
 
 
-PARTS: dict[Callable[[Report], None], float] = {speeds: 240}
+PARTS: dict[Callable[[Report], None], float] = {speeds: 300}
