@@ -40,12 +40,9 @@ class Judged(NamedTuple):
 class Judge:
     """Copies of the project, and which tests have noticed how much."""
 
-    def __init__(self) -> None:
+    def __init__(self, cores: int) -> None:
         self.copies: Queue[Copy] = Queue()
         self.noticed: Counter[tuple[str, str]] = Counter()  # (file of the core or "", file of tests)
-        self.usual: list[str] = []
-
-    def prepare(self, cores: int) -> None:
         with ThreadPoolExecutor(cores) as pool:
             for copy in pool.map(Copy, range(cores)):
                 self.copies.put(copy)
@@ -151,9 +148,8 @@ def judge_all(drawn: list[Mutant], judge: Judge, cores: int) -> list[Judged]:
 
 
 def main(count: int, seed: int) -> int:
-    judge = Judge()
     cores = len(os.sched_getaffinity(0))
-    judge.prepare(cores)
+    judge = Judge(cores)
     drawn = sample(ROOT, ROOT / "build" / "release", int(SPARE * count), seed)
     judged: list[Judged] = []
     for begin in range(0, len(drawn), BATCH):
