@@ -168,7 +168,7 @@ def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: 
 
 
 def test_a_wheel_off_the_ground_at_the_start_is_a_fault_of_initialization(library: Library) -> None:
-    wheel = FMU2Exchange(library.folder, library.description, True)
+    wheel = FMU2Exchange(library.folder, library.description).new(logging=True)
     assert wheel.set(F_Z=500.0) == OK
     assert wheel.initialise() == ERROR
     assert "does not press" in wheel.sentences[-1]
@@ -176,7 +176,7 @@ def test_a_wheel_off_the_ground_at_the_start_is_a_fault_of_initialization(librar
 
 
 def test_the_multibody_form_is_refused_with_a_sentence(library: Library) -> None:
-    wheel = FMU2Exchange(library.folder, library.description, True)
+    wheel = FMU2Exchange(library.folder, library.description).new(logging=True)
     assert wheel.set(formulation="multibody") == OK
     assert wheel.initialise() == ERROR
     assert wheel.sentences[-1].startswith("formulation = 3 (multibody): model exchange needs")
@@ -191,7 +191,7 @@ def test_calls_of_co_simulation_are_refused(library: Library) -> None:
 
 
 def brought_to(library: Library, state: str) -> FMU2Exchange:
-    wheel = FMU2Exchange(library.folder, library.description)
+    wheel = FMU2Exchange(library.folder, library.description).new()
     steps = (
         ("initialization mode", lambda: (wheel.setupExperiment(), wheel.enterInitializationMode())),
         ("event mode", lambda: (wheel.exitInitializationMode(),)),

@@ -40,7 +40,7 @@ class Lives:
     def __init__(self, folder: str, choices: list[int], companions: int):
         self.folder, self.description = folder, read_model_description(folder)
         self.values = dict(zip(("formulation", "friction_law", "method"), choices, strict=True)) | {"s": 0.3}
-        self.companions = companions
+        self.companions, self.loaded = companions, FMU2Wheel(self.folder, self.description)
 
     def begin(self) -> FMU2Wheel | None:
         """An instance, or none: then it was told why."""
@@ -52,7 +52,7 @@ class Lives:
                 super().keep_message(_, name, status, category, text)
 
         try:
-            return FMU2Telling(self.folder, self.description)
+            return FMU2Telling(self.folder, self.description).new()
         except Exception:
             assert told, "no instance and no sentence"
             return None
@@ -68,7 +68,7 @@ class Lives:
 
     def live(self, first: int, last: int, undisturbed: list[bytes] | None) -> list[bytes]:
         fail(0, 0)
-        beside = [FMU2Wheel(self.folder, self.description) for _ in range(self.companions)]
+        beside = [self.loaded.new() for _ in range(self.companions)]
         fail(first, last)
         w = self.begin()
         if w:
@@ -99,7 +99,7 @@ class Lives:
 
     def taken(self) -> dict[str, int]:
         """Allocations of the start, of a run, and of a snapshot that comes back from bytes."""
-        beside = [FMU2Wheel(self.folder, self.description) for _ in range(self.companions)]
+        beside = [self.loaded.new() for _ in range(self.companions)]
         fail(0, 0)
         w = self.begin()
         start = counted("number").value

@@ -75,7 +75,7 @@ class FMU2Exchange(FMU2Wheel, FMU2Model):
 
 def exchange(library: Library, logging: bool = False, **values: Value) -> FMU2Exchange:
     """A new instance in continuous-time mode at t = 0."""
-    wheel = FMU2Exchange(library.folder, library.description, logging)
+    wheel = FMU2Exchange(library.folder, library.description).new(logging)
     assert wheel.set(**values) == OK
     assert wheel.initialise() == OK, wheel.sentences
     assert not wheel.decide().terminateSimulation

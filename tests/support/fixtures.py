@@ -75,12 +75,12 @@ def reference_tables() -> dict[str, dict[str, np.ndarray]]:
 
 
 @pytest.fixture
-def wheel(fmu: str, description) -> Iterator[Callable[..., FMU2Wheel]]:
+def wheel(library: Library) -> Iterator[Callable[..., FMU2Wheel]]:
     """wheel(...) -> a new instance in the state "instantiated"; freed after the test."""
     made: list[FMU2Wheel] = []
 
     def make(**options) -> FMU2Wheel:
-        made.append(FMU2Wheel(fmu, description, **options))
+        made.append(library.wheel(**options))
         return made[-1]
 
     yield make

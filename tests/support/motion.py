@@ -67,6 +67,7 @@ class Library:
     def __init__(self, folder: str | Path) -> None:
         self.folder = str(folder)
         self.description = read_model_description(self.folder)
+        self.loaded = FMU2Wheel(self.folder, self.description)
 
     @classmethod
     def unpacked(cls, fmu: Path) -> Library:
@@ -78,7 +79,7 @@ class Library:
 
     def wheel(self, logging: bool = False, name: str = "wheel") -> FMU2Wheel:
         """A new instance in the state "instantiated"."""
-        return FMU2Wheel(self.folder, self.description, logging, name)
+        return self.loaded.new(logging, name)
 
     def simulate(
         self, times: Sequence[float], tolerance: float | None = None, inputs: Schedule | None = None, **start: Value
