@@ -1,7 +1,7 @@
 """What wheel.fmu carries as evidence (layered standard FMI-LS-REF), written by the library that was just built.
 
-For each parameter set an SSV file and the result of 10 s, one serialized state
-with what must come out of it, and the manifest that names them.
+For each parameter set an SSV file and the result of 10 s, one serialized state with what must come out of it, and the
+manifest that names them.
 """
 
 from __future__ import annotations

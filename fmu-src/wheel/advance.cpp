@@ -174,8 +174,7 @@ Outcome Simulation::pass_contact() {
 void Simulation::announce_transition(const WheelFriction& before) {
   const WheelFriction& friction = run_.in_force.scene.friction;
   const auto is_exact = [](WheelFrictionKind law) { return law == WHEEL_ROLLING || law == WHEEL_HELD; };
-  if (!is_exact(before.kind) || !is_exact(friction.kind)) return;
-  if (before.kind == friction.kind && before.sigma == friction.sigma) return;
+  if (!is_exact(before.kind) || !is_exact(friction.kind) || !differ(before, friction)) return;
   ++run_.transitions;
   if (!reporter_.wants(Topic::event)) return;
   const support::Digits instant(to_nanosecond(time()));

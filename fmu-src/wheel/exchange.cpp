@@ -145,8 +145,8 @@ bool Simulation::decide() {
     scene.friction = released(setup_, scene, run_.y);
   fresh_ = Fresh::state;
   announce_transition(before);
-  return run_.y[setup_.formulation->spin_index] != spin || before.kind != scene.friction.kind ||
-         before.sigma != scene.friction.sigma || pulled != run_.in_force.pulls();
+  const bool jumped = run_.y[setup_.formulation->spin_index] != spin;
+  return jumped || differ(before, scene.friction) || pulled != run_.in_force.pulls();
 }
 
 // The wheel lies flat or lifts off, or, with keep_contact, the ground begins to pull or to press.

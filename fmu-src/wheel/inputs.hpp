@@ -11,8 +11,8 @@ namespace wheel {
 
 inline constexpr int inputs_count = 7, brake_input = 6, max_order = 3, most_extremes = inputs_count * (max_order - 1);
 
-// c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
 inline constexpr double factorial[] = {1, 1, 2, 6};
+// c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
 using Polynomials = double[inputs_count][max_order + 1];
 
 // The inputs in force.

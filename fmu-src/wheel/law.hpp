@@ -17,6 +17,9 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
 // The law of a held wheel that is let go.
 WheelFriction released(const Setup& setup, const WheelScene& held, const double* y);
 
+// Whether two laws differ in kind, or in the side to which the wheel spins.
+inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.kind != b.kind || a.sigma != b.sigma; }
+
 // s N + M_brake - |tau| of a held wheel, N m; where rounding alone decides, the wheel stays held.
 double holding_margin(const Setup& setup, const WheelScene& scene, const double* y);
 

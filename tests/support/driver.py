@@ -54,7 +54,7 @@ class FMU2Wheel(FMU2Slave):
         self.time = 0.0
 
     def new(self, logging: bool = False, name: str = "wheel") -> FMU2Wheel:
-        """In the state "instantiated"; fmpy takes 3 ms to look up the functions, which all instances share."""
+        """An instance, instantiated; fmpy takes 3 ms to look up the functions, which all instances share."""
         instance = copy(self)
         instance.instanceName, instance.messages = name, []
         instance.instantiate(callbacks=instance.own_callbacks(), loggingOn=logging)
