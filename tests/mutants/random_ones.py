@@ -3,7 +3,8 @@
 A copy of the project for each core; the tests that noticed most so far, of this file and then of all, run first, and
 the first failure ends a mutant. Mutants that do not compile or leave the library as it was, bit by bit, do not count.
 Each survivor has a line in survivors.csv, which says why it may stay. An interrupted run goes on where it stopped: what
-was judged stands in build/mutants/random.csv, and is kept as long as that file of the core is the same.
+was judged stands in build/mutants/random.csv. It is kept as long as that file of the core is the same; survivors are
+judged again where the tests have changed.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from pathlib import Path
 from queue import Queue
 from typing import NamedTuple
 
-from mutants.copies import ROOT, THE_BUILD, Copy
+from mutants.copies import FOLDERS, ROOT, THE_BUILD, Copy
 from mutants.named import usual_failures
 from mutants.syntax import Mutant, sample
 
@@ -41,6 +42,7 @@ class Judge:
     """Copies of the project, and which tests have noticed how much."""
 
     def __init__(self, cores: int) -> None:
+        self.cores = cores
         self.copies: Queue[Copy] = Queue()
         self.noticed: Counter[tuple[str, str]] = Counter()  # (file of the core or "", file of tests)
         with ThreadPoolExecutor(cores) as pool:
@@ -96,8 +98,8 @@ def write(judged: list[Judged]) -> None:
     share = 100 * sum(killed.values()) / max(1, len(judged))
     lines = [
         "# Random faults, and what the quick tests notice of them\n",
-        f"{len(judged)} random changes of `fmu-src` that compile and change the library, judged by the tests of",
-        f"`./scripts/test quick`, up to the first that fails: {share:.1f} % are noticed.",
+        f"{len(judged)} random changes of `fmu-src` that compile and change the library, judged by the build and",
+        f"the tests of `./scripts/test quick`, up to the first that fails: {share:.1f} % are noticed.",
         "`./scripts/mutants` makes this page.\n",
         "| file | mutants | noticed |\n|---|---|---|",
         *(f"| {file} | {count} | {noticed} |" for file, count, noticed in rows),
@@ -123,24 +125,28 @@ def key_of(mutant: Mutant) -> str:
     return f"{hashlib.sha256(text).hexdigest()[:16]} {mutant.begin} {mutant.end} {mutant.new}"
 
 
-def known() -> dict[str, Judged | None]:
-    """What an earlier run judged; None: a change that does not count."""
+def digest_of_tests() -> str:
+    folders = [ROOT / "tests" / name for name in (*FOLDERS, "support", "reference")]
+    files = sorted(path for folder in folders for path in folder.rglob("*.py"))
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
+
+
+def known(tests: str) -> dict[str, Judged | None]:
+    """What an earlier run judged; None: a change that does not count. `tests`: their digest."""
     if not LOG.exists():
         return {}
     with LOG.open(newline="", encoding="utf-8") as file:
-        return {key: Judged(*judged) if judged else None for key, *judged in csv.reader(file)}
+        rows = [(key, judged_by, Judged(*judged) if judged else None) for key, judged_by, *judged in csv.reader(file)]
+    return {key: judged for key, by, judged in rows if by == tests or judged is None or judged.killed_by}
 
 
-def judge_all(drawn: list[Mutant], judge: Judge, cores: int) -> list[Judged]:
-    found = known()
-    for judged in filter(None, found.values()):
-        judge.note(judged)
+def judge_all(drawn: list[Mutant], found: dict[str, Judged | None], judge: Judge, tests: str) -> list[Judged]:
     missing = [mutant for mutant in drawn if key_of(mutant) not in found]
-    with LOG.open("a", newline="", encoding="utf-8") as file, ThreadPoolExecutor(cores) as pool:
+    with LOG.open("a", newline="", encoding="utf-8") as file, ThreadPoolExecutor(judge.cores) as pool:
         log = csv.writer(file, lineterminator="\n")
         for mutant, judged in zip(missing, pool.map(judge, missing), strict=True):
             found[key_of(mutant)] = judged
-            log.writerow([key_of(mutant), *(judged or ())])
+            log.writerow([key_of(mutant), tests, *(judged or ())])
             file.flush()
             if judged:
                 print(f"{judged.file}: {judged.change}: {judged.killed_by or 'SURVIVED'}", flush=True)
@@ -148,12 +154,15 @@ def judge_all(drawn: list[Mutant], judge: Judge, cores: int) -> list[Judged]:
 
 
 def main(count: int, seed: int) -> int:
-    cores = len(os.sched_getaffinity(0))
-    judge = Judge(cores)
+    judge, tests = Judge(len(os.sched_getaffinity(0))), digest_of_tests()
+    found = known(tests)
+    for known_one in filter(None, found.values()):
+        judge.note(known_one)
     drawn = sample(ROOT, ROOT / "build" / "release", int(SPARE * count), seed)
     judged: list[Judged] = []
     for begin in range(0, len(drawn), BATCH):
-        judged += judge_all(sorted(drawn[begin : begin + BATCH]), judge, cores)  # a file at a time: less to build again
+        batch = sorted(drawn[begin : begin + BATCH])  # a file at a time: less to build again
+        judged += judge_all(batch, found, judge, tests)
         write(judged)
     without = [j for j in judged if not j.killed_by and not reasons().get(j[:3])]
     survived = sum(not j.killed_by for j in judged)

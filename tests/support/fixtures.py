@@ -36,12 +36,17 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "contract: quick tests of the C interface, run under sanitizers too")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_itemcollected(item: pytest.Item) -> None:
     """With --dist loadgroup the tests of a folder beside tests/ share a process, and with it a browser or a cluster."""
-    for item in items:
-        folder = item.path.relative_to(ROOT).parent
-        if folder.parts[0] != "tests":
-            item.add_marker(pytest.mark.xdist_group(str(folder)))
+    folder = item.path.relative_to(ROOT).parent
+    if folder.parts[0] != "tests":
+        item.add_marker(pytest.mark.xdist_group(str(folder)))
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    grouped = [item for item in session.items if item.get_closest_marker("xdist_group")]
+    if getattr(session.config.option, "loadgroup", False) and not all("@" in item.nodeid for item in grouped):
+        raise pytest.UsageError("pytest-xdist sees no groups of tests: do its and pytest's versions fit?")
 
 
 @pytest.fixture(scope="session")
