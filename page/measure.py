@@ -1,7 +1,7 @@
 """Measures the pages in headless Chromium, drawn by the processor at twice the resolution: measure.py LIVE RECORDED
 
-Sizes, the time to the first picture and how much of it is the page's own, without drawing the scene, and pictures per
-second of processor time go into docs/results/data/page.csv.
+Sizes, the time to the first picture, the processor time of the page itself until then, without drawing the scene, and
+pictures per second of processor time go into docs/results/data/page.csv.
 """
 
 from __future__ import annotations

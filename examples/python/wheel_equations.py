@@ -1,8 +1,8 @@
 """The wheel's equations from Python: wheel_equations.h through ctypes.
 
-Structs, names, frames and units are read from the header (fmu-src/equations/wheel_equations.h): accelerations and the
-ground's force at a state, in SI. `./scripts/run` or `./scripts/build` builds the library; the environment variable
-WHEEL_BUILD names its folder where that is another than build/release.
+The structs are read from the header (fmu-src/equations/wheel_equations.h), which tells frames and units: accelerations
+and the ground's force at a state, in SI. `./scripts/run` or `./scripts/build` builds the library; the environment
+variable WHEEL_BUILD names its folder where that is another than build/release.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ TABLE: dict[str, set[str]] = {
     "fmi2CancelStep": set(),
     **{f"fmi2Get{kind}Status": _STATUS for kind in ("", "Real", "Integer", "Boolean", "String")},
 }
-# Section 3.2.3, a function of model exchange in an instance of that kind: never legal in co-simulation.
+# Section 3.2.3, where each function of model exchange is legal in an instance of that kind; in co-simulation none is.
 _RUNNING = {"event mode", "continuous-time mode"}
 _EXCHANGING = {"initialization mode", "terminated"} | _RUNNING
 EXCHANGE: dict[str, set[str]] = {

@@ -1,4 +1,4 @@
-"""How a run ends: flat on the ground or lifted off. Discard, the instant, outputs there, and what is allowed after."""
+"""How a run ends: flat on the ground or lifted off. Discard, the instant, and outputs there."""
 
 from __future__ import annotations
 

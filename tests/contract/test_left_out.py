@@ -56,10 +56,6 @@ def test_the_friction_wheel_restarts_at_its_37_events_and_nowhere_else(counters)
     assert counted["n_restarts"] == 37
 
 
-def test_friction_does_cost_evaluations(counters):
-    assert counters(s=0.03)["n_rhs"] != counters()["n_rhs"]
-
-
 @pytest.mark.parametrize("scene", [name for name in SCENES if name != "regularized, stiff"])
 def test_the_smooth_method_needs_no_jacobian(counters, scene):
     assert counters(**{**SCENES[scene], "method": 2})["n_jac"] == 0

@@ -70,7 +70,7 @@ def test_the_velocity_of_the_contact_is_the_slope_of_its_place() -> None:
 
 
 def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
-    scenes, k, d = rolling()
+    _, k, d = rolling()
     e1 = np.column_stack([np.cos(k["psi"]), np.sin(k["psi"]), np.zeros(ROWS)])
     left = np.cross([0, 0, 1], e1)
     expected = np.column_stack([(d["lambda_"] * e1).sum(axis=1), (d["lambda_"] * left).sum(axis=1)])
@@ -82,7 +82,7 @@ def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
 
 
 def test_the_rates_of_the_force_in_wheel_axes_know_that_the_axes_turn() -> None:
-    scenes, k, d = rolling()
+    _, k, d = rolling()
     random, h = np.random.default_rng(92), 1e-6
     lambda_dot = d["lambda_"] * random.normal(size=(ROWS, 3))
 

@@ -1,6 +1,6 @@
-"""The reduced form for any principal moments of inertia: against the multibody form, and N's answer to the axle moment.
+"""The reduced form for any principal moments of inertia: continuous at J_x = J_y; how N answers the axle moment.
 
-Twenty thousand random scenes for each law of friction, with loads and brakes (random_scenes.py). Carrier frame.
+Random scenes with loads and brakes (random_scenes.py). Carrier frame.
 """
 
 from __future__ import annotations

@@ -161,7 +161,8 @@ def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: 
         assert np.isfinite(wheel.derivatives()).all()
         assert wheel.indicators()[1] <= 0 and wheel.wants_event()
         assert wheel.event().terminateSimulation
-        # Some importers enter continuous-time mode before they heed the event info: it is read there, and stays ended.
+        # Some importers enter continuous-time mode before they heed the event info: the wheel can be read there,
+        # and has still ended.
         assert wheel.fmi2EnterContinuousTimeMode(wheel.component) == OK
         assert np.isfinite(wheel.derivatives()).all()
         assert wheel.fmi2SetTime(wheel.component, 0.2) == ERROR

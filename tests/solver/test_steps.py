@@ -5,8 +5,6 @@ from math import log2
 import pytest
 from support.bounds import absolute_error, beyond, relative_error, within
 
-MULTISTEP = ["adams", "bdf"]
-
 
 def test_halving_the_step_shows_order_8_at_the_ends_and_7_inside(measure):
     coarse, fine = (measure("order", "runge_kutta", h) for h in (0.4, 0.2))

@@ -1,4 +1,4 @@
-"""The one driver of the built FMU, for tests and reports: an instance whose every status is seen, and whole motions.
+"""The one driver of the built FMU, for tests and reports: an instance whose every status is seen.
 
 Names, frames and units are those of modelDescription.xml, where the value references are looked up. Built on fmpy's
 FMU2Slave, whose ctypes signatures it uses; it returns the status where fmpy would raise.
@@ -54,7 +54,7 @@ class FMU2Wheel(FMU2Slave):
         self.time = 0.0
 
     def new(self, logging: bool = False, name: str = "wheel") -> FMU2Wheel:
-        """An instance, instantiated; fmpy takes 3 ms to look up the functions, which all instances share."""
+        """An instance, instantiated; fmpy looks up the functions once, for all instances."""
         instance = copy(self)
         instance.instanceName, instance.messages = name, []
         instance.instantiate(callbacks=instance.own_callbacks(), loggingOn=logging)

@@ -20,11 +20,8 @@
 
 /* clang-format off */
 #define FMU_FUNCTIONS(F) \
-  F(Instantiate) F(FreeInstance) F(SetDebugLogging) F(SetupExperiment) F(EnterInitializationMode) \
-  F(ExitInitializationMode) F(Terminate) F(Reset) F(SetReal) F(SetInteger) F(SetBoolean) F(GetReal) F(GetInteger) \
-  F(DoStep) F(CancelStep) F(GetRealStatus) F(GetBooleanStatus) F(SetRealInputDerivatives) F(GetRealOutputDerivatives) \
-  F(GetDirectionalDerivative) F(GetFMUstate) F(SetFMUstate) F(FreeFMUstate) F(SerializedFMUstateSize) \
-  F(SerializeFMUstate) F(DeSerializeFMUstate)
+  F(Instantiate) F(FreeInstance) F(SetupExperiment) F(EnterInitializationMode) F(ExitInitializationMode) \
+  F(SetReal) F(SetInteger) F(SetBoolean) F(SetRealInputDerivatives) F(DoStep) F(GetReal) F(GetInteger)
 /* clang-format on */
 
 typedef struct Fmu {

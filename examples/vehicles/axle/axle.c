@@ -39,7 +39,7 @@ void hubs(const Now* now, const Body* body, Hub hub[wheel_count]) {
   const Bushing bushing = {u[k_a], u[c_a]};
   for (int i = 0; i < wheel_count; ++i) {
     const double p[3] = {-u[a], i ? -u[b] : u[b], 0};
-    const double share = u[m_B] * now->d[2] / wheel_count;
+    const double share = u[m_B] * now->d[at_g + 2] / wheel_count;
     hub_read(u + X_O_each + i * wheel_inputs, body, p, (Steer){0, 0}, bushing, &hub[i]);
     const int coupled = reached(now, t_couple);
     if (!coupled) hub[i].M_1 = hub[i].M_2 = 0;
@@ -57,7 +57,7 @@ static double support(const Now* now, Body* body) {
   double axis[3];
   cross(forward, up, axis);
   const double rate = dot(body->w, axis);
-  const double M = -u[m_B] * now->d[2] * u[a] - u[k_p] * s - u[c_p] * rate;
+  const double M = -u[m_B] * now->d[at_g + 2] * u[a] - u[k_p] * s - u[c_p] * rate;
   for (int i = 0; i < 3; ++i) body->M[i] += M * axis[i];
   return u[c_p] * rate * rate;
 }
@@ -76,10 +76,10 @@ static double energy(const Now* now, const Body* body, const Hub hub[wheel_count
   const double above[3] = {body->r[0], body->r[1], body->r[2] - u[R]};
   double e = u[m_B] * (dot(body->v, body->v) / 2 - dot(now->d, above));
   for (int i = 0; i < 3; ++i) e += J[i] * body->w[i] * body->w[i] / 2;
-  e += u[k_p] * s * s / 2 + u[m_B] * now->d[2] * u[a] * s;
+  e += u[k_p] * s * s / 2 + u[m_B] * now->d[at_g + 2] * u[a] * s;
   for (int i = 0; i < wheel_count; ++i) {
     e += u[k] * dot(hub[i].d, hub[i].d) / 2 + u[k_a] * hub[i].bent;
-    e -= u[m_B] * now->d[2] / wheel_count * hub[i].d[2];
+    e -= u[m_B] * now->d[at_g + 2] / wheel_count * hub[i].d[2];
   }
   return e;
 }

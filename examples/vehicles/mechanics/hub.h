@@ -5,8 +5,8 @@
  * right-hand side turned by the steer angle delta to the left; both in body axes. With R from body to fixed axes:
  *
  *   a = R^T (r_O - r_B),  d = a - p,  d_dot = R^T (v_O - v_B) - w x a      displacement of O and its rate
- *   f = -k d - c d_dot, each axis its own                                 force on the wheel, at O; -f on the body, at
- * O M = k_a e3 x n - c_a (w_wheel - w - delta_dot z) across e3             moment on the wheel; -M on the body
+ *   f = -k d - c d_dot, each axis its own                                 force on the wheel at O; -f on the body
+ *   M = k_a e3 x n - c_a (w_wheel - w - delta_dot z) across e3            moment on the wheel; -M on the body
  *
  * So the link keeps momentum and angular momentum, and d(k d^2 / 2 + k_a (1 - e3 n)) is what it stores. */
 #ifndef HUB_H

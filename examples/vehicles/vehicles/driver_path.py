@@ -1,6 +1,6 @@
-"""The driver's programmes and paths, written again for the independent check: of the driver its start values alone.
+"""The driver's programmes and paths, written again for the independent check.
 
-Fixed axes X, Y; both paths begin at the origin along X.
+Only the start values are those of the driver's table. Fixed axes X, Y; both paths begin at the origin along X.
 """
 
 from __future__ import annotations

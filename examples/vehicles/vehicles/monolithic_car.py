@@ -1,8 +1,8 @@
 """The same car as one set of equations: chassis, struts, driver and wheels integrated together by SciPy.
 
 The independent check of the coupled car: wheels by axle vectors (rolling_wheels.py), the chassis by its rotation matrix
-and its angular velocity in fixed axes, the driver written again from its equations. Only the layout car.toml and the
-manoeuvres' parameters are shared with the FMUs.
+and its angular velocity in fixed axes, the driver written again from its equations. Only the layout car.toml, the
+start values of the tables and the manoeuvres' parameters are shared with the FMUs.
 
 State: chassis r, v, rotation matrix, w (fixed axes); driver delta, integral, p; wheels O, a, w.
 """

@@ -36,7 +36,7 @@ Session::~Session() {
   for (Slot& slot : slots_) fmi2FreeInstance(slot.component);
 }
 
-// Without an instance few of them have a meaning.
+// The action that a byte stands for; without an instance few have a meaning.
 const Session::Action& Session::action(unsigned choice) const {
 #define ROW(name) {#name, &Session::name},
   static constexpr Action with_instance[] = {FUZZ_ACTIONS(ROW, ROW)};
