@@ -88,7 +88,7 @@ def behind(name: str, runs: pd.DataFrame) -> list[Row]:
     for error in TARGETS:
         times = times_at(runs, error)
         peers = times[[not setup.startswith("FMU") for setup in times.index]]
-        if len(peers) and times[OURS] > 1.1 * peers.min():
+        if len(peers) and OURS in times and times[OURS] > 1.1 * peers.min():
             row = {"scene": TITLES[name], "error": number(error), "fastest peer": peers.idxmin()}
             rows.append({**row, "FMU over the peer": times[OURS] / peers.min()})
     return rows

@@ -140,8 +140,8 @@ def contract(report: Report) -> None:
         rows += [(group, *row) for row in ([("", "", found, False)] if isinstance(found, Broken) else found)]
     table = pd.DataFrame(rows, columns=["group", "what", "expected", "found", "holds"])
     report.table("contract", table)
-    report.figure("checks", "checks of what edges cost", len(table))
-    report.figure("contract", "checks that fail", (~table["holds"].astype(bool)).sum(), "", 0)
+    report.figure("checks", "checks of what hard cases cost", len(table))
+    report.figure("contract", "checks of hard cases that fail", (~table["holds"].astype(bool)).sum(), "", 0)
 
 
 def hours(report: Report) -> None:

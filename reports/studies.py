@@ -85,7 +85,8 @@ def views(tables: Tables) -> Tables:
     speed = tables["speed"].pivot(index="asked", columns="workers", values="wheels_per_s").loc[[*ASKED]]
     gain = pd.DataFrame({"asked": speed.index, "two workers over one": (speed[2] / speed[1]).to_numpy()})
     million = pd.read_csv(MILLION) if MILLION.exists() else pd.DataFrame()
-    found = tables | {"gain": gain, "million": million}
+    estimated = tables["estimate"].rename(columns={"caller_busy": "busy handing out tasks"})
+    found = tables | {"gain": gain, "million": million, "estimate": estimated}
     return {name: rows.rename(columns=words) for name, rows in found.items()}
 
 

@@ -18,7 +18,7 @@ from .packages import packages
 from .page import Report, Tables
 from .partners import fmus
 
-LIMITS = (0.001, 0.00125, 0.002, 0.0025, 0.003125, 0.004, 0.005)  # s; each divides the grid of the tables
+LIMITS = (0.001, 0.00125, 0.002, 0.0025, 0.003125, 0.00390625, 0.005)  # s; each divides the grid of the tables
 BUDGET = 10.0  # us per step of 1 ms for four wheels
 BONDS = ("F_X", "F_Y", "F_Z", "M_1", "M_2")
 
@@ -180,7 +180,7 @@ def car_cost(report: Report) -> None:
 
 
 def views(tables: Tables) -> Tables:
-    """Of the errors of the car, the largest of each run by step, and all of those at 1 ms."""
+    """Of the car the largest error of each run by step, and all of those at 1 ms; of the packages all digits."""
     errors = tables["car_errors"]
     keys, steps = ["manoeuvre", "inputs over the step"], [f"error at {1000 * h:g} ms" for h in STEPS]
     of_steps = errors.pivot(index=keys, columns="step [ms]", values="largest")[[1000 * h for h in STEPS]]
@@ -188,6 +188,9 @@ def views(tables: Tables) -> Tables:
     of_steps.columns, order.columns = steps, [f"order to {1000 * h:g} ms" for h in STEPS[1:]]
     at_1_ms = errors[errors["step [ms]"] == 1].drop(columns=["step [ms]", "order"])
     given = list(dict.fromkeys(map(tuple, errors[keys].to_numpy())))
+    packages = tables["packages"]
+    digits = {column: packages[column].map("{:.8f}".format) for column in packages if column.endswith(", m")}
+    tables["packages"] = packages.assign(**digits)
     return {**tables, "car_orders": of_steps.join(order).loc[given].reset_index(), "car_at_1_ms": at_1_ms}
 
 

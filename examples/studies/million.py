@@ -1,7 +1,7 @@
 """A million wheels in one study: how long it takes, and how much memory and disk.
 
 `./scripts/study million` runs it, about a minute on two cores; stopped, it goes on where it was. `--publish` writes its
-data for docs/results/studies.md, one row for each time that it was started.
+data for docs/results/studies.md, one row for each time that it was started and not killed.
 """
 
 import json
@@ -21,7 +21,7 @@ study = Study(
 
 
 def table(results: xr.Dataset) -> pd.DataFrame:
-    """One row for each time that the study was started."""
+    """One row for each time that the study was started and not killed."""
     return pd.DataFrame(json.loads(results.attrs["sessions"]))
 
 
