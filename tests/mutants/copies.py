@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -28,6 +30,7 @@ class Copy:
     def __init__(self, number: int = 0):
         self.root = ROOT / "build" / "mutants" / str(number)
         self.build_folder = self.root / "build" / "release"
+        self.said = ""  # by the last tests
         self._copy_sources()
         assert self.compiles() and self.packs(), "the project itself does not build"
         self.binary = self.digest()
@@ -74,16 +77,24 @@ class Copy:
     def failures(self, tests: Sequence[str], left_out: Sequence[str] = (), *options: str) -> list[str]:
         """The tests that fail, or the first file if its tests crash or hang."""
         command = ["prlimit", f"--cpu={LONGEST}", sys.executable, "-m", "pytest", f"--timeout={LONGEST_TEST}"]
-        command += ["-q", "-p", "no:cacheprovider", "--no-header", "--tb=no", "-rfE"]
+        command += ["-q", "-p", "no:cacheprovider", "--no-header", "--tb=no", "-rfE", "--durations=0"]
         command += [*options, *tests, *(option for test in left_out for option in ("--deselect", test))]
         environment = os.environ | {"WHEEL_BUILD": str(self.build_folder)}
         done = subprocess.run(command, cwd=self.root, env=environment, capture_output=True, text=True, check=False)
+        self.said = done.stdout
         if done.returncode in (0, NOTHING_TO_TEST):
             return []
         lines = [line.split(" - ")[0].split(maxsplit=1) for line in done.stdout.splitlines()]
         failed = [words[1] for words in lines if words[:1] in (["FAILED"], ["ERROR"])]
         out_of_bounds = [line.split(", ")[0] for line in done.stdout.splitlines() if line.startswith("tests/")]
         return failed or out_of_bounds or [tests[0]]
+
+    def seconds(self) -> Counter[str]:
+        """What each file of the last tests took."""
+        taken = Counter[str]()
+        for number, file in re.findall(r"^([\d.]+)s (?:call|setup) +([^:]+)::", self.said, re.MULTILINE):
+            taken[file] += float(number)
+        return taken
 
     def failure(self, tests: Sequence[str], left_out: Sequence[str] = ()) -> str:
         """The first test that fails; empty: none."""
