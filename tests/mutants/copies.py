@@ -14,6 +14,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("contract", "physics", "orbit", "robustness", "solver", "exchange", "equations")  # what runs the core
+# These folders call a part of the core alone, made of these modules; faults elsewhere cannot show there.
+OF_A_PART = {"equations": {"equations"}, "solver": {"solver", "support"}}
 LONGEST = 400  # s of processor time of all tests, several times what they take; and of one test:
 LONGEST_TEST = 60  # s. What takes longer counts as a failure
 THE_BUILD = "the build, which runs the paper's scenes"
@@ -69,9 +71,11 @@ class Copy:
     def source(self, name: str) -> Path:
         return self.root / "fmu-src" / name
 
-    def suite(self) -> list[str]:
-        """The files of the quick tests that run the core."""
-        paths = (path for folder in FOLDERS for path in (self.root / "tests" / folder).glob("test_*.py"))
+    def suite(self, mutated: str = "") -> list[str]:
+        """The files of the quick tests that run the core, or this file of it."""
+        module = mutated.split("/")[0]
+        folders = [name for name in FOLDERS if not mutated or module in OF_A_PART.get(name, {module})]
+        paths = (path for folder in folders for path in (self.root / "tests" / folder).glob("test_*.py"))
         return sorted(str(path.relative_to(self.root)) for path in paths)
 
     def failures(self, tests: Sequence[str], left_out: Sequence[str] = (), *options: str) -> list[str]:

@@ -66,7 +66,7 @@ class Judge:
     def killer(self, copy: Copy, mutated: str) -> str:
         if not copy.packs():
             return THE_BUILD
-        files = self.order(copy.suite(), mutated)
+        files = self.order(copy.suite(mutated), mutated)
         return copy.failure(files[:AT_FIRST], self.usual) or copy.failure(files[AT_FIRST:], self.usual)
 
     def __call__(self, mutant: Mutant) -> Judged | None:
