@@ -143,3 +143,10 @@ def test_the_friction_is_tunable_and_acts_from_the_present_instant_on(wheel):
     # Power -s N |omega_z|: without friction nothing is lost.
     beyond(energy - w.get("E")[0], 1.0, "E")
     within(abs(energy - untouched.get("E")[0]), 9e-9, "E")
+
+
+@pytest.mark.parametrize("law", [{}, {"friction_law": 2, "s": 0.03, "omega_s": 0.1}])
+@pytest.mark.parametrize("omega_z", [-1, 0, 1])
+def test_without_the_exact_law_the_mode_of_friction_is_the_sign_of_the_spin(wheel, law, omega_z):
+    upright = {"theta_start": np.pi / 2, "phi_dot_start": omega_z}
+    assert wheel().start(**upright, **law).get("friction_mode") == [omega_z]

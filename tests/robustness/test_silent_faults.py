@@ -107,6 +107,12 @@ def test_a_step_past_the_digits_of_the_angles_is_refused(wheel):
         assert "too few digits" in faulty.sentences[-1]
 
 
+def test_a_start_after_many_turns_does_not_shorten_how_far_a_free_wheel_goes(wheel):
+    """Only what psi and phi turn from there on takes digits."""
+    for far, status in ((1e5, OK), (1e12, ERROR)):
+        assert wheel().start(psi_start=1e9, phi_start=-1e9).step(far) == status
+
+
 @pytest.mark.parametrize("start", [{}, {"s": 0.03}])
 def test_a_run_whose_counts_are_as_large_as_can_be_can_be_saved_again(wheel, start):
     w = stepped(wheel().start(**start), [0.5])
