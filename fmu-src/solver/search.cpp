@@ -58,7 +58,7 @@ bool Search::look(Sample lo, Sample mid, Sample hi, int depth, int* budget, Samp
   if (hi.g < 0) return bracket[0] = mid, bracket[1] = hi, true;
   const double x = Parabola(lo, mid, hi).lowest_at();
   const Sample low = x > 0 && x < 1 ? sample(lo.t + x * (hi.t - lo.t)) : mid;
-  if (low.g < 0) return bracket[0] = low.t < mid.t ? lo : mid, bracket[1] = low, true;
+  if (low.g < 0) return bracket[0] = lo, bracket[1] = low, true;
   --*budget;
   return look(mid, sample(0.5 * (mid.t + hi.t)), hi, depth - 1, budget, bracket);
 }
