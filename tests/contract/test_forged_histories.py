@@ -136,3 +136,11 @@ def test_an_ended_run_stays_ended(wheel):
     w = wheel()
     assert w.restore(saved(wheel, "ended", 9.0)) == OK
     assert w.fmi2DoStep(w.component, 0.7, 0.1, 0) in (DISCARD, ERROR)
+
+
+def test_an_ending_that_does_not_exist_is_refused(wheel):
+    """Lifted off is 4, fallen flat 5, and there are no others: somewhere in the state stands the 5."""
+    words, w = words_of(saved(wheel, "ended", 9.0)), wheel()
+    states = [[*words[:k], new, *words[k + 1 :]] for k, word in enumerate(words) if word == 5 for new in (4, 6, 7)]
+    found = [w.restore(signed(forged)) for forged in states]
+    assert [OK, ERROR, ERROR] in [found[k : k + 3] for k in range(0, len(found), 3)]

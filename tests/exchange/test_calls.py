@@ -228,4 +228,4 @@ def test_nominal_values_are_the_scales_of_the_error(library: Library) -> None:
     with exchange(library) as wheel:
         assert wheel.fmi2GetNominalsOfContinuousStates(wheel.component, nominals, 8) == OK
     assert all(value > 0 for value in nominals)
-    assert list(nominals)[:2] == pytest.approx([1.05, 1.05])  # three heights of the upright wheel
+    assert list(nominals)[:5] == pytest.approx([1.05, 1.05, 3, 1, 3])  # m: three heights of the upright wheel; rad
