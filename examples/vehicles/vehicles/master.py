@@ -13,7 +13,7 @@ Loading, order and initialization are here; the loop over the steps is in C (../
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from ctypes import c_void_p, cast
 from functools import cache
 from graphlib import TopologicalSorter
@@ -133,9 +133,11 @@ class Master:
         every: int = 1,
         reject: bool = False,
         progress: bool = False,
+        act: Callable[[float], None] | None = None,
     ) -> np.ndarray:
         """Simulate from 0 to `stop`; a record array of time and "component.variable", every `every` steps.
 
+        act(t) is called after the exchange at every communication point and may set inputs that are not connected.
         reject: every step is taken, undone from a snapshot, and taken again, as an error-controlled master may do.
         A variable after "rate " or "at_end " is its derivative, or its value at the end of the step that begins there.
         Raises component.Ended; what was recorded until then is `self.table()`.
@@ -152,8 +154,10 @@ class Master:
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
         rows, spent = (ffi.from_buffer("double[]", x) for x in (self.rows, self.spent))
-        pieces = np.unique(np.linspace(0, count, PIECES + 1).astype(int)).tolist()
+        pieces = np.unique(np.linspace(0, count, (count if act else PIECES) + 1).astype(int)).tolist()
         for begin, end in tqdm([(0, 0), *pairwise(pieces)], disable=not progress, leave=False):
+            if act and end:
+                act(begin * step)
             done = self.c.master_run(self.loop, step, begin, end, every, rows, spent)
             if done < end:
                 raise self._refusal(done * step)
