@@ -101,11 +101,13 @@ def write(judged: list[Judged]) -> None:
         csv.writer(file, lineterminator="\n").writerows([("file", "mutants", "killed"), *rows])
     why = reasons()
     survivors = [j for j in judged if not j.killed_by]
-    share = 100 * sum(killed.values()) / max(1, len(judged))
+    equal = sum(why.get(j[:3], "").startswith("equivalent") for j in survivors)
+    share, of_others = (100 * sum(killed.values()) / max(1, count) for count in (len(judged), len(judged) - equal))
     lines = [
         "# Random faults, and what the quick tests notice of them\n",
         f"{len(judged)} random changes of `fmu-src` that compile and change the library, judged by the build and",
-        f"the tests of `./scripts/test quick`, up to the first that fails: {share:.1f} % are noticed.",
+        f"the tests of `./scripts/test quick`, up to the first that fails: {share:.1f} % are noticed; without the",
+        f"{equal} survivors that are equivalent, which no test can notice, {of_others:.1f} %.",
         "`./scripts/mutants` makes this page.\n",
         "| file | mutants | noticed |\n|---|---|---|",
         *(f"| {file} | {count} | {noticed} |" for file, count, noticed in rows),
