@@ -108,25 +108,11 @@ def place_of(w, row: str) -> int:
     after = HEADER + parameters
     stop, asked = after + 1, after + 3
     phase = asked + inputs + 2
-    friction, in_force = phase + 3, phase + 6
-    t = in_force + 1 + inputs
-    return {
-        "stop time": stop,
-        "tolerance": stop + 1,
-        "phase": phase,
-        "ended by": phase + 1,
-        "s": phase + 2,
-        "law": friction,
-        "sigma": friction + 1,
-        "layer": friction + 2,
-        "origin": in_force,
-        "t": t,
-        "last change": t + 1,
-        "y": t + 2,
-        "ground": t + 14,
-        "pulls": t + 15,
-        "transitions": t + 17,
-    }[row]
+    of_phase = ("phase", "ended by", "s", "law", "sigma", "layer", "origin")
+    t = phase + len(of_phase) + inputs
+    places = {"stop time": stop, "tolerance": stop + 1, **{name: phase + k for k, name in enumerate(of_phase)}}
+    places |= {"t": t, "last change": t + 1, "y": t + 2, "ground": t + 14, "pulls": t + 15, "transitions": t + 17}
+    return places[row]
 
 
 def forged(w, blob: bytes, **changes: int | float) -> bytes:
@@ -146,14 +132,7 @@ def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
     before, blob, young = running.serialized(), running.serialized(), fresh.serialized()
     assert forged(running, blob) == blob
     assert words_of(blob)[place_of(running, "phase")] == UNFOLDED
-    wrong = [
-        {"phase": 13},
-        {"phase": EVENT_MODE},
-        {"phase": 2**63},
-        {"phase": AT_START},
-        {"phase": INITIAL},
-        {"phase": STEPPING},
-    ]
+    wrong = [{"phase": phase} for phase in (13, EVENT_MODE, 2**63, AT_START, INITIAL, STEPPING)]
     wrong += [{"stop_time": np.nan}, {"stop_time": -np.inf}, {"tolerance": 1.0}, {"t": -1.0}, {"t": np.inf}]
     wrong += [{"last_change": 9.0}, {"origin": 9.0}, {"s": -1.0}, {"s": 0.1}, {"law": 0}, {"law": 2}]
     wrong += [{"ground": 0}, {"ground": 3}]

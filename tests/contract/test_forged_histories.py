@@ -45,14 +45,8 @@ def saved(wheel, run, stop=0.7):
 
 def changes(word, seed):
     """What a word may be changed to: nonsense for a double, nonsense for an integer, and small changes."""
-    special = [as_word(x) for x in (np.nan, np.inf, -1.0, 0.0, 1e300, 5e-324)] + [
-        2,
-        13,
-        2**31,
-        2**53,
-        2**63 - 1,
-        2**64 - 1,
-    ]
+    special = [as_word(x) for x in (np.nan, np.inf, -1.0, 0.0, 1e300, 5e-324)]
+    special += [2, 13, 2**31, 2**53, 2**63 - 1, 2**64 - 1]
     small = [(word + 1) % 2**64, (word - 1) % 2**64, word ^ 1 << 63, word ^ 1 << 52]
     chosen = np.random.default_rng(seed)
     return [int(chosen.choice(np.array(row, dtype=object))) for row in (special, small)]

@@ -13,21 +13,9 @@ from support.kept import kept
 from support.motion import Library, Run
 from support.scenes import SCENES
 
-NAMES = (
-    "fast rolling",
-    "fast spin the other way",
-    "near flat",
-    "thin disc",
-    "general inertia",
-    "general inertia, friction",
-    "light friction",
-    "heavy friction",
-    "heavy friction, J_x = J_y",
-    "past upright",
-    "pushed",
-    "pushed, general inertia",
-    "braked",
-)
+NAMES = ("fast rolling", "fast spin the other way", "near flat", "thin disc", "general inertia")
+NAMES += ("general inertia, friction", "light friction", "heavy friction", "heavy friction, J_x = J_y")
+NAMES += ("past upright", "pushed", "pushed, general inertia", "braked")
 CASES = {name: SCENES[name] for name in NAMES}
 
 

@@ -26,13 +26,8 @@ def counted(name: str) -> c_long:
 
 def fail(first: int, last: int) -> None:
     """Only the allocations first to last fail, counted from now on; 0, 0: none."""
-    for name, value in (
-        ("watching", 1),
-        ("number", 0),
-        ("failed", 0),
-        ("first_failing", first),
-        ("last_failing", last),
-    ):
+    numbers = {"watching": 1, "number": 0, "failed": 0, "first_failing": first, "last_failing": last}
+    for name, value in numbers.items():
         counted(name).value = value
 
 
