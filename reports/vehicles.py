@@ -188,10 +188,10 @@ def views(tables: Tables) -> Tables:
     of_steps.columns, order.columns = steps, [f"order to {1000 * h:g} ms" for h in STEPS[1:]]
     at_1_ms = errors[errors["step [ms]"] == 1].drop(columns=["step [ms]", "order"])
     given = list(dict.fromkeys(map(tuple, errors[keys].to_numpy())))
-    packages = tables["packages"]
-    digits = {column: packages[column].map("{:.8f}".format) for column in packages if column.endswith(", m")}
-    tables["packages"] = packages.assign(**digits)
-    return {**tables, "car_orders": of_steps.join(order).loc[given].reset_index(), "car_at_1_ms": at_1_ms}
+    ends = tables["packages"]
+    ends = ends.assign(**{name: ends[name].map("{:.8f}".format) for name in ends if name.endswith(", m")})
+    found = {"car_orders": of_steps.join(order).loc[given].reset_index(), "car_at_1_ms": at_1_ms, "packages": ends}
+    return tables | found
 
 
 PARTS: dict[Callable[[Report], None], float] = {

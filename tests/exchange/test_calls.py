@@ -12,7 +12,7 @@ from equations.paper_transcription import Paper, times
 from support import equations as eq
 from support.bounds import beyond, within
 from support.driver import DISCARD, ERROR, OK
-from support.exchange import DERIVATIVES, STATES, FMU2Exchange, Run, exchange, no_inputs
+from support.exchange import DERIVATIVES, STATES, FMU2Exchange, Run, exchange, loaded, no_inputs
 from support.motion import Library
 
 pytestmark = pytest.mark.contract
@@ -172,7 +172,7 @@ def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: 
 
 
 def test_a_wheel_off_the_ground_at_the_start_is_a_fault_of_initialization(library: Library) -> None:
-    wheel = FMU2Exchange(library.folder, library.description).new(logging=True)
+    wheel = loaded(library).new(logging=True)
     assert wheel.set(F_Z=500.0) == OK
     assert wheel.initialise() == ERROR
     assert "does not press" in wheel.sentences[-1]
@@ -180,7 +180,7 @@ def test_a_wheel_off_the_ground_at_the_start_is_a_fault_of_initialization(librar
 
 
 def test_the_multibody_form_is_refused_with_a_sentence(library: Library) -> None:
-    wheel = FMU2Exchange(library.folder, library.description).new(logging=True)
+    wheel = loaded(library).new(logging=True)
     assert wheel.set(formulation="multibody") == OK
     assert wheel.initialise() == ERROR
     assert wheel.sentences[-1].startswith("formulation = 3 (multibody): model exchange needs")
@@ -195,7 +195,7 @@ def test_calls_of_co_simulation_are_refused(library: Library) -> None:
 
 
 def brought_to(library: Library, state: str) -> FMU2Exchange:
-    wheel = FMU2Exchange(library.folder, library.description).new()
+    wheel = loaded(library).new()
     steps = (
         ("initialization mode", lambda: (wheel.setupExperiment(), wheel.enterInitializationMode())),
         ("event mode", lambda: (wheel.exitInitializationMode(),)),

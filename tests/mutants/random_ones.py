@@ -164,8 +164,8 @@ def judge_all(drawn: list[Mutant], found: dict[str, Judged | None], judge: Judge
 def main(count: int, seed: int) -> int:
     judge, tests = Judge(len(os.sched_getaffinity(0))), digest_of_tests()
     found = known(tests)
-    for known_one in filter(None, found.values()):
-        judge.note(known_one)
+    for judged_before in filter(None, found.values()):
+        judge.note(judged_before)
     drawn = sample(ROOT, ROOT / "build" / "release", int(SPARE * count), seed)
     judged: list[Judged] = []
     for begin in range(0, len(drawn), BATCH):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from ctypes import POINTER, byref, c_double, c_int
+from functools import cache
 
 import numpy as np
 from fmpy.fmi2 import FMU2Model, fmi2EventInfo
@@ -73,9 +74,15 @@ class FMU2Exchange(FMU2Wheel, FMU2Model):
         return numbers.ctypes.data_as(POINTER(c_double))
 
 
+@cache
+def loaded(library: Library) -> FMU2Exchange:
+    """The library, of which `new` makes instances for model exchange."""
+    return FMU2Exchange(library.folder, library.description)
+
+
 def exchange(library: Library, logging: bool = False, **values: Value) -> FMU2Exchange:
     """A new instance in continuous-time mode at t = 0."""
-    wheel = FMU2Exchange(library.folder, library.description).new(logging)
+    wheel = loaded(library).new(logging)
     assert wheel.set(**values) == OK
     assert wheel.initialise() == OK, wheel.sentences
     assert not wheel.decide().terminateSimulation

@@ -74,7 +74,7 @@ static double energy(const Now* now, const Body* body, const Hub hub[wheel_count
   const double* u = now->u;
   const double J[3] = {u[J_1], u[J_2], u[J_3]}, s = body->R[2][0];
   const double above[3] = {body->r[0], body->r[1], body->r[2] - u[R]};
-  double e = u[m_B] * (dot(body->v, body->v) / 2 - dot(now->d, above));
+  double e = u[m_B] * (dot(body->v, body->v) / 2 - dot(now->d + at_g, above));
   for (int i = 0; i < 3; ++i) e += J[i] * body->w[i] * body->w[i] / 2;
   e += u[k_p] * s * s / 2 + u[m_B] * now->d[at_g + 2] * u[a] * s;
   for (int i = 0; i < wheel_count; ++i) {

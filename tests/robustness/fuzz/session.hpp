@@ -4,9 +4,9 @@
 #include "choices.hpp"
 #include "oracle.hpp"
 
-// What a byte stands for while there is an instance, in the order of the corpus; AGAIN: one more
-// place for an action that is in the list already. One call each, with sound or unsound arguments (calls.cpp,
-// values.cpp, states.cpp, exchange.cpp), or several (session.cpp, states.cpp).
+// What a byte stands for while there is an instance, in the order of the corpus; AGAIN: one more place for
+// an action that is in the list already. One call each, with sound or unsound arguments (calls.cpp, values.cpp,
+// states.cpp, exchange.cpp), or several (session.cpp, states.cpp).
 /* clang-format off */
 #define FUZZ_ACTIONS(ONCE, AGAIN) \
   ONCE(step_often) ONCE(do_step) ONCE(set_reals) ONCE(set_choices) ONCE(start_quickly) \
