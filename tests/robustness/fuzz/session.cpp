@@ -1,23 +1,22 @@
-// The fuzzer's entry: bytes to a sequence of calls, or to a forged state. The first byte chooses which, of what kind,
-// and how much is watched (see Log).
-#include <iterator>
-
+// Bytes to a sequence of calls, or to a forged state. The first byte chooses which, of what kind, and how much is
+// watched (see Log).
 #include "session.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  fuzz::Bytes in(data, size);
+#include <iterator>
+
+namespace fuzz {
+
+void play(const std::uint8_t* data, std::size_t size) {
+  Bytes in(data, size);
   const unsigned first = in.byte();
   if (first & 128) {
-    fuzz::play_forged(in, first & 64 ? fmi2ModelExchange : fmi2CoSimulation);
+    play_forged(in, first & 64 ? fmi2ModelExchange : fmi2CoSimulation);
   } else {
-    fuzz::Session session(in, first);
+    Session session(in, first);
     while (session.go_on()) {
     }
   }
-  return 0;
 }
-
-namespace fuzz {
 
 Session::Session(const Bytes& in, unsigned watched, bool shared) : in_(in) {
   log_.digests = watched & 1;

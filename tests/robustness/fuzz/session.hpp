@@ -61,6 +61,7 @@ class Session {
 };
 
 fmi2Component make_instance(fmi2Type kind = fmi2CoSimulation);
-void play_forged(Bytes& in, fmi2Type kind);  // forge.cpp
+void play_forged(Bytes& in, fmi2Type kind);             // forge.cpp
+void play(const std::uint8_t* data, std::size_t size);  // all bytes of an input
 
 }  // namespace fuzz

@@ -14,8 +14,6 @@
 
 #include "session.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-
 namespace {
 
 constexpr std::size_t at_once = 16;
@@ -64,7 +62,7 @@ int main(int count, char** words) {
     if (!file) return 2;
     const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
     if (bytes.empty() || bytes[0] & 128) {  // forged states are no sessions
-      LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+      fuzz::play(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
       continue;
     }
     Input& input = inputs.emplace_back(Input{bytes});
