@@ -69,6 +69,14 @@ def test_a_restored_ending_is_still_an_ending_in_any_instance(wheel):
     assert (other.step(1.0), other.status(LAST_SUCCESSFUL_TIME), other.bits()) == (DISCARD, end, bits)
 
 
+@pytest.mark.parametrize("values", [{}, {"s": 0.03}], ids=["unfolded", "stepped"])
+def test_a_terminated_wheel_is_read_where_it_stopped(wheel, values):
+    read, unread = (wheel().start(**values) for _ in range(2))
+    assert read.step(1.0) == unread.step(1.0) == OK
+    want = read.bits()
+    assert unread.terminate() == OK and unread.bits() == want
+
+
 def test_times_in_messages_have_the_digits_they_need(wheel):
     w = wheel().start()
     w.run([0.1])

@@ -155,7 +155,8 @@ def test_a_law_a_ground_or_a_count_that_no_rolling_wheel_has_is_refused(wheel, k
     assert w.run([0.7])
     blob = w.serialized()
     grounds = (0, 3) if keep_contact else (0, 2)
-    for changes in (*({"ground": k} for k in grounds), *({"sigma": x} for x in (-0.5, 0.5, 2.0, np.nan)), {"law": 1}):
+    signs = ({"sigma": x} for x in (-0.5, 0.5, 2.0, np.nan))
+    for changes in (*({"ground": k} for k in grounds), *signs, {"law": 1}, {"layer": 2}):
         assert w.restore(forged(w, blob, **changes)) == ERROR, changes
     first, words = place_of(w, "transitions"), words_of(blob)
     for place in range(first, first + 6):  # the counters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from ctypes import byref
+from ctypes import CDLL, Structure, byref, c_size_t
 from threading import Thread
 
 import numpy as np
@@ -81,6 +81,24 @@ def test_a_thousand_instances_live_side_by_side_and_can_be_freed_in_any_order(wh
     for component in (*kept, *again):
         w.fmi2FreeInstance(component)
     assert w.start().step(1.0) == OK
+
+
+@pytest.mark.parametrize("method", ["adams", "bdf", "runge_kutta"])
+def test_a_freed_instance_gives_its_memory_back(wheel, method):
+    """The bytes in use on the heap of the C library, before and after twenty lives."""
+
+    class Heap(Structure):
+        _fields_ = (("numbers", c_size_t * 10),)
+
+    heap = CDLL(None).mallinfo2
+    heap.restype = Heap
+    in_use = []
+    for _ in range(40):
+        w = wheel().start(method=method)
+        assert w.step(1.0) == OK
+        w.close()
+        in_use.append(heap().numbers[7])
+    assert in_use[-1] - in_use[19] < 20 * 2000
 
 
 @pytest.mark.parametrize(

@@ -63,6 +63,7 @@ def test_each_fault_alone_is_told_and_after_a_reset_and_a_correction_the_wheel_r
         ({"theta_start": np.pi}, "theta_start = 3.14159265 rad"),
         ({"theta_start": 4.0}, "theta_start = 4 rad"),
         ({"m": 0.0}, "m = 0: it must be greater than 0."),
+        ({"m": -1 / 3}, "m = -0.333333333: it must be greater than 0."),
         ({"r_0": -0.3}, "r_0 = -0.3: it must be greater than 0."),
         ({"J_x": -1e-9}, "J_x = -1e-09: it must be greater than 0."),
         ({"J_x": 0.0}, "J_x = 0: it must be greater than 0."),
@@ -94,6 +95,18 @@ def test_a_weight_that_moves_nothing_is_none(wheel, s):
         assert w.step(5.0) == OK, w.sentences
         places.append(w.get("X_O", "theta", "psi", "phi"))
     within(absolute_error(places[0], places[1]), 1e-14, "places")
+
+
+@pytest.mark.parametrize("most", ["psi_dot_start", "theta_dot_start", "phi_dot_start"])
+def test_without_a_weight_rates_of_a_thousand_times_give_the_same_motion_as_much_faster(wheel, most):
+    """To the bit, since the factor is 1024: nothing else has a time of its own."""
+    places = []
+    for faster in (1, 1024):
+        rates = {f"{angle}_dot_start": faster * 0.25 for angle in ("psi", "theta", "phi")} | {most: 2.0 * faster}
+        w = wheel().start(g=0.0, keep_contact=True, J_x=0.95, s=0.03, **rates)
+        assert w.step(0.5 / faster) == OK
+        places.append(w.get("X_O", "theta", "psi", "phi", "n_steps"))
+    assert places[0] == places[1]
 
 
 def test_faulty_parameters_can_be_corrected_in_initialization_mode_also_in_a_restored_state(wheel):

@@ -80,6 +80,16 @@ def test_rates_under_a_stiff_regularized_law_are_as_exact(width: tuple[float, fl
     beyond(rows.error(rows.rates(eq.REDUCED), judge), 4e-6, "error")
 
 
+def test_rates_of_a_wheel_that_turns_fast_on_the_spot_are_as_exact() -> None:
+    rows = Rows(eq.ROLLING)
+    for name, value in {"theta": np.pi / 2, "theta_dot": 0, "phi_dot": 0, "psi_dot": 1000}.items():
+        rows.motions[name] = value
+    judge = rows.judged()
+    within(rows.error(rows.rates(eq.REDUCED), judge), BOUND, "error")
+    rows.motions["psi_dot"] *= 1 + 1e-6
+    beyond(rows.error(rows.rates(eq.REDUCED), judge), 1e-7, "error")
+
+
 @LAWS
 def test_the_multibody_form_gives_the_rates_of_the_reduced_form(law: int) -> None:
     rows = Rows(law)

@@ -7,6 +7,7 @@ from ctypes import byref, c_double
 import numpy as np
 import pytest
 from contract.call_states import EXCHANGE, call
+from contract.test_foreign_states import AT_START, STEPPING, UNFOLDED, forged
 from equations.multibody_transcription import omega_z_dot, solved
 from equations.paper_transcription import Paper, times
 from support import equations as eq
@@ -43,6 +44,14 @@ def test_the_derivatives_are_the_variables_of_that_name(library: Library) -> Non
     with at_odd(library, s=0.02) as wheel:
         assert wheel.derivatives().tolist() == wheel.get(*DERIVATIVES)
         beyond(np.abs(wheel.derivatives() - wheel.get(*reversed(DERIVATIVES))).max(), 1, "in another order")
+
+
+def test_a_state_in_a_phase_of_co_simulation_is_refused(library: Library) -> None:
+    with exchange(library) as wheel:
+        blob = wheel.serialized()
+        for phase in (AT_START, STEPPING, UNFOLDED):
+            assert wheel.restore(forged(wheel, blob, phase=phase)) == ERROR, phase
+        assert wheel.restore(forged(wheel, blob)) == OK  # the partner
 
 
 def test_a_restored_wheel_goes_on_with_the_same_bits(library: Library) -> None:
@@ -150,8 +159,9 @@ def test_a_held_wheel_stays_at_exactly_zero(library: Library) -> None:
         assert wheel.get("friction_mode") == [0]
         x = wheel.x()
         assert wheel.derivatives()[-1] == 0
+        assert wheel.indicators()[0] == pytest.approx(0.03 / 0.35)  # s N over m g (r_0 + r)
         wheel.place(0.1, x + np.array([0, 0, 0, 0, 0, 0, 0, 1e-19]))
-        assert wheel.event().valuesOfContinuousStatesChanged
+        assert wheel.event().valuesOfContinuousStatesChanged == 1
         assert wheel.x()[-1] == 0
 
 
@@ -190,7 +200,8 @@ def test_the_multibody_form_is_refused_with_a_sentence(library: Library) -> None
 def test_calls_of_co_simulation_are_refused(library: Library) -> None:
     with exchange(library, logging=True) as wheel:
         assert wheel.fmi2DoStep(wheel.component, 0.0, 0.1, 0) == ERROR
-        assert "fmi2DoStep" in wheel.sentences[-1] and "model exchange" in wheel.sentences[-1]
+        other = "fmi2DoStep belongs to co-simulation; this instance was made for model exchange."
+        assert wheel.sentences[-1] == other
         assert wheel.set_input_derivatives(["F_X"], [[1.0]]) == ERROR
 
 
@@ -223,6 +234,7 @@ def test_wrong_arrays_and_numbers_are_refused_and_change_nothing(library: Librar
         assert wheel.fmi2GetEventIndicators(wheel.component, (c_double * 4)(), 4) == ERROR
         assert wheel.fmi2SetContinuousStates(wheel.component, (c_double * 8)(*[np.nan] * 8), 8) == DISCARD
         assert wheel.fmi2SetTime(wheel.component, np.inf) == ERROR
+        assert wheel.fmi2CompletedIntegratorStep(wheel.component, 1, None, None) == ERROR
         assert (wheel.x() == ODD).all()
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from reference import Start, Wheel
 from support.bounds import beyond, within
+from support.closed_forms import critical_spin
 
 from .orbit import Array, Halves, Orbit, stepped
 
@@ -147,8 +148,8 @@ def test_straight_rolling_above_the_critical_speed_needs_no_step(library: ctypes
     within(abs(y[6] - want[0]) / abs(want[1]), 1e-14, "state, 2")
 
 
-def test_below_the_critical_speed_straight_rolling_is_not_taken_for_steady(library: ctypes.CDLL) -> None:
-    for phi_dot in (0.0, -0.3, -1.0, -2.0):
+def test_below_the_critical_speed_and_next_to_it_straight_rolling_is_not_taken_for_steady(library: ctypes.CDLL) -> None:
+    for phi_dot in (0.0, -0.3, -1.0, -2.0, *(-critical_spin(Wheel()) * (1 + above) for above in (1e-9, 1e-4))):
         orbit = Orbit(library, start=Start(theta=np.pi / 2, phi_dot=phi_dot))
         assert orbit.kind == "refused" or orbit.steps > 100  # a nutation that begins by rounding takes its time
     assert Orbit(library, start=Start(theta=np.pi / 2, phi_dot=0.0)).kind == "ended"  # it falls flat

@@ -86,6 +86,14 @@ def test_a_peak_that_stays_below_the_weight_does_not(wheel, kind, s):
         assert lift_off(wheel, kind, {"F_Z": [WEIGHT * c for c in shape]}, s=s) is None
 
 
+@pytest.mark.parametrize("kind", KINDS, ids=str)
+def test_a_wheel_of_next_to_no_mass_lifts_off_at_the_same_instant(wheel, kind):
+    """A billionth of all masses and of the load: the unit of force has no meaning."""
+    light = {name: 1e-9 * getattr(PAPER, name) for name in ("m", "J_x", "J_y", "J_z")}
+    found = lift_off(wheel, kind, {"F_Z": [1e-9 * WEIGHT * c for c in SHAPES["cubic"]]}, **light)
+    within(abs(found - first_root(SHAPES["cubic"])), INSTANT, "first root")
+
+
 @pytest.mark.parametrize("s", [0.0, 0.03])
 @pytest.mark.parametrize("ramp", [100.0, 1e4])
 def test_two_inputs_that_nearly_cancel_hide_nothing(wheel, ramp, s):

@@ -40,6 +40,13 @@ def test_the_log_of_a_ground_that_pulls_often_does_not_depend_on_the_grid(wheel,
     assert 99 < float(words[-3]) < 100
 
 
+def test_pulls_of_a_wheel_that_falls_flat_are_summed_up_once(wheel):
+    w = stepped(wheel().start(keep_contact=True, theta_start=0.3, phi_dot_start=0.0, method=4), [0.05])
+    assert w.restore(forged(w, w.serialized(), pulls=MANY + 1)) == OK
+    assert (w.step_to(9.0), w.terminate()) == (DISCARD, OK)
+    assert [sentence[:33] for sentence in told(w)] == ["The ground has pulled 101 times, "]
+
+
 def test_few_pulls_are_not_summed_up(wheel):
     w = stepped(wheel().start(**PULLING), [1.0])
     assert 0 < len(told(w)) < MANY and w.terminate() == OK

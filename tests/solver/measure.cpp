@@ -4,24 +4,16 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "problems.hpp"
+#include "measure.hpp"
 #include "snapshots.hpp"
 #include "table.hpp"
+#include "vector.hpp"
 
 using solver::Method;
 using solver::Outcome;
 using solver::Solver;
 
 namespace {
-
-struct Arguments {
-  Method method;
-  double a, b;
-};
-
-struct Started : Solver {
-  Started(Case& c, Method method) { start(c.problem(), method, 0, c.y.data()); }
-};
 
 void table(const Arguments&) { print_table(); }
 
@@ -69,76 +61,8 @@ void grid(const Arguments& args) {
   const int points = static_cast<int>(args.a);
   double y[2];
   for (int i = 1; i <= points; ++i) run_to(s, 20.0 * i / points), s.read(20.0 * i / points, y);
-  std::printf("{\"y\": \"%a %a\", \"until\": \"%a\", \"steps\": %lld, \"rhs\": %lld}\n", y[0], y[1], s.known_until(),
-              s.counters().steps, s.counters().rhs);
-}
-
-// a: depth of a dip of g = 1 + sin t - a below zero at t = 3 pi / 2. Instants of the falls up to t = 20.
-void dip(const Arguments& args) {
-  Case c = harmonic();
-  c.tolerance = 1e-6;
-  c.each_step = [&](double, const double* y) { return 1 - y[1] - args.a; };
-  Started s(c, args.method);
-  std::printf("{\"falls\": [");
-  const char* comma = "";
-  while (!s.reaches(20)) {
-    const Outcome outcome = run_to(s, 20);
-    if (outcome != Outcome::event) break;
-    const double t = s.event_time(), past = 2 * std::acos(1 - args.a) + 0.1;
-    std::printf("%s%.17g", comma, t);
-    comma = ", ";
-    const double y[2] = {std::cos(t + past), -std::sin(t + past)};
-    s.restart(c.problem(), args.method, t + past, y);
-  }
-  std::printf("], \"steps\": %lld, \"roots\": %lld}\n", s.counters().steps, s.counters().roots);
-}
-
-// g = (t - 0.3)^2 (t - 0.7)^2 - a with the extremes told (b = 1) or not: the first fall as `ended`.
-void double_dip(const Arguments& args) {
-  Case c = clock_only(1);
-  c.by_margin = [&](double t, const double*) { return std::pow((t - 0.3) * (t - 0.7), 2) - args.a; };
-  if (args.b != 0) c.extremes = {0.3, 0.5, 0.7};
-  Started s(c, args.method);
-  const Outcome outcome = run_to(s, 2);
-  std::printf("{\"ended\": %s, \"time\": %.17g}\n", s.event() == 2 && outcome == Outcome::event ? "true" : "false",
-              s.event_time());
-}
-
-// g = (t - c)^2 - w^2 on [0, 1] for a hundred centres c and half widths w from `a` down to 1e-7 `a`: the
-// largest error of the first fall, at c - w, in units of w; infinite where a dip is missed.
-void dips(const Arguments& args) {
-  double worst = 0;
-  long long roots = 0;
-  for (int i = 0; i < 100; ++i) {
-    const double centre = std::fmod(0.5 + 0.6180339887 * i, 0.8) + 0.1, width = args.a * std::pow(10, -0.07 * i);
-    Case c = clock_only(1);
-    c.each_step = [=](double t, const double*) { return (t - centre) * (t - centre) - width * width; };
-    Started s(c, args.method);
-    const Outcome outcome = run_to(s, 1);
-    worst =
-        std::fmax(worst, outcome == Outcome::event ? std::fabs(s.event_time() - (centre - width)) / width : INFINITY);
-    roots += s.counters().roots;
-  }
-  std::printf("{\"worst\": %.17g, \"roots\": %lld}\n", worst, roots);
-}
-
-// g = 1 up to t = 0.5, a bend that is told, then 25 (t - 0.7)^2 - a: the first fall in a step of 1 s.
-void later_piece(const Arguments& args) {
-  Case c = clock_only(1);
-  c.each_step = [&](double t, const double*) { return t < 0.5 ? 1 : 25 * (t - 0.7) * (t - 0.7) - args.a; };
-  c.extremes = {0.5};
-  Started s(c, args.method);
-  const Outcome outcome = run_to(s, 1);
-  std::printf("{\"event\": %s, \"time\": %.17g}\n", outcome == Outcome::event ? "true" : "false", s.event_time());
-}
-
-// A release: g = t^2 (a - t) starts at zero with rate zero, rises, and falls at a.
-void release(const Arguments& args) {
-  Case c = clock_only(1);
-  c.each_step = [&](double, const double* y) { return y[0] * y[0] * (args.a - y[0]); };
-  Started s(c, args.method);
-  const Outcome outcome = run_to(s, 10 * args.a);
-  std::printf("{\"event\": %s, \"time\": %.17g}\n", outcome == Outcome::event ? "true" : "false", s.event_time());
+  std::printf("{\"y\": \"%a %a\", \"until\": \"%a\", \"steps\": %lld, \"rhs\": %lld, \"roots\": %lld}\n", y[0], y[1],
+              s.known_until(), s.counters().steps, s.counters().rhs, s.counters().roots);
 }
 
 // A ball dropped from 1 m keeps the share a of its speed at each of ten bounces. Instants of the bounces.
@@ -214,23 +138,40 @@ void first_step(const Arguments& args) {
   const double free_size = s.known_until() - s.step_start();
   s.restart(c.problem(), args.method, s.known_until(), y);
   s.limit_first_step(args.a);
+  const long long before = s.counters().rhs;
   s.step();
+  const long long rhs = s.counters().rhs - before;
   const double limited = s.known_until() - s.step_start();
   s.step();
-  std::printf("{\"free\": %.17g, \"limited\": %.17g, \"next\": %.17g}\n", free_size, limited,
-              s.known_until() - s.step_start());
+  std::printf("{\"free\": %.17g, \"limited\": %.17g, \"next\": %.17g, \"rhs\": %lld}\n", free_size, limited,
+              s.known_until() - s.step_start(), rhs);
 }
 
+void vector(const Arguments& args) { measure_vector(static_cast<int>(args.a)); }
 void snapshots(const Arguments& args) { measure_snapshots(args.method, static_cast<int>(args.a)); }
 void forgeries(const Arguments& args) { measure_forgeries(args.method); }
 
 constexpr struct {
   const char* name;
   void (*measure)(const Arguments&);
-} all[] = {{"table", table},     {"order", order},           {"accuracy", accuracy},   {"grid", grid},
-           {"dip", dip},         {"double_dip", double_dip}, {"dips", dips},           {"later_piece", later_piece},
-           {"release", release}, {"bounces", bounces},       {"cuts", cuts},           {"failure", failure},
-           {"stiff", stiff},     {"first_step", first_step}, {"snapshots", snapshots}, {"forgeries", forgeries}};
+} all[] = {{"table", table},
+           {"order", order},
+           {"accuracy", accuracy},
+           {"grid", grid},
+           {"dip", dip},
+           {"double_dip", double_dip},
+           {"dips", dips},
+           {"later_piece", later_piece},
+           {"release", release},
+           {"bounces", bounces},
+           {"cuts", cuts},
+           {"failure", failure},
+           {"stiff", stiff},
+           {"first_step", first_step},
+           {"snapshots", snapshots},
+           {"forgeries", forgeries},
+           {"vector", vector},
+           {"dip_beside_a_fall", dip_beside_a_fall}};
 
 }  // namespace
 

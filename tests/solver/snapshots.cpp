@@ -82,7 +82,7 @@ void measure_forgeries(solver::Method method) {
     words.push_back(0);
     std::memcpy(&words.back(), &x, sizeof x);
   }
-  int tried = 0, taken = 0, stepped = 0, not_numbers = 0;
+  int tried = 0, taken = 0, stepped = 0, not_numbers = 0, stained = 0;
   for (std::size_t at = 0; at < bytes.size(); at += 8)
     for (const std::uint64_t word : words) {
       auto forged = bytes;
@@ -90,7 +90,13 @@ void measure_forgeries(solver::Method method) {
       if (forged == bytes) continue;
       ++tried;
       Solver s;
-      if (!restore(s, c, forged)) continue;
+      if (!restore(s, c, forged)) {
+        s.start(c.problem(), method, 0, c.y.data());
+        Solver fresh;
+        fresh.start(c.problem(), method, 0, c.y.data());
+        stained += !same_steps(s, fresh, 3);
+        continue;
+      }
       ++taken;
       double value;
       std::memcpy(&value, &word, sizeof value);
@@ -99,10 +105,17 @@ void measure_forgeries(solver::Method method) {
       double y[2];
       s.read(s.known_until(), y);
     }
+  auto halfway = bytes;  // the step that is known to half of it alone
+  constexpr std::size_t time_known = 3 * 8;
+  const double half = 0.5 * (original.step_start() + original.known_until());
+  std::memcpy(halfway.data() + time_known, &half, sizeof half);
   Solver s;
+  const bool half_known = restore(s, c, halfway);
   int cut = 0;
   for (std::size_t size = 0; size < bytes.size(); size += 8)
     cut += restore(s, c, std::vector<unsigned char>(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)));
-  std::printf("{\"tried\": %d, \"taken\": %d, \"not_numbers\": %d, \"stepped\": %d, \"cut\": %d}\n", tried, taken,
-              not_numbers, stepped, cut);
+  std::printf(
+      "{\"tried\": %d, \"taken\": %d, \"not_numbers\": %d, \"stepped\": %d, \"cut\": %d, "
+      "\"stained\": %d, \"half_known\": %d}\n",
+      tried, taken, not_numbers, stepped, cut, stained, half_known);
 }

@@ -38,9 +38,14 @@ def test_the_work_of_the_search_is_bounded(measure, method):
 def test_of_two_dips_between_bends_the_first_is_found(measure, method, depth):
     """g = (t - 0.3)^2 (t - 0.7)^2 - depth, in a step of 1 s whose extremes are told."""
     end = measure("double_dip", method, depth, 1.0)
-    assert end["ended"]
+    assert end["event"] == 2
     # The first root: (t - 0.3) (0.7 - t) = -sqrt(depth).
     within(absolute_error(end["time"], 0.5 - sqrt(0.04 + sqrt(depth))), 1e-14, "time")
+
+
+def test_a_function_that_falls_to_a_twentieth_of_its_range_is_looked_at_again(measure):
+    """Three samples lie on a straight line above zero."""
+    assert measure("dip_beside_a_fall")["event"]
 
 
 @pytest.mark.parametrize("depth", [1e-2, 1e-6, 1e-10])
@@ -52,7 +57,7 @@ def test_each_piece_between_bends_is_searched_by_itself(measure, method, depth):
 
 
 def test_above_zero_two_dips_end_nothing(measure, method):
-    assert not measure("double_dip", method, -1e-8, 1.0)["ended"]
+    assert not measure("double_dip", method, -1e-8, 1.0)["event"]
 
 
 @pytest.mark.parametrize("last", [0.5, 1e-2, 1e-3, 1e-5])

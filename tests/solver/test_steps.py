@@ -2,6 +2,7 @@
 
 from math import log2
 
+import numpy as np
 import pytest
 from support.bounds import absolute_error, beyond, relative_error, within
 
@@ -42,6 +43,19 @@ def test_after_a_change_runge_kutta_steps_no_further_than_the_last_interval_and_
     sizes = measure("first_step", "runge_kutta", 0.01)
     within(relative_error(sizes["limited"], 0.01), 2e-14, "limited")
     beyond(sizes["next"] / sizes["free"], 0.9, "next")
+    assert sizes["rhs"] == 12  # what only its dense output needs is left out
+
+
+@pytest.mark.parametrize("states", [3, 8, 12])
+def test_the_vector_does_what_sundials_asks_of_it_and_its_padding_stays_zero(measure, states):
+    run = measure("vector", "adams", states)
+    x, y = np.arange(states) - 1.25, np.arange(states) + 2.0
+    asked = {"const": 0 * x + 3, "sum": 2 * x - 3 * y, "product": x * y, "quotient": x / y}
+    asked |= {"scaled": -2 * x, "abs": abs(x), "inverse": 1 / x, "shifted": x + 0.5}
+    for name, want in asked.items():
+        assert run[name] == [*want, *[0] * (len(run[name]) - states)], name
+    assert run["largest"] == abs(x).max() and run["fused"]
+    within(relative_error(run["norm"], np.sqrt(((x * y) ** 2).mean())), 1e-14, "norm")
 
 
 @pytest.mark.parametrize("kind", [0, 1], ids=["a solution that ends", "rates that end"])
