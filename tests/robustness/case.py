@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from reference import Start, Wheel
 from support.driver import Values
-from support.scenes import PAPER, motion_of, wheel_of
+from support.scenes import PAPER, Started
 
 PI = np.pi
 
@@ -25,7 +24,7 @@ class Expectation:
 
 
 @dataclass(frozen=True)
-class Case:
+class Case(Started):
     """One wheel. start: changes of the FMU's start values; judges: names of judges.py with the bound of each, in
     multiples of the tolerance; instant: the same for the instant of the ending, s; loosest: the largest tolerance at
     which the expectation is claimed."""
@@ -49,14 +48,6 @@ class Case:
     @property
     def times(self) -> np.ndarray:
         return self.start_time + np.linspace(0.0, self.duration, self.samples + 1)
-
-    @property
-    def wheel(self) -> Wheel:
-        return wheel_of(self.start)
-
-    @property
-    def motion(self) -> Start:
-        return motion_of(self.start)
 
 
 def tilted(degrees: float, **others: float) -> Values:

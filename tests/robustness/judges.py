@@ -125,16 +125,7 @@ def fixed(_: Case, run: Run) -> float:
 
 
 RATES = ("omega_z", "lambda_3")  # whose rates friction_work reads
-JUDGES = {
-    "energy": energy,
-    "integrals": integrals,
-    "reference": reference,
-    "still": still,
-    "straight": straight,
-    "linear": linear,
-    "uniform": uniform,
-    "fixed": fixed,
-}
+JUDGES = {of.__name__: of for of in (energy, integrals, reference, still, straight, linear, uniform, fixed)}
 FLOORS = {"energy": 2e-12, "integrals": 1e-10, "reference": 1e-9, "straight": 1e-12, "linear": 3e-6, "uniform": 1e-12}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 
@@ -28,121 +29,91 @@ def inertia(wheel: Wheel) -> dict[str, float]:
     return {"J_x": wheel.J_x, "J_y": wheel.J_y, "J_z": wheel.J_z}
 
 
-def falls() -> list[Case]:
-    cases = []
+def falls() -> Iterator[Case]:
     for degrees, instant in ((89.999, 2e3), (75.0, 10.0), (45.0, 10.0), (10.0, 10.0), (1.0, 10.0)):
         start = tilted(degrees, phi_dot_start=0.0)
         remark = "1.7e-5 rad from the unstable equilibrium: errors grow 1e4-fold" if degrees > 89 else ""
-        cases.append(
-            Case("fall from rest", f"{degrees:g} deg", start, 5.0, fall(degrees), FREE, instant=instant, remark=remark)
-        )
-    return cases
+        name, end = f"{degrees:g} deg", fall(degrees)
+        yield Case("fall from rest", name, start, 5.0, end, FREE, instant=instant, remark=remark)
 
 
-def uprights() -> list[Case]:
-    limit = critical_spin(PAPER)
-    cases = [
-        Case("upright", "at rest, 2 s", {"theta_start": PI / 2, "phi_dot_start": 0.0}, 2.0, judges=(("still", 1.0),)),
-        Case(
-            "upright", "rolling at 4 rad/s", {"theta_start": PI / 2, "phi_dot_start": -4.0}, judges=(("straight", 1.0),)
-        ),
-    ]
+def uprights() -> Iterator[Case]:
+    limit, upright = critical_spin(PAPER), {"theta_start": PI / 2}
+    yield Case("upright", "at rest, 2 s", {**upright, "phi_dot_start": 0.0}, 2.0, judges=(("still", 1.0),))
+    yield Case("upright", "rolling at 4 rad/s", {**upright, "phi_dot_start": -4.0}, judges=(("straight", 1.0),))
     for name, ratio in (("1 % below", 0.99), ("1 % above", 1.01)):
         start = {"theta_start": PI / 2 - 1e-5, "phi_dot_start": -ratio * limit}
         judges = (*FREE, ("linear", 100.0))
-        cases.append(Case("stability limit", f"{name} {limit:.4f} rad/s, lean 1e-5", start, 5.0, judges=judges))
-    return cases
+        yield Case("stability limit", f"{name} {limit:.4f} rad/s, lean 1e-5", start, 5.0, judges=judges)
 
 
-def spins() -> list[Case]:
+def spins() -> Iterator[Case]:
     start = {"theta_start": PI / 2 - 0.1}
     instant = fall_time(PAPER, PI / 2 - 0.1, FLAT)
-    cases = [
-        Case("spin", "1e-9 rad/s", {**start, "phi_dot_start": -1e-9}, 2.0, Expectation("flat", instant), FREE),
-        Case("spin", "1e-6 rad/s: clears the ground by 1e-7 m", {**start, "phi_dot_start": -1e-6}, 1.0),
-    ]
+    yield Case("spin", "1e-9 rad/s", {**start, "phi_dot_start": -1e-9}, 2.0, Expectation("flat", instant), FREE)
+    yield Case("spin", "1e-6 rad/s: clears the ground by 1e-7 m", {**start, "phi_dot_start": -1e-6}, 1.0)
     for spin in (1e-3, 1.0, 1e2, 1e3, 1e4):
         remark = "N ~ omega_z omega_2: an error of 1e-3 rad/s in omega_2 lifts the wheel" if spin == 1e4 else ""
         loosest = 1e-6 if spin == 1e4 else 1e-4
         spinning = {**start, "phi_dot_start": -spin}
-        cases.append(Case("spin", f"{spin:g} rad/s", spinning, 1.0, remark=remark, loosest=loosest))
-    return cases
+        yield Case("spin", f"{spin:g} rad/s", spinning, 1.0, remark=remark, loosest=loosest)
 
 
-def tilts() -> list[Case]:
+def tilts() -> Iterator[Case]:
     judges, remark = (("energy", 200.0), ("integrals", 200.0)), "one error per bounce, some fifty bounces"
-    cases = []
     for degrees in (1.0, 0.1, 0.01):
         start = brushing(degrees)
         name = f"theta = {degrees:g} deg, psi_dot = {start['psi_dot_start']:.0f} rad/s"
-        cases.append(Case("brushing the ground", name, start, judges=judges, samples=2000, remark=remark))
+        yield Case("brushing the ground", name, start, judges=judges, samples=2000, remark=remark)
     for degrees, bound in ((91.0, 10.0), (100.0, 10.0), (135.0, 20.0), (170.0, 200.0)):
         judges = (("energy", bound), ("integrals", bound))
-        cases.append(Case("past upright", f"theta = {degrees:g} deg", tilted(degrees), judges=judges))
-    return cases
+        yield Case("past upright", f"theta = {degrees:g} deg", tilted(degrees), judges=judges)
 
 
-def frictions() -> list[Case]:
-    cases = [Case("friction", "the paper's, s = 0.03 m", {"s": 0.03}, 10.0, judges=CHECKED, samples=10000)]
+def frictions() -> Iterator[Case]:
+    yield Case("friction", "the paper's, s = 0.03 m", {"s": 0.03}, 10.0, judges=CHECKED, samples=10000)
     for s in (0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1):
-        cases.append(Case("friction", f"s = {s:g} m", {"s": s}, 5.0, judges=CHECKED, samples=4000))
+        yield Case("friction", f"s = {s:g} m", {"s": s}, 5.0, judges=CHECKED, samples=4000)
     for s in (1.0, 10.0):
         judges = (("energy", 1e3), ("fixed", 0.0), ("reference", 1e5))
-        cases.append(Case("friction", f"s = {s:g} m", {"s": s}, 5.0, judges=judges, samples=20000))
-    return cases
+        yield Case("friction", f"s = {s:g} m", {"s": s}, 5.0, judges=judges, samples=20000)
 
 
-def sticking() -> list[Case]:
+def sticking() -> Iterator[Case]:
     start = spinless(75.0, 3.0, theta_dot_start=1.0)
     rates = (3.0, 1.0, start["phi_dot_start"])
     held = accelerations(PAPER, (PI / 2, start["theta_start"], 0.0), rates, sigma=None)
     edge = abs(held.tau) / held.lambda_3
-    still = tilted(75.0, phi_dot_start=0.0, s=0.03)
-    cases = [Case("omega_z = 0 at the start", "at rest: sticks and falls", still, 2.0, fall(75.0), CHECKED, 2000)]
+    still, group = tilted(75.0, phi_dot_start=0.0, s=0.03), "omega_z = 0 at the start"
+    yield Case(group, "at rest: sticks and falls", still, 2.0, fall(75.0), CHECKED, 2000)
     for name, s in (("sticks", 2 * edge), ("released at once", edge / 2), ("on the edge |tau| = s N", edge)):
-        cases.append(
-            Case(
-                "omega_z = 0 at the start",
-                f"{name}, s = {s:.4g} m",
-                {**start, "s": s},
-                5.0,
-                judges=CHECKED,
-                samples=5000,
-            )
-        )
-    return cases
+        yield Case(group, f"{name}, s = {s:.4g} m", {**start, "s": s}, 5.0, judges=CHECKED, samples=5000)
 
 
-def shapes() -> list[Case]:
-    wide = {"r": 30.0, "J_x": 9e3, "J_y": 9e3, "J_z": 9e3}
-    cases = [
-        Case("shape", "thin disc r = 0", {"r": 0.0}, judges=(*FREE, ("reference", 1e3))),
-        Case("shape", "thin disc with friction", {"r": 0.0, "s": 0.03}, 5.0, judges=CHECKED, samples=5000),
-        Case("shape", "r = 100 r_0", wide),
-    ]
+def shapes() -> Iterator[Case]:
+    yield Case("shape", "thin disc r = 0", {"r": 0.0}, judges=(*FREE, ("reference", 1e3)))
+    yield Case("shape", "thin disc with friction", {"r": 0.0, "s": 0.03}, 5.0, judges=CHECKED, samples=5000)
+    yield Case("shape", "r = 100 r_0", {"r": 30.0, "J_x": 9e3, "J_y": 9e3, "J_z": 9e3})
     for r_0 in (1e-3, 1e3):
         scale = r_0 / PAPER.r_0
-        cases.append(Case("shape", f"r_0 = {r_0:g} m, to scale", similar(scale), 10.0 * scale**0.5))
-        cases.append(Case("shape", f"r_0 = {r_0:g} m, the paper's J", {"r_0": r_0}))
+        yield Case("shape", f"r_0 = {r_0:g} m, to scale", similar(scale), 10.0 * scale**0.5)
+        yield Case("shape", f"r_0 = {r_0:g} m, the paper's J", {"r_0": r_0})
     for mass in (1e-6, 1e6):
-        cases.append(Case("mass", f"m = {mass:g} kg, to scale", similar(1.0, mass)))
-        cases.append(Case("mass", f"m = {mass:g} kg, the paper's J", {"m": mass}))
-    return cases
+        yield Case("mass", f"m = {mass:g} kg, to scale", similar(1.0, mass))
+        yield Case("mass", f"m = {mass:g} kg, the paper's J", {"m": mass})
 
 
 def inertias() -> list[Case]:
     energy, general = (("energy", 10.0),), (("energy", 10.0), ("reference", 1e3))
-    limit = {"J_x": 1.8, "J_y": 0.9, "J_z": 0.9}
+    limit, double = {"J_x": 1.8, "J_y": 0.9, "J_z": 0.9}, {"J_x": 1.8, "J_y": 0.9}
     return [
         Case("inertia", "the paper's: the limit J_z = J_x + J_y", judges=(*FREE, ("reference", 1e3))),
         Case("inertia", "nearly spherical, 1e-9", {"J_x": 1.0, "J_y": 1.0, "J_z": 1 + 1e-9}),
         Case("inertia", "J_x, J_y differ by 1e-12", {"J_y": 0.9 * (1 - 1e-12)}, judges=FREE),
         Case("inertia", "... with friction", {"J_y": 0.9 * (1 - 1e-12), "s": 0.03}, 5.0, judges=CHECKED, samples=5000),
-        Case("inertia", "J_x = 2 J_y", {"J_x": 1.8, "J_y": 0.9}, 5.0, judges=general),
+        Case("inertia", "J_x = 2 J_y", double, 5.0, judges=general),
         Case("inertia", "J_x = J_y + J_z", limit, 5.0, judges=energy),
-        Case(
-            "inertia", "J_x = 2 J_y, friction", {"J_x": 1.8, "J_y": 0.9, "s": 0.03}, 5.0, judges=CHECKED, samples=5000
-        ),
+        Case("inertia", "J_x = 2 J_y, friction", {**double, "s": 0.03}, 5.0, judges=CHECKED, samples=5000),
         Case("inertia", "multibody, the paper's wheel", {"formulation": "multibody"}, judges=FREE),
         Case("inertia", "multibody, friction", {"formulation": "multibody", "s": 0.03}, judges=CHECKED, samples=10000),
     ]
@@ -158,30 +129,25 @@ def weightless() -> list[Case]:
     ]
 
 
-def lift_offs() -> list[Case]:
-    light, rest = inertia(LIGHT), tilted(75.0, phi_dot_start=0.0)
-    lifts = Expectation("lifts", fall_lift_off(LIGHT, THETA_0))
-    cases = [
-        Case("lift-off", "light wheel falling from 75 deg", {**light, **rest}, 2.0, lifts, FREE),
-        Case(
-            "lift-off", "the same, contact kept", {**light, **rest, "keep_contact": True}, 2.0, fall(75.0, LIGHT), FREE
-        ),
-    ]
+def lift_offs() -> Iterator[Case]:
+    rest = tilted(75.0, phi_dot_start=0.0)
+    light, lifts = {**inertia(LIGHT), **rest}, Expectation("lifts", fall_lift_off(LIGHT, THETA_0))
+    yield Case("lift-off", "light wheel falling from 75 deg", light, 2.0, lifts, FREE)
+    yield Case("lift-off", "the same, contact kept", {**light, "keep_contact": True}, 2.0, fall(75.0, LIGHT), FREE)
     for spin, s in ((-0.1, 0.0), (-1.0, 0.0), (-0.6, 0.03), (-1.0, 0.03)):
         rolling = {"J_x": 0.1, "J_y": 0.1, "J_z": 0.1, "phi_dot_start": spin, "s": s}
         name = f"light wheel rolling at {-spin:g} rad/s, s = {s:g} m"
-        cases.append(Case("lift-off", name, rolling, 2.0, reference_ending(rolling), CHECKED, 4000))
+        yield Case("lift-off", name, rolling, 2.0, reference_ending(rolling), CHECKED, 4000)
     pulled = {"J_x": 0.1, "J_y": 0.1, "J_z": 0.1, "phi_dot_start": -0.3, "s": 0.03, "keep_contact": True}
     name, remark = "contact kept with friction, s = 0.03 m", "a ground that pulls has no rolling friction"
     judges = (("fixed", 0.0), ("reference", 1e3))  # no energy: the mode does not show where the ground pulls
-    cases.append(Case("lift-off", name, pulled, 0.9, judges=judges, samples=2000, remark=remark))
+    yield Case("lift-off", name, pulled, 0.9, judges=judges, samples=2000, remark=remark)
     for name, force in (("just leaves", -1e-6), ("just stays", 1e-6)):
         wheel = grazing(force)
         ending = Expectation("lifts", fall_lift_off(wheel, THETA_0)) if force < 0 else fall(75.0, wheel)
         touching = Case("lift-off", f"{name}: least N = {force:g} m g", {**inertia(wheel), **rest}, 2.0, ending, FREE)
         remark = "N touches zero: an error e in N moves the instant by sqrt(e)"
-        cases.append(replace(touching, instant_floor=1e-6, loosest=1e-6, remark=remark))
-    return cases
+        yield replace(touching, instant_floor=1e-6, loosest=1e-6, remark=remark)
 
 
 def reference_ending(start: dict[str, float]) -> Expectation:

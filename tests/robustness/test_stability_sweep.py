@@ -38,6 +38,10 @@ def test_rolling_friction_goes_as_stated(library: Library, case: Case) -> None:
     assert [v.faults for v in verdicts if not v.holds] == []
 
 
+def ran(library: Library, name: str) -> tuple[Case, Run]:
+    return CASES[name], run(library, CASES[name].start, CASES[name].times, 1e-8)
+
+
 def tampered(done: Run, **changes: np.ndarray) -> Run:
     return Run({**done.columns, **changes}, done.messages, done.status, done.end, done.seconds, done.counters)
 
@@ -47,16 +51,14 @@ def faults_of(case: Case, done: Run) -> str:
 
 
 def test_energy_that_leaks_is_found(library: Library) -> None:
-    case = CASES["spin: 1 rad/s"]
-    done = run(library, case.start, case.times, 1e-8)
+    case, done = ran(library, "spin: 1 rad/s")
     within(judges.energy(case, done), 4e-10, "energy")
     leak = done["E"] * (1 - 1e-6 * np.linspace(0, 1, len(done["t"])))
     assert "energy" in faults_of(case, tampered(done, E=leak))  # 1e-6
 
 
 def test_a_wrong_turn_breaks_the_linear_integrals(library: Library) -> None:
-    case = CASES["spin: 1 rad/s"]
-    done = run(library, case.start, case.times, 1e-8)
+    case, done = ran(library, "spin: 1 rad/s")
     within(judges.integrals(case, done), 6e-10, "integrals")
     assert "integrals" in faults_of(case, tampered(done, omega_z=done["omega_z"] + 1e-5))
     other_wheel = replace(case, start={**case.start, "r": 0.051})
@@ -79,16 +81,14 @@ def test_spin_while_held_is_found(library: Library) -> None:
 
 
 def test_a_number_that_is_not_finite_is_found(library: Library) -> None:
-    case = CASES["spin: 1 rad/s"]
-    done = run(library, case.start, case.times, 1e-8)
+    case, done = ran(library, "spin: 1 rad/s")
     theta = done["theta"].copy()
     theta[7] = np.nan
     assert "not finite" in faults_of(case, tampered(done, theta=theta))
 
 
 def test_another_outcome_than_the_stated_one_is_found(library: Library) -> None:
-    case = CASES["fall from rest: 75 deg"]
-    done = run(library, case.start, case.times, 1e-8)
+    case, done = ran(library, "fall from rest: 75 deg")
     assert faults_of(case, done) == ""
     assert "flat instead of finishes" in faults_of(replace(case, expect=Expectation()), done)
     late = Expectation("flat", case.expect.at + 1e-6)

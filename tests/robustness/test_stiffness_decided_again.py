@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from support.bounds import within
 from support.driver import OK
+from support.pieces import give
 
 FRICTION = 0.03  # m
 
@@ -35,12 +36,9 @@ def test_a_coefficient_that_is_tuned_later_costs_no_more_steps(wheel, omega_s, t
 def test_a_brake_that_grows_along_one_polynomial_makes_the_law_stiff(wheel):
     """The inputs do not change, only their values do."""
     w = wheel().start(friction_law="regularized", omega_s=1e-4)
-    w.set(M_brake=1e-6)
-    w.set_input_derivatives(["M_brake"], [[20.0]])
-    for k in range(1, 41):
-        assert w.step_to(k / 10) == OK, w.sentences
-        w.set(M_brake=1e-6 + 2.0 * k)
-        w.set_input_derivatives(["M_brake"], [[20.0]])
+    for k in range(40):
+        give(w, {"M_brake": (1e-6 + 2.0 * k, 20.0)})
+        assert w.step_to((k + 1) / 10) == OK, w.sentences
     assert w.get("n_jac")[0] > 0
     loose = wheel().start(friction_law="regularized", omega_s=1.0)  # the partner: never stiff
     assert loose.step_to(4.0) == OK and loose.get("n_jac") == [0]

@@ -9,14 +9,14 @@ import pytest
 from contract.test_forged_histories import as_word, saved, signed, words_of
 from support.bounds import absolute_error, beyond, within
 from support.driver import ERROR, OK
-from support.pieces import give
+from support.pieces import give, play
 from support.scenes import PAPER
 
 WEIGHT = PAPER.m * PAPER.g
 
 
-def rate_of(w, name="lambda_3"):
-    return w.rates([name])()[0]
+def rate_of(w):
+    return w.rates(["lambda_3"])()[0]
 
 
 def test_the_rate_of_a_reaction_follows_all_orders_of_the_input(wheel):
@@ -77,16 +77,8 @@ def test_each_pull_is_told_at_its_instant_and_none_that_an_input_prevents(wheel,
     formulation, method, s = kind
     values = {"theta_start": pi / 2, "phi_dot_start": -8.0, "keep_contact": True, "formulation": formulation}
     w = wheel().start(method=method, s=s, **values)
-    for begin, force in (
-        (0.0, (0.0,)),
-        (0.1, (0.0, WEIGHT / 0.025)),
-        (0.15, (0.0,)),
-        (0.3, (0.0, WEIGHT / 0.05)),
-        (0.4, (0.0,)),
-    ):
-        w.time = begin
-        give(w, {"F_Z": force})
-        assert w.step_to({0.0: 0.1, 0.1: 0.15, 0.15: 0.3, 0.3: 0.4, 0.4: 0.5}[begin]) == OK
+    ramps = {0.0: 0.0, 0.1: WEIGHT / 0.025, 0.15: 0.0, 0.3: WEIGHT / 0.05, 0.4: 0.0}
+    assert play(w, [(begin, {"F_Z": (0.0, ramp)}) for begin, ramp in ramps.items()], 0.5) == OK
     assert np.allclose(pulls(w), [0.125, 0.35], rtol=0, atol=1e-8)
     prevented = wheel().start(method=method, s=s, **values)
     for k in range(20):  # a ramp that would lift the wheel, taken back at every step

@@ -16,7 +16,9 @@ from .paths import ROOT
 sys.path.insert(0, str(ROOT / "examples" / "python"))
 
 from wheel_equations import *  # noqa: E402, F403
-from wheel_equations import Dynamics, Formulation, Kinematics  # noqa: E402
+from wheel_equations import Dynamics, Formulation, Kinematics, Motion  # noqa: E402
+
+PAPER_START = Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
 
 
 def values(record: Structure) -> np.ndarray:

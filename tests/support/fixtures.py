@@ -90,8 +90,7 @@ def wheel(library: Library) -> Iterator[Callable[..., FMU2Wheel]]:
 
     yield make
     for instance in made:
-        if instance.component:
-            instance.close()
+        instance.close()
 
 
 @pytest.fixture(scope="session")

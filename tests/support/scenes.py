@@ -29,13 +29,10 @@ def motion_of(start: Values) -> Start:
     return Start(**{names[name]: value for name, value in start.items() if name in names})
 
 
-@dataclass(frozen=True)
-class Scene:
-    """start: changes of the FMU's start values; duration in s."""
+class Started:
+    """What begins with `start`, changes of the FMU's start values, also as the reference has it."""
 
-    start: Values = field(default_factory=dict)
-    duration: float = 10.0
-    inputs: Schedule = Schedule()
+    start: Values
 
     @property
     def wheel(self) -> Wheel:
@@ -46,22 +43,19 @@ class Scene:
         return motion_of(self.start)
 
 
+@dataclass(frozen=True)
+class Scene(Started):
+    """How long, s, and under which inputs."""
+
+    start: Values = field(default_factory=dict)
+    duration: float = 10.0
+    inputs: Schedule = Schedule()
+
+
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
-PUSH = Schedule(
-    (
-        (
-            0.0,
-            {
-                "F_X": (0, 6, -2.5, 0.2),
-                "F_Y": (2, -1, -0.5, 0.1),
-                "F_Z": (0, -5, 2, -0.2),
-                "M_1": (0.3, 0, -0.1),
-                "M_2": (0, 0.4, -0.1),
-                "M_3": (0, 1.5, -0.6, 0.05),
-            },
-        ),
-    )
-)
+FORCES = {"F_X": (0, 6, -2.5, 0.2), "F_Y": (2, -1, -0.5, 0.1), "F_Z": (0, -5, 2, -0.2)}
+MOMENTS = {"M_1": (0.3, 0, -0.1), "M_2": (0, 0.4, -0.1), "M_3": (0, 1.5, -0.6, 0.05)}
+PUSH = Schedule(((0.0, FORCES | MOMENTS),))
 LOAD = Schedule(((0.0, {"F_X": 3.0, "F_Y": -2.0, "F_Z": 5.0, "M_1": 0.3, "M_3": -0.2}),))
 BRAKE = Schedule(((0.0, {"M_3": 4.0}), (0.3, {"M_3": -2.0}), (1.0, {"M_3": (0, 2), "F_Y": 3.0})))
 
@@ -87,14 +81,8 @@ SCENES = {
 }
 
 # Six inputs that change all the time: amplitude (N and N.m), rate (rad/s) and phase of a sine each.
-SINES = {
-    "F_X": (3.0, 2.0, 0.0),
-    "F_Y": (2.0, 3.0, pi / 2),
-    "F_Z": (-5.0, 1.0, 0.0),
-    "M_1": (0.3, 1.0, pi / 2),
-    "M_2": (0.2, 2.0, 0.0),
-    "M_3": (0.5, 3.0, 0.0),
-}
+SINES = {"F_X": (3.0, 2.0, 0.0), "F_Y": (2.0, 3.0, pi / 2), "F_Z": (-5.0, 1.0, 0.0)}
+SINES |= {"M_1": (0.3, 1.0, pi / 2), "M_2": (0.2, 2.0, 0.0), "M_3": (0.5, 3.0, 0.0)}
 
 
 def sines(t: float, order: int = 0) -> tuple[float, ...]:

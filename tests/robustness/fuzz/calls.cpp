@@ -5,15 +5,10 @@
 #include "session.hpp"
 
 namespace fuzz {
-namespace {
-
-constexpr const char* guid = WHEEL_GUID;
-
-}  // namespace
 
 fmi2Component make_instance(fmi2Type kind) {
   const fmi2CallbackFunctions functions = callbacks();
-  const fmi2Component component = fmi2Instantiate("wheel", kind, guid, nullptr, &functions, fmi2False, log().on);
+  const fmi2Component component = fmi2Instantiate("wheel", kind, WHEEL_GUID, nullptr, &functions, fmi2False, log().on);
   expect(component, "a sound fmi2Instantiate succeeds");
   return component;
 }
@@ -22,12 +17,11 @@ void Session::instantiate() {
   if (now_->component) return;
   const unsigned flaw = in_.below(8);
   const fmi2CallbackFunctions functions = callbacks(), silent = {};
-  const char* names[] = {"100 % #1#", " \t", nullptr, ""};
-  const fmi2Component component = fmi2Instantiate(flaw < 4 ? names[flaw] : names[0], fmi2CoSimulation,
-                                                  flaw == 4   ? "{0}"
-                                                  : flaw == 5 ? nullptr
-                                                              : guid,
-                                                  "file:///x", flaw == 6 ? &silent : &functions, fmi2False, log().on);
+  const char* const names[] = {"100 % #1#", " \t", nullptr, ""};
+  const char* const name = names[flaw < 4 ? flaw : 0];
+  const char* const guid = flaw == 4 ? "{0}" : flaw == 5 ? nullptr : WHEEL_GUID;
+  const fmi2Component component =
+      fmi2Instantiate(name, fmi2CoSimulation, guid, "file:///x", flaw == 6 ? &silent : &functions, fmi2False, log().on);
   expect((component == nullptr) == (flaw >= 1 && flaw <= 5), "only sound arguments give an instance");
   if (flaw == 6) {
     fmi2FreeInstance(component);
@@ -53,9 +47,8 @@ void Session::set_up_experiment() {
   const double tolerance = in_.chance(12) ? std::pow(10.0, -3.0 - in_.below(11)) : in_.any();
   const double start = in_.chance(12) ? 0 : in_.any();
   const double stop = in_.chance(12) ? start + 100 * in_.factor() : in_.any();
-  const fmi2Status status = checked(*now_, I, false, [&] {
-    return fmi2SetupExperiment(now_->component, has_tolerance, tolerance, start, has_stop, stop);
-  });
+  const fmi2Status status = checked(
+      *now_, I, [&] { return fmi2SetupExperiment(now_->component, has_tolerance, tolerance, start, has_stop, stop); });
   const bool sound = std::isfinite(start) && (!has_stop || stop >= start) && (!has_tolerance || tolerance > 0);
   if (now_->model.state != instantiated) return;
   expect((status == fmi2Error) == !sound, "only a sound experiment is accepted");
@@ -66,25 +59,24 @@ void Session::set_up_experiment() {
 }
 
 void Session::enter_initialization() {
-  const fmi2Status status = checked(*now_, I, false, [&] { return fmi2EnterInitializationMode(now_->component); });
+  const fmi2Status status = checked(*now_, I, [&] { return fmi2EnterInitializationMode(now_->component); });
   if (status == fmi2OK) now_->model.state = initialization;
 }
 
 void Session::exit_initialization() {
   const bool legal = now_->model.state == initialization;
-  const fmi2Status status = checked(*now_, M, true, [&] { return fmi2ExitInitializationMode(now_->component); });
+  const fmi2Status status = checked(*now_, M, [&] { return fmi2ExitInitializationMode(now_->component); }, true);
   if (!legal) return;
   now_->model.state = status == fmi2OK ? step_complete : error;
   if (status == fmi2OK) check_after_start(*now_);
 }
 
 void Session::terminate() {
-  if (checked(*now_, C | F, false, [&] { return fmi2Terminate(now_->component); }) == fmi2OK)
-    now_->model.state = terminated;
+  if (checked(*now_, C | F, [&] { return fmi2Terminate(now_->component); }) == fmi2OK) now_->model.state = terminated;
 }
 
 void Session::reset() {
-  expect(checked(*now_, anywhere, false, [&] { return fmi2Reset(now_->component); }) == fmi2OK, "reset succeeds");
+  expect(checked(*now_, anywhere, [&] { return fmi2Reset(now_->component); }) == fmi2OK, "reset succeeds");
   now_->model = {};
 }
 
@@ -103,7 +95,7 @@ fmi2Status Session::step(Slot& slot, double t, double h) {
   const bool legal = slot.model.state == step_complete;
   const bool beyond = slot.model.has_stop && t + h > slot.model.stop;
   if (beyond) h = std::max(slot.model.stop - t, 0.0);
-  const fmi2Status status = checked(slot, C, true, [&] { return fmi2DoStep(slot.component, t, h, fmi2True); });
+  const fmi2Status status = checked(slot, C, [&] { return fmi2DoStep(slot.component, t, h, fmi2True); }, true);
   trace("  %.17g + %.17g: %d\n", t, h, status);
   if (!legal) return status;
   if (status == fmi2Error) {
@@ -133,8 +125,8 @@ void Session::do_step() {
   }
   const double nan = std::nan(""), infinite = HUGE_VAL;
   const double wrong_t[] = {nan, infinite, t + 1 + std::fabs(t), t, t}, wrong_h[] = {h, h, h, -h, nan};
-  const fmi2Status status = checked(
-      *now_, C, false, [&] { return fmi2DoStep(now_->component, wrong_t[flaw - 3], wrong_h[flaw - 3], fmi2True); });
+  const fmi2Status status =
+      checked(*now_, C, [&] { return fmi2DoStep(now_->component, wrong_t[flaw - 3], wrong_h[flaw - 3], fmi2True); });
   expect(status == fmi2Error, "a step from or to a senseless time is refused");
 }
 
@@ -149,11 +141,11 @@ void Session::ask_status() {
   fmi2String text;
   const auto k = static_cast<fmi2StatusKind>(kind);
   const fmi2Component c = now_->component;
-  checked(*now_, legal, false, [&] { return fmi2GetStatus(c, k, null ? nullptr : &status); });
-  checked(*now_, legal, false, [&] { return fmi2GetRealStatus(c, k, null ? nullptr : &real); });
-  checked(*now_, legal, false, [&] { return fmi2GetIntegerStatus(c, k, null ? nullptr : &whole); });
-  checked(*now_, legal, false, [&] { return fmi2GetBooleanStatus(c, k, null ? nullptr : &truth); });
-  checked(*now_, legal, false, [&] { return fmi2GetStringStatus(c, k, null ? nullptr : &text); });
+  checked(*now_, legal, [&] { return fmi2GetStatus(c, k, null ? nullptr : &status); });
+  checked(*now_, legal, [&] { return fmi2GetRealStatus(c, k, null ? nullptr : &real); });
+  checked(*now_, legal, [&] { return fmi2GetIntegerStatus(c, k, null ? nullptr : &whole); });
+  checked(*now_, legal, [&] { return fmi2GetBooleanStatus(c, k, null ? nullptr : &truth); });
+  checked(*now_, legal, [&] { return fmi2GetStringStatus(c, k, null ? nullptr : &text); });
 }
 
 void Session::switch_logging() {
@@ -161,7 +153,7 @@ void Session::switch_logging() {
   const unsigned count = in_.below(6);
   const bool on = in_.chance(8), null = in_.chance(2), was_on = log().on;
   log().on = false;  // whether this call's own faults are told depends on what it switches
-  checked(*now_, anywhere, false,
+  checked(*now_, anywhere,
           [&] { return fmi2SetDebugLogging(now_->component, on, count, null ? nullptr : categories); });
   log().on = was_on && fmi2SetDebugLogging(now_->component, fmi2True, 0, nullptr) == fmi2OK;
 }

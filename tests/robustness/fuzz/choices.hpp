@@ -25,20 +25,9 @@ class Bytes {
   // Any double: a limit of the format, a decimal of ordinary size, or eight raw bytes.
   double any() {
     using Limits = std::numeric_limits<double>;
-    constexpr double infinite = Limits::infinity(), nan = Limits::quiet_NaN(), half_turn = 3.141592653589793;
-    constexpr double limits[] = {0,
-                                 -0.0,
-                                 1,
-                                 -1,
-                                 1e-300,
-                                 1e300,
-                                 half_turn / 2,
-                                 half_turn,
-                                 infinite,
-                                 -infinite,
-                                 nan,
-                                 Limits::max(),
-                                 Limits::denorm_min()};
+    constexpr double infinite = Limits::infinity(), nan = Limits::quiet_NaN(), pi = 3.141592653589793;
+    constexpr double most = Limits::max(), least = Limits::denorm_min();
+    constexpr double limits[] = {0, -0.0, 1, -1, 1e-300, 1e300, pi / 2, pi, infinite, -infinite, nan, most, least};
     const unsigned kind = byte();
     if (kind < 32) return limits[kind % (sizeof limits / sizeof *limits)];
     if (kind < 224) return (static_cast<double>(byte()) - 128) * std::pow(10.0, static_cast<int>(kind % 9) - 5);

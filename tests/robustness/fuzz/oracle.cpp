@@ -49,6 +49,11 @@ void receive(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status, 
   if (log.calls_back && log.caller) call_back(log.caller);
 }
 
+void check_finite(const std::vector<double>& values) {
+  for (unsigned reference = ref_first_output; reference < ref_count; ++reference)
+    expect(std::isfinite(values[reference]) || reference == ref_mu_required, "what can be read is finite");
+}
+
 }  // namespace
 
 Type type_of(unsigned reference) {
@@ -127,15 +132,6 @@ double time_of(fmi2Component component) {
   expect(fmi2GetRealStatus(component, fmi2LastSuccessfulTime, &t) == fmi2OK, "the last successful time is known");
   return t;
 }
-
-namespace {
-
-void check_finite(const std::vector<double>& values) {
-  for (unsigned reference = ref_first_output; reference < ref_count; ++reference)
-    expect(std::isfinite(values[reference]) || reference == ref_mu_required, "what can be read is finite");
-}
-
-}  // namespace
 
 void check_after_start(Slot& slot) {
   const std::vector<double> values = readings(slot);

@@ -86,7 +86,7 @@ void check_after_step(const Slot& slot);
 // One call: illegal ones must fail, say why and change nothing; so must legal ones that report an error, unless
 // `may_fail`: doStep and the end of initialization lead to the error state.
 template <class Call>
-fmi2Status checked(Slot& slot, unsigned legal_in, bool may_fail, Call&& call) {
+fmi2Status checked(Slot& slot, unsigned legal_in, Call&& call, bool may_fail = false) {
   const bool legal = legal_in & (1u << slot.model.state);
   const unsigned said = log().messages;
   const Digest before = log().digests ? digest(slot.component) : Digest();

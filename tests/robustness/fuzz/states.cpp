@@ -5,16 +5,14 @@ namespace fuzz {
 
 void Session::take_state() {
   Saved& saved = saved_[in_.below(3)];
-  const fmi2Status status =
-      checked(*now_, anywhere, false, [&] { return fmi2GetFMUstate(now_->component, &saved.state); });
+  const fmi2Status status = checked(*now_, anywhere, [&] { return fmi2GetFMUstate(now_->component, &saved.state); });
   expect(status == fmi2OK && saved.state, "a state can always be taken");
   saved.model = now_->model;
 }
 
 void Session::restore_state() {
   const Saved& saved = saved_[in_.below(3)];
-  const fmi2Status status =
-      checked(*now_, anywhere, false, [&] { return fmi2SetFMUstate(now_->component, saved.state); });
+  const fmi2Status status = checked(*now_, anywhere, [&] { return fmi2SetFMUstate(now_->component, saved.state); });
   expect(status == (saved.state ? fmi2OK : fmi2Error), "a state that was taken can be restored");
   if (saved.state) now_->model = saved.model;
 }
@@ -23,7 +21,7 @@ void Session::free_state() {
   Saved& saved = saved_[in_.below(3)];
   fmi2FMUstate* null = nullptr;
   fmi2FMUstate* state = in_.chance(2) ? null : &saved.state;
-  const fmi2Status status = checked(*now_, anywhere, false, [&] { return fmi2FreeFMUstate(now_->component, state); });
+  const fmi2Status status = checked(*now_, anywhere, [&] { return fmi2FreeFMUstate(now_->component, state); });
   expect(status == fmi2OK, "freeing a state succeeds");
 }
 
@@ -32,14 +30,13 @@ void Session::serialize() {
   std::size_t size = 0;
   Digest bytes(1u << 17u);
   const fmi2Component c = now_->component;
-  const fmi2Status sized =
-      checked(*now_, anywhere, false, [&] { return fmi2SerializedFMUstateSize(c, saved.state, &size); });
+  const fmi2Status sized = checked(*now_, anywhere, [&] { return fmi2SerializedFMUstateSize(c, saved.state, &size); });
   expect(sized == (saved.state ? fmi2OK : fmi2Error), "the size of a state is known");
   expect(size <= bytes.size(), "a state is small");
   const std::size_t given = in_.chance(4) ? size / 2 : size;
   in_.byte();  // the corpus has one here
   const fmi2Status status =
-      checked(*now_, anywhere, false, [&] { return fmi2SerializeFMUstate(c, saved.state, bytes.data(), given); });
+      checked(*now_, anywhere, [&] { return fmi2SerializeFMUstate(c, saved.state, bytes.data(), given); });
   expect(status == (saved.state && given == size ? fmi2OK : fmi2Error), "a state fits into its size, and no less");
 }
 
@@ -55,9 +52,8 @@ void Session::deserialize_damaged() {
   else
     bytes[place] = static_cast<fmi2Byte>(static_cast<unsigned char>(bytes[place]) ^ change);
   fmi2FMUstate state = nullptr;
-  const fmi2Status status = checked(*now_, anywhere, false, [&] {
-    return fmi2DeSerializeFMUstate(now_->component, bytes.data(), bytes.size(), &state);
-  });
+  const fmi2Status status = checked(
+      *now_, anywhere, [&] { return fmi2DeSerializeFMUstate(now_->component, bytes.data(), bytes.size(), &state); });
   const bool harmed = status != fmi2OK;
   if (!harmed) fmi2FreeFMUstate(now_->component, &state);
   expect(harmed && !state, "damaged bytes are refused");

@@ -47,9 +47,8 @@ void Session::set_reals() {
     trace("  %u = %.17g\n", references[k], values[k]);
   }
   const bool null = in_.chance(1);
-  const fmi2Status status = checked(*now_, I | M | C, false, [&] {
-    return fmi2SetReal(now_->component, null ? nullptr : references, count, values);
-  });
+  const fmi2Status status = checked(
+      *now_, I | M | C, [&] { return fmi2SetReal(now_->component, null ? nullptr : references, count, values); });
   if (status != fmi2OK || now_->model.state != step_complete) return;
   for (unsigned k = 0; k < count; ++k)
     if (values[k] != 0) now_->model.free = false;
@@ -62,8 +61,8 @@ void Session::set_choices() {
   const unsigned flag = in_.chance(14) ? unsigned{ref_keep_contact} : reference();
   const int truth = in_.chance(14) ? static_cast<int>(in_.below(2)) : static_cast<int>(in_.byte());
   trace("  %u = %d, %u = %d\n", variable, whole, flag, truth);
-  checked(*now_, I | M | C, false, [&] { return fmi2SetInteger(now_->component, &variable, 1, &whole); });
-  checked(*now_, I | M | C, false, [&] { return fmi2SetBoolean(now_->component, &flag, 1, &truth); });
+  checked(*now_, I | M | C, [&] { return fmi2SetInteger(now_->component, &variable, 1, &whole); });
+  checked(*now_, I | M | C, [&] { return fmi2SetBoolean(now_->component, &flag, 1, &truth); });
 }
 
 void Session::get_values() {
@@ -75,17 +74,17 @@ void Session::get_values() {
   double reals[most];
   int whole[most];
   const fmi2Component c = now_->component;
-  checked(*now_, readable, false, [&] { return fmi2GetReal(c, null ? nullptr : references, count, reals); });
-  checked(*now_, readable, false, [&] { return fmi2GetInteger(c, references, count, null ? nullptr : whole); });
-  checked(*now_, readable, false, [&] { return fmi2GetBoolean(c, references, count, whole); });
+  checked(*now_, readable, [&] { return fmi2GetReal(c, null ? nullptr : references, count, reals); });
+  checked(*now_, readable, [&] { return fmi2GetInteger(c, references, count, null ? nullptr : whole); });
+  checked(*now_, readable, [&] { return fmi2GetBoolean(c, references, count, whole); });
 }
 
 void Session::strings() {
   const unsigned variable = reference(), count = in_.below(2);
   fmi2String text = "";
   const fmi2Component c = now_->component;
-  checked(*now_, M | C | F | T | X, false, [&] { return fmi2GetString(c, &variable, count, &text); });
-  checked(*now_, I | M | C, false, [&] { return fmi2SetString(c, &variable, count, &text); });
+  checked(*now_, M | C | F | T | X, [&] { return fmi2GetString(c, &variable, count, &text); });
+  checked(*now_, I | M | C, [&] { return fmi2SetString(c, &variable, count, &text); });
 }
 
 // Usually one, sometimes several or none; an array may be missing.
@@ -101,7 +100,7 @@ void Session::set_input_derivatives() {
     values[k] = value_for(inputs[k]);
     trace("  derivative %d of %u = %.17g\n", orders[k], inputs[k], values[k]);
   }
-  const fmi2Status status = checked(*now_, I | M | C, false, [&] {
+  const fmi2Status status = checked(*now_, I | M | C, [&] {
     return fmi2SetRealInputDerivatives(now_->component, null == 0 ? nullptr : inputs, count,
                                        null == 1 ? nullptr : orders, null == 2 ? nullptr : values);
   });
@@ -119,7 +118,7 @@ void Session::get_output_derivatives() {
     outputs[k] = in_.chance(14) ? ref_first_output + in_.below(output_count) : reference();
     orders[k] = in_.chance(14) ? 1 : static_cast<int>(in_.byte()) - 128;
   }
-  const fmi2Status status = checked(*now_, readable, false, [&] {
+  const fmi2Status status = checked(*now_, readable, [&] {
     return fmi2GetRealOutputDerivatives(now_->component, outputs, count, orders, null ? nullptr : values);
   });
   for (const double value : values) expect(status != fmi2OK || std::isfinite(value), "an output derivative is finite");
@@ -136,7 +135,7 @@ void Session::directional_derivative() {
     knowns[k] = in_.chance(14) ? ref_first_input + in_.below(input_count) : reference();
   const double seeds[most] = {1, -2, 0.5};
   double values[most] = {};
-  const fmi2Status status = checked(*now_, M | C | F | T | X, false, [&] {
+  const fmi2Status status = checked(*now_, M | C | F | T | X, [&] {
     return fmi2GetDirectionalDerivative(now_->component, unknowns, rows, knowns, columns, null ? nullptr : seeds,
                                         values);
   });
