@@ -11,16 +11,8 @@ from typing import Any
 
 import numpy as np
 from fmpy.fmi2 import fmi2EventInfo
-from support.driver import (
-    DISCARD,
-    DO_STEP_STATUS,
-    ERROR,
-    LAST_SUCCESSFUL_TIME,
-    OK,
-    PENDING_STATUS,
-    TERMINATED,
-    FMU2Wheel,
-)
+from support import driver
+from support.driver import DISCARD, ERROR, OK, FMU2Wheel
 
 STATES = ("instantiated", "initialization", "step complete", "step failed", "terminated", "error")
 
@@ -126,9 +118,9 @@ def _arguments(w: FMU2Wheel) -> dict[str, tuple[Any, ...]]:
         "fmi2SetRealInputDerivatives": (force, 1, first, zero),
         "fmi2GetRealOutputDerivatives": (reaction, 1, first, real),
         "fmi2DoStep": (w.time, 0.0, 0),
-        "fmi2GetStatus": (DO_STEP_STATUS, byref(c_int())),
-        "fmi2GetRealStatus": (LAST_SUCCESSFUL_TIME, byref(c_double())),
-        "fmi2GetIntegerStatus": (DO_STEP_STATUS, byref(c_int())),  # there is none to tell: Discard
-        "fmi2GetBooleanStatus": (TERMINATED, byref(c_int())),
-        "fmi2GetStringStatus": (PENDING_STATUS, byref(c_char_p())),
+        "fmi2GetStatus": (driver.DO_STEP_STATUS, byref(c_int())),
+        "fmi2GetRealStatus": (driver.LAST_SUCCESSFUL_TIME, byref(c_double())),
+        "fmi2GetIntegerStatus": (driver.DO_STEP_STATUS, byref(c_int())),  # there is none to tell: Discard
+        "fmi2GetBooleanStatus": (driver.TERMINATED, byref(c_int())),
+        "fmi2GetStringStatus": (driver.PENDING_STATUS, byref(c_char_p())),
     }

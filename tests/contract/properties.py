@@ -17,14 +17,10 @@ Values = dict[str, float]
 
 def quick(examples: int, *, shrink: bool = True) -> settings:
     """The same examples in every run. Partners do not shrink: that they fail is all that is asked."""
-    return settings(
-        max_examples=examples,
-        derandomize=True,
-        deadline=None,
-        database=None,
-        phases=(Phase.generate, Phase.shrink) if shrink else (Phase.generate,),
-        suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
-    )
+    phases = (Phase.generate, Phase.shrink) if shrink else (Phase.generate,)
+    no_check = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
+    same = {"derandomize": True, "deadline": None, "database": None}
+    return settings(max_examples=examples, phases=phases, suppress_health_check=no_check, **same)
 
 
 def check(holds: Callable[..., None], examples: int, *drawn: st.SearchStrategy, broken: bool = False) -> None:
@@ -47,23 +43,13 @@ def scenes(draw: st.DrawFn) -> Values:
     across, share = draw(some(0.2, 2.0)), draw(st.sampled_from([1.0, 0.8, 1.3]))
     J_x, J_y = across, across * share
     return {
-        "m": draw(some(1.0, 100.0)),
-        "r_0": draw(some(0.1, 1.0)),
-        "r": draw(some(0.0, 0.1)),
-        "J_x": J_x,
-        "J_y": J_y,
-        "J_z": draw(some(abs(J_x - J_y), J_x + J_y)) or across,
-        "g": draw(some(1.0, 20.0)),
-        "s": draw(st.sampled_from([0.0, 0.01, 0.05])),
-        "theta_start": draw(some(0.7, 2.4)),
-        "psi_dot_start": draw(some(-1.0, 1.0)),
-        "theta_dot_start": draw(some(-1.0, 1.0)),
-        "phi_dot_start": draw(some(-6.0, 6.0)),
-        "formulation": draw(st.sampled_from([1, 2, 3])),
-        "friction_law": draw(st.sampled_from([1, 2])),
-        "method": draw(st.sampled_from([1, 2, 3, 4])),
-        "omega_s": draw(some(0.01, 1.0)),
-        "keep_contact": True,
+        **{"m": draw(some(1.0, 100.0)), "r_0": draw(some(0.1, 1.0)), "r": draw(some(0.0, 0.1))},
+        **{"J_x": J_x, "J_y": J_y, "J_z": draw(some(abs(J_x - J_y), J_x + J_y)) or across},
+        **{"g": draw(some(1.0, 20.0)), "s": draw(st.sampled_from([0.0, 0.01, 0.05]))},
+        **{"theta_start": draw(some(0.7, 2.4)), "psi_dot_start": draw(some(-1.0, 1.0))},
+        **{"theta_dot_start": draw(some(-1.0, 1.0)), "phi_dot_start": draw(some(-6.0, 6.0))},
+        **{"formulation": draw(st.sampled_from([1, 2, 3])), "friction_law": draw(st.sampled_from([1, 2]))},
+        **{"method": draw(st.sampled_from([1, 2, 3, 4])), "omega_s": draw(some(0.01, 1.0)), "keep_contact": True},
     }
 
 

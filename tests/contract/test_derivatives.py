@@ -117,9 +117,8 @@ def test_while_friction_holds_the_wheel_the_derivatives_are_those_of_a_held_whee
     within(np.max(np.abs(jacobian(w) - difference_jacobian(w, 1e-3))), 1e-10, "jacobian")
     assert rolling.restore(w.serialized()) == OK
     assert rolling.set(s=0.0) == OK
-    beyond(
-        np.max(np.abs(jacobian(w) - jacobian(rolling))), 0.1, "jacobian"
-    )  # the partner: M_3 is not held without friction
+    # The partner: M_3 is not held without friction.
+    beyond(np.max(np.abs(jacobian(w) - jacobian(rolling))), 0.1, "jacobian")
 
 
 def test_directional_derivatives_add_up_the_seeds(wheel):
@@ -155,14 +154,13 @@ def test_wrong_requests_for_derivatives_are_refused(wheel):
 
 def test_at_an_ending_the_rates_count_the_slope_that_led_there(wheel):
     slope, lifted = 1000.0, wheel().start()
-    lifted.setRealInputDerivatives([lifted.references["F_Z"]], [1], [slope])
+    lifted.set_input_derivatives(["F_Z"], [[slope]])
     assert lifted.step(1.0) == DISCARD
-    end, reference = lifted.status(LAST_SUCCESSFUL_TIME), lifted.references["lambda_3"]
-    rate = lifted.getRealOutputDerivatives([reference], [1])[0]
+    end, (rate,) = lifted.status(LAST_SUCCESSFUL_TIME), lifted.rates(["lambda_3"])()
 
     def normal_force(t: float) -> float:
         w = wheel().start()
-        w.setRealInputDerivatives([w.references["F_Z"]], [1], [slope])
+        w.set_input_derivatives(["F_Z"], [[slope]])
         assert w.step(t) == OK
         return w.get("lambda_3")[0]
 

@@ -43,19 +43,18 @@ def test_the_end_does_not_depend_on_the_communication_grid(wheel):
 def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
     """F_Z grows by 30 N/s against the weight of 196.2 N; the wheel's own motion shifts the instant."""
     w = wheel().start()
-    reference, order, rate = w.references["F_Z"], 1, 30.0
-    w.setRealInputDerivatives([reference], [order], [rate])
+    w.set_input_derivatives(["F_Z"], [[30.0]])
     assert w.step(10.0) == DISCARD
     t = ended(w)
     (normal,) = w.get("lambda_3")
     within(abs(normal), 3e-6, "normal force")  # N
     assert "lifted off" in w.take_messages()[-1].text
     before = wheel().start()
-    before.setRealInputDerivatives([reference], [order], [rate])
+    before.set_input_derivatives(["F_Z"], [[30.0]])
     assert before.step(t - 0.01) == OK
     beyond(before.get("lambda_3")[0], 0.1, "lambda_3")
     kept = wheel().start(keep_contact=1)
-    kept.setRealInputDerivatives([reference], [order], [rate])
+    kept.set_input_derivatives(["F_Z"], [[30.0]])
     assert kept.step(t + 0.2) == OK and kept.get("lambda_3")[0] < 0  # the partner: the ground pulls
 
 
@@ -86,9 +85,8 @@ def fmpy_simulate(fmu_path, output, *start_values: str) -> tuple[str, np.ndarray
 
 
 def test_fmpy_simulate_ends_where_the_wheel_falls_and_keeps_the_data(fmu_path, tmp_path):
-    said, rows = fmpy_simulate(
-        fmu_path, tmp_path / "drop.csv", "theta_start", "1.3089969389957472", "phi_dot_start", "0"
-    )
+    start = ("theta_start", "1.3089969389957472", "phi_dot_start", "0")
+    said, rows = fmpy_simulate(fmu_path, tmp_path / "drop.csv", *start)
     assert said.startswith("[WARNING] The wheel fell flat at t = 0.5927504")
     assert len(rows) == 61
     within(abs(rows["time"][-1] - fall_time(PAPER, THETA_0, 1e-7)), 2e-10, "time")

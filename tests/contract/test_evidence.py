@@ -42,9 +42,8 @@ def test_the_archive_with_its_evidence_is_below_a_megabyte(folder: Path, fmu_pat
 
 def values_of(path: Path) -> dict[str, str]:
     """Start values of a parameter set."""
-    return {
-        parameter.get("name", ""): parameter[0].get("value", "") for parameter in etree.parse(path).iter("{*}Parameter")
-    }
+    parameters = etree.parse(path).iter("{*}Parameter")
+    return {parameter.get("name", ""): parameter[0].get("value", "") for parameter in parameters}
 
 
 @pytest.mark.parametrize("name", evidence.SETS)

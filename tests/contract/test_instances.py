@@ -101,17 +101,12 @@ def test_a_freed_instance_gives_its_memory_back(wheel, method):
     assert in_use[-1] - in_use[19] < 20 * 2000
 
 
-@pytest.mark.parametrize(
-    ("name", "kind", "guid", "why"),
-    [
-        (b"", 1, None, "the instance name is missing or blank"),
-        (b" \t", 1, None, "the instance name is missing or blank"),
-        (None, 1, None, "the instance name is missing or blank"),
-        (b"wheel", 0, b"{0}", "the GUID is not that of this FMU"),
-        (b"wheel", 1, b"{00000000-0000-0000-0000-000000000000}", "the GUID is not that of this FMU"),
-        (b"wheel", 1, b"", "the GUID is not that of this FMU"),
-    ],
-)
+OTHERS = ((0, b"{0}"), (1, b"{00000000-0000-0000-0000-000000000000}"), (1, b""))  # kind and GUID
+WRONG = [(name, 1, None, "the instance name is missing or blank") for name in (b"", b" \t", None)]
+WRONG += [(b"wheel", *other, "the GUID is not that of this FMU") for other in OTHERS]
+
+
+@pytest.mark.parametrize(("name", "kind", "guid", "why"), WRONG)
 def test_an_instantiation_that_is_wrong_is_refused_with_the_reason(wheel, name, kind, guid, why):
     w = wheel()
     told: list[tuple[int, bytes, bytes]] = []
@@ -133,10 +128,10 @@ def test_an_instantiation_that_is_wrong_is_refused_with_the_reason(wheel, name, 
     w.fmi2FreeInstance(good)
 
 
-@pytest.mark.parametrize(
-    "uri",
-    [None, "", "file:///x", "file:/x/", "file:////x", "file:///a b/é/", "file:///nowhere/resources", "C:\\x", "%s%n#"],
-)
+URIS = [None, "", "file:///x", "file:/x/", "file:////x", "file:///a b/é/", "file:///no/resources", "C:\\x", "%s%n#"]
+
+
+@pytest.mark.parametrize("uri", URIS)
 def test_any_resource_location_will_do(wheel, uri):
     w = wheel()
     location = None if uri is None else uri.encode()

@@ -10,20 +10,8 @@ from hypothesis import strategies as st
 from support.bounds import within
 from support.driver import OK
 
-from contract.properties import (
-    INPUTS,
-    Values,
-    anything,
-    anything_whole,
-    check,
-    energy_defect,
-    go,
-    grids,
-    is_honest,
-    loads,
-    play_anything,
-    scenes,
-)
+from contract import properties
+from contract.properties import INPUTS, Values, check, energy_defect, go, grids, is_honest, loads, play_anything, scenes
 
 pytestmark = pytest.mark.contract
 
@@ -31,9 +19,9 @@ BOUND = 6e-11  # of the energy moved; a part that is left out shows by far more
 CHOICES = ("formulation", "friction_law", "method")
 REALS = ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s", "theta_start", "psi_dot_start", "phi_dot_start", "omega_s")
 mistakes = st.fixed_dictionaries(
-    {}, optional={**dict.fromkeys(REALS, anything), **dict.fromkeys(CHOICES, anything_whole)}
+    {}, optional={**dict.fromkeys(REALS, properties.anything), **dict.fromkeys(CHOICES, properties.anything_whole)}
 )
-extreme_loads = st.fixed_dictionaries({}, optional=dict.fromkeys(INPUTS, anything))
+extreme_loads = st.fixed_dictionaries({}, optional=dict.fromkeys(INPUTS, properties.anything))
 
 
 @pytest.mark.parametrize("silent", [False, True])

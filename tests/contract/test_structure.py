@@ -50,14 +50,13 @@ def without_numbers(text: str) -> str:
 
 
 def test_a_variable_that_comes_or_goes_changes_numbers_alone(depends):
-    added = numbered(TEXT.replace("  <ModelVariables>\n", f"  <ModelVariables>\n{NEW}"))
+    with_new = TEXT.replace("  <ModelVariables>\n", f"  <ModelVariables>\n{NEW}")
+    added = numbered(with_new)
     assert 'name="drag" valueReference="0"' in added and 'name="m" valueReference="1"' in added
-    assert without_numbers(added) == without_numbers(TEXT.replace("  <ModelVariables>\n", f"  <ModelVariables>\n{NEW}"))
-    numbers = re.compile(r'index="(\d+)" dependencies="([^"]*)"')
-    before, after = numbers.findall(TEXT), numbers.findall(added)
-    assert [[int(i) + 1 for i in f"{index} {of}".split()] for index, of in before] == [
-        [int(i) for i in f"{index} {of}".split()] for index, of in after
-    ]
+    assert without_numbers(added) == without_numbers(with_new)
+    rows = re.compile(r'index="(\d+)" dependencies="([^"]*)"')
+    before, after = ([[int(i) for i in " ".join(row).split()] for row in rows.findall(text)] for text in (TEXT, added))
+    assert [[i + 1 for i in row] for row in before] == after
     removed = re.sub(r' *<ScalarVariable name="drag".*?</ScalarVariable>\n', "", added, flags=re.DOTALL)
     assert numbered(removed) == TEXT != removed
     added_again = numbered(removed, {"Outputs": depends["Outputs"]})
@@ -77,18 +76,13 @@ def test_states_and_derivatives_are_numbered_by_name():
     assert numbered(states) == states
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "sentence"),
-    [
-        ('valueReference="1"', 'valueReference="0"', "m and r_0 have one valueReference"),
-        ('name="r_0"', 'name="m"', "two variables of one name"),
-        (
-            f'dependencies="{index_of(TEXT, "X_O")}"',
-            'dependencies="mass"',
-            "refers to mass, which is none of its variables",
-        ),
-    ],
-)
+OF_X_O = f'dependencies="{index_of(TEXT, "X_O")}"'
+FAULTY = [('valueReference="1"', 'valueReference="0"', "m and r_0 have one valueReference")]
+FAULTY += [('name="r_0"', 'name="m"', "two variables of one name")]
+FAULTY += [(OF_X_O, 'dependencies="mass"', "refers to mass, which is none of its variables")]
+
+
+@pytest.mark.parametrize(("old", "new", "sentence"), FAULTY)
 def test_a_description_that_cannot_be_numbered_is_refused_with_a_sentence(old, new, sentence):
     with pytest.raises(SystemExit, match=sentence):
         numbered(TEXT.replace(old, new, 1))

@@ -56,11 +56,6 @@ class Stabilised(Paper):
         return K, right
 
 
-def about_axle(load: Mapping, moment: np.ndarray) -> dict:
-    """The load with a further moment about the axle."""
-    return {"F": load["F"], "M": load["M"] + moment[..., None] * np.array([0, 0, 1])}
-
-
 def solved(paper: Paper, scenes: np.ndarray, load: Mapping | None = None) -> np.ndarray:
     """q_ddot, lambda and tau row by row, with each scene's law and load, or another load (complex too)."""
     load = scenes["load"] if load is None else load
@@ -68,7 +63,7 @@ def solved(paper: Paper, scenes: np.ndarray, load: Mapping | None = None) -> np.
     friction, kind = scenes["friction"], scenes["friction"]["kind"]
     soft = np.tanh(paper.omega_z / friction["omega_s"])
     kappa = np.select([kind == eq.ROLLING, kind == eq.REGULARIZED], [friction["sigma"], soft], 0)
-    braked = about_axle(load, -brake * kappa)
+    braked = {"F": load["F"], "M": load["M"] - (brake * kappa)[..., None] * np.array([0, 0, 1])}
     grip = np.where(paper.solve(kappa, braked)[:, 8].real > 0, kappa, 0)  # no pressure, no friction but the brake's
     x = paper.solve(grip, braked)
     x = np.column_stack([x, -scenes["wheel"]["s"] * grip * x[:, 8] - brake * kappa])

@@ -130,6 +130,11 @@ class Paper:
         return matrix(0, eta, -rho * cp, -eta, 0, rho * sp, rho * cp, -rho * sp, 0)
 
     @cached_property
+    def contact(self) -> np.ndarray:
+        """O to the contact in body axes, read off the cross-product matrix (11)."""
+        return column(self.r[..., 2, 1], self.r[..., 0, 2], self.r[..., 1, 0])
+
+    @cached_property
     def r_theta(self) -> np.ndarray:  # (12)
         s, c = self.wheel["r"] * self.sin_theta, self.wheel["r"] * self.cos_theta
         sp, cp = self.sin_phi, self.cos_phi

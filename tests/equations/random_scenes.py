@@ -12,25 +12,17 @@ from support import equations as eq
 COUNT = 10_000
 
 
-def physical_inertias(
-    random: np.random.Generator, size: np.ndarray, symmetric: bool
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """J_x, J_y, J_z = b + c, a + c, a + b from second moments a, b, c >= 0 of the mass."""
-    a, b, c = size * random.uniform(0.05, 1, (3, len(size)))
-    flat = random.random(len(size)) < 0.2  # the limit J_z = J_x + J_y
-    c = np.where(flat, 0, c)
-    a = b if symmetric else a
-    return b + c, a + c, a + b
-
-
 def wheels(random: np.random.Generator, rows: int, symmetric: bool) -> np.ndarray:
     wheel = eq.table(eq.Parameters, rows)
     wheel["m"] = 10 ** random.uniform(-1, 3, rows)
     wheel["r_0"] = 10 ** random.uniform(-1, 0.5, rows)
     thin = random.random(rows) < 0.1
     wheel["r"] = np.where(thin, 0, wheel["r_0"] * random.uniform(0, 1, rows))
-    inertias = physical_inertias(random, wheel["m"] * wheel["r_0"] ** 2, symmetric)
-    wheel["J_x"], wheel["J_y"], wheel["J_z"] = inertias
+    # From second moments of the mass, a, b, c >= 0: any inertia that a body can have.
+    a, b, c = wheel["m"] * wheel["r_0"] ** 2 * random.uniform(0.05, 1, (3, rows))
+    c = np.where(random.random(rows) < 0.2, 0, c)  # the limit J_z = J_x + J_y
+    a = b if symmetric else a
+    wheel["J_x"], wheel["J_y"], wheel["J_z"] = b + c, a + c, a + b
     wheel["g"] = random.uniform(0, 20, rows)
     sloping = random.random(rows) < 0.5
     for axis in ("g_X", "g_Y"):

@@ -8,30 +8,24 @@ import numpy as np
 from support import equations as eq
 from support.bounds import beyond, relative_error, within
 
-from equations import random_scenes
 from equations.paper_transcription import Paper, times
+from equations.pointwise import Table, draw
 
 ROWS = 2000
-Table = np.ndarray
 
 
 def rolling() -> tuple[Table, Table, Table]:
     """Scenes, the multibody form's kinematics and its dynamics, any inertia."""
-    random = np.random.default_rng(91)
-    scenes = random_scenes.scenes(random, eq.ROLLING, symmetric=False, rows=ROWS)
-    y = eq.start_each(eq.MULTIBODY, scenes, random_scenes.motions(random, ROWS))
+    scenes, motions = draw(91, eq.ROLLING, symmetric=False, rows=ROWS)
+    y = eq.start_each(eq.MULTIBODY, scenes, motions)
     return scenes, eq.kinematics_each(eq.MULTIBODY, scenes, y), eq.dynamics_each(eq.MULTIBODY, scenes, y)
 
 
 def contacts(scenes: Table, k: Table) -> Table:
     """X_C, Y_C, X_C_dot, Y_C_dot row by row."""
-    rows = [
-        eq.LIBRARY.wheel_contact(
-            byref(eq.Parameters.from_buffer_copy(wheel)), byref(eq.Kinematics.from_buffer_copy(motion))
-        )
-        for wheel, motion in zip(scenes["wheel"], k, strict=True)
-    ]
-    return np.array([eq.values(row) for row in rows])
+    wheels, motions = map(eq.Parameters.from_buffer_copy, scenes["wheel"]), map(eq.Kinematics.from_buffer_copy, k)
+    rows = zip(wheels, motions, strict=True)
+    return np.array([eq.values(eq.LIBRARY.wheel_contact(byref(wheel), byref(motion))) for wheel, motion in rows])
 
 
 def horizontal(k: Table, *lambdas: Table) -> Table:
@@ -45,8 +39,7 @@ def horizontal(k: Table, *lambdas: Table) -> Table:
 def test_the_contact_is_the_lowest_point_of_the_torus() -> None:
     scenes, k, _ = rolling()
     paper = Paper(scenes["wheel"], eq.columns(k, *k.dtype.names[:12]))
-    to_contact = np.stack([paper.r[:, 2, 1], paper.r[:, 0, 2], paper.r[:, 1, 0]], axis=-1)  # body axes, (11)
-    place = eq.columns(k, "X_O", "Y_O", "Z_O") + times(paper.A, to_contact)
+    place = eq.columns(k, "X_O", "Y_O", "Z_O") + times(paper.A, paper.contact)
     found = contacts(scenes, k)
     within(np.abs(found[:, :2] - place[:, :2]).max(), 2e-14, "difference")  # m
     within(np.abs(place[:, 2]).max(), 2e-14, "place")  # it lies on the ground

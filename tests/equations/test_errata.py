@@ -18,11 +18,10 @@ from equations.paper_transcription import THETA, Paper, derivative, paper_table,
 
 WHEEL = paper_table()
 ENERGY = 75.1168064  # J, at the start of the free wheel
-START = eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
 
 
 def papers_start() -> np.ndarray:
-    return papers_state(eq.start(eq.MULTIBODY, eq.paper_wheel(), START))
+    return papers_state(eq.start(eq.MULTIBODY, eq.paper_wheel(), eq.PAPER_START))
 
 
 def slope(name: str, angle: int) -> np.ndarray:

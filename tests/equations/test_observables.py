@@ -12,18 +12,16 @@ import pytest
 from support import equations as eq
 from support.bounds import absolute_error, beyond, relative_error, within
 
-from equations import random_scenes
 from equations.paper_transcription import Paper, times
+from equations.pointwise import Table, draw
 
 ROWS = 2000
-Table = np.ndarray
 
 
 def rolling_states(seed: int) -> tuple[Table, Table]:
     """Wheels and their kinematics on the constraints, any inertia."""
-    random = np.random.default_rng(seed)
-    scenes = random_scenes.scenes(random, eq.FRICTIONLESS, symmetric=False, rows=ROWS)
-    y = eq.start_each(eq.MULTIBODY, scenes, random_scenes.motions(random, ROWS))
+    scenes, motions = draw(seed, eq.FRICTIONLESS, symmetric=False, rows=ROWS)
+    y = eq.start_each(eq.MULTIBODY, scenes, motions)
     return scenes["wheel"].copy(), eq.kinematics_each(eq.MULTIBODY, scenes, y)
 
 
@@ -56,12 +54,11 @@ def test_energy_is_that_of_translation_rotation_and_height() -> None:
 
 def test_energy_of_the_papers_start_is_75_117_J() -> None:
     wheel = eq.paper_wheel()
-    motion = eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
     sin = np.sin(5 * np.pi / 12)
     by_hand = 0.5 * 20 * (2 * (0.3 + 0.05 * sin)) ** 2 + 0.5 * 1.8 * 2**2
     by_hand += 20 * 9.81 * (0.3 * sin + 0.05)
     for formulation in (eq.REDUCED, eq.MULTIBODY):
-        k = eq.kinematics(formulation, wheel, eq.start(formulation, wheel, motion))
+        k = eq.kinematics(formulation, wheel, eq.start(formulation, wheel, eq.PAPER_START))
         within(relative_error(eq.energy(wheel, k), by_hand), 1e-14, "energy")
         within(absolute_error(eq.energy(wheel, k), 75.117), 5e-4, "energy, 2")
         k.Z_O = 0
@@ -70,16 +67,10 @@ def test_energy_of_the_papers_start_is_75_117_J() -> None:
 
 def test_height_of_O_is_that_of_a_torus_on_the_ground() -> None:
     wheels, k = rolling_states(42)
-    thetas = k["theta"].tolist()
-    heights = np.array(
-        [
-            eq.LIBRARY.wheel_height(eq.Parameters.from_buffer_copy(wheel), theta)
-            for wheel, theta in zip(wheels, thetas, strict=True)
-        ]
-    )
+    constants = map(eq.Parameters.from_buffer_copy, wheels)
+    heights = np.array([*map(eq.LIBRARY.wheel_height, constants, k["theta"].tolist())])
     paper = Paper(wheels, state(k))
-    to_contact = np.stack([paper.r[:, 2, 1], paper.r[:, 0, 2], paper.r[:, 1, 0]], axis=-1)
-    below = times(paper.A, to_contact)[:, 2]
+    below = times(paper.A, paper.contact)[:, 2]
     within(relative_error(heights, -below), 6e-15, "heights")
     within(relative_error(heights, k["Z_O"]), 1e-14, "heights, 2")
     beyond(relative_error(heights, -below - wheels["r"] * 1e-6), 7e-8, "heights")

@@ -14,19 +14,7 @@ from support import equations as eq
 from support.bounds import absolute_error, beyond, relative_error, within
 
 from equations.multibody_transcription import products_state
-from equations.paper_transcription import (
-    PHI,
-    PSI,
-    THETA,
-    Paper,
-    column,
-    derivative,
-    matrix,
-    paper_table,
-    states,
-    times,
-    transposed,
-)
+from equations.paper_transcription import PHI, PSI, THETA, Paper, derivative, paper_table, states, times, transposed
 
 WHEEL = paper_table(J_x=0.8, J_y=1.1, s=0.03)
 
@@ -45,13 +33,8 @@ def along_the_motion() -> np.ndarray:
 
 
 def cross_matrix(v: np.ndarray) -> np.ndarray:
-    x, y, z = v[..., 0], v[..., 1], v[..., 2]
-    return matrix(0, -z, y, z, 0, -x, -y, x, 0)
-
-
-def contact(paper: Paper) -> np.ndarray:
-    """O to the contact in body axes, read off the cross-product matrix (11)."""
-    return column(paper.r[..., 2, 1], paper.r[..., 0, 2], paper.r[..., 1, 0])
+    """Its columns are the products of v and the axes."""
+    return transposed(np.cross(v[..., None, :], np.eye(3)))
 
 
 PARTIALS = [("A", PSI, "A_psi"), ("A", THETA, "A_theta"), ("A", PHI, "A_phi")]
@@ -91,8 +74,8 @@ def test_Q_of_8_gives_the_angular_velocity_in_body_axes() -> None:
 
 def test_r_of_11_points_to_the_lowest_point_of_the_torus() -> None:
     paper, r_0, r = Paper(WHEEL, states()), WHEEL["r_0"], WHEEL["r"]
-    within(absolute_error(paper.r, cross_matrix(contact(paper))), 1e-14, "difference")  # antisymmetric
-    below = times(paper.A, contact(paper))[:, 2]
+    within(absolute_error(paper.r, cross_matrix(paper.contact)), 1e-14, "difference")  # antisymmetric
+    below = times(paper.A, paper.contact)[:, 2]
     around, along_tube = np.meshgrid(*2 * [np.linspace(0, 2 * np.pi, 100)])
     out = r_0 + r * np.cos(along_tube)
     surface = np.stack([out * np.cos(around), out * np.sin(around), r * np.sin(along_tube)], -1)
@@ -105,7 +88,7 @@ def test_r_of_11_points_to_the_lowest_point_of_the_torus() -> None:
 def test_B_of_19_gives_the_velocity_of_the_material_point_at_the_contact() -> None:
     y = states()
     paper = Paper(WHEEL, y)
-    velocity = y[:, 6:9] + times(paper.A, np.cross(paper.omega, contact(paper)))
+    velocity = y[:, 6:9] + times(paper.A, np.cross(paper.omega, paper.contact))
     within(absolute_error(times(paper.B, y[:, 6:]), velocity), 2e-14, "difference")
     untransposed = y[:, 6:9] + times(paper.A @ paper.r @ paper.Q, y[:, 9:])
     beyond(absolute_error(untransposed, velocity), 0.5, "difference")
@@ -138,7 +121,7 @@ def test_M_and_F_beta_of_16_18_are_eulers_equations_in_body_axes() -> None:
 def test_B_tilde_of_22_23_turns_lambda_into_force_and_moment_on_the_wheel() -> None:
     paper = Paper(WHEEL, states())
     force = np.random.default_rng(4).normal(size=(len(states()), 3))
-    moment = np.cross(contact(paper), times(transposed(paper.A), force))
+    moment = np.cross(paper.contact, times(transposed(paper.A), force))
     without_friction = np.hstack([force, moment])
     within(absolute_error(times(paper.B_tilde(0), force), without_friction), 1e-14, "difference")
     moment[:, 2] -= WHEEL["s"] * force[:, 2]
@@ -149,14 +132,13 @@ def test_B_tilde_of_22_23_turns_lambda_into_force_and_moment_on_the_wheel() -> N
 
 def test_constants_and_start_values_of_27_to_33_are_those_the_paper_prints() -> None:
     wheel = eq.paper_wheel(s=0.3 / 10)
-    motion = eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
     within(relative_error((wheel.J_x, wheel.J_y), (wheel.m * wheel.r_0**2 / 2,) * 2), 1e-15, "wheel")
     within(relative_error(wheel.J_z, wheel.m * wheel.r_0**2), 1e-15, "wheel, 2")
     printed = [-0.07765, 0, 0.33978, 0, 0.69659, 0]
     for formulation in (eq.REDUCED, eq.MULTIBODY):
-        k = eq.kinematics(formulation, wheel, eq.start(formulation, wheel, motion))
+        k = eq.kinematics(formulation, wheel, eq.start(formulation, wheel, eq.PAPER_START))
         found = [k.X_O, k.Y_O, k.Z_O, k.X_O_dot, k.Y_O_dot, k.Z_O_dot]
         within(absolute_error(found, printed), 5e-6, "difference")  # the five digits printed
         thin = eq.paper_wheel(r=0)
-        k = eq.kinematics(formulation, thin, eq.start(formulation, thin, motion))
+        k = eq.kinematics(formulation, thin, eq.start(formulation, thin, eq.PAPER_START))
         beyond(abs(k.Y_O_dot - 0.69659), 0.05, "k")  # (33) needs the tube

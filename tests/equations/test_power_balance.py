@@ -10,18 +10,16 @@ import numpy as np
 from support import equations as eq
 from support.bounds import beyond, within
 
-from equations import random_scenes
 from equations.paper_transcription import Paper, times
-from equations.pointwise import BOTH, LAWS
+from equations.pointwise import BOTH, LAWS, draw
 
 
 class Instants:
     """Random states with their velocities, accelerations and powers."""
 
     def __init__(self, formulation: eq.Formulation, kind: int) -> None:
-        random = np.random.default_rng(31)
-        self.scenes = random_scenes.scenes(random, kind, symmetric=False)
-        y = eq.start_each(formulation, self.scenes, random_scenes.motions(random))
+        self.scenes, motions = draw(31, kind, symmetric=False)
+        y = eq.start_each(formulation, self.scenes, motions)
         self.k = eq.kinematics_each(formulation, self.scenes, y)
         self.d = eq.dynamics_each(formulation, self.scenes, y)
 
@@ -64,9 +62,8 @@ def test_energy_changes_by_the_power_of_inputs_and_friction(formulation: eq.Form
 def test_stop_spin_leaves_a_rolling_wheel_without_spin_that_holding_takes_no_energy_from(
     formulation: eq.Formulation,
 ) -> None:
-    random = np.random.default_rng(32)
-    scenes = random_scenes.scenes(random, eq.HELD, symmetric=False)
-    y = eq.start_each(formulation, scenes, random_scenes.motions(random))
+    scenes, motions = draw(32, eq.HELD, symmetric=False)
+    y = eq.start_each(formulation, scenes, motions)
     before = eq.kinematics_each(formulation, scenes, y)
     assert (before["omega_z"] != 0).all()
     eq.each(formulation.stop_spin, scenes, y)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from equations import random_scenes
+from equations.pointwise import draw
 from reference import Wheel
 from support import equations as eq
 
@@ -35,9 +35,7 @@ def distance(rows: int = 200, symmetric: bool = False, stretched: float = 1.0) -
 
     stretched: factor on the tube radius that Kane's method is given.
     """
-    random = np.random.default_rng(24)
-    scenes = random_scenes.scenes(random, symmetric=symmetric, rows=rows)
-    motions = random_scenes.motions(random, rows)
+    scenes, motions = draw(24, None, symmetric, rows)
     found = eq.dynamics_each(eq.REDUCED, scenes, eq.start_each(eq.REDUCED, scenes, motions))
     scenes["wheel"]["r"] *= stretched
     other = np.array([by_kane(*pair) for pair in zip(scenes, motions, strict=True)])

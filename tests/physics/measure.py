@@ -65,7 +65,6 @@ def unstabilised_drift(times: NDArray[np.float64], tolerance: float) -> tuple[ND
     y = X_O, Y_O, Z_O, psi, theta, phi, the rates of the first five, omega_z.
     """
     scene = eq.scene(eq.paper_wheel())
-    motion = eq.Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
 
     def rate(_t: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
         d = eq.dynamics(eq.MULTIBODY, scene, y)
@@ -73,7 +72,7 @@ def unstabilised_drift(times: NDArray[np.float64], tolerance: float) -> tuple[ND
         accelerations = (d.X_O_ddot, d.Y_O_ddot, d.Z_O_ddot, d.psi_ddot, d.theta_ddot, d.omega_z_dot)
         return np.array([*y[6:11], phi_dot, *accelerations])
 
-    start = eq.start(eq.MULTIBODY, scene.wheel, motion)
+    start = eq.start(eq.MULTIBODY, scene.wheel, eq.PAPER_START)
     run = solve_ivp(rate, (0, times[-1]), start, "DOP853", times, rtol=tolerance, atol=0.1 * tolerance)
     residuals = [residual(scene.wheel, eq.kinematics(eq.MULTIBODY, scene.wheel, y)) for y in run.y.T.copy()]
     return tuple(np.array(residuals).T)

@@ -77,18 +77,13 @@ def chaplygin_matrix(wheel: Wheel, theta: float) -> Array:
 def chaplygin_gap(library: Library, judged: Wheel, s: float = 0.0) -> float:
     """(omega_2, omega_3) of 10 s of motion against the solution of Chaplygin's system at the same theta."""
     theta, *found = omegas(library.simulate(np.linspace(0, 10, 1001), 1e-12, s=s))
-    first, last = theta[0], theta.min()
-    start = [found[0][0], found[1][0]]
-    curve = solve_ivp(
-        lambda angle, y: chaplygin_matrix(judged, angle) @ y,
-        (first, last),
-        start,
-        method="DOP853",
-        rtol=1e-12,
-        atol=1e-12,
-        dense_output=True,
-    )
-    return float(np.abs(np.array(found) - curve.sol(np.minimum(theta, first))).max())
+
+    def slope(angle: float, y: Array) -> Array:
+        return chaplygin_matrix(judged, angle) @ y
+
+    ends, start = (theta[0], theta.min()), [found[0][0], found[1][0]]
+    curve = solve_ivp(slope, ends, start, "DOP853", rtol=1e-12, atol=1e-12, dense_output=True)
+    return float(np.abs(np.array(found) - curve.sol(np.minimum(theta, theta[0]))).max())
 
 
 def test_omega_2_and_omega_3_are_functions_of_theta_that_obey_chaplygins_linear_system(library: Library) -> None:
