@@ -103,14 +103,8 @@ class Fetch:
     def __call__(self) -> tuple[str, int]:
         """What CMake said of a failure, and how often the registry was asked."""
         self.calls.write_text("")
-        finished = subprocess.run(
-            [self.bin / "cmake", "-P", "fetch.cmake"],
-            cwd=self.folder,
-            env={"PATH": str(self.bin)},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        command, environment = [self.bin / "cmake", "-P", "fetch.cmake"], {"PATH": str(self.bin)}
+        finished = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True)
         if finished.returncode == 0:
             assert (self.cache / CRATE / "vendor" / "last.c").read_text() == "last.c"
         return " ".join(finished.stderr.split()) if finished.returncode else "", len(self.calls.read_text().split())

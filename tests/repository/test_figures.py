@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from math import inf
 from pathlib import Path
 
 import pytest
@@ -49,13 +50,9 @@ def test_the_figures_of_a_page_are_those_of_the_data(page: Path) -> None:
 
 
 def test_the_pages_of_the_reports_are_those_of_the_data() -> None:
-    found = subprocess.run(
-        [sys.executable, "-m", "reports", "all", "--check"],
-        cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": ":".join([".", "examples/vehicles", "tests"])},
-        capture_output=True,
-        text=True,
-    )
+    command = [sys.executable, "-m", "reports", "all", "--check"]
+    environment = os.environ | {"PYTHONPATH": ":".join([".", "examples/vehicles", "tests"])}
+    found = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
     assert found.returncode == 0, found.stdout + found.stderr
 
 
@@ -73,17 +70,12 @@ def test_no_measured_figure_is_typed_by_hand(page: Path) -> None:
     assert [figure for figure in typed(page.read_text(encoding="utf-8")) if figure not in given] == []
 
 
-@pytest.mark.parametrize(
-    ("text", "count"),
-    [
-        ("right to 4e-8 of the range", 1),
-        ("it takes 0.5 µs a step", 1),
-        ("a tolerance of 1e-8", 0),
-        ("run `x = 4e-8`", 0),
-        ("right to <!-- = accuracy.error_free -->4e-8<!-- . --> of the range", 0),
-        ("1,420 KiB and 94 ns", 2),
-    ],
-)
+COUNTS = {"right to 4e-8 of the range": 1, "it takes 0.5 µs a step": 1, "1,420 KiB and 94 ns": 2}
+COUNTS |= {"a tolerance of 1e-8": 0, "run `x = 4e-8`": 0}
+COUNTS |= {"right to <!-- = accuracy.error_free -->4e-8<!-- . --> of the range": 0}
+
+
+@pytest.mark.parametrize(("text", "count"), COUNTS.items())
 def test_a_typed_figure_is_found(text: str, count: int) -> None:
     assert len(typed(text)) == count
 
@@ -95,12 +87,8 @@ def test_decisions_and_changes_hold_no_history(page: Path, what: str) -> None:
 
 
 def test_history_is_found() -> None:
-    texts = {
-        "a commit": "since c63086f",
-        "a time of day": "at 11:16",
-        "a table of before and after": "| x | Before | after |",
-    }
-    assert all(HISTORY[what].search(text) for what, text in texts.items())
+    texts = ("since c63086f", "at 11:16", "| x | Before | after |")
+    assert all(pattern.search(text) for pattern, text in zip(HISTORY.values(), texts, strict=True))
     assert not any(pattern.search("the deadbeef cafe at 1:100, a b c") for pattern in HISTORY.values())
 
 
@@ -115,17 +103,9 @@ def test_an_unknown_figure_is_refused_and_a_known_one_is_filled(tmp_path: Path) 
         with_figures("<!-- = report.time --><!-- . -->", figures)
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (4.04e-8, "4e-8"),
-        (3.46e-9, "3.5e-9"),
-        (1.25e-3, "0.00125"),
-        (0.0, "0"),
-        (123456.0, "1.2e5"),
-        (37, "37"),
-        (float("inf"), "inf"),
-    ],
-)
+SHORT = {4.04e-8: "4e-8", 3.46e-9: "3.5e-9", 1.25e-3: "0.00125", 0.0: "0", 123456.0: "1.2e5", 37: "37", inf: "inf"}
+
+
+@pytest.mark.parametrize(("value", "text"), SHORT.items())
 def test_a_number_is_short(value: float, text: str) -> None:
     assert number(value) == text

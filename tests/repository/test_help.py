@@ -16,28 +16,15 @@ PARTS = {"page": "page", "view": "page", "study": "examples/studies", "example":
 GONE = [name for name, folder in PARTS.items() if not (ROOT / folder).exists()]
 COMMANDS = sorted({p.name for p in (ROOT / "scripts").iterdir()} - set(GONE))
 STUDY = tuple(f"examples/studies/study/{name}.py" for name in ("options", "measures", "__init__"))
-VEHICLES = (
-    *(f"examples/vehicles/{name}" for name in ("vehicles/options.py", "skeleton/describe.py", "balance/balance.py")),
-    *(
-        f"examples/vehicles/{name}.csv"
-        for name in ("axle/axle", "car/chassis", "car/driver", "quarter_car/quarter_car")
-    ),
-    *(f"examples/vehicles/{name}.toml" for name in ("axle/axle", "car/car")),
-    *(f"cmake/description/{name}.py" for name in ("__init__", "numbering")),
-)
-READERS = ("diagrams/start_values.py", "page/options.py", "reports/options.py", *STUDY, *VEHICLES)
+OF_AXLE_AND_CAR = ("axle/axle.csv", "axle/axle.toml", "car/chassis.csv", "car/driver.csv", "car/car.toml")
+OF_VEHICLES = ("vehicles/options.py", "skeleton/describe.py", "balance/balance.py", "quarter_car/quarter_car.csv")
+VEHICLES = tuple(f"examples/vehicles/{name}" for name in (*OF_VEHICLES, *OF_AXLE_AND_CAR))
+NUMBERING = ("cmake/description/__init__.py", "cmake/description/numbering.py")
+READERS = ("diagrams/start_values.py", "page/options.py", "reports/options.py", *STUDY, *VEHICLES, *NUMBERING)
 WRONG = {
-    "build": ("relase",),
-    "documents": ("--chek",),
-    "example": ("car", "m_B=-1"),
-    "fuzz": ("a minute",),
-    "lint": ("--fixx",),
-    "page": ("--output",),
-    "report": ("sped",),
-    "run": ("m=-5",),
-    "setup": ("tests",),
-    "study": ("--vary", "tetha_start=1,2"),
-    "view": ("there_is_no_such_file.csv",),
+    **{"build": ("relase",), "documents": ("--chek",), "example": ("car", "m_B=-1"), "fuzz": ("a minute",)},
+    **{"lint": ("--fixx",), "page": ("--output",), "report": ("sped",), "run": ("m=-5",), "setup": ("tests",)},
+    **{"study": ("--vary", "tetha_start=1,2"), "view": ("there_is_no_such_file.csv",)},
 }
 
 

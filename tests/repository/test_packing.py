@@ -104,20 +104,14 @@ def test_the_guid_is_the_digest_of_the_variables(description):
     assert description.guid == guid_of(DESCRIPTION), "run ./scripts/variables"
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ('name="theta_dot"', 'name="theta_rate"'),
-        ('valueReference="30"', 'valueReference="99"'),
-        ('start="20"', 'start="21"'),
-        ('unit="N.m"', 'unit="N"'),
-        ('variability="tunable"', 'variability="fixed"'),
-        ('min="1" max="4"', 'min="1" max="5"'),
-        ('maxOutputDerivativeOrder="1"', 'maxOutputDerivativeOrder="0"'),
-        ('dependencies="31"', 'dependencies="1"'),
-    ],
-)
-def test_the_guid_changes_when_a_variable_does(old, new):
+CHANGES = {"name": ("theta_dot", "theta_rate"), "valueReference": ("30", "99"), "start": ("20", "21")}
+CHANGES |= {"unit": ("N.m", "N"), "variability": ("tunable", "fixed"), 'min="1" max': ("4", "5")}
+CHANGES |= {"maxOutputDerivativeOrder": ("1", "0"), "dependencies": ("31", "1")}
+
+
+@pytest.mark.parametrize("attribute", CHANGES)
+def test_the_guid_changes_when_a_variable_does(attribute):
+    old, new = (f'{attribute}="{value}"' for value in CHANGES[attribute])
     assert old in DESCRIPTION
     changed = DESCRIPTION.replace(old, new, 1)
     assert guid_of(changed) != guid_of(DESCRIPTION)

@@ -45,13 +45,8 @@ def outside(name: str, text: str) -> list[str]:
 @pytest.fixture(scope="module")
 def tracked() -> dict[str, str]:
     """Text of every tracked or new file by its path."""
-    listed = subprocess.run(
-        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     names = [name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()]
     texts = {name: (ROOT / name).read_bytes() for name in names if "/corpus/" not in name}
     return {name: text.decode("utf-8", "replace") for name, text in texts.items() if b"\0" not in text}
