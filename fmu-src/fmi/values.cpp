@@ -1,5 +1,4 @@
 // FMI 2.0 functions: getting and setting variables.
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,11 +16,13 @@ bool check_variable(Instance& i, fmi2ValueReference variable, Type type) {
   return false;
 }
 
-// A count that outgrows an Integer stays at the largest one.
+// A count that outgrows an Integer stays at the largest one. A choice that is no number, which only a forged state can
+// bring, reads as the least.
 template <class Value>
 Value represented(double value) {
   using Limits = std::numeric_limits<Value>;
-  if constexpr (Limits::is_integer) return static_cast<Value>(std::clamp<double>(value, Limits::min(), Limits::max()));
+  if constexpr (Limits::is_integer)
+    return static_cast<Value>(std::fmin(std::fmax(value, Limits::min()), Limits::max()));
   return static_cast<Value>(value);
 }
 

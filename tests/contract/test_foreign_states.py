@@ -164,6 +164,15 @@ def test_a_law_a_ground_or_a_count_that_no_rolling_wheel_has_is_refused(wheel, k
     assert w.restore(blob) == OK  # the partner
 
 
+def test_a_choice_that_is_no_number_reads_as_the_least_integer(wheel):
+    """While parameters are set they may be anything; under the sanitizers a conversion of no number is a fault."""
+    w = bring_to(wheel(), "initialization")
+    words = list(words_of(w.serialized()))
+    words[HEADER + w.references["formulation"]] = as_word(np.nan)
+    assert w.restore(signed(words)) == OK
+    assert w.get("formulation") == [-(2**31)]
+
+
 @pytest.mark.parametrize("changes", [(0, 0.0), (0, -0.5), (0, 3.2), (0, 1e-320), (1, 1e300), (2, -1e300), (3, 1e200)])
 @pytest.mark.parametrize("start", [{}, {"s": 0.03}, {"s": 0.03, "method": "adams"}])
 def test_a_state_that_is_no_state_of_a_wheel_is_refused(wheel, start, changes):
