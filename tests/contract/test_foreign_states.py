@@ -142,6 +142,10 @@ def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
         assert running.take_messages()[-1].text.startswith(DAMAGED.split(" (")[0]), changes
     assert running.restore(forged(running, blob, t=-1.0)) == ERROR
     assert running.take_messages()[-1].text == DAMAGED.format("time reached, s")
+    words = list(words_of(blob))
+    words[place_of(running, "phase") - 2] = 2  # a third kind
+    assert running.restore(signed(words)) == ERROR
+    assert running.take_messages()[-1].text == DAMAGED.format("whose solver moves the wheel")
     for phase in (INITIAL, AT_START, STEPPING, UNFOLDED, ENDED):  # a step would use a solver that is not there
         assert running.restore(forged(running, young, phase=phase)) == ERROR
     assert running.serialized() == before

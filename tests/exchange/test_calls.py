@@ -183,9 +183,9 @@ def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: 
 
 def test_a_wheel_off_the_ground_at_the_start_is_a_fault_of_initialization(library: Library) -> None:
     wheel = loaded(library).new(logging=True)
-    assert wheel.set(F_Z=500.0) == OK
+    assert wheel.set(F_Z=500.0, theta_start=np.pi / 2, phi_dot_start=0.0) == OK
     assert wheel.initialise() == ERROR
-    assert "does not press" in wheel.sentences[-1]
+    assert wheel.sentences[-1] == "The ground does not press on the wheel at the start: N = -303.8 N."
     wheel.close()
 
 

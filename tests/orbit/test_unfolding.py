@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from reference import Start, Wheel
 from support.bounds import beyond, within
-from support.closed_forms import critical_spin
+from support.closed_forms import circle_spin, critical_spin
 
 from .orbit import Array, Halves, Orbit, stepped
 
@@ -146,6 +146,17 @@ def test_straight_rolling_above_the_critical_speed_needs_no_step(library: ctypes
     want = Start().X_O, -phi_dot * 0.35 * 1e4  # rolls along Y
     within(abs(y[7] / want[1] - 1), 1e-14, "state")
     within(abs(y[6] - want[0]) / abs(want[1]), 1e-14, "state, 2")
+
+
+@pytest.mark.parametrize(("theta", "psi_dot"), [(1.3, 0.8), (1.4, -0.3), (np.pi / 2, 6.0)])
+def test_a_steady_circle_needs_no_step_either(library: ctypes.CDLL, theta: float, psi_dot: float) -> None:
+    phi_dot = circle_spin(Wheel(), theta, psi_dot) - psi_dot * np.cos(theta)
+    start = Start(theta=theta, psi_dot=psi_dot, phi_dot=phi_dot)
+    orbit, t = Orbit(library, start=start), np.linspace(0, 10, 21)
+    assert (orbit.kind, orbit.steps) == ("folded", 0)
+    want = stepped(Wheel(), start, t)
+    within(error(orbit(t), want), 2e-11, "error")
+    beyond(error(orbit(t * (1 + 1e-9)), want), 5e-9, "error of a clock that is fast")
 
 
 def test_below_the_critical_speed_and_next_to_it_straight_rolling_is_not_taken_for_steady(library: ctypes.CDLL) -> None:
