@@ -197,11 +197,14 @@ def test_the_multibody_form_is_refused_with_a_sentence(library: Library) -> None
     wheel.close()
 
 
-def test_calls_of_co_simulation_are_refused(library: Library) -> None:
+def test_calls_of_the_other_kind_are_refused(library: Library) -> None:
+    told, slave = "{} belongs to {}; this instance was made for {}.", library.wheel(logging=True)
+    assert loaded(library).fmi2SetTime(slave.component, 0.0) == ERROR
+    assert slave.sentences[-1] == told.format("fmi2SetTime", "model exchange", "co-simulation")
+    slave.close()
     with exchange(library, logging=True) as wheel:
         assert wheel.fmi2DoStep(wheel.component, 0.0, 0.1, 0) == ERROR
-        other = "fmi2DoStep belongs to co-simulation; this instance was made for model exchange."
-        assert wheel.sentences[-1] == other
+        assert wheel.sentences[-1] == told.format("fmi2DoStep", "co-simulation", "model exchange")
         assert wheel.set_input_derivatives(["F_X"], [[1.0]]) == ERROR
 
 

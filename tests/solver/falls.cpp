@@ -78,6 +78,18 @@ void dip_beside_a_fall(const Arguments& args) {
   print_first_fall(args, c, 1);
 }
 
+// One step of 1 s. a = 0: g never falls, but no parabola tells. a = 1: g = (t - 1.3)^2 - 0.01 falls after it.
+void one_step(const Arguments& args) {
+  Case c = clock_only(1);
+  c.each_step = [&](double t, const double*) {
+    return args.a == 0 ? 1.001 + std::sin(777 * t) : (t - 1.3) * (t - 1.3) - 0.01;
+  };
+  Started s(c, args.method);
+  const Outcome outcome = s.step();
+  std::printf("{\"event\": %d, \"roots\": %lld, \"until\": %.17g}\n", outcome == Outcome::event, s.counters().roots,
+              s.known_until());
+}
+
 // A release: g = t^2 (a - t) starts at zero with rate zero, rises, and falls at a.
 void release(const Arguments& args) {
   Case c = clock_only(1);

@@ -128,9 +128,10 @@ void stiff(const Arguments& args) {
               s.counters().rhs, s.counters().jacobians);
 }
 
-// Sizes of the first step: of a start, and after a restart with the interval a.
+// Sizes of the first step: of a start, and after a restart with the interval a. What is watched is far from an event.
 void first_step(const Arguments& args) {
   Case c = harmonic();
+  c.each_step = [](double, const double* y) { return y[0] + 2; };
   Started s(c, args.method);
   for (int i = 0; i < 5; ++i) s.step();
   double y[2];
@@ -171,7 +172,8 @@ constexpr struct {
            {"snapshots", snapshots},
            {"forgeries", forgeries},
            {"vector", vector},
-           {"dip_beside_a_fall", dip_beside_a_fall}};
+           {"dip_beside_a_fall", dip_beside_a_fall},
+           {"one_step", one_step}};
 
 }  // namespace
 

@@ -17,4 +17,5 @@ void double_dip(const Arguments& args);
 void dips(const Arguments& args);
 void later_piece(const Arguments& args);
 void dip_beside_a_fall(const Arguments& args);
+void one_step(const Arguments& args);
 void release(const Arguments& args);

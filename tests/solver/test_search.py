@@ -34,6 +34,17 @@ def test_the_work_of_the_search_is_bounded(measure, method):
     within(run["roots"] / run["steps"], 100, "roots")
 
 
+def test_where_no_parabola_tells_the_search_of_one_step_gives_up_in_time(measure):
+    run = measure("one_step", "runge_kutta", 0)
+    assert not run["event"]
+    within(run["roots"], 69, "values in one step")
+
+
+def test_a_fall_after_the_step_is_none_of_the_step(measure):
+    run = measure("one_step", "runge_kutta", 1)
+    assert (run["event"], run["until"]) == (0, 1)
+
+
 @pytest.mark.parametrize("depth", [1e-3, 1e-4, 1e-5, 1e-8])
 def test_of_two_dips_between_bends_the_first_is_found(measure, method, depth):
     """g = (t - 0.3)^2 (t - 0.7)^2 - depth, in a step of 1 s whose extremes are told."""
