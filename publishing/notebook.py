@@ -21,7 +21,8 @@ def executed(fmu: str = "../wheel.fmu", results: str = "../results") -> nbformat
     for cell, source in cells:
         cell.source = source.replace("../wheel.fmu", fmu).replace("../results", results)
     place = {"metadata": {"path": NOTEBOOK.parent}}
-    NotebookClient(notebook, timeout=120, record_timing=False, resources=place).execute()
+    # What a cell prints comes in pieces, more of them on a busy machine: each stream becomes one.
+    NotebookClient(notebook, timeout=120, record_timing=False, coalesce_streams=True, resources=place).execute()
     for number, (cell, source) in enumerate(cells):
         cell.source, cell.metadata, cell.id = source, {}, f"cell-{number}"
         if cell.cell_type == "code":
