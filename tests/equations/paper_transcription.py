@@ -220,15 +220,13 @@ class Paper:
         return np.concatenate([x[..., :9], (self.wheel["J_z"] * x[..., 9])[..., None]], axis=-1)
 
     @cached_property
-    def omega(self) -> np.ndarray:
-        """Angular velocity in body axes, (8)."""
+    def omega(self) -> np.ndarray:  # (8), in body axes
         return times(self.Q, self.beta_dot)
 
     @cached_property
     def energy(self) -> np.ndarray:
-        v = self.q_dot[..., :3]
+        v, w = self.q_dot[..., :3], self.wheel
         turning = (self.omega * times(self.J, self.omega)).sum(-1)
-        w = self.wheel
         fallen = w["g_X"] * self.place[0] + w["g_Y"] * self.place[1] - w["g"] * self.place[2]
         return 0.5 * (w["m"] * (v * v).sum(-1) + turning) - w["m"] * fallen
 
