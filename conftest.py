@@ -1,3 +1,3 @@
-"""What every folder of tests shares: the fixtures of the built FMU, and the tables of bounds."""
+"""What every folder of tests shares: the fixtures of the built FMU, and --bounds."""
 
-pytest_plugins = ["support.fixtures", "support.bound_tables"]
+pytest_plugins = ["support.fixtures", "support.bounds"]
