@@ -22,19 +22,26 @@ def law_error(library: Library, truth: Run, omega_s: float, tolerance: float, me
     return regularized.error_against(truth, run(library, values, regularized.TIMES, tolerance))
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+# BDF alone steps through a layer narrower than a loose tolerance and may miss a whole slip, by the last bits of a sine.
+@pytest.mark.parametrize(
+    ("method", "tolerance"), [("automatic", 1e-4), ("automatic", 1e-6), ("automatic", 1e-8), ("bdf", 1e-8)]
+)
 @pytest.mark.parametrize("omega_s", [1e-3, 1e-5, 1e-7, 1e-8])
-def test_no_width_is_quietly_wrong(library: Library, truth: Run, omega_s: float, tolerance: float) -> None:
+def test_no_width_is_quietly_wrong(library: Library, truth: Run, omega_s: float, method: str, tolerance: float) -> None:
     bound = WIDTH_FACTOR * omega_s + TOLERANCE_FACTOR * tolerance
-    within(law_error(library, truth, omega_s, tolerance, "bdf"), bound, "law error")
+    within(law_error(library, truth, omega_s, tolerance, method), bound, "law error")
     lighter = run(library, {"s": 0.025}, regularized.TIMES, tolerance)
     beyond(regularized.error_against(truth, lighter), bound, "error against")  # another friction
 
 
 def test_adams_and_bdf_agree_where_both_are_affordable(library: Library, truth: Run) -> None:
-    adams, bdf = (law_error(library, truth, 1e-4, 1e-8, method) for method in ("adams", "bdf"))
-    within(abs(adams - bdf), 6e-9, "adams")
-    beyond(abs(adams - law_error(library, truth, 1.1e-4, 1e-8)), 2e-6, "law error")  # a tenth wider
+    """Each to two tolerances, which grow with the motion as an error of the start does."""
+    tolerance, off = 1e-8, 1e-6
+    adams, bdf = (law_error(library, truth, 1e-4, tolerance, method) for method in ("adams", "bdf"))
+    tilted = run(library, {**FRICTION, "theta_start": 5 * np.pi / 12 + off}, regularized.TIMES, 1e-12)
+    bound = 4 * tolerance * regularized.error_against(truth, tilted) / off
+    within(abs(adams - bdf), bound, "adams")
+    beyond(abs(adams - law_error(library, truth, 1.1e-4, tolerance)), bound, "law error")  # a tenth wider
 
 
 @pytest.mark.parametrize(("factor", "layered"), [(0.5, False), (2.0, True)])
