@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from reference.tables import read_table
-from support.bounds import absolute_error, beyond, within
+from support.bounds import EPSILON, absolute_error, beyond, within
 
 from page.tests.pages import POSE, RECORD, opened, view, write_csv
 
@@ -55,7 +55,7 @@ def test_the_wheels_pose_in_the_scene_is_that_of_the_file(recorded, scenes, name
     for t in INSTANTS:
         k = round(t / 0.01)
         there = shown(recorded, t, name)
-        within(absolute_error(there, pose_of(rows[k])), 1e-14, "pose")
+        within(absolute_error(there, pose_of(rows[k])), 64 * EPSILON, "pose")
         off.append(abs(there - pose_of(rows[max(1, k) - 1])).max())
     beyond(max(off), 1e-2, "pose of the row before")
 
@@ -98,7 +98,7 @@ def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(browser, tmp_path):
     expected = np.eye(4)
     expected[:3, :3] = turn(2, 0.56) @ turn(1, 0.21) @ turn(0, -0.28)
     expected[:3, 3] = [0.7, 1.4, 0.6]
-    within(absolute_error(np.reshape(there, (4, 4)).T, expected), 3e-15, "pose off")
+    within(absolute_error(np.reshape(there, (4, 4)).T, expected), 64 * EPSILON, "pose off")
 
 
 def test_the_friction_wheel_sticks_at_its_instant(recorded):

@@ -6,7 +6,7 @@ from ctypes import c_double, c_int, c_uint
 
 import numpy as np
 import pytest
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel
 from support.scenes import KINDS
 
@@ -104,7 +104,7 @@ def test_directional_derivatives_are_those_of_the_reactions(wheel, scene):
         assert w.step_to(t) == OK
         checked.append((jacobian(w), difference_jacobian(w)))
     for exact, difference in checked:
-        within(np.max(np.abs(exact - difference)), 1e-12, "difference")  # N/N and N/(N m)
+        within(np.max(np.abs(exact - difference)), 64 * 200 * EPSILON, "difference")  # of reactions of 200 N
         answers = [name.startswith(("lambda", "tau")) for name in outputs(w)]
         assert np.all(exact[np.invert(answers)] == 0)
         assert np.linalg.matrix_rank(exact[answers], 1e-3) >= 3
@@ -126,9 +126,9 @@ def test_directional_derivatives_add_up_the_seeds(wheel):
     unknowns, knowns = [w.references[name] for name in outputs(w)], [w.references[name] for name in INPUTS]
     seeds = [1.0, -2.0, 0.5, 3.0, 0.0, 7.0]
     together = np.array(w.getDirectionalDerivative(unknowns, knowns, seeds))
-    within(np.max(np.abs(together - jacobian(w) @ seeds)), 2e-14, "jacobian")
+    within(np.max(np.abs(together - jacobian(w) @ seeds)), 32 * 20 * EPSILON, "jacobian")  # seeds of 20 in all
     twice = np.array(w.getDirectionalDerivative(unknowns[::-1], [knowns[0]] * 2, [1.0, 2.0]))
-    within(np.max(np.abs(twice[::-1] - 3 * jacobian(w)[:, 0])), 1e-15, "jacobian, 2")
+    within(np.max(np.abs(twice[::-1] - 3 * jacobian(w)[:, 0])), 16 * EPSILON, "jacobian, 2")
     beyond(np.max(np.abs(together - jacobian(w) @ seeds[::-1])), 1, "jacobian")
 
 

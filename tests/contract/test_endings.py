@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.closed_forms import fall_time
 from support.driver import DISCARD, DO_STEP_STATUS, LAST_SUCCESSFUL_TIME, OK, TERMINATED, FMU2Wheel
 from support.scenes import PAPER, THETA_0
@@ -90,6 +90,6 @@ def test_fmpy_simulate_ends_where_the_wheel_falls_and_keeps_the_data(fmu_path, t
     assert said.startswith("[WARNING] The wheel fell flat at t = 0.5927504")
     assert len(rows) == 61
     within(abs(rows["time"][-1] - fall_time(PAPER, THETA_0, 1e-7)), 2e-10, "time")
-    within(abs(rows["theta"][-1] - 1e-7), 5e-14, "theta")
+    within(abs(rows["theta"][-1] - 1e-7), 512 * EPSILON, "theta")  # rounding of the instant, times theta_dot
     said, rows = fmpy_simulate(fmu_path, tmp_path / "paper.csv")  # the partner: the paper's wheel rolls on
     assert (said, len(rows), rows["time"][-1]) == ("", 1001, 10.0)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 from support import equations as eq
-from support.bounds import beyond, relative_error, within
+from support.bounds import EPSILON, beyond, relative_error, within
 
 from equations import random_scenes
 from equations.pointwise import BOTH, Table, distance, draw, dynamics
@@ -41,7 +41,7 @@ def test_while_the_wheel_turns_a_brake_is_a_moment_against_omega_z(formulation: 
     driven["load"]["brake"] = 0
     expected = dynamics(formulation, driven, motions)
     expected["tau"] -= scenes["friction"]["sigma"] * scenes["load"]["brake"]
-    within(distance(slowed, expected, scenes), 7e-14, "error")
+    within(distance(slowed, expected, scenes), 1024 * EPSILON, "error")  # 1/sin(theta) is up to 20
     driven["load"]["M"][:, 2] *= 1 + 1e-6
     expected = dynamics(formulation, driven, motions)
     beyond(distance(slowed, expected, scenes), 0.2, "error")
@@ -56,7 +56,7 @@ def test_the_regularized_law_softens_the_brake_as_it_softens_friction(formulatio
     N = np.maximum(soft["lambda_"][:, 2], 0)
     tau = -(scenes["wheel"]["s"] * N + scenes["load"]["brake"]) * kappa
     size = scenes["wheel"]["r_0"] * np.abs(soft["lambda_"]).max(axis=1)
-    within((np.abs(soft["tau"] - tau) / size).max(), 1e-14, "tau")
+    within((np.abs(soft["tau"] - tau) / size).max(), 64 * EPSILON, "tau")
     beyond((np.abs(soft["tau"] - tau / kappa) / size).max(), 0.5, "tau")
 
 
@@ -72,7 +72,7 @@ def test_a_held_wheel_asks_for_the_same_moment_whatever_the_brake_can_give(formu
     scenes["load"]["M"][:, 2] += drive
     moved = dynamics(formulation, scenes, motions)["tau"] - weak["tau"]
     size = scenes["wheel"]["r_0"] * np.abs(weak["lambda_"]).max(axis=1) + np.abs(weak["tau"])
-    within((np.abs(moved + drive) / size).max(), 2e-13, "relative error")  # it holds what drives it
+    within((np.abs(moved + drive) / size).max(), 1024 * EPSILON, "relative error")  # it holds what drives it
     beyond((np.abs(moved) / size).max(), 0.1, "relative error")
 
 
@@ -84,8 +84,9 @@ def test_a_wheel_held_upright_answers_a_slope_by_its_weight_along_it(formulation
     scenes["load"]["F"][:, 0] = 0.1 * scenes["wheel"]["m"] * 9.81
     held = dynamics(formulation, scenes, motions)
     R = scenes["wheel"]["r_0"] + scenes["wheel"]["r"]
-    within(relative_error(held["tau"], R * scenes["load"]["F"][:, 0]), 4e-14, "tau")
-    within(np.abs(held["X_O_ddot"]).max(), 3e-14, "X_O_ddot")
+    # a solution for 9 unknowns
+    within(relative_error(held["tau"], R * scenes["load"]["F"][:, 0]), 256 * EPSILON, "tau")
+    within(np.abs(held["X_O_ddot"]).max(), 256 * EPSILON, "X_O_ddot")  # terms of 1 m/s2
     scenes["friction"]["kind"] = eq.FRICTIONLESS
     beyond((dynamics(formulation, scenes, motions)["X_O_ddot"]).min(), 0.1, "X_O_ddot")
 
@@ -102,4 +103,4 @@ def test_without_friction_the_brake_is_ignored_and_with_brake_zero_nothing_is_le
     scenes["wheel"]["s"], scenes["load"]["brake"] = 0, 0
     idle = dynamics(formulation, scenes, motions)
     assert (idle["tau"] == 0).all()
-    within(distance(idle, free, scenes), 1e-14, "error")
+    within(distance(idle, free, scenes), 64 * EPSILON, "error")

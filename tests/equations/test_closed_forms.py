@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 from support import equations as eq
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.closed_forms import circle_spin, rolling_inertia
 
 from equations import random_scenes
 from equations.pointwise import BOTH, Table, dynamics
 
 ROWS = 1000
-BOUND = 1e-11
 
 
 def still(kind: int) -> tuple[Table, Table]:
@@ -56,11 +55,13 @@ def test_upright_straight_rolling_slows_down_linearly_under_friction(formulation
     slowing = -sigma * scenes["wheel"]["s"] * weight(scenes) / rolling_inertia(constants(scenes))
     thin = -sigma * scenes["wheel"]["s"] * weight(scenes) / rolling_inertia(constants(scenes, r=0))
     size = np.abs(slowing)
-    within(error(d["omega_z_dot"], slowing, size), BOUND, "omega_z_dot")
+    within(error(d["omega_z_dot"], slowing, size), 32768 * EPSILON, "omega_z_dot")  # s is small in some rows
     beyond(error(d["omega_z_dot"], -slowing, size), 1.9, "omega_z_dot")  # wrong sign of the friction
     beyond(error(d["omega_z_dot"], thin, size), 0.1, "omega_z_dot, 2")  # wheel without tube
-    within(error(d["lambda_"][:, 2], weight(scenes), weight(scenes)), 5e-14, "lambda_")
-    within(error(eq.columns(d, "theta_ddot", "psi_ddot"), np.zeros((ROWS, 2))), 2e-13, "error")
+    # a solution for 9 unknowns
+    within(error(d["lambda_"][:, 2], weight(scenes), weight(scenes)), 256 * EPSILON, "lambda_")
+    straight = error(eq.columns(d, "theta_ddot", "psi_ddot"), np.zeros((ROWS, 2)))
+    within(straight, 128 * 10 * EPSILON, "error")  # terms of 10 1/s2
 
 
 @BOTH
@@ -75,15 +76,15 @@ def test_an_upright_wheel_answers_a_drive_torque_and_a_push_as_a_roller_or_is_he
     inertia = rolling_inertia(constants(scenes))
     d = dynamics(formulation, scenes, motions)
     spin_up = (torque - radius * push) / inertia
-    within(error(d["omega_z_dot"], spin_up, np.abs(spin_up)), 2e-13, "omega_z_dot")
-    within(error(d["X_O_ddot"], -radius * spin_up, np.abs(radius * spin_up)), 2e-14, "X_O_ddot")
+    within(error(d["omega_z_dot"], spin_up, np.abs(spin_up)), 1024 * EPSILON, "omega_z_dot")  # drive and push cancel
+    within(error(d["X_O_ddot"], -radius * spin_up, np.abs(radius * spin_up)), 256 * EPSILON, "X_O_ddot")
     beyond(error(d["omega_z_dot"], spin_up + 2 * radius * push / inertia), 7, "omega_z_dot")
     scenes["friction"]["kind"] = eq.HELD
     d = dynamics(formulation, scenes, motions)
     assert (d["omega_z_dot"] == 0).all()
-    within(error(d["tau"], radius * push - torque, torque), 5e-14, "tau")
+    within(error(d["tau"], radius * push - torque, torque), 512 * EPSILON, "tau")  # drive and push cancel
     beyond(error(d["tau"], -radius * push - torque, torque), 0.3, "tau")  # push the other way
-    within(error(d["X_O_ddot"], np.zeros(ROWS)), 4e-13, "X_O_ddot, held")
+    within(error(d["X_O_ddot"], np.zeros(ROWS)), 256 * 20 * EPSILON, "X_O_ddot, held")  # terms of 20 m/s2
 
 
 @BOTH
@@ -95,7 +96,7 @@ def test_a_wheel_released_from_rest_tips_about_its_contact(formulation: eq.Formu
     tipping = -weight(scenes) * w["r_0"] * c / (w["J_x"] + w["m"] * lever)
     size = weight(scenes) * w["r_0"] / w["J_x"]
     d = dynamics(formulation, scenes, motions)
-    within(error(d["theta_ddot"], tipping, size), 7e-15, "theta_ddot")
+    within(error(d["theta_ddot"], tipping, size), 32 * EPSILON, "theta_ddot")
     beyond(error(d["theta_ddot"], tipping * (1 + w["r"] / w["r_0"] * s), size), 0.01, "theta_ddot")  # r counts
 
 
@@ -113,7 +114,7 @@ def test_the_torus_circles_steadily_with_friction_balanced_by_the_drive(formulat
     scenes, motions = circling(eq.ROLLING)
     sigma = scenes["friction"]["sigma"]
     scenes["load"]["M"][:, 2] = sigma * scenes["wheel"]["s"] * weight(scenes)
-    within(unsteadiness(formulation, scenes, motions), 5e-13, "unsteadiness")
+    within(unsteadiness(formulation, scenes, motions), 4096 * EPSILON, "unsteadiness")  # gyroscopic moments cancel
     scenes["friction"]["sigma"] = -sigma
     beyond(unsteadiness(formulation, scenes, motions), 0.1, "unsteadiness")  # friction drives
 

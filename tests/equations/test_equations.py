@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from support import equations as eq
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 
 from equations.multibody_transcription import omega_z_dot, papers_state, solved
 from equations.paper_transcription import Paper
@@ -23,7 +23,7 @@ def test_reduced_and_multibody_give_the_same_accelerations_and_reactions(law: in
     scenes, motions = draw(1, law, symmetric)
     multibody = dynamics(eq.MULTIBODY, scenes, motions)
     reduced = dynamics(eq.REDUCED, scenes, motions)
-    within(distance(reduced, multibody, scenes), 9e-13, "distance")
+    within(distance(reduced, multibody, scenes), 16384 * EPSILON, "distance")  # 9 unknowns, theta from 3 degrees on
     scenes["wheel"]["J_x"] *= 1 + 1e-9
     disturbed = dynamics(eq.REDUCED, scenes, motions)
     beyond(distance(disturbed, multibody, scenes), 5e-9, "distance")
@@ -46,9 +46,9 @@ def test_reduced_and_multibody_give_the_same_positions_and_velocities() -> None:
         eq.kinematics_each(f, scenes, eq.start_each(f, scenes, motions)) for f in (eq.REDUCED, eq.MULTIBODY)
     )
     a, b = (eq.columns(k, *k.dtype.names) for k in (reduced, multibody))
-    within(relative(a, b), 8e-15, "relative difference")
+    within(relative(a, b), 64 * EPSILON, "relative difference")
     given = eq.columns(motions, *motions.dtype.names)
-    within(relative(eq.columns(reduced, *motions.dtype.names), given), 1e-14, "relative difference, 2")
+    within(relative(eq.columns(reduced, *motions.dtype.names), given), 64 * EPSILON, "relative difference, 2")
     scenes["wheel"]["r"] += 1e-9
     moved = eq.kinematics_each(eq.REDUCED, scenes, eq.start_each(eq.REDUCED, scenes, motions))
     beyond(relative(eq.columns(moved, *moved.dtype.names), b), 1e-10, "relative difference")  # r longer by 1 nm
@@ -76,9 +76,9 @@ def test_the_euler_form_reads_its_state_back_to_the_bit_and_moves_as_the_reduced
     assert (eq.columns(k, *names) == y).all()
     of_reduced = eq.kinematics_each(eq.REDUCED, scenes, reduced)
     assert not (eq.columns(of_reduced, *names) == y).all()  # its psi_dot is computed anew
-    within(relative(eq.columns(k, *k.dtype.names), eq.columns(of_reduced, *k.dtype.names)), 3e-15, "kinematics")
+    within(relative(eq.columns(k, *k.dtype.names), eq.columns(of_reduced, *k.dtype.names)), 16 * EPSILON, "kinematics")
     euler, moved = (eq.dynamics_each(f, scenes, s) for f, s in ((eq.EULER, y), (eq.REDUCED, reduced)))
-    within(distance(euler, moved, scenes), 1e-13, "dynamics")
+    within(distance(euler, moved, scenes), 1024 * EPSILON, "dynamics")  # of states that differ by rounding
     load_dots = np.ascontiguousarray(scenes["load"])
     for each in (eq.rates_each, eq.response_each):
         a, b = (each(f, scenes, load_dots, s) for f, s in ((eq.EULER, y), (eq.REDUCED, reduced)))
@@ -96,14 +96,14 @@ def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(l
         found = eq.dynamics_each(formulation, scenes, y)
         stated = rates(k, found)
         exact = 6 if formulation is eq.MULTIBODY else 8  # multibody: the height drawn by rounding, else copies
-        within(relative(y_dot[:, :exact], stated[:, :exact]), 2e-14, "relative difference")
+        within(relative(y_dot[:, :exact], stated[:, :exact]), 256 * EPSILON, "relative difference")
         beyond(relative(y_dot, stated * np.where(np.arange(y.shape[1]) == 0, 1.001, 1)), 8e-5, "relative difference")
         force = found["lambda_"]
         if formulation is not eq.MULTIBODY:
             assert (normal == force[:, 2]).all()
         # multibody: two solutions of (24), stabilised and pure, each with rounding of its own
-        within(relative(y_dot, stated), 4e-13, "relative difference, 2")
-        within((np.abs(normal - force[:, 2]) / np.abs(force).max(axis=1)).max(), 2e-13, "normal force")
+        within(relative(y_dot, stated), 4096 * EPSILON, "relative difference, 2")
+        within((np.abs(normal - force[:, 2]) / np.abs(force).max(axis=1)).max(), 4096 * EPSILON, "normal force")
 
 
 def reduced_rates(k: np.ndarray, d: np.ndarray) -> np.ndarray:
@@ -151,7 +151,8 @@ def test_multibody_solves_the_papers_system_24_for_any_inertia(law: int) -> None
     scenes, motions = draw(5, law, symmetric=False)
     y = eq.start_each(eq.MULTIBODY, scenes, motions)
     multibody = eq.dynamics_each(eq.MULTIBODY, scenes, y)
-    within(distance(multibody, transcribed(scenes, y), scenes), 9e-13, "distance")
+    # two solutions for 9 unknowns
+    within(distance(multibody, transcribed(scenes, y), scenes), 32768 * EPSILON, "distance")
     scenes["wheel"]["J_y"] *= 1 + 1e-9
     beyond(distance(multibody, transcribed(scenes, y), scenes), 3e-9, "distance")
 
@@ -162,7 +163,7 @@ def test_both_formulations_agree_with_the_independent_reference(symmetric: bool)
     reference = referenced(scenes, motions)
     for formulation in (eq.REDUCED, eq.MULTIBODY):
         found = dynamics(formulation, scenes, motions)
-        within(distance(found, reference, scenes), 2e-12, "distance")
+        within(distance(found, reference, scenes), 16384 * EPSILON, "distance")  # 1/sin(theta) is up to 20
         disturbed = scenes.copy()
         disturbed["wheel"]["J_z"] *= 1 + 1e-9
         found = dynamics(formulation, disturbed, motions)

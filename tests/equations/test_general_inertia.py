@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 from support import equations as eq
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 
 from equations.pointwise import BOTH, INERTIA, LAWS, Table, distance, draw, dynamics
 
@@ -21,7 +21,8 @@ def test_a_difference_of_rounding_between_J_x_and_J_y_changes_nothing_but_roundi
     equal = dynamics(eq.REDUCED, scenes, motions)
     scenes["wheel"]["J_y"] *= 1 + 1e-15
     assert (scenes["wheel"]["J_x"] != scenes["wheel"]["J_y"]).all()
-    within(distance(dynamics(eq.REDUCED, scenes, motions), equal, scenes), 7e-13, "relative error")
+    # two eliminations
+    within(distance(dynamics(eq.REDUCED, scenes, motions), equal, scenes), 4096 * EPSILON, "relative error")
     scenes["wheel"]["J_y"] *= 1 + 1e-8
     beyond(distance(dynamics(eq.REDUCED, scenes, motions), equal, scenes), 2e-8, "relative error")
 
@@ -48,7 +49,7 @@ def test_N_answers_a_moment_about_the_axle_by_alpha(formulation: eq.Formulation,
     driven = dynamics(formulation, scenes, motions)["lambda_"]
     alpha = answer_of_N(scenes, motions)
     size = np.abs(driven).max(axis=1) / moment
-    within((np.abs((driven[:, 2] - free) / moment - alpha) / size).max(), 5e-14, "relative error")
+    within((np.abs((driven[:, 2] - free) / moment - alpha) / size).max(), 256 * EPSILON, "relative error")
     if symmetric:
         assert (alpha == 0).all()
         return
@@ -69,9 +70,9 @@ def test_N_under_rolling_friction_and_brake_follows_from_that_of_the_free_wheel(
     size = np.abs(found["lambda_"]).max(axis=1)
     unpressed = N_free - alpha * kappa * brake
     N = np.where(unpressed > 0, unpressed / (1 + alpha * kappa * s), unpressed)
-    within((np.abs(found["lambda_"][:, 2] - N) / size).max(), 5e-14, "lambda_")
+    within((np.abs(found["lambda_"][:, 2] - N) / size).max(), 256 * EPSILON, "lambda_")
     tau = -kappa * (s * np.maximum(N, 0) + brake)
-    within((np.abs(found["tau"] - tau) / (scenes["wheel"]["r_0"] * size)).max(), 6e-15, "r_0")
+    within((np.abs(found["tau"] - tau) / (scenes["wheel"]["r_0"] * size)).max(), 64 * EPSILON, "r_0")
     without_alpha = np.abs(found["lambda_"][:, 2] - N_free) / size
     beyond(without_alpha.max(), 1e-2, "without alpha")
     without_brake = np.where(N_free > 0, N_free / (1 + alpha * kappa * s), N_free)

@@ -10,7 +10,7 @@ from ctypes import c_double
 import numpy as np
 import pytest
 from support import equations as eq
-from support.bounds import absolute_error, beyond, relative_error, within
+from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
 from equations.paper_transcription import Paper, times
 from equations.pointwise import Table, draw
@@ -47,7 +47,8 @@ def residuals(wheels: Table, k: Table) -> tuple[Table, Table]:
 def test_energy_is_that_of_translation_rotation_and_height() -> None:
     wheels, k = rolling_states(41)
     expected = Paper(wheels, state(k)).energy
-    within(relative_error(energies(wheels, k), expected), 5e-13, "energies")
+    # kinetic and potential energy may cancel
+    within(relative_error(energies(wheels, k), expected), 4096 * EPSILON, "energies")
     k["phi"] += 1e-6  # J_x != J_y: the turn of the body counts
     beyond(relative_error(energies(wheels, k), expected), 9e-7, "energies")
 
@@ -59,7 +60,7 @@ def test_energy_of_the_papers_start_is_75_117_J() -> None:
     by_hand += 20 * 9.81 * (0.3 * sin + 0.05)
     for formulation in (eq.REDUCED, eq.MULTIBODY):
         k = eq.kinematics(formulation, wheel, eq.start(formulation, wheel, eq.PAPER_START))
-        within(relative_error(eq.energy(wheel, k), by_hand), 1e-14, "energy")
+        within(relative_error(eq.energy(wheel, k), by_hand), 64 * EPSILON, "energy")
         within(absolute_error(eq.energy(wheel, k), 75.117), 5e-4, "energy, 2")
         k.Z_O = 0
         within(eq.energy(wheel, k), 10, "energy, 3")
@@ -71,8 +72,8 @@ def test_height_of_O_is_that_of_a_torus_on_the_ground() -> None:
     heights = np.array([*map(eq.LIBRARY.wheel_height, constants, k["theta"].tolist())])
     paper = Paper(wheels, state(k))
     below = times(paper.A, paper.contact)[:, 2]
-    within(relative_error(heights, -below), 6e-15, "heights")
-    within(relative_error(heights, k["Z_O"]), 1e-14, "heights, 2")
+    within(relative_error(heights, -below), 64 * EPSILON, "heights")
+    within(relative_error(heights, k["Z_O"]), 64 * EPSILON, "heights, 2")
     beyond(relative_error(heights, -below - wheels["r"] * 1e-6), 7e-8, "heights")
 
 
@@ -94,8 +95,8 @@ def test_rolling_states_are_on_the_constraints() -> None:
     wheels, k = rolling_states(43)
     velocity, height = residuals(wheels, k)
     speed = np.abs(state(k)[:, 6:9]).max()
-    within(velocity.max() / speed, 1e-14, "speed")
-    within(height.max(), 1e-14, "height")
+    within(velocity.max() / speed, 64 * EPSILON, "speed")
+    within(height.max(), 64 * EPSILON, "height")
     k["X_O_dot"] += 1e-9
     k["Z_O"] += 1e-9
     beyond(np.minimum(*residuals(wheels, k)).min(), 0.9e-9, "residuals")
@@ -112,6 +113,6 @@ def test_residuals_are_the_slip_B_q_dot_and_the_error_in_height() -> None:
     velocity, height = residuals(wheels, k)
     slip = np.abs(times(paper.B, paper.q_dot)).max(axis=1)
     off = np.abs(k["Z_O"] - wheels["r_0"] * paper.sin_theta - wheels["r"])
-    within(np.abs(velocity - slip).max() / slip.max(), 1e-14, "slip")
-    assert height == pytest.approx(off, rel=1e-12, abs=1e-14)
+    within(np.abs(velocity - slip).max() / slip.max(), 64 * EPSILON, "slip")
+    assert height == pytest.approx(off, rel=1e-12, abs=64 * EPSILON)
     beyond(np.abs(velocity - np.linalg.norm(times(paper.B, paper.q_dot), axis=1)).max(), 0.2, "norm")

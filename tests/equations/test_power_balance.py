@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 from support import equations as eq
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 
 from equations.paper_transcription import Paper, times
 from equations.pointwise import BOTH, LAWS, draw
@@ -50,7 +50,7 @@ def test_energy_changes_by_the_power_of_inputs_and_friction(formulation: eq.Form
     now = Instants(formulation, law)
     rate, size = now.energy_rates()
     power = now.input_power() + now.friction_power()
-    within((np.abs(rate - power) / size).max(), 4e-13, "relative error")
+    within((np.abs(rate - power) / size).max(), 4096 * EPSILON, "relative error")  # of accelerations from a solution
     without_inputs = now.friction_power()
     beyond((np.abs(rate - without_inputs) / size).max(), 0.1, "relative error")
     if law in (eq.ROLLING, eq.REGULARIZED):
@@ -70,10 +70,10 @@ def test_stop_spin_leaves_a_rolling_wheel_without_spin_that_holding_takes_no_ene
     after = eq.kinematics_each(formulation, scenes, y)
     kept = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi", "psi_dot", "theta_dot")
     assert (after["omega_z"] == 0).all()
-    within(np.abs(eq.columns(after, *kept) - eq.columns(before, *kept)).max(), 1e-14, "columns")
+    within(np.abs(eq.columns(after, *kept) - eq.columns(before, *kept)).max(), 64 * EPSILON, "columns")
     rolling = eq.columns(after, *after.dtype.names[:12])
     slip = times(Paper(scenes["wheel"], rolling).B, rolling[:, 6:])
-    within(np.abs(slip).max(), 3e-13, "slip")  # m/s
+    within(np.abs(slip).max(), 32 * 60 * EPSILON, "slip")  # speeds of 60 m/s
     slid = np.hstack([rolling[:, :11], eq.columns(before, "phi_dot")])
     beyond(np.abs(times(Paper(scenes["wheel"], slid).B, slid[:, 6:])).max(), 6, "wheel")
     assert (eq.dynamics_each(formulation, scenes, y)["tau"] * after["omega_z"] == 0).all()

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 from support import equations as eq
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 
 from equations import random_scenes
 from equations.multibody_transcription import Stabilised, papers_state, products_state, solved, stabilised_rate
@@ -73,7 +73,8 @@ def test_the_multibody_derivative_is_24_with_slip_and_height_drawn_to_zero(law: 
     rolling = eq.start_each(eq.MULTIBODY, scenes, random_scenes.motions(random, 2000))
     off = random.normal(size=rolling.shape) * OFF_THE_CONSTRAINTS
     y_dot, _ = eq.derivative_each(eq.MULTIBODY, scenes, rolling + off)
-    within(relative(y_dot, stabilised_rate(scenes, rolling + off)), 3e-13, "relative difference")
+    # two solutions
+    within(relative(y_dot, stabilised_rate(scenes, rolling + off)), 2048 * EPSILON, "relative difference")
     smaller = stabilised_rate(scenes, rolling + 0.999 * off)  # errors 0.1 % smaller
     beyond(relative(y_dot, smaller), 8e-4, "relative difference")
 
@@ -111,8 +112,8 @@ def test_errors_of_the_constraints_decay_at_the_stated_rate(law: int) -> None:
 def test_24_alone_keeps_the_slip_and_lets_the_height_run_away(law: int) -> None:
     times = np.linspace(0, 0.25, 26)
     slip, height = residuals(scene(law), pure(scene(law), start(law) + PLANTED, times))
-    within(np.abs(slip - PLANTED[6:9]).max(), 1e-11, "slip")  # m/s
-    within(np.abs(height - PLANTED[2] - PLANTED[8] * times).max(), 3e-12, "height")  # m
+    within(np.abs(slip - PLANTED[6:9]).max(), 2e-11, "slip")  # m/s, at a tolerance of 1e-12
+    within(np.abs(height - PLANTED[2] - PLANTED[8] * times).max(), 5e-12, "height")  # m
     y, _ = stabilised(scene(law), start(law) + PLANTED, times)
     drawn_slip, drawn_height = residuals(scene(law), y)
     within(np.abs(drawn_slip[-1]).max() / np.abs(slip[-1]).max(), 1e-2, "drawn slip")

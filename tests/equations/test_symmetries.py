@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 from support import equations as eq
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 
 from equations.pointwise import distance, draw, dynamics
 
@@ -26,7 +26,7 @@ def test_reversed_velocities_give_the_same_accelerations_under_the_same_moment(
     before = dynamics(formulation, scenes, motions)
     for rate in ("psi_dot", "theta_dot", "phi_dot"):
         motions[rate] *= -1
-    within(distance(dynamics(formulation, scenes, motions), before, scenes), 1e-14, "error")
+    within(distance(dynamics(formulation, scenes, motions), before, scenes), 64 * EPSILON, "error")
     motions["psi_dot"] *= -1
     beyond(distance(dynamics(formulation, scenes, motions), before, scenes), 4, "error")
 
@@ -47,7 +47,8 @@ def test_with_equal_J_x_and_J_y_the_turn_phi_of_the_body_does_not_matter(formula
     scenes, motions = draw(23, None, True, ROWS)
     before = dynamics(formulation, scenes, motions)
     motions["phi"] += 0.7
-    within(distance(dynamics(formulation, scenes, motions), before, scenes), 3e-13, "error")
+    # 1/sin(theta) is up to 20
+    within(distance(dynamics(formulation, scenes, motions), before, scenes), 1024 * EPSILON, "error")
     scenes["wheel"]["J_y"] *= 1 + 1e-6
     beyond(distance(dynamics(formulation, scenes, motions), before, scenes), 8e-7, "error")
 
@@ -60,6 +61,6 @@ def test_holding_is_a_moment_about_the_axle_like_any_other(formulation: eq.Formu
     scenes["load"]["M"][:, 2] += held["tau"]
     driven = dynamics(formulation, scenes, motions)
     driven["tau"] = held["tau"]
-    within(distance(driven, held, scenes), 2e-13, "error")
+    within(distance(driven, held, scenes), 4096 * EPSILON, "error")  # two eliminations
     scenes["load"]["M"][:, 2] -= 2 * held["tau"]
     beyond(distance(dynamics(formulation, scenes, motions), held, scenes), 3, "error")

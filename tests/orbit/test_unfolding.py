@@ -10,7 +10,7 @@ import ctypes
 import numpy as np
 import pytest
 from reference import Start, Wheel
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.closed_forms import circle_spin, critical_spin
 
 from .orbit import Array, Halves, Orbit, stepped
@@ -46,7 +46,7 @@ def test_after_1000_s_each_output_is_right_to_a_millionth_of_its_range(library: 
 
 def test_the_half_period_has_thirteen_digits_and_the_error_of_a_long_run_is_its_error(library: ctypes.CDLL) -> None:
     tight, loose = Orbit(library, tolerance=1e-12), Orbit(library, tolerance=1e-6)
-    within(abs(tight.half_period - 0.627987168255779), 2e-14, "tight")  # a Taylor method's
+    within(abs(tight.half_period - 0.627987168255779), 1e-13, "tight")  # thirteen digits of a Taylor method's
     lag = (loose.half_period - tight.half_period) / tight.half_period  # of a nutation, per nutation
     t = np.array([100.0, 1000.0])
     late = loose(t) - tight(t)
@@ -84,7 +84,7 @@ def test_two_thousand_random_starts_end_in_their_first_nutation_or_fold(library:
     within(abs(ended - 1000), 900, "ended")
     # One period later tilt and rates are the same, from the direct part to the unfolded one.
     within(np.percentile(differences, 99), 1e-9, "differences")
-    within(max(differences), 1e-5, "differences, 2")
+    within(max(differences), 1e-5, "differences, 2")  # beside an unstable rest errors grow
 
 
 def test_a_wheel_that_ends_does_so_in_its_first_nutation(library: ctypes.CDLL) -> None:
@@ -132,7 +132,7 @@ def test_where_a_period_turns_the_wheel_by_half_turns_it_walks_straight_on(libra
     periods = np.array([1.0, 1000, 1_000_000])
     way = orbit(2 * orbit.half_period * periods)[:, 6:] - orbit([0])[0, 6:]
     walked = np.hypot(*way.T)
-    within(np.abs(walked / (periods * walked[0]) - 1).max(), 1e-14, "walked")
+    within(np.abs(walked / (periods * walked[0]) - 1).max(), 64 * EPSILON, "walked")
     beside = Orbit(library, start=Start(psi_dot=low + 0.01, phi_dot=-6.0), tolerance=1e-12)
     circling = beside(2 * beside.half_period * periods)[:, 6:] - beside([0])[0, 6:]
     within(np.hypot(*circling[-1]) / walked[-1], 0.003, "circling")
@@ -144,8 +144,8 @@ def test_straight_rolling_above_the_critical_speed_needs_no_step(library: ctypes
     assert (orbit.kind, orbit.steps) == ("folded", 0)
     y = orbit([1e4])[0]
     want = Start().X_O, -phi_dot * 0.35 * 1e4  # rolls along Y
-    within(abs(y[7] / want[1] - 1), 1e-14, "state")
-    within(abs(y[6] - want[0]) / abs(want[1]), 1e-14, "state, 2")
+    within(abs(y[7] / want[1] - 1), 64 * EPSILON, "state")
+    within(abs(y[6] - want[0]) / abs(want[1]), 64 * EPSILON, "state, 2")
 
 
 @pytest.mark.parametrize(("theta", "psi_dot"), [(1.3, 0.8), (1.4, -0.3), (np.pi / 2, 6.0)])

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from physics.leaning import measured_critical_spin
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.motion import Library
 
 from . import kane_states, wheels
@@ -16,7 +16,7 @@ from .numbers import read
 
 @pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
 def test_kanes_method_gives_the_same_accelerations_and_normal_force(symmetric: bool) -> None:
-    within(kane_states.distance(symmetric=symmetric), 5e-12, "symbrim: relative")
+    within(kane_states.distance(symmetric=symmetric), 16384 * EPSILON, "symbrim: relative")  # two solutions
     beyond(kane_states.distance(10, symmetric, stretched=1 + 1e-9), 2e-11, "symbrim, a tube 1e-9 thicker: relative")
 
 
@@ -29,7 +29,7 @@ def test_modelicas_wheel_is_as_far_from_ours_as_from_an_independent_integration(
 
 def test_the_drift_of_modelicas_wheel_is_seen_in_its_energy(library: Library) -> None:
     energy, ours = wheels.modelica_energy(), wheels.modelica(library)["E"]
-    assert energy[0] == pytest.approx(ours[0], rel=1e-14)
+    assert energy[0] == pytest.approx(ours[0], rel=64 * EPSILON)
     within(np.ptp(ours) / ours[0], 4e-10, "our energy: drift, relative")
     beyond(np.abs(energy / energy[0] - 1).max(), 5e-6, "the table's energy: drift, relative")
 

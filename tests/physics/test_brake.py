@@ -7,7 +7,7 @@ moment about the axle turns is J = J_z + m R^2. SI units.
 from __future__ import annotations
 
 import numpy as np
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.motion import Library, Run
 from support.schedule import Schedule
 
@@ -26,10 +26,10 @@ def test_it_stops_the_wheel_at_its_instant_and_after_its_distance(library: Libra
     instant, distance = 5.0 * J / BRAKE, R * 5.0**2 * J / (2 * BRAKE)
     ((t, mode),) = run.events
     assert mode == 0
-    within(abs(t - instant), 1e-14, "instant, s")  # s; the log gives nanoseconds
-    within(abs(run["X_O"][-1] - distance), 1e-14, "X_O")  # m
+    within(abs(t - instant), 64 * EPSILON, "instant, s")  # s; the log gives nanoseconds
+    within(abs(run["X_O"][-1] - distance), 64 * EPSILON, "X_O")  # m
     assert (run["omega_z"][1:] == 0).all()  # held without creep
-    within(abs(run["tau"][0] - BRAKE), 1e-14, "tau")  # against omega_z < 0
+    within(abs(run["tau"][0] - BRAKE), 64 * BRAKE * EPSILON, "tau")  # against omega_z < 0
     ((late, _),) = braked(library, [0.0, 2.0], {"M_brake": (BRAKE,)}, s=1e-6).events  # the partner: a trace of s N
     beyond(abs(late - instant), 8e-7, "instant, s")
 
@@ -48,13 +48,13 @@ def test_it_lets_go_where_a_growing_force_exceeds_it(library: Library) -> None:
     assert mode == -1
     within(abs(t - release), 1e-9, "instant, s")
     late = 0.5 - release
-    within(abs(run["omega_z"][-1] + rate * R * late**2 / (2 * J)), 2e-14, "omega_z")
+    within(abs(run["omega_z"][-1] + rate * R * late**2 / (2 * J)), 128 * EPSILON, "omega_z")
     beyond(abs(run["omega_z"][-1] + rate * R * 0.5**2 / (2 * J)), 0.1, "omega_z")
 
 
 def test_a_brake_that_is_let_off_leaves_nothing_behind(library: Library) -> None:
     off = Schedule(((0.0, {"M_brake": (BRAKE,)}), (0.1, {"M_brake": (0.0,)})))
     run = library.simulate([0.0, 0.1, 0.5, 1.0], 1e-10, off, **UPRIGHT)
-    within(abs(run["omega_z"][1] - (-5.0 + BRAKE * 0.1 / J)), 1e-14, "omega_z")
+    within(abs(run["omega_z"][1] - (-5.0 + BRAKE * 0.1 / J)), 64 * 5 * EPSILON, "omega_z")  # 5 rad/s
     assert (run["omega_z"][2:] == run["omega_z"][1]).all()
     assert (run["tau"][2:] == 0).all()

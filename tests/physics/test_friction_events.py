@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from reference import Start, Wheel, solve
 from reference.tables import read_table
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.kept import kept
 from support.motion import Library
 
@@ -78,7 +78,7 @@ def energy_gap(library: Library, s: float, judged: float) -> float:
 
 
 def test_the_energy_falls_by_the_work_of_rolling_friction(library: Library) -> None:
-    within(energy_gap(library, 0.03, 0.03), 2e-13, "energy gap")
+    within(energy_gap(library, 0.03, 0.03), 1024 * EPSILON, "energy gap")  # sums of some thousand terms
     beyond(energy_gap(library, 0.03, 0.03 * (1 + 1e-6)), 1e-7, "energy gap")
 
 

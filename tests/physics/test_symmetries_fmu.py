@@ -11,7 +11,7 @@ from math import pi
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.motion import Library, Run
 from support.schedule import Schedule
 
@@ -117,7 +117,7 @@ def test_the_motion_keeps_the_symmetries_of_plane_and_wheel(
         load = image_of_load(symmetry, moment)
         return difference(expected, library.simulate(TIMES, 1e-11, load, **image_of_start(symmetry), **inertia))
 
-    within(gap(symmetry.moment), 2e-11, "gap")
+    within(gap(symmetry.moment), 1e-10, "gap")  # ten tolerances
     beyond(gap(tuple(-sign for sign in symmetry.moment)), 0.1, "gap")  # the moments mapped wrongly
 
 
@@ -126,7 +126,7 @@ def test_with_equal_J_x_and_J_y_the_turn_phi_of_the_body_at_the_start_does_not_m
         a, b = (library.simulate(TIMES, **{**START, "phi_start": phi}, **inertia) for phi in (0.0, 0.7))
         return float(np.abs(a["theta"] - b["theta"]).max())
 
-    within(gap(), 4e-13, "gap")  # rad: phi takes part in the choice of steps
+    within(gap(), 2048 * EPSILON, "gap")  # rad: phi takes part in the choice of steps
     beyond(gap(**UNEQUAL), 0.04, "gap")
 
 
@@ -151,7 +151,7 @@ def test_a_wheel_four_times_as_large_moves_alike_in_twice_the_time(library: Libr
         pairs = [(a["theta"], b["theta"]), (a["X_O"], b["X_O"] / 4), (a["omega_z"], 2 * b["omega_z"])]
         return float(max(np.abs(x - y).max() for x, y in pairs))
 
-    within(gap(), 1e-14, "gap")
+    within(gap(), 64 * EPSILON, "gap")
     beyond(gap(s=0.03), 0.2, "gap")  # s is a length and must grow too
 
 
@@ -166,5 +166,5 @@ def test_the_free_wheel_run_backwards_returns_to_its_start(library: Library) -> 
         names = ("X_O", "Y_O", "psi", "theta", "phi")
         return max(abs(end[name][-1] - START[f"{name}_start"]) for name in names)
 
-    within(gap(0.0), 4e-12, "gap")
+    within(gap(0.0), 1e-11, "gap")  # ten tolerances
     beyond(gap(1e-6), 6e-5, "gap")  # friction has a direction of time

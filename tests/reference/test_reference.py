@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.closed_forms import circle_spin, fall_normal_force, fall_time
 from support.kept import kept
 from support.scenes import GENERAL
@@ -53,7 +53,7 @@ def arm_kept_fixed(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_brief_dip_between_two_samples_is_found_and_a_near_miss_is_not() -> None:
     dip = (NODES - 0.5) ** 2
     x, _ = first_fall(dip - 1e-8, from_zero=False)
-    within(abs(x - (0.5 - 1e-4)), 1e-11, "x")
+    within(abs(x - (0.5 - 1e-4)), 64 * 0.25 * EPSILON / 2e-4, "x")  # values of 0.25, a slope of 2e-4
     assert first_fall(dip + 1e-8, from_zero=False) is None
 
 
@@ -150,7 +150,7 @@ def drive_gap(ramp: bool, s: float) -> tuple[float, float]:
 
 @pytest.mark.parametrize("ramp", [True, False])
 def test_a_standing_wheel_rolls_away_when_the_drive_torque_beats_s_N(ramp: bool) -> None:
-    within(max(drive_gap(ramp, s=0.03)), 1e-14, "drive gap")
+    within(max(drive_gap(ramp, s=0.03)), 128 * EPSILON, "drive gap")
     beyond(max(drive_gap(ramp, s=0.0301)), 1e-3, "drive gap")
 
 
@@ -174,7 +174,7 @@ def test_a_wheel_dropped_from_rest_lies_flat_at_the_instant_of_energy_conservati
     wheel, theta_0 = Wheel(), 5 * pi / 12
     got = solve(wheel, Start(phi_dot=0.0), [0.0, 2.0], keep_contact=False)
     assert got.ended and got.ended.kind == "flat"
-    within(abs(got.ended.time - fall_time(wheel, theta_0, 1e-6)), 2e-14, "fall time")
+    within(abs(got.ended.time - fall_time(wheel, theta_0, 1e-6)), 128 * EPSILON, "fall time")
     thin = replace(wheel, r=0.0)
     beyond(abs(got.ended.time - fall_time(thin, theta_0, 1e-6)), 1e-2, "fall time")
 
@@ -201,5 +201,5 @@ def test_a_thin_disc_stays_in_the_steady_circle_of_the_textbooks(psi_dot: float)
     def wander(wheel: Wheel) -> float:
         return np.abs(solve(wheel, start, np.linspace(0, 3, 11))["theta"] - theta).max()
 
-    within(wander(disc), 1e-13, "wander")
+    within(wander(disc), 1024 * EPSILON, "wander")  # over some hundred steps
     beyond(wander(Wheel()), 1e-2, "wander")  # the torus does not

@@ -9,12 +9,12 @@ from time import perf_counter
 
 import numpy as np
 import pytest
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
 from support.pieces import play
 
 KINDS = [(formulation, method) for formulation in (2, 3) for method in (1, 2, 3, 4)]
-NONE = 1e-24  # rad/s: what rounding leaves of phi_dot while omega_z is zero
+NONE = EPSILON  # rad/s: what rounding leaves of phi_dot while omega_z is zero
 SOON = 5.0  # s of computing, many times what is needed: a scene that chatters takes for ever
 RISE = [(0.0, {"F_Z": (0.0, 4000.0)}), (0.1, {"F_Z": (400.0, -4000.0)}), (0.2, {"F_Z": (0.0,)})]
 

@@ -1,7 +1,8 @@
 """Bounds: `within` and `beyond` check a value; `pytest --bounds` prints how near each came to its bound.
 
 A bound states what must hold on any processor, with any libm and any NumPy. Where only rounding is left, it is a
-multiple of EPSILON times the size of the terms that are rounded.
+multiple of EPSILON times the size of the terms that are rounded: 64 * EPSILON is some dozens of roundings of terms of
+size one, and needs no further reason.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ def test_what_the_notebook_keeps_is_what_its_cells_give(kept: Outputs, fresh: Ou
     assert words(kept) == words(fresh), "run ./scripts/notebook --write"
     for one, other in zip(pictures(kept), pictures(fresh), strict=True):
         assert one.shape == other.shape
-        within(abs(one - other).mean(), 0.5, "pictures apart, of 255 tones of grey")
+        within(abs(one - other).mean(), 0.5, "pictures apart, of 255 tones of grey")  # other fonts
     first, second, *_ = pictures(kept)
     height, width = (min(one, other) for one, other in zip(first.shape, second.shape, strict=True))
     apart = abs(first[:height, :width] - second[:height, :width]).mean()

@@ -11,7 +11,7 @@ from study import Status, Study, StudyError
 from study.measures import parse_measure
 from study.plan import can_change
 from study.runs import Runner, first_passage
-from support.bounds import absolute_error, beyond, relative_error, within
+from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
 
 def run(runner: Runner, study: Study) -> dict[str, np.ndarray]:
@@ -52,7 +52,8 @@ def test_a_wheel_of_a_study_moves_as_fmpy_simulates_it(runner: Runner, fmu_path)
     for k, s in enumerate((0.0, 0.03)):
         expected = simulate_fmu(str(fmu_path), start_values={"s": s}, output_interval=0.1, output=["theta", "X_O"])
         for name in ("theta", "X_O"):
-            within(absolute_error(result[name][k], expected[name]), 1e-12, "beside fmpy, rad, m")
+            # the instants may differ by rounding
+            within(absolute_error(result[name][k], expected[name]), 4096 * EPSILON, "beside fmpy, rad, m")
         assert result["theta_end"][k] == result["theta"][k, -1]
     beyond(absolute_error(*result["theta"]), 0.1, "the two wheels apart, rad")
 
@@ -97,10 +98,11 @@ def test_measures_tell_what_the_history_shows(runner: Runner) -> None:
     result = run(runner, Study(grid={"s": [0.0]}, measures=measures, history=["theta"]))
     t, theta = np.linspace(0, 10, 1001), result["theta"][0]
     assert (result["low"][0], result["high"][0]) == (theta.min(), theta.max())
-    within(relative_error(result["mean"][0], np.trapezoid(theta, t) / 10), 1e-12, "mean, relative")
-    k = int(np.argmax(theta < 0.8))
+    # a sum of 1001 terms
+    within(relative_error(result["mean"][0], np.trapezoid(theta, t) / 10), 1024 * EPSILON, "mean, relative")
+    k = int(np.argmax(theta < 0.8))  # it passes 0.8 once here
     assert t[k - 1] < result["down"][0] <= t[k]
-    within(abs(np.interp(result["down"][0], t, theta) - 0.8), 1e-9, "theta then, rad")  # it passes 0.8 once here
+    within(abs(np.interp(result["down"][0], t, theta) - 0.8), 64 * EPSILON, "theta then, rad")
 
 
 def test_a_passage_that_never_happens_is_no_number() -> None:
@@ -154,8 +156,8 @@ def test_a_wheel_that_leans_to_the_other_side_is_as_low_as_its_mirror_image(runn
     result = run(runner, replace(lean, history=["theta"]))
     for k, theta in enumerate(result["theta"]):
         angle = np.minimum(theta, np.pi - theta)
-        within(abs(result["low"][k] - angle.min()), 1e-15, "lowest angle, rad")
-        within(abs(result["end"][k] - angle[-1]), 1e-15, "angle at the end, rad")
-    within(abs(np.diff(result["low"]).item()), 1e-13, "lowest angles apart, rad")
-    within(abs(np.diff(result["down"]).item()), 5e-14, "first passages apart, s")
-    within(absolute_error(result["theta"][:, 0], [1.3, np.pi - 1.3]), 1e-12, "starts, rad")
+        within(abs(result["low"][k] - angle.min()), 16 * EPSILON, "lowest angle, rad")
+        within(abs(result["end"][k] - angle[-1]), 16 * EPSILON, "angle at the end, rad")
+    within(abs(np.diff(result["low"]).item()), 512 * EPSILON, "lowest angles apart, rad")  # after 10 s
+    within(abs(np.diff(result["down"]).item()), 256 * EPSILON, "first passages apart, s")
+    within(absolute_error(result["theta"][:, 0], [1.3, np.pi - 1.3]), 64 * EPSILON, "starts, rad")

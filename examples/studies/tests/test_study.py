@@ -27,7 +27,7 @@ from study.options import arguments_of, fields_of
 from study.results import open_results
 from study.runs import Runner
 from study.worker import Errand, Part, run_parts
-from support.bounds import relative_error, within
+from support.bounds import EPSILON, relative_error, within
 
 GUIDE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
 EXAMPLE = re.findall(r"^```python\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)[0]
@@ -99,7 +99,7 @@ def test_labels_are_short_and_the_description_is_kept(here: Path) -> None:
     assert "upright" in results["theta_start"].attrs["description"]
     turned = in_degrees(results)
     assert turned["theta_start"].attrs["units"] == turned["lowest"].attrs["units"] == "deg"
-    within(relative_error(turned["theta_start"].values, [15, 75, 200]), 1e-15, "degrees, relative")
+    within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "degrees, relative")
     np.testing.assert_array_equal(turned["energy"], results["energy"])
 
 
