@@ -28,16 +28,36 @@ bool agree(const solver::Problem& problem, int i, const double* weights, double 
 
 Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
                          solver::Solver& solver) {
+  double own[states] = {y0[theta], y0[omega_1], y0[omega_2], y0[omega_3]};  // psi, phi, X_O and Y_O are zero
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   falls_ = rises_ = later_falls_ = 0;
   counters_ = {};
-  half_ = {};
+  half_ = lead_ = {};
   kind_ = Kind::refused;
   end_time_ = std::numeric_limits<double>::infinity();
-  if (rests(problem, y0)) return kind_ = Kind::folded;
-  kind_ = follow(problem, pass, y0, solver);
+  if (rests(problem, own)) return kind_ = Kind::folded;
+  kind_ = follow(problem, pass, own, solver);
   counters_ = solver.counters();
   return kind_;
+}
+
+bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
+  half_ = {};
+  lead_.psi_sum = y0[psi];
+  lead_.phi_sum = y0[phi];
+  lead_.place = Complex(y0[X_O], y0[Y_O]);
+  lead_.turn = std::polar(1.0, y0[psi]);
+  double own[states], rate[states], own_rate[states], weights[states];
+  track_.read(0, own);
+  problem.derivative(problem.owner, 0, own, own_rate);
+  problem.derivative(problem.owner, 0, y0, rate);
+  problem.weights(problem.owner, problem.share, own, weights);
+  const Complex velocity = lead_.turn * Complex(own_rate[X_O], own_rate[Y_O]);
+  own_rate[X_O] = velocity.real();
+  own_rate[Y_O] = velocity.imag();
+  for (int i = 0; i < states; ++i)
+    if (!agree(problem, i, weights, rate[i], own_rate[i])) return false;
+  return true;
 }
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.

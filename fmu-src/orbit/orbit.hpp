@@ -7,6 +7,9 @@
 // path of O is its own mirror image. The motion is integrated up to the second turning point T2; every later instant is
 // read from the half nutation between T1 and T2. The error grows in proportion to t, and the cost does not grow.
 //
+// Heading, roll angle and place of the start are symmetries too: the motion is integrated from zeros, and psi, phi, X_O
+// and Y_O of the start are added when it is read. Many turns at the start cost no digits.
+//
 // State of the reduced form (wheel_equations.h): theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O. Time in s, zero
 // at the start.
 #pragma once
@@ -32,8 +35,11 @@ class Orbit {
 
   // Integrates `problem` (the reduced form of a wheel) from y0 by CVODE's Adams method. The solver has to be
   // started anew before anything else is asked of it; its counters are those of this run. A function of problem,
-  // tolerance and y0 alone: the same bits in every process.
+  // tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and heading.
   Kind build(solver::Problem problem, double tolerance, Pass pass, const double* y0, solver::Solver& solver);
+  // From here on the motion that is read starts with psi, phi, X_O and Y_O of y0 (after build, with zeros). False where
+  // the right-hand side depends on them.
+  bool start_at(const solver::Problem& problem, const double* y0);
 
   // The state (out, 8 entries) at t >= 0.
   void read(double t, double* y) const;
@@ -42,6 +48,8 @@ class Orbit {
   // What the integration took; zero for a wheel in steady motion.
   const solver::Counters& counters() const { return counters_; }
   double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; folded only
+  // rad/s, the larger of the mean rates of psi and phi; folded only.
+  double fastest_turn() const;
 
   // The instants at which N falls below zero, in order and numbered from 0: how many there are up to t, and when the
   // number n is (n below falls_until of some t). A start with N < 0 counts. The cost does not depend on t or n.
@@ -53,12 +61,13 @@ class Orbit {
   using Complex = std::complex<double>;
   static constexpr int states = Track::states, most_crossings = 16;
 
-  // The half nutation from T1 + k L to T1 + (k + 1) L, L = T2 - T1.
+  // The half nutation from T1 + k L to T1 + (k + 1) L, L = T2 - T1: where O begins, and how far the integrated path,
+  // psi and phi are turned.
   struct Half {
     double begin = 0, next = 0;
     bool mirrored = false;
     double psi_sum = 0, phi_sum = 0;
-    Complex place, turn;
+    Complex place = 0, turn = 1;
   };
 
   bool rests(const solver::Problem& problem, const double* y0);
@@ -69,12 +78,14 @@ class Orbit {
   bool fold(const solver::Problem& problem, double swing);
   bool is_mirrored(const solver::Problem& problem, double since) const;
   void take_half();
+  static void turn_by(const Half& half, Complex way, double* y);
 
   double begin_of(double k) const { return T1_ + k * (T2_ - T1_); }
   Half half_at(double k) const;
   const Half& half_of(double t) const;
 
-  Track track_;  // from the start past T2
+  Track track_;  // from the start past T2, in its frame
+  Half lead_;    // the motion up to T2: psi, phi and place of the start
   Kind kind_ = Kind::refused;
   double end_time_ = std::numeric_limits<double>::infinity();
   int event_ = 0;

@@ -36,10 +36,10 @@ Orbit::Half Orbit::half_at(double k) const {
   const double quotient = delta_ == 0 ? n : turned.imag() / std::sin(delta_);
   Complex way = pair_ * quotient * turned;
   if (half.mirrored) way += step_ * pairs_turn;
-  half.place = Complex(first_[X_O], first_[Y_O]) + way * first_turn_;
-  half.turn = half.mirrored ? -pairs_turn * mirror_turn_ : pairs_turn;
-  half.psi_sum = half.mirrored ? 2 * second_[psi] + (k - 1) * turn : k * turn;
-  half.phi_sum = half.mirrored ? 2 * second_[phi] + (k - 1) * roll : k * roll;
+  half.place = lead_.place + lead_.turn * (Complex(first_[X_O], first_[Y_O]) + way * first_turn_);
+  half.turn = lead_.turn * (half.mirrored ? -pairs_turn * mirror_turn_ : pairs_turn);
+  half.psi_sum = lead_.psi_sum + (half.mirrored ? 2 * second_[psi] + (k - 1) * turn : k * turn);
+  half.phi_sum = lead_.phi_sum + (half.mirrored ? 2 * second_[phi] + (k - 1) * roll : k * roll);
   return half;
 }
 
@@ -51,8 +51,25 @@ const Orbit::Half& Orbit::half_of(double t) const {
   return half_ = half_at(k);
 }
 
+double Orbit::fastest_turn() const {
+  const double turn = std::fabs(second_[psi] - first_[psi]), roll = std::fabs(second_[phi] - first_[phi]);
+  return std::fmax(turn, roll) / (T2_ - T1_);
+}
+
+// y from the frame of the integrated half to the fixed axes; way: from the half's begin to O.
+void Orbit::turn_by(const Half& half, Complex way, double* y) {
+  way = half.place + half.turn * way;
+  y[psi] += half.psi_sum;
+  y[phi] += half.phi_sum;
+  y[X_O] = way.real();
+  y[Y_O] = way.imag();
+}
+
 void Orbit::read(double t, double* y) const {
-  if (kind_ != Kind::folded || t <= T2_) return track_.read(t, y);
+  if (kind_ != Kind::folded || t <= T2_) {
+    track_.read(t, y);
+    return turn_by(lead_, {y[X_O], y[Y_O]}, y);
+  }
   const Half& half = half_of(t);
   const double since = std::clamp(t - half.begin, 0.0, T2_ - T1_);
   track_.read(half.mirrored ? T2_ - since : T1_ + since, y);
@@ -64,11 +81,7 @@ void Orbit::read(double t, double* y) const {
     y[psi] = -y[psi];
     y[phi] = -y[phi];
   }
-  way = half.place + half.turn * way;
-  y[psi] += half.psi_sum;
-  y[phi] += half.phi_sum;
-  y[X_O] = way.real();
-  y[Y_O] = way.imag();
+  turn_by(half, way, y);
 }
 
 double Orbit::fall(long long n) const {

@@ -131,8 +131,12 @@ class Simulation {
   double partial(unsigned unknown, unsigned known);
 
   // on_orbit.cpp
+  struct Shape {
+    double parameters[first_input] = {}, tolerance = 0;  // 0: no orbit
+    bool operator==(const Shape&) const = default;
+  };
+  Shape shape() const;
   bool enter_orbit();
-  double fastest_turn() const;
   void report_pulls_of_orbit(double t);
 
   Reporter reporter_;
@@ -142,10 +146,10 @@ class Simulation {
   Owner owner_ = {setup_, run_.in_force};
   solver::Solver solver_;
   orbit::Orbit orbit_;
-  bool orbit_ready_ = false;                   // orbit_ is that of the present run
-  double orbit_until_ = 0;                     // s, own clock: how far it can be read
-  double orbit_origin_[first_input + 1] = {};  // parameters and tolerance that orbit_ was built for
-  const char* failure_ = nullptr;              // why the last call failed
+  Shape orbit_shape_;              // of orbit_
+  bool orbit_ready_ = false;       // orbit_ is that of the present run
+  double orbit_until_ = 0;         // s, own clock: how far it can be read
+  const char* failure_ = nullptr;  // why the last call failed
   Reading reading_;
   enum class Fresh { nothing, state, reading } fresh_ = Fresh::nothing;  // what is known of the present instant
 };

@@ -28,7 +28,7 @@ double force(const Probe& probe, const double* y) {
 }
 
 // What is added to the rates of the wheel, of size `added`: no wheel with such a force may be unfolded.
-enum { drag, towards_north, unbalanced, growing, wind, turning, rolling, drifting };
+enum { drag, towards_north, towards_east, beside_a_line, unbalanced, growing, wind, turning, rolling, drifting };
 int kind = 0;
 double added = 0;
 decltype(solver::Problem::derivative) rates_of_wheel = nullptr;
@@ -38,6 +38,8 @@ double disturbed(void* owner, double t, const double* y, double* y_dot) {
   if (kind == drag)
     for (int i = 1; i < 4; ++i) y_dot[i] -= added * y[i];
   if (kind == towards_north) y_dot[2] += added * std::cos(y[4]);
+  if (kind == towards_east) y_dot[2] += added * std::sin(y[4]);
+  if (kind == beside_a_line) y_dot[2] += added * y[6];
   if (kind == unbalanced) y_dot[3] += added * std::cos(y[5]);
   if (kind == growing) y_dot[3] += added * t;
   if (kind == wind) y_dot[6] += added;
@@ -80,7 +82,9 @@ PUBLIC int probe_build(Probe* probe) {
   rates_of_wheel = problem.derivative;
   if (added != 0) problem.derivative = disturbed;
   const wheel::Setup& setup = probe->setup;
-  return static_cast<int>(probe->orbit.build(problem, setup.tolerance, pass, setup.start, probe->solver));
+  const auto kind = probe->orbit.build(problem, setup.tolerance, pass, setup.start, probe->solver);
+  const bool starts = kind != orbit::Orbit::Kind::refused && probe->orbit.start_at(problem, setup.start);
+  return starts ? static_cast<int>(kind) : 0;
 }
 
 // States at `count` instants, 8 numbers each, and N.

@@ -217,10 +217,13 @@ def test_the_order_of_readings_does_not_change_a_bit(library: ctypes.CDLL) -> No
 
 
 # In the order of probe.cpp. The last three change psi, phi and Y_O alone, with the rate of theta.
-DISTURBANCES = ("drag", "towards north", "unbalanced", "growing", "wind", "turning", "rolling", "drifting")
-BROKEN = [(kind, PAPER) for kind in range(8)]
+DISTURBANCES = (
+    *("drag", "towards north", "towards east", "beside a line", "unbalanced", "growing"),
+    *("wind", "turning", "rolling", "drifting"),
+)
+BROKEN = [(kind, PAPER) for kind in range(len(DISTURBANCES))]
 # A steady wind keeps straight rolling straight.
-BROKEN += [(kind, Start(psi=0.4, theta=np.pi / 2, phi_dot=-9.0)) for kind in range(4)]
+BROKEN += [(kind, Start(psi=0.4, theta=np.pi / 2, phi_dot=-9.0, X_O=2.0)) for kind in range(6)]
 
 
 @pytest.mark.parametrize(

@@ -34,3 +34,17 @@ def test_the_cost_does_not_grow_with_the_horizon(library: Library) -> None:
     assert steps[0] == steps[1] == steps[2] < 300
     stepped = [library.simulate([0.0, stop], method=ADAMS).counters["n_steps"] for stop in (1.0, 10.0)]
     beyond(stepped[1] / stepped[0], 5, "stepped")
+
+
+def test_heading_place_and_roll_angle_of_the_start_leave_tilt_and_rates_bit_identical(library: Library) -> None:
+    """They are added to a motion that is integrated from zero; a motion that is stepped through has their rounding."""
+    t = np.linspace(0, 100, 201)
+    far = {"psi_start": 1e9, "phi_start": -1e9, "X_O_start": 1e3, "Y_O_start": -1e4}
+
+    def changed(**method: float) -> list[str]:
+        here, there = library.simulate(t, **method), library.simulate(t, **method, **far)
+        names = ("theta", "theta_dot", "psi_dot", "phi_dot", "omega_z", "lambda_3")
+        return [name for name in names if not np.array_equal(here[name], there[name])]
+
+    assert changed() == []
+    assert changed(method=ADAMS) != []

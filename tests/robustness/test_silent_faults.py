@@ -133,6 +133,13 @@ def test_a_run_whose_counts_are_as_large_as_can_be_can_be_saved_again(wheel, sta
     assert w.get("n_steps") == [2**31 - 1]
 
 
+@pytest.mark.parametrize("first", [{"psi_start": 0.3, "X_O_start": 7.0}, {"phi_start": -2.0, "Y_O_start": 0.1}])
+def test_an_orbit_kept_from_another_place_and_heading_is_the_one_built_here(wheel, first):
+    w = stepped(wheel().start(**first), [3.0])
+    assert w.reset() == OK
+    assert stepped(w.start(), [5.0]).bits() == stepped(wheel().start(), [5.0]).bits()
+
+
 def test_another_tolerance_makes_another_orbit(wheel):
     """After a reset too: the instance may have the orbit of the same wheel with another tolerance."""
     w = stepped(wheel().start(tolerance=1e-5), [1.0])
