@@ -46,7 +46,7 @@ def files(folder: Path) -> set[Path]:
 def call(folder: Path, name: str, *words: str, **variables: str) -> subprocess.CompletedProcess[str]:
     environment = os.environ | variables
     command = [folder / "scripts" / name, *words]
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=20)
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
 
 
 def test_the_folder_holds_commands_alone_among_them_those_that_newcomers_are_told_of() -> None:
