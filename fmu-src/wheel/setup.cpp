@@ -7,7 +7,13 @@
 namespace wheel {
 namespace {
 
-double gravity_of(const WheelParameters& wheel) { return std::hypot(wheel.g, wheel.g_X, wheel.g_Y); }
+// Written out, because std::hypot of three rounds otherwise in each library of C++.
+double gravity_of(const WheelParameters& wheel) {
+  const double largest = std::max({std::fabs(wheel.g), std::fabs(wheel.g_X), std::fabs(wheel.g_Y)});
+  if (largest == 0) return 0;
+  const double g = wheel.g / largest, g_X = wheel.g_X / largest, g_Y = wheel.g_Y / largest;
+  return largest * std::sqrt(g * g + g_X * g_X + g_Y * g_Y);
+}
 
 // sqrt((r_0 + r) / g), s, g the whole of gravity; without a weight that matters the time of a turn at the initial rate.
 double time_scale(const WheelParameters& wheel, const WheelKinematics& start) {
