@@ -1,64 +1,105 @@
-# One libm for every platform: sin, cos and the rest from musl's sources (MIT), compiled in, so that
-# trajectories agree to the bit. The releases use it; other builds take the system's libm.
-set(WHEEL_LIBM_SOURCE "" CACHE PATH "musl's folder (with src/math) to link its libm in; empty: the system's libm")
+# One libm for every build: sin, cos and the rest from newlib's sources (FDLIBM, and Arm's exp and pow), compiled in, so
+# that trajectories have the same bits on every processor and system: docs/decisions/libm.md. Debian's package
+# newlib-source has them; its versions in Debian 12 and 13 give the same bits. Alternatives:
+#   -DWHEEL_LIBM_SOURCE=<newlib's source tree, or its archive>
+#   -DWHEEL_LIBM_SOURCE=system   the system's libm, whose last bits depend on the processor
+set(WHEEL_LIBM_SOURCE "" CACHE STRING "newlib's source tree or archive; empty: Debian's; system: the system's libm")
+set(
+  libm_sha256
+  025f5e600ee51fc69b4e4d28834a09594608d0570e347d3fdedc69efc79d2ccf # 3.3.0, Debian 12
+  3286ede055faeeccfe90005ddbb97b20dbf0b217705060af2189291c904df9fe # 4.5.0, Debian 13
+)
+set(libm_compiled math/s_tanh.c math/e_cosh.c math/k_rem_pio2.c)
+foreach(
+  name
+  s_expm1
+  exp
+  exp_data
+  pow
+  pow_log_data
+  math_err
+)
+  list(APPEND libm_compiled common/${name}.c)
+endforeach()
+# Read by cmake/libm/trigonometry.c, or headers.
+set(
+  libm_included
+  math/k_sin.c
+  math/k_cos.c
+  math/e_rem_pio2.c
+  math/s_sin.c
+  math/s_cos.c
+  common/math_config.h
+)
 
-function(link_libm target)
-  if(NOT WHEEL_LIBM_SOURCE)
+# The files in one folder, from an archive or a tree: beside each other, but without newlib's own fdlibm.h.
+function(unpack_libm folder)
+  set(source ${WHEEL_LIBM_SOURCE})
+  if(NOT source)
+    file(GLOB source /usr/src/newlib/newlib-*.tar.xz)
+  endif()
+  if(NOT EXISTS "${source}")
+    message(
+      FATAL_ERROR
+      "The source of libm is missing: install Debian's package newlib-source, or give "
+      "-DWHEEL_LIBM_SOURCE=<newlib's source tree or archive>, or -DWHEEL_LIBM_SOURCE=system for the system's libm, "
+      "whose results differ from those of the releases in the last bits."
+    )
+  endif()
+  file(REMOVE_RECURSE ${folder})
+  if(NOT IS_DIRECTORY ${source})
+    list(TRANSFORM ARGN PREPEND "*/newlib/libm/" OUTPUT_VARIABLE patterns)
+    file(ARCHIVE_EXTRACT INPUT ${source} DESTINATION ${folder}/archive PATTERNS ${patterns})
+    file(GLOB source ${folder}/archive/*)
+  endif()
+  set(hashes)
+  foreach(name ${ARGN})
+    cmake_path(GET name FILENAME file)
+    file(COPY_FILE ${source}/newlib/libm/${name} ${folder}/${file})
+    file(SHA256 ${folder}/${file} hash)
+    list(APPEND hashes ${hash})
+  endforeach()
+  string(SHA256 hash "${hashes}")
+  if(NOT hash IN_LIST libm_sha256)
+    message(FATAL_ERROR "The source of libm in ${source} is another one: SHA-256 ${hash}, expected ${libm_sha256}.")
+  endif()
+endfunction()
+
+# The objects that link_libm links.
+function(add_libm)
+  # Eigen's vector code sums in another order, and on arm fuses multiply and add.
+  target_compile_definitions(wheel_options INTERFACE EIGEN_DONT_VECTORIZE)
+  if(WHEEL_LIBM_SOURCE STREQUAL system)
     return()
   endif()
-  set(sources)
+  set(LIBM_FOLDER ${CMAKE_BINARY_DIR}/_libm CACHE INTERNAL "")
+  unpack_libm(${LIBM_FOLDER} ${libm_compiled} ${libm_included})
+  list(TRANSFORM libm_compiled REPLACE ".*/" ${LIBM_FOLDER}/)
+  add_library(libm OBJECT cmake/libm/trigonometry.c ${libm_compiled})
+  set_target_properties(libm PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF EXPORT_COMPILE_COMMANDS OFF)
+  target_include_directories(libm PRIVATE cmake/libm ${LIBM_FOLDER})
+  target_compile_definitions(libm PRIVATE WANT_ERRNO=0 HAVE_FAST_FMA=0)
+  target_compile_options(libm PRIVATE -w $<$<BOOL:${WHEEL_SANITIZE}>:-fno-sanitize=all>)
   foreach(
     name
     sin
     cos
     sincos
-    __sin
-    __cos
-    __rem_pio2
-    __rem_pio2_large
     tanh
     cosh
-    expm1
     exp
-    exp_data
+    expm1
     pow
-    pow_data
-    __expo2
-    __math_divzero
-    __math_invalid
-    __math_oflow
-    __math_uflow
-    __math_xflow
   )
-    list(APPEND sources ${WHEEL_LIBM_SOURCE}/src/math/${name}.c)
+    target_compile_options(libm PRIVATE -fno-builtin-${name})
   endforeach()
-  add_library(musl_libm OBJECT ${sources})
-  set_target_properties(musl_libm PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
-  # What these sources take from headers that other systems lack or have otherwise; exact functions come from the
-  # compiler. Without __FP_FAST_FMA pow takes the same path on every processor.
-  set(shim ${CMAKE_BINARY_DIR}/libm_shim)
-  file(WRITE ${shim}/endian.h "#define __LITTLE_ENDIAN 1234\n#define __BIG_ENDIAN 4321\n#define __BYTE_ORDER 1234\n")
-  file(
-    WRITE ${shim}/features.h
-    "#if __has_include_next(<features.h>)\n#include_next <features.h>\n#endif\n"
-    "#define hidden __attribute__((visibility(\"hidden\")))\n"
-  )
-  file(
-    WRITE ${shim}/math.h
-    "#include <features.h>\ntypedef double double_t;\n#define isnan __builtin_isnan\n#define fabs __builtin_fabs\n"
-    "#define scalbn __builtin_scalbn\n#define floor __builtin_floor\n"
-    "#ifndef INFINITY\n#define INFINITY __builtin_inff()\n#endif\n"
-    "double sin(double), cos(double), tanh(double), cosh(double), exp(double), expm1(double), pow(double, double);\n"
-  )
-  target_include_directories(
-    musl_libm
-    BEFORE
-    PRIVATE ${shim} ${WHEEL_LIBM_SOURCE}/src/internal ${WHEEL_LIBM_SOURCE}/arch/generic
-  )
-  target_compile_options(musl_libm PRIVATE -w -fno-builtin -U__FP_FAST_FMA -ffile-prefix-map=${WHEEL_LIBM_SOURCE}=musl)
-  target_sources(${target} PRIVATE $<TARGET_OBJECTS:musl_libm>)
-  # Eigen's vector code fuses multiply and add on arm.
-  target_compile_definitions(wheel_options INTERFACE EIGEN_DONT_VECTORIZE)
-  # Apple's and mingw's compilers would merge sin and cos into a call of their own.
-  target_compile_options(wheel_options INTERFACE -fno-builtin-sin -fno-builtin-cos)
+  if(APPLE) # its compiler would merge sin and cos into a call of the system's
+    target_compile_options(wheel_options INTERFACE -fno-builtin-sin -fno-builtin-cos)
+  endif()
+endfunction()
+
+function(link_libm target)
+  if(TARGET libm)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:libm>)
+  endif()
 endfunction()

@@ -7,6 +7,7 @@ machine goes in. The licences of what is compiled in are taken from its sources,
 from __future__ import annotations
 
 import argparse
+import re
 import textwrap
 import zipfile
 from pathlib import Path
@@ -24,11 +25,12 @@ ZIG_LICENCES = {
 Content = Path | bytes
 
 
-def header_notice(header: Path) -> bytes:
-    """Copyright, conditions and disclaimer of an FMI header, as they stand in its opening comment."""
-    comment = header.read_text(encoding="utf-8").split("*/")[0]
-    start = comment.rindex("\n", 0, comment.index("Copyright (C)")) + 1
-    lines = [line.rstrip() for line in comment[start:].splitlines()]
+def notice(source: Path) -> bytes:
+    """Copyright, conditions and disclaimer of a C source, as they stand in its first comment with a copyright."""
+    text = source.read_text(encoding="utf-8")
+    place = text.lower().index("copyright (c)")
+    comment = text[text.rindex("\n", 0, place) + 1 : text.index("*/", place)]
+    lines = [re.sub(r"^ \*(=| =)*|\s+$", "", line) for line in comment.splitlines()]  # stars in front, lines of "="
     return (textwrap.dedent("\n".join(lines)).strip() + "\n").encode()
 
 
@@ -37,12 +39,13 @@ def licences(arguments: argparse.Namespace) -> dict[str, Content]:
         "license.txt": ROOT / "LICENSE",
         "sundials-license.txt": arguments.sundials / "LICENSE",
         "sundials-notice.txt": arguments.sundials / "NOTICE",
-        "fmi-headers-notice.txt": header_notice(arguments.fmi_headers / "fmi2Functions.h"),
+        "fmi-headers-notice.txt": notice(arguments.fmi_headers / "fmi2Functions.h"),
     }
     if arguments.eigen_license:
         entries["eigen-license.txt"] = arguments.eigen_license
-    if arguments.musl:
-        entries["musl-license.txt"] = arguments.musl / "COPYRIGHT"
+    if arguments.libm:
+        entries["fdlibm-notice.txt"] = notice(arguments.libm / "s_sin.c")
+        entries["arm-math-license.txt"] = notice(arguments.libm / "pow.c")
     if arguments.zig:
         entries |= {name: arguments.zig / path for name, path in ZIG_LICENCES.items()}
     return {f"licenses/{name}": content for name, content in entries.items()}
@@ -83,7 +86,9 @@ def main() -> None:
     parser.add_argument("--sundials", type=Path, required=True, help="SUNDIALS source, for its licence")
     parser.add_argument("--fmi-headers", type=Path, required=True, help="folder of the FMI headers, for their notice")
     parser.add_argument("--eigen-license", type=Path, help="Eigen's licence")
-    parser.add_argument("--musl", type=Path, help="musl's folder, for its licence, where its libm is linked in")
+    parser.add_argument(
+        "--libm", type=Path, help="folder of libm's sources, for their notices, where they are linked in"
+    )
     parser.add_argument("--zig", type=Path, help="folder of ziglang where it is the compiler, for what it links in")
     parser.add_argument("--evidence", type=Path, help="what cmake/evidence.py wrote")
     parser.add_argument("--binary", action="append", default=[], help="platform=library")

@@ -78,9 +78,7 @@ static void run(const Fmu* fmu, const struct scene* scene, const char* guid) {
     fmu->GetReal(c, outputs, output_count, values);
     hash = hash_of(hash, values, sizeof values);
   }
-  printf("%s\t%016llx", scene->name, (unsigned long long)hash);
-  for (int i = 0; i < 4; ++i) printf("\t%.17g", values[i]);
-  printf("\n");
+  printf("%s\t%016llx\n", scene->name, (unsigned long long)hash);
   fmu->FreeInstance(c);
 }
 

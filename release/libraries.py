@@ -18,7 +18,7 @@ GLIBC_FLOOR = (2, 17)
 MACOS_FLOOR = [11, 0, 0]
 FUNCTIONS = 44  # of FMI 2.0
 LARGEST = 1 << 20  # bytes of a library for one processor
-# What the systems' own mathematics may be asked for: it is exact. All else is musl's, compiled in.
+# What the systems' own mathematics may be asked for: it is exact. All else is compiled in.
 EXACT = {"floor", "ceil", "trunc", "fabs", "sqrt", "fmod", "scalbn", "ldexp", "frexp", "modf", "copysign"}
 EXACT |= {"nearbyint", "remainder", "fma"}  # each rounded correctly, as IEEE 754 asks
 INEXACT = {"sin", "cos", "sincos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh"}

@@ -10,7 +10,6 @@ import argparse
 import os
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,12 +33,7 @@ class Place(NamedTuple):
     library: Path
 
 
-class Row(NamedTuple):
-    digest: str  # of the trajectory, all bits
-    last: list[float]  # the four headline outputs at the end
-
-
-Scenes = dict[str, Row]
+Scenes = dict[str, str]  # the digest of each scene's trajectory, all bits
 
 
 def build_driver(zig: Path, target: str, folder: Path) -> Path:
@@ -59,14 +53,14 @@ def run_scenes(place: Place, driver: Path) -> Scenes:
     result = subprocess.run(command, capture_output=True, text=True, timeout=900, check=False, env=quiet)
     if result.returncode:
         raise SystemExit(f"{place.name}: {' '.join(command)} failed: {result.stderr[-500:]}")
-    rows = [line.strip().split("\t") for line in result.stdout.splitlines()]
-    return {scene: Row(digest, [float(value) for value in values]) for scene, digest, *values in rows}
+    return dict(line.split("\t") for line in result.stdout.splitlines())
 
 
 def places(arguments: argparse.Namespace) -> list[Place]:
     folder = arguments.folder
     found = [
         Place("linux64", LINUX, [], folder / LINUX / "wheel.so"),
+        Place("this machine's compiler", LINUX, [], arguments.own),
         Place("win64, wine", WINDOWS, [arguments.wine], folder / WINDOWS / "wheel.dll"),
         Place("aarch64-linux, qemu", ARM, ["qemu-aarch64", "-L", arguments.arm_root], folder / ARM / "wheel.so"),
     ]
@@ -75,7 +69,7 @@ def places(arguments: argparse.Namespace) -> list[Place]:
     if arguments.old_glibc:
         name, libc = arguments.old_glibc
         start = [str(Path(libc) / "ld-linux-x86-64.so.2"), "--library-path", libc]
-        found.insert(1, Place(f"linux64, {name}", LINUX, start, folder / LINUX / "wheel.so"))
+        found.insert(2, Place(f"linux64, {name}", LINUX, start, folder / LINUX / "wheel.so"))
     return found
 
 
@@ -86,26 +80,17 @@ def version_of(*command: str) -> str:
         return command[0]
 
 
-def table(columns: dict[str, Scenes], cell: Callable[[str, Row], str]) -> str:
-    """A row for each scene, a column for each platform or build."""
-    scenes = next(iter(columns.values()))
-    rows = [[scene, *(cell(scene, column[scene]) for column in columns.values())] for scene in scenes]
-    return markdown.table(["scene", *columns], rows)
+def table(run: dict[str, Scenes]) -> str:
+    """A row for each scene; the digest on the first platform, and on each other one whether it is equal."""
+    first, *others = run.values()
+    rows = []
+    for scene, digest in first.items():
+        rows.append([scene, digest, *("equal" if other[scene] == digest else other[scene] for other in others)])
+    return markdown.table(["scene", *run], rows)
 
 
-def digest(a: Row, b: Row) -> str:
-    return "equal" if a is not b and a.digest == b.digest else b.digest
-
-
-def apart(a: Row, b: Row) -> str:
-    """Largest relative difference of the last outputs."""
-    if a.digest == b.digest:
-        return "equal"
-    return f"{max(abs(x - y) / max(abs(x), 1e-3) for x, y in zip(a.last, b.last, strict=True)):.1e}"
-
-
-def write(arguments: argparse.Namespace, released: dict[str, Scenes], own: dict[str, Scenes], **found: object) -> None:
-    folder, reference = arguments.folder, released["linux64"]
+def write(arguments: argparse.Namespace, run: dict[str, Scenes], **found: object) -> None:
+    folder = arguments.folder
     text = markdown.page(
         "platforms.md",
         commit=version_of("git", "-C", str(ROOT), "describe", "--always", "--dirty"),
@@ -115,8 +100,7 @@ def write(arguments: argparse.Namespace, released: dict[str, Scenes], own: dict[
         old=arguments.old_glibc and arguments.old_glibc[0],
         wine=version_of(arguments.wine, "--version"),
         qemu=version_of("qemu-aarch64", "--version").replace("qemu-aarch64 version", "qemu"),
-        released=table(released, lambda scene, row: digest(reference[scene], row)),
-        own=table(own, lambda scene, row: apart(reference[scene], row)),
+        run=table(run),
         **{name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in ("libraries", "fmpy", "twice")},
         **found,
     )
@@ -134,17 +118,15 @@ def main() -> None:
     parser.add_argument(
         "--old-glibc", nargs=2, metavar=("NAME", "FOLDER"), help="an older C library than this machine's"
     )
-    parser.add_argument("--own", action="append", nargs=2, default=[], metavar=("NAME", "LIBRARY"))
+    parser.add_argument("--own", type=Path, required=True, help="the library that this machine's own compiler made")
     parser.add_argument("--report", type=Path, required=True)
     arguments = parser.parse_args()
     folder = arguments.folder
     drivers = {target: build_driver(arguments.zig, target, folder) for target in (LINUX, ARM, WINDOWS)}
     drivers[WASM] = arguments.wasm
-    released = {place.name: run_scenes(place, drivers[place.target]) for place in places(arguments)}
-    own = {name: run_scenes(Place(name, LINUX, [], Path(path)), drivers[LINUX]) for name, path in arguments.own}
-    reference = released["linux64"]
-    different = [s for s in reference if len({scenes[s].digest for scenes in released.values()}) > 1]
-    write(arguments, released, own, different=different)
+    run = {place.name: run_scenes(place, drivers[place.target]) for place in places(arguments)}
+    different = [scene for scene in run["linux64"] if len({scenes[scene] for scenes in run.values()}) > 1]
+    write(arguments, run, different=different)
     if different:
         raise SystemExit(f"The trajectories differ between platforms: {different}; see {arguments.report}")
 

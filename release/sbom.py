@@ -2,7 +2,7 @@
 
 PYTHONPATH=. .venv/bin/python release/sbom.py >fmu-src/archive/extra/org.fmi-standard.fmi-ls-ref/sbom.cdx.json
 A test makes it again and compares. Every version is read where the build has it from: the pins, or the headers
-themselves. musl comes with the cross compiler; before ./scripts/release has fetched that, its version is the kept one.
+themselves.
 """
 
 from __future__ import annotations
@@ -48,13 +48,6 @@ def eigen() -> str:
     return ".".join(found(macros, rf"^#define EIGEN_{part}_VERSION (\d+)") for part in ("WORLD", "MAJOR", "MINOR"))
 
 
-def musl() -> str:
-    sources = ROOT.glob(".venv-release/lib/*/site-packages/ziglang/lib/libc/musl/src/internal/version.h")
-    for version in sources:
-        return found(version, r'VERSION "([\d.]+)"')
-    return found(KEPT, r"pkg:generic/musl@([\d.]+)")
-
-
 def bill() -> str:
     headers = Path(fmpy.__file__).parent / "c-code" / "fmi2Functions.h"
     wheel = component(
@@ -64,7 +57,12 @@ def bill() -> str:
         component("SUNDIALS", found("cmake/sundials.cmake", r"(\d+\.\d+\.\d+)"), "BSD-3-Clause", "CVODE, linked in"),
         component("Eigen", eigen(), "MPL-2.0", "Headers, of Debian's libeigen3-dev"),
         component("FMI headers", found(headers, r"FMI (2[\d.]+\d) "), "BSD-2-Clause", "As FMPy carries them"),
-        component("musl", musl(), "MIT", "Mathematical functions, in the release for all platforms"),
+        component(
+            "newlib",
+            found("cmake/libm.cmake", r"# (\d[\d.]+), Debian"),
+            "SunPro AND BSD-3-Clause",
+            "Mathematical functions (FDLIBM and Arm's), of Debian's newlib-source, linked in",
+        ),
         component(
             "ziglang", found("release/requirements.txt", r"^ziglang==([\d.]+)"), "MIT", "Run-time, in the release"
         ),

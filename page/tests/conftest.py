@@ -97,18 +97,3 @@ def live_page(browser, live_file) -> Iterator[Page]:
 def live(live_page) -> Page:
     live_page.bring_to_front()  # of several pages the browser draws the one in front
     return live_page
-
-
-@pytest.fixture(scope="session")
-def same_libm(description, locked, tmp_path_factory) -> Path:
-    """The FMU, unpacked, with a library of this machine's compiler and the releases' libm."""
-    zig = subprocess.run([ROOT / "release/compiler"], check=True, capture_output=True, text=True).stdout.strip()
-    with locked("musl") as build:
-        log = {"check": True, "stdout": subprocess.DEVNULL}
-        options = [f"-DWHEEL_LIBM_SOURCE={zig}/lib/libc/musl", "-DCMAKE_BUILD_TYPE=Release"]
-        subprocess.run(["cmake", "-S", ROOT, "-B", build, *options], **log)
-        subprocess.run(["cmake", "--build", build, "--target", "wheel_fmu", "--parallel", "2"], **log)
-        folder = tmp_path_factory.mktemp("musl")
-        (folder / "binaries" / "linux64").mkdir(parents=True)
-        shutil.copy(build / "wheel.so", folder / "binaries" / "linux64")
-    return folder

@@ -31,15 +31,35 @@ def needed(library: Path) -> set[str]:
     return {line.split("[")[1].rstrip("]") for line in dynamic if "(NEEDED)" in line}
 
 
+def names(library: Path, which: str) -> set[str]:
+    return {line.split()[-1].split("@")[0] for line in lines_of("nm", "--dynamic", f"--{which}-only", str(library))}
+
+
 def exported(library: Path) -> set[str]:
-    symbols = lines_of("nm", "--dynamic", "--defined-only", str(library))
-    return {line.split()[-1].split("@")[0] for line in symbols} - {"wheel_1", "WHEEL"}
+    return names(library, "defined") - {"wheel_1", "WHEEL"}
 
 
 def test_the_library_needs_libc_and_libm_only(library):
     assert needed(library) <= {"libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
     (python,) = [Path(p) for p in [importlib.util.find_spec("numpy.linalg._umath_linalg").origin]]
     assert not needed(python) <= {"libc.so.6", "libm.so.6"}  # the partner: another library of this machine
+
+
+# Rounded correctly in every libm, as IEEE 754 asks, and cosines are not.
+EXACT = {"fabs", "floor", "ceil", "fmax", "fmin", "fmod", "nearbyint", "remainder", "scalbn", "sqrt"}
+
+
+def of_the_systems_mathematics(library: Path) -> set[str]:
+    """What a library takes from libm."""
+    (libm,) = [line.split()[2] for line in lines_of("ldd", str(library)) if line.split()[0].startswith("libm.")]
+    return names(library, "undefined") & names(Path(libm), "defined")
+
+
+def test_of_the_systems_mathematics_the_libraries_take_only_what_is_exact(library, fmu_path):
+    for path in (library, fmu_path.parent / "libwheel_equations.so"):
+        assert "remainder" in of_the_systems_mathematics(path) <= EXACT
+    numpy = Path(importlib.util.find_spec("numpy._core._multiarray_umath").origin)
+    assert "cos" in of_the_systems_mathematics(numpy)  # the partner: another library of this machine
 
 
 def test_the_library_exports_the_functions_of_fmi_and_nothing_else(library, fmu_path):

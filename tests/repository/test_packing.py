@@ -68,7 +68,7 @@ def release(tmp_path: Path, left_out: str = "") -> dict[str, pack_fmu.Content]:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         if name != left_out:
             (tmp_path / name).write_text(name)
-    arguments = argparse.Namespace(sundials=tmp_path, fmi_headers=HEADERS, eigen_license=None, musl=None, zig=tmp_path)
+    arguments = argparse.Namespace(sundials=tmp_path, fmi_headers=HEADERS, eigen_license=None, libm=None, zig=tmp_path)
     (tmp_path / "NOTICE").write_text("NOTICE")
     return pack_fmu.licences(arguments)
 

@@ -1,0 +1,68 @@
+"""The compiled-in sine and cosine (cmake/libm): sincos has the bits of both, and both are right to the last digit.
+
+They are compiled here alone, because the libraries hide them. No part of the paper.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import subprocess
+from ctypes import byref, c_double
+
+import numpy as np
+import pytest
+from support.bounds import beyond, within
+from support.paths import ROOT, build_folder
+
+
+@pytest.fixture(scope="module")
+def libm(tmp_path_factory) -> ctypes.CDLL:
+    folder, fetched = tmp_path_factory.mktemp("libm"), build_folder() / "_libm"
+    sources = [ROOT / "cmake" / "libm" / "trigonometry.c", fetched / "k_rem_pio2.c"]
+    options = ["-O2", "-ffp-contract=off", "-w", "-shared", "-fPIC", f"-I{ROOT / 'cmake' / 'libm'}", f"-I{fetched}"]
+    subprocess.run(["cc", *options, *sources, "-lm", "-o", folder / "libm.so"], check=True)
+    code = ctypes.CDLL(str(folder / "libm.so"))
+    for name in ("sin", "cos"):
+        function = getattr(code, name)
+        function.restype, function.argtypes = c_double, [c_double]
+    code.sincos.argtypes = [c_double, ctypes.c_void_p, ctypes.c_void_p]
+    return code
+
+
+def angles() -> np.ndarray:
+    """Of all sizes, beside multiples of pi/2, where most digits cancel, and beside the limits between the cases."""
+    random = np.random.default_rng(1)
+    sizes = 10.0 ** random.uniform(-300, 300, 2000) * random.choice([-1, 1], 2000)
+    usual = random.uniform(-1000, 1000, 20_000)
+    beside = np.outer(np.arange(-200, 200) * np.pi / 4, [1 - 2**-52, 1, 1 + 2**-52]).ravel()
+    return np.hstack([sizes, usual, beside, 0.0, -0.0, 5e-324, 2.0**19 * np.pi / 2, 1.7e308])
+
+
+def both(libm: ctypes.CDLL, x: float) -> tuple[float, float]:
+    sine, cosine = c_double(), c_double()
+    libm.sincos(x, byref(sine), byref(cosine))
+    return sine.value, cosine.value
+
+
+def test_sincos_has_the_bits_of_sin_and_cos(libm):
+    x = angles()
+    merged = np.array([both(libm, value) for value in x])
+    alone = np.array([(libm.sin(value), libm.cos(value)) for value in x])
+    assert merged.tobytes() == alone.tobytes()
+    assert merged.tobytes() != alone[:, ::-1].tobytes()
+    assert all(math.isnan(value) for x in (math.inf, -math.inf, math.nan) for value in both(libm, x))
+
+
+def units(found: list[float], expected: list[float]) -> float:
+    """Largest difference in units in the last place."""
+    return float(np.max(np.abs(np.subtract(found, expected)) / np.spacing(np.abs(expected))))
+
+
+@pytest.mark.parametrize("name", ["sin", "cos"])
+def test_sine_and_cosine_are_those_of_the_system_but_for_the_last_digit(libm, name):
+    x, function, expected = angles(), getattr(libm, name), getattr(math, name)
+    known = [expected(value) for value in x]
+    # Each of the two is less than a unit from the truth.
+    within(units([function(value) for value in x], known), 2, f"{name} beside the system's, units in the last place")
+    beyond(units([function(value) for value in np.nextafter(x, np.inf)], known), 2, f"{name} of the next double")
