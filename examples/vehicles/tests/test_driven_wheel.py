@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.bounds import beyond, within
+from support.paths import ROOT
 from vehicles import driven
 from vehicles.component import Component
 from vehicles.driven import Drive
@@ -71,3 +76,29 @@ def test_a_controller_of_the_speed_alone_lets_the_wheel_fall(fmus: dict[str, Pat
     with Master([wheel, balance], connections) as master:
         table = master.run(3.0, driven.STEP, [("wheel", "theta")])
     beyond(np.abs(table["wheel.theta"] - np.pi / 2).max(), np.pi / 4, "tilt, rad")
+
+
+ONE_DRIVE = """
+import sys
+from pathlib import Path
+from vehicles import component, driven
+if sys.argv[3] == "kept":
+    component.let_go_of_python = lambda fmu: None
+driven.controlled({"wheel": Path(sys.argv[1]), "balance": Path(sys.argv[2])}, stop=0.1)
+"""
+
+
+def test_the_process_ends_without_touching_what_the_interpreter_of_the_controller_has_freed(
+    fmus: dict[str, Path], tmp_path: Path
+) -> None:
+    fence = tmp_path / "fence.so"
+    subprocess.run(["c++", "-shared", "-fPIC", "-o", fence, Path(__file__).with_name("fence.cpp")], check=True)
+    paths = os.pathsep.join(map(str, (ROOT / "examples" / "vehicles", ROOT / "tests")))
+    environment = os.environ | {"LD_PRELOAD": str(fence), "PYTHONPATH": paths}
+    status = {
+        state: subprocess.run(
+            [sys.executable, "-B", "-c", ONE_DRIVE, fmus["wheel"], fmus["balance"], state], env=environment, check=False
+        ).returncode
+        for state in ("released", "kept")
+    }
+    assert status == {"released": 0, "kept": -signal.SIGSEGV}
