@@ -55,7 +55,7 @@ def dependencies_of(root: ElementTree.Element) -> Dependencies:
             for name in names(row.get("index"))
             if row.get("dependencies") is not None
         }
-        for section in root.find("ModelStructure") or ()
+        for section in root.iterfind("ModelStructure/*")
     }
 
 
