@@ -5,13 +5,12 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS modelDescription.
 file(STRINGS modelDescription.xml guid_line REGEX "guid=")
 string(REGEX REPLACE ".*guid=\"([^\"]*)\".*" "\\1" WHEEL_GUID "${guid_line}")
 
-# The folder under binaries/: docs/decisions/platform_folders.md.
+# The folder under binaries/ in which masters look on the machine that it is built for, whatever its processor:
+# docs/decisions/platform_folders.md.
 if(WIN32)
   set(wheel_platform win64)
 elseif(APPLE)
   set(wheel_platform darwin64)
-elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
-  set(wheel_platform aarch64-linux)
 else()
   set(wheel_platform linux64)
 endif()

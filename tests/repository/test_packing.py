@@ -6,13 +6,15 @@ No part of the paper. The cross compiler is not needed here; scripts/release che
 from __future__ import annotations
 
 import argparse
+import shutil
 import struct
+import subprocess
 import sys
 from pathlib import Path
 
 import fmpy
 import pytest
-from support.paths import ROOT
+from support.paths import ROOT, build_folder
 
 sys.path.insert(0, str(ROOT))
 sys.path.insert(0, str(ROOT / "cmake"))
@@ -121,3 +123,41 @@ def test_the_guid_stays_when_only_prose_or_layout_changes():
     prose = DESCRIPTION.replace('description="Mass"', 'description="The mass"').replace("\n  ", "\n    ")
     assert prose != DESCRIPTION
     assert guid_of(prose) == guid_of(DESCRIPTION)
+
+
+# A project without languages: what cmake/fmi.cmake makes of a machine.
+FOLDER_OF = """
+cmake_minimum_required(VERSION 3.25)
+project(folder LANGUAGES NONE)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+list(APPEND CMAKE_MODULE_PATH "{root}/cmake")
+include(fmi)
+file(WRITE ${{CMAKE_BINARY_DIR}}/folder ${{wheel_platform}})
+"""
+# FMPy on an arm machine, where the libraries that it brings for x86-64 cannot be loaded.
+ON_ARM = """
+import ctypes, platform, sys
+load = ctypes.cdll.LoadLibrary
+def loads(name):
+    if name and "site-packages" in name:
+        raise OSError(f"{name}: wrong ELF class")
+    return load(name)
+platform.machine, ctypes.cdll.LoadLibrary = lambda: "aarch64", loads
+import fmpy
+assert fmpy.platform_tuple == "aarch64-linux"
+assert fmpy.simulate_fmu(sys.argv[1], stop_time=0.1)["time"][-1] == 0.1
+"""
+
+
+def test_a_local_build_on_arm_linux_is_where_fmpy_looks_for_it(tmp_path):
+    shutil.copy(ROOT / "modelDescription.xml", tmp_path)
+    (tmp_path / "CMakeLists.txt").write_text(FOLDER_OF.format(root=ROOT))
+    options = ["-S", tmp_path, "-B", tmp_path, f"-DPython3_EXECUTABLE={sys.executable}"]
+    subprocess.run(["cmake", *options], check=True, capture_output=True)
+    runs = {}
+    for folder in ((tmp_path / "folder").read_text(), "aarch64-linux"):  # that of a release is the partner
+        fmu = tmp_path / f"{folder}.fmu"
+        pack_fmu.pack(pack_fmu.contents({folder: build_folder() / "wheel.so"}, {}), fmu)
+        runs[folder] = subprocess.run([sys.executable, "-c", ON_ARM, fmu], capture_output=True, text=True, check=False)
+    assert [run.returncode for run in runs.values()] == [0, 1], runs
+    assert "cannot be simulated on the current platform" in runs["aarch64-linux"].stderr

@@ -9,19 +9,13 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "cmake"))
 from pack_fmu import pack
 
-FOLDERS = {
-    ("Linux", "x86_64"): "linux64",
-    ("Linux", "aarch64"): "aarch64-linux",
-    ("Darwin", "x86_64"): "darwin64",
-    ("Darwin", "arm64"): "darwin64",
-    ("Windows", "AMD64"): "win64",
-}
+FOLDERS = {"Linux": "linux64", "Darwin": "darwin64", "Windows": "win64"}  # ../../../docs/decisions/platform_folders.md
 
 
 def main() -> None:
     """Writes the archive."""
     fmu, description, library = map(Path, sys.argv[1:])
-    folder = FOLDERS[platform.system(), platform.machine()]
+    folder = FOLDERS[platform.system()]
     entries = {"modelDescription.xml": description, f"binaries/{folder}/{library.name}": library}
     terminals = description.parent / "terminalsAndIcons.xml"
     if terminals.exists():
