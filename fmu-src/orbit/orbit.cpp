@@ -24,6 +24,12 @@ bool agree(const solver::Problem& problem, int i, const double* weights, double 
   return std::fabs(rate - expected) * problem.longest_step * weights[i] <= largest_break;
 }
 
+bool agree(const solver::Problem& problem, const double* weights, const double* rates, const double* expected) {
+  for (int i = 0; i < problem.states; ++i)
+    if (!agree(problem, i, weights, rates[i], expected[i])) return false;
+  return true;
+}
+
 }  // namespace
 
 Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
@@ -55,9 +61,7 @@ bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
   const Complex velocity = lead_.turn * Complex(own_rate[X_O], own_rate[Y_O]);
   own_rate[X_O] = velocity.real();
   own_rate[Y_O] = velocity.imag();
-  for (int i = 0; i < states; ++i)
-    if (!agree(problem, i, weights, rate[i], own_rate[i])) return false;
-  return true;
+  return agree(problem, weights, rate, own_rate);
 }
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
@@ -156,9 +160,7 @@ bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
   const Complex velocity = -half_of(T2_ + since).turn * Complex(rate[X_O], -rate[Y_O]);
   rate[X_O] = velocity.real();
   rate[Y_O] = velocity.imag();
-  for (int i = 0; i < states; ++i)
-    if (!agree(problem, i, weights, image_rate[i], rate[i])) return false;
-  return true;
+  return agree(problem, weights, image_rate, rate);
 }
 
 // Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing.
