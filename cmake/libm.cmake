@@ -6,21 +6,22 @@
 set(WHEEL_LIBM_SOURCE "" CACHE STRING "newlib's source tree or archive; empty: Debian's; system: the system's libm")
 set(
   libm_sha256
-  025f5e600ee51fc69b4e4d28834a09594608d0570e347d3fdedc69efc79d2ccf # 3.3.0, Debian 12
-  3286ede055faeeccfe90005ddbb97b20dbf0b217705060af2189291c904df9fe # 4.5.0, Debian 13
+  3186e6cecc99c7f48b1d045bb8031da417db652da33439c80f885763af6b7ddd # 3.3.0, Debian 12
+  32f41240daa3f050c6cef212a39b85bb9b120a202646763a12571db0867a0a72 # 4.5.0, Debian 13
 )
-set(libm_compiled math/s_tanh.c math/e_cosh.c math/k_rem_pio2.c)
-foreach(
-  name
-  s_expm1
-  exp
-  exp_data
-  pow
-  pow_log_data
-  math_err
+# Each behind those that it calls: a linker that has met a call takes the function from the C library.
+set(
+  libm_compiled
+  common/math_err.c
+  common/exp_data.c
+  common/pow_log_data.c
+  common/exp.c
+  common/s_expm1.c
+  common/pow.c
+  math/k_rem_pio2.c
+  math/s_tanh.c
+  math/e_cosh.c
 )
-  list(APPEND libm_compiled common/${name}.c)
-endforeach()
 # Read by cmake/libm/trigonometry.c, or headers.
 set(
   libm_included
@@ -94,11 +95,11 @@ function(add_libm)
   set(LIBM_FOLDER ${CMAKE_BINARY_DIR}/_libm CACHE INTERNAL "")
   unpack_libm(${LIBM_FOLDER} ${libm_compiled} ${libm_included})
   list(TRANSFORM libm_compiled REPLACE ".*/" ${LIBM_FOLDER}/)
-  add_library(libm OBJECT cmake/libm/trigonometry.c ${libm_compiled})
+  add_library(libm OBJECT ${libm_compiled} cmake/libm/trigonometry.c)
   set_target_properties(libm PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF EXPORT_COMPILE_COMMANDS OFF)
   target_include_directories(libm PRIVATE cmake/libm ${LIBM_FOLDER})
   target_compile_definitions(libm PRIVATE WANT_ERRNO=0 HAVE_FAST_FMA=0)
-  target_compile_options(libm PRIVATE -w)
+  target_compile_options(libm PRIVATE -w -fno-lto)
   if(WHEEL_SANITIZE) # it shifts negative numbers, which every compiler here does alike
     target_compile_options(libm PRIVATE -fno-sanitize=all)
   endif()
@@ -122,6 +123,11 @@ endfunction()
 
 function(link_libm target)
   if(TARGET libm)
-    target_sources(${target} PRIVATE $<TARGET_OBJECTS:libm>)
+    get_target_property(type ${target} TYPE)
+    set(where PRIVATE)
+    if(type STREQUAL STATIC_LIBRARY) # in an archive they would come too late: behind those of the C library
+      set(where INTERFACE)
+    endif()
+    target_sources(${target} ${where} $<TARGET_OBJECTS:libm>)
   endif()
 endfunction()

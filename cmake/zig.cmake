@@ -12,6 +12,9 @@ elseif(CMAKE_MATCH_2 STREQUAL wasi)
   set(CMAKE_SYSTEM_NAME Generic) # no shared libraries, no threads, no system of its own
 else()
   set(CMAKE_SYSTEM_NAME Linux)
+  # CMake does not find out that zig can optimise while linking. It cannot for macOS.
+  set(CMAKE_C_FLAGS_INIT -flto)
+  set(CMAKE_CXX_FLAGS_INIT -flto)
 endif()
 set(CMAKE_C_COMPILER ${WHEEL_ZIG} cc -target ${WHEEL_ZIG_TARGET})
 set(CMAKE_CXX_COMPILER ${WHEEL_ZIG} c++ -target ${WHEEL_ZIG_TARGET})
