@@ -193,11 +193,12 @@ def test_forward_is_the_way_the_wheel_rolls_and_back_is_against_it(live, spin):
     assert energy["forward"][1] > energy["forward"][0] == energy["back"][0] > energy["back"][1]
 
 
-def test_while_a_button_is_held_the_diagrams_keep_their_axes(live):
+@pytest.mark.parametrize("diagram", ["phase", "spin", "path"])
+def test_while_a_button_is_held_the_diagrams_keep_their_axes(live, diagram):
     axes = """() => [[page.player.start, page.player.end],
       ...page.plots.plots.map(({ low, high }) => [low, high]), ...page.plots.portrait.ranges]"""
     preset(live, "Paper, no friction")
-    live.evaluate("page.player.seek(1)")
+    live.evaluate("(name) => { page.plots.portrait.choose(name); page.player.seek(1); }", diagram)
     before = live.evaluate(axes)
     button = live.locator(".push", has_text="forward")
     # In one piece: pressed, the button plays, and what is past may widen an axis.

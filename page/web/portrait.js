@@ -123,8 +123,9 @@ export class Portrait {
     const sizes = [this.width - MARGIN.left - MARGIN.right, this.height - MARGIN.top - MARGIN.bottom];
     const scale = Math.max(...this.ranges.map(([low, high], i) => (high - low) / sizes[i]));
     this.ranges = this.ranges.map(([low, high], i) => {
-      const [middle, half] = [(low + high) / 2, (scale * sizes[i]) / 2];
-      return [middle - half, middle + half];
+      const missing = scale * sizes[i] - (high - low);
+      const narrow = missing > 1e-9 * (high - low);  // what only rounding takes away is no reason to move a limit
+      return narrow ? [low - missing / 2, high + missing / 2] : [low, high];
     });
   }
 
