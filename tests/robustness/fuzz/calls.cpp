@@ -80,14 +80,17 @@ void Session::reset() {
   now_->model = {};
 }
 
-// A share of the shortest time in which the wheel moves noticeably: short steps keep the fuzzer fast.
-double Session::usual_step(const Slot& slot) {
+double short_step(fmi2Component c) {
   constexpr double longest = 10, share = 0.25;  // s, and of the shortest time
   const unsigned references[] = {ref_r_0, ref_r, ref_g, ref_psi_dot, ref_theta_dot, ref_phi_dot};
   double v[6] = {};
-  if (slot.model.state == instantiated || fmi2GetReal(slot.component, references, 6, v) != fmi2OK) return 0.01;
+  if (fmi2GetReal(c, references, 6, v) != fmi2OK) return 0.01;
   const double rate = std::sqrt(v[2] / (v[0] + v[1])) + std::fabs(v[3]) + std::fabs(v[4]) + std::fabs(v[5]);
   return rate > 0 && std::isfinite(rate) ? std::min(share / rate, longest) : 0.01;
+}
+
+double Session::usual_step(const Slot& slot) {
+  return slot.model.state == instantiated ? 0.01 : short_step(slot.component);
 }
 
 // Keeps the model of the call state; t is expected to be the present time, h a sound step.

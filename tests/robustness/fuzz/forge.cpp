@@ -71,7 +71,7 @@ void step(fmi2Component c, Bytes& in, unsigned most, fmi2Type kind) {
     if (kind == fmi2ModelExchange)
       exchange(c, in, t);
     else
-      fmi2DoStep(c, now(c), 0.05 * in.factor(), fmi2True);
+      fmi2DoStep(c, now(c), short_step(c) * in.factor(), fmi2True);
   }
 }
 

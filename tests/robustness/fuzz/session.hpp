@@ -61,6 +61,8 @@ class Session {
 };
 
 fmi2Component make_instance(fmi2Type kind = fmi2CoSimulation);
+// s, a share of the shortest time in which the wheel moves noticeably: short steps keep the fuzzer fast.
+double short_step(fmi2Component c);
 void play_forged(Bytes& in, fmi2Type kind);             // forge.cpp
 void play(const std::uint8_t* data, std::size_t size);  // all bytes of an input
 
