@@ -37,7 +37,7 @@ def checkout(tmp_path: Path) -> Path:
     for name in ("scripts/build", "scripts/setup", "scripts/help", "cmake/sundials.cmake", "CMakePresets.json"):
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, place / name)
-    (place / "requirements.txt").write_text("")
+    (place / "pyproject.toml").touch()
     return place
 
 

@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 from support.paths import ROOT
 
-sys.path.insert(0, str(ROOT))
 from publishing.documents import PLACE, UnknownFigure, pages, read_figures, with_figures
 from publishing.markdown import number
 
@@ -28,7 +27,7 @@ CODE = re.compile(
 TYPED = re.compile(r"(?<![\w.])(?!1e)\d+(?:\.\d+)?e-\d+\b|\b\d[\d.,]* ?(?:ns|µs|us|KiB|MiB)\b")
 # Figures that no report measures: the rounding of a constant, a limit that the code sets.
 GIVEN = {"docs/physics.md": {"6e-17"}, "docs/decisions/memory.md": {"128 KiB"}} | {
-    "publishing/templates/platforms.md": {"1 MiB"}
+    "tools/publishing/templates/platforms.md": {"1 MiB"}
 }
 HISTORY = {
     "a commit": re.compile(r"\b(?=[0-9a-f]*\d)(?=[0-9a-f]*[a-f])[0-9a-f]{7,40}\b"),
@@ -51,7 +50,7 @@ def test_the_figures_of_a_page_are_those_of_the_data(page: Path) -> None:
 
 def test_the_pages_of_the_reports_are_those_of_the_data() -> None:
     command = [sys.executable, "-m", "reports", "all", "--check"]
-    environment = os.environ | {"PYTHONPATH": ":".join([".", "examples/vehicles", "tests"])}
+    environment = os.environ | {"PYTHONPATH": ":".join(["tools", "examples/vehicles", "tests"])}
     found = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
     assert found.returncode == 0, found.stdout + found.stderr
 

@@ -12,7 +12,7 @@ from support.paths import ROOT
 
 SHELL = "#!/usr/bin/env bash\n"
 # Commands of folders that can be deleted whole.
-PARTS = {"page": "page", "view": "page", "study": "examples/studies", "example": "examples/vehicles"}
+PARTS = {"page": "tools/page", "view": "tools/page", "study": "examples/studies", "example": "examples/vehicles"}
 GONE = [name for name, folder in PARTS.items() if not (ROOT / folder).exists()]
 COMMANDS = sorted({p.name for p in (ROOT / "scripts").iterdir()} - set(GONE))
 STUDY = tuple(f"examples/studies/study/{name}.py" for name in ("options", "measures", "__init__"))
@@ -20,7 +20,8 @@ OF_AXLE_AND_CAR = ("axle/axle.csv", "axle/axle.toml", "car/chassis.csv", "car/dr
 OF_VEHICLES = ("vehicles/options.py", "skeleton/describe.py", "balance/balance.py", "quarter_car/quarter_car.csv")
 VEHICLES = tuple(f"examples/vehicles/{name}" for name in (*OF_VEHICLES, *OF_AXLE_AND_CAR))
 NUMBERING = ("cmake/description/__init__.py", "cmake/description/numbering.py")
-READERS = ("diagrams/start_values.py", "page/options.py", "reports/options.py", *STUDY, *VEHICLES, *NUMBERING)
+OF_TOOLS = tuple(f"tools/{name}.py" for name in ("diagrams/start_values", "page/options", "reports/options"))
+READERS = (*OF_TOOLS, *STUDY, *VEHICLES, *NUMBERING)
 WRONG = {
     **{"build": ("relase",), "documents": ("--chek",), "example": ("car", "m_B=-1"), "fuzz": ("a minute",)},
     **{"lint": ("--fixx",), "page": ("--output",), "report": ("sped",), "run": ("m=-5",), "setup": ("tests",)},
@@ -78,7 +79,7 @@ def test_a_typing_error_is_told_before_anything_is_installed(bare: Path, name: s
 
 
 def test_help_of_run_names_what_it_makes_where_there_is_no_python(bare: Path) -> None:
-    tools = bare / "tools"
+    tools = bare / "bin"
     tools.mkdir()
     for tool in ("bash", "basename", "dirname", "sed", "env"):
         (tools / tool).symlink_to(shutil.which(tool))

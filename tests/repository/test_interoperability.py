@@ -6,11 +6,7 @@ The runs themselves are made by hand, with programs that are not part of this pr
 from __future__ import annotations
 
 import csv
-import sys
 
-from support.paths import ROOT
-
-sys.path.insert(0, str(ROOT))
 from publishing.documents import DATA
 
 RUNS = DATA / "interoperability.csv"

@@ -16,9 +16,8 @@ import fmpy
 import pytest
 from support.paths import ROOT, build_folder
 
-sys.path.insert(0, str(ROOT))
 sys.path.insert(0, str(ROOT / "cmake"))
-sys.path.insert(0, str(ROOT / "release"))
+sys.path.insert(0, str(ROOT / "tools" / "release"))
 import pack_fmu
 import universal
 from description.numbering import guid_of

@@ -19,7 +19,6 @@ from support.closed_forms import fall_inertia
 from support.paths import ROOT, build_folder
 from support.scenes import PAPER
 
-sys.path.insert(0, str(ROOT))
 from publishing import variables as variable_tables
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -19,7 +19,7 @@ def root(tmp_path: Path) -> Path:
 
 
 def ask(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, str(ROOT / "diagrams" / "start_values.py"), *arguments]
+    command = [sys.executable, str(ROOT / "tools" / "diagrams" / "start_values.py"), *arguments]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from base64 import b64decode
 from io import BytesIO
 from pathlib import Path
@@ -12,8 +11,6 @@ import nbformat
 import numpy as np
 import pytest
 from PIL import Image
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 from support.bounds import beyond, within
 
 from publishing.notebook import NOTEBOOK, executed

@@ -9,9 +9,7 @@ import numpy as np
 import pytest
 from support.paths import ROOT
 
-for folder in (ROOT / "examples" / "vehicles", ROOT):
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+sys.path.insert(0, str(ROOT / "examples" / "vehicles"))
 
 from vehicles import build, suspended  # noqa: E402
 

@@ -105,7 +105,7 @@ def test_ctrl_c_ends_a_run_with_one_word(fmus: dict[str, Path]) -> None:
     start = "runpy.run_module('vehicles.example', run_name='__main__')"
     # What it needs is imported before it is interrupted: some packages tell an interrupt of their import otherwise.
     code = f"import runpy, sys, vehicles.example; sys.argv = ['example', 'balance']; print('ready'); {start}"
-    folders = [str(ROOT / name) for name in ("", "examples/vehicles", "tests")]
+    folders = [str(ROOT / name) for name in ("tools", "examples/vehicles", "tests")]
     run = subprocess.Popen(
         [sys.executable, "-u", "-c", f"import sys; sys.path[:0] = {folders}; {code}"],
         **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True},

@@ -1,6 +1,6 @@
 """The car's manoeuvres over their full length as one set of equations, kept as tables: tests/car_NAME.csv.
 
-    PYTHONPATH=.:examples/vehicles:tests python -m vehicles.car_table [NAME...]
+    PYTHONPATH=tools:examples/vehicles:tests python -m vehicles.car_table [NAME...]
 
 writes them again, which takes some minutes. The tests integrate a part of them once more.
 """

@@ -1,0 +1,98 @@
+"""Measures the pages in headless Chromium, drawn by the processor at twice the resolution: measure.py LIVE RECORDED
+
+Sizes, the time to the first picture, the processor time of the page itself until then, without drawing the scene, and
+pictures per second of processor time go into docs/results/data/page.csv.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+DATA = Path(__file__).resolve().parents[2] / "docs" / "results" / "data" / "page.csv"
+FRAMES = 10
+LOOK = {
+    "viewport": {"width": 1280, "height": 800},
+    "device_scale_factor": 2,
+    "reduced_motion": "reduce",
+    "offline": True,
+}
+FLAGS = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
+FLAGS += ["--no-sandbox"] if os.geteuid() == 0 else []
+DRAW = """(frames) => {
+  const gl = page.stage.renderer.getContext();
+  let own = 0;
+  for (let k = 0; k < frames; ++k) {
+    const begin = performance.now();
+    page.player.seek((k * page.player.end) / frames);
+    page.draw();
+    own += performance.now() - begin;
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));  // waits until the picture is there
+  }
+  return own / 1000;
+}"""
+
+
+def processor_time(browser: Browser, kind: str = "") -> float:
+    """Seconds of processor time of all of the browser's processes, or of those of one kind."""
+    session = browser.new_browser_cdp_session()
+    processes = session.send("SystemInfo.getProcessInfo")["processInfo"]
+    session.detach()
+    return sum(process["cpuTime"] for process in processes if kind in ("", process["type"]))
+
+
+def opened(browser: Browser, path: Path) -> Page:
+    page = browser.new_context(**LOOK).new_page()
+    page.goto(path.resolve().as_uri())
+    page.wait_for_function("window.page && page.first")
+    return page
+
+
+def measure(browser: Browser, name: str, path: Path) -> dict[str, float]:
+    """Figures of one page; the first opening fills the browser's caches as any page before it does."""
+    opened(browser, path).close()
+    firsts, owns = [], []
+    for _ in range(2):
+        before = processor_time(browser, "renderer")
+        page = opened(browser, path)
+        firsts.append(page.evaluate("page.first") / 1000)
+        owns.append(processor_time(browser, "renderer") - before)
+        if len(firsts) < 2:
+            page.close()
+    page.evaluate(DRAW, 2)
+    before = processor_time(browser)
+    own = page.evaluate(DRAW, FRAMES)
+    spent = processor_time(browser) - before
+    took = page.evaluate("page.live?.took ?? 0")
+    page.close()
+    figures = {
+        "megabytes": path.stat().st_size / 1e6,
+        "first": min(firsts),
+        "first_own": min(owns),
+        "frames": FRAMES / spent,
+        "own": FRAMES / own,
+    }
+    figures |= {"run": took} if took else {}
+    return {f"{name}_{figure}": value for figure, value in figures.items()}
+
+
+def main() -> None:
+    live, recorded = (Path(argument) for argument in sys.argv[1:])
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        figures = measure(chromium, "live", live) | measure(chromium, "recorded", recorded)
+        chromium.close()
+    with DATA.open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["figure", "measured"])
+        rows.writerows((name, f"{value:.4g}") for name, value in figures.items())
+    print(*(f"{name}: {value:.4g}" for name, value in figures.items()), sep="\n")
+
+
+if __name__ == "__main__":
+    main()

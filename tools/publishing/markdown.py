@@ -1,0 +1,54 @@
+"""Numbers and tables as they stand in every document, and pages made from templates."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from math import isfinite
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from tabulate import tabulate
+
+ROOT = Path(__file__).resolve().parents[2]
+TEMPLATES = tuple(ROOT / "tools" / part / "templates" for part in ("publishing", "reports"))
+
+
+def number(value: object) -> str:
+    """Short text of a value: 3 digits of a float, or 2 and a plain exponent; integers and text as they are."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if not isinstance(value, float):
+        return "" if value is None else str(value)
+    if not isfinite(value):
+        return str(value)
+    if value == 0:
+        return "0"
+    if 1e-3 <= abs(value) < 1e5:
+        return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table of Markdown, without padding."""
+    cells = [list(head), ["---"] * len(head), *([number(cell) for cell in row] for row in rows)]
+    return "\n".join(f"| {' | '.join(row)} |" for row in cells)
+
+
+def frame_table(frame: object) -> str:
+    """A pandas table, the first column to the left, the others to the right; what it does not know stays empty."""
+    if frame.empty:
+        return "None."
+    cells = frame.convert_dtypes().astype(object)
+    texts = [[number(cell).replace("|", "\\|") for cell in row] for row in cells.where(cells.notna(), None).to_numpy()]
+    sides = ("left", *["right"] * (frame.shape[1] - 1))
+    return tabulate(texts, list(frame.columns), "pipe", disable_numparse=True, colalign=sides)
+
+
+def page(template: str, **values: object) -> str:
+    """A page out of a template; an unknown name is an error."""
+    loader = FileSystemLoader(TEMPLATES)
+    pages = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    pages.filters["table"] = frame_table
+    return re.sub(r"\n{3,}", "\n\n", pages.get_template(template).render(**values)).strip() + "\n"

@@ -1,0 +1,120 @@
+"""The site of ./scripts/site: every document as it is kept, by Sphinx; nothing is loaded from elsewhere.
+
+The source folder is the project's root, so that links between documents, and to sources, stay as they are.
+Formulas become MathML, which browsers draw by themselves. docs/decisions/site.md says why it is made like this.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import latex2mathml.converter
+from docutils import nodes
+from sphinx.application import Sphinx
+
+ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(Path(__file__).parent))
+from c_header import reference  # noqa: E402
+
+project, author = "wheel.fmu", "the maintainers of wheel.fmu"
+copyright = "the maintainers of wheel.fmu, BSD-3-Clause"  # noqa: A001 - Sphinx's name for it
+release = re.search(r"VERSION (\d+\.\d+\.\d+)", (ROOT / "CMakeLists.txt").read_text())[1]
+root_doc = "README"
+extensions = ["myst_nb"]
+exclude_patterns = ["build", "results", ".*", "tests/robustness/fuzz/corpus", "**/templates"]
+source_suffix = {".md": "myst-nb", ".ipynb": "myst-nb"}
+nb_execution_mode = "off"  # the notebook is kept with what its cells gave; a test runs it
+nb_merge_streams = True
+myst_enable_extensions = ["dollarmath"]
+myst_fence_as_directive = ["math"]
+myst_heading_anchors = 4
+suppress_warnings = ["myst.header", "toc.not_included", "misc.highlighting_failure"]
+html_theme = "furo"
+html_title = f"wheel.fmu {release}"
+html_favicon = "../../../fmu-src/archive/model.png"
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]
+html_copy_source = False
+html_show_sphinx = False
+templates_path = ["_templates"]
+html_additional_pages = {"index": "front.html"}
+html_math_renderer = "mathml"
+
+CONTENTS = """
+```{{toctree}}
+:hidden:
+:caption: {caption}
+
+{pages}
+```
+"""
+DELETABLE = ("tools/page", "examples/vehicles", "examples/studies", "examples/control", "examples/importer")
+GONE = [ROOT / part for part in DELETABLE if not (ROOT / part).exists()]
+CHAPTERS = {
+    "The wheel": "docs/README docs/physics docs/variables docs/brake_hold_steer docs/notation docs/equations "
+    "docs/errata",
+    "Use it": "docs/in_your_tool docs/vehicle examples/wheel docs/*",
+    "Examples": "examples/README examples/*/README",
+    "Measured": "docs/results/*",
+    "Make it": "CONTRIBUTING */README tools/*/README CHANGELOG SECURITY docs/decisions/*",
+}
+
+
+def contents() -> str:
+    """The chapters of the site, below the README: each document stands where it is named first."""
+    found, seen = [], set()
+    for caption, names in CHAPTERS.items():
+        kinds = [f"{name}{kind}" for name in names.split() for kind in (".md", ".ipynb")]
+        paths = [path.relative_to(ROOT) for kind in kinds for path in sorted(ROOT.glob(kind))]
+        pages = [str(path.with_suffix("")) for path in paths if not path.parts[0].startswith(".")]
+        pages = [page for page in dict.fromkeys(pages) if page not in seen]
+        seen.update(pages)
+        found.append(CONTENTS.format(caption=caption, pages="\n".join(f"/{page}" for page in pages)))
+    return "".join(found)
+
+
+def folders(text: str, page: Path) -> str:
+    """Links to a folder lead to its README; where it has none, and of parts that were deleted, the words stay."""
+
+    def mended(link: re.Match[str]) -> str:
+        words, target = link[1], link[2]
+        if any((page.parent / target).resolve().is_relative_to(part) for part in GONE):
+            return words
+        if "://" in target or not (page.parent / target).is_dir():
+            return link[0]
+        return f"[{words}]({target.rstrip('/')}/README.md)" if (page.parent / target / "README.md").exists() else words
+
+    return re.sub(r"(?<!!)\[([^\]]*)\]\(([^)#\s]+)\)", mended, text)
+
+
+def read(app: Sphinx, name: str, source: list[str]) -> None:
+    path = Path(app.env.doc2path(name))
+    if path.suffix == ".md":
+        source[0] = folders(source[0], path)
+    if name == root_doc:
+        source[0] += contents()
+    if name == "docs/c_header":
+        source[0] += reference((ROOT / "fmu-src" / "equations" / "wheel_equations.h").read_text(encoding="utf-8"))
+
+
+def formula(display: str):
+    """Visitor that writes a formula as MathML."""
+
+    def visit(writer: object, node: nodes.Element) -> None:
+        writer.body.append(latex2mathml.converter.convert(node.astext(), display=display))
+        raise nodes.SkipNode
+
+    return visit
+
+
+def front(app: Sphinx, name: str, template: str, context: dict, doctree: object) -> None:
+    """The front page shows the live page where ./scripts/site has put one."""
+    context["live"] = (Path(app.outdir) / "live.html").exists()
+
+
+def setup(app: Sphinx) -> None:
+    app.connect("html-page-context", front)
+    app.connect("source-read", read)
+    app.add_html_math_renderer("mathml", (formula("inline"), None), (formula("block"), None))

@@ -1,0 +1,74 @@
+"""The site is built with every warning as an error, and asks for nothing from elsewhere."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support.paths import ROOT
+
+CONF = ROOT / "tools" / "publishing" / "site"
+LOADED = re.compile(r"""<(?:script|img|iframe|source|link)\b[^>]*?\b(?:src|href)=["']((?:https?:)?//[^"']+)""")
+
+
+def build(source: Path, out: Path, *more: str) -> subprocess.CompletedProcess[str]:
+    words = ["-q", "-n", "-W", "--keep-going", "-c", str(CONF), "-d", str(out / "trees"), "-b", "html", *more]
+    return subprocess.run(
+        [sys.executable, "-m", "sphinx", *words, str(source), str(out)], capture_output=True, text=True, check=False
+    )
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("site")
+    done = build(ROOT, out)
+    assert done.returncode == 0, done.stderr
+    return out
+
+
+def test_the_site_holds_every_document(site: Path) -> None:
+    listed = subprocess.run(
+        ["git", "ls-files", "README.md", "CHANGELOG.md", "docs/*.md"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert len(listed.stdout.split()) > 30
+    for name in listed.stdout.split():
+        assert (site / name).with_suffix(".html").exists(), name
+    assert (site / "index.html").exists() and (site / "examples" / "wheel.html").exists()
+
+
+def test_the_site_asks_for_nothing_from_elsewhere(site: Path) -> None:
+    pages = list(site.rglob("*.html"))
+    assert len(pages) > 40
+    assert {page.name: LOADED.findall(page.read_text(encoding="utf-8")) for page in pages} == {
+        page.name: [] for page in pages
+    }
+    assert LOADED.findall('<script src="https://example.org/x.js"></script>') == ["https://example.org/x.js"]
+
+
+def test_formulas_are_drawn_by_the_browser_itself(site: Path) -> None:
+    text = (site / "docs" / "equations.html").read_text(encoding="utf-8")
+    assert text.count("<math") > 50 and "MathJax" not in text
+
+
+def test_the_reference_of_the_c_header_has_every_function(site: Path) -> None:
+    header = (ROOT / "fmu-src" / "equations" / "wheel_equations.h").read_text(encoding="utf-8")
+    functions = set(re.findall(r"^\w[\w ]*\*? ?(wheel_\w+)\(", header, re.MULTILINE))
+    text = (site / "docs" / "c_header.html").read_text(encoding="utf-8")
+    assert len(functions) > 5
+    assert {name for name in functions if f'id="{name.replace("_", "-")}' not in text and name not in text} == set()
+
+
+@pytest.mark.parametrize(
+    "page", ["[gone](gone.md)", "[gone](#gone)", "[gone](gone.py)", "[gone](gone/)", "![gone](gone.png)"]
+)
+def test_a_link_that_leads_nowhere_stops_the_site(tmp_path: Path, page: str) -> None:
+    (tmp_path / "README.md").write_text(f"# A page\n\n{page}\n")
+    done = build(tmp_path, tmp_path / "out", "-D", "html_favicon=")
+    assert done.returncode != 0 and "gone" in done.stderr

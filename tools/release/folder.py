@@ -1,0 +1,96 @@
+"""The folder that is given away: the archive, the site, notes from CHANGELOG.md, and the sums of all three.
+
+python -m release.folder [--check] [--fmu FMU --site FOLDER --out FOLDER]; --check: only whether the versions agree.
+"""
+
+from __future__ import annotations
+
+import argparse
+import gzip
+import hashlib
+import re
+import shutil
+import sys
+import tarfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+VERSIONS = {
+    "CMakeLists.txt": r"project\(wheel VERSION (\S+)",
+    "modelDescription.xml": r'\bversion="([^"]+)" license',
+    "CITATION.cff": r"^version: (\S+)",
+}
+DRAFT = "Unreleased"
+
+
+def version(root: Path = ROOT) -> str:
+    """The version that all files name; SystemExit with one sentence if they differ."""
+    found = {}
+    for name, pattern in VERSIONS.items():
+        match = re.search(pattern, (root / name).read_text(encoding="utf-8"), re.MULTILINE)
+        found[name] = match[1] if match else "none"
+    if len(set(found.values())) > 1:
+        named = ", ".join(f"{name} names {value}" for name, value in found.items())
+        raise SystemExit(f"The versions differ: {named}.")
+    return next(iter(found.values()))
+
+
+def notes(changelog: str, number: str) -> tuple[str, bool]:
+    """The newest section of the changelog, and whether it still is a draft; SystemExit if it is of another version."""
+    title, _, rest = changelog.partition("\n## ")[2].partition("\n")
+    text = rest.split("\n## ")[0].strip()
+    if re.split(r"[ ,]", title)[:1] not in ([number], [DRAFT]):
+        raise SystemExit(f"CHANGELOG.md opens with a section {title}, not with one of version {number}.")
+    return f"# wheel.fmu {number}\n\n{text}\n", title.startswith(DRAFT)
+
+
+def pack(site: Path, archive: Path) -> None:
+    """The site in one file; the same content gives the same bytes."""
+
+    def plain(entry: tarfile.TarInfo) -> tarfile.TarInfo:
+        entry.uid = entry.gid = entry.mtime = 0
+        entry.uname = entry.gname = ""
+        entry.mode = 0o755 if entry.isdir() else 0o644
+        return entry
+
+    with (
+        archive.open("wb") as raw,
+        gzip.GzipFile("", "wb", 9, raw, mtime=0) as file,
+        tarfile.open(fileobj=file, mode="w") as tar,
+    ):
+        for path in sorted(site.rglob("*")):
+            name = Path("wheel-site") / path.relative_to(site)
+            tar.add(path, str(name), recursive=False, filter=plain)
+
+
+def write(out: Path, fmu: Path, site: Path, text: str) -> None:
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    shutil.copyfile(fmu, out / "wheel.fmu")
+    pack(site, out / "wheel-site.tar.gz")
+    (out / "NOTES.md").write_text(text, encoding="utf-8")
+    sums = [(hashlib.sha256(path.read_bytes()).hexdigest(), path.name) for path in sorted(out.iterdir())]
+    (out / "SHA256SUMS").write_text("".join(f"{digest}  {name}\n" for digest, name in sums), encoding="utf-8")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--check", action="store_true")
+    for name in ("fmu", "site", "out"):
+        parser.add_argument(f"--{name}", type=Path)
+    arguments = parser.parse_args()
+    number = version()
+    text, draft = notes((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), number)
+    if draft:
+        print(f"CHANGELOG.md has a section {DRAFT}: give it the version and the date before you tag.", file=sys.stderr)
+    if arguments.check:
+        return
+    write(arguments.out, arguments.fmu, arguments.site, text)
+    print(f"{arguments.out} holds {', '.join(sorted(path.name for path in arguments.out.iterdir()))}. To tag it:")
+    print(f"  git tag -a v{number} -F {arguments.out / 'NOTES.md'} --cleanup=whitespace")
+    print(f"  git push origin v{number}")
+    print("and attach the files of the folder; who has them checks them with sha256sum -c SHA256SUMS.")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,62 @@
+"""The release folder: sums that are right, notes of the version, the same bytes for the same content."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+import tarfile
+from pathlib import Path
+
+import pytest
+from support.paths import ROOT
+
+from release import folder
+
+CHANGES = "# Changes\n\nWords.\n\n## 2.1.0, 2026-12-01\n\n- New.\n\n## 2.0.0\n\n- Old.\n"
+
+
+@pytest.fixture
+def parts(tmp_path: Path) -> tuple[Path, Path]:
+    fmu, site = tmp_path / "built.fmu", tmp_path / "site"
+    fmu.write_bytes(b"archive")
+    (site / "docs").mkdir(parents=True)
+    (site / "index.html").write_text("front")
+    (site / "docs" / "physics.html").write_text("page")
+    return fmu, site
+
+
+def test_the_files_name_one_version_and_another_one_is_noticed(tmp_path: Path) -> None:
+    number = folder.version()
+    for name in folder.VERSIONS:
+        shutil.copyfile(ROOT / name, tmp_path / name)
+    assert folder.version(tmp_path) == number
+    text = (tmp_path / "CITATION.cff").read_text()
+    (tmp_path / "CITATION.cff").write_text(text.replace(f"version: {number}", "version: 9.9.9"))
+    with pytest.raises(SystemExit, match=r"CITATION.cff names 9\.9\.9"):
+        folder.version(tmp_path)
+
+
+def test_the_notes_are_the_newest_section_of_the_changelog() -> None:
+    assert folder.notes(CHANGES, "2.1.0") == ("# wheel.fmu 2.1.0\n\n- New.\n", False)
+    assert folder.notes(CHANGES.replace("2.1.0, 2026-12-01", "Unreleased"), "2.1.0")[1]
+    with pytest.raises(SystemExit, match="not with one of version 3"):
+        folder.notes(CHANGES, "3.0.0")
+    assert folder.notes((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), folder.version())[0].count("\n- ") > 0
+
+
+def test_the_folder_holds_what_its_sums_say_and_the_same_bytes_each_time(tmp_path: Path, parts) -> None:
+    fmu, site = parts
+    folder.write(tmp_path / "one", fmu, site, "notes\n")
+    for path in site.rglob("*"):
+        path.touch()
+    folder.write(tmp_path / "two", fmu, site, "notes\n")
+    lines = (tmp_path / "one" / "SHA256SUMS").read_text().splitlines()
+    assert [line.split()[1] for line in lines] == ["NOTES.md", "wheel-site.tar.gz", "wheel.fmu"]
+    for line in lines:
+        digest, name = line.split()
+        assert hashlib.sha256((tmp_path / "two" / name).read_bytes()).hexdigest() == digest
+    with tarfile.open(tmp_path / "one" / "wheel-site.tar.gz") as tar:
+        assert {"wheel-site/index.html", "wheel-site/docs/physics.html"} <= set(tar.getnames())
+    (site / "index.html").write_text("another front")
+    folder.write(tmp_path / "three", fmu, site, "notes\n")
+    assert (tmp_path / "three" / "SHA256SUMS").read_text().splitlines()[1] != lines[1]
