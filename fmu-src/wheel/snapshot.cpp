@@ -39,12 +39,12 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("place in the layer of a stiff law").count(now.layer, 0, static_cast<int>(Layer::sticking));
   archive("origin of the inputs in force, s").number(now.inputs.origin);
   archive("inputs in force").numbers(now.inputs.c[0], inputs_count * (max_order + 1));
-  archive("time reached, s").range(run.t, 0, archive.greatest);
+  archive("time reached, s").number(run.t);
   archive("time of the last change, s").range(run.last_change, 0, archive.greatest);
   archive("state").numbers(run.y, WHEEL_MAX_STATES);
   archive("whether the ground presses or pulls").count(now.scene.ground, WHEEL_GROUND_BY_FORCE, WHEEL_GROUND_PULLS);
   archive("pulls of the ground").tally(run.pulls);
-  archive("time of the last pull, s").range(run.last_pull, 0, archive.greatest);
+  archive("time of the last pull, s").number(run.last_pull);
   archive("transitions of the friction").tally(run.transitions);
   archive("steps before the solver started").tally(counted.steps);
   archive("evaluations before the solver started").tally(counted.rhs);
@@ -95,7 +95,9 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   const bool by_force = now.scene.ground == WHEEL_GROUND_BY_FORCE, may_pull = setup.keep_contact;
   if (by_force || (now.pulls() && !may_pull)) return "the ground neither presses nor pulls";
   if (run.phase == Phase::unfolded && !is_unfoldable(setup, now)) return "what acts cannot be unfolded";
-  if (run.last_change > run.t || now.inputs.origin > run.t) return "a change lies ahead of the time reached";
+  const bool goes_back = demand.kind == Kind::model_exchange;  // the caller's solver takes trial steps back
+  if (!goes_back && (run.last_change > run.t || now.inputs.origin > run.t))
+    return "a change lies ahead of the time reached";
   const bool exchanged = run.phase == Phase::event_mode || run.phase == Phase::continuous_time;
   const bool stepped = run.phase == Phase::at_start || run.phase == Phase::stepping || run.phase == Phase::unfolded;
   if (demand.kind == Kind::model_exchange ? stepped : exchanged) return "the phase is one of the other kind of run";

@@ -140,8 +140,9 @@ def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
     for changes in wrong:
         assert running.restore(forged(running, blob, **changes)) == ERROR, changes
         assert running.take_messages()[-1].text.startswith(DAMAGED.split(" (")[0]), changes
-    assert running.restore(forged(running, blob, t=-1.0)) == ERROR
-    assert running.take_messages()[-1].text == DAMAGED.format("time reached, s")
+    for t, fault in ((-1.0, "a change lies ahead of the time reached"), (np.inf, "time reached, s")):
+        assert running.restore(forged(running, blob, t=t)) == ERROR
+        assert running.take_messages()[-1].text == DAMAGED.format(fault)
     words = list(words_of(blob))
     words[place_of(running, "phase") - 2] = 2  # a third kind
     assert running.restore(signed(words)) == ERROR

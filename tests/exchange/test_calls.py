@@ -7,9 +7,12 @@ from ctypes import byref, c_double
 import numpy as np
 import pytest
 from contract.call_states import EXCHANGE, call
+from contract.properties import loads, quick, some
 from contract.test_foreign_states import AT_START, STEPPING, UNFOLDED, forged
 from equations.multibody_transcription import omega_z_dot, solved
 from equations.paper_transcription import Paper, times
+from hypothesis import given
+from hypothesis import strategies as st
 from support import equations as eq
 from support.bounds import beyond, within
 from support.driver import DISCARD, ERROR, OK
@@ -69,6 +72,27 @@ def test_a_restored_wheel_goes_on_with_the_same_bits(library: Library) -> None:
             ends.append(restored.bits())
         run.to(4.5)
         assert ends[0] == ends[1] != other.bits()
+
+
+def test_a_snapshot_between_trial_steps_that_went_back_in_time_is_restored(library: Library) -> None:
+    """A solver that rejects a trial step sets an earlier time than that at which it set the inputs last."""
+
+    @quick(60)
+    @given(st.lists(st.tuples(some(-1e-6, 2.0), some(-1.0, 1.0)), min_size=1, max_size=5), some(-1e-3, 1.0), loads())
+    def check(trials, t, load):
+        with exchange(library, s=0.03, **load) as wheel, exchange(library) as other:
+            for trial, torque in trials:
+                wheel.place(trial, ODD)
+                assert wheel.set(M_3=torque) == OK
+                wheel.derivatives()
+            wheel.place(t, ODD)
+            for taker in (wheel, other):
+                assert taker.restore(wheel.serialized()) == OK, taker.sentences
+            assert other.bits() == wheel.bits() and (other.derivatives() == wheel.derivatives()).all()
+            wheel.place(t, ODD + 1e-9)
+            assert other.bits() != wheel.bits()
+
+    check()
 
 
 def test_a_state_of_one_kind_is_refused_by_the_other(library: Library) -> None:
