@@ -1,4 +1,5 @@
 // FMI 2.0 functions: instantiation, initialization, termination, reset, logging.
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -17,8 +18,10 @@ void complain(const fmi2CallbackFunctions* callbacks, const char* name, const ch
     callbacks->logger(callbacks->componentEnvironment, name ? name : "", fmi2Error, "logStatusError", message);
 }
 
-// Null where the instance may be created, else the reason why not.
-const char* refusal(const char* name, fmi2Type type, const char* guid) {
+// Null where the instance may be created, else the reason why not. A number outside of the enumeration cannot be read
+// as its type.
+const char* refusal(const char* name, const fmi2Type& asked, const char* guid) {
+  const int type = std::bit_cast<int>(asked);
   if (is_blank(name)) return "fmi2Instantiate: the instance name is missing or blank.";
   if (type != fmi2CoSimulation && type != fmi2ModelExchange) return "fmi2Instantiate: the type is not known.";
   if (!guid || std::strcmp(guid, WHEEL_GUID) != 0)

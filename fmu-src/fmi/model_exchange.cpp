@@ -27,6 +27,12 @@ fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], st
   });
 }
 
+fmi2Status answer(Instance& i, bool finite, const char* what) {
+  if (finite) return fmi2OK;
+  return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.called, Digits(i.simulation.time()).text,
+               what);
+}
+
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
 fmi2Status enter(fmi2Component c, Function function, const char* name, Phase mode) {
   return guarded(c, function, name, [=](Instance& i) {
@@ -100,18 +106,13 @@ fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
-  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count, [=](Instance& i) {
-    if (i.simulation.derivatives(x_dot)) return fmi2OK;
-    return i.log(Topic::discard, "%s: at t = %s s the derivatives are not finite.", i.called,
-                 Digits(i.simulation.time()).text);
-  });
+  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count,
+                      [=](Instance& i) { return answer(i, i.simulation.derivatives(x_dot), "derivatives"); });
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count, [=](Instance& i) {
-    i.simulation.indicators(z);
-    return fmi2OK;
-  });
+  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count,
+                      [=](Instance& i) { return answer(i, i.simulation.indicators(z), "indicators"); });
 }
 
 }  // extern "C"

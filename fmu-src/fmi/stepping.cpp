@@ -1,4 +1,5 @@
 // FMI 2.0 functions: stepping and status.
+#include <bit>
 #include <cmath>
 
 #include "digits.hpp"
@@ -40,11 +41,14 @@ fmi2Status check_step(Instance& i, double t, double h) {
 // Of the last step, where its status may be asked for.
 fmi2Status last_status(const Instance& i) { return i.simulation.ending() ? fmi2Discard : fmi2OK; }
 
-constexpr int no_status = -1;
+constexpr long long no_status = 1LL << 32;  // beyond what a caller can pass
 
-// Each function knows one kind of status and answers every other kind with Discard.
+// Each function knows one kind of status and answers every other kind with Discard, numbers outside of the enumeration
+// too, which cannot be read as its type.
 template <class Value, class Read>
-fmi2Status get_status(fmi2Component c, const char* name, int kind, int known_kind, Value* value, Read read) {
+fmi2Status get_status(fmi2Component c, const char* name, const fmi2StatusKind& asked, long long known_kind,
+                      Value* value, Read read) {
+  const int kind = std::bit_cast<int>(asked);
   return guarded(c, Function::get_status, name, [=](Instance& i) {
     if (!value) return i.log(Topic::error, "%s: the value is a null pointer.", i.called);
     if (kind != known_kind) return i.log(Topic::discard, "%s: there is no status of kind %d.", i.called, kind);

@@ -24,6 +24,8 @@ constexpr Computed states[] = {Computed::X_O, Computed::Y_O,       Computed::psi
                                Computed::phi, Computed::theta_dot, Computed::psi_dot, Computed::omega_z};
 static_assert(std::size(states) == state_count);
 
+bool is_finite(double number) { return std::isfinite(number); }
+
 bool falls(double margin, double rate, double time) { return margin <= 0 || margin + rate * time <= 0; }
 
 }  // namespace
@@ -64,15 +66,18 @@ void Simulation::decide_law() {
   fresh_ = Fresh::state;
 }
 
-// A solver may try states beyond flat: there the derivatives are those of the flat wheel, which are finite.
-bool Simulation::derivatives(double* x_dot) {
-  double x[WHEEL_MAX_STATES];
-  std::copy_n(run_.y, state_count, x);
-  double& theta = x[setup_.formulation->tilt_index];
+// A solver may try states beyond flat: there rates and margins are those of the flat wheel, which are finite.
+std::array<double, WHEEL_MAX_STATES> Simulation::trial() const {
+  std::array<double, WHEEL_MAX_STATES> x = std::to_array(run_.y);
+  double& theta = x[static_cast<std::size_t>(setup_.formulation->tilt_index)];
   theta = std::clamp(theta, flat_angle, 3.141592653589793 - flat_angle);
+  return x;
+}
+
+bool Simulation::derivatives(double* x_dot) {
   ++run_.counted.rhs;
-  setup_.formulation->derivative(&run_.in_force.scene, x, x_dot);
-  return std::all_of(x_dot, x_dot + state_count, [](double rate) { return std::isfinite(rate); });
+  setup_.formulation->derivative(&run_.in_force.scene, trial().data(), x_dot);
+  return std::all_of(x_dot, x_dot + state_count, is_finite);
 }
 
 void Simulation::nominals(double* x) const { scales_at(setup_, run_.y[setup_.formulation->spin_index], x); }
@@ -84,7 +89,7 @@ double Simulation::friction_margin() const {
   const double moment = setup_.weight * (scene.wheel.r_0 + scene.wheel.r);
   const WheelFriction& law = scene.friction;
   if (law.kind == WHEEL_ROLLING) return law.sigma * run_.y[setup_.formulation->spin_index] * setup_.own_time;
-  if (law.kind == WHEEL_HELD) return holding_margin(setup_, scene, run_.y) / moment;
+  if (law.kind == WHEEL_HELD) return holding_margin(setup_, scene, trial().data()) / moment;
   return law.kind == WHEEL_FRICTIONLESS ? -scene.load.brake / moment : 1;
 }
 
@@ -113,14 +118,15 @@ bool Simulation::starts_inside() {
 Simulation::Margins Simulation::margins() {
   ++run_.counted.roots;
   return {friction_margin(), angle_from_flat(run_.y[setup_.formulation->tilt_index]) - flat_angle,
-          contact_margin(owner_, run_.t, run_.y)};
+          contact_margin(owner_, run_.t, trial().data())};
 }
 
-void Simulation::indicators(double* z) {
+bool Simulation::indicators(double* z) {
   const Margins now = margins();
   z[0] = now.friction + distance;
   z[1] = now.flat + distance;
   z[2] = now.contact + distance;
+  return std::all_of(z, z + indicator_count, is_finite);
 }
 
 bool Simulation::has_event() {

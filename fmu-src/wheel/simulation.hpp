@@ -4,6 +4,7 @@
 // 1e9 s costs no digits. Messages go to the Reporter as finished sentences.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "motion.hpp"
@@ -64,15 +65,16 @@ class Simulation {
   // state too; zero for what depends on inputs only through time.
   double sensitivity(unsigned unknown, unsigned known);
 
-  // Model exchange (exchange.cpp): x are the state_count states of wheel_euler; derivatives are false where they are
-  // not finite. An event mode decides the law of friction and whether the model ends: true where it changed a state.
+  // Model exchange (exchange.cpp): x are the state_count states of wheel_euler; derivatives and indicators are false
+  // where they are not finite. An event mode decides the law of friction and whether the model ends: true where it
+  // changed a state.
   void set_time(double t);
   void set_states(const double* x);
   void set_state(int index, double value);
   const double* states() { return y_now(); }
   void nominals(double* x) const;
   bool derivatives(double* x_dot);
-  void indicators(double* z);
+  bool indicators(double* z);
   bool has_event();
   bool decide();
 
@@ -121,6 +123,7 @@ class Simulation {
   struct Margins {
     double friction, flat, contact;
   };
+  std::array<double, WHEEL_MAX_STATES> trial() const;
   void take_at_once();
   void decide_law();
   double friction_margin() const;

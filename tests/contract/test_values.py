@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from ctypes import byref, c_double, c_int, c_uint, c_void_p
+from ctypes import byref, c_char_p, c_double, c_int, c_uint, c_void_p
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from support.bounds import beyond, within
 from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
+
+from contract.properties import anything_whole, quick
 
 pytestmark = pytest.mark.contract
 
@@ -150,3 +154,18 @@ def test_the_friction_is_tunable_and_acts_from_the_present_instant_on(wheel):
 def test_without_the_exact_law_the_mode_of_friction_is_the_sign_of_the_spin(wheel, law, omega_z):
     upright = {"theta_start": np.pi / 2, "phi_dot_start": omega_z}
     assert wheel().start(**upright, **law).get("friction_mode") == [omega_z]
+
+
+@given(st.one_of(st.integers(-1, 8), anything_whole))
+@quick(40)
+def test_a_status_of_any_kind_is_answered_or_there_is_none(wheel, kind):
+    """Outside of the enumeration too: under the sanitizers, to read such a number as its type is a fault."""
+    w = wheel(logging=True).start()
+    calls = (w.fmi2GetStatus, c_int), (w.fmi2GetStringStatus, c_char_p), (w.fmi2GetRealStatus, c_double)
+    calls += (w.fmi2GetBooleanStatus, c_int), (w.fmi2GetIntegerStatus, c_int)
+    for known, (call, c_type) in enumerate(calls):
+        answered = kind == known < 4  # there is no whole number to ask for
+        assert call(w.component, kind, byref(c_type())) == (OK if answered else DISCARD)
+        assert [f"there is no status of kind {kind}." in text for text in w.sentences] == [True] * (not answered)
+        w.take_messages()
+    w.close()

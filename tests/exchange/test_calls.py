@@ -205,6 +205,31 @@ def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: 
         assert wheel.fmi2SetTime(wheel.component, 0.2) == ERROR
 
 
+def test_indicators_are_finite_wherever_the_derivatives_are_and_else_refused(library: Library) -> None:
+    thetas = st.one_of(st.sampled_from([0.0, -0.0, np.pi, 2 * np.pi]), some(-7, 7))
+    powers = st.one_of(some(0.0, 2.0), some(0.0, 300.0))
+    seen = set()
+
+    @quick(150)
+    @given(thetas, powers, st.sampled_from(range(5, 8)), st.sampled_from([1, 2]), st.sampled_from([0.0, -2.0]))
+    def check(theta, power, state, law, spin):
+        values = {"s": 0.03, "friction_law": law, "theta_start": np.pi / 2, "phi_dot_start": spin}
+        with exchange(library, logging=True, **values) as wheel:
+            x = wheel.x()
+            x[3], x[state] = theta, 10.0**power
+            wheel.place(0.1, x)
+            x_dot, z = np.zeros(8), np.zeros(3)
+            derivatives = wheel.fmi2GetDerivatives(wheel.component, wheel._pointer(x_dot), 8)
+            status = wheel.fmi2GetEventIndicators(wheel.component, wheel._pointer(z), 3)
+            assert status == (OK if np.isfinite(z).all() else DISCARD)
+            assert status == OK or derivatives == DISCARD, (theta, power)
+            assert status == OK or wheel.sentences[-1].endswith("the indicators are not finite.")
+            seen.add((status, bool(z[1] <= 0), spin == 0))
+
+    check()
+    assert {(OK, True, True), (OK, True, False), (OK, False, False), (DISCARD, False, False)} <= seen
+
+
 def test_a_wheel_off_the_ground_at_the_start_is_a_fault_of_initialization(library: Library) -> None:
     wheel = loaded(library).new(logging=True)
     assert wheel.set(F_Z=500.0, theta_start=np.pi / 2, phi_dot_start=0.0) == OK
