@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace wheel {
 namespace {
@@ -71,6 +72,10 @@ Setup setup_of(const Demand& demand) {
   WheelKinematics start;
   setup.formulation->start(&setup.wheel, &motion, setup.start);
   setup.formulation->kinematics(&setup.wheel, setup.start, &start);
+  // omega_z = phi_dot + psi_dot cos(theta): of two parts that cancel only rounding is left, which has no sign.
+  const double rounding = 4 * std::numeric_limits<double>::epsilon();
+  if (std::fabs(start.omega_z) <= rounding * (std::fabs(start.phi_dot) + std::fabs(start.psi_dot)))
+    setup.formulation->stop_spin(&setup.wheel, setup.start);
   setup.own_time = time_scale(setup.wheel, start);
   setup.longest_step = 0.5 * setup.own_time;
   setup.weight = force_scale(setup.wheel, setup.own_time);

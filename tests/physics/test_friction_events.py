@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 from reference import Start, Wheel, solve
 from reference.tables import read_table
-from support.bounds import EPSILON, beyond, within
+from support.bounds import EPSILON, absolute_error, beyond, within
+from support.driver import OK
+from support.exchange import loaded
 from support.kept import kept
 from support.motion import Library
 
@@ -121,3 +123,38 @@ def test_the_regularized_law_tends_to_the_exact_one_at_first_order(library: Libr
     within(abs(errors[1] / errors[2] - 10), 4, "errors, 2")
     exact = max(table_errors(library, "friction").values())
     beyond(errors[2] / exact, 900, "errors")  # no width reaches the exact law
+
+
+FIRST = ("tau", "friction_mode", "omega_z_dot", "psi_ddot", "lambda_1", "lambda_2")
+
+
+def spun_off(library: Library, excess: float, formulation: int, kind: str) -> tuple[float, list[str]]:
+    """Of sixty wheels whose omega_z is `excess` and the rounding of psi_dot cos(theta) + phi_dot: the largest change of
+    the first readings within 1e-9 s, or by the first event mode, and the messages until then."""
+    rng, worst, sentences = np.random.default_rng(6), 0.0, []
+    thetas = np.concatenate([np.full(20, np.pi / 2), rng.uniform(0.7, 2.4, 40)])
+    for theta, psi_dot, s in zip(thetas, rng.uniform(-3, 3, 60), rng.uniform(1e-4, 0.1, 60), strict=True):
+        phi_dot = excess - psi_dot * np.cos(theta) if theta != np.pi / 2 else excess
+        start = {"theta_start": theta, "psi_dot_start": psi_dot, "phi_dot_start": phi_dot, "s": s}
+        if kind == "model exchange":
+            wheel = loaded(library).new(logging=True).start(**start)
+            before = wheel.get(*FIRST)
+            wheel.decide()
+        else:
+            wheel = library.wheel(logging=True).start(formulation=formulation, keep_contact=True, **start)
+            before = wheel.get(*FIRST)
+            assert wheel.step(1e-9) == OK
+        worst = max(worst, absolute_error(wheel.get(*FIRST), before))
+        sentences += [text for text in wheel.sentences if "omega_z" in text]
+        wheel.close()
+    return worst, sentences
+
+
+@pytest.mark.parametrize(("formulation", "kind"), [(2, "reduced"), (3, "multibody"), (1, "model exchange")])
+def test_a_spin_that_is_only_rounding_is_none_from_the_first_reading_on(library: Library, formulation, kind) -> None:
+    worst, sentences = spun_off(library, 0.0, formulation, kind)
+    within(worst, 1e-5, "change of the first readings")
+    assert sentences == []
+    worst, sentences = spun_off(library, 1e-14, formulation, kind)  # the partner: a spin that is there
+    beyond(worst, 1, "change where there is a spin")
+    assert len(sentences) > 20
