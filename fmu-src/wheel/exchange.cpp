@@ -20,6 +20,9 @@ constexpr double distance = 1e-12;
 // little before the sign changes, and would stop there again and again.
 constexpr double soon = 1e-7;
 
+// omega_z over the wheel's own rate: a spin beyond zero by less is the error of the solver that brought it there.
+constexpr double spin_error = 1e-3;
+
 constexpr Computed states[] = {Computed::X_O, Computed::Y_O,       Computed::psi,     Computed::theta,
                                Computed::phi, Computed::theta_dot, Computed::psi_dot, Computed::omega_z};
 static_assert(std::size(states) == state_count);
@@ -83,12 +86,14 @@ bool Simulation::derivatives(double* x_dot) {
 void Simulation::nominals(double* x) const { scales_at(setup_, run_.y[setup_.formulation->spin_index], x); }
 
 // How far the mode of friction is from its end: rolling, omega_z over the wheel's own rate; held, what holding leaves
-// unused; without friction, the brake, which asks for a law as soon as it is set.
+// unused, or negative where a spin was set; without friction, the brake, which asks for a law as soon as it is set.
 double Simulation::friction_margin() const {
   const WheelScene& scene = run_.in_force.scene;
   const double moment = setup_.weight * (scene.wheel.r_0 + scene.wheel.r);
   const WheelFriction& law = scene.friction;
-  if (law.kind == WHEEL_ROLLING) return law.sigma * run_.y[setup_.formulation->spin_index] * setup_.own_time;
+  const double spin = run_.y[setup_.formulation->spin_index] * setup_.own_time;
+  if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
+  if (law.kind == WHEEL_HELD && std::fabs(spin) > spin_error) return -std::fabs(spin);
   if (law.kind == WHEEL_HELD) return holding_margin(setup_, scene, trial().data()) / moment;
   return law.kind == WHEEL_FRICTIONLESS ? -scene.load.brake / moment : 1;
 }
@@ -141,8 +146,12 @@ bool Simulation::decide() {
   const WheelFriction before = scene.friction;
   const bool pulled = run_.in_force.pulls();
   const double time = soon * setup_.own_time, spin = run_.y[setup_.formulation->spin_index];
-  const bool stops = before.kind == WHEEL_ROLLING && falls(friction_margin(), friction_rate(), time);
-  if (before.kind == WHEEL_HELD || stops) setup_.formulation->stop_spin(&scene.wheel, run_.y);
+  const double margin = friction_margin(), rate = friction_rate();
+  // A spin that the motion cannot have led across zero within its longest step was set there, and is kept.
+  const bool led = margin >= std::fmin(rate, 0) * setup_.longest_step - spin_error;
+  const bool stops = before.kind == WHEEL_ROLLING && falls(margin, rate, time) && led;
+  const bool held = before.kind == WHEEL_HELD && std::fabs(spin) * setup_.own_time <= spin_error;
+  if (held || stops) setup_.formulation->stop_spin(&scene.wheel, run_.y);
   fresh_ = Fresh::state;
   decide_contact(time);
   if (run_.phase == Phase::ended) return false;

@@ -178,6 +178,44 @@ def test_state_and_friction_may_be_set_at_any_time_and_the_law_follows(library: 
         assert wheel.set(m=21.0) == ERROR
 
 
+def test_a_spin_set_across_an_event_is_kept_and_the_law_follows_it(library: Library) -> None:
+    """By fmi2SetContinuousStates as by fmi2SetReal; there in the event mode that an indicator asks for."""
+
+    @quick(60)
+    @given(st.sampled_from([0.0, -2.0, 2.0]), some(-2.0, 1.3), st.sampled_from([-1.0, 1.0]), some(0.8, 2.2))
+    def check(start, power, side, theta):
+        values = {"s": 0.03, "theta_start": theta, "phi_dot_start": start}
+        with exchange(library, logging=True, **values) as wheel, exchange(library, **values) as other:
+            x = wheel.x()
+            x[-1] = side * max(10.0**power, 0.4 * bool(start))  # less can be that of a long step
+            wheel.place(0.1, x)
+            crosses = start * side <= 0
+            assert (wheel.indicators()[0] < 0) == wheel.wants_event() == crosses
+            assert bool(wheel.event().valuesOfContinuousStatesChanged) == crosses
+            assert other.fmi2SetTime(other.component, 0.1) == other.set(omega_z=x[-1]) == OK
+            assert (wheel.x() == x).all() and wheel.get("friction_mode") == [side]
+            assert (wheel.derivatives() == other.derivatives()).all()
+            said = f"{'reversal' if start else 'release'}, omega_z becomes {'positive' if side > 0 else 'negative'}."
+            assert [text.split(": ")[1] for text in wheel.sentences] == [said] * crosses
+
+    check()
+
+
+@pytest.mark.parametrize("h", [1e-3, 1e-2, 0.05])
+def test_a_spin_that_steps_without_a_search_lead_across_zero_still_stops(library: Library, h: float) -> None:
+    """The partner: Euler's method. omega_z goes beyond zero by up to a step."""
+    rng = np.random.default_rng(5)
+    for spin, torque in zip(rng.uniform(0.3, 2.0, 20), rng.uniform(0.0, 30.0, 20), strict=True):
+        values = {"theta_start": np.pi / 2, "phi_dot_start": spin, "s": 0.03, "M_brake": torque}
+        with exchange(library, **values) as wheel:
+            x, t = wheel.x(), 0.0
+            while not wheel.wants_event():
+                x, t = x + h * wheel.derivatives(), t + h
+                wheel.place(t, x)
+            wheel.event()
+            assert wheel.x()[-1] == 0 and wheel.get("friction_mode") == [0]
+
+
 def test_a_held_wheel_stays_at_exactly_zero(library: Library) -> None:
     with exchange(library, s=0.03, theta_start=np.pi / 2, phi_dot_start=0.0) as wheel:
         assert wheel.get("friction_mode") == [0]
