@@ -65,8 +65,7 @@ void save_and_restore(const Wheel& wheel) {
   double before[states], after[states];
   const fmi2Status first = fmi2GetDerivatives(wheel.component, before, states);
   expect(fmi2GetFMUstate(wheel.component, &state) == fmi2OK, "a state can be taken");
-  const fmi2Status restored = fmi2SetFMUstate(wheel.component, state);
-  expect(restored == fmi2OK || restored == fmi2Error, "a state is restored or refused");  // refused outside the model
+  expect(fmi2SetFMUstate(wheel.component, state) == fmi2OK, "a state that was handed out is restored");
   expect(fmi2GetDerivatives(wheel.component, after, states) == first, "a restored state gives the same answer");
   if (first == fmi2OK) expect(std::equal(before, before + states, after), "a restored state gives the same bits");
   expect(fmi2FreeFMUstate(wheel.component, &state) == fmi2OK, "a state can be freed");
@@ -99,7 +98,8 @@ void Session::exchange() {
     fmi2Boolean wanted = fmi2False, ends = fmi2False;
     if (in_.chance(4)) set_input(wheel, in_);
     move(wheel, in_);
-    expect(fmi2GetEventIndicators(c, z, indicators) == fmi2OK, "indicators can be read");
+    const bool given = fmi2GetEventIndicators(c, z, indicators) == fmi2OK;
+    expect(given == std::all_of(z, z + indicators, [](double v) { return std::isfinite(v); }), "indicators are finite");
     expect(fmi2CompletedIntegratorStep(c, fmi2True, &wanted, &ends) == fmi2OK, "a step can be completed");
     if (in_.chance(2)) save_and_restore(wheel);
     if (wanted || in_.chance(2)) lasts = event(wheel);
