@@ -51,16 +51,12 @@ bool Simulation::knows(double t) const {
   return run_.phase == Phase::unfolded && orbit_ready_ && t <= orbit_until_;
 }
 
-// Whether what was set since the last step differs from what is in force, or makes a regularized law stiff.
+// Whether what was set since the last step differs from what is in force.
 bool Simulation::has_changed() const {
   const InForce& now = run_.in_force;
   const double t = run_.t;
   const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(demand_.start_time) + std::fabs(t));
-  if (now.scene.wheel.s != demand_.parameters[s] || now.inputs.change_at(t, rounding, demand_.inputs)) return true;
-  if (setup_.friction_law == exact_law || !now.inputs.varies || run_.phase != Phase::stepping) return false;
-  WheelScene scene = now.scene_at(t);
-  scene.friction = friction_at(setup_, scene, now.inputs.braked, run_.y);
-  return needs_layer(setup_, scene, run_.y) != (now.layer != Layer::none);
+  return now.scene.wheel.s != demand_.parameters[s] || now.inputs.change_at(t, rounding, demand_.inputs);
 }
 
 // Stage 1: what was set since the last step takes effect.
@@ -155,7 +151,7 @@ Outcome Simulation::pass_transition() {
   return start_solver(true);
 }
 
-// omega_z has entered or left the layer of a stiff regularized law, or begins to stick in it.
+// A regularized law has become stiff, or omega_z has entered or left its layer, or begins to stick in it.
 Outcome Simulation::pass_layer() {
   enter_layer(setup_, run_.in_force, run_.t, y_now());
   return start_solver(true);

@@ -7,7 +7,7 @@ namespace wheel {
 enum class Event : int {
   none,
   spin_changes,     // omega_z reaches zero, or friction and brake can no longer hold it there
-  layer_changes,    // omega_z enters or leaves the layer of a stiff regularized law, or begins to stick in it
+  layer_changes,    // a regularized law becomes stiff; omega_z enters or leaves its layer, or begins to stick in it
   contact_changes,  // with keep_contact: the ground begins to pull or to press
   lifted_off,
   fell_flat,

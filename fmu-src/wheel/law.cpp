@@ -35,7 +35,7 @@ void put_in_force(const Setup& setup, const Demand& demand, double t, const doub
   now.inputs.take_over(t, demand.inputs);
   now.scene.friction = friction_at(setup, now.scene, now.inputs.braked, y);
   now.layer = Layer::none;
-  if (needs_layer(setup, now.scene, y)) enter_layer(setup, now, t, y);
+  if (may_need_layer(setup, now) && layer_margin(setup, now.scene, y) < 0) enter_layer(setup, now, t, y);
 }
 
 WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
@@ -58,15 +58,13 @@ double holding_margin(const Setup& setup, const WheelScene& scene, const double*
 
 // The fastest decay of the law is that at omega_z = 0: (s N + M_brake) / omega_s over the spin inertia. The wheel's own
 // time scale tells whether that is fast; below the limit DOP853 alone is faster (docs/results/stability.md).
-bool needs_layer(const Setup& setup, const WheelScene& scene, const double* y) {
+double layer_margin(const Setup& setup, const WheelScene& scene, const double* y) {
   constexpr double stiff = 1000;
-  const bool asked = setup.method == automatic_method && setup.formulation != &wheel_euler;
-  if (!asked || scene.friction.kind != WHEEL_REGULARIZED) return false;
   const WheelParameters& wheel = scene.wheel;
   const double length = wheel.r_0 + wheel.r, inertia = wheel.J_z + wheel.m * length * length;
   double y_dot[WHEEL_MAX_STATES];
   const double N = std::max(setup.weight, setup.formulation->derivative(&scene, y, y_dot));
-  return (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia) * setup.own_time > stiff;
+  return 1 - (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia) * setup.own_time / stiff;
 }
 
 void enter_layer(const Setup& setup, InForce& now, double t, const double* y) {

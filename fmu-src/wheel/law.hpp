@@ -27,8 +27,14 @@ double holding_margin(const Setup& setup, const WheelScene& scene, const double*
 // digit.
 inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
 
-// Whether a regularized law is so steep that it is solved by its layer and, around it, by the exact law.
-bool needs_layer(const Setup& setup, const WheelScene& scene, const double* y);
+// Below zero where a regularized law is so steep that it is solved by its layer and, around it, by the exact law. Once
+// solved so, it stays so until an input changes.
+double layer_margin(const Setup& setup, const WheelScene& scene, const double* y);
+
+inline bool may_need_layer(const Setup& setup, const InForce& now) {
+  const bool asked = setup.method == automatic_method && setup.formulation != &wheel_euler;
+  return asked && now.layer == Layer::none && now.scene.friction.kind == WHEEL_REGULARIZED;
+}
 
 // Where omega_z stands in the layer at t and y, and the law of friction there.
 void enter_layer(const Setup& setup, InForce& in_force, double t, const double* y);

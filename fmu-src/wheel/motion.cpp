@@ -75,6 +75,11 @@ double inside_watched(void* owner, double, const double* y) {
 
 double passing_watched(void* owner, double t, const double* y) { return -holding_watched(owner, t, y); }
 
+double stiffness_watched(void* owner, double t, const double* y) {
+  const auto& [setup, in_force] = of(owner);
+  return layer_margin(setup, in_force.scene_at(t), y);
+}
+
 double height_watched(void* owner, double, const double* y) { return height(of(owner).setup, y); }
 
 double contact_watched(void* owner, double t, const double* y) { return contact_margin(of(owner), t, y); }
@@ -108,6 +113,8 @@ solver::Problem problem_of(Owner& owner) {
   const WheelFrictionKind law = owner.in_force.scene.friction.kind;
   const Layer layer = owner.in_force.layer;
   problem.passage = layer == Layer::passing;
+  const bool stiffens = owner.in_force.inputs.varies && may_need_layer(owner.setup, owner.in_force);
+  if (stiffens) watch(Event::layer_changes, stiffness_watched, false);
   if (layer == Layer::outside) watch(Event::layer_changes, outside_watched, false);
   if (layer == Layer::passing) watch(Event::layer_changes, passing_watched, false);
   if (layer > Layer::outside) watch(Event::layer_changes, inside_watched, false);
