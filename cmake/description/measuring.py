@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from ctypes import c_double
 from math import cos
 from pathlib import Path
@@ -17,13 +17,14 @@ from xml.etree import ElementTree
 
 import numpy as np
 from fmpy import extract
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model, FMU2Slave
 
 from .numbering import Dependencies, unknowns_of, variables_of
 
 GENERAL = {
     **{"theta_start": 1.1, "psi_start": 0.7, "phi_start": 0.4, "psi_dot_start": 0.9, "theta_dot_start": -0.6},
-    **{"phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "J_z": 1.6, "s": 0.0},
+    **{"phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "J_z": 1.6, "s": 0.0, "mu_max": 9.0},
 }
 UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 # omega_z below omega_s, where the regularized law is neither zero nor one
@@ -148,6 +149,22 @@ def continuously(folder: str, scene: Values) -> Iterator[tuple[str, str]]:
         for known, change in changes.items():
             for name in moved(u, names, change):
                 yield name, known
+
+
+def event_indicators(fmu: Path) -> int:
+    """How many event indicators model exchange has: the one length of array that the FMU fills."""
+    folder = extract(str(fmu))
+    try:
+        with unit(folder, "ModelExchange", {}) as u:
+            u.continuous_time()
+            u.fmu.setDebugLogging(False, [])
+            for count in range(1, 100):
+                with suppress(FMICallException):  # another length is refused
+                    u.fmu.getEventIndicators((c_double * count)(), count)
+                    return count
+    finally:
+        shutil.rmtree(folder)
+    raise SystemExit("The FMU gives no event indicators.")
 
 
 def gathered(pairs: Iterator[tuple[str, str]], names: list[str]) -> dict[str, set[str]]:

@@ -109,10 +109,14 @@ def numbered(text: str, depends: Dependencies | None = None) -> str:
     return re.sub(r' guid="[^"]*"', f' guid="{guid_of(text)}"', text, count=1)
 
 
+def with_event_indicators(text: str, count: int) -> str:
+    return re.sub(r'numberOfEventIndicators="\d+"', f'numberOfEventIndicators="{count}"', text, count=1)
+
+
 def guid_of(description: str) -> str:
     """The GUID as a digest of all that binds library and description; comments, layout and prose do not count."""
     root = ElementTree.fromstring(description.encode())
     bound = [element for element in map(root.find, BINDING) if element is not None]
     parts = [ElementTree.tostring(element, encoding="unicode") for element in bound]
     text = "".join(ElementTree.canonicalize(part, strip_text=True, exclude_attrs=["description"]) for part in parts)
-    return "{" + str(uuid.uuid5(uuid.NAMESPACE_OID, text)) + "}"
+    return "{" + str(uuid.uuid5(uuid.NAMESPACE_OID, root.get("numberOfEventIndicators", "") + text)) + "}"

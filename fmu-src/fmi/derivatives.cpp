@@ -34,7 +34,7 @@ bool check_output(Instance& i, fmi2ValueReference variable) {
 // depend on the parameters.
 bool check_known(Instance& i, fmi2ValueReference variable) {
   const bool exchanged = i.simulation.kind() == wheel::Kind::model_exchange, begun = has_begun(i.simulation.phase());
-  if (begun ? exchanged && wheel::state_of(variable) >= 0 : variable < wheel::stored_count) return true;
+  if (begun ? exchanged && wheel::state_index_of(variable) >= 0 : variable < wheel::stored_count) return true;
   return check_input(i, variable);
 }
 
@@ -137,7 +137,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
         return i.log(Topic::error, "%s: order %d of %s: only the first derivative is provided.", i.called, orders[k],
                      wheel::row_of(v[k]).name);
     }
-    for (std::size_t k = 0; k < n; ++k) values[k] = i.simulation.rate(v[k]);
+    for (std::size_t k = 0; k < n; ++k) values[k] = wheel::row_of(v[k]).read_rate(i.simulation.reading());
     return fmi2OK;
   });
 }

@@ -74,7 +74,7 @@ fmi2Status Instance::refuse(Function function) {
                slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
   if (simulation.phase() == wheel::Phase::ended)
     return log(wheel::Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", called,
-               simulation.ending(), support::Digits(simulation.time()).text);
+               simulation.ending().text, support::Digits(simulation.time()).text);
   return log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", called, state_of(simulation.phase()));
 }
 

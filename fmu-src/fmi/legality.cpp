@@ -57,8 +57,8 @@ constexpr Rule rules[] = {
     {Function::get_states, M | E | N | F | T | X, of_model_exchange},
 };
 
-constexpr auto not_behind = [](const Rule& a, const Rule& b) { return a.function <= b.function; };
-static_assert(std::is_sorted(std::begin(rules), std::end(rules), not_behind));  // strictly: none stands twice
+constexpr auto out_of_order = [](const Rule& a, const Rule& b) { return a.function >= b.function; };
+static_assert(std::adjacent_find(std::begin(rules), std::end(rules), out_of_order) == std::end(rules));
 static_assert(std::size(rules) == static_cast<std::size_t>(Function::count));
 
 }  // namespace

@@ -58,7 +58,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
     if (!info) return i.log(Topic::error, "%s: the event info is a null pointer.", i.called);
     *info = {};
     info->valuesOfContinuousStatesChanged = i.simulation.decide() ? fmi2True : fmi2False;
-    info->terminateSimulation = i.simulation.ending() ? fmi2True : fmi2False;
+    info->terminateSimulation = i.simulation.has_ended() ? fmi2True : fmi2False;
     return fmi2OK;
   });
 }
@@ -111,7 +111,7 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count,
+  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count(),
                       [=](Instance& i) { return answer(i, i.simulation.indicators(z), "indicators"); });
 }
 

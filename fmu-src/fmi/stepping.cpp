@@ -39,7 +39,7 @@ fmi2Status check_step(Instance& i, double t, double h) {
 }
 
 // Of the last step, where its status may be asked for.
-fmi2Status last_status(const Instance& i) { return i.simulation.ending() ? fmi2Discard : fmi2OK; }
+fmi2Status last_status(const Instance& i) { return i.simulation.has_ended() ? fmi2Discard : fmi2OK; }
 
 constexpr long long no_status = 1LL << 32;  // beyond what a caller can pass
 

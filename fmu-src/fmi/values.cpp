@@ -37,9 +37,12 @@ fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
       computed = computed || variables[k] >= wheel::stored_count;
     }
     if (computed && prepare_reading(i) != fmi2OK) return fmi2Discard;
+    wheel::Reading* const now = computed && has_state(i.simulation.phase()) ? &i.simulation.reading() : nullptr;
     for (std::size_t k = 0; k < count; ++k) {
-      if (!check_readable(i, variables[k])) return fmi2Error;
-      values[k] = represented<Value>(i.simulation.value(variables[k]));
+      const bool stored = variables[k] < wheel::stored_count;
+      if (!stored && !check_readable(i, variables[k])) return fmi2Error;
+      values[k] =
+          represented<Value>(stored ? i.simulation.stored(variables[k]) : wheel::row_of(variables[k]).read(*now));
     }
     return fmi2OK;
   });
@@ -49,7 +52,7 @@ bool check_settable(Instance& i, fmi2ValueReference variable) {
   const wheel::Row& row = wheel::row_of(variable);
   const bool stored = variable < wheel::stored_count;
   if (!stored && i.simulation.kind() == wheel::Kind::model_exchange && is_running(i.simulation.phase()) &&
-      wheel::state_of(variable) >= 0)
+      wheel::state_index_of(variable) >= 0)
     return true;
   if (stored && (!is_running(i.simulation.phase()) || row.role != Role::parameter)) return true;
   i.log(Topic::error,
@@ -90,7 +93,7 @@ fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
       if (variables[k] < wheel::stored_count)
         i.simulation.store(variables[k], value);
       else
-        i.simulation.set_state(wheel::state_of(variables[k]), value);
+        i.simulation.set_state(wheel::state_index_of(variables[k]), value);
     }
     return fmi2OK;
   });

@@ -30,13 +30,23 @@ bool agree(const solver::Problem& problem, const double* weights, const double* 
   return true;
 }
 
+// Whether every watched function is the same at two instants that the symmetry maps onto each other.
+bool are_watched_alike(const solver::Problem& problem, double t_a, const double* y_a, double t_b, const double* y_b) {
+  constexpr double alike = 1e-5;
+  return std::all_of(problem.watched, problem.watched + problem.watched_count, [&](const solver::Watched& watched) {
+    const double a = watched.value(problem.owner, watched.event, t_a, y_a);
+    const double b = watched.value(problem.owner, watched.event, t_b, y_b);
+    return std::fabs(a - b) <= alike * (1 + std::fabs(a));
+  });
+}
+
 }  // namespace
 
 Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
                          solver::Solver& solver) {
   double own[states] = {y0[theta], y0[omega_1], y0[omega_2], y0[omega_3]};  // psi, phi, X_O and Y_O are zero
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
-  falls_ = rises_ = later_falls_ = 0;
+  recurring_ = 0;
   counters_ = {};
   half_ = lead_ = {};
   kind_ = Kind::refused;
@@ -61,7 +71,7 @@ bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
   const Complex velocity = lead_.turn * Complex(own_rate[X_O], own_rate[Y_O]);
   own_rate[X_O] = velocity.real();
   own_rate[Y_O] = velocity.imag();
-  return agree(problem, weights, rate, own_rate);
+  return agree(problem, weights, rate, own_rate) && are_watched_alike(problem, 0, own, 0, y0);
 }
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
@@ -96,17 +106,35 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const doubl
   }
 }
 
-// To the end of a step, past the events that change nothing; fails if these are too many to be kept.
+// To the end of a step, past the events after which the motion goes on; fails if these are too many to be kept.
 solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::Solver& solver) {
   for (;;) {
     const solver::Outcome outcome = solver.step();
-    if (outcome != solver::Outcome::event || !pass || !pass(problem.owner, solver.event())) return outcome;
-    const bool falls = falls_ == rises_;
-    int& count = falls ? falls_ : rises_;
-    if (count == most_crossings) return solver::Outcome::failed;
-    (falls ? fall_ : rise_)[count++] = solver.event_time();
+    if (outcome != solver::Outcome::event) return outcome;
+    double y[states];
+    solver.read(solver.event_time(), y);
+    const solver::Consequence consequence = pass(problem.owner, solver.event(), solver.event_time(), y);
+    if (consequence == solver::Consequence::ends) return outcome;
+    if (consequence == solver::Consequence::bends || !take_crossing(solver.event(), solver.event_time()))
+      return solver::Outcome::failed;
     solver.resume();
   }
+}
+
+// False if it is one too many.
+bool Orbit::take_crossing(int event, double t) {
+  int i = 0;
+  while (i < recurring_ && recurrences_[i].event != event) ++i;
+  if (i == recurring_) {
+    recurrences_[recurring_++] = {};
+    recurrences_[i].event = event;
+  }
+  Recurrence& own = recurrences_[i];
+  const bool falls = own.falls == own.rises;
+  int& count = falls ? own.falls : own.rises;
+  if (count == most_crossings) return false;
+  (falls ? own.fall : own.rise)[count++] = t;
+  return true;
 }
 
 // The zero of omega_1 between two instants of the track, by regula falsi (Illinois).
@@ -160,10 +188,11 @@ bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
   const Complex velocity = -half_of(T2_ + since).turn * Complex(rate[X_O], -rate[Y_O]);
   rate[X_O] = velocity.real();
   rate[Y_O] = velocity.imag();
-  return agree(problem, weights, image_rate, rate);
+  return agree(problem, weights, image_rate, rate) && are_watched_alike(problem, T2_ - since, y, T2_ + since, image);
 }
 
-// Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing.
+// Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing,
+// and no event occurs.
 // With omega_2 and omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the initial
 // state repeats for ever.
 bool Orbit::rests(const solver::Problem& problem, const double* y0) {
@@ -172,6 +201,8 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   problem.derivative(problem.owner, 0, y0, rate);
   problem.weights(problem.owner, problem.share, y0, weights);
   if (!(std::fabs(y0[omega_1]) * weights[omega_1] < 1)) return false;
+  for (int i = 0; i < problem.watched_count; ++i)
+    if (problem.watched[i].value(problem.owner, problem.watched[i].event, 0, y0) < 0) return false;
   std::copy_n(y0, states, y);
   y[omega_1] = 1;
   problem.derivative(problem.owner, 0, y, along);
@@ -218,6 +249,7 @@ bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const do
     problem.derivative(problem.owner, t, y, found);
     for (int k = 0; k < states; ++k)  // `rests` has seen to omega_1
       if (k != omega_1 && !agree(problem, k, weights, found[k], y_dot[k])) return false;
+    if (!are_watched_alike(problem, 0, y0, t, y)) return false;
     if (!(i == 0 ? track_.begin(t, y, y_dot) : track_.add(t, y, y_dot))) return false;
   }
   track_.finish();

@@ -29,9 +29,10 @@ class Orbit {
   //          that have not the symmetry. The caller then steps through the motion from its start.
   enum class Kind { refused, folded, ended };
 
-  // What the owner does at an event: true where the motion goes on unchanged. The first such event is the fall of a
-  // function that rises at the second and falls again at the third: here N. Their instants are kept.
-  using Pass = bool (*)(void* owner, int event);
+  // What follows from an event at t and y, for the owner to decide. One after which the motion goes on recurs: it is
+  // the fall of a function that rises at the next such event and falls again at the third, as N does. Where the motion
+  // bends it cannot be unfolded.
+  using Pass = solver::Consequence (*)(void* owner, int event, double t, double* y);
 
   // Integrates `problem` (the reduced form of a wheel) from y0 by CVODE's Adams method. The solver has to be
   // started anew before anything else is asked of it; its counters are those of this run. A function of problem,
@@ -51,10 +52,13 @@ class Orbit {
   // rad/s, the larger of the mean rates of psi and phi; folded only.
   double fastest_turn() const;
 
-  // The instants at which N falls below zero, in order and numbered from 0: how many there are up to t, and when the
-  // number n is (n below falls_until of some t). A start with N < 0 counts. The cost does not depend on t or n.
-  long long falls_until(double t) const;
-  double fall(long long n) const;
+  // The events that recur, numbered from 0, and the instants at which one of them falls below zero, in order and
+  // numbered from 0: how many there are up to t, and when the number n is (n below falls_until of some t). A start
+  // below zero counts. The cost does not depend on t or n.
+  int recurring() const { return recurring_; }
+  int event_of(int recurrence) const { return recurrences_[recurrence].event; }
+  long long falls_until(int recurrence, double t) const;
+  double fall(int recurrence, long long n) const;
 
  private:
   enum State { theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O };
@@ -70,10 +74,19 @@ class Orbit {
     Complex place = 0, turn = 1;
   };
 
+  // One event that recurs: instants up to T2 at which it falls below zero and rises again; falls in one period from T2
+  // on, counted from T2.
+  struct Recurrence {
+    int event = 0, falls = 0, rises = 0, later_falls = 0;
+    double fall[most_crossings] = {}, rise[most_crossings] = {}, later_fall[2 * most_crossings] = {};
+    void repeat(double T1, double T2);
+  };
+
   bool rests(const solver::Problem& problem, const double* y0);
   bool keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length);
   Kind follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
   solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
+  bool take_crossing(int event, double t);
   double turning_point(double t_lo, double t_hi) const;
   bool fold(const solver::Problem& problem, double swing);
   bool is_mirrored(const solver::Problem& problem, double since) const;
@@ -97,9 +110,8 @@ class Orbit {
   Complex first_turn_, mirror_turn_;                 // exp(i psi(T1)), exp(2 i psi(T2))
   Complex step_;                                     // from O(T1) to O(T2), seen along psi(T1)
 
-  // Instants up to T2 at which N falls below zero and rises again; falls in one period from T2 on, counted from T2.
-  int falls_ = 0, rises_ = 0, later_falls_ = 0;
-  double fall_[most_crossings] = {}, rise_[most_crossings] = {}, later_fall_[2 * most_crossings] = {};
+  int recurring_ = 0;
+  Recurrence recurrences_[solver::max_watched];
 
   mutable Half half_;  // that of the last reading, a function of its number alone
 };

@@ -7,21 +7,25 @@
 
 namespace orbit {
 
-// What the sums need, from the states at T1 and T2, and the instants at which N falls below zero in the two halves
-// after T2, of which the first is mirrored.
+// What the sums need, from the states at T1 and T2, and the recurring events.
 void Orbit::take_half() {
-  const double period = 2 * (T2_ - T1_);
   delta_ = std::remainder(second_[psi] - first_[psi], std::numbers::pi);
   const Complex path(second_[X_O] - first_[X_O], second_[Y_O] - first_[Y_O]);
   step_ = path * std::polar(1.0, -first_[psi]);
   pair_ = 2 * (step_ * std::polar(1.0, -delta_)).real();
   first_turn_ = std::polar(1.0, first_[psi]);
   mirror_turn_ = std::polar(1.0, 2 * second_[psi]);
-  while (falls_ > 0 && fall_[falls_ - 1] > T2_) --falls_;
-  for (int i = rises_ - 1; i >= 0; --i)
-    if (rise_[i] > T1_ && rise_[i] < T2_) later_fall_[later_falls_++] = T2_ - rise_[i];
-  for (int i = 0; i < falls_; ++i)
-    if (fall_[i] > T1_) later_fall_[later_falls_++] = period - (T2_ - fall_[i]);
+  for (int i = 0; i < recurring_; ++i) recurrences_[i].repeat(T1_, T2_);
+}
+
+// The falls in the two halves after T2, of which the first is mirrored.
+void Orbit::Recurrence::repeat(double T1, double T2) {
+  const double period = 2 * (T2 - T1);
+  while (falls > 0 && fall[falls - 1] > T2) --falls;
+  for (int i = rises - 1; i >= 0; --i)
+    if (rise[i] > T1 && rise[i] < T2) later_fall[later_falls++] = T2 - rise[i];
+  for (int i = 0; i < falls; ++i)
+    if (fall[i] > T1) later_fall[later_falls++] = period - (T2 - fall[i]);
 }
 
 // The sum of k halves, each the mirror image of the one before: with d the displacement of O in the
@@ -84,20 +88,22 @@ void Orbit::read(double t, double* y) const {
   turn_by(half, way, y);
 }
 
-double Orbit::fall(long long n) const {
-  if (n < falls_) return fall_[n];
-  const long long periods = (n - falls_) / later_falls_;
-  return begin_of(1 + 2 * static_cast<double>(periods)) + later_fall_[(n - falls_) % later_falls_];
+double Orbit::fall(int recurrence, long long n) const {
+  const Recurrence& own = recurrences_[recurrence];
+  if (n < own.falls) return own.fall[n];
+  const long long periods = (n - own.falls) / own.later_falls;
+  return begin_of(1 + 2 * static_cast<double>(periods)) + own.later_fall[(n - own.falls) % own.later_falls];
 }
 
-long long Orbit::falls_until(double t) const {
-  if (kind_ != Kind::folded || t <= T2_ || later_falls_ == 0) return std::upper_bound(fall_, fall_ + falls_, t) - fall_;
+long long Orbit::falls_until(int recurrence, double t) const {
+  const auto& [event, falls, rises, later_falls, fall, rise, later_fall] = recurrences_[recurrence];
+  if (kind_ != Kind::folded || t <= T2_ || later_falls == 0) return std::upper_bound(fall, fall + falls, t) - fall;
   constexpr double most_periods = 1e15;  // later, times have no more digits for them
   const double periods = std::floor(std::fmin((t - T2_) / (2 * (T2_ - T1_)), most_periods));
   const double begin = begin_of(1 + 2 * periods);
-  const auto is_before = [begin](double instant, double fall) { return instant < begin + fall; };
-  const long long last = std::upper_bound(later_fall_, later_fall_ + later_falls_, t, is_before) - later_fall_;
-  return falls_ + static_cast<long long>(periods) * later_falls_ + last;
+  const auto is_before = [begin](double instant, double later) { return instant < begin + later; };
+  const long long last = std::upper_bound(later_fall, later_fall + later_falls, t, is_before) - later_fall;
+  return falls + static_cast<long long>(periods) * later_falls + last;
 }
 
 }  // namespace orbit

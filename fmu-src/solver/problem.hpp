@@ -3,20 +3,24 @@
 
 namespace solver {
 
-inline constexpr int max_states = 12, max_extremes = 16, max_degree = 12, max_watched = 6;
+inline constexpr int max_states = 12, max_extremes = 16, max_degree = 12, max_watched = 8;
 
 enum class Method : int { adams, bdf, runge_kutta };
 
+// What follows from an event, for the owner to decide: the motion ends there; it goes on from there under other rates;
+// or nothing of it changes.
+enum class Consequence : int { ends, bends, goes_on };
+
 // A function whose first fall below zero is an event: the solver finds its instant and stops there.
 struct Watched {
-  int event;  // what the event is called
-  double (*value)(void* owner, double t, const double* y);
+  int event;  // the owner's number of it
+  double (*value)(void* owner, int event, double t, const double* y);
   // Whether the margins that `derivative` returns count this function in. It is then looked at only in steps in which
   // a margin came near zero, else at each step. It must be scaled as they are.
   bool by_margin;
 };
 
-// `owner` is handed back to each function. The solver may ask at any (t, y) in any order, and the answer depends on
+// `owner` is passed to each function. The solver may ask at any (t, y) in any order, and the answer depends on
 // nothing else.
 struct Problem {
   int states;  // 1 to max_states
@@ -39,6 +43,7 @@ struct Problem {
   bool passage;      // brief: Runge-Kutta keeps the step size that it wants outside of passages for the time after it
   double share = 1;  // of the error that a step may otherwise make
 
+  // At most max_watched of them.
   void watch(const Watched& function) { watched[watched_count++] = function; }
 };
 

@@ -16,7 +16,10 @@ class Search {
       : problem_(problem), step_(step), watched_(watched), roots_(roots) {}
 
   Sample sample(double t) const;
-  Sample sample(double t, const double* y) const { return ++*roots_, Sample{t, watched_.value(problem_.owner, t, y)}; }
+  Sample sample(double t, const double* y) const {
+    ++*roots_;
+    return {t, watched_.value(problem_.owner, watched_.event, t, y)};
+  }
 
   // The first instant in [lo.t, hi.t] at which g is below zero; false where there is none. lo.g below zero: lo.t.
   bool find_first_fall(Sample lo, Sample hi, double* t) const;

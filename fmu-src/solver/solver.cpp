@@ -33,7 +33,7 @@ void Solver::resume() {
     const Watched& watched = problem_.watched[i];
     if (watched.by_margin) continue;
     ++counters_.roots;
-    values_[i] = watched.value(problem_.owner, known_until_, y);
+    values_[i] = watched.value(problem_.owner, watched.event, known_until_, y);
   }
 }
 

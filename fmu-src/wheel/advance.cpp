@@ -1,10 +1,12 @@
-// How a run moves on by one communication step: `advance` lists the stages, the functions below it are the stages.
-#include <algorithm>
+// How a run moves on by one communication step: `advance_by_stages` lists the stages, the functions before it are the
+// stages.
+#include "advance.hpp"
+
 #include <cmath>
 #include <limits>
 
 #include "digits.hpp"
-#include "simulation.hpp"
+#include "law.hpp"
 
 namespace wheel {
 namespace {
@@ -19,226 +21,185 @@ constexpr long long work_per_event = 20;
 // The work of one internal step of the multibody form, whose system is larger.
 constexpr long long work_per_multibody_step = 8;
 
-// For messages: an instant is not found more exactly than to a nanosecond.
-double to_nanosecond(double t) { return std::fabs(t) < 1e6 ? std::nearbyint(t * 1e9) / 1e9 : t; }
-
-}  // namespace
-
-Outcome Simulation::advance(double caller_time) {
-  const double t = caller_time - demand_.start_time;
-  if (demand_.changed || !knows(t)) return advance_by_stages(t);
-  return arrive(t), Outcome::stepped;
-}
-
-Outcome Simulation::advance_by_stages(double t) {
-  y_now();
-  Run before = run_;
-  before.counted = counters();
-  const bool changed = demand_.changed;
-  failure_ = nullptr;
-  const bool moves = t > run_.t;
-  Outcome outcome = take_demand();
-  if (outcome == Outcome::stepped && moves) outcome = begin();
-  if (outcome == Outcome::stepped && moves) outcome = proceed(t);
-  if (outcome == Outcome::stepped) arrive(t);
-  if (outcome == Outcome::event) end_run();
-  if (outcome == Outcome::failed) fail(before, changed);
-  return outcome;
-}
-
-bool Simulation::knows(double t) const {
-  if (run_.phase == Phase::stepping) return solver_.reaches(t);
-  return run_.phase == Phase::unfolded && orbit_ready_ && t <= orbit_until_;
+bool is_known(const Run& run, const Solution& solution, double t) {
+  if (run.phase == Phase::stepping) return solution.solver.reaches(t);
+  return run.phase == Phase::unfolded && t <= solution.orbit_until;
 }
 
 // Whether what was set since the last step differs from what is in force.
-bool Simulation::has_changed() const {
-  const InForce& now = run_.in_force;
-  const double t = run_.t;
-  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(demand_.start_time) + std::fabs(t));
-  return now.scene.wheel.s != demand_.parameters[s] || now.inputs.change_at(t, rounding, demand_.inputs);
+bool has_changed(const Setup& setup, const Demand& demand, const Run& run) {
+  const InForce& now = run.in_force;
+  const double t = run.t;
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(setup.start_time) + std::fabs(t));
+  return now.scene.wheel.s != demand.parameters[stored::s] || now.inputs.change_at(t, rounding, demand.inputs);
+}
+
+// Starts the solver at the present instant, from nothing or, again, where it goes on counting.
+Outcome start_solver(const Setup& setup, Run& run, Solution& solution, bool again) {
+  solution.owner = {&setup, &run.in_force};
+  const auto start = again ? &solver::Solver::restart : &solver::Solver::start;
+  const solver::Problem problem = problem_of(solution.owner);
+  const bool started = (solution.solver.*start)(problem, method_of(setup, run.in_force), run.t, run.y);
+  return started ? Outcome::stepped : Outcome::failed;
 }
 
 // Stage 1: what was set since the last step takes effect.
-Outcome Simulation::take_demand() {
-  const bool changed = demand_.changed && has_changed();
-  demand_.changed = false;
+Outcome take_demand(const Setup& setup, Demand& demand, Run& run, Solution& solution, const Reporter& reporter) {
+  const bool changed = demand.changed && has_changed(setup, demand, run);
+  demand.changed = false;
   if (!changed) return Outcome::stepped;
-  const WheelFriction before = run_.in_force.scene.friction;
-  const bool leaves_orbit = run_.phase == Phase::unfolded;
-  if (leaves_orbit && setup_.keep_contact && contact_margin(owner_, run_.t, run_.y) < 0) run_.in_force.change_contact();
-  put_in_force(setup_, demand_, run_.t, run_.y, run_.in_force);
-  fresh_ = Fresh::state;
-  announce_transition(before);
-  if (run_.phase == Phase::at_start) return Outcome::stepped;
-  const double interval = run_.t - run_.last_change;
-  run_.last_change = run_.t;
-  const bool again = run_.phase == Phase::stepping;
-  if (!again) ++run_.counted.restarts;
-  run_.phase = Phase::stepping;
-  const Outcome outcome = start_solver(again);
-  if (again) solver_.limit_first_step(interval);
+  const WheelFriction before = run.in_force.scene.friction;
+  if (run.phase == Phase::unfolded) place_observed(setup, run.t, run.y, run.in_force);
+  put_in_force(setup, demand, run.t, run.y, run.in_force);
+  log_transition(setup, before, run, reporter);
+  if (run.phase == Phase::at_start) return Outcome::stepped;
+  const double interval = run.t - run.last_change;
+  run.last_change = run.t;
+  const bool again = run.phase == Phase::stepping;
+  if (!again) ++run.counted.restarts;
+  run.phase = Phase::stepping;
+  const Outcome outcome = start_solver(setup, run, solution, again);
+  if (again) solution.solver.limit_first_step(interval);
   return outcome;
 }
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
-Outcome Simulation::begin() {
-  if (run_.phase == Phase::stepping || (run_.phase == Phase::unfolded && orbit_ready_)) return Outcome::stepped;
-  const bool unfolds = is_unfoldable(setup_, run_.in_force) && enter_orbit();
-  run_.phase = unfolds ? Phase::unfolded : Phase::stepping;
-  return unfolds ? Outcome::stepped : start_solver(false);
+Outcome begin(const Setup& setup, const Demand& demand, Run& run, Solution& solution) {
+  const bool is_ready = run.phase == Phase::unfolded && solution.orbit_until != Solution::none;
+  if (run.phase == Phase::stepping || is_ready) return Outcome::stepped;
+  const bool unfolds = is_unfoldable(setup, run.in_force) && enter_orbit(setup, demand, run, solution);
+  run.phase = unfolds ? Phase::unfolded : Phase::stepping;
+  return unfolds ? Outcome::stepped : start_solver(setup, run, solution, false);
 }
 
-// Starts the solver at the present instant, from nothing or, again, where it goes on counting.
-Outcome Simulation::start_solver(bool again) {
-  const auto start = again ? &solver::Solver::restart : &solver::Solver::start;
-  const bool started = (solver_.*start)(problem_of(owner_), method_of(setup_, run_.in_force), run_.t, run_.y);
-  return started ? Outcome::stepped : Outcome::failed;
+void move_to(const Setup& setup, double t, Run& run, const Solution& solution, const Reporter& reporter) {
+  if (run.phase == Phase::unfolded && solution.orbit.recurring() > 0)
+    observe_orbit(setup, solution.orbit, t, run, reporter);
+  run.t = t;
 }
 
-// Stage 3: the solution becomes known up to t, or up to an event that ends the run.
-Outcome Simulation::proceed(double t) {
-  if (run_.phase == Phase::stepping) return step_to(t);
-  if (t <= orbit_until_) return Outcome::stepped;
-  if (orbit_until_ == orbit_.end_time()) return Outcome::event;
-  return failure_ = "psi or phi would turn so far that the angle has too few digits", Outcome::failed;
-}
-
-Outcome Simulation::step_to(double t) {
-  const bool large = setup_.formulation == &wheel_multibody;
+// Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.
+Outcome step_to(const Setup& setup, double t, Run& run, Solution& solution, const Reporter& reporter) {
+  solver::Solver& solver = solution.solver;
+  const bool large = setup.formulation == &wheel_multibody;
   const long long work_per_step = large ? work_per_multibody_step : 1;
-  for (long long work = 0; !solver_.reaches(t);) {
-    if (work >= most_work)
-      return failure_ = "one call may take no more internal steps; use shorter communication steps", Outcome::failed;
+  for (long long work = 0; !solver.reaches(t);) {
+    if (work >= most_work) {
+      solution.failure = "one call may take no more internal steps; use shorter communication steps";
+      return Outcome::failed;
+    }
     // CVODE may step past the communication point although an input varies: the input's polynomial may go on there, and
     // a step that is cut short costs CVODE its history. Runge-Kutta has no history to lose.
-    if (run_.in_force.inputs.varies && solver_.method() == solver::Method::runge_kutta) solver_.stop_before(t);
-    Outcome outcome = solver_.step();
+    if (run.in_force.inputs.varies && solver.method() == solver::Method::runge_kutta) solver.stop_before(t);
+    Outcome outcome = solver.step();
     if (outcome == Outcome::failed) return outcome;
     work += (outcome == Outcome::event ? work_per_event : 1) * work_per_step;
-    if (outcome != Outcome::event || solver_.reaches(t)) continue;  // an event after t waits until it is reached
-    move_to(solver_.event_time());
-    outcome = pass_event();
-    if (outcome != Outcome::stepped) return outcome;
+    if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event after t waits until it is reached
+    move_to(setup, solver.event_time(), run, solution, reporter);
+    state_now(run, solution);
+    const auto event = static_cast<Event>(solver.event());
+    if (ends_run(row_of(event), setup)) return outcome;
+    if (pass_event(setup, event, run, reporter) == Consequence::goes_on)
+      solver.resume();
+    else
+      outcome = start_solver(setup, run, solution, true);
+    if (outcome == Outcome::failed) return outcome;
   }
   return Outcome::stepped;
 }
 
-// The run stands at an event. `event`: it ends the run.
-Outcome Simulation::pass_event() {
-  switch (static_cast<Event>(solver_.event())) {
-    case Event::spin_changes:
-      return pass_transition();
-    case Event::layer_changes:
-      return pass_layer();
-    case Event::contact_changes:
-      return pass_contact();
-    default:
-      return Outcome::event;
-  }
-}
-
-// omega_z has reached zero, or friction and brake can no longer hold it there.
-Outcome Simulation::pass_transition() {
-  const WheelScene scene = run_.in_force.scene_at(run_.t);
-  const WheelFriction before = scene.friction;
-  y_now();
-  setup_.formulation->stop_spin(&scene.wheel, run_.y);
-  WheelFriction& friction = run_.in_force.scene.friction;
-  friction = before.kind == WHEEL_HELD ? released(setup_, scene, run_.y)
-                                       : friction_at(setup_, scene, run_.in_force.inputs.braked, run_.y);
-  announce_transition(before);
-  return start_solver(true);
-}
-
-// A regularized law has become stiff, or omega_z has entered or left its layer, or begins to stick in it.
-Outcome Simulation::pass_layer() {
-  enter_layer(setup_, run_.in_force, run_.t, y_now());
-  return start_solver(true);
-}
-
-// The ground begins to pull or to press. Without friction the motion goes on as it was.
-Outcome Simulation::pass_contact() {
-  run_.in_force.change_contact();
-  if (run_.in_force.pulls()) tell_pull(run_.t);
-  if (run_.in_force.scene.friction.kind == WHEEL_FRICTIONLESS) return solver_.resume(), Outcome::stepped;
-  y_now();
-  return start_solver(true);
-}
-
-// Counts and reports a change between held, positive and negative spin. A change to another law is not a transition.
-void Simulation::announce_transition(const WheelFriction& before) {
-  const WheelFriction& friction = run_.in_force.scene.friction;
-  const auto is_exact = [](WheelFrictionKind law) { return law == WHEEL_ROLLING || law == WHEEL_HELD; };
-  if (!is_exact(before.kind) || !is_exact(friction.kind) || !differ(before, friction)) return;
-  ++run_.transitions;
-  if (!reporter_.wants(Topic::event)) return;
-  const support::Digits instant(to_nanosecond(time()));
-  if (friction.kind == WHEEL_HELD)
-    reporter_.tell(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
-  else
-    reporter_.tell(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
-                   before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
+// Stage 3: the solution becomes known up to t, or up to an event that ends the run.
+Outcome proceed(const Setup& setup, double t, Run& run, Solution& solution, const Reporter& reporter) {
+  if (run.phase == Phase::stepping) return step_to(setup, t, run, solution, reporter);
+  if (t <= solution.orbit_until) return Outcome::stepped;
+  if (solution.orbit_until == solution.orbit.end_time()) return Outcome::event;
+  solution.failure = "psi or phi would turn so far that the angle has too few digits";
+  return Outcome::failed;
 }
 
 // Stage 4: the run stands at t, up to which the solution is known. Inputs that vary stay where they arrived, unless
 // they are set again.
-void Simulation::arrive(double t) {
-  if (!(t > run_.t)) return;
-  move_to(t);
-  const Inputs& inputs = run_.in_force.inputs;
-  if (inputs.varies) inputs.hold(t, demand_.inputs), demand_.changed = true;
+void arrive(const Setup& setup, double t, Demand& demand, Run& run, const Solution& solution,
+            const Reporter& reporter) {
+  if (!(t > run.t)) return;
+  move_to(setup, t, run, solution, reporter);
+  const Inputs& inputs = run.in_force.inputs;
+  if (!inputs.varies) return;
+  inputs.hold(t, demand.inputs);
+  demand.changed = true;
 }
 
-void Simulation::move_to(double t) {
-  if (setup_.keep_contact && run_.phase == Phase::unfolded) report_pulls_of_orbit(t);
-  run_.t = t;
-  fresh_ = Fresh::nothing;
-}
-
-void Simulation::tell_pull(double t) {
-  run_.last_pull = t;
-  if (run_.pulls++ >= told_pulls) return;
-  reporter_.tell(Topic::warning,
-                 "The ground pulls from t = %s s on: keep_contact holds a wheel that would have lifted off.",
-                 support::Digits(to_nanosecond(demand_.start_time + t)).text);
-}
-
-// At the end of a run: the pulls that were not told one by one.
-void Simulation::sum_up() const {
-  if (run_.pulls > told_pulls)
-    reporter_.tell(Topic::warning,
-                   "The ground has pulled %lld times, of which the first %lld were told; last from t = %s s on.",
-                   run_.pulls, told_pulls, support::Digits(to_nanosecond(demand_.start_time + run_.last_pull)).text);
-}
-
-void Simulation::end_run() {
-  const bool unfolded = run_.phase == Phase::unfolded;
-  if (unfolded) move_to(orbit_.end_time());
-  end_as(static_cast<Event>(unfolded ? orbit_.event() : solver_.event()));
-}
-
-void Simulation::end_as(Event event) {
-  run_.ended_by = event;
-  freeze(Phase::ended);
-  sum_up();
-  reporter_.tell(Topic::discard,
-                 event == Event::fell_flat ? "The wheel %s at t = %s s: the model ends there."
-                                           : "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
-                 ending(), support::Digits(time()).text,
-                 support::Digits(run_.y[setup_.formulation->tilt_index], 6).text);
+// The event of the solution that ends the run.
+void end(const Setup& setup, Run& run, const Solution& solution, const Reporter& reporter) {
+  const bool unfolded = run.phase == Phase::unfolded;
+  if (unfolded) move_to(setup, solution.orbit.end_time(), run, solution, reporter);
+  const int event = unfolded ? solution.orbit.event() : solution.solver.event();
+  end_run(setup, static_cast<Event>(event), run, solution, reporter);
 }
 
 // The state is that before the step, and stays so.
-void Simulation::fail(const Run& before, bool changed) {
-  if (run_.phase == Phase::stepping) move_to(solver_.known_until());
-  reporter_.tell(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.",
-                 support::Digits(time()).text, support::Digits(y_now()[setup_.formulation->spin_index], 4).text,
-                 failure_ ? failure_ : solver_.failure());
-  run_ = before;
-  run_.phase = Phase::failed;
-  demand_.changed = changed;
-  fresh_ = Fresh::state;
+void fail(const Setup& setup, const Run& before, Run& run, const Solution& solution, const Reporter& reporter) {
+  if (run.phase == Phase::stepping) move_to(setup, solution.solver.known_until(), run, solution, reporter);
+  reporter.log(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.",
+               support::Digits(setup.start_time + run.t).text,
+               support::Digits(state_now(run, solution)[setup.formulation->spin_index], 4).text,
+               solution.failure ? solution.failure : solution.solver.failure());
+  run = before;
+  run.phase = Phase::failed;
+}
+
+Outcome advance_by_stages(const Setup& setup, Demand& demand, Run& run, Solution& solution, const Reporter& reporter,
+                          double t) {
+  state_now(run, solution);
+  Run before = run;
+  before.counted = counters_of(run, solution);
+  const bool changed = demand.changed, moves = t > run.t;
+  solution.failure = nullptr;
+  Outcome outcome = take_demand(setup, demand, run, solution, reporter);
+  if (outcome == Outcome::stepped && moves) outcome = begin(setup, demand, run, solution);
+  if (outcome == Outcome::stepped && moves) outcome = proceed(setup, t, run, solution, reporter);
+  if (outcome == Outcome::stepped) arrive(setup, t, demand, run, solution, reporter);
+  if (outcome == Outcome::event) end(setup, run, solution, reporter);
+  if (outcome == Outcome::failed) {
+    fail(setup, before, run, solution, reporter);
+    demand.changed = changed;
+  }
+  return outcome;
+}
+
+}  // namespace
+
+Outcome advance(const Setup& setup, Demand& demand, Run& run, Solution& solution, const Reporter& reporter, double t) {
+  if (demand.changed || !is_known(run, solution, t))
+    return advance_by_stages(setup, demand, run, solution, reporter, t);
+  arrive(setup, t, demand, run, solution, reporter);
+  return Outcome::stepped;
+}
+
+const double* state_now(Run& run, const Solution& solution) {
+  if (run.y_time == run.t) return run.y;
+  run.phase == Phase::unfolded ? solution.orbit.read(run.t, run.y) : solution.solver.read(run.t, run.y);
+  run.y_time = run.t;
+  return run.y;
+}
+
+solver::Counters counters_of(const Run& run, const Solution& solution) {
+  const solver::Counters& a = run.counted;
+  const solver::Counters b = run.phase == Phase::stepping ? solution.solver.counters() : solver::Counters{};
+  return {a.steps + b.steps, a.rhs + b.rhs, a.jacobians + b.jacobians, a.roots + b.roots, a.restarts + b.restarts};
+}
+
+void freeze(Run& run, const Solution& solution, Phase phase) {
+  state_now(run, solution);
+  run.counted = counters_of(run, solution);
+  run.phase = phase;
+}
+
+void end_run(const Setup& setup, Event event, Run& run, const Solution& solution, const Reporter& reporter) {
+  run.ended_by = event;
+  freeze(run, solution, Phase::ended);
+  log_summaries(setup, run, reporter);
+  log_end(setup, run, reporter);
 }
 
 }  // namespace wheel

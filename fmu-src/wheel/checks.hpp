@@ -7,13 +7,17 @@
 
 namespace wheel {
 
-// rad: the digits of a larger angle do not tell where the wheel points.
+// rad: a larger angle has too few digits for a heading.
 inline constexpr double largest_angle = 1e12;
 
-// Tells one sentence per fault; true if there is none.
+// Logs one message per fault; true if there is none.
 bool check_values(const Demand& demand, const Reporter& reporter);
 
 // Whether the wheel stands, and its energy and reactions are finite.
 bool is_inside(Reading& now);
+
+// The same of the initial state, with a message: values that are sound one by one can have products that are not
+// finite.
+bool check_start(const Demand& demand, Reading& start, const Reporter& reporter);
 
 }  // namespace wheel

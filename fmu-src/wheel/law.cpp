@@ -18,26 +18,14 @@ WheelDynamics dynamics_of_held(const Setup& setup, const WheelScene& scene, cons
 double margin_of(const Setup& setup, const WheelScene& scene, const WheelDynamics& held) {
   constexpr double rounding_of_capacity = 1e-12, rounding_of_tau = 1e-13;
   const double capacity = scene.wheel.s * std::max(held.lambda[2], 0.0) + scene.load.brake;
-  const double rounding =
-      rounding_of_capacity * capacity + rounding_of_tau * setup.weight * (scene.wheel.r_0 + scene.wheel.r);
+  const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
   return capacity + rounding - std::fabs(held.tau);
 }
 
 // Rolling against the moment that would hold the wheel.
 WheelFriction against(const WheelDynamics& held) { return {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0}; }
 
-}  // namespace
-
-void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& now) {
-  now.scene.wheel = setup.wheel;
-  now.scene.wheel.s = demand.parameters[s];
-  now.scene.load = load_of(demand.inputs);
-  now.inputs.take_over(t, demand.inputs);
-  now.scene.friction = friction_at(setup, now.scene, now.inputs.braked, y);
-  now.layer = Layer::none;
-  if (may_need_layer(setup, now) && layer_margin(setup, now.scene, y) < 0) enter_layer(setup, now, t, y);
-}
-
+// The law apart from layers; `braked`: the brake is in use.
 WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
   if (scene.wheel.s == 0 && !braked) return {WHEEL_FRICTIONLESS, 0, 0};
   if (setup.friction_law == regularized_law) return {WHEEL_REGULARIZED, 0, setup.omega_s};
@@ -48,34 +36,55 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
   return against(held);
 }
 
-WheelFriction released(const Setup& setup, const WheelScene& held, const double* y) {
-  return against(dynamics_of_held(setup, held, y));
-}
-
-double holding_margin(const Setup& setup, const WheelScene& scene, const double* y) {
-  return margin_of(setup, scene, dynamics_of_held(setup, scene, y));
-}
-
-// The fastest decay of the law is that at omega_z = 0: (s N + M_brake) / omega_s over the spin inertia. The wheel's own
-// time scale tells whether that is fast; below the limit DOP853 alone is faster (docs/results/stability.md).
-double layer_margin(const Setup& setup, const WheelScene& scene, const double* y) {
-  constexpr double stiff = 1000;
-  const WheelParameters& wheel = scene.wheel;
-  const double length = wheel.r_0 + wheel.r, inertia = wheel.J_z + wheel.m * length * length;
-  double y_dot[WHEEL_MAX_STATES];
-  const double N = std::max(setup.weight, setup.formulation->derivative(&scene, y, y_dot));
-  return 1 - (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia) * setup.own_time / stiff;
-}
-
-void enter_layer(const Setup& setup, InForce& now, double t, const double* y) {
+void enter_layer(const Setup& setup, const WheelScene& scene, const double* y, InForce& now) {
   const double omega_z = y[setup.formulation->spin_index];
   if (std::fabs(omega_z) > layer_edge(setup)) {
     now.layer = Layer::outside;
     now.scene.friction = {WHEEL_ROLLING, omega_z > 0 ? 1.0 : -1.0, 0};
   } else {
-    now.layer = holding_margin(setup, now.scene_at(t), y) >= 0 ? Layer::sticking : Layer::passing;
+    now.layer = holding_margin(setup, scene, y) >= 0 ? Layer::sticking : Layer::passing;
     now.scene.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
   }
+}
+
+}  // namespace
+
+void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& now) {
+  now.scene.wheel = setup.wheel;
+  now.scene.wheel.s = demand.parameters[stored::s];
+  now.scene.load = load_of(demand.inputs);
+  now.inputs.take_over(t, demand.inputs);
+  now.layer = Layer::none;
+  decide_law(setup, t, y, now);
+}
+
+void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
+  WheelScene scene = now.scene_at(t);
+  scene.friction =
+      released ? against(dynamics_of_held(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
+  now.scene.friction = scene.friction;
+  const bool stiff = can_stiffen(setup, now) && layer_margin(setup, scene, y) < 0;
+  if (stiff || now.layer != Layer::none) enter_layer(setup, scene, y, now);
+}
+
+bool can_stiffen(const Setup& setup, const InForce& now) {
+  const bool asked = setup.method == automatic_method && setup.kind == Kind::co_simulation;
+  return asked && now.layer == Layer::none && now.scene.friction.kind == WHEEL_REGULARIZED;
+}
+
+// The fastest decay of the law is that at omega_z = 0: (s N + M_brake) / omega_s over the spin inertia, to be compared
+// with the wheel's own time scale; below the limit DOP853 alone is faster (docs/results/stability.md).
+double layer_margin(const Setup& setup, const WheelScene& scene, const double* y) {
+  constexpr double stiff = 1000;
+  const WheelParameters& wheel = scene.wheel;
+  const double inertia = wheel.J_z + wheel.m * setup.length * setup.length;
+  double y_dot[WHEEL_MAX_STATES];
+  const double N = std::max(setup.weight, setup.formulation->derivative(&scene, y, y_dot));
+  return 1 - (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia) * setup.own_time / stiff;
+}
+
+double holding_margin(const Setup& setup, const WheelScene& scene, const double* y) {
+  return margin_of(setup, scene, dynamics_of_held(setup, scene, y));
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {

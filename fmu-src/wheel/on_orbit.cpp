@@ -2,49 +2,57 @@
 #include <algorithm>
 
 #include "checks.hpp"
-#include "simulation.hpp"
+#include "solution.hpp"
 
 namespace wheel {
+namespace {
 
-// The parameters that shape the motion on an orbit. Heading, roll angle and place of the start do not: they are zero
-// here.
-Simulation::Shape Simulation::shape() const {
-  Shape shape = {{}, demand_.tolerance};
-  std::copy_n(demand_.parameters, first_input, shape.parameters);
-  for (const unsigned v : {psi_start, phi_start, X_O_start, Y_O_start}) shape.parameters[v] = 0;
+Shape shape_of(const Demand& demand) {
+  Shape shape = {{}, demand.tolerance};
+  std::copy_n(demand.parameters, first_input, shape.parameters);
+  for (const unsigned v : {stored::psi_start, stored::phi_start, stored::X_O_start, stored::Y_O_start})
+    shape.parameters[v] = 0;
   return shape;
 }
 
-// Makes the orbit of the run ready: built from its start, or kept from an earlier run of the same shape. False where
-// the motion cannot be unfolded: the solver has to step through it.
-bool Simulation::enter_orbit() {
-  const Shape asked = shape();
-  InForce start = run_.in_force;
-  Owner owner = {setup_, start};
-  const solver::Problem problem = problem_of(owner);
-  if (orbit_shape_ != asked) {
-    const auto pass = [](void* of, int event) {
-      if (event == static_cast<int>(Event::contact_changes)) static_cast<Owner*>(of)->in_force.change_contact();
-      return event == static_cast<int>(Event::contact_changes);
-    };
-    const auto kind = orbit_.build(problem, demand_.tolerance, pass, setup_.start, solver_);
-    orbit_shape_ = kind == orbit::Orbit::Kind::refused ? Shape() : asked;
+}  // namespace
+
+bool enter_orbit(const Setup& setup, const Demand& demand, Run& run, Solution& solution) {
+  orbit::Orbit& orbit = solution.orbit;
+  const Shape asked = shape_of(demand);
+  solution.owner = {&setup, &run.in_force};
+  const solver::Problem problem = problem_of(solution.owner);
+  if (solution.orbit_shape != asked) {
+    const InForce at_start = run.in_force;  // what is observed on the orbit counts where the run passes it
+    const auto kind = orbit.build(problem, demand.tolerance, pass_on_orbit, setup.start, solution.solver);
+    run.in_force = at_start;
+    solution.orbit_shape = kind == orbit::Orbit::Kind::refused ? Shape() : asked;
   }
-  orbit_ready_ = orbit_shape_ == asked && orbit_.start_at(problem, setup_.start);
-  if (!orbit_ready_) return false;
-  run_.counted = orbit_.counters();
-  const bool ends = orbit_.end_time() < Demand::never;
-  orbit_until_ = ends ? orbit_.end_time() : largest_angle / orbit_.fastest_turn();
+  if (solution.orbit_shape != asked || !orbit.start_at(problem, setup.start)) return false;
+  run.counted = orbit.counters();
+  const bool ends = orbit.end_time() < Demand::never;
+  solution.orbit_until = ends ? orbit.end_time() : largest_angle / orbit.fastest_turn();
   return true;
 }
 
-// With keep_contact on the orbit: reports each instant up to t at which N falls below zero. Those that are not told one
-// by one are counted, however many they are.
-void Simulation::report_pulls_of_orbit(double t) {
-  const long long falls = orbit_.falls_until(t);
-  while (run_.pulls < std::min(falls, told_pulls)) tell_pull(orbit_.fall(run_.pulls));
-  if (falls > run_.pulls) run_.last_pull = orbit_.fall(falls - 1);
-  run_.pulls = falls;
+void observe_orbit(const Setup& setup, const orbit::Orbit& orbit, double t, Run& run, const Reporter& reporter) {
+  const auto tally_of = [&](int i) -> Tally& { return run.tallies[orbit.event_of(i)]; };
+  const auto next_of = [&](int i) {
+    const long long next = tally_of(i).count, falls = orbit.falls_until(i, t);
+    return next < std::min(falls, logged_one_by_one) ? orbit.fall(i, next) : Demand::never;
+  };
+  for (;;) {  // in the order of time
+    int first = 0;
+    for (int i = 1; i < orbit.recurring(); ++i)
+      if (next_of(i) < next_of(first)) first = i;
+    const double instant = next_of(first);
+    if (instant == Demand::never) break;
+    count_event(setup, static_cast<Event>(orbit.event_of(first)), instant, run, reporter);
+  }
+  for (int i = 0; i < orbit.recurring(); ++i) {
+    const long long falls = orbit.falls_until(i, t);
+    if (falls > tally_of(i).count) tally_of(i) = {falls, orbit.fall(i, falls - 1)};
+  }
 }
 
 }  // namespace wheel

@@ -31,7 +31,13 @@ struct ReactionRates : WheelReactionRates {
 
 class Reading {
  public:
-  void set(const Present& now) { now_ = now, have_ = 0; }
+  // `version`: counts the changes of instant and inputs.
+  void set(const Present& now, long long version = none) {
+    now_ = now;
+    have_ = 0;
+    version_ = version;
+  }
+  bool is_of(long long version) const { return version_ == version; }
 
   const WheelScene& scene() const { return now_.scene; }
   const WheelKinematics& pose();  // all of the kinematics but X_O_dot and Y_O_dot
@@ -50,7 +56,9 @@ class Reading {
   enum : unsigned { have_pose = 1, have_kinematics = 2, have_dynamics = 4, have_rates = 8, have_contact = 16 };
   bool missing(unsigned part);
 
+  static constexpr long long none = -1;
   Present now_ = {};
+  long long version_ = none;
   unsigned have_ = 0;
   WheelKinematics kinematics_ = {};
   WheelDynamics dynamics_ = {};

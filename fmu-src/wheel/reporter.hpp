@@ -1,4 +1,4 @@
-// Where sentences go.
+// Where messages go.
 #pragma once
 
 namespace wheel {
@@ -8,12 +8,12 @@ enum class Topic { event, warning, error, discard };
 struct Reporter {
   void* owner = nullptr;
   bool (*listens)(void* owner, Topic topic) = nullptr;  // null: nobody does
-  void (*take)(void* owner, Topic topic, const char* sentence) = nullptr;
+  void (*take)(void* owner, Topic topic, const char* message) = nullptr;
 
-  // Whether a sentence is wanted: to find its numbers takes time.
+  // Whether a message is wanted: formatting its numbers takes time.
   bool wants(Topic topic) const { return listens && listens(owner, topic); }
   // Printf-like.
-  void tell(Topic topic, const char* format, ...) const;
+  void log(Topic topic, const char* format, ...) const;
 };
 
 }  // namespace wheel

@@ -1,7 +1,6 @@
 // What is in force, and how far a run has come. Plain numbers: a run is restored by assignment.
 #pragma once
 
-#include "event.hpp"
 #include "inputs.hpp"
 #include "phase.hpp"
 #include "problem.hpp"
@@ -9,19 +8,39 @@
 
 namespace wheel {
 
+// What can happen at an instant that is not known beforehand: the names of the rows of the table in events.cpp. Of two
+// at the same instant the later one counts.
+enum class Event : int {
+  none,
+  stiffens,         // a regularized law becomes so steep that it is solved by its layer
+  sticks_in_layer,  // omega_z begins to stick in the layer of a stiff regularized law
+  crosses_layer,    // omega_z enters or leaves that layer
+  spin_changes,     // omega_z reaches zero, or friction and brake can no longer hold it there
+  lost_grip,        // the wheel needs a coefficient of friction above mu_max
+  lost_contact,     // N falls below zero, or rises above it while the ground pulls
+  fell_flat,
+  count
+};
+inline constexpr int event_count = static_cast<int>(Event::count);
+
 // Where omega_z stands in the layer of a stiff regularized law: outside of it, where the law is the exact one; on its
 // way through; or kept inside by friction and brake, where alone the motion is stiff.
 enum class Layer : int { none, outside, passing, sticking };
 
 // What acts on the wheel.
 struct InForce {
-  // Its load is that at the origin of the inputs.
+  // Its load is that at the origin of the inputs; `ground` follows from `below`.
   WheelScene scene = {.wheel = {}, .friction = {}, .load = {}, .ground = WHEEL_GROUND_PRESSES};
   Inputs inputs;
   Layer layer = Layer::none;
+  bool below[event_count] = {};  // for each observed event: its value has fallen below zero and has not risen since
 
-  bool pulls() const { return scene.ground == WHEEL_GROUND_PULLS; }
-  void change_contact() { scene.ground = pulls() ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS; }
+  bool is_below(Event event) const { return below[static_cast<int>(event)]; }
+  bool pulls() const { return is_below(Event::lost_contact); }
+  void set_below(Event event, bool is) {
+    below[static_cast<int>(event)] = is;
+    scene.ground = pulls() ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
+  }
 
   WheelScene scene_at(double t) const {
     WheelScene scene_then = scene;
@@ -30,18 +49,21 @@ struct InForce {
   }
 };
 
-// Pulls of the ground that are told one by one; a rule that no communication grid changes.
-inline constexpr long long told_pulls = 100;
+// How often an observed event has occurred, and when it last did, s, own clock.
+struct Tally {
+  long long count = 0;
+  double last = 0;
+};
 
 struct Run {
   Phase phase = Phase::created;
   Event ended_by = Event::none;
   InForce in_force;
   double t = 0;            // s, own clock: the instant reached
+  double y_time = 0;       // s, own clock: the instant of y
   double last_change = 0;  // s, own clock: when an input or a tunable parameter last changed
   double y[WHEEL_MAX_STATES] = {};
-  long long pulls = 0;            // with keep_contact: how often the ground began to pull
-  double last_pull = 0;           // s, own clock: when it last did
+  Tally tallies[event_count] = {};
   long long transitions = 0;      // of the friction
   solver::Counters counted = {};  // before the solver was last started from nothing
 };

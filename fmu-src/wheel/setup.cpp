@@ -2,7 +2,9 @@
 #include "setup.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace wheel {
@@ -16,26 +18,32 @@ double gravity_of(const WheelParameters& wheel) {
   return largest * std::sqrt(g * g + g_X * g_X + g_Y * g_Y);
 }
 
-// sqrt((r_0 + r) / g), s, g the whole of gravity; without a weight that matters the time of a turn at the initial rate.
-double time_scale(const WheelParameters& wheel, const WheelKinematics& start) {
-  const double length = wheel.r_0 + wheel.r, gravity = gravity_of(wheel);
+double power_of_two_below(double x) {
+  constexpr std::uint64_t exponent = 0x7ff0000000000000;
+  return std::fmax(std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & exponent),
+                   std::numeric_limits<double>::min());
+}
+
+// sqrt(length / g), s, g the whole of gravity; without a weight that matters the time of a turn at the initial rate.
+double time_scale(const WheelParameters& wheel, double length, const WheelKinematics& start) {
+  const double gravity = gravity_of(wheel);
   const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
   if (gravity > 1e-30 * length * rate * rate) return std::sqrt(length / gravity);  // else the weight moves nothing
   return rate > 0 ? 1 / rate : 1;
 }
 
 // N, scale of the normal force: the weight's part across the road, or what its time scale stands for without a weight.
-double force_scale(const WheelParameters& wheel, double own_time) {
+double force_scale(const WheelParameters& wheel, double length, double own_time) {
   const double gravity = gravity_of(wheel);
   const double across = gravity > 0 ? wheel.g / gravity : 1;
-  return wheel.m * (wheel.r_0 + wheel.r) / (own_time * own_time) * across;
+  return wheel.m * length / (own_time * own_time) * across;
 }
 
-// The scale of angles is 1 rad, of lengths r_0 + r, of rates the inverse of the wheel's own time scale or the initial
-// tilting, whichever is larger.
+// The scale of angles is 1 rad, of lengths setup.length, of rates the inverse of the wheel's own time scale or the
+// initial tilting, whichever is larger.
 void set_scales(Setup& setup) {
   const WheelFormulation* const f = setup.formulation;
-  const double length = setup.wheel.r_0 + setup.wheel.r, slowest = 1 / setup.own_time;
+  const double length = setup.length, slowest = 1 / setup.own_time;
   const double turn = std::max(slowest, setup.tilting);
   // Errors of X_O and Y_O do not feed back into the motion, those of psi only under a force along the road, those of
   // phi only where J_x differs from J_y: they grow little, and may be larger.
@@ -49,7 +57,7 @@ void set_scales(Setup& setup) {
 
 const WheelFormulation* formulation_of(const Demand& demand) {
   if (demand.kind == Kind::model_exchange) return &wheel_euler;
-  return choice_of(demand.parameters[formulation]) == multibody_formulation ? &wheel_multibody : &wheel_reduced;
+  return choice_of(demand.parameters[stored::formulation]) == multibody_formulation ? &wheel_multibody : &wheel_reduced;
 }
 
 }  // namespace
@@ -57,18 +65,36 @@ const WheelFormulation* formulation_of(const Demand& demand) {
 Setup setup_of(const Demand& demand) {
   const double* v = demand.parameters;
   Setup setup = {};
+  setup.kind = demand.kind;
+  setup.start_time = demand.start_time;
   setup.formulation = formulation_of(demand);
-  setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
-  if (v[slope] != 0) wheel_set_slope(&setup.wheel, v[g], v[slope], v[slope_direction]);
-  setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
-  setup.omega_s = v[omega_s];
-  setup.method = static_cast<SolverMethod>(choice_of(v[method]));
-  setup.unfolds = v[J_x] == v[J_y] && v[slope] == 0 && choice_of(v[formulation]) == automatic_formulation &&
-                  choice_of(v[method]) == automatic_method;
-  setup.keep_contact = v[keep_contact] != 0;
+  setup.wheel = {.m = v[stored::m],
+                 .r_0 = v[stored::r_0],
+                 .r = v[stored::r],
+                 .J_x = v[stored::J_x],
+                 .J_y = v[stored::J_y],
+                 .J_z = v[stored::J_z],
+                 .g = v[stored::g],
+                 .s = 0,
+                 .g_X = 0,
+                 .g_Y = 0};
+  if (v[stored::slope] != 0) wheel_set_slope(&setup.wheel, v[stored::g], v[stored::slope], v[stored::slope_direction]);
+  setup.friction_law = static_cast<FrictionLaw>(choice_of(v[stored::friction_law]));
+  setup.omega_s = v[stored::omega_s];
+  setup.method = static_cast<SolverMethod>(choice_of(v[stored::method]));
+  setup.unfolds = v[stored::J_x] == v[stored::J_y] && v[stored::slope] == 0 &&
+                  choice_of(v[stored::formulation]) == automatic_formulation && setup.method == automatic_method;
+  setup.keep_contact = v[stored::keep_contact] != 0;
+  setup.mu_max = v[stored::mu_max];
   setup.tolerance = demand.tolerance;
-  const WheelMotion motion = {v[psi_start],       v[theta_start],   v[phi_start], v[psi_dot_start],
-                              v[theta_dot_start], v[phi_dot_start], v[X_O_start], v[Y_O_start]};
+  const WheelMotion motion = {.psi = v[stored::psi_start],
+                              .theta = v[stored::theta_start],
+                              .phi = v[stored::phi_start],
+                              .psi_dot = v[stored::psi_dot_start],
+                              .theta_dot = v[stored::theta_dot_start],
+                              .phi_dot = v[stored::phi_dot_start],
+                              .X_O = v[stored::X_O_start],
+                              .Y_O = v[stored::Y_O_start]};
   WheelKinematics start;
   setup.formulation->start(&setup.wheel, &motion, setup.start);
   setup.formulation->kinematics(&setup.wheel, setup.start, &start);
@@ -76,9 +102,12 @@ Setup setup_of(const Demand& demand) {
   const double rounding = 4 * std::numeric_limits<double>::epsilon();
   if (std::fabs(start.omega_z) <= rounding * (std::fabs(start.phi_dot) + std::fabs(start.psi_dot)))
     setup.formulation->stop_spin(&setup.wheel, setup.start);
-  setup.own_time = time_scale(setup.wheel, start);
+  setup.length = setup.wheel.r_0 + setup.wheel.r;
+  setup.own_time = time_scale(setup.wheel, setup.length, start);
   setup.longest_step = 0.5 * setup.own_time;
-  setup.weight = force_scale(setup.wheel, setup.own_time);
+  setup.weight = force_scale(setup.wheel, setup.length, setup.own_time);
+  setup.rate_scale = power_of_two_below(1 / setup.own_time);
+  setup.moment_scale = power_of_two_below(setup.weight * setup.length);
   const double omega_2 = start.psi_dot * std::sin(start.theta);
   setup.tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
   set_scales(setup);

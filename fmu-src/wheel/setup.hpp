@@ -8,6 +8,8 @@
 namespace wheel {
 
 struct Setup {
+  Kind kind;
+  double start_time;  // s
   const WheelFormulation* formulation;
   WheelParameters wheel;  // its `s` is zero here: the one in force is part of the run
   FrictionLaw friction_law = exact_law;
@@ -15,12 +17,15 @@ struct Setup {
   SolverMethod method = automatic_method;
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y, a level road, choices automatic
   bool keep_contact;
+  double mu_max;                         // the road's coefficient of friction; 0: not checked
   double tolerance;                      // relative, of the whole solution
   double start[WHEEL_MAX_STATES];        // the initial state
   double tilting;                        // rad/s, initial rate of turning about e1 and e2
   double own_time;                       // s, the wheel's own time scale
   double longest_step;                   // s
+  double length;                         // m, r_0 + r
   double weight;                         // N, scale of the normal force
+  double rate_scale, moment_scale;       // rad/s, N m, of margins; powers of two, so that scaling rounds nothing
   double slow_scales[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly
 };
 

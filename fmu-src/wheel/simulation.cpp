@@ -1,4 +1,4 @@
-// A run from its parameters to its initial state, and what is read of it. How it moves on is in advance.cpp.
+// A run from its parameters to its initial state, and what is read of it.
 #include "simulation.hpp"
 
 #include <algorithm>
@@ -8,145 +8,152 @@
 
 #include "checks.hpp"
 #include "digits.hpp"
+#include "law.hpp"
 
 namespace wheel {
 
-void Reporter::tell(Topic topic, const char* format, ...) const {
+void Reporter::log(Topic topic, const char* format, ...) const {
   if (!wants(topic)) return;
-  char sentence[512];
+  char message[512];
   std::va_list arguments;
   va_start(arguments, format);
-  std::vsnprintf(sentence, sizeof sentence, format, arguments);
+  std::vsnprintf(message, sizeof message, format, arguments);
   va_end(arguments);
-  take(owner, topic, sentence);
+  take(owner, topic, message);
 }
 
 void Simulation::reset() {
-  const Kind kind = demand_.kind;
-  demand_ = Demand();
-  demand_.kind = kind;
-  run_ = Run();
-  fresh_ = Fresh::nothing;
+  const Kind own = kind();
+  demand_.change() = Demand();
+  demand_.change().kind = own;
+  run_.change() = Run();
 }
 
 void Simulation::set_experiment(double start_time, double stop_time, double tolerance) {
   const double taken = tolerance > 0 ? std::clamp(tolerance, tightest_tolerance, loosest_tolerance) : default_tolerance;
-  demand_.start_time = start_time;
-  demand_.stop_time = stop_time;
-  demand_.tolerance = taken;
+  Demand& demand = demand_.change();
+  demand.start_time = start_time;
+  demand.stop_time = stop_time;
+  demand.tolerance = taken;
   if (tolerance > 0 && tolerance != taken)
-    reporter_.tell(Topic::warning, "The tolerance %s is outside [1e-13, 0.0001]; %s is used.",
-                   support::Digits(tolerance, 6).text, support::Digits(taken, 6).text);
+    reporter_.log(Topic::warning, "The tolerance %s is outside [%s, %s]; %s is used.",
+                  support::Digits(tolerance, 6).text, support::Digits(tightest_tolerance, 6).text,
+                  support::Digits(loosest_tolerance, 6).text, support::Digits(taken, 6).text);
+}
+
+double Simulation::stored(unsigned variable) const {
+  return variable < first_input ? demand_->parameters[variable] : demand_->inputs[variable - first_input][0];
 }
 
 void Simulation::store(unsigned variable, double value) {
-  if (run_.phase == Phase::faulty || run_.phase == Phase::initial) run_.phase = Phase::initializing;
-  double& stored = variable < first_input ? demand_.parameters[variable] : demand_.inputs[variable - first_input][0];
-  if (stored == value) return;
-  stored = value;
-  demand_.changed = true;
-  fresh_ = std::min(fresh_, Fresh::state);
-  if (demand_.kind == Kind::model_exchange && is_running(run_.phase)) take_at_once();
+  if (phase() == Phase::faulty || phase() == Phase::initial) enter(Phase::initializing);
+  if (stored(variable) == value) return;
+  Demand& demand = demand_.change();
+  (variable < first_input ? demand.parameters[variable] : demand.inputs[variable - first_input][0]) = value;
+  demand.changed = true;
+  if (kind() == Kind::model_exchange && is_running(phase())) take_at_once(setup_, demand, run_.change());
 }
 
 void Simulation::set_input_derivative(unsigned variable, int order, double value) {
-  demand_.inputs[variable - first_input][order] = value / factorial[order];
-  demand_.changed = true;
-  fresh_ = std::min(fresh_, Fresh::state);
+  Demand& demand = demand_.change();
+  demand.inputs[variable - first_input][order] = value / factorial[order];
+  demand.changed = true;
 }
 
 bool Simulation::prepare(bool report) {
   const Reporter reporter = report ? reporter_ : Reporter();
-  run_ = Run();
-  run_.phase = Phase::faulty;
-  if (!check_values(demand_, reporter)) return false;
-  setup_ = setup_of(demand_);
-  put_in_force(setup_, demand_, 0, setup_.start, run_.in_force);
-  std::copy_n(setup_.start, setup_.formulation->states, run_.y);
-  demand_.changed = orbit_ready_ = false;
-  fresh_ = Fresh::state;
-  if (check_start(reporter)) run_.phase = Phase::initial;
-  return run_.phase == Phase::initial;
+  Run& run = run_.change();
+  run = Run();
+  run.phase = Phase::faulty;
+  solution_.orbit_until = Solution::none;
+  if (!check_values(*demand_, reporter)) return false;
+  setup_ = setup_of(*demand_);
+  put_in_force(setup_, *demand_, 0, setup_.start, run.in_force);
+  std::copy_n(setup_.start, setup_.formulation->states, run.y);
+  demand_.change().changed = false;
+  if (check_start(*demand_, reading(), reporter)) run.phase = Phase::initial;
+  return phase() == Phase::initial;
 }
 
 bool Simulation::start() {
-  const bool exchanged = demand_.kind == Kind::model_exchange;
-  const bool sound = prepare() && (!exchanged || starts_inside());
-  run_.phase = !sound ? Phase::without_start : exchanged ? Phase::event_mode : Phase::at_start;
+  const bool exchanged = kind() == Kind::model_exchange;
+  const bool sound = prepare() && (!exchanged || starts_inside(setup_, *run_, reporter_));
+  enter(!sound ? Phase::without_start : exchanged ? Phase::event_mode : Phase::at_start);
   return sound;
 }
 
 void Simulation::close() {
-  if (run_.phase != Phase::ended) sum_up();
-  freeze(Phase::closed);
+  if (phase() != Phase::ended) log_summaries(setup_, *run_, reporter_);
+  freeze(run_.change(), solution_, Phase::closed);
 }
 
-// To a phase without further steps: the solution is not needed any more.
-void Simulation::freeze(Phase phase) {
-  y_now();
-  run_.counted = counters();
-  run_.phase = phase;
+solver::Outcome Simulation::advance(double t) {
+  return wheel::advance(setup_, demand_.change(), run_.change(), solution_, reporter_, t - demand_->start_time);
 }
 
-const double* Simulation::y_now() {
-  if (fresh_ == Fresh::nothing) {
-    run_.phase == Phase::unfolded ? orbit_.read(run_.t, run_.y) : solver_.read(run_.t, run_.y);
-    fresh_ = Fresh::state;
-  }
-  return run_.y;
+void Simulation::set_time(double t) {
+  Run& run = run_.change();
+  run.t = run.y_time = t - demand_->start_time;
 }
 
-// The counts of the run: those of the solver at work and those before it was last started from nothing.
-solver::Counters Simulation::counters() const {
-  const solver::Counters& a = run_.counted;
-  const solver::Counters b = run_.phase == Phase::stepping ? solver_.counters() : solver::Counters{};
-  return {a.steps + b.steps, a.rhs + b.rhs, a.jacobians + b.jacobians, a.roots + b.roots, a.restarts + b.restarts};
+void Simulation::set_states(const double* x) { std::copy_n(x, state_count, run_.change().y); }
+
+void Simulation::set_state(int index, double value) {
+  Run& run = run_.change();
+  run.y[index] = value;
+  decide_law(setup_, run.t, run.y, run.in_force);
+}
+
+bool Simulation::decide() {
+  Event ending;
+  const bool bends = wheel::decide(setup_, run_.change(), reporter_, &ending);
+  if (ending != Event::none) end_run(setup_, ending, run_.change(), solution_, reporter_);
+  return bends;
 }
 
 // The scene at the present instant, with what was set since the last step.
-WheelScene Simulation::scene_now() {
-  WheelScene scene = run_.in_force.scene_at(run_.t);
-  if (demand_.changed) {
-    InForce next = run_.in_force;
-    put_in_force(setup_, demand_, run_.t, y_now(), next);
+WheelScene Simulation::scene_now() const {
+  WheelScene scene = run_->in_force.scene_at(run_->t);
+  if (demand_->changed) {
+    InForce next = run_->in_force;
+    put_in_force(setup_, *demand_, run_->t, run_->y, next);
     scene = next.scene;
   }
   scene.ground = WHEEL_GROUND_BY_FORCE;
   return scene;
 }
 
-Present Simulation::present() {
-  return {setup_.formulation, y_now(), scene_now(), &demand_.inputs, counters(), run_.transitions};
+Present Simulation::present() const {
+  return {setup_.formulation, run_->y, scene_now(), &demand_->inputs, counters_of(*run_, solution_), run_->transitions};
 }
 
 Reading& Simulation::reading() {
-  if (fresh_ != Fresh::reading) reading_.set(present());
-  fresh_ = Fresh::reading;
+  if (!reading_.is_of(version())) {
+    state_now(run_.change(), solution_);
+    reading_.set(present(), version());
+  }
   return reading_;
 }
-
-double Simulation::value(unsigned variable) {
-  if (variable < first_input) return demand_.parameters[variable];
-  if (variable < stored_count) return demand_.inputs[variable - first_input][0];
-  return row_of(variable).read(reading());
-}
-
-double Simulation::rate(unsigned variable) { return row_of(variable).read_rate(reading()); }
 
 // The same as it answers a change of one known: a brake that is not in use has the law that it would have in use. In
 // model exchange that law waits for an event.
 Present Simulation::present_for(unsigned known) {
+  state_now(run_.change(), solution_);
   Present now = present();
-  const bool brake = known == first_input + brake_input && demand_.kind == Kind::co_simulation;
-  if (brake && now.scene.friction.kind == WHEEL_FRICTIONLESS)
-    now.scene.friction = friction_at(setup_, now.scene, true, now.y);
+  const bool brake = known == first_input + brake_input && kind() == Kind::co_simulation;
+  if (!brake || now.scene.friction.kind != WHEEL_FRICTIONLESS) return now;
+  InForce used = run_->in_force;
+  if (demand_->changed) put_in_force(setup_, *demand_, run_->t, now.y, used);
+  used.inputs.braked = true;
+  decide_law(setup_, run_->t, now.y, used);
+  now.scene.friction = used.scene.friction;
   return now;
 }
 
 // Of co-simulation's outputs only the reactions depend on the inputs of the same instant.
 double Simulation::sensitivity(unsigned unknown, unsigned known) {
   const auto component = row_of(unknown).reaction_rate;
-  const bool exchanged = demand_.kind == Kind::model_exchange && has_begun(run_.phase);
+  const bool exchanged = kind() == Kind::model_exchange && has_begun(phase());
   if (exchanged || (!component && row_of(unknown).role == Role::local)) return partial(unknown, known);
   if (!component) return 0;
   WheelLoad unit = {};
@@ -154,6 +161,30 @@ double Simulation::sensitivity(unsigned unknown, unsigned known) {
   Reading answer;
   answer.set(present_for(known));
   return component(answer.response(unit));
+}
+
+// By differences of fourth order, the law and the sign of N kept. Steps are small parts of what each known turns on.
+double Simulation::partial(unsigned unknown, unsigned known) {
+  constexpr double share = 1e-3;
+  double y[WHEEL_MAX_STATES], scales[WHEEL_MAX_STATES];
+  Present now = present_for(known);
+  std::copy_n(now.y, WHEEL_MAX_STATES, y);
+  scales_at(setup_, 0, scales);
+  now.y = y;
+  const int state = kind() == Kind::model_exchange ? state_index_of(known) : -1;
+  double& place = state >= 0 ? y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
+  double h = state >= 0 ? scales[state] : setup_.weight;
+  if (state == setup_.formulation->tilt_index) h *= std::sin(place);
+  const bool soft = state == setup_.formulation->spin_index && now.scene.friction.kind == WHEEL_REGULARIZED;
+  h = share * (soft ? std::fmin(h, setup_.omega_s) : h);
+  Reading reading;
+  const double centre = place;
+  const auto value_at = [&](double steps) {
+    place = centre + steps * h;
+    reading.set(now);
+    return row_of(unknown).read(reading);
+  };
+  return (8 * (value_at(1) - value_at(-1)) - (value_at(2) - value_at(-2))) / (12 * h);
 }
 
 }  // namespace wheel

@@ -1,42 +1,37 @@
-// One wheel in motion: what the caller demands, the setup decided once, the run, and its solution step by step.
+// One wheel behind FMI: what a caller demands, the setup that follows, the run and its solution. The functions that
+// move the run are in advance.hpp and exchange.hpp; what remains here is what FMI asks for.
 //
-// Knows no FMI. Times are the caller's; the solver runs on its own clock, zero at the start, so that a start time of
-// 1e9 s costs no digits. Messages go to the Reporter as finished sentences.
+// Knows no FMI types. Times are the caller's; the run has its own clock, zero at the start, so that a start time of 1e9
+// s costs no digits. Messages go to the Reporter complete.
 #pragma once
 
-#include <array>
 #include <cstddef>
 
-#include "motion.hpp"
-#include "orbit.hpp"
+#include "advance.hpp"
+#include "exchange.hpp"
 #include "reading.hpp"
 #include "reporter.hpp"
-#include "solver.hpp"
 #include "variables.hpp"
+#include "versioned.hpp"
 
 namespace wheel {
 
-// Of model exchange.
-inline constexpr int state_count = WHEEL_REDUCED_STATES, indicator_count = 3;
-// The place of a variable among the states, or -1.
-int state_of(unsigned variable);
-
 class Simulation {
  public:
-  Simulation(const Reporter& reporter, Kind kind) : reporter_(reporter) { demand_.kind = kind; }
+  Simulation(const Reporter& reporter, Kind kind) : reporter_(reporter) { demand_.change().kind = kind; }
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
   // As new: start values, nothing computed.
   void reset();
   // What the caller begins: initialization, or a mode of model exchange.
-  void enter(Phase phase) { run_.phase = phase; }
+  void enter(Phase phase) { run_.change().phase = phase; }
   // The end of initialization: false if there is no initial state.
   bool start();
   // The caller ends the run.
   void close();
-  Phase phase() const { return run_.phase; }
-  Kind kind() const { return demand_.kind; }
+  Phase phase() const { return run_->phase; }
+  Kind kind() const { return demand_->kind; }
 
   // stop_time: infinite for none. tolerance <= 0: the default one.
   void set_experiment(double start_time, double stop_time, double tolerance);
@@ -46,36 +41,38 @@ class Simulation {
   void set_input_derivative(unsigned variable, int order, double value);
 
   // Before the end of the initialization: the initial state from the present parameters, true if it exists. Else one
-  // sentence per fault through the Reporter.
+  // message per fault through the Reporter.
   bool prepare(bool report = true);
 
   // To the caller's time t. `stepped`: it was reached; `event`: the model ended at time(); `failed`: the state is that
   // before the call.
   solver::Outcome advance(double t);
 
-  double time() const { return demand_.start_time + run_.t; }
-  double stop_time() const { return demand_.stop_time; }
-  // What ended the model, to stand behind "the wheel"; null while nothing has.
-  const char* ending() const { return ending_of(run_.ended_by); }
-  // The value of a variable now; inputs just set take effect at once.
-  double value(unsigned variable);
-  // Its time derivative, for outputs.
-  double rate(unsigned variable);
+  double time() const { return demand_->start_time + run_->t; }
+  double stop_time() const { return demand_->stop_time; }
+  bool has_ended() const { return run_->ended_by != Event::none; }
+  // What ended the model, to stand behind "the wheel".
+  Ending ending() const { return ending_of(setup_, run_->ended_by); }
+  // What was set of a variable below stored_count.
+  double stored(unsigned variable) const;
+  // The calculated variables now; inputs just set take effect at once. Valid until the next call that changes anything.
+  Reading& reading();
+  double value(unsigned variable) {
+    return variable < stored_count ? stored(variable) : row_of(variable).read(reading());
+  }
   // d unknown / d known at this instant, of a calculated variable by an input, during a run in model exchange by a
   // state too; zero for what depends on inputs only through time.
   double sensitivity(unsigned unknown, unsigned known);
 
-  // Model exchange (exchange.cpp): x are the state_count states of wheel_euler; derivatives and indicators are false
-  // where they are not finite. An event mode decides the law of friction and whether the model ends: true where it
-  // changed a state.
+  // Model exchange: see exchange.hpp. `decide` ends the run where the model ends.
   void set_time(double t);
   void set_states(const double* x);
   void set_state(int index, double value);
-  const double* states() { return y_now(); }
-  void nominals(double* x) const;
-  bool derivatives(double* x_dot);
-  bool indicators(double* z);
-  bool has_event();
+  const double* states() { return run_->y; }
+  void nominals(double* x) const { scales_at(setup_, run_->y[setup_.formulation->spin_index], x); }
+  bool derivatives(double* x_dot) { return wheel::derivatives(setup_, run_.change(), x_dot); }
+  bool indicators(double* z) { return wheel::indicators(setup_, run_.change(), z); }
+  bool has_event() { return wheel::has_event(setup_, run_.change()); }
   bool decide();
 
   // Demand, run and the solver's history as portable bytes with a checksum. load_state returns null, or why the bytes
@@ -86,75 +83,19 @@ class Simulation {
   const char* load_state(const unsigned char* bytes, std::size_t size, bool foreign);
 
  private:
-  bool check_start(const Reporter& reporter);
   void write(support::Archive& archive);
-
-  const double* y_now();
-  void freeze(Phase phase);
-  solver::Counters counters() const;
-  WheelScene scene_now();
-  Present present();
+  WheelScene scene_now() const;
+  long long version() const { return demand_.version() + run_.version(); }
+  Present present() const;
   Present present_for(unsigned known);
-  Reading& reading();
-
-  // advance.cpp
-  bool knows(double t) const;
-  bool has_changed() const;
-  solver::Outcome take_demand();
-  solver::Outcome begin();
-  solver::Outcome start_solver(bool again);
-  solver::Outcome proceed(double t);
-  solver::Outcome step_to(double t);
-  solver::Outcome pass_event();
-  solver::Outcome pass_transition();
-  solver::Outcome pass_layer();
-  solver::Outcome pass_contact();
-  void announce_transition(const WheelFriction& before);
-  void tell_pull(double t);
-  void sum_up() const;
-  void move_to(double t);
-  solver::Outcome advance_by_stages(double t);
-  void arrive(double t);
-  void end_run();
-  void end_as(Event event);
-  void fail(const Run& before, bool changed);
-
-  // exchange.cpp
-  struct Margins {
-    double friction, flat, contact;
-  };
-  std::array<double, WHEEL_MAX_STATES> trial() const;
-  void take_at_once();
-  void decide_law();
-  double friction_margin() const;
-  double friction_rate();
-  Margins margins();
-  void decide_contact(double time);
-  bool starts_inside();
   double partial(unsigned unknown, unsigned known);
 
-  // on_orbit.cpp
-  struct Shape {
-    double parameters[first_input] = {}, tolerance = 0;  // 0: no orbit
-    bool operator==(const Shape&) const = default;
-  };
-  Shape shape() const;
-  bool enter_orbit();
-  void report_pulls_of_orbit(double t);
-
   Reporter reporter_;
-  Demand demand_;
+  Versioned<Demand> demand_;
   Setup setup_ = {};  // of the demand, from the first state on
-  Run run_;
-  Owner owner_ = {setup_, run_.in_force};
-  solver::Solver solver_;
-  orbit::Orbit orbit_;
-  Shape orbit_shape_;              // of orbit_
-  bool orbit_ready_ = false;       // orbit_ is that of the present run
-  double orbit_until_ = 0;         // s, own clock: how far it can be read
-  const char* failure_ = nullptr;  // why the last call failed
+  Versioned<Run> run_;
+  Solution solution_;
   Reading reading_;
-  enum class Fresh { nothing, state, reading } fresh_ = Fresh::nothing;  // what is known of the present instant
 };
 
 }  // namespace wheel

@@ -6,12 +6,13 @@
 
 #include "bytes.hpp"
 #include "checks.hpp"
+#include "law.hpp"
 #include "simulation.hpp"
 
 namespace wheel {
 namespace {
 
-constexpr std::uint64_t mark = 0x3530554d46484557;  // "WEHFMU05": a change of the layout raises the number
+constexpr std::uint64_t mark = 0x3630554d46484557;  // "WEHFMU06": a change of the layout raises the number
 
 struct Header {
   std::uint64_t mark, size, checksum;
@@ -32,7 +33,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("whose solver moves the wheel").count(demand.kind, 0, 1);
   archive("something was set since the last step").count(demand.changed, 0, 1);
   archive("phase").count(run.phase, 0, static_cast<int>(Phase::count) - 1);
-  archive("event that ended the model").count(run.ended_by, 0, static_cast<int>(Event::count) - 1);
+  archive("event that ended the model").count(run.ended_by, 0, event_count - 1);
   archive("s in force, m").range(now.scene.wheel.s, 0, archive.greatest);
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
@@ -42,9 +43,11 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("time reached, s").number(run.t);
   archive("time of the last change, s").range(run.last_change, 0, archive.greatest);
   archive("state").numbers(run.y, WHEEL_MAX_STATES);
-  archive("whether the ground presses or pulls").count(now.scene.ground, WHEEL_GROUND_BY_FORCE, WHEEL_GROUND_PULLS);
-  archive("pulls of the ground").tally(run.pulls);
-  archive("time of the last pull, s").number(run.last_pull);
+  for (int i = 0; i < event_count; ++i) {
+    archive("whether an observed event lies below zero").count(now.below[i], 0, 1);
+    archive("occurrences of an observed event").tally(run.tallies[i].count);
+    archive("time of its last occurrence, s").number(run.tallies[i].last);
+  }
   archive("transitions of the friction").tally(run.transitions);
   archive("steps before the solver started").tally(counted.steps);
   archive("evaluations before the solver started").tally(counted.rhs);
@@ -56,7 +59,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
 // Whether the law is one that put_in_force could have chosen.
 bool law_fits(const Setup& setup, const InForce& now) {
   const bool exact = setup.friction_law == exact_law, outside = now.layer == Layer::outside;
-  const bool waits = setup.formulation == &wheel_euler;  // model exchange: the law waits for the next event
+  const bool waits = setup.kind == Kind::model_exchange;  // the law waits for the next event
   const bool none = now.scene.wheel.s == 0 && !now.inputs.braked, some = waits || !none;
   if (now.layer != Layer::none && (none || waits || exact || setup.method != automatic_method)) return false;
   switch (now.scene.friction.kind) {
@@ -74,16 +77,30 @@ bool law_fits(const Setup& setup, const InForce& now) {
   return false;
 }
 
+// Whether the run has ended by an event exactly where its phase says so.
+bool end_fits(const Setup& setup, const Run& run) {
+  const bool over = run.phase == Phase::ended || run.phase == Phase::closed;
+  if (run.ended_by == Event::none) return run.phase != Phase::ended;
+  return over && ends_run(row_of(run.ended_by), setup);
+}
+
+// Events that are observed, and no others, may lie below zero and be counted.
+bool observed_fit(const Setup& setup, const Run& run) {
+  for (int i = 0; i < event_count; ++i) {
+    const bool observed = i > 0 && is_observed(row_of(static_cast<Event>(i)), setup);
+    if (!observed && (run.in_force.below[i] || run.tallies[i].count != 0)) return false;
+  }
+  return true;
+}
+
 // Completes a run that was read by what follows from its demand. Null where a run can have been in this state, else
 // what is wrong with it.
 const char* complete(const Demand& demand, Setup& setup, Run& run) {
-  if (run.phase == Phase::faulty) run.phase = Phase::initializing;  // the faults are told again
-  const bool over = run.phase == Phase::ended || run.phase == Phase::closed;
-  if ((run.phase == Phase::ended || run.ended_by != Event::none) && !(over && ending_of(run.ended_by)))
-    return "no such event ends a run";
-  if (!has_state(run.phase)) return nullptr;
+  if (run.phase == Phase::faulty) run.phase = Phase::initializing;  // the faults are logged again
+  if (!has_state(run.phase)) return run.ended_by == Event::none ? nullptr : "no such event ends a run";
   if (!check_values(demand, Reporter())) return "parameters and inputs describe no wheel";
   setup = setup_of(demand);
+  run.y_time = run.t;
   InForce& now = run.in_force;
   const double s_in_force = now.scene.wheel.s;
   now.scene.wheel = setup.wheel;
@@ -91,9 +108,10 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
   now.scene.load = load_of(now.inputs.c);
   now.inputs.classify();
+  now.set_below(Event::lost_contact, now.pulls());
+  if (!end_fits(setup, run)) return "no such event ends a run";
   if (!law_fits(setup, now)) return "the law of friction does not fit s and the brake";
-  const bool by_force = now.scene.ground == WHEEL_GROUND_BY_FORCE, may_pull = setup.keep_contact;
-  if (by_force || (now.pulls() && !may_pull)) return "the ground neither presses nor pulls";
+  if (!observed_fit(setup, run)) return "an event is counted that cannot be observed";
   if (run.phase == Phase::unfolded && !is_unfoldable(setup, now)) return "what acts cannot be unfolded";
   const bool goes_back = demand.kind == Kind::model_exchange;  // the caller's solver takes trial steps back
   if (!goes_back && (run.last_change > run.t || now.inputs.origin > run.t))
@@ -110,8 +128,8 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
 }  // namespace
 
 void Simulation::write(support::Archive& archive) {
-  visit(archive, demand_, run_);
-  if (run_.phase == Phase::stepping) solver_.save_history(archive);
+  visit(archive, demand_.change(), run_.change());
+  if (phase() == Phase::stepping) solution_.solver.save_history(archive);
 }
 
 std::size_t Simulation::state_size() {
@@ -121,7 +139,7 @@ std::size_t Simulation::state_size() {
 }
 
 void Simulation::save_state(unsigned char* bytes) {
-  if (has_state(run_.phase)) y_now();
+  if (has_state(phase())) state_now(run_.change(), solution_);
   support::Archive archive = support::Archive::writing(bytes + sizeof(Header));
   write(archive);
   const std::size_t size = archive.bytes();
@@ -147,17 +165,19 @@ const char* Simulation::load_state(const unsigned char* bytes, std::size_t size,
   Reading reading;
   reading.set({setup.formulation, run.y, run.in_force.scene_at(run.t), nullptr, {}, 0});
   if (foreign && has_state(run.phase) && !is_inside(reading)) return "the state is outside the model";
-  if (demand.kind != demand_.kind) return "they belong to an instance of the other kind";
+  if (demand.kind != kind()) return "they belong to an instance of the other kind";
   if (run.phase != Phase::stepping && !archive.is_sound()) return "bytes are left over";
-  demand_ = demand;
+  demand_.change() = demand;
   setup_ = setup;
-  run_ = run;
-  fresh_ = Fresh::state;
-  orbit_ready_ = false;
-  if (run.phase != Phase::stepping ||
-      (solver_.restore_history(problem_of(owner_), archive) && solver_.step_start() <= run.t && solver_.reaches(run.t)))
+  run_.change() = run;
+  solution_.orbit_until = Solution::none;
+  if (run.phase != Phase::stepping) return nullptr;
+  solver::Solver& solver = solution_.solver;
+  solution_.owner = {&setup_, &run_.change().in_force};
+  if (solver.restore_history(problem_of(solution_.owner), archive) && solver.step_start() <= run.t &&
+      solver.reaches(run.t))
     return nullptr;
-  run_.phase = Phase::failed;
+  enter(Phase::failed);
   return "the history of the solver could not be restored";
 }
 

@@ -65,13 +65,13 @@ constexpr Access readers[] = {
 #undef REACTION
 #undef AT
 
-constexpr Row stored(const char* name, Type type, Role role, double start, double min, double max) {
+constexpr Row stored_row(const char* name, Type type, Role role, double start, double min, double max) {
   const double most = role == Role::input ? strongest : unlimited;
   return {name, type, role, start, std::max(min, -most), std::min(max, most), nullptr, nullptr, nullptr};
 }
 
 template <Computed variable>
-constexpr Row computed(const char* name, Type type, Role role) {
+constexpr Row computed_row(const char* name, Type type, Role role) {
   constexpr auto reads_it = [](const Access& reader) { return reader.variable == variable; };
   static_assert(std::count_if(std::begin(readers), std::end(readers), reads_it) == 1, "one reader for each");
   const Access& r = *std::find_if(std::begin(readers), std::end(readers), reads_it);
@@ -79,8 +79,8 @@ constexpr Row computed(const char* name, Type type, Role role) {
 }
 
 constexpr Row rows[] = {
-#define STORED(name, type, role, start, min, max) stored(#name, Type::type, Role::role, start, min, max),
-#define COMPUTED(name, type, role) computed<Computed::name>(#name, Type::type, Role::role),
+#define STORED(name, type, role, start, min, max) stored_row(#name, Type::type, Role::role, start, min, max),
+#define COMPUTED(name, type, role) computed_row<Computed::name>(#name, Type::type, Role::role),
 #include "variables.inc"
 #undef STORED
 #undef COMPUTED

@@ -14,14 +14,17 @@ enum class Type : unsigned char { real, integer, boolean };
 enum class Role : unsigned char { parameter, tunable, input, output, local };
 
 // Value references of parameters and inputs, which keep a value; the others are computed on request.
+namespace stored {
 enum Variable : unsigned {
 #define STORED(name, ...) name,
 #define COMPUTED(...)
 #include "variables.inc"
 #undef STORED
 #undef COMPUTED
-  stored_count,
+  count,
 };
+}  // namespace stored
+inline constexpr unsigned stored_count = stored::count;
 
 // Value references of the calculated variables.
 enum class Computed : unsigned {
@@ -37,7 +40,7 @@ enum class Computed : unsigned {
 inline constexpr unsigned variable_count = static_cast<unsigned>(Computed::end);
 
 // F_X F_Y F_Z M_1 M_2 M_3 M_brake, the last of the stored variables.
-inline constexpr unsigned first_input = F_X;
+inline constexpr unsigned first_input = stored::F_X;
 
 enum Formulation : int { automatic_formulation = 1, reduced_formulation, multibody_formulation };
 enum FrictionLaw { exact_law = 1, regularized_law };

@@ -13,6 +13,7 @@ import numpy as np
 from fmpy.fmi2 import fmi2EventInfo
 from support import driver
 from support.driver import DISCARD, ERROR, OK, FMU2Wheel
+from support.exchange import INDICATORS
 
 STATES = ("instantiated", "initialization", "step complete", "step failed", "terminated", "error")
 
@@ -61,7 +62,7 @@ _EXCHANGE_ARGUMENTS = {
     "fmi2SetTime": (c_double(1.0),),
     "fmi2SetContinuousStates": ((c_double * 8)(0, 0, 0, 1.2, 0, 0, 0, -2.0), c_size_t(8)),
     **{function: ((c_double * 8)(), c_size_t(8)) for function in EXCHANGE if function.startswith("fmi2Get")},
-    "fmi2GetEventIndicators": ((c_double * 3)(), c_size_t(3)),
+    "fmi2GetEventIndicators": ((c_double * len(INDICATORS))(), c_size_t(len(INDICATORS))),
 }
 
 

@@ -111,8 +111,11 @@ def place_of(w, row: str) -> int:
     of_phase = ("phase", "ended by", "s", "law", "sigma", "layer", "origin")
     t = phase + len(of_phase) + inputs
     places = {"stop time": stop, "tolerance": stop + 1, **{name: phase + k for k, name in enumerate(of_phase)}}
-    places |= {"t": t, "last change": t + 1, "y": t + 2, "ground": t + 14, "pulls": t + 15, "transitions": t + 17}
-    return places[row]
+    places |= {"t": t, "last change": t + 1, "y": t + 2}
+    of_events = t + 14  # for each: whether it lies below zero, how often it occurred, when it last did
+    places |= {"below": of_events + 3 * LOST_CONTACT, "pulls": of_events + 3 * LOST_CONTACT + 1}
+    places |= {"below flat": of_events + 3 * FELL_FLAT, "times flat": of_events + 3 * FELL_FLAT + 1}
+    return (places | {"transitions": of_events + 3 * EVENTS})[row]
 
 
 def forged(w, blob: bytes, **changes: int | float) -> bytes:
@@ -124,7 +127,7 @@ def forged(w, blob: bytes, **changes: int | float) -> bytes:
 
 
 CREATED, INITIALIZING, FAULTY, INITIAL, AT_START, STEPPING, UNFOLDED, EVENT_MODE, CONTINUOUS_TIME, ENDED = range(10)
-SPIN_CHANGES, FELL_FLAT = 1, 5
+SPIN_CHANGES, LOST_GRIP, LOST_CONTACT, FELL_FLAT, EVENTS = range(4, 9)  # of the list in wheel/run.hpp
 
 
 def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
@@ -135,7 +138,7 @@ def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
     wrong = [{"phase": phase} for phase in (13, EVENT_MODE, 2**63, AT_START, INITIAL, STEPPING)]
     wrong += [{"stop_time": np.nan}, {"stop_time": -np.inf}, {"tolerance": 1.0}, {"t": -1.0}, {"t": np.inf}]
     wrong += [{"last_change": 9.0}, {"origin": 9.0}, {"s": -1.0}, {"s": 0.1}, {"law": 0}, {"law": 2}]
-    wrong += [{"ground": 0}, {"ground": 3}]
+    wrong += [{"below": 1}, {"below": 2}, {"below_flat": 1}, {"times_flat": 1}, {"pulls": 1}]
     wrong += [{"phase": ENDED}, {"ended_by": FELL_FLAT}, {"phase": ENDED, "ended_by": SPIN_CHANGES}, {"layer": 1}]
     for changes in wrong:
         assert running.restore(forged(running, blob, **changes)) == ERROR, changes
@@ -159,9 +162,9 @@ def test_a_law_a_ground_or_a_count_that_no_rolling_wheel_has_is_refused(wheel, k
     w = wheel().start(s=0.03, keep_contact=keep_contact)
     assert w.run([0.7])
     blob = w.serialized()
-    grounds = (0, 3) if keep_contact else (0, 2)
+    grounds = ({"below": k} for k in ((2, 3) if keep_contact else (1, 2)))
     signs = ({"sigma": x} for x in (-0.5, 0.5, 2.0, np.nan))
-    for changes in (*({"ground": k} for k in grounds), *signs, {"law": 1}, {"layer": 2}):
+    for changes in (*grounds, *signs, {"law": 1}, {"layer": 2}):
         assert w.restore(forged(w, blob, **changes)) == ERROR, changes
     first, words = place_of(w, "transitions"), words_of(blob)
     for place in range(first, first + 6):  # the counters

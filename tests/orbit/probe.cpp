@@ -4,6 +4,7 @@
 #include <limits>
 #include <new>
 
+#include "law.hpp"
 #include "motion.hpp"
 #include "orbit.hpp"
 
@@ -49,12 +50,6 @@ double disturbed(void* owner, double t, const double* y, double* y_dot) {
   return margin;
 }
 
-bool pass(void* owner, int event) {
-  if (event != static_cast<int>(wheel::Event::contact_changes)) return false;
-  static_cast<wheel::Owner*>(owner)->in_force.change_contact();
-  return true;
-}
-
 }  // namespace
 
 // A wheel with these parameters, by value reference.
@@ -77,12 +72,12 @@ PUBLIC void probe_disturb(int what, double size) { kind = what, added = size; }
 // 0 refused, 1 folded, 2 ended.
 PUBLIC int probe_build(Probe* probe) {
   wheel::InForce in_force = probe->in_force;
-  wheel::Owner owner = {probe->setup, in_force};
+  wheel::Owner owner = {&probe->setup, &in_force};
   solver::Problem problem = wheel::problem_of(owner);
   rates_of_wheel = problem.derivative;
   if (added != 0) problem.derivative = disturbed;
   const wheel::Setup& setup = probe->setup;
-  const auto kind = probe->orbit.build(problem, setup.tolerance, pass, setup.start, probe->solver);
+  const auto kind = probe->orbit.build(problem, setup.tolerance, wheel::pass_on_orbit, setup.start, probe->solver);
   const bool starts = kind != orbit::Orbit::Kind::refused && probe->orbit.start_at(problem, setup.start);
   return starts ? static_cast<int>(kind) : 0;
 }
@@ -97,8 +92,9 @@ PUBLIC void probe_read(Probe* probe, const double* t, int count, double* y, doub
 
 PUBLIC double probe_end_time(Probe* probe) { return probe->orbit.end_time(); }
 PUBLIC double probe_half_period(Probe* probe) { return probe->orbit.half_period(); }
-PUBLIC long long probe_falls_until(Probe* probe, double t) { return probe->orbit.falls_until(t); }
-PUBLIC double probe_fall(Probe* probe, long long n) { return probe->orbit.fall(n); }
+// Of N, the only event that recurs.
+PUBLIC long long probe_falls_until(Probe* probe, double t) { return probe->orbit.falls_until(0, t); }
+PUBLIC double probe_fall(Probe* probe, long long n) { return probe->orbit.fall(0, n); }
 PUBLIC long long probe_steps(Probe* probe) { return probe->solver.counters().steps; }
 
 // Seconds for one build, and for one of `count` readings at steps of dt: the best of some rounds.

@@ -107,7 +107,7 @@ def test_the_guid_is_the_digest_of_the_variables(description):
 
 CHANGES = {"name": ("theta_dot", "theta_rate"), "valueReference": ("30", "99"), "start": ("20", "21")}
 CHANGES |= {"unit": ("N.m", "N"), "variability": ("tunable", "fixed"), 'min="1" max': ("4", "5")}
-CHANGES |= {"maxOutputDerivativeOrder": ("1", "0"), "dependencies": ("31", "1")}
+CHANGES |= {"maxOutputDerivativeOrder": ("1", "0"), "dependencies": ("32", "1"), "numberOfEventIndicators": ("4", "3")}
 
 
 @pytest.mark.parametrize("attribute", CHANGES)

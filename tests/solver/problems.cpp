@@ -7,7 +7,7 @@ namespace {
 
 Case& of(void* owner) { return *static_cast<Case*>(owner); }
 
-double margin(void* owner, double t, const double* y) {
+double margin(void* owner, int, double t, const double* y) {
   const Case& c = of(owner);
   return c.by_margin ? c.by_margin(t, y) : 1;
 }
@@ -17,7 +17,7 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   c.rates(t, y, y_dot);
   for (int i = 0; i < c.states; ++i)
     if (!std::isfinite(y_dot[i])) return NAN;
-  return margin(owner, t, y);
+  return margin(owner, 0, t, y);
 }
 
 void weights(void* owner, double share, const double* y, double* w) {
@@ -25,7 +25,7 @@ void weights(void* owner, double share, const double* y, double* w) {
   for (int i = 0; i < c.states; ++i) w[i] = 1 / (share * c.tolerance * (1 + std::fabs(y[i])));
 }
 
-double watched(void* owner, double t, const double* y) { return of(owner).each_step(t, y); }
+double watched(void* owner, int, double t, const double* y) { return of(owner).each_step(t, y); }
 
 int extremes_inside(void* owner, double t_lo, double t_hi, double* instants) {
   int count = 0;

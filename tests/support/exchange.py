@@ -22,7 +22,7 @@ from .motion import Library
 Array = NDArray[np.float64]
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "theta_dot", "psi_dot", "omega_z")
 DERIVATIVES = ("X_O_dot", "Y_O_dot", "psi_dot", "theta_dot", "phi_dot", "theta_ddot", "psi_ddot", "omega_z_dot")
-INDICATORS = 3
+INDICATORS = ("spin_changes", "lost_grip", "lost_contact", "fell_flat")  # the events of model exchange
 SAMPLES = np.linspace(0, 1, 12)[1:]  # of each step, for the search of an indicator's fall
 
 
@@ -45,9 +45,12 @@ class FMU2Exchange(FMU2Wheel, FMU2Model):
         return x_dot
 
     def indicators(self) -> Array:
-        z = np.zeros(INDICATORS)
+        z = np.zeros(len(INDICATORS))
         assert self.fmi2GetEventIndicators(self.component, self._pointer(z), len(z)) == OK
         return z
+
+    def indicator(self, event: str) -> float:
+        return float(self.indicators()[INDICATORS.index(event)])
 
     def decide(self) -> fmi2EventInfo:
         """One pass of the event mode, which is enough."""

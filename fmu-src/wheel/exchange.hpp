@@ -1,0 +1,39 @@
+// Model exchange: the caller's own solver moves the wheel, and asks for derivatives, event indicators and decisions.
+//
+// The states are those of wheel_euler, in the paper's own variables. An input acts from the instant at which it is set;
+// the law of friction is decided anew at events only, by the function that co-simulation uses.
+#pragma once
+
+#include <algorithm>
+
+#include "events.hpp"
+
+namespace wheel {
+
+inline constexpr int state_count = WHEEL_REDUCED_STATES;
+// One for each event of the table that can occur in model exchange.
+int indicator_count();
+
+// The place of a variable among the states, or -1.
+int state_index_of(unsigned variable);
+
+// What was set takes effect: at once, except for the law. A changed s asks for another law, whatever the mode is.
+void take_at_once(const Setup& setup, Demand& demand, Run& run);
+
+// Out: state_count rates. A solver may try states beyond flat: there rates and margins are those of the flat wheel,
+// which are finite. False where they are not finite.
+bool derivatives(const Setup& setup, Run& run, double* x_dot);
+
+// Out: indicator_count() margins. False where they are not finite.
+bool indicators(const Setup& setup, Run& run, double* z);
+bool has_event(const Setup& setup, Run& run);
+
+// Event mode: the law that holds from here on. True where the motion bends here, a state or the law: some solvers go on
+// from a step that they took under the old law, unless the states are called new. `ending`: the event by which the run
+// ends here, or none.
+bool decide(const Setup& setup, Run& run, const Reporter& reporter, Event* ending);
+
+// Whether a run can begin: another solver cannot learn that the model ends where it starts. Else a message.
+bool starts_inside(const Setup& setup, const Run& run, const Reporter& reporter);
+
+}  // namespace wheel
