@@ -78,6 +78,12 @@ void move_to(const Setup& setup, double t, Run& run, const Solution& solution, c
   run.t = t;
 }
 
+// The next corner of a prescribed input after t that a step may meet: no step goes across it. One next to t has been met.
+double corner_of(const Setup& setup, const Inputs& inputs, double t) {
+  const double ahead = 2 * setup.longest_step;
+  return inputs.corner(t + solver::rounding_at(t) + 1e-12 * ahead, t + ahead);
+}
+
 // Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.
 Outcome step_to(const Setup& setup, double t, Run& run, Solution& solution, const Reporter& reporter) {
   solver::Solver& solver = solution.solver;
@@ -90,7 +96,9 @@ Outcome step_to(const Setup& setup, double t, Run& run, Solution& solution, cons
     }
     // CVODE may step past the communication point although an input varies: the input's polynomial may go on there, and
     // a step that is cut short costs CVODE its history. Runge-Kutta has no history to lose.
-    if (run.in_force.inputs.varies && solver.method() == solver::Method::runge_kutta) solver.stop_before(t);
+    const Inputs& inputs = run.in_force.inputs;
+    if (inputs.varies && solver.method() == solver::Method::runge_kutta) solver.stop_before(t);
+    if (inputs.varies && inputs.braked) solver.stop_before(corner_of(setup, inputs, solver.known_until()));
     Outcome outcome = solver.step();
     if (outcome == Outcome::failed) return outcome;
     work += (outcome == Outcome::event ? work_per_event : 1) * work_per_step;

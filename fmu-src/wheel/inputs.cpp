@@ -110,4 +110,20 @@ int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
   return found;
 }
 
+// Between two extremes the polynomial passes zero once: by halving, to the last bit of the time.
+double Inputs::corner(double t, double until) const {
+  const auto acts = [&](double at) { return evaluate(c[brake_input], at - origin) > 0; };
+  double ends[most_extremes + 1];
+  int pieces = extremes(t, until, ends);
+  ends[pieces++] = until;
+  for (int i = 0; i < pieces; ++i) {
+    double lo = t, hi = t = ends[i];
+    if (acts(lo) == acts(hi)) continue;
+    for (double middle = lo + 0.5 * (hi - lo); lo < middle && middle < hi; middle = lo + 0.5 * (hi - lo))
+      (acts(middle) == acts(lo) ? lo : hi) = middle;
+    return hi;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace wheel

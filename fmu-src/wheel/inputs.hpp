@@ -34,6 +34,9 @@ struct Inputs {
   void hold(double t, Polynomials& asked) const;
   // Instants strictly inside (t_lo, t_hi), ascending, at which an input has an extreme; returns their number.
   int extremes(double t_lo, double t_hi, double* instants) const;
+  // The first instant in (t, until] at which the brake's polynomial passes zero, where the capacity has a corner, s;
+  // infinite where there is none.
+  double corner(double t, double until) const;
 };
 
 // The load at the origin of the polynomials, and its rate from there on: a brake at zero can only be put on.

@@ -6,7 +6,7 @@ wheel leans: an upright one cannot see what these inputs do wrong.
 
 from __future__ import annotations
 
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from math import nextafter
 
 import numpy as np
@@ -14,9 +14,9 @@ import pytest
 from contract.properties import quick, some
 from hypothesis import given
 from hypothesis import strategies as st
-from support.bounds import beyond, within
+from support.bounds import absolute_error, beyond, within
 from support.driver import OK, Values
-from support.pieces import Piece, give, play
+from support.pieces import Piece, give, play, shifted
 
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot")
 LEANING: Values = {"theta_start": 1.2, "psi_dot_start": 0.5, "phi_dot_start": -6.0, "s": 0.03}
@@ -104,3 +104,65 @@ def test_the_bound_sees_an_input_that_is_wrong_for_a_tenth_of_a_second(wheel, ki
     """The partner: a thousandth of one input is too much in a small part of the run."""
     wrong = [*VARIED[:2], (1.2, {"M_3": (-0.099 * 1.001,), "F_Y": (3.0,), "F_Z": (-0.8,)}), VARIED[2]]
     beyond(defect(wheel, kind, VARIED, [1.25], wrong), 1000, "defect")
+
+
+OFF = 1e-6  # of three start values, to see how errors grow
+
+
+def brake_of(rng):
+    """A polynomial that falls through zero inside one second and may rise and fall again, and the instants at which it
+    passes zero."""
+    first = rng.uniform(0.05, 0.95)
+    roots = np.array([first, *rng.uniform(first + 1e-3, 2.0, rng.integers(0, 3))])
+    c = np.polynomial.polynomial.polyfromroots(roots)
+    return c / c[0] * 10 ** rng.uniform(-1.5, 1), np.sort(roots[roots < 1])
+
+
+def braked(wheel, start, brake, cuts, **choices):
+    """The states at 1 s: the brake as one polynomial, or cut where it passes zero, its pieces below zero left out."""
+    w = wheel().start(keep_contact=True, **start, **choices)
+    for begin, end in pairwise([0.0, *cuts, 1.0]):
+        acts = not cuts or np.polynomial.polynomial.polyval(0.5 * (begin + end), brake) > 0
+        piece = shifted(brake, begin) if begin == 0 else [0.0, *shifted(brake, begin)[1:]]
+        give(w, {"M_brake": piece if acts else [0.0]})
+        assert w.step_to(end) == OK, w.sentences
+    states = np.array(w.get(*STATES))
+    w.close()
+    return states
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_brake_that_passes_zero_inside_a_step_is_as_exact_as_one_cut_there(wheel, seed):
+    rng = np.random.default_rng(seed)
+    start = {"theta_start": rng.uniform(1.0, 2.1), "psi_dot_start": rng.uniform(-2, 2), "s": rng.choice([0.0, 0.01])}
+    start["phi_dot_start"] = rng.choice([-1, 1]) * 10 ** rng.uniform(-1.5, 0.7)
+    brake, passed = brake_of(rng)
+    exact = braked(wheel, start, brake, list(passed), tolerance=1e-13)
+    moved = [{**start, name: start[name] + OFF} for name in ("theta_start", "psi_dot_start", "phi_dot_start")]
+    growth = max(absolute_error(braked(wheel, m, brake, [], tolerance=1e-12), exact) / OFF for m in moved)
+
+    def worst(kind, tolerances, factor=1.0):
+        formulation, method = kind
+        choices = {"formulation": formulation, "method": method}
+        ends = [(braked(wheel, start, factor * brake, [], tolerance=t, **choices), t) for t in tolerances]
+        return max(absolute_error(end, exact) / t for end, t in ends) / max(growth, 1)
+
+    for kind in KINDS:
+        within(worst(kind, [10 ** rng.uniform(-12, -8)]), 30, "tolerances over growth")
+    tolerances = np.geomspace(1e-12, 1e-9, 7)  # Runge-Kutta's long steps see most of the corner
+    within(worst((2, 4), tolerances), 1, "tolerances over growth, Runge-Kutta")
+    beyond(worst((2, 4), tolerances, 1.001), 30, "tolerances over growth of a stronger brake")  # the partner
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind[1] in (2, 3)], ids=str)
+def test_a_method_that_is_not_cut_by_the_grid_passes_the_corner_with_the_same_bits(wheel, kind):
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        brake, ends = brake_of(rng)[0], []
+        for count in (0, 1, 20):
+            w = wheel().start(formulation=kind[0], method=kind[1], **LEANING)
+            cuts = rng.uniform(0, 1, count)  # a brake below zero cannot be set
+            cuts = cuts[np.polynomial.polynomial.polyval(cuts, brake) > 0]
+            assert play(w, [(0.0, {"M_brake": brake})], 1.0, cuts) == OK
+            ends.append(w.bits())
+        assert ends[0] == ends[1] == ends[2]
