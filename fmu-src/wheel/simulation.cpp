@@ -163,7 +163,8 @@ double Simulation::sensitivity(unsigned unknown, unsigned known) {
   return component(answer.response(unit));
 }
 
-// By differences of fourth order, the law and the sign of N kept. Steps are small parts of what each known turns on.
+// By differences of fourth order, the law and the sign of N kept. Steps are small parts of what each known turns on,
+// those of a load of the whole weight or of its own size: all but mu_required is linear in it.
 double Simulation::partial(unsigned unknown, unsigned known) {
   constexpr double share = 1e-3;
   double y[WHEEL_MAX_STATES], scales[WHEEL_MAX_STATES];
@@ -171,9 +172,11 @@ double Simulation::partial(unsigned unknown, unsigned known) {
   std::copy_n(now.y, WHEEL_MAX_STATES, y);
   scales_at(setup_, 0, scales);
   now.y = y;
+  now.scene.ground = reading().dynamics().lambda[2] > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
   const int state = kind() == Kind::model_exchange ? state_index_of(known) : -1;
   double& place = state >= 0 ? y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
-  double h = state >= 0 ? scales[state] : setup_.weight;
+  const double weight = setup_.wheel.m * setup_.length / (setup_.own_time * setup_.own_time);
+  double h = state >= 0 ? scales[state] : std::fmax(weight, std::fabs(place));
   if (state == setup_.formulation->tilt_index) h *= std::sin(place);
   const bool soft = state == setup_.formulation->spin_index && now.scene.friction.kind == WHEEL_REGULARIZED;
   h = share * (soft ? std::fmin(h, setup_.omega_s) : h);

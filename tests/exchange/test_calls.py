@@ -14,8 +14,8 @@ from equations.paper_transcription import Paper, times
 from hypothesis import given
 from hypothesis import strategies as st
 from support import equations as eq
-from support.bounds import beyond, within
-from support.driver import DISCARD, ERROR, OK
+from support.bounds import absolute_error, beyond, within
+from support.driver import DISCARD, ERROR, OK, FMU2Wheel
 from support.exchange import DERIVATIVES, INDICATORS, STATES, FMU2Exchange, Run, exchange, loaded, no_inputs
 from support.motion import Library
 
@@ -335,3 +335,73 @@ def test_nominal_values_are_the_scales_of_the_error(library: Library) -> None:
         assert wheel.fmi2GetNominalsOfContinuousStates(wheel.component, nominals, 8) == OK
     assert all(value > 0 for value in nominals)
     assert list(nominals)[:5] == pytest.approx([1.05, 1.05, 3, 1, 3])  # m: three heights of the upright wheel; rad
+
+
+WEIGHT = 20 * 9.81  # N
+LOADS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+REACTIONS = ("tau", "lambda_1", "lambda_3", "omega_z_dot", "theta_ddot", "psi_ddot")
+ONE_SIDED = np.array([-49 / 20, 6, -15 / 2, 20 / 3, -15 / 4, 6 / 5, -1 / 6])  # of order 6, at the first of 7 points
+
+
+def values_at(wheel: FMU2Wheel, known: str, values: list[float]) -> np.ndarray:
+    """REACTIONS, a row for each value of a known, which has its own value again afterwards."""
+    (own,), rows = wheel.get(known), []
+    for value in [*values, own]:
+        assert wheel.set(**{known: value}) == OK
+        rows.append(wheel.get(*REACTIONS))
+    return np.array(rows[:-1])
+
+
+def press(wheel: FMU2Wheel, share: float) -> None:
+    """Sets F_Z so that N is this share of the weight: N is linear in it on either side of zero."""
+    first = -9e3 if share > 0 else 9e3
+    rows = values_at(wheel, "F_Z", [first, 2 * first])
+    slope = (rows[1, 2] - rows[0, 2]) / first
+    assert wheel.set(F_Z=first + (share * WEIGHT - rows[0, 2]) / slope) == OK
+    assert wheel.get("lambda_3")[0] == pytest.approx(share * WEIGHT, rel=1e-6)
+
+
+def on_its_side(wheel: FMU2Wheel, known: str, h: float) -> np.ndarray:
+    """d REACTIONS / d known by a difference to that side on which |N| grows."""
+    (value,) = wheel.get(known)
+    N = values_at(wheel, known, [value, value + h])[:, 2]
+    h *= 1 if (N[1] - N[0]) * N[0] > 0 else -1
+    return ONE_SIDED @ values_at(wheel, known, [value + k * h for k in range(7)]) / h
+
+
+def jacobian_error(wheel: FMU2Wheel, knowns: tuple[str, ...], h: float, share: float) -> float:
+    """The largest difference, relative to the column, with N at this share of the weight."""
+    press(wheel, share)
+    want = np.array([on_its_side(wheel, known, h) for known in knowns]).T
+    difference = np.abs(wheel.jacobian(REACTIONS, knowns) - want)
+    return float((difference / (1e-9 + np.abs(want).max(axis=0))).max())
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_directional_derivatives_next_to_lift_off_are_those_of_the_side_on_which_the_wheel_is(
+    library: Library, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    law = {"s": rng.uniform(0.01, 0.1), "keep_contact": True, "friction_law": rng.choice([1, 2]), "omega_s": 0.3}
+    share = rng.choice([-1, 1]) * 10 ** rng.uniform(-6, -2)
+    with at_odd(library, **law) as wheel, library.wheel().start(**{**GENERAL, **law, "psi_dot_start": 0.9}) as slave:
+        wheel.place(0.3, ODD + rng.normal(0, 0.1, 8))
+        within(jacobian_error(wheel, LOADS, 50.0, share), 1e-9, "loads, model exchange")
+        within(jacobian_error(wheel, STATES[2:], 2e-3, share), 1e-6, "states, model exchange")
+        within(jacobian_error(slave, LOADS, 50.0, share), 1e-9, "loads, co-simulation")
+        want = on_its_side(wheel, "F_Z", 50.0)
+        press(wheel, -share)  # the partner: the other side
+        beyond(absolute_error(wheel.jacobian(REACTIONS, ("F_Z",))[:, 0], want), 1e-3, "derivative on the other side")
+
+
+@pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-6, 1e-9])
+def test_directional_derivatives_keep_their_digits_on_a_slope_that_is_nearly_a_wall(library: Library, off) -> None:
+    rng = np.random.default_rng(9)
+    values = {"keep_contact": True, "slope": np.pi / 2 - off, "s": 0.03, "psi_dot_start": 0.5}
+    for _ in range(10):
+        with exchange(library, **values) as wheel:
+            wheel.place(0.1, ODD + rng.normal(0, 0.1, 8))
+            within(jacobian_error(wheel, LOADS, 50.0, rng.uniform(0.5, 5)), 1e-9, "loads on a wall")
+            exact = wheel.jacobian(REACTIONS, LOADS)
+            wheel.place(0.1, ODD)  # the partner: another state
+            beyond(np.abs(wheel.jacobian(REACTIONS, LOADS) - exact).max(), 1e-4, "loads in another state")
