@@ -119,10 +119,15 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
   y[3] = 0;
 }
 
-/* The law of friction at y, where the normal force is N. Where the ground pulls (N <= 0), it has no grip. */
+/* Whether the ground has friction where the normal force is N. */
+static int grips(const WheelScene* scene, double N) {
+  return scene->ground == WHEEL_GROUND_PRESSES || (scene->ground == WHEEL_GROUND_BY_FORCE && N > 0);
+}
+
+/* The law of friction at y, where the normal force is N. */
 static AxleLaw frozen_law(const WheelScene* scene, const double* y, double N) {
   AxleLaw law = law_of(scene, y[3]);
-  if (N <= 0 && !law.branch_kept) law.grip = 0;
+  if (!grips(scene, N)) law.grip = 0;
   return law;
 }
 
@@ -168,7 +173,7 @@ static double moment_rate(const WheelScene* scene, const WheelLoad* load_dot, do
   if (scene->friction.kind != WHEEL_REGULARIZED) return rate;
   double c = cosh(omega_3 / scene->friction.omega_s);
   double kappa_dot = omega_3_dot / scene->friction.omega_s / c / c;
-  return rate + kappa_dot * (scene->wheel.s * fmax(N, 0) + scene->load.brake);
+  return rate + kappa_dot * ((grips(scene, N) ? scene->wheel.s * N : 0) + scene->load.brake);
 }
 
 /* Three parts: the load's rate and the law's own rate, exact, and the state's motion under a frozen load and law, by a

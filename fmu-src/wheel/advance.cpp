@@ -78,7 +78,8 @@ void move_to(const Setup& setup, double t, Run& run, const Solution& solution, c
   run.t = t;
 }
 
-// The next corner of a prescribed input after t that a step may meet: no step goes across it. One next to t has been met.
+// The next corner of a prescribed input after t that a step may meet: no step goes across it. One next to t has been
+// met.
 double corner_of(const Setup& setup, const Inputs& inputs, double t) {
   const double ahead = 2 * setup.longest_step;
   return inputs.corner(t + solver::rounding_at(t) + 1e-12 * ahead, t + ahead);

@@ -220,7 +220,7 @@ void log_transition(const Setup& setup, const WheelFriction& before, Run& run, c
 void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter) {
   for (const EventRow& row : event_rows) {
     const Tally& tally = run.tallies[static_cast<int>(row.event)];
-    if (tally.count > logged_one_by_one)
+    if (row.summary && tally.count > logged_one_by_one)
       reporter.log(Topic::warning, row.summary, support::Digits(static_cast<double>(tally.count)).text,
                    support::Digits(static_cast<double>(logged_one_by_one)).text, instant_of(setup, tally.last).text);
   }

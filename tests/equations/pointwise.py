@@ -50,9 +50,11 @@ def distance(a: Table, b: Table, scenes: Table) -> float:
 
 def reference_wheel(wheel: np.ndarray) -> Wheel:
     """One row of constants, its gravity as slope and direction."""
-    *constants, g, s, g_X, g_Y = wheel.tolist()
+    own = {name: float(wheel[name]) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "s")}
+    g, g_X, g_Y = (float(wheel[name]) for name in ("g", "g_X", "g_Y"))
     along = np.hypot(g_X, g_Y)
-    return Wheel(*constants, np.hypot(g, along), s, np.arctan2(along, g), np.arctan2(-g_Y, -g_X))
+    direction = np.arctan2(-g_Y, -g_X)
+    return Wheel(**own, g=np.hypot(g, along), slope=np.arctan2(along, g), slope_direction=direction)
 
 
 def referenced(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
@@ -63,8 +65,10 @@ def referenced(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
     for row, scene, motion, spin in zip(out, scenes, motions, omega_z.tolist(), strict=True):
         wheel, friction = reference_wheel(scene["wheel"]), scene["friction"]
         sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])][friction["kind"] - eq.FRICTIONLESS]
-        angles, rates = motion.tolist()[:3], motion.tolist()[3:6]
-        *loads, brake = scene["load"].tolist()
+        angles = [motion[name] for name in ("psi", "theta", "phi")]
+        rates = [motion[name] for name in ("psi_dot", "theta_dot", "phi_dot")]
+        load = scene["load"]
+        loads, brake = (load["F"].tolist(), load["M"].tolist()), float(load["brake"])
         found = accelerations(wheel, angles, rates, *loads, sigma, brake)
         if friction["kind"] in (eq.ROLLING, eq.REGULARIZED) and found.lambda_3 <= 0:
             found = accelerations(replace(wheel, s=0.0), angles, rates, *loads, sigma, brake)

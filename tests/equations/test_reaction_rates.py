@@ -17,6 +17,7 @@ from equations.paper_transcription import Paper
 from equations.pointwise import BOTH, INERTIA, LAWS, Table, relative
 
 BOUND = 1e-9
+PRESSES, PULLS = 1, 2  # WheelGround
 STEP = 1e-40
 ROWS = 5000
 
@@ -88,6 +89,22 @@ def test_rates_of_a_wheel_that_turns_fast_on_the_spot_are_as_exact() -> None:
     within(rows.error(rows.rates(eq.REDUCED), judge), 1e-10, "error")
     rows.motions["psi_dot"] *= 1 + 1e-6
     beyond(rows.error(rows.rates(eq.REDUCED), judge), 4e-7, "error")
+
+
+@BOTH
+@pytest.mark.parametrize("law", [eq.ROLLING, eq.REGULARIZED])
+def test_rates_on_a_ground_that_pulls_are_those_without_rolling_friction(formulation: eq.Formulation, law: int) -> None:
+    """Whatever the sign of N; and on a ground that presses those of the law by force, where N > 0."""
+    rows = Rows(law)
+    pressed = eq.dynamics_each(formulation, rows.scenes, rows.states(formulation))["lambda_"][:, 2] > 0
+    by_force = rows.rates(formulation)
+    rows.scenes["ground"] = PRESSES
+    assert (rows.rates(formulation)[pressed] == by_force[pressed]).all()
+    rows.scenes["ground"] = PULLS
+    pulled = rows.rates(formulation)
+    rows.scenes["wheel"]["s"] = 0
+    within(rows.error(pulled, rows.rates(formulation)), 64 * EPSILON, "error")
+    beyond(rows.error(by_force, pulled), 1e-3, "error with the friction of a ground that presses")
 
 
 @LAWS

@@ -1,0 +1,173 @@
+"""Where a road with the coefficient of friction mu_max runs out of grip: closed forms, the independent reference, and
+the same instant in every way of running.
+
+mu_required = lambda_t / N. Upright and straight, with R = r_0 + r: a braked wheel has lambda_t = m R M_brake / (J_z +
+m R^2) and N = m g; a wheel that is held on a slope alpha has tan(alpha); on a steady circle O accelerates by
+psi_dot v_O, so mu_required = |psi_dot| v_O / g.
+"""
+
+from __future__ import annotations
+
+from math import cos, pi, tan
+
+import numpy as np
+import pytest
+from reference import Solution, Start, Wheel, solve
+from support.bounds import beyond, within
+from support.closed_forms import circle_spin, rolling_inertia
+from support.driver import DISCARD, ERROR, OK
+from support.exchange import INDICATORS, exchange, loaded, no_inputs
+from support.exchange import Run as ExchangeRun
+from support.motion import Library, start_values
+from support.schedule import Schedule
+
+PAPER = Wheel()
+UPRIGHT = {"theta_start": pi / 2, "psi_start": 0.0, "phi_dot_start": -20.0}
+RAMP = 40.0  # N m/s, of the brake
+SOON = Schedule(((0.0, {"M_brake": (0.0, RAMP)}),))
+MESSAGE = "The wheel needs a coefficient of friction above mu_max = {} at t = {} s"
+
+
+def braked_instant(mu: float) -> float:
+    """M_brake R m / (J_z + m R^2) = mu m g on the ramp."""
+    R = PAPER.r_0 + PAPER.r
+    return mu * PAPER.g * rolling_inertia(PAPER) / R / RAMP
+
+
+@pytest.mark.parametrize("formulation", [1, 2, 3])
+@pytest.mark.parametrize("step", [0.01, 0.5, 3.0])
+def test_a_braked_wheel_runs_out_of_grip_at_the_closed_forms_instant(library: Library, formulation: int, step: float):
+    def end(mu: float) -> float:
+        times = np.arange(0, 3 + step / 2, step)
+        run = library.simulate(times, 1e-10, SOON, mu_max=mu, formulation=formulation, **UPRIGHT)
+        assert run.ended is not None and run.ended.startswith(MESSAGE.format(mu, "")[:-3])
+        return float(run.end or np.nan)
+
+    within(abs(end(0.5) - braked_instant(0.5)), 1e-8, "instant, s")
+    beyond(abs(end(0.501) - braked_instant(0.5)), 1e-4, "instant with another mu_max, s")
+
+
+def test_a_braked_wheel_that_is_not_checked_goes_on(library: Library) -> None:
+    assert library.simulate([0.0, 3.0], 1e-10, SOON, **UPRIGHT).end is None
+
+
+@pytest.mark.parametrize("slope", [0.05, 0.3, 0.8])
+def test_a_wheel_held_on_a_slope_needs_the_slopes_tangent(library: Library, slope: float) -> None:
+    held = {"theta_start": pi / 2, "psi_start": 0.0, "phi_dot_start": 0.0, "M_brake": 1e4, "slope": slope}
+    enough = library.simulate([0.0, 2.0], mu_max=tan(slope) * (1 + 1e-6), **held)
+    assert enough.end is None
+    lacking = library.simulate([0.0, 2.0], mu_max=tan(slope) * (1 - 1e-6), **held)
+    assert lacking.end == 0.0 and lacking.status == DISCARD
+
+
+@pytest.mark.parametrize(("theta", "psi_dot"), [(1.2, 1.5), (1.0, -2.0), (2.1, 3.0)])
+def test_a_steady_circle_needs_its_centripetal_acceleration_over_g(library: Library, theta: float, psi_dot: float):
+    omega_z = circle_spin(PAPER, theta, psi_dot)
+    start = start_values(PAPER, Start(theta=theta, psi_dot=psi_dot, phi_dot=omega_z - psi_dot * cos(theta)))
+    at = library.simulate([0.0], **start)
+    speed = float(np.hypot(at["X_O_dot"], at["Y_O_dot"])[0])
+    needed = abs(psi_dot) * speed / PAPER.g
+    within(abs(at["mu_required"][0] - needed), 1e-12, "coefficient of friction")
+    times = np.linspace(0, 1e4, 11)
+    safe = library.simulate(times, mu_max=needed * (1 + 1e-6), **start)
+    assert safe.end is None and safe.counters["n_rhs"] < 100  # unfolded: nothing is stepped through
+    assert library.simulate(times, mu_max=needed * (1 - 1e-6), **start).end == 0.0
+
+
+def random_scenes(count: int):
+    random = np.random.default_rng(31)
+    for k in range(count):
+        kinds = {
+            "s": float(random.choice([0.0, 0.0, 0.03])),
+            "slope": float(random.choice([0.0, random.uniform(0, 0.4)])),
+            "slope_direction": random.uniform(-pi, pi),
+        }
+        inertia = (0.7, 1.2) if random.random() < 0.3 else (0.9, 0.9)
+        wheel = Wheel(J_x=inertia[0], J_y=inertia[1], **kinds)
+        spin, theta = random.uniform(-9, 9), random.uniform(0.9, 2.2)
+        start = Start(theta=theta, psi_dot=random.uniform(-2, 2), theta_dot=random.uniform(-0.5, 0.5), phi_dot=spin)
+        inputs = Schedule()
+        if random.random() < 0.4:
+            force = {name: tuple(random.uniform(-9, 9, 2)) for name in ("F_X", "F_Y", "M_1", "M_3")}
+            inputs = Schedule(((0.0, force),))
+        yield k, wheel, start, inputs, float(random.uniform(0.05, 1.0))
+
+
+def margin(mu: float, run: Solution) -> np.ndarray:
+    N = run["lambda_3"]
+    return (mu * N) * np.abs(mu * N) - run["lambda_1"] ** 2 - run["lambda_2"] ** 2
+
+
+def test_instants_in_random_scenes_are_those_of_the_reference(library: Library) -> None:
+    """The limit is that needed at a random instant; the reference's margin changes sign around the FMU's."""
+    lost, instant = 0, 1e-8
+    for k, wheel, start, inputs, choice in random_scenes(240):
+        values = start_values(wheel, start)
+        free = library.simulate(np.linspace(0, 1, 201), 1e-9, inputs, **values)
+        mu = float(np.interp(choice, free.t, free["mu_required"]))
+        if not np.isfinite(mu) or mu < 1e-3:
+            continue
+        run = library.simulate([0.0, 1.0], 1e-11, inputs, mu_max=mu, **values)
+        end = run.end if run.end is not None else 1.0
+        if run.end is None or "mu_max" not in str(run.ended) or end < 2 * instant:
+            assert run.end is None or end == 0.0 or "mu_max" not in str(run.ended), (k, run.ended)
+            continue
+        times = [*np.linspace(0, end - instant, 60), end + instant, end + 1e-4]
+        want = margin(mu, solve(wheel, start, times, inputs.for_reference(), rtol=1e-12, keep_contact=True))
+        weight = (wheel.m * wheel.g) ** 2
+        if (want[-1] - want[-3]) > -1e-4 * 1e-2 * weight:  # it only touches zero: no instant to compare
+            continue
+        assert (want[:-2] > 0).all() and want[-2] < 0 and want[-1] < 0, (k, mu, end, want[-4:] / weight)
+        lost += 1
+    assert lost >= 100, lost
+
+
+FAST = {"theta_start": 1.2, "psi_dot_start": 0.3, "phi_dot_start": -6.0}  # free, symmetric: it can be unfolded
+
+
+def test_every_way_of_running_ends_at_the_same_instant(library: Library) -> None:
+    """Unfolded, stepped, under a friction that is nearly none, multibody, and by another solver."""
+    free = library.simulate(np.linspace(0, 3, 301), 1e-10, **FAST)
+    mu = 0.5 * float(free["mu_required"].max() + free["mu_required"][0])
+    ends = [
+        library.simulate([0.0, 3.0], 1e-12, mu_max=mu, **FAST, **how).end for how in ({}, {"method": 2}, {"method": 4})
+    ]
+    ends += [library.simulate([0.0, 3.0], 1e-12, mu_max=mu, formulation=3, **FAST).end]
+    with exchange(library, logging=True, mu_max=mu, **FAST) as wheel:
+        run = ExchangeRun(wheel, 1e-11, no_inputs)
+        run.to(3.0)
+        assert MESSAGE.split("{")[0] in wheel.sentences[-1]
+        ends.append(run.ended)
+    within(float(np.ptp(np.array(ends, dtype=float))), 1e-8, "spread of the instants, s")
+    with exchange(library, mu_max=1.01 * mu, **FAST) as wheel:  # the partner
+        later = ExchangeRun(wheel, 1e-11, no_inputs)
+        later.to(3.0)
+        beyond(abs((later.ended or 3.0) - ends[0]), 1e-4, "instant with another mu_max, s")
+
+
+def test_model_exchange_refuses_a_start_without_grip_and_co_simulation_ends_there(library: Library) -> None:
+    wheel = loaded(library).new()
+    assert wheel.set(mu_max=0.01, **FAST) == OK
+    assert wheel.initialise() == ERROR
+    assert wheel.sentences[-1].startswith("At the start, where N = ") and wheel.sentences[-1].endswith("mu_max = 0.01.")
+    run = library.simulate([0.0, 1.0], mu_max=0.01, **FAST)
+    assert (run.status, run.end) == (DISCARD, 0.0)
+    assert run.ended == MESSAGE.format(0.01, 0) + ", theta = 1.2 rad: a model without slip ends here."
+
+
+def test_a_ground_that_pulls_has_no_grip(library: Library) -> None:
+    """With keep_contact the ground may pull; where mu_max is given, the run ends before it does."""
+    rim = {"J_x": 0.05, "J_y": 0.05, "J_z": 0.1, "theta_start": 1.4, "phi_dot_start": 0.0, "keep_contact": True}
+    pulling = library.simulate([0.0, 0.5], 1e-10, **rim)
+    assert any("pulls" in message for message in pulling.messages)
+    run = library.simulate([0.0, 0.5], 1e-10, mu_max=2.0, **rim)
+    assert "mu_max = 2" in str(run.ended) and run["lambda_3"][-1] > 0
+
+
+def test_the_indicator_of_grip_is_positive_and_constant_where_grip_is_not_checked(library: Library) -> None:
+    with exchange(library, **FAST) as free, exchange(library, mu_max=5.0, **FAST) as checked:
+        assert free.indicator("lost_grip") == 1.0 and INDICATORS.index("lost_grip") == 1
+        needed = checked.get("mu_required")[0]
+        N, weight = checked.get("lambda_3")[0], PAPER.m * PAPER.g
+        expected = (5.0**2 - needed**2) * (N / weight) ** 2
+        within(abs(checked.indicator("lost_grip") - expected), 1e-9, "indicator")
