@@ -94,8 +94,7 @@ def test_a_freed_instance_gives_its_memory_back(wheel, method):
     heap.restype = Heap
     in_use = []
     for _ in range(40):
-        w = wheel().start(method=method)
-        assert w.step(1.0) == OK
+        w = wheel().start(method=method).by(1.0)
         w.close()
         in_use.append(heap().numbers[7])
     assert in_use[-1] - in_use[19] < 20 * 2000

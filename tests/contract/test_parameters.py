@@ -91,8 +91,7 @@ def test_a_weight_that_moves_nothing_is_none(wheel, s):
     """The time scale sqrt((r_0 + r) / g) of a wheel in motion is no measure of it where g is next to nothing."""
     places = []
     for g in (0.0, 1e-300):
-        w = wheel().start(g=g, s=s)
-        assert w.step(5.0) == OK, w.sentences
+        w = wheel().start(g=g, s=s).by(5.0)
         places.append(w.get("X_O", "theta", "psi", "phi"))
     within(absolute_error(places[0], places[1]), 64 * EPSILON, "places")
 
@@ -103,8 +102,7 @@ def test_without_a_weight_rates_of_a_thousand_times_give_the_same_motion_as_much
     places = []
     for faster in (1, 1024):
         rates = {f"{angle}_dot_start": faster * 0.25 for angle in ("psi", "theta", "phi")} | {most: 2.0 * faster}
-        w = wheel().start(g=0.0, keep_contact=True, J_x=0.95, s=0.03, **rates)
-        assert w.step(0.5 / faster) == OK
+        w = wheel().start(g=0.0, keep_contact=True, J_x=0.95, s=0.03, **rates).by(0.5 / faster)
         places.append(w.get("X_O", "theta", "psi", "phi", "n_steps"))
     assert places[0] == places[1]
 

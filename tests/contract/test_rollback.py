@@ -53,16 +53,13 @@ def test_a_restored_instance_goes_on_with_the_same_bits(wheel, scene, step):
         ahead = bits_of(w, step, range(k, k + 16))
         for restored in (w, other, fresh):
             assert restored.restore(blob) == OK
-            restored.time = k * STEP
             assert restored.bits() == now
             assert restored.serialized() == blob
             assert bits_of(restored, step, range(k, k + 16)) == ahead
         assert w.restore(blob) == OK
-        w.time = k * STEP
         assert w.set(F_X=1e-9) == OK  # the partner: the smallest push shows
         assert bits_of(w, coast, range(1))[-1] != ahead[0]
         assert w.restore(blob) == OK
-        w.time = k * STEP
 
 
 def test_snapshots_just_before_and_after_every_friction_event_go_on_with_the_same_bits(wheel, reference_events):
@@ -71,24 +68,21 @@ def test_snapshots_just_before_and_after_every_friction_event_go_on_with_the_sam
     w, other = wheel().start(s=0.03), wheel().start(s=0.03)
     modes = set()
     for t in np.sort(np.concatenate([reference_events - 1e-7, reference_events + 1e-7])):
-        assert w.step_to(t) == OK
+        w.to(t)
         modes.add(w.get("friction_mode")[0])
         assert other.restore(w.serialized()) == OK
-        other.time = w.time
         assert other.run([10.0]) == straight
     assert modes == {-1, 0, 1}
     assert w.run([10.0]) == straight
 
 
 def test_what_was_set_but_not_yet_stepped_is_part_of_the_state(wheel):
-    w = wheel().start(s=0.03)
-    assert w.step(0.5) == OK
+    w = wheel().start(s=0.03).by(0.5)
     assert w.set(F_X=3.0, s=0.02) == OK
     w.setRealInputDerivatives([w.references["M_3"]], [2], [5.0])
     blob = w.serialized()
     ahead = bits_of(w, coast, range(8))
     assert w.set(F_X=0.0, s=0.0) == OK and w.restore(blob) == OK
-    w.time = 0.5
     assert w.get("F_X", "s") == [3.0, 0.02]
     assert bits_of(w, coast, range(8)) == ahead
 
@@ -111,11 +105,10 @@ def test_a_rejected_step_leaves_no_trace(wheel):
 def test_a_brake_whose_derivative_carried_it_below_zero_is_released_and_its_state_can_be_taken(wheel):
     w, other = wheel().start(phi_dot_start=-2.0), wheel()
     assert w.set(M_brake=1.0) == OK and w.set_input_derivatives(["M_brake"], [[-20.0]]) == OK
-    assert w.step(0.125) == OK  # the polynomial arrives at -1.5 N m
+    w.by(0.125)  # the polynomial arrives at -1.5 N m
     assert w.get("M_brake") == [0.0]
     blob = w.serialized()
     assert other.restore(blob) == OK and w.restore(blob) == OK
-    other.time = w.time
     assert w.step(0.5) == other.step(0.5) == OK
     assert w.bits() == other.bits()
 
@@ -151,7 +144,6 @@ def test_a_state_keeps_the_method_that_the_change_of_friction_chose(wheel, s_bef
     ahead = bits_of(w, coast, range(5, 9))
     for restored in (w, other):
         assert restored.restore(blob) == OK
-        restored.time = 5 * STEP
         assert restored.serialized() == blob
         assert bits_of(restored, coast, range(5, 9)) == ahead
     bits_of(partner, coast, range(9))
@@ -164,7 +156,6 @@ def test_a_restored_state_and_the_original_go_on_to_the_same_bytes_when_friction
     w, other = wheel().start(), wheel().start(s=0.03)
     assert w.step(1e-3) == other.step(0.1) == OK  # inside the first step
     assert other.restore(w.serialized()) == OK
-    other.time = w.time
     assert w.set(s=0.01) == OK and other.set(s=s) == OK  # the partner: friction in one of them only
     assert w.step(1e-3) == other.step(1e-3) == OK
     assert (w.serialized() == other.serialized()) == (s > 0)

@@ -14,7 +14,6 @@ import pytest
 from reference import Start, Wheel, solve
 from support.bounds import EPSILON, beyond, within
 from support.closed_forms import rolling_inertia
-from support.driver import OK
 from support.kept import kept
 from support.motion import Library, Run, start_values
 from support.schedule import Schedule
@@ -59,8 +58,7 @@ def parked(library: Library, slope: float, seconds: float) -> float:
         wheel.set(M_brake=20.0)
         for k in range(round(seconds / 0.05)):
             tilt, tilt_rate, heading, turn = wheel.get("theta", "theta_dot", "psi", "psi_dot")
-            wheel.set(M_1=-120 * (tilt - pi / 2) - 20 * tilt_rate, M_2=-50 * heading - 20 * turn)
-            assert wheel.step_to((k + 1) * 0.05) == OK
+            wheel.put(M_1=-120 * (tilt - pi / 2) - 20 * tilt_rate, M_2=-50 * heading - 20 * turn).to((k + 1) * 0.05)
         return wheel.get("X_O")[0]
 
 

@@ -121,7 +121,7 @@ def test_one_call_takes_at_most_a_million_internal_steps_and_shorter_calls_go_on
 def test_a_step_that_fails_late_leaves_the_instance_as_it_was_and_its_state_can_be_taken(wheel):
     """A call that is asked for more than its share of work gives up thousands of seconds ahead of the last state."""
     w, other = wheel().start(s=0.03, tolerance=1e-4), wheel()
-    assert w.step(1.0) == OK
+    w.by(1.0)
     before, bits = w.serialized(), w.bits()
     assert w.step(1e7) == ERROR and "may take no more internal steps" in w.sentences[-1]
     assert w.bits() == bits  # counters too

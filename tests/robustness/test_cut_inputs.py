@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.bounds import beyond, within
 from support.driver import OK, Values
-from support.pieces import Piece, give, play
+from support.pieces import Piece, play
 
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot")
 LEANING: Values = {"theta_start": 1.2, "psi_dot_start": 0.5, "phi_dot_start": -6.0, "s": 0.03}
@@ -48,8 +48,7 @@ def ranges(wheel, pieces):
     w, rows = wheel().start(tolerance=1e-7, **LEANING), []
     for k in range(1, 21):
         begin, inputs = max((p for p in pieces if p[0] <= w.time), key=lambda p: p[0])
-        give(w, inputs, w.time - begin)
-        assert w.step_to(STOP * k / 20) == OK
+        w.give(inputs, w.time - begin).to(STOP * k / 20)
         rows.append(w.get(*STATES))
     w.close()
     return np.ptp(rows, axis=0)

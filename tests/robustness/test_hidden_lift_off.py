@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, within
 from support.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK
-from support.pieces import give
 from support.scenes import PAPER
 
 WEIGHT = PAPER.m * PAPER.g  # N
@@ -57,9 +56,8 @@ def lift_off(wheel, kind, inputs, **values):
     """One step with these inputs, N or N m; the instant in it at which the wheel lifted off, None: it did not."""
     formulation, method = kind
     start = {"theta_start": pi / 2, "phi_dot_start": -8.0} | values
-    w = wheel().start(formulation=formulation, method=method, **start)
-    assert w.step_to(BEGIN) == OK
-    give(w, inputs)
+    w = wheel().start(formulation=formulation, method=method, **start).to(BEGIN)
+    w.give(inputs)
     status = w.step_to(BEGIN + STEP)
     if status == OK:
         return None
@@ -100,8 +98,7 @@ def test_two_inputs_that_nearly_cancel_hide_nothing(wheel, ramp, s):
     """At theta = 1.2 rad a moment M_1 presses as well. Every kind of run sees the lift-off that 400 short steps see."""
     formulation, method = 2, 4
     start = {"theta_start": 1.2, "phi_dot_start": -8.0, "s": s}
-    probe = wheel().start(**start)
-    assert probe.step_to(BEGIN) == OK
+    probe = wheel().start(**start).to(BEGIN)
     pressed = probe.get("lambda_3")[0]
     probe.set(F_Z=1.0)
     by_force = probe.get("lambda_3")[0] - pressed
@@ -113,7 +110,7 @@ def test_two_inputs_that_nearly_cancel_hide_nothing(wheel, ramp, s):
     w = wheel().start(formulation=formulation, method=method, **start)
     w.step_to(BEGIN)
     for k in range(400):
-        give(w, inputs, STEP * k / 400)
+        w.give(inputs, STEP * k / 400)
         if w.step_to(BEGIN + STEP * (k + 1) / 400) != OK:
             break
     true = w.status(LAST_SUCCESSFUL_TIME) - BEGIN
@@ -129,13 +126,12 @@ def test_a_brake_that_gives_way_inside_one_step_lets_the_wheel_turn_at_its_insta
     formulation, method = kind
     w = wheel(logging=True).start(theta_start=pi / 2, phi_dot_start=0.0, formulation=formulation, method=method)
     inputs = {"M_3": [2.0], "M_brake": [5.0, -4 * 4 / STEP, 4 * 4 / STEP**2]}
-    give(w, inputs)
-    assert w.step_to(STEP) == OK
+    w.give(inputs).to(STEP)
     told = [m for m in w.sentences if "release" in m]
     x = 0.5 * (1 - np.sqrt(0.25))  # 5 - 16 x (1 - x) = 2
     assert len(told) == 1
     within(abs(float(told[0].split()[2]) - x * STEP), 64 * EPSILON, "split")
     assert w.get("phi")[0] != 0
     held = wheel().start(theta_start=pi / 2, phi_dot_start=0.0, formulation=formulation, method=method)
-    give(held, inputs | {"M_brake": [6.1, -4 * 4 / STEP, 4 * 4 / STEP**2]})  # the partner: it sinks to 2.1
+    held.give(inputs | {"M_brake": [6.1, -4 * 4 / STEP, 4 * 4 / STEP**2]})  # the partner: it sinks to 2.1
     assert held.step_to(STEP) == OK and held.get("phi") == [0.0]

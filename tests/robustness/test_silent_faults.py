@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from contract.test_foreign_states import forged, place_of, signed, words_of
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
-from support.pieces import give
 from support.scenes import PAPER
 
 WEIGHT = PAPER.m * PAPER.g
@@ -18,7 +17,7 @@ MANY = 100  # pulls that are told one by one
 
 def stepped(w, times):
     for t in times:
-        assert w.step_to(t) == OK
+        w.to(t)
     return w
 
 
@@ -69,7 +68,6 @@ def test_a_restored_run_tells_the_same_pulls(wheel, method, t):
     blob = w.serialized()
     other = wheel()
     assert other.restore(blob) == OK
-    other.time = t
     w.take_messages()
     for each in (w, other):
         each.set(M_1=1e-6)
@@ -86,7 +84,7 @@ def test_the_rate_of_tau_counts_the_brake(wheel, braked, slope):
     """Rolling straight with phi_dot < 0: tau is M_brake; a brake at zero can only be put on."""
     w = wheel().start(theta_start=pi / 2, phi_dot_start=-2.0)
     stepped(w, [0.1])
-    give(w, {"M_brake": (braked, slope)})
+    w.give({"M_brake": (braked, slope)})
     assert abs(w.get("tau")[0]) == braked
     expected = 0.0 if braked == 0 and slope < 0 else slope
     assert abs(w.rates(["tau"])()[0]) == abs(expected)
@@ -182,8 +180,7 @@ def test_cuts_of_a_polynomial_at_a_late_start_time_are_no_changes(wheel):
     """At 1e9 s the times of the caller are rounded to 1e-7 s, and so are the values that it sets."""
     w = wheel().start(start=1e9, method=2, theta_start=pi / 2, phi_dot_start=-8.0)
     for k in range(20):
-        give(w, {"M_3": (1.0 + 3.0 * 0.03 * k, 3.0)})
-        assert w.step_to(1e9 + 0.03 * (k + 1)) == OK
+        w.give({"M_3": (1.0 + 3.0 * 0.03 * k, 3.0)}).to(1e9 + 0.03 * (k + 1))
     assert w.get("n_restarts") == [0]
 
 
@@ -214,7 +211,7 @@ def test_lift_off_is_found_between_the_extremes_of_an_input(wheel, seed):
         w = wheel().start(theta_start=pi / 2, phi_dot_start=-3.0, method=4)
         if force(0) > 0.99:
             continue
-        give(w, {"F_Z": tuple(WEIGHT * force.coef / T ** np.arange(4))}, 0.0)
+        w.give({"F_Z": tuple(WEIGHT * force.coef / T ** np.arange(4))}, 0.0)
         status = w.step_to(T)
         t = w.status(LAST_SUCCESSFUL_TIME)
         ok = status == DISCARD and abs(t - T * min(roots)) < 1e-6 if roots else status == OK
