@@ -4,8 +4,6 @@
 Every call here has arguments that are sound by themselves, so that the state alone decides.
 """
 
-from __future__ import annotations
-
 from ctypes import CFUNCTYPE, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, create_string_buffer
 from typing import Any
 

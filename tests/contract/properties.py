@@ -1,7 +1,5 @@
 """What the property tests draw, play and judge: scenes sound and unsound, energy."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import isfinite
 

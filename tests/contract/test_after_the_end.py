@@ -1,7 +1,5 @@
 """After an ending: nothing goes on by itself, the refusal says what happened, and a restored state leads on."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Every function in every state: what the standard allows works, all else is an error with a sentence and no effect."""
 
-from __future__ import annotations
-
 import pytest
 from support.driver import ERROR, OK
 from support.scenes import KINDS

@@ -1,7 +1,5 @@
 """Derivatives: of outputs in time and of outputs by inputs, exact, checked against differences of the FMU itself."""
 
-from __future__ import annotations
-
 from ctypes import c_double, c_int, c_uint
 
 import numpy as np

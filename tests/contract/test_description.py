@@ -1,7 +1,5 @@
 """The model description: valid, complete, and the same as what the library says when it is asked."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from xml.etree import ElementTree

@@ -1,7 +1,5 @@
 """How a run ends: flat on the ground or lifted off. Discard, the instant, and outputs there."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

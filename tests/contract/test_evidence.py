@@ -1,7 +1,5 @@
 """The evidence in the archive (FMI-LS-REF): all files are named, parameter sets are valid, results come again."""
 
-from __future__ import annotations
-
 import csv
 import os
 import subprocess

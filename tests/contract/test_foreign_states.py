@@ -1,7 +1,5 @@
 """States that were never handed out, and bytes that no instance wrote: refused with a sentence, and nothing changes."""
 
-from __future__ import annotations
-
 import struct
 from ctypes import addressof, byref, c_size_t, create_string_buffer
 

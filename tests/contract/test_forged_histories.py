@@ -3,8 +3,6 @@
 A checksum guards against accidents, not against bytes from elsewhere. Run under the sanitizers with the contract tests.
 """
 
-from __future__ import annotations
-
 from time import process_time
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Directional derivatives of the start: by parameters too, for every pair that the model description declares."""
 
-from __future__ import annotations
-
 from ctypes import c_double, c_uint
 
 import numpy as np

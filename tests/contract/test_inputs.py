@@ -4,8 +4,6 @@ The closed form used here is the upright wheel on a straight line (theta = 90 de
 J_z + m (r_0 + r)^2, and F_X, F_Y, M_1, M_2 are balanced by nothing but the ground.
 """
 
-from __future__ import annotations
-
 from ctypes import c_double, c_int, c_uint
 from math import factorial
 

@@ -1,7 +1,5 @@
 """Many instances at once: interleaved, in threads, from changing threads; each has the bits it has alone."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 from ctypes import CDLL, Structure, byref, c_size_t
 from threading import Thread

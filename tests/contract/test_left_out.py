@@ -5,8 +5,6 @@ the same counter moves. That neither the grid nor a reading costs an evaluation 
 counters among them: test_stepping.py, test_properties.py.
 """
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The library and the archive as files: what they need, export and contain; the same content packs the same."""
 
-from __future__ import annotations
-
 import importlib.util
 import subprocess
 import zipfile

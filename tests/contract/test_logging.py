@@ -1,7 +1,5 @@
 """Messages: who gets them, when, in which form; and that nothing else is ever written."""
 
-from __future__ import annotations
-
 import re
 from ctypes import byref, c_double, c_uint, c_void_p
 

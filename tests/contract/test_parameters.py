@@ -1,7 +1,5 @@
 """Faulty parameters: told all together, one sentence each, at the end of initialization; correcting them helps."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, within

@@ -3,8 +3,6 @@
 hypothesis draws the examples, the same in every run. Each property has a partner that breaks it on purpose.
 """
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import strategies as st
 from support.bounds import within

@@ -1,7 +1,5 @@
 """Rollback: a restored instance goes on with the bits of the one that took the snapshot, whatever was going on."""
 
-from __future__ import annotations
-
 from ctypes import byref
 
 import numpy as np

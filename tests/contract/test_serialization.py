@@ -1,7 +1,5 @@
 """Serialized states: bytes without pointers, the same in every process; damaged or foreign bytes are refused."""
 
-from __future__ import annotations
-
 from ctypes import POINTER, byref, c_size_t, cast, create_string_buffer
 from multiprocessing import get_context
 

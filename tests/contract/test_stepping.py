@@ -1,7 +1,5 @@
 """Communication points: the master's grid changes no bit of the result; times carry rounding; nonsense is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.bounds import EPSILON, within

@@ -1,8 +1,6 @@
 """The numbers of a description: ModelStructure lists what was measured and nothing else, and whoever adds, moves or
 removes a variable numbers nothing by hand."""
 
-from __future__ import annotations
-
 import re
 import sys
 

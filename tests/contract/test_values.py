@@ -1,7 +1,5 @@
 """Getting and setting values: arrays, references, types, bounds. A refused call has no effect, not even in part."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from ctypes import byref, c_double, c_int, c_uint, c_void_p
 

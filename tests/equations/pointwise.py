@@ -3,8 +3,6 @@
 Errors are relative to the largest entry of their group: accelerations of O, of the angles and the axle, reactions.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

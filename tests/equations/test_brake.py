@@ -3,8 +3,6 @@
 Pointwise, for both formulations. Carrier frame; tau is the moment of ground and brake about the axle.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support import equations as eq
 from support.bounds import EPSILON, beyond, relative_error, within

@@ -4,8 +4,6 @@ Upright straight rolling, the standing wheel, release from rest, and steady circ
 random wheels each. Carrier axes e1 (rolling), e2 (up the slope), e3 (axle); fixed axes for lambda.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within

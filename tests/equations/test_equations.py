@@ -5,8 +5,6 @@ numpy transcription of the paper and the rotation-matrix reference under referen
 product.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support import equations as eq

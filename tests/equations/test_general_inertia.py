@@ -3,8 +3,6 @@
 Random scenes with loads and brakes (random_scenes.py). Carrier frame.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within

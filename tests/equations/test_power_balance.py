@@ -4,8 +4,6 @@ dE/dt = m v a + omega J omega_dot + m g v_Z, from the accelerations of either fo
 F v + M omega (carrier) + tau omega_z. The reaction does no work: the contact point is at rest.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within

@@ -4,8 +4,6 @@ The complex step is exact to rounding and shares no code with the product: state
 by 1e-40 i. Fixed axes, N/s and N m/s; errors relative to the row's largest rate.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support import equations as eq

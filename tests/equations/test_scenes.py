@@ -1,7 +1,5 @@
 """A scene that is not meant cannot be used in silence: `wheel_scene` refuses it, and every answer is NaN."""
 
-from __future__ import annotations
-
 from math import nan
 
 import numpy as np

@@ -5,8 +5,6 @@ product's derivative draws both to zero at the rate a = 5 sqrt(g / (r_0 + r) + |
 multibody_state.md. Integrated by SciPy, so that no solver of the product takes part. Fixed axes for O.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.integrate import solve_ivp
 from support import equations as eq

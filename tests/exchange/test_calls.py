@@ -1,7 +1,5 @@
 """Model exchange, call by call: states to the bit, derivatives, snapshots, endings, refusals."""
 
-from __future__ import annotations
-
 from ctypes import byref, c_double
 
 import numpy as np

@@ -3,8 +3,6 @@
 SciPy's DOP853 with the events of support/exchange.py, and FMPy's CVODE. SI units.
 """
 
-from __future__ import annotations
-
 import re
 from math import pi
 

@@ -63,6 +63,7 @@ class Copy:
                 target.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(path, target)
         if not (self.built / "Makefile").exists():
+            (self.root / ".venv").symlink_to(ROOT / ".venv")
             sundials = next((ROOT / "build" / "sundials").glob("*/vendor"), "")
             options = [f"-DWHEEL_SUNDIALS_SOURCE={sundials}", "-DCMAKE_BUILD_TYPE=RelWithDebInfo", *FAST]
             self.call("cmake", "--preset", "release", *options)

@@ -1,7 +1,5 @@
 """The unfolded free wheel alone: a shared library made in the folder under test."""
 
-from __future__ import annotations
-
 import ctypes
 
 import pytest

@@ -1,7 +1,5 @@
 """wheel_equations.h against the wheel by Kane's method, at random states; the wheels and loads of random_scenes.py."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

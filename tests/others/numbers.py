@@ -1,7 +1,5 @@
 """Small tables of other people's numbers: tests/others/*.csv; lines that begin with # name their source."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

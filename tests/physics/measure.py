@@ -1,7 +1,5 @@
 """How far the FMU is from what is known. Each function gives a number (or a table) that is 0 for the exact motion."""
 
-from __future__ import annotations
-
 from ctypes import byref, c_double
 
 import numpy as np

@@ -3,8 +3,6 @@
 J_x = J_y; formulas and their derivations in support/closed_forms.py.
 """
 
-from __future__ import annotations
-
 from math import cosh, pi
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A wheel that spins fast keeps its tolerance: the error in one second, at the lean of theta = 1.4 rad."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.bounds import beyond, within

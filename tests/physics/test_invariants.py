@@ -3,8 +3,6 @@
 s = 0, J_x = J_y. The wheel of the paper starts at a turning point of theta (theta_dot = 0).
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from math import cos, sin

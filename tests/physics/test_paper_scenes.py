@@ -3,8 +3,6 @@
 s = 0 and s = 0.03 m, 10 s, J_x = J_y. Fixed axes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from reference.tables import read_table

@@ -5,8 +5,6 @@ which ends each mode at N = 0 too, and by the unit's own tightest run; errors re
 output, over the factor by which the motion makes errors grow.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -4,8 +4,6 @@ The axes are the road's, Z across it; the weight is m g (-sin a cos b, -sin a si
 towards b. Upright wheels head along X (psi = 0), R = r_0 + r. SI units.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from math import atan, cos, pi, sin
 

@@ -3,8 +3,6 @@
 s = 0, no input, J_x = J_y, method automatic. A forced method (2: adams) steps through. Fixed axes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support.bounds import beyond, within
 from support.driver import HEADLINE

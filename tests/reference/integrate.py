@@ -5,8 +5,6 @@ is searched for the first fall of a margin, the instant is refined by steps from
 start, and outputs are reached in the same way, so that nothing rests on the dense output.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 

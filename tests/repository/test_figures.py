@@ -1,7 +1,5 @@
 """Figures in prose are those of the data: marked places are filled from docs/results/data, none is typed by hand."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -3,8 +3,6 @@
 The runs themselves are made by hand, with programs that are not part of this project.
 """
 
-from __future__ import annotations
-
 import csv
 import sys
 

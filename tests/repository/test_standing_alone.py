@@ -3,8 +3,6 @@
 What a file does at run time is tried by .ci/run, in a clone with nothing beside it.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess

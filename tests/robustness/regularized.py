@@ -3,8 +3,6 @@
 Error: largest of the headline outputs over 101 times, relative to the output's range.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support.driver import HEADLINE, WARNING, Values
 from support.motion import Library, Run, run

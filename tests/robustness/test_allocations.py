@@ -1,7 +1,5 @@
 """Memory that runs short: every allocation of an instance's life fails in turn, once, or from there on for good."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

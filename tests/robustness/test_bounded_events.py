@@ -1,7 +1,5 @@
 """No call works for ever: transitions that come thick and fast, enormous loads, a million internal steps."""
 
-from __future__ import annotations
-
 import re
 from math import pi
 from random import Random

@@ -4,8 +4,6 @@ Cuts that a master makes by itself: at random, at sums of decimal steps, and in 
 wheel leans: an upright one cannot see what these inputs do wrong.
 """
 
-from __future__ import annotations
-
 from itertools import accumulate
 from math import nextafter
 

@@ -3,8 +3,6 @@
 A constant F_Z carries so much of the weight that the least N of the first swing lies just below zero, or just above.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.bounds import beyond, within

@@ -4,8 +4,6 @@ The wheel rolls upright; F_Z then only carries it, so N = m g - F_Z, and the lif
 of a polynomial.
 """
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Small faults that would be silent: one test for each, found by faults that were put in by hand and not noticed."""
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

@@ -4,8 +4,6 @@ The bounds stand with the cases (sweep.py), in multiples of the tolerance. Measu
 all five tolerances: energy 1 x (grazing the ground 35 x), linear integrals 3 x (grazing 12 x), reference 30 x.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """method = automatic follows what is tuned: a regularized law that becomes stiff is solved by BDF from there on."""
 
-from __future__ import annotations
-
 import pytest
 from support.bounds import within
 from support.driver import OK

@@ -1,7 +1,5 @@
 """What a master sees of inputs between two steps, of pulls, of counts: small things that are easily lost."""
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

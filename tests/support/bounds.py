@@ -5,8 +5,6 @@ multiple of EPSILON times the size of the terms that are rounded: 64 * EPSILON i
 size one, and needs no further reason.
 """
 
-from __future__ import annotations
-
 import os
 
 import numpy as np

@@ -4,13 +4,11 @@ Names, frames and units are those of modelDescription.xml, where the value refer
 FMU2Slave, whose ctypes signatures it uses; it returns the status where fmpy would raise.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from copy import copy
 from ctypes import byref, c_double, c_int, c_size_t, c_uint, create_string_buffer
 from math import comb, factorial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2FMUstate
@@ -66,14 +64,14 @@ class FMU2Wheel(FMU2Slave):
         self.on_message: Callable[[Message], None] | None = None
         self.time = 0.0
 
-    def new(self, logging: bool = False, name: str = "wheel") -> FMU2Wheel:
+    def new(self, logging: bool = False, name: str = "wheel") -> Self:
         """An instance, instantiated; fmpy looks up the functions once, for all instances."""
         instance = copy(self)
         instance.instanceName, instance.messages = name, []
         instance.instantiate(callbacks=instance.own_callbacks(), loggingOn=logging)
         return instance
 
-    def __enter__(self) -> FMU2Wheel:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -132,7 +130,7 @@ class FMU2Wheel(FMU2Slave):
                 break
         return worst
 
-    def initializing(self, **values: Value) -> FMU2Wheel:
+    def initializing(self, **values: Value) -> Self:
         """From instantiated into initialization mode, all accepted; returns itself."""
         assert (self.set(**values), self.setupExperiment(), self.enterInitializationMode()) == (OK, OK, OK)
         return self
@@ -206,12 +204,12 @@ class FMU2Wheel(FMU2Slave):
         numbers = self.getInteger([self.references[name] for name in self.integers])
         return self.read(self.reals) + bytes((c_int * len(numbers))(*numbers))
 
-    def put(self, **values: Value) -> FMU2Wheel:
+    def put(self, **values: Value) -> Self:
         """Values by name, all accepted; returns itself."""
         assert self.set(**values) == OK, self.messages
         return self
 
-    def give(self, inputs: dict[str, Sequence[float]], since: float = 0.0) -> FMU2Wheel:
+    def give(self, inputs: dict[str, Sequence[float]], since: float = 0.0) -> Self:
         """Inputs as polynomials, coefficients of 1, t, t^2, t^3, `since` seconds after their origin; returns itself."""
         table = [shifted(coefficients, since) for coefficients in inputs.values()]
         self.put(**{name: row[0] for name, row in zip(inputs, table, strict=True)})
@@ -219,12 +217,12 @@ class FMU2Wheel(FMU2Slave):
         assert self.set_input_derivatives([*inputs], orders) == OK
         return self
 
-    def by(self, h: float) -> FMU2Wheel:
+    def by(self, h: float) -> Self:
         """A step of h, accepted; returns itself."""
         assert self.step(h) == OK, self.messages
         return self
 
-    def to(self, *times: float) -> FMU2Wheel:
+    def to(self, *times: float) -> Self:
         """Steps to each of the times, all accepted; returns itself."""
         for t in times:
             assert self.step_to(t) == OK, self.messages
@@ -276,7 +274,7 @@ class FMU2Wheel(FMU2Slave):
         self.time = getattr(blob, "time", self.time)
         return status
 
-    def back(self, blob: bytes) -> FMU2Wheel:
+    def back(self, blob: bytes) -> Self:
         """In a serialized state, accepted; returns itself."""
         assert self.restore(blob) == OK, self.messages
         return self

@@ -1,7 +1,5 @@
 """Fixtures of every folder of tests: the built FMU and its instances, the trusted tables."""
 
-from __future__ import annotations
-
 import os
 import resource
 import shutil

@@ -1,7 +1,5 @@
 """Where the project and its build are."""
 
-from __future__ import annotations
-
 import fcntl
 import os
 import subprocess

@@ -3,8 +3,6 @@
 Every scene can be given to the FMU (start values, inputs) and to the independent reference (wheel, motion, inputs).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, fields
 from math import pi, sin
 
