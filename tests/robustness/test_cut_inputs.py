@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from support.bounds import beyond, within
 from support.driver import OK, Values
 from support.pieces import Piece, play
+from support.scenes import FORCED
 
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot")
 LEANING: Values = {"theta_start": 1.2, "psi_dot_start": 0.5, "phi_dot_start": -6.0, "s": 0.03}
@@ -25,7 +26,6 @@ VARIED: list[Piece] = [
     (1.3, {"M_3": (0.0, 1.5, -1.0), "F_Y": (0.0,), "F_Z": (0.0,)}),
 ]
 HELD: list[Piece] = [(0.0, {"M_3": (0.5,), "F_Z": (3.0,)}), (0.5, {"M_3": (-0.5,), "F_Z": (0.0,)})]
-KINDS = [(formulation, method) for formulation in (2, 3) for method in (1, 2, 3, 4)]
 GAPS = (1e-3, 1e-6, 1e-9, 1e-12, 1e-13, 0.0)  # s, 0: to the next number
 BOUND = 1  # tolerance of the range of each state over the run
 
@@ -33,8 +33,7 @@ random_cuts = st.lists(st.tuples(some(1e-3, STOP - 1e-3), st.sampled_from(GAPS))
 
 
 def motion(wheel, kind, pieces, cuts=(), tolerance=1e-7):
-    formulation, method = kind
-    w = wheel().start(tolerance=tolerance, formulation=formulation, method=method, **LEANING)
+    w = wheel().start(tolerance=tolerance, **kind, **LEANING)
     assert play(w, pieces, STOP, cuts) == OK, w.sentences
     end = np.array(w.get(*STATES))
     w.close()
@@ -64,7 +63,7 @@ def with_gaps(drawn):
     return sorted({t for cut, gap in drawn for t in (cut, cut + gap if gap else nextafter(cut, 9.0))})
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=str)
+@pytest.mark.parametrize("kind", FORCED, ids=str)
 @pytest.mark.parametrize("pieces", [VARIED, HELD], ids=["varied", "held"])
 def test_random_cuts_change_nothing(wheel, kind, pieces):
     worst = []
@@ -79,7 +78,7 @@ def test_random_cuts_change_nothing(wheel, kind, pieces):
     assert len(worst) > 4
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=str)
+@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_cuts_that_rounding_makes_change_nothing(wheel, kind):
     """Sums of a thousandth of a second, and a partner that splits at multiples of a tenth and its own sums."""
     sums = list(accumulate([1e-3] * 1999))
@@ -88,7 +87,7 @@ def test_cuts_that_rounding_makes_change_nothing(wheel, kind):
     within(defect(wheel, kind, VARIED, tenths), 0.2, "defect, 2")
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=str)
+@pytest.mark.parametrize("kind", FORCED, ids=str)
 @pytest.mark.parametrize("gap", GAPS)
 def test_a_step_that_is_next_to_nothing_changes_nothing(wheel, kind, gap):
     for tolerance in (1e-9, 1e-6, 1e-4):
@@ -96,7 +95,7 @@ def test_a_step_that_is_next_to_nothing_changes_nothing(wheel, kind, gap):
         within(defect(wheel, kind, VARIED, cuts, tolerance=tolerance), BOUND, "defect")
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=str)
+@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_the_bound_sees_an_input_that_is_wrong_for_a_tenth_of_a_second(wheel, kind):
     """The partner: a thousandth of one input is too much in a small part of the run."""
     wrong = [*VARIED[:2], (1.2, {"M_3": (-0.099 * 1.001,), "F_Y": (3.0,), "F_Z": (-0.8,)}), VARIED[2]]

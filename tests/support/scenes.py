@@ -99,3 +99,6 @@ KINDS: dict[str, Values] = {
     "adams": {"method": "adams", "s": 0.03},
     "runge_kutta": {"method": "runge_kutta"},
 }
+
+# Every formulation by every method, forced.
+FORCED: list[Values] = [{"formulation": form, "method": method} for form in (2, 3) for method in (1, 2, 3, 4)]
