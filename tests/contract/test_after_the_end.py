@@ -8,8 +8,6 @@ from support.driver import DISCARD, DO_STEP_STATUS, ERROR, LAST_SUCCESSFUL_TIME,
 
 from contract.call_states import STATES, TABLE, bring_to, call
 
-pytestmark = pytest.mark.contract
-
 DROP = {"theta_start": float(np.radians(75)), "phi_dot_start": 0.0}  # let go at rest
 LIFT = {"F_Z": 250.0}  # more than the weight
 

@@ -6,8 +6,6 @@ from support.scenes import KINDS
 
 from contract.call_states import STATES, TABLE, bring_to, call
 
-pytestmark = pytest.mark.contract
-
 
 def test_each_function_is_legal_exactly_where_the_standard_says(wheel):
     """Legal: it does not answer fmi2Error."""

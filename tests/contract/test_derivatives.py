@@ -8,8 +8,6 @@ from support.bounds import EPSILON, beyond, within
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel
 from support.scenes import KINDS
 
-pytestmark = pytest.mark.contract
-
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 H = 2.0**-8  # s, between the points of the difference
 # d/dt at the first of seven points: coefficients of the one-sided difference of order 6.

@@ -13,8 +13,6 @@ from support.bounds import EPSILON, beyond, within
 from support.driver import CHOICES, DISCARD, OK
 from support.exchange import DERIVATIVES, INDICATORS, STATES
 
-pytestmark = pytest.mark.contract
-
 FULL_TURN = 2 * np.pi
 # name, start, unit, variability; then inputs and outputs in the order in which a table shows them.
 PARAMETERS = {

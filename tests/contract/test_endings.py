@@ -10,8 +10,6 @@ from support.closed_forms import fall_time
 from support.driver import DISCARD, DO_STEP_STATUS, LAST_SUCCESSFUL_TIME, OK, TERMINATED, FMU2Wheel
 from support.scenes import PAPER, THETA_0
 
-contract = pytest.mark.contract
-
 DROP = {"theta_start": THETA_0, "phi_dot_start": 0.0}  # let go at rest
 
 
@@ -24,7 +22,6 @@ def ended(w: FMU2Wheel) -> float:
     return w.status(LAST_SUCCESSFUL_TIME)
 
 
-@contract
 def test_the_end_does_not_depend_on_the_communication_grid(wheel):
     at_once, in_steps = wheel().start(**DROP), wheel().start(**DROP)
     assert at_once.step(10.0) == DISCARD
@@ -37,7 +34,6 @@ def test_the_end_does_not_depend_on_the_communication_grid(wheel):
     assert at_once.bits() != wheel().start(**DROP).run([0.59])[0]
 
 
-@contract
 def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
     """F_Z grows by 30 N/s against the weight of 196.2 N; the wheel's own motion shifts the instant."""
     w = wheel().start()
@@ -56,7 +52,6 @@ def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
     assert kept.step(t + 0.2) == OK and kept.get("lambda_3")[0] < 0  # the partner: the ground pulls
 
 
-@contract
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-10])
 def test_a_wheel_that_is_off_the_ground_at_the_start_ends_there_however_soon_it_would_be_pressed_again(
     wheel, tolerance
@@ -82,6 +77,7 @@ def fmpy_simulate(fmu_path, output, *start_values: str) -> tuple[str, np.ndarray
     return finished.stdout, np.genfromtxt(output, delimiter=",", names=True)
 
 
+@pytest.mark.local
 def test_fmpy_simulate_ends_where_the_wheel_falls_and_keeps_the_data(fmu_path, tmp_path):
     start = ("theta_start", "1.3089969389957472", "phi_dot_start", "0")
     said, rows = fmpy_simulate(fmu_path, tmp_path / "drop.csv", *start)

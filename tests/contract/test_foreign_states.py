@@ -10,8 +10,6 @@ from support.driver import ERROR, OK
 
 from contract.call_states import bring_to
 
-pytestmark = pytest.mark.contract
-
 UNKNOWN = "the state is not one that this FMU handed out"
 DAMAGED = "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version ({})."
 

@@ -12,8 +12,6 @@ from support.pieces import play
 
 from contract.test_foreign_states import FELL_FLAT, HEADER, as_word, forged, signed, words_of
 
-pytestmark = pytest.mark.contract
-
 SOON = 5.0  # s of computing for what follows a state that was taken
 SUM = HEADER - 1  # the word of the checksum
 REGULARIZED = {"friction_law": 2, "s": 0.03, "omega_s": 1e-3}

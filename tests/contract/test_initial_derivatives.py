@@ -7,8 +7,6 @@ import pytest
 from support.bounds import beyond, within
 from support.driver import ERROR, OK, FMU2Wheel
 
-pytestmark = pytest.mark.contract
-
 GENERAL = {
     **{"theta_start": 1.1, "psi_start": 0.7, "phi_start": 0.4, "psi_dot_start": 0.9, "theta_dot_start": -0.6},
     **{"phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "F_X": 1.0, "M_2": 0.5},

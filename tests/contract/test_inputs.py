@@ -13,8 +13,6 @@ from numpy.polynomial import Polynomial
 from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import ERROR, OK, FMU2Wheel, shifted
 
-pytestmark = pytest.mark.contract
-
 UPRIGHT = {"theta_start": np.pi / 2, "phi_dot_start": 0.0}
 RHO = 0.35
 INERTIA = 1.8 + 20 * RHO**2  # about the contact, kg m2

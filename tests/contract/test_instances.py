@@ -10,8 +10,6 @@ from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from support.driver import ERROR, OK, FMU2Wheel
 from support.scenes import KINDS
 
-pytestmark = pytest.mark.contract
-
 TIMES = np.arange(1, 25) * 0.125
 SETTINGS = [values | {"phi_dot_start": -2.0 - 0.1 * k} for k in range(4) for values in KINDS.values()]
 

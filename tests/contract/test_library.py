@@ -10,6 +10,7 @@ from support.paths import ROOT
 
 from contract.call_states import TABLE
 
+pytestmark = pytest.mark.local
 # Beside those of the table of call states.
 OTHER_FUNCTIONS = {"fmi2GetTypesPlatform", "fmi2GetVersion", "fmi2Instantiate", "fmi2FreeInstance"}
 

@@ -11,8 +11,6 @@ from support.driver import DISCARD, ERROR, OK
 
 from contract.call_states import STATES, TABLE, bring_to, call
 
-pytestmark = pytest.mark.contract
-
 FRICTION = {"s": 0.03}
 FIRST_STICK = 1.225520636  # s, the first row of the reference's table of events
 EVENTS = 37  # physics.md: transitions of the paper's friction scene in 10 s

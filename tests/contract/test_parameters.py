@@ -5,8 +5,6 @@ import pytest
 from support.bounds import EPSILON, absolute_error, within
 from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
 
-pytestmark = pytest.mark.contract
-
 NUMBER = "a finite number is needed."
 FAULTS: dict[str, tuple[float, str]] = {
     "m": (np.nan, f"m = nan: {NUMBER}"),

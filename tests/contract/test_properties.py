@@ -11,8 +11,6 @@ from support.driver import OK
 from contract import properties
 from contract.properties import INPUTS, Values, check, energy_defect, go, grids, is_honest, loads, play_anything, scenes
 
-pytestmark = pytest.mark.contract
-
 BOUND = 6e-11  # of the energy moved; a part that is left out shows by far more
 CHOICES = ("formulation", "friction_law", "method")
 REALS = ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s", "theta_start", "psi_dot_start", "phi_dot_start", "omega_s")

@@ -9,8 +9,6 @@ from support.scenes import KINDS
 
 from contract.call_states import STATES, bring_to
 
-pytestmark = pytest.mark.contract
-
 STEP = 0.125
 
 

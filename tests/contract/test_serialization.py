@@ -10,10 +10,7 @@ from support.driver import ERROR, OK, FMU2Wheel
 from support.motion import Library
 from support.scenes import KINDS
 
-contract = pytest.mark.contract
 
-
-@contract
 def test_a_blob_with_any_one_bit_flipped_is_refused_and_the_instance_is_untouched(wheel):
     w, other = wheel().start(stop=9.0, s=0.03), wheel().start(stop=9.0, s=0.03)
     w.run([1.3])
@@ -32,7 +29,6 @@ def test_a_blob_with_any_one_bit_flipped_is_refused_and_the_instance_is_untouche
     assert w.run([3.0]) == other.run([3.0])
 
 
-@contract
 def test_truncated_prolonged_and_foreign_blobs_are_refused(wheel):
     w = wheel().start()
     blob = w.serialized()
@@ -47,7 +43,6 @@ def test_truncated_prolonged_and_foreign_blobs_are_refused(wheel):
     assert w.serialized() == blob
 
 
-@contract
 def test_too_small_an_array_is_refused_and_too_large_a_one_is_not(wheel):
     w = wheel().start()
     state, size = w.snapshot(), c_size_t()
@@ -60,7 +55,6 @@ def test_too_small_an_array_is_refused_and_too_large_a_one_is_not(wheel):
     assert blob.raw[: size.value] == w.serialized() and blob.raw[size.value :] == bytes(8)
 
 
-@contract
 def test_a_state_is_reused_where_it_is_not_null(wheel):
     """Ten thousand snapshots into one state: the memory stays one block, whatever its size."""
     w, before_start = wheel().start(s=0.03), wheel()
@@ -78,7 +72,6 @@ def test_a_state_is_reused_where_it_is_not_null(wheel):
     assert w.run([1.0]) == [ahead]
 
 
-@contract
 def test_freeing_no_state_is_without_effect_and_a_state_outlives_its_instance(wheel):
     w, other = wheel().start(), wheel()
     null = fmi2FMUstate()
@@ -93,7 +86,6 @@ def test_freeing_no_state_is_without_effect_and_a_state_outlives_its_instance(wh
     assert other.fmi2SetFMUstate(other.component, state) == ERROR
 
 
-@contract
 def test_a_caller_that_passes_a_state_where_its_address_belongs_frees_nothing(wheel):
     """fmusim 0.0.39 does so after saving and after restoring a state."""
     w = wheel().start(s=0.03)
@@ -108,7 +100,6 @@ def test_a_caller_that_passes_a_state_where_its_address_belongs_frees_nothing(wh
     assert w.fmi2FreeFMUstate(w.component, byref(state)) == OK and not state
 
 
-@contract
 def test_the_bytes_depend_on_the_past_alone(wheel):
     """No pointer and no leftover goes into them: another instance, elsewhere in memory, has the same bytes."""
     for values in KINDS.values():
@@ -133,6 +124,7 @@ def restored_and_continued(folder: str, blob: bytes) -> tuple[list[bytes], bytes
         return continued(w)
 
 
+@pytest.mark.local
 def test_in_another_process_a_restored_wheel_goes_on_with_the_same_bits(wheel, fmu):
     blobs, expected = [], []
     for values in KINDS.values():

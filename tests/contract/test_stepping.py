@@ -6,8 +6,6 @@ from support.bounds import EPSILON, within
 from support.driver import COUNTERS, ERROR, OK
 from support.scenes import KINDS
 
-pytestmark = pytest.mark.contract
-
 SECONDS = [float(t) for t in range(1, 11)]
 
 

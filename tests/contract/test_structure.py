@@ -11,8 +11,6 @@ sys.path.insert(0, str(ROOT / "cmake"))
 from description.measuring import measured
 from description.numbering import numbered
 
-pytestmark = pytest.mark.contract
-
 TEXT = (ROOT / "modelDescription.xml").read_text(encoding="utf-8")
 LOADS = {"F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake"}
 NEW = """    <ScalarVariable name="drag" causality="parameter" variability="fixed" initial="exact"

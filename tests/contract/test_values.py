@@ -8,8 +8,6 @@ import pytest
 from support.bounds import beyond, within
 from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
 
-pytestmark = pytest.mark.contract
-
 SETTERS = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
 
 

@@ -6,16 +6,12 @@ Errors are relative to the largest entry of their group: accelerations of O, of 
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from reference import Wheel, accelerations
 from support import equations as eq
 
 from equations import random_scenes
 
 Table = np.ndarray
-BOTH = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
-LAWS = pytest.mark.parametrize("law", eq.LAWS.values(), ids=eq.LAWS.keys())
-INERTIA = pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
 GROUPS = (("X_O_ddot", "Y_O_ddot", "Z_O_ddot"), ("psi_ddot", "theta_ddot", "phi_ddot", "omega_z_dot"), ("lambda_",))
 ACCELERATIONS = (*GROUPS[0], *GROUPS[1][:3])
 

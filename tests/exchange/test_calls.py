@@ -14,8 +14,6 @@ from support.driver import DISCARD, ERROR, OK
 from support.exchange import DERIVATIVES, STATES, FMU2Exchange, Run, exchange, loaded, no_inputs
 from support.motion import Library
 
-pytestmark = pytest.mark.contract
-
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "slope": 0.2, "slope_direction": 0.7, "psi_dot_start": 0.5, "F_X": 3.0, "M_2": 0.4}
 ODD = np.array([0.1, -0.2, 0.3, 1.1, 0.7, 0.9, 1 / 3, -1.7])  # a state off every symmetry
 

@@ -21,7 +21,6 @@ from .exact_motions import UPRIGHT
 R, WEIGHT = 0.35, 20 * 9.81
 REST = {**UPRIGHT, "phi_dot_start": 0.0}
 DOWNHILL = {"slope_direction": pi}  # the road falls towards X
-formulations = pytest.mark.parametrize("formulation", [2, 3], ids=["reduced", "multibody"])
 
 
 def rolled(library: Library, formulation: int, slope: float, s: float) -> float:
@@ -31,7 +30,6 @@ def rolled(library: Library, formulation: int, slope: float, s: float) -> float:
     return abs(run["X_O"][-1] / (acceleration * 1.5**2 / 2) - 1)
 
 
-@formulations
 @pytest.mark.parametrize("s", [0.0, 0.03], ids=["free", "friction"])
 def test_a_wheel_rolls_straight_down_with_uniform_acceleration(library: Library, formulation: int, s: float) -> None:
     within(rolled(library, formulation, 0.2, s), 128 * EPSILON, "way")

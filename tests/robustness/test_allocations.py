@@ -10,8 +10,6 @@ import pytest
 from support.driver import ERROR, OK
 from support.paths import ROOT
 
-pytestmark = pytest.mark.contract
-
 # formulation, friction law, method (4: Runge-Kutta): here every allocation is our own. SUNDIALS does not survive each
 # of its own that fails (docs/decisions/memory.md), so its methods are not played with.
 SCENES = {"reduced": (2, 1, 4), "multibody": (3, 1, 4), "reduced, regularized": (2, 2, 4)}

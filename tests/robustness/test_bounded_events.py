@@ -35,7 +35,6 @@ def agree(a, b, bound):
 
 
 @pytest.mark.parametrize("s", [0.05, 1e-6, 1e-12, 1e-15])
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_a_normal_force_that_rises_through_zero_makes_no_chatter(wheel, kind, s):
     """keep_contact; where N is next to nothing, s N is below the rounding of the moment that holds the wheel."""
     for spin in (0.0, 0.01):
@@ -47,7 +46,6 @@ def test_a_normal_force_that_rises_through_zero_makes_no_chatter(wheel, kind, s)
 
 
 @pytest.mark.parametrize("torque", [1e-9, 1e-3, 1.0])
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_a_brake_that_is_put_on_from_zero_stops_the_wheel_once(wheel, kind, torque):
     """The torque turns the wheel until the brake, M_brake = 90 t, has overcome it: for 2e-11 s at the least torque."""
     pieces = [(0.0, {"M_brake": (0.0, 90.0), "M_3": (torque,)})]
@@ -59,7 +57,6 @@ def test_a_brake_that_is_put_on_from_zero_stops_the_wheel_once(wheel, kind, torq
     beyond(abs(free[2][4]), 2e-11, "free")
 
 
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_a_torque_exactly_at_the_limit_is_held(wheel, kind):
     """s N = M_3 to the rounding of both; the partner, a billionth more, is not held."""
     for s in (0.03, 0.1, 0.123456789):

@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 from support.bounds import beyond, within
 from support.driver import OK, Values
 from support.pieces import Piece, play
-from support.scenes import FORCED
 
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot")
 LEANING: Values = {"theta_start": 1.2, "psi_dot_start": 0.5, "phi_dot_start": -6.0, "s": 0.03}
@@ -63,7 +62,6 @@ def with_gaps(drawn):
     return sorted({t for cut, gap in drawn for t in (cut, cut + gap if gap else nextafter(cut, 9.0))})
 
 
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 @pytest.mark.parametrize("pieces", [VARIED, HELD], ids=["varied", "held"])
 def test_random_cuts_change_nothing(wheel, kind, pieces):
     worst = []
@@ -78,7 +76,6 @@ def test_random_cuts_change_nothing(wheel, kind, pieces):
     assert len(worst) > 4
 
 
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_cuts_that_rounding_makes_change_nothing(wheel, kind):
     """Sums of a thousandth of a second, and a partner that splits at multiples of a tenth and its own sums."""
     sums = list(accumulate([1e-3] * 1999))
@@ -87,7 +84,6 @@ def test_cuts_that_rounding_makes_change_nothing(wheel, kind):
     within(defect(wheel, kind, VARIED, tenths), 0.2, "defect, 2")
 
 
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 @pytest.mark.parametrize("gap", GAPS)
 def test_a_step_that_is_next_to_nothing_changes_nothing(wheel, kind, gap):
     for tolerance in (1e-9, 1e-6, 1e-4):
@@ -95,7 +91,6 @@ def test_a_step_that_is_next_to_nothing_changes_nothing(wheel, kind, gap):
         within(defect(wheel, kind, VARIED, cuts, tolerance=tolerance), BOUND, "defect")
 
 
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_the_bound_sees_an_input_that_is_wrong_for_a_tenth_of_a_second(wheel, kind):
     """The partner: a thousandth of one input is too much in a small part of the run."""
     wrong = [*VARIED[:2], (1.2, {"M_3": (-0.099 * 1.001,), "F_Y": (3.0,), "F_Z": (-0.8,)}), VARIED[2]]

@@ -62,7 +62,6 @@ def lift_off(wheel, kind, inputs, **values):
 
 @pytest.mark.parametrize("s", [0.0, 0.03])
 @pytest.mark.parametrize("name", SHAPES)
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_a_peak_of_the_load_inside_one_step_lifts_the_wheel_at_its_instant(wheel, kind, name, s):
     shape = SHAPES[name]
     found = lift_off(wheel, kind, {"F_Z": [WEIGHT * c for c in shape]}, s=s)
@@ -71,7 +70,6 @@ def test_a_peak_of_the_load_inside_one_step_lifts_the_wheel_at_its_instant(wheel
 
 
 @pytest.mark.parametrize("s", [0.0, 0.03])
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_a_peak_that_stays_below_the_weight_does_not(wheel, kind, s):
     """The partner: a ten-thousandth of the weight less."""
     for shape in (parabola(0, 0.9999), parabola(-20, 0.9999), cubic(0.9999 / 0.0481126)):
@@ -79,7 +77,6 @@ def test_a_peak_that_stays_below_the_weight_does_not(wheel, kind, s):
         assert lift_off(wheel, kind, {"F_Z": [WEIGHT * c for c in shape]}, s=s) is None
 
 
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_a_wheel_of_next_to_no_mass_lifts_off_at_the_same_instant(wheel, kind):
     """A billionth of all masses and of the load: the unit of force has no meaning."""
     light = {name: 1e-9 * getattr(PAPER, name) for name in ("m", "J_x", "J_y", "J_z")}
@@ -110,7 +107,6 @@ def test_two_inputs_that_nearly_cancel_hide_nothing(wheel, ramp, s):
     assert lift_off(wheel, FORCED[0], {"F_Z": [0.1 * c for c in force]}, **start) is None
 
 
-@pytest.mark.parametrize("kind", FORCED, ids=str)
 def test_a_brake_that_gives_way_inside_one_step_lets_the_wheel_turn_at_its_instant(wheel, kind):
     """A parabola of M_brake that sinks below the torque and comes back: the wheel is held at both ends of the step."""
     w, held = (wheel(logging=True).start(theta_start=pi / 2, phi_dot_start=0.0, **kind) for _ in range(2))

@@ -31,7 +31,9 @@ def bounded_memory(request: pytest.FixtureRequest) -> Iterator[None]:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    config.addinivalue_line("markers", "contract: quick tests of the C interface, run under sanitizers too")
+    config.addinivalue_line(
+        "markers", "local: neither for a release nor under the sanitizers, needs a local build"
+    )
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
