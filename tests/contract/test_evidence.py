@@ -64,8 +64,7 @@ def test_a_parameter_set_is_valid_and_gives_its_result_in_fmpy(folder: Path, fmu
 def test_the_state_continues_with_the_bits_of_its_result(folder: Path, library: Library) -> None:
     _, row = csv.reader((folder / "state_out.csv").read_text(encoding="utf-8").splitlines())
     with library.wheel() as wheel:
-        wheel.start(tolerance=1e-8)
-        assert wheel.restore((folder / "state.bin").read_bytes()) == 0
+        assert wheel.start(tolerance=1e-8).restore((folder / "state.bin").read_bytes()) == 0
         wheel.time = evidence.STATE_AT
         assert wheel.step_to(evidence.STATE_TO) == 0
         assert wheel.get(*evidence.OUTPUTS) == [float(cell) for cell in row[1:]]

@@ -60,8 +60,7 @@ def test_a_polynomial_that_goes_on_is_no_restart_and_a_jump_is_one(wheel):
 
 
 def test_derivatives_hold_for_one_step_and_the_value_stays_where_it_arrived(wheel):
-    w = wheel().start(tolerance=1e-12, **UPRIGHT)
-    w.give({"M_3": (1.0, 2.0)}).by(0.5)
+    w = wheel().start(tolerance=1e-12, **UPRIGHT).give({"M_3": (1.0, 2.0)}).by(0.5)
     reached = w.get("omega_z")[0]
     within(abs(reached - (0.5 + 0.25) / INERTIA), 64 * EPSILON, "reached")
     w.by(0.5)
@@ -98,8 +97,7 @@ def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(
     standing = wheel(logging=True).start(s=0.03, formulation=formulation, **UPRIGHT)
     limit = 0.03 * WEIGHT
     for torque in (0.999 * limit, -0.999 * limit, 0.0):
-        standing.put(M_3=torque).by(0.5)
-        assert standing.get("friction_mode") == [0]
+        assert standing.put(M_3=torque).by(0.5).get("friction_mode") == [0]
         assert standing.get("omega_z") == [0]
         within(abs(standing.get("X_O_dot")[0]), 128 * EPSILON, "X_O_dot")  # m/s: theta starts off 90 deg by rounding
     standing.give({"M_3": (0.0, 2.0)})
@@ -119,8 +117,7 @@ def test_a_held_wheel_stays_held_when_an_input_changes(wheel):
         assert w.step(1.26) == OK and w.get("friction_mode") == [0]  # stick lasts from 1.2255 s to 1.3298 s
         assert w.set(M_3=0.1) == OK
         assert w.get("friction_mode") == [0]
-        w.by(0.001)
-        assert w.get("friction_mode") == [0]
+        assert w.by(0.001).get("friction_mode") == [0]
         within(abs(w.get("omega_z")[0]), 64 * EPSILON, "omega_z")
         assert w.set(M_3=50.0) == OK
         assert w.get("friction_mode") == [1]

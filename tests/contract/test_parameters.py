@@ -104,8 +104,7 @@ def test_without_a_weight_rates_of_a_thousand_times_give_the_same_motion_as_much
 
 
 def test_faulty_parameters_can_be_corrected_in_initialization_mode_also_in_a_restored_state(wheel):
-    w = wheel()
-    assert (w.setupExperiment(), w.enterInitializationMode()) == (OK, OK)
+    w = wheel().initializing()
     at_start = w.get("lambda_3")
     assert w.set(m=-1.0) == OK
     assert w.restore(w.serialized()) == OK

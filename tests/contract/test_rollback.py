@@ -123,8 +123,7 @@ def test_a_snapshot_brings_back_the_call_state_it_was_taken_in(wheel, state):
 
 def test_stop_time_and_tolerance_are_part_of_the_state(wheel):
     tight = wheel().start(stop=2.0, tolerance=1e-10)
-    loose = wheel().start(tolerance=1e-4)
-    assert loose.restore(tight.serialized()) == OK
+    loose = wheel().start(tolerance=1e-4).back(tight.serialized())
     assert loose.run([1.0, 2.0]) == tight.run([1.0, 2.0])
     assert loose.step(0.1) == tight.step(0.1) == ERROR
 

@@ -69,8 +69,7 @@ def test_a_restored_wheel_goes_on_with_the_same_bits(library: Library) -> None:
 
 def test_a_state_of_one_kind_is_refused_by_the_other(library: Library) -> None:
     with exchange(library) as wheel, library.wheel(logging=True) as slave:
-        slave.start()
-        assert slave.restore(wheel.serialized()) == ERROR
+        assert slave.start().restore(wheel.serialized()) == ERROR
         assert "other kind" in slave.sentences[-1]
         assert wheel.restore(slave.serialized()) == ERROR
         slave.by(0.1)

@@ -48,7 +48,6 @@ PRESSED = {"s": FRICTION, "omega_s": 2e-3}, {"F_Z": -5e4}
 def test_the_moment_that_acts_decides_and_not_the_weight(wheel, start, inputs):
     steps = []
     for method in ("automatic", "bdf"):
-        w = wheel().start(friction_law="regularized", keep_contact=True, method=method, **start)
-        w.put(**inputs).to(1.0)
+        w = wheel().start(friction_law="regularized", keep_contact=True, method=method, **start).put(**inputs).to(1.0)
         steps.append(w.get("n_steps")[0])
     assert steps[0] < 1.5 * steps[1]

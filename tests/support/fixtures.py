@@ -31,9 +31,7 @@ def bounded_memory(request: pytest.FixtureRequest) -> Iterator[None]:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    config.addinivalue_line(
-        "markers", "local: neither for a release nor under the sanitizers, needs a local build"
-    )
+    config.addinivalue_line("markers", "local: neither for a release nor under the sanitizers, needs a local build")
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
