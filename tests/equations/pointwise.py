@@ -3,6 +3,7 @@
 Errors are relative to the largest entry of their group: accelerations of O, of the angles and the axle, reactions.
 """
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -42,26 +43,29 @@ def distance(a: Table, b: Table, scenes: Table) -> float:
     return max(errors)
 
 
-def reference_wheel(wheel: np.ndarray) -> Wheel:
-    """One row of constants, its gravity as slope and direction."""
-    *constants, g, s, g_X, g_Y = wheel.tolist()
-    along = np.hypot(g_X, g_Y)
-    return Wheel(*constants, np.hypot(g, along), s, np.arctan2(along, g), np.arctan2(-g_Y, -g_X))
+def answers(accelerations: Callable, scenes: np.ndarray, motions: np.ndarray) -> Iterator:
+    """By a function of (wheel, angles, rates, F, M, sigma, brake), which counts the weight of a level road: row by row.
+
+    Without pressure there is no friction but the brake's.
+    """
+    omega_z = motions["phi_dot"] + motions["psi_dot"] * np.cos(motions["theta"])
+    for scene, motion, spin in zip(scenes, motions, omega_z.tolist(), strict=True):
+        *constants, g_X, g_Y = scene["wheel"].tolist()
+        wheel, friction = Wheel(*constants), scene["friction"]
+        sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])][friction["kind"] - eq.FRICTIONLESS]
+        angles, rates = motion.tolist()[:3], motion.tolist()[3:6]
+        (F_X, F_Y, F_Z), M, brake = scene["load"].tolist()
+        F = (F_X + wheel.m * g_X, F_Y + wheel.m * g_Y, F_Z)  # with the weight along a slope
+        found = accelerations(wheel, angles, rates, F, M, sigma, brake)
+        if sigma is not None and found.lambda_3 <= 0:
+            found = accelerations(replace(wheel, s=0.0), angles, rates, F, M, sigma, brake)
+        yield found
 
 
 def referenced(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    """WheelDynamics from the reference; without pressure there is no friction but the brake's."""
+    """WheelDynamics from the reference."""
     out = eq.table(eq.Dynamics, len(scenes))
-    y = eq.start_each(eq.MULTIBODY, scenes, motions)
-    omega_z = eq.kinematics_each(eq.MULTIBODY, scenes, y)["omega_z"]
-    for row, scene, motion, spin in zip(out, scenes, motions, omega_z.tolist(), strict=True):
-        wheel, friction = reference_wheel(scene["wheel"]), scene["friction"]
-        sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])][friction["kind"] - eq.FRICTIONLESS]
-        angles, rates = motion.tolist()[:3], motion.tolist()[3:6]
-        *loads, brake = scene["load"].tolist()
-        found = accelerations(wheel, angles, rates, *loads, sigma, brake)
-        if friction["kind"] in (eq.ROLLING, eq.REGULARIZED) and found.lambda_3 <= 0:
-            found = accelerations(replace(wheel, s=0.0), angles, rates, *loads, sigma, brake)
+    for row, found in zip(out, answers(accelerations, scenes, motions), strict=True):
         for name in (*ACCELERATIONS, "tau"):
             row[name] = getattr(found, name)
         row["lambda_"] = found.lambda_1, found.lambda_2, found.lambda_3
