@@ -13,7 +13,7 @@ from physics.exact_motions import UPRIGHT
 from physics.measure import instants_error
 from reference import Start, Wheel, solve
 from reference.tables import read_table
-from support.bounds import beyond, within
+from support.bounds import beyond, range_error, within
 from support.closed_forms import fall_time, rolling_inertia
 from support.driver import HEADLINE
 from support.exchange import Run, exchange, no_inputs
@@ -57,7 +57,7 @@ def test_the_papers_scenes_come_out_of_another_solver(library: Library, scene: s
 
     def error(s: float, rtol: float = 1e-11) -> float:
         _, got, _ = moved(library, list(want["t"]), rtol, s=s)
-        return max(float(np.abs(got[name] - want[name]).max() / np.ptp(want[name])) for name in HEADLINE)
+        return range_error(got, want, HEADLINE)
 
     within(error(FRICTION[scene]), 1e-8, "error")
     beyond(error(FRICTION[scene], 1e-5), 5e-5, "error at a loose tolerance")
@@ -81,7 +81,7 @@ def test_fmpys_cvode_finds_them_too_within_some_thousand_of_its_tolerances(
 ) -> None:
     want = read_table("paper_friction")
     run = by_cvode(library, 10, 0.1, tolerance, HEADLINE, debug_logging=True)
-    error = max(float(np.abs(run[n] - want[n]).max() / np.ptp(want[n])) for n in HEADLINE)
+    error = range_error(run, want, HEADLINE)
     within(error / tolerance, 1e4, "error over tolerance")
     # FMPy prints the sentences. (Its argument `logger` would stay in use, freed, by all later runs of this process.)
     found = [float(t) for t in re.findall(r"^\[OK\] t = (\S+) s", capfd.readouterr().out, re.M)]

@@ -3,10 +3,9 @@
 import ctypes
 
 import pytest
-from support.paths import build_target
+from support.paths import probe
 
 
 @pytest.fixture(scope="session")
 def library() -> ctypes.CDLL:
-    folder = build_target("orbit_probe")
-    return ctypes.CDLL(str(next((folder / "tests" / "orbit").glob("*orbit_probe.*"))))
+    return probe("orbit")

@@ -38,8 +38,6 @@ class Options:
     omega_s: float  # rad/s; 0: exact friction
     flat: float | None
     pulled_friction: str
-    max_step: float
-    method: str
 
 
 class Switch:

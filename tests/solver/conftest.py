@@ -5,13 +5,12 @@ from functools import partial
 
 import pytest
 import solving
-from support.paths import build_target
+from support.paths import probe
 
 
 @pytest.fixture(scope="session")
 def library() -> ctypes.CDLL:
-    folder = build_target("solver_probe")
-    return ctypes.CDLL(str(next((folder / "tests" / "solver").glob("*solver_probe.*"))))
+    return probe("solver")
 
 
 @pytest.fixture
