@@ -23,9 +23,7 @@ def read(name: str) -> dict[str, set[str]]:
 
 TABLE = read("call_states.csv")  # section 4.2.4
 STATES = ("instantiated", "initialization", "step complete", "step failed", "terminated", "error")
-EXCHANGE = read(
-    "call_states_exchange.csv"
-)  # section 3.2.3, in instances of that kind alone
+EXCHANGE = read("call_states_exchange.csv")  # section 3.2.3, in instances of that kind alone
 
 # What follows the component: pointers raw, as no signature is declared for a slave.
 _EXCHANGE_ARGUMENTS = {

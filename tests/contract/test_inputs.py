@@ -52,7 +52,7 @@ def test_a_smooth_input_is_followed_with_the_order_of_its_derivatives(wheel, ord
 def test_a_polynomial_that_goes_on_is_no_restart_and_a_jump_is_one(wheel):
     p = Polynomial([1.0, -2.0, 1.5, -0.25])
     times = np.linspace(0, 2, 21)
-    smooth, held = wheel().start(M_3=1.0, **UPRIGHT), wheel().start(M_3=1.0, **UPRIGHT)
+    smooth, held = (wheel().start(M_3=1.0, **UPRIGHT) for _ in range(2))
     follow(smooth, p, times, 3)
     follow(held, p, times, 0)
     assert smooth.get("n_restarts")[0] <= 1  # the bend at t = 0, where there is no history to keep
@@ -82,11 +82,10 @@ def test_reactions_answer_an_input_before_the_step_and_the_motion_does_not(wheel
     forces = ("lambda", "mu", "tau", "theta_ddot", "psi_ddot", "phi_ddot", "omega_z_dot")
     motion = [name for name in w.reals if not name.startswith(forces)]
     before, reactions = w.read(motion), w.get("lambda_1", "lambda_2", "lambda_3")
-    assert w.set(F_X=1.0, F_Y=-2.0, F_Z=3.0, M_1=0.5, M_2=0.4, M_3=-0.3) == OK
+    w.put(F_X=1.0, F_Y=-2.0, F_Z=3.0, M_1=0.5, M_2=0.4, M_3=-0.3)
     at_once = np.array(w.get("lambda_1", "lambda_2", "lambda_3"))
     assert w.read(motion) == before
-    w.by(1e-9)
-    within(np.max(np.abs(at_once - w.get("lambda_1", "lambda_2", "lambda_3"))), 2e-6, "lambda_1")  # N
+    within(np.max(np.abs(at_once - w.by(1e-9).get("lambda_1", "lambda_2", "lambda_3"))), 2e-6, "lambda_1")  # N
     beyond(np.min(np.abs(at_once - reactions)), 0.06, "at once")
     assert w.read(motion) != before
 
@@ -100,9 +99,8 @@ def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(
         assert standing.put(M_3=torque).by(0.5).get("friction_mode") == [0]
         assert standing.get("omega_z") == [0]
         within(abs(standing.get("X_O_dot")[0]), 128 * EPSILON, "X_O_dot")  # m/s: theta starts off 90 deg by rounding
-    standing.give({"M_3": (0.0, 2.0)})
     t = standing.time
-    standing.by(4.0)
+    standing.give({"M_3": (0.0, 2.0)}).by(4.0)
     release = float(standing.take_messages()[-1].text.split(" ")[2])
     within(abs(release - t - limit / 2), 1e-8, "release")  # s; the log gives nine decimals
     spin = 2 * (4.0 - limit / 2) ** 2 / 2 / INERTIA
@@ -113,16 +111,12 @@ def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(
 def test_a_held_wheel_stays_held_when_an_input_changes(wheel):
     """The friction answers the new torque at once, in both formulations, and does so without slip."""
     for formulation in (2, 3):
-        w = wheel().start(s=0.03, formulation=formulation)
-        assert w.step(1.26) == OK and w.get("friction_mode") == [0]  # stick lasts from 1.2255 s to 1.3298 s
-        assert w.set(M_3=0.1) == OK
-        assert w.get("friction_mode") == [0]
-        assert w.by(0.001).get("friction_mode") == [0]
+        w = wheel().start(s=0.03, formulation=formulation).by(1.26)
+        assert w.get("friction_mode") == [0]  # stick lasts from 1.2255 s to 1.3298 s
+        assert w.put(M_3=0.1).get("friction_mode") == w.by(0.001).get("friction_mode") == [0]
         within(abs(w.get("omega_z")[0]), 64 * EPSILON, "omega_z")
-        assert w.set(M_3=50.0) == OK
-        assert w.get("friction_mode") == [1]
-        w.by(0.001)
-        beyond(w.get("omega_z")[0], 1e-3, "omega_z")
+        assert w.put(M_3=50.0).get("friction_mode") == [1]
+        beyond(w.by(0.001).get("omega_z")[0], 1e-3, "omega_z")
 
 
 def ramp_and_hold(w: FMU2Wheel, h: float) -> tuple[float, int]:
@@ -158,13 +152,10 @@ def test_after_a_jump_a_varying_input_is_followed_over_steps_of_single_roundings
 def test_an_input_may_change_again_after_a_step_of_single_roundings(wheel, values):
     """Masters that look for the instant of an event make such steps; no step can be as short as they are."""
     for roundings in (1, 2, 4, 9):
-        w, once = wheel().start(**values), wheel().start(**values)
-        for instance in (w, once):
-            instance.by(1.0)
+        w, once = (wheel().start(**values).by(1.0) for _ in range(2))
         w.put(M_3=0.5).by(roundings * np.spacing(1.0))
-        for instance in (w, once):
-            instance.put(M_3=0.7).to(1.5)
-        within(absolute_error(w.get("phi"), once.get("phi")), 1e-8, "phi")
+        ends = [instance.put(M_3=0.7).to(1.5).get("phi") for instance in (w, once)]
+        within(absolute_error(*ends), 1e-8, "phi")
 
 
 def test_wrong_input_derivatives_are_refused_as_a_whole(wheel):
