@@ -68,5 +68,4 @@ def test_after_an_error_a_snapshot_or_a_reset_brings_the_instance_back(wheel):
     ahead = w.run([0.6, 1.0])
     assert (w.set(M_3=1e300), w.step_to(1.1)) == (OK, ERROR)
     assert w.step_to(1.1) == ERROR  # the partner: nothing goes on by itself
-    assert w.restore(good) == OK
-    assert w.run([0.6, 1.0]) == ahead
+    assert w.back(good).run([0.6, 1.0]) == ahead

@@ -87,8 +87,7 @@ def test_causality_variability_and_initial_are_those_of_the_standard(description
 
 
 def test_every_start_value_of_the_description_is_what_the_library_starts_with(wheel, description):
-    w = wheel()
-    assert (w.setupExperiment(), w.enterInitializationMode()) == (0, 0)
+    w = wheel().initializing()
     stored = {v.name: v for v in description.modelVariables if v.start is not None}
     assert list(stored) == [*parameters_of(description), *INPUTS]
     for name, v in stored.items():
@@ -96,17 +95,14 @@ def test_every_start_value_of_the_description_is_what_the_library_starts_with(wh
         status, value = w.get_one(name)
         assert (status, value) == (OK, start), name
         within(abs(value - STARTS.get(name, start)), 8 * EPSILON, "difference")
-    assert w.set(m=20.000000000000004) == OK and w.get("m") != [20.0]  # the partner: one unit in the last place
+    assert w.put(m=20.000000000000004).get("m") != [20.0]  # the partner: one unit in the last place
 
 
 def test_limits_of_the_description_are_those_the_library_enforces(wheel, description):
     """A value one unit beyond a limit is refused at the end of initialization, the limit's inside is taken."""
 
     def accepted(name: str, value: float) -> bool:
-        w = wheel()
-        assert w.set(**{name: value}) == OK
-        w.setupExperiment()
-        w.enterInitializationMode()
+        w = wheel().initializing(**{name: value})
         taken = w.exitInitializationMode() == OK
         texts = [m.text for m in w.take_messages()]
         assert taken or any(text.startswith(name) for text in texts), (name, value, texts)

@@ -36,20 +36,16 @@ def test_the_end_does_not_depend_on_the_communication_grid(wheel):
 
 def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
     """F_Z grows by 30 N/s against the weight of 196.2 N; the wheel's own motion shifts the instant."""
-    w = wheel().start()
-    w.set_input_derivatives(["F_Z"], [[30.0]])
+    w = wheel().start().give({"F_Z": (0.0, 30.0)})
     assert w.step(10.0) == DISCARD
     t = ended(w)
     (normal,) = w.get("lambda_3")
     within(abs(normal), 3e-6, "normal force")  # N
     assert "lifted off" in w.take_messages()[-1].text
-    before = wheel().start()
-    before.set_input_derivatives(["F_Z"], [[30.0]])
-    before.by(t - 0.01)
+    before = wheel().start().give({"F_Z": (0.0, 30.0)}).by(t - 0.01)
     beyond(before.get("lambda_3")[0], 0.1, "lambda_3")
-    kept = wheel().start(keep_contact=1)
-    kept.set_input_derivatives(["F_Z"], [[30.0]])
-    assert kept.step(t + 0.2) == OK and kept.get("lambda_3")[0] < 0  # the partner: the ground pulls
+    kept = wheel().start(keep_contact=1).give({"F_Z": (0.0, 30.0)}).by(t + 0.2)
+    assert kept.get("lambda_3")[0] < 0  # the partner: the ground pulls
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-10])
@@ -58,15 +54,12 @@ def test_a_wheel_that_is_off_the_ground_at_the_start_ends_there_however_soon_it_
 ):
     """The force is back long before the solver's first step ends: both its ends, or its end alone, tell nothing."""
     motion = {"theta_start": 1.0, "psi_dot_start": 6.0, "theta_dot_start": 4.0, "phi_dot_start": 2.0}
-    w, kept = wheel().start(tolerance=tolerance, **motion), wheel().start(keep_contact=1, **motion)
-    assert w.set(F_Z=-10.5) == kept.set(F_Z=-10.5) == OK
+    w, kept = (wheel().start(tolerance=tolerance, keep_contact=k, **motion).put(F_Z=-10.5) for k in (0, 1))
     within(abs(w.get("lambda_3")[0] + 2.5), 0.5, "lambda_3")  # N
-    kept.by(0.005)
-    beyond(kept.get("lambda_3")[0], 5, "lambda_3")  # how soon
+    beyond(kept.by(0.005).get("lambda_3")[0], 5, "lambda_3")  # how soon
     assert w.step(0.1) == DISCARD
     assert ended(w) == 0
-    pressed = wheel().start(tolerance=tolerance, **motion)  # the partner: N = 0.7 N at the start
-    assert pressed.set(F_Z=-15.0) == OK and pressed.step(0.1) == OK
+    wheel().start(tolerance=tolerance, **motion).put(F_Z=-15.0).by(0.1)  # the partner: N = 0.7 N at the start
 
 
 def fmpy_simulate(fmu_path, output, *start_values: str) -> tuple[str, np.ndarray]:

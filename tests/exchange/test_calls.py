@@ -28,8 +28,7 @@ def test_states_are_read_back_to_the_bit_also_after_a_restored_state(library: Li
     with at_odd(library) as wheel, exchange(library) as other:
         assert (wheel.x() == ODD).all()
         assert wheel.get(*STATES) == ODD.tolist()
-        assert other.restore(wheel.serialized()) == OK
-        assert (other.x() == ODD).all()
+        assert (other.back(wheel.serialized()).x() == ODD).all()
         assert other.bits() == wheel.bits()
         assert (other.derivatives() == wheel.derivatives()).all()
         wheel.place(0.3, np.nextafter(ODD, np.inf))
@@ -57,8 +56,7 @@ def test_a_restored_wheel_goes_on_with_the_same_bits(library: Library) -> None:
         blob = wheel.serialized()
         ends = []
         for restored in (wheel, other):
-            assert restored.restore(blob) == OK
-            run = Run(restored, 1e-9, no_inputs)
+            run = Run(restored.back(blob), 1e-9, no_inputs)
             run.t = 2.0
             restored.place(2.0, restored.x())
             run.to(4.0)
