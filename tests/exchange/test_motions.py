@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from physics.exact_motions import UPRIGHT
-from physics.measure import instants_error
+from physics.measure import FRICTION, instants_error
 from reference import Start, Wheel, solve
 from reference.tables import read_table
 from support.bounds import beyond, range_error, within
@@ -20,7 +20,6 @@ from support.exchange import Run, exchange, no_inputs
 from support.motion import Library, start_values
 from support.scenes import PUSH
 
-FRICTION = {"free": 0.0, "friction": 0.03}
 RIM = start_values(Wheel(J_x=0.05, J_y=0.05, J_z=0.1), Start(theta=1.4, phi_dot=0.0))
 
 

@@ -89,9 +89,3 @@ def wheel(library: Library) -> Iterator[Callable[..., FMU2Wheel]]:
     yield make
     for instance in made:
         instance.close()
-
-
-@pytest.fixture(scope="session")
-def reference_events() -> np.ndarray:
-    """The instants, s, of the 37 transitions of the paper's friction scene, from the trusted table."""
-    return read_table("paper_friction_events")["t"][1:]
