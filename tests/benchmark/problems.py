@@ -1,7 +1,5 @@
 """The three scenes of docs/benchmark.md, and how far a solution is from the reference values."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The reference values of docs/benchmark.md, met by the FMU, its system (24) and the independent reference."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """After an ending: nothing goes on by itself, the refusal says what happened, and a restored state leads on."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np
@@ -9,8 +7,6 @@ import pytest
 from support.driver import DISCARD, DO_STEP_STATUS, ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING
 
 from contract.call_states import STATES, TABLE, bring_to, call
-
-pytestmark = pytest.mark.contract
 
 DROP = {"theta_start": float(np.radians(75)), "phi_dot_start": 0.0}  # let go at rest
 LIFT = {"F_Z": 250.0}  # more than the weight
@@ -52,27 +48,23 @@ def test_after_an_ending_no_step_of_any_length_is_answered_with_ok_and_the_refus
 
 
 def test_a_restored_ending_is_still_an_ending_in_any_instance(wheel):
-    w, other = wheel().start(**DROP), wheel().start()
-    assert w.step_to(0.5) == OK
+    w, other = wheel().start(**DROP).to(0.5), wheel().start()
     assert (w.status(DO_STEP_STATUS), w.status(LAST_SUCCESSFUL_TIME), w.status(TERMINATED)) == (OK, 0.5, 0)
     before = w.serialized()
     assert w.step(10.0) == DISCARD
     ended, end, bits = w.serialized(), w.status(LAST_SUCCESSFUL_TIME), w.bits()
     assert other.restore(ended) == OK
-    other.time = end
     other.take_messages()
     assert (other.bits(), other.step(0.0), other.status(TERMINATED)) == (bits, ERROR, 1)
     assert "fell flat" in other.take_messages()[0].text
     assert other.restore(before) == OK  # the partner: a state from before leads on, to the same end
-    other.time = 0.5
     assert (other.status(TERMINATED), other.step(0.0), other.step(0.05)) == (0, OK, OK)
     assert (other.step(1.0), other.status(LAST_SUCCESSFUL_TIME), other.bits()) == (DISCARD, end, bits)
 
 
 @pytest.mark.parametrize("values", [{}, {"s": 0.03}], ids=["unfolded", "stepped"])
 def test_a_terminated_wheel_is_read_where_it_stopped(wheel, values):
-    read, unread = (wheel().start(**values) for _ in range(2))
-    assert read.step(1.0) == unread.step(1.0) == OK
+    read, unread = (wheel().start(**values).by(1.0) for _ in range(2))
     want = read.bits()
     assert unread.terminate() == OK and unread.bits() == want
 
@@ -100,8 +92,8 @@ def test_other_states_are_told_by_their_names(wheel):
 
 
 def test_output_derivatives_are_refused_in_initialization_mode_even_where_the_outputs_can_be_read(wheel):
-    w = wheel()
-    assert (w.setupExperiment(), w.enterInitializationMode(), w.get_one("lambda_3")[0]) == (OK, OK, OK)
+    w = wheel().initializing()
+    assert w.get_one("lambda_3")[0] == OK
     assert call(w, "fmi2GetRealOutputDerivatives") == ERROR
     (message,) = w.take_messages()
     assert message.text == 'fmi2GetRealOutputDerivatives is not allowed in the state "initialization mode".'
@@ -110,13 +102,10 @@ def test_output_derivatives_are_refused_in_initialization_mode_even_where_the_ou
 
 
 def test_an_input_is_read_back_as_it_is_now(wheel):
-    w = wheel().start(s=0.03)
-    assert w.set(M_3=1.0, F_X=4.0) == OK
-    w.setRealInputDerivatives([w.references["M_3"]], [1], [2.0])
+    w = wheel().start(s=0.03).give({"M_3": (1.0, 2.0), "F_X": (4.0,)})
     assert w.get("M_3") == [1.0]
-    assert w.step(0.5) == OK
-    assert w.get("M_3", "F_X") == [2.0, 4.0]
-    assert w.step(0.5) == OK and w.get("M_3") == [2.0]  # derivatives hold for one step
+    assert w.by(0.5).get("M_3", "F_X") == [2.0, 4.0]
+    assert w.by(0.5).get("M_3") == [2.0]  # derivatives hold for one step
     blob = w.serialized()
-    assert w.set(M_3=7.0) == OK and w.get("M_3") == [7.0]
-    assert w.restore(blob) == OK and w.get("M_3") == [2.0]
+    assert w.put(M_3=7.0).get("M_3") == [7.0]
+    assert w.back(blob).get("M_3") == [2.0]

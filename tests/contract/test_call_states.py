@@ -1,14 +1,10 @@
 """Every function in every state: what the standard allows works, all else is an error with a sentence and no effect."""
 
-from __future__ import annotations
-
 import pytest
 from support.driver import ERROR, OK
 from support.scenes import KINDS
 
 from contract.call_states import STATES, TABLE, bring_to, call
-
-pytestmark = pytest.mark.contract
 
 
 def test_each_function_is_legal_exactly_where_the_standard_says(wheel):
@@ -72,6 +68,4 @@ def test_after_an_error_a_snapshot_or_a_reset_brings_the_instance_back(wheel):
     ahead = w.run([0.6, 1.0])
     assert (w.set(M_3=1e300), w.step_to(1.1)) == (OK, ERROR)
     assert w.step_to(1.1) == ERROR  # the partner: nothing goes on by itself
-    assert w.restore(good) == OK
-    w.time = 0.5
-    assert w.run([0.6, 1.0]) == ahead
+    assert w.back(good).run([0.6, 1.0]) == ahead

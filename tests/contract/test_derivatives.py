@@ -1,7 +1,5 @@
 """Derivatives: of outputs in time and of outputs by inputs, exact, checked against differences of the FMU itself."""
 
-from __future__ import annotations
-
 from ctypes import c_double, c_int, c_uint
 
 import numpy as np
@@ -9,8 +7,6 @@ import pytest
 from support.bounds import EPSILON, beyond, within
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel
 from support.scenes import KINDS
-
-pytestmark = pytest.mark.contract
 
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 H = 2.0**-8  # s, between the points of the difference
@@ -28,22 +24,14 @@ def rates(w: FMU2Wheel) -> np.ndarray:
 
 def forward_difference(w: FMU2Wheel) -> np.ndarray:
     """d/dt of all outputs from here on, with the inputs as polynomials that were just set; leaves the instance here."""
-    names, blob, t = outputs(w), w.serialized(), w.time
-    rows = [np.frombuffer(w.read(names))]
-    for k in range(1, len(FORWARD)):
-        assert w.restore(blob) == OK
-        w.time = t
-        assert w.step(k * H) == OK
-        rows.append(np.frombuffer(w.read(names)))
-    assert w.restore(blob) == OK
-    w.time = t
+    names, blob = outputs(w), w.serialized()
+    rows = [np.frombuffer((w.back(blob).by(k * H) if k else w).read(names)) for k in range(len(FORWARD))]
+    w.back(blob)
     return FORWARD @ rows / H
 
 
 def push(w: FMU2Wheel, slope: float) -> None:
-    for k, name in enumerate(INPUTS):
-        assert w.set(**{name: 0.3 * (k + 1)}) == OK
-        w.setRealInputDerivatives([w.references[name]], [1], [slope * (1 - 0.4 * k)])
+    w.give({name: (0.3 * (k + 1), slope * (1 - 0.4 * k)) for k, name in enumerate(INPUTS)})
 
 
 @pytest.mark.parametrize("scene", KINDS)
@@ -51,23 +39,19 @@ def test_output_derivatives_are_those_of_the_motion(wheel, scene):
     """Left alone, under inputs that jump, and under inputs with a slope, which the rates of the reactions contain."""
     w = wheel().start(tolerance=1e-12, **KINDS[scene])
     for t in (0.25, 0.9, 2.8):  # no transition of the friction within 24 ms
-        assert w.step_to(t) == OK
-        blob = w.serialized()
+        blob = w.to(t).serialized()
         for slope in (None, 0.0, 5.0):
             if slope is not None:
                 push(w, slope)
             exact, difference = rates(w), forward_difference(w)
-            error = np.max(np.abs(exact - difference) / (1 + np.abs(exact)))
-            within(error, 2e-6, "error")
+            within(np.max(np.abs(exact - difference) / (1 + np.abs(exact))), 2e-6, "error")
         push(w, 5.001)  # the partner: another slope of the inputs is seen in the reactions
         beyond(np.max(np.abs(rates(w) - difference) / (1 + np.abs(exact))), 2e-6, "rates")
-        assert w.restore(blob) == OK
-        w.time = t
+        w.back(blob)
 
 
 def test_derivatives_of_pose_are_the_velocities_to_the_bit(wheel):
-    w = wheel().start(s=0.03)
-    assert w.step(0.6) == OK
+    w = wheel().start(s=0.03).by(0.6)
     names = outputs(w)
     rate = dict(zip(names, rates(w), strict=True))
     for pose in ("X_O", "Y_O", "Z_O", "psi", "theta", "phi"):
@@ -84,25 +68,19 @@ def difference_jacobian(w: FMU2Wheel, delta: float = 0.5) -> np.ndarray:
     columns = []
     for name in INPUTS:
         (value,) = w.get(name)
-        ends = []
-        for sign in (1, -1):
-            assert w.set(**{name: value + sign * delta}) == OK
-            ends.append(np.frombuffer(w.read(outputs(w))))
-        assert w.set(**{name: value}) == OK
+        ends = [np.frombuffer(w.put(**{name: value + sign * delta}).read(outputs(w))) for sign in (1, -1)]
+        w.put(**{name: value})
         columns.append((ends[0] - ends[1]) / (2 * delta))
     return np.array(columns).T
 
 
 @pytest.mark.parametrize("scene", KINDS)
 def test_directional_derivatives_are_those_of_the_reactions(wheel, scene):
-    w = wheel()
-    assert w.set(**KINDS[scene]) == OK
-    assert (w.setupExperiment(), w.enterInitializationMode()) == (OK, OK)
+    w = wheel().initializing(**KINDS[scene])
     checked = [(jacobian(w), difference_jacobian(w))]
     assert w.exitInitializationMode() == OK
     for t in (0.25, 1.0, 3.0):
-        assert w.step_to(t) == OK
-        checked.append((jacobian(w), difference_jacobian(w)))
+        checked.append((jacobian(w.to(t)), difference_jacobian(w)))
     for exact, difference in checked:
         within(np.max(np.abs(exact - difference)), 64 * 200 * EPSILON, "difference")  # of reactions of 200 N
         answers = [name.startswith(("lambda", "tau")) for name in outputs(w)]
@@ -112,11 +90,10 @@ def test_directional_derivatives_are_those_of_the_reactions(wheel, scene):
 
 
 def test_while_friction_holds_the_wheel_the_derivatives_are_those_of_a_held_wheel(wheel):
-    w, rolling = wheel().start(s=0.03), wheel().start()
-    assert w.step(1.26) == OK and w.get("friction_mode") == [0]
+    w = wheel().start(s=0.03).by(1.26)
+    assert w.get("friction_mode") == [0]
     within(np.max(np.abs(jacobian(w) - difference_jacobian(w, 1e-3))), 1e-10, "jacobian")
-    assert rolling.restore(w.serialized()) == OK
-    assert rolling.set(s=0.0) == OK
+    rolling = wheel().back(w.serialized()).put(s=0.0)
     # The partner: M_3 is not held without friction.
     beyond(np.max(np.abs(jacobian(w) - jacobian(rolling))), 0.1, "jacobian")
 
@@ -153,16 +130,13 @@ def test_wrong_requests_for_derivatives_are_refused(wheel):
 
 
 def test_at_an_ending_the_rates_count_the_slope_that_led_there(wheel):
-    slope, lifted = 1000.0, wheel().start()
-    lifted.set_input_derivatives(["F_Z"], [[slope]])
+    slope = 1000.0
+    lifted = wheel().start().give({"F_Z": (0.0, slope)})
     assert lifted.step(1.0) == DISCARD
     end, (rate,) = lifted.status(LAST_SUCCESSFUL_TIME), lifted.rates(["lambda_3"])()
 
     def normal_force(t: float) -> float:
-        w = wheel().start()
-        w.set_input_derivatives(["F_Z"], [[slope]])
-        assert w.step(t) == OK
-        return w.get("lambda_3")[0]
+        return wheel().start().give({"F_Z": (0.0, slope)}).by(t).get("lambda_3")[0]
 
     h = 1e-3
     backward = (3 * lifted.get("lambda_3")[0] - 4 * normal_force(end - h) + normal_force(end - 2 * h)) / (2 * h)

@@ -1,7 +1,6 @@
 """The model description: valid, complete, and the same as what the library says when it is asked."""
 
-from __future__ import annotations
-
+import csv
 import re
 from pathlib import Path
 from xml.etree import ElementTree
@@ -15,47 +14,29 @@ from support.bounds import EPSILON, beyond, within
 from support.driver import CHOICES, DISCARD, OK
 from support.exchange import DERIVATIVES, INDICATORS, STATES
 
-pytestmark = pytest.mark.contract
-
 FULL_TURN = 2 * np.pi
-# name, start, unit, variability; then inputs and outputs in the order in which a table shows them.
-PARAMETERS = {
-    **{"m": (20, "kg"), "r_0": (0.3, "m"), "r": (0.05, "m")},
-    **{"J_x": (0.9, "kg.m2"), "J_y": (0.9, "kg.m2"), "J_z": (1.8, "kg.m2"), "g": (9.81, "m/s2"), "s": (0, "m")},
-    **{"slope": (0, "rad"), "slope_direction": (0, "rad")},
-    **{"psi_start": (FULL_TURN / 4, "rad"), "theta_start": (5 * FULL_TURN / 24, "rad"), "phi_start": (0, "rad")},
-    **{"psi_dot_start": (0, "rad/s"), "theta_dot_start": (0, "rad/s"), "phi_dot_start": (-2, "rad/s")},
-    **{"X_O_start": (-0.3 * np.cos(5 * FULL_TURN / 24), "m"), "Y_O_start": (0, "m")},
-    **{"formulation": (1, None), "friction_law": (1, None), "omega_s": (0.001, "rad/s"), "method": (1, None)},
-    **{"keep_contact": (0, None)},
-}
-INPUTS = {"F_X": "N", "F_Y": "N", "F_Z": "N", "M_1": "N.m", "M_2": "N.m", "M_3": "N.m", "M_brake": "N.m"}
 # What users rely on, in this order. Outputs that are added later follow after these and need no entry here; nor do
 # parameters.
-OUTPUTS = {
-    **{"X_O": "m", "theta": "rad", "phi_dot": "rad/s", "psi_dot": "rad/s", "Y_O": "m", "Z_O": "m"},
-    **{"psi": "rad", "phi": "rad", "theta_dot": "rad/s", "X_O_dot": "m/s", "Y_O_dot": "m/s", "Z_O_dot": "m/s"},
-    **{"omega_z": "rad/s", "lambda_1": "N", "lambda_2": "N", "lambda_3": "N"},
-    **{"X_C": "m", "Y_C": "m", "lambda_x": "N", "lambda_y": "N", "tau": "N.m"},
-}
-LOCALS = {
-    **{"theta_ddot": "rad/s2", "psi_ddot": "rad/s2", "phi_ddot": "rad/s2", "omega_z_dot": "rad/s2"},
-    **{"E": "J", "mu_required": "1", "friction_mode": None, "n_steps": None, "n_rhs": None},
-    **{"n_jac": None, "n_roots": None, "n_events": None, "n_restarts": None},
-}
+with Path(__file__).with_name("variables.csv").open(newline="", encoding="utf-8") as file:
+    ROWS = list(csv.DictReader(file))
+UNITS = {row["name"]: row["unit"] or None for row in ROWS}
+STARTS = {row["name"]: float(row["start"]) for row in ROWS if row["start"]}
+PARAMETERS, INPUTS, OUTPUTS, LOCALS = (
+    [row["name"] for row in ROWS if row["role"] == role] for role in ("parameter", "input", "output", "local")
+)
 
 
 def parameters_of(description) -> list[str]:
     """All parameters: those of the contract are among them in its order, with what is added later."""
     names = [v.name for v in description.modelVariables if v.causality == "parameter"]
-    assert [name for name in names if name in PARAMETERS] == list(PARAMETERS)
+    assert [name for name in names if name in PARAMETERS] == PARAMETERS
     return names
 
 
 def outputs_of(description) -> list[str]:
     """All outputs: those of the contract come first."""
     names = [v.name for v in description.modelVariables if v.causality == "output"]
-    assert names[: len(OUTPUTS)] == list(OUTPUTS)
+    assert names[: len(OUTPUTS)] == OUTPUTS
     return names
 
 
@@ -83,8 +64,7 @@ def test_variables_are_those_of_the_contract_in_its_order_with_its_units_and_sta
     assert names == [*parameters_of(description), *INPUTS, *outputs_of(description), *LOCALS]
     assert [v.valueReference for v in description.modelVariables] == list(range(len(names)))
     for v in description.modelVariables:
-        expected = {n: u for n, (_, u) in PARAMETERS.items()} | INPUTS | OUTPUTS | LOCALS
-        assert unit_of(v) == expected.get(v.name, unit_of(v)), v.name
+        assert unit_of(v) == UNITS.get(v.name, unit_of(v)), v.name
         assert v.type != "Real" or unit_of(v), v.name
         assert (v.declaredType.displayUnit if v.declaredType else v.displayUnit) in (None, "deg")
         assert (v.displayUnit == "deg") == (unit_of(v) == "rad"), v.name
@@ -101,33 +81,28 @@ def test_causality_variability_and_initial_are_those_of_the_standard(description
     for name in outputs_of(description):
         assert kinds.pop(name) == ("output", "continuous", "calculated"), name
     for name, kind in kinds.items():
-        assert kind == ("local", "discrete" if LOCALS[name] is None else "continuous", "calculated"), name
+        assert kind == ("local", "discrete" if UNITS[name] is None else "continuous", "calculated"), name
     calculated = [v for v in description.modelVariables if v.initial == "calculated"]
     assert all(v.start is None for v in calculated)
 
 
 def test_every_start_value_of_the_description_is_what_the_library_starts_with(wheel, description):
-    w = wheel()
-    assert (w.setupExperiment(), w.enterInitializationMode()) == (0, 0)
+    w = wheel().initializing()
     stored = {v.name: v for v in description.modelVariables if v.start is not None}
     assert list(stored) == [*parameters_of(description), *INPUTS]
     for name, v in stored.items():
         start = {"true": 1, "false": 0}.get(v.start) if v.type == "Boolean" else float(v.start)
         status, value = w.get_one(name)
         assert (status, value) == (OK, start), name
-        expected = PARAMETERS[name][0] if name in PARAMETERS else 0 if name in INPUTS else start
-        within(abs(value - expected), 8 * EPSILON, "difference")
-    assert w.set(m=20.000000000000004) == OK and w.get("m") != [20.0]  # the partner: one unit in the last place
+        within(abs(value - STARTS.get(name, start)), 8 * EPSILON, "difference")
+    assert w.put(m=20.000000000000004).get("m") != [20.0]  # the partner: one unit in the last place
 
 
 def test_limits_of_the_description_are_those_the_library_enforces(wheel, description):
     """A value one unit beyond a limit is refused at the end of initialization, the limit's inside is taken."""
 
     def accepted(name: str, value: float) -> bool:
-        w = wheel()
-        assert w.set(**{name: value}) == OK
-        w.setupExperiment()
-        w.enterInitializationMode()
+        w = wheel().initializing(**{name: value})
         taken = w.exitInitializationMode() == OK
         texts = [m.text for m in w.take_messages()]
         assert taken or any(text.startswith(name) for text in texts), (name, value, texts)

@@ -1,7 +1,5 @@
 """How a run ends: flat on the ground or lifted off. Discard, the instant, and outputs there."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 
@@ -11,8 +9,6 @@ from support.bounds import EPSILON, beyond, within
 from support.closed_forms import fall_time
 from support.driver import DISCARD, DO_STEP_STATUS, LAST_SUCCESSFUL_TIME, OK, TERMINATED, FMU2Wheel
 from support.scenes import PAPER, THETA_0
-
-contract = pytest.mark.contract
 
 DROP = {"theta_start": THETA_0, "phi_dot_start": 0.0}  # let go at rest
 
@@ -26,7 +22,6 @@ def ended(w: FMU2Wheel) -> float:
     return w.status(LAST_SUCCESSFUL_TIME)
 
 
-@contract
 def test_the_end_does_not_depend_on_the_communication_grid(wheel):
     at_once, in_steps = wheel().start(**DROP), wheel().start(**DROP)
     assert at_once.step(10.0) == DISCARD
@@ -39,41 +34,32 @@ def test_the_end_does_not_depend_on_the_communication_grid(wheel):
     assert at_once.bits() != wheel().start(**DROP).run([0.59])[0]
 
 
-@contract
 def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
     """F_Z grows by 30 N/s against the weight of 196.2 N; the wheel's own motion shifts the instant."""
-    w = wheel().start()
-    w.set_input_derivatives(["F_Z"], [[30.0]])
+    w = wheel().start().give({"F_Z": (0.0, 30.0)})
     assert w.step(10.0) == DISCARD
     t = ended(w)
     (normal,) = w.get("lambda_3")
     within(abs(normal), 3e-6, "normal force")  # N
     assert "lifted off" in w.take_messages()[-1].text
-    before = wheel().start()
-    before.set_input_derivatives(["F_Z"], [[30.0]])
-    assert before.step(t - 0.01) == OK
+    before = wheel().start().give({"F_Z": (0.0, 30.0)}).by(t - 0.01)
     beyond(before.get("lambda_3")[0], 0.1, "lambda_3")
-    kept = wheel().start(keep_contact=1)
-    kept.set_input_derivatives(["F_Z"], [[30.0]])
-    assert kept.step(t + 0.2) == OK and kept.get("lambda_3")[0] < 0  # the partner: the ground pulls
+    kept = wheel().start(keep_contact=1).give({"F_Z": (0.0, 30.0)}).by(t + 0.2)
+    assert kept.get("lambda_3")[0] < 0  # the partner: the ground pulls
 
 
-@contract
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-10])
 def test_a_wheel_that_is_off_the_ground_at_the_start_ends_there_however_soon_it_would_be_pressed_again(
     wheel, tolerance
 ):
     """The force is back long before the solver's first step ends: both its ends, or its end alone, tell nothing."""
     motion = {"theta_start": 1.0, "psi_dot_start": 6.0, "theta_dot_start": 4.0, "phi_dot_start": 2.0}
-    w, kept = wheel().start(tolerance=tolerance, **motion), wheel().start(keep_contact=1, **motion)
-    assert w.set(F_Z=-10.5) == kept.set(F_Z=-10.5) == OK
+    w, kept = (wheel().start(tolerance=tolerance, keep_contact=k, **motion).put(F_Z=-10.5) for k in (0, 1))
     within(abs(w.get("lambda_3")[0] + 2.5), 0.5, "lambda_3")  # N
-    assert kept.step(0.005) == OK
-    beyond(kept.get("lambda_3")[0], 5, "lambda_3")  # how soon
+    beyond(kept.by(0.005).get("lambda_3")[0], 5, "lambda_3")  # how soon
     assert w.step(0.1) == DISCARD
     assert ended(w) == 0
-    pressed = wheel().start(tolerance=tolerance, **motion)  # the partner: N = 0.7 N at the start
-    assert pressed.set(F_Z=-15.0) == OK and pressed.step(0.1) == OK
+    wheel().start(tolerance=tolerance, **motion).put(F_Z=-15.0).by(0.1)  # the partner: N = 0.7 N at the start
 
 
 def fmpy_simulate(fmu_path, output, *start_values: str) -> tuple[str, np.ndarray]:
@@ -84,6 +70,7 @@ def fmpy_simulate(fmu_path, output, *start_values: str) -> tuple[str, np.ndarray
     return finished.stdout, np.genfromtxt(output, delimiter=",", names=True)
 
 
+@pytest.mark.local
 def test_fmpy_simulate_ends_where_the_wheel_falls_and_keeps_the_data(fmu_path, tmp_path):
     start = ("theta_start", "1.3089969389957472", "phi_dot_start", "0")
     said, rows = fmpy_simulate(fmu_path, tmp_path / "drop.csv", *start)

@@ -3,8 +3,6 @@
 A checksum guards against accidents, not against bytes from elsewhere. Run under the sanitizers with the contract tests.
 """
 
-from __future__ import annotations
-
 from time import process_time
 
 import numpy as np
@@ -13,8 +11,6 @@ from support.driver import DISCARD, ERROR, OK
 from support.pieces import play
 
 from contract.test_foreign_states import FELL_FLAT, HEADER, as_word, forged, signed, words_of
-
-pytestmark = pytest.mark.contract
 
 SOON = 5.0  # s of computing for what follows a state that was taken
 SUM = HEADER - 1  # the word of the checksum
@@ -68,10 +64,8 @@ def test_a_state_with_one_word_changed_is_refused_or_harmless(wheel, run):
     blob = saved(wheel, run)
     words = words_of(blob)
     assert signed(words) == blob  # the partner: the layout is as this test believes, and the bytes are taken
-    w = wheel().start(s=0.01)
-    assert w.restore(blob) == OK
-    host = wheel().start(s=0.01)
-    assert host.step_to(0.2) == OK
+    w = wheel().start(s=0.01).back(blob)
+    host = wheel().start(s=0.01).to(0.2)
     before, refused = host.serialized(), 0
     for place in [k for k in range(len(words)) if k != SUM]:
         for new in changes(words[place], place):
@@ -98,9 +92,7 @@ def test_a_state_with_one_word_changed_is_refused_or_harmless(wheel, run):
 def test_a_number_that_is_not_finite_is_refused_or_has_no_effect(wheel, run):
     blob = saved(wheel, run)
     words = words_of(blob)
-    straight = wheel()
-    assert straight.restore(blob) == OK
-    straight.time = 0.7
+    straight = wheel().back(blob)
     ended = run == "ended"
     expected = straight.fmi2DoStep(straight.component, 0.7, 0.3, 0), straight.bits()
     assert expected[0] == (ERROR if ended else OK)
@@ -127,8 +119,7 @@ def test_a_run_that_claims_an_orbit_which_its_start_does_not_have_is_harmless(wh
 
 def test_an_ended_run_stays_ended(wheel):
     """Whatever its state brings: no forged word makes an ended run step on without a sentence."""
-    w = wheel()
-    assert w.restore(saved(wheel, "ended", 9.0)) == OK
+    w = wheel().back(saved(wheel, "ended", 9.0))
     assert w.fmi2DoStep(w.component, 0.7, 0.1, 0) in (DISCARD, ERROR)
 
 

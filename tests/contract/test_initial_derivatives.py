@@ -1,15 +1,11 @@
 """Directional derivatives of the start: by parameters too, for every pair that the model description declares."""
 
-from __future__ import annotations
-
 from ctypes import c_double, c_uint
 
 import numpy as np
 import pytest
 from support.bounds import beyond, within
 from support.driver import ERROR, OK, FMU2Wheel
-
-pytestmark = pytest.mark.contract
 
 GENERAL = {
     **{"theta_start": 1.1, "psi_start": 0.7, "phi_start": 0.4, "psi_dot_start": 0.9, "theta_dot_start": -0.6},
@@ -24,12 +20,6 @@ SCENES = {
 }
 
 
-def initialized(w: FMU2Wheel, **values: float) -> FMU2Wheel:
-    assert w.set(**values) == OK
-    assert (w.setupExperiment(), w.enterInitializationMode()) == (OK, OK)
-    return w
-
-
 def derivative(w: FMU2Wheel, unknown: str, known: str, seed: float = 1.0) -> tuple[int, float]:
     value = (c_double * 1)(np.nan)
     arrays = ((c_uint * 1)(w.references[unknown]), 1, (c_uint * 1)(w.references[known]), 1, (c_double * 1)(seed), value)
@@ -40,17 +30,14 @@ def quotient(w: FMU2Wheel, unknown: str, known: str, x: float, h: float) -> floa
     """A one-sided difference of the second order, upwards; J_z, which may be at its limit, downwards."""
     if known == "J_z":
         h = -h
-    values = []
-    for k in range(3):
-        assert w.set(**{known: x + k * h}) == OK
-        values.append(w.get(unknown)[0])
-    assert w.set(**{known: x}) == OK
+    values = [w.put(**{known: x + k * h}).get(unknown)[0] for k in range(3)]
+    w.put(**{known: x})
     return (-3 * values[0] + 4 * values[1] - values[2]) / (2 * h)
 
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_every_declared_pair_is_answered_and_right(wheel, description, scene):
-    w = initialized(wheel(), **SCENES[scene])
+    w = wheel().initializing(**SCENES[scene])
     pairs = [(u.variable.name, v.name) for u in description.initialUnknowns for v in u.dependencies]
     assert len(pairs) > 150
     moved, off = 0, 0.0
@@ -74,9 +61,7 @@ def test_every_declared_pair_is_answered_and_right(wheel, description, scene):
 
 
 def test_asking_leaves_the_start_as_it_was(wheel):
-    w, other = initialized(wheel(), **GENERAL), initialized(wheel(), **GENERAL)
-    w.setRealInputDerivatives([w.references["M_3"]], [1], [0.3])
-    other.setRealInputDerivatives([w.references["M_3"]], [1], [0.3])
+    w, other = (wheel().initializing(**GENERAL).give({"M_3": (0.0, 0.3)}) for _ in range(2))
     for instance in (w, other):
         instance.get("theta")
     before = w.serialized()

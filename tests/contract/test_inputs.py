@@ -4,8 +4,6 @@ The closed form used here is the upright wheel on a straight line (theta = 90 de
 J_z + m (r_0 + r)^2, and F_X, F_Y, M_1, M_2 are balanced by nothing but the ground.
 """
 
-from __future__ import annotations
-
 from ctypes import c_double, c_int, c_uint
 from math import factorial
 
@@ -13,10 +11,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.driver import ERROR, OK, FMU2Wheel
-from support.pieces import give, shifted
-
-pytestmark = pytest.mark.contract
+from support.driver import ERROR, OK, FMU2Wheel, shifted
 
 UPRIGHT = {"theta_start": np.pi / 2, "phi_dot_start": 0.0}
 RHO = 0.35
@@ -27,8 +22,7 @@ WEIGHT = 20 * 9.81
 def follow(w: FMU2Wheel, p: Polynomial, times: np.ndarray, order: int) -> float:
     """Drives with M_3 = p(t), of which each step sees the Taylor polynomial of that order; omega_z at the end."""
     for t, t_next in zip(times, times[1:], strict=False):
-        give(w, {"M_3": shifted(p.coef, t)[: order + 1]})
-        assert w.step_to(t_next) == OK
+        w.give({"M_3": shifted(p.coef, t)[: order + 1]}).to(t_next)
     return w.get("omega_z")[0]
 
 
@@ -50,8 +44,7 @@ def test_a_smooth_input_is_followed_with_the_order_of_its_derivatives(wheel, ord
         w = wheel().start(tolerance=1e-12, **UPRIGHT)
         times = np.linspace(0, 2, steps + 1)
         for t, t_next in zip(times, times[1:], strict=False):
-            give(w, {"M_3": [f(t) for f in sine[: order + 1]]})
-            assert w.step_to(t_next) == OK
+            w.give({"M_3": [f(t) for f in sine[: order + 1]]}).to(t_next)
         errors.append(abs(w.get("omega_z")[0] - (1 - np.cos(4)) / 2 / INERTIA))
     within(abs(np.log2(errors[0] / errors[1]) - (order + 1)), 0.1, "order")
 
@@ -59,7 +52,7 @@ def test_a_smooth_input_is_followed_with_the_order_of_its_derivatives(wheel, ord
 def test_a_polynomial_that_goes_on_is_no_restart_and_a_jump_is_one(wheel):
     p = Polynomial([1.0, -2.0, 1.5, -0.25])
     times = np.linspace(0, 2, 21)
-    smooth, held = wheel().start(M_3=1.0, **UPRIGHT), wheel().start(M_3=1.0, **UPRIGHT)
+    smooth, held = (wheel().start(M_3=1.0, **UPRIGHT) for _ in range(2))
     follow(smooth, p, times, 3)
     follow(held, p, times, 0)
     assert smooth.get("n_restarts")[0] <= 1  # the bend at t = 0, where there is no history to keep
@@ -67,12 +60,10 @@ def test_a_polynomial_that_goes_on_is_no_restart_and_a_jump_is_one(wheel):
 
 
 def test_derivatives_hold_for_one_step_and_the_value_stays_where_it_arrived(wheel):
-    w = wheel().start(tolerance=1e-12, **UPRIGHT)
-    give(w, {"M_3": (1.0, 2.0)})
-    assert w.step(0.5) == OK
+    w = wheel().start(tolerance=1e-12, **UPRIGHT).give({"M_3": (1.0, 2.0)}).by(0.5)
     reached = w.get("omega_z")[0]
     within(abs(reached - (0.5 + 0.25) / INERTIA), 64 * EPSILON, "reached")
-    assert w.step(0.5) == OK
+    w.by(0.5)
     within(abs(w.get("omega_z")[0] - reached - 0.5 * 2.0 / INERTIA), 64 * EPSILON, "omega_z")  # M_3 = 2 from there
     beyond(abs(w.get("omega_z")[0] - reached - 0.5 * 1.0 / INERTIA), 0.01, "omega_z")
 
@@ -81,23 +72,20 @@ def test_an_input_rewritten_at_its_old_value_after_a_step_with_derivatives_jumps
     """A saw-tooth: the same value and slope at the start of each step."""
     w = wheel().start(tolerance=1e-12, **UPRIGHT)
     for _ in range(4):
-        give(w, {"M_3": (1.0, 2.0)})
-        assert w.step(0.5) == OK
+        w.give({"M_3": (1.0, 2.0)}).by(0.5)
     within(abs(w.get("omega_z")[0] - 4 * (0.5 + 0.25) / INERTIA), 64 * EPSILON, "omega_z")
     assert w.get("n_restarts") == [3]  # the first value is that of the start
 
 
 def test_reactions_answer_an_input_before_the_step_and_the_motion_does_not(wheel):
-    w = wheel().start(s=0.03)
-    assert w.step(0.5) == OK
+    w = wheel().start(s=0.03).by(0.5)
     forces = ("lambda", "mu", "tau", "theta_ddot", "psi_ddot", "phi_ddot", "omega_z_dot")
     motion = [name for name in w.reals if not name.startswith(forces)]
     before, reactions = w.read(motion), w.get("lambda_1", "lambda_2", "lambda_3")
-    assert w.set(F_X=1.0, F_Y=-2.0, F_Z=3.0, M_1=0.5, M_2=0.4, M_3=-0.3) == OK
+    w.put(F_X=1.0, F_Y=-2.0, F_Z=3.0, M_1=0.5, M_2=0.4, M_3=-0.3)
     at_once = np.array(w.get("lambda_1", "lambda_2", "lambda_3"))
     assert w.read(motion) == before
-    assert w.step(1e-9) == OK
-    within(np.max(np.abs(at_once - w.get("lambda_1", "lambda_2", "lambda_3"))), 2e-6, "lambda_1")  # N
+    within(np.max(np.abs(at_once - w.by(1e-9).get("lambda_1", "lambda_2", "lambda_3"))), 2e-6, "lambda_1")  # N
     beyond(np.min(np.abs(at_once - reactions)), 0.06, "at once")
     assert w.read(motion) != before
 
@@ -108,14 +96,11 @@ def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(
     standing = wheel(logging=True).start(s=0.03, formulation=formulation, **UPRIGHT)
     limit = 0.03 * WEIGHT
     for torque in (0.999 * limit, -0.999 * limit, 0.0):
-        assert standing.set(M_3=torque) == OK
-        assert standing.step(0.5) == OK
-        assert standing.get("friction_mode") == [0]
+        assert standing.put(M_3=torque).by(0.5).get("friction_mode") == [0]
         assert standing.get("omega_z") == [0]
         within(abs(standing.get("X_O_dot")[0]), 128 * EPSILON, "X_O_dot")  # m/s: theta starts off 90 deg by rounding
-    give(standing, {"M_3": (0.0, 2.0)})
     t = standing.time
-    assert standing.step(4.0) == OK
+    standing.give({"M_3": (0.0, 2.0)}).by(4.0)
     release = float(standing.take_messages()[-1].text.split(" ")[2])
     within(abs(release - t - limit / 2), 1e-8, "release")  # s; the log gives nine decimals
     spin = 2 * (4.0 - limit / 2) ** 2 / 2 / INERTIA
@@ -126,23 +111,17 @@ def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(
 def test_a_held_wheel_stays_held_when_an_input_changes(wheel):
     """The friction answers the new torque at once, in both formulations, and does so without slip."""
     for formulation in (2, 3):
-        w = wheel().start(s=0.03, formulation=formulation)
-        assert w.step(1.26) == OK and w.get("friction_mode") == [0]  # stick lasts from 1.2255 s to 1.3298 s
-        assert w.set(M_3=0.1) == OK
-        assert w.get("friction_mode") == [0]
-        assert w.step(0.001) == OK
-        assert w.get("friction_mode") == [0]
+        w = wheel().start(s=0.03, formulation=formulation).by(1.26)
+        assert w.get("friction_mode") == [0]  # stick lasts from 1.2255 s to 1.3298 s
+        assert w.put(M_3=0.1).get("friction_mode") == w.by(0.001).get("friction_mode") == [0]
         within(abs(w.get("omega_z")[0]), 64 * EPSILON, "omega_z")
-        assert w.set(M_3=50.0) == OK
-        assert w.get("friction_mode") == [1]
-        assert w.step(0.001) == OK
-        beyond(w.get("omega_z")[0], 1e-3, "omega_z")
+        assert w.put(M_3=50.0).get("friction_mode") == [1]
+        beyond(w.by(0.001).get("omega_z")[0], 1e-3, "omega_z")
 
 
 def ramp_and_hold(w: FMU2Wheel, h: float) -> tuple[float, int]:
     """Held by friction, over h with M_3 = 3 t: whether it was released, and the status of going on from there."""
-    give(w.start(s=0.03, **UPRIGHT), {"M_3": (0.0, 3.0)})
-    assert w.step(h) == OK
+    w.start(s=0.03, **UPRIGHT).give({"M_3": (0.0, 3.0)}).by(h)
     return w.get("n_events")[0], w.step(0.1)
 
 
@@ -163,27 +142,20 @@ def test_a_step_may_end_on_the_very_instant_of_a_release(wheel):
 def test_after_a_jump_a_varying_input_is_followed_over_steps_of_single_roundings(wheel, method):
     """Masters that add up their steps end with such ones; CVODE guesses no first step within two roundings of t."""
     for roundings in (1, 2, 3, 8):
-        w = wheel().start(s=0.03, friction_law=2, method=method)
-        assert w.step(0.25) == OK
-        give(w, {"M_3": (1.0, 5.0)})
-        assert w.step(roundings * np.spacing(0.25)) == OK, w.messages  # bdf failed at 1
+        w = wheel().start(s=0.03, friction_law=2, method=method).by(0.25)
+        w.give({"M_3": (1.0, 5.0)}).by(roundings * np.spacing(0.25))  # bdf failed at 1
         assert w.get("n_restarts") == [1]  # the partner: without the jump, 0
-        assert w.step(0.25) == OK
+        w.by(0.25)
 
 
 @pytest.mark.parametrize("values", [{}, {"s": 0.03}, {"formulation": 3}], ids=["free", "friction", "multibody"])
 def test_an_input_may_change_again_after_a_step_of_single_roundings(wheel, values):
     """Masters that look for the instant of an event make such steps; no step can be as short as they are."""
     for roundings in (1, 2, 4, 9):
-        w, once = wheel().start(**values), wheel().start(**values)
-        for instance in (w, once):
-            assert instance.step(1.0) == OK
-        assert w.set(M_3=0.5) == OK
-        assert w.step(roundings * np.spacing(1.0)) == OK
-        assert w.set(M_3=0.7) == once.set(M_3=0.7) == OK
-        assert w.step_to(1.5) == OK, w.sentences[-1]
-        assert once.step_to(1.5) == OK
-        within(absolute_error(w.get("phi"), once.get("phi")), 1e-8, "phi")
+        w, once = (wheel().start(**values).by(1.0) for _ in range(2))
+        w.put(M_3=0.5).by(roundings * np.spacing(1.0))
+        ends = [instance.put(M_3=0.7).to(1.5).get("phi") for instance in (w, once)]
+        within(absolute_error(*ends), 1e-8, "phi")
 
 
 def test_wrong_input_derivatives_are_refused_as_a_whole(wheel):

@@ -1,7 +1,5 @@
 """Many instances at once: interleaved, in threads, from changing threads; each has the bits it has alone."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 from ctypes import CDLL, Structure, byref, c_size_t
 from threading import Thread
@@ -11,8 +9,6 @@ import pytest
 from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from support.driver import ERROR, OK, FMU2Wheel
 from support.scenes import KINDS
-
-pytestmark = pytest.mark.contract
 
 TIMES = np.arange(1, 25) * 0.125
 SETTINGS = [values | {"phi_dot_start": -2.0 - 0.1 * k} for k in range(4) for values in KINDS.values()]
@@ -94,8 +90,7 @@ def test_a_freed_instance_gives_its_memory_back(wheel, method):
     heap.restype = Heap
     in_use = []
     for _ in range(40):
-        w = wheel().start(method=method)
-        assert w.step(1.0) == OK
+        w = wheel().start(method=method).by(1.0)
         w.close()
         in_use.append(heap().numbers[7])
     assert in_use[-1] - in_use[19] < 20 * 2000

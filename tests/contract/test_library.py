@@ -1,7 +1,5 @@
 """The library and the archive as files: what they need, export and contain; the same content packs the same."""
 
-from __future__ import annotations
-
 import importlib.util
 import subprocess
 import zipfile
@@ -12,6 +10,7 @@ from support.paths import ROOT
 
 from contract.call_states import TABLE
 
+pytestmark = pytest.mark.local
 # Beside those of the table of call states.
 OTHER_FUNCTIONS = {"fmi2GetTypesPlatform", "fmi2GetVersion", "fmi2Instantiate", "fmi2FreeInstance"}
 

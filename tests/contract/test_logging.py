@@ -1,7 +1,5 @@
 """Messages: who gets them, when, in which form; and that nothing else is ever written."""
 
-from __future__ import annotations
-
 import re
 from ctypes import byref, c_double, c_uint, c_void_p
 
@@ -12,8 +10,6 @@ from support.bounds import within
 from support.driver import DISCARD, ERROR, OK
 
 from contract.call_states import STATES, TABLE, bring_to, call
-
-pytestmark = pytest.mark.contract
 
 FRICTION = {"s": 0.03}
 FIRST_STICK = 1.225520636  # s, the first row of the reference's table of events
@@ -54,8 +50,7 @@ def test_categories_filter(wheel, category):
     w.setDebugLogging(True, [category])
     w.setupExperiment(0.1)  # a warning: clamped
     w.reset()
-    w.start(**FRICTION)
-    assert w.step_to(2.0) == OK  # events: stick, release, reversal
+    w.start(**FRICTION).to(2.0)  # events: stick, release, reversal
     assert w.set(F_X=np.nan) == DISCARD
     assert w.set(m=1.0) == ERROR
     told = {m.category for m in w.take_messages()}
@@ -101,8 +96,7 @@ def test_a_logger_that_calls_back_is_answered_with_an_error_and_nothing_hangs(wh
         w.fmi2FreeInstance(component)  # without effect while a call is under way
 
     w.on_message = call_back.__get__(w)
-    w.start(**FRICTION)
-    assert w.step_to(1.5) == OK  # stick and release
+    w.start(**FRICTION).to(1.5)  # stick and release
     assert call(w, "fmi2EnterEventMode") == ERROR
     assert answers == [ERROR] * 15
     w.on_message = None
@@ -119,8 +113,7 @@ def test_missing_callbacks_are_survived(wheel, callbacks):
     pointer = None if callbacks == "none" else byref(struct)
     w.close()
     w.component = w.fmi2Instantiate(b"wheel", 1, w.guid.encode(), None, pointer, 0, 1)
-    w.start(**FRICTION)
-    assert w.set(m=3.0) == ERROR
+    assert w.start(**FRICTION).set(m=3.0) == ERROR
     assert len(w.messages) == (1 if callbacks == "logger only" else 0)
     assert w.run([2.0]) == wheel().start(**FRICTION).run([2.0])
 

@@ -1,13 +1,9 @@
 """Faulty parameters: told all together, one sentence each, at the end of initialization; correcting them helps."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, within
 from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
-
-pytestmark = pytest.mark.contract
 
 NUMBER = "a finite number is needed."
 FAULTS: dict[str, tuple[float, str]] = {
@@ -30,9 +26,7 @@ FAULTS: dict[str, tuple[float, str]] = {
 
 def initialize(w: FMU2Wheel, **values: float) -> tuple[int, list[str]]:
     """The status of fmi2ExitInitializationMode and what was logged."""
-    assert w.set(**values) == OK
-    assert (w.setupExperiment(), w.enterInitializationMode()) == (OK, OK)
-    status = w.exitInitializationMode()
+    status = w.initializing(**values).exitInitializationMode()
     messages = w.take_messages()
     assert all((m.status, m.category) == (ERROR, "logStatusError") for m in messages)
     return status, [m.text for m in messages]
@@ -91,9 +85,7 @@ def test_a_weight_that_moves_nothing_is_none(wheel, s):
     """The time scale sqrt((r_0 + r) / g) of a wheel in motion is no measure of it where g is next to nothing."""
     places = []
     for g in (0.0, 1e-300):
-        w = wheel().start(g=g, s=s)
-        assert w.step(5.0) == OK, w.sentences
-        places.append(w.get("X_O", "theta", "psi", "phi"))
+        places.append(wheel().start(g=g, s=s).by(5.0).get("X_O", "theta", "psi", "phi"))
     within(absolute_error(places[0], places[1]), 64 * EPSILON, "places")
 
 
@@ -103,34 +95,27 @@ def test_without_a_weight_rates_of_a_thousand_times_give_the_same_motion_as_much
     places = []
     for faster in (1, 1024):
         rates = {f"{angle}_dot_start": faster * 0.25 for angle in ("psi", "theta", "phi")} | {most: 2.0 * faster}
-        w = wheel().start(g=0.0, keep_contact=True, J_x=0.95, s=0.03, **rates)
-        assert w.step(0.5 / faster) == OK
+        w = wheel().start(g=0.0, keep_contact=True, J_x=0.95, s=0.03, **rates).by(0.5 / faster)
         places.append(w.get("X_O", "theta", "psi", "phi", "n_steps"))
     assert places[0] == places[1]
 
 
 def test_faulty_parameters_can_be_corrected_in_initialization_mode_also_in_a_restored_state(wheel):
-    w = wheel()
-    assert (w.setupExperiment(), w.enterInitializationMode()) == (OK, OK)
+    w = wheel().initializing()
     at_start = w.get("lambda_3")
-    assert w.set(m=-1.0) == OK
-    assert w.restore(w.serialized()) == OK
+    w.put(m=-1.0).back(w.serialized())
     assert w.get_one("lambda_3")[0] == DISCARD
     assert [m.text for m in w.take_messages()] == ["m = -1: it must be greater than 0."]
-    assert w.set(m=20.0) == OK
-    assert w.get("lambda_3") == at_start
+    assert w.put(m=20.0).get("lambda_3") == at_start
     assert (w.exitInitializationMode(), w.take_messages()) == (OK, [])
     assert w.get("lambda_3") == at_start
     assert w.get("lambda_3") != wheel().start(m=20.1).get("lambda_3")
 
 
 def test_parameters_and_inputs_set_in_initialization_mode_act_at_once(wheel):
-    late, early = wheel(), wheel().start(theta_start=1.0, s=0.02, F_X=3.0)
-    assert (late.setupExperiment(), late.enterInitializationMode()) == (OK, OK)
-    late.bits()
+    late, early = wheel().initializing(), wheel().start(theta_start=1.0, s=0.02, F_X=3.0)
     assert late.bits() != early.bits()
-    assert late.set(theta_start=1.0, s=0.02, F_X=3.0) == OK
-    assert late.bits() == early.bits()
+    assert late.put(theta_start=1.0, s=0.02, F_X=3.0).bits() == early.bits()
     assert late.exitInitializationMode() == OK
     assert late.run([1.0]) == early.run([1.0])
 
@@ -158,10 +143,7 @@ def test_experiments_that_make_no_sense_are_refused(wheel):
 
 
 def test_sound_values_whose_products_are_no_numbers_are_refused_with_a_sentence(wheel):
-    w = wheel()
-    assert w.set(m=1.7e308) == OK
-    w.setupExperiment()
-    w.enterInitializationMode()
+    w = wheel().initializing(m=1.7e308)
     assert w.exitInitializationMode() == ERROR
     assert [m.text.split(":")[0] for m in w.take_messages()] == ["The initial energy or reaction force overflows"]
     assert wheel().start(m=1e100, J_x=1e100, J_y=1e100, J_z=1.5e100).step(0.1) == OK

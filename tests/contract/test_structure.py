@@ -1,8 +1,6 @@
 """The numbers of a description: ModelStructure lists what was measured and nothing else, and whoever adds, moves or
 removes a variable numbers nothing by hand."""
 
-from __future__ import annotations
-
 import re
 import sys
 
@@ -12,8 +10,6 @@ from support.paths import ROOT
 sys.path.insert(0, str(ROOT / "cmake"))
 from description.measuring import measured
 from description.numbering import numbered
-
-pytestmark = pytest.mark.contract
 
 TEXT = (ROOT / "modelDescription.xml").read_text(encoding="utf-8")
 LOADS = {"F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake"}

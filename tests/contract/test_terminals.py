@@ -3,8 +3,6 @@
 FMI 2 has no schema of its own for it: that of FMI 3.0 comes with FMPy.
 """
 
-from __future__ import annotations
-
 from importlib.util import find_spec
 from pathlib import Path
 

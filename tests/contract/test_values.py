@@ -1,7 +1,5 @@
 """Getting and setting values: arrays, references, types, bounds. A refused call has no effect, not even in part."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from ctypes import byref, c_char_p, c_double, c_int, c_uint, c_void_p
 
@@ -13,8 +11,6 @@ from support.bounds import beyond, within
 from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
 
 from contract.properties import anything_whole, quick
-
-pytestmark = pytest.mark.contract
 
 SETTERS = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
 

@@ -4,8 +4,6 @@ The product's y has omega_z, (21), in the place of phi_dot, and its derivative d
 (Baumgarte). Nothing here calls the product; complex states are allowed. Fixed axes for O, body axes for rotation.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cached_property
 

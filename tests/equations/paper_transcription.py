@@ -9,8 +9,6 @@ complex angles, so that a complex step gives every derivative to rounding.
 term alone. Without any of them the mended equations stand.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import cached_property
 

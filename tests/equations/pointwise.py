@@ -3,21 +3,16 @@
 Errors are relative to the largest entry of their group: accelerations of O, of the angles and the axle, reactions.
 """
 
-from __future__ import annotations
-
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from reference import Wheel, accelerations
 from support import equations as eq
 
 from equations import random_scenes
 
 Table = np.ndarray
-BOTH = pytest.mark.parametrize("formulation", [eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])
-LAWS = pytest.mark.parametrize("law", eq.LAWS.values(), ids=eq.LAWS.keys())
-INERTIA = pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
 GROUPS = (("X_O_ddot", "Y_O_ddot", "Z_O_ddot"), ("psi_ddot", "theta_ddot", "phi_ddot", "omega_z_dot"), ("lambda_",))
 ACCELERATIONS = (*GROUPS[0], *GROUPS[1][:3])
 
@@ -48,30 +43,30 @@ def distance(a: Table, b: Table, scenes: Table) -> float:
     return max(errors)
 
 
-def reference_wheel(wheel: np.ndarray) -> Wheel:
-    """One row of constants, its gravity as slope and direction."""
-    own = {name: float(wheel[name]) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "s")}
-    g, g_X, g_Y = (float(wheel[name]) for name in ("g", "g_X", "g_Y"))
-    along = np.hypot(g_X, g_Y)
-    direction = np.arctan2(-g_Y, -g_X)
-    return Wheel(**own, g=np.hypot(g, along), slope=np.arctan2(along, g), slope_direction=direction)
+def answers(accelerations: Callable, scenes: np.ndarray, motions: np.ndarray) -> Iterator:
+    """By a function of (wheel, angles, rates, F, M, sigma, brake), which counts the weight of a level road: row by row.
+
+    Without pressure there is no friction but the brake's.
+    """
+    omega_z = motions["phi_dot"] + motions["psi_dot"] * np.cos(motions["theta"])
+    for scene, motion, spin in zip(scenes, motions, omega_z.tolist(), strict=True):
+        constants, friction = scene["wheel"], scene["friction"]
+        wheel = Wheel(**{name: float(constants[name]) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")})
+        sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])][friction["kind"] - eq.FRICTIONLESS]
+        angles = [float(motion[name]) for name in ("psi", "theta", "phi")]
+        rates = [float(motion[name]) for name in ("psi_dot", "theta_dot", "phi_dot")]
+        (F_X, F_Y, F_Z), M, brake = (scene["load"][name].tolist() for name in ("F", "M", "brake"))
+        F = (F_X + wheel.m * constants["g_X"], F_Y + wheel.m * constants["g_Y"], F_Z)  # with the weight along a slope
+        found = accelerations(wheel, angles, rates, F, M, sigma, brake)
+        if sigma is not None and found.lambda_3 <= 0:
+            found = accelerations(replace(wheel, s=0.0), angles, rates, F, M, sigma, brake)
+        yield found
 
 
 def referenced(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    """WheelDynamics from the reference; without pressure there is no friction but the brake's."""
+    """WheelDynamics from the reference."""
     out = eq.table(eq.Dynamics, len(scenes))
-    y = eq.start_each(eq.MULTIBODY, scenes, motions)
-    omega_z = eq.kinematics_each(eq.MULTIBODY, scenes, y)["omega_z"]
-    for row, scene, motion, spin in zip(out, scenes, motions, omega_z.tolist(), strict=True):
-        wheel, friction = reference_wheel(scene["wheel"]), scene["friction"]
-        sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])][friction["kind"] - eq.FRICTIONLESS]
-        angles = [motion[name] for name in ("psi", "theta", "phi")]
-        rates = [motion[name] for name in ("psi_dot", "theta_dot", "phi_dot")]
-        load = scene["load"]
-        loads, brake = (load["F"].tolist(), load["M"].tolist()), float(load["brake"])
-        found = accelerations(wheel, angles, rates, *loads, sigma, brake)
-        if friction["kind"] in (eq.ROLLING, eq.REGULARIZED) and found.lambda_3 <= 0:
-            found = accelerations(replace(wheel, s=0.0), angles, rates, *loads, sigma, brake)
+    for row, found in zip(out, answers(accelerations, scenes, motions), strict=True):
         for name in (*ACCELERATIONS, "tau"):
             row[name] = getattr(found, name)
         row["lambda_"] = found.lambda_1, found.lambda_2, found.lambda_3

@@ -4,8 +4,6 @@ Frames and symbols as in wheel_equations.h. The ranges are wide but stay inside 
 equations: theta between 3 and 177 degrees, inertias that a body can have.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support import equations as eq
 

@@ -3,14 +3,12 @@
 Pointwise, for both formulations. Carrier frame; tau is the moment of ground and brake about the axle.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support import equations as eq
 from support.bounds import EPSILON, beyond, relative_error, within
 
 from equations import random_scenes
-from equations.pointwise import BOTH, Table, distance, draw, dynamics
+from equations.pointwise import Table, distance, draw, dynamics
 
 ROWS = 2000
 
@@ -32,7 +30,6 @@ def upright(law: int) -> tuple[Table, Table]:
     return scenes, motions
 
 
-@BOTH
 def test_while_the_wheel_turns_a_brake_is_a_moment_against_omega_z(formulation: eq.Formulation) -> None:
     scenes, motions = braked(eq.ROLLING)
     slowed = dynamics(formulation, scenes, motions)
@@ -47,7 +44,6 @@ def test_while_the_wheel_turns_a_brake_is_a_moment_against_omega_z(formulation: 
     beyond(distance(slowed, expected, scenes), 0.2, "error")
 
 
-@BOTH
 def test_the_regularized_law_softens_the_brake_as_it_softens_friction(formulation: eq.Formulation) -> None:
     scenes, motions = braked(eq.REGULARIZED)
     soft = dynamics(formulation, scenes, motions)
@@ -60,7 +56,6 @@ def test_the_regularized_law_softens_the_brake_as_it_softens_friction(formulatio
     beyond((np.abs(soft["tau"] - tau / kappa) / size).max(), 0.5, "tau")
 
 
-@BOTH
 def test_a_held_wheel_asks_for_the_same_moment_whatever_the_brake_can_give(formulation: eq.Formulation) -> None:
     scenes, motions = braked(eq.HELD)
     weak = dynamics(formulation, scenes, motions)
@@ -76,7 +71,6 @@ def test_a_held_wheel_asks_for_the_same_moment_whatever_the_brake_can_give(formu
     beyond((np.abs(moved) / size).max(), 0.1, "relative error")
 
 
-@BOTH
 def test_a_wheel_held_upright_answers_a_slope_by_its_weight_along_it(formulation: eq.Formulation) -> None:
     """A constant F along e1 at O, as gravity on a slope: tau = R F."""
     scenes, motions = upright(eq.HELD)
@@ -91,7 +85,6 @@ def test_a_wheel_held_upright_answers_a_slope_by_its_weight_along_it(formulation
     beyond((dynamics(formulation, scenes, motions)["X_O_ddot"]).min(), 0.1, "X_O_ddot")
 
 
-@BOTH
 def test_without_friction_the_brake_is_ignored_and_with_brake_zero_nothing_is_left(formulation: eq.Formulation) -> None:
     scenes, motions = braked(eq.FRICTIONLESS)
     released = scenes.copy()

@@ -3,8 +3,6 @@
 An upright wheel, straight rolling; the FMU is judged by this reference elsewhere.
 """
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

@@ -4,15 +4,13 @@ Upright straight rolling, the standing wheel, release from rest, and steady circ
 random wheels each. Carrier axes e1 (rolling), e2 (up the slope), e3 (axle); fixed axes for lambda.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within
 from support.closed_forms import circle_spin, rolling_inertia
 
 from equations import random_scenes
-from equations.pointwise import BOTH, Table, dynamics
+from equations.pointwise import Table, dynamics
 
 ROWS = 1000
 
@@ -46,7 +44,6 @@ def weight(scenes: Table) -> Table:
     return scenes["wheel"]["m"] * scenes["wheel"]["g"]
 
 
-@BOTH
 def test_upright_straight_rolling_slows_down_linearly_under_friction(formulation: eq.Formulation) -> None:
     scenes, motions = still(eq.ROLLING)
     sigma = scenes["friction"]["sigma"]
@@ -64,7 +61,6 @@ def test_upright_straight_rolling_slows_down_linearly_under_friction(formulation
     within(straight, 128 * 10 * EPSILON, "error")  # terms of 10 1/s2
 
 
-@BOTH
 def test_an_upright_wheel_answers_a_drive_torque_and_a_push_as_a_roller_or_is_held_against_both(
     formulation: eq.Formulation,
 ) -> None:
@@ -87,7 +83,6 @@ def test_an_upright_wheel_answers_a_drive_torque_and_a_push_as_a_roller_or_is_he
     within(error(d["X_O_ddot"], np.zeros(ROWS)), 256 * 20 * EPSILON, "X_O_ddot, held")  # terms of 20 m/s2
 
 
-@BOTH
 def test_a_wheel_released_from_rest_tips_about_its_contact(formulation: eq.Formulation) -> None:
     scenes, motions = still(eq.HELD)
     w = scenes["wheel"]
@@ -109,7 +104,6 @@ def circling(kind: int) -> tuple[Table, Table]:
     return scenes, motions
 
 
-@BOTH
 def test_the_torus_circles_steadily_with_friction_balanced_by_the_drive(formulation: eq.Formulation) -> None:
     scenes, motions = circling(eq.ROLLING)
     sigma = scenes["friction"]["sigma"]

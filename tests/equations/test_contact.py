@@ -1,7 +1,5 @@
 """Contact point and the ground's force in wheel axes, against geometry and turned reactions. Fixed axes."""
 
-from __future__ import annotations
-
 from ctypes import byref
 
 import numpy as np

@@ -3,8 +3,6 @@
 Reads docs/equations.md, docs/errata.md and docs/decisions/multibody_state.md.
 """
 
-from __future__ import annotations
-
 import re
 
 import pytest

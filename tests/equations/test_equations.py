@@ -5,8 +5,6 @@ numpy transcription of the paper and the rotation-matrix reference under referen
 product.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support import equations as eq
@@ -14,11 +12,9 @@ from support.bounds import EPSILON, beyond, within
 
 from equations.multibody_transcription import omega_z_dot, papers_state, solved
 from equations.paper_transcription import Paper
-from equations.pointwise import ACCELERATIONS, INERTIA, LAWS, distance, draw, dynamics, referenced, relative
+from equations.pointwise import ACCELERATIONS, distance, draw, dynamics, referenced, relative
 
 
-@LAWS
-@INERTIA
 def test_reduced_and_multibody_give_the_same_accelerations_and_reactions(law: int, symmetric: bool) -> None:
     scenes, motions = draw(1, law, symmetric)
     multibody = dynamics(eq.MULTIBODY, scenes, motions)
@@ -85,7 +81,6 @@ def test_the_euler_form_reads_its_state_back_to_the_bit_and_moves_as_the_reduced
         within(relative(a, b), 1e-9, "rates")  # differences of fourth order, at states that differ by rounding
 
 
-@LAWS
 def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(law: int) -> None:
     scenes, motions = draw(3, law)
     forms = ((eq.REDUCED, reduced_rates), (eq.EULER, euler_rates), (eq.MULTIBODY, multibody_rates))
@@ -146,7 +141,6 @@ def transcribed(scenes: np.ndarray, y: np.ndarray) -> np.ndarray:
     return out
 
 
-@LAWS
 def test_multibody_solves_the_papers_system_24_for_any_inertia(law: int) -> None:
     scenes, motions = draw(5, law, symmetric=False)
     y = eq.start_each(eq.MULTIBODY, scenes, motions)
@@ -157,7 +151,6 @@ def test_multibody_solves_the_papers_system_24_for_any_inertia(law: int) -> None
     beyond(distance(multibody, transcribed(scenes, y), scenes), 3e-9, "distance")
 
 
-@INERTIA
 def test_both_formulations_agree_with_the_independent_reference(symmetric: bool) -> None:
     scenes, motions = draw(6, symmetric=symmetric)
     reference = referenced(scenes, motions)

@@ -4,8 +4,6 @@ The numpy transcription of (1)-(24) keeps a misprint on request. Matrices are he
 derivatives (complex step); the paper's free wheel (27)-(33) is set rolling with SciPy.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -3,18 +3,15 @@
 Random scenes with loads and brakes (random_scenes.py). Carrier frame.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within
 
-from equations.pointwise import BOTH, INERTIA, LAWS, Table, distance, draw, dynamics
+from equations.pointwise import Table, distance, draw, dynamics
 
 ROWS = 20_000
 
 
-@LAWS
 def test_a_difference_of_rounding_between_J_x_and_J_y_changes_nothing_but_rounding(law: int) -> None:
     """The simpler elimination for J_x = J_y is the limit of the general one."""
     scenes, motions = draw(71, law, rows=ROWS)
@@ -39,8 +36,6 @@ def answer_of_N(scenes: Table, motions: Table) -> Table:
     return w["m"] * w["r_0"] * np.cos(theta) * p * a_23 / (a_11 * (b_22 * a_33 - a_23**2))
 
 
-@BOTH
-@INERTIA
 def test_N_answers_a_moment_about_the_axle_by_alpha(formulation: eq.Formulation, symmetric: bool) -> None:
     scenes, motions = draw(71, eq.FRICTIONLESS, symmetric, 5000)
     free = dynamics(formulation, scenes, motions)["lambda_"][:, 2]
@@ -57,7 +52,6 @@ def test_N_answers_a_moment_about_the_axle_by_alpha(formulation: eq.Formulation,
     beyond((np.abs((driven[:, 2] - free) / moment + alpha) / size).max(), 0.05, "relative error")  # the other sign
 
 
-@BOTH
 def test_N_under_rolling_friction_and_brake_follows_from_that_of_the_free_wheel(formulation: eq.Formulation) -> None:
     """N = (N_free - alpha kappa M_b)/(1 + alpha kappa s), tau = -(s N + M_b) kappa."""
     scenes, motions = draw(71, eq.ROLLING, symmetric=False, rows=ROWS)

@@ -3,8 +3,6 @@
 They are compiled here alone, because the libraries hide them. No part of the paper.
 """
 
-from __future__ import annotations
-
 import ctypes
 import math
 import subprocess

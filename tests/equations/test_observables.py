@@ -3,8 +3,6 @@
 Judged by the numpy transcription of the paper's matrices; fixed axes, body axes for omega.
 """
 
-from __future__ import annotations
-
 from ctypes import c_double
 
 import numpy as np

@@ -5,8 +5,6 @@ axes for O. test_equations.py then holds the product against this transcription;
 holds each misprint against it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation

@@ -4,14 +4,12 @@ dE/dt = m v a + omega J omega_dot + m g v_Z, from the accelerations of either fo
 F v + M omega (carrier) + tau omega_z. The reaction does no work: the contact point is at rest.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within
 
 from equations.paper_transcription import Paper, times
-from equations.pointwise import BOTH, LAWS, draw
+from equations.pointwise import draw
 
 
 class Instants:
@@ -44,8 +42,6 @@ class Instants:
         return terms.sum(axis=1), np.abs(terms).sum(axis=1)
 
 
-@BOTH
-@LAWS
 def test_energy_changes_by_the_power_of_inputs_and_friction(formulation: eq.Formulation, law: int) -> None:
     now = Instants(formulation, law)
     rate, size = now.energy_rates()
@@ -58,7 +54,6 @@ def test_energy_changes_by_the_power_of_inputs_and_friction(formulation: eq.Form
         beyond((np.abs(rate - friction_reversed) / size).max(), 1, "relative error, 2")
 
 
-@BOTH
 def test_stop_spin_leaves_a_rolling_wheel_without_spin_that_holding_takes_no_energy_from(
     formulation: eq.Formulation,
 ) -> None:

@@ -4,8 +4,6 @@ The complex step is exact to rounding and shares no code with the product: state
 by 1e-40 i. Fixed axes, N/s and N m/s; errors relative to the row's largest rate.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support import equations as eq
@@ -14,7 +12,7 @@ from support.bounds import EPSILON, beyond, within
 from equations import random_scenes
 from equations.multibody_transcription import papers_state, solved
 from equations.paper_transcription import Paper
-from equations.pointwise import BOTH, INERTIA, LAWS, Table, relative
+from equations.pointwise import Table, relative
 
 BOUND = 1e-9
 PRESSES, PULLS = 1, 2  # WheelGround
@@ -59,8 +57,6 @@ class Rows:
         return relative(rates / arm, judge / arm)
 
 
-@INERTIA
-@LAWS
 def test_rates_are_those_of_lambda_and_tau_along_the_motion(law: int, symmetric: bool) -> None:
     rows = Rows(law, symmetric)
     judge, found = rows.judged(), rows.rates(eq.REDUCED)
@@ -91,7 +87,6 @@ def test_rates_of_a_wheel_that_turns_fast_on_the_spot_are_as_exact() -> None:
     beyond(rows.error(rows.rates(eq.REDUCED), judge), 4e-7, "error")
 
 
-@BOTH
 @pytest.mark.parametrize("law", [eq.ROLLING, eq.REGULARIZED])
 def test_rates_on_a_ground_that_pulls_are_those_without_rolling_friction(formulation: eq.Formulation, law: int) -> None:
     """Whatever the sign of N; and on a ground that presses those of the law by force, where N > 0."""
@@ -107,7 +102,6 @@ def test_rates_on_a_ground_that_pulls_are_those_without_rolling_friction(formula
     beyond(rows.error(by_force, pulled), 1e-3, "error with the friction of a ground that presses")
 
 
-@LAWS
 def test_the_multibody_form_gives_the_rates_of_the_reduced_form(law: int) -> None:
     rows = Rows(law)
     reduced, multibody = rows.rates(eq.REDUCED), rows.rates(eq.MULTIBODY)
@@ -150,7 +144,6 @@ def test_entries_that_are_zero_for_an_instant_keep_their_rates(motion: eq.Motion
     assert (np.abs(rows.rates(eq.REDUCED) - judge).max() > 0.01) == (law == eq.ROLLING)
 
 
-@BOTH
 def test_a_load_without_a_rate_is_a_constant_load(formulation: eq.Formulation) -> None:
     rows = Rows(eq.ROLLING)
     changing = rows.rates(formulation)
@@ -162,8 +155,6 @@ def test_a_load_without_a_rate_is_a_constant_load(formulation: eq.Formulation) -
     beyond((changing != constant).any(axis=1).mean(), 0.8, "changing")  # a tenth has no load
 
 
-@BOTH
-@LAWS
 def test_the_response_to_a_load_is_what_it_adds_to_the_rates(formulation: eq.Formulation, law: int) -> None:
     rows = Rows(law)
     y = rows.states(formulation)

@@ -1,14 +1,10 @@
 """A scene that is not meant cannot be used in silence: `wheel_scene` refuses it, and every answer is NaN."""
 
-from __future__ import annotations
-
 from math import nan
 
 import numpy as np
 import pytest
 from support import equations as eq
-
-from equations.pointwise import BOTH
 
 MOTION = eq.Motion(1, 1.2, 0.3, 0.5, -0.2, -2, 0, 0)
 MEANT = [
@@ -37,7 +33,6 @@ def answers(formulation: eq.Formulation, scene: eq.Scene) -> np.ndarray:
     return eq.values(eq.dynamics(formulation, scene, eq.start(formulation, scene.wheel, MOTION)))
 
 
-@BOTH
 @pytest.mark.parametrize("choice", MEANT, ids=str)
 def test_a_scene_that_is_meant_has_finite_answers(formulation: eq.Formulation, choice: dict) -> None:
     scene = eq.scene(eq.paper_wheel(s=0.03), **choice)
@@ -45,7 +40,6 @@ def test_a_scene_that_is_meant_has_finite_answers(formulation: eq.Formulation, c
     assert np.isfinite(answers(formulation, scene)).all()
 
 
-@BOTH
 @pytest.mark.parametrize("choice", NOT_MEANT, ids=str)
 def test_a_scene_that_is_not_meant_answers_nan(formulation: eq.Formulation, choice: dict) -> None:
     law = {name: value for name, value in choice.items() if name != "s"}
@@ -54,14 +48,12 @@ def test_a_scene_that_is_not_meant_answers_nan(formulation: eq.Formulation, choi
     assert np.isnan(answers(formulation, scene)).all()
 
 
-@BOTH
 def test_a_record_with_a_coefficient_and_nothing_else_is_not_a_wheel_without_friction(
     formulation: eq.Formulation,
 ) -> None:
     assert np.isnan(answers(formulation, eq.Scene(wheel=eq.paper_wheel(s=0.03)))).all()
 
 
-@BOTH
 def test_a_load_cannot_be_left_out_by_forgetting_a_flag(formulation: eq.Formulation) -> None:
     scene = eq.scene(eq.paper_wheel())
     free = answers(formulation, scene)

@@ -5,8 +5,6 @@ product's derivative draws both to zero at the rate a = 5 sqrt(g / (r_0 + r) + |
 multibody_state.md. Integrated by SciPy, so that no solver of the product takes part. Fixed axes for O.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.integrate import solve_ivp
 from support import equations as eq
@@ -15,7 +13,7 @@ from support.bounds import EPSILON, beyond, within
 from equations import random_scenes
 from equations.multibody_transcription import Stabilised, papers_state, products_state, solved, stabilised_rate
 from equations.paper_transcription import Paper
-from equations.pointwise import LAWS, Table, relative
+from equations.pointwise import Table, relative
 
 OFF_THE_CONSTRAINTS = np.array([0, 0, 1, 0, 0, 0, 1, 1, 1, 0, 0, 0])  # m in Z_O, m/s in the velocity of O
 PLANTED = np.array([0, 0, 2e-3, 0, 0, 0, 1e-2, -2e-2, 3e-2, 0, 0, 0])  # the same, of unlike sizes
@@ -66,7 +64,6 @@ def residuals(now: eq.Scene, y: Table) -> tuple[Table, Table]:
     return paper.slip, paper.height_error
 
 
-@LAWS
 def test_the_multibody_derivative_is_24_with_slip_and_height_drawn_to_zero(law: int) -> None:
     random = np.random.default_rng(61)
     scenes = random_scenes.scenes(random, law, symmetric=False, rows=2000)
@@ -79,7 +76,6 @@ def test_the_multibody_derivative_is_24_with_slip_and_height_drawn_to_zero(law: 
     beyond(relative(y_dot, smaller), 8e-4, "relative difference")
 
 
-@LAWS
 def test_24_itself_sees_neither_slip_nor_height(law: int) -> None:
     random = np.random.default_rng(62)
     scenes = random_scenes.scenes(random, law, symmetric=False, rows=2000)
@@ -91,7 +87,6 @@ def test_24_itself_sees_neither_slip_nor_height(law: int) -> None:
     beyond(relative(*rates), 0.6, "relative difference")  # the stabilised derivative does
 
 
-@LAWS
 def test_errors_of_the_constraints_decay_at_the_stated_rate(law: int) -> None:
     times = np.linspace(0, 0.25, 26)
     y, decay = stabilised(scene(law), start(law) + PLANTED, times)
@@ -108,7 +103,6 @@ def test_errors_of_the_constraints_decay_at_the_stated_rate(law: int) -> None:
     beyond(gap(1.001 * decay), 1e-5, "gap")  # a rate 0.1 % larger
 
 
-@LAWS
 def test_24_alone_keeps_the_slip_and_lets_the_height_run_away(law: int) -> None:
     times = np.linspace(0, 0.25, 26)
     slip, height = residuals(scene(law), pure(scene(law), start(law) + PLANTED, times))
@@ -120,7 +114,6 @@ def test_24_alone_keeps_the_slip_and_lets_the_height_run_away(law: int) -> None:
     within(np.abs(drawn_height[-1]) / height[-1], 1e-2, "drawn height")
 
 
-@LAWS
 def test_on_the_constraints_the_stabilised_motion_is_that_of_24(law: int) -> None:
     times = np.linspace(0, 1, 11)
     alone = pure(scene(law), start(law), times)

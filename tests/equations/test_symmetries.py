@@ -3,8 +3,6 @@
 The plane's and the wheel's symmetries are judged over whole motions, tests/physics/test_symmetries_fmu.py.
 """
 
-from __future__ import annotations
-
 import pytest
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within

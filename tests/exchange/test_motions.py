@@ -3,8 +3,6 @@
 SciPy's DOP853 with the events of support/exchange.py, and FMPy's CVODE. SI units.
 """
 
-from __future__ import annotations
-
 import re
 from math import pi
 
@@ -12,17 +10,16 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from physics.exact_motions import UPRIGHT
-from physics.measure import instants_error
+from physics.measure import FRICTION, instants_error
 from reference import Start, Wheel, solve
 from reference.tables import read_table
-from support.bounds import beyond, within
+from support.bounds import beyond, range_error, within
 from support.closed_forms import fall_time, rolling_inertia
 from support.driver import HEADLINE
 from support.exchange import Run, exchange, no_inputs
 from support.motion import Library, start_values
 from support.scenes import PUSH
 
-FRICTION = {"free": 0.0, "friction": 0.03}
 RIM = start_values(Wheel(J_x=0.05, J_y=0.05, J_z=0.1), Start(theta=1.4, phi_dot=0.0))
 
 
@@ -59,7 +56,7 @@ def test_the_papers_scenes_come_out_of_another_solver(library: Library, scene: s
 
     def error(s: float, rtol: float = 1e-11) -> float:
         _, got, _ = moved(library, list(want["t"]), rtol, s=s)
-        return max(float(np.abs(got[name] - want[name]).max() / np.ptp(want[name])) for name in HEADLINE)
+        return range_error(got, want, HEADLINE)
 
     within(error(FRICTION[scene]), 1e-8, "error")
     beyond(error(FRICTION[scene], 1e-5), 5e-5, "error at a loose tolerance")
@@ -83,7 +80,7 @@ def test_fmpys_cvode_finds_them_too_within_some_thousand_of_its_tolerances(
 ) -> None:
     want = read_table("paper_friction")
     run = by_cvode(library, 10, 0.1, tolerance, HEADLINE, debug_logging=True)
-    error = max(float(np.abs(run[n] - want[n]).max() / np.ptp(want[n])) for n in HEADLINE)
+    error = range_error(run, want, HEADLINE)
     within(error / tolerance, 1e4, "error over tolerance")
     # FMPy prints the sentences. (Its argument `logger` would stay in use, freed, by all later runs of this process.)
     found = [float(t) for t in re.findall(r"^\[OK\] t = (\S+) s", capfd.readouterr().out, re.M)]

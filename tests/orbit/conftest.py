@@ -1,14 +1,11 @@
 """The unfolded free wheel alone: a shared library made in the folder under test."""
 
-from __future__ import annotations
-
 import ctypes
 
 import pytest
-from support.paths import build_target
+from support.paths import probe
 
 
 @pytest.fixture(scope="session")
 def library() -> ctypes.CDLL:
-    folder = build_target("orbit_probe")
-    return ctypes.CDLL(str(next((folder / "tests" / "orbit").glob("*orbit_probe.*"))))
+    return probe("orbit")

@@ -3,8 +3,6 @@
 State: theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O (wheel_equations.h). SI units.
 """
 
-from __future__ import annotations
-
 import ctypes
 from ctypes import POINTER, c_double, c_longlong, c_uint, c_void_p
 from xml.etree import ElementTree

@@ -1,7 +1,5 @@
 // One free wheel and its orbit behind a C interface, for ctypes. State and units as in wheel_equations.h.
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <new>
 
 #include "law.hpp"
@@ -96,19 +94,3 @@ PUBLIC double probe_half_period(Probe* probe) { return probe->orbit.half_period(
 PUBLIC long long probe_falls_until(Probe* probe, double t) { return probe->orbit.falls_until(0, t); }
 PUBLIC double probe_fall(Probe* probe, long long n) { return probe->orbit.fall(0, n); }
 PUBLIC long long probe_steps(Probe* probe) { return probe->solver.counters().steps; }
-
-// Seconds for one build, and for one of `count` readings at steps of dt: the best of some rounds.
-PUBLIC void probe_time(Probe* probe, double dt, int count, double seconds[2]) {
-  using Clock = std::chrono::steady_clock;
-  seconds[0] = seconds[1] = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < 20; ++round) {
-    double y[8];
-    const Clock::time_point start = Clock::now();
-    probe_build(probe);
-    const Clock::time_point built = Clock::now();
-    for (int i = 0; i < count; ++i) probe->orbit.read(i * dt, y);
-    const Clock::time_point read = Clock::now();
-    seconds[0] = std::fmin(seconds[0], std::chrono::duration<double>(built - start).count());
-    seconds[1] = std::fmin(seconds[1], std::chrono::duration<double>(read - built).count() / count);
-  }
-}

@@ -3,8 +3,6 @@
 J_x = J_y, no friction, no load; scaled errors: angles 1 rad, rates the largest of the motion, lengths 1 m.
 """
 
-from __future__ import annotations
-
 import ctypes
 
 import numpy as np

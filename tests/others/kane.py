@@ -6,8 +6,6 @@ ground's force out; its normal part is asked for through an auxiliary speed. Rol
 moment tau about the axle, in which everything is linear.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple

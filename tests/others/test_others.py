@@ -1,7 +1,5 @@
 """wheel.fmu and its equations against derivations, reference results and closed forms that other people made."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

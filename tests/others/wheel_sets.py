@@ -6,8 +6,6 @@ heading and the moments about the vertical count: a force (l, t) at the body is 
 R (l -+ a t / b) / 2. So both scenes become drive torques, which depend on time and heading alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from math import cos, pi, sin

@@ -3,8 +3,6 @@
 What they found, the same by wheel.fmu and by the independent reference, and how far they are apart; SI units.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from math import pi, sin
 

@@ -3,8 +3,6 @@
 The ground may pull in all of them (keep_contact).
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

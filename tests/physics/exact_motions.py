@@ -3,8 +3,6 @@
 `judged`: the wheel with whose constants the closed form is written (support/closed_forms.py).
 """
 
-from __future__ import annotations
-
 from math import cos, pi
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Small leans of the upright rolling wheel: their growth or swing, and the critical speed measured from both sides."""
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

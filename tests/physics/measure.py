@@ -1,7 +1,5 @@
 """How far the FMU is from what is known. Each function gives a number (or a table) that is 0 for the exact motion."""
 
-from __future__ import annotations
-
 from ctypes import byref, c_double
 
 import numpy as np
@@ -9,6 +7,7 @@ from numpy.typing import NDArray
 from reference.tables import read_table
 from scipy.integrate import solve_ivp
 from support import equations as eq
+from support.bounds import range_error
 from support.driver import HEADLINE
 from support.motion import Library, Run
 
@@ -19,7 +18,7 @@ def table_errors(library: Library, scene: str, tolerance: float | None = None, *
     """Largest error of each headline output over the trusted table's 101 rows, as a part of the output's range."""
     want = read_table(f"paper_{scene}")
     got = library.simulate(want["t"], tolerance, **{"s": FRICTION[scene], **start})
-    return {name: float(np.abs(got[name] - want[name]).max() / np.ptp(want[name])) for name in HEADLINE}
+    return {name: range_error(got, want, [name]) for name in HEADLINE}
 
 
 def energy_error(library: Library, tolerance: float | None = None, **start: float) -> float:

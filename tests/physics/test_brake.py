@@ -4,8 +4,6 @@ Upright (theta = 90 deg), heading along X (psi = 0): omega_z = phi_dot, v = -R o
 moment about the axle turns is J = J_z + m R^2. SI units.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from support.bounds import EPSILON, beyond, within
 from support.motion import Library, Run

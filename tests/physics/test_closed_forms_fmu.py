@@ -3,8 +3,6 @@
 J_x = J_y; formulas and their derivations in support/closed_forms.py.
 """
 
-from __future__ import annotations
-
 from math import cosh, pi
 
 import numpy as np
@@ -18,17 +16,14 @@ from support.schedule import Schedule
 from .exact_motions import UPRIGHT, circle_error, fall_error, lift_off_error, straight_error
 
 THIN = Wheel(r=0.0)
-formulations = pytest.mark.parametrize("formulation", [2, 3], ids=["reduced", "multibody"])
 
 
-@formulations
 def test_upright_rolling_slows_down_linearly_and_then_stands(library: Library, formulation: int) -> None:
     rough = Wheel(s=0.03)
     within(straight_error(library, formulation, 0.03, rough), 1024 * 2 * EPSILON, "straight error")  # of 2 rad/s
     beyond(straight_error(library, formulation, 0.03, Wheel(s=0.03, r=0.0)), 0.1, "straight error")
 
 
-@formulations
 def test_the_upright_wheel_stops_once_at_the_known_instant(library: Library, formulation: int) -> None:
     def gap(s: float) -> float:
         events = library.simulate([0.0, 6.0], s=s, formulation=formulation, **UPRIGHT).events
@@ -65,19 +60,16 @@ def test_drive_and_brake_torque_move_an_upright_wheel_as_a_roller(library: Libra
     beyond(gap(THIN), 0.01, "gap")
 
 
-@formulations
 def test_the_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library, formulation: int) -> None:
     within(fall_error(library, formulation, Wheel()), 4e-10, "fall error")  # s
     beyond(fall_error(library, formulation, THIN), 1e-2, "fall error")
 
 
-@formulations
 def test_a_light_rim_lifts_off_where_the_normal_force_of_the_fall_vanishes(library: Library, formulation: int) -> None:
     within(lift_off_error(library, formulation, 0.0), 2e-8, "lift off error")
     beyond(lift_off_error(library, formulation, 1e-5), 1e-6, "lift off error")
 
 
-@formulations
 @pytest.mark.parametrize(("psi_dot", "theta"), [(1.0, 1.1), (-2.0, 1.1), (6.0, 0.3)])
 def test_the_thin_disc_stays_in_the_steady_circle_of_the_textbooks(
     library: Library, formulation: int, psi_dot: float, theta: float
@@ -86,7 +78,6 @@ def test_the_thin_disc_stays_in_the_steady_circle_of_the_textbooks(
     beyond(circle_error(library, Wheel(), THIN, formulation, psi_dot, theta), 0.07, "circle error")  # a torus wanders
 
 
-@formulations
 @pytest.mark.parametrize(("psi_dot", "theta"), [(1.0, 1.1), (-2.0, 1.9), (6.0, 0.5)])
 def test_the_torus_stays_in_its_own_steady_circle(
     library: Library, formulation: int, psi_dot: float, theta: float

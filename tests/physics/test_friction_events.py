@@ -3,8 +3,6 @@
 s = 0.03 m, Filippov's law at omega_z = 0 (physics facts 3 and 5). friction_mode: sign of omega_z, 0 held.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

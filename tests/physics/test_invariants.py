@@ -3,18 +3,15 @@
 s = 0, J_x = J_y. The wheel of the paper starts at a turning point of theta (theta_dot = 0).
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
-from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
-from reference import Wheel, accelerations
-from scipy.integrate import solve_ivp
+from reference import Wheel
 from scipy.optimize import brentq
 from support.bounds import EPSILON, beyond, within
+from support.closed_forms import linear_integrals
 from support.motion import Library
 from support.schedule import Schedule
 
@@ -60,30 +57,10 @@ def test_everything_repeats_after_a_period(library: Library) -> None:
     beyond(gap(period, s=1e-6), 4e-4, "gap")
 
 
-def chaplygin_matrix(wheel: Wheel, theta: float) -> Array:
-    """A(theta) in d(omega_2, omega_3)/d(theta) = A (omega_2, omega_3): pointwise, from the independent reference.
-
-    The rates of omega_2 and omega_3 are theta_dot times a linear form of both; taken here at theta_dot = 1.
-    """
-    columns = []
-    for omega_2, omega_3 in ((1.0, 0.0), (0.0, 1.0)):
-        psi_dot = omega_2 / sin(theta)
-        a = accelerations(wheel, (0.0, theta, 0.0), (psi_dot, 1.0, omega_3 - psi_dot * cos(theta)))
-        omega_2_dot = a.psi_ddot * sin(theta) + psi_dot * cos(theta)
-        columns.append((omega_2_dot, a.phi_ddot + a.psi_ddot * cos(theta) - psi_dot * sin(theta)))
-    return np.array(columns).T
-
-
 def chaplygin_gap(library: Library, judged: Wheel, s: float = 0.0) -> float:
-    """(omega_2, omega_3) of 10 s of motion against the solution of Chaplygin's system at the same theta."""
-    theta, *found = omegas(library.simulate(np.linspace(0, 10, 1001), 1e-12, s=s))
-
-    def slope(angle: float, y: Array) -> Array:
-        return chaplygin_matrix(judged, angle) @ y
-
-    ends, start = (theta[0], theta.min()), [found[0][0], found[1][0]]
-    curve = solve_ivp(slope, ends, start, "DOP853", rtol=1e-12, atol=1e-12, dense_output=True)
-    return float(np.abs(np.array(found) - curve.sol(np.minimum(theta, theta[0]))).max())
+    """(omega_2, omega_3) of 10 s of motion, carried back to the start along Chaplygin's linear system in theta."""
+    constants = linear_integrals(judged, *omegas(library.simulate(np.linspace(0, 10, 1001), 1e-12, s=s)))
+    return float(np.abs(constants - constants[0]).max())
 
 
 def test_omega_2_and_omega_3_are_functions_of_theta_that_obey_chaplygins_linear_system(library: Library) -> None:

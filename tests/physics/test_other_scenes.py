@@ -4,8 +4,6 @@ Fast rolling, near flat, thin disc, J_x != J_y, heavy and light friction, past u
 and the six inputs: the cases of cases.py.
 """
 
-from __future__ import annotations
-
 import pytest
 from support.bounds import beyond, within
 from support.motion import Library

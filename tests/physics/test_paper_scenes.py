@@ -3,12 +3,10 @@
 s = 0 and s = 0.03 m, 10 s, J_x = J_y. Fixed axes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from reference.tables import read_table
-from support.bounds import beyond, within
+from support.bounds import beyond, range_error, within
 from support.motion import Library
 
 from .measure import FRICTION, energy_error, table_errors
@@ -36,7 +34,7 @@ def test_every_column_of_the_tables_is_met(library: Library, scene: str) -> None
     def error(tolerance: float) -> float:
         got = library.simulate(want["t"], tolerance, s=FRICTION[scene])
         changing = [name for name in want if name != "t" and np.ptp(want[name]) > 1e-3]  # not E of the free wheel
-        return max(float(np.abs(got[name] - want[name]).max() / np.ptp(want[name])) for name in changing)
+        return range_error(got, want, changing)
 
     within(error(1e-11), 2e-9, "error")
     beyond(error(1e-6), 1e-8, "error")

@@ -5,14 +5,12 @@ which ends each mode at N = 0 too, and by the unit's own tightest run; errors re
 output, over the factor by which the motion makes errors grow.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from reference import Start, Wheel, solve
-from support.bounds import beyond, within
+from support.bounds import beyond, range_error, within
 from support.driver import HEADLINE
 from support.motion import Library, Run, start_values
 
@@ -34,7 +32,8 @@ def motion(library: Library, start: Start, tolerance: float) -> Run:
 
 def distance(one: Run, other: Run) -> float:
     rows = min(len(one.t), len(other.t)) - 1  # an ending is not a row of TIMES
-    return max(np.abs(one[name][:rows] - other[name][:rows]).max() / np.ptp(other[name][:rows]) for name in HEADLINE)
+    first, second = ({name: run[name][:rows] for name in HEADLINE} for run in (one, other))
+    return range_error(first, second, HEADLINE)
 
 
 def pulled(run: Run) -> bool:

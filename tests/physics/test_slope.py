@@ -4,8 +4,6 @@ The axes are the road's, Z across it; the weight is m g (-sin a cos b, -sin a si
 towards b. Upright wheels head along X (psi = 0), R = r_0 + r. SI units.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from math import atan, cos, pi, sin
 
@@ -14,7 +12,6 @@ import pytest
 from reference import Start, Wheel, solve
 from support.bounds import EPSILON, beyond, within
 from support.closed_forms import rolling_inertia
-from support.driver import OK
 from support.kept import kept
 from support.motion import Library, Run, start_values
 from support.schedule import Schedule
@@ -24,7 +21,6 @@ from .exact_motions import UPRIGHT
 R, WEIGHT = 0.35, 20 * 9.81
 REST = {**UPRIGHT, "phi_dot_start": 0.0}
 DOWNHILL = {"slope_direction": pi}  # the road falls towards X
-formulations = pytest.mark.parametrize("formulation", [2, 3], ids=["reduced", "multibody"])
 
 
 def rolled(library: Library, formulation: int, slope: float, s: float) -> float:
@@ -34,7 +30,6 @@ def rolled(library: Library, formulation: int, slope: float, s: float) -> float:
     return abs(run["X_O"][-1] / (acceleration * 1.5**2 / 2) - 1)
 
 
-@formulations
 @pytest.mark.parametrize("s", [0.0, 0.03], ids=["free", "friction"])
 def test_a_wheel_rolls_straight_down_with_uniform_acceleration(library: Library, formulation: int, s: float) -> None:
     within(rolled(library, formulation, 0.2, s), 128 * EPSILON, "way")
@@ -59,8 +54,7 @@ def parked(library: Library, slope: float, seconds: float) -> float:
         wheel.set(M_brake=20.0)
         for k in range(round(seconds / 0.05)):
             tilt, tilt_rate, heading, turn = wheel.get("theta", "theta_dot", "psi", "psi_dot")
-            wheel.set(M_1=-120 * (tilt - pi / 2) - 20 * tilt_rate, M_2=-50 * heading - 20 * turn)
-            assert wheel.step_to((k + 1) * 0.05) == OK
+            wheel.put(M_1=-120 * (tilt - pi / 2) - 20 * tilt_rate, M_2=-50 * heading - 20 * turn).to((k + 1) * 0.05)
         return wheel.get("X_O")[0]
 
 

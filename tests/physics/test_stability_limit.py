@@ -4,8 +4,6 @@ A lean e = theta - pi/2 follows e'' = -kappa^2 e with kappa^2 linear in omega_z^
 omega_z^2 > m g r_0 J_x / (J_z (J_z + m (r_0 + r)^2)) is stable; the paper's wheel needs 2.63 rad/s and has 2.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from reference import Wheel
 from support.bounds import beyond, within

@@ -3,8 +3,6 @@
 Friction and inputs are on unless said. Fixed axes for places and forces, carrier axes for moments.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import pi
 

@@ -3,37 +3,24 @@
 s = 0, no input, J_x = J_y, method automatic. A forced method (2: adams) steps through. Fixed axes.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from support.bounds import beyond, within
+from support.bounds import beyond, range_error, within
 from support.driver import HEADLINE
-from support.motion import Library, Run
+from support.motion import Library
 
 ADAMS = 2
-
-
-def range_error(got: Run, want: Run) -> float:
-    return max(float(np.abs(got[name] - want[name]).max() / np.ptp(want[name])) for name in HEADLINE)
 
 
 def test_unfolding_is_the_motion_that_stepping_gives(library: Library) -> None:
     t = np.linspace(0, 30, 301)
     want = library.simulate(t, 1e-13, method=ADAMS)
-    within(range_error(library.simulate(t, 1e-12), want), 1e-9, "range error")
-    beyond(range_error(library.simulate(t, 1e-5), want), 1e-9, "range error")
+    within(range_error(library.simulate(t, 1e-12), want, HEADLINE), 1e-9, "range error")
+    beyond(range_error(library.simulate(t, 1e-5), want, HEADLINE), 1e-9, "range error")
 
 
 def test_the_energy_neither_grows_nor_wears_off(library: Library) -> None:
     late = library.simulate([0.0, 1e3, 1e6])["E"]
     within(np.abs(late / late[0] - 1).max(), 4e-11, "change of the energy in 1e6 s")
-
-
-def test_the_cost_does_not_grow_with_the_horizon(library: Library) -> None:
-    steps = [library.simulate([0.0, stop]).counters["n_steps"] for stop in (1.0, 10.0, 1e6)]
-    assert steps[0] == steps[1] == steps[2] < 300
-    stepped = [library.simulate([0.0, stop], method=ADAMS).counters["n_steps"] for stop in (1.0, 10.0)]
-    beyond(stepped[1] / stepped[0], 5, "stepped")
 
 
 def test_heading_place_and_roll_angle_of_the_start_leave_tilt_and_rates_bit_identical(library: Library) -> None:

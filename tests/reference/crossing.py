@@ -5,8 +5,6 @@ x in (0, 1); its polynomial through them gives every root, so a brief excursion 
 there and back, is seen.
 """
 
-from __future__ import annotations
-
 from math import cos, pi
 
 import numpy as np

@@ -1,18 +1,15 @@
 """Integration of the rolling wheel through its modes, every transition located.
 
-One mode after another is integrated by a SciPy solver that never crosses a transition: each step
+One mode after another is integrated by SciPy's DOP853, which never crosses a transition: each step
 is searched for the first fall of a margin, the instant is refined by steps from the step's own
 start, and outputs are reached in the same way, so that nothing rests on the dense output.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy import integrate as scipy_integrate
-from scipy.integrate import OdeSolver
+from scipy.integrate import DOP853
 
 from .crossing import NODES, first_fall
 from .model import Inputs, Start, Wheel
@@ -21,6 +18,7 @@ from .newton_euler import rotation, slope
 from .outputs import Ending, Row, Solution, build
 from .switching import CLEAR, ROLL, Mode, Options, Side, Switch
 
+LONGEST = 0.1  # s, of a step
 INSTANT = 4e-16  # relative to the time: two units in the last place
 CIRCLE, CIRCLE_TIME = 20, 1e-6  # so many transitions within so many seconds are chatter, an error
 
@@ -62,12 +60,10 @@ class Run:
             solver.step()
         return solver.y
 
-    def _solver(self, rate: Rate, t_1: float, first_step: float) -> OdeSolver:
+    def _solver(self, rate: Rate, t_1: float, first_step: float) -> DOP853:
         rtol = self.options.rtol
-        make = getattr(scipy_integrate, self.options.method)
-        settings = {"rtol": rtol, "atol": 0.1 * rtol, "max_step": self.options.max_step}
-        first = min(first_step, t_1 - self.t, self.options.max_step)
-        return make(rate, self.t, self.y, t_1, first_step=first, **settings)
+        first = min(first_step, t_1 - self.t, LONGEST)
+        return DOP853(rate, self.t, self.y, t_1, LONGEST, rtol, 0.1 * rtol, first_step=first)
 
     def record(self, rate: Rate, t_1: float) -> None:
         """Rows of every asked time in [present, t_1)."""
@@ -94,7 +90,7 @@ class Run:
                 return fall.margin
         return None
 
-    def _search(self, solver: OdeSolver, from_zero: bool) -> Fall | None:
+    def _search(self, solver: DOP853, from_zero: bool) -> Fall | None:
         """The first fall of a margin in the solver's last step."""
         t_nodes = self.t + NODES * (solver.t - self.t)
         states = solver.dense_output()(t_nodes).T
@@ -167,19 +163,17 @@ def solve(
     friction: str | tuple[str, float] = "exact",
     flat: float | None = 1e-6,
     pulled_friction: str = "none",
-    max_step: float = 0.1,
-    method: str = "DOP853",
 ) -> Solution:
     """The motion from `start` at times[0], reported at `times` (rising).
 
     keep_contact False: N = 0 ends the run (lift-off).  friction: "exact", or
     ("regularized", omega_s) for -(s N + brake) tanh(w_z / omega_s).  flat: the sine of theta at which the
     wheel counts as flat and the run ends; None: not watched.  An ended run has its last row at
-    the ending.  method: any SciPy solver class; Radau for a very narrow regularized law.
+    the ending.
     """
     inputs = inputs or Inputs()
     omega_s = 0.0 if friction == "exact" else float(friction[1])
-    options = Options(rtol, keep_contact, omega_s, flat, pulled_friction, max_step, method)
+    options = Options(rtol, keep_contact, omega_s, flat, pulled_friction)
     run = Run(options, times, initial_state(wheel, start))
     t_end = run.times[-1]
     for stop in [*sorted(t for t in inputs.jumps if run.t < t < t_end), t_end]:

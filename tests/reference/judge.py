@@ -3,8 +3,6 @@
 Each function returns one number that is 0 for the exact motion.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from .integrate import solve

@@ -4,8 +4,6 @@ Written with the Euler angles and the carrier axes of the outputs, on purpose: n
 shared with the equations that are judged. Fixed axes unless said.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -3,11 +3,10 @@
 Symbols, defaults and units are those of the paper's (27)-(33); SI throughout.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import cos, inf, nextafter, pi, sin
+from typing import Self
 
 Vector = tuple[float, float, float]
 ZERO: Vector = (0.0, 0.0, 0.0)
@@ -73,7 +72,7 @@ class Inputs:
     jumps: tuple[float, ...] = field(default=())
     brake: Callable[[float], float] = released
 
-    def before(self, stop: float) -> Inputs:
+    def before(self, stop: float) -> Self:
         """The same inputs up to a jump at `stop`: there and later, their values just before it."""
         if not self.jumps:
             return self

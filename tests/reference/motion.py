@@ -6,8 +6,6 @@ turn of the angles read from the attitude), work of the inputs, work of rolling 
 The velocity of O is integrated from the accelerations, so v_O - w x p shows the drift.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -13,8 +13,6 @@ The axle moment tau of rolling friction is left open: the system is solved for t
 the response to a unit tau, and a friction law then fixes tau by a scalar linear equation.
 """
 
-from __future__ import annotations
-
 from math import cos, sin, sqrt, tanh
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 Fixed axes for positions, velocities and reactions; Euler angles read from the attitude.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import atan2, hypot, nan, pi, sqrt
 from typing import NamedTuple

@@ -7,8 +7,6 @@ then drive the wheel and its zero would repel) and sigma is not watched; pulled_
 "magnitude" takes s |N| instead. A brake acts whatever the ground does.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -40,8 +38,6 @@ class Options:
     omega_s: float  # rad/s; 0: exact friction
     flat: float | None
     pulled_friction: str
-    max_step: float
-    method: str
 
 
 class Switch:

@@ -4,8 +4,6 @@ paper_free.csv and paper_friction.csv: every 0.1 s of 10 s. paper_friction_event
 friction changes its mode (sign of omega_z, 0 held), the first line being the start. SI.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

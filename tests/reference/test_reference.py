@@ -4,8 +4,6 @@ Every bound has a partner that breaks something (an equation, a
 parameter, a law) and must exceed the bound.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """The check of bounds itself: what `within` and `beyond` refuse, and what `pytest --bounds` prints."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -3,8 +3,6 @@
 The scripts are tried on small folders: a stand-in for cmake or cargo takes the place of the long work.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import shutil

@@ -1,7 +1,5 @@
 """Figures in prose are those of the data: marked places are filled from docs/results/data, none is typed by hand."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess
@@ -18,7 +16,6 @@ from publishing.markdown import number
 RESULTS = ROOT / "docs" / "results"
 BY_HAND = ROOT / "docs" / "interoperability.md"  # runs of other programs, which no command of this project starts
 PROSE = [page for page in pages() if RESULTS not in page.parents and page != BY_HAND]
-DECISIONS = [*(ROOT / "docs" / "decisions").glob("*.md"), ROOT / "CHANGELOG.md"]
 CODE = re.compile(
     r"```.*?```|(?m:^ {4}[^\n]*$)|`[^`]*`|<pre>.*?</pre>|<code>.*?</code>|<math.*?</math>|<!--.*?-->|]\([^)]*\)",
     re.DOTALL,
@@ -28,11 +25,6 @@ TYPED = re.compile(r"(?<![\w.])(?!1e)\d+(?:\.\d+)?e-\d+\b|\b\d[\d.,]* ?(?:ns|µs
 # Figures that no report measures: the rounding of a constant, a limit that the code sets.
 GIVEN = {"docs/physics.md": {"6e-17"}, "docs/decisions/memory.md": {"128 KiB"}} | {
     "tools/publishing/templates/platforms.md": {"1 MiB"}
-}
-HISTORY = {
-    "a commit": re.compile(r"\b(?=[0-9a-f]*\d)(?=[0-9a-f]*[a-f])[0-9a-f]{7,40}\b"),
-    "a time of day": re.compile(r"\b[0-2]\d:[0-5]\d\b"),
-    "a table of before and after": re.compile(r"\|\s*before\s*\|", re.IGNORECASE),
 }
 
 
@@ -77,18 +69,6 @@ COUNTS |= {"right to <!-- = accuracy.error_free -->4e-8<!-- . --> of the range":
 @pytest.mark.parametrize(("text", "count"), COUNTS.items())
 def test_a_typed_figure_is_found(text: str, count: int) -> None:
     assert len(typed(text)) == count
-
-
-@pytest.mark.parametrize("page", DECISIONS, ids=lambda page: page.name)
-@pytest.mark.parametrize("what", HISTORY)
-def test_decisions_and_changes_hold_no_history(page: Path, what: str) -> None:
-    assert HISTORY[what].findall(CODE.sub(" ", page.read_text(encoding="utf-8"))) == []
-
-
-def test_history_is_found() -> None:
-    texts = ("since c63086f", "at 11:16", "| x | Before | after |")
-    assert all(pattern.search(text) for pattern, text in zip(HISTORY.values(), texts, strict=True))
-    assert not any(pattern.search("the deadbeef cafe at 1:100, a b c") for pattern in HISTORY.values())
 
 
 def test_an_unknown_figure_is_refused_and_a_known_one_is_filled(tmp_path: Path) -> None:

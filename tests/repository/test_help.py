@@ -1,7 +1,5 @@
 """Every command under scripts/ answers --help and a typing error at once, in a checkout where nothing is installed."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """The named faults of tests/mutants/named.toml can all be put in, and the tests that are meant to notice them exist."""
 
-from __future__ import annotations
-
 import tomllib
 
 import pytest

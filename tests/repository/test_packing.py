@@ -3,8 +3,6 @@
 No part of the paper. The cross compiler is not needed here; scripts/release checks the libraries themselves.
 """
 
-from __future__ import annotations
-
 import argparse
 import shutil
 import struct

@@ -3,8 +3,6 @@
 The test of the site checks the links. The scenes are the paper's, SI units.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """The values that ./scripts/run takes: names are checked, degrees become radians, a fault is one sentence."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from math import pi

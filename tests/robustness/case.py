@@ -1,7 +1,5 @@
 """What a case of the sweep is, and how it maps onto the independent reference of tests/reference."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

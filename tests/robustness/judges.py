@@ -10,8 +10,6 @@ uniform      without weight: all rates stay as they are, over the largest
 fixed        omega_z is exactly zero wherever friction holds it, rad/s
 """
 
-from __future__ import annotations
-
 import numpy as np
 from reference import Wheel, solve
 from support.closed_forms import critical_spin, linear_integrals

@@ -3,9 +3,8 @@
 Error: largest of the headline outputs over 101 times, relative to the output's range.
 """
 
-from __future__ import annotations
-
 import numpy as np
+from support.bounds import range_error
 from support.driver import HEADLINE, WARNING, Values
 from support.motion import Library, Run, run
 from support.scenes import wheel_of
@@ -20,7 +19,7 @@ def error_against(truth: Run, found: Run) -> float:
     """nan where the run did not get to the end."""
     if found.status > WARNING or len(found["t"]) != len(truth["t"]):
         return float("nan")
-    return max(float(np.abs(found[n] - truth[n]).max() / np.ptp(truth[n])) for n in HEADLINE)
+    return range_error(found, truth, HEADLINE)
 
 
 def decay_number(values: Values) -> float:

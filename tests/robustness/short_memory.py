@@ -7,8 +7,6 @@ promise is broken: no crash, no leak; an error has its sentence; once there is m
 one go on with the bits of an undisturbed life.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from ctypes import CDLL, c_long

@@ -1,7 +1,5 @@
 """The sweep: every case with its expectation and its judges. SI; names of modelDescription.xml."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache

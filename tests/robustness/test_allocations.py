@@ -1,7 +1,5 @@
 """Memory that runs short: every allocation of an instance's life fails in turn, once, or from there on for good."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
@@ -11,8 +9,6 @@ from collections.abc import Callable
 import pytest
 from support.driver import ERROR, OK
 from support.paths import ROOT
-
-pytestmark = pytest.mark.contract
 
 # formulation, friction law, method (4: Runge-Kutta): here every allocation is our own. SUNDIALS does not survive each
 # of its own that fails (docs/decisions/memory.md), so its methods are not played with.

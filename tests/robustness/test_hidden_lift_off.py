@@ -4,21 +4,18 @@ The wheel rolls upright; F_Z then only carries it, so N = m g - F_Z, and the lif
 of a polynomial.
 """
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np
 import pytest
 from support.bounds import EPSILON, within
 from support.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK
-from support.pieces import give
-from support.scenes import PAPER
+from support.pieces import play
+from support.scenes import FORCED, PAPER
 
 WEIGHT = PAPER.m * PAPER.g  # N
 BEGIN, STEP = 0.3, 0.02  # s
 INSTANT = 1e-8  # s
-KINDS = [(formulation, method) for formulation in (2, 3) for method in (1, 2, 3, 4)]
 
 
 def parabola(ends, peak):
@@ -55,12 +52,8 @@ def first_root(shape):
 
 def lift_off(wheel, kind, inputs, **values):
     """One step with these inputs, N or N m; the instant in it at which the wheel lifted off, None: it did not."""
-    formulation, method = kind
-    start = {"theta_start": pi / 2, "phi_dot_start": -8.0} | values
-    w = wheel().start(formulation=formulation, method=method, **start)
-    assert w.step_to(BEGIN) == OK
-    give(w, inputs)
-    status = w.step_to(BEGIN + STEP)
+    w = wheel().start(**{"theta_start": pi / 2, "phi_dot_start": -8.0, **kind, **values}).to(BEGIN)
+    status = w.give(inputs).step_to(BEGIN + STEP)
     if status == OK:
         return None
     assert status == DISCARD and "lifted off" in w.sentences[-1]
@@ -69,7 +62,6 @@ def lift_off(wheel, kind, inputs, **values):
 
 @pytest.mark.parametrize("s", [0.0, 0.03])
 @pytest.mark.parametrize("name", SHAPES)
-@pytest.mark.parametrize("kind", KINDS, ids=str)
 def test_a_peak_of_the_load_inside_one_step_lifts_the_wheel_at_its_instant(wheel, kind, name, s):
     shape = SHAPES[name]
     found = lift_off(wheel, kind, {"F_Z": [WEIGHT * c for c in shape]}, s=s)
@@ -78,7 +70,6 @@ def test_a_peak_of_the_load_inside_one_step_lifts_the_wheel_at_its_instant(wheel
 
 
 @pytest.mark.parametrize("s", [0.0, 0.03])
-@pytest.mark.parametrize("kind", KINDS, ids=str)
 def test_a_peak_that_stays_below_the_weight_does_not(wheel, kind, s):
     """The partner: a ten-thousandth of the weight less."""
     for shape in (parabola(0, 0.9999), parabola(-20, 0.9999), cubic(0.9999 / 0.0481126)):
@@ -86,7 +77,6 @@ def test_a_peak_that_stays_below_the_weight_does_not(wheel, kind, s):
         assert lift_off(wheel, kind, {"F_Z": [WEIGHT * c for c in shape]}, s=s) is None
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=str)
 def test_a_wheel_of_next_to_no_mass_lifts_off_at_the_same_instant(wheel, kind):
     """A billionth of all masses and of the load: the unit of force has no meaning."""
     light = {name: 1e-9 * getattr(PAPER, name) for name in ("m", "J_x", "J_y", "J_z")}
@@ -98,10 +88,8 @@ def test_a_wheel_of_next_to_no_mass_lifts_off_at_the_same_instant(wheel, kind):
 @pytest.mark.parametrize("ramp", [100.0, 1e4])
 def test_two_inputs_that_nearly_cancel_hide_nothing(wheel, ramp, s):
     """At theta = 1.2 rad a moment M_1 presses as well. Every kind of run sees the lift-off that 400 short steps see."""
-    formulation, method = 2, 4
     start = {"theta_start": 1.2, "phi_dot_start": -8.0, "s": s}
-    probe = wheel().start(**start)
-    assert probe.step_to(BEGIN) == OK
+    probe = wheel().start(**start).to(BEGIN)
     pressed = probe.get("lambda_3")[0]
     probe.set(F_Z=1.0)
     by_force = probe.get("lambda_3")[0] - pressed
@@ -110,32 +98,24 @@ def test_two_inputs_that_nearly_cancel_hide_nothing(wheel, ramp, s):
     force = [WEIGHT * c for c in cubic(60.0)]
     slope = ramp * WEIGHT / STEP
     inputs = {"F_Z": [force[0], force[1] + slope, *force[2:]], "M_1": [0.0, -slope * by_force / by_moment]}
-    w = wheel().start(formulation=formulation, method=method, **start)
-    w.step_to(BEGIN)
-    for k in range(400):
-        give(w, inputs, STEP * k / 400)
-        if w.step_to(BEGIN + STEP * (k + 1) / 400) != OK:
-            break
+    w = wheel().start(formulation=2, method=4, **start).to(BEGIN)
+    assert play(w, [(BEGIN, inputs)], BEGIN + STEP, BEGIN + STEP * np.arange(400) / 400) == DISCARD
     true = w.status(LAST_SUCCESSFUL_TIME) - BEGIN
     assert 0 < true < STEP / 2
-    for kind in KINDS:
+    for kind in FORCED:
         within(abs(lift_off(wheel, kind, inputs, **start) - true), 2e-9, "lift off")  # s
-    assert lift_off(wheel, KINDS[0], {"F_Z": [0.1 * c for c in force]}, **start) is None
+    assert lift_off(wheel, FORCED[0], {"F_Z": [0.1 * c for c in force]}, **start) is None
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=str)
 def test_a_brake_that_gives_way_inside_one_step_lets_the_wheel_turn_at_its_instant(wheel, kind):
     """A parabola of M_brake that sinks below the torque and comes back: the wheel is held at both ends of the step."""
-    formulation, method = kind
-    w = wheel(logging=True).start(theta_start=pi / 2, phi_dot_start=0.0, formulation=formulation, method=method)
+    w, held = (wheel(logging=True).start(theta_start=pi / 2, phi_dot_start=0.0, **kind) for _ in range(2))
     inputs = {"M_3": [2.0], "M_brake": [5.0, -4 * 4 / STEP, 4 * 4 / STEP**2]}
-    give(w, inputs)
-    assert w.step_to(STEP) == OK
+    w.give(inputs).to(STEP)
     told = [m for m in w.sentences if "release" in m]
     x = 0.5 * (1 - np.sqrt(0.25))  # 5 - 16 x (1 - x) = 2
     assert len(told) == 1
     within(abs(float(told[0].split()[2]) - x * STEP), 64 * EPSILON, "split")
     assert w.get("phi")[0] != 0
-    held = wheel().start(theta_start=pi / 2, phi_dot_start=0.0, formulation=formulation, method=method)
-    give(held, inputs | {"M_brake": [6.1, -4 * 4 / STEP, 4 * 4 / STEP**2]})  # the partner: it sinks to 2.1
-    assert held.step_to(STEP) == OK and held.get("phi") == [0.0]
+    inputs["M_brake"][0] = 6.1  # the partner: it sinks to 2.1
+    assert held.give(inputs).to(STEP).get("phi") == [0.0]

@@ -1,25 +1,17 @@
 """Small faults that would be silent: one test for each, found by faults that were put in by hand and not noticed."""
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np
 import pytest
 from contract.test_foreign_states import forged, place_of, signed, words_of
+from support.closed_forms import rolling_inertia
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
-from support.pieces import give
 from support.scenes import PAPER
 
 WEIGHT = PAPER.m * PAPER.g
 PULLING = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}
 MANY = 100  # pulls that are told one by one
-
-
-def stepped(w, times):
-    for t in times:
-        assert w.step_to(t) == OK
-    return w
 
 
 def told(w):
@@ -30,7 +22,7 @@ def told(w):
 def test_the_log_of_a_ground_that_pulls_often_does_not_depend_on_the_grid(wheel, method):
     logs = []
     for step in (0.25, 4.0, 100.0):
-        w = stepped(wheel().start(method=method, **PULLING), np.arange(step, 100.0 + step / 2, step))
+        w = wheel().start(method=method, **PULLING).to(*np.arange(step, 100.0 + step / 2, step))
         assert len(told(w)) == MANY
         assert w.terminate() == OK
         logs.append(told(w))
@@ -41,14 +33,14 @@ def test_the_log_of_a_ground_that_pulls_often_does_not_depend_on_the_grid(wheel,
 
 
 def test_pulls_of_a_wheel_that_falls_flat_are_summed_up_once(wheel):
-    w = stepped(wheel().start(keep_contact=True, theta_start=0.3, phi_dot_start=0.0, method=4), [0.05])
-    assert w.restore(forged(w, w.serialized(), pulls=MANY + 1)) == OK
+    w = wheel().start(keep_contact=True, theta_start=0.3, phi_dot_start=0.0, method=4).to(0.05)
+    w.back(forged(w, w.serialized(), pulls=MANY + 1))
     assert (w.step_to(9.0), w.terminate()) == (DISCARD, OK)
     assert [sentence[:33] for sentence in told(w)] == ["The ground has pulled 101 times, "]
 
 
 def test_few_pulls_are_not_summed_up(wheel):
-    w = stepped(wheel().start(**PULLING), [1.0])
+    w = wheel().start(**PULLING).to(1.0)
     assert 0 < len(told(w)) < MANY and w.terminate() == OK
     assert not any("has pulled" in sentence for sentence in told(w))
 
@@ -57,23 +49,18 @@ def test_few_pulls_are_not_summed_up(wheel):
 def test_a_ground_that_pulls_by_rounding_alone_is_not_told(wheel, phi_dot):
     """Without weight N is zero but for rounding."""
     w = wheel().start(g=0.0, keep_contact=True, formulation=3, phi_dot_start=phi_dot, theta_start=pi / 2)
-    stepped(w, [0.01, 0.1])
-    assert told(w) == []
+    assert told(w.to(0.01, 0.1)) == []
 
 
 @pytest.mark.parametrize("method", [1, 2, 4])
 @pytest.mark.parametrize("t", [0.3, 0.35, 0.4, 0.45, 0.5, 0.55])
 def test_a_restored_run_tells_the_same_pulls(wheel, method, t):
     """Saved while the ground pulls or presses; afterwards a small push, which takes the run off the orbit."""
-    w = stepped(wheel().start(method=method, **PULLING), [t])
-    blob = w.serialized()
-    other = wheel()
-    assert other.restore(blob) == OK
-    other.time = t
+    w = wheel().start(method=method, **PULLING).to(t)
+    other = wheel().back(w.serialized())
     w.take_messages()
     for each in (w, other):
-        each.set(M_1=1e-6)
-        stepped(each, [1.0, 3.0])
+        each.put(M_1=1e-6).to(1.0, 3.0)
     assert told(w) == told(other) and len(told(w)) > 5
     assert w.bits() == other.bits()
     starts = [float(sentence.split(" = ")[1].split()[0]) for sentence in told(w)]
@@ -84,9 +71,7 @@ def test_a_restored_run_tells_the_same_pulls(wheel, method, t):
 @pytest.mark.parametrize("slope", [5.0, -5.0])
 def test_the_rate_of_tau_counts_the_brake(wheel, braked, slope):
     """Rolling straight with phi_dot < 0: tau is M_brake; a brake at zero can only be put on."""
-    w = wheel().start(theta_start=pi / 2, phi_dot_start=-2.0)
-    stepped(w, [0.1])
-    give(w, {"M_brake": (braked, slope)})
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=-2.0).to(0.1).give({"M_brake": (braked, slope)})
     assert abs(w.get("tau")[0]) == braked
     expected = 0.0 if braked == 0 and slope < 0 else slope
     assert abs(w.rates(["tau"])()[0]) == abs(expected)
@@ -103,8 +88,7 @@ def test_a_step_that_is_lost_in_the_rounding_of_time_is_refused(wheel, start, st
 
 
 def test_a_step_past_the_digits_of_the_angles_is_refused(wheel):
-    w = wheel().start()
-    stepped(w, [1e6])
+    w = wheel().start().to(1e6)
     before = w.get("psi", "phi")
     assert w.step(1e300) == ERROR
     assert "too few digits" in w.sentences[-1] and w.get("psi", "phi") == before
@@ -122,58 +106,46 @@ def test_a_start_after_many_turns_does_not_shorten_how_far_a_free_wheel_goes(whe
 
 @pytest.mark.parametrize("start", [{}, {"s": 0.03}])
 def test_a_run_whose_counts_are_as_large_as_can_be_can_be_saved_again(wheel, start):
-    w = stepped(wheel().start(**start), [0.5])
+    w = wheel().start(**start).to(0.5)
     words = list(words_of(w.serialized()))
     first = place_of(w, "transitions")
     words[first : first + 6] = [2**53] * 6
-    assert w.restore(signed(words)) == OK
-    w.set(M_3=0.1)
-    stepped(w, [1.0])
+    w.back(signed(words)).put(M_3=0.1).to(1.0)
     assert wheel().restore(w.serialized()) == OK
     assert w.get("n_steps") == [2**31 - 1]
 
 
 @pytest.mark.parametrize("first", [{"psi_start": 0.3, "X_O_start": 7.0}, {"phi_start": -2.0, "Y_O_start": 0.1}])
 def test_an_orbit_kept_from_another_place_and_heading_is_the_one_built_here(wheel, first):
-    w = stepped(wheel().start(**first), [3.0])
+    w = wheel().start(**first).to(3.0)
     assert w.reset() == OK
-    assert stepped(w.start(), [5.0]).bits() == stepped(wheel().start(), [5.0]).bits()
+    assert w.start().to(5.0).bits() == wheel().start().to(5.0).bits()
 
 
 def test_another_tolerance_makes_another_orbit(wheel):
     """After a reset too: the instance may have the orbit of the same wheel with another tolerance."""
-    w = stepped(wheel().start(tolerance=1e-5), [1.0])
+    w = wheel().start(tolerance=1e-5).to(1.0)
     assert w.reset() == OK
-    w.start(tolerance=1e-10)
-    fresh = wheel().start(tolerance=1e-10)
-    assert stepped(w, [5.0]).bits() == stepped(fresh, [5.0]).bits()
+    assert w.start(tolerance=1e-10).to(5.0).bits() == wheel().start(tolerance=1e-10).to(5.0).bits()
 
 
 def test_the_time_of_the_last_change_is_part_of_a_state(wheel):
     """It limits the first step after the next change."""
     differs = 0
     for k in range(40):
-        w = wheel().start(s=0.03, method=4)
         t = 0.5 + 0.001 * k
-        stepped(w, [t])
-        w.set(M_3=0.5)
-        stepped(w, [t + 0.002])
-        other, without = wheel(), wheel()
+        w = wheel().start(s=0.03, method=4).to(t).put(M_3=0.5).to(t + 0.002)
         blob = w.serialized()
-        assert other.restore(blob) == OK
-        assert without.restore(forged(w, blob, last_change=0.0)) == OK
-        ends = []
-        for each in (w, other, without):
-            each.time = t + 0.002
-            each.set(M_3=0.1)
-            ends.append(stepped(each, [t + 0.004, 3.0]).bits())
+        other, without = wheel().back(blob), wheel().back(forged(w, blob, last_change=0.0))
+        without.time = t + 0.002
+        ends = [each.put(M_3=0.1).to(t + 0.004, 3.0).bits() for each in (w, other, without)]
         assert ends[0] == ends[1]
         differs += ends[0] != ends[2]
     assert differs > 5  # the partner
 
 
 def test_the_contact_s_velocity_needs_nothing_read_before(wheel):
-    w, other = (stepped(wheel().start(), [0.7]) for _ in range(2))
+    w, other = (wheel().start().to(0.7) for _ in range(2))
     assert other.get("X_O_dot", "Y_O_dot")
     assert w.rates(["X_C"])() == other.rates(["X_C"])() != [0.0]
 
@@ -182,21 +154,16 @@ def test_cuts_of_a_polynomial_at_a_late_start_time_are_no_changes(wheel):
     """At 1e9 s the times of the caller are rounded to 1e-7 s, and so are the values that it sets."""
     w = wheel().start(start=1e9, method=2, theta_start=pi / 2, phi_dot_start=-8.0)
     for k in range(20):
-        give(w, {"M_3": (1.0 + 3.0 * 0.03 * k, 3.0)})
-        assert w.step_to(1e9 + 0.03 * (k + 1)) == OK
+        w.give({"M_3": (1.0 + 3.0 * 0.03 * k, 3.0)}).to(1e9 + 0.03 * (k + 1))
     assert w.get("n_restarts") == [0]
 
 
 def test_a_ground_that_pulls_does_not_hold_the_wheel(wheel):
     """N = -m g: friction has no capacity, and the smallest moment rolls the wheel."""
-    w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0, s=0.03, keep_contact=True)
-    w.set(F_Z=2 * WEIGHT, M_3=0.01)
-    stepped(w, [0.5])
-    inertia = PAPER.J_z + PAPER.m * (PAPER.r_0 + PAPER.r) ** 2
-    assert w.get("phi_dot")[0] == pytest.approx(0.01 * 0.5 / inertia, rel=1e-6)
-    pressed = wheel().start(theta_start=pi / 2, phi_dot_start=0.0, s=0.03, keep_contact=True)  # the partner
-    pressed.set(M_3=0.01)
-    assert stepped(pressed, [0.5]).get("phi_dot") == [0.0]
+    w, pressed = (wheel().start(theta_start=pi / 2, phi_dot_start=0.0, s=0.03, keep_contact=True) for _ in range(2))
+    (spin,) = w.put(F_Z=2 * WEIGHT, M_3=0.01).to(0.5).get("phi_dot")
+    assert spin == pytest.approx(0.01 * 0.5 / rolling_inertia(PAPER), rel=1e-6)
+    assert pressed.put(M_3=0.01).to(0.5).get("phi_dot") == [0.0]  # the partner
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -214,10 +181,8 @@ def test_lift_off_is_found_between_the_extremes_of_an_input(wheel, seed):
         w = wheel().start(theta_start=pi / 2, phi_dot_start=-3.0, method=4)
         if force(0) > 0.99:
             continue
-        give(w, {"F_Z": tuple(WEIGHT * force.coef / T ** np.arange(4))}, 0.0)
-        status = w.step_to(T)
+        status = w.give({"F_Z": tuple(WEIGHT * force.coef / T ** np.arange(4))}).step_to(T)
         t = w.status(LAST_SUCCESSFUL_TIME)
-        ok = status == DISCARD and abs(t - T * min(roots)) < 1e-6 if roots else status == OK
-        if not ok:
+        if not (status == DISCARD and abs(t - T * min(roots)) < 1e-6 if roots else status == OK):
             missed.append((force.coef, roots, status, t))
     assert missed == []

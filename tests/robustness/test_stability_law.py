@@ -1,7 +1,5 @@
 """The regularized law: its error, the choice of method; and ten minutes of weak releases."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.bounds import beyond, within

@@ -1,7 +1,5 @@
 """What a master sees of inputs between two steps, of pulls, of counts: small things that are easily lost."""
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np
@@ -9,7 +7,7 @@ import pytest
 from contract.test_forged_histories import as_word, saved, signed, words_of
 from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import ERROR, OK
-from support.pieces import give, play
+from support.pieces import play
 from support.scenes import PAPER
 
 WEIGHT = PAPER.m * PAPER.g
@@ -26,14 +24,14 @@ def test_the_rate_of_a_reaction_follows_all_orders_of_the_input(wheel):
         shape = [0.0, 0.0, 0.0, 0.0]
         shape[order] = 50.0
         for k in range(2):  # the second step goes on along the same polynomial
-            give(w, {"F_Z": shape}, 0.5 * k)
+            w.give({"F_Z": shape}, 0.5 * k)
             within(abs(rate_of(w) + 50.0 * order * (0.5 * k) ** (order - 1)), 64 * 50 * EPSILON, "rate of")
-            assert w.step_to(0.5 * (k + 1)) == OK
+            w.to(0.5 * (k + 1))
 
 
 def test_a_derivative_that_is_set_is_seen_at_once(wheel):
-    w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0)
-    assert w.step_to(0.1) == OK and rate_of(w) == 0
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0).to(0.1)
+    assert rate_of(w) == 0
     assert w.set_input_derivatives(["F_Z"], [[7.0]]) == OK
     within(abs(rate_of(w) + 7.0), 64 * 7 * EPSILON, "rate of")
     assert w.set_input_derivatives(["F_Z"], [[0.0]]) == OK
@@ -46,14 +44,10 @@ def test_a_change_of_one_derivative_alone_is_taken(wheel, method, order):
     """M_3 goes on with the same value and the same other derivatives."""
     ends = []
     for change in (0.0, 1e-3):
-        w = wheel().start(theta_start=1.2, s=0.0, method=method)
-        give(w, {"M_3": (0.3, 0.2, 0.1, 0.05)})
-        assert w.step_to(0.5) == OK
         shape = [0.3 + 0.1 + 0.025 + 0.00625, 0.2 + 0.1 + 0.0375, 0.1 + 0.075, 0.05]
         shape[order] += change
-        give(w, {"M_3": shape})
-        assert w.step_to(1.0) == OK
-        ends.append(w.get("phi_dot")[0])
+        w = wheel().start(theta_start=1.2, s=0.0, method=method).give({"M_3": (0.3, 0.2, 0.1, 0.05)}).to(0.5)
+        ends += w.give({"M_3": shape}).to(1.0).get("phi_dot")
     beyond(abs(ends[1] - ends[0]), 1e-6, "ends")
 
 
@@ -61,10 +55,7 @@ def test_a_small_change_of_a_value_is_taken(wheel):
     ends = []
     for torque in (1.0, 1.0 + 1e-6):
         w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0, method=2)
-        for k, value in enumerate((1.0, torque)):
-            w.set(M_3=value)
-            assert w.step_to(0.5 * (k + 1)) == OK
-        ends.append(w.get("phi_dot")[0])
+        ends += w.put(M_3=1.0).to(0.5).put(M_3=torque).to(1.0).get("phi_dot")
     assert ends[1] > ends[0]
 
 
@@ -82,8 +73,7 @@ def test_each_pull_is_told_at_its_instant_and_none_that_an_input_prevents(wheel,
     assert np.allclose(pulls(w), [0.125, 0.35], rtol=0, atol=1e-8)
     prevented = wheel().start(method=method, s=s, **values)
     for k in range(20):  # a ramp that would lift the wheel, taken back at every step
-        give(prevented, {"F_Z": (0.0, WEIGHT / 0.006)})
-        assert prevented.step_to(0.005 * (k + 1)) == OK
+        prevented.give({"F_Z": (0.0, WEIGHT / 0.006)}).to(0.005 * (k + 1))
     assert pulls(prevented) == []
 
 
@@ -104,37 +94,27 @@ def test_a_ground_that_pulls_from_the_start_is_told_once_by_the_unfolded_wheel_t
 def test_a_polynomial_that_takes_the_brake_below_zero_takes_it_off(wheel):
     """A brake cannot push: M_brake = 1 - 10 t is none from 0.1 s on, and a wheel without a torque then rolls freely."""
     braked, off = (wheel().start(theta_start=pi / 2, phi_dot_start=-8.0) for _ in range(2))
-    give(braked, {"M_brake": (1.0, -10.0)})
-    assert braked.step_to(1.0) == OK
-    give(off, {"M_brake": (1.0, -10.0)})
-    assert off.step_to(0.1) == OK
-    give(off, {"M_brake": (0.0,)})
-    assert off.step_to(1.0) == OK
+    braked.give({"M_brake": (1.0, -10.0)}).to(1.0)
+    off.give({"M_brake": (1.0, -10.0)}).to(0.1).give({"M_brake": (0.0,)}).to(1.0)
     within(abs(braked.get("phi_dot")[0] - off.get("phi_dot")[0]), 2e-7, "phi_dot")
     assert off.get("phi_dot")[0] > -8.0
 
 
 def test_a_derivative_lasts_for_one_step(wheel):
-    w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0)
-    give(w, {"F_Z": (0.0, 10.0)})
-    assert w.step_to(1.0) == OK and w.step_to(2.0) == OK
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0).give({"F_Z": (0.0, 10.0)}).to(1.0, 2.0)
     assert w.get("F_Z") == [10.0]
     within(abs(w.get("lambda_3")[0] - (WEIGHT - 10.0)), 64 * WEIGHT * EPSILON, "lambda_3")
 
 
 def test_a_brake_that_is_set_stops_the_wheel_though_nothing_braked_before(wheel):
-    w = wheel().start(theta_start=pi / 2, phi_dot_start=-1.0)
-    assert w.step_to(0.5) == OK
-    w.set(M_brake=20.0)
-    assert w.step_to(3.0) == OK
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=-1.0).to(0.5).put(M_brake=20.0).to(3.0)
     assert w.get("n_events") == [1]
     within(abs(w.get("phi_dot")[0]), 64 * EPSILON, "phi_dot")
 
 
 def test_a_sensitivity_belongs_to_the_friction_that_was_just_set(wheel):
     """d tau / d F_Z: the friction moment is s N."""
-    w = wheel().start(theta_start=1.2, phi_dot_start=-5.0, s=0.05)
-    assert w.step_to(0.1) == OK
+    w = wheel().start(theta_start=1.2, phi_dot_start=-5.0, s=0.05).to(0.1)
     known, unknown = [w.references["F_Z"]], [w.references["tau"]]
     for s, least in ((0.05, 1e-3), (0.0, 0.0), (0.1, 2e-3)):
         w.set(s=s)
@@ -153,11 +133,10 @@ def test_counts_are_the_same_after_a_return(wheel, method):
     counts = []
     for returns in (False, True):
         w = wheel().start(friction_law=2, s=0.03, omega_s=1e-5, method=method)
-        before = w.snapshot()
+        before = w.serialized()
         if returns:
-            assert w.step_to(1.4) == OK and w.fmi2SetFMUstate(w.component, before) == OK
-            w.time = 0.0
-        assert w.step_to(2.0) == OK  # the wheel has stuck: there automatic takes BDF
+            w.to(1.4).back(before)
+        w.to(2.0)  # the wheel has stuck: there automatic takes BDF
         counts.append(w.get("n_steps", "n_rhs", "n_jac", "n_restarts"))
     assert counts[0] == counts[1] and counts[0][2] > 0
 
@@ -166,9 +145,8 @@ def test_a_step_that_does_not_end_where_its_stages_lead_is_refused(wheel):
     """With a varying input the last step of Runge-Kutta ends at the communication point: theta there stands in both the
     run's own part and the solver's history."""
     words = list(words_of(saved(wheel, "loaded")))
-    w = wheel()
-    assert w.restore(signed(words)) == OK
-    theta = w.get("theta")[0]
+    w = wheel().back(signed(words))
+    (theta,) = w.get("theta")
     *_, last = [k for k, word in enumerate(words) if word == as_word(theta)]
     assert last >= len(words_of(saved(wheel, "unfolded")))  # the partner: it is one of the history
     for error in (1e-9, -1e-15):

@@ -1,7 +1,5 @@
 """A case at a tolerance: what happened, every judge's error, and whether that is what was expected."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import NamedTuple
 

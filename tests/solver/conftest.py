@@ -1,28 +1,24 @@
-"""measure(what, method, numbers): what the program of this folder measures; built in the folder under test."""
+"""The solver alone, a shared library made in the folder under test; a test that names the method runs for each."""
 
-import json
-import subprocess
+import ctypes
+from functools import partial
 
 import pytest
-from support.paths import build_target
-
-METHODS = {"adams": 0, "bdf": 1, "runge_kutta": 2}
+import solving
+from support.paths import probe
 
 
 @pytest.fixture(scope="session")
-def measure():
-    program = build_target("solver_measure") / "tests" / "solver" / "solver_measure"
-
-    def run(what, method="runge_kutta", *numbers):
-        command = [str(program), what, str(METHODS[method]), *map(repr, numbers)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
-        assert done.returncode == 0, f"{what}: {done.returncode} {done.stderr[-500:]}"
-        assert done.stderr == ""
-        return json.loads(done.stdout)
-
-    return run
+def library() -> ctypes.CDLL:
+    return probe("solver")
 
 
-@pytest.fixture(params=METHODS)
+@pytest.fixture
+def solver(library):
+    """solver(method, problem, ...) -> a solver at t = 0."""
+    return partial(solving.Solver, library)
+
+
+@pytest.fixture(params=solving.METHODS)
 def method(request):
     return request.param

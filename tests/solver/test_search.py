@@ -1,15 +1,26 @@
 """Events and endings of the solver alone: every fall through zero is found, dips included, and none is invented."""
 
-from math import asin, pi, sqrt
+from math import acos, asin, pi, sin, sqrt
 
 import pytest
+from solving import EVENT, STEPPED, harmonic
 from support.bounds import EPSILON, absolute_error, relative_error, within
 
 
+def dips(solver, method, depth):
+    """Instants of the falls of g = 1 + sin t - depth below zero up to t = 20, and what it took."""
+    one, found = solver(method, tolerance=1e-6, each_step=lambda t, y: 1 - y[1] - depth), []
+    while one.run(20.0) == EVENT:
+        found.append(one.now.instant)
+        past = found[-1] + 2 * acos(1 - depth) + 0.1
+        one.restart(past, harmonic(past))
+    return found, one.now
+
+
 @pytest.mark.parametrize("depth", [1e-1, 1e-3, 1e-5])
-def test_every_dip_inside_a_step_is_found(measure, method, depth):
+def test_every_dip_inside_a_step_is_found(solver, method, depth):
     """g = 1 + sin t - depth falls below zero for 2 sqrt(2 depth) s around each 3 pi / 2."""
-    found = measure("dip", method, depth)["falls"]
+    found, _ = dips(solver, method, depth)
     first = pi + asin(1 - depth)
     expected = [first + 2 * pi * k for k in range(3)]
     assert len(found) == 3
@@ -18,71 +29,89 @@ def test_every_dip_inside_a_step_is_found(measure, method, depth):
         within(absolute_error(t, exact), 2e-4 / sqrt(depth) * 0.1 + 1e-5, "instant, s")
 
 
-def test_of_a_dip_however_brief_the_first_instant_is_found(measure, method):
+def test_of_a_dip_however_brief_the_first_instant_is_found(solver, method):
     """A hundred parabolas that are below zero for 0.1 s down to 1e-8 s of a second."""
-    found = measure("dips", method, 0.05)
-    assert found["worst"] < 1e-5  # five digits of the width, down to the last that the time has
-    assert found["roots"] < 60 * 100  # a halved step costs two values, and at most 48 are spent between two extremes
+    roots = 0
+    for i in range(100):
+        centre, half = (0.5 + 0.6180339887 * i) % 0.8 + 0.1, 0.05 * 10 ** (-0.07 * i)
+        one = solver(method, "clock", each_step=lambda t, y, c=centre, w=half: (t - c) ** 2 - w**2)
+        assert one.run(1.0) == EVENT
+        # five digits of the width, down to the last that the time has
+        within(abs(one.now.instant - (centre - half)) / half, 1e-5, "error over half the width")
+        roots += one.now.roots
+    assert roots < 60 * 100  # a halved step costs two values, and at most 48 are spent between two extremes
 
 
-def test_a_function_that_comes_near_zero_and_turns_is_no_event(measure, method):
-    assert measure("dip", method, -1e-4)["falls"] == []
+def test_a_function_that_comes_near_zero_and_turns_is_no_event(solver, method):
+    assert dips(solver, method, -1e-4)[0] == []
 
 
-def test_the_work_of_the_search_is_bounded(measure, method):
-    run = measure("dip", method, 1e-5)
-    within(run["roots"] / run["steps"], 100, "roots")
+def test_the_work_of_the_search_is_bounded(solver, method):
+    _, now = dips(solver, method, 1e-5)
+    within(now.roots / now.steps, 100, "roots")
 
 
-def test_where_no_parabola_tells_the_search_of_one_step_gives_up_in_time(measure):
-    run = measure("one_step", "runge_kutta", 0)
-    assert not run["event"]
-    within(run["roots"], 69, "values in one step")
+def test_where_no_parabola_tells_the_search_of_one_step_gives_up_in_time(solver):
+    one = solver("runge_kutta", "clock", each_step=lambda t, y: 1.001 + sin(777 * t))
+    assert one.step() == STEPPED
+    within(one.now.roots, 69, "values in one step")
 
 
-def test_a_fall_after_the_step_is_none_of_the_step(measure):
-    run = measure("one_step", "runge_kutta", 1)
-    assert (run["event"], run["until"]) == (0, 1)
+def test_a_fall_after_the_step_is_none_of_the_step(solver):
+    one = solver("runge_kutta", "clock", each_step=lambda t, y: (t - 1.3) ** 2 - 0.01)
+    assert (one.step(), one.now.known) == (STEPPED, 1)
+
+
+def double_dip(solver, method, depth):
+    """g = (t - 0.3)^2 (t - 0.7)^2 - depth, in a step of 1 s whose extremes are told."""
+    one = solver(method, "clock", by_margin=lambda t, y: ((t - 0.3) * (t - 0.7)) ** 2 - depth, extremes=(0.3, 0.5, 0.7))
+    return one.run(2.0), one.now
 
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-4, 1e-5, 1e-8])
-def test_of_two_dips_between_bends_the_first_is_found(measure, method, depth):
-    """g = (t - 0.3)^2 (t - 0.7)^2 - depth, in a step of 1 s whose extremes are told."""
-    end = measure("double_dip", method, depth, 1.0)
-    assert end["event"] == 2
+def test_of_two_dips_between_bends_the_first_is_found(solver, method, depth):
+    outcome, now = double_dip(solver, method, depth)
+    assert (outcome, now.event) == (EVENT, 2)
     # The first root: (t - 0.3) (0.7 - t) = -sqrt(depth).
-    within(absolute_error(end["time"], 0.5 - sqrt(0.04 + sqrt(depth))), 64 * EPSILON, "time")
+    within(absolute_error(now.instant, 0.5 - sqrt(0.04 + sqrt(depth))), 64 * EPSILON, "time")
 
 
-def test_a_function_that_falls_to_a_twentieth_of_its_range_is_looked_at_again(measure):
-    """Three samples lie on a straight line above zero."""
-    assert measure("dip_beside_a_fall")["event"]
+def test_above_zero_two_dips_end_nothing(solver, method):
+    assert double_dip(solver, method, -1e-8)[0] == STEPPED
+
+
+def test_a_function_that_falls_to_a_twentieth_of_its_range_is_looked_at_again(solver):
+    """Three samples lie on a straight line above zero; around 0.75 it dips below."""
+    one = solver("runge_kutta", "clock", each_step=lambda t, y: 1 - 0.95 * t - max(0, 0.4 - 20 * (t - 0.75) ** 2))
+    assert one.run(1.0) == EVENT
 
 
 @pytest.mark.parametrize("depth", [1e-2, 1e-6, 1e-10])
-def test_each_piece_between_bends_is_searched_by_itself(measure, method, depth):
-    """Over both pieces together three samples show no dip."""
-    found = measure("later_piece", method, depth)
-    assert found["event"]
-    assert found["time"] == pytest.approx(0.7 - sqrt(depth) / 5, abs=1e-9)
-
-
-def test_above_zero_two_dips_end_nothing(measure, method):
-    assert not measure("double_dip", method, -1e-8, 1.0)["event"]
+def test_each_piece_between_bends_is_searched_by_itself(solver, method, depth):
+    """g = 1 up to a bend at 0.5 s, then a parabola: over both pieces together three samples show no dip."""
+    one = solver(
+        method, "clock", each_step=lambda t, y: 1 if t < 0.5 else 25 * (t - 0.7) ** 2 - depth, extremes=(0.5,)
+    )  # fmt: skip
+    assert one.run(1.0) == EVENT
+    assert one.now.instant == pytest.approx(0.7 - sqrt(depth) / 5, abs=1e-9)
 
 
 @pytest.mark.parametrize("last", [0.5, 1e-2, 1e-3, 1e-5])
-def test_a_release_with_rate_zero_is_no_event_but_the_fall_after_it_is(measure, method, last):
+def test_a_release_with_rate_zero_is_no_event_but_the_fall_after_it_is(solver, method, last):
     """g = t^2 (last - t): zero with zero rate at the start, and down through zero at `last`."""
-    found = measure("release", method, last)
-    assert found["event"]
-    within(relative_error(found["time"], last), 2e-12, "time")
+    one = solver(method, "clock", each_step=lambda t, y: y[0] ** 2 * (last - y[0]))
+    assert one.run(10 * last) == EVENT
+    within(relative_error(one.now.instant, last), 2e-12, "time")
 
 
-def test_a_bouncing_ball_bounces_when_it_should(measure, method):
-    keeps, g = 0.8, 9.81
-    fall = sqrt(2 / g)
+def test_a_bouncing_ball_bounces_when_it_should(solver, method):
+    """Dropped from 1 m, it keeps a share of its speed."""
+    keeps, fall, found = 0.8, sqrt(2 / 9.81), []
+    ball = solver(method, "falling", each_step=lambda t, y: y[0])
+    for _ in range(10):
+        assert ball.run(100.0) == EVENT
+        found.append(ball.now.instant)
+        ball.restart(found[-1], (0.0, -keeps * ball.read(found[-1])[1]))
     expected = [fall + 2 * fall * sum(keeps**k for k in range(1, n + 1)) for n in range(10)]
-    run = measure("bounces", method, keeps)
-    within(absolute_error(run["times"], expected), 1e-8, "times")
-    assert run["restarts"] == 10
+    within(absolute_error(found, expected), 1e-8, "times")
+    assert ball.now.restarts == 10

@@ -1,75 +1,114 @@
 """Steps and dense output of the solver alone: order, accuracy, grids, stops, failures."""
 
-from math import log2
+from math import hypot, inf, log2
 
 import numpy as np
 import pytest
+from solving import FAILED, harmonic, vector
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
 
-def test_halving_the_step_shows_order_8_at_the_ends_and_7_inside(measure):
-    coarse, fine = (measure("order", "runge_kutta", h) for h in (0.4, 0.2))
-    within(abs(log2(coarse["at_ends"] / fine["at_ends"]) - 8.3), 0.7, "at_ends")
-    within(abs(log2(coarse["inside"] / fine["inside"]) - 8.2), 0.8, "inside")  # local order 8
+def errors_of_steps(solver, h):
+    """Of Runge-Kutta with steps of h: largest errors at their ends, and inside them."""
+    one, at_ends, inside = solver("runge_kutta", tolerance=1e20, longest_step=h), [], []
+    while one.now.known < 4:
+        one.step()
+        begin, end = one.now[:2]
+        at_ends.append(one.read(end)[0] - np.cos(end))
+        inside += [one.read(t)[0] - np.cos(t) for t in begin + np.array([0.2, 0.5, 0.7]) * (end - begin)]
+    return np.abs(at_ends).max(), np.abs(inside).max()
 
 
-def test_the_error_of_a_harmonic_oscillator_stays_within_the_tolerance(measure, method):
+def test_halving_the_step_shows_order_8_at_the_ends_and_7_inside(solver):
+    coarse, fine = (errors_of_steps(solver, h) for h in (0.4, 0.2))
+    within(abs(log2(coarse[0] / fine[0]) - 8.3), 0.7, "at_ends")
+    within(abs(log2(coarse[1] / fine[1]) - 8.2), 0.8, "inside")  # local order 8
+
+
+def accuracy(solver, method, tolerance):
+    """Largest error of the oscillator over 20 s, read at 1000 points; and what it took."""
+    one, error = solver(method, tolerance=tolerance), 0.0
+    for t in np.arange(1, 1001) * 0.02:
+        one.run(t)
+        error = max(error, hypot(*(one.read(t) - harmonic(t))))
+    return error, one.now
+
+
+def test_the_error_of_a_harmonic_oscillator_stays_within_the_tolerance(solver, method):
     tolerance = 1e-8
-    loose, tight = (measure("accuracy", method, t, 20.0) for t in (1e-4, tolerance))
-    within(tight["error"] / tolerance, 5, "error")
-    beyond(loose["error"] / tight["error"], 90, "error")
-    assert loose["steps"] < tight["steps"]
+    (loose, few), (tight, many) = (accuracy(solver, method, t) for t in (1e-4, tolerance))
+    within(tight / tolerance, 5, "error")
+    beyond(loose / tight, 90, "error")
+    assert few.steps < many.steps
 
 
-def test_the_reading_grid_changes_no_bit_and_no_count(measure, method):
-    coarse, fine = (measure("grid", method, points) for points in (1, 1000))
-    assert coarse == fine
+def test_the_reading_grid_changes_no_bit_and_no_count(solver, method):
+    coarse, fine = (solver(method, each_step=lambda t, y: y[0] + 2) for _ in range(2))
+    for one, points in ((coarse, 1), (fine, 1000)):
+        for i in range(1, points + 1):
+            one.run(20 * i / points)
+            one.read(20 * i / points)
+    assert (coarse.now, coarse.read(20.0)) == (fine.now, fine.read(20.0))
 
 
-def test_other_tolerances_change_the_counts_that_grids_do_not(measure, method):
-    assert measure("accuracy", method, 1e-6, 20.0)["rhs"] != measure("accuracy", method, 1e-8, 20.0)["rhs"]
+def test_other_tolerances_change_the_counts_that_grids_do_not(solver, method):
+    assert accuracy(solver, method, 1e-6)[1].rhs != accuracy(solver, method, 1e-8)[1].rhs
 
 
 @pytest.mark.parametrize("gap", [1e-1 / 3, 1e-3, 1e-6, 1e-9, 1e-12, 1e-13, 1e-15])
-def test_a_step_cut_at_any_instant_leaves_the_error_within_the_tolerance(measure, method, gap):
-    cut = measure("cuts", method, gap)
-    assert cut["exact"]
+def test_a_step_cut_at_any_instant_leaves_the_error_within_the_tolerance(solver, method, gap):
+    """Over 20 s, cut every 0.1 s and again by the gap later."""
+    one = solver(method)
+    for cut in np.arange(1, 201) * 0.1:
+        for t in (cut, cut + gap):
+            while one.now.known < t * (1 - 64 * EPSILON):
+                one.stop_before(t)
+                assert one.step() == 0, one.failure
+            within(abs(one.now.known - t), 64 * EPSILON * t, "end of the step, s")
+            within(hypot(*(one.read(t) - harmonic(t))), 10e-8, "error")
     stops = 400 if gap > 1e-12 else 200  # closer instants are the same one
-    assert method == "runge_kutta" or cut["restarts"] >= stops - 1  # a history over nodes this close is dropped
-    within(cut["error"], 10e-8, "error")
+    assert method == "runge_kutta" or one.now.restarts >= stops - 1  # a history over nodes this close is dropped
 
 
-def test_after_a_change_runge_kutta_steps_no_further_than_the_last_interval_and_then_remembers(measure):
-    sizes = measure("first_step", "runge_kutta", 0.01)
-    within(relative_error(sizes["limited"], 0.01), 128 * EPSILON, "limited")
-    beyond(sizes["next"] / sizes["free"], 0.9, "next")
-    assert sizes["rhs"] == 12  # what only its dense output needs is left out
+def test_after_a_change_runge_kutta_steps_no_further_than_the_last_interval_and_then_remembers(solver):
+    one = solver("runge_kutta", each_step=lambda t, y: y[0] + 2)
+    one.run(inf, 5)
+    before = one.now
+    one.restart(before.known, one.read(before.known))
+    one.limit_first_step(0.01)
+    one.step()
+    limited = one.now
+    one.step()
+    within(relative_error(limited.known - limited.begin, 0.01), 128 * EPSILON, "limited")
+    beyond((one.now.known - one.now.begin) / (before.known - before.begin), 0.9, "next")
+    assert limited.rhs - before.rhs == 12  # what only its dense output needs is left out
 
 
 @pytest.mark.parametrize("states", [3, 8, 12])
-def test_the_vector_does_what_sundials_asks_of_it_and_its_padding_stays_zero(measure, states):
-    run = measure("vector", "adams", states)
+def test_the_vector_does_what_sundials_asks_of_it_and_its_padding_stays_zero(library, states):
+    results, largest, norm, fused = vector(library, states)
     x, y = np.arange(states) - 1.25, np.arange(states) + 2.0
-    asked = {"const": 0 * x + 3, "sum": 2 * x - 3 * y, "product": x * y, "quotient": x / y}
-    asked |= {"scaled": -2 * x, "abs": abs(x), "inverse": 1 / x, "shifted": x + 0.5}
-    for name, want in asked.items():
-        assert run[name] == [*want, *[0] * (len(run[name]) - states)], name
-    assert run["largest"] == abs(x).max() and run["fused"]
-    within(relative_error(run["norm"], np.sqrt(((x * y) ** 2).mean())), 64 * EPSILON, "norm")
+    asked = (0 * x + 3, 2 * x - 3 * y, x * y, x / y, -2 * x, abs(x), 1 / x, x + 0.5)
+    for result, want in zip(results, asked, strict=True):
+        assert result.tolist() == [*want, *[0] * (len(result) - states)]
+    assert largest == abs(x).max() and fused
+    within(relative_error(norm, np.sqrt(((x * y) ** 2).mean())), 64 * EPSILON, "norm")
 
 
-@pytest.mark.parametrize("kind", [0, 1], ids=["a solution that ends", "rates that end"])
-def test_a_solution_that_cannot_go_on_fails_with_a_sentence_where_it_ends(measure, method, kind):
-    end = measure("failure", method, kind)
-    assert end["failed"]
-    within(absolute_error(end["until"], 1), 4e-8, "until")
-    assert len(end["why"].split()) > 3
+@pytest.mark.parametrize("problem", ["explosive", "ending"])
+def test_a_solution_that_cannot_go_on_fails_with_a_sentence_where_it_ends(solver, method, problem):
+    one = solver(method, problem)
+    assert one.run(2.0, 100_000) == FAILED
+    within(absolute_error(one.now.known, 1), 4e-8, "until")
+    assert len(one.failure.split()) > 3
 
 
-def test_bdf_solves_a_stiff_problem_in_a_hundredth_of_the_steps_of_an_explicit_method(measure):
-    stiff, explicit = (measure("stiff", name, 1000.0, 100.0) for name in ("bdf", "runge_kutta"))
-    within(absolute_error(stiff["y"], explicit["y"]), 4e-8, "state")
-    assert 100 * stiff["steps"] < explicit["steps"]
-    assert stiff["jacobians"] > 0
+def test_bdf_solves_a_stiff_problem_in_a_hundredth_of_the_steps_of_an_explicit_method(solver):
+    stiff, explicit = (solver(name, "stiff", 1000.0, 1e-7, 1000.0) for name in ("bdf", "runge_kutta"))
+    for one in (stiff, explicit):
+        one.run(100.0, 200_000)
+    within(absolute_error(stiff.read(100.0)[0], explicit.read(100.0)[0]), 4e-8, "state")
+    assert 100 * stiff.now.steps < explicit.now.steps
+    assert stiff.now.jacobians > 0
     # An evaluation for each column of each difference quotient, besides those of the steps.
-    assert stiff["rhs"] >= stiff["steps"] + 8 * stiff["jacobians"]
+    assert stiff.now.rhs >= stiff.now.steps + 8 * stiff.now.jacobians

@@ -5,13 +5,12 @@ multiple of EPSILON times the size of the terms that are rounded: 64 * EPSILON i
 size one, and needs no further reason.
 """
 
-from __future__ import annotations
-
 import os
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import pytest
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 EPSILON = float(np.finfo(float).eps)  # the relative distance of neighbouring doubles, 2.2e-16
 
@@ -40,6 +39,11 @@ def relative_error(found: ArrayLike, expected: ArrayLike) -> float:
     """The largest difference over the size of what is expected there; 0 where both are zero."""
     difference, size = np.abs(np.subtract(found, expected)), np.abs(expected)
     return float(np.max(np.where(difference == 0, 0.0, difference / np.where(size == 0, np.finfo(float).tiny, size))))
+
+
+def range_error(found: Mapping[str, NDArray], expected: Mapping[str, NDArray], names: Iterable[str]) -> float:
+    """The largest error of the columns, each relative to its range."""
+    return max(float(np.abs(found[name] - expected[name]).max() / np.ptp(expected[name])) for name in names)
 
 
 def slack(side: str, value: float, bound: float) -> float:

@@ -4,8 +4,6 @@ Symbols of the paper, SI. Carrier axes e1 (line of nodes), e2 (up the slope), e3
 omega_2 = psi_dot sin(theta), omega_3 = omega_z; R = r_0 + r is the height of O when upright.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import pairwise
 from math import cos, exp, sin, sqrt

@@ -4,12 +4,11 @@ Names, frames and units are those of modelDescription.xml, where the value refer
 FMU2Slave, whose ctypes signatures it uses; it returns the status where fmpy would raise.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from copy import copy
 from ctypes import byref, c_double, c_int, c_size_t, c_uint, create_string_buffer
-from typing import Any, NamedTuple
+from math import comb, factorial
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2FMUstate
@@ -31,10 +30,22 @@ Value = float | str | bool
 Values = dict[str, Value]
 
 
+def shifted(coefficients: Sequence[float], by: float) -> list[float]:
+    """The same polynomial about another origin: four coefficients."""
+    c = [*coefficients, 0.0, 0.0, 0.0, 0.0][:4]
+    return [sum(comb(n, k) * c[n] * by ** (n - k) for n in range(k, 4)) for k in range(4)]
+
+
 class Message(NamedTuple):
     status: int
     category: str
     text: str
+
+
+class State(bytes):
+    """A serialized state, and the time of the instance that it was taken of."""
+
+    time = 0.0
 
 
 class FMU2Wheel(FMU2Slave):
@@ -53,14 +64,14 @@ class FMU2Wheel(FMU2Slave):
         self.on_message: Callable[[Message], None] | None = None
         self.time = 0.0
 
-    def new(self, logging: bool = False, name: str = "wheel") -> FMU2Wheel:
+    def new(self, logging: bool = False, name: str = "wheel") -> Self:
         """An instance, instantiated; fmpy looks up the functions once, for all instances."""
         instance = copy(self)
         instance.instanceName, instance.messages = name, []
         instance.instantiate(callbacks=instance.own_callbacks(), loggingOn=logging)
         return instance
 
-    def __enter__(self) -> FMU2Wheel:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -118,6 +129,11 @@ class FMU2Wheel(FMU2Slave):
             if worst > WARNING:
                 break
         return worst
+
+    def initializing(self, **values: Value) -> Self:
+        """From instantiated into initialization mode, all accepted; returns itself."""
+        assert (self.set(**values), self.setupExperiment(), self.enterInitializationMode()) == (OK, OK, OK)
+        return self
 
     def c_type(self, name: str) -> tuple[str, type]:
         return C_TYPES.get(self.variables[name].type, ("Integer", c_int))
@@ -188,6 +204,30 @@ class FMU2Wheel(FMU2Slave):
         numbers = self.getInteger([self.references[name] for name in self.integers])
         return self.read(self.reals) + bytes((c_int * len(numbers))(*numbers))
 
+    def put(self, **values: Value) -> Self:
+        """Values by name, all accepted; returns itself."""
+        assert self.set(**values) == OK, self.messages
+        return self
+
+    def give(self, inputs: dict[str, Sequence[float]], since: float = 0.0) -> Self:
+        """Inputs as polynomials, coefficients of 1, t, t^2, t^3, `since` seconds after their origin; returns itself."""
+        table = [shifted(coefficients, since) for coefficients in inputs.values()]
+        self.put(**{name: row[0] for name, row in zip(inputs, table, strict=True)})
+        orders = [[factorial(k) * row[k] for row in table] for k in (1, 2, 3)]
+        assert self.set_input_derivatives([*inputs], orders) == OK
+        return self
+
+    def by(self, h: float) -> Self:
+        """A step of h, accepted; returns itself."""
+        assert self.step(h) == OK, self.messages
+        return self
+
+    def to(self, *times: float) -> Self:
+        """Steps to each of the times, all accepted; returns itself."""
+        for t in times:
+            assert self.step_to(t) == OK, self.messages
+        return self
+
     def step(self, h: float) -> int:
         status = self.fmi2DoStep(self.component, self.time, h, 0)
         if status == OK:
@@ -203,28 +243,27 @@ class FMU2Wheel(FMU2Slave):
 
     def run(self, times: Iterable[float]) -> list[bytes]:
         """The bits at each of the times."""
-        bits = []
-        for t in times:
-            assert self.step_to(t) == OK, self.messages
-            bits.append(self.bits())
-        return bits
+        return [self.to(t).bits() for t in times]
 
     def snapshot(self) -> fmi2FMUstate:
         state = fmi2FMUstate()
         assert self.fmi2GetFMUstate(self.component, byref(state)) == OK
         return state
 
-    def serialized(self) -> bytes:
+    def serialized(self) -> State:
         """The present state as bytes."""
         state, size = self.snapshot(), c_size_t()
         assert self.fmi2SerializedFMUstateSize(self.component, state, byref(size)) == OK
         blob = create_string_buffer(size.value)
         assert self.fmi2SerializeFMUstate(self.component, state, blob, size) == OK
         assert self.fmi2FreeFMUstate(self.component, byref(state)) == OK
-        return blob.raw
+        taken = State(blob.raw)
+        taken.time = self.time
+        return taken
 
     def restore(self, blob: bytes) -> int:
-        """Puts the instance into a serialized state; the status of reading the bytes, or else of setting the state."""
+        """Puts the instance into a serialized state, and its time to that of the state where that is known; the status
+        of reading the bytes, or else of setting the state."""
         state = fmi2FMUstate()
         status = self.fmi2DeSerializeFMUstate(self.component, create_string_buffer(blob, len(blob)), len(blob), state)
         assert bool(state) == (status == OK)
@@ -232,7 +271,13 @@ class FMU2Wheel(FMU2Slave):
             return status
         status = self.fmi2SetFMUstate(self.component, state)
         self.fmi2FreeFMUstate(self.component, byref(state))
+        self.time = getattr(blob, "time", self.time)
         return status
+
+    def back(self, blob: bytes) -> Self:
+        """In a serialized state, accepted; returns itself."""
+        assert self.restore(blob) == OK, self.messages
+        return self
 
     def status(self, kind: int) -> Any:
         """fmi2GetStatus, fmi2GetRealStatus or fmi2GetBooleanStatus, whichever answers this kind."""

@@ -3,8 +3,6 @@
 Names, order, frames and units are those of wheel_equations.h.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from ctypes import CFUNCTYPE, Structure, c_void_p, cast

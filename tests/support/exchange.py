@@ -4,8 +4,6 @@ The solver is not ours and knows nothing of the wheel: it asks for derivatives a
 output of each step for the first sign change, and hands the state at that instant to the event mode of the FMU. SI.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from ctypes import POINTER, byref, c_double, c_int
 from functools import cache

@@ -1,7 +1,5 @@
 """Fixtures of every folder of tests: the built FMU and its instances, the trusted tables."""
 
-from __future__ import annotations
-
 import os
 import resource
 import shutil
@@ -33,7 +31,7 @@ def bounded_memory(request: pytest.FixtureRequest) -> Iterator[None]:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    config.addinivalue_line("markers", "contract: quick tests of the C interface, run under sanitizers too")
+    config.addinivalue_line("markers", "local: neither for a release nor under the sanitizers, needs a local build")
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
@@ -91,9 +89,3 @@ def wheel(library: Library) -> Iterator[Callable[..., FMU2Wheel]]:
     yield make
     for instance in made:
         instance.close()
-
-
-@pytest.fixture(scope="session")
-def reference_events() -> np.ndarray:
-    """The instants, s, of the 37 transitions of the paper's friction scene, from the trusted table."""
-    return read_table("paper_friction_events")["t"][1:]

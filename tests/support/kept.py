@@ -1,7 +1,5 @@
 """What the independent reference has computed is kept in build/reference: it does not depend on the core."""
 
-from __future__ import annotations
-
 import hashlib
 import pickle
 from collections.abc import Callable

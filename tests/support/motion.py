@@ -1,13 +1,12 @@
 """Whole motions of the built FMU: start values and inputs in; columns over time, events, ending and counters out."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from time import perf_counter
+from typing import Self
 
 import numpy as np
 from fmpy import extract, read_model_description
@@ -70,7 +69,7 @@ class Library:
         self.loaded = FMU2Wheel(self.folder, self.description)
 
     @classmethod
-    def unpacked(cls, fmu: Path) -> Library:
+    def unpacked(cls, fmu: Path) -> Self:
         """From a .fmu; `remove` deletes the folder."""
         return cls(extract(str(fmu)))
 

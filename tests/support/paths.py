@@ -1,10 +1,9 @@
 """Where the project and its build are."""
 
-from __future__ import annotations
-
 import fcntl
 import os
 import subprocess
+from ctypes import CDLL
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -13,6 +12,12 @@ ROOT = Path(__file__).resolve().parents[2]
 def build_folder() -> Path:
     """The build under test: WHEEL_BUILD, or that of the preset release."""
     return Path(os.environ.get("WHEEL_BUILD", ROOT / "build" / "release"))
+
+
+def probe(folder: str) -> CDLL:
+    """The shared library of tests/`folder`, made in the build under test."""
+    built = build_target(f"{folder}_probe") / "tests" / folder
+    return CDLL(str(next(built.glob(f"*{folder}_probe.*"))))
 
 
 def build_target(name: str) -> Path:

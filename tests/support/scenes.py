@@ -3,8 +3,6 @@
 Every scene can be given to the FMU (start values, inputs) and to the independent reference (wheel, motion, inputs).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, fields
 from math import pi, sin
 
@@ -101,3 +99,6 @@ KINDS: dict[str, Values] = {
     "adams": {"method": "adams", "s": 0.03},
     "runge_kutta": {"method": "runge_kutta"},
 }
+
+# Every formulation by every method, forced.
+FORCED: list[Values] = [{"formulation": form, "method": method} for form in (2, 3) for method in (1, 2, 3, 4)]

@@ -1,7 +1,5 @@
 """Inputs as cubic polynomials over intervals of time: exact for the FMU and for the reference alike."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from dataclasses import dataclass
 from math import factorial

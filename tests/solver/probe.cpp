@@ -1,0 +1,151 @@
+// One solver and its problem behind a C interface, for ctypes: problems with closed forms, no wheel, no frame. What is
+// watched are functions of Python.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <new>
+
+#include "cvode_vector.hpp"
+#include "solver.hpp"
+
+#define PUBLIC extern "C" __attribute__((visibility("default")))
+
+namespace {
+
+// harmonic: y = (cos t, -sin t) from (1, 0); stiff: van der Pol's with `parameter`; falling: (height, speed) under
+// g = 9.81; clock: y = t; explosive: y' = y^2; ending: y' = 1 up to t = 1, then no number.
+enum Kind : int { harmonic, stiff, falling, clock, explosive, ending };
+using Watch = double (*)(double t, const double* y);
+
+// Weights: 1 / (share tolerance (1 + |y|)).
+struct Setting {
+  Kind kind;
+  solver::Method method;
+  double parameter, tolerance, longest_step, y[2];
+  Watch each_step, by_margin;  // events 1 and 2; null: not watched
+  const double* extremes;
+  int extreme_count;
+};
+
+struct Probe {
+  Setting setting;
+  solver::Solver solver;
+};
+
+const Setting& of(void* owner) { return *static_cast<Setting*>(owner); }
+
+void rates(const Setting& s, double t, const double* y, double* d) {
+  if (s.kind == harmonic) d[0] = y[1], d[1] = -y[0];
+  if (s.kind == stiff) d[0] = y[1], d[1] = s.parameter * (1 - y[0] * y[0]) * y[1] - y[0];
+  if (s.kind == falling) d[0] = y[1], d[1] = -9.81;
+  if (s.kind == clock) d[0] = 1;
+  if (s.kind == explosive) d[0] = y[0] * y[0];
+  if (s.kind == ending) d[0] = t > 1 ? NAN : 1;
+}
+
+int states_of(const Setting& s) { return s.kind <= falling ? 2 : 1; }
+
+double margin(void* owner, int, double t, const double* y) { return of(owner).by_margin ? of(owner).by_margin(t, y) : 1; }
+
+double derivative(void* owner, double t, const double* y, double* y_dot) {
+  rates(of(owner), t, y, y_dot);
+  return std::isfinite(y_dot[0]) ? margin(owner, 0, t, y) : NAN;
+}
+
+void weights(void* owner, double share, const double* y, double* w) {
+  for (int i = 0; i < states_of(of(owner)); ++i) w[i] = 1 / (share * of(owner).tolerance * (1 + std::fabs(y[i])));
+}
+
+double watched(void* owner, int, double t, const double* y) { return of(owner).each_step(t, y); }
+
+int extremes_inside(void* owner, double t_lo, double t_hi, double* instants) {
+  const Setting& s = of(owner);
+  const auto inside = [&](double t) { return t > t_lo && t < t_hi; };
+  return static_cast<int>(std::copy_if(s.extremes, s.extremes + s.extreme_count, instants, inside) - instants);
+}
+
+solver::Problem problem_of(Probe* probe) {
+  Setting& s = probe->setting;
+  solver::Problem p = {};
+  p.states = states_of(s), p.owner = &s, p.derivative = derivative, p.weights = weights;
+  if (s.each_step) p.watch({1, watched, false});
+  if (s.by_margin) p.watch({2, margin, true});
+  p.extremes = s.extreme_count ? extremes_inside : nullptr, p.near = 0.1, p.longest_step = s.longest_step;
+  return p;
+}
+
+}  // namespace
+
+PUBLIC Probe* probe_new(const Setting* setting) { return new (std::nothrow) Probe{*setting, {}}; }
+
+// At t = 0.
+PUBLIC void probe_start(Probe* probe) {
+  probe->solver.start(problem_of(probe), probe->setting.method, 0, probe->setting.y);
+}
+
+PUBLIC void probe_free(Probe* probe) { delete probe; }
+
+// At most so many steps, until t is known or something else than a step happens. 0 stepped, 1 event, 2 failed.
+PUBLIC int probe_run(Probe* probe, double t, long long most) {
+  solver::Outcome outcome = solver::Outcome::stepped;
+  while (!probe->solver.reaches(t) && outcome == solver::Outcome::stepped && most-- > 0) outcome = probe->solver.step();
+  return static_cast<int>(outcome);
+}
+
+PUBLIC void probe_read(const Probe* probe, double t, double* y) { probe->solver.read(t, y); }
+PUBLIC const char* probe_failure(const Probe* probe) { return probe->solver.failure(); }
+PUBLIC void probe_stop_before(Probe* probe, double t) { probe->solver.stop_before(t); }
+PUBLIC void probe_limit_first_step(Probe* probe, double dt) { probe->solver.limit_first_step(dt); }
+
+PUBLIC void probe_restart(Probe* probe, double t, const double* y) {
+  probe->solver.restart(problem_of(probe), probe->setting.method, t, y);
+}
+
+// Begin of the last step, time known, instant and name of the event; steps, evaluations, Jacobians, roots, restarts.
+PUBLIC void probe_progress(const Probe* probe, double now[9]) {
+  const solver::Solver& s = probe->solver;
+  const solver::Counters& n = s.counters();
+  const double times[] = {s.step_start(), s.known_until(), s.event_time()};
+  const long long counts[] = {s.event(), n.steps, n.rhs, n.jacobians, n.roots, n.restarts};
+  std::copy_n(counts, 6, std::copy_n(times, 3, now));
+}
+
+// The history as bytes; their number.
+PUBLIC std::size_t probe_save(const Probe* probe, unsigned char* bytes) {
+  support::Archive archive = bytes ? support::Archive::writing(bytes) : support::Archive::counting();
+  probe->solver.save_history(archive);
+  return archive.bytes();
+}
+
+PUBLIC bool probe_restore(Probe* probe, const unsigned char* bytes, std::size_t size) {
+  support::Archive archive = support::Archive::reading(bytes, size);
+  return probe->solver.restore_history(problem_of(probe), archive);
+}
+
+// The vector's operations by SUNDIALS's public interface, on x_i = i - 1.25 and y_i = 2 + i: all entries of eight
+// results, those beyond `states` too, then the largest |x|, the norm, and whether the fused operations are there. Some
+// of them SUNDIALS demands and this wheel never reaches. Returns the width.
+PUBLIC int probe_vector(int states, double* out) {
+  SUNContext context;
+  SUNContext_Create(SUN_COMM_NULL, &context);
+  N_Vector x = solver::make_vector(states, context), y = N_VClone(x), z = N_VClone(x);
+  const int width = solver::width_of(states);
+  for (int i = 0; i < states; ++i) solver::data(x)[i] = i - 1.25, solver::data(y)[i] = 2 + i;
+  const auto show = [&] {
+    out = std::copy_n(solver::data(z), width, out);
+    std::memset(solver::data(z), 0, static_cast<std::size_t>(states) * sizeof(double));
+  };
+  N_VConst(3, z), show();
+  N_VLinearSum(2, x, -3, y, z), show();
+  N_VProd(x, y, z), show();
+  N_VDiv(x, y, z), show();
+  N_VScale(-2, x, z), show();
+  N_VAbs(x, z), show();
+  N_VInv(x, z), show();
+  N_VAddConst(x, 0.5, z), show();
+  out[0] = N_VMaxNorm(x), out[1] = N_VWrmsNorm(x, y);
+  out[2] = x->ops->nvlinearcombination && x->ops->nvscaleaddmulti && x->ops->nvscalevectorarray;
+  for (N_Vector v : {x, y, z}) N_VDestroy(v);
+  SUNContext_Free(&context);
+  return width;
+}
