@@ -123,6 +123,7 @@ def forged(w, blob: bytes, **changes: int | float) -> bytes:
 
 CREATED, INITIALIZING, FAULTY, INITIAL, AT_START, STEPPING, UNFOLDED, EVENT_MODE, CONTINUOUS_TIME, ENDED = range(10)
 SPIN_CHANGES, LOST_GRIP, LOST_CONTACT, FELL_FLAT, EVENTS = range(4, 9)  # of the list in wheel/run.hpp
+PASSING, STICKING = 2, 3
 
 
 def test_a_phase_that_no_instance_can_have_been_in_is_refused(wheel):
@@ -203,3 +204,16 @@ def test_an_infinite_stop_time_is_none(wheel):
     assert (w.enterInitializationMode(), w.exitInitializationMode(), w.step(2.0)) == (OK, OK, OK)
     assert wheel().back(w.serialized()).bits() == w.bits()
     assert wheel().start(stop=1.0).step(2.0) == ERROR
+
+
+@pytest.mark.parametrize("method", ["adams", "bdf", "runge_kutta"])
+def test_a_place_in_a_layer_is_refused_where_the_method_was_chosen(wheel, method):
+    law = {"friction_law": "regularized", "omega_s": 1e-6, "s": 0.03}
+    chosen, automatic = (wheel(logging=True).start(method=m, **law) for m in (method, "automatic"))
+    for w in (chosen, automatic):
+        assert w.step(0.1) == OK
+        assert w.restore(w.serialized()) == OK
+    for layer in (PASSING, STICKING):
+        assert chosen.restore(forged(chosen, chosen.serialized(), layer=layer)) == ERROR
+        assert "the law of friction does not fit" in chosen.sentences[-1]
+    assert words_of(automatic.serialized())[place_of(automatic, "layer")] != 0  # the partner

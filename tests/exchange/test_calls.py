@@ -18,6 +18,7 @@ from support.exchange import DERIVATIVES, INDICATORS, STATES, FMU2Exchange, Run,
 from support.motion import Library
 
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "slope": 0.2, "slope_direction": 0.7, "psi_dot_start": 0.5, "F_X": 3.0, "M_2": 0.4}
+WEIGHT = 20 * 9.81  # N
 ODD = np.array([0.1, -0.2, 0.3, 1.1, 0.7, 0.9, 1 / 3, -1.7])  # a state off every symmetry
 
 
@@ -270,6 +271,14 @@ def test_a_wheel_off_the_ground_at_the_start_is_a_fault_of_initialization(librar
     wheel.close()
 
 
+def test_a_wheel_off_the_ground_at_the_start_is_taken_where_the_ground_may_pull(library: Library) -> None:
+    with loaded(library).new(logging=True) as wheel:
+        assert wheel.set(F_Z=500.0, theta_start=np.pi / 2, phi_dot_start=0.0, keep_contact=True) == OK
+        assert wheel.initialise() == OK
+        assert wheel.get("lambda_3") == pytest.approx([-303.8])
+        assert wheel.decide().valuesOfContinuousStatesChanged and "The ground pulls" in wheel.sentences[-1]
+
+
 def test_the_multibody_form_is_refused_with_a_sentence(library: Library) -> None:
     wheel = loaded(library).new(logging=True)
     assert wheel.set(formulation="multibody") == OK
@@ -322,15 +331,83 @@ def test_wrong_arrays_and_numbers_are_refused_and_change_nothing(library: Librar
         assert (wheel.x() == ODD).all()
 
 
+@pytest.mark.parametrize("slope", [0.0, 0.3, 1.4, 1.57])
+def test_the_third_indicator_is_the_normal_force_over_the_weight_across_the_road(library: Library, slope) -> None:
+    with exchange(library, slope=slope, theta_start=np.pi / 2, phi_dot_start=0.0) as wheel:
+        assert wheel.indicators()[2] == pytest.approx(1, abs=1e-8)
+        assert wheel.set(F_Z=-10.0) == OK  # the partner
+        assert wheel.indicators()[2] == pytest.approx(1 + 10 / (WEIGHT * np.cos(slope)), rel=1e-8)
+
+
+SOON = 1e-7 * (0.35 / 9.81) ** 0.5  # s: an event that lies ahead by less has happened
+
+
+def aimed(wheel: FMU2Exchange, t: float, x: np.ndarray, indicator: int, known: str, ahead: float) -> bool:
+    """Sets an input so that the indicator falls to zero in `ahead` seconds at its present rate, which is a difference
+    along the motion. False where it rises."""
+    d = 1e-5
+    for _ in range(3):
+        sides, rate = [], wheel.derivatives()
+        for step in (d, -d):
+            wheel.place(t, x + step * rate)
+            sides.append(wheel.indicators()[indicator])
+        fall = (sides[1] - sides[0]) / (2 * d)
+        wheel.place(t, x)
+        (value,), here = wheel.get(known), wheel.indicators()[indicator]
+        assert wheel.set(**{known: value + 1.0}) == OK
+        slope = wheel.indicators()[indicator] - here
+        assert wheel.set(**{known: value + (fall * ahead - here) / slope}) == OK
+    return fall > 1e-3
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_a_release_counts_that_lies_ahead_by_less_than_the_wheels_own_tenmillionth(library: Library, share) -> None:
+    """Whatever falls to the release: the capacity with N, or the moment that holds, of either sign."""
+    rng, found = np.random.default_rng(8), {-1.0: 0, 1.0: 0}
+    while min(found.values()) < 6:
+        s, side = 10 ** rng.uniform(-3, -0.5), rng.choice([-1.0, 1.0])
+        with exchange(library, s=s, theta_start=np.pi / 2, phi_dot_start=0.0) as wheel:
+            x = wheel.x()
+            x[3:7] += [rng.uniform(-0.6, 0.6), 0, *rng.uniform(-2, 2, 2)]
+            wheel.place(0.0, x)
+            assert wheel.set(M_3=side * (20 + 200 * s)) == OK  # beyond what holds, on its side of the corner at tau = 0
+            if wheel.get("lambda_3")[0] < 50 or not aimed(wheel, 0.0, x, 0, "M_3", share * SOON):
+                continue
+            tau = wheel.get("tau")[0]
+            assert wheel.get("friction_mode") == [0] and tau * side < 0
+            assert bool(wheel.event().valuesOfContinuousStatesChanged) == (share < 1)
+            assert wheel.get("friction_mode") == [side if share < 1 else 0]
+            found[side] += 1
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+@pytest.mark.parametrize("pulls", [False, True])
+def test_a_change_of_contact_counts_that_lies_ahead_by_less_than_that(library: Library, pulls: bool, share) -> None:
+    rng, found = np.random.default_rng(9), 0
+    while found < 8:
+        with exchange(library, theta_start=np.pi / 2, phi_dot_start=-3.0, keep_contact=True) as wheel:
+            x = wheel.x()
+            x[3:] += [rng.uniform(-0.6, 0.6), 0, *rng.uniform(-2, 2, 3)]
+            wheel.place(0.0, x)
+            if pulls:
+                assert wheel.set(F_Z=1e4) == OK and wheel.event().valuesOfContinuousStatesChanged
+            if not aimed(wheel, 0.0, x, 2, "F_Z", share * SOON):
+                continue
+            assert bool(wheel.event().valuesOfContinuousStatesChanged) == (share < 1)
+            found += 1
+
+
 def test_nominal_values_are_the_scales_of_the_error(library: Library) -> None:
     nominals = (c_double * 8)()
     with exchange(library) as wheel:
         assert wheel.fmi2GetNominalsOfContinuousStates(wheel.component, nominals, 8) == OK
     assert all(value > 0 for value in nominals)
     assert list(nominals)[:5] == pytest.approx([1.05, 1.05, 3, 1, 3])  # m: three heights of the upright wheel; rad
+    with exchange(library, phi_dot_start=-100.0) as wheel:  # a fast wheel hardly tilts
+        assert wheel.fmi2GetNominalsOfContinuousStates(wheel.component, nominals, 8) == OK
+    assert list(nominals)[:5] == pytest.approx([1.05, 1.05, 3, 9.81 / 0.35 / 100**2, 3])
 
 
-WEIGHT = 20 * 9.81  # N
 LOADS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 REACTIONS = ("tau", "lambda_1", "lambda_3", "omega_z_dot", "theta_ddot", "psi_ddot")
 ONE_SIDED = np.array([-49 / 20, 6, -15 / 2, 20 / 3, -15 / 4, 6 / 5, -1 / 6])  # of order 6, at the first of 7 points

@@ -85,3 +85,14 @@ def test_ten_minutes_of_weak_releases_keep_energy_spin_and_cost(library: Library
 def test_the_releases_of_ten_minutes_do_not_depend_on_the_tolerance(library: Library) -> None:
     counts = {run(library, FRICTION, [0.0, 600.0], tolerance).counters["n_events"] for tolerance in (1e-6, 1e-9)}
     assert counts == {3353}
+
+
+@pytest.mark.parametrize("omega_s", [1e-5, 1e-7])
+def test_bdf_has_only_the_time_in_which_omega_z_sticks(library: Library, omega_s: float) -> None:
+    """The paper's wheel sticks for a sixth of its time."""
+    law = {**FRICTION, "friction_law": "regularized", "omega_s": omega_s}
+    steps, of_bdf = (
+        run(library, {**law, "method": method}, regularized.TIMES, 1e-8).counters["n_steps"]
+        for method in ("automatic", "bdf")
+    )
+    within(steps / of_bdf, 0.6, "steps over those of BDF")
