@@ -39,8 +39,10 @@ def test_states_are_read_back_to_the_bit_also_after_a_restored_state(library: Li
         assert other.bits() != wheel.bits()
 
 
-def test_the_derivatives_are_the_variables_of_that_name(library: Library) -> None:
+@pytest.mark.parametrize("theta", [1.1, 1e-4, 1e-5, 1.1e-7, np.pi - 1.1e-7])
+def test_the_derivatives_are_the_variables_of_that_name_to_the_last_tenmillionth_of_a_radian(library, theta) -> None:
     with at_odd(library, s=0.02) as wheel:
+        wheel.place(0.3, np.where(ODD == 1.1, theta, ODD))
         assert wheel.derivatives().tolist() == wheel.get(*DERIVATIVES)
         beyond(np.abs(wheel.derivatives() - wheel.get(*reversed(DERIVATIVES))).max(), 1, "in another order")
 

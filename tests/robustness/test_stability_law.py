@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support.bounds import beyond, within
-from support.driver import Values
+from support.driver import OK, Values
 from support.motion import Library, Run, run
 
 from robustness import regularized
@@ -96,3 +96,20 @@ def test_bdf_has_only_the_time_in_which_omega_z_sticks(library: Library, omega_s
         for method in ("automatic", "bdf")
     )
     within(steps / of_bdf, 0.6, "steps over those of BDF")
+
+
+def steps_to_and_fro(wheel, **law: str | float) -> int:
+    """Of an upright wheel that a moment turns back twenty times."""
+    w = wheel().start(theta_start=np.pi / 2, s=0.01, keep_contact=True, tolerance=1e-8, **law)
+    for k in range(20):
+        w.set(M_3=20.0 * (-1) ** k)
+        assert w.step(0.8 if k else 0.4) == OK
+    return w.get("n_steps")[0]
+
+
+@pytest.mark.parametrize("omega_s", [1e-7, 1e-8])
+def test_after_a_brief_passage_the_steps_are_as_long_as_before_it(wheel, omega_s: float) -> None:
+    law = {"friction_law": "regularized", "omega_s": omega_s}
+    exact = steps_to_and_fro(wheel)
+    within((steps_to_and_fro(wheel, **law) - exact) / 20, 9, "steps of a passage")
+    beyond((steps_to_and_fro(wheel, **law, method="bdf") - exact) / 20, 30, "steps of a passage, BDF")
