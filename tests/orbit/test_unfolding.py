@@ -175,6 +175,27 @@ def test_next_to_a_steady_motion_the_small_nutation_is_kept_or_too_small_to_matt
     within(error(orbit(t), stepped(Wheel(), start, t)), 1e-9, "error")
 
 
+@pytest.mark.parametrize("theta", [0.05, 0.1, 0.35, 1.0])
+@pytest.mark.parametrize("psi_dot", [10.0, -40.0])
+def test_what_is_taken_for_steady_swings_by_a_thousandth_of_the_tolerance_in_angle_and_rates_alike(
+    library: ctypes.CDLL, theta: float, psi_dot: float
+) -> None:
+    """Near flat the rates swing much further than theta."""
+    tolerance, phi_dot = 1e-8, circle_spin(Wheel(), theta, psi_dot) - psi_dot * np.cos(theta)
+
+    def beside(lean: float) -> Start:
+        return Start(theta=theta + lean, psi_dot=psi_dot, phi_dot=phi_dot)
+
+    leans = np.geomspace(1e-13, 1e-9, 200)
+    steady = [Orbit(library, start=beside(lean), tolerance=tolerance).steps == 0 for lean in leans]
+    assert steady[0] and not steady[-1]
+    swing = np.ptp(stepped(Wheel(), beside(leans[steady.index(False) - 1]), np.linspace(0, 2, 400)), axis=0)
+    turn = max((9.81 / 0.35) ** 0.5, abs(psi_dot) * np.sin(theta))
+    most = max(swing[0], swing[2] / turn, swing[3] / turn)
+    within(most / tolerance, 2e-3, "swing of what is taken for steady, tolerances")
+    beyond(most / tolerance, 1e-4, "swing of what is almost not taken for steady, tolerances")
+
+
 @pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-6])
 def test_a_long_nutation_beside_an_unstable_rest_folds(library: ctypes.CDLL, off: float) -> None:
     start = Start(theta=np.pi / 2 + off, phi_dot=-2.5)
