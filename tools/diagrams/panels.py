@@ -8,7 +8,7 @@ import numpy as np
 import textalloc
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.ticker import AutoMinorLocator, MaxNLocator, MultipleLocator, ScalarFormatter
+from matplotlib.ticker import AutoMinorLocator, MaxNLocator, MultipleLocator, NullLocator, ScalarFormatter
 
 from diagrams import style
 from diagrams.scene import Array, Scene
@@ -66,37 +66,41 @@ def draw_path(ax: Axes, scene: Scene) -> None:
     ax.set_aspect("equal", adjustable="datalim")
     if scene.setting("slope") > 0:
         down = scene.setting("slope_direction") + np.pi
+        step = np.array([np.cos(down), np.sin(down)]) * 12.0
         arrow = {"arrowstyle": "<|-", "color": style.GREY, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
-        shift = (22 * np.cos(down), 22 * np.sin(down))
-        ax.annotate("downhill", (0.12, 0.88), shift, "axes fraction", "offset points", arrowprops=arrow,
-                    color=style.GREY, fontsize=style.NOTE, ha="center", va="center")  # fmt: skip
+        ax.annotate("", (0.12, 0.83), step, "axes fraction", "offset points", arrowprops=arrow)
+        ax.text(0.02, 0.93, "downhill", transform=ax.transAxes, color=style.GREY, fontsize=style.NOTE)
 
 
 def draw_ground(ax: Axes, scene: Scene) -> None:
-    """Above, the normal force; below, the coefficient of friction that rolling without slip needs, and mu_max if set."""
+    """Above, the normal force; below, the coefficient of friction that rolling needs, and mu_max if it is set."""
     _time_axis(ax, scene)
     weight = scene.value("m") * scene.value("g")
     _over_time(ax, scene.time, scene["lambda_3"])
     ax.set_ylabel("normal force $N$ [N]", color=style.BLUE)
     _ticks(ax.yaxis, 5)
     _widen(ax.yaxis, scene["lambda_3"], 0.02 * weight)
-    low, high = ax.get_ylim()
-    ax.set_yticks([tick for tick in ax.get_yticks() if low <= tick <= high])
-    ax.set_ylim(low - 1.1 * (high - low), high)
     right = ax.twinx()
     right.spines["right"].set_visible(True)
-    needed, limit = np.clip(np.nan_to_num(scene["mu_required"], nan=MOST), 0.0, MOST), scene.setting("mu_max")
+    needed, limit = needed_friction(scene), scene.setting("mu_max")
     _over_time(right, scene.time, needed, style.VERMILLION)
     right.set_ylabel(r"$\mu$ required", color=style.VERMILLION)
-    high = 1.1 * max(needed.max(), limit, 0.05)
+    right.set_ylim(0.0, 1.1 * max(needed.max(), limit, 0.05))
     _ticks(right.yaxis, 5)
-    right.set_ylim(0.0, high)
-    right.set_yticks([tick for tick in right.get_yticks() if 0 <= tick <= high])
-    right.set_ylim(0.0, 2.1 * high)
+    for side, below, above in ((ax, 1.1, 0.0), (right, 0.0, 1.1)):
+        low, high = side.get_ylim()
+        side.set_yticks([tick for tick in side.get_yticks() if low <= tick <= high])
+        side.yaxis.set_minor_locator(NullLocator())
+        side.set_ylim(low - below * (high - low), high + above * (high - low))
     if limit:
         right.axhline(limit, color=style.VERMILLION, linewidth=0.8, linestyle=(0, (4, 2)))
         right.annotate(r"$\mu_\mathrm{max}$", (0.02, limit), (0, 2), right.get_yaxis_transform(), "offset points",
                        color=style.VERMILLION, fontsize=style.NOTE)  # fmt: skip
+
+
+def needed_friction(scene: Scene) -> Array:
+    """mu_required up to MOST."""
+    return np.clip(np.nan_to_num(scene["mu_required"], nan=MOST), 0.0, MOST)
 
 
 def draw_rates(ax: Axes, scene: Scene) -> None:
@@ -134,7 +138,7 @@ def write_rates(ax: Axes, scene: Scene) -> None:
 
 def write_beside(ax: Axes, texts: dict[tuple[float, float], str], lines: list[Array]) -> None:
     """Texts beside points of data, clear of the lines and of each other; a thin line leads to what is far."""
-    ax.autoscale(False)
+    ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())  # no line moves them any more
     (x, y), (xs, ys) = zip(*texts, strict=True), zip(*(line.T for line in lines), strict=True)
     look = {"textsize": style.NOTE, "textcolor": style.INK, "linecolor": style.GREY, "linewidth": 0.5}
     place = {"min_distance": 0.015, "max_distance": 0.25, "nbr_candidates": 400}
@@ -233,13 +237,14 @@ def _over_time(ax: Axes, time: Array, values: Array, color: str = style.BLUE) ->
 
 def _turns(values: Array) -> int:
     """How often a curve turns, rounding aside."""
-    steps = np.diff(values)
-    return int(np.count_nonzero(np.diff(np.sign(steps[abs(steps) > 1e-6 * np.ptp(values)]))))
+    steps, rounding = np.diff(values), 1e-6 * np.ptp(values) + 1e-9 * abs(values).max() + 1e-12
+    return int(np.count_nonzero(np.diff(np.sign(steps[abs(steps) > rounding]))))
 
 
 def envelope(scene: Scene) -> bool:
     """Whether a curve over time is drawn as its envelope."""
-    return max(_turns(scene[name]) for name in ("X_O", "theta", "lambda_3", "mu_required")) >= SOLID
+    curves = [*(scene[name] for name in ("X_O", "theta", "lambda_3")), needed_friction(scene)]
+    return max(map(_turns, curves)) >= SOLID
 
 
 def _widen(axis: Axis, values: Array, least: float) -> None:

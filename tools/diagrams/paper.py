@@ -3,7 +3,8 @@
 
 Reads free.csv (s = 0) and friction.csv (s > 0), which hold all that was set as columns: titles and captions come from
 there. The paper's two scenes make paper_diagrams, paper_path_and_ground and fig_1 ... fig_6; others make diagrams and
-diagram_NAME_SCENE, and leave those of the paper in place. All as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees beside.
+diagram_NAME_SCENE, and leave those of the paper in place. All as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees
+beside.
 """
 
 import argparse
@@ -16,7 +17,6 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from diagrams import panels, style
 from diagrams.scene import Scene, SceneError, read_scene
@@ -45,18 +45,18 @@ PAPERS = (
 )
 OTHERS = (
     Panel("path", "Path of the contact point", 50.0, panels.draw_path),
-    Panel("ground", r"Normal force $N(t)$, required friction $\mu(t)$", 50.0, panels.draw_ground),
+    Panel("ground", r"$N(t)$ and required $\mu(t)$", 50.0, panels.draw_ground),
 )
 
 
 def unlike_paper(scene: Scene) -> list[str]:
-    """All that was set otherwise than in (27)-(33), which are the start values of the description; s is in the title."""
+    """All that was set otherwise than in (27)-(33), the start values of the description; the title has s."""
     own = {name: scene.value(name) for name in SETTINGS if name != "s"}
     said = [SETTINGS[name].said(value) for name, value in own.items() if abs(value - SETTINGS[name].preset) > 1e-12]
     rows = {"stop_time": scene.time[-1], "output_interval": scene.time[1] - scene.time[0]}
     if scene.ending:
         del rows["stop_time"]
-    said += [v.said(rows[name]) for name, v in RUN.items() if abs(rows.get(name, v.preset) - v.preset) > 1e-9]
+    said += [RUN[name].said(value) for name, value in rows.items() if abs(value - RUN[name].preset) > 1e-9]
     return said + ["r > r_0, the torus intersects itself"] * (own["r"] > own["r_0"])
 
 
@@ -114,6 +114,8 @@ def remarks_of(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
             remarks.append("Inset: the same motion sheared, which opens the narrow bundle.")
     if over_time and panels.envelope(scene):
         remarks.append("Filled: the envelope of a fast nutation.")
+    if panels.draw_ground in [panel.draw for panel in drawn] and panels.needed_friction(scene).max() == panels.MOST:
+        remarks.append(rf"$\mu$ is drawn up to {panels.MOST:g}.")
     return remarks + [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
 
 
@@ -154,30 +156,26 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     head, foot = (9.0 if sheet else 1.0), 3.0 + PITCH * len(lines)
     height = head + foot + sum(panel.height + 17.0 for panel in drawn)
     fig = style.figure_mm(style.PAGE if sheet else style.COLUMN, height)
-    fig.set_layout_engine("constrained", rect=(0, foot / height, 1, 1 - (foot + head) / height), hspace=0.03, wspace=0.04)
+    rect = (0, foot / height, 1, 1 - (foot + head) / height)
+    fig.set_layout_engine("constrained", rect=rect, hspace=0.03, wspace=0.04)
     axes = fig.subplots(len(drawn), len(scenes), squeeze=False, height_ratios=[panel.height for panel in drawn])
-    for row, panel in zip(axes, drawn, strict=True):
-        for ax, scene in zip(row, scenes, strict=True):
-            panel.draw(ax, scene)
-            title = heading(panel, scene, paper) + ("" if sheet else f", {title_of(scene)}")
-            ax.set_title(title, loc="left", fontsize=9)
+    rows = zip(axes, drawn, strict=True)
+    cells = [(ax, panel, scene) for row, panel in rows for ax, scene in zip(row, scenes, strict=True)]
+    for ax, panel, scene in cells:
+        panel.draw(ax, scene)
+        title = heading(panel, scene, paper) + ("" if sheet else f", {title_of(scene)}")
+        ax.set_title(title, loc="left", fontsize=9)
     fig.draw_without_rendering()
-    fig.set_layout_engine("none")
-    write(fig, axes, scenes, drawn)
+    fig.set_layout_engine("none")  # what follows needs the places of the panels
+    for ax, panel, scene in cells:
+        if sheet and panel is drawn[0]:
+            left, title = ax.get_position().x0 * style.PAGE, title_of(scene)
+            style.text_mm(fig, left, height - 6.0, title[0].upper() + title[1:], fontsize=10.5)
+        if panel.draw is panels.draw_rates:
+            panels.write_rates(ax, scene)
     for i, line in enumerate(reversed(lines)):
         style.text_mm(fig, 2.0, 1.8 + PITCH * i, line, fontsize=7.5 if sheet else 7.0)
     return style.save(fig, stem)
-
-
-def write(fig: Figure, axes: np.ndarray, scenes: Sequence[Scene], drawn: Sequence[Panel]) -> None:
-    """What needs the places of the panels: the titles of a sheet's columns, and the texts among the rates."""
-    for ax, scene in zip(axes[0] if len(scenes) > 1 else (), scenes, strict=len(scenes) > 1):
-        title = title_of(scene)
-        fig.text(ax.get_position().x0, 1 - 6.0 * style.MM / fig.get_figheight(), title[0].upper() + title[1:], fontsize=10.5)
-    for row, panel in zip(axes, drawn, strict=True):
-        for ax, scene in zip(row, scenes, strict=True):
-            if panel.draw is panels.draw_rates:
-                panels.write_rates(ax, scene)
 
 
 def draw_all(scenes: Sequence[Scene], out: Path) -> list[Path]:

@@ -1,7 +1,7 @@
 """The arguments of ./scripts/run: checked against modelDescription.xml, or to be read again by what draws the results.
 
 Prints `name value` pairs in SI, one a line: stop_time, output_interval, and start values for `fmpy simulate
---start-values`; an input keeps its start value. `outputs` prints the variables to record, with all that was set, so that
+--start-values`, which an input keeps. `outputs` prints the variables to record, with all that was set, so that
 a figure can say what was run. It needs no package, so that `--help` works before anything is installed.
 """
 
@@ -18,27 +18,6 @@ sys.path.insert(0, str(ROOT / "examples" / "python"))
 from values import DEGREE, Fault, limited, number, suggestion, wheels  # noqa: E402
 
 PAPER_S = 0.03  # m, (29)
-USAGE = """./scripts/run [wheel] [name=value ...]   build, simulate without and with rolling friction, draw the diagrams
-
-  ./scripts/run                             the paper's two scenes
-  ./scripts/run s=0.01 theta_start=60deg    other values; the scene without friction takes them too, but for s
-  ./scripts/run slope=12% m=12kg            units: kg g, m mm cm, s ms, m/s km/h, rad deg, N kN, N.m; % for the slope
-  ./scripts/run M_brake=20                  inputs too; they keep their value
-  ./scripts/run coin stop_time=2            a ready wheel, listed below, and other values
-
-Results go into results/: wheel.html, the motion to play and to turn; the diagrams; free.csv and friction.csv.
-The first run takes about a minute: it installs what is missing of the Debian packages of a C++ build and Python's venv,
-puts Python packages into .venv, and compiles. Among the packages is cargo-web: the pinned source of SUNDIALS, the solver,
-lies in a registry that cargo downloads from.
-
-To start at the speed v, rolling straight towards e1: theta_start=90deg psi_dot_start=0 phi_dot_start=-v/(r_0 + r)
-"""
-AFTER_WHEELS = """
-With a ready wheel, what you do not give follows the paper's in proportion to the radius R = r_0 + r: s is 0.03 m R / 0.35 m,
-phi_dot_start is -2 rad/s sqrt(0.35 m / R), and output_interval is 10 ms, less where R is less.
-
-The values that can be given (SI; docs/variables.md):
-"""
 
 
 class Variable(NamedTuple):
@@ -64,7 +43,7 @@ class Variable(NamedTuple):
             return text
         value = number(self.name, text, self.unit or "1")
         if self.name == "slope" and value < 0:
-            raise Fault("slope must be at least 0: turn the road by slope_direction=180deg to go down where it went up.")
+            raise Fault("slope must be at least 0: slope_direction=180deg turns uphill into downhill.")
         above = self.description.endswith("above 0") or ", above 0;" in self.description
         low, high = float(self.low or "-inf"), float(self.high or "inf")
         limited(self.name, value, self.unit, low, high, above=above)
@@ -106,10 +85,11 @@ def known() -> dict[str, Variable]:
 
 
 def usage() -> str:
+    """The comment of scripts/run, the ready wheels and all names."""
+    comment = (ROOT / "scripts" / "run").read_text(encoding="utf-8").partition("\nset ")[0].splitlines()[1:]
     ready = [f"  {name:20s}{wheel['title']}" for name, wheel in wheels().items()]
     rows = [f"  {v.name:16s}{v.unit:8s}{v.start:>22s}   {v.description}" for v in known().values()]
-    sources = "The ready wheels, with their sources in examples/wheels.json:"
-    return "\n".join([USAGE, sources, *ready, AFTER_WHEELS, *rows])
+    return "\n".join([*(line[2:] for line in comment), "", *ready, "", "The values that can be given:", *rows])
 
 
 def of_wheel(name: str) -> dict[str, str]:
@@ -147,7 +127,7 @@ def values(arguments: list[str]) -> dict[str, str]:
         raise Fault("s must be above 0 here: the scene without friction is drawn beside it anyway.")
     stop, interval = (float(found.get(name, v.start)) for name, v in RUN.items())
     if interval > stop / 2:
-        raise Fault(f"output_interval = {interval:g} s is too long for the {stop:g} s of the run: a curve needs two of it.")
+        raise Fault(f"output_interval = {interval:g} s is too long: at least two have to fit into the {stop:g} s.")
     return found
 
 
@@ -167,12 +147,9 @@ def main() -> int:
             print(usage())
         else:
             print("\n".join(f"{name} {value}" for name, value in values(arguments).items()))
-        sys.stdout.flush()
     except Fault as fault:
         print(f"run: {fault}", file=sys.stderr)
         return 1
-    except BrokenPipeError:  # `--help | head`
-        sys.stderr.close()
     return 0
 
 

@@ -29,6 +29,7 @@ NOTE = 7.5  # points, the size of a note
 COLUMN = 89.0  # mm, one journal column
 PAGE = 183.0  # mm, two journal columns
 
+
 def use_style() -> None:
     """Set the look for all figures made afterwards."""
     mpl.rcdefaults()
