@@ -20,9 +20,8 @@ from matplotlib.axes import Axes
 
 from diagrams import panels, style
 from diagrams.scene import Scene, SceneError, read_scene
-from diagrams.start_values import PAPER_S, RUN, outputs, variables
+from diagrams.start_values import PAPER_S, ROOT, RUN, outputs, variables
 
-ROOT = next(folder for folder in Path(__file__).resolve().parents if (folder / "modelDescription.xml").exists())
 SETTINGS = variables("parameter", "input")
 PITCH = 3.4  # mm from one line of a caption to the next
 

@@ -100,7 +100,7 @@ def of_wheel(name: str) -> dict[str, str]:
     body = wheels()[name]["parameters"]
     scale = (body["r_0"] + body["r"]) / 0.35
     start = {"s": PAPER_S * scale, "phi_dot_start": -2 / math.sqrt(scale)}
-    rows = {"output_interval": float(f"{0.01 * min(1, math.sqrt(scale)):.1g}")}
+    rows = {"output_interval": 0.01 / max(1, round(1 / math.sqrt(scale)))}
     return {n: repr(float(value)) for n, value in (body | start | rows).items()}
 
 
