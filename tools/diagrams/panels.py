@@ -217,8 +217,7 @@ def _draw_inset(ax: Axes, scene: Scene, x: Array, y: Array, stick: Array) -> Non
 
 def _track(ax: Axes, x: Array, y: Array, stick: Array) -> None:
     """A curve that may cross itself: stick phases thick, its start a dot, its end a square."""
-    dense = max(_turns(x), _turns(y)) >= SOLID
-    ax.plot(x, y, color=style.BLUE, **({"linewidth": 0.2, "alpha": 0.4} if dense else {"linewidth": 0.7}))
+    ax.plot(x, y, color=style.BLUE, linewidth=min(0.7, 80 / max(_turns(x), _turns(y), 1)))
     ax.plot(x, np.where(stick, y, np.nan), color=style.VERMILLION, linewidth=1.8, solid_capstyle="butt")
     ax.plot(x[0], y[0], "o", color=style.BLUE, markersize=3.6)
     ax.plot(x[-1], y[-1], "s", color=style.INK, markersize=4, fillstyle="none")
@@ -230,7 +229,7 @@ def _over_time(ax: Axes, time: Array, values: Array, color: str = style.BLUE) ->
     if turns < SOLID:
         ax.plot(time, values, color=color, linewidth=1.0 if turns < DENSE else 0.5)
         return
-    parts = np.array_split(np.arange(len(time)), SOLID)
+    parts = np.array_split(np.arange(len(time)), min(SOLID, turns // 6))  # some swings in each
     edges = np.array([(time[rows].mean(), values[rows].min(), values[rows].max()) for rows in parts]).T
     ax.fill_between(*edges, color=color, alpha=0.35, linewidth=0.5)
 

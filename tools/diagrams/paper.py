@@ -10,7 +10,6 @@ beside.
 import argparse
 import re
 import sys
-import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +22,7 @@ from diagrams.scene import Scene, SceneError, read_scene
 from diagrams.start_values import PAPER_S, ROOT, RUN, outputs, variables
 
 SETTINGS = variables("parameter", "input")
+NO_BREAK = "\u00a0"  # a space at which no line ends
 PITCH = 3.4  # mm from one line of a caption to the next
 
 
@@ -120,23 +120,23 @@ def remarks_of(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
 
 def caption(scenes: Sequence[Scene], drawn: Sequence[Panel], columns: int) -> list[str]:
     """The parameters, all that is not the paper's, and what the marks mean."""
-    lines = filled([f"Torus wheel: {wheel_of(scenes[-1])}.", f"{start_of(scenes[-1])}."], columns)
+    texts = [f"Torus wheel: {wheel_of(scenes[-1])}. {start_of(scenes[-1])}."]
     if other := unlike_paper(scenes[-1]):
-        lines += textwrap.wrap(f"Unlike the paper: {', '.join(other)}.", columns)
+        texts.append(f"Unlike the paper: {', '.join(said.replace(' ', NO_BREAK) for said in other)}.")
     for scene in scenes:
         name = [f"{title_of(scene).split(',')[0].capitalize()}:"] if len(scenes) > 1 else []
         remarks = remarks_of(scene, drawn)
-        lines += filled(name + remarks, columns) if remarks else []
-    return lines
+        texts += [" ".join(name + remarks)] if remarks else []
+    return [line for text in texts for line in wrapped(text, columns)]
 
 
-def filled(sentences: Sequence[str], columns: int) -> list[str]:
-    """As many sentences on a line as have room; a formula is as wide as its letters."""
+def wrapped(text: str, columns: int) -> list[str]:
+    """Lines with as many words as have room; a formula is one word, as wide as its letters."""
     lines = [""]
-    for sentence in sentences:
-        longer = f"{lines[-1]} {sentence}".strip()
-        if len(re.sub(r"\\[a-z]+|[${}_^\\]", "", longer)) > columns and lines[-1]:
-            lines.append(sentence)
+    for word in re.findall(r"(?:\$[^$]*\$|[^ $])+", text):
+        longer = f"{lines[-1]} {word}".strip()
+        if lines[-1] and len(re.sub(r"\\[a-z]+|[${}_^\\]", "", longer)) > columns:
+            lines.append(word)
         else:
             lines[-1] = longer
     return lines
