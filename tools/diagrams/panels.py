@@ -141,7 +141,7 @@ def write_beside(ax: Axes, texts: dict[tuple[float, float], str], lines: list[Ar
     ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())  # no line moves them any more
     (x, y), (xs, ys) = zip(*texts, strict=True), zip(*(line.T for line in lines), strict=True)
     look = {"textsize": style.NOTE, "textcolor": style.INK, "linecolor": style.GREY, "linewidth": 0.5}
-    place = {"min_distance": 0.015, "max_distance": 0.25, "nbr_candidates": 400}
+    place = {"min_distance": 0.015, "max_distance": 0.25, "nbr_candidates": 200}
     _, _, _, leaders = textalloc.allocate(
         ax, x, y, [*texts.values()], x_scatter=x, y_scatter=y, x_lines=xs, y_lines=ys, **look, **place
     )

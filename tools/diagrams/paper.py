@@ -164,7 +164,7 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
         panel.draw(ax, scene)
         title = heading(panel, scene, paper) + ("" if sheet else f", {title_of(scene)}")
         ax.set_title(title, loc="left", fontsize=9)
-    fig.draw_without_rendering()
+    fig.get_layout_engine().execute(fig)
     fig.set_layout_engine("none")  # what follows needs the places of the panels
     for ax, panel, scene in cells:
         if sheet and panel is drawn[0]:
