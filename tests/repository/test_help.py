@@ -19,7 +19,8 @@ OF_VEHICLES = ("vehicles/options.py", "skeleton/describe.py", "balance/balance.p
 VEHICLES = tuple(f"examples/vehicles/{name}" for name in (*OF_VEHICLES, *OF_AXLE_AND_CAR))
 NUMBERING = ("cmake/description/__init__.py", "cmake/description/numbering.py")
 OF_TOOLS = tuple(f"tools/{name}.py" for name in ("diagrams/start_values", "page/options", "reports/options"))
-READERS = (*OF_TOOLS, *STUDY, *VEHICLES, *NUMBERING)
+RUN = ("examples/python/values.py", "examples/wheels.json")
+READERS = (*OF_TOOLS, *RUN, *STUDY, *VEHICLES, *NUMBERING)
 WRONG = {
     **{"build": ("relase",), "documents": ("--chek",), "example": ("car", "m_B=-1"), "fuzz": ("a minute",)},
     **{"lint": ("--fixx",), "page": ("--output",), "report": ("sped",), "run": ("m=-5",), "setup": ("tests",)},
@@ -89,4 +90,9 @@ def test_help_of_run_names_what_it_makes_where_there_is_no_python(bare: Path) ->
 def test_help_lists_every_command(bare: Path) -> None:
     listed = call(bare, "help").stdout.splitlines()
     assert [line.split()[0] for line in listed] == COMMANDS
-    assert all(len(line.split()) > 3 for line in listed)
+    assert all(len(line.split()) > 3 and line.endswith(".") for line in listed)
+
+
+def test_help_may_be_read_in_part(bare: Path) -> None:
+    done = subprocess.run(["bash", "-c", "./scripts/run --help | head -1"], cwd=bare, capture_output=True, text=True)
+    assert done.stdout.count("\n") == 1 and not done.stderr

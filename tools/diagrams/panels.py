@@ -1,179 +1,188 @@
-"""The paper's six diagrams, each drawn into axes that the caller has placed.
+"""The panels of ./scripts/run, each drawn into axes: the paper's three, the path, and what the ground has to give.
 
-Fig. 1-3: no rolling friction; Fig. 4-6: rolling friction, with the transitions of the exact law.
-Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta.
+Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta. Friction and brake leave marks: a band
+per stick phase, a tick at the top for each change of sign of omega_z.
 """
 
 import numpy as np
+import textalloc
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.patches import FancyArrowPatch
-from matplotlib.ticker import AutoMinorLocator, MaxNLocator, MultipleLocator
-from numpy.typing import NDArray
+from matplotlib.ticker import AutoMinorLocator, MaxNLocator, MultipleLocator, NullLocator, ScalarFormatter
 
 from diagrams import style
-from diagrams.labels import Labels, dense, free_corner
 from diagrams.scene import Array, Scene
 
-MARK_STEP = 5  # degrees of theta between the candidates for a mark along the arc of Fig. 3
-MARK_ROOM = np.array([50.0, 10.0])  # points: no second mark within this width and height
+MARK_STEP = 5  # degrees of theta between the candidates for a mark along an arc
+MARK_ROOM = np.array([0.28, 0.06])  # of the axes: no second mark within this width and height
 NARROW = 0.25  # a bundle is narrow, and shown sheared in an inset, if shearing leaves less of its height
-SUBDIVISION = 4  # drawn points per row in Fig. 6
+INSET = (0.39, 0.40)  # width and height in the axes
+SUBDIVISION = 4  # drawn points per row among the rates
+MOST = 2.0  # coefficient of friction that no road has; without a normal force no coefficient would do
+DENSE, SOLID = 60, 200  # turns of a curve over time: from here on a thin line; from here on its envelope
+LEADER = 10.0  # points: from here on a thin line leads from a text to what it names
 PSI_DOT = r"$\dot\psi$"
 PHI_DOT = r"$\dot\varphi$"
 
 
-def draw_position(ax: Axes, scene: Scene, friction: bool) -> None:
+def draw_position(ax: Axes, scene: Scene) -> None:
     """Fig. 1, 4: X_O over time."""
-    _time_axis(ax, scene, friction)
-    ax.plot(scene.time, scene["X_O"], color=style.BLUE)
+    _time_axis(ax, scene)
+    _over_time(ax, scene.time, scene["X_O"])
     ax.set_ylabel(r"position $X_O$ [m]")
-    ax.margins(y=0.06)
-    _widen(ax, "y", scene["X_O"], 1e-4 * scene.value("r_0"))
     _ticks(ax.yaxis, 5)
+    _widen(ax.yaxis, scene["X_O"], 1e-3 * scene.value("r_0"))
 
 
-def draw_tilt(ax: Axes, scene: Scene, friction: bool) -> None:
+def draw_tilt(ax: Axes, scene: Scene) -> None:
     """Fig. 2, 5: theta over time, rad on the left and degrees on the right."""
-    _time_axis(ax, scene, friction)
-    ax.plot(scene.time, scene["theta"], color=style.BLUE)
-    past_upright = scene["theta"].max() > np.pi / 2 - 0.02  # a line at the frame cannot be seen
-    ax.set_ylim(0.0, np.pi if past_upright else np.pi / 2)
+    _time_axis(ax, scene)
+    theta = scene["theta"]
+    _over_time(ax, scene.time, theta)
     ax.set_ylabel(r"angle $\theta$ [rad]")
-    ax.yaxis.set_major_locator(MultipleLocator(0.5))
-    ax.yaxis.set_minor_locator(MultipleLocator(0.25 if past_upright else 0.1))
     degrees = ax.secondary_yaxis("right", functions=(np.degrees, np.radians))
     degrees.set_ylabel(r"$\theta$ [deg]")
-    degrees.yaxis.set_major_locator(MultipleLocator(30 if past_upright else 15))
     degrees.spines["right"].set_visible(True)
+    if np.ptp(theta) < np.pi / 6:
+        _widen(ax.yaxis, theta, 1e-3)
+        for axis in (ax.yaxis, degrees.yaxis):
+            _ticks(axis, 5)
+        return
+    past_upright = theta.max() > np.pi / 2 - 0.02  # a line at the frame cannot be seen
+    ax.set_ylim(0.0, np.pi if past_upright else np.pi / 2)
+    ax.yaxis.set_major_locator(MultipleLocator(0.5))
+    ax.yaxis.set_minor_locator(MultipleLocator(0.25 if past_upright else 0.1))
+    degrees.yaxis.set_major_locator(MultipleLocator(30 if past_upright else 15))
 
 
-def draw_rates(ax: Axes, scene: Scene, friction: bool) -> None:
-    """Fig. 3, 6: phi_dot over psi_dot."""
+def draw_path(ax: Axes, scene: Scene) -> None:
+    """The path of the contact point from above, in one scale."""
+    x, y = scene.smooth(SUBDIVISION, "X_C", "Y_C")
+    _track(ax, x, y, np.zeros(len(x), dtype=bool))
+    ax.set(xlabel="$X$ [m]", ylabel="$Y$ [m]")
+    for axis, name in ((ax.xaxis, "X_C"), (ax.yaxis, "Y_C")):
+        _ticks(axis, 5)
+        _widen(axis, scene[name], 0.1 * scene.value("r_0"))
+    ax.set_aspect("equal", adjustable="datalim")
+    if scene.setting("slope") > 0:
+        down = scene.setting("slope_direction") + np.pi
+        step = np.array([np.cos(down), np.sin(down)]) * 12.0
+        arrow = {"arrowstyle": "<|-", "color": style.GREY, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
+        ax.annotate("", (0.12, 0.83), step, "axes fraction", "offset points", arrowprops=arrow)
+        ax.text(0.02, 0.93, "downhill", transform=ax.transAxes, color=style.GREY, fontsize=style.NOTE)
+
+
+def draw_ground(ax: Axes, scene: Scene) -> None:
+    """Above, the normal force; below, the coefficient of friction that rolling needs, and mu_max if it is set."""
+    _time_axis(ax, scene)
+    weight = scene.value("m") * scene.value("g")
+    _over_time(ax, scene.time, scene["lambda_3"])
+    ax.set_ylabel("normal force $N$ [N]", color=style.BLUE)
+    _ticks(ax.yaxis, 5)
+    _widen(ax.yaxis, scene["lambda_3"], 0.02 * weight)
+    right = ax.twinx()
+    right.spines["right"].set_visible(True)
+    needed, limit = needed_friction(scene), scene.setting("mu_max")
+    _over_time(right, scene.time, needed, style.VERMILLION)
+    right.set_ylabel(r"$\mu$ required", color=style.VERMILLION)
+    right.set_ylim(0.0, 1.1 * max(needed.max(), limit, 0.05))
+    _ticks(right.yaxis, 5)
+    for side, below, above in ((ax, 1.1, 0.0), (right, 0.0, 1.1)):
+        low, high = side.get_ylim()
+        side.set_yticks([tick for tick in side.get_yticks() if low <= tick <= high])
+        side.yaxis.set_minor_locator(NullLocator())
+        side.set_ylim(low - below * (high - low), high + above * (high - low))
+    if limit:
+        right.axhline(limit, color=style.VERMILLION, linewidth=0.8, linestyle=(0, (4, 2)))
+        right.annotate(r"$\mu_\mathrm{max}$", (0.02, limit), (0, 2), right.get_yaxis_transform(), "offset points",
+                       color=style.VERMILLION, fontsize=style.NOTE)  # fmt: skip
+
+
+def needed_friction(scene: Scene) -> Array:
+    """mu_required up to MOST."""
+    return np.clip(np.nan_to_num(scene["mu_required"], nan=MOST), 0.0, MOST)
+
+
+def draw_rates(ax: Axes, scene: Scene) -> None:
+    """Fig. 3, 6: phi_dot over psi_dot; stick phases are thick. What is written into it comes with write_rates."""
     ax.set_xlabel(rf"precession rate {PSI_DOT} [rad/s]")
     ax.set_ylabel(rf"spin rate {PHI_DOT} [rad/s]")
-    for axis in (ax.xaxis, ax.yaxis):
-        _ticks(axis, 5)
-    if friction:
-        _friction_rates(ax, scene)
+    x, y, stick = _rates(scene)
+    if scene.still:
+        ax.plot(x[:1], y[:1], "o", color=style.BLUE, markersize=4.0)
+    elif scene.one_arc:
+        ax.plot(x, y, color=style.BLUE, linewidth=1.1)
     else:
-        _free_arc(ax, scene)
-
-
-def _widen(ax: Axes, name: str, values: Array, least: float) -> None:
-    """Values that differ by rounding alone are a straight line."""
-    if np.ptp(values) < least:
-        middle = float(values.mean())
-        ax.set(**{f"{name}lim": (middle - 50 * least, middle + 50 * least)})
-
-
-def _ticks(axis: Axis, most: int) -> None:
-    axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 4, 5, 10]))
-    axis.set_minor_locator(AutoMinorLocator(2))
-
-
-def _time_axis(ax: Axes, scene: Scene, friction: bool) -> None:
-    """Time in s over the whole scene; with friction, its events behind the curve."""
-    ax.set_xlim(scene.time[0], scene.time[-1])
-    ax.set_xlabel("time $t$ [s]")
-    _ticks(ax.xaxis, 6)
-    if friction:
-        _mark_events(ax, scene)
-
-
-def _mark_events(ax: Axes, scene: Scene) -> None:
-    """A band per stick phase; a tick at the top for each change of sign of omega_z."""
-    for begin, end in scene.stick_phases():
-        ax.axvspan(begin, end, color=style.BAND, linewidth=0, zorder=0)
-    ax.vlines(
-        scene.reversals(),
-        0.955,
-        1.0,
-        transform=ax.get_xaxis_transform(),
-        color=style.VERMILLION,
-        linewidth=0.8,
-        zorder=1,
-    )
-
-
-def still(scene: Scene) -> bool:
-    """Whether the rates keep their values."""
-    return max(np.ptp(scene["psi_dot"]), np.ptp(scene["phi_dot"])) <= 1e-9
-
-
-def one_arc(scene: Scene) -> bool:
-    """Whether the rates are a function of theta, and move."""
-    return scene.value("J_x") == scene.value("J_y") and np.ptp(scene["psi_dot"]) > 1e-9
-
-
-def _free_arc(ax: Axes, scene: Scene) -> None:
-    """The rates depend on theta alone: one arc, run to and fro, with theta written along it.
-
-    All rows are drawn in the order of theta: one clean stroke, and a zigzag if the rates ever
-    left the arc.
-    """
-    if not one_arc(scene):
-        x, y = scene["psi_dot"], scene["phi_dot"]
-        ax.plot(x, y, color=style.BLUE, linewidth=0.6)
-        ax.margins(0.07)
-        if still(scene):
-            _still_point(ax, x[0], y[0])
-        return
-    rows = np.argsort(scene["theta"])
-    theta, x, y = arc = [scene[name][rows] for name in ("theta", "psi_dot", "phi_dot")]
-    ax.plot(x, y, color=style.BLUE, linewidth=1.1)
+        _track(ax, x, y, stick)
     ax.margins(0.14)
-    ax.autoscale_view()
-    labels = Labels(ax, np.column_stack([x, y]))
-    side = _to_and_fro(ax, labels, x, y)
-    start = np.degrees(scene["theta"][0])
-    ends = zip(np.degrees([theta[0], theta[-1]]), ("{:.1f}°, lowest", "{:.1f}°, highest"), strict=True)
-    marks = {start: r"$\theta = {:.4g}°$, start"} | {angle: name for angle, name in ends if abs(angle - start) > 0.05}
-    first = MARK_STEP * np.ceil(np.degrees(theta[0]) / MARK_STEP)
-    taken: list[Array] = []
-    for angle in [*marks, *np.arange(first, np.degrees(theta[-1]), MARK_STEP)]:
-        at = tuple(float(np.interp(np.radians(angle), theta, rate)) for rate in arc[1:])
-        place = ax.transData.transform(at) * 72 / ax.figure.dpi
-        solid = len(taken) < len(marks)
+    for axis, rate in ((ax.xaxis, x), (ax.yaxis, y)):
+        _ticks(axis, 5)
+        _widen(axis, rate, 1.0 if scene.still else 1e-3 + 1e-5 * abs(rate).max())
+    if not scene.one_arc and narrow(scene):
+        _draw_inset(ax, scene, x, y, stick)
+
+
+def write_rates(ax: Axes, scene: Scene) -> None:
+    """What is written beside the curve: theta along an arc, else the times of start and end."""
+    x, y, _ = _rates(scene)
+    marks = _marks(ax, scene) if scene.one_arc and not scene.still else {
+        (x[0], y[0]): "both rates keep\ntheir values" if scene.still else "$t = 0$",
+        **({} if scene.still else {(x[-1], y[-1]): f"$t = {scene.time[-1]:.3g}$ s"}),
+    }  # fmt: skip
+    lines = [np.column_stack([x, y])]
+    for inset in ax.child_axes:
+        left, bottom, right, top = ax.transData.inverted().transform_bbox(inset.get_tightbbox()).extents
+        lines += [np.array([(left, h), (right, h)]) for h in np.linspace(bottom, top, 12)]
+    write_beside(ax, marks, lines)
+
+
+def write_beside(ax: Axes, texts: dict[tuple[float, float], str], lines: list[Array]) -> None:
+    """Texts beside points of data, clear of the lines and of each other; a thin line leads to what is far."""
+    ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())  # no line moves them any more
+    (x, y), (xs, ys) = zip(*texts, strict=True), zip(*(line.T for line in lines), strict=True)
+    look = {"textsize": style.NOTE, "textcolor": style.INK, "linecolor": style.GREY, "linewidth": 0.5}
+    place = {"min_distance": 0.015, "max_distance": 0.25, "nbr_candidates": 200}
+    _, _, _, leaders = textalloc.allocate(
+        ax, x, y, [*texts.values()], x_scatter=x, y_scatter=y, x_lines=xs, y_lines=ys, **look, **place
+    )
+    for leader in filter(None, leaders):
+        (left, bottom), (right, top) = leader.get_transform().transform(leader.get_xydata())
+        if np.hypot(right - left, top - bottom) * 72 < LEADER * ax.figure.dpi:
+            leader.remove()
+
+
+def _rates(scene: Scene) -> tuple[Array, Array, Array]:
+    """psi_dot, phi_dot and whether it sticks: in the order of the tilt where they run on one arc, else of time.
+
+    In the order of the tilt a run to and fro is one clean stroke, and a zigzag if the rates ever left the arc.
+    """
+    if scene.one_arc or scene.still:
+        rows = np.argsort(scene["theta"])
+        return scene["psi_dot"][rows], scene["phi_dot"][rows], np.zeros(len(rows), dtype=bool)
+    time, x, y = scene.smooth(SUBDIVISION, "time", "psi_dot", "phi_dot")
+    phases = [(time > begin) & (time < end) for begin, end in scene.stick_phases()]
+    return x, y, np.any(phases, axis=0) if phases else np.zeros(len(time), dtype=bool)
+
+
+def _marks(ax: Axes, scene: Scene) -> dict[tuple[float, float], str]:
+    """theta along the arc: at its start and ends, and at whole steps where there is room; their dots are drawn."""
+    rows = np.argsort(scene["theta"])
+    theta, x, y = (scene[name][rows] for name in ("theta", "psi_dot", "phi_dot"))
+    start, low, high = np.degrees([scene["theta"][0], theta[0], theta[-1]])
+    named = {start: f"$\\theta = {start:.4g}°$, start"}
+    named |= {at: f"{at:.1f}°, {end}" for at, end in ((low, "lowest"), (high, "highest")) if abs(at - start) > 0.05}
+    texts, taken = {}, []
+    for angle in [*named, *np.arange(MARK_STEP * np.ceil(low / MARK_STEP), high, MARK_STEP)]:
+        at = tuple(float(np.interp(np.radians(angle), theta, rate)) for rate in (x, y))
+        place = ax.transAxes.inverted().transform(ax.transData.transform(at))
+        solid = angle in named
         if not solid and any((abs(place - other) < MARK_ROOM).all() for other in taken):
             continue
         taken.append(place)
-        _mark(ax, at, solid)
-        labels.put((marks[angle] if solid else "${:g}°$").format(angle), at, side)
-
-
-def _still_point(ax: Axes, x: float, y: float) -> None:
-    """Rates that keep their values are one point."""
-    _mark(ax, (x, y), solid=True)
-    ax.set(xlim=(x - 1, x + 1), ylim=(y - 1, y + 1))
-    style.note(ax, "both rates keep\ntheir values", (x, y), (6, 6))
-
-
-def _mark(ax: Axes, at: tuple[float, float], solid: bool) -> None:
-    """A dot on the arc."""
-    face, size = (style.BLUE, 4.0) if solid else ("white", 2.8)
-    ax.plot(*at, "o", color=style.BLUE, markersize=size, markerfacecolor=face, markeredgewidth=0.8)
-
-
-def _to_and_fro(ax: Axes, labels: Labels, x: Array, y: Array) -> float:
-    """A double arrow beside the middle of the arc; the direction of the other side, in degrees."""
-    to_dots = ax.transData.transform
-    curve = dense(to_dots(np.column_stack([x, y])))
-    a, b = (curve[int(part * (len(curve) - 1))] for part in (0.36, 0.64))
-    along = (b - a) / max(np.hypot(*(b - a)), 1e-9)
-    normal = np.array([-along[1], along[0]])
-    normal *= -np.sign(normal @ [0.1, 1.0]) or 1.0  # below, where both sides are as free
-    middle = curve[len(curve) // 2]
-    if (middle - (a + b) / 2) @ normal > 1.0:
-        normal = -normal  # the arc bends to this side
-    shift = (11.0 * ax.figure.dpi / 72) * normal
-    ends = [tuple(ax.transData.inverted().transform(end + shift)) for end in (a, b)]
-    look = {"mutation_scale": 6, "color": style.GREY, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
-    ax.add_patch(FancyArrowPatch(*ends, arrowstyle="<|-|>", **look))
-    labels.keep_free(np.array([a + shift, b + shift]))
-    away = float(np.degrees(np.arctan2(normal[1], normal[0])))
-    labels.put("run to and fro", tuple(np.mean(ends, axis=0)), away, color=style.GREY)
-    return away + 180.0
+        ax.plot(*at, "o", color=style.BLUE, markersize=4.0 if solid else 2.8,
+                markerfacecolor=style.BLUE if solid else "white", markeredgewidth=0.8)  # fmt: skip
+        texts[at] = named.get(angle, f"${angle:g}°$")
+    return texts
 
 
 def narrow(scene: Scene) -> bool:
@@ -187,31 +196,14 @@ def _shear(scene: Scene) -> float:
     return float(-np.sign(np.cos(scene["theta"].mean())) or -1.0)
 
 
-def _friction_rates(ax: Axes, scene: Scene) -> None:
-    """The rates spiral in; stick phases are thick. An inset stretches a narrow bundle."""
-    time, psi_dot, phi_dot = scene.smooth(SUBDIVISION, "time", "psi_dot", "phi_dot")
-    if still(scene):
-        _still_point(ax, psi_dot[0], phi_dot[0])
-        return
-    stick = np.any([(time > begin) & (time < end) for begin, end in scene.stick_phases()], axis=0)
-    _with_stick(ax, psi_dot, phi_dot, stick)
-    ax.margins(x=0.2, y=0.1)
-    ax.autoscale_view()
-    for name, rate in (("x", psi_dot), ("y", phi_dot)):
-        _widen(ax, name, rate, 0.01)
-    inset = _sheared(ax, scene, psi_dot, phi_dot, stick) if narrow(scene) else None
-    labels = Labels(ax, np.column_stack([psi_dot, phi_dot]))
-    if inset is not None:
-        box = inset.get_tightbbox()
-        labels.boxes.append((box.x0, box.x1, box.y0, box.y1))
-    for row, first in ((0, 180.0), (-1, -135.0)):
-        labels.put(rf"$t = {time[row]:.3g}$" + (" s" if time[row] else ""), (psi_dot[row], phi_dot[row]), first)
-
-
-def _sheared(ax: Axes, scene: Scene, psi_dot: Array, phi_dot: Array, stick: NDArray[np.bool_]) -> Axes:
+def _draw_inset(ax: Axes, scene: Scene, x: Array, y: Array, stick: Array) -> None:
+    """The bundle sheared, above it: the axes grow there, so that it covers nothing of the curve."""
     shear = _shear(scene)
-    inset = ax.inset_axes(free_corner(ax, psi_dot, phi_dot))
-    _with_stick(inset, psi_dot, phi_dot - shear * psi_dot, stick)
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    width, height = 0.1 * (right - left), 0.1 * (top - bottom)
+    ax.set(xlim=(left, right + width) if shear < 0 else (left - width, right), ylim=(bottom, top + height))
+    inset = ax.inset_axes((0.58 if shear < 0 else 0.06, 0.59, *INSET))
+    _track(inset, x, y - shear * x, stick)
     inset.yaxis.tick_right()
     inset.yaxis.set_label_position("right")
     inset.spines["left"].set_visible(False)
@@ -221,13 +213,61 @@ def _sheared(ax: Axes, scene: Scene, psi_dot: Array, phi_dot: Array, stick: NDAr
     _ticks(inset.xaxis, 4)
     _ticks(inset.yaxis, 5)
     inset.tick_params(labelsize=7)
-    return inset
 
 
-def _with_stick(ax: Axes, x: Array, y: Array, stick: NDArray[np.bool_]) -> None:
-    """A curve with its stick phases thick, its start (dot) and its end (square) marked."""
-    ax.plot(x, y, color=style.BLUE, linewidth=0.7)
-    held = np.where(stick, y, np.nan)
-    ax.plot(x, held, color=style.VERMILLION, linewidth=1.8, solid_capstyle="butt")
+def _track(ax: Axes, x: Array, y: Array, stick: Array) -> None:
+    """A curve that may cross itself: stick phases thick, its start a dot, its end a square."""
+    ax.plot(x, y, color=style.BLUE, linewidth=min(0.7, 80 / max(_turns(x), _turns(y), 1)))
+    ax.plot(x, np.where(stick, y, np.nan), color=style.VERMILLION, linewidth=1.8, solid_capstyle="butt")
     ax.plot(x[0], y[0], "o", color=style.BLUE, markersize=3.6)
     ax.plot(x[-1], y[-1], "s", color=style.INK, markersize=4, fillstyle="none")
+
+
+def _over_time(ax: Axes, time: Array, values: Array, color: str = style.BLUE) -> None:
+    """A curve over time; where its swings lie too close to be told apart, their envelope."""
+    turns = _turns(values)
+    if turns < SOLID:
+        ax.plot(time, values, color=color, linewidth=1.0 if turns < DENSE else 0.5)
+        return
+    parts = np.array_split(np.arange(len(time)), min(SOLID, turns // 6))  # some swings in each
+    edges = np.array([(time[rows].mean(), values[rows].min(), values[rows].max()) for rows in parts]).T
+    ax.fill_between(*edges, color=color, alpha=0.35, linewidth=0.5)
+
+
+def _turns(values: Array) -> int:
+    """How often a curve turns, rounding aside."""
+    steps, rounding = np.diff(values), 1e-6 * np.ptp(values) + 1e-9 * abs(values).max() + 1e-12
+    return int(np.count_nonzero(np.diff(np.sign(steps[abs(steps) > rounding]))))
+
+
+def envelope(scene: Scene) -> bool:
+    """Whether a curve over time is drawn as its envelope."""
+    curves = [*(scene[name] for name in ("X_O", "theta", "lambda_3")), needed_friction(scene)]
+    return max(map(_turns, curves)) >= SOLID
+
+
+def _widen(axis: Axis, values: Array, least: float) -> None:
+    """An axis no narrower than `least`: what differs by rounding alone is a straight line."""
+    if np.ptp(values) < least:
+        middle = float(np.min(values) + np.max(values)) / 2
+        axis.axes.set(**{f"{axis.axis_name}lim": (middle - least, middle + least)})
+
+
+def _ticks(axis: Axis, most: int) -> None:
+    """Few ticks, numbers in full: no offset or power of ten stands over the title."""
+    axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 4, 5, 10]))
+    axis.set_minor_locator(AutoMinorLocator(2))
+    full = ScalarFormatter(useOffset=False)
+    full.set_scientific(False)
+    axis.set_major_formatter(full)
+
+
+def _time_axis(ax: Axes, scene: Scene) -> None:
+    """Time in s over the whole scene, its events behind the curve."""
+    ax.set_xlim(scene.time[0], scene.time[-1])
+    ax.set_xlabel("time $t$ [s]")
+    _ticks(ax.xaxis, 6)
+    for begin, end in scene.stick_phases():
+        ax.axvspan(begin, end, color=style.BAND, linewidth=0, zorder=0)
+    place = {"transform": ax.get_xaxis_transform(), "color": style.VERMILLION, "linewidth": 0.8, "zorder": 1}
+    ax.vlines(scene.reversals(), 0.955, 1.0, **place)

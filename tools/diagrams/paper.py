@@ -1,63 +1,67 @@
 #!/usr/bin/env python3
-"""Draw the paper's six diagrams (Fig. 1-6) from the two scenes that `./scripts/run` simulated, the paper's or others.
+"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, and what the ground has to give.
 
-Reads free.csv (s = 0) and friction.csv (s > 0), which hold the run's parameters as columns: titles and captions come
-from there. Writes the sheet paper_diagrams (named diagrams where the values are not the paper's) and the single files
-fig_1 ... fig_6, each as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees beside.
+Reads free.csv (s = 0) and friction.csv (s > 0), which hold all that was set as columns: titles and captions come from
+there. The paper's two scenes make paper_diagrams, paper_path_and_ground and fig_1 ... fig_6; others make diagrams and
+diagram_NAME_SCENE, and leave those of the paper in place. All as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees
+beside.
 """
 
 import argparse
+import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from diagrams import panels, style
 from diagrams.scene import Scene, SceneError, read_scene
+from diagrams.start_values import PAPER_S, ROOT, RUN, outputs, variables
 
-ROOT = Path(__file__).resolve().parents[2]
-PAPER = {  # (27)-(33)
-    **{"m": 20, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_y": 0.9, "J_z": 1.8, "g": 9.81},
-    **{"psi_start": np.pi / 2, "theta_start": 5 * np.pi / 12, "phi_start": 0},
-    **{"psi_dot_start": 0, "theta_dot_start": 0, "phi_dot_start": -2},
-}
-PAPER_S = 0.03  # m, (29)
-SIGNALS = ("time", "X_O", "theta", "phi_dot", "psi_dot", "s", *PAPER)
+SETTINGS = variables("parameter", "input")
+NO_BREAK = "\u00a0"  # a space at which no line ends
 PITCH = 3.4  # mm from one line of a caption to the next
 
 
 @dataclass(frozen=True)
-class Diagram:
-    """One of the paper's figures."""
+class Panel:
+    """One row of a sheet; `figures`: its numbers in the paper, without and with friction; height in mm."""
 
-    number: int
-    friction: bool
-    draw: Callable[[Axes, Scene, bool], None]
+    name: str
     subject: str
-    over_time: bool
+    height: float
+    draw: Callable[[Axes, Scene], None]
+    figures: tuple[int, int] | None = None
 
 
-POSITION = (panels.draw_position, r"$X_O(t)$", True)
-TILT = (panels.draw_tilt, r"$\theta(t)$", True)
-RATES = (panels.draw_rates, r"$\dot\varphi(\dot\psi)$", False)
-DIAGRAMS = (
-    Diagram(1, False, *POSITION),
-    Diagram(2, False, *TILT),
-    Diagram(3, False, *RATES),
-    Diagram(4, True, *POSITION),
-    Diagram(5, True, *TILT),
-    Diagram(6, True, *RATES),
+PAPERS = (
+    Panel("position", r"$X_O(t)$", 40.0, panels.draw_position, (1, 4)),
+    Panel("tilt", r"$\theta(t)$", 40.0, panels.draw_tilt, (2, 5)),
+    Panel("rates", r"$\dot\varphi(\dot\psi)$", 58.0, panels.draw_rates, (3, 6)),
+)
+OTHERS = (
+    Panel("path", "Path of the contact point", 50.0, panels.draw_path),
+    Panel("ground", r"$N(t)$ and required $\mu(t)$", 50.0, panels.draw_ground),
 )
 
 
-def is_paper(scenes: dict[bool, Scene]) -> bool:
+def unlike_paper(scene: Scene) -> list[str]:
+    """All that was set otherwise than in (27)-(33), the start values of the description; the title has s."""
+    own = {name: scene.value(name) for name in SETTINGS if name != "s"}
+    said = [SETTINGS[name].said(value) for name, value in own.items() if abs(value - SETTINGS[name].preset) > 1e-12]
+    rows = {"stop_time": scene.time[-1], "output_interval": scene.time[1] - scene.time[0]}
+    if scene.ending:
+        del rows["stop_time"]
+    said += [RUN[name].said(value) for name, value in rows.items() if abs(value - RUN[name].preset) > 1e-9]
+    return said + ["r > r_0, the torus intersects itself"] * (own["r"] > own["r_0"])
+
+
+def is_paper(scenes: Sequence[Scene]) -> bool:
     """Whether the runs are the paper's."""
-    same = all(abs(scenes[True].value(name) - value) < 1e-12 for name, value in PAPER.items())
-    return same and scenes[True].value("s") == PAPER_S and scenes[True].time[-1] == 10
+    return scenes[1].value("s") == PAPER_S and not any(scene.ending or unlike_paper(scene) for scene in scenes)
 
 
 def short(value: float) -> str:
@@ -87,89 +91,102 @@ def title_of(scene: Scene) -> str:
     return rf"rolling friction, $s = {s:.4g}$ m" if s > 0 else r"no rolling friction, $s = 0$"
 
 
-def heading(diagram: Diagram, paper: bool) -> str:
-    """Number and subject; for values that are not the paper's, the figure that it corresponds to."""
-    return rf"{'' if paper else 'as '}$\mathbf{{Fig.\,{diagram.number}}}$   {diagram.subject}"
+def events_of(scene: Scene) -> list[str]:
+    """What friction and brake did, and the marks that are there."""
+    phases, count = scene.stick_phases(), int(scene["n_events"][-1])
+    if phases and not count:
+        return [r"$\omega_z$ is held at zero all the time (stick)."]
+    bands = [r"Bands, thick among the rates: stick ($\omega_z$ held at zero)."] if phases else []
+    ticks = [r"Ticks at the top: $\omega_z$ changes sign."] if scene.reversals() else []
+    return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene.time[-1]:.3g} s.", *bands, *ticks]
 
 
-def arc_remark(scene: Scene) -> str:
-    """Of Fig. 3, if there is an arc."""
-    arc = r"the rates depend on $\theta$ alone, so the wheel runs to and fro on one arc."
-    return arc if panels.one_arc(scene) else ""
+def remarks_of(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
+    """What has to be said of one scene below these panels, a sentence each."""
+    rates = panels.draw_rates in [panel.draw for panel in drawn]
+    over_time = any(panel.draw not in (panels.draw_rates, panels.draw_path) for panel in drawn)
+    remarks = events_of(scene) if scene.resisted else []
+    if rates and not scene.still:
+        if scene.one_arc:
+            remarks.append(r"The rates depend on $\theta$ alone: the wheel runs to and fro on one arc.")
+        elif panels.narrow(scene):
+            remarks.append("Inset: the same motion sheared, which opens the narrow bundle.")
+    if over_time and panels.envelope(scene):
+        remarks.append("Filled: the envelope of a fast nutation.")
+    if panels.draw_ground in [panel.draw for panel in drawn] and panels.needed_friction(scene).max() == panels.MOST:
+        remarks.append(rf"$\mu$ is drawn up to {panels.MOST:g}.")
+    return remarks + [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
 
 
-def events_remark(scene: Scene, marks: str, ticks: bool = True) -> str:
-    """What the friction did, and the marks that are there."""
-    if scene.stick_phases() and not scene.n_transitions:
-        return r"$\omega_z$ is held at zero all the time (stick)."
-    count = f"{scene.n_transitions or 'no'} transition{'s' * (scene.n_transitions != 1)} in {scene.time[-1]:.3g} s."
-    bands = rf" {marks}: stick ($\omega_z$ held at zero)." if scene.stick_phases() else ""
-    return count + bands + (r" Ticks at the top: $\omega_z$ changes sign." if ticks and scene.reversals() else "")
+def caption(scenes: Sequence[Scene], drawn: Sequence[Panel], columns: int) -> list[str]:
+    """The parameters, all that is not the paper's, and what the marks mean."""
+    texts = [f"Torus wheel: {wheel_of(scenes[-1])}. {start_of(scenes[-1])}."]
+    if other := unlike_paper(scenes[-1]):
+        texts.append(f"Unlike the paper: {', '.join(said.replace(' ', NO_BREAK) for said in other)}.")
+    for scene in scenes:
+        name = [f"{title_of(scene).split(',')[0].capitalize()}:"] if len(scenes) > 1 else []
+        remarks = remarks_of(scene, drawn)
+        texts += [" ".join(name + remarks)] if remarks else []
+    return [line for text in texts for line in wrapped(text, columns)]
 
 
-def inset_remark(scene: Scene) -> str:
-    return "the same motion sheared, which opens the narrow bundle." if panels.narrow(scene) else ""
+def wrapped(text: str, columns: int) -> list[str]:
+    """Lines with as many words as have room; a formula is one word, as wide as its letters."""
+    lines = [""]
+    for word in re.findall(r"(?:\$[^$]*\$|[^ $])+", text):
+        longer = f"{lines[-1]} {word}".strip()
+        if lines[-1] and len(re.sub(r"\\[a-z]+|[${}_^\\]", "", longer)) > columns:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines
 
 
-def remarks_of(diagram: Diagram, scene: Scene) -> list[str]:
-    """What stands below a single diagram."""
-    remarks = [arc_remark(scene)] if diagram.number == 3 else []
-    if diagram.friction:
-        over_time = diagram.over_time
-        remarks.append(events_remark(scene, "Bands" if over_time else "Thick", over_time))
-    if diagram.number == 6 and not panels.still(scene):
-        inset = inset_remark(scene)
-        remarks += ["Dot: start; square: end.", inset and f"Inset: {inset}"]
-    remarks.append(scene.ending and f"The wheel {scene.ending}, where the model ends.")
-    return [remark[0].upper() + remark[1:] for remark in remarks if remark]
+def heading(panel: Panel, scene: Scene, paper: bool) -> str:
+    """Number, for the paper's scenes alone, and subject."""
+    number = panel.figures[scene.value("s") > 0] if paper and panel.figures else 0
+    return rf"$\mathbf{{Fig.\,{number}}}$   {panel.subject}" if number else panel.subject
 
 
-def draw_single(diagram: Diagram, scene: Scene, paper: bool, stem: Path) -> list[Path]:
-    """One diagram, one journal column wide, with its caption."""
-    lines = [f"{wheel_of(scene)}.", f"{start_of(scene)}.", *remarks_of(diagram, scene)]
-    height = 46.0 if diagram.over_time else 62.0
-    foot = 13.0 + PITCH * len(lines)
-    fig = style.figure_mm(style.COLUMN, foot + height + 8.0)
-    ax = style.axes_mm(fig, 13.5, foot, 63.0, height)
-    diagram.draw(ax, scene, diagram.friction)
-    style.text_mm(fig, 2.0, foot + height + 4.0, f"{heading(diagram, paper)}, {title_of(scene)}", fontsize=9)
-    write_caption(fig, lines, 7.0)
-    return style.save(fig, stem)
-
-
-def write_caption(fig: Figure, lines: list[str], size: float = 7.5) -> None:
-    """Lines of equal pitch, up from the figure's lower edge, whatever their heights."""
+def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: bool) -> list[Path]:
+    """A sheet: a row per panel, a column per scene; one panel of one scene is a journal column wide."""
+    sheet = len(scenes) > 1
+    lines = caption(scenes, drawn, 150 if sheet else 72)
+    head, foot = (9.0 if sheet else 1.0), 3.0 + PITCH * len(lines)
+    height = head + foot + sum(panel.height + 17.0 for panel in drawn)
+    fig = style.figure_mm(style.PAGE if sheet else style.COLUMN, height)
+    rect = (0, foot / height, 1, 1 - (foot + head) / height)
+    fig.set_layout_engine("constrained", rect=rect, hspace=0.03, wspace=0.04)
+    axes = fig.subplots(len(drawn), len(scenes), squeeze=False, height_ratios=[panel.height for panel in drawn])
+    rows = zip(axes, drawn, strict=True)
+    cells = [(ax, panel, scene) for row, panel in rows for ax, scene in zip(row, scenes, strict=True)]
+    for ax, panel, scene in cells:
+        panel.draw(ax, scene)
+        title = heading(panel, scene, paper) + ("" if sheet else f", {title_of(scene)}")
+        ax.set_title(title, loc="left", fontsize=9)
+    fig.get_layout_engine().execute(fig)
+    fig.set_layout_engine("none")  # what follows needs the places of the panels
+    for ax, panel, scene in cells:
+        if sheet and panel is drawn[0]:
+            left, title = ax.get_position().x0 * style.PAGE, title_of(scene)
+            style.text_mm(fig, left, height - 6.0, title[0].upper() + title[1:], fontsize=10.5)
+        if panel.draw is panels.draw_rates:
+            panels.write_rates(ax, scene)
     for i, line in enumerate(reversed(lines)):
-        style.text_mm(fig, 2.0, 1.8 + PITCH * i, line, fontsize=size)
-
-
-def draw_sheet(scenes: dict[bool, Scene], paper: bool, stem: Path) -> list[Path]:
-    """All six diagrams on one page: the free wheel on the left, with friction on the right."""
-    fig = style.figure_mm(style.PAGE, 219.0)
-    rows = ((163.0, 40.0), (105.0, 40.0), (28.0, 58.0))  # bottom and height in mm
-    for diagram in DIAGRAMS:
-        bottom, height = rows[(diagram.number - 1) % 3]
-        left = 108.0 if diagram.friction else 14.0
-        ax = style.axes_mm(fig, left, bottom, 62.0, height)
-        diagram.draw(ax, scenes[diagram.friction], diagram.friction)
-        style.text_mm(fig, left - 12.0, bottom + height + 2.6, heading(diagram, paper), fontsize=9)
-    for friction, left in ((False, 2.0), (True, 96.0)):
-        scene = scenes[friction]
-        title = title_of(scene)
-        style.text_mm(fig, left, 213.0, title[0].upper() + title[1:], fontsize=10.5)
-        ending = f"The wheel {scene.ending}, where the model ends." if scene.ending else ""
-        style.text_mm(fig, left, 209.3, ending, fontsize=8, color=style.VERMILLION)
-    write_caption(fig, sheet_caption(scenes))
+        style.text_mm(fig, 2.0, 1.8 + PITCH * i, line, fontsize=7.5 if sheet else 7.0)
     return style.save(fig, stem)
 
 
-def sheet_caption(scenes: dict[bool, Scene]) -> list[str]:
-    """The parameters and what the marks mean."""
-    friction, arc, inset = scenes[True], arc_remark(scenes[False]), inset_remark(scenes[True])
-    rates = [f"Fig. 3: {arc}" if arc else "", f"Inset of Fig. 6: {inset}" if inset else ""]
-    lines = [f"Torus wheel: {wheel_of(friction)}. {start_of(friction)}."]
-    lines += [f"Fig. 4–6: {events_remark(friction, 'Bands, thick in Fig. 6')}", " ".join(filter(None, rates))]
-    return list(filter(None, lines))
+def draw_all(scenes: Sequence[Scene], out: Path) -> list[Path]:
+    """The sheets, then each panel of each scene; the names tell whether the scenes are the paper's."""
+    paper = is_paper(scenes)
+    sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": PAPERS + OTHERS}
+    written = [path for name, drawn in sheets.items() for path in draw(out / name, scenes, drawn, paper)]
+    for friction, scene in enumerate(scenes):
+        for panel in PAPERS + OTHERS * (not paper):
+            name = f"diagram_{panel.name}_{('free', 'friction')[friction]}"
+            written += draw(out / (f"fig_{panel.figures[friction]}" if paper else name), [scene], [panel], paper)
+    return written
 
 
 def main() -> int:
@@ -179,21 +196,15 @@ def main() -> int:
     parser.add_argument("--results", type=Path, default=results, help="where the CSV files are")
     parser.add_argument("--out", type=Path, help="where the figures go (default: the same)")
     arguments = parser.parse_args()
-    out = arguments.out or arguments.results
     style.use_style()
     try:
-        scenes = {
-            False: read_scene(arguments.results / "free.csv", SIGNALS),
-            True: read_scene(arguments.results / "friction.csv", (*SIGNALS, "friction_mode")),
-        }
+        scenes = [read_scene(arguments.results / f"{name}.csv", ("time", *outputs())) for name in ("free", "friction")]
     except SceneError as fault:
         print(f"run: {fault}", file=sys.stderr)
         return 1
-    paper = is_paper(scenes)
-    written = draw_sheet(scenes, paper, out / ("paper_diagrams" if paper else "diagrams"))
-    for diagram in DIAGRAMS:
-        written += draw_single(diagram, scenes[diagram.friction], paper, out / f"fig_{diagram.number}")
-    print("\n".join(str(path) for path in written))
+    if scenes[0].value("r") > scenes[0].value("r_0"):
+        print("run: r > r_0: this torus intersects itself; the model rolls it all the same.", file=sys.stderr)
+    print("\n".join(str(path) for path in draw_all(scenes, arguments.out or arguments.results)))
     return 0
 
 

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator
 
 Array = NDArray[np.float64]
+ARC = 0.03  # of their range: how far the rates may leave the line between the rows next in the order of the tilt
+STILL = 1e-7  # rad/s: less is rounding
 
 
 class SceneError(Exception):
@@ -44,6 +46,10 @@ class Scene:
         """A parameter of the run, which the file holds as a column of equal numbers."""
         return float(self[name][0])
 
+    def setting(self, name: str) -> float:
+        """The same, 0 where there is no such column."""
+        return self.value(name) if name in self.columns else 0.0
+
     @cached_property
     def mode(self) -> NDArray[np.int_]:
         """-1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero (it sticks)."""
@@ -55,9 +61,22 @@ class Scene:
         return np.flatnonzero(np.diff(self.mode))
 
     @property
-    def n_transitions(self) -> int:
-        """Changes of mode that the rows show."""
-        return len(self._changes)
+    def one_arc(self) -> bool:
+        """Whether the data show it run to and fro on one arc: the tilt turns, and tells both rates."""
+        rows, turns = np.argsort(self["theta"]), np.diff(np.sign(np.diff(self["theta"])))
+        rates = np.column_stack([self["psi_dot"], self["phi_dot"]])[rows]
+        beside = np.abs(rates[1:-1] - (rates[:-2] + rates[2:]) / 2).max(axis=0, initial=0.0)
+        return bool(turns.any() and (beside < ARC * np.ptp(rates, axis=0)).all())
+
+    @property
+    def resisted(self) -> bool:
+        """Whether friction or a brake acts about the axle."""
+        return self.setting("s") > 0 or self.setting("M_brake") > 0
+
+    @property
+    def still(self) -> bool:
+        """Whether the rates keep their values."""
+        return max(np.ptp(self["psi_dot"]), np.ptp(self["phi_dot"])) <= STILL
 
     def _instant(self, row: int) -> float:
         """A transition between row and row + 1, placed half-way."""
@@ -65,6 +84,8 @@ class Scene:
 
     def stick_phases(self) -> list[tuple[float, float]]:
         """Begin and end in s of every phase with omega_z held at zero."""
+        if not self.resisted:
+            return []
         edges = [float(self.time[0])]
         edges += [self._instant(row) for row in self._changes]
         edges.append(float(self.time[-1]))
@@ -74,7 +95,7 @@ class Scene:
 
     def reversals(self) -> list[float]:
         """Instants in s at which omega_z changes sign without a stick phase."""
-        rows = self._changes
+        rows = self._changes if self.resisted else []
         return [self._instant(row) for row in rows if self.mode[row] * self.mode[row + 1] < 0]
 
     def smooth(self, subdivision: int, *names: str) -> tuple[Array, ...]:
@@ -91,7 +112,7 @@ def read_scene(path: Path, needed: tuple[str, ...]) -> Scene:
     """Read a CSV file; every column of `needed` must be there, with finite numbers."""
     try:
         with path.open(encoding="utf-8") as file:
-            table = np.genfromtxt(file, delimiter=",", names=True, ndmin=1)
+            table = np.genfromtxt(file, delimiter=",", names=True, ndmin=1, dtype=None, encoding="utf-8")
     except OSError as fault:
         raise SceneError(f"{path} cannot be read ({fault.strerror}): simulate first.") from fault
     except ValueError as fault:
@@ -100,11 +121,11 @@ def read_scene(path: Path, needed: tuple[str, ...]) -> Scene:
         raise SceneError(f"{path} lacks the column {', '.join(missing)}.")
     if len(table) < 2:
         raise SceneError(f"{path} has {len(table)} rows of data; a curve needs at least two.")
+    scene = Scene(path, {name: np.asarray(table[name], dtype=float) for name in needed})
     for name in needed:
-        if not np.isfinite(table[name]).all():
-            row = np.flatnonzero(~np.isfinite(table[name]))[0] + 1
+        if name != "mu_required" and not np.isfinite(scene[name]).all():  # it has no value where N = 0
+            row = np.flatnonzero(~np.isfinite(scene[name]))[0] + 1
             raise SceneError(f"{path} has no finite number for {name} in data row {row}.")
-    scene = Scene(path, {name: table[name] for name in needed})
     if scene.time[-1] <= scene.time[0]:
         why = (scene.ending or "stands at one instant").replace("$", "")
         raise SceneError(f"{path} has no motion to draw: the wheel {why}.")

@@ -1,36 +1,23 @@
-"""Turns arguments such as `s=0.01 theta_start=60deg` into checked start values of wheel.fmu, for ./scripts/run.
+"""The arguments of ./scripts/run: checked against modelDescription.xml, or to be read again by what draws the results.
 
-Prints `name value` pairs in SI for `fmpy simulate --start-values`, one a line; `outputs` prints the variables to
-record, start values among them, so that a figure can say what was run. Names, units and start values are those of
-modelDescription.xml. It needs no package, so that `--help` works before anything is installed.
+Prints `name value` pairs in SI, one a line: stop_time, output_interval, and start values for `fmpy simulate
+--start-values`, which an input keeps. `outputs` prints the variables to record, with all that was set, so that
+a figure can say what was run. It needs no package, so that `--help` works before anything is installed.
 """
 
 from __future__ import annotations
 
 import math
-import re
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-DESCRIPTION = Path(__file__).resolve().parents[2] / "modelDescription.xml"
-DEGREE = math.pi / 180
-USAGE = """./scripts/run [name=value ...]   build, simulate without and with rolling friction, draw the diagrams
+ROOT = next(folder for folder in Path(__file__).resolve().parents if (folder / "modelDescription.xml").exists())
+sys.path.insert(0, str(ROOT / "examples" / "python"))
+from values import DEGREE, Fault, limited, number, suggestion, wheels  # noqa: E402
 
-  ./scripts/run                             the paper's two scenes
-  ./scripts/run s=0.01 theta_start=60deg    other values; the scene without friction takes them too, but for s
-  ./scripts/run stop_time=20                longer than 10 s
-
-Results go into results/: wheel.html, the motion to play and to turn; the diagrams; free.csv and friction.csv.
-Angles and their rates may end in deg.
-The values that can be given (SI; docs/variables.md):
-"""
-
-
-class Fault(Exception):
-    """The message is one sentence for the user."""
+PAPER_S = 0.03  # m, (29)
 
 
 class Variable(NamedTuple):
@@ -43,90 +30,123 @@ class Variable(NamedTuple):
     high: str
     description: str
 
+    @property
+    def preset(self) -> float:
+        """The start value; 1 is true."""
+        return float(self.start == "true") if self.type == "Boolean" else float(self.start)
 
-def variables() -> Iterator[Variable]:
-    for row in ElementTree.parse(DESCRIPTION).getroot().iter("ScalarVariable"):
-        (typed,) = row
-        texts = [typed.get(attribute, "") for attribute in ("unit", "start", "min", "max")]
-        yield Variable(row.get("name", ""), row.get("causality", ""), typed.tag, *texts, row.get("description", ""))
+    def value_of(self, text: str) -> str:
+        """The value in SI as text for FMPy; Fault outside of the limits that the description sets."""
+        if self.type == "Boolean":
+            if text not in ("true", "false"):
+                raise Fault(f'{self.name} = "{text}" must be true or false.')
+            return text
+        value = number(self.name, text, self.unit or "1")
+        if self.name == "slope" and value < 0:
+            raise Fault("slope must be at least 0: slope_direction=180deg turns uphill into downhill.")
+        above = self.description.endswith("above 0") or ", above 0;" in self.description
+        low, high = float(self.low or "-inf"), float(self.high or "inf")
+        limited(self.name, value, self.unit, low, high, above=above)
+        if self.type == "Integer" and value != int(value):
+            raise Fault(f"{self.name} = {value:g} must be a whole number.")
+        return repr(int(value)) if value == int(value) else repr(value)
 
-
-def parameters() -> dict[str, Variable]:
-    return {v.name: v for v in variables() if v.causality == "parameter"}
-
-
-def usage(known: dict[str, Variable]) -> str:
-    rows = [f"  {v.name:16s}{v.unit:8s}{v.start:>22s}   {v.description}" for v in known.values()]
-    return "\n".join([USAGE, *rows])
-
-
-def number_of(name: str, text: str) -> tuple[float, str]:
-    """The number in SI, and as text for FMPy."""
-    match = re.fullmatch(r"(.+?)\s*(deg)?", text)
-    try:
-        number = float(match[1]) * (DEGREE if match[2] else 1)
-        whole = number == int(number) and not match[2]
-    except (TypeError, ValueError, OverflowError):
-        raise Fault(f'{name} = "{text}" is not a number.') from None
-    return number, repr(int(number)) if whole else repr(number)
-
-
-def value_of(variable: Variable, text: str) -> str:
-    """The value in SI as text; Fault outside of the limits that the description sets."""
-    if variable.type == "Boolean":
-        if text not in ("true", "false"):
-            raise Fault(f'{variable.name} = "{text}" must be true or false.')
-        return text
-    number, short = number_of(variable.name, text)
-    above = variable.description.endswith("above 0") or ", above 0;" in variable.description
-    low, high = float(variable.low or "-inf"), float(variable.high or "inf")
-    if not (low < number if above else low <= number) or not number <= high or not math.isfinite(number):
-        limits = [f"{'above' if above else 'at least'} {low:g}"] * math.isfinite(low) + [
-            f"at most {high:g}"
-        ] * math.isfinite(high)
-        raise Fault(f"{variable.name} = {number:g} must be {' and '.join(limits) or 'finite'}.")
-    if variable.type == "Integer" and number != int(number):
-        raise Fault(f"{variable.name} = {number:g} must be a whole number.")
-    return short
+    def said(self, value: float) -> str:
+        """`slope = 8 deg`, `friction_law = 2 (regularized)`."""
+        if self.type == "Boolean":
+            return f"{self.name} = {'true' if value else 'false'}"
+        if self.type == "Integer":
+            words = self.description.partition(f"{value:g} ")[2]
+            return f"{self.name} = {value:g}" + (f" ({words.split()[0].strip(',;')})" if words else "")
+        if self.unit == "rad":
+            return f"{self.name} = {value / DEGREE:.6g} deg"
+        return f"{self.name} = {value:.6g} {'' if self.unit == '1' else self.unit.replace('.', ' ')}".rstrip()
 
 
-def pairs(arguments: list[str], known: dict[str, Variable]) -> dict[str, str]:
-    stop = Variable("stop_time", "parameter", "Real", "s", "10", "0", "", "End of the runs, above 0")
-    values = {}
+RUN = {
+    "stop_time": Variable("stop_time", "run", "Real", "s", "10", "0", "", "End of the runs, above 0"),
+    "output_interval": Variable("output_interval", "run", "Real", "s", "0.01", "0", "", "Time between rows, above 0"),
+}
+
+
+def variables(*causalities: str) -> dict[str, Variable]:
+    """Those of the description, in its order."""
+    found = {}
+    for row in ElementTree.parse(ROOT / "modelDescription.xml").getroot().iter("ScalarVariable"):
+        texts = [row[0].get(attribute, "") for attribute in ("unit", "start", "min", "max")]
+        known = (row.get("name", ""), row.get("causality", ""), row[0].tag, *texts, row.get("description", ""))
+        if known[1] in causalities:
+            found[known[0]] = Variable(*known)
+    return found
+
+
+def known() -> dict[str, Variable]:
+    return variables("parameter", "input") | RUN
+
+
+def usage() -> str:
+    """The comment of scripts/run, the ready wheels and all names."""
+    comment = (ROOT / "scripts" / "run").read_text(encoding="utf-8").partition("\nset ")[0].splitlines()[1:]
+    ready = [f"  {name:20s}{wheel['title']}" for name, wheel in wheels().items()]
+    rows = [f"  {v.name:16s}{v.unit:8s}{v.start:>22s}   {v.description}" for v in known().values()]
+    return "\n".join([*(line[2:] for line in comment), "", *ready, "", "The values that can be given:", *rows])
+
+
+def of_wheel(name: str) -> dict[str, str]:
+    """Its parameters, and the paper's start, friction and rows in proportion to its radius."""
+    if name not in wheels():
+        meant = suggestion(name, {n: str(w["title"]) for n, w in wheels().items()})
+        raise Fault(f'There is no wheel "{name}"; there are {", ".join(wheels())}.{meant}')
+    body = wheels()[name]["parameters"]
+    scale = (body["r_0"] + body["r"]) / 0.35
+    start = {"s": PAPER_S * scale, "phi_dot_start": -2 / math.sqrt(scale)}
+    rows = {"output_interval": 0.01 / max(1, round(1 / math.sqrt(scale)))}
+    return {n: repr(float(value)) for n, value in (body | start | rows).items()}
+
+
+def values(arguments: list[str]) -> dict[str, str]:
+    """What is given, by name, in SI."""
+    takes, ready = known(), wheels()
+    found, given = {}, {}
     for argument in arguments:
         name, equals, text = argument.partition("=")
-        if not equals:
-            raise Fault(f'"{argument}" is not of the form name=value; ./scripts/run --help lists the names.')
-        if name not in known and name != stop.name:
-            raise Fault(f'wheel.fmu has no parameter "{name}"; ./scripts/run --help lists the names.')
-        values[name] = value_of(known.get(name, stop), text)
-    if float(values.get("s", 1)) <= 0:
+        if name == "wheel" or (not equals and name in ready):
+            found = of_wheel(text or name)
+        elif not equals:
+            meant = suggestion(name, dict.fromkeys(ready, ""))
+            raise Fault(f'"{argument}" is neither name=value nor a ready wheel.{meant} See ./scripts/run --help.')
+        elif name not in takes:
+            meant = suggestion(name, {n: v.description for n, v in takes.items()})
+            if name in ("v", "speed", "velocity"):
+                meant = " To start at the speed v, give phi_dot_start = -v/(r_0 + r)."
+            raise Fault(f'wheel.fmu has no parameter or input "{name}".{meant} ./scripts/run --help lists them.')
+        else:
+            given[name] = takes[name].value_of(text)
+    found |= given
+    if float(found.get("s", 1)) <= 0:
         raise Fault("s must be above 0 here: the scene without friction is drawn beside it anyway.")
-    return values
+    stop, interval = (float(found.get(name, v.start)) for name, v in RUN.items())
+    if interval > stop / 2:
+        raise Fault(f"output_interval = {interval:g} s is too long: at least two have to fit into the {stop:g} s.")
+    return found
 
 
 def outputs() -> list[str]:
     """All that a figure or a page may need: outputs, energy, friction, and the values that were set."""
-    return [
-        v.name
-        for v in variables()
-        if v.causality == "output"
-        or v.name in ("E", "friction_mode", "n_events")
-        or (v.causality == "parameter" and v.type == "Real")
-    ]
+    read = variables("output", "local", "parameter", "input")
+    wanted = ("E", "mu_required", "friction_mode", "n_events")
+    return [v.name for v in read.values() if v.causality != "local" or v.name in wanted]
 
 
 def main() -> int:
     arguments = sys.argv[1:]
-    if arguments == ["outputs"]:
-        print("\n".join(outputs()))
-        return 0
-    known = parameters()
-    if {"-h", "--help"} & set(arguments):
-        print(usage(known))
-        return 0
     try:
-        print("\n".join(f"{name} {value}" for name, value in pairs(arguments, known).items()))
+        if arguments == ["outputs"]:
+            print("\n".join(outputs()))
+        elif {"-h", "--help"} & set(arguments):
+            print(usage())
+        else:
+            print("\n".join(f"{name} {value}" for name, value in values(arguments).items()))
     except Fault as fault:
         print(f"run: {fault}", file=sys.stderr)
         return 1

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib as mpl
+import matplotlib.style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -28,44 +29,11 @@ NOTE = 7.5  # points, the size of a note
 COLUMN = 89.0  # mm, one journal column
 PAGE = 183.0  # mm, two journal columns
 
-_RC = {
-    "font.family": "STIXGeneral",
-    "mathtext.fontset": "stix",
-    "font.size": 8.5,
-    "axes.labelsize": 9.0,
-    "axes.linewidth": 0.6,
-    "axes.edgecolor": INK,
-    "axes.labelcolor": INK,
-    "axes.labelpad": 3.0,
-    "text.color": INK,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
-    "xtick.direction": "out",
-    "ytick.direction": "out",
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.major.size": 2.6,
-    "ytick.major.size": 2.6,
-    "lines.linewidth": 1.0,
-    "lines.solid_joinstyle": "round",
-    "lines.solid_capstyle": "round",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "legend.frameon": False,
-    "legend.fontsize": 7.5,
-    "figure.facecolor": "white",
-    "savefig.facecolor": "white",
-    "svg.fonttype": "path",
-    "svg.hashsalt": "wheel",  # element ids follow from the drawing alone
-}
-
 
 def use_style() -> None:
     """Set the look for all figures made afterwards."""
     mpl.rcdefaults()
-    mpl.rcParams.update(_RC)
+    mpl.style.use(Path(__file__).parent / "wheel.mplstyle")
 
 
 def figure_mm(width: float, height: float) -> Figure:

@@ -1,0 +1,134 @@
+"""A diagram shows what was run: texts cover nothing, captions list what is not the paper's, arcs are in the data."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from diagrams import panels, paper, style
+from diagrams.scene import Scene, SceneError, read_scene
+
+T = np.linspace(0.0, 1.0, 400)
+CURVES = {
+    "rising": np.column_stack([T, T]),
+    "falling": np.column_stack([T, -3 * T]),
+    "bent": np.column_stack([T, (1 - T) ** 3]),
+    "bundle": np.column_stack([T * np.cos(90 * T) ** 2, 4 * T * np.cos(90 * T) ** 2 + 0.2 * T]),
+}
+TIME = np.linspace(0.0, 10.0, 1001)
+SWING = 1.0 + 0.3 * np.cos(3 * TIME)  # rad
+
+
+def scene(s: float = 0.0, time: np.ndarray = TIME, **columns: np.ndarray | float) -> Scene:
+    """A wheel that swings, with the paper's parameters but for those given."""
+    rates = {"psi_dot": 2 / SWING**2, "phi_dot": -2 / SWING**3}
+    motion = {"time": time, "theta": SWING, "X_O": SWING, "X_C": np.sin(TIME), "Y_C": TIME, "lambda_3": 200 * SWING}
+    settings = {name: v.preset for name, v in paper.SETTINGS.items()} | {"s": s, "n_events": 0, "friction_mode": 1}
+    everything = settings | rates | motion | {"mu_required": SWING / 3} | columns
+    return Scene(Path("scene.csv"), {name: np.broadcast_to(value, len(TIME)) for name, value in everything.items()})
+
+
+def inside(points: np.ndarray, box: object) -> int:
+    x, y = points.T
+    return int(np.sum((x > box.x0) & (x < box.x1) & (y > box.y0) & (y < box.y1)))
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_texts_cover_neither_the_curve_nor_each_other(name: str) -> None:
+    style.use_style()
+    ax, curve = style.axes_mm(style.figure_mm(style.COLUMN, 80.0), 14.0, 14.0, 62.0, 58.0), CURVES[name]
+    ax.plot(*curve.T)
+    ax.margins(0.2)
+    panels.write_beside(ax, {tuple(curve[row]): "27.9°, lowest" for row in (0, 130, 270, -1)}, [curve])
+    extents = [text.get_window_extent() for text in ax.texts]
+    assert len(extents) == 4
+    assert not any(a.overlaps(b) for k, a in enumerate(extents) for b in extents[:k])
+    fine = np.column_stack([np.interp(np.linspace(0, 399, 20000), np.arange(400), column) for column in curve.T])
+    points = ax.transData.transform(fine)
+    assert sum(inside(points, box) for box in extents) == 0
+    assert inside(points, ax.bbox) > 0.9 * len(points)  # the partner
+
+
+def drawn(monkeypatch: pytest.MonkeyPatch, *scenes: Scene) -> list[object]:
+    """The figures of all panels in one column each."""
+    figures = []
+    monkeypatch.setattr(style, "save", lambda fig, stem: figures.append(fig) or [stem])
+    style.use_style()
+    for one in scenes:
+        paper.draw(Path("x"), [one], paper.PAPERS + paper.OTHERS, False)
+    return figures
+
+
+def test_nothing_is_cut_off_and_no_power_of_ten_stands_over_a_title(monkeypatch: pytest.MonkeyPatch) -> None:
+    flat = scene(theta=1.2 + 1e-15 * np.sin(99 * TIME), X_O=3e5 + 1e-9 * TIME, phi_dot=-31234.5, psi_dot=1e-15 * TIME)
+    fast = scene(s=0.03, theta=1.2 + 1e-3 * np.sin(300 * TIME), phi_dot=-60.0 + 1e-4 * np.sin(300 * TIME))
+    for fig in drawn(monkeypatch, flat, fast):
+        for ax in fig.axes:
+            outer = ax.get_tightbbox()
+            assert fig.bbox.x0 <= outer.x0 and outer.x1 <= fig.bbox.x1
+            assert not ax.yaxis.get_offset_text().get_text() and not ax.xaxis.get_offset_text().get_text()
+        tilt = fig.axes[1].get_ylim()
+        assert 1e-4 < np.ptp(tilt) < 0.1  # neither noise nor 0 to 90 deg
+        fig.axes[0].set_position([0.01, 0.8, 0.5, 0.1])  # the partner
+        assert fig.axes[0].get_tightbbox().x0 < fig.bbox.x0
+
+
+DIFFERENT = {"Boolean": 1.0, "Integer": 2.0, "Real": 0.25}
+
+
+@pytest.mark.parametrize("name", sorted({*paper.SETTINGS} - {"s"}))
+def test_a_caption_lists_whatever_is_not_the_papers(name: str) -> None:
+    other = scene(0.03, **{name: DIFFERENT[paper.SETTINGS[name].type]})
+    assert f"{name} = " in " ".join(paper.caption([other], paper.PAPERS, 150)).replace(paper.NO_BREAK, " ")
+    assert not paper.is_paper([other, other])
+
+
+def test_figure_numbers_and_file_names_of_the_paper_belong_to_its_two_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
+    stems: list[str] = []
+    monkeypatch.setattr(paper, "draw", lambda stem, *_: stems.append(stem.name) or [])
+    papers = [scene(), scene(0.03)]
+    longer = [scene(s, time=2 * TIME) for s in (0.0, 0.03)]
+    paper.draw_all(papers, Path("results"))
+    assert "paper_diagrams" in stems and {f"fig_{n}" for n in range(1, 7)} < {*stems}
+    of_paper = {*stems}
+    stems.clear()
+    for others in (longer, [scene(), scene(0.02)], [scene(slope=0.1), scene(0.03, slope=0.1)]):
+        paper.draw_all(others, Path("results"))
+    assert "diagrams" in stems and not of_paper & {*stems}
+    assert "Fig" in paper.heading(paper.PAPERS[0], papers[0], True)
+    assert "Fig" not in paper.heading(paper.PAPERS[0], papers[0], False)
+    assert "stop_time = 20 s" in " ".join(paper.unlike_paper(longer[0]))
+
+
+NO_ARC: dict[str, Callable[[], Scene]] = {
+    "it drifts": lambda: scene(psi_dot=2 / SWING**2 + 0.1 * TIME),
+    "it falls once": lambda: scene(theta=1.0 - TIME / 20),
+    "fro is another way than to": lambda: scene(psi_dot=2 / SWING**2 + 0.5 * np.sin(3 * TIME)),
+}
+
+
+@pytest.mark.parametrize("why", NO_ARC)
+def test_the_rates_lie_on_one_arc_only_where_the_data_say_so(why: str) -> None:
+    assert scene().one_arc
+    assert not NO_ARC[why]().one_arc
+
+
+def scene_of(folder: Path, last: float, said: str) -> Path:
+    path = folder / "free.csv"
+    path.write_text(f"time,theta\n0,1\n{last},1\n")
+    path.with_suffix(".log").write_text(said)
+    return path
+
+
+def test_the_caption_names_the_end_of_a_run(tmp_path: Path) -> None:
+    said = "[WARNING] The wheel fell flat at t = 0.5927504146949162 s: the model ends there.\n"
+    path = scene_of(tmp_path, 0.59, said)
+    assert read_scene(path, ("time", "theta")).ending == "fell flat at $t$ = 0.593 s"
+    assert read_scene(scene_of(tmp_path, 10, ""), ("time", "theta")).ending == ""
+    with pytest.raises(SceneError, match="no motion to draw: the wheel fell flat"):
+        read_scene(scene_of(tmp_path, 0, said), ("time", "theta"))
