@@ -5,7 +5,6 @@ data for docs/results/studies.md, one row for each time that it was started and 
 """
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -23,8 +22,3 @@ study = Study(
 def table(results: xr.Dataset) -> pd.DataFrame:
     """One row for each time that the study was started and not killed."""
     return pd.DataFrame(json.loads(results.attrs["sessions"]))
-
-
-def draw(rows: pd.DataFrame, stem: Path) -> list[Path]:
-    """No picture."""
-    return []

@@ -12,10 +12,10 @@ import sys
 import tempfile
 import time
 import uuid
-from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
+from functools import partial
 from math import prod
 from pathlib import Path
 from resource import RUSAGE_SELF, getrusage
@@ -24,7 +24,7 @@ import dask
 import numpy as np
 import xarray as xr
 import zarr
-from distributed import Client, Future, LocalCluster, as_completed
+from distributed import Client, LocalCluster, as_completed
 from distributed.scheduler import KilledWorker
 from fmpy import read_model_description
 from fsspec.core import url_to_fs
@@ -37,14 +37,14 @@ from .plan import Study
 from .results import open_results
 from .runs import Result
 from .store import MARK, Region, kept, missing, write
-from .worker import Errand, pace, pack, run_chunk
+from .worker import Errand, pack, run_chunk
 
 SECONDS = 1.0  # of work in a chunk, a thousand times the caller's time to hand it out
 RATE = 50  # chunks per second that the caller hands out at most: with more than 50 workers chunks are longer
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
-AHEAD = 2  # chunks per worker on their way
+TRIED = 32  # wheels by which a chunk's size is chosen
 PIECES = 16  # a chunk during which a worker died is divided into so many
-LOST = 60  # s without any worker after which a study gives up
+PATIENCE = 60  # s for the first worker to appear
 # Workers that a LocalCluster starts ignore Ctrl-C, which is for the caller; Dask runs this text in each of them.
 DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 
@@ -84,15 +84,18 @@ def run(
         errand = Errand(f"wheel-{sha256[:16]}.zip", study.common(), place, uuid.uuid4().hex)
         with tempfile.TemporaryDirectory() as folder:
             user.upload_file(str(pack(content, Path(folder) / errand.upload)))
-        size = workers_of(user)
+        try:
+            user.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError:
+            raise StudyError(f"There has been no worker for {PATIENCE} s.") from None
         if group is None:
-            wheels = chunk or chunk_size(user, size, study, errand)
+            wheels = chunk or chunk_size(user, len(user.nthreads()), study, errand)
             empty = template(study, description, wheels, provenance(study, description, sha256))
             empty.to_zarr(place, mode="w", compute=False, consolidated=False, zarr_format=3)
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = errand.mark
-        Caller(user, study, group, errand, work).run(quiet)
+        Caller(user, study, group, errand, partial(work, errand)).run(quiet)
     return open_results(place)
 
 
@@ -104,7 +107,7 @@ class Caller:
     study: Study
     group: zarr.Group
     errand: Errand
-    work: Callable[[Errand, Region, dict], Result | None]
+    task: Callable[[Region, dict], Result | None]
 
     def run(self, quiet: bool) -> None:
         """All missing chunks, with a progress bar; notes at the end, whatever its reason, the cost of this session."""
@@ -125,25 +128,19 @@ class Caller:
 
     def finished(self) -> Iterator[Region]:
         """The missing chunks as they are finished; those that killed a worker come last, in ever smaller pieces."""
-        waiting, running, deadly, coming = deque(missing(self.group)), {}, [], as_completed()
-        while waiting or running:
-            for _ in range(min(len(waiting), AHEAD * workers_of(self.client) - len(running))):
-                region = waiting.popleft()
-                running[future := self.submit(region)] = region
-                coming.add(future)
-            for future in arrived(self.client, coming):
-                region = running.pop(future)
-                if isinstance(future.exception(), KilledWorker):
-                    deadly.append(region)
-                else:
-                    self.keep(region, future.result())
-                    yield region
+        regions, deadly = missing(self.group), []
+        points = [self.study.points(region) for region in regions]
+        running = dict(zip(self.client.map(self.task, regions, points, pure=False), regions, strict=True))
+        for future in as_completed(list(running)):
+            region = running.pop(future)
+            if isinstance(future.exception(), KilledWorker):
+                deadly.append(region)
+            else:
+                self.keep(region, future.result())
+                yield region
         for region in deadly:
             self.narrow(region)
             yield region
-
-    def submit(self, region: Region) -> Future:
-        return self.client.submit(self.work, self.errand, region, self.study.points(region), pure=False)
 
     def keep(self, region: Region, result: Result | None) -> None:
         """Writes the results that the worker could not write."""
@@ -158,7 +155,7 @@ class Caller:
 
     def narrow(self, region: Region) -> None:
         """Runs a region during which a worker died, alone, then in pieces, until the wheels that kill it are known."""
-        future = self.submit(region)
+        future = self.client.submit(self.task, region, self.study.points(region), pure=False)
         if not isinstance(future.exception(), KilledWorker):
             self.keep(region, future.result())
         elif count(region) == 1:
@@ -198,36 +195,15 @@ def chunk_seconds(workers: int) -> float:
 def chunk_size(client: Client, workers: int, study: Study, errand: Errand) -> int:
     """Wheels in a chunk, by the time that a worker takes for some of them, drawn at random."""
     lengths = tuple(study.shape.values())
-    total = prod(lengths)
-    some = np.unravel_index(np.random.default_rng(0).choice(total, min(total, 256), replace=False), lengths)
+    total, history = prod(lengths), 8 * len(study.times) * len(study.history)  # wheels; bytes
+    some = np.unravel_index(np.random.default_rng(0).choice(total, min(total, TRIED), replace=False), lengths)
     points = {name: values[k] for (name, values), k in zip(study.axes.items(), some * len(study.axes), strict=False)}
-    trial = client.submit(pace, errand, points, SECONDS / 10, pure=False)
+    trial = client.submit(run_chunk, errand, (), points, pure=False)  # before there is a store that it might write to
     if isinstance(trial.exception(), KilledWorker):
         return FEWEST
-    history = 8 * len(study.times) * len(study.history)  # bytes
-    most = min(total // (4 * workers), LARGEST // max(history, 1))
-    return max(FEWEST, min(int(chunk_seconds(workers) / trial.result()), most))
-
-
-def workers_of(client: Client) -> int:
-    """The number of workers; StudyError if there has been none for LOST seconds."""
-    if not (there := len(client.nthreads())):
-        try:
-            client.wait_for_workers(1, timeout=LOST)
-        except TimeoutError:
-            raise StudyError(f"There has been no worker for {LOST} s; the same command continues from here.") from None
-    return max(there, 1)
-
-
-def arrived(client: Client, coming: as_completed) -> list[Future]:
-    """The chunks that have arrived, at least one."""
-    since = time.monotonic()
-    while not coming.has_ready():
-        time.sleep(0.005)
-        if time.monotonic() - since > LOST:
-            workers_of(client)
-            since = time.monotonic()
-    return list(coming.next_batch(block=False))
+    seconds = float(np.nanmean(trial.result()["wall_time"]))
+    most = min(total // (4 * workers), LARGEST // max(history, 1), int(chunk_seconds(workers) / seconds))
+    return max(FEWEST, most)
 
 
 @contextmanager

@@ -14,7 +14,6 @@ from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
 from threading import Lock
-from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
@@ -52,18 +51,6 @@ def run_chunk(errand: Errand, region: tuple[slice, ...], points: Points) -> Resu
     except Exception:  # noqa: BLE001 - no zarr, folder, permission, network or space: the caller tries, and reports
         return result
     return None
-
-
-def pace(errand: Errand, points: Points, seconds: float) -> float:
-    """Seconds per wheel, of as many of these as run in that time."""
-    with _turn:
-        runner, begin, took = runner_of(errand.upload), perf_counter(), []
-        for wheel in zip(*points.values(), strict=True):
-            one = {name: np.array([value]) for name, value in zip(points, wheel, strict=True)}
-            took.append(runner.run_block(errand.study, one)["wall_time"][0])
-            if perf_counter() - begin > seconds:
-                break
-    return float(np.mean(took))
 
 
 def runner_of(upload: str) -> Runner:

@@ -17,11 +17,7 @@ from support.bounds import EPSILON, absolute_error, beyond, relative_error, with
 
 def test_each_fate_is_a_status_with_the_words_of_the_fmu(runner: Runner) -> None:
     study = Study(
-        list={
-            "theta_start": [1.3, 1.3, 0.26, 4.0, 1.3],
-            "phi_dot_start": [-2, 0, -40, -2, -2],
-            "s": [0, 0, 0.03, 0, -1],
-        },
+        list={"theta_start": [1.3, 1.3, 0.26, 4, 1.3], "phi_dot_start": [-2, 0, -40, -2, -2], "s": [0, 0, 0.03, 0, -1]},
         measures={"lowest": "min(theta)"},
     )
     result = single(runner, study)

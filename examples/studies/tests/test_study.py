@@ -17,6 +17,8 @@ from studies_support import ROOT, as_one_worker, command, same
 from study import Status, Study, StudyError, compute, curves, in_degrees
 from study.__main__ import study_file
 from study.compute import run
+from study.layout import measured
+from study.measures import parse_measure
 from study.options import arguments_of, fields_of
 from study.results import open_results
 from study.runs import Result, Runner
@@ -75,9 +77,6 @@ def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(fates: Stu
     assert set(results.attrs) >= {"fmu_sha256", "fmu_version", "fmu_guid", "seed", "numpy_version", "study"}
     begun = results.sel(theta_start=np.radians(75.0), s=0.03, phi_dot_start=-2.0)
     assert float(begun["theta"][0]) == np.radians(75.0)
-    with pytest.raises(StudyError, match=r"another study .* \(--out\).* overwrite=True"):
-        run(Study(grid={"s": [0.0]}), here, fmu=fmu_path, quiet=True)
-    assert same(results, run(fates, here, fmu=fmu_path, scheduler="tcp://nobody:1", quiet=True))  # nothing left to run
 
 
 def test_labels_are_short_and_the_description_is_kept(here: Path) -> None:
@@ -89,6 +88,8 @@ def test_labels_are_short_and_the_description_is_kept(here: Path) -> None:
     assert labels["down"] == "first(θ < 0.5)"
     assert max(map(len, labels.values())) <= 30
     assert "upright" in results["theta_start"].attrs["description"]
+    lowest = measured(parse_measure("lowest"), results["theta_start"].attrs)["description"]
+    assert lowest.startswith("Angle of the wheel's plane to the ground") and "smallest" in lowest
     turned = in_degrees(results)
     assert turned["theta_start"].attrs["units"] == turned["lowest"].attrs["units"] == "deg"
     within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "degrees, relative")
@@ -106,10 +107,13 @@ def test_a_legend_stands_beside_the_curves(here: Path) -> None:
     plt.close(figure)
 
 
-def test_only_a_study_is_overwritten(fmu_path: Path, tmp_path: Path) -> None:
+def test_another_study_is_overwritten_on_request_and_nothing_else(fmu_path: Path, crew: Client, tmp_path: Path) -> None:
+    how = {"fmu": fmu_path, "client": crew, "quiet": True, "overwrite": True}
+    for s in (0.0, 0.01):
+        assert Study(grid={"s": [s]}, stop_time=1.0).run(tmp_path / "one.zarr", **how)["s"].item() == s
     (tmp_path / "thesis.tex").write_text("years of work")
     with pytest.raises(StudyError, match="is not a Zarr group"):
-        run(Study(grid={"s": [0.0]}), tmp_path, fmu=fmu_path, overwrite=True, scheduler="tcp://nobody:1")
+        Study(grid={"s": [0.0]}).run(tmp_path, **how)
     assert (tmp_path / "thesis.tex").exists()
 
 
@@ -125,22 +129,19 @@ def test_a_cluster_elsewhere_gives_bit_identical_results(
     assert same(found, open_results(here))
 
 
-def test_the_caller_writes_for_workers_that_do_not_see_its_store(
-    fates: Study, here: Path, fmu_path: Path, crew: Client, tmp_path: Path
+def test_results_are_bit_identical_wherever_they_are_kept_and_whoever_writes_them(
+    fates: Study, here: Path, fmu_path: Path, crew: Client, bucket: str, tmp_path: Path
 ) -> None:
-    out = tmp_path / "sent.zarr"
-    assert same(run(fates, out, fmu=fmu_path, client=crew, quiet=True, work=without_the_store), open_results(here))
-
-
-def test_workers_write_into_an_object_store(
-    fates: Study, here: Path, fmu_path: Path, crew: Client, bucket: str
-) -> None:
-    out = f"{bucket}/fates.zarr"
-    stored = run(fates, out, fmu=fmu_path, client=crew, quiet=True, chunk=8, work=written_by_workers)
-    assert same(stored, open_results(here))
-    assert same(run(fates, out, fmu=fmu_path, scheduler="tcp://nobody:1", quiet=True), stored)  # nothing left to run
-    with pytest.raises(StudyError, match="another study"):
-        run(Study(grid={"s": [0.0]}), out, fmu=fmu_path, quiet=True)
+    """Written by the caller into a folder that workers do not see, and by workers into an object store."""
+    places = {str(tmp_path / "sent.zarr"): without_the_store, f"{bucket}/fates.zarr": written_by_workers}
+    for out, work in places.items():
+        stored = run(fates, out, fmu=fmu_path, client=crew, quiet=True, chunk=8, work=work)
+        assert same(stored, open_results(here))
+        assert same(
+            run(fates, out, fmu=fmu_path, scheduler="tcp://nobody:1", quiet=True), stored
+        )  # nothing left to run
+        with pytest.raises(StudyError, match=r"another study .* \(--out\).* overwrite=True"):
+            run(Study(grid={"s": [0.0]}), out, fmu=fmu_path, quiet=True)
 
 
 def test_a_list_is_cut_into_chunks_of_its_rows(fmu_path: Path, crew: Client, tmp_path: Path) -> None:
@@ -155,10 +156,10 @@ def test_a_list_is_cut_into_chunks_of_its_rows(fmu_path: Path, crew: Client, tmp
     np.testing.assert_array_equal(turned["theta_end"][::-1], results["theta_end"])
 
 
-def test_a_study_without_workers_says_so(
+def test_a_study_without_workers_ends_with_a_message(
     fates: Study, fmu_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(compute, "LOST", 1.0)
+    monkeypatch.setattr(compute, "PATIENCE", 1.0)
     with (
         LocalCluster(n_workers=0, processes=False, dashboard_address=None) as nobody,
         Client(nobody) as client,
@@ -167,7 +168,7 @@ def test_a_study_without_workers_says_so(
         run(fates, tmp_path / "nobody.zarr", fmu=fmu_path, client=client, quiet=True)
 
 
-def test_the_command_exports_tables_and_says_in_a_sentence_what_is_wrong(fmu_path: Path, tmp_path: Path) -> None:
+def test_the_command_reads_a_list_and_exports_tables(fmu_path: Path, tmp_path: Path) -> None:
     starts = tmp_path / "starts.csv"
     starts.write_text("theta_start,phi_dot_start\n75deg,-2\n1.2,0\n")
     out = ("--fmu", fmu_path, "--out", tmp_path / "list.zarr")
@@ -196,9 +197,8 @@ def test_the_command_exports_tables_and_says_in_a_sentence_what_is_wrong(fmu_pat
 def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> None:
     """Isolated, so without any installed package, as scripts/help asks before anything is built."""
     options = ROOT / "examples" / "studies" / "study" / "options.py"
-    told = subprocess.run(
-        [sys.executable, "-I", "-S", options, *words.split()], capture_output=True, text=True, check=False
-    )
+    isolated = [sys.executable, "-I", "-S", options, *words.split()]
+    told = subprocess.run(isolated, capture_output=True, text=True, check=False)
     assert told.returncode == 2
     assert told.stderr.startswith(f"study: {message}")
     assert len(told.stderr.splitlines()) == 1
