@@ -38,9 +38,7 @@ def main(argv: list[str] | None = None) -> int:
         print(f"study: {fault}", file=sys.stderr)
         return 2
     except OSError as fault:  # a full disk, or one that cannot be reached any more
-        print(
-            f"study: {fault}; results so far are kept; the same command continues from here.", file=sys.stderr
-        )
+        print(f"study: {fault}; results so far are kept; the same command continues from here.", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("study: stopped; the same command continues from here.", file=sys.stderr)

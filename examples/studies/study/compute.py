@@ -1,6 +1,6 @@
 """Runs a study with Dask: a LocalCluster, or the cluster behind a scheduler's address.
 
-The caller hands out chunks, about a second of work each. Workers write the results themselves where they reach the
+The caller hands out chunks, about two seconds of work each. Workers write the results themselves where they reach the
 store; else the results come back, and the caller writes them.
 """
 
@@ -39,8 +39,8 @@ from .runs import Result
 from .store import MARK, Region, kept, missing, write
 from .worker import Errand, pack, run_chunk
 
-SECONDS = 1.0  # of work in a chunk, a thousand times the caller's time to hand it out
-RATE = 50  # chunks per second that the caller hands out at most: with more than 50 workers chunks are longer
+SECONDS = 2.0  # of work in a chunk, a thousand times the caller's time to hand it out
+RATE = 50  # chunks per second that the caller hands out at most: with more than 100 workers chunks are longer
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
 TRIED = 32  # wheels by which a chunk's size is chosen
 PIECES = 16  # a chunk during which a worker died is divided into so many
@@ -67,7 +67,7 @@ def run(
     workers    processes of the LocalCluster; all cores if None
     scheduler  address of a running Dask scheduler, tcp://host:port, instead of a LocalCluster
     client     an open Dask client, instead of both; it stays open
-    chunk      wheels that are run and written together; about a second of work if None
+    chunk      wheels that are run and written together; about two seconds of work if None
     overwrite  discards the results that are there, also those of another study
     work       run by a worker for each chunk; for tests
     """
