@@ -37,7 +37,7 @@ from .plan import Study
 from .results import open_results
 from .runs import Result
 from .store import MARK, Region, kept, missing, write
-from .worker import Errand, pack, run_chunk
+from .worker import Points, pack, run_chunk
 
 SECONDS = 2.0  # of work in a chunk, a thousand times the caller's time to hand it out
 RATE = 50  # chunks per second that the caller hands out at most: with more than 100 workers chunks are longer
@@ -60,7 +60,7 @@ def run(
     chunk: int | None = None,
     overwrite: bool = False,
     quiet: bool = False,
-    work: Callable[[Errand, Region, dict], Result | None] = run_chunk,
+    work: Callable[..., Result | None] = run_chunk,
 ) -> xr.Dataset:
     """Runs the wheels that are missing in `out`, a folder or a URL, and returns the results.
 
@@ -81,21 +81,22 @@ def run(
     if group and not missing(group):
         return open_results(place)
     with nullcontext(client) if client else cluster(workers, scheduler) as user:
-        errand = Errand(f"wheel-{sha256[:16]}.zip", study.common(), place, uuid.uuid4().hex)
+        upload, mark = f"wheel-{sha256[:16]}.zip", uuid.uuid4().hex
+        task = partial(work, upload, study.common(), place, mark)
         with tempfile.TemporaryDirectory() as folder:
-            user.upload_file(str(pack(content, Path(folder) / errand.upload)))
+            user.upload_file(str(pack(content, Path(folder) / upload)))
         try:
             user.wait_for_workers(1, timeout=PATIENCE)
         except TimeoutError:
             raise StudyError(f"There has been no worker for {PATIENCE} s.") from None
         if group is None:
-            wheels = chunk or chunk_size(user, len(user.nthreads()), study, errand)
+            wheels = chunk or chunk_size(user, study, task)
             empty = template(study, description, wheels, provenance(study, description, sha256))
             empty.to_zarr(place, mode="w", compute=False, consolidated=False, zarr_format=3)
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
-        group.attrs[MARK] = errand.mark
-        Caller(user, study, group, errand, partial(work, errand)).run(quiet)
+        group.attrs[MARK] = mark
+        Caller(user, study, group, task, place, mark).run(quiet)
     return open_results(place)
 
 
@@ -106,8 +107,9 @@ class Caller:
     client: Client
     study: Study
     group: zarr.Group
-    errand: Errand
-    task: Callable[[Region, dict], Result | None]
+    task: Callable[[Region, Points], Result | None]
+    place: str
+    mark: str
 
     def run(self, quiet: bool) -> None:
         """All missing chunks, with a progress bar; notes at the end, whatever its reason, the cost of this session."""
@@ -146,10 +148,10 @@ class Caller:
         """Writes the results that the worker could not write."""
         if result is not None:
             try:
-                write(self.errand.place, self.errand.mark, region, result)
+                write(self.place, self.mark, region, result)
             except Exception as fault:
                 raise StudyError(
-                    f"{self.errand.place} cannot be written ({fault}). The results so far are kept; "
+                    f"{self.place} cannot be written ({fault}). The results so far are kept; "
                     "the same command continues from here."
                 ) from fault
 
@@ -169,7 +171,7 @@ class Caller:
 
     def note(self, took: dict[str, float]) -> None:
         """Adds a session to the attributes of the store: its work, and the memory and disk [MB] by its end."""
-        files, root = url_to_fs(self.errand.place)
+        files, root = url_to_fs(self.place)
         memory = self.client.run(peak_memory).values()
         took |= {"workers": len(memory), "caller_MB": peak_memory(), "worker_MB": max(memory, default=0)}
         took["disk_MB"] = files.du(root) // 1_000_000
@@ -192,13 +194,13 @@ def chunk_seconds(workers: int) -> float:
     return max(SECONDS, workers / RATE)
 
 
-def chunk_size(client: Client, workers: int, study: Study, errand: Errand) -> int:
+def chunk_size(client: Client, study: Study, task: Callable[[Region, Points], Result | None]) -> int:
     """Wheels in a chunk, by the time that a worker takes for some of them, drawn at random."""
-    lengths = tuple(study.shape.values())
+    lengths, workers = tuple(study.shape.values()), len(client.nthreads())
     total, history = prod(lengths), 8 * len(study.times) * len(study.history)  # wheels; bytes
     some = np.unravel_index(np.random.default_rng(0).choice(total, min(total, TRIED), replace=False), lengths)
     points = {name: values[k] for (name, values), k in zip(study.axes.items(), some * len(study.axes), strict=False)}
-    trial = client.submit(run_chunk, errand, (), points, pure=False)  # before there is a store that it might write to
+    trial = client.submit(task, (), points, pure=False)  # no store has its mark yet, so the results come back
     if isinstance(trial.exception(), KilledWorker):
         return FEWEST
     seconds = float(np.nanmean(trial.result()["wall_time"]))

@@ -48,7 +48,7 @@ class Table:
     """Values of some variables for many wheels; a row goes to or comes from the FMU by one call per type."""
 
     def __init__(self, fmu: FMU2Instance, columns: Mapping[str, ArrayLike], rows: int) -> None:
-        self.names, self._fmu, self._parts, self._column = tuple(columns), fmu, [], {}
+        self._fmu, self._parts, self._column = fmu, [], {}
         for kind, number in KINDS.items():
             mine = [name for name in columns if fmu.variables[name].type == kind]
             if mine:
@@ -72,9 +72,9 @@ class Table:
             getattr(self._fmu, f"fmi2Get{kind}")(self._fmu.component, references, len(references), buffer)
             values[row] = row_of
 
-    def key(self, row: int) -> bytes:
+    def key(self, row: int) -> tuple:
         """Equal for rows of equal values."""
-        return b"".join(values[row].tobytes() for *_, values in self._parts)
+        return tuple((name, column[row]) for name, column in self._column.items())
 
 
 class FMU2Instance(FMU2Slave):

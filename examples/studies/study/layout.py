@@ -10,7 +10,7 @@ from importlib.metadata import version
 import dask.array as da
 import numpy as np
 import xarray as xr
-from fmpy.model_description import ModelDescription
+from fmpy.model_description import ModelDescription, ScalarVariable
 
 from .instance import Status, can_change, counters_of
 from .measures import PLANE_ANGLE, Measure
@@ -27,11 +27,12 @@ MEANING = {
     "mean": "mean over time",
 }
 PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
-OWN = {
-    "message": ("message", "Messages of the FMU"),
-    "end_time": ("end of the run", "Time at which the run ended"),
-    "wall_time": ("computing time", "Computing time of the run"),
-    "fmu_time": ("time in the FMU", "Part of wall_time spent in calls of the FMU"),
+OWN = {  # results of every study: empty value, type, unit, label, description
+    "status": (int(Status.not_computed), "i1", "", "fate", "Fate of the wheel"),
+    "message": ("", np.dtypes.StringDType(), "", "message", "Messages of the FMU"),
+    "end_time": (np.nan, "f8", "s", "end of the run", "Time at which the run ended"),
+    "wall_time": (np.nan, "f8", "s", "computing time", "Computing time of the run"),
+    "fmu_time": (np.nan, "f8", "s", "time in the FMU", "Part of wall_time spent in calls of the FMU"),
 }
 
 
@@ -45,40 +46,35 @@ def template(study: Study, description: ModelDescription, size: int, attributes:
     chunks = da.core.normalize_chunks(whole, tuple(study.shape.values()), limit=size, dtype="i1")
 
     def about(name: str) -> dict[str, str]:
-        v = variables[name]
-        return {
-            k: text
-            for k, text in (("units", v.unit), ("long_name", label(name)), ("description", v.description))
-            if text
-        }
+        return texts(variables[name].unit, label(name), variables[name].description)
 
-    def column(fill: object, texts: dict[str, object], dtype: object = "f8", timed: bool = False) -> xr.Variable:
+    def column(fill: object, dtype: object, attributes: dict[str, object], timed: bool = False) -> xr.Variable:
         lengths = (*study.shape.values(), *[len(study.times)] * timed)
         nothing = da.full(lengths, fill, dtype=dtype, chunks=(*chunks, *[-1] * timed))
-        return xr.Variable((*study.shape, *["time"] * timed), nothing, texts, {"fill_value": fill})
+        return xr.Variable((*study.shape, *["time"] * timed), nothing, attributes, {"fill_value": fill})
 
-    codes = [s for s in Status if s != Status.not_computed]
-    flags = {"flag_values": [int(s) for s in codes], "flag_meanings": " ".join(s.name for s in codes)}
-    texts = {name: {"long_name": short, "description": text} for name, (short, text) in OWN.items()}
-    fate = {"long_name": "fate", "description": "Fate of the wheel"}
-    columns = {name: column(np.nan, {"units": "s", **texts[name]}) for name in texts if name != "message"}
-    columns["message"] = column("", texts["message"], np.dtypes.StringDType())
-    columns["status"] = column(int(Status.not_computed), flags | fate, "i1")
-    columns |= {name: column(-1, about(name), "i8") for name in counters_of(description)}
-    columns |= {name: column(np.nan, measured(m, about(m.variable))) for name, m in study.parsed.items()}
-    columns |= {name: column(np.nan, about(name), timed=True) for name in study.history}
+    columns = {name: column(fill, dtype, texts(*about)) for name, (fill, dtype, *about) in OWN.items()}
+    fates = [status for status in Status if status != Status.not_computed]
+    columns["status"].attrs |= {"flag_values": [*map(int, fates)], "flag_meanings": " ".join(s.name for s in fates)}
+    columns |= {name: column(-1, "i8", about(name)) for name in counters_of(description)}
+    columns |= {name: column(np.nan, "f8", measured(m, variables[m.variable])) for name, m in study.parsed.items()}
+    columns |= {name: column(np.nan, "f8", about(name), timed=True) for name in study.history}
     coordinates = {n: (n if study.grid else POINT, axis, about(n)) for n, axis in study.axes.items()}
     if study.history:
         coordinates["time"] = ("time", study.times, {"units": "s", "long_name": "time"})
     return xr.Dataset(columns, coordinates, {"title": TITLE, **attributes})
 
 
-def measured(measure: Measure, variable: dict[str, str]) -> dict[str, str]:
-    """Unit, label and description of a measure, from those of its variable."""
-    quantity = PLANE if measure.quantity == PLANE_ANGLE else variable.get("description", "")
+def texts(unit: str | None, name: str, description: str | None) -> dict[str, str]:
+    """The attributes of a variable that are not empty."""
+    return {k: v for k, v in (("units", unit), ("long_name", name), ("description", description)) if v}
+
+
+def measured(measure: Measure, variable: ScalarVariable) -> dict[str, str]:
+    """Unit, label and description of a measure of that variable."""
+    quantity = PLANE if measure.quantity == PLANE_ANGLE else variable.description
     meaning = MEANING.get(measure.kind) or f"first time {'below' if measure.kind == '<' else 'above'} {measure.limit:g}"
-    units = {"units": "s"} if measure.is_time else {k: v for k, v in variable.items() if k == "units"}
-    return units | {"long_name": label(measure.text), "description": f"{quantity}; {meaning}"}
+    return texts("s" if measure.is_time else variable.unit, label(measure.text), f"{quantity}; {meaning}")
 
 
 def label(text: str) -> str:
@@ -100,14 +96,7 @@ def provenance(study: Study, description: ModelDescription, fmu_sha256: str) -> 
     """All that is needed to repeat the study: its definition, its seed, the FMU's hash, and versions."""
     spec = study.spec()
     spec.pop("axes")
-    packages = ("fmpy", "numpy", "dask", "xarray", "zarr")
-    return {
-        "fmu_sha256": fmu_sha256,
-        "fmu_guid": description.guid,
-        "fmu_version": description.version or "",
-        "seed": study.seed,
-        "study": json.dumps(spec),
-        "python_version": platform.python_version(),
-        "platform": f"{platform.system()} {platform.machine()}",
-        **{f"{name}_version": version(name) for name in packages},
-    }
+    versions = {f"{name}_version": version(name) for name in ("fmpy", "numpy", "dask", "xarray", "zarr")}
+    versions |= {"python_version": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
+    fmu = {"fmu_sha256": fmu_sha256, "fmu_guid": description.guid, "fmu_version": description.version or ""}
+    return fmu | {"seed": study.seed, "study": json.dumps(spec)} | versions

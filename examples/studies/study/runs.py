@@ -85,7 +85,7 @@ class Runner:
         fmu = self.instance
         if study.branch_at is None:
             return fmu.begin(early, i, study.tolerance)
-        key = (study.branch_at, study.tolerance, early.names, early.key(i))
+        key = (study.branch_at, study.tolerance, early.key(i))
         if self._shared and self._shared[0] == key:
             _, status, end, messages = self._shared
             fmu.messages = [*messages]

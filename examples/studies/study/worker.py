@@ -14,7 +14,6 @@ from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
 from threading import Lock
-from typing import NamedTuple
 
 import numpy as np
 from distributed import get_worker
@@ -31,23 +30,19 @@ _runners: dict[str, Runner] = {}  # by the name of the uploaded file; one proces
 _turn = Lock()  # a worker's threads take turns at the instance
 
 
-class Errand(NamedTuple):
-    """The same for all chunks of a study: the uploaded file, the study without its axes, the store and its mark."""
+def run_chunk(
+    upload: str, study: Study, place: str, mark: str, region: tuple[slice, ...], points: Points
+) -> Result | None:
+    """Runs the wheels of a chunk and writes them; returns the results that could not be written from here.
 
-    upload: str
-    study: Study
-    place: str
-    mark: str
-
-
-def run_chunk(errand: Errand, region: tuple[slice, ...], points: Points) -> Result | None:
-    """Runs the wheels of a chunk and writes them; returns the results that could not be written from here."""
+    upload: name of the uploaded file; study: without its axes; place, mark: of the caller's store.
+    """
     with _turn:
-        result = runner_of(errand.upload).run_block(errand.study, points)
+        result = runner_of(upload).run_block(study, points)
     try:
         from .store import write
 
-        write(errand.place, errand.mark, region, result)
+        write(place, mark, region, result)
     except Exception:  # noqa: BLE001 - no zarr, folder, permission, network or space: the caller tries, and reports
         return result
     return None

@@ -62,7 +62,7 @@ def fates() -> Study:
             "s": [0.0, 0.03],
             "phi_dot_start": [-2, 0.0, -6.0, -40.0],
         },
-        measures={"lowest": "min(theta)", "down": "first(theta < 0.5)", "energy": "E"},
+        measures={"plane": "lowest", "lowest": "min(theta)", "down": "first(theta < 0.5)", "energy": "E"},
         history=["theta", "X_O"],
         stop_time=5.0,
         interval=0.05,

@@ -64,26 +64,32 @@ def workers_of(process: subprocess.Popen) -> list[psutil.Process]:
     return [p for p in psutil.Process(process.pid).children(recursive=True) if "spawn_main" in " ".join(p.cmdline())]
 
 
-@pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGINT])
-def test_a_study_whose_caller_and_then_a_worker_are_stopped_continues_where_it_was(
-    many: Path, fmu_path: Path, runner: Runner, ending: int
-) -> None:
-    out = many.with_suffix(".zarr")
-    words = (many, "--fmu", fmu_path, "--out", out, "--workers", 2)
-    process = command(*words, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
-    until(lambda: chunks(out), "no chunk was written")
+def stopped(words: tuple, out: Path, ending: int) -> str:
+    """Runs the command until it has written a chunk, and stops it; its workers end too. What it printed as errors."""
+    before, interruptible = chunks(out), lambda: signal.signal(signal.SIGINT, signal.default_int_handler)
+    process = command(*words, preexec_fn=interruptible)
+    until(lambda: len(chunks(out)) > len(before), "no chunk was written")
     workers = workers_of(process)
     os.kill(process.pid, ending)
     _, errors = process.communicate(timeout=60)
-    if ending == signal.SIGINT:
-        assert process.returncode == 130 and errors.splitlines()[-1].startswith("study: stopped; the same command")
+    assert process.returncode == {signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}[ending]
     assert len(workers) == 2
     assert not psutil.wait_procs(workers, timeout=30)[1]
+    assert before.items() <= chunks(out).items()
+    return errors
+
+
+def test_a_study_continues_where_it_was_after_an_interrupt_a_killed_caller_and_a_killed_worker(
+    many: Path, fmu_path: Path, runner: Runner
+) -> None:
+    out = many.with_suffix(".zarr")
+    words = (many, "--fmu", fmu_path, "--out", out, "--workers", 2)
+    assert stopped(words, out, signal.SIGINT).splitlines()[-1].startswith("study: stopped; the same command continues")
+    stopped(words, out, signal.SIGKILL)
     status = open_results(out)["status"].values
     done = int((status != Status.not_computed).sum())
     assert 0 < done < status.size
     kept = chunks(out)
-
     process = command(*words)
     until(lambda: len(chunks(out)) > len(kept), "it did not continue")
     workers_of(process)[0].kill()
@@ -118,11 +124,11 @@ def test_a_full_disk_is_a_message_and_the_study_continues_when_there_is_space(
     assert as_one_worker(runner, study_file(str(many))["study"], open_results(out))
 
 
-def die_at_upright(errand: object, region: object, points: dict[str, np.ndarray]) -> Result | None:
+def die_at_upright(*task: object) -> Result | None:
     """As a worker does it, but the process dies where a wheel starts at exactly 1.5 rad."""
-    if (points["theta_start"] == 1.5).any():
+    if (task[-1]["theta_start"] == 1.5).any():
         os._exit(1)
-    return run_chunk(errand, region, points)
+    return run_chunk(*task)
 
 
 def test_a_worker_that_dies_costs_one_wheel(fmu_path: Path, crew: Client, tmp_path: Path) -> None:

@@ -17,12 +17,10 @@ from studies_support import ROOT, as_one_worker, command, same
 from study import Status, Study, StudyError, compute, curves, in_degrees
 from study.__main__ import study_file
 from study.compute import run
-from study.layout import measured
-from study.measures import parse_measure
 from study.options import arguments_of, fields_of
 from study.results import open_results
 from study.runs import Result, Runner
-from study.worker import Errand, run_chunk
+from study.worker import run_chunk
 from support.bounds import EPSILON, relative_error, within
 
 GUIDE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
@@ -42,9 +40,9 @@ def written_by_workers(*task: object) -> None:
     assert run_chunk(*task) is None
 
 
-def without_the_store(errand: Errand, *chunk: object) -> Result | None:
+def without_the_store(upload: str, study: Study, _place: str, *task: object) -> Result | None:
     """As a worker does it that does not see the caller's store."""
-    return run_chunk(errand._replace(place="/nowhere"), *chunk)
+    return run_chunk(upload, study, "/nowhere", *task)
 
 
 def test_the_guide_keeps_its_promise_of_ten_lines() -> None:
@@ -88,8 +86,8 @@ def test_labels_are_short_and_the_description_is_kept(here: Path) -> None:
     assert labels["down"] == "first(θ < 0.5)"
     assert max(map(len, labels.values())) <= 30
     assert "upright" in results["theta_start"].attrs["description"]
-    lowest = measured(parse_measure("lowest"), results["theta_start"].attrs)["description"]
-    assert lowest.startswith("Angle of the wheel's plane to the ground") and "smallest" in lowest
+    plane = results["plane"].attrs["description"]
+    assert plane.startswith("Angle of the wheel's plane to the ground") and "smallest" in plane
     turned = in_degrees(results)
     assert turned["theta_start"].attrs["units"] == turned["lowest"].attrs["units"] == "deg"
     within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "degrees, relative")
