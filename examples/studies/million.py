@@ -1,7 +1,7 @@
-"""A million wheels in one study: how long it takes, and how much memory and disk.
+"""A study of 1000 x 1000 wheels: how long it takes, and how much memory and disk.
 
-`./scripts/study million` runs it, about a minute on two cores; stopped, it goes on where it was. `--publish` writes its
-data for docs/results/studies.md, one row for each time that it was started and not killed.
+`./scripts/study million` runs it, in one to three minutes on two cores. `--publish` writes the data of
+docs/studies.md, one row for each time that it was started and not killed.
 """
 
 import json

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from math import prod
 from pathlib import Path
 from resource import RUSAGE_SELF, getrusage
@@ -24,7 +25,7 @@ import dask
 import numpy as np
 import xarray as xr
 import zarr
-from distributed import Client, LocalCluster, as_completed
+from distributed import Client, Future, LocalCluster, as_completed
 from distributed.scheduler import KilledWorker
 from fmpy import read_model_description
 from fsspec.core import url_to_fs
@@ -42,6 +43,7 @@ from .worker import Points, pack, run_chunk
 SECONDS = 2.0  # of work in a chunk, a thousand times the caller's time to hand it out
 RATE = 50  # chunks per second that the caller hands out at most: with more than 100 workers chunks are longer
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
+AHEAD = 2  # chunks per worker on their way
 TRIED = 32  # wheels by which a chunk's size is chosen
 PIECES = 16  # a chunk during which a worker died is divided into so many
 PATIENCE = 60  # s for the first worker to appear
@@ -130,11 +132,18 @@ class Caller:
 
     def finished(self) -> Iterator[Region]:
         """The missing chunks as they are finished; those that killed a worker come last, in ever smaller pieces."""
-        regions, deadly = missing(self.group), []
-        points = [self.study.points(region) for region in regions]
-        running = dict(zip(self.client.map(self.task, regions, points, pure=False), regions, strict=True))
-        for future in as_completed(list(running)):
+        waiting, running, deadly, coming = iter(missing(self.group)), {}, [], as_completed(loop=self.client.loop)
+
+        def hand_out() -> None:
+            """Some chunks per worker are on their way; workers come and go."""
+            for region in islice(waiting, max(0, AHEAD * max(1, len(self.client.nthreads())) - len(running))):
+                running[future := self.submit(region)] = region
+                coming.add(future)
+
+        hand_out()
+        for future in coming:
             region = running.pop(future)
+            hand_out()
             if isinstance(future.exception(), KilledWorker):
                 deadly.append(region)
             else:
@@ -143,6 +152,9 @@ class Caller:
         for region in deadly:
             self.narrow(region)
             yield region
+
+    def submit(self, region: Region) -> Future:
+        return self.client.submit(self.task, region, self.study.points(region), pure=False)
 
     def keep(self, region: Region, result: Result | None) -> None:
         """Writes the results that the worker could not write."""
@@ -157,7 +169,7 @@ class Caller:
 
     def narrow(self, region: Region) -> None:
         """Runs a region during which a worker died, alone, then in pieces, until the wheels that kill it are known."""
-        future = self.client.submit(self.task, region, self.study.points(region), pure=False)
+        future = self.submit(region)
         if not isinstance(future.exception(), KilledWorker):
             self.keep(region, future.result())
         elif count(region) == 1:

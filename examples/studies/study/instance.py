@@ -1,7 +1,7 @@
 """One instance of wheel.fmu that runs one wheel after the other: fmi2Reset between runs, never a second instance.
 
-Built on fmpy's FMU2Slave. What is called for each wheel works on buffers that are prepared once for many wheels, and
-march.c steps along the communication points: fmpy's loops take longer than the wheel.
+Built on fmpy's FMU2Slave. The calls for each wheel use buffers that are prepared once for many wheels, and march.c
+steps along the communication points: fmpy's loops would take longer than the wheel.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the caller does with the results of a study: a labelled dataset, copies in other formats, a summary."""
+"""The results of a study for the caller: a labelled dataset, copies in other formats, a summary."""
 
 from __future__ import annotations
 

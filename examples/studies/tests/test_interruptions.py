@@ -65,7 +65,7 @@ def workers_of(process: subprocess.Popen) -> list[psutil.Process]:
 
 
 def stopped(words: tuple, out: Path, ending: int) -> str:
-    """Runs the command until it has written a chunk, and stops it; its workers end too. What it printed as errors."""
+    """Runs the command until it has written a chunk, and stops it; its workers end too. Returns stderr."""
     before, interruptible = chunks(out), lambda: signal.signal(signal.SIGINT, signal.default_int_handler)
     process = command(*words, preexec_fn=interruptible)
     until(lambda: len(chunks(out)) > len(before), "no chunk was written")

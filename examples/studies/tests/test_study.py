@@ -171,9 +171,9 @@ def test_the_command_reads_a_list_and_exports_tables(fmu_path: Path, tmp_path: P
     starts.write_text("theta_start,phi_dot_start\n75deg,-2\n1.2,0\n")
     out = ("--fmu", fmu_path, "--out", tmp_path / "list.zarr")
     process = command("--list", starts, *out, "--workers", 1, "--csv", "--netcdf", stdout=subprocess.PIPE)
-    told, _ = process.communicate(timeout=60)
+    printed, _ = process.communicate(timeout=60)
     assert process.returncode == 0
-    assert "1 flat" in told
+    assert "1 flat" in printed
     table = (tmp_path / "list.csv").read_text().splitlines()
     assert len(table) == 3
     assert table[0].startswith("wheel,")
@@ -196,7 +196,7 @@ def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> No
     """Isolated, so without any installed package, as scripts/help asks before anything is built."""
     options = ROOT / "examples" / "studies" / "study" / "options.py"
     isolated = [sys.executable, "-I", "-S", options, *words.split()]
-    told = subprocess.run(isolated, capture_output=True, text=True, check=False)
-    assert told.returncode == 2
-    assert told.stderr.startswith(f"study: {message}")
-    assert len(told.stderr.splitlines()) == 1
+    done = subprocess.run(isolated, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"study: {message}")
+    assert len(done.stderr.splitlines()) == 1
