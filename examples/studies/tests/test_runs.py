@@ -17,18 +17,22 @@ from support.bounds import EPSILON, absolute_error, beyond, relative_error, with
 
 
 def test_each_fate_is_a_status_with_the_message_of_the_fmu(runner: Runner) -> None:
-    study = Study(
-        list={"theta_start": [1.3, 1.3, 0.26, 4, 1.3], "phi_dot_start": [-2, 0, -40, -2, -2], "s": [0, 0, 0.03, 0, -1]},
-        measures={"lowest": "min(theta)"},
-    )
-    result = single(runner, study)
-    assert [Status(code).name for code in result["status"]] == ["reached", "flat", "lifted_off", "refused", "refused"]
-    for message, word in zip(result["message"], ("", "flat", "lifted off", "theta_start", "s"), strict=True):
-        assert word in message
-    assert (result["end_time"][:3] > 0).all()
+    wheels = [
+        ("reached", {}, ""),
+        ("flat", {"phi_dot_start": 0}, "flat"),
+        ("lifted_off", {"theta_start": 0.26, "phi_dot_start": -40, "s": 0.03}, "lifted off"),
+        ("grip", {"mu_max": 0.4}, "friction above mu_max"),
+        ("refused", {"theta_start": 4}, "theta_start"),
+        ("refused", {"s": -1}, "s"),
+    ]
+    usual = {"theta_start": 1.3, "phi_dot_start": -2, "s": 0, "mu_max": 0}
+    columns = {name: [(usual | changed)[name] for _, changed, _ in wheels] for name in usual}
+    result = single(runner, Study(list=columns, measures={"lowest": "min(theta)"}))
+    for k, (fate, _, words) in enumerate(wheels):
+        assert Status(result["status"][k]).name == fate
+        assert words in result["message"][k]
+        assert (result["n_steps"][k] > 0) == (result["end_time"][k] > 0) == (fate != "refused")
     assert result["end_time"][0] == 10
-    assert np.isnan(result["end_time"][3:]).all()
-    assert (result["n_steps"][:3] > 0).all()
 
 
 def test_a_wheel_of_a_study_moves_as_fmpy_simulates_it(runner: Runner, fmu_path) -> None:
