@@ -32,7 +32,7 @@ def table(results: xr.Dataset) -> xr.Dataset:
     return small
 
 
-def draw(small: xr.Dataset, stem: Path) -> list[Path]:
+def draw(small: xr.Dataset, stem: Path) -> Path:
     """Two maps: how far the wheel goes down, and in flat colours where the model ends."""
     text = "smallest angle to the ground within 10 s [deg]"
     fig, axes = two_maps(small, "smallest_angle", scaled("cividis", LEVELS), text, side="left")
@@ -45,4 +45,4 @@ def draw(small: xr.Dataset, stem: Path) -> list[Path]:
         ax.text(0.012, 45, "no spin: falls flat", **white)
         ax.text(upright_limit() * 0.82, 22, "limit of upright rolling", **white)
     axes[1].text(35, 9, "lifts\noff", **(white | {"rotation": 0, "linespacing": 0.9}))
-    return [style.save_png(fig, stem.with_suffix(".png"))]
+    return style.save_png(fig, stem.with_suffix(".png"))

@@ -32,7 +32,7 @@ def table(results: xr.Dataset) -> xr.Dataset:
     return small
 
 
-def draw(small: xr.Dataset, stem: Path) -> list[Path]:
+def draw(small: xr.Dataset, stem: Path) -> Path:
     """Two maps in steps, with a line at 0.8."""
     text = r"largest $\mu_\mathrm{required}$ within 10 s (white line: 0.8)"
     fig, axes = two_maps(small, "mu", scaled("viridis", LEVELS), text)
@@ -40,4 +40,4 @@ def draw(small: xr.Dataset, stem: Path) -> list[Path]:
     for ax, s in zip(axes, small["s"].values, strict=True):
         ax.contour(spin, angle, small["mu"].sel(s=s), levels=[DRY_ASPHALT], colors="white", linewidths=1.4)
         ax.set(xlim=(0, 12), xticks=range(0, 13, 2))
-    return [style.save_png(fig, stem.with_suffix(".png"))]
+    return style.save_png(fig, stem.with_suffix(".png"))

@@ -1,11 +1,10 @@
-"""A million wheels in one study: how long it takes, and how much memory and disk.
+"""A study of 1000 x 1000 wheels: how long it takes, and how much memory and disk.
 
-`./scripts/study million` runs it, about a minute on two cores; stopped, it goes on where it was. `--publish` writes its
-data for docs/results/studies.md, one row for each time that it was started and not killed.
+`./scripts/study million` runs it, in one to three minutes on two cores. `--publish` writes the data of
+docs/studies.md, one row for each time that it was started and not killed.
 """
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -23,8 +22,3 @@ study = Study(
 def table(results: xr.Dataset) -> pd.DataFrame:
     """One row for each time that the study was started and not killed."""
     return pd.DataFrame(json.loads(results.attrs["sessions"]))
-
-
-def draw(rows: pd.DataFrame, stem: Path) -> list[Path]:
-    """No picture."""
-    return []

@@ -34,7 +34,7 @@ def time_to_limit(spin: float, s: np.ndarray) -> np.ndarray:
     return (spin - upright_limit()) / slowing
 
 
-def draw(rows: pd.DataFrame, stem: Path) -> list[Path]:
+def draw(rows: pd.DataFrame, stem: Path) -> Path:
     """Time over s, one curve per spin, with the closed form dashed."""
     style.use_style()
     fig = style.figure_mm(116.0, 80.0)
@@ -56,4 +56,4 @@ def draw(rows: pd.DataFrame, stem: Path) -> list[Path]:
     ax.set_yticks([0.2, 0.5, 1, 2, 5, 10, 20, 50], ["0.2", "0.5", "1", "2", "5", "10", "20", "50"])
     ax.set_ylabel("time until it leans by 30° [s]")
     ax.set_title("solid: the wheel; dashed: spin down at the limit of upright rolling", fontsize=8.5)
-    return [style.save_png(fig, stem.with_suffix(".png"))]
+    return style.save_png(fig, stem.with_suffix(".png"))

@@ -1,4 +1,4 @@
-"""Runs examples/wheel.ipynb and keeps what its cells give: words and pictures, without run times and progress bars.
+"""Runs examples/wheel.ipynb and keeps the outputs of its cells: text and pictures, without run times and progress bars.
 
 python -m publishing.notebook: writes the notebook. The site shows it, and a test runs it again and compares.
 """
@@ -21,7 +21,7 @@ def executed(fmu: str = "../wheel.fmu", results: str = "../results") -> nbformat
     for cell, source in cells:
         cell.source = source.replace("../wheel.fmu", fmu).replace("../results", results)
     place = {"metadata": {"path": NOTEBOOK.parent}}
-    # What a cell prints comes in pieces, more of them on a busy machine: each stream becomes one.
+    # The output of a cell comes in pieces, more of them on a busy machine: each stream becomes one.
     NotebookClient(notebook, timeout=120, record_timing=False, coalesce_streams=True, resources=place).execute()
     for number, (cell, source) in enumerate(cells):
         cell.source, cell.metadata, cell.id = source, {}, f"cell-{number}"

@@ -47,7 +47,7 @@ def timed(what: str, wheels: int, folder: Path, client: object) -> tuple[float, 
 
 def speeds(report: Report) -> None:
     """one and two workers in turn"""
-    from study.crew import cluster
+    from study.compute import cluster
 
     rows: dict[tuple[str, int], list[tuple[float, ...]]] = {(what, n): [] for what in ASKED for n in (1, 2)}
     with TemporaryDirectory() as folder, cluster(1, None) as one, cluster(2, None) as two:
@@ -69,13 +69,13 @@ def speeds(report: Report) -> None:
 
 def estimate(table: pd.DataFrame, task: float) -> pd.DataFrame:
     """Wheels per second of many workers for each question, and how busy the caller would be."""
-    from study.compute import task_seconds
+    from study.compute import chunk_seconds
 
     rows = []
     for what in ASKED:
         one, two = table[table["asked"] == what]["wheels_per_s"]
         for workers in (10, 100, 1000):
-            busy = task * workers / task_seconds(workers)
+            busy = task * workers / chunk_seconds(workers)
             rows.append((what, workers, workers * one * min(1.0, two / (2 * one)) * min(1.0, 1 / busy), busy))
     return pd.DataFrame(rows, columns=["asked", "workers", "wheels_per_s", "caller_busy"])
 

@@ -1,4 +1,4 @@
-"""What the examples' figures share: two maps side by side, theta at the start over the spin at the start."""
+"""Shared by the examples' figures: two maps side by side, theta at the start over the spin at the start."""
 
 from __future__ import annotations
 
@@ -13,6 +13,11 @@ from diagrams import style
 
 PAPER = (2.0, 75.0)  # |phi_dot| in rad/s and theta in degrees of the paper's scenes
 HEIGHT = 92.0  # mm, of a figure
+FATES = {
+    Status.flat: style.INK,
+    Status.lifted_off: style.VERMILLION,
+    Status.grip: style.PURPLE,
+}  # where a run ends early
 WHEEL = {"m": 20.0, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_z": 1.8, "g": 9.81}  # SI; the FMU's defaults
 
 
@@ -53,10 +58,10 @@ def scaled(name: str, levels: list[float]) -> dict[str, object]:
 
 
 def fill(ax: Axes, one: xr.DataArray, status: xr.DataArray, look: dict[str, object]) -> ScalarMappable:
-    """A map of `one`, with flat colours where the wheel fell flat (black) or lifted off (orange)."""
+    """A map of `one`, with the flat colours of FATES where the run ended early."""
     spin, angle = np.abs(one["phi_dot_start"].values), np.degrees(one["theta_start"].values)
     shades = ax.pcolormesh(spin, angle, one.where(status == Status.reached), rasterized=True, **look)
-    for code, colour in ((Status.flat, style.INK), (Status.lifted_off, style.VERMILLION)):
+    for code, colour in FATES.items():
         fate = np.ma.masked_where(status.values != code, np.ones(status.shape))
         ax.pcolormesh(spin, angle, fate, cmap=ListedColormap([colour]), rasterized=True)
     return shades

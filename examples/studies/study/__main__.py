@@ -14,17 +14,17 @@ from .plan import Study
 
 
 def study_file(name: str) -> dict[str, object]:
-    """What a study's file defines: `study`, perhaps `table` and `draw`."""
+    """The names that a study's file defines: `study`, perhaps `table` and `draw`."""
     path = file_of(name)
     sys.path.insert(0, str(path.resolve().parent))
     content = runpy.run_path(str(path))
     if not isinstance(content.get("study"), Study):
-        raise StudyError(f"{path} does not say study = Study(...).")
+        raise StudyError(f"{path} does not define study = Study(...).")
     return content | {"name": path.stem}
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Runs a study; a fault of the study is one sentence on stderr and exit status 2."""
+    """Runs a study; a fault of the study is one line on stderr and exit status 2."""
     arguments = arguments_of(argv)
     try:
         check(arguments)
@@ -38,16 +38,16 @@ def main(argv: list[str] | None = None) -> int:
         print(f"study: {fault}", file=sys.stderr)
         return 2
     except OSError as fault:  # a full disk, or one that cannot be reached any more
-        print(f"study: {fault}; what is written stays, and the same command goes on from here.", file=sys.stderr)
+        print(f"study: {fault}; results so far are kept; the same command continues from here.", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print("study: stopped; the same command goes on from here.", file=sys.stderr)
+        print("study: stopped; the same command continues from here.", file=sys.stderr)
         return 130
     return 0
 
 
 def conduct(content: dict[str, object], arguments: argparse.Namespace) -> None:
-    """Runs, exports, draws, and says what came out and where it is."""
+    """Runs, exports, draws, and prints the outcome and where it is."""
     from .compute import run
     from .results import export, summarize
 
@@ -56,45 +56,20 @@ def conduct(content: dict[str, object], arguments: argparse.Namespace) -> None:
     if "://" not in out:
         stem = Path(out).with_suffix("")
     begin = time.perf_counter()
-    results = run(
-        content["study"],
-        out,
-        fmu=arguments.fmu,
-        workers=arguments.workers,
-        scheduler=arguments.scheduler,
-        overwrite=arguments.overwrite,
-    )
+    how = {name: getattr(arguments, name) for name in ("fmu", "workers", "scheduler", "overwrite")}
+    results = run(content["study"], out, **how)
     print(summarize(results, time.perf_counter() - begin))
-    written = [out]
-    if arguments.netcdf:
-        written.append(export(results, stem.with_suffix(".nc")))
-    if arguments.csv:
-        written.append(export(results, stem.with_suffix(".csv")))
-    if "draw" in content:
-        written += picture(content, results, stem, arguments.publish)
+    asked = {".nc": arguments.netcdf, ".csv": arguments.csv}
+    written = [out, *(export(results, stem.with_suffix(end)) for end in (".nc", ".csv") if asked[end])]
+    if "table" in content:  # an example's own table and figure, beside the results or in docs/
+        data, figure = stem, stem
+        if arguments.publish:
+            data = ROOT / "docs" / "results" / "data" / f"study_{stem.name}"
+            figure = ROOT / "docs" / "figures" / f"study_{stem.name}"
+        table = content["table"](results)
+        written.append(export(table, data.with_suffix(".csv" if hasattr(table, "to_csv") else ".nc")))
+        written += [content["draw"](table, figure)] if "draw" in content else []
     print("\n".join(f"Wrote {path}" for path in written))
-
-
-def picture(content: dict[str, object], results: object, stem: Path, publish: bool) -> list[Path]:
-    """The example's small table and its figure, beside the results or in docs/."""
-    data, figure = stem, stem
-    if publish:
-        data = ROOT / "docs" / "results" / "data" / f"study_{stem.name}"
-        figure = ROOT / "docs" / "figures" / f"study_{stem.name}"
-    data.parent.mkdir(parents=True, exist_ok=True)
-    table = content["table"](results)
-    return [keep(table, data), *content["draw"](table, figure)]
-
-
-def keep(table: object, stem: Path) -> Path:
-    """A pandas table as CSV, an xarray dataset as NetCDF."""
-    from .results import export
-
-    if hasattr(table, "to_csv"):
-        path = stem.with_suffix(".csv")
-        table.to_csv(path, index=False, float_format="%.6g", lineterminator="\n")
-        return path
-    return export(table, stem.with_suffix(".nc"))
 
 
 if __name__ == "__main__":

@@ -1,145 +1,54 @@
-"""Runs a study with Dask: an ordinary LocalCluster, or the cluster behind a scheduler's address.
+"""Runs a study with Dask: a LocalCluster, or the cluster behind a scheduler's address.
 
-The caller hands out chunks, some seconds of work at a time. Workers write the results themselves where they see the
+The caller hands out chunks, about two seconds of work each. Workers write the results themselves where they reach the
 store; else the results come back, and the caller writes them.
 """
 
 from __future__ import annotations
 
 import hashlib
-import platform
+import json
+import sys
 import tempfile
+import time
 import uuid
-from collections import deque
-from collections.abc import Callable
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
-from importlib.metadata import version
+from functools import partial
+from itertools import islice
 from math import prod
 from pathlib import Path
+from resource import RUSAGE_SELF, getrusage
 
+import dask
 import numpy as np
 import xarray as xr
-from distributed import Client, Future, as_completed
+import zarr
+from distributed import Client, Future, LocalCluster, as_completed
 from distributed.scheduler import KilledWorker
 from fmpy import read_model_description
-from fmpy.model_description import ModelDescription
+from fsspec.core import url_to_fs
+from tqdm import tqdm
 
-from .crew import Crew, cluster
-from .instance import Status, counters_of
+from .instance import Status
+from .layout import provenance, template
 from .measures import StudyError
 from .plan import Study
 from .results import open_results
-from .runs import empty_result
-from .session import Session, session
-from .store import MARK, Chunk, Store, study_attributes
-from .worker import Errand, Part, Result, pace, pack, run_parts
+from .runs import Result
+from .store import MARK, Region, kept, missing, write
+from .worker import Points, pack, run_chunk
 
-SECONDS = 2.0  # of work in a task, a thousand times what handing it out costs the caller
-RATE = 50  # tasks per second that the caller hands out at most: with more than 100 workers tasks are longer
-CHUNK = 1.0  # s of work in a chunk, whose writing takes some ms
+SECONDS = 2.0  # of work in a chunk, a thousand times the caller's time to hand it out
+RATE = 50  # chunks per second that the caller hands out at most: with more than 100 workers chunks are longer
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
-AHEAD = 2  # tasks per worker on their way
+AHEAD = 2  # chunks per worker on their way
+TRIED = 32  # wheels by which a chunk's size is chosen
 PIECES = 16  # a chunk during which a worker died is divided into so many
-
-
-@dataclass
-class Caller:
-    """The caller's side: hands out chunks, and keeps what comes back."""
-
-    crew: Crew
-    study: Study
-    store: Store
-    errand: Errand
-    counters: list[str]
-    work: Callable[[Errand, list[Part]], tuple[list[Result | None], float]]
-    session: Session
-    pace: float | None = None  # s per wheel, of the last tasks
-
-    def run(self) -> None:
-        """All chunks that are missing; those that killed a worker come last, in ever smaller pieces."""
-        waiting, deadly = deque(self.store.missing()), []
-        coming = as_completed(loop=self.crew.client.loop)
-        while waiting or self.crew.outstanding:
-            while waiting and len(self.crew.outstanding) < AHEAD * self.crew.size:
-                coming.add(self.submit([self.part(chunk) for chunk in self.next(waiting)]))
-            future = next(coming)
-            if isinstance(self.crew.exception(future), KilledWorker):
-                deadly += future.parts
-            else:
-                returned, seconds = future.result()
-                self.pace = seconds if self.pace is None else (self.pace + seconds) / 2
-                for part, result in zip(future.parts, returned, strict=True):
-                    self.keep(part.chunk, result)
-        for part in deadly:
-            if not self.store.has(part.chunk):  # written before the worker died
-                self.keep(part.chunk, self.narrowed(part))
-
-    def submit(self, parts: list[Part]) -> Future:
-        future = self.crew.submit(self.work, self.errand, parts)
-        future.parts = parts
-        return future
-
-    def part(self, chunk: Chunk) -> Part:
-        """A chunk with the values that a worker needs to run it."""
-        pieces = chunk if self.study.grid else chunk * len(self.axes)
-        axes = {name: axis[piece] for (name, axis), piece in zip(self.axes.items(), pieces, strict=True)}
-        return Part(chunk, axes, bool(self.study.grid))
-
-    def __post_init__(self) -> None:
-        self.axes = self.study.axes
-
-    def next(self, waiting: deque[Chunk]) -> list[Chunk]:
-        """The next chunks for one worker: about SECONDS of work, less towards the end, so that all end together."""
-        most, seconds = max(1, len(waiting) // (2 * self.crew.size)), task_seconds(self.crew.size)
-        chunks, work = [], 0.0
-        while waiting and len(chunks) < most and work < seconds:
-            chunks.append(waiting.popleft())
-            work += seconds if self.pace is None else self.pace * size(chunks[-1])
-        return chunks
-
-    def keep(self, chunk: Chunk, result: Result | None) -> None:
-        """Writes what the worker could not write."""
-        if result is not None:
-            try:
-                self.store.write(chunk, result, self.counters)
-            except Exception as fault:
-                raise StudyError(
-                    f"{self.store.place} cannot be written ({fault}); what is there stays, the same command goes on."
-                ) from fault
-        self.session.update(size(chunk))
-
-    def narrowed(self, part: Part) -> Result:
-        """A chunk during which a worker died, in ever smaller pieces, so that the guilty wheels are known.
-
-        Pieces of one wheel run one at a time: a worker takes innocent tasks with it.
-        """
-        points, count = part.points, size(part.chunk)
-        result, pieces = empty_result(self.errand.job, count, len(self.counters)), [np.arange(count)]
-        while pieces:
-            rows = pieces.pop()
-            for piece in np.array_split(rows, min(len(rows), PIECES)):
-                columns = {name: column[piece] for name, column in points.items()}
-                future = self.crew.submit(self.work, self.errand._replace(place=""), [Part((), columns, False)])
-                if not isinstance(self.crew.exception(future), KilledWorker):
-                    for name, values in future.result()[0][0].items():
-                        result[name][piece] = values
-                elif len(piece) > 1:
-                    pieces.append(piece)
-                else:
-                    result["status"][piece] = Status.failed
-                    result["message"][piece] = "The worker process died during this run."
-        return result
-
-
-def task_seconds(workers: int) -> float:
-    """Work [s] in a task."""
-    return max(SECONDS, workers / RATE)
-
-
-def size(chunk: Chunk) -> int:
-    """The number of wheels in a chunk."""
-    return prod(part.stop - part.start for part in chunk)
+PATIENCE = 60  # s for the first worker to appear
+# Workers that a LocalCluster starts ignore Ctrl-C, which is for the caller; Dask runs this text in each of them.
+DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 
 
 def run(
@@ -153,67 +62,177 @@ def run(
     chunk: int | None = None,
     overwrite: bool = False,
     quiet: bool = False,
-    work: Callable[[Errand, list[Part]], tuple[list[Result | None], float]] = run_parts,
+    work: Callable[..., Result | None] = run_chunk,
 ) -> xr.Dataset:
-    """Runs what is missing in `out`, a folder or a URL, and returns the results.
+    """Runs the wheels that are missing in `out`, a folder or a URL, and returns the results.
 
     workers    processes of the LocalCluster; all cores if None
     scheduler  address of a running Dask scheduler, tcp://host:port, instead of a LocalCluster
-    client     a Dask client that is open already, instead of both; it stays open
-    chunk      wheels that are run and written together; about a second of work if None
-    work       what a worker does with a task; for tests
+    client     an open Dask client, instead of both; it stays open
+    chunk      wheels that are run and written together; about two seconds of work if None
+    overwrite  discards the results that are there, also those of another study
+    work       run by a worker for each chunk; for tests
     """
     if not Path(fmu).is_file():
         raise StudyError(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
-    archive = Path(fmu).read_bytes()
-    sha256 = hashlib.sha256(archive).hexdigest()
-    description = read_model_description(str(fmu), validate=False)
-    place = str(out) if "://" in str(out) else str(Path(out).resolve())
-    errand = Errand(f"wheel-{sha256[:16]}.zip", study.job(description), place, uuid.uuid4().hex)
-    about = study_attributes(study, versions(description), sha256)
-    store = Store.open(place, about["fingerprint"], overwrite)
-    if store and not store.missing():
+    content, description = Path(fmu).read_bytes(), read_model_description(str(fmu), validate=False)
+    study.check(description)
+    sha256 = hashlib.sha256(content).hexdigest()
+    place, fingerprint = str(out) if "://" in str(out) else str(Path(out).resolve()), study.fingerprint(sha256)
+    group = kept(place, fingerprint, overwrite)
+    if group and not missing(group):
         return open_results(place)
     with nullcontext(client) if client else cluster(workers, scheduler) as user:
-        send(user, archive, errand.upload)
-        crew = Crew(user)
-        with crew.watched():
-            if store is None:
-                wheels = chunk or chunk_size(crew, study, errand)
-                store = Store.create(place, study, errand.job, description, about, wheels)
-            store.group.attrs[MARK] = errand.mark
-            with session(crew, store, quiet) as now:
-                Caller(crew, study, store, errand, counters_of(description), work, now).run()
+        upload, mark = f"wheel-{sha256[:16]}.zip", uuid.uuid4().hex
+        task = partial(work, upload, study.common(), place, mark)
+        with tempfile.TemporaryDirectory() as folder:
+            user.upload_file(str(pack(content, Path(folder) / upload)))
+        try:
+            user.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError:
+            raise StudyError(f"There has been no worker for {PATIENCE} s.") from None
+        if group is None:
+            wheels = chunk or chunk_size(user, study, task)
+            empty = template(study, description, wheels, provenance(study, description, sha256))
+            empty.to_zarr(place, mode="w", compute=False, consolidated=False, zarr_format=3)
+            group = zarr.open_group(place, mode="r+")
+            group.attrs["fingerprint"] = fingerprint  # last: all is there
+        group.attrs[MARK] = mark
+        Caller(user, study, group, task, place, mark).run(quiet)
     return open_results(place)
 
 
-def chunk_size(crew: Crew, study: Study, errand: Errand) -> int:
-    """Wheels of about a second of work, by some of the study that a worker runs first."""
-    lengths, count = study.shape.values(), prod(study.shape.values())
-    some = np.random.default_rng(0).choice(count, min(count, 256), replace=False)
-    index = np.unravel_index(some, tuple(lengths)) if study.grid else [some] * len(study.axes)
-    points = {name: axis[k] for (name, axis), k in zip(study.axes.items(), index, strict=True)}
-    trial = crew.submit(pace, errand, points, CHUNK / 10)
-    if isinstance(crew.exception(trial), KilledWorker):
+@dataclass
+class Caller:
+    """The caller's side: hands out chunks, and writes the results that come back."""
+
+    client: Client
+    study: Study
+    group: zarr.Group
+    task: Callable[[Region, Points], Result | None]
+    place: str
+    mark: str
+
+    def run(self, quiet: bool) -> None:
+        """All missing chunks, with a progress bar; notes at the end, whatever its reason, the cost of this session."""
+        status, begin = self.group["status"][:], time.perf_counter()
+        done = int((status != Status.not_computed).sum())
+        if done and not quiet:
+            print(f"{done} of {status.size} wheels are there already.", file=sys.stderr)
+        every = 0.2 if sys.stderr.isatty() else 10.0  # s
+        with tqdm(total=status.size, initial=done, unit=" wheels", disable=quiet, mininterval=every) as bar:
+            wheels = 0
+            try:
+                for region in self.finished():
+                    wheels += count(region)
+                    bar.update(count(region))
+            finally:
+                with suppress(OSError):  # of a full disk, which is reported already
+                    self.note({"wheels": wheels, "seconds": time.perf_counter() - begin})
+
+    def finished(self) -> Iterator[Region]:
+        """The missing chunks as they are finished; those that killed a worker come last, in ever smaller pieces."""
+        waiting, running, deadly, coming = iter(missing(self.group)), {}, [], as_completed(loop=self.client.loop)
+
+        def hand_out() -> None:
+            """Some chunks per worker are on their way; workers come and go."""
+            for region in islice(waiting, max(0, AHEAD * max(1, len(self.client.nthreads())) - len(running))):
+                running[future := self.submit(region)] = region
+                coming.add(future)
+
+        hand_out()
+        for future in coming:
+            region = running.pop(future)
+            hand_out()
+            if isinstance(future.exception(), KilledWorker):
+                deadly.append(region)
+            else:
+                self.keep(region, future.result())
+                yield region
+        for region in deadly:
+            self.narrow(region)
+            yield region
+
+    def submit(self, region: Region) -> Future:
+        return self.client.submit(self.task, region, self.study.points(region), pure=False)
+
+    def keep(self, region: Region, result: Result | None) -> None:
+        """Writes the results that the worker could not write."""
+        if result is not None:
+            try:
+                write(self.place, self.mark, region, result)
+            except Exception as fault:
+                raise StudyError(
+                    f"{self.place} cannot be written ({fault}). The results so far are kept; "
+                    "the same command continues from here."
+                ) from fault
+
+    def narrow(self, region: Region) -> None:
+        """Runs a region during which a worker died, alone, then in pieces, until the wheels that kill it are known."""
+        future = self.submit(region)
+        if not isinstance(future.exception(), KilledWorker):
+            self.keep(region, future.result())
+        elif count(region) == 1:
+            message = np.array(["The worker process died during this run."], object)
+            self.keep(region, {"status": np.array([Status.failed]), "message": message})
+        else:
+            longest = int(np.argmax([part.stop - part.start for part in region]))
+            whole = np.arange(region[longest].start, region[longest].stop)
+            for part in np.array_split(whole, min(len(whole), PIECES)):
+                self.narrow((*region[:longest], slice(part[0], part[-1] + 1), *region[longest + 1 :]))
+
+    def note(self, took: dict[str, float]) -> None:
+        """Adds a session to the attributes of the store: its work, and the memory and disk [MB] by its end."""
+        files, root = url_to_fs(self.place)
+        memory = self.client.run(peak_memory).values()
+        took |= {"workers": len(memory), "caller_MB": peak_memory(), "worker_MB": max(memory, default=0)}
+        took["disk_MB"] = files.du(root) // 1_000_000
+        before = json.loads(self.group.attrs.get("sessions", "[]"))
+        self.group.attrs["sessions"] = json.dumps([*before, took])  # as text, which NetCDF can keep too
+
+
+def count(region: Region) -> int:
+    """The number of wheels in a region."""
+    return prod(part.stop - part.start for part in region)
+
+
+def peak_memory() -> int:
+    """The largest memory [MB] that this process has had."""
+    return getrusage(RUSAGE_SELF).ru_maxrss // 1000
+
+
+def chunk_seconds(workers: int) -> float:
+    """Work [s] in a chunk."""
+    return max(SECONDS, workers / RATE)
+
+
+def chunk_size(client: Client, study: Study, task: Callable[[Region, Points], Result | None]) -> int:
+    """Wheels in a chunk, by the time that a worker takes for some of them, drawn at random."""
+    lengths, workers = tuple(study.shape.values()), len(client.nthreads())
+    total, history = prod(lengths), 8 * len(study.times) * len(study.history)  # wheels; bytes
+    some = np.unravel_index(np.random.default_rng(0).choice(total, min(total, TRIED), replace=False), lengths)
+    points = {name: values[k] for (name, values), k in zip(study.axes.items(), some * len(study.axes), strict=False)}
+    trial = client.submit(task, (), points, pure=False)  # no store has its mark yet, so the results come back
+    if isinstance(trial.exception(), KilledWorker):
         return FEWEST
-    history = 8 * len(errand.job.times) * len(errand.job.history)
-    most = min(count // (4 * crew.size), LARGEST // max(history, 1))
-    return max(FEWEST, min(int(CHUNK / trial.result()), most))
+    seconds = float(np.nanmean(trial.result()["wall_time"]))
+    most = min(total // (4 * workers), LARGEST // max(history, 1), int(chunk_seconds(workers) / seconds))
+    return max(FEWEST, most)
 
 
-def send(client: Client, fmu: bytes, name: str) -> None:
-    """Uploads this package and the FMU as a file of that name to all workers, later ones included."""
-    with tempfile.TemporaryDirectory() as folder:
-        client.upload_file(str(pack(fmu, Path(folder) / name)))
-
-
-def versions(description: ModelDescription) -> dict[str, str]:
-    """Versions of all that the numbers may depend on."""
-    packages = ("fmpy", "numpy", "dask", "xarray", "zarr")
-    return {
-        "fmu_guid": description.guid,
-        "fmu_version": description.version or "",
-        "python_version": platform.python_version(),
-        "platform": f"{platform.system()} {platform.machine()}",
-        **{f"{name}_version": version(name) for name in packages},
-    }
+@contextmanager
+def cluster(workers: int | None, scheduler: str | None) -> Iterator[Client]:
+    """A client of the scheduler at that address, or of a LocalCluster with one thread per process."""
+    if scheduler:
+        with Client(scheduler, timeout="30s") as client:
+            yield client
+        return
+    options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
+    # Dask inspects itself so rarely that the caller's processor is free for a worker.
+    options |= {"distributed.admin.tick.interval": "1s", "distributed.admin.system-monitor.interval": "10s"}
+    # A nanny restarts a worker that died. LocalCluster would close it for good if, this long after a death, it happened
+    # to be starting again after another one.
+    options |= {"distributed.deploy.lost-worker-timeout": "1000 hours", "distributed.worker.preload": [DEAF]}
+    processes = {"n_workers": workers, "threads_per_worker": 1, "memory_limit": 0, "silence_logs": "ERROR"}
+    with dask.config.set(options), LocalCluster(**processes, dashboard_address=":0") as local, Client(local) as client:
+        yield client

@@ -1,14 +1,17 @@
-"""What is told of a run in one number: a value at its end, an extreme, a mean, or the time of a first passage.
+"""The outcome of a run as one number: a value at its end, an extreme, a mean, or the time of a first passage.
 
 A measure is written as text, so that it can be kept with the results and compared when a study is started again:
 `theta` (at the end), `lowest`, `min(Z_O)`, `max(mu_required)`, `mean(E)`, `first(theta > 1.6)`. Besides the FMU's
 variables there is `plane_angle`, the angle of the wheel's plane to the ground on either side; `lowest` is its least.
+Python's standard library is all that this needs: scripts/study checks names before anything is installed.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 PLANE_ANGLE = "plane_angle"
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -16,10 +19,11 @@ _FORMS = re.compile(
     rf"\s*(?:(?P<last>\w+)|(?P<kind>min|max|mean)\(\s*(?P<of>\w+)\s*\)"
     rf"|first\(\s*(?P<watched>\w+)\s*(?P<side>[<>])\s*(?P<limit>{_NUMBER})\s*\))\s*"
 )
+SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
 
 
 class StudyError(ValueError):
-    """The study cannot be run as it is written; the text is one sentence."""
+    """The study cannot be run as it is written; the text is one line for the user."""
 
 
 @dataclass(frozen=True)
@@ -41,22 +45,26 @@ class Measure:
         """Whether the number is a time in s; otherwise it has the variable's unit."""
         return self.kind in "<>"
 
-    @property
-    def needs_samples(self) -> bool:
-        """Whether the run has to be read at each communication point."""
-        return self.kind != "last"
-
 
 def parse_measure(text: str) -> Measure:
     """The measure that the text describes; StudyError if it describes none."""
     found = _FORMS.fullmatch(f"min({PLANE_ANGLE})" if text.strip() == "lowest" else text)
     if not found:
         raise StudyError(
-            f"'{text}' is no measure; write lowest, a variable's name, min(name), max(name), mean(name), "
+            f"'{text}' is not a measure: write lowest, a variable's name, min(name), max(name), mean(name), "
             "first(name < number) or first(name > number)."
         )
-    if found["last"]:
-        return Measure("last", found["last"], text=text)
-    if found["kind"]:
-        return Measure(found["kind"], found["of"], text=text)
-    return Measure(found["side"], found["watched"], float(found["limit"]), text)
+    if found["side"]:
+        return Measure(found["side"], found["watched"], float(found["limit"]), text)
+    return Measure(found["kind"] or "last", found["of"] or found["last"], text=text)
+
+
+def check_names(names: Iterable[str], causalities: tuple[str, str], known: Mapping[str, str]) -> None:
+    """StudyError about the first name that is not a variable of these causalities; known: name -> causality."""
+    there = [name for name, causality in known.items() if causality in causalities]
+    for name in names:
+        if name not in there:
+            near = get_close_matches(name, there)
+            hint = f"did you mean {', '.join(near)}?" if near else f"there are {', '.join(there)}."
+            kind = "a parameter or input" if causalities == SETTABLE else "an output or local variable"
+            raise StudyError(f"'{name}' is not {kind} of this FMU; {hint}")

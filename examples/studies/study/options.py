@@ -8,8 +8,7 @@ from __future__ import annotations
 import argparse
 import csv
 import sys
-from collections.abc import Callable, Iterable
-from difflib import get_close_matches
+from collections.abc import Callable
 from math import radians
 from pathlib import Path
 from xml.etree import ElementTree
@@ -19,11 +18,11 @@ EXAMPLES = Path(__file__).resolve().parent.parent
 ROOT = EXAMPLES.parent.parent
 if not __package__:  # run as a file, by scripts/help
     sys.path.insert(0, str(EXAMPLES))
-from study.measures import PLANE_ANGLE, StudyError, parse_measure  # noqa: E402
+from study.measures import READABLE, SETTABLE, StudyError, check_names, parse_measure  # noqa: E402
 
 USAGE = """examples:
   ./scripts/study fates                     one of the examples: {names}
-  ./scripts/study my_study.py               a file that says study = Study(...); docs/studies.md shows how
+  ./scripts/study my_study.py               a file that defines study = Study(...); see docs/studies.md
   ./scripts/study --vary theta_start=60deg:90deg:31 --vary s=0,0.01,0.03 --set phi_dot_start=-3 \\
       --measure lowest=lowest --out results/studies/lean.zarr --csv
   ./scripts/study --list starts.csv         one wheel per row; the first row has the names
@@ -52,14 +51,13 @@ def numbers(text: str) -> list[float]:
 def named(texts: list[str], convert: Callable[[str], object], option: str, form: str) -> dict[str, object]:
     """NAME=VALUE options as a dictionary; StudyError with the form that is expected."""
     pairs = {}
-    for text in texts:
-        name, _, value = text.partition("=")
+    for name, _, value in (text.partition("=") for text in texts):
         try:
             pairs[name] = convert(value)
         except StudyError:
             raise
         except ValueError:
-            raise StudyError(f"{option} {text}: write {option} {form}.") from None
+            raise StudyError(f"{option} {name}={value}: write {option} {form}.") from None
     return pairs
 
 
@@ -74,7 +72,7 @@ def read_list(path: Path) -> dict[str, list[float]]:
 
 
 def fields_of(arguments: argparse.Namespace) -> dict[str, object]:
-    """What the options say, as the fields of a Study."""
+    """The fields of a Study that the options give."""
     measures = named(arguments.measure, lambda text: parse_measure(text).text, "--measure", "'NAME=max(theta)'")
     return {
         "grid": named(arguments.vary, numbers, "--vary", "NAME=1,2,3 or NAME=first:last:count"),
@@ -96,31 +94,16 @@ def variables(fmu: Path) -> dict[str, str]:
 
 
 def check(arguments: argparse.Namespace) -> None:
-    """StudyError if a study of that name is not there, or an option is not to be understood."""
+    """StudyError if there is no study of that name, or an option cannot be parsed."""
     if arguments.study:
-        return file_of(arguments.study)
+        file_of(arguments.study)
+        return
     fields, known = fields_of(arguments), variables(arguments.fmu)
     if bool(fields["grid"]) == bool(fields["list"]):
-        raise StudyError(
-            "Say which wheels: an example, a file, --vary NAME=VALUES, or --list CSV; --help has examples."
-        )
-    for name in [*fields["grid"], *fields["list"], *fields["values"]]:
-        if known.get(name) not in ("parameter", "input"):
-            raise StudyError(unknown(name, "parameter or input", known, ("parameter", "input")))
-    watched = [parse_measure(text).quantity for text in fields.get("measures", {}).values()]
-    for name in [*watched, *fields["history"]]:
-        if known.get(name) not in ("output", "local") and (name != PLANE_ANGLE or name in fields["history"]):
-            raise StudyError(unknown(name, "output or local variable", known, ("output", "local")))
-    return None
-
-
-def unknown(name: str, kind: str, known: dict[str, str], wanted: Iterable[str]) -> str:
-    """The sentence about a name that is not there."""
-    there = [n for n in known if known[n] in wanted]
-    near = get_close_matches(name, there)
-    return f"'{name}' is no {kind} of this FMU; " + (
-        f"do you mean {', '.join(near)}?" if near else f"there are {', '.join(there)}."
-    )
+        raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
+    check_names([*fields["grid"], *fields["list"], *fields["values"]], SETTABLE, known)
+    measures = [parse_measure(text) for text in fields.get("measures", {}).values()]
+    check_names([*(m.variable for m in measures), *fields["history"]], READABLE, known)
 
 
 def file_of(name: str) -> Path:
@@ -139,7 +122,7 @@ def example_names() -> list[str]:
 def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="./scripts/study",
-        description="Runs many wheels on all cores or on a Dask cluster. Started again, it goes on where it was.",
+        description="Runs many wheels on all cores or on a Dask cluster. Started again, it continues where it stopped.",
         epilog=USAGE.format(names=", ".join(example_names())),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -158,7 +141,7 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--scheduler", metavar="tcp://HOST:PORT", help="a running Dask scheduler instead")
     add("--fmu", type=Path, default=ROOT / "wheel.fmu")
     add("--out", metavar="PLACE", help="Zarr folder of the results, or its URL (results/studies/NAME.zarr)")
-    add("--overwrite", action="store_true", help="throw away what is there and begin again")
+    add("--overwrite", action="store_true", help="discard the results that are there")
     add("--netcdf", action="store_true", help="a copy as NetCDF beside the Zarr folder")
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
     add("--publish", action="store_true", help="write an example's data and figure into docs/")

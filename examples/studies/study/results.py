@@ -1,10 +1,11 @@
-"""What the caller does with the results of a study: a labelled dataset, copies in other formats, a summary."""
+"""The results of a study for the caller: a labelled dataset, copies in other formats, a summary."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from matplotlib.lines import Line2D
 
@@ -37,12 +38,14 @@ def curves(values: xr.DataArray, x: str, hue: str) -> list[Line2D]:
     return lines
 
 
-def export(results: xr.Dataset, path: Path) -> Path:
-    """Writes a copy beside the Zarr folder, as NetCDF (.nc) or as a table with one row per wheel (.csv)."""
+def export(results: xr.Dataset | pd.DataFrame, path: Path) -> Path:
+    """Writes a copy as NetCDF (.nc), or as a table (.csv) with one row per wheel (and time)."""
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".nc":
         packed = {n: {"zlib": True} for n in results.data_vars if results[n].dtype.kind in "fiu"}
         results.drop_encoding().to_netcdf(path, encoding=packed)
+    elif isinstance(results, pd.DataFrame):
+        results.to_csv(path, index=False, float_format="%.6g", lineterminator="\n")
     else:
         rows = results.to_dataframe().reset_index()
         rows["status"] = [Status(code).name for code in rows["status"]]
@@ -58,17 +61,12 @@ def summarize(results: xr.Dataset, seconds: float) -> str:
     """
     status = results["status"].values
     lines = [f"{status.size} wheels in {seconds:.1f} s:"]
-    for code in Status:
-        found = status == code
-        if not found.any():
-            continue
-        lines.append(f"  {found.sum():8d} {code.name.replace('_', ' ')}")
+    for code, found in zip(*np.unique(status, return_counts=True), strict=True):
+        lines.append(f"  {found:8d} {Status(code).name.replace('_', ' ')}")
         if code in (Status.refused, Status.failed):
-            lines.append(f"           first: {results['message'].values[found][0]}")
-    wall, inside = (float(np.nansum(results[name])) for name in ("wall_time", "fmu_time"))
-    if wall > 0:
-        speed = np.isfinite(results["wall_time"].values).sum() / wall
-        lines.append(
-            f"{speed:.0f} wheels per second and worker, {100 * inside / wall:.0f} % of the time inside the FMU."
-        )
+            lines.append(f"           first: {results['message'].values[status == code][0]}")
+    wall, inside = results["wall_time"].values, float(results["fmu_time"].sum())
+    if (total := np.nansum(wall)) > 0:
+        speed, share = np.isfinite(wall).sum() / total, 100 * inside / total
+        lines.append(f"{speed:.0f} wheels per second and worker, {share:.0f} % of the time inside the FMU.")
     return "\n".join(lines)

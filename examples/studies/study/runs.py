@@ -1,61 +1,25 @@
-"""Runs of one worker: a block of points, one after the other in one instance, with the start that they share run once.
+"""Runs of one worker: a block of wheels, one after the other in one instance; a start that several share runs once.
 
-A point that fails is a status with the FMU's own sentence; nothing here raises because of what a wheel does.
+A wheel that fails is a status with the FMU's message; nothing here raises because of what a wheel does.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from ctypes import byref
-from dataclasses import dataclass
+from collections.abc import Mapping
+from contextlib import suppress
 from time import perf_counter
 
 import numpy as np
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import fmi2FMUstate
 from numpy.typing import NDArray
 
-from .instance import WARNING, FMU2Instance, Status, Table
+from .instance import FMU2Instance, Status, Table, can_change, counters_of
 from .measures import PLANE_ANGLE, Measure
+from .plan import Study
 
 Array = NDArray[np.float64]
-Columns = Mapping[str, NDArray]
-
-
-@dataclass(frozen=True)
-class Job:
-    """What all points of a study have in common; times in s, values by name in SI units.
-
-    `times` are the communication points that are read, from the start or from the instant `branch_at` to the stop time.
-    `late` are the names that are set at `branch_at`; until then, points that agree in all others share one run.
-    """
-
-    times: tuple[float, ...]
-    values: Mapping[str, float]
-    measures: Mapping[str, Measure]
-    history: tuple[str, ...] = ()
-    tolerance: float | None = None
-    branch_at: float | None = None
-    late: tuple[str, ...] = ()
-
-    @property
-    def sampled(self) -> list[str]:
-        """Variables read at every communication point."""
-        watched = [m.variable for m in self.measures.values() if m.needs_samples]
-        return list(dict.fromkeys([*self.history, *watched]))
-
-    @property
-    def at_the_end(self) -> dict[str, Measure]:
-        """The measures that look at the end only."""
-        return {name: m for name, m in self.measures.items() if not m.needs_samples}
-
-
-@dataclass(frozen=True)
-class Ending:
-    """How a run ended, or the start that several runs share."""
-
-    status: Status
-    message: str = ""
-    end_time: float = np.nan
+Result = dict[str, NDArray]
 
 
 class Runner:
@@ -64,130 +28,91 @@ class Runner:
     def __init__(self, folder: str) -> None:
         self.instance = FMU2Instance(folder)
         self._snapshot = fmi2FMUstate()
-        self._shared: tuple[object, Ending] | None = None
+        self._shared: tuple[object, Status, float, list[str]] | None = None  # key and outcome of that start
 
-    def run_block(self, job: Job, points: Columns, enough: Callable[[], bool] = lambda: False) -> dict[str, NDArray]:
-        """The outcomes of the points, whose values by name are columns; one row of each result per point.
+    def run_block(self, study: Study, points: Mapping[str, Array]) -> Result:
+        """The outcomes of wheels whose values by name are broadcast against each other, in C order.
 
-        enough: asked after each point; ends the block early, the other points stay not computed.
+        The axes of the study itself are not used, only what all its wheels have in common.
         """
-        run = _Block(self.instance, job, points)
-        order = range(run.count)
-        for i in sorted(order, key=run.early.key) if job.late else order:  # those that share a start follow each other
-            begin = perf_counter()
-            ending = self._run(run, i)
-            run.put(i, ending)
-            run.result["wall_time"][i] = perf_counter() - begin
-            if enough():
-                break
-        return run.finished()
+        fmu = self.instance
+        columns = dict(zip(points, map(np.ravel, np.broadcast_arrays(*points.values())), strict=True))
+        count, measures = len(next(iter(columns.values()))), study.parsed
+        late = [n for n in columns if study.branch_at is not None and can_change(fmu.description, n)]
+        early = Table(fmu, {n: v for n, v in columns.items() if n not in late} | study.values, count)
+        change = Table(fmu, {n: columns[n] for n in late}, count)
+        counters = counters_of(fmu.description)
+        at_the_end = {name: m for name, m in measures.items() if m.kind == "last"}
+        names = dict.fromkeys([*(m.variable for m in at_the_end.values()), *counters])
+        ends, known = Table(fmu, dict.fromkeys(names, 0), count), np.zeros(count, bool)
+        sampled, times = study.sampled, np.array(study.times)
+        references, rows = fmu.references(sampled), np.empty((len(times) + 1, len(sampled)))  # one more for the end
+        result = _empty(study, count)
 
-    def _run(self, run: _Block, i: int) -> Ending:
-        """One wheel from its start, or from the snapshot, to its end."""
-        job, begin = run.job, perf_counter()
-        begun = self._begin(run, i) if job.branch_at is None else self._branch(run, i)
-        if begun.status == Status.reached and run.late.move(i) > WARNING:
-            begun = Ending(Status.refused, self.instance.take_message())
-        ending, run.reached = begun, 0
-        if begun.status == Status.reached:
-            status, run.reached = self.instance.march(run.times, run.references, run.rows)
-            ending = self._ending(status, run.times[-1], run.times[max(run.reached, 1) - 1], begun.message)
-        if ending.status != Status.refused:
-            run.read[i] = run.ends.move(i) <= WARNING
-        run.result["fmu_time"][i] = perf_counter() - begin
-        return ending
+        for i in sorted(range(count), key=early.key) if late else range(count):  # those that share a start in a row
+            begin, n = perf_counter(), 0
+            status, end = self._start(study, early, i)
+            try:
+                if status == Status.reached:
+                    change.set(i)
+                    status, end, n = fmu.march(times, references, rows)
+            except FMICallException:
+                status, end = Status.refused, np.nan
+            if status != Status.refused:
+                with suppress(FMICallException):  # an instance that failed may be unable to answer
+                    ends.get(i)
+                    known[i] = True
+            result["fmu_time"][i] = perf_counter() - begin
+            result["status"][i], result["end_time"][i], result["message"][i] = status, end, " ".join(fmu.messages)
+            if n and sampled:
+                for k, name in enumerate(study.history):
+                    result[name][i, :n] = rows[:n, k]
+                t = times[:n]
+                if end > t[-1]:  # the end of a run is a sample too
+                    t, rows[n] = np.append(t, end), fmu.getReal(references)
+                for name, measure in measures.items():
+                    if name not in at_the_end:
+                        result[name][i] = number(measure, t, rows[: len(t), sampled.index(measure.variable)])
+            result["wall_time"][i] = perf_counter() - begin
 
-    def _begin(self, run: _Block, i: int) -> Ending:
-        if self.instance.begin(run.early, i, run.job.tolerance) > WARNING:
-            return Ending(Status.refused, self.instance.take_message() or "A value is outside its limits.")
-        return Ending(Status.reached)
+        for name, measure in at_the_end.items():
+            values = np.where(known, ends[measure.variable], np.nan)
+            result[name] = plane_angle(values) if measure.quantity == PLANE_ANGLE else values
+        return result | {name: np.where(known, ends[name], -1) for name in counters}
 
-    def _branch(self, run: _Block, i: int) -> Ending:
-        """At `branch_at`: restored if the last start was this one, else run there and kept."""
-        unit, job = self.instance, run.job
-        key = (job.branch_at, job.tolerance, *run.early.names, run.early.key(i))
+    def _start(self, study: Study, early: Table, i: int) -> tuple[Status, float]:
+        """To t = 0, or to `branch_at`: restored if the start that ran last had these values, else run and kept."""
+        fmu = self.instance
+        if study.branch_at is None:
+            return fmu.begin(early, i, study.tolerance)
+        key = (study.branch_at, study.tolerance, early.key(i))
         if self._shared and self._shared[0] == key:
-            if self._shared[1].status == Status.reached:
-                self._require(unit.fmi2SetFMUstate(unit.component, self._snapshot), "fmi2SetFMUstate")
-            return self._shared[1]
+            _, status, end, messages = self._shared
+            fmu.messages = [*messages]
+            if status == Status.reached:
+                fmu.fmi2SetFMUstate(fmu.component, self._snapshot)
+            return status, end
         self._shared = None
-        begun = self._begin(run, i)
-        if begun.status == Status.reached:
-            status, _ = unit.march(np.array([0.0, job.branch_at]), run.references[:0], run.rows)
-            begun = self._ending(status, job.branch_at, 0.0)
-        if begun.status == Status.reached:
-            self._require(unit.fmi2GetFMUstate(unit.component, byref(self._snapshot)), "fmi2GetFMUstate")
-        self._shared = (key, begun)
-        return begun
-
-    def _require(self, status: int, call: str) -> None:
-        if status > WARNING:
-            raise RuntimeError(f"{call} failed: {self.instance.take_message()}")
-
-    def _ending(self, status: int, stop: float, last: float, said: str = "") -> Ending:
-        """After a march that was to end at `stop` and completed its steps to `last`."""
-        kind, time = Status.reached, stop
-        if status > WARNING:
-            kind, time = self.instance.ending(status)
-        message = " ".join(filter(None, (said, self.instance.take_message())))
-        return Ending(kind, message, last if np.isnan(time) else time)
+        status, end = fmu.begin(early, i, study.tolerance)
+        if status == Status.reached:
+            status, end, _ = fmu.march(np.array([0.0, study.branch_at]), fmu.references([]), np.empty(0))
+        if status == Status.reached:
+            fmu.fmi2GetFMUstate(fmu.component, self._snapshot)
+        self._shared = (key, status, end, [*fmu.messages])
+        return status, end
 
     def close(self) -> None:
         """Frees the snapshot, the instance and the library."""
-        self.instance.fmi2FreeFMUstate(self.instance.component, byref(self._snapshot))
+        self.instance.fmi2FreeFMUstate(self.instance.component, self._snapshot)
         self.instance.freeInstance()
 
 
-class _Block:
-    """The values of some points, prepared for the FMU, and what comes out."""
-
-    def __init__(self, unit: FMU2Instance, job: Job, points: Columns) -> None:
-        self.job, self.counters = job, unit.counters
-        self.count = len(next(iter(points.values())))
-        values = {**job.values, **points}
-        self.early = Table(unit, [n for n in values if n in job.values or n not in job.late], self.count, "Set")
-        self.late = Table(unit, job.late, self.count, "Set")
-        for name, value in values.items():
-            if name in job.late:
-                self.late[name][:] = value
-            if name in self.early.names:
-                self.early[name][:] = job.values[name] if name in job.late else value
-        last = [m.variable for m in job.at_the_end.values()]
-        self.ends = Table(unit, list(dict.fromkeys([*last, *self.counters])), self.count, "Get")
-        self.read = np.zeros(self.count, bool)  # whether the row of `ends` is known
-        self.times = np.array(job.times)
-        self.references = np.array([unit.variables[name].valueReference for name in job.sampled], np.uint32)
-        self.rows = np.empty((len(self.times) + 1, len(self.references)))  # one more for the end of a run
-        self.final = Table(unit, job.sampled, 1, "Get")
-        self.reached = 0
-        self.result = empty_result(job, self.count, len(self.counters))
-
-    def put(self, i: int, ending: Ending) -> None:
-        """Writes what became of point i, whose samples are in `rows`."""
-        result, job, n = self.result, self.job, self.reached
-        result["status"][i], result["message"][i] = ending.status, ending.message
-        result["end_time"][i] = ending.end_time
-        if not n or not len(self.references):
-            return
-        for k, name in enumerate(job.history):
-            result[name][i, :n] = self.rows[:n, k]
-        t = self.times[:n]
-        if ending.end_time > t[-1]:  # the end of a run is a sample too
-            self.final.move(0)
-            t, n = np.append(t, ending.end_time), n + 1
-            self.rows[n - 1] = [self.final[name][0] for name in job.sampled]
-        for name, measure in job.measures.items():
-            if measure.needs_samples:
-                result[name][i] = number(measure, t, self.rows[:n, job.sampled.index(measure.variable)])
-
-    def finished(self) -> dict[str, NDArray]:
-        """All results, those that were read at the end included."""
-        for name, measure in self.job.at_the_end.items():
-            values = np.where(self.read, self.ends[measure.variable], np.nan)
-            self.result[name][:] = plane_angle(values) if measure.quantity == PLANE_ANGLE else values
-        for k, name in enumerate(self.counters):
-            self.result["counters"][:, k] = np.where(self.read, self.ends[name], -1)
-        return self.result
+def _empty(study: Study, count: int) -> Result:
+    """Results of `count` wheels of which nothing is known yet."""
+    names, points = ("end_time", "wall_time", "fmu_time", *study.measures), len(study.times)
+    result = {"status": np.full(count, Status.not_computed, np.int8), "message": np.full(count, "", object)}
+    result |= {name: np.full(count, np.nan) for name in names}
+    return result | {name: np.full((count, points), np.nan) for name in study.history}
 
 
 def number(measure: Measure, t: Array, x: Array) -> float:
@@ -215,17 +140,3 @@ def first_passage(t: Array, x: Array, limit: float, below: bool) -> float:
     if k == 0:
         return float(t[0])
     return float(t[k - 1] + (limit - x[k - 1]) / (x[k] - x[k - 1]) * (t[k] - t[k - 1]))
-
-
-def empty_result(job: Job, count: int, counters: int) -> dict[str, NDArray]:
-    """Results of `count` points of which nothing is known yet."""
-    result = {
-        "status": np.full(count, Status.not_computed, np.int8),
-        "message": np.full(count, "", object),
-        "end_time": np.full(count, np.nan),
-        "counters": np.full((count, counters), -1, np.int64),
-        "wall_time": np.full(count, np.nan),
-        "fmu_time": np.full(count, np.nan),
-    }
-    result |= {name: np.full(count, np.nan) for name in job.measures}
-    return result | {name: np.full((count, len(job.times)), np.nan) for name in job.history}

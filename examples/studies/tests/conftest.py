@@ -18,7 +18,7 @@ STUDIES = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(STUDIES))
 
 from study import Study  # noqa: E402
-from study.crew import cluster  # noqa: E402
+from study.compute import cluster  # noqa: E402
 from study.runs import Runner  # noqa: E402
 from study.worker import compiled  # noqa: E402
 
@@ -35,7 +35,7 @@ def runner(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
 
 @pytest.fixture(scope="session")
 def bucket() -> Iterator[str]:
-    """The URL of a bucket in an object store on this machine; set before workers start, who find it there."""
+    """The URL of a bucket in an object store on this machine; set before workers start, which find it there."""
     server = ThreadedMotoServer(ip_address="127.0.0.1", port=0, verbose=False)
     server.start()
     host, port = server.get_host_and_port()
@@ -62,7 +62,7 @@ def fates() -> Study:
             "s": [0.0, 0.03],
             "phi_dot_start": [-2, 0.0, -6.0, -40.0],
         },
-        measures={"lowest": "min(theta)", "down": "first(theta < 0.5)", "energy": "E"},
+        measures={"plane": "lowest", "lowest": "min(theta)", "down": "first(theta < 0.5)", "energy": "E"},
         history=["theta", "X_O"],
         stop_time=5.0,
         interval=0.05,

@@ -1,38 +1,46 @@
-"""What the tests of studies share: comparing results, and the command as a process."""
+"""Shared by the tests of studies: comparing results bit by bit, and the command as a process."""
 
 from __future__ import annotations
 
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from study import Study
 from study.runs import Runner
 
 ROOT = Path(__file__).resolve().parents[3]
-TIMED = ["wall_time", "fmu_time"]
+TIMED = ("wall_time", "fmu_time")
+
+
+def single(runner: Runner, study: Study) -> dict[str, np.ndarray]:
+    """All wheels of a study by one instance, one after the other in this process, in the order of its results."""
+    study.check(runner.instance.description)
+    return runner.run_block(study.common(), study.points())
+
+
+def equal(a: Mapping[str, np.ndarray], b: Mapping[str, np.ndarray]) -> bool:
+    """Whether two results of one instance are bit-identical, computing times aside."""
+    return all(np.array_equal(a[n], b[n], equal_nan=a[n].dtype.kind == "f") for n in a if n not in TIMED)
 
 
 def same(a: xr.Dataset, b: xr.Dataset) -> bool:
-    """Whether two results agree to the bit, times of computing and who computed aside."""
+    """Whether two datasets are bit-identical, computing times and sessions aside."""
     a, b = (one.drop_vars(TIMED).assign_attrs(caller="", sessions="").load() for one in (a, b))
     return a.identical(b)
 
 
-def as_one_worker(runner: Runner, study: object, results: xr.Dataset) -> bool:
-    """Whether results have the bits that one instance gives, one wheel after the other in this process."""
-    grid = np.meshgrid(*study.axes.values(), indexing="ij")
-    points = dict(zip(study.axes, (axis.ravel() for axis in grid), strict=True))
-    alone = runner.run_block(study.job(runner.instance.description), points)
-    counters = dict(zip(runner.instance.counters, alone.pop("counters").T, strict=True))
-    shape = results["status"].shape
-    return all(
-        np.array_equal(results[name].values.reshape(np.shape(values)), values, equal_nan=values.dtype.kind == "f")
-        and results[name].shape[: len(shape)] == shape
-        for name, values in (alone | counters).items()
-        if name not in TIMED
+def as_one_worker(runner: Runner, study: Study, results: xr.Dataset) -> bool:
+    """Whether a dataset is bit-identical to the results of one instance."""
+    found = single(runner, study)
+    shape = tuple(study.shape.values())
+    return set(found) == set(results.data_vars) and equal(
+        {name: values.reshape(*shape, *values.shape[1:]) for name, values in found.items()},
+        {name: results[name].values for name in found},
     )
 
 

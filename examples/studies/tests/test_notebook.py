@@ -23,7 +23,7 @@ def outputs(notebook: nbformat.NotebookNode) -> Outputs:
 
 
 def words(kept: Outputs) -> list[str]:
-    """What was printed, with nine digits: the last ones are the machine's."""
+    """The printed text, with nine digits: the last ones depend on the machine."""
     texts = [output.get("text") or output.get("data", {}).get("text/plain", "") for output in kept]
     return [re.sub(r"(\d\.\d{9})\d+", r"\1", text) for text in texts]
 
@@ -54,13 +54,10 @@ def test_what_the_notebook_keeps_is_what_its_cells_give(kept: Outputs, fresh: Ou
     beyond(apart, 5, "another picture apart, of 255 tones of grey")
 
 
-def test_the_notebook_shows_what_its_text_says(kept: Outputs) -> None:
+def test_the_notebook_keeps_its_message_counts_and_pictures_and_nothing_of_the_machine(kept: Outputs) -> None:
     printed = "".join(words(kept))
     assert len(pictures(kept)) == 3
     assert "ended at t = 0.59" in printed and printed.count("of 40 wheels") == 3 and "nan" not in printed
-
-
-def test_the_notebook_keeps_no_run_times_and_no_progress_bars(kept: Outputs) -> None:
     text = NOTEBOOK.read_text(encoding="utf-8")
     assert "it/s" not in text and "iopub" not in text and "stderr" not in text
     assert all(set(output.get("data", {})) <= {"text/plain", "image/png"} for output in kept)

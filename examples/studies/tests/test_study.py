@@ -1,32 +1,26 @@
-"""Studies with many workers: the same bits as with one, on a scheduler elsewhere, and in an object store."""
+"""Studies with many workers: bit-identical to one, with a scheduler elsewhere, and in an object store."""
 
 from __future__ import annotations
 
-import json
-import os
 import re
 import shlex
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
-from distributed import Client, LocalCluster
+from distributed import Client, LocalCluster, SubprocessCluster
 from studies_support import ROOT, as_one_worker, command, same
-from study import Status, Study, StudyError, curves, in_degrees
-from study import crew as crew_module
+from study import Status, Study, StudyError, compute, curves, in_degrees
 from study.__main__ import study_file
 from study.compute import run
 from study.options import arguments_of, fields_of
 from study.results import open_results
-from study.runs import Runner
-from study.worker import Errand, Part, run_parts
+from study.runs import Result, Runner
+from study.worker import run_chunk
 from support.bounds import EPSILON, relative_error, within
 
 GUIDE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
@@ -37,20 +31,18 @@ EXAMPLE = re.findall(r"^```python\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)[
 def here(fates: Study, fmu_path: Path, crew: Client, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The study of all fates, run by two workers on this machine, which write it."""
     out = tmp_path_factory.mktemp("here") / "fates.zarr"
-    run(fates, out, fmu=fmu_path, client=crew, quiet=True, chunk=4, work=nothing_returned)
+    run(fates, out, fmu=fmu_path, client=crew, quiet=True, chunk=4, work=written_by_workers)
     return out
 
 
-def nothing_returned(errand: Errand, parts: list[Part]) -> tuple[list[None], float]:
-    """As a worker does it, but an error if it has not written all itself."""
-    returned, seconds = run_parts(errand, parts)
-    assert returned == [None] * len(parts)
-    return returned, seconds
+def written_by_workers(*task: object) -> None:
+    """As a worker does it, but an error if it has not written the chunk itself."""
+    assert run_chunk(*task) is None
 
 
-def without_the_store(errand: Errand, parts: list[Part]) -> tuple[list[object], float]:
+def without_the_store(upload: str, study: Study, _place: str, *task: object) -> Result | None:
     """As a worker does it that does not see the caller's store."""
-    return run_parts(errand._replace(place="/nowhere"), parts)
+    return run_chunk(upload, study, "/nowhere", *task)
 
 
 def test_the_guide_keeps_its_promise_of_ten_lines() -> None:
@@ -66,7 +58,7 @@ def test_the_guides_command_line_is_the_study_of_its_file(tmp_path: Path) -> Non
     assert Study(**fields_of(arguments_of(other))).spec() != study_file(str(file))["study"].spec()
 
 
-def test_many_workers_give_the_bits_of_one(fates: Study, here: Path, runner: Runner) -> None:
+def test_many_workers_and_one_give_bit_identical_results(fates: Study, here: Path, runner: Runner) -> None:
     assert as_one_worker(runner, fates, open_results(here))
     other = open_results(here).load()
     other["theta"][2, 1, 3, 100] = 0.0
@@ -83,9 +75,6 @@ def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(fates: Stu
     assert set(results.attrs) >= {"fmu_sha256", "fmu_version", "fmu_guid", "seed", "numpy_version", "study"}
     begun = results.sel(theta_start=np.radians(75.0), s=0.03, phi_dot_start=-2.0)
     assert float(begun["theta"][0]) == np.radians(75.0)
-    with pytest.raises(StudyError, match=r"another study .* --out, .* --overwrite"):
-        run(Study(grid={"s": [0.0]}), here, fmu=fmu_path, quiet=True)
-    assert same(results, run(fates, here, fmu=fmu_path, scheduler="tcp://nobody:1", quiet=True))  # nothing left to run
 
 
 def test_labels_are_short_and_the_description_is_kept(here: Path) -> None:
@@ -97,6 +86,8 @@ def test_labels_are_short_and_the_description_is_kept(here: Path) -> None:
     assert labels["down"] == "first(θ < 0.5)"
     assert max(map(len, labels.values())) <= 30
     assert "upright" in results["theta_start"].attrs["description"]
+    plane = results["plane"].attrs["description"]
+    assert plane.startswith("Angle of the wheel's plane to the ground") and "smallest" in plane
     turned = in_degrees(results)
     assert turned["theta_start"].attrs["units"] == turned["lowest"].attrs["units"] == "deg"
     within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "degrees, relative")
@@ -114,65 +105,41 @@ def test_a_legend_stands_beside_the_curves(here: Path) -> None:
     plt.close(figure)
 
 
-def test_only_a_study_is_overwritten(fmu_path: Path, tmp_path: Path) -> None:
+def test_another_study_is_overwritten_on_request_and_nothing_else(fmu_path: Path, crew: Client, tmp_path: Path) -> None:
+    how = {"fmu": fmu_path, "client": crew, "quiet": True, "overwrite": True}
+    for s in (0.0, 0.01):
+        assert Study(grid={"s": [s]}, stop_time=1.0).run(tmp_path / "one.zarr", **how)["s"].item() == s
     (tmp_path / "thesis.tex").write_text("years of work")
-    with pytest.raises(StudyError, match="is no Zarr group"):
-        run(Study(grid={"s": [0.0]}), tmp_path, fmu=fmu_path, overwrite=True, scheduler="tcp://nobody:1")
+    with pytest.raises(StudyError, match="is not a Zarr group"):
+        Study(grid={"s": [0.0]}).run(tmp_path, **how)
     assert (tmp_path / "thesis.tex").exists()
 
 
-def address_in(path: Path) -> str:
-    """The address that a scheduler has written into its file, as soon as the file is complete."""
-    give_up = time.monotonic() + 60
-    while time.monotonic() < give_up:
-        with suppress(OSError, json.JSONDecodeError):
-            return json.loads(path.read_text())["address"]
-        time.sleep(0.05)
-    raise TimeoutError("The scheduler did not start within a minute.")
-
-
-@contextmanager
-def elsewhere(folder: Path) -> Iterator[str]:
-    """A scheduler and a worker with two threads as one starts them on other machines: without this package's path."""
-    address_file = folder / "scheduler.json"
-    clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    quiet = {"env": clean, "cwd": folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    dask = [sys.executable, "-m", "dask"]
-    shared = ["--scheduler-file", str(address_file), "--no-dashboard", "--interface", "lo"]
-    options = ["--nthreads", "2", "--no-nanny", "--no-dashboard", "--interface", "lo"]
-    started = [subprocess.Popen([*dask, "scheduler", *shared, "--port", "0"], **quiet)]
-    try:
-        address = address_in(address_file)  # before the worker starts: it stops at a file that is only half there
-        started.append(subprocess.Popen([*dask, "worker", address, *options], **quiet))
-        yield address
-    finally:
-        for process in reversed(started):
-            process.terminate()
-            process.wait(30)
-
-
-def test_a_cluster_elsewhere_gives_the_same_bits(fates: Study, here: Path, fmu_path: Path, tmp_path: Path) -> None:
-    with elsewhere(tmp_path) as address:
-        there = run(fates, tmp_path / "there.zarr", fmu=fmu_path, scheduler=address, quiet=True, chunk=8)
-    assert same(there, open_results(here))
-
-
-def test_the_caller_writes_for_workers_that_do_not_see_its_store(
-    fates: Study, here: Path, fmu_path: Path, crew: Client, tmp_path: Path
+def test_a_cluster_elsewhere_gives_bit_identical_results(
+    fates: Study, here: Path, fmu_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    out = tmp_path / "sent.zarr"
-    assert same(run(fates, out, fmu=fmu_path, client=crew, quiet=True, work=without_the_store), open_results(here))
+    """Scheduler and worker are processes without this package's path, as on other machines."""
+    monkeypatch.delenv("PYTHONPATH", raising=False)
+    monkeypatch.chdir(tmp_path)
+    with SubprocessCluster(n_workers=1, threads_per_worker=2, dashboard_address=None) as there:
+        address = there.scheduler_address
+        found = run(fates, tmp_path / "there.zarr", fmu=fmu_path, scheduler=address, quiet=True, chunk=8)
+    assert same(found, open_results(here))
 
 
-def test_workers_write_into_an_object_store(
-    fates: Study, here: Path, fmu_path: Path, crew: Client, bucket: str
+def test_results_are_bit_identical_wherever_they_are_kept_and_whoever_writes_them(
+    fates: Study, here: Path, fmu_path: Path, crew: Client, bucket: str, tmp_path: Path
 ) -> None:
-    out = f"{bucket}/fates.zarr"
-    stored = run(fates, out, fmu=fmu_path, client=crew, quiet=True, chunk=8, work=nothing_returned)
-    assert same(stored, open_results(here))
-    assert same(run(fates, out, fmu=fmu_path, scheduler="tcp://nobody:1", quiet=True), stored)  # nothing left to run
-    with pytest.raises(StudyError, match="another study"):
-        run(Study(grid={"s": [0.0]}), out, fmu=fmu_path, quiet=True)
+    """Written by the caller into a folder that workers do not see, and by workers into an object store."""
+    places = {str(tmp_path / "sent.zarr"): without_the_store, f"{bucket}/fates.zarr": written_by_workers}
+    for out, work in places.items():
+        stored = run(fates, out, fmu=fmu_path, client=crew, quiet=True, chunk=8, work=work)
+        assert same(stored, open_results(here))
+        assert same(
+            run(fates, out, fmu=fmu_path, scheduler="tcp://nobody:1", quiet=True), stored
+        )  # nothing left to run
+        with pytest.raises(StudyError, match=r"another study .* \(--out\).* overwrite=True"):
+            run(Study(grid={"s": [0.0]}), out, fmu=fmu_path, quiet=True)
 
 
 def test_a_list_is_cut_into_chunks_of_its_rows(fmu_path: Path, crew: Client, tmp_path: Path) -> None:
@@ -187,10 +154,10 @@ def test_a_list_is_cut_into_chunks_of_its_rows(fmu_path: Path, crew: Client, tmp
     np.testing.assert_array_equal(turned["theta_end"][::-1], results["theta_end"])
 
 
-def test_a_study_without_workers_says_so(
+def test_a_study_without_workers_ends_with_a_message(
     fates: Study, fmu_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(crew_module, "LOST", 1.0)
+    monkeypatch.setattr(compute, "PATIENCE", 1.0)
     with (
         LocalCluster(n_workers=0, processes=False, dashboard_address=None) as nobody,
         Client(nobody) as client,
@@ -199,14 +166,14 @@ def test_a_study_without_workers_says_so(
         run(fates, tmp_path / "nobody.zarr", fmu=fmu_path, client=client, quiet=True)
 
 
-def test_the_command_exports_tables_and_says_in_a_sentence_what_is_wrong(fmu_path: Path, tmp_path: Path) -> None:
+def test_the_command_reads_a_list_and_exports_tables(fmu_path: Path, tmp_path: Path) -> None:
     starts = tmp_path / "starts.csv"
     starts.write_text("theta_start,phi_dot_start\n75deg,-2\n1.2,0\n")
     out = ("--fmu", fmu_path, "--out", tmp_path / "list.zarr")
     process = command("--list", starts, *out, "--workers", 1, "--csv", "--netcdf", stdout=subprocess.PIPE)
-    told, _ = process.communicate(timeout=60)
+    printed, _ = process.communicate(timeout=60)
     assert process.returncode == 0
-    assert "1 flat" in told
+    assert "1 flat" in printed
     table = (tmp_path / "list.csv").read_text().splitlines()
     assert len(table) == 3
     assert table[0].startswith("wheel,")
@@ -214,24 +181,22 @@ def test_the_command_exports_tables_and_says_in_a_sentence_what_is_wrong(fmu_pat
 
 
 @pytest.mark.parametrize(
-    ("words", "sentence"),
+    ("words", "message"),
     [
-        (["--vary", "s=zero"], "study: --vary s=zero: write"),
-        (
-            ["--vary", "theta_strat=1,2"],
-            "study: 'theta_strat' is no parameter or input of this FMU; do you mean theta_start",
-        ),
-        (["--vary", "s=0,1", "--measure", "low=least(theta)"], "study: 'least(theta)' is no measure"),
-        (["--vary", "s=0,1", "--measure", "low=min(teta)"], "study: 'teta' is no output or local variable"),
-        (["--vary", "s=0,1", "--history", "plane_angle"], "study: 'plane_angle' is no output or local variable"),
-        (["fate"], "study: There is no study fate; the examples are fates, grip"),
-        ([], "study: Say which wheels"),
+        ("--vary s=zero", "--vary s=zero: write"),
+        ("--vary theta_strat=1,2", "'theta_strat' is not a parameter or input of this FMU; did you mean theta_start"),
+        ("--vary s=0,1 --measure low=least(theta)", "'least(theta)' is not a measure"),
+        ("--vary s=0,1 --measure low=min(teta)", "'teta' is not an output or local variable"),
+        ("--vary s=0,1 --history plane_angle", "'plane_angle' is not an output or local variable"),
+        ("fate", "There is no study fate; the examples are fates, grip"),
+        ("", "Which wheels?"),
     ],
 )
-def test_typing_errors_are_told_by_python_alone(words: list[str], sentence: str) -> None:
+def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> None:
     """Isolated, so without any installed package, as scripts/help asks before anything is built."""
     options = ROOT / "examples" / "studies" / "study" / "options.py"
-    told = subprocess.run([sys.executable, "-I", "-S", options, *words], capture_output=True, text=True, check=False)
-    assert told.returncode == 2
-    assert told.stderr.startswith(sentence)
-    assert len(told.stderr.splitlines()) == 1
+    isolated = [sys.executable, "-I", "-S", options, *words.split()]
+    done = subprocess.run(isolated, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"study: {message}")
+    assert len(done.stderr.splitlines()) == 1
