@@ -23,7 +23,7 @@ LOOSE, TIGHT = "1e-22", "1e-28"
 def quadruple(report: Report) -> None:
     """reference values in quadruple precision, two formulations"""
     try:
-        from .extended import FORMS, Problem, Wheel
+        from .taylor import FORMS, Wheel, paper, quad
     except ImportError:
         raise SystemExit("The reference values need heyoka: ./scripts/report --peers benchmark installs it.") from None
     apart, rows = {}, []
@@ -31,7 +31,7 @@ def quadruple(report: Report) -> None:
         runs = {}
         for form in FORMS:
             for tolerance in (LOOSE, TIGHT):
-                solver = Wheel(Problem(**problem.decimals), form, tolerance)
+                solver = Wheel(paper(quad, **problem.decimals), form, tolerance, quad)
                 begin = perf_counter()
                 motion = solver.solve(INSTANTS)
                 runs[form, tolerance] = motion, perf_counter() - begin
