@@ -10,7 +10,6 @@ from __future__ import annotations
 import os
 import platform
 import re
-import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -21,9 +20,9 @@ from typing import Any
 
 import pandas as pd
 from support.motion import Library
-from support.paths import ROOT, build_folder
+from support.paths import build_folder
 
-from publishing.markdown import number, page
+from publishing.markdown import number, page, said
 
 Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]
@@ -104,12 +103,6 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     values = {f.figure: number(float(f.measured)) for f in figures.itertuples()}
     given = {"name": name, "f": values, "t": views(read_tables(folder, name)), "run": run}
     return page(f"{name}.md", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
-
-
-def said(*command: str) -> str:
-    """First line of what a program prints."""
-    found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    return (found.stdout.strip().splitlines() or [""])[0]
 
 
 def cached(name: str) -> str:
