@@ -36,30 +36,12 @@ function(add_fmu target)
   if(TARGET libm)
     list(APPEND licences --libm ${LIBM_FOLDER})
   endif()
-  # Results and a state by the library itself, where it runs here and needs nothing preloaded.
-  set(evidence ${CMAKE_BINARY_DIR}/evidence)
-  set(write_evidence)
-  if(NOT CMAKE_CROSSCOMPILING AND NOT WHEEL_SANITIZE AND NOT WHEEL_COVERAGE)
-    list(APPEND licences --evidence ${evidence})
-    set(
-      write_evidence
-      COMMAND
-      ${Python3_EXECUTABLE}
-      ${CMAKE_SOURCE_DIR}/cmake/evidence.py
-      --library
-      $<TARGET_FILE:${target}>
-      --description
-      ${CMAKE_SOURCE_DIR}/modelDescription.xml
-      --output
-      ${evidence}
-    )
-  endif()
   add_custom_command(
-    OUTPUT ${fmu} ${write_evidence}
+    OUTPUT ${fmu}
     COMMAND
       ${Python3_EXECUTABLE} ${packer} --output ${fmu} --sundials ${SUNDIALS_SOURCE} ${licences} --binary
       ${wheel_platform}=$<TARGET_FILE:${target}>
-    DEPENDS ${target} ${packer} ${CMAKE_SOURCE_DIR}/cmake/evidence.py ${contents} modelDescription.xml LICENSE
+    DEPENDS ${target} ${packer} ${contents} modelDescription.xml LICENSE
     COMMENT "Packing wheel.fmu"
   )
   add_custom_target(fmu ALL DEPENDS ${fmu})

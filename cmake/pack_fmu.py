@@ -90,7 +90,7 @@ def main() -> None:
         "--libm", type=Path, help="folder of libm's sources, for their notices, where they are linked in"
     )
     parser.add_argument("--zig", type=Path, help="folder of ziglang where it is the compiler, for what it links in")
-    parser.add_argument("--evidence", type=Path, help="what cmake/evidence.py wrote")
+    parser.add_argument("--evidence", type=Path, help="folder of the evidence of a release")
     parser.add_argument("--binary", action="append", default=[], help="platform=library")
     arguments = parser.parse_args()
     binaries = {}

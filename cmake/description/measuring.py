@@ -1,5 +1,5 @@
 """Measures on the built wheel.fmu what its outputs depend on: initially on parameters and inputs, at an instant on
-inputs and, in model exchange, on the continuous states.
+inputs and continuous states, by model exchange.
 
 No paper equation. One known is changed at a time and all unknowns are read again, in wheels off every symmetry, so that
 no dependency hides behind a zero: each real start value of zero is set to 0.1.
@@ -37,16 +37,10 @@ Values = dict[str, float]
 class Unit:
     """One instance, read and set by name."""
 
-    def __init__(self, folder: str, kind: str):
+    def __init__(self, folder: str, driver: type[FMU2Slave | FMU2Model]) -> None:
         root = ElementTree.parse(Path(folder) / "modelDescription.xml").getroot()
-        of_kind = root.find(kind)
-        driver = FMU2Slave if kind == "CoSimulation" else FMU2Model
-        self.fmu = driver(
-            guid=root.get("guid"),
-            unzipDirectory=folder,
-            modelIdentifier=of_kind.get("modelIdentifier"),
-            instanceName="measured",
-        )
+        model = root.find("ModelExchange").get("modelIdentifier")
+        self.fmu = driver(guid=root.get("guid"), unzipDirectory=folder, modelIdentifier=model, instanceName="measured")
         self.variables = {v.get("name"): (k, v) for k, v in enumerate(variables_of(root))}
         self.unknowns = unknowns_of(root)
         self.fmu.instantiate()
@@ -81,8 +75,8 @@ class Unit:
 
 
 @contextmanager
-def unit(folder: str, kind: str, scene: Values) -> Iterator[Unit]:
-    made = Unit(folder, kind)
+def unit(folder: str, driver: type[FMU2Slave | FMU2Model], scene: Values) -> Iterator[Unit]:
+    made = Unit(folder, driver)
     try:
         made.start(scene)
         yield made
@@ -111,25 +105,15 @@ def changer(unit: Unit, name: str) -> Callable[[int], None]:
 
 def initially(folder: str, scene: Values) -> Iterator[tuple[str, str]]:
     """Pairs (unknown, known) in initialization mode."""
-    with unit(folder, "CoSimulation", scene) as u:
+    with unit(folder, FMU2Slave, scene) as u:
         for known in u.of_role("parameter", "input"):
             for name in moved(u, u.unknowns["InitialUnknowns"], changer(u, known)):
                 yield name, known
 
 
-def at_once(folder: str, scene: Values) -> Iterator[tuple[str, str]]:
-    """Pairs (output, input) after a step of co-simulation."""
-    with unit(folder, "CoSimulation", scene) as u:
-        u.fmu.exitInitializationMode()
-        u.fmu.doStep(0.0, 0.1)
-        for known in u.of_role("input"):
-            for name in moved(u, u.unknowns["Outputs"], changer(u, known)):
-                yield name, known
-
-
 def continuously(folder: str, scene: Values) -> Iterator[tuple[str, str]]:
-    """Pairs (output or derivative, input or state) in continuous-time mode of model exchange."""
-    with unit(folder, "ModelExchange", scene) as u:
+    """Pairs (output or derivative, input or state) in continuous-time mode."""
+    with unit(folder, FMU2Model, scene) as u:
         count = u.continuous_time()
         names = u.unknowns["Outputs"] + u.unknowns["Derivatives"]
         states = list(u.unknowns["States"])
@@ -179,10 +163,8 @@ def measured(fmu: Path) -> Dependencies:
     """All dependencies of the FMU, by section of ModelStructure."""
     folder = extract(str(fmu))
     try:
-        root = ElementTree.parse(Path(folder) / "modelDescription.xml").getroot()
-        rows = unknowns_of(root)
-        instant = at_once if root.find("ModelExchange") is None else continuously
-        now = [pair for scene in SCENES for pair in instant(folder, scene)]
+        rows = unknowns_of(ElementTree.parse(Path(folder) / "modelDescription.xml").getroot())
+        now = [pair for scene in SCENES for pair in continuously(folder, scene)]
         start = [pair for scene in SCENES for pair in initially(folder, scene)]
         return {
             "Outputs": gathered(iter(now), rows["Outputs"]),

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+import subprocess
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from math import isfinite
 from pathlib import Path
 
@@ -12,6 +14,14 @@ from tabulate import tabulate
 
 ROOT = Path(__file__).resolve().parents[2]
 TEMPLATES = tuple(ROOT / "tools" / part / "templates" for part in ("publishing", "reports"))
+
+
+def said(*command: str) -> str:
+    """The first line that a program prints; nothing where it fails or is missing."""
+    with suppress(OSError):
+        found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+        return (found.stdout.strip().splitlines() or [""])[0] if not found.returncode else ""
+    return ""
 
 
 def number(value: object) -> str:

@@ -73,13 +73,6 @@ def places(arguments: argparse.Namespace) -> list[Place]:
     return found
 
 
-def version_of(*command: str) -> str:
-    try:
-        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[0].strip()
-    except (OSError, subprocess.CalledProcessError):
-        return command[0]
-
-
 def table(run: dict[str, Scenes]) -> str:
     """A row for each scene; the digest on the first platform, and on each other one whether it is equal."""
     first, *others = run.values()
@@ -93,13 +86,13 @@ def write(arguments: argparse.Namespace, run: dict[str, Scenes], **found: object
     folder = arguments.folder
     text = markdown.page(
         "platforms.md",
-        commit=version_of("git", "-C", str(ROOT), "describe", "--always", "--dirty"),
+        commit=markdown.said("git", "describe", "--always", "--dirty"),
         size=(folder / "wheel.fmu").stat().st_size / 1e3,
         outputs=sum(v.causality == "output" for v in DESCRIPTION.modelVariables),
-        compiler=version_of("c++", "--version"),
+        compiler=markdown.said("c++", "--version"),
         old=arguments.old_glibc and arguments.old_glibc[0],
-        wine=version_of(arguments.wine, "--version"),
-        qemu=version_of("qemu-aarch64", "--version").replace("qemu-aarch64 version", "qemu"),
+        wine=markdown.said(arguments.wine, "--version"),
+        qemu=markdown.said("qemu-aarch64", "--version").replace("qemu-aarch64 version", "qemu"),
         run=table(run),
         **{name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in ("libraries", "fmpy", "twice")},
         **found,

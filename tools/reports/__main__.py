@@ -1,7 +1,8 @@
 """./scripts/report NAME…|all: measures, and writes the page NAME.md, its pictures and data into build/report/latest.
 
 With --publish they go to docs/results, which is kept under version control, and the figures in all pages are filled in
-from them.
+from them. A report is a module NAME: its parts measure tables and figures, its PICTURES are drawn from tables, its
+`views` add tables that follow from others, and templates/NAME.md is its page.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from importlib import import_module
+from inspect import isfunction
 from pathlib import Path
 from types import ModuleType
 
@@ -21,37 +23,48 @@ from publishing import documents
 
 from . import plots
 from .options import NAMES, arguments
-from .page import Report, read_tables, render
+from .page import Part, Report, read_tables, render
 
-
-def measure(names: list[str], folder: Path, options: Namespace) -> None:
-    """Each part of each report says how many seconds it takes, so that the bar can tell the time left."""
-    parts = [(name, part, seconds) for name in names for part, seconds in module(name).PARTS.items()]
-    library = Library.unpacked(build_folder() / "wheel.fmu")
-    reports = {name: Report(name, library, folder, options.quick, vars(options)) for name in names}
-    layout = "{percentage:3.0f} % |{bar:20}| {elapsed}, {remaining} left; {desc}"
-    with tqdm(total=sum(seconds for *_, seconds in parts), bar_format=layout) as bar:
-        for name, part, seconds in parts:
-            bar.set_description_str(f"{name}: {(part.__doc__ or part.__name__).splitlines()[0]}")
-            part(reports[name])
-            reports[name].write()
-            bar.update(seconds)
-    library.remove()
+BAR = "{percentage:3.0f} % |{bar:20}| {elapsed}, {remaining} left; {desc}"
 
 
 def module(name: str) -> ModuleType:
     return import_module(f".{name}", __package__)
 
 
+def parts_of(module: ModuleType) -> list[Part]:
+    """The module's own parts, in their order, and those that it takes over from others."""
+    own = [f for f in vars(module).values() if isfunction(f) and f.__module__ == module.__name__]
+    return [*(f for f in own if hasattr(f, "seconds")), *getattr(module, "FURTHER", ())]
+
+
+def measure(names: list[str], folder: Path, options: Namespace) -> None:
+    library = Library.unpacked(build_folder() / "wheel.fmu")
+    parts = {name: parts_of(module(name)) for name in names}
+    with tqdm(total=sum(part.seconds for of in parts.values() for part in of), bar_format=BAR) as bar:
+        for name in names:
+            report = Report(name, library, folder, options.quick, vars(options))
+            for part in parts[name]:
+                bar.set_description_str(f"{name}: {(part.__doc__ or part.__name__).splitlines()[0]}")
+                part(report)
+                report.write()
+                bar.update(part.seconds)
+    library.remove()
+
+
+def rendered(name: str, folder: Path) -> tuple[str | None, str]:
+    """The page, None where its pages are written by hand; what was not met."""
+    if not (Path(__file__).parent / "templates" / f"{name}.md").exists():
+        return None, ""
+    return render(name, folder, getattr(module(name), "views", dict))
+
+
 def draw(name: str, folder: Path) -> bool:
     """The pictures that are drawn from tables, and the page; whether all requirements are met."""
-    of, missed = module(name), ""
-    for picture, sheet in getattr(of, "PICTURES", {}).items():
+    for picture, sheet in getattr(module(name), "PICTURES", {}).items():
         style.save_png(sheet(read_tables(folder, name)), folder / f"{name}_{picture}.png", plots.DPI)
-    if hasattr(of, "page"):
-        of.page(folder)
-    else:
-        text, missed = render(name, folder, getattr(of, "views", dict))
+    text, missed = rendered(name, folder)
+    if text is not None:
         (folder / f"{name}.md").write_text(text, encoding="utf-8")
     print(f"{name}: {f'not met: {missed}' if missed else 'all requirements are met'}.")
     return not missed
@@ -59,10 +72,8 @@ def draw(name: str, folder: Path) -> bool:
 
 def fresh(name: str, folder: Path) -> bool:
     """Whether the page that is there is the one of the data; a report that was not published yet has none."""
-    if hasattr(module(name), "page") or not (folder / "data" / f"{name}.csv").exists():
-        return True
-    text, _ = render(name, folder, getattr(module(name), "views", dict))
-    same = text == (folder / f"{name}.md").read_text(encoding="utf-8")
+    text = rendered(name, folder)[0] if (folder / "data" / f"{name}.csv").exists() else None
+    same = text is None or text == (folder / f"{name}.md").read_text(encoding="utf-8")
     if not same:
         print(f"{name}.md is not the page of the data: run ./scripts/report {name} --render.")
     return same
@@ -77,16 +88,15 @@ def main() -> int:
         folder = ROOT / "build" / "report" / ("quick" if options.quick else "latest")
     folder.mkdir(parents=True, exist_ok=True)
     if options.check:
-        stale = [name for name in names if not fresh(name, folder)]
-        return int(bool(stale))
+        return int(sum(fresh(name, folder) for name in names) < len(names))
     if not options.render:
         measure(names, folder, options)
     met = [draw(name, folder) for name in names]
-    if not published:
-        print(f"Written into {folder.relative_to(ROOT)}.")
-    else:
+    if published:
         sys.argv = sys.argv[:1]
         documents.main()
+    else:
+        print(f"Written into {folder.relative_to(ROOT)}.")
     return int(not all(met))
 
 

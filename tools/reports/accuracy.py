@@ -30,7 +30,7 @@ from support.driver import HEADLINE
 from support.scenes import Scene
 
 from . import plots
-from .page import Report, Row, Tables, number
+from .page import Report, Row, Tables, number, part
 from .plots import Sheet, style
 from .speed import long_error
 from .truth import kept_headline, range_error
@@ -40,24 +40,22 @@ SPINS = (2.0, 10.0, 100.0, 300.0, 1000.0)  # rad/s
 TABLE_UNIT = 1e-9  # s, last digit of the table of transitions
 
 
+@part(2)
 def paper(report: Report) -> None:
     """the paper's scenes at the default tolerance"""
     errors = pd.DataFrame({scene: table_errors(report.library, scene) for scene in FRICTION})
     report.table("paper", errors.rename_axis("output").reset_index())
-    for scene, worst in errors.max().items():
-        report.figure(f"error_{scene}", f"{scene} scene: error of any headline output / its range", worst, "", 1e-6)
+    report.figures(**errors.max().add_prefix("error_"))
 
 
+@part(12)
 def tolerances(report: Report) -> None:
     """what each tolerance gives"""
     rows = pd.DataFrame([tolerance_row(report, tolerance) for tolerance in (0.1, 1e-3, *TOLERANCES, 1e-15)])
     report.table("tolerances", rows)
-    at = rows.set_index("tolerance")
-    report.figure("energy", "free scene: energy over 10 s, relative", at["energy, free"][1e-8], "", 1e-8)
-    report.figure("energy_tight", "the same at tolerance 1e-12", at["energy, free"][1e-12], "", 1e-12)
-    report.figure("instants", "friction scene: error of the 37 instants", at["instants, s"][1e-8], "s", 1e-6)
-    wrong = (rows["transitions"] != 37).sum()
-    report.figure("wrong_counts", "tolerances without all 37 transitions", wrong, "", 0)
+    energy, instants = (rows.set_index("tolerance")[column] for column in ("energy, free", "instants, s"))
+    report.figures(energy=energy[1e-8], energy_tight=energy[1e-12], instants=instants[1e-8])
+    report.figures(wrong_counts=(rows["transitions"] != 37).sum())
 
 
 def tolerance_row(report: Report, tolerance: float) -> Row:
@@ -91,6 +89,7 @@ def draw_tolerances(tables: Tables) -> Sheet:
     return figure
 
 
+@part(20)
 def spins(report: Report) -> None:
     """fast spin"""
     rows = []
@@ -103,36 +102,33 @@ def spins(report: Report) -> None:
             row[f"at {number(tolerance)}"] = error / tolerance
         rows.append(row)
     report.table("spins", rows)
-    worst = max(row["at 1e-8"] for row in rows)
-    report.figure("spin", "error / range / tolerance in 1 s, up to 1000 rad/s", worst, "", 100)
+    report.figures(spin=max(row["at 1e-8"] for row in rows))
 
 
+@part(8)
 def long(report: Report) -> None:
     """1000 s of the unfolded wheel"""
     errors = {tolerance: long_error(report.library, tolerance) for tolerance in TOLERANCES[:-1]}
     report.table("long", [{"tolerance": t, "error / range": error} for t, error in errors.items()])
-    report.figure("long", "free wheel, 1000 s: error / range", errors[1e-8], "", 1e-6)
+    report.figures(long=errors[1e-8])
 
 
+@part(40)
 def scenes(report: Report) -> None:
     """other scenes against the reference"""
     rows = []
     for name, case in CASES.items():
         rubs = case.wheel.s > 0
-        rows.append(
-            {
-                "scene": name,
-                "s": case.duration,
-                **{f"at {number(t)}": error(report.library, name, t) for t in (1e-8, 1e-10, 1e-12)},
-                "transitions": len(expected(name).events) - 1 if rubs else 0,
-                "their error, s": transitions_gap(report.library, name, case.wheel.s) if rubs else 0.0,
-            }
-        )
+        row = {"scene": name, "s": case.duration}
+        row |= {f"at {number(t)}": error(report.library, name, t) for t in (1e-8, 1e-10, 1e-12)}
+        row["transitions"] = len(expected(name).events) - 1 if rubs else 0
+        rows.append(row | {"their error, s": transitions_gap(report.library, name, case.wheel.s) if rubs else 0.0})
     report.table("scenes", rows)
-    report.figure("scenes", "other scenes, default tolerance: error", max(r["at 1e-8"] for r in rows))
-    report.figure("scenes_tight", "other scenes at 1e-12: error", max(r["at 1e-12"] for r in rows), "", 1e-8)
+    largest = pd.DataFrame(rows).max()
+    report.figures(scenes=largest["at 1e-8"], scenes_tight=largest["at 1e-12"])
 
 
+@part(6)
 def closed_forms(report: Report) -> None:
     """closed forms"""
     library, thin, rough = report.library, Wheel(r=0.0), Wheel(s=0.03)
@@ -151,17 +147,17 @@ def closed_forms(report: Report) -> None:
     }
     rows = [{"motion: error": name, "reduced": m(2), "multibody": m(3)} for name, m in measures.items()]
     report.table("closed_forms", rows)
-    worst = max(max(row["reduced"], row["multibody"]) for row in rows)
-    report.figure("closed_forms", "closed forms: any error", worst, "", 1e-7)
+    report.figures(closed_forms=max(max(row["reduced"], row["multibody"]) for row in rows))
 
 
+@part(4)
 def stability_limit(report: Report) -> None:
     """the stability limit of upright rolling"""
     found, formula = measured_critical_spin(report.library), critical_spin(TORUS)
-    report.figure("critical_spin", "upright rolling is stable above", found, "rad/s")
-    report.figure("critical", "stability limit: relative error", abs(found / formula - 1), "", 1e-6)
+    report.figures(critical_spin=found, critical=abs(found / formula - 1))
 
 
+@part(20)
 def equations(report: Report) -> None:
     """the equations, pointwise"""
     rows = {}
@@ -174,10 +170,10 @@ def equations(report: Report) -> None:
         rows["multibody − reference, any J", name] = apart
     table = pd.Series(rows).unstack(0, sort=False)
     report.table("equations", table.rename_axis("friction").reset_index())
-    worst = table.to_numpy().max()
-    report.figure("equations", "accelerations and reactions: forms and reference apart", worst, "", 1e-11)
+    report.figures(equations=table.to_numpy().max())
 
 
+@part(15)
 def drift(report: Report) -> None:
     """drift of the multibody form off its constraints"""
     times, rows = np.linspace(0, 10, 501), []
@@ -189,8 +185,4 @@ def drift(report: Report) -> None:
     report.table("drift", rows)
 
 
-PARTS: dict[Callable[[Report], None], float] = {
-    **{paper: 2, tolerances: 12, spins: 20, long: 8, scenes: 40, closed_forms: 6},
-    **{stability_limit: 4, equations: 20, drift: 15},
-}
 PICTURES = {"tolerances": draw_tolerances}

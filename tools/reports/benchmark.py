@@ -6,45 +6,44 @@ agree on. The problems in words are in docs/benchmark.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from time import perf_counter
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from benchmark.problems import INSTANTS, OUTPUTS, PROBLEMS, by_fmu, by_reference, errors
 
-from .page import Report, Row
+from .page import Report, Row, part
 
 LOOSE, TIGHT = "1e-22", "1e-28"
-LEAST = 1e-15  # what thirteen digits need, with room
 
 
+@part(60)
 def quadruple(report: Report) -> None:
     """reference values in quadruple precision, two formulations"""
     try:
-        from .extended import FORMS, Problem, Wheel
+        from .taylor import FORMS, Wheel, paper, quad
     except ImportError:
         raise SystemExit("The reference values need heyoka: ./scripts/report --peers benchmark installs it.") from None
-    apart, rows, worst = {}, [], 0.0
+    apart, rows = {}, []
     for name, problem in PROBLEMS.items():
         runs = {}
         for form in FORMS:
             for tolerance in (LOOSE, TIGHT):
-                solver = Wheel(Problem(**problem.decimals), form, tolerance)
+                solver = Wheel(paper(quad, **problem.decimals), form, tolerance, quad)
                 begin = perf_counter()
                 motion = solver.solve(INSTANTS)
                 runs[form, tolerance] = motion, perf_counter() - begin
         best, *others = [motion for motion, _ in runs.values()][::-1]
         apart[name] = max(distance(motion, best) for motion in others)
-        worst = max(worst, apart[name])
         write(report, name, best)
         for (form, tolerance), (motion, seconds) in runs.items():
             program = f"heyoka, quadruple precision, {form}"
             rows.append(entry(name, program, tolerance, (distance(motion, best), None), seconds))
     report.kept["rows"] = rows
     report.table("agreement", [{"scene": name, "largest difference": value} for name, value in apart.items()])
-    report.figure("agreement", "two formulations, two tolerances: largest difference", worst, "", LEAST)
+    report.figures(agreement=max(apart.values()))
 
 
 def distance(motion: Any, other: Any) -> float:
@@ -75,6 +74,7 @@ def entry(scene: str, program: str, tolerance: str, found: tuple[float, float | 
     }
 
 
+@part(30)
 def programs(report: Report) -> None:
     """error against run time of wheel.fmu and of tests/reference"""
     rows = report.kept["rows"]
@@ -92,11 +92,5 @@ def programs(report: Report) -> None:
             spent = perf_counter() - begin
             rows.append(entry(name, "tests/reference", tolerance, errors(name, solution, report.folder), spent))
     report.table("programs", sorted(rows, key=lambda row: list(PROBLEMS).index(str(row["scene"]))))
-    ours = [row for row in rows if row["program"] == "wheel.fmu" and row["tolerance"] == "1e-14"]
-    worst = max(row["error / range"] for row in ours)
-    report.figure("ours", "wheel.fmu at tolerance 1e-14: error / range", worst, "", 1e-10)
-    instants = max(row["instants, s"] for row in ours if row["instants, s"] is not None)
-    report.figure("instants", "wheel.fmu at tolerance 1e-14: error of the 37 instants", instants, "s", 2e-9)
-
-
-PARTS: dict[Callable[[Report], None], float] = {quadruple: 60, programs: 30}
+    worst = pd.DataFrame(rows).query("program == 'wheel.fmu' and tolerance == '1e-14'").max()
+    report.figures(ours=worst["error / range"], instants=worst["instants, s"])

@@ -16,7 +16,7 @@ from support.driver import HEADLINE
 from support.exchange import Run, exchange, no_inputs
 from support.motion import Library
 
-from .page import Report, Row
+from .page import Report, Row, part
 from .truth import range_error
 
 TIMES = np.linspace(0, 10, 101)
@@ -57,6 +57,7 @@ SOLVERS = {
 }
 
 
+@part(3)
 def model_exchange(report: Report) -> None:
     """model exchange beside co-simulation"""
     rows: list[Row] = []

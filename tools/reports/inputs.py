@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 from reference import Inputs
 from support.scenes import SCENES, SINES, sines
 
 from .native import Array, Task
-from .page import Report
+from .page import Report, part
 from .speed import master_of, sine_table
 from .truth import kept_headline, range_error
 
@@ -38,6 +39,7 @@ def cases(steps: int) -> dict[str, tuple[str, Array | None]]:
     }
 
 
+@part(20)
 def cost(report: Report) -> None:
     """what inputs cost, and their error"""
     scene = replace(SCENES["free"], duration=2.0 if report.quick else 10.0)
@@ -48,25 +50,12 @@ def cost(report: Report) -> None:
             names = () if table is None else tuple(SINES)
             task = Task({**scene.start, "method": method}, STEP, steps, inputs=names, table=table)
             done = master.run(task, 0.05)
-            rows.append(
-                {
-                    "inputs": name,
-                    "method": method,
-                    **{what: done.counters[f"n_{what}"] for what in ("steps", "rhs", "restarts")},
-                    "µs per step": 1e6 * done.best / steps if done.reached else np.nan,
-                    "error / range": range_error(done.rows[::EVERY], want) if done.reached else np.inf,
-                }
-            )
+            row = {"inputs": name, "method": method}
+            row |= {what: done.counters[f"n_{what}"] for what in ("steps", "rhs", "restarts")}
+            row["µs per step"] = 1e6 * done.best / steps if done.reached else np.nan
+            rows.append(row | {"error / range": range_error(done.rows[::EVERY], want) if done.reached else np.inf})
     report.table("cost", rows)
-    at = {(row["inputs"], row["method"]): row for row in rows}
-    linear = at["sines, first derivative given", "automatic"]
-    held = at["sines, held over the step", "automatic"]
-    report.figure("held", "sines held over 1 ms: error / range", held["error / range"])
-    report.figure("linear", "sines with first derivatives: error / range", linear["error / range"])
-    report.figure("never", "inputs never set: per step", 1e3 * at["never set", "automatic"]["µs per step"], "ns")
-    once = at["constant, set at every step", "automatic"]
-    what = "a constant set again at each step: restarts"
-    report.figure("again", what, once["restarts"], "", 1)
-
-
-PARTS: dict[Callable[[Report], None], float] = {cost: 20}
+    at = pd.DataFrame(rows).query("method == 'automatic'").set_index("inputs")
+    error = at["error / range"]
+    report.figures(held=error["sines, held over the step"], linear=error["sines, first derivative given"])
+    report.figures(never=1e3 * at["µs per step"]["never set"], again=at["restarts"]["constant, set at every step"])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from time import perf_counter
 
 import pandas as pd
@@ -21,25 +20,12 @@ from support.driver import Values
 from support.motion import Library, Run, run
 
 from . import plots
-from .page import Report, Tables, number
+from .page import Report, Row, Tables, number, part
 from .plots import Sheet, style
 
 WIDTHS = tuple(10.0**-k for k in range(1, 9))
 TOLERANCES = (1e-4, 1e-6, 1e-8)
 REPEATS = 5
-
-
-@dataclass
-class Point:
-    """One solution. error is nan where the run did not get to the end."""
-
-    law: str
-    method: str
-    tolerance: float
-    omega_s: float
-    error: float
-    milliseconds: float
-    steps: int
 
 
 def best_time(library: Library, values: Values, tolerance: float, duration: float, repeats: int = REPEATS) -> float:
@@ -55,34 +41,30 @@ def best_time(library: Library, values: Values, tolerance: float, duration: floa
     return 1e3 * best
 
 
-def point(library: Library, truth: Run, values: Values, tolerance: float) -> Point:
+def point(library: Library, truth: Run, tolerance: float, omega_s: float, **law: str) -> Row:
+    """One solution of the paper's friction scene; its error is nan where the run did not get to the end."""
+    values = {**FRICTION, **law} | ({"omega_s": omega_s} if omega_s else {})
     found = run(library, values, TIMES, tolerance)
-    spent = best_time(library, values, tolerance, TIMES[-1])
-    names = (str(values.get("friction_law", "exact")), str(values.get("method", "automatic")))
-    omega_s = float(values.get("omega_s", 0.0))
-    return Point(*names, tolerance, omega_s, error_against(truth, found), spent, found.counters["n_steps"])
+    row = {"law": law.get("friction_law", "exact"), "method": law.get("method", "automatic"), "tolerance": tolerance}
+    row |= {"omega_s, rad/s": omega_s, "error": error_against(truth, found)}
+    return row | {"ms": best_time(library, values, tolerance, TIMES[-1]), "steps": found.counters["n_steps"]}
 
 
-def study(library: Library) -> list[Point]:
-    truth = run(library, FRICTION, TIMES, 1e-12)
-    points = []
-    for tolerance in TOLERANCES:
-        points.append(point(library, truth, FRICTION, tolerance))
-        for omega_s in WIDTHS:
-            for method in ("automatic", "bdf"):
-                law = {**FRICTION, "friction_law": "regularized", "omega_s": omega_s, "method": method}
-                points.append(point(library, truth, law, tolerance))
-    return points
-
-
+@part(15)
 def law(report: Report) -> None:
     """the regularized law"""
-    points = pd.DataFrame(study(report.library))
-    report.table("law", points.rename(columns={"omega_s": "omega_s, rad/s", "milliseconds": "ms"}))
-    found = points[points["law"] != "exact"]
-    bound = found["error"] / (WIDTH_FACTOR * found["omega_s"] + TOLERANCE_FACTOR * found["tolerance"])
-    what = f"regularized law: error over {WIDTH_FACTOR:g} ω_s + {TOLERANCE_FACTOR:g} tolerance"
-    report.figure("law", what, bound.max(), "", 1)
+    library, points = report.library, []
+    truth = run(library, FRICTION, TIMES, 1e-12)
+    for tolerance in TOLERANCES:
+        points.append(point(library, truth, tolerance, 0.0))
+        for omega_s in WIDTHS:
+            for method in ("automatic", "bdf"):
+                how = {"friction_law": "regularized", "method": method}
+                points.append(point(library, truth, tolerance, omega_s, **how))
+    report.table("law", points)
+    found = pd.DataFrame(points).query("law != 'exact'")
+    bound = WIDTH_FACTOR * found["omega_s, rad/s"] + TOLERANCE_FACTOR * found["tolerance"]
+    report.figures(law=(found["error"] / bound).max())
 
 
 def draw_law(tables: Tables) -> Sheet:
@@ -101,18 +83,9 @@ def draw_law(tables: Tables) -> Sheet:
     return figure
 
 
-@dataclass
-class Crossing:
-    """Times of DOP853 and of BDF over that of automatic for one scene at one width."""
-
-    scene: str
-    decay: float
-    runge_kutta: float
-    bdf: float
-    layered: bool
-
-
-def crossed(library: Library) -> list[Crossing]:
+@part(15)
+def crossings(report: Report) -> None:
+    """where the layer pays: times of DOP853 and of BDF over that of automatic, for each scene and width"""
     scenes = {
         "the paper's, 10 s": (FRICTION, 10.0),
         "the paper's, 60 s": (FRICTION, 60.0),
@@ -120,27 +93,19 @@ def crossed(library: Library) -> list[Crossing]:
         "multibody": ({**FRICTION, "formulation": "multibody"}, 10.0),
         "light friction": ({"s": 0.003}, 10.0),
     }
-    found = []
+    library, rows = report.library, []
     for name, (scene, duration) in scenes.items():
         for omega_s in (1e-2, 3e-3, 1e-3, 3e-4, 1e-4):
             law = {**scene, "friction_law": "regularized", "omega_s": omega_s}
-            automatic, *fixed = (
+            automatic, dop853, bdf = (
                 best_time(library, {**law, "method": m}, 1e-6, duration, 3) for m in ("automatic", "runge_kutta", "bdf")
             )
-            ratios = [time / automatic for time in fixed]
-            found.append(Crossing(name, decay_number(law), *ratios, is_layered(library, law)))
-    return found
-
-
-def crossings(report: Report) -> None:
-    """where the layer pays"""
-    found = pd.DataFrame(crossed(report.library))
-    lost = 1 / found[["runge_kutta", "bdf"]].min(axis=1)
-    names = {"decay": "decay number", "runge_kutta": "DOP853 over automatic", "bdf": "BDF over automatic"}
-    report.table("crossings", found.rename(columns=names | {"layered": "in layers"}))
-    report.figure(
-        "wrong_method", "automatic's time over the better fixed method's, at worst", max(lost.max(), 1.0), "×"
-    )
+            ratios = {"DOP853 over automatic": dop853 / automatic, "BDF over automatic": bdf / automatic}
+            row = {"scene": name, "decay number": decay_number(law), **ratios}
+            rows.append(row | {"in layers": is_layered(library, law)})
+    report.table("crossings", rows)
+    better = pd.DataFrame(rows)[[*ratios]].min(axis=1)
+    report.figures(wrong_method=max((1 / better).max(), 1.0))
 
 
 def draw_methods(tables: Tables) -> Sheet:

@@ -77,11 +77,6 @@ class Timing:
         return float(self.costs[:, 1].min())
 
     @property
-    def whole(self) -> float:
-        """Seconds from making an instance to freeing it."""
-        return float(self.costs[:, :3].sum(axis=1).min())
-
-    @property
     def life(self) -> float:
         """Median seconds to create, initialise and free."""
         return float(np.median(self.costs[:, 0] + self.costs[:, 2]))

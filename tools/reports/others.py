@@ -6,7 +6,6 @@ else its rows are those kept in tests/others.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +15,7 @@ from physics.leaning import measured_critical_spin
 from reference import Start, Wheel
 from support.schedule import Schedule
 
-from .page import Report, number
+from .page import Report, number, part
 from .partners import fmus
 
 
@@ -31,14 +30,16 @@ def digits(*values: float, places: int = 12) -> str:
     return ", ".join(f"{value:.{places}f}" for value in values)
 
 
+@part(5)
 def kane(report: Report) -> None:
     """the torus wheel by Kane's method"""
     worst = kane_states.distance()
     scene = "200 random states, loads, inertias and laws of friction: ψ̈, θ̈, φ̈, N"
     row(report, "symbrim 0.1.0 (TU Delft; SymPy, Kane)", scene, ("derived", "same"), worst, "rounding")
-    report.figure("kane", "accelerations and normal force by Kane's method, relative", worst, "", 1e-11)
+    report.figures(kane=worst)
 
 
+@part(3)
 def modelica(report: Report) -> None:
     """Modelica's RollingWheel"""
     theirs, ours, true = read("modelica_wheel"), wheels.modelica(report.library), wheels.modelica_reference()
@@ -51,11 +52,10 @@ def modelica(report: Report) -> None:
     printed = "0.162547, -2.23778", printed[1]
     whose = "theirs: Modelica's values, compared to 1e-3"
     row(report, "Multibody.jl, test_wheels.jl", "the same wheel", printed, float(ours["X_O"][-1] - 0.162547), whose)
-    report.figure("modelica", "Modelica's table: distance from tests/reference", off, "m")
-    report.figure("modelica_energy", "Modelica's table: drift of its energy, relative", drift)
-    report.figure("modelica_own", "the same wheel: wheel.fmu from tests/reference", own, "m", 1e-8)
+    report.figures(modelica=off, modelica_energy=drift, modelica_own=own)
 
 
+@part(20)
 def coin(report: Report) -> None:
     """Exudyn's rolling coin"""
     ours, table, made = wheels.coin(report.library, 1e-12), read("exudyn_coin"), "kept"
@@ -70,26 +70,29 @@ def coin(report: Report) -> None:
     values = digits(*limit, places=15), digits(*ours, places=15)
     whose = f"neither's; at its step of 0.5 ms it is {number(float(abs(table['x'][0] - ours[0])))} m off ({made})"
     row(report, "Exudyn 1.13.6, extrapolated to h = 0", "rollingCoinTest, 0.5 s: X_C, Y_C", values, apart, whose)
-    report.figure("coin", "Exudyn's coin: distance of the contact points", apart, "m", 1e-12)
+    report.figures(coin=apart)
 
 
+@part(1)
 def critical(report: Report) -> None:
     """SymPy's critical spin"""
     ours = measured_critical_spin(report.library, wheels.SYMPY_DISC)
     apart = float(abs(ours - wheels.SYMPY_CRITICAL_SPIN))
     values = f"1/√3 = {wheels.SYMPY_CRITICAL_SPIN:.12f}", digits(ours)
     row(report, "SymPy 1.14, test_linearize", "spin at which all eigenvalues vanish", values, apart, "ours: measured")
-    report.figure("critical", "SymPy's critical spin, measured", apart, "rad/s", 1e-8)
+    report.figures(critical=apart)
 
 
+@part(5)
 def legendre(report: Report) -> None:
     """the rolling disc by Legendre functions"""
     worst = max(wheels.legendre_error(report.library, disc) for disc in wheels.DISCS)
     who, scene = "Chaplygin, Appell, Korteweg, 1897–1900", "four discs, 10 s: ω_2 and ω_3 as functions of θ"
     row(report, who, scene, ("Legendre functions", "same"), worst, "ours: the solver's, at tolerance 1e-14")
-    report.figure("legendre", "ω_2 and ω_3 of the disc against Legendre functions, relative", worst, "", 1e-12)
+    report.figures(legendre=worst)
 
 
+@part(1)
 def ramp(report: Report) -> None:
     """Multibody.jl's wheel on a ramp"""
     start = Start(psi=0.0, theta=np.pi / 2, phi_dot=0.0, X_O=0.0)
@@ -104,6 +107,7 @@ def ramp(report: Report) -> None:
     row(report, "Multibody.jl, test_wheels.jl", scene, values, float(np.abs(np.abs(gained) - closed).max()), whose)
 
 
+@part(60)
 def wheel_sets(report: Report) -> None:
     """Modelica's wheel sets: axle.fmu with ever stiffer links"""
     from others import wheel_sets as sets
@@ -121,14 +125,9 @@ def wheel_sets(report: Report) -> None:
         name = f"RollingWheelSet{scene.capitalize()}, 3 s: x, y, φ; links → ∞"
         whose = f"the table's; ours is {number(own)} from the rigid wheel set"
         row(report, "Modelica Standard Library 4.0", name, values, sets.distance(limit, table), whose)
-        report.figure(scene, f"{scene}: limit of stiff links, from the rigid wheel set", own, "m, rad", 2e-5)
+        report.figures(**{scene: own})
     report.table("stiffness", rows)
     printed, exact = read("multibody_jl_driving"), sets.rigid_at("driving", read("multibody_jl_driving")["time"])
     apart = float(np.hypot(printed["x"] - exact["x"], printed["y"] - exact["y"]).max())
     last = tuple(digits(source["x"][-1], source["y"][-1], places=6) for source in (printed, exact))
     row(report, "Multibody.jl, test_wheels.jl", "DrivingWheelSet, 11 instants, 1 s: x, y", last, apart, "theirs: 1e-3")
-
-
-PARTS: dict[Callable[[Report], None], float] = {
-    **{kane: 5, modelica: 3, coin: 20, critical: 1, legendre: 5, ramp: 1, wheel_sets: 60}
-}

@@ -12,12 +12,13 @@ import pandas as pd
 from support.paths import ROOT
 from vehicles import axle, axle_study, build, car, ssp
 
-from .page import Report
+from .page import Report, part
 from .partners import fmus
 
 GRID = 0.05  # s
 
 
+@part(120)
 def packages(report: Report) -> None:
     """the packages in other tools, beside the master of the examples"""
     units, h = fmus(report), 0.0005

@@ -1,7 +1,8 @@
 """A report: what it measures goes into CSV files, and out of these alone come its pictures and its page of Markdown.
 
-docs/results/data/NAME.csv has the figures with what was asked of them, NAME_TABLE.csv the tables, made.csv the machine,
-versions, commit and date of each report.
+requirements.csv lists every figure in its report's order: unit, what is asked of it (an upper bound, zero included, or
+nothing), and words. docs/results/data/NAME.csv has the figures as measured, NAME_TABLE.csv the tables, made.csv the
+machine, versions, commit and date of each report.
 """
 
 from __future__ import annotations
@@ -9,7 +10,6 @@ from __future__ import annotations
 import os
 import platform
 import re
-import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -20,14 +20,26 @@ from typing import Any
 
 import pandas as pd
 from support.motion import Library
-from support.paths import ROOT, build_folder
+from support.paths import build_folder
 
-from publishing.markdown import number, page
+from publishing.markdown import number, page, said
 
 Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]
+Part = Callable[["Report"], None]
 VERDICTS = {True: "yes", False: "**no**"}
 PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka", "numba", "numbalsoda")
+REQUIREMENTS = pd.read_csv(Path(__file__).with_name("requirements.csv")).set_index(["report", "figure"])
+
+
+def part(seconds: float) -> Callable[[Part], Part]:
+    """Makes a function a part of its module's report; the bar needs the time that it takes."""
+
+    def marked(measure: Part) -> Part:
+        measure.seconds = seconds
+        return measure
+
+    return marked
 
 
 @dataclass
@@ -39,20 +51,23 @@ class Report:
     folder: Path
     quick: bool = False
     options: Mapping[str, Any] = field(default_factory=dict)
-    figures: dict[str, dict[str, Any]] = field(default_factory=dict)
+    measured: dict[str, float] = field(default_factory=dict)
     kept: dict[str, Any] = field(default_factory=dict)  # what several parts of a report use
 
-    def figure(self, figure: str, what: str, measured: float, unit: str = "", asked: float | None = None) -> None:
-        """A measured number. asked: its upper bound, zero included; None where nothing was asked."""
-        row = {"figure": figure, "measured": float(measured), "unit": unit, "asked": asked, "what": what}
-        self.figures[figure] = row
+    def figures(self, **measured: float) -> None:
+        """Numbers that requirements.csv lists."""
+        unknown = [name for name in measured if (self.name, name) not in REQUIREMENTS.index]
+        assert not unknown, f"requirements.csv does not list {unknown} of {self.name}"
+        self.measured |= {name: float(value) for name, value in measured.items()}
 
     def table(self, name: str, rows: pd.DataFrame | Sequence[Row]) -> None:
         write_csv(self.folder, f"{self.name}_{name}", pd.DataFrame(rows))
 
     def write(self) -> None:
         """The figures, and what they were measured with."""
-        write_csv(self.folder, self.name, pd.DataFrame(self.figures.values()))
+        found = REQUIREMENTS.loc[self.name].join(pd.Series(self.measured, name="measured", dtype=float), how="inner")
+        columns = ["figure", "measured", "unit", "asked", "what"]
+        write_csv(self.folder, self.name, found.rename_axis("figure").reset_index()[columns])
         path = self.folder / "data" / "made.csv"
         others = pd.read_csv(path, dtype=str) if path.exists() else pd.DataFrame({"report": []})
         rows = pd.concat([others[others["report"] != self.name], pd.DataFrame([made(self.name)])])
@@ -68,11 +83,11 @@ def write_csv(folder: Path, name: str, frame: pd.DataFrame) -> None:
 
 def read_tables(folder: Path, name: str) -> Tables:
     """The tables of a report by name; one without rows may lack its columns too."""
-    tables = {}
-    for file in sorted((folder / "data").glob(f"{name}_*.csv")):
-        text = file.read_text(encoding="utf-8")
-        tables[file.stem.removeprefix(f"{name}_")] = pd.read_csv(StringIO(text)) if text.strip() else pd.DataFrame()
-    return tables
+    texts = {file.stem: file.read_text(encoding="utf-8") for file in sorted((folder / "data").glob(f"{name}_*.csv"))}
+    return {
+        stem.removeprefix(f"{name}_"): pd.read_csv(StringIO(text)) if text.strip() else pd.DataFrame()
+        for stem, text in texts.items()
+    }
 
 
 def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) -> tuple[str, str]:
@@ -86,18 +101,8 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
     values = {f.figure: number(float(f.measured)) for f in figures.itertuples()}
-    text = page(
-        f"{name}.md",
-        **{"name": name, "f": values, "t": views(read_tables(folder, name))},
-        **{"asked": pd.DataFrame(table), "missed": missed, "run": run},
-    )
-    return text, "; ".join(missed)
-
-
-def said(*command: str) -> str:
-    """First line of what a program prints."""
-    found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    return (found.stdout.strip().splitlines() or [""])[0]
+    given = {"name": name, "f": values, "t": views(read_tables(folder, name)), "run": run}
+    return page(f"{name}.md", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
 
 
 def cached(name: str) -> str:

@@ -5,7 +5,6 @@ The two vehicles are measured by functions of that package, which the tests of t
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,7 @@ from support.paths import ROOT
 from support.scenes import PAPER
 from support.schedule import Schedule
 
-from .page import Report
+from .page import Report, part
 
 UPRIGHT = {"theta_start": np.pi / 2, "psi_start": 0.0, "X_O_start": 0.0}
 
@@ -29,21 +28,19 @@ def fmus(report: Report) -> dict[str, Path]:
     return report.kept["fmus"]
 
 
+@part(20)
 def driven_wheel(report: Report) -> None:
     """the driven, balanced wheel"""
     from vehicles import driven, figures
 
     drive = driven.run(fmus(report))
     verdict = driven.judge(drive)
-    report.figure("alone", "the wheel alone leans by 45° after", verdict.fall, "s")
-    report.figure("tilt", "straight line, last second: off upright", verdict.line_tilt, "°", 0.1)
-    what, off = f"circle of {driven.RADIUS} m: error of the radius driven", verdict.circle_radius - driven.RADIUS
-    report.figure("circle", what, abs(off), "m", 0.01)
-    report.figure("scatter", "off the circle driven", verdict.circle_scatter, "m", 1e-2)
-    report.figure("speed", "error of ω_z on the circle", verdict.speed_error, "rad/s", 1e-2)
+    report.figures(alone=verdict.fall, tilt=verdict.line_tilt, circle=abs(verdict.circle_radius - driven.RADIUS))
+    report.figures(scatter=verdict.circle_scatter, speed=verdict.speed_error)
     figures.draw_drive(drive, report.folder / "partners_driven.png")
 
 
+@part(25)
 def suspended_wheel(report: Report) -> None:
     """the suspended wheel against one set of equations"""
     from vehicles import errors, figures, ssp, suspended
@@ -56,9 +53,7 @@ def suspended_wheel(report: Report) -> None:
     columns["share lost to the lag of a held position"] = [suspended.drag_share(h) for h in steps]
     report.table("orders", pd.DataFrame(columns))
     linear = found.of["derivatives"]
-    least = min(errors.orders(steps, linear))
-    report.figure("order", "first derivatives: observed order below 2 by", 2 - least, "", 0.3)
-    report.figure("linear", "error at the smallest step, first derivatives", linear[-1])
+    report.figures(order=2 - min(errors.orders(steps, linear)), linear=linear[-1])
     package = ssp.build(suspended.system(units), ROOT / "build" / "examples")
     shares = [{"step, ms": 1000 * h, "error": suspended.package_distance(package, h, truth)} for h in steps[1:4]]
     report.table("package", shares)
@@ -72,6 +67,7 @@ def suspended_wheel(report: Report) -> None:
     figures.draw_launch(launch, found, report.folder / "partners_suspended.png")
 
 
+@part(3)
 def ground(report: Report) -> None:
     """standing, breaking away, sand: an upright wheel on a line, where closed forms are exact"""
     s, times = 0.01, np.linspace(0, 1, 101)
@@ -91,14 +87,6 @@ def ground(report: Report) -> None:
         wheel.step_to(2.0)
         sand = wheel.get("omega_z")[0] - (-20 + 5 * held / J * 1.5)
     of_ramp = np.abs(ramp["omega_z"] - rate / J / 2 * np.maximum(times - release, 0) ** 2).max()
-    standing, breaking = (float(np.abs(run["omega_z"]).max()) for run in (still, moving))
-    report.figure("standing", "torque 0.99 s N: largest ω_z", standing, "rad/s", 0)
-    report.figure("breaking", "torque 1.01 s N: largest ω_z", breaking, "rad/s")
-    report.figure("ramp", "torque that grows to s N inside a step: error of ω_z", of_ramp, "rad/s", 1e-6)
-    report.figure("sand", "s from 0 to 50 mm while rolling: error of ω_z", abs(sand), "rad/s", 1e-6)
+    standing, breaking = (np.abs(run["omega_z"]).max() for run in (still, moving))
+    report.figures(standing=standing, breaking=breaking, ramp=of_ramp, sand=abs(sand))
     report.table("log", [{"sentence": sentence} for sentence in moving.messages + ramp.messages])
-
-
-PARTS: dict[Callable[[Report], None], float] = {
-    **{driven_wheel: 20, suspended_wheel: 25, ground: 3},
-}

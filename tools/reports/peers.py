@@ -17,6 +17,7 @@ from time import perf_counter
 import numpy as np
 from scipy.integrate import solve_ivp
 from support import equations as eq
+from support.driver import HEADLINE
 from support.scenes import Scene
 
 from .native import Array, dop853_code
@@ -128,14 +129,17 @@ def in_numbalsoda(scene: Scene, tolerance: float, points: int, method: str) -> P
 
 
 def in_heyoka(scene: Scene, tolerance: float, points: int) -> Peer:
-    from . import heyoka_wheel
+    from . import taylor
 
-    if scene.wheel.J_x != scene.wheel.J_y:
-        raise RuntimeError("written only for J_x = J_y")
-    values: dict[str, float] = asdict(scene.wheel) | {f"{n}_start": v for n, v in asdict(scene.motion).items()}
-    values |= {"omega_s": width(scene), "regularized": float(regularized(scene))}
-    taylor = heyoka_wheel.compiled(tuple(sorted(values.items())), scene.duration, points, tolerance)
-    return taylor.solve, headline_of
+    values = asdict(scene.wheel) | asdict(scene.motion)
+    wheel = taylor.Wheel(values, "angles", tolerance, omega_s=width(scene) if regularized(scene) else 0.0)
+    grid = np.linspace(0, scene.duration, points)
+
+    def solve() -> tuple[float, Array, dict[str, int]]:
+        found = wheel.solve(grid)
+        return found.seconds, found.rows, {"steps": found.steps, "events": len(found.transitions)}
+
+    return solve, lambda rows: rows[:, [taylor.OUTPUTS.index(name) for name in HEADLINE]]
 
 
 def peers(scene: Scene) -> dict[str, Callable[[Scene, float, int], Peer]]:

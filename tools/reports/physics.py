@@ -1,12 +1,9 @@
-"""The pictures and figures of docs/physics.md and docs/brake_hold_steer.md, from runs of wheel.fmu.
+"""The pictures and figures of docs/physics.md and docs/brake_hold_steer.md, which are written by hand, from wheel.fmu.
 
 Fixed axes X, Y, Z, Z up; carrier e1, e2, e3; SI, angles in degrees in the pictures.
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -17,7 +14,7 @@ from support.scenes import PAPER
 from support.schedule import Schedule
 
 from . import plots
-from .page import Report
+from .page import Report, part
 from .plots import Sheet, style
 
 HEIGHT = PAPER.r_0 + PAPER.r  # m, of O when upright
@@ -39,6 +36,7 @@ def picture(report: Report, sheet: Sheet, name: str) -> None:
     style.save_png(sheet, report.folder.parent / "figures" / f"{name}.png", plots.DPI)
 
 
+@part(20)
 def stays_up(report: Report) -> None:
     """when a rolling wheel stays up: lean over time beside the critical spin, largest lean over the spin"""
     sheet, (left, right) = plots.sheet(2)
@@ -61,15 +59,16 @@ def stays_up(report: Report) -> None:
     title = "Below the limit any lean grows, but nothing falls flat"
     plots.label(right, r"spin $|\omega_z|$ at the start [rad/s]", "largest lean in 20 s [deg]", title)
     picture(report, sheet, "physics_stays_up")
-    report.figure("critical_spin", "critical spin of upright rolling", CRITICAL, "rad/s")
+    report.figures(critical_spin=CRITICAL)
 
 
+@part(1)
 def held(report: Report) -> None:
     """a wheel that a brake holds at omega_z = 0 nods and turns and loses nothing"""
     theta, turn = np.radians(75), 4.0
     start = {"theta_start": theta, "phi_dot_start": -turn * np.cos(theta), "psi_dot_start": turn}
     found = run(report, 2, 2e-3, Schedule(((0.0, {"M_brake": 200.0}),)), **start)
-    report.figure("held_loss", "energy lost by a held wheel", np.ptp(found["E"]) / found["E"][0])
+    report.figures(held_loss=np.ptp(found["E"]) / found["E"][0])
     sheet, axes = plots.sheet(2, 3, height=30.0)
     right = sheet.add_subplot(axes[0].get_gridspec()[:, 1])
     right.grid(alpha=0.3, linewidth=0.4)
@@ -99,6 +98,7 @@ def from_above(ax: Axes, title: str, margin: float) -> None:
     plots.label(ax, "$X$ [m]", "$Y$ [m]", title)
 
 
+@part(2)
 def energy(report: Report) -> None:
     """what friction takes, and the weak releases of a long run"""
     sheet, (left, right) = plots.sheet(2)
@@ -115,18 +115,15 @@ def energy(report: Report) -> None:
     right.set(xlim=(0, 150))
     plots.label(right, "time $t$ [s]", "energy $E$ [J]", "The releases go on, ever weaker")
     picture(report, sheet, "physics_energy")
-    report.figure("energy_start", "energy at the start", rough["E"][0], "J")
-    report.figure("energy_end", "friction scene: energy at 10 s", rough["E"][-1], "J")
-    report.figure("energy_long", "friction scene: energy at 150 s", long["E"][-1], "J")
-    report.figure("transitions", "friction scene: transitions in 10 s", rough.counters["n_events"])
-    report.figure("transitions_long", "friction scene: transitions in 150 s", long.counters["n_events"])
-    report.figure("held_share", "friction scene: share of 10 s held", 100 * np.mean(sticks), "%")
+    report.figures(energy_start=rough["E"][0], energy_end=rough["E"][-1], energy_long=long["E"][-1])
+    report.figures(transitions=rough.counters["n_events"], transitions_long=long.counters["n_events"])
+    report.figures(held_share=100 * np.mean(sticks))
     for name, scene in (("free", free), ("friction", rough)):
-        lowest = np.degrees(scene["theta"].min())
-        report.figure(f"lowest_{name}", f"{name} scene: lowest theta", lowest, "deg")
-        report.figure(f"grip_{name}", f"{name} scene: largest mu_required", scene["mu_required"].max())
+        lowest, grip = np.degrees(scene["theta"].min()), scene["mu_required"].max()
+        report.figures(**{f"lowest_{name}": lowest, f"grip_{name}": grip})
 
 
+@part(2)
 def path(report: Report) -> None:
     """the path of the contact point without and with friction"""
     sheet, (left, right) = plots.sheet(2, height=80)
@@ -145,6 +142,7 @@ def path(report: Report) -> None:
     picture(report, sheet, "physics_path")
 
 
+@part(2)
 def tipping(report: Report) -> None:
     """a wheel that stands exactly upright: rounding grows like cosh until it tips"""
     sheet, (left, right) = plots.sheet(2)
@@ -166,15 +164,12 @@ def tipping(report: Report) -> None:
     title = "Each two digits less lean: the same delay"
     plots.label(right, "lean at the start: $10^{-n}$ rad, $n$", "falls flat at [s]", title)
     picture(report, sheet, "physics_tipping")
-    report.figure("tips", "exactly upright at rest: falls flat at", found.t[-1], "s")
-    report.figure("tipping_rate", "growth rate of a standing wheel's lean", TIPPING, "1/s")
     rolling = {"theta_start": UPRIGHT, "phi_dot_start": -2.0}
-    what = "exactly upright at 2 rad/s: largest lean in 15 s"
-    report.figure("tips_rolling", what, lean(run(report, 15, **rolling)).max())
-    tilted = lean(run(report, 15, **rolling | {"theta_start": UPRIGHT - 1e-9})).max()
-    report.figure("tips_rolling_tilted", "1e-9 rad off", np.degrees(tilted), "deg")
+    upright, tilted = (lean(run(report, 15, **rolling | {"theta_start": UPRIGHT - e})).max() for e in (0.0, 1e-9))
+    report.figures(tips=found.t[-1], tipping_rate=TIPPING, tips_rolling=upright, tips_rolling_tilted=np.degrees(tilted))
 
 
+@part(3)
 def brake_hold_steer(report: Report) -> None:
     """three ways to slow an upright wheel down; a wheel on a suspension that is steered and stopped"""
     sheet, (left, right) = plots.sheet(2)
@@ -197,8 +192,7 @@ def brake_hold_steer(report: Report) -> None:
     right.legend(loc="upper right", ncols=2)
     plots.label(right, "time $t$ [s]", "", "Held upright by $M_1$, steered by $M_2$, braked, held")
     picture(report, sheet, "brake_hold_steer")
-    what = "steered at 90 deg/s and 3.5 m/s: M_1 that keeps the wheel upright"
-    report.figure("steer_M_1", what, 10 * steered["$M_1$ / 10 [N m]"].min(), "N m")
+    report.figures(steer_M_1=10 * steered["$M_1$ / 10 [N m]"].min())
 
 
 def on_a_suspension(report: Report, h: float = 1e-3, stop: float = 6.0) -> pd.DataFrame:
@@ -219,12 +213,3 @@ def on_a_suspension(report: Report, h: float = 1e-3, stop: float = 6.0) -> pd.Da
             wheel.step(h)
     names = ("time", "speed [m/s]", "heading / 10 [deg]", "lean to the right [deg]", "$M_1$ / 10 [N m]")
     return pd.DataFrame(rows, columns=names)
-
-
-def page(_: Path) -> None:
-    """The pages are written by hand; their figures are filled in from the data."""
-
-
-PARTS: dict[Callable[[Report], None], float] = {
-    **{stays_up: 20, held: 1, energy: 2, path: 2, tipping: 2, brake_hold_steer: 3},
-}

@@ -5,7 +5,6 @@ The races are in race.py; here their comparison, the figures to reach, and what 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -17,8 +16,7 @@ from support.scenes import SCENES, SINES, sines
 
 from .exchange import model_exchange
 from .native import Master, Task, Timing
-from .older import beside_older
-from .page import Report, Row, Tables, number
+from .page import Report, Row, Tables, number, part
 from .race import CPP, HEYOKA, METHODS, OURS, TITLES, at_default, draw_races, race, time_at
 from .truth import headline_of, range_error
 
@@ -31,35 +29,31 @@ def master_of(report: Report) -> Master:
     return report.kept["master"]
 
 
-def run_race(name: str) -> Callable[[Report], None]:
-    def part(report: Report) -> None:
-        rows = report.kept.setdefault("runs", [])
+@part(108)
+def races(report: Report) -> None:
+    """error against run time, scene by scene"""
+    rows = report.kept["runs"] = []
+    for name in TITLES:
         rows += race(master_of(report), name, report.quick)
         report.table("runs", rows)
 
-    part.__doc__ = f"error against run time: {TITLES[name]}"
-    return part
 
-
+@part(3)
 def compare(report: Report) -> None:
     """the races side by side"""
     runs = dict(list(pd.DataFrame(report.kept["runs"]).groupby("scene", sort=False)))
     free, friction = runs["free"], runs["friction"]
     Y = time_at(free, HEYOKA, 1e-6)
-    report.figure("yardstick", "Y: heyoka, paper's free wheel, 10 s, error 1e-6", 1e6 * Y, "µs")
-    ours = {name: at_default(runs[name], OURS) for name in ("free", "friction")}
-    report.figure("free", "free wheel, 10 s, 100 reads", 1e-6 * ours["free"].best_us / Y, "Y", 0.7)
+    report.figures(yardstick=1e6 * Y)
     for error in TARGETS:
         for peer, key in ((HEYOKA, "heyoka"), (CPP, "dop853")):
             ratio = time_at(free, OURS, error) / time_at(free, peer, error)
-            what = f"free wheel at error {number(error)}: over {peer}"
-            report.figure(f"free_{key}_{-round(np.log10(error))}", what, ratio, "×", 1)
-    report.figure("friction", "friction wheel, 10 s", 1e-6 * ours["friction"].best_us / Y, "Y", 2.5)
-    ratio = 1e-6 * ours["friction"].best_us / time_at(friction, CPP, ours["friction"].error)
-    report.figure("friction_dop853", f"friction wheel at the same error: over {CPP}", ratio, "×", 1.25)
-    for name, entry in ours.items():
-        report.figure(f"{name}_time", f"{name} wheel, 10 s", entry.best_us, "µs")
-        report.figure(f"{name}_error", f"{name} wheel, 10 s: error / range", entry.error)
+            report.figures(**{f"free_{key}_{-round(np.log10(error))}": ratio})
+    for name in ("free", "friction"):
+        ours = at_default(runs[name], OURS)
+        in_Y = 1e-6 * ours.best_us / Y
+        report.figures(**{name: in_Y, f"{name}_time": ours.best_us, f"{name}_error": ours.error})
+    report.figures(friction_dop853=1e-6 * ours.best_us / time_at(friction, CPP, ours.error))
 
 
 def views(tables: Tables) -> Tables:
@@ -124,14 +118,13 @@ def best_of(master: Master, task: Task, seconds: float = 0.2) -> Timing:
     return done
 
 
+@part(4)
 def long_and_general(report: Report) -> None:
     """1000 s of the free wheel; 10 s of one with J_x ≠ J_y"""
-    master, Y = master_of(report), report.figures["yardstick"]["measured"] * 1e-6
-    long = master.run(Task({}, 1.0, 1000), 0.2)
-    report.figure("long", "free wheel, 1000 s, 1000 reads", long.best / Y, "Y", 2)
-    report.figure("long_error", "the same: error / range", long_error(report.library), "", 1e-6)
-    general = best_of(master, Task(SCENES["general inertia"].start, 0.1, 100))
-    report.figure("general", "J_x = 0.7, J_y = 1.2 kg m², 10 s", general.best / Y, "Y", 4)
+    master, Y = master_of(report), report.measured["yardstick"] * 1e-6
+    long, general = Task({}, 1.0, 1000), Task(SCENES["general inertia"].start, 0.1, 100)
+    report.figures(long=best_of(master, long).best / Y, general=best_of(master, general).best / Y)
+    report.figures(long_error=long_error(report.library))
 
 
 def long_error(library: Library, tolerance: float | None = None) -> float:
@@ -149,16 +142,14 @@ def sine_table(steps: int, orders: int, shift: float = 0.0) -> np.ndarray:
     return np.array([[sines(1e-3 * k + shift, order) for order in range(orders + 1)] for k in range(steps)])
 
 
+@part(14)
 def small_steps(report: Report) -> None:
     """steps of 1 ms: outputs read, inputs that change"""
     master, rows, seconds = master_of(report), [], 0.1 if report.quick else 0.5
     for name in ("free", "friction"):
         done = best_of(master, Task(SCENES[name].start, 1e-3, 10_000), seconds)
-        each = 1e9 * done.best / 10_000
-        report.figure(f"step_{name}", f"1 ms steps, four outputs read, {name}", each, "ns", 100)
         rows.append(step_row(f"{name}, inputs never set", done))
-        longest = 1e6 * done.paces.max()
-        report.figure(f"step_{name}_longest", f"the same: longest single step, {name}", longest, "µs")
+        report.figures(**{f"step_{name}": 1e9 * done.best / 10_000, f"step_{name}_longest": 1e6 * done.paces.max()})
     for orders, words in enumerate(("held", "first derivatives")):
         worst = 0.0
         for spin in (2.0, 10.0, 100.0, 300.0):
@@ -167,8 +158,7 @@ def small_steps(report: Report) -> None:
             done = best_of(master, task, seconds)
             worst = max(worst, 1e6 * done.best / 1000) if spin <= 100 else worst
             rows.append(step_row(f"six inputs that change, {words}; {spin:g} rad/s", done))
-        what = f"1 ms steps, six inputs that change, {words}, up to 100 rad/s"
-        report.figure(("inputs_held", "inputs_linear")[orders], what, worst, "µs", 1.0)
+        report.figures(**{("inputs_held", "inputs_linear")[orders]: worst})
     report.table("steps", rows)
 
 
@@ -182,6 +172,7 @@ def step_row(name: str, done: Timing) -> Row:
     }
 
 
+@part(1)
 def left_out(report: Report) -> None:
     """what is left out, and what that saves"""
     master, base = master_of(report), Task({}, 0.1, 100)
@@ -204,6 +195,7 @@ def left_out(report: Report) -> None:
     report.table("left_out", rows)
 
 
+@part(4)
 def instances(report: Report) -> None:
     """what an instance takes"""
     rows = []
@@ -213,22 +205,8 @@ def instances(report: Report) -> None:
         rows.append({"scene": name, "memory, KiB": memory, "create, initialise and free, µs": 1e6 * done.life})
     report.table("instances", rows)
     memory, life = pd.DataFrame(rows).drop(columns="scene").max()
-    report.figure("memory", "an instance: memory", memory, "KiB", 128)
-    report.figure("life", "an instance: create, initialise and free", life, "µs", 10)
-    size = (build_folder() / "wheel.fmu").stat().st_size
-    report.figure("archive", "wheel.fmu of this machine alone", size / 1024, "KiB")
+    report.figures(memory=memory, life=life, archive=(build_folder() / "wheel.fmu").stat().st_size / 1024)
 
 
-PARTS: dict[Callable[[Report], None], float] = {
-    **{run_race(name): 18.0 for name in TITLES},
-    **{
-        compare: 3,
-        long_and_general: 4,
-        small_steps: 14,
-        left_out: 1,
-        model_exchange: 3,
-        instances: 4,
-        beside_older: 10,
-    },
-}
+FURTHER = (model_exchange,)
 PICTURES = {"races": draw_races}

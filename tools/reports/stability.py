@@ -12,16 +12,17 @@ from math import nan
 from multiprocessing import get_context
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 from robustness.case import Case
 from robustness.sweep import sweep
 from robustness.verdicts import TOLERANCES, Verdict, judge_case
+from support.motion import Library
 
-from . import drift, edges, long_runs, plots
+from . import edges, plots
 from .law import crossings, draw_law, draw_methods, law
-from .page import Report, Row, number
+from .long_runs import constraints, hours
+from .page import Report, Row, number, part
 from .plots import Sheet, style
 
 DEADLINE = 120.0  # s
@@ -38,10 +39,15 @@ class Broken(str):
     """What went wrong with the process: "hangs", or "crashes" with the signal."""
 
 
-def isolated(work: Callable, items: Sequence[tuple]) -> list[Any]:
-    """work(*item), each in a process of its own with a deadline: a hang or a crash is a result, not the end."""
+def isolated(calls: Sequence[tuple], folder: str) -> list[Any]:
+    """Functions called with the library and arguments, each in a process of its own with a deadline: a hang or a crash
+    is a result, not the end."""
     with ProcessPool(2, max_tasks=1, context=get_context("fork")) as pool:
-        return [answer(future) for future in [pool.schedule(work, item, timeout=DEADLINE) for item in items]]
+        return [answer(f) for f in [pool.schedule(alone, (folder, *call), timeout=DEADLINE) for call in calls]]
+
+
+def alone(folder: str, work: Callable, *arguments: object) -> Any:
+    return work(Library(folder), *arguments)
 
 
 def answer(future: ProcessFuture) -> Any:
@@ -53,19 +59,18 @@ def answer(future: ProcessFuture) -> Any:
         return Broken(f"crashes: the process ended with exit code {end.exitcode}")
 
 
+@part(75)
 def cases(report: Report) -> None:
     """the sweep: each case at five tolerances, in a process of its own"""
     chosen = sweep()[:: 6 if report.quick else 1]
-    found = list(zip(chosen, isolated(judge_case, [(report.library, case) for case in chosen]), strict=True))
+    found = list(zip(chosen, isolated([(judge_case, case) for case in chosen], report.library.folder), strict=True))
     report.table("cases", [row for case, verdicts in found for row in case_rows(case, verdicts)])
     faults = pd.DataFrame([row for case, verdicts in found for row in faults_of(case, verdicts)], columns=FAULT)
     report.table("faults", faults)
     judged = [(case, verdict) for case, verdicts in found if not isinstance(verdicts, Broken) for verdict in verdicts]
     report.table("amplification", [amplification(judged, judge) for judge in JUDGES])
     report.table("loose", [{"case": str(c), "needs": c.loosest, "why": c.remark} for c, _ in found if c.loosest < 1e-4])
-    report.figure("cases", "cases of the sweep", len(found))
-    report.figure("runs", "cases times tolerances", len(found) * len(TOLERANCES))
-    report.figure("faults", "cases and tolerances that do not do as stated, hang or crash", len(faults), "", 0)
+    report.figures(cases=len(found), runs=len(found) * len(TOLERANCES), faults=len(faults))
     style.save_png(draw_cases(judged), report.folder / "stability_cases.png", plots.DPI)
 
 
@@ -132,64 +137,17 @@ def draw_cases(judged: list[tuple[Case, Verdict]]) -> Sheet:
     return figure
 
 
+@part(20)
 def contract(report: Report) -> None:
     """the contract at its edges"""
     rows = []
     for group, check in edges.GROUPS.items():
-        (found,) = isolated(check, [(report.library,)])
+        (found,) = isolated([(check,)], report.library.folder)
         rows += [(group, *row) for row in ([("", "", found, False)] if isinstance(found, Broken) else found)]
     table = pd.DataFrame(rows, columns=["group", "what", "expected", "found", "holds"])
     report.table("contract", table)
-    report.figure("checks", "checks of what hard cases cost", len(table))
-    report.figure("contract", "checks of hard cases that fail", (~table["holds"].astype(bool)).sum(), "", 0)
+    report.figures(checks=len(table), contract=(~table["holds"].astype(bool)).sum())
 
 
-def hours(report: Report) -> None:
-    """an hour and a day"""
-    runs = long_runs.study(report.library, not report.quick)
-    rows = [
-        {
-            "run": r.name,
-            "µs/s, first sixth": float(np.median(r.cost[1:11])),
-            "µs/s, last sixth": float(np.median(r.cost[-10:])),
-            "energy change / E": float((r.energy[-1] - r.energy[0]) / r.energy[0]),
-            "largest rise, J": max(r.rise, 0.0),
-            "transitions": int(r.events[-1]),
-            "amount of ω_z while held, rad/s": r.held,
-            "memory growth, KiB": r.memory / 1024,
-            "status": r.status,
-        }
-        for r in runs
-    ]
-    report.table("hours", rows)
-    growth = max(row["µs/s, last sixth"] / row["µs/s, first sixth"] for row in rows)
-    report.figure("growth", "cost per simulated second, last sixth over first, at worst", growth, "×", 1.5)
-    rise = max(r.rise / (r.tolerance * r.energy[0]) for r in runs)
-    report.figure("rise", "largest rise of the energy between readings / (tolerance E)", rise, "", 10)
-    report.figure("held", "amount of ω_z while held, rad/s", max(r.held for r in runs), "", 0)
-    report.figure("memory", "growth of memory", max(r.memory for r in runs) / 2**20, "MiB", 4)
-    resolved = long_runs.resolved(report.library, 600.0 if report.quick else 3600.0)
-    report.table("resolved", pd.DataFrame(resolved, columns=["tolerance", "transitions", "E, J"]))
-
-
-def constraints(report: Report) -> None:
-    """drift of the multibody form off its constraints"""
-    found = drift.study(report.library)
-    rows = [
-        {
-            "multibody, tolerance 1e-8": d.name,
-            "velocity, first half": d.velocity[1 : len(d.t) // 2].max(),
-            "velocity, second half": d.velocity[len(d.t) // 2 :].max(),
-            "height": d.height.max(),
-        }
-        for d in found
-    ]
-    report.table("drift", rows)
-    worst = max(d.worst for d in found)
-    report.figure("drift", "constraint residual of the multibody form, relative", worst, "", drift.TOLERANCE)
-
-
-PARTS: dict[Callable[[Report], None], float] = {
-    **{cases: 75, contract: 20, law: 15, crossings: 15, hours: 40, constraints: 20},
-}
+FURTHER = (law, crossings, hours, constraints)
 PICTURES = {"law": draw_law, "methods": draw_methods}

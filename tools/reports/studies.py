@@ -7,7 +7,6 @@ unless the caller would be busy all the time handing out tasks.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter, process_time
@@ -16,7 +15,7 @@ import numpy as np
 import pandas as pd
 from support.paths import ROOT, build_folder
 
-from .page import Report, Tables
+from .page import Report, Tables, part
 
 REPEATS = 3
 STATE, EXTREME = {"measures": {"theta_end": "theta"}}, {"measures": {"lowest": "lowest"}}
@@ -45,6 +44,7 @@ def timed(what: str, wheels: int, folder: Path, client: object) -> tuple[float, 
     return results["status"].size / seconds, share, busy / seconds
 
 
+@part(300)
 def speeds(report: Report) -> None:
     """one and two workers in turn"""
     from study.compute import cluster
@@ -64,7 +64,7 @@ def speeds(report: Report) -> None:
     table = pd.DataFrame([(*key, *row) for key, row in medians.items()], columns=["asked", "workers", *COLUMNS])
     report.table("speed", table)
     report.table("estimate", estimate(table, task))
-    report.figure("task", "the caller's time for a task that it hands out", 1e3 * task, "ms")
+    report.figures(task=1e3 * task)
 
 
 def estimate(table: pd.DataFrame, task: float) -> pd.DataFrame:
@@ -92,6 +92,3 @@ def views(tables: Tables) -> Tables:
 
 def words(column: str) -> str:
     return column.replace("_per_s", "/s").replace("_MB", ", MB").replace("_", " ")
-
-
-PARTS: dict[Callable[[Report], None], float] = {speeds: 300}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +14,7 @@ from vehicles.example import draw_axle, draw_car
 from vehicles.master import EXCHANGES
 
 from .packages import packages
-from .page import Report, Tables
+from .page import Report, Tables, part
 from .partners import fmus
 
 LIMITS = (0.001, 0.00125, 0.002, 0.0025, 0.003125, 0.00390625, 0.005)  # s; each divides the grid of the tables
@@ -23,6 +22,7 @@ BUDGET = 10.0  # us per step of 1 ms for four wheels
 BONDS = ("F_X", "F_Y", "F_Z", "M_1", "M_2")
 
 
+@part(30)
 def axle_steps(report: Report) -> None:
     """the axle: error against the step"""
     scene = replace(axle_study.TRAILING, stop=2.0)
@@ -40,6 +40,7 @@ def axle_steps(report: Report) -> None:
     draw_axle(run, exact, None, report.folder / "vehicles_axle.png", "Axle: trailing, step 0.5 ms")
 
 
+@part(30)
 def axle_stiffness(report: Report) -> None:
     """the axle: error against the stiffness"""
     factors, rows = (1.0, 2.0, 4.0), []
@@ -51,6 +52,7 @@ def axle_stiffness(report: Report) -> None:
     report.table("axle_stiffness", rows)
 
 
+@part(30)
 def axle_limits(report: Report) -> None:
     """the axle: the longest step for each stiffness, beside 2 J_x / c_a"""
     rows = []
@@ -61,6 +63,7 @@ def axle_limits(report: Report) -> None:
     report.table("axle_limits", rows)
 
 
+@part(10)
 def axle_energy(report: Report) -> None:
     """the axle: energy added per bond"""
     rows = []
@@ -77,6 +80,7 @@ def manoeuvres(report: Report) -> tuple[str, ...]:
     return ("step",) if report.quick else car_table.NAMES
 
 
+@part(40)
 def car_closed_forms(report: Report) -> None:
     """the car: what follows from rigid links and wheels that never slip"""
     rows = []
@@ -87,6 +91,7 @@ def car_closed_forms(report: Report) -> None:
     report.table("car_closed_forms", pd.DataFrame(rows, columns=head))
 
 
+@part(40)
 def car_demand(report: Report) -> None:
     """the car: the road that each manoeuvre needs, and where it needs it most"""
     rows = []
@@ -99,6 +104,7 @@ def car_demand(report: Report) -> None:
     report.table("car_demand", pd.DataFrame(rows, columns=head))
 
 
+@part(40)
 def car_endings(report: Report) -> None:
     """the car: what ends the manoeuvre that is too fast, and the same of one set of equations"""
     run = car.drive(fmus(report), car.TOO_FAST, exchange="rollback")
@@ -108,6 +114,7 @@ def car_endings(report: Report) -> None:
     report.table("car_endings", pd.DataFrame(rows, columns=["system", "how it ended"]))
 
 
+@part(40)
 def car_figures(report: Report) -> None:
     """the car: the figures of road tests, of the coupled car and of one set of equations on the same grid"""
     rows = []
@@ -121,6 +128,7 @@ def car_figures(report: Report) -> None:
     report.table("car_figures", pd.DataFrame(rows, columns=head))
 
 
+@part(40)
 def car_longest(report: Report) -> None:
     """the car: the longest step with which a manoeuvre runs to its end with errors below 10 % of the ranges"""
     names = manoeuvres(report)
@@ -137,6 +145,7 @@ def longest_step(report: Report, name: str, exchange: str) -> float:
     return longest(LIMITS, error)
 
 
+@part(120)
 def car_errors(report: Report) -> None:
     """the car: error against one set of equations, by manoeuvre, master, step and output"""
     rows, largest = [], {}
@@ -155,12 +164,13 @@ def car_errors(report: Report) -> None:
             ]
     report.table("car_errors", rows)
     moving = [of["rollback"][0] for name, of in largest.items() if name not in ("straight", "hill")]
-    report.figure("rollback", "car, rollback at 2 ms, but for standstills: error / range", max(moving), "", 1e-5)
+    report.figures(rollback=max(moving))
     draw_orders({n: Errors(STEPS, of) for n, of in largest.items()}, report.folder / "vehicles_orders.png")
     for name, manoeuvre in MANOEUVRES.items():
         draw_car(car.drive(fmus(report), manoeuvre), manoeuvre, None, report.folder / f"vehicles_{name}.png")
 
 
+@part(20)
 def car_cost(report: Report) -> None:
     """the car: microseconds per step of 1 ms: medians over the steps of the change of lanes, and over runs"""
     rows = []
@@ -174,9 +184,7 @@ def car_cost(report: Report) -> None:
             row | {"exchange [us]": runs["exchange"].median(), "all [us]": whole, "times real time": 1000 / whole}
         )
     report.table("car_cost", rows)
-    for row in rows[:2]:
-        exchange, wheels = row["inputs over the step"], row["four wheels [us]"]
-        report.figure(f"cost_{exchange}", f"four wheels, a step of 1 ms, {exchange}", wheels, "µs", BUDGET)
+    report.figures(**{f"cost_{row['inputs over the step']}": row["four wheels [us]"] for row in rows[:2]})
 
 
 def views(tables: Tables) -> Tables:
@@ -194,8 +202,4 @@ def views(tables: Tables) -> Tables:
     return tables | found
 
 
-PARTS: dict[Callable[[Report], None], float] = {
-    **{axle_steps: 30, axle_stiffness: 30, axle_limits: 30, axle_energy: 10, car_errors: 120, car_cost: 20},
-    **dict.fromkeys((car_closed_forms, car_demand, car_endings, car_figures, car_longest), 40),
-    packages: 120,
-}
+FURTHER = (packages,)
