@@ -45,7 +45,9 @@ void rates(const Setting& s, double t, const double* y, double* d) {
 
 int states_of(const Setting& s) { return s.kind <= falling ? 2 : 1; }
 
-double margin(void* owner, int, double t, const double* y) { return of(owner).by_margin ? of(owner).by_margin(t, y) : 1; }
+double margin(void* owner, int, double t, const double* y) {
+  return of(owner).by_margin ? of(owner).by_margin(t, y) : 1;
+}
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   rates(of(owner), t, y, y_dot);
