@@ -31,9 +31,9 @@ def fmus(report: Report) -> dict[str, Path]:
 
 def driven_wheel(report: Report) -> None:
     """the driven, balanced wheel"""
-    from vehicles import driven, figures
+    from vehicles import driven, example
 
-    drive = driven.run(fmus(report))
+    drive = driven.run(fmus(report)).table
     verdict = driven.judge(drive)
     report.figure("alone", "the wheel alone leans by 45° after", verdict.fall, "s")
     report.figure("tilt", "straight line, last second: off upright", verdict.line_tilt, "°", 0.1)
@@ -41,12 +41,12 @@ def driven_wheel(report: Report) -> None:
     report.figure("circle", what, abs(off), "m", 0.01)
     report.figure("scatter", "off the circle driven", verdict.circle_scatter, "m", 1e-2)
     report.figure("speed", "error of ω_z on the circle", verdict.speed_error, "rad/s", 1e-2)
-    figures.draw_drive(drive, report.folder / "partners_driven.png")
+    example.picture(drive, driven.CIRCLE, report.folder / "partners_driven.png")
 
 
 def suspended_wheel(report: Report) -> None:
     """the suspended wheel against one set of equations"""
-    from vehicles import errors, figures, ssp, suspended
+    from vehicles import errors, example, ssp, suspended
 
     truth, units = suspended.together(), fmus(report)
     steps = suspended.STEPS[:3] if report.quick else suspended.STEPS
@@ -69,7 +69,7 @@ def suspended_wheel(report: Report) -> None:
     ]
     report.table("limits", limits)
     launch = suspended.coupled(units, 0.000625, "derivatives", grid=0.005)
-    figures.draw_launch(launch, found, report.folder / "partners_suspended.png")
+    example.picture(launch, suspended.LAUNCH, report.folder / "partners_suspended.png", errors=found)
 
 
 def ground(report: Report) -> None:

@@ -1,9 +1,11 @@
-"""./scripts/example: parameters with units, sentences for what does not exist or is not allowed, before anything is
-built; output only under results/examples."""
+"""./scripts/example: parameters with units, messages before anything is built, verdicts, exit status, and all that a
+document prints."""
 
 from __future__ import annotations
 
 import csv
+import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -12,9 +14,9 @@ from math import pi
 from pathlib import Path
 
 import pytest
-from support.bounds import relative_error, within
+from support.bounds import beyond, relative_error, within
 from support.paths import ROOT
-from vehicles import axle, driven, example, options
+from vehicles import axle, example, options
 from vehicles.component import Component
 from vehicles.master import Master
 
@@ -52,12 +54,18 @@ def test_what_does_not_exist_or_is_not_allowed_gets_one_sentence_before_anything
     assert done.stderr.startswith(said) and done.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("name", options.LIST)
+@pytest.mark.parametrize("name", [*options.FOLDERS, "control"])
 def test_help_lists_every_parameter_and_all_of_them_are_taken(name: str) -> None:
     listed = subprocess.run([*READS, name, "--help"], capture_output=True, text=True, check=True).stdout
-    for variable in options.known(options.LIST[name]).values():
-        assert f"\n  {variable.name} " in listed
-        assert options.values(options.LIST[name], [f"{variable.name}=1"]) == {variable.name: 1.0}
+    for parameter in options.takes(name)[1]:
+        assert f"\n  {parameter} " in listed
+        assert options.values(name, [f"{parameter}=1"]) == {parameter: 1.0}
+
+
+@pytest.mark.parametrize(("line", "start"), [("car", "0"), ("car manoeuvre=hill", "1500"), ("car M_0=7", "7")])
+def test_help_has_the_values_of_the_manoeuvre_that_is_named(line: str, start: str) -> None:
+    listed = subprocess.run([*READS, *line.split(), "--help"], capture_output=True, text=True, check=True).stdout
+    assert re.search(r"\n  M_0 +N\.m +(\S+)", listed)[1] == start
 
 
 @pytest.mark.parametrize(
@@ -79,26 +87,110 @@ def test_what_only_the_unit_can_refuse_is_said_in_its_own_words(
     assert str(refusal.value).startswith(said)
 
 
-def test_an_example_writes_table_figure_fmus_and_package(fmus: dict[str, Path], tmp_path: Path) -> None:
+def run(fmus: dict[str, Path], line: str, folder: Path) -> bool:
+    return example.example(fmus, options.asked(shlex.split(line)), folder)
+
+
+def test_an_example_writes_table_figure_fmus_and_package_and_nothing_else(
+    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
     before = subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, text=True).stdout
-    given = {"scene": "straight", "M_left": 40.0, "M_right": 40.0, "stop": 0.5, "h": 0.001}
-    said = example.run_axle(fmus, given, tmp_path)
-    assert {p.name for p in tmp_path.iterdir()} == {"axle.csv", "axle.png", "axle.ssp"}
+    assert run(fmus, "axle scene=straight M_left=40 M_right=40 stop=0.5", tmp_path)
+    assert {p.name for p in tmp_path.iterdir()} == {"axle.csv", "axle.png", "axle.ssp", "axle.fmu", "wheel.fmu"}
     with (tmp_path / "axle.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert float(rows[-1]["time"]) == pytest.approx(0.5)
-    within(relative_error(float(rows[-1]["v"]), 80 / (0.35 * axle.Scene().m_t) * 0.5), 0.01, "speed, relative")
-    assert said[0].startswith("Largest departure from the rigid axle")
+    exact = 80 / (0.35 * axle.constants(options.manoeuvres("axle")["straight"]).m_t) * 0.5
+    within(relative_error(float(rows[-1]["v"]), exact), 0.01, "speed, relative")
+    assert "Largest departure from the rigid axle" in capsys.readouterr().out
     after = subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, text=True).stdout
     assert after == before
 
 
-@pytest.mark.parametrize("changed", [{"scene": "trailing", "M_left": 5.0}, {"scene": "rolling_out", "v": 0.1}])
-def test_an_axle_without_a_closed_form_is_not_compared_with_one(
-    fmus: dict[str, Path], tmp_path: Path, changed: dict[str, float | str]
+PRINTED = sorted(
+    {
+        command.strip()
+        for page in [*(ROOT / "examples" / "vehicles").rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
+        for command in re.findall(
+            r"\./scripts/example ((?:axle|car|suspended|balance)\b[^|`#\n]*)(?![^`\n]*\|)", page.read_text()
+        )
+        if "--help" not in command
+    }
+)
+
+
+@pytest.mark.parametrize("line", PRINTED)
+def test_every_command_that_a_document_prints_runs_and_is_the_manoeuvre_it_names(
+    fmus: dict[str, Path], tmp_path: Path, line: str
 ) -> None:
-    (said,) = example.run_axle(fmus, {**changed, "stop": 0.2}, tmp_path)
-    assert said.startswith("No closed form to compare with: with ")
+    assert run(fmus, line, tmp_path)
+
+
+def test_the_documents_print_commands_for_every_vehicle() -> None:
+    assert {line.split()[0] for line in PRINTED} == set(options.FOLDERS)
+    assert "car manoeuvre=hill slope=20%" in PRINTED
+
+
+@pytest.mark.parametrize("line", ["car manoeuvre=step v=20", "car stop=1", "balance k_theta=0"])
+def test_a_manoeuvre_that_fails_has_an_exit_status_beside_its_reason(
+    fmus: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, line: str
+) -> None:
+    monkeypatch.setattr(example.build, "ROOT", tmp_path)
+    monkeypatch.setattr(example, "RESULTS", tmp_path / "results")
+    monkeypatch.setattr(example.build, "build_all", lambda _folder: fmus)
+    monkeypatch.setattr(sys, "argv", ["example", *line.split()])
+    assert example.main() == 1
+    assert "Failed: " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("line", ["car h=10ms", "suspended h=20ms exchange=held"])
+def test_a_run_that_diverges_names_the_communication_step_and_keeps_table_and_picture(
+    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture, line: str
+) -> None:
+    assert not run(fmus, line, tmp_path)
+    said = capsys.readouterr().out
+    assert "lifted off" in said and "The likely cause is the communication step" in said
+    assert {f"{line.split()[0]}.{end}" for end in ("csv", "png")} <= {p.name for p in tmp_path.iterdir()}
+
+
+def test_a_wheel_that_really_lifts_off_is_not_blamed_on_the_step(
+    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    assert not run(fmus, "car manoeuvre=step v=22", tmp_path)
+    said = capsys.readouterr().out
+    assert "lifted off" in said and "communication step" not in said
+
+
+def test_a_step_of_the_steering_has_its_characteristic_values_printed(
+    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    assert run(fmus, "car manoeuvre=step", tmp_path)
+    said = capsys.readouterr().out
+    gain, exact = map(float, re.search(r"gain of the yaw rate: (\S+) 1/s \(closed form: (\S+)\)", said).groups())
+    within(relative_error(gain, exact), 0.01, "gain of the yaw rate, relative")
+    overshoot = float(re.search(r"overshoot of the lateral acceleration: (\S+)", said)[1])
+    beyond(overshoot, 0.01, "overshoot of the lateral acceleration")
+
+
+def test_an_example_is_copied_into_an_empty_folder_by_the_recipe_of_the_document(tmp_path: Path) -> None:
+    text = (ROOT / "examples" / "vehicles" / "README.md").read_text()
+    (recipe,) = re.findall(r"```\n(project=.*?)```", text, re.DOTALL)
+    recipe = recipe.replace("/path/to/this/checkout", str(ROOT))
+    subprocess.run(["bash", "-e", "-c", recipe], cwd=tmp_path, check=True, capture_output=True)
+    copied = Component("axle", tmp_path / "build" / "axle.fmu", {"m_B": 100.0})
+    try:
+        copied.load()
+    finally:
+        copied.free()
+    assert set(copied.variable) >= {"X", "F_X_left"}
+
+
+@pytest.mark.parametrize("changed", ["scene=trailing M_left=5", "scene=rolling_out v=0.1"])
+def test_an_axle_without_a_closed_form_is_not_compared_with_one(
+    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture, changed: str
+) -> None:
+    assert run(fmus, f"axle {changed} stop=0.2", tmp_path)
+    assert "No closed form to compare with: with " in capsys.readouterr().out
 
 
 def test_ctrl_c_ends_a_run_with_one_word(fmus: dict[str, Path]) -> None:
@@ -118,7 +210,9 @@ def test_ctrl_c_ends_a_run_with_one_word(fmus: dict[str, Path]) -> None:
     assert "Traceback" not in said
 
 
-def test_a_verdict_on_the_balanced_wheel_looks_at_both_runs(fmus: dict[str, Path]) -> None:
-    held, tall = (driven.verdict(driven.run(fmus, given), 1.5)[1] for given in ({}, {"k_theta": 0.0}))
-    assert held.startswith("Controlled it stays up") and "drives a circle of 1.50" in held
-    assert "its last turn is not the circle of 1.5 m" in tall
+def test_a_verdict_on_the_balanced_wheel_looks_at_both_runs(
+    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    for line, said in (("balance", "Controlled it stays up"), ("balance k_theta=0", "is not the circle of 1.5 m")):
+        assert run(fmus, line, tmp_path) == (line == "balance")
+        assert said in capsys.readouterr().out

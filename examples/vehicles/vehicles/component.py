@@ -1,4 +1,4 @@
-"""One FMU of a system: loaded, instantiated and freed by FMPy; what it says, and how it ended."""
+"""One FMU of a system: loaded, instantiated and freed by FMPy; its messages, and how it ended."""
 
 from __future__ import annotations
 
@@ -13,15 +13,20 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 
 LAST_SUCCESSFUL = 2  # fmi2StatusKind
-KINDS = {"Real": ("Real", float), "Boolean": ("Boolean", bool), "Integer": ("Integer", int)}
 
 
 class Ended(Exception):  # noqa: N818 - an ending, such as a wheel's lift-off, is no error
-    """A component ended the run. `component`, `time` [s], `sentence`: its own words."""
+    """A component ended the run. `component`, `time` [s], `sentence`: the FMU's message."""
 
     def __init__(self, component: str, time: float, sentence: str) -> None:
         super().__init__(f"{component}: {sentence}")
         self.component, self.time, self.sentence = component, time, sentence
+
+
+def sentence(end: Ended, names: dict[str, str]) -> str:
+    """Which component ended the run, and when; `names`: of the wheels."""
+    who = f"{names[end.component]} wheel" if end.component in names else end.component
+    return f"The {who} ended the run at t = {end.time:.3f} s: {end.sentence}"
 
 
 def let_go_of_python(fmu: FMU2Slave) -> None:
@@ -43,27 +48,26 @@ class Component:
     fmu: FMU2Slave | None = field(default=None, init=False)
 
     def load(self) -> None:
-        """Unpack, instantiate and initialize up to initialization mode; a ValueError has the FMU's own sentence."""
+        """Unpack, instantiate and initialize up to initialization mode; a ValueError has the FMU's message."""
         self.folder, self.log = extract(str(self.path)), []
         self.description = read_model_description(self.folder)
         self.variable = {v.name: v for v in self.description.modelVariables}
+        identifier = self.description.coSimulation.modelIdentifier
         self.fmu = FMU2Slave(
-            guid=self.description.guid,
-            unzipDirectory=self.folder,
-            modelIdentifier=self.description.coSimulation.modelIdentifier,
-            instanceName=self.name,
+            guid=self.description.guid, unzipDirectory=self.folder, modelIdentifier=identifier, instanceName=self.name
         )
         self.callbacks = fmi2CallbackFunctions()
         self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
         self.fmu.instantiate(callbacks=self.callbacks)
         self.fmu.setupExperiment(startTime=0.0)
         for name, value in self.start.items():
-            kind, convert = KINDS[self.variable_of(name).type]
+            kind = self.variable_of(name).type
+            convert = {"Boolean": bool, "Integer": int}.get(kind, float)
             self.asked(getattr(self.fmu, f"set{kind}"), self.references([name]), [convert(value)])
         self.asked(self.fmu.enterInitializationMode)
 
     def asked(self, function, *arguments: object) -> None:
-        """Calls a function of the FMU; where it refuses, a ValueError with its last sentence."""
+        """Calls a function of the FMU; where it refuses, a ValueError with its last message."""
         try:
             function(*arguments)
         except FMICallException as refusal:

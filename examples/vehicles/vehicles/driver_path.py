@@ -1,15 +1,11 @@
 """The driver's programmes and paths, written again for the independent check.
 
-Only the start values are those of the driver's table. Fixed axes X, Y; both paths begin at the origin along X.
+Fixed axes X, Y; both paths begin at the origin along X.
 """
 
 from __future__ import annotations
 
 import numpy as np
-
-from .options import starts
-
-DRIVER_DEFAULTS = starts("driver")
 
 
 def rise(t: float, begin: float, duration: float) -> float:

@@ -15,9 +15,9 @@ import numpy as np
 from reference.model import Wheel
 from scipy.integrate import solve_ivp
 
-from .car import LAYOUT, MASS, Manoeuvre
-from .driver_path import DRIVER_DEFAULTS, Path, rise
-from .options import starts
+from .car import LAYOUT, MASS, chassis_start, driver_start
+from .driver_path import Path, rise
+from .options import Manoeuvre, starts
 from .rolling_wheels import Answer, Law, cross, dot, respond
 
 TOLERANCE = 1e-9
@@ -29,15 +29,12 @@ class Car:
 
     def __init__(self, manoeuvre: Manoeuvre) -> None:
         wheels = list(LAYOUT["wheel"].values())
-        self.o = DRIVER_DEFAULTS | manoeuvre.driver_start()
-        self.c = starts("chassis") | manoeuvre.chassis_start()
-        self.path, self.kind, self.n = (
-            Path(self.o),
-            Wheel(s=manoeuvre.s, slope=manoeuvre.slope, slope_direction=manoeuvre.slope_direction),
-            len(wheels),
-        )
+        self.o = starts("driver") | driver_start(manoeuvre)
+        self.c = starts("chassis") | chassis_start(manoeuvre)
+        self.path, self.n = Path(self.o), len(wheels)
+        self.kind = Wheel(**{name: self.c[name] for name in ("s", "slope", "slope_direction")})
         of = {key: np.array([w[key] for w in wheels]) for key in ("x", "y", "k", "c", "steer", "drive", "brake")}
-        self.of, self.v = of, manoeuvre.v
+        self.of, self.v = of, manoeuvre["v"]
         self.R_0 = self.kind.r_0 + self.kind.r
         self.hub = np.column_stack([of["x"], of["y"], np.full(self.n, self.R_0 - self.c["h_B"])])
         steered = of["steer"] > 0
@@ -185,8 +182,8 @@ def solve(manoeuvre: Manoeuvre, times: np.ndarray, tolerance: float = TOLERANCE)
     """The manoeuvre at `times` (rising from 0), from one change of a wheel's friction branch to the next."""
     car = Car(manoeuvre)
     t, y, rows = 0.0, car.start(), []
-    rubs = manoeuvre.s > 0 or car.o["B_0"] > 0 or car.o["B_hold"] > 0
-    sigma = np.full(car.n, 0.0 if rubs and manoeuvre.v == 0 else -1.0)
+    rubs = car.kind.s > 0 or car.o["B_0"] > 0 or car.o["B_hold"] > 0
+    sigma = np.full(car.n, 0.0 if rubs and car.v == 0 else -1.0)
     while len(rows) < len(times):
         events = [_event(car, sigma, i) for i in range(car.n)] if rubs else None
         inside = times[len(rows) :]
