@@ -5,14 +5,15 @@ from __future__ import annotations
 
 import csv
 import re
-import shlex
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from math import pi
 from pathlib import Path
 
+import numpy as np
 import pytest
 from support.bounds import beyond, relative_error, within
 from support.paths import ROOT
@@ -87,85 +88,102 @@ def test_what_only_the_unit_can_refuse_is_said_in_its_own_words(
     assert str(refusal.value).startswith(said)
 
 
-def run(fmus: dict[str, Path], line: str, folder: Path) -> bool:
-    return example.example(fmus, options.asked(shlex.split(line)), folder)
+@pytest.fixture
+def run(
+    fmus: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> Callable[[str], tuple[int, str]]:
+    """run(line): exit status and output of the example, which writes into tmp_path/NAME."""
+    monkeypatch.setattr(example.build, "ROOT", tmp_path)
+    monkeypatch.setattr(example, "RESULTS", tmp_path)
+    monkeypatch.setattr(example.build, "build_all", lambda _folder: fmus)
+
+    def call(line: str) -> tuple[int, str]:
+        monkeypatch.setattr(sys, "argv", ["example", *line.split()])
+        return example.main(), capsys.readouterr().out
+
+    return call
 
 
-def test_an_example_writes_table_figure_fmus_and_package_and_nothing_else(
-    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
-    before = subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, text=True).stdout
-    assert run(fmus, "axle scene=straight M_left=40 M_right=40 stop=0.5", tmp_path)
-    assert {p.name for p in tmp_path.iterdir()} == {"axle.csv", "axle.png", "axle.ssp", "axle.fmu", "wheel.fmu"}
-    with (tmp_path / "axle.csv").open() as file:
+def test_an_example_writes_table_figure_fmus_and_package_and_nothing_else(run: Callable, tmp_path: Path) -> None:
+    def changes() -> str:
+        return subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, text=True).stdout
+
+    before, (status, said) = changes(), run("axle scene=straight M_left=40 M_right=40 stop=0.5")
+    assert (status, changes()) == (0, before)
+    folder = tmp_path / "axle"
+    assert {p.name for p in folder.iterdir()} == {"axle.csv", "axle.png", "axle.ssp", "axle.fmu", "wheel.fmu"}
+    with (folder / "axle.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert float(rows[-1]["time"]) == pytest.approx(0.5)
     exact = 80 / (0.35 * axle.constants(options.manoeuvres("axle")["straight"]).m_t) * 0.5
     within(relative_error(float(rows[-1]["v"]), exact), 0.01, "speed, relative")
-    assert "Largest departure from the rigid axle" in capsys.readouterr().out
-    after = subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, text=True).stdout
-    assert after == before
+    assert "Largest departure from the rigid axle" in said
 
 
+PAGES = [*(ROOT / "examples" / "vehicles").rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
+TEXT = "\n".join(page.read_text() for page in PAGES)
 PRINTED = sorted(
-    {
-        command.strip()
-        for page in [*(ROOT / "examples" / "vehicles").rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
-        for command in re.findall(
-            r"\./scripts/example ((?:axle|car|suspended|balance)\b[^|`#\n]*)(?![^`\n]*\|)", page.read_text()
-        )
-        if "--help" not in command
-    }
+    {line.strip() for line in re.findall(r"\./scripts/example ([a-z]+\b(?!\|)[^`#\n]*)", TEXT)} - {"control"}
 )
+HELP = [line for line in PRINTED if "--help" in line]
+PACKAGES = sorted(set(re.findall(r"examples/vehicles/tools/by_fmpy.py results/examples/(\S+) ([^`\n]+)", TEXT)))
 
 
-@pytest.mark.parametrize("line", PRINTED)
-def test_every_command_that_a_document_prints_runs_and_is_the_manoeuvre_it_names(
-    fmus: dict[str, Path], tmp_path: Path, line: str
+@pytest.mark.parametrize("line", sorted(set(PRINTED) - set(HELP)))
+def test_every_command_that_a_document_prints_runs_and_is_the_manoeuvre_it_names(run: Callable, line: str) -> None:
+    assert run(line)[0] == 0
+
+
+@pytest.mark.parametrize("line", HELP)
+def test_every_help_that_a_document_prints_has_a_list(line: str) -> None:
+    assert "B_hold" in subprocess.run([*READS, *line.split()], capture_output=True, text=True, check=True).stdout
+
+
+@pytest.mark.parametrize(("package", "rest"), PACKAGES)
+def test_every_package_that_a_document_runs_in_fmpy_prints_its_values(
+    run: Callable, tmp_path: Path, package: str, rest: str
 ) -> None:
-    assert run(fmus, line, tmp_path)
+    run(f"{package.split('/')[0]} stop=0.1")
+    tool, (step, stop, *names) = ROOT / "examples" / "vehicles" / "tools" / "by_fmpy.py", rest.split()
+    command = [sys.executable, tool, tmp_path / package, step, stop, *names]
+    lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert {line.split()[0]: np.isfinite(float(line.split()[1])) for line in lines} == dict.fromkeys(names, True)
 
 
 def test_the_documents_print_commands_for_every_vehicle() -> None:
     assert {line.split()[0] for line in PRINTED} == set(options.FOLDERS)
-    assert "car manoeuvre=hill slope=20%" in PRINTED
+    assert "car manoeuvre=hill slope=20%" in PRINTED and HELP and PACKAGES
 
 
-@pytest.mark.parametrize("line", ["car manoeuvre=step v=20", "car stop=1", "balance k_theta=0"])
-def test_a_manoeuvre_that_fails_has_an_exit_status_beside_its_reason(
-    fmus: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, line: str
+STEP = "The likely cause is the communication step"
+CLOSED = "No closed form to compare with: with "
+
+
+@pytest.mark.parametrize(
+    ("line", "passed", "said", "unsaid"),
+    [
+        ("car stop=1", False, "Failed: the run ends after", STEP),
+        ("car manoeuvre=step v=22", False, "lifted off", STEP),
+        ("car manoeuvre=too_fast", True, "As intended: The front left wheel ended the run", STEP),
+        ("car h=10ms", False, STEP, "As intended"),
+        ("suspended h=20ms exchange=held", False, STEP, "As intended"),
+        ("axle scene=trailing M_left=5 stop=0.2", True, CLOSED, "Largest departure"),
+        ("axle scene=rolling_out v=0.1 stop=0.2", True, CLOSED, "Largest departure"),
+        ("balance", True, "Controlled it stays up", "Failed"),
+        ("balance k_theta=0", False, "is not the circle of 1.5 m", "Controlled it stays up"),
+    ],
+)
+def test_the_exit_status_follows_from_the_verdict_and_table_and_picture_are_kept(
+    run: Callable, tmp_path: Path, line: str, passed: bool, said: str, unsaid: str
 ) -> None:
-    monkeypatch.setattr(example.build, "ROOT", tmp_path)
-    monkeypatch.setattr(example, "RESULTS", tmp_path / "results")
-    monkeypatch.setattr(example.build, "build_all", lambda _folder: fmus)
-    monkeypatch.setattr(sys, "argv", ["example", *line.split()])
-    assert example.main() == 1
-    assert "Failed: " in capsys.readouterr().out
+    status, output = run(line)
+    assert (status == 0, said in output, unsaid in output) == (passed, True, False), output
+    name = line.split()[0]
+    assert {f"{name}.csv", f"{name}.png", "wheel.fmu"} <= {p.name for p in (tmp_path / name).iterdir()}
 
 
-@pytest.mark.parametrize("line", ["car h=10ms", "suspended h=20ms exchange=held"])
-def test_a_run_that_diverges_names_the_communication_step_and_keeps_table_and_picture(
-    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture, line: str
-) -> None:
-    assert not run(fmus, line, tmp_path)
-    said = capsys.readouterr().out
-    assert "lifted off" in said and "The likely cause is the communication step" in said
-    assert {f"{line.split()[0]}.{end}" for end in ("csv", "png")} <= {p.name for p in tmp_path.iterdir()}
-
-
-def test_a_wheel_that_really_lifts_off_is_not_blamed_on_the_step(
-    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
-    assert not run(fmus, "car manoeuvre=step v=22", tmp_path)
-    said = capsys.readouterr().out
-    assert "lifted off" in said and "communication step" not in said
-
-
-def test_a_step_of_the_steering_has_its_characteristic_values_printed(
-    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
-    assert run(fmus, "car manoeuvre=step", tmp_path)
-    said = capsys.readouterr().out
+def test_a_step_of_the_steering_has_its_characteristic_values_printed(run: Callable) -> None:
+    said = run("car manoeuvre=step")[1]
     gain, exact = map(float, re.search(r"gain of the yaw rate: (\S+) 1/s \(closed form: (\S+)\)", said).groups())
     within(relative_error(gain, exact), 0.01, "gain of the yaw rate, relative")
     overshoot = float(re.search(r"overshoot of the lateral acceleration: (\S+)", said)[1])
@@ -185,14 +203,6 @@ def test_an_example_is_copied_into_an_empty_folder_by_the_recipe_of_the_document
     assert set(copied.variable) >= {"X", "F_X_left"}
 
 
-@pytest.mark.parametrize("changed", ["scene=trailing M_left=5", "scene=rolling_out v=0.1"])
-def test_an_axle_without_a_closed_form_is_not_compared_with_one(
-    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture, changed: str
-) -> None:
-    assert run(fmus, f"axle {changed} stop=0.2", tmp_path)
-    assert "No closed form to compare with: with " in capsys.readouterr().out
-
-
 def test_ctrl_c_ends_a_run_with_one_word(fmus: dict[str, Path]) -> None:
     start = "runpy.run_module('vehicles.example', run_name='__main__')"
     # What it needs is imported before it is interrupted: some packages tell an interrupt of their import otherwise.
@@ -208,11 +218,3 @@ def test_ctrl_c_ends_a_run_with_one_word(fmus: dict[str, Path]) -> None:
     _, said = run.communicate(timeout=60)
     assert (run.returncode, said.strip().splitlines()[-1]) == (130, "Interrupted.")
     assert "Traceback" not in said
-
-
-def test_a_verdict_on_the_balanced_wheel_looks_at_both_runs(
-    fmus: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
-    for line, said in (("balance", "Controlled it stays up"), ("balance k_theta=0", "is not the circle of 1.5 m")):
-        assert run(fmus, line, tmp_path) == (line == "balance")
-        assert said in capsys.readouterr().out
