@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterable
 from ctypes import byref, c_double
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +11,7 @@ from pathlib import Path
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.simulation import apply_start_values
 
 LAST_SUCCESSFUL = 2  # fmi2StatusKind
 
@@ -52,18 +53,16 @@ class Component:
         self.folder, self.log = extract(str(self.path)), []
         self.description = read_model_description(self.folder)
         self.variable = {v.name: v for v in self.description.modelVariables}
-        identifier = self.description.coSimulation.modelIdentifier
+        self.references(self.start)  # a name that does not exist
         self.fmu = FMU2Slave(
-            guid=self.description.guid, unzipDirectory=self.folder, modelIdentifier=identifier, instanceName=self.name
+            **{"guid": self.description.guid, "unzipDirectory": self.folder, "instanceName": self.name},
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
         )
-        self.callbacks = fmi2CallbackFunctions()
-        self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
-        self.fmu.instantiate(callbacks=self.callbacks)
+        callbacks = fmi2CallbackFunctions()  # fmpy's own logger serves one instance per process
+        callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
+        self.fmu.instantiate(callbacks=callbacks)
         self.fmu.setupExperiment(startTime=0.0)
-        for name, value in self.start.items():
-            kind = self.variable_of(name).type
-            convert = {"Boolean": bool, "Integer": int}.get(kind, float)
-            self.asked(getattr(self.fmu, f"set{kind}"), self.references([name]), [convert(value)])
+        self.asked(apply_start_values, self.fmu, self.description, self.start)
         self.asked(self.fmu.enterInitializationMode)
 
     def asked(self, function, *arguments: object) -> None:
@@ -84,15 +83,12 @@ class Component:
             self.fmu.freeInstance()
             shutil.rmtree(self.folder, ignore_errors=True)
 
-    def variable_of(self, name: str):
-        """Its row of the model description."""
-        if name not in self.variable:
-            raise ValueError(f"{self.name} has no variable {name}.")
-        return self.variable[name]
-
-    def references(self, names: Sequence[str]) -> list[int]:
+    def references(self, names: Iterable[str]) -> list[int]:
         """Value references of variables."""
-        return [self.variable_of(name).valueReference for name in names]
+        for name in names:
+            if name not in self.variable:
+                raise ValueError(f"{self.name} has no variable {name}.")
+        return [self.variable[name].valueReference for name in names]
 
     def feeds(self, output: str) -> list[str]:
         """Inputs on which an output depends directly; undeclared dependencies mean all."""

@@ -89,7 +89,11 @@ def judged(fmus: dict[str, Path], asked: options.Asked, run: Run) -> tuple[bool,
         return False, [f"Failed: {said}", cause]
     if "lifts_off" in manoeuvre.ends and "lifted off" in said:
         return True, [f"As intended: {said}"]
-    return False, [f"Failed: {said}"]
+    lines = [f"Failed: {said}"]
+    if manoeuvre["mu_max"] and of is car:
+        each = ", ".join(f"{axle} {mu:.2f}" for axle, mu in car.demand(run.table).items())
+        lines.append(f"Until then the axles, their wheels together, required: {each}.")
+    return False, lines
 
 
 def example(fmus: dict[str, Path], asked: options.Asked, folder: Path) -> bool:
