@@ -63,10 +63,12 @@ def test_help_lists_every_parameter_and_all_of_them_are_taken(name: str) -> None
         assert options.values(name, [f"{parameter}=1"]) == {parameter: 1.0}
 
 
-@pytest.mark.parametrize(("line", "start"), [("car", "0"), ("car manoeuvre=hill", "1500"), ("car M_0=7", "7")])
+@pytest.mark.parametrize(
+    ("line", "start"), [("car", "0 15"), ("car manoeuvre=hill", "1500 0"), ("car M_0=7 v_1=3", "7 3")]
+)
 def test_help_has_the_values_of_the_manoeuvre_that_is_named(line: str, start: str) -> None:
     listed = subprocess.run([*READS, *line.split(), "--help"], capture_output=True, text=True, check=True).stdout
-    assert re.search(r"\n  M_0 +N\.m +(\S+)", listed)[1] == start
+    assert [re.search(rf"\n  {name} +\S+ +(\S+)", listed)[1] for name in ("M_0", "v_1")] == start.split()
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+import signal
 import sys
 import tomllib
 from dataclasses import dataclass, replace
@@ -94,6 +95,10 @@ class Manoeuvre:
 
     def __getitem__(self, name: str) -> float:
         return self.given[name] if name in self.given else every(self.vehicle)[name].start
+
+    def followed(self, name: str) -> str:
+        """The parameter whose value an unset one takes: the driver keeps the speed at the start."""
+        return "v" if name in ("v_0", "v_1") and name not in self.given else name
 
     def changed(self, **values: float) -> Manoeuvre:
         """With other parameters, or another stop."""
@@ -198,7 +203,7 @@ def usage(name: str, arguments: list[str]) -> str:
     asked = chosen(name, arguments).manoeuvre
     lines.append(f"Parameters, with their values in the run {asked.name}:")
     for v in numbers.values():
-        start = asked.stop if v.name == "stop" else asked[v.name]
+        start = asked.stop if v.name == "stop" else asked[asked.followed(v.name)]
         lines.append(f"  {v.name:16s}{v.unit:10s}{start:>9.6g} {v.limit:>4s}  {v.description}")
     return "\n".join(lines)
 
@@ -230,4 +235,5 @@ def main() -> int:
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # as of --help | head
     sys.exit(main())
