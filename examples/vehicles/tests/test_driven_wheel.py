@@ -21,42 +21,22 @@ def drive(fmus: dict[str, Path]) -> Table:
     return driven.run(fmus).table
 
 
-@pytest.fixture(scope="module")
-def verdict(drive: Table) -> driven.Verdict:
-    return driven.judge(drive)
-
-
-def test_the_wheel_alone_falls_within_two_seconds(verdict: driven.Verdict) -> None:
-    within(verdict.fall, 2, "falls, s")
-
-
-def test_the_controlled_wheel_never_falls(drive: Table) -> None:
+def test_the_controlled_wheel_drives_its_course_where_the_wheel_alone_falls(drive: Table) -> None:
+    found = driven.judge(drive)
+    within(found.fall, 2, "the wheel alone falls, s")
     assert driven.fall_time(drive) == np.inf
-
-
-def test_it_rolls_upright_along_a_line(verdict: driven.Verdict) -> None:
-    within(verdict.line_tilt, 0.01, "tilt, deg")
-    within(verdict.line_heading, 0.03, "off the heading, deg")
-
-
-def test_it_rolls_along_the_circle_asked_for(verdict: driven.Verdict) -> None:
-    within(abs(verdict.circle_radius - driven.RADIUS), 0.01, "radius off, m")
-    within(verdict.circle_scatter, 0.003, "off the circle, m")
-    within(verdict.circle_tilt, 10, "tilt, deg")  # a wheel turns to the side it leans to
-
-
-def test_it_holds_its_speed_against_rolling_friction(verdict: driven.Verdict) -> None:
-    within(verdict.speed_error, 0.003, "spin off, rad/s")
-
-
-def test_the_wheel_alone_fails_every_bound_of_the_course(drive: Table) -> None:
-    """Partner: the same verdict on the run without controller."""
-    known = np.isfinite(drive["alone.theta"])  # it ends early
+    known = np.isfinite(drive["alone.theta"])  # partner: the same figures of the wheel alone, which ends early
     alone = driven.judge({n: drive.get(f"alone.{n}", x)[known] for n, x in drive.items()})
-    beyond(alone.line_tilt, 10, "tilt, deg")
-    beyond(alone.line_heading, 30, "off the heading, deg")
-    beyond(alone.circle_scatter, 0.1, "off the circle, m")
-    beyond(alone.speed_error, 0.1, "spin off, rad/s")
+    for name, bound, broken in (
+        ("line_tilt", 0.01, 10),  # deg
+        ("line_heading", 0.03, 30),  # deg
+        ("circle_scatter", 0.003, 0.1),  # m
+        ("speed_error", 0.003, 0.1),  # rad/s
+    ):
+        within(getattr(found, name), bound, name)
+        beyond(getattr(alone, name), broken, f"{name} of the wheel alone")
+    within(abs(found.circle_radius - driven.RADIUS), 0.01, "radius off, m")
+    within(found.circle_tilt, 10, "tilt on the circle, deg")  # a wheel turns to the side it leans to
 
 
 def test_a_controller_of_the_speed_alone_lets_the_wheel_fall(fmus: dict[str, Path]) -> None:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .car import J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, X_REAR, G, R
-from .driver_path import rise
+from .monolithic_car import rise
 from .options import Manoeuvre
 
 Table = dict[str, np.ndarray]
