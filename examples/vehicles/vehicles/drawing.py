@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from diagrams import style
 
 from .errors import Errors
+from .options import Manoeuvre
 
 COLOURS = (style.BLUE, style.VERMILLION, style.SKY, style.ORANGE, style.PURPLE, style.GREY)
 MARKS = {
@@ -23,45 +24,40 @@ MARKS = {
 DASHES = ("-", "--", ":", "-.")  # a curve that has the values of the one before is seen through its gaps
 GUIDES = {1: (0, (4, 2)), 2: (0, (1, 1))}  # lines of an order
 SCALES = {"deg": 180 / np.pi, "deg/s": 180 / np.pi, "km/h": 3.6, "kN": 1e-3, "mm": 1e3}  # of a label's unit
-HEIGHT, WIDTH = 34, 70  # mm, of a panel
 Table = dict[str, np.ndarray]
 Tracks = dict[str, tuple[np.ndarray, ...]]
 
 
 def draw(
+    manoeuvre: Manoeuvre,
     table: Table,
-    plot: tuple,
     names: dict[str, str],
+    tracks: Tracks,
     path: Path,
     title: str,
-    tracks: Tracks,
-    errors: Errors | None = None,
+    errors: Errors | None,
 ) -> Path:
-    """`plot`: "path", and panels [label [unit], column...]; *.NAME is a column per wheel of `names`, %.NAME per axle,
-    "NAME: TEXT" a column with its text."""
+    """The manoeuvre's plot: "path", and panels [label [unit], column...]; *.NAME is a column per wheel of `names`,
+    %.NAME per axle, "NAME: TEXT" a column with its text."""
     style.use_style()
-    panels = [panel for panel in plot if panel != "path"]
-    rows = -(-(len(panels) + bool(errors)) // 2)
-    high, over = 8 + rows * (HEIGHT + 15), 58 * ("path" in plot)
-    fig = style.figure_mm(style.PAGE, high + over + 4)
-    fig.suptitle(title, fontsize=9, y=1 - 1.5 / (high + over + 4), va="top")
-    if over:
-        draw_path(style.axes_mm(fig, 16, high + 6, 162, 42), table, names, tracks)
-    places = [
-        (16 + 92 * (k % 2), 12 + (rows - 1 - k // 2) * (HEIGHT + 15), WIDTH, HEIGHT) for k in range(len(panels) + 1)
-    ]
-    for k, (label, *wanted) in enumerate(panels):
-        ax = style.axes_mm(fig, *places[k])
-        draw_panel(ax, table, label, wanted, names)
-        ax.set_xlabel("time [s]" if k >= len(panels) - 2 else "")
-    if errors:
-        ax = style.axes_mm(fig, *places[-1])
-        draw_errors(ax, errors)
-        ax.legend(loc="center left", bbox_to_anchor=(1.05, 0.5))
+    panels = {n: panel for n, panel in enumerate(manoeuvre.plot) if panel != "path"}
+    cells = [*panels, *(["errors"] if errors else []), "."]
+    rows = [*([["path"] * 2] if len(panels) < len(manoeuvre.plot) else []), *zip(cells[::2], cells[1::2], strict=False)]
+    fig = style.figure_mm(style.PAGE, 6 + 50 * len(rows))
+    fig.set_layout_engine("constrained", h_pad=0.06, wspace=0.06)
+    fig.suptitle(title, fontsize=9)
+    for cell, ax in fig.subplot_mosaic([list(row) for row in rows]).items():
+        if cell == "path":
+            draw_path(ax, table, names, tracks)
+        elif cell == "errors":
+            draw_errors(ax, errors)
+            ax.legend(loc="lower left", bbox_to_anchor=(0, 0.98), ncols=3)
+        else:
+            draw_panel(ax, table, *panels[cell], names=names)
     return style.save_png(fig, path)
 
 
-def draw_panel(ax: Axes, table: Table, label: str, wanted: list[str], names: dict[str, str]) -> None:
+def draw_panel(ax: Axes, table: Table, label: str, *wanted: str, names: dict[str, str]) -> None:
     """Curves over time; the unit at the label's end scales them."""
     scale = SCALES.get(label.split("[")[-1].rstrip("]"), 1.0)
     known = {
@@ -81,7 +77,7 @@ def draw_panel(ax: Axes, table: Table, label: str, wanted: list[str], names: dic
             loc="lower left", bbox_to_anchor=(0, 0.98), ncols=4, borderaxespad=0.2, columnspacing=0.8, handlelength=1.5
         )
     ax.ticklabel_format(axis="y", useOffset=False)
-    ax.set_ylabel(label)
+    ax.set(xlabel="time [s]", ylabel=label)
 
 
 def draw_path(ax: Axes, table: Table, names: dict[str, str], tracks: Tracks) -> None:

@@ -49,7 +49,7 @@ def picture(
     names = getattr(of, "NAMES", of.WHEELS)
     title = car.title(manoeuvre) if vehicle == "car" else f"{vehicle.capitalize()}: {manoeuvre.title}"
     tracks = of.tracks(table) if "path" in manoeuvre.plot else {}
-    return draw(table, manoeuvre.plot, names, path, title + remark, tracks, errors)
+    return draw(manoeuvre, table, names, tracks, path, title + remark, errors)
 
 
 def findings(table: Table, manoeuvre: options.Manoeuvre) -> list[str]:
