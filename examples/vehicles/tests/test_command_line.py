@@ -169,6 +169,8 @@ CLOSED = "No closed form to compare with: with "
         ("car manoeuvre=too_fast", True, "As intended: The front left wheel ended the run", STEP),
         ("car h=10ms", False, STEP, "As intended"),
         ("suspended h=20ms exchange=held", False, STEP, "As intended"),
+        ("axle h=20ms", False, STEP, "As intended"),
+        ("axle h=4ms stiffness=8", False, STEP, "As intended"),
         ("axle scene=trailing M_left=5 stop=0.2", True, CLOSED, "Largest departure"),
         ("axle scene=rolling_out v=0.1 stop=0.2", True, CLOSED, "Largest departure"),
         ("balance", True, "Controlled it stays up", "Failed"),
