@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import shutil
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import mkdtemp
 
@@ -21,6 +21,12 @@ import numpy as np
 from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Model, FMU2Slave
 from scipy.linalg import solve_continuous_are
+
+with suppress(ImportError):  # of the project; a copy of this folder has matplotlib's own look
+    from diagrams import style
+
+    style.use_style()
+    plt.rcParams["axes.prop_cycle"] = plt.cycler(color=[style.BLUE, style.VERMILLION])
 
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "theta_dot", "psi_dot", "omega_z")
 DERIVATIVES = ("X_O_dot", "Y_O_dot", "psi_dot", "theta_dot", "phi_dot", "theta_ddot", "psi_ddot", "omega_z_dot")
@@ -61,13 +67,13 @@ def draw_eigenvalues(folder: str, picture: Path) -> float:
     """The largest real part over the spin; returns the spin at which it vanishes, by bisection."""
     spins = np.linspace(0.5, 5, 91)
     values = [np.linalg.eigvals(linearized(folder, -spin, ())[0]) for spin in spins]
-    figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
+    figure, axes = plt.subplots(figsize=(7.2, 3.6), layout="constrained")
     axes.plot(np.repeat(spins, len(STATES)), np.real(values).ravel(), ".", ms=3, label="real parts, by wheel.fmu")
-    axes.axvline(CRITICAL, color="tab:red", lw=1, label="critical spin, closed form")
-    axes.set(xlabel="spin |ω_z| [rad/s]", ylabel="real part of the eigenvalues [1/s]")
+    axes.axvline(CRITICAL, color="C1", label="critical spin, closed form")
+    axes.set(xlabel=r"spin $|\omega_z|$ [rad/s]", ylabel="real part of the eigenvalues [1/s]")
     axes.set_title("Straight rolling, linearized")
     axes.legend()
-    figure.savefig(picture, dpi=120)
+    figure.savefig(picture, dpi=200)
     low, high = 1.0, 5.0
     for _ in range(40):
         spin = (low + high) / 2
@@ -108,15 +114,15 @@ def draw_regulated(folder: str, picture: Path) -> tuple[float, float]:
     """A wheel below the critical spin; returns its largest lean alone, and the lean at the end with the regulator."""
     spin = -1.5
     alone, regulated = rolled(folder, None, spin), rolled(folder, regulator(folder, spin), spin)
-    figure, axes = plt.subplots(2, 1, figsize=(7, 5), sharex=True, layout="constrained")
-    for k, label in ((1, "distance from the line, Y_O [m]"), (2, "lean, θ − 90° [deg]")):
+    figure, axes = plt.subplots(2, 1, figsize=(7.2, 4.4), sharex=True, layout="constrained")
+    for k, label in ((1, "off the line, $Y_O$ [m]"), (2, r"lean, $\theta - 90°$ [deg]")):
         axes[k - 1].plot(alone[0], alone[k], label="alone")
         axes[k - 1].plot(regulated[0], regulated[k], label="with the regulator")
         axes[k - 1].set_ylabel(label)
-    axes[0].set_title(f"Below the critical spin: |ω_z| = {-spin} rad/s")
-    axes[1].set(xlabel="t [s]", ylim=(-60, 60))
+    axes[0].set_title(rf"Below the critical spin: $|\omega_z|$ = {-spin} rad/s")
+    axes[1].set(xlabel="time [s]", yticks=range(-90, 91, 45))
     axes[1].legend(loc="upper right")
-    figure.savefig(picture, dpi=120)
+    figure.savefig(picture, dpi=200)
     return float(np.abs(alone[2]).max()), float(abs(regulated[2][-1]))
 
 
@@ -173,19 +179,19 @@ def checked(folder: str, t: np.ndarray, x: np.ndarray, moments: np.ndarray) -> n
 def draw_optimal(folder: str, picture: Path) -> float:
     """Returns how far co-simulation ends from the optimum's end: the error of 60 steps of the midpoint rule."""
     t, x, moments = optimal(folder)
-    figure, axes = plt.subplots(3, 1, figsize=(7, 6.5), layout="constrained")
+    figure, axes = plt.subplots(3, 1, figsize=(7.2, 5.8), layout="constrained")
     axes[0].plot(x[0], x[1])
-    axes[0].set(xlabel="X_O [m]", ylabel="Y_O [m]", title="Upright and onto the line, with the least effort")
+    axes[0].set(xlabel="$X_O$ [m]", ylabel="$Y_O$ [m]", title="Upright and onto the line, with the least effort")
     axes[0].set_aspect("equal")
-    axes[1].plot(t, np.degrees(x[3]) - 90, label="lean, θ − 90°")
-    axes[1].plot(t, np.degrees(x[2]), label="heading ψ")
-    axes[1].set(xlabel="t [s]", ylabel="[deg]")
-    axes[2].step(t[:-1], moments[0], where="post", label="M_1")
-    axes[2].step(t[:-1], moments[1], where="post", label="M_3")
-    axes[2].set(xlabel="t [s]", ylabel="[N m]")
+    axes[1].plot(t, np.degrees(x[3]) - 90, label=r"lean, $\theta - 90°$")
+    axes[1].plot(t, np.degrees(x[2]), label=r"heading $\psi$")
+    axes[1].set(xlabel="time [s]", ylabel="angle [deg]")
+    axes[2].step(t[:-1], moments[0], where="post", label="$M_1$")
+    axes[2].step(t[:-1], moments[1], where="post", label="$M_3$")
+    axes[2].set(xlabel="time [s]", ylabel="moment [N m]")
     for part in axes[1:]:
         part.legend()
-    figure.savefig(picture, dpi=120)
+    figure.savefig(picture, dpi=200)
     return float(np.abs(checked(folder, t, x, moments) - x[:, -1])[[1, 2, 3]].max())
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
-from dataclasses import replace
 from importlib.metadata import version
 
 import pandas as pd
@@ -22,14 +21,13 @@ GRID = 0.05  # s
 def packages(report: Report) -> None:
     """the packages in other tools, beside the master of the examples"""
     units, h = fmus(report), 0.0005
-    folder, scene, wait = units["chassis"].parent, replace(axle_study.TRAILING, stop=2.0), {"t_couple": 3 * h}
-    waiting = replace(car.LANE, chassis={**car.LANE.chassis, **wait})
-    later = replace(scene, more=wait)
+    folder, scene, wait = units["chassis"].parent, axle_study.TRAILING.changed(stop=2.0), {"t_couple": 3 * h}
+    waiting, later = car.LANE.changed(**wait), scene.changed(**wait)
     axles = [axle.coupled(units, s, h, e, GRID) for s, e in ((scene, "rollback"), (later, "held"))]
     cars = [car.drive(units, m, h, e, GRID).table for m, e in ((car.LANE, "rollback"), (waiting, "held"))]
     cases = (
-        (ssp.build(axle.system(units, scene, h), folder), scene.stop, ("axle.X", "axle.Y"), axles),
-        (ssp.build(car.system(units, car.LANE, h), folder), car.LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
+        (ssp.build(axle.package(units, scene, h), folder), scene.stop, ("axle.X", "axle.Y"), axles),
+        (ssp.build(car.package(units, car.LANE, h), folder), car.LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
     )
     rows: list[dict[str, object]] = []
     for package, stop, wanted, own in cases:

@@ -31,19 +31,19 @@ def fmus(report: Report) -> dict[str, Path]:
 @part(20)
 def driven_wheel(report: Report) -> None:
     """the driven, balanced wheel"""
-    from vehicles import driven, figures
+    from vehicles import driven, example
 
-    drive = driven.run(fmus(report))
+    drive = driven.run(fmus(report)).table
     verdict = driven.judge(drive)
     report.figures(alone=verdict.fall, tilt=verdict.line_tilt, circle=abs(verdict.circle_radius - driven.RADIUS))
     report.figures(scatter=verdict.circle_scatter, speed=verdict.speed_error)
-    figures.draw_drive(drive, report.folder / "partners_driven.png")
+    example.picture(drive, driven.CIRCLE, report.folder / "partners_driven.png")
 
 
 @part(25)
 def suspended_wheel(report: Report) -> None:
     """the suspended wheel against one set of equations"""
-    from vehicles import errors, figures, ssp, suspended
+    from vehicles import errors, example, ssp, suspended
 
     truth, units = suspended.together(), fmus(report)
     steps = suspended.STEPS[:3] if report.quick else suspended.STEPS
@@ -64,7 +64,7 @@ def suspended_wheel(report: Report) -> None:
     ]
     report.table("limits", limits)
     launch = suspended.coupled(units, 0.000625, "derivatives", grid=0.005)
-    figures.draw_launch(launch, found, report.folder / "partners_suspended.png")
+    example.picture(launch, suspended.LAUNCH, report.folder / "partners_suspended.png", errors=found)
 
 
 @part(3)

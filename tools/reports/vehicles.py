@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
 
 import numpy as np
 import pandas as pd
@@ -10,8 +10,8 @@ from vehicles import axle, axle_study, car, car_iso, car_judges, car_table, mono
 from vehicles.car import MANOEUVRES
 from vehicles.drawing import draw_orders
 from vehicles.errors import STEPS, Errors, longest, orders
-from vehicles.example import draw_axle, draw_car
-from vehicles.master import EXCHANGES
+from vehicles.example import picture
+from vehicles.master import EXCHANGES, whole
 
 from .packages import packages
 from .page import Report, Tables, part
@@ -25,19 +25,19 @@ BONDS = ("F_X", "F_Y", "F_Z", "M_1", "M_2")
 @part(30)
 def axle_steps(report: Report) -> None:
     """the axle: error against the step"""
-    scene = replace(axle_study.TRAILING, stop=2.0)
+    scene = axle_study.TRAILING.changed(stop=2.0)
     kinds = {"held, positions lag": ("held", {"follow": 0.0}), **{e: (e, {}) for e in EXCHANGES}}
     rows = []
     for label, (exchange, more) in kinds.items():
-        errors = axle_study.step_errors(fmus(report), replace(scene, more=more), exchange, STEPS)
+        errors = axle_study.step_errors(fmus(report), scene.changed(**more), exchange, STEPS)
         rows += [
             {"inputs over the step": label, "step, ms": 1000 * h, "error / range": e}
             for h, e in zip(STEPS, errors, strict=True)
         ]
     report.table("axle_steps", rows)
     run = axle.coupled(fmus(report), axle_study.TRAILING, 0.0005, "derivatives", 0.02)
-    exact = axle.rigid(axle_study.TRAILING, run["time"])
-    draw_axle(run, exact, None, report.folder / "vehicles_axle.png", "Axle: trailing, step 0.5 ms")
+    table = axle.complete(run, axle_study.TRAILING)
+    picture(table, axle_study.TRAILING, report.folder / "vehicles_axle.png", ", step 0.5 ms")
 
 
 @part(30)
@@ -45,7 +45,7 @@ def axle_stiffness(report: Report) -> None:
     """the axle: error against the stiffness"""
     factors, rows = (1.0, 2.0, 4.0), []
     for name, scene in axle_study.SCENES.items():
-        errors = axle_study.stiffness_errors(fmus(report), replace(scene, stop=2.0), factors)
+        errors = axle_study.stiffness_errors(fmus(report), scene.changed(stop=2.0), factors)
         order = float(-orders(factors, errors)[-1])
         of_factors = {f"stiffness x {f:g}": e for f, e in zip(factors, errors, strict=True)}
         rows.append({"scene": name, **of_factors, "order in 1/k": order})
@@ -57,9 +57,11 @@ def axle_limits(report: Report) -> None:
     """the axle: the longest step for each stiffness, beside 2 J_x / c_a"""
     rows = []
     for factor in (0.5, 1.0, 2.0, 4.0):
-        scene = replace(axle_study.CLOTHOID, stop=1.0, stiffness=factor)
+        scene = axle_study.CLOTHOID.changed(stop=1.0, stiffness=factor)
         found = {f"{e}, ms": 1000 * axle_study.longest_step(fmus(report), scene, e) for e in EXCHANGES}
-        rows.append({"stiffness x": factor, **found, "2 J_x / c_a, ms": 1000 * 2 * scene.J_x / (500.0 * factor)})
+        rows.append(
+            {"stiffness x": factor, **found, "2 J_x / c_a, ms": 1000 * 2 * axle.constants(scene).J_x / (500.0 * factor)}
+        )
     report.table("axle_limits", rows)
 
 
@@ -68,7 +70,7 @@ def axle_energy(report: Report) -> None:
     """the axle: energy added per bond"""
     rows = []
     for exchange, follow in (("held", 0.0), ("held", 1.0), ("derivatives", 1.0)):
-        scene = replace(axle_study.TRAILING, stop=2.0, more={"follow": follow})
+        scene = axle_study.TRAILING.changed(stop=2.0, follow=follow)
         found = axle_study.energy(fmus(report), scene, 0.001, exchange)
         label, sums = exchange if follow else f"{exchange}, positions lag", sum(found.bonds.values())
         of_bonds = {f"{n}, J": float(x) for n, x in zip(BONDS, sums, strict=True)}
@@ -100,7 +102,7 @@ def car_demand(report: Report) -> None:
         at = car.worst(table)[1]
         where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]
         rows.append((MANOEUVRES[name].title, *car.demand(table).values(), *where))
-    head = ["manoeuvre", *car.NAMES.values(), "most at t [s]", "X [m]", "Y [m]"]
+    head = ["manoeuvre", *(f"{axle} axle" for axle in car.AXLES), "most at t [s]", "X [m]", "Y [m]"]
     report.table("car_demand", pd.DataFrame(rows, columns=head))
 
 
@@ -120,7 +122,7 @@ def car_figures(report: Report) -> None:
     rows = []
     for name, grid in (("circle", 0.01), ("step", 0.001), ("lane", 0.005)):
         manoeuvre = MANOEUVRES[name]
-        coupled = car_iso.complete(car.drive(fmus(report), manoeuvre, grid=grid).table)
+        coupled = car.drive(fmus(report), manoeuvre, grid=grid).table
         whole = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / grid) + 1) * grid, 1e-9)
         both = (car_iso.FIGURES[name](table) for table in (coupled, whole))
         rows += [(name, a.what, a.unit, a.measured, b.measured, a.exact) for a, b in zip(*both, strict=True)]
@@ -139,7 +141,7 @@ def car_longest(report: Report) -> None:
 
 def longest_step(report: Report, name: str, exchange: str) -> float:
     def error(h: float) -> float:
-        table = car.whole(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID)
+        table = whole(car.drive(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID))
         return max(car_table.apart(table, car_table.read(name)).values())
 
     return longest(LIMITS, error)
@@ -167,7 +169,7 @@ def car_errors(report: Report) -> None:
     report.figures(rollback=max(moving))
     draw_orders({n: Errors(STEPS, of) for n, of in largest.items()}, report.folder / "vehicles_orders.png")
     for name, manoeuvre in MANOEUVRES.items():
-        draw_car(car.drive(fmus(report), manoeuvre), manoeuvre, None, report.folder / f"vehicles_{name}.png")
+        picture(car.drive(fmus(report), manoeuvre).table, manoeuvre, report.folder / f"vehicles_{name}.png")
 
 
 @part(20)

@@ -109,9 +109,7 @@ void hubs(const Now* now, const Body* body, Hub hub[wheel_count]) {
   }
 }
 
-void further(const Now* now, const Hub hub[wheel_count], Body* body, double* x_dot) {
-  (void)now, (void)hub, (void)body, (void)x_dot;
-}
+void further(const Now* now, const Hub hub[wheel_count], Body* body, double* x_dot) {}
 
 static void pose_outputs(const Now* now, const double* x, const Body* body, double* y) {
   const double rear[3] = {now->d[at_x_R], 0, now->u[R] - now->u[h_B]};

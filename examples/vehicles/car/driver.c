@@ -25,14 +25,10 @@ typedef struct Place {
 } Place;
 
 const char* model_derive(const double* u, double* d) {
-  (void)d;
   return u[path] == 0 || u[path] == 1 || u[path] == 2 ? 0 : "path must be 0, 1 or 2.";
 }
 
-void model_start(const Now* now, double* x) {
-  (void)now;
-  memset(x, 0, state_count * sizeof *x);
-}
+void model_start(const Now* now, double* x) { memset(x, 0, state_count * sizeof *x); }
 
 static double rise(double t, double from, double duration) {
   const double z = fmin(fmax((t - from) / duration, 0), 1);

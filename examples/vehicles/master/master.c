@@ -1,11 +1,11 @@
-/* Exchange and steps; master.h has them in words. */
+/* Exchange and steps; master.h explains them. */
 #include "master.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-enum { max_components = 32, max_transfers = 64, max_sinks = 32, max_signals = 256, max_records = 1024 };
+enum { max_components = 32, max_transfers = 256, max_variables = 256, max_signals = 1024, max_records = 1024 };
 
 typedef struct Component {
   Functions call;
@@ -13,17 +13,9 @@ typedef struct Component {
   fmi2FMUstate state; /* the snapshot, kept from step to step */
 } Component;
 
-typedef struct Sink {
-  int component, count, at[max_signals];
-  fmi2ValueReference inputs[max_signals];
-} Sink;
-
 typedef struct Transfer {
-  int component, count, sink_count;
-  fmi2ValueReference outputs[max_signals];
-  Sink sinks[max_sinks];
-  double value[max_signals], rate[max_signals];             /* as they were last read */
-  double begin_value[max_signals], begin_rate[max_signals]; /* at the begin of a step with rollback */
+  int component, reads, count, signals[max_variables];
+  fmi2ValueReference variables[max_variables];
 } Transfer;
 
 typedef struct Record {
@@ -32,12 +24,16 @@ typedef struct Record {
   Kind kind;
 } Record;
 
+typedef double Signals[max_signals];
+
 struct Master {
   Exchange exchange;
   int reject, refused, component_count, transfer_count, record_count;
   Component components[max_components];
   Transfer transfers[max_transfers];
   Record records[max_records];
+  Signals value, rate;             /* as they were last read */
+  Signals begin_value, begin_rate; /* at the begin of a step with rollback */
 };
 
 Master* master_new(Exchange exchange, int reject) {
@@ -58,21 +54,15 @@ int master_component(Master* m, fmi2Component instance, const Functions* functio
   return 1;
 }
 
-int master_transfer(Master* m, int component, int count, const fmi2ValueReference outputs[]) {
-  if (m->transfer_count == max_transfers || count > max_signals) return 0;
+int master_transfer(Master* m, int component, int reads, int count, const fmi2ValueReference variables[],
+                    const int signals[]) {
+  if (m->transfer_count == max_transfers || count > max_variables) return 0;
   Transfer* t = &m->transfers[m->transfer_count++];
-  t->component = component, t->count = count;
-  memcpy(t->outputs, outputs, (size_t)count * sizeof *outputs);
-  return 1;
-}
-
-int master_sink(Master* m, int component, int count, const fmi2ValueReference inputs[], const int at[]) {
-  Transfer* t = &m->transfers[m->transfer_count - 1];
-  if (t->sink_count == max_sinks || count > max_signals) return 0;
-  Sink* s = &t->sinks[t->sink_count++];
-  s->component = component, s->count = count;
-  memcpy(s->inputs, inputs, (size_t)count * sizeof *inputs);
-  memcpy(s->at, at, (size_t)count * sizeof *at);
+  t->component = component, t->reads = reads, t->count = count;
+  for (int k = 0; k < count; ++k) {
+    if (signals[k] >= max_signals) return 0;
+    t->variables[k] = variables[k], t->signals[k] = signals[k];
+  }
   return 1;
 }
 
@@ -89,67 +79,54 @@ static int allowed(Master* m, int component, fmi2Status status) {
   return status <= fmi2Warning;
 }
 
-/* Sets values (order 0) or derivatives of this order, one per output of the transfer. */
-static int hand(Master* m, const Transfer* t, fmi2Integer order, const double* values) {
-  double chosen[max_signals];
-  fmi2Integer orders[max_signals];
-  for (int i = 0; i < t->sink_count; ++i) {
-    const Sink* s = &t->sinks[i];
-    const Component* to = &m->components[s->component];
-    const size_t n = (size_t)s->count;
-    for (int k = 0; k < s->count; ++k) chosen[k] = values[s->at[k]], orders[k] = order;
-    const fmi2Status status = order ? to->call.set_rates(to->instance, s->inputs, n, orders, chosen)
-                                    : to->call.set(to->instance, s->inputs, n, chosen);
-    if (!allowed(m, s->component, status)) return 0;
+static fmi2Status call(const Component* c, const Transfer* t, fmi2Integer order, double* numbers) {
+  fmi2Integer orders[max_variables];
+  const size_t n = (size_t)t->count;
+  for (int k = 0; k < t->count; ++k) orders[k] = order;
+  if (t->reads)
+    return order ? c->call.rates(c->instance, t->variables, n, orders, numbers)
+                 : c->call.get(c->instance, t->variables, n, numbers);
+  return order ? c->call.set_rates(c->instance, t->variables, n, orders, numbers)
+               : c->call.set(c->instance, t->variables, n, numbers);
+}
+
+/* All transfers in turn, of values (order 0) or derivatives of this order; reads: outputs too, else inputs are set to
+ * the signals as they are. */
+static int transfer(Master* m, fmi2Integer order, int reads, double* signals) {
+  double numbers[max_variables];
+  for (int i = 0; i < m->transfer_count; ++i) {
+    const Transfer* t = &m->transfers[i];
+    if (t->reads && !reads) continue;
+    for (int k = 0; k < t->count; ++k) numbers[k] = signals[t->signals[k]];
+    if (!allowed(m, t->component, call(&m->components[t->component], t, order, numbers))) return 0;
+    for (int k = 0; k < t->count; ++k) signals[t->signals[k]] = numbers[k];
   }
   return 1;
 }
 
 int master_exchange(Master* m, int with_rates) {
-  fmi2Integer ones[max_signals];
-  for (int i = 0; i < max_signals; ++i) ones[i] = 1;
-  for (int order = 0; order <= (with_rates != 0); ++order)
-    for (int i = 0; i < m->transfer_count; ++i) {
-      Transfer* t = &m->transfers[i];
-      const Component* from = &m->components[t->component];
-      const size_t n = (size_t)t->count;
-      const fmi2Status status = order ? from->call.rates(from->instance, t->outputs, n, ones, t->rate)
-                                      : from->call.get(from->instance, t->outputs, n, t->value);
-      if (!allowed(m, t->component, status) || !hand(m, t, order, order ? t->rate : t->value)) return 0;
-    }
-  return 1;
+  return transfer(m, 0, 1, m->value) && (!with_rates || transfer(m, 1, 1, m->rate));
 }
 
-/* Before the first trial of a step with rollback: second derivatives, guessed from the last step's rates. Keeps what
- * the transfers hold. */
+/* Before the first trial of a step with rollback: second derivatives, guessed from the last step's rates. */
 static int predict(Master* m, double h, int first) {
-  double second[max_signals];
-  for (int i = 0; i < m->transfer_count; ++i) {
-    Transfer* t = &m->transfers[i];
-    for (int k = 0; k < t->count; ++k) second[k] = (t->rate[k] - t->begin_rate[k]) / h;
-    if (!first && !hand(m, t, 2, second)) return 0;
-    memcpy(t->begin_value, t->value, sizeof t->value);
-    memcpy(t->begin_rate, t->rate, sizeof t->rate);
-  }
-  return 1;
+  Signals second;
+  for (int k = 0; k < max_signals; ++k) second[k] = (m->rate[k] - m->begin_rate[k]) / h;
+  memcpy(m->begin_value, m->value, sizeof m->value);
+  memcpy(m->begin_rate, m->rate, sizeof m->rate);
+  return first || transfer(m, 2, 0, second);
 }
 
 /* After it, with all components set back: the values of the step's begin, and the cubics. */
 static int correct(Master* m, double h) {
-  double second[max_signals], third[max_signals];
-  for (int i = 0; i < m->transfer_count; ++i) {
-    const Transfer* t = &m->transfers[i];
-    const double *begin = t->begin_value, *rate = t->begin_rate;
-    for (int k = 0; k < t->count; ++k) {
-      const double mean = (t->value[k] - begin[k]) / h;
-      second[k] = 2 * (3 * mean - 2 * rate[k] - t->rate[k]) / h;
-      third[k] = 6 * (rate[k] + t->rate[k] - 2 * mean) / (h * h);
-    }
-    const double* of[] = {begin, rate, second, third};
-    for (int order = 0; order < 4; ++order)
-      if (!hand(m, t, order, of[order])) return 0;
+  Signals second, third;
+  for (int k = 0; k < max_signals; ++k) {
+    const double mean = (m->value[k] - m->begin_value[k]) / h, begin = m->begin_rate[k], end = m->rate[k];
+    second[k] = 2 * (3 * mean - 2 * begin - end) / h;
+    third[k] = 6 * (begin + end - 2 * mean) / (h * h);
   }
-  return 1;
+  return transfer(m, 0, 0, m->begin_value) && transfer(m, 1, 0, m->begin_rate) && transfer(m, 2, 0, second) &&
+         transfer(m, 3, 0, third);
 }
 
 /* Since some full million of seconds: the whole time since 1970 would leave a double a quarter of a microsecond. */

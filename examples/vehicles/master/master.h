@@ -35,10 +35,10 @@ MASTER_API Master* master_new(Exchange exchange, int reject);
 MASTER_API void master_free(Master* m);
 /* These return 0 where there is no room for more. */
 MASTER_API int master_component(Master* m, fmi2Component instance, const Functions* functions);
-/* Outputs of a component that are read together, and then the inputs that they go to, by their index among the outputs.
- * Transfers stand in an order in which each output is read after the inputs that it depends on. */
-MASTER_API int master_transfer(Master* m, int component, int count, const fmi2ValueReference outputs[]);
-MASTER_API int master_sink(Master* m, int component, int count, const fmi2ValueReference inputs[], const int at[]);
+/* Variables of a component that are read (outputs) or set (inputs) together; `signals`: the numbers that they exchange,
+ * counted from 0. Transfers stand in the order of exchange: each output is read after the inputs that it depends on. */
+MASTER_API int master_transfer(Master* m, int component, int reads, int count, const fmi2ValueReference variables[],
+                               const int signals[]);
 MASTER_API int master_record(Master* m, int component, fmi2ValueReference variable, Kind kind);
 /* Hands on all outputs, with_rates: and their first derivatives; 0 where a component refuses. */
 MASTER_API int master_exchange(Master* m, int with_rates);

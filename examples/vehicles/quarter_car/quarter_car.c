@@ -15,10 +15,7 @@
 enum { x_r = 0, x_v = 3, state_count = 6 };
 const int model_state_count = state_count;
 
-const char* model_derive(const double* u, double* d) {
-  (void)u, (void)d;
-  return 0;
-}
+const char* model_derive(const double* u, double* d) { return 0; }
 
 void model_start(const Now* now, double* x) {
   memset(x, 0, state_count * sizeof *x);

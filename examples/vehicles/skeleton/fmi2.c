@@ -33,7 +33,6 @@ const char* fmi2GetVersion(void) { return fmi2Version; }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions* callbacks, fmi2Boolean visible, fmi2Boolean logging) {
-  (void)resources, (void)visible, (void)logging;
   if (type != fmi2CoSimulation || !name || !guid || strcmp(guid, MODEL_GUID) != 0) return NULL;
   Instance* i = calloc(1, sizeof *i);
   if (!i) return NULL;
@@ -48,7 +47,6 @@ void fmi2FreeInstance(fmi2Component c) { free(c); }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean stop_defined, fmi2Real stop) {
-  (void)tolerance_defined, (void)tolerance, (void)stop_defined, (void)stop;
   Now* now = &((Instance*)c)->of.simulation.now;
   now->t = now->begin = start;
   return fmi2OK;
@@ -127,7 +125,6 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_return) {
-  (void)no_return;
   Instance* i = c;
   if (i->of.phase != stepping) return refuse(i, "fmi2DoStep: the run has not begun, or it has ended.");
   if (!(h > 0) || !isfinite(t)) return refuse(i, "fmi2DoStep: the step must be above 0 s.");
@@ -150,15 +147,11 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  (void)c;
-  if (!state) return fmi2OK;
-  free(*state);
-  *state = NULL;
+  if (state) free(*state), *state = NULL;
   return fmi2OK;
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  (void)c, (void)state;
   *size = sizeof(Snapshot);
   return fmi2OK;
 }
@@ -180,7 +173,6 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
  * must exist all the same. */
 #define UNUSED_TYPE(name, type)                                                             \
   fmi2Status name(fmi2Component c, const fmi2ValueReference v[], size_t n, type values[]) { \
-    (void)v, (void)values;                                                                  \
     return n ? refuse(c, #name ": there are no variables of this type.") : fmi2OK;          \
   }
 UNUSED_TYPE(fmi2GetInteger, fmi2Integer)
@@ -190,11 +182,8 @@ UNUSED_TYPE(fmi2SetInteger, const fmi2Integer)
 UNUSED_TYPE(fmi2SetBoolean, const fmi2Boolean)
 UNUSED_TYPE(fmi2SetString, const fmi2String)
 
-#define STATUS_OF(name, type)                                                \
-  fmi2Status name(fmi2Component c, const fmi2StatusKind kind, type* value) { \
-    (void)c, (void)kind, (void)value;                                        \
-    return fmi2Discard;                                                      \
-  }
+#define STATUS_OF(name, type) \
+  fmi2Status name(fmi2Component c, const fmi2StatusKind kind, type* value) { return fmi2Discard; }
 STATUS_OF(fmi2GetStatus, fmi2Status)
 STATUS_OF(fmi2GetRealStatus, fmi2Real)
 STATUS_OF(fmi2GetIntegerStatus, fmi2Integer)
@@ -202,7 +191,6 @@ STATUS_OF(fmi2GetBooleanStatus, fmi2Boolean)
 STATUS_OF(fmi2GetStringStatus, fmi2String)
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]) {
-  (void)c, (void)on, (void)n, (void)categories;
   return fmi2OK;
 }
 
@@ -211,6 +199,5 @@ fmi2Status fmi2CancelStep(fmi2Component c) { return refuse(c, "fmi2CancelStep: n
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[], size_t n_unknowns,
                                         const fmi2ValueReference knowns[], size_t n_knowns, const fmi2Real seeds[],
                                         fmi2Real values[]) {
-  (void)unknowns, (void)n_unknowns, (void)knowns, (void)n_knowns, (void)seeds, (void)values;
   return refuse(c, "fmi2GetDirectionalDerivative: not provided.");
 }

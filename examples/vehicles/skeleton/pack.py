@@ -6,8 +6,7 @@ import platform
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "cmake"))
-from pack_fmu import pack
+from pack_fmu import pack  # of the project's folder cmake/
 
 FOLDERS = {"Linux": "linux64", "Darwin": "darwin64", "Windows": "win64"}  # ../../../docs/decisions/platform_folders.md
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -12,13 +11,14 @@ import pytest
 from support.bounds import EPSILON, beyond, relative_error, within
 from vehicles import axle, axle_study, errors
 from vehicles.axle_study import CLOTHOID, ROLLING_OUT, SCENES, STRAIGHT, TRAILING
+from vehicles.options import Manoeuvre
 
 Fmus = dict[str, Path]
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_error_of_the_closed_form_falls_as_one_over_the_stiffness(fmus: Fmus, name: str) -> None:
-    scene = replace(SCENES[name], stop=2.0)
+    scene = SCENES[name].changed(stop=2.0)
     soft, stiff = axle_study.stiffness_errors(fmus, scene, (2.0, 4.0), 0.0005)
     within(stiff, 0.008, "error of links four times as stiff / range")
     within(abs(np.log2(soft / stiff) - 1), 0.25, "order in 1/k off 1")
@@ -27,54 +27,58 @@ def test_the_error_of_the_closed_form_falls_as_one_over_the_stiffness(fmus: Fmus
 @pytest.mark.parametrize("changed", [{"J_z": 1.7}, {"J_x": 0.5}, {"J_3": 15.0}, {"m_B": 117.0}, {"a": 0.19}])
 def test_a_wrong_constant_of_the_closed_form_shows(fmus: Fmus, changed: dict[str, float]) -> None:
     """Partner: each mass and inertia enters m_t, I_t or S as derived; the bound of the test above tells them apart."""
-    scene = replace(TRAILING, stop=2.0)
+    scene = TRAILING.changed(stop=2.0)
     times = np.arange(101) * 0.02
-    off = axle_study.distance(axle.rigid(replace(scene, **changed), times), axle.rigid(scene, times))
+    off = axle_study.distance(axle.rigid(scene.changed(**changed), times), axle.rigid(scene, times))
     beyond(off, 0.0062, "error of a wrong constant / range")  # more than that of links four times as stiff
 
 
 def test_equal_torques_drive_straight(fmus: Fmus) -> None:
-    table = axle.coupled(fmus, replace(STRAIGHT, stop=2.0), 0.0005)
+    table = axle.coupled(fmus, STRAIGHT.changed(stop=2.0), 0.0005)
     within(np.abs(table["Y"]).max(), 64 * EPSILON, "off the line, m")
     slope = np.polyfit(table["time"][50:], table["v"][50:], 1)[0]
-    exact = 2 * 30.0 / (STRAIGHT.R * STRAIGHT.m_t)
+    c = axle.constants(STRAIGHT)
+    exact = 2 * 30.0 / (c.R * c.m_t)
     within(relative_error(slope, exact), 1e-3, "acceleration, relative")
-    beyond(relative_error(slope, 60.0 / (STRAIGHT.R * (STRAIGHT.m_B + 40.0))), 0.1, "without J_z, relative")
+    beyond(relative_error(slope, 60.0 / (c.R * (c.m_B + 40.0))), 0.1, "without J_z, relative")
 
 
 def test_on_a_slope_the_axle_rolls_as_the_closed_form_says(fmus: Fmus) -> None:
-    scene = replace(STRAIGHT, stop=2.0, slope=0.1)
+    scene = STRAIGHT.changed(stop=2.0, slope=0.1)
     table = axle.coupled(fmus, scene, 0.0005)
     slope = np.polyfit(table["time"][50:], table["v"][50:], 1)[0]
-    exact = (2 * 30.0 / scene.R - (scene.m_B + 40.0) * scene.g * np.sin(0.1)) / scene.m_t
+    c = axle.constants(scene)
+    exact = (2 * 30.0 / c.R - (c.m_B + 40.0) * c.g * np.sin(0.1)) / c.m_t
     within(relative_error(slope, exact), 1e-3, "acceleration, relative")
-    drift = axle_study.energy(fmus, replace(scene, M_left=0.0, M_right=0.0), 0.0005, "derivatives").drift
+    drift = axle_study.energy(fmus, scene.changed(M_left=0.0, M_right=0.0), 0.0005, "derivatives").drift
     within(abs(drift), 0.1, "drift of the energy, J")  # the height along the slope is worth 150 J
-    level = replace(scene, slope=0.0, M_left=0.0, M_right=0.0, v=1.0)
+    level = scene.changed(slope=0.0, M_left=0.0, M_right=0.0, v=1.0)
     within(np.abs(axle.coupled(fmus, level, 0.0005)["v"] - 1.0).max(), 1e-9, "change of speed on the level, m/s")
 
 
 def test_unequal_torques_draw_a_clothoid(fmus: Fmus) -> None:
-    table = axle.coupled(fmus, replace(CLOTHOID, stop=2.0), 0.0005)
+    table = axle.coupled(fmus, CLOTHOID.changed(stop=2.0), 0.0005)
     yaw_acceleration = np.polyfit(table["time"], table["omega"], 1)[0]
-    exact = 6.0 * CLOTHOID.b / (CLOTHOID.R * CLOTHOID.I_t)
+    c = axle.constants(CLOTHOID)
+    exact = 6.0 * c.b / (c.R * c.I_t)
     within(relative_error(yaw_acceleration, exact), 6e-3, "yaw acceleration, relative")
 
 
 @pytest.mark.parametrize("v", [-1.0, 0.0, 0.5])
 def test_whatever_the_start_it_ends_with_the_mass_in_front(fmus: Fmus, v: float) -> None:
-    scene = replace(TRAILING, v=v, omega=2.0, a=0.3, stop=8.0)
+    scene = TRAILING.changed(v=v, omega=2.0, a=0.3, stop=8.0)
     table = axle.coupled(fmus, scene, 0.002)
-    V = np.sqrt(scene.v**2 + scene.I_t / scene.m_t * scene.omega**2)
+    c = axle.constants(scene)
+    V = np.sqrt(c.v**2 + c.I_t / c.m_t * c.omega**2)
     within(relative_error(table["v"][-1], V), 0.01, "speed at the end, relative")
-    within(abs(table["omega"][-1] / scene.omega), 0.02, "yaw rate at the end / at the start")
-    behind = axle.coupled(fmus, replace(scene, a=-0.3, v=abs(v) + 0.1, stop=8.0), 0.002)
+    within(abs(table["omega"][-1] / c.omega), 0.02, "yaw rate at the end / at the start")
+    behind = axle.coupled(fmus, scene.changed(a=-0.3, v=abs(v) + 0.1, stop=8.0), 0.002)
     assert behind["v"][-1] < 0  # partner: with the mass behind it turns round
 
 
 def test_each_wheel_of_a_turning_axle_stops_at_its_own_instant(fmus: Fmus) -> None:
     inner, outer = axle.stops(ROLLING_OUT)
-    table = axle.coupled(fmus, replace(ROLLING_OUT, stiffness=4.0), 0.0005, grid=0.005)
+    table = axle.coupled(fmus, ROLLING_OUT.changed(stiffness=4.0), 0.0005, grid=0.005)
     still = {w: float(table["time"][np.argmax(table[f"{w}.omega_z"] == 0)]) for w in axle.WHEELS}
     within(abs(still["left"] - inner), 0.02, "the inner wheel stops, s")  # on a grid of 5 ms
     within(abs(still["right"] - outer), 0.02, "the outer wheel stops, s")
@@ -83,12 +87,12 @@ def test_each_wheel_of_a_turning_axle_stops_at_its_own_instant(fmus: Fmus) -> No
 
 
 @pytest.fixture(scope="module")
-def short() -> axle.Scene:
-    return replace(TRAILING, stop=1.0)
+def short() -> Manoeuvre:
+    return TRAILING.changed(stop=1.0)
 
 
 @pytest.fixture(scope="module")
-def error(fmus: Fmus, short: axle.Scene) -> Callable[[str, float], float]:
+def error(fmus: Fmus, short: Manoeuvre) -> Callable[[str, float], float]:
     """error(exchange, h) of the short scene, as axle_study.step_errors has it; each run is made once."""
     truth = axle.coupled(fmus, short, 0.00025, "rollback", 0.02)
     return cache(lambda exchange, h: axle_study.distance(axle.coupled(fmus, short, h, exchange, 0.02), truth))
@@ -100,10 +104,10 @@ def test_held_values_have_order_one(error: Callable[[str, float], float]) -> Non
 
 
 def test_positions_that_do_not_follow_their_rates_drag(
-    fmus: Fmus, short: axle.Scene, error: Callable[[str, float], float]
+    fmus: Fmus, short: Manoeuvre, error: Callable[[str, float], float]
 ) -> None:
     """Partner: held positions lag by h / 2, a drag k v h / 2 at each hub; the axle is soon at rest."""
-    held = axle_study.step_errors(fmus, replace(short, more={"follow": 0}), "held", (0.001,), 0.02)[0]
+    held = axle_study.step_errors(fmus, short.changed(follow=0), "held", (0.001,), 0.02)[0]
     beyond(held / error("held", 0.001), 20, "error of positions that lag over that of those that follow")
 
 
@@ -116,9 +120,9 @@ def test_rollback_beats_first_derivatives_a_hundredfold(error: Callable[[str, fl
     within(error("rollback", 0.001) / error("derivatives", 0.001), 0.01, "error of rollback over that of derivatives")
 
 
-def test_the_energy_that_the_bonds_add_is_what_the_whole_gains(fmus: Fmus, short: axle.Scene) -> None:
+def test_the_energy_that_the_bonds_add_is_what_the_whole_gains(fmus: Fmus, short: Manoeuvre) -> None:
     """Held positions that do not follow take energy; bonds and the sum of all energies agree on how much."""
-    scene = replace(short, more={"follow": 0})
+    scene = short.changed(follow=0)
     found = axle_study.energy(fmus, scene, 0.0005, "held")
     counted = sum(bonds.sum() for bonds in found.bonds.values())
     beyond(-found.drift, 10, "energy taken, J")  # of some 90 J

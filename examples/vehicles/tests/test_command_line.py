@@ -1,20 +1,23 @@
-"""./scripts/example: parameters with units, sentences for what does not exist or is not allowed, before anything is
-built; output only under results/examples."""
+"""./scripts/example: parameters with units, messages before anything is built, verdicts, exit status, and all that a
+document prints."""
 
 from __future__ import annotations
 
 import csv
+import re
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from math import pi
 from pathlib import Path
 
+import numpy as np
 import pytest
-from support.bounds import relative_error, within
+from support.bounds import beyond, relative_error, within
 from support.paths import ROOT
-from vehicles import axle, driven, example, options
+from vehicles import axle, example, options
 from vehicles.component import Component
 from vehicles.master import Master
 
@@ -52,12 +55,20 @@ def test_what_does_not_exist_or_is_not_allowed_gets_one_sentence_before_anything
     assert done.stderr.startswith(said) and done.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("name", options.LIST)
+@pytest.mark.parametrize("name", [*options.FOLDERS, "control"])
 def test_help_lists_every_parameter_and_all_of_them_are_taken(name: str) -> None:
     listed = subprocess.run([*READS, name, "--help"], capture_output=True, text=True, check=True).stdout
-    for variable in options.known(options.LIST[name]).values():
-        assert f"\n  {variable.name} " in listed
-        assert options.values(options.LIST[name], [f"{variable.name}=1"]) == {variable.name: 1.0}
+    for parameter in options.takes(name)[1]:
+        assert f"\n  {parameter} " in listed
+        assert options.values(name, [f"{parameter}=1"]) == {parameter: 1.0}
+
+
+@pytest.mark.parametrize(
+    ("line", "start"), [("car", "0 15"), ("car manoeuvre=hill", "1500 0"), ("car M_0=7 v_1=3", "7 3")]
+)
+def test_help_has_the_values_of_the_manoeuvre_that_is_named(line: str, start: str) -> None:
+    listed = subprocess.run([*READS, *line.split(), "--help"], capture_output=True, text=True, check=True).stdout
+    assert [re.search(rf"\n  {name} +\S+ +(\S+)", listed)[1] for name in ("M_0", "v_1")] == start.split()
 
 
 @pytest.mark.parametrize(
@@ -79,26 +90,121 @@ def test_what_only_the_unit_can_refuse_is_said_in_its_own_words(
     assert str(refusal.value).startswith(said)
 
 
-def test_an_example_writes_table_figure_fmus_and_package(fmus: dict[str, Path], tmp_path: Path) -> None:
-    before = subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, text=True).stdout
-    given = {"scene": "straight", "M_left": 40.0, "M_right": 40.0, "stop": 0.5, "h": 0.001}
-    said = example.run_axle(fmus, given, tmp_path)
-    assert {p.name for p in tmp_path.iterdir()} == {"axle.csv", "axle.png", "axle.ssp"}
-    with (tmp_path / "axle.csv").open() as file:
+@pytest.fixture
+def run(
+    fmus: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> Callable[[str], tuple[int, str]]:
+    """run(line): exit status and output of the example, which writes into tmp_path/NAME."""
+    monkeypatch.setattr(example.build, "ROOT", tmp_path)
+    monkeypatch.setattr(example, "RESULTS", tmp_path)
+    monkeypatch.setattr(example.build, "build_all", lambda _folder: fmus)
+
+    def call(line: str) -> tuple[int, str]:
+        monkeypatch.setattr(sys, "argv", ["example", *line.split()])
+        return example.main(), capsys.readouterr().out
+
+    return call
+
+
+def test_an_example_writes_table_figure_fmus_and_package_and_nothing_else(run: Callable, tmp_path: Path) -> None:
+    def changes() -> str:
+        return subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, text=True).stdout
+
+    before, (status, said) = changes(), run("axle scene=straight M_left=40 M_right=40 stop=0.5")
+    assert (status, changes()) == (0, before)
+    folder = tmp_path / "axle"
+    assert {p.name for p in folder.iterdir()} == {"axle.csv", "axle.png", "axle.ssp", "axle.fmu", "wheel.fmu"}
+    with (folder / "axle.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert float(rows[-1]["time"]) == pytest.approx(0.5)
-    within(relative_error(float(rows[-1]["v"]), 80 / (0.35 * axle.Scene().m_t) * 0.5), 0.01, "speed, relative")
-    assert said[0].startswith("Largest departure from the rigid axle")
-    after = subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, text=True).stdout
-    assert after == before
+    exact = 80 / (0.35 * axle.constants(options.manoeuvres("axle")["straight"]).m_t) * 0.5
+    within(relative_error(float(rows[-1]["v"]), exact), 0.01, "speed, relative")
+    assert "Largest departure from the rigid axle" in said
 
 
-@pytest.mark.parametrize("changed", [{"scene": "trailing", "M_left": 5.0}, {"scene": "rolling_out", "v": 0.1}])
-def test_an_axle_without_a_closed_form_is_not_compared_with_one(
-    fmus: dict[str, Path], tmp_path: Path, changed: dict[str, float | str]
+PAGES = [*(ROOT / "examples" / "vehicles").rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
+TEXT = "\n".join(page.read_text() for page in PAGES)
+PRINTED = sorted(
+    {line.strip() for line in re.findall(r"\./scripts/example ([a-z]+\b(?!\|)[^`#\n]*)", TEXT)} - {"control"}
+)
+HELP = [line for line in PRINTED if "--help" in line]
+PACKAGES = sorted(set(re.findall(r"examples/vehicles/tools/by_fmpy.py results/examples/(\S+) ([^`\n]+)", TEXT)))
+
+
+@pytest.mark.parametrize("line", sorted(set(PRINTED) - set(HELP)))
+def test_every_command_that_a_document_prints_runs_and_is_the_manoeuvre_it_names(run: Callable, line: str) -> None:
+    assert run(line)[0] == 0
+
+
+@pytest.mark.parametrize("line", HELP)
+def test_every_help_that_a_document_prints_has_a_list(line: str) -> None:
+    assert "B_hold" in subprocess.run([*READS, *line.split()], capture_output=True, text=True, check=True).stdout
+
+
+@pytest.mark.parametrize(("package", "rest"), PACKAGES)
+def test_every_package_that_a_document_runs_in_fmpy_prints_its_values(
+    run: Callable, tmp_path: Path, package: str, rest: str
 ) -> None:
-    (said,) = example.run_axle(fmus, {**changed, "stop": 0.2}, tmp_path)
-    assert said.startswith("No closed form to compare with: with ")
+    run(f"{package.split('/')[0]} stop=0.1")
+    tool, (step, stop, *names) = ROOT / "examples" / "vehicles" / "tools" / "by_fmpy.py", rest.split()
+    command = [sys.executable, tool, tmp_path / package, step, stop, *names]
+    lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert {line.split()[0]: np.isfinite(float(line.split()[1])) for line in lines} == dict.fromkeys(names, True)
+
+
+def test_the_documents_print_commands_for_every_vehicle() -> None:
+    assert {line.split()[0] for line in PRINTED} == set(options.FOLDERS)
+    assert "car manoeuvre=hill slope=20%" in PRINTED and HELP and PACKAGES
+
+
+STEP = "The likely cause is the communication step"
+CLOSED = "No closed form to compare with: with "
+
+
+@pytest.mark.parametrize(
+    ("line", "passed", "said", "unsaid"),
+    [
+        ("car stop=1", False, "Failed: the run ends after", STEP),
+        ("car manoeuvre=step v=22", False, "lifted off", STEP),
+        ("car manoeuvre=too_fast", True, "As intended: The front left wheel ended the run", STEP),
+        ("car h=10ms", False, STEP, "As intended"),
+        ("suspended h=20ms exchange=held", False, STEP, "As intended"),
+        ("axle h=20ms", False, STEP, "As intended"),
+        ("axle h=4ms stiffness=8", False, STEP, "As intended"),
+        ("axle scene=trailing M_left=5 stop=0.2", True, CLOSED, "Largest departure"),
+        ("axle scene=rolling_out v=0.1 stop=0.2", True, CLOSED, "Largest departure"),
+        ("balance", True, "Controlled it stays up", "Failed"),
+        ("balance k_theta=0", False, "is not the circle of 1.5 m", "Controlled it stays up"),
+    ],
+)
+def test_the_exit_status_follows_from_the_verdict_and_table_and_picture_are_kept(
+    run: Callable, tmp_path: Path, line: str, passed: bool, said: str, unsaid: str
+) -> None:
+    status, output = run(line)
+    assert (status == 0, said in output, unsaid in output) == (passed, True, False), output
+    name = line.split()[0]
+    assert {f"{name}.csv", f"{name}.png", "wheel.fmu"} <= {p.name for p in (tmp_path / name).iterdir()}
+
+
+def test_a_step_of_the_steering_has_its_characteristic_values_printed(run: Callable) -> None:
+    said = run("car manoeuvre=step")[1]
+    gain, exact = map(float, re.search(r"gain of the yaw rate: (\S+) 1/s \(closed form: (\S+)\)", said).groups())
+    within(relative_error(gain, exact), 0.01, "gain of the yaw rate, relative")
+    overshoot = float(re.search(r"overshoot of the lateral acceleration: (\S+)", said)[1])
+    beyond(overshoot, 0.01, "overshoot of the lateral acceleration")
+
+
+def test_an_example_is_copied_into_an_empty_folder_by_the_recipe_of_the_document(tmp_path: Path) -> None:
+    text = (ROOT / "examples" / "vehicles" / "README.md").read_text()
+    (recipe,) = re.findall(r"```\n(project=.*?)```", text, re.DOTALL)
+    recipe = recipe.replace("/path/to/this/checkout", str(ROOT))
+    subprocess.run(["bash", "-e", "-c", recipe], cwd=tmp_path, check=True, capture_output=True)
+    copied = Component("axle", tmp_path / "build" / "axle.fmu", {"m_B": 100.0})
+    try:
+        copied.load()
+    finally:
+        copied.free()
+    assert set(copied.variable) >= {"X", "F_X_left"}
 
 
 def test_ctrl_c_ends_a_run_with_one_word(fmus: dict[str, Path]) -> None:
@@ -116,9 +222,3 @@ def test_ctrl_c_ends_a_run_with_one_word(fmus: dict[str, Path]) -> None:
     _, said = run.communicate(timeout=60)
     assert (run.returncode, said.strip().splitlines()[-1]) == (130, "Interrupted.")
     assert "Traceback" not in said
-
-
-def test_a_verdict_on_the_balanced_wheel_looks_at_both_runs(fmus: dict[str, Path]) -> None:
-    held, tall = (driven.verdict(driven.run(fmus, given), 1.5)[1] for given in ({}, {"k_theta": 0.0}))
-    assert held.startswith("Controlled it stays up") and "drives a circle of 1.50" in held
-    assert "its last turn is not the circle of 1.5 m" in tall

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -49,10 +48,10 @@ def at_the_end(package: Path, names: tuple[str, ...], step: float, stop: float) 
 def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(
     fmus: dict[str, Path], tmp_path: Path
 ) -> None:
-    manoeuvre = replace(car.LANE, stop=1.5)
+    manoeuvre = car.LANE.changed(stop=1.5)
     truth = car.drive(fmus, manoeuvre, 0.001, "rollback", 0.05).table["X_R"][-1]
     errors = [
-        abs(at_the_end(ssp.build(car.system(fmus, manoeuvre, h), tmp_path), ("chassis.X_R",), h, 1.5)[0] - truth)
+        abs(at_the_end(ssp.build(car.package(fmus, manoeuvre, h), tmp_path), ("chassis.X_R",), h, 1.5)[0] - truth)
         for h in (0.001, 0.0005)
     ]
     within(abs(np.log2(errors[0] / errors[1]) - 1), 0.005, "order off 1")
@@ -60,8 +59,8 @@ def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(
 
 
 def test_the_package_of_the_axle_runs_in_fmpy(fmus: dict[str, Path], tmp_path: Path) -> None:
-    scene, names = replace(axle_study.TRAILING, stop=1.0), ("X", "Y", "psi")
+    scene, names = axle_study.TRAILING.changed(stop=1.0), ("X", "Y", "psi")
     table = axle.coupled(fmus, scene, 0.0005, "rollback", 0.05)
-    package = ssp.build(axle.system(fmus, scene, 0.0005), tmp_path)
+    package = ssp.build(axle.package(fmus, scene, 0.0005), tmp_path)
     ends = at_the_end(package, tuple(f"axle.{n}" for n in names), 0.0005, 1.0)
     within(np.abs(ends - [table[n][-1] for n in names]).max(), 0.01, "off the end, m, rad")

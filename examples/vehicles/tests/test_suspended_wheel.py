@@ -9,7 +9,8 @@ import pytest
 from support.bounds import beyond, relative_error, within
 from vehicles import errors, suspended
 from vehicles.component import Component
-from vehicles.master import Master
+from vehicles.hubs import upright
+from vehicles.master import Master, System, simulate
 
 STEPS = (0.0025, 0.00125, 0.000625)  # s
 
@@ -68,6 +69,22 @@ def test_the_step_may_not_exceed_twice_the_inertia_over_the_damping(fmus: dict[s
     """2 (J_x + m R^2) / (c_theta + c_h R^2) = 17 ms for the lean of this wheel on its suspension."""
     assert not suspended.ends(fmus, 0.015, exchange)
     assert suspended.ends(fmus, 0.02, exchange)  # partner
+
+
+@pytest.mark.parametrize(("h", "check"), [(0.031, within), (0.033, beyond)])
+def test_a_damper_bounds_the_step_by_the_reduced_mass_of_both_partners(fmus: dict[str, Path], h: float, check) -> None:
+    """2 m / c = 31.1 ms for 34.7 kg of wheel and 300 kg of body; the wheel's inertia alone would allow 34.7 ms."""
+    free = {"k_h": 0.0, "k_v": 0.0, "c_v": 0.0, "t_couple": 0.0, "M_drive": 0.0}
+    parts = [
+        Component("wheel", fmus["wheel"], upright(0.0, 0.0, 0.0, 1.0, 0.0, 0.35)),
+        Component("quarter_car", fmus["quarter_car"], free),
+    ]
+    names = ("X_O", "X_O_dot")
+    damper = [*((("wheel", n), ("quarter_car", n)) for n in names), (("quarter_car", "F_X"), ("wheel", "F_X"))]
+    record = [("wheel", "X_O_dot"), ("quarter_car", "X_B_dot")]
+    system = System("damper", parts, damper, h, 300 * h, ("wheel", "quarter_car"))
+    table = simulate(system, record, "held", h).table
+    check(np.abs(table["X_O_dot"] - table["X_B_dot"])[-10:].max(), 1, "relative speed, 1 m/s at the start")
 
 
 def test_a_smaller_grid_of_records_changes_no_bit(fmus: dict[str, Path]) -> None:

@@ -9,21 +9,22 @@ middle and the yaw rate:
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from . import options
 from .component import Component
-from .hubs import upright, wire
-from .master import Master, Signal
-from .options import starts
-from .ssp import System
+from .errors import apart
+from .hubs import road, upright, wire
+from .master import Run, Signal, System, simulate, whole
+from .options import Manoeuvre
 
-WHEELS = ("left", "right")
+WHEELS = {"left": "left", "right": "right"}
 CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel)]
 RECORD: list[Signal] = [
     *(("axle", name) for name in ("X", "Y", "psi", "v", "omega", "E", "W_loss")),
@@ -31,157 +32,126 @@ RECORD: list[Signal] = [
     *((wheel, name) for wheel in WHEELS for name in ("X_O", "Y_O", "psi", "theta", "phi")),  # scripts/view needs these
 ]
 COMPARED = ("X", "Y", "psi", "v", "omega")
+OF_WHEEL = {"m": 20.0, "J_x": 0.9, "J_z": 1.8}  # the wheels' defaults
+LINKS = ("k", "c", "k_a", "c_a", "k_p", "c_p")
 
 
-@dataclass(frozen=True)
-class Scene:
-    """Parameters of the axle and its start; the defaults of the FMUs. SI units."""
-
-    m_B: float = 120.0
-    J_3: float = 16.0
-    a: float = 0.0  # centre of mass ahead of the axle's line
-    b: float = 0.75
-    M_left: float = 0.0
-    M_right: float = 0.0
-    v: float = 0.0
-    omega: float = 0.0
-    s: float = 0.0
-    stiffness: float = 1.0  # factor on all stiffnesses and dampings
-    stop: float = 4.0
-    more: dict[str, float] = field(default_factory=dict)  # further parameters of axle.fmu
-    m: float = 20.0  # of a wheel
-    J_x: float = 0.9
-    J_z: float = 1.8
-    R: float = 0.35
-    g: float = 9.81
-    slope: float = 0.0  # rad; the road rises along the start's heading X
-
-    @property
-    def m_t(self) -> float:
-        """Effective mass along the heading, kg."""
-        return self.m_B + 2 * self.m + 2 * self.J_z / self.R**2
-
-    @property
-    def I_t(self) -> float:
-        """Effective moment of inertia about the axle's middle, kg m2."""
-        wheels = 2 * (self.J_x + self.m * self.b**2 + self.J_z * (self.b / self.R) ** 2)
-        return self.J_3 + self.m_B * self.a**2 + wheels
-
-    @property
-    def S(self) -> float:
-        """First moment of mass ahead of the axle, kg m."""
-        return self.m_B * self.a
-
-    def axle_start(self) -> dict[str, float]:
-        """Parameters of axle.fmu."""
-        links = starts("axle")
-        return {
-            **{name: links[name] * self.stiffness for name in ("k", "c", "k_a", "c_a", "k_p", "c_p")},
-            "inner_step": min(5e-4, 5e-4 / self.stiffness),
-            **{"m_B": self.m_B, "J_3": self.J_3, "a": self.a, "b": self.b, "M_left": self.M_left},
-            **{"M_right": self.M_right, "v_start": self.v, "omega_start": self.omega, "slope": self.slope},
-            **self.more,
-        }
-
-    def wheel_start(self, wheel: str) -> dict[str, float]:
-        """Parameters of a wheel.fmu."""
-        y = self.b if wheel == "left" else -self.b
-        return {"s": self.s, "slope": self.slope, **upright(0.0, y, 0.0, self.v - y * self.omega, self.omega, self.R)}
+def system(fmus: dict[str, Path], scene: Manoeuvre, step: float = 0.001, t_couple: float | None = None) -> System:
+    """The axle. A master that begins with zero inputs, as that of a package, finds the hubs free until t_couple."""
+    factor, wheels = scene["stiffness"], []
+    for wheel, y in zip(WHEELS, (scene["b"], -scene["b"]), strict=True):
+        start = upright(0.0, y, 0.0, scene["v"] - y * scene["omega"], scene["omega"], scene["R"])
+        wheels.append(Component(wheel, fmus["wheel"], {**road(scene), **start}))
+    links = {name: scene[name] * factor for name in LINKS} | {"inner_step": min(5e-4, 5e-4 / factor)}
+    start = {"v_start": scene["v"], "omega_start": scene["omega"], **({"t_couple": t_couple} if t_couple else {})}
+    parts = [*wheels, Component("axle", fmus["axle"], {**start, **scene.of("axle"), **links})]
+    return System("axle", parts, CONNECTIONS, step, scene.stop, ("axle",))
 
 
-def components(fmus: dict[str, Path], scene: Scene) -> list[Component]:
-    """The FMUs of the axle."""
-    wheels = [Component(wheel, fmus["wheel"], scene.wheel_start(wheel)) for wheel in WHEELS]
-    return [*wheels, Component("axle", fmus["axle"], scene.axle_start())]
+def package(fmus: dict[str, Path], scene: Manoeuvre, step: float = 0.0005) -> System:
+    """What axle.ssp holds."""
+    return system(fmus, scene, step, 3 * step)
+
+
+def run(fmus: dict[str, Path], scene: Manoeuvre, step: float, exchange: str, grid: float = 0.02, **how: bool) -> Run:
+    """The co-simulation, with the rigid axle's motion beside it where that is known."""
+    return simulate(system(fmus, scene, step), RECORD, exchange, grid, **how)
 
 
 def coupled(
-    fmus: dict[str, Path], scene: Scene, step: float = 0.001, exchange: str = "derivatives", grid: float = 0.01, **how
+    fmus: dict[str, Path], scene: Manoeuvre, step: float = 0.001, exchange: str = "derivatives", grid: float = 0.01
 ) -> dict[str, np.ndarray]:
     """The co-simulation on the grid; columns by "component.variable", those of the axle by variable."""
-    with Master(components(fmus, scene), CONNECTIONS) as master:
-        table = master.run(scene.stop, step, RECORD, exchange, round(grid / step), **how)
-    return {name.removeprefix("axle."): table[name] for name in table.dtype.names}
+    return whole(run(fmus, scene, step, exchange, grid))
 
 
-def without_closed_form(scene: Scene) -> str:
+def constants(scene: Manoeuvre) -> SimpleNamespace:
+    """Parameters of the axle and its wheels by name, with m_t, I_t and S."""
+    c = SimpleNamespace(**OF_WHEEL | {name: scene[name] for name in options.every("axle")} | scene.given)
+    c.mass = c.m_B + 2 * c.m
+    c.m_t = c.mass + 2 * c.J_z / c.R**2
+    c.I_t = c.J_3 + c.m_B * c.a**2 + 2 * (c.J_x + c.m * c.b**2 + c.J_z * (c.b / c.R) ** 2)
+    c.S = c.m_B * c.a
+    return c
+
+
+def without_closed_form(scene: Manoeuvre) -> str:
     """Why the rigid axle of a scene has no closed form here; empty where it has one."""
-    if scene.slope and (scene.s or scene.S or scene.M_left != scene.M_right or scene.omega):
+    c = constants(scene)
+    driven, turning = c.M_left or c.M_right, c.b * abs(c.omega)
+    if c.slope and (c.s or c.S or c.M_left != c.M_right or c.omega):
         return "on a slope it is that of a balanced axle that rolls straight without friction"
-    driven, turning = scene.M_left or scene.M_right, scene.b * abs(scene.omega)
-    if scene.s and (scene.S or driven or not scene.v > turning > 0):
+    if c.s and (c.S or driven or not c.v > turning > 0):
         return "with rolling friction it is that of a balanced axle without torque, on a bend wider than half its track"
-    if scene.S and (driven or not scene.v**2 + scene.omega**2 > 0):
+    if c.S and (driven or not c.v**2 + c.omega**2 > 0):
         return "with mass ahead of the axle it is that of an axle in motion, without torque"
     return ""
 
 
-def velocities(scene: Scene, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def velocities(scene: Manoeuvre, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """v and omega of the rigid axle at `times`, for the scenes that have a closed form."""
-    if scene.s:
+    c = constants(scene)
+    if c.s:
         return rolling_out(scene, times)
-    if scene.S:
+    if c.S:
         return trailing(scene, times)
-    pull = (scene.M_left + scene.M_right) / scene.R - (scene.m_B + 2 * scene.m) * scene.g * np.sin(scene.slope)
-    v = scene.v + pull / scene.m_t * times
-    return v, scene.omega + scene.b * (scene.M_right - scene.M_left) / (scene.R * scene.I_t) * times
+    pull = (c.M_left + c.M_right) / c.R - c.mass * c.g * np.sin(c.slope)
+    return c.v + pull / c.m_t * times, c.omega + c.b * (c.M_right - c.M_left) / (c.R * c.I_t) * times
 
 
-def trailing(scene: Scene, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def trailing(scene: Manoeuvre, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """No torque, mass ahead of the axle: m_t v^2 + I_t w^2 = m_t V^2 stays, and v' = kappa (V^2 - v^2) / V.
 
     So v = V tanh(kappa t + c), w = V sqrt(m_t / I_t) sech(kappa t + c), kappa = S V / I_t: whatever the start, it ends
     running straight with the mass in front.
     """
-    V = np.sqrt(scene.v**2 + scene.I_t / scene.m_t * scene.omega**2)
-    phase = scene.S * V / scene.I_t * times + np.arctanh(scene.v / V)
-    return V * np.tanh(phase), np.sign(scene.omega) * V * np.sqrt(scene.m_t / scene.I_t) / np.cosh(phase)
+    c = constants(scene)
+    V = np.sqrt(c.v**2 + c.I_t / c.m_t * c.omega**2)
+    phase = c.S * V / c.I_t * times + np.arctanh(c.v / V)
+    return V * np.tanh(phase), np.sign(c.omega) * V * np.sqrt(c.m_t / c.I_t) / np.cosh(phase)
 
 
-def stops(scene: Scene) -> tuple[float, float]:
+def stops(scene: Manoeuvre) -> tuple[float, float]:
     """Instants at which the inner and the outer wheel stop, s: rolling friction, S = 0, no torque, v > b |omega| > 0.
 
     Both roll: v' = -A with A = s m g / (R m_t). The load moves outwards by dN = m_t R v w / (2 b) per wheel, so
     w' = -(s m_t / I_t) v w and w = omega exp(-(s m_t / I_t) x), x = v t - A t^2 / 2. The inner wheel stops where
     v = b w. Then the axle turns about it: w' = -D (1 + B w^2), B = m_t R / (m g), D = s b m g / (R (m_t b^2 + I_t)).
     """
-    A, D, B, w_1, t_1 = _rolling_out(scene)
+    _, D, B, w_1, t_1, _ = _rolling_out(scene)
     return t_1, t_1 + np.arctan(np.sqrt(B) * w_1) / (D * np.sqrt(B))
 
 
-def _rolling_out(scene: Scene) -> tuple[float, float, float, float, float]:
-    mass = scene.m_B + 2 * scene.m
-    weight = mass * scene.g
-    A = scene.s * weight / (scene.R * scene.m_t)
-    D = scene.s * scene.b * weight / (scene.R * (scene.m_t * scene.b**2 + scene.I_t))
-    B = scene.m_t * scene.R / weight
+def _rolling_out(scene: Manoeuvre) -> tuple:
+    c = constants(scene)
+    A = c.s * c.mass * c.g / (c.R * c.m_t)
+    D = c.s * c.b * c.mass * c.g / (c.R * (c.m_t * c.b**2 + c.I_t))
 
-    def omega(t: float) -> float:
-        return abs(scene.omega) * np.exp(-scene.s * scene.m_t / scene.I_t * (scene.v * t - A * t**2 / 2))
+    def omega(t: np.ndarray) -> np.ndarray:
+        return abs(c.omega) * np.exp(-c.s * c.m_t / c.I_t * (c.v * t - A * t**2 / 2))
 
-    t_1 = brentq(lambda t: scene.v - A * t - scene.b * omega(t), 0.0, scene.v / A, xtol=1e-14)
-    return A, D, B, omega(t_1), t_1
+    t_1 = brentq(lambda t: c.v - A * t - c.b * omega(t), 0.0, c.v / A, xtol=1e-14)
+    return A, D, c.m_t * c.R / (c.mass * c.g), omega(t_1), t_1, omega
 
 
-def rolling_out(scene: Scene, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def rolling_out(scene: Manoeuvre, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """v and omega of a turning axle that rolling friction brings to rest, wheel by wheel; see `stops`."""
-    A, D, B, w_1, t_1 = _rolling_out(scene)
-    t = np.minimum(times, t_1)
-    both = abs(scene.omega) * np.exp(-scene.s * scene.m_t / scene.I_t * (scene.v * t - A * t**2 / 2))
+    A, D, B, w_1, t_1, omega = _rolling_out(scene)
     angle = np.arctan(np.sqrt(B) * w_1) - D * np.sqrt(B) * np.maximum(times - t_1, 0.0)
     about = np.tan(np.maximum(angle, 0.0)) / np.sqrt(B)
-    omega = np.where(times < t_1, both, about)
-    return np.where(times < t_1, scene.v - A * t, scene.b * about), np.sign(scene.omega) * omega
+    both = times < t_1
+    turning = np.where(both, omega(np.minimum(times, t_1)), about)
+    return np.where(both, scene["v"] - A * times, scene["b"] * about), np.sign(scene["omega"]) * turning
 
 
-def rigid(scene: Scene, times: np.ndarray) -> dict[str, np.ndarray]:
+def rigid(scene: Manoeuvre, times: np.ndarray) -> dict[str, np.ndarray]:
     """X, Y, psi, v, omega of the rigid axle at `times` (rising from 0); the path from v and omega by SciPy."""
 
     def rate(t: float, y: np.ndarray) -> tuple[float, float, float]:
         v, omega = velocities(scene, t)
         return v * np.cos(y[2]), v * np.sin(y[2]), omega
 
-    cuts = [t for t in stops(scene) if 0 < t < times[-1]] if scene.s and scene.omega else []  # where a wheel stops
+    cuts = [t for t in stops(scene) if 0 < t < times[-1]] if scene["s"] else []  # where a wheel stops
     y, path = np.zeros(3), []
     for begin, end in pairwise([0.0, *cuts, times[-1]]):
         at = times[(times >= begin) & ((times < end) | (end == times[-1]))]
@@ -192,7 +162,24 @@ def rigid(scene: Scene, times: np.ndarray) -> dict[str, np.ndarray]:
     return {"time": times, **dict(zip(("X", "Y", "psi"), np.hstack(path), strict=True)), "v": v, "omega": omega}
 
 
-def system(fmus: dict[str, Path], scene: Scene, step: float = 0.001) -> System:
-    """What axle.ssp holds. A master that begins with zero inputs finds the hubs free for its first steps."""
-    parts = components(fmus, replace(scene, more={"t_couple": 3 * step, **scene.more}))
-    return System("axle", parts, CONNECTIONS, step, scene.stop)
+def complete(table: dict[str, np.ndarray], scene: Manoeuvre) -> dict[str, np.ndarray]:
+    """With the columns of the rigid axle beside those of the co-simulation, where it has a closed form."""
+    if without_closed_form(scene) or len(table["time"]) < 2:
+        return table
+    exact = rigid(scene, table["time"])
+    return table | {f"rigid.{name}": exact[name] for name in COMPARED}
+
+
+def tracks(table: dict[str, np.ndarray]) -> dict[str, tuple[np.ndarray, ...]]:
+    """Paths besides those of the wheels."""
+    names = {"middle of the axle": "", "rigid axle, closed form": "rigid."}
+    return {label: (table[f"{n}X"], table[f"{n}Y"]) for label, n in names.items() if f"{n}X" in table}
+
+
+def verdict(table: dict[str, np.ndarray], scene: Manoeuvre) -> tuple[bool, list[str]]:
+    """Whether the run is what it was to be, and how near it is to the rigid axle."""
+    if why := without_closed_form(scene):
+        return True, [f"No closed form to compare with: {why}."]
+    off = max(apart(table, {name: table[f"rigid.{name}"] for name in COMPARED}, COMPARED).values())
+    near = f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."
+    return True, [near]

@@ -1,32 +1,37 @@
-"""What the axle teaches: error against the communication step and against the stiffness, limits, energy per bond."""
+"""Studies of the axle: error against the communication step and against the stiffness, limits, energy per bond.
+
+A bond is an effort (force, moment) that a body gives to a wheel, and the flow (velocity, angular velocity) that the
+wheel gives back. The body's side of it is the integral of its effort with the flow it received; the wheel's side that
+of the effort it received with its flow. The difference is the energy that the coupling added. Both are taken over each
+communication step with straight lines between the values at its ends.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from . import axle, bonds, errors, options
-from .axle import CONNECTIONS, WHEELS, Scene, components, coupled, rigid
-from .master import Master
+from . import axle, errors
+from .axle import WHEELS, coupled, rigid
+from .hubs import FORCE
+from .master import KINDS, Signal, simulate, whole
+from .options import Manoeuvre, manoeuvres
 
-STRAIGHT = Scene(M_left=30.0, M_right=30.0)
-CLOTHOID = Scene(M_left=24.0, M_right=30.0, v=1.0)
-TRAILING = Scene(a=0.2, v=-0.5, omega=2.0)
-ROLLING_OUT = Scene(s=0.03, v=2.0, omega=1.0)
-SCENES = dict(zip(options.SCENES, (STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT), strict=True))
+SCENES = manoeuvres("axle")
+STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT = SCENES.values()
 STIFFNESSES = (1.0, 2.0, 4.0, 8.0)
 LIMIT_STEPS = (0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
 GRID = 0.048  # s, which all of them divide
-
+BONDS = dict(zip(FORCE, ("X_O_dot", "Y_O_dot", "Z_O_dot"), strict=True)) | {"M_1": "theta_dot", "M_2": "psi_dot"}
 
 distance = partial(errors.distance, names=axle.COMPARED)
 
 
 def step_errors(
-    fmus: dict[str, Path], scene: Scene, exchange: str, steps: tuple[float, ...] = errors.STEPS, grid: float = 0.02
+    fmus: dict[str, Path], scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = errors.STEPS, grid: float = 0.02
 ) -> list[float]:
     """Error against h at this stiffness: the truth is the run with rollback at a quarter of the smallest step."""
     truth = coupled(fmus, scene, min(steps) / 4, "rollback", grid)
@@ -34,35 +39,57 @@ def step_errors(
 
 
 def stiffness_errors(
-    fmus: dict[str, Path], scene: Scene, factors: tuple[float, ...] = STIFFNESSES, step: float = 0.0005
+    fmus: dict[str, Path], scene: Manoeuvre, factors: tuple[float, ...] = STIFFNESSES, step: float = 0.0005
 ) -> list[float]:
     """Error against the closed form of the rigid axle, with a step small enough for it not to matter."""
-    found = []
-    for factor in factors:
-        table = coupled(fmus, replace(scene, stiffness=factor), step, "rollback", 0.02)
-        found.append(distance(table, rigid(scene, table["time"])))
-    return found
+    tables = [coupled(fmus, scene.changed(stiffness=factor), step, "rollback", 0.02) for factor in factors]
+    return [distance(table, rigid(scene, table["time"])) for table in tables]
 
 
 @dataclass(frozen=True)
 class Energy:
-    """Energy added over a run, J: by wheel and bond; and what the sum of all energies says."""
+    """Energy added over a run, J: by wheel and bond, and the gain of the sum of all energies."""
 
     bonds: dict[str, np.ndarray]
     drift: float
 
 
-def energy(fmus: dict[str, Path], scene: Scene, step: float, exchange: str) -> Energy:
+def signals(wheel: str, bond: str, kind: str) -> tuple[Signal, Signal]:
+    """Effort and flow: at the begin of each step, their rates there, or at its end."""
+    before = "" if kind == "value" else f"{kind} "
+    return ("axle", f"{before}{bond}_{wheel}"), (wheel, f"{before}{BONDS[bond]}")
+
+
+def energy(fmus: dict[str, Path], scene: Manoeuvre, step: float, exchange: str) -> Energy:
     """Of a scene without drive and rolling friction, in which all energy is in the wheels, the beam and its dampers."""
-    with Master(components(fmus, scene), CONNECTIONS) as master:
-        counted = master.run(scene.stop, step, bonds.record("axle", WHEELS), exchange)
+    record = [s for wheel in WHEELS for bond in BONDS for kind in KINDS for s in signals(wheel, bond, kind)]
+    counted = whole(simulate(axle.system(fmus, scene, step), record, exchange, step))
     table = coupled(fmus, scene, step, exchange, step)
     total = sum(table[f"{wheel}.E"] for wheel in WHEELS) + table["E"] + table["W_loss"]
-    return Energy(bonds.added(counted, "axle", WHEELS, step, exchange == "derivatives"), float(total[-1] - total[0]))
+    h = step * (exchange == "derivatives")  # inputs go on straight lines, else they are held
+
+    def added(wheel: str, bond: str) -> float:
+        rows = [[column(counted, s)[:-1] for s in signals(wheel, bond, kind)] for kind in KINDS]
+        (e, f), (e_dot, f_dot), (e_end, f_end) = rows
+        received, given = product(e, e + h * e_dot, f, f_end), product(e, e_end, f, f + h * f_dot)
+        return step * float((received - given).sum())
+
+    bonds = {wheel: np.array([added(wheel, bond) for bond in BONDS]) for wheel in WHEELS}
+    return Energy(bonds, float(total[-1] - total[0]))
 
 
-def longest_step(fmus: dict[str, Path], scene: Scene, exchange: str) -> float:
+def column(table: dict[str, np.ndarray], signal: Signal) -> np.ndarray:
+    """Of a record; those of the axle go by the variable alone."""
+    return table[signal[1] if signal[0] == "axle" else ".".join(signal)]
+
+
+def product(a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray) -> np.ndarray:
+    """Mean of the product of two straight lines."""
+    return (2 * a0 * b0 + a0 * b1 + a1 * b0 + 2 * a1 * b1) / 6
+
+
+def longest_step(fmus: dict[str, Path], scene: Manoeuvre, exchange: str) -> float:
     """Of LIMIT_STEPS, s."""
     truth = rigid(scene, np.arange(int(scene.stop / GRID) + 1) * GRID)
-    scene = replace(scene, stop=float(truth["time"][-1]))
+    scene = scene.changed(stop=float(truth["time"][-1]))
     return errors.longest(LIMIT_STEPS, lambda h: distance(coupled(fmus, scene, h, exchange, GRID), truth))

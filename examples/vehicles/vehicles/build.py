@@ -9,7 +9,8 @@ from pathlib import Path
 
 from pythonfmu.builder import FmuBuilder
 
-EXAMPLES = Path(__file__).resolve().parent.parent
+from .options import EXAMPLES
+
 ROOT = EXAMPLES.parents[1]
 IN_C = ("quarter_car", "axle", "chassis", "driver")
 

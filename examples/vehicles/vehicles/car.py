@@ -1,25 +1,23 @@
-"""The car: chassis, driver and a wheel per strut, wired from the layout car/car.toml; its manoeuvres.
+"""The car: chassis, driver and a wheel per strut, wired from the layout car/car.toml; the verdict on its manoeuvres.
 
-Steering angles to the left; lateral acceleration and load in the words of ISO 8855. Five manoeuvres and one that is too
-fast for the car; each is judged by closed forms (car_judges.py) and by the same car as one set of equations.
+Steering angles to the left; lateral acceleration and load in the words of ISO 8855. Each manoeuvre of
+car/manoeuvres.toml is judged by closed forms (car_judges.py) and by the same car as one set of equations.
 """
 
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass, field, replace
-from math import atan, cos, pi, sin, tan
+from functools import partial
+from math import cos, pi, sin, tan
 from pathlib import Path
 
 import numpy as np
 
-from . import options
-from .build import EXAMPLES
-from .component import Component, Ended
-from .driver_path import DRIVER_DEFAULTS
-from .hubs import FORCE, MOMENT, POSE, upright, wire
-from .master import Connection, Master, Signal
-from .ssp import System
+from . import component
+from .component import Component
+from .hubs import FORCE, MOMENT, POSE, road, upright, wire
+from .master import Connection, Run, Signal, System, simulate
+from .options import EXAMPLES, Manoeuvre, manoeuvres
 
 LAYOUT = tomllib.loads((EXAMPLES / "car" / "car.toml").read_text())
 WHEELS: dict[str, dict[str, float | str]] = LAYOUT["wheel"]
@@ -44,111 +42,59 @@ RECORD: list[Signal] = [
     *(("chassis", f"{name}_{w}") for w in WHEELS for name in ("d", "delta")),
     *((w, name) for w in WHEELS for name in OF_WHEEL),
 ]
+AT_REST = 0.5  # m: a car that moves less has not set off
 ROLL_BACK = 1e-3  # m
 OFF_PATH = 0.5  # m: farther from its path a car does not drive it
 DRY_ROAD = 1.0  # friction coefficient of tyres on dry asphalt, about
 COMPARED = ("X", "Y", "psi", "roll", "pitch", "v", "omega")
+MANOEUVRES = manoeuvres("car")
+STRAIGHT, CIRCLE, STEP, EIGHT, LANE, HILL, TOO_FAST = MANOEUVRES.values()
+# Of each part of the driver's programme: its size, when it begins, how long it takes.
+PROGRAMME = (("delta_0", "t_delta", "ramp_delta"), ("M_0", "t_on", "ramp_M"), ("M_0", "t_off", "ramp_M"),
+             ("B_0", "t_brake", "ramp_M"), ("B_hold", "t_release", "ramp_M"), ("v_1", "t_v", "ramp_v"))  # fmt: skip
+NEVER = 1e6  # s, the default instant of a part that does not come
+Table = dict[str, np.ndarray]
 
 
-@dataclass(frozen=True)
-class Manoeuvre:
-    """What the driver does, from which speed, for how long."""
-
-    name: str
-    title: str
-    stop: float  # s
-    v: float = 0.0  # m/s
-    s: float = 0.0  # m, rolling friction of the wheels
-    slope: float = 0.0  # rad, of the road
-    slope_direction: float = 0.0  # rad from X to the left: where the road rises to
-    driver: dict[str, float] = field(default_factory=dict)
-    chassis: dict[str, float] = field(default_factory=dict)
-
-    def driver_start(self) -> dict[str, float]:
-        """Parameters of driver.fmu."""
-        return {"v_0": self.v, "v_1": self.v, "L": WHEELBASE, **self.driver}
-
-    def chassis_start(self) -> dict[str, float]:
-        """Parameters of chassis.fmu."""
-        return {"v_start": self.v, "s": self.s, **self.road(), **self.chassis}
-
-    def road(self) -> dict[str, float]:
-        """Parameters of chassis.fmu and of the wheels alike."""
-        return {"slope": self.slope, "slope_direction": self.slope_direction}
+def axles() -> dict[str, list[str]]:
+    """Wheels that stand side by side, by the axle's name."""
+    places = sorted({float(w["x"]) for w in WHEELS.values()}, reverse=True)
+    names = {places[-1]: "rear", places[0]: "front"}
+    return {names.get(x, f"axle {k + 1}"): [n for n, w in WHEELS.items() if w["x"] == x] for k, x in enumerate(places)}
 
 
-HOLD_SPEED = {"k_v": 3000.0, "k_i": 1500.0}
-STRAIGHT = Manoeuvre(
-    "straight",
-    "launch and straight braking",
-    8.0,
-    s=0.004,
-    driver={"M_0": 1200.0, "t_on": 0.5, "t_off": 3.5, "B_0": 1800.0, "t_brake": 4.2},
-)
-CIRCLE = Manoeuvre(
-    "circle",
-    "steady circle, the speed rising (in the manner of ISO 4138)",
-    25.0,
-    3.0,
-    driver={**HOLD_SPEED, "delta_0": 0.14, "t_delta": 0.5, "ramp_delta": 1.5, "v_1": 8.0, "t_v": 4.0, "ramp_v": 18.0},
-)
-STEP = Manoeuvre(
-    "step",
-    "step of the steering wheel (ISO 7401)",
-    4.0,
-    12.0,
-    driver={**HOLD_SPEED, "delta_0": 0.07, "t_delta": 0.5, "ramp_delta": 0.5},
-)
-AT_ORIGIN = {"X_start": -X_REAR}  # the rear point begins where the path does
-EIGHT = Manoeuvre(
-    "eight", "figure of eight", 22.0, 5.0, driver={**HOLD_SPEED, "path": 1.0, "size": 20.0}, chassis=AT_ORIGIN
-)
-LANE = Manoeuvre(
-    "lane", "double lane change", 7.0, 15.0, driver={**HOLD_SPEED, "path": 2.0, "length": 10.0}, chassis=AT_ORIGIN
-)
-HILL = Manoeuvre(
-    "hill",
-    "hill start, stop and park",
-    9.0,
-    s=0.004,
-    slope=atan(0.15),
-    driver={
-        **{"B_hold": 2500.0, "t_release": 1.8, "M_0": 1500.0, "t_on": 1.2, "t_off": 4.0},
-        **{"B_0": 2500.0, "t_brake": 5.6, "ramp_M": 0.6},
-    },
-)
-TOO_FAST = replace(STEP, name="too_fast", title="the same step too fast", v=22.0)
-MANOEUVRES = dict(zip(options.MANOEUVRES, (STRAIGHT, CIRCLE, STEP, EIGHT, LANE, HILL, TOO_FAST), strict=True))
+AXLES = axles()
+
+
+def chassis_start(manoeuvre: Manoeuvre) -> dict[str, float]:
+    """Parameters of chassis.fmu."""
+    return {"v_start": manoeuvre["v"], **manoeuvre.of("chassis")}
+
+
+def driver_start(manoeuvre: Manoeuvre) -> dict[str, float]:
+    """Parameters of driver.fmu."""
+    return {"v_0": manoeuvre["v"], "v_1": manoeuvre["v"], "L": WHEELBASE, **manoeuvre.of("driver")}
 
 
 def wheel_start(manoeuvre: Manoeuvre, name: str) -> dict[str, float]:
     """Parameters of a wheel.fmu; the chassis starts at the origin unless its parameters say otherwise."""
-    place, psi = WHEELS[name], manoeuvre.chassis.get("psi_start", 0.0)
-    x = manoeuvre.chassis.get("X_start", 0.0) + place["x"] * cos(psi) - place["y"] * sin(psi)
-    y = manoeuvre.chassis.get("Y_start", 0.0) + place["x"] * sin(psi) + place["y"] * cos(psi)
-    return {"s": manoeuvre.s, **manoeuvre.road(), **upright(x, y, psi, manoeuvre.v, 0.0, R)}
+    (x, y), psi = (manoeuvre[f"{axis}_{name}"] for axis in "xy"), manoeuvre["psi_start"]
+    X = manoeuvre["X_start"] + x * cos(psi) - y * sin(psi)
+    Y = manoeuvre["Y_start"] + x * sin(psi) + y * cos(psi)
+    return {**road(manoeuvre), **upright(X, Y, psi, manoeuvre["v"], 0.0, R)}
 
 
-def components(fmus: dict[str, Path], manoeuvre: Manoeuvre) -> list[Component]:
-    """The FMUs of the car."""
+def system(fmus: dict[str, Path], manoeuvre: Manoeuvre, step: float = 0.001, t_couple: float | None = None) -> System:
+    """The car. A master that begins with zero inputs, as that of a package, finds the chassis free until t_couple."""
     wheels = [Component(name, fmus["wheel"], wheel_start(manoeuvre, name)) for name in WHEELS]
-    chassis = Component("chassis", fmus["chassis"], manoeuvre.chassis_start())
-    return [*wheels, chassis, Component("driver", fmus["driver"], manoeuvre.driver_start())]
+    start = {**({"t_couple": t_couple} if t_couple else {}), **chassis_start(manoeuvre)}
+    bodies = Component("chassis", fmus["chassis"], start), Component("driver", fmus["driver"], driver_start(manoeuvre))
+    return System("car", [*wheels, *bodies], CONNECTIONS, step, manoeuvre.stop, ("chassis", "driver"))
 
 
-def system(fmus: dict[str, Path], manoeuvre: Manoeuvre, step: float = 0.001) -> System:
-    """What car.ssp holds. A master that begins with zero inputs finds the chassis uncoupled for its first steps."""
-    waiting = replace(manoeuvre, chassis={"t_couple": 3 * step, **manoeuvre.chassis})
-    return System("car", components(fmus, waiting), CONNECTIONS, step, manoeuvre.stop)
-
-
-@dataclass(frozen=True)
-class Run:
-    """Columns "component.variable" on a grid, those of chassis and driver by variable; how it ended, if early."""
-
-    table: dict[str, np.ndarray]
-    ending: Ended | None = None
-    cost: dict[str, float] = field(default_factory=dict)  # us per step, as Master.cost has it
+def package(fmus: dict[str, Path], manoeuvre: Manoeuvre, step: float = 0.0005) -> System:
+    """The content of car.ssp."""
+    return system(fmus, manoeuvre, step, 3 * step)
 
 
 def drive(
@@ -160,91 +106,120 @@ def drive(
     **how: bool,
 ) -> Run:
     """The coupled manoeuvre."""
-    ending = None
-    with Master(components(fmus, manoeuvre), CONNECTIONS) as master:
-        try:
-            master.run(manoeuvre.stop, step, RECORD, exchange, round(grid / step), **how)
-        except Ended as end:
-            ending = end
-        return Run(columns(master.table()), ending, master.cost())
+    run = simulate(system(fmus, manoeuvre, step), RECORD, exchange, grid, **how)
+    return Run(complete(run.table, manoeuvre), run.ending, run.cost)
 
 
-def whole(
-    fmus: dict[str, Path], manoeuvre: Manoeuvre, step: float, exchange: str, grid: float
-) -> dict[str, np.ndarray]:
-    """The table of a manoeuvre; raises Ended where it does not reach its end."""
-    run = drive(fmus, manoeuvre, step, exchange, grid)
-    if run.ending:
-        raise run.ending
-    return run.table
+run = drive
 
 
-def columns(table: np.ndarray) -> dict[str, np.ndarray]:
-    """By name, those of chassis and driver without the component."""
-    return {n.removeprefix("chassis.").removeprefix("driver."): table[n] for n in table.dtype.names}
+sentence = partial(component.sentence, names=NAMES)
 
 
-def sentence(end: Ended) -> str:
-    """Which wheel ended the run, and when."""
-    name = f"{NAMES[end.component]} wheel" if end.component in WHEELS else end.component
-    return f"The {name} ended the run at t = {end.time:.3f} s: {end.sentence}"
+def complete(table: Table, _manoeuvre: Manoeuvre) -> Table:
+    """With a_y, the acceleration of the whole car's centre of mass to the left of the heading [m/s2], from the ground's
+    forces; beta, the sideslip angle of the chassis' centre of mass [rad], from differences of its place; and mu, the
+    friction that each axle requires."""
+    if len(table["time"]) < 3:
+        return table
+    c, s = np.cos(table["psi"]), np.sin(table["psi"])
+    forces = [sum(table[f"{w}.lambda_{k}"] for w in WHEELS) / MASS for k in (1, 2)]
+    moved = [np.gradient(table[n], table["time"], edge_order=2) for n in ("X", "Y")]
+    beta = np.arctan2(c * moved[1] - s * moved[0], np.abs(c * moved[0] + s * moved[1]))
+    required = {f"{axle}.mu": axle_friction(table, axle) for axle in AXLES}
+    return {**table, "a_y": c * forces[1] - s * forces[0], "beta": beta, **required}
 
 
-def title(run: Run, manoeuvre: Manoeuvre) -> str:
-    """Of a picture: the manoeuvre, its speed, and what ended it early."""
-    ended = f"; ended at {run.ending.time:.2f} s" if run.ending else ""
-    slope = f", slope {100 * tan(manoeuvre.slope):.3g} %" if manoeuvre.slope else ""
-    return f"Car: {manoeuvre.title}, from {3.6 * manoeuvre.v:.0f} km/h{slope}{ended}"
+def axle_friction(table: Table, axle: str) -> np.ndarray:
+    """Horizontal over normal force of an axle's wheels together: wheels that never slip are redundant across, and only
+    the bushings decide which of them carries the lateral force."""
+    force = [sum(table[f"{w}.lambda_{k}"] for w in AXLES[axle]) for k in (1, 2, 3)]
+    return np.hypot(force[0], force[1]) / force[2]
 
 
-def missed(table: dict[str, np.ndarray], manoeuvre: Manoeuvre) -> str:
-    """Where a run that reached its end is not the manoeuvre that it was to be; empty where it is."""
-    path = manoeuvre.driver.get("path")
-    off = float(np.abs(table["off"]).max())
-    if path and off > OFF_PATH:
-        return f"the car leaves its path by up to {off:.2g} m"
-    goal = {**DRIVER_DEFAULTS, **manoeuvre.driver}
-    end = 2 * pi if path == 1 else goal["x_back"] + 2 * goal["length"]
-    if path and table["p"][-1] < end:
-        return f"the run ends after {100 * max(table['p'][-1], 0) / end:.0f} % of the path"
-    back = rolled_back(table)
-    if manoeuvre.name == HILL.name and back > ROLL_BACK:
-        return f"a wheel rolls back by {back:.3g} m"
-    if manoeuvre.name in (STRAIGHT.name, HILL.name) and any(table[f"{w}.omega_z"][-1] for w in WHEELS):
-        return f"the car does not stand at the end: it rolls at {table['v'][-1]:.2g} m/s"
-    return ""
+def demand(table: Table) -> dict[str, float]:
+    """Largest friction coefficient that each axle requires: the road on which the manoeuvre would be possible."""
+    return {axle: float(np.nanmax(axle_friction(table, axle))) for axle in AXLES}
 
 
-def rolled_back(table: dict[str, np.ndarray]) -> float:
+def worst(table: Table) -> tuple[str, int]:
+    """The axle that requires most of the road, and the row in which it does."""
+    asked = demand(table)
+    axle = max(asked, key=asked.get)
+    return axle, int(np.nanargmax(axle_friction(table, axle)))
+
+
+def title(manoeuvre: Manoeuvre) -> str:
+    """Of a picture."""
+    slope = f", slope {100 * tan(manoeuvre['slope']):.3g} %" if manoeuvre["slope"] else ""
+    return f"Car: {manoeuvre.title}, from {3.6 * manoeuvre['v']:.0f} km/h{slope}"
+
+
+def tracks(_table: Table) -> dict[str, tuple[np.ndarray, ...]]:
+    """Paths besides those of the wheels: none."""
+    return {}
+
+
+def rolled_back(table: Table) -> float:
     """How far a wheel's centre goes back at most from where it has been, m; along X."""
     return max(float((np.maximum.accumulate(x) - x).max()) for x in (table[f"{w}.X_O"] for w in WHEELS))
 
 
-def demand(table: dict[str, np.ndarray]) -> dict[str, float]:
-    """Largest mu_required of each wheel: the road on which the manoeuvre would have been possible."""
-    return {w: float(np.nanmax(table[f"{w}.mu_required"])) for w in WHEELS}
+def cut_short(manoeuvre: Manoeuvre) -> str:
+    """The part of the driver's programme that the run does not reach; empty where it covers all."""
+    for size, begin, ramp in PROGRAMME:
+        end = manoeuvre[begin] + manoeuvre[ramp]
+        if manoeuvre[size] and manoeuvre.stop < end < NEVER:
+            return f"the run ends at {manoeuvre.stop:g} s, before {begin} + {ramp} = {end:g} s"
+    return ""
 
 
-def worst(table: dict[str, np.ndarray]) -> tuple[str, int]:
-    """The wheel that asks most of the road, and the row in which it does."""
-    asked = demand(table)
-    wheel = max(asked, key=asked.get)
-    return wheel, int(np.nanargmax(table[f"{wheel}.mu_required"]))
+def sets_off(table: Table, _manoeuvre: Manoeuvre) -> str:
+    moved = float(np.ptp(table["X"]))
+    return f"the car does not set off: it moves by {moved:.2g} m" if moved < AT_REST else ""
 
 
-def verdict(run: Run, manoeuvre: Manoeuvre) -> list[str]:
-    """What the run says of the manoeuvre: that it is none, or what it asks of the road."""
-    table = run.table
-    why = sentence(run.ending) if run.ending else missed(table, manoeuvre)
-    if why:
-        return [f"This is no {manoeuvre.title}: {why}" + ("" if why.endswith(".") else ".")]
+def stands(table: Table, _manoeuvre: Manoeuvre) -> str:
+    rolls = any(table[f"{w}.omega_z"][-1] for w in WHEELS)
+    return f"the car does not stand at the end: it rolls at {table['v'][-1]:.2g} m/s" if rolls else ""
+
+
+def does_not_roll_back(table: Table, _manoeuvre: Manoeuvre) -> str:
+    back = rolled_back(table)
+    return f"a wheel rolls back by {back:.3g} m" if back > ROLL_BACK else ""
+
+
+def on_path(table: Table, manoeuvre: Manoeuvre) -> str:
+    off, end = float(np.abs(table["off"]).max()), manoeuvre["x_back"] + 2 * manoeuvre["length"]
+    share = table["p"][-1] / (2 * pi if manoeuvre["path"] == 1 else end)
+    if off > OFF_PATH:
+        return f"the car leaves its path by up to {off:.2g} m"
+    return f"the run ends after {100 * max(share, 0):.0f} % of the path" if share < 1 else ""
+
+
+def lifts_off(_table: Table, _manoeuvre: Manoeuvre) -> str:
+    return "no wheel lifts off"
+
+
+ENDS = {f.__name__: f for f in (sets_off, stands, does_not_roll_back, on_path, lifts_off)}
+
+
+def missed(table: Table, manoeuvre: Manoeuvre) -> str:
+    """Where a run that reached its end is not the manoeuvre that it was to be; empty where it is."""
+    return cut_short(manoeuvre) or next(filter(None, (ENDS[name](table, manoeuvre) for name in manoeuvre.ends)), "")
+
+
+def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
+    """Whether a run that reached its end is the manoeuvre, and the reason or its demand on the road."""
+    if why := missed(table, manoeuvre):
+        return False, [f"Failed: {why}."]
     asked = demand(table)
     most = max(asked.values())
-    each = ", ".join(f"{NAMES[w]} {mu:.2f}" for w, mu in asked.items())
-    possible = "possible" if most <= DRY_ROAD else f"not possible even on a dry road, about {DRY_ROAD:g}, but"
-    lines = [f"{manoeuvre.title}: {possible} on a road with a friction coefficient of {most:.2f} ({each})."]
-    if manoeuvre.name == HILL.name:
-        lines.append(f"No wheel rolls back by more than {1000 * rolled_back(table):.3g} mm.")
+    each = ", ".join(f"{axle} {mu:.2f}" for axle, mu in asked.items())
+    needs = f"needs a road with a friction coefficient of {most:.2f} (per axle: {each})"
+    if most > DRY_ROAD:
+        return False, [f"Failed: the manoeuvre {needs}; a dry road has about {DRY_ROAD:g}."]
     least = min(WHEELS, key=lambda w: table[f"{w}.lambda_3"].min())
-    lowest = table[f"{least}.lambda_3"].min()
-    return [*lines, f"Smallest normal force: {lowest:.0f} N at the {NAMES[least]} wheel."]
+    lowest = f"{table[f'{least}.lambda_3'].min():.0f} N at the {NAMES[least]} wheel"
+    taken = "The wheels of an axle are taken together: without slip, nothing but bushings shares its lateral force."
+    return True, [f"Possible: it {needs}.", taken, f"Smallest normal force: {lowest}."]

@@ -1,28 +1,18 @@
-"""What tests of road vehicles report of a run, as figures: steady circle, step of the steering, double lane change.
+"""Characteristic values that tests of road vehicles report: steady circle, step of the steering, double lane change.
 
 In the manner of ISO 4138 (constant steer angle, rising speed), ISO 7401 (step input), ISO 3888 (two changes of lane);
 steer angles are those of the bicycle's wheel, not of a steering wheel. A table has time, v, omega, psi, roll, delta,
-a_y and beta, and mu_required of each wheel; `complete` adds a_y and beta to one of the coupled car.
+a_y and beta, and the ground's forces on each wheel.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from .car import MASS, NAMES, WHEELBASE, WHEELS, X_REAR, G, worst
+from .car import WHEELBASE, WHEELS, X_REAR, G, axle_friction, worst
 from .car_judges import INERTIA, LEANING, Finding
 
 Table = dict[str, np.ndarray]
-
-
-def complete(table: Table) -> Table:
-    """With a_y, the acceleration of the whole car's centre of mass to the left of the heading [m/s2], from the ground's
-    forces, and beta, the sideslip angle of the chassis' centre of mass [rad], from differences of its place."""
-    c, s = np.cos(table["psi"]), np.sin(table["psi"])
-    forces = [sum(table[f"{w}.lambda_{k}"] for w in WHEELS) / MASS for k in (1, 2)]
-    moved = [np.gradient(table[n], table["time"], edge_order=2) for n in ("X", "Y")]
-    beta = np.arctan2(c * moved[1] - s * moved[0], np.abs(c * moved[0] + s * moved[1]))
-    return {**table, "a_y": c * forces[1] - s * forces[0], "beta": beta}
 
 
 def roll_stiffness() -> float:
@@ -89,12 +79,12 @@ def step(table: Table) -> list[Finding]:
 
 def lane(table: Table) -> list[Finding]:
     """How hard the change of lanes is, and where it asks most of the road."""
-    wheel, at = worst(table)
+    axle, at = worst(table)
     return [
         Finding("largest lateral acceleration", "m/s2", float(np.abs(table["a_y"]).max())),
         Finding("largest yaw rate", "rad/s", float(np.abs(table["omega"]).max())),
         Finding("largest roll angle", "rad", float(np.abs(table["roll"]).max())),
-        Finding(f"largest mu_required, at the {NAMES[wheel]} wheel", "1", float(table[f"{wheel}.mu_required"][at])),
+        Finding(f"largest friction required, at the {axle} axle", "1", float(axle_friction(table, axle)[at])),
         Finding("where: rear point, X", "m", float(table["X_R"][at])),
         Finding("when", "s", float(table["time"][at])),
     ]

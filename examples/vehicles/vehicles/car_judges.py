@@ -17,8 +17,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .car import J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, X_REAR, G, Manoeuvre, R
-from .driver_path import DRIVER_DEFAULTS, rise
+from .car import J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, X_REAR, G, R
+from .monolithic_car import rise
+from .options import Manoeuvre
 
 Table = dict[str, np.ndarray]
 N_WHEELS = len(WHEELS)
@@ -63,13 +64,17 @@ def mean_rate(table: Table, name: str, window: np.ndarray) -> float:
     return float(np.polyfit(table["time"][window], table[name][window], 1)[0])
 
 
+def resistance(manoeuvre: Manoeuvre) -> tuple[float, float]:
+    """Moment of rolling friction about all axles, N m, and gravity down the slope, m/s2."""
+    return manoeuvre["s"] * MASS * G * np.cos(manoeuvre["slope"]), G * np.sin(manoeuvre["slope"])
+
+
 def launch(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     """Acceleration and load transfer in the last second of full torque."""
-    o = DRIVER_DEFAULTS | manoeuvre.driver
-    t = table["time"]
-    window = (t > o["t_off"] - 1) & (t < o["t_off"])
-    drag, grade = manoeuvre.s * MASS * G * np.cos(manoeuvre.slope), G * np.sin(manoeuvre.slope)
-    a = (o["M_0"] - drag - R * MASS * grade) / (R * M_T)
+    t, off = table["time"], manoeuvre["t_off"]
+    window = (t > off - 1) & (t < off)
+    drag, grade = resistance(manoeuvre)
+    a = (manoeuvre["M_0"] - drag - R * MASS * grade) / (R * M_T)
     gained = load(table, REAR, window) - load(table, REAR, 0)
     expected = (a * INERTIA + drag + grade * HEIGHTS + dive(table, window)) / WHEELBASE
     return [
@@ -80,8 +85,8 @@ def launch(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
 
 def standing(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     """A car that its brakes hold on a slope, just before the drive torque comes, and at the end of the run."""
-    t, grade = table["time"], G * np.sin(manoeuvre.slope)
-    window = (t > manoeuvre.driver["t_on"] - 0.1) & (t < manoeuvre.driver["t_on"])
+    t, (_, grade) = table["time"], resistance(manoeuvre)
+    window = (t > manoeuvre["t_on"] - 0.1) & (t < manoeuvre["t_on"])
     found = []
     for at, when in ((window, "by the brakes"), (t > t[-1] - 0.1, "parked")):
         push = float(np.mean(sum(table[f"{w}.lambda_1"] for w in WHEELS)[at]))
@@ -94,17 +99,16 @@ def standing(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
 
 def braking(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     """Instant and distance of the stop from the state at t_brake, and the load moved forwards."""
-    o = DRIVER_DEFAULTS | manoeuvre.driver
-    t, begin = table["time"], o["t_brake"]
+    t, begin, ramp = table["time"], manoeuvre["t_brake"], manoeuvre["ramp_M"]
     i = int(np.searchsorted(t, begin - 1e-9))
     fine = begin + np.arange(200001) * 1e-5 * (t[-1] - begin) / 2
-    capacity = np.array([rise(x, begin, o["ramp_M"]) for x in fine[::1]]) * o["B_0"]
-    drag, grade = manoeuvre.s * MASS * G * np.cos(manoeuvre.slope), G * np.sin(manoeuvre.slope)
+    capacity = np.array([rise(x, begin, ramp) for x in fine]) * manoeuvre["B_0"]
+    drag, grade = resistance(manoeuvre)
     a = (capacity + drag + R * MASS * grade) / (R * M_T)
     v = table["v"][i] - np.concatenate([[0.0], np.cumsum((a[1:] + a[:-1]) / 2 * np.diff(fine))])
     end = int(np.argmax(v <= 0))
     way = float(np.sum((v[1 : end + 1] + v[:end]) / 2 * np.diff(fine[: end + 1])))
-    full = (t > begin + o["ramp_M"] + 0.5 * (fine[end] - begin - o["ramp_M"])) & (t < fine[end] - 0.05)
+    full = (t > begin + ramp + 0.5 * (fine[end] - begin - ramp)) & (t < fine[end] - 0.05)
     spins = np.max([np.abs(table[f"{w}.omega_z"]) for w in WHEELS], axis=0)
     stopped = int(np.argmax((t > begin) & (spins == 0)))
     found = [
@@ -149,22 +153,18 @@ def understeer(table: Table) -> float:
     return float(np.polyfit(a, table["delta"][steady] - np.arctan(WHEELBASE * kappa), 1)[0])
 
 
-def closure(table: Table) -> Finding:
+def closure(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     """The figure of eight after one lap: distance of the rear point from its start beside the way driven."""
     p = table["p"]
     x, y = (np.interp(2 * np.pi, p, table[name]) for name in ("X_R", "Y_R"))
     way = float(np.hypot(np.diff(table["X_R"]), np.diff(table["Y_R"]))[p[1:] <= 2 * np.pi].sum())
     gap = float(np.hypot(x - table["X_R"][0], y))
-    return Finding("figure of eight: gap after one lap, and its length", "m", gap, way)
+    return [Finding("figure of eight: gap after one lap, and its length", "m", gap, way)]
 
 
-JUDGES = {
-    **{"straight": (launch, braking), "hill": (standing, launch, braking), "circle": (bend,), "step": (bend,)},
-    **{"eight": (), "lane": (), "too_fast": ()},
-}
+JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure)}
 
 
 def judge(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     """All findings of a manoeuvre."""
-    found = [finding for judge_of in JUDGES[manoeuvre.name] for finding in judge_of(table, manoeuvre)]
-    return [*found, closure(table)] if manoeuvre.name == "eight" else found
+    return [finding for name in manoeuvre.judges for finding in JUDGES[name](table, manoeuvre)]

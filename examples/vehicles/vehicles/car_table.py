@@ -14,8 +14,8 @@ from reference.tables import read_table, write_table
 from scipy.integrate import solve_ivp
 
 from . import car, errors, monolithic_car
-from .build import EXAMPLES
-from .car import MANOEUVRES, TOO_FAST, WHEELS, Manoeuvre
+from .car import MANOEUVRES, TOO_FAST, WHEELS
+from .options import EXAMPLES, Manoeuvre
 
 FOLDER = EXAMPLES / "tests"
 GRID = 0.25  # s

@@ -1,9 +1,9 @@
-"""One FMU of a system: loaded, instantiated and freed by FMPy; what it says, and how it ended."""
+"""One FMU of a system: loaded, instantiated and freed by FMPy; its messages, and how it ended."""
 
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterable
 from ctypes import byref, c_double
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,17 +11,23 @@ from pathlib import Path
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.simulation import apply_start_values
 
 LAST_SUCCESSFUL = 2  # fmi2StatusKind
-KINDS = {"Real": ("Real", float), "Boolean": ("Boolean", bool), "Integer": ("Integer", int)}
 
 
 class Ended(Exception):  # noqa: N818 - an ending, such as a wheel's lift-off, is no error
-    """A component ended the run. `component`, `time` [s], `sentence`: its own words."""
+    """A component ended the run. `component`, `time` [s], `sentence`: the FMU's message."""
 
     def __init__(self, component: str, time: float, sentence: str) -> None:
         super().__init__(f"{component}: {sentence}")
         self.component, self.time, self.sentence = component, time, sentence
+
+
+def sentence(end: Ended, names: dict[str, str]) -> str:
+    """Which component ended the run, and when; `names`: of the wheels."""
+    who = f"{names[end.component]} wheel" if end.component in names else end.component
+    return f"The {who} ended the run at t = {end.time:.3f} s: {end.sentence}"
 
 
 def let_go_of_python(fmu: FMU2Slave) -> None:
@@ -43,27 +49,24 @@ class Component:
     fmu: FMU2Slave | None = field(default=None, init=False)
 
     def load(self) -> None:
-        """Unpack, instantiate and initialize up to initialization mode; a ValueError has the FMU's own sentence."""
+        """Unpack, instantiate and initialize up to initialization mode; a ValueError has the FMU's message."""
         self.folder, self.log = extract(str(self.path)), []
         self.description = read_model_description(self.folder)
         self.variable = {v.name: v for v in self.description.modelVariables}
+        self.references(self.start)  # a name that does not exist
         self.fmu = FMU2Slave(
-            guid=self.description.guid,
-            unzipDirectory=self.folder,
+            **{"guid": self.description.guid, "unzipDirectory": self.folder, "instanceName": self.name},
             modelIdentifier=self.description.coSimulation.modelIdentifier,
-            instanceName=self.name,
         )
-        self.callbacks = fmi2CallbackFunctions()
-        self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
-        self.fmu.instantiate(callbacks=self.callbacks)
+        callbacks = fmi2CallbackFunctions()  # fmpy's own logger serves one instance per process
+        callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
+        self.fmu.instantiate(callbacks=callbacks)
         self.fmu.setupExperiment(startTime=0.0)
-        for name, value in self.start.items():
-            kind, convert = KINDS[self.variable_of(name).type]
-            self.asked(getattr(self.fmu, f"set{kind}"), self.references([name]), [convert(value)])
+        self.asked(apply_start_values, self.fmu, self.description, self.start)
         self.asked(self.fmu.enterInitializationMode)
 
     def asked(self, function, *arguments: object) -> None:
-        """Calls a function of the FMU; where it refuses, a ValueError with its last sentence."""
+        """Calls a function of the FMU; where it refuses, a ValueError with its last message."""
         try:
             function(*arguments)
         except FMICallException as refusal:
@@ -80,15 +83,12 @@ class Component:
             self.fmu.freeInstance()
             shutil.rmtree(self.folder, ignore_errors=True)
 
-    def variable_of(self, name: str):
-        """Its row of the model description."""
-        if name not in self.variable:
-            raise ValueError(f"{self.name} has no variable {name}.")
-        return self.variable[name]
-
-    def references(self, names: Sequence[str]) -> list[int]:
+    def references(self, names: Iterable[str]) -> list[int]:
         """Value references of variables."""
-        return [self.variable_of(name).valueReference for name in names]
+        for name in names:
+            if name not in self.variable:
+                raise ValueError(f"{self.name} has no variable {name}.")
+        return [self.variable[name].valueReference for name in names]
 
     def feeds(self, output: str) -> list[str]:
         """Inputs on which an output depends directly; undeclared dependencies mean all."""

@@ -1,8 +1,9 @@
-"""A vehicle's run drawn: path from above with its wheels, loads, angles, slip demand, error against the step."""
+"""A run drawn as its manoeuvre declares it: the path from above with the wheels, and panels over time; errors over the
+step, for the reports."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -11,59 +12,99 @@ from matplotlib.axes import Axes
 from diagrams import style
 
 from .errors import Errors
+from .options import Manoeuvre
 
-COLOURS = (style.BLUE, style.SKY, style.VERMILLION, style.ORANGE, style.PURPLE, style.GREY)
+COLOURS = (style.BLUE, style.VERMILLION, style.SKY, style.ORANGE, style.PURPLE, style.GREY)
 MARKS = {
-    "positions held": ("d-", style.ORANGE),
-    "held": ("o-", style.VERMILLION),
-    "derivatives": ("s-", style.BLUE),
-    "rollback": ("^-", style.GREEN),
-}
-BESIDE = {"loc": "center right", "bbox_to_anchor": (-0.3, 0.5), "borderaxespad": 0}
-ABOVE = {"loc": "lower left", "bbox_to_anchor": (0, 0.98), "labelspacing": 0.2, "borderaxespad": 0.2}
-DASHES = ("-", "--", "-", "--", "-", "--")  # a wheel that has the values of the one before is seen through its gaps
+    "positions held": ("d-", style.ORANGE, 1),
+    "held": ("o-", style.VERMILLION, 1),
+    "derivatives": ("s-", style.BLUE, 2),
+    "rollback": ("^-", style.GREEN, None),
+}  # look, colour, order
+DASHES = ("-", "--", ":", "-.")  # a curve that has the values of the one before is seen through its gaps
 GUIDES = {1: (0, (4, 2)), 2: (0, (1, 1))}  # lines of an order
-ORDERS = {"positions held": 1, "held": 1, "derivatives": 2, "rollback": None}
-
-
-@dataclass(frozen=True)
-class Line:
-    """One curve beside the path: label, values, unit."""
-
-    label: str
-    values: np.ndarray
+SCALES = {"deg": 180 / np.pi, "deg/s": 180 / np.pi, "km/h": 3.6, "kN": 1e-3, "mm": 1e3}  # of a label's unit
+Table = dict[str, np.ndarray]
+Tracks = dict[str, tuple[np.ndarray, ...]]
 
 
 def draw(
-    table: dict[str, np.ndarray],
-    wheels: dict[str, str],
-    lines: tuple[str, list[Line]],
-    errors: Errors | None,
+    manoeuvre: Manoeuvre,
+    table: Table,
+    names: dict[str, str],
+    tracks: Tracks,
     path: Path,
     title: str,
-    exact: tuple[np.ndarray, np.ndarray] | None = None,
+    errors: Errors | None,
 ) -> Path:
-    """`wheels`: component and what it is called; `lines`: axis label and curves; `exact`: a path in closed form."""
+    """The manoeuvre's plot: "path", and panels [label [unit], column...]; *.NAME is a column per wheel of `names`,
+    %.NAME per axle, "NAME: TEXT" a column with its text."""
     style.use_style()
-    fig = style.figure_mm(style.PAGE, 158)
-    fig.suptitle(title, fontsize=9, y=0.995)
-    _path(style.axes_mm(fig, 16, 104, 162, 40), table, wheels, exact)
-    t = table["time"]
-    load, demand = style.axes_mm(fig, 16, 58, 70, 36), style.axes_mm(fig, 108, 58, 70, 36)
-    for (name, label), colour, dashes in zip(wheels.items(), COLOURS, DASHES, strict=False):
-        load.plot(t, table[f"{name}.lambda_3"] / 1000, color=colour, linestyle=dashes, label=label)
-        demand.plot(t, table[f"{name}.mu_required"], color=colour, linestyle=dashes)
-    load.set_ylim(0, None)
-    load.set(ylabel="normal force [kN]")
-    demand.set_ylim(0, None)
-    demand.set(ylabel="friction coefficient\nrequired")
-    handles, labels = load.get_legend_handles_labels()
-    fig.legend(handles, labels, loc="center", bbox_to_anchor=(0.53, 149 / 158), ncols=len(wheels))
-    curves = style.axes_mm(fig, 16, 12, 70 if errors else 162, 36)
-    _lines(curves, t, *lines)
-    if errors:
-        draw_errors(style.axes_mm(fig, 124, 12, 54, 30), errors, BESIDE)
+    panels = {n: panel for n, panel in enumerate(manoeuvre.plot) if panel != "path"}
+    cells = [*panels, *(["errors"] if errors else []), "."]
+    rows = [*([["path"] * 2] if len(panels) < len(manoeuvre.plot) else []), *zip(cells[::2], cells[1::2], strict=False)]
+    fig = style.figure_mm(style.PAGE, 6 + 50 * len(rows))
+    fig.set_layout_engine("constrained", h_pad=0.06, wspace=0.06)
+    fig.suptitle(title, fontsize=9)
+    for cell, ax in fig.subplot_mosaic([list(row) for row in rows]).items():
+        if cell == "path":
+            draw_path(ax, table, names, tracks)
+        elif cell == "errors":
+            draw_errors(ax, errors)
+            ax.legend(loc="lower left", bbox_to_anchor=(0, 0.98), ncols=3)
+        else:
+            draw_panel(ax, table, *panels[cell], names=names)
     return style.save_png(fig, path)
+
+
+def draw_panel(ax: Axes, table: Table, label: str, *wanted: str, names: dict[str, str]) -> None:
+    """Curves over time; the unit at the label's end scales them."""
+    scale = SCALES.get(label.split("[")[-1].rstrip("]"), 1.0)
+    known = {
+        "*": names,
+        "%": {n.removesuffix(".mu"): f"{n.removesuffix('.mu')} axle" for n in table if n.endswith(".mu")},
+    }
+    curves = {}
+    for column, _, text in (entry.partition(": ") for entry in wanted):
+        first, _, name = column.partition(".")
+        of = {f"{key}.{name}": text for key, text in known.get(first, {}).items()}
+        curves |= of or {column: text or column}
+    for (column, text), colour, dashes in zip(curves.items(), cycle(COLOURS), cycle(DASHES), strict=False):
+        if column in table:
+            ax.plot(table["time"], scale * table[column], color=colour, linestyle=dashes, label=text)
+    if len(ax.lines) > 1:
+        ax.legend(
+            loc="lower left", bbox_to_anchor=(0, 0.98), ncols=4, borderaxespad=0.2, columnspacing=0.8, handlelength=1.5
+        )
+    ax.ticklabel_format(axis="y", useOffset=False)
+    ax.set(xlabel="time [s]", ylabel=label)
+
+
+def draw_path(ax: Axes, table: Table, names: dict[str, str], tracks: Tracks) -> None:
+    """Tracks of the wheels' centres, and the wheels themselves a few times, 0.7 m long, along their headings. A path
+    that would be a thin strip is stretched across, and the label names the factor."""
+    at = np.unique(np.linspace(0, len(table["time"]) - 1, 9).astype(int))
+    paths = {text: (table[f"{w}.X_O"], table[f"{w}.Y_O"]) for w, text in names.items()} | tracks
+    for wheel in names:
+        psi = table[f"{wheel}.psi"][at]
+        x, y = (
+            table[f"{wheel}.{n}"][at] + 0.35 * np.outer([-1, 1], f(psi)) for n, f in (("X_O", np.cos), ("Y_O", np.sin))
+        )
+        ax.plot(x, y, color=style.INK, linewidth=1.6, alpha=0.45, zorder=1, solid_capstyle="round")
+    for (text, (x, y)), colour, dashes in zip(paths.items(), cycle(COLOURS), cycle(DASHES[:2]), strict=False):
+        ax.plot(x, y, color=colour, linewidth=0.9, linestyle=dashes, label=text, zorder=2)
+    spans = [
+        max(float(np.nanmax(v) - np.nanmin(v)), 0.1)
+        for v in (np.concatenate(p) for p in zip(*paths.values(), strict=True))
+    ]
+    stretch, across = (42 / spans[1]) / (162 / spans[0]), "Y [m]"
+    if stretch > 2.5:
+        ax.margins(0.02, 0.08)
+        across = f"Y [m], stretched {stretch:.0f} times"
+    else:
+        ax.set_aspect("equal", adjustable="datalim")
+    ax.legend(loc="lower left", bbox_to_anchor=(0, 0.98), ncols=6, borderaxespad=0.2)
+    ax.set(xlabel="X [m]", ylabel=across)
 
 
 def draw_orders(errors: dict[str, Errors], path: Path) -> Path:
@@ -73,7 +114,7 @@ def draw_orders(errors: dict[str, Errors], path: Path) -> Path:
     width = (style.PAGE - 16) / len(errors)
     for i, (name, of) in enumerate(errors.items()):
         ax = style.axes_mm(fig, 16 + i * width, 12, width - 5, 34)
-        draw_errors(ax, of, None)
+        draw_errors(ax, of)
         ax.set_title(name, fontsize=9)
         ax.set_ylim(1e-10, 0.1)
         if i:
@@ -83,55 +124,16 @@ def draw_orders(errors: dict[str, Errors], path: Path) -> Path:
     return style.save_png(fig, path)
 
 
-def _path(
-    ax: Axes, table: dict[str, np.ndarray], wheels: dict[str, str], exact: tuple[np.ndarray, np.ndarray] | None
-) -> None:
-    """Tracks of the wheels' centres, and the wheels themselves a few times, 0.7 m long, along their headings. A path
-    that would be a thin strip is stretched across, and says so."""
-    count, tracks = len(table["time"]), [(table[f"{w}.X_O"], table[f"{w}.Y_O"]) for w in wheels]
-    if exact:
-        ax.plot(table["X"], table["Y"], color=style.GREEN, label="middle of the axle")
-        ax.plot(*exact, color=style.INK, linestyle=(0, (2, 2)), label="of the rigid axle, in closed form")
-    for (name, (x, y)), colour in zip(zip(wheels, tracks, strict=True), COLOURS, strict=False):
-        for i in np.unique(np.linspace(0, count - 1, 9).astype(int)):
-            psi = table[f"{name}.psi"][i]
-            along = 0.35 * np.array([np.cos(psi), np.sin(psi)])
-            ends = (x[i] + along[0] * np.array([-1, 1]), y[i] + along[1] * np.array([-1, 1]))
-            ax.plot(*ends, color=style.INK, linewidth=1.6, alpha=0.45, zorder=1, solid_capstyle="round")
-        ax.plot(x, y, color=colour, linewidth=0.9, zorder=2)
-    wide, high = (max(float(np.ptp(np.concatenate([t[k] for t in tracks]))), 0.1) for k in (0, 1))
-    stretch, across = (40 / high) / (162 / wide), "Y [m]"
-    if stretch > 2.5:
-        ax.margins(0.02, 0.08)
-        across = f"Y [m], stretched {stretch:.0f} times"
-    else:
-        ax.set_aspect("equal", adjustable="datalim")
-    if exact:
-        ax.legend(loc="upper right")
-    ax.set(xlabel="X [m]", ylabel=across)
-
-
-def _lines(ax: Axes, t: np.ndarray, label: str, lines: list[Line]) -> None:
-    for line, colour, dashes in zip(lines, (style.INK, style.GREEN, style.PURPLE), DASHES, strict=False):
-        ax.plot(t, line.values, color=colour, linestyle=dashes, label=line.label)
-    ax.legend(**{**ABOVE, "ncols": len(lines)})
-    ax.set(xlabel="time [s]", ylabel=label)
-
-
-def draw_errors(ax: Axes, errors: Errors, legend: dict | None) -> None:
-    """Error against the step, with a line of each order that is expected; `legend`: its place, if there is one."""
+def draw_errors(ax: Axes, errors: Errors) -> None:
+    """Error against the step, with a line of each order that is expected."""
     h, drawn = 1000 * np.array(errors.steps), set()
     for exchange, values in errors.of.items():
-        mark, colour = MARKS[exchange]
+        mark, colour, order = MARKS[exchange]
         ax.loglog(h, values, mark, color=colour, markersize=3, label=exchange)
-    for exchange, values in errors.of.items():
-        order = ORDERS[exchange]
         if order and np.isfinite(values[-1]):
-            label = {"label": f"order {order}"} if order not in drawn else {}
+            label = {} if order in drawn else {"label": f"order {order}"}
             drawn.add(order)
             ax.loglog(h, values[-1] * (h / h[-1]) ** order, color=style.GREY, linestyle=GUIDES[order], **label)
     ax.set_xticks(h, [f"{x:g}" for x in h])
     ax.minorticks_off()
-    if legend:
-        ax.legend(**legend)
     ax.set(xlabel="step [ms]", ylabel="error / range")

@@ -7,77 +7,72 @@ starts with a small push to the side. Fixed axes; theta is 90 degrees upright.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 from pathlib import Path
 
 import numpy as np
-from fmpy import simulate_fmu
 
 from .component import Component
-from .master import Connection, Master
-from .ssp import System
+from .master import Connection, Run, System, simulate
+from .options import Manoeuvre, manoeuvres
 
-STOP, STEP = 22.0, 0.005  # s
-T_CIRCLE, RADIUS, SPEED = 5.0, 1.5, 0.7  # s, m, m/s: the parameters of balance.py
+CIRCLE = manoeuvres("balance")["circle"]
+STOP, STEP = CIRCLE.stop, 0.005  # s
+T_CIRCLE, RADIUS, SPEED = CIRCLE["t_circle"], CIRCLE["R"], 0.7  # s, m, m/s
 TURN = 2 * pi * RADIUS / SPEED  # s
 START = {
-    "s": 0.002,
-    "psi_start": 0.0,
-    "theta_start": pi / 2,
+    **{"s": 0.002, "psi_start": 0.0, "theta_start": pi / 2, "phi_dot_start": -2.0, "X_O_start": 0.0},
     "theta_dot_start": 0.1,  # the push, rad/s
-    "phi_dot_start": -2.0,
-    "X_O_start": 0.0,
 }
 MEASURED = ("theta", "theta_dot", "psi", "psi_dot", "phi_dot")
-RECORD = ("X_O", "Y_O", "phi", *MEASURED, "omega_z", "lambda_3")
-
-
-@dataclass(frozen=True)
-class Drive:
-    """The same wheel alone and controlled; column names are the wheel's variables."""
-
-    alone: np.ndarray
-    controlled: np.ndarray  # also M_1, M_3
-
-
-def alone(fmus: dict[str, Path], stop: float = STOP) -> np.ndarray:
-    """The wheel without the controller, up to where its model ends."""
-    return simulate_fmu(str(fmus["wheel"]), start_values=START, stop_time=stop, output_interval=STEP, output=RECORD)
-
-
-def parts(fmus: dict[str, Path], parameters: dict[str, float] | None = None) -> list[Component]:
-    """Wheel and controller."""
-    return [Component("wheel", fmus["wheel"], START), Component("balance", fmus["balance"], parameters or {})]
-
-
+MOMENTS = ("M_1", "M_3")
+RECORD = [("wheel", name) for name in ("X_O", "Y_O", "phi", *MEASURED, "omega_z", "lambda_3")]
 CONNECTIONS: list[Connection] = [
     *((("wheel", name), ("balance", name)) for name in MEASURED),
-    *((("balance", name), ("wheel", name)) for name in ("M_1", "M_3")),
+    *((("balance", name), ("wheel", name)) for name in MOMENTS),
 ]
+WHEELS: dict[str, str] = {}  # the wheel's columns go by their names alone
+Table = dict[str, np.ndarray]
 
 
-def system(fmus: dict[str, Path], parameters: dict[str, float] | None = None) -> System:
-    """What balance.ssp holds."""
-    return System("balance", parts(fmus, parameters), CONNECTIONS, STEP, STOP)
+def system(fmus: dict[str, Path], course: Manoeuvre = CIRCLE, step: float = STEP) -> System:
+    """Wheel and controller."""
+    parts = [Component("wheel", fmus["wheel"], START), Component("balance", fmus["balance"], course.given)]
+    return System("balance", parts, CONNECTIONS, step, course.stop, ("wheel", "balance"))
 
 
-def controlled(fmus: dict[str, Path], parameters: dict[str, float] | None = None, stop: float = STOP) -> np.ndarray:
+package = system
+
+
+def alone(fmus: dict[str, Path], stop: float = STOP) -> Table:
+    """The wheel without the controller, up to where its model ends."""
+    one = Component("wheel", fmus["wheel"], START)
+    return simulate(
+        System("alone", [one], [], STEP, stop, ("wheel",), fmus["balance"].parent), RECORD, "held", STEP
+    ).table
+
+
+def controlled(fmus: dict[str, Path], course: Manoeuvre = CIRCLE) -> Run:
     """The wheel with the controller."""
-    record = [("wheel", name) for name in RECORD] + [("balance", "M_1"), ("balance", "M_3")]
-    with Master(parts(fmus, parameters), CONNECTIONS) as master:
-        table = master.run(stop, STEP, record)
-    table.dtype.names = ("time", *(variable for _, variable in record))
-    return table
+    return simulate(system(fmus, course), RECORD + [("balance", name) for name in MOMENTS], "held", STEP)
 
 
-def run(fmus: dict[str, Path], parameters: dict[str, float] | None = None) -> Drive:
-    """Both runs, the controller with these parameters."""
-    return Drive(alone(fmus), controlled(fmus, parameters))
+def run(fmus: dict[str, Path], course: Manoeuvre = CIRCLE, *_how: object, **_options: object) -> Run:
+    """Both runs, the controller with these parameters; columns of the wheel alone, which ends early, as alone.NAME."""
+    run, single = controlled(fmus, course), alone(fmus, course.stop)
+    rows = len(run.table["time"])
+    padded = {n: np.pad(x[:rows], (0, max(0, rows - len(x))), constant_values=np.nan) for n, x in single.items()}
+    return Run({**run.table, **{f"alone.{n}": x for n, x in padded.items() if n != "time"}}, run.ending)
+
+
+def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
+    """Paths of the wheel's centre."""
+    return {"alone": (table["alone.X_O"], table["alone.Y_O"]), "with controller": (table["X_O"], table["Y_O"])}
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the two runs showed, SI and degrees."""
+    """Figures of the two runs, SI and degrees."""
 
     fall: float  # s, when the wheel alone first leans by more than 45 degrees; infinite if never
     line_tilt: float  # deg, largest departure from upright in the last second of the line
@@ -88,23 +83,21 @@ class Verdict:
     speed_error: float  # rad/s, largest departure of omega_z from -2 in the last turn
 
 
-def fall_time(table: np.ndarray) -> float:
+def fall_time(table: Table, of: str = "") -> float:
     """When the wheel first leans by more than 45 degrees, s; infinite if never."""
-    fallen = np.abs(table["theta"] - pi / 2) > pi / 4
-    return float(table["time"][fallen.argmax()]) if fallen.any() else float("inf")
+    fallen = np.abs(table[f"{of}theta"] - pi / 2) > pi / 4
+    return float(table["time"][fallen.argmax()]) if fallen.any() else inf
 
 
-def judge(drive: Drive) -> Verdict:
-    """The figures of a drive."""
-    table = drive.controlled
+def judge(table: Table) -> Verdict:
+    """The figures of a run."""
     t, tilt = table["time"], np.degrees(np.abs(table["theta"] - pi / 2))
-    line = (t > T_CIRCLE - 1) & (t <= T_CIRCLE)
-    turn = t > STOP - TURN
+    line, turn = (t > T_CIRCLE - 1) & (t <= T_CIRCLE), t > STOP - TURN
     x, y = table["X_O"][turn], table["Y_O"][turn]
     a, b, c = np.linalg.lstsq(np.column_stack([x, y, np.ones_like(x)]), x**2 + y**2, rcond=None)[0]
     radius = np.sqrt(c + (a**2 + b**2) / 4)
     return Verdict(
-        fall=fall_time(drive.alone),
+        fall=fall_time(table, "alone."),
         line_tilt=float(tilt[line].max()),
         line_heading=float(np.degrees(np.abs(table["psi"][line])).max()),
         circle_radius=float(radius),
@@ -114,21 +107,25 @@ def judge(drive: Drive) -> Verdict:
     )
 
 
-def fallen(table: np.ndarray) -> str:
+def fallen(table: Table, of: str = "") -> str:
     """When the wheel leans over, and how near its plane comes to the ground, on either side."""
-    lowest = np.degrees((np.pi / 2 - np.abs(table["theta"] - np.pi / 2)).min())
-    after = f"leans over by more than 45 degrees after {fall_time(table):.2f} s"
-    return f"{after}, and is down to {lowest:.0f} degrees to the ground within {table['time'][-1]:.1f} s"
+    lowest = np.degrees(np.nanmin(np.pi / 2 - np.abs(table[f"{of}theta"] - np.pi / 2)))
+    after = f"leans over by more than 45 degrees after {fall_time(table, of):.2f} s"
+    return f"{after}, and is down to {lowest:.0f} degrees to the ground in the end"
 
 
-def verdict(drive: Drive, radius: float) -> list[str]:
-    """What the two runs say, in sentences: of the wheel alone, and of the one that was to drive a circle."""
-    found, alone = judge(drive), f"Alone it {fallen(drive.alone)}."
-    if np.isfinite(fall_time(drive.controlled)):
-        return [alone, f"The controller does not hold it: it {fallen(drive.controlled)}."]
+def verdict(table: Table, course: Manoeuvre) -> tuple[bool, list[str]]:
+    """Of the wheel alone, and of the one that was to drive a circle."""
+    radius, single = course["R"], f"Alone it {fallen(table, 'alone.')}."
+    if np.isfinite(fall_time(table)):
+        return False, [single, f"Failed: the controller does not hold it: it {fallen(table)}."]
+    found = judge(table)
     if not (abs(found.circle_radius - radius) < 0.05 * radius and found.circle_scatter < 0.05 * radius):
         off = f"within {found.circle_scatter:.2g} m of a circle of {found.circle_radius:.3g} m"
-        held = f"The controller keeps it from falling over, but it leans by up to {found.circle_tilt:.0f} degrees"
-        return [alone, f"{held}, and its last turn is not the circle of {radius:g} m: it is {off}."]
+        held = f"the controller keeps it from falling over, but it leans by up to {found.circle_tilt:.0f} degrees"
+        return False, [single, f"Failed: {held}, and its last turn is not the circle of {radius:g} m: it is {off}."]
     circle = f"a circle of {found.circle_radius:.4f} m, where {radius:g} m was asked for"
-    return [alone, f"Controlled it stays up, leaning by up to {found.circle_tilt:.1f} degrees, and drives {circle}."]
+    return True, [
+        single,
+        f"Controlled it stays up, leaning by up to {found.circle_tilt:.1f} degrees, and drives {circle}.",
+    ]

@@ -6,10 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from tqdm import tqdm
 
 from .component import Ended
-from .master import EXCHANGES
 
 STEPS = (0.002, 0.001, 0.0005)  # s
 Table = dict[str, np.ndarray]
@@ -17,7 +15,7 @@ Table = dict[str, np.ndarray]
 
 @dataclass(frozen=True)
 class Errors:
-    """Errors relative to the range over the communication step, by exchange; nan where a run broke off."""
+    """Errors relative to the range over the communication step, by exchange."""
 
     steps: Sequence[float]
     of: dict[str, list[float]]
@@ -50,18 +48,3 @@ def longest(steps: Sequence[float], error: Callable[[float], float]) -> float:
             break
         found = h
     return found
-
-
-def of_masters(run: Callable[[float, str], Table], names: Sequence[str]) -> Errors | None:
-    """Of run(step, exchange) against rollback at half the smallest step; None where that breaks off."""
-    try:
-        truth = run(STEPS[-1] / 2, "rollback")
-    except Ended:
-        return None
-    found: dict[str, list[float]] = {exchange: [] for exchange in EXCHANGES}
-    for exchange, h in tqdm([(e, h) for e in EXCHANGES for h in STEPS], leave=False, unit=" runs"):
-        try:
-            found[exchange].append(distance(run(h, exchange), truth, names))
-        except Ended:
-            found[exchange].append(float("nan"))
-    return Errors(STEPS, found)

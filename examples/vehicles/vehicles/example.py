@@ -1,7 +1,7 @@
 """./scripts/example NAME [parameter=value ...]: builds the FMUs, runs the example, draws it, packs it.
 
-All that is written goes to results/examples/NAME/: the table, the figure, the FMUs and the SSP package. What the
-command line may say is in options.py, which is asked first.
+All output goes to results/examples/NAME/: the table, the picture, the FMUs and the SSP package. options.py checks the
+command line before anything else. The exit status is 0 for a run that is the manoeuvre it was to be.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import shutil
 import signal
 import sys
-from dataclasses import fields, replace
 from pathlib import Path
 
 
@@ -24,13 +23,15 @@ if __name__ == "__main__":  # also while the packages below are loaded
 
 import numpy as np  # noqa: E402
 
-from . import axle, axle_study, build, car, driven, errors, figures, options, ssp, suspended  # noqa: E402
-from .component import Ended  # noqa: E402
-from .drawing import Line, draw  # noqa: E402
+from . import axle, build, car, car_iso, car_judges, driven, options, ssp, suspended  # noqa: E402
+from .component import sentence  # noqa: E402
+from .drawing import Errors, Table, draw  # noqa: E402
+from .master import Run  # noqa: E402
 
 RESULTS = build.ROOT / "results" / "examples"
-Table = dict[str, np.ndarray]
-Values = options.Values
+VEHICLES = {"axle": axle, "car": car, "suspended": suspended, "balance": driven}
+PER_PICTURE = 600  # rows, about
+SHORT = 1e-4  # s, a step that is short for every link here
 
 
 def write_table(table: Table, path: Path) -> None:
@@ -40,110 +41,99 @@ def write_table(table: Table, path: Path) -> None:
     )
 
 
-def multiple(h: float, grid: float) -> float:
-    """The multiple of the step nearest to a grid."""
-    return max(1, round(grid / h)) * h
+def picture(
+    table: Table, manoeuvre: options.Manoeuvre, path: Path, remark: str = "", errors: Errors | None = None
+) -> Path:
+    """The run drawn as its manoeuvre declares it."""
+    vehicle = manoeuvre.vehicle
+    of = VEHICLES[vehicle]
+    names = getattr(of, "NAMES", of.WHEELS)
+    title = car.title(manoeuvre) if vehicle == "car" else f"{vehicle.capitalize()}: {manoeuvre.title}"
+    tracks = of.tracks(table) if "path" in manoeuvre.plot else {}
+    return draw(manoeuvre, table, names, tracks, path, title + remark, errors)
 
 
-def run_axle(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:
-    """The axle: a scene of axle_study.SCENES, with numbers of axle.Scene or parameters of axle.fmu changed."""
-    own = {f.name for f in fields(axle.Scene)} - {"more"}
-    name = given.pop("scene", "trailing")
-    scene, exchange, h = axle_study.SCENES[name], given.pop("exchange", "derivatives"), given.pop("h", 0.001)
-    more = {name: value for name, value in given.items() if name not in own}
-    scene = replace(scene, more=more, **{name: value for name, value in given.items() if name in own})
-    table = axle.coupled(fmus, scene, h, exchange, multiple(h, 0.02), progress=True)
-    short = replace(scene, stop=min(scene.stop, 2.0))
-    found = errors.of_masters(lambda step, how: axle.coupled(fmus, short, step, how, 0.02), axle.COMPARED)
-    exact = None if axle.without_closed_form(scene) else axle.rigid(scene, table["time"])
-    draw_axle(table, exact, found, folder / "axle.png", f"Axle: {name}, step {1000 * h:g} ms")
-    write_table(table, folder / "axle.csv")
-    ssp.build(axle.system(fmus, scene, min(h, 0.0005)), folder)
-    if not exact:
-        return [f"No closed form to compare with: {axle.without_closed_form(scene)}."]
-    off = axle_study.distance(table, exact)
-    return [f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."]
+def findings(table: Table, manoeuvre: options.Manoeuvre) -> list[str]:
+    """Characteristic values of the car's manoeuvre, beside those of rigid links where these are known."""
+    with np.errstate(all="ignore"):
+        try:
+            figures = car_iso.FIGURES[manoeuvre.figures](table) if manoeuvre.figures else []
+            found = [*car_judges.judge(table, manoeuvre), *figures]
+        except (ValueError, IndexError, TypeError, np.linalg.LinAlgError):
+            return ["The closed forms do not apply to these parameters."]
+    lines = []
+    for f in found:
+        unit, exact = f.unit if f.unit != "1" else "", "" if f.exact is None else f"(closed form: {f.exact:.4g})"
+        lines.append("  " + " ".join(filter(None, (f"{f.what}: {f.measured:.4g}", unit, exact))))
+    return lines
 
 
-def draw_axle(table: Table, exact: Table | None, found: errors.Errors | None, path: Path, title: str) -> None:
-    lines = [Line("speed [m/s]", table["v"]), Line("yaw rate [rad/s]", table["omega"])]
-    closed = (exact["X"], exact["Y"]) if exact else None
-    draw(table, {w: w for w in axle.WHEELS}, ("middle of the axle", lines), found, path, title, closed)
+def diverged(fmus: dict[str, Path], asked: options.Asked, run: Run) -> str:
+    """Whether an ending comes from the coupling: with a much shorter step it comes elsewhere, or not at all."""
+    end, h = run.ending.time, min(asked.h / 4, max(asked.h / 16, SHORT))
+    beyond = asked.manoeuvre.changed(stop=min(asked.manoeuvre.stop, 1.1 * end + 10 * asked.h))
+    again = VEHICLES[asked.vehicle].run(fmus, beyond, h, asked.exchange, end).ending
+    if again and abs(again.time - end) < 2 * asked.h + 0.02 * end:
+        return ""
+    instead = f"ends at t = {again.time:.3f} s" if again else "goes on"
+    cause = f"The likely cause is the communication step h = {1000 * asked.h:g} ms: the coupling diverges numerically"
+    return f"{cause} (a run with {1000 * h:g} ms {instead}). Choose a shorter step: docs/vehicle.md."
 
 
-def run_car(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:
-    """The car: a manoeuvre, with v, s, stop or any parameter of chassis.fmu and driver.fmu changed."""
-    manoeuvre = car.MANOEUVRES[given.pop("manoeuvre", "lane")]
-    exchange, h = given.pop("exchange", "derivatives"), given.pop("h", 0.001)
-    own = {name: given.pop(name) for name in ("v", "s", "stop", "slope", "slope_direction") if name in given}
-    of_driver = {n: x for n, x in given.items() if n in options.parameters("driver")}
-    of_chassis = {n: x for n, x in given.items() if n not in of_driver}
-    manoeuvre = replace(
-        manoeuvre,
-        chassis={**manoeuvre.chassis, **of_chassis},
-        driver={**manoeuvre.driver, **of_driver},
-        **own,
-    )
-    run = car.drive(fmus, manoeuvre, h, exchange, multiple(h, 0.02), progress=True)
-    found = None
+def judged(fmus: dict[str, Path], asked: options.Asked, run: Run) -> tuple[bool, list[str]]:
+    """Whether the run is the manoeuvre, and why."""
+    of, manoeuvre = VEHICLES[asked.vehicle], asked.manoeuvre
     if not run.ending:
-        found = errors.of_masters(lambda step, how: car.whole(fmus, manoeuvre, step, how, 0.05), car.COMPARED)
-    draw_car(run, manoeuvre, found, folder / "car.png")
-    write_table(run.table, folder / "car.csv")
-    ssp.build(car.system(fmus, manoeuvre, min(h, 0.0005)), folder)
-    return car.verdict(run, manoeuvre)
+        passed, lines = of.verdict(run.table, manoeuvre)
+        return passed, [*lines, *(findings(run.table, manoeuvre) if passed and of is car else [])]
+    said = sentence(run.ending, getattr(of, "NAMES", of.WHEELS))
+    if cause := diverged(fmus, asked, run):
+        return False, [f"Failed: {said}", cause]
+    if "lifts_off" in manoeuvre.ends and "lifted off" in said:
+        return True, [f"As intended: {said}"]
+    lines = [f"Failed: {said}"]
+    if manoeuvre["mu_max"] and of is car:
+        each = ", ".join(f"{axle} {mu:.2f}" for axle, mu in car.demand(run.table).items())
+        lines.append(f"Until then the axles, their wheels together, required: {each}.")
+    return False, lines
 
 
-def draw_car(run: car.Run, manoeuvre: car.Manoeuvre, found: errors.Errors | None, path: Path) -> None:
-    degrees = [Line(name, np.degrees(run.table[name])) for name in ("delta", "roll", "pitch")]
-    draw(run.table, car.NAMES, ("angle [deg]", degrees), found, path, car.title(run, manoeuvre))
-
-
-def run_suspended(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:
-    """The suspended wheel, with any parameter of quarter_car.fmu changed; k and c are those along X and Y."""
-    exchange, h, stop = given.pop("exchange", "derivatives"), given.pop("h", 0.001), given.pop("stop", suspended.STOP)
-    given = {{"k": "k_h", "c": "c_h"}.get(name, name): value for name, value in given.items()}
-    table = suspended.coupled(fmus, h, exchange, stop, multiple(h, 0.01), given, progress=True)
-    found = suspended.convergence(fmus, suspended.together(), suspended.STEPS[:3])
-    figures.draw_launch(table, found, folder / "suspended.png")
-    write_table(table, folder / "suspended.csv")
-    ssp.build(suspended.system(fmus, given, h), folder)
-    lines = [f"Speed at the end: {-0.35 * table['omega_z'][-1]:.4f} m/s; smallest N: {table['lambda_3'].min():.1f} N."]
-    return [*lines, "The errors in the figure are those for the default parameters."] if given else lines
-
-
-def run_balance(fmus: dict[str, Path], given: Values, folder: Path) -> list[str]:
-    """The balanced wheel, with any parameter of balance.fmu changed."""
-    drive = driven.run(fmus, given)
-    figures.draw_drive(drive, folder / "balance.png")
-    write_table({n: drive.controlled[n] for n in drive.controlled.dtype.names}, folder / "balance.csv")
-    ssp.build(driven.system(fmus, given), folder)
-    return driven.verdict(drive, given.get("R", driven.RADIUS))
-
-
-RUNS = {"axle": run_axle, "car": run_car, "suspended": run_suspended, "balance": run_balance}
+def example(fmus: dict[str, Path], asked: options.Asked, folder: Path) -> bool:
+    """One example: run, table, picture and package, verdict."""
+    of, manoeuvre = VEHICLES[asked.vehicle], asked.manoeuvre
+    grid = max(1, round(manoeuvre.stop / PER_PICTURE / asked.h)) * asked.h
+    run = of.run(fmus, manoeuvre, asked.h, asked.exchange, grid, progress=True)
+    if run.ending:  # early, perhaps within the first rows
+        run = of.run(fmus, manoeuvre, asked.h, asked.exchange, run.ending.time / PER_PICTURE)
+    complete = getattr(of, "complete", None)
+    table = complete(run.table, manoeuvre) if complete else run.table
+    run = Run(table, run.ending, run.cost)
+    passed, lines = judged(fmus, asked, run)
+    print(f"{manoeuvre.title[0].upper()}{manoeuvre.title[1:]}.", *lines, sep="\n")
+    write_table({n: x for n, x in table.items() if not n.startswith("alone.")}, folder / f"{asked.vehicle}.csv")
+    remark = f"; ended at {run.ending.time:.2f} s" if run.ending else ""
+    if len(table["time"]):
+        picture(table, manoeuvre, folder / f"{asked.vehicle}.png", remark)
+    step = asked.h if of in (suspended, driven) else min(asked.h, 0.0005)
+    ssp.build(of.package(fmus, manoeuvre, step), folder)
+    for part in ("wheel", *options.file(asked.vehicle)["models"]):
+        shutil.copyfile(fmus[part], folder / f"{part}.fmu")
+    return passed
 
 
 def main() -> int:
     """One example."""
     try:
-        name, given = options.asked(sys.argv[1:])
-        fmus, folder = build.build_all(build.ROOT / "build" / "examples"), RESULTS / name
-        shutil.rmtree(folder, ignore_errors=True)  # what an earlier run left
+        asked = options.asked(sys.argv[1:])
+        fmus, folder = build.build_all(build.ROOT / "build" / "examples"), RESULTS / asked.vehicle
+        shutil.rmtree(folder, ignore_errors=True)  # an earlier run's
         folder.mkdir(parents=True)
-        said = RUNS[name](fmus, given, folder)
+        passed = example(fmus, asked, folder)
     except (options.Refused, ValueError) as reason:
         print(reason, file=sys.stderr)
         return 1
-    except Ended as ending:
-        print(f"The run ended at t = {ending.time:.3f} s, by {ending.component}: {ending.sentence}", file=sys.stderr)
-        return 1
-    for part in ("wheel", *options.LIST[name].models):
-        shutil.copyfile(fmus[part], folder / f"{part}.fmu")
-    for sentence in said:
-        print(sentence)
     print(f"In {folder.relative_to(build.ROOT)}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")
-    return 0
+    return 0 if passed else 1
 
 
 if __name__ == "__main__":

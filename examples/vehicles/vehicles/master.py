@@ -1,9 +1,9 @@
 """A parallel (Jacobi) master for FMI 2.0 co-simulation with fixed steps; the connections are a table.
 
 At every communication point all outputs are brought up to date with the inputs just set, in the order that the
-dependencies in the model descriptions allow, and then all FMUs step alone. What the inputs do over the step is one of
+dependencies in the model descriptions allow, and then all FMUs step alone. Over the step the inputs are one of
 
-    held         they keep their values: order 1
+    held         constant: order 1
     derivatives  straight lines, from the first derivatives of the sources' outputs: order 2
     rollback     parabolas whose second derivatives are predicted from the last step; the step is undone, and taken
                  again on the cubics through the values and first derivatives at both ends
@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from ctypes import c_void_p, cast
+from dataclasses import dataclass, field
 from functools import cache
 from graphlib import TopologicalSorter
 from itertools import pairwise
@@ -25,11 +26,11 @@ from cffi import FFI
 from fmpy import sharedLibraryExtension
 from tqdm import tqdm
 
-from .component import Component
+from .component import Component, Ended
+from .options import EXCHANGES
 
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
-EXCHANGES = ("held", "derivatives", "rollback")
 KINDS = ("value", "rate", "at_end")  # of a record, as in master.h
 FUNCTIONS = {
     **{"get": "GetReal", "set": "SetReal", "rates": "GetRealOutputDerivatives", "set_rates": "SetRealInputDerivatives"},
@@ -42,7 +43,7 @@ ffi = FFI()
 
 @cache
 def library(folder: Path):
-    """The loop in C, and what its header says."""
+    """The loop in C, with the declarations of its header."""
     text = HEADER.read_text()
     types = "".join(f"typedef void fmi2{name}TYPE;" for name in FUNCTIONS.values())
     types += "typedef void* fmi2Component; typedef unsigned fmi2ValueReference;"
@@ -60,13 +61,13 @@ class Master:
     ) -> None:
         self.components = {c.name: c for c in components}
         self.places = {name: place for place, name in enumerate(self.components)}
-        self.connections, self.loop = list(connections), None
-        self.loaded: list[Component] = []
+        self.source_of = {sink: source for source, sink in connections}
+        self.loop, self.loaded = None, []
         try:
             for component in components:
                 self.loaded.append(component)
                 component.load()
-            self.transfers = self._order()
+            self.levels = self._order()
         except BaseException:
             self.__exit__()
             raise
@@ -83,22 +84,18 @@ class Master:
         for component in self.loaded:
             component.free()
 
-    def _order(self) -> list[tuple[str, list[Signal]]]:
-        """Outputs of one component that are read together, each after the inputs it depends on; refuses algebraic
-        loops."""
-        source_of = {sink: source for source, sink in self.connections}
-        graph: dict[Signal, set[Signal]] = {}
-        for source in source_of.values():
-            inputs = [(source[0], name) for name in self.components[source[0]].feeds(source[1])]
-            graph[source] = {source_of[i] for i in inputs if i in source_of}
-        sorter, transfers = TopologicalSorter(graph), []
+    def _order(self) -> list[list[Signal]]:
+        """Connected outputs, those together that depend on outputs before them alone; refuses algebraic loops."""
+        graph = {}
+        for component, output in self.source_of.values():
+            inputs = [(component, name) for name in self.components[component].feeds(output)]
+            graph[component, output] = {self.source_of[i] for i in inputs if i in self.source_of}
+        sorter, levels = TopologicalSorter(graph), []
         sorter.prepare()
         while sorter.is_active():
-            ready = sorter.get_ready()
-            for name in dict.fromkeys(signal[0] for signal in ready):
-                transfers.append((name, [s for s in ready if s[0] == name]))
-            sorter.done(*ready)
-        return transfers
+            levels.append(list(sorter.get_ready()))
+            sorter.done(*levels[-1])
+        return levels
 
     def _prepare(self, exchange: str, reject: bool, record: list[Signal]) -> None:
         """Hands components, transfers and records to the loop."""
@@ -108,14 +105,16 @@ class Master:
             functions = {key: address(getattr(dll, f"fmi2{name}")) for key, name in FUNCTIONS.items()}
             instance = ffi.cast("void *", component.fmu.component)
             room.append(self.c.master_component(self.loop, instance, ffi.new("Functions *", functions)))
-        for name, signals in self.transfers:
-            outputs = self.components[name].references([variable for _, variable in signals])
-            room.append(self.c.master_transfer(self.loop, self.places[name], len(outputs), outputs))
-            for sink in self.components.values():
-                pairs = [(t[1], signals.index(s)) for s, t in self.connections if s in signals and t[0] == sink.name]
-                if pairs:
-                    inputs, at = sink.references([p[0] for p in pairs]), [p[1] for p in pairs]
-                    room.append(self.c.master_sink(self.loop, self.places[sink.name], len(at), inputs, at))
+        number = {signal: k for k, signal in enumerate(signal for level in self.levels for signal in level)}
+        for level in self.levels:
+            sinks = [(sink, source) for sink, source in self.source_of.items() if source in level]
+            for reads, ends in ((1, [(source, source) for source in level]), (0, sinks)):
+                for name, component in self.components.items():
+                    of = [(variable, number[source]) for (owner, variable), source in ends if owner == name]
+                    if of:
+                        variables, signals = component.references([v for v, _ in of]), [k for _, k in of]
+                        place = self.places[name]
+                        room.append(self.c.master_transfer(self.loop, place, reads, len(of), variables, signals))
         for name, variable in record:
             *kind, variable = variable.split()
             reference = self.components[name].references([variable])[0]
@@ -142,8 +141,6 @@ class Master:
         A variable after "rate " or "at_end " is its derivative, or its value at the end of the step that begins there.
         Raises component.Ended; what was recorded until then is `self.table()`.
         """
-        if exchange not in EXCHANGES:
-            raise ValueError(f"exchange is {exchange}; it is one of {', '.join(EXCHANGES)}.")
         self._prepare(exchange, reject, record)
         self.names = ["time", *(f"{c}.{v}" for c, v in record)]
         count = round(stop / step)
@@ -163,11 +160,11 @@ class Master:
                 raise self._refusal(done * step)
         return self.table()
 
-    def _refusal(self, t: float) -> Exception:
+    def _refusal(self, t: float) -> Ended:
         return list(self.components.values())[self.c.master_refused(self.loop)].ended(t)
 
     def table(self) -> np.ndarray:
-        """What was recorded."""
+        """The records."""
         known = self.rows[np.isfinite(self.rows[:, 0])]
         return known.view([(name, float) for name in self.names])[:, 0]
 
@@ -181,3 +178,46 @@ class Master:
 def address(function) -> object:
     """Of a C function that ctypes loaded, for cffi."""
     return ffi.cast("void *", cast(function, c_void_p).value)
+
+
+@dataclass(frozen=True)
+class System:
+    """FMUs and their connections; columns of the components in `bare` go by the variable's name alone."""
+
+    name: str
+    components: list[Component]
+    connections: list[Connection]
+    step: float  # s
+    stop: float  # s
+    bare: tuple[str, ...] = ()
+    folder: Path | None = None  # of the loop in C, where it is not beside one of the FMUs
+
+
+@dataclass(frozen=True)
+class Run:
+    """Columns "component.variable" on a grid; how it ended, if early; microseconds per step, as Master.cost has it."""
+
+    table: dict[str, np.ndarray]
+    ending: Ended | None = None
+    cost: dict[str, float] = field(default_factory=dict)
+
+
+def simulate(system: System, record: list[Signal], exchange: str, grid: float, **how: bool) -> Run:
+    """The system to its stop, or to where a component ends the run; recorded every `grid`, or every step."""
+    ending = None
+    with Master(system.components, system.connections, system.folder) as master:
+        try:
+            every = max(1, round(grid / system.step))
+            master.run(system.stop, system.step, record, exchange, every, **how)
+        except Ended as end:
+            ending = end
+        rows, cost = master.table(), master.cost()
+    names = {n: n.split(".")[-1] if n.split(".")[0] in system.bare else n for n in rows.dtype.names}
+    return Run({short: rows[name] for name, short in names.items()}, ending, cost)
+
+
+def whole(run: Run) -> dict[str, np.ndarray]:
+    """The table of a run that reached its end; raises Ended for another."""
+    if run.ending:
+        raise run.ending
+    return run.table

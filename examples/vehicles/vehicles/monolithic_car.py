@@ -1,8 +1,8 @@
 """The same car as one set of equations: chassis, struts, driver and wheels integrated together by SciPy.
 
 The independent check of the coupled car: wheels by axle vectors (rolling_wheels.py), the chassis by its rotation matrix
-and its angular velocity in fixed axes, the driver written again from its equations. Only the layout car.toml, the
-start values of the tables and the manoeuvres' parameters are shared with the FMUs.
+and its angular velocity in fixed axes, the driver's programmes and paths written again from their equations. Only the
+layout car.toml, the start values of the tables and the manoeuvres' parameters are shared with the FMUs.
 
 State: chassis r, v, rotation matrix, w (fixed axes); driver delta, integral, p; wheels O, a, w.
 """
@@ -15,13 +15,50 @@ import numpy as np
 from reference.model import Wheel
 from scipy.integrate import solve_ivp
 
-from .car import LAYOUT, MASS, Manoeuvre
-from .driver_path import DRIVER_DEFAULTS, Path, rise
-from .options import starts
+from .car import LAYOUT, MASS, chassis_start, driver_start
+from .options import Manoeuvre, starts
 from .rolling_wheels import Answer, Law, cross, dot, respond
 
 TOLERANCE = 1e-9
 BODY, DRIVER = 18, 3
+
+
+def rise(t: float, begin: float, duration: float) -> float:
+    """From 0 to 1, with continuous second derivatives."""
+    z = min(max((t - begin) / duration, 0.0), 1.0)
+    return z**3 * (10 - 15 * z + 6 * z**2)
+
+
+class Path:
+    """Point, tangent and curvature of the driver's path as functions of its parameter."""
+
+    def __init__(self, o: dict[str, float]) -> None:
+        self.o = o
+
+    def point(self, p: float) -> np.ndarray:
+        """X, Y."""
+        o = self.o
+        if o["path"] == 1:
+            x = o["size"] * np.sin(p) / (1 + np.cos(p) ** 2)
+            return np.array([x + x * np.cos(p), x * np.cos(p) - x]) / np.sqrt(2)
+        out, back = (np.tanh((p - o[end]) / o["length"]) for end in ("x_out", "x_back"))
+        return np.array([p, o["width"] / 2 * (out - back)])
+
+    def tangent(self, p: complex) -> np.ndarray:
+        """dP/dp."""
+        o = self.o
+        if o["path"] == 1:
+            c = np.cos(p)
+            dx, dy = c * (3 - c**2), 3 * c**2 - 1
+            return o["size"] * np.array([dx + dy, dy - dx]) / (1 + c**2) ** 2 / np.sqrt(2)
+        out, back = (np.cosh((p - o[end]) / o["length"]) ** -2 for end in ("x_out", "x_back"))
+        return np.array([1.0, o["width"] / 2 * (out - back) / o["length"]])
+
+    def curvature(self, p: float) -> float:
+        """Positive to the left."""
+        h = 1e-30  # of the complex step, which has no error
+        d, dd = self.tangent(p), self.tangent(p + 1j * h).imag / h
+        return float((d[0] * dd[1] - d[1] * dd[0]) / np.hypot(*d) ** 3)
 
 
 class Car:
@@ -29,15 +66,12 @@ class Car:
 
     def __init__(self, manoeuvre: Manoeuvre) -> None:
         wheels = list(LAYOUT["wheel"].values())
-        self.o = DRIVER_DEFAULTS | manoeuvre.driver_start()
-        self.c = starts("chassis") | manoeuvre.chassis_start()
-        self.path, self.kind, self.n = (
-            Path(self.o),
-            Wheel(s=manoeuvre.s, slope=manoeuvre.slope, slope_direction=manoeuvre.slope_direction),
-            len(wheels),
-        )
+        self.o = starts("driver") | driver_start(manoeuvre)
+        self.c = starts("chassis") | chassis_start(manoeuvre)
+        self.path, self.n = Path(self.o), len(wheels)
+        self.kind = Wheel(**{name: self.c[name] for name in ("s", "slope", "slope_direction")})
         of = {key: np.array([w[key] for w in wheels]) for key in ("x", "y", "k", "c", "steer", "drive", "brake")}
-        self.of, self.v = of, manoeuvre.v
+        self.of, self.v = of, manoeuvre["v"]
         self.R_0 = self.kind.r_0 + self.kind.r
         self.hub = np.column_stack([of["x"], of["y"], np.full(self.n, self.R_0 - self.c["h_B"])])
         steered = of["steer"] > 0
@@ -185,8 +219,8 @@ def solve(manoeuvre: Manoeuvre, times: np.ndarray, tolerance: float = TOLERANCE)
     """The manoeuvre at `times` (rising from 0), from one change of a wheel's friction branch to the next."""
     car = Car(manoeuvre)
     t, y, rows = 0.0, car.start(), []
-    rubs = manoeuvre.s > 0 or car.o["B_0"] > 0 or car.o["B_hold"] > 0
-    sigma = np.full(car.n, 0.0 if rubs and manoeuvre.v == 0 else -1.0)
+    rubs = car.kind.s > 0 or car.o["B_0"] > 0 or car.o["B_hold"] > 0
+    sigma = np.full(car.n, 0.0 if rubs and car.v == 0 else -1.0)
     while len(rows) < len(times):
         events = [_event(car, sigma, i) for i in range(car.n)] if rubs else None
         inside = times[len(rows) :]

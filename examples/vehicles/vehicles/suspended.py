@@ -15,34 +15,46 @@ import numpy as np
 from reference.model import Wheel
 
 from . import errors, monolithic
-from .component import Component, Ended
-from .hubs import FORCE, MOMENT, POSE
-from .master import Master, Signal
-from .ssp import System
+from .component import Component
+from .hubs import FORCE, MOMENT, POSE, road
+from .master import Run, Signal, System, simulate, whole
+from .options import Manoeuvre, manoeuvres
 from .ssp import run as run_package
 
-STOP = 3.0  # s
+LAUNCH = manoeuvres("suspended")["launch"]
+STOP = LAUNCH.stop  # s
 GRID = 0.05  # s, where runs are compared; every step below divides it
 STEPS = (0.005, 0.0025, 0.00125, 0.000625, 0.0003125)  # s
 LARGE_STEPS = (0.0125, 0.015, 0.02, 0.025)  # s, around the limit of stability
 LOAD = FORCE + MOMENT
 START = {"s": 0.01, "psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_start": 0.0, "X_O_start": 0.0}
 COMPARED = ("X_O", "theta", "phi_dot", "psi_dot", "X_B", "Z_B")
+OF_WHEEL = ("theta", "phi_dot", "psi_dot", "psi", "theta_dot", "omega_z", "lambda_3", "mu_required")
 RECORD: list[Signal] = [
-    *(("wheel", name) for name in ("X_O", "theta", "phi_dot", "psi_dot", "psi", "theta_dot", "omega_z", "lambda_3")),
-    *(("wheel", name) for name in ("Y_O", "phi")),  # scripts/view needs these too
-    *(("quarter_car", name) for name in ("X_B", "Y_B", "Z_B", *LOAD)),
+    *(("wheel", name) for name in ("X_O", "Y_O", "phi", "X_O_dot", *OF_WHEEL)),  # scripts/view needs the first three
+    *(("quarter_car", name) for name in ("X_B", "Y_B", "Z_B", "X_B_dot", *LOAD)),
 ]
 CONNECTIONS: list[tuple[Signal, Signal]] = [
     *((("wheel", name), ("quarter_car", name)) for name in POSE),
     *((("quarter_car", name), ("wheel", name)) for name in LOAD),
 ]
+WHEELS: dict[str, str] = {}  # the wheel's columns go by their names alone
 
 
-def components(fmus: dict[str, Path], parameters: dict[str, float] | None = None) -> list[Component]:
-    """Wheel and quarter car; `parameters` of either, by their names."""
-    car = Component("quarter_car", fmus["quarter_car"], parameters or {})
-    return [Component("wheel", fmus["wheel"], START), car]
+def system(fmus: dict[str, Path], run: Manoeuvre = LAUNCH, step: float = 0.001) -> System:
+    """Wheel and quarter car. The parameters k and c are those along X and Y."""
+    links = {f"{name}_h": run[name] for name in ("k", "c") if name in run.given}
+    wheel = Component("wheel", fmus["wheel"], {**START, **road(run)})
+    car = Component("quarter_car", fmus["quarter_car"], {**run.of("quarter_car"), **links})
+    return System("suspended_wheel", [wheel, car], CONNECTIONS, step, run.stop, ("wheel", "quarter_car"))
+
+
+package = system  # the quarter car waits until t_couple anyway
+
+
+def run(fmus: dict[str, Path], run: Manoeuvre, step: float, exchange: str, grid: float = 0.01, **how: bool) -> Run:
+    """The co-simulation; columns by variable name."""
+    return simulate(system(fmus, run, step), RECORD, exchange, grid, **how)
 
 
 def coupled(
@@ -54,15 +66,15 @@ def coupled(
     parameters: dict[str, float] | None = None,
     **how: bool,
 ) -> dict[str, np.ndarray]:
-    """The co-simulation on the comparison grid, columns by variable name."""
-    with Master(components(fmus, parameters), CONNECTIONS) as master:
-        table = master.run(stop, step, RECORD, exchange, round(grid / step), **how)
-    return {name.split(".")[-1]: table[name] for name in table.dtype.names}
+    """The whole co-simulation on the comparison grid."""
+    return whole(run(fmus, LAUNCH.changed(stop=stop, **(parameters or {})), step, exchange, grid, **how))
 
 
-def system(fmus: dict[str, Path], parameters: dict[str, float] | None = None, step: float = 0.001) -> System:
-    """What suspended_wheel.ssp holds."""
-    return System("suspended_wheel", components(fmus, parameters), CONNECTIONS, step, STOP)
+def verdict(table: dict[str, np.ndarray], _run: Manoeuvre) -> tuple[bool, list[str]]:
+    """Its state at the end."""
+    least, grip = table["lambda_3"].min(), np.nanmax(table["mu_required"])
+    speed = f"Speed at the end: {-0.35 * table['omega_z'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
+    return True, [f"{speed}; friction required: {grip:.2f}."]
 
 
 def together(stop: float = STOP, grid: float = GRID) -> dict[str, np.ndarray]:
@@ -76,17 +88,14 @@ distance = partial(errors.distance, names=COMPARED, least=0)
 def package_distance(package: Path, step: float, truth: dict[str, np.ndarray], stop: float = STOP) -> float:
     """Largest difference over time of X_O, theta and psi_dot in fmpy's run of the package, relative to their ranges."""
     table, names = run_package(package, step, stop, GRID), ("X_O", "theta", "psi_dot")
-    columns = {n: np.concatenate([truth[n][:1], table[f"wheel.{n}"], truth[n][1 + len(table) :]]) for n in names}
+    count = len(table["time"])
+    columns = {n: np.concatenate([truth[n][:1], table[f"wheel.{n}"], truth[n][1 + count :]]) for n in names}
     return errors.distance(columns, truth, names, 0)
 
 
 def ends(fmus: dict[str, Path], step: float, exchange: str) -> bool:
     """Whether the coupled run breaks: the hopping wheel leaves the ground and its FMU ends the step."""
-    try:
-        coupled(fmus, step, exchange, grid=step)
-    except Ended:
-        return True
-    return False
+    return run(fmus, LAUNCH, step, exchange, step).ending is not None
 
 
 def convergence(
@@ -94,13 +103,11 @@ def convergence(
 ) -> errors.Errors:
     """With all inputs held, with positions that follow the velocities beside them, and on straight lines."""
     kinds = {"positions held": ("held", {"follow": 0.0}), "held": ("held", {}), "derivatives": ("derivatives", {})}
-    return errors.Errors(
-        steps,
-        {
-            name: [distance(coupled(fmus, h, exchange, stop, parameters=more), truth) for h in steps]
-            for name, (exchange, more) in kinds.items()
-        },
-    )
+    found = {
+        name: [distance(coupled(fmus, h, exchange, stop, parameters=more), truth) for h in steps]
+        for name, (exchange, more) in kinds.items()
+    }
+    return errors.Errors(steps, found)
 
 
 def drag_share(h: float, k: float = 60e3, mass: float = 334.7, duration: float = 2.5) -> float:
