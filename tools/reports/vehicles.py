@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pandas as pd
 from vehicles import axle, axle_study, car, car_iso, car_judges, car_table, monolithic_car
