@@ -5,7 +5,7 @@ docs/results/data/report.csv, which `scripts/report` measures, and what stands u
 Between `<!-- table = name -->` and `<!-- end of table -->` stands docs/results/data/name.csv as a table; between
 `<!-- file = path -->` and `<!-- end of file -->` a file as code; after `<!-- variables -->` all variables.
 No line begins with a place: Markdown takes a comment at the beginning of a line for a block of HTML, which ends the
-paragraph. With --check nothing is changed, and the exit status is 1 where a page differs from the data or breaks this rule.
+paragraph. With --check nothing is changed; the exit status is 1 where a page differs from the data or breaks the rule.
 """
 
 from __future__ import annotations

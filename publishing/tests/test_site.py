@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+
+from publishing.documents import reflowed
 
 ROOT = Path(__file__).resolve().parents[2]
 CONF = ROOT / "publishing" / "site"
@@ -50,6 +53,45 @@ def test_the_site_asks_for_nothing_from_elsewhere(site: Path) -> None:
         page.name: [] for page in pages
     }
     assert LOADED.findall('<script src="https://example.org/x.js"></script>') == ["https://example.org/x.js"]
+
+
+class Places(HTMLParser):
+    """The comments of filled places that stand in no paragraph, cell or heading: there they would split a sentence."""
+
+    HOLDERS = frozenset({"p", "td", "th", "h1", "h2", "h3", "dd"})
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open, self.found, self.split = 0, 0, 0
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list) -> None:
+        self.open += tag in self.HOLDERS
+
+    def handle_endtag(self, tag: str) -> None:
+        self.open -= tag in self.HOLDERS
+
+    def handle_comment(self, data: str) -> None:
+        self.found += data.startswith(" = ")
+        self.split += data.startswith(" = ") and not self.open
+
+
+def test_a_filled_figure_stands_within_its_sentence(site: Path, tmp_path: Path) -> None:
+    places = {page: Places(page.read_text(encoding="utf-8")) for page in site.rglob("*.html")}
+    assert sum(page.found for page in places.values()) > 50
+    assert [path for path, page in places.items() if page.split] == []
+    sentence = "# A page\n\nThe run took about\n<!-- = commands.first_run -->44<!-- . --> s.\n"
+    for text, split in ((sentence, 1), (reflowed(sentence), 0)):
+        (tmp_path / "README.md").write_text(text)
+        build(tmp_path, tmp_path / "out", "-D", "html_favicon=", "-E")
+        page = Places((tmp_path / "out" / "README.html").read_text(encoding="utf-8"))
+        assert (page.found, page.split) == (1, split)
+
+
+def test_a_link_is_called_as_its_document(site: Path) -> None:
+    words = re.findall(r'<a class="reference internal"[^>]*>(.*?)</a>', (site / "docs" / "physics.html").read_text())
+    assert any(">Equations<" in word for word in words)
+    assert not [page for page in site.rglob("*.html") if re.search(r'std-doc">[\w/]+\.md<', page.read_text())]
 
 
 def test_formulas_are_drawn_by_the_browser_itself(site: Path) -> None:
