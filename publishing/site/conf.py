@@ -124,6 +124,13 @@ def formula(display: str):
     return visit
 
 
+def widen(app: Sphinx, document: nodes.document) -> None:
+    """Marks the cells of prose, which a table must not squeeze beside names that cannot be broken."""
+    for cell in document.findall(nodes.entry):
+        if len(cell.astext()) > 45:
+            cell["classes"].append("prose")
+
+
 def front(app: Sphinx, name: str, template: str, context: dict, doctree: object) -> None:
     """The front page shows the live page where ./scripts/site has put one."""
     context["live"] = (Path(app.outdir) / "live.html").exists()
@@ -152,5 +159,6 @@ def bring_along(app: Sphinx, fault: Exception | None) -> None:
 def setup(app: Sphinx) -> None:
     app.connect("html-page-context", front)
     app.connect("source-read", read)
+    app.connect("doctree-read", widen)
     app.connect("build-finished", bring_along)
     app.add_html_math_renderer("mathml", (formula("inline"), None), (formula("block"), None))
