@@ -26,6 +26,17 @@ PATIENCE = 60_000  # ms; a page is drawn by the processor here
 
 
 @contextmanager
+def drawn(page: Page) -> Iterator[Page]:
+    """A page whose scene is drawn; the fixtures' pages leave that out, which takes the processor most of the time."""
+    page.evaluate("page.stage.renderer.render = page.render; page.draw()")
+    yield page
+    page.evaluate(UNDRAWN)
+
+
+UNDRAWN = "page.render ??= page.stage.renderer.render; page.stage.renderer.render = () => {}"
+
+
+@contextmanager
 def opened(browser: Browser, path: Path, address: str = "", **context: object) -> Iterator[Page]:
     """A page that stands still at its start; afterwards its console must hold no error and no warning.
 

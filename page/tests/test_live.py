@@ -196,7 +196,7 @@ def test_forward_is_the_way_the_wheel_rolls_and_back_is_against_it(live, spin):
 @pytest.mark.parametrize("diagram", ["phase", "spin", "path"])
 def test_while_a_button_is_held_the_diagrams_keep_their_axes(live, diagram):
     axes = """() => [[page.player.start, page.player.end],
-      ...page.plots.plots.map(({ low, high }) => [low, high]), ...page.plots.portrait.ranges]"""
+      ...page.plots.curves.map(({ ranges }) => ranges[1]), ...page.plots.portrait.ranges]"""
     preset(live, "Paper, no friction")
     live.evaluate("(name) => { page.plots.portrait.choose(name); page.player.seek(1); }", diagram)
     before = live.evaluate(axes)

@@ -153,8 +153,8 @@ def test_the_label_and_the_diagram_say_that_the_wheel_sticks(recorded):
       page.choose(3);
       page.player.seek(t);
       page.labels.tell(page.shown, t);
-      const plot = page.plots.plots[1];
-      const pixel = (at) => [...plot.layers.faint.getContext('2d')
+      const plot = page.plots.curves[1];
+      const pixel = (at) => [...plot.faint.getContext('2d')
         .getImageData(plot.x(at) * plot.ratio, plot.y(-1.5) * plot.ratio + 3, 1, 1).data];
       return [document.querySelector('.label').dataset.state, pixel(t)];
     }"""
@@ -193,7 +193,7 @@ def test_keys_move_the_time_and_switch_what_is_shown(recorded):
 def test_a_click_into_a_diagram_goes_there(recorded):
     canvas = recorded.locator(".plot canvas").first
     canvas.click(position={"x": 100, "y": 40})
-    expected = canvas.evaluate("() => page.plots.plots[0].timeAt(100)")
+    expected = canvas.evaluate("() => page.plots.curves[0].timeAt(100)")
     assert recorded.evaluate("page.player.t") == pytest.approx(expected)
     assert 0.5 < expected < 9.5
 
