@@ -16,7 +16,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from support.driver import HEADLINE
 from support.paths import ROOT
 
-from page.tests.pages import FLAGS, RECORD, UNDRAWN, opened, view, write_csv
+from page.tests.pages import FLAGS, RECORD, opened, view, write_csv
 
 
 @pytest.fixture(scope="session")
@@ -56,7 +56,6 @@ def recorded_file(scenes, tmp_path_factory) -> Path:
 @pytest.fixture(scope="session")
 def recorded_page(browser, recorded_file) -> Iterator[Page]:
     with opened(browser, recorded_file) as page:
-        page.evaluate(UNDRAWN)
         yield page
 
 
@@ -91,7 +90,6 @@ def live_file(locked) -> Path:
 @pytest.fixture(scope="session")
 def live_page(browser, live_file) -> Iterator[Page]:
     with opened(browser, live_file) as page:
-        page.evaluate(UNDRAWN)
         yield page
 
 

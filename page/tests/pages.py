@@ -25,15 +25,20 @@ NOISE = ("GPU stall due to ReadPixels", "willReadFrequently")
 PATIENCE = 60_000  # ms; a page is drawn by the processor here
 
 
+# The calls that make the processor draw the scene: most tests look at everything but its pixels.
+UNDRAWN = """window.undrawn = true;
+for (const call of ["drawElements", "drawArrays", "drawElementsInstanced"]) {
+  const draw = WebGL2RenderingContext.prototype[call];
+  WebGL2RenderingContext.prototype[call] = function (...all) { window.undrawn || draw.apply(this, all); };
+}"""
+
+
 @contextmanager
 def drawn(page: Page) -> Iterator[Page]:
-    """A page whose scene is drawn; the fixtures' pages leave that out, which takes the processor most of the time."""
-    page.evaluate("page.stage.renderer.render = page.render; page.draw()")
+    """A page whose scene is drawn."""
+    page.evaluate("window.undrawn = false; page.draw()")
     yield page
-    page.evaluate(UNDRAWN)
-
-
-UNDRAWN = "page.render ??= page.stage.renderer.render; page.stage.renderer.render = () => {}"
+    page.evaluate("window.undrawn = true")
 
 
 @contextmanager
@@ -45,6 +50,7 @@ def opened(browser: Browser, path: Path, address: str = "", **context: object) -
     look = {"viewport": {"width": 900, "height": 640}, "reduced_motion": "reduce"} | context
     surroundings = browser.new_context(offline=True, **look)
     surroundings.set_default_timeout(PATIENCE)
+    surroundings.add_init_script(UNDRAWN)
     page = surroundings.new_page()
     said: list[str] = []
     page.on("console", lambda message: said.append(message.text) if message.type in ("error", "warning") else None)

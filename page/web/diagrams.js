@@ -380,7 +380,9 @@ class Diagram {
   /** The values as numbers in the caption; of more than three wheels shorter and smaller, to fit beside each other. */
   show(values) {
     const many = values.length > 3;
-    const digits = Math.max(0, this.kind.digits - Number(many));
+    const size = Math.max(...this.ranges[1].map(Math.abs));  // what is small has more digits
+    const digits =
+        Math.max(0, this.kind.digits - Number(many), size < 1 ? Math.min(8, Math.ceil(2 - Math.log10(size))) : 0);
     this.values.classList.toggle('many', many);
     while (this.values.children.length > values.length) this.values.lastChild.remove();
     while (this.values.children.length < values.length) this.values.append(document.createElement('span'));

@@ -29,12 +29,18 @@ export const NOW = [
   ['M_3', 'M₃', 'N m', -8, 8, 0.1, 'axle torque'],
   ['M_brake', 'M<sub>b</sub>', 'N m', 0, 8, 0.1, 'brake'],
 ];
-/** Buttons that act as long as they are held: text, variable, value in N m from the sign of the spin, tooltip. */
+/**
+ * Buttons that act as long as they are held: text, variable, value in N m from the sign of the spin and the torque to
+ * push with, tooltip.
+ */
 export const HELD = [
-  ['◀ push back', 'M_3', (spin) => -6 * (spin || -1), 'Push against the way it rolls, with 6 N m about the axle'],
-  ['brake', 'M_brake', () => 6, 'A dry brake that holds up to 6 N m about the axle'],
-  ['push forward ▶', 'M_3', (spin) => 6 * (spin || -1), 'Push on the way it rolls, with 6 N m about the axle'],
+  ['◀ push back', 'M_3', (spin, torque) => -torque * (spin || -1), 'Push against the way it rolls, about the axle'],
+  ['brake', 'M_brake', (spin, torque) => torque, 'A dry brake that holds, up to its torque'],
+  ['push forward ▶', 'M_3', (spin, torque) => torque * (spin || -1), 'Push on the way it rolls, about the axle'],
 ];
+/** The torque to push with, N m: 6 N m for the paper's wheel, for others as their weight times radius; m, g, r_0, r. */
+export const torqueOf = (m, g, r_0, r) =>
+    Math.min(8, Number((6 * m * g * (r_0 + r) / (20 * 9.81 * 0.35)).toPrecision(6)));
 
 /** Lowest and highest, in SI, of what has no slider. */
 const OTHERS = {

@@ -1,6 +1,6 @@
 // The controls of the live page: the story or the scenes to begin with, the start, and what the reader does to the
 // wheel while it rolls.
-import {HELD, NOW, START, WHEEL} from '#knobs';
+import {HELD, NOW, START, torqueOf, WHEEL} from '#knobs';
 
 const SHELL = `
   <div class="segments tabs" role="radiogroup" aria-label="Story or scenes">
@@ -115,8 +115,12 @@ function makeKnob(host, [name, symbol, unit, low, high, step, what], take, hold 
 /** A button that sets a variable as long as it is held, by pointer or by key. */
 function makeHeld(host, [text, name, value, what], live, touched) {
   const button = document.createElement('button');
-  Object.assign(
-      button, {type: 'button', className: 'push', textContent: text, title: `${what}, as long as you hold it`});
+  Object.assign(button, {
+    type: 'button',
+    className: 'push',
+    textContent: text,
+    title: `${what}, as long as you hold it (6 N m for the paper's wheel)`
+  });
   host.append(button);
   let before = null;  // the value to return to; null while the button is not held
   const press = () => {
@@ -124,7 +128,7 @@ function makeHeld(host, [text, name, value, what], live, touched) {
     touched();
     before = live.present(name);
     live.hold(true);
-    live.setNow(name, value(live.spin()));
+    live.setNow(name, value(live.spin(), torqueOf(...['m', 'g', 'r_0', 'r'].map((part) => live.value(part)))));
     live.page.player.play();
   };
   const release = () => {

@@ -159,7 +159,7 @@ export class WheelModel {
     this.spot.visible = show.path;
     this.spot.position.set(...contact, 0.004 * this.look.size);
     this.uphill.visible = slope > 0;
-    const reach = 1.8 * (r_0 + r);
+    const reach = 1.2 * (r_0 + r);
     this.uphill.rotation.z = direction;
     this.uphill.position.set(contact[0] + reach * Math.cos(direction), contact[1] + reach * Math.sin(direction), 0);
     this.force.visible = show.force && FORCE.every((name) => table.has(name));
