@@ -18,6 +18,7 @@ RATES = tuple(f"{name}_dot" for name in POSE)
 RECORD = (*POSE, *RATES, "omega_z", "lambda_1", "lambda_2", "lambda_3", "E", "friction_mode", "n_events")
 # No graphics card is asked for; the rest keeps the browser from looking for hosts of its own.
 FLAGS = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
+FLAGS += ["--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas"]
 FLAGS += ["--no-first-run", "--disable-component-update", "--disable-sync", "--disable-quic"]
 FLAGS += ["--no-sandbox"] if os.geteuid() == 0 else []
 # Advice of the browser on how the tests look at pictures.
@@ -27,7 +28,7 @@ PATIENCE = 60_000  # ms; a page is drawn by the processor here
 
 # The calls that make the processor draw the scene: most tests look at everything but its pixels.
 UNDRAWN = """window.undrawn = true;
-for (const call of ["drawElements", "drawArrays", "drawElementsInstanced"]) {
+for (const call of ["clear", "drawElements", "drawArrays", "texSubImage2D", "generateMipmap"]) {
   const draw = WebGL2RenderingContext.prototype[call];
   WebGL2RenderingContext.prototype[call] = function (...all) { window.undrawn || draw.apply(this, all); };
 }"""
@@ -36,7 +37,7 @@ for (const call of ["drawElements", "drawArrays", "drawElementsInstanced"]) {
 @contextmanager
 def drawn(page: Page) -> Iterator[Page]:
     """A page whose scene is drawn."""
-    page.evaluate("window.undrawn = false; page.draw()")
+    page.evaluate("window.undrawn = false; page.dress(); page.draw()")
     yield page
     page.evaluate("window.undrawn = true")
 

@@ -271,3 +271,43 @@ def test_on_a_slope_the_ground_tilts_and_the_wheel_rolls_down(live):
     preset(live, "Paper, no friction")
     live.evaluate("page.draw()")
     assert live.evaluate(turn, up) == pytest.approx(up)
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (1366, 768), (390, 844)])
+def test_push_and_brake_stand_in_sight_beside_play(live, size):
+    live.set_viewport_size({"width": size[0], "height": size[1]})
+    boxes = [live.locator(place).bounding_box() for place in ("#play", *(f".push >> nth={k}" for k in range(3)))]
+    live.set_viewport_size({"width": 900, "height": 640})
+    for box, other in zip(boxes, boxes[1:], strict=False):
+        assert 0 <= box["x"] < other["x"] < size[0] - other["width"]
+        assert abs(box["y"] - other["y"]) < 20 and other["y"] + other["height"] <= size[1]
+
+
+def test_after_a_click_the_space_bar_plays_and_by_keyboard_it_presses_the_button(live):
+    preset(live, "Paper, no friction")
+    live.keyboard.press(" ")
+    assert live.evaluate("page.player.playing")
+    live.wait_for_function("/&?t=\\d/.test(location.hash)")  # the address follows while it plays
+    live.evaluate("page.player.pause(); document.querySelector('#theme').focus()")
+    theme = live.locator("#theme").get_attribute("title")
+    live.keyboard.press(" ")
+    assert live.locator("#theme").get_attribute("title") != theme and not live.evaluate("page.player.playing")
+    live.locator("#theme").click()
+    live.locator("#theme").click()
+
+
+def test_another_wheel_fills_the_scene_and_its_values_are_listed(live):
+    preset(live, "Paper, s = 0.03 m")
+    disc = {"m": 0.0085, "r_0": 0.0118, "r": 0.001, "J_x": 3.5e-7, "J_y": 3.5e-7, "J_z": 7e-7}
+    live.evaluate("(parts) => { page.live.setWheel(parts); page.live.compute(); page.draw(); }", disc)
+    assert live.evaluate("page.live.trouble ?? page.stage.scale") == pytest.approx(0.35 / 0.0128)
+    assert live.evaluate("page.live.value('s')") == pytest.approx(0.03 * 0.0128 / 0.35, rel=1e-2)
+    live.locator("#values summary").click()
+    rows = dict(row.split("\t")[:2] for row in live.locator("#values tr").all_inner_texts()[1:])
+    live.locator("#values summary").click()
+    assert {name: float(rows[name]) for name in disc} == disc
+    assert live.evaluate("page.live.link.write()").startswith("s=0.0011&m=0.0085&r_0=0.0118&r=0.001&J_x=3.5e-7")
+    slider = live.locator("#live [name=m]")
+    assert float(slider.input_value()) == pytest.approx(np.log10(disc["m"]), abs=0.01)
+    preset(live, "Paper, no friction")
+    assert live.evaluate("page.stage.scale") == 1

@@ -103,6 +103,16 @@ def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(car):
     within(absolute_error(there, expected), 64 * EPSILON, "pose off")
 
 
+def test_the_values_that_a_file_holds_are_listed(browser, scenes, tmp_path):
+    rows = {name: scenes["friction"][name] for name in ("time", *POSE)}
+    path = write_csv(tmp_path / "one.csv", rows | {"s": 0.03 + 0 * rows["time"], "m": 20 + 0 * rows["time"]})
+    assert view(path).returncode == 0
+    with opened(browser, path.with_suffix(".html")) as page:
+        page.locator("#values summary").click()
+        found = [row.split("\t") for row in page.locator("#values tr").all_inner_texts()]
+    assert found == [["", "one", ""], ["m", "20", "kg"], ["r_0", "0.3", "m"], ["r", "0.05", "m"], ["s", "0.03", "m"]]
+
+
 def test_a_slope_that_the_command_gives_tilts_the_ground_and_is_marked_uphill(car, recorded):
     up = [np.sin(np.radians(10)) * np.cos(1.5), np.sin(np.radians(10)) * np.sin(1.5), np.cos(np.radians(10))]
     car.evaluate("page.player.seek(0); page.draw()")

@@ -65,6 +65,21 @@ def test_a_picture_shows_scene_and_diagrams(live, tmp_path):
         assert len(np.unique(part.reshape(-1, 3), axis=0)) > 50
 
 
+def test_a_picture_is_named_after_its_instant_though_the_clock_goes_on(live, tmp_path):
+    preset(live, "Paper, no friction")
+    live.evaluate("""() => {
+      const encode = HTMLCanvasElement.prototype.toBlob;
+      HTMLCanvasElement.prototype.toBlob = function (...all) {
+        encode.apply(this, all);
+        page.player.seek(2.5);
+        HTMLCanvasElement.prototype.toBlob = encode;
+      };
+      page.player.seek(1.5);
+    }""")
+    assert taken(live, "png", tmp_path).name == "wheel_1.50s.png"
+    assert live.evaluate("page.player.t") == 2.5
+
+
 def test_a_film_is_a_webm_file_that_shows_the_motion(live, tmp_path):
     live.evaluate("page.live.load({values: {phi_dot_start: 0}, changes: [], stop: 10}); page.player.setSpeed(4)")
     with drawn(live):

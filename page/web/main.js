@@ -44,7 +44,7 @@ class Page {
   }
 
   /** The largest outer radius of the wheels, and how large the thing is that one looks at, in m. */
-  radius() { return this.wheels.reduce((most, {r_0, r}) => Math.max(most, r_0 + r), 0) || 0.3; }
+  radius() { return this.wheels.reduce((most, {r_0, r}) => Math.max(most, r_0 + r), 0) || 0.35; }
 
   size() { return Math.max(2 * this.radius(), ...this.bodies.map(({size: [x, y]}) => 0.9 * Math.hypot(x, y))); }
 
