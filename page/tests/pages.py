@@ -16,11 +16,8 @@ from support.paths import ROOT
 POSE = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi")
 RATES = tuple(f"{name}_dot" for name in POSE)
 RECORD = (*POSE, *RATES, "omega_z", "lambda_1", "lambda_2", "lambda_3", "E", "friction_mode", "n_events")
-# No graphics card is asked for; the rest keeps the browser from looking for hosts of its own.
-FLAGS = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
-FLAGS += ["--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas"]
-FLAGS += ["--no-first-run", "--disable-component-update", "--disable-sync", "--disable-quic"]
-FLAGS += ["--no-sandbox"] if os.geteuid() == 0 else []
+# The page beside the scene is composed at once, instead of by the processor in the place of a graphics card.
+FLAGS = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas")
 # Advice of the browser on how the tests look at pictures.
 NOISE = ("GPU stall due to ReadPixels", "willReadFrequently")
 PATIENCE = 60_000  # ms; a page is drawn by the processor here

@@ -123,68 +123,56 @@ function webm(codec, [width, height], pictures, duration) {
       {type: 'video/webm'});
 }
 
-/** Encodes pictures at given instants, where the browser has WebCodecs. */
-class Encoder {
-  static async make({width, height}) {
-    for (const [name, codec] of Object.entries(window.VideoEncoder ? CODECS : {})) {
-      const settings = {codec, width, height, bitrate: BITS, framerate: RATE};
-      const {supported} = await VideoEncoder.isConfigSupported(settings);
-      if (supported) return new Encoder(name, settings);
-    }
-    return null;
-  }
-
-  constructor(name, settings) {
-    Object.assign(this, {name, size: [settings.width, settings.height], pictures: []});
-    const output = (chunk) => {
-      const data = new Uint8Array(chunk.byteLength);
-      chunk.copyTo(data);
-      this.pictures.push({data, time: Math.round(chunk.timestamp / 1000), key: chunk.type === 'key'});
+/**
+ * {add(draw, k), end(count)}: draws the k-th picture and encodes it at its instant, where the browser has WebCodecs.
+ */
+async function encoder(canvas) {
+  const {width, height} = canvas;
+  const settings = {width, height, bitrate: BITS, framerate: RATE};
+  const pictures = [];
+  const output = (chunk) => {
+    const data = new Uint8Array(chunk.byteLength);
+    chunk.copyTo(data);
+    pictures.push({data, time: Math.round(chunk.timestamp / 1000), key: chunk.type === 'key'});
+  };
+  for (const [name, codec] of Object.entries(window.VideoEncoder ? CODECS : {})) {
+    if (!(await VideoEncoder.isConfigSupported({...settings, codec})).supported) continue;
+    const inner = new VideoEncoder({output, error: console.error});
+    inner.configure({...settings, codec});
+    const add = (draw, k) => {
+      draw();
+      const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / RATE)});
+      inner.encode(picture, {keyFrame: k % KEY === 0});
+      picture.close();
     };
-    this.encoder = new VideoEncoder({output, error: (fault) => (this.fault = fault)});
-    this.encoder.configure(settings);
+    return {add, end: (count) => inner.flush().then(() => webm(name, [width, height], pictures, 1000 * count / RATE))};
   }
-
-  async add(canvas, k) {
-    const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / RATE), duration: Math.round(1e6 / RATE)});
-    this.encoder.encode(picture, {keyFrame: k % KEY === 0});
-    picture.close();
-  }
-
-  async end(count) {
-    await this.encoder.flush();
-    return webm(this.name, this.size, this.pictures, 1000 * count / RATE);
-  }
+  return null;
 }
 
-/** The same by MediaRecorder, whose clock runs only while a picture is shown to it. */
-class Recorder {
-  static make(canvas) {
-    return window.MediaRecorder && MediaRecorder.isTypeSupported('video/webm') ? new Recorder(canvas) : null;
-  }
-
-  constructor(canvas) {
-    this.stream = canvas.captureStream(0);
-    this.recorder = new MediaRecorder(this.stream, {mimeType: 'video/webm', videoBitsPerSecond: BITS});
-    this.parts = [];
-    this.recorder.addEventListener('dataavailable', ({data}) => this.parts.push(data));
-    this.recorder.start();
-    this.recorder.pause();
-  }
-
-  async add() {
-    this.recorder.resume();
-    this.stream.getVideoTracks()[0].requestFrame();
-    await new Promise((done) => setTimeout(done, 1000 / RATE));
-    this.recorder.pause();
-  }
-
-  end() {
-    return new Promise((done) => {
-      this.recorder.addEventListener('stop', () => done(new Blob(this.parts, {type: 'video/webm'})));
-      this.recorder.stop();
-    });
-  }
+/** The same by MediaRecorder, whose clock runs only while a picture is drawn and shown to it. */
+function recorder(canvas) {
+  const inner = new MediaRecorder(canvas.captureStream(RATE), {mimeType: 'video/webm', videoBitsPerSecond: BITS});
+  const parts = [];
+  inner.addEventListener('dataavailable', ({data}) => parts.push(data));
+  inner.start();
+  inner.pause();
+  const pen = canvas.getContext('2d');
+  const add = async (draw) => {
+    draw();
+    inner.resume();
+    const begin = performance.now();
+    pen.resetTransform();
+    pen.drawImage(canvas, 0, 0);  // the browser takes what was drawn since its last picture of the page
+    await new Promise(requestAnimationFrame);
+    await new Promise((done) => setTimeout(done, 1000 / RATE - (performance.now() - begin)));
+    inner.pause();
+  };
+  const end = () => new Promise((done) => {
+    inner.addEventListener('stop', () => done(new Blob(parts, {type: 'video/webm'})));
+    inner.stop();
+  });
+  return {add, end};
 }
 
 /** Whether this browser makes films. */
@@ -201,13 +189,13 @@ export async function film(page, going) {
   player.seek(start);
   page.draw();
   const canvas = compose(page);
-  const writer = await Encoder.make(canvas) ?? Recorder.make(canvas);
+  const writer = await encoder(canvas) ?? recorder(canvas);
   const count = Math.floor((end - start) / speed * RATE) + 1;
   let k = 0;
   for (; k < count && going(); ++k) {
     player.seek(start + k * speed / RATE);
     page.draw();
-    await writer.add(compose(page, canvas), k);
+    await writer.add(() => compose(page, canvas), k);
     await new Promise((next) => setTimeout(next));  // the page stays alive
   }
   player.seek(t);
