@@ -21,6 +21,7 @@ POSE = ("X_O", "Y_O", "psi", "theta", "phi")
 SHOWN = ("Z_O", "omega_z", "friction_mode", "n_events", "lambda_1", "lambda_2", "lambda_3", "E")
 RATES = tuple(f"{name}_dot" for name in (*POSE, "Z_O"))
 BODY_POSE = ("X", "Y", "Z", "yaw", "pitch", "roll")
+BOOLEANS = {"False": "0", "True": "1"}  # as FMPy writes them
 ALIASES = {"psi": "yaw", "theta": "pitch", "phi": "roll"}  # of a car's body
 PAPER_WHEEL = (0.3, 0.05)  # r_0, r in m, (27)
 
@@ -70,7 +71,7 @@ def read_columns(path: Path) -> dict[str, list[str]]:
 def numbers(path: Path, name: str, texts: list[str]) -> Array:
     """One column as finite numbers."""
     try:
-        values = np.array(texts, dtype=float)
+        values = np.array([BOOLEANS.get(text, text) for text in texts], dtype=float)
     except ValueError:
         values = np.array([np.nan])
     if not np.isfinite(values).all():

@@ -106,11 +106,20 @@ def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(car):
 def test_the_values_that_a_file_holds_are_listed(browser, scenes, tmp_path):
     rows = {name: scenes["friction"][name] for name in ("time", *POSE)}
     path = write_csv(tmp_path / "one.csv", rows | {"s": 0.03 + 0 * rows["time"], "m": 20 + 0 * rows["time"]})
+    head, *lines = path.read_text().splitlines()
+    path.write_text("\n".join([f'{head},"keep_contact"', *(f"{line},False" for line in lines)]))
     assert view(path).returncode == 0
     with opened(browser, path.with_suffix(".html")) as page:
         page.locator("#values summary").click()
         found = [row.split("\t") for row in page.locator("#values tr").all_inner_texts()]
-    assert found == [["", "one", ""], ["m", "20", "kg"], ["r_0", "0.3", "m"], ["r", "0.05", "m"], ["s", "0.03", "m"]]
+    assert found == [
+        ["", "one", ""],
+        ["m", "20", "kg"],
+        ["r_0", "0.3", "m"],
+        ["r", "0.05", "m"],
+        ["s", "0.03", "m"],
+        ["keep_contact", "0", ""],
+    ]
 
 
 def test_a_slope_that_the_command_gives_tilts_the_ground_and_is_marked_uphill(car, recorded):
