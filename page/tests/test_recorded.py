@@ -111,6 +111,7 @@ def test_the_values_that_a_file_holds_are_listed(browser, scenes, tmp_path):
     assert view(path).returncode == 0
     with opened(browser, path.with_suffix(".html")) as page:
         page.locator("#values summary").click()
+        page.wait_for_selector("#values tr")
         found = [row.split("\t") for row in page.locator("#values tr").all_inner_texts()]
     assert found == [
         ["", "one", ""],

@@ -127,7 +127,7 @@ def test_beside_another_motion_the_text_is_faint_and_leads_back(live, story):
     story(5)
     faint = "[getComputedStyle(document.querySelector('#story .text')).opacity < 0.5, page.live.link.write()]"
     assert live.evaluate(faint) == [False, "step=5"]
-    live.evaluate("page.live.setStart('slope', 0.35); page.live.compute()")
+    live.evaluate("page.live.setStart('slope', 0.35); page.live.frame()")
     assert live.evaluate(faint)[0] and "ended" not in live.locator("#story .text").inner_text()
     assert f"{live.evaluate('page.wheels[0].table.end'):.4g} s computed" in live.locator("#message").inner_text()
     live.get_by_role("button", name="Back to the story's wheel").click()

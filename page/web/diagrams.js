@@ -389,7 +389,7 @@ class Diagram {
     values.forEach((value, i) => {
       const place = this.values.children[i];
       place.style.color = this.wheels[i].colour;
-      place.textContent = value.toFixed(digits).replace('-', '−');
+      place.textContent = value.toFixed(digits).replace(/^-([0.]+)$/, '$1').replace('-', '−');
     });
   }
 }
