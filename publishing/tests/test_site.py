@@ -81,10 +81,11 @@ def test_a_filled_figure_stands_within_its_sentence(site: Path, tmp_path: Path) 
     assert sum(page.found for page in places.values()) > 50
     assert [path for path, page in places.items() if page.split] == []
     sentence = "# A page\n\nThe run took about\n<!-- = commands.first_run -->44<!-- . --> s.\n"
-    for text, split in ((sentence, 1), (reflowed(sentence), 0)):
-        (tmp_path / "README.md").write_text(text)
-        build(tmp_path, tmp_path / "out", "-D", "html_favicon=", "-E")
-        page = Places((tmp_path / "out" / "README.html").read_text(encoding="utf-8"))
+    (tmp_path / "README.md").write_text(sentence)
+    (tmp_path / "mended.md").write_text(reflowed(sentence))
+    build(tmp_path, tmp_path / "out", "-D", "html_favicon=")
+    for name, split in (("README", 1), ("mended", 0)):
+        page = Places((tmp_path / "out" / f"{name}.html").read_text(encoding="utf-8"))
         assert (page.found, page.split) == (1, split)
 
 
@@ -107,10 +108,14 @@ def test_the_reference_of_the_c_header_has_every_function(site: Path) -> None:
     assert {name for name in functions if f'id="{name.replace("_", "-")}' not in text and name not in text} == set()
 
 
-@pytest.mark.parametrize(
-    "page", ["[gone](gone.md)", "[gone](#gone)", "[gone](gone.py)", "[gone](gone/)", "![gone](gone.png)"]
-)
-def test_a_link_that_leads_nowhere_stops_the_site(tmp_path: Path, page: str) -> None:
-    (tmp_path / "README.md").write_text(f"# A page\n\n{page}\n")
-    done = build(tmp_path, tmp_path / "out", "-D", "html_favicon=")
-    assert done.returncode != 0 and "gone" in done.stderr
+GONE = ["[gone](gone.md)", "[gone](#gone)", "[gone](gone.py)", "[gone](gone/)", "![gone](gone.png)"]
+
+
+def test_links_that_lead_nowhere_stop_the_site(tmp_path: Path) -> None:
+    (tmp_path / "start.md").write_text("# A page\n\n[another](page0.md)\n")
+    for number, link in enumerate(GONE):
+        (tmp_path / f"page{number}.md").write_text(f"# Page {number}\n\n{link}\n")
+    done = build(tmp_path, tmp_path / "out", "-D", "html_favicon=", "-D", "root_doc=start")
+    assert done.returncode != 0 and "start.md" not in done.stderr
+    warned = {int(number) for number in re.findall(r"page(\d)\.md:\d+: WARNING.*gone", done.stderr)}
+    assert warned == set(range(len(GONE)))
