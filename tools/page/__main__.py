@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from page import document, options
+from page import description, document, options
 from page.bodies import Body, ViewError, read_bodies
 from page.document import Choice
 
@@ -30,14 +30,13 @@ def live_arguments(words: list[str]) -> argparse.Namespace:
     """What ./scripts/page gives."""
     parser = argparse.ArgumentParser(prog="scripts/page", description="The page that holds the wheel itself.")
     parser.add_argument("--wasm", type=Path, required=True)
-    parser.add_argument("--description", type=Path, required=True)
     parser.add_argument("--output", "-o", type=Path, required=True)
     return parser.parse_args(words)
 
 
 def recorded(arguments: argparse.Namespace) -> int:
-    shape = None if arguments.r_0 is None else (arguments.r_0, arguments.r)
-    files = [read_bodies(path, shape, tuple(arguments.box) if arguments.box else None) for path in arguments.files]
+    given = {name: getattr(arguments, name) for name in options.GIVEN if getattr(arguments, name) is not None}
+    files = [read_bodies(path, given, arguments.box) for path in arguments.files]
     bodies = unlike([body for file in files for body in file])
     bodies, every = document.thinned(bodies)
     if every > 1:
@@ -81,10 +80,8 @@ def choices(bodies: list[Body], labels: dict[str, str], files: int) -> list[Choi
 
 
 def live(arguments: argparse.Namespace) -> int:
-    from page import live_wheel
-
-    source = live_wheel.source(arguments.wasm, arguments.description)
-    return document.write(arguments.output, "The wheel, live", [], {}, [Choice("This wheel", [["live"]])], live=source)
+    choice = Choice("This wheel", [["live"]])
+    return document.write(arguments.output, "The wheel, live", [], {}, [choice], live=description.live(arguments.wasm))
 
 
 if __name__ == "__main__":

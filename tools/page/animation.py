@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import io
-import os
-import shutil
 import sys
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import sync_playwright
+
+from page.browser import chromium
 
 FRAMES_PER_SECOND = 12.5
 WINDOW = {"width": 1080, "height": 560}  # CSS pixels
@@ -19,15 +18,12 @@ LIMIT = 1_500_000  # bytes
 STILL = """document.body.classList.add('bare');
 document.querySelector('[name=follow]').click();
 page.stage.camera.position.multiplyScalar(0.72)"""
-FLAGS = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
-FLAGS += ["--no-sandbox"] if os.geteuid() == 0 else []
 
 
 def frames(page_file: Path) -> list[Image.Image]:
     """The page without its controls, from the first instant to the last."""
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
-        page = chromium.new_context(viewport=WINDOW, reduced_motion="reduce", offline=True).new_page()
+    with chromium() as browser:
+        page = browser.new_context(viewport=WINDOW, reduced_motion="reduce", offline=True).new_page()
         page.set_default_timeout(120_000)
         page.goto(page_file.resolve().as_uri())
         page.wait_for_function("window.page && page.views")
@@ -39,7 +35,6 @@ def frames(page_file: Path) -> list[Image.Image]:
             page.evaluate("(t) => { page.player.seek(t); page.draw(); }", k / FRAMES_PER_SECOND)
             image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
             shots.append(image.resize((WIDTH, round(WIDTH * image.height / image.width)), Image.Resampling.LANCZOS))
-        chromium.close()
     return shots
 
 

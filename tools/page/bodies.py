@@ -8,19 +8,20 @@ from __future__ import annotations
 
 import csv
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from page.description import parameters
+
 Array = NDArray[np.float64]
 POSE = ("X_O", "Y_O", "psi", "theta", "phi")
 SHOWN = ("Z_O", "omega_z", "friction_mode", "n_events", "lambda_1", "lambda_2", "lambda_3", "E")
-SHAPE = ("r_0", "r")
-SLOPE = ("slope", "slope_direction")
 RATES = tuple(f"{name}_dot" for name in (*POSE, "Z_O"))
 BODY_POSE = ("X", "Y", "Z", "yaw", "pitch", "roll")
+BOOLEANS = {"False": "0", "True": "1"}  # as FMPy writes them
 ALIASES = {"psi": "yaw", "theta": "pitch", "phi": "roll"}  # of a car's body
 PAPER_WHEEL = (0.3, 0.05)  # r_0, r in m, (27)
 
@@ -33,15 +34,13 @@ class ViewError(Exception):
 class Body:
     """A wheel (size None) or a box (size: length, width, height in m), one row per communication point.
 
-    slope: of a wheel's road and the direction in which it rises, in rad, if the file holds them.
+    parameters: a wheel's values that do not change, among them r_0 and r, as far as they are known.
     """
 
     name: str
     columns: dict[str, Array]
-    r_0: float = 0.0
-    r: float = 0.0
+    parameters: dict[str, float] = field(default_factory=dict)
     size: tuple[float, float, float] | None = None
-    slope: tuple[float, ...] = ()
 
     @property
     def start(self) -> Array:
@@ -72,7 +71,7 @@ def read_columns(path: Path) -> dict[str, list[str]]:
 def numbers(path: Path, name: str, texts: list[str]) -> Array:
     """One column as finite numbers."""
     try:
-        values = np.array(texts, dtype=float)
+        values = np.array([BOOLEANS.get(text, text) for text in texts], dtype=float)
     except ValueError:
         values = np.array([np.nan])
     if not np.isfinite(values).all():
@@ -80,8 +79,8 @@ def numbers(path: Path, name: str, texts: list[str]) -> Array:
     return values
 
 
-def read_bodies(path: Path, shape: tuple[float, float] | None, box: tuple[float, float, float] | None) -> list[Body]:
-    """All bodies of one file. shape: r_0, r in m, None: from the motion; box: size of a car's body in m."""
+def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | None = None) -> list[Body]:
+    """All bodies of one file. given: parameters in the place of the file's; box: size of a car's body in m."""
     groups: dict[str, dict[str, list[str]]] = defaultdict(dict)
     texts = read_columns(path)
     time = numbers(path, "time", texts.pop("time"))
@@ -99,7 +98,7 @@ def read_bodies(path: Path, shape: tuple[float, float] | None, box: tuple[float,
             raise ViewError(f"{path} lacks the column {', '.join(missing)}.")
         columns = {column: numbers(path, column, group[column])[kept] for column in wanted}
         if columns:
-            bodies.append(make_body(prefix or path.stem, {"time": time[kept]} | columns, shape, box))
+            bodies.append(make_body(prefix or path.stem, {"time": time[kept]} | columns, given or {}, box))
     if not bodies:
         raise ViewError(f"{path} holds no body: a wheel needs the columns {', '.join(POSE)}, a car's body X, Y, Z.")
     return [fit_box(body, bodies, box) for body in bodies]
@@ -108,20 +107,20 @@ def read_bodies(path: Path, shape: tuple[float, float] | None, box: tuple[float,
 def known(group: dict[str, list[str]]) -> tuple[dict[str, list[str]], list[str]]:
     """A body's columns under the names used here, and those to show; none of a unit that is no body."""
     if all(column in group for column in POSE):
-        return group, [column for column in (*POSE, *SHOWN, *RATES, *SHAPE, *SLOPE) if column in group]
+        return group, [column for column in (*POSE, *SHOWN, *RATES, *parameters()) if column in group]
     if {"X", "Y", "Z"} <= group.keys():
         group = {ALIASES.get(column, column): text for column, text in group.items()}
         return group, [column for column in BODY_POSE if column in group]
     return group, []
 
 
-def make_body(name: str, columns: dict[str, Array], shape: tuple[float, float] | None, box) -> Body:
+def make_body(name: str, columns: dict[str, Array], given: dict[str, float], box: tuple | None) -> Body:
     """A wheel or a box out of its columns; angles of a box that are missing are zero."""
     if "theta" in columns:
-        recorded = tuple(float(columns.pop(edge)[0]) for edge in SHAPE if edge in columns)
-        r_0, r = shape or (recorded if len(recorded) == 2 else shape_of(columns))
-        slope = tuple(float(columns.pop(name)[0]) for name in SLOPE if name in columns)
-        return Body(name, columns, r_0, r, slope=slope)
+        values = {value: float(columns.pop(value)[0]) for value in parameters() if value in columns} | given
+        if not {"r_0", "r"} <= values.keys():
+            values |= dict(zip(("r_0", "r"), shape_of(columns), strict=True))
+        return Body(name, columns, values)
     zero = np.zeros_like(columns["time"])
     return Body(name, dict.fromkeys(BODY_POSE, zero) | columns, size=box or (0.0, 0.0, 0.0))
 
@@ -152,6 +151,6 @@ def fit_box(body: Body, bodies: list[Body], box: tuple[float, float, float] | No
         yaw = body.columns["yaw"][0]
         apart = np.array([wheel.start[:2] - body.start[:2] for wheel in wheels])
         along, across = apart @ [np.cos(yaw), np.sin(yaw)], apart @ [-np.sin(yaw), np.cos(yaw)]
-        least = 2 * max(wheel.r_0 + wheel.r for wheel in wheels)
+        least = 2 * max(wheel.parameters["r_0"] + wheel.parameters["r"] for wheel in wheels)
         size = (max(np.ptp(along), least), max(0.8 * np.ptp(across), 0.5 * least), 0.7 * least)
     return Body(body.name, body.columns, size=tuple(float(edge) for edge in size))

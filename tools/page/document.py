@@ -15,9 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
-from page.bodies import SLOPE, Body
+from page import description
+from page.bodies import Body
 
 WEB = Path(__file__).parent / "web"
+SHAPE = ("r_0", "r", "slope", "slope_direction")
 PAGE_LIMIT = 3_000_000  # bytes of a page
 RECORDED_LIMIT = 1_500_000  # bytes of them for recorded motions
 THREE = "nicegui/elements/scene/dist/index.js"  # three.js and its OrbitControls, minified, within PyPI's nicegui
@@ -76,16 +78,8 @@ def encoded(body: Body, label: str) -> dict:
     entry = {"name": body.name, "label": label, "columns": columns}
     if body.size is not None:
         return entry | {"size": body.size}
-    return entry | {"r_0": body.r_0, "r": body.r} | dict(zip(SLOPE, body.slope, strict=False))
-
-
-def scale_of(bodies: list[Body]) -> dict[str, float]:
-    """How large the thing is that one looks at, and how high its middle lies, in m."""
-    wheels = [body for body in bodies if body.size is None]
-    radius = max((wheel.r_0 + wheel.r for wheel in wheels), default=0.3)
-    boxed = [body for body in bodies if body.size is not None]
-    size = max([2 * radius, *(0.9 * float(np.hypot(*body.size[:2])) for body in boxed)])
-    return {"size": size, "height": 0.8 * radius}
+    shape = {name: body.parameters[name] for name in SHAPE if name in body.parameters}
+    return entry | shape | {"parameters": body.parameters}
 
 
 def write(
@@ -103,8 +97,9 @@ def write(
         "wheels": [entry for entry in every_body if "r_0" in entry],
         "bodies": [entry for entry in every_body if "size" in entry],
         "choices": [{"label": choice.label, "views": choice.views} for choice in choices],
+        "variables": description.variables(),
         "live": live,
-    } | scale_of(bodies)
+    }
     parts = {
         "title": title.replace("&", "&amp;").replace("<", "&lt;"),
         "licences": notice,

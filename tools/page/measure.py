@@ -1,4 +1,4 @@
-"""Measures the pages in headless Chromium, drawn by the processor at twice the resolution: measure.py LIVE RECORDED
+"""Measures the pages in headless Chromium, drawn at twice the resolution: python -m page.measure LIVE RECORDED
 
 Sizes, the time to the first picture, the processor time of the page itself until then, without drawing the scene, and
 pictures per second of processor time go into docs/results/data/page.csv.
@@ -7,12 +7,12 @@ pictures per second of processor time go into docs/results/data/page.csv.
 from __future__ import annotations
 
 import csv
-import os
-import shutil
 import sys
 from pathlib import Path
 
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
+
+from page.browser import chromium
 
 DATA = Path(__file__).resolve().parents[2] / "docs" / "results" / "data" / "page.csv"
 FRAMES = 10
@@ -22,8 +22,6 @@ LOOK = {
     "reduced_motion": "reduce",
     "offline": True,
 }
-FLAGS = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
-FLAGS += ["--no-sandbox"] if os.geteuid() == 0 else []
 DRAW = """(frames) => {
   const gl = page.stage.renderer.getContext();
   let own = 0;
@@ -83,10 +81,8 @@ def measure(browser: Browser, name: str, path: Path) -> dict[str, float]:
 
 def main() -> None:
     live, recorded = (Path(argument) for argument in sys.argv[1:])
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
-        figures = measure(chromium, "live", live) | measure(chromium, "recorded", recorded)
-        chromium.close()
+    with chromium() as browser:
+        figures = measure(browser, "live", live) | measure(browser, "recorded", recorded)
     with DATA.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(["figure", "measured"])

@@ -3,8 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
+
+GIVEN = ("r_0", "r", "slope", "slope_direction")
+
+
+def angle(text: str) -> float:
+    """An angle in rad, or in degrees with `deg`."""
+    return math.radians(float(text[:-3])) if text.endswith("deg") else float(text)
 
 
 def arguments(words: list[str] | None = None) -> argparse.Namespace:
@@ -17,6 +25,8 @@ def arguments(words: list[str] | None = None) -> argparse.Namespace:
     add("--labels", nargs="+", default=[], help="what the bodies are called on the page, in their order")
     add("--r_0", type=float, help="ring radius in m (default: from Z_O and theta)")
     add("--r", type=float, help="tube radius in m (default: from Z_O and theta)")
+    add("--slope", type=angle, help="of the road, in rad, or 8deg (default: the file's, else level)")
+    add("--slope_direction", type=angle, help="in which the road rises, from X (default: the file's, else X)")
     add("--box", nargs=3, type=float, metavar=("L", "W", "H"), help="size of a car's body in m")
     given = parser.parse_args(words)
     if missing := [str(path) for path in given.files if not path.is_file()]:
@@ -25,6 +35,8 @@ def arguments(words: list[str] | None = None) -> argparse.Namespace:
         sys.exit("view: --r_0 and --r are given together or not at all.")
     if given.r_0 is not None and not (given.r_0 > 0 and given.r >= 0):
         sys.exit(f"view: --r_0 {given.r_0:g} --r {given.r:g}: r_0 must be positive and r not negative.")
+    if given.slope is not None and not 0 <= given.slope < math.pi / 2:
+        sys.exit(f"view: --slope {given.slope:g} rad: from 0 to less than 90deg; --slope_direction points uphill.")
     given.output = given.output or given.files[0].with_suffix(".html")
     return given
 

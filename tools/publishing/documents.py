@@ -4,7 +4,8 @@ A place in Markdown or HTML is `<!-- = report.figure -->4e-8<!-- . -->`: the com
 docs/results/data/report.csv, which `scripts/report` measures, and what stands up to the next comment is written here.
 Between `<!-- table = name -->` and `<!-- end of table -->` stands docs/results/data/name.csv as a table; between
 `<!-- file = path -->` and `<!-- end of file -->` a file as code; after `<!-- variables -->` all variables.
-With --check it changes nothing and tells by its exit status whether a page and the data differ.
+No line begins with a place: Markdown takes a comment at the beginning of a line for a block of HTML, which ends the
+paragraph. With --check nothing is changed; the exit status is 1 where a page differs from the data or breaks the rule.
 """
 
 from __future__ import annotations
@@ -24,6 +25,9 @@ DATA = ROOT / "docs" / "results" / "data"
 PLACE = re.compile(r"(<!-- = ([\w.]+) -->)(.*?)(<!-- \. -->)", re.DOTALL)
 TABLE = re.compile(r"(<!-- table = (\w+) -->)(.*?)(<!-- end of table -->)", re.DOTALL)
 FILE = re.compile(r"(<!-- file = ([\w./]+) -->)(.*?)(<!-- end of file -->)", re.DOTALL)
+# The end of a line, from the last word that may begin one, and the place that begins the next line.
+WORD = r"(?:<!-- = [\w.]+ -->[^\n]*?<!-- \. -->|\S)+"
+BEGINNING = re.compile(rf" ((?![-+*=#>|<]){WORD}(?: [-+*=#>|]\S*)*)\n([ \t]*)(?=<!-- = )")
 SCIENTIFIC = re.compile(r"[\d.]+e-?\d+")
 
 
@@ -67,6 +71,13 @@ def with_figures(text: str, figures: Mapping[str, str], name: str = "the page", 
     return FILE.sub(fill_file, TABLE.sub(fill_table, PLACE.sub(fill, text)))
 
 
+def reflowed(text: str) -> str:
+    """The page's text with each place that began a line behind the last word of the line before."""
+    while (fresh := BEGINNING.sub(r"\n\2\1 ", text)) != text:
+        text = fresh
+    return text
+
+
 def pages() -> list[Path]:
     """Every page that is kept under version control."""
     command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "*.md", "*.html"]
@@ -82,6 +93,7 @@ def main() -> int:
     for page in pages():
         text = page.read_text(encoding="utf-8")
         fresh = variables.with_tables(with_figures(text, figures, page.name), known, page)
+        fresh = reflowed(fresh) if page.suffix == ".md" else fresh
         if text != fresh:
             stale += 1
             print(f"{'Stale' if check else 'Filled'}: {page.relative_to(ROOT)}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import fcntl
-import shutil
 import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -12,19 +11,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 from support.driver import HEADLINE
 from support.paths import ROOT
 
+from page.browser import chromium
 from page.tests.pages import FLAGS, RECORD, opened, view, write_csv
 
 
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
-        yield chromium
-        chromium.close()
+    with chromium(*FLAGS) as found:
+        yield found
 
 
 @pytest.fixture(scope="session")

@@ -16,13 +16,27 @@ from support.paths import ROOT
 POSE = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi")
 RATES = tuple(f"{name}_dot" for name in POSE)
 RECORD = (*POSE, *RATES, "omega_z", "lambda_1", "lambda_2", "lambda_3", "E", "friction_mode", "n_events")
-# No graphics card is asked for; the rest keeps the browser from looking for hosts of its own.
-FLAGS = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
-FLAGS += ["--no-first-run", "--disable-component-update", "--disable-sync", "--disable-quic"]
-FLAGS += ["--no-sandbox"] if os.geteuid() == 0 else []
+# The page beside the scene is composed at once, instead of by the processor in the place of a graphics card.
+FLAGS = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas")
 # Advice of the browser on how the tests look at pictures.
 NOISE = ("GPU stall due to ReadPixels", "willReadFrequently")
 PATIENCE = 60_000  # ms; a page is drawn by the processor here
+
+
+# The calls that make the processor draw the scene: most tests look at everything but its pixels.
+UNDRAWN = """window.undrawn = true;
+for (const call of ["clear", "drawElements", "drawArrays", "texSubImage2D", "generateMipmap"]) {
+  const draw = WebGL2RenderingContext.prototype[call];
+  WebGL2RenderingContext.prototype[call] = function (...all) { window.undrawn || draw.apply(this, all); };
+}"""
+
+
+@contextmanager
+def drawn(page: Page) -> Iterator[Page]:
+    """A page whose scene is drawn."""
+    page.evaluate("window.undrawn = false; page.dress(); page.draw()")
+    yield page
+    page.evaluate("window.undrawn = true")
 
 
 @contextmanager
@@ -34,6 +48,7 @@ def opened(browser: Browser, path: Path, address: str = "", **context: object) -
     look = {"viewport": {"width": 900, "height": 640}, "reduced_motion": "reduce"} | context
     surroundings = browser.new_context(offline=True, **look)
     surroundings.set_default_timeout(PATIENCE)
+    surroundings.add_init_script(UNDRAWN)
     page = surroundings.new_page()
     said: list[str] = []
     page.on("console", lambda message: said.append(message.text) if message.type in ("error", "warning") else None)

@@ -1,11 +1,15 @@
-"""The FMU's own documentation page in a browser: it can be read without scrolling sideways."""
+"""Documents in a browser: the FMU's own page is read without scrolling sideways; the site's formulas and its search."""
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser
+from support.bounds import beyond, within
+from support.paths import ROOT
 
 # Tags of the page and of its parts that are wider or higher than the place they have.
 OVERFLOWING = """() => [document.documentElement, ...document.querySelectorAll('math[display=block], table, pre, img')]
@@ -30,3 +34,66 @@ def test_formulas_tables_and_commands_fit_the_page_without_scroll_bars(browser: 
 
 def test_on_a_page_that_is_too_narrow_the_overflow_is_seen(browser: Browser, fmu: str) -> None:
     assert {"html", "math", "table"} <= overflowing(browser, fmu, 200)
+
+
+WRITTEN = {
+    "README": "# Start\n\n```{toctree}\nlong\nright\n```\n",
+    "long": "# Much of both\n\nWhat is critical. A spin.\n\n" + "It is critical. So is spin.\n\n" * 3,
+    "right": "# The answer\n\nAbove the critical spin $r_0$ it stays up; the critical spin follows from gravity.\n",
+}
+SUNK = """() => {
+  const [base, low] = [...document.querySelector('msub').children].map((part) => part.getBoundingClientRect());
+  return (low.bottom - base.bottom) / base.height;
+}"""
+
+
+@pytest.fixture(scope="module")
+def small_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("site")
+    for name, text in WRITTEN.items():
+        (folder / f"{name}.md").write_text(text)
+    command = [
+        "sphinx",
+        "-q",
+        "-c",
+        ROOT / "tools" / "publishing" / "site",
+        "-D",
+        "html_favicon=",
+        "-b",
+        "html",
+        folder,
+    ]
+    subprocess.run([sys.executable, "-m", *map(str, command), str(folder / "out")], check=True)
+    return folder / "out"
+
+
+def sunk(browser: Browser, page_file: Path) -> float:
+    """How far a subscript stands below its letter, in heights of the letter."""
+    page = browser.new_page()
+    page.goto(page_file.as_uri())
+    page.evaluate("document.fonts.ready")
+    found = page.evaluate(SUNK)
+    page.close()
+    return found
+
+
+def test_a_digit_below_a_letter_is_lowered(browser: Browser, small_site: Path) -> None:
+    beyond(sunk(browser, small_site / "right.html"), 0.1, "subscript below its letter, heights of the letter")
+    (small_site / "_static" / "math.woff").rename(small_site / "math.woff")
+    without = sunk(browser, small_site / "right.html")
+    (small_site / "math.woff").rename(small_site / "_static" / "math.woff")
+    within(without, 0.1, "subscript without a font for mathematics, heights of the letter")
+
+
+def test_the_search_finds_first_what_holds_the_phrase_and_shows_it_without_a_server(
+    browser: Browser, small_site: Path
+) -> None:
+    page = browser.new_page()
+    faults: list[str] = []
+    page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
+    page.goto(f"{(small_site / 'search.html').as_uri()}?q=critical+spin")
+    page.wait_for_selector("#search-results li:nth-child(2) p")
+    assert page.locator("#search-results li a").all_inner_texts()[:2] == ["The answer", "Much of both"]
+    assert "Above the critical spin" in page.locator("#search-results li p").first.inner_text()
+    page.close()
+    assert faults == []

@@ -6,8 +6,8 @@ import re
 
 import numpy as np
 import pytest
-from fmpy.fmi2 import FMU2Slave
 from support.bounds import beyond, within
+from support.driver import FMU2Wheel
 
 from page.tests.pages import column, preset
 
@@ -28,36 +28,26 @@ RUN = """([values, changes, record]) => {
 }"""
 
 
-def by_fmu(folder: str, description, values: dict, changes: list) -> np.ndarray:
+def by_fmu(fmu: FMU2Wheel, values: dict, changes: list) -> np.ndarray:
     """The same calls that the page makes, to the native library."""
-    reference = {variable.name: variable.valueReference for variable in description.modelVariables}
-    unit = FMU2Slave(guid=description.guid, unzipDirectory=folder, modelIdentifier="wheel", instanceName="wheel")
-    unit.instantiate()
-    for name, value in values.items():
-        unit.setReal([reference[name]], [value])
-    unit.setupExperiment()
-    unit.enterInitializationMode()
-    unit.exitInitializationMode()
-    wanted = [reference[name] for name in NAMES]
-    rows = [unit.getReal(wanted)]
+    fmu.start(**values)
+    rows = [fmu.get(*NAMES)]
     for k in range(1000):
         for _, name, value in [change for change in changes if round(change[0] / STEP) == k]:
-            unit.setReal([reference[name]], [value])
-        unit.doStep(k * STEP, STEP)
-        rows.append(unit.getReal(wanted))
-    unit.terminate()
-    unit.freeInstance()
+            fmu.set(**{name: value})
+        fmu.fmi2DoStep(fmu.component, k * STEP, STEP, 1)
+        rows.append(fmu.get(*NAMES))
     return np.array(rows)
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_the_wheel_in_the_page_has_the_bits_of_the_fmu(live, fmu, description, scene):
+def test_the_wheel_in_the_page_has_the_bits_of_the_fmu(live, wheel, scene):
     values, changes = SCENES[scene]
     columns, ended = live.evaluate(RUN, [values, changes, list(NAMES)])
     assert ended is None
-    expected = by_fmu(fmu, description, values, changes)
+    expected = by_fmu(wheel(), values, changes)
     assert np.array(columns).T.tobytes() == expected.tobytes()
-    other = by_fmu(fmu, description, {**values, "phi_dot_start": np.nextafter(-2.0, 0)}, changes)
+    other = by_fmu(wheel(), {**values, "phi_dot_start": np.nextafter(-2.0, 0)}, changes)
     assert other.tobytes() != expected.tobytes()
 
 
@@ -196,7 +186,7 @@ def test_forward_is_the_way_the_wheel_rolls_and_back_is_against_it(live, spin):
 @pytest.mark.parametrize("diagram", ["phase", "spin", "path"])
 def test_while_a_button_is_held_the_diagrams_keep_their_axes(live, diagram):
     axes = """() => [[page.player.start, page.player.end],
-      ...page.plots.plots.map(({ low, high }) => [low, high]), ...page.plots.portrait.ranges]"""
+      ...page.plots.curves.map(({ ranges }) => ranges[1]), ...page.plots.portrait.ranges]"""
     preset(live, "Paper, no friction")
     live.evaluate("(name) => { page.plots.portrait.choose(name); page.player.seek(1); }", diagram)
     before = live.evaluate(axes)
@@ -225,11 +215,12 @@ def test_every_button_has_a_tooltip_and_the_help_names_it(live):
         buttons, "all => all.filter((x) => !x.title && !x.closest('label')?.title).map((x) => x.outerHTML)"
     )
     assert len(titles) > 30 and untold == []
+    diagrams = live.eval_on_selector_all(".plot canvas", "all => all.map((x) => x.ariaLabel)")
+    assert len(set(diagrams)) == 5 and all(len(name) > 20 for name in diagrams)  # for screen readers
     live.locator("#help summary").click()
     text = live.locator("#help .card").inner_text()
-    names = (
-        "Follow,Path,Axes,Force,Push forward,push back,brake,Keep this motion,Scenes,Story,Take with you,colours,play"
-    )
+    names = "Follow,Path,Axes,Force,Push forward,push back,brake,Keep this motion,Scenes,Story,Take with you"
+    names += ",colours,play,Values,The wheel itself"
     assert [name for name in names.split(",") if name not in text] == []
     live.locator("#help summary").click()
 
@@ -271,3 +262,44 @@ def test_on_a_slope_the_ground_tilts_and_the_wheel_rolls_down(live):
     preset(live, "Paper, no friction")
     live.evaluate("page.draw()")
     assert live.evaluate(turn, up) == pytest.approx(up)
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (1366, 768), (390, 844)])
+def test_push_and_brake_stand_in_sight_beside_play(live, size):
+    live.set_viewport_size({"width": size[0], "height": size[1]})
+    boxes = [live.locator(place).bounding_box() for place in ("#play", *(f".push >> nth={k}" for k in range(3)))]
+    live.set_viewport_size({"width": 900, "height": 640})
+    for box, other in zip(boxes, boxes[1:], strict=False):
+        assert 0 <= box["x"] < other["x"] < size[0] - other["width"]
+        assert abs(box["y"] - other["y"]) < 20 and other["y"] + other["height"] <= size[1]
+
+
+def test_after_a_click_the_space_bar_plays_and_by_keyboard_it_presses_the_button(live):
+    preset(live, "Paper, no friction")
+    live.keyboard.press(" ")
+    assert live.evaluate("page.player.playing")
+    live.wait_for_function("/&?t=\\d/.test(location.hash)")  # the address follows while it plays
+    live.evaluate("page.player.pause(); document.querySelector('#theme').focus()")
+    theme = live.locator("#theme").get_attribute("title")
+    live.keyboard.press(" ")
+    assert live.locator("#theme").get_attribute("title") != theme and not live.evaluate("page.player.playing")
+    live.locator("#theme").click()
+    live.locator("#theme").click()
+
+
+def test_another_wheel_fills_the_scene_and_its_values_are_listed(live):
+    preset(live, "Paper, s = 0.03 m")
+    disc = {"m": 0.0085, "r_0": 0.0118, "r": 0.001, "J_x": 3.5e-7, "J_y": 3.5e-7, "J_z": 7e-7}
+    live.evaluate("(parts) => { page.live.setWheel(parts); page.live.compute(); page.draw(); }", disc)
+    assert live.evaluate("page.live.trouble ?? page.stage.scale") == pytest.approx(0.35 / 0.0128)
+    assert live.evaluate("page.live.value('s')") == pytest.approx(0.03 * 0.0128 / 0.35, rel=1e-2)
+    live.locator("#values summary").click()
+    live.wait_for_selector("#values tr")
+    rows = dict(row.split("\t")[:2] for row in live.locator("#values tr").all_inner_texts()[1:])
+    live.locator("#values summary").click()
+    assert {name: float(rows[name]) for name in disc} == disc
+    assert live.evaluate("page.live.link.write()").startswith("s=0.0011&m=0.0085&r_0=0.0118&r=0.001&J_x=3.5e-7")
+    slider = live.locator("#live [name=m]")
+    assert float(slider.input_value()) == pytest.approx(np.log10(disc["m"]), abs=0.01)
+    preset(live, "Paper, no friction")
+    assert live.evaluate("page.stage.scale") == 1

@@ -8,7 +8,8 @@ from support.bounds import EPSILON, absolute_error, beyond, within
 
 POINTS = """(name) => {
   page.plots.portrait.choose(name);
-  const found = page.plots.portrait.points;
+  const {lines, wheels} = page.plots.portrait;  // those of the rows
+  const found = lines.map(({times, points}, k) => points.filter((_, i) => wheels[k].table.time.includes(times[i])));
   page.plots.portrait.choose('phase');
   return found;
 }"""
@@ -62,7 +63,7 @@ def test_a_button_chooses_the_diagram_and_the_present_is_marked(recorded, name):
       player.seek(t);
       plots.portrait.draw(t);
       const [wheel] = plots.portrait.wheels;
-      const point = plots.portrait.points[0][Math.round(t / 0.01)];
+      const point = plots.portrait.at(wheel, t);
       const {x, y, ratio, canvas} = {x: plots.portrait.x(point[0]), y: plots.portrait.y(point[1]), ...plots.portrait};
       const colour = [...canvas.getContext('2d').getImageData(x * ratio, y * ratio, 1, 1).data].slice(0, 3);
       return ['#' + colour.map((part) => part.toString(16).padStart(2, '0')).join(''), wheel.colour];

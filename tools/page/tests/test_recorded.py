@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
+from playwright.sync_api import Page
 from reference.tables import read_table
 from support.bounds import EPSILON, absolute_error, beyond, within
 
@@ -13,9 +16,10 @@ INSTANTS = (0.0, 0.37, 1.0, 1.23, 2.5, 3.99, 5.0, 6.66, 8.01, 10.0)
 MATRIX = """([t, name]) => {
   page.player.seek(t);
   page.pose();
-  const body = page.stage.scene.getObjectByName('spin:' + name);
-  body.updateWorldMatrix(true, false);
-  return body.matrixWorld.elements;
+  const {road, scene} = page.stage;
+  const part = scene.getObjectByName(name);
+  part.updateWorldMatrix(true, false);
+  return part.matrixWorld.clone().premultiply(road.matrixWorld.clone().invert()).elements;
 }"""
 
 
@@ -44,8 +48,9 @@ def pose_of(row) -> np.ndarray:
     return matrix
 
 
-def shown(page, t: float, name: str) -> np.ndarray:
-    return np.reshape(page.evaluate(MATRIX, [t, name]), (4, 4)).T
+def shown(page, t: float, name: str, part: str = "spin") -> np.ndarray:
+    """The pose of a part of the scene in the road's axes."""
+    return np.reshape(page.evaluate(MATRIX, [t, f"{part}:{name}"]), (4, 4)).T
 
 
 @pytest.mark.parametrize("name", ["free", "friction"])
@@ -70,35 +75,63 @@ def test_between_the_rows_the_pose_is_that_of_the_fmu(recorded, scenes, simulate
     beyond(max(nearest), 1e-2, "pose of the nearest row")
 
 
-def test_a_fast_wheel_never_seems_to_run_backwards(browser, tmp_path):
-    """Ten radians of spin from row to row: the short way between two attitudes would be 2.6 rad the other way."""
+@pytest.fixture(scope="module")
+def car(browser, tmp_path_factory) -> Iterator[Page]:
+    """A car's body that turns, and a wheel that spins by ten radians from row to row."""
     t = np.arange(11) * 0.1
-    still = {"X_O": 0 * t, "Y_O": 0 * t, "Z_O": 0 * t + 0.35, "psi": 0 * t, "theta": 0 * t + np.pi / 2}
-    path = write_csv(tmp_path / "fast.csv", {"time": t} | still | {"phi": -100 * t})
-    assert view(path).returncode == 0
-    with opened(browser, path.with_suffix(".html"), viewport={"width": 400, "height": 400}) as page:
-        matrices = [shown(page, 0.1 + 0.001 * k, "fast") for k in range(100)]
+    pose = {"X": t, "Y": 2 * t, "Z": 0.6 + 0 * t, "yaw": 0.8 * t, "pitch": 0.3 * t, "roll": -0.4 * t}
+    wheel = {"X_O": 0 * t, "Y_O": 0 * t, "psi": 0 * t, "theta": 0 * t + np.pi / 2, "phi": -100 * t}
+    named = {f"body.{k}": v for k, v in pose.items()} | {f"wheel_fl.{k}": v for k, v in wheel.items()}
+    path = write_csv(tmp_path_factory.mktemp("car") / "car.csv", {"time": t} | named)
+    assert view(path, "--slope", "10deg", "--slope_direction", "1.5").returncode == 0
+    with opened(browser, path.with_suffix(".html")) as page:
+        yield page
+
+
+def test_a_fast_wheel_never_seems_to_run_backwards(car):
+    """The short way between the attitudes of two rows would be 2.6 rad the other way."""
+    matrices = [shown(car, 0.1 + 0.001 * k, "wheel_fl") for k in range(100)]
     steps = [a[:3, :3].T @ b[:3, :3] for a, b in zip(matrices, matrices[1:], strict=False)]
     assert np.allclose([np.arctan2(step[1, 0], step[0, 0]) for step in steps], -0.1)
 
 
-def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(browser, tmp_path):
-    t = np.arange(11) * 0.1
-    pose = {"X": t, "Y": 2 * t, "Z": 0.6 + 0 * t, "yaw": 0.8 * t, "pitch": 0.3 * t, "roll": -0.4 * t}
-    wheel = {"X_O": t, "Y_O": 2 * t, "psi": 0.8 * t, "theta": 0 * t + np.pi / 2, "phi": -t}
-    named = {f"body.{k}": v for k, v in pose.items()} | {f"wheel_fl.{k}": v for k, v in wheel.items()}
-    assert view(write_csv(tmp_path / "car.csv", {"time": t} | named)).returncode == 0
-    with opened(browser, tmp_path / "car.html", viewport={"width": 400, "height": 400}) as page:
-        page.evaluate("page.player.seek(0.7); page.pose()")
-        there = page.evaluate("""() => {
-          const box = page.stage.scene.getObjectByName('body:body');
-          box.updateWorldMatrix(true, false);
-          return box.matrixWorld.elements;
-        }""")
+def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(car):
+    there = shown(car, 0.7, "body", part="body")
     expected = np.eye(4)
     expected[:3, :3] = turn(2, 0.56) @ turn(1, 0.21) @ turn(0, -0.28)
     expected[:3, 3] = [0.7, 1.4, 0.6]
-    within(absolute_error(np.reshape(there, (4, 4)).T, expected), 64 * EPSILON, "pose off")
+    within(absolute_error(there, expected), 64 * EPSILON, "pose off")
+
+
+def test_the_values_that_a_file_holds_are_listed(browser, scenes, tmp_path):
+    rows = {name: scenes["friction"][name] for name in ("time", *POSE)}
+    path = write_csv(tmp_path / "one.csv", rows | {"s": 0.03 + 0 * rows["time"], "m": 20 + 0 * rows["time"]})
+    head, *lines = path.read_text().splitlines()
+    path.write_text("\n".join([f'{head},"keep_contact"', *(f"{line},False" for line in lines)]))
+    assert view(path).returncode == 0
+    with opened(browser, path.with_suffix(".html")) as page:
+        page.locator("#values summary").click()
+        page.wait_for_selector("#values tr")
+        found = [row.split("\t") for row in page.locator("#values tr").all_inner_texts()]
+    assert found == [
+        ["", "one", ""],
+        ["m", "20", "kg"],
+        ["r_0", "0.3", "m"],
+        ["r", "0.05", "m"],
+        ["s", "0.03", "m"],
+        ["keep_contact", "0", ""],
+    ]
+
+
+def test_a_slope_that_the_command_gives_tilts_the_ground_and_is_marked_uphill(car, recorded):
+    up = [np.sin(np.radians(10)) * np.cos(1.5), np.sin(np.radians(10)) * np.sin(1.5), np.cos(np.radians(10))]
+    car.evaluate("page.player.seek(0); page.draw()")
+    turned = "(v) => page.stage.camera.position.clone().set(...v).applyQuaternion(page.stage.road.quaternion).toArray()"
+    assert car.evaluate(turned, up) == pytest.approx([0, 0, 1])
+    arrow = "(({visible: v, rotation: turn, position: p}) => [v, turn.z, p.x, p.y])(page.stage.models[0].uphill)"
+    visible, direction, x, y = car.evaluate(arrow)
+    assert visible and direction == 1.5 == pytest.approx(np.arctan2(y, x))
+    assert not recorded.evaluate("page.pose() ?? page.stage.models[0].uphill.visible")
 
 
 def test_the_friction_wheel_sticks_at_its_instant(recorded):
@@ -153,8 +186,8 @@ def test_the_label_and_the_diagram_say_that_the_wheel_sticks(recorded):
       page.choose(3);
       page.player.seek(t);
       page.labels.tell(page.shown, t);
-      const plot = page.plots.plots[1];
-      const pixel = (at) => [...plot.layers.faint.getContext('2d')
+      const plot = page.plots.curves[1];
+      const pixel = (at) => [...plot.faint.getContext('2d')
         .getImageData(plot.x(at) * plot.ratio, plot.y(-1.5) * plot.ratio + 3, 1, 1).data];
       return [document.querySelector('.label').dataset.state, pixel(t)];
     }"""
@@ -193,7 +226,7 @@ def test_keys_move_the_time_and_switch_what_is_shown(recorded):
 def test_a_click_into_a_diagram_goes_there(recorded):
     canvas = recorded.locator(".plot canvas").first
     canvas.click(position={"x": 100, "y": 40})
-    expected = canvas.evaluate("() => page.plots.plots[0].timeAt(100)")
+    expected = canvas.evaluate("() => page.plots.curves[0].timeAt(100)")
     assert recorded.evaluate("page.player.t") == pytest.approx(expected)
     assert 0.5 < expected < 9.5
 
@@ -234,12 +267,13 @@ def test_arrow_keys_turn_the_scene_that_has_the_focus(recorded):
     recorded.keyboard.press("r")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_a_phone_shows_everything_without_scrolling_sideways(browser, recorded_file, scheme):
-    phone = {"viewport": {"width": 360, "height": 740}, "has_touch": True, "is_mobile": True, "color_scheme": scheme}
+def test_a_phone_shows_everything_without_scrolling_sideways(browser, recorded_file):
+    phone = {"viewport": {"width": 360, "height": 740}, "has_touch": True, "is_mobile": True}
     with opened(browser, recorded_file, **phone) as page:
-        assert page.evaluate("document.documentElement.scrollWidth") <= 360
-        assert page.evaluate("document.documentElement.dataset.theme") == scheme
+        for scheme in ("light", "dark"):
+            page.emulate_media(color_scheme=scheme)
+            page.wait_for_function("(scheme) => document.documentElement.dataset.theme === scheme", arg=scheme)
+            assert page.evaluate("document.documentElement.scrollWidth") <= 360
         one, other = page.evaluate("page.stage.rectangles(2)")
         assert one["y"] != other["y"]  # above each other
         scene, switches = (page.locator(place).bounding_box() for place in ("#scene", "#toggles"))

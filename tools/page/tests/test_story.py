@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from support.bounds import beyond, within
 
 from page.tests.pages import column
 
@@ -120,3 +121,33 @@ def test_keys_and_buttons_lead_on_and_back(live, story):
     assert live.locator("#story .count").inner_text() == "8 of 8"
     assert live.locator("#story [name=next]").is_disabled()
     live.evaluate("page.player.pause()")
+
+
+def test_beside_another_motion_the_text_is_faint_and_leads_back(live, story):
+    story(5)
+    faint = "[getComputedStyle(document.querySelector('#story .text')).opacity < 0.5, page.live.link.write()]"
+    assert live.evaluate(faint) == [False, "step=5"]
+    live.evaluate("page.live.setStart('slope', 0.35); page.live.frame()")
+    assert live.evaluate(faint)[0] and "ended" not in live.locator("#story .text").inner_text()
+    assert f"{live.evaluate('page.wheels[0].table.end'):.4g} s computed" in live.locator("#message").inner_text()
+    live.get_by_role("button", name="Back to the story's wheel").click()
+    live.evaluate("page.player.pause()")
+    assert live.evaluate(faint)[0] is False and live.evaluate("page.live.value('slope')") == 0
+
+
+TURNS = """([times, points]) => {
+  const angle = ([a, b, c]) => {
+    const [x, y, u, v] = [b[0] - a[0], b[1] - a[1], c[0] - b[0], c[1] - b[1]];
+    return Math.abs(Math.atan2(x * v - y * u, x * u + y * v));
+  };
+  return Math.max(...points.slice(2).map((_, i) => angle(points.slice(i, i + 3))));
+}"""
+
+
+def test_a_path_that_turns_fast_is_round(live, story):
+    story(8)
+    live.evaluate("page.live.setStart('phi_dot_start', -0.5); page.live.compute()")  # nearly flat it runs round fast
+    trace = live.evaluate("(({times, points}) => [times, points])(page.wheels[0].trace)")
+    rows = [[t, p] for t, p in zip(*trace, strict=True) if abs(t * 100 - round(t * 100)) < 1e-6]
+    within(live.evaluate(TURNS, trace), 0.15, "largest turn from point to point, rad")
+    beyond(live.evaluate(TURNS, [list(column) for column in zip(*rows, strict=True)]), 0.15, "the same of the rows")

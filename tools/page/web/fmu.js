@@ -81,11 +81,11 @@ export class Fmu {
    * One run from time 0. plan: {values: {name: start value}, changes: [{t, name, value}, ...] by rising t, stop, step,
    * record: [names]}; the changes fall on communication points. Returns {table, ended: sentence or null}.
    */
-  run({values, changes, stop, step, record, tolerance}) {
+  run({values, changes, stop, step, record}) {
     this.messages = [];
     this.demand(this.api.fmi2Reset(this.unit));
     for (const [name, value] of Object.entries(values)) this.set(name, value);
-    this.demand(this.api.fmi2SetupExperiment(this.unit, tolerance ? 1 : 0, tolerance ?? 0, 0, 0, 0));
+    this.demand(this.api.fmi2SetupExperiment(this.unit, 0, 0, 0, 0, 0));
     this.demand(this.api.fmi2EnterInitializationMode(this.unit));
     this.demand(this.api.fmi2ExitInitializationMode(this.unit));
     const reals = record.filter((name) => this.variable(name).type === 'Real');

@@ -4,13 +4,24 @@ const DEGREES = 180 / Math.PI;
 /** An angle in rad as a slider gives it. */
 export const degrees = (angle) => angle / DEGREES;
 
-/** Sliders: name, symbol, unit, lowest, highest and step as shown (angles in degrees), and what it is. */
+/**
+ * Sliders: name, symbol, unit, lowest, highest and step as shown (angles in degrees; 'log': by ratios), and what it is.
+ * Those whose variable the description lacks are left out.
+ */
 export const START = [
   ['theta_start', 'θ', '°', 5, 175, 0.5, 'tilt'],
   ['phi_dot_start', 'φ̇', 'rad/s', -12, 12, 0.05, 'spin'],
   ['psi_dot_start', 'ψ̇', 'rad/s', -12, 12, 0.05, 'precession'],
   ['slope', 'α', '°', 0, 30, 0.5, 'slope'],
   ['slope_direction', 'β', '°', -180, 180, 1, 'uphill'],
+  ['mu_max', 'μ', '', 0, 2, 0.01, 'grip, 0: any'],
+];
+export const WHEEL = [
+  ['m', 'm', 'kg', 0.001, 1000, 'log', 'mass'],
+  ['r_0', 'r<sub>0</sub>', 'm', 0.005, 2, 'log', 'ring radius'],
+  ['r', 'r', 'm', 0, 0.5, 0.0005, 'tube radius'],
+  ['J_x', 'J<sub>x</sub>', 'kg m²', 1e-8, 1000, 'log', '= J<sub>y</sub>'],
+  ['J_z', 'J<sub>z</sub>', 'kg m²', 1e-8, 1000, 'log', 'axle'],
 ];
 /** These act from the present on. */
 export const NOW = [
@@ -18,29 +29,30 @@ export const NOW = [
   ['M_3', 'M₃', 'N m', -8, 8, 0.1, 'axle torque'],
   ['M_brake', 'M<sub>b</sub>', 'N m', 0, 8, 0.1, 'brake'],
 ];
-/** Buttons that act as long as they are held: text, variable, value in N m from the sign of the spin, tooltip. */
+/**
+ * Buttons that act as long as they are held: text, variable, value in N m from the sign of the spin and the torque to
+ * push with, tooltip.
+ */
 export const HELD = [
-  ['◀ push back', 'M_3', (spin) => -6 * (spin || -1), 'Push against the way it rolls, with 6 N m about the axle'],
-  ['brake', 'M_brake', () => 6, 'A dry brake that holds up to 6 N m about the axle'],
-  ['push forward ▶', 'M_3', (spin) => 6 * (spin || -1), 'Push on the way it rolls, with 6 N m about the axle'],
+  ['◀ push back', 'M_3', (spin, torque) => -torque * (spin || -1), 'Push against the way it rolls, about the axle'],
+  ['brake', 'M_brake', (spin, torque) => torque, 'A dry brake that holds, up to its torque'],
+  ['push forward ▶', 'M_3', (spin, torque) => torque * (spin || -1), 'Push on the way it rolls, about the axle'],
 ];
+/** The torque to push with, N m: 6 N m for the paper's wheel, for others as their weight times radius; m, g, r_0, r. */
+export const torqueOf = (m, g, r_0, r) =>
+    Math.min(8, Number((6 * m * g * (r_0 + r) / (20 * 9.81 * 0.35)).toPrecision(6)));
 
 /** Lowest and highest, in SI, of what has no slider. */
 const OTHERS = {
-  m: [1, 500],
   g: [0.5, 30],
-  r_0: [0.05, 1],
-  r: [0, 0.5],
-  J_x: [0.001, 100],
-  J_y: [0.001, 100],
-  J_z: [0.001, 100],
+  J_y: [1e-8, 1000],
   psi_start: [-10, 10],
   phi_start: [-10, 10],
 };
 
 /** [lowest, highest] in SI of what may be set at the start, or (now) while it rolls; undefined for all else. */
 export function limitsOf(name, now = false) {
-  const knob = (now ? NOW : [...START, ...NOW]).find(([other]) => other === name);
+  const knob = (now ? NOW : [...START, ...WHEEL, ...NOW]).find(([other]) => other === name);
   if (!knob) return now ? undefined : OTHERS[name];
   return [knob[3], knob[4]].map((value) => (knob[2] === '°' ? degrees(value) : value));
 }

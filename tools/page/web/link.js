@@ -1,8 +1,9 @@
 // The address of the live page follows what the reader does, and the page follows the address.
 import {EMPTY, planParts, read, write} from '#address';
-import {PORTRAITS} from '#portrait';
+import {PORTRAITS} from '#diagrams';
 
-const REST = 300;  // ms between two changes of the address
+const REST = 300;      // ms between two changes of the address
+const PLAYING = 1000;  // the same while the clock runs: browsers refuse more than some hundred in half a minute
 
 export class Link {
   constructor(live) {
@@ -50,10 +51,10 @@ export class Link {
     live.panel.story.tell();
   }
 
-  /** Once a frame: writes what has changed; the time of a running clock only when it rests. */
+  /** Once a frame: writes what has changed. */
   frame() {
     const now = performance.now();
-    if (this.live.page.player.playing || this.live.wanted || now - this.at < REST) return;
+    if (this.live.wanted || now - this.at < (this.live.page.player.playing ? PLAYING : REST)) return;
     this.at = now;
     const text = this.write();
     if (text === this.text) return;

@@ -1,12 +1,12 @@
 // The live page: the wheel itself computes the whole motion anew, within some milliseconds, whenever the reader changes
 // its start, or s or M_3 while it rolls. A change while it rolls leaves the past alone and makes a new future.
 import {EMPTY} from '#address';
-import {chapters} from '#chapters';
 import {Fmu} from '#fmu';
 import {NOW} from '#knobs';
 import {Link} from '#link';
 import {setUpPanel} from '#panel';
-import {presets} from '#presets';
+import {moving} from '#phases';
+import {chapters, scenes} from '#scenes';
 
 export const STEP = 0.01;  // s, between two rows
 const RECORD =
@@ -16,6 +16,7 @@ const SIGNALS = ['omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_m
 /** What holds the wheel at omega_z = 0, and what may change while it rolls. */
 const HOLDING = ['s', 'M_brake'];
 const RUNNING = NOW.map(([name]) => name);
+const PAPER_RADIUS = 0.35;  // m, r_0 + r
 
 export class LiveWheel {
   constructor(page, fmu) {
@@ -62,12 +63,23 @@ export class LiveWheel {
     page.choice = 0;
     page.offer(on ? [...both, alone] : [alone]);
     page.dress();
+    this.compare();
   }
 
   setStart(name, value) {
     this.values[name] = value;
+    if (name === 'J_x') this.values.J_y = value;
     this.page.plots.axis = 'fitted';
     this.wanted = true;
+  }
+
+  /** Another wheel: its spin and friction follow those of the paper's in proportion to its size. */
+  setWheel(parameters) {
+    const radius = parameters.r_0 + parameters.r;
+    Object.assign(this.values, parameters);
+    this.setStart('phi_dot_start', Number((-2 * Math.sqrt(PAPER_RADIUS / radius)).toPrecision(3)));
+    if (this.value('s')) this.values.s = Number((0.03 * radius / PAPER_RADIUS).toPrecision(3));
+    this.page.player.seek(0);
   }
 
   /** s or M_3 from now on; what had been planned for later is dropped. */
@@ -98,16 +110,25 @@ export class LiveWheel {
     const wheel = this.page.wheels[0];
     const {table, ended} = this.fmu.run({values, changes, stop, step: STEP, record});
     this.took = performance.now() - begin;
-    wheel.ended = ended;
-    for (const name of ['slope', 'slope_direction']) wheel[name] = this.value(name);
-    const [r_0, r] = [this.value('r_0'), this.value('r')];
-    const reshaped = r_0 !== wheel.r_0 || r !== wheel.r;
-    Object.assign(wheel, {r_0, r});
+    const shape = ['r_0', 'r', 'slope', 'slope_direction'];
+    const given = Object.fromEntries(shape.map((name) => [name, this.value(name)]));
+    const reshaped = given.r_0 !== wheel.r_0 || given.r !== wheel.r;
+    Object.assign(wheel, given, {ended, parameters: this.parameters()});
     const friction = HOLDING.some((name) => this.values[name] > 0) ||
         changes.some(({name, value}) => HOLDING.includes(name) && value > 0);
     this.page.exchange(0, table, friction);
     if (reshaped && wheel.colour) this.page.rebuild();
+    this.compare();
   }
+
+  /** Every parameter of the run by name. */
+  parameters() {
+    const kinds = Object.entries(this.fmu.variables).filter(([, {causality}]) => causality === 'parameter');
+    return Object.fromEntries(kinds.map(([name]) => [name, Number(this.value(name))]));
+  }
+
+  /** Whether the story's text describes what is shown. */
+  compare() { this.panel?.story.compare(!this.panel.story.open || this.link?.step(this.state()) !== null); }
 
   /** All that was chosen; `apply` takes it. */
   state() {
@@ -148,16 +169,17 @@ export class LiveWheel {
   }
 }
 
-/** Loads the wheel and puts it on the page. source: {wasm, description}. */
-export async function startLive(page, source) {
-  const fmu = await Fmu.load(source.wasm, source.description);
-  const start = (name) => fmu.variable(name).start;
-  const wheel = {name: 'live', label: 'This wheel', r_0: start('r_0'), r: start('r')};
+/** Loads the wheel and puts it on the page. source: {wasm, guid, wheels}; variables: of the description. */
+export async function startLive(page, {wasm, guid, wheels}, variables) {
+  const fmu = await Fmu.load(wasm, {guid, variables});
+  const parameters =
+      Object.fromEntries(['m', 'g', 'r_0', 'r', 'J_x', 'J_z'].map((name) => [name, fmu.variable(name).start]));
+  const {r_0, r} = parameters;
   const live = new LiveWheel(page, fmu);
-  const first = fmu.run({values: {}, changes: [], stop: live.stop, step: STEP, record: live.record});
-  page.wheels.unshift({...wheel, table: first.table, phases: {sticks: [], transitions: []}});
+  const {table} = fmu.run({values: {}, changes: [], stop: live.stop, step: STEP, record: live.record});
+  page.wheels.unshift(
+      {...moving(table, r_0, false), name: 'live', label: 'This wheel', r_0, r, parameters: live.parameters()});
   page.live = live;
-  const parameters = Object.fromEntries(['m', 'g', 'r_0', 'r', 'J_x', 'J_z'].map((name) => [name, start(name)]));
   live.steps = chapters(parameters);
-  live.panel = setUpPanel(live, presets(parameters));
+  live.panel = setUpPanel(live, scenes(parameters, live.steps), wheels);
 }

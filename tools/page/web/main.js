@@ -1,17 +1,15 @@
 // The page: recorded wheels, a car's body, or the wheel itself (live), shown on one stage with one clock.
+import {setUpCards, setUpValues} from '#cards';
 import {ChassisModel} from '#chassis';
+import {drawBands, Player, setUpSwitches, setUpTransport} from '#clock';
+import {Plots} from '#diagrams';
 import {endingOf, Labels} from '#labels';
 import {startLive} from '#live';
-import {phasesOf} from '#phases';
-import {Player} from '#player';
-import {Plots} from '#plots';
-import {setUpPopups} from '#popups';
+import {moving} from '#phases';
 import {Stage} from '#stage';
-import {setUpSwitches} from '#switches';
 import {Table} from '#table';
 import {setUpTaking} from '#take';
 import {colour, watchTheme, wheelColour} from '#theme';
-import {drawBands, setUpTransport} from '#transport';
 import {WheelModel} from '#wheel';
 import {THREE} from 'three';
 
@@ -19,10 +17,10 @@ const $ = (selector) => document.querySelector(selector);
 const data = JSON.parse($('#data').textContent);
 const CALM = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
-/** A recorded body: {name, label, r_0, r | size, columns} -> with table and phases. */
+/** A recorded body: {name, label, r_0, r | size, columns} -> with table, and a wheel with phases and trace. */
 function decode(body) {
   const table = Table.decode(body.columns);
-  return {...body, table, phases: phasesOf(table)};
+  return {...body, ...('r_0' in body ? moving(table, body.r_0) : {table})};
 }
 
 /** The vertical in the road's axes of a body with a slope {slope, slope_direction} in rad, or of none. */
@@ -36,7 +34,7 @@ class Page {
     this.wheels = data.wheels.map(decode);
     this.bodies = data.bodies.map(decode);
     this.player = new Player();
-    this.stage = new Stage($('#stage'), data.size);
+    this.stage = new Stage($('#stage'), this.size());
     this.plots = new Plots($('#plots'), this.player);
     this.labels = new Labels($('#labels'));
     this.choice = 0;
@@ -45,13 +43,20 @@ class Page {
     for (const wheel of this.wheels) wheel.ended = endingOf(wheel.table, Math.max(...ends));
   }
 
+  /** The largest outer radius of the wheels, and how large the thing is that one looks at, in m. */
+  radius() { return this.wheels.reduce((most, {r_0, r}) => Math.max(most, r_0 + r), 0) || 0.35; }
+
+  size() { return Math.max(2 * this.radius(), ...this.bodies.map(({size: [x, y]}) => 0.9 * Math.hypot(x, y))); }
+
   start() {
     setUpTransport(this.player);
     this.switches = setUpSwitches(this);
     this.show = this.switches.show;
     this.offer(data.choices);
-    this.taking = setUpTaking(this);
-    setUpPopups();
+    setUpTaking(this);
+    setUpCards();
+    $('#values').hidden = this.wheels.every(({parameters}) => !parameters);
+    setUpValues(data.variables, () => this.shown);
     watchTheme($('#theme'), () => this.dress());
     this.player.addEventListener('time', () => (this.stage.dirty = true));
     new ResizeObserver(() => this.layOut()).observe($('#stage'));
@@ -85,7 +90,8 @@ class Page {
   /** Bodies, plots and clock after a change of data or colours. */
   rebuild() {
     const look = {force: colour('--force'), stick: colour('--stick'), body: colour('--body'), line: colour('--line')};
-    look.size = data.size;
+    look.size = this.size();
+    this.stage.zoom(look.size);
     look.axes = ['--e1', '--e2', '--e3'].map(colour);
     const wheels = this.wheels.map((wheel) => new WheelModel(wheel, {...look, accent: wheel.colour}));
     this.stage.put([...wheels, ...this.bodies.map((body) => new ChassisModel(body, look))]);
@@ -94,7 +100,7 @@ class Page {
 
   /** New motion of one wheel, same colours: path and plots only. */
   exchange(i, table, friction) {
-    Object.assign(this.wheels[i], {table, phases: phasesOf(table, friction)});
+    Object.assign(this.wheels[i], moving(table, this.wheels[i].r_0, friction));
     this.stage.models[i]?.drawPath();
     this.choose(this.choice);
   }
@@ -139,11 +145,11 @@ class Page {
         high.max(new THREE.Vector3(...point, 0));
       }
     }
-    const away = Math.max(1, 0.5 + (0.5 * low.distanceTo(high)) / data.size);
+    const away = Math.max(1, 0.5 + (0.5 * low.distanceTo(high)) / this.size());
     return {
       models: this.stage.models.filter((model) => view.includes(model.wheel)),
       away,
-      anchor: low.add(high).multiplyScalar(0.5).setZ(data.height),
+      anchor: low.add(high).multiplyScalar(0.5).setZ(0.8 * this.radius()),
       up: verticalOf(view.find(({slope}) => slope))
     };
   }
@@ -172,14 +178,13 @@ class Page {
     this.plots.draw(t);
     this.labels.tell(this.shown, t);
     this.first ??= performance.now();  // ms from the opening of the page to its first picture
-    this.taking.frame();
   }
 }
 
 try {
   const page = new Page();
   window.page = page;  // for the console and the tests
-  if (data.live) await startLive(page, data.live);
+  if (data.live) await startLive(page, data.live, data.variables);
   page.start();
 } catch (fault) {
   const trouble = $('#trouble');

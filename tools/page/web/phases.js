@@ -2,6 +2,8 @@
 // omega_z) and n_events, the wheel's own count of transitions. A transition lies between two rows; its instant is where
 // omega_z, carried on from the rows on a rolling side, is zero.
 
+import {traceOf} from '#table';
+
 /** -1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero. */
 function modeAt(table, row) {
   const source = table.columns.friction_mode ?? table.columns.omega_z;
@@ -100,3 +102,8 @@ export function phasesOf(table, friction = mayHold(table)) {
 
 /** Whether the wheel is held at t. */
 export function sticksAt(phases, t) { return phases.sticks.some(([begin, end]) => begin <= t && t < end); }
+
+/** A motion with what follows from it. friction: whether there is any, where that is known. */
+export function moving(table, r_0, friction) {
+  return {table, phases: phasesOf(table, friction), trace: traceOf(table, r_0)};
+}

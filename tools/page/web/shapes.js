@@ -88,22 +88,21 @@ export function makeRibbon(points, width, height, material) {
 /** Shows a ribbon up to its row-th point. */
 export function showRibbon(ribbon, row) { ribbon.geometry.setDrawRange(0, 6 * Math.max(0, row)); }
 
-/** A short text that always faces the reader; height in m. */
+/** A short text that always faces the reader, such as uphill or e_1 with its subscript; height in m. */
 export function makeLabel(text, colour, height) {
   const canvas = document.createElement('canvas');
-  [canvas.width, canvas.height] = [128, 96];
+  const [name, low = ''] = text.split('_');
+  [canvas.width, canvas.height] = [Math.max(128, 40 * name.length), 96];
   const pen = canvas.getContext('2d', {willReadFrequently: true});
+  Object.assign(pen, {textBaseline: 'middle', textAlign: 'center', fillStyle: colour});
   pen.font = 'italic 600 72px Georgia, "Times New Roman", serif';
-  pen.textBaseline = 'middle';
-  pen.textAlign = 'center';
-  pen.fillStyle = colour;
-  pen.fillText(text[0], 50, 48);
+  pen.fillText(name, canvas.width / 2 - 14 * low.length, 48, canvas.width);
   pen.font = '600 46px Georgia, "Times New Roman", serif';
-  pen.fillText(text.slice(1), 86, 64);
+  pen.fillText(low, 86, 64);
   const texture = new THREE.CanvasTexture(canvas);
   texture.colorSpace = THREE.SRGBColorSpace;
   const label = new THREE.Sprite(new THREE.SpriteMaterial({map: texture, depthTest: false, transparent: true}));
-  label.scale.set((height * 128) / 96, height, 1);
+  label.scale.set((height * canvas.width) / canvas.height, height, 1);
   label.renderOrder = 5;
   return label;
 }

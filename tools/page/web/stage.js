@@ -3,9 +3,9 @@ import {colour} from '#theme';
 import {OrbitControls, THREE} from 'three';
 
 THREE.Object3D.DEFAULT_UP.set(0, 0, 1);
-const GROUND = 60;  // m, edge of the drawn ground at the least
+const GROUND = 60;  // squares along the edge of the drawn ground, at the least
 
-/** One square metre of the ground: lines every metre and, finer, every 0.1 m. */
+/** One square of the ground: lines about it and, finer, ten within it. */
 function groundTexture(base, fine, coarse) {
   const canvas = document.createElement('canvas');
   canvas.width = canvas.height = 1024;
@@ -57,6 +57,7 @@ export class Stage {
     this.addLight();
     this.dirty = true;
     this.models = [];
+    this.zoom(size);
   }
 
   addGround() {
@@ -126,14 +127,21 @@ export class Stage {
    */
   tilt(up, anchor) {
     this.road.quaternion.setFromUnitVectors(up, THREE.Object3D.DEFAULT_UP);
-    return anchor.clone().applyQuaternion(this.road.quaternion);
+    return anchor.clone().multiplyScalar(this.scale).applyQuaternion(this.road.quaternion);
   }
 
-  /** Air and ground reach as far as an eye that is `away` times as far off can see; squares stay square metres. */
+  /** Shows bodies of another size, in m, as large as those of the first one. */
+  zoom(size) {
+    this.scale = this.size / size;
+    this.road.scale.setScalar(this.scale);
+    this.square = Math.min(1, 10 ** Math.floor(Math.log10(2 * size)));  // m, of the ground
+  }
+
+  /** Air and ground reach as far as an eye that is `away` times as far off can see. */
   widen(away) {
     Object.assign(this.scene.fog, {near: 4 * this.size * away, far: 14 * this.size * away});
-    const times = Math.ceil((14 * this.size * away) / (GROUND / 2));
-    this.ground.scale.set(times, times, 1);
+    const times = Math.ceil((14 * this.size * away) / (this.scale * this.square * (GROUND / 2)));
+    this.ground.scale.set(times * this.square, times * this.square, 1);
     this.ground.material.map.repeat.set(GROUND * times, GROUND * times);
     this.reach = 60 * this.size * away;
   }
@@ -172,7 +180,8 @@ export class Stage {
       this.sun.position.x += 1.4 * this.size;
       this.sun.position.y -= 1.1 * this.size;
       this.sun.position.z += 3.6 * this.size;
-      this.ground.position.set(Math.round(there.x), Math.round(there.y), 0);  // whole squares: the grid stands still
+      // Whole squares: the grid stands still.
+      this.ground.position.copy(there).divideScalar(this.square).round().multiplyScalar(this.square).setZ(0);
       const up = this.canvas.clientHeight - y - h;
       this.renderer.setViewport(x, up, w, h);
       this.renderer.setScissor(x, up, w, h);

@@ -5,13 +5,25 @@
 /** Bytes of a base64 text. */
 export function bytesOf(text) { return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)); }
 
+/** The index of the last of rising instants at or before t, or -1. */
+export function before(times, t) {
+  let [low, high] = [-1, times.length];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= t)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 export class Table {
   /** columns: {name: Float64Array}, all of one length, `time` rising. */
   constructor(columns) {
     this.columns = columns;
     this.time = columns.time;
     this.rows = this.time.length;
-    this.last = 0;
   }
 
   /** From base64 of little-endian doubles, as the page carries them. */
@@ -28,24 +40,7 @@ export class Table {
   get end() { return this.time[this.rows - 1]; }
 
   /** The row at or before t, at most the last but one. */
-  row(t) {
-    const {time, rows} = this;
-    let i = this.last;
-    if (!(time[i] <= t && t < time[Math.min(i + 1, rows - 1)])) {
-      let low = 0;
-      let high = rows - 1;
-      while (high - low > 1) {
-        const middle = (low + high) >> 1;
-        if (time[middle] <= t)
-          low = middle;
-        else
-          high = middle;
-      }
-      i = low;
-    }
-    this.last = Math.max(0, Math.min(i, rows - 2));
-    return this.last;
-  }
+  row(t) { return Math.max(0, Math.min(before(this.time, t), this.rows - 2)); }
 
   /**
    * A column at t: the cubic through both rows' values and rates where the column `<name>_dot` is there, else a line.
@@ -67,4 +62,30 @@ export class Table {
 export function contactOf(r_0, X_O, Y_O, psi, theta) {
   const across = r_0 * Math.cos(theta);
   return [X_O + across * Math.sin(psi), Y_O - across * Math.cos(psi)];
+}
+
+const FINEST = 64;  // points of the path between two rows, at most
+const TURN = 0.06;  // rad, of the path's direction and of the wheel's heading from point to point
+
+/** The contact point's path {times, points}: every row, and between two rows as many points as the path turns. */
+export function traceOf(table, r_0) {
+  const contact = (t) => contactOf(r_0, ...['X_O', 'Y_O', 'psi', 'theta'].map((name) => table.value(name, t)));
+  const [times, points] = [[], []];
+  const add = (t) => {
+    times.push(t);
+    points.push(contact(t));
+  };
+  const {time, rows, columns: {psi}} = table;
+  for (let i = 0; i + 1 < rows; ++i) {
+    const step = time[i + 1] - time[i];
+    const [a, b, c] = [0, 0.5, 1].map((share) => contact(time[i] + share * step));
+    const [ax, ay, bx, by] = [b[0] - a[0], b[1] - a[1], c[0] - b[0], c[1] - b[1]];
+    const moves = Math.hypot(ax, ay, bx, by) > 1e-6 * r_0;  // the direction of less is rounding
+    const bend = moves ? Math.abs(Math.atan2(ax * by - ay * bx, ax * bx + ay * by)) : 0;
+    const turn = Math.max(2 * bend, Math.abs(psi[i + 1] - psi[i]));
+    const count = Math.min(FINEST, Math.max(1, Math.ceil(turn / TURN)));
+    for (let k = 0; k < count; ++k) add(time[i] + (k / count) * step);
+  }
+  add(time[rows - 1]);
+  return {times, points};
 }

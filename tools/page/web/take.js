@@ -1,7 +1,7 @@
 // The card "Take with you": the values, a picture, a film, and of the live page its link and the commands that make the
 // same run.
 import {commands} from '#commands';
-import {compose, Film, filmFormat} from '#film';
+import {compose, film, films} from '#film';
 import {STEP} from '#live';
 import {csvFiles} from '#values';
 
@@ -32,14 +32,11 @@ async function copy(text, button) {
 
 class Taking {
   constructor(page, host) {
-    Object.assign(this, {page, host, film: null});
+    Object.assign(this, {page, host, filming: false});
     this.on('csv', () => this.saveValues());
     this.on('png', () => this.savePicture());
     this.on('film', () => this.record());
-    if (!filmFormat()) {
-      this.button('film').disabled = true;
-      this.button('film').title = 'This browser records no WebM';
-    }
+    if (!films()) Object.assign(this.button('film'), {disabled: true, title: 'This browser records no WebM'});
     const {live} = page;
     this.button('link').hidden = host.querySelector('#commands').hidden = !live;
     if (!live) return;
@@ -72,26 +69,21 @@ class Taking {
 
   savePicture() {
     this.page.draw();
-    compose(this.page).toBlob((blob) => save(`wheel_${this.page.player.t.toFixed(2)}s.png`, blob), 'image/png');
+    const name = `wheel_${this.page.player.t.toFixed(2)}s.png`;
+    compose(this.page).toBlob((blob) => save(name, blob), 'image/png');
   }
 
   /** Begins a film of the whole motion at the chosen speed; again: ends it there. */
-  record() {
+  async record() {
+    this.filming = !this.filming;
+    if (!this.filming) return;
     const button = this.button('film');
-    if (this.film) {
-      this.page.player.pause();
-      return;
-    }
     button.textContent = 'End the film';
-    this.film = new Film(this.page, (blob) => {
-      this.film = null;
-      button.textContent = 'Film (WebM)';
-      save('wheel.webm', blob);
-    });
+    const blob = await film(this.page, () => this.filming);
+    this.filming = false;
+    button.textContent = 'Film (WebM)';
+    save('wheel.webm', blob);
   }
-
-  /** Once for each picture of the page. */
-  frame() { this.film?.frame(); }
 }
 
 export function setUpTaking(page) { return new Taking(page, document.querySelector('#take')); }

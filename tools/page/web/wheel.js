@@ -1,8 +1,7 @@
 // One wheel in the scene: a torus of ring radius r_0 and tube radius r in m, turned by psi about Z, theta about the
 // line of nodes e1, and phi about the axle e3 (paper, (3)); its contact path, carrier axes and the ground's force.
-import {sticksAt} from '#phases';
 import {dispose, makeArrow, makeLabel, makeRibbon, pointArrow, showRibbon, tyreTexture} from '#shapes';
-import {contactOf} from '#table';
+import {before, contactOf} from '#table';
 import {THREE} from 'three';
 
 const METAL = {
@@ -12,8 +11,6 @@ const METAL = {
 };
 const UP = new THREE.Vector3(0, 0, 1);
 const NODES = new THREE.Vector3(1, 0, 0);
-const FINE = 3;  // points of the path per row
-const POSE = ['X_O', 'Y_O', 'psi', 'theta'];
 const FORCE = ['lambda_1', 'lambda_2', 'lambda_3'];  // of the ground, fixed axes
 const turn = new THREE.Quaternion();
 
@@ -70,16 +67,29 @@ function makeAxes(r_0, r, colours) {
   directions.forEach((direction, i) => {
     const arrow = makeArrow(0.022 * r_0, colours[i]);
     pointArrow(arrow, direction.multiplyScalar(reach));
-    const label = makeLabel(`e${i + 1}`, colours[i], 0.3 * r_0);
+    const label = makeLabel(`e_${i + 1}`, colours[i], 0.3 * r_0);
     label.position.copy(direction).multiplyScalar(1 + 0.12 / direction.length());
     axes.add(arrow, label);
   });
   return axes;
 }
 
+/** An arrow on the ground along x, to be turned uphill, with its name. */
+function makeUphill(size, colour) {
+  const group = new THREE.Group();
+  const arrow = makeArrow(0.03 * size, colour);
+  pointArrow(arrow, new THREE.Vector3(0.8 * size, 0, 0));
+  arrow.position.z = 0.03 * size;
+  const label = makeLabel('uphill', colour, 0.24 * size);
+  label.position.set(0.4 * size, 0, 0.24 * size);
+  group.add(arrow, label);
+  return group;
+}
+
 export class WheelModel {
   /**
-   * wheel: {name, r_0, r, table, phases}; look: CSS colours {accent, stick, force, axes: [3]}, size of the scene in m.
+   * wheel: {name, r_0, r, slope?, slope_direction?, table, trace, phases}; look: CSS colours {accent, stick, force,
+   * line, axes: [3]}, size of the scene in m.
    */
   constructor(wheel, look) {
     this.wheel = wheel;
@@ -98,7 +108,8 @@ export class WheelModel {
         ring,
         new THREE.MeshBasicMaterial({color: look.force, transparent: true, side: THREE.DoubleSide, depthWrite: false}));
     this.spot.renderOrder = 900;
-    this.group.add(this.carrier, this.force, this.spot);
+    this.uphill = makeUphill(wheel.r_0 + wheel.r, look.line);
+    this.group.add(this.carrier, this.force, this.spot, this.uphill);
     this.drawPath();
     const N = wheel.table.columns.lambda_3;
     this.weight = N ? N.reduce((sum, value) => sum + value, 0) / N.length : 0;
@@ -108,21 +119,16 @@ export class WheelModel {
   drawPath() {
     for (const old of [this.whole, this.past, ...(this.held ?? [])])
       if (old) this.group.remove(old);
-    const {table, r_0, phases} = this.wheel;
-    const points = Array.from({length: FINE * (table.rows - 1) + 1}, (_, i) => {
-      const row = Math.min(table.rows - 2, Math.floor(i / FINE));
-      const t = table.time[row] + (i / FINE - row) * (table.time[row + 1] - table.time[row]);
-      return contactOf(r_0, ...POSE.map((name) => table.value(name, t)));
-    });
+    const {trace: {points}, r_0, phases} = this.wheel;
     const flat = (colour, opacity) => new THREE.MeshBasicMaterial(
         {color: colour, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: false});
     const width = Math.max(0.045 * r_0, 0.006 * this.look.size);
-    this.whole = makeRibbon(points, 0.5 * width, 0.001, flat(this.look.accent, 0.3));
-    this.past = makeRibbon(points, width, 0.002, flat(this.look.accent, 0.95));
+    this.whole = makeRibbon(points, 0.5 * width, 0.001 * this.look.size, flat(this.look.accent, 0.3));
+    this.past = makeRibbon(points, width, 0.002 * this.look.size, flat(this.look.accent, 0.95));
     this.held = phases.sticks.map(([begin, end]) => {
       const first = this.point(begin);
-      const ribbon =
-          makeRibbon(points.slice(first, this.point(end) + 1), 5 * width, 0.0015, flat(this.look.stick, 0.9));
+      const some = points.slice(first, this.point(end) + 1);
+      const ribbon = makeRibbon(some, 5 * width, 0.0015 * this.look.size, flat(this.look.stick, 0.9));
       ribbon.userData = {begin, first};
       return ribbon;
     });
@@ -131,16 +137,11 @@ export class WheelModel {
   }
 
   /** The last point of the path at or before t. */
-  point(t) {
-    const {table} = this.wheel;
-    const row = table.row(t);
-    const share = (t - table.time[row]) / (table.time[row + 1] - table.time[row] || 1);
-    return FINE * row + Math.floor(FINE * Math.min(1, share) + 1e-6);
-  }
+  point(t) { return Math.max(0, before(this.wheel.trace.times, t + 1e-9)); }
 
   /** Pose, path and force at t. show: {path, axes, force}. */
   update(t, show) {
-    const {table, r_0, r} = this.wheel;
+    const {table, r_0, r, slope = 0, slope_direction: direction = 0} = this.wheel;
     const at = (name) => table.value(name, t);
     const [X, Y, psi, theta, phi] = ['X_O', 'Y_O', 'psi', 'theta', 'phi'].map(at);
     this.carrier.position.set(X, Y, table.has('Z_O') ? at('Z_O') : r_0 * Math.sin(theta) + r);
@@ -156,7 +157,11 @@ export class WheelModel {
     }
     const contact = contactOf(r_0, X, Y, psi, theta);
     this.spot.visible = show.path;
-    this.spot.position.set(...contact, 0.004);
+    this.spot.position.set(...contact, 0.004 * this.look.size);
+    this.uphill.visible = slope > 0;
+    const reach = 1.2 * (r_0 + r);
+    this.uphill.rotation.z = direction;
+    this.uphill.position.set(contact[0] + reach * Math.cos(direction), contact[1] + reach * Math.sin(direction), 0);
     this.force.visible = show.force && FORCE.every((name) => table.has(name));
     if (this.force.visible) {
       const scale = (1.1 * (r_0 + r)) / (this.weight || 1);
@@ -164,8 +169,6 @@ export class WheelModel {
       pointArrow(this.force, new THREE.Vector3(...FORCE.map(at)).multiplyScalar(scale));
     }
   }
-
-  sticks(t) { return sticksAt(this.wheel.phases, t); }
 
   dispose() { dispose(this.group); }
 }

@@ -1,17 +1,21 @@
 """The site of ./scripts/site: every document as it is kept, by Sphinx; nothing is loaded from elsewhere.
 
 The source folder is the project's root, so that links between documents, and to sources, stay as they are.
-Formulas become MathML, which browsers draw by themselves. docs/decisions/site.md says why it is made like this.
+Formulas become MathML, which browsers draw by themselves, with a font for mathematics that the site brings along.
+docs/decisions/site.md says why it is made like this.
 """
 
 from __future__ import annotations
 
+import json
 import re
 import sys
+from importlib.resources import files
 from pathlib import Path
 
 import latex2mathml.converter
 from docutils import nodes
+from fontTools import subset
 from sphinx.application import Sphinx
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -34,8 +38,11 @@ suppress_warnings = ["myst.header", "toc.not_included", "misc.highlighting_failu
 html_theme = "furo"
 html_title = f"wheel.fmu {release}"
 html_favicon = "../../../fmu-src/archive/model.png"
-html_static_path = ["site.css"]
+html_static_path = ["site.css", "search.js"]
 html_css_files = ["site.css"]
+html_show_search_summary = (
+    False  # search.js takes excerpts from texts.js: a page opened from the disk may fetch nothing
+)
 html_copy_source = False
 html_show_sphinx = False
 templates_path = ["_templates"]
@@ -50,6 +57,9 @@ CONTENTS = """
 {pages}
 ```
 """
+# Letters, digits and punctuation; accents, Greek, arrows, operators, brackets, and the italic letters of formulas.
+GLYPHS = "U+20-7E,U+A0-FF,U+300-36F,U+370-3FF,U+2000-206F,U+2100-23FF,U+27C0-27FF,U+2A00-2AFF,U+1D400-1D7FF"
+THIN = '<mspace width="0.17em"/>'
 DELETABLE = ("tools/page", "examples/vehicles", "examples/studies", "examples/control", "examples/importer")
 GONE = [ROOT / part for part in DELETABLE if not (ROOT / part).exists()]
 CHAPTERS = {
@@ -75,6 +85,11 @@ def contents() -> str:
     return "".join(found)
 
 
+def titles(text: str) -> str:
+    """A link whose words are the name of its document gets the document's title."""
+    return re.sub(r"(?<!!)\[`?[\w./-]+\.md`?\](\([\w./-]+\.md(?:#[\w-]+)?\))", r"[]\1", text)
+
+
 def folders(text: str, page: Path) -> str:
     """Links to a folder lead to its README; where it has none, and of parts that were deleted, the words stay."""
 
@@ -91,8 +106,7 @@ def folders(text: str, page: Path) -> str:
 
 def read(app: Sphinx, name: str, source: list[str]) -> None:
     path = Path(app.env.doc2path(name))
-    if path.suffix == ".md":
-        source[0] = folders(source[0], path)
+    source[0] = titles(folders(source[0], path) if path.suffix == ".md" else source[0])
     if name == root_doc:
         source[0] += contents()
     if name == "docs/c_header":
@@ -100,13 +114,21 @@ def read(app: Sphinx, name: str, source: list[str]) -> None:
 
 
 def formula(display: str):
-    """Visitor that writes a formula as MathML."""
+    """Visitor that writes a formula as MathML, with thin spaces about the names of functions."""
 
     def visit(writer: object, node: nodes.Element) -> None:
-        writer.body.append(latex2mathml.converter.convert(node.astext(), display=display))
+        written = latex2mathml.converter.convert(node.astext(), display=display)
+        writer.body.append(re.sub(r"(?<!<msup>)(<mi>(?:sin|cos|tan|exp)</mi>)", rf"{THIN}\1{THIN}", written))
         raise nodes.SkipNode
 
     return visit
+
+
+def widen(app: Sphinx, document: nodes.document) -> None:
+    """Marks the cells of prose, which a table must not squeeze beside names that cannot be broken."""
+    for cell in document.findall(nodes.entry):
+        if len(cell.astext()) > 45:
+            cell["classes"].append("prose")
 
 
 def front(app: Sphinx, name: str, template: str, context: dict, doctree: object) -> None:
@@ -114,7 +136,29 @@ def front(app: Sphinx, name: str, template: str, context: dict, doctree: object)
     context["live"] = (Path(app.outdir) / "live.html").exists()
 
 
+def text_of(document: nodes.document) -> str:
+    """The words of a document, without formulas and marks."""
+    left_out = (nodes.math, nodes.math_block, nodes.raw)
+    return " ".join(
+        " ".join(t.astext() for t in document.findall(nodes.Text) if not isinstance(t.parent, left_out)).split()
+    )
+
+
+def bring_along(app: Sphinx, fault: Exception | None) -> None:
+    """The texts of all documents, for the search; the font, with the glyphs of formulas and their tables."""
+    if fault:
+        return
+    static = Path(app.outdir) / "_static"
+    texts = {name: text_of(app.env.get_doctree(name)) for name in sorted(app.env.found_docs)}
+    (static / "texts.js").write_text(f"const TEXTS = {json.dumps(texts, ensure_ascii=False)};\n", encoding="utf-8")
+    font = files("ziamath") / "fonts" / "STIXTwoMath-Regular.ttf"
+    options = ["--layout-features=*", "--flavor=woff", f"--unicodes={GLYPHS}", "--name-IDs=*"]
+    subset.main([str(font), f"--output-file={static / 'math.woff'}", *options])
+
+
 def setup(app: Sphinx) -> None:
     app.connect("html-page-context", front)
     app.connect("source-read", read)
+    app.connect("doctree-read", widen)
+    app.connect("build-finished", bring_along)
     app.add_html_math_renderer("mathml", (formula("inline"), None), (formula("block"), None))

@@ -5,10 +5,13 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 from support.paths import ROOT
+
+from publishing.documents import reflowed
 
 CONF = ROOT / "tools" / "publishing" / "site"
 LOADED = re.compile(r"""<(?:script|img|iframe|source|link)\b[^>]*?\b(?:src|href)=["']((?:https?:)?//[^"']+)""")
@@ -52,6 +55,46 @@ def test_the_site_asks_for_nothing_from_elsewhere(site: Path) -> None:
     assert LOADED.findall('<script src="https://example.org/x.js"></script>') == ["https://example.org/x.js"]
 
 
+class Places(HTMLParser):
+    """The comments of filled places that stand in no paragraph, cell or heading: there they would split a sentence."""
+
+    HOLDERS = frozenset({"p", "td", "th", "h1", "h2", "h3", "dd"})
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open, self.found, self.split = 0, 0, 0
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list) -> None:
+        self.open += tag in self.HOLDERS
+
+    def handle_endtag(self, tag: str) -> None:
+        self.open -= tag in self.HOLDERS
+
+    def handle_comment(self, data: str) -> None:
+        self.found += data.startswith(" = ")
+        self.split += data.startswith(" = ") and not self.open
+
+
+def test_a_filled_figure_stands_within_its_sentence(site: Path, tmp_path: Path) -> None:
+    places = {page: Places(page.read_text(encoding="utf-8")) for page in site.rglob("*.html")}
+    assert sum(page.found for page in places.values()) > 50
+    assert [path for path, page in places.items() if page.split] == []
+    sentence = "# A page\n\nThe run took about\n<!-- = commands.first_run -->44<!-- . --> s.\n"
+    (tmp_path / "README.md").write_text(sentence)
+    (tmp_path / "mended.md").write_text(reflowed(sentence))
+    build(tmp_path, tmp_path / "out", "-D", "html_favicon=")
+    for name, split in (("README", 1), ("mended", 0)):
+        page = Places((tmp_path / "out" / f"{name}.html").read_text(encoding="utf-8"))
+        assert (page.found, page.split) == (1, split)
+
+
+def test_a_link_is_called_as_its_document(site: Path) -> None:
+    words = re.findall(r'<a class="reference internal"[^>]*>(.*?)</a>', (site / "docs" / "physics.html").read_text())
+    assert any(">Equations<" in word for word in words)
+    assert not [page for page in site.rglob("*.html") if re.search(r'std-doc">[\w/]+\.md<', page.read_text())]
+
+
 def test_formulas_are_drawn_by_the_browser_itself(site: Path) -> None:
     text = (site / "docs" / "equations.html").read_text(encoding="utf-8")
     assert text.count("<math") > 50 and "MathJax" not in text
@@ -65,10 +108,14 @@ def test_the_reference_of_the_c_header_has_every_function(site: Path) -> None:
     assert {name for name in functions if f'id="{name.replace("_", "-")}' not in text and name not in text} == set()
 
 
-@pytest.mark.parametrize(
-    "page", ["[gone](gone.md)", "[gone](#gone)", "[gone](gone.py)", "[gone](gone/)", "![gone](gone.png)"]
-)
-def test_a_link_that_leads_nowhere_stops_the_site(tmp_path: Path, page: str) -> None:
-    (tmp_path / "README.md").write_text(f"# A page\n\n{page}\n")
-    done = build(tmp_path, tmp_path / "out", "-D", "html_favicon=")
-    assert done.returncode != 0 and "gone" in done.stderr
+GONE = ["[gone](gone.md)", "[gone](#gone)", "[gone](gone.py)", "[gone](gone/)", "![gone](gone.png)"]
+
+
+def test_links_that_lead_nowhere_stop_the_site(tmp_path: Path) -> None:
+    (tmp_path / "start.md").write_text("# A page\n\n[another](page0.md)\n")
+    for number, link in enumerate(GONE):
+        (tmp_path / f"page{number}.md").write_text(f"# Page {number}\n\n{link}\n")
+    done = build(tmp_path, tmp_path / "out", "-D", "html_favicon=", "-D", "root_doc=start")
+    assert done.returncode != 0 and "start.md" not in done.stderr
+    warned = {int(number) for number in re.findall(r"page(\d)\.md:\d+: WARNING.*gone", done.stderr)}
+    assert warned == set(range(len(GONE)))

@@ -1,9 +1,10 @@
-// The story of the live page: what the wheel does and why, step by step (docs/physics.md). Each step is a scene; its
-// text takes every figure from the scene's own motion. wheel: {table, phases}; other: the motion that is kept beside.
+// The story of the live page: what the wheel does and why, step by step (docs/physics.md), and the scenes to begin
+// with. Each step is a scene; its text takes every figure from the scene's own motion. wheel: {table, phases}; other:
+// the motion that is kept beside. A plan is {values: start values that differ from those of modelDescription.xml;
+// changes: what is done while it rolls, [{t [s], name, value}]; stop: s}. Angles in rad.
 import {EMPTY} from '#address';
-import {extent} from '#axes';
+import {extent} from '#diagrams';
 import {degrees} from '#knobs';
-import {criticalSpin, DRIVEN, nearCritical} from '#presets';
 
 const DEGREES = 180 / Math.PI;
 const most = (values) => extent(values)[1];
@@ -14,13 +15,37 @@ const lean = ({table}) =>
 const lowest = ({table}) => (DEGREES * least(table.columns.theta)).toFixed(1);
 const joules = ({table}, t) => table.value('E', t).toFixed(1);
 
+/**
+ * |omega_z| above which upright straight rolling is stable, rad/s: a small lean a turns the wheel at
+ * omega_2 = (J_z / J_x) omega_z a, and (J_x + m rho^2) a'' = m g r_0 a - (J_z + m rho^2) omega_2 omega_z, rho = r_0 +
+ * r.
+ */
+function criticalSpin({m, g, r_0, r, J_x, J_z}) {
+  return Math.sqrt((m * g * r_0 * J_x) / (J_z * (J_z + m * (r_0 + r) ** 2)));
+}
+
+/** Half a degree of lean, and a tenth more spin than the critical (+1) or less (-1). */
+function nearCritical(wheel, side) {
+  return {theta_start: degrees(89.5), phi_dot_start: Number((-(1 + 0.1 * side) * criticalSpin(wheel)).toFixed(3))};
+}
+
+/** A drive torque from 1 s to 3 s and the brake from 6 s to 7.5 s. */
+const DRIVEN = {
+  values: {theta_start: degrees(88), phi_dot_start: -4},
+  changes: [
+    {t: 1, name: 'M_3', value: -4}, {t: 3, name: 'M_3', value: 0}, {t: 6, name: 'M_brake', value: 4},
+    {t: 7.5, name: 'M_brake', value: 0}
+  ],
+};
+
 function state(values, more = {}) {
   const {changes = [], show = {}, ...rest} = more;
   return {...EMPTY, plan: {values, changes, stop: 10}, ...rest, show: {...EMPTY.show, ...show}};
 }
 
 /**
- * [{title, state, text(wheel, other), attempt, names?, speed?}] for the wheel's parameters {m, g, r_0, r, J_x, J_z}.
+ * The steps [{title, state, text(wheel, other), attempt, names?, speed?}] for the wheel's parameters {m, g, r_0, r,
+ * J_x, J_z}.
  */
 export function chapters(parameters) {
   const {m, r_0, r} = parameters;
@@ -109,6 +134,28 @@ export function chapters(parameters) {
           'circle instead of a point: the equations end there, and so does the run. It also ends where the wheel would lift ' +
           'off (N = 0). Sliding is not in the model: its ground has all the grip that is needed.',
       attempt: 'Give it a little spin φ̇. How little lets it come up again?',
+    },
+  ];
+}
+
+/** The scenes {label, about?, plan}: those of the story's steps, and a disc; for the wheel's parameters. */
+export function scenes(parameters, steps) {
+  const [, , critical, free, friction, , driven] = steps.map(({state}) => state);
+  const limit = `Upright rolling is stable above ${criticalSpin(parameters).toFixed(2)} rad/s; this wheel is 10 %`;
+  return [
+    {label: 'Paper, no friction', plan: free.plan},
+    {label: 'Paper, s = 0.03 m', plan: friction.plan},
+    {label: 'Just stable', plan: critical.kept, about: `${limit} faster, leans by half a degree and stays up.`},
+    {label: 'Just unstable', plan: critical.plan, about: `${limit} slower, leans as much and tumbles.`},
+    {
+      label: 'Thin disc',
+      plan: state({r: 0, theta_start: degrees(20), psi_dot_start: 9, phi_dot_start: -9}).plan,
+      about: 'No tube (r = 0): the rolling disc of the textbooks, low and wobbling like a coin.',
+    },
+    {
+      label: 'Driven',
+      plan: driven.plan,
+      about: 'A motor pushes with M₃ = −4 N m from 1 s to 3 s, and the brake acts with 4 N m from 6 s to 7.5 s.',
     },
   ];
 }
