@@ -1,7 +1,7 @@
 """The site of ./scripts/site: every document as it is kept, by Sphinx; nothing is loaded from elsewhere.
 
 The source folder is the project's root, so that links between documents, and to sources, stay as they are.
-Formulas become MathML, which browsers draw by themselves. docs/decisions/site.md says why it is made like this.
+Formulas become MathML, which browsers draw by themselves. docs/decisions/others.md says why it is made like this.
 """
 
 from __future__ import annotations
@@ -53,12 +53,14 @@ CONTENTS = """
 DELETABLE = ("tools/page", "examples/vehicles", "examples/studies", "examples/control", "examples/importer")
 GONE = [ROOT / part for part in DELETABLE if not (ROOT / part).exists()]
 CHAPTERS = {
-    "The wheel": "docs/README docs/physics docs/variables docs/brake_hold_steer docs/notation docs/equations "
-    "docs/errata",
-    "Use it": "docs/in_your_tool docs/vehicle examples/wheel docs/*",
+    "Learn": "docs/README examples/wheel docs/physics",
+    "How to": "docs/in_your_tool docs/recipes docs/brake_hold_steer docs/vehicle docs/model_exchange "
+    "docs/linearize_and_control docs/studies docs/page docs/benchmark docs/test_your_importer",
+    "Look up": "docs/variables docs/messages docs/glossary docs/equations docs/errata docs/c_header "
+    "docs/interoperability",
     "Examples": "examples/README examples/*/README",
-    "Measured": "docs/results/*",
-    "Make it": "CONTRIBUTING */README tools/*/README CHANGELOG SECURITY docs/decisions/*",
+    "Judge": "docs/credibility docs/testing docs/* docs/results/*",
+    "Make": "CONTRIBUTING */README tools/*/README CHANGELOG SECURITY docs/decisions/*",
 }
 
 
