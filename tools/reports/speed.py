@@ -210,11 +210,11 @@ def instances(report: Report) -> None:
     for name in ("free", "friction"):
         done = master_of(report).run(Task(SCENES[name].start, 0.1, 15), 0.1)
         memory = np.median(done.costs[:, 3]) / 1024
-        rows.append({"scene": name, "memory, KiB": memory, "create, initialise and free, µs": 1e6 * done.life})
+        rows.append({"scene": name, "memory, KiB": memory, "create, initialize and free, µs": 1e6 * done.life})
     report.table("instances", rows)
     memory, life = pd.DataFrame(rows).drop(columns="scene").max()
     report.figure("memory", "an instance: memory", memory, "KiB", 128)
-    report.figure("life", "an instance: create, initialise and free", life, "µs", 10)
+    report.figure("life", "an instance: create, initialize and free", life, "µs", 10)
     size = (build_folder() / "wheel.fmu").stat().st_size
     report.figure("archive", "wheel.fmu of this machine alone", size / 1024, "KiB")
 
