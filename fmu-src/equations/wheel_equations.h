@@ -7,8 +7,8 @@
  *   multibody  the paper's system (24); unknowns q and q_dot, constraints held at acceleration level; 12 states
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
  *
- * Frames (docs/notation.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the carrier e1 (along
- * the line of nodes, the rolling direction), e2 (in the wheel plane, up the slope), e3 (the axle) does not spin with
+ * Frames (docs/variables.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the carrier e1 (along
+ * the line of nodes, the rolling direction), e2 (in the wheel plane, upwards), e3 (the axle) does not spin with
  * the wheel; body axes x, y, z = e3 do. Domain: 0 < theta < pi, masses, radii and moments positive. */
 #ifndef WHEEL_EQUATIONS_H
 #define WHEEL_EQUATIONS_H

@@ -103,8 +103,8 @@ bool add_derivative(Instance& i, unsigned known, double seed, const Outputs& out
     return true;
   }
   if (add_start_derivative(i, known, seed, outputs)) return true;
-  i.log(Topic::error, "%s: no allowed initial values lie close enough to %s = %s for a derivative.", i.called,
-        wheel::row_of(known).name, Digits(i.simulation.value(known)).text);
+  i.log(Topic::error, "%s: no valid initial values near %s = %s for a derivative.", i.called, wheel::row_of(known).name,
+        Digits(i.simulation.value(known)).text);
   return false;
 }
 

@@ -41,7 +41,7 @@ Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
 }
 
 constexpr const char *null_pointer = "the state, the size or the bytes are a null pointer",
-                     *unknown_state = "the state is not one that this FMU handed out", *no_memory = "out of memory";
+                     *unknown_state = "this FMU did not create the state", *no_memory = "out of memory";
 
 fmi2Status refuse(Instance& i, const char* why) { return i.log(Topic::error, "%s: %s.", i.called, why); }
 

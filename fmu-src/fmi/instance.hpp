@@ -10,7 +10,7 @@
 namespace fmi {
 
 struct Instance {
-  // One block of memory, the name included. What takes memory later: docs/decisions/memory.md. Null if there is none.
+  // One block of memory, the name included. What takes memory later: docs/decisions/others.md. Null if there is none.
   static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind);
   static void destroy(Instance* instance);
 

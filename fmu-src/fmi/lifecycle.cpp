@@ -25,7 +25,7 @@ const char* refusal(const char* name, const fmi2Type& asked, const char* guid) {
   if (is_blank(name)) return "fmi2Instantiate: the instance name is missing or blank.";
   if (type != fmi2CoSimulation && type != fmi2ModelExchange) return "fmi2Instantiate: the type is not known.";
   if (!guid || std::strcmp(guid, WHEEL_GUID) != 0)
-    return "fmi2Instantiate: the GUID is not that of this FMU's modelDescription.xml (" WHEEL_GUID ").";
+    return "fmi2Instantiate: the GUID differs from this FMU's modelDescription.xml (" WHEEL_GUID ").";
   return nullptr;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 bool check_count(Instance& i, const void* values, std::size_t count, int needed) {
   if (values && count == static_cast<std::size_t>(needed)) return true;
-  i.log(Topic::error, "%s: an array of %d numbers is needed, not of %zu%s.", i.called, needed, count,
+  i.log(Topic::error, "%s: needs an array of %d numbers, not of %zu%s.", i.called, needed, count,
         values ? "" : ", and it is a null pointer");
   return false;
 }
@@ -66,7 +66,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* enter_event_mode,
                                        fmi2Boolean* terminate) {
   return guarded(c, Function::completed_step, "fmi2CompletedIntegratorStep", [=](Instance& i) {
-    if (!enter_event_mode || !terminate) return i.log(Topic::error, "%s: an answer is a null pointer.", i.called);
+    if (!enter_event_mode || !terminate) return i.log(Topic::error, "%s: a result is a null pointer.", i.called);
     *enter_event_mode = i.simulation.has_event() ? fmi2True : fmi2False;
     *terminate = fmi2False;
     return fmi2OK;

@@ -27,7 +27,7 @@ fmi2Status check_step(Instance& i, double t, double h) {
     return i.log(Topic::error, "%s from %s s by %s s: times must be finite and the step not negative.", i.called,
                  Digits(t).text, Digits(h).text);
   if (std::fabs(t + h - t - h) > step_digits * h)
-    return i.log(Topic::error, "%s from %s s by %s s: a time of this size has no digits left for the step.", i.called,
+    return i.log(Topic::error, "%s from %s s by %s s: the step is lost in the rounding of the time.", i.called,
                  Digits(t).text, Digits(h).text);
   const double reached = i.simulation.time(), stop = i.simulation.stop_time();
   if (!same_time(t, reached, h))

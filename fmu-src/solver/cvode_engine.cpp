@@ -51,16 +51,16 @@ int weights(N_Vector y, N_Vector w, void* user) {
 const char* reason_of(int flag) {
   switch (flag) {
     case CV_ERR_FAILURE:
-      return "the error stays too large however small the step";
+      return "the error stays too large at the smallest step";
     case CV_CONV_FAILURE:
-      return "the corrector does not converge however small the step";
+      return "the corrector does not converge at the smallest step";
     case CV_RHSFUNC_FAIL:
     case CV_FIRST_RHSFUNC_ERR:
     case CV_REPTD_RHSFUNC_ERR:
     case CV_UNREC_RHSFUNC_ERR:
       return "the rates of the states are not finite";
     default:
-      return "CVODE gave up";
+      return "CVODE failed";
   }
 }
 

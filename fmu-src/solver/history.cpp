@@ -33,13 +33,13 @@ void Solver::save_history(support::Archive& archive) const { const_cast<Solver&>
 
 bool Solver::restore_history(const Problem& problem, support::Archive& archive) {
   problem_ = problem;
-  failure_ = "it had failed before it was saved";
+  failure_ = "the solver had failed before the state was saved";
   step_ = {};
   step_.degree = -1;
   runge_kutta_ = {};
   visit(archive);
   if (archive.is_sound()) return true;
-  failure_ = "its history could not be restored";
+  failure_ = "the solver's history could not be restored";
   const double none[max_states] = {};
   step_.set_point(0, none, problem.states);  // reading it is harmless
   return pending_ = Outcome::failed, false;

@@ -79,7 +79,7 @@ class Solver {
   Problem problem_ = {};
   Method method_ = Method::adams;
   Outcome pending_ = Outcome::failed;
-  const char* failure_ = "it was not started";
+  const char* failure_ = "the solver was not started";
   double known_until_ = 0, event_time_ = 0;  // s
   int event_ = 0;
   double stop_time_ = 0;             // s, of the next step

@@ -10,7 +10,7 @@ from support.driver import ERROR, OK
 
 from contract.call_states import bring_to
 
-UNKNOWN = "the state is not one that this FMU handed out"
+UNKNOWN = "this FMU did not create the state"
 DAMAGED = "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version ({})."
 
 

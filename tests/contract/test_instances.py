@@ -98,7 +98,7 @@ def test_a_freed_instance_gives_its_memory_back(wheel, method):
 
 OTHERS = ((0, b"{0}"), (1, b"{00000000-0000-0000-0000-000000000000}"), (1, b""))  # kind and GUID
 WRONG = [(name, 1, None, "the instance name is missing or blank") for name in (b"", b" \t", None)]
-WRONG += [(b"wheel", *other, "the GUID is not that of this FMU") for other in OTHERS]
+WRONG += [(b"wheel", *other, "the GUID differs from this FMU") for other in OTHERS]
 # Outside of the enumeration: under the sanitizers, to read such a number as its type is a fault.
 WRONG += [(b"wheel", kind, None, "the type is not known") for kind in (2, 7, -1, 2**31 - 1)]
 

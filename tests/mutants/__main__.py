@@ -28,7 +28,7 @@ from typing import NamedTuple
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 CORE, COPIES = ROOT / "fmu-src", ROOT / "build" / "mutants"
-LOG, PAGE = COPIES / "random.csv", ROOT / "docs" / "results" / "mutants.md"
+LOG, DATA = COPIES / "random.csv", ROOT / "docs" / "results" / "data"
 FOLDERS = ("contract", "physics", "orbit", "robustness", "solver", "exchange", "equations")  # what runs the core
 # These folders call a part of the core alone, made of these modules; faults elsewhere cannot show there.
 OF_A_PART = {"equations": {"equations"}, "solver": {"solver", "support"}}
@@ -157,24 +157,24 @@ def sample(count: int, seed: int) -> list[Fault]:
 
 
 def write(judged: list[tuple[Fault, str]]) -> int:
-    """The page; how many survivors have no reason."""
+    """The data of docs/testing.md; how many survivors have no reason."""
     with (HERE / "survivors.csv").open(newline="", encoding="utf-8") as file:
         why = {tuple(row[:3]): row[3] for row in csv.reader(file)}
     survivors = [(*fault[:3], why.get(fault[:3], "")) for fault, killer in judged if not killer]
     killed, equal = len(judged) - len(survivors), sum(why.startswith("equivalent") for *_, why in survivors)
     share, of_others = (100 * killed / max(1, count) for count in (len(judged), len(judged) - equal))
-    cells = [[cell.replace("|", "\\|").replace("`", "") for cell in row] for row in survivors]
-    page = f"""# Random faults, and what the quick tests notice of them
-
-{len(judged)} random changes of `fmu-src` that compile and change the library, judged by the build and the tests of
-`./scripts/test quick`, up to the first that fails: {share:.1f} % are noticed; without the {equal} survivors that are
-equivalent, which no test can notice, {of_others:.1f} %. `./scripts/mutants` makes this page.
-
-| file | line of code | becomes | why it stays |
-|---|---|---|---|
-"""
-    rows = [f"| {file} | `{code}` | `{change}` | {reason} |\n" for file, code, change, reason in cells]
-    PAGE.write_text(page + "".join(rows), encoding="utf-8")
+    figures = [
+        ("count", len(judged), "", "random faults judged"),
+        ("noticed", f"{share:.1f}", "%", "noticed by the quick tests"),
+        ("noticed_of_others", f"{of_others:.1f}", "%", "noticed, without equivalent survivors"),
+        ("survivors", len(survivors), "", "survivors, each with its reason"),
+        ("equivalent", equal, "", "survivors that no test can notice"),
+    ]
+    tables = {"mutants_all": [("figure", "measured", "unit", "what"), *figures]}
+    tables["mutants_survivors"] = [("file", "code", "change", "why"), *survivors]
+    for name, rows in tables.items():
+        with (DATA / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows(rows)
     return sum(not reason for *_, reason in survivors)
 
 

@@ -11,7 +11,7 @@ from support.driver import ERROR, OK
 from support.paths import ROOT
 
 # formulation, friction law, method (4: Runge-Kutta): here every allocation is our own. SUNDIALS does not survive each
-# of its own that fails (docs/decisions/memory.md), so its methods are not played with.
+# of its own that fails (docs/decisions/others.md), so its methods are not played with.
 SCENES = {"reduced": (2, 1, 4), "multibody": (3, 1, 4), "reduced, regularized": (2, 2, 4)}
 
 
@@ -58,4 +58,4 @@ def test_a_solver_that_gives_up_tells_its_reason_in_one_sentence_with_the_caller
     assert (w.set(M_3=1e300), w.step(0.5)) == (OK, ERROR)
     (message,) = w.take_messages()
     assert message.text.startswith("The solver stopped at t = 7.5 s, where omega_z = ")
-    assert message.text.endswith("rad/s: the error stays too large however small the step.")
+    assert message.text.endswith("rad/s: the error stays too large at the smallest step.")

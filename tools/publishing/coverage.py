@@ -1,4 +1,4 @@
-"""docs/results/coverage.md out of gcovr's JSON: lines and branches of fmu-src, and why the rest is not reached.
+"""Data of docs/testing.md from gcovr's JSON: lines and branches of fmu-src, and why the rest is not reached.
 
 A line or branch counts as reached if any instantiation of its function reaches it. Status 1 if less than 95 % of the
 lines are reached, a line that is not has no reason below, or a reason names code that is gone.
@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from publishing.markdown import ROOT, page
+from publishing.markdown import ROOT
 
-PAGE = ROOT / "docs" / "results" / "coverage.md"
+DATA = ROOT / "docs" / "results" / "data"
 LEAST = 95.0  # per cent of lines
 # What no test reaches: file, a piece of the text of the first line of a range, and why.
 MEMORY = "only where there is no memory left: tests/robustness/short_memory.c"
@@ -34,16 +34,19 @@ REASONS = (
 )
 
 
-def share(hits: pd.Series) -> str:
-    reached = (hits > 0).sum()
-    return f"{reached} of {len(hits)} ({100 * reached / len(hits):.1f} %)"
+def share(hits: pd.Series) -> float:
+    return round(100 * (hits > 0).mean(), 1)
 
 
 def table(lines: pd.Series, branches: pd.Series) -> pd.DataFrame:
+    """Per file: how many of its lines and branches are reached, and how many it has."""
     columns = {"lines": lines, "branches": branches}
-    shares = pd.DataFrame({name: hits.groupby("file").apply(share) for name, hits in columns.items()}).fillna("")
-    total = pd.DataFrame({name: f"**{share(hits)}**" for name, hits in columns.items()}, index=["**all**"])
-    return pd.concat([shares, total]).rename_axis("file").reset_index()
+    counts = {
+        f"{name}{what}": hits.groupby("file").apply(count)
+        for name, hits in columns.items()
+        for what, count in ((" reached", lambda hits: (hits > 0).sum()), ("", len))
+    }
+    return pd.DataFrame(counts).astype("Int64").reset_index()
 
 
 def unreached(lines: pd.Series) -> pd.DataFrame:
@@ -70,10 +73,16 @@ def main(report: Path) -> int:
     ways = ways.assign(way=ways.groupby(level=0).cumcount(), count=[way["count"] for way in ways["branches"]])
     branches = ways.groupby(["file", "line_number", "way"])["count"].sum()
     missing = unreached(lines)
-    PAGE.write_text(page("coverage.md", files=table(lines, branches), unreached=missing), encoding="utf-8")
+    figures = [
+        ("lines", share(lines), "%", "lines of fmu-src reached"),
+        ("branches", share(branches), "%", "branches reached"),
+    ]
+    all_of_it = pd.DataFrame(figures, columns=["figure", "measured", "unit", "what"])
+    for name, rows in (("", table(lines, branches)), ("_unreached", missing), ("_all", all_of_it)):
+        rows.to_csv(DATA / f"coverage{name}.csv", index=False)
     unknown = missing["why"].str.startswith("**").sum()
     gone = [f"{name}: {piece}" for name, piece, _ in REASONS if piece not in (ROOT / name).read_text(encoding="utf-8")]
-    print(f"{share(lines)} of the lines of fmu-src are reached; {unknown} ranges without a reason.")
+    print(f"{share(lines)} % of the lines of fmu-src are reached; {unknown} ranges without a reason.")
     print(*(f"A reason names code that is gone: {reason}." for reason in gone), sep="\n", end="\n" if gone else "")
     return int(100 * (lines > 0).mean() < LEAST or unknown > 0 or len(gone) > 0)
 

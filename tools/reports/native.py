@@ -78,7 +78,7 @@ class Timing:
 
     @property
     def life(self) -> float:
-        """Median seconds to create, initialise and free."""
+        """Median seconds to create, initialize and free."""
         return float(np.median(self.costs[:, 0] + self.costs[:, 2]))
 
 

@@ -67,7 +67,7 @@ def tools_at_hand(python: str | None) -> list[tuple[str, str, list[str]]]:
         number = subprocess.run([python, "-c", ask], capture_output=True, text=True, check=True).stdout.strip()
         found.append((tool, f"{package} {number}", [python, str(scripts / f"by_{tool}.py")]))
     if program := shutil.which("OMSimulator"):
-        tried = pd.read_csv(ROOT / "docs" / "results" / "data" / "interoperability.csv", dtype=str)
-        number = tried.loc[tried.iloc[:, 0] == "OMSimulator"].iloc[0, 1]
+        tried = pd.read_csv(ROOT / "docs" / "results" / "data" / "interoperability_remarks.csv", dtype=str)
+        number = tried.loc[tried["tool"] == "OMSimulator", "version"].iloc[0]
         found.append(("OMSimulator", number, [sys.executable, str(scripts / "by_omsimulator.py"), program]))
     return found

@@ -202,7 +202,7 @@ def instances(report: Report) -> None:
     for name in ("free", "friction"):
         done = master_of(report).run(Task(SCENES[name].start, 0.1, 15), 0.1)
         memory = np.median(done.costs[:, 3]) / 1024
-        rows.append({"scene": name, "memory, KiB": memory, "create, initialise and free, µs": 1e6 * done.life})
+        rows.append({"scene": name, "memory, KiB": memory, "create, initialize and free, µs": 1e6 * done.life})
     report.table("instances", rows)
     memory, life = pd.DataFrame(rows).drop(columns="scene").max()
     report.figures(memory=memory, life=life, archive=(build_folder() / "wheel.fmu").stat().st_size / 1024)

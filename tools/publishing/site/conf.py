@@ -2,7 +2,7 @@
 
 The source folder is the project's root, so that links between documents, and to sources, stay as they are.
 Formulas become MathML, which browsers draw by themselves, with a font for mathematics that the site brings along.
-docs/decisions/site.md says why it is made like this.
+docs/decisions/others.md says why it is made like this.
 """
 
 from __future__ import annotations
@@ -63,12 +63,14 @@ THIN = '<mspace width="0.17em"/>'
 DELETABLE = ("tools/page", "examples/vehicles", "examples/studies", "examples/control", "examples/importer")
 GONE = [ROOT / part for part in DELETABLE if not (ROOT / part).exists()]
 CHAPTERS = {
-    "The wheel": "docs/README docs/physics docs/variables docs/brake_hold_steer docs/notation docs/equations "
-    "docs/errata",
-    "Use it": "docs/in_your_tool docs/vehicle examples/wheel docs/*",
+    "Learn": "docs/README examples/wheel docs/physics",
+    "How to": "docs/in_your_tool docs/recipes docs/brake_hold_steer docs/vehicle docs/model_exchange "
+    "docs/linearize_and_control docs/studies docs/page docs/benchmark docs/test_your_importer",
+    "Look up": "docs/variables docs/messages docs/glossary docs/equations docs/errata docs/c_header "
+    "docs/interoperability",
     "Examples": "examples/README examples/*/README",
-    "Measured": "docs/results/*",
-    "Make it": "CONTRIBUTING */README tools/*/README CHANGELOG SECURITY docs/decisions/*",
+    "Judge": "docs/credibility docs/testing docs/* docs/results/*",
+    "Make": "CONTRIBUTING */README tools/*/README CHANGELOG SECURITY docs/decisions/*",
 }
 
 
