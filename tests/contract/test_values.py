@@ -30,11 +30,6 @@ def get_many(w: FMU2Wheel, kind: str, references: Sequence[int]) -> tuple[int, l
     return getattr(w, f"fmi2Get{kind}")(w.component, (c_uint * n)(*references), n, values), list(values)
 
 
-def sentence(w: FMU2Wheel) -> str:
-    (message,) = w.take_messages()
-    return message.text
-
-
 def test_null_arrays_are_refused_and_empty_arrays_are_not(wheel):
     w = wheel().start()
     one = (c_uint * 1)(w.references["F_X"])
@@ -75,9 +70,9 @@ def test_unknown_references_and_wrong_types_are_errors_and_leave_the_array_alone
         others = [w.references[other] for other in right.values() if other != name]
         for bad in (first_unknown(w), 2**32 - 1, *others):
             assert get_many(w, kind, [good, bad]) == (ERROR, [-77, -77])
-            assert sentence(w) == f"fmi2Get{kind}: no variable of this type has the value reference {bad}."
+            assert w.said() == f"fmi2Get{kind}: no variable of this type has the value reference {bad}."
             assert set_many(w, kind, [bad], [1]) == ERROR
-            assert sentence(w) == f"fmi2Set{kind}: no variable of this type has the value reference {bad}."
+            assert w.said() == f"fmi2Set{kind}: no variable of this type has the value reference {bad}."
     assert get_many(w, "Integer", [w.references["formulation"]]) == (OK, [1])  # an enumeration is an Integer
 
 

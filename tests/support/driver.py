@@ -102,6 +102,11 @@ class FMU2Wheel(FMU2Slave):
         messages, self.messages = self.messages, []
         return messages
 
+    def said(self) -> str:
+        """The only message since the last call of this function or of take_messages."""
+        (message,) = self.take_messages()
+        return message.text
+
     @property
     def sentences(self) -> list[str]:
         """The messages as a user reads them: FMI 2.0 doubles the characters % and #."""
