@@ -6,8 +6,6 @@ m R^2) and N = m g; a wheel that is held on a slope alpha has tan(alpha); on a s
 psi_dot v_O, so mu_required = |psi_dot| v_O / g.
 """
 
-from __future__ import annotations
-
 from math import cos, pi, tan
 
 import numpy as np

@@ -1,7 +1,5 @@
 """CONTRIBUTING's recipe for an event, carried out on a copy of the core, and a second event of the same kind."""
 
-from __future__ import annotations
-
 import json
 import re
 import shlex

@@ -1,8 +1,6 @@
 """An event that is added by CONTRIBUTING's recipe is logged at every crossing in every way of running, before and after
 a snapshot. The crossings are those of theta and X_O, read on a fine grid."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from collections.abc import Iterator
