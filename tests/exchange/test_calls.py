@@ -9,7 +9,7 @@ from contract.properties import loads, quick, some
 from contract.test_foreign_states import AT_START, STEPPING, UNFOLDED, forged
 from equations.multibody_transcription import omega_z_dot, solved
 from equations.paper_transcription import Paper, times
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from support import equations as eq
 from support.bounds import absolute_error, beyond, within
@@ -246,6 +246,10 @@ def test_indicators_are_finite_wherever_the_derivatives_are_and_else_refused(lib
     seen = set()
 
     @quick(150)
+    @example(1.0, 1.0, 5, 1, -2.0)
+    @example(1.0, 200.0, 5, 1, -2.0)
+    @example(4.0, 1.0, 5, 1, 0.0)
+    @example(4.0, 1.0, 5, 1, -2.0)
     @given(thetas, powers, st.sampled_from(range(5, 8)), st.sampled_from([1, 2]), st.sampled_from([0.0, -2.0]))
     def check(theta, power, state, law, spin):
         values = {"s": 0.03, "friction_law": law, "theta_start": np.pi / 2, "phi_dot_start": spin}
