@@ -90,7 +90,7 @@ def test_a_filled_figure_stands_within_its_sentence(site: Path, tmp_path: Path) 
 
 
 def test_a_link_is_called_as_its_document(site: Path) -> None:
-    words = re.findall(r'<a class="reference internal"[^>]*>(.*?)</a>', (site / "docs" / "physics.html").read_text())
+    words = re.findall(r'<a class="reference internal"[^>]*>(.*?)</a>', (site / "docs" / "README.html").read_text())
     assert any(">Equations<" in word for word in words)
     assert not [page for page in site.rglob("*.html") if re.search(r'std-doc">[\w/]+\.md<', page.read_text())]
 
