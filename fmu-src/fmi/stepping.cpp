@@ -41,7 +41,7 @@ fmi2Status check_step(Instance& i, double t, double h) {
 // Of the last step, where its status may be asked for.
 fmi2Status last_status(const Instance& i) { return i.simulation.has_ended() ? fmi2Discard : fmi2OK; }
 
-constexpr long long no_status = 1LL << 32;  // beyond what a caller can pass
+constexpr long long no_status = 0x100000000;  // beyond what a caller can pass
 
 // Each function knows one kind of status and answers every other kind with Discard, numbers outside of the enumeration
 // too, which cannot be read as its type.

@@ -119,9 +119,11 @@ double Inputs::corner(double t, double until) const {
   for (int i = 0; i < pieces; ++i) {
     double lo = t, hi = t = ends[i];
     if (acts(lo) == acts(hi)) continue;
-    for (double middle = lo + 0.5 * (hi - lo); lo < middle && middle < hi; middle = lo + 0.5 * (hi - lo))
+    for (;;) {
+      const double middle = lo + 0.5 * (hi - lo);
+      if (!(lo < middle && middle < hi)) return hi;
       (acts(middle) == acts(lo) ? lo : hi) = middle;
-    return hi;
+    }
   }
   return std::numeric_limits<double>::infinity();
 }

@@ -18,6 +18,20 @@ double gravity_of(const WheelParameters& wheel) {
   return largest * std::sqrt(g * g + g_X * g_X + g_Y * g_Y);
 }
 
+// Without rolling friction, on its slope.
+WheelParameters wheel_of(const double* v) {
+  using namespace stored;
+  WheelParameters wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
+  if (v[slope] != 0) wheel_set_slope(&wheel, v[g], v[slope], v[slope_direction]);
+  return wheel;
+}
+
+WheelMotion motion_of(const double* v) {
+  using namespace stored;
+  return {v[psi_start],       v[theta_start],   v[phi_start], v[psi_dot_start],
+          v[theta_dot_start], v[phi_dot_start], v[X_O_start], v[Y_O_start]};
+}
+
 double power_of_two_below(double x) {
   constexpr std::uint64_t exponent = 0x7ff0000000000000;
   return std::fmax(std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & exponent),
@@ -39,9 +53,20 @@ double force_scale(const WheelParameters& wheel, double length, double own_time)
   return wheel.m * length / (own_time * own_time) * across;
 }
 
+void set_scales(Setup& setup, const WheelKinematics& start) {
+  setup.length = setup.wheel.r_0 + setup.wheel.r;
+  setup.own_time = time_scale(setup.wheel, setup.length, start);
+  setup.longest_step = 0.5 * setup.own_time;
+  setup.weight = force_scale(setup.wheel, setup.length, setup.own_time);
+  setup.rate_scale = power_of_two_below(1 / setup.own_time);
+  setup.moment_scale = power_of_two_below(setup.weight * setup.length);
+  const double omega_2 = start.psi_dot * std::sin(start.theta);
+  setup.tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
+}
+
 // The scale of angles is 1 rad, of lengths setup.length, of rates the inverse of the wheel's own time scale or the
 // initial tilting, whichever is larger.
-void set_scales(Setup& setup) {
+void set_error_scales(Setup& setup) {
   const WheelFormulation* const f = setup.formulation;
   const double length = setup.length, slowest = 1 / setup.own_time;
   const double turn = std::max(slowest, setup.tilting);
@@ -68,17 +93,7 @@ Setup setup_of(const Demand& demand) {
   setup.kind = demand.kind;
   setup.start_time = demand.start_time;
   setup.formulation = formulation_of(demand);
-  setup.wheel = {.m = v[stored::m],
-                 .r_0 = v[stored::r_0],
-                 .r = v[stored::r],
-                 .J_x = v[stored::J_x],
-                 .J_y = v[stored::J_y],
-                 .J_z = v[stored::J_z],
-                 .g = v[stored::g],
-                 .s = 0,
-                 .g_X = 0,
-                 .g_Y = 0};
-  if (v[stored::slope] != 0) wheel_set_slope(&setup.wheel, v[stored::g], v[stored::slope], v[stored::slope_direction]);
+  setup.wheel = wheel_of(v);
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[stored::friction_law]));
   setup.omega_s = v[stored::omega_s];
   setup.method = static_cast<SolverMethod>(choice_of(v[stored::method]));
@@ -87,14 +102,7 @@ Setup setup_of(const Demand& demand) {
   setup.keep_contact = v[stored::keep_contact] != 0;
   setup.mu_max = v[stored::mu_max];
   setup.tolerance = demand.tolerance;
-  const WheelMotion motion = {.psi = v[stored::psi_start],
-                              .theta = v[stored::theta_start],
-                              .phi = v[stored::phi_start],
-                              .psi_dot = v[stored::psi_dot_start],
-                              .theta_dot = v[stored::theta_dot_start],
-                              .phi_dot = v[stored::phi_dot_start],
-                              .X_O = v[stored::X_O_start],
-                              .Y_O = v[stored::Y_O_start]};
+  const WheelMotion motion = motion_of(v);
   WheelKinematics start;
   setup.formulation->start(&setup.wheel, &motion, setup.start);
   setup.formulation->kinematics(&setup.wheel, setup.start, &start);
@@ -102,15 +110,8 @@ Setup setup_of(const Demand& demand) {
   const double rounding = 4 * std::numeric_limits<double>::epsilon();
   if (std::fabs(start.omega_z) <= rounding * (std::fabs(start.phi_dot) + std::fabs(start.psi_dot)))
     setup.formulation->stop_spin(&setup.wheel, setup.start);
-  setup.length = setup.wheel.r_0 + setup.wheel.r;
-  setup.own_time = time_scale(setup.wheel, setup.length, start);
-  setup.longest_step = 0.5 * setup.own_time;
-  setup.weight = force_scale(setup.wheel, setup.length, setup.own_time);
-  setup.rate_scale = power_of_two_below(1 / setup.own_time);
-  setup.moment_scale = power_of_two_below(setup.weight * setup.length);
-  const double omega_2 = start.psi_dot * std::sin(start.theta);
-  setup.tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
-  set_scales(setup);
+  set_scales(setup, start);
+  set_error_scales(setup);
   return setup;
 }
 
