@@ -167,6 +167,8 @@ CLOSED = "No closed form to compare with: with "
         ("car stop=1", False, "Failed: the run ends after", STEP),
         ("car manoeuvre=step v=22", False, "lifted off", STEP),
         ("car manoeuvre=too_fast", True, "As intended: The front left wheel ended the run", STEP),
+        ("car mu_max=0.2", False, "needs a coefficient of friction above mu_max = 0.2", STEP),
+        ("axle mu_max=0.1", False, "needs a coefficient of friction above mu_max = 0.1", STEP),
         ("car h=10ms", False, STEP, "As intended"),
         ("suspended h=20ms exchange=held", False, STEP, "As intended"),
         ("axle h=20ms", False, STEP, "As intended"),

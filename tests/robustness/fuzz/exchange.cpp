@@ -7,7 +7,7 @@
 namespace fuzz {
 namespace {
 
-constexpr int states = 8, indicators = 3;
+constexpr int states = 8, indicators = 4;
 
 struct Wheel {
   fmi2Component component = nullptr;

@@ -44,7 +44,7 @@ double now(fmi2Component c) {
 
 // Model exchange: modes are entered and left, and Euler's step is taken, whatever the instance answers.
 void exchange(fmi2Component c, Bytes& in, double& t) {
-  constexpr std::size_t states = 8, indicators = 3;
+  constexpr std::size_t states = 8, indicators = 4;
   double x[states], rates[states], z[indicators];
   fmi2EventInfo info = {};
   fmi2Boolean wanted = fmi2False, ends = fmi2False;
