@@ -85,7 +85,7 @@ def table(run: dict[str, Scenes]) -> str:
 def write(arguments: argparse.Namespace, run: dict[str, Scenes], **found: object) -> None:
     folder = arguments.folder
     text = markdown.page(
-        "platforms.md",
+        "platforms.md.j2",
         commit=markdown.said("git", "describe", "--always", "--dirty"),
         size=(folder / "wheel.fmu").stat().st_size / 1e3,
         outputs=sum(v.causality == "output" for v in DESCRIPTION.modelVariables),

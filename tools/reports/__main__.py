@@ -2,7 +2,7 @@
 
 With --publish they go to docs/results, which is kept under version control, and the figures in all pages are filled in
 from them. A report is a module NAME: its parts measure tables and figures, its PICTURES are drawn from tables, its
-`views` add tables that follow from others, and templates/NAME.md is its page.
+`views` add tables that follow from others, and templates/NAME.md.j2 is its page.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def measure(names: list[str], folder: Path, options: Namespace) -> None:
 
 def rendered(name: str, folder: Path) -> tuple[str | None, str]:
     """The page, None where its pages are written by hand; what was not met."""
-    if not (Path(__file__).parent / "templates" / f"{name}.md").exists():
+    if not (Path(__file__).parent / "templates" / f"{name}.md.j2").exists():
         return None, ""
     return render(name, folder, getattr(module(name), "views", dict))
 

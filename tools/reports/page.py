@@ -102,7 +102,7 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
     values = {f.figure: number(float(f.measured)) for f in figures.itertuples()}
     given = {"name": name, "f": values, "t": views(read_tables(folder, name)), "run": run}
-    return page(f"{name}.md", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
+    return page(f"{name}.md.j2", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
 
 
 def cached(name: str) -> str:

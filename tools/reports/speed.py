@@ -94,8 +94,8 @@ def fastest_row(name: str, runs: pd.DataFrame) -> Row:
     for error in TARGETS:
         times = times_at(runs, error)
         best = times.idxmin() if len(times) else "none"
-        ratios = [f"{p} {times[OURS] / times[p]:.2f}" for p in (CPP, HEYOKA) if {p, OURS} <= set(times.index)]
-        row[f"fastest at {number(error)} (FMU over {CPP}, heyoka)"] = f"{best} ({', '.join(ratios) or 'no peer'})"
+        ratios = [f"{times[OURS] / times[p]:.2f}" if {p, OURS} <= set(times.index) else "–" for p in (CPP, HEYOKA)]
+        row[f"at {number(error)}"] = f"{best} ({', '.join(ratios)})"
     return row
 
 

@@ -13,7 +13,7 @@ from time import perf_counter, process_time
 
 import numpy as np
 import pandas as pd
-from support.paths import ROOT, build_folder
+from support.paths import build_folder
 
 from .page import Report, Tables, part
 
@@ -26,7 +26,6 @@ ASKED = {  # what is asked, and of how many wheels
     "lowest angle over steps of 0.01 s": (EXTREME | {"interval": 0.01}, 48_000),
 }
 COLUMNS = ["wheels_per_s", "fmu_share", "caller_busy"]
-MILLION = ROOT / "docs" / "results" / "data" / "study_million.csv"
 FEW = 800  # wheels
 
 
@@ -81,13 +80,8 @@ def estimate(table: pd.DataFrame, task: float) -> pd.DataFrame:
 
 
 def views(tables: Tables) -> Tables:
-    """The gain of the second worker, and the million wheels of `./scripts/study million`."""
-    speed = tables["speed"].pivot(index="asked", columns="workers", values="wheels_per_s").loc[[*ASKED]]
-    gain = pd.DataFrame({"asked": speed.index, "two workers over one": (speed[2] / speed[1]).to_numpy()})
-    million = pd.read_csv(MILLION) if MILLION.exists() else pd.DataFrame()
-    estimated = tables["estimate"].rename(columns={"caller_busy": "busy handing out tasks"})
-    found = tables | {"gain": gain, "million": million, "estimate": estimated}
-    return {name: rows.rename(columns=words) for name, rows in found.items()}
+    """Columns in words."""
+    return {name: rows.rename(columns=words) for name, rows in tables.items()}
 
 
 def words(column: str) -> str:

@@ -188,18 +188,16 @@ def car_cost(report: Report) -> None:
 
 
 def views(tables: Tables) -> Tables:
-    """Of the car the largest error of each run by step, and all of those at 1 ms; of the packages all digits."""
+    """Of the car the largest error and the order at 1 ms, by manoeuvre; of the axle the errors by step."""
     errors = tables["car_errors"]
-    keys, steps = ["manoeuvre", "inputs over the step"], [f"error at {1000 * h:g} ms" for h in STEPS]
-    of_steps = errors.pivot(index=keys, columns="step [ms]", values="largest")[[1000 * h for h in STEPS]]
-    order = errors.pivot(index=keys, columns="step [ms]", values="order")[[1000 * h for h in STEPS[1:]]]
-    of_steps.columns, order.columns = steps, [f"order to {1000 * h:g} ms" for h in STEPS[1:]]
-    at_1_ms = errors[errors["step [ms]"] == 1].drop(columns=["step [ms]", "order"])
-    given = list(dict.fromkeys(map(tuple, errors[keys].to_numpy())))
-    ends = tables["packages"]
-    ends = ends.assign(**{name: ends[name].map("{:.8f}".format) for name in ends if name.endswith(", m")})
-    found = {"car_orders": of_steps.join(order).loc[given].reset_index(), "car_at_1_ms": at_1_ms, "packages": ends}
-    return tables | found
+    at_1_ms = errors[errors["step [ms]"] == 1].rename(columns={"largest": "error"})
+    orders = at_1_ms.pivot(index="manoeuvre", columns="inputs over the step", values=["error", "order"])
+    orders = orders[[(what, exchange) for exchange in EXCHANGES for what in ("error", "order")]]
+    orders.columns = [f"{exchange}: {what}" for what, exchange in orders.columns]
+    axle = tables["axle_steps"].pivot(index="step, ms", columns="inputs over the step", values="error / range")
+    axle = axle[tables["axle_steps"]["inputs over the step"].unique()].sort_index(ascending=False)
+    orders = orders.loc[errors["manoeuvre"].unique()]
+    return tables | {"car_orders": orders.reset_index(), "axle_by_step": axle.reset_index()}
 
 
 FURTHER = (packages,)
