@@ -49,9 +49,9 @@ def main() -> None:
             if len(here) != 1001 or here.tobytes() != there.tobytes():
                 raise SystemExit(f"FMPy under wine gives another {scene} wheel than on Linux.")
     report.write_text(
-        f"FMPy {fmpy.__version__} finds no fault in the archive. It simulated the paper's two scenes with the Windows\n"
+        f"FMPy {fmpy.__version__} finds no fault in the FMU. It simulated the paper's two scenes with the Windows\n"
         f"library, through its remoting and wine, and with the Linux library: {len(here.dtype) - 1} outputs at\n"
-        f"{len(here)} instants, all bits equal.\n"
+        f"{len(here)} instants, bit-identical.\n"
     )
 
 
