@@ -29,9 +29,6 @@ UNUSED = (
     "misc.phrasal_adjectives",
     "annotations",
 )
-# Pages that have yet to be brought to this language, and one that only a release writes.
-LEFT_OUT = ("docs/studies.md", "docs/vehicle.md", "examples/vehicles/", "examples/studies/", "page/", "release/")
-LEFT_OUT += ("tools/page/", "tools/release/", "docs/results/platforms.md")
 VOCABULARY = {
     "software logs, returns, reports or shows": r"tells?|told|telling|is said|are said|sa(?:ys|id) so",
     "a message or a line, not a sentence": r"sentences?",
@@ -97,7 +94,7 @@ def help_of(script: str) -> str:
 def main() -> int:
     register()
     names = [str(page.relative_to(ROOT)) for page in pages() if page.suffix == ".md"]
-    texts = {name: (ROOT / name).read_text(encoding="utf-8") for name in names if not name.startswith(LEFT_OUT)}
+    texts = {name: (ROOT / name).read_text(encoding="utf-8") for name in names}
     texts |= {
         f"scripts/{path.name}": help_of(path.read_text(encoding="utf-8")) for path in (ROOT / "scripts").iterdir()
     }
