@@ -32,7 +32,7 @@ UNUSED = (
 # Pages that have yet to be brought to this language, and one that only a release writes.
 LEFT_OUT = ("docs/studies.md", "docs/vehicle.md", "examples/vehicles/", "examples/studies/", "page/", "release/")
 LEFT_OUT += ("tools/page/", "tools/release/", "docs/results/platforms.md")
-VOCABULARY = {  # Gray is an author
+VOCABULARY = {
     "software logs, returns, reports or shows": r"tells?|told|telling|is said|are said|sa(?:ys|id) so",
     "a message or a line, not a sentence": r"sentences?",
     "name the thing itself": r"(?:of|from|by|on|in|with|for|to|at|and|is|are|see|says?|shows?) what",
@@ -43,7 +43,7 @@ VOCABULARY = {  # Gray is an author
     "co-simulation master, importer": r"slaves?",
     "reject": r"refus(?:e|es|ed|ing)",
     "-ize": r"(?:initial|linear|regular|stabil|normal|optim|serial|factor|recogn|general|minim)is(?:e[sd]?|ation)",
-    "British spelling with -ize": r"colors?|(?-i:gray)|behaviors?|meters?|centers?|modeling|modeled",
+    "British spelling with -ize": r"colors?|(?-i:gray)|behaviors?|meters?|centers?|modeling|modeled",  # Gray is a name
 }
 BLANKED = re.compile(
     r"^ *```.*?^ *```|^ {4}\S[^\n]*$|`[^`\n]*`|<!-- (?:table|variables|file).*?<!-- end of \w+ -->|<!--.*?-->|"

@@ -35,6 +35,9 @@ WHEELS = {
 SHARE, SHARE_ERROR = 0.7, 0.15  # of M_wheel in the wheel's mass
 SPEEDS = tuple(np.arange(3.0, 22.0, 3.0))  # m/s
 HALF, FEWEST = 1.5, 6  # m/s about a speed; revolutions that a fit needs there
+POUND = 0.45359237 * 9.80665  # N
+LOADED = re.compile(r"60psi *- *(?P<pounds>\d+)lbm[ -]*(?P<direction>Left|Right)")
+OF_LOADED = "Michelin 4575r16", 60  # the rig names no tyre; two of the files stand under this one's name, too
 NAME = re.compile(r"(?P<tyre>.+) - (?P<kind>Contact|Separate) - (?P<direction>Left|Right) - (?P<psi>\d+) psi")
 KEYS = ["tyre", "psi", "direction"]
 
@@ -95,9 +98,15 @@ def one(tyre: str, contact: Run, separate: Run) -> pd.DataFrame:
     (t, both), (_, drum), (_, wheel) = found
     drag = DRUM_MASS * drum + wheel_mass * wheel
     force = (DRUM_MASS + wheel_mass) * both - drag
-    error = SHARE_ERROR * WHEELS[tyre] * np.abs(both - wheel) / LOAD
+    error = SHARE_ERROR * WHEELS[tyre] * (both - wheel) / LOAD  # of a heavier rim
     columns = {"speed": SPEEDS, "t": t - t[-1], "drag": drag, "C": force / LOAD, "C_inertia": error}
     return pd.DataFrame(columns).assign(R=length / (2 * np.pi), M=DRUM_MASS + wheel_mass)
+
+
+def named(path: Path) -> Key | None:
+    name = NAME.fullmatch(path.stem)
+    known = name and name["tyre"] in WHEELS
+    return (name["tyre"], int(name["psi"]), name["direction"], name["kind"]) if known else None
 
 
 def read(folder: Path) -> tuple[dict[Key, Run], dict[Key, Key]]:
@@ -105,9 +114,8 @@ def read(folder: Path) -> tuple[dict[Key, Run], dict[Key, Key]]:
     found: dict[Key, Run] = {}
     copies: dict[Key, Key] = {}
     for path in sorted(folder.glob("*.csv")):
-        name = NAME.fullmatch(path.stem)
-        if name and name["tyre"] in WHEELS:
-            key, run = (name["tyre"], int(name["psi"]), name["direction"], name["kind"]), triggers(path)
+        if key := named(path):
+            run = triggers(path)
             twin = next((other for other in found if same_run(run, found[other])), None)
             if twin:
                 copies[key] = twin
@@ -122,9 +130,9 @@ def plausible(rows: pd.DataFrame) -> bool:
     return bool(rows[["t", "drag", "C"]].notna().all(axis=None) and jumps.max() < 1 / 3)
 
 
-def evaluate(folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
+def evaluate(runs: dict[Key, Run], copies: dict[Key, Key]) -> tuple[pd.DataFrame, pd.DataFrame]:
     """All usable pairs of runs, and the pairs that are left out with the reason."""
-    (runs, copies), used = read(folder), []
+    used = []
     left_out = [
         dict(zip(KEYS, key, strict=False)) | {"reason": f"a copy of {of[0]}, {of[1]} psi, {of[2].lower()}"}
         for key, of in copies.items()
@@ -151,3 +159,35 @@ def repeatability(rows: pd.DataFrame) -> pd.Series:
     both = rows.pivot_table(index=["tyre", "psi", "speed"], columns="direction", values="C").dropna()
     apart = (both["Left"] - both["Right"]) ** 2 / 2
     return np.sqrt(apart.groupby("speed").mean())
+
+
+def alone(runs: dict[Key, Run], tyre: str, psi: int, direction: str) -> Run:
+    """The run without contact at the nearest pressure, which changes the drag of a free wheel little."""
+    near = [key for key in runs if key[0] == tyre and key[2:] == (direction, "Separate")]
+    return runs[min(near, key=lambda key: abs(key[1] - psi))]
+
+
+def again(runs: dict[Key, Run], copies: dict[Key, Key], folder: Path) -> pd.DataFrame:
+    """C of the runs that the rig repeated, first and second time, with the same run without contact."""
+    rows = []
+    for path in sorted(folder.glob("*Contact*.csv")):
+        key = named(path)
+        tyre, psi, direction, _ = key
+        free = alone(runs, tyre, psi, direction)
+        first = one(tyre, runs[copies.get(key, key)], free)
+        second = one(tyre, triggers(path), free)
+        both = pd.DataFrame({"speed": SPEEDS, "C": first["C"], "C again": second["C"]})
+        rows.append(both.assign(tyre=tyre, psi=psi, direction=direction))
+    return pd.concat(rows, ignore_index=True)
+
+
+def loaded(runs: dict[Key, Run], folder: Path) -> pd.DataFrame:
+    """The force of rolling resistance under two other loads."""
+    rows = []
+    for path in sorted(folder.glob("*.csv")):
+        name = LOADED.fullmatch(path.stem)
+        free = alone(runs, *OF_LOADED, name["direction"])
+        force = LOAD * one(OF_LOADED[0], triggers(path), free)["C"]
+        about = {"direction": name["direction"], "load": POUND * float(name["pounds"])}
+        rows.append(pd.DataFrame({"speed": SPEEDS, "force": force}).assign(**about))
+    return pd.concat(rows, ignore_index=True)

@@ -31,16 +31,29 @@ LAWS = {"wheel.fmu, held": np.nan, "moment s N against the rolling": 1, "power ~
 def rig(report: Report) -> None:
     """coefficients of rolling resistance out of the raw files, or those kept in docs/results/data"""
     if folder := report.options.get("rig"):
-        rows, left_out = coast_down.evaluate(Path(folder))
+        aero, force = Path(folder) / "aero", Path(folder) / "force"
+        runs, copies = coast_down.read(aero)
+        rows, left_out = coast_down.evaluate(runs, copies)
+        again, loads = coast_down.again(runs, copies, aero / "Repeats"), coast_down.loaded(runs, force)
     else:
         kept = read_tables(ROOT / "docs" / "results", "validation")
-        rows, left_out = kept["rig"], kept["left_out"]
+        rows, left_out, again, loads = (kept[name] for name in ("rig", "left_out", "again", "loads"))
     report.kept["rig"] = rows
-    report.table("rig", rows)
-    report.table("left_out", left_out)
+    for name, table in {"rig": rows, "left_out": left_out, "again": again, "loads": loads}.items():
+        report.table(name, table)
     repeat = coast_down.repeatability(rows) / rows.groupby("speed")["C"].mean()
     report.figures(runs=len(rows.drop_duplicates(KEYS)), left_out=len(left_out), tyres=rows["tyre"].nunique())
-    report.figures(repeat=100 * repeat.max(), inertia=100 * (rows["C_inertia"] / rows["C"]).max())
+    report.figures(repeat=100 * repeat.max(), inertia=100 * (rows["C_inertia"].abs() / rows["C"]).max())
+    means = again.groupby(KEYS)[["C", "C again"]].mean()
+    report.figures(again=100 * (means["C again"] / means["C"] - 1).abs().max())
+    forces = loads[loads["speed"] > loads["speed"].min()].groupby("load")["force"].mean()
+    least, most = forces.index.min(), forces.index.max()
+    exponent = np.log(forces[most] / forces[least]) / np.log(most / least)
+    report.figures(load_least=least, load_most=most, load_exponent=exponent)
+    report.figures(C_least=1e3 * forces[least] / least, C_most=1e3 * forces[most] / most)
+    for name, sign in (("light", -1), ("heavy", 1)):
+        tilted = rows.assign(C=rows["C"] + sign * rows["C_inertia"]).groupby(KEYS)["C"]
+        report.figures(**{f"spread_{name}": 100 * tilted.agg(lambda C: (C / C.mean() - 1).abs().max()).median()})
 
 
 def equivalent(run: pd.DataFrame, C: float) -> dict[str, float]:
