@@ -40,7 +40,7 @@ VOCABULARY = {
     "co-simulation master, importer": r"slaves?",
     "reject": r"refus(?:e|es|ed|ing)",
     "-ize": r"(?:initial|linear|regular|stabil|normal|optim|serial|factor|recogn|general|minim)is(?:e[sd]?|ation)",
-    "British spelling with -ize": r"colors?|gray|behaviors?|meters?|centers?|modeling|modeled",
+    "British spelling with -ize": r"colors?|(?-i:gray)|behaviors?|meters?|centers?|modeling|modeled",  # Gray is a name
 }
 BLANKED = re.compile(
     r"^ *```.*?^ *```|^ {4}\S[^\n]*$|`[^`\n]*`|<!-- (?:table|variables|file).*?<!-- end of \w+ -->|<!--.*?-->|"

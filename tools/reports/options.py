@@ -9,7 +9,7 @@ DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its dat
 --publish into docs/results, which is kept under version control, and then the figures in all pages are filled in."""
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 OF = {"partners": "vehicles", "vehicles": "vehicles", "others": "vehicles", "studies": "studies"}  # may be deleted
-EVERY = "accuracy stability speed inputs partners vehicles studies others benchmark physics"
+EVERY = "accuracy stability speed inputs partners vehicles studies others validation benchmark physics"
 NAMES = tuple(name for name in EVERY.split() if (EXAMPLES / OF.get(name, "")).exists())
 
 
@@ -23,6 +23,9 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--render", action="store_true", help="measure nothing: publish what the data in docs/ say")
     parser.add_argument("--check", action="store_true", help="change nothing: are the pages those of the data?")
     parser.add_argument("--tools", metavar="PYTHON", help="vehicles: an interpreter with libcosimpy and ecospy")
+    parser.add_argument(
+        "--rig", metavar="FOLDER", help="validation: raw coast-down files (see its page); else derived data"
+    )
     return parser.parse_args()
 
 
