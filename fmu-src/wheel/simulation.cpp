@@ -14,7 +14,7 @@ namespace wheel {
 
 void Reporter::log(Topic topic, const char* format, ...) const {
   if (!wants(topic)) return;
-  char message[512];
+  char message[longest];
   std::va_list arguments;
   va_start(arguments, format);
   std::vsnprintf(message, sizeof message, format, arguments);
