@@ -1,5 +1,4 @@
 // Snapshots: what an engine remembers, as numbers, each checked before it is used.
-#include <initializer_list>
 #include <limits>
 
 #include "bytes.hpp"
@@ -17,9 +16,7 @@ void Solver::visit(support::Archive& archive) {
   archive("values of watched functions").numbers(values_, max_watched);
   archive("time of a stop, s").range(stop_time_, -archive.greatest, never);
   archive("counters");
-  for (long long* count :
-       {&counters_.steps, &counters_.rhs, &counters_.jacobians, &counters_.roots, &counters_.restarts})
-    archive.tally(*count);
+  for (long long* count : counters_.all()) archive.tally(*count);
   archive("start of the step, s").number(step_.start);
   archive("end of the step, s").number(step_.end);
   archive("states at the ends of the step").numbers(step_.y_start, problem_.states);

@@ -1,6 +1,8 @@
 // The problem that the owner of a solver states, and the counts that the solver keeps of it.
 #pragma once
 
+#include <array>
+
 namespace solver {
 
 inline constexpr int max_states = 12, max_extremes = 16, max_degree = 12, max_watched = 12;
@@ -51,6 +53,8 @@ struct Problem {
 // of the functions that are watched by the margin; `roots` those of the others.
 struct Counters {
   long long steps, rhs, jacobians, roots, restarts;
+
+  std::array<long long*, 5> all() { return {&steps, &rhs, &jacobians, &roots, &restarts}; }
 };
 
 }  // namespace solver

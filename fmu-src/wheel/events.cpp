@@ -101,24 +101,17 @@ Consequence change_contact(const Setup&, Event event, double, double*, InForce& 
 
 double height_left(const Setup& setup, const InForce&, double, const double* y) { return height_of(setup, y); }
 
+// Model exchange leaves a stiff law to the caller's solver.
+constexpr EventRow layer_event(Event event, decltype(EventRow::can_occur) can_occur, decltype(EventRow::value) value) {
+  return {.event = event, .can_occur = can_occur, .value = value, .exchanged = false, .follow = change_layer};
+}
+
 }  // namespace
 
 const EventRow event_rows[] = {
-    {.event = Event::stiffens,
-     .can_occur = varies_and_can_stiffen,
-     .value = softness,
-     .exchanged = false,
-     .follow = change_layer},
-    {.event = Event::sticks_in_layer,
-     .can_occur = is_passing,
-     .value = holding_lacks,
-     .exchanged = false,
-     .follow = change_layer},
-    {.event = Event::crosses_layer,
-     .can_occur = is_layered,
-     .value = way_to_edge,
-     .exchanged = false,
-     .follow = change_layer},
+    layer_event(Event::stiffens, varies_and_can_stiffen, softness),
+    layer_event(Event::sticks_in_layer, is_passing, holding_lacks),
+    layer_event(Event::crosses_layer, is_layered, way_to_edge),
     {.event = Event::spin_changes, .can_occur = can_change_spin, .value = spin_left, .follow = change_spin},
     {.event = Event::lost_grip,
      .can_occur = checks_grip,
@@ -160,8 +153,6 @@ support::Digits instant_of(const Setup& setup, double t) {
   return support::Digits(std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time);
 }
 
-Tally& tally_of(Run& run, Event event) { return run.tallies[static_cast<int>(event)]; }
-
 }  // namespace
 
 Consequence observe(const Setup&, Event event, double, double*, InForce& now) {
@@ -196,7 +187,7 @@ Consequence pass_event(const Setup& setup, Event event, Run& run, const Reporter
 }
 
 void count_event(const Setup& setup, Event event, double t, Run& run, const Reporter& reporter) {
-  Tally& tally = tally_of(run, event);
+  Tally& tally = run.tallies[static_cast<int>(event)];
   tally.last = t;
   if (tally.count++ >= logged_one_by_one) return;
   reporter.log(Topic::warning, row_of(event).observed, instant_of(setup, t).text);

@@ -63,38 +63,24 @@ const WheelFormulation* formulation_of(const Demand& demand) {
 }  // namespace
 
 Setup setup_of(const Demand& demand) {
+  using namespace stored;
   const double* v = demand.parameters;
   Setup setup = {};
   setup.kind = demand.kind;
   setup.start_time = demand.start_time;
   setup.formulation = formulation_of(demand);
-  setup.wheel = {.m = v[stored::m],
-                 .r_0 = v[stored::r_0],
-                 .r = v[stored::r],
-                 .J_x = v[stored::J_x],
-                 .J_y = v[stored::J_y],
-                 .J_z = v[stored::J_z],
-                 .g = v[stored::g],
-                 .s = 0,
-                 .g_X = 0,
-                 .g_Y = 0};
-  if (v[stored::slope] != 0) wheel_set_slope(&setup.wheel, v[stored::g], v[stored::slope], v[stored::slope_direction]);
-  setup.friction_law = static_cast<FrictionLaw>(choice_of(v[stored::friction_law]));
-  setup.omega_s = v[stored::omega_s];
-  setup.method = static_cast<SolverMethod>(choice_of(v[stored::method]));
-  setup.unfolds = v[stored::J_x] == v[stored::J_y] && v[stored::slope] == 0 &&
-                  choice_of(v[stored::formulation]) == automatic_formulation && setup.method == automatic_method;
-  setup.keep_contact = v[stored::keep_contact] != 0;
-  setup.mu_max = v[stored::mu_max];
+  setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
+  if (v[slope] != 0) wheel_set_slope(&setup.wheel, v[g], v[slope], v[slope_direction]);
+  setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
+  setup.omega_s = v[omega_s];
+  setup.method = static_cast<SolverMethod>(choice_of(v[method]));
+  setup.unfolds = v[J_x] == v[J_y] && v[slope] == 0 && choice_of(v[formulation]) == automatic_formulation &&
+                  setup.method == automatic_method;
+  setup.keep_contact = v[keep_contact] != 0;
+  setup.mu_max = v[mu_max];
   setup.tolerance = demand.tolerance;
-  const WheelMotion motion = {.psi = v[stored::psi_start],
-                              .theta = v[stored::theta_start],
-                              .phi = v[stored::phi_start],
-                              .psi_dot = v[stored::psi_dot_start],
-                              .theta_dot = v[stored::theta_dot_start],
-                              .phi_dot = v[stored::phi_dot_start],
-                              .X_O = v[stored::X_O_start],
-                              .Y_O = v[stored::Y_O_start]};
+  const WheelMotion motion = {v[psi_start],       v[theta_start],   v[phi_start], v[psi_dot_start],
+                              v[theta_dot_start], v[phi_dot_start], v[X_O_start], v[Y_O_start]};
   WheelKinematics start;
   setup.formulation->start(&setup.wheel, &motion, setup.start);
   setup.formulation->kinematics(&setup.wheel, setup.start, &start);
