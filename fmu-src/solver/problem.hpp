@@ -15,7 +15,7 @@ enum class Consequence : int { ends, bends, goes_on };
 
 // A function whose first fall below zero is an event: the solver finds its instant and stops there.
 struct Watched {
-  int event;  // the owner's number of it
+  int event;  // the owner's number of it, 0 to max_watched
   double (*value)(void* owner, int event, double t, const double* y);
   // Whether the margins that `derivative` returns count this function in. It is then looked at only in steps in which
   // a margin came near zero, else at each step. It must be scaled as they are.

@@ -118,8 +118,7 @@ const EventRow event_rows[] = {
      .value = grip_left,
      .rounding = 1e-12,
      .ends = always_ends,
-     .ending = "needs a coefficient of friction above mu_max",
-     .limit = [](const Setup& setup) { return setup.mu_max; },
+     .ending = "needs a coefficient of friction above mu_max = %s",
      .ended = "The wheel %s at t = %s s, theta = %s rad: a model without slip ends here.",
      .refused = "At the start, where N = %s N, the wheel needs a coefficient of friction of %s, above mu_max = %s."},
     {.event = Event::lost_contact,
@@ -202,10 +201,9 @@ void log_transition(const Setup& setup, const WheelFriction& before, Run& run, c
   if (!reporter.wants(Topic::event)) return;
   const support::Digits instant = instant_of(setup, run.t);
   if (friction.kind == WHEEL_HELD)
-    reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
-  else
-    reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
-                 before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
+    return reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
+  reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
+               before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
 }
 
 void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter) {
@@ -224,12 +222,8 @@ void log_end(const Setup& setup, const Run& run, const Reporter& reporter) {
 }
 
 Ending ending_of(const Setup& setup, Event event) {
-  const EventRow& row = row_of(event);
   Ending ending;
-  if (row.limit)
-    std::snprintf(ending.text, sizeof ending.text, "%s = %s", row.ending, support::Digits(row.limit(setup)).text);
-  else
-    std::snprintf(ending.text, sizeof ending.text, "%s", row.ending);
+  std::snprintf(ending.text, sizeof ending.text, row_of(event).ending, support::Digits(setup.mu_max).text);
   return ending;
 }
 
