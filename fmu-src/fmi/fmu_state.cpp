@@ -36,7 +36,10 @@ Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
   if (old && old->size == size) return old;
   void* const memory = std::malloc(sizeof(Snapshot) + size);
   if (!memory) return nullptr;
-  if (!fmi::fmu_states.add(memory)) return std::free(memory), nullptr;
+  if (!fmi::fmu_states.add(memory)) {
+    std::free(memory);
+    return nullptr;
+  }
   release(previous);
   return ::new (memory) Snapshot{size};
 }

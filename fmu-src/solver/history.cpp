@@ -39,7 +39,8 @@ bool Solver::restore_history(const Problem& problem, support::Archive& archive) 
   failure_ = "the solver's history could not be restored";
   const double none[max_states] = {};
   step_.set_point(0, none, problem.states);  // reading it is harmless
-  return pending_ = Outcome::failed, false;
+  pending_ = Outcome::failed;
+  return false;
 }
 
 // Times in order, and those that one outcome goes with; an event that is watched.

@@ -59,7 +59,7 @@ class Solver {
   const char* failure() const { return failure_; }
   const Counters& counters() const { return counters_; }
 
-  // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on with the same bits. It is
+  // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on bit-identically. It is
   // the last part of an archive; restore refuses what could not have been saved (false; no solution then until start).
   void save_history(support::Archive& archive) const;
   bool restore_history(const Problem& problem, support::Archive& archive);
@@ -83,7 +83,7 @@ class Solver {
   double known_until_ = 0, event_time_ = 0;  // s
   int event_ = 0;
   double stop_time_ = 0;             // s, of the next step
-  double values_[max_watched] = {};  // at known_until_ of what is watched at each step
+  double values_[max_watched] = {};  // of what is watched at each step, at its end or where the solution was resumed
   Counters counters_ = {};
   // The dense output of the last step is computed when it is first needed: a pure function of the step.
   mutable Step step_ = {};

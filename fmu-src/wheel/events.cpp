@@ -79,7 +79,8 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
   const double* lambda = dynamics.lambda;
   const double X = lambda[0] / setup.weight, Y = lambda[1] / setup.weight;
   const double normal = setup.mu_max * (lambda[2] / setup.weight);
-  return normal * std::fabs(normal) - (X * X + Y * Y);
+  constexpr double rounding = 1e-12;
+  return normal * std::fabs(normal) - (X * X + Y * Y) + rounding;
 }
 
 bool always(const Setup&, const InForce&) { return true; }
@@ -116,7 +117,6 @@ const EventRow event_rows[] = {
     {.event = Event::lost_grip,
      .can_occur = checks_grip,
      .value = grip_left,
-     .rounding = 1e-12,
      .ends = always_ends,
      .ending = "needs a coefficient of friction above mu_max = %s",
      .ended = "The wheel %s at t = %s s, theta = %s rad: a model without slip ends here.",
@@ -160,6 +160,7 @@ Consequence observe(const Setup&, Event event, double, double*, InForce& now) {
 }
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
+  if (!row.observed) return row.value(setup, now, t, y);
   const double value = row.value(setup, now, t, y);
   return (now.is_below(row.event) ? -value : value) + row.rounding;
 }

@@ -30,7 +30,7 @@ struct EventRow {
   // Smooth, scaled to about one, and positive until the event. An observed event has the other sign after it, up to
   // its next change of sign.
   double (*value)(const Setup& setup, const InForce& now, double t, const double* y);
-  double rounding = 0;     // a value below zero by less does not count
+  double rounding = 0;     // of an observed event: a value beyond zero by less does not count
   bool by_margin = false;  // `least_margin` counts it in: the solver looks at it only where that comes near zero
   bool exchanged = true;   // it can occur in model exchange, and has an event indicator there
   bool (*ends)(const Setup& setup) = nullptr;  // whether it ends the run; null: it never does

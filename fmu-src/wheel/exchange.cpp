@@ -128,7 +128,10 @@ bool decide(const Setup& setup, Run& run, const Reporter& reporter, Event* endin
       pass_event(setup, row.event, run, reporter);
   // The law is decided anew in each event mode. A wheel that has just been stopped can be let go at once.
   const auto change = [&] { changes.follow(setup, changes.event, run.t, run.y, now); };
-  led&& has_occurred(changes, setup, run) ? change() : decide_law(setup, run.t, run.y, now);
+  if (led && has_occurred(changes, setup, run))
+    change();
+  else
+    decide_law(setup, run.t, run.y, now);
   const bool sticks = law.kind != WHEEL_HELD && now.scene.friction.kind == WHEEL_HELD;
   if (sticks && has_occurred(changes, setup, run)) change();
   log_transition(setup, law, run, reporter);
