@@ -75,16 +75,5 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
 }
 
 const WheelFormulation wheel_euler = {
-    .name = "euler",
-    .states = WHEEL_REDUCED_STATES,
-    .start = start,
-    .derivative = derivative,
-    .spin_index = SPIN,
-    .tilt_index = THETA,
-    .kinematics = kinematics,
-    .pose = pose,
-    .dynamics = dynamics,
-    .rates = rates,
-    .response = response,
-    .stop_spin = stop_spin,
-};
+    "euler",  WHEEL_REDUCED_STATES, start, derivative, SPIN, THETA, kinematics, pose, dynamics, rates, response,
+    stop_spin};

@@ -115,25 +115,15 @@ void response(const WheelScene* scene, const WheelLoad* load_dot, const double* 
   wheel_reduced.response(scene, load_dot, Reduced(y).y, out);
 }
 
+// Its velocities are states: the pose takes no more than they do.
+constexpr WheelFormulation formulation = {"multibody", WHEEL_MULTIBODY_STATES,
+                                          start,       derivative,
+                                          spin,        theta,
+                                          kinematics,  kinematics,
+                                          dynamics,    rates,
+                                          response,    stop_spin};
+
 }  // namespace
 }  // namespace wheel::paper
 
-extern "C" {
-
-extern const WheelFormulation wheel_multibody;
-const WheelFormulation wheel_multibody = {
-    .name = "multibody",
-    .states = WHEEL_MULTIBODY_STATES,
-    .start = wheel::paper::start,
-    .derivative = wheel::paper::derivative,
-    .spin_index = wheel::paper::spin,
-    .tilt_index = wheel::paper::theta,
-    .kinematics = wheel::paper::kinematics,
-    .pose = wheel::paper::kinematics,  // the pose: its velocities are states
-    .dynamics = wheel::paper::dynamics,
-    .rates = wheel::paper::rates,
-    .response = wheel::paper::response,
-    .stop_spin = wheel::paper::stop_spin,
-};
-
-}  // extern "C"
+const WheelFormulation wheel_multibody = wheel::paper::formulation;

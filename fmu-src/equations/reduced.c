@@ -1,7 +1,6 @@
 /* The reduced formulation, plain C: eight states, constraints solved in advance. Equivalent to the paper's (24);
  * derivation in docs/equations.md. Carrier frame, see wheel_equations.h.
  * State y = theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O. */
-#include <stddef.h>
 #include <string.h>
 
 #include "friction.h"
@@ -200,16 +199,5 @@ static void rates(const WheelScene* scene, const WheelLoad* load_dot, const doub
 }
 
 const WheelFormulation wheel_reduced = {
-    .name = "reduced",
-    .states = WHEEL_REDUCED_STATES,
-    .start = start,
-    .derivative = derivative,
-    .spin_index = OMEGA_3,
-    .tilt_index = THETA,
-    .kinematics = kinematics,
-    .pose = pose,
-    .dynamics = dynamics,
-    .rates = rates,
-    .response = response,
-    .stop_spin = stop_spin,
-};
+    "reduced", WHEEL_REDUCED_STATES, start, derivative, OMEGA_3, THETA, kinematics, pose, dynamics, rates, response,
+    stop_spin};

@@ -49,19 +49,11 @@ int weights(N_Vector y, N_Vector w, void* user) {
 
 // In words of our own: SUNDIALS's messages give times of the solver's clock.
 const char* reason_of(int flag) {
-  switch (flag) {
-    case CV_ERR_FAILURE:
-      return "the error stays too large at the smallest step";
-    case CV_CONV_FAILURE:
-      return "the corrector does not converge at the smallest step";
-    case CV_RHSFUNC_FAIL:
-    case CV_FIRST_RHSFUNC_ERR:
-    case CV_REPTD_RHSFUNC_ERR:
-    case CV_UNREC_RHSFUNC_ERR:
-      return "the rates of the states are not finite";
-    default:
-      return "CVODE failed";
-  }
+  if (flag == CV_ERR_FAILURE) return "the error stays too large at the smallest step";
+  if (flag == CV_CONV_FAILURE) return "the corrector does not converge at the smallest step";
+  for (const int of_rates : {CV_RHSFUNC_FAIL, CV_FIRST_RHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR, CV_UNREC_RHSFUNC_ERR})
+    if (flag == of_rates) return "the rates of the states are not finite";
+  return "CVODE failed";
 }
 
 bool attach_solver(CvodeObjects& o) {

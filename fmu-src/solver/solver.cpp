@@ -2,7 +2,6 @@
 #include "solver.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace solver {
 

@@ -6,8 +6,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstddef>
-#include <limits>
 #include <span>
 
 #include "cvode_engine.hpp"

@@ -1,7 +1,6 @@
 // The table of events, and how they are passed, counted and logged.
 #include "events.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <iterator>
 

@@ -1,6 +1,7 @@
 // Model exchange: states, indicators, decisions at events.
 #include "exchange.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
