@@ -25,7 +25,7 @@ Snapshot* snapshot_of(fmi2FMUstate state) {
 }
 
 // Frees a state; a pointer that was never handed out is left alone.
-void release(fmi2FMUstate state) {
+void free_state(fmi2FMUstate state) {
   if (fmi::fmu_states.remove(state)) std::free(state);
 }
 
@@ -40,7 +40,7 @@ Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
     std::free(memory);
     return nullptr;
   }
-  release(previous);
+  free_state(previous);
   return ::new (memory) Snapshot{size};
 }
 
@@ -76,7 +76,7 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, legality::fmu_state, "fmi2FreeFMUstate", [=](Instance&) {
     if (!state || !snapshot_of(*state)) return;
-    release(*state);
+    free_state(*state);
     *state = nullptr;
   });
 }

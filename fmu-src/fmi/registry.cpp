@@ -4,26 +4,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
+#include <mutex>
 
 namespace fmi {
-namespace {
 
-// Held for a few microseconds, by rare calls only. It needs neither memory nor the operating system.
-class SpinLock {
- public:
-  explicit SpinLock(std::atomic_flag& taken) : taken_(taken) {
-    while (taken_.test_and_set(std::memory_order_acquire)) {
-    }
+void SpinLock::lock() {
+  while (taken_.test_and_set(std::memory_order_acquire)) {
   }
-  ~SpinLock() { taken_.clear(std::memory_order_release); }
-  SpinLock(const SpinLock&) = delete;
-  SpinLock& operator=(const SpinLock&) = delete;
-
- private:
-  std::atomic_flag& taken_;
-};
-
-}  // namespace
+}
 
 constinit Registry instances, fmu_states;
 
@@ -38,7 +26,7 @@ bool Registry::contains(const void* pointer) const {
 }
 
 bool Registry::add(const void* pointer) {
-  const SpinLock lock(taken_);
+  const std::lock_guard guard(lock_);
   if (used_ == capacity_) {
     const std::size_t capacity = std::max<std::size_t>(16, 2 * capacity_);
     void* const memory = std::realloc(sorted_, capacity * sizeof *sorted_);
@@ -54,13 +42,13 @@ bool Registry::add(const void* pointer) {
 }
 
 bool Registry::holds(const void* pointer) {
-  const SpinLock lock(taken_);
+  const std::lock_guard guard(lock_);
   return contains(pointer);
 }
 
 // With the last pointer the array is freed too.
 bool Registry::remove(const void* pointer) {
-  const SpinLock lock(taken_);
+  const std::lock_guard guard(lock_);
   if (!contains(pointer)) return false;
   const void** const place = sorted_ + place_of(pointer);
   std::copy(place + 1, sorted_ + used_, place);

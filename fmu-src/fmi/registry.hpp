@@ -8,6 +8,16 @@
 
 namespace fmi {
 
+// Held for a few microseconds, by rare calls only. It needs neither memory nor the operating system.
+class SpinLock {
+ public:
+  void lock();
+  void unlock() { taken_.clear(std::memory_order_release); }
+
+ private:
+  std::atomic_flag taken_;
+};
+
 // A set of pointers, a sorted array that doubles, behind a spin lock: instances may live in many threads.
 class Registry {
  public:
@@ -21,7 +31,7 @@ class Registry {
   std::size_t place_of(const void* pointer) const;
   bool contains(const void* pointer) const;
 
-  std::atomic_flag taken_;
+  SpinLock lock_;
   const void** sorted_ = nullptr;
   std::size_t capacity_ = 0, used_ = 0;
 };

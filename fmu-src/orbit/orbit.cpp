@@ -166,11 +166,9 @@ double Orbit::turning_point(double a, double b) const {
 bool Orbit::fold(const solver::Problem& problem, double swing) {
   constexpr int samples = 8;
   double weights[states];
-  track_.read(T1_, first_);
-  track_.read(T2_, second_);
+  take_half();
   problem.weights(problem.owner, problem.share, second_, weights);
   if (!(T2_ > T1_) || swing * weights[omega_1] < least_swing) return false;
-  take_half();
   kind_ = Kind::folded;
   for (int i = 0; i < samples; ++i)
     if (!is_mirrored(problem, (i + 0.5) / samples * (T2_ - T1_))) return false;
@@ -256,8 +254,6 @@ bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const do
   track_.finish();
   T1_ = 0;
   T2_ = length;
-  track_.read(T1_, first_);
-  track_.read(T2_, second_);
   take_half();
   return true;
 }

@@ -9,6 +9,8 @@ namespace orbit {
 
 // What the sums need, from the states at T1 and T2, and the recurring events.
 void Orbit::take_half() {
+  track_.read(T1_, first_);
+  track_.read(T2_, second_);
   delta_ = std::remainder(second_[psi] - first_[psi], std::numbers::pi);
   const Complex path(second_[X_O] - first_[X_O], second_[Y_O] - first_[Y_O]);
   step_ = path * std::polar(1.0, -first_[psi]);

@@ -23,9 +23,7 @@ void Reporter::log(Topic topic, const char* format, ...) const {
 }
 
 void Simulation::reset() {
-  const Kind own = kind();
-  demand_.change() = Demand();
-  demand_.change().kind = own;
+  demand_.change() = Demand(kind());
   run_.change() = Run();
 }
 
