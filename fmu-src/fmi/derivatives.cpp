@@ -146,7 +146,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[], size_t n_unknowns,
                                         const fmi2ValueReference knowns[], size_t n_knowns, const fmi2Real seeds[],
                                         fmi2Real values[]) {
-  return guarded(c, legality::directional_derivative, "fmi2GetDirectionalDerivative", [=](Instance& i) {
+  return guarded(c, legality::get_values, "fmi2GetDirectionalDerivative", [=](Instance& i) {
     if (!check_arrays(i, n_unknowns, unknowns, values) || !check_arrays(i, n_knowns, knowns, seeds)) return fmi2Error;
     for (std::size_t k = 0; k < n_knowns; ++k)
       if (!check_known(i, knowns[k])) return fmi2Error;

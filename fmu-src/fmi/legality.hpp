@@ -45,16 +45,13 @@ static_assert(any_state + 1 == bits(Phase::count));
 inline constexpr unsigned co_simulation = bits(Kind::co_simulation), model_exchange = bits(Kind::model_exchange),
                           both = co_simulation | model_exchange;
 
-inline constexpr Rule set_debug_logging = {any_state, both};
+inline constexpr Rule always = {any_state, both};  // logging, reset, FMU states
 inline constexpr Rule setup_experiment = {instantiated, both};
 inline constexpr Rule enter_initialization = {instantiated, both};
 inline constexpr Rule exit_initialization = {initialization, both};
 inline constexpr Rule terminate = {running | step_failed, both};
-inline constexpr Rule reset = {any_state, both};
 inline constexpr Rule get_values = {initialization | running | stopped, both};
 inline constexpr Rule set_values = {instantiated | initialization | running, both};
-inline constexpr Rule fmu_state = {any_state, both};
-inline constexpr Rule directional_derivative = {initialization | running | stopped, both};
 inline constexpr Rule set_input_derivatives = {instantiated | initialization | step_complete, co_simulation};
 inline constexpr Rule get_output_derivatives = {step_complete | stopped, co_simulation};
 inline constexpr Rule do_step = {step_complete, co_simulation};

@@ -30,11 +30,11 @@ void Solver::save_history(support::Archive& archive) const { const_cast<Solver&>
 
 bool Solver::restore_history(const Problem& problem, support::Archive& archive) {
   problem_ = problem;
-  failure_ = "the solver had failed before the state was saved";
   step_ = {};
   step_.degree = -1;
   runge_kutta_ = {};
   visit(archive);
+  failure_ = pending_ == Outcome::failed ? "the solver had failed before the state was saved" : nullptr;
   if (archive.is_sound()) return true;
   failure_ = "the solver's history could not be restored";
   const double none[max_states] = {};

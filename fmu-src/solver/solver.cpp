@@ -20,7 +20,8 @@ bool Solver::restart(const Problem& problem, Method method, double t, const doub
   known_until_ = event_time_ = t;
   ++counters_.restarts;
   pending_ = Outcome::failed;
-  if (!begin(t, y)) return false;
+  failure_ = nullptr;
+  if (!engine().start(problem_, t, y, &step_)) return false;
   resume();
   return true;
 }
@@ -35,12 +36,6 @@ void Solver::resume() {
     ++counters_.roots;
     values_[i] = watched.value(problem_.owner, watched.event, known_until_, y);
   }
-}
-
-bool Solver::begin(double t, const double* y) {
-  const bool begun = engine().start(problem_, t, y, &step_);
-  failure_ = engine().failure();
-  return begun;
 }
 
 // After an event right behind the start of its step, most often another event: the step was too long to see the motion
@@ -69,12 +64,11 @@ bool Solver::make_step() {
   if (stop > known_until_ && reaches(stop)) {
     double y[max_states];
     std::copy_n(step_.y_end, max_states, y);
-    return begin(stop, y);
+    return engine().start(problem_, stop, y, &step_);
   }
-  const bool made = engine().advance(problem_, stop, &counters_, &step_);
-  failure_ = engine().failure();
-  if (made) ++counters_.steps;
-  return made;
+  if (!engine().advance(problem_, stop, &counters_, &step_)) return false;
+  ++counters_.steps;
+  return true;
 }
 
 void Solver::expand(Counters* counters) const {

@@ -54,7 +54,7 @@ class Solver {
   double event_time() const { return event_time_; }
   int event() const { return event_; }
   Method method() const { return method_; }
-  const char* failure() const { return failure_; }
+  const char* failure() const { return failure_ ? failure_ : engine().failure(); }
   const Counters& counters() const { return counters_; }
 
   // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on bit-identically. It is
@@ -64,7 +64,6 @@ class Solver {
 
  private:
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }
-  bool begin(double t, const double* y);
   double time_to_look_again(double t) const;
   bool make_step();
   void expand(Counters* counters) const;
@@ -77,8 +76,8 @@ class Solver {
   Problem problem_ = {};
   Method method_ = Method::adams;
   Outcome pending_ = Outcome::failed;
-  const char* failure_ = "the solver was not started";
-  double known_until_ = 0, event_time_ = 0;  // s
+  const char* failure_ = "the solver was not started";  // null: the engine knows
+  double known_until_ = 0, event_time_ = 0;             // s
   int event_ = 0;
   double stop_time_ = 0;             // s, of the next step
   double values_[max_watched] = {};  // of what is watched at each step, at its end or where the solution was resumed

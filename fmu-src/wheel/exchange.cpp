@@ -2,6 +2,7 @@
 #include "exchange.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -25,21 +26,19 @@ static_assert(std::size(states) == state_count);
 
 bool is_finite(double number) { return std::isfinite(number); }
 
-struct State {
-  double y[WHEEL_MAX_STATES];
-};
+using State = std::array<double, WHEEL_MAX_STATES>;
 
 State above_ground(const Setup& setup, const double* y) {
   State trial = {};
-  std::copy_n(y, state_count, trial.y);
-  double& theta = trial.y[setup.formulation->tilt_index];
+  std::copy_n(y, state_count, trial.data());
+  double& theta = trial[setup.formulation->tilt_index];
   theta = std::clamp(theta, flat_angle, 2 * upright - flat_angle);
   return trial;
 }
 
 double margin_at(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
   const bool tilts = row.event == Event::fell_flat;
-  return margin_of(row, setup, now, t, tilts ? y : above_ground(setup, y).y);
+  return margin_of(row, setup, now, t, tilts ? y : above_ground(setup, y).data());
 }
 
 double indicator(const EventRow& row, const Setup& setup, const Run& run) {
@@ -94,7 +93,7 @@ void take_at_once(const Setup& setup, Demand& demand, Run& run) {
 
 bool derivatives(const Setup& setup, Run& run, double* x_dot) {
   ++run.counted.rhs;
-  setup.formulation->derivative(&run.in_force.scene, above_ground(setup, run.y).y, x_dot);
+  setup.formulation->derivative(&run.in_force.scene, above_ground(setup, run.y).data(), x_dot);
   return std::all_of(x_dot, x_dot + state_count, is_finite);
 }
 
