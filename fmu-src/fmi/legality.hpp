@@ -40,7 +40,11 @@ inline constexpr unsigned instantiated = bits(Phase::created),
 inline constexpr unsigned running = step_complete | event_mode | continuous_time,
                           stopped = step_failed | terminated | error,
                           any_state = instantiated | initialization | running | stopped;
-static_assert(any_state + 1 == bits(Phase::count));
+// Each phase belongs to one call state.
+static_assert(instantiated + initialization + step_complete + event_mode + continuous_time + step_failed + terminated +
+                      error ==
+                  any_state &&
+              any_state + 1 == bits(Phase::count));
 
 inline constexpr unsigned co_simulation = bits(Kind::co_simulation), model_exchange = bits(Kind::model_exchange),
                           both = co_simulation | model_exchange;

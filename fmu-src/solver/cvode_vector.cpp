@@ -109,6 +109,11 @@ struct Operations {
     return SUN_SUCCESS;
   }
 
+  static SUNErrCode scale_each(int n, double* a, N_Vector* x, N_Vector* z) {
+    for (int k = 0; k < n; ++k) scale(a[k], x[k], z[k]);
+    return SUN_SUCCESS;
+  }
+
   static const _generic_N_Vector_Ops& table() {
     static constexpr _generic_N_Vector_Ops operations = [] {
       _generic_N_Vector_Ops o = {};
@@ -130,6 +135,7 @@ struct Operations {
       o.nvwrmsnorm = rms_norm;
       o.nvlinearcombination = combine;
       o.nvscaleaddmulti = add_to_each;
+      o.nvscalevectorarray = scale_each;
       return o;
     }();
     return operations;

@@ -110,8 +110,8 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   const bool exchanged = run.phase == Phase::event_mode || run.phase == Phase::continuous_time;
   const bool stepped = run.phase == Phase::at_start || run.phase == Phase::stepping || run.phase == Phase::unfolded;
   if (demand.kind == Kind::model_exchange ? stepped : exchanged) return "the phase is one of the other kind of run";
-  const bool starts = run.phase == Phase::initial || run.phase == Phase::at_start;
-  if (starts && !(run.t == 0 && std::equal(setup.start, setup.start + WHEEL_MAX_STATES, run.y)))
+  const bool at_start = run.phase == Phase::initial || run.phase == Phase::at_start;
+  if (at_start && !(run.t == 0 && std::equal(setup.start, setup.start + WHEEL_MAX_STATES, run.y)))
     return "a run that has not begun stands at its start";
   return nullptr;
 }
