@@ -28,10 +28,12 @@ bool Registry::contains(const void* pointer) const {
 bool Registry::add(const void* pointer) {
   const std::lock_guard guard(lock_);
   if (used_ == capacity_) {
-    const std::size_t capacity = std::max<std::size_t>(16, 2 * capacity_);
-    void* const memory = std::realloc(sorted_, capacity * sizeof *sorted_);
-    if (!memory) return false;
-    sorted_ = static_cast<const void**>(memory);
+    const std::size_t capacity = std::max<std::size_t>(8, 2 * capacity_);
+    auto** const larger = static_cast<const void**>(std::calloc(capacity, sizeof *sorted_));
+    if (!larger) return false;
+    std::copy_n(sorted_, used_, larger);
+    std::free(sorted_);
+    sorted_ = larger;
     capacity_ = capacity;
   }
   const void** const place = sorted_ + place_of(pointer);
