@@ -7,6 +7,7 @@
 #include "wheel_equations.h"
 
 enum { X_O, Y_O, PSI, THETA, PHI, THETA_DOT, PSI_DOT, SPIN };
+enum { R_OMEGA_1 = 1, R_OMEGA_2, R_OMEGA_3, R_X_O = 6, R_Y_O }; /* in the reduced form */
 
 /* The same position and velocity as a state of the reduced form. */
 typedef struct Reduced {
@@ -30,14 +31,14 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   double rates[WHEEL_REDUCED_STATES];
   double N = wheel_reduced.derivative(scene, reduced(y).y, rates);
-  y_dot[X_O] = rates[6];
-  y_dot[Y_O] = rates[7];
+  y_dot[X_O] = rates[R_X_O];
+  y_dot[Y_O] = rates[R_Y_O];
   y_dot[PSI] = y[PSI_DOT];
   y_dot[THETA] = y[THETA_DOT];
   y_dot[PHI] = y[SPIN] - y[PSI_DOT] * cos(y[THETA]);
-  y_dot[THETA_DOT] = rates[1];
-  y_dot[PSI_DOT] = (rates[2] - y[THETA_DOT] * y[PSI_DOT] * cos(y[THETA])) / sin(y[THETA]);
-  y_dot[SPIN] = rates[3];
+  y_dot[THETA_DOT] = rates[R_OMEGA_1];
+  y_dot[PSI_DOT] = (rates[R_OMEGA_2] - y[THETA_DOT] * y[PSI_DOT] * cos(y[THETA])) / sin(y[THETA]);
+  y_dot[SPIN] = rates[R_OMEGA_3];
   return N;
 }
 
@@ -74,16 +75,5 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
 }
 
 const WheelFormulation wheel_euler = {
-    .name = "euler",
-    .states = WHEEL_REDUCED_STATES,
-    .start = start,
-    .derivative = derivative,
-    .spin_index = SPIN,
-    .tilt_index = THETA,
-    .kinematics = kinematics,
-    .pose = pose,
-    .dynamics = dynamics,
-    .rates = rates,
-    .response = response,
-    .stop_spin = stop_spin,
-};
+    "euler",  WHEEL_REDUCED_STATES, start, derivative, SPIN, THETA, kinematics, pose, dynamics, rates, response,
+    stop_spin};

@@ -9,7 +9,8 @@
 namespace wheel::paper {
 namespace {
 
-constexpr int about_axle = 5, N = 8;  // row of the moment about the axle in (24), and lambda_3 among its unknowns
+constexpr int about_axle = 5;                       // row of the moment about the axle in (24)
+enum Unknown { lambda_1 = 6, lambda_2, lambda_3 };  // behind q_ddot in the order of q
 
 // Solution of (24) and the moment of ground and brake about the axle.
 struct Solution {
@@ -32,8 +33,8 @@ Solution solve_rolling(const WheelScene& scene, const Multibody& s, Vector9 colu
   if (scene.ground != WHEEL_GROUND_PULLS) {
     const Vector9 unknowns = system_matrix(s, kappa).partialPivLu().solve(column);
     if (kappa == 0) return {unknowns, 0};
-    if (unknowns[N] > 0 || scene.ground == WHEEL_GROUND_PRESSES)
-      return {unknowns, -(s.wheel.s * unknowns[N] + brake) * kappa};
+    if (unknowns[lambda_3] > 0 || scene.ground == WHEEL_GROUND_PRESSES)
+      return {unknowns, -(s.wheel.s * unknowns[lambda_3] + brake) * kappa};
   }
   return {system_matrix(s, 0).partialPivLu().solve(column), -brake * kappa};
 }
@@ -60,54 +61,50 @@ double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   const Solution solution = solve(*scene, s, column);
   Eigen::Map<Vector6> velocities(y_dot), accelerations(y_dot + 6);
   velocities = s.q_dot;
-  velocities[2] -= rate * (y[2] - (scene->wheel.r_0 * s.attitude.sin_theta + scene->wheel.r));
+  velocities[Z_O] -= rate * (y[Z_O] - (scene->wheel.r_0 * s.attitude.sin_theta + scene->wheel.r));
   accelerations = solution.unknowns.head<6>();
-  accelerations[5] = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, solution.unknowns);
-  return solution.unknowns[N];
+  y_dot[spin] = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, solution.unknowns);
+  return solution.unknowns[lambda_3];
 }
 
 // (19) solved for the velocity of O: -[A][r]^T[Q]{beta_dot}.
 void set_rolling_velocity(const WheelParameters& wheel, double* y) {
   const Multibody s(wheel, y);
-  Eigen::Map<Vector3>(y + 6) = -s.A * s.r.transpose() * s.Q * s.attitude.beta_dot;
+  Eigen::Map<Vector3>(y + X_O_dot) = -s.A * s.r.transpose() * s.Q * s.attitude.beta_dot;
 }
 
 void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
-  y[0] = motion->X_O, y[1] = motion->Y_O, y[2] = wheel_height(wheel, motion->theta);
-  y[3] = motion->psi, y[4] = motion->theta, y[5] = motion->phi;
-  y[9] = motion->psi_dot, y[10] = motion->theta_dot;
-  y[11] = motion->phi_dot + motion->psi_dot * std::cos(motion->theta);
+  const double spin = motion->phi_dot + motion->psi_dot * std::cos(motion->theta);
+  Eigen::Map<Vector6>(y) << motion->X_O, motion->Y_O, wheel_height(wheel, motion->theta), motion->psi, motion->theta,
+      motion->phi;
+  Eigen::Map<Vector3>(y + psi_dot) << motion->psi_dot, motion->theta_dot, spin;
   set_rolling_velocity(*wheel, y);
 }
 
 void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   (void)wheel;
-  out->X_O = y[0], out->Y_O = y[1], out->Z_O = y[2];
-  out->psi = y[3], out->theta = y[4], out->phi = y[5];
-  out->X_O_dot = y[6], out->Y_O_dot = y[7], out->Z_O_dot = y[8];
-  out->psi_dot = y[9], out->theta_dot = y[10], out->phi_dot = y[11] - y[9] * std::cos(y[4]);
-  out->omega_z = y[11];
+  const double phi_dot = y[spin] - y[psi_dot] * std::cos(y[theta]);
+  *out = {y[X_O],     y[Y_O],     y[Z_O],     y[psi],       y[theta], y[phi], y[X_O_dot],
+          y[Y_O_dot], y[Z_O_dot], y[psi_dot], y[theta_dot], phi_dot,  y[spin]};
 }
 
 void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   const Multibody s(scene->wheel, y);
   const auto [x, tau] = solve(*scene, s, system_column(s, scene->load));
-  out->X_O_ddot = x[0], out->Y_O_ddot = x[1], out->Z_O_ddot = x[2];
-  out->psi_ddot = x[3], out->theta_ddot = x[4], out->phi_ddot = x[5];
-  for (int i = 0; i < 3; ++i) out->lambda[i] = x[6 + i];
-  out->omega_z_dot = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, x);
-  out->tau = tau;
+  const double spin_dot = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, x);
+  *out = {x[X_O], x[Y_O], x[Z_O], x[psi], x[theta], x[phi], spin_dot, {x[lambda_1], x[lambda_2], x[lambda_3]}, tau};
 }
 
 void stop_spin(const WheelParameters* wheel, double* y) {
-  y[11] = 0;
+  y[spin] = 0;
   set_rolling_velocity(*wheel, y);
 }
 
 // The state of the reduced form with the same position and angular velocity.
 struct Reduced {
   double y[WHEEL_REDUCED_STATES];
-  explicit Reduced(const double* b) : y{b[4], b[10], b[9] * std::sin(b[4]), b[11], b[3], b[5], b[0], b[1]} {}
+  explicit Reduced(const double* b)
+      : y{b[theta], b[theta_dot], b[psi_dot] * std::sin(b[theta]), b[spin], b[psi], b[phi], b[X_O], b[Y_O]} {}
 };
 
 void rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
@@ -118,25 +115,15 @@ void response(const WheelScene* scene, const WheelLoad* load_dot, const double* 
   wheel_reduced.response(scene, load_dot, Reduced(y).y, out);
 }
 
+// Its velocities are states: the pose takes no more than they do.
+constexpr WheelFormulation formulation = {"multibody", WHEEL_MULTIBODY_STATES,
+                                          start,       derivative,
+                                          spin,        theta,
+                                          kinematics,  kinematics,
+                                          dynamics,    rates,
+                                          response,    stop_spin};
+
 }  // namespace
 }  // namespace wheel::paper
 
-extern "C" {
-
-extern const WheelFormulation wheel_multibody;
-const WheelFormulation wheel_multibody = {
-    .name = "multibody",
-    .states = WHEEL_MULTIBODY_STATES,
-    .start = wheel::paper::start,
-    .derivative = wheel::paper::derivative,
-    .spin_index = 11,
-    .tilt_index = 4,
-    .kinematics = wheel::paper::kinematics,
-    .pose = wheel::paper::kinematics,  // the pose: its velocities are states
-    .dynamics = wheel::paper::dynamics,
-    .rates = wheel::paper::rates,
-    .response = wheel::paper::response,
-    .stop_spin = wheel::paper::stop_spin,
-};
-
-}  // extern "C"
+const WheelFormulation wheel_multibody = wheel::paper::formulation;

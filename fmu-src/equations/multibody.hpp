@@ -16,7 +16,10 @@ using Matrix36 = Eigen::Matrix<double, 3, 6>;
 using Matrix63 = Eigen::Matrix<double, 6, 3>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-// A state y = (q, q_dot; omega_z in the place of phi_dot) with the matrices that (16)-(24) share.
+// A state y = (q, q_dot; omega_z, the spin, in the place of phi_dot).
+enum State { X_O, Y_O, Z_O, psi, theta, phi, X_O_dot, Y_O_dot, Z_O_dot, psi_dot, theta_dot, spin };
+
+// The state with the matrices that (16)-(24) share.
 struct Multibody {
   const WheelParameters& wheel;
   Attitude attitude;
@@ -24,8 +27,9 @@ struct Multibody {
   Matrix3 A, A_dot, Q, Q_dot, r, r_dot;
 
   Multibody(const WheelParameters& w, const double* y)
-      : wheel(w), attitude{y[3], y[4], y[5], {y[9], y[10], y[11] - y[9] * std::cos(y[4])}} {
-    q_dot << y[6], y[7], y[8], attitude.beta_dot;
+      : wheel(w),
+        attitude{y[psi], y[theta], y[phi], {y[psi_dot], y[theta_dot], y[spin] - y[psi_dot] * std::cos(y[theta])}} {
+    q_dot << y[X_O_dot], y[Y_O_dot], y[Z_O_dot], attitude.beta_dot;
     A = paper::A(attitude);
     A_dot = paper::A_dot(A, attitude);
     Q = paper::Q(attitude);

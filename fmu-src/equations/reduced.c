@@ -1,13 +1,10 @@
 /* The reduced formulation, plain C: eight states, constraints solved in advance. Equivalent to the paper's (24);
  * derivation in docs/equations.md. Carrier frame, see wheel_equations.h.
  * State y = theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O. */
-#include <stddef.h>
 #include <string.h>
 
 #include "friction.h"
 #include "reduced_system.h"
-
-enum { PSI = 4, PHI = 5, X_O = 6, Y_O = 7 };
 
 /* One state under a scene's load, ready for a law of friction. Inlined: what a caller does not read is not computed. */
 typedef struct Instant {
@@ -46,10 +43,10 @@ static inline void set_velocity(const WheelParameters* w, const Carrier* c, cons
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
   (void)wheel;
-  y[0] = motion->theta;
-  y[1] = motion->theta_dot;
-  y[2] = motion->psi_dot * sin(motion->theta);
-  y[3] = motion->phi_dot + motion->psi_dot * cos(motion->theta);
+  y[THETA] = motion->theta;
+  y[OMEGA_1] = motion->theta_dot;
+  y[OMEGA_2] = motion->psi_dot * sin(motion->theta);
+  y[OMEGA_3] = motion->phi_dot + motion->psi_dot * cos(motion->theta);
   y[PSI] = motion->psi;
   y[PHI] = motion->phi;
   y[X_O] = motion->X_O;
@@ -58,12 +55,12 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 
 static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   Instant now = instant_of(scene, y);
-  AxleLaw law = law_of(scene, y[3]);
+  AxleLaw law = law_of(scene, y[OMEGA_3]);
   Accelerations a = move(&now.system, &law);
-  y_dot[0] = now.carrier.omega_1;
-  y_dot[1] = a.omega_1_dot;
-  y_dot[2] = a.omega_2_dot;
-  y_dot[3] = a.omega_3_dot;
+  y_dot[THETA] = now.carrier.omega_1;
+  y_dot[OMEGA_1] = a.omega_1_dot;
+  y_dot[OMEGA_2] = a.omega_2_dot;
+  y_dot[OMEGA_3] = a.omega_3_dot;
   y_dot[PSI] = now.carrier.psi_dot;
   y_dot[PHI] = now.carrier.phi_dot;
   set_velocity(&scene->wheel, &now.carrier, &now.heading, &y_dot[X_O], &y_dot[Y_O]);
@@ -72,7 +69,7 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
 
 static Carrier read_pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
-  out->theta = y[0];
+  out->theta = y[THETA];
   out->psi = y[PSI];
   out->phi = y[PHI];
   out->X_O = y[X_O];
@@ -100,7 +97,7 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   const WheelParameters* w = &scene->wheel;
   Instant now = instant_of(scene, y);
   const Carrier* c = &now.carrier;
-  AxleLaw law = law_of(scene, y[3]);
+  AxleLaw law = law_of(scene, y[OMEGA_3]);
   Accelerations a = move(&now.system, &law);
   reaction_of(w, c, &now.heading, &now.drift, &a, out->lambda);
   out->tau = a.tau;
@@ -116,7 +113,7 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
 
 static void stop_spin(const WheelParameters* wheel, double* y) {
   (void)wheel;
-  y[3] = 0;
+  y[OMEGA_3] = 0;
 }
 
 /* Whether the ground has friction where the normal force is N. */
@@ -126,7 +123,7 @@ static int grips(const WheelScene* scene, double N) {
 
 /* The law of friction at y, where the normal force is N. */
 static AxleLaw frozen_law(const WheelScene* scene, const double* y, double N) {
-  AxleLaw law = law_of(scene, y[3]);
+  AxleLaw law = law_of(scene, y[OMEGA_3]);
   if (!grips(scene, N)) law.grip = 0;
   return law;
 }
@@ -150,7 +147,7 @@ static void respond(const WheelScene* scene, const WheelLoad* load_dot, const Ax
 static void response(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
   double y_dot[WHEEL_REDUCED_STATES];
   AxleLaw law = frozen_law(scene, y, derivative(scene, y, y_dot));
-  law.brake = kappa_of(&scene->friction, y[3]) * load_dot->brake;
+  law.brake = kappa_of(&scene->friction, y[OMEGA_3]) * load_dot->brake;
   respond(scene, load_dot, &law, y, out);
 }
 
@@ -188,11 +185,11 @@ static void rates(const WheelScene* scene, const WheelLoad* load_dot, const doub
   y[PHI] = remainder(y[PHI], turn);
   double N = derivative(scene, y, y_dot);
   AxleLaw law = frozen_law(scene, y, N), changing = law;
-  changing.brake = moment_rate(scene, load_dot, N, y[3], y_dot[3]);
+  changing.brake = moment_rate(scene, load_dot, N, y[OMEGA_3], y_dot[OMEGA_3]);
   respond(scene, load_dot, &changing, y, out);
 
-  double swing = fabs(y_dot[1]) + fabs(y_dot[2]) + fabs(y_dot[3]);
-  double rate = (fabs(y[1]) + fabs(y[2])) / sin(y[0]) + fabs(y[3]) + sqrt(swing);
+  double swing = fabs(y_dot[OMEGA_1]) + fabs(y_dot[OMEGA_2]) + fabs(y_dot[OMEGA_3]);
+  double rate = (fabs(y[OMEGA_1]) + fabs(y[OMEGA_2])) / sin(y[THETA]) + fabs(y[OMEGA_3]) + sqrt(swing);
   if (rate == 0) return; /* the wheel is at rest and stays so */
   double h = share / rate;
   add_reaction(scene, &law, y, y_dot, h, 8 / (12 * h), out);
@@ -202,16 +199,5 @@ static void rates(const WheelScene* scene, const WheelLoad* load_dot, const doub
 }
 
 const WheelFormulation wheel_reduced = {
-    .name = "reduced",
-    .states = WHEEL_REDUCED_STATES,
-    .start = start,
-    .derivative = derivative,
-    .spin_index = 3,
-    .tilt_index = 0,
-    .kinematics = kinematics,
-    .pose = pose,
-    .dynamics = dynamics,
-    .rates = rates,
-    .response = response,
-    .stop_spin = stop_spin,
-};
+    "reduced", WHEEL_REDUCED_STATES, start, derivative, OMEGA_3, THETA, kinematics, pose, dynamics, rates, response,
+    stop_spin};

@@ -9,6 +9,9 @@
 
 #include "wheel_equations.h"
 
+/* The state of the reduced form. */
+enum { THETA, OMEGA_1, OMEGA_2, OMEGA_3, PSI, PHI, X_O, Y_O };
+
 typedef struct Heading {
   double sin_psi, cos_psi;
 } Heading;
@@ -67,7 +70,10 @@ typedef struct Accelerations {
 static inline Heading heading_of(double psi) { return (Heading){.sin_psi = sin(psi), .cos_psi = cos(psi)}; }
 
 static inline Carrier carrier_of(const WheelParameters* w, const double* y) {
-  Carrier c = {.sin_theta = sin(y[0]), .cos_theta = cos(y[0]), .omega_1 = y[1], .omega_2 = y[2], .omega_3 = y[3]};
+  Carrier c = {.sin_theta = sin(y[THETA]), .cos_theta = cos(y[THETA])};
+  c.omega_1 = y[OMEGA_1];
+  c.omega_2 = y[OMEGA_2];
+  c.omega_3 = y[OMEGA_3];
   c.rho = w->r_0 + w->r * c.sin_theta;
   c.eta = w->r * c.cos_theta;
   c.psi_dot = c.omega_2 / c.sin_theta;

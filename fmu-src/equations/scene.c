@@ -1,6 +1,5 @@
 /* Makes a scene of a wheel, a load and a law of friction, and checks the law; puts a wheel on a slope. */
 #include <math.h>
-#include <stddef.h>
 
 #include "wheel_equations.h"
 

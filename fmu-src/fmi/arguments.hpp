@@ -1,4 +1,4 @@
-// Checks shared by all functions that read or set variables. Each logs what is wrong in one sentence.
+// Checks shared by all functions that read or set variables. Each logs what is wrong in one message.
 #pragma once
 
 #include <cstddef>

@@ -5,8 +5,9 @@
 #include "arguments.hpp"
 #include "digits.hpp"
 
-using fmi::check_arrays, fmi::check_readable, fmi::Function, fmi::guarded, fmi::Instance, fmi::prepare_reading;
+using fmi::check_arrays, fmi::check_readable, fmi::guarded, fmi::Instance, fmi::prepare_reading;
 using support::Digits, wheel::Role, wheel::Topic;
+namespace legality = fmi::legality;
 
 namespace {
 
@@ -114,7 +115,7 @@ extern "C" {
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference v[], size_t n,
                                        const fmi2Integer orders[], const fmi2Real values[]) {
-  return guarded(c, Function::set_input_derivatives, "fmi2SetRealInputDerivatives", [=](Instance& i) {
+  return guarded(c, legality::set_input_derivatives, "fmi2SetRealInputDerivatives", [=](Instance& i) {
     if (!check_arrays(i, n, v, values) || !check_arrays(i, n, orders, values)) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k) {
       if (!check_input(i, v[k])) return fmi2Error;
@@ -129,7 +130,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference v[], size_t n,
                                         const fmi2Integer orders[], fmi2Real values[]) {
-  return guarded(c, Function::get_output_derivatives, "fmi2GetRealOutputDerivatives", [=](Instance& i) {
+  return guarded(c, legality::get_output_derivatives, "fmi2GetRealOutputDerivatives", [=](Instance& i) {
     if (!check_arrays(i, n, v, values) || !check_arrays(i, n, orders, values)) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k) {
       if (!check_output(i, v[k]) || !check_readable(i, v[k])) return fmi2Error;
@@ -145,7 +146,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[], size_t n_unknowns,
                                         const fmi2ValueReference knowns[], size_t n_knowns, const fmi2Real seeds[],
                                         fmi2Real values[]) {
-  return guarded(c, Function::directional_derivative, "fmi2GetDirectionalDerivative", [=](Instance& i) {
+  return guarded(c, legality::get_values, "fmi2GetDirectionalDerivative", [=](Instance& i) {
     if (!check_arrays(i, n_unknowns, unknowns, values) || !check_arrays(i, n_knowns, knowns, seeds)) return fmi2Error;
     for (std::size_t k = 0; k < n_knowns; ++k)
       if (!check_known(i, knowns[k])) return fmi2Error;

@@ -10,7 +10,8 @@
 #include "instance.hpp"
 #include "registry.hpp"
 
-using fmi::Function, fmi::guarded, fmi::Instance, wheel::Topic;
+using fmi::guarded, fmi::Instance, wheel::Topic;
+namespace legality = fmi::legality;
 
 namespace {
 
@@ -24,7 +25,7 @@ Snapshot* snapshot_of(fmi2FMUstate state) {
 }
 
 // Frees a state; a pointer that was never handed out is left alone.
-void release(fmi2FMUstate state) {
+void free_state(fmi2FMUstate state) {
   if (fmi::fmu_states.remove(state)) std::free(state);
 }
 
@@ -35,8 +36,11 @@ Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
   if (old && old->size == size) return old;
   void* const memory = std::malloc(sizeof(Snapshot) + size);
   if (!memory) return nullptr;
-  if (!fmi::fmu_states.add(memory)) return std::free(memory), nullptr;
-  release(previous);
+  if (!fmi::fmu_states.add(memory)) {
+    std::free(memory);
+    return nullptr;
+  }
+  free_state(previous);
   return ::new (memory) Snapshot{size};
 }
 
@@ -50,7 +54,7 @@ fmi2Status refuse(Instance& i, const char* why) { return i.log(Topic::error, "%s
 extern "C" {
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return guarded(c, Function::fmu_state, "fmi2GetFMUstate", [=](Instance& i) {
+  return guarded(c, legality::always, "fmi2GetFMUstate", [=](Instance& i) {
     if (!state) return refuse(i, null_pointer);
     Snapshot* snapshot = allocate(*state, i.simulation.state_size());
     if (!snapshot) return refuse(i, no_memory);
@@ -61,7 +65,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return guarded(c, Function::set_fmu_state, "fmi2SetFMUstate", [=](Instance& i) {
+  return guarded(c, legality::always, "fmi2SetFMUstate", [=](Instance& i) {
     Snapshot* snapshot = snapshot_of(state);
     if (!snapshot) return refuse(i, state ? unknown_state : null_pointer);
     const char* fault = i.simulation.load_state(snapshot->bytes(), snapshot->size, false);
@@ -70,15 +74,15 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return guarded(c, Function::free_fmu_state, "fmi2FreeFMUstate", [=](Instance&) {
+  return guarded(c, legality::always, "fmi2FreeFMUstate", [=](Instance&) {
     if (!state || !snapshot_of(*state)) return;
-    release(*state);
+    free_state(*state);
     *state = nullptr;
   });
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  return guarded(c, Function::fmu_state, "fmi2SerializedFMUstateSize", [=](Instance& i) {
+  return guarded(c, legality::always, "fmi2SerializedFMUstateSize", [=](Instance& i) {
     if (!state || !size) return refuse(i, null_pointer);
     const Snapshot* snapshot = snapshot_of(state);
     if (!snapshot) return refuse(i, unknown_state);
@@ -88,7 +92,7 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  return guarded(c, Function::fmu_state, "fmi2SerializeFMUstate", [=](Instance& i) {
+  return guarded(c, legality::always, "fmi2SerializeFMUstate", [=](Instance& i) {
     if (!state || !bytes) return refuse(i, null_pointer);
     Snapshot* snapshot = snapshot_of(state);
     if (!snapshot) return refuse(i, unknown_state);
@@ -99,7 +103,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
-  return guarded(c, Function::fmu_state, "fmi2DeSerializeFMUstate", [=](Instance& i) {
+  return guarded(c, legality::always, "fmi2DeSerializeFMUstate", [=](Instance& i) {
     if (!state || !bytes) return refuse(i, null_pointer);
     Instance* scratch = Instance::create("scratch", nullptr, false, i.simulation.kind());
     if (!scratch) return refuse(i, no_memory);

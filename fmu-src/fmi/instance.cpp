@@ -1,8 +1,6 @@
 // Instances: creation, logging.
 #include "instance.hpp"
 
-#include <cstdarg>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
@@ -34,17 +32,17 @@ void escape(const char* text, char* out, std::size_t size) {
   out[length] = 0;
 }
 
-bool wanted(void* owner, wheel::Topic topic) { return static_cast<Instance*>(owner)->wants(topic); }
-
-void tell(void* owner, wheel::Topic topic, const char* sentence) {
-  static_cast<Instance*>(owner)->log(topic, "%s", sentence);
-}
-
 }  // namespace
 
 const char* category_of(wheel::Topic topic) { return topics[static_cast<unsigned>(topic)].category; }
 
-Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind) : simulation({this, wanted, tell}, kind) {
+Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind)
+    : reporter{
+          .owner = this,
+          .listens = [](const void* i, wheel::Topic topic) { return static_cast<const Instance*>(i)->wants(topic); },
+          .take = [](const void* i, wheel::Topic topic,
+                     const char* message) { static_cast<const Instance*>(i)->pass_on(topic, message); }},
+      simulation(reporter, kind) {
   if (!callbacks) return;
   logger_ = callbacks->logger;
   environment_ = callbacks->componentEnvironment;
@@ -66,29 +64,25 @@ void Instance::destroy(Instance* instance) {
   std::free(instance);
 }
 
-// After the end of a run the sentence says what happened to the wheel, which helps a user more than a call state.
-fmi2Status Instance::refuse(Function function) {
+// After the end of a run the message says what happened to the wheel, which helps a user more than a call state.
+fmi2Status Instance::refuse(const Rule& rule) {
   const bool slave = simulation.kind() == wheel::Kind::co_simulation;
-  if (!is_of_kind(function, simulation.kind()))
+  if (!rule.is_for(simulation.kind()))
     return log(wheel::Topic::error, "%s belongs to %s; this instance was made for %s.", called,
                slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
   if (simulation.phase() == wheel::Phase::ended)
     return log(wheel::Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", called,
                simulation.ending().text, support::Digits(simulation.time()).text);
-  return log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", called, state_of(simulation.phase()));
+  return log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", called,
+             call_state_name(simulation.phase()));
 }
 
-fmi2Status Instance::log(wheel::Topic topic, const char* format, ...) {
-  const fmi2Status status = topics[static_cast<unsigned>(topic)].call;
-  if (!logger_ || !wants(topic)) return status;
-  char text[480], message[980];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  escape(text, message, sizeof message);
-  logger_(environment_, name_, topics[static_cast<unsigned>(topic)].message, category_of(topic), message);
-  return status;
+fmi2Status Instance::status_of(wheel::Topic topic) { return topics[static_cast<unsigned>(topic)].call; }
+
+void Instance::pass_on(wheel::Topic topic, const char* message) const {
+  char escaped[2 * wheel::Reporter::longest];
+  escape(message, escaped, sizeof escaped);
+  logger_(environment_, name_, topics[static_cast<unsigned>(topic)].message, category_of(topic), escaped);
 }
 
 }  // namespace fmi

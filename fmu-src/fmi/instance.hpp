@@ -14,13 +14,17 @@ struct Instance {
   static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind);
   static void destroy(Instance* instance);
 
-  // Tells the master, if the category is switched on. Printf-like; the text is finished before the master sees it.
+  // Passes a message to the master, if its category is switched on. Printf-like; the master gets the finished text.
   // Returns the status of a call that ends with this message.
-  fmi2Status log(wheel::Topic topic, const char* format, ...);
-  // Tells that a function is not legal in the present state, or belongs to the other kind of instance.
-  fmi2Status refuse(Function function);
-  bool wants(wheel::Topic topic) const { return logged_topics & (1u << static_cast<unsigned>(topic)); }
+  template <class... Numbers>
+  fmi2Status log(wheel::Topic topic, const char* format, Numbers... numbers) const {
+    reporter.log(topic, format, numbers...);
+    return status_of(topic);
+  }
+  // Logs that a function is not legal in the present state, or belongs to the other kind of instance.
+  fmi2Status refuse(const Rule& rule);
 
+  const wheel::Reporter reporter;
   wheel::Simulation simulation;
   // The function that is under way, for messages; null: none is. The logger must not call back into the instance.
   const char* called = nullptr;
@@ -28,6 +32,10 @@ struct Instance {
 
  private:
   Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind);
+  bool wants(wheel::Topic topic) const { return logger_ && logged_topics & (1u << static_cast<unsigned>(topic)); }
+  void pass_on(wheel::Topic topic, const char* message) const;
+  static fmi2Status status_of(wheel::Topic topic);
+
   fmi2CallbackLogger logger_ = nullptr;
   fmi2ComponentEnvironment environment_ = nullptr;
   const char* name_ = nullptr;  // behind the instance
@@ -39,13 +47,13 @@ const char* category_of(wheel::Topic topic);
 // Every call on an instance: not null, not from within its own logger, legal in its state. An illegal call changes
 // nothing. A body without a result cannot fail.
 template <class Body>
-fmi2Status guarded(fmi2Component component, Function function, const char* name, Body&& body) {
+fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, Body&& body) {
   auto* instance = static_cast<Instance*>(component);
   if (!instance || instance->called) return fmi2Error;
   instance->called = name;
   fmi2Status status = fmi2OK;
-  if (!is_legal(function, instance->simulation.kind(), instance->simulation.phase()))
-    status = instance->refuse(function);
+  if (!rule.allows(instance->simulation.kind(), instance->simulation.phase()))
+    status = instance->refuse(rule);
   else if constexpr (std::is_void_v<decltype(body(*instance))>)
     body(*instance);
   else

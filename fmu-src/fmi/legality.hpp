@@ -7,39 +7,67 @@
 
 namespace fmi {
 
-enum class Function : unsigned char {
-  set_debug_logging,
-  setup_experiment,
-  enter_initialization,
-  exit_initialization,
-  terminate,
-  reset,
-  get_values,
-  set_values,
-  fmu_state,
-  set_fmu_state,
-  free_fmu_state,
-  directional_derivative,
-  set_input_derivatives,
-  get_output_derivatives,
-  do_step,
-  cancel_step,
-  get_status,
-  enter_event_mode,
-  new_discrete_states,
-  enter_continuous_time,
-  completed_step,
-  set_time,
-  set_states,
-  get_states,
-  count,
+using wheel::Kind, wheel::Phase;
+
+// Where a function is legal: one bit for each phase, and one for each kind of instance.
+struct Rule {
+  unsigned phases, kinds;
+
+  constexpr bool is_for(Kind kind) const { return (kinds & (1u << static_cast<unsigned>(kind))) != 0; }
+  constexpr bool allows(Kind kind, Phase phase) const {
+    return is_for(kind) && (phases & (1u << static_cast<unsigned>(phase))) != 0;
+  }
 };
 
-// Whether the function belongs to this kind of instance, or to both.
-bool is_of_kind(Function function, wheel::Kind kind);
-bool is_legal(Function function, wheel::Kind kind, wheel::Phase phase);
-
 // The call state that the phase stands for, by the name that the standard uses, for messages.
-const char* state_of(wheel::Phase phase);
+const char* call_state_name(Phase phase);
 
+// One rule for each function, or for several that are legal together. Whether a variable may be set depends on the
+// variable too: see values.cpp.
+namespace legality {
+
+template <class... Each>
+constexpr unsigned bits(Each... each) {
+  return ((1u << static_cast<unsigned>(each)) | ...);
+}
+
+inline constexpr unsigned instantiated = bits(Phase::created),
+                          initialization = bits(Phase::initializing, Phase::faulty, Phase::initial),
+                          step_complete = bits(Phase::at_start, Phase::stepping, Phase::unfolded),
+                          event_mode = bits(Phase::event_mode), continuous_time = bits(Phase::continuous_time),
+                          step_failed = bits(Phase::ended), terminated = bits(Phase::closed),
+                          error = bits(Phase::failed, Phase::without_start);
+inline constexpr unsigned running = step_complete | event_mode | continuous_time,
+                          stopped = step_failed | terminated | error,
+                          any_state = instantiated | initialization | running | stopped;
+// Each phase belongs to one call state.
+static_assert(instantiated + initialization + step_complete + event_mode + continuous_time + step_failed + terminated +
+                      error ==
+                  any_state &&
+              any_state + 1 == bits(Phase::count));
+
+inline constexpr unsigned co_simulation = bits(Kind::co_simulation), model_exchange = bits(Kind::model_exchange),
+                          both = co_simulation | model_exchange;
+
+inline constexpr Rule always = {any_state, both};  // logging, reset, FMU states
+inline constexpr Rule setup_experiment = {instantiated, both};
+inline constexpr Rule enter_initialization = {instantiated, both};
+inline constexpr Rule exit_initialization = {initialization, both};
+inline constexpr Rule terminate = {running | step_failed, both};
+inline constexpr Rule get_values = {initialization | running | stopped, both};
+inline constexpr Rule set_values = {instantiated | initialization | running, both};
+inline constexpr Rule set_input_derivatives = {instantiated | initialization | step_complete, co_simulation};
+inline constexpr Rule get_output_derivatives = {step_complete | stopped, co_simulation};
+inline constexpr Rule do_step = {step_complete, co_simulation};
+inline constexpr Rule cancel_step = {0, co_simulation};
+inline constexpr Rule get_status = {step_complete | step_failed | terminated, co_simulation};
+inline constexpr Rule enter_event_mode = {continuous_time, model_exchange};
+inline constexpr Rule new_discrete_states = {event_mode, model_exchange};
+inline constexpr Rule enter_continuous_time = {event_mode | step_failed, model_exchange};
+inline constexpr Rule completed_step = {continuous_time, model_exchange};
+inline constexpr Rule set_time = {event_mode | continuous_time, model_exchange};
+inline constexpr Rule set_states = {continuous_time, model_exchange};
+inline constexpr Rule get_states = {initialization | event_mode | continuous_time | stopped, model_exchange};
+
+}  // namespace legality
 }  // namespace fmi

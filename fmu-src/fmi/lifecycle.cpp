@@ -7,7 +7,8 @@
 #include "instance.hpp"
 #include "registry.hpp"
 
-using fmi::Function, fmi::guarded, fmi::Instance, support::Digits, wheel::Topic;
+using fmi::guarded, fmi::Instance, support::Digits, wheel::Topic;
+namespace legality = fmi::legality;
 
 namespace {
 
@@ -78,13 +79,13 @@ void fmi2FreeInstance(fmi2Component c) {
 }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
-  return guarded(c, Function::set_debug_logging, "fmi2SetDebugLogging",
+  return guarded(c, legality::always, "fmi2SetDebugLogging",
                  [&](Instance& i) { return switch_logging(i, on != fmi2False, count, categories); });
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean has_stop, fmi2Real stop) {
-  return guarded(c, Function::setup_experiment, "fmi2SetupExperiment", [&](Instance& i) {
+  return guarded(c, legality::setup_experiment, "fmi2SetupExperiment", [&](Instance& i) {
     if (!std::isfinite(start) || (has_stop && !(stop >= start)) || (has_tolerance && !(tolerance > 0)))
       return i.log(Topic::error,
                    "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
@@ -96,23 +97,23 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  return guarded(c, Function::enter_initialization, "fmi2EnterInitializationMode",
+  return guarded(c, legality::enter_initialization, "fmi2EnterInitializationMode",
                  [](Instance& i) { i.simulation.enter(wheel::Phase::initializing); });
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  return guarded(c, Function::exit_initialization, "fmi2ExitInitializationMode",
+  return guarded(c, legality::exit_initialization, "fmi2ExitInitializationMode",
                  [](Instance& i) { return i.simulation.start() ? fmi2OK : fmi2Error; });
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
   if (!fmi::instances.holds(c)) return fmi2Error;
-  return guarded(c, Function::terminate, "fmi2Terminate", [](Instance& i) { i.simulation.close(); });
+  return guarded(c, legality::terminate, "fmi2Terminate", [](Instance& i) { i.simulation.close(); });
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
   if (!fmi::instances.holds(c)) return fmi2Error;
-  return guarded(c, Function::reset, "fmi2Reset", [](Instance& i) { i.simulation.reset(); });
+  return guarded(c, legality::always, "fmi2Reset", [](Instance& i) { i.simulation.reset(); });
 }
 
 }  // extern "C"

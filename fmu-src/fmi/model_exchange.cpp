@@ -5,7 +5,8 @@
 #include "arguments.hpp"
 #include "digits.hpp"
 
-using fmi::Function, fmi::guarded, fmi::Instance, fmi::prepare_reading, support::Digits, wheel::Phase, wheel::Topic;
+using fmi::guarded, fmi::Instance, fmi::prepare_reading, support::Digits, wheel::Phase, wheel::Topic;
+namespace legality = fmi::legality;
 
 namespace {
 
@@ -20,7 +21,7 @@ bool check_count(Instance& i, const void* values, std::size_t count, int needed)
 template <class Read>
 fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], std::size_t count, int needed,
                         Read read) {
-  return guarded(c, Function::get_states, name, [=](Instance& i) {
+  return guarded(c, legality::get_states, name, [=](Instance& i) {
     if (!check_count(i, values, count, needed)) return fmi2Error;
     if (prepare_reading(i) != fmi2OK || !has_state(i.simulation.phase())) return fmi2Discard;
     return read(i);
@@ -34,8 +35,8 @@ fmi2Status answer(Instance& i, bool finite, const char* what) {
 }
 
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
-fmi2Status enter(fmi2Component c, Function function, const char* name, Phase mode) {
-  return guarded(c, function, name, [=](Instance& i) {
+fmi2Status enter(fmi2Component c, const fmi::Rule& rule, const char* name, Phase mode) {
+  return guarded(c, rule, name, [=](Instance& i) {
     if (i.simulation.phase() != Phase::ended) i.simulation.enter(mode);
   });
 }
@@ -45,16 +46,16 @@ fmi2Status enter(fmi2Component c, Function function, const char* name, Phase mod
 extern "C" {
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  return enter(c, Function::enter_event_mode, "fmi2EnterEventMode", Phase::event_mode);
+  return enter(c, legality::enter_event_mode, "fmi2EnterEventMode", Phase::event_mode);
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-  return enter(c, Function::enter_continuous_time, "fmi2EnterContinuousTimeMode", Phase::continuous_time);
+  return enter(c, legality::enter_continuous_time, "fmi2EnterContinuousTimeMode", Phase::continuous_time);
 }
 
 // One pass is enough: the law that is decided holds.
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
-  return guarded(c, Function::new_discrete_states, "fmi2NewDiscreteStates", [=](Instance& i) {
+  return guarded(c, legality::new_discrete_states, "fmi2NewDiscreteStates", [=](Instance& i) {
     if (!info) return i.log(Topic::error, "%s: the event info is a null pointer.", i.called);
     *info = {};
     info->valuesOfContinuousStatesChanged = i.simulation.decide() ? fmi2True : fmi2False;
@@ -65,7 +66,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* enter_event_mode,
                                        fmi2Boolean* terminate) {
-  return guarded(c, Function::completed_step, "fmi2CompletedIntegratorStep", [=](Instance& i) {
+  return guarded(c, legality::completed_step, "fmi2CompletedIntegratorStep", [=](Instance& i) {
     if (!enter_event_mode || !terminate) return i.log(Topic::error, "%s: a result is a null pointer.", i.called);
     *enter_event_mode = i.simulation.has_event() ? fmi2True : fmi2False;
     *terminate = fmi2False;
@@ -74,7 +75,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
-  return guarded(c, Function::set_time, "fmi2SetTime", [=](Instance& i) {
+  return guarded(c, legality::set_time, "fmi2SetTime", [=](Instance& i) {
     if (!std::isfinite(t)) return i.log(Topic::error, "%s: %s s: the time must be finite.", i.called, Digits(t).text);
     i.simulation.set_time(t);
     return fmi2OK;
@@ -82,7 +83,7 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
-  return guarded(c, Function::set_states, "fmi2SetContinuousStates", [=](Instance& i) {
+  return guarded(c, legality::set_states, "fmi2SetContinuousStates", [=](Instance& i) {
     if (!check_count(i, x, n, wheel::state_count)) return fmi2Error;
     if (!std::all_of(x, x + n, [](double value) { return std::isfinite(value); }))
       return i.log(Topic::discard, "%s: a state is not finite.", i.called);

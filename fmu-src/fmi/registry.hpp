@@ -8,7 +8,17 @@
 
 namespace fmi {
 
-// A set of pointers, an open hash table that doubles, behind a spin lock: instances may live in many threads.
+// Held for a few microseconds, by rare calls only. It needs neither memory nor the operating system.
+class SpinLock {
+ public:
+  void lock();
+  void unlock() { taken_.clear(std::memory_order_release); }
+
+ private:
+  std::atomic_flag taken_;
+};
+
+// A set of pointers, a sorted array that doubles, behind a spin lock: instances may live in many threads.
 class Registry {
  public:
   // False if there is no memory.
@@ -18,13 +28,12 @@ class Registry {
   bool remove(const void* pointer);
 
  private:
-  std::size_t slot_of(const void* pointer) const;
+  std::size_t place_of(const void* pointer) const;
   bool contains(const void* pointer) const;
-  bool rebuild(std::size_t capacity);
 
-  std::atomic_flag taken_;
-  const void** slots_ = nullptr;
-  std::size_t capacity_ = 0, used_ = 0;  // capacity is a power of two; `used_` counts live entries
+  SpinLock lock_;
+  const void** sorted_ = nullptr;
+  std::size_t capacity_ = 0, used_ = 0;
 };
 
 extern Registry instances, fmu_states;

@@ -5,7 +5,8 @@
 #include "digits.hpp"
 #include "instance.hpp"
 
-using fmi::Function, fmi::guarded, fmi::Instance, support::Digits, wheel::Topic;
+using fmi::guarded, fmi::Instance, support::Digits, wheel::Topic;
+namespace legality = fmi::legality;
 
 namespace {
 
@@ -49,7 +50,7 @@ template <class Value, class Read>
 fmi2Status get_status(fmi2Component c, const char* name, const fmi2StatusKind& asked, long long known_kind,
                       Value* value, Read read) {
   const int kind = std::bit_cast<int>(asked);
-  return guarded(c, Function::get_status, name, [=](Instance& i) {
+  return guarded(c, legality::get_status, name, [=](Instance& i) {
     if (!value) return i.log(Topic::error, "%s: the value is a null pointer.", i.called);
     if (kind != known_kind) return i.log(Topic::discard, "%s: there is no status of kind %d.", i.called, kind);
     *value = read(i);
@@ -62,15 +63,16 @@ fmi2Status get_status(fmi2Component c, const char* name, const fmi2StatusKind& a
 extern "C" {
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
-  return guarded(c, Function::do_step, "fmi2DoStep", [=](Instance& i) {
+  return guarded(c, legality::do_step, "fmi2DoStep", [=](Instance& i) {
     if (check_step(i, t, h) != fmi2OK) return fmi2Error;
-    constexpr fmi2Status statuses[] = {fmi2OK, fmi2Discard, fmi2Error};  // of the outcomes
-    return statuses[static_cast<unsigned>(i.simulation.advance(t + h))];
+    const solver::Outcome outcome = i.simulation.advance(t + h);
+    if (outcome == solver::Outcome::failed) return fmi2Error;
+    return outcome == solver::Outcome::event ? fmi2Discard : fmi2OK;
   });
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
-  return guarded(c, Function::cancel_step, "fmi2CancelStep", [](Instance&) { return fmi2Error; });
+  return guarded(c, legality::cancel_step, "fmi2CancelStep", [](Instance&) { return fmi2Error; });
 }
 
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status* value) {

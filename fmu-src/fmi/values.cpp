@@ -5,8 +5,9 @@
 #include "arguments.hpp"
 #include "digits.hpp"
 
-using fmi::check_arrays, fmi::check_readable, fmi::Function, fmi::guarded, fmi::Instance, fmi::prepare_reading;
+using fmi::check_arrays, fmi::check_readable, fmi::guarded, fmi::Instance, fmi::prepare_reading;
 using support::Digits, wheel::Role, wheel::Topic, wheel::Type;
+namespace legality = fmi::legality;
 
 namespace {
 
@@ -29,7 +30,7 @@ Value represented(double value) {
 template <class Value>
 fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueReference variables[], std::size_t count,
                Value values[]) {
-  return guarded(c, Function::get_values, name, [=](Instance& i) {
+  return guarded(c, legality::get_values, name, [=](Instance& i) {
     if (!check_arrays(i, count, variables, values)) return fmi2Error;
     bool computed = false;
     for (std::size_t k = 0; k < count; ++k) {
@@ -61,8 +62,8 @@ bool check_settable(Instance& i, fmi2ValueReference variable) {
   return false;
 }
 
-// During the run a value out of bounds is refused at once. Before the run it is taken, and all faults are told together
-// at the end of initialization.
+// During the run a value out of bounds is refused at once. Before the run it is taken, and all faults are logged
+// together at the end of initialization.
 bool check_value(Instance& i, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
   const bool bounded = variable < wheel::stored_count;
@@ -82,7 +83,7 @@ bool check_value(Instance& i, fmi2ValueReference variable, double value) {
 template <class Value>
 fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueReference variables[], std::size_t count,
                const Value values[]) {
-  return guarded(c, Function::set_values, name, [=](Instance& i) {
+  return guarded(c, legality::set_values, name, [=](Instance& i) {
     if (!check_arrays(i, count, variables, values)) return fmi2Error;
     for (std::size_t k = 0; k < count; ++k)
       if (!check_variable(i, variables[k], type) || !check_settable(i, variables[k])) return fmi2Error;
@@ -100,9 +101,9 @@ fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
 }
 
 // There are no string variables: only an empty request can be answered.
-fmi2Status refuse_strings(fmi2Component c, Function function, const char* name, const fmi2ValueReference variables[],
-                          std::size_t count, const void* values) {
-  return guarded(c, function, name, [=](Instance& i) {
+fmi2Status refuse_strings(fmi2Component c, const fmi::Rule& rule, const char* name,
+                          const fmi2ValueReference variables[], std::size_t count, const void* values) {
+  return guarded(c, rule, name, [=](Instance& i) {
     if (!count) return fmi2OK;
     if (!check_arrays(i, count, variables, values)) return fmi2Error;
     return i.log(Topic::error, "%s: no variable of this type has the value reference %u.", i.called, variables[0]);
@@ -133,10 +134,10 @@ fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference v[], size_t 
 }
 
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference v[], size_t n, fmi2String values[]) {
-  return refuse_strings(c, Function::get_values, "fmi2GetString", v, n, values);
+  return refuse_strings(c, legality::get_values, "fmi2GetString", v, n, values);
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2String values[]) {
-  return refuse_strings(c, Function::set_values, "fmi2SetString", v, n, values);
+  return refuse_strings(c, legality::set_values, "fmi2SetString", v, n, values);
 }
 
 }  // extern "C"

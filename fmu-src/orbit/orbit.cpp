@@ -46,7 +46,8 @@ Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, c
                          solver::Solver& solver) {
   double own[states] = {y0[theta], y0[omega_1], y0[omega_2], y0[omega_3]};  // psi, phi, X_O and Y_O are zero
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
-  recurring_ = 0;
+  recurs_ = false;
+  std::fill(std::begin(recurrences_), std::end(recurrences_), Recurrence());
   counters_ = {};
   half_ = lead_ = {};
   kind_ = Kind::refused;
@@ -100,7 +101,12 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const doubl
       turned = true;
       swing = 0;
     }
-    if (outcome == solver::Outcome::event) return track_.finish(), end_time_ = t, event_ = solver.event(), Kind::ended;
+    if (outcome == solver::Outcome::event) {
+      track_.finish();
+      end_time_ = t;
+      event_ = solver.event();
+      return Kind::ended;
+    }
     if (y[omega_1] != 0) before = y[omega_1];
     swing = std::fmax(swing, std::fabs(y[omega_1]));
   }
@@ -123,13 +129,8 @@ solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::S
 
 // False if it is one too many.
 bool Orbit::take_crossing(int event, double t) {
-  int i = 0;
-  while (i < recurring_ && recurrences_[i].event != event) ++i;
-  if (i == recurring_) {
-    recurrences_[recurring_++] = {};
-    recurrences_[i].event = event;
-  }
-  Recurrence& own = recurrences_[i];
+  recurs_ = true;
+  Recurrence& own = recurrences_[event];
   const bool falls = own.falls == own.rises;
   int& count = falls ? own.falls : own.rises;
   if (count == most_crossings) return false;
@@ -165,11 +166,9 @@ double Orbit::turning_point(double a, double b) const {
 bool Orbit::fold(const solver::Problem& problem, double swing) {
   constexpr int samples = 8;
   double weights[states];
-  track_.read(T1_, first_);
-  track_.read(T2_, second_);
+  take_half();
   problem.weights(problem.owner, problem.share, second_, weights);
   if (!(T2_ > T1_) || swing * weights[omega_1] < least_swing) return false;
-  take_half();
   kind_ = Kind::folded;
   for (int i = 0; i < samples; ++i)
     if (!is_mirrored(problem, (i + 0.5) / samples * (T2_ - T1_))) return false;
@@ -255,8 +254,6 @@ bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const do
   track_.finish();
   T1_ = 0;
   T2_ = length;
-  track_.read(T1_, first_);
-  track_.read(T2_, second_);
   take_half();
   return true;
 }

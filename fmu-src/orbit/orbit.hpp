@@ -52,13 +52,12 @@ class Orbit {
   // rad/s, the larger of the mean rates of psi and phi; folded only.
   double fastest_turn() const;
 
-  // The events that recur, numbered from 0, and the instants at which one of them falls below zero, in order and
-  // numbered from 0: how many there are up to t, and when the number n is (n below falls_until of some t). A start
-  // below zero counts. The cost does not depend on t or n.
-  int recurring() const { return recurring_; }
-  int event_of(int recurrence) const { return recurrences_[recurrence].event; }
-  long long falls_until(int recurrence, double t) const;
-  double fall(int recurrence, long long n) const;
+  // Whether some event recurs; and the instants at which one falls below zero, in order and numbered from 0: how many
+  // there are up to t, and when the number n is (n below falls_until of some t). A start below zero counts. The cost
+  // does not depend on t or n.
+  bool recurs() const { return recurs_; }
+  long long falls_until(int event, double t) const;
+  double fall(int event, long long n) const;
 
  private:
   enum State { theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O };
@@ -74,10 +73,10 @@ class Orbit {
     Complex place = 0, turn = 1;
   };
 
-  // One event that recurs: instants up to T2 at which it falls below zero and rises again; falls in one period from T2
-  // on, counted from T2.
+  // What recurs of one event: instants up to T2 at which it falls below zero and rises again; falls in one period from
+  // T2 on, counted from T2.
   struct Recurrence {
-    int event = 0, falls = 0, rises = 0, later_falls = 0;
+    int falls = 0, rises = 0, later_falls = 0;
     double fall[most_crossings] = {}, rise[most_crossings] = {}, later_fall[2 * most_crossings] = {};
     void repeat(double T1, double T2);
   };
@@ -110,8 +109,8 @@ class Orbit {
   Complex first_turn_, mirror_turn_;                 // exp(i psi(T1)), exp(2 i psi(T2))
   Complex step_;                                     // from O(T1) to O(T2), seen along psi(T1)
 
-  int recurring_ = 0;
-  Recurrence recurrences_[solver::max_watched];
+  bool recurs_ = false;
+  Recurrence recurrences_[solver::max_watched + 1] = {};  // by event
 
   mutable Half half_;  // that of the last reading, a function of its number alone
 };

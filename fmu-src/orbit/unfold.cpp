@@ -9,13 +9,15 @@ namespace orbit {
 
 // What the sums need, from the states at T1 and T2, and the recurring events.
 void Orbit::take_half() {
+  track_.read(T1_, first_);
+  track_.read(T2_, second_);
   delta_ = std::remainder(second_[psi] - first_[psi], std::numbers::pi);
   const Complex path(second_[X_O] - first_[X_O], second_[Y_O] - first_[Y_O]);
   step_ = path * std::polar(1.0, -first_[psi]);
   pair_ = 2 * (step_ * std::polar(1.0, -delta_)).real();
   first_turn_ = std::polar(1.0, first_[psi]);
   mirror_turn_ = std::polar(1.0, 2 * second_[psi]);
-  for (int i = 0; i < recurring_; ++i) recurrences_[i].repeat(T1_, T2_);
+  for (Recurrence& recurrence : recurrences_) recurrence.repeat(T1_, T2_);
 }
 
 // The falls in the two halves after T2, of which the first is mirrored.
@@ -88,15 +90,15 @@ void Orbit::read(double t, double* y) const {
   turn_by(half, way, y);
 }
 
-double Orbit::fall(int recurrence, long long n) const {
-  const Recurrence& own = recurrences_[recurrence];
+double Orbit::fall(int event, long long n) const {
+  const Recurrence& own = recurrences_[event];
   if (n < own.falls) return own.fall[n];
   const long long periods = (n - own.falls) / own.later_falls;
   return begin_of(1 + 2 * static_cast<double>(periods)) + own.later_fall[(n - own.falls) % own.later_falls];
 }
 
-long long Orbit::falls_until(int recurrence, double t) const {
-  const auto& [event, falls, rises, later_falls, fall, rise, later_fall] = recurrences_[recurrence];
+long long Orbit::falls_until(int event, double t) const {
+  const auto& [falls, rises, later_falls, fall, rise, later_fall] = recurrences_[event];
   if (kind_ != Kind::folded || t <= T2_ || later_falls == 0) return std::upper_bound(fall, fall + falls, t) - fall;
   constexpr double most_periods = 1e15;  // later, times have no more digits for them
   const double periods = std::floor(std::fmin((t - T2_) / (2 * (T2_ - T1_)), most_periods));

@@ -82,7 +82,10 @@ class RungeKutta::Attempt {
   void expand() {
     const double h = h_;
     double p_3[width], p_4[width], p_5[width], p_6[width];
-    combine<table::d_3>(p_3), combine<table::d_4>(p_4), combine<table::d_5>(p_5), combine<table::d_6>(p_6);
+    combine<table::d_3>(p_3);
+    combine<table::d_4>(p_4);
+    combine<table::d_5>(p_5);
+    combine<table::d_6>(p_6);
     auto& c = step_.c;
     for (int i = 0; i < width; ++i) {
       const double p_0 = step_.y_end[i] - step_.y_start[i], p_1 = h * f_[0][i] - p_0;
@@ -133,7 +136,8 @@ class RungeKutta::Attempt {
   // Both estimates together, as DOP853 weighs them.
   double error() const {
     double e_3[width], e_5[width];
-    combine<table::e_3>(e_3), combine<table::e_5>(e_5);
+    combine<table::e_3>(e_3);
+    combine<table::e_5>(e_5);
     const double high = norm(e_5), low = norm(e_3);
     return high == 0 ? 0 : high * high / std::sqrt(high * high + 0.01 * low * low);
   }

@@ -49,19 +49,11 @@ int weights(N_Vector y, N_Vector w, void* user) {
 
 // In words of our own: SUNDIALS's messages give times of the solver's clock.
 const char* reason_of(int flag) {
-  switch (flag) {
-    case CV_ERR_FAILURE:
-      return "the error stays too large at the smallest step";
-    case CV_CONV_FAILURE:
-      return "the corrector does not converge at the smallest step";
-    case CV_RHSFUNC_FAIL:
-    case CV_FIRST_RHSFUNC_ERR:
-    case CV_REPTD_RHSFUNC_ERR:
-    case CV_UNREC_RHSFUNC_ERR:
-      return "the rates of the states are not finite";
-    default:
-      return "CVODE failed";
-  }
+  if (flag == CV_ERR_FAILURE) return "the error stays too large at the smallest step";
+  if (flag == CV_CONV_FAILURE) return "the corrector does not converge at the smallest step";
+  for (const int of_rates : {CV_RHSFUNC_FAIL, CV_FIRST_RHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR, CV_UNREC_RHSFUNC_ERR})
+    if (flag == of_rates) return "the rates of the states are not finite";
+  return "CVODE failed";
 }
 
 bool attach_solver(CvodeObjects& o) {
@@ -127,13 +119,13 @@ bool Cvode::start(const Problem& problem, double t, const double* y, Step* step)
   step->set_point(t, y, problem.states);
   failure_ = "CVODE could not be set up";
   if (!make_objects(problem.states)) return false;
-  starts_anew_ = 1;
+  next_ = Next::starts;
   return CVodeSetMaxStep(objects_->cvode, problem.longest_step) == CV_SUCCESS;
 }
 
 bool Cvode::restart(double t, const double* y) {
   std::copy_n(y, objects_->states, data(objects_->y));
-  starts_anew_ = 0;
+  next_ = Next::goes_on;
   return CVodeReInit(objects_->cvode, t, objects_->y) == CV_SUCCESS;
 }
 
@@ -144,8 +136,8 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
   int flag = CV_SUCCESS;
   // Where the slope of an input has changed, a history of high order can fail. Then one more attempt starts anew.
   for (int attempt = 0; attempt < 2; ++attempt) {
-    const bool first = starts_anew_ != 0;
-    if (starts_anew_ == 2) ++counters->restarts;
+    const bool first = next_ != Next::goes_on;
+    if (next_ == Next::starts_after_stop) ++counters->restarts;
     if (first && !restart(step->end, step->y_end)) return false;
     std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
     const long jacobians = first ? 0 : jacobians_of(o);  // CVODE's own count starts anew with its first step
@@ -154,20 +146,23 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
     flag = CVode(o.cvode, step->end + problem.longest_step, o.y, &t, CV_ONE_STEP);
     counters->jacobians += std::max(0L, jacobians_of(o) - jacobians);
     if (flag >= 0 || first || (flag != CV_ERR_FAILURE && flag != CV_CONV_FAILURE)) break;
-    starts_anew_ = 2;
+    next_ = Next::starts_after_stop;
   }
   // CVODE reports success for steps so small that the time no longer changes.
   const bool stands = flag >= 0 && flag != CV_TSTOP_RETURN && t - step->end <= rounding_at(t);
   failure_ = stands ? "the step size became too small" : reason_of(flag);
-  if (flag < 0 || stands) return starts_anew_ = 1, step->start = step->end, false;
   step->start = step->end;
+  if (flag < 0 || stands) {
+    next_ = Next::starts;
+    return false;
+  }
   std::copy_n(step->y_end, max_states, step->y_start);
   step->end = t;
   std::copy_n(data(o.y), problem.states, step->y_end);
   step->lowest_margin = o.call.lowest_margin;
   step->inside_share = 0;
   step->degree = -1;
-  starts_anew_ = flag == CV_TSTOP_RETURN ? 2 : 0;
+  next_ = flag == CV_TSTOP_RETURN ? Next::starts_after_stop : Next::goes_on;
   return true;
 }
 

@@ -1,7 +1,6 @@
 // CVODE of SUNDIALS: Adams for smooth motion, backward differentiation (BDF) for stiff motion.
 //
-// Through its public interface only. cvode_history.cpp is the exception; without it only snapshots of CVODE runs would
-// be lost.
+// Through its public interface only; snapshots, cvode_history.cpp, are the exception.
 #pragma once
 
 #include "engine.hpp"
@@ -34,7 +33,9 @@ class Cvode final : public Engine {
 
   const Method method_;  // adams or bdf
   CvodeObjects* objects_ = nullptr;
-  int starts_anew_ = 1;  // the next step is the first after a start (1) or after a stop (2); else 0
+  // The next step goes on from the last one, or is the first after a start, or after a stop or a failure of the
+  // history.
+  enum class Next { goes_on, starts, starts_after_stop } next_ = Next::starts;
 };
 
 }  // namespace solver

@@ -1,7 +1,7 @@
-// CVODE's history as plain numbers, so that a restored solution goes on with the same bits.
+// CVODE's history as plain numbers, so that a restored solution goes on bit-identically.
 //
 // CVODE has no call for this, so its memory record (private headers of the pinned source) is read and written field by
-// field. Only this file includes those headers; without it only snapshots of CVODE runs would be lost. What CVODE
+// field. Only this file includes those headers. What CVODE
 // computes anew at the start of each step (error weights, work vectors) is left out.
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
@@ -23,24 +23,28 @@ constexpr long long most = 9007199254740992;
 using support::Archive;
 
 template <class... Fields>
-void all_counts(Archive& archive, long long greatest, Fields&... fields) {
-  (archive.count(fields, 0, greatest), ...);
+void counts(Archive& archive, long long least, long long greatest, Fields&... fields) {
+  (archive.count(fields, least, greatest), ...);
 }
 
 void visit_steps(Archive& archive, CVodeMemRec& m) {
-  archive.count(m.cv_q, 1, m.cv_qmax), archive.count(m.cv_qprime, 1, m.cv_qmax), archive.count(m.cv_qu, 1, m.cv_qmax);
-  archive.count(m.cv_next_q, 0, m.cv_qmax), archive.count(m.cv_L, m.cv_q + 1, m.cv_q + 1);
-  archive.count(m.cv_qwait, 0, L_MAX + 1), archive.count(m.cv_indx_acor, 0, m.cv_qmax);
+  counts(archive, 1, m.cv_qmax, m.cv_q, m.cv_qprime, m.cv_qu);
+  archive.count(m.cv_next_q, 0, m.cv_qmax);
+  archive.count(m.cv_L, m.cv_q + 1, m.cv_q + 1);
+  archive.count(m.cv_qwait, 0, L_MAX + 1);
+  archive.count(m.cv_indx_acor, 0, m.cv_qmax);
   constexpr double least = std::numeric_limits<double>::min(), greatest = Archive::greatest;
   for (double* size : {&m.cv_h, &m.cv_hprime, &m.cv_next_h, &m.cv_eta, &m.cv_hscale, &m.cv_hu, &m.cv_h0u})
     archive.range(*size, least, greatest);
   archive.number(m.cv_tn, m.cv_tretlast);
-  archive.numbers(m.cv_tau, L_MAX + 1), archive.numbers(m.cv_tq, NUM_TESTS + 1), archive.numbers(m.cv_l, L_MAX);
+  archive.numbers(m.cv_tau, L_MAX + 1);
+  archive.numbers(m.cv_tq, NUM_TESTS + 1);
+  archive.numbers(m.cv_l, L_MAX);
   archive.number(m.cv_saved_tq5, m.cv_tolsf, m.cv_etamax, m.cv_etaqm1, m.cv_etaq, m.cv_etaqp1);
   archive.number(m.cv_rl1, m.cv_gamma, m.cv_gammap, m.cv_gamrat, m.cv_crate, m.cv_delp, m.cv_acnrm);
   archive.count(m.cv_nst, 1, most);
-  all_counts(archive, most, m.cv_nfe, m.cv_ncfn, m.cv_nni, m.cv_nnf, m.cv_netf, m.cv_nsetups, m.cv_nstlp, m.cv_nscon);
-  all_counts(archive, 2, m.cv_acnrmcur, m.convfail, m.cv_jcur);
+  counts(archive, 0, most, m.cv_nfe, m.cv_ncfn, m.cv_nni, m.cv_nnf, m.cv_netf, m.cv_nsetups, m.cv_nstlp, m.cv_nscon);
+  counts(archive, 0, 2, m.cv_acnrmcur, m.convfail, m.cv_jcur);
 }
 
 // The factorised Newton matrix of BDF.
@@ -49,8 +53,8 @@ void visit_newton(Archive& archive, CvodeObjects& o, CVodeMemRec& m) {
   auto& newton = *static_cast<SUNNonlinearSolverContent_Newton>(m.NLS->content);
   auto& dense = *static_cast<SUNLinearSolverContent_Dense>(o.linear->content);
   const int n = width_of(o.states);
-  all_counts(archive, 1, interface.jbad, newton.jcur);
-  all_counts(archive, most, interface.nje, interface.nstlj, interface.nfeDQ);
+  counts(archive, 0, 1, interface.jbad, newton.jcur);
+  counts(archive, 0, most, interface.nje, interface.nstlj, interface.nfeDQ);
   archive.number(interface.tnlj);
   archive.count(dense.last_flag, 0, 0);
   archive.numbers(SUNDenseMatrix_Data(interface.A), n * n);
@@ -82,7 +86,10 @@ void Cvode::visit_history(Archive& archive) {
 bool Cvode::imitate_step(const Problem& problem, const Step& step) {
   int states = problem.states;
   Problem still = {};
-  still.states = states, still.owner = &states, still.derivative = rest, still.weights = equal_weights;
+  still.states = states;
+  still.owner = &states;
+  still.derivative = rest;
+  still.weights = equal_weights;
   still.longest_step = problem.longest_step;
   Counters uncounted = {};
   Step imitation;
@@ -102,15 +109,15 @@ bool Cvode::fits(const Step& step) const {
 
 void Cvode::visit(Archive& archive, const Problem& problem, Step* step, bool active) {
   if (!active) return;
-  int anew = starts_anew_;
-  archive("history of CVODE").count(anew, 0, 2);
+  Next next = next_;
+  archive("history of CVODE").count(next, 0, static_cast<int>(Next::starts_after_stop));
   const bool has_history = step->end > step->start;
   if (archive.reads()) {
     Step point;
-    const bool ready =
-        has_history ? imitate_step(problem, *step) : anew != 0 && start(problem, step->end, step->y_end, &point);
+    const bool ready = has_history ? imitate_step(problem, *step)
+                                   : next != Next::goes_on && start(problem, step->end, step->y_end, &point);
     if (!ready) return archive.refuse();
-    starts_anew_ = anew;
+    next_ = next;
   }
   if (has_history) visit_history(archive);
   if (!archive.reads()) return;

@@ -95,7 +95,8 @@ struct Operations {
       const double* u = data(x[k]);
       for (int i = 0; i < width; ++i) sum[i] += c[k] * u[i];
     }
-    return each(z, [&](int i) { return sum[i]; }), SUN_SUCCESS;
+    std::memcpy(data(z), sum, sizeof sum);
+    return SUN_SUCCESS;
   }
 
   // z_k = a_k x + y_k: the end of a step, on all columns of the history at once.
@@ -116,12 +117,25 @@ struct Operations {
   static const _generic_N_Vector_Ops& table() {
     static constexpr _generic_N_Vector_Ops operations = [] {
       _generic_N_Vector_Ops o = {};
-      o.nvgetvectorid = kind, o.nvclone = clone, o.nvcloneempty = clone, o.nvdestroy = destroy;
-      o.nvgetarraypointer = [](N_Vector v) { return data(v); }, o.nvsetarraypointer = set_data, o.nvgetlength = length;
-      o.nvlinearsum = linear_sum, o.nvconst = constant, o.nvprod = product, o.nvdiv = quotient, o.nvscale = scale;
-      o.nvabs = absolute, o.nvinv = inverse, o.nvaddconst = add_constant, o.nvmaxnorm = largest;
-      o.nvwrmsnorm = rms_norm, o.nvlinearcombination = combine;
-      o.nvscaleaddmulti = add_to_each, o.nvscalevectorarray = scale_each;
+      o.nvgetvectorid = kind;
+      o.nvclone = o.nvcloneempty = clone;
+      o.nvdestroy = destroy;
+      o.nvgetarraypointer = [](N_Vector v) { return data(v); };
+      o.nvsetarraypointer = set_data;
+      o.nvgetlength = length;
+      o.nvlinearsum = linear_sum;
+      o.nvconst = constant;
+      o.nvprod = product;
+      o.nvdiv = quotient;
+      o.nvscale = scale;
+      o.nvabs = absolute;
+      o.nvinv = inverse;
+      o.nvaddconst = add_constant;
+      o.nvmaxnorm = largest;
+      o.nvwrmsnorm = rms_norm;
+      o.nvlinearcombination = combine;
+      o.nvscaleaddmulti = add_to_each;
+      o.nvscalevectorarray = scale_each;
       return o;
     }();
     return operations;

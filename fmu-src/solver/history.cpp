@@ -1,5 +1,4 @@
 // Snapshots: what an engine remembers, as numbers, each checked before it is used.
-#include <initializer_list>
 #include <limits>
 
 #include "bytes.hpp"
@@ -17,9 +16,7 @@ void Solver::visit(support::Archive& archive) {
   archive("values of watched functions").numbers(values_, max_watched);
   archive("time of a stop, s").range(stop_time_, -archive.greatest, never);
   archive("counters");
-  for (long long* count :
-       {&counters_.steps, &counters_.rhs, &counters_.jacobians, &counters_.roots, &counters_.restarts})
-    archive.tally(*count);
+  for (long long* count : counters_.all()) archive.tally(*count);
   archive("start of the step, s").number(step_.start);
   archive("end of the step, s").number(step_.end);
   archive("states at the ends of the step").numbers(step_.y_start, problem_.states);
@@ -33,16 +30,17 @@ void Solver::save_history(support::Archive& archive) const { const_cast<Solver&>
 
 bool Solver::restore_history(const Problem& problem, support::Archive& archive) {
   problem_ = problem;
-  failure_ = "the solver had failed before the state was saved";
   step_ = {};
   step_.degree = -1;
   runge_kutta_ = {};
   visit(archive);
+  failure_ = pending_ == Outcome::failed ? "the solver had failed before the state was saved" : nullptr;
   if (archive.is_sound()) return true;
   failure_ = "the solver's history could not be restored";
   const double none[max_states] = {};
   step_.set_point(0, none, problem.states);  // reading it is harmless
-  return pending_ = Outcome::failed, false;
+  pending_ = Outcome::failed;
+  return false;
 }
 
 // Times in order, and those that one outcome goes with; an event that is watched.

@@ -1,6 +1,8 @@
 // The problem that the owner of a solver states, and the counts that the solver keeps of it.
 #pragma once
 
+#include <array>
+
 namespace solver {
 
 inline constexpr int max_states = 12, max_extremes = 16, max_degree = 12, max_watched = 12;
@@ -13,7 +15,7 @@ enum class Consequence : int { ends, bends, goes_on };
 
 // A function whose first fall below zero is an event: the solver finds its instant and stops there.
 struct Watched {
-  int event;  // the owner's number of it
+  int event;  // the owner's number of it, 0 to max_watched
   double (*value)(void* owner, int event, double t, const double* y);
   // Whether the margins that `derivative` returns count this function in. It is then looked at only in steps in which
   // a margin came near zero, else at each step. It must be scaled as they are.
@@ -51,6 +53,8 @@ struct Problem {
 // of the functions that are watched by the margin; `roots` those of the others.
 struct Counters {
   long long steps, rhs, jacobians, roots, restarts;
+
+  std::array<long long*, 5> all() { return {&steps, &rhs, &jacobians, &roots, &restarts}; }
 };
 
 }  // namespace solver

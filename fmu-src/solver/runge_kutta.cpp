@@ -96,7 +96,7 @@ const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, dou
       continue;
     }
     const double next = next_size(h, error);
-    // A step that was cut short tells little, so the size wanted before it is kept. After a rejection a step does not
+    // A step that was cut short shows little, so the size wanted before it is kept. After a rejection a step does not
     // grow.
     *liked = rejected ? std::fmin(h, next) : h < *liked ? std::fmax(*liked, next) : next;
     size_ = h;
@@ -134,7 +134,8 @@ bool RungeKutta::fits(const Problem& problem, Step* step) {
   Step same = *step;
   with_attempt(problem, nullptr, &same, [](auto attempt) { attempt.end_step(); });
   const bool fits = std::equal(step->y_end, step->y_end + problem.states, same.y_end);
-  return *step = same, fits;
+  *step = same;
+  return fits;
 }
 
 }  // namespace solver

@@ -45,39 +45,37 @@ bool Search::stays_above(Sample lo, Sample mid, Sample hi) {
 }
 
 // The first sample below zero that can be found, and the one before it. lo.g >= 0.
-bool Search::look(Sample lo, Sample mid, Sample hi, int depth, int* budget, Sample bracket[2]) const {
-  if (mid.g >= 0 && stays_above(lo, mid, hi)) return false;
-  const bool falls = mid.g < 0 || hi.g < 0;
+std::optional<Search::Fall> Search::look(Sample lo, Sample mid, Sample hi, int depth, int* budget) const {
+  if (mid.g >= 0 && stays_above(lo, mid, hi)) return {};
   const bool deeper = depth > 0 && *budget >= 2 && hi.t - lo.t > 8 * rounding_at(hi.t);
   if (!deeper) {
-    if (falls) bracket[0] = mid.g < 0 ? lo : mid, bracket[1] = mid.g < 0 ? mid : hi;
-    return falls;
+    if (mid.g < 0) return Fall{lo, mid};
+    return hi.g < 0 ? std::optional(Fall{mid, hi}) : std::nullopt;
   }
   --*budget;
-  if (look(lo, sample(0.5 * (lo.t + mid.t)), mid, depth - 1, budget, bracket)) return true;
-  if (hi.g < 0) return bracket[0] = mid, bracket[1] = hi, true;
+  if (const auto fall = look(lo, sample(0.5 * (lo.t + mid.t)), mid, depth - 1, budget)) return fall;
+  if (hi.g < 0) return Fall{mid, hi};
   const double x = Parabola(lo, mid, hi).lowest_at();
   const Sample low = x > 0 && x < 1 ? sample(lo.t + x * (hi.t - lo.t)) : mid;
-  if (low.g < 0) return bracket[0] = lo, bracket[1] = low, true;
+  if (low.g < 0) return Fall{lo, low};
   --*budget;
-  return look(mid, sample(0.5 * (mid.t + hi.t)), hi, depth - 1, budget, bracket);
+  return look(mid, sample(0.5 * (mid.t + hi.t)), hi, depth - 1, budget);
 }
 
-bool Search::find_first_fall(Sample lo, Sample hi, double* t) const {
-  if (lo.g < 0) return *t = lo.t, true;
-  if (!(hi.t > lo.t)) return false;
+std::optional<double> Search::find_first_fall(Sample lo, Sample hi) const {
+  if (lo.g < 0) return lo.t;
+  if (!(hi.t > lo.t)) return {};
   double instants[max_extremes + 1];
   int pieces = problem_.extremes ? problem_.extremes(problem_.owner, lo.t, hi.t, instants) : 0;
   instants[pieces++] = hi.t;
   for (int i = 0; i < pieces; ++i) {
     const Sample end = i + 1 < pieces ? sample(instants[i]) : hi;
     int budget = most_samples;
-    Sample bracket[2];
-    if (look(lo, sample(0.5 * (lo.t + end.t)), end, most_halvings, &budget, bracket))
-      return *t = fall_through(bracket[0], bracket[1]), true;
+    if (const auto fall = look(lo, sample(0.5 * (lo.t + end.t)), end, most_halvings, &budget))
+      return fall_through(fall->before, fall->below);
     lo = end;
   }
-  return false;
+  return {};
 }
 
 // Chandrupatla, Advances in Engineering Software 28 (1997) 145: inverse quadratic interpolation where it is safe, else

@@ -1,6 +1,8 @@
 // Where a watched function falls below zero on the dense output of one step: its first fall, dips included.
 #pragma once
 
+#include <optional>
+
 #include "step.hpp"
 
 namespace solver {
@@ -21,14 +23,17 @@ class Search {
     return {t, watched_.value(problem_.owner, watched_.event, t, y)};
   }
 
-  // The first instant in [lo.t, hi.t] at which g is below zero; false where there is none. lo.g below zero: lo.t.
-  bool find_first_fall(Sample lo, Sample hi, double* t) const;
+  // The first instant in [lo.t, hi.t] at which g is below zero, if there is one. lo.g below zero: lo.t.
+  std::optional<double> find_first_fall(Sample lo, Sample hi) const;
 
   // Whether g, known at three instants, is so far above zero that it cannot fall below it between them.
   static bool stays_above(Sample lo, Sample inside, Sample hi);
 
  private:
-  bool look(Sample lo, Sample mid, Sample hi, int depth, int* budget, Sample bracket[2]) const;
+  struct Fall {
+    Sample before, below;
+  };
+  std::optional<Fall> look(Sample lo, Sample mid, Sample hi, int depth, int* budget) const;
   double fall_through(Sample lo, Sample hi) const;
 
   const Problem& problem_;

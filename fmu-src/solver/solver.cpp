@@ -2,7 +2,6 @@
 #include "solver.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace solver {
 
@@ -20,7 +19,9 @@ bool Solver::restart(const Problem& problem, Method method, double t, const doub
   method_ = method;
   known_until_ = event_time_ = t;
   ++counters_.restarts;
-  if (!begin(t, y)) return pending_ = Outcome::failed, false;
+  pending_ = Outcome::failed;
+  failure_ = nullptr;
+  if (!engine().start(problem_, t, y, &step_)) return false;
   resume();
   return true;
 }
@@ -35,10 +36,6 @@ void Solver::resume() {
     ++counters_.roots;
     values_[i] = watched.value(problem_.owner, watched.event, known_until_, y);
   }
-}
-
-bool Solver::begin(double t, const double* y) {
-  return engine().start(problem_, t, y, &step_) || (failure_ = engine().failure(), false);
 }
 
 // After an event right behind the start of its step, most often another event: the step was too long to see the motion
@@ -67,9 +64,9 @@ bool Solver::make_step() {
   if (stop > known_until_ && reaches(stop)) {
     double y[max_states];
     std::copy_n(step_.y_end, max_states, y);
-    return begin(stop, y);
+    return engine().start(problem_, stop, y, &step_);
   }
-  if (!engine().advance(problem_, stop, &counters_, &step_)) return failure_ = engine().failure(), false;
+  if (!engine().advance(problem_, stop, &counters_, &step_)) return false;
   ++counters_.steps;
   return true;
 }
@@ -98,9 +95,9 @@ void Solver::look_for_events(double from) {
       expand(&counters_);
     }
     if (hi.t != known_until_) hi = search.sample(known_until_);
-    double t;
-    if (!search.find_first_fall(lo, hi, &t)) continue;
-    known_until_ = event_time_ = t;
+    const auto fall = search.find_first_fall(lo, hi);
+    if (!fall) continue;
+    known_until_ = event_time_ = *fall;
     event_ = watched.event;
     pending_ = Outcome::event;
   }
@@ -115,7 +112,7 @@ bool Solver::comes_near(const Search& search, std::span<const double> extremes) 
   return std::any_of(extremes.begin(), extremes.end(), is_near);
 }
 
-// Most steps are far from an event, which a value inside the step that is known anyway is enough to tell.
+// Most steps are far from an event, which a value inside the step that is known anyway is enough to show.
 bool Solver::stays_above(const Search& search, Sample lo, Sample hi) const {
   if (!(step_.inside_share > 0) || lo.t != step_.start) return false;
   const double t = step_.start + step_.inside_share * (step_.end - step_.start);

@@ -6,8 +6,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstddef>
-#include <limits>
 #include <span>
 
 #include "cvode_engine.hpp"
@@ -56,17 +54,16 @@ class Solver {
   double event_time() const { return event_time_; }
   int event() const { return event_; }
   Method method() const { return method_; }
-  const char* failure() const { return failure_; }
+  const char* failure() const { return failure_ ? failure_ : engine().failure(); }
   const Counters& counters() const { return counters_; }
 
-  // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on with the same bits. It is
+  // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on bit-identically. It is
   // the last part of an archive; restore refuses what could not have been saved (false; no solution then until start).
   void save_history(support::Archive& archive) const;
   bool restore_history(const Problem& problem, support::Archive& archive);
 
  private:
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }
-  bool begin(double t, const double* y);
   double time_to_look_again(double t) const;
   bool make_step();
   void expand(Counters* counters) const;
@@ -79,11 +76,11 @@ class Solver {
   Problem problem_ = {};
   Method method_ = Method::adams;
   Outcome pending_ = Outcome::failed;
-  const char* failure_ = "the solver was not started";
-  double known_until_ = 0, event_time_ = 0;  // s
+  const char* failure_ = "the solver was not started";  // null: the engine knows
+  double known_until_ = 0, event_time_ = 0;             // s
   int event_ = 0;
   double stop_time_ = 0;             // s, of the next step
-  double values_[max_watched] = {};  // at known_until_ of what is watched at each step
+  double values_[max_watched] = {};  // of what is watched at each step, at its end or where the solution was resumed
   Counters counters_ = {};
   // The dense output of the last step is computed when it is first needed: a pure function of the step.
   mutable Step step_ = {};

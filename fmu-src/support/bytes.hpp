@@ -29,7 +29,10 @@ class Archive {
   bool is_sound() const { return !fault_ && bytes_ == size_; }
 
   // What the fields that follow are, in words.
-  Archive& operator()(const char* row) { return row_ = row, *this; }
+  Archive& operator()(const char* row) {
+    row_ = row;
+    return *this;
+  }
   void range(double& x, double least, double most) { put(x, least, most); }
   template <class... Doubles>
   void number(Doubles&... x) {  // finite
@@ -82,8 +85,8 @@ class Archive {
   const char *row_ = "", *fault_ = nullptr;
 };
 
-// FNV-1a over words of 64 bits; a snapshot is a whole number of them. A change of any one word changes the sum. It
-// guards against accidents: what is forged is told by the checks of the numbers themselves.
+// After FNV-1a, but over words of 64 bits and with a shift that mixes them; a snapshot is a whole number of words. A
+// change of any one word changes the sum. It guards against accidents; forged numbers are met by their own checks.
 inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (std::size_t i = 0; i < size; i += 8) {

@@ -1,6 +1,6 @@
 // A number for a message: as many digits as it needs, the shortest of 15 to 17 that reads back as the same double, or
 // as many as are asked for; with a point whatever the host's locale is. All numbers of messages that are not whole are
-// written by it. Times are given with all digits, so that a caller can be told exactly when something was.
+// written by it. Times are given with all digits, so that a caller can go to exactly that instant.
 #pragma once
 
 #include <cstdio>
@@ -16,7 +16,10 @@ struct Digits {
     while (std::strtod(text, nullptr) != x && ++digits <= 17);
     point();
   }
-  Digits(double x, int digits) { write(x, digits), point(); }
+  Digits(double x, int digits) {
+    write(x, digits);
+    point();
+  }
   char text[32];
 
  private:

@@ -73,8 +73,7 @@ Outcome begin(const Setup& setup, const Demand& demand, Run& run, Solution& solu
 }
 
 void move_to(const Setup& setup, double t, Run& run, const Solution& solution, const Reporter& reporter) {
-  if (run.phase == Phase::unfolded && solution.orbit.recurring() > 0)
-    observe_orbit(setup, solution.orbit, t, run, reporter);
+  if (run.phase == Phase::unfolded && solution.orbit.recurs()) observe_orbit(setup, solution.orbit, t, run, reporter);
   run.t = t;
 }
 

@@ -18,7 +18,10 @@ bool strictly_positive(unsigned v) {
 
 bool check_value(const Reporter& reporter, unsigned v, double value) {
   const Row& row = row_of(v);
-  const auto fault = [&](auto... format) { return reporter.log(Topic::error, format...), false; };
+  const auto fault = [&](auto... format) {
+    reporter.log(Topic::error, format...);
+    return false;
+  };
   if (!std::isfinite(value)) return fault("%s = %s: a finite number is needed.", row.name, Digits(value, 9).text);
   if (v == stored::theta_start && !(std::sin(value) > flat_angle && value > 0 && value < row.max))
     return fault("theta_start = %s rad: the wheel must stand above the ground, 0 < theta < pi.", Digits(value, 9).text);

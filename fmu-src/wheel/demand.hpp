@@ -22,10 +22,10 @@ struct Demand {
   double parameters[first_input];  // in the order of the variables; `s` is the one asked for
   Polynomials inputs = {};         // from the instant at which they take effect
   double start_time = 0, stop_time = never, tolerance = default_tolerance;
-  Kind kind = Kind::co_simulation;
+  Kind kind;
   bool changed = false;  // something has been set since the last step
 
-  Demand() {
+  explicit Demand(Kind own = Kind::co_simulation) : kind(own) {
     for (unsigned v = 0; v < first_input; ++v) parameters[v] = row_of(v).start;
   }
 };

@@ -1,7 +1,6 @@
 // The table of events, and how they are passed, counted and logged.
 #include "events.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <iterator>
 
@@ -79,7 +78,8 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
   const double* lambda = dynamics.lambda;
   const double X = lambda[0] / setup.weight, Y = lambda[1] / setup.weight;
   const double normal = setup.mu_max * (lambda[2] / setup.weight);
-  return normal * std::fabs(normal) - (X * X + Y * Y);
+  constexpr double rounding = 1e-12;
+  return normal * std::fabs(normal) - (X * X + Y * Y) + rounding;
 }
 
 bool always(const Setup&, const InForce&) { return true; }
@@ -101,32 +101,23 @@ Consequence change_contact(const Setup&, Event event, double, double*, InForce& 
 
 double height_left(const Setup& setup, const InForce&, double, const double* y) { return height_of(setup, y); }
 
+// Model exchange leaves a stiff law to the caller's solver.
+constexpr EventRow layer_event(Event event, decltype(EventRow::can_occur) can_occur, decltype(EventRow::value) value) {
+  return {.event = event, .can_occur = can_occur, .value = value, .exchanged = false, .follow = change_layer};
+}
+
 }  // namespace
 
 const EventRow event_rows[] = {
-    {.event = Event::stiffens,
-     .can_occur = varies_and_can_stiffen,
-     .value = softness,
-     .exchanged = false,
-     .follow = change_layer},
-    {.event = Event::sticks_in_layer,
-     .can_occur = is_passing,
-     .value = holding_lacks,
-     .exchanged = false,
-     .follow = change_layer},
-    {.event = Event::crosses_layer,
-     .can_occur = is_layered,
-     .value = way_to_edge,
-     .exchanged = false,
-     .follow = change_layer},
+    layer_event(Event::stiffens, varies_and_can_stiffen, softness),
+    layer_event(Event::sticks_in_layer, is_passing, holding_lacks),
+    layer_event(Event::crosses_layer, is_layered, way_to_edge),
     {.event = Event::spin_changes, .can_occur = can_change_spin, .value = spin_left, .follow = change_spin},
     {.event = Event::lost_grip,
      .can_occur = checks_grip,
      .value = grip_left,
-     .rounding = 1e-12,
      .ends = always_ends,
-     .ending = "needs a coefficient of friction above mu_max",
-     .limit = [](const Setup& setup) { return setup.mu_max; },
+     .ending = "needs a coefficient of friction above mu_max = %s",
      .ended = "The wheel %s at t = %s s, theta = %s rad: a model without slip ends here.",
      .refused = "At the start, where N = %s N, the wheel needs a coefficient of friction of %s, above mu_max = %s."},
     {.event = Event::lost_contact,
@@ -160,8 +151,6 @@ support::Digits instant_of(const Setup& setup, double t) {
   return support::Digits(std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time);
 }
 
-Tally& tally_of(Run& run, Event event) { return run.tallies[static_cast<int>(event)]; }
-
 }  // namespace
 
 Consequence observe(const Setup&, Event event, double, double*, InForce& now) {
@@ -170,6 +159,7 @@ Consequence observe(const Setup&, Event event, double, double*, InForce& now) {
 }
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
+  if (!row.observed) return row.value(setup, now, t, y);
   const double value = row.value(setup, now, t, y);
   return (now.is_below(row.event) ? -value : value) + row.rounding;
 }
@@ -196,7 +186,7 @@ Consequence pass_event(const Setup& setup, Event event, Run& run, const Reporter
 }
 
 void count_event(const Setup& setup, Event event, double t, Run& run, const Reporter& reporter) {
-  Tally& tally = tally_of(run, event);
+  Tally& tally = run.tallies[static_cast<int>(event)];
   tally.last = t;
   if (tally.count++ >= logged_one_by_one) return;
   reporter.log(Topic::warning, row_of(event).observed, instant_of(setup, t).text);
@@ -211,10 +201,9 @@ void log_transition(const Setup& setup, const WheelFriction& before, Run& run, c
   if (!reporter.wants(Topic::event)) return;
   const support::Digits instant = instant_of(setup, run.t);
   if (friction.kind == WHEEL_HELD)
-    reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
-  else
-    reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
-                 before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
+    return reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
+  reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
+               before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
 }
 
 void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter) {
@@ -233,12 +222,8 @@ void log_end(const Setup& setup, const Run& run, const Reporter& reporter) {
 }
 
 Ending ending_of(const Setup& setup, Event event) {
-  const EventRow& row = row_of(event);
   Ending ending;
-  if (row.limit)
-    std::snprintf(ending.text, sizeof ending.text, "%s = %s", row.ending, support::Digits(row.limit(setup)).text);
-  else
-    std::snprintf(ending.text, sizeof ending.text, "%s", row.ending);
+  std::snprintf(ending.text, sizeof ending.text, row_of(event).ending, support::Digits(setup.mu_max).text);
   return ending;
 }
 

@@ -30,20 +30,18 @@ struct EventRow {
   // Smooth, scaled to about one, and positive until the event. An observed event has the other sign after it, up to
   // its next change of sign.
   double (*value)(const Setup& setup, const InForce& now, double t, const double* y);
-  double rounding = 0;     // a value below zero by less does not count
+  double rounding = 0;     // of an observed event: a value beyond zero by less does not count
   bool by_margin = false;  // `least_margin` counts it in: the solver looks at it only where that comes near zero
   bool exchanged = true;   // it can occur in model exchange, and has an event indicator there
   bool (*ends)(const Setup& setup) = nullptr;  // whether it ends the run; null: it never does
   // What follows where it does not end the run: what is in force from here on, the state (a rate of zero exactly), and
   // whether the motion goes on as before. An event that is only observed has `observe`.
   Consequence (*follow)(const Setup& setup, Event event, double t, double* y, InForce& now) = nullptr;
-  // Of an event that ends the run: its name, to stand behind "the wheel", and the limit that goes with it.
-  const char* ending = nullptr;
-  double (*limit)(const Setup& setup) = nullptr;
-  // Messages with the numbers that fill them. It has ended the run: the ending, the instant, theta. Model exchange
-  // cannot start: N, the coefficient of friction that is needed, the limit. It is observed: the instant; and at the end
-  // how often it occurred, how many of these were logged, the last instant.
-  const char *ended = nullptr, *refused = nullptr, *observed = nullptr, *summary = nullptr;
+  // Messages with the numbers that fill them. What has ended the run, to stand behind "the wheel": mu_max. The end of
+  // the run: that text, the instant, theta. Model exchange cannot start: N, the coefficient of friction that is needed,
+  // mu_max. It is observed: the instant; and at the end how often it occurred, how many of these were logged, the last
+  // instant.
+  const char *ending = nullptr, *ended = nullptr, *refused = nullptr, *observed = nullptr, *summary = nullptr;
 };
 
 // An event that is counted and logged, but changes nothing.

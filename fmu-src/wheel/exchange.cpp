@@ -1,6 +1,8 @@
 // Model exchange: states, indicators, decisions at events.
 #include "exchange.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -24,21 +26,19 @@ static_assert(std::size(states) == state_count);
 
 bool is_finite(double number) { return std::isfinite(number); }
 
-struct State {
-  double y[WHEEL_MAX_STATES];
-};
+using State = std::array<double, WHEEL_MAX_STATES>;
 
 State above_ground(const Setup& setup, const double* y) {
   State trial = {};
-  std::copy_n(y, state_count, trial.y);
-  double& theta = trial.y[setup.formulation->tilt_index];
+  std::copy_n(y, state_count, trial.data());
+  double& theta = trial[setup.formulation->tilt_index];
   theta = std::clamp(theta, flat_angle, 2 * upright - flat_angle);
   return trial;
 }
 
 double margin_at(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
   const bool tilts = row.event == Event::fell_flat;
-  return margin_of(row, setup, now, t, tilts ? y : above_ground(setup, y).y);
+  return margin_of(row, setup, now, t, tilts ? y : above_ground(setup, y).data());
 }
 
 double indicator(const EventRow& row, const Setup& setup, const Run& run) {
@@ -93,7 +93,7 @@ void take_at_once(const Setup& setup, Demand& demand, Run& run) {
 
 bool derivatives(const Setup& setup, Run& run, double* x_dot) {
   ++run.counted.rhs;
-  setup.formulation->derivative(&run.in_force.scene, above_ground(setup, run.y).y, x_dot);
+  setup.formulation->derivative(&run.in_force.scene, above_ground(setup, run.y).data(), x_dot);
   return std::all_of(x_dot, x_dot + state_count, is_finite);
 }
 
@@ -128,7 +128,10 @@ bool decide(const Setup& setup, Run& run, const Reporter& reporter, Event* endin
       pass_event(setup, row.event, run, reporter);
   // The law is decided anew in each event mode. A wheel that has just been stopped can be let go at once.
   const auto change = [&] { changes.follow(setup, changes.event, run.t, run.y, now); };
-  led&& has_occurred(changes, setup, run) ? change() : decide_law(setup, run.t, run.y, now);
+  if (led && has_occurred(changes, setup, run))
+    change();
+  else
+    decide_law(setup, run.t, run.y, now);
   const bool sticks = law.kind != WHEEL_HELD && now.scene.friction.kind == WHEEL_HELD;
   if (sticks && has_occurred(changes, setup, run)) change();
   log_transition(setup, law, run, reporter);

@@ -4,8 +4,6 @@
 // the law of friction is decided anew at events only, by the function that co-simulation uses.
 #pragma once
 
-#include <algorithm>
-
 #include "events.hpp"
 
 namespace wheel {

@@ -7,23 +7,24 @@
 namespace wheel {
 namespace {
 
-WheelDynamics dynamics_of_held(const Setup& setup, const WheelScene& scene, const double* y) {
+// A wheel that is held: the moment about the axle, N m, and what of the capacity s N + M_brake is left, N m.
+struct Held {
+  double tau, margin;
+};
+
+Held held_at(const Setup& setup, const WheelScene& scene, const double* y) {
+  constexpr double rounding_of_capacity = 1e-12, rounding_of_tau = 1e-13;
   WheelScene trial = scene;
   trial.friction = {WHEEL_HELD, 0, 0};
   WheelDynamics held;
   setup.formulation->dynamics(&trial, y, &held);
-  return held;
-}
-
-double margin_of(const Setup& setup, const WheelScene& scene, const WheelDynamics& held) {
-  constexpr double rounding_of_capacity = 1e-12, rounding_of_tau = 1e-13;
   const double capacity = scene.wheel.s * std::max(held.lambda[2], 0.0) + scene.load.brake;
   const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
-  return capacity + rounding - std::fabs(held.tau);
+  return {held.tau, capacity + rounding - std::fabs(held.tau)};
 }
 
 // Rolling against the moment that would hold the wheel.
-WheelFriction against(const WheelDynamics& held) { return {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0}; }
+WheelFriction against(const Held& held) { return {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0}; }
 
 // The law apart from layers; `braked`: the brake is in use.
 WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
@@ -31,9 +32,8 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
   if (setup.friction_law == regularized_law) return {WHEEL_REGULARIZED, 0, setup.omega_s};
   const double omega_z = y[setup.formulation->spin_index];
   if (omega_z != 0) return {WHEEL_ROLLING, omega_z > 0 ? 1.0 : -1.0, 0};
-  const WheelDynamics held = dynamics_of_held(setup, scene, y);
-  if (margin_of(setup, scene, held) >= 0) return {WHEEL_HELD, 0, 0};
-  return against(held);
+  const Held held = held_at(setup, scene, y);
+  return held.margin >= 0 ? WheelFriction{WHEEL_HELD, 0, 0} : against(held);
 }
 
 void enter_layer(const Setup& setup, const WheelScene& scene, const double* y, InForce& now) {
@@ -60,8 +60,7 @@ void put_in_force(const Setup& setup, const Demand& demand, double t, const doub
 
 void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
   WheelScene scene = now.scene_at(t);
-  scene.friction =
-      released ? against(dynamics_of_held(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
+  scene.friction = released ? against(held_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
   now.scene.friction = scene.friction;
   const bool stiff = can_stiffen(setup, now) && layer_margin(setup, scene, y) < 0;
   if (stiff || now.layer != Layer::none) enter_layer(setup, scene, y, now);
@@ -84,7 +83,7 @@ double layer_margin(const Setup& setup, const WheelScene& scene, const double* y
 }
 
 double holding_margin(const Setup& setup, const WheelScene& scene, const double* y) {
-  return margin_of(setup, scene, dynamics_of_held(setup, scene, y));
+  return held_at(setup, scene, y).margin;
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {

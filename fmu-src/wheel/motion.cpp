@@ -7,12 +7,12 @@
 namespace wheel {
 namespace {
 
-const Setup& setup_of(void* owner) { return *static_cast<const Owner*>(owner)->setup; }
-const InForce& in_force_of(void* owner) { return *static_cast<const Owner*>(owner)->in_force; }
+const Setup& setup_behind(void* owner) { return *static_cast<const Owner*>(owner)->setup; }
+const InForce& in_force_behind(void* owner) { return *static_cast<const Owner*>(owner)->in_force; }
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
-  const Setup& setup = setup_of(owner);
-  const InForce& now = in_force_of(owner);
+  const Setup& setup = setup_behind(owner);
+  const InForce& now = in_force_behind(owner);
   const auto rates = [&](const WheelScene& scene) { return setup.formulation->derivative(&scene, y, y_dot); };
   const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
   double sum = 0;
@@ -24,7 +24,7 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
 // The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
 // turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a fraction of that width.
 void weights(void* owner, double share, const double* y, double* weights) {
-  const Setup& setup = setup_of(owner);
+  const Setup& setup = setup_behind(owner);
   const int states = setup.formulation->states, spin = setup.formulation->spin_index;
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const double slow = share * setup.tolerance;
@@ -32,19 +32,19 @@ void weights(void* owner, double share, const double* y, double* weights) {
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
-  if (in_force_of(owner).scene.friction.kind != WHEEL_REGULARIZED) return;
+  if (in_force_behind(owner).scene.friction.kind != WHEEL_REGULARIZED) return;
   const double part = 10 * std::sqrt(tolerance);
   const double layer = part * setup.omega_s + tolerance * std::fabs(y[spin]);
   weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
 }
 
 double margin(void* owner, int event, double t, const double* y) {
-  return margin_of(row_of(static_cast<Event>(event)), setup_of(owner), in_force_of(owner), t, y);
+  return margin_of(row_of(static_cast<Event>(event)), setup_behind(owner), in_force_behind(owner), t, y);
 }
 
 int extremes(void* owner, double t_lo, double t_hi, double* instants) {
   static_assert(most_extremes <= solver::max_extremes);
-  return in_force_of(owner).inputs.extremes(t_lo, t_hi, instants);
+  return in_force_behind(owner).inputs.extremes(t_lo, t_hi, instants);
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ solver::Problem problem_of(Owner& owner) {
 }
 
 Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
-  const Setup& setup = setup_of(owner);
+  const Setup& setup = setup_behind(owner);
   const EventRow& row = row_of(static_cast<Event>(event));
   if (ends_run(row, setup)) return Consequence::ends;
   return row.follow(setup, row.event, t, y, *static_cast<Owner*>(owner)->in_force);

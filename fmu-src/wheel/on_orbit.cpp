@@ -36,22 +36,21 @@ bool enter_orbit(const Setup& setup, const Demand& demand, Run& run, Solution& s
 }
 
 void observe_orbit(const Setup& setup, const orbit::Orbit& orbit, double t, Run& run, const Reporter& reporter) {
-  const auto tally_of = [&](int i) -> Tally& { return run.tallies[orbit.event_of(i)]; };
-  const auto next_of = [&](int i) {
-    const long long next = tally_of(i).count, falls = orbit.falls_until(i, t);
-    return next < std::min(falls, logged_one_by_one) ? orbit.fall(i, next) : Demand::never;
+  const auto next_of = [&](int event) {
+    const long long next = run.tallies[event].count, falls = orbit.falls_until(event, t);
+    return next < std::min(falls, logged_one_by_one) ? orbit.fall(event, next) : Demand::never;
   };
   for (;;) {  // in the order of time
     int first = 0;
-    for (int i = 1; i < orbit.recurring(); ++i)
-      if (next_of(i) < next_of(first)) first = i;
+    for (int event = 1; event < event_count; ++event)
+      if (next_of(event) < next_of(first)) first = event;
     const double instant = next_of(first);
     if (instant == Demand::never) break;
-    count_event(setup, static_cast<Event>(orbit.event_of(first)), instant, run, reporter);
+    count_event(setup, static_cast<Event>(first), instant, run, reporter);
   }
-  for (int i = 0; i < orbit.recurring(); ++i) {
-    const long long falls = orbit.falls_until(i, t);
-    if (falls > tally_of(i).count) tally_of(i) = {falls, orbit.fall(i, falls - 1)};
+  for (int event = 0; event < event_count; ++event) {
+    const long long falls = orbit.falls_until(event, t);
+    if (falls > run.tallies[event].count) run.tallies[event] = {falls, orbit.fall(event, falls - 1)};
   }
 }
 

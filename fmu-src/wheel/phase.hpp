@@ -1,5 +1,5 @@
 // The phases of a run, from the first parameter to the end: one enumeration, from which follows what can be read, what
-// a step does, and which functions of FMI may be called (fmi/legality.cpp).
+// a step does, and which functions of FMI may be called (fmi/legality.hpp).
 #pragma once
 
 namespace wheel {
@@ -7,7 +7,7 @@ namespace wheel {
 enum class Phase : int {
   created,          // parameters are being set
   initializing,     // initialization has begun; no initial state belongs to the present parameters yet
-  faulty,           // the same, and the faults of the present parameters have been told
+  faulty,           // the same, and the faults of the present parameters have been logged
   initial,          // the initial state belongs to the present parameters
   at_start,         // initialization has ended, and no step has been made
   stepping,         // the solver steps through the motion

@@ -18,20 +18,6 @@ double gravity_of(const WheelParameters& wheel) {
   return largest * std::sqrt(g * g + g_X * g_X + g_Y * g_Y);
 }
 
-// Without rolling friction, on its slope.
-WheelParameters wheel_of(const double* v) {
-  using namespace stored;
-  WheelParameters wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
-  if (v[slope] != 0) wheel_set_slope(&wheel, v[g], v[slope], v[slope_direction]);
-  return wheel;
-}
-
-WheelMotion motion_of(const double* v) {
-  using namespace stored;
-  return {v[psi_start],       v[theta_start],   v[phi_start], v[psi_dot_start],
-          v[theta_dot_start], v[phi_dot_start], v[X_O_start], v[Y_O_start]};
-}
-
 double power_of_two_below(double x) {
   constexpr std::uint64_t exponent = 0x7ff0000000000000;
   return std::fmax(std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & exponent),
@@ -88,21 +74,24 @@ const WheelFormulation* formulation_of(const Demand& demand) {
 }  // namespace
 
 Setup setup_of(const Demand& demand) {
+  using namespace stored;
   const double* v = demand.parameters;
   Setup setup = {};
   setup.kind = demand.kind;
   setup.start_time = demand.start_time;
   setup.formulation = formulation_of(demand);
-  setup.wheel = wheel_of(v);
-  setup.friction_law = static_cast<FrictionLaw>(choice_of(v[stored::friction_law]));
-  setup.omega_s = v[stored::omega_s];
-  setup.method = static_cast<SolverMethod>(choice_of(v[stored::method]));
-  setup.unfolds = v[stored::J_x] == v[stored::J_y] && v[stored::slope] == 0 &&
-                  choice_of(v[stored::formulation]) == automatic_formulation && setup.method == automatic_method;
-  setup.keep_contact = v[stored::keep_contact] != 0;
-  setup.mu_max = v[stored::mu_max];
+  setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
+  if (v[slope] != 0) wheel_set_slope(&setup.wheel, v[g], v[slope], v[slope_direction]);
+  setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
+  setup.omega_s = v[omega_s];
+  setup.method = static_cast<SolverMethod>(choice_of(v[method]));
+  setup.unfolds = v[J_x] == v[J_y] && v[slope] == 0 && choice_of(v[formulation]) == automatic_formulation &&
+                  setup.method == automatic_method;
+  setup.keep_contact = v[keep_contact] != 0;
+  setup.mu_max = v[mu_max];
   setup.tolerance = demand.tolerance;
-  const WheelMotion motion = motion_of(v);
+  const WheelMotion motion = {v[psi_start],       v[theta_start],   v[phi_start], v[psi_dot_start],
+                              v[theta_dot_start], v[phi_dot_start], v[X_O_start], v[Y_O_start]};
   WheelKinematics start;
   setup.formulation->start(&setup.wheel, &motion, setup.start);
   setup.formulation->kinematics(&setup.wheel, setup.start, &start);

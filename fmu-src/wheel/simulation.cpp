@@ -14,7 +14,7 @@ namespace wheel {
 
 void Reporter::log(Topic topic, const char* format, ...) const {
   if (!wants(topic)) return;
-  char message[512];
+  char message[longest];
   std::va_list arguments;
   va_start(arguments, format);
   std::vsnprintf(message, sizeof message, format, arguments);
@@ -23,9 +23,7 @@ void Reporter::log(Topic topic, const char* format, ...) const {
 }
 
 void Simulation::reset() {
-  const Kind own = kind();
-  demand_.change() = Demand();
-  demand_.change().kind = own;
+  demand_.change() = Demand(kind());
   run_.change() = Run();
 }
 

@@ -18,7 +18,7 @@ namespace wheel {
 
 class Simulation {
  public:
-  Simulation(const Reporter& reporter, Kind kind) : reporter_(reporter) { demand_.change().kind = kind; }
+  Simulation(const Reporter& reporter, Kind kind) : reporter_(reporter), demand_(Demand(kind)) {}
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 

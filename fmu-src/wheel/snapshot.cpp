@@ -18,18 +18,20 @@ struct Header {
   std::uint64_t mark, size, checksum;
 };
 
-// The table of what is saved: what the caller has set, and what of the run does not follow from it. A row is a kind
-// with its bounds, the field, and a sentence about it.
+// The table of what is saved: what the caller has set, and what of the run does not follow from it. A row names the
+// field and gives its kind and its bounds.
 void visit(support::Archive& archive, Demand& demand, Run& run) {
   InForce& now = run.in_force;
-  solver::Counters& counted = run.counted;
   archive("parameters as they were set, `s` asked for among them");
   for (double& parameter : demand.parameters) archive.anything(parameter);
   archive("start time, s").number(demand.start_time);
   archive("stop time, s; infinite for none").range(demand.stop_time, -archive.greatest, Demand::never);
   archive("tolerance").range(demand.tolerance, tightest_tolerance, loosest_tolerance);
   archive("inputs asked for, with their derivatives");
-  for (auto& input : demand.inputs) archive.anything(input[0]), archive.numbers(input + 1, max_order);
+  for (auto& input : demand.inputs) {
+    archive.anything(input[0]);
+    archive.numbers(input + 1, max_order);
+  }
   archive("whose solver moves the wheel").count(demand.kind, 0, 1);
   archive("something was set since the last step").count(demand.changed, 0, 1);
   archive("phase").count(run.phase, 0, static_cast<int>(Phase::count) - 1);
@@ -49,11 +51,8 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
     archive("time of its last occurrence, s").number(run.tallies[i].last);
   }
   archive("transitions of the friction").tally(run.transitions);
-  archive("steps before the solver started").tally(counted.steps);
-  archive("evaluations before the solver started").tally(counted.rhs);
-  archive("Jacobians before the solver started").tally(counted.jacobians);
-  archive("values of watched functions before the solver started").tally(counted.roots);
-  archive("new starts before the solver started").tally(counted.restarts);
+  archive("counts before the solver was started");
+  for (long long* count : run.counted.all()) archive.tally(*count);
 }
 
 // Whether the law is one that put_in_force could have chosen.
@@ -62,19 +61,11 @@ bool law_fits(const Setup& setup, const InForce& now) {
   const bool waits = setup.kind == Kind::model_exchange;  // the law waits for the next event
   const bool none = now.scene.wheel.s == 0 && !now.inputs.braked, some = waits || !none;
   if (now.layer != Layer::none && (none || waits || exact || setup.method != automatic_method)) return false;
-  switch (now.scene.friction.kind) {
-    case WHEEL_FRICTIONLESS:
-      return none || waits;
-    case WHEEL_REGULARIZED:
-      return some && !exact && !outside;
-    case WHEEL_ROLLING:
-      return some && exact != outside && std::fabs(now.scene.friction.sigma) == 1;
-    case WHEEL_HELD:
-      return some && exact;
-    case WHEEL_NO_LAW:
-      break;
-  }
-  return false;
+  const WheelFriction& law = now.scene.friction;
+  if (law.kind == WHEEL_FRICTIONLESS) return none || waits;
+  if (law.kind == WHEEL_REGULARIZED) return some && !exact && !outside;
+  if (law.kind == WHEEL_ROLLING) return some && exact != outside && std::fabs(law.sigma) == 1;
+  return law.kind == WHEEL_HELD && some && exact;
 }
 
 // Whether the run has ended by an event exactly where its phase says so.
@@ -119,8 +110,8 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   const bool exchanged = run.phase == Phase::event_mode || run.phase == Phase::continuous_time;
   const bool stepped = run.phase == Phase::at_start || run.phase == Phase::stepping || run.phase == Phase::unfolded;
   if (demand.kind == Kind::model_exchange ? stepped : exchanged) return "the phase is one of the other kind of run";
-  const bool starts = run.phase == Phase::initial || run.phase == Phase::at_start;
-  if (starts && !(run.t == 0 && std::equal(setup.start, setup.start + WHEEL_MAX_STATES, run.y)))
+  const bool at_start = run.phase == Phase::initial || run.phase == Phase::at_start;
+  if (at_start && !(run.t == 0 && std::equal(setup.start, setup.start + WHEEL_MAX_STATES, run.y)))
     return "a run that has not begun stands at its start";
   return nullptr;
 }

@@ -6,6 +6,7 @@ namespace wheel {
 template <class Value>
 class Versioned {
  public:
+  explicit Versioned(const Value& value = Value()) : value_(value) {}
   const Value& operator*() const { return value_; }
   const Value* operator->() const { return &value_; }
   // To be changed; whatever was made of the value before is out of date.

@@ -91,6 +91,10 @@ PUBLIC void probe_read(Probe* probe, const double* t, int count, double* y, doub
 PUBLIC double probe_end_time(Probe* probe) { return probe->orbit.end_time(); }
 PUBLIC double probe_half_period(Probe* probe) { return probe->orbit.half_period(); }
 // Of N, the only event that recurs.
-PUBLIC long long probe_falls_until(Probe* probe, double t) { return probe->orbit.falls_until(0, t); }
-PUBLIC double probe_fall(Probe* probe, long long n) { return probe->orbit.fall(0, n); }
+PUBLIC long long probe_falls_until(Probe* probe, double t) {
+  return probe->orbit.falls_until(static_cast<int>(wheel::Event::lost_contact), t);
+}
+PUBLIC double probe_fall(Probe* probe, long long n) {
+  return probe->orbit.fall(static_cast<int>(wheel::Event::lost_contact), n);
+}
 PUBLIC long long probe_steps(Probe* probe) { return probe->solver.counters().steps; }

@@ -47,7 +47,7 @@ def test_no_failed_allocation_crashes_leaks_goes_untold_or_changes_a_later_bit(p
 
 
 def test_the_table_of_live_instances_grows_or_refuses_the_instance(play):
-    # It has 16 places and is doubled when half full: for the ninth instance, not for the eighth.
+    # It has 8 places and is doubled when it is full: for the ninth instance, not for the eighth.
     starts = [play("reduced", companions)["start"] for companions in (7, 8)]
     assert starts == [1, 2]
 
