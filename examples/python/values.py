@@ -147,11 +147,12 @@ def wheels() -> dict[str, dict[str, object]]:
 
 
 def ready(name: str) -> dict[str, float]:
-    """The parameters of a ready wheel."""
+    """The parameters of a ready wheel, and the paper's spin in proportion to its radius."""
     if name not in wheels():
         meant = suggestion(name, {n: str(wheel["title"]) for n, wheel in wheels().items()})
         raise Fault(f'There is no wheel "{name}"; there are {", ".join(wheels())}.{meant}')
-    return {n: float(value) for n, value in wheels()[name]["parameters"].items()}
+    body = {n: float(value) for n, value in wheels()[name]["parameters"].items()}
+    return body | {"phi_dot_start": -2 * scale(body, s=-1)}
 
 
 def scale(body: Mapping[str, float], kg: int = 0, m: int = 0, s: int = 0) -> float:

@@ -44,9 +44,8 @@ def usage() -> str:
 def of_wheel(name: str) -> dict[str, str]:
     """Its parameters, and the paper's start, friction and rows in proportion to its radius."""
     body = ready(name)
-    start = {"s": PAPER_S * scale(body, m=1), "phi_dot_start": -2 * scale(body, s=-1)}
-    rows = {"output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
-    return {n: repr(value) for n, value in (body | start | rows).items()}
+    more = {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
+    return {n: repr(value) for n, value in (body | more).items()}
 
 
 def values(arguments: list[str]) -> dict[str, str]:
