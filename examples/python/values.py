@@ -96,6 +96,8 @@ class Variable(NamedTuple):
     low: str
     high: str
     description: str
+    variability: str = "fixed"
+    reference: int = -1
 
     @property
     def preset(self) -> float:
@@ -131,13 +133,13 @@ class Variable(NamedTuple):
 
 
 def variables(description: str | bytes, *causalities: str) -> dict[str, Variable]:
-    """Those of a modelDescription.xml, in its order."""
+    """Those of a modelDescription.xml, in its order; all, or those of these causalities."""
     found = {}
     for row in ElementTree.fromstring(description).iter("ScalarVariable"):
         texts = [row[0].get(attribute, "") for attribute in ("unit", "start", "min", "max")]
         known = (row.get("name", ""), row.get("causality", "local"), row[0].tag, *texts, row.get("description", ""))
-        if known[1] in causalities:
-            found[known[0]] = Variable(*known)
+        if known[1] in causalities or not causalities:
+            found[known[0]] = Variable(*known, row.get("variability", ""), int(row.get("valueReference", "-1")))
     return found
 
 

@@ -77,9 +77,8 @@ def values(arguments: list[str]) -> dict[str, str]:
 
 def outputs() -> list[str]:
     """All that a figure or a page may need: outputs, energy, friction, and the values that were set."""
-    read = variables("output", "local", "parameter", "input")
     wanted = ("E", "mu_required", "friction_mode", "n_events")
-    return [v.name for v in read.values() if v.causality != "local" or v.name in wanted]
+    return [v.name for v in variables().values() if v.causality != "local" or v.name in wanted]
 
 
 def main() -> int:

@@ -73,7 +73,7 @@ def read_list(path: Path, value: Callable[[str, str], float]) -> dict[str, list[
 
 def fields_of(arguments: argparse.Namespace) -> dict[str, object]:
     """The fields of a Study that the options give."""
-    known = variables(description(arguments.fmu), *SETTABLE, *READABLE)
+    known = variables(description(arguments.fmu))
 
     def unit(name: str) -> str:
         check_names([name], SETTABLE, known)
@@ -114,7 +114,7 @@ def factors(body: Mapping[str, float]) -> dict[str, float]:
     text = description(ROOT / "wheel.fmu")
     units = {unit.get("name"): unit.find("BaseUnit").attrib for unit in ElementTree.fromstring(text).iter("Unit")}
     powers = {unit: {n: int(base[n]) for n in ("kg", "m", "s") if n in base} for unit, base in units.items()}
-    return {name: scale(body, **powers.get(v.unit, {})) for name, v in variables(text, *SETTABLE, *READABLE).items()}
+    return {name: scale(body, **powers.get(v.unit, {})) for name, v in variables(text).items()}
 
 
 def check_names(names: Iterable[str], causalities: tuple[str, str], known: Mapping[str, Variable]) -> None:

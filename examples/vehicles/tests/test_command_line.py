@@ -24,25 +24,11 @@ from vehicles.master import Master
 READS = [sys.executable, "-S", "-B", str(ROOT / "examples" / "vehicles" / "vehicles" / "options.py")]
 
 
-@pytest.mark.parametrize(
-    ("argument", "value"),
-    [
-        *[
-            ("h=1ms", 1e-3),
-            ("k_fl=60e3", 60e3),
-            ("k_fl=60kN/m", 60e3),
-            ("delta_0=-4deg", -4 * pi / 180),
-            ("v=36km/h", 10.0),
-        ],
-        *[
-            ("c_fl=2kN.s/m", 2e3),
-            ("M_0=1.5kN.m", 1500.0),
-            ("J_2=12kg.m2", 12.0),
-            ("slope=10%", atan(0.1)),
-            ("t_on=1min", 60.0),
-        ],
-    ],
-)
+UNITS = {"h=1ms": 1e-3, "k_fl=60e3": 60e3, "k_fl=60kN/m": 60e3, "delta_0=-4deg": -4 * pi / 180, "v=36km/h": 10.0}
+UNITS |= {"c_fl=2kN.s/m": 2e3, "M_0=1.5kN.m": 1500.0, "J_2=12kg.m2": 12.0, "slope=10%": atan(0.1), "t_on=1min": 60.0}
+
+
+@pytest.mark.parametrize(("argument", "value"), UNITS.items())
 def test_a_number_may_carry_a_unit(argument: str, value: float) -> None:
     (got,) = options.values("car", [argument]).values()
     within(abs(got / value - 1), 4 * EPSILON, "the value in SI, relative")
