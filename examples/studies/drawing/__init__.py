@@ -88,11 +88,5 @@ def label(ax: Axes, s: float, side: str, faster: float) -> None:
     ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:.3g} m", fontsize=9)
     ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"spin at the start $|\dot\varphi|$ [rad/s]")
     ax.plot(*start, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
-    ax.annotate(
-        "paper" if faster == 1 else "paper, scaled",
-        start,
-        textcoords="offset points",
-        color="white",
-        fontsize=8,
-        **beside,
-    )
+    name = "paper" if faster == 1 else "paper, scaled"
+    ax.annotate(name, start, textcoords="offset points", color="white", fontsize=8, **beside)

@@ -37,9 +37,9 @@ def numbers(name: str, text: str, unit: str) -> list[float]:
     """`1,2,3` or `first:last:count`; a range of angles in degrees is even in degrees, to the last digit."""
     if ":" not in text:
         return [number(name, part, unit) for part in text.split(",")]
-    first, last, count = text.split(":")
-    if int(count) < 2:
-        raise ValueError(count)
+    first, last, count = [*text.split(":"), "", ""][:3]
+    if not count.isdigit() or int(count) < 2:
+        raise StudyError(f"--vary {name}={text}: write --vary NAME=1,2,3 or NAME=first:last:count.")
     (begin, given), (end, other) = parted(name, first), parted(name, last)
     if given != other:
         begin, end, given = number(name, first, unit), number(name, last, unit), ""
@@ -48,17 +48,9 @@ def numbers(name: str, text: str, unit: str) -> list[float]:
     return [number(name, f"{value!r}{given}", unit) for value in evenly]
 
 
-def named(texts: list[str], convert: Callable[[str, str], object], option: str, form: str) -> dict[str, object]:
-    """NAME=VALUE options as a dictionary; StudyError with the form that is expected."""
-    pairs = {}
-    for name, _, value in (text.partition("=") for text in texts):
-        try:
-            pairs[name] = convert(name, value)
-        except (StudyError, Fault):
-            raise
-        except ValueError:
-            raise StudyError(f"{option} {name}={value}: write {option} {form}.") from None
-    return pairs
+def named(texts: list[str], convert: Callable[[str, str], object]) -> dict[str, object]:
+    """NAME=VALUE options as a dictionary."""
+    return {name: convert(name, value) for name, _, value in (text.partition("=") for text in texts)}
 
 
 def read_list(path: Path, value: Callable[[str, str], float]) -> dict[str, list[float]]:
@@ -82,23 +74,16 @@ def fields_of(arguments: argparse.Namespace) -> dict[str, object]:
     def value(name: str, text: str) -> float:
         return number(name, text, unit(name))
 
-    measures = named(arguments.measure, lambda _, text: parse_measure(text).text, "--measure", "'NAME=max(theta)'")
+    measures = named(arguments.measure, lambda _, text: parse_measure(text).text)
     check_names((parse_measure(text).variable for text in measures.values()), READABLE, known)
     check_names(arguments.history, READABLE, known)
-    vary = named(
-        arguments.vary, lambda n, text: numbers(n, text, unit(n)), "--vary", "NAME=1,2,3 or NAME=first:last:count"
-    )
-    fields = {"grid": vary, "list": read_list(arguments.list, value) if arguments.list else {}}
-    body = {
-        n: x for n, x in (ready(arguments.wheel) if arguments.wheel else {}).items() if n not in vary | fields["list"]
-    }
-    return {
-        **fields,
-        "values": body | named(arguments.set, value, "--set", "NAME=1.5 or NAME=85deg"),
-        "history": arguments.history,
-        **({"measures": measures} if measures else {}),
-        **{name: getattr(arguments, name) for name in ("stop_time", "interval", "tolerance", "branch_at")},
-    }
+    grid = named(arguments.vary, lambda name, text: numbers(name, text, unit(name)))
+    rows = read_list(arguments.list, value) if arguments.list else {}
+    values = (ready(arguments.wheel) if arguments.wheel else {}) | named(arguments.set, value)
+    for name in (grid | rows).keys() - {text.partition("=")[0] for text in arguments.set}:
+        values.pop(name, None)  # of the ready wheel
+    fields = {name: getattr(arguments, name) for name in ("history", "stop_time", "interval", "tolerance", "branch_at")}
+    return fields | {"grid": grid, "list": rows, "values": values} | ({"measures": measures} if measures else {})
 
 
 def description(fmu: Path) -> bytes:
@@ -167,7 +152,7 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     )
     add, several = parser.add_argument, {"action": "append", "default": []}
     add("study", nargs="?", help="an example's name or a Python file")
-    add("--wheel", metavar="NAME", help="a ready wheel; lengths, times and rates of the study are scaled to its radius")
+    add("--wheel", metavar="NAME", help="a ready wheel, to which lengths, times and rates of a study's file are scaled")
     add("--vary", **several, metavar="NAME=VALUES", help="an axis of the grid: 1,2,3 or first:last:count")
     add("--list", type=Path, metavar="CSV", help="one wheel per row instead of a grid")
     add("--set", **several, metavar="NAME=VALUE", help="a value for all wheels, such as slope=12%%")
@@ -176,12 +161,7 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--stop-time", type=seconds, default=10.0, help="s (10)")
     add("--interval", type=seconds, default=0.01, help="s between communication points (0.01)")
     add("--tolerance", type=float, help="relative tolerance of the FMU")
-    add(
-        "--branch-at",
-        type=seconds,
-        metavar="T",
-        help="tunable parameters and inputs vary from T s on; one shared start",
-    )
+    add("--branch-at", type=seconds, metavar="T", help="a shared start: tunable parameters and inputs vary from T s on")
     add("--workers", type=int, help="processes on this machine; all cores if not given")
     add("--scheduler", metavar="tcp://HOST:PORT", help="a running Dask scheduler instead")
     add("--fmu", type=Path, default=ROOT / "wheel.fmu")

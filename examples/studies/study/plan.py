@@ -71,7 +71,7 @@ class Study:
 
         body = ready(wheel)
         given = self.grid | self.list | self.sample | self.values
-        if both := [name for name in body if name in given and name != "phi_dot_start"]:
+        if both := sorted({*body} & {*given} - {"phi_dot_start"}):
             raise StudyError(
                 f"The study has values of {', '.join(both)}, which are those of the wheel {wheel} already."
             )

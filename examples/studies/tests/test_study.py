@@ -236,22 +236,16 @@ def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(
     runner: Runner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The paper's shape at 1/100 of its size and 1/10^6 of its mass: ten times as fast, with the same angles."""
-    measures = {
-        "low": "lowest",
-        "down": "first(plane_angle < 1.0)",
-        "slow": "first(omega_z > -1.9)",
-        "height": "max(Z_O)",
-    }
+    measures = {"low": "lowest", "down": "first(plane_angle < 1.0)", "slow": "first(omega_z > -1.9)", "top": "max(Z_O)"}
     grid = {"theta_start": [1.2, 1.4], "s": [0.0, 0.03], "M_3": [0.0, -0.2]}
     study = Study(grid=grid, measures=measures, stop_time=4.0, tolerance=1e-11)
-    inertia = {f"J_{axis}": moment for axis, moment in zip("xyz", (0.9e-10, 0.9e-10, 1.8e-10), strict=True)}
-    ready = {"small": {"title": "", "parameters": {"m": 2e-5, "r_0": 0.003, "r": 0.0005} | inertia}}
+    body = {"m": 2e-5, "r_0": 0.003, "r": 0.0005, "J_x": 0.9e-10, "J_y": 0.9e-10, "J_z": 1.8e-10}
     monkeypatch.setattr(values, "WHEELS", tmp_path / "wheels.json")
-    values.WHEELS.write_text(json.dumps(ready))
+    values.WHEELS.write_text(json.dumps({"small": {"title": "", "parameters": body}}))
     small = study.scaled("small")
     assert (small.stop_time, small.grid["M_3"][1]) == pytest.approx((0.4, -0.2e-8))
     paper, scaled, unscaled = (single(runner, one) for one in (study, small, replace(small, grid=grid)))
-    for name, factor in {"low": 1, "down": 0.1, "slow": 0.1, "height": 0.01}.items():
+    for name, factor in {"low": 1, "down": 0.1, "slow": 0.1, "top": 0.01}.items():
         there = np.isfinite(paper[name])
         assert there.any() and (there == np.isfinite(scaled[name])).all()
         within(relative_error(scaled[name][there], factor * paper[name][there]), 1e-6, f"{name}, relative")
