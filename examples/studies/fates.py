@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import scaled, two_maps, upright_limit
+from drawing import scaled, studied, two_maps, upright_limit, wheel_of
 from study import Study
+from study.options import scale
 
 from diagrams import style
 
@@ -34,15 +35,19 @@ def table(results: xr.Dataset) -> xr.Dataset:
 
 def draw(small: xr.Dataset, stem: Path) -> Path:
     """Two maps: how far the wheel goes down, and in flat colours where the model ends."""
-    text = "smallest angle to the ground within 10 s [deg]"
+    wheel = wheel_of(small)
+    limit, faster = upright_limit(wheel), scale(wheel, s=-1)
+    text = f"smallest angle to the ground within {studied(small)['stop_time']:.3g} s [deg]"
     fig, axes = two_maps(small, "smallest_angle", scaled("cividis", LEVELS), text, side="left")
+    linear = 0.05 * faster  # rad/s, up to which the scale is linear
+    ticks = [0, *(tick for tick in (0.1, 1, 10, 100) if tick >= 2 * linear)]
     for ax in axes:
-        ax.axvline(upright_limit(), color="white", linewidth=1.0, linestyle=(0, (4, 3)))
-        ax.set_xscale("symlog", linthresh=0.05, linscale=0.3)
-        ax.set_xticks([0, 0.1, 1, 10], ["0", "0.1", "1", "10"])
-        ax.set_xlim(0, 50)
+        ax.axvline(limit, color="white", linewidth=1.0, linestyle=(0, (4, 3)))
+        ax.set_xscale("symlog", linthresh=linear, linscale=0.3)
+        ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        ax.set_xlim(0, 50 * faster)
         white = {"color": "white", "rotation": 90, "ha": "center", "va": "center", "fontsize": 8}
-        ax.text(0.012, 45, "no spin: falls flat", **white)
-        ax.text(upright_limit() * 0.82, 22, "limit of upright rolling", **white)
-    axes[1].text(35, 9, "lifts\noff", **(white | {"rotation": 0, "linespacing": 0.9}))
+        ax.text(0.012 * faster, 45, "no spin: falls flat", **white)
+        ax.text(limit * 0.82, 22, "limit of upright rolling", **white)
+    axes[1].text(35 * faster, 9, "lifts\noff", **(white | {"rotation": 0, "linespacing": 0.9}))
     return style.save_png(fig, stem.with_suffix(".png"))

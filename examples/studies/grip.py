@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import scaled, two_maps
+from drawing import scaled, studied, two_maps, wheel_of
 from study import Study
+from study.options import scale
 
 from diagrams import style
 
@@ -34,10 +35,10 @@ def table(results: xr.Dataset) -> xr.Dataset:
 
 def draw(small: xr.Dataset, stem: Path) -> Path:
     """Two maps in steps, with a line at 0.8."""
-    text = r"largest $\mu_\mathrm{required}$ within 10 s (white line: 0.8)"
+    text = rf"largest $\mu_\mathrm{{required}}$ within {studied(small)['stop_time']:.3g} s (white line: 0.8)"
     fig, axes = two_maps(small, "mu", scaled("viridis", LEVELS), text)
     spin, angle = -small["phi_dot_start"].values, np.degrees(small["theta_start"].values)
     for ax, s in zip(axes, small["s"].values, strict=True):
         ax.contour(spin, angle, small["mu"].sel(s=s), levels=[DRY_ASPHALT], colors="white", linewidths=1.4)
-        ax.set(xlim=(0, 12), xticks=range(0, 13, 2))
+        ax.set_xlim(0, 12 * scale(wheel_of(small), s=-1))
     return style.save_png(fig, stem.with_suffix(".png"))

@@ -5,13 +5,15 @@ It counts as up until it leans by more than 30 degrees. The spin of an upright w
 second; dashed: the time at which it comes down to the limit of upright rolling.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import xarray as xr
-from drawing import WHEEL, rolling_inertia, upright_limit
+from drawing import rolling_inertia, upright_limit, wheel_of
 from study import Study
+from study.options import scale
 
 from diagrams import style
 
@@ -25,13 +27,15 @@ study = Study(
 
 def table(results: xr.Dataset) -> pd.DataFrame:
     """One row per wheel: spin [rad/s], s [m], time until it leans by 30 degrees [s], empty if it never does."""
-    return results["up_time"].to_dataframe().reset_index()
+    rows = results["up_time"].to_dataframe().reset_index()
+    rows.attrs = results.attrs
+    return rows
 
 
-def time_to_limit(spin: float, s: np.ndarray) -> np.ndarray:
+def time_to_limit(wheel: Mapping[str, float], spin: float, s: np.ndarray) -> np.ndarray:
     """Time [s] in which friction slows upright rolling down to the limit of stability."""
-    slowing = s * WHEEL["m"] * WHEEL["g"] / rolling_inertia(**WHEEL)
-    return (spin - upright_limit()) / slowing
+    slowing = s * wheel["m"] * wheel["g"] / rolling_inertia(**wheel)
+    return (spin - upright_limit(wheel)) / slowing
 
 
 def draw(rows: pd.DataFrame, stem: Path) -> Path:
@@ -40,20 +44,24 @@ def draw(rows: pd.DataFrame, stem: Path) -> Path:
     fig = style.figure_mm(116.0, 80.0)
     ax = style.axes_mm(fig, 14.0, 12.0, 84.0, 62.0)
     colours = (style.GREEN, style.ORANGE, style.BLUE, style.PURPLE)
-    for colour, (spin, group) in zip(colours, rows.groupby("phi_dot_start", sort=False), strict=True):
-        rolls = group[group["s"] > 0]
-        ax.plot(
-            rolls["s"], time_to_limit(-spin, rolls["s"].to_numpy()), color=colour, linestyle=(0, (4, 2)), linewidth=0.8
-        )
+    wheel = wheel_of(rows)
+    groups = rows.groupby("phi_dot_start", sort=False)
+    beside = (-5, 3, 0, 0)  # points, so that labels do not touch
+    for colour, apart, (spin, group) in zip(colours, beside, groups, strict=True):
+        s = group.loc[group["s"] > 0, "s"].to_numpy()
+        ax.plot(s, time_to_limit(wheel, -spin, s), color=colour, linestyle=(0, (4, 2)), linewidth=0.8)
         ax.plot(group["s"], group["up_time"], color=colour, linewidth=1.4)
-        last = group.iloc[-1]
-        at, apart = (
-            (last["s"], last["up_time"]),
-            {-3.0: -5, -4.0: 3}.get(spin, 0),
-        )  # points, so that labels do not touch
-        ax.annotate(f"{-spin:g} rad/s", at, xytext=(5, apart), textcoords="offset points", va="center", color=colour)
-    ax.set(yscale="log", xlim=(0, 0.1), ylim=(0.2, 60), xlabel="coefficient of rolling friction $s$ [m]")
-    ax.set_yticks([0.2, 0.5, 1, 2, 5, 10, 20, 50], ["0.2", "0.5", "1", "2", "5", "10", "20", "50"])
+        last, text = group.iloc[-1], {"textcoords": "offset points", "va": "center", "color": colour}
+        ax.annotate(f"{-spin:.3g} rad/s", (last["s"], last["up_time"]), xytext=(5, apart), **text)
+    times, largest = scale(wheel, s=1) * np.array([0.2, 60.0]), rows["s"].max()
+    ax.set(yscale="log", xlim=(0, largest), ylim=times, xlabel="coefficient of rolling friction $s$ [m]")
+    ticks = [
+        tick
+        for decade in (0.01, 0.1, 1, 10)
+        for tick in (decade, 2 * decade, 5 * decade)
+        if times[0] <= tick <= times[1]
+    ]
+    ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
     ax.set_ylabel("time until it leans by 30° [s]")
     ax.set_title("solid: the wheel; dashed: spin down at the limit of upright rolling", fontsize=8.5)
     return style.save_png(fig, stem.with_suffix(".png"))

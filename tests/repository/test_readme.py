@@ -169,7 +169,7 @@ def test_the_tables_of_variables_are_those_of_the_description(page, description)
     assert text == variable_tables.with_tables(text, variables, page), stale
     assert text != variable_tables.with_tables(text, variables[1:], page)
     for v in variables:
-        assert v.meaning in text.replace("&lt;", "<").replace("&gt;", ">"), v.name
+        assert v.description in text.replace("&lt;", "<").replace("&gt;", ">"), v.name
 
 
 def test_every_decision_is_listed() -> None:

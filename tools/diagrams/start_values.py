@@ -7,60 +7,15 @@ a figure can say what was run. It needs no package, so that `--help` works befor
 
 from __future__ import annotations
 
-import math
 import sys
 from pathlib import Path
-from typing import NamedTuple
-from xml.etree import ElementTree
 
 ROOT = next(folder for folder in Path(__file__).resolve().parents if (folder / "modelDescription.xml").exists())
 sys.path.insert(0, str(ROOT / "examples" / "python"))
-from values import DEGREE, Fault, limited, number, suggestion, wheels  # noqa: E402
+from values import Fault, Variable, ready, scale, suggestion, wheels  # noqa: E402
+from values import variables as described  # noqa: E402
 
 PAPER_S = 0.03  # m, (29)
-
-
-class Variable(NamedTuple):
-    name: str
-    causality: str
-    type: str
-    unit: str
-    start: str
-    low: str
-    high: str
-    description: str
-
-    @property
-    def preset(self) -> float:
-        """The start value; 1 is true."""
-        return float(self.start == "true") if self.type == "Boolean" else float(self.start)
-
-    def value_of(self, text: str) -> str:
-        """The value in SI as text for FMPy; Fault outside of the limits that the description sets."""
-        if self.type == "Boolean":
-            if text not in ("true", "false"):
-                raise Fault(f'{self.name} = "{text}" must be true or false.')
-            return text
-        value = number(self.name, text, self.unit or "1")
-        if self.name == "slope" and value < 0:
-            raise Fault("slope must be at least 0: slope_direction=180deg turns uphill into downhill.")
-        above = self.description.endswith("above 0") or ", above 0;" in self.description
-        low, high = float(self.low or "-inf"), float(self.high or "inf")
-        limited(self.name, value, self.unit, low, high, above=above)
-        if self.type == "Integer" and value != int(value):
-            raise Fault(f"{self.name} = {value:g} must be a whole number.")
-        return repr(int(value)) if value == int(value) else repr(value)
-
-    def said(self, value: float) -> str:
-        """`slope = 8 deg`, `friction_law = 2 (regularized)`."""
-        if self.type == "Boolean":
-            return f"{self.name} = {'true' if value else 'false'}"
-        if self.type == "Integer":
-            words = self.description.partition(f"{value:g} ")[2]
-            return f"{self.name} = {value:g}" + (f" ({words.split()[0].strip(',;')})" if words else "")
-        if self.unit == "rad":
-            return f"{self.name} = {value / DEGREE:.6g} deg"
-        return f"{self.name} = {value:.6g} {'' if self.unit == '1' else self.unit.replace('.', ' ')}".rstrip()
 
 
 RUN = {
@@ -71,13 +26,7 @@ RUN = {
 
 def variables(*causalities: str) -> dict[str, Variable]:
     """Those of the description, in its order."""
-    found = {}
-    for row in ElementTree.parse(ROOT / "modelDescription.xml").getroot().iter("ScalarVariable"):
-        texts = [row[0].get(attribute, "") for attribute in ("unit", "start", "min", "max")]
-        known = (row.get("name", ""), row.get("causality", ""), row[0].tag, *texts, row.get("description", ""))
-        if known[1] in causalities:
-            found[known[0]] = Variable(*known)
-    return found
+    return described((ROOT / "modelDescription.xml").read_bytes(), *causalities)
 
 
 def known() -> dict[str, Variable]:
@@ -94,26 +43,21 @@ def usage() -> str:
 
 def of_wheel(name: str) -> dict[str, str]:
     """Its parameters, and the paper's start, friction and rows in proportion to its radius."""
-    if name not in wheels():
-        meant = suggestion(name, {n: str(w["title"]) for n, w in wheels().items()})
-        raise Fault(f'There is no wheel "{name}"; there are {", ".join(wheels())}.{meant}')
-    body = wheels()[name]["parameters"]
-    scale = (body["r_0"] + body["r"]) / 0.35
-    start = {"s": PAPER_S * scale, "phi_dot_start": -2 / math.sqrt(scale)}
-    rows = {"output_interval": 0.01 / max(1, round(1 / math.sqrt(scale)))}
-    return {n: repr(float(value)) for n, value in (body | start | rows).items()}
+    body = ready(name)
+    more = {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
+    return {n: repr(value) for n, value in (body | more).items()}
 
 
 def values(arguments: list[str]) -> dict[str, str]:
     """What is given, by name, in SI."""
-    takes, ready = known(), wheels()
+    takes, names = known(), wheels()
     found, given = {}, {}
     for argument in arguments:
         name, equals, text = argument.partition("=")
-        if name == "wheel" or (not equals and name in ready):
+        if name == "wheel" or (not equals and name in names):
             found = of_wheel(text or name)
         elif not equals:
-            meant = suggestion(name, dict.fromkeys(ready, ""))
+            meant = suggestion(name, dict.fromkeys(names, ""))
             raise Fault(f'"{argument}" is neither name=value nor a ready wheel.{meant} See ./scripts/run --help.')
         elif name not in takes:
             meant = suggestion(name, {n: v.description for n, v in takes.items()})
@@ -133,9 +77,8 @@ def values(arguments: list[str]) -> dict[str, str]:
 
 def outputs() -> list[str]:
     """All that a figure or a page may need: outputs, energy, friction, and the values that were set."""
-    read = variables("output", "local", "parameter", "input")
     wanted = ("E", "mu_required", "friction_mode", "n_events")
-    return [v.name for v in read.values() if v.causality != "local" or v.name in wanted]
+    return [v.name for v in variables().values() if v.causality != "local" or v.name in wanted]
 
 
 def main() -> int:

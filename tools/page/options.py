@@ -7,12 +7,19 @@ import math
 import sys
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[2] / "examples" / "python"))
+from values import number  # noqa: E402
+
 GIVEN = ("r_0", "r", "slope", "slope_direction")
 
 
 def angle(text: str) -> float:
-    """An angle in rad, or in degrees with `deg`."""
-    return math.radians(float(text[:-3])) if text.endswith("deg") else float(text)
+    """An angle, or a slope in %."""
+    return number("slope", text, "rad")
+
+
+def length(text: str) -> float:
+    return number("length", text, "m")
 
 
 def arguments(words: list[str] | None = None) -> argparse.Namespace:
@@ -23,11 +30,11 @@ def arguments(words: list[str] | None = None) -> argparse.Namespace:
     add("--output", "-o", type=Path, help="the page (default: the first file's name with .html)")
     add("--title", default="The wheel in motion")
     add("--labels", nargs="+", default=[], help="what the bodies are called on the page, in their order")
-    add("--r_0", type=float, help="ring radius in m (default: from Z_O and theta)")
-    add("--r", type=float, help="tube radius in m (default: from Z_O and theta)")
-    add("--slope", type=angle, help="of the road, in rad, or 8deg (default: the file's, else level)")
+    add("--r_0", type=length, help="ring radius in m (default: from Z_O and theta)")
+    add("--r", type=length, help="tube radius in m (default: from Z_O and theta)")
+    add("--slope", type=angle, help="of the road: 8deg, 12%% (default: the file's, else level)")
     add("--slope_direction", type=angle, help="in which the road rises, from X (default: the file's, else X)")
-    add("--box", nargs=3, type=float, metavar=("L", "W", "H"), help="size of a car's body in m")
+    add("--box", nargs=3, type=length, metavar=("L", "W", "H"), help="size of a car's body in m")
     given = parser.parse_args(words)
     if missing := [str(path) for path in given.files if not path.is_file()]:
         sys.exit(f"view: {missing[0]} cannot be read: there is no such file.")

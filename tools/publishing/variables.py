@@ -5,12 +5,11 @@ from __future__ import annotations
 import html
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
-from xml.etree import ElementTree
 
+from diagrams.start_values import Variable
+from diagrams.start_values import variables as described
 from publishing.markdown import ROOT, table
 
-DESCRIPTION = ROOT / "modelDescription.xml"
 PAGES = (ROOT / "docs" / "variables.md", ROOT / "fmu-src" / "archive" / "documentation" / "index.html")
 TITLES = {
     "parameter": "Parameters, set before the run ({tunable} also between steps)",
@@ -21,36 +20,22 @@ TITLES = {
 BEGIN, END = "<!-- variables -->", "<!-- end of variables -->"
 
 
-class Variable(NamedTuple):
-    name: str
-    causality: str
-    unit: str
-    start: str
-    meaning: str
-    tunable: bool
+def read_variables() -> list[Variable]:
+    return [*described().values()]
 
 
-def read_variables(path: Path = DESCRIPTION) -> list[Variable]:
-    return [variable_of(row) for row in ElementTree.parse(path).getroot().iter("ScalarVariable")]
-
-
-def variable_of(row: ElementTree.Element) -> Variable:
-    (typed,) = row
-    start = typed.get("start", "")
-    if typed.tag == "Real" and start:
-        start = f"{float(start):.6g}"
-    texts = (row.get("name"), row.get("causality"), typed.get("unit", ""), start, row.get("description"))
-    return Variable(*texts, row.get("variability") == "tunable")
+def start(v: Variable) -> str:
+    return f"{float(v.start):.6g}" if v.type == "Real" and v.start else v.start
 
 
 def tables(variables: list[Variable]) -> Iterator[tuple[str, list[str], list[list[str]]]]:
     """Title, head and rows of the table of each kind; only parameters and inputs have a start value."""
-    tunable = ", ".join(f"`{v.name}`" for v in variables if v.tunable)
+    tunable = ", ".join(f"`{v.name}`" for v in variables if v.variability == "tunable")
     for causality, title in TITLES.items():
         of_kind = [v for v in variables if v.causality == causality]
         started = any(v.start for v in of_kind)
         head = ["name", "unit", "start", "meaning"] if started else ["name", "unit", "meaning"]
-        rows = [[f"`{v.name}`", v.unit, *([v.start] if started else []), v.meaning] for v in of_kind]
+        rows = [[f"`{v.name}`", v.unit, *([start(v)] if started else []), v.description] for v in of_kind]
         yield title.format(tunable=tunable), head, rows
 
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
+
 import numpy as np
+import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from study import Status
+from study.options import scale
 
 from diagrams import style
 
@@ -26,9 +31,18 @@ def rolling_inertia(m: float, r_0: float, r: float, J_z: float, **_: float) -> f
     return J_z + m * (r_0 + r) ** 2
 
 
-def upright_limit() -> float:
+def studied(table: xr.Dataset | pd.DataFrame) -> dict[str, object]:
+    """The definition of the study whose results these are."""
+    return json.loads(table.attrs["study"])
+
+
+def wheel_of(table: xr.Dataset | pd.DataFrame) -> dict[str, float]:
+    """The study's wheel."""
+    return WHEEL | studied(table)["values"]
+
+
+def upright_limit(w: Mapping[str, float]) -> float:
     """|omega_z| [rad/s] above which upright straight rolling is stable: (J_z + m R^2) J_z omega_z^2 = m g r_0 J_x."""
-    w = WHEEL
     return float(np.sqrt(w["m"] * w["g"] * w["r_0"] * w["J_x"] / (w["J_z"] * rolling_inertia(**w))))
 
 
@@ -42,12 +56,12 @@ def two_maps(small: xr.Dataset, name: str, look: dict[str, object], text: str, s
     axes = [style.axes_mm(fig, 14.0 + 75.0 * k, 14.0, 70.0, HEIGHT - 24.0) for k in range(2)]
     for ax, s in zip(axes, small["s"].values, strict=True):
         shades = fill(ax, small[name].sel(s=s), small["status"].sel(s=s), look)
-        label(ax, s, side)
+        label(ax, s, side, scale(wheel_of(small), s=-1))
     axes[0].set_ylabel(r"angle at the start $\theta$ [deg]")
     axes[1].set_yticklabels([])
-    scale = fig.colorbar(shades, cax=style.axes_mm(fig, 163.0, 14.0, 4.0, HEIGHT - 24.0), spacing="uniform")
-    scale.set_label(text)
-    scale.ax.tick_params(size=0)
+    bar = fig.colorbar(shades, cax=style.axes_mm(fig, 163.0, 14.0, 4.0, HEIGHT - 24.0), spacing="uniform")
+    bar.set_label(text)
+    bar.ax.tick_params(size=0)
     return fig, axes
 
 
@@ -67,10 +81,12 @@ def fill(ax: Axes, one: xr.DataArray, status: xr.DataArray, look: dict[str, obje
     return shades
 
 
-def label(ax: Axes, s: float, side: str) -> None:
-    """Title, axes and the paper's start."""
+def label(ax: Axes, s: float, side: str, faster: float) -> None:
+    """Title, axes and the paper's start, with the spin so many times faster."""
+    start = (PAPER[0] * faster, PAPER[1])
     beside = {"right": {"xytext": (6, 3), "ha": "left"}, "left": {"xytext": (-6, 3), "ha": "right"}}[side]
-    ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:g} m", fontsize=9)
+    ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:.3g} m", fontsize=9)
     ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"spin at the start $|\dot\varphi|$ [rad/s]")
-    ax.plot(*PAPER, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
-    ax.annotate("paper", PAPER, textcoords="offset points", color="white", fontsize=8, **beside)
+    ax.plot(*start, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
+    name = "paper" if faster == 1 else "paper, scaled"
+    ax.annotate(name, start, textcoords="offset points", color="white", fontsize=8, **beside)

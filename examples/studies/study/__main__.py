@@ -9,18 +9,20 @@ import time
 from pathlib import Path
 
 from .measures import StudyError
-from .options import ROOT, arguments_of, check, fields_of, file_of
+from .options import ROOT, Fault, arguments_of, check, fields_of, file_of
 from .plan import Study
 
 
-def study_file(name: str) -> dict[str, object]:
-    """The names that a study's file defines: `study`, perhaps `table` and `draw`."""
+def study_file(name: str, wheel: str | None = None) -> dict[str, object]:
+    """The names that a study's file defines: `study`, of a ready wheel if one is given, perhaps `table` and `draw`."""
     path = file_of(name)
     sys.path.insert(0, str(path.resolve().parent))
     content = runpy.run_path(str(path))
     if not isinstance(content.get("study"), Study):
         raise StudyError(f"{path} does not define study = Study(...).")
-    return content | {"name": path.stem}
+    if wheel:
+        content |= {"study": content["study"].scaled(wheel)}
+    return content | {"name": f"{path.stem}_{wheel}" if wheel else path.stem}
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -29,12 +31,12 @@ def main(argv: list[str] | None = None) -> int:
     try:
         check(arguments)
         content = (
-            study_file(arguments.study)
+            study_file(arguments.study, arguments.wheel)
             if arguments.study
             else {"study": Study(**fields_of(arguments)), "name": "study"}
         )
         conduct(content, arguments)
-    except StudyError as fault:
+    except (StudyError, Fault) as fault:
         print(f"study: {fault}", file=sys.stderr)
         return 2
     except OSError as fault:  # a full disk, or one that cannot be reached any more

@@ -9,9 +9,7 @@ Python's standard library is all that this needs: scripts/study checks names bef
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 
 PLANE_ANGLE = "plane_angle"
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -19,7 +17,6 @@ _FORMS = re.compile(
     rf"\s*(?:(?P<last>\w+)|(?P<kind>min|max|mean)\(\s*(?P<of>\w+)\s*\)"
     rf"|first\(\s*(?P<watched>\w+)\s*(?P<side>[<>])\s*(?P<limit>{_NUMBER})\s*\))\s*"
 )
-SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
 
 
 class StudyError(ValueError):
@@ -57,14 +54,3 @@ def parse_measure(text: str) -> Measure:
     if found["side"]:
         return Measure(found["side"], found["watched"], float(found["limit"]), text)
     return Measure(found["kind"] or "last", found["of"] or found["last"], text=text)
-
-
-def check_names(names: Iterable[str], causalities: tuple[str, str], known: Mapping[str, str]) -> None:
-    """StudyError about the first name that is not a variable of these causalities; known: name -> causality."""
-    there = [name for name, causality in known.items() if causality in causalities]
-    for name in names:
-        if name not in there:
-            near = get_close_matches(name, there)
-            hint = f"did you mean {', '.join(near)}?" if near else f"there are {', '.join(there)}."
-            kind = "a parameter or input" if causalities == SETTABLE else "an output or local variable"
-            raise StudyError(f"'{name}' is not {kind} of this FMU; {hint}")

@@ -1,6 +1,6 @@
 """The arguments of ./scripts/study: read, and refused where wrong, by Python alone, before anything is installed.
 
-Names are checked against the FMU's modelDescription.xml. Values are in SI units, or in degrees with `deg` behind them.
+Names are checked against the FMU's modelDescription.xml. Values are in SI units, or have a unit behind them.
 """
 
 from __future__ import annotations
@@ -8,20 +8,24 @@ from __future__ import annotations
 import argparse
 import csv
 import sys
-from collections.abc import Callable
-from math import radians
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from xml.etree import ElementTree
 from zipfile import BadZipFile, ZipFile
 
 EXAMPLES = Path(__file__).resolve().parent.parent
 ROOT = EXAMPLES.parent.parent
+sys.path.append(str(EXAMPLES.parent / "python"))
 if not __package__:  # run as a file, by scripts/help
     sys.path.insert(0, str(EXAMPLES))
-from study.measures import READABLE, SETTABLE, StudyError, check_names, parse_measure  # noqa: E402
+from values import Fault, Variable, number, parted, ready, scale, suggestion, variables, wheels  # noqa: E402
 
+from study.measures import StudyError, parse_measure  # noqa: E402
+
+SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
 USAGE = """examples:
   ./scripts/study fates                     one of the examples: {names}
+  ./scripts/study fates --wheel coin        with a ready wheel: {wheels}
   ./scripts/study my_study.py               a file that defines study = Study(...); see docs/studies.md
   ./scripts/study --vary theta_start=60deg:90deg:31 --vary s=0,0.01,0.03 --set phi_dot_start=-3 \\
       --measure lowest=lowest --out results/studies/lean.zarr --csv
@@ -29,88 +33,108 @@ USAGE = """examples:
 """
 
 
-def number(text: str) -> float:
-    """A number in SI units, or in degrees with `deg` behind it."""
-    return radians(float(text[:-3])) if text.endswith("deg") else float(text)
-
-
-def numbers(text: str) -> list[float]:
-    """`1,2,3` or `first:last:count`; a range in degrees is even in degrees, to the last digit."""
+def numbers(name: str, text: str, unit: str) -> list[float]:
+    """`1,2,3` or `first:last:count`; a range of angles in degrees is even in degrees, to the last digit."""
     if ":" not in text:
-        return [number(part) for part in text.split(",")]
-    first, last, count = text.split(":")
-    if first.endswith("deg") and last.endswith("deg"):
-        return [radians(value) for value in numbers(f"{first[:-3]}:{last[:-3]}:{count}")]
-    first, last, count = number(first), number(last), int(count)
-    if count < 2:
-        raise ValueError(count)
-    step = (last - first) / (count - 1)
-    return [*(first + k * step for k in range(count - 1)), last]
+        return [number(name, part, unit) for part in text.split(",")]
+    first, last, count = [*text.split(":"), "", ""][:3]
+    if not count.isdigit() or int(count) < 2:
+        raise StudyError(f"--vary {name}={text}: write --vary NAME=1,2,3 or NAME=first:last:count.")
+    (begin, given), (end, other) = parted(name, first), parted(name, last)
+    if given != other:
+        begin, end, given = number(name, first, unit), number(name, last, unit), ""
+    step = (end - begin) / (int(count) - 1)
+    evenly = [*(begin + k * step for k in range(int(count) - 1)), end]
+    return [number(name, f"{value!r}{given}", unit) for value in evenly]
 
 
-def named(texts: list[str], convert: Callable[[str], object], option: str, form: str) -> dict[str, object]:
-    """NAME=VALUE options as a dictionary; StudyError with the form that is expected."""
-    pairs = {}
-    for name, _, value in (text.partition("=") for text in texts):
-        try:
-            pairs[name] = convert(value)
-        except StudyError:
-            raise
-        except ValueError:
-            raise StudyError(f"{option} {name}={value}: write {option} {form}.") from None
-    return pairs
+def named(texts: list[str], convert: Callable[[str, str], object]) -> dict[str, object]:
+    """NAME=VALUE options as a dictionary."""
+    return {name: convert(name, value) for name, _, value in (text.partition("=") for text in texts)}
 
 
-def read_list(path: Path) -> dict[str, list[float]]:
+def read_list(path: Path, value: Callable[[str, str], float]) -> dict[str, list[float]]:
     """The columns of a CSV file of numbers."""
     try:
         with path.open(newline="") as file:
             rows = list(csv.DictReader(file))
-        return {name: [number(row[name]) for row in rows] for name in rows[0]}
-    except (OSError, ValueError, IndexError, TypeError, AttributeError) as fault:
+        return {name: [value(name, row[name]) for row in rows] for name in rows[0]}
+    except (OSError, UnicodeError, Fault, IndexError, TypeError, AttributeError) as fault:
         raise StudyError(f"--list {path}: a row of names, then rows of numbers, are expected ({fault}).") from None
 
 
 def fields_of(arguments: argparse.Namespace) -> dict[str, object]:
     """The fields of a Study that the options give."""
-    measures = named(arguments.measure, lambda text: parse_measure(text).text, "--measure", "'NAME=max(theta)'")
-    return {
-        "grid": named(arguments.vary, numbers, "--vary", "NAME=1,2,3 or NAME=first:last:count"),
-        "list": read_list(arguments.list) if arguments.list else {},
-        "values": named(arguments.set, number, "--set", "NAME=1.5 or NAME=85deg"),
-        "history": arguments.history,
-        **({"measures": measures} if measures else {}),
-        **{name: getattr(arguments, name) for name in ("stop_time", "interval", "tolerance", "branch_at")},
-    }
+    known = variables(description(arguments.fmu))
+
+    def unit(name: str) -> str:
+        check_names([name], SETTABLE, known)
+        return known[name].unit or "1"
+
+    def value(name: str, text: str) -> float:
+        return number(name, text, unit(name))
+
+    measures = named(arguments.measure, lambda _, text: parse_measure(text).text)
+    check_names((parse_measure(text).variable for text in measures.values()), READABLE, known)
+    check_names(arguments.history, READABLE, known)
+    grid = named(arguments.vary, lambda name, text: numbers(name, text, unit(name)))
+    rows = read_list(arguments.list, value) if arguments.list else {}
+    values = (ready(arguments.wheel) if arguments.wheel else {}) | named(arguments.set, value)
+    for name in (grid | rows).keys() - {text.partition("=")[0] for text in arguments.set}:
+        values.pop(name, None)  # of the ready wheel
+    fields = {name: getattr(arguments, name) for name in ("history", "stop_time", "interval", "tolerance", "branch_at")}
+    return fields | {"grid": grid, "list": rows, "values": values} | ({"measures": measures} if measures else {})
 
 
-def variables(fmu: Path) -> dict[str, str]:
-    """Name -> causality, of the FMU or, before it is built, of the project's modelDescription.xml."""
+def description(fmu: Path) -> bytes:
+    """modelDescription.xml of the FMU or, before it is built, of the project."""
     try:
-        text = ZipFile(fmu).read("modelDescription.xml")
+        return ZipFile(fmu).read("modelDescription.xml")
     except (OSError, BadZipFile, KeyError):
-        text = (ROOT / "modelDescription.xml").read_bytes()
-    return {v.get("name"): v.get("causality", "local") for v in ElementTree.fromstring(text).iter("ScalarVariable")}
+        return (ROOT / "modelDescription.xml").read_bytes()
+
+
+def factors(body: Mapping[str, float]) -> dict[str, float]:
+    """By variable: its value in a motion of this wheel over that in the similar motion of the paper's."""
+    text = description(ROOT / "wheel.fmu")
+    units = {unit.get("name"): unit.find("BaseUnit").attrib for unit in ElementTree.fromstring(text).iter("Unit")}
+    powers = {unit: {n: int(base[n]) for n in ("kg", "m", "s") if n in base} for unit, base in units.items()}
+    return {name: scale(body, **powers.get(v.unit, {})) for name, v in variables(text).items()}
+
+
+def check_names(names: Iterable[str], causalities: tuple[str, str], known: Mapping[str, Variable]) -> None:
+    """StudyError about the first name that is not a variable of these causalities."""
+    there = {name: v.description or "" for name, v in known.items() if v.causality in causalities}
+    for name in names:
+        if name not in there:
+            hint = suggestion(name, there) or f" There are {', '.join(there)}."
+            kind = "a parameter or input" if causalities == SETTABLE else "an output or local variable"
+            raise StudyError(f"'{name}' is not {kind} of this FMU.{hint}")
 
 
 def check(arguments: argparse.Namespace) -> None:
-    """StudyError if there is no study of that name, or an option cannot be parsed."""
+    """StudyError or Fault if there is no study of that name or no such wheel, or an option cannot be parsed."""
     if arguments.study:
         file_of(arguments.study)
+        if arguments.wheel:
+            ready(arguments.wheel)
         return
-    fields, known = fields_of(arguments), variables(arguments.fmu)
+    fields = fields_of(arguments)
     if bool(fields["grid"]) == bool(fields["list"]):
         raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
-    check_names([*fields["grid"], *fields["list"], *fields["values"]], SETTABLE, known)
-    measures = [parse_measure(text) for text in fields.get("measures", {}).values()]
-    check_names([*(m.variable for m in measures), *fields["history"]], READABLE, known)
+
+
+def seconds(text: str) -> float:
+    """A time, such as 2min."""
+    return number("time", text, "s")
 
 
 def file_of(name: str) -> Path:
     """The file of a study that is given by its path or as an example's name."""
     path = Path(name) if name.endswith(".py") else EXAMPLES / f"{name}.py"
     if not path.is_file():
-        raise StudyError(f"There is no study {name}; the examples are {', '.join(example_names())}.")
+        meant = suggestion(name, dict.fromkeys(example_names(), ""))
+        raise StudyError(f"There is no study {name}; the examples are {', '.join(example_names())}.{meant}")
     return path
 
 
@@ -123,20 +147,21 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="./scripts/study",
         description="Runs many wheels on all cores or on a Dask cluster. Started again, it continues where it stopped.",
-        epilog=USAGE.format(names=", ".join(example_names())),
+        epilog=USAGE.format(names=", ".join(example_names()), wheels=", ".join(wheels())),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add, several = parser.add_argument, {"action": "append", "default": []}
     add("study", nargs="?", help="an example's name or a Python file")
+    add("--wheel", metavar="NAME", help="a ready wheel, to which lengths, times and rates of a study's file are scaled")
     add("--vary", **several, metavar="NAME=VALUES", help="an axis of the grid: 1,2,3 or first:last:count")
     add("--list", type=Path, metavar="CSV", help="one wheel per row instead of a grid")
-    add("--set", **several, metavar="NAME=VALUE", help="a value for all wheels")
+    add("--set", **several, metavar="NAME=VALUE", help="a value for all wheels, such as slope=12%%")
     add("--measure", **several, metavar="NAME=MEASURE", help="for instance 'highest=max(theta)', or lowest=lowest")
     add("--history", nargs="+", default=[], metavar="NAME", help="variables to keep at every communication point")
-    add("--stop-time", type=float, default=10.0, help="s (10)")
-    add("--interval", type=float, default=0.01, help="s between communication points (0.01)")
+    add("--stop-time", type=seconds, default=10.0, help="s (10)")
+    add("--interval", type=seconds, default=0.01, help="s between communication points (0.01)")
     add("--tolerance", type=float, help="relative tolerance of the FMU")
-    add("--branch-at", type=float, metavar="T", help="tunable parameters and inputs vary from T s on; one shared start")
+    add("--branch-at", type=seconds, metavar="T", help="a shared start: tunable parameters and inputs vary from T s on")
     add("--workers", type=int, help="processes on this machine; all cores if not given")
     add("--scheduler", metavar="tcp://HOST:PORT", help="a running Dask scheduler instead")
     add("--fmu", type=Path, default=ROOT / "wheel.fmu")
@@ -151,6 +176,6 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
 if __name__ == "__main__":
     try:
         check(arguments_of())
-    except StudyError as fault:
+    except (StudyError, Fault) as fault:
         print(f"study: {fault}", file=sys.stderr)
         sys.exit(2)

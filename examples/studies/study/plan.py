@@ -14,7 +14,7 @@ import numpy as np
 from fmpy.model_description import ModelDescription
 from numpy.typing import NDArray
 
-from .measures import READABLE, SETTABLE, Measure, StudyError, check_names, parse_measure
+from .measures import Measure, StudyError, parse_measure
 
 if TYPE_CHECKING:
     import xarray
@@ -61,6 +61,38 @@ class Study:
         from .compute import run  # not needed by a worker, and slow to load
 
         return run(self, out, **how)
+
+    def scaled(self, wheel: str) -> Study:
+        """The same study of a ready wheel (examples/wheels.json): a wheel of the paper's shape would move alike.
+
+        Lengths are in proportion to R = r_0 + r, times to sqrt(R), masses to m. StudyError if it sets such a parameter.
+        """
+        from .options import factors, ready, scale
+
+        body = ready(wheel)
+        given = self.grid | self.list | self.sample | self.values
+        if both := sorted({*body} & {*given} - {"phi_dot_start"}):
+            raise StudyError(
+                f"The study has values of {', '.join(both)}, which are those of the wheel {wheel} already."
+            )
+        factor, time = factors(body), scale(body, s=1)
+
+        def similar(values: Mapping[str, object]) -> dict[str, object]:
+            return {n: np.multiply(x, factor.get(n, 1.0)).tolist() for n, x in values.items()}
+
+        def measured(text: str) -> str:
+            m = parse_measure(text)
+            return f"first({m.quantity} {m.kind} {m.limit * factor.get(m.variable, 1.0)!r})" if m.is_time else text
+
+        return replace(
+            self,
+            **{kind: similar(getattr(self, kind)) for kind in ("grid", "list", "sample")},
+            values={n: x for n, x in body.items() if n not in given} | similar(self.values),
+            measures={n: measured(text) for n, text in self.measures.items()},
+            stop_time=self.stop_time * time,
+            interval=self.interval * time,
+            branch_at=None if self.branch_at is None else self.branch_at * time,
+        )
 
     @cached_property
     def axes(self) -> dict[str, Array]:
@@ -128,10 +160,11 @@ class Study:
             raise StudyError("Give exactly one of grid, list and sample: it lists the wheels.")
         if self.sample and self.count < 1:
             raise StudyError(f"count = {self.count}: a sample needs at least one wheel.")
+        from .options import READABLE, SETTABLE, check_names
+
         kinds = {v.name: v for v in description.modelVariables}
-        causalities, measures = {name: v.causality for name, v in kinds.items()}, self.parsed.values()
-        check_names([*self.axes, *self.values], SETTABLE, causalities)
-        check_names([*(m.variable for m in measures), *self.history], READABLE, causalities)
+        check_names([*self.axes, *self.values], SETTABLE, kinds)
+        check_names([*(m.variable for m in self.parsed.values()), *self.history], READABLE, kinds)
         self._check_axes()
         for name in self.sampled:
             if kinds[name].type != "Real":

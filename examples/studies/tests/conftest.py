@@ -15,7 +15,7 @@ from fmpy import extract
 from moto.server import ThreadedMotoServer
 
 STUDIES = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(STUDIES))
+sys.path[:0] = [str(STUDIES), str(STUDIES.parent / "python")]
 
 from study import Study  # noqa: E402
 from study.compute import cluster  # noqa: E402

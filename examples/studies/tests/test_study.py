@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import values
 import xarray as xr
 from distributed import Client, LocalCluster, SubprocessCluster
-from studies_support import ROOT, as_one_worker, command, same
+from studies_support import ROOT, as_one_worker, command, same, single
 from study import Status, Study, StudyError, compute, curves, in_degrees
 from study.__main__ import study_file
 from study.compute import run
@@ -21,7 +24,7 @@ from study.options import arguments_of, fields_of
 from study.results import open_results
 from study.runs import Result, Runner
 from study.worker import run_chunk
-from support.bounds import EPSILON, relative_error, within
+from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
 GUIDE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
 EXAMPLE = re.findall(r"^```python\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)[0]
@@ -180,15 +183,42 @@ def test_the_command_reads_a_list_and_exports_tables(fmu_path: Path, tmp_path: P
     assert xr.open_dataset(tmp_path / "list.nc")["theta_start"].values[0] == np.radians(75)
 
 
+VARY = {"theta_start=60deg:90deg:3": np.radians([60, 75, 90]), "slope=0%:10%:3": np.arctan([0, 0.05, 0.1])}
+VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3], "m=500g,1": [0.5, 1], "M_3=-2Nm,1": [-2, 1]}
+
+
+@pytest.mark.parametrize(("axis", "expected"), VARY.items())
+def test_values_on_the_command_line_take_the_units_of_their_variables(axis: str, expected: list[float]) -> None:
+    ((_, got),) = fields_of(arguments_of(["--vary", axis]))["grid"].items()
+    within(absolute_error(got, expected), 8 * EPSILON, f"{axis}, SI")
+    ((_, one),) = fields_of(arguments_of(["--set", re.split("[:,]", axis)[0]]))["values"].items()
+    within(absolute_error(one, expected[0]), 8 * EPSILON, f"{axis}, the first, SI")
+
+
+def test_a_time_on_the_command_line_takes_a_unit() -> None:
+    assert fields_of(arguments_of(["--stop-time", "2min", "--interval", "5ms"]))["stop_time"] == 120.0
+
+
+def test_a_ready_wheel_gives_what_the_command_line_does_not() -> None:
+    words = ["--wheel", "coin", "--vary", "r=1mm,2mm", "--set", "m=8g"]
+    study = Study(**fields_of(arguments_of(words)))
+    assert study.values["m"] == 0.008 and study.values["r_0"] == 0.011775 and "r" not in study.values
+    assert study.grid == {"r": [0.001, 0.002]} and study.values["phi_dot_start"] < -10
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ("--vary s=zero", "--vary s=zero: write"),
-        ("--vary theta_strat=1,2", "'theta_strat' is not a parameter or input of this FMU; did you mean theta_start"),
+        ("--vary s=zero", 's = "zero" is not a number.'),
+        ("--vary s=0:1:one", "--vary s=0:1:one: write --vary NAME=1,2,3 or NAME=first:last:count."),
+        ("--vary s=0,1 --set m=12rad", 'm = "12rad": it takes no unit but kg or g or t.'),
+        ("--vary s=0,1 --wheel koin", 'There is no wheel "koin"; there are car_tyre'),
+        ("fates --wheel tyre", 'There is no wheel "tyre"; there are car_tyre'),
+        ("--vary theta_strat=1,2", "'theta_strat' is not a parameter or input of this FMU. Do you mean theta_start"),
         ("--vary s=0,1 --measure low=least(theta)", "'least(theta)' is not a measure"),
         ("--vary s=0,1 --measure low=min(teta)", "'teta' is not an output or local variable"),
         ("--vary s=0,1 --history plane_angle", "'plane_angle' is not an output or local variable"),
-        ("fate", "There is no study fate; the examples are fates, grip"),
+        ("fate", "There is no study fate; the examples are fates, grip, million, uptime. Do you mean fates?"),
         ("", "Which wheels?"),
     ],
 )
@@ -200,3 +230,37 @@ def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> No
     assert done.returncode == 2
     assert done.stderr.startswith(f"study: {message}")
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(
+    runner: Runner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The paper's shape at 1/100 of its size and 1/10^6 of its mass: ten times as fast, with the same angles."""
+    measures = {"low": "lowest", "down": "first(plane_angle < 1.0)", "slow": "first(omega_z > -1.9)", "top": "max(Z_O)"}
+    grid = {"theta_start": [1.2, 1.4], "s": [0.0, 0.03], "M_3": [0.0, -0.2]}
+    study = Study(grid=grid, measures=measures, stop_time=4.0, tolerance=1e-11)
+    body = {"m": 2e-5, "r_0": 0.003, "r": 0.0005, "J_x": 0.9e-10, "J_y": 0.9e-10, "J_z": 1.8e-10}
+    monkeypatch.setattr(values, "WHEELS", tmp_path / "wheels.json")
+    values.WHEELS.write_text(json.dumps({"small": {"title": "", "parameters": body}}))
+    small = study.scaled("small")
+    assert (small.stop_time, small.grid["M_3"][1]) == pytest.approx((0.4, -0.2e-8))
+    paper, scaled, unscaled = (single(runner, one) for one in (study, small, replace(small, grid=grid)))
+    for name, factor in {"low": 1, "down": 0.1, "slow": 0.1, "top": 0.01}.items():
+        there = np.isfinite(paper[name])
+        assert there.any() and (there == np.isfinite(scaled[name])).all()
+        within(relative_error(scaled[name][there], factor * paper[name][there]), 1e-6, f"{name}, relative")
+    beyond(absolute_error(unscaled["low"], paper["low"]), 0.1, "lowest angle with the paper's s and M_3, rad")
+    with pytest.raises(StudyError, match="values of m, which are those of the wheel small"):
+        replace(study, values={"m": 1.0}).scaled("small")
+    assert not set(study.scaled("small").values) & {"theta_start", "s"}
+
+
+@pytest.mark.parametrize("name", ["fates", "grip", "uptime"])
+def test_an_example_draws_a_ready_wheel_beside_its_own(name: str, fmu_path: Path, crew: Client, tmp_path: Path) -> None:
+    content = study_file(name, "coin")
+    assert content["name"] == f"{name}_coin"
+    study = content["study"]
+    few = {n: axis[:: max(1, len(axis) // 4)] for n, axis in study.grid.items()}
+    results = run(replace(study, grid=few), tmp_path / "few.zarr", fmu=fmu_path, client=crew, quiet=True)
+    assert content["draw"](content["table"](results), tmp_path / "few").is_file()
+    assert (results["status"] != Status.refused).all()

@@ -189,7 +189,7 @@ def test_the_friction_required_is_that_of_an_axle_not_of_its_unloaded_wheel(fmus
 
 def test_a_fifth_wheel_is_a_change_of_one_file(tmp_path: Path) -> None:
     copy = tmp_path / "examples" / "vehicles"
-    for folder in ("examples/vehicles", "cmake"):
+    for folder in ("examples/vehicles", "examples/python", "cmake"):
         shutil.copytree(build.ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
     fifth = """
 [wheel.spare]

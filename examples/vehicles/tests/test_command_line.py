@@ -10,12 +10,12 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from math import pi
+from math import atan, pi
 from pathlib import Path
 
 import numpy as np
 import pytest
-from support.bounds import beyond, relative_error, within
+from support.bounds import EPSILON, beyond, relative_error, within
 from support.paths import ROOT
 from vehicles import axle, example, options
 from vehicles.component import Component
@@ -24,22 +24,26 @@ from vehicles.master import Master
 READS = [sys.executable, "-S", "-B", str(ROOT / "examples" / "vehicles" / "vehicles" / "options.py")]
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [("1ms", 1e-3), ("60e3", 60e3), ("60kN/m", 60e3), ("-4deg", -4 * pi / 180), ("36km/h", 10.0), ("0.5", 0.5)],
-)
-def test_a_number_may_carry_a_unit(text: str, value: float) -> None:
-    assert options.number("x", text) == pytest.approx(value, rel=1e-15)
+UNITS = {"h=1ms": 1e-3, "k_fl=60e3": 60e3, "k_fl=60kN/m": 60e3, "delta_0=-4deg": -4 * pi / 180, "v=36km/h": 10.0}
+UNITS |= {"c_fl=2kN.s/m": 2e3, "M_0=1.5kN.m": 1500.0, "J_2=12kg.m2": 12.0, "slope=10%": atan(0.1), "t_on=1min": 60.0}
+
+
+@pytest.mark.parametrize(("argument", "value"), UNITS.items())
+def test_a_number_may_carry_a_unit(argument: str, value: float) -> None:
+    (got,) = options.values("car", [argument]).values()
+    within(abs(got / value - 1), 4 * EPSILON, "the value in SI, relative")
 
 
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("cra", '"cra" is no example; there are axle, car, suspended, balance, control; did you mean car?'),
+        ("cra", '"cra" is no example; there are axle, car, suspended, balance, control. Do you mean car?'),
         ("axle k", '"k" is not of the form name=value; --help lists the names.'),
-        ("axle h=1furlong", "h=1furlong is not a number with one of the units"),
-        ("axle h=1e", "h=1e is not a number"),
-        ("axle stifness=2", "There is no parameter stifness here; there are, for example, stiffness"),
+        ("axle h=1furlong", 'h = "1furlong": it takes no unit but s or ms'),
+        ("axle h=1e", 'h = "1e": it takes no unit but s'),
+        ("axle h=e", 'h = "e" is not a number.'),
+        ("axle m_B=3m", 'm_B = "3m": it takes no unit but kg'),
+        ("axle stifness=2", "There is no parameter stifness here. Do you mean stiffness?"),
         ("axle scene=moon", "scene is one of straight, clothoid, trailing, rolling_out, not moon."),
         ("car m_B=-1", "m_B = -1: it must be above 0 kg."),
         ("car v=-5", "v = -5: it must be at least 0 m/s."),

@@ -129,7 +129,7 @@ def main() -> int:
         shutil.rmtree(folder, ignore_errors=True)  # an earlier run's
         folder.mkdir(parents=True)
         passed = example(fmus, asked, folder)
-    except (options.Refused, ValueError) as reason:
+    except ValueError as reason:
         print(reason, file=sys.stderr)
         return 1
     print(f"In {folder.relative_to(build.ROOT)}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")

@@ -1,7 +1,8 @@
 """What ./scripts/example takes: NAME [parameter=value ...], checked before anything is built or installed.
 
 A vehicle's runs are the tables of its manoeuvres.toml; names, units, start values and limits of parameters are those of
-the tables of variables. It needs the standard library alone; numbers may carry a unit, as in h=1ms, v=40km/h, k=60kN/m.
+the tables of variables. It needs the standard library alone; numbers may carry a unit, as in h=1ms, v=40km/h, k=60kN/m
+(examples/python/values.py).
 """
 
 from __future__ import annotations
@@ -12,39 +13,19 @@ import signal
 import sys
 import tomllib
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
 EXAMPLES = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(EXAMPLES / "skeleton"))
+sys.path[:0] = [str(EXAMPLES / "skeleton"), str(EXAMPLES.parent / "python")]
 from describe import Variable, read  # noqa: E402
+from values import Fault, limited, number, suggestion  # noqa: E402
 
-SCALES = {"": 1.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "m": 1.0, "mm": 1e-3, "deg": math.pi / 180, "rad": 1.0, "kg": 1.0,
-          "N": 1.0, "kN": 1e3, "N/m": 1.0, "kN/m": 1e3, "Nm": 1.0, "m/s": 1.0, "km/h": 1 / 3.6}  # fmt: skip
-_NUMBER = re.compile(r"([-+]?[0-9.]+(?:e[-+]?[0-9]+)?)([a-zA-Z/%]*)", re.IGNORECASE)
 EXCHANGES = ("held", "derivatives", "rollback")
 FOLDERS = {"axle": "axle", "car": "car", "suspended": "quarter_car", "balance": "balance"}
 CONTROL = "For a control engineer: linearization, regulator, optimal control; without parameters"
 MODELS = {"axle": "axle", "quarter_car": "quarter_car", "chassis": "car", "driver": "car"}  # in C, and their folders
 FIXED = {"R", "g", "inner_step", "psi_start", "v_start", "omega_start"}  # of the wheels too, or set by the run
-
-
-class Refused(Exception):  # noqa: N818 - one message for the user
-    """The command line asks for something that does not exist, or for a value that is not allowed."""
-
-
-def number(name: str, text: str | float) -> float:
-    """The value in SI units."""
-    match = _NUMBER.fullmatch(str(text))
-    if not match or match[2] not in (*SCALES, "%"):
-        raise Refused(f"{name}={text} is not a number with one of the units {', '.join(filter(None, SCALES))} or %.")
-    try:
-        if match[2] == "%":  # of a slope
-            return math.atan(float(match[1]) / 100)
-        return float(match[1]) * SCALES[match[2]]
-    except ValueError:
-        raise Refused(f"{name}={text} is not a number.") from None
 
 
 @cache
@@ -114,7 +95,7 @@ def manoeuvres(vehicle: str) -> dict[str, Manoeuvre]:
     """By name."""
     found = {}
     for name, of in file(vehicle)["manoeuvre"].items():
-        given = {n: number(n, x) for n, x in of.get("given", {}).items()}
+        given = {n: number(n, str(x), every(vehicle)[n].unit) for n, x in of.get("given", {}).items()}
         stop = of["stop"] if "stop" in of else every(vehicle)["stop"].start
         found[name] = Manoeuvre(vehicle, name, **{**of, "stop": stop, "given": given})
     return found
@@ -128,14 +109,6 @@ def takes(vehicle: str) -> tuple[dict[str, tuple[str, ...]], dict[str, Variable]
     numbers = {name: v for name, v in every(vehicle).items() if name not in fixed}
     words = {file(vehicle)["word"]: tuple(manoeuvres(vehicle))} if "word" in file(vehicle) else {}
     return words | ({"exchange": EXCHANGES} if "h" in numbers else {}), numbers
-
-
-def allowed(variable: Variable, value: float) -> float:
-    """The value, or the message that the FMU itself would log."""
-    if (variable.limit == ">0" and not value > 0) or (variable.limit == ">=0" and not value >= 0):
-        limit = "above" if variable.limit == ">0" else "at least"
-        raise Refused(f"{variable.name} = {value:g}: it must be {limit} 0 {variable.unit}.")
-    return value
 
 
 @dataclass(frozen=True)
@@ -154,18 +127,20 @@ def values(vehicle: str, arguments: list[str]) -> dict[str, str | float]:
     for argument in arguments:
         name, equals, text = argument.partition("=")
         if not equals:
-            raise Refused(f'"{argument}" is not of the form name=value; --help lists the names.')
+            raise Fault(f'"{argument}" is not of the form name=value; --help lists the names.')
         if name in words:
             if text not in words[name]:
-                raise Refused(f"{name} is one of {', '.join(words[name])}, not {text}.")
+                raise Fault(f"{name} is one of {', '.join(words[name])}, not {text}.")
             given[name] = text
         elif name in numbers:
-            given[name] = allowed(numbers[name], number(name, text))
+            of = numbers[name]
+            low = 0 if of.limit else -math.inf
+            given[name] = limited(name, number(name, text, of.unit), of.unit, low, above=of.limit == ">0")
         else:
             if not numbers:
-                raise Refused(f"{argument}: this example takes no parameters.")
-            near = get_close_matches(name, [*words, *numbers], 5, 0.3) or list(numbers)[:8]
-            raise Refused(f"There is no parameter {name} here; there are, for example, {', '.join(near)}.")
+                raise Fault(f"{argument}: this example takes no parameters.")
+            meant = suggestion(name, dict.fromkeys(words, "") | {n: v.description for n, v in numbers.items()})
+            raise Fault(f"There is no parameter {name} here.{meant} ./scripts/example {vehicle} --help lists them.")
     return given
 
 
@@ -179,7 +154,7 @@ def chosen(vehicle: str, arguments: list[str]) -> Asked:
     name = given.pop(file(vehicle).get("word"), file(vehicle).get("first", next(iter(of))))
     asked = Asked(vehicle, of[name].changed(**given), **how)
     if asked.manoeuvre.stop < asked.h:
-        raise Refused(f"stop = {asked.manoeuvre.stop:g}: it must be at least the step h, {asked.h:g} s.")
+        raise Fault(f"stop = {asked.manoeuvre.stop:g}: it must be at least the step h, {asked.h:g} s.")
     return asked
 
 
@@ -213,9 +188,8 @@ def asked(arguments: list[str]) -> Asked:
     name, *rest = arguments or [""]
     examples = (*FOLDERS, "control")
     if name not in examples:
-        near = get_close_matches(name, examples, 1, 0.3)
-        mean = f"; did you mean {near[0]}?" if near else "."
-        raise Refused(f'"{name}" is no example; there are {", ".join(examples)}{mean}' if name else usage("", []))
+        meant = suggestion(name, dict.fromkeys(examples, ""))
+        raise Fault(f'"{name}" is no example; there are {", ".join(examples)}.{meant}' if name else usage("", []))
     return chosen(name, rest)
 
 
@@ -228,7 +202,7 @@ def main() -> int:
             print(usage(rest[0] if rest else "", rest[1:]))
         else:
             asked(arguments)
-    except Refused as reason:
+    except Fault as reason:
         print(reason, file=sys.stderr)
         return 2
     return 0
