@@ -144,16 +144,29 @@ def disks(report: Report) -> None:
 
 
 def views(tables: Tables) -> Tables:
-    """The tyres with both directions in one row, and the exponents that follow from a law of dissipation.
+    """Each tyre in one row, published disks, and the exponents that follow from a law of dissipation.
 
     With E = 3/2 m g R theta and psi_dot^2 theta = 4 g / R, a power ~ psi_dot^k gives theta ~ (t_0 - t)^(2 / (2 + k)).
     """
-    columns = [name for name in tables["tyres"] if name not in KEYS]
-    both = tables["tyres"].groupby(["tyre", "psi"])[columns].mean().reset_index()
-    runs = tables["tyres"].groupby(["tyre", "psi"]).size().to_numpy()
-    both.insert(2, "runs", runs)
+    by_tyre = [
+        {
+            "tyre": tyre,
+            "psi": between(runs["psi"], 0),
+            "runs": len(runs),
+            "1000 C": between(runs["1000 C"], 2),
+            "C off its mean [%]": runs["C off its mean [%]"].max(),
+            "at 3 m/s [%]": runs["at 3 m/s [%]"].min(),
+            "wheel.fmu: speed off [m/s]": runs["worst speed [m/s]"].max(),
+        }
+        for tyre, runs in tables["tyres"].groupby("tyre")
+    ]
+    disks = tables["disks"].drop(columns="seen")
     laws = [{"power": name, "inclination": fraction(2, k), "precession": fraction(-1, k)} for name, k in LAWS.items()]
-    return tables | {"both": both, "laws": pd.DataFrame(laws)}
+    return tables | {"by_tyre": pd.DataFrame(by_tyre), "published": disks, "laws": pd.DataFrame(laws)}
+
+
+def between(values: pd.Series, digits: int) -> str:
+    return " to ".join(dict.fromkeys(f"{value:.{digits}f}" for value in (values.min(), values.max())))
 
 
 def fraction(over: int, k: float) -> str:
