@@ -40,7 +40,13 @@ def tables(variables: list[Variable]) -> Iterator[tuple[str, list[str], list[lis
 
 
 def in_markdown(variables: list[Variable]) -> str:
-    return "\n\n".join(f"**{title}**\n\n{table(head, rows)}" for title, head, rows in tables(variables))
+    """Name and unit share a column."""
+    return "\n\n".join(f"**{title}**\n\n{table(*with_units(head, *rows))}" for title, head, rows in tables(variables))
+
+
+def with_units(*rows: list[str]) -> tuple[list[str], list[list[str]]]:
+    head, *others = ([", ".join(filter(None, row[:2])), *row[2:]] for row in rows)
+    return head, others
 
 
 def in_html(variables: list[Variable]) -> str:
