@@ -27,7 +27,6 @@ from publishing.markdown import number, page, said
 Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]
 Part = Callable[["Report"], None]
-VERDICTS = {True: "yes", False: "**no**"}
 PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka", "numba", "numbalsoda")
 REQUIREMENTS = pd.read_csv(Path(__file__).with_name("requirements.csv")).set_index(["report", "figure"])
 
@@ -97,7 +96,8 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     asked = figures[figures["asked"].notna()]
     met = asked["measured"] <= asked["asked"]
     bounds = [f"{'≤' if f.asked else '='} {number(f.asked)} {f.unit}".strip() for f in asked.itertuples()]
-    table = {"figure": asked["what"], "required": bounds, "measured": asked["shown"], "met": met.map(VERDICTS)}
+    measured = asked["shown"].where(met, "**" + asked["shown"] + "**")
+    table = {"figure": asked["what"], "required": bounds, "measured": measured}
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
     values = {f.figure: number(float(f.measured)) for f in figures.itertuples()}
