@@ -32,18 +32,18 @@ double time_scale(const WheelParameters& wheel, double length, const WheelKinema
   return rate > 0 ? 1 / rate : 1;
 }
 
-// N, scale of the normal force: the weight's part across the road, or what its time scale stands for without a weight.
-double force_scale(const WheelParameters& wheel, double length, double own_time) {
+// The part of the weight that is across the road, of one.
+double share_across(const WheelParameters& wheel) {
   const double gravity = gravity_of(wheel);
-  const double across = gravity > 0 ? wheel.g / gravity : 1;
-  return wheel.m * length / (own_time * own_time) * across;
+  return gravity > 0 ? wheel.g / gravity : 1;
 }
 
 void set_scales(Setup& setup, const WheelKinematics& start) {
   setup.length = setup.wheel.r_0 + setup.wheel.r;
   setup.own_time = time_scale(setup.wheel, setup.length, start);
   setup.longest_step = 0.5 * setup.own_time;
-  setup.weight = force_scale(setup.wheel, setup.length, setup.own_time);
+  setup.whole_weight = setup.wheel.m * setup.length / (setup.own_time * setup.own_time);
+  setup.weight = setup.whole_weight * share_across(setup.wheel);
   setup.rate_scale = power_of_two_below(1 / setup.own_time);
   setup.moment_scale = power_of_two_below(setup.weight * setup.length);
   const double omega_2 = start.psi_dot * std::sin(start.theta);

@@ -24,7 +24,8 @@ struct Setup {
   double own_time;                       // s, the wheel's own time scale
   double longest_step;                   // s
   double length;                         // m, r_0 + r
-  double weight;                         // N, scale of the normal force
+  double whole_weight;                   // N, or the force that the time scale stands for without a weight
+  double weight;                         // N, scale of the normal force: its part across the road
   double rate_scale, moment_scale;       // rad/s, N m, of margins; powers of two, so that scaling rounds nothing
   double slow_scales[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly
 };

@@ -109,14 +109,16 @@ bool Simulation::decide() {
   return bends;
 }
 
-// The scene at the present instant, with what was set since the last step.
+// With what was set since the last step.
+InForce Simulation::in_force_now() const {
+  InForce now = run_->in_force;
+  if (demand_->changed) put_in_force(setup_, *demand_, run_->t, run_->y, now);
+  return now;
+}
+
+// The scene at the present instant; where nothing was set, without a copy of all that is in force.
 WheelScene Simulation::scene_now() const {
-  WheelScene scene = run_->in_force.scene_at(run_->t);
-  if (demand_->changed) {
-    InForce next = run_->in_force;
-    put_in_force(setup_, *demand_, run_->t, run_->y, next);
-    scene = next.scene;
-  }
+  WheelScene scene = demand_->changed ? in_force_now().scene : run_->in_force.scene_at(run_->t);
   scene.ground = WHEEL_GROUND_BY_FORCE;
   return scene;
 }
@@ -140,8 +142,7 @@ Present Simulation::present_for(unsigned known) {
   Present now = present();
   const bool brake = known == first_input + brake_input && kind() == Kind::co_simulation;
   if (!brake || now.scene.friction.kind != WHEEL_FRICTIONLESS) return now;
-  InForce used = run_->in_force;
-  if (demand_->changed) put_in_force(setup_, *demand_, run_->t, now.y, used);
+  InForce used = in_force_now();
   used.inputs.braked = true;
   decide_law(setup_, run_->t, now.y, used);
   now.scene.friction = used.scene.friction;
@@ -162,7 +163,7 @@ double Simulation::sensitivity(unsigned unknown, unsigned known) {
 }
 
 // By differences of fourth order, the law and the sign of N kept. Steps are small parts of what each known turns on,
-// those of a load of the whole weight or of its own size: all but mu_required is linear in it.
+// those of a load of the whole weight or of the load: all but mu_required is linear in it.
 double Simulation::partial(unsigned unknown, unsigned known) {
   constexpr double share = 1e-3;
   double y[WHEEL_MAX_STATES], scales[WHEEL_MAX_STATES];
@@ -173,8 +174,7 @@ double Simulation::partial(unsigned unknown, unsigned known) {
   now.scene.ground = reading().dynamics().lambda[2] > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
   const int state = kind() == Kind::model_exchange ? state_index_of(known) : -1;
   double& place = state >= 0 ? y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
-  const double weight = setup_.wheel.m * setup_.length / (setup_.own_time * setup_.own_time);
-  double h = state >= 0 ? scales[state] : std::fmax(weight, std::fabs(place));
+  double h = state >= 0 ? scales[state] : std::fmax(setup_.whole_weight, std::fabs(place));
   if (state == setup_.formulation->tilt_index) h *= std::sin(place);
   const bool soft = state == setup_.formulation->spin_index && now.scene.friction.kind == WHEEL_REGULARIZED;
   h = share * (soft ? std::fmin(h, setup_.omega_s) : h);

@@ -84,6 +84,7 @@ class Simulation {
 
  private:
   void write(support::Archive& archive);
+  InForce in_force_now() const;
   WheelScene scene_now() const;
   long long version() const { return demand_.version() + run_.version(); }
   Present present() const;
