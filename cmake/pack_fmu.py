@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 ENDINGS = {"linux64": ".so", "aarch64-linux": ".so", "win64": ".dll", "darwin64": ".dylib", "aarch64-darwin": ".dylib"}
 FIGURES = ("wheel.png", "paper_diagrams.png")
-# What the cross compiler links in of its own: its run-time, in part ported from musl, and those of C++ and of Windows.
+# Linked in by the cross compiler itself: its run-time, in part ported from musl, and those of C++ and of Windows.
 ZIG_LICENCES = {
     "zig-license.txt": "LICENSE",
     "libcxx-license.txt": "lib/libcxx/LICENSE.TXT",

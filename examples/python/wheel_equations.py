@@ -1,6 +1,6 @@
 """The wheel's equations from Python: wheel_equations.h through ctypes.
 
-The structs are read from the header (fmu-src/equations/wheel_equations.h), which tells frames and units: accelerations
+The structs are read from the header (fmu-src/equations/wheel_equations.h), which has frames and units: accelerations
 and the ground's force at a state, in SI. `./scripts/run` or `./scripts/build` builds the library; the environment
 variable WHEEL_BUILD names its folder where that is another than build/release.
 """

@@ -15,9 +15,9 @@ constexpr double finer = 0.1, finest = 1e-14;
 // A looser tolerance than this would save little, since one nutation costs little, and its long steps would not be as
 // accurate as they estimate.
 constexpr double loosest = 1e-8;
-// In units of that fraction: a swing of omega_1 below least_swing cannot be told from the errors of a few steps (each
-// may be 0.003), and a wheel that swings less than largest_rest is in steady motion. largest_break: how much a state
-// may change within the longest step by what breaks the symmetry, which rounding does too.
+// In units of that fraction: a swing of omega_1 below least_swing cannot be separated from the errors of a few steps
+// (each may be 0.003), and a wheel that swings less than largest_rest is in steady motion. largest_break: how much a
+// state may change within the longest step by what breaks the symmetry, which rounding does too.
 constexpr double least_swing = 0.01, largest_rest = 0.003, largest_break = 0.1;
 
 bool agree(const solver::Problem& problem, int i, const double* weights, double rate, double expected) {

@@ -25,7 +25,7 @@ class Orbit {
  public:
   // folded:  read() is valid at every t >= 0: the motion never ends.
   // ended:   event() happened at end_time(), in the first nutation; read() is valid up to there.
-  // refused: no two turning points within a fixed number of steps, a swing too small to tell from errors, or rates
+  // refused: no two turning points within a fixed number of steps, a swing no larger than errors, or rates
   //          that have not the symmetry. The caller then steps through the motion from its start.
   enum class Kind { refused, folded, ended };
 

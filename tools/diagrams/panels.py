@@ -224,7 +224,7 @@ def _track(ax: Axes, x: Array, y: Array, stick: Array) -> None:
 
 
 def _over_time(ax: Axes, time: Array, values: Array, color: str = style.BLUE) -> None:
-    """A curve over time; where its swings lie too close to be told apart, their envelope."""
+    """A curve over time; where its swings lie too close to be seen apart, their envelope."""
     turns = _turns(values)
     if turns < SOLID:
         ax.plot(time, values, color=color, linewidth=1.0 if turns < DENSE else 0.5)

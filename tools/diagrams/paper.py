@@ -178,7 +178,7 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
 
 
 def draw_all(scenes: Sequence[Scene], out: Path) -> list[Path]:
-    """The sheets, then each panel of each scene; the names tell whether the scenes are the paper's."""
+    """The sheets, then each panel of each scene; the names show whether the scenes are the paper's."""
     paper = is_paper(scenes)
     sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": PAPERS + OTHERS}
     written = [path for name, drawn in sheets.items() for path in draw(out / name, scenes, drawn, paper)]

@@ -62,7 +62,7 @@ class Scene:
 
     @property
     def one_arc(self) -> bool:
-        """Whether the data show it run to and fro on one arc: the tilt turns, and tells both rates."""
+        """Whether the data show it run to and fro on one arc: the tilt turns, and both rates are functions of it."""
         rows, turns = np.argsort(self["theta"]), np.diff(np.sign(np.diff(self["theta"])))
         rates = np.column_stack([self["psi_dot"], self["phi_dot"]])[rows]
         beside = np.abs(rates[1:-1] - (rates[:-2] + rates[2:]) / 2).max(axis=0, initial=0.0)

@@ -1,7 +1,7 @@
 """One look for every figure: type, colours, sizes in millimetres, and files equal byte for byte.
 
 The type is STIX, which comes with matplotlib, so a figure looks the same on every machine.
-The colours are those of Okabe and Ito, told apart by colour-blind readers and in grey print.
+The colours are those of Okabe and Ito, distinct for colour-blind readers and in grey print.
 """
 
 from collections.abc import Sequence

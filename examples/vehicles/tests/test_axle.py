@@ -26,7 +26,7 @@ def test_the_error_of_the_closed_form_falls_as_one_over_the_stiffness(fmus: Fmus
 
 @pytest.mark.parametrize("changed", [{"J_z": 1.7}, {"J_x": 0.5}, {"J_3": 15.0}, {"m_B": 117.0}, {"a": 0.19}])
 def test_a_wrong_constant_of_the_closed_form_shows(fmus: Fmus, changed: dict[str, float]) -> None:
-    """Partner: each mass and inertia enters m_t, I_t or S as derived; the bound of the test above tells them apart."""
+    """Partner: each mass and inertia enters m_t, I_t or S as derived; the bound of the test above separates them."""
     scene = TRAILING.changed(stop=2.0)
     times = np.arange(101) * 0.02
     off = axle_study.distance(axle.rigid(scene.changed(**changed), times), axle.rigid(scene, times))

@@ -215,7 +215,7 @@ def test_an_example_is_copied_into_an_empty_folder_by_the_recipe_of_the_document
 
 def test_ctrl_c_ends_a_run_with_one_word(fmus: dict[str, Path]) -> None:
     start = "runpy.run_module('vehicles.example', run_name='__main__')"
-    # What it needs is imported before it is interrupted: some packages tell an interrupt of their import otherwise.
+    # What it needs is imported before it is interrupted: some packages report an interrupted import otherwise.
     code = f"import runpy, sys, vehicles.example; sys.argv = ['example', 'balance']; print('ready'); {start}"
     folders = [str(ROOT / name) for name in ("tools", "examples/vehicles", "tests")]
     run = subprocess.Popen(

@@ -1,6 +1,6 @@
 """Runs an SSP package in ecos: python by_ecos.py PACKAGE STEP STOP COMPONENT.VARIABLE... (package ecospy).
 
-Prints the variables' values at the end, one a line. ecos takes the parameter sets whose name it is told.
+Prints the variables' values at the end, one a line. ecos takes the parameter sets that are named.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from libcosimpy.CosimObserver import CosimObserver
 def main() -> None:
     """One run."""
     package, step, stop, *wanted = sys.argv[1:]
-    log_output_level(CosimLogLevel.WARNING)  # else each call of its own libraries is told
+    log_output_level(CosimLogLevel.WARNING)  # else libcosim logs each call of its libraries
     execution = CosimExecution.from_ssp_file(package, round(float(step) * 1e9))  # nanoseconds
     observer = CosimObserver.create_last_value()
     execution.add_observer(observer)

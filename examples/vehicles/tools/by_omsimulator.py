@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 
 
 def main() -> None:
-    """One run in a folder of its own, where OMSimulator unpacks."""
+    """One run in a separate folder, where OMSimulator unpacks."""
     program, package, step, stop, *wanted = sys.argv[1:]
     with TemporaryDirectory() as folder:
         rows = round(float(stop) / float(step))

@@ -33,7 +33,7 @@ def sentence(end: Ended, names: dict[str, str]) -> str:
 def let_go_of_python(fmu: FMU2Slave) -> None:
     """For FMUs of pythonfmu 0.7.0, whose library keeps a shared pointer to its interpreter. When the process ends, the
     pointer's destructor and then the library's own each release it: the second writes into freed memory. Released here,
-    it is empty by then; the instance has a pointer of its own."""
+    it is empty by then; the instance keeps a separate pointer."""
     release = getattr(fmu.dll, "finalizePythonInterpreter", None)
     if release:
         release()
