@@ -17,7 +17,7 @@ class Cvode final : public Engine {
   ~Cvode() { free_objects(); }
 
   // SUNDIALS's objects are made at the first start.
-  bool start(const Problem& problem, double t, const double* y, Step* step) override;
+  bool start(const Problem& problem) override;
   bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
   void expand(const Problem& problem, Counters* counters, Step* step) override;
   void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) override;
@@ -25,10 +25,8 @@ class Cvode final : public Engine {
  private:
   bool make_objects(int states);
   void free_objects();
-  bool restart(double t, const double* y);
   // cvode_history.cpp
   bool imitate_step(const Problem& problem, const Step& step);
-  void visit_history(support::Archive& archive);
   bool fits(const Step& step) const;
 
   const Method method_;  // adams or bdf

@@ -10,10 +10,11 @@ namespace solver {
 
 class Engine {
  public:
-  // From y at t. False where the engine could not be set up: failure().
-  virtual bool start(const Problem& problem, double t, const double* y, Step* step) = 0;
+  // The next step starts anew. False where the engine could not be set up: failure().
+  virtual bool start(const Problem& problem) = 0;
 
-  // One step that ends at `stop` (s) at the latest. False where no step is accepted: failure() says why.
+  // One step from the end of the last one, which `step` is moved to, up to `stop` (s) at the latest. False where none
+  // is accepted: failure() gives the reason.
   virtual bool advance(const Problem& problem, double stop, Counters* counters, Step* step) = 0;
 
   // The polynomial of the step, which is not known yet.

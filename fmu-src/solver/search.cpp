@@ -30,7 +30,7 @@ struct Parabola {
 
 Sample Search::sample(double t) const {
   double y[max_states];
-  step_.read(t, problem_.states, y);
+  step.read(t, problem.states, y);
   return sample(t, y);
 }
 
@@ -66,7 +66,7 @@ std::optional<double> Search::find_first_fall(Sample lo, Sample hi) const {
   if (lo.g < 0) return lo.t;
   if (!(hi.t > lo.t)) return {};
   double instants[max_extremes + 1];
-  int pieces = problem_.extremes ? problem_.extremes(problem_.owner, lo.t, hi.t, instants) : 0;
+  int pieces = problem.extremes ? problem.extremes(problem.owner, lo.t, hi.t, instants) : 0;
   instants[pieces++] = hi.t;
   for (int i = 0; i < pieces; ++i) {
     const Sample end = i + 1 < pieces ? sample(instants[i]) : hi;

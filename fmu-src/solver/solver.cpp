@@ -21,7 +21,8 @@ bool Solver::restart(const Problem& problem, Method method, double t, const doub
   ++counters_.restarts;
   pending_ = Outcome::failed;
   failure_ = nullptr;
-  if (!engine().start(problem_, t, y, &step_)) return false;
+  step_.set_point(t, y, problem_.states);
+  if (!engine().start(problem_)) return false;
   resume();
   return true;
 }
@@ -62,13 +63,21 @@ bool Solver::make_step() {
   stop_time_ = never;
   // Where the stop time differs from the time reached by rounding only, the solution is moved there.
   if (stop > known_until_ && reaches(stop)) {
-    double y[max_states];
-    std::copy_n(step_.y_end, max_states, y);
-    return engine().start(problem_, stop, y, &step_);
+    step_.set_point(stop, step_.y_end, problem_.states);
+    return engine().start(problem_);
   }
-  if (!engine().advance(problem_, stop, &counters_, &step_)) return false;
-  ++counters_.steps;
-  return true;
+  step_.start = step_.end;
+  std::copy_n(step_.y_end, max_states, step_.y_start);
+  step_.inside_share = 0;
+  step_.degree = -1;
+  const bool done = engine().advance(problem_, stop, &counters_, &step_);
+  if (done) {
+    ++counters_.steps;
+  } else {
+    step_.end = step_.start;
+    std::copy_n(step_.y_start, max_states, step_.y_end);
+  }
+  return done;
 }
 
 void Solver::expand(Counters* counters) const {
@@ -82,7 +91,7 @@ void Solver::look_for_events(double from) {
   const std::span<const double> extremes(instants, static_cast<std::size_t>(count));
   for (int i = 0; i < problem_.watched_count; ++i) {
     const Watched& watched = problem_.watched[i];
-    const Search search(problem_, step_, watched, watched.by_margin ? &counters_.rhs : &counters_.roots);
+    const Search search = {problem_, step_, watched, watched.by_margin ? &counters_.rhs : &counters_.roots};
     Sample lo = {from, values_[i]}, hi = {};
     if (watched.by_margin) {
       if (!comes_near(search, extremes)) continue;

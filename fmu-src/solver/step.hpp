@@ -1,7 +1,6 @@
 // The last step of a solution, whichever engine made it, and its dense output: one Taylor polynomial about the end.
 //
-// Arrays have max_states entries; those beyond the problem's states are zero. Loops run over `width`, 8 or 12, so that
-// the compiler knows their length.
+// Arrays have max_states entries. Loops run over `width`, the problem's number of states as a constant.
 #pragma once
 
 #include <cmath>
@@ -16,17 +15,15 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 // Two times closer than this are the same instant, s.
 inline double rounding_at(double t) { return 8 * std::numeric_limits<double>::epsilon() * std::fabs(t); }
 
-constexpr int width_of(int states) { return states <= 8 ? 8 : max_states; }
-
 // Root mean square of weight times entry: even and odd ones apart, which the processor sums side by side.
 template <int width>
-double weighted_norm(const double* x, const double* weights, int states) {
+double weighted_norm(const double* x, const double* weights) {
   double even = 0, odd = 0;
   for (int i = 0; i < width; i += 2) {
     even += (x[i] * weights[i]) * (x[i] * weights[i]);
     odd += (x[i + 1] * weights[i + 1]) * (x[i + 1] * weights[i + 1]);
   }
-  return std::sqrt((even + odd) / states);
+  return std::sqrt((even + odd) / width);
 }
 
 struct Step {
@@ -41,7 +38,7 @@ struct Step {
   int degree;
   alignas(16) double c[max_degree + 1][max_states];
 
-  // A step of no length: y is known at t alone.
+  // A step of no length: y is known at t alone. y may be y_end.
   void set_point(double t, const double* y, int states);
 
   // y (states entries) at t inside the step; at its ends, up to a few roundings of t, what is kept there.
