@@ -357,16 +357,6 @@ static void add_reaction(const WheelScene* scene, const AxleLaw* law, const doub
   out->tau_dot += weight * a.tau;
 }
 
-/* Rate of (s N + brake) kappa at a constant N. */
-static double moment_rate(const WheelScene* scene, const WheelLoad* load_dot, double s_N, double omega_3,
-                          double omega_3_dot) {
-  double rate = kappa_of(&scene->friction, omega_3) * load_dot->brake;
-  if (scene->friction.kind != WHEEL_REGULARIZED) return rate;
-  double c = cosh(omega_3 / scene->friction.omega_s);
-  double kappa_dot = omega_3_dot / scene->friction.omega_s / c / c;
-  return rate + kappa_dot * (s_N + scene->load.brake);
-}
-
 /* Three parts: the load's rate and the law's own rate, exact, and the state's motion under a frozen load and law, by a
  * difference quotient of fourth order. Its step is a small part of the time in which the wheel itself moves. */
 void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
@@ -379,9 +369,14 @@ void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene*
   y[PSI] = remainder(y[PSI], turn); /* a small step must not vanish in the rounding of a large angle */
   y[PHI] = remainder(y[PHI], turn);
   AxleLaw law;
-  double N = rates_of(scene, y, y_dot, &law), s_N = law.grips ? scene->wheel.s * N : 0;
-  AxleLaw changing = law;
-  changing.brake = moment_rate(scene, load_dot, s_N, y[OMEGA_3], y_dot[OMEGA_3]);
+  double N = rates_of(scene, y, y_dot, &law);
+  AxleLaw changing = law; /* of (s N + brake) kappa at a constant N */
+  changing.brake = kappa_of(&scene->friction, y[OMEGA_3]) * load_dot->brake;
+  if (scene->friction.kind == WHEEL_REGULARIZED) {
+    double omega_s = scene->friction.omega_s, c = cosh(y[OMEGA_3] / omega_s);
+    double kappa_dot = y_dot[OMEGA_3] / omega_s / c / c;
+    changing.brake += kappa_dot * ((law.grips ? scene->wheel.s * N : 0) + scene->load.brake);
+  }
   respond(scene, load_dot, &changing, y, out);
 
   double swing = fabs(y_dot[OMEGA_1]) + fabs(y_dot[OMEGA_2]) + fabs(y_dot[OMEGA_3]);

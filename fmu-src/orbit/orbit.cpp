@@ -20,38 +20,30 @@ constexpr double loosest = 1e-8;
 // state may change within the longest step by what breaks the symmetry, which rounding does too.
 constexpr double least_swing = 0.01, largest_rest = 0.003, largest_break = 0.1;
 
-bool agree(const solver::Problem& problem, int i, const double* weights, double rate, double expected) {
-  return std::fabs(rate - expected) * problem.longest_step * weights[i] <= largest_break;
-}
+}  // namespace
 
-bool agree(const solver::Problem& problem, const double* weights, const double* rates, const double* expected) {
-  for (int i = 0; i < problem.states; ++i)
-    if (!agree(problem, i, weights, rates[i], expected[i])) return false;
-  return true;
-}
-
-// Whether every watched function is the same at two instants that the symmetry maps onto each other.
-bool are_watched_alike(const solver::Problem& problem, double t_a, const double* y_a, double t_b, const double* y_b) {
+// Whether a symmetry that maps y at t onto `image` at t_image holds there: the right-hand side at the image is the
+// mapped one, `expected`, and every watched function is the same.
+bool Orbit::holds(const solver::Problem& problem, double t, const double* y, double t_image, const double* image,
+                  const double* expected) {
   constexpr double alike = 1e-5;
+  double rate[states], weights[states];
+  problem.derivative(problem.owner, t_image, image, rate);
+  problem.weights(problem.owner, problem.share, y, weights);
+  for (int i = 0; i < states; ++i)
+    if (!(std::fabs(rate[i] - expected[i]) * problem.longest_step * weights[i] <= largest_break)) return false;
   return std::all_of(problem.watched, problem.watched + problem.watched_count, [&](const solver::Watched& watched) {
-    const double a = watched.value(problem.owner, watched.event, t_a, y_a);
-    const double b = watched.value(problem.owner, watched.event, t_b, y_b);
+    const double a = watched.value(problem.owner, watched.event, t, y);
+    const double b = watched.value(problem.owner, watched.event, t_image, image);
     return std::fabs(a - b) <= alike * (1 + std::fabs(a));
   });
 }
-
-}  // namespace
 
 Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
                          solver::Solver& solver) {
   double own[states] = {y0[theta], y0[omega_1], y0[omega_2], y0[omega_3]};  // psi, phi, X_O and Y_O are zero
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
-  recurs_ = false;
-  std::fill(std::begin(recurrences_), std::end(recurrences_), Recurrence());
-  counters_ = {};
-  half_ = lead_ = {};
-  kind_ = Kind::refused;
-  end_time_ = std::numeric_limits<double>::infinity();
+  *this = Orbit();
   if (rests(problem, own)) return kind_ = Kind::folded;
   kind_ = follow(problem, pass, own, solver);
   counters_ = solver.counters();
@@ -62,17 +54,13 @@ bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
   half_ = {};
   lead_.psi_sum = y0[psi];
   lead_.phi_sum = y0[phi];
-  lead_.place = Complex(y0[X_O], y0[Y_O]);
+  lead_.place = place_of(y0);
   lead_.turn = std::polar(1.0, y0[psi]);
-  double own[states], rate[states], own_rate[states], weights[states];
+  double own[states], rate[states];
   track_.read(0, own);
-  problem.derivative(problem.owner, 0, own, own_rate);
-  problem.derivative(problem.owner, 0, y0, rate);
-  problem.weights(problem.owner, problem.share, own, weights);
-  const Complex velocity = lead_.turn * Complex(own_rate[X_O], own_rate[Y_O]);
-  own_rate[X_O] = velocity.real();
-  own_rate[Y_O] = velocity.imag();
-  return agree(problem, weights, rate, own_rate) && are_watched_alike(problem, 0, own, 0, y0);
+  problem.derivative(problem.owner, 0, own, rate);
+  set_place(rate, lead_.turn * place_of(rate));
+  return holds(problem, 0, own, 0, y0, rate);
 }
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
@@ -177,17 +165,13 @@ bool Orbit::fold(const solver::Problem& problem, double swing) {
 
 // Whether the right-hand side, as long after T2 as the state was before, is the mirror image with time reversed.
 bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
-  double y[states], rate[states], image[states], image_rate[states], weights[states];
+  double y[states], rate[states], image[states];
   track_.read(T2_ - since, y);
   read(T2_ + since, image);
   problem.derivative(problem.owner, T2_ - since, y, rate);
-  problem.derivative(problem.owner, T2_ + since, image, image_rate);
-  problem.weights(problem.owner, problem.share, y, weights);
   for (const State i : {theta, omega_2, omega_3}) rate[i] = -rate[i];
-  const Complex velocity = -half_of(T2_ + since).turn * Complex(rate[X_O], -rate[Y_O]);
-  rate[X_O] = velocity.real();
-  rate[Y_O] = velocity.imag();
-  return agree(problem, weights, image_rate, rate) && are_watched_alike(problem, T2_ - since, y, T2_ + since, image);
+  set_place(rate, -half_of(T2_ + since).turn * std::conj(place_of(rate)));
+  return holds(problem, T2_ - since, y, T2_ + since, image, rate);
 }
 
 // Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing,
@@ -227,28 +211,22 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
 // the right-hand side leads off it.
 bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length) {
   constexpr int parts = 5;
-  double y[states], y_dot[states] = {}, found[states], weights[states];
-  problem.weights(problem.owner, problem.share, y0, weights);
+  double y[states], y_dot[states] = {}, expected[states];
   std::copy_n(y0, states, y);
   y[omega_1] = 0;
   y_dot[psi] = rate[psi];
   y_dot[phi] = rate[phi];
-  const Complex start(y0[X_O], y0[Y_O]), velocity(rate[X_O], rate[Y_O]);
+  const Complex start = place_of(y0), velocity = place_of(rate);
   for (int i = 0; i <= parts; ++i) {
     const double t = length * i / parts, turn = rate[psi] * t;
     const double shortened = turn == 0 ? 1 : std::sin(0.5 * turn) / (0.5 * turn);  // chord over arc
-    const Complex place = start + velocity * (t * shortened) * std::polar(1.0, 0.5 * turn);
-    const Complex now = velocity * std::polar(1.0, turn);
     y[psi] = y0[psi] + turn;
     y[phi] = y0[phi] + rate[phi] * t;
-    y[X_O] = place.real();
-    y[Y_O] = place.imag();
-    y_dot[X_O] = now.real();
-    y_dot[Y_O] = now.imag();
-    problem.derivative(problem.owner, t, y, found);
-    for (int k = 0; k < states; ++k)  // `rests` has seen to omega_1
-      if (k != omega_1 && !agree(problem, k, weights, found[k], y_dot[k])) return false;
-    if (!are_watched_alike(problem, 0, y0, t, y)) return false;
+    set_place(y, start + velocity * (t * shortened) * std::polar(1.0, 0.5 * turn));
+    set_place(y_dot, velocity * std::polar(1.0, turn));
+    std::copy_n(y_dot, states, expected);
+    expected[omega_1] = rate[omega_1];  // `rests` has seen to it
+    if (!holds(problem, 0, y0, t, y, expected)) return false;
     if (!(i == 0 ? track_.begin(t, y, y_dot) : track_.add(t, y, y_dot))) return false;
   }
   track_.finish();

@@ -12,8 +12,7 @@ void Orbit::take_half() {
   track_.read(T1_, first_);
   track_.read(T2_, second_);
   delta_ = std::remainder(second_[psi] - first_[psi], std::numbers::pi);
-  const Complex path(second_[X_O] - first_[X_O], second_[Y_O] - first_[Y_O]);
-  step_ = path * std::polar(1.0, -first_[psi]);
+  step_ = (place_of(second_) - place_of(first_)) * std::polar(1.0, -first_[psi]);
   pair_ = 2 * (step_ * std::polar(1.0, -delta_)).real();
   first_turn_ = std::polar(1.0, first_[psi]);
   mirror_turn_ = std::polar(1.0, 2 * second_[psi]);
@@ -42,7 +41,7 @@ Orbit::Half Orbit::half_at(double k) const {
   const double quotient = delta_ == 0 ? n : turned.imag() / std::sin(delta_);
   Complex way = pair_ * quotient * turned;
   if (half.mirrored) way += step_ * pairs_turn;
-  half.place = lead_.place + lead_.turn * (Complex(first_[X_O], first_[Y_O]) + way * first_turn_);
+  half.place = lead_.place + lead_.turn * (place_of(first_) + way * first_turn_);
   half.turn = lead_.turn * (half.mirrored ? -pairs_turn * mirror_turn_ : pairs_turn);
   half.psi_sum = lead_.psi_sum + (half.mirrored ? 2 * second_[psi] + (k - 1) * turn : k * turn);
   half.phi_sum = lead_.phi_sum + (half.mirrored ? 2 * second_[phi] + (k - 1) * roll : k * roll);
@@ -64,23 +63,20 @@ double Orbit::fastest_turn() const {
 
 // y from the frame of the integrated half to the fixed axes; way: from the half's begin to O.
 void Orbit::turn_by(const Half& half, Complex way, double* y) {
-  way = half.place + half.turn * way;
   y[psi] += half.psi_sum;
   y[phi] += half.phi_sum;
-  y[X_O] = way.real();
-  y[Y_O] = way.imag();
+  set_place(y, half.place + half.turn * way);
 }
 
 void Orbit::read(double t, double* y) const {
   if (kind_ != Kind::folded || t <= T2_) {
     track_.read(t, y);
-    return turn_by(lead_, {y[X_O], y[Y_O]}, y);
+    return turn_by(lead_, place_of(y), y);
   }
   const Half& half = half_of(t);
   const double since = std::clamp(t - half.begin, 0.0, T2_ - T1_);
   track_.read(half.mirrored ? T2_ - since : T1_ + since, y);
-  const double* centre = half.mirrored ? second_ : first_;
-  Complex way(y[X_O] - centre[X_O], y[Y_O] - centre[Y_O]);
+  Complex way = place_of(y) - place_of(half.mirrored ? second_ : first_);
   if (half.mirrored) {
     way = std::conj(way);
     y[omega_1] = -y[omega_1];

@@ -67,12 +67,6 @@ SUNErrCode add_to_each(int n, double* a, N_Vector x, N_Vector* y, N_Vector* z) {
   return SUN_SUCCESS;
 }
 
-template <int width>
-SUNErrCode scale_each(int n, double* a, N_Vector* x, N_Vector* z) {
-  for (int k = 0; k < n; ++k) scale<width>(a[k], x[k], z[k]);
-  return SUN_SUCCESS;
-}
-
 // Those without a name of their own serve the first step, or are demanded and never called.
 template <int width>
 constexpr _generic_N_Vector_Ops make_operations() {
@@ -99,7 +93,6 @@ constexpr _generic_N_Vector_Ops make_operations() {
   o.nvlinearsum = linear_sum<width>;
   o.nvlinearcombination = combine<width>;
   o.nvscaleaddmulti = add_to_each<width>;
-  o.nvscalevectorarray = scale_each<width>;
   return o;
 }
 

@@ -54,13 +54,12 @@ struct RungeKutta::Work {
   }
 
   // h sum of row_j f_j.
-  template <const auto& row, std::size_t... j>
-  void combine(double* sum, std::index_sequence<j...>) const {
-    for (int i = 0; i < width; ++i) sum[i] = h * ((row[j].weight * engine.f_[row[j].stage][i]) + ...);
-  }
   template <const auto& row>
   void combine(double* sum) const {
-    combine<row>(sum, std::make_index_sequence<std::size(row)>());
+    const auto add = [&]<std::size_t... j>(std::index_sequence<j...>) {
+      for (int i = 0; i < width; ++i) sum[i] = h * ((row[j].weight * engine.f_[row[j].stage][i]) + ...);
+    };
+    add(std::make_index_sequence<std::size(row)>());
   }
   template <const auto& row>
   void advance(double* y) const {

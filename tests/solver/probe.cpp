@@ -149,7 +149,7 @@ PUBLIC void probe_vector(int length, double* out) {
   N_VInv(x, z), show();
   N_VAddConst(x, 0.5, z), show();
   out[0] = N_VMaxNorm(x), out[1] = N_VWrmsNorm(x, y);
-  out[2] = x->ops->nvlinearcombination && x->ops->nvscaleaddmulti && x->ops->nvscalevectorarray;
+  out[2] = x->ops->nvlinearcombination && x->ops->nvscaleaddmulti;
   for (N_Vector v : {x, y, z}) N_VDestroy(v);
   SUNContext_Free(&context);
 }
