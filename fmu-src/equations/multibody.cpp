@@ -4,10 +4,7 @@
 // Unknowns q_ddot (6) and lambda (3); rows: motion of O (fixed axes), rotation (body axes), constraint [B]{q_ddot} =
 // -[B_dot]{q_dot}. Mended misprints, see docs/errata.md: the sign and the bracket of F_beta (16), q_ddot in (24).
 #include <Eigen/LU>
-#include <algorithm>
-#include <iterator>
 
-#include "friction.h"
 #include "paper_matrices.hpp"
 
 namespace wheel::paper {
@@ -27,18 +24,14 @@ struct Multibody {
   const WheelParameters& wheel;
   Attitude attitude;
   Vector6 q_dot;
-  Matrix3 A, A_dot, Q, Q_dot, r, r_dot;
+  Matrix3 A = paper::A(attitude), A_dot = paper::A_dot(A, attitude);
+  Matrix3 Q = paper::Q(attitude), Q_dot = paper::Q_dot(attitude);
+  Matrix3 r = paper::r(wheel, attitude), r_dot = paper::r_dot(wheel, attitude);
 
   Multibody(const WheelParameters& w, const double* y)
       : wheel(w),
         attitude{y[psi], y[theta], y[phi], {y[psi_dot], y[theta_dot], y[spin] - y[psi_dot] * std::cos(y[theta])}} {
     q_dot << y[X_O_dot], y[Y_O_dot], y[Z_O_dot], attitude.beta_dot;
-    A = paper::A(attitude);
-    A_dot = paper::A_dot(A, attitude);
-    Q = paper::Q(attitude);
-    Q_dot = paper::Q_dot(attitude);
-    r = paper::r(w, attitude);
-    r_dot = paper::r_dot(w, attitude);
   }
 };
 
@@ -126,7 +119,7 @@ Solution solve_held(const Multibody& s, const Vector9& column) {
 
 // The moment -(s N + brake) kappa about the axle; where the ground pulls, only the brake's part is left.
 Solution solve_rolling(const WheelScene& scene, const Multibody& s, Vector9 column) {
-  const double kappa = kappa_of(&scene.friction, omega_z(s)), brake = scene.load.brake;
+  const double kappa = wheel_kappa(&scene.friction, omega_z(s)), brake = scene.load.brake;
   column[about_axle] -= brake * kappa;
   if (scene.ground != WHEEL_GROUND_PULLS) {
     const Vector9 unknowns = system_matrix(s, kappa).partialPivLu().solve(column);
@@ -179,8 +172,7 @@ void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
   set_rolling_velocity(*wheel, y);
 }
 
-void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  (void)wheel;
+void kinematics(const WheelParameters*, const double* y, WheelKinematics* out) {
   const double phi_dot = y[spin] - y[psi_dot] * std::cos(y[theta]);
   *out = {y[X_O],     y[Y_O],     y[Z_O],     y[psi],       y[theta], y[phi], y[X_O_dot],
           y[Y_O_dot], y[Z_O_dot], y[psi_dot], y[theta_dot], phi_dot,  y[spin]};
@@ -199,17 +191,16 @@ void stop_spin(const WheelParameters* wheel, double* y) {
 }
 
 void reduce(const double* y, double* reduced) {
-  const double same[] = {y[theta], y[theta_dot], y[psi_dot] * std::sin(y[theta]), y[spin], y[psi], y[phi],
-                         y[X_O],   y[Y_O]};
-  std::copy(std::begin(same), std::end(same), reduced);
+  Eigen::Map<Eigen::Vector<double, WHEEL_REDUCED_STATES>>(reduced) << y[theta], y[theta_dot],
+      y[psi_dot] * std::sin(y[theta]), y[spin], y[psi], y[phi], y[X_O], y[Y_O];
 }
-
-// Its velocities are states: the pose takes no more than they do.
-constexpr WheelFormulation formulation = {
-    "multibody", WHEEL_MULTIBODY_STATES, start, derivative, spin, theta, kinematics, kinematics, dynamics, reduce,
-    stop_spin};
 
 }  // namespace
 }  // namespace wheel::paper
 
-const WheelFormulation wheel_multibody = wheel::paper::formulation;
+using namespace wheel::paper;
+
+// Its velocities are states: the pose takes no more than they do.
+const WheelFormulation wheel_multibody = {
+    "multibody", WHEEL_MULTIBODY_STATES, start, derivative, spin, theta, kinematics, kinematics, dynamics, reduce,
+    stop_spin};

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "friction.h"
+#include "wheel_equations.h"
 
 /* The state. */
 enum { THETA, OMEGA_1, OMEGA_2, OMEGA_3, PSI, PHI, X_O, Y_O };
@@ -216,7 +216,7 @@ static inline void reaction_of(const WheelParameters* w, const Instant* now, con
 }
 
 static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
-  double kappa = kappa_of(&scene->friction, omega_3);
+  double kappa = wheel_kappa(&scene->friction, omega_3);
   int grips = scene->ground != WHEEL_GROUND_PULLS;
   return (AxleLaw){
       .held = scene->friction.kind == WHEEL_HELD,
@@ -341,7 +341,7 @@ void wheel_reaction_response(const WheelFormulation* formulation, const WheelSce
   AxleLaw law;
   formulation->reduce(state, y);
   rates_of(scene, y, y_dot, &law);
-  law.brake = kappa_of(&scene->friction, y[OMEGA_3]) * load_dot->brake;
+  law.brake = wheel_kappa(&scene->friction, y[OMEGA_3]) * load_dot->brake;
   respond(scene, load_dot, &law, y, out);
 }
 
@@ -371,7 +371,7 @@ void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene*
   AxleLaw law;
   double N = rates_of(scene, y, y_dot, &law);
   AxleLaw changing = law; /* of (s N + brake) kappa at a constant N */
-  changing.brake = kappa_of(&scene->friction, y[OMEGA_3]) * load_dot->brake;
+  changing.brake = wheel_kappa(&scene->friction, y[OMEGA_3]) * load_dot->brake;
   if (scene->friction.kind == WHEEL_REGULARIZED) {
     double omega_s = scene->friction.omega_s, c = cosh(y[OMEGA_3] / omega_s);
     double kappa_dot = y_dot[OMEGA_3] / omega_s / c / c;

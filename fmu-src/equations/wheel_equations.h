@@ -57,6 +57,9 @@ typedef struct WheelFriction {
   double omega_s; /* rad/s, > 0, for WHEEL_REGULARIZED */
 } WheelFriction;
 
+/* kappa of a law; NaN without one. The moment on a held wheel follows from omega_z_dot = 0. */
+double wheel_kappa(const WheelFriction* friction, double omega_z);
+
 /* Where the ground has friction. A solver that finds the instants at which N = 0 keeps one branch between two of them,
  * so that no trial step meets the corner of the law. */
 typedef enum WheelGround {

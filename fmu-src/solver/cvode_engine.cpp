@@ -87,35 +87,27 @@ bool set_up(CvodeObjects& o, Method method) {
 
 }  // namespace
 
-void Cvode::free_objects() {
-  if (!objects_) return;
-  CvodeObjects& o = *objects_;
+void Cvode::free_objects(CvodeObjects* objects) {
+  CvodeObjects& o = *objects;
   if (o.cvode) CVodeFree(&o.cvode);
   if (o.corrector) SUNNonlinSolFree(o.corrector);
   if (o.linear) SUNLinSolFree(o.linear);
   if (o.matrix) SUNMatDestroy(o.matrix);
   if (o.y) N_VDestroy(o.y);
   if (o.context) SUNContext_Free(&o.context);
-  std::free(objects_);
-  objects_ = nullptr;
-}
-
-bool Cvode::make_objects(int states) {
-  if (objects_ && objects_->states == states) return true;
-  free_objects();
-  objects_ = static_cast<CvodeObjects*>(std::calloc(1, sizeof(CvodeObjects)));
-  if (!objects_) return false;
-  objects_->states = states;
-  if (set_up(*objects_, method_)) return true;
-  free_objects();
-  return false;
+  std::free(objects);
 }
 
 bool Cvode::start(const Problem& problem) {
   failure_ = "CVODE could not be set up";
-  if (!make_objects(problem.states)) return false;
   next_ = Next::starts;
-  return CVodeSetMaxStep(objects_->cvode, problem.longest_step) == CV_SUCCESS;
+  if (!objects_ || objects_->states != problem.states) {
+    objects_.reset(static_cast<CvodeObjects*>(std::calloc(1, sizeof(CvodeObjects))));
+    if (!objects_) return false;
+    objects_->states = problem.states;
+    if (!set_up(*objects_, method_)) objects_.reset();
+  }
+  return objects_ && CVodeSetMaxStep(objects_->cvode, problem.longest_step) == CV_SUCCESS;
 }
 
 bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Step* step) {

@@ -115,9 +115,8 @@ void Cvode::visit(Archive& archive, const Problem& problem, Step* step, bool act
   visit_steps(archive, m);
   for (int j = 0; j <= m.cv_qmax; ++j) archive.numbers(data(m.cv_zn[j]), o.states);
   if (method_ == Method::bdf) visit_newton(archive, o, m);
-  if (!archive.reads()) return;
-  if (!fits(*step)) archive.refuse();
-  if (archive.fault()) free_objects();  // nothing stays of numbers that no solver wrote
+  if (archive.reads() && !fits(*step)) archive.refuse();
+  if (archive.fault()) objects_.reset();  // nothing stays of numbers that no solver wrote
 }
 
 }  // namespace solver

@@ -3,7 +3,7 @@
 // Nothing is kept from step to step except the wanted size of the next one: a restart is free and a snapshot is a copy.
 #pragma once
 
-#include "engine.hpp"
+#include "step.hpp"
 
 namespace solver {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "step.hpp"
 
@@ -15,7 +16,8 @@ struct Search {
   const Problem& problem;
   const Step& step;
   const Watched& watched;
-  long long* roots;  // counts the evaluations of the function
+  std::span<const double> extremes;  // of a prescribed input inside the step, ascending
+  long long* roots;                  // counts the evaluations of the function
 
   Sample sample(double t) const;
   Sample sample(double t, const double* y) const {
@@ -23,7 +25,8 @@ struct Search {
     return {t, watched.value(problem.owner, watched.event, t, y)};
   }
 
-  // The first instant in [lo.t, hi.t] at which g is below zero, if there is one. lo.g below zero: lo.t.
+  // The first instant in [lo.t, hi.t] at which g is below zero, if there is one. lo.g below zero: lo.t. No extreme lies
+  // before lo.t.
   std::optional<double> find_first_fall(Sample lo, Sample hi) const;
 
   // Whether g, known at three instants, is so far above zero that it cannot fall below it between them.

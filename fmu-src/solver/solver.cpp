@@ -93,10 +93,10 @@ void Solver::look_for_events(double from) {
   const std::span<const double> extremes(instants, static_cast<std::size_t>(count));
   for (int i = 0; i < problem_.watched_count; ++i) {
     const Watched& watched = problem_.watched[i];
-    const Search search = {problem_, step_, watched, watched.by_margin ? &counters_.rhs : &counters_.roots};
+    const Search search = {problem_, step_, watched, extremes, watched.by_margin ? &counters_.rhs : &counters_.roots};
     Sample lo = {from, values_[i]}, hi = {};
     if (watched.by_margin) {
-      if (!comes_near(search, extremes)) continue;
+      if (!comes_near(search)) continue;
       expand(&counters_);
       lo = search.sample(from);
     } else {
@@ -116,11 +116,11 @@ void Solver::look_for_events(double from) {
 
 // Whether a function watched by the margin may fall. Where an input has an extreme inside the step, the function is
 // evaluated there too, because none of the step's own evaluations may have come near it.
-bool Solver::comes_near(const Search& search, std::span<const double> extremes) {
+bool Solver::comes_near(const Search& search) {
   if (step_.lowest_margin < problem_.near) return true;
-  if (!extremes.empty()) expand(&counters_);
+  if (!search.extremes.empty()) expand(&counters_);
   const auto is_near = [&](double t) { return t < known_until_ && search.sample(t).g < problem_.near; };
-  return std::any_of(extremes.begin(), extremes.end(), is_near);
+  return std::any_of(search.extremes.begin(), search.extremes.end(), is_near);
 }
 
 // Most steps are far from an event, which a value inside the step that is known anyway is enough to show.

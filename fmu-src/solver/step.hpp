@@ -1,4 +1,5 @@
-// The last step of a solution, whichever engine made it, and its dense output: one Taylor polynomial about the end.
+// The last step of a solution, its dense output, one Taylor polynomial about the end, and the engine that makes it: one
+// interface for all methods.
 //
 // Arrays have max_states entries. Loops run over `width`, the problem's number of states as a constant.
 #pragma once
@@ -6,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bytes.hpp"
 #include "problem.hpp"
 
 namespace solver {
@@ -43,6 +45,30 @@ struct Step {
 
   // y (states entries) at t inside the step; at its ends, up to a few roundings of t, what is kept there.
   void read(double t, int states, double* y) const;
+};
+
+// Keeps what it needs from step to step; the step itself belongs to the solver.
+class Engine {
+ public:
+  // The next step starts anew. False where the engine could not be set up: failure().
+  virtual bool start(const Problem& problem) = 0;
+
+  // One step from the end of the last one, which `step` is moved to, up to `stop` (s) at the latest. False where none
+  // is accepted: failure() gives the reason.
+  virtual bool advance(const Problem& problem, double stop, Counters* counters, Step* step) = 0;
+
+  // The polynomial of the step, which is not known yet.
+  virtual void expand(const Problem& problem, Counters* counters, Step* step) = 0;
+
+  // All that is needed to go on after the step, saved or read; `active`: the step is this engine's. What is read and
+  // could not belong to the step is refused.
+  virtual void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) = 0;
+
+  const char* failure() const { return failure_; }
+
+ protected:
+  ~Engine() = default;
+  const char* failure_ = nullptr;
 };
 
 }  // namespace solver
