@@ -126,7 +126,7 @@ def rates(formulation: Formulation, scene: Scene, y: np.ndarray, load_dot: Load 
     """Rates of lambda and tau along the motion; without load_dot the load is constant."""
     out = ReactionRates()
     change = byref(load_dot) if load_dot is not None else None
-    formulation.rates(byref(scene), change, y.ctypes.data_as(DOUBLES), byref(out))
+    LIBRARY.wheel_reaction_rates(byref(formulation), byref(scene), change, y.ctypes.data_as(DOUBLES), byref(out))
     return out
 
 

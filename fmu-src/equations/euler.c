@@ -9,14 +9,10 @@
 enum { X_O, Y_O, PSI, THETA, PHI, THETA_DOT, PSI_DOT, SPIN };
 enum { R_OMEGA_1 = 1, R_OMEGA_2, R_OMEGA_3, R_X_O = 6, R_Y_O }; /* in the reduced form */
 
-/* The same position and velocity as a state of the reduced form. */
-typedef struct Reduced {
-  double y[WHEEL_REDUCED_STATES];
-} Reduced;
-
-static Reduced reduced(const double* y) {
+static void reduce(const double* y, double* reduced) {
   double omega_2 = y[PSI_DOT] * sin(y[THETA]);
-  return (Reduced){{y[THETA], y[THETA_DOT], omega_2, y[SPIN], y[PSI], y[PHI], y[X_O], y[Y_O]}};
+  const double same[] = {y[THETA], y[THETA_DOT], omega_2, y[SPIN], y[PSI], y[PHI], y[X_O], y[Y_O]};
+  memcpy(reduced, same, sizeof same);
 }
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
@@ -29,8 +25,9 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 
 /* psi_dot = omega_2 / sin(theta), differentiated. */
 static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  double rates[WHEEL_REDUCED_STATES];
-  double N = wheel_reduced.derivative(scene, reduced(y).y, rates);
+  double reduced[WHEEL_REDUCED_STATES], rates[WHEEL_REDUCED_STATES];
+  reduce(y, reduced);
+  double N = wheel_reduced.derivative(scene, reduced, rates);
   y_dot[X_O] = rates[R_X_O];
   y_dot[Y_O] = rates[R_Y_O];
   y_dot[PSI] = y[PSI_DOT];
@@ -42,31 +39,18 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
   return N;
 }
 
-static void set_rates(const double* y, WheelKinematics* out) {
+static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
+  double reduced[WHEEL_REDUCED_STATES];
+  reduce(y, reduced);
+  wheel_reduced.kinematics(wheel, reduced, out);
   out->psi_dot = y[PSI_DOT];
   out->phi_dot = y[SPIN] - y[PSI_DOT] * cos(y[THETA]);
 }
 
-static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  wheel_reduced.kinematics(wheel, reduced(y).y, out);
-  set_rates(y, out);
-}
-
-static void pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  wheel_reduced.pose(wheel, reduced(y).y, out);
-  set_rates(y, out);
-}
-
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  wheel_reduced.dynamics(scene, reduced(y).y, out);
-}
-
-static void rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
-  wheel_reduced.rates(scene, load_dot, reduced(y).y, out);
-}
-
-static void response(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
-  wheel_reduced.response(scene, load_dot, reduced(y).y, out);
+  double reduced[WHEEL_REDUCED_STATES];
+  reduce(y, reduced);
+  wheel_reduced.dynamics(scene, reduced, out);
 }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {
@@ -74,6 +58,5 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
   y[SPIN] = 0;
 }
 
-const WheelFormulation wheel_euler = {
-    "euler",  WHEEL_REDUCED_STATES, start, derivative, SPIN, THETA, kinematics, pose, dynamics, rates, response,
-    stop_spin};
+const WheelFormulation wheel_euler = {"euler",    WHEEL_REDUCED_STATES, start,    derivative, SPIN,     THETA,
+                                      kinematics, kinematics,           dynamics, reduce,     stop_spin};

@@ -1,13 +1,104 @@
-// The multibody formulation behind the C header: (24) under a law of friction, as first-order system, any inertia.
-// Fixed axes for O, Euler angles for the attitude; see multibody.hpp for the equations.
-#include "multibody.hpp"
-
+// The multibody formulation behind the C header: the paper's system of equations of motion, (15)-(24), any inertia,
+// under a law of friction, as first-order system. Fixed axes for O, Euler angles for the attitude. Eigen.
+//
+// Unknowns q_ddot (6) and lambda (3); rows: motion of O (fixed axes), rotation (body axes), constraint [B]{q_ddot} =
+// -[B_dot]{q_dot}. Mended misprints, see docs/errata.md: the sign and the bracket of F_beta (16), q_ddot in (24).
 #include <Eigen/LU>
 
-#include "friction.h"
+#include "paper_matrices.hpp"
 
 namespace wheel::paper {
 namespace {
+
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+using Matrix36 = Eigen::Matrix<double, 3, 6>;
+using Matrix63 = Eigen::Matrix<double, 6, 3>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+// A state y = (q, q_dot; omega_z, the spin, in the place of phi_dot).
+enum State { X_O, Y_O, Z_O, psi, theta, phi, X_O_dot, Y_O_dot, Z_O_dot, psi_dot, theta_dot, spin };
+
+// The state with the matrices that (16)-(24) share.
+struct Multibody {
+  const WheelParameters& wheel;
+  Attitude attitude;
+  Vector6 q_dot;
+  Matrix3 A = paper::A(attitude), A_dot = paper::A_dot(A, attitude);
+  Matrix3 Q = paper::Q(attitude), Q_dot = paper::Q_dot(attitude);
+  Matrix3 r = paper::r(wheel, attitude), r_dot = paper::r_dot(wheel, attitude);
+
+  Multibody(const WheelParameters& w, const double* y)
+      : wheel(w),
+        attitude{y[psi], y[theta], y[phi], {y[psi_dot], y[theta_dot], y[spin] - y[psi_dot] * std::cos(y[theta])}} {
+    q_dot << y[X_O_dot], y[Y_O_dot], y[Z_O_dot], attitude.beta_dot;
+  }
+};
+
+// (19): [B] = [[I] [A][r]^T[Q]]; [B]{q_dot} is the velocity of the wheel's material point at the contact.
+Matrix36 B(const Multibody& s) {
+  Matrix36 B;
+  B << Matrix3::Identity(), s.A * s.r.transpose() * s.Q;
+  return B;
+}
+
+// (20)
+Matrix36 B_dot(const Multibody& s) {
+  Matrix36 B_dot;
+  B_dot << Matrix3::Zero(),
+      s.A_dot * s.r.transpose() * s.Q + s.A * s.r_dot.transpose() * s.Q + s.A * s.r.transpose() * s.Q_dot;
+  return B_dot;
+}
+
+// (21): omega_z = [0 0 1][Q]{beta_dot}, and its derivative from the unknowns of (24).
+double omega_z(const Multibody& s) { return s.Q.row(2).dot(s.attitude.beta_dot); }
+double omega_z_dot(const Multibody& s, const Vector9& unknowns) {
+  return s.Q.row(2).dot(unknowns.segment<3>(3)) + s.Q_dot.row(2).dot(s.attitude.beta_dot);
+}
+
+// (22): the moment -s N kappa about the axle as a matrix on lambda. The third component of lambda in body axes is not
+// N, so [B*] acts on lambda in fixed axes: row z, column Z.
+Matrix3 B_star(const WheelParameters& w, double kappa) { return Vector3(0, 0, -w.s * kappa).asDiagonal(); }
+
+// (23): how lambda enters the equations of motion.
+Matrix63 B_tilde(const Multibody& s, double kappa) {
+  Matrix63 B_tilde;
+  B_tilde << Matrix3::Identity(), s.r * s.A.transpose() + B_star(s.wheel, kappa);
+  return B_tilde;
+}
+
+// (15), generalised: weight (tilted on a slope), F at O (fixed axes), M turned from the carrier into body axes by
+// [phi]^T.
+Vector6 F(const Multibody& s, const WheelLoad& load) {
+  const Matrix3 phi = rotation_z(s.attitude.sin_phi, s.attitude.cos_phi);
+  Vector6 F;
+  F << Vector3(load.F) + s.wheel.m * Vector3(s.wheel.g_X, s.wheel.g_Y, -s.wheel.g), phi.transpose() * Vector3(load.M);
+  return F;
+}
+
+// (16), misprint F_beta mended: -([J][Q_dot] + [A]^T[A_dot][J][Q]){beta_dot}.
+Vector3 F_beta(const Multibody& s) {
+  const Matrix3 inertia = J(s.wheel);
+  return -(inertia * s.Q_dot + s.A.transpose() * s.A_dot * inertia * s.Q) * s.attitude.beta_dot;
+}
+
+// Matrix of (24), with [M] from (18).
+Matrix9 system_matrix(const Multibody& s, double kappa) {
+  Matrix9 K = Matrix9::Zero();
+  K.block<3, 3>(0, 0) = s.wheel.m * Matrix3::Identity();
+  K.block<3, 3>(3, 3) = J(s.wheel) * s.Q;
+  K.block<6, 3>(0, 6) = -B_tilde(s, kappa);
+  K.block<3, 6>(6, 0) = B(s);
+  return K;
+}
+
+// Right-hand side of (24).
+Vector9 system_column(const Multibody& s, const WheelLoad& load) {
+  Vector9 column;
+  column << F(s, load), -B_dot(s) * s.q_dot;
+  column.segment<3>(3) += F_beta(s);
+  return column;
+}
 
 constexpr int about_axle = 5;                       // row of the moment about the axle in (24)
 enum Unknown { lambda_1 = 6, lambda_2, lambda_3 };  // behind q_ddot in the order of q
@@ -28,7 +119,7 @@ Solution solve_held(const Multibody& s, const Vector9& column) {
 
 // The moment -(s N + brake) kappa about the axle; where the ground pulls, only the brake's part is left.
 Solution solve_rolling(const WheelScene& scene, const Multibody& s, Vector9 column) {
-  const double kappa = kappa_of(&scene.friction, omega_z(s)), brake = scene.load.brake;
+  const double kappa = wheel_kappa(&scene.friction, omega_z(s)), brake = scene.load.brake;
   column[about_axle] -= brake * kappa;
   if (scene.ground != WHEEL_GROUND_PULLS) {
     const Vector9 unknowns = system_matrix(s, kappa).partialPivLu().solve(column);
@@ -81,8 +172,7 @@ void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
   set_rolling_velocity(*wheel, y);
 }
 
-void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  (void)wheel;
+void kinematics(const WheelParameters*, const double* y, WheelKinematics* out) {
   const double phi_dot = y[spin] - y[psi_dot] * std::cos(y[theta]);
   *out = {y[X_O],     y[Y_O],     y[Z_O],     y[psi],       y[theta], y[phi], y[X_O_dot],
           y[Y_O_dot], y[Z_O_dot], y[psi_dot], y[theta_dot], phi_dot,  y[spin]};
@@ -100,30 +190,17 @@ void stop_spin(const WheelParameters* wheel, double* y) {
   set_rolling_velocity(*wheel, y);
 }
 
-// The state of the reduced form with the same position and angular velocity.
-struct Reduced {
-  double y[WHEEL_REDUCED_STATES];
-  explicit Reduced(const double* b)
-      : y{b[theta], b[theta_dot], b[psi_dot] * std::sin(b[theta]), b[spin], b[psi], b[phi], b[X_O], b[Y_O]} {}
-};
-
-void rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
-  wheel_reduced.rates(scene, load_dot, Reduced(y).y, out);
+void reduce(const double* y, double* reduced) {
+  Eigen::Map<Eigen::Vector<double, WHEEL_REDUCED_STATES>>(reduced) << y[theta], y[theta_dot],
+      y[psi_dot] * std::sin(y[theta]), y[spin], y[psi], y[phi], y[X_O], y[Y_O];
 }
-
-void response(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
-  wheel_reduced.response(scene, load_dot, Reduced(y).y, out);
-}
-
-// Its velocities are states: the pose takes no more than they do.
-constexpr WheelFormulation formulation = {"multibody", WHEEL_MULTIBODY_STATES,
-                                          start,       derivative,
-                                          spin,        theta,
-                                          kinematics,  kinematics,
-                                          dynamics,    rates,
-                                          response,    stop_spin};
 
 }  // namespace
 }  // namespace wheel::paper
 
-const WheelFormulation wheel_multibody = wheel::paper::formulation;
+using namespace wheel::paper;
+
+// Its velocities are states: the pose takes no more than they do.
+const WheelFormulation wheel_multibody = {
+    "multibody", WHEEL_MULTIBODY_STATES, start, derivative, spin, theta, kinematics, kinematics, dynamics, reduce,
+    stop_spin};

@@ -1,15 +1,194 @@
-/* The reduced formulation, plain C: eight states, constraints solved in advance. Equivalent to the paper's (24);
- * derivation in docs/equations.md. Carrier frame, see wheel_equations.h.
- * State y = theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O. */
+/* The reduced formulation, plain C: Newton and Euler about O for any principal moments of inertia, the constraints
+ * solved in advance; equivalent to the paper's (24). Carrier frame e1, e2, e3, see wheel_equations.h.
+ *
+ * The reaction R (carrier) is eliminated from m a = F + R and dH/dt = M + c x R + tau e3, where c = (0, -rho, -eta)
+ * points from O to the contact. docs/equations.md derives every line. */
+#include <math.h>
 #include <string.h>
 
-#include "friction.h"
-#include "reduced_system.h"
+#include "wheel_equations.h"
 
-/* One state under a scene's load, ready for a law of friction. Inlined: what a caller does not read is not computed. */
+/* The state. */
+enum { THETA, OMEGA_1, OMEGA_2, OMEGA_3, PSI, PHI, X_O, Y_O };
+
+/* Geometry and velocity of O at one state; components along e1, e2, e3. */
+typedef struct Carrier {
+  double sin_theta, cos_theta, sin_psi, cos_psi;
+  double rho, eta; /* contact below O along e2, r_0 + r sin(theta), and along e3, r cos(theta) */
+  double omega_1, omega_2, omega_3;
+  double Omega_3; /* psi_dot cos(theta), third component of the carrier's own angular velocity */
+  double psi_dot, phi_dot;
+  double v_1, v_2, v_3; /* v_O = omega x (r_0 e2 + r e_Z), e_Z vertical: rolling without slip */
+} Carrier;
+
+/* The inertia diag(J_x, J_y, J_z) of the body axes seen from the carrier, which it turns against by phi:
+ *   [ I_11  p     0   ]
+ *   [ p     I_22  0   ]    I_11, I_22 = (J_x + J_y)/2 +- q,  q = D cos(2 phi), p = D sin(2 phi), D = (J_x - J_y)/2
+ *   [ 0     0     J_z ]    p = q = 0 where J_x = J_y */
+typedef struct Inertia {
+  double I_11, I_22, p, q;
+} Inertia;
+
+/* The terms of Newton's and Euler's equations without omega_dot: the force k = m b - F, N (b: acceleration of O without
+ * its part in omega_dot, F: external force, weight included), and the external less the gyroscopic moment, N m. */
+typedef struct Drift {
+  double k_1, k_2, k_3;
+  double M_1, M_2, M_3;
+} Drift;
+
+/* The equations of motion of (omega_1, omega_2, omega_3):
+ *   [ a_11  p     0    ]                [ h_1       ]
+ *   [ p     a_22  a_23 ] {omega_dot} =  [ h_2       ]
+ *   [ 0     a_23  a_33 ]                [ h_3 + tau ]
+ * and, with its first row eliminated, the 2 x 2 system (b_22, a_23; a_23, a_33) with b_2, h_3 + tau. */
+typedef struct System {
+  double a_23, a_33, b_22, b_2, h_3;
+  double inverse_determinant; /* of the 2 x 2 system */
+  double omega_1_dot, N;      /* for tau = 0 */
+  double tilting, alpha;      /* change of omega_1_dot and of N per unit of tau: 0 where p = 0 */
+} System;
+
+/* The law of friction at one instant: tau = -(grip N + brake), or, if held, the tau that keeps omega_3 constant. */
+typedef struct AxleLaw {
+  int held;
+  int grips;       /* the ground has friction */
+  int branch_kept; /* it keeps it where N < 0 */
+  double grip;     /* m, s kappa */
+  double brake;    /* N m, capacity of the brake times kappa */
+} AxleLaw;
+
+typedef struct Accelerations {
+  double omega_1_dot, omega_2_dot, omega_3_dot;
+  double N;   /* normal force */
+  double tau; /* moment of ground and brake about the axle */
+} Accelerations;
+
+/* Inlined: what a caller does not read is not computed. */
+__attribute__((always_inline)) static inline Carrier carrier_of(const WheelParameters* w, const double* y) {
+  Carrier c = {.sin_theta = sin(y[THETA]), .cos_theta = cos(y[THETA])};
+  c.sin_psi = sin(y[PSI]);
+  c.cos_psi = cos(y[PSI]);
+  c.omega_1 = y[OMEGA_1];
+  c.omega_2 = y[OMEGA_2];
+  c.omega_3 = y[OMEGA_3];
+  c.rho = w->r_0 + w->r * c.sin_theta;
+  c.eta = w->r * c.cos_theta;
+  c.psi_dot = c.omega_2 / c.sin_theta;
+  c.Omega_3 = c.psi_dot * c.cos_theta;
+  c.phi_dot = c.omega_3 - c.Omega_3;
+  c.v_1 = c.eta * c.omega_2 - c.rho * c.omega_3;
+  c.v_2 = -(c.eta * c.omega_1);
+  c.v_3 = c.rho * c.omega_1;
+  return c;
+}
+
+static inline Inertia inertia_of(const WheelParameters* w, double phi) {
+  if (w->J_x == w->J_y) return (Inertia){.I_11 = w->J_x, .I_22 = w->J_x};
+  double mean = 0.5 * (w->J_x + w->J_y), D = 0.5 * (w->J_x - w->J_y);
+  double q = D * cos(2.0 * phi), p = D * sin(2.0 * phi);
+  return (Inertia){.I_11 = mean + q, .I_22 = mean - q, .p = p, .q = q};
+}
+
+/* Drift under the weight's part across the road alone. H: angular momentum about O. */
+static inline Drift drift_of(const WheelParameters* w, const Inertia* I, const Carrier* c) {
+  double b_1 = c->omega_1 * (w->r_0 * c->omega_2 - c->eta * c->phi_dot);
+  double b_2 = w->r * c->sin_theta * (c->omega_1 * c->omega_1) + c->Omega_3 * c->v_1 - c->omega_1 * c->v_3;
+  double b_3 = c->eta * (c->omega_1 * c->omega_1) + c->omega_1 * c->v_2 - c->omega_2 * c->v_1;
+  double H_1 = I->I_11 * c->omega_1 + I->p * c->omega_2;
+  double H_2 = I->p * c->omega_1 + I->I_22 * c->omega_2;
+  double H_3 = w->J_z * c->omega_3;
+  Drift d = {
+      .k_1 = w->m * b_1,
+      .k_2 = w->m * (b_2 + w->g * c->sin_theta),
+      .k_3 = w->m * (b_3 + w->g * c->cos_theta),
+      .M_1 = c->Omega_3 * H_2 - c->omega_2 * H_3,
+      .M_2 = c->omega_1 * H_3 - c->Omega_3 * H_1,
+      .M_3 = c->omega_2 * H_1 - c->omega_1 * H_2,
+  };
+  if (w->J_x != w->J_y) { /* the inertia itself turns against the carrier */
+    d.M_1 += 2.0 * c->phi_dot * (I->p * c->omega_1 - I->q * c->omega_2);
+    d.M_2 -= 2.0 * c->phi_dot * (I->q * c->omega_1 + I->p * c->omega_2);
+  }
+  return d;
+}
+
+/* Adds {F} of (15), F turned from fixed axes into the carrier, M already there; and a weight (N) along the road. */
+static inline void add_load(Drift* d, const Carrier* c, const WheelLoad* load, double weight_X, double weight_Y) {
+  double F_X = load->F[0] + weight_X, F_Y = load->F[1] + weight_Y;
+  double F_1 = 0, F_h = 0;    /* in the road's plane: along e1 and across it */
+  if (F_X != 0 || F_Y != 0) { /* otherwise sine and cosine of psi are not needed */
+    F_1 = F_X * c->cos_psi + F_Y * c->sin_psi;
+    F_h = F_Y * c->cos_psi - F_X * c->sin_psi;
+  }
+  d->k_1 -= F_1;
+  d->k_2 -= c->cos_theta * F_h + c->sin_theta * load->F[2];
+  d->k_3 -= c->cos_theta * load->F[2] - c->sin_theta * F_h;
+  d->M_1 += load->M[0];
+  d->M_2 += load->M[1];
+  d->M_3 += load->M[2];
+}
+
+static inline System system_of(const WheelParameters* w, const Inertia* I, const Carrier* c, const Drift* d) {
+  double rho_2 = w->m * (c->rho * c->rho), eta_2 = w->m * (c->eta * c->eta);
+  double inverse = 1.0 / (I->I_11 + (rho_2 + eta_2)); /* 1 / a_11 */
+  double h_1 = d->M_1 - c->rho * d->k_3 + c->eta * d->k_2;
+  double h_2 = d->M_2 - c->eta * d->k_1;
+  System s = {
+      .a_23 = -(w->m * (c->eta * c->rho)),
+      .a_33 = w->J_z + rho_2,
+      .b_2 = h_2,
+      .h_3 = d->M_3 + c->rho * d->k_1,
+      .omega_1_dot = h_1 * inverse,
+  };
+  double lift = w->m * w->r_0 * c->cos_theta; /* what a unit of omega_1_dot adds to N */
+  double turned = I->I_22;                    /* I_22 - p^2 / a_11 > 0 */
+  if (I->p != 0) {
+    turned -= I->p * I->p * inverse;
+    s.b_2 -= I->p * inverse * h_1;
+  }
+  s.b_22 = turned + eta_2;
+  s.inverse_determinant = 1.0 / (s.b_22 * w->J_z + turned * rho_2); /* b_22 a_33 - a_23^2: nothing cancels */
+  if (I->p != 0) {
+    s.omega_1_dot -= I->p * inverse * ((s.a_33 * s.b_2 - s.a_23 * s.h_3) * s.inverse_determinant);
+    s.tilting = I->p * inverse * (s.a_23 * s.inverse_determinant);
+    s.alpha = lift * s.tilting;
+  }
+  s.N = d->k_2 * c->sin_theta + d->k_3 * c->cos_theta + lift * s.omega_1_dot;
+  return s;
+}
+
+/* Moment about the axle. Rolling: tau = -(grip N + brake) and N = N_free + alpha tau. Held: omega_3_dot = 0. */
+static inline double axle_moment(const System* s, const AxleLaw* law) {
+  if (law->held) return s->a_23 * (s->b_2 / s->b_22) - s->h_3;
+  double N = s->N;
+  if (s->alpha != 0) N = (N - s->alpha * law->brake) / (1.0 + s->alpha * law->grip);
+  return -(law->grip * N + law->brake);
+}
+
+static inline Accelerations solve(const System* s, const AxleLaw* law) {
+  double tau = axle_moment(s, law), h_3 = s->h_3 + tau;
+  return (Accelerations){
+      .omega_1_dot = s->omega_1_dot + s->tilting * tau,
+      .omega_2_dot = (s->a_33 * s->b_2 - s->a_23 * h_3) * s->inverse_determinant,
+      .omega_3_dot = law->held ? 0.0 : (s->b_22 * h_3 - s->a_23 * s->b_2) * s->inverse_determinant,
+      .N = s->N + s->alpha * tau,
+      .tau = tau,
+  };
+}
+
+/* The same where the ground may pull (N <= 0): then the ground's part of the friction is zero, in the law too. */
+static inline Accelerations move(const System* s, AxleLaw* law) {
+  Accelerations a = solve(s, law);
+  if (a.N > 0 || law->branch_kept) return a;
+  law->grips = 0;
+  if (law->grip == 0) return a;
+  law->grip = 0;
+  return solve(s, law);
+}
+
+/* One state under a load, ready for a law of friction. Inlined as the carrier is. */
 typedef struct Instant {
   Carrier carrier;
-  Heading heading;
   Drift drift;
   System system;
 } Instant;
@@ -17,28 +196,42 @@ typedef struct Instant {
 __attribute__((always_inline)) static inline Instant instant_of(const WheelScene* scene, const double* y) {
   const WheelParameters* w = &scene->wheel;
   Inertia inertia = inertia_of(w, y[PHI]);
-  Instant now = {.carrier = carrier_of(w, y), .heading = heading_of(y[PSI])};
+  Instant now = {.carrier = carrier_of(w, y)};
   now.drift = drift_of(w, &inertia, &now.carrier);
-  add_load(&now.drift, &now.carrier, &now.heading, &scene->load, w->m * w->g_X, w->m * w->g_Y);
+  add_load(&now.drift, &now.carrier, &scene->load, w->m * w->g_X, w->m * w->g_Y);
   now.system = system_of(w, &inertia, &now.carrier, &now.drift);
   return now;
 }
 
+/* The reaction R = m a - F turned into fixed axes: lambda_1, lambda_2, lambda_3. */
+static inline void reaction_of(const WheelParameters* w, const Instant* now, const Accelerations* a, double lambda[3]) {
+  const Carrier* c = &now->carrier;
+  double R_1 = now->drift.k_1 + w->m * (c->eta * a->omega_2_dot - c->rho * a->omega_3_dot);
+  double R_2 = now->drift.k_2 - w->m * (c->eta * a->omega_1_dot);
+  double R_3 = now->drift.k_3 + w->m * (c->rho * a->omega_1_dot);
+  double R_h = c->cos_theta * R_2 - c->sin_theta * R_3; /* horizontal, across e1 */
+  lambda[0] = R_1 * c->cos_psi - R_h * c->sin_psi;
+  lambda[1] = R_1 * c->sin_psi + R_h * c->cos_psi;
+  lambda[2] = a->N;
+}
+
 static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
-  double kappa = kappa_of(&scene->friction, omega_3);
+  double kappa = wheel_kappa(&scene->friction, omega_3);
+  int grips = scene->ground != WHEEL_GROUND_PULLS;
   return (AxleLaw){
       .held = scene->friction.kind == WHEEL_HELD,
+      .grips = grips,
       .branch_kept = scene->ground == WHEEL_GROUND_PRESSES,
-      .grip = scene->ground == WHEEL_GROUND_PULLS ? 0.0 : scene->wheel.s * kappa,
+      .grip = grips ? scene->wheel.s * kappa : 0.0,
       .brake = scene->load.brake * kappa,
   };
 }
 
 /* Horizontal velocity of O: v_1 along e1 and Z_O omega_1 across it. */
-static inline void set_velocity(const WheelParameters* w, const Carrier* c, const Heading* h, double* X, double* Y) {
+static inline void set_velocity(const WheelParameters* w, const Carrier* c, double* X, double* Y) {
   double across = (w->r_0 * c->sin_theta + w->r) * c->omega_1;
-  *X = c->v_1 * h->cos_psi + across * h->sin_psi;
-  *Y = c->v_1 * h->sin_psi - across * h->cos_psi;
+  *X = c->v_1 * c->cos_psi + across * c->sin_psi;
+  *Y = c->v_1 * c->sin_psi - across * c->cos_psi;
 }
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
@@ -53,21 +246,29 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
   y[Y_O] = motion->Y_O;
 }
 
-static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+/* y_dot, the normal force, and the law of friction with the sign of N decided (out). */
+__attribute__((always_inline)) static inline double rates_of(const WheelScene* scene, const double* y, double* y_dot,
+                                                             AxleLaw* law) {
   Instant now = instant_of(scene, y);
-  AxleLaw law = law_of(scene, y[OMEGA_3]);
-  Accelerations a = move(&now.system, &law);
+  *law = law_of(scene, y[OMEGA_3]);
+  Accelerations a = move(&now.system, law);
   y_dot[THETA] = now.carrier.omega_1;
   y_dot[OMEGA_1] = a.omega_1_dot;
   y_dot[OMEGA_2] = a.omega_2_dot;
   y_dot[OMEGA_3] = a.omega_3_dot;
   y_dot[PSI] = now.carrier.psi_dot;
   y_dot[PHI] = now.carrier.phi_dot;
-  set_velocity(&scene->wheel, &now.carrier, &now.heading, &y_dot[X_O], &y_dot[Y_O]);
+  set_velocity(&scene->wheel, &now.carrier, &y_dot[X_O], &y_dot[Y_O]);
   return a.N;
 }
 
-static Carrier read_pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
+static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+  AxleLaw law;
+  return rates_of(scene, y, y_dot, &law);
+}
+
+__attribute__((always_inline)) static inline Carrier read_pose(const WheelParameters* wheel, const double* y,
+                                                               WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
   out->theta = y[THETA];
   out->psi = y[PSI];
@@ -89,8 +290,7 @@ static void pose(const WheelParameters* wheel, const double* y, WheelKinematics*
 
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = read_pose(wheel, y, out);
-  Heading heading = heading_of(y[PSI]);
-  set_velocity(wheel, &c, &heading, &out->X_O_dot, &out->Y_O_dot);
+  set_velocity(wheel, &c, &out->X_O_dot, &out->Y_O_dot);
 }
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
@@ -99,7 +299,7 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   const Carrier* c = &now.carrier;
   AxleLaw law = law_of(scene, y[OMEGA_3]);
   Accelerations a = move(&now.system, &law);
-  reaction_of(w, c, &now.heading, &now.drift, &a, out->lambda);
+  reaction_of(w, &now, &a, out->lambda);
   out->tau = a.tau;
   out->omega_z_dot = a.omega_3_dot;
   out->theta_ddot = a.omega_1_dot;
@@ -116,17 +316,10 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
   y[OMEGA_3] = 0;
 }
 
-/* Whether the ground has friction where the normal force is N. */
-static int grips(const WheelScene* scene, double N) {
-  return scene->ground == WHEEL_GROUND_PRESSES || (scene->ground == WHEEL_GROUND_BY_FORCE && N > 0);
-}
+static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_REDUCED_STATES); }
 
-/* The law of friction at y, where the normal force is N. */
-static AxleLaw frozen_law(const WheelScene* scene, const double* y, double N) {
-  AxleLaw law = law_of(scene, y[OMEGA_3]);
-  if (!grips(scene, N)) law.grip = 0;
-  return law;
-}
+const WheelFormulation wheel_reduced = {
+    "reduced", WHEEL_REDUCED_STATES, start, derivative, OMEGA_3, THETA, kinematics, pose, dynamics, reduce, stop_spin};
 
 /* For a given pose, lambda and tau are linear in the load and in the moments of friction. The law's grip is kept; its
  * `brake` is the rate of the moment that does not follow N. */
@@ -134,20 +327,21 @@ static void respond(const WheelScene* scene, const WheelLoad* load_dot, const Ax
                     WheelReactionRates* out) {
   const WheelParameters* w = &scene->wheel;
   Inertia inertia = inertia_of(w, y[PHI]);
-  Carrier c = carrier_of(w, y);
-  Heading heading = heading_of(y[PSI]);
-  Drift drift = {0};
-  add_load(&drift, &c, &heading, load_dot, 0, 0);
-  System system = system_of(w, &inertia, &c, &drift);
-  Accelerations a = solve(&system, law);
-  reaction_of(w, &c, &heading, &drift, &a, out->lambda_dot);
+  Instant now = {.carrier = carrier_of(w, y)};
+  add_load(&now.drift, &now.carrier, load_dot, 0, 0);
+  now.system = system_of(w, &inertia, &now.carrier, &now.drift);
+  Accelerations a = solve(&now.system, law);
+  reaction_of(w, &now, &a, out->lambda_dot);
   out->tau_dot = a.tau;
 }
 
-static void response(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out) {
-  double y_dot[WHEEL_REDUCED_STATES];
-  AxleLaw law = frozen_law(scene, y, derivative(scene, y, y_dot));
-  law.brake = kappa_of(&scene->friction, y[OMEGA_3]) * load_dot->brake;
+void wheel_reaction_response(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
+                             const double* state, WheelReactionRates* out) {
+  double y[WHEEL_REDUCED_STATES], y_dot[WHEEL_REDUCED_STATES];
+  AxleLaw law;
+  formulation->reduce(state, y);
+  rates_of(scene, y, y_dot, &law);
+  law.brake = wheel_kappa(&scene->friction, y[OMEGA_3]) * load_dot->brake;
   respond(scene, load_dot, &law, y, out);
 }
 
@@ -158,34 +352,31 @@ static void add_reaction(const WheelScene* scene, const AxleLaw* law, const doub
   for (int i = 0; i < WHEEL_REDUCED_STATES; ++i) moved[i] = y[i] + h * y_dot[i];
   Instant now = instant_of(scene, moved);
   Accelerations a = solve(&now.system, law);
-  reaction_of(&scene->wheel, &now.carrier, &now.heading, &now.drift, &a, lambda);
+  reaction_of(&scene->wheel, &now, &a, lambda);
   for (int i = 0; i < 3; ++i) out->lambda_dot[i] += weight * lambda[i];
   out->tau_dot += weight * a.tau;
 }
 
-/* Rate of (s N + brake) kappa at a constant N. */
-static double moment_rate(const WheelScene* scene, const WheelLoad* load_dot, double N, double omega_3,
-                          double omega_3_dot) {
-  double rate = kappa_of(&scene->friction, omega_3) * load_dot->brake;
-  if (scene->friction.kind != WHEEL_REGULARIZED) return rate;
-  double c = cosh(omega_3 / scene->friction.omega_s);
-  double kappa_dot = omega_3_dot / scene->friction.omega_s / c / c;
-  return rate + kappa_dot * ((grips(scene, N) ? scene->wheel.s * N : 0) + scene->load.brake);
-}
-
 /* Three parts: the load's rate and the law's own rate, exact, and the state's motion under a frozen load and law, by a
  * difference quotient of fourth order. Its step is a small part of the time in which the wheel itself moves. */
-static void rates(const WheelScene* scene, const WheelLoad* load_dot, const double* state, WheelReactionRates* out) {
+void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
+                          const double* state, WheelReactionRates* out) {
   const double turn = 6.283185307179586, share = 1e-3;
   static const WheelLoad constant = {{0}, {0}, 0};
   if (!load_dot) load_dot = &constant;
   double y[WHEEL_REDUCED_STATES], y_dot[WHEEL_REDUCED_STATES];
-  memcpy(y, state, sizeof y);
+  formulation->reduce(state, y);
   y[PSI] = remainder(y[PSI], turn); /* a small step must not vanish in the rounding of a large angle */
   y[PHI] = remainder(y[PHI], turn);
-  double N = derivative(scene, y, y_dot);
-  AxleLaw law = frozen_law(scene, y, N), changing = law;
-  changing.brake = moment_rate(scene, load_dot, N, y[OMEGA_3], y_dot[OMEGA_3]);
+  AxleLaw law;
+  double N = rates_of(scene, y, y_dot, &law);
+  AxleLaw changing = law; /* of (s N + brake) kappa at a constant N */
+  changing.brake = wheel_kappa(&scene->friction, y[OMEGA_3]) * load_dot->brake;
+  if (scene->friction.kind == WHEEL_REGULARIZED) {
+    double omega_s = scene->friction.omega_s, c = cosh(y[OMEGA_3] / omega_s);
+    double kappa_dot = y_dot[OMEGA_3] / omega_s / c / c;
+    changing.brake += kappa_dot * ((law.grips ? scene->wheel.s * N : 0) + scene->load.brake);
+  }
   respond(scene, load_dot, &changing, y, out);
 
   double swing = fabs(y_dot[OMEGA_1]) + fabs(y_dot[OMEGA_2]) + fabs(y_dot[OMEGA_3]);
@@ -197,7 +388,3 @@ static void rates(const WheelScene* scene, const WheelLoad* load_dot, const doub
   add_reaction(scene, &law, y, y_dot, 2 * h, -1 / (12 * h), out);
   add_reaction(scene, &law, y, y_dot, -2 * h, 1 / (12 * h), out);
 }
-
-const WheelFormulation wheel_reduced = {
-    "reduced", WHEEL_REDUCED_STATES, start, derivative, OMEGA_3, THETA, kinematics, pose, dynamics, rates, response,
-    stop_spin};

@@ -1,4 +1,4 @@
-/* Makes a scene of a wheel, a load and a law of friction, and checks the law; puts a wheel on a slope. */
+/* The law of friction; makes a scene of a wheel, a load and a law, and checks the law; puts a wheel on a slope. */
 #include <math.h>
 
 #include "wheel_equations.h"
@@ -9,6 +9,12 @@ static int is_meant(const WheelParameters* wheel, double brake, const WheelFrict
   if (friction->kind == WHEEL_ROLLING) return friction->sigma == 1 || friction->sigma == -1;
   if (friction->kind == WHEEL_REGULARIZED) return friction->omega_s > 0;
   return friction->kind == WHEEL_FRICTIONLESS || friction->kind == WHEEL_HELD;
+}
+
+double wheel_kappa(const WheelFriction* friction, double omega_z) {
+  if (friction->kind == WHEEL_ROLLING) return friction->sigma;
+  if (friction->kind == WHEEL_REGULARIZED) return tanh(omega_z / friction->omega_s);
+  return friction->kind == WHEEL_FRICTIONLESS || friction->kind == WHEEL_HELD ? 0.0 : NAN;
 }
 
 WheelScene wheel_scene(const WheelParameters* wheel, const WheelLoad* load, WheelFriction friction) {

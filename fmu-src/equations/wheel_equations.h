@@ -57,6 +57,9 @@ typedef struct WheelFriction {
   double omega_s; /* rad/s, > 0, for WHEEL_REGULARIZED */
 } WheelFriction;
 
+/* kappa of a law; NaN without one. The moment on a held wheel follows from omega_z_dot = 0. */
+double wheel_kappa(const WheelFriction* friction, double omega_z);
+
 /* Where the ground has friction. A solver that finds the instants at which N = 0 keeps one branch between two of them,
  * so that no trial step meets the corner of the law. */
 typedef enum WheelGround {
@@ -125,11 +128,8 @@ typedef struct WheelFormulation {
   /* The same without X_O_dot and Y_O_dot, which cost the sine and cosine of psi. */
   void (*pose)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
   void (*dynamics)(const WheelScene* scene, const double* y, WheelDynamics* out);
-  /* Time derivatives of lambda and tau along the motion, while the law and the sign of N last; load_dot is the rate of
-   * the load (NULL: constant). */
-  void (*rates)(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out);
-  /* The part of load_dot in `rates` alone: with a unit in one entry, the derivative of lambda and tau by this entry. */
-  void (*response)(const WheelScene* scene, const WheelLoad* load_dot, const double* y, WheelReactionRates* out);
+  /* The state of `wheel_reduced` (out) with the same position and angular velocity. */
+  void (*reduce)(const double* y, double* reduced);
   /* Sets omega_z to exactly zero: the start of a phase in which it is held there. */
   void (*stop_spin)(const WheelParameters* wheel, double* y);
 } WheelFormulation;
@@ -146,6 +146,14 @@ extern const WheelFormulation wheel_euler;
  * whose spin is held keeps it at exactly zero. The constraints are stabilised: what rounding and step errors leave of
  * [B]{q_dot} and of Z_O - height decays, on the true motion nothing changes. */
 extern const WheelFormulation wheel_multibody;
+
+/* Time derivatives of lambda and tau along the motion, while the law and the sign of N last; load_dot is the rate of
+ * the load (NULL: constant). */
+void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
+                          const double* y, WheelReactionRates* out);
+/* The part of load_dot in it alone: with a unit in one entry, the derivative of lambda and tau by this entry. */
+void wheel_reaction_response(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
+                             const double* y, WheelReactionRates* out);
 
 /* Total energy, J: translation, rotation, height of O against gravity, zero at the origin. */
 double wheel_energy(const WheelParameters* wheel, const WheelKinematics* motion);

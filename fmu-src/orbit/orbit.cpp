@@ -1,9 +1,10 @@
-// Half a nutation of the free wheel is integrated, and its symmetry is tested against the right-hand side. Reduced
-// form, carrier frame; it is read in unfold.cpp.
+// Half a nutation of the free wheel is integrated, its symmetry is tested against the right-hand side, and any later
+// instant is read from it by reflections and sums. Reduced form, carrier frame; path of O in fixed axes as X_O + i Y_O.
 #include "orbit.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace orbit {
 
@@ -20,38 +21,30 @@ constexpr double loosest = 1e-8;
 // state may change within the longest step by what breaks the symmetry, which rounding does too.
 constexpr double least_swing = 0.01, largest_rest = 0.003, largest_break = 0.1;
 
-bool agree(const solver::Problem& problem, int i, const double* weights, double rate, double expected) {
-  return std::fabs(rate - expected) * problem.longest_step * weights[i] <= largest_break;
-}
+}  // namespace
 
-bool agree(const solver::Problem& problem, const double* weights, const double* rates, const double* expected) {
-  for (int i = 0; i < problem.states; ++i)
-    if (!agree(problem, i, weights, rates[i], expected[i])) return false;
-  return true;
-}
-
-// Whether every watched function is the same at two instants that the symmetry maps onto each other.
-bool are_watched_alike(const solver::Problem& problem, double t_a, const double* y_a, double t_b, const double* y_b) {
+// Whether a symmetry that maps y at t onto `image` at t_image holds there: the right-hand side at the image is the
+// mapped one, `expected`, and every watched function is the same.
+bool Orbit::holds(const solver::Problem& problem, double t, const double* y, double t_image, const double* image,
+                  const double* expected) {
   constexpr double alike = 1e-5;
+  double rate[states], weights[states];
+  problem.derivative(problem.owner, t_image, image, rate);
+  problem.weights(problem.owner, problem.share, y, weights);
+  for (int i = 0; i < states; ++i)
+    if (!(std::fabs(rate[i] - expected[i]) * problem.longest_step * weights[i] <= largest_break)) return false;
   return std::all_of(problem.watched, problem.watched + problem.watched_count, [&](const solver::Watched& watched) {
-    const double a = watched.value(problem.owner, watched.event, t_a, y_a);
-    const double b = watched.value(problem.owner, watched.event, t_b, y_b);
+    const double a = watched.value(problem.owner, watched.event, t, y);
+    const double b = watched.value(problem.owner, watched.event, t_image, image);
     return std::fabs(a - b) <= alike * (1 + std::fabs(a));
   });
 }
-
-}  // namespace
 
 Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
                          solver::Solver& solver) {
   double own[states] = {y0[theta], y0[omega_1], y0[omega_2], y0[omega_3]};  // psi, phi, X_O and Y_O are zero
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
-  recurs_ = false;
-  std::fill(std::begin(recurrences_), std::end(recurrences_), Recurrence());
-  counters_ = {};
-  half_ = lead_ = {};
-  kind_ = Kind::refused;
-  end_time_ = std::numeric_limits<double>::infinity();
+  *this = Orbit();
   if (rests(problem, own)) return kind_ = Kind::folded;
   kind_ = follow(problem, pass, own, solver);
   counters_ = solver.counters();
@@ -62,17 +55,13 @@ bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
   half_ = {};
   lead_.psi_sum = y0[psi];
   lead_.phi_sum = y0[phi];
-  lead_.place = Complex(y0[X_O], y0[Y_O]);
+  lead_.place = place_of(y0);
   lead_.turn = std::polar(1.0, y0[psi]);
-  double own[states], rate[states], own_rate[states], weights[states];
+  double own[states], rate[states];
   track_.read(0, own);
-  problem.derivative(problem.owner, 0, own, own_rate);
-  problem.derivative(problem.owner, 0, y0, rate);
-  problem.weights(problem.owner, problem.share, own, weights);
-  const Complex velocity = lead_.turn * Complex(own_rate[X_O], own_rate[Y_O]);
-  own_rate[X_O] = velocity.real();
-  own_rate[Y_O] = velocity.imag();
-  return agree(problem, weights, rate, own_rate) && are_watched_alike(problem, 0, own, 0, y0);
+  problem.derivative(problem.owner, 0, own, rate);
+  set_place(rate, lead_.turn * place_of(rate));
+  return holds(problem, 0, own, 0, y0, rate);
 }
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
@@ -177,17 +166,13 @@ bool Orbit::fold(const solver::Problem& problem, double swing) {
 
 // Whether the right-hand side, as long after T2 as the state was before, is the mirror image with time reversed.
 bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
-  double y[states], rate[states], image[states], image_rate[states], weights[states];
+  double y[states], rate[states], image[states];
   track_.read(T2_ - since, y);
   read(T2_ + since, image);
   problem.derivative(problem.owner, T2_ - since, y, rate);
-  problem.derivative(problem.owner, T2_ + since, image, image_rate);
-  problem.weights(problem.owner, problem.share, y, weights);
   for (const State i : {theta, omega_2, omega_3}) rate[i] = -rate[i];
-  const Complex velocity = -half_of(T2_ + since).turn * Complex(rate[X_O], -rate[Y_O]);
-  rate[X_O] = velocity.real();
-  rate[Y_O] = velocity.imag();
-  return agree(problem, weights, image_rate, rate) && are_watched_alike(problem, T2_ - since, y, T2_ + since, image);
+  set_place(rate, -half_of(T2_ + since).turn * std::conj(place_of(rate)));
+  return holds(problem, T2_ - since, y, T2_ + since, image, rate);
 }
 
 // Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing,
@@ -227,28 +212,22 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
 // the right-hand side leads off it.
 bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length) {
   constexpr int parts = 5;
-  double y[states], y_dot[states] = {}, found[states], weights[states];
-  problem.weights(problem.owner, problem.share, y0, weights);
+  double y[states], y_dot[states] = {}, expected[states];
   std::copy_n(y0, states, y);
   y[omega_1] = 0;
   y_dot[psi] = rate[psi];
   y_dot[phi] = rate[phi];
-  const Complex start(y0[X_O], y0[Y_O]), velocity(rate[X_O], rate[Y_O]);
+  const Complex start = place_of(y0), velocity = place_of(rate);
   for (int i = 0; i <= parts; ++i) {
     const double t = length * i / parts, turn = rate[psi] * t;
     const double shortened = turn == 0 ? 1 : std::sin(0.5 * turn) / (0.5 * turn);  // chord over arc
-    const Complex place = start + velocity * (t * shortened) * std::polar(1.0, 0.5 * turn);
-    const Complex now = velocity * std::polar(1.0, turn);
     y[psi] = y0[psi] + turn;
     y[phi] = y0[phi] + rate[phi] * t;
-    y[X_O] = place.real();
-    y[Y_O] = place.imag();
-    y_dot[X_O] = now.real();
-    y_dot[Y_O] = now.imag();
-    problem.derivative(problem.owner, t, y, found);
-    for (int k = 0; k < states; ++k)  // `rests` has seen to omega_1
-      if (k != omega_1 && !agree(problem, k, weights, found[k], y_dot[k])) return false;
-    if (!are_watched_alike(problem, 0, y0, t, y)) return false;
+    set_place(y, start + velocity * (t * shortened) * std::polar(1.0, 0.5 * turn));
+    set_place(y_dot, velocity * std::polar(1.0, turn));
+    std::copy_n(y_dot, states, expected);
+    expected[omega_1] = rate[omega_1];  // `rests` has seen to it
+    if (!holds(problem, 0, y0, t, y, expected)) return false;
     if (!(i == 0 ? track_.begin(t, y, y_dot) : track_.add(t, y, y_dot))) return false;
   }
   track_.finish();
@@ -256,6 +235,103 @@ bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const do
   T2_ = length;
   take_half();
   return true;
+}
+
+// What the sums need, from the states at T1 and T2, and the recurring events.
+void Orbit::take_half() {
+  track_.read(T1_, first_);
+  track_.read(T2_, second_);
+  delta_ = std::remainder(second_[psi] - first_[psi], std::numbers::pi);
+  step_ = (place_of(second_) - place_of(first_)) * std::polar(1.0, -first_[psi]);
+  pair_ = 2 * (step_ * std::polar(1.0, -delta_)).real();
+  first_turn_ = std::polar(1.0, first_[psi]);
+  mirror_turn_ = std::polar(1.0, 2 * second_[psi]);
+  for (Recurrence& recurrence : recurrences_) recurrence.repeat(T1_, T2_);
+}
+
+// The falls in the two halves after T2, of which the first is mirrored.
+void Orbit::Recurrence::repeat(double T1, double T2) {
+  const double period = 2 * (T2 - T1);
+  while (falls > 0 && fall[falls - 1] > T2) --falls;
+  for (int i = rises - 1; i >= 0; --i)
+    if (rise[i] > T1 && rise[i] < T2) later_fall[later_falls++] = T2 - rise[i];
+  for (int i = 0; i < falls; ++i)
+    if (fall[i] > T1) later_fall[later_falls++] = period - (T2 - fall[i]);
+}
+
+// The sum of k halves, each the mirror image of the one before: with d the displacement of O in the
+// first, pairs add up to 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta), n = floor(k / 2).
+Orbit::Half Orbit::half_at(double k) const {
+  Half half;
+  half.begin = begin_of(k);
+  half.next = begin_of(k + 1);
+  const double n = std::floor(0.5 * k), turn = second_[psi] - first_[psi], roll = second_[phi] - first_[phi];
+  half.mirrored = k != 2 * n;
+  const Complex turned = std::polar(1.0, n * delta_), pairs_turn = turned * turned;
+  const double quotient = delta_ == 0 ? n : turned.imag() / std::sin(delta_);
+  Complex way = pair_ * quotient * turned;
+  if (half.mirrored) way += step_ * pairs_turn;
+  half.place = lead_.place + lead_.turn * (place_of(first_) + way * first_turn_);
+  half.turn = lead_.turn * (half.mirrored ? -pairs_turn * mirror_turn_ : pairs_turn);
+  half.psi_sum = lead_.psi_sum + (half.mirrored ? 2 * second_[psi] + (k - 1) * turn : k * turn);
+  half.phi_sum = lead_.phi_sum + (half.mirrored ? 2 * second_[phi] + (k - 1) * roll : k * roll);
+  return half;
+}
+
+const Orbit::Half& Orbit::half_of(double t) const {
+  if (t >= half_.begin && t < half_.next) return half_;
+  double k = std::floor((t - T1_) / (T2_ - T1_));
+  if (t < begin_of(k)) k -= 1;
+  if (t >= begin_of(k + 1)) k += 1;
+  return half_ = half_at(k);
+}
+
+double Orbit::fastest_turn() const {
+  const double turn = std::fabs(second_[psi] - first_[psi]), roll = std::fabs(second_[phi] - first_[phi]);
+  return std::fmax(turn, roll) / (T2_ - T1_);
+}
+
+// y from the frame of the integrated half to the fixed axes; way: from the half's begin to O.
+void Orbit::turn_by(const Half& half, Complex way, double* y) {
+  y[psi] += half.psi_sum;
+  y[phi] += half.phi_sum;
+  set_place(y, half.place + half.turn * way);
+}
+
+void Orbit::read(double t, double* y) const {
+  if (kind_ != Kind::folded || t <= T2_) {
+    track_.read(t, y);
+    return turn_by(lead_, place_of(y), y);
+  }
+  const Half& half = half_of(t);
+  const double since = std::clamp(t - half.begin, 0.0, T2_ - T1_);
+  track_.read(half.mirrored ? T2_ - since : T1_ + since, y);
+  Complex way = place_of(y) - place_of(half.mirrored ? second_ : first_);
+  if (half.mirrored) {
+    way = std::conj(way);
+    y[omega_1] = -y[omega_1];
+    y[psi] = -y[psi];
+    y[phi] = -y[phi];
+  }
+  turn_by(half, way, y);
+}
+
+double Orbit::fall(int event, long long n) const {
+  const Recurrence& own = recurrences_[event];
+  if (n < own.falls) return own.fall[n];
+  const long long periods = (n - own.falls) / own.later_falls;
+  return begin_of(1 + 2 * static_cast<double>(periods)) + own.later_fall[(n - own.falls) % own.later_falls];
+}
+
+long long Orbit::falls_until(int event, double t) const {
+  const auto& [falls, rises, later_falls, fall, rise, later_fall] = recurrences_[event];
+  if (kind_ != Kind::folded || t <= T2_ || later_falls == 0) return std::upper_bound(fall, fall + falls, t) - fall;
+  constexpr double most_periods = 1e15;  // later, times have no more digits for them
+  const double periods = std::floor(std::fmin((t - T2_) / (2 * (T2_ - T1_)), most_periods));
+  const double begin = begin_of(1 + 2 * periods);
+  const auto is_before = [begin](double instant, double later) { return instant < begin + later; };
+  const long long last = std::upper_bound(later_fall, later_fall + later_falls, t, is_before) - later_fall;
+  return falls + static_cast<long long>(periods) * later_falls + last;
 }
 
 }  // namespace orbit

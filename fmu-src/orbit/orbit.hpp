@@ -63,6 +63,11 @@ class Orbit {
   enum State { theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O };
   using Complex = std::complex<double>;
   static constexpr int states = Track::states, most_crossings = 16;
+  static Complex place_of(const double* y) { return {y[X_O], y[Y_O]}; }
+  static void set_place(double* y, Complex place) {
+    y[X_O] = place.real();
+    y[Y_O] = place.imag();
+  }
 
   // The half nutation from T1 + k L to T1 + (k + 1) L, L = T2 - T1: where O begins, and how far the integrated path,
   // psi and phi are turned.
@@ -81,6 +86,8 @@ class Orbit {
     void repeat(double T1, double T2);
   };
 
+  static bool holds(const solver::Problem& problem, double t, const double* y, double t_image, const double* image,
+                    const double* expected);
   bool rests(const solver::Problem& problem, const double* y0);
   bool keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length);
   Kind follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);

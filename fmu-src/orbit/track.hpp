@@ -45,10 +45,7 @@ class Track {
   bool close(int last);
   void interpolate(int first, int last);
 
-  struct Free {
-    void operator()(Table* table) const { std::free(table); }
-  };
-  std::unique_ptr<Table, Free> table_;
+  std::unique_ptr<Table, void (*)(void*)> table_{nullptr, std::free};
   int pieces_ = 0, nodes_ = 0;
   int open_ = 0;            // the node at which the last piece ended
   mutable int latest_ = 0;  // the piece read last

@@ -7,7 +7,6 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 
 #include "cvode_objects.hpp"
@@ -42,7 +41,6 @@ int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
 
 int weights(N_Vector y, N_Vector w, void* user) {
   const Problem& problem = *static_cast<CvodeCall*>(user)->problem;
-  std::fill_n(data(w), width_of(problem.states), 1.0);
   problem.weights(problem.owner, share_of_tolerance * problem.share, data(y), data(w));
   return 0;
 }
@@ -56,15 +54,14 @@ const char* reason_of(int flag) {
   return "CVODE failed";
 }
 
-bool attach_solver(CvodeObjects& o) {
-  if (o.method == Method::adams) {
+bool attach_solver(CvodeObjects& o, Method method) {
+  if (method == Method::adams) {
     o.corrector = SUNNonlinSol_FixedPoint(o.y, 0, o.context);
     return o.corrector && CVodeSetNonlinearSolver(o.cvode, o.corrector) == CV_SUCCESS &&
            CVodeSetNonlinConvCoef(o.cvode, corrector_share) == CV_SUCCESS &&
            CVodeSetMaxOrd(o.cvode, highest_adams_order) == CV_SUCCESS;
   }
-  const int width = width_of(o.states);
-  o.matrix = SUNDenseMatrix(width, width, o.context);
+  o.matrix = SUNDenseMatrix(o.states, o.states, o.context);
   o.linear = o.matrix ? SUNLinSol_Dense(o.y, o.matrix, o.context) : nullptr;
   return o.linear && CVodeSetLinearSolver(o.cvode, o.linear, o.matrix) == CV_SUCCESS;
 }
@@ -72,61 +69,45 @@ bool attach_solver(CvodeObjects& o) {
 // CVODE counts from its last start on.
 long jacobians_of(const CvodeObjects& o) {
   long count = 0;
-  if (o.method == Method::bdf) CVodeGetNumJacEvals(o.cvode, &count);
+  if (o.linear) CVodeGetNumJacEvals(o.cvode, &count);
   return count;
 }
 
-bool set_up(CvodeObjects& o) {
+bool set_up(CvodeObjects& o, Method method) {
   if (SUNContext_Create(SUN_COMM_NULL, &o.context) != SUN_SUCCESS) return false;
   SUNContext_ClearErrHandlers(o.context);  // nothing is printed
   o.y = make_vector(o.states, o.context);
-  o.cvode = CVodeCreate(o.method == Method::adams ? CV_ADAMS : CV_BDF, o.context);
+  o.cvode = CVodeCreate(method == Method::adams ? CV_ADAMS : CV_BDF, o.context);
   return o.y && o.cvode && CVodeInit(o.cvode, derivative, 0, o.y) == CV_SUCCESS &&
          CVodeSetUserData(o.cvode, &o.call) == CV_SUCCESS && CVodeWFtolerances(o.cvode, weights) == CV_SUCCESS &&
-         attach_solver(o) && CVodeSetMaxErrTestFails(o.cvode, most_failures) == CV_SUCCESS &&
+         attach_solver(o, method) && CVodeSetMaxErrTestFails(o.cvode, most_failures) == CV_SUCCESS &&
          CVodeSetMaxConvFails(o.cvode, most_failures) == CV_SUCCESS &&
          CVodeSetEtaFixedStepBounds(o.cvode, keep_step_above, keep_step_below) == CV_SUCCESS;
 }
 
 }  // namespace
 
-void Cvode::free_objects() {
-  if (!objects_) return;
-  CvodeObjects& o = *objects_;
+void Cvode::free_objects(CvodeObjects* objects) {
+  CvodeObjects& o = *objects;
   if (o.cvode) CVodeFree(&o.cvode);
   if (o.corrector) SUNNonlinSolFree(o.corrector);
   if (o.linear) SUNLinSolFree(o.linear);
   if (o.matrix) SUNMatDestroy(o.matrix);
   if (o.y) N_VDestroy(o.y);
   if (o.context) SUNContext_Free(&o.context);
-  std::free(objects_);
-  objects_ = nullptr;
+  std::free(objects);
 }
 
-bool Cvode::make_objects(int states) {
-  if (objects_ && objects_->states == states) return true;
-  free_objects();
-  objects_ = static_cast<CvodeObjects*>(std::calloc(1, sizeof(CvodeObjects)));
-  if (!objects_) return false;
-  objects_->method = method_;
-  objects_->states = states;
-  if (set_up(*objects_)) return true;
-  free_objects();
-  return false;
-}
-
-bool Cvode::start(const Problem& problem, double t, const double* y, Step* step) {
-  step->set_point(t, y, problem.states);
+bool Cvode::start(const Problem& problem) {
   failure_ = "CVODE could not be set up";
-  if (!make_objects(problem.states)) return false;
   next_ = Next::starts;
-  return CVodeSetMaxStep(objects_->cvode, problem.longest_step) == CV_SUCCESS;
-}
-
-bool Cvode::restart(double t, const double* y) {
-  std::copy_n(y, objects_->states, data(objects_->y));
-  next_ = Next::goes_on;
-  return CVodeReInit(objects_->cvode, t, objects_->y) == CV_SUCCESS;
+  if (!objects_ || objects_->states != problem.states) {
+    objects_.reset(static_cast<CvodeObjects*>(std::calloc(1, sizeof(CvodeObjects))));
+    if (!objects_) return false;
+    objects_->states = problem.states;
+    if (!set_up(*objects_, method_)) objects_.reset();
+  }
+  return objects_ && CVodeSetMaxStep(objects_->cvode, problem.longest_step) == CV_SUCCESS;
 }
 
 bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
@@ -138,7 +119,11 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
   for (int attempt = 0; attempt < 2; ++attempt) {
     const bool first = next_ != Next::goes_on;
     if (next_ == Next::starts_after_stop) ++counters->restarts;
-    if (first && !restart(step->end, step->y_end)) return false;
+    if (first) {
+      std::copy_n(step->y_end, o.states, data(o.y));
+      CVodeReInit(o.cvode, step->end, o.y);
+      next_ = Next::goes_on;
+    }
     std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
     const long jacobians = first ? 0 : jacobians_of(o);  // CVODE's own count starts anew with its first step
     // The size of CVODE's first step depends on the time it is asked for, so it is always asked for the same time
@@ -151,17 +136,13 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
   // CVODE reports success for steps so small that the time no longer changes.
   const bool stands = flag >= 0 && flag != CV_TSTOP_RETURN && t - step->end <= rounding_at(t);
   failure_ = stands ? "the step size became too small" : reason_of(flag);
-  step->start = step->end;
   if (flag < 0 || stands) {
     next_ = Next::starts;
     return false;
   }
-  std::copy_n(step->y_end, max_states, step->y_start);
   step->end = t;
   std::copy_n(data(o.y), problem.states, step->y_end);
   step->lowest_margin = o.call.lowest_margin;
-  step->inside_share = 0;
-  step->degree = -1;
   next_ = flag == CV_TSTOP_RETURN ? Next::starts_after_stop : Next::goes_on;
   return true;
 }

@@ -40,7 +40,9 @@ void visit_steps(Archive& archive, CVodeMemRec& m) {
   archive.numbers(m.cv_tau, L_MAX + 1);
   archive.numbers(m.cv_tq, NUM_TESTS + 1);
   archive.numbers(m.cv_l, L_MAX);
-  archive.number(m.cv_saved_tq5, m.cv_tolsf, m.cv_etamax, m.cv_etaqm1, m.cv_etaq, m.cv_etaqp1);
+  archive.number(m.cv_saved_tq5, m.cv_tolsf);
+  archive.range(m.cv_etamax, least, greatest);
+  archive.number(m.cv_etaqm1, m.cv_etaq, m.cv_etaqp1);
   archive.number(m.cv_rl1, m.cv_gamma, m.cv_gammap, m.cv_gamrat, m.cv_crate, m.cv_delp, m.cv_acnrm);
   archive.count(m.cv_nst, 1, most);
   counts(archive, 0, most, m.cv_nfe, m.cv_ncfn, m.cv_nni, m.cv_nnf, m.cv_netf, m.cv_nsetups, m.cv_nstlp, m.cv_nscon);
@@ -52,7 +54,7 @@ void visit_newton(Archive& archive, CvodeObjects& o, CVodeMemRec& m) {
   auto& interface = *static_cast<CVLsMem>(m.cv_lmem);
   auto& newton = *static_cast<SUNNonlinearSolverContent_Newton>(m.NLS->content);
   auto& dense = *static_cast<SUNLinearSolverContent_Dense>(o.linear->content);
-  const int n = width_of(o.states);
+  const int n = o.states;
   counts(archive, 0, 1, interface.jbad, newton.jcur);
   counts(archive, 0, most, interface.nje, interface.nstlj, interface.nfeDQ);
   archive.number(interface.tnlj);
@@ -63,37 +65,27 @@ void visit_newton(Archive& archive, CvodeObjects& o, CVodeMemRec& m) {
 }
 
 // A problem that stands still.
-double rest(void* states, double, const double*, double* y_dot) {
-  std::fill_n(y_dot, *static_cast<int*>(states), 0.0);
+double rest(void* problem, double, const double*, double* y_dot) {
+  std::fill_n(y_dot, static_cast<const Problem*>(problem)->states, 0.0);
   return 1;
 }
-void equal_weights(void* states, double, const double*, double* weights) {
-  std::fill_n(weights, *static_cast<int*>(states), 1.0);
+void equal_weights(void* problem, double, const double*, double* weights) {
+  std::fill_n(weights, static_cast<const Problem*>(problem)->states, 1.0);
 }
 
 }  // namespace
 
-void Cvode::visit_history(Archive& archive) {
-  CvodeObjects& o = *objects_;
-  auto& m = *static_cast<CVodeMem>(o.cvode);
-  visit_steps(archive, m);
-  for (int j = 0; j <= m.cv_qmax; ++j) archive.numbers(data(m.cv_zn[j]), o.states);
-  if (o.method == Method::bdf) visit_newton(archive, o, m);
-}
-
 // Sets CVODE up for numbers that are read: a step of a problem that stands still makes it do what it does only in a
 // first step.
 bool Cvode::imitate_step(const Problem& problem, const Step& step) {
-  int states = problem.states;
-  Problem still = {};
-  still.states = states;
-  still.owner = &states;
+  Problem still = problem;
+  still.owner = &still;
   still.derivative = rest;
   still.weights = equal_weights;
-  still.longest_step = problem.longest_step;
   Counters uncounted = {};
   Step imitation;
-  return start(still, step.end, step.y_end, &imitation) && advance(still, never, &uncounted, &imitation);
+  imitation.set_point(step.end, step.y_end, problem.states);
+  return start(still) && advance(still, never, &uncounted, &imitation);
 }
 
 // Whether the history is that of the step.
@@ -102,7 +94,7 @@ bool Cvode::fits(const Step& step) const {
   const double rounding = 200 * m.cv_uround * (std::fabs(m.cv_tn) + m.cv_hu);
   bool fits = std::fabs(m.cv_tn - step.end) <= rounding && std::fabs(step.end - step.start - m.cv_hu) <= rounding &&
               std::fabs(m.cv_hprime - m.cv_h * m.cv_eta) <= 1e-10 * m.cv_hprime;
-  for (int i = 0; method_ == Method::bdf && i < width_of(objects_->states); ++i)
+  for (int i = 0; method_ == Method::bdf && i < objects_->states; ++i)
     fits = fits && SUNDenseMatrix_Column(objects_->matrix, i)[i] != 0;
   return fits;
 }
@@ -113,16 +105,18 @@ void Cvode::visit(Archive& archive, const Problem& problem, Step* step, bool act
   archive("history of CVODE").count(next, 0, static_cast<int>(Next::starts_after_stop));
   const bool has_history = step->end > step->start;
   if (archive.reads()) {
-    Step point;
-    const bool ready = has_history ? imitate_step(problem, *step)
-                                   : next != Next::goes_on && start(problem, step->end, step->y_end, &point);
+    const bool ready = has_history ? imitate_step(problem, *step) : next != Next::goes_on && start(problem);
     if (!ready) return archive.refuse();
     next_ = next;
   }
-  if (has_history) visit_history(archive);
-  if (!archive.reads()) return;
-  if (has_history && !fits(*step)) archive.refuse();
-  if (archive.fault()) free_objects();  // nothing stays of numbers that no solver wrote
+  if (!has_history) return;
+  CvodeObjects& o = *objects_;
+  auto& m = *static_cast<CVodeMem>(o.cvode);
+  visit_steps(archive, m);
+  for (int j = 0; j <= m.cv_qmax; ++j) archive.numbers(data(m.cv_zn[j]), o.states);
+  if (method_ == Method::bdf) visit_newton(archive, o, m);
+  if (archive.reads() && !fits(*step)) archive.refuse();
+  if (archive.fault()) objects_.reset();  // nothing stays of numbers that no solver wrote
 }
 
 }  // namespace solver

@@ -1,10 +1,10 @@
-// What SUNDIALS allocates for one solver, and what the functions that CVODE calls are given.
+// What SUNDIALS allocates for one solver, and what the functions that CVODE calls are given. By its public interface.
 #pragma once
 
 #include <sundials/sundials_linearsolver.h>
 #include <sundials/sundials_nonlinearsolver.h>
+#include <sundials/sundials_nvector.h>
 
-#include "cvode_vector.hpp"
 #include "problem.hpp"
 
 namespace solver {
@@ -18,7 +18,6 @@ struct CvodeCall {
 
 struct CvodeObjects {
   CvodeCall call;
-  Method method;
   int states;
   SUNContext context;
   N_Vector y;
@@ -27,5 +26,10 @@ struct CvodeObjects {
   SUNMatrix matrix;              // BDF
   SUNLinearSolver linear;        // BDF
 };
+
+// A vector of `states` entries, zero, in one block (cvode_vector.cpp). Null where there is no memory.
+N_Vector make_vector(int states, SUNContext context);
+
+inline double* data(N_Vector v) { return static_cast<double*>(v->content); }
 
 }  // namespace solver

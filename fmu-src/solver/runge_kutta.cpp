@@ -1,14 +1,23 @@
-// Steps of DOP853: which step sizes are tried, and what is kept for the next step.
+// DOP853: one step at one size, which sizes are tried, the dense output, and what is kept for the next step.
 //
 // Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, second edition, sections II.4 to II.6.
 #include "runge_kutta.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <utility>
 
-#include "attempt.hpp"
+#include "dormand_prince.hpp"
 
 namespace solver {
 namespace {
+
+namespace table = dormand_prince;
+
+// The error that one step may make, as a fraction of the tolerance of the whole solution. Tuned on the wheel's scenes.
+constexpr double share_of_tolerance = 0.03;
 
 constexpr int most_attempts = 40;
 
@@ -19,100 +28,206 @@ constexpr double safety = 0.9;
 // step, and adds at most 8 % to the step's error.
 constexpr double stretch = 1.01;
 
+// Made of square roots, because pow may differ between platforms in the last bit.
+double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
+
 }  // namespace
 
-bool RungeKutta::start(const Problem& problem, double t, const double* y, Step* step) {
-  step->set_point(t, y, problem.states);
+// One step of the engine, as wide as the state.
+template <int width>
+struct RungeKutta::Work {
+  RungeKutta& engine;
+  const Problem& problem;
+  Counters* counters;
+  Step& step;
+  double h = engine.size_;  // s
+  alignas(16) double weights[width] = {}, at[width] = {};
+
+  double norm(const double* x) const { return weighted_norm<width>(x, weights); }
+
+  // f at t and y as stage i; returns the margin, NaN where the rates are not finite.
+  double evaluate(int i, double t, const double* y) {
+    ++counters->rhs;
+    const double margin = problem.derivative(problem.owner, t, y, engine.f_[i]);
+    if (margin < step.lowest_margin) step.lowest_margin = margin;
+    return margin;
+  }
+
+  // h sum of row_j f_j.
+  template <const auto& row>
+  void combine(double* sum) const {
+    const auto add = [&]<std::size_t... j>(std::index_sequence<j...>) {
+      for (int i = 0; i < width; ++i) sum[i] = h * ((row[j].weight * engine.f_[row[j].stage][i]) + ...);
+    };
+    add(std::make_index_sequence<std::size(row)>());
+  }
+  template <const auto& row>
+  void advance(double* y) const {
+    double change[width];
+    combine<row>(change);
+    for (int i = 0; i < width; ++i) y[i] = step.y_start[i] + change[i];
+  }
+
+  template <const auto& row>
+  static constexpr double time_of() {
+    double sum = 0;
+    for (const table::Term& term : row) sum += term.weight;
+    return sum;
+  }
+  template <int i, const auto& row>
+  bool stage(double* y) {
+    advance<row>(y);
+    return !std::isnan(evaluate(i, step.start + time_of<row>() * h, y));
+  }
+
+  void end_step() { advance<table::b>(step.y_end); }
+
+  // The four evaluations that only the dense output and the next step need.
+  bool evaluate_rest(double* margin) {
+    *margin = evaluate(12, step.end, step.y_end);
+    return !std::isnan(*margin) && stage<13, table::a_13>(at) && stage<14, table::a_14>(at) &&
+           stage<15, table::a_15>(at);
+  }
+
+  // Both estimates together, as DOP853 weighs them.
+  double error() const {
+    double e_3[width], e_5[width];
+    combine<table::e_3>(e_3);
+    combine<table::e_5>(e_5);
+    const double high = norm(e_5), low = norm(e_3);
+    return high == 0 ? 0 : high * high / std::sqrt(high * high + 0.01 * low * low);
+  }
+
+  // The error of the step over h in units of the weights; infinite where f is not finite.
+  double try_size() {
+    const bool done = stage<1, table::a_1>(at) && stage<2, table::a_2>(at) && stage<3, table::a_3>(at) &&
+                      stage<4, table::a_4>(at) && stage<5, table::a_5>(at) && stage<6, table::a_6>(at) &&
+                      stage<7, table::a_7>(at) && stage<8, table::a_8>(at) && stage<9, table::a_9>(step.y_inside) &&
+                      stage<10, table::a_10>(at) && stage<11, table::a_11>(at);
+    if (!done) return INFINITY;
+    step.inside_share = time_of<table::a_9>();
+    end_step();
+    return error();
+  }
+
+  // From f and from its change over a short Euler step (II.4).
+  double guess_size() {
+    const double *f = engine.f_[0], speed = norm(f), longest = problem.longest_step;
+    const double euler = speed > 0 ? std::fmin(0.01 * norm(step.y_start) / speed, 0.01 * longest) : 0;
+    if (!(euler > 0)) return longest;
+    for (int i = 0; i < width; ++i) at[i] = step.y_start[i] + euler * f[i];
+    if (std::isnan(evaluate(1, step.start + euler, at))) return euler;
+    for (int i = 0; i < width; ++i) at[i] = (engine.f_[1][i] - f[i]) / euler;
+    const double change = std::fmax(longest * speed, longest * longest * norm(at));  // over the longest step
+    return longest * std::fmin(1, eighth_root(0.01 / change));
+  }
+
+  // The error divided by h^8 changes along the motion, and is expected to change by the same factor once more
+  // (Gustafsson, ACM TOMS 20 (1994) 496: predictive step control). On the wheel hardly any step is then rejected.
+  double next_size(double found) {
+    const double error = std::fmax(found, 1e-6);  // smaller errors, as after a step cut short, are mostly rounding
+    const double before = engine.last_error_;
+    const double trend = before > 0 ? (h / engine.size_) * eighth_root(before / error) : 1;
+    engine.last_error_ = error;
+    return h * std::clamp(safety / eighth_root(error) * std::clamp(trend, 0.5, 2.0), 0.2, 10.0);
+  }
+
+  // Null, or the reason why no step is accepted.
+  const char* make_step(double stop) {
+    if (engine.rates_ == 16)
+      std::copy_n(engine.f_[12], width, engine.f_[0]);
+    else
+      engine.margin_ = evaluate(0, step.start, step.y_start);
+    if (std::isnan(engine.margin_)) return "the rates of the states are not finite";
+    problem.weights(problem.owner, share_of_tolerance * problem.share, step.y_start, weights);
+    double& liked = engine.liked_[problem.passage];
+    if (liked == 0) liked = guess_size();
+    return accept_step(stop, &liked);
+  }
+
+  // Tries smaller and smaller steps until one is accepted.
+  const char* accept_step(double stop, double* liked) {
+    const double limit = engine.limit_,
+                 longest = limit > 0 ? std::fmin(limit, problem.longest_step) : problem.longest_step;
+    const double t = step.start;
+    h = std::fmin(*liked, longest);
+    bool rejected = false;
+    for (int attempts = 0; attempts < most_attempts; ++attempts) {
+      const bool stops = t + stretch * h >= stop;
+      if (stops) h = stop - t;
+      const bool waits = stops || h == limit;  // most often the problem changes where this step ends
+      if (!stops && h <= rounding_at(t)) break;
+      step.end = stops ? stop : t + h;
+      step.lowest_margin = engine.margin_;
+      double error = try_size();
+      if (error <= 1 && !waits && !evaluate_rest(&engine.margin_)) error = INFINITY;
+      if (!(error <= 1)) {
+        h = *liked = h * std::fmax(0.2, safety / eighth_root(error));
+        rejected = true;
+        continue;
+      }
+      const double next = next_size(error);
+      // A step that was cut short shows little, so the size wanted before it is kept. After a rejection a step does not
+      // grow.
+      *liked = rejected ? std::fmin(h, next) : h < *liked ? std::fmax(*liked, next) : next;
+      engine.size_ = h;
+      engine.rates_ = waits ? 12 : 16;
+      return nullptr;
+    }
+    return "the step size became too small";
+  }
+
+  // DOP853 gives the dense output as nested products, x = (t - start) / h:
+  //   y = y_0 + x (p_0 + (1 - x) (p_1 + x (p_2 + (1 - x) (p_3 + x (p_4 + (1 - x) (p_5 + x p_6)))))).
+  // Here it is sorted by the powers of s = x - 1.
+  void expand() {
+    double p_3[width], p_4[width], p_5[width], p_6[width], margin;
+    if (engine.rates_ == 12) evaluate_rest(&margin);
+    combine<table::d_3>(p_3);
+    combine<table::d_4>(p_4);
+    combine<table::d_5>(p_5);
+    combine<table::d_6>(p_6);
+    const auto& f = engine.f_;
+    auto& c = step.c;
+    for (int i = 0; i < width; ++i) {
+      const double p_0 = step.y_end[i] - step.y_start[i], p_1 = h * f[0][i] - p_0;
+      const double p_2 = 2 * p_0 - h * (f[0][i] + f[12][i]);
+      c[0][i] = step.y_end[i];
+      c[1][i] = h * f[12][i];
+      c[2][i] = (p_3[i] + p_4[i]) - (p_1 + 2 * p_2);
+      c[3][i] = (2 * p_3[i] + 3 * p_4[i]) - (p_2 + p_5[i] + p_6[i]);
+      c[4][i] = (p_3[i] + 3 * p_4[i]) - (3 * p_5[i] + 4 * p_6[i]);
+      c[5][i] = p_4[i] - (3 * p_5[i] + 6 * p_6[i]);
+      c[6][i] = -(p_5[i] + 4 * p_6[i]);
+      c[7][i] = -p_6[i];
+    }
+    step.degree = 7;
+  }
+};
+
+// What `body` makes of the work on a step.
+template <class Body>
+auto RungeKutta::with_work(const Problem& problem, Counters* counters, Step* step, const Body& body) {
+  if (problem.states == 8) return body(Work<8>{*this, problem, counters, *step});
+  return body(Work<max_states>{*this, problem, counters, *step});
+}
+
+bool RungeKutta::start(const Problem&) {
   limit_ = 0;
   rates_ = 0;
   last_error_ = 0;
   return true;
 }
 
-// The error divided by h^8 changes along the motion, and is expected to change by the same factor once more
-// (Gustafsson, ACM TOMS 20 (1994) 496: predictive step control). On the wheel hardly any step is then rejected.
-double RungeKutta::next_size(double h, double error) {
-  error = std::fmax(error, 1e-6);  // smaller errors, as after a step cut short, are mostly rounding
-  const double trend = last_error_ > 0 ? (h / size_) * eighth_root(last_error_ / error) : 1;
-  last_error_ = error;
-  return h * std::clamp(safety / eighth_root(error) * std::clamp(trend, 0.5, 2.0), 0.2, 10.0);
-}
-
-// What `body` makes of an attempt as wide as the state.
-template <class Body>
-auto RungeKutta::with_attempt(const Problem& problem, Counters* counters, Step* step, const Body& body) {
-  if (width_of(problem.states) == 8) return body(Attempt<8>(problem, counters, step, f_, size_));
-  return body(Attempt<max_states>(problem, counters, step, f_, size_));
-}
-
 bool RungeKutta::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
-  return with_attempt(problem, counters, step,
-                      [&](auto attempt) { return advance_wide(attempt, problem, stop, step); });
-}
-
-template <int width>
-bool RungeKutta::advance_wide(Attempt<width>& attempt, const Problem& problem, double stop, Step* step) {
-  step->start = step->end;
-  std::copy_n(step->y_end, width, step->y_start);
-  step->degree = -1;
-  if (rates_ == 16)
-    std::copy_n(f_[12], width, f_[0]);
-  else
-    margin_ = attempt.evaluate(0, step->start, step->y_start);
-  failure_ = std::isnan(margin_) ? "the rates of the states are not finite" : nullptr;
-  if (!failure_) {
-    attempt.weigh();
-    double& liked = liked_[problem.passage];
-    if (liked == 0) liked = attempt.guess_size();
-    failure_ = accept_step(attempt, problem.longest_step, stop, &liked, step);
-  }
+  failure_ = with_work(problem, counters, step, [&](auto work) { return work.make_step(stop); });
   limit_ = 0;
-  if (!failure_) return true;
-  rates_ = 0;
-  step->end = step->start;
-  std::copy_n(step->y_start, width, step->y_end);
-  return false;
-}
-
-// Tries smaller and smaller steps until one is accepted. Null, or the reason why none was.
-template <int width>
-const char* RungeKutta::accept_step(Attempt<width>& attempt, double longest, double stop, double* liked, Step* step) {
-  if (limit_ > 0) longest = std::fmin(limit_, longest);
-  const double t = step->start;
-  double h = std::fmin(*liked, longest);
-  bool rejected = false;
-  for (int attempts = 0; attempts < most_attempts; ++attempts) {
-    const bool stops = t + stretch * h >= stop;
-    if (stops) h = stop - t;
-    const bool waits = stops || h == limit_;  // most often the problem changes where this step ends
-    if (!stops && h <= rounding_at(t)) break;
-    step->end = stops ? stop : t + h;
-    step->lowest_margin = margin_;
-    double error = attempt.try_size(h);
-    if (error <= 1 && !waits && !(attempt.evaluate_end(&margin_) && attempt.evaluate_interior())) error = INFINITY;
-    if (!(error <= 1)) {
-      h = *liked = h * std::fmax(0.2, safety / eighth_root(error));
-      rejected = true;
-      continue;
-    }
-    const double next = next_size(h, error);
-    // A step that was cut short shows little, so the size wanted before it is kept. After a rejection a step does not
-    // grow.
-    *liked = rejected ? std::fmin(h, next) : h < *liked ? std::fmax(*liked, next) : next;
-    size_ = h;
-    rates_ = waits ? 12 : 16;
-    return nullptr;
-  }
-  return "the step size became too small";
+  if (failure_) rates_ = 0;
+  return !failure_;
 }
 
 void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) {
-  if (rates_ < 12) return;
-  with_attempt(problem, counters, step, [&](auto attempt) {
-    double margin;
-    if (rates_ == 12 && attempt.evaluate_end(&margin)) attempt.evaluate_interior();
-    attempt.expand();
-  });
+  if (rates_ >= 12) with_work(problem, counters, step, [](auto work) { work.expand(); });
 }
 
 // `rates` holds the evaluations of the last step that were made, 0, 12 or 16.
@@ -132,7 +247,7 @@ bool RungeKutta::fits(const Problem& problem, Step* step) {
   if (rates_ != 12 && rates_ != 16) return false;
   if (!(size_ > 0) || std::fabs(step->end - step->start - size_) > rounding_at(step->end)) return false;
   Step same = *step;
-  with_attempt(problem, nullptr, &same, [](auto attempt) { attempt.end_step(); });
+  with_work(problem, nullptr, &same, [](auto work) { work.end_step(); });
   const bool fits = std::equal(step->y_end, step->y_end + problem.states, same.y_end);
   *step = same;
   return fits;

@@ -3,14 +3,14 @@
 // Nothing is kept from step to step except the wanted size of the next one: a restart is free and a snapshot is a copy.
 #pragma once
 
-#include "engine.hpp"
+#include "step.hpp"
 
 namespace solver {
 
 class RungeKutta final : public Engine {
  public:
   // The size of the first step is the one wanted last, or a guess from state and tolerance.
-  bool start(const Problem& problem, double t, const double* y, Step* step) override;
+  bool start(const Problem& problem) override;
   bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
 
   // A step that ends at a stop or at the limit of a first step leaves out the four evaluations that only the dense
@@ -24,15 +24,9 @@ class RungeKutta final : public Engine {
 
  private:
   template <int width>
-  class Attempt;
+  struct Work;
   template <class Body>
-  auto with_attempt(const Problem& problem, Counters* counters, Step* step, const Body& body);
-  template <int width>
-  bool advance_wide(Attempt<width>& attempt, const Problem& problem, double stop, Step* step);
-  template <int width>
-  const char* accept_step(Attempt<width>& attempt, double longest, double stop, double* liked, Step* step);
-
-  double next_size(double h, double error);
+  auto with_work(const Problem& problem, Counters* counters, Step* step, const Body& body);
   bool fits(const Problem& problem, Step* step);
 
   double liked_[2] = {};   // size of the next step, s, outside of passages and inside; 0: none was made

@@ -30,7 +30,7 @@ struct Parabola {
 
 Sample Search::sample(double t) const {
   double y[max_states];
-  step_.read(t, problem_.states, y);
+  step.read(t, problem.states, y);
   return sample(t, y);
 }
 
@@ -64,12 +64,8 @@ std::optional<Search::Fall> Search::look(Sample lo, Sample mid, Sample hi, int d
 
 std::optional<double> Search::find_first_fall(Sample lo, Sample hi) const {
   if (lo.g < 0) return lo.t;
-  if (!(hi.t > lo.t)) return {};
-  double instants[max_extremes + 1];
-  int pieces = problem_.extremes ? problem_.extremes(problem_.owner, lo.t, hi.t, instants) : 0;
-  instants[pieces++] = hi.t;
-  for (int i = 0; i < pieces; ++i) {
-    const Sample end = i + 1 < pieces ? sample(instants[i]) : hi;
+  for (std::size_t i = 0; lo.t < hi.t; ++i) {
+    const Sample end = i < extremes.size() && extremes[i] < hi.t ? sample(extremes[i]) : hi;
     int budget = most_samples;
     if (const auto fall = look(lo, sample(0.5 * (lo.t + end.t)), end, most_halvings, &budget))
       return fall_through(fall->before, fall->below);

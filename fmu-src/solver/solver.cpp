@@ -1,7 +1,9 @@
-// Steps of the chosen engine, and what is looked for inside each.
+// Steps of the chosen engine, what is looked for inside each, and snapshots: what is remembered, as numbers, each
+// checked before it is used.
 #include "solver.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace solver {
 
@@ -21,7 +23,8 @@ bool Solver::restart(const Problem& problem, Method method, double t, const doub
   ++counters_.restarts;
   pending_ = Outcome::failed;
   failure_ = nullptr;
-  if (!engine().start(problem_, t, y, &step_)) return false;
+  step_.set_point(t, y, problem_.states);
+  if (!engine().start(problem_)) return false;
   resume();
   return true;
 }
@@ -62,13 +65,21 @@ bool Solver::make_step() {
   stop_time_ = never;
   // Where the stop time differs from the time reached by rounding only, the solution is moved there.
   if (stop > known_until_ && reaches(stop)) {
-    double y[max_states];
-    std::copy_n(step_.y_end, max_states, y);
-    return engine().start(problem_, stop, y, &step_);
+    step_.set_point(stop, step_.y_end, problem_.states);
+    return engine().start(problem_);
   }
-  if (!engine().advance(problem_, stop, &counters_, &step_)) return false;
-  ++counters_.steps;
-  return true;
+  step_.start = step_.end;
+  std::copy_n(step_.y_end, max_states, step_.y_start);
+  step_.inside_share = 0;
+  step_.degree = -1;
+  const bool done = engine().advance(problem_, stop, &counters_, &step_);
+  if (done) {
+    ++counters_.steps;
+  } else {
+    step_.end = step_.start;
+    std::copy_n(step_.y_start, max_states, step_.y_end);
+  }
+  return done;
 }
 
 void Solver::expand(Counters* counters) const {
@@ -82,10 +93,10 @@ void Solver::look_for_events(double from) {
   const std::span<const double> extremes(instants, static_cast<std::size_t>(count));
   for (int i = 0; i < problem_.watched_count; ++i) {
     const Watched& watched = problem_.watched[i];
-    const Search search(problem_, step_, watched, watched.by_margin ? &counters_.rhs : &counters_.roots);
+    const Search search = {problem_, step_, watched, extremes, watched.by_margin ? &counters_.rhs : &counters_.roots};
     Sample lo = {from, values_[i]}, hi = {};
     if (watched.by_margin) {
-      if (!comes_near(search, extremes)) continue;
+      if (!comes_near(search)) continue;
       expand(&counters_);
       lo = search.sample(from);
     } else {
@@ -105,11 +116,11 @@ void Solver::look_for_events(double from) {
 
 // Whether a function watched by the margin may fall. Where an input has an extreme inside the step, the function is
 // evaluated there too, because none of the step's own evaluations may have come near it.
-bool Solver::comes_near(const Search& search, std::span<const double> extremes) {
+bool Solver::comes_near(const Search& search) {
   if (step_.lowest_margin < problem_.near) return true;
-  if (!extremes.empty()) expand(&counters_);
+  if (!search.extremes.empty()) expand(&counters_);
   const auto is_near = [&](double t) { return t < known_until_ && search.sample(t).g < problem_.near; };
-  return std::any_of(extremes.begin(), extremes.end(), is_near);
+  return std::any_of(search.extremes.begin(), search.extremes.end(), is_near);
 }
 
 // Most steps are far from an event, which a value inside the step that is known anyway is enough to show.
@@ -125,6 +136,53 @@ void Solver::read(double t, double* y) const {
   const double rounding = rounding_at(t);
   if (t > step_.start + rounding && t < step_.end - rounding) expand(&uncounted);
   step_.read(t, problem_.states, y);
+}
+
+// Fields are written only when they are read; a solver that is saved stays as it is.
+void Solver::visit(support::Archive& archive) {
+  archive("method").count(method_, 0, static_cast<int>(Method::runge_kutta));
+  archive("outcome of the last step").count(pending_, 0, static_cast<int>(Outcome::failed));
+  archive("event").count(event_, 0, std::numeric_limits<int>::max());
+  archive("time known, s").number(known_until_);
+  archive("time of the event, s").number(event_time_);
+  archive("values of watched functions").numbers(values_, max_watched);
+  archive("time of a stop, s").range(stop_time_, -archive.greatest, never);
+  archive("counters");
+  for (long long* count : counters_.all()) archive.tally(*count);
+  archive("start of the step, s").number(step_.start);
+  archive("end of the step, s").number(step_.end);
+  archive("states at the ends of the step").numbers(step_.y_start, problem_.states);
+  archive.numbers(step_.y_end, problem_.states);
+  if (archive.reads() && !restored_fits()) archive.refuse();
+  for (Engine* one : engines_)
+    if (!archive.fault()) one->visit(archive, problem_, &step_, one == &engine());
+}
+
+void Solver::save_history(support::Archive& archive) const { const_cast<Solver&>(*this).visit(archive); }
+
+bool Solver::restore_history(const Problem& problem, support::Archive& archive) {
+  problem_ = problem;
+  step_ = {};
+  step_.degree = -1;
+  runge_kutta_ = {};
+  visit(archive);
+  failure_ = pending_ == Outcome::failed ? "the solver had failed before the state was saved" : nullptr;
+  if (archive.is_sound()) return true;
+  failure_ = "the solver's history could not be restored";
+  const double none[max_states] = {};
+  step_.set_point(0, none, problem.states);  // reading it is harmless
+  pending_ = Outcome::failed;
+  return false;
+}
+
+// Times in order, and those that one outcome goes with; an event that is watched.
+bool Solver::restored_fits() const {
+  bool watched = false;
+  for (int i = 0; i < problem_.watched_count; ++i) watched = watched || problem_.watched[i].event == event_;
+  if (pending_ == Outcome::event && !watched) return false;
+  if (!(step_.start <= known_until_ && known_until_ <= step_.end)) return false;
+  if (pending_ == Outcome::failed) return step_.start == step_.end;
+  return known_until_ == event_time_ || (pending_ == Outcome::stepped && known_until_ == step_.end);
 }
 
 }  // namespace solver

@@ -1,12 +1,11 @@
 // One initial-value problem y' = f(t, y) and its solution step by step: dense output, events, endings, snapshots.
 //
-// Engines behind one interface (engine.hpp): CVODE's Adams and BDF, and DOP853.
+// Engines behind one interface (step.hpp): CVODE's Adams and BDF, and DOP853.
 // Knows no wheel and no FMI. Time is the owner's own clock (s). Steps never see the times at which results are read, so
 // the communication grid cannot change a bit of the solution; only a stop time that the owner sets cuts a step short.
 #pragma once
 
 #include <cmath>
-#include <span>
 
 #include "cvode_engine.hpp"
 #include "problem.hpp"
@@ -68,7 +67,7 @@ class Solver {
   bool make_step();
   void expand(Counters* counters) const;
   void look_for_events(double from);
-  bool comes_near(const Search& search, std::span<const double> extremes);
+  bool comes_near(const Search& search);
   bool stays_above(const Search& search, Sample lo, Sample hi) const;
   void visit(support::Archive& archive);
   bool restored_fits() const;

@@ -29,7 +29,8 @@ void Step::set_point(double t, const double* y, int states) {
   lowest_margin = never;
   inside_share = 0;
   degree = 0;
-  for (double* place : {y_start, y_end}) std::fill(std::copy_n(y, states, place), place + max_states, 0.0);
+  std::copy_n(y, states, y_start);
+  std::copy_n(y_start, states, y_end);
 }
 
 void Step::read(double t, int states, double* y) const {
@@ -37,10 +38,7 @@ void Step::read(double t, int states, double* y) const {
   if (t >= end - rounding) return void(std::copy_n(y_end, states, y));
   if (t <= start + rounding) return void(std::copy_n(y_start, states, y));
   const double s = (t - end) / (end - start);
-  if (states == 8) return evaluate<8>(c, degree, s, y);
-  double wide[max_states];
-  states < 8 ? evaluate<8>(c, degree, s, wide) : evaluate<max_states>(c, degree, s, wide);
-  std::copy_n(wide, states, y);
+  states == 8 ? evaluate<8>(c, degree, s, y) : evaluate<max_states>(c, degree, s, y);
 }
 
 }  // namespace solver

@@ -1,12 +1,13 @@
-// The last step of a solution, whichever engine made it, and its dense output: one Taylor polynomial about the end.
+// The last step of a solution, its dense output, one Taylor polynomial about the end, and the engine that makes it: one
+// interface for all methods.
 //
-// Arrays have max_states entries; those beyond the problem's states are zero. Loops run over `width`, 8 or 12, so that
-// the compiler knows their length.
+// Arrays have max_states entries. Loops run over `width`, the problem's number of states as a constant.
 #pragma once
 
 #include <cmath>
 #include <limits>
 
+#include "bytes.hpp"
 #include "problem.hpp"
 
 namespace solver {
@@ -16,17 +17,15 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 // Two times closer than this are the same instant, s.
 inline double rounding_at(double t) { return 8 * std::numeric_limits<double>::epsilon() * std::fabs(t); }
 
-constexpr int width_of(int states) { return states <= 8 ? 8 : max_states; }
-
 // Root mean square of weight times entry: even and odd ones apart, which the processor sums side by side.
 template <int width>
-double weighted_norm(const double* x, const double* weights, int states) {
+double weighted_norm(const double* x, const double* weights) {
   double even = 0, odd = 0;
   for (int i = 0; i < width; i += 2) {
     even += (x[i] * weights[i]) * (x[i] * weights[i]);
     odd += (x[i + 1] * weights[i + 1]) * (x[i + 1] * weights[i + 1]);
   }
-  return std::sqrt((even + odd) / states);
+  return std::sqrt((even + odd) / width);
 }
 
 struct Step {
@@ -41,11 +40,35 @@ struct Step {
   int degree;
   alignas(16) double c[max_degree + 1][max_states];
 
-  // A step of no length: y is known at t alone.
+  // A step of no length: y is known at t alone. y may be y_end.
   void set_point(double t, const double* y, int states);
 
   // y (states entries) at t inside the step; at its ends, up to a few roundings of t, what is kept there.
   void read(double t, int states, double* y) const;
+};
+
+// Keeps what it needs from step to step; the step itself belongs to the solver.
+class Engine {
+ public:
+  // The next step starts anew. False where the engine could not be set up: failure().
+  virtual bool start(const Problem& problem) = 0;
+
+  // One step from the end of the last one, which `step` is moved to, up to `stop` (s) at the latest. False where none
+  // is accepted: failure() gives the reason.
+  virtual bool advance(const Problem& problem, double stop, Counters* counters, Step* step) = 0;
+
+  // The polynomial of the step, which is not known yet.
+  virtual void expand(const Problem& problem, Counters* counters, Step* step) = 0;
+
+  // All that is needed to go on after the step, saved or read; `active`: the step is this engine's. What is read and
+  // could not belong to the step is refused.
+  virtual void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) = 0;
+
+  const char* failure() const { return failure_; }
+
+ protected:
+  ~Engine() = default;
+  const char* failure_ = nullptr;
 };
 
 }  // namespace solver

@@ -36,7 +36,7 @@ const ReactionRates& Reading::reaction_rates() {
     WheelReactionRates rates;
     double force_dot[2];
     const WheelLoad load_rate = load_rate_of(*now_.inputs);
-    now_.formulation->rates(&now_.scene, &load_rate, now_.y, &rates);
+    wheel_reaction_rates(now_.formulation, &now_.scene, &load_rate, now_.y, &rates);
     wheel_horizontal_force_rates(&pose(), dynamics().lambda, rates.lambda_dot, force_dot);
     rates_ = {rates, force_dot[0], force_dot[1]};
   }
@@ -46,7 +46,7 @@ const ReactionRates& Reading::reaction_rates() {
 ReactionRates Reading::response(const WheelLoad& load_dot) {
   WheelReactionRates rates;
   double force_dot[2];
-  now_.formulation->response(&now_.scene, &load_dot, now_.y, &rates);
+  wheel_reaction_response(now_.formulation, &now_.scene, &load_dot, now_.y, &rates);
   wheel_horizontal_force(&pose(), rates.lambda_dot, force_dot);
   return {rates, force_dot[0], force_dot[1]};
 }

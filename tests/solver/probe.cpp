@@ -2,10 +2,9 @@
 // watched are functions of Python.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <new>
 
-#include "cvode_vector.hpp"
+#include "cvode_objects.hpp"
 #include "solver.hpp"
 
 #define PUBLIC extern "C" __attribute__((visibility("default")))
@@ -14,14 +13,17 @@ namespace {
 
 // harmonic: y = (cos t, -sin t) from (1, 0); stiff: van der Pol's with `parameter`; falling: (height, speed) under
 // g = 9.81; clock: y = t; explosive: y' = y^2; ending: y' = 1 up to t = 1, then no number.
+constexpr int states = 8;
+
 enum Kind : int { harmonic, stiff, falling, clock, explosive, ending };
 using Watch = double (*)(double t, const double* y);
 
-// Weights: 1 / (share tolerance (1 + |y|)).
+// A problem has one state or two, and others that rest at zero: a solver takes eight.
+// Weights: 1 / (share tolerance (1 + |y|)), so that the norm is that of the first states alone.
 struct Setting {
   Kind kind;
   solver::Method method;
-  double parameter, tolerance, longest_step, y[2];
+  double parameter, tolerance, longest_step, y[states];
   Watch each_step, by_margin;  // events 1 and 2; null: not watched
   const double* extremes;
   int extreme_count;
@@ -35,6 +37,7 @@ struct Probe {
 const Setting& of(void* owner) { return *static_cast<Setting*>(owner); }
 
 void rates(const Setting& s, double t, const double* y, double* d) {
+  std::fill_n(d, states, 0.0);
   if (s.kind == harmonic) d[0] = y[1], d[1] = -y[0];
   if (s.kind == stiff) d[0] = y[1], d[1] = s.parameter * (1 - y[0] * y[0]) * y[1] - y[0];
   if (s.kind == falling) d[0] = y[1], d[1] = -9.81;
@@ -55,7 +58,8 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
 }
 
 void weights(void* owner, double share, const double* y, double* w) {
-  for (int i = 0; i < states_of(of(owner)); ++i) w[i] = 1 / (share * of(owner).tolerance * (1 + std::fabs(y[i])));
+  const double per_state = std::sqrt(static_cast<double>(states) / states_of(of(owner)));
+  for (int i = 0; i < states; ++i) w[i] = per_state / (share * of(owner).tolerance * (1 + std::fabs(y[i])));
 }
 
 double watched(void* owner, int, double t, const double* y) { return of(owner).each_step(t, y); }
@@ -69,7 +73,7 @@ int extremes_inside(void* owner, double t_lo, double t_hi, double* instants) {
 solver::Problem problem_of(Probe* probe) {
   Setting& s = probe->setting;
   solver::Problem p = {};
-  p.states = states_of(s), p.owner = &s, p.derivative = derivative, p.weights = weights;
+  p.states = states, p.owner = &s, p.derivative = derivative, p.weights = weights;
   if (s.each_step) p.watch({1, watched, false});
   if (s.by_margin) p.watch({2, margin, true});
   p.extremes = s.extreme_count ? extremes_inside : nullptr, p.near = 0.1, p.longest_step = s.longest_step;
@@ -125,17 +129,16 @@ PUBLIC bool probe_restore(Probe* probe, const unsigned char* bytes, std::size_t 
 }
 
 // The vector's operations by SUNDIALS's public interface, on x_i = i - 1.25 and y_i = 2 + i: all entries of eight
-// results, those beyond `states` too, then the largest |x|, the norm, and whether the fused operations are there. Some
-// of them SUNDIALS demands and this wheel never reaches. Returns the width.
-PUBLIC int probe_vector(int states, double* out) {
+// results, then the largest |x|, the norm, and whether the fused operations are there. Some of them SUNDIALS demands
+// and this wheel never reaches.
+PUBLIC void probe_vector(int length, double* out) {
   SUNContext context;
   SUNContext_Create(SUN_COMM_NULL, &context);
-  N_Vector x = solver::make_vector(states, context), y = N_VClone(x), z = N_VClone(x);
-  const int width = solver::width_of(states);
-  for (int i = 0; i < states; ++i) solver::data(x)[i] = i - 1.25, solver::data(y)[i] = 2 + i;
+  N_Vector x = solver::make_vector(length, context), y = N_VClone(x), z = N_VClone(x);
+  for (int i = 0; i < length; ++i) solver::data(x)[i] = i - 1.25, solver::data(y)[i] = 2 + i;
   const auto show = [&] {
-    out = std::copy_n(solver::data(z), width, out);
-    std::memset(solver::data(z), 0, static_cast<std::size_t>(states) * sizeof(double));
+    out = std::copy_n(solver::data(z), length, out);
+    std::fill_n(solver::data(z), length, 0.0);
   };
   N_VConst(3, z), show();
   N_VLinearSum(2, x, -3, y, z), show();
@@ -146,8 +149,7 @@ PUBLIC int probe_vector(int states, double* out) {
   N_VInv(x, z), show();
   N_VAddConst(x, 0.5, z), show();
   out[0] = N_VMaxNorm(x), out[1] = N_VWrmsNorm(x, y);
-  out[2] = x->ops->nvlinearcombination && x->ops->nvscaleaddmulti && x->ops->nvscalevectorarray;
+  out[2] = x->ops->nvlinearcombination && x->ops->nvscaleaddmulti;
   for (N_Vector v : {x, y, z}) N_VDestroy(v);
   SUNContext_Free(&context);
-  return width;
 }

@@ -11,6 +11,7 @@ PROBLEMS = {  # the state at t = 0
     **{"harmonic": (1.0, 0.0), "stiff": (2.0, 0.0), "falling": (1.0, 0.0)},
     **{"clock": (0.0,), "explosive": (1.0,), "ending": (1.0,)},
 }
+STATES = 8  # those beyond the problem's own rest at zero
 STEPPED, EVENT, FAILED = range(3)
 WATCH = CFUNCTYPE(c_double, c_double, POINTER(c_double))
 # Begin of the last step, time known, instant and name of the event; counts since the start.
@@ -20,7 +21,7 @@ Progress = namedtuple("Progress", "begin known instant event steps rhs jacobians
 class Setting(Structure):
     _fields_ = (
         *(("kind", c_int), ("method", c_int), ("parameter", c_double), ("tolerance", c_double)),
-        *(("longest_step", c_double), ("y", c_double * 2), ("each_step", WATCH), ("by_margin", WATCH)),
+        *(("longest_step", c_double), ("y", c_double * STATES), ("each_step", WATCH), ("by_margin", WATCH)),
         *(("extremes", POINTER(c_double)), ("extreme_count", c_int)),
     )
 
@@ -33,9 +34,9 @@ class Solver:
         each_step=None, by_margin=None, extremes=(),
     ):  # fmt: skip
         self.library, y = library, PROBLEMS[problem]
-        self.y = (c_double * len(y))()
+        self.states = len(y)
         self.setting = Setting(
-            list(PROBLEMS).index(problem), METHODS[method], parameter, tolerance, longest_step, (c_double * 2)(*y),
+            list(PROBLEMS).index(problem), METHODS[method], parameter, tolerance, longest_step, (c_double * STATES)(*y),
             WATCH(each_step or 0), WATCH(by_margin or 0), (c_double * len(extremes))(*extremes), len(extremes),
         )  # fmt: skip
         for name, result in (("new", c_void_p), ("failure", c_char_p), ("save", c_size_t)):
@@ -57,8 +58,9 @@ class Solver:
         return self.run(np.inf, 1)
 
     def read(self, t):
-        self.library.probe_read(self.probe, c_double(t), self.y)
-        return list(self.y)
+        y = (c_double * STATES)()
+        self.library.probe_read(self.probe, c_double(t), y)
+        return y[: self.states]
 
     def stop_before(self, t):
         self.library.probe_stop_before(self.probe, c_double(t))
@@ -67,7 +69,7 @@ class Solver:
         self.library.probe_limit_first_step(self.probe, c_double(dt))
 
     def restart(self, t, y):
-        self.library.probe_restart(self.probe, c_double(t), (c_double * len(y))(*y))
+        self.library.probe_restart(self.probe, c_double(t), (c_double * STATES)(*y))
 
     @property
     def now(self):
@@ -95,6 +97,6 @@ def harmonic(t):
 
 def vector(library, states):
     """Results of eight operations of the vector, entry by entry, its largest entry, its norm, fused operations."""
-    out = np.zeros(8 * 16 + 3)
-    width = library.probe_vector(states, out.ctypes.data_as(POINTER(c_double)))
-    return out[: 8 * width].reshape(8, width), *out[8 * width : 8 * width + 3]
+    out = np.zeros(8 * states + 3)
+    library.probe_vector(states, out.ctypes.data_as(POINTER(c_double)))
+    return out[:-3].reshape(8, states), *out[-3:]

@@ -5,7 +5,7 @@ Names, order, frames and units are those of wheel_equations.h.
 
 import sys
 from collections.abc import Callable
-from ctypes import CFUNCTYPE, Structure, c_void_p, cast
+from ctypes import CFUNCTYPE, Structure, addressof, c_void_p, cast
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from .paths import ROOT
 sys.path.insert(0, str(ROOT / "examples" / "python"))
 
 from wheel_equations import *  # noqa: E402, F403
-from wheel_equations import Dynamics, Formulation, Kinematics, Motion  # noqa: E402
+from wheel_equations import LIBRARY, Dynamics, Formulation, Kinematics, Motion  # noqa: E402
 
 PAPER_START = Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
 
@@ -25,13 +25,14 @@ def values(record: Structure) -> np.ndarray:
     return np.hstack([np.atleast_1d(np.asarray(x, dtype=float)) for x in numbers])
 
 
-def each(function: Callable, *tables: np.ndarray) -> list:
-    """function(row i of every table) for all i; rows go by address, a microsecond a call."""
+def each(function: Callable, *tables: np.ndarray, of: tuple[Structure, ...] = ()) -> list:
+    """function(*of, row i of every table) for all i; rows go by address, a microsecond a call."""
     assert all(t.flags.c_contiguous for t in tables)
-    arguments = [c_void_p] * len(tables)
+    fixed = [addressof(record) for record in of]
+    arguments = [c_void_p] * len((*of, *tables))
     call = CFUNCTYPE(function.restype, *arguments)(cast(function, c_void_p).value)
     starts = [range(t.ctypes.data, t.ctypes.data + t.nbytes, t.strides[0]) for t in tables]
-    return [call(*addresses) for addresses in zip(*starts, strict=True)]
+    return [call(*fixed, *addresses) for addresses in zip(*starts, strict=True)]
 
 
 def table(record: type[Structure], rows: int) -> np.ndarray:
@@ -66,17 +67,17 @@ def dynamics_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray) -
 
 def rates_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray) -> np.ndarray:
     """lambda_dot and tau_dot, row by row."""
-    return _rates(formulation.rates, scenes, load_dots, y)
+    return _rates(LIBRARY.wheel_reaction_rates, formulation, scenes, load_dots, y)
 
 
 def response_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray) -> np.ndarray:
     """The part of load_dots in `rates_each`."""
-    return _rates(formulation.response, scenes, load_dots, y)
+    return _rates(LIBRARY.wheel_reaction_response, formulation, scenes, load_dots, y)
 
 
-def _rates(function: Callable, *tables: np.ndarray) -> np.ndarray:
+def _rates(function: Callable, formulation: Formulation, *tables: np.ndarray) -> np.ndarray:
     out = np.zeros((len(tables[0]), 4))
-    each(function, *tables, out)
+    each(function, *tables, out, of=(formulation,))
     return out
 
 
