@@ -1,6 +1,7 @@
-// Instances: creation, logging.
+// Instances: creation, logging, the checks that many functions share.
 #include "instance.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
@@ -9,6 +10,9 @@
 #include "digits.hpp"
 
 namespace fmi {
+
+using wheel::Topic;
+
 namespace {
 
 // In the order of the topics: the category, the status of the message, and that of a call that ends with it. At their
@@ -20,7 +24,7 @@ constexpr struct {
               {"logStatusWarning", fmi2Warning, fmi2OK},
               {"logStatusError", fmi2Error, fmi2Error},
               {"logStatusDiscard", fmi2Warning, fmi2Discard}};
-static_assert(std::size(topics) == static_cast<std::size_t>(wheel::Topic::discard) + 1);
+static_assert(std::size(topics) == static_cast<std::size_t>(Topic::discard) + 1);
 
 // A message is a format to the master, and '#' opens a variable name: both characters are doubled.
 void escape(const char* text, char* out, std::size_t size) {
@@ -32,16 +36,32 @@ void escape(const char* text, char* out, std::size_t size) {
   out[length] = 0;
 }
 
+// The call state that a phase stands for, by the name that the standard uses.
+const char* name_of_state(Phase phase) {
+  using namespace legality;
+  constexpr struct {
+    unsigned phases;
+    const char* name;
+  } states[] = {{instantiated, "instantiated"},
+                {initialization, "initialization mode"},
+                {step_complete, "step complete"},
+                {event_mode, "event mode"},
+                {continuous_time, "continuous-time mode"},
+                {step_failed, "step failed"},
+                {terminated, "terminated"},
+                {error, "error"}};
+  return std::find_if(std::begin(states), std::end(states), [=](auto& s) { return s.phases & bits(phase); })->name;
+}
+
 }  // namespace
 
-const char* category_of(wheel::Topic topic) { return topics[static_cast<unsigned>(topic)].category; }
+const char* category_of(Topic topic) { return topics[static_cast<unsigned>(topic)].category; }
 
 Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind)
-    : reporter{
-          .owner = this,
-          .listens = [](const void* i, wheel::Topic topic) { return static_cast<const Instance*>(i)->wants(topic); },
-          .take = [](const void* i, wheel::Topic topic,
-                     const char* message) { static_cast<const Instance*>(i)->pass_on(topic, message); }},
+    : reporter{.owner = this,
+               .listens = [](const void* i, Topic topic) { return static_cast<const Instance*>(i)->wants(topic); },
+               .take = [](const void* i, Topic topic,
+                          const char* message) { static_cast<const Instance*>(i)->pass_on(topic, message); }},
       simulation(reporter, kind) {
   if (!callbacks) return;
   logger_ = callbacks->logger;
@@ -54,7 +74,7 @@ Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callba
   if (!memory) return nullptr;
   auto* instance = ::new (memory) Instance(callbacks, kind);
   instance->name_ = static_cast<char*>(std::memcpy(static_cast<char*>(memory) + sizeof(Instance), name, name_size));
-  const unsigned all = 0xf, quiet = all & ~(1u << static_cast<unsigned>(wheel::Topic::event));
+  const unsigned all = 0xf, quiet = all & ~(1u << static_cast<unsigned>(Topic::event));
   instance->logged_topics = logging ? all : quiet;
   return instance;
 }
@@ -68,18 +88,27 @@ void Instance::destroy(Instance* instance) {
 fmi2Status Instance::refuse(const Rule& rule) {
   const bool slave = simulation.kind() == wheel::Kind::co_simulation;
   if (!rule.is_for(simulation.kind()))
-    return log(wheel::Topic::error, "%s belongs to %s; this instance was made for %s.", called,
+    return log(Topic::error, "%s belongs to %s; this instance was made for %s.",
                slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
-  if (simulation.phase() == wheel::Phase::ended)
-    return log(wheel::Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", called,
-               simulation.ending().text, support::Digits(simulation.time()).text);
-  return log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", called,
-             call_state_name(simulation.phase()));
+  if (simulation.phase() == Phase::ended)
+    return log(Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", simulation.ending().text,
+               support::Digits(simulation.time()).text);
+  return log(Topic::error, "%s is not allowed in the state \"%s\".", name_of_state(simulation.phase()));
 }
 
-fmi2Status Instance::status_of(wheel::Topic topic) { return topics[static_cast<unsigned>(topic)].call; }
+fmi2Status Instance::prepare_reading(const fmi2ValueReference variables[], std::size_t count) {
+  const fmi2ValueReference *const end = variables + count, *computed = variables;
+  while (computed != end && *computed < wheel::stored_count) ++computed;
+  if (computed == end || has_state(simulation.phase())) return fmi2OK;
+  if (!simulation.is_prepared()) return fmi2Discard;
+  const bool readable = has_state(simulation.phase());
+  const char* const name = wheel::row_of(*computed).name;
+  return check(readable, "%s: \"%s\" has no value before a successful initialization.", name) ? fmi2OK : fmi2Error;
+}
 
-void Instance::pass_on(wheel::Topic topic, const char* message) const {
+fmi2Status Instance::status_of(Topic topic) { return topics[static_cast<unsigned>(topic)].call; }
+
+void Instance::pass_on(Topic topic, const char* message) const {
   char escaped[2 * wheel::Reporter::longest];
   escape(message, escaped, sizeof escaped);
   logger_(environment_, name_, topics[static_cast<unsigned>(topic)].message, category_of(topic), escaped);

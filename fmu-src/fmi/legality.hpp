@@ -19,9 +19,6 @@ struct Rule {
   }
 };
 
-// The call state that the phase stands for, by the name that the standard uses, for messages.
-const char* call_state_name(Phase phase);
-
 // One rule for each function, or for several that are legal together. Whether a variable may be set depends on the
 // variable too: see values.cpp.
 namespace legality {

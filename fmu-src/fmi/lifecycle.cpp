@@ -40,12 +40,12 @@ unsigned topics_of(const char* category) {
 }
 
 fmi2Status switch_logging(Instance& i, bool on, std::size_t count, const fmi2String categories[]) {
-  if (count && !categories) return i.log(Topic::error, "%s: the categories are a null pointer.", i.called);
+  if (count && !categories) return i.log(Topic::error, "%s: the categories are a null pointer.");
   unsigned topics = count ? 0 : topics_of("logAll");
   for (std::size_t k = 0; k < count; ++k) {
     topics |= topics_of(categories[k]);
     if (!topics_of(categories[k]))
-      i.log(Topic::warning, "%s: there is no category \"%s\".", i.called, categories[k] ? categories[k] : "");
+      i.log(Topic::warning, "%s: there is no category \"%s\".", categories[k] ? categories[k] : "");
   }
   i.logged_topics = on ? (count ? topics : i.logged_topics | topics) : i.logged_topics & ~topics;
   return fmi2OK;
@@ -90,7 +90,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
       return i.log(Topic::error,
                    "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
                    "positive.",
-                   i.called, Digits(start).text, Digits(stop).text, Digits(tolerance).text);
+                   Digits(start).text, Digits(stop).text, Digits(tolerance).text);
     i.simulation.set_experiment(start, has_stop ? stop : wheel::Demand::never, has_tolerance ? tolerance : 0);
     return fmi2OK;
   });

@@ -18,7 +18,7 @@ class SpinLock {
   std::atomic_flag taken_;
 };
 
-// A set of pointers, a sorted array that doubles, behind a spin lock: instances may live in many threads.
+// A set of pointers, an array that doubles, behind a spin lock: instances may live in many threads.
 class Registry {
  public:
   // False if there is no memory.
@@ -29,10 +29,9 @@ class Registry {
 
  private:
   std::size_t place_of(const void* pointer) const;
-  bool contains(const void* pointer) const;
 
   SpinLock lock_;
-  const void** sorted_ = nullptr;
+  const void** held_ = nullptr;
   std::size_t capacity_ = 0, used_ = 0;
 };
 

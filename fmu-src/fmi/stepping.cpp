@@ -25,17 +25,16 @@ bool is_past(double t, double stop) { return t - stop > step_rounding * (std::fa
 
 fmi2Status check_step(Instance& i, double t, double h) {
   if (!std::isfinite(t) || !std::isfinite(h) || h < 0)
-    return i.log(Topic::error, "%s from %s s by %s s: times must be finite and the step not negative.", i.called,
-                 Digits(t).text, Digits(h).text);
+    return i.log(Topic::error, "%s from %s s by %s s: times must be finite and the step not negative.", Digits(t).text,
+                 Digits(h).text);
   if (std::fabs(t + h - t - h) > step_digits * h)
-    return i.log(Topic::error, "%s from %s s by %s s: the step is lost in the rounding of the time.", i.called,
-                 Digits(t).text, Digits(h).text);
+    return i.log(Topic::error, "%s from %s s by %s s: the step is lost in the rounding of the time.", Digits(t).text,
+                 Digits(h).text);
   const double reached = i.simulation.time(), stop = i.simulation.stop_time();
   if (!same_time(t, reached, h))
-    return i.log(Topic::error, "%s from %s s: the FMU has reached %s s.", i.called, Digits(t).text,
-                 Digits(reached).text);
+    return i.log(Topic::error, "%s from %s s: the FMU has reached %s s.", Digits(t).text, Digits(reached).text);
   if (is_past(t + h, stop))
-    return i.log(Topic::error, "%s to %s s: the stop time is %s s.", i.called, Digits(t + h).text, Digits(stop).text);
+    return i.log(Topic::error, "%s to %s s: the stop time is %s s.", Digits(t + h).text, Digits(stop).text);
   return fmi2OK;
 }
 
@@ -51,8 +50,8 @@ fmi2Status get_status(fmi2Component c, const char* name, const fmi2StatusKind& a
                       Value* value, Read read) {
   const int kind = std::bit_cast<int>(asked);
   return guarded(c, legality::get_status, name, [=](Instance& i) {
-    if (!value) return i.log(Topic::error, "%s: the value is a null pointer.", i.called);
-    if (kind != known_kind) return i.log(Topic::discard, "%s: there is no status of kind %d.", i.called, kind);
+    if (!value) return i.log(Topic::error, "%s: the value is a null pointer.");
+    if (kind != known_kind) return i.log(Topic::discard, "%s: there is no status of kind %d.", kind);
     *value = read(i);
     return fmi2OK;
   });

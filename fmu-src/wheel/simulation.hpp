@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "advance.hpp"
 #include "exchange.hpp"
@@ -36,13 +37,19 @@ class Simulation {
   // stop_time: infinite for none. tolerance <= 0: the default one.
   void set_experiment(double start_time, double stop_time, double tolerance);
 
-  // Parameters and inputs: variables below stored_count. Values are checked as a whole by prepare.
-  void store(unsigned variable, double value);
+  // Parameters and inputs, which are checked as a whole by prepare; in a run of model exchange a state too, and the law
+  // of friction is decided for it.
+  void set(unsigned variable, double value);
   void set_input_derivative(unsigned variable, int order, double value);
 
   // Before the end of the initialization: the initial state from the present parameters, true if it exists. Else one
   // message per fault through the Reporter.
   bool prepare(bool report = true);
+  // The same where it has not been done; the faults are reported once.
+  bool is_prepared() {
+    const bool done = phase() != Phase::initializing && phase() != Phase::faulty;
+    return done || prepare(phase() == Phase::initializing);
+  }
 
   // To the caller's time t. `stepped`: it was reached; `event`: the model ended at time(); `failed`: the state is that
   // before the call.
@@ -53,21 +60,19 @@ class Simulation {
   bool has_ended() const { return run_->ended_by != Event::none; }
   // What ended the model, to stand behind "the wheel".
   Ending ending() const { return ending_of(setup_, run_->ended_by); }
-  // What was set of a variable below stored_count.
-  double stored(unsigned variable) const;
   // The calculated variables now; inputs just set take effect at once. Valid until the next call that changes anything.
-  Reading& reading();
+  Reading& reading() { return reading_.is_of(version()) ? reading_ : read(); }
   double value(unsigned variable) {
     return variable < stored_count ? stored(variable) : row_of(variable).read(reading());
   }
-  // d unknown / d known at this instant, of a calculated variable by an input, during a run in model exchange by a
-  // state too; zero for what depends on inputs only through time.
-  double sensitivity(unsigned unknown, unsigned known);
+  // d unknown / d known of a calculated variable: at this instant by an input, during a run in model exchange by a
+  // state too, before the run by a parameter, which has none where no initial states lie near. Zero for what depends on
+  // inputs only through time.
+  std::optional<double> derivative(unsigned unknown, unsigned known);
 
   // Model exchange: see exchange.hpp. `decide` ends the run where the model ends.
   void set_time(double t);
   void set_states(const double* x);
-  void set_state(int index, double value);
   const double* states() { return run_->y; }
   void nominals(double* x) const { scales_at(setup_, run_->y[setup_.formulation->spin_index], x); }
   bool derivatives(double* x_dot) { return wheel::derivatives(setup_, run_.change(), x_dot); }
@@ -87,9 +92,12 @@ class Simulation {
   InForce in_force_now() const;
   WheelScene scene_now() const;
   long long version() const { return demand_.version() + run_.version(); }
+  Reading& read();
   Present present() const;
   Present present_for(unsigned known);
-  double partial(unsigned unknown, unsigned known);
+  double stored(unsigned variable) const;
+  std::optional<double> start_derivative(unsigned unknown, unsigned parameter);
+  std::optional<double> partial(unsigned unknown, unsigned known);
 
   Reporter reporter_;
   Versioned<Demand> demand_;
