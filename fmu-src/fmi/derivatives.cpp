@@ -2,10 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "digits.hpp"
 #include "instance.hpp"
 
-using fmi::guarded, fmi::Instance, support::Digits, wheel::Role, wheel::Topic;
+using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
@@ -49,7 +48,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
       if (!check_input(i, v[k])) return fmi2Error;
       if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k]))
         return i.log(Topic::error, "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed.",
-                     orders[k], Digits(values[k]).text, wheel::row_of(v[k]).name, wheel::max_order);
+                     orders[k], values[k], wheel::row_of(v[k]).name, wheel::max_order);
     }
     for (std::size_t k = 0; k < n; ++k) i.simulation.set_input_derivative(v[k], orders[k], values[k]);
     return fmi2OK;
@@ -88,7 +87,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
         const std::optional<double> slope = i.simulation.derivative(unknowns[u], knowns[k]);
         if (!slope)
           return i.log(Topic::error, "%s: no valid initial values near %s = %s for a derivative.",
-                       wheel::row_of(knowns[k]).name, Digits(i.simulation.value(knowns[k])).text);
+                       wheel::row_of(knowns[k]).name, i.simulation.value(knowns[k]));
         values[u] += seeds[k] * *slope;
       }
     }

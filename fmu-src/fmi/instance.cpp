@@ -7,8 +7,6 @@
 #include <iterator>
 #include <new>
 
-#include "digits.hpp"
-
 namespace fmi {
 
 using wheel::Topic;
@@ -92,7 +90,7 @@ fmi2Status Instance::refuse(const Rule& rule) {
                slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
   if (simulation.phase() == Phase::ended)
     return log(Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", simulation.ending().text,
-               support::Digits(simulation.time()).text);
+               simulation.time());
   return log(Topic::error, "%s is not allowed in the state \"%s\".", name_of_state(simulation.phase()));
 }
 

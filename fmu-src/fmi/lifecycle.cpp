@@ -3,11 +3,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "digits.hpp"
 #include "instance.hpp"
 #include "registry.hpp"
 
-using fmi::guarded, fmi::Instance, support::Digits, wheel::Topic;
+using fmi::guarded, fmi::Instance, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
@@ -90,7 +89,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
       return i.log(Topic::error,
                    "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
                    "positive.",
-                   Digits(start).text, Digits(stop).text, Digits(tolerance).text);
+                   start, stop, tolerance);
     i.simulation.set_experiment(start, has_stop ? stop : wheel::Demand::never, has_tolerance ? tolerance : 0);
     return fmi2OK;
   });

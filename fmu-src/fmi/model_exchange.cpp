@@ -2,10 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "digits.hpp"
 #include "instance.hpp"
 
-using fmi::guarded, fmi::Instance, fmi::no_fault, support::Digits, wheel::Phase, wheel::Topic;
+using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
@@ -28,7 +27,7 @@ fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], st
 
 fmi2Status answer(Instance& i, bool finite, const char* what) {
   if (finite) return fmi2OK;
-  return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", Digits(i.simulation.time()).text, what);
+  return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.simulation.time(), what);
 }
 
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
@@ -73,7 +72,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
   return guarded(c, legality::set_time, "fmi2SetTime", [=](Instance& i) {
-    if (!std::isfinite(t)) return i.log(Topic::error, "%s: %s s: the time must be finite.", Digits(t).text);
+    if (!std::isfinite(t)) return i.log(Topic::error, "%s: %s s: the time must be finite.", t);
     i.simulation.set_time(t);
     return fmi2OK;
   });

@@ -3,10 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "digits.hpp"
 #include "instance.hpp"
 
-using fmi::guarded, fmi::Instance, support::Digits, wheel::Role, wheel::Topic, wheel::Type;
+using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic, wheel::Type;
 namespace legality = fmi::legality;
 
 namespace {
@@ -59,13 +58,12 @@ bool check_value(Instance& i, fmi2ValueReference variable, double value) {
   const bool bounded = variable < wheel::stored_count, low = value < row.min;
   const bool inside = std::isfinite(value) && (!bounded || (!low && value <= row.max));
   if (!is_running(i.simulation.phase()) || inside) return true;
-  const Digits given(value), limit(low ? row.min : row.max), kept(i.simulation.value(variable));
+  const double kept = i.simulation.value(variable);
   if (std::isfinite(value))
-    i.log(Topic::discard, "%s: %s = %s: it must be at %s %s; the value stays %s.", row.name, given.text,
-          low ? "least" : "most", limit.text, kept.text);
+    i.log(Topic::discard, "%s: %s = %s: it must be at %s %s; the value stays %s.", row.name, value,
+          low ? "least" : "most", low ? row.min : row.max, kept);
   else
-    i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", row.name, given.text,
-          kept.text);
+    i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", row.name, value, kept);
   return false;
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "digits.hpp"
 #include "law.hpp"
 
 namespace wheel {
@@ -148,9 +147,8 @@ void end(const Setup& setup, Run& run, const Solution& solution, const Reporter&
 // The state is that before the step, and stays so.
 void fail(const Setup& setup, const Run& before, Run& run, const Solution& solution, const Reporter& reporter) {
   if (run.phase == Phase::stepping) move_to(setup, solution.solver.known_until(), run, solution, reporter);
-  reporter.log(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.",
-               support::Digits(setup.start_time + run.t).text,
-               support::Digits(state_now(run, solution)[setup.formulation->spin_index], 4).text,
+  reporter.log(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.", setup.start_time + run.t,
+               Digits(state_now(run, solution)[setup.formulation->spin_index], 4),
                solution.failure ? solution.failure : solution.solver.failure());
   run = before;
   run.phase = Phase::failed;

@@ -3,13 +3,10 @@
 
 #include <cmath>
 
-#include "digits.hpp"
 #include "events.hpp"
 
 namespace wheel {
 namespace {
-
-using support::Digits;
 
 bool strictly_positive(unsigned v) {
   using namespace stored;
@@ -22,20 +19,18 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
     reporter.log(Topic::error, format...);
     return false;
   };
-  if (!std::isfinite(value)) return fault("%s = %s: a finite number is needed.", row.name, Digits(value, 9).text);
+  if (!std::isfinite(value)) return fault("%s = %s: a finite number is needed.", row.name, Digits(value, 9));
   if (v == stored::theta_start && !(std::sin(value) > flat_angle && value > 0 && value < row.max))
-    return fault("theta_start = %s rad: the wheel must stand above the ground, 0 < theta < pi.", Digits(value, 9).text);
+    return fault("theta_start = %s rad: the wheel must stand above the ground, 0 < theta < pi.", Digits(value, 9));
   if ((v == stored::psi_start || v == stored::phi_start) && std::fabs(value) > largest_angle)
-    return fault("%s = %s rad: beyond %s rad an angle has too few digits.", row.name, Digits(value, 9).text,
-                 Digits(largest_angle, 6).text);
+    return fault("%s = %s rad: beyond %s rad an angle has too few digits.", row.name, Digits(value, 9),
+                 Digits(largest_angle, 6));
   if (strictly_positive(v) && value <= row.min)
-    return fault("%s = %s: it must be greater than %s.", row.name, Digits(value, 9).text, Digits(row.min, 6).text);
-  if (value < row.min)
-    return fault("%s = %s: it must be at least %s.", row.name, Digits(value, 9).text, Digits(row.min, 6).text);
+    return fault("%s = %s: it must be greater than %s.", row.name, Digits(value, 9), Digits(row.min, 6));
+  if (value < row.min) return fault("%s = %s: it must be at least %s.", row.name, Digits(value, 9), Digits(row.min, 6));
   if (v == stored::slope && value >= row.max)
-    return fault("slope = %s rad: it must be less than pi/2.", Digits(value, 9).text);
-  if (value > row.max)
-    return fault("%s = %s: it must be at most %s.", row.name, Digits(value, 9).text, Digits(row.max, 6).text);
+    return fault("slope = %s rad: it must be less than pi/2.", Digits(value, 9));
+  if (value > row.max) return fault("%s = %s: it must be at most %s.", row.name, Digits(value, 9), Digits(row.max, 6));
   return true;
 }
 
@@ -54,7 +49,7 @@ bool check_inertia(const Reporter& reporter, const double* v) {
   const double largest = std::fmax(J_x, std::fmax(J_y, J_z));
   if (largest <= (sum - largest) * (1 + rounding) || !std::isfinite(sum)) return true;
   reporter.log(Topic::error, "J_x, J_y, J_z = %s, %s, %s kg m2: none may exceed the sum of the other two.",
-               Digits(J_x, 9).text, Digits(J_y, 9).text, Digits(J_z, 9).text);
+               Digits(J_x, 9), Digits(J_y, 9), Digits(J_z, 9));
   return false;
 }
 
@@ -81,8 +76,8 @@ bool check_start(const Demand& demand, Reading& start, const Reporter& reporter)
   reporter.log(Topic::error,
                "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, g = %s m/s2, "
                "omega_z = %s rad/s.",
-               Digits(v[stored::m], 3).text, Digits(v[stored::J_z], 3).text, Digits(v[stored::r_0], 3).text,
-               Digits(v[stored::g], 3).text, Digits(start.kinematics().omega_z, 3).text);
+               Digits(v[stored::m], 3), Digits(v[stored::J_z], 3), Digits(v[stored::r_0], 3), Digits(v[stored::g], 3),
+               Digits(start.kinematics().omega_z, 3));
   return false;
 }
 

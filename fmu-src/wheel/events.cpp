@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <iterator>
 
-#include "digits.hpp"
 #include "law.hpp"
 
 namespace wheel {
@@ -146,9 +145,9 @@ static_assert(std::size(event_rows) == row_count && row_count <= solver::max_wat
 namespace {
 
 // An instant for messages: it is not found more exactly than to a nanosecond.
-support::Digits instant_of(const Setup& setup, double t) {
+double instant_of(const Setup& setup, double t) {
   const double time = setup.start_time + t;
-  return support::Digits(std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time);
+  return std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time;
 }
 
 }  // namespace
@@ -189,7 +188,7 @@ void count_event(const Setup& setup, Event event, double t, Run& run, const Repo
   Tally& tally = run.tallies[static_cast<int>(event)];
   tally.last = t;
   if (tally.count++ >= logged_one_by_one) return;
-  reporter.log(Topic::warning, row_of(event).observed, instant_of(setup, t).text);
+  reporter.log(Topic::warning, row_of(event).observed, instant_of(setup, t));
 }
 
 // A change to another law is not a transition.
@@ -198,11 +197,10 @@ void log_transition(const Setup& setup, const WheelFriction& before, Run& run, c
   const auto is_exact = [](WheelFrictionKind law) { return law == WHEEL_ROLLING || law == WHEEL_HELD; };
   if (!is_exact(before.kind) || !is_exact(friction.kind) || !differ(before, friction)) return;
   ++run.transitions;
-  if (!reporter.wants(Topic::event)) return;
-  const support::Digits instant = instant_of(setup, run.t);
+  const double instant = instant_of(setup, run.t);
   if (friction.kind == WHEEL_HELD)
-    return reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
-  reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
+    return reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant);
+  reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant,
                before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
 }
 
@@ -210,20 +208,19 @@ void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter)
   for (const EventRow& row : event_rows) {
     const Tally& tally = run.tallies[static_cast<int>(row.event)];
     if (row.summary && tally.count > logged_one_by_one)
-      reporter.log(Topic::warning, row.summary, support::Digits(static_cast<double>(tally.count)).text,
-                   support::Digits(static_cast<double>(logged_one_by_one)).text, instant_of(setup, tally.last).text);
+      reporter.log(Topic::warning, row.summary, static_cast<double>(tally.count),
+                   static_cast<double>(logged_one_by_one), instant_of(setup, tally.last));
   }
 }
 
 void log_end(const Setup& setup, const Run& run, const Reporter& reporter) {
   reporter.log(Topic::discard, row_of(run.ended_by).ended, ending_of(setup, run.ended_by).text,
-               support::Digits(setup.start_time + run.t).text,
-               support::Digits(run.y[setup.formulation->tilt_index], 6).text);
+               setup.start_time + run.t, Digits(run.y[setup.formulation->tilt_index], 6));
 }
 
 Ending ending_of(const Setup& setup, Event event) {
   Ending ending;
-  std::snprintf(ending.text, sizeof ending.text, row_of(event).ending, support::Digits(setup.mu_max).text);
+  std::snprintf(ending.text, sizeof ending.text, row_of(event).ending, Digits(setup.mu_max).text);
   return ending;
 }
 

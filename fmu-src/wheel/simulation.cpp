@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
-#include <cstdio>
 
 #include "checks.hpp"
-#include "digits.hpp"
 #include "law.hpp"
 
 namespace wheel {
 
-void Reporter::log(Topic topic, const char* format, ...) const {
-  if (!wants(topic)) return;
+void Reporter::print(Topic topic, const char* format, ...) const {
   char message[longest];
   std::va_list arguments;
   va_start(arguments, format);
@@ -34,9 +31,8 @@ void Simulation::set_experiment(double start_time, double stop_time, double tole
   demand.stop_time = stop_time;
   demand.tolerance = taken;
   if (tolerance > 0 && tolerance != taken)
-    reporter_.log(Topic::warning, "The tolerance %s is outside [%s, %s]; %s is used.",
-                  support::Digits(tolerance, 6).text, support::Digits(tightest_tolerance, 6).text,
-                  support::Digits(loosest_tolerance, 6).text, support::Digits(taken, 6).text);
+    reporter_.log(Topic::warning, "The tolerance %s is outside [%s, %s]; %s is used.", Digits(tolerance, 6),
+                  Digits(tightest_tolerance, 6), Digits(loosest_tolerance, 6), Digits(taken, 6));
 }
 
 double Simulation::stored(unsigned variable) const {
