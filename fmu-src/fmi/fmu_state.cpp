@@ -8,42 +8,34 @@
 #include <new>
 
 #include "instance.hpp"
-#include "registry.hpp"
 
-using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Topic;
+using fmi::guarded, fmi::Held, fmi::Instance, fmi::no_fault, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
 
-struct Snapshot {
+struct Snapshot : Held {
   std::size_t size;  // of the bytes behind this header
   unsigned char* bytes() { return reinterpret_cast<unsigned char*>(this + 1); }
 };
 
-Snapshot* snapshot_of(fmi2FMUstate state) {
-  return fmi::fmu_states.holds(state) ? static_cast<Snapshot*>(state) : nullptr;
-}
+Snapshot* snapshot_of(fmi2FMUstate state) { return static_cast<Snapshot*>(fmi::fmu_states.find(state)); }
 
-// Frees a state; false for a pointer that was never handed out, which is left alone.
-bool free_state(fmi2FMUstate state) {
-  const bool known = fmi::fmu_states.remove(state);
-  if (known) std::free(state);
-  return known;
-}
+// A pointer that was never handed out is left alone.
+void free_state(fmi2FMUstate state) { std::free(static_cast<Snapshot*>(fmi::fmu_states.remove(state))); }
 
 // A state of `size` bytes: the previous one where its size fits, else a new one, and the previous one is freed. Null
 // without memory: then the previous one is kept.
-Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
-  Snapshot* const old = snapshot_of(previous);
+Snapshot* allocate(fmi2FMUstate* state, std::size_t size) {
+  Snapshot* const old = snapshot_of(*state);
   if (old && old->size == size) return old;
   void* const memory = std::malloc(sizeof(Snapshot) + size);
   if (!memory) return nullptr;
-  if (!fmi::fmu_states.add(memory)) {
-    std::free(memory);
-    return nullptr;
-  }
-  free_state(previous);
-  return ::new (memory) Snapshot{size};
+  free_state(*state);
+  auto* const snapshot = ::new (memory) Snapshot{{}, size};
+  fmi::fmu_states.add(snapshot);
+  *state = static_cast<Held*>(snapshot);
+  return snapshot;
 }
 
 constexpr const char *null_pointer = "the state, the size or the bytes are a null pointer",
@@ -65,10 +57,9 @@ extern "C" {
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, legality::always, "fmi2GetFMUstate", [=](Instance& i) {
     if (!state) return null_pointer;
-    Snapshot* snapshot = allocate(*state, i.simulation.state_size());
+    Snapshot* snapshot = allocate(state, i.simulation.state_size());
     if (!snapshot) return no_memory;
     i.simulation.save_state(snapshot->bytes());
-    *state = snapshot;
     return no_fault;
   });
 }
@@ -81,7 +72,9 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, legality::always, "fmi2FreeFMUstate", [=](Instance&) {
-    if (state && free_state(*state)) *state = nullptr;
+    if (!state || !snapshot_of(*state)) return;
+    free_state(*state);
+    *state = nullptr;
   });
 }
 
@@ -109,10 +102,9 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     Instance::destroy(scratch);
     if (fault)
       return i.log(Topic::error, "%s: the bytes are damaged or not a state of this FMU and version (%s).", fault);
-    Snapshot* snapshot = allocate(*state, size);
+    Snapshot* snapshot = allocate(state, size);
     if (!snapshot) return i.fail(no_memory);
     std::memcpy(snapshot->bytes(), bytes, size);
-    *state = snapshot;
     return fmi2OK;
   });
 }

@@ -6,11 +6,12 @@
 
 #include "fmi2Functions.h"
 #include "legality.hpp"
+#include "registry.hpp"
 #include "simulation.hpp"
 
 namespace fmi {
 
-struct Instance {
+struct Instance : Held {
   // One block of memory, the name included. What takes memory later: docs/decisions/others.md. Null if there is none.
   static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind);
   static void destroy(Instance* instance);
@@ -66,7 +67,7 @@ inline constexpr const char* no_fault = nullptr;
 // nothing. The body returns a status, or what is wrong; one without a result cannot fail.
 template <class Body>
 fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, Body&& body) {
-  auto* instance = static_cast<Instance*>(component);
+  auto* instance = static_cast<Instance*>(static_cast<Held*>(component));
   if (!instance || instance->called) return fmi2Error;
   instance->called = name;
   fmi2Status status = fmi2OK;

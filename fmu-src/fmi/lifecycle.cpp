@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "instance.hpp"
-#include "registry.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Topic;
 namespace legality = fmi::legality;
@@ -64,17 +63,17 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     return nullptr;
   }
   const auto kind = type == fmi2CoSimulation ? wheel::Kind::co_simulation : wheel::Kind::model_exchange;
-  Instance* instance = Instance::create(name, callbacks, logging != fmi2False, kind);
-  if (instance && fmi::instances.add(instance)) return instance;
-  if (instance) Instance::destroy(instance);
+  if (Instance* instance = Instance::create(name, callbacks, logging != fmi2False, kind)) {
+    fmi::instances.add(instance);
+    return static_cast<fmi::Held*>(instance);
+  }
   complain(callbacks, name, "fmi2Instantiate: out of memory.");
   return nullptr;
 }
 
 void fmi2FreeInstance(fmi2Component c) {
-  auto* instance = static_cast<Instance*>(c);
-  if (instance && fmi::instances.holds(instance) && !instance->called && fmi::instances.remove(instance))
-    Instance::destroy(instance);
+  auto* instance = static_cast<Instance*>(fmi::instances.find(c));
+  if (instance && !instance->called && fmi::instances.remove(c)) Instance::destroy(instance);
 }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
@@ -106,12 +105,12 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-  if (!fmi::instances.holds(c)) return fmi2Error;
+  if (!fmi::instances.find(c)) return fmi2Error;
   return guarded(c, legality::terminate, "fmi2Terminate", [](Instance& i) { i.simulation.close(); });
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-  if (!fmi::instances.holds(c)) return fmi2Error;
+  if (!fmi::instances.find(c)) return fmi2Error;
   return guarded(c, legality::always, "fmi2Reset", [](Instance& i) { i.simulation.reset(); });
 }
 
