@@ -1,10 +1,12 @@
 // How a run moves on by one communication step: `advance_by_stages` lists the stages, the functions before it are the
 // stages.
-#include "advance.hpp"
+#include "motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "checks.hpp"
 #include "law.hpp"
 
 namespace wheel {
@@ -62,6 +64,35 @@ Outcome take_demand(const Setup& setup, Demand& demand, Run& run, Solution& solu
   return outcome;
 }
 
+// The orbit of a run, from its start.
+Shape shape_of(const Demand& demand) {
+  Shape shape = {{}, demand.tolerance};
+  std::copy_n(demand.parameters, first_input, shape.parameters);
+  for (const unsigned v : {stored::psi_start, stored::phi_start, stored::X_O_start, stored::Y_O_start})
+    shape.parameters[v] = 0;
+  return shape;
+}
+
+// Whether the motion is unfolded. Builds the orbit of the run, or keeps that of an earlier run of the same shape.
+// False: the solver has to step through the motion.
+bool enter_orbit(const Setup& setup, const Demand& demand, Run& run, Solution& solution) {
+  orbit::Orbit& orbit = solution.orbit;
+  const Shape asked = shape_of(demand);
+  solution.owner = {&setup, &run.in_force};
+  const solver::Problem problem = problem_of(solution.owner);
+  if (solution.orbit_shape != asked) {
+    const InForce at_start = run.in_force;  // what is observed on the orbit counts where the run passes it
+    const auto kind = orbit.build(problem, demand.tolerance, pass_on_orbit, setup.start, solution.solver);
+    run.in_force = at_start;
+    solution.orbit_shape = kind == orbit::Orbit::Kind::refused ? Shape() : asked;
+  }
+  if (solution.orbit_shape != asked || !orbit.start_at(problem, setup.start)) return false;
+  run.counted = orbit.counters();
+  const bool ends = orbit.end_time() < Demand::never;
+  solution.orbit_until = ends ? orbit.end_time() : largest_angle / orbit.fastest_turn();
+  return true;
+}
+
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
 Outcome begin(const Setup& setup, const Demand& demand, Run& run, Solution& solution) {
   const bool is_ready = run.phase == Phase::unfolded && solution.orbit_until != Solution::none;
@@ -69,6 +100,26 @@ Outcome begin(const Setup& setup, const Demand& demand, Run& run, Solution& solu
   const bool unfolds = is_unfoldable(setup, run.in_force) && enter_orbit(setup, demand, run, solution);
   run.phase = unfolds ? Phase::unfolded : Phase::stepping;
   return unfolds ? Outcome::stepped : start_solver(setup, run, solution, false);
+}
+
+// Counts and logs what is observed on the orbit up to t.
+void observe_orbit(const Setup& setup, const orbit::Orbit& orbit, double t, Run& run, const Reporter& reporter) {
+  const auto next_of = [&](int event) {
+    const long long next = run.tallies[event].count, falls = orbit.falls_until(event, t);
+    return next < std::min(falls, logged_one_by_one) ? orbit.fall(event, next) : Demand::never;
+  };
+  for (;;) {  // in the order of time
+    int first = 0;
+    for (int event = 1; event < event_count; ++event)
+      if (next_of(event) < next_of(first)) first = event;
+    const double instant = next_of(first);
+    if (instant == Demand::never) break;
+    count_event(setup, static_cast<Event>(first), instant, run, reporter);
+  }
+  for (int event = 0; event < event_count; ++event) {
+    const long long falls = orbit.falls_until(event, t);
+    if (falls > run.tallies[event].count) run.tallies[event] = {falls, orbit.fall(event, falls - 1)};
+  }
 }
 
 void move_to(const Setup& setup, double t, Run& run, const Solution& solution, const Reporter& reporter) {

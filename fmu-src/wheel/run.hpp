@@ -1,12 +1,34 @@
-// What is in force, and how far a run has come. Plain numbers: a run is restored by assignment.
+// The phases of a run, what is in force, and how far it has come. Plain numbers: a run is restored by assignment.
 #pragma once
 
 #include "inputs.hpp"
-#include "phase.hpp"
 #include "problem.hpp"
 #include "wheel_equations.h"
 
 namespace wheel {
+
+// From the first parameter to the end: from the phase follows what can be read, what a step does, and which functions
+// of FMI may be called (fmi/legality.hpp).
+enum class Phase : int {
+  created,          // parameters are being set
+  initializing,     // initialization has begun; no initial state belongs to the present parameters yet
+  faulty,           // the same, and the faults of the present parameters have been logged
+  initial,          // the initial state belongs to the present parameters
+  at_start,         // initialization has ended, and no step has been made
+  stepping,         // the solver steps through the motion
+  unfolded,         // the motion is read from the orbit; nothing is integrated
+  event_mode,       // model exchange: the law of friction is decided
+  continuous_time,  // model exchange: the caller's solver moves the states
+  ended,            // the model has ended, by an event
+  closed,           // the caller has ended the run
+  failed,           // a step has failed; the state is that before it
+  without_start,    // initialization has failed: there is no state
+};
+inline constexpr int phase_count = static_cast<int>(Phase::without_start) + 1;
+
+constexpr bool has_begun(Phase p) { return p >= Phase::at_start; }
+constexpr bool is_running(Phase p) { return p >= Phase::at_start && p <= Phase::continuous_time; }
+constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::without_start; }
 
 // What can happen at an instant that is not known beforehand: the names of the rows of the table in events.cpp. Of two
 // at the same instant the later one counts.

@@ -119,7 +119,7 @@ WheelScene Simulation::scene_now() const {
 }
 
 Present Simulation::present() const {
-  return {setup_.formulation, run_->y, scene_now(), &demand_->inputs, counters_of(*run_, solution_), run_->transitions};
+  return {setup_.formulation, run_->y, scene_now(), &demand_->inputs, &*run_, &solution_};
 }
 
 Reading& Simulation::read() {

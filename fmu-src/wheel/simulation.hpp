@@ -1,5 +1,5 @@
 // One wheel behind FMI: what a caller demands, the setup that follows, the run and its solution. The functions that
-// move the run are in advance.hpp and exchange.hpp; what remains here is what FMI asks for.
+// move the run are in motion.hpp and exchange.hpp; what remains here is what FMI asks for.
 //
 // Knows no FMI types. Times are the caller's; the run has its own clock, zero at the start, so that a start time of 1e9
 // s costs no digits. Messages go to the Reporter complete.
@@ -8,14 +8,32 @@
 #include <cstddef>
 #include <optional>
 
-#include "advance.hpp"
 #include "exchange.hpp"
+#include "motion.hpp"
 #include "reading.hpp"
 #include "reporter.hpp"
 #include "variables.hpp"
-#include "versioned.hpp"
 
 namespace wheel {
+
+// A value that counts its changes, so that what was made of it can be compared with it.
+template <class Value>
+class Versioned {
+ public:
+  explicit Versioned(const Value& value = Value()) : value_(value) {}
+  const Value& operator*() const { return value_; }
+  const Value* operator->() const { return &value_; }
+  // To be changed; whatever was made of the value before is out of date.
+  Value& change() {
+    ++version_;
+    return value_;
+  }
+  long long version() const { return version_; }
+
+ private:
+  Value value_;
+  long long version_ = 0;
+};
 
 class Simulation {
  public:

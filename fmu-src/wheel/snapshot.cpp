@@ -34,7 +34,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   }
   archive("whose solver moves the wheel").count(demand.kind, 0, 1);
   archive("something was set since the last step").count(demand.changed, 0, 1);
-  archive("phase").count(run.phase, 0, static_cast<int>(Phase::count) - 1);
+  archive("phase").count(run.phase, 0, phase_count - 1);
   archive("event that ended the model").count(run.ended_by, 0, event_count - 1);
   archive("s in force, m").range(now.scene.wheel.s, 0, archive.greatest);
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
@@ -154,7 +154,7 @@ const char* Simulation::load_state(const unsigned char* bytes, std::size_t size,
   if (archive.fault()) return archive.fault();
   if (const char* fault = complete(demand, setup, run)) return fault;
   Reading reading;
-  reading.set({setup.formulation, run.y, run.in_force.scene_at(run.t), nullptr, {}, 0});
+  reading.set({setup.formulation, run.y, run.in_force.scene_at(run.t), nullptr});
   if (foreign && has_state(run.phase) && !is_inside(reading)) return "the state is outside the model";
   if (demand.kind != kind()) return "they belong to an instance of the other kind";
   if (run.phase != Phase::stepping && !archive.is_sound()) return "bytes are left over";
