@@ -8,30 +8,32 @@
 namespace wheel {
 namespace {
 
-bool strictly_positive(unsigned v) {
+bool is_positive(unsigned v) {
   using namespace stored;
   return v == m || v == r_0 || v == J_x || v == J_y || v == J_z || v == omega_s;
 }
 
 bool check_value(const Reporter& reporter, unsigned v, double value) {
+  using namespace stored;
   const Row& row = row_of(v);
-  const auto fault = [&](auto... format) {
-    reporter.log(Topic::error, format...);
-    return false;
-  };
-  if (!std::isfinite(value)) return fault("%s = %s: a finite number is needed.", row.name, Digits(value, 9));
-  if (v == stored::theta_start && !(std::sin(value) > flat_angle && value > 0 && value < row.max))
-    return fault("theta_start = %s rad: the wheel must stand above the ground, 0 < theta < pi.", Digits(value, 9));
-  if ((v == stored::psi_start || v == stored::phi_start) && std::fabs(value) > largest_angle)
-    return fault("%s = %s rad: beyond %s rad an angle has too few digits.", row.name, Digits(value, 9),
-                 Digits(largest_angle, 6));
-  if (strictly_positive(v) && value <= row.min)
-    return fault("%s = %s: it must be greater than %s.", row.name, Digits(value, 9), Digits(row.min, 6));
-  if (value < row.min) return fault("%s = %s: it must be at least %s.", row.name, Digits(value, 9), Digits(row.min, 6));
-  if (v == stored::slope && value >= row.max)
-    return fault("slope = %s rad: it must be less than pi/2.", Digits(value, 9));
-  if (value > row.max) return fault("%s = %s: it must be at most %s.", row.name, Digits(value, 9), Digits(row.max, 6));
-  return true;
+  const char* fault = nullptr;
+  double limit = row.min;
+  if (!std::isfinite(value)) {
+    fault = "%s = %s: a finite number is needed.";
+  } else if (v == theta_start && !(std::sin(value) > flat_angle && value > 0 && value < row.max)) {
+    fault = "%s = %s rad: the wheel must stand above the ground, 0 < theta < %s.";
+    limit = row.max;
+  } else if ((v == psi_start || v == phi_start) && std::fabs(value) > largest_angle) {
+    fault = "%s = %s rad: beyond %s rad an angle has too few digits.";
+    limit = largest_angle;
+  } else if (is_positive(v) ? value <= row.min : value < row.min) {
+    fault = is_positive(v) ? "%s = %s: it must be greater than %s." : "%s = %s: it must be at least %s.";
+  } else if (v == slope ? value >= row.max : value > row.max) {
+    fault = v == slope ? "%s = %s: it must be less than %s." : "%s = %s: it must be at most %s.";
+    limit = row.max;
+  }
+  if (fault) reporter.log(Topic::error, fault, row.name, Digits(value, 9), Digits(limit, 6));
+  return !fault;
 }
 
 // Only the reduced equations are offered to another solver. The number may be any: a restored state is judged here too.
@@ -57,8 +59,7 @@ bool check_inertia(const Reporter& reporter, const double* v) {
 
 bool check_values(const Demand& demand, const Reporter& reporter) {
   bool sound = true;
-  for (unsigned v = 0; v < stored_count; ++v)
-    sound &= check_value(reporter, v, v < first_input ? demand.parameters[v] : demand.inputs[v - first_input][0]);
+  for (unsigned v = 0; v < stored_count; ++v) sound &= check_value(reporter, v, demand.value(v));
   sound &= check_inertia(reporter, demand.parameters);
   sound &= check_kind(reporter, demand);
   return sound;
@@ -72,11 +73,11 @@ bool is_inside(Reading& now) {
 
 bool check_start(const Demand& demand, Reading& start, const Reporter& reporter) {
   if (is_inside(start)) return true;
-  const double* v = demand.parameters;
+  const auto set = [&](stored::Variable v) { return Digits(demand.parameters[v], 3); };
   reporter.log(Topic::error,
                "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, g = %s m/s2, "
                "omega_z = %s rad/s.",
-               Digits(v[stored::m], 3), Digits(v[stored::J_z], 3), Digits(v[stored::r_0], 3), Digits(v[stored::g], 3),
+               set(stored::m), set(stored::J_z), set(stored::r_0), set(stored::g),
                Digits(start.kinematics().omega_z, 3));
   return false;
 }

@@ -110,17 +110,20 @@ bool has_event(const Setup& setup, Run& run) {
                      [&](const EventRow& row) { return row.exchanged && indicator(row, setup, run) <= 0; });
 }
 
-bool decide(const Setup& setup, Run& run, const Reporter& reporter, Event* ending) {
+bool decide(const Setup& setup, Run& run, const Solution& solution, const Reporter& reporter) {
   InForce& now = run.in_force;
   const WheelFriction law = now.scene.friction;
   const WheelGround ground = now.scene.ground;
   const double spin = run.y[setup.formulation->spin_index];
   const bool led = is_led(setup, run);
   if (law.kind == WHEEL_HELD && led) setup.formulation->stop_spin(&now.scene.wheel, run.y);
-  *ending = Event::none;
+  Event ending = Event::none;
   for (const EventRow& row : event_rows)
-    if (ends_run(row, setup) && has_occurred(row, setup, run)) *ending = row.event;
-  if (*ending != Event::none) return false;
+    if (ends_run(row, setup) && has_occurred(row, setup, run)) ending = row.event;
+  if (ending != Event::none) {
+    end_run(setup, ending, run, solution, reporter);
+    return false;
+  }
   const EventRow& changes = row_of(Event::spin_changes);
   for (const EventRow& row : event_rows)
     if (&row != &changes && !ends_run(row, setup) && has_occurred(row, setup, run))

@@ -35,10 +35,6 @@ void Simulation::set_experiment(double start_time, double stop_time, double tole
                   Digits(tightest_tolerance, 6), Digits(loosest_tolerance, 6), Digits(taken, 6));
 }
 
-double Simulation::stored(unsigned variable) const {
-  return variable < first_input ? demand_->parameters[variable] : demand_->inputs[variable - first_input][0];
-}
-
 void Simulation::set(unsigned variable, double value) {
   if (variable >= stored_count) {
     Run& run = run_.change();
@@ -46,9 +42,9 @@ void Simulation::set(unsigned variable, double value) {
     return decide_law(setup_, run.t, run.y, run.in_force);
   }
   if (phase() == Phase::faulty || phase() == Phase::initial) enter(Phase::initializing);
-  if (stored(variable) == value) return;
+  if (demand_->value(variable) == value) return;
   Demand& demand = demand_.change();
-  (variable < first_input ? demand.parameters[variable] : demand.inputs[variable - first_input][0]) = value;
+  demand.value(variable) = value;
   demand.changed = true;
   if (kind() == Kind::model_exchange && is_running(phase())) take_at_once(setup_, demand, run_.change());
 }
@@ -95,15 +91,6 @@ void Simulation::set_time(double t) {
   run.t = run.y_time = t - demand_->start_time;
 }
 
-void Simulation::set_states(const double* x) { std::copy_n(x, state_count, run_.change().y); }
-
-bool Simulation::decide() {
-  Event ending;
-  const bool bends = wheel::decide(setup_, run_.change(), reporter_, &ending);
-  if (ending != Event::none) end_run(setup_, ending, run_.change(), solution_, reporter_);
-  return bends;
-}
-
 // With what was set since the last step.
 InForce Simulation::in_force_now() const {
   InForce now = run_->in_force;
@@ -111,27 +98,23 @@ InForce Simulation::in_force_now() const {
   return now;
 }
 
-// The scene at the present instant; where nothing was set, without a copy of all that is in force.
-WheelScene Simulation::scene_now() const {
+// Where nothing was set, without a copy of all that is in force.
+Present Simulation::present() {
+  state_now(run_.change(), solution_);
   WheelScene scene = demand_->changed ? in_force_now().scene : run_->in_force.scene_at(run_->t);
   scene.ground = WHEEL_GROUND_BY_FORCE;
-  return scene;
-}
-
-Present Simulation::present() const {
-  return {setup_.formulation, run_->y, scene_now(), &demand_->inputs, &*run_, &solution_};
+  return {setup_.formulation, run_->y, scene, &demand_->inputs, &*run_, &solution_};
 }
 
 Reading& Simulation::read() {
-  state_now(run_.change(), solution_);
-  reading_.set(present(), version());
+  const Present now = present();
+  reading_.set(now, version());
   return reading_;
 }
 
 // The same as it answers a change of one known: a brake that is not in use has the law that it would have in use. In
 // model exchange that law waits for an event.
 Present Simulation::present_for(unsigned known) {
-  state_now(run_.change(), solution_);
   Present now = present();
   const bool brake = known == first_input + brake_input && kind() == Kind::co_simulation;
   if (!brake || now.scene.friction.kind != WHEEL_FRICTIONLESS) return now;
@@ -190,7 +173,7 @@ std::optional<double> Simulation::derivative(unsigned unknown, unsigned known) {
 std::optional<double> Simulation::start_derivative(unsigned unknown, unsigned parameter) {
   const Row& row = row_of(parameter);
   if (row.type != Type::real) return 0;
-  const double x = stored(parameter), size = std::fabs(x);
+  const double x = demand_->value(parameter), size = std::fabs(x);
   const double scale = row.min == 0 && x != 0 ? size : std::fmax(size, 1);
   const auto value_at = [&](double near_x) {
     set(parameter, near_x);

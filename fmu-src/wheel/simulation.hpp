@@ -5,11 +5,11 @@
 // s costs no digits. Messages go to the Reporter complete.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 
 #include "exchange.hpp"
-#include "motion.hpp"
 #include "reading.hpp"
 #include "reporter.hpp"
 #include "variables.hpp"
@@ -81,22 +81,22 @@ class Simulation {
   // The calculated variables now; inputs just set take effect at once. Valid until the next call that changes anything.
   Reading& reading() { return reading_.is_of(version()) ? reading_ : read(); }
   double value(unsigned variable) {
-    return variable < stored_count ? stored(variable) : row_of(variable).read(reading());
+    return variable < stored_count ? demand_->value(variable) : row_of(variable).read(reading());
   }
   // d unknown / d known of a calculated variable: at this instant by an input, during a run in model exchange by a
   // state too, before the run by a parameter, which has none where no initial states lie near. Zero for what depends on
   // inputs only through time.
   std::optional<double> derivative(unsigned unknown, unsigned known);
 
-  // Model exchange: see exchange.hpp. `decide` ends the run where the model ends.
+  // Model exchange: see exchange.hpp.
   void set_time(double t);
-  void set_states(const double* x);
+  void set_states(const double* x) { std::copy_n(x, state_count, run_.change().y); }
   const double* states() { return run_->y; }
   void nominals(double* x) const { scales_at(setup_, run_->y[setup_.formulation->spin_index], x); }
   bool derivatives(double* x_dot) { return wheel::derivatives(setup_, run_.change(), x_dot); }
   bool indicators(double* z) { return wheel::indicators(setup_, run_.change(), z); }
   bool has_event() { return wheel::has_event(setup_, run_.change()); }
-  bool decide();
+  bool decide() { return wheel::decide(setup_, run_.change(), solution_, reporter_); }
 
   // Demand, run and the solver's history as portable bytes with a checksum. load_state returns null, or why the bytes
   // could not have been saved: everything is then as it was, unless it is the solver's history that is wrong.
@@ -108,12 +108,10 @@ class Simulation {
  private:
   void write(support::Archive& archive);
   InForce in_force_now() const;
-  WheelScene scene_now() const;
   long long version() const { return demand_.version() + run_.version(); }
   Reading& read();
-  Present present() const;
+  Present present();
   Present present_for(unsigned known);
-  double stored(unsigned variable) const;
   std::optional<double> start_derivative(unsigned unknown, unsigned parameter);
   std::optional<double> partial(unsigned unknown, unsigned known);
 
