@@ -56,14 +56,22 @@ const char* name_of_state(Phase phase) {
 const char* category_of(Topic topic) { return topics[static_cast<unsigned>(topic)].category; }
 
 Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind)
-    : reporter{.owner = this,
-               .listens = [](const void* i, Topic topic) { return static_cast<const Instance*>(i)->wants(topic); },
-               .take = [](const void* i, Topic topic,
-                          const char* message) { static_cast<const Instance*>(i)->pass_on(topic, message); }},
-      simulation(reporter, kind) {
+    : reporter{.owner = this, .listens = listens, .take = take}, simulation(reporter, kind) {
   if (!callbacks) return;
   logger_ = callbacks->logger;
   environment_ = callbacks->componentEnvironment;
+}
+
+bool Instance::listens(const void* instance, Topic topic) {
+  const Instance& i = *static_cast<const Instance*>(instance);
+  return i.logger_ && i.logged_topics & (1u << static_cast<unsigned>(topic));
+}
+
+void Instance::take(const void* instance, Topic topic, const char* message) {
+  const Instance& i = *static_cast<const Instance*>(instance);
+  char escaped[2 * wheel::Reporter::longest];
+  escape(message, escaped, sizeof escaped);
+  i.logger_(i.environment_, i.name_, topics[static_cast<unsigned>(topic)].message, category_of(topic), escaped);
 }
 
 Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind) {
@@ -105,11 +113,5 @@ fmi2Status Instance::prepare_reading(const fmi2ValueReference variables[], std::
 }
 
 fmi2Status Instance::status_of(Topic topic) { return topics[static_cast<unsigned>(topic)].call; }
-
-void Instance::pass_on(Topic topic, const char* message) const {
-  char escaped[2 * wheel::Reporter::longest];
-  escape(message, escaped, sizeof escaped);
-  logger_(environment_, name_, topics[static_cast<unsigned>(topic)].message, category_of(topic), escaped);
-}
 
 }  // namespace fmi

@@ -49,8 +49,8 @@ struct Instance : Held {
 
  private:
   Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind);
-  bool wants(wheel::Topic topic) const { return logger_ && logged_topics & (1u << static_cast<unsigned>(topic)); }
-  void pass_on(wheel::Topic topic, const char* message) const;
+  static bool listens(const void* instance, wheel::Topic topic);
+  static void take(const void* instance, wheel::Topic topic, const char* message);
   static fmi2Status status_of(wheel::Topic topic);
 
   fmi2CallbackLogger logger_ = nullptr;

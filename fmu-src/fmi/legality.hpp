@@ -2,8 +2,8 @@
 // model exchange and 4.2.4 for co-simulation.
 #pragma once
 
-#include "demand.hpp"
 #include "run.hpp"
+#include "setup.hpp"
 
 namespace fmi {
 
@@ -47,8 +47,7 @@ inline constexpr unsigned co_simulation = bits(Kind::co_simulation), model_excha
                           both = co_simulation | model_exchange;
 
 inline constexpr Rule always = {any_state, both};  // logging, reset, FMU states
-inline constexpr Rule setup_experiment = {instantiated, both};
-inline constexpr Rule enter_initialization = {instantiated, both};
+inline constexpr Rule before_initialization = {instantiated, both};
 inline constexpr Rule exit_initialization = {initialization, both};
 inline constexpr Rule terminate = {running | step_failed, both};
 inline constexpr Rule get_values = {initialization | running | stopped, both};
@@ -58,12 +57,10 @@ inline constexpr Rule get_output_derivatives = {step_complete | stopped, co_simu
 inline constexpr Rule do_step = {step_complete, co_simulation};
 inline constexpr Rule cancel_step = {0, co_simulation};
 inline constexpr Rule get_status = {step_complete | step_failed | terminated, co_simulation};
-inline constexpr Rule enter_event_mode = {continuous_time, model_exchange};
+inline constexpr Rule while_integrating = {continuous_time, model_exchange};  // states, end of a step, event mode
 inline constexpr Rule new_discrete_states = {event_mode, model_exchange};
 inline constexpr Rule enter_continuous_time = {event_mode | step_failed, model_exchange};
-inline constexpr Rule completed_step = {continuous_time, model_exchange};
 inline constexpr Rule set_time = {event_mode | continuous_time, model_exchange};
-inline constexpr Rule set_states = {continuous_time, model_exchange};
 inline constexpr Rule get_states = {initialization | event_mode | continuous_time | stopped, model_exchange};
 
 }  // namespace legality

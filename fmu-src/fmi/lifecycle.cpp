@@ -83,7 +83,7 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, co
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean has_stop, fmi2Real stop) {
-  return guarded(c, legality::setup_experiment, "fmi2SetupExperiment", [&](Instance& i) {
+  return guarded(c, legality::before_initialization, "fmi2SetupExperiment", [&](Instance& i) {
     if (!std::isfinite(start) || (has_stop && !(stop >= start)) || (has_tolerance && !(tolerance > 0)))
       return i.log(Topic::error,
                    "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
@@ -95,7 +95,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  return guarded(c, legality::enter_initialization, "fmi2EnterInitializationMode",
+  return guarded(c, legality::before_initialization, "fmi2EnterInitializationMode",
                  [](Instance& i) { i.simulation.enter(wheel::Phase::initializing); });
 }
 

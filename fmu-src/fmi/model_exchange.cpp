@@ -42,7 +42,7 @@ fmi2Status enter(fmi2Component c, const fmi::Rule& rule, const char* name, Phase
 extern "C" {
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  return enter(c, legality::enter_event_mode, "fmi2EnterEventMode", Phase::event_mode);
+  return enter(c, legality::while_integrating, "fmi2EnterEventMode", Phase::event_mode);
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
@@ -62,7 +62,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* enter_event_mode,
                                        fmi2Boolean* terminate) {
-  return guarded(c, legality::completed_step, "fmi2CompletedIntegratorStep", [=](Instance& i) {
+  return guarded(c, legality::while_integrating, "fmi2CompletedIntegratorStep", [=](Instance& i) {
     if (!enter_event_mode || !terminate) return "a result is a null pointer";
     *enter_event_mode = i.simulation.has_event() ? fmi2True : fmi2False;
     *terminate = fmi2False;
@@ -79,7 +79,7 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
-  return guarded(c, legality::set_states, "fmi2SetContinuousStates", [=](Instance& i) {
+  return guarded(c, legality::while_integrating, "fmi2SetContinuousStates", [=](Instance& i) {
     if (!check_count(i, x, n, wheel::state_count)) return fmi2Error;
     if (!std::all_of(x, x + n, [](double value) { return std::isfinite(value); }))
       return i.log(Topic::discard, "%s: a state is not finite.");

@@ -85,8 +85,8 @@ class Archive {
   const char *row_ = "", *fault_ = nullptr;
 };
 
-// Each word of 64 bits is multiplied in and mixed by a shift; a snapshot is a whole number of words. A change of any one
-// word changes the sum. It guards against accidents; forged numbers are met by their own checks.
+// Each word of 64 bits is multiplied in and mixed by a shift; a snapshot is a whole number of words. A change of any
+// one word changes the sum. It guards against accidents; forged numbers are met by their own checks.
 inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (std::size_t i = 0; i < size; i += 8) {

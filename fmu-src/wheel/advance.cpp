@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "checks.hpp"
 #include "law.hpp"
 
 namespace wheel {
@@ -32,7 +31,7 @@ bool has_changed(const Setup& setup, const Demand& demand, const Run& run) {
   const InForce& now = run.in_force;
   const double t = run.t;
   const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(setup.start_time) + std::fabs(t));
-  return now.scene.wheel.s != demand.parameters[stored::s] || now.inputs.change_at(t, rounding, demand.inputs);
+  return now.scene.wheel.s != demand.parameters[variable::s] || now.inputs.change_at(t, rounding, demand.inputs);
 }
 
 // Starts the solver at the present instant, from nothing or, again, where it goes on counting.
@@ -68,7 +67,7 @@ Outcome take_demand(const Setup& setup, Demand& demand, Run& run, Solution& solu
 Shape shape_of(const Demand& demand) {
   Shape shape = {{}, demand.tolerance};
   std::copy_n(demand.parameters, first_input, shape.parameters);
-  for (const unsigned v : {stored::psi_start, stored::phi_start, stored::X_O_start, stored::Y_O_start})
+  for (const unsigned v : {variable::psi_start, variable::phi_start, variable::X_O_start, variable::Y_O_start})
     shape.parameters[v] = 0;
   return shape;
 }

@@ -1,20 +1,19 @@
 // Parameters and start values checked as a whole: one message per fault (what, which value, what is allowed).
-#include "checks.hpp"
-
 #include <cmath>
 
 #include "events.hpp"
+#include "reading.hpp"
 
 namespace wheel {
 namespace {
 
 bool is_positive(unsigned v) {
-  using namespace stored;
+  using namespace variable;
   return v == m || v == r_0 || v == J_x || v == J_y || v == J_z || v == omega_s;
 }
 
 bool check_value(const Reporter& reporter, unsigned v, double value) {
-  using namespace stored;
+  using namespace variable;
   const Row& row = row_of(v);
   const char* fault = nullptr;
   double limit = row.min;
@@ -38,7 +37,7 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
 
 // Only the reduced equations are offered to another solver. The number may be any: a restored state is judged here too.
 bool check_kind(const Reporter& reporter, const Demand& demand) {
-  if (demand.kind == Kind::co_simulation || demand.parameters[stored::formulation] != int{multibody_formulation})
+  if (demand.kind == Kind::co_simulation || demand.parameters[variable::formulation] != int{multibody_formulation})
     return true;
   reporter.log(Topic::error, "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
   return false;
@@ -47,7 +46,7 @@ bool check_kind(const Reporter& reporter, const Demand& demand) {
 // No mass distribution has one principal moment above the sum of the others; the limit is the flat disc.
 bool check_inertia(const Reporter& reporter, const double* v) {
   constexpr double rounding = 1e-12;
-  const double J_x = v[stored::J_x], J_y = v[stored::J_y], J_z = v[stored::J_z], sum = J_x + J_y + J_z;
+  const double J_x = v[variable::J_x], J_y = v[variable::J_y], J_z = v[variable::J_z], sum = J_x + J_y + J_z;
   const double largest = std::fmax(J_x, std::fmax(J_y, J_z));
   if (largest <= (sum - largest) * (1 + rounding) || !std::isfinite(sum)) return true;
   reporter.log(Topic::error, "J_x, J_y, J_z = %s, %s, %s kg m2: none may exceed the sum of the other two.",
@@ -73,11 +72,11 @@ bool is_inside(Reading& now) {
 
 bool check_start(const Demand& demand, Reading& start, const Reporter& reporter) {
   if (is_inside(start)) return true;
-  const auto set = [&](stored::Variable v) { return Digits(demand.parameters[v], 3); };
+  const auto set = [&](variable::Reference v) { return Digits(demand.parameters[v], 3); };
   reporter.log(Topic::error,
                "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, g = %s m/s2, "
                "omega_z = %s rad/s.",
-               set(stored::m), set(stored::J_z), set(stored::r_0), set(stored::g),
+               set(variable::m), set(variable::J_z), set(variable::r_0), set(variable::g),
                Digits(start.kinematics().omega_z, 3));
   return false;
 }

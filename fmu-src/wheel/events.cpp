@@ -163,12 +163,6 @@ double margin_of(const EventRow& row, const Setup& setup, const InForce& now, do
   return (now.is_below(row.event) ? -value : value) + row.rounding;
 }
 
-void watch_events(const Setup& setup, const InForce& now, decltype(solver::Watched::value) value,
-                  solver::Problem& problem) {
-  for (const EventRow& row : event_rows)
-    if (row.can_occur(setup, now)) problem.watch({static_cast<int>(row.event), value, row.by_margin});
-}
-
 void place_observed(const Setup& setup, double t, const double* y, InForce& now) {
   for (const EventRow& row : event_rows)
     if (is_observed(row, setup) && row.can_occur(setup, now) && margin_of(row, setup, now, t, y) < 0)
@@ -198,10 +192,12 @@ void log_transition(const Setup& setup, const WheelFriction& before, Run& run, c
   if (!is_exact(before.kind) || !is_exact(friction.kind) || !differ(before, friction)) return;
   ++run.transitions;
   const double instant = instant_of(setup, run.t);
+  const char* const change = before.kind == WHEEL_HELD ? "release" : "reversal";
   if (friction.kind == WHEEL_HELD)
-    return reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant);
-  reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant,
-               before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
+    reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant);
+  else
+    reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant, change,
+                 friction.sigma > 0 ? "positive" : "negative");
 }
 
 void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter) {

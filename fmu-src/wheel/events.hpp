@@ -69,10 +69,6 @@ inline double least_margin(const Setup& setup, const InForce& now, const double*
   return height < contact ? height : contact;
 }
 
-// Adds the events that can occur to those that the solver looks for; `value` returns the margin of one.
-void watch_events(const Setup& setup, const InForce& now, decltype(solver::Watched::value) value,
-                  solver::Problem& problem);
-
 // Observed events that lie below zero at t and y, from a motion in which they were not followed.
 void place_observed(const Setup& setup, double t, const double* y, InForce& now);
 

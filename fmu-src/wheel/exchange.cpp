@@ -19,8 +19,8 @@ constexpr double distance = 1e-12;
 // little before the sign changes, and would stop there again and again.
 constexpr double soon = 1e-7;
 
-constexpr Computed states[] = {Computed::X_O, Computed::Y_O,       Computed::psi,     Computed::theta,
-                               Computed::phi, Computed::theta_dot, Computed::psi_dot, Computed::omega_z};
+constexpr unsigned states[] = {variable::X_O, variable::Y_O,       variable::psi,     variable::theta,
+                               variable::phi, variable::theta_dot, variable::psi_dot, variable::omega_z};
 static_assert(std::size(states) == state_count);
 
 bool is_finite(double number) { return std::isfinite(number); }
@@ -76,7 +76,7 @@ int indicator_count() {
 }
 
 int state_index_of(unsigned variable) {
-  const auto* found = std::find(std::begin(states), std::end(states), static_cast<Computed>(variable));
+  const auto* found = std::find(std::begin(states), std::end(states), variable);
   return found == std::end(states) ? -1 : static_cast<int>(found - states);
 }
 
@@ -85,8 +85,8 @@ void take_at_once(const Setup& setup, Demand& demand, Run& run) {
   now.inputs.take_over(run.t, demand.inputs);
   now.scene.load = load_of(demand.inputs);
   demand.changed = false;
-  const bool other_s = now.scene.wheel.s != demand.parameters[stored::s];
-  now.scene.wheel.s = demand.parameters[stored::s];
+  const bool other_s = now.scene.wheel.s != demand.parameters[variable::s];
+  now.scene.wheel.s = demand.parameters[variable::s];
   if (other_s) decide_law(setup, run.t, run.y, now);
 }
 

@@ -51,7 +51,7 @@ void enter_layer(const Setup& setup, const WheelScene& scene, const double* y, I
 
 void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& now) {
   now.scene.wheel = setup.wheel;
-  now.scene.wheel.s = demand.parameters[stored::s];
+  now.scene.wheel.s = demand.parameters[variable::s];
   now.scene.load = load_of(demand.inputs);
   now.inputs.take_over(t, demand.inputs);
   now.layer = Layer::none;

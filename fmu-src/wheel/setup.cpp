@@ -68,13 +68,14 @@ void set_error_scales(Setup& setup) {
 
 const WheelFormulation* formulation_of(const Demand& demand) {
   if (demand.kind == Kind::model_exchange) return &wheel_euler;
-  return choice_of(demand.parameters[stored::formulation]) == multibody_formulation ? &wheel_multibody : &wheel_reduced;
+  return choice_of(demand.parameters[variable::formulation]) == multibody_formulation ? &wheel_multibody
+                                                                                      : &wheel_reduced;
 }
 
 }  // namespace
 
 Setup setup_of(const Demand& demand) {
-  using namespace stored;
+  using namespace variable;
   const double* v = demand.parameters;
   Setup setup = {};
   setup.kind = demand.kind;

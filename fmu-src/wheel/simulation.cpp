@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdarg>
 
-#include "checks.hpp"
 #include "law.hpp"
 
 namespace wheel {

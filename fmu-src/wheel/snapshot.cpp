@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "bytes.hpp"
-#include "checks.hpp"
 #include "law.hpp"
 #include "simulation.hpp"
 
