@@ -9,23 +9,21 @@ namespace legality = fmi::legality;
 
 namespace {
 
-bool check_is(const Instance& i, fmi2ValueReference variable, bool fits, const char* what) {
-  return i.check(fits, "%s: value reference %u is not %s.", variable, what);
-}
+constexpr const char* misfit = "%s: value reference %u is not %s.";
 
 bool check_input(const Instance& i, fmi2ValueReference variable) {
-  return check_is(i, variable, variable >= wheel::first_input && variable < wheel::stored_count, "an input");
+  return i.check(variable >= wheel::first_input && variable < wheel::stored_count, misfit, variable, "an input");
 }
 
 bool check_output(const Instance& i, fmi2ValueReference variable) {
   const bool output = variable < wheel::variable_count && wheel::row_of(variable).role == Role::output;
-  return check_is(i, variable, output, "an output");
+  return i.check(output, misfit, variable, "an output");
 }
 
 // Of a directional derivative.
 bool check_unknown(const Instance& i, fmi2ValueReference variable) {
   const bool computed = variable >= wheel::stored_count && wheel::is_variable(variable, wheel::Type::real);
-  return check_is(i, variable, computed, "a calculated real variable");
+  return i.check(computed, misfit, variable, "a calculated real variable");
 }
 
 // During the run outputs depend on inputs alone, in model exchange on the states too; in initialization mode they

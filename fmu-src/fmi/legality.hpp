@@ -3,7 +3,6 @@
 #pragma once
 
 #include "run.hpp"
-#include "setup.hpp"
 
 namespace fmi {
 

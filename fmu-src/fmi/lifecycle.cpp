@@ -58,17 +58,15 @@ const char* fmi2GetVersion() { return fmi2Version; }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String,
                               const fmi2CallbackFunctions* callbacks, fmi2Boolean, fmi2Boolean logging) {
-  if (const char* reason = refusal(name, type, guid)) {
-    complain(callbacks, name, reason);
-    return nullptr;
-  }
-  const auto kind = type == fmi2CoSimulation ? wheel::Kind::co_simulation : wheel::Kind::model_exchange;
-  if (Instance* instance = Instance::create(name, callbacks, logging != fmi2False, kind)) {
+  const char* const reason = refusal(name, type, guid);
+  const bool slave = !reason && type == fmi2CoSimulation;
+  const auto kind = slave ? wheel::Kind::co_simulation : wheel::Kind::model_exchange;
+  Instance* const instance = reason ? nullptr : Instance::create(name, callbacks, logging != fmi2False, kind);
+  if (instance)
     fmi::instances.add(instance);
-    return static_cast<fmi::Held*>(instance);
-  }
-  complain(callbacks, name, "fmi2Instantiate: out of memory.");
-  return nullptr;
+  else
+    complain(callbacks, name, reason ? reason : "fmi2Instantiate: out of memory.");
+  return static_cast<fmi::Held*>(instance);
 }
 
 void fmi2FreeInstance(fmi2Component c) {

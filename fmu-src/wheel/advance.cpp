@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "law.hpp"
-
 namespace wheel {
 namespace {
 

@@ -4,8 +4,6 @@
 #include <cstdio>
 #include <iterator>
 
-#include "law.hpp"
-
 namespace wheel {
 namespace {
 

@@ -7,7 +7,6 @@
 
 #include "reporter.hpp"
 #include "run.hpp"
-#include "setup.hpp"
 
 namespace wheel {
 

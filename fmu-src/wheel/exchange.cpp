@@ -6,8 +6,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "law.hpp"
-
 namespace wheel {
 namespace {
 
@@ -82,12 +80,10 @@ int state_index_of(unsigned variable) {
 
 void take_at_once(const Setup& setup, Demand& demand, Run& run) {
   InForce& now = run.in_force;
-  now.inputs.take_over(run.t, demand.inputs);
-  now.scene.load = load_of(demand.inputs);
+  const double s = now.scene.wheel.s;
+  let_act(setup, demand.parameters[variable::s], run.t, demand.inputs, now);
   demand.changed = false;
-  const bool other_s = now.scene.wheel.s != demand.parameters[variable::s];
-  now.scene.wheel.s = demand.parameters[variable::s];
-  if (other_s) decide_law(setup, run.t, run.y, now);
+  if (now.scene.wheel.s != s) decide_law(setup, run.t, run.y, now);
 }
 
 bool derivatives(const Setup& setup, Run& run, double* x_dot) {

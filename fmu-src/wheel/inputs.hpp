@@ -23,13 +23,12 @@ WheelLoad load_rate_of(const Polynomials& inputs);
 struct Inputs {
   double origin = 0;  // s, own clock
   Polynomials c = {};
-  // What follows from the polynomials, by classify().
+  // What follows from the polynomials.
   bool loaded = false;  // some input is not zero
   bool braked = false;  // the brake is in use: its capacity or one of its derivatives is not zero
   bool varies = false;  // some input depends on time
 
   void take_over(double t, const Polynomials& asked);
-  void classify();
   // Whether `asked` differs from the polynomials in force, seen from t on, by more than the rounding of their values
   // and of t, s: a polynomial that a caller cuts into many steps goes on as one.
   bool change_at(double t, double rounding, const Polynomials& asked) const;

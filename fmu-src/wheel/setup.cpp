@@ -24,28 +24,19 @@ double power_of_two_below(double x) {
                    std::numeric_limits<double>::min());
 }
 
-// sqrt(length / g), s, g the whole of gravity; without a weight that matters the time of a turn at the initial rate.
-double time_scale(const WheelParameters& wheel, double length, const WheelKinematics& start) {
-  const double gravity = gravity_of(wheel);
-  const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
-  if (gravity > 1e-30 * length * rate * rate) return std::sqrt(length / gravity);  // else the weight moves nothing
-  return rate > 0 ? 1 / rate : 1;
-}
-
-// The part of the weight that is across the road, of one.
-double share_across(const WheelParameters& wheel) {
-  const double gravity = gravity_of(wheel);
-  return gravity > 0 ? wheel.g / gravity : 1;
-}
-
+// The wheel's own time is sqrt(length / g), g the whole of gravity; without a weight that matters it is the time of a
+// turn at the initial rate.
 void set_scales(Setup& setup, const WheelKinematics& start) {
-  setup.length = setup.wheel.r_0 + setup.wheel.r;
-  setup.own_time = time_scale(setup.wheel, setup.length, start);
+  const double gravity = gravity_of(setup.wheel), length = setup.wheel.r_0 + setup.wheel.r;
+  const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
+  const bool matters = gravity > 1e-30 * length * rate * rate;
+  setup.length = length;
+  setup.own_time = matters ? std::sqrt(length / gravity) : rate > 0 ? 1 / rate : 1;
   setup.longest_step = 0.5 * setup.own_time;
-  setup.whole_weight = setup.wheel.m * setup.length / (setup.own_time * setup.own_time);
-  setup.weight = setup.whole_weight * share_across(setup.wheel);
+  setup.whole_weight = setup.wheel.m * length / (setup.own_time * setup.own_time);
+  setup.weight = setup.whole_weight * (gravity > 0 ? setup.wheel.g / gravity : 1);
   setup.rate_scale = power_of_two_below(1 / setup.own_time);
-  setup.moment_scale = power_of_two_below(setup.weight * setup.length);
+  setup.moment_scale = power_of_two_below(setup.weight * length);
   const double omega_2 = start.psi_dot * std::sin(start.theta);
   setup.tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
 }

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdarg>
 
-#include "law.hpp"
-
 namespace wheel {
 
 void Reporter::print(Topic topic, const char* format, ...) const {

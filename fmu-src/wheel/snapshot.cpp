@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "bytes.hpp"
-#include "law.hpp"
 #include "simulation.hpp"
 
 namespace wheel {
@@ -92,12 +91,8 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   setup = setup_of(demand);
   run.y_time = run.t;
   InForce& now = run.in_force;
-  const double s_in_force = now.scene.wheel.s;
-  now.scene.wheel = setup.wheel;
-  now.scene.wheel.s = s_in_force;
+  let_act(setup, now.scene.wheel.s, now.inputs.origin, Inputs(now.inputs).c, now);
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
-  now.scene.load = load_of(now.inputs.c);
-  now.inputs.classify();
   now.set_below(Event::lost_contact, now.pulls());
   if (!end_fits(setup, run)) return "no such event ends a run";
   if (!law_fits(setup, now)) return "the law of friction does not fit s and the brake";
