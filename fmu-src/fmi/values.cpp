@@ -10,12 +10,11 @@ namespace legality = fmi::legality;
 
 namespace {
 
-constexpr const char* unknown_variable = "%s: no variable of this type has the value reference %u.";
-
 bool check_variables(const Instance& i, Type type, const fmi2ValueReference variables[], std::size_t count,
                      const void* values) {
   return i.check_arrays(count, variables, values) && std::all_of(variables, variables + count, [&](unsigned variable) {
-           return i.check(wheel::is_variable(variable, type), unknown_variable, variable);
+           return i.check(wheel::is_variable(variable, type),
+                          "%s: no variable of this type has the value reference %u.", variable);
          });
 }
 
@@ -81,14 +80,11 @@ fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
   });
 }
 
-// There are no string variables: only an empty request can be answered.
-fmi2Status refuse_strings(fmi2Component c, const fmi::Rule& rule, const char* name,
-                          const fmi2ValueReference variables[], std::size_t count, const void* values) {
+// Only an empty request can be answered.
+fmi2Status check_strings(fmi2Component c, const fmi::Rule& rule, const char* name, const fmi2ValueReference variables[],
+                         std::size_t count, const void* values) {
   return guarded(c, rule, name, [=](Instance& i) {
-    const bool empty = count == 0;
-    const bool sound =
-        i.check_arrays(count, variables, values) && i.check(empty, unknown_variable, empty ? 0 : *variables);
-    return sound ? fmi2OK : fmi2Error;
+    return check_variables(i, Type::string, variables, count, values) ? fmi2OK : fmi2Error;
   });
 }
 
@@ -116,10 +112,10 @@ fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference v[], size_t 
 }
 
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference v[], size_t n, fmi2String values[]) {
-  return refuse_strings(c, legality::get_values, "fmi2GetString", v, n, values);
+  return check_strings(c, legality::get_values, "fmi2GetString", v, n, values);
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2String values[]) {
-  return refuse_strings(c, legality::set_values, "fmi2SetString", v, n, values);
+  return check_strings(c, legality::set_values, "fmi2SetString", v, n, values);
 }
 
 }  // extern "C"

@@ -91,7 +91,7 @@ bool enter_orbit(const Setup& setup, const Demand& demand, Run& run, Solution& s
 }
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
-Outcome begin(const Setup& setup, const Demand& demand, Run& run, Solution& solution) {
+Outcome set_in_motion(const Setup& setup, const Demand& demand, Run& run, Solution& solution) {
   const bool is_ready = run.phase == Phase::unfolded && solution.orbit_until != Solution::none;
   if (run.phase == Phase::stepping || is_ready) return Outcome::stepped;
   const bool unfolds = is_unfoldable(setup, run.in_force) && enter_orbit(setup, demand, run, solution);
@@ -134,8 +134,7 @@ double corner_of(const Setup& setup, const Inputs& inputs, double t) {
 // Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.
 Outcome step_to(const Setup& setup, double t, Run& run, Solution& solution, const Reporter& reporter) {
   solver::Solver& solver = solution.solver;
-  const bool large = setup.formulation == &wheel_multibody;
-  const long long work_per_step = large ? work_per_multibody_step : 1;
+  const long long work_per_step = setup.formulation == &wheel_multibody ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work) {
       solution.failure = "one call may take no more internal steps; use shorter communication steps";
@@ -210,7 +209,7 @@ Outcome advance_by_stages(const Setup& setup, Demand& demand, Run& run, Solution
   const bool changed = demand.changed, moves = t > run.t;
   solution.failure = nullptr;
   Outcome outcome = take_demand(setup, demand, run, solution, reporter);
-  if (outcome == Outcome::stepped && moves) outcome = begin(setup, demand, run, solution);
+  if (outcome == Outcome::stepped && moves) outcome = set_in_motion(setup, demand, run, solution);
   if (outcome == Outcome::stepped && moves) outcome = proceed(setup, t, run, solution, reporter);
   if (outcome == Outcome::stepped) arrive(setup, t, demand, run, solution, reporter);
   if (outcome == Outcome::event) end(setup, run, solution, reporter);
@@ -253,7 +252,8 @@ void end_run(const Setup& setup, Event event, Run& run, const Solution& solution
   run.ended_by = event;
   freeze(run, solution, Phase::ended);
   log_summaries(setup, run, reporter);
-  log_end(setup, run, reporter);
+  reporter.log(Topic::discard, row_of(event).ended, ending_of(setup, event).text, setup.start_time + run.t,
+               Digits(run.y[setup.formulation->tilt_index], 6));
 }
 
 }  // namespace wheel

@@ -207,11 +207,6 @@ void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter)
   }
 }
 
-void log_end(const Setup& setup, const Run& run, const Reporter& reporter) {
-  reporter.log(Topic::discard, row_of(run.ended_by).ended, ending_of(setup, run.ended_by).text,
-               setup.start_time + run.t, Digits(run.y[setup.formulation->tilt_index], 6));
-}
-
 Ending ending_of(const Setup& setup, Event event) {
   Ending ending;
   std::snprintf(ending.text, sizeof ending.text, row_of(event).ending, Digits(setup.mu_max).text);

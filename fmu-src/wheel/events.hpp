@@ -83,9 +83,6 @@ void count_event(const Setup& setup, Event event, double t, Run& run, const Repo
 void log_transition(const Setup& setup, const WheelFriction& before, Run& run, const Reporter& reporter);
 // At the end of a run: the observed events that were not logged one by one.
 void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter);
-// The run has ended by an event.
-void log_end(const Setup& setup, const Run& run, const Reporter& reporter);
-
 // What ended a run, to stand behind "the wheel", with its limit.
 struct Ending {
   char text[96];

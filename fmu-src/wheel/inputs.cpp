@@ -15,18 +15,12 @@ bool acts(const double* first, const double* last) {
   return std::any_of(first, last, [](double part) { return part != 0; });
 }
 
-// Real zeros of the slope c1 + 2 c2 x + 3 c3 x^2; returns their number.
+// Real zeros of the slope c1 + 2 c2 x + 3 c3 x^2, of which one is infinite where c3 is zero; returns their number.
 int zeros_of_slope(const double* c, double* zeros) {
   const double a = 3 * c[3], half_b = c[2], d = half_b * half_b - a * c[1];
-  if (a == 0) {
-    if (half_b == 0) return 0;
-    zeros[0] = -c[1] / (2 * half_b);
-    return 1;
-  }
   if (!(d > 0)) return 0;
   const double q = -(half_b + std::copysign(std::sqrt(d), half_b));
   zeros[0] = q / a;
-  if (q == 0) return 1;
   zeros[1] = c[1] / q;
   return 2;
 }

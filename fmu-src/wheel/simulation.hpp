@@ -38,8 +38,6 @@ class Versioned {
 class Simulation {
  public:
   Simulation(const Reporter& reporter, Kind kind) : reporter_(reporter), demand_(Demand(kind)) {}
-  Simulation(const Simulation&) = delete;
-  Simulation& operator=(const Simulation&) = delete;
 
   // As new: start values, nothing computed.
   void reset();

@@ -10,7 +10,7 @@ namespace wheel {
 class Reading;
 struct ReactionRates;
 
-enum class Type : unsigned char { real, integer, boolean };
+enum class Type : unsigned char { real, integer, boolean, string };  // no variable is a string
 enum class Role : unsigned char { parameter, tunable, input, output, local };
 
 // Value references by name: parameters and inputs, which keep a value, then the variables that are computed on request.
