@@ -26,8 +26,7 @@ struct Instance : Held {
   // Whether the call is sound; if not, the error is logged.
   template <class... Numbers>
   bool check(bool sound, const char* format, Numbers... numbers) const {
-    if (!sound) log(wheel::Topic::error, format, numbers...);
-    return sound;
+    return reporter.check(sound, format, called, numbers...);
   }
   // The end of a call by what is wrong; null: nothing.
   fmi2Status fail(const char* fault) const { return fault ? log(wheel::Topic::error, "%s: %s.", fault) : fmi2OK; }

@@ -195,7 +195,7 @@ void end(const Setup& setup, Run& run, const Solution& solution, const Reporter&
 void fail(const Setup& setup, const Run& before, Run& run, const Solution& solution, const Reporter& reporter) {
   if (run.phase == Phase::stepping) move_to(setup, solution.solver.known_until(), run, solution, reporter);
   reporter.log(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.", setup.start_time + run.t,
-               Digits(state_now(run, solution)[setup.formulation->spin_index], 4),
+               Digits{state_now(run, solution)[setup.formulation->spin_index], 4},
                solution.failure ? solution.failure : solution.solver.failure());
   run = before;
   run.phase = Phase::failed;
@@ -253,7 +253,7 @@ void end_run(const Setup& setup, Event event, Run& run, const Solution& solution
   freeze(run, solution, Phase::ended);
   log_summaries(setup, run, reporter);
   reporter.log(Topic::discard, row_of(event).ended, ending_of(setup, event).text, setup.start_time + run.t,
-               Digits(run.y[setup.formulation->tilt_index], 6));
+               Digits{run.y[setup.formulation->tilt_index], 6});
 }
 
 }  // namespace wheel

@@ -147,7 +147,7 @@ bool starts_inside(const Setup& setup, const Run& run, const Reporter& reporter)
   WheelDynamics dynamics;
   setup.formulation->dynamics(&run.in_force.scene, run.y, &dynamics);
   const double needed = wheel_required_friction(dynamics.lambda);
-  reporter.log(Topic::error, fault->refused, Digits(dynamics.lambda[2], 6), Digits(needed, 6), setup.mu_max);
+  reporter.log(Topic::error, fault->refused, Digits{dynamics.lambda[2], 6}, Digits{needed, 6}, setup.mu_max);
   return false;
 }
 

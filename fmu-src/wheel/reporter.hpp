@@ -7,17 +7,23 @@
 
 namespace wheel {
 
-// As many digits as a number needs, the shortest of 15 to 17 that reads back as the same double, or as many as are
-// asked for; with a point whatever the host's locale is.
+// A number of a message that is written with so many digits.
 struct Digits {
-  explicit Digits(double x) {
+  double x;
+  int digits;
+};
+
+// A number as text, with as many digits as it needs: the shortest of 15 to 17 that reads back as the same double; or as
+// many as are asked for. It has a point whatever the host's locale is.
+struct NumberText {
+  explicit NumberText(double x) {
     int digits = 15;
     do write(x, digits);
     while (std::strtod(text, nullptr) != x && ++digits <= 17);
     point();
   }
-  Digits(double x, int digits) {
-    write(x, digits);
+  explicit NumberText(Digits number) {
+    write(number.x, number.digits);
     point();
   }
   char text[32];
@@ -45,14 +51,21 @@ struct Reporter {
   void log(Topic topic, const char* format, Parts... parts) const {
     if (listens && listens(owner, topic)) print(topic, format, plain(written(parts))...);
   }
+  // Whether all is well; if not, the error is logged.
+  template <class... Parts>
+  bool check(bool sound, const char* format, Parts... parts) const {
+    if (!sound) log(Topic::error, format, parts...);
+    return sound;
+  }
 
  private:
-  static Digits written(double x) { return Digits(x); }
+  static NumberText written(double x) { return NumberText(x); }
+  static NumberText written(Digits number) { return NumberText(number); }
   template <class Part>
   static const Part& written(const Part& part) {
     return part;
   }
-  static const char* plain(const Digits& digits) { return digits.text; }
+  static const char* plain(const NumberText& number) { return number.text; }
   template <class Part>
   static Part plain(Part part) {
     return part;

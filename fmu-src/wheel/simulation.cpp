@@ -28,8 +28,8 @@ void Simulation::set_experiment(double start_time, double stop_time, double tole
   demand.stop_time = stop_time;
   demand.tolerance = taken;
   if (tolerance > 0 && tolerance != taken)
-    reporter_.log(Topic::warning, "The tolerance %s is outside [%s, %s]; %s is used.", Digits(tolerance, 6),
-                  Digits(tightest_tolerance, 6), Digits(loosest_tolerance, 6), Digits(taken, 6));
+    reporter_.log(Topic::warning, "The tolerance %s is outside [%s, %s]; %s is used.", Digits{tolerance, 6},
+                  Digits{tightest_tolerance, 6}, Digits{loosest_tolerance, 6}, Digits{taken, 6});
 }
 
 void Simulation::set(unsigned variable, double value) {

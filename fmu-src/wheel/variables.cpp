@@ -82,8 +82,6 @@ constexpr Row rows[] = {
 #define STORED(name, type, role, start, min, max) stored_row(#name, Type::type, Role::role, start, min, max),
 #define COMPUTED(name, type, role) computed_row<variable::name>(#name, Type::type, Role::role),
 #include "variables.inc"
-#undef STORED
-#undef COMPUTED
 };
 
 constexpr auto has_rate = [](const Row& row) { return row.role != Role::output || row.read_rate; };

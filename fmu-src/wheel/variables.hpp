@@ -19,8 +19,6 @@ enum Reference : unsigned {
 #define STORED(name, ...) name,
 #define COMPUTED(name, ...) name,
 #include "variables.inc"
-#undef STORED
-#undef COMPUTED
   count,
 };
 }  // namespace variable

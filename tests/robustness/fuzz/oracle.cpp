@@ -63,8 +63,6 @@ const Row& row_of(unsigned reference) {
 #define STORED(name, type, role, ...) {Type::type, Role::role, __VA_ARGS__},
 #define COMPUTED(name, type, role) {Type::type, Role::role},
 #include "variables.inc"
-#undef STORED
-#undef COMPUTED
   };
   return rows[reference];
 }

@@ -15,8 +15,6 @@ enum : unsigned {
 #define STORED(name, ...) ref_##name,
 #define COMPUTED(name, ...) ref_##name,
 #include "variables.inc"
-#undef STORED
-#undef COMPUTED
   ref_count,
   ref_first_input = ref_F_X,
   ref_first_output = ref_X_O,
