@@ -48,7 +48,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
         return i.log(Topic::error, "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed.",
                      orders[k], values[k], wheel::row_of(v[k]).name, wheel::max_order);
     }
-    for (std::size_t k = 0; k < n; ++k) i.simulation.set_input_derivative(v[k], orders[k], values[k]);
+    for (std::size_t k = 0; k < n; ++k) i.simulation.set(v[k], values[k], orders[k]);
     return fmi2OK;
   });
 }

@@ -4,7 +4,7 @@
 
 #include "instance.hpp"
 
-using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Topic;
+using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Simulation, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
@@ -14,20 +14,16 @@ bool check_count(Instance& i, const void* values, std::size_t count, int needed)
                  needed, count, values ? "" : ", and it is a null pointer");
 }
 
-// Reads as many numbers as are needed, in initialization mode from the start values.
+// Reads as many numbers as are needed, in initialization mode from the start values; false where they are not finite.
 template <class Read>
 fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], std::size_t count, int needed,
-                        Read read) {
+                        const char* what, Read read) {
   return guarded(c, legality::get_states, name, [=](Instance& i) {
     if (!check_count(i, values, count, needed)) return fmi2Error;
     if (!i.simulation.is_prepared() || !has_state(i.simulation.phase())) return fmi2Discard;
-    return read(i);
+    if (read(i.simulation)) return fmi2OK;
+    return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.simulation.time(), what);
   });
-}
-
-fmi2Status answer(Instance& i, bool finite, const char* what) {
-  if (finite) return fmi2OK;
-  return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.simulation.time(), what);
 }
 
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
@@ -89,27 +85,28 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_numbers(c, "fmi2GetContinuousStates", x, n, wheel::state_count, [=](Instance& i) {
-    std::copy_n(i.simulation.states(), n, x);
-    return fmi2OK;
+  return read_numbers(c, "fmi2GetContinuousStates", x, n, wheel::state_count, "states", [=](Simulation& simulation) {
+    std::copy_n(simulation.states(), n, x);
+    return true;
   });
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_numbers(c, "fmi2GetNominalsOfContinuousStates", x, n, wheel::state_count, [=](Instance& i) {
-    i.simulation.nominals(x);
-    return fmi2OK;
-  });
+  return read_numbers(c, "fmi2GetNominalsOfContinuousStates", x, n, wheel::state_count, "nominals",
+                      [=](Simulation& simulation) {
+                        simulation.nominals(x);
+                        return true;
+                      });
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
-  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count,
-                      [=](Instance& i) { return answer(i, i.simulation.derivatives(x_dot), "derivatives"); });
+  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count, "derivatives",
+                      [=](Simulation& simulation) { return simulation.derivatives(x_dot); });
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count(),
-                      [=](Instance& i) { return answer(i, i.simulation.indicators(z), "indicators"); });
+  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count(), "indicators",
+                      [=](Simulation& simulation) { return simulation.indicators(z); });
 }
 
 }  // extern "C"

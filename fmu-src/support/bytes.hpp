@@ -5,6 +5,7 @@
 // number against what it may be, and says afterwards whether all of them could have been written.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -55,10 +56,9 @@ class Archive {
   }
   // Any double at all, as a caller may have set it.
   void anything(double& x) {
-    std::int64_t word;
-    std::memcpy(&word, &x, sizeof word);
+    auto word = std::bit_cast<std::int64_t>(x);
     count(word, std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
-    std::memcpy(&x, &word, sizeof x);
+    x = std::bit_cast<double>(word);
   }
 
  private:

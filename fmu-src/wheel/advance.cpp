@@ -145,7 +145,7 @@ Outcome step_to(const Setup& setup, double t, Run& run, Solution& solution, cons
     const Inputs& inputs = run.in_force.inputs;
     if (inputs.varies && solver.method() == solver::Method::runge_kutta) solver.stop_before(t);
     if (inputs.varies && inputs.braked) solver.stop_before(corner_of(setup, inputs, solver.known_until()));
-    Outcome outcome = solver.step();
+    const Outcome outcome = solver.step();
     if (outcome == Outcome::failed) return outcome;
     work += (outcome == Outcome::event ? work_per_event : 1) * work_per_step;
     if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event after t waits until it is reached
@@ -155,9 +155,8 @@ Outcome step_to(const Setup& setup, double t, Run& run, Solution& solution, cons
     if (ends_run(row_of(event), setup)) return outcome;
     if (pass_event(setup, event, run, reporter) == Consequence::goes_on)
       solver.resume();
-    else
-      outcome = start_solver(setup, run, solution, true);
-    if (outcome == Outcome::failed) return outcome;
+    else if (start_solver(setup, run, solution, true) == Outcome::failed)
+      return Outcome::failed;
   }
   return Outcome::stepped;
 }

@@ -65,8 +65,6 @@ Consequence change_spin(const Setup& setup, Event, double t, double* y, InForce&
   return Consequence::bends;
 }
 
-bool checks_grip(const Setup& setup, const InForce&) { return setup.mu_max > 0; }
-
 // (mu_max N)^2 - lambda_t^2 over the weight squared, below zero too where the ground pulls.
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
   const WheelScene scene = now.scene_at(t);
@@ -87,8 +85,6 @@ double contact_left(const Setup& setup, const InForce& now, double t, const doub
   const WheelScene scene = now.scene_at(t);
   return pressure_of(setup, setup.formulation->derivative(&scene, y, y_dot));
 }
-
-bool needs_contact(const Setup& setup) { return !setup.keep_contact; }
 
 // The ground begins to pull or to press. Without friction the motion goes on as it was.
 Consequence change_contact(const Setup&, Event event, double, double*, InForce& now) {
@@ -111,7 +107,7 @@ const EventRow event_rows[] = {
     layer_event(Event::crosses_layer, is_layered, way_to_edge),
     {.event = Event::spin_changes, .can_occur = can_change_spin, .value = spin_left, .follow = change_spin},
     {.event = Event::lost_grip,
-     .can_occur = checks_grip,
+     .can_occur = [](const Setup& setup, const InForce&) { return setup.mu_max > 0; },
      .value = grip_left,
      .ends = always_ends,
      .ending = "needs a coefficient of friction above mu_max = %s",
@@ -122,7 +118,7 @@ const EventRow event_rows[] = {
      .value = contact_left,
      .rounding = pressure_rounding,
      .by_margin = true,
-     .ends = needs_contact,
+     .ends = [](const Setup& setup) { return !setup.keep_contact; },
      .follow = change_contact,
      .ending = "lifted off the ground",
      .ended = "The wheel %s at t = %s s, theta = %s rad: the model ends there.",

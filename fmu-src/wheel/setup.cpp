@@ -61,12 +61,6 @@ void set_error_scales(Setup& setup) {
   std::copy_n(f == &wheel_reduced ? reduced : f == &wheel_euler ? euler : multibody, f->states, setup.slow_scales);
 }
 
-const WheelFormulation* formulation_of(const Demand& demand) {
-  if (demand.kind == Kind::model_exchange) return &wheel_euler;
-  return choice_of(demand.parameters[variable::formulation]) == multibody_formulation ? &wheel_multibody
-                                                                                      : &wheel_reduced;
-}
-
 bool is_positive(unsigned v) {
   using namespace variable;
   return v == m || v == r_0 || v == J_x || v == J_y || v == J_z || v == omega_s;
@@ -144,7 +138,9 @@ Setup setup_of(const Demand& demand) {
   Setup setup = {};
   setup.kind = demand.kind;
   setup.start_time = demand.start_time;
-  setup.formulation = formulation_of(demand);
+  const bool multibody = choice_of(v[formulation]) == multibody_formulation,
+             exchanged = setup.kind == Kind::model_exchange;
+  setup.formulation = exchanged ? &wheel_euler : multibody ? &wheel_multibody : &wheel_reduced;
   setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
   if (v[slope] != 0) wheel_set_slope(&setup.wheel, v[g], v[slope], v[slope_direction]);
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));

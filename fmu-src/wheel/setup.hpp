@@ -28,9 +28,9 @@ struct Demand {
   Kind kind;
   bool changed = false;  // something has been set since the last step
 
-  // Of a variable below stored_count.
-  double& value(unsigned v) { return v < first_input ? parameters[v] : inputs[v - first_input][0]; }
-  double value(unsigned v) const { return v < first_input ? parameters[v] : inputs[v - first_input][0]; }
+  // Of a variable below stored_count, or of an input's polynomial.
+  double& value(unsigned v, int k = 0) { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
+  double value(unsigned v, int k = 0) const { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
 
   explicit Demand(Kind own = Kind::co_simulation) : kind(own) {
     for (unsigned v = 0; v < first_input; ++v) parameters[v] = row_of(v).start;

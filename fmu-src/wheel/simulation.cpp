@@ -32,24 +32,18 @@ void Simulation::set_experiment(double start_time, double stop_time, double tole
                   Digits{tightest_tolerance, 6}, Digits{loosest_tolerance, 6}, Digits{taken, 6});
 }
 
-void Simulation::set(unsigned variable, double value) {
+void Simulation::set(unsigned variable, double value, int order) {
   if (variable >= stored_count) {
     Run& run = run_.change();
     run.y[state_index_of(variable)] = value;
     return decide_law(setup_, run.t, run.y, run.in_force);
   }
   if (phase() == Phase::faulty || phase() == Phase::initial) enter(Phase::initializing);
-  if (demand_->value(variable) == value) return;
+  if (demand_->value(variable, order) == value / factorial[order]) return;
   Demand& demand = demand_.change();
-  demand.value(variable) = value;
+  demand.value(variable, order) = value / factorial[order];
   demand.changed = true;
   if (kind() == Kind::model_exchange && is_running(phase())) take_at_once(setup_, demand, run_.change());
-}
-
-void Simulation::set_input_derivative(unsigned variable, int order, double value) {
-  Demand& demand = demand_.change();
-  demand.inputs[variable - first_input][order] = value / factorial[order];
-  demand.changed = true;
 }
 
 bool Simulation::prepare(bool report) {
@@ -98,9 +92,11 @@ InForce Simulation::in_force_now() const {
 // Where nothing was set, without a copy of all that is in force.
 Present Simulation::present() {
   state_now(run_.change(), solution_);
-  WheelScene scene = demand_->changed ? in_force_now().scene : run_->in_force.scene_at(run_->t);
-  scene.ground = WHEEL_GROUND_BY_FORCE;
-  return {setup_.formulation, run_->y, scene, &demand_->inputs, &*run_, &solution_};
+  Present now = {
+      setup_.formulation, run_->y, demand_->changed ? in_force_now().scene : run_->in_force.scene_at(run_->t),
+      &demand_->inputs,   &*run_,  &solution_};
+  now.scene.ground = WHEEL_GROUND_BY_FORCE;
+  return now;
 }
 
 Reading& Simulation::read() {

@@ -53,10 +53,9 @@ class Simulation {
   // stop_time: infinite for none. tolerance <= 0: the default one.
   void set_experiment(double start_time, double stop_time, double tolerance);
 
-  // Parameters and inputs, which are checked as a whole by prepare; in a run of model exchange a state too, and the law
-  // of friction is decided for it.
-  void set(unsigned variable, double value);
-  void set_input_derivative(unsigned variable, int order, double value);
+  // Parameters and inputs, with their derivatives, which are checked as a whole by prepare; in a run of model exchange
+  // a state too, and the law of friction is decided for it.
+  void set(unsigned variable, double value, int order = 0);
 
   // Before the end of the initialization: the initial state from the present parameters, true if it exists. Else one
   // message per fault through the Reporter.
@@ -89,7 +88,7 @@ class Simulation {
   // Model exchange: see exchange.hpp.
   void set_time(double t);
   void set_states(const double* x) { std::copy_n(x, state_count, run_.change().y); }
-  const double* states() { return run_->y; }
+  const double* states() const { return run_->y; }
   void nominals(double* x) const { scales_at(setup_, run_->y[setup_.formulation->spin_index], x); }
   bool derivatives(double* x_dot) { return wheel::derivatives(setup_, run_.change(), x_dot); }
   bool indicators(double* z) { return wheel::indicators(setup_, run_.change(), z); }
