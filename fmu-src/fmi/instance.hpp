@@ -1,7 +1,6 @@
 // One FMU instance: the master's callbacks and the simulation. And the guard every call passes.
 #pragma once
 
-#include <cstddef>
 #include <type_traits>
 
 #include "fmi2Functions.h"

@@ -12,8 +12,7 @@ namespace fmi {
 class SpinLock {
  public:
   void lock() {
-    while (taken_.test_and_set(std::memory_order_acquire)) {
-    }
+    while (taken_.test_and_set(std::memory_order_acquire)) continue;
   }
   void unlock() { taken_.clear(std::memory_order_release); }
 

@@ -7,8 +7,6 @@
 namespace wheel {
 namespace {
 
-double spin_of(const Setup& setup, const double* y) { return y[setup.formulation->spin_index]; }
-
 // An input that varies can make a regularized law stiff.
 bool varies_and_can_stiffen(const Setup& setup, const InForce& now) {
   return now.inputs.varies && can_stiffen(setup, now);
@@ -32,7 +30,7 @@ double holding_lacks(const Setup& setup, const InForce& now, double t, const dou
 }
 
 double way_to_edge(const Setup& setup, const InForce& now, double, const double* y) {
-  const double omega_z = spin_of(setup, y), edge = layer_edge(setup);
+  const double omega_z = y[setup.formulation->spin_index], edge = layer_edge(setup);
   const bool outside = now.layer == Layer::outside;
   return (outside ? now.scene.friction.sigma * omega_z - edge : edge - std::fabs(omega_z)) / setup.rate_scale;
 }
@@ -52,7 +50,7 @@ bool can_change_spin(const Setup& setup, const InForce& now) {
 
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
   const WheelFriction& law = now.scene.friction;
-  const double spin = spin_of(setup, y) / setup.rate_scale;
+  const double spin = y[setup.formulation->spin_index] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
   if (law.kind == WHEEL_HELD) return std::fabs(spin) > spin_error ? -std::fabs(spin) : holding_left(setup, now, t, y);
   return -now.scene.load.brake / setup.moment_scale;
@@ -92,8 +90,6 @@ Consequence change_contact(const Setup&, Event event, double, double*, InForce& 
   return now.scene.friction.kind == WHEEL_FRICTIONLESS ? Consequence::goes_on : Consequence::bends;
 }
 
-double height_left(const Setup& setup, const InForce&, double, const double* y) { return height_of(setup, y); }
-
 // Model exchange leaves a stiff law to the caller's solver.
 constexpr EventRow layer_event(Event event, decltype(EventRow::can_occur) can_occur, decltype(EventRow::value) value) {
   return {.event = event, .can_occur = can_occur, .value = value, .exchanged = false, .follow = change_layer};
@@ -127,7 +123,7 @@ const EventRow event_rows[] = {
      .summary = "The ground has pulled %s times, of which the first %s were logged; last from t = %s s on."},
     {.event = Event::fell_flat,
      .can_occur = always,
-     .value = height_left,
+     .value = [](const Setup& setup, const InForce&, double, const double* y) { return height_of(setup, y); },
      .by_margin = true,
      .ends = always_ends,
      .ending = "fell flat",

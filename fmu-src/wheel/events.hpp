@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "reporter.hpp"
 #include "run.hpp"
 
 namespace wheel {

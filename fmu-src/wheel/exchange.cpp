@@ -23,10 +23,8 @@ static_assert(std::size(states) == state_count);
 
 bool is_finite(double number) { return std::isfinite(number); }
 
-using State = std::array<double, WHEEL_MAX_STATES>;
-
-State above_ground(const Setup& setup, const double* y) {
-  State trial = {};
+auto above_ground(const Setup& setup, const double* y) {
+  std::array<double, WHEEL_MAX_STATES> trial = {};
   std::copy_n(y, state_count, trial.data());
   double& theta = trial[setup.formulation->tilt_index];
   theta = std::clamp(theta, flat_angle, 2 * upright - flat_angle);

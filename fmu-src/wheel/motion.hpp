@@ -5,7 +5,6 @@
 
 #include "events.hpp"
 #include "orbit.hpp"
-#include "solver.hpp"
 
 namespace wheel {
 

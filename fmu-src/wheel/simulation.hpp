@@ -11,8 +11,6 @@
 
 #include "exchange.hpp"
 #include "reading.hpp"
-#include "reporter.hpp"
-#include "variables.hpp"
 
 namespace wheel {
 
