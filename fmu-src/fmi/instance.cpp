@@ -1,10 +1,8 @@
 // Instances: creation, logging, the checks that many functions share.
 #include "instance.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <cstring>
-#include <iterator>
 #include <new>
 
 namespace fmi {
@@ -48,7 +46,9 @@ const char* name_of_state(Phase phase) {
                 {step_failed, "step failed"},
                 {terminated, "terminated"},
                 {error, "error"}};
-  return std::find_if(std::begin(states), std::end(states), [=](auto& s) { return s.phases & bits(phase); })->name;
+  const auto* state = states;
+  while (!(state->phases & bits(phase))) ++state;
+  return state->name;
 }
 
 }  // namespace

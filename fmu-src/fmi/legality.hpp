@@ -40,7 +40,7 @@ inline constexpr unsigned running = step_complete | event_mode | continuous_time
 static_assert(instantiated + initialization + step_complete + event_mode + continuous_time + step_failed + terminated +
                       error ==
                   any_state &&
-              any_state + 1 == 1u << wheel::phase_count);
+              any_state + 1 == bits(wheel::phase_count));
 
 inline constexpr unsigned co_simulation = bits(Kind::co_simulation), model_exchange = bits(Kind::model_exchange),
                           both = co_simulation | model_exchange;

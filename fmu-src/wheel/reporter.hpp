@@ -62,7 +62,7 @@ struct Reporter {
   static NumberText written(double x) { return NumberText(x); }
   static NumberText written(Digits number) { return NumberText(number); }
   template <class Part>
-  static const Part& written(const Part& part) {
+  static Part written(Part part) {
     return part;
   }
   static const char* plain(const NumberText& number) { return number.text; }
