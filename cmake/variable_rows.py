@@ -5,7 +5,8 @@ No paper equation; SI units as in the description. A row of a parameter or input
     STORED(name, type, role, start, min, max)    a limit that the description does not set is `unlimited`
     COMPUTED(name, type, role)
 
-Rows stand in the order of their value references, which count from zero: parameters, inputs, outputs, locals.
+Rows stand in the order of their value references, which count from zero: parameters, inputs, outputs, locals. Both
+macros end with the rows.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ def row(variable: ElementTree.Element) -> str:
 def rows(description: Path) -> str:
     variables = list(ElementTree.parse(description).getroot().iter("ScalarVariable"))
     check(variables)
-    return "".join(f"{row(variable)}\n" for variable in variables)
+    return "".join(f"{row(variable)}\n" for variable in variables) + "#undef STORED\n#undef COMPUTED\n"
 
 
 def main() -> None:

@@ -8,46 +8,47 @@
 #include <new>
 
 #include "instance.hpp"
-#include "registry.hpp"
 
-using fmi::guarded, fmi::Instance, wheel::Topic;
+using fmi::guarded, fmi::Held, fmi::Instance, fmi::no_fault, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
 
-struct Snapshot {
+struct Snapshot : Held {
   std::size_t size;  // of the bytes behind this header
   unsigned char* bytes() { return reinterpret_cast<unsigned char*>(this + 1); }
 };
 
-Snapshot* snapshot_of(fmi2FMUstate state) {
-  return fmi::fmu_states.holds(state) ? static_cast<Snapshot*>(state) : nullptr;
-}
+Snapshot* snapshot_of(fmi2FMUstate state) { return static_cast<Snapshot*>(fmi::fmu_states.find(state)); }
 
-// Frees a state; a pointer that was never handed out is left alone.
-void free_state(fmi2FMUstate state) {
-  if (fmi::fmu_states.remove(state)) std::free(state);
-}
+// A pointer that was never handed out is left alone.
+void free_state(fmi2FMUstate state) { std::free(static_cast<Snapshot*>(fmi::fmu_states.remove(state))); }
 
 // A state of `size` bytes: the previous one where its size fits, else a new one, and the previous one is freed. Null
 // without memory: then the previous one is kept.
-Snapshot* allocate(fmi2FMUstate previous, std::size_t size) {
-  Snapshot* const old = snapshot_of(previous);
+Snapshot* allocate(fmi2FMUstate* state, std::size_t size) {
+  Snapshot* const old = snapshot_of(*state);
   if (old && old->size == size) return old;
   void* const memory = std::malloc(sizeof(Snapshot) + size);
   if (!memory) return nullptr;
-  if (!fmi::fmu_states.add(memory)) {
-    std::free(memory);
-    return nullptr;
-  }
-  free_state(previous);
-  return ::new (memory) Snapshot{size};
+  free_state(*state);
+  auto* const snapshot = ::new (memory) Snapshot{{}, size};
+  fmi::fmu_states.add(snapshot);
+  *state = static_cast<Held*>(snapshot);
+  return snapshot;
 }
 
 constexpr const char *null_pointer = "the state, the size or the bytes are a null pointer",
                      *unknown_state = "this FMU did not create the state", *no_memory = "out of memory";
 
-fmi2Status refuse(Instance& i, const char* why) { return i.log(Topic::error, "%s: %s.", i.called, why); }
+// A call that reads a state; `complete`: its other arguments are no null pointers. The body returns what is wrong.
+template <class Body>
+fmi2Status with_state(fmi2Component c, const char* name, fmi2FMUstate state, bool complete, Body body) {
+  return guarded(c, legality::always, name, [=](Instance& i) {
+    Snapshot* const snapshot = snapshot_of(state);
+    return !state || !complete ? null_pointer : snapshot ? body(i, *snapshot) : unknown_state;
+  });
+}
 
 }  // namespace
 
@@ -55,21 +56,17 @@ extern "C" {
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, legality::always, "fmi2GetFMUstate", [=](Instance& i) {
-    if (!state) return refuse(i, null_pointer);
-    Snapshot* snapshot = allocate(*state, i.simulation.state_size());
-    if (!snapshot) return refuse(i, no_memory);
+    if (!state) return null_pointer;
+    Snapshot* snapshot = allocate(state, i.simulation.state_size());
+    if (!snapshot) return no_memory;
     i.simulation.save_state(snapshot->bytes());
-    *state = snapshot;
-    return fmi2OK;
+    return no_fault;
   });
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return guarded(c, legality::always, "fmi2SetFMUstate", [=](Instance& i) {
-    Snapshot* snapshot = snapshot_of(state);
-    if (!snapshot) return refuse(i, state ? unknown_state : null_pointer);
-    const char* fault = i.simulation.load_state(snapshot->bytes(), snapshot->size, false);
-    return fault ? refuse(i, fault) : fmi2OK;
+  return with_state(c, "fmi2SetFMUstate", state, true, [](Instance& i, Snapshot& snapshot) {
+    return i.simulation.load_state(snapshot.bytes(), snapshot.size, false);
   });
 }
 
@@ -82,40 +79,32 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  return guarded(c, legality::always, "fmi2SerializedFMUstateSize", [=](Instance& i) {
-    if (!state || !size) return refuse(i, null_pointer);
-    const Snapshot* snapshot = snapshot_of(state);
-    if (!snapshot) return refuse(i, unknown_state);
-    *size = snapshot->size;
-    return fmi2OK;
+  return with_state(c, "fmi2SerializedFMUstateSize", state, size, [=](Instance&, Snapshot& snapshot) {
+    *size = snapshot.size;
+    return no_fault;
   });
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  return guarded(c, legality::always, "fmi2SerializeFMUstate", [=](Instance& i) {
-    if (!state || !bytes) return refuse(i, null_pointer);
-    Snapshot* snapshot = snapshot_of(state);
-    if (!snapshot) return refuse(i, unknown_state);
-    if (size < snapshot->size) return refuse(i, "the array is shorter than the state");
-    std::memcpy(bytes, snapshot->bytes(), snapshot->size);
-    return fmi2OK;
+  return with_state(c, "fmi2SerializeFMUstate", state, bytes, [=](Instance&, Snapshot& snapshot) {
+    if (size < snapshot.size) return "the array is shorter than the state";
+    std::memcpy(bytes, snapshot.bytes(), snapshot.size);
+    return no_fault;
   });
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
   return guarded(c, legality::always, "fmi2DeSerializeFMUstate", [=](Instance& i) {
-    if (!state || !bytes) return refuse(i, null_pointer);
+    if (!state || !bytes) return i.fail(null_pointer);
     Instance* scratch = Instance::create("scratch", nullptr, false, i.simulation.kind());
-    if (!scratch) return refuse(i, no_memory);
+    if (!scratch) return i.fail(no_memory);
     const char* fault = scratch->simulation.load_state(reinterpret_cast<const unsigned char*>(bytes), size, true);
     Instance::destroy(scratch);
     if (fault)
-      return i.log(Topic::error, "%s: the bytes are damaged or not a state of this FMU and version (%s).", i.called,
-                   fault);
-    Snapshot* snapshot = allocate(*state, size);
-    if (!snapshot) return refuse(i, no_memory);
+      return i.log(Topic::error, "%s: the bytes are damaged or not a state of this FMU and version (%s).", fault);
+    Snapshot* snapshot = allocate(state, size);
+    if (!snapshot) return i.fail(no_memory);
     std::memcpy(snapshot->bytes(), bytes, size);
-    *state = snapshot;
     return fmi2OK;
   });
 }

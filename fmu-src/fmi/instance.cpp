@@ -1,14 +1,14 @@
-// Instances: creation, logging.
+// Instances: creation, logging, the checks that many functions share.
 #include "instance.hpp"
 
 #include <cstdlib>
 #include <cstring>
-#include <iterator>
 #include <new>
 
-#include "digits.hpp"
-
 namespace fmi {
+
+using wheel::Topic;
+
 namespace {
 
 // In the order of the topics: the category, the status of the message, and that of a call that ends with it. At their
@@ -20,7 +20,7 @@ constexpr struct {
               {"logStatusWarning", fmi2Warning, fmi2OK},
               {"logStatusError", fmi2Error, fmi2Error},
               {"logStatusDiscard", fmi2Warning, fmi2Discard}};
-static_assert(std::size(topics) == static_cast<std::size_t>(wheel::Topic::discard) + 1);
+static_assert(std::size(topics) == static_cast<std::size_t>(Topic::discard) + 1);
 
 // A message is a format to the master, and '#' opens a variable name: both characters are doubled.
 void escape(const char* text, char* out, std::size_t size) {
@@ -32,20 +32,46 @@ void escape(const char* text, char* out, std::size_t size) {
   out[length] = 0;
 }
 
+// The call state that a phase stands for, by the name that the standard uses.
+const char* name_of_state(Phase phase) {
+  using namespace legality;
+  constexpr struct {
+    unsigned phases;
+    const char* name;
+  } states[] = {{instantiated, "instantiated"},
+                {initialization, "initialization mode"},
+                {step_complete, "step complete"},
+                {event_mode, "event mode"},
+                {continuous_time, "continuous-time mode"},
+                {step_failed, "step failed"},
+                {terminated, "terminated"},
+                {error, "error"}};
+  const auto* state = states;
+  while (!(state->phases & bits(phase))) ++state;
+  return state->name;
+}
+
 }  // namespace
 
-const char* category_of(wheel::Topic topic) { return topics[static_cast<unsigned>(topic)].category; }
+const char* category_of(Topic topic) { return topics[static_cast<unsigned>(topic)].category; }
 
 Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind)
-    : reporter{
-          .owner = this,
-          .listens = [](const void* i, wheel::Topic topic) { return static_cast<const Instance*>(i)->wants(topic); },
-          .take = [](const void* i, wheel::Topic topic,
-                     const char* message) { static_cast<const Instance*>(i)->pass_on(topic, message); }},
-      simulation(reporter, kind) {
+    : reporter{.owner = this, .listens = listens, .take = take}, simulation(reporter, kind) {
   if (!callbacks) return;
   logger_ = callbacks->logger;
   environment_ = callbacks->componentEnvironment;
+}
+
+bool Instance::listens(const void* instance, Topic topic) {
+  const Instance& i = *static_cast<const Instance*>(instance);
+  return i.logger_ && i.logged_topics & (1u << static_cast<unsigned>(topic));
+}
+
+void Instance::take(const void* instance, Topic topic, const char* message) {
+  const Instance& i = *static_cast<const Instance*>(instance);
+  char escaped[2 * wheel::Reporter::longest];
+  escape(message, escaped, sizeof escaped);
+  i.logger_(i.environment_, i.name_, topics[static_cast<unsigned>(topic)].message, category_of(topic), escaped);
 }
 
 Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind) {
@@ -54,7 +80,7 @@ Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callba
   if (!memory) return nullptr;
   auto* instance = ::new (memory) Instance(callbacks, kind);
   instance->name_ = static_cast<char*>(std::memcpy(static_cast<char*>(memory) + sizeof(Instance), name, name_size));
-  const unsigned all = 0xf, quiet = all & ~(1u << static_cast<unsigned>(wheel::Topic::event));
+  const unsigned all = 0xf, quiet = all & ~(1u << static_cast<unsigned>(Topic::event));
   instance->logged_topics = logging ? all : quiet;
   return instance;
 }
@@ -68,21 +94,24 @@ void Instance::destroy(Instance* instance) {
 fmi2Status Instance::refuse(const Rule& rule) {
   const bool slave = simulation.kind() == wheel::Kind::co_simulation;
   if (!rule.is_for(simulation.kind()))
-    return log(wheel::Topic::error, "%s belongs to %s; this instance was made for %s.", called,
+    return log(Topic::error, "%s belongs to %s; this instance was made for %s.",
                slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
-  if (simulation.phase() == wheel::Phase::ended)
-    return log(wheel::Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", called,
-               simulation.ending().text, support::Digits(simulation.time()).text);
-  return log(wheel::Topic::error, "%s is not allowed in the state \"%s\".", called,
-             call_state_name(simulation.phase()));
+  if (simulation.phase() == Phase::ended)
+    return log(Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", simulation.ending().text,
+               simulation.time());
+  return log(Topic::error, "%s is not allowed in the state \"%s\".", name_of_state(simulation.phase()));
 }
 
-fmi2Status Instance::status_of(wheel::Topic topic) { return topics[static_cast<unsigned>(topic)].call; }
-
-void Instance::pass_on(wheel::Topic topic, const char* message) const {
-  char escaped[2 * wheel::Reporter::longest];
-  escape(message, escaped, sizeof escaped);
-  logger_(environment_, name_, topics[static_cast<unsigned>(topic)].message, category_of(topic), escaped);
+fmi2Status Instance::prepare_reading(const fmi2ValueReference variables[], std::size_t count) {
+  const fmi2ValueReference *const end = variables + count, *computed = variables;
+  while (computed != end && *computed < wheel::stored_count) ++computed;
+  if (computed == end || has_state(simulation.phase())) return fmi2OK;
+  if (!simulation.is_prepared()) return fmi2Discard;
+  const bool readable = has_state(simulation.phase());
+  const char* const name = wheel::row_of(*computed).name;
+  return check(readable, "%s: \"%s\" has no value before a successful initialization.", name) ? fmi2OK : fmi2Error;
 }
+
+fmi2Status Instance::status_of(Topic topic) { return topics[static_cast<unsigned>(topic)].call; }
 
 }  // namespace fmi

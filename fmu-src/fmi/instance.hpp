@@ -5,22 +5,37 @@
 
 #include "fmi2Functions.h"
 #include "legality.hpp"
+#include "registry.hpp"
 #include "simulation.hpp"
 
 namespace fmi {
 
-struct Instance {
+struct Instance : Held {
   // One block of memory, the name included. What takes memory later: docs/decisions/others.md. Null if there is none.
   static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind);
   static void destroy(Instance* instance);
 
-  // Passes a message to the master, if its category is switched on. Printf-like; the master gets the finished text.
-  // Returns the status of a call that ends with this message.
+  // Passes a message to the master, if its category is switched on: printf-like, the name of the function under way
+  // first. Returns the status of a call that ends with this message.
   template <class... Numbers>
   fmi2Status log(wheel::Topic topic, const char* format, Numbers... numbers) const {
-    reporter.log(topic, format, numbers...);
+    reporter.log(topic, format, called, numbers...);
     return status_of(topic);
   }
+  // Whether the call is sound; if not, the error is logged.
+  template <class... Numbers>
+  bool check(bool sound, const char* format, Numbers... numbers) const {
+    return reporter.check(sound, format, called, numbers...);
+  }
+  // The end of a call by what is wrong; null: nothing.
+  fmi2Status fail(const char* fault) const { return fault ? log(wheel::Topic::error, "%s: %s.", fault) : fmi2OK; }
+  // Arrays that must have `count` entries.
+  bool check_arrays(std::size_t count, const void* references, const void* values) const {
+    return check(!count || (references && values), "%s: an array is a null pointer.");
+  }
+  // Calculated variables can be read once there is a state: in initialization mode the start state, Discard while the
+  // parameters are faulty. Parameters and inputs always can.
+  fmi2Status prepare_reading(const fmi2ValueReference variables[], std::size_t count);
   // Logs that a function is not legal in the present state, or belongs to the other kind of instance.
   fmi2Status refuse(const Rule& rule);
 
@@ -32,8 +47,8 @@ struct Instance {
 
  private:
   Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind);
-  bool wants(wheel::Topic topic) const { return logger_ && logged_topics & (1u << static_cast<unsigned>(topic)); }
-  void pass_on(wheel::Topic topic, const char* message) const;
+  static bool listens(const void* instance, wheel::Topic topic);
+  static void take(const void* instance, wheel::Topic topic, const char* message);
   static fmi2Status status_of(wheel::Topic topic);
 
   fmi2CallbackLogger logger_ = nullptr;
@@ -44,11 +59,13 @@ struct Instance {
 // The category of a topic as modelDescription.xml names it.
 const char* category_of(wheel::Topic topic);
 
+inline constexpr const char* no_fault = nullptr;
+
 // Every call on an instance: not null, not from within its own logger, legal in its state. An illegal call changes
-// nothing. A body without a result cannot fail.
+// nothing. The body returns a status, or what is wrong; one without a result cannot fail.
 template <class Body>
 fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, Body&& body) {
-  auto* instance = static_cast<Instance*>(component);
+  auto* instance = static_cast<Instance*>(static_cast<Held*>(component));
   if (!instance || instance->called) return fmi2Error;
   instance->called = name;
   fmi2Status status = fmi2OK;
@@ -56,6 +73,8 @@ fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, 
     status = instance->refuse(rule);
   else if constexpr (std::is_void_v<decltype(body(*instance))>)
     body(*instance);
+  else if constexpr (std::is_same_v<decltype(body(*instance)), const char*>)
+    status = instance->fail(body(*instance));
   else
     status = body(*instance);
   instance->called = nullptr;

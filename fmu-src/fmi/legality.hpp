@@ -2,8 +2,7 @@
 // model exchange and 4.2.4 for co-simulation.
 #pragma once
 
-#include "demand.hpp"
-#include "phase.hpp"
+#include "run.hpp"
 
 namespace fmi {
 
@@ -18,9 +17,6 @@ struct Rule {
     return is_for(kind) && (phases & (1u << static_cast<unsigned>(phase))) != 0;
   }
 };
-
-// The call state that the phase stands for, by the name that the standard uses, for messages.
-const char* call_state_name(Phase phase);
 
 // One rule for each function, or for several that are legal together. Whether a variable may be set depends on the
 // variable too: see values.cpp.
@@ -44,14 +40,13 @@ inline constexpr unsigned running = step_complete | event_mode | continuous_time
 static_assert(instantiated + initialization + step_complete + event_mode + continuous_time + step_failed + terminated +
                       error ==
                   any_state &&
-              any_state + 1 == bits(Phase::count));
+              any_state + 1 == bits(wheel::phase_count));
 
 inline constexpr unsigned co_simulation = bits(Kind::co_simulation), model_exchange = bits(Kind::model_exchange),
                           both = co_simulation | model_exchange;
 
 inline constexpr Rule always = {any_state, both};  // logging, reset, FMU states
-inline constexpr Rule setup_experiment = {instantiated, both};
-inline constexpr Rule enter_initialization = {instantiated, both};
+inline constexpr Rule before_initialization = {instantiated, both};
 inline constexpr Rule exit_initialization = {initialization, both};
 inline constexpr Rule terminate = {running | step_failed, both};
 inline constexpr Rule get_values = {initialization | running | stopped, both};
@@ -61,12 +56,10 @@ inline constexpr Rule get_output_derivatives = {step_complete | stopped, co_simu
 inline constexpr Rule do_step = {step_complete, co_simulation};
 inline constexpr Rule cancel_step = {0, co_simulation};
 inline constexpr Rule get_status = {step_complete | step_failed | terminated, co_simulation};
-inline constexpr Rule enter_event_mode = {continuous_time, model_exchange};
+inline constexpr Rule while_integrating = {continuous_time, model_exchange};  // states, end of a step, event mode
 inline constexpr Rule new_discrete_states = {event_mode, model_exchange};
 inline constexpr Rule enter_continuous_time = {event_mode | step_failed, model_exchange};
-inline constexpr Rule completed_step = {continuous_time, model_exchange};
 inline constexpr Rule set_time = {event_mode | continuous_time, model_exchange};
-inline constexpr Rule set_states = {continuous_time, model_exchange};
 inline constexpr Rule get_states = {initialization | event_mode | continuous_time | stopped, model_exchange};
 
 }  // namespace legality

@@ -3,11 +3,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "digits.hpp"
 #include "instance.hpp"
-#include "registry.hpp"
 
-using fmi::guarded, fmi::Instance, support::Digits, wheel::Topic;
+using fmi::guarded, fmi::Instance, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
@@ -40,12 +38,12 @@ unsigned topics_of(const char* category) {
 }
 
 fmi2Status switch_logging(Instance& i, bool on, std::size_t count, const fmi2String categories[]) {
-  if (count && !categories) return i.log(Topic::error, "%s: the categories are a null pointer.", i.called);
+  if (count && !categories) return i.log(Topic::error, "%s: the categories are a null pointer.");
   unsigned topics = count ? 0 : topics_of("logAll");
   for (std::size_t k = 0; k < count; ++k) {
     topics |= topics_of(categories[k]);
     if (!topics_of(categories[k]))
-      i.log(Topic::warning, "%s: there is no category \"%s\".", i.called, categories[k] ? categories[k] : "");
+      i.log(Topic::warning, "%s: there is no category \"%s\".", categories[k] ? categories[k] : "");
   }
   i.logged_topics = on ? (count ? topics : i.logged_topics | topics) : i.logged_topics & ~topics;
   return fmi2OK;
@@ -60,22 +58,20 @@ const char* fmi2GetVersion() { return fmi2Version; }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String,
                               const fmi2CallbackFunctions* callbacks, fmi2Boolean, fmi2Boolean logging) {
-  if (const char* reason = refusal(name, type, guid)) {
-    complain(callbacks, name, reason);
-    return nullptr;
-  }
-  const auto kind = type == fmi2CoSimulation ? wheel::Kind::co_simulation : wheel::Kind::model_exchange;
-  Instance* instance = Instance::create(name, callbacks, logging != fmi2False, kind);
-  if (instance && fmi::instances.add(instance)) return instance;
-  if (instance) Instance::destroy(instance);
-  complain(callbacks, name, "fmi2Instantiate: out of memory.");
-  return nullptr;
+  const char* const reason = refusal(name, type, guid);
+  const bool slave = !reason && type == fmi2CoSimulation;
+  const auto kind = slave ? wheel::Kind::co_simulation : wheel::Kind::model_exchange;
+  Instance* const instance = reason ? nullptr : Instance::create(name, callbacks, logging != fmi2False, kind);
+  if (instance)
+    fmi::instances.add(instance);
+  else
+    complain(callbacks, name, reason ? reason : "fmi2Instantiate: out of memory.");
+  return static_cast<fmi::Held*>(instance);
 }
 
 void fmi2FreeInstance(fmi2Component c) {
-  auto* instance = static_cast<Instance*>(c);
-  if (instance && fmi::instances.holds(instance) && !instance->called && fmi::instances.remove(instance))
-    Instance::destroy(instance);
+  auto* instance = static_cast<Instance*>(fmi::instances.find(c));
+  if (instance && !instance->called && fmi::instances.remove(c)) Instance::destroy(instance);
 }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
@@ -85,19 +81,19 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, co
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean has_stop, fmi2Real stop) {
-  return guarded(c, legality::setup_experiment, "fmi2SetupExperiment", [&](Instance& i) {
+  return guarded(c, legality::before_initialization, "fmi2SetupExperiment", [&](Instance& i) {
     if (!std::isfinite(start) || (has_stop && !(stop >= start)) || (has_tolerance && !(tolerance > 0)))
       return i.log(Topic::error,
                    "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
                    "positive.",
-                   i.called, Digits(start).text, Digits(stop).text, Digits(tolerance).text);
+                   start, stop, tolerance);
     i.simulation.set_experiment(start, has_stop ? stop : wheel::Demand::never, has_tolerance ? tolerance : 0);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  return guarded(c, legality::enter_initialization, "fmi2EnterInitializationMode",
+  return guarded(c, legality::before_initialization, "fmi2EnterInitializationMode",
                  [](Instance& i) { i.simulation.enter(wheel::Phase::initializing); });
 }
 
@@ -107,12 +103,12 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-  if (!fmi::instances.holds(c)) return fmi2Error;
+  if (!fmi::instances.find(c)) return fmi2Error;
   return guarded(c, legality::terminate, "fmi2Terminate", [](Instance& i) { i.simulation.close(); });
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-  if (!fmi::instances.holds(c)) return fmi2Error;
+  if (!fmi::instances.find(c)) return fmi2Error;
   return guarded(c, legality::always, "fmi2Reset", [](Instance& i) { i.simulation.reset(); });
 }
 

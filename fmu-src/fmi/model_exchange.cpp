@@ -2,36 +2,28 @@
 #include <algorithm>
 #include <cmath>
 
-#include "arguments.hpp"
-#include "digits.hpp"
+#include "instance.hpp"
 
-using fmi::guarded, fmi::Instance, fmi::prepare_reading, support::Digits, wheel::Phase, wheel::Topic;
+using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Simulation, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
 
 bool check_count(Instance& i, const void* values, std::size_t count, int needed) {
-  if (values && count == static_cast<std::size_t>(needed)) return true;
-  i.log(Topic::error, "%s: needs an array of %d numbers, not of %zu%s.", i.called, needed, count,
-        values ? "" : ", and it is a null pointer");
-  return false;
+  return i.check(values && count == static_cast<std::size_t>(needed), "%s: needs an array of %d numbers, not of %zu%s.",
+                 needed, count, values ? "" : ", and it is a null pointer");
 }
 
-// Reads as many numbers as are needed, in initialization mode from the start values.
+// Reads as many numbers as are needed, in initialization mode from the start values; false where they are not finite.
 template <class Read>
 fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], std::size_t count, int needed,
-                        Read read) {
+                        const char* what, Read read) {
   return guarded(c, legality::get_states, name, [=](Instance& i) {
     if (!check_count(i, values, count, needed)) return fmi2Error;
-    if (prepare_reading(i) != fmi2OK || !has_state(i.simulation.phase())) return fmi2Discard;
-    return read(i);
+    if (!i.simulation.is_prepared() || !has_state(i.simulation.phase())) return fmi2Discard;
+    if (read(i.simulation)) return fmi2OK;
+    return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.simulation.time(), what);
   });
-}
-
-fmi2Status answer(Instance& i, bool finite, const char* what) {
-  if (finite) return fmi2OK;
-  return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.called, Digits(i.simulation.time()).text,
-               what);
 }
 
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
@@ -46,7 +38,7 @@ fmi2Status enter(fmi2Component c, const fmi::Rule& rule, const char* name, Phase
 extern "C" {
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  return enter(c, legality::enter_event_mode, "fmi2EnterEventMode", Phase::event_mode);
+  return enter(c, legality::while_integrating, "fmi2EnterEventMode", Phase::event_mode);
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
@@ -56,64 +48,65 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
 // One pass is enough: the law that is decided holds.
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
   return guarded(c, legality::new_discrete_states, "fmi2NewDiscreteStates", [=](Instance& i) {
-    if (!info) return i.log(Topic::error, "%s: the event info is a null pointer.", i.called);
+    if (!info) return "the event info is a null pointer";
     *info = {};
     info->valuesOfContinuousStatesChanged = i.simulation.decide() ? fmi2True : fmi2False;
     info->terminateSimulation = i.simulation.has_ended() ? fmi2True : fmi2False;
-    return fmi2OK;
+    return no_fault;
   });
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* enter_event_mode,
                                        fmi2Boolean* terminate) {
-  return guarded(c, legality::completed_step, "fmi2CompletedIntegratorStep", [=](Instance& i) {
-    if (!enter_event_mode || !terminate) return i.log(Topic::error, "%s: a result is a null pointer.", i.called);
+  return guarded(c, legality::while_integrating, "fmi2CompletedIntegratorStep", [=](Instance& i) {
+    if (!enter_event_mode || !terminate) return "a result is a null pointer";
     *enter_event_mode = i.simulation.has_event() ? fmi2True : fmi2False;
     *terminate = fmi2False;
-    return fmi2OK;
+    return no_fault;
   });
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
   return guarded(c, legality::set_time, "fmi2SetTime", [=](Instance& i) {
-    if (!std::isfinite(t)) return i.log(Topic::error, "%s: %s s: the time must be finite.", i.called, Digits(t).text);
+    if (!std::isfinite(t)) return i.log(Topic::error, "%s: %s s: the time must be finite.", t);
     i.simulation.set_time(t);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
-  return guarded(c, legality::set_states, "fmi2SetContinuousStates", [=](Instance& i) {
+  return guarded(c, legality::while_integrating, "fmi2SetContinuousStates", [=](Instance& i) {
     if (!check_count(i, x, n, wheel::state_count)) return fmi2Error;
     if (!std::all_of(x, x + n, [](double value) { return std::isfinite(value); }))
-      return i.log(Topic::discard, "%s: a state is not finite.", i.called);
+      return i.log(Topic::discard, "%s: a state is not finite.");
     i.simulation.set_states(x);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_numbers(c, "fmi2GetContinuousStates", x, n, wheel::state_count, [=](Instance& i) {
-    std::copy_n(i.simulation.states(), n, x);
-    return fmi2OK;
+  return read_numbers(c, "fmi2GetContinuousStates", x, n, wheel::state_count, "states", [=](Simulation& simulation) {
+    std::copy_n(simulation.states(), n, x);
+    return true;
   });
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_numbers(c, "fmi2GetNominalsOfContinuousStates", x, n, wheel::state_count, [=](Instance& i) {
-    i.simulation.nominals(x);
-    return fmi2OK;
-  });
+  return read_numbers(c, "fmi2GetNominalsOfContinuousStates", x, n, wheel::state_count, "nominals",
+                      [=](Simulation& simulation) {
+                        simulation.nominals(x);
+                        return true;
+                      });
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
-  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count,
-                      [=](Instance& i) { return answer(i, i.simulation.derivatives(x_dot), "derivatives"); });
+  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count, "derivatives",
+                      [=](Simulation& simulation) { return simulation.derivatives(x_dot); });
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count(),
-                      [=](Instance& i) { return answer(i, i.simulation.indicators(z), "indicators"); });
+  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count(), "indicators",
+                      [=](Simulation& simulation) { return simulation.indicators(z); });
 }
 
 }  // extern "C"

@@ -2,10 +2,9 @@
 #include <bit>
 #include <cmath>
 
-#include "digits.hpp"
 #include "instance.hpp"
 
-using fmi::guarded, fmi::Instance, support::Digits, wheel::Topic;
+using fmi::guarded, fmi::Instance, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
@@ -23,20 +22,14 @@ bool same_time(double a, double b, double step) {
 // The sum of many steps carries more rounding errors than one step.
 bool is_past(double t, double stop) { return t - stop > step_rounding * (std::fabs(t) + std::fabs(stop)); }
 
-fmi2Status check_step(Instance& i, double t, double h) {
-  if (!std::isfinite(t) || !std::isfinite(h) || h < 0)
-    return i.log(Topic::error, "%s from %s s by %s s: times must be finite and the step not negative.", i.called,
-                 Digits(t).text, Digits(h).text);
-  if (std::fabs(t + h - t - h) > step_digits * h)
-    return i.log(Topic::error, "%s from %s s by %s s: the step is lost in the rounding of the time.", i.called,
-                 Digits(t).text, Digits(h).text);
+bool check_step(const Instance& i, double t, double h) {
   const double reached = i.simulation.time(), stop = i.simulation.stop_time();
-  if (!same_time(t, reached, h))
-    return i.log(Topic::error, "%s from %s s: the FMU has reached %s s.", i.called, Digits(t).text,
-                 Digits(reached).text);
-  if (is_past(t + h, stop))
-    return i.log(Topic::error, "%s to %s s: the stop time is %s s.", i.called, Digits(t + h).text, Digits(stop).text);
-  return fmi2OK;
+  return i.check(std::isfinite(t) && std::isfinite(h) && h >= 0,
+                 "%s from %s s by %s s: times must be finite and the step not negative.", t, h) &&
+         i.check(std::fabs(t + h - t - h) <= step_digits * h,
+                 "%s from %s s by %s s: the step is lost in the rounding of the time.", t, h) &&
+         i.check(same_time(t, reached, h), "%s from %s s: the FMU has reached %s s.", t, reached) &&
+         i.check(!is_past(t + h, stop), "%s to %s s: the stop time is %s s.", t + h, stop);
 }
 
 // Of the last step, where its status may be asked for.
@@ -51,8 +44,8 @@ fmi2Status get_status(fmi2Component c, const char* name, const fmi2StatusKind& a
                       Value* value, Read read) {
   const int kind = std::bit_cast<int>(asked);
   return guarded(c, legality::get_status, name, [=](Instance& i) {
-    if (!value) return i.log(Topic::error, "%s: the value is a null pointer.", i.called);
-    if (kind != known_kind) return i.log(Topic::discard, "%s: there is no status of kind %d.", i.called, kind);
+    if (!value) return i.log(Topic::error, "%s: the value is a null pointer.");
+    if (kind != known_kind) return i.log(Topic::discard, "%s: there is no status of kind %d.", kind);
     *value = read(i);
     return fmi2OK;
   });
@@ -64,7 +57,7 @@ extern "C" {
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
   return guarded(c, legality::do_step, "fmi2DoStep", [=](Instance& i) {
-    if (check_step(i, t, h) != fmi2OK) return fmi2Error;
+    if (!check_step(i, t, h)) return fmi2Error;
     const solver::Outcome outcome = i.simulation.advance(t + h);
     if (outcome == solver::Outcome::failed) return fmi2Error;
     return outcome == solver::Outcome::event ? fmi2Discard : fmi2OK;

@@ -1,20 +1,21 @@
 // FMI 2.0 functions: getting and setting variables.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "arguments.hpp"
-#include "digits.hpp"
+#include "instance.hpp"
 
-using fmi::check_arrays, fmi::check_readable, fmi::guarded, fmi::Instance, fmi::prepare_reading;
-using support::Digits, wheel::Role, wheel::Topic, wheel::Type;
+using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic, wheel::Type;
 namespace legality = fmi::legality;
 
 namespace {
 
-bool check_variable(Instance& i, fmi2ValueReference variable, Type type) {
-  if (wheel::is_variable(variable, type)) return true;
-  i.log(Topic::error, "%s: no variable of this type has the value reference %u.", i.called, variable);
-  return false;
+bool check_variables(const Instance& i, Type type, const fmi2ValueReference variables[], std::size_t count,
+                     const void* values) {
+  return i.check_arrays(count, variables, values) && std::all_of(variables, variables + count, [&](unsigned variable) {
+           return i.check(wheel::is_variable(variable, type),
+                          "%s: no variable of this type has the value reference %u.", variable);
+         });
 }
 
 // A count that outgrows an Integer stays at the largest one. A choice that is no number, which only a forged state can
@@ -31,52 +32,37 @@ template <class Value>
 fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueReference variables[], std::size_t count,
                Value values[]) {
   return guarded(c, legality::get_values, name, [=](Instance& i) {
-    if (!check_arrays(i, count, variables, values)) return fmi2Error;
-    bool computed = false;
-    for (std::size_t k = 0; k < count; ++k) {
-      if (!check_variable(i, variables[k], type)) return fmi2Error;
-      computed = computed || variables[k] >= wheel::stored_count;
-    }
-    if (computed && prepare_reading(i) != fmi2OK) return fmi2Discard;
-    wheel::Reading* const now = computed && has_state(i.simulation.phase()) ? &i.simulation.reading() : nullptr;
-    for (std::size_t k = 0; k < count; ++k) {
-      const bool stored = variables[k] < wheel::stored_count;
-      if (!stored && !check_readable(i, variables[k])) return fmi2Error;
-      values[k] =
-          represented<Value>(stored ? i.simulation.stored(variables[k]) : wheel::row_of(variables[k]).read(*now));
-    }
-    return fmi2OK;
+    if (!check_variables(i, type, variables, count, values)) return fmi2Error;
+    const fmi2Status status = i.prepare_reading(variables, count);
+    for (std::size_t k = 0; k < count && status == fmi2OK; ++k)
+      values[k] = represented<Value>(i.simulation.value(variables[k]));
+    return status;
   });
 }
 
-bool check_settable(Instance& i, fmi2ValueReference variable) {
+// Parameters before the run, inputs and `s` at any time, the states while another solver moves them.
+bool check_settable(const Instance& i, fmi2ValueReference variable) {
   const wheel::Row& row = wheel::row_of(variable);
-  const bool stored = variable < wheel::stored_count;
-  if (!stored && i.simulation.kind() == wheel::Kind::model_exchange && is_running(i.simulation.phase()) &&
-      wheel::state_index_of(variable) >= 0)
-    return true;
-  if (stored && (!is_running(i.simulation.phase()) || row.role != Role::parameter)) return true;
-  i.log(Topic::error,
-        stored ? "%s: \"%s\" cannot be set after initialization." : "%s: \"%s\" is calculated and cannot be set.",
-        i.called, row.name);
-  return false;
+  const bool running = is_running(i.simulation.phase());
+  if (variable < wheel::stored_count)
+    return i.check(!running || row.role != Role::parameter, "%s: \"%s\" cannot be set after initialization.", row.name);
+  return i.check(running && i.simulation.kind() == wheel::Kind::model_exchange && wheel::state_index_of(variable) >= 0,
+                 "%s: \"%s\" is calculated and cannot be set.", row.name);
 }
 
 // During the run a value out of bounds is refused at once. Before the run it is taken, and all faults are logged
 // together at the end of initialization.
 bool check_value(Instance& i, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
-  const bool bounded = variable < wheel::stored_count;
-  const bool inside = std::isfinite(value) && (!bounded || (value >= row.min && value <= row.max));
+  const bool bounded = variable < wheel::stored_count, low = value < row.min;
+  const bool inside = std::isfinite(value) && (!bounded || (!low && value <= row.max));
   if (!is_running(i.simulation.phase()) || inside) return true;
-  const bool low = value < row.min;
-  const Digits given(value), limit(low ? row.min : row.max), kept(i.simulation.value(variable));
+  const double kept = i.simulation.value(variable);
   if (std::isfinite(value))
-    i.log(Topic::discard, "%s: %s = %s: it must be at %s %s; the value stays %s.", i.called, row.name, given.text,
-          low ? "least" : "most", limit.text, kept.text);
+    i.log(Topic::discard, "%s: %s = %s: it must be at %s %s; the value stays %s.", row.name, value,
+          low ? "least" : "most", low ? row.min : row.max, kept);
   else
-    i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", i.called, row.name, given.text,
-          kept.text);
+    i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", row.name, value, kept);
   return false;
 }
 
@@ -84,29 +70,21 @@ template <class Value>
 fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueReference variables[], std::size_t count,
                const Value values[]) {
   return guarded(c, legality::set_values, name, [=](Instance& i) {
-    if (!check_arrays(i, count, variables, values)) return fmi2Error;
+    if (!check_variables(i, type, variables, count, values)) return fmi2Error;
     for (std::size_t k = 0; k < count; ++k)
-      if (!check_variable(i, variables[k], type) || !check_settable(i, variables[k])) return fmi2Error;
+      if (!check_settable(i, variables[k])) return fmi2Error;
     for (std::size_t k = 0; k < count; ++k)
       if (!check_value(i, variables[k], static_cast<double>(values[k]))) return fmi2Discard;
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto value = static_cast<double>(values[k]);
-      if (variables[k] < wheel::stored_count)
-        i.simulation.store(variables[k], value);
-      else
-        i.simulation.set_state(wheel::state_index_of(variables[k]), value);
-    }
+    for (std::size_t k = 0; k < count; ++k) i.simulation.set(variables[k], static_cast<double>(values[k]));
     return fmi2OK;
   });
 }
 
-// There are no string variables: only an empty request can be answered.
-fmi2Status refuse_strings(fmi2Component c, const fmi::Rule& rule, const char* name,
-                          const fmi2ValueReference variables[], std::size_t count, const void* values) {
+// Only an empty request can be answered.
+fmi2Status check_strings(fmi2Component c, const fmi::Rule& rule, const char* name, const fmi2ValueReference variables[],
+                         std::size_t count, const void* values) {
   return guarded(c, rule, name, [=](Instance& i) {
-    if (!count) return fmi2OK;
-    if (!check_arrays(i, count, variables, values)) return fmi2Error;
-    return i.log(Topic::error, "%s: no variable of this type has the value reference %u.", i.called, variables[0]);
+    return check_variables(i, Type::string, variables, count, values) ? fmi2OK : fmi2Error;
   });
 }
 
@@ -134,10 +112,10 @@ fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference v[], size_t 
 }
 
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference v[], size_t n, fmi2String values[]) {
-  return refuse_strings(c, legality::get_values, "fmi2GetString", v, n, values);
+  return check_strings(c, legality::get_values, "fmi2GetString", v, n, values);
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2String values[]) {
-  return refuse_strings(c, legality::set_values, "fmi2SetString", v, n, values);
+  return check_strings(c, legality::set_values, "fmi2SetString", v, n, values);
 }
 
 }  // extern "C"

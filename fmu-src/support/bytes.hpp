@@ -5,6 +5,7 @@
 // number against what it may be, and says afterwards whether all of them could have been written.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -55,10 +56,9 @@ class Archive {
   }
   // Any double at all, as a caller may have set it.
   void anything(double& x) {
-    std::int64_t word;
-    std::memcpy(&word, &x, sizeof word);
+    auto word = std::bit_cast<std::int64_t>(x);
     count(word, std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
-    std::memcpy(&x, &word, sizeof x);
+    x = std::bit_cast<double>(word);
   }
 
  private:
@@ -85,8 +85,8 @@ class Archive {
   const char *row_ = "", *fault_ = nullptr;
 };
 
-// After FNV-1a, but over words of 64 bits and with a shift that mixes them; a snapshot is a whole number of words. A
-// change of any one word changes the sum. It guards against accidents; forged numbers are met by their own checks.
+// Each word of 64 bits is multiplied in and mixed by a shift; a snapshot is a whole number of words. A change of any
+// one word changes the sum. It guards against accidents; forged numbers are met by their own checks.
 inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (std::size_t i = 0; i < size; i += 8) {

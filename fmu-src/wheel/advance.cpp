@@ -1,12 +1,10 @@
 // How a run moves on by one communication step: `advance_by_stages` lists the stages, the functions before it are the
 // stages.
-#include "advance.hpp"
+#include "motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "digits.hpp"
-#include "law.hpp"
 
 namespace wheel {
 namespace {
@@ -31,7 +29,7 @@ bool has_changed(const Setup& setup, const Demand& demand, const Run& run) {
   const InForce& now = run.in_force;
   const double t = run.t;
   const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(setup.start_time) + std::fabs(t));
-  return now.scene.wheel.s != demand.parameters[stored::s] || now.inputs.change_at(t, rounding, demand.inputs);
+  return now.scene.wheel.s != demand.parameters[variable::s] || now.inputs.change_at(t, rounding, demand.inputs);
 }
 
 // Starts the solver at the present instant, from nothing or, again, where it goes on counting.
@@ -63,13 +61,62 @@ Outcome take_demand(const Setup& setup, Demand& demand, Run& run, Solution& solu
   return outcome;
 }
 
+// The orbit of a run, from its start.
+Shape shape_of(const Demand& demand) {
+  Shape shape = {{}, demand.tolerance};
+  std::copy_n(demand.parameters, first_input, shape.parameters);
+  for (const unsigned v : {variable::psi_start, variable::phi_start, variable::X_O_start, variable::Y_O_start})
+    shape.parameters[v] = 0;
+  return shape;
+}
+
+// Whether the motion is unfolded. Builds the orbit of the run, or keeps that of an earlier run of the same shape.
+// False: the solver has to step through the motion.
+bool enter_orbit(const Setup& setup, const Demand& demand, Run& run, Solution& solution) {
+  orbit::Orbit& orbit = solution.orbit;
+  const Shape asked = shape_of(demand);
+  solution.owner = {&setup, &run.in_force};
+  const solver::Problem problem = problem_of(solution.owner);
+  if (solution.orbit_shape != asked) {
+    const InForce at_start = run.in_force;  // what is observed on the orbit counts where the run passes it
+    const auto kind = orbit.build(problem, demand.tolerance, pass_on_orbit, setup.start, solution.solver);
+    run.in_force = at_start;
+    solution.orbit_shape = kind == orbit::Orbit::Kind::refused ? Shape() : asked;
+  }
+  if (solution.orbit_shape != asked || !orbit.start_at(problem, setup.start)) return false;
+  run.counted = orbit.counters();
+  const bool ends = orbit.end_time() < Demand::never;
+  solution.orbit_until = ends ? orbit.end_time() : largest_angle / orbit.fastest_turn();
+  return true;
+}
+
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
-Outcome begin(const Setup& setup, const Demand& demand, Run& run, Solution& solution) {
+Outcome set_in_motion(const Setup& setup, const Demand& demand, Run& run, Solution& solution) {
   const bool is_ready = run.phase == Phase::unfolded && solution.orbit_until != Solution::none;
   if (run.phase == Phase::stepping || is_ready) return Outcome::stepped;
   const bool unfolds = is_unfoldable(setup, run.in_force) && enter_orbit(setup, demand, run, solution);
   run.phase = unfolds ? Phase::unfolded : Phase::stepping;
   return unfolds ? Outcome::stepped : start_solver(setup, run, solution, false);
+}
+
+// Counts and logs what is observed on the orbit up to t.
+void observe_orbit(const Setup& setup, const orbit::Orbit& orbit, double t, Run& run, const Reporter& reporter) {
+  const auto next_of = [&](int event) {
+    const long long next = run.tallies[event].count, falls = orbit.falls_until(event, t);
+    return next < std::min(falls, logged_one_by_one) ? orbit.fall(event, next) : Demand::never;
+  };
+  for (;;) {  // in the order of time
+    int first = 0;
+    for (int event = 1; event < event_count; ++event)
+      if (next_of(event) < next_of(first)) first = event;
+    const double instant = next_of(first);
+    if (instant == Demand::never) break;
+    count_event(setup, static_cast<Event>(first), instant, run, reporter);
+  }
+  for (int event = 0; event < event_count; ++event) {
+    const long long falls = orbit.falls_until(event, t);
+    if (falls > run.tallies[event].count) run.tallies[event] = {falls, orbit.fall(event, falls - 1)};
+  }
 }
 
 void move_to(const Setup& setup, double t, Run& run, const Solution& solution, const Reporter& reporter) {
@@ -87,8 +134,7 @@ double corner_of(const Setup& setup, const Inputs& inputs, double t) {
 // Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.
 Outcome step_to(const Setup& setup, double t, Run& run, Solution& solution, const Reporter& reporter) {
   solver::Solver& solver = solution.solver;
-  const bool large = setup.formulation == &wheel_multibody;
-  const long long work_per_step = large ? work_per_multibody_step : 1;
+  const long long work_per_step = setup.formulation == &wheel_multibody ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work) {
       solution.failure = "one call may take no more internal steps; use shorter communication steps";
@@ -99,7 +145,7 @@ Outcome step_to(const Setup& setup, double t, Run& run, Solution& solution, cons
     const Inputs& inputs = run.in_force.inputs;
     if (inputs.varies && solver.method() == solver::Method::runge_kutta) solver.stop_before(t);
     if (inputs.varies && inputs.braked) solver.stop_before(corner_of(setup, inputs, solver.known_until()));
-    Outcome outcome = solver.step();
+    const Outcome outcome = solver.step();
     if (outcome == Outcome::failed) return outcome;
     work += (outcome == Outcome::event ? work_per_event : 1) * work_per_step;
     if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event after t waits until it is reached
@@ -109,9 +155,8 @@ Outcome step_to(const Setup& setup, double t, Run& run, Solution& solution, cons
     if (ends_run(row_of(event), setup)) return outcome;
     if (pass_event(setup, event, run, reporter) == Consequence::goes_on)
       solver.resume();
-    else
-      outcome = start_solver(setup, run, solution, true);
-    if (outcome == Outcome::failed) return outcome;
+    else if (start_solver(setup, run, solution, true) == Outcome::failed)
+      return Outcome::failed;
   }
   return Outcome::stepped;
 }
@@ -148,9 +193,8 @@ void end(const Setup& setup, Run& run, const Solution& solution, const Reporter&
 // The state is that before the step, and stays so.
 void fail(const Setup& setup, const Run& before, Run& run, const Solution& solution, const Reporter& reporter) {
   if (run.phase == Phase::stepping) move_to(setup, solution.solver.known_until(), run, solution, reporter);
-  reporter.log(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.",
-               support::Digits(setup.start_time + run.t).text,
-               support::Digits(state_now(run, solution)[setup.formulation->spin_index], 4).text,
+  reporter.log(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.", setup.start_time + run.t,
+               Digits{state_now(run, solution)[setup.formulation->spin_index], 4},
                solution.failure ? solution.failure : solution.solver.failure());
   run = before;
   run.phase = Phase::failed;
@@ -164,7 +208,7 @@ Outcome advance_by_stages(const Setup& setup, Demand& demand, Run& run, Solution
   const bool changed = demand.changed, moves = t > run.t;
   solution.failure = nullptr;
   Outcome outcome = take_demand(setup, demand, run, solution, reporter);
-  if (outcome == Outcome::stepped && moves) outcome = begin(setup, demand, run, solution);
+  if (outcome == Outcome::stepped && moves) outcome = set_in_motion(setup, demand, run, solution);
   if (outcome == Outcome::stepped && moves) outcome = proceed(setup, t, run, solution, reporter);
   if (outcome == Outcome::stepped) arrive(setup, t, demand, run, solution, reporter);
   if (outcome == Outcome::event) end(setup, run, solution, reporter);
@@ -207,7 +251,8 @@ void end_run(const Setup& setup, Event event, Run& run, const Solution& solution
   run.ended_by = event;
   freeze(run, solution, Phase::ended);
   log_summaries(setup, run, reporter);
-  log_end(setup, run, reporter);
+  reporter.log(Topic::discard, row_of(event).ended, ending_of(setup, event).text, setup.start_time + run.t,
+               Digits{run.y[setup.formulation->tilt_index], 6});
 }
 
 }  // namespace wheel

@@ -4,13 +4,8 @@
 #include <cstdio>
 #include <iterator>
 
-#include "digits.hpp"
-#include "law.hpp"
-
 namespace wheel {
 namespace {
-
-double spin_of(const Setup& setup, const double* y) { return y[setup.formulation->spin_index]; }
 
 // An input that varies can make a regularized law stiff.
 bool varies_and_can_stiffen(const Setup& setup, const InForce& now) {
@@ -35,7 +30,7 @@ double holding_lacks(const Setup& setup, const InForce& now, double t, const dou
 }
 
 double way_to_edge(const Setup& setup, const InForce& now, double, const double* y) {
-  const double omega_z = spin_of(setup, y), edge = layer_edge(setup);
+  const double omega_z = y[setup.formulation->spin_index], edge = layer_edge(setup);
   const bool outside = now.layer == Layer::outside;
   return (outside ? now.scene.friction.sigma * omega_z - edge : edge - std::fabs(omega_z)) / setup.rate_scale;
 }
@@ -55,7 +50,7 @@ bool can_change_spin(const Setup& setup, const InForce& now) {
 
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
   const WheelFriction& law = now.scene.friction;
-  const double spin = spin_of(setup, y) / setup.rate_scale;
+  const double spin = y[setup.formulation->spin_index] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
   if (law.kind == WHEEL_HELD) return std::fabs(spin) > spin_error ? -std::fabs(spin) : holding_left(setup, now, t, y);
   return -now.scene.load.brake / setup.moment_scale;
@@ -67,8 +62,6 @@ Consequence change_spin(const Setup& setup, Event, double t, double* y, InForce&
   decide_law(setup, t, y, now, law == WHEEL_HELD);
   return Consequence::bends;
 }
-
-bool checks_grip(const Setup& setup, const InForce&) { return setup.mu_max > 0; }
 
 // (mu_max N)^2 - lambda_t^2 over the weight squared, below zero too where the ground pulls.
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
@@ -91,15 +84,11 @@ double contact_left(const Setup& setup, const InForce& now, double t, const doub
   return pressure_of(setup, setup.formulation->derivative(&scene, y, y_dot));
 }
 
-bool needs_contact(const Setup& setup) { return !setup.keep_contact; }
-
 // The ground begins to pull or to press. Without friction the motion goes on as it was.
 Consequence change_contact(const Setup&, Event event, double, double*, InForce& now) {
   now.set_below(event, !now.is_below(event));
   return now.scene.friction.kind == WHEEL_FRICTIONLESS ? Consequence::goes_on : Consequence::bends;
 }
-
-double height_left(const Setup& setup, const InForce&, double, const double* y) { return height_of(setup, y); }
 
 // Model exchange leaves a stiff law to the caller's solver.
 constexpr EventRow layer_event(Event event, decltype(EventRow::can_occur) can_occur, decltype(EventRow::value) value) {
@@ -114,7 +103,7 @@ const EventRow event_rows[] = {
     layer_event(Event::crosses_layer, is_layered, way_to_edge),
     {.event = Event::spin_changes, .can_occur = can_change_spin, .value = spin_left, .follow = change_spin},
     {.event = Event::lost_grip,
-     .can_occur = checks_grip,
+     .can_occur = [](const Setup& setup, const InForce&) { return setup.mu_max > 0; },
      .value = grip_left,
      .ends = always_ends,
      .ending = "needs a coefficient of friction above mu_max = %s",
@@ -125,7 +114,7 @@ const EventRow event_rows[] = {
      .value = contact_left,
      .rounding = pressure_rounding,
      .by_margin = true,
-     .ends = needs_contact,
+     .ends = [](const Setup& setup) { return !setup.keep_contact; },
      .follow = change_contact,
      .ending = "lifted off the ground",
      .ended = "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
@@ -134,7 +123,7 @@ const EventRow event_rows[] = {
      .summary = "The ground has pulled %s times, of which the first %s were logged; last from t = %s s on."},
     {.event = Event::fell_flat,
      .can_occur = always,
-     .value = height_left,
+     .value = [](const Setup& setup, const InForce&, double, const double* y) { return height_of(setup, y); },
      .by_margin = true,
      .ends = always_ends,
      .ending = "fell flat",
@@ -146,9 +135,9 @@ static_assert(std::size(event_rows) == row_count && row_count <= solver::max_wat
 namespace {
 
 // An instant for messages: it is not found more exactly than to a nanosecond.
-support::Digits instant_of(const Setup& setup, double t) {
+double instant_of(const Setup& setup, double t) {
   const double time = setup.start_time + t;
-  return support::Digits(std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time);
+  return std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time;
 }
 
 }  // namespace
@@ -162,12 +151,6 @@ double margin_of(const EventRow& row, const Setup& setup, const InForce& now, do
   if (!row.observed) return row.value(setup, now, t, y);
   const double value = row.value(setup, now, t, y);
   return (now.is_below(row.event) ? -value : value) + row.rounding;
-}
-
-void watch_events(const Setup& setup, const InForce& now, decltype(solver::Watched::value) value,
-                  solver::Problem& problem) {
-  for (const EventRow& row : event_rows)
-    if (row.can_occur(setup, now)) problem.watch({static_cast<int>(row.event), value, row.by_margin});
 }
 
 void place_observed(const Setup& setup, double t, const double* y, InForce& now) {
@@ -189,7 +172,7 @@ void count_event(const Setup& setup, Event event, double t, Run& run, const Repo
   Tally& tally = run.tallies[static_cast<int>(event)];
   tally.last = t;
   if (tally.count++ >= logged_one_by_one) return;
-  reporter.log(Topic::warning, row_of(event).observed, instant_of(setup, t).text);
+  reporter.log(Topic::warning, row_of(event).observed, instant_of(setup, t));
 }
 
 // A change to another law is not a transition.
@@ -198,32 +181,27 @@ void log_transition(const Setup& setup, const WheelFriction& before, Run& run, c
   const auto is_exact = [](WheelFrictionKind law) { return law == WHEEL_ROLLING || law == WHEEL_HELD; };
   if (!is_exact(before.kind) || !is_exact(friction.kind) || !differ(before, friction)) return;
   ++run.transitions;
-  if (!reporter.wants(Topic::event)) return;
-  const support::Digits instant = instant_of(setup, run.t);
+  const double instant = instant_of(setup, run.t);
+  const char* const change = before.kind == WHEEL_HELD ? "release" : "reversal";
   if (friction.kind == WHEEL_HELD)
-    return reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant.text);
-  reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant.text,
-               before.kind == WHEEL_HELD ? "release" : "reversal", friction.sigma > 0 ? "positive" : "negative");
+    reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant);
+  else
+    reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant, change,
+                 friction.sigma > 0 ? "positive" : "negative");
 }
 
 void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter) {
   for (const EventRow& row : event_rows) {
     const Tally& tally = run.tallies[static_cast<int>(row.event)];
     if (row.summary && tally.count > logged_one_by_one)
-      reporter.log(Topic::warning, row.summary, support::Digits(static_cast<double>(tally.count)).text,
-                   support::Digits(static_cast<double>(logged_one_by_one)).text, instant_of(setup, tally.last).text);
+      reporter.log(Topic::warning, row.summary, static_cast<double>(tally.count),
+                   static_cast<double>(logged_one_by_one), instant_of(setup, tally.last));
   }
-}
-
-void log_end(const Setup& setup, const Run& run, const Reporter& reporter) {
-  reporter.log(Topic::discard, row_of(run.ended_by).ended, ending_of(setup, run.ended_by).text,
-               support::Digits(setup.start_time + run.t).text,
-               support::Digits(run.y[setup.formulation->tilt_index], 6).text);
 }
 
 Ending ending_of(const Setup& setup, Event event) {
   Ending ending;
-  std::snprintf(ending.text, sizeof ending.text, row_of(event).ending, support::Digits(setup.mu_max).text);
+  std::snprintf(ending.text, sizeof ending.text, row_of(event).ending, NumberText(setup.mu_max).text);
   return ending;
 }
 

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "reporter.hpp"
 #include "run.hpp"
-#include "setup.hpp"
 
 namespace wheel {
 
@@ -69,10 +67,6 @@ inline double least_margin(const Setup& setup, const InForce& now, const double*
   return height < contact ? height : contact;
 }
 
-// Adds the events that can occur to those that the solver looks for; `value` returns the margin of one.
-void watch_events(const Setup& setup, const InForce& now, decltype(solver::Watched::value) value,
-                  solver::Problem& problem);
-
 // Observed events that lie below zero at t and y, from a motion in which they were not followed.
 void place_observed(const Setup& setup, double t, const double* y, InForce& now);
 
@@ -88,9 +82,6 @@ void count_event(const Setup& setup, Event event, double t, Run& run, const Repo
 void log_transition(const Setup& setup, const WheelFriction& before, Run& run, const Reporter& reporter);
 // At the end of a run: the observed events that were not logged one by one.
 void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter);
-// The run has ended by an event.
-void log_end(const Setup& setup, const Run& run, const Reporter& reporter);
-
 // What ended a run, to stand behind "the wheel", with its limit.
 struct Ending {
   char text[96];

@@ -6,9 +6,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "digits.hpp"
-#include "law.hpp"
-
 namespace wheel {
 namespace {
 
@@ -20,16 +17,14 @@ constexpr double distance = 1e-12;
 // little before the sign changes, and would stop there again and again.
 constexpr double soon = 1e-7;
 
-constexpr Computed states[] = {Computed::X_O, Computed::Y_O,       Computed::psi,     Computed::theta,
-                               Computed::phi, Computed::theta_dot, Computed::psi_dot, Computed::omega_z};
+constexpr unsigned states[] = {variable::X_O, variable::Y_O,       variable::psi,     variable::theta,
+                               variable::phi, variable::theta_dot, variable::psi_dot, variable::omega_z};
 static_assert(std::size(states) == state_count);
 
 bool is_finite(double number) { return std::isfinite(number); }
 
-using State = std::array<double, WHEEL_MAX_STATES>;
-
-State above_ground(const Setup& setup, const double* y) {
-  State trial = {};
+auto above_ground(const Setup& setup, const double* y) {
+  std::array<double, WHEEL_MAX_STATES> trial = {};
   std::copy_n(y, state_count, trial.data());
   double& theta = trial[setup.formulation->tilt_index];
   theta = std::clamp(theta, flat_angle, 2 * upright - flat_angle);
@@ -77,18 +72,16 @@ int indicator_count() {
 }
 
 int state_index_of(unsigned variable) {
-  const auto* found = std::find(std::begin(states), std::end(states), static_cast<Computed>(variable));
+  const auto* found = std::find(std::begin(states), std::end(states), variable);
   return found == std::end(states) ? -1 : static_cast<int>(found - states);
 }
 
 void take_at_once(const Setup& setup, Demand& demand, Run& run) {
   InForce& now = run.in_force;
-  now.inputs.take_over(run.t, demand.inputs);
-  now.scene.load = load_of(demand.inputs);
+  const double s = now.scene.wheel.s;
+  let_act(setup, demand.parameters[variable::s], run.t, demand.inputs, now);
   demand.changed = false;
-  const bool other_s = now.scene.wheel.s != demand.parameters[stored::s];
-  now.scene.wheel.s = demand.parameters[stored::s];
-  if (other_s) decide_law(setup, run.t, run.y, now);
+  if (now.scene.wheel.s != s) decide_law(setup, run.t, run.y, now);
 }
 
 bool derivatives(const Setup& setup, Run& run, double* x_dot) {
@@ -111,17 +104,20 @@ bool has_event(const Setup& setup, Run& run) {
                      [&](const EventRow& row) { return row.exchanged && indicator(row, setup, run) <= 0; });
 }
 
-bool decide(const Setup& setup, Run& run, const Reporter& reporter, Event* ending) {
+bool decide(const Setup& setup, Run& run, const Solution& solution, const Reporter& reporter) {
   InForce& now = run.in_force;
   const WheelFriction law = now.scene.friction;
   const WheelGround ground = now.scene.ground;
   const double spin = run.y[setup.formulation->spin_index];
   const bool led = is_led(setup, run);
   if (law.kind == WHEEL_HELD && led) setup.formulation->stop_spin(&now.scene.wheel, run.y);
-  *ending = Event::none;
+  Event ending = Event::none;
   for (const EventRow& row : event_rows)
-    if (ends_run(row, setup) && has_occurred(row, setup, run)) *ending = row.event;
-  if (*ending != Event::none) return false;
+    if (ends_run(row, setup) && has_occurred(row, setup, run)) ending = row.event;
+  if (ending != Event::none) {
+    end_run(setup, ending, run, solution, reporter);
+    return false;
+  }
   const EventRow& changes = row_of(Event::spin_changes);
   for (const EventRow& row : event_rows)
     if (&row != &changes && !ends_run(row, setup) && has_occurred(row, setup, run))
@@ -149,8 +145,7 @@ bool starts_inside(const Setup& setup, const Run& run, const Reporter& reporter)
   WheelDynamics dynamics;
   setup.formulation->dynamics(&run.in_force.scene, run.y, &dynamics);
   const double needed = wheel_required_friction(dynamics.lambda);
-  reporter.log(Topic::error, fault->refused, support::Digits(dynamics.lambda[2], 6).text,
-               support::Digits(needed, 6).text, support::Digits(setup.mu_max).text);
+  reporter.log(Topic::error, fault->refused, Digits{dynamics.lambda[2], 6}, Digits{needed, 6}, setup.mu_max);
   return false;
 }
 

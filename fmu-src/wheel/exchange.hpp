@@ -4,7 +4,7 @@
 // the law of friction is decided anew at events only, by the function that co-simulation uses.
 #pragma once
 
-#include "events.hpp"
+#include "motion.hpp"
 
 namespace wheel {
 
@@ -27,9 +27,9 @@ bool indicators(const Setup& setup, Run& run, double* z);
 bool has_event(const Setup& setup, Run& run);
 
 // Event mode: the law that holds from here on. True where the motion bends here, a state or the law: some solvers go on
-// from a step that they took under the old law, unless the states are called new. `ending`: the event by which the run
-// ends here, or none.
-bool decide(const Setup& setup, Run& run, const Reporter& reporter, Event* ending);
+// from a step that they took under the old law, unless the states are called new. Where the
+// model ends here, the run does.
+bool decide(const Setup& setup, Run& run, const Solution& solution, const Reporter& reporter);
 
 // Whether a run can begin: another solver cannot learn that the model ends where it starts. Else a message.
 bool starts_inside(const Setup& setup, const Run& run, const Reporter& reporter);

@@ -11,26 +11,16 @@ namespace {
 double evaluate(const double* c, double tau) { return c[0] + tau * (c[1] + tau * (c[2] + tau * c[3])); }
 double slope(const double* c, double tau) { return c[1] + tau * (2 * c[2] + tau * 3 * c[3]); }
 
-// tau: s, from the origin. A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
-WheelLoad load_after(const Polynomials& inputs, double tau) {
-  WheelLoad load;
-  for (int i = 0; i < inputs_count; ++i) *load_entry(load, i) = evaluate(inputs[i], tau);
-  if (!(load.brake > 0)) load.brake = 0;
-  return load;
+bool acts(const double* first, const double* last) {
+  return std::any_of(first, last, [](double part) { return part != 0; });
 }
 
-// Real zeros of the slope c1 + 2 c2 x + 3 c3 x^2; returns their number.
+// Real zeros of the slope c1 + 2 c2 x + 3 c3 x^2, of which one is infinite where c3 is zero; returns their number.
 int zeros_of_slope(const double* c, double* zeros) {
   const double a = 3 * c[3], half_b = c[2], d = half_b * half_b - a * c[1];
-  if (a == 0) {
-    if (half_b == 0) return 0;
-    zeros[0] = -c[1] / (2 * half_b);
-    return 1;
-  }
   if (!(d > 0)) return 0;
   const double q = -(half_b + std::copysign(std::sqrt(d), half_b));
   zeros[0] = q / a;
-  if (q == 0) return 1;
   zeros[1] = c[1] / q;
   return 2;
 }
@@ -54,7 +44,13 @@ double* load_entry(WheelLoad& load, int input) {
   return input < brake_input ? &load.M[input - 3] : &load.brake;
 }
 
-WheelLoad load_of(const Polynomials& inputs) { return load_after(inputs, 0); }
+// A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
+WheelLoad load_of(const Polynomials& inputs, double tau) {
+  WheelLoad load;
+  for (int i = 0; i < inputs_count; ++i) *load_entry(load, i) = evaluate(inputs[i], tau);
+  if (!(load.brake > 0)) load.brake = 0;
+  return load;
+}
 
 WheelLoad load_rate_of(const Polynomials& inputs) {
   WheelLoad rate = {};
@@ -66,17 +62,9 @@ WheelLoad load_rate_of(const Polynomials& inputs) {
 void Inputs::take_over(double t, const Polynomials& asked) {
   origin = t;
   std::copy_n(asked[0], sizeof c / sizeof c[0][0], c[0]);
-  classify();
-}
-
-void Inputs::classify() {
-  loaded = varies = false;
-  for (const auto& polynomial : c) {
-    const bool slopes = polynomial[1] != 0 || polynomial[2] != 0 || polynomial[3] != 0;
-    varies = varies || slopes;
-    loaded = loaded || slopes || polynomial[0] != 0;
-  }
-  braked = std::any_of(c[brake_input], c[brake_input] + max_order + 1, [](double part) { return part != 0; });
+  varies = std::any_of(c, c + inputs_count, [](const double* own) { return acts(own + 1, own + max_order + 1); });
+  loaded = acts(c[0], c[0] + sizeof c / sizeof c[0][0]);
+  braked = acts(c[brake_input], c[brake_input] + max_order + 1);
 }
 
 bool Inputs::change_at(double t, double rounding, const Polynomials& asked) const {
@@ -85,8 +73,6 @@ bool Inputs::change_at(double t, double rounding, const Polynomials& asked) cons
     if (!continues(c[i], tau, rounding, asked[i])) return true;
   return false;
 }
-
-WheelLoad Inputs::load_at(double t) const { return load_after(c, t - origin); }
 
 void Inputs::hold(double t, Polynomials& asked) const {
   for (int i = 0; i < inputs_count; ++i) {
@@ -112,17 +98,17 @@ int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
 
 // Between two extremes the polynomial passes zero once: by halving, to the last bit of the time.
 double Inputs::corner(double t, double until) const {
-  const auto acts = [&](double at) { return evaluate(c[brake_input], at - origin) > 0; };
+  const auto brakes = [&](double at) { return evaluate(c[brake_input], at - origin) > 0; };
   double ends[most_extremes + 1];
   int pieces = extremes(t, until, ends);
   ends[pieces++] = until;
   for (int i = 0; i < pieces; ++i) {
     double lo = t, hi = t = ends[i];
-    if (acts(lo) == acts(hi)) continue;
+    if (brakes(lo) == brakes(hi)) continue;
     for (;;) {
       const double middle = lo + 0.5 * (hi - lo);
       if (!(lo < middle && middle < hi)) return hi;
-      (acts(middle) == acts(lo) ? lo : hi) = middle;
+      (brakes(middle) == brakes(lo) ? lo : hi) = middle;
     }
   }
   return std::numeric_limits<double>::infinity();

@@ -15,21 +15,24 @@ inline constexpr double factorial[] = {1, 1, 2, 6};
 // c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
 using Polynomials = double[inputs_count][max_order + 1];
 
+// The load at tau, s, from the origin; and its rate at the origin: a brake at zero can only be put on.
+WheelLoad load_of(const Polynomials& inputs, double tau = 0);
+WheelLoad load_rate_of(const Polynomials& inputs);
+
 // The inputs in force.
 struct Inputs {
   double origin = 0;  // s, own clock
   Polynomials c = {};
-  // What follows from the polynomials, by classify().
+  // What follows from the polynomials.
   bool loaded = false;  // some input is not zero
   bool braked = false;  // the brake is in use: its capacity or one of its derivatives is not zero
   bool varies = false;  // some input depends on time
 
   void take_over(double t, const Polynomials& asked);
-  void classify();
   // Whether `asked` differs from the polynomials in force, seen from t on, by more than the rounding of their values
   // and of t, s: a polynomial that a caller cuts into many steps goes on as one.
   bool change_at(double t, double rounding, const Polynomials& asked) const;
-  WheelLoad load_at(double t) const;
+  WheelLoad load_at(double t) const { return load_of(c, t - origin); }
   // A derivative holds for one step: at its end, t, every input stays where its polynomial arrived.
   void hold(double t, Polynomials& asked) const;
   // Instants strictly inside (t_lo, t_hi), ascending, at which an input has an extreme; returns their number.
@@ -38,10 +41,6 @@ struct Inputs {
   // infinite where there is none.
   double corner(double t, double until) const;
 };
-
-// The load at the origin of the polynomials, and its rate from there on: a brake at zero can only be put on.
-WheelLoad load_of(const Polynomials& inputs);
-WheelLoad load_rate_of(const Polynomials& inputs);
 
 // The entry of a load that one input sets.
 double* load_entry(WheelLoad& load, int input);

@@ -1,5 +1,5 @@
 // The law of friction after Filippov, and the choice of the method.
-#include "law.hpp"
+#include "run.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,11 +49,15 @@ void enter_layer(const Setup& setup, const WheelScene& scene, const double* y, I
 
 }  // namespace
 
-void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& now) {
+void let_act(const Setup& setup, double s, double t, const Polynomials& inputs, InForce& now) {
   now.scene.wheel = setup.wheel;
-  now.scene.wheel.s = demand.parameters[stored::s];
-  now.scene.load = load_of(demand.inputs);
-  now.inputs.take_over(t, demand.inputs);
+  now.scene.wheel.s = s;
+  now.scene.load = load_of(inputs);
+  now.inputs.take_over(t, inputs);
+}
+
+void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& now) {
+  let_act(setup, demand.parameters[variable::s], t, demand.inputs, now);
   now.layer = Layer::none;
   decide_law(setup, t, y, now);
 }

@@ -7,12 +7,11 @@
 namespace wheel {
 namespace {
 
-const Setup& setup_behind(void* owner) { return *static_cast<const Owner*>(owner)->setup; }
-const InForce& in_force_behind(void* owner) { return *static_cast<const Owner*>(owner)->in_force; }
+const Owner& owner_of(void* owner) { return *static_cast<const Owner*>(owner); }
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
-  const Setup& setup = setup_behind(owner);
-  const InForce& now = in_force_behind(owner);
+  const Setup& setup = *owner_of(owner).setup;
+  const InForce& now = *owner_of(owner).in_force;
   const auto rates = [&](const WheelScene& scene) { return setup.formulation->derivative(&scene, y, y_dot); };
   const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
   double sum = 0;
@@ -24,7 +23,7 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
 // The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
 // turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a fraction of that width.
 void weights(void* owner, double share, const double* y, double* weights) {
-  const Setup& setup = setup_behind(owner);
+  const Setup& setup = *owner_of(owner).setup;
   const int states = setup.formulation->states, spin = setup.formulation->spin_index;
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const double slow = share * setup.tolerance;
@@ -32,19 +31,19 @@ void weights(void* owner, double share, const double* y, double* weights) {
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
-  if (in_force_behind(owner).scene.friction.kind != WHEEL_REGULARIZED) return;
+  if (owner_of(owner).in_force->scene.friction.kind != WHEEL_REGULARIZED) return;
   const double part = 10 * std::sqrt(tolerance);
   const double layer = part * setup.omega_s + tolerance * std::fabs(y[spin]);
   weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
 }
 
 double margin(void* owner, int event, double t, const double* y) {
-  return margin_of(row_of(static_cast<Event>(event)), setup_behind(owner), in_force_behind(owner), t, y);
+  return margin_of(row_of(static_cast<Event>(event)), *owner_of(owner).setup, *owner_of(owner).in_force, t, y);
 }
 
 int extremes(void* owner, double t_lo, double t_hi, double* instants) {
   static_assert(most_extremes <= solver::max_extremes);
-  return in_force_behind(owner).inputs.extremes(t_lo, t_hi, instants);
+  return owner_of(owner).in_force->inputs.extremes(t_lo, t_hi, instants);
 }
 
 }  // namespace
@@ -59,12 +58,14 @@ solver::Problem problem_of(Owner& owner) {
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = owner.setup->longest_step;
   problem.passage = owner.in_force->layer == Layer::passing;
-  watch_events(*owner.setup, *owner.in_force, margin, problem);
+  for (const EventRow& row : event_rows)
+    if (row.can_occur(*owner.setup, *owner.in_force))
+      problem.watch({static_cast<int>(row.event), margin, row.by_margin});
   return problem;
 }
 
 Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
-  const Setup& setup = setup_behind(owner);
+  const Setup& setup = *owner_of(owner).setup;
   const EventRow& row = row_of(static_cast<Event>(event));
   if (ends_run(row, setup)) return Consequence::ends;
   return row.follow(setup, row.event, t, y, *static_cast<Owner*>(owner)->in_force);

@@ -1,6 +1,8 @@
 // Quantities at one instant, on request.
 #include "reading.hpp"
 
+#include "motion.hpp"
+
 namespace wheel {
 
 // True once per part and instant; marks it as present.
@@ -25,10 +27,10 @@ const WheelDynamics& Reading::dynamics() {
   return dynamics_;
 }
 
-Reactions Reading::reactions() {
+double Reading::horizontal_force(int axis) {
   double force[2];
   wheel_horizontal_force(&pose(), dynamics().lambda, force);
-  return {force[0], force[1], dynamics().tau};
+  return force[axis];
 }
 
 const ReactionRates& Reading::reaction_rates() {
@@ -63,5 +65,7 @@ int Reading::friction_mode() {
   const double omega_z = pose().omega_z;
   return (omega_z > 0) - (omega_z < 0);
 }
+
+solver::Counters Reading::counters() const { return counters_of(*now_.run, *now_.solution); }
 
 }  // namespace wheel

@@ -3,11 +3,11 @@
 // output that nobody reads. Fixed axes unless said.
 #pragma once
 
-#include "inputs.hpp"
-#include "problem.hpp"
-#include "wheel_equations.h"
+#include "run.hpp"
 
 namespace wheel {
+
+struct Solution;
 
 // The instant to read; scene and inputs are those that hold for what follows it.
 struct Present {
@@ -15,16 +15,12 @@ struct Present {
   const double* y;
   WheelScene scene;
   const Polynomials* inputs;
-  solver::Counters counters;
-  long long transitions;  // of the friction
+  const Run* run = nullptr;  // its counts, with those of its solution
+  const Solution* solution = nullptr;
 };
 
-// The ground's horizontal force along e1 and across it, N, and the moment of ground and brake about the axle, N m.
-struct Reactions {
-  double lambda_x, lambda_y, tau;
-};
-
-// Rates along the motion: of the ground's force in fixed axes and of the moment, N/s and N m/s, and of the above.
+// Rates along the motion: of the ground's force in fixed axes and of the moment about the axle, N/s and N m/s, and of
+// the force along e1 and across it.
 struct ReactionRates : WheelReactionRates {
   double lambda_x_dot, lambda_y_dot;
 };
@@ -43,14 +39,15 @@ class Reading {
   const WheelKinematics& pose();  // all of the kinematics but X_O_dot and Y_O_dot
   const WheelKinematics& kinematics();
   const WheelDynamics& dynamics();
-  Reactions reactions();
+  // N, the ground's: along e1 (0) or across it (1).
+  double horizontal_force(int axis);
   const ReactionRates& reaction_rates();
   // How the reactions answer a change of the load alone, per unit of it.
   ReactionRates response(const WheelLoad& load_dot);
   const WheelContact& contact();
   int friction_mode();
-  const solver::Counters& counters() const { return now_.counters; }
-  long long transitions() const { return now_.transitions; }
+  solver::Counters counters() const;
+  long long transitions() const { return now_.run->transitions; }  // of the friction
 
  private:
   enum : unsigned { have_pose = 1, have_kinematics = 2, have_dynamics = 4, have_rates = 8, have_contact = 16 };

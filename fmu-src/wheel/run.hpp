@@ -1,12 +1,34 @@
-// What is in force, and how far a run has come. Plain numbers: a run is restored by assignment.
+// The phases of a run, what is in force with the law of friction, and how far it has come. Plain numbers: a run is
+// restored by assignment.
 #pragma once
 
-#include "inputs.hpp"
-#include "phase.hpp"
-#include "problem.hpp"
-#include "wheel_equations.h"
+#include "setup.hpp"
+#include "solver.hpp"
 
 namespace wheel {
+
+// From the first parameter to the end: from the phase follows what can be read, what a step does, and which functions
+// of FMI may be called (fmi/legality.hpp).
+enum class Phase : int {
+  created,          // parameters are being set
+  initializing,     // initialization has begun; no initial state belongs to the present parameters yet
+  faulty,           // the same, and the faults of the present parameters have been logged
+  initial,          // the initial state belongs to the present parameters
+  at_start,         // initialization has ended, and no step has been made
+  stepping,         // the solver steps through the motion
+  unfolded,         // the motion is read from the orbit; nothing is integrated
+  event_mode,       // model exchange: the law of friction is decided
+  continuous_time,  // model exchange: the caller's solver moves the states
+  ended,            // the model has ended, by an event
+  closed,           // the caller has ended the run
+  failed,           // a step has failed; the state is that before it
+  without_start,    // initialization has failed: there is no state
+};
+inline constexpr int phase_count = static_cast<int>(Phase::without_start) + 1;
+
+constexpr bool has_begun(Phase p) { return p >= Phase::at_start; }
+constexpr bool is_running(Phase p) { return p >= Phase::at_start && p <= Phase::continuous_time; }
+constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::without_start; }
 
 // What can happen at an instant that is not known beforehand: the names of the rows of the table in events.cpp. Of two
 // at the same instant the later one counts.
@@ -48,6 +70,41 @@ struct InForce {
     return scene_then;
   }
 };
+
+// law.cpp: the law of friction, the method that solves what follows, and whether the motion can be unfolded. Pure
+// functions of setup, load and state.
+
+// What acts from t on: `s` and inputs.
+void let_act(const Setup& setup, double s, double t, const Polynomials& inputs, InForce& in_force);
+
+// Puts in force, at the state y, what is asked for: `s`, inputs from t on, and the law of friction that goes with them.
+void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& in_force);
+
+// Decides the law of friction from t and y on. At omega_z = 0 after Filippov: held where the moment that holds the
+// wheel is within s N + M_brake, else rolling against that moment. `released`: friction and brake can no longer hold
+// it. A stiff regularized law is decided by the place of omega_z in its layer.
+void decide_law(const Setup& setup, double t, const double* y, InForce& in_force, bool released = false);
+
+// Whether two laws differ in kind, or in the side to which the wheel spins.
+inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.kind != b.kind || a.sigma != b.sigma; }
+
+// s N + M_brake - |tau| of a held wheel, N m; where rounding alone decides, the wheel stays held.
+double holding_margin(const Setup& setup, const WheelScene& scene, const double* y);
+
+// rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last
+// digit.
+inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
+
+// Below zero where a regularized law is so steep that it is solved by its layer and, around it, by the exact law. Once
+// solved so, it stays so until an input changes.
+bool can_stiffen(const Setup& setup, const InForce& in_force);
+double layer_margin(const Setup& setup, const WheelScene& scene, const double* y);
+
+// What solves the motion that is not unfolded.
+solver::Method method_of(const Setup& setup, const InForce& in_force);
+
+// Whether the motion repeats and can be unfolded from half a nutation.
+bool is_unfoldable(const Setup& setup, const InForce& in_force);
 
 // How often an observed event has occurred, and when it last did, s, own clock.
 struct Tally {

@@ -1,4 +1,5 @@
-// The setup from the parameters: formulation, initial state, scales of time, force, errors and steps.
+// Parameters checked as a whole, one message per fault (what, which value, what is allowed); and the setup from them:
+// formulation, initial state, scales of time, force, errors and steps.
 #include "setup.hpp"
 
 #include <algorithm>
@@ -6,6 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+
+#include "events.hpp"
+#include "reading.hpp"
 
 namespace wheel {
 namespace {
@@ -24,28 +28,19 @@ double power_of_two_below(double x) {
                    std::numeric_limits<double>::min());
 }
 
-// sqrt(length / g), s, g the whole of gravity; without a weight that matters the time of a turn at the initial rate.
-double time_scale(const WheelParameters& wheel, double length, const WheelKinematics& start) {
-  const double gravity = gravity_of(wheel);
-  const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
-  if (gravity > 1e-30 * length * rate * rate) return std::sqrt(length / gravity);  // else the weight moves nothing
-  return rate > 0 ? 1 / rate : 1;
-}
-
-// The part of the weight that is across the road, of one.
-double share_across(const WheelParameters& wheel) {
-  const double gravity = gravity_of(wheel);
-  return gravity > 0 ? wheel.g / gravity : 1;
-}
-
+// The wheel's own time is sqrt(length / g), g the whole of gravity; without a weight that matters it is the time of a
+// turn at the initial rate.
 void set_scales(Setup& setup, const WheelKinematics& start) {
-  setup.length = setup.wheel.r_0 + setup.wheel.r;
-  setup.own_time = time_scale(setup.wheel, setup.length, start);
+  const double gravity = gravity_of(setup.wheel), length = setup.wheel.r_0 + setup.wheel.r;
+  const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
+  const bool matters = gravity > 1e-30 * length * rate * rate;
+  setup.length = length;
+  setup.own_time = matters ? std::sqrt(length / gravity) : rate > 0 ? 1 / rate : 1;
   setup.longest_step = 0.5 * setup.own_time;
-  setup.whole_weight = setup.wheel.m * setup.length / (setup.own_time * setup.own_time);
-  setup.weight = setup.whole_weight * share_across(setup.wheel);
+  setup.whole_weight = setup.wheel.m * length / (setup.own_time * setup.own_time);
+  setup.weight = setup.whole_weight * (gravity > 0 ? setup.wheel.g / gravity : 1);
   setup.rate_scale = power_of_two_below(1 / setup.own_time);
-  setup.moment_scale = power_of_two_below(setup.weight * setup.length);
+  setup.moment_scale = power_of_two_below(setup.weight * length);
   const double omega_2 = start.psi_dot * std::sin(start.theta);
   setup.tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
 }
@@ -66,20 +61,86 @@ void set_error_scales(Setup& setup) {
   std::copy_n(f == &wheel_reduced ? reduced : f == &wheel_euler ? euler : multibody, f->states, setup.slow_scales);
 }
 
-const WheelFormulation* formulation_of(const Demand& demand) {
-  if (demand.kind == Kind::model_exchange) return &wheel_euler;
-  return choice_of(demand.parameters[stored::formulation]) == multibody_formulation ? &wheel_multibody : &wheel_reduced;
+bool is_positive(unsigned v) {
+  using namespace variable;
+  return v == m || v == r_0 || v == J_x || v == J_y || v == J_z || v == omega_s;
+}
+
+bool check_value(const Reporter& reporter, unsigned v, double value) {
+  using namespace variable;
+  const Row& row = row_of(v);
+  const char* fault = nullptr;
+  double limit = row.min;
+  if (!std::isfinite(value)) {
+    fault = "%s = %s: a finite number is needed.";
+  } else if (v == theta_start && !(std::sin(value) > flat_angle && value > 0 && value < row.max)) {
+    fault = "%s = %s rad: the wheel must stand above the ground, 0 < theta < %s.";
+    limit = row.max;
+  } else if ((v == psi_start || v == phi_start) && std::fabs(value) > largest_angle) {
+    fault = "%s = %s rad: beyond %s rad an angle has too few digits.";
+    limit = largest_angle;
+  } else if (is_positive(v) ? value <= row.min : value < row.min) {
+    fault = is_positive(v) ? "%s = %s: it must be greater than %s." : "%s = %s: it must be at least %s.";
+  } else if (v == slope ? value >= row.max : value > row.max) {
+    fault = v == slope ? "%s = %s: it must be less than %s." : "%s = %s: it must be at most %s.";
+    limit = row.max;
+  }
+  return reporter.check(!fault, fault, row.name, Digits{value, 9}, Digits{limit, 6});
+}
+
+// Only the reduced equations are offered to another solver. The number may be any: a restored state is judged here too.
+bool check_kind(const Reporter& reporter, const Demand& demand) {
+  const bool offered = demand.parameters[variable::formulation] != int{multibody_formulation};
+  return reporter.check(offered || demand.kind == Kind::co_simulation,
+                        "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
+}
+
+// No mass distribution has one principal moment above the sum of the others; the limit is the flat disc.
+bool check_inertia(const Reporter& reporter, const double* v) {
+  constexpr double rounding = 1e-12;
+  const double J_x = v[variable::J_x], J_y = v[variable::J_y], J_z = v[variable::J_z], sum = J_x + J_y + J_z;
+  const double largest = std::fmax(J_x, std::fmax(J_y, J_z));
+  return reporter.check(largest <= (sum - largest) * (1 + rounding) || !std::isfinite(sum),
+                        "J_x, J_y, J_z = %s, %s, %s kg m2: none may exceed the sum of the other two.", Digits{J_x, 9},
+                        Digits{J_y, 9}, Digits{J_z, 9});
 }
 
 }  // namespace
 
+bool check_values(const Demand& demand, const Reporter& reporter) {
+  bool sound = true;
+  for (unsigned v = 0; v < stored_count; ++v) sound &= check_value(reporter, v, demand.value(v));
+  sound &= check_inertia(reporter, demand.parameters);
+  sound &= check_kind(reporter, demand);
+  return sound;
+}
+
+bool is_inside(Reading& now) {
+  double sum = wheel_energy(&now.scene().wheel, &now.kinematics()) + now.dynamics().tau;
+  for (const double force : now.dynamics().lambda) sum += force;
+  return angle_from_flat(now.pose().theta) > 0 && std::isfinite(sum);
+}
+
+bool check_start(const Demand& demand, Reading& start, const Reporter& reporter) {
+  if (is_inside(start)) return true;
+  const auto set = [&](variable::Reference v) { return Digits{demand.parameters[v], 3}; };
+  reporter.log(Topic::error,
+               "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, g = %s m/s2, "
+               "omega_z = %s rad/s.",
+               set(variable::m), set(variable::J_z), set(variable::r_0), set(variable::g),
+               Digits{start.kinematics().omega_z, 3});
+  return false;
+}
+
 Setup setup_of(const Demand& demand) {
-  using namespace stored;
+  using namespace variable;
   const double* v = demand.parameters;
   Setup setup = {};
   setup.kind = demand.kind;
   setup.start_time = demand.start_time;
-  setup.formulation = formulation_of(demand);
+  const bool multibody = choice_of(v[formulation]) == multibody_formulation,
+             exchanged = setup.kind == Kind::model_exchange;
+  setup.formulation = exchanged ? &wheel_euler : multibody ? &wheel_multibody : &wheel_reduced;
   setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
   if (v[slope] != 0) wheel_set_slope(&setup.wheel, v[g], v[slope], v[slope_direction]);
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));

@@ -1,11 +1,41 @@
-// Setup: all that follows from the parameters when initialization ends. One function computes it, nothing writes it
-// later; a restored run computes it anew.
+// Demand and setup: what the caller has set, and all that follows from its parameters when initialization ends. One
+// function computes the setup, nothing writes it later; a restored run computes it anew.
 #pragma once
 
-#include "demand.hpp"
-#include "wheel_equations.h"
+#include <limits>
+
+#include "inputs.hpp"
+#include "reporter.hpp"
+#include "variables.hpp"
 
 namespace wheel {
+
+// Relative tolerance of the whole solution: over ten seconds of the paper's scenes the relative error of the energy
+// stays below it (docs/results/accuracy.md).
+inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, loosest_tolerance = 1e-4;
+
+// Who integrates the motion.
+enum class Kind : int { co_simulation, model_exchange };
+
+// Parameters and tolerance make the setup when initialization ends; inputs, their derivatives and `s` may be set again
+// later and are in force from the next step on.
+struct Demand {
+  static constexpr double never = std::numeric_limits<double>::infinity();
+
+  double parameters[first_input];  // in the order of the variables; `s` is the one asked for
+  Polynomials inputs = {};         // from the instant at which they take effect
+  double start_time = 0, stop_time = never, tolerance = default_tolerance;
+  Kind kind;
+  bool changed = false;  // something has been set since the last step
+
+  // Of a variable below stored_count, or of an input's polynomial.
+  double& value(unsigned v, int k = 0) { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
+  double value(unsigned v, int k = 0) const { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
+
+  explicit Demand(Kind own = Kind::co_simulation) : kind(own) {
+    for (unsigned v = 0; v < first_input; ++v) parameters[v] = row_of(v).start;
+  }
+};
 
 struct Setup {
   Kind kind;
@@ -39,5 +69,18 @@ void scales_at(const Setup& setup, double omega_z, double* out);
 // Errors add up over the turns of a fast wheel. Returns the fraction of the usual error that a step may make at the
 // spin omega_z, rad/s: below one where the wheel turns very often within its own time scale.
 double share_at(const Setup& setup, double omega_z);
+
+// rad: a larger angle has too few digits for a heading.
+inline constexpr double largest_angle = 1e12;
+
+// Logs one message per fault; true if there is none.
+bool check_values(const Demand& demand, const Reporter& reporter);
+
+// Whether the wheel stands, and its energy and reactions are finite.
+bool is_inside(Reading& now);
+
+// The same of the initial state, with a message: values that are sound one by one can have products that are not
+// finite.
+bool check_start(const Demand& demand, Reading& start, const Reporter& reporter);
 
 }  // namespace wheel

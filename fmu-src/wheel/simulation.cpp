@@ -4,16 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
-#include <cstdio>
-
-#include "checks.hpp"
-#include "digits.hpp"
-#include "law.hpp"
 
 namespace wheel {
 
-void Reporter::log(Topic topic, const char* format, ...) const {
-  if (!wants(topic)) return;
+void Reporter::print(Topic topic, const char* format, ...) const {
   char message[longest];
   std::va_list arguments;
   va_start(arguments, format);
@@ -34,28 +28,22 @@ void Simulation::set_experiment(double start_time, double stop_time, double tole
   demand.stop_time = stop_time;
   demand.tolerance = taken;
   if (tolerance > 0 && tolerance != taken)
-    reporter_.log(Topic::warning, "The tolerance %s is outside [%s, %s]; %s is used.",
-                  support::Digits(tolerance, 6).text, support::Digits(tightest_tolerance, 6).text,
-                  support::Digits(loosest_tolerance, 6).text, support::Digits(taken, 6).text);
+    reporter_.log(Topic::warning, "The tolerance %s is outside [%s, %s]; %s is used.", Digits{tolerance, 6},
+                  Digits{tightest_tolerance, 6}, Digits{loosest_tolerance, 6}, Digits{taken, 6});
 }
 
-double Simulation::stored(unsigned variable) const {
-  return variable < first_input ? demand_->parameters[variable] : demand_->inputs[variable - first_input][0];
-}
-
-void Simulation::store(unsigned variable, double value) {
+void Simulation::set(unsigned variable, double value, int order) {
+  if (variable >= stored_count) {
+    Run& run = run_.change();
+    run.y[state_index_of(variable)] = value;
+    return decide_law(setup_, run.t, run.y, run.in_force);
+  }
   if (phase() == Phase::faulty || phase() == Phase::initial) enter(Phase::initializing);
-  if (stored(variable) == value) return;
+  if (demand_->value(variable, order) == value / factorial[order]) return;
   Demand& demand = demand_.change();
-  (variable < first_input ? demand.parameters[variable] : demand.inputs[variable - first_input][0]) = value;
+  demand.value(variable, order) = value / factorial[order];
   demand.changed = true;
   if (kind() == Kind::model_exchange && is_running(phase())) take_at_once(setup_, demand, run_.change());
-}
-
-void Simulation::set_input_derivative(unsigned variable, int order, double value) {
-  Demand& demand = demand_.change();
-  demand.inputs[variable - first_input][order] = value / factorial[order];
-  demand.changed = true;
 }
 
 bool Simulation::prepare(bool report) {
@@ -94,21 +82,6 @@ void Simulation::set_time(double t) {
   run.t = run.y_time = t - demand_->start_time;
 }
 
-void Simulation::set_states(const double* x) { std::copy_n(x, state_count, run_.change().y); }
-
-void Simulation::set_state(int index, double value) {
-  Run& run = run_.change();
-  run.y[index] = value;
-  decide_law(setup_, run.t, run.y, run.in_force);
-}
-
-bool Simulation::decide() {
-  Event ending;
-  const bool bends = wheel::decide(setup_, run_.change(), reporter_, &ending);
-  if (ending != Event::none) end_run(setup_, ending, run_.change(), solution_, reporter_);
-  return bends;
-}
-
 // With what was set since the last step.
 InForce Simulation::in_force_now() const {
   InForce now = run_->in_force;
@@ -116,29 +89,25 @@ InForce Simulation::in_force_now() const {
   return now;
 }
 
-// The scene at the present instant; where nothing was set, without a copy of all that is in force.
-WheelScene Simulation::scene_now() const {
-  WheelScene scene = demand_->changed ? in_force_now().scene : run_->in_force.scene_at(run_->t);
-  scene.ground = WHEEL_GROUND_BY_FORCE;
-  return scene;
+// Where nothing was set, without a copy of all that is in force.
+Present Simulation::present() {
+  state_now(run_.change(), solution_);
+  Present now = {
+      setup_.formulation, run_->y, demand_->changed ? in_force_now().scene : run_->in_force.scene_at(run_->t),
+      &demand_->inputs,   &*run_,  &solution_};
+  now.scene.ground = WHEEL_GROUND_BY_FORCE;
+  return now;
 }
 
-Present Simulation::present() const {
-  return {setup_.formulation, run_->y, scene_now(), &demand_->inputs, counters_of(*run_, solution_), run_->transitions};
-}
-
-Reading& Simulation::reading() {
-  if (!reading_.is_of(version())) {
-    state_now(run_.change(), solution_);
-    reading_.set(present(), version());
-  }
+Reading& Simulation::read() {
+  const Present now = present();
+  reading_.set(now, version());
   return reading_;
 }
 
 // The same as it answers a change of one known: a brake that is not in use has the law that it would have in use. In
 // model exchange that law waits for an event.
 Present Simulation::present_for(unsigned known) {
-  state_now(run_.change(), solution_);
   Present now = present();
   const bool brake = known == first_input + brake_input && kind() == Kind::co_simulation;
   if (!brake || now.scene.friction.kind != WHEEL_FRICTIONLESS) return now;
@@ -149,23 +118,70 @@ Present Simulation::present_for(unsigned known) {
   return now;
 }
 
+namespace {
+
+// Of a derivative from differences: f at four places, in steps from x, and their weights, exact for polynomials of
+// degree four: about x, or to one side where a limit is near.
+struct Stencil {
+  int places[4];
+  double weights[4];
+};
+constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}},
+                                {{1, 2, 3, 4}, {4, -3, 4.0 / 3, -1.0 / 4}},
+                                {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}}};
+
+// Differences from the value at x itself, so that a function that does not depend on x has the derivative zero. None
+// where f has no value.
+template <class Function>
+std::optional<double> difference_quotient(const Stencil& stencil, double x, double h, Function f) {
+  const std::optional<double> centre = f(x);
+  double sum = 0;
+  for (int k = 0; k < 4; ++k) {
+    const std::optional<double> value = f(x + stencil.places[k] * h);
+    if (!value || !centre) return {};
+    sum += stencil.weights[k] * (*value - *centre);
+  }
+  return sum / h;
+}
+
+}  // namespace
+
 // Of co-simulation's outputs only the reactions depend on the inputs of the same instant.
-double Simulation::sensitivity(unsigned unknown, unsigned known) {
-  const auto component = row_of(unknown).reaction_rate;
+std::optional<double> Simulation::derivative(unsigned unknown, unsigned known) {
+  if (known < first_input) return start_derivative(unknown, known);
+  const Row& row = row_of(unknown);
   const bool exchanged = kind() == Kind::model_exchange && has_begun(phase());
-  if (exchanged || (!component && row_of(unknown).role == Role::local)) return partial(unknown, known);
-  if (!component) return 0;
+  if (exchanged || (!row.reaction_rate && row.role == Role::local)) return partial(unknown, known);
+  if (!row.reaction_rate) return 0;
   WheelLoad unit = {};
   *load_entry(unit, static_cast<int>(known - first_input)) = 1;
   Reading answer;
   answer.set(present_for(known));
-  return component(answer.response(unit));
+  return row.reaction_rate(answer.response(unit));
 }
 
-// By differences of fourth order, the law and the sign of N kept. Steps are small parts of what each known turns on,
-// those of a load of the whole weight or of the load: all but mu_required is linear in it.
-double Simulation::partial(unsigned unknown, unsigned known) {
-  constexpr double share = 1e-3;
+// In the initial state; an integer or boolean parameter moves nothing. Afterwards the initial state is the present one
+// again. The step is relative to the parameter where it cannot be negative; for an angle, a place or a rate it is
+// relative to the parameter or to 1, whichever is larger.
+std::optional<double> Simulation::start_derivative(unsigned unknown, unsigned parameter) {
+  const Row& row = row_of(parameter);
+  if (row.type != Type::real) return 0;
+  const double x = demand_->value(parameter), size = std::fabs(x);
+  const double scale = row.min == 0 && x != 0 ? size : std::fmax(size, 1);
+  const auto value_at = [&](double near_x) {
+    set(parameter, near_x);
+    return prepare(false) ? std::optional(value(unknown)) : std::nullopt;
+  };
+  std::optional<double> slope;
+  for (const double share : {1e-3, 1e-6, 1e-9})
+    for (const Stencil& stencil : stencils)
+      if (!slope) slope = difference_quotient(stencil, x, share * scale, value_at);
+  return value_at(x) ? slope : std::nullopt;
+}
+
+// The law and the sign of N are kept. Steps are small parts of what each known turns on, those of a load of the whole
+// weight or of the load: all but mu_required is linear in it.
+std::optional<double> Simulation::partial(unsigned unknown, unsigned known) {
   double y[WHEEL_MAX_STATES], scales[WHEEL_MAX_STATES];
   Present now = present_for(known);
   std::copy_n(now.y, WHEEL_MAX_STATES, y);
@@ -177,15 +193,13 @@ double Simulation::partial(unsigned unknown, unsigned known) {
   double h = state >= 0 ? scales[state] : std::fmax(setup_.whole_weight, std::fabs(place));
   if (state == setup_.formulation->tilt_index) h *= std::sin(place);
   const bool soft = state == setup_.formulation->spin_index && now.scene.friction.kind == WHEEL_REGULARIZED;
-  h = share * (soft ? std::fmin(h, setup_.omega_s) : h);
   Reading reading;
-  const double centre = place;
-  const auto value_at = [&](double steps) {
-    place = centre + steps * h;
+  const auto value_at = [&](double x) -> std::optional<double> {
+    place = x;
     reading.set(now);
     return row_of(unknown).read(reading);
   };
-  return (8 * (value_at(1) - value_at(-1)) - (value_at(2) - value_at(-2))) / (12 * h);
+  return difference_quotient(stencils[0], place, 1e-3 * (soft ? std::fmin(h, setup_.omega_s) : h), value_at);
 }
 
 }  // namespace wheel

@@ -1,26 +1,41 @@
 // One wheel behind FMI: what a caller demands, the setup that follows, the run and its solution. The functions that
-// move the run are in advance.hpp and exchange.hpp; what remains here is what FMI asks for.
+// move the run are in motion.hpp and exchange.hpp; what remains here is what FMI asks for.
 //
 // Knows no FMI types. Times are the caller's; the run has its own clock, zero at the start, so that a start time of 1e9
 // s costs no digits. Messages go to the Reporter complete.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <optional>
 
-#include "advance.hpp"
 #include "exchange.hpp"
 #include "reading.hpp"
-#include "reporter.hpp"
-#include "variables.hpp"
-#include "versioned.hpp"
 
 namespace wheel {
+
+// A value that counts its changes, so that what was made of it can be compared with it.
+template <class Value>
+class Versioned {
+ public:
+  explicit Versioned(const Value& value = Value()) : value_(value) {}
+  const Value& operator*() const { return value_; }
+  const Value* operator->() const { return &value_; }
+  // To be changed; whatever was made of the value before is out of date.
+  Value& change() {
+    ++version_;
+    return value_;
+  }
+  long long version() const { return version_; }
+
+ private:
+  Value value_;
+  long long version_ = 0;
+};
 
 class Simulation {
  public:
   Simulation(const Reporter& reporter, Kind kind) : reporter_(reporter), demand_(Demand(kind)) {}
-  Simulation(const Simulation&) = delete;
-  Simulation& operator=(const Simulation&) = delete;
 
   // As new: start values, nothing computed.
   void reset();
@@ -36,13 +51,18 @@ class Simulation {
   // stop_time: infinite for none. tolerance <= 0: the default one.
   void set_experiment(double start_time, double stop_time, double tolerance);
 
-  // Parameters and inputs: variables below stored_count. Values are checked as a whole by prepare.
-  void store(unsigned variable, double value);
-  void set_input_derivative(unsigned variable, int order, double value);
+  // Parameters and inputs, with their derivatives, which are checked as a whole by prepare; in a run of model exchange
+  // a state too, and the law of friction is decided for it.
+  void set(unsigned variable, double value, int order = 0);
 
   // Before the end of the initialization: the initial state from the present parameters, true if it exists. Else one
   // message per fault through the Reporter.
   bool prepare(bool report = true);
+  // The same where it has not been done; the faults are reported once.
+  bool is_prepared() {
+    const bool done = phase() != Phase::initializing && phase() != Phase::faulty;
+    return done || prepare(phase() == Phase::initializing);
+  }
 
   // To the caller's time t. `stepped`: it was reached; `event`: the model ended at time(); `failed`: the state is that
   // before the call.
@@ -53,27 +73,25 @@ class Simulation {
   bool has_ended() const { return run_->ended_by != Event::none; }
   // What ended the model, to stand behind "the wheel".
   Ending ending() const { return ending_of(setup_, run_->ended_by); }
-  // What was set of a variable below stored_count.
-  double stored(unsigned variable) const;
   // The calculated variables now; inputs just set take effect at once. Valid until the next call that changes anything.
-  Reading& reading();
+  Reading& reading() { return reading_.is_of(version()) ? reading_ : read(); }
   double value(unsigned variable) {
-    return variable < stored_count ? stored(variable) : row_of(variable).read(reading());
+    return variable < stored_count ? demand_->value(variable) : row_of(variable).read(reading());
   }
-  // d unknown / d known at this instant, of a calculated variable by an input, during a run in model exchange by a
-  // state too; zero for what depends on inputs only through time.
-  double sensitivity(unsigned unknown, unsigned known);
+  // d unknown / d known of a calculated variable: at this instant by an input, during a run in model exchange by a
+  // state too, before the run by a parameter, which has none where no initial states lie near. Zero for what depends on
+  // inputs only through time.
+  std::optional<double> derivative(unsigned unknown, unsigned known);
 
-  // Model exchange: see exchange.hpp. `decide` ends the run where the model ends.
+  // Model exchange: see exchange.hpp.
   void set_time(double t);
-  void set_states(const double* x);
-  void set_state(int index, double value);
-  const double* states() { return run_->y; }
+  void set_states(const double* x) { std::copy_n(x, state_count, run_.change().y); }
+  const double* states() const { return run_->y; }
   void nominals(double* x) const { scales_at(setup_, run_->y[setup_.formulation->spin_index], x); }
   bool derivatives(double* x_dot) { return wheel::derivatives(setup_, run_.change(), x_dot); }
   bool indicators(double* z) { return wheel::indicators(setup_, run_.change(), z); }
   bool has_event() { return wheel::has_event(setup_, run_.change()); }
-  bool decide();
+  bool decide() { return wheel::decide(setup_, run_.change(), solution_, reporter_); }
 
   // Demand, run and the solver's history as portable bytes with a checksum. load_state returns null, or why the bytes
   // could not have been saved: everything is then as it was, unless it is the solver's history that is wrong.
@@ -85,11 +103,12 @@ class Simulation {
  private:
   void write(support::Archive& archive);
   InForce in_force_now() const;
-  WheelScene scene_now() const;
   long long version() const { return demand_.version() + run_.version(); }
-  Present present() const;
+  Reading& read();
+  Present present();
   Present present_for(unsigned known);
-  double partial(unsigned unknown, unsigned known);
+  std::optional<double> start_derivative(unsigned unknown, unsigned parameter);
+  std::optional<double> partial(unsigned unknown, unsigned known);
 
   Reporter reporter_;
   Versioned<Demand> demand_;

@@ -5,8 +5,6 @@
 #include <cstring>
 
 #include "bytes.hpp"
-#include "checks.hpp"
-#include "law.hpp"
 #include "simulation.hpp"
 
 namespace wheel {
@@ -34,7 +32,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   }
   archive("whose solver moves the wheel").count(demand.kind, 0, 1);
   archive("something was set since the last step").count(demand.changed, 0, 1);
-  archive("phase").count(run.phase, 0, static_cast<int>(Phase::count) - 1);
+  archive("phase").count(run.phase, 0, phase_count - 1);
   archive("event that ended the model").count(run.ended_by, 0, event_count - 1);
   archive("s in force, m").range(now.scene.wheel.s, 0, archive.greatest);
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
@@ -93,12 +91,8 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   setup = setup_of(demand);
   run.y_time = run.t;
   InForce& now = run.in_force;
-  const double s_in_force = now.scene.wheel.s;
-  now.scene.wheel = setup.wheel;
-  now.scene.wheel.s = s_in_force;
+  let_act(setup, now.scene.wheel.s, now.inputs.origin, Inputs(now.inputs).c, now);
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
-  now.scene.load = load_of(now.inputs.c);
-  now.inputs.classify();
   now.set_below(Event::lost_contact, now.pulls());
   if (!end_fits(setup, run)) return "no such event ends a run";
   if (!law_fits(setup, now)) return "the law of friction does not fit s and the brake";
@@ -154,7 +148,7 @@ const char* Simulation::load_state(const unsigned char* bytes, std::size_t size,
   if (archive.fault()) return archive.fault();
   if (const char* fault = complete(demand, setup, run)) return fault;
   Reading reading;
-  reading.set({setup.formulation, run.y, run.in_force.scene_at(run.t), nullptr, {}, 0});
+  reading.set({setup.formulation, run.y, run.in_force.scene_at(run.t), nullptr});
   if (foreign && has_state(run.phase) && !is_inside(reading)) return "the state is outside the model";
   if (demand.kind != kind()) return "they belong to an instance of the other kind";
   if (run.phase != Phase::stepping && !archive.is_sound()) return "bytes are left over";

@@ -15,7 +15,7 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr double strongest = 1e300;
 
 struct Access {
-  Computed variable;
+  variable::Reference variable;
   double (*read)(Reading&);
   double (*read_rate)(Reading&) = nullptr;
   double (*reaction_rate)(const ReactionRates&) = nullptr;
@@ -26,40 +26,40 @@ struct Access {
   AT(now.value), AT(now.reaction_rates().component), [](const ReactionRates& rates) { return rates.component; }
 
 constexpr Access readers[] = {
-    {Computed::X_O, AT(now.pose().X_O), AT(now.kinematics().X_O_dot)},
-    {Computed::Y_O, AT(now.pose().Y_O), AT(now.kinematics().Y_O_dot)},
-    {Computed::Z_O, AT(now.pose().Z_O), AT(now.pose().Z_O_dot)},
-    {Computed::psi, AT(now.pose().psi), AT(now.pose().psi_dot)},
-    {Computed::theta, AT(now.pose().theta), AT(now.pose().theta_dot)},
-    {Computed::phi, AT(now.pose().phi), AT(now.pose().phi_dot)},
-    {Computed::X_O_dot, AT(now.kinematics().X_O_dot), AT(now.dynamics().X_O_ddot)},
-    {Computed::Y_O_dot, AT(now.kinematics().Y_O_dot), AT(now.dynamics().Y_O_ddot)},
-    {Computed::Z_O_dot, AT(now.pose().Z_O_dot), AT(now.dynamics().Z_O_ddot)},
-    {Computed::psi_dot, AT(now.pose().psi_dot), AT(now.dynamics().psi_ddot)},
-    {Computed::theta_dot, AT(now.pose().theta_dot), AT(now.dynamics().theta_ddot)},
-    {Computed::phi_dot, AT(now.pose().phi_dot), AT(now.dynamics().phi_ddot)},
-    {Computed::omega_z, AT(now.pose().omega_z), AT(now.dynamics().omega_z_dot)},
-    {Computed::lambda_1, REACTION(dynamics().lambda[0], lambda_dot[0])},
-    {Computed::lambda_2, REACTION(dynamics().lambda[1], lambda_dot[1])},
-    {Computed::lambda_3, REACTION(dynamics().lambda[2], lambda_dot[2])},
-    {Computed::X_C, AT(now.contact().X_C), AT(now.contact().X_C_dot)},
-    {Computed::Y_C, AT(now.contact().Y_C), AT(now.contact().Y_C_dot)},
-    {Computed::lambda_x, REACTION(reactions().lambda_x, lambda_x_dot)},
-    {Computed::lambda_y, REACTION(reactions().lambda_y, lambda_y_dot)},
-    {Computed::tau, REACTION(reactions().tau, tau_dot)},
-    {Computed::theta_ddot, AT(now.dynamics().theta_ddot)},
-    {Computed::psi_ddot, AT(now.dynamics().psi_ddot)},
-    {Computed::phi_ddot, AT(now.dynamics().phi_ddot)},
-    {Computed::omega_z_dot, AT(now.dynamics().omega_z_dot)},
-    {Computed::E, AT(wheel_energy(&now.scene().wheel, &now.kinematics()))},
-    {Computed::mu_required, AT(wheel_required_friction(now.dynamics().lambda))},
-    {Computed::friction_mode, AT(now.friction_mode())},
-    {Computed::n_steps, AT(double(now.counters().steps))},
-    {Computed::n_rhs, AT(double(now.counters().rhs))},
-    {Computed::n_jac, AT(double(now.counters().jacobians))},
-    {Computed::n_roots, AT(double(now.counters().roots))},
-    {Computed::n_events, AT(double(now.transitions()))},
-    {Computed::n_restarts, AT(double(now.counters().restarts))},
+    {variable::X_O, AT(now.pose().X_O), AT(now.kinematics().X_O_dot)},
+    {variable::Y_O, AT(now.pose().Y_O), AT(now.kinematics().Y_O_dot)},
+    {variable::Z_O, AT(now.pose().Z_O), AT(now.pose().Z_O_dot)},
+    {variable::psi, AT(now.pose().psi), AT(now.pose().psi_dot)},
+    {variable::theta, AT(now.pose().theta), AT(now.pose().theta_dot)},
+    {variable::phi, AT(now.pose().phi), AT(now.pose().phi_dot)},
+    {variable::X_O_dot, AT(now.kinematics().X_O_dot), AT(now.dynamics().X_O_ddot)},
+    {variable::Y_O_dot, AT(now.kinematics().Y_O_dot), AT(now.dynamics().Y_O_ddot)},
+    {variable::Z_O_dot, AT(now.pose().Z_O_dot), AT(now.dynamics().Z_O_ddot)},
+    {variable::psi_dot, AT(now.pose().psi_dot), AT(now.dynamics().psi_ddot)},
+    {variable::theta_dot, AT(now.pose().theta_dot), AT(now.dynamics().theta_ddot)},
+    {variable::phi_dot, AT(now.pose().phi_dot), AT(now.dynamics().phi_ddot)},
+    {variable::omega_z, AT(now.pose().omega_z), AT(now.dynamics().omega_z_dot)},
+    {variable::lambda_1, REACTION(dynamics().lambda[0], lambda_dot[0])},
+    {variable::lambda_2, REACTION(dynamics().lambda[1], lambda_dot[1])},
+    {variable::lambda_3, REACTION(dynamics().lambda[2], lambda_dot[2])},
+    {variable::X_C, AT(now.contact().X_C), AT(now.contact().X_C_dot)},
+    {variable::Y_C, AT(now.contact().Y_C), AT(now.contact().Y_C_dot)},
+    {variable::lambda_x, REACTION(horizontal_force(0), lambda_x_dot)},
+    {variable::lambda_y, REACTION(horizontal_force(1), lambda_y_dot)},
+    {variable::tau, REACTION(dynamics().tau, tau_dot)},
+    {variable::theta_ddot, AT(now.dynamics().theta_ddot)},
+    {variable::psi_ddot, AT(now.dynamics().psi_ddot)},
+    {variable::phi_ddot, AT(now.dynamics().phi_ddot)},
+    {variable::omega_z_dot, AT(now.dynamics().omega_z_dot)},
+    {variable::E, AT(wheel_energy(&now.scene().wheel, &now.kinematics()))},
+    {variable::mu_required, AT(wheel_required_friction(now.dynamics().lambda))},
+    {variable::friction_mode, AT(now.friction_mode())},
+    {variable::n_steps, AT(double(now.counters().steps))},
+    {variable::n_rhs, AT(double(now.counters().rhs))},
+    {variable::n_jac, AT(double(now.counters().jacobians))},
+    {variable::n_roots, AT(double(now.counters().roots))},
+    {variable::n_events, AT(double(now.transitions()))},
+    {variable::n_restarts, AT(double(now.counters().restarts))},
 };
 
 #undef REACTION
@@ -70,7 +70,7 @@ constexpr Row stored_row(const char* name, Type type, Role role, double start, d
   return {name, type, role, start, std::max(min, -most), std::min(max, most), nullptr, nullptr, nullptr};
 }
 
-template <Computed variable>
+template <unsigned variable>
 constexpr Row computed_row(const char* name, Type type, Role role) {
   constexpr auto reads_it = [](const Access& reader) { return reader.variable == variable; };
   static_assert(std::count_if(std::begin(readers), std::end(readers), reads_it) == 1, "one reader for each");
@@ -80,10 +80,8 @@ constexpr Row computed_row(const char* name, Type type, Role role) {
 
 constexpr Row rows[] = {
 #define STORED(name, type, role, start, min, max) stored_row(#name, Type::type, Role::role, start, min, max),
-#define COMPUTED(name, type, role) computed_row<Computed::name>(#name, Type::type, Role::role),
+#define COMPUTED(name, type, role) computed_row<variable::name>(#name, Type::type, Role::role),
 #include "variables.inc"
-#undef STORED
-#undef COMPUTED
 };
 
 constexpr auto has_rate = [](const Row& row) { return row.role != Role::output || row.read_rate; };

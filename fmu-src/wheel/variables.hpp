@@ -10,37 +10,21 @@ namespace wheel {
 class Reading;
 struct ReactionRates;
 
-enum class Type : unsigned char { real, integer, boolean };
+enum class Type : unsigned char { real, integer, boolean, string };  // no variable is a string
 enum class Role : unsigned char { parameter, tunable, input, output, local };
 
-// Value references of parameters and inputs, which keep a value; the others are computed on request.
-namespace stored {
-enum Variable : unsigned {
+// Value references by name: parameters and inputs, which keep a value, then the variables that are computed on request.
+namespace variable {
+enum Reference : unsigned {
 #define STORED(name, ...) name,
-#define COMPUTED(...)
-#include "variables.inc"
-#undef STORED
-#undef COMPUTED
-  count,
-};
-}  // namespace stored
-inline constexpr unsigned stored_count = stored::count;
-
-// Value references of the calculated variables.
-enum class Computed : unsigned {
-  before_first = stored_count - 1,
-#define STORED(...)
 #define COMPUTED(name, ...) name,
 #include "variables.inc"
-#undef STORED
-#undef COMPUTED
-  end,
+  count,
 };
+}  // namespace variable
 
-inline constexpr unsigned variable_count = static_cast<unsigned>(Computed::end);
-
-// F_X F_Y F_Z M_1 M_2 M_3 M_brake, the last of the stored variables.
-inline constexpr unsigned first_input = stored::F_X;
+// F_X F_Y F_Z M_1 M_2 M_3 M_brake are the last of the stored variables.
+inline constexpr unsigned first_input = variable::F_X, stored_count = variable::X_O, variable_count = variable::count;
 
 enum Formulation : int { automatic_formulation = 1, reduced_formulation, multibody_formulation };
 enum FrictionLaw { exact_law = 1, regularized_law };

@@ -75,7 +75,7 @@ HEADER = 3  # words: mark, size, checksum of what follows
 
 
 def checksum(data: bytes) -> int:
-    """FNV-1a over words of 64 bits with a mixing shift, as support/bytes.hpp has it."""
+    """That of support/bytes.hpp: each word of 64 bits is multiplied in and mixed by a shift."""
     total = 0xCBF29CE484222325
     for (word,) in struct.iter_unpack("<Q", data):
         total = (total ^ word) * 0x100000001B3 % 2**64

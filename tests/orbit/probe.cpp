@@ -2,7 +2,6 @@
 #include <cmath>
 #include <new>
 
-#include "law.hpp"
 #include "motion.hpp"
 #include "orbit.hpp"
 

@@ -39,17 +39,14 @@ def play(tmp_path_factory: pytest.TempPathFactory, fmu: str) -> Callable[..., di
 @pytest.mark.parametrize("scene", SCENES)
 def test_no_failed_allocation_crashes_leaks_goes_untold_or_changes_a_later_bit(play, scene):
     counted = play(scene)
-    # the instance and the table of instances; a state and the table of states, the scratch instance that judges bytes,
-    # and the state that they become: each failed
+    # the instance; a state, the scratch instance that judges bytes, and the state that they become: each failed
     assert counted["failed once"] == counted["failed for good"] == counted["start"] + counted["snapshots"]
-    assert counted["start"] == 2  # the second is the table of live instances, where it grows
+    assert counted["start"] == 1
     assert counted["run"] == 0
 
 
-def test_the_table_of_live_instances_grows_or_refuses_the_instance(play):
-    # It has 8 places and is doubled when it is full: for the ninth instance, not for the eighth.
-    starts = [play("reduced", companions)["start"] for companions in (7, 8)]
-    assert starts == [1, 2]
+def test_an_instance_takes_one_block_however_many_are_alive(play):
+    assert [play("reduced", companions)["start"] for companions in (7, 8)] == [1, 1]
 
 
 def test_a_solver_that_gives_up_tells_its_reason_in_one_sentence_with_the_callers_time(wheel):

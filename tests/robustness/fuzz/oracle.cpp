@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 namespace fuzz {
 namespace {
@@ -56,15 +57,21 @@ void check_finite(const std::vector<double>& values) {
 
 }  // namespace
 
-Type type_of(unsigned reference) {
-  constexpr Type types[] = {
-#define STORED(name, type, ...) Type::type,
-#define COMPUTED(name, type, ...) Type::type,
+const Row& row_of(unsigned reference) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  static constexpr Row rows[] = {
+#define STORED(name, type, role, ...) {Type::type, Role::role, __VA_ARGS__},
+#define COMPUTED(name, type, role) {Type::type, Role::role},
 #include "variables.inc"
-#undef STORED
-#undef COMPUTED
   };
-  return types[reference];
+  return rows[reference];
+}
+
+bool may_do_work(unsigned reference) {
+  const Row& row = row_of(reference);
+  // Off at the start, and never below zero. The weight on a slope is part of the energy; a limit does no work.
+  const bool switches = row.type == Type::real && row.role <= Role::tunable && row.start == 0 && row.min == 0;
+  return row.role == Role::input || (switches && reference != ref_slope && reference != ref_mu_max);
 }
 
 Log& log() { return *present; }
@@ -110,9 +117,9 @@ std::vector<double> readings(const Slot& slot) {
     fmi2Status status = fmi2OK;
     double real = 0;
     int whole = 0;
-    if (type_of(reference) == Type::boolean)
+    if (row_of(reference).type == Type::boolean)
       status = fmi2GetBoolean(slot.component, &reference, 1, &whole);
-    else if (type_of(reference) == Type::integer)
+    else if (row_of(reference).type == Type::integer)
       status = fmi2GetInteger(slot.component, &reference, 1, &whole);
     else
       status = fmi2GetReal(slot.component, &reference, 1, &real);
@@ -139,9 +146,8 @@ void check_after_start(Slot& slot) {
   slot.model.start_energy = values[ref_E];
   slot.model.energy_scale =
       std::fabs(values[ref_E]) + values[ref_m] * values[ref_g] * (values[ref_r_0] + values[ref_r]);
-  for (unsigned input = ref_first_input; input < ref_first_output; ++input)
-    if (values[input] != 0) slot.model.free = false;
-  if (values[ref_s] != 0) slot.model.free = false;
+  for (unsigned reference = 0; reference < ref_first_output; ++reference)
+    if (may_do_work(reference) && values[reference] != 0) slot.model.free = false;
 }
 
 void check_after_step(const Slot& slot) {

@@ -15,8 +15,6 @@ enum : unsigned {
 #define STORED(name, ...) ref_##name,
 #define COMPUTED(name, ...) ref_##name,
 #include "variables.inc"
-#undef STORED
-#undef COMPUTED
   ref_count,
   ref_first_input = ref_F_X,
   ref_first_output = ref_X_O,
@@ -24,7 +22,17 @@ enum : unsigned {
 constexpr unsigned input_count = ref_first_output - ref_first_input, output_count = ref_theta_ddot - ref_first_output;
 
 enum class Type { real, integer, boolean };
-Type type_of(unsigned reference);
+enum class Role { parameter, tunable, input, output, local };
+// A row of modelDescription.xml; start and limits of what can be set.
+struct Row {
+  Type type;
+  Role role;
+  double start = 0, min = 0, max = 0;
+};
+const Row& row_of(unsigned reference);
+
+// Whether a value other than zero may change the energy: an input, or a parameter that can only switch something on.
+bool may_do_work(unsigned reference);
 
 // Call states of FMI 2.0.5, section 4.2.4.
 enum State : unsigned { instantiated, initialization, step_complete, step_failed, terminated, error };

@@ -6,17 +6,11 @@
 namespace fuzz {
 namespace {
 
-constexpr double usual_size(double start, bool is_input) { return is_input ? 10 : start == 0 ? 0.1 : start; }
-constexpr bool parameter = false, tunable = false, input = true;
-
 // Sizes that matter: the start values of the parameters as modelDescription.xml has them, and what moves a wheel.
-constexpr double usual[] = {
-#define STORED(name, type, role, start, ...) usual_size(start, role),
-#define COMPUTED(...)
-#include "variables.inc"
-#undef STORED
-#undef COMPUTED
-};
+double usual_size(unsigned reference) {
+  const Row& row = row_of(reference);
+  return row.role == Role::input ? 10 : row.start == 0 ? 0.1 : row.start;
+}
 
 }  // namespace
 
@@ -27,7 +21,7 @@ double Session::value_for(unsigned reference) {
     return reference >= ref_first_input && std::isfinite(value) ? std::remainder(value, 1e4) : value;
   }
   if (in_.chance(2)) return 0;
-  const double value = usual[reference] * in_.factor();
+  const double value = usual_size(reference) * in_.factor();
   return in_.chance(4) ? -value : value;
 }
 
@@ -51,7 +45,7 @@ void Session::set_reals() {
       *now_, I | M | C, [&] { return fmi2SetReal(now_->component, null ? nullptr : references, count, values); });
   if (status != fmi2OK || now_->model.state != step_complete) return;
   for (unsigned k = 0; k < count; ++k)
-    if (values[k] != 0) now_->model.free = false;
+    if (may_do_work(references[k]) && values[k] != 0) now_->model.free = false;
 }
 
 void Session::set_choices() {
