@@ -31,7 +31,7 @@ from publishing.markdown import number, page, said
 RESULTS = ROOT / "docs" / "results"
 Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]
-Axis = Mapping[str, Any] | Sequence[Any]
+Axis = Mapping[str, Any] | Sequence[Any] | Callable  # of the report
 PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka", "numba", "numbalsoda")
 REDUCTIONS = ("max", "min", "median", "sum")
 REQUIREMENTS = pd.read_csv(Path(__file__).with_name("requirements.csv")).set_index(["report", "figure"])
@@ -58,11 +58,10 @@ class Part:
         return found if isinstance(found, dict) else {self.measure.__name__: found}
 
     def rows(self, report: Report) -> list[Row]:
-        named = [
-            dict(axis if isinstance(axis, Mapping) else zip(axis, axis, strict=True)) for axis in self.axes.values()
-        ]
-        cases = [zip(*case, strict=True) for case in product(*(axis.items() for axis in named))]
-        return [dict(zip(self.axes, names, strict=True)) | self.measure(report, *values) for names, values in cases]
+        axes = [axis(report) if callable(axis) else axis for axis in self.axes.values()]
+        named = (axis.items() if isinstance(axis, Mapping) else [(value, value) for value in axis] for axis in axes)
+        cases = (zip(*case, strict=True) for case in product(*named))
+        return [dict(zip(self.axes, names, strict=True)) | self.measure(report, *of) for names, of in cases]
 
 
 def part(seconds: float, axes: Mapping[str, Axis] | None = None) -> Callable[[Callable], Part]:
