@@ -1,8 +1,10 @@
-/* Runs ten scenes in one FMU library and prints a hash of every trajectory's bits: driver LIBRARY GUID.
-   The same source for every platform; the paper's equations are not here. */
+/* The C driver of the FMU. As a program, `driver LIBRARY GUID`, it prints a hash of the bits of ten trajectories, the
+   same source for every platform. The reports load it as a library and time its functions (tools/reports/native.py).
+   The paper's equations are not here. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "fmu.h"
 
@@ -18,8 +20,8 @@ enum { first_output = ref_X_O, output_count = ref_E - ref_X_O };
 
 struct scene {
   const char* name;
-  int choices[3]; /* formulation, friction law, method */
-  double s, J_y, r, rate, M_3, slope, tolerance;
+  int choices[3];                                /* formulation, friction law, method */
+  double s, J_y, r, rate, M_3, slope, tolerance; /* slope: of F_X in time, N/s */
 };
 
 static const struct scene scenes[] = {
@@ -35,56 +37,123 @@ static const struct scene scenes[] = {
     {"tight tolerance", {1, 1, 1}, 0, 0.9, 0.05, 0.5, 0, 0, 1e-12},
 };
 
+/* Steps of one instance; `table` has for each step the values of the inputs, then their derivatives of order 1 to
+   `orders`. Seconds. */
+typedef struct Run {
+  const fmi2ValueReference *inputs, *outputs;
+  size_t input_count, output_count;
+  int orders;
+  const double* table;
+  double step;
+  long steps;
+} Run;
+
+typedef struct Outcome {
+  long steps; /* done with fmi2OK or a warning */
+  double seconds;
+} Outcome;
+
+enum { most_inputs = 8 };
+static Fmu fmu;
+
+static struct timespec now(void) {
+  struct timespec t;
+  timespec_get(&t, TIME_UTC);
+  return t;
+}
+
+static double since(struct timespec begin) {
+  const struct timespec end = now();
+  return (double)(end.tv_sec - begin.tv_sec) + 1e-9 * (double)(end.tv_nsec - begin.tv_nsec);
+}
+
+void load(const char* path) { fmu = fmu_of(path); }
+
+/* One communication step: inputs in, doStep, outputs out. */
+static fmi2Status communicate(fmi2Component c, const Run* run, long step, double* row) {
+  const size_t count = run->input_count;
+  fmi2Status status = fmi2OK;
+  for (int order = 0; count && order <= run->orders && status <= fmi2Warning; ++order) {
+    const double* values = run->table + count * ((size_t)step * (size_t)(run->orders + 1) + (size_t)order);
+    fmi2Integer orders[most_inputs];
+    for (size_t i = 0; i < count; ++i) orders[i] = order;
+    status = order ? fmu.SetRealInputDerivatives(c, run->inputs, count, orders, values)
+                   : fmu.SetReal(c, run->inputs, count, values);
+  }
+  if (status <= fmi2Warning) status = fmu.DoStep(c, (double)step * run->step, run->step, fmi2True);
+  return status <= fmi2Warning ? fmu.GetReal(c, run->outputs, run->output_count, row) : status;
+}
+
+/* rows: the outputs after each step; paces: seconds of each step, the clock's own cost included, or null. */
+Outcome march(fmi2Component c, const Run* run, double* rows, double* paces) {
+  const struct timespec begin = now();
+  Outcome done = {0, 0};
+  for (; done.steps < run->steps; ++done.steps) {
+    const struct timespec before = paces ? now() : begin;
+    if (communicate(c, run, done.steps, rows + (size_t)done.steps * run->output_count) > fmi2Warning) break;
+    if (paces) paces[done.steps] = since(before);
+  }
+  done.seconds = since(begin);
+  return done;
+}
+
+/* Seconds of a call that does nothing. */
+double empty_call(fmi2Component c, long calls) {
+  const struct timespec begin = now();
+  for (long i = 0; i < calls; ++i) fmu.GetReal(c, NULL, 0, NULL);
+  return since(begin) / (double)calls;
+}
+
 static void quiet(fmi2ComponentEnvironment e, fmi2String n, fmi2Status status, fmi2String c, fmi2String m, ...) {
   (void)e, (void)n, (void)c;
   if (status > fmi2Warning) fprintf(stderr, "%s\n", m);
 }
 
-static uint64_t hash_of(uint64_t hash, const void* data, size_t size) {
-  const unsigned char* bytes = data;
-  for (size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
-  return hash;
-}
-
-static fmi2Component start(const Fmu* fmu, const struct scene* scene, const char* guid) {
+static fmi2Component start(const struct scene* scene, const char* guid) {
   static const fmi2CallbackFunctions functions = {quiet, calloc, free, NULL, NULL};
-  const fmi2Component c = fmu->Instantiate("wheel", fmi2CoSimulation, guid, "", &functions, 0, 0);
+  const fmi2Component c = fmu.Instantiate("wheel", fmi2CoSimulation, guid, "", &functions, 0, 0);
   if (!c) exit(1);
   const fmi2ValueReference reals[] = {ref_s, ref_J_y, ref_r, ref_psi_dot_start, ref_M_3},
                            whole[] = {ref_formulation, ref_friction_law, ref_method}, contact = ref_keep_contact;
   const double values[] = {scene->s, scene->J_y, scene->r, scene->rate, scene->M_3};
   const fmi2Boolean kept = fmi2True;
-  fmu->SetupExperiment(c, 1, scene->tolerance, 0, 0, 0);
-  fmu->SetReal(c, reals, 5, values);
-  fmu->SetInteger(c, whole, 3, scene->choices);
-  fmu->SetBoolean(c, &contact, 1, &kept);
-  fmu->EnterInitializationMode(c);
-  if (fmu->ExitInitializationMode(c) != fmi2OK) exit(1);
+  fmu.SetupExperiment(c, 1, scene->tolerance, 0, 0, 0);
+  fmu.SetReal(c, reals, 5, values);
+  fmu.SetInteger(c, whole, 3, scene->choices);
+  fmu.SetBoolean(c, &contact, 1, &kept);
+  fmu.EnterInitializationMode(c);
+  if (fmu.ExitInitializationMode(c) != fmi2OK) exit(1);
   return c;
 }
 
-static void run(const Fmu* fmu, const struct scene* scene, const char* guid) {
-  fmi2ValueReference outputs[output_count];
-  const fmi2ValueReference force = ref_F_X;
-  const fmi2Integer order = 1;
-  double values[output_count] = {0};
-  uint64_t hash = 0xcbf29ce484222325u;
-  const fmi2Component c = start(fmu, scene, guid);
+/* Seconds to create, initialize and free an instance in one of the scenes below. */
+double life(const char* guid, int scene) {
+  const struct timespec begin = now();
+  fmu.FreeInstance(start(scenes + scene, guid));
+  return since(begin);
+}
+
+/* FNV-1a over the bits of 500 rows, 0.02 s apart. */
+static void print_hash(const struct scene* scene, const char* guid) {
+  enum { steps = 500 };
+  static double force[2 * steps], rows[steps * output_count];
+  static fmi2ValueReference outputs[output_count];
+  const fmi2ValueReference pushed = ref_F_X;
   for (unsigned i = 0; i < output_count; ++i) outputs[i] = first_output + i;
-  const int steps = 500; /* of 0.02 s */
-  for (int k = 0; k < steps; ++k) {
-    if (scene->slope != 0) fmu->SetRealInputDerivatives(c, &force, 1, &order, &scene->slope);
-    if (fmu->DoStep(c, 0.02 * k, 0.02, fmi2True) != fmi2OK) break;
-    fmu->GetReal(c, outputs, output_count, values);
-    hash = hash_of(hash, values, sizeof values);
-  }
+  for (int i = 0; i < steps; ++i) force[2 * i] = scene->slope * 0.02 * i, force[2 * i + 1] = scene->slope;
+  const Run run = {&pushed, outputs, scene->slope != 0, output_count, 1, force, 0.02, steps};
+  const fmi2Component c = start(scene, guid);
+  const long done = march(c, &run, rows, NULL).steps;
+  uint64_t hash = 0xcbf29ce484222325u;
+  const unsigned char* bytes = (const unsigned char*)rows;
+  for (size_t i = 0; i < (size_t)done * output_count * sizeof *rows; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
   printf("%s\t%016llx\n", scene->name, (unsigned long long)hash);
-  fmu->FreeInstance(c);
+  fmu.FreeInstance(c);
 }
 
 int main(int count, char** arguments) {
   if (count < 3) return 2;
-  const Fmu fmu = fmu_of(arguments[1]);
-  for (unsigned i = 0; i < sizeof scenes / sizeof *scenes; ++i) run(&fmu, scenes + i, arguments[2]);
+  load(arguments[1]);
+  for (unsigned i = 0; i < sizeof scenes / sizeof *scenes; ++i) print_hash(scenes + i, arguments[2]);
   return 0;
 }

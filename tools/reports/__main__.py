@@ -1,8 +1,8 @@
 """./scripts/report NAME…|all: measures, and writes the page NAME.md, its pictures and data into build/report/latest.
 
 With --publish they go to docs/results, which is kept under version control, and the figures in all pages are filled in
-from them. A report is a module NAME: its parts measure tables and figures, its PICTURES are drawn from tables, its
-`views` add tables that follow from others, and templates/NAME.md.j2 is its page.
+from them. A report is a module NAME: its parts measure, in their order, its PICTURES are drawn from tables, its `views`
+add tables that follow from others, and templates/NAME.md.j2 is its page; one without is written by hand.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from importlib import import_module
-from inspect import isfunction
 from pathlib import Path
 from types import ModuleType
 
@@ -23,9 +22,10 @@ from publishing import documents
 
 from . import plots
 from .options import NAMES, arguments
-from .page import Part, Report, read_tables, render
+from .page import RESULTS, Part, Report, read_tables, render
 
 BAR = "{percentage:3.0f} % |{bar:20}| {elapsed}, {remaining} left; {desc}"
+TEMPLATES = Path(__file__).parent / "templates"
 
 
 def module(name: str) -> ModuleType:
@@ -33,9 +33,9 @@ def module(name: str) -> ModuleType:
 
 
 def parts_of(module: ModuleType) -> list[Part]:
-    """The module's own parts, in their order, and those that it takes over from others."""
-    own = [f for f in vars(module).values() if isfunction(f) and f.__module__ == module.__name__]
-    return [*(f for f in own if hasattr(f, "seconds")), *getattr(module, "FURTHER", ())]
+    """The module's parts, in their order, and those of the modules that it takes over."""
+    modules = (module, *getattr(module, "FURTHER", ()))
+    return [part for module in modules for part in vars(module).values() if isinstance(part, Part)]
 
 
 def measure(names: list[str], folder: Path, options: Namespace) -> None:
@@ -45,26 +45,24 @@ def measure(names: list[str], folder: Path, options: Namespace) -> None:
         for name in names:
             report = Report(name, library, folder, options.quick, vars(options))
             for part in parts[name]:
-                bar.set_description_str(f"{name}: {(part.__doc__ or part.__name__).splitlines()[0]}")
-                part(report)
+                bar.set_description_str(f"{name}: {part.words}")
+                report.measure(part)
                 report.write()
                 bar.update(part.seconds)
     library.remove()
 
 
-def rendered(name: str, folder: Path) -> tuple[str | None, str]:
-    """The page, None where its pages are written by hand; what was not met."""
-    if not (Path(__file__).parent / "templates" / f"{name}.md.j2").exists():
-        return None, ""
+def rendered(name: str, folder: Path) -> tuple[str, str]:
     return render(name, folder, getattr(module(name), "views", dict))
 
 
 def draw(name: str, folder: Path) -> bool:
     """The pictures that are drawn from tables, and the page; whether all requirements are met."""
+    missed = ""
     for picture, sheet in getattr(module(name), "PICTURES", {}).items():
-        style.save_png(sheet(read_tables(folder, name)), folder / f"{name}_{picture}.png", plots.DPI)
-    text, missed = rendered(name, folder)
-    if text is not None:
+        style.save_png(sheet(read_tables(name, folder)), folder / f"{name}_{picture}.png", plots.DPI)
+    if (TEMPLATES / f"{name}.md.j2").exists():
+        text, missed = rendered(name, folder)
         (folder / f"{name}.md").write_text(text, encoding="utf-8")
     print(f"{name}: {f'not met: {missed}' if missed else 'all requirements are met'}.")
     return not missed
@@ -72,8 +70,8 @@ def draw(name: str, folder: Path) -> bool:
 
 def fresh(name: str, folder: Path) -> bool:
     """Whether the page that is there is the one of the data; a report that was not published yet has none."""
-    text = rendered(name, folder)[0] if (folder / "data" / f"{name}.csv").exists() else None
-    same = text is None or text == (folder / f"{name}.md").read_text(encoding="utf-8")
+    page = folder / f"{name}.md"
+    same = not page.exists() or rendered(name, folder)[0] == page.read_text(encoding="utf-8")
     if not same:
         print(f"{name}.md is not the page of the data: run ./scripts/report {name} --render.")
     return same
@@ -83,9 +81,7 @@ def main() -> int:
     options = arguments()
     names = list(NAMES) if "all" in options.names else list(dict.fromkeys(options.names))
     published = options.publish or options.render or options.check
-    folder = ROOT / "docs" / "results"
-    if not published:
-        folder = ROOT / "build" / "report" / ("quick" if options.quick else "latest")
+    folder = RESULTS if published else ROOT / "build" / "report" / ("quick" if options.quick else "latest")
     folder.mkdir(parents=True, exist_ok=True)
     if options.check:
         return int(sum(fresh(name, folder) for name in names) < len(names))

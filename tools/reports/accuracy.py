@@ -6,69 +6,64 @@ shown here.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pandas as pd
 from equations import pointwise
-from physics.cases import CASES, error, expected, transitions_gap
+from physics.cases import CASES, NAMES, error, expected, transitions_gap
 from physics.exact_motions import UPRIGHT, circle_error, fall_error, lift_off_error, straight_error
 from physics.leaning import TORUS, measured_critical_spin
 from physics.measure import (
     FRICTION,
-    constraint_drift,
     energy_error,
     instants,
     instants_error,
     table_errors,
-    unstabilised_drift,
 )
 from reference import Wheel
 from support import equations as eq
 from support.closed_forms import critical_spin, upright_deceleration
-from support.driver import HEADLINE
 from support.scenes import Scene
 
 from . import plots
-from .page import Report, Row, Tables, number, part
+from .page import Report, Row, Tables, part
 from .plots import Sheet, style
-from .speed import long_error
-from .truth import kept_headline, range_error
+from .truth import columns, headline, long_error, range_error
 
 TOLERANCES = tuple(10.0**-k for k in range(4, 14))
-SPINS = (2.0, 10.0, 100.0, 300.0, 1000.0)  # rad/s
 TABLE_UNIT = 1e-9  # s, last digit of the table of transitions
+THIN, ROUGH = Wheel(r=0.0), Wheel(s=0.03)
+STOP = 2 / upright_deceleration(ROUGH)
+FORMS = {"reduced": 2, "multibody": 3}
+MOTIONS = {
+    "upright rolling slows down linearly: ω_z, rad/s": lambda library, form: straight_error(library, form, 0.03, ROUGH),
+    f"and stops at {STOP:.6f} s: instant, s": lambda library, form: stop_error(library, form),
+    "released from rest it falls flat: instant, s": lambda library, form: fall_error(library, form, TORUS),
+    "a light rim lifts off while falling: s, rad": lambda library, form: lift_off_error(library, form, 0.0),
+    "steady circle, thin disc, 5 s": lambda library, form: circle_error(library, THIN, THIN, form, 1.0, 1.1),
+    "steady circle, torus, 5 s": lambda library, form: circle_error(library, TORUS, TORUS, form, 1.0, 1.1),
+}
 
 
 @part(2)
-def paper(report: Report) -> None:
+def paper(report: Report) -> pd.DataFrame:
     """the paper's scenes at the default tolerance"""
     errors = pd.DataFrame({scene: table_errors(report.library, scene) for scene in FRICTION})
-    report.table("paper", errors.rename_axis("output").reset_index())
-    report.figures(**errors.max().add_prefix("error_"))
+    return errors.rename_axis("output").reset_index()
 
 
-@part(12)
-def tolerances(report: Report) -> None:
+@part(12, {"tolerance": (0.1, 1e-3, *TOLERANCES, 1e-15)})
+def tolerances(report: Report, tolerance: float) -> Row:
     """what each tolerance gives"""
-    rows = pd.DataFrame([tolerance_row(report, tolerance) for tolerance in (0.1, 1e-3, *TOLERANCES, 1e-15)])
-    report.table("tolerances", rows)
-    energy, instants = (rows.set_index("tolerance")[column] for column in ("energy, free", "instants, s"))
-    report.figures(energy=energy[1e-8], energy_tight=energy[1e-12], instants=instants[1e-8])
-    report.figures(wrong_counts=(rows["transitions"] != 37).sum())
-
-
-def tolerance_row(report: Report, tolerance: float) -> Row:
     found = instants(report.library, tolerance)
     with report.library.wheel() as wheel:
         wheel.initialise(tolerance)
         said = " ".join(wheel.sentences)
     return {
-        "tolerance": tolerance,
         **{scene: max(table_errors(report.library, scene, tolerance).values()) for scene in FRICTION},
         "energy, free": energy_error(report.library, tolerance),
         "instants, s": instants_error(found),
         "transitions": len(found),
+        "not 37": len(found) != 37,
         "said": said,
     }
 
@@ -77,8 +72,8 @@ def draw_tolerances(tables: Tables) -> Sheet:
     rows = tables["tolerances"].query(f"{TOLERANCES[-1]} <= tolerance <= {TOLERANCES[0]}")
     figure, (left, right) = plots.sheet(2)
     t = rows["tolerance"]
-    for ax, columns in ((left, ("free", "friction")), (right, ("energy, free", "instants, s"))):
-        for name, colour, marker in zip(columns, (style.BLUE, style.VERMILLION), "os", strict=True):
+    for ax, names in ((left, ("free", "friction")), (right, ("energy, free", "instants, s"))):
+        for name, colour, marker in zip(names, (style.BLUE, style.VERMILLION), "os", strict=True):
             least = TABLE_UNIT / 2 if name == "instants, s" else 1e-17
             ax.plot(t, rows[name].clip(lower=least), marker + "-", color=colour, ms=3, label=name)
         ax.plot(t, t, "--", color=style.GREY, lw=0.7, label="error = tolerance")
@@ -89,100 +84,61 @@ def draw_tolerances(tables: Tables) -> Sheet:
     return figure
 
 
-@part(20)
-def spins(report: Report) -> None:
-    """fast spin"""
-    rows = []
-    for spin in SPINS:
-        start = {"theta_start": 1.4, "phi_dot_start": -spin, "keep_contact": True}
-        want, row = kept_headline(Scene(start, 1.0), 101), {"spin, rad/s": spin}
-        for tolerance in (1e-6, 1e-8, 1e-10):
-            run = report.library.simulate(np.linspace(0, 1, 101), tolerance, **start)
-            error = range_error(np.column_stack([run[name] for name in HEADLINE]), want)
-            row[f"at {number(tolerance)}"] = error / tolerance
-        rows.append(row)
-    report.table("spins", rows)
-    report.figures(spin=max(row["at 1e-8"] for row in rows))
+@part(20, {"spin, rad/s": (2.0, 10.0, 100.0, 300.0, 1000.0)})
+def spins(report: Report, spin: float) -> Row:
+    """fast spin: error / range / tolerance"""
+    start, times = {"theta_start": 1.4, "phi_dot_start": -spin, "keep_contact": True}, np.linspace(0, 1, 101)
+    want = headline(Scene(start, 1.0), 101)
+    runs = {t: report.library.simulate(times, float(t), **start) for t in ("1e-6", "1e-8", "1e-10")}
+    return {f"at {t}": range_error(columns(run), want) / float(t) for t, run in runs.items()}
 
 
-@part(8)
-def long(report: Report) -> None:
+@part(8, {"tolerance": TOLERANCES[:-1]})
+def long(report: Report, tolerance: float) -> Row:
     """1000 s of the unfolded wheel"""
-    errors = {tolerance: long_error(report.library, tolerance) for tolerance in TOLERANCES[:-1]}
-    report.table("long", [{"tolerance": t, "error / range": error} for t, error in errors.items()])
-    report.figures(long=errors[1e-8])
+    return {"error / range": long_error(report.library, tolerance)}
 
 
-@part(40)
-def scenes(report: Report) -> None:
+@part(40, {"scene": NAMES})
+def scenes(report: Report, name: str) -> Row:
     """other scenes against the reference"""
-    rows = []
-    for name, case in CASES.items():
-        rubs = case.wheel.s > 0
-        row = {"scene": name, "s": case.duration}
-        row |= {f"at {number(t)}": error(report.library, name, t) for t in (1e-8, 1e-10, 1e-12)}
-        row["transitions"] = len(expected(name).events) - 1 if rubs else 0
-        rows.append(row | {"their error, s": transitions_gap(report.library, name, case.wheel.s) if rubs else 0.0})
-    report.table("scenes", rows)
-    largest = pd.DataFrame(rows).max()
-    report.figures(scenes=largest["at 1e-8"], scenes_tight=largest["at 1e-12"])
-
-
-@part(6)
-def closed_forms(report: Report) -> None:
-    """closed forms"""
-    library, thin, rough = report.library, Wheel(r=0.0), Wheel(s=0.03)
-    stop = 2 / upright_deceleration(rough)
-
-    def stop_error(form: int) -> float:
-        return abs(library.simulate([0.0, 6.0], s=0.03, formulation=form, **UPRIGHT).events[0][0] - stop)
-
-    measures: dict[str, Callable[[int], float]] = {
-        "upright rolling slows down linearly: ω_z, rad/s": lambda f: straight_error(library, f, 0.03, rough),
-        f"and stops at {stop:.6f} s: instant, s": stop_error,
-        "released from rest it falls flat: instant, s": lambda f: fall_error(library, f, TORUS),
-        "a light rim lifts off while falling: s, rad": lambda f: lift_off_error(library, f, 0.0),
-        "steady circle, thin disc, 5 s": lambda f: circle_error(library, thin, thin, f, 1.0, 1.1),
-        "steady circle, torus, 5 s": lambda f: circle_error(library, TORUS, TORUS, f, 1.0, 1.1),
+    s = CASES[name].wheel.s
+    return {
+        "s": CASES[name].duration,
+        **{f"at {t}": error(report.library, name, float(t)) for t in ("1e-8", "1e-10", "1e-12")},
+        "transitions": len(expected(name).events) - 1 if s > 0 else 0,
+        "their error, s": transitions_gap(report.library, name, s) if s > 0 else 0.0,
     }
-    rows = [{"motion: error": name, "reduced": m(2), "multibody": m(3)} for name, m in measures.items()]
-    report.table("closed_forms", rows)
-    report.figures(closed_forms=max(max(row["reduced"], row["multibody"]) for row in rows))
+
+
+def stop_error(library, form: int) -> float:
+    return abs(library.simulate([0.0, 6.0], s=0.03, formulation=form, **UPRIGHT).events[0][0] - STOP)
+
+
+@part(6, {"motion: error": MOTIONS})
+def closed_forms(report: Report, measure) -> Row:
+    """closed forms"""
+    return {name: measure(report.library, form) for name, form in FORMS.items()}
+
+
+@part(20, {"friction": eq.LAWS})
+def equations(report: Report, kind: int) -> Row:
+    """the equations, pointwise"""
+    row = {}
+    for words, symmetric in (("J_x = J_y", True), ("any J", False)):
+        drawn, motions = pointwise.draw(6, kind, symmetric=symmetric)
+        pair = [pointwise.dynamics(form, drawn, motions) for form in (eq.REDUCED, eq.MULTIBODY)]
+        row[f"reduced − multibody, {words}"] = pointwise.distance(*pair, drawn)
+    return row | {
+        "multibody − reference, any J": pointwise.distance(pair[1], pointwise.referenced(drawn, motions), drawn)
+    }
 
 
 @part(4)
-def stability_limit(report: Report) -> None:
+def stability_limit(report: Report) -> Row:
     """the stability limit of upright rolling"""
-    found, formula = measured_critical_spin(report.library), critical_spin(TORUS)
-    report.figures(critical_spin=found, critical=abs(found / formula - 1))
-
-
-@part(20)
-def equations(report: Report) -> None:
-    """the equations, pointwise"""
-    rows = {}
-    for name, kind in eq.LAWS.items():
-        for words, symmetric in (("J_x = J_y", True), ("any J", False)):
-            drawn, motions = pointwise.draw(6, kind, symmetric=symmetric)
-            pair = [pointwise.dynamics(f, drawn, motions) for f in (eq.REDUCED, eq.MULTIBODY)]
-            rows[f"reduced − multibody, {words}", name] = pointwise.distance(*pair, drawn)
-        apart = pointwise.distance(pair[1], pointwise.referenced(drawn, motions), drawn)
-        rows["multibody − reference, any J", name] = apart
-    table = pd.Series(rows).unstack(0, sort=False)
-    report.table("equations", table.rename_axis("friction").reset_index())
-    report.figures(equations=table.to_numpy().max())
-
-
-@part(15)
-def drift(report: Report) -> None:
-    """drift of the multibody form off its constraints"""
-    times, rows = np.linspace(0, 10, 501), []
-    names = ("(24) alone: m/s", "(24) alone: m", "FMU: m/s", "FMU: m")
-    for tolerance in (1e-6, 1e-8, 1e-10, 1e-12):
-        *held, _ = constraint_drift(report.library, times, tolerance, formulation=3)
-        worst = [off.max() for off in (*unstabilised_drift(times, tolerance), *held)]
-        rows.append({"tolerance": tolerance, **dict(zip(names, worst, strict=True))})
-    report.table("drift", rows)
+    found = measured_critical_spin(report.library)
+    return {"critical_spin": found, "critical": abs(found / critical_spin(TORUS) - 1)}
 
 
 PICTURES = {"tolerances": draw_tolerances}

@@ -14,14 +14,13 @@ import numpy as np
 import pandas as pd
 from benchmark.problems import INSTANTS, OUTPUTS, PROBLEMS, by_fmu, by_reference, errors
 
-from .page import Report, Row, part
+from .page import Report, Row, part, write_csv
 
 LOOSE, TIGHT = "1e-22", "1e-28"
 
 
-@part(60)
-def quadruple(report: Report) -> None:
-    """reference values in quadruple precision, two formulations"""
+def quadruple(report: Report) -> tuple[list[Row], dict[str, float]]:
+    """Writes the reference values: two formulations; how long they took, and how far they are apart, by scene."""
     try:
         from .taylor import FORMS, Wheel, paper, quad
     except ImportError:
@@ -33,64 +32,65 @@ def quadruple(report: Report) -> None:
             for tolerance in (LOOSE, TIGHT):
                 solver = Wheel(paper(quad, **problem.decimals), form, tolerance, quad)
                 begin = perf_counter()
-                motion = solver.solve(INSTANTS)
-                runs[form, tolerance] = motion, perf_counter() - begin
-        best, *others = [motion for motion, _ in runs.values()][::-1]
-        apart[name] = max(distance(motion, best) for motion in others)
+                best = solver.solve(INSTANTS)
+                runs[form, tolerance] = best, perf_counter() - begin
         write(report, name, best)
-        for (form, tolerance), (motion, seconds) in runs.items():
+        off = {key: distance(motion, best) for key, (motion, _) in runs.items()}
+        apart[name] = max(off.values())
+        for (form, tolerance), (_, seconds) in runs.items():
             program = f"heyoka, quadruple precision, {form}"
-            rows.append(entry(name, program, tolerance, (distance(motion, best), None), seconds))
-    report.kept["rows"] = rows
-    report.table("agreement", [{"scene": name, "largest difference": value} for name, value in apart.items()])
-    report.figures(agreement=max(apart.values()))
+            rows.append(row(name, program, tolerance, seconds, off[form, tolerance]))
+    return rows, apart
 
 
 def distance(motion: Any, other: Any) -> float:
     """Largest difference of an output, relative to its largest value, or of an instant, s."""
     if [mode for _, mode in motion.transitions] != [mode for _, mode in other.transitions]:
         return np.inf
-    size = np.abs(other.rows).max(axis=0)
-    values = float((np.abs(motion.rows - other.rows) / size).max())
+    values = float((np.abs(motion.rows - other.rows) / np.abs(other.rows).max(axis=0)).max())
     pairs = zip(motion.transitions, other.transitions, strict=True)
     return max([values, *(float(abs(a - b)) for (a, _), (b, _) in pairs)])
 
 
 def write(report: Report, name: str, best: Any) -> None:
-    """Thirteen significant digits; instants of transitions to 1e-13 s."""
-    shown = [[f"{float(value):#.13g}" for value in row] for row in best.rows]
-    names = ("t", *OUTPUTS)
-    report.table(name, [dict(zip(names, (t, *row), strict=True)) for t, row in zip(INSTANTS, shown, strict=True)])
+    """For other tools: thirteen significant digits; instants of transitions to 1e-13 s."""
+    values = [[t, *(f"{float(value):#.13g}" for value in row)] for t, row in zip(INSTANTS, best.rows, strict=True)]
+    write_csv(report.folder, f"benchmark_{name}", pd.DataFrame(values, columns=["t", *OUTPUTS]))
     if best.transitions:
-        rows = [{"t": f"{float(t):.13f}", "sign of omega_z": mode} for t, mode in best.transitions]
-        report.table(f"{name}_transitions", rows)
+        instants = [(f"{float(t):.13f}", mode) for t, mode in best.transitions]
+        found = pd.DataFrame(instants, columns=["t", "sign of omega_z"])
+        write_csv(report.folder, f"benchmark_{name}_transitions", found)
 
 
-def entry(scene: str, program: str, tolerance: str, found: tuple[float, float | None], seconds: float) -> Row:
-    error, instants = found
+def row(scene: str, program: str, tolerance: str, seconds: float, error: float, instants: float | None = None) -> Row:
     return {
         **{"scene": scene, "program": program, "tolerance": tolerance, "error / range": error},
         **{"instants, s": instants, "ms": 1e3 * seconds},
     }
 
 
-@part(30)
-def programs(report: Report) -> None:
-    """error against run time of wheel.fmu and of tests/reference"""
-    rows = report.kept["rows"]
+@part(90)
+def programs(report: Report) -> dict[str, object]:
+    """reference values in quadruple precision; error against run time"""
+    rows, apart = quadruple(report)
     for name, problem in PROBLEMS.items():
-        for tolerance in ("1e-6", "1e-8", "1e-10", "1e-12", "1e-13"):
-            runs = [by_fmu(report.library, problem, float(tolerance)) for _ in range(3 if report.quick else 20)]
-            best = min(run.seconds for run in runs)
-            rows.append(entry(name, "wheel.fmu", tolerance, errors(name, runs[0], report.folder), best))
         multibody = replace(problem, start={**problem.start, "formulation": 3})
-        run = by_fmu(report.library, multibody, 1e-12)
-        rows.append(entry(name, "wheel.fmu, the paper's (24)", "1e-12", errors(name, run, report.folder), run.seconds))
+        cases = [("wheel.fmu", problem, f"1e-{n}", 3 if report.quick else 20) for n in (6, 8, 10, 12, 13)]
+        cases += [("wheel.fmu, the paper's (24)", multibody, "1e-12", 1)]
+        for program, scene, tolerance, repeats in cases:
+            runs = [by_fmu(report.library, scene, float(tolerance)) for _ in range(repeats)]
+            best = min(run.seconds for run in runs)
+            rows.append(row(name, program, tolerance, best, *errors(name, runs[0], report.folder)))
         for tolerance in ("1e-10", "1e-13"):
             begin = perf_counter()
             solution = by_reference(problem, float(tolerance))
             spent = perf_counter() - begin
-            rows.append(entry(name, "tests/reference", tolerance, errors(name, solution, report.folder), spent))
-    report.table("programs", sorted(rows, key=lambda row: list(PROBLEMS).index(str(row["scene"]))))
+            rows.append(row(name, "tests/reference", tolerance, spent, *errors(name, solution, report.folder)))
     worst = pd.DataFrame(rows).query("program == 'wheel.fmu' and tolerance == '1e-13'").max()
-    report.figures(ours=worst["error / range"], instants=worst["instants, s"])
+    rows.sort(key=lambda row: list(PROBLEMS).index(str(row["scene"])))
+    return {
+        "programs": rows,
+        "formulations": [{"scene": name, "largest difference": value} for name, value in apart.items()],
+        "ours": worst["error / range"],
+        "instants": worst["instants, s"],
+    }

@@ -113,14 +113,13 @@ def read(folder: Path) -> tuple[dict[Key, Run], dict[Key, Key]]:
     """The runs of a folder, and the names that hold a run once more; the first in the alphabet keeps it."""
     found: dict[Key, Run] = {}
     copies: dict[Key, Key] = {}
-    for path in sorted(folder.glob("*.csv")):
-        if key := named(path):
-            run = triggers(path)
-            twin = next((other for other in found if same_run(run, found[other])), None)
-            if twin:
-                copies[key] = twin
-            else:
-                found[key] = run
+    for path in filter(named, sorted(folder.glob("*.csv"))):
+        run = triggers(path)
+        twin = next((other for other in found if same_run(run, found[other])), None)
+        if twin:
+            copies[named(path)] = twin
+        else:
+            found[named(path)] = run
     return found, copies
 
 
@@ -132,26 +131,23 @@ def plausible(rows: pd.DataFrame) -> bool:
 
 def evaluate(runs: dict[Key, Run], copies: dict[Key, Key]) -> tuple[pd.DataFrame, pd.DataFrame]:
     """All usable pairs of runs, and the pairs that are left out with the reason."""
+    unused = {
+        key[:3]: f"a copy of {of[0]}, {of[1]} psi, {of[2].lower()}" for key, of in copies.items() if "Contact" in key
+    }
     used = []
-    left_out = [
-        dict(zip(KEYS, key, strict=False)) | {"reason": f"a copy of {of[0]}, {of[1]} psi, {of[2].lower()}"}
-        for key, of in copies.items()
-        if key[3] == "Contact"
-    ]
-    for tyre, psi, direction, kind in runs:
+    for *key, kind in runs:
+        alone = runs.get((*key, "Separate"))
         if kind == "Separate":
             continue
-        about = {"tyre": tyre, "psi": psi, "direction": direction}
-        alone = runs.get((tyre, psi, direction, "Separate"))
-        rows = one(tyre, runs[tyre, psi, direction, kind], alone) if alone else None
+        rows = one(key[0], runs[*key, kind], alone) if alone else None
         if rows is not None and plausible(rows):
-            used.append(rows.assign(**about))
+            used.append(rows.assign(**dict(zip(KEYS, key, strict=True))))
         else:
-            reason = "no separate run" if alone is None else "lost or false triggers"
-            left_out.append(about | {"reason": reason})
+            unused[tuple(key)] = "no separate run" if alone is None else "lost or false triggers"
     found = pd.concat(used, ignore_index=True)
     columns = [*KEYS, *(name for name in found if name not in KEYS)]
-    return found[columns], pd.DataFrame(left_out, columns=[*KEYS, "reason"]).sort_values(KEYS)
+    left_out = pd.DataFrame([(*key, why) for key, why in unused.items()], columns=[*KEYS, "reason"])
+    return found[columns], left_out.sort_values(KEYS)
 
 
 def repeatability(rows: pd.DataFrame) -> pd.Series:
@@ -161,10 +157,10 @@ def repeatability(rows: pd.DataFrame) -> pd.Series:
     return np.sqrt(apart.groupby("speed").mean())
 
 
-def alone(runs: dict[Key, Run], tyre: str, psi: int, direction: str) -> Run:
-    """The run without contact at the nearest pressure, which changes the drag of a free wheel little."""
+def beside(runs: dict[Key, Run], tyre: str, psi: int, direction: str, run: Run) -> pd.DataFrame:
+    """A further run, with the one without contact at the nearest pressure, which changes a free wheel's drag little."""
     near = [key for key in runs if key[0] == tyre and key[2:] == (direction, "Separate")]
-    return runs[min(near, key=lambda key: abs(key[1] - psi))]
+    return one(tyre, run, runs[min(near, key=lambda key: abs(key[1] - psi))])
 
 
 def again(runs: dict[Key, Run], copies: dict[Key, Key], folder: Path) -> pd.DataFrame:
@@ -172,22 +168,18 @@ def again(runs: dict[Key, Run], copies: dict[Key, Key], folder: Path) -> pd.Data
     rows = []
     for path in sorted(folder.glob("*Contact*.csv")):
         key = named(path)
-        tyre, psi, direction, _ = key
-        free = alone(runs, tyre, psi, direction)
-        first = one(tyre, runs[copies.get(key, key)], free)
-        second = one(tyre, triggers(path), free)
-        both = pd.DataFrame({"speed": SPEEDS, "C": first["C"], "C again": second["C"]})
-        rows.append(both.assign(tyre=tyre, psi=psi, direction=direction))
+        first, second = (beside(runs, *key[:3], run)["C"] for run in (runs[copies.get(key, key)], triggers(path)))
+        both = pd.DataFrame({"speed": SPEEDS, "C": first, "C again": second})
+        rows.append(both.assign(**dict(zip(KEYS, key, strict=False))))
     return pd.concat(rows, ignore_index=True)
 
 
 def loaded(runs: dict[Key, Run], folder: Path) -> pd.DataFrame:
     """The force of rolling resistance under two other loads."""
+    names = {path: LOADED.fullmatch(path.stem) for path in sorted(folder.glob("*.csv"))}
     rows = []
-    for path in sorted(folder.glob("*.csv")):
-        name = LOADED.fullmatch(path.stem)
-        free = alone(runs, *OF_LOADED, name["direction"])
-        force = LOAD * one(OF_LOADED[0], triggers(path), free)["C"]
+    for path, name in names.items():
+        force = LOAD * beside(runs, *OF_LOADED, name["direction"], triggers(path))["C"]
         about = {"direction": name["direction"], "load": POUND * float(name["pounds"])}
         rows.append(pd.DataFrame({"speed": SPEEDS, "force": force}).assign(**about))
     return pd.concat(rows, ignore_index=True)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from time import perf_counter
-
-import pandas as pd
 from robustness.case import similar
 from robustness.regularized import (
     FRICTION,
@@ -17,95 +14,69 @@ from robustness.regularized import (
     is_layered,
 )
 from support.driver import Values
-from support.motion import Library, Run, run
+from support.motion import run
 
 from . import plots
 from .page import Report, Row, Tables, number, part
 from .plots import Sheet, style
 
-WIDTHS = tuple(10.0**-k for k in range(1, 9))
-TOLERANCES = (1e-4, 1e-6, 1e-8)
-REPEATS = 5
+METHODS = ("automatic", "bdf")
+SCENES: dict[str, tuple[Values, float]] = {
+    "the paper's, 10 s": (FRICTION, 10.0),
+    "the paper's, 60 s": (FRICTION, 60.0),
+    "a tenth of the size": ({**similar(0.1), "s": 0.003}, 10.0 * 0.1**0.5),
+    "multibody": ({**FRICTION, "formulation": "multibody"}, 10.0),
+    "light friction": ({"s": 0.003}, 10.0),
+}
 
 
-def best_time(library: Library, values: Values, tolerance: float, duration: float, repeats: int = REPEATS) -> float:
+def best_time(report: Report, values: Values, tolerance: float, duration: float, repeats: int = 5) -> float:
     """Least time of one large doStep, ms."""
-    best = float("inf")
-    for _ in range(repeats):
-        with library.wheel() as wheel:
-            wheel.set(**values)
-            wheel.initialise(tolerance)
-            before = perf_counter()
-            wheel.step_to(duration)
-            best = min(best, perf_counter() - before)
-    return 1e3 * best
+    solve = report.master.made(values, duration, 1, tolerance)
+    return 1e3 * min(solve()[0] for _ in range(repeats))
 
 
-def point(library: Library, truth: Run, tolerance: float, omega_s: float, **law: str) -> Row:
-    """One solution of the paper's friction scene; its error is nan where the run did not get to the end."""
-    values = {**FRICTION, **law} | ({"omega_s": omega_s} if omega_s else {})
-    found = run(library, values, TIMES, tolerance)
-    row = {"law": law.get("friction_law", "exact"), "method": law.get("method", "automatic"), "tolerance": tolerance}
-    row |= {"omega_s, rad/s": omega_s, "error": error_against(truth, found)}
-    return row | {"ms": best_time(library, values, tolerance, TIMES[-1]), "steps": found.counters["n_steps"]}
+def regularized(values: Values, omega_s: float, method: str) -> Values:
+    return {**values, "friction_law": "regularized", "omega_s": omega_s, "method": method}
 
 
-@part(15)
-def law(report: Report) -> None:
-    """the regularized law"""
-    library, points = report.library, []
-    truth = run(library, FRICTION, TIMES, 1e-12)
-    for tolerance in TOLERANCES:
-        points.append(point(library, truth, tolerance, 0.0))
-        for omega_s in WIDTHS:
-            for method in ("automatic", "bdf"):
-                how = {"friction_law": "regularized", "method": method}
-                points.append(point(library, truth, tolerance, omega_s, **how))
-    report.table("law", points)
-    found = pd.DataFrame(points).query("law != 'exact'")
-    bound = WIDTH_FACTOR * found["omega_s, rad/s"] + TOLERANCE_FACTOR * found["tolerance"]
-    report.figures(law=(found["error"] / bound).max())
+@part(
+    15, {"tolerance": (1e-4, 1e-6, 1e-8), "omega_s, rad/s": (0.0, *(10.0**-k for k in range(1, 9))), "method": METHODS}
+)
+def law(report: Report, tolerance: float, omega_s: float, method: str) -> Row:
+    """the regularized law in the paper's friction scene; omega_s = 0: the exact law"""
+    values = regularized(FRICTION, omega_s, method) if omega_s else FRICTION
+    truth, found = (run(report.library, v, TIMES, t) for v, t in ((FRICTION, 1e-12), (values, tolerance)))
+    cost, error = best_time(report, values, tolerance, TIMES[-1]), error_against(truth, found)
+    row = {"error": error, "ms": cost, "steps": found.counters["n_steps"]}
+    return row | ({"error / bound": error / (WIDTH_FACTOR * omega_s + TOLERANCE_FACTOR * tolerance)} if omega_s else {})
 
 
 def draw_law(tables: Tables) -> Sheet:
     figure, axes = plots.sheet(2)
     for colour, (tolerance, points) in zip(plots.COLOURS, tables["law"].groupby("tolerance", sort=False), strict=False):
-        for method, marker in (("automatic", "o-"), ("bdf", "x--")):
-            chain = points.query("law != 'exact' and method == @method")
+        for method, marker in zip(METHODS, ("o-", "x--"), strict=True):
+            chain = points[(points["omega_s, rad/s"] > 0) & (points["method"] == method)]
             words = f"{method}, tolerance {number(tolerance)}"
             for ax, x in zip(axes, ("omega_s, rad/s", "ms"), strict=True):
                 ax.plot(chain[x], chain["error"], marker, color=colour, ms=4, lw=0.8, label=words)
-        exact = points.query("law == 'exact'")
+        exact = points[points["omega_s, rad/s"] == 0]
         axes[1].plot(exact["ms"], exact["error"], "*", color=colour, ms=10)
     plots.label(axes[0], r"$\omega_s$ [rad/s]", "error against the exact law", "convergence", "xy")
     plots.label(axes[1], "time for 10 s [ms]", "error", "cost; stars: the exact law itself", "xy")
-    plots.legend_below(figure, axes[0], 3)
+    plots.legend_below(figure, axes, 3)
     return figure
 
 
-@part(15)
-def crossings(report: Report) -> None:
+@part(15, {"scene": SCENES, "omega_s, rad/s": (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)})
+def crossings(report: Report, scene: tuple[Values, float], omega_s: float) -> Row:
     """where the layer pays: times of DOP853 and of BDF over that of automatic, for each scene and width"""
-    scenes = {
-        "the paper's, 10 s": (FRICTION, 10.0),
-        "the paper's, 60 s": (FRICTION, 60.0),
-        "a tenth of the size": ({**similar(0.1), "s": 0.003}, 10.0 * 0.1**0.5),
-        "multibody": ({**FRICTION, "formulation": "multibody"}, 10.0),
-        "light friction": ({"s": 0.003}, 10.0),
-    }
-    library, rows = report.library, []
-    for name, (scene, duration) in scenes.items():
-        for omega_s in (1e-2, 3e-3, 1e-3, 3e-4, 1e-4):
-            law = {**scene, "friction_law": "regularized", "omega_s": omega_s}
-            automatic, dop853, bdf = (
-                best_time(library, {**law, "method": m}, 1e-6, duration, 3) for m in ("automatic", "runge_kutta", "bdf")
-            )
-            ratios = {"DOP853 over automatic": dop853 / automatic, "BDF over automatic": bdf / automatic}
-            row = {"scene": name, "decay number": decay_number(law), **ratios}
-            rows.append(row | {"in layers": is_layered(library, law)})
-    report.table("crossings", rows)
-    better = pd.DataFrame(rows)[[*ratios]].min(axis=1)
-    report.figures(wrong_method=max((1 / better).max(), 1.0))
+    values, duration = scene
+    laws = [regularized(values, omega_s, method) for method in ("automatic", "runge_kutta", "bdf")]
+    automatic, dop853, bdf = (best_time(report, law, 1e-6, duration, 3) for law in laws)
+    ratios = {"DOP853 over automatic": dop853 / automatic, "BDF over automatic": bdf / automatic}
+    ratios["automatic over the better"] = max(automatic / min(dop853, bdf), 1.0)
+    return {"decay number": decay_number(laws[0]), **ratios, "in layers": is_layered(report.library, laws[0])}
 
 
 def draw_methods(tables: Tables) -> Sheet:

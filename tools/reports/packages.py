@@ -11,16 +11,15 @@ import pandas as pd
 from support.paths import ROOT
 from vehicles import axle, axle_study, build, car, ssp
 
-from .page import Report, part
-from .partners import fmus
+from .page import Report, Row, part, read_tables
 
 GRID = 0.05  # s
 
 
 @part(120)
-def packages(report: Report) -> None:
+def packages(report: Report) -> list[Row]:
     """the packages in other tools, beside the master of the examples"""
-    units, h = fmus(report), 0.0005
+    units, h = report.fmus, 0.0005
     folder, scene, wait = units["chassis"].parent, axle_study.TRAILING.changed(stop=2.0), {"t_couple": 3 * h}
     waiting, later = car.LANE.changed(**wait), scene.changed(**wait)
     axles = [axle.coupled(units, s, h, e, GRID) for s, e in ((scene, "rollback"), (later, "held"))]
@@ -29,32 +28,29 @@ def packages(report: Report) -> None:
         (ssp.build(axle.package(units, scene, h), folder), scene.stop, ("axle.X", "axle.Y"), axles),
         (ssp.build(car.package(units, car.LANE, h), folder), car.LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
     )
-    rows: list[dict[str, object]] = []
+    rows: list[Row] = []
     for package, stop, wanted, own in cases:
-        ends = [
-            (f"master.py, {e}", "", [run[n.split(".")[1]][-1] for n in wanted])
-            for e, run in zip(("rollback", "held"), own, strict=True)
-        ]
-        columns = ssp.run(package, h, stop, GRID)
-        ends.append(("fmpy.ssp", f"FMPy {version('fmpy')}", [columns[n][-1] for n in wanted]))
+        names = [name.split(".")[1] for name in wanted]
+        ends = [(f"master.py, {e}", "", run, names) for e, run in zip(("rollback", "held"), own, strict=True)]
+        ends.append(("fmpy.ssp", f"FMPy {version('fmpy')}", ssp.run(package, h, stop, GRID), wanted))
+        found = [(tool, number, [run[name][-1] for name in names]) for tool, number, run, names in ends]
         for tool, number, command in tools_at_hand(report.options["tools"]):
             said = subprocess.run([*command, package, repr(h), repr(stop), *wanted], capture_output=True, check=True)
-            found = dict(line.split() for line in said.stdout.decode().splitlines() if line.startswith(wanted))
-            ends.append((tool, number, [float(found[n]) for n in wanted]))
+            values = dict(line.split() for line in said.stdout.decode().splitlines() if line.startswith(wanted))
+            found.append((tool, number, [float(values[name]) for name in wanted]))
         new = [
             {"package": package.name, "tool": tool, "version": number}
             | {f"{axis} at the end, m": f"{x:.8f}" for axis, x in zip("XY", values, strict=True)}
-            for tool, number, values in ends
+            for tool, number, values in found
         ]
         rows += new + of_other_tools(new)
-    report.table("packages", rows)
+    return rows
 
 
-def of_other_tools(new: list[dict[str, object]]) -> list[dict[str, object]]:
+def of_other_tools(new: list[Row]) -> list[Row]:
     """Published rows of tools that are not at hand now, if all that is at hand has the values that it had then."""
-    path = ROOT / "docs" / "results" / "data" / "vehicles_packages.csv"
-    old = pd.read_csv(path, dtype=str, keep_default_na=False).to_dict("records") if path.exists() else []
-    old = {row["tool"]: row for row in old if row["package"] == new[0]["package"]}
+    old = read_tables("vehicles", dtype=str).get("packages", pd.DataFrame({"package": []})).fillna("")
+    old = {row["tool"]: row for row in old[old["package"] == new[0]["package"]].to_dict("records")}
     same = all(old.get(row["tool"]) == row for row in new)
     return [row for tool, row in old.items() if same and tool not in [row["tool"] for row in new]]
 

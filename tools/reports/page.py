@@ -1,8 +1,9 @@
-"""A report: what it measures goes into CSV files, and out of these alone come its pictures and its page of Markdown.
+"""A report: its parts measure tables and figures; out of these data alone come its pictures and its page of Markdown.
 
-requirements.csv lists every figure in its report's order: unit, what is asked of it (an upper bound, zero included, or
-nothing), and words. docs/results/data/NAME.csv has the figures as measured, NAME_TABLE.csv the tables, made.csv the
-machine, versions, commit and date of each report.
+requirements.csv lists every figure in its report's order: the cell of a table (its row by the first column) or the
+reduction of a column that it is, unless a part measures it; unit, what is asked of it (an upper bound, zero included,
+or nothing), and words. docs/results/data/NAME.csv has the figures as measured, NAME.txt the tables one below the other,
+made.csv the machine, versions, commit and date of each report.
 """
 
 from __future__ import annotations
@@ -13,32 +14,58 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import cached_property
 from importlib.metadata import distributions
 from io import StringIO
+from itertools import product
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from support.motion import Library
-from support.paths import build_folder
+from support.paths import ROOT, build_folder
 
 from publishing.markdown import number, page, said
 
+RESULTS = ROOT / "docs" / "results"
 Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]
-Part = Callable[["Report"], None]
+Axis = Mapping[str, Any] | Sequence[Any] | Callable  # of the report
 PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka", "numba", "numbalsoda")
+REDUCTIONS = ("max", "min", "median", "sum")
 REQUIREMENTS = pd.read_csv(Path(__file__).with_name("requirements.csv")).set_index(["report", "figure"])
 
 
-def part(seconds: float) -> Callable[[Part], Part]:
-    """Makes a function a part of its module's report; the bar needs the time that it takes."""
+@dataclass
+class Part:
+    """A function of a report, which measures in so many seconds.
 
-    def marked(measure: Part) -> Part:
-        measure.seconds = seconds
-        return measure
+    It returns numbers and tables by name, or one table, which gets the function's name. With axes it is called for each
+    combination of their values, and returns the rest of a row that begins with these values, or with their names.
+    """
 
-    return marked
+    measure: Callable
+    seconds: float
+    axes: Mapping[str, Axis]
+
+    @property
+    def words(self) -> str:
+        return self.measure.__doc__.splitlines()[0]
+
+    def __call__(self, report: Report) -> dict[str, Any]:
+        found = self.rows(report) if self.axes else self.measure(report)
+        return found if isinstance(found, dict) else {self.measure.__name__: found}
+
+    def rows(self, report: Report) -> list[Row]:
+        axes = [axis(report) if callable(axis) else axis for axis in self.axes.values()]
+        named = (axis.items() if isinstance(axis, Mapping) else [(value, value) for value in axis] for axis in axes)
+        cases = (zip(*case, strict=True) for case in product(*named))
+        return [dict(zip(self.axes, names, strict=True)) | self.measure(report, *of) for names, of in cases]
+
+
+def part(seconds: float, axes: Mapping[str, Axis] | None = None) -> Callable[[Callable], Part]:
+    return lambda measure: Part(measure, seconds, axes or {})
 
 
 @dataclass
@@ -50,43 +77,72 @@ class Report:
     folder: Path
     quick: bool = False
     options: Mapping[str, Any] = field(default_factory=dict)
-    measured: dict[str, float] = field(default_factory=dict)
-    kept: dict[str, Any] = field(default_factory=dict)  # what several parts of a report use
+    figures: dict[str, float] = field(default_factory=dict)
+    tables: Tables = field(default_factory=dict)
+    words: dict[str, str] = field(default_factory=dict)  # what each table shows
 
-    def figures(self, **measured: float) -> None:
-        """Numbers that requirements.csv lists."""
-        unknown = [name for name in measured if (self.name, name) not in REQUIREMENTS.index]
-        assert not unknown, f"requirements.csv does not list {unknown} of {self.name}"
-        self.measured |= {name: float(value) for name, value in measured.items()}
+    @cached_property
+    def master(self) -> Any:
+        from .native import Master
 
-    def table(self, name: str, rows: pd.DataFrame | Sequence[Row]) -> None:
-        write_csv(self.folder, f"{self.name}_{name}", pd.DataFrame(rows))
+        return Master(self.library)
+
+    @cached_property
+    def fmus(self) -> dict[str, Path]:
+        """Every FMU of the examples, built."""
+        from vehicles.build import build_all
+
+        return build_all(ROOT / "build" / "examples")
+
+    def measure(self, part: Part) -> None:
+        for name, found in part(self).items():
+            if np.isscalar(found):
+                assert (self.name, name) in REQUIREMENTS.index, f"requirements.csv does not list {name} of {self.name}"
+                self.figures[name] = float(found)
+            else:
+                self.tables[name], self.words[name] = pd.DataFrame(found), part.words
+
+    def value(self, figure: Any) -> float:
+        """What a part has returned, or a cell or reduction of a table; NaN: not yet."""
+        if figure.Index in self.figures or figure.table not in self.tables:
+            return self.figures.get(figure.Index, np.nan)
+        table = self.tables[figure.table]
+        values = table.max(numeric_only=True) if figure.column == "*" else table[figure.column]
+        if figure.row in REDUCTIONS:
+            return float(values.agg(figure.row))
+        found = values[[number(name) == figure.row for name in table.iloc[:, 0]]]
+        return float(found.iloc[0]) if len(found) else np.nan
 
     def write(self) -> None:
-        """The figures, and what they were measured with."""
-        found = REQUIREMENTS.loc[self.name].join(pd.Series(self.measured, name="measured", dtype=float), how="inner")
+        """Figures and tables, and what they were measured with."""
+        wanted = REQUIREMENTS.loc[self.name]
+        found = wanted.assign(measured=[self.value(figure) for figure in wanted.itertuples()]).dropna(subset="measured")
         columns = ["figure", "measured", "unit", "asked", "what"]
         write_csv(self.folder, self.name, found.rename_axis("figure").reset_index()[columns])
+        texts = [f"# {name}: {self.words[name]}\n{csv_of(frame)}" for name, frame in self.tables.items()]
+        if texts:
+            (self.folder / "data" / f"{self.name}.txt").write_text("\n".join(texts), encoding="utf-8")
         path = self.folder / "data" / "made.csv"
         others = pd.read_csv(path, dtype=str) if path.exists() else pd.DataFrame({"report": []})
         rows = pd.concat([others[others["report"] != self.name], pd.DataFrame([made(self.name)])])
         write_csv(self.folder, "made", rows.sort_values("report"))
 
 
+def csv_of(frame: pd.DataFrame) -> str:
+    return frame.to_csv(index=False, float_format="%.7g", lineterminator="\n")
+
+
 def write_csv(folder: Path, name: str, frame: pd.DataFrame) -> None:
-    """Floats with seven digits."""
     (folder / "data").mkdir(parents=True, exist_ok=True)
-    short = frame.map(lambda cell: float(f"{cell:.7g}") if isinstance(cell, float) else cell)
-    short.to_csv(folder / "data" / f"{name}.csv", index=False, lineterminator="\n")
+    (folder / "data" / f"{name}.csv").write_text(csv_of(frame), encoding="utf-8")
 
 
-def read_tables(folder: Path, name: str) -> Tables:
+def read_tables(name: str, folder: Path = RESULTS, **how: Any) -> Tables:
     """The tables of a report by name; one without rows may lack its columns too."""
-    texts = {file.stem: file.read_text(encoding="utf-8") for file in sorted((folder / "data").glob(f"{name}_*.csv"))}
-    return {
-        stem.removeprefix(f"{name}_"): pd.read_csv(StringIO(text)) if text.strip() else pd.DataFrame()
-        for stem, text in texts.items()
-    }
+    path = folder / "data" / f"{name}.txt"
+    _, *texts = re.split(r"^# (\w+): .*\n", path.read_text(encoding="utf-8") if path.exists() else "", flags=re.M)
+    read = (pd.read_csv(StringIO(text), **how) if text.strip() else pd.DataFrame() for text in texts[1::2])
+    return dict(zip(texts[::2], read, strict=True))
 
 
 def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) -> tuple[str, str]:
@@ -101,7 +157,7 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
     values = {f.figure: number(float(f.measured)) for f in figures.itertuples()}
-    given = {"name": name, "f": values, "t": views(read_tables(folder, name)), "run": run}
+    given = {"name": name, "f": values, "t": views(read_tables(name, folder)), "run": run}
     return page(f"{name}.md.j2", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
 
 

@@ -5,70 +5,56 @@ The two vehicles are measured by functions of that package, which the tests of t
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 from support.motion import Run
 from support.paths import ROOT
 from support.scenes import PAPER
 from support.schedule import Schedule
+from vehicles import driven, errors, example, ssp, suspended
 
 from .page import Report, part
 
 UPRIGHT = {"theta_start": np.pi / 2, "psi_start": 0.0, "X_O_start": 0.0}
-
-
-def fmus(report: Report) -> dict[str, Path]:
-    """Every FMU of the examples, built."""
-    from vehicles.build import build_all
-
-    if "fmus" not in report.kept:
-        report.kept["fmus"] = build_all(ROOT / "build" / "examples")
-    return report.kept["fmus"]
+NAMES = {"held": "positions that follow", "positions held": "values held", "derivatives": "first derivatives"}
 
 
 @part(20)
-def driven_wheel(report: Report) -> None:
+def driven_wheel(report: Report) -> dict[str, float]:
     """the driven, balanced wheel"""
-    from vehicles import driven, example
-
-    drive = driven.run(fmus(report)).table
+    drive = driven.run(report.fmus).table
     verdict = driven.judge(drive)
-    report.figures(alone=verdict.fall, tilt=verdict.line_tilt, circle=abs(verdict.circle_radius - driven.RADIUS))
-    report.figures(scatter=verdict.circle_scatter, speed=verdict.speed_error)
     example.picture(drive, driven.CIRCLE, report.folder / "partners_driven.png")
+    found = {"alone": verdict.fall, "tilt": verdict.line_tilt, "circle": abs(verdict.circle_radius - driven.RADIUS)}
+    return found | {"scatter": verdict.circle_scatter, "speed": verdict.speed_error}
 
 
 @part(25)
-def suspended_wheel(report: Report) -> None:
+def suspended_wheel(report: Report) -> dict[str, object]:
     """the suspended wheel against one set of equations"""
-    from vehicles import errors, example, ssp, suspended
-
-    truth, units = suspended.together(), fmus(report)
+    truth, units = suspended.together(), report.fmus
     steps = suspended.STEPS[:3] if report.quick else suspended.STEPS
     found = suspended.convergence(units, truth, steps)
-    names = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
-    columns = {"step, ms": 1000 * np.array(steps)} | {names[kind]: values for kind, values in found.of.items()}
-    columns["share lost to the lag of a held position"] = [suspended.drag_share(h) for h in steps]
-    report.table("orders", pd.DataFrame(columns))
-    linear = found.of["derivatives"]
-    report.figures(order=2 - min(errors.orders(steps, linear)), linear=linear[-1])
+    orders = pd.DataFrame(found.of).rename(columns=NAMES)
+    orders.insert(0, "step, ms", 1000 * np.array(steps))
+    orders["share lost to the lag of a held position"] = [suspended.drag_share(h) for h in steps]
     package = ssp.build(suspended.system(units), ROOT / "build" / "examples")
-    shares = [{"step, ms": 1000 * h, "error": suspended.package_distance(package, h, truth)} for h in steps[1:4]]
-    report.table("package", shares)
-    limits = [
-        {"step, ms": 1000 * h}
-        | {e: "breaks" if suspended.ends(units, h, e) else "runs" for e in ("held", "derivatives")}
-        for h in suspended.LARGE_STEPS
-    ]
-    report.table("limits", limits)
     launch = suspended.coupled(units, 0.000625, "derivatives", grid=0.005)
     example.picture(launch, suspended.LAUNCH, report.folder / "partners_suspended.png", errors=found)
+    kinds = ("held", "derivatives")
+    return {
+        "orders": orders,
+        "package": [{"step, ms": 1000 * h, "error": suspended.package_distance(package, h, truth)} for h in steps[1:4]],
+        "limits": [
+            {"step, ms": 1000 * h} | {e: "breaks" if suspended.ends(units, h, e) else "runs" for e in kinds}
+            for h in suspended.LARGE_STEPS
+        ],
+        "order": 2 - min(errors.orders(steps, found.of["derivatives"])),
+    }
 
 
 @part(3)
-def ground(report: Report) -> None:
+def ground(report: Report) -> dict[str, object]:
     """standing, breaking away, sand: an upright wheel on a line, where closed forms are exact"""
     s, times = 0.01, np.linspace(0, 1, 101)
     held, J = s * PAPER.m * PAPER.g, PAPER.J_z + PAPER.m * (PAPER.r_0 + PAPER.r) ** 2  # N m; kg m2, about the contact
@@ -81,12 +67,14 @@ def ground(report: Report) -> None:
     release, rate = 0.505, -held / 0.505  # s, N m/s
     ramp = pushed((0, (0.0, rate)))
     with report.library.wheel() as wheel:
-        wheel.start(s=0.0, phi_dot_start=-20.0, **UPRIGHT)
-        wheel.step_to(0.5)
+        wheel.start(s=0.0, phi_dot_start=-20.0, **UPRIGHT).step_to(0.5)
         wheel.set(s=5 * s)
         wheel.step_to(2.0)
         sand = wheel.get("omega_z")[0] - (-20 + 5 * held / J * 1.5)
-    of_ramp = np.abs(ramp["omega_z"] - rate / J / 2 * np.maximum(times - release, 0) ** 2).max()
-    standing, breaking = (np.abs(run["omega_z"]).max() for run in (still, moving))
-    report.figures(standing=standing, breaking=breaking, ramp=of_ramp, sand=abs(sand))
-    report.table("log", [{"sentence": sentence} for sentence in moving.messages + ramp.messages])
+    return {
+        "standing": np.abs(still["omega_z"]).max(),
+        "breaking": np.abs(moving["omega_z"]).max(),
+        "ramp": np.abs(ramp["omega_z"] - rate / J / 2 * np.maximum(times - release, 0) ** 2).max(),
+        "sand": abs(sand),
+        "log": [{"sentence": sentence} for sentence in moving.messages + ramp.messages],
+    }

@@ -1,7 +1,7 @@
 """Other solvers on the product's right-hand side: DOP853 in C++, SciPy, numbalsoda; and heyoka, which writes its own.
 
 Each is made for a scene, a tolerance and a number of grid points. What a solver cannot do is a RuntimeError or an
-ImportError that says so.
+ImportError with its reason.
 """
 
 from __future__ import annotations
@@ -20,44 +20,33 @@ from support import equations as eq
 from support.driver import HEADLINE
 from support.scenes import Scene
 
-from .native import Array, dop853_code
-from .truth import headline_of
+from .native import Solve, dop853_code
+from .truth import Array, headline_of
 
 MOST_EVALUATIONS = 60_000  # of a right-hand side through ctypes
 NAIVE_WIDTH = 1e-3  # rad/s
-
-
-Solve = Callable[[], tuple[float, Array, dict[str, int]]]  # seconds, states or outputs on the grid, counts
-Peer = tuple[Solve, Callable[[Array], Array]]  # the second makes headline outputs out of what the first gives
-
-
-def regularized(scene: Scene) -> bool:
-    return scene.start.get("friction_law") == "regularized"
+CPP, HEYOKA = "DOP853 C++", "heyoka"
 
 
 def width(scene: Scene) -> float:
-    return float(scene.start.get("omega_s", 1e-3))
+    """Of the regularized law, rad/s; 0: the law is exact."""
+    return float(scene.start.get("omega_s", 1e-3)) if scene.start.get("friction_law") == "regularized" else 0.0
 
 
 class Problem:
     """The scene for the C header: its state at the start, its right-hand side."""
 
     def __init__(self, scene: Scene) -> None:
-        constants = asdict(scene.wheel)
-        self.wheel = eq.paper_wheel(
-            **{name: constants[name] for name, _ in eq.Parameters._fields_ if name in constants}
-        )
-        kind = eq.FRICTIONLESS
-        if self.wheel.s > 0:
-            kind = eq.REGULARIZED if regularized(scene) else eq.ROLLING
-        self.scene = eq.scene(self.wheel, kind, omega_s=width(scene))
-        motion = asdict(scene.motion)
-        start = eq.Motion(**{name: motion[name] for name, _ in eq.Motion._fields_})
-        self.y_0 = eq.start(eq.REDUCED, self.wheel, start)
+        constants, motion = asdict(scene.wheel), asdict(scene.motion)
+        known = {name for name, _ in eq.Parameters._fields_}
+        wheel = eq.paper_wheel(**{name: value for name, value in constants.items() if name in known})
+        kind = eq.FRICTIONLESS if wheel.s == 0 else eq.REGULARIZED if width(scene) else eq.ROLLING
+        self.scene = eq.scene(wheel, kind, omega_s=width(scene) or 1e-3)
+        self.y_0 = eq.start(eq.REDUCED, wheel, eq.Motion(**{name: motion[name] for name, _ in eq.Motion._fields_}))
 
 
-def in_cpp(scene: Scene, tolerance: float, points: int) -> Peer:
-    """DOP853, hand-inlined (native/dop853.cpp)."""
+def in_cpp(scene: Scene, tolerance: float, points: int) -> Solve:
+    """DOP853, hand-inlined (dop853.cpp)."""
     problem, rows, counts = Problem(scene), np.zeros((points, 4)), (c_long * 3)()
     start, out = (array.ctypes.data_as(c_void_p) for array in (problem.y_0, rows))
     arguments = (byref(problem.scene), start, tolerance, scene.duration, points, out, counts)
@@ -71,10 +60,10 @@ def in_cpp(scene: Scene, tolerance: float, points: int) -> Peer:
             raise RuntimeError("did not reach the end")
         return spent, rows, dict(zip(("steps", "rhs", "events"), counts, strict=True))
 
-    return solve, np.array
+    return solve
 
 
-def in_scipy(scene: Scene, tolerance: float, points: int, method: str, naive: str = "") -> Peer:
+def in_scipy(scene: Scene, tolerance: float, points: int, method: str, naive: str = "") -> Solve:
     """solve_ivp; the friction a scientist writes first, sign() or tanh() inside the right-hand side, has no events."""
     problem, grid, count = Problem(scene), np.linspace(0, scene.duration, points), 0
     if naive == "tanh":
@@ -104,12 +93,12 @@ def in_scipy(scene: Scene, tolerance: float, points: int, method: str, naive: st
             found = solve_ivp(rhs, (0.0, scene.duration), problem.y_0, method, grid, **limits)
         if not found.success:
             raise RuntimeError(found.message)
-        return perf_counter() - begin, found.y.T, {"rhs": count}
+        return perf_counter() - begin, headline_of(found.y.T), {"rhs": count}
 
-    return solve, headline_of
+    return solve
 
 
-def in_numbalsoda(scene: Scene, tolerance: float, points: int, method: str) -> Peer:
+def in_numbalsoda(scene: Scene, tolerance: float, points: int, method: str) -> Solve:
     """LSODA and DOP853 of numbalsoda; no Python in the loop."""
     import numbalsoda
 
@@ -123,32 +112,29 @@ def in_numbalsoda(scene: Scene, tolerance: float, points: int, method: str) -> P
         states, success = run(rhs, problem.y_0, grid, data, rtol=tolerance, atol=tolerance, mxstep=20_000)
         if not success:
             raise RuntimeError("the solver gave up")
-        return perf_counter() - begin, states, {"rhs": count.value}
+        return perf_counter() - begin, headline_of(states), {"rhs": count.value}
 
-    return solve, headline_of
+    return solve
 
 
-def in_heyoka(scene: Scene, tolerance: float, points: int) -> Peer:
+def in_heyoka(scene: Scene, tolerance: float, points: int) -> Solve:
     from . import taylor
 
-    values = asdict(scene.wheel) | asdict(scene.motion)
-    wheel = taylor.Wheel(values, "angles", tolerance, omega_s=width(scene) if regularized(scene) else 0.0)
-    grid = np.linspace(0, scene.duration, points)
+    wheel = taylor.Wheel(asdict(scene.wheel) | asdict(scene.motion), "angles", tolerance, omega_s=width(scene))
+    grid, shown = np.linspace(0, scene.duration, points), [taylor.OUTPUTS.index(name) for name in HEADLINE]
 
     def solve() -> tuple[float, Array, dict[str, int]]:
         found = wheel.solve(grid)
-        return found.seconds, found.rows, {"steps": found.steps, "events": len(found.transitions)}
+        return found.seconds, found.rows[:, shown], {"steps": found.steps, "events": len(found.transitions)}
 
-    return solve, lambda rows: rows[:, [taylor.OUTPUTS.index(name) for name in HEADLINE]]
+    return solve
 
 
-def peers(scene: Scene) -> dict[str, Callable[[Scene, float, int], Peer]]:
+def peers(scene: Scene) -> dict[str, Callable[[Scene, float, int], Solve]]:
     """Those that can solve the scene as it stands, by name; with exact friction, those that know no events naively."""
-    found: dict[str, Callable[..., Peer]] = {"DOP853 C++": in_cpp, "heyoka": in_heyoka}
-    if scene.wheel.s > 0 and not regularized(scene):
-        for naive in ("sign", "tanh"):
-            for method in ("DOP853", "LSODA"):
-                found[f"SciPy {method}, {naive}()"] = partial(in_scipy, method=method, naive=naive)
-        return found
+    found: dict[str, Callable[..., Solve]] = {CPP: in_cpp, HEYOKA: in_heyoka}
+    if scene.wheel.s > 0 and not width(scene):
+        ways = {f"SciPy {m}, {naive}()": (m, naive) for naive in ("sign", "tanh") for m in ("DOP853", "LSODA")}
+        return found | {name: partial(in_scipy, method=m, naive=naive) for name, (m, naive) in ways.items()}
     found |= {f"SciPy {method}": partial(in_scipy, method=method) for method in ("DOP853", "LSODA", "Radau")}
     return found | {f"numbalsoda {m}": partial(in_numbalsoda, method=m) for m in ("lsoda", "dop853")}

@@ -5,6 +5,9 @@ Fixed axes X, Y, Z, Z up; carrier e1, e2, e3; SI, angles in degrees in the pictu
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -14,14 +17,15 @@ from support.scenes import PAPER
 from support.schedule import Schedule
 
 from . import plots
-from .page import Report, part
-from .plots import Sheet, style
+from .page import Report, Row, part
+from .plots import label, style
 
 HEIGHT = PAPER.r_0 + PAPER.r  # m, of O when upright
 UPRIGHT = np.pi / 2
 CRITICAL = critical_spin(PAPER)  # rad/s
 TIPPING = np.sqrt(PAPER.m * PAPER.g * PAPER.r_0 / (PAPER.J_x + PAPER.m * HEIGHT**2))  # 1/s, of a wheel that stands
 FRICTION = {"s": 0.03}  # m
+TIME, ENERGY = "time $t$ [s]", "energy $E$ [J]"
 
 
 def run(report: Report, stop: float = 10.0, h: float = 0.01, inputs: Schedule | None = None, **start: float) -> Run:
@@ -32,167 +36,151 @@ def lean(found: Run) -> np.ndarray:
     return np.abs(found["theta"] - UPRIGHT)
 
 
-def picture(report: Report, sheet: Sheet, name: str) -> None:
+@contextmanager
+def picture(report: Report, name: str, rows: int = 1, height: float = 70.0) -> Iterator[list[Axes]]:
+    sheet, axes = plots.sheet(2, rows, height)
+    yield axes
     style.save_png(sheet, report.folder.parent / "figures" / f"{name}.png", plots.DPI)
 
 
 @part(20)
-def stays_up(report: Report) -> None:
+def stays_up(report: Report) -> Row:
     """when a rolling wheel stays up: lean over time beside the critical spin, largest lean over the spin"""
-    sheet, (left, right) = plots.sheet(2)
     start = UPRIGHT - np.radians(0.01)
-    for share, colour in ((0.9, style.VERMILLION), (0.99, style.ORANGE), (1.01, style.SKY), (1.1, style.BLUE)):
-        found = run(report, 6, theta_start=start, phi_dot_start=-share * CRITICAL)
-        left.plot(found.t, np.degrees(lean(found)), color=colour, label=f"{share:g} × critical")
-    left.set(xlim=(0, 6), ylim=(3e-3, 3e3))
-    left.legend(loc="upper left", ncols=2)
-    plots.label(left, "time $t$ [s]", "size of the lean [deg]", "Start: a lean of 0.01°", "y")
     spins = np.concatenate([np.linspace(1, 2.6, 33), CRITICAL * np.array([0.995, 1.005]), np.linspace(2.7, 4, 27)])
-    for degrees, colour in ((15, style.GREEN), (0.01, style.BLUE)):
-        starts = ({"theta_start": UPRIGHT - np.radians(degrees), "phi_dot_start": -spin} for spin in spins)
-        largest = [np.degrees(lean(run(report, 20, **start)).max()) for start in starts]
-        right.plot(spins, largest, ".-", color=colour, ms=2.5, label=f"start: {degrees}°")
-    right.axvline(CRITICAL, color=style.GREY, lw=0.8)
-    style.note(right, f"critical spin\n{CRITICAL:.4g} rad/s", (CRITICAL, 60), (4, 0), color=style.GREY)
-    right.set(ylim=(0, 95))
-    right.legend(loc="lower left")
-    title = "Below the limit any lean grows, but nothing falls flat"
-    plots.label(right, r"spin $|\omega_z|$ at the start [rad/s]", "largest lean in 20 s [deg]", title)
-    picture(report, sheet, "physics_stays_up")
-    report.figures(critical_spin=CRITICAL)
+    with picture(report, "physics_stays_up") as (left, right):
+        for share, colour in ((0.9, style.VERMILLION), (0.99, style.ORANGE), (1.01, style.SKY), (1.1, style.BLUE)):
+            found = run(report, 6, theta_start=start, phi_dot_start=-share * CRITICAL)
+            left.plot(found.t, np.degrees(lean(found)), color=colour, label=f"{share:g} × critical")
+        limits = {"xlim": (0, 6), "ylim": (3e-3, 3e3)}
+        label(left, TIME, "size of the lean [deg]", "Start: a lean of 0.01°", "y", "upper left", 2, **limits)
+        for degrees, colour in ((15, style.GREEN), (0.01, style.BLUE)):
+            starts = ({"theta_start": UPRIGHT - np.radians(degrees), "phi_dot_start": -spin} for spin in spins)
+            largest = [np.degrees(lean(run(report, 20, **start)).max()) for start in starts]
+            right.plot(spins, largest, ".-", color=colour, ms=2.5, label=f"start: {degrees}°")
+        right.axvline(CRITICAL, color=style.GREY, lw=0.8)
+        style.note(right, f"critical spin\n{CRITICAL:.4g} rad/s", (CRITICAL, 60), (4, 0), color=style.GREY)
+        title, x = "Below the limit any lean grows, but nothing falls flat", r"spin $|\omega_z|$ at the start [rad/s]"
+        label(right, x, "largest lean in 20 s [deg]", title, legend="lower left", ylim=(0, 95))
+    return {"critical_spin": CRITICAL}
 
 
 @part(1)
-def held(report: Report) -> None:
+def held(report: Report) -> Row:
     """a wheel that a brake holds at omega_z = 0 nods and turns and loses nothing"""
     theta, turn = np.radians(75), 4.0
     start = {"theta_start": theta, "phi_dot_start": -turn * np.cos(theta), "psi_dot_start": turn}
     found = run(report, 2, 2e-3, Schedule(((0.0, {"M_brake": 200.0}),)), **start)
-    report.figures(held_loss=np.ptp(found["E"]) / found["E"][0])
-    sheet, axes = plots.sheet(2, 3, height=30.0)
-    right = sheet.add_subplot(axes[0].get_gridspec()[:, 1])
-    right.grid(alpha=0.3, linewidth=0.4)
-    curves = (
-        (r"$\theta$ [deg]", np.degrees(found["theta"]), "it nods"),
-        (r"$\dot\psi$ [rad/s]", found["psi_dot"], "it turns"),
-        ("energy $E$ [J]", found["E"], "it loses nothing"),
-    )
-    for (name, values, what), left, spare in zip(curves, axes[::2], axes[1::2], strict=True):
-        spare.remove()
-        left.plot(found.t, values, color=style.BLUE)
-        plots.label(left, "", name, what)
-        left.set(xlim=(0, 2), ylim=(0, 1.15 * values.max()))
-    axes[4].set_xlabel("time $t$ [s]")
-    sheet.suptitle("A wheel held at $\\omega_z = 0$ by a strong brake", fontsize=9.5)
-    right.plot(found["X_C"], found["Y_C"], color=style.BLUE, label="contact point")
-    right.plot(found["X_O"], found["Y_O"], color=style.VERMILLION, label="centre O, seen from above")
-    from_above(right, "it pivots like a coin", 0.2)
-    right.legend(loc="upper left")
-    picture(report, sheet, "physics_held")
+    curves = {
+        (r"$\theta$ [deg]", "it nods"): np.degrees(found["theta"]),
+        (r"$\dot\psi$ [rad/s]", "it turns"): found["psi_dot"],
+        ("energy $E$ [J]", "it loses nothing"): found["E"],
+    }
+    with picture(report, "physics_held", 3, 30.0) as axes:
+        sheet = axes[0].figure
+        right = sheet.add_subplot(axes[0].get_gridspec()[:, 1])
+        right.grid(alpha=0.3, linewidth=0.4)
+        for ((name, what), values), left, spare in zip(curves.items(), axes[::2], axes[1::2], strict=True):
+            spare.remove()
+            left.plot(found.t, values, color=style.BLUE)
+            label(left, "", name, what, xlim=(0, 2), ylim=(0, 1.15 * values.max()))
+        axes[4].set_xlabel(TIME)
+        sheet.suptitle("A wheel held at $\\omega_z = 0$ by a strong brake", fontsize=9.5)
+        right.plot(found["X_C"], found["Y_C"], color=style.BLUE, label="contact point")
+        right.plot(found["X_O"], found["Y_O"], color=style.VERMILLION, label="centre O, seen from above")
+        from_above(right, "it pivots like a coin", "upper left")
+    return {"held_loss": np.ptp(found["E"]) / found["E"][0]}
 
 
-def from_above(ax: Axes, title: str, margin: float) -> None:
+def from_above(ax: Axes, title: str, legend: str) -> None:
     ax.set_aspect("equal", adjustable="datalim")
-    ax.margins(margin)
-    ax.legend(loc="lower right")
-    plots.label(ax, "$X$ [m]", "$Y$ [m]", title)
+    ax.margins(0.2)
+    label(ax, "$X$ [m]", "$Y$ [m]", title, legend=legend)
 
 
 @part(2)
-def energy(report: Report) -> None:
+def energy(report: Report) -> Row:
     """what friction takes, and the weak releases of a long run"""
-    sheet, (left, right) = plots.sheet(2)
     rough, free, long = run(report, **FRICTION), run(report), run(report, 150, 0.05, **FRICTION)
     sticks = rough["friction_mode"] == 0
-    left.fill_between(rough.t, 50, 80, where=sticks, color=style.BAND, lw=0, zorder=0)
-    left.plot(free.t, free["E"], color=style.GREY, label="without friction")
-    left.plot(rough.t, rough["E"], color=style.BLUE, label="$s = 0.03$ m")
-    left.set(xlim=(0, 10), ylim=(50, 80))
-    left.legend(loc=(0.3, 0.56))
-    title = "The paper's two scenes; bands: held at $\\omega_z = 0$"
-    plots.label(left, "time $t$ [s]", "energy $E$ [J]", title)
-    right.plot(long.t[long.t >= 10], long["E"][long.t >= 10], color=style.BLUE)
-    right.set(xlim=(0, 150))
-    plots.label(right, "time $t$ [s]", "energy $E$ [J]", "The releases go on, ever weaker")
-    picture(report, sheet, "physics_energy")
-    report.figures(energy_start=rough["E"][0], energy_end=rough["E"][-1], energy_long=long["E"][-1])
-    report.figures(transitions=rough.counters["n_events"], transitions_long=long.counters["n_events"])
-    report.figures(held_share=100 * np.mean(sticks))
+    with picture(report, "physics_energy") as (left, right):
+        left.fill_between(rough.t, 50, 80, where=sticks, color=style.BAND, lw=0, zorder=0)
+        left.plot(free.t, free["E"], color=style.GREY, label="without friction")
+        left.plot(rough.t, rough["E"], color=style.BLUE, label="$s = 0.03$ m")
+        title = "The paper's two scenes; bands: held at $\\omega_z = 0$"
+        label(left, TIME, ENERGY, title, legend=(0.3, 0.56), xlim=(0, 10), ylim=(50, 80))
+        right.plot(long.t[long.t >= 10], long["E"][long.t >= 10], color=style.BLUE)
+        label(right, TIME, ENERGY, "The releases go on, ever weaker", xlim=(0, 150))
+    figures = {"energy_start": rough["E"][0], "energy_end": rough["E"][-1], "energy_long": long["E"][-1]}
+    figures |= {"transitions": rough.counters["n_events"], "transitions_long": long.counters["n_events"]}
     for name, scene in (("free", free), ("friction", rough)):
-        lowest, grip = np.degrees(scene["theta"].min()), scene["mu_required"].max()
-        report.figures(**{f"lowest_{name}": lowest, f"grip_{name}": grip})
+        figures[f"lowest_{name}"], figures[f"grip_{name}"] = (
+            np.degrees(scene["theta"].min()),
+            scene["mu_required"].max(),
+        )
+    return figures | {"held_share": 100 * np.mean(sticks)}
 
 
 @part(2)
-def path(report: Report) -> None:
+def path(report: Report) -> Row:
     """the path of the contact point without and with friction"""
-    sheet, (left, right) = plots.sheet(2, height=80)
     free, rough = run(report, 60, 5e-3), run(report, 10, 5e-3, **FRICTION)
-    first = free.t <= 10
-    left.plot(free["X_C"], free["Y_C"], color=style.SKY, lw=0.5, label="60 s")
-    left.plot(free["X_C"][first], free["Y_C"][first], color=style.BLUE, label="first 10 s")
-    right.plot(rough["X_C"], rough["Y_C"], color=style.BLUE, lw=0.8, label="rolling")
-    stuck = np.where(rough["friction_mode"] == 0, rough["Y_C"], np.nan)
-    right.plot(rough["X_C"], stuck, color=style.VERMILLION, lw=1.8, label="held at $\\omega_z = 0$")
-    for ax, scene in ((left, free), (right, rough)):
-        ax.plot(scene["X_C"][0], scene["Y_C"][0], "o", color=style.INK, ms=3, label="start")
-    from_above(left, "Without friction: equal arcs, turned and mirrored", 0.2)
-    left.legend(loc="upper right")
-    from_above(right, "$s = 0.03$ m, 10 s: it settles into a circle", 0.2)
-    picture(report, sheet, "physics_path")
+    first, stuck = free.t <= 10, np.where(rough["friction_mode"] == 0, rough["Y_C"], np.nan)
+    with picture(report, "physics_path", height=80) as (left, right):
+        left.plot(free["X_C"], free["Y_C"], color=style.SKY, lw=0.5, label="60 s")
+        left.plot(free["X_C"][first], free["Y_C"][first], color=style.BLUE, label="first 10 s")
+        right.plot(rough["X_C"], rough["Y_C"], color=style.BLUE, lw=0.8, label="rolling")
+        right.plot(rough["X_C"], stuck, color=style.VERMILLION, lw=1.8, label="held at $\\omega_z = 0$")
+        for ax, scene in ((left, free), (right, rough)):
+            ax.plot(scene["X_C"][0], scene["Y_C"][0], "o", color=style.INK, ms=3, label="start")
+        from_above(left, "Without friction: equal arcs, turned and mirrored", "upper right")
+        from_above(right, "$s = 0.03$ m, 10 s: it settles into a circle", "lower right")
+    return {}
 
 
 @part(2)
-def tipping(report: Report) -> None:
+def tipping(report: Report) -> Row:
     """a wheel that stands exactly upright: rounding grows like cosh until it tips"""
-    sheet, (left, right) = plots.sheet(2)
-    rest = {"theta_start": UPRIGHT, "phi_dot_start": 0.0}
+    rest, rolling = {"theta_start": UPRIGHT, "phi_dot_start": 0.0}, {"phi_dot_start": -2.0}
     found = run(report, 12, 5e-3, **rest)
-    left.plot(found.t, np.where(lean(found) > 0, lean(found), np.nan), color=style.BLUE, label="wheel.fmu")
-    growth = np.cos(UPRIGHT) * np.cosh(TIPPING * found.t)
-    left.plot(found.t, growth, "--", color=style.ORANGE, label=r"$6\cdot10^{-17}\cosh\kappa t$")
-    left.set(xlim=(0, 10), ylim=(1e-17, 3))
-    left.legend(loc="upper left")
-    title = "At rest, theta_start = the number nearest to $\\pi/2$"
-    plots.label(left, "time $t$ [s]", "size of the lean [rad]", title, "y")
-    for digits in range(2, 17, 2):
-        fall = run(report, 20, 0.05, **rest | {"theta_start": UPRIGHT - 10.0**-digits})
-        right.plot(digits, fall.t[-1], "o", color=style.BLUE, ms=3.5)
-    right.axhline(found.t[-1], color=style.GREY, lw=0.8)
-    style.note(right, "exactly upright", (2, found.t[-1]), (0, 3), color=style.GREY)
-    right.set(ylim=(0, 11))
-    title = "Each two digits less lean: the same delay"
-    plots.label(right, "lean at the start: $10^{-n}$ rad, $n$", "falls flat at [s]", title)
-    picture(report, sheet, "physics_tipping")
-    rolling = {"theta_start": UPRIGHT, "phi_dot_start": -2.0}
-    upright, tilted = (lean(run(report, 15, **rolling | {"theta_start": UPRIGHT - e})).max() for e in (0.0, 1e-9))
-    report.figures(tips=found.t[-1], tipping_rate=TIPPING, tips_rolling=upright, tips_rolling_tilted=np.degrees(tilted))
+    with picture(report, "physics_tipping") as (left, right):
+        left.plot(found.t, np.where(lean(found) > 0, lean(found), np.nan), color=style.BLUE, label="wheel.fmu")
+        growth = np.cos(UPRIGHT) * np.cosh(TIPPING * found.t)
+        left.plot(found.t, growth, "--", color=style.ORANGE, label=r"$6\cdot10^{-17}\cosh\kappa t$")
+        title, limits = "At rest, theta_start = the number nearest to $\\pi/2$", {"xlim": (0, 10), "ylim": (1e-17, 3)}
+        label(left, TIME, "size of the lean [rad]", title, "y", "upper left", **limits)
+        for digits in range(2, 17, 2):
+            fall = run(report, 20, 0.05, **rest | {"theta_start": UPRIGHT - 10.0**-digits})
+            right.plot(digits, fall.t[-1], "o", color=style.BLUE, ms=3.5)
+        right.axhline(found.t[-1], color=style.GREY, lw=0.8)
+        style.note(right, "exactly upright", (2, found.t[-1]), (0, 3), color=style.GREY)
+        title, x = "Each two digits less lean: the same delay", "lean at the start: $10^{-n}$ rad, $n$"
+        label(right, x, "falls flat at [s]", title, ylim=(0, 11))
+    upright, tilted = (lean(run(report, 15, theta_start=UPRIGHT - e, **rolling)).max() for e in (0.0, 1e-9))
+    falls = {"tips": found.t[-1], "tipping_rate": TIPPING}
+    return falls | {"tips_rolling": upright, "tips_rolling_tilted": np.degrees(tilted)}
 
 
 @part(3)
-def brake_hold_steer(report: Report) -> None:
+def brake_hold_steer(report: Report) -> Row:
     """three ways to slow an upright wheel down; a wheel on a suspension that is steered and stopped"""
-    sheet, (left, right) = plots.sheet(2)
-    start = {"theta_start": UPRIGHT, "psi_start": 0.0, "phi_dot_start": -10.0}
     brake, torque = (Schedule(((0.0, {}), (1.0, {name: 20.0}))) for name in ("M_brake", "M_3"))
     ways = {
-        "M_brake = 20 N m from 1 s on": (style.BLUE, "-", run(report, 5, inputs=brake, **start)),
-        "M_3 = 20 N m from 1 s on": (style.VERMILLION, "--", run(report, 5, inputs=torque, **start)),
-        "s = 0.03 m": (style.GREEN, "-", run(report, 5, **FRICTION, **start)),
+        "M_brake = 20 N m from 1 s on": (style.BLUE, "-", {"inputs": brake}),
+        "M_3 = 20 N m from 1 s on": (style.VERMILLION, "--", {"inputs": torque}),
+        "s = 0.03 m": (style.GREEN, "-", FRICTION),
     }
-    for name, (colour, line, found) in ways.items():
-        left.plot(found.t, -HEIGHT * found["omega_z"], line, color=colour, label=name)
-    left.axhline(0, color=style.GREY, lw=0.6)
-    left.set(xlim=(0, 5))
-    left.legend(loc="lower left")
-    plots.label(left, "time $t$ [s]", "speed [m/s]", "A brake stops; a torque goes on")
     steered = on_a_suspension(report)
-    steered.plot(x="time", ax=right, color=[style.BLUE, style.ORANGE, style.VERMILLION, style.GREEN])
-    right.set(xlim=(0, 6), ylim=(-8.5, 14))
-    right.legend(loc="upper right", ncols=2)
-    plots.label(right, "time $t$ [s]", "", "Held upright by $M_1$, steered by $M_2$, braked, held")
-    picture(report, sheet, "brake_hold_steer")
-    report.figures(steer_M_1=10 * steered["$M_1$ / 10 [N m]"].min())
+    with picture(report, "brake_hold_steer") as (left, right):
+        for name, (colour, line, way) in ways.items():
+            found = run(report, 5, theta_start=UPRIGHT, psi_start=0.0, phi_dot_start=-10.0, **way)
+            left.plot(found.t, -HEIGHT * found["omega_z"], line, color=colour, label=name)
+        left.axhline(0, color=style.GREY, lw=0.6)
+        label(left, TIME, "speed [m/s]", "A brake stops; a torque goes on", legend="lower left", xlim=(0, 5))
+        steered.plot(x="time", ax=right, color=[style.BLUE, style.ORANGE, style.VERMILLION, style.GREEN])
+        title, limits = "Held upright by $M_1$, steered by $M_2$, braked, held", {"xlim": (0, 6), "ylim": (-8.5, 14)}
+        label(right, TIME, "", title, "", "upper right", 2, **limits)
+    return {"steer_M_1": 10 * steered["$M_1$ / 10 [N m]"].min()}
 
 
 def on_a_suspension(report: Report, h: float = 1e-3, stop: float = 6.0) -> pd.DataFrame:

@@ -22,18 +22,18 @@ def sheet(columns: int = 1, rows: int = 1, height: float = 70.0) -> tuple[Sheet,
     return figure, list(axes)
 
 
-def label(ax: Axes, x: str, y: str, title: str = "", log: str = "") -> None:
-    """log: the axes that are logarithmic, out of "xy"."""
-    ax.set(xlabel=x, ylabel=y)
+def label(
+    ax: Axes, x: str, y: str, title: str = "", log: str = "", legend: object = None, columns: int = 1, **limits: object
+) -> None:
+    """log: the axes that are logarithmic, out of "xy"; legend: where it stands."""
+    ax.set(xlabel=x, ylabel=y, **{f"{axis}scale": "log" for axis in log}, **limits)
     ax.set_title(title, fontsize=9, loc="left")
-    if "x" in log:
-        ax.set_xscale("log")
-    if "y" in log:
-        ax.set_yscale("log")
+    if legend:
+        ax.legend(loc=legend, ncols=columns)
 
 
-def legend_below(figure: Sheet, ax: Axes, columns: int = 4) -> None:
+def legend_below(figure: Sheet, axes: list[Axes], columns: int = 4) -> None:
     """Each label once."""
-    handles, labels = ax.get_legend_handles_labels()
-    once = dict(zip(labels, handles, strict=True))
+    both = [ax.get_legend_handles_labels() for ax in axes]
+    once = {label: handle for handles, labels in both for handle, label in zip(handles, labels, strict=True)}
     figure.legend(once.values(), once.keys(), loc="outside lower center", ncols=columns)

@@ -1,212 +1,276 @@
 """Error against run time beside other solvers, and what a step, an instance and the automatic rule cost.
 
-The races are in race.py; here their comparison, the figures to reach, and what is measured without peers.
+Races: every set-up at every tolerance, FMU and peers in turns in one process. What fails stays in the list with its
+reason. Ratios to DOP853 in C++ (D) or to an empty call of the FMU are what is asked: they hold on other machines, too.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from math import exp, log, nan
 
 import numpy as np
 import pandas as pd
-from support.driver import HEADLINE
-from support.motion import Library
+from support.driver import Values
 from support.paths import build_folder
-from support.scenes import SCENES, SINES, sines
+from support.scenes import SCENES, SINES, Scene, sines
 
-from .exchange import model_exchange
-from .native import Master, Task, Timing
+from . import plots
+from .native import Master, Solve, bytes_in_use, ffi, repeated
 from .page import Report, Row, Tables, number, part
-from .race import CPP, HEYOKA, METHODS, OURS, TITLES, at_default, draw_races, race, time_at
-from .truth import headline_of, range_error
+from .peers import CPP, HEYOKA, peers
+from .plots import Sheet
+from .truth import Array, headline, range_error
 
 TARGETS = (1e-4, 1e-6, 1e-8)  # errors at which set-ups are compared
+POINTS = 101
+OURS, METHODS = "FMU automatic", ("automatic", "adams", "bdf", "runge_kutta")
+TITLES = {
+    "free": "Free wheel, the paper's scene, 10 s",
+    "friction": "Rolling friction, exact law, s = 0.03 m, 10 s",
+    "general inertia": "J_x = 0.7, J_y = 1.2 kg m², 5 s",
+    "stiff law": "Regularized friction, ω_s = 1e-6 rad/s, 10 s",
+    "fast rolling": "Fast spin, φ̇ = −60 rad/s, 1 s",
+    "near flat": "Near flat, θ from 30° down to 1°, 2 s",
+}
+SPINS = (2.0, 10.0, 100.0)  # rad/s
+SLOW = 0.05  # s: what takes longer is measured once
 
 
-def master_of(report: Report) -> Master:
-    if "master" not in report.kept:
-        report.kept["master"] = Master(report.library)
-    return report.kept["master"]
+@dataclass
+class Entry:
+    """One set-up at one tolerance; seconds of every repetition; why it has no error."""
+
+    scene: str
+    setup: str
+    tolerance: float
+    make: Callable[[], Solve]
+    error: float = nan
+    note: str = ""
+    counts: dict[str, int] = field(default_factory=dict)
+    seconds: list[float] = field(default_factory=list)
+
+    @cached_property
+    def solve(self) -> Solve:
+        """Compiled and warmed up."""
+        solve = self.make()
+        solve()
+        return solve
+
+    def take_turn(self, seconds: float, want: Array) -> None:
+        try:
+            costs, rows, self.counts = repeated(self.solve, seconds)
+            self.seconds += costs
+            error = range_error(rows, want)
+            self.error, self.note = (error, "") if np.isfinite(error) else (nan, "no finite result")
+        except (RuntimeError, ImportError, ValueError, ArithmeticError) as trouble:
+            self.note = str(trouble).split("\n")[0]
+
+    def row(self) -> Row:
+        micro = 1e6 * np.array(self.seconds or [nan])
+        row = {name: getattr(self, name) for name in ("scene", "setup", "tolerance", "error")}
+        counts = {name: self.counts.get(name) for name in ("steps", "rhs", "events")}
+        return {**row, "best_us": micro.min(), "median_us": np.median(micro), **counts, "note": self.note}
+
+
+def in_fmu(master: Master, method: str, scene: Scene, tolerance: float, points: int) -> Solve:
+    steps = points - 1
+    return master.made({**scene.start, "method": method}, scene.duration / steps, steps, tolerance)
+
+
+def race(report: Report, name: str) -> list[Row]:
+    """In rounds, so that noise of the machine meets all alike. A peer that failed at a looser tolerance is not asked
+    again: it is missing, or takes too long."""
+    scene, entries = SCENES[name], []
+    want = headline(scene, POINTS)
+    setups = {f"FMU {method}": partial(in_fmu, report.master, method) for method in METHODS} | peers(scene)
+    for setup, make in setups.items():
+        slow = setup.startswith("SciPy") or (name == "stiff law" and setup in ("FMU adams", "FMU runge_kutta"))
+        tolerances = [10.0**-k for k in ((4, 6, 8, 10) if report.quick or slow else range(3, 14))]
+        entries += [Entry(name, setup, tolerance, partial(make, scene, tolerance, POINTS)) for tolerance in tolerances]
+    for turn in range(1 if report.quick else 5):
+        reasons: dict[str, str] = {}
+        for entry in entries:
+            entry.note = entry.note or reasons.get(entry.setup, "")
+            if not entry.note and not (turn and min(entry.seconds) > SLOW):
+                entry.take_turn(0.004 if report.quick else 0.01, want)
+            if entry.note and not entry.setup.startswith("FMU"):
+                reasons[entry.setup] = entry.note
+    return [entry.row() for entry in entries]
 
 
 @part(108)
-def races(report: Report) -> None:
+def runs(report: Report) -> list[Row]:
     """error against run time, scene by scene"""
-    rows = report.kept["runs"] = []
-    for name in TITLES:
-        rows += race(master_of(report), name, report.quick)
-        report.table("runs", rows)
+    return [row for name in TITLES for row in race(report, name)]
 
 
-@part(3)
-def compare(report: Report) -> None:
-    """the races side by side"""
-    runs = dict(list(pd.DataFrame(report.kept["runs"]).groupby("scene", sort=False)))
-    free, friction = runs["free"], runs["friction"]
-    Y = time_at(free, HEYOKA, 1e-6)
-    report.figures(yardstick=1e6 * Y)
-    for error in TARGETS:
-        for peer, key in ((HEYOKA, "heyoka"), (CPP, "dop853")):
-            ratio = time_at(free, OURS, error) / time_at(free, peer, error)
-            report.figures(**{f"free_{key}_{-round(np.log10(error))}": ratio})
-    for name in ("free", "friction"):
-        ours = at_default(runs[name], OURS)
-        in_Y = 1e-6 * ours.best_us / Y
-        report.figures(**{name: in_Y, f"{name}_time": ours.best_us, f"{name}_error": ours.error})
-    report.figures(friction_dop853=1e-6 * ours.best_us / time_at(friction, CPP, ours.error))
+def time_at(runs: pd.DataFrame, setup: str, error: float) -> float:
+    """Microseconds to this error or a smaller one, by lines through log(time) over log(error); nan out of reach.
+
+    A run that another one beats in both is left out.
+    """
+    points = runs[(runs["setup"] == setup) & runs["error"].notna()].sort_values(["error", "best_us"])
+    points = points[points["best_us"] < points["best_us"].cummin().shift(fill_value=np.inf)]
+    if points.empty:
+        return nan
+    return exp(np.interp(log(error), *np.log(points[["error", "best_us"]].to_numpy(float)).T, left=nan))
 
 
-def views(tables: Tables) -> Tables:
-    """The tables that follow from the runs."""
-    scenes = tables["runs"].groupby("scene", sort=False)
-    failed = tables["runs"][tables["runs"]["error"].isna()].assign(scene=lambda rows: rows["scene"].map(TITLES))
-    reasons = failed.groupby(["setup", "scene", "note"], sort=False)["tolerance"]
-    tolerances = reasons.agg(lambda t: " to ".join(map(number, dict.fromkeys((t.min(), t.max())))))
-    heads = {"setup": "set-up", "note": "why", "tolerance": "tolerances"}
-    return tables | {
-        "fastest": pd.DataFrame([fastest_row(name, runs) for name, runs in scenes]),
-        "behind": pd.DataFrame([row for name, runs in scenes if name != "stiff law" for row in behind(name, runs)]),
-        "methods": pd.DataFrame([method_row(name, runs) for name, runs in scenes]),
-        "failed": tolerances.reset_index().rename(columns=heads),
-    }
+def at_default(runs: pd.DataFrame, setup: str) -> pd.Series:
+    """The run at the FMU's default tolerance."""
+    return runs[(runs["setup"] == setup) & np.isclose(runs["tolerance"], 1e-8, rtol=1e-6, atol=0)].iloc[0]
 
 
-def times_at(runs: pd.DataFrame, error: float) -> pd.Series:
-    """Seconds of each set-up that gets there."""
-    return pd.Series({setup: time_at(runs, setup, error) for setup in runs["setup"].unique()}).dropna()
-
-
-def behind(name: str, runs: pd.DataFrame) -> list[Row]:
-    """The fastest peer at each error, where it is more than 10 % faster than the FMU."""
-    rows = []
-    for error in TARGETS:
-        times = times_at(runs, error)
-        peers = times[[not setup.startswith("FMU") for setup in times.index]]
-        if len(peers) and OURS in times and times[OURS] > 1.1 * peers.min():
-            row = {"scene": TITLES[name], "error": number(error), "fastest peer": peers.idxmin()}
-            rows.append({**row, "FMU over the peer": times[OURS] / peers.min()})
-    return rows
-
-
-def fastest_row(name: str, runs: pd.DataFrame) -> Row:
-    """Who is fastest at each error, and the FMU's time over that of each peer that gets there."""
-    row = {"scene": TITLES[name]}
-    for error in TARGETS:
-        times = times_at(runs, error)
-        best = times.idxmin() if len(times) else "none"
-        ratios = [f"{times[OURS] / times[p]:.2f}" if {p, OURS} <= set(times.index) else "–" for p in (CPP, HEYOKA)]
-        row[f"at {number(error)}"] = f"{best} ({', '.join(ratios)})"
-    return row
-
-
-def method_row(name: str, runs: pd.DataFrame) -> Row:
-    """At the default tolerance: what automatic costs beside each fixed method."""
-    at = pd.DataFrame({method: at_default(runs, f"FMU {method}") for method in METHODS}).T
-    cells = at.apply(
-        lambda e: f"failed: {e.note}" if pd.isna(e.error) else f"{e.best_us:.0f} µs ({number(e.error)})", axis=1
-    )
-    fixed = at["best_us"].drop("automatic").dropna().astype(float)
-    ratio = at["best_us"]["automatic"] / fixed.min()
-    names = ("automatic over the fastest fixed one", "fastest fixed one")
-    return {"scene": TITLES[name], **cells, **dict(zip(names, (ratio, fixed.idxmin()), strict=True))}
-
-
-def best_of(master: Master, task: Task, seconds: float = 0.2) -> Timing:
-    done = master.run(task, seconds)
-    if not done.reached:
-        raise RuntimeError(f"The run stopped after {done.steps} of {task.steps} steps.")
-    return done
+def best(report: Report, scene: str, duration: float, steps: int) -> float:
+    """Microseconds at the default tolerance."""
+    return 1e6 * min(repeated(report.master.made(SCENES[scene].start, duration / steps, steps), 0.2)[0])
 
 
 @part(4)
-def long_and_general(report: Report) -> None:
-    """1000 s of the free wheel; 10 s of one with J_x ≠ J_y"""
-    master, Y = master_of(report), report.measured["yardstick"] * 1e-6
-    long, general = Task({}, 1.0, 1000), Task(SCENES["general inertia"].start, 0.1, 100)
-    report.figures(long=best_of(master, long).best / Y, general=best_of(master, general).best / Y)
-    report.figures(long_error=long_error(report.library))
+def compare(report: Report) -> Row:
+    """the races side by side; 1000 s of the free wheel; 10 s of one with J_x ≠ J_y"""
+    runs = dict(list(report.tables["runs"].groupby("scene", sort=False)))
+    D = time_at(runs["free"], CPP, 1e-6)
+    found = {"yardstick": D, "heyoka": time_at(runs["free"], HEYOKA, 1e-6)}
+    for error in TARGETS:
+        for peer, key in ((HEYOKA, "heyoka"), (CPP, "dop853")):
+            ratio = time_at(runs["free"], OURS, error) / time_at(runs["free"], peer, error)
+            found[f"free_{key}_{-round(np.log10(error))}"] = ratio
+    for name in ("free", "friction"):
+        ours = at_default(runs[name], OURS)
+        found |= {name: ours.best_us / D, f"{name}_time": ours.best_us, f"{name}_error": ours.error}
+    found["friction_dop853"] = ours.best_us / time_at(runs["friction"], CPP, ours.error)
+    found["archive"] = (build_folder() / "wheel.fmu").stat().st_size / 1024
+    found["long"], found["general"] = best(report, "free", 1e3, 1000) / D, best(report, "general inertia", 10, 100) / D
+    return found
 
 
-def long_error(library: Library, tolerance: float | None = None) -> float:
-    """Error / range of the free wheel over 1000 s, against half a nutation of the reference laid end to end."""
-    from orbit.orbit import Halves  # tests/orbit
-
-    times = np.arange(0.05, 1000, 0.73)
-    want = headline_of(Halves(SCENES["free"].wheel, SCENES["free"].motion).read(times))
-    run = library.simulate([0.0, *times], tolerance)
-    return range_error(np.column_stack([run[name][1:] for name in HEADLINE]), want)
-
-
-def sine_table(steps: int, orders: int, shift: float = 0.0) -> np.ndarray:
+def sine_table(steps: int, orders: int, shift: float = 0.0) -> Array:
     """Values and derivatives of the six inputs for each step of 1 ms, taken `shift` (s) after its start."""
     return np.array([[sines(1e-3 * k + shift, order) for order in range(orders + 1)] for k in range(steps)])
 
 
-@part(14)
-def small_steps(report: Report) -> None:
-    """steps of 1 ms: outputs read, inputs that change"""
-    master, rows, seconds = master_of(report), [], 0.1 if report.quick else 0.5
-    for name in ("free", "friction"):
-        done = best_of(master, Task(SCENES[name].start, 1e-3, 10_000), seconds)
-        rows.append(step_row(f"{name}, inputs never set", done))
-        report.figures(**{f"step_{name}": 1e9 * done.best / 10_000, f"step_{name}_longest": 1e6 * done.paces.max()})
-    for orders, words in enumerate(("held", "first derivatives")):
-        worst = 0.0
-        for spin in (2.0, 10.0, 100.0, 300.0):
-            values = {"theta_start": 1.4, "phi_dot_start": -spin}
-            task = Task(values, 1e-3, 1000, inputs=tuple(SINES), table=sine_table(1000, orders))
-            done = best_of(master, task, seconds)
-            worst = max(worst, 1e6 * done.best / 1000) if spin <= 100 else worst
-            rows.append(step_row(f"six inputs that change, {words}; {spin:g} rad/s", done))
-        report.figures(**{("inputs_held", "inputs_linear")[orders]: worst})
-    report.table("steps", rows)
-
-
-def step_row(name: str, done: Timing) -> Row:
+def timed_steps(report: Report, values: Values, count: int, **changing: object) -> Row:
+    """Of 1 ms each, four outputs read."""
+    solve, paces = report.master.made(values, 1e-3, count, **changing), np.zeros(count)
+    costs, *_ = repeated(solve, 0.1 if report.quick else 0.5)
+    solve(paces)
     return {
-        "scene": name,
-        "per step, best run, ns": 1e9 * done.best / done.steps,
-        "median single step, ns": 1e9 * np.median(done.paces),
-        "99.9th percentile, µs": 1e6 * np.percentile(done.paces, 99.9),
-        "longest, µs": 1e6 * done.paces.max(),
+        "per step, best run, ns": 1e9 * min(costs) / count,
+        "in empty calls": min(costs) / count / empty_call(report),
+        "median single step, ns": 1e9 * np.median(paces),
+        "99.9th percentile, µs": 1e6 * np.percentile(paces, 99.9),
+        "longest, µs": 1e6 * paces.max(),
     }
 
 
-@part(1)
-def left_out(report: Report) -> None:
-    """what is left out, and what that saves"""
-    master, base = master_of(report), Task({}, 0.1, 100)
-    outputs = tuple(name for name, v in master.variables.items() if v.causality == "output")
-    jumps = np.tile([0.01, 0.02], 50).reshape(100, 1, 1)  # N
-    forced = {
-        "nothing forced": base,
-        "stepping instead of unfolding: method = adams": replace(base, values={"method": "adams"}),
-        "Jacobian and Newton iteration: method = bdf": replace(base, values={"method": "bdf"}),
-        "the paper's system (24): formulation = multibody": replace(base, values={"formulation": "multibody"}),
-        "event function of the friction: s = 1e-15 m": replace(base, values={"s": 1e-15}),
-        "an input that jumps at each of 100 points": replace(base, inputs=("F_X",), table=jumps),
-        "reading all outputs instead of four": replace(base, outputs=outputs),
-    }
-    rows = []
-    for what, task in forced.items():
-        done = master.run(task, 0.1)
-        counts = {name: done.counters[f"n_{name}"] for name in ("steps", "rhs", "jac", "roots", "restarts")}
-        rows.append({"forced": what, "µs": 1e6 * done.best, **counts})
-    report.table("left_out", rows)
+@part(2, {"scene": ("free", "friction")})
+def steps(report: Report, scene: str) -> Row:
+    """steps of 1 ms, inputs never set"""
+    return timed_steps(report, SCENES[scene].start, 10_000)
 
 
-@part(4)
-def instances(report: Report) -> None:
+@part(6, {"spin, rad/s": SPINS})
+def inputs_held(report: Report, spin: float) -> Row:
+    """steps of 1 ms, six inputs that change, held"""
+    return timed_steps(report, leaning(spin), 1000, inputs=tuple(SINES), table=sine_table(1000, 0))
+
+
+@part(6, {"spin, rad/s": SPINS})
+def inputs_linear(report: Report, spin: float) -> Row:
+    """steps of 1 ms, six inputs that change, with first derivatives"""
+    return timed_steps(report, leaning(spin), 1000, inputs=tuple(SINES), table=sine_table(1000, 1))
+
+
+def leaning(spin: float) -> Values:
+    return {"theta_start": 1.4, "phi_dot_start": -spin}
+
+
+@part(4, {"scene": {"free": 0, "friction": 1}})
+def instances(report: Report, scene: int) -> Row:
     """what an instance takes"""
-    rows = []
-    for name in ("free", "friction"):
-        done = master_of(report).run(Task(SCENES[name].start, 0.1, 15), 0.1)
-        memory = np.median(done.costs[:, 3]) / 1024
-        rows.append({"scene": name, "memory, KiB": memory, "create, initialize and free, µs": 1e6 * done.life})
-    report.table("instances", rows)
-    memory, life = pd.DataFrame(rows).drop(columns="scene").max()
-    report.figures(memory=memory, life=life, archive=(build_folder() / "wheel.fmu").stat().st_size / 1024)
+    code, guid = report.master.code, report.library.description.guid.encode()
+    for _ in range(2):  # the second time Python itself takes nothing new
+        before = bytes_in_use(code)
+        with report.library.wheel() as wheel:
+            wheel.start(s=0.03 * scene)
+            for k in range(15):
+                wheel.step_to(0.1 * (k + 1))
+            memory = (bytes_in_use(code) - before) / 1024
+    life = np.median([code.life(guid, scene) for _ in range(2000)])
+    empty = empty_call(report)
+    row = {"memory, KiB": memory, "create, initialize and free, µs": 1e6 * life, "in empty calls": life / empty}
+    return row | {"empty call, ns": 1e9 * empty}
 
 
-FURTHER = (model_exchange,)
+def empty_call(report: Report) -> float:
+    """Seconds of an FMI call that does nothing."""
+    with report.library.wheel() as wheel:
+        wheel.start()
+        component = ffi.cast("void *", wheel.component)
+        return min(report.master.code.empty_call(component, 10_000) for _ in range(20))
+
+
+def views(tables: Tables) -> Tables:
+    """The tables that follow from the runs."""
+    scenes = [(TITLES[name], runs) for name, runs in tables["runs"].groupby("scene", sort=False)]
+    failed = tables["runs"][tables["runs"]["error"].isna()].drop_duplicates(["scene", "setup"])
+    return tables | {
+        "fastest": pd.DataFrame([{"scene": title} | fastest(runs) for title, runs in scenes]),
+        "methods": pd.DataFrame([{"scene": title} | price_of_choice(runs) for title, runs in scenes]),
+        "failed": failed.assign(scene=failed["scene"].map(TITLES)),
+    }
+
+
+def fastest(runs: pd.DataFrame) -> Row:
+    """Who is fastest at each error, and the FMU's time over that of each peer that gets there."""
+    row = {}
+    for error in TARGETS:
+        times = pd.Series({setup: time_at(runs, setup, error) for setup in runs["setup"].unique()}).dropna()
+        ratios = [f"{times[OURS] / times[p]:.2f}" if {p, OURS} <= set(times.index) else "–" for p in (CPP, HEYOKA)]
+        row[f"at {number(error)}"] = f"{times.idxmin() if len(times) else 'none'} ({', '.join(ratios)})"
+    return row
+
+
+def price_of_choice(runs: pd.DataFrame) -> Row:
+    """At the default tolerance: automatic, and beside the fastest fixed method."""
+    automatic, *fixed = (at_default(runs, f"FMU {method}") for method in METHODS)
+    ratio = automatic.best_us / np.nanmin([run.best_us for run in fixed])
+    shown = f"{automatic.best_us:.0f} µs ({number(automatic.error)})"
+    return {"automatic": shown, "automatic over the fastest fixed one": ratio}
+
+
+LOOKS = {
+    **{CPP: (plots.style.VERMILLION, "-", "s"), HEYOKA: (plots.style.GREEN, "-", "^")},
+    **{"numbalsoda lsoda": (plots.style.PURPLE, "-", "D"), "numbalsoda dop853": (plots.style.PURPLE, "--", "D")},
+    **{OURS: (plots.style.BLUE, "-", "o"), "FMU adams": (plots.style.SKY, "-", "v")},
+    **{"FMU bdf": (plots.style.SKY, "--", "<"), "FMU runge_kutta": (plots.style.SKY, ":", ">")},
+    **{"SciPy DOP853": (plots.style.GREY, "-", "."), "SciPy LSODA": (plots.style.GREY, "--", ".")},
+    **{"SciPy Radau": (plots.style.GREY, ":", "."), "SciPy LSODA, tanh()": (plots.style.ORANGE, "--", ".")},
+    **{"SciPy DOP853, tanh()": (plots.style.ORANGE, "-", ".")},
+}
+
+
+def draw_races(tables: Tables) -> Sheet:
+    """A sheet for each scene, one legend; automatic lies on top, half transparent, so that what it equals shows."""
+    figure, axes = plots.sheet(2, -(-len(TITLES) // 2), 68)
+    shown: dict[str, object] = {}
+    for ax, (scene, title) in zip(axes, TITLES.items(), strict=False):
+        runs = tables["runs"]
+        solved = runs[(runs["scene"] == scene) & runs["error"].notna()]
+        for setup, points in solved.groupby("setup", sort=False):
+            colour, line, marker = LOOKS.get(setup, (plots.style.INK, "-", "x"))
+            look = {"lw": 3.5, "alpha": 0.55, "ms": 5} if setup == OURS else {"lw": 1, "ms": 3}
+            x, y = points["best_us"], points["error"].clip(lower=1e-14)
+            (curve,) = ax.plot(x, y, color=colour, ls=line, marker=marker, label=setup, **look)
+            shown.setdefault(setup, curve)
+        plots.label(ax, "best time [µs]", "error / range", title, "xy")
+        ax.set_ylim(1e-14, 3)
+    figure.legend(list(shown.values()), list(shown), loc="outside lower center", ncols=4)
+    return figure
+
+
 PICTURES = {"races": draw_races}

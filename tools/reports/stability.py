@@ -6,27 +6,24 @@ the independent reference or a closed form.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from itertools import groupby
-from math import nan
+from math import pi
 from multiprocessing import get_context
-from typing import Any
 
+import numpy as np
 import pandas as pd
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 from robustness.case import Case
 from robustness.sweep import sweep
 from robustness.verdicts import TOLERANCES, Verdict, judge_case
-from support.motion import Library
+from support.driver import ERROR
+from support.motion import Library, run
 
-from . import edges, plots
-from .law import crossings, draw_law, draw_methods, law
-from .long_runs import constraints, hours
-from .page import Report, Row, number, part
+from . import law, long_runs, plots
+from .page import Report, Row, Tables, part
 from .plots import Sheet, style
 
 DEADLINE = 120.0  # s
-FAULT = ["case", "tolerance", "what"]
+COLUMNS = ("case", "expected", "tolerance", "outcome", "as expected", "claimed", "steps", "fault")
 JUDGES = {
     "energy": "energy",
     "integrals": "linear integrals",
@@ -35,119 +32,98 @@ JUDGES = {
 }
 
 
-class Broken(str):
-    """What went wrong with the process: "hangs", or "crashes" with the signal."""
+def alone(folder: str, case: Case) -> list[Verdict]:
+    return judge_case(Library(folder), case)
 
 
-def isolated(calls: Sequence[tuple], folder: str) -> list[Any]:
-    """Functions called with the library and arguments, each in a process of its own with a deadline: a hang or a crash
-    is a result, not the end."""
-    with ProcessPool(2, max_tasks=1, context=get_context("fork")) as pool:
-        return [answer(f) for f in [pool.schedule(alone, (folder, *call), timeout=DEADLINE) for call in calls]]
-
-
-def alone(folder: str, work: Callable, *arguments: object) -> Any:
-    return work(Library(folder), *arguments)
-
-
-def answer(future: ProcessFuture) -> Any:
+def answer(future: ProcessFuture) -> list[Verdict]:
+    """A hang or a crash is a result, not the end."""
     try:
         return future.result()
     except TimeoutError:
-        return Broken(f"hangs: no answer within {DEADLINE:g} s")
+        fault = f"hangs: no answer within {DEADLINE:g} s"
     except ProcessExpired as end:
-        return Broken(f"crashes: the process ended with exit code {end.exitcode}")
+        fault = f"crashes: the process ended with exit code {end.exitcode}"
+    return [Verdict(tolerance, fault, faults=[fault]) for tolerance in TOLERANCES]
 
 
 @part(75)
-def cases(report: Report) -> None:
-    """the sweep: each case at five tolerances, in a process of its own"""
+def cases(report: Report) -> dict[str, object]:
+    """the sweep: each case at five tolerances, in a process of its own with a deadline"""
     chosen = sweep()[:: 6 if report.quick else 1]
-    found = list(zip(chosen, isolated([(judge_case, case) for case in chosen], report.library.folder), strict=True))
-    report.table("cases", [row for case, verdicts in found for row in case_rows(case, verdicts)])
-    faults = pd.DataFrame([row for case, verdicts in found for row in faults_of(case, verdicts)], columns=FAULT)
-    report.table("faults", faults)
-    judged = [(case, verdict) for case, verdicts in found if not isinstance(verdicts, Broken) for verdict in verdicts]
-    report.table("amplification", [amplification(judged, judge) for judge in JUDGES])
-    report.table("loose", [{"case": str(c), "needs": c.loosest, "why": c.remark} for c, _ in found if c.loosest < 1e-4])
-    report.figures(cases=len(found), runs=len(found) * len(TOLERANCES), faults=len(faults))
-    style.save_png(draw_cases(judged), report.folder / "stability_cases.png", plots.DPI)
+    with ProcessPool(2, max_tasks=1, context=get_context("fork")) as pool:
+        futures = [pool.schedule(alone, (report.library.folder, case), timeout=DEADLINE) for case in chosen]
+        rows = [row_of(case, v) for case, future in zip(chosen, futures, strict=True) for v in answer(future)]
+    rows = pd.DataFrame(rows).reindex(columns=[*COLUMNS, *JUDGES, *(f"{judge}: floor" for judge in JUDGES)])
+    faults = rows[~rows["as expected"]]
+    found = {"sweep": rows, "faults": faults, "amplification": [amplification(rows, judge) for judge in JUDGES]}
+    found["loose"] = [{"case": str(c), "needs": c.loosest, "why": c.remark} for c in chosen if c.loosest < 1e-4]
+    return found | {"cases": len(chosen), "runs": len(rows), "faults_found": len(faults)}
 
 
-def case_rows(case: Case, verdicts: list[Verdict] | Broken) -> Iterator[Row]:
-    for i, tolerance in enumerate(TOLERANCES):
-        verdict = None if isinstance(verdicts, Broken) else verdicts[i]
-        errors = {f.judge: f.error for f in verdict.errors} if verdict else {}
-        yield {
-            "case": str(case),
-            "expected": str(case.expect),
-            "tolerance": tolerance,
-            "outcome": verdict.outcome if verdict else str(verdicts),
-            "as expected": verdict.holds if verdict else False,
-            "judges": " ".join(errors),
-            "errors": " ".join(number(e) for e in errors.values()),
-            "steps": verdict.steps if verdict else None,
-        }
+def row_of(case: Case, verdict: Verdict) -> Row:
+    """Each judge's error, and what the judge itself cannot see."""
+    head = (str(case), str(case.expect), verdict.tolerance, verdict.outcome, verdict.holds, verdict.claimed)
+    row = dict(zip(COLUMNS, (*head, verdict.steps, "; ".join(verdict.faults)), strict=True))
+    return row | {f.judge: f.error for f in verdict.errors} | {f"{f.judge}: floor": f.floor for f in verdict.errors}
 
 
-def faults_of(case: Case, verdicts: list[Verdict] | Broken) -> list[tuple]:
-    if isinstance(verdicts, Broken):
-        return [(str(case), "", str(verdicts))]
-    return [(str(case), v.tolerance, "; ".join(v.faults)) for v in verdicts if not v.holds]
-
-
-def amplification(judged: list[tuple[Case, Verdict]], judge: str) -> Row:
+def amplification(rows: pd.DataFrame, judge: str) -> Row:
     """How many cases keep the error within the tolerance, and which exceed it most."""
-    ratios = [
-        (str(case), max(f.error - f.floor, 0.0) / verdict.tolerance)
-        for case, verdict in judged
-        for f in verdict.errors
-        if f.judge == judge and verdict.claimed
-    ]
-    worst = pd.DataFrame(ratios, columns=["case", "ratio"]).groupby("case", sort=False)["ratio"].max()
+    rows = rows[rows["claimed"] & rows[judge].notna()]
+    ratios = (rows[judge] - rows[f"{judge}: floor"]).clip(lower=0) / rows["tolerance"]
+    worst = ratios.groupby(rows["case"], sort=False).max()
     top = worst.sort_values(ascending=False, kind="stable")[:3]
-    return {
-        "judge": JUDGES[judge],
-        "cases": len(worst),
-        "within the tolerance": (worst <= 1).sum(),
-        "within 10 ×": (worst <= 10).sum(),
-        "largest, in tolerances": "; ".join(f"{name} ({ratio:.0f})" for name, ratio in top.items()),
-    }
+    row = {"judge": JUDGES[judge], "cases": len(worst), "within the tolerance": (worst <= 1).sum()}
+    largest = "; ".join(f"{name} ({ratio:.0f})" for name, ratio in top.items())
+    return row | {"within 10 ×": (worst <= 10).sum(), "largest, in tolerances": largest}
 
 
-def seen_error(verdict: Verdict, judge: str) -> float:
-    """nan where the judge itself sees no further, or nothing is claimed."""
-    found = next((f for f in verdict.errors if f.judge == judge and verdict.claimed), None)
-    return found.error if found and found.error > 2 * found.floor else nan
-
-
-def draw_cases(judged: list[tuple[Case, Verdict]]) -> Sheet:
+def draw_cases(tables: Tables) -> Sheet:
+    """Errors that the judge sees, of what is claimed."""
     figure, axes = plots.sheet(2)
     titles = {"energy": "energy balance", "reference": "outputs against the independent reference"}
     for ax, (judge, title) in zip(axes, titles.items(), strict=True):
-        for case, verdicts in groupby(judged, key=lambda pair: str(pair[0])):
+        for case, rows in tables["sweep"].groupby("case", sort=False):
             hard = case.startswith(("brushing", "friction: s = 1", "past upright: theta = 170"))
             look = {"color": style.VERMILLION, "label": "grazing the ground, or s of 1 m and more"}
             look = look if hard else {"color": style.BLUE, "label": "a case"}
-            errors = [seen_error(verdict, judge) for _, verdict in verdicts]
-            ax.plot(TOLERANCES, errors, ".-", alpha=0.6, lw=0.8, ms=3, **look)
+            seen = rows[judge].where(rows["claimed"] & (rows[judge] > 2 * rows[f"{judge}: floor"]))
+            ax.plot(rows["tolerance"], seen, ".-", alpha=0.6, lw=0.8, ms=3, **look)
         ax.plot(TOLERANCES, TOLERANCES, "--", color=style.INK, lw=0.9, label="error = tolerance")
         plots.label(ax, "tolerance", "relative error", title, "xy")
-    plots.legend_below(figure, axes[0], 3)
+    plots.legend_below(figure, axes, 3)
     return figure
 
 
+def watching(report: Report, values: dict) -> float:
+    """Time with endings watched over time without lift-off watched (contact kept), best of interleaved runs."""
+    solves = [report.master.made(values | {"keep_contact": kept}, 10.0, 1) for kept in (False, True)]
+    watched, kept = np.min([[solve()[0] for solve in solves] for _ in range(60)], axis=0)
+    return watched / kept
+
+
 @part(20)
-def contract(report: Report) -> None:
-    """the contract at its edges"""
-    rows = []
-    for group, check in edges.GROUPS.items():
-        (found,) = isolated([(check,)], report.library.folder)
-        rows += [(group, *row) for row in ([("", "", found, False)] if isinstance(found, Broken) else found)]
-    table = pd.DataFrame(rows, columns=["group", "what", "expected", "found", "holds"])
-    report.table("contract", table)
-    report.figures(checks=len(table), contract=(~table["holds"].astype(bool)).sum())
+def contract(report: Report) -> dict[str, object]:
+    """the contract at its edges: nearly equal inertias, a choice too dear, watching for endings"""
+    # A wheel with J_x = J_y is unfolded, others are stepped: with Adams both are.
+    equal, split = {"method": "adams"}, {"method": "adams", "J_y": 0.9 * (1 - 1e-12)}
+    whole, parted = (run(report.library, values, np.linspace(0, 10, 101), 1e-8) for values in (equal, split))
+    apart = max(np.abs(whole[n] - parted[n]).max() / np.ptp(whole[n]) for n in ("X_O", "theta", "psi_dot"))
+    checks = [
+        ("J_x and J_y differ by 1e-12: outputs apart, tolerance 1e-8", 1e-6, apart),
+        ("the same: right-hand sides", 3.0, parted.counters["n_rhs"] / whole.counters["n_rhs"]),
+    ]
+    scenes = {"free wheel": {}, "friction": law.FRICTION, "upright, fast": {"theta_start": pi / 2 - 0.1}}
+    checks += [(f"watching for endings over not, {name}", 1.03, watching(report, v)) for name, v in scenes.items()]
+    rows = [{"what": what, "below": bound, "found": found, "holds": found < bound} for what, bound, found in checks]
+    with report.library.wheel() as wheel:
+        wheel.start(tolerance=1e-8, **law.regularized(law.FRICTION, 1e-8, "adams"))
+        refused = wheel.step_to(10.0) == ERROR and bool(wheel.sentences)
+    what = "10 s in one step, Adams, omega_s = 1e-8 rad/s: ends without an error and its reason"
+    rows.append({"what": what, "below": 1, "found": int(not refused), "holds": refused})
+    return {"contract": rows, "checks": len(rows), "checks_failed": sum(not row["holds"] for row in rows)}
 
 
-FURTHER = (law, crossings, hours, constraints)
-PICTURES = {"law": draw_law, "methods": draw_methods}
+FURTHER = (law, long_runs)
+PICTURES = {"cases": draw_cases, "law": law.draw_law, "methods": law.draw_methods}

@@ -25,12 +25,11 @@ ASKED = {  # what is asked, and of how many wheels
     "lowest angle over steps of 0.1 s": (EXTREME | {"interval": 0.1}, 48_000),
     "lowest angle over steps of 0.01 s": (EXTREME | {"interval": 0.01}, 48_000),
 }
-COLUMNS = ["wheels_per_s", "fmu_share", "caller_busy"]
 FEW = 800  # wheels
 
 
-def timed(what: str, wheels: int, folder: Path, client: object) -> tuple[float, float, float]:
-    """Of wheels between 10 and 89 degrees, 0.5 and 12 rad/s, 10 s each: COLUMNS."""
+def timed(what: str, wheels: int, folder: Path, client: object) -> dict[str, float]:
+    """Of wheels between 10 and 89 degrees, 0.5 and 12 rad/s, 10 s each."""
     from study import Study
 
     angles = np.radians(np.linspace(10, 89, wheels // 80))
@@ -40,43 +39,34 @@ def timed(what: str, wheels: int, folder: Path, client: object) -> tuple[float, 
     results = study.run(folder / "timed.zarr", client=client, **how)
     seconds, busy = perf_counter() - begin, process_time() - busy
     share = float(results["fmu_time"].sum() / results["wall_time"].sum())
-    return results["status"].size / seconds, share, busy / seconds
+    return {"wheels_per_s": results["status"].size / seconds, "fmu_share": share, "caller_busy": busy / seconds}
 
 
 @part(300)
-def speeds(report: Report) -> None:
-    """one and two workers in turn"""
-    from study.compute import cluster
+def speed(report: Report) -> dict[str, object]:
+    """one and two workers in turn; the estimate for many"""
+    from study.compute import chunk_seconds, cluster
 
-    rows: dict[tuple[str, int], list[tuple[float, ...]]] = {(what, n): [] for what in ASKED for n in (1, 2)}
+    runs = []
     with TemporaryDirectory() as folder, cluster(1, None) as one, cluster(2, None) as two:
         for turn in range(2 if report.quick else REPEATS + 1):
-            for what, n in rows:
-                wheels = ASKED[what][1] if turn and not report.quick else FEW
-                found = timed(what, wheels, Path(folder), (one, two)[n - 1])
-                rows[what, n] += [found] * (turn > 0)
+            for what, (_, wheels) in ASKED.items():
+                for n, client in ((1, one), (2, two)):
+                    found = timed(what, wheels if turn and not report.quick else FEW, Path(folder), client)
+                    runs += [{"asked": what, "workers": n} | found] * (turn > 0)
         part = list(np.zeros((8, 100)))  # the axes of a task
         begin = process_time()
         two.gather(two.map(len, [part] * 500, pure=False))
         task = (process_time() - begin) / 500
-    medians = {key: np.median(runs, axis=0) for key, runs in rows.items()}
-    table = pd.DataFrame([(*key, *row) for key, row in medians.items()], columns=["asked", "workers", *COLUMNS])
-    report.table("speed", table)
-    report.table("estimate", estimate(table, task))
-    report.figures(task=1e3 * task)
-
-
-def estimate(table: pd.DataFrame, task: float) -> pd.DataFrame:
-    """Wheels per second of many workers for each question, and how busy the caller would be."""
-    from study.compute import chunk_seconds
-
-    rows = []
-    for what in ASKED:
-        one, two = table[table["asked"] == what]["wheels_per_s"]
-        for workers in (10, 100, 1000):
-            busy = task * workers / chunk_seconds(workers)
-            rows.append((what, workers, workers * one * min(1.0, two / (2 * one)) * min(1.0, 1 / busy), busy))
-    return pd.DataFrame(rows, columns=["asked", "workers", "wheels_per_s", "caller_busy"])
+    table = pd.DataFrame(runs).groupby(["asked", "workers"], sort=False).median()
+    wheels = table["wheels_per_s"].unstack(sort=False)
+    rows = [
+        (what, n, n * wheels[1][what] * min(1.0, wheels[2][what] / (2 * wheels[1][what])) * min(1.0, 1 / busy), busy)
+        for what in ASKED
+        for n, busy in ((n, task * n / chunk_seconds(n)) for n in (10, 100, 1000))
+    ]
+    estimate = pd.DataFrame(rows, columns=["asked", "workers", "wheels_per_s", "caller_busy"])
+    return {"speed": table.reset_index(), "estimate": estimate, "task": 1e3 * task}
 
 
 def views(tables: Tables) -> Tables:
@@ -85,4 +75,4 @@ def views(tables: Tables) -> Tables:
 
 
 def words(column: str) -> str:
-    return column.replace("_per_s", "/s").replace("_MB", ", MB").replace("_", " ")
+    return column.replace("_per_s", "/s").replace("_", " ")

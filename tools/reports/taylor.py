@@ -7,7 +7,7 @@ moment tau about the axle open: accelerations and normal force are linear in it,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from time import perf_counter
 from typing import Any, NamedTuple
 
@@ -15,7 +15,6 @@ import heyoka as hy
 import numpy as np
 
 OUTPUTS = ("X_O", "Y_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot", "lambda_3")
-CONSTANTS = ("m", "r_0", "r", "J_x", "J_y", "J_z", "g")
 MOST_EVENTS, MOST_STEPS = 1000, 100_000
 FALLING = hy.event_direction.negative
 quad = hy.real128
@@ -39,36 +38,47 @@ def torque(values: Values) -> Any:
 
 
 class Form(NamedTuple):
-    """A formulation: symbols, their rates for a tau, spin, spin-up and N at tau = 0 and per tau, outputs, start."""
+    """A formulation: symbols and start; rates of the symbols before the angular velocities, of these at tau = 0 and per
+    tau, of those behind them; N at tau = 0 and per tau; outputs."""
 
     symbols: list[Any]
-    rates: Callable[[Any], list[Any]]
-    spin: int
-    spin_up: tuple[Any, Any]
+    before: list[Any]
+    spin_up: tuple[np.ndarray, np.ndarray]
+    behind: list[Any]
     normal: tuple[Any, Any]
     outputs: list[Any]
     start: list[Any]
 
+    @property
+    def spin(self) -> int:
+        """The number of the angular velocity about the axle."""
+        return len(self.before) + 2
 
-def solved(a: list[list[Any]], right: Sequence[Any]) -> list[Any]:
-    """x of the 3 x 3 system a x = right, by cofactors; with J_x = J_y its first row stands alone."""
-    (a_, b, c), (d, e, f), (g, h, i) = a
-    if b is None:
-        determinant = e * i - f * h
-        pair = [(right[1] * i - right[2] * f) / determinant, (right[2] * e - right[1] * h) / determinant]
-        return [right[0] / a_, *pair]
-    cofactors = [[e * i - f * h, c * h - b * i, b * f - c * e], [f * g - d * i, a_ * i - c * g, c * d - a_ * f]]
-    cofactors.append([d * h - e * g, b * g - a_ * h, a_ * e - b * d])
-    determinant = a_ * cofactors[0][0] + b * cofactors[1][0] + c * cofactors[2][0]
-    return [sum(x * y for x, y in zip(row, right, strict=True)) / determinant for row in cofactors]
+    def rates(self, tau: Any) -> list[Any]:
+        base, unit = self.spin_up
+        return [*self.before, *(base + tau * unit), *self.behind]
+
+
+def solved(matrix: np.ndarray, right: np.ndarray, alone: bool = False) -> np.ndarray:
+    """x of the 3 x 3 system matrix x = right, by cofactors; alone: the first row and column are zero beside a_11."""
+    if alone:
+        (e, f), (h, i) = matrix[1:, 1:]
+        determinant, (_, y, z) = e * i - f * h, right
+        return np.array([right[0] / matrix[0, 0], (y * i - z * f) / determinant, (z * e - y * h) / determinant])
+    a, b, c = matrix.T
+    cofactors = np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
+    return cofactors @ right / (cofactors[0] @ a)
+
+
+def constants(values: Values) -> list[Any]:
+    return [hy.expression(values[name]) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g")]
 
 
 def angles(values: Values) -> Form:
-    m, r_0, r, J_x, J_y, J_z, g = (values[name] for name in CONSTANTS)
-    symbols = theta, w_1, w_2, w_3, psi, phi, _X, _Y = hy.make_vars(
-        "theta", "omega_1", "omega_2", "omega_3", "psi", "phi", "X_O", "Y_O"
-    )
-    sin, cos = hy.sin(theta), hy.cos(theta)
+    m, r_0, r, J_x, J_y, J_z, g = constants(values)
+    symbols = hy.make_vars("theta", "omega_1", "omega_2", "omega_3", "psi", "phi", "X_O", "Y_O")
+    theta, w_1, w_2, w_3, psi, phi, *place = symbols
+    sin, cos, zero, one = hy.sin(theta), hy.cos(theta), 0 * m, 0 * m + 1
     rho, eta, psi_dot = r_0 + r * sin, r * cos, w_2 / sin
     Omega_3 = psi_dot * cos
     phi_dot = w_3 - Omega_3
@@ -76,82 +86,59 @@ def angles(values: Values) -> Form:
     k_1 = m * w_1 * (r_0 * w_2 + eta * (Omega_3 - w_3))
     k_2 = m * (r * sin * w_1 * w_1 + Omega_3 * v_1 - w_1 * v_3 + g * sin)
     k_3 = m * (eta * w_1 * w_1 + w_1 * v_2 - w_2 * v_1 + g * cos)
-    I_11 = I_22 = J_x
-    p, zero = None, hy.expression(0 * m)
-    g_1, g_2, g_3 = J_z * w_2 * w_3 - J_x * Omega_3 * w_2, w_1 * (J_x * Omega_3 - J_z * w_3), 0
-    if J_x != J_y:
-        mean, half = (J_x + J_y) / 2, (J_x - J_y) / 2
-        q, p = half * hy.cos(2 * phi), half * hy.sin(2 * phi)
-        I_11, I_22 = mean + q, mean - q
-        H_1, H_2, H_3 = I_11 * w_1 + p * w_2, p * w_1 + I_22 * w_2, J_z * w_3
-        g_1 = 2 * phi_dot * (q * w_2 - p * w_1) + w_2 * H_3 - Omega_3 * H_2
-        g_2 = 2 * phi_dot * (q * w_1 + p * w_2) + Omega_3 * H_1 - w_1 * H_3
-        g_3 = w_1 * H_2 - w_2 * H_1
-    matrix = [
-        [I_11 + m * (rho * rho + eta * eta), p, zero],
-        [p, I_22 + m * eta * eta, -m * eta * rho],
-        [zero, -m * eta * rho, J_z + m * rho * rho],
-    ]
-    base = solved(matrix, [eta * k_2 - g_1 - rho * k_3, -g_2 - eta * k_1, torque(values) - g_3 + rho * k_1])
-    unit = solved(matrix, [zero, zero, hy.expression(0 * m + 1)])
+    symmetric, mean, half = values["J_x"] == values["J_y"], (J_x + J_y) / 2, (J_x - J_y) / 2
+    q, p = (zero, zero) if symmetric else (half * hy.cos(2 * phi), half * hy.sin(2 * phi))
+    I_11, I_22 = mean + q, mean - q
+    H_1, H_2, H_3 = I_11 * w_1 + p * w_2, p * w_1 + I_22 * w_2, J_z * w_3
+    g_1 = 2 * phi_dot * (q * w_2 - p * w_1) + w_2 * H_3 - Omega_3 * H_2
+    g_2 = 2 * phi_dot * (q * w_1 + p * w_2) + Omega_3 * H_1 - w_1 * H_3
+    g_3 = p * (w_1 * w_1 - w_2 * w_2) - 2 * q * w_1 * w_2
+    matrix = np.array(
+        [
+            [I_11 + m * (rho * rho + eta * eta), p, zero],
+            [p, I_22 + m * eta * eta, -m * eta * rho],
+            [zero, -m * eta * rho, J_z + m * rho * rho],
+        ]
+    )
+    right = np.array([eta * k_2 - g_1 - rho * k_3, -g_2 - eta * k_1, torque(values) - g_3 + rho * k_1])
+    base, unit = solved(matrix, right, symmetric), solved(matrix, np.array([zero, zero, one]), symmetric)
     lever = m * r_0 * cos
     normal = k_2 * sin + k_3 * cos + lever * base[0], lever * unit[0]
     across = (r_0 * sin + r) * w_1
     path = [v_1 * hy.cos(psi) + across * hy.sin(psi), v_1 * hy.sin(psi) - across * hy.cos(psi)]
-
-    def rates(tau: Any) -> list[Any]:
-        return [w_1, *(b + tau * u for b, u in zip(base, unit, strict=True)), psi_dot, phi_dot, *path]
-
     theta_0, turn = values["theta"], values["psi_dot"]
     spins = [values["theta_dot"], turn * np.sin(theta_0), values["phi_dot"] + turn * np.cos(theta_0)]
     start = [theta_0, *spins, *(values[name] for name in ("psi", "phi", "X_O", "Y_O"))]
-    outputs = [_X, _Y, psi, theta, phi, psi_dot, w_1, phi_dot]
-    return Form(symbols, rates, 3, (base[2], unit[2]), normal, outputs, start)
-
-
-def cross(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    outputs = [*place, psi, theta, phi, psi_dot, w_1, phi_dot]
+    return Form(symbols, [w_1], (base, unit), [psi_dot, phi_dot, *path], normal, outputs, start)
 
 
 def vectors(values: Values) -> Form:
     """Of a wheel that starts with phi = 0 and turns about its axle alone."""
-    m, r_0, r, *inertia, g = (values[name] for name in CONSTANTS)
+    m, r_0, r, *inertia, g = constants(values)
     symbols = hy.make_vars("n_x", "n_y", "n_z", "w_x", "w_y", "w_z", "psi", "phi", "X_O", "Y_O")
-    n, w, (psi, phi, _X, _Y) = symbols[:3], symbols[3:6], symbols[6:]
-    zero, one = hy.expression(0 * m), hy.expression(0 * m + 1)
+    n, w, (psi, phi, *place) = np.array(symbols[:3]), np.array(symbols[3:6]), symbols[6:]
+    zero, one, inertia = 0 * m, 0 * m + 1, np.array(inertia)
     steep = hy.sqrt(n[0] * n[0] + n[1] * n[1])
-    up = [n[0] / steep, n[1] / steep, zero]  # e2, up the slope of the wheel's plane
-    n_dot = cross(n, w)
-    along = up[0] * n_dot[0] + up[1] * n_dot[1]
-    up_dot = [(n_dot[i] - along * up[i]) / steep for i in (0, 1)] + [zero]
-    turned = cross(w, up)
-    p = [r_0 * up[i] + r * n[i] for i in range(3)]
-    p_dot = [r_0 * (up_dot[i] + turned[i]) for i in range(3)]  # n is fixed in space
-    drift = cross(w, p_dot)
-    gyroscopic = cross(w, [J * c for J, c in zip(inertia, w, strict=True)])
-    pull = [m * (drift[i] + g * n[i]) for i in range(3)]  # minus the ground's force, but for the angular acceleration
-    arm, size = cross(p, pull), dot(p, p)
-    matrix = [[(inertia[i] + m * size if i == j else zero) - m * p[i] * p[j] for j in range(3)] for i in range(3)]
-    base = solved(matrix, [-gyroscopic[i] - arm[i] + (torque(values) if i == 2 else 0) for i in range(3)])
-    unit = solved(matrix, [zero, zero, one])
-    normal = dot(n, pull) + m * dot(n, cross(base, p)), m * dot(n, cross(unit, p))
-    v, line = cross(w, p), [up[1], -up[0], zero]
-    forward, left = dot(v, line), dot(v, cross(n, line))
+    up = np.array([n[0] / steep, n[1] / steep, zero])  # e2, up the slope of the wheel's plane
+    n_dot = np.cross(n, w)
+    up_dot = (n_dot - (up @ n_dot) * up) / steep * np.array([one, one, zero])
+    p, p_dot = r_0 * up + r * n, r_0 * (up_dot + np.cross(w, up))  # n is fixed in space
+    pull = m * (np.cross(w, p_dot) + g * n)  # minus the ground's force, but for the angular acceleration
+    push = np.array([zero, zero, zero + torque(values)])
+    right = push - np.cross(w, inertia * w) - np.cross(p, pull)
+    matrix = np.diag(inertia + m * (p @ p)) - m * np.outer(p, p)
+    base, unit = solved(matrix, right), solved(matrix, np.array([zero, zero, one]))
+    normal = n @ pull + m * (n @ np.cross(base, p)), m * (n @ np.cross(unit, p))
+    v, line = np.cross(w, p), np.array([up[1], -up[0], zero])
+    forward, left = v @ line, v @ np.cross(n, line)
     psi_dot = (w[0] * up[0] + w[1] * up[1]) / steep
     theta_dot, phi_dot = w[0] * up[1] - w[1] * up[0], w[2] - psi_dot * n[2]
     path = [forward * hy.cos(psi) - left * hy.sin(psi), forward * hy.sin(psi) + left * hy.cos(psi)]
-
-    def rates(tau: Any) -> list[Any]:
-        return [*n_dot, *(b + tau * u for b, u in zip(base, unit, strict=True)), psi_dot, phi_dot, *path]
-
-    none, leaning = 0 * m, [np.sin(values["theta"]), np.cos(values["theta"])]
+    none, leaning = 0 * values["m"], [np.sin(values["theta"]), np.cos(values["theta"])]
     start = [none, *leaning, none, none, values["phi_dot"], values["psi"], none, values["X_O"], none]
-    outputs = [_X, _Y, psi, hy.atan2(steep, n[2]), phi, psi_dot, theta_dot, phi_dot]
-    return Form(symbols, rates, 5, (base[2], unit[2]), normal, outputs, start)
+    outputs = [*place, psi, hy.atan2(steep, n[2]), phi, psi_dot, theta_dot, phi_dot]
+    return Form(symbols, list(n_dot), (base, unit), [psi_dot, phi_dot, *path], normal, outputs, start)
 
 
 FORMS = {"angles": angles, "vectors": vectors}
@@ -174,7 +161,8 @@ class Wheel:
     def __init__(self, values: Values, form: str, tolerance: Any, real: type = float, omega_s: float = 0.0) -> None:
         self.form, self.s, self.real = FORMS[form](values), values["s"], real
         self.tolerance = real(tolerance)
-        (up, up_per_tau), (N, N_per_tau) = self.form.spin_up, self.form.normal
+        (*_, up), (*_, up_per_tau) = self.form.spin_up
+        N, N_per_tau = self.form.normal
         sigma, spin = hy.par[0], self.form.symbols[self.form.spin]
         held = -up / up_per_tau
         room = (self.s * (N + held * N_per_tau)) ** 2 - held**2
@@ -193,11 +181,8 @@ class Wheel:
         rates = self.form.rates(tau)
         if mode == "held":
             rates[self.form.spin] = hy.expression(0 * self.s)
-        falls = (
-            []
-            if watched is None
-            else [hy.t_event(watched, direction=FALLING, cooldown=self.real(0), fp_type=self.real)]
-        )
+        event = {"direction": FALLING, "cooldown": self.real(0), "fp_type": self.real}
+        falls = [] if watched is None else [hy.t_event(watched, **event)]
         how = {"tol": self.tolerance, "t_events": falls, "fp_type": self.real, "compact_mode": self.real is not float}
         signs = {"pars": [self.real(0)]} if mode == "rolling" else {}
         solver = hy.taylor_adaptive(list(zip(self.form.symbols, rates, strict=True)), self.form.start, **how, **signs)

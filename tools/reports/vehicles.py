@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pandas as pd
 from vehicles import axle, axle_study, car, car_iso, car_judges, car_table, monolithic_car
@@ -11,185 +13,162 @@ from vehicles.errors import STEPS, Errors, longest, orders
 from vehicles.example import picture
 from vehicles.master import EXCHANGES, whole
 
-from .packages import packages
-from .page import Report, Tables, part
-from .partners import fmus
+from . import packages
+from .page import Report, Row, Tables, part
 
 LIMITS = (0.001, 0.00125, 0.002, 0.0025, 0.003125, 0.00390625, 0.005)  # s; each divides the grid of the tables
 BUDGET = 10.0  # us per step of 1 ms for four wheels
 BONDS = ("F_X", "F_Y", "F_Z", "M_1", "M_2")
+# How the inputs behave over a step: the exchange, and whether positions follow the velocities.
+OVER = {"held, positions lag": ("held", {"follow": 0.0}), **{exchange: (exchange, {}) for exchange in EXCHANGES}}
+GIVEN = {name: OVER[name] for name in ("held, positions lag", "held", "derivatives")}
+STEPS_MS = [1000 * h for h in STEPS]
 
 
 @part(30)
-def axle_steps(report: Report) -> None:
+def axle_steps(report: Report) -> list[Row]:
     """the axle: error against the step"""
-    scene = axle_study.TRAILING.changed(stop=2.0)
-    kinds = {"held, positions lag": ("held", {"follow": 0.0}), **{e: (e, {}) for e in EXCHANGES}}
     rows = []
-    for label, (exchange, more) in kinds.items():
-        errors = axle_study.step_errors(fmus(report), scene.changed(**more), exchange, STEPS)
-        rows += [
-            {"inputs over the step": label, "step, ms": 1000 * h, "error / range": e}
-            for h, e in zip(STEPS, errors, strict=True)
-        ]
-    report.table("axle_steps", rows)
-    run = axle.coupled(fmus(report), axle_study.TRAILING, 0.0005, "derivatives", 0.02)
-    table = axle.complete(run, axle_study.TRAILING)
-    picture(table, axle_study.TRAILING, report.folder / "vehicles_axle.png", ", step 0.5 ms")
+    for label, (exchange, more) in OVER.items():
+        errors = axle_study.step_errors(report.fmus, axle_study.TRAILING.changed(stop=2.0, **more), exchange, STEPS)
+        pairs = zip(STEPS_MS, errors, strict=True)
+        rows += [{"inputs over the step": label, "step, ms": ms, "error / range": error} for ms, error in pairs]
+    return rows
 
 
-@part(30)
-def axle_stiffness(report: Report) -> None:
+@part(30, {"scene": axle_study.SCENES})
+def axle_stiffness(report: Report, scene: axle.Scene) -> Row:
     """the axle: error against the stiffness"""
-    factors, rows = (1.0, 2.0, 4.0), []
-    for name, scene in axle_study.SCENES.items():
-        errors = axle_study.stiffness_errors(fmus(report), scene.changed(stop=2.0), factors)
-        order = float(-orders(factors, errors)[-1])
-        of_factors = {f"stiffness x {f:g}": e for f, e in zip(factors, errors, strict=True)}
-        rows.append({"scene": name, **of_factors, "order in 1/k": order})
-    report.table("axle_stiffness", rows)
+    factors = (1.0, 2.0, 4.0)
+    errors = axle_study.stiffness_errors(report.fmus, scene.changed(stop=2.0), factors)
+    found = {f"stiffness x {f:g}": e for f, e in zip(factors, errors, strict=True)}
+    return found | {"order in 1/k": float(-orders(factors, errors)[-1])}
 
 
-@part(30)
-def axle_limits(report: Report) -> None:
+@part(30, {"stiffness x": (0.5, 1.0, 2.0, 4.0)})
+def axle_limits(report: Report, factor: float) -> Row:
     """the axle: the longest step for each stiffness, beside 2 J_x / c_a"""
-    rows = []
-    for factor in (0.5, 1.0, 2.0, 4.0):
-        scene = axle_study.CLOTHOID.changed(stop=1.0, stiffness=factor)
-        found = {f"{e}, ms": 1000 * axle_study.longest_step(fmus(report), scene, e) for e in EXCHANGES}
-        rows.append(
-            {"stiffness x": factor, **found, "2 J_x / c_a, ms": 1000 * 2 * axle.constants(scene).J_x / (500.0 * factor)}
-        )
-    report.table("axle_limits", rows)
+    scene = axle_study.CLOTHOID.changed(stop=1.0, stiffness=factor)
+    found = {f"{e}, ms": 1000 * axle_study.longest_step(report.fmus, scene, e) for e in EXCHANGES}
+    return found | {"2 J_x / c_a, ms": 1000 * 2 * axle.constants(scene).J_x / (500.0 * factor)}
 
 
-@part(10)
-def axle_energy(report: Report) -> None:
+@part(10, {"inputs over the step": GIVEN})
+def axle_energy(report: Report, over: tuple) -> Row:
     """the axle: energy added per bond"""
-    rows = []
-    for exchange, follow in (("held", 0.0), ("held", 1.0), ("derivatives", 1.0)):
-        scene = axle_study.TRAILING.changed(stop=2.0, follow=follow)
-        found = axle_study.energy(fmus(report), scene, 0.001, exchange)
-        label, sums = exchange if follow else f"{exchange}, positions lag", sum(found.bonds.values())
-        of_bonds = {f"{n}, J": float(x) for n, x in zip(BONDS, sums, strict=True)}
-        rows.append({"inputs over the step": label, **of_bonds, "sum, J": float(sums.sum()), "gain, J": found.drift})
-    report.table("axle_energy", rows)
+    exchange, more = over
+    scene = axle_study.TRAILING.changed(stop=2.0, **({"follow": 1.0} | more))
+    found = axle_study.energy(report.fmus, scene, 0.001, exchange)
+    sums = sum(found.bonds.values())
+    of_bonds = {f"{n}, J": float(x) for n, x in zip(BONDS, sums, strict=True)}
+    return of_bonds | {"sum, J": float(sums.sum()), "gain, J": found.drift}
 
 
 def manoeuvres(report: Report) -> tuple[str, ...]:
     return ("step",) if report.quick else car_table.NAMES
 
 
-@part(40)
-def car_closed_forms(report: Report) -> None:
-    """the car: what follows from rigid links and wheels that never slip"""
-    rows = []
+@part(70)
+def car_runs(report: Report) -> dict[str, object]:
+    """the car: closed forms of rigid links and wheels that never slip; the road that each manoeuvre needs"""
+    judged, demands = [], []
     for name in manoeuvres(report):
-        run = car.drive(fmus(report), MANOEUVRES[name])
-        rows += [(name, f.what, f.unit, f.measured, f.exact) for f in car_judges.judge(run.table, MANOEUVRES[name])]
-    head = ["manoeuvre", "quantity", "unit", "measured", "closed form"]
-    report.table("car_closed_forms", pd.DataFrame(rows, columns=head))
-
-
-@part(40)
-def car_demand(report: Report) -> None:
-    """the car: the road that each manoeuvre needs, and where it needs it most"""
-    rows = []
-    for name in manoeuvres(report):
-        table = car.drive(fmus(report), MANOEUVRES[name]).table
+        manoeuvre = MANOEUVRES[name]
+        table = car.drive(report.fmus, manoeuvre).table
+        judged += [(name, f.what, f.unit, f.measured, f.exact) for f in car_judges.judge(table, manoeuvre)]
         at = car.worst(table)[1]
         where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]
-        rows.append((MANOEUVRES[name].title, *car.demand(table).values(), *where))
-    head = ["manoeuvre", *(f"{axle} axle" for axle in car.AXLES), "most at t [s]", "X [m]", "Y [m]"]
-    report.table("car_demand", pd.DataFrame(rows, columns=head))
+        demands.append((manoeuvre.title, *car.demand(table).values(), *where))
+    most = ["manoeuvre", *(f"{axle} axle" for axle in car.AXLES), "most at t [s]", "X [m]", "Y [m]"]
+    forms = ["manoeuvre", "quantity", "unit", "measured", "closed form"]
+    return {"car_closed_forms": pd.DataFrame(judged, columns=forms), "car_demand": pd.DataFrame(demands, columns=most)}
 
 
 @part(40)
-def car_endings(report: Report) -> None:
+def car_endings(report: Report) -> list[Row]:
     """the car: what ends the manoeuvre that is too fast, and the same of one set of equations"""
-    run = car.drive(fmus(report), car.TOO_FAST, exchange="rollback")
+    run = car.drive(report.fmus, car.TOO_FAST, exchange="rollback")
     wheel, time = car_table.lift_off(car.TOO_FAST)
     whole = f"The {car.NAMES[wheel]} wheel's normal force is zero at t = {time:.7f} s."
-    rows = [("coupled FMUs", car.sentence(run.ending)), ("one set of equations", whole)]
-    report.table("car_endings", pd.DataFrame(rows, columns=["system", "how it ended"]))
+    ends = {"coupled FMUs": car.sentence(run.ending), "one set of equations": whole}
+    return [{"system": system, "how it ended": end} for system, end in ends.items()]
 
 
 @part(40)
-def car_figures(report: Report) -> None:
+def car_figures(report: Report) -> pd.DataFrame:
     """the car: the figures of road tests, of the coupled car and of one set of equations on the same grid"""
     rows = []
     for name, grid in (("circle", 0.01), ("step", 0.001), ("lane", 0.005)):
         manoeuvre = MANOEUVRES[name]
-        coupled = car.drive(fmus(report), manoeuvre, grid=grid).table
+        coupled = car.drive(report.fmus, manoeuvre, grid=grid).table
         whole = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / grid) + 1) * grid, 1e-9)
         both = (car_iso.FIGURES[name](table) for table in (coupled, whole))
         rows += [(name, a.what, a.unit, a.measured, b.measured, a.exact) for a, b in zip(*both, strict=True)]
     head = ["manoeuvre", "quantity", "unit", "coupled FMUs", "one set of equations", "rigid links"]
-    report.table("car_figures", pd.DataFrame(rows, columns=head))
+    return pd.DataFrame(rows, columns=head)
 
 
-@part(40)
-def car_longest(report: Report) -> None:
+def errors(report: Report, name: str, exchange: str, h: float, complete: bool = False) -> dict[str, float]:
+    """Of each output against one set of equations; complete: of a run that must not end early."""
+    run = car.drive(report.fmus, MANOEUVRES[name], h, exchange, car_table.GRID)
+    return car_table.apart(whole(run) if complete else run.table, truth(name))
+
+
+truth = cache(car_table.read)
+
+
+@part(40, {"inputs over the step": EXCHANGES})
+def car_longest(report: Report, exchange: str) -> Row:
     """the car: the longest step with which a manoeuvre runs to its end with errors below 10 % of the ranges"""
-    names = manoeuvres(report)
-    rows = [(e, *(1000 * longest_step(report, name, e) for name in names)) for e in EXCHANGES]
-    head = ["inputs over the step", *(f"{name} [ms]" for name in names)]
-    report.table("car_longest", pd.DataFrame(rows, columns=head))
+
+    def longest_step(name: str) -> float:
+        return longest(LIMITS, lambda h: max(errors(report, name, exchange, h, complete=True).values()))
+
+    return {f"{name} [ms]": 1000 * longest_step(name) for name in manoeuvres(report)}
 
 
-def longest_step(report: Report, name: str, exchange: str) -> float:
-    def error(h: float) -> float:
-        table = whole(car.drive(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID))
-        return max(car_table.apart(table, car_table.read(name)).values())
-
-    return longest(LIMITS, error)
-
-
-@part(120)
-def car_errors(report: Report) -> None:
+@part(120, {"manoeuvre": manoeuvres, "inputs over the step": EXCHANGES, "step [ms]": STEPS_MS})
+def car_errors(report: Report, name: str, exchange: str, ms: float) -> Row:
     """the car: error against one set of equations, by manoeuvre, master, step and output"""
-    rows, largest = [], {}
-    for name in manoeuvres(report):
-        truth, of = car_table.read(name), largest.setdefault(name, {})
-        for exchange in EXCHANGES:
-            runs = [car.drive(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID) for h in STEPS]
-            found = [car_table.apart(run.table, truth) for run in runs]
-            of[exchange] = [max(errors.values()) for errors in found]
-            order = [None, *-np.diff(np.log2(of[exchange]))]
-            rows += [
-                {"manoeuvre": name, "inputs over the step": exchange, "step [ms]": 1000 * h}
-                | errors
-                | {"largest": worst, "order": p}
-                for h, errors, worst, p in zip(STEPS, found, of[exchange], order, strict=True)
-            ]
-    report.table("car_errors", rows)
-    moving = [of["rollback"][0] for name, of in largest.items() if name not in ("straight", "hill")]
-    report.figures(rollback=max(moving))
-    draw_orders({n: Errors(STEPS, of) for n, of in largest.items()}, report.folder / "vehicles_orders.png")
+    found = errors(report, name, exchange, ms / 1000)
+    return found | {"largest": max(found.values())}
+
+
+@part(30)
+def pictures(report: Report) -> dict[str, float]:
+    """pictures of the motions; the largest error where no wheel stops"""
+    run = axle.coupled(report.fmus, axle_study.TRAILING, 0.0005, "derivatives", 0.02)
+    table = axle.complete(run, axle_study.TRAILING)
+    picture(table, axle_study.TRAILING, report.folder / "vehicles_axle.png", ", step 0.5 ms")
     for name, manoeuvre in MANOEUVRES.items():
-        picture(car.drive(fmus(report), manoeuvre).table, manoeuvre, report.folder / f"vehicles_{name}.png")
+        picture(car.drive(report.fmus, manoeuvre).table, manoeuvre, report.folder / f"vehicles_{name}.png")
+    found = report.tables["car_errors"].groupby(["manoeuvre", "inputs over the step"], sort=False)["largest"].agg(list)
+    of = {name: Errors(STEPS, found[name].to_dict()) for name in manoeuvres(report)}
+    draw_orders(of, report.folder / "vehicles_orders.png")
+    return {"rollback": max(of[name].of["rollback"][0] for name in of if name not in ("straight", "hill"))}
 
 
-@part(20)
-def car_cost(report: Report) -> None:
+@part(20, {"inputs over the step": EXCHANGES})
+def car_cost(report: Report, exchange: str) -> Row:
     """the car: microseconds per step of 1 ms: medians over the steps of the change of lanes, and over runs"""
-    rows = []
-    for exchange in EXCHANGES:
-        runs = pd.DataFrame([car.drive(fmus(report), car.LANE, exchange=exchange, grid=1.0).cost for _ in range(5)])
-        wheels, bodies = runs[list(car.WHEELS)].sum(axis=1).median(), runs[["chassis", "driver"]].sum(axis=1).median()
-        whole = runs["total"].median()
-        row = {"inputs over the step": exchange, "four wheels [us]": wheels}
-        row |= {f"within {BUDGET:g} us": "yes" if wheels <= BUDGET else "no", "chassis, driver [us]": bodies}
-        rows.append(
-            row | {"exchange [us]": runs["exchange"].median(), "all [us]": whole, "times real time": 1000 / whole}
-        )
-    report.table("car_cost", rows)
-    report.figures(**{f"cost_{row['inputs over the step']}": row["four wheels [us]"] for row in rows[:2]})
+    runs = pd.DataFrame([car.drive(report.fmus, car.LANE, exchange=exchange, grid=1.0).cost for _ in range(5)])
+    wheels, bodies = (runs[list(names)].sum(axis=1).median() for names in (car.WHEELS, ("chassis", "driver")))
+    all_of_it = runs["total"].median()
+    return {
+        "four wheels [us]": wheels,
+        f"within {BUDGET:g} us": "yes" if wheels <= BUDGET else "no",
+        "chassis, driver [us]": bodies,
+        "exchange [us]": runs["exchange"].median(),
+        "all [us]": all_of_it,
+        "times real time": 1000 / all_of_it,
+    }
 
 
 def views(tables: Tables) -> Tables:
     """Of the car the largest error and the order at 1 ms, by manoeuvre; of the axle the errors by step."""
     errors = tables["car_errors"]
+    halved = np.log2(errors["largest"]).groupby([errors["manoeuvre"], errors["inputs over the step"]]).diff()
+    errors = errors.assign(order=-halved)
     at_1_ms = errors[errors["step [ms]"] == 1].rename(columns={"largest": "error"})
     orders = at_1_ms.pivot(index="manoeuvre", columns="inputs over the step", values=["error", "order"])
     orders = orders[[(what, exchange) for exchange in EXCHANGES for what in ("error", "order")]]

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import csv
+from typing import Any
 
 import pytest
 from support.bounds import absolute_error, beyond, within
-from support.paths import ROOT
 from vehicles import car_table
 from vehicles.errors import STEPS
 
-RESULTS = ROOT / "docs" / "results"
+from reports.page import read_tables
 
 
-def rows(name: str) -> list[dict[str, str]]:
-    with (RESULTS / "data" / f"{name}.csv").open() as file:
-        return list(csv.DictReader(file))
+def rows(name: str) -> list[dict[str, Any]]:
+    return read_tables("vehicles")[name].to_dict("records")
 
 
 def test_every_manoeuvre_is_there_with_every_master() -> None:
-    found = {
-        (row["manoeuvre"], row["inputs over the step"], float(row["step [ms]"])) for row in rows("vehicles_car_errors")
-    }
+    found = {(row["manoeuvre"], row["inputs over the step"], float(row["step [ms]"])) for row in rows("car_errors")}
     steps = [1000 * h for h in STEPS]
     assert found == {(n, e, h) for n in car_table.NAMES for e in ("held", "derivatives", "rollback") for h in steps}
 
@@ -30,7 +26,7 @@ def test_every_manoeuvre_is_there_with_every_master() -> None:
 def test_omsimulator_has_the_values_of_the_master_of_the_examples(package: str) -> None:
     ends = {
         row["tool"]: [float(row[f"{axis} at the end, m"]) for axis in "XY"]
-        for row in rows("vehicles_packages")
+        for row in rows("packages")
         if row["package"] == package
     }
     within(absolute_error(ends["OMSimulator"], ends["master.py, held"]), 2e-8, "at the end, m")  # the table's digits
