@@ -11,8 +11,7 @@ import pytest
 from fmpy import validation
 from lxml import etree
 from support.bounds import EPSILON, beyond, within
-from support.driver import CHOICES, DISCARD, OK
-from support.exchange import DERIVATIVES, INDICATORS, STATES
+from support.driver import CHOICES, DERIVATIVES, DISCARD, INDICATORS, OK, STATES
 
 FULL_TURN = 2 * np.pi
 # What users rely on, in this order. Outputs that are added later follow after these and need no entry here; nor do

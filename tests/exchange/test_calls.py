@@ -13,8 +13,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from support import equations as eq
 from support.bounds import absolute_error, beyond, within
-from support.driver import DISCARD, ERROR, OK, FMU2Wheel
-from support.exchange import DERIVATIVES, INDICATORS, STATES, FMU2Exchange, Run, exchange, loaded, no_inputs
+from support.driver import DERIVATIVES, DISCARD, ERROR, INDICATORS, OK, STATES, FMU2Wheel
+from support.exchange import Run, exchange, loaded, no_inputs
 from support.motion import Library
 
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "slope": 0.2, "slope_direction": 0.7, "psi_dot_start": 0.5, "F_X": 3.0, "M_2": 0.4}
@@ -22,7 +22,7 @@ WEIGHT = 20 * 9.81  # N
 ODD = np.array([0.1, -0.2, 0.3, 1.1, 0.7, 0.9, 1 / 3, -1.7])  # a state off every symmetry
 
 
-def at_odd(library: Library, **values: float) -> FMU2Exchange:
+def at_odd(library: Library, **values: float) -> FMU2Wheel:
     wheel = exchange(library, **{**GENERAL, **values})
     wheel.place(0.3, ODD)
     return wheel
@@ -257,9 +257,8 @@ def test_indicators_are_finite_wherever_the_derivatives_are_and_else_refused(lib
             x = wheel.x()
             x[3], x[state] = theta, 10.0**power
             wheel.place(0.1, x)
-            x_dot, z = np.zeros(8), np.zeros(len(INDICATORS))
-            derivatives = wheel.fmi2GetDerivatives(wheel.component, wheel._pointer(x_dot), 8)
-            status = wheel.fmi2GetEventIndicators(wheel.component, wheel._pointer(z), len(z))
+            z = (c_double * len(INDICATORS))()
+            derivatives, status = wheel.ask("GetDerivatives", [0] * 8, 8), wheel.ask("GetEventIndicators", z, len(z))
             assert status == (OK if np.isfinite(z).all() else DISCARD)
             assert status == OK or derivatives == DISCARD, (theta, power)
             assert status == OK or wheel.sentences[-1].endswith("the indicators are not finite.")
@@ -304,7 +303,7 @@ def test_calls_of_the_other_kind_are_refused(library: Library) -> None:
         assert wheel.set_input_derivatives(["F_X"], [[1.0]]) == ERROR
 
 
-def brought_to(library: Library, state: str) -> FMU2Exchange:
+def brought_to(library: Library, state: str) -> FMU2Wheel:
     wheel = loaded(library).new()
     steps = (
         ("initialization mode", lambda: (wheel.setupExperiment(), wheel.enterInitializationMode())),
@@ -348,7 +347,7 @@ def test_the_third_indicator_is_the_normal_force_over_the_weight_across_the_road
 SOON = 1e-7 * (0.35 / 9.81) ** 0.5  # s: an event that lies ahead by less has happened
 
 
-def aimed(wheel: FMU2Exchange, t: float, x: np.ndarray, indicator: int, known: str, ahead: float) -> bool:
+def aimed(wheel: FMU2Wheel, t: float, x: np.ndarray, indicator: int, known: str, ahead: float) -> bool:
     """Sets an input so that the indicator falls to zero in `ahead` seconds at its present rate, which is a difference
     along the motion. False where it rises."""
     d = 1e-5

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support import driver
 from support import exchange as exchanging
 from support.bounds import beyond, within
 from support.driver import OK
@@ -87,8 +88,8 @@ def test_a_restored_run_logs_what_lies_ahead_and_nothing_else(patched: Library, 
 
 
 def test_another_solver_finds_it_by_its_indicator(library, patched, monkeypatch) -> None:
-    names = (*exchanging.INDICATORS, "leans", "crosses_line")
-    monkeypatch.setattr(exchanging, "INDICATORS", names)
+    names = (*driver.INDICATORS, "leans", "crosses_line")
+    monkeypatch.setattr(driver, "INDICATORS", names)
     with exchanging.exchange(patched, logging=True, keep_contact=True) as wheel:
         run = exchanging.Run(wheel, 1e-10, exchanging.no_inputs)
         run.to(2.0)
