@@ -173,3 +173,13 @@ def test_wrong_input_derivatives_are_refused_as_a_whole(wheel):
         assert w.said().startswith("fmi2SetRealInputDerivatives: ")
     assert w.serialized() == before
     assert call(force, 3, 1.0) == OK and w.serialized() != before
+
+
+def test_an_input_is_read_back_as_it_is_now(wheel):
+    w = wheel().start(s=0.03).give({"M_3": (1.0, 2.0), "F_X": (4.0,)})
+    assert w.get("M_3") == [1.0]
+    assert w.by(0.5).get("M_3", "F_X") == [2.0, 4.0]
+    assert w.by(0.5).get("M_3") == [2.0]  # derivatives hold for one step
+    blob = w.serialized()
+    assert w.put(M_3=7.0).get("M_3") == [7.0]
+    assert w.back(blob).get("M_3") == [2.0]

@@ -8,8 +8,6 @@ from reference.tables import read_table
 from support.driver import ERROR, OK, FMU2Wheel
 from support.scenes import KINDS
 
-from contract.call_states import STATES, bring_to
-
 STEP = 0.125
 
 
@@ -93,17 +91,6 @@ def test_a_brake_whose_derivative_carried_it_below_zero_is_released_and_its_stat
     assert w.get("M_brake") == [0.0]
     blob = w.serialized()
     assert w.back(blob).by(0.5).bits() == wheel().back(blob).by(0.5).bits()
-
-
-@pytest.mark.parametrize("state", STATES)
-def test_a_snapshot_brings_back_the_call_state_it_was_taken_in(wheel, state):
-    w = bring_to(wheel(), state)
-    blob = w.serialized()
-    for other_state in STATES:
-        other = bring_to(wheel(), other_state)
-        assert (other.serialized() == blob) == (other_state == state)
-        assert other.back(blob).serialized() == blob
-        assert (other.setupExperiment() == OK) == (state == "instantiated")
 
 
 def test_stop_time_and_tolerance_are_part_of_the_state(wheel):

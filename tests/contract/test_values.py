@@ -1,16 +1,12 @@
 """Getting and setting values: arrays, references, types, bounds. A refused call has no effect, not even in part."""
 
 from collections.abc import Sequence
-from ctypes import byref, c_char_p, c_double, c_int, c_uint, c_void_p
+from ctypes import c_double, c_int, c_uint
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from support.bounds import beyond, within
 from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
-
-from contract.properties import anything_whole, quick
 
 SETTERS = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
 
@@ -28,37 +24,6 @@ def get_many(w: FMU2Wheel, kind: str, references: Sequence[int]) -> tuple[int, l
     n = len(references)
     values = (SETTERS[kind] * n)(*[-77] * n)
     return getattr(w, f"fmi2Get{kind}")(w.component, (c_uint * n)(*references), n, values), list(values)
-
-
-def test_null_arrays_are_refused_and_empty_arrays_are_not(wheel):
-    w = wheel().start()
-    one = (c_uint * 1)(w.references["F_X"])
-    for kind in ("Real", "Integer", "Boolean", "String"):
-        for verb in ("Get", "Set"):
-            call = getattr(w, f"fmi2{verb}{kind}")
-            assert call(w.component, None, 0, None) == OK
-            assert w.take_messages() == []
-            assert (call(w.component, None, 1, None), call(w.component, one, 1, None)) == (ERROR, ERROR)
-            assert [m.text for m in w.take_messages()] == [f"fmi2{verb}{kind}: an array is a null pointer."] * 2
-    assert w.fmi2SetRealInputDerivatives(w.component, None, 0, None, None) == OK
-    assert w.fmi2SetRealInputDerivatives(w.component, one, 1, None, (c_double * 1)()) == ERROR
-    assert w.fmi2GetRealOutputDerivatives(w.component, None, 0, None, None) == OK
-    assert w.fmi2GetRealOutputDerivatives(w.component, one, 1, None, (c_double * 1)()) == ERROR
-    assert w.fmi2GetDirectionalDerivative(w.component, None, 0, None, 0, None, None) == OK
-    assert w.fmi2GetDirectionalDerivative(w.component, one, 1, one, 1, None, (c_double * 1)()) == ERROR
-    assert w.fmi2GetDirectionalDerivative(w.component, one, 1, None, 1, (c_double * 1)(), (c_double * 1)()) == ERROR
-    w.take_messages()
-    no_value = [w.fmi2GetStatus, w.fmi2GetRealStatus, w.fmi2GetIntegerStatus, w.fmi2GetBooleanStatus]
-    assert [call(w.component, 0, None) for call in [*no_value, w.fmi2GetStringStatus]] == [ERROR] * 5
-    states = [w.fmi2GetFMUstate(w.component, None), w.fmi2SetFMUstate(w.component, None)]
-    states += [w.fmi2SerializedFMUstateSize(w.component, w.snapshot(), None)]
-    states += [w.fmi2SerializeFMUstate(w.component, state, None, 1 << 17) for state in (None, w.snapshot())]
-    states += [w.fmi2DeSerializeFMUstate(w.component, None, 1 << 17, byref(c_void_p()))]
-    states += [w.fmi2DeSerializeFMUstate(w.component, b"0", 1, state) for state in (None, byref(c_void_p()))]
-    assert states == [ERROR] * 8
-    assert w.fmi2FreeFMUstate(w.component, None) == OK
-    assert w.fmi2SetDebugLogging(w.component, 1, 1, None) == ERROR
-    assert len(w.take_messages()) == 14
 
 
 def test_unknown_references_and_wrong_types_are_errors_and_leave_the_array_alone(wheel):
@@ -145,18 +110,3 @@ def test_the_friction_is_tunable_and_acts_from_the_present_instant_on(wheel):
 def test_without_the_exact_law_the_mode_of_friction_is_the_sign_of_the_spin(wheel, law, omega_z):
     upright = {"theta_start": np.pi / 2, "phi_dot_start": omega_z}
     assert wheel().start(**upright, **law).get("friction_mode") == [omega_z]
-
-
-@given(st.one_of(st.integers(-1, 8), anything_whole))
-@quick(40)
-def test_a_status_of_any_kind_is_answered_or_there_is_none(wheel, kind):
-    """Outside of the enumeration too: under the sanitizers, to read such a number as its type is a fault."""
-    w = wheel(logging=True).start()
-    calls = (w.fmi2GetStatus, c_int), (w.fmi2GetStringStatus, c_char_p), (w.fmi2GetRealStatus, c_double)
-    calls += (w.fmi2GetBooleanStatus, c_int), (w.fmi2GetIntegerStatus, c_int)
-    for known, (call, c_type) in enumerate(calls):
-        answered = kind == known < 4  # there is no whole number to ask for
-        assert call(w.component, kind, byref(c_type())) == (OK if answered else DISCARD)
-        assert [f"there is no status of kind {kind}." in text for text in w.sentences] == [True] * (not answered)
-        w.take_messages()
-    w.close()

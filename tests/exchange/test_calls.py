@@ -4,9 +4,8 @@ from ctypes import byref, c_double
 
 import numpy as np
 import pytest
-from contract.call_states import EXCHANGE, call
 from contract.properties import loads, quick, some
-from contract.test_foreign_states import AT_START, STEPPING, UNFOLDED, forged
+from contract.forging import AT_START, STEPPING, UNFOLDED, forged
 from equations.multibody_transcription import omega_z_dot, solved
 from equations.paper_transcription import Paper, times
 from hypothesis import example, given
@@ -290,39 +289,6 @@ def test_the_multibody_form_is_refused_with_a_sentence(library: Library) -> None
     assert wheel.initialise() == ERROR
     assert wheel.sentences[-1].startswith("formulation = 3 (multibody): model exchange needs")
     wheel.close()
-
-
-def test_calls_of_the_other_kind_are_refused(library: Library) -> None:
-    told, slave = "{} belongs to {}; this instance was made for {}.", library.wheel(logging=True)
-    assert loaded(library).fmi2SetTime(slave.component, 0.0) == ERROR
-    assert slave.sentences[-1] == told.format("fmi2SetTime", "model exchange", "co-simulation")
-    slave.close()
-    with exchange(library, logging=True) as wheel:
-        assert wheel.fmi2DoStep(wheel.component, 0.0, 0.1, 0) == ERROR
-        assert wheel.sentences[-1] == told.format("fmi2DoStep", "co-simulation", "model exchange")
-        assert wheel.set_input_derivatives(["F_X"], [[1.0]]) == ERROR
-
-
-def brought_to(library: Library, state: str) -> FMU2Wheel:
-    wheel = loaded(library).new()
-    steps = (
-        ("initialization mode", lambda: (wheel.setupExperiment(), wheel.enterInitializationMode())),
-        ("event mode", lambda: (wheel.exitInitializationMode(),)),
-        ("continuous-time mode", lambda: (wheel.fmi2EnterContinuousTimeMode(wheel.component),)),
-        ("terminated", lambda: (wheel.terminate(),)),
-    )
-    for name, step in steps if state != "instantiated" else ():
-        assert set(step()) == {OK}
-        if name == state:
-            break
-    return wheel
-
-
-@pytest.mark.parametrize("state", ["instantiated", *sorted(EXCHANGE["fmi2GetDerivatives"])])
-def test_each_function_is_legal_exactly_where_the_standard_says(library: Library, state: str) -> None:
-    for function, states in EXCHANGE.items():
-        with brought_to(library, state) as wheel:
-            assert (call(wheel, function) == OK) == (state in states), function
 
 
 def test_wrong_arrays_and_numbers_are_refused_and_change_nothing(library: Library) -> None:
