@@ -73,7 +73,7 @@ def place_of(w: FMU2Wheel, row: str) -> int:
     places |= {name: phase + k for k, name in enumerate(of_phase)}
     places |= {"t": t, "last change": t + 1, **{f"y {k}": t + 2 + k for k in range(4)}, "transitions": transitions}
     places |= {"below": contact, "pulls": contact + 1, "below flat": flat, "times flat": flat + 1}
-    return (places | {f"count {k}": transitions + k for k in range(6)} | {"y": t + 2})[row]
+    return (places | {f"count {k}": transitions + k for k in range(6)})[row]
 
 
 def forged(w: FMU2Wheel, blob: bytes, **changes: int | float) -> bytes:
