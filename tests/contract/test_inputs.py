@@ -4,7 +4,6 @@ The closed form used here is the upright wheel on a straight line (theta = 90 de
 J_z + m (r_0 + r)^2, and F_X, F_Y, M_1, M_2 are balanced by nothing but the ground.
 """
 
-from ctypes import c_double, c_int, c_uint
 from math import factorial
 
 import numpy as np
@@ -161,11 +160,10 @@ def test_an_input_may_change_again_after_a_step_of_single_roundings(wheel, value
 def test_wrong_input_derivatives_are_refused_as_a_whole(wheel):
     w = wheel().start()
     before = w.serialized()
-    force, mass, theta = (w.references[name] for name in ("F_X", "m", "theta"))
+    force, mass, theta = w.refer("F_X", "m", "theta")
 
     def call(reference: int, order: int, value: float) -> int:
-        references, orders = (c_uint * 2)(force, reference), (c_int * 2)(1, order)
-        return w.fmi2SetRealInputDerivatives(w.component, references, 2, orders, (c_double * 2)(1.0, value))
+        return w.ask("SetRealInputDerivatives", [force, reference], 2, [1, order], [1.0, value])
 
     wrong = [(force, 0, 1.0), (force, 4, 1.0), (force, -1, 1.0), (force, 1, np.nan), (force, 1, np.inf)]
     for reference, order, value in [*wrong, (mass, 1, 1.0), (theta, 1, 1.0), (99, 1, 1.0)]:
