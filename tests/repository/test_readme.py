@@ -1,7 +1,4 @@
-"""README.md and the FMU's documentation are true: examples run as written, tables are those of the description.
-
-The test of the site checks the links. The scenes are the paper's, SI units.
-"""
+"""The examples of the documents run as they are written. The scenes are the paper's, SI units."""
 
 import os
 import re
@@ -11,19 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lxml import etree
 from support.bounds import EPSILON, beyond, within
 from support.closed_forms import fall_inertia
 from support.paths import ROOT, build_folder
 from support.scenes import PAPER
 
-from publishing import variables as variable_tables
-
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 TOOLS = (ROOT / "docs" / "in_your_tool.md").read_text(encoding="utf-8")
 RECIPES = (ROOT / "docs" / "recipes.md").read_text(encoding="utf-8")
 HEADER_PAGE = (ROOT / "docs" / "c_header.md").read_text(encoding="utf-8")
-PAGE = ROOT / "fmu-src" / "archive" / "documentation" / "index.html"
 
 
 def blocks(language: str, page: str = README) -> list[str]:
@@ -151,39 +144,3 @@ def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_it
         late = float(stopped) - (1.0 + inertia * omega / float(brake))  # seen at the next step of 1 ms
         assert 0 <= late <= 0.001
     assert found["30"] != found["60"]
-
-
-def test_the_first_commands_exist_and_can_be_run():
-    commands = blocks("")[0].split()
-    assert commands == ["./scripts/run", "./scripts/test"]
-    assert all(os.access(ROOT / command, os.X_OK) for command in commands)
-    assert not os.access(ROOT / "README.md", os.X_OK)
-
-
-@pytest.mark.parametrize("page", variable_tables.PAGES, ids=lambda page: page.name)
-def test_the_tables_of_variables_are_those_of_the_description(page, description):
-    variables = variable_tables.read_variables()
-    assert [v.name for v in variables] == [v.name for v in description.modelVariables]
-    text = page.read_text(encoding="utf-8")
-    stale = "run ./scripts/documents: the tables are not those of modelDescription.xml"
-    assert text == variable_tables.with_tables(text, variables, page), stale
-    assert text != variable_tables.with_tables(text, variables[1:], page)
-    for v in variables:
-        assert v.description in text.replace("&lt;", "<").replace("&gt;", ">"), v.name
-
-
-def test_every_decision_is_listed() -> None:
-    listed = re.findall(r"\]\((decisions/\w+\.md)\)", (ROOT / "docs" / "README.md").read_text(encoding="utf-8"))
-    assert set(listed) == {f"decisions/{path.name}" for path in (ROOT / "docs" / "decisions").glob("*.md")}
-
-
-def test_the_fmus_page_is_well_formed_and_complete_offline(fmu):
-    folder, strict = Path(fmu) / "documentation", etree.HTMLParser(recover=False)
-    page = etree.parse(folder / "index.html", strict)
-    references = page.xpath("//@src | //@href")
-    assert len(references) == 9
-    for reference in references:
-        known = reference[1:] in page.xpath("//@id") if reference.startswith("#") else (folder / reference).is_file()
-        assert known, reference
-    with pytest.raises(etree.XMLSyntaxError):
-        etree.fromstring(b"<p><b>crossed</p></b>", strict)
