@@ -37,16 +37,10 @@ def moved(library: Library, times: list[float], rtol: float = 1e-11, inputs=no_i
 
 def by_cvode(library: Library, stop: float, step: float, tolerance: float, names: tuple[str, ...], **options: bool):
     """The paper's friction scene by FMPy's own CVODE."""
+    grid = {"stop_time": stop, "output_interval": step, "relative_tolerance": tolerance, "record_events": False}
+    start = {"s": 0.03}
     return simulate_fmu(
-        library.folder,
-        fmi_type="ModelExchange",
-        start_values={"s": 0.03},
-        stop_time=stop,
-        output_interval=step,
-        relative_tolerance=tolerance,
-        output=list(names),
-        record_events=False,
-        **options,
+        library.folder, fmi_type="ModelExchange", start_values=start, output=list(names), **grid, **options
     )
 
 
