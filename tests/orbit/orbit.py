@@ -25,8 +25,9 @@ REFERENCES = {variable.get("name"): int(variable.get("valueReference")) for vari
 
 
 class Orbit:
-    """One free wheel, built at once; `kind` is what came of it. Functions of probe.cpp by their names after `probe_`."""
+    """One free wheel, built at once; `kind` is what came of it."""
 
+    # Of probe.cpp, by the names after `probe_`.
     RESULTS = {"make": c_void_p, "falls_until": c_longlong, "steps": c_longlong}
     RESULTS |= dict.fromkeys(("end_time", "half_period", "fall"), c_double)
 
