@@ -105,15 +105,6 @@ def test_calls_on_no_instance_are_errors(wheel):
     assert w.fmi2FreeInstance(none) is None  # without effect
 
 
-def test_after_an_error_a_snapshot_or_a_reset_brings_the_instance_back(wheel):
-    w = bring_to(wheel(), "step complete")
-    good = w.serialized()
-    ahead = w.run([0.6, 1.0])
-    assert (w.set(M_3=1e300), w.step_to(1.1)) == (OK, ERROR)
-    assert w.step_to(1.1) == ERROR  # the partner: nothing goes on by itself
-    assert w.back(good).run([0.6, 1.0]) == ahead
-
-
 @given(st.one_of(st.integers(-1, 8), anything_whole))
 @quick(40)
 def test_a_status_of_any_kind_is_answered_or_there_is_none(wheel, kind):

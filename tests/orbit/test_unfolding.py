@@ -239,10 +239,11 @@ def test_the_order_of_readings_does_not_change_a_bit(library: ctypes.CDLL) -> No
 DISTURBANCES = ["drag", "towards north", "towards east", "beside a line", "unbalanced", "growing"]
 DISTURBANCES += ["wind", "turning", "rolling", "drifting"]
 STEADY = Start(psi=0.4, theta=np.pi / 2, phi_dot=-9.0, X_O=2.0)  # a steady wind keeps straight rolling straight
-BROKEN = [(name, PAPER) for name in DISTURBANCES] + [(name, STEADY) for name in DISTURBANCES[:6]]
+BROKEN = {f"{name}, swinging": (name, PAPER) for name in DISTURBANCES}
+BROKEN |= {f"{name}, steady": (name, STEADY) for name in DISTURBANCES[:6]}
 
 
-@pytest.mark.parametrize(("name", "start"), BROKEN, ids=[f"{n}, {'steady' if s == STEADY else 'swinging'}" for n, s in BROKEN])
+@pytest.mark.parametrize(("name", "start"), BROKEN.values(), ids=BROKEN)
 def test_what_breaks_the_symmetry_is_noticed_whatever_it_is(library: ctypes.CDLL, name: str, start: Start) -> None:
     """Nobody tells the orbit what acts on the wheel: a force that a list of conditions forgets must not be lost."""
     orbit, kind = Orbit(library, start=start), DISTURBANCES.index(name)
