@@ -46,8 +46,10 @@ class Solver:
     def __del__(self):
         self.library.probe_free(self.probe)
 
-    def start(self):
-        self.library.probe_start(self.probe)
+    def __getattr__(self, name):
+        """A function of probe.cpp that takes numbers alone: start, stop_before, limit_first_step."""
+        function = getattr(self.library, f"probe_{name}")
+        return lambda *numbers: function(self.probe, *map(c_double, numbers))
 
     def run(self, t, most=1_000_000):
         """Steps until t is known or something else than a step happens; which."""
@@ -59,12 +61,6 @@ class Solver:
     def read(self, t):
         self.library.probe_read(self.probe, c_double(t), self.y)
         return list(self.y)
-
-    def stop_before(self, t):
-        self.library.probe_stop_before(self.probe, c_double(t))
-
-    def limit_first_step(self, dt):
-        self.library.probe_limit_first_step(self.probe, c_double(dt))
 
     def restart(self, t, y):
         self.library.probe_restart(self.probe, c_double(t), (c_double * len(y))(*y))
