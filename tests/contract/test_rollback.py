@@ -64,18 +64,6 @@ def test_what_was_set_but_not_yet_stepped_is_part_of_the_state(wheel):
     assert bits_of(w, coast, range(8)) == ahead
 
 
-def test_a_rejected_step_leaves_no_trace(wheel):
-    """Step, restore, two half steps: a variable-step master."""
-    for values in KINDS.values():
-        rejecting, careful = wheel().start(**values), wheel().start(**values)
-        for k in range(20):
-            state, t = rejecting.snapshot(), rejecting.time
-            assert drive(rejecting, k).ask("SetFMUstate", state) == OK
-            rejecting.free(state)
-            rejecting.time = t
-            assert rejecting.by(STEP / 2).by(STEP / 2).bits() == careful.by(STEP / 2).by(STEP / 2).bits()
-
-
 def test_a_brake_whose_derivative_carried_it_below_zero_is_released_and_its_state_can_be_taken(wheel):
     w = wheel().start(phi_dot_start=-2.0).give({"M_brake": (1.0, -20.0)}).by(0.125)  # it arrives at -1.5 N m
     assert w.get("M_brake") == [0.0]

@@ -5,6 +5,7 @@ signatures are those of fmpy; the status is returned where fmpy would raise.
 """
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import AbstractContextManager
 from copy import copy
 from ctypes import byref, c_char, c_double, c_int, c_size_t
 from math import comb, factorial
@@ -62,7 +63,7 @@ def as_array(pointer: Any, argument: Any) -> Any:
     return argument
 
 
-class FMU2Wheel(FMU2Slave, FMU2Model):
+class FMU2Wheel(FMU2Slave, FMU2Model, AbstractContextManager):
     """One instance, or the loaded library of which `new` makes them. Its name starts with FMU2 because fmpy chooses the
     functions to load by that."""
 
@@ -87,9 +88,6 @@ class FMU2Wheel(FMU2Slave, FMU2Model):
         instance.component = self.fmi2Instantiate(*arguments)
         assert instance.component, instance.messages
         return instance
-
-    def __enter__(self) -> Self:
-        return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
