@@ -1,14 +1,10 @@
 """How a run ends, flat on the ground or lifted off: Discard, the instant, the outputs there, and nothing goes on."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
-from support.bounds import EPSILON, beyond, within
-from support.closed_forms import fall_time
+from support.bounds import beyond, within
 from support.driver import DISCARD, DO_STEP_STATUS, ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, FMU2Wheel
-from support.scenes import PAPER, THETA_0
+from support.scenes import THETA_0
 
 DROP = {"theta_start": THETA_0, "phi_dot_start": 0.0}  # let go at rest
 LIFT = {"F_Z": 250.0}  # more than the weight
@@ -105,20 +101,3 @@ def test_a_wheel_that_is_off_the_ground_at_the_start_ends_there_however_soon_it_
     assert w.step(0.1) == DISCARD
     assert ended(w) == 0
     wheel().start(tolerance=tolerance, **motion).put(F_Z=-15.0).by(0.1)  # the partner: N = 0.7 N at the start
-
-
-@pytest.mark.local
-def test_fmpy_simulate_ends_where_the_wheel_falls_and_keeps_the_data(fmu_path, tmp_path):
-    def simulated(*options: str) -> tuple[str, np.ndarray]:
-        command = [sys.executable, "-m", "fmpy", "simulate", str(fmu_path), "--output-file", str(tmp_path / "run.csv")]
-        done = subprocess.run([*command, *options], capture_output=True, text=True, check=True)
-        assert done.stderr == ""
-        return done.stdout, np.genfromtxt(tmp_path / "run.csv", delimiter=",", names=True)
-
-    said, rows = simulated("--start-values", "theta_start", "1.3089969389957472", "phi_dot_start", "0")
-    assert said.startswith("[WARNING] The wheel fell flat at t = 0.5927504")
-    assert len(rows) == 61
-    within(abs(rows["time"][-1] - fall_time(PAPER, THETA_0, 1e-7)), 2e-10, "instant, s")
-    within(abs(rows["theta"][-1] - 1e-7), 512 * EPSILON, "theta")  # rounding of the instant, times theta_dot
-    said, rows = simulated()  # the partner: the paper's wheel rolls on
-    assert (said, len(rows), rows["time"][-1]) == ("", 1001, 10.0)

@@ -12,9 +12,9 @@
 
 namespace {
 
-// harmonic: y = (cos t, -sin t) from (1, 0); stiff: van der Pol's with `parameter`; falling: (height, speed) under
-// g = 9.81; clock: y = t; explosive: y' = y^2; ending: y' = 1 up to t = 1, then no number.
-enum Kind : int { harmonic, stiff, falling, clock, explosive, ending };
+// harmonic: y = (cos t, -sin t) from (1, 0); stiff: van der Pol's with `parameter`; clock: y = t; explosive: y' = y^2;
+// ending: y' = 1 up to t = 1, then no number.
+enum Kind : int { harmonic, stiff, clock, explosive, ending };
 using Watch = double (*)(double t, const double* y);
 
 // Weights: 1 / (share tolerance (1 + |y|)).
@@ -37,13 +37,12 @@ const Setting& of(void* owner) { return *static_cast<Setting*>(owner); }
 void rates(const Setting& s, double t, const double* y, double* d) {
   if (s.kind == harmonic) d[0] = y[1], d[1] = -y[0];
   if (s.kind == stiff) d[0] = y[1], d[1] = s.parameter * (1 - y[0] * y[0]) * y[1] - y[0];
-  if (s.kind == falling) d[0] = y[1], d[1] = -9.81;
   if (s.kind == clock) d[0] = 1;
   if (s.kind == explosive) d[0] = y[0] * y[0];
   if (s.kind == ending) d[0] = t > 1 ? NAN : 1;
 }
 
-int states_of(const Setting& s) { return s.kind <= falling ? 2 : 1; }
+int states_of(const Setting& s) { return s.kind <= stiff ? 2 : 1; }
 
 double margin(void* owner, int, double t, const double* y) {
   return of(owner).by_margin ? of(owner).by_margin(t, y) : 1;

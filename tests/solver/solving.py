@@ -8,7 +8,7 @@ import numpy as np
 
 METHODS = {"adams": 0, "bdf": 1, "runge_kutta": 2}
 PROBLEMS = {  # the state at t = 0
-    **{"harmonic": (1.0, 0.0), "stiff": (2.0, 0.0), "falling": (1.0, 0.0)},
+    **{"harmonic": (1.0, 0.0), "stiff": (2.0, 0.0)},
     **{"clock": (0.0,), "explosive": (1.0,), "ending": (1.0,)},
 }
 STEPPED, EVENT, FAILED = range(3)
