@@ -1,49 +1,48 @@
-"""Which call is legal in which state: FMI 2.0, transcribed by hand into two tables, not taken from the FMU's sources.
+"""Which call is legal in which state: FMI 2.0, transcribed by hand into a table, not taken from the FMU's sources.
 
 "step in progress" and "step canceled" are left out: a synchronous FMU is never seen in them. "fatal" is never reached.
 Every call here has arguments that are sound by themselves, so that the state alone decides.
 """
 
 import csv
-from ctypes import CFUNCTYPE, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, create_string_buffer
+from ctypes import byref, c_size_t
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from fmpy.fmi2 import fmi2EventInfo
 from support import driver
-from support.driver import DISCARD, ERROR, OK, FMU2Wheel
-from support.exchange import INDICATORS
+from support.driver import CO_SIMULATION, DISCARD, ERROR, INDICATORS, MODEL_EXCHANGE, OK, FMU2Wheel
 
+KINDS = ("model exchange", "co-simulation")  # at the place of FMI's number
+Situation = tuple[int, str]  # kind and state
 
-def read(name: str) -> dict[str, set[str]]:
-    """The states in which each function is legal."""
-    with Path(__file__).with_name(name).open(newline="", encoding="utf-8") as file:
-        return {row.pop("function"): {state for state, cross in row.items() if cross} for row in csv.DictReader(file)}
-
-
-TABLE = read("call_states.csv")  # section 4.2.4
-STATES = ("instantiated", "initialization", "step complete", "step failed", "terminated", "error")
-EXCHANGE = read("call_states_exchange.csv")  # section 3.2.3, in instances of that kind alone
-
-# What follows the component: pointers raw, as no signature is declared for a slave.
-_EXCHANGE_ARGUMENTS = {
-    "fmi2NewDiscreteStates": (byref(fmi2EventInfo()),),
-    "fmi2CompletedIntegratorStep": (1, byref(c_int()), byref(c_int())),
-    "fmi2SetTime": (c_double(1.0),),
-    "fmi2SetContinuousStates": ((c_double * 8)(0, 0, 0, 1.2, 0, 0, 0, -2.0), c_size_t(8)),
-    **{function: ((c_double * 8)(), c_size_t(8)) for function in EXCHANGE if function.startswith("fmi2Get")},
-    "fmi2GetEventIndicators": ((c_double * len(INDICATORS))(), c_size_t(len(INDICATORS))),
+with Path(__file__).with_name("call_states.csv").open(newline="", encoding="utf-8") as file:
+    ROWS = list(csv.DictReader(file))
+OF = {row["function"]: row["kind"] for row in ROWS}
+STATES = ("instantiated", "initialization mode", "step complete", "step failed", "terminated", "error")  # section 4.2.4
+EXCHANGE = ("instantiated", "initialization mode", "event mode", "continuous-time mode", "terminated")  # section 3.2.3
+SITUATIONS = [(CO_SIMULATION, state) for state in STATES] + [(MODEL_EXCHANGE, state) for state in EXCHANGE]
+TABLE: dict[str, set[Situation]] = {
+    row["function"]: {
+        (kind, state) for kind, state in SITUATIONS if OF[row["function"]] in ("both", KINDS[kind]) and row[state]
+    }
+    for row in ROWS
 }
 
 
 def bring_to(w: FMU2Wheel, state: str) -> FMU2Wheel:
-    """From instantiated to one of STATES; what was logged on the way is dropped."""
-    if state == "initialization":
-        w.initializing()
-    elif state == "step failed":  # a plain drop: flat on the ground after 0.59 s
+    """From instantiated to a state of its kind; what was logged on the way is dropped."""
+    assert (w.kind, state) in SITUATIONS
+    if state == "initialization mode":
+        return w.initializing()
+    if state == "instantiated":
+        return w
+    if state == "step failed":
         assert w.start(theta_start=float(np.radians(75)), phi_dot_start=0.0).step(10.0) == DISCARD
-    elif state != "instantiated":
+    elif w.kind == MODEL_EXCHANGE:
+        assert w.start().decide() and (state == "event mode" or w.enterContinuousTimeMode() == OK)
+    else:
         assert w.start().step_to(0.5) == OK
     if state == "terminated":
         assert w.terminate() == OK
@@ -53,46 +52,43 @@ def bring_to(w: FMU2Wheel, state: str) -> FMU2Wheel:
     return w
 
 
-def call(w: FMU2Wheel, function: str, null: bool = False) -> int:
-    """Calls one function of TABLE with sound arguments, inputs at their present value; `null`: on no instance."""
-    component = None if null else w.component
-    if function not in EXCHANGE:
-        return getattr(w, function)(component, *_arguments(w)[function])
-    raw = CFUNCTYPE(c_int)((function, w.dll))
-    return raw(c_void_p(component), *_EXCHANGE_ARGUMENTS.get(function, ()))
+def call(w: FMU2Wheel, function: str) -> int:
+    """Calls one function of TABLE with sound arguments, inputs at their present value."""
+    return w.ask(function.removeprefix("fmi2"), *sound_arguments(w)[function])
 
 
-def _arguments(w: FMU2Wheel) -> dict[str, tuple[Any, ...]]:
-    """Behind the component: the arguments of every function of co-simulation."""
-    force, reaction, count, flag = (
-        (c_uint * 1)(w.references[name]) for name in ("F_X", "lambda_3", "n_steps", "keep_contact")
-    )
-    zero, real, integer, first = (c_double * 1)(0.0), (c_double * 1)(), (c_int * 1)(), (c_int * 1)(1)
-    state, blob, size = w.snapshot(), w.serialized(), c_size_t()
-    buffer = create_string_buffer(blob, len(blob))
-    return {
-        "fmi2SetDebugLogging": (1, 0, None),
-        "fmi2SetupExperiment": (0, 0.0, 0.0, 0, 0.0),
-        **dict.fromkeys(("fmi2EnterInitializationMode", "fmi2ExitInitializationMode"), ()),
-        **dict.fromkeys(("fmi2Terminate", "fmi2Reset", "fmi2CancelStep"), ()),
-        "fmi2GetReal": (reaction, 1, real),
-        "fmi2GetInteger": (count, 1, integer),
-        "fmi2GetBoolean": (flag, 1, integer),
-        "fmi2SetReal": (force, 1, zero),
-        **{f"fmi2{name}": (None, 0, None) for name in ("SetInteger", "SetBoolean", "GetString", "SetString")},
-        "fmi2GetFMUstate": (byref(state),),
-        "fmi2SetFMUstate": (state,),
-        "fmi2FreeFMUstate": (byref(state),),
-        "fmi2SerializedFMUstateSize": (state, byref(size)),
-        "fmi2SerializeFMUstate": (state, buffer, len(blob)),
-        "fmi2DeSerializeFMUstate": (buffer, len(blob), byref(state)),
-        "fmi2GetDirectionalDerivative": (reaction, 1, force, 1, zero, real),
-        "fmi2SetRealInputDerivatives": (force, 1, first, zero),
-        "fmi2GetRealOutputDerivatives": (reaction, 1, first, real),
-        "fmi2DoStep": (w.time, 0.0, 0),
-        "fmi2GetStatus": (driver.DO_STEP_STATUS, byref(c_int())),
-        "fmi2GetRealStatus": (driver.LAST_SUCCESSFUL_TIME, byref(c_double())),
-        "fmi2GetIntegerStatus": (driver.DO_STEP_STATUS, byref(c_int())),  # there is none to tell: Discard
-        "fmi2GetBooleanStatus": (driver.TERMINATED, byref(c_int())),
-        "fmi2GetStringStatus": (driver.PENDING_STATUS, byref(c_char_p())),
+def sound_arguments(w: FMU2Wheel) -> dict[str, tuple[Any, ...]]:
+    """Behind the component, for every function; no variable is a string, and no choice can be set while running."""
+    force, reaction, count, flag = (w.refer(name) for name in ("F_X", "lambda_3", "n_steps", "keep_contact"))
+    state, blob, eight = w.snapshot(), w.serialized(), [0, 0, 0, 1.2, 0, 0, 0, -2.0]
+    arguments = {
+        "SetDebugLogging": (0, 1, [b"logAll"]),
+        "SetupExperiment": (0, 0.0, 0.0, 0, 0.0),
+        "GetReal": (reaction, 1, [0]),
+        "GetInteger": (count, 1, [0]),
+        "GetBoolean": (flag, 1, [0]),
+        "SetReal": (force, 1, [0]),
+        **dict.fromkeys(("SetInteger", "SetBoolean", "GetString", "SetString"), (None, 0, None)),
+        "GetFMUstate": (byref(state),),
+        "SetFMUstate": (state,),
+        "FreeFMUstate": (byref(state),),
+        "SerializedFMUstateSize": (state, byref(c_size_t())),
+        "SerializeFMUstate": (state, bytes(len(blob)), len(blob)),
+        "DeSerializeFMUstate": (blob, len(blob), byref(state)),
+        "GetDirectionalDerivative": (reaction, 1, force, 1, [0], [0]),
+        "SetRealInputDerivatives": (force, 1, [1], [0]),
+        "GetRealOutputDerivatives": (reaction, 1, [1], [0]),
+        "DoStep": (w.time, 0.0, 0),
+        "GetStatus": (driver.DO_STEP_STATUS, [0]),
+        "GetRealStatus": (driver.LAST_SUCCESSFUL_TIME, [0]),
+        "GetIntegerStatus": (driver.DO_STEP_STATUS, [0]),  # there is none: Discard
+        "GetBooleanStatus": (driver.TERMINATED, [0]),
+        "GetStringStatus": (driver.PENDING_STATUS, [None]),
+        "NewDiscreteStates": (byref(fmi2EventInfo()),),
+        "CompletedIntegratorStep": (1, [0], [0]),
+        "SetTime": (1.0,),
+        "GetEventIndicators": ([0] * len(INDICATORS), len(INDICATORS)),
+        **dict.fromkeys(("SetContinuousStates", "GetContinuousStates", "GetDerivatives"), (eight, 8)),
+        "GetNominalsOfContinuousStates": (eight, 8),
     }
+    return {function: arguments.get(function.removeprefix("fmi2"), ()) for function in TABLE}

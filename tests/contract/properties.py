@@ -67,36 +67,14 @@ def grids(stop: float = 1.0) -> st.SearchStrategy[list[float]]:
     return inside.map(lambda points: [*sorted(points), stop])
 
 
-def go(w: FMU2Wheel, times: list[float], load: Values | None = None) -> list[bytes]:
-    """The bits at the times under constant loads; an ending is part of the bits."""
-    assert w.set(**(load or {})) == OK
-    bits = []
-    for t in times:
-        status = w.step_to(t)
-        assert status in (OK, DISCARD), w.messages
-        bits.append(w.bits() + bytes([status]))
-        if status == DISCARD:
-            break
-    return bits
-
-
 def play_anything(w: FMU2Wheel, start: Values, load: Values) -> list[tuple[int, list[float], list[str]]]:
     """One life with any values: after each call its status, the outputs where they can be read, what was logged."""
     told: list[tuple[int, list[float], list[str]]] = []
     finite = [name for name in w.reals if name != "mu_required"]  # infinite where the ground does not press
-
-    def note(status: int) -> int:
-        outputs = w.get(*finite) if status <= WARNING else []
-        told.append((status, outputs, [m.text for m in w.take_messages()]))
-        return status
-
-    assert w.set(**start) == w.setupExperiment(None, 0.0, None) == w.enterInitializationMode() == OK
-    if note(w.fmi2ExitInitializationMode(w.component)) > WARNING:
-        return told
-    note(w.set(**load))
-    for _ in range(3):
-        if note(w.step(0.02)) > WARNING:
-            break
+    assert w.set(**start) == w.setupExperiment() == w.enterInitializationMode() == OK
+    for call in (w.exitInitializationMode, lambda: w.set(**load), *[lambda: w.step(0.02)] * 3):
+        status = call()
+        told.append((status, w.get(*finite) if status <= WARNING else [], w.texts()))
     return told
 
 

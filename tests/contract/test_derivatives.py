@@ -1,6 +1,4 @@
-"""Derivatives: of outputs in time and of outputs by inputs, exact, checked against differences of the FMU itself."""
-
-from ctypes import c_double, c_int, c_uint
+"""Derivatives: of outputs in time, of outputs by inputs, of the start by parameters; against differences of the FMU."""
 
 import numpy as np
 import pytest
@@ -100,8 +98,7 @@ def test_while_friction_holds_the_wheel_the_derivatives_are_those_of_a_held_whee
 
 def test_directional_derivatives_add_up_the_seeds(wheel):
     w = wheel().start()
-    unknowns, knowns = [w.references[name] for name in outputs(w)], [w.references[name] for name in INPUTS]
-    seeds = [1.0, -2.0, 0.5, 3.0, 0.0, 7.0]
+    unknowns, knowns, seeds = w.refer(*outputs(w)), w.refer(*INPUTS), [1.0, -2.0, 0.5, 3.0, 0.0, 7.0]
     together = np.array(w.getDirectionalDerivative(unknowns, knowns, seeds))
     within(np.max(np.abs(together - jacobian(w) @ seeds)), 32 * 20 * EPSILON, "jacobian")  # seeds of 20 in all
     twice = np.array(w.getDirectionalDerivative(unknowns[::-1], [knowns[0]] * 2, [1.0, 2.0]))
@@ -111,21 +108,19 @@ def test_directional_derivatives_add_up_the_seeds(wheel):
 
 def test_wrong_requests_for_derivatives_are_refused(wheel):
     w = wheel().start()
-    theta, force, mass, energy, mode = (w.references[n] for n in ("theta", "F_X", "m", "E", "friction_mode"))
-    value = (c_double * 1)()
+    theta, force, mass, energy, mode = w.refer("theta", "F_X", "m", "E", "friction_mode")
 
     def output_derivative(reference: int, order: int) -> int:
-        return w.fmi2GetRealOutputDerivatives(w.component, (c_uint * 1)(reference), 1, (c_int * 1)(order), value)
+        return w.ask("GetRealOutputDerivatives", [reference], 1, [order], [0])
 
     def directional(unknown: int, known: int) -> int:
-        arrays = ((c_uint * 1)(unknown), 1, (c_uint * 1)(known), 1, (c_double * 1)(1.0), value)
-        return w.fmi2GetDirectionalDerivative(w.component, *arrays)
+        return w.ask("GetDirectionalDerivative", [unknown], 1, [known], 1, [1], [0])
 
     wrong = [(theta, 0), (theta, 2), (force, 1), (mass, 1), (energy, 1), (99, 1)]
     assert [output_derivative(*pair) for pair in wrong] == [ERROR] * 6
     wrong = [(theta, mass), (theta, theta), (force, force), (mode, force), (99, force), (theta, 99)]
     assert [directional(*pair) for pair in wrong] == [ERROR] * 6
-    assert len(w.take_messages()) == 12
+    assert w.texts()[6] == f"fmi2GetDirectionalDerivative: value reference {mass} is not an input."  # the wheel rolls
     assert output_derivative(theta, 1) == directional(theta, force) == OK
 
 
@@ -143,3 +138,57 @@ def test_at_an_ending_the_rates_count_the_slope_that_led_there(wheel):
     within(abs(rate - backward), 0.01, "rate")  # N/s, of -933
     beyond(abs(rate + slope - backward), 80, "backward")  # the partner: a rate that leaves the slope out
     assert lifted.step(0.1) == ERROR
+
+
+GENERAL = {
+    **{"theta_start": 1.1, "psi_start": 0.7, "phi_start": 0.4, "psi_dot_start": 0.9, "theta_dot_start": -0.6},
+    **{"phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "F_X": 1.0, "M_2": 0.5},
+}
+STARTS = {
+    "paper": {},  # J_z is at its limit, J_x + J_y; r, s and others at zero
+    "turning": {"psi_dot_start": 2.0, "theta_start": 1.2},  # J_z too, and it counts
+    "general": GENERAL | {"J_z": 1.6, "J_x": 0.8, "s": 0.03},
+    "regularized": GENERAL | {"J_z": 1.6, "s": 0.03, "friction_law": 2, "omega_s": 0.5},
+    "thin disc": {"r": 0.0, "theta_start": 0.9},
+}
+
+
+def difference_upwards(w: FMU2Wheel, unknown: str, known: str) -> float:
+    """One-sided, of the second order; of J_z, which may be at its limit, downwards."""
+    (x,) = w.get(known)
+    h = 1e-5 * (abs(x) or 1.0) * (-1 if known == "J_z" else 1)
+    values = [w.put(**{known: x + k * h}).get(unknown)[0] for k in range(3)]
+    w.put(**{known: x})
+    return (-3 * values[0] + 4 * values[1] - values[2]) / (2 * h)
+
+
+@pytest.mark.parametrize("scene", STARTS)
+def test_every_pair_that_the_description_declares_for_the_start_is_answered_and_right(wheel, description, scene):
+    w = wheel().initializing(**STARTS[scene])
+    pairs = [(u.variable.name, v.name) for u in description.initialUnknowns for v in u.dependencies]
+    assert len(pairs) > 150
+    moved, off = 0, 0.0
+    for unknown, known in pairs:
+        exact = w.jacobian([unknown], [known])[0, 0]
+        if w.variables[known].type != "Real":
+            assert exact == 0  # a choice has no small change
+            continue
+        difference, size = difference_upwards(w, unknown, known), 1 + abs(exact)
+        within(abs(exact - difference) / size, 2e-5, "relative error")
+        assert w.getDirectionalDerivative(w.refer(unknown), w.refer(known), [-2.0]) == [-2 * exact]
+        moved, off = moved + (abs(exact) > 1e-6), max(off, abs(1.01 * exact - difference) / size)
+    beyond(off, 2e-5, "relative error")
+    assert moved > 60
+    assert w.messages == []
+
+
+def test_asking_leaves_the_start_as_it_was(wheel):
+    w, other = (wheel().initializing(**GENERAL).give({"M_3": (0.0, 0.3)}) for _ in range(2))
+    for instance in (w, other):
+        instance.get("theta")
+    before = w.serialized()
+    assert before == other.serialized()
+    w.jacobian(["lambda_3"], ["m", "theta_start", "J_z", "s", "formulation", "keep_contact"])
+    assert w.serialized() == before
+    assert w.exitInitializationMode() == other.exitInitializationMode() == OK
+    assert w.run([1.0]) == other.run([1.0])

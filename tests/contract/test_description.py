@@ -1,7 +1,8 @@
-"""The model description: valid, complete, and the same as what the library says when it is asked."""
+"""The model description and its neighbours: valid, complete, numbered, and the same as what the library does."""
 
 import csv
 import re
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -11,10 +12,16 @@ import pytest
 from fmpy import validation
 from lxml import etree
 from support.bounds import EPSILON, beyond, within
-from support.driver import CHOICES, DISCARD, OK
-from support.exchange import DERIVATIVES, INDICATORS, STATES
+from support.driver import CHOICES, DERIVATIVES, DISCARD, INDICATORS, OK, STATES
+from support.paths import ROOT
+
+sys.path.insert(0, str(ROOT / "cmake"))
+from description.measuring import measured
+from description.numbering import guid_of, numbered
 
 FULL_TURN = 2 * np.pi
+SCHEMAS = Path(validation.__file__).parent / "schema"
+TEXT = (ROOT / "modelDescription.xml").read_text(encoding="utf-8")
 # What users rely on, in this order. Outputs that are added later follow after these and need no entry here; nor do
 # parameters.
 with Path(__file__).with_name("variables.csv").open(newline="", encoding="utf-8") as file:
@@ -26,18 +33,8 @@ PARAMETERS, INPUTS, OUTPUTS, LOCALS = (
 )
 
 
-def parameters_of(description) -> list[str]:
-    """All parameters: those of the contract are among them in its order, with what is added later."""
-    names = [v.name for v in description.modelVariables if v.causality == "parameter"]
-    assert [name for name in names if name in PARAMETERS] == PARAMETERS
-    return names
-
-
-def outputs_of(description) -> list[str]:
-    """All outputs: those of the contract come first."""
-    names = [v.name for v in description.modelVariables if v.causality == "output"]
-    assert names[: len(OUTPUTS)] == OUTPUTS
-    return names
+def names_of(description, causality: str) -> list[str]:
+    return [v.name for v in description.modelVariables if v.causality == causality]
 
 
 def unit_of(variable) -> str | None:
@@ -49,52 +46,39 @@ def xml(fmu: str) -> ElementTree.Element:
     return ElementTree.parse(Path(fmu) / "modelDescription.xml").getroot()
 
 
-def test_description_and_archive_pass_fmpy_and_the_schema(fmu_path, fmu, tmp_path):
+def test_description_and_archive_pass_fmpy_and_the_schema(fmu_path, fmu):
     assert validation.validate_fmu(str(fmu_path)) == []
-    schema = Path(validation.__file__).parent / "schema" / "fmi2" / "fmi2ModelDescription.xsd"
-    valid = etree.XMLSchema(etree.parse(schema))
+    valid = etree.XMLSchema(etree.parse(SCHEMAS / "fmi2" / "fmi2ModelDescription.xsd"))
     document = etree.parse(Path(fmu) / "modelDescription.xml")
     assert valid.validate(document), valid.error_log
     document.getroot().set("fmiVersion", "2.1")  # the partner
     assert not valid.validate(document)
 
 
-def test_variables_are_those_of_the_contract_in_its_order_with_its_units_and_starts(description):
-    names = [v.name for v in description.modelVariables]
-    assert names == [*parameters_of(description), *INPUTS, *outputs_of(description), *LOCALS]
-    assert [v.valueReference for v in description.modelVariables] == list(range(len(names)))
-    for v in description.modelVariables:
+def test_variables_are_those_of_the_contract_in_its_order_with_its_units_and_kinds(description):
+    parameters, outputs = names_of(description, "parameter"), names_of(description, "output")
+    assert [name for name in parameters if name in PARAMETERS] == PARAMETERS and outputs[: len(OUTPUTS)] == OUTPUTS
+    assert [v.name for v in description.modelVariables] == [*parameters, *INPUTS, *outputs, *LOCALS]
+    kinds = dict.fromkeys(parameters, ("fixed", "exact")) | {"s": ("tunable", "exact")}
+    kinds |= dict.fromkeys(outputs, ("continuous", "calculated")) | dict.fromkeys(INPUTS, ("continuous", "exact"))
+    kinds |= {name: ("continuous" if UNITS[name] else "discrete", "calculated") for name in LOCALS}
+    for number, v in enumerate(description.modelVariables):
+        assert (v.valueReference, (v.variability, v.initial)) == (number, kinds[v.name]), v.name
         assert unit_of(v) == UNITS.get(v.name, unit_of(v)), v.name
         assert v.type != "Real" or unit_of(v), v.name
-        assert (v.declaredType.displayUnit if v.declaredType else v.displayUnit) in (None, "deg")
+        assert (v.displayUnit or (v.declaredType and v.declaredType.displayUnit)) in (None, "deg")
         assert (v.displayUnit == "deg") == (unit_of(v) == "rad"), v.name
         assert v.description and not v.description.endswith("."), v.name
-
-
-def test_causality_variability_and_initial_are_those_of_the_standard(description, xml):
-    rows = [v.attrib for v in xml.find("ModelVariables")]
-    kinds = {row["name"]: (row["causality"], row["variability"], row.get("initial")) for row in rows}
-    for name in parameters_of(description):
-        assert kinds.pop(name) == ("parameter", "tunable" if name == "s" else "fixed", "exact"), name
-    for name in INPUTS:
-        assert kinds.pop(name) == ("input", "continuous", None), name
-    for name in outputs_of(description):
-        assert kinds.pop(name) == ("output", "continuous", "calculated"), name
-    for name, kind in kinds.items():
-        assert kind == ("local", "discrete" if UNITS[name] is None else "continuous", "calculated"), name
-    calculated = [v for v in description.modelVariables if v.initial == "calculated"]
-    assert all(v.start is None for v in calculated)
 
 
 def test_every_start_value_of_the_description_is_what_the_library_starts_with(wheel, description):
     w = wheel().initializing()
     stored = {v.name: v for v in description.modelVariables if v.start is not None}
-    assert list(stored) == [*parameters_of(description), *INPUTS]
+    assert list(stored) == [*names_of(description, "parameter"), *INPUTS]
     for name, v in stored.items():
         start = {"true": 1, "false": 0}.get(v.start) if v.type == "Boolean" else float(v.start)
-        status, value = w.get_one(name)
-        assert (status, value) == (OK, start), name
-        within(abs(value - STARTS.get(name, start)), 8 * EPSILON, "difference")
+        assert w.get_one(name) == (OK, start), name
+        within(abs(start - STARTS.get(name, start)), 8 * EPSILON, "difference")
     assert w.put(m=20.000000000000004).get("m") != [20.0]  # the partner: one unit in the last place
 
 
@@ -104,35 +88,26 @@ def test_limits_of_the_description_are_those_the_library_enforces(wheel, descrip
     def accepted(name: str, value: float) -> bool:
         w = wheel().initializing(**{name: value})
         taken = w.exitInitializationMode() == OK
-        texts = [m.text for m in w.take_messages()]
-        assert taken or any(text.startswith(name) for text in texts), (name, value, texts)
+        assert taken or any(text.startswith(name) for text in w.texts()), (name, value)
         w.close()
         return taken
 
-    limited = 0
-    for v in description.modelVariables:
-        whole = v.type != "Real"
-        for limit, outwards in ((v.min, -1), (v.max, 1)):
-            if limit is None:
-                continue
-            limited += 1
-            outside = int(limit) + outwards if whole else float(limit) + outwards * max(1e-3, 1e-3 * abs(float(limit)))
-            assert not accepted(v.name, outside), (v.name, outside)
-        if v.min is not None:
+    limits = [(v, limit, way) for v in description.modelVariables for limit, way in ((v.min, -1), (v.max, 1)) if limit]
+    assert len(limits) == 21
+    for v, limit, way in limits:
+        number = float(limit)
+        assert not accepted(v.name, int(limit) + way if v.type != "Real" else number + way * max(1e-3, 1e-3 * number))
+        if limit == v.min:
             factor = 0.99 if v.name == "J_z" else 1.01  # J_z is at its limit, J_x + J_y
-            assert accepted(v.name, int(v.min) if whole else float(v.start) * factor), v.name
-    assert limited == 21
+            assert accepted(v.name, int(v.min) if v.type != "Real" else float(v.start) * factor), v.name
 
 
-def test_every_unit_is_defined_by_base_units_and_used(description, xml):
-    defined = {u.name: u for u in description.unitDefinitions}
-    used = {unit_of(v) for v in description.modelVariables} - {None}
-    assert used == set(defined)
-    assert all(unit.find("BaseUnit") is not None for unit in xml.find("UnitDefinitions"))
-    exponents = {name: {k: n for k, n in attrs.asdict(u.baseUnit).items() if n} for name, u in defined.items()}
+def test_every_unit_is_defined_by_base_units_and_used(description):
+    assert {unit_of(v) for v in description.modelVariables} - {None} == {u.name for u in description.unitDefinitions}
+    of = {u.name: {k: n for k, n in attrs.asdict(u.baseUnit).items() if n} for u in description.unitDefinitions}
     newton = {"kg": 1, "m": 1, "s": -2, "factor": 1.0}
-    assert exponents["N"] == newton and exponents["J"] == newton | {"m": 2} == exponents["N.m"]
-    (degree,) = defined["rad"].displayUnits
+    assert all(of.values()) and of["N"] == newton and of["J"] == newton | {"m": 2} == of["N.m"]
+    (degree,) = next(u.displayUnits for u in description.unitDefinitions if u.name == "rad")
     within(abs(degree.factor * FULL_TURN - 360), 2 * 360 * EPSILON, "full turn, degrees")  # 16 digits of 180/pi
     beyond(abs(57.295779513 * FULL_TURN - 360), 4e-11, "full turn, degrees")
 
@@ -144,8 +119,7 @@ def test_choices_are_integers_with_limits_and_their_meanings(description, xml):
     for name, items in CHOICES.items():
         v = variables[name]
         assert (v.type, int(v.min), int(v.max)) == ("Integer", 1, len(items))
-        told = re.findall(r"\b(\d) (\w+)", v.description)
-        assert {item: int(k) for k, item in told} == items, name
+        assert {item: int(k) for k, item in re.findall(r"\b(\d) (\w+)", v.description)} == items, name
 
 
 def test_forces_and_moments_have_no_limits_in_the_description_and_the_library_refuses_what_no_wheel_bears(wheel, xml):
@@ -157,46 +131,21 @@ def test_forces_and_moments_have_no_limits_in_the_description_and_the_library_re
     assert (w.set(M_brake=-1e-9), w.set(M_3=-1e-9)) == (DISCARD, OK)
 
 
-def test_outputs_are_listed_in_order_and_the_initial_unknowns_are_exactly_the_calculated_outputs(description):
-    listed = [unknown.variable.name for unknown in description.outputs]
-    assert listed == outputs_of(description)
-    derivatives = [unknown.variable.name for unknown in description.derivatives]
-    assert derivatives == list(DERIVATIVES)
-    assert [d.derivative.name for d in (u.variable for u in description.derivatives)] == list(STATES)
-    accelerations = [name for name in derivatives if name not in listed]
-    assert [unknown.variable.name for unknown in description.initialUnknowns] == [*listed, *accelerations]
-
-
-def test_default_experiment_is_complete_and_divides(description):
+def test_the_header_and_the_capabilities_are_those_of_the_library(description, xml):
+    slave, exchange = xml.find("CoSimulation").attrib, xml.find("ModelExchange").attrib
+    both = {"canNotUseMemoryManagementFunctions", "canGetAndSetFMUstate", "canSerializeFMUstate"}
+    both |= {"providesDirectionalDerivative"}
+    assert {name for name, value in exchange.items() if value == "true"} == both
+    of_slave = {"canHandleVariableCommunicationStepSize", "canInterpolateInputs"}
+    assert {name for name, value in slave.items() if value == "true"} == both | of_slave
+    assert slave["maxOutputDerivativeOrder"] == "1"
+    assert slave["modelIdentifier"] == exchange["modelIdentifier"] == "wheel"
+    assert (xml.get("numberOfEventIndicators"), xml.get("variableNamingConvention")) == (str(len(INDICATORS)), "flat")
+    assert [u.variable.name for u in description.derivatives] == list(DERIVATIVES)
+    assert [u.variable.derivative.name for u in description.derivatives] == list(STATES)
     d = description.defaultExperiment
-    start, stop, step, tolerance = (float(x) for x in (d.startTime, d.stopTime, d.stepSize, d.tolerance))
-    assert (start, stop, step) == (0.0, 10.0, 0.01)
-    assert 1e-13 <= tolerance <= 1e-6
-    assert (stop - start) / step == round((stop - start) / step)
-
-
-def test_numbers_carry_sixteen_digits_and_the_header_is_right(xml, fmu):
-    assert xml.get("fmiVersion") == "2.0" and xml.get("variableNamingConvention") == "flat"
-    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", xml.get("generationDateAndTime"))
-    text = (Path(fmu) / "modelDescription.xml").read_text(encoding="utf-8")
-    assert text.startswith('<?xml version="1.0" encoding="UTF-8"?>')
-    assert not re.search(r'"[+-]?(nan|inf)', text, re.IGNORECASE)
-
-
-def test_capabilities_say_what_the_library_can_do(description, xml):
-    flags = xml.find("CoSimulation").attrib
-    true = {name for name, value in flags.items() if value == "true"}
-    assert true == {
-        *("canHandleVariableCommunicationStepSize", "canInterpolateInputs", "canNotUseMemoryManagementFunctions"),
-        *("canGetAndSetFMUstate", "canSerializeFMUstate", "providesDirectionalDerivative"),
-    }
-    assert flags["maxOutputDerivativeOrder"] == "1" and flags["modelIdentifier"] == "wheel"
-    exchange = xml.find("ModelExchange").attrib
-    assert {name for name, value in exchange.items() if value == "true"} == {
-        *("canNotUseMemoryManagementFunctions", "canGetAndSetFMUstate", "canSerializeFMUstate"),
-        "providesDirectionalDerivative",
-    }
-    assert (exchange["modelIdentifier"], xml.get("numberOfEventIndicators")) == ("wheel", str(len(INDICATORS)))
+    assert [float(x) for x in (d.startTime, d.stopTime, d.stepSize)] == [0.0, 10.0, 0.01]
+    assert 1e-13 <= float(d.tolerance) <= 1e-6
 
 
 def test_log_categories_are_those_the_library_knows(wheel, description):
@@ -206,4 +155,110 @@ def test_log_categories_are_those_the_library_knows(wheel, description):
     w.setDebugLogging(True, [*names])
     assert w.take_messages() == []
     w.setDebugLogging(True, ["logAll", "logNothing"])
-    assert [m.text for m in w.take_messages()] == ['fmi2SetDebugLogging: there is no category "logNothing".']
+    assert w.said() == 'fmi2SetDebugLogging: there is no category "logNothing".'
+
+
+# The numbers: ModelStructure lists what was measured and nothing else, and whoever adds, moves or removes a variable
+# numbers nothing by hand.
+
+
+@pytest.fixture(scope="module")
+def depends(fmu_path):
+    return measured(fmu_path)
+
+
+def test_the_description_lists_exactly_the_dependencies_that_are_measured_which_are_those_of_the_equations(depends):
+    start, now = depends["InitialUnknowns"], depends["Outputs"]
+    assert start["theta"] == {"theta_start"} and start["Z_O"] == {"r_0", "r", "theta_start"}
+    assert start["tau"] > {*INPUTS, "s", "friction_law", "omega_s", "J_x", "J_y", "g"}
+    assert now["lambda_3"] > {*INPUTS} and now["theta"] == {"theta"} and now["omega_z"] == {"omega_z"}
+    assert depends["Derivatives"]["phi_dot"] == {"theta", "psi_dot", "omega_z"}
+    assert numbered(TEXT, depends) == TEXT, "run scripts/variables"
+    without = {**depends, "Outputs": {**depends["Outputs"], "theta": {"M_1"}}}
+    assert numbered(TEXT, without) != TEXT  # a false algebraic loop would be seen
+
+
+NEW = """    <ScalarVariable name="drag" causality="parameter" variability="fixed" initial="exact"
+      description="Added first"><Real unit="m" start="0"/></ScalarVariable>
+"""
+
+
+def with_new(text: str) -> str:
+    return text.replace("  <ModelVariables>\n", f"  <ModelVariables>\n{NEW}")
+
+
+def index_of(text: str, name: str) -> int:
+    return 1 + int(re.search(rf'name="{name}" valueReference="(\d+)"', text)[1])
+
+
+def without_numbers(text: str) -> str:
+    return re.sub(r'( guid| valueReference|index|dependencies| derivative)="[^"]*"', "", text)
+
+
+def test_a_variable_that_comes_or_goes_changes_numbers_alone(depends):
+    added = numbered(with_new(TEXT))
+    assert 'name="drag" valueReference="0"' in added and 'name="m" valueReference="1"' in added
+    assert without_numbers(added) == without_numbers(with_new(TEXT))
+    rows = re.compile(r'index="(\d+)" dependencies="([^"]*)"')
+    before, after = ([[int(i) for i in " ".join(row).split()] for row in rows.findall(text)] for text in (TEXT, added))
+    assert [[i + 1 for i in row] for row in before] == after
+    removed = re.sub(r' *<ScalarVariable name="drag".*?</ScalarVariable>\n', "", added, flags=re.DOTALL)
+    assert numbered(removed) == TEXT != removed
+    added_again = numbered(removed, {"Outputs": depends["Outputs"]})
+    assert f'index="{index_of(TEXT, "theta")}"/>' in added_again  # what was not measured is not stated
+
+
+def test_states_and_derivatives_are_numbered_by_name():
+    moved = re.sub(r'(name="Z_O_dot".*?<Real )', r'\1derivative="Z_O" ', TEXT, count=1, flags=re.DOTALL)
+    states = numbered(with_new(moved))
+    assert f'derivative="{index_of(TEXT, "Z_O") + 1}"' in states
+    before, section = (re.search(r"<Derivatives>.*</Derivatives>", text, re.DOTALL)[0] for text in (TEXT, states))
+    names = re.compile(r"<!-- (\w+) -->")
+    assert names.findall(section) == [*names.findall(before), "Z_O_dot"]
+    assert f'<Unknown index="{index_of(TEXT, "Z_O_dot") + 1}"/><!-- Z_O_dot -->' in section
+    assert numbered(states) == states
+
+
+OF_X_O = f'dependencies="{index_of(TEXT, "X_O")}"'
+FAULTY = [('valueReference="1"', 'valueReference="0"', "m and r_0 have one valueReference")]
+FAULTY += [('name="r_0"', 'name="m"', "two variables of one name")]
+FAULTY += [(OF_X_O, 'dependencies="mass"', "refers to mass, which is none of its variables")]
+
+
+@pytest.mark.parametrize(("old", "new", "sentence"), FAULTY)
+def test_a_description_that_cannot_be_numbered_is_refused_with_a_sentence(old, new, sentence):
+    with pytest.raises(SystemExit, match=sentence):
+        numbered(TEXT.replace(old, new, 1))
+
+
+CHANGES = {"name": ("theta_dot", "theta_rate"), "valueReference": ("30", "99"), "start": ("20", "21")}
+CHANGES |= {"unit": ("N.m", "N"), "variability": ("tunable", "fixed"), 'min="1" max': ("4", "5")}
+CHANGES |= {"maxOutputDerivativeOrder": ("1", "0"), "dependencies": ("32", "1"), "numberOfEventIndicators": ("4", "3")}
+
+
+def test_the_guid_changes_with_every_attribute_of_a_variable_and_stays_with_prose_and_layout(description):
+    assert description.guid == guid_of(TEXT), "run ./scripts/variables"
+    for attribute, (old, new) in CHANGES.items():
+        changed = TEXT.replace(f'{attribute}="{old}"', f'{attribute}="{new}"', 1)
+        assert changed != TEXT and guid_of(changed) != guid_of(TEXT), attribute
+    prose = TEXT.replace('description="Mass"', 'description="The mass"').replace("\n  ", "\n    ")
+    assert prose != TEXT and guid_of(prose) == guid_of(TEXT)
+
+
+def test_the_terminal_of_the_hub_is_valid_and_names_every_input_with_pose_velocity_and_reaction(fmu, description):
+    """FMI 2.0.4 (section 2.3) refers to FMI 3.0 (section 2.4.9), whose schema comes with FMPy. Kind `signal` is for
+    inputs, outputs and parameters; rule `bus` needs a member name, unique in its terminal."""
+    terminals = etree.parse(Path(fmu) / "terminalsAndIcons" / "terminalsAndIcons.xml").getroot()
+    schema = etree.XMLSchema(etree.parse(SCHEMAS / "fmi3" / "fmi3TerminalsAndIcons.xsd"))
+    schema.assertValid(terminals)
+    (hub,) = terminals.iter("Terminal")
+    assert (hub.get("name"), hub.get("matchingRule")) == ("hub", "bus")
+    pose = ("X_O", "Y_O", "Z_O", "psi", "theta")
+    outputs = {*pose, *(f"{name}_dot" for name in pose), "tau", "lambda_3"}
+    named = [member.get("variableName") for member in hub]
+    assert [name for name in named if name not in outputs] == INPUTS and sorted(named) == sorted({*INPUTS, *outputs})
+    for member in hub:
+        assert (member.tag, member.get("variableKind")) == ("TerminalMemberVariable", "signal")
+        assert member.get("memberName") == member.get("variableName")
+    hub.attrib.pop("matchingRule")  # the partner
+    assert not schema.validate(terminals)

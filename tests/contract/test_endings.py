@@ -1,51 +1,92 @@
-"""How a run ends: flat on the ground or lifted off. Discard, the instant, and outputs there."""
-
-import subprocess
-import sys
+"""How a run ends, flat on the ground or lifted off: Discard, the instant, the outputs there, and nothing goes on."""
 
 import numpy as np
 import pytest
-from support.bounds import EPSILON, beyond, within
-from support.closed_forms import fall_time
-from support.driver import DISCARD, DO_STEP_STATUS, LAST_SUCCESSFUL_TIME, OK, TERMINATED, FMU2Wheel
-from support.scenes import PAPER, THETA_0
+from support.bounds import beyond, within
+from support.driver import DISCARD, DO_STEP_STATUS, ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, FMU2Wheel
+from support.scenes import THETA_0
 
 DROP = {"theta_start": THETA_0, "phi_dot_start": 0.0}  # let go at rest
+LIFT = {"F_Z": 250.0}  # more than the weight
 
 
 def ended(w: FMU2Wheel) -> float:
     """The instant at which the run ended, after a check of all that a master can ask for."""
-    assert w.status(DO_STEP_STATUS) == DISCARD
-    assert w.status(TERMINATED) == 1
-    finite = np.isfinite(w.get(*w.reals))
-    assert all(finite[k] for k, name in enumerate(w.reals) if name != "mu_required")  # infinite where N vanishes
+    assert (w.status(DO_STEP_STATUS), w.status(TERMINATED)) == (DISCARD, 1)
+    assert np.isfinite(w.get(*(name for name in w.reals if name != "mu_required"))).all()  # infinite where N vanishes
     return w.status(LAST_SUCCESSFUL_TIME)
 
 
 def test_the_end_does_not_depend_on_the_communication_grid(wheel):
     at_once, in_steps = wheel().start(**DROP), wheel().start(**DROP)
     assert at_once.step(10.0) == DISCARD
-    status = OK
-    while status == OK:
-        status = in_steps.step(0.01)
+    while (status := in_steps.step(0.01)) == OK:
+        pass
     assert (status, in_steps.time) == (DISCARD, pytest.approx(0.59))
     assert ended(at_once) == ended(in_steps)
     assert at_once.bits() == in_steps.bits()
     assert at_once.bits() != wheel().start(**DROP).run([0.59])[0]
 
 
+@pytest.mark.parametrize(("values", "what"), [(DROP, "fell flat"), (LIFT, "lifted off the ground")])
+def test_an_ending_is_told_with_every_digit_of_its_instant_and_no_later_step_is_answered_with_ok(wheel, values, what):
+    w = wheel().start(start=0.1, **values)
+    assert w.step(10.0) == DISCARD
+    end, bits = ended(w), w.bits()
+    told = f"{what} at t = {np.format_float_positional(end, trim='-')} s"  # the shortest decimal that is this number
+    (message,) = w.take_messages()
+    assert (message.status, message.category) == (WARNING, "logStatusDiscard")
+    assert message.text.startswith(f"The wheel {told}") and message.text.endswith("the model ends there.")
+    w.time = end
+    for h in (0.0, 1e-300, 1e-12, 0.1, 1e6):
+        assert w.step(h) == ERROR
+        assert w.said() == f"fmi2DoStep: the wheel {told}. Restore a state or reset."
+    assert w.set(s=0.01) == ERROR and what in w.said()
+    for leaving in (lambda: OK, w.terminate):
+        assert leaving() == OK
+        assert (w.bits(), w.status(TERMINATED), w.status(LAST_SUCCESSFUL_TIME)) == (bits, 1, end)
+    assert w.reset() == OK
+    assert w.start().run([2.0]) == wheel().start().run([2.0])
+
+
+def test_a_restored_ending_is_still_an_ending_in_any_instance(wheel):
+    w, other = wheel().start(**DROP).to(0.5), wheel().start()
+    assert (w.status(DO_STEP_STATUS), w.status(LAST_SUCCESSFUL_TIME), w.status(TERMINATED)) == (OK, 0.5, 0)
+    before = w.serialized()
+    assert w.step(10.0) == DISCARD
+    end, bits = ended(w), w.bits()
+    other.back(w.serialized()).take_messages()
+    assert (other.bits(), other.step(0.0), other.status(TERMINATED)) == (bits, ERROR, 1)
+    assert "fell flat" in other.said()
+    other.back(before)  # the partner: a state from before leads on, to the same end
+    assert (other.status(TERMINATED), other.step(0.0), other.step(0.05)) == (0, OK, OK)
+    assert (other.step(1.0), other.status(LAST_SUCCESSFUL_TIME), other.bits()) == (DISCARD, end, bits)
+
+
+@pytest.mark.parametrize("values", [{}, {"s": 0.03}], ids=["unfolded", "stepped"])
+def test_a_terminated_wheel_is_read_where_it_stopped(wheel, values):
+    read, unread = (wheel().start(**values).by(1.0) for _ in range(2))
+    want = read.bits()
+    assert unread.terminate() == OK and unread.bits() == want
+
+
+def test_times_in_messages_have_the_digits_they_need(wheel):
+    w = wheel().start().to(0.1)
+    times = {0.3: "0.3", 0.1 + 0.2: "0.30000000000000004", 1e-7: "1e-07", 100.0: "100", 1e-300: "1e-300"}
+    for w.time, text in times.items():
+        assert w.step(1.0) == ERROR
+        assert w.said() == f"fmi2DoStep from {text} s: the FMU has reached 0.1 s."
+
+
 def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
     """F_Z grows by 30 N/s against the weight of 196.2 N; the wheel's own motion shifts the instant."""
-    w = wheel().start().give({"F_Z": (0.0, 30.0)})
+    w, before, kept = (wheel().start(keep_contact=k).give({"F_Z": (0.0, 30.0)}) for k in (0, 0, 1))
     assert w.step(10.0) == DISCARD
     t = ended(w)
-    (normal,) = w.get("lambda_3")
-    within(abs(normal), 3e-6, "normal force")  # N
-    assert "lifted off" in w.take_messages()[-1].text
-    before = wheel().start().give({"F_Z": (0.0, 30.0)}).by(t - 0.01)
-    beyond(before.get("lambda_3")[0], 0.1, "lambda_3")
-    kept = wheel().start(keep_contact=1).give({"F_Z": (0.0, 30.0)}).by(t + 0.2)
-    assert kept.get("lambda_3")[0] < 0  # the partner: the ground pulls
+    within(abs(w.get("lambda_3")[0]), 3e-6, "normal force, N")
+    assert "lifted off" in w.said()
+    beyond(before.by(t - 0.01).get("lambda_3")[0], 0.1, "normal force before, N")
+    assert kept.by(t + 0.2).get("lambda_3")[0] < 0  # the partner: the ground pulls
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-10])
@@ -55,28 +96,8 @@ def test_a_wheel_that_is_off_the_ground_at_the_start_ends_there_however_soon_it_
     """The force is back long before the solver's first step ends: both its ends, or its end alone, tell nothing."""
     motion = {"theta_start": 1.0, "psi_dot_start": 6.0, "theta_dot_start": 4.0, "phi_dot_start": 2.0}
     w, kept = (wheel().start(tolerance=tolerance, keep_contact=k, **motion).put(F_Z=-10.5) for k in (0, 1))
-    within(abs(w.get("lambda_3")[0] + 2.5), 0.5, "lambda_3")  # N
-    beyond(kept.by(0.005).get("lambda_3")[0], 5, "lambda_3")  # how soon
+    within(abs(w.get("lambda_3")[0] + 2.5), 0.5, "normal force at the start + 2.5 N, N")
+    beyond(kept.by(0.005).get("lambda_3")[0], 5, "normal force soon after, N")
     assert w.step(0.1) == DISCARD
     assert ended(w) == 0
     wheel().start(tolerance=tolerance, **motion).put(F_Z=-15.0).by(0.1)  # the partner: N = 0.7 N at the start
-
-
-def fmpy_simulate(fmu_path, output, *start_values: str) -> tuple[str, np.ndarray]:
-    command = [sys.executable, "-m", "fmpy", "simulate", str(fmu_path), "--output-file", str(output)]
-    values = ["--start-values", *start_values] if start_values else []
-    finished = subprocess.run([*command, *values], capture_output=True, text=True, check=True)
-    assert finished.stderr == ""
-    return finished.stdout, np.genfromtxt(output, delimiter=",", names=True)
-
-
-@pytest.mark.local
-def test_fmpy_simulate_ends_where_the_wheel_falls_and_keeps_the_data(fmu_path, tmp_path):
-    start = ("theta_start", "1.3089969389957472", "phi_dot_start", "0")
-    said, rows = fmpy_simulate(fmu_path, tmp_path / "drop.csv", *start)
-    assert said.startswith("[WARNING] The wheel fell flat at t = 0.5927504")
-    assert len(rows) == 61
-    within(abs(rows["time"][-1] - fall_time(PAPER, THETA_0, 1e-7)), 2e-10, "time")
-    within(abs(rows["theta"][-1] - 1e-7), 512 * EPSILON, "theta")  # rounding of the instant, times theta_dot
-    said, rows = fmpy_simulate(fmu_path, tmp_path / "paper.csv")  # the partner: the paper's wheel rolls on
-    assert (said, len(rows), rows["time"][-1]) == ("", 1001, 10.0)

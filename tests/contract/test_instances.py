@@ -1,13 +1,14 @@
 """Many instances at once: interleaved, in threads, from changing threads; each has the bits it has alone."""
 
+import locale
 from concurrent.futures import ThreadPoolExecutor
 from ctypes import CDLL, Structure, byref, c_size_t
-from threading import Thread
+from pathlib import Path
 
 import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
-from support.driver import ERROR, OK, FMU2Wheel
+from support.driver import ERROR, OK
 from support.scenes import KINDS
 
 TIMES = np.arange(1, 25) * 0.125
@@ -19,10 +20,6 @@ def alone(wheel) -> list[list[bytes]]:
     return [wheel().start(**values).run(TIMES) for values in SETTINGS]
 
 
-def test_every_instance_has_bits_of_its_own(alone):
-    assert len({bits[-1] for bits in alone}) == len(SETTINGS)
-
-
 def test_interleaved_in_any_order_each_instance_has_the_bits_it_has_alone(wheel, alone):
     rng = np.random.default_rng(17)
     wheels = [wheel() for _ in SETTINGS]
@@ -32,51 +29,45 @@ def test_interleaved_in_any_order_each_instance_has_the_bits_it_has_alone(wheel,
     for k in rng.permutation(np.repeat(np.arange(len(SETTINGS)), len(TIMES))):
         bits[k] += wheels[k].run([TIMES[len(bits[k])]])
     assert bits == alone
+    assert len({each[-1] for each in bits}) == len(SETTINGS)
 
 
 def test_in_threads_each_instance_has_the_bits_it_has_alone(wheel, alone):
-    def run(values: dict[str, float]) -> list[bytes]:
-        return wheel().start(**values).run(TIMES)
-
     with ThreadPoolExecutor(4) as pool:
-        assert list(pool.map(run, SETTINGS)) == alone
+        assert list(pool.map(lambda values: wheel().start(**values).run(TIMES), SETTINGS)) == alone
 
 
 def test_creation_stepping_and_freeing_may_each_happen_in_another_thread(wheel, alone):
-    wheels: list[FMU2Wheel] = []
-    bits: list[list[bytes]] = []
-    for work in (
-        lambda: wheels.append(wheel()),
-        lambda: wheels[0].start(**SETTINGS[1]),
-        lambda: bits.append(wheels[0].run(TIMES[:12])),
-        lambda: bits.append(wheels[0].run(TIMES[12:])),
-        lambda: wheels[0].close(),
-    ):
-        thread = Thread(target=work)
-        thread.start()
-        thread.join()
-    assert bits[0] + bits[1] == alone[1]
-    assert wheels[0].component is None
+    def in_a_thread(work):
+        with ThreadPoolExecutor(1) as pool:
+            return pool.submit(work).result()
+
+    w = in_a_thread(wheel)
+    in_a_thread(lambda: w.start(**SETTINGS[1]))
+    assert in_a_thread(lambda: w.run(TIMES[:12])) + in_a_thread(lambda: w.run(TIMES[12:])) == alone[1]
+    in_a_thread(w.close)
+    assert w.component is None
 
 
 def test_a_thousand_instances_live_side_by_side_and_can_be_freed_in_any_order(wheel):
     w = wheel()
-    callbacks = fmi2CallbackFunctions()
-    made = [w.fmi2Instantiate(b"one of many", 1, w.guid.encode(), None, byref(callbacks), 0, 0) for _ in range(1000)]
+
+    def make(count: int) -> list[int | None]:
+        return [w.fmi2Instantiate(b"one of many", 1, w.guid.encode(), None, None, 0, 0) for _ in range(count)]
+
+    made = make(1000)
     assert len(set(made)) == 1000 and None not in made
-    rng = np.random.default_rng(23)
-    shuffled = [int(component) for component in rng.permutation(made)]
+    shuffled = [int(component) for component in np.random.default_rng(23).permutation(made)]
     freed, kept = shuffled[:500], shuffled[500:]
-    for component in freed:
-        w.fmi2FreeInstance(component)
-        w.fmi2FreeInstance(component)  # a second time, without effect
+    for component in np.repeat(freed, 2):  # a second time, without effect
+        w.fmi2FreeInstance(int(component))
     assert {w.fmi2Reset(component) for component in kept} == {OK}
     assert {w.fmi2Reset(component) for component in freed} == {ERROR}
-    again = [w.fmi2Instantiate(b"more", 1, w.guid.encode(), None, None, 0, 0) for _ in range(100)]
+    again = make(100)
     assert None not in again
     for component in (*kept, *again):
         w.fmi2FreeInstance(component)
-    assert w.start().step(1.0) == OK
+    w.start().by(1.0)
 
 
 @pytest.mark.parametrize("method", ["adams", "bdf", "runge_kutta"])
@@ -90,8 +81,7 @@ def test_a_freed_instance_gives_its_memory_back(wheel, method):
     heap.restype = Heap
     in_use = []
     for _ in range(40):
-        w = wheel().start(method=method).by(1.0)
-        w.close()
+        wheel().start(method=method).by(1.0).close()
         in_use.append(heap().numbers[7])
     assert in_use[-1] - in_use[19] < 20 * 2000
 
@@ -105,24 +95,16 @@ WRONG += [(b"wheel", kind, None, "the type is not known") for kind in (2, 7, -1,
 
 @pytest.mark.parametrize(("name", "kind", "guid", "why"), WRONG)
 def test_an_instantiation_that_is_wrong_is_refused_with_the_reason(wheel, name, kind, guid, why):
-    w = wheel()
-    told: list[tuple[int, bytes, bytes]] = []
+    w, told = wheel(), []
     callbacks = fmi2CallbackFunctions()
     callbacks.logger = fmi2CallbackLoggerTYPE(lambda environment, instance, *message: told.append(message))
-    right = w.guid.encode()
-
-    def instantiate(name: bytes | None, kind: int, guid: bytes | None, pointer) -> int | None:
-        return w.fmi2Instantiate(name, kind, guid, None, pointer, 0, 0)
-
-    assert instantiate(name, kind, right if guid is None else guid, byref(callbacks)) is None
+    guid = w.guid.encode() if guid is None else guid
+    assert w.fmi2Instantiate(name, kind, guid, None, byref(callbacks), 0, 0) is None
     ((status, category, text),) = told
-    assert (status, category) == (3, b"logStatusError")
+    assert (status, category) == (ERROR, b"logStatusError")
     assert text.startswith(b"fmi2Instantiate: " + why.encode()) and text.endswith(b".")
-    assert instantiate(name, kind, right if guid is None else guid, None) is None  # nobody to tell: still refused
-    assert instantiate(b"wheel", 1, None, byref(callbacks)) is None
-    good = instantiate(b"wheel", 1, right, byref(callbacks))
-    assert good is not None
-    w.fmi2FreeInstance(good)
+    assert w.fmi2Instantiate(name, kind, guid, None, None, 0, 0) is None  # nobody to tell: still refused
+    assert w.fmi2Instantiate(b"wheel", 1, None, None, byref(callbacks), 0, 0) is None
 
 
 URIS = [None, "", "file:///x", "file:/x/", "file:////x", "file:///a b/é/", "file:///no/resources", "C:\\x", "%s%n#"]
@@ -131,28 +113,24 @@ URIS = [None, "", "file:///x", "file:/x/", "file:////x", "file:///a b/é/", "fil
 @pytest.mark.parametrize("uri", URIS)
 def test_any_resource_location_will_do(wheel, uri):
     w = wheel()
-    location = None if uri is None else uri.encode()
-    component = w.fmi2Instantiate(b"wheel", 1, w.guid.encode(), location, None, 1, 0)
+    component = w.fmi2Instantiate(b"wheel", 1, w.guid.encode(), None if uri is None else uri.encode(), None, 1, 0)
     assert component is not None
     w.fmi2FreeInstance(component)
 
 
 def test_version_and_platform_are_those_of_the_standard(wheel):
-    w = wheel()
-    assert (w.getVersion(), w.getTypesPlatform()) == ("2.0", "default")
+    assert (wheel().getVersion(), wheel().getTypesPlatform()) == ("2.0", "default")
 
 
 def test_the_environment_of_the_process_is_left_alone(wheel, tmp_path, monkeypatch):
     """Rounding mode, working directory and locale after a run with events, errors and an ending."""
-    import locale
-    from pathlib import Path
+
+    def environment():
+        return Path.cwd(), locale.setlocale(locale.LC_ALL), np.geterr(), 1.0 / 3.0, np.float64(1e-310) / 2
 
     monkeypatch.chdir(tmp_path)
-    before = (Path.cwd(), locale.setlocale(locale.LC_ALL), np.geterr(), 1.0 / 3.0, np.float64(1e-310) / 2)
-    w = wheel(logging=True).start(s=0.03)
-    w.run([3.0])
-    w.set(M_3=1e300)
-    w.step(1.0)
-    after = (Path.cwd(), locale.setlocale(locale.LC_ALL), np.geterr(), 1.0 / 3.0, np.float64(1e-310) / 2)
-    assert after == before and after[-1] == 5e-311  # no flush to zero
+    before = environment()
+    w = wheel(logging=True).start(s=0.03).to(3.0)
+    assert (w.set(M_3=1e300), w.step(1.0)) == (OK, ERROR)
+    assert environment() == before and before[-1] == 5e-311  # no flush to zero
     assert list(tmp_path.iterdir()) == []

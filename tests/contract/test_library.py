@@ -1,18 +1,30 @@
-"""The library and the archive as files: what they need, export and contain; the same content packs the same."""
+"""The library and the archive as files: what they need, export, contain and carry of licences."""
 
+import argparse
 import importlib.util
+import shutil
+import struct
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
+import fmpy
 import pytest
-from support.paths import ROOT
+from support.paths import ROOT, build_folder
 
 from contract.call_states import TABLE
+
+sys.path.insert(0, str(ROOT / "cmake"))
+sys.path.insert(0, str(ROOT / "tools" / "release"))
+import pack_fmu
+import universal
 
 pytestmark = pytest.mark.local
 # Beside those of the table of call states.
 OTHER_FUNCTIONS = {"fmi2GetTypesPlatform", "fmi2GetVersion", "fmi2Instantiate", "fmi2FreeInstance"}
+LIBRARIES = {"libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
+HEADERS = Path(fmpy.__file__).parent / "c-code"
 
 
 @pytest.fixture(scope="module")
@@ -21,27 +33,31 @@ def library(fmu: str) -> Path:
     return path
 
 
-def lines_of(*command: str) -> list[str]:
+def lines_of(*command: str | Path) -> list[str]:
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
 
 
+def dynamic(library: Path) -> list[str]:
+    return lines_of("readelf", "--dynamic", "--wide", library)
+
+
 def needed(library: Path) -> set[str]:
-    dynamic = lines_of("readelf", "--dynamic", "--wide", str(library))
-    return {line.split("[")[1].rstrip("]") for line in dynamic if "(NEEDED)" in line}
+    return {line.split("[")[1].rstrip("]") for line in dynamic(library) if "(NEEDED)" in line}
 
 
 def names(library: Path, which: str) -> set[str]:
-    return {line.split()[-1].split("@")[0] for line in lines_of("nm", "--dynamic", f"--{which}-only", str(library))}
+    symbols = lines_of("nm", "--dynamic", f"--{which}-only", library)
+    return {line.split()[-1].split("@")[0] for line in symbols} - {"wheel_1", "WHEEL"}
 
 
-def exported(library: Path) -> set[str]:
-    return names(library, "defined") - {"wheel_1", "WHEEL"}
+def of_numpy(module: str) -> Path:
+    """A library of this machine: the partner."""
+    return Path(importlib.util.find_spec(f"numpy.{module}").origin)
 
 
 def test_the_library_needs_libc_and_libm_only(library):
-    assert needed(library) <= {"libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
-    (python,) = [Path(p) for p in [importlib.util.find_spec("numpy.linalg._umath_linalg").origin]]
-    assert not needed(python) <= {"libc.so.6", "libm.so.6"}  # the partner: another library of this machine
+    assert needed(library) <= LIBRARIES
+    assert not needed(of_numpy("linalg._umath_linalg")) <= LIBRARIES
 
 
 # Rounded correctly in every libm, as IEEE 754 asks, and cosines are not.
@@ -50,66 +66,158 @@ EXACT = {"fabs", "floor", "ceil", "fmax", "fmin", "fmod", "nearbyint", "remainde
 
 def of_the_systems_mathematics(library: Path) -> set[str]:
     """What a library takes from libm; perhaps nothing, since some compilers compute a remainder themselves."""
-    libms = [line.split()[2] for line in lines_of("ldd", str(library)) if line.split()[0].startswith("libm.")]
+    libms = [line.split()[2] for line in lines_of("ldd", library) if line.split()[0].startswith("libm.")]
     return {name for libm in libms for name in names(library, "undefined") & names(Path(libm), "defined")}
 
 
 def test_of_the_systems_mathematics_the_libraries_take_only_what_is_exact(library, fmu_path):
     for path in (library, fmu_path.parent / "libwheel_equations.so"):
         assert of_the_systems_mathematics(path) <= EXACT
-    numpy = Path(importlib.util.find_spec("numpy._core._multiarray_umath").origin)
-    assert "cos" in of_the_systems_mathematics(numpy)  # the partner: another library of this machine
+    assert "cos" in of_the_systems_mathematics(of_numpy("_core._multiarray_umath"))
 
 
 def test_the_library_exports_the_functions_of_fmi_and_nothing_else(library, fmu_path):
-    names = exported(library)
-    assert all(name.startswith("fmi2") for name in names)
-    assert names == set(TABLE) | OTHER_FUNCTIONS  # 44 functions
-    assert names != exported(fmu_path.parent / "libwheel_equations.so")
+    assert names(library, "defined") == set(TABLE) | OTHER_FUNCTIONS  # 44 functions
+    assert names(library, "defined") != names(fmu_path.parent / "libwheel_equations.so", "defined")
 
 
 def test_the_library_has_no_executable_stack_no_late_relocations_in_code_and_no_path_of_this_machine(library):
-    headers = lines_of("readelf", "--program-headers", "--wide", str(library))
+    headers = lines_of("readelf", "--program-headers", "--wide", library)
     (stack,) = [line for line in headers if "GNU_STACK" in line]
-    assert "RWE" not in stack
-    assert not any("TEXTREL" in line for line in lines_of("readelf", "--dynamic", "--wide", str(library)))
+    assert "RWE" not in stack and not any("TEXTREL" in line for line in dynamic(library))
     content = library.read_bytes()
     assert str(ROOT).encode() not in content and str(Path.home()).encode() + b"/" not in content
     assert b"fmi2DoStep" in content
 
 
-def entries_of(path: Path) -> list[zipfile.ZipInfo]:
-    with zipfile.ZipFile(path) as archive:
-        assert archive.testzip() is None
-        return archive.infolist()
-
-
 def test_the_archive_is_laid_out_as_the_standard_says(fmu_path):
-    entries = entries_of(fmu_path)
+    with zipfile.ZipFile(fmu_path) as archive:
+        assert archive.testzip() is None
+        entries = archive.infolist()
     names = [entry.filename for entry in entries]
     assert len(names) == len(set(names)) and names == sorted(names)
     folders = {"binaries", "documentation", "extra", "licenses", "resources", "sources", "terminalsAndIcons"}
-    top = {"modelDescription.xml", "model.png", *folders}
-    assert {name.split("/")[0] for name in names} <= top
+    assert {name.split("/")[0] for name in names} <= {"modelDescription.xml", "model.png", *folders}
     assert {"modelDescription.xml", "model.png", "documentation/index.html", "licenses/license.txt"} <= set(names)
     for entry in entries:
-        assert not entry.is_dir() and ".." not in entry.filename and "\\" not in entry.filename
-        assert entry.filename.isascii() and not entry.filename.startswith("/")
-        assert entry.compress_type == zipfile.ZIP_DEFLATED
-        assert entry.external_attr >> 28 != 0xA  # no link
-        assert entry.date_time == (1980, 1, 1, 0, 0, 0)
-        assert entry.file_size > 0
+        assert not entry.is_dir() and ".." not in entry.filename and entry.filename.isascii()
+        assert (entry.compress_type, entry.date_time) == (zipfile.ZIP_DEFLATED, (1980, 1, 1, 0, 0, 0))
+        assert entry.external_attr >> 28 != 0xA and entry.file_size > 0  # no link
 
 
 def test_packing_the_same_content_gives_the_same_bytes(fmu_path, fmu, tmp_path):
-    specification = importlib.util.spec_from_file_location("pack_fmu", ROOT / "cmake" / "pack_fmu.py")
-    packer = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(packer)
     files = {p.relative_to(fmu).as_posix(): p for p in sorted(Path(fmu).rglob("*"), reverse=True) if p.is_file()}
     again, other = tmp_path / "again.fmu", tmp_path / "other.fmu"
-    packer.pack(files, again)
-    assert again.read_bytes() == fmu_path.read_bytes()
-    changed = tmp_path / "LICENSE"
-    changed.write_bytes(files["licenses/license.txt"].read_bytes() + b"\n")
-    packer.pack(files | {"licenses/license.txt": changed}, other)
-    assert other.read_bytes() != fmu_path.read_bytes()
+    pack_fmu.pack(files, again)
+    pack_fmu.pack(files | {"licenses/license.txt": b"another"}, other)
+    assert again.read_bytes() == fmu_path.read_bytes() != other.read_bytes()
+
+
+CLAUSES = (
+    "Redistributions of source code must retain the above copyright notice",
+    "Redistributions in binary form must reproduce the above copyright notice",
+    "THIS SOFTWARE IS PROVIDED BY THE COPYRIGHT HOLDERS AND CONTRIBUTORS",
+    "EVEN IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE",
+)
+IN_LICENCE = {  # each piece as it stands there
+    "license.txt": ["wheel.fmu founders"],
+    "sundials-license.txt": ["Lawrence Livermore"],
+    "eigen-license.txt": [
+        *("Mozilla Public License", '1.1. "Contributor"', "Limitation of Liability"),
+        "Exhibit A - Source Code Form License Notice",
+    ],
+    "eigen-notice.txt": ["Mozilla Public"],
+    "fmi-headers-notice.txt": CLAUSES,
+}
+
+
+def contains(text: str, piece: str) -> bool:
+    return " ".join(piece.split()) in " ".join(text.split())
+
+
+def test_the_archive_carries_the_licences_word_for_word(fmu):
+    texts = {name: (Path(fmu) / "licenses" / name).read_text(encoding="utf-8") for name in IN_LICENCE}
+    for name, pieces in IN_LICENCE.items():
+        assert all(contains(texts[name], piece) for piece in pieces), name
+    assert not contains(texts["eigen-notice.txt"], "Limitation of Liability")  # the partner: our own words about it
+    notice = texts["fmi-headers-notice.txt"]
+    for header in ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"):
+        text = (HEADERS / header).read_text(encoding="utf-8")
+        assert contains(text, notice) and not contains(text, notice.replace("must reproduce", "should reproduce"))
+
+
+def release(tmp_path: Path, left_out: str = "") -> dict[str, pack_fmu.Content]:
+    """The licences of a release whose compiler is an empty shell of ziglang, without one of its files."""
+    for name in pack_fmu.ZIG_LICENCES.values():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        if name != left_out:
+            (tmp_path / name).write_text(name)
+    arguments = argparse.Namespace(sundials=tmp_path, fmi_headers=HEADERS, eigen_license=None, libm=None, zig=tmp_path)
+    (tmp_path / "NOTICE").write_text("NOTICE")
+    return pack_fmu.licences(arguments)
+
+
+def test_a_release_carries_the_licences_of_what_the_cross_compiler_links_in(tmp_path):
+    entries = release(tmp_path / "whole")
+    assert {f"licenses/{name}-license.txt" for name in ("zig", "musl", "mingw-w64", "libcxx", "sundials")} <= set(
+        entries
+    )
+    pack_fmu.pack(entries, tmp_path / "whole.fmu")
+    with pytest.raises(FileNotFoundError):  # a licence that is not found is not passed over
+        pack_fmu.pack(release(tmp_path / "less", "lib/libc/musl/COPYRIGHT"), tmp_path / "less.fmu")
+
+
+PAGE, X86_64, ARM64 = 1 << 14, 0x01000007, 0x0100000C
+
+
+def mach_o(processor: int, size: int) -> bytes:
+    return struct.pack("<III", universal.MACHO_64, processor, 0).ljust(size, bytes([processor & 0xFF]))
+
+
+def test_the_universal_library_holds_each_processors_library_whole_and_on_its_page():
+    libraries = {X86_64: mach_o(X86_64, PAGE + 5), ARM64: mach_o(ARM64, 3 * PAGE - 1)}
+    joined = universal.universal([*libraries.values()])
+    assert struct.unpack_from(">II", joined) == (0xCAFEBABE, 2)
+    for k, (processor, library) in enumerate(libraries.items()):
+        kind, _, offset, size, alignment = struct.unpack_from(">5I", joined, 8 + 20 * k)
+        assert (kind, size, offset % PAGE, 1 << alignment) == (processor, len(library), 0, PAGE)
+        assert joined[offset : offset + size] == library != joined[offset + 1 : offset + 1 + size]
+    with pytest.raises(ValueError, match="not a 64-bit Mach-O"):
+        universal.universal([b"\x7fELF".ljust(64, b"\0")])
+
+
+# A project without languages: what cmake/fmi.cmake makes of a machine.
+FOLDER_OF = """
+cmake_minimum_required(VERSION 3.25)
+project(folder LANGUAGES NONE)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+list(APPEND CMAKE_MODULE_PATH "{root}/cmake")
+include(fmi)
+file(WRITE ${{CMAKE_BINARY_DIR}}/folder ${{wheel_platform}})
+"""
+# FMPy on an arm machine, where the libraries that it brings for x86-64 cannot be loaded.
+ON_ARM = """
+import ctypes, platform, sys
+load = ctypes.cdll.LoadLibrary
+def loads(name):
+    if name and "site-packages" in name:
+        raise OSError(f"{name}: wrong ELF class")
+    return load(name)
+platform.machine, ctypes.cdll.LoadLibrary = lambda: "aarch64", loads
+import fmpy
+assert fmpy.platform_tuple == "aarch64-linux"
+assert fmpy.simulate_fmu(sys.argv[1], stop_time=0.1)["time"][-1] == 0.1
+"""
+
+
+def test_a_local_build_on_arm_linux_is_where_fmpy_looks_for_it(tmp_path):
+    shutil.copy(ROOT / "modelDescription.xml", tmp_path)
+    (tmp_path / "CMakeLists.txt").write_text(FOLDER_OF.format(root=ROOT))
+    lines_of("cmake", "-S", tmp_path, "-B", tmp_path, f"-DPython3_EXECUTABLE={sys.executable}")
+    runs = {}
+    for folder in ((tmp_path / "folder").read_text(), "aarch64-linux"):  # that of a release is the partner
+        fmu = tmp_path / f"{folder}.fmu"
+        pack_fmu.pack(pack_fmu.contents({folder: build_folder() / "wheel.so"}, {}), fmu)
+        runs[folder] = subprocess.run([sys.executable, "-c", ON_ARM, fmu], capture_output=True, text=True, check=False)
+    assert [run.returncode for run in runs.values()] == [0, 1], runs
+    assert "cannot be simulated on the current platform" in runs["aarch64-linux"].stderr

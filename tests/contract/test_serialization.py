@@ -1,7 +1,13 @@
-"""Serialized states: bytes without pointers, the same in every process; damaged or foreign bytes are refused."""
+"""States and their bytes: without pointers, the same in every process; what no instance wrote is refused or harmless.
 
-from ctypes import POINTER, byref, c_size_t, cast, create_string_buffer
+A checksum guards against accidents, not against bytes from elsewhere: here it is made right again after each change.
+Run under the sanitizers with the contract tests.
+"""
+
+import struct
+from ctypes import POINTER, addressof, byref, c_char, c_size_t, cast
 from multiprocessing import get_context
+from time import process_time
 
 import numpy as np
 import pytest
@@ -10,90 +16,126 @@ from support.driver import ERROR, OK, FMU2Wheel
 from support.motion import Library
 from support.scenes import KINDS
 
+from contract import forging
+from contract.forging import FELL_FLAT, HEADER, RUNS, UNFOLDED, as_word, forged, place_of, saved, signed, words_of
 
-def test_a_blob_with_any_one_bit_flipped_is_refused_and_the_instance_is_untouched(wheel):
+UNKNOWN = "this FMU did not create the state"
+DAMAGED = "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version ({})."
+SOON = 5.0  # s of computing for what follows a state that was taken
+
+
+def test_damaged_truncated_and_foreign_bytes_are_refused_and_the_instance_is_untouched(wheel):
     w, other = (wheel().start(stop=9.0, s=0.03).to(1.3) for _ in range(2))
-    blob = w.serialized()
+    blob, rng = bytes(w.serialized()), np.random.default_rng(2)
     w.back(blob)
-    rng = np.random.default_rng(2)
-    for k in range(len(blob)):
-        damaged = bytearray(blob)
-        damaged[k] ^= 1 << int(rng.integers(8))
-        assert w.restore(bytes(damaged)) == ERROR, k
-        assert w.messages.pop().text.startswith(
-            "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version ("
-        )
+    places = range(len(blob))
+    flipped = [blob[:k] + bytes([blob[k] ^ 1 << int(rng.integers(8))]) + blob[k + 1 :] for k in places]
+    foreign = blob + b"\0", bytes(len(blob)), rng.bytes(len(blob)), blob[::-1], blob[8:] + blob[:8]
+    for wrong in (*flipped, *(blob[:size] for size in places), *foreign):
+        assert w.restore(wrong) == ERROR
+        assert w.said().startswith(DAMAGED.split("{")[0])
     assert w.serialized() == blob
     assert w.run([3.0]) == other.run([3.0])
-
-
-def test_truncated_prolonged_and_foreign_blobs_are_refused(wheel):
-    w = wheel().start()
-    blob = w.serialized()
-    w.back(blob)
-    for size in range(len(blob)):
-        assert w.restore(blob[:size]) == ERROR
-    rng = np.random.default_rng(3)
-    for foreign in (blob + b"\0", bytes(len(blob)), rng.bytes(len(blob)), blob[::-1], blob[8:] + blob[:8]):
-        assert w.restore(foreign) == ERROR
-    assert len(w.take_messages()) == len(blob) + 5
-    assert w.serialized() == blob
 
 
 def test_too_small_an_array_is_refused_and_too_large_a_one_is_not(wheel):
     w = wheel().start()
     state, size = w.snapshot(), c_size_t()
-    assert w.fmi2SerializedFMUstateSize(w.component, state, byref(size)) == OK
-    blob = create_string_buffer(size.value + 8)
-    assert w.fmi2SerializeFMUstate(w.component, state, blob, size.value - 1) == ERROR
-    assert w.take_messages()[0].text == "fmi2SerializeFMUstate: the array is shorter than the state."
+    assert w.ask("SerializedFMUstateSize", state, byref(size)) == OK
+    blob = (c_char * (size.value + 8))()
+    assert w.ask("SerializeFMUstate", state, blob, size.value - 1) == ERROR
+    assert w.said() == "fmi2SerializeFMUstate: the array is shorter than the state."
     assert blob.raw == bytes(size.value + 8)
-    assert w.fmi2SerializeFMUstate(w.component, state, blob, size.value + 8) == OK
+    assert w.ask("SerializeFMUstate", state, blob, size.value + 8) == OK
     assert blob.raw[: size.value] == w.serialized() and blob.raw[size.value :] == bytes(8)
 
 
 def test_a_state_is_reused_where_it_is_not_null(wheel):
     """Ten thousand snapshots into one state: the memory stays one block, whatever its size."""
-    w, before_start = wheel().start(s=0.03), wheel()
-    state = w.snapshot()
+    w = wheel().start(s=0.03)
+    state, early = w.snapshot(), wheel().snapshot()
     place = state.value
-    for _ in range(10000):
-        assert w.fmi2GetFMUstate(w.component, byref(state)) == OK
+    assert {w.ask("GetFMUstate", byref(state)) for _ in range(10000)} == {OK}
     assert state.value == place
-    early = before_start.snapshot()
-    assert w.fmi2GetFMUstate(w.component, byref(early)) == OK  # a smaller block grows
+    assert w.ask("GetFMUstate", byref(early)) == OK  # a smaller block grows
     ahead = w.run([1.0])
-    assert w.fmi2SetFMUstate(w.component, early) == OK
+    assert w.ask("SetFMUstate", early) == OK
     w.time = 0.0
     assert w.run([1.0]) == ahead
 
 
-def test_freeing_no_state_is_without_effect_and_a_state_outlives_its_instance(wheel):
+def test_a_state_outlives_its_instance_and_is_freed_once(wheel):
     w, other = wheel().start(), wheel()
-    null = fmi2FMUstate()
-    assert w.fmi2FreeFMUstate(w.component, None) == OK
-    assert w.fmi2FreeFMUstate(w.component, byref(null)) == OK
     state, ahead = w.snapshot(), w.run([1.0])
     w.close()
-    assert other.fmi2SetFMUstate(other.component, state) == OK
+    assert other.ask("SetFMUstate", state) == OK
     assert other.run([1.0]) == ahead
-    assert other.fmi2FreeFMUstate(other.component, byref(state)) == OK and not state
-    assert other.fmi2FreeFMUstate(other.component, byref(state)) == OK
-    assert other.fmi2SetFMUstate(other.component, state) == ERROR
+    other.free(state)
+    other.free(state)
+    assert other.ask("SetFMUstate", state) == ERROR
 
 
 def test_a_caller_that_passes_a_state_where_its_address_belongs_frees_nothing(wheel):
     """fmusim 0.0.39 does so after saving and after restoring a state."""
     w = wheel().start(s=0.03)
     state = w.snapshot()
-    misread = cast(state, POINTER(fmi2FMUstate))
     # What fmi2FreeFMUstate takes for the state is a word of its own memory, which was never handed out.
-    assert w.fmi2FreeFMUstate(w.component, misread) == OK
+    assert w.ask("FreeFMUstate", cast(state, POINTER(fmi2FMUstate))) == OK
     ahead = w.run([1.5])
-    assert w.fmi2SetFMUstate(w.component, state) == OK
+    assert w.ask("SetFMUstate", state) == OK
     w.time = 0.0
     assert w.run([1.5]) == ahead
-    assert w.fmi2FreeFMUstate(w.component, byref(state)) == OK and not state
+    w.free(state)
+
+
+OWN = (c_char * 64)()  # memory of the caller's
+
+
+def garbage() -> list[fmi2FMUstate]:
+    """What an uninitialised pointer may hold."""
+    return [fmi2FMUstate(value) for value in (1, 8, 0xDEADBEEF, 2**63 + 8, 2**64 - 1, addressof(OWN))]
+
+
+def test_a_state_is_taken_into_a_pointer_that_was_never_handed_out(wheel):
+    """FMI4j passes an uninitialised one."""
+    w = wheel().start(s=0.03).to(0.5)
+    blob = w.serialized()
+    for state, other in zip(garbage(), garbage(), strict=True):
+        assert w.ask("GetFMUstate", byref(state)) == OK
+        ahead = w.run([1.0])
+        assert w.ask("SetFMUstate", state) == OK
+        w.time = 0.5
+        assert w.run([1.0]) == ahead
+        assert w.ask("DeSerializeFMUstate", blob, len(blob), byref(other)) == OK
+        w.free(state)
+        w.free(other)
+        w.back(blob)
+
+
+def test_an_unknown_state_is_refused_with_a_sentence_and_freeing_it_has_no_effect(wheel):
+    w, undisturbed = wheel().start(s=0.03), wheel().start(s=0.03)
+    freed, size, buffer = w.snapshot(), c_size_t(), bytes(1 << 17)
+    gone = fmi2FMUstate(freed.value)
+    w.free(freed)
+    for state in [*garbage(), gone]:
+        value = state.value
+        answers = [w.ask("SetFMUstate", state), w.ask("SerializedFMUstateSize", state, byref(size))]
+        assert [*answers, w.ask("SerializeFMUstate", state, buffer, len(buffer))] == [ERROR] * 3
+        assert [text.split(": ")[1] for text in w.texts()] == [f"{UNKNOWN}."] * 3
+        assert w.ask("FreeFMUstate", byref(state)) == OK and state.value == value
+    assert w.run([1.0]) == undisturbed.run([1.0])
+    known = w.snapshot()  # the partner
+    assert w.ask("SetFMUstate", known) == OK
+    w.free(known)
+
+
+def test_hundreds_of_states_are_kept_apart(wheel):
+    w = wheel().start()
+    states = [(w.to(k / 64).snapshot(), w.bits()) for k in range(300)]
+    for state, bits in states[::-7] + states[::7]:
+        assert w.ask("SetFMUstate", state) == OK and w.bits() == bits
+    for state, _ in states:
+        w.free(state)
 
 
 def test_the_bytes_depend_on_the_past_alone(wheel):
@@ -127,3 +169,128 @@ def test_in_another_process_a_restored_wheel_goes_on_with_the_same_bits(wheel, f
     with get_context("spawn").Pool(1) as pool:
         assert pool.starmap(restored_and_continued, blobs) == expected
     assert len({state for _, state in expected}) == len(KINDS)  # the partner: each scene has bits of its own
+
+
+def changes(word: int, seed: int) -> list[int]:
+    """What a word may be changed to: no number, nonsense for a double or an integer, and a small change; of nothing, a
+    negative number."""
+    special = [as_word(x) for x in (np.inf, -1.0, 0.0, 1e300, 5e-324)] + [2, 13, 2**31, 2**53, 2**63 - 1, 2**64 - 1]
+    small = [(word + 1) % 2**64, (word - 1) % 2**64, word ^ 1 << 63, word ^ 1 << 52]
+    chosen = np.random.default_rng(seed)
+    drawn = [int(chosen.choice(np.array(row, dtype=object))) for row in (special, small)]
+    return [new for new in (as_word(np.nan), *drawn, *[as_word(-1.0)] * (word == 0)) if new != word]
+
+
+def what_follows(w: FMU2Wheel) -> list[tuple[int, bytes]]:
+    """Two steps from 0.7 s on, which end soon, whatever their status."""
+    begin, seen, w.time = process_time(), [], 0.7
+    for h in (0.05, 0.3):
+        seen.append((w.step(h), w.bits()))
+        if seen[-1][0] != OK:
+            break
+    assert process_time() - begin < SOON
+    return seen
+
+
+@pytest.mark.parametrize("run", RUNS)
+def test_a_state_with_one_word_changed_is_refused_or_harmless_and_no_number_has_no_effect(wheel, run):
+    blob = saved(wheel, run)
+    words = words_of(blob)
+    assert signed(words) == blob  # the partner: the layout is as this test believes, and the bytes are taken
+    w, host = wheel().start(s=0.01).back(blob), wheel().start(s=0.01).to(0.2)
+    expected = what_follows(w)
+    assert (expected[0][0] == OK) == (run != "ended")
+    before, refused = host.serialized(), 0
+    for place in [k for k in range(len(words)) if k != forging.SUM]:
+        for new in changes(words[place], place):
+            changed = signed([*words[:place], new, *words[place + 1 :]])
+            status = w.restore(changed)
+            assert status in (OK, ERROR)
+            assert host.restore(changed) == status
+            if status == OK:
+                seen = what_follows(w)
+                assert new != as_word(np.nan) or place < HEADER or seen == expected, place
+                w.close()
+                w = wheel().start(s=0.01)
+                host.back(before)
+            refused += status == ERROR
+            assert host.serialized() == before, (place, hex(new))
+    assert refused > len(words) // 2
+
+
+NOT_RUNNING = [{"phase": phase} for phase in (forging.INITIAL, forging.AT_START, forging.STEPPING)]
+IN_NO_LAW = [{"sigma": x} for x in (-0.5, 0.5, 2.0, np.nan)] + [{"law": 1}, {"layer": 2}]
+IN_NO_LAW += [{f"count_{k}": 2**63 - 1} for k in range(6)]
+NO_WHEEL = [{f"y_{k}": x} for k, x in ((0, 0.0), (0, -0.5), (0, 3.2), (0, 1e-320), (1, 1e300), (2, -1e300), (3, 1e200))]
+# By run: rows that no instance can have had, and the fault.
+FORGERIES = {
+    "unfolded": {
+        "": [
+            *NOT_RUNNING, *({"phase": phase} for phase in (13, forging.EVENT_MODE, 2**63, forging.ENDED)),
+            {"phase": forging.ENDED, "ended_by": forging.SPIN_CHANGES}, {"ended_by": FELL_FLAT},
+            {"stop_time": np.nan}, {"stop_time": -np.inf}, {"tolerance": 1.0}, {"last_change": 9.0}, {"origin": 9.0},
+            {"s": -1.0}, {"s": 0.1}, {"law": 0}, {"law": 2}, {"layer": 1},
+            {"below": 1}, {"below": 2}, {"below_flat": 1}, {"times_flat": 1}, {"pulls": 1},
+        ],
+        "a change lies ahead of the time reached": [{"t": -1.0}],
+        "time reached, s": [{"t": np.inf}],
+        "whose solver moves the wheel": [{"kind": 2}],
+        "the state is outside the model": NO_WHEEL,
+    },
+    "Runge-Kutta": {"": [{"below": 1}, {"below": 2}, *IN_NO_LAW], "the state is outside the model": NO_WHEEL},
+    "Adams": {"the state is outside the model": NO_WHEEL},
+    "contact kept": {"": [{"below": 2}, {"below": 3}, *IN_NO_LAW]},
+    "ended": {"": [{"ended_by": FELL_FLAT + 1}, {"ended_by": FELL_FLAT + 2}]},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("run", FORGERIES)
+def test_a_state_that_no_instance_can_have_been_in_is_refused(wheel, run):
+    w = wheel().start(**RUNS[run][0]).back(saved(wheel, run))
+    before = w.serialized()
+    for fault, rows in FORGERIES[run].items():
+        for changed in rows:
+            assert w.restore(forged(w, before, **changed)) == ERROR, changed
+            assert w.said().startswith(DAMAGED.format(fault) if fault else DAMAGED.split("{")[0]), changed
+    assert w.serialized() == before
+    assert forged(w.back(before), before) == before  # the partner
+    if run == "unfolded":
+        assert words_of(before)[place_of(w, "phase")] == UNFOLDED
+        w.back(forged(w, before, stop_time=9.0)).to(1.0)
+        assert w.step_to(9.5) == ERROR
+
+
+def test_an_instance_that_has_not_started_is_in_no_phase_of_a_run(wheel):
+    """A step would use a solver that is not there."""
+    young, running = wheel().serialized(), wheel().start()
+    for changed in [*NOT_RUNNING, {"phase": UNFOLDED}, {"phase": forging.ENDED}]:
+        assert running.restore(forged(running, young, **changed)) == ERROR
+    running.back(forged(running, young))
+
+
+def test_a_choice_that_is_no_number_reads_as_the_least_integer(wheel):
+    """While parameters are set they may be anything; under the sanitizers a conversion of no number is a fault."""
+    w = wheel().initializing()
+    words = list(words_of(w.serialized()))
+    words[HEADER + w.references["formulation"]] = as_word(np.nan)
+    assert w.back(signed(words)).get("formulation") == [-(2**31)]
+
+
+def test_a_state_of_another_version_is_refused_with_a_sentence(wheel):
+    """Version 2.0.0 had a header for the call state in front of the mark; later ones have another mark."""
+    w = wheel().start()
+    words = list(words_of(w.serialized()))
+    for old in ([2, as_word(np.inf), 77, 0x3430554D46484557, *words[1:]], [words[0] - (1 << 56), *words[1:]]):
+        assert w.restore(struct.pack(f"<{len(old)}Q", *old)) == ERROR
+        assert w.said() == DAMAGED.format("the mark of this version is missing")
+
+
+@pytest.mark.parametrize("method", ["adams", "bdf", "runge_kutta"])
+def test_a_place_in_a_layer_is_refused_where_the_method_was_chosen(wheel, method):
+    law = {"friction_law": "regularized", "omega_s": 1e-6, "s": 0.03}
+    chosen, automatic = (wheel().start(method=m, **law).by(0.1) for m in (method, "automatic"))
+    for layer in (forging.PASSING, forging.STICKING):
+        assert chosen.restore(forged(chosen, chosen.serialized(), layer=layer)) == ERROR
+        assert "the law of friction does not fit" in chosen.said()
+    blob = automatic.serialized()  # the partner
+    assert words_of(automatic.back(blob).serialized())[place_of(automatic, "layer")] != 0

@@ -4,7 +4,7 @@ State: theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O (wheel_equations.h).
 """
 
 import ctypes
-from ctypes import POINTER, c_double, c_longlong, c_uint, c_void_p
+from ctypes import c_double, c_longlong, c_uint, c_void_p
 from xml.etree import ElementTree
 
 import numpy as np
@@ -25,7 +25,11 @@ REFERENCES = {variable.get("name"): int(variable.get("valueReference")) for vari
 
 
 class Orbit:
-    """One free wheel, built at once; `kind` says what came of it."""
+    """One free wheel, built at once; `kind` is what came of it."""
+
+    # Of probe.cpp, by the names after `probe_`.
+    RESULTS = {"make": c_void_p, "falls_until": c_longlong, "steps": c_longlong}
+    RESULTS |= dict.fromkeys(("end_time", "half_period", "fall"), c_double)
 
     def __init__(
         self,
@@ -35,37 +39,31 @@ class Orbit:
         tolerance: float = 1e-8,
         keep_contact: bool = False,
     ) -> None:
-        wheel, start = wheel or Wheel(), start or Start()
         self.library = library
-        library.probe_make.restype = c_void_p
-        for name in ("probe_end_time", "probe_half_period", "probe_fall"):
-            getattr(library, name).restype = c_double
-        for name in ("probe_falls_until", "probe_steps"):
-            getattr(library, name).restype = c_longlong
-        given = start_values(wheel, start) | {"keep_contact": float(keep_contact)}
+        for name, result in self.RESULTS.items():
+            getattr(library, f"probe_{name}").restype = result
+        given = start_values(wheel or Wheel(), start or Start()) | {"keep_contact": float(keep_contact)}
         references = (c_uint * len(given))(*(REFERENCES[name] for name in given))
         values = (c_double * len(given))(*given.values())
         self.probe = c_void_p(library.probe_make(references, values, len(given), c_double(tolerance)))
-        self.kind = KINDS[library.probe_build(self.probe)]
+        self.kind = self.build()
 
     def __del__(self) -> None:
         self.library.probe_free(self.probe)
+
+    def build(self) -> str:
+        return KINDS[self.library.probe_build(self.probe)]
 
     def read(self, t: Array | list[float]) -> tuple[Array, Array]:
         """States (rows) and N at the instants t."""
         t = np.ascontiguousarray(t, float)
         y, force = np.empty((len(t), 8)), np.empty(len(t))
-        pointer = POINTER(c_double)
-        self.library.probe_read(
-            self.probe, t.ctypes.data_as(pointer), len(t), y.ctypes.data_as(pointer), force.ctypes.data_as(pointer)
-        )
+        t_, y_, force_ = (c_void_p(array.ctypes.data) for array in (t, y, force))
+        self.library.probe_read(self.probe, t_, len(t), y_, force_)
         return y, force
 
     def __call__(self, t: Array | list[float]) -> Array:
         return self.read(t)[0]
-
-    def build(self) -> str:
-        return KINDS[self.library.probe_build(self.probe)]
 
     @property
     def end_time(self) -> float:

@@ -8,6 +8,7 @@ import ctypes
 import numpy as np
 import pytest
 from reference import Start, Wheel
+from scipy.optimize import brentq
 from support.bounds import EPSILON, beyond, within
 from support.closed_forms import circle_spin, critical_spin
 
@@ -85,17 +86,19 @@ def test_two_thousand_random_starts_end_in_their_first_nutation_or_fold(library:
     within(max(differences), 1e-5, "differences, 2")  # beside an unstable rest errors grow
 
 
+LEAPING = Start(theta=0.7, psi_dot=-4.0, theta_dot=3.0, phi_dot=-3.0)
+
+
 def test_a_wheel_that_ends_does_so_in_its_first_nutation(library: ctypes.CDLL) -> None:
-    start = Start(theta=0.7, psi_dot=-4.0, theta_dot=3.0, phi_dot=-3.0)
-    orbit = Orbit(library, start=start)
+    orbit = Orbit(library, start=LEAPING)
     assert orbit.kind == "ended"
-    within(abs(orbit.read([orbit.end_time])[1][0]), 3e-6, "normal force, N")  # N
-    beyond(orbit.read([0.9 * orbit.end_time])[1][0], 1e-2 * 196.2, "normal force, N")
+    before, at_end = orbit.read([0.9 * orbit.end_time, orbit.end_time])[1]
+    within(abs(at_end), 3e-6, "normal force, N")
+    beyond(before, 1e-2 * 196.2, "normal force before, N")
 
 
 def test_excursions_below_zero_are_told_at_their_instants_however_late(library: ctypes.CDLL) -> None:
-    start = Start(theta=0.7, psi_dot=-4.0, theta_dot=3.0, phi_dot=-3.0)
-    orbit = Orbit(library, start=start, keep_contact=True)
+    orbit = Orbit(library, start=LEAPING, keep_contact=True)
     assert orbit.kind == "folded"
     t = np.linspace(0, 12 * orbit.half_period, 20_001)
     N = orbit.read(t)[1]
@@ -114,26 +117,25 @@ def test_excursions_below_zero_are_told_at_their_instants_however_late(library: 
 def test_where_a_period_turns_the_wheel_by_half_turns_it_walks_straight_on(library: ctypes.CDLL) -> None:
     """Resonance: the turn of psi in half a nutation is a multiple of pi, and sin(n delta) / sin(delta) is n."""
 
+    def turning(psi_dot: float) -> Orbit:
+        return Orbit(library, start=Start(psi_dot=psi_dot, phi_dot=-6.0), tolerance=1e-12)
+
     def excess(psi_dot: float) -> float:
-        orbit = Orbit(library, start=Start(psi_dot=psi_dot, phi_dot=-6.0), tolerance=1e-12)
+        orbit = turning(psi_dot)
         turn = np.diff(orbit([0, orbit.half_period])[:, 4])[0] if orbit.kind == "folded" else np.nan
         return float(turn - np.pi * np.round(turn / np.pi))
 
-    tried = np.linspace(-4, 4, 161)
+    def walked(psi_dot: float) -> Array:
+        orbit = turning(psi_dot)
+        return np.hypot(*(orbit(2 * orbit.half_period * periods)[:, 6:] - orbit([0])[0, 6:]).T)
+
+    tried, periods = np.linspace(-4, 4, 161), np.array([1.0, 1000, 1_000_000])
     values = np.array([excess(x) for x in tried])
-    close = (values[:-1] * values[1:] < 0) & (np.abs(np.diff(values)) < 1)
-    low, high = tried[:-1][close][0], tried[1:][close][0]
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (middle, high) if excess(middle) * excess(low) > 0 else (low, middle)
-    orbit = Orbit(library, start=Start(psi_dot=low, phi_dot=-6.0), tolerance=1e-12)
-    periods = np.array([1.0, 1000, 1_000_000])
-    way = orbit(2 * orbit.half_period * periods)[:, 6:] - orbit([0])[0, 6:]
-    walked = np.hypot(*way.T)
-    within(np.abs(walked / (periods * walked[0]) - 1).max(), 64 * EPSILON, "walked")
-    beside = Orbit(library, start=Start(psi_dot=low + 0.01, phi_dot=-6.0), tolerance=1e-12)
-    circling = beside(2 * beside.half_period * periods)[:, 6:] - beside([0])[0, 6:]
-    within(np.hypot(*circling[-1]) / walked[-1], 0.003, "circling")
+    close = np.flatnonzero((values[:-1] * values[1:] < 0) & (np.abs(np.diff(values)) < 1))[0]
+    resonance = brentq(excess, *tried[close : close + 2], xtol=1e-16, rtol=4 * EPSILON)
+    straight, beside = walked(resonance), walked(resonance + 0.01)
+    within(np.abs(straight / (periods * straight[0]) - 1).max(), 64 * EPSILON, "walked")
+    within(beside[-1] / straight[-1], 0.003, "circling")
 
 
 @pytest.mark.parametrize("phi_dot", [-9.0, -1000.0])
@@ -220,9 +222,7 @@ def test_any_time_can_be_read(library: ctypes.CDLL, t: float) -> None:
     y = orbit([t])[0]
     assert np.isfinite(y).all()
     one = orbit(np.linspace(0, orbit.half_period, 20_001))
-    within(
-        np.abs(one[:, [0, 2, 3]] - y[[0, 2, 3]]).sum(axis=1).min(), 1e-3, "distance to a state of the nutation"
-    )  # a state of the nutation
+    within(np.abs(one[:, [0, 2, 3]] - y[[0, 2, 3]]).sum(axis=1).min(), 1e-3, "distance to a state of the nutation")
 
 
 def test_the_order_of_readings_does_not_change_a_bit(library: ctypes.CDLL) -> None:
@@ -236,27 +236,21 @@ def test_the_order_of_readings_does_not_change_a_bit(library: ctypes.CDLL) -> No
 
 
 # In the order of probe.cpp. The last three change psi, phi and Y_O alone, with the rate of theta.
-DISTURBANCES = (
-    *("drag", "towards north", "towards east", "beside a line", "unbalanced", "growing"),
-    *("wind", "turning", "rolling", "drifting"),
-)
-BROKEN = [(kind, PAPER) for kind in range(len(DISTURBANCES))]
-# A steady wind keeps straight rolling straight.
-BROKEN += [(kind, Start(psi=0.4, theta=np.pi / 2, phi_dot=-9.0, X_O=2.0)) for kind in range(6)]
+DISTURBANCES = ["drag", "towards north", "towards east", "beside a line", "unbalanced", "growing"]
+DISTURBANCES += ["wind", "turning", "rolling", "drifting"]
+STEADY = Start(psi=0.4, theta=np.pi / 2, phi_dot=-9.0, X_O=2.0)  # a steady wind keeps straight rolling straight
+BROKEN = {f"{name}, swinging": (name, PAPER) for name in DISTURBANCES}
+BROKEN |= {f"{name}, steady": (name, STEADY) for name in DISTURBANCES[:6]}
 
 
-@pytest.mark.parametrize(
-    ("kind", "start"), BROKEN, ids=[f"{DISTURBANCES[k]}, {'swinging' if s == PAPER else 'steady'}" for k, s in BROKEN]
-)
-def test_what_breaks_the_symmetry_is_noticed_whatever_it_is(library: ctypes.CDLL, kind: int, start: Start) -> None:
+@pytest.mark.parametrize(("name", "start"), BROKEN.values(), ids=BROKEN)
+def test_what_breaks_the_symmetry_is_noticed_whatever_it_is(library: ctypes.CDLL, name: str, start: Start) -> None:
     """Nobody tells the orbit what acts on the wheel: a force that a list of conditions forgets must not be lost."""
-    orbit = Orbit(library, start=start)
+    orbit, kind = Orbit(library, start=start), DISTURBANCES.index(name)
     assert orbit.kind == "folded"
     try:
-        for size in (1e-2, 1e-5, 1e-7):
+        for size in (1e-2, 1e-5, 1e-7, 1e-12):  # the last is less than the tolerance can tell
             library.probe_disturb(kind, ctypes.c_double(size))
-            assert orbit.build() == "refused", size
-        library.probe_disturb(kind, ctypes.c_double(1e-12))  # less than the tolerance can tell
-        assert orbit.build() == "folded"
+            assert orbit.build() == ("refused" if size > 1e-12 else "folded"), size
     finally:
         library.probe_disturb(kind, ctypes.c_double(0))

@@ -22,10 +22,12 @@ def program(path: Path, text: str) -> None:
     path.chmod(0o755)
 
 
-def run(*command: str | Path, path: str | None = None, **variables: str) -> subprocess.CompletedProcess[str]:
+def run(
+    *command: str | Path, path: str | None = None, folder: Path | None = None, **variables: str
+) -> subprocess.CompletedProcess[str]:
     environment = {name: value for name, value in os.environ.items() if name not in ("LD_PRELOAD", "VIRTUAL_ENV")}
     environment |= {"PATH": path or os.environ["PATH"], **variables}
-    return subprocess.run(list(map(str, command)), env=environment, capture_output=True, text=True, check=False)
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
 @pytest.fixture
@@ -101,15 +103,10 @@ class Fetch:
     def __call__(self) -> tuple[str, int]:
         """What CMake said of a failure, and how often the registry was asked."""
         self.calls.write_text("")
-        command, environment = [self.bin / "cmake", "-P", "fetch.cmake"], {"PATH": str(self.bin)}
-        finished = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True)
-        if finished.returncode == 0:
+        done = run(self.bin / "cmake", "-P", self.folder / "fetch.cmake", path=str(self.bin), folder=self.folder)
+        if done.returncode == 0:
             assert (self.cache / CRATE / "vendor" / "last.c").read_text() == "last.c"
-        return " ".join(finished.stderr.split()) if finished.returncode else "", len(self.calls.read_text().split())
-
-    @property
-    def crate(self) -> Path:
-        return self.cache / "cargo" / "registry" / "cache" / "here" / self.archive.name
+        return " ".join(done.stderr.split()) * (done.returncode != 0), len(self.calls.read_text().split())
 
 
 @pytest.fixture
@@ -127,8 +124,9 @@ def test_sundials_is_fetched_once_and_cargo_is_not_asked_for_again(fetch: Fetch)
 
 
 def test_a_download_that_was_interrupted_is_repeated(fetch: Fetch) -> None:
-    fetch.crate.parent.mkdir(parents=True)
-    fetch.crate.write_bytes(fetch.archive.read_bytes()[:100])
+    crates = fetch.cache / "cargo" / "registry" / "cache" / "here"
+    crates.mkdir(parents=True)
+    (crates / fetch.archive.name).write_bytes(fetch.archive.read_bytes()[:100])
     assert fetch() == ("", 1)
 
 

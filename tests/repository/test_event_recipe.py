@@ -1,24 +1,91 @@
-"""An event that is added by CONTRIBUTING's recipe is logged at every crossing in every way of running, before and after
-a snapshot. The crossings are those of theta and X_O, read on a fine grid."""
+"""CONTRIBUTING's recipe for an event, carried out on a copy of the core, and a second event of the same kind: each is
+logged at every crossing in every way of running, before and after a snapshot. The crossings are those of theta and X_O,
+read on a fine grid."""
 
+import json
 import re
+import shlex
 import shutil
+import subprocess
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
+from support import driver
 from support import exchange as exchanging
 from support.bounds import beyond, within
-from support.driver import OK
 from support.motion import Library
-
-from .event_recipe import build
+from support.paths import ROOT, build_folder
 
 DIPS, LINE = re.compile(r"leans by more than .* from t = (\S+) s on"), re.compile(r"crosses the line at t = (\S+) s")
 LEAN = 1.29  # rad: the level of the recipe
 WAYS = {"unfolded": {}, "Runge-Kutta": {"method": 4}, "Adams": {"method": 2}, "multibody": {"formulation": 3}}
 STOP = 6.0
+
+
+# Another observed event: it depends on the place of the wheel, which is no symmetry of the unfolded motion.
+LINE_NAME = "crosses_line"
+LINE_VALUE = """
+bool has_line(const Setup& setup, const InForce&) { return setup.keep_contact; }
+
+double short_of_line(const Setup& setup, const InForce&, double, const double* y) {
+  WheelKinematics pose;
+  setup.formulation->pose(&setup.wheel, y, &pose);
+  return (pose.X_O + 0.5) / setup.length;
+}
+"""
+LINE_ROW = """    {.event = Event::crosses_line,
+     .can_occur = has_line,
+     .value = short_of_line,
+     .follow = observe,
+     .observed = "The wheel crosses the line at t = %s s."},
+"""
+
+
+def recipe() -> tuple[str, str, str]:
+    """The name, the value and the row of CONTRIBUTING.md."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    section = re.search(r"^## Add an event\n(.*?)^## ", text, re.DOTALL | re.MULTILINE)[1]
+    blocks = re.findall(r"```cpp\n(.*?)```", section, re.DOTALL)
+    name, value, row = (re.sub(r"^   ", "", block, flags=re.MULTILINE) for block in blocks)
+    return name.strip().rstrip(","), value, row
+
+
+def insert(path: Path, before: str, text: str) -> None:
+    old = path.read_text(encoding="utf-8")
+    assert old.count(before) == 1, (path, before)
+    path.write_text(old.replace(before, text + before), encoding="utf-8")
+
+
+def patch(folder: Path, name: str, value: str, row: str) -> None:
+    insert(folder / "wheel" / "run.hpp", "  count\n};", f"  {name},\n")
+    events = folder / "wheel" / "events.cpp"
+    insert(events, "}  // namespace\n\nconst EventRow event_rows[]", f"{value}\n")
+    insert(events, "};\nstatic_assert(std::size(event_rows)", row)
+
+
+def build(folder: Path) -> Path:
+    """The library with both events: `wheel` and `fmi` are compiled from the copy, the rest is taken as built."""
+    built, library = build_folder(), folder / "wheel.so"
+    commands = (built / "compile_commands.json").read_text(encoding="utf-8")
+    link = shlex.split((built / "CMakeFiles" / "wheel_fmu.dir" / "link.txt").read_text(encoding="utf-8"))
+    for module in ("wheel", "fmi"):
+        shutil.copytree(ROOT / "fmu-src" / module, folder / module)
+        commands = commands.replace(str(ROOT / "fmu-src" / module), str(folder / module))
+    patch(folder, *recipe())
+    patch(folder, LINE_NAME, LINE_VALUE, LINE_ROW)
+    made = {entry["output"]: entry for entry in json.loads(commands) if folder in Path(entry["file"]).parents}
+    objects = {output: str(folder / output.replace("/", "_")) for output in made}
+    compilations = [
+        [objects.get(word, word) for word in shlex.split(entry["command"])] for output, entry in made.items()
+    ]
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(lambda command: subprocess.run(command, cwd=built, check=True), compilations))
+    link[link.index("-o") + 1] = str(library)
+    subprocess.run([objects.get(word, word) for word in link], cwd=built, check=True)
+    return library
 
 
 @pytest.fixture(scope="module")
@@ -72,23 +139,17 @@ def test_an_event_that_is_no_symmetry_of_the_motion_keeps_it_from_being_unfolded
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("cut", [0.9, 2.1, 3.4])
 def test_a_restored_run_logs_what_lies_ahead_and_nothing_else(patched: Library, way: str, cut: float) -> None:
-    whole = patched.wheel(logging=True).start(**WAYS[way])
-    assert whole.step_to(cut) == OK
-    blob = whole.serialized()
+    whole, other = patched.wheel(logging=True).start(**WAYS[way]).to(cut), patched.wheel(logging=True)
     whole.take_messages()
-    other = patched.wheel(logging=True)
-    assert other.restore(blob) == OK
-    assert other.take_messages() == []
-    other.time = cut
+    assert other.back(whole.serialized()).messages == []
     for wheel in (whole, other):
-        wheel.set(M_1=1e-7)  # off the orbit
-        assert wheel.step_to(STOP) == OK
+        wheel.put(M_1=1e-7).to(STOP)  # off the orbit
     assert whole.sentences == other.sentences and min(logged(DIPS, other.sentences)) > cut
 
 
 def test_another_solver_finds_it_by_its_indicator(library, patched, monkeypatch) -> None:
-    names = (*exchanging.INDICATORS, "leans", "crosses_line")
-    monkeypatch.setattr(exchanging, "INDICATORS", names)
+    names = (*driver.INDICATORS, "leans", "crosses_line")
+    monkeypatch.setattr(driver, "INDICATORS", names)
     with exchanging.exchange(patched, logging=True, keep_contact=True) as wheel:
         run = exchanging.Run(wheel, 1e-10, exchanging.no_inputs)
         run.to(2.0)
@@ -98,7 +159,7 @@ def test_another_solver_finds_it_by_its_indicator(library, patched, monkeypatch)
         within(gap(falls(library, "X_O", -0.5, keep_contact=True), logged(LINE, found)), 1e-6, "instant, s")
         within(gap(falls(library, "theta", LEAN), logged(DIPS, found)), 1e-6, "instant, s")
         wheel.take_messages()
-        assert wheel.restore(blob) == OK and wheel.take_messages() == []
+        assert wheel.back(blob).messages == []
         again = exchanging.Run(wheel, 1e-10, exchanging.no_inputs)
         again.t = 2.0
         again.to(STOP)

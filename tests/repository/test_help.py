@@ -13,15 +13,6 @@ SHELL = "#!/usr/bin/env bash\n"
 PARTS = {"page": "tools/page", "view": "tools/page", "study": "examples/studies", "example": "examples/vehicles"}
 GONE = [name for name, folder in PARTS.items() if not (ROOT / folder).exists()]
 COMMANDS = sorted({p.name for p in (ROOT / "scripts").iterdir()} - set(GONE))
-STUDY = tuple(f"examples/studies/study/{name}.py" for name in ("options", "measures", "__init__"))
-OF_AXLE_AND_CAR = ("axle/axle.csv", "axle/axle.toml", "car/chassis.csv", "car/driver.csv", "car/car.toml")
-OF_VEHICLES = ("vehicles/options.py", "skeleton/describe.py", "balance/balance.py", "quarter_car/quarter_car.csv")
-RUNS = tuple(f"{folder}/manoeuvres.toml" for folder in ("axle", "balance", "car", "quarter_car"))
-VEHICLES = tuple(f"examples/vehicles/{name}" for name in (*OF_VEHICLES, *OF_AXLE_AND_CAR, *RUNS))
-NUMBERING = ("cmake/description/__init__.py", "cmake/description/numbering.py")
-OF_TOOLS = tuple(f"tools/{name}.py" for name in ("diagrams/start_values", "page/options", "reports/options"))
-RUN = ("examples/python/values.py", "examples/wheels.json")
-READERS = (*OF_TOOLS, *RUN, *STUDY, *VEHICLES, *NUMBERING)
 WRONG = {
     **{"build": ("relase",), "documents": ("--chek",), "example": ("car", "m_B=-1"), "fuzz": ("a minute",)},
     **{"lint": ("--fixx",), "page": ("--output",), "report": ("sped",), "run": ("m=-5",), "setup": ("tests",)},
@@ -29,19 +20,17 @@ WRONG = {
 }
 
 
-@pytest.fixture
-def bare(tmp_path: Path) -> Path:
-    """The commands, what reads their arguments, and two lists of names; nothing else."""
-    shutil.copytree(ROOT / "scripts", tmp_path / "scripts", ignore=shutil.ignore_patterns("__pycache__", *GONE))
-    readers = [name for name in READERS if (ROOT / name).exists()]
-    for name in (*readers, "modelDescription.xml", "CMakePresets.json"):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, tmp_path / name)
-    return tmp_path
+@pytest.fixture(scope="module")
+def bare(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A checkout without anything that is built or installed."""
+    place = tmp_path_factory.mktemp("checkout")
+    copy = f"git ls-files -coz --exclude-standard | xargs -0 cp --parents -t '{place}'"
+    subprocess.run(["bash", "-c", copy], cwd=ROOT, check=False)  # a file may be deleted
+    return place
 
 
 def files(folder: Path) -> set[Path]:
-    return {p for p in folder.rglob("*") if p.is_file()} - {folder / "build"}
+    return {p for p in folder.rglob("*") if p.is_file()}
 
 
 def call(folder: Path, name: str, *words: str, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -78,14 +67,12 @@ def test_a_typing_error_is_told_before_anything_is_installed(bare: Path, name: s
     assert files(bare) == before
 
 
-def test_help_of_run_names_what_it_makes_where_there_is_no_python(bare: Path) -> None:
-    tools = bare / "bin"
-    tools.mkdir()
+def test_help_of_run_names_what_it_makes_where_there_is_no_python(bare: Path, tmp_path: Path) -> None:
     for tool in ("bash", "basename", "dirname", "sed", "env"):
-        (tools / tool).symlink_to(shutil.which(tool))
-    done = call(bare, "run", "--help", PATH=str(tools))
-    assert done.returncode == 0 and "results/" in done.stdout and "wheel.html" in done.stdout
-    assert "theta_start=60deg" in done.stdout and "docs/variables.md" in done.stdout
+        (tmp_path / tool).symlink_to(shutil.which(tool))
+    done = call(bare, "run", "--help", PATH=str(tmp_path))
+    assert done.returncode == 0
+    assert all(word in done.stdout for word in ("results/", "wheel.html", "theta_start=60deg", "docs/variables.md"))
 
 
 def test_help_lists_every_command(bare: Path) -> None:

@@ -1,7 +1,4 @@
-"""README.md and the FMU's documentation are true: examples run as written, tables are those of the description.
-
-The test of the site checks the links. The scenes are the paper's, SI units.
-"""
+"""The examples of the documents run as they are written. The scenes are the paper's, SI units."""
 
 import os
 import re
@@ -11,19 +8,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lxml import etree
 from support.bounds import EPSILON, beyond, within
 from support.closed_forms import fall_inertia
 from support.paths import ROOT, build_folder
 from support.scenes import PAPER
 
-from publishing import variables as variable_tables
-
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 TOOLS = (ROOT / "docs" / "in_your_tool.md").read_text(encoding="utf-8")
 RECIPES = (ROOT / "docs" / "recipes.md").read_text(encoding="utf-8")
 HEADER_PAGE = (ROOT / "docs" / "c_header.md").read_text(encoding="utf-8")
-PAGE = ROOT / "fmu-src" / "archive" / "documentation" / "index.html"
+EXAMPLES = ROOT / "examples" / "python"
 
 
 def blocks(language: str, page: str = README) -> list[str]:
@@ -42,7 +36,7 @@ def root(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def run(command: list[str], folder: Path) -> str:
+def run(*command: str | Path, folder: Path) -> str:
     """What the command prints. The environment is that of an activated .venv, without a screen."""
     environment = os.environ | {"MPLBACKEND": "Agg", "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
@@ -50,16 +44,24 @@ def run(command: list[str], folder: Path) -> str:
     return done.stdout
 
 
+def bash(commands: str, folder: Path) -> str:
+    return run("bash", "-euc", commands, folder=folder)
+
+
+def python(lines: str, folder: Path) -> str:
+    return run("python", "-c", f"import sys; sys.path.insert(0, 'examples/python')\n{lines}", folder=folder)
+
+
 def table(path: Path) -> np.ndarray:
     return np.genfromtxt(path, delimiter=",", names=True)
 
 
 def test_the_python_example_has_a_few_lines_and_draws_the_papers_wheel(root, reference_tables):
-    (example,) = blocks("python")
-    assert len(example.splitlines()) <= 6
-    free = example.replace('"s": 0.03', '"s": 0')
-    for scene, other, lines in (("friction", "free", example), ("free", "friction", free)):
-        run([sys.executable, "-c", f"{lines}import numpy\nnumpy.save('run.npy', run)"], root)
+    (shown,) = blocks("python")
+    assert len(shown.splitlines()) <= 6
+    free = shown.replace('"s": 0.03', '"s": 0')
+    for scene, other, lines in (("friction", "free", shown), ("free", "friction", free)):
+        python(f"{lines}import numpy\nnumpy.save('run.npy', run)", root)
         picture = root / "results" / "theta.png"
         assert picture.read_bytes().startswith(b"\x89PNG")
         picture.unlink()
@@ -71,7 +73,7 @@ def test_the_python_example_has_a_few_lines_and_draws_the_papers_wheel(root, ref
 def test_the_commands_for_fmpy_run_as_written_and_do_what_their_comments_say(root, reference_tables):
     commands = blocks("bash", TOOLS)[0]
     assert all(line.startswith(("fmpy ", "#", "printf ")) for line in commands.splitlines())
-    log = run(["bash", "-euc", commands], root)
+    log = bash(commands, root)
     assert "No problems found" in log
     for word in ("stick", "release", "reversal", "fell flat"):
         assert word in log, word
@@ -99,7 +101,7 @@ def speeds_up_as_newton_says(driven: np.ndarray) -> None:
 
 def test_the_recipe_for_a_speed_starts_at_that_speed(root):
     (command,) = blocks("bash", RECIPES)
-    run(["bash", "-euc", command], root)
+    bash(command, root)
     start = table(root / "results" / "five.csv")[0]
     speed = np.hypot(start["X_O_dot"], start["Y_O_dot"])
     within(abs(speed - 5), 1e-6, "speed")  # the lean of 0.0008 rad lifts nothing by more
@@ -110,9 +112,8 @@ def test_the_c_example_compiles_anywhere_and_prints_what_the_python_example_prin
     (commands,) = blocks("bash", HEADER_PAGE)
     assert "wheel=/path/to/this/project\n" in commands
     here = tmp_path_factory.mktemp("anywhere")
-    printed = run(["bash", "-euc", commands.replace("/path/to/this/project", str(root))], here)
-    python = run([sys.executable, str(ROOT / "examples" / "python" / "accelerations.py")], here)
-    assert printed == python and len(printed.splitlines()) == 4
+    printed = bash(commands.replace("/path/to/this/project", str(root)), here)
+    assert printed == run("python", EXAMPLES / "accelerations.py", folder=here) and len(printed.splitlines()) == 4
     theta_ddot = [float(x) for x in re.findall(r"theta_ddot = *(-?[\d.]+)", printed)]
     fall = -PAPER.m * PAPER.g * PAPER.r_0 * np.cos(1.308997) / fall_inertia(PAPER, 1.308997)
     within(abs(theta_ddot[3] - fall), 1e-4, "fall")  # released from rest, held
@@ -125,17 +126,16 @@ def test_the_lines_of_python_and_c_for_the_header_are_those_that_run(root):
     show = 'printf("theta_ddot = %.4f rad/s2, N = %.4f N, tau = %.4f N m\\n", now.theta_ddot, now.lambda[2], now.tau);'
     (root / "lines.c").write_text(f"{include}int main(void) {{\n{source}{show}\n}}\n")
     flags = "-I fmu-src/equations -L build/release -lwheel_equations -Wl,-rpath,build/release"
-    in_c = run(["bash", "-euc", f"cc lines.c {flags} -o lines && ./lines"], root)
-    python, _ = blocks("python", HEADER_PAGE)
-    assert len(python.splitlines()) <= 10
-    in_python = run([sys.executable, "-c", f"import sys; sys.path.insert(0, 'examples/python')\n{python}"], root)
-    assert in_c == in_python and "tau = 5.6728" in in_c
+    in_c = bash(f"cc lines.c {flags} -o lines && ./lines", root)
+    lines, _ = blocks("python", HEADER_PAGE)
+    assert len(lines.splitlines()) <= 10
+    assert in_c == python(lines, root) and "tau = 5.6728" in in_c
 
 
 def test_a_solver_of_ones_own_gives_the_papers_wheel(root, reference_tables):
     _, lines = blocks("python", HEADER_PAGE)
     assert len(lines.splitlines()) <= 10
-    printed = run([sys.executable, "-c", f"import sys; sys.path.insert(0, 'examples/python')\n{lines}"], root)
+    printed = python(lines, root)
     X_O, theta = map(float, re.search(r"X_O = (\S+) m, theta = (\S+) rad", printed).groups())
     free, friction = reference_tables["free"], reference_tables["friction"]
     within(max(abs(X_O - free["X_O"][-1]), abs(theta - free["theta"][-1])), 2e-8, "solve_ivp")
@@ -143,7 +143,7 @@ def test_a_solver_of_ones_own_gives_the_papers_wheel(root, reference_tables):
 
 
 def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_its_snapshot(root):
-    printed = run([sys.executable, str(ROOT / "examples" / "python" / "master.py")], root)
+    printed = run("python", EXAMPLES / "master.py", folder=root)
     found = dict(re.findall(r"A brake of (\d+) N m stops the wheel at t = ([\d.]+) s", printed))
     inertia, omega = 1.8 + 20 * 0.35**2, 10.0  # J_z + m R^2 of an upright wheel; rad/s
     assert len(found) == 2
@@ -151,39 +151,3 @@ def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_it
         late = float(stopped) - (1.0 + inertia * omega / float(brake))  # seen at the next step of 1 ms
         assert 0 <= late <= 0.001
     assert found["30"] != found["60"]
-
-
-def test_the_first_commands_exist_and_can_be_run():
-    commands = blocks("")[0].split()
-    assert commands == ["./scripts/run", "./scripts/test"]
-    assert all(os.access(ROOT / command, os.X_OK) for command in commands)
-    assert not os.access(ROOT / "README.md", os.X_OK)
-
-
-@pytest.mark.parametrize("page", variable_tables.PAGES, ids=lambda page: page.name)
-def test_the_tables_of_variables_are_those_of_the_description(page, description):
-    variables = variable_tables.read_variables()
-    assert [v.name for v in variables] == [v.name for v in description.modelVariables]
-    text = page.read_text(encoding="utf-8")
-    stale = "run ./scripts/documents: the tables are not those of modelDescription.xml"
-    assert text == variable_tables.with_tables(text, variables, page), stale
-    assert text != variable_tables.with_tables(text, variables[1:], page)
-    for v in variables:
-        assert v.description in text.replace("&lt;", "<").replace("&gt;", ">"), v.name
-
-
-def test_every_decision_is_listed() -> None:
-    listed = re.findall(r"\]\((decisions/\w+\.md)\)", (ROOT / "docs" / "README.md").read_text(encoding="utf-8"))
-    assert set(listed) == {f"decisions/{path.name}" for path in (ROOT / "docs" / "decisions").glob("*.md")}
-
-
-def test_the_fmus_page_is_well_formed_and_complete_offline(fmu):
-    folder, strict = Path(fmu) / "documentation", etree.HTMLParser(recover=False)
-    page = etree.parse(folder / "index.html", strict)
-    references = page.xpath("//@src | //@href")
-    assert len(references) == 9
-    for reference in references:
-        known = reference[1:] in page.xpath("//@id") if reference.startswith("#") else (folder / reference).is_file()
-        assert known, reference
-    with pytest.raises(etree.XMLSyntaxError):
-        etree.fromstring(b"<p><b>crossed</p></b>", strict)

@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from contract.test_foreign_states import forged, place_of, signed, words_of
+from contract.forging import forged, place_of, signed, words_of
 from support.closed_forms import rolling_inertia
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
 from support.scenes import PAPER

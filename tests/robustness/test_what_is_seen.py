@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from contract.test_forged_histories import as_word, saved, signed, words_of
+from contract.forging import as_word, saved, signed, words_of
 from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import ERROR, OK
 from support.pieces import play

@@ -11,11 +11,11 @@
 
 namespace {
 
-// harmonic: y = (cos t, -sin t) from (1, 0); stiff: van der Pol's with `parameter`; falling: (height, speed) under
-// g = 9.81; clock: y = t; explosive: y' = y^2; ending: y' = 1 up to t = 1, then no number.
+// harmonic: y = (cos t, -sin t) from (1, 0); stiff: van der Pol's with `parameter`; clock: y = t; explosive: y' = y^2;
+// ending: y' = 1 up to t = 1, then no number.
 constexpr int states = 8;
 
-enum Kind : int { harmonic, stiff, falling, clock, explosive, ending };
+enum Kind : int { harmonic, stiff, clock, explosive, ending };
 using Watch = double (*)(double t, const double* y);
 
 // A problem has one state or two, and others that rest at zero: a solver takes eight.
@@ -40,13 +40,12 @@ void rates(const Setting& s, double t, const double* y, double* d) {
   std::fill_n(d, states, 0.0);
   if (s.kind == harmonic) d[0] = y[1], d[1] = -y[0];
   if (s.kind == stiff) d[0] = y[1], d[1] = s.parameter * (1 - y[0] * y[0]) * y[1] - y[0];
-  if (s.kind == falling) d[0] = y[1], d[1] = -9.81;
   if (s.kind == clock) d[0] = 1;
   if (s.kind == explosive) d[0] = y[0] * y[0];
   if (s.kind == ending) d[0] = t > 1 ? NAN : 1;
 }
 
-int states_of(const Setting& s) { return s.kind <= falling ? 2 : 1; }
+int states_of(const Setting& s) { return s.kind <= stiff ? 2 : 1; }
 
 double margin(void* owner, int, double t, const double* y) {
   return of(owner).by_margin ? of(owner).by_margin(t, y) : 1;

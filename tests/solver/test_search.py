@@ -102,16 +102,3 @@ def test_a_release_with_rate_zero_is_no_event_but_the_fall_after_it_is(solver, m
     one = solver(method, "clock", each_step=lambda t, y: y[0] ** 2 * (last - y[0]))
     assert one.run(10 * last) == EVENT
     within(relative_error(one.now.instant, last), 2e-12, "time")
-
-
-def test_a_bouncing_ball_bounces_when_it_should(solver, method):
-    """Dropped from 1 m, it keeps a share of its speed."""
-    keeps, fall, found = 0.8, sqrt(2 / 9.81), []
-    ball = solver(method, "falling", each_step=lambda t, y: y[0])
-    for _ in range(10):
-        assert ball.run(100.0) == EVENT
-        found.append(ball.now.instant)
-        ball.restart(found[-1], (0.0, -keeps * ball.read(found[-1])[1]))
-    expected = [fall + 2 * fall * sum(keeps**k for k in range(1, n + 1)) for n in range(10)]
-    within(absolute_error(found, expected), 1e-8, "times")
-    assert ball.now.restarts == 10

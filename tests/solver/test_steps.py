@@ -1,4 +1,4 @@
-"""Steps and dense output of the solver alone: order, accuracy, grids, stops, failures."""
+"""Steps, dense output and histories of the solver alone: order, accuracy, grids, stops, failures."""
 
 from math import hypot, inf, log2
 
@@ -112,3 +112,43 @@ def test_bdf_solves_a_stiff_problem_in_a_hundredth_of_the_steps_of_an_explicit_m
     assert stiff.now.jacobians > 0
     # An evaluation for each column of each difference quotient, besides those of the steps.
     assert stiff.now.rhs >= stiff.now.steps + 8 * stiff.now.jacobians
+
+
+# Restored histories. What could not have been saved is refused: contract/test_serialization.py.
+
+
+@pytest.fixture
+def watched(solver, method):
+    """watched(steps) -> a solver after so many steps, with something to watch."""
+
+    def make(steps=0):
+        made = solver(method, "stiff", 3.0, each_step=lambda t, y: y[0] + 10)
+        made.run(inf, steps)
+        return made
+
+    return make
+
+
+def seen(one, steps):
+    """What each step does: its kind, the time known, the state halfway, evaluations."""
+    rows = []
+    for _ in range(steps):
+        outcome, now = one.step(), one.now
+        rows.append((outcome, now.known, one.read(0.5 * (now.begin + now.known)), now.rhs, now.roots))
+    return rows
+
+
+@pytest.mark.parametrize("steps", [0, 1, 2, 7, 60, 300])
+def test_a_restored_solver_goes_on_with_the_same_bits(watched, steps):
+    original, copy, once_more = watched(steps), watched(), watched()
+    history = original.save()
+    assert copy.restore(history) and copy.save() == history
+    t = original.now.begin + 0.3 * (original.now.known - original.now.begin)
+    assert original.read(t) == copy.read(t)
+    assert seen(original, 200) == seen(copy, 200)
+    assert once_more.restore(history) and copy.restore(history)  # back to the past, in a solver that has gone on
+    assert seen(once_more, 100) == seen(copy, 100)
+
+
+def test_a_history_is_small(watched):
+    within(len(watched(60).save()), 4096, "bytes")

@@ -1,20 +1,23 @@
-"""The one driver of the built FMU, for tests and reports: an instance whose every status is seen.
+"""The one driver of the built FMU, for tests and reports: an instance of either kind whose every status is seen.
 
-Names, frames and units are those of modelDescription.xml, where the value references are looked up. Built on fmpy's
-FMU2Slave, whose ctypes signatures it uses; it returns the status where fmpy would raise.
+Names, frames and units are those of modelDescription.xml, where the value references are looked up. The ctypes
+signatures are those of fmpy; the status is returned where fmpy would raise.
 """
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import AbstractContextManager
 from copy import copy
-from ctypes import byref, c_double, c_int, c_size_t, c_uint, create_string_buffer
+from ctypes import byref, c_char, c_double, c_int, c_size_t
 from math import comb, factorial
 from typing import Any, NamedTuple, Self
 
 import numpy as np
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2FMUstate
+from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2CallbackFunctions, fmi2EventInfo, fmi2FMUstate
+from fmpy.fmi2 import fmi2CallbackLoggerTYPE as Logger
 from fmpy.model_description import ModelDescription
 from numpy.typing import NDArray
 
+MODEL_EXCHANGE, CO_SIMULATION = range(2)
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
 DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED = range(4)
 HEADLINE = ("X_O", "theta", "phi_dot", "psi_dot")
@@ -24,8 +27,11 @@ CHOICES = {
     "friction_law": {"exact": 1, "regularized": 2},
     "method": {"automatic": 1, "adams": 2, "bdf": 3, "runge_kutta": 4},
 }
-C_TYPES = {"Real": ("Real", c_double), "Boolean": ("Boolean", c_int)}  # all others are read and set as integers
+STATES = ("X_O", "Y_O", "psi", "theta", "phi", "theta_dot", "psi_dot", "omega_z")
+DERIVATIVES = ("X_O_dot", "Y_O_dot", "psi_dot", "theta_dot", "phi_dot", "theta_ddot", "psi_ddot", "omega_z_dot")
+INDICATORS = ("spin_changes", "lost_grip", "lost_contact", "fell_flat")  # the events of model exchange
 
+Array = NDArray[np.float64]
 Value = float | str | bool
 Values = dict[str, Value]
 
@@ -48,7 +54,16 @@ class State(bytes):
     time = 0.0
 
 
-class FMU2Wheel(FMU2Slave):
+def as_array(pointer: Any, argument: Any) -> Any:
+    """A sequence as an array of the type that is pointed to, bytes as they are; all else unchanged."""
+    if isinstance(argument, bytes):
+        return (c_char * len(argument)).from_buffer_copy(argument)
+    if isinstance(argument, list | tuple | np.ndarray):
+        return (pointer._type_ * len(argument))(*argument)
+    return argument
+
+
+class FMU2Wheel(FMU2Slave, FMU2Model, AbstractContextManager):
     """One instance, or the loaded library of which `new` makes them. Its name starts with FMU2 because fmpy chooses the
     functions to load by that."""
 
@@ -62,17 +77,17 @@ class FMU2Wheel(FMU2Slave):
         self.reals = [v.name for v in outputs if v.type == "Real"]
         self.integers = [v.name for v in outputs if v.type == "Integer"]
         self.on_message: Callable[[Message], None] | None = None
-        self.time = 0.0
+        self.kind, self.time = CO_SIMULATION, 0.0
 
     def new(self, logging: bool = False, name: str = "wheel") -> Self:
-        """An instance, instantiated; fmpy looks up the functions once, for all instances."""
+        """An instance of `kind`, instantiated; fmpy looks up the functions once, for all instances."""
         instance = copy(self)
         instance.instanceName, instance.messages = name, []
-        instance.instantiate(callbacks=instance.own_callbacks(), loggingOn=logging)
+        instance.callbacks = fmi2CallbackFunctions(logger=Logger(instance.keep_message))
+        arguments = name.encode(), self.kind, self.guid.encode(), None, byref(instance.callbacks), 0, logging
+        instance.component = self.fmi2Instantiate(*arguments)
+        assert instance.component, instance.messages
         return instance
-
-    def __enter__(self) -> Self:
-        return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
@@ -83,11 +98,6 @@ class FMU2Wheel(FMU2Slave):
             self.fmi2FreeInstance(self.component)
         self.component = None
 
-    def own_callbacks(self) -> fmi2CallbackFunctions:
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = fmi2CallbackLoggerTYPE(self.keep_message)
-        return callbacks
-
     def keep_message(self, _: Any, name: bytes, status: int, category: bytes, text: bytes) -> None:
         assert name.decode() == self.instanceName
         self.messages.append(Message(status, category.decode(), text.decode()))
@@ -97,15 +107,24 @@ class FMU2Wheel(FMU2Slave):
     def _call(self, fname: str, *args: Any) -> Any:
         return self._functions[fname](*args)
 
+    def ask(self, function: str, *arguments: Any) -> int:
+        """The status of fmi2`function` on this instance; sequences become the arrays that it takes."""
+        called = self._functions[f"fmi2{function}"]
+        return called(self.component, *map(as_array, called.argtypes[1:], arguments))
+
     def take_messages(self) -> list[Message]:
         """What was logged since the last call of this function."""
         messages, self.messages = self.messages, []
         return messages
 
+    def texts(self) -> list[str]:
+        """Those of take_messages."""
+        return [message.text for message in self.take_messages()]
+
     def said(self) -> str:
         """The only message since the last call of this function or of take_messages."""
-        (message,) = self.take_messages()
-        return message.text
+        (text,) = self.texts()
+        return text
 
     @property
     def sentences(self) -> list[str]:
@@ -140,73 +159,67 @@ class FMU2Wheel(FMU2Slave):
         assert (self.set(**values), self.setupExperiment(), self.enterInitializationMode()) == (OK, OK, OK)
         return self
 
-    def c_type(self, name: str) -> tuple[str, type]:
-        return C_TYPES.get(self.variables[name].type, ("Integer", c_int))
+    def refer(self, *names: str) -> list[int]:
+        """The value references."""
+        return [self.references[name] for name in names]
 
-    def c_references(self, names: Sequence[str]) -> Any:
-        return (c_uint * len(names))(*(self.references[name] for name in names))
+    def type_of(self, name: str) -> str:
+        """Real, Boolean or, for all others, Integer."""
+        kind = self.variables[name].type
+        return kind if kind in ("Real", "Boolean") else "Integer"
 
     def set(self, **values: Value) -> int:
         """Values by name, each with the function of its type, a choice by its name or number; the worst status."""
         status = OK
         for name, value in values.items():
-            kind, c_type = self.c_type(name)
             number = CHOICES[name][value] if isinstance(value, str) else value
-            call = getattr(self, f"fmi2Set{kind}")
-            status = max(status, call(self.component, self.c_references([name]), 1, (c_type * 1)(number)))
+            status = max(status, self.ask(f"Set{self.type_of(name)}", self.refer(name), 1, [number]))
         return status
 
     def set_input_derivatives(self, names: Sequence[str], derivatives: Sequence[Sequence[float]]) -> int:
         """derivatives: a row for each order from the first on, a column for each input."""
-        count = len(names) * len(derivatives)
-        orders = (c_int * count)(*(order + 1 for order in range(len(derivatives)) for _ in names))
-        values = (c_double * count)(*(float(value) for row in derivatives for value in row))
-        references = self.c_references([*names] * len(derivatives))
-        return self.fmi2SetRealInputDerivatives(self.component, references, count, orders, values)
+        orders = [order + 1 for order in range(len(derivatives)) for _ in names]
+        values = [float(value) for row in derivatives for value in row]
+        return self.ask("SetRealInputDerivatives", self.refer(*names) * len(derivatives), len(values), orders, values)
 
     def get(self, *names: str) -> list[float]:
         """Values by name, each read by its own call."""
         return [self.get_one(name)[1] for name in names]
 
     def get_one(self, name: str) -> tuple[int, float]:
-        kind, c_type = self.c_type(name)
-        value = (c_type * 1)()
-        call = getattr(self, f"fmi2Get{kind}")
-        status = call(self.component, self.c_references([name]), 1, value)
-        return status, value[0]
+        kind = self.type_of(name)
+        value = (c_double if kind == "Real" else c_int)()
+        return self.ask(f"Get{kind}", self.refer(name), 1, byref(value)), value.value
 
     def reader(self, names: Sequence[str]) -> Callable[[], list[float]]:
         """A function that reads these real variables by one call."""
-        values, references = (c_double * len(names))(), self.c_references(names)
-        return lambda: (self.fmi2GetReal(self.component, references, len(names), values), list(values))[1]
+        references = self.refer(*names)
+        return lambda: self.getReal(references)
 
     def rates(self, names: Sequence[str]) -> Callable[[], list[float]]:
         """A function that reads the first derivatives of these outputs by one call."""
-        values, references, orders = (c_double * len(names))(), self.c_references(names), (c_int * len(names))()
-        orders[:] = [1] * len(names)
-        call = self.fmi2GetRealOutputDerivatives
-        return lambda: (call(self.component, references, len(names), orders, values), list(values))[1]
+        references = self.refer(*names)
+        return lambda: self.getRealOutputDerivatives(references, [1] * len(references))
 
-    def jacobian(self, unknowns: Sequence[str], knowns: Sequence[str]) -> NDArray[np.float64]:
+    def jacobian(self, unknowns: Sequence[str], knowns: Sequence[str]) -> Array:
         """d unknown / d known, by one directional derivative per known."""
         columns = []
         for known in knowns:
             values = (c_double * len(unknowns))()
-            references = self.c_references(unknowns), self.c_references([known])
-            call, seed = self.fmi2GetDirectionalDerivative, (c_double * 1)(1)
-            assert call(self.component, references[0], len(unknowns), references[1], 1, seed, values) == OK
+            arguments = self.refer(*unknowns), len(unknowns), self.refer(known), 1, [1.0], values
+            assert self.ask("GetDirectionalDerivative", *arguments) == OK
             columns.append(list(values))
         return np.array(columns).T
 
     def read(self, names: Sequence[str]) -> bytes:
         """Real variables by one call, as bits."""
         values = (c_double * len(names))()
-        assert self.fmi2GetReal(self.component, self.c_references(names), len(names), values) == OK
+        assert self.ask("GetReal", self.refer(*names), len(names), values) == OK
         return bytes(values)
 
     def bits(self) -> bytes:
         """Every output and local variable, the counters too."""
-        numbers = self.getInteger([self.references[name] for name in self.integers])
+        numbers = self.getInteger(self.refer(*self.integers))
         return self.read(self.reals) + bytes((c_int * len(numbers))(*numbers))
 
     def put(self, **values: Value) -> Self:
@@ -234,14 +247,14 @@ class FMU2Wheel(FMU2Slave):
         return self
 
     def step(self, h: float) -> int:
-        status = self.fmi2DoStep(self.component, self.time, h, 0)
+        status = self.ask("DoStep", self.time, h, 0)
         if status == OK:
             self.time += h
         return status
 
     def step_to(self, t: float) -> int:
         """To the time t, to the bit where t - time is exact enough to give it back."""
-        status = self.fmi2DoStep(self.component, self.time, t - self.time, 0)
+        status = self.ask("DoStep", self.time, t - self.time, 0)
         if status <= WARNING:
             self.time = t
         return status
@@ -252,16 +265,19 @@ class FMU2Wheel(FMU2Slave):
 
     def snapshot(self) -> fmi2FMUstate:
         state = fmi2FMUstate()
-        assert self.fmi2GetFMUstate(self.component, byref(state)) == OK
+        assert self.ask("GetFMUstate", byref(state)) == OK
         return state
+
+    def free(self, state: fmi2FMUstate) -> None:
+        assert self.ask("FreeFMUstate", byref(state)) == OK and not state
 
     def serialized(self) -> State:
         """The present state as bytes."""
         state, size = self.snapshot(), c_size_t()
-        assert self.fmi2SerializedFMUstateSize(self.component, state, byref(size)) == OK
-        blob = create_string_buffer(size.value)
-        assert self.fmi2SerializeFMUstate(self.component, state, blob, size) == OK
-        assert self.fmi2FreeFMUstate(self.component, byref(state)) == OK
+        assert self.ask("SerializedFMUstateSize", state, byref(size)) == OK
+        blob = (c_char * size.value)()
+        assert self.ask("SerializeFMUstate", state, blob, size) == OK
+        self.free(state)
         taken = State(blob.raw)
         taken.time = self.time
         return taken
@@ -270,12 +286,12 @@ class FMU2Wheel(FMU2Slave):
         """Puts the instance into a serialized state, and its time to that of the state where that is known; the status
         of reading the bytes, or else of setting the state."""
         state = fmi2FMUstate()
-        status = self.fmi2DeSerializeFMUstate(self.component, create_string_buffer(blob, len(blob)), len(blob), state)
+        status = self.ask("DeSerializeFMUstate", blob, len(blob), byref(state))
         assert bool(state) == (status == OK)
         if status != OK:
             return status
-        status = self.fmi2SetFMUstate(self.component, state)
-        self.fmi2FreeFMUstate(self.component, byref(state))
+        status = self.ask("SetFMUstate", state)
+        self.free(state)
         self.time = getattr(blob, "time", self.time)
         return status
 
@@ -286,11 +302,47 @@ class FMU2Wheel(FMU2Slave):
 
     def status(self, kind: int) -> Any:
         """fmi2GetStatus, fmi2GetRealStatus or fmi2GetBooleanStatus, whichever answers this kind."""
-        call, c_type = {
-            DO_STEP_STATUS: (self.fmi2GetStatus, c_int),
-            LAST_SUCCESSFUL_TIME: (self.fmi2GetRealStatus, c_double),
-            TERMINATED: (self.fmi2GetBooleanStatus, c_int),
-        }[kind]
-        value = c_type(-1)
-        assert call(self.component, kind, byref(value)) == OK
+        value = c_double() if kind == LAST_SUCCESSFUL_TIME else c_int()
+        call = {DO_STEP_STATUS: "", LAST_SUCCESSFUL_TIME: "Real", TERMINATED: "Boolean"}[kind]
+        assert self.ask(f"Get{call}Status", kind, byref(value)) == OK
         return value.value
+
+    # Model exchange: vectors in the order of STATES, DERIVATIVES and INDICATORS.
+
+    def vector(self, what: str, size: int = len(STATES)) -> Array:
+        values = np.zeros(size)
+        assert self.ask(f"Get{what}", (c_double * size).from_buffer(values), size) == OK
+        return values
+
+    def x(self) -> Array:
+        return self.vector("ContinuousStates")
+
+    def derivatives(self) -> Array:
+        return self.vector("Derivatives")
+
+    def indicators(self) -> Array:
+        return self.vector("EventIndicators", len(INDICATORS))
+
+    def indicator(self, event: str) -> float:
+        return float(self.indicators()[INDICATORS.index(event)])
+
+    def place(self, t: float, x: Array) -> None:
+        assert self.ask("SetTime", t) == self.ask("SetContinuousStates", x, len(x)) == OK
+
+    def decide(self) -> fmi2EventInfo:
+        """One pass of the event mode, which is enough."""
+        info = fmi2EventInfo()
+        assert self.ask("NewDiscreteStates", byref(info)) == OK
+        assert not info.newDiscreteStatesNeeded
+        return info
+
+    def event(self) -> fmi2EventInfo:
+        """Into event mode, and out of it unless the model ends."""
+        assert self.enterEventMode() == OK
+        info = self.decide()
+        if not info.terminateSimulation:
+            assert self.enterContinuousTimeMode() == OK
+        return info
+
+    def wants_event(self) -> bool:
+        return self.completedIntegratorStep()[0]

@@ -40,10 +40,15 @@ def table(record: type[Structure], rows: int) -> np.ndarray:
     return np.zeros(rows, dtype=np.dtype(record))
 
 
+def filled(out: np.ndarray, function: Callable, *tables: np.ndarray, of: tuple[Structure, ...] = ()) -> np.ndarray:
+    """`out`, of which function(*of, row i of every table, row i of out) has written row i."""
+    each(function, *tables, out, of=of)
+    return out
+
+
 def start_each(formulation: Formulation, scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    y = np.zeros((len(scenes), formulation.states))
-    each(formulation.start, scenes, motions, y)  # the wheel is a scene's first field
-    return y
+    """The wheel is a scene's first field."""
+    return filled(np.zeros((len(scenes), formulation.states)), formulation.start, scenes, motions)
 
 
 def derivative_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -54,31 +59,21 @@ def derivative_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray)
 
 
 def kinematics_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray) -> np.ndarray:
-    out = table(Kinematics, len(y))
-    each(formulation.kinematics, scenes, y, out)
-    return out
+    return filled(table(Kinematics, len(y)), formulation.kinematics, scenes, y)
 
 
 def dynamics_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray) -> np.ndarray:
-    out = table(Dynamics, len(y))
-    each(formulation.dynamics, scenes, y, out)
-    return out
+    return filled(table(Dynamics, len(y)), formulation.dynamics, scenes, y)
 
 
 def rates_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray) -> np.ndarray:
     """lambda_dot and tau_dot, row by row."""
-    return _rates(LIBRARY.wheel_reaction_rates, formulation, scenes, load_dots, y)
+    return filled(np.zeros((len(y), 4)), LIBRARY.wheel_reaction_rates, scenes, load_dots, y, of=(formulation,))
 
 
 def response_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray) -> np.ndarray:
     """The part of load_dots in `rates_each`."""
-    return _rates(LIBRARY.wheel_reaction_response, formulation, scenes, load_dots, y)
-
-
-def _rates(function: Callable, formulation: Formulation, *tables: np.ndarray) -> np.ndarray:
-    out = np.zeros((len(tables[0]), 4))
-    each(function, *tables, out, of=(formulation,))
-    return out
+    return filled(np.zeros((len(y), 4)), LIBRARY.wheel_reaction_response, scenes, load_dots, y, of=(formulation,))
 
 
 def columns(records: np.ndarray, *names: str) -> np.ndarray:

@@ -1,93 +1,37 @@
-"""The FMU in model exchange: an instance, and whole motions by a solver of SciPy with the FMU's events.
+"""The FMU in model exchange: whole motions by a solver of SciPy with the FMU's events.
 
 The solver is not ours and knows nothing of the wheel: it asks for derivatives and event indicators, searches the dense
 output of each step for the first sign change, and hands the state at that instant to the event mode of the FMU. SI.
 """
 
 from collections.abc import Callable
-from ctypes import POINTER, byref, c_double, c_int
-from functools import cache
+from copy import copy
 
 import numpy as np
-from fmpy.fmi2 import FMU2Model, fmi2EventInfo
-from numpy.typing import NDArray
 from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
-from .driver import OK, FMU2Wheel, Value
+from .driver import INDICATORS as INDICATORS
+from .driver import MODEL_EXCHANGE, OK, Array, FMU2Wheel, Value
 from .motion import Library
 
-Array = NDArray[np.float64]
-STATES = ("X_O", "Y_O", "psi", "theta", "phi", "theta_dot", "psi_dot", "omega_z")
-DERIVATIVES = ("X_O_dot", "Y_O_dot", "psi_dot", "theta_dot", "phi_dot", "theta_ddot", "psi_ddot", "omega_z_dot")
-INDICATORS = ("spin_changes", "lost_grip", "lost_contact", "fell_flat")  # the events of model exchange
 SAMPLES = np.linspace(0, 1, 12)[1:]  # of each step, for the search of an indicator's fall
 
 
-class FMU2Exchange(FMU2Wheel, FMU2Model):
-    """One instance for model exchange: fmpy asks for the type that this class inherits from last."""
-
-    def x(self) -> Array:
-        x = np.zeros(len(STATES))
-        assert self.fmi2GetContinuousStates(self.component, self._pointer(x), len(x)) == OK
-        return x
-
-    def place(self, t: float, x: Array) -> None:
-        assert self.fmi2SetTime(self.component, t) == OK
-        x = np.ascontiguousarray(x)
-        assert self.fmi2SetContinuousStates(self.component, self._pointer(x), len(x)) == OK
-
-    def derivatives(self) -> Array:
-        x_dot = np.zeros(len(STATES))
-        assert self.fmi2GetDerivatives(self.component, self._pointer(x_dot), len(x_dot)) == OK
-        return x_dot
-
-    def indicators(self) -> Array:
-        z = np.zeros(len(INDICATORS))
-        assert self.fmi2GetEventIndicators(self.component, self._pointer(z), len(z)) == OK
-        return z
-
-    def indicator(self, event: str) -> float:
-        return float(self.indicators()[INDICATORS.index(event)])
-
-    def decide(self) -> fmi2EventInfo:
-        """One pass of the event mode, which is enough."""
-        info = fmi2EventInfo()
-        assert self.fmi2NewDiscreteStates(self.component, byref(info)) == OK
-        assert not info.newDiscreteStatesNeeded
-        return info
-
-    def event(self) -> fmi2EventInfo:
-        """Into event mode, and out of it unless the model ends."""
-        assert self.fmi2EnterEventMode(self.component) == OK
-        info = self.decide()
-        if not info.terminateSimulation:
-            assert self.fmi2EnterContinuousTimeMode(self.component) == OK
-        return info
-
-    def wants_event(self) -> bool:
-        answers = c_int(), c_int()
-        assert self.fmi2CompletedIntegratorStep(self.component, 1, *map(byref, answers)) == OK
-        return bool(answers[0].value)
-
-    @staticmethod
-    def _pointer(numbers: Array):
-        return numbers.ctypes.data_as(POINTER(c_double))
-
-
-@cache
-def loaded(library: Library) -> FMU2Exchange:
+def loaded(library: Library) -> FMU2Wheel:
     """The library, of which `new` makes instances for model exchange."""
-    return FMU2Exchange(library.folder, library.description)
+    loaded = copy(library.loaded)
+    loaded.kind = MODEL_EXCHANGE
+    return loaded
 
 
-def exchange(library: Library, logging: bool = False, **values: Value) -> FMU2Exchange:
+def exchange(library: Library, logging: bool = False, **values: Value) -> FMU2Wheel:
     """A new instance in continuous-time mode at t = 0."""
     wheel = loaded(library).new(logging)
     assert wheel.set(**values) == OK
     assert wheel.initialise() == OK, wheel.sentences
     assert not wheel.decide().terminateSimulation
-    assert wheel.fmi2EnterContinuousTimeMode(wheel.component) == OK
+    assert wheel.enterContinuousTimeMode() == OK
     return wheel
 
 
@@ -100,7 +44,7 @@ class Run:
     ending; `changed`: which events called the states changed.
     """
 
-    def __init__(self, wheel: FMU2Exchange, rtol: float, inputs: Callable[[float], dict[str, float]]) -> None:
+    def __init__(self, wheel: FMU2Wheel, rtol: float, inputs: Callable[[float], dict[str, float]]) -> None:
         self.wheel, self.rtol, self.inputs = wheel, rtol, inputs
         self.t, self.events, self.changed, self.ended, self.rhs = 0.0, [], [], None, 0
         self.at(0.0, wheel.x())

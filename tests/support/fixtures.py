@@ -2,7 +2,6 @@
 
 import os
 import resource
-import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -53,11 +52,9 @@ def fmu_path() -> Path:
 
 
 @pytest.fixture(scope="session")
-def fmu(fmu_path: Path) -> Iterator[str]:
+def fmu(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
     """The unpacked FMU."""
-    folder = extract(str(fmu_path))
-    yield folder
-    shutil.rmtree(folder)
+    return extract(str(fmu_path), str(tmp_path_factory.mktemp("fmu")))
 
 
 @pytest.fixture(scope="session")

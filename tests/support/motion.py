@@ -4,19 +4,18 @@ import re
 import shutil
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
+from itertools import chain
 from pathlib import Path
 from time import perf_counter
 from typing import Self
 
 import numpy as np
 from fmpy import extract, read_model_description
-from numpy.typing import NDArray
 from reference import Start, Wheel
 
-from .driver import COUNTERS, DISCARD, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, FMU2Wheel, Value, Values
+from .driver import COUNTERS, DISCARD, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, Array, FMU2Wheel, Value, Values
 from .schedule import INPUTS, Schedule
 
-Array = NDArray[np.float64]
 TRANSITION = re.compile(r"t = (\S+) s: .*(stick|negative|positive)")
 MODES = {"stick": 0, "negative": -1, "positive": 1}
 
@@ -101,22 +100,6 @@ def feed(wheel: FMU2Wheel, inputs: Schedule, t: float) -> int:
     return status
 
 
-class Recorder:
-    """Reads all outputs and local variables, and the rates of those asked for, row by row."""
-
-    def __init__(self, wheel: FMU2Wheel, rates: Sequence[str]) -> None:
-        self.wheel, self.rows = wheel, []
-        self.names = ("t", *wheel.reals, *(f"{name}_dot" for name in rates), *wheel.integers)
-        self.reals, self.rates = wheel.reader(wheel.reals), wheel.rates(rates)
-        self.integers = [wheel.references[name] for name in wheel.integers]
-
-    def record(self, t: float) -> None:
-        self.rows.append((t, *self.reals(), *self.rates(), *self.wheel.getInteger(self.integers)))
-
-    def columns(self) -> dict[str, Array]:
-        return dict(zip(self.names, np.array(self.rows, dtype=float).T, strict=True))
-
-
 def run(
     library: Library,
     values: Values,
@@ -129,39 +112,27 @@ def run(
 
     At a jump the row is from the right. A run that is refused has no columns.
     """
-    inputs = inputs or Schedule()
+    inputs, times, end, seconds = inputs or Schedule(), [float(t) for t in times], None, 0.0
     with library.wheel(logging=True) as wheel:
-        begin = float(times[0])
         status = wheel.set(**values)
-        status = max(status, wheel.initialise(tolerance, begin, set_inputs=lambda: feed(wheel, inputs, begin)))
+        status = max(status, wheel.initialise(tolerance, times[0], set_inputs=lambda: feed(wheel, inputs, times[0])))
         if status > WARNING:
             return Run({}, wheel.sentences, status, None, 0.0)
-        recorder = Recorder(wheel, rates)
-        status, end, seconds = march(wheel, [float(t) for t in times], inputs, recorder)
-        columns = recorder.columns()
+        names = ("t", *wheel.reals, *(f"{name}_dot" for name in rates), *wheel.integers)
+        read = wheel.reader(wheel.reals), wheel.rates(rates), lambda: wheel.getInteger(wheel.refer(*wheel.integers))
+        rows, asked = [], set(times)
+        for t in (times[0], *sorted({*times[1:], *(t for t in inputs.jumps if times[0] < t < times[-1])})):
+            if rows:
+                before = perf_counter()
+                status = wheel.step_to(t)
+                seconds += perf_counter() - before
+                status = status if status > WARNING else max(status, feed(wheel, inputs, t))
+            if status == DISCARD and wheel.status(TERMINATED):
+                t = end = wheel.status(LAST_SUCCESSFUL_TIME)
+            if status <= WARNING and t in asked or end is not None:
+                rows.append((t, *chain(*(values() for values in read))))
+            if status > WARNING:
+                break
+        columns = dict(zip(names, np.array(rows, dtype=float).T, strict=True))
         counters = {name: int(columns.pop(name)[-1]) for name in COUNTERS}
         return Run(columns, wheel.sentences, status, end, seconds, counters)
-
-
-def march(
-    wheel: FMU2Wheel, times: list[float], inputs: Schedule, recorder: Recorder
-) -> tuple[int, float | None, float]:
-    """Status of the last step, instant of an ending, seconds spent in the steps."""
-    asked, seconds = set(times), 0.0
-    jumps = [t for t in inputs.jumps if times[0] < t < times[-1]]
-    stops = sorted({*times[1:], *jumps}) if jumps else times[1:]
-    recorder.record(times[0])
-    for t in stops:
-        before = perf_counter()
-        status = wheel.step_to(t)
-        seconds += perf_counter() - before
-        if status == DISCARD and wheel.status(TERMINATED):
-            end = wheel.status(LAST_SUCCESSFUL_TIME)
-            recorder.record(end)
-            return status, end, seconds
-        status = max(status, feed(wheel, inputs, t)) if status <= WARNING else status
-        if status > WARNING:
-            return status, None, seconds
-        if t in asked:
-            recorder.record(t)
-    return OK, None, seconds

@@ -2,9 +2,9 @@
 
 from bisect import bisect_right
 from dataclasses import dataclass
-from math import factorial
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike, NDArray
 from reference import Inputs
 
@@ -26,11 +26,8 @@ class Schedule:
         piece = self.pieces[bisect_right([start for start, _ in self.pieces], t) - 1][1]
         table = np.zeros((4, len(INPUTS)))
         for name, coefficients in piece.items():
-            c = np.zeros(4)
-            c[: np.size(coefficients)] = coefficients
-            for k in range(4):
-                powers = [factorial(n) / factorial(n - k) * t ** (n - k) for n in range(k, 4)]
-                table[k, INPUTS.index(name)] = c[k:] @ powers
+            p = Polynomial(coefficients)
+            table[:, INPUTS.index(name)] = [p.deriv(k)(t) for k in range(4)]
         return table
 
     def for_reference(self) -> Inputs:

@@ -1,0 +1,217 @@
+"""The documents are true: figures and tables are those of the data, what they name exists, messages are the code's.
+
+Links and formulas are judged by the strict build of the site, prose by ./scripts/lint. Each check has a partner.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from math import inf
+from pathlib import Path
+
+import pytest
+from lxml import etree
+from support.paths import ROOT
+
+from publishing import prose, variables
+from publishing.documents import PLACE, UnknownFigure, pages, read_figures, with_figures
+from publishing.markdown import number
+
+RESULTS = ROOT / "docs" / "results"
+BY_HAND = ROOT / "docs" / "interoperability.md"  # runs of other programs, which no command of this project starts
+TEXTS = {str(page.relative_to(ROOT)): page.read_text(encoding="utf-8") for page in pages()}
+prose.register()
+
+
+def run(*command: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, cwd=ROOT, env=os.environ | variables, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize(
+    ("module", "folders"),
+    [(("publishing.documents",), ("tools",)), (("reports", "all"), ("tools", "examples/vehicles", "tests"))],
+)
+def test_pages_and_reports_are_those_of_the_data(module: tuple[str, ...], folders: tuple[str, ...]) -> None:
+    done = run(sys.executable, "-m", *module, "--check", PYTHONPATH=":".join(folders))
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_another_figure_or_variable_would_be_noticed() -> None:
+    text, figures = TEXTS["README.md"], read_figures()
+    names = [place[1] for place in PLACE.findall(text)]
+    assert len(names) >= 5 and with_figures(text, figures | {names[0]: "other"}) != text
+    rows = variables.read_variables()
+    for page in variables.PAGES:
+        assert variables.with_tables(page.read_text(encoding="utf-8"), rows[1:], page) != page.read_text(
+            encoding="utf-8"
+        )
+
+
+def test_an_unknown_figure_is_refused_and_a_known_one_is_filled(tmp_path: Path) -> None:
+    (tmp_path / "report.csv").write_text("figure,measured\nerror,4.04e-08\n")
+    (tmp_path / "report_rows.csv").write_text("t,x\n0,1\n")
+    figures = read_figures(tmp_path)
+    assert figures == {"report.error": "4e-8"}
+    page = "an error of <!-- = report.error -->?<!-- . -->."
+    assert with_figures(page, figures) == "an error of <!-- = report.error -->4e-8<!-- . -->."
+    with pytest.raises(UnknownFigure, match="asks for report.time"):
+        with_figures("<!-- = report.time --><!-- . -->", figures)
+
+
+SHORT = {4.04e-8: "4e-8", 3.46e-9: "3.5e-9", 1.25e-3: "0.00125", 0.0: "0", 123456.0: "1.2e5", 37: "37", inf: "inf"}
+
+
+def test_a_number_is_short() -> None:
+    assert {value: number(value) for value in SHORT} == SHORT
+
+
+CODE = re.compile(
+    r"```.*?```|(?m:^ {4}[^\n]*$)|`[^`]*`|<pre>.*?</pre>|<code>.*?</code>|<math.*?</math>|<!--.*?-->|]\([^)]*\)",
+    re.DOTALL,
+)
+# What looks measured: a mantissa with a negative exponent (a power of ten is a tolerance), or a time or size.
+TYPED = re.compile(r"(?<![\w.])(?!1e)\d+(?:\.\d+)?e-\d+\b|\b\d[\d.,]* ?(?:ns|µs|us|KiB|MiB)\b")
+# Figures that no report measures: the rounding of a constant, a limit that the code sets.
+GIVEN = {"docs/physics.md": {"6e-17"}, "docs/decisions/others.md": {"128 KiB"}}
+COUNTS = {"right to 4e-8 of the range": 1, "it takes 0.5 µs a step": 1, "1,420 KiB and 94 ns": 2}
+COUNTS |= {"a tolerance of 1e-8": 0, "run `x = 4e-8`": 0}
+COUNTS |= {"right to <!-- = accuracy.error_free -->4e-8<!-- . --> of the range": 0}
+
+
+def typed(text: str) -> list[str]:
+    """What looks like a measured figure outside of marked places, code and links."""
+    return TYPED.findall(CODE.sub(" ", PLACE.sub(" ", text)))
+
+
+def test_no_measured_figure_is_typed_by_hand() -> None:
+    written = {
+        name: text for name, text in TEXTS.items() if RESULTS not in (ROOT / name).parents and ROOT / name != BY_HAND
+    }
+    found = {name: {*typed(text)} - GIVEN.get(name, set()) for name, text in written.items()}
+    assert {name: figures for name, figures in found.items() if figures} == {}
+    assert {text: len(typed(text)) for text in COUNTS} == COUNTS
+
+
+COMMAND = re.compile(r"\./scripts/(\w+)")
+NAMED = re.compile(r"`((?:cmake|docs|examples|fmu-src|publishing|release|reports|scripts|tests|tools)/[\w./-]*)`")
+
+
+def missing(text: str, beside: Path = ROOT) -> list[str]:
+    """Commands and places that the text names and the project has not."""
+    gone = [f"./scripts/{name}" for name in COMMAND.findall(text) if not (ROOT / "scripts" / name).is_file()]
+    named = [name for name in NAMED.findall(text) if "NAME" not in name]
+    return gone + [name for name in named if not (ROOT / name).exists() and not (beside / name).exists()]
+
+
+def test_every_command_and_file_that_a_document_names_exists_and_every_decision_is_listed() -> None:
+    found = {name: missing(text, (ROOT / name).parent) for name, text in TEXTS.items() if name.endswith(".md")}
+    assert {name: gone for name, gone in found.items() if gone} == {}
+    assert missing("`./scripts/run`, `tests/support/bounds.py`, `fmu-src/`") == []
+    assert missing("`./scripts/walk` and `tests/support/bounds.cpp`") == ["./scripts/walk", "tests/support/bounds.cpp"]
+    listed = re.findall(r"\]\((decisions/\w+\.md)\)", TEXTS["docs/README.md"])
+    assert set(listed) == {f"decisions/{path.name}" for path in (ROOT / "docs" / "decisions").glob("*.md")}
+
+
+OUTSIDE = r"(^|[^A-Za-z0-9_./])/(work|home|root|Users)/[A-Za-z0-9_.-]|ROOT\.parent|CMAKE_SOURCE_DIR\}/\.\."
+
+
+# Noticed below, each on a line of its own.
+PLACES = (
+    "file(READ ${CMAKE_SOURCE_DIR}/../x)",
+    'ROOT.parent / "neighbour"',
+    "cat /home/someone/table.csv",
+)
+
+
+def test_no_file_names_a_place_of_some_machine_or_above_the_root() -> None:
+    """What a file does at run time is tried by .ci/run, in a clone with nothing beside it."""
+    found = run("git", "grep", "-IcE", "--untracked", OUTSIDE)
+    assert found.stdout == f"tests/repository/{Path(__file__).name}:{len(PLACES)}\n"
+
+
+PIECE = r'"(?:[^"\\\n]|\\.)*"'
+COMMENT = re.compile(
+    rf"({PIECE})|//[^\n]*|/\*.*?\*/|^\s*#\s*include[^\n]*|\bstatic_assert\(.*?;", re.DOTALL | re.MULTILINE
+)
+LITERAL = re.compile(rf"{PIECE}(?:\s*(?:[A-Z_]+\s*)?{PIECE})*")
+REASON = re.compile(rf"(?:\breturn|\bfailure_ =)\s+({PIECE})")
+
+
+def bare(code: str) -> str:
+    """Without comments."""
+    return COMMENT.sub(lambda found: found[1] or " ", code)
+
+
+def code_of(*folders: str) -> str:
+    files = [path for name in folders for path in sorted((ROOT / "fmu-src" / name).glob("*.[ch]pp"))]
+    return "\n".join(bare(file.read_text(encoding="utf-8")) for file in files)
+
+
+def texts(pattern: re.Pattern[str], code: str) -> set[str]:
+    """Literals, joined from their pieces, with … for what is filled in when the FMU runs."""
+    joined = (re.sub(r'"\s*[A-Z_]+\s*"', "…", re.sub(r'"\s*"', "", found))[1:-1] for found in pattern.findall(code))
+    filled = (re.sub(r"%(?:s|d|u|zu|lld)(?:%s)?", "…", text.replace('\\"', '"')) for text in joined)
+    return {text.replace("……", "…") for text in filled}
+
+
+def whole(literals: set[str]) -> set[str]:
+    """Messages: those that end with a full stop."""
+    return {text for text in literals if " " in text and text.endswith(".")}
+
+
+def test_the_page_lists_every_message_of_the_code_and_every_reason_of_the_solver_and_no_other() -> None:
+    literals = texts(LITERAL, code_of("fmi", "wheel", "solver", "orbit", "support"))
+    reasons, listed = texts(REASON, code_of("solver")), {*re.findall(r"^- `([^`]+)`", TEXTS["docs/messages.md"], re.M)}
+    assert len(whole(literals)) > 50 and len(reasons) > 5
+    assert whole(literals) ^ whole(listed) == set()
+    assert listed - literals == reasons - listed == set()
+    code = 'i.log(e, "%s: the %d-th wheel "\n  "is %s.", a); // "a comment is no message."\nlog("x");'
+    assert whole(texts(LITERAL, bare(code))) == {"…: the …-th wheel is …."}
+
+
+HABITS = (
+    "The log tells when the wheel stops.",
+    "A sentence per fault.",
+    "It is made of what the reader offers.",
+    "The page has a clock of its own.",
+    "A held wheel stops by itself.",
+    "With constant inputs the grid changes no bit.",
+    "A restored instance gives the same bits.",
+    "The unit contains its solver.",
+    "The call is refused.",
+    "The Newton matrix is factorised.",
+    "The colors follow the system.",
+)
+GOOD = (
+    "Stick, release and reversal are located as events; the run ends and the log says why.",
+    "DOP853 restarts cheaply after a discontinuity.",
+    "Parameters are initialized; 3 metres is `what tells by itself`.",
+    "$the unit$ and\n\n```\nsame bits\n```\n",
+    "<!-- table = x -->\n\n| told, of its own |\n\n<!-- end of table -->",
+)
+
+
+def test_the_lint_of_prose_finds_habits_with_their_line_and_leaves_code_formulas_and_tables_alone() -> None:
+    for text in HABITS:
+        (fault, *_) = prose.faults("page.md", f"A wheel rolls.\n\n{text}\n")
+        assert fault.startswith("page.md:3: ")
+    assert [prose.faults("page.md", text) for text in GOOD] == [[]] * len(GOOD)
+    assert prose.faults("page.md", "| `the call is refused` | x |") == []
+    assert len(prose.faults("docs/messages.md", "| `the call is refused` | x |")) == 1  # messages are prose
+    script = '#!/usr/bin/env bash\n# The log tells the end.\nprintf "that of"\n'
+    assert len(prose.faults("scripts/x", prose.help_of(script))) == 1
+
+
+def test_the_fmus_page_is_well_formed_and_complete_offline(fmu: str) -> None:
+    folder, strict = Path(fmu) / "documentation", etree.HTMLParser(recover=False)
+    page = etree.parse(folder / "index.html", strict)
+    references = page.xpath("//@src | //@href")
+    assert len(references) == 9
+    for reference in references:
+        known = reference[1:] in page.xpath("//@id") if reference.startswith("#") else (folder / reference).is_file()
+        assert known, reference
+    with pytest.raises(etree.XMLSyntaxError):
+        etree.fromstring(b"<p><b>crossed</p></b>", strict)
