@@ -9,7 +9,10 @@ from importlib.metadata import version
 
 import pandas as pd
 from support.paths import ROOT
-from vehicles import axle, axle_study, build, car, ssp
+from vehicles import axle_study, build, ssp
+from vehicles.axle import AXLE
+from vehicles.car import CAR
+from vehicles.layout import LANE
 
 from .page import Report, part
 from .partners import fmus
@@ -22,12 +25,12 @@ def packages(report: Report) -> None:
     """the packages in other tools, beside the master of the examples"""
     units, h = fmus(report), 0.0005
     folder, scene, wait = units["chassis"].parent, axle_study.TRAILING.changed(stop=2.0), {"t_couple": 3 * h}
-    waiting, later = car.LANE.changed(**wait), scene.changed(**wait)
-    axles = [axle.coupled(units, s, h, e, GRID) for s, e in ((scene, "rollback"), (later, "held"))]
-    cars = [car.drive(units, m, h, e, GRID).table for m, e in ((car.LANE, "rollback"), (waiting, "held"))]
+    waiting, later = LANE.changed(**wait), scene.changed(**wait)
+    axles = [AXLE.drive(units, s, h, e, GRID).whole for s, e in ((scene, "rollback"), (later, "held"))]
+    cars = [CAR.drive(units, m, h, e, GRID).table for m, e in ((LANE, "rollback"), (waiting, "held"))]
     cases = (
-        (ssp.build(axle.package(units, scene, h), folder), scene.stop, ("axle.X", "axle.Y"), axles),
-        (ssp.build(car.package(units, car.LANE, h), folder), car.LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
+        (AXLE.package(units, scene, h, folder), scene.stop, ("axle.X", "axle.Y"), axles),
+        (CAR.package(units, LANE, h, folder), LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
     )
     rows: list[dict[str, object]] = []
     for package, stop, wanted, own in cases:

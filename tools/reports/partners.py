@@ -31,19 +31,19 @@ def fmus(report: Report) -> dict[str, Path]:
 @part(20)
 def driven_wheel(report: Report) -> None:
     """the driven, balanced wheel"""
-    from vehicles import driven, example
+    from vehicles import balance, drawing
 
-    drive = driven.run(fmus(report)).table
-    verdict = driven.judge(drive)
-    report.figures(alone=verdict.fall, tilt=verdict.line_tilt, circle=abs(verdict.circle_radius - driven.RADIUS))
+    drive = balance.drive(fmus(report))
+    verdict = balance.judge(drive)
+    report.figures(alone=verdict.fall, tilt=verdict.line_tilt, circle=abs(verdict.circle_radius - balance.RADIUS))
     report.figures(scatter=verdict.circle_scatter, speed=verdict.speed_error)
-    example.picture(drive, driven.CIRCLE, report.folder / "partners_driven.png")
+    drawing.draw(balance.BALANCE, balance.CIRCLE, drive, report.folder / "partners_driven.png")
 
 
 @part(25)
 def suspended_wheel(report: Report) -> None:
     """the suspended wheel against one set of equations"""
-    from vehicles import errors, example, ssp, suspended
+    from vehicles import drawing, errors, suspended
 
     truth, units = suspended.together(), fmus(report)
     steps = suspended.STEPS[:3] if report.quick else suspended.STEPS
@@ -54,7 +54,7 @@ def suspended_wheel(report: Report) -> None:
     report.table("orders", pd.DataFrame(columns))
     linear = found.of["derivatives"]
     report.figures(order=2 - min(errors.orders(steps, linear)), linear=linear[-1])
-    package = ssp.build(suspended.system(units), ROOT / "build" / "examples")
+    package = suspended.SUSPENDED.package(units, suspended.LAUNCH, 0.001, ROOT / "build" / "examples")
     shares = [{"step, ms": 1000 * h, "error": suspended.package_distance(package, h, truth)} for h in steps[1:4]]
     report.table("package", shares)
     limits = [
@@ -64,7 +64,7 @@ def suspended_wheel(report: Report) -> None:
     ]
     report.table("limits", limits)
     launch = suspended.coupled(units, 0.000625, "derivatives", grid=0.005)
-    example.picture(launch, suspended.LAUNCH, report.folder / "partners_suspended.png", errors=found)
+    drawing.draw(suspended.SUSPENDED, suspended.LAUNCH, launch, report.folder / "partners_suspended.png", errors=found)
 
 
 @part(3)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from vehicles import axle, axle_study, car, car_iso, car_judges, car_table, monolithic_car
-from vehicles.car import MANOEUVRES
-from vehicles.drawing import draw_orders
+from vehicles import axle, axle_study, car, car_judges, car_table, layout, monolithic_car
+from vehicles.drawing import draw, draw_orders
 from vehicles.errors import STEPS, Errors, longest, orders
-from vehicles.example import picture
-from vehicles.master import EXCHANGES, whole
+from vehicles.layout import MANOEUVRES
+from vehicles.master import EXCHANGES
 
 from .packages import packages
 from .page import Report, Tables, part
@@ -33,9 +32,8 @@ def axle_steps(report: Report) -> None:
             for h, e in zip(STEPS, errors, strict=True)
         ]
     report.table("axle_steps", rows)
-    run = axle.coupled(fmus(report), axle_study.TRAILING, 0.0005, "derivatives", 0.02)
-    table = axle.complete(run, axle_study.TRAILING)
-    picture(table, axle_study.TRAILING, report.folder / "vehicles_axle.png", ", step 0.5 ms")
+    table = axle.coupled(fmus(report), axle_study.TRAILING, 0.0005, "derivatives", 0.02)
+    draw(axle.AXLE, axle_study.TRAILING, table, report.folder / "vehicles_axle.png", ", step 0.5 ms")
 
 
 @part(30)
@@ -97,20 +95,20 @@ def car_demand(report: Report) -> None:
     rows = []
     for name in manoeuvres(report):
         table = car.drive(fmus(report), MANOEUVRES[name]).table
-        at = car.worst(table)[1]
+        at = car_judges.worst(table)[1]
         where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]
-        rows.append((MANOEUVRES[name].title, *car.demand(table).values(), *where))
-    head = ["manoeuvre", *(f"{axle} axle" for axle in car.AXLES), "most at t [s]", "X [m]", "Y [m]"]
+        rows.append((MANOEUVRES[name].title, *car_judges.demand(table).values(), *where))
+    head = ["manoeuvre", *(f"{axle} axle" for axle in layout.AXLES), "most at t [s]", "X [m]", "Y [m]"]
     report.table("car_demand", pd.DataFrame(rows, columns=head))
 
 
 @part(40)
 def car_endings(report: Report) -> None:
     """the car: what ends the manoeuvre that is too fast, and the same of one set of equations"""
-    run = car.drive(fmus(report), car.TOO_FAST, exchange="rollback")
-    wheel, time = car_table.lift_off(car.TOO_FAST)
-    whole = f"The {car.NAMES[wheel]} wheel's normal force is zero at t = {time:.7f} s."
-    rows = [("coupled FMUs", car.sentence(run.ending)), ("one set of equations", whole)]
+    run = car.drive(fmus(report), layout.TOO_FAST, exchange="rollback")
+    wheel, time = car_table.lift_off(layout.TOO_FAST)
+    whole = f"The {layout.NAMES[wheel]} wheel's normal force is zero at t = {time:.7f} s."
+    rows = [("coupled FMUs", car.CAR.describe(run.ending)), ("one set of equations", whole)]
     report.table("car_endings", pd.DataFrame(rows, columns=["system", "how it ended"]))
 
 
@@ -122,7 +120,7 @@ def car_figures(report: Report) -> None:
         manoeuvre = MANOEUVRES[name]
         coupled = car.drive(fmus(report), manoeuvre, grid=grid).table
         whole = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / grid) + 1) * grid, 1e-9)
-        both = (car_iso.FIGURES[name](table) for table in (coupled, whole))
+        both = (car_judges.FIGURES[name](table) for table in (coupled, whole))
         rows += [(name, a.what, a.unit, a.measured, b.measured, a.exact) for a, b in zip(*both, strict=True)]
     head = ["manoeuvre", "quantity", "unit", "coupled FMUs", "one set of equations", "rigid links"]
     report.table("car_figures", pd.DataFrame(rows, columns=head))
@@ -139,7 +137,7 @@ def car_longest(report: Report) -> None:
 
 def longest_step(report: Report, name: str, exchange: str) -> float:
     def error(h: float) -> float:
-        table = whole(car.drive(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID))
+        table = car.drive(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID).whole
         return max(car_table.apart(table, car_table.read(name)).values())
 
     return longest(LIMITS, error)
@@ -167,7 +165,7 @@ def car_errors(report: Report) -> None:
     report.figures(rollback=max(moving))
     draw_orders({n: Errors(STEPS, of) for n, of in largest.items()}, report.folder / "vehicles_orders.png")
     for name, manoeuvre in MANOEUVRES.items():
-        picture(car.drive(fmus(report), manoeuvre).table, manoeuvre, report.folder / f"vehicles_{name}.png")
+        draw(car.CAR, manoeuvre, car.drive(fmus(report), manoeuvre).table, report.folder / f"vehicles_{name}.png")
 
 
 @part(20)
@@ -175,8 +173,11 @@ def car_cost(report: Report) -> None:
     """the car: microseconds per step of 1 ms: medians over the steps of the change of lanes, and over runs"""
     rows = []
     for exchange in EXCHANGES:
-        runs = pd.DataFrame([car.drive(fmus(report), car.LANE, exchange=exchange, grid=1.0).cost for _ in range(5)])
-        wheels, bodies = runs[list(car.WHEELS)].sum(axis=1).median(), runs[["chassis", "driver"]].sum(axis=1).median()
+        runs = pd.DataFrame([car.drive(fmus(report), layout.LANE, exchange=exchange, grid=1.0).cost for _ in range(5)])
+        wheels, bodies = (
+            runs[list(layout.WHEELS)].sum(axis=1).median(),
+            runs[["chassis", "driver"]].sum(axis=1).median(),
+        )
         whole = runs["total"].median()
         row = {"inputs over the step": exchange, "four wheels [us]": wheels}
         row |= {f"within {BUDGET:g} us": "yes" if wheels <= BUDGET else "no", "chassis, driver [us]": bodies}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,8 +11,7 @@ from support.bounds import EPSILON, beyond, relative_error, within
 from vehicles import axle, axle_study, errors
 from vehicles.axle_study import CLOTHOID, ROLLING_OUT, SCENES, STRAIGHT, TRAILING
 from vehicles.options import Manoeuvre
-
-Fmus = dict[str, Path]
+from vehicles.vehicle import Fmus
 
 
 @pytest.mark.parametrize("name", SCENES)

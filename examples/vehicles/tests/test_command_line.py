@@ -19,7 +19,6 @@ from support.bounds import EPSILON, beyond, relative_error, within
 from support.paths import ROOT
 from vehicles import axle, example, options
 from vehicles.component import Component
-from vehicles.master import Master
 
 READS = [sys.executable, "-S", "-B", str(ROOT / "examples" / "vehicles" / "vehicles" / "options.py")]
 
@@ -86,11 +85,11 @@ def test_help_has_the_values_of_the_manoeuvre_that_is_named(line: str, start: st
 def test_what_only_the_unit_can_refuse_is_said_in_its_own_words(
     fmus: dict[str, Path], model: str, given: dict[str, float], said: str
 ) -> None:
-    with (
-        pytest.raises(ValueError) as refusal,
-        Master([Component(model, fmus[model], given)], [], fmus["chassis"].parent) as master,
-    ):
-        master.run(0.01, 0.001, [])
+    component = Component(model, fmus[model], given)
+    with pytest.raises(ValueError) as refusal:
+        component.load()
+        component.asked(component.fmu.exitInitializationMode)
+    component.free()
     assert str(refusal.value).startswith(said)
 
 

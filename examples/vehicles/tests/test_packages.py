@@ -8,12 +8,16 @@ import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from support.bounds import beyond, within
-from vehicles import axle, axle_study, car, ssp, suspended
+from vehicles import axle_study, ssp, suspended
+from vehicles.axle import AXLE
+from vehicles.car import CAR
+from vehicles.layout import LANE
+from vehicles.suspended import LAUNCH, SUSPENDED
 
 
 @pytest.fixture(scope="module")
 def package(fmus: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return ssp.build(suspended.system(fmus), tmp_path_factory.mktemp("ssp"))
+    return SUSPENDED.package(fmus, LAUNCH, 0.001, tmp_path_factory.mktemp("ssp"))
 
 
 def test_the_package_is_valid_ssp_and_its_parameters_are_bound_at_the_component(package: Path) -> None:
@@ -48,10 +52,10 @@ def at_the_end(package: Path, names: tuple[str, ...], step: float, stop: float) 
 def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(
     fmus: dict[str, Path], tmp_path: Path
 ) -> None:
-    manoeuvre = car.LANE.changed(stop=1.5)
-    truth = car.drive(fmus, manoeuvre, 0.001, "rollback", 0.05).table["X_R"][-1]
+    manoeuvre = LANE.changed(stop=1.5)
+    truth = CAR.drive(fmus, manoeuvre, 0.001, "rollback", 0.05).table["X_R"][-1]
     errors = [
-        abs(at_the_end(ssp.build(car.package(fmus, manoeuvre, h), tmp_path), ("chassis.X_R",), h, 1.5)[0] - truth)
+        abs(at_the_end(CAR.package(fmus, manoeuvre, h, tmp_path), ("chassis.X_R",), h, 1.5)[0] - truth)
         for h in (0.001, 0.0005)
     ]
     within(abs(np.log2(errors[0] / errors[1]) - 1), 0.005, "order off 1")
@@ -60,7 +64,7 @@ def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(
 
 def test_the_package_of_the_axle_runs_in_fmpy(fmus: dict[str, Path], tmp_path: Path) -> None:
     scene, names = axle_study.TRAILING.changed(stop=1.0), ("X", "Y", "psi")
-    table = axle.coupled(fmus, scene, 0.0005, "rollback", 0.05)
-    package = ssp.build(axle.package(fmus, scene, 0.0005), tmp_path)
+    table = AXLE.drive(fmus, scene, 0.0005, "rollback", 0.05).table
+    package = AXLE.package(fmus, scene, 0.0005, tmp_path)
     ends = at_the_end(package, tuple(f"axle.{n}" for n in names), 0.0005, 1.0)
     within(np.abs(ends - [table[n][-1] for n in names]).max(), 0.01, "off the end, m, rad")

@@ -45,12 +45,9 @@ def test_the_error_of_held_values_is_the_drag_of_a_lagging_position(found: error
     beyond(relative_error(found.of["positions held"], twice), 0.05, "error beside the drag, relative")
 
 
-def test_a_wrong_parameter_of_the_joint_equations_shows(fmus: dict[str, Path], truth: dict[str, np.ndarray]) -> None:
+def test_a_wrong_parameter_of_the_joint_equations_shows(truth: dict[str, np.ndarray]) -> None:
     """Partner of the yardstick: 1 % of rolling friction moves the comparison far beyond its bound."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(suspended.START, "s", 0.0101)
-        other = suspended.together()
-    beyond(suspended.distance(other, truth), 1e-3, "apart / range")
+    beyond(suspended.distance(suspended.together(s=0.0101), truth), 1e-3, "apart / range")
 
 
 def test_the_ground_pushes_all_the_time(truth: dict[str, np.ndarray]) -> None:
@@ -88,14 +85,17 @@ def test_a_damper_bounds_the_step_by_the_reduced_mass_of_both_partners(fmus: dic
 
 
 def test_a_smaller_grid_of_records_changes_no_bit(fmus: dict[str, Path]) -> None:
-    coarse, fine = (suspended.coupled(fmus, 0.0025, "derivatives", 0.7, grid) for grid in (0.05, 0.0025))
+    coarse, fine = (suspended.coupled(fmus, 0.0025, "derivatives", grid, stop=0.7) for grid in (0.05, 0.0025))
     for name in suspended.COMPARED:
         assert np.array_equal(coarse[name], fine[name][::20])
 
 
 @pytest.mark.parametrize("exchange", ["held", "derivatives"])
 def test_a_master_that_undoes_and_repeats_every_step_gets_the_same_bits(fmus: dict[str, Path], exchange: str) -> None:
-    once, twice = (suspended.coupled(fmus, 0.0025, exchange, 1.0, reject=reject) for reject in (False, True))
+    short = suspended.LAUNCH.changed(stop=1.0)
+    once, twice = (
+        suspended.SUSPENDED.drive(fmus, short, 0.0025, exchange, 0.05, reject=reject).table for reject in (False, True)
+    )
     for name in once:
         assert np.array_equal(once[name], twice[name])
 

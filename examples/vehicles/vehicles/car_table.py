@@ -13,15 +13,15 @@ import numpy as np
 from reference.tables import read_table, write_table
 from scipy.integrate import solve_ivp
 
-from . import car, errors, monolithic_car
-from .car import MANOEUVRES, TOO_FAST, WHEELS
+from . import errors, monolithic_car
+from .layout import COMPARED, MANOEUVRES, TOO_FAST, WHEELS
 from .options import EXAMPLES, Manoeuvre
 
 FOLDER = EXAMPLES / "tests"
 GRID = 0.25  # s
 TOLERANCE = 1e-10  # relative and absolute, of each step
 OF_WHEELS = tuple(f"{w}.{n}" for w in WHEELS for n in ("lambda_3", "omega_z"))
-COLUMNS = ("time", *car.COMPARED, "X_R", "Y_R", "delta", "a_y", "beta", *OF_WHEELS)
+COLUMNS = ("time", *COMPARED, "X_R", "Y_R", "delta", "a_y", "beta", *OF_WHEELS)
 NAMES = tuple(name for name in MANOEUVRES if name != TOO_FAST.name)
 
 
@@ -41,8 +41,8 @@ def apart(table: dict[str, np.ndarray], truth: dict[str, np.ndarray]) -> dict[st
     """Error of each compared variable."""
     every, count = round(GRID / (table["time"][1] - table["time"][0])), len(truth["time"])
     assert np.allclose(table["time"][::every][:count], truth["time"]), "the run has other instants than the table"
-    on_grid = {name: table[name][::every][:count] for name in car.COMPARED}
-    return errors.apart(on_grid, truth, car.COMPARED)
+    on_grid = {name: table[name][::every][:count] for name in COMPARED}
+    return errors.apart(on_grid, truth, COMPARED)
 
 
 def lift_off(manoeuvre: Manoeuvre) -> tuple[str, float]:

@@ -12,7 +12,9 @@ from matplotlib.axes import Axes
 from diagrams import style
 
 from .errors import Errors
+from .master import Table
 from .options import Manoeuvre
+from .vehicle import Vehicle
 
 COLOURS = (style.BLUE, style.VERMILLION, style.SKY, style.ORANGE, style.PURPLE, style.GREY)
 MARKS = {
@@ -24,36 +26,31 @@ MARKS = {
 DASHES = ("-", "--", ":", "-.")  # a curve that has the values of the one before is seen through its gaps
 GUIDES = {1: (0, (4, 2)), 2: (0, (1, 1))}  # lines of an order
 SCALES = {"deg": 180 / np.pi, "deg/s": 180 / np.pi, "km/h": 3.6, "kN": 1e-3, "mm": 1e3}  # of a label's unit
-Table = dict[str, np.ndarray]
+ABOVE = {"loc": "lower left", "bbox_to_anchor": (0, 0.98)}  # the axes
 Tracks = dict[str, tuple[np.ndarray, ...]]
 
 
 def draw(
-    manoeuvre: Manoeuvre,
-    table: Table,
-    names: dict[str, str],
-    tracks: Tracks,
-    path: Path,
-    title: str,
-    errors: Errors | None,
+    vehicle: Vehicle, manoeuvre: Manoeuvre, table: Table, path: Path, remark: str = "", errors: Errors | None = None
 ) -> Path:
-    """The manoeuvre's plot: "path", and panels [label [unit], column...]; *.NAME is a column per wheel of `names`,
-    %.NAME per axle, "NAME: TEXT" a column with its text."""
+    """The manoeuvre's plot: "path", and panels [label [unit], column...]; *.NAME is a column per wheel, %.NAME per
+    axle, "NAME: TEXT" a column with its text."""
     style.use_style()
     panels = {n: panel for n, panel in enumerate(manoeuvre.plot) if panel != "path"}
     cells = [*panels, *(["errors"] if errors else []), "."]
     rows = [*([["path"] * 2] if len(panels) < len(manoeuvre.plot) else []), *zip(cells[::2], cells[1::2], strict=False)]
     fig = style.figure_mm(style.PAGE, 6 + 50 * len(rows))
     fig.set_layout_engine("constrained", h_pad=0.06, wspace=0.06)
+    title = f"{manoeuvre.vehicle.capitalize()}: {manoeuvre.title}{vehicle.subtitle(manoeuvre)}{remark}"
     fig.suptitle(title, fontsize=9)
     for cell, ax in fig.subplot_mosaic([list(row) for row in rows]).items():
         if cell == "path":
-            draw_path(ax, table, names, tracks)
+            draw_path(ax, table, vehicle.wheels, vehicle.tracks(table))
         elif cell == "errors":
             draw_errors(ax, errors)
-            ax.legend(loc="lower left", bbox_to_anchor=(0, 0.98), ncols=3)
+            ax.legend(**ABOVE, ncols=3)
         else:
-            draw_panel(ax, table, *panels[cell], names=names)
+            draw_panel(ax, table, *panels[cell], names=vehicle.wheels)
     return style.save_png(fig, path)
 
 
@@ -73,9 +70,7 @@ def draw_panel(ax: Axes, table: Table, label: str, *wanted: str, names: dict[str
         if column in table:
             ax.plot(table["time"], scale * table[column], color=colour, linestyle=dashes, label=text)
     if len(ax.lines) > 1:
-        ax.legend(
-            loc="lower left", bbox_to_anchor=(0, 0.98), ncols=4, borderaxespad=0.2, columnspacing=0.8, handlelength=1.5
-        )
+        ax.legend(**ABOVE, ncols=4, borderaxespad=0.2, columnspacing=0.8, handlelength=1.5)
     ax.ticklabel_format(axis="y", useOffset=False)
     ax.set(xlabel="time [s]", ylabel=label)
 
@@ -103,7 +98,7 @@ def draw_path(ax: Axes, table: Table, names: dict[str, str], tracks: Tracks) -> 
         across = f"Y [m], stretched {stretch:.0f} times"
     else:
         ax.set_aspect("equal", adjustable="datalim")
-    ax.legend(loc="lower left", bbox_to_anchor=(0, 0.98), ncols=6, borderaxespad=0.2)
+    ax.legend(**ABOVE, ncols=6, borderaxespad=0.2)
     ax.set(xlabel="X [m]", ylabel=across)
 
 

@@ -80,8 +80,9 @@ def attitude(a: np.ndarray, w: np.ndarray) -> tuple[float, float, float, float]:
     return np.arctan2(a[0], -a[1]), np.arctan2(flat, a[2]), psi_dot, -a_dot[2] / flat
 
 
-def solve(wheel: Wheel, theta: float, times: np.ndarray) -> dict[str, np.ndarray]:
+def solve(s: float, theta: float, times: np.ndarray) -> dict[str, np.ndarray]:
     """The motion from rest at `times` (rising from 0), phase by phase."""
+    wheel = Wheel(s=s)
     B = [CAR[f"{axis}_B_start"] for axis in "XYZ"]
     centre, a = [0.0, 0.0, wheel.r_0 * np.sin(theta) + wheel.r], [0.0, -np.sin(theta), np.cos(theta)]
     y, rows = np.concatenate([B, np.zeros(3), centre, a, np.zeros(3)]), []

@@ -15,7 +15,7 @@ import numpy as np
 from reference.model import Wheel
 from scipy.integrate import solve_ivp
 
-from .car import LAYOUT, MASS, chassis_start, driver_start
+from .layout import LAYOUT, MASS, chassis_start, driver_start
 from .options import Manoeuvre, starts
 from .rolling_wheels import Answer, Law, cross, dot, respond
 

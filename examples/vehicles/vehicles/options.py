@@ -118,7 +118,8 @@ class Asked:
     vehicle: str
     manoeuvre: Manoeuvre | None = None
     exchange: str = "derivatives"
-    h: float = 0.001
+    h: float = 0.001  # s
+    grid: float | None = None  # s, of the table
 
 
 def values(vehicle: str, arguments: list[str]) -> dict[str, str | float]:
@@ -149,7 +150,7 @@ def chosen(vehicle: str, arguments: list[str]) -> Asked:
     given = values(vehicle, arguments)
     if vehicle == "control":
         return Asked(vehicle)
-    how = {name: given.pop(name) for name in ("exchange", "h") if name in given}
+    how = file(vehicle).get("how", {}) | {name: given.pop(name) for name in ("exchange", "h") if name in given}
     of = manoeuvres(vehicle)
     name = given.pop(file(vehicle).get("word"), file(vehicle).get("first", next(iter(of))))
     asked = Asked(vehicle, of[name].changed(**given), **how)

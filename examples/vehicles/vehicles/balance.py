@@ -8,16 +8,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, pi
-from pathlib import Path
 
 import numpy as np
+from fmpy import simulate_fmu
 
 from .component import Component
-from .master import Connection, Run, System, simulate
+from .master import Connection, Table
 from .options import Manoeuvre, manoeuvres
+from .vehicle import Fmus, Vehicle
 
 CIRCLE = manoeuvres("balance")["circle"]
-STOP, STEP = CIRCLE.stop, 0.005  # s
+STEP = 0.005  # s
 T_CIRCLE, RADIUS, SPEED = CIRCLE["t_circle"], CIRCLE["R"], 0.7  # s, m, m/s
 TURN = 2 * pi * RADIUS / SPEED  # s
 START = {
@@ -26,48 +27,26 @@ START = {
 }
 MEASURED = ("theta", "theta_dot", "psi", "psi_dot", "phi_dot")
 MOMENTS = ("M_1", "M_3")
-RECORD = [("wheel", name) for name in ("X_O", "Y_O", "phi", *MEASURED, "omega_z", "lambda_3")]
+OF_WHEEL = ("X_O", "Y_O", "phi", *MEASURED, "omega_z", "lambda_3")
+RECORD = [*(("wheel", name) for name in OF_WHEEL), *(("balance", name) for name in MOMENTS)]
 CONNECTIONS: list[Connection] = [
     *((("wheel", name), ("balance", name)) for name in MEASURED),
     *((("balance", name), ("wheel", name)) for name in MOMENTS),
 ]
-WHEELS: dict[str, str] = {}  # the wheel's columns go by their names alone
-Table = dict[str, np.ndarray]
 
 
-def system(fmus: dict[str, Path], course: Manoeuvre = CIRCLE, step: float = STEP) -> System:
+def parts(fmus: Fmus, course: Manoeuvre) -> list[Component]:
     """Wheel and controller."""
-    parts = [Component("wheel", fmus["wheel"], START), Component("balance", fmus["balance"], course.given)]
-    return System("balance", parts, CONNECTIONS, step, course.stop, ("wheel", "balance"))
+    return [Component("wheel", fmus["wheel"], START), Component("balance", fmus["balance"], course.given)]
 
 
-package = system
-
-
-def alone(fmus: dict[str, Path], stop: float = STOP) -> Table:
-    """The wheel without the controller, up to where its model ends."""
-    one = Component("wheel", fmus["wheel"], START)
-    return simulate(
-        System("alone", [one], [], STEP, stop, ("wheel",), fmus["balance"].parent), RECORD, "held", STEP
-    ).table
-
-
-def controlled(fmus: dict[str, Path], course: Manoeuvre = CIRCLE) -> Run:
-    """The wheel with the controller."""
-    return simulate(system(fmus, course), RECORD + [("balance", name) for name in MOMENTS], "held", STEP)
-
-
-def run(fmus: dict[str, Path], course: Manoeuvre = CIRCLE, *_how: object, **_options: object) -> Run:
-    """Both runs, the controller with these parameters; columns of the wheel alone, which ends early, as alone.NAME."""
-    run, single = controlled(fmus, course), alone(fmus, course.stop)
-    rows = len(run.table["time"])
-    padded = {n: np.pad(x[:rows], (0, max(0, rows - len(x))), constant_values=np.nan) for n, x in single.items()}
-    return Run({**run.table, **{f"alone.{n}": x for n, x in padded.items() if n != "time"}}, run.ending)
-
-
-def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
-    """Paths of the wheel's centre."""
-    return {"alone": (table["alone.X_O"], table["alone.Y_O"]), "with controller": (table["X_O"], table["Y_O"])}
+def beside_alone(table: Table, course: Manoeuvre, fmus: Fmus) -> Table:
+    """With the wheel without the controller, up to where its model ends, in columns alone.NAME."""
+    wheel, rows = str(fmus["wheel"]), len(table["time"])
+    how = {"fmi_type": "CoSimulation", "output": OF_WHEEL, "start_values": START, "output_interval": STEP}
+    alone = simulate_fmu(wheel, stop_time=course.stop, **how)[:rows]
+    missing = (0, rows - len(alone))
+    return table | {f"alone.{n}": np.pad(alone[n], missing, constant_values=np.nan) for n in OF_WHEEL}
 
 
 @dataclass(frozen=True)
@@ -92,7 +71,7 @@ def fall_time(table: Table, of: str = "") -> float:
 def judge(table: Table) -> Verdict:
     """The figures of a run."""
     t, tilt = table["time"], np.degrees(np.abs(table["theta"] - pi / 2))
-    line, turn = (t > T_CIRCLE - 1) & (t <= T_CIRCLE), t > STOP - TURN
+    line, turn = (t > T_CIRCLE - 1) & (t <= T_CIRCLE), t > CIRCLE.stop - TURN
     x, y = table["X_O"][turn], table["Y_O"][turn]
     a, b, c = np.linalg.lstsq(np.column_stack([x, y, np.ones_like(x)]), x**2 + y**2, rcond=None)[0]
     radius = np.sqrt(c + (a**2 + b**2) / 4)
@@ -129,3 +108,18 @@ def verdict(table: Table, course: Manoeuvre) -> tuple[bool, list[str]]:
         single,
         f"Controlled it stays up, leaning by up to {found.circle_tilt:.1f} degrees, and drives {circle}.",
     ]
+
+
+def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
+    """Paths of the wheel's centre."""
+    return {"alone": (table["alone.X_O"], table["alone.Y_O"]), "with controller": (table["X_O"], table["Y_O"])}
+
+
+BALANCE = Vehicle(
+    "balance", parts, CONNECTIONS, RECORD, verdict, ("wheel", "balance"), complete=beside_alone, tracks=tracks
+)
+
+
+def drive(fmus: Fmus, course: Manoeuvre = CIRCLE) -> Table:
+    """Both runs as the example takes them."""
+    return BALANCE.drive(fmus, course, STEP, "held", STEP).table
