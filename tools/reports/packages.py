@@ -64,13 +64,13 @@ def of_other_tools(new: list[dict[str, object]]) -> list[dict[str, object]]:
 
 def tools_at_hand(python: str | None) -> list[tuple[str, str, list[str]]]:
     """Name, version and command: the interpreter `python` has two of them, OMSimulator may be on the PATH."""
-    scripts, found = build.EXAMPLES / "tools", []
+    script, found = str(build.EXAMPLES / "run_package.py"), []
     for tool, package in (("libcosim", "libcosimpy"), ("ecos", "ecospy")) if python else ():
         ask = f"import importlib.metadata as m; print(m.version({package!r}))"
         number = subprocess.run([python, "-c", ask], capture_output=True, text=True, check=True).stdout.strip()
-        found.append((tool, f"{package} {number}", [python, str(scripts / f"by_{tool}.py")]))
-    if program := shutil.which("OMSimulator"):
+        found.append((tool, f"{package} {number}", [python, script, tool]))
+    if shutil.which("OMSimulator"):
         tried = pd.read_csv(ROOT / "docs" / "results" / "data" / "interoperability_remarks.csv", dtype=str)
         number = tried.loc[tried["tool"] == "OMSimulator", "version"].iloc[0]
-        found.append(("OMSimulator", number, [sys.executable, str(scripts / "by_omsimulator.py"), program]))
+        found.append(("OMSimulator", number, [sys.executable, script, "OMSimulator"]))
     return found

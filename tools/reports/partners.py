@@ -34,9 +34,9 @@ def driven_wheel(report: Report) -> None:
     from vehicles import balance, drawing
 
     drive = balance.drive(fmus(report))
-    verdict = balance.judge(drive)
-    report.figures(alone=verdict.fall, tilt=verdict.line_tilt, circle=abs(verdict.circle_radius - balance.RADIUS))
-    report.figures(scatter=verdict.circle_scatter, speed=verdict.speed_error)
+    found = balance.judge(drive)
+    report.figures(alone=found["fall"], tilt=found["line_tilt"], circle=abs(found["circle_radius"] - balance.RADIUS))
+    report.figures(scatter=found["circle_scatter"], speed=found["speed_error"])
     drawing.draw(balance.BALANCE, balance.CIRCLE, drive, report.folder / "partners_driven.png")
 
 

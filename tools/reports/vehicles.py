@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from vehicles import axle, axle_study, car, car_judges, car_table, layout, monolithic_car
+from vehicles import axle, axle_study, car, car_judges, layout, monolithic_car
 from vehicles.drawing import draw, draw_orders
 from vehicles.errors import STEPS, Errors, longest, orders
 from vehicles.layout import MANOEUVRES
@@ -75,7 +75,7 @@ def axle_energy(report: Report) -> None:
 
 
 def manoeuvres(report: Report) -> tuple[str, ...]:
-    return ("step",) if report.quick else car_table.NAMES
+    return ("step",) if report.quick else monolithic_car.NAMES
 
 
 @part(40)
@@ -106,7 +106,7 @@ def car_demand(report: Report) -> None:
 def car_endings(report: Report) -> None:
     """the car: what ends the manoeuvre that is too fast, and the same of one set of equations"""
     run = car.drive(fmus(report), layout.TOO_FAST, exchange="rollback")
-    wheel, time = car_table.lift_off(layout.TOO_FAST)
+    wheel, time = monolithic_car.lift_off(layout.TOO_FAST)
     whole = f"The {layout.NAMES[wheel]} wheel's normal force is zero at t = {time:.7f} s."
     rows = [("coupled FMUs", car.CAR.describe(run.ending)), ("one set of equations", whole)]
     report.table("car_endings", pd.DataFrame(rows, columns=["system", "how it ended"]))
@@ -137,8 +137,8 @@ def car_longest(report: Report) -> None:
 
 def longest_step(report: Report, name: str, exchange: str) -> float:
     def error(h: float) -> float:
-        table = car.drive(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID).whole
-        return max(car_table.apart(table, car_table.read(name)).values())
+        table = car.drive(fmus(report), MANOEUVRES[name], h, exchange, monolithic_car.GRID).whole
+        return max(monolithic_car.apart(table, monolithic_car.read(name)).values())
 
     return longest(LIMITS, error)
 
@@ -148,10 +148,10 @@ def car_errors(report: Report) -> None:
     """the car: error against one set of equations, by manoeuvre, master, step and output"""
     rows, largest = [], {}
     for name in manoeuvres(report):
-        truth, of = car_table.read(name), largest.setdefault(name, {})
+        truth, of = monolithic_car.read(name), largest.setdefault(name, {})
         for exchange in EXCHANGES:
-            runs = [car.drive(fmus(report), MANOEUVRES[name], h, exchange, car_table.GRID) for h in STEPS]
-            found = [car_table.apart(run.table, truth) for run in runs]
+            runs = [car.drive(fmus(report), MANOEUVRES[name], h, exchange, monolithic_car.GRID) for h in STEPS]
+            found = [monolithic_car.apart(run.table, truth) for run in runs]
             of[exchange] = [max(errors.values()) for errors in found]
             order = [None, *-np.diff(np.log2(of[exchange]))]
             rows += [

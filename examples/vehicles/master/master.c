@@ -86,11 +86,9 @@ static int all(Master* m, Act act, double t, double h, double* cost) {
 }
 
 static int take_step(Master* m, double t, double h, int first, double* cost) {
-  if (m->exchange == rollback)
-    return predict(m, h, first) && all(m, try_out, t, h, cost) && master_exchange(m, 1) && all(m, undo, t, h, cost) &&
-           correct(m, h) && all(m, take_again, t, h, cost);
-  if (m->reject) return all(m, try_out, t, h, cost) && all(m, undo, t, h, cost) && all(m, take_again, t, h, cost);
-  return all(m, take_for_good, t, h, cost);
+  if (m->exchange != rollback) return all(m, take_for_good, t, h, cost);
+  return predict(m, h, first) && all(m, try_out, t, h, cost) && master_exchange(m, 1) && all(m, undo, t, h, cost) &&
+         correct(m, h) && all(m, take_again, t, h, cost);
 }
 
 long master_run(Master* m, double h, long from, long to, double* cost) {

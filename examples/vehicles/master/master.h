@@ -32,7 +32,6 @@ typedef enum Exchange { held, derivatives, rollback } Exchange;
 
 typedef struct Master {
   Exchange exchange;
-  int reject;  /* every step is taken, undone from a snapshot and taken again, as an error-controlled master may do */
   int refused; /* the component that refused last */
   int components, transfers, signals;
   Component* component;

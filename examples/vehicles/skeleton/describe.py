@@ -71,17 +71,6 @@ def _variable(row: dict[str, str], wheel: str, properties: dict[str, float | str
     return Variable(**text | typed, of=row["name"].format(wheel="each") if wheel else "")
 
 
-def value_references(variables: list[Variable], wheels: int) -> dict[str, int]:
-    """Numbers by name, and how many there are of each kind."""
-    of, numbers = [v.causality for v in variables], {v.name: i for i, v in enumerate(variables)}
-    numbers |= {v.of: i for i, v in reversed(list(enumerate(variables))) if v.of}
-    stride = {kind: sum(v.causality == kind and bool(v.of) for v in variables) // max(wheels, 1) for kind in KINDS}
-    first, inputs = of.count("parameter"), of.count("input")
-    counts = {"first_input": first, "input_count": inputs, "first_output": first + inputs}
-    counts |= {"variable_count": len(of), "wheel_count": wheels}
-    return numbers | counts | {f"wheel_{kind}s": count for kind, count in stride.items()}
-
-
 def main() -> None:
     """Writes the files; terminalsAndIcons.xml only where there are wheels."""
     from description.numbering import numbered
@@ -114,7 +103,7 @@ def main() -> None:
     header = rendered(
         "variables.hpp",
         guid=ElementTree.fromstring(xml.encode()).get("guid"),
-        numbers=value_references(variables, len(wheels)),
+        each=[v for v in variables if v.of and v.name == v.of.replace("each", next(iter(wheels)))],
         rates=[inputs.index(r) if r in inputs and r != n else -1 for n, r in zip(inputs, rates, strict=True)],
         partners=[list(wheels).index(w["bar_to"]) if "bar_to" in w else -1 for w in wheels.values()],
     )

@@ -7,8 +7,9 @@ import csv
 import pytest
 from support.bounds import absolute_error, beyond, within
 from support.paths import ROOT
-from vehicles import car_table
 from vehicles.errors import STEPS
+from vehicles.master import EXCHANGES
+from vehicles.monolithic_car import NAMES
 
 RESULTS = ROOT / "docs" / "results"
 
@@ -23,7 +24,7 @@ def test_every_manoeuvre_is_there_with_every_master() -> None:
         (row["manoeuvre"], row["inputs over the step"], float(row["step [ms]"])) for row in rows("vehicles_car_errors")
     }
     steps = [1000 * h for h in STEPS]
-    assert found == {(n, e, h) for n in car_table.NAMES for e in ("held", "derivatives", "rollback") for h in steps}
+    assert found == {(n, e, h) for n in NAMES for e in EXCHANGES for h in steps}
 
 
 @pytest.mark.parametrize("package", ["axle.ssp", "car.ssp"])

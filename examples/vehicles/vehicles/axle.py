@@ -19,10 +19,9 @@ from scipy.optimize import brentq
 from . import options
 from .component import Component
 from .errors import distance
-from .hubs import road, upright, wire
 from .master import Signal, Table
 from .options import Manoeuvre
-from .vehicle import Fmus, Vehicle
+from .vehicle import Fmus, Vehicle, road, upright, wire
 
 WHEELS = {"left": "left", "right": "right"}
 CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel)]

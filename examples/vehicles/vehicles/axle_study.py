@@ -15,17 +15,15 @@ import numpy as np
 
 from . import axle, errors
 from .axle import AXLE, WHEELS, coupled, rigid
-from .hubs import FORCE
 from .master import Signal, Table, simulate
 from .options import Manoeuvre, manoeuvres
-from .vehicle import Fmus
+from .vehicle import FORCE, Fmus
 
 SCENES = manoeuvres("axle")
 STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT = SCENES.values()
 LIMIT_STEPS = (0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
 GRID = 0.048  # s, which all of them divide
 BONDS = dict(zip(FORCE, ("X_O_dot", "Y_O_dot", "Z_O_dot"), strict=True)) | {"M_1": "theta_dot", "M_2": "psi_dot"}
-
 KINDS = ("value", "rate", "at_end")
 
 distance = partial(errors.distance, names=axle.COMPARED)
@@ -61,25 +59,21 @@ def signals(wheel: str, bond: str, kind: str) -> tuple[Signal, Signal]:
 
 def energy(fmus: Fmus, scene: Manoeuvre, step: float, exchange: str) -> Energy:
     """Of a scene without drive and rolling friction, in which all energy is in the wheels, the beam and its dampers."""
+    stored = [("left", "E"), ("right", "E"), ("axle", "E"), ("axle", "W_loss")]
     record = [s for wheel in WHEELS for bond in BONDS for kind in KINDS for s in signals(wheel, bond, kind)]
-    counted = simulate(AXLE.system(fmus, scene, step), record, exchange, step).whole
-    table = coupled(fmus, scene, step, exchange, step)
-    total = sum(table[f"{wheel}.E"] for wheel in WHEELS) + table["E"] + table["W_loss"]
+    wired = AXLE.parts(fmus, scene), AXLE.connections
+    table = simulate(*wired, [*record, *stored], scene.stop, step, exchange, step).whole
+    total = sum(table[".".join(signal)] for signal in stored)
     h = step * (exchange == "derivatives")  # inputs go on straight lines, else they are held
 
     def added(wheel: str, bond: str) -> float:
-        rows = [[column(counted, s)[:-1] for s in signals(wheel, bond, kind)] for kind in KINDS]
+        rows = [[table[".".join(s)][:-1] for s in signals(wheel, bond, kind)] for kind in KINDS]
         (e, f), (e_dot, f_dot), (e_end, f_end) = rows
         received, given = product(e, e + h * e_dot, f, f_end), product(e, e_end, f, f + h * f_dot)
         return step * float((received - given).sum())
 
     bonds = {wheel: np.array([added(wheel, bond) for bond in BONDS]) for wheel in WHEELS}
     return Energy(bonds, float(total[-1] - total[0]))
-
-
-def column(table: Table, signal: Signal) -> np.ndarray:
-    """Of a record; those of the axle go by the variable alone."""
-    return table[signal[1] if signal[0] == "axle" else ".".join(signal)]
 
 
 def product(a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray) -> np.ndarray:

@@ -6,7 +6,6 @@ starts with a small push to the side. Fixed axes; theta is 90 degrees upright.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf, pi
 
 import numpy as np
@@ -49,41 +48,28 @@ def beside_alone(table: Table, course: Manoeuvre, fmus: Fmus) -> Table:
     return table | {f"alone.{n}": np.pad(alone[n], missing, constant_values=np.nan) for n in OF_WHEEL}
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """Figures of the two runs, SI and degrees."""
-
-    fall: float  # s, when the wheel alone first leans by more than 45 degrees; infinite if never
-    line_tilt: float  # deg, largest departure from upright in the last second of the line
-    line_heading: float  # deg, largest departure from the line's direction in that second
-    circle_radius: float  # m, of the circle through the last turn
-    circle_scatter: float  # m, largest departure from that circle
-    circle_tilt: float  # deg, largest departure from upright on the circle
-    speed_error: float  # rad/s, largest departure of omega_z from -2 in the last turn
-
-
 def fall_time(table: Table, of: str = "") -> float:
     """When the wheel first leans by more than 45 degrees, s; infinite if never."""
     fallen = np.abs(table[f"{of}theta"] - pi / 2) > pi / 4
     return float(table["time"][fallen.argmax()]) if fallen.any() else inf
 
 
-def judge(table: Table) -> Verdict:
-    """The figures of a run."""
+def judge(table: Table) -> dict[str, float]:
+    """The figures of a run: on the line in its last second, on the circle in its last turn."""
     t, tilt = table["time"], np.degrees(np.abs(table["theta"] - pi / 2))
     line, turn = (t > T_CIRCLE - 1) & (t <= T_CIRCLE), t > CIRCLE.stop - TURN
     x, y = table["X_O"][turn], table["Y_O"][turn]
     a, b, c = np.linalg.lstsq(np.column_stack([x, y, np.ones_like(x)]), x**2 + y**2, rcond=None)[0]
     radius = np.sqrt(c + (a**2 + b**2) / 4)
-    return Verdict(
-        fall=fall_time(table, "alone."),
-        line_tilt=float(tilt[line].max()),
-        line_heading=float(np.degrees(np.abs(table["psi"][line])).max()),
-        circle_radius=float(radius),
-        circle_scatter=float(np.abs(np.hypot(x - a / 2, y - b / 2) - radius).max()),
-        circle_tilt=float(tilt[t > T_CIRCLE].max()),
-        speed_error=float(np.abs(table["omega_z"][turn] + 2).max()),
-    )
+    return {
+        "fall": fall_time(table, "alone."),
+        "line_tilt": tilt[line].max(),  # deg, largest departure from upright
+        "line_heading": np.degrees(np.abs(table["psi"][line])).max(),  # deg, from the line's direction
+        "circle_radius": radius,  # m, of the circle through the last turn
+        "circle_scatter": np.abs(np.hypot(x - a / 2, y - b / 2) - radius).max(),  # m, from that circle
+        "circle_tilt": tilt[t > T_CIRCLE].max(),  # deg, from upright on the whole circle
+        "speed_error": np.abs(table["omega_z"][turn] + 2).max(),  # rad/s, of omega_z from -2
+    }
 
 
 def fallen(table: Table, of: str = "") -> str:
@@ -95,19 +81,20 @@ def fallen(table: Table, of: str = "") -> str:
 
 def verdict(table: Table, course: Manoeuvre) -> tuple[bool, list[str]]:
     """Of the wheel alone, and of the one that was to drive a circle."""
-    radius, single = course["R"], f"Alone it {fallen(table, 'alone.')}."
+    wanted, single = course["R"], f"Alone it {fallen(table, 'alone.')}."
     if np.isfinite(fall_time(table)):
         return False, [single, f"Failed: the controller does not hold it: it {fallen(table)}."]
     found = judge(table)
-    if not (abs(found.circle_radius - radius) < 0.05 * radius and found.circle_scatter < 0.05 * radius):
-        off = f"within {found.circle_scatter:.2g} m of a circle of {found.circle_radius:.3g} m"
-        held = f"the controller keeps it from falling over, but it leans by up to {found.circle_tilt:.0f} degrees"
-        return False, [single, f"Failed: {held}, and its last turn is not the circle of {radius:g} m: it is {off}."]
-    circle = f"a circle of {found.circle_radius:.4f} m, where {radius:g} m was asked for"
-    return True, [
-        single,
-        f"Controlled it stays up, leaning by up to {found.circle_tilt:.1f} degrees, and drives {circle}.",
-    ]
+    radius, scatter, tilt = (found[f"circle_{name}"] for name in ("radius", "scatter", "tilt"))
+    if not max(abs(radius - wanted), scatter) < 0.05 * wanted:
+        off = f"within {scatter:.2g} m of a circle of {radius:.3g} m"
+        held = f"the controller keeps it from falling over, but it leans by up to {tilt:.0f} degrees"
+        return False, [
+            single,
+            f"Failed: {held}, and its last turn is not the circle of {course['R']:g} m: it is {off}.",
+        ]
+    circle = f"a circle of {radius:.4f} m, where {course['R']:g} m was asked for"
+    return True, [single, f"Controlled it stays up, leaning by up to {tilt:.1f} degrees, and drives {circle}."]
 
 
 def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
@@ -115,9 +102,8 @@ def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
     return {"alone": (table["alone.X_O"], table["alone.Y_O"]), "with controller": (table["X_O"], table["Y_O"])}
 
 
-BALANCE = Vehicle(
-    "balance", parts, CONNECTIONS, RECORD, verdict, ("wheel", "balance"), complete=beside_alone, tracks=tracks
-)
+BARE = ("wheel", "balance")
+BALANCE = Vehicle("balance", parts, CONNECTIONS, RECORD, verdict, BARE, complete=beside_alone, tracks=tracks)
 
 
 def drive(fmus: Fmus, course: Manoeuvre = CIRCLE) -> Table:

@@ -12,11 +12,10 @@ import numpy as np
 
 from .car_judges import axle_friction, demand, findings
 from .component import Component
-from .hubs import FORCE, MOMENT, POSE, road, upright, wire
 from .layout import AXLES, MASS, NAMES, WHEELS, R, chassis_start, driver_start
 from .master import Connection, Signal, Table
 from .options import Manoeuvre
-from .vehicle import Fmus, Vehicle
+from .vehicle import FORCE, MOMENT, POSE, Fmus, Vehicle, road, upright, wire
 
 CONNECTIONS: list[Connection] = [
     *(c for w in WHEELS for c in wire("chassis", w, (*POSE, "tau", "lambda_3"), (*FORCE, *MOMENT, "M_brake"))),
@@ -119,15 +118,11 @@ def lifts_off(_table: Table, _manoeuvre: Manoeuvre) -> str:
 ENDS = {f.__name__: f for f in (sets_off, stands, does_not_roll_back, on_path, lifts_off)}
 
 
-def missed(table: Table, manoeuvre: Manoeuvre) -> str:
-    """Where a run that reached its end is not the manoeuvre that it was to be; empty where it is."""
-    return cut_short(manoeuvre) or next(filter(None, (ENDS[name](table, manoeuvre) for name in manoeuvre.ends)), "")
-
-
 def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
     """Whether a run that reached its end is the manoeuvre, and the reason or its demand on the road."""
-    if why := missed(table, manoeuvre):
-        return False, [f"Failed: {why}."]
+    for why in (cut_short(manoeuvre), *(ENDS[name](table, manoeuvre) for name in manoeuvre.ends)):
+        if why:
+            return False, [f"Failed: {why}."]
     asked = demand(table)
     most = max(asked.values())
     each = ", ".join(f"{axle} {mu:.2f}" for axle, mu in asked.items())

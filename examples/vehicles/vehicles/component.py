@@ -47,10 +47,8 @@ class Component:
         self.description = read_model_description(self.folder)
         self.variable = {v.name: v for v in self.description.modelVariables}
         self.references(self.start)  # a name that does not exist
-        self.fmu = FMU2Slave(
-            **{"guid": self.description.guid, "unzipDirectory": self.folder, "instanceName": self.name},
-            modelIdentifier=self.description.coSimulation.modelIdentifier,
-        )
+        of = {"guid": self.description.guid, "modelIdentifier": self.description.coSimulation.modelIdentifier}
+        self.fmu = FMU2Slave(unzipDirectory=self.folder, instanceName=self.name, **of)
         callbacks = fmi2CallbackFunctions()  # fmpy's own logger serves one instance per process
         callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
         self.fmu.instantiate(callbacks=callbacks)

@@ -82,7 +82,7 @@ def example(fmus: dict[str, Path], asked: options.Asked, folder: Path) -> bool:
     np.savetxt(folder / f"{name}.csv", rows, "%.9g", delimiter=",", header=head, comments="")
     if len(rows):
         draw(of, manoeuvre, run.table, folder / f"{name}.png", remark)
-    of.package(fmus, manoeuvre, asked.h if of in (SUSPENDED, BALANCE) else min(asked.h, 0.0005), folder)
+    of.package(fmus, manoeuvre, min(asked.h, 0.0005) if of.waits else asked.h, folder)
     for part in ("wheel", *options.file(name)["models"]):
         shutil.copyfile(fmus[part], folder / f"{part}.fmu")
     return passed

@@ -94,7 +94,7 @@ class Master:
         self.owned.append(ffi.new(kind, values))
         return self.owned[-1]
 
-    def _prepare(self, exchange: str, reject: bool) -> None:
+    def _prepare(self, exchange: int) -> None:
         """Fills the loop's tables of components, transfers and signals."""
         number = {signal: k for k, signal in enumerate(signal for level in self.levels for signal in level)}
         transfers = []
@@ -115,8 +115,7 @@ class Master:
         tables = {"component": self._own("Component[]", components), "transfer": self._own("Transfer[]", transfers)}
         names = ("value", "rate", "begin_value", "begin_rate", "second", "third")
         arrays = {name: self._own("double[]", len(number)) for name in names}
-        how = {"exchange": EXCHANGES.index(exchange), "reject": reject}
-        self.loop = self._own("Master *", {**how, **counts, **tables, **arrays})
+        self.loop = self._own("Master *", {"exchange": exchange, **counts, **tables, **arrays})
 
     def run(
         self,
@@ -125,18 +124,16 @@ class Master:
         record: list[Signal],
         exchange: str = "held",
         every: int = 1,
-        reject: bool = False,
         progress: bool = False,
         act: Callable[[float], None] | None = None,
     ) -> np.ndarray:
         """Simulate from 0 to `stop`; a record array of time and "component.variable", every `every` steps.
 
         act(t) is called after the exchange at every communication point and may set inputs that are not connected.
-        reject: every step is taken, undone from a snapshot, and taken again, as an error-controlled master may do.
         A variable after "rate " or "at_end " is its derivative, or its value at the end of the step that begins there.
         Raises component.Ended; what was recorded until then is `self.table()`.
         """
-        self._prepare(exchange, reject)
+        self._prepare(EXCHANGES.index(exchange))
         self.names = ["time", *(f"{c}.{v}" for c, v in record)]
         count, pace = round(stop / step), 1 if act else every
         self.places: dict[Signal, dict[int, int]] = {}  # value references by column, by component and kind
@@ -195,18 +192,6 @@ def address(function: Callable) -> object:
 
 
 @dataclass(frozen=True)
-class System:
-    """FMUs and their connections; columns of the components in `bare` go by the variable's name alone."""
-
-    name: str
-    components: list[Component]
-    connections: list[Connection]
-    step: float  # s
-    stop: float  # s
-    bare: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
 class Run:
     """Columns "component.variable" on a grid; how it ended, if early; microseconds per step, as Master.cost has it."""
 
@@ -222,15 +207,25 @@ class Run:
         return self.table
 
 
-def simulate(system: System, record: list[Signal], exchange: str, grid: float, **how: bool) -> Run:
-    """The system to its stop, or to where a component ends the run; recorded every `grid`, or every step."""
+def simulate(
+    components: list[Component],
+    connections: list[Connection],
+    record: list[Signal],
+    stop: float,
+    step: float,
+    exchange: str,
+    grid: float,
+    bare: tuple[str, ...] = (),
+    **how: bool,
+) -> Run:
+    """To `stop`, or to where a component ends the run; recorded every `grid`, or every step. Columns of the components
+    in `bare` go by the variable's name alone."""
     ending = None
-    with Master(system.components, system.connections) as master:
+    with Master(components, connections) as master:
         try:
-            every = max(1, round(grid / system.step))
-            master.run(system.stop, system.step, record, exchange, every, **how)
+            master.run(stop, step, record, exchange, max(1, round(grid / step)), **how)
         except Ended as end:
             ending = end
         rows, cost = master.table(), master.cost()
-    names = {n: n.split(".")[-1] if n.split(".")[0] in system.bare else n for n in rows.dtype.names}
+    names = {n: n.split(".")[-1] if n.split(".")[0] in bare else n for n in rows.dtype.names}
     return Run({short: rows[name] for name, short in names.items()}, ending, cost)

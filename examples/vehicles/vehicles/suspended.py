@@ -13,13 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from . import errors, monolithic
+from . import errors, monolithic_suspended
 from .component import Component
-from .hubs import FORCE, MOMENT, POSE, road
 from .master import Signal, Table
 from .options import Manoeuvre, manoeuvres
 from .ssp import run as run_package
-from .vehicle import Fmus, Vehicle
+from .vehicle import FORCE, MOMENT, POSE, Fmus, Vehicle, road
 
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
@@ -64,7 +63,7 @@ def coupled(fmus: Fmus, step: float, exchange: str, grid: float = GRID, **change
 def together(s: float = START["s"]) -> Table:
     """The same system as one set of equations."""
     times = np.arange(round(LAUNCH.stop / GRID) + 1) * GRID
-    return monolithic.solve(s, START["theta_start"], times)
+    return monolithic_suspended.solve(s, START["theta_start"], times)
 
 
 distance = partial(errors.distance, names=COMPARED, least=0)

@@ -1,17 +1,24 @@
-"""A vehicle: FMUs that are wired, and what is recorded of their run, added to it, and judged."""
+"""A vehicle: FMUs that are wired, and what is recorded of their run, added to it, and judged.
+
+A body with hubs names its variables as the wheels do, with the wheel's name behind.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from math import pi
 from pathlib import Path
 
 from . import ssp
 from .component import Component, Ended
-from .master import Connection, Run, Signal, System, Table, simulate
+from .master import Connection, Run, Signal, Table, simulate
 from .options import Manoeuvre
 
 Fmus = dict[str, Path]
+POSE = ("X_O", "Y_O", "Z_O", "X_O_dot", "Y_O_dot", "Z_O_dot", "psi", "theta", "psi_dot", "theta_dot")
+FORCE = ("F_X", "F_Y", "F_Z")
+MOMENT = ("M_1", "M_2", "M_3")
 
 
 @dataclass(frozen=True)
@@ -31,10 +38,6 @@ class Vehicle:
     waits: bool = False  # whether a package sets t_couple
     subtitle: Callable[[Manoeuvre], str] = lambda _manoeuvre: ""
 
-    def system(self, fmus: Fmus, manoeuvre: Manoeuvre, step: float) -> System:
-        """Its FMUs with their start values."""
-        return System(self.name, self.parts(fmus, manoeuvre), self.connections, step, manoeuvre.stop, self.bare)
-
     def drive(
         self,
         fmus: Fmus,
@@ -45,15 +48,39 @@ class Vehicle:
         **how: bool,
     ) -> Run:
         """The co-simulation, with the columns that `complete` adds."""
-        run = simulate(self.system(fmus, manoeuvre, step), self.record, exchange, grid, **how)
+        wired = self.parts(fmus, manoeuvre), self.connections
+        run = simulate(*wired, self.record, manoeuvre.stop, step, exchange, grid, self.bare, **how)
         return replace(run, table=self.complete(run.table, manoeuvre, fmus))
 
     def package(self, fmus: Fmus, manoeuvre: Manoeuvre, step: float, folder: Path) -> Path:
         """Its SSP package. A master that begins with zero inputs finds the body free until t_couple."""
         waits = {"t_couple": 3 * step} if self.waits and "t_couple" not in manoeuvre.given else {}
-        return ssp.build(self.system(fmus, manoeuvre.changed(**waits), step), folder)
+        parts = self.parts(fmus, manoeuvre.changed(**waits))
+        return ssp.build(folder / f"{self.name}.ssp", parts, self.connections, step, manoeuvre.stop)
 
     def describe(self, end: Ended) -> str:
         """Which component ended a run, and when."""
         who = f"{self.wheels[end.component]} wheel" if end.component in self.wheels else end.component
         return f"The {who} ended the run at t = {end.time:.3f} s: {end.message}"
+
+
+def wire(
+    body: str, wheel: str, pose: tuple[str, ...] = POSE, load: tuple[str, ...] = FORCE + MOMENT
+) -> list[Connection]:
+    """Pose and velocity to the body, forces and moments to the wheel."""
+    return [
+        *(((wheel, name), (body, f"{name}_{wheel}")) for name in pose),
+        *(((body, f"{name}_{wheel}"), (wheel, name)) for name in load),
+    ]
+
+
+def upright(x: float, y: float, heading: float, speed: float, turn: float, R: float) -> dict[str, float]:
+    """Start of an upright wheel that rolls at `speed` [m/s] along its heading [rad] and turns at `turn` [rad/s]."""
+    pose = {"psi_start": heading, "theta_start": pi / 2, "X_O_start": x, "Y_O_start": y}
+    return {**pose, "phi_dot_start": -speed / R, "psi_dot_start": turn, "theta_dot_start": 0.0}
+
+
+def road(manoeuvre: Manoeuvre) -> dict[str, float]:
+    """The wheels' parameters that a manoeuvre gives: friction, slope, and the grip that a wheel checks, if any."""
+    names = ("s", "slope", "slope_direction", "mu_max")
+    return {name: manoeuvre[name] for name in names if manoeuvre.given.get(name)}
