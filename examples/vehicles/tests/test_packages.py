@@ -31,7 +31,7 @@ def package(fmus: Fmus, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_package_is_valid_ssp_and_its_parameters_are_bound_at_the_component(package: Path) -> None:
     structure = read_ssd(str(package), validate=True)
     assert structure.version == "1.0"
-    assert len(structure.system.connections) == len(suspended.CONNECTIONS)
+    assert len(structure.system.connections) == len(SUSPENDED.connections)
     assert structure.system.parameterBindings == []
     bound = {c.name: [b.source for b in c.parameterBindings] for c in structure.system.elements}
     assert bound == {"wheel": ["resources/wheel.ssv"], "quarter_car": []}

@@ -24,7 +24,7 @@ from .options import Manoeuvre
 from .vehicle import Fmus, Vehicle, road, upright, wire
 
 WHEELS = {"left": "left", "right": "right"}
-CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel)]
+CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel, f"_{wheel}")]
 RECORD: list[Signal] = [
     *(("axle", name) for name in ("X", "Y", "psi", "v", "omega", "E", "W_loss")),
     *((wheel, name) for wheel in WHEELS for name in ("omega_z", "lambda_3", "mu_required", "E")),

@@ -12,9 +12,9 @@ import numpy as np
 from fmpy import simulate_fmu
 
 from .component import Component
-from .master import Connection, Table
+from .master import Table
 from .options import Manoeuvre, manoeuvres
-from .vehicle import Fmus, Vehicle
+from .vehicle import Fmus, Vehicle, wire
 
 CIRCLE = manoeuvres("balance")["circle"]
 STEP = 0.005  # s
@@ -28,10 +28,7 @@ MEASURED = ("theta", "theta_dot", "psi", "psi_dot", "phi_dot")
 MOMENTS = ("M_1", "M_3")
 OF_WHEEL = ("X_O", "Y_O", "phi", *MEASURED, "omega_z", "lambda_3")
 RECORD = [*(("wheel", name) for name in OF_WHEEL), *(("balance", name) for name in MOMENTS)]
-CONNECTIONS: list[Connection] = [
-    *((("wheel", name), ("balance", name)) for name in MEASURED),
-    *((("balance", name), ("wheel", name)) for name in MOMENTS),
-]
+CONNECTIONS = wire("balance", "wheel", "", MEASURED, MOMENTS)
 
 
 def parts(fmus: Fmus, course: Manoeuvre) -> list[Component]:

@@ -15,10 +15,10 @@ from .component import Component
 from .layout import AXLES, MASS, NAMES, WHEELS, R, chassis_start, driver_start
 from .master import Connection, Signal, Table
 from .options import Manoeuvre
-from .vehicle import FORCE, MOMENT, POSE, Fmus, Vehicle, road, upright, wire
+from .vehicle import LOAD, POSE, Fmus, Vehicle, road, upright, wire
 
 CONNECTIONS: list[Connection] = [
-    *(c for w in WHEELS for c in wire("chassis", w, (*POSE, "tau", "lambda_3"), (*FORCE, *MOMENT, "M_brake"))),
+    *(c for w in WHEELS for c in wire("chassis", w, f"_{w}", (*POSE, "tau", "lambda_3"), (*LOAD, "M_brake"))),
     *((("chassis", name), ("driver", name)) for name in ("X_R", "Y_R", "psi", "v")),
     *((("driver", name), ("chassis", name)) for name in ("delta", "delta_dot", "M_drive", "M_brake")),
 ]

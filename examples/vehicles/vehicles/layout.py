@@ -19,16 +19,12 @@ MASS = LAYOUT["chassis"]["m_B"] + M_WHEEL * len(WHEELS)
 MANOEUVRES = manoeuvres("car")
 STRAIGHT, CIRCLE, STEP, EIGHT, LANE, HILL, TOO_FAST = MANOEUVRES.values()
 COMPARED = ("X", "Y", "psi", "roll", "pitch", "v", "omega")
-
-
-def axles() -> dict[str, list[str]]:
-    """Wheels that stand side by side, by the axle's name."""
-    places = sorted({float(w["x"]) for w in WHEELS.values()}, reverse=True)
-    names = {places[-1]: "rear", places[0]: "front"}
-    return {names.get(x, f"axle {k + 1}"): [n for n, w in WHEELS.items() if w["x"] == x] for k, x in enumerate(places)}
-
-
-AXLES = axles()
+# Wheels that stand side by side, by the axle's name.
+PLACES = sorted({float(w["x"]) for w in WHEELS.values()}, reverse=True)
+AXLES = {
+    {PLACES[-1]: "rear", PLACES[0]: "front"}.get(x, f"axle {k + 1}"): [n for n, w in WHEELS.items() if w["x"] == x]
+    for k, x in enumerate(PLACES)
+}
 
 
 def chassis_start(manoeuvre: Manoeuvre) -> dict[str, float]:

@@ -61,8 +61,3 @@ def attitude(a: np.ndarray, w: np.ndarray) -> tuple[float, float, float, float]:
     a_dot, flat = cross(w, a), np.hypot(a[0], a[1])
     psi_dot = (a[0] * a_dot[1] - a[1] * a_dot[0]) / flat**2
     return np.arctan2(a[0], -a[1]), np.arctan2(flat, a[2]), psi_dot, -a_dot[2] / flat
-
-
-def solve(s: float, theta: float, times: np.ndarray) -> dict[str, np.ndarray]:
-    """The motion of a wheel with the rolling friction s."""
-    return Suspended(s, theta).solve(times, TOLERANCE)[0]

@@ -13,18 +13,18 @@ from pathlib import Path
 
 import numpy as np
 
-from . import errors, monolithic_suspended
+from . import errors
 from .component import Component
 from .master import Signal, Table
+from .monolithic_suspended import TOLERANCE, Suspended
 from .options import Manoeuvre, manoeuvres
 from .ssp import run as run_package
-from .vehicle import FORCE, MOMENT, POSE, Fmus, Vehicle, road
+from .vehicle import LOAD, Fmus, Vehicle, road, wire
 
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
 STEPS = (0.005, 0.0025, 0.00125, 0.000625, 0.0003125)  # s
 LARGE_STEPS = (0.0125, 0.015, 0.02, 0.025)  # s, around the limit of stability
-LOAD = FORCE + MOMENT
 START = {"s": 0.01, "psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_start": 0.0, "X_O_start": 0.0}
 COMPARED = ("X_O", "theta", "phi_dot", "psi_dot", "X_B", "Z_B")
 OF_WHEEL = ("theta", "phi_dot", "psi_dot", "psi", "theta_dot", "omega_z", "lambda_3", "mu_required")
@@ -32,10 +32,7 @@ RECORD: list[Signal] = [
     *(("wheel", name) for name in ("X_O", "Y_O", "phi", "X_O_dot", *OF_WHEEL)),  # scripts/view needs the first three
     *(("quarter_car", name) for name in ("X_B", "Y_B", "Z_B", "X_B_dot", *LOAD)),
 ]
-CONNECTIONS = [
-    *((("wheel", name), ("quarter_car", name)) for name in POSE),
-    *((("quarter_car", name), ("wheel", name)) for name in LOAD),
-]
+CONNECTIONS = wire("quarter_car", "wheel", "")
 
 
 def parts(fmus: Fmus, run: Manoeuvre) -> list[Component]:
@@ -52,7 +49,8 @@ def verdict(table: Table, _run: Manoeuvre) -> tuple[bool, list[str]]:
     return True, [f"{speed}; friction required: {grip:.2f}."]
 
 
-SUSPENDED = Vehicle("suspended_wheel", parts, CONNECTIONS, RECORD, verdict, ("wheel", "quarter_car"))
+BARE = ("wheel", "quarter_car")
+SUSPENDED = Vehicle("suspended_wheel", parts, CONNECTIONS, RECORD, verdict, BARE)
 
 
 def coupled(fmus: Fmus, step: float, exchange: str, grid: float = GRID, **changed: float) -> Table:
@@ -63,7 +61,7 @@ def coupled(fmus: Fmus, step: float, exchange: str, grid: float = GRID, **change
 def together(s: float = START["s"]) -> Table:
     """The same system as one set of equations."""
     times = np.arange(round(LAUNCH.stop / GRID) + 1) * GRID
-    return monolithic_suspended.solve(s, START["theta_start"], times)
+    return Suspended(s, START["theta_start"]).solve(times, TOLERANCE)[0]
 
 
 distance = partial(errors.distance, names=COMPARED, least=0)

@@ -1,6 +1,6 @@
 """A vehicle: FMUs that are wired, and what is recorded of their run, added to it, and judged.
 
-A body with hubs names its variables as the wheels do, with the wheel's name behind.
+A body with hubs names its variables as the wheels do, with _ and the wheel's name behind.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .options import Manoeuvre
 Fmus = dict[str, Path]
 POSE = ("X_O", "Y_O", "Z_O", "X_O_dot", "Y_O_dot", "Z_O_dot", "psi", "theta", "psi_dot", "theta_dot")
 FORCE = ("F_X", "F_Y", "F_Z")
-MOMENT = ("M_1", "M_2", "M_3")
+LOAD = (*FORCE, "M_1", "M_2", "M_3")
 
 
 @dataclass(frozen=True)
@@ -65,12 +65,12 @@ class Vehicle:
 
 
 def wire(
-    body: str, wheel: str, pose: tuple[str, ...] = POSE, load: tuple[str, ...] = FORCE + MOMENT
+    body: str, wheel: str, behind: str, pose: tuple[str, ...] = POSE, load: tuple[str, ...] = LOAD
 ) -> list[Connection]:
-    """Pose and velocity to the body, forces and moments to the wheel."""
+    """Pose and velocity to the body, forces and moments to the wheel; `behind` ends the body's names."""
     return [
-        *(((wheel, name), (body, f"{name}_{wheel}")) for name in pose),
-        *(((body, f"{name}_{wheel}"), (wheel, name)) for name in load),
+        *(((wheel, name), (body, name + behind)) for name in pose),
+        *(((body, name + behind), (wheel, name)) for name in load),
     ]
 
 
