@@ -9,7 +9,7 @@
 
 #include "variables.hpp"
 
-enum { max_states = 16, max_derived = 16 };
+enum { max_states = 16, max_derived = 32 };
 
 using States = Eigen::Vector<double, max_states>;
 
