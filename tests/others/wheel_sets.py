@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from vehicles.axle import CONNECTIONS, WHEELS
 from vehicles.component import Component
-from vehicles.hubs import upright
 from vehicles.master import Master
+from vehicles.vehicle import upright
 
 from .numbers import read
 

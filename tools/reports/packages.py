@@ -9,7 +9,10 @@ from importlib.metadata import version
 
 import pandas as pd
 from support.paths import ROOT
-from vehicles import axle, axle_study, build, car, ssp
+from vehicles import axle_study, build, ssp
+from vehicles.axle import AXLE
+from vehicles.car import CAR
+from vehicles.layout import LANE
 
 from .page import Report, Row, part, read_tables
 
@@ -21,12 +24,12 @@ def packages(report: Report) -> list[Row]:
     """the packages in other tools, beside the master of the examples"""
     units, h = report.fmus, 0.0005
     folder, scene, wait = units["chassis"].parent, axle_study.TRAILING.changed(stop=2.0), {"t_couple": 3 * h}
-    waiting, later = car.LANE.changed(**wait), scene.changed(**wait)
-    axles = [axle.coupled(units, s, h, e, GRID) for s, e in ((scene, "rollback"), (later, "held"))]
-    cars = [car.drive(units, m, h, e, GRID).table for m, e in ((car.LANE, "rollback"), (waiting, "held"))]
+    waiting, later = LANE.changed(**wait), scene.changed(**wait)
+    axles = [AXLE.drive(units, s, h, e, GRID).whole for s, e in ((scene, "rollback"), (later, "held"))]
+    cars = [CAR.drive(units, m, h, e, GRID).table for m, e in ((LANE, "rollback"), (waiting, "held"))]
     cases = (
-        (ssp.build(axle.package(units, scene, h), folder), scene.stop, ("axle.X", "axle.Y"), axles),
-        (ssp.build(car.package(units, car.LANE, h), folder), car.LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
+        (AXLE.package(units, scene, h, folder), scene.stop, ("axle.X", "axle.Y"), axles),
+        (CAR.package(units, LANE, h, folder), LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
     )
     rows: list[Row] = []
     for package, stop, wanted, own in cases:
@@ -57,13 +60,13 @@ def of_other_tools(new: list[Row]) -> list[Row]:
 
 def tools_at_hand(python: str | None) -> list[tuple[str, str, list[str]]]:
     """Name, version and command: the interpreter `python` has two of them, OMSimulator may be on the PATH."""
-    scripts, found = build.EXAMPLES / "tools", []
+    script, found = str(build.EXAMPLES / "run_package.py"), []
     for tool, package in (("libcosim", "libcosimpy"), ("ecos", "ecospy")) if python else ():
         ask = f"import importlib.metadata as m; print(m.version({package!r}))"
         number = subprocess.run([python, "-c", ask], capture_output=True, text=True, check=True).stdout.strip()
-        found.append((tool, f"{package} {number}", [python, str(scripts / f"by_{tool}.py")]))
-    if program := shutil.which("OMSimulator"):
+        found.append((tool, f"{package} {number}", [python, script, tool]))
+    if shutil.which("OMSimulator"):
         tried = pd.read_csv(ROOT / "docs" / "results" / "data" / "interoperability_remarks.csv", dtype=str)
         number = tried.loc[tried["tool"] == "OMSimulator", "version"].iloc[0]
-        found.append(("OMSimulator", number, [sys.executable, str(scripts / "by_omsimulator.py"), program]))
+        found.append(("OMSimulator", number, [sys.executable, script, "OMSimulator"]))
     return found

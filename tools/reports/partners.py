@@ -11,7 +11,7 @@ from support.motion import Run
 from support.paths import ROOT
 from support.scenes import PAPER
 from support.schedule import Schedule
-from vehicles import driven, errors, example, ssp, suspended
+from vehicles import balance, drawing, errors, suspended
 
 from .page import Report, part
 
@@ -22,11 +22,12 @@ NAMES = {"held": "positions that follow", "positions held": "values held", "deri
 @part(20)
 def driven_wheel(report: Report) -> dict[str, float]:
     """the driven, balanced wheel"""
-    drive = driven.run(report.fmus).table
-    verdict = driven.judge(drive)
-    example.picture(drive, driven.CIRCLE, report.folder / "partners_driven.png")
-    found = {"alone": verdict.fall, "tilt": verdict.line_tilt, "circle": abs(verdict.circle_radius - driven.RADIUS)}
-    return found | {"scatter": verdict.circle_scatter, "speed": verdict.speed_error}
+    drive = balance.drive(report.fmus)
+    drawing.draw(balance.BALANCE, balance.CIRCLE, drive, report.folder / "partners_driven.png")
+    found = balance.judge(drive)
+    radius = abs(found["circle_radius"] - balance.RADIUS)
+    of_line = {"alone": found["fall"], "tilt": found["line_tilt"], "circle": radius}
+    return of_line | {"scatter": found["circle_scatter"], "speed": found["speed_error"]}
 
 
 @part(25)
@@ -38,9 +39,9 @@ def suspended_wheel(report: Report) -> dict[str, object]:
     orders = pd.DataFrame(found.of).rename(columns=NAMES)
     orders.insert(0, "step, ms", 1000 * np.array(steps))
     orders["share lost to the lag of a held position"] = [suspended.drag_share(h) for h in steps]
-    package = ssp.build(suspended.system(units), ROOT / "build" / "examples")
+    package = suspended.SUSPENDED.package(units, suspended.LAUNCH, 0.001, ROOT / "build" / "examples")
     launch = suspended.coupled(units, 0.000625, "derivatives", grid=0.005)
-    example.picture(launch, suspended.LAUNCH, report.folder / "partners_suspended.png", errors=found)
+    drawing.draw(suspended.SUSPENDED, suspended.LAUNCH, launch, report.folder / "partners_suspended.png", errors=found)
     kinds = ("held", "derivatives")
     return {
         "orders": orders,

@@ -6,12 +6,13 @@ from functools import cache
 
 import numpy as np
 import pandas as pd
-from vehicles import axle, axle_study, car, car_iso, car_judges, car_table, monolithic_car
-from vehicles.car import MANOEUVRES
-from vehicles.drawing import draw_orders
+from vehicles import axle, axle_study, car_judges, layout, monolithic_car
+from vehicles.car import CAR
+from vehicles.drawing import draw, draw_orders
 from vehicles.errors import STEPS, Errors, longest, orders
-from vehicles.example import picture
-from vehicles.master import EXCHANGES, whole
+from vehicles.layout import MANOEUVRES
+from vehicles.master import EXCHANGES
+from vehicles.options import Manoeuvre
 
 from . import packages
 from .page import Report, Row, Tables, part
@@ -37,7 +38,7 @@ def axle_steps(report: Report) -> list[Row]:
 
 
 @part(30, {"scene": axle_study.SCENES})
-def axle_stiffness(report: Report, scene: axle.Scene) -> Row:
+def axle_stiffness(report: Report, scene: Manoeuvre) -> Row:
     """the axle: error against the stiffness"""
     factors = (1.0, 2.0, 4.0)
     errors = axle_study.stiffness_errors(report.fmus, scene.changed(stop=2.0), factors)
@@ -65,7 +66,7 @@ def axle_energy(report: Report, over: tuple) -> Row:
 
 
 def manoeuvres(report: Report) -> tuple[str, ...]:
-    return ("step",) if report.quick else car_table.NAMES
+    return ("step",) if report.quick else monolithic_car.NAMES
 
 
 @part(70)
@@ -74,12 +75,12 @@ def car_runs(report: Report) -> dict[str, object]:
     judged, demands = [], []
     for name in manoeuvres(report):
         manoeuvre = MANOEUVRES[name]
-        table = car.drive(report.fmus, manoeuvre).table
+        table = CAR.drive(report.fmus, manoeuvre).table
         judged += [(name, f.what, f.unit, f.measured, f.exact) for f in car_judges.judge(table, manoeuvre)]
-        at = car.worst(table)[1]
+        at = car_judges.worst(table)[1]
         where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]
-        demands.append((manoeuvre.title, *car.demand(table).values(), *where))
-    most = ["manoeuvre", *(f"{axle} axle" for axle in car.AXLES), "most at t [s]", "X [m]", "Y [m]"]
+        demands.append((manoeuvre.title, *car_judges.demand(table).values(), *where))
+    most = ["manoeuvre", *(f"{axle} axle" for axle in layout.AXLES), "most at t [s]", "X [m]", "Y [m]"]
     forms = ["manoeuvre", "quantity", "unit", "measured", "closed form"]
     return {"car_closed_forms": pd.DataFrame(judged, columns=forms), "car_demand": pd.DataFrame(demands, columns=most)}
 
@@ -87,10 +88,10 @@ def car_runs(report: Report) -> dict[str, object]:
 @part(40)
 def car_endings(report: Report) -> list[Row]:
     """the car: what ends the manoeuvre that is too fast, and the same of one set of equations"""
-    run = car.drive(report.fmus, car.TOO_FAST, exchange="rollback")
-    wheel, time = car_table.lift_off(car.TOO_FAST)
-    whole = f"The {car.NAMES[wheel]} wheel's normal force is zero at t = {time:.7f} s."
-    ends = {"coupled FMUs": car.sentence(run.ending), "one set of equations": whole}
+    run = CAR.drive(report.fmus, layout.TOO_FAST, exchange="rollback")
+    wheel, time = monolithic_car.lift_off(layout.TOO_FAST)
+    whole = f"The {layout.NAMES[wheel]} wheel's normal force is zero at t = {time:.7f} s."
+    ends = {"coupled FMUs": CAR.describe(run.ending), "one set of equations": whole}
     return [{"system": system, "how it ended": end} for system, end in ends.items()]
 
 
@@ -100,9 +101,9 @@ def car_figures(report: Report) -> pd.DataFrame:
     rows = []
     for name, grid in (("circle", 0.01), ("step", 0.001), ("lane", 0.005)):
         manoeuvre = MANOEUVRES[name]
-        coupled = car.drive(report.fmus, manoeuvre, grid=grid).table
+        coupled = CAR.drive(report.fmus, manoeuvre, grid=grid).table
         whole = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / grid) + 1) * grid, 1e-9)
-        both = (car_iso.FIGURES[name](table) for table in (coupled, whole))
+        both = (car_judges.FIGURES[name](table) for table in (coupled, whole))
         rows += [(name, a.what, a.unit, a.measured, b.measured, a.exact) for a, b in zip(*both, strict=True)]
     head = ["manoeuvre", "quantity", "unit", "coupled FMUs", "one set of equations", "rigid links"]
     return pd.DataFrame(rows, columns=head)
@@ -110,11 +111,11 @@ def car_figures(report: Report) -> pd.DataFrame:
 
 def errors(report: Report, name: str, exchange: str, h: float, complete: bool = False) -> dict[str, float]:
     """Of each output against one set of equations; complete: of a run that must not end early."""
-    run = car.drive(report.fmus, MANOEUVRES[name], h, exchange, car_table.GRID)
-    return car_table.apart(whole(run) if complete else run.table, truth(name))
+    run = CAR.drive(report.fmus, MANOEUVRES[name], h, exchange, monolithic_car.GRID)
+    return monolithic_car.apart(run.whole if complete else run.table, truth(name))
 
 
-truth = cache(car_table.read)
+truth = cache(monolithic_car.read)
 
 
 @part(40, {"inputs over the step": EXCHANGES})
@@ -137,11 +138,10 @@ def car_errors(report: Report, name: str, exchange: str, ms: float) -> Row:
 @part(30)
 def pictures(report: Report) -> dict[str, float]:
     """pictures of the motions; the largest error where no wheel stops"""
-    run = axle.coupled(report.fmus, axle_study.TRAILING, 0.0005, "derivatives", 0.02)
-    table = axle.complete(run, axle_study.TRAILING)
-    picture(table, axle_study.TRAILING, report.folder / "vehicles_axle.png", ", step 0.5 ms")
+    table = axle.coupled(report.fmus, axle_study.TRAILING, 0.0005, "derivatives", 0.02)
+    draw(axle.AXLE, axle_study.TRAILING, table, report.folder / "vehicles_axle.png", ", step 0.5 ms")
     for name, manoeuvre in MANOEUVRES.items():
-        picture(car.drive(report.fmus, manoeuvre).table, manoeuvre, report.folder / f"vehicles_{name}.png")
+        draw(CAR, manoeuvre, CAR.drive(report.fmus, manoeuvre).table, report.folder / f"vehicles_{name}.png")
     found = report.tables["car_errors"].groupby(["manoeuvre", "inputs over the step"], sort=False)["largest"].agg(list)
     of = {name: Errors(STEPS, found[name].to_dict()) for name in manoeuvres(report)}
     draw_orders(of, report.folder / "vehicles_orders.png")
@@ -151,8 +151,8 @@ def pictures(report: Report) -> dict[str, float]:
 @part(20, {"inputs over the step": EXCHANGES})
 def car_cost(report: Report, exchange: str) -> Row:
     """the car: microseconds per step of 1 ms: medians over the steps of the change of lanes, and over runs"""
-    runs = pd.DataFrame([car.drive(report.fmus, car.LANE, exchange=exchange, grid=1.0).cost for _ in range(5)])
-    wheels, bodies = (runs[list(names)].sum(axis=1).median() for names in (car.WHEELS, ("chassis", "driver")))
+    runs = pd.DataFrame([CAR.drive(report.fmus, layout.LANE, exchange=exchange, grid=1.0).cost for _ in range(5)])
+    wheels, bodies = (runs[list(names)].sum(axis=1).median() for names in (layout.WHEELS, ("chassis", "driver")))
     all_of_it = runs["total"].median()
     return {
         "four wheels [us]": wheels,

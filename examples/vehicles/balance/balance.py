@@ -28,8 +28,8 @@ PARAMETERS = {
     "k_omega": 8.0,  # N.m.s/rad
     "k_i": 8.0,  # N.m/rad
 }
-INPUTS = ("theta", "theta_dot", "psi", "psi_dot", "phi_dot")
-OUTPUTS = ("M_1", "M_3")
+INPUTS = {"theta": pi / 2, "theta_dot": 0.0, "psi": 0.0, "psi_dot": 0.0, "phi_dot": 0.0}
+OUTPUTS = {"M_1": 0.0, "M_3": 0.0}
 
 
 class Balance(Fmi2Slave):
@@ -40,15 +40,14 @@ class Balance(Fmi2Slave):
     def __init__(self, **kwargs: object) -> None:
         super().__init__(**kwargs)
         self.modelName = "balance"
-        for name, start in PARAMETERS.items():
+        for name, start in (PARAMETERS | INPUTS | OUTPUTS).items():
             setattr(self, name, start)
+        for name in PARAMETERS:
             how = {"causality": Fmi2Causality.parameter, "variability": Fmi2Variability.tunable}
             self.register_variable(Real(name, **how))
         for name in INPUTS:
-            setattr(self, name, pi / 2 if name == "theta" else 0.0)
             self.register_variable(Real(name, causality=Fmi2Causality.input))
         for name in OUTPUTS:
-            setattr(self, name, 0.0)
             self.register_variable(Real(name, causality=Fmi2Causality.output))
         self.psi_ref = self.integral = 0.0
 

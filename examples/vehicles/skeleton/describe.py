@@ -1,4 +1,4 @@
-"""Writes an example's modelDescription.xml, terminalsAndIcons.xml and variables.h from its table of variables.
+"""Writes an example's modelDescription.xml, terminalsAndIcons.xml and variables.hpp from its table of variables.
 
     PYTHONPATH=<the project's folder cmake> python describe.py NAME TABLE FOLDER [LAYOUT]
 
@@ -6,14 +6,15 @@ TABLE is a CSV file: causality, name, unit, start, limit (>0 or >=0), depends, d
 the first of them describes the model. A name with {wheel} stands for one variable per wheel of LAYOUT, a TOML file
 whose [wheel.NAME] tables also give start values: {x} is that wheel's x; for other variables they come from its table
 [NAME of the model]. `depends` lists the inputs that an output depends on directly (patterns with *); `-` is none.
-Numbers and GUID are written as those of the wheel are (cmake/description). variables.h names the value references: of
+Numbers and GUID are written as those of the wheel are (cmake/description). variables.hpp names the value references: of
 variables per wheel also by the name with `each`, the first wheel's; the next wheel's is wheel_parameters, wheel_inputs
-or wheel_outputs further on. The files are templates beside this program.
+or wheel_outputs further on. The files are templates beside this program; FOLDER/fmu is packed as the FMU.
 """
 
 from __future__ import annotations
 
 import csv
+import re
 import sys
 import tomllib
 from dataclasses import dataclass
@@ -28,13 +29,8 @@ BASE = {  # powers of kg, m, s and rad
     "J": "1 2 -2 0", "1/m": "0 -1 0 0", "1/s": "0 0 -1 0", "m/s3": "0 1 -3 0",
 }  # fmt: skip
 Layout = dict[str, dict[str, dict[str, float | str]]]
-WITH_RATE = ("X_O", "Y_O", "Z_O", "psi", "theta", "delta")  # inputs that may have their rate beside them
-KINDS = {
-    "parameter": 'causality="parameter" variability="fixed" initial="exact"',
-    "input": 'causality="input" variability="continuous"',
-    "output": 'causality="output" variability="continuous" initial="calculated"',
-    "local": 'causality="local" variability="continuous" initial="calculated"',
-}
+KINDS = ("parameter", "input", "output", "local")
+RATE = re.compile(r"^([XYZ]_O|psi|theta|delta)(?=_|$)")  # inputs that may have their rate beside them: X_O_dot_left
 
 
 @dataclass(frozen=True)
@@ -63,85 +59,60 @@ def read(name: str, table: Path, layout: Layout) -> tuple[str, list[Variable]]:
     rows = list(csv.DictReader(line for line in lines if line and not line.startswith("#")))
     variables: list[Variable] = []
     for kind in KINDS:
-        of_kind = [row for row in rows if row["causality"] == kind]
-        variables += [_variable(row, "", layout.get(name, {})) for row in of_kind if "{wheel}" not in row["name"]]
-        each = [row for row in of_kind if "{wheel}" in row["name"]]
-        for wheel, properties in layout.get("wheel", {}).items():
-            variables += [_variable(row, wheel, properties) for row in each]
+        for wheel, properties in [("", layout.get(name, {})), *layout.get("wheel", {}).items()]:
+            of_kind = [row for row in rows if row["causality"] == kind and ("{wheel}" in row["name"]) == bool(wheel)]
+            variables += [_variable(row, wheel, properties) for row in of_kind]
     return about, variables
 
 
 def _variable(row: dict[str, str], wheel: str, properties: dict[str, float | str]) -> Variable:
     text = {key: (value or "").format(wheel=wheel, **properties).strip() for key, value in row.items()}
-    of = row["name"].format(wheel="each") if wheel else ""
-    start, depends = float(text["start"] or 0), tuple(text["depends"].split())
-    return Variable(
-        text["causality"], text["name"], text["unit"], start, text["limit"], depends, text["description"], of
-    )
-
-
-def rate_name(name: str) -> str:
-    """X_O_left -> X_O_dot_left, psi -> psi_dot; empty if an input of this name has no rate among the inputs."""
-    for stem in WITH_RATE:
-        if name == stem or (name.startswith(f"{stem}_") and not name.startswith(f"{stem}_dot")):
-            return f"{stem}_dot{name.removeprefix(stem)}"
-    return ""
-
-
-def value_references(variables: list[Variable], wheels: int) -> dict[str, int]:
-    """Numbers by name, and how many there are of each kind."""
-    of, numbers = [v.causality for v in variables], {v.name: i for i, v in enumerate(variables)}
-    numbers |= {v.of: i for i, v in reversed(list(enumerate(variables))) if v.of}
-    stride = {kind: sum(v.causality == kind and bool(v.of) for v in variables) // max(wheels, 1) for kind in KINDS}
-    first, inputs = of.count("parameter"), of.count("input")
-    counts = {"first_input": first, "input_count": inputs, "first_output": first + inputs}
-    counts |= {"variable_count": len(of), "wheel_count": wheels}
-    return numbers | counts | {f"wheel_{kind}s": count for kind, count in stride.items()}
+    typed = {"start": float(text["start"] or 0), "depends": tuple(text["depends"].split())}
+    return Variable(**text | typed, of=row["name"].format(wheel="each") if wheel else "")
 
 
 def main() -> None:
     """Writes the files; terminalsAndIcons.xml only where there are wheels."""
     from description.numbering import numbered
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
-    from markupsafe import Markup
 
     name, table, folder, *layout = sys.argv[1:]
     given: Layout = tomllib.loads(Path(layout[0]).read_text()) if layout else {}
-    (about, variables), wheels, target = read(name, Path(table), given), given.get("wheel", {}), Path(folder)
-    target.mkdir(parents=True, exist_ok=True)
+    (about, variables), wheels = read(name, Path(table), given), given.get("wheel", {})
+    loader = FileSystemLoader(Path(__file__).parent)
     templates = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=lambda name: ".xml" in name,
-        **{"undefined": StrictUndefined, "keep_trailing_newline": True},
+        loader=loader, autoescape=lambda name: ".xml" in name, undefined=StrictUndefined, keep_trailing_newline=True
     )
 
-    def write(file: str, change=lambda text: text, **values: object) -> str:
-        text = change(templates.get_template(f"{file}.jinja").render(variables=variables, wheels=wheels, **values))
-        (target / file).write_text(text)
-        return text
+    def rendered(file: str, **values: object) -> str:
+        return templates.get_template(f"{file}.jinja").render(variables=variables, wheels=wheels, **values)
 
-    of = {kind: [v for v in variables if v.causality == kind] for kind in KINDS}
-    inputs, parameters = ([v.name for v in of[kind]] for kind in ("input", "parameter"))
-    outputs = {v.name: [n for n in inputs if any(fnmatchcase(n, p) for p in v.depends)] for v in of["output"]}
-    unknowns = {output: parameters + on for output, on in outputs.items()}  # states at the start follow from parameters
-    powers = {
-        u: {n: p for n, p in zip(("kg", "m", "s", "rad"), text.split(), strict=True) if p != "0"}
-        for u, text in BASE.items()
+    inputs, parameters = ([v.name for v in variables if v.causality == kind] for kind in ("input", "parameter"))
+    outputs = {
+        v.name: [n for n in inputs if any(fnmatchcase(n, p) for p in v.depends)]
+        for v in variables
+        if v.causality == "output"
     }
-    xml = write(
-        "modelDescription.xml",
-        lambda text: numbered(text, {"Outputs": outputs, "InitialUnknowns": unknowns}),
-        **{"name": name, "about": about, "base": powers, "kinds": {k: Markup(v) for k, v in KINDS.items()}},
+    unknowns = {output: parameters + on for output, on in outputs.items()}  # states at the start follow from parameters
+    powers = {unit: dict(zip(("kg", "m", "s", "rad"), text.split(), strict=True)) for unit, text in BASE.items()}
+    xml = numbered(
+        rendered("modelDescription.xml", name=name, about=about, base=powers),
+        {"Outputs": outputs, "InitialUnknowns": unknowns},
     )
-    if wheels:
-        write("terminalsAndIcons.xml")
-    write(
-        "variables.h",
+    rates = [RATE.sub(r"\1_dot", n) for n in inputs]
+    header = rendered(
+        "variables.hpp",
         guid=ElementTree.fromstring(xml.encode()).get("guid"),
-        numbers=value_references(variables, len(wheels)),
-        rates=[inputs.index(r) if (r := rate_name(n)) in inputs else -1 for n in inputs] or [-1],
+        each=[v for v in variables if v.of and v.name == v.of.replace("each", next(iter(wheels)))],
+        rates=[inputs.index(r) if r in inputs and r != n else -1 for n, r in zip(inputs, rates, strict=True)],
         partners=[list(wheels).index(w["bar_to"]) if "bar_to" in w else -1 for w in wheels.values()],
     )
+    files = {"fmu/modelDescription.xml": xml, "variables.hpp": header}
+    if wheels:
+        files["fmu/terminalsAndIcons/terminalsAndIcons.xml"] = rendered("terminalsAndIcons.xml")
+    for file, text in files.items():
+        (Path(folder) / file).parent.mkdir(parents=True, exist_ok=True)
+        (Path(folder) / file).write_text(text)
 
 
 if __name__ == "__main__":

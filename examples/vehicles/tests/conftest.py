@@ -16,7 +16,7 @@ from vehicles import build, suspended  # noqa: E402
 
 @pytest.fixture(scope="session")
 def fmus(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """wheel, the FMUs compiled from C, and balance (made by pythonfmu)."""
+    """wheel, the FMUs compiled from C++, and balance (made by pythonfmu)."""
     return build.build_all(tmp_path_factory.mktemp("examples"))
 
 

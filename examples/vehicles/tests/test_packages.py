@@ -1,25 +1,37 @@
-"""SSP packages: valid, parameters bound at the component, and run by fmpy to the right end."""
+"""What other tools read: SSP packages, valid, parameters bound at the component, run by fmpy to the right end; the
+bodies' terminals, which wire the signals that the master wires."""
 
 from __future__ import annotations
 
+import zipfile
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
+from fmpy import read_model_description
 from fmpy.ssp.ssd import read_ssd, read_ssv
+from lxml import etree
 from support.bounds import beyond, within
-from vehicles import axle, axle_study, car, ssp, suspended
+from vehicles import axle_study, ssp, suspended
+from vehicles.axle import AXLE
+from vehicles.car import CAR
+from vehicles.layout import LANE
+from vehicles.master import Table
+from vehicles.options import Manoeuvre
+from vehicles.suspended import LAUNCH, SUSPENDED
+from vehicles.vehicle import Fmus, Vehicle
 
 
 @pytest.fixture(scope="module")
-def package(fmus: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return ssp.build(suspended.system(fmus), tmp_path_factory.mktemp("ssp"))
+def package(fmus: Fmus, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return SUSPENDED.package(fmus, LAUNCH, 0.001, tmp_path_factory.mktemp("ssp"))
 
 
 def test_the_package_is_valid_ssp_and_its_parameters_are_bound_at_the_component(package: Path) -> None:
     structure = read_ssd(str(package), validate=True)
     assert structure.version == "1.0"
-    assert len(structure.system.connections) == len(suspended.CONNECTIONS)
+    assert len(structure.system.connections) == len(SUSPENDED.connections)
     assert structure.system.parameterBindings == []
     bound = {c.name: [b.source for b in c.parameterBindings] for c in structure.system.elements}
     assert bound == {"wheel": ["resources/wheel.ssv"], "quarter_car": []}
@@ -27,40 +39,64 @@ def test_the_package_is_valid_ssp_and_its_parameters_are_bound_at_the_component(
     assert {p.name: float(p.value) for p in written} == suspended.START
 
 
-def test_fmpy_runs_the_package_and_converges_with_order_one(package: Path, truth: dict[str, np.ndarray]) -> None:
+def test_fmpy_runs_the_package_and_converges_with_order_one(package: Path, truth: Table) -> None:
     coarse, fine = (suspended.package_distance(package, h, truth) for h in (0.00125, 0.000625))
     within(abs(np.log2(coarse / fine) - 1), 0.1, "order off 1")
     within(fine, 0.06, "error / range")
 
 
-def test_a_package_without_its_parameters_is_another_system(package: Path, truth: dict[str, np.ndarray]) -> None:
+def test_a_package_without_its_parameters_is_another_system(package: Path, truth: Table) -> None:
     """Partner: the start values come from the SSV."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ssp, "parameter_set", lambda _package: None)
         beyond(suspended.package_distance(package, 0.005, truth, stop=0.3), 100, "error / range")
 
 
-def at_the_end(package: Path, names: tuple[str, ...], step: float, stop: float) -> np.ndarray:
+def off_the_end(fmus: Fmus, vehicle: Vehicle, manoeuvre: Manoeuvre, step: float, folder: Path, *names: str) -> float:
+    """Largest difference at the end between fmpy's run of the package and the master's with rollback."""
+    package = vehicle.package(fmus, manoeuvre, step, folder)
     read_ssd(str(package), validate=True)
-    return np.array([ssp.run(package, step, stop, 0.05)[name][-1] for name in names])
+    table = vehicle.drive(fmus, manoeuvre, 0.0005, "rollback", 0.05).table
+    ends = ssp.run(package, step, manoeuvre.stop, 0.05)
+    return max(abs(ends[name][-1] - table[name.split(".")[1]][-1]) for name in names)
 
 
-def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(
-    fmus: dict[str, Path], tmp_path: Path
-) -> None:
-    manoeuvre = car.LANE.changed(stop=1.5)
-    truth = car.drive(fmus, manoeuvre, 0.001, "rollback", 0.05).table["X_R"][-1]
-    errors = [
-        abs(at_the_end(ssp.build(car.package(fmus, manoeuvre, h), tmp_path), ("chassis.X_R",), h, 1.5)[0] - truth)
-        for h in (0.001, 0.0005)
-    ]
+def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(fmus: Fmus, tmp_path: Path) -> None:
+    manoeuvre = LANE.changed(stop=1.5)
+    errors = [off_the_end(fmus, CAR, manoeuvre, h, tmp_path, "chassis.X_R") for h in (0.001, 0.0005)]
     within(abs(np.log2(errors[0] / errors[1]) - 1), 0.005, "order off 1")
     within(errors[1], 0.01, "off the end, m")  # of 22 m
 
 
-def test_the_package_of_the_axle_runs_in_fmpy(fmus: dict[str, Path], tmp_path: Path) -> None:
-    scene, names = axle_study.TRAILING.changed(stop=1.0), ("X", "Y", "psi")
-    table = axle.coupled(fmus, scene, 0.0005, "rollback", 0.05)
-    package = ssp.build(axle.package(fmus, scene, 0.0005), tmp_path)
-    ends = at_the_end(package, tuple(f"axle.{n}" for n in names), 0.0005, 1.0)
-    within(np.abs(ends - [table[n][-1] for n in names]).max(), 0.01, "off the end, m, rad")
+def test_the_package_of_the_axle_runs_in_fmpy(fmus: Fmus, tmp_path: Path) -> None:
+    scene = axle_study.TRAILING.changed(stop=1.0)
+    off = off_the_end(fmus, AXLE, scene, 0.0005, tmp_path, "axle.X", "axle.Y", "axle.psi")
+    within(off, 0.01, "off the end, m, rad")
+
+
+def terminals(fmu: Path) -> etree._Element:
+    with zipfile.ZipFile(fmu) as archive:
+        return etree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+
+
+def members(terminal: etree._Element) -> dict[str, str]:
+    """Variable by member name."""
+    return {m.get("memberName"): m.get("variableName") for m in terminal.iter("TerminalMemberVariable")}
+
+
+@pytest.mark.parametrize(("name", "vehicle"), [("axle", AXLE), ("chassis", CAR)])
+def test_joining_the_terminals_of_a_valid_file_wires_the_wheels(fmus: Fmus, name: str, vehicle: Vehicle) -> None:
+    """As a tool does that joins each terminal of the body to the terminal of the wheel of that name."""
+    root, (hub,) = terminals(fmus[name]), terminals(fmus["wheel"]).iter("Terminal")
+    kinds = {v.name: v.causality for v in read_model_description(str(fmus["wheel"])).modelVariables}
+    connections = set()
+    for terminal in root.iter("Terminal"):
+        for member, variable in members(terminal).items():
+            ends = (terminal.get("name"), members(hub)[member]), (name, variable)
+            connections.add(ends if kinds[members(hub)[member]] == "output" else ends[::-1])
+    assert connections == {c for c in vehicle.connections if "driver" not in (c[0][0], c[1][0])}
+    folder = Path(find_spec("fmpy").origin).parent / "schema" / "fmi3"
+    schema = etree.XMLSchema(etree.parse(folder / "fmi3TerminalsAndIcons.xsd"))
+    schema.assertValid(root)
+    root[0][0].attrib.pop("matchingRule")
+    assert not schema.validate(root)  # partner

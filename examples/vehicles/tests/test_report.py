@@ -6,8 +6,9 @@ from typing import Any
 
 import pytest
 from support.bounds import absolute_error, beyond, within
-from vehicles import car_table
 from vehicles.errors import STEPS
+from vehicles.master import EXCHANGES
+from vehicles.monolithic_car import NAMES
 
 from reports.page import read_tables
 
@@ -19,7 +20,7 @@ def rows(name: str) -> list[dict[str, Any]]:
 def test_every_manoeuvre_is_there_with_every_master() -> None:
     found = {(row["manoeuvre"], row["inputs over the step"], float(row["step [ms]"])) for row in rows("car_errors")}
     steps = [1000 * h for h in STEPS]
-    assert found == {(n, e, h) for n in car_table.NAMES for e in ("held", "derivatives", "rollback") for h in steps}
+    assert found == {(n, e, h) for n in NAMES for e in EXCHANGES for h in steps}
 
 
 @pytest.mark.parametrize("package", ["axle.ssp", "car.ssp"])

@@ -10,7 +10,6 @@ middle and the yaw rate:
 from __future__ import annotations
 
 from itertools import pairwise
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -19,13 +18,13 @@ from scipy.optimize import brentq
 
 from . import options
 from .component import Component
-from .errors import apart
-from .hubs import road, upright, wire
-from .master import Run, Signal, System, simulate, whole
+from .errors import distance
+from .master import Signal, Table
 from .options import Manoeuvre
+from .vehicle import Fmus, Vehicle, road, upright, wire
 
 WHEELS = {"left": "left", "right": "right"}
-CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel)]
+CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel, f"_{wheel}")]
 RECORD: list[Signal] = [
     *(("axle", name) for name in ("X", "Y", "psi", "v", "omega", "E", "W_loss")),
     *((wheel, name) for wheel in WHEELS for name in ("omega_z", "lambda_3", "mu_required", "E")),
@@ -36,33 +35,15 @@ OF_WHEEL = {"m": 20.0, "J_x": 0.9, "J_z": 1.8}  # the wheels' defaults
 LINKS = ("k", "c", "k_a", "c_a", "k_p", "c_p")
 
 
-def system(fmus: dict[str, Path], scene: Manoeuvre, step: float = 0.001, t_couple: float | None = None) -> System:
-    """The axle. A master that begins with zero inputs, as that of a package, finds the hubs free until t_couple."""
+def parts(fmus: Fmus, scene: Manoeuvre) -> list[Component]:
+    """Two wheels and the beam."""
     factor, wheels = scene["stiffness"], []
     for wheel, y in zip(WHEELS, (scene["b"], -scene["b"]), strict=True):
         start = upright(0.0, y, 0.0, scene["v"] - y * scene["omega"], scene["omega"], scene["R"])
         wheels.append(Component(wheel, fmus["wheel"], {**road(scene), **start}))
     links = {name: scene[name] * factor for name in LINKS} | {"inner_step": min(5e-4, 5e-4 / factor)}
-    start = {"v_start": scene["v"], "omega_start": scene["omega"], **({"t_couple": t_couple} if t_couple else {})}
-    parts = [*wheels, Component("axle", fmus["axle"], {**start, **scene.of("axle"), **links})]
-    return System("axle", parts, CONNECTIONS, step, scene.stop, ("axle",))
-
-
-def package(fmus: dict[str, Path], scene: Manoeuvre, step: float = 0.0005) -> System:
-    """What axle.ssp holds."""
-    return system(fmus, scene, step, 3 * step)
-
-
-def run(fmus: dict[str, Path], scene: Manoeuvre, step: float, exchange: str, grid: float = 0.02, **how: bool) -> Run:
-    """The co-simulation, with the rigid axle's motion beside it where that is known."""
-    return simulate(system(fmus, scene, step), RECORD, exchange, grid, **how)
-
-
-def coupled(
-    fmus: dict[str, Path], scene: Manoeuvre, step: float = 0.001, exchange: str = "derivatives", grid: float = 0.01
-) -> dict[str, np.ndarray]:
-    """The co-simulation on the grid; columns by "component.variable", those of the axle by variable."""
-    return whole(run(fmus, scene, step, exchange, grid))
+    start = {"v_start": scene["v"], "omega_start": scene["omega"]}
+    return [*wheels, Component("axle", fmus["axle"], {**start, **scene.of("axle"), **links})]
 
 
 def constants(scene: Manoeuvre) -> SimpleNamespace:
@@ -144,7 +125,7 @@ def rolling_out(scene: Manoeuvre, times: np.ndarray) -> tuple[np.ndarray, np.nda
     return np.where(both, scene["v"] - A * times, scene["b"] * about), np.sign(scene["omega"]) * turning
 
 
-def rigid(scene: Manoeuvre, times: np.ndarray) -> dict[str, np.ndarray]:
+def rigid(scene: Manoeuvre, times: np.ndarray) -> Table:
     """X, Y, psi, v, omega of the rigid axle at `times` (rising from 0); the path from v and omega by SciPy."""
 
     def rate(t: float, y: np.ndarray) -> tuple[float, float, float]:
@@ -162,7 +143,7 @@ def rigid(scene: Manoeuvre, times: np.ndarray) -> dict[str, np.ndarray]:
     return {"time": times, **dict(zip(("X", "Y", "psi"), np.hstack(path), strict=True)), "v": v, "omega": omega}
 
 
-def complete(table: dict[str, np.ndarray], scene: Manoeuvre) -> dict[str, np.ndarray]:
+def beside_rigid(table: Table, scene: Manoeuvre, _fmus: Fmus) -> Table:
     """With the columns of the rigid axle beside those of the co-simulation, where it has a closed form."""
     if without_closed_form(scene) or len(table["time"]) < 2:
         return table
@@ -170,16 +151,25 @@ def complete(table: dict[str, np.ndarray], scene: Manoeuvre) -> dict[str, np.nda
     return table | {f"rigid.{name}": exact[name] for name in COMPARED}
 
 
-def tracks(table: dict[str, np.ndarray]) -> dict[str, tuple[np.ndarray, ...]]:
+def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
     """Paths besides those of the wheels."""
     names = {"middle of the axle": "", "rigid axle, closed form": "rigid."}
     return {label: (table[f"{n}X"], table[f"{n}Y"]) for label, n in names.items() if f"{n}X" in table}
 
 
-def verdict(table: dict[str, np.ndarray], scene: Manoeuvre) -> tuple[bool, list[str]]:
-    """Whether the run is what it was to be, and how near it is to the rigid axle."""
+def verdict(table: Table, scene: Manoeuvre) -> tuple[bool, list[str]]:
+    """How near the run is to the rigid axle."""
     if why := without_closed_form(scene):
         return True, [f"No closed form to compare with: {why}."]
-    off = max(apart(table, {name: table[f"rigid.{name}"] for name in COMPARED}, COMPARED).values())
-    near = f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."
-    return True, [near]
+    off = distance(table, {name: table[f"rigid.{name}"] for name in COMPARED}, COMPARED)
+    return True, [f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."]
+
+
+AXLE = Vehicle("axle", parts, CONNECTIONS, RECORD, verdict, ("axle",), WHEELS, beside_rigid, tracks, waits=True)
+
+
+def coupled(
+    fmus: Fmus, scene: Manoeuvre, step: float = 0.001, exchange: str = "derivatives", grid: float = 0.01
+) -> Table:
+    """The whole co-simulation on the grid; columns by "component.variable", those of the axle by variable."""
+    return AXLE.drive(fmus, scene, step, exchange, grid).whole

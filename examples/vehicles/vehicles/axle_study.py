@@ -10,37 +10,34 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 
 from . import axle, errors
-from .axle import WHEELS, coupled, rigid
-from .hubs import FORCE
-from .master import KINDS, Signal, simulate, whole
+from .axle import AXLE, WHEELS, coupled, rigid
+from .master import Signal, Table, simulate
 from .options import Manoeuvre, manoeuvres
+from .vehicle import FORCE, Fmus
 
 SCENES = manoeuvres("axle")
 STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT = SCENES.values()
-STIFFNESSES = (1.0, 2.0, 4.0, 8.0)
 LIMIT_STEPS = (0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
 GRID = 0.048  # s, which all of them divide
 BONDS = dict(zip(FORCE, ("X_O_dot", "Y_O_dot", "Z_O_dot"), strict=True)) | {"M_1": "theta_dot", "M_2": "psi_dot"}
+KINDS = ("value", "rate", "at_end")
 
 distance = partial(errors.distance, names=axle.COMPARED)
 
 
 def step_errors(
-    fmus: dict[str, Path], scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = errors.STEPS, grid: float = 0.02
+    fmus: Fmus, scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = errors.STEPS, grid: float = 0.02
 ) -> list[float]:
     """Error against h at this stiffness: the truth is the run with rollback at a quarter of the smallest step."""
     truth = coupled(fmus, scene, min(steps) / 4, "rollback", grid)
     return [distance(coupled(fmus, scene, h, exchange, grid), truth) for h in steps]
 
 
-def stiffness_errors(
-    fmus: dict[str, Path], scene: Manoeuvre, factors: tuple[float, ...] = STIFFNESSES, step: float = 0.0005
-) -> list[float]:
+def stiffness_errors(fmus: Fmus, scene: Manoeuvre, factors: tuple[float, ...], step: float = 0.0005) -> list[float]:
     """Error against the closed form of the rigid axle, with a step small enough for it not to matter."""
     tables = [coupled(fmus, scene.changed(stiffness=factor), step, "rollback", 0.02) for factor in factors]
     return [distance(table, rigid(scene, table["time"])) for table in tables]
@@ -50,7 +47,7 @@ def stiffness_errors(
 class Energy:
     """Energy added over a run, J: by wheel and bond, and the gain of the sum of all energies."""
 
-    bonds: dict[str, np.ndarray]
+    bonds: Table
     drift: float
 
 
@@ -60,16 +57,17 @@ def signals(wheel: str, bond: str, kind: str) -> tuple[Signal, Signal]:
     return ("axle", f"{before}{bond}_{wheel}"), (wheel, f"{before}{BONDS[bond]}")
 
 
-def energy(fmus: dict[str, Path], scene: Manoeuvre, step: float, exchange: str) -> Energy:
+def energy(fmus: Fmus, scene: Manoeuvre, step: float, exchange: str) -> Energy:
     """Of a scene without drive and rolling friction, in which all energy is in the wheels, the beam and its dampers."""
+    stored = [("left", "E"), ("right", "E"), ("axle", "E"), ("axle", "W_loss")]
     record = [s for wheel in WHEELS for bond in BONDS for kind in KINDS for s in signals(wheel, bond, kind)]
-    counted = whole(simulate(axle.system(fmus, scene, step), record, exchange, step))
-    table = coupled(fmus, scene, step, exchange, step)
-    total = sum(table[f"{wheel}.E"] for wheel in WHEELS) + table["E"] + table["W_loss"]
+    wired = AXLE.parts(fmus, scene), AXLE.connections
+    table = simulate(*wired, [*record, *stored], scene.stop, step, exchange, step).whole
+    total = sum(table[".".join(signal)] for signal in stored)
     h = step * (exchange == "derivatives")  # inputs go on straight lines, else they are held
 
     def added(wheel: str, bond: str) -> float:
-        rows = [[column(counted, s)[:-1] for s in signals(wheel, bond, kind)] for kind in KINDS]
+        rows = [[table[".".join(s)][:-1] for s in signals(wheel, bond, kind)] for kind in KINDS]
         (e, f), (e_dot, f_dot), (e_end, f_end) = rows
         received, given = product(e, e + h * e_dot, f, f_end), product(e, e_end, f, f + h * f_dot)
         return step * float((received - given).sum())
@@ -78,17 +76,12 @@ def energy(fmus: dict[str, Path], scene: Manoeuvre, step: float, exchange: str) 
     return Energy(bonds, float(total[-1] - total[0]))
 
 
-def column(table: dict[str, np.ndarray], signal: Signal) -> np.ndarray:
-    """Of a record; those of the axle go by the variable alone."""
-    return table[signal[1] if signal[0] == "axle" else ".".join(signal)]
-
-
 def product(a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray) -> np.ndarray:
     """Mean of the product of two straight lines."""
     return (2 * a0 * b0 + a0 * b1 + a1 * b0 + 2 * a1 * b1) / 6
 
 
-def longest_step(fmus: dict[str, Path], scene: Manoeuvre, exchange: str) -> float:
+def longest_step(fmus: Fmus, scene: Manoeuvre, exchange: str) -> float:
     """Of LIMIT_STEPS, s."""
     truth = rigid(scene, np.arange(int(scene.stop / GRID) + 1) * GRID)
     scene = scene.changed(stop=float(truth["time"][-1]))

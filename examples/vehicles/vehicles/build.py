@@ -1,4 +1,4 @@
-"""The FMUs of the examples: those in C by CMake (../CMakeLists.txt), balance.fmu from Python by pythonfmu."""
+"""The FMUs of the examples: those in C++ by CMake (../CMakeLists.txt), balance.fmu from Python by pythonfmu."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pythonfmu.builder import FmuBuilder
 from .options import EXAMPLES
 
 ROOT = EXAMPLES.parents[1]
-IN_C = ("quarter_car", "axle", "chassis", "driver")
+COMPILED = ("quarter_car", "axle", "chassis", "driver")
 
 
 def wheel_fmu() -> Path:
@@ -27,23 +27,18 @@ def _quietly(*command: str | Path) -> None:
 
 
 def build_c(folder: Path) -> dict[str, Path]:
-    """The FMUs in C, by name; also the C master, folder/master."""
+    """The FMUs in C++, by name; also the C master, folder/master."""
     cache = folder / "CMakeCache.txt"  # it holds absolute paths: of a folder that was moved it is made anew
     moved = cache.exists() and f"CMAKE_HOME_DIRECTORY:INTERNAL={EXAMPLES}\n" not in cache.read_text()
     fresh = ["--fresh"] if moved else []
     _quietly("cmake", *fresh, "-S", EXAMPLES, "-B", folder, f"-DPython3_EXECUTABLE={sys.executable}")
     _quietly("cmake", "--build", folder)
-    return {name: folder / f"{name}.fmu" for name in IN_C}
-
-
-def build_balance(folder: Path) -> Path:
-    """balance.fmu in `folder`, by pythonfmu; it runs in hosts that have a Python interpreter."""
-    fmu = folder / "balance.fmu"
-    FmuBuilder.build_FMU(EXAMPLES / "balance" / "balance.py", dest=fmu, needsExecutionTool="false")
-    return fmu
+    return {name: folder / f"{name}.fmu" for name in COMPILED}
 
 
 def build_all(folder: Path) -> dict[str, Path]:
-    """Every FMU of the examples by name."""
+    """Every FMU of the examples by name; balance.fmu needs a host with a Python interpreter."""
     folder.mkdir(parents=True, exist_ok=True)
-    return {"wheel": wheel_fmu(), **build_c(folder), "balance": build_balance(folder)}
+    balance = folder / "balance.fmu"
+    FmuBuilder.build_FMU(EXAMPLES / "balance" / "balance.py", dest=balance, needsExecutionTool="false")
+    return {"wheel": wheel_fmu(), **build_c(folder), "balance": balance}

@@ -1,4 +1,4 @@
-"""The car's manoeuvres in closed form: a car whose wheels never slip, on stiff bushings.
+"""The car's manoeuvres in closed form, a car whose wheels never slip, on stiff bushings; and what road tests report.
 
 With m all masses, R the wheels' radius, m_t = m + 4 J_z / R^2 (four wheels), L the wheelbase and T the track:
 
@@ -9,6 +9,10 @@ With m all masses, R the wheels' radius, m_t = m + 4 J_z / R^2 (four wheels), L 
 
 I = m_B h_B + 4 (m_w R + J_z / R): masses at their heights, and the wheels' spin that is sped up or turned. As the car
 leans by the roll angle the masses move outwards from the wheels' centres, and the contact points inwards, by r_0 roll.
+
+Characteristic values in the manner of ISO 4138 (constant steer angle, rising speed), ISO 7401 (step input), ISO 3888
+(two changes of lane); steer angles are those of the bicycle's wheel, not of a steering wheel. A table has time, v,
+omega, psi, roll, delta, a_y and beta, and the ground's forces on each wheel.
 """
 
 from __future__ import annotations
@@ -16,22 +20,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid, trapezoid
 
-from .car import J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, X_REAR, G, R
-from .monolithic_car import rise
+from .layout import AXLES, J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, X_REAR, G, R
+from .master import Table
 from .options import Manoeuvre
 
-Table = dict[str, np.ndarray]
 N_WHEELS = len(WHEELS)
 M_T = MASS + N_WHEELS * J_Z / R**2
 H_B, M_B = LAYOUT["chassis"]["h_B"], LAYOUT["chassis"]["m_B"]
 HEIGHTS = M_B * H_B + N_WHEELS * M_WHEEL * R  # kg m
-INERTIA = M_B * H_B + N_WHEELS * (M_WHEEL * R + J_Z / R)  # kg m
+INERTIA = HEIGHTS + N_WHEELS * J_Z / R  # kg m
 LEANING = M_B * (H_B - (R - R_0)) + N_WHEELS * M_WHEEL * R_0  # kg m, about the contact points, per roll angle
-LEFT = [name for name, wheel in WHEELS.items() if wheel["y"] > 0]
-RIGHT = [name for name, wheel in WHEELS.items() if wheel["y"] < 0]
-REAR = [name for name, wheel in WHEELS.items() if wheel["x"] < 0]
-FRONT = [name for name, wheel in WHEELS.items() if wheel["x"] > 0]
+LEFT, RIGHT = ([name for name, wheel in WHEELS.items() if side * wheel["y"] > 0] for side in (1, -1))
+FRONT, REAR = ([name for name, wheel in WHEELS.items() if side * wheel["x"] > 0] for side in (1, -1))
+STRUTS = sum(w["k"] * w["y"] ** 2 for w in WHEELS.values())  # N m/rad, as the bars; wheels stand on the ground
+BARS = sum(w["k_bar"] * (w["y"] - WHEELS[w["bar_to"]]["y"]) ** 2 for w in WHEELS.values() if "bar_to" in w)
+# Roll angle per lateral acceleration, rad s2/m: the chassis leans outwards by its height, the contact inwards.
+ROLL_GRADIENT = INERTIA / (STRUTS + BARS - G * LEANING)
 
 
 @dataclass(frozen=True)
@@ -48,20 +54,45 @@ class Finding:
         """Relative."""
         return abs(self.measured - self.exact) / abs(self.exact)
 
+    def __str__(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        exact = "" if self.exact is None else f" (closed form: {self.exact:.4g})"
+        return f"{self.what}: {self.measured:.4g}{unit}{exact}"
 
-def load(table: Table, wheels: list[str], at: np.ndarray | int) -> float:
-    """Mean normal force of some wheels together over some instants."""
-    return float(np.mean(sum(table[f"{w}.lambda_3"] for w in wheels)[at]))
+
+def force(table: Table, wheels: list[str], k: int = 3) -> np.ndarray:
+    """Force of the ground on some wheels together, along X, Y or the normal."""
+    return sum(table[f"{w}.lambda_{k}"] for w in wheels)
+
+
+def axle_friction(table: Table, axle: str) -> np.ndarray:
+    """Horizontal over normal force of an axle's wheels together: wheels that never slip are redundant across, and only
+    the bushings decide which of them carries the lateral force."""
+    along, across, normal = (force(table, AXLES[axle], k) for k in (1, 2, 3))
+    return np.hypot(along, across) / normal
+
+
+def demand(table: Table) -> dict[str, float]:
+    """Largest friction coefficient that each axle requires: the road on which the manoeuvre would be possible."""
+    return {axle: float(np.nanmax(axle_friction(table, axle))) for axle in AXLES}
+
+
+def worst(table: Table) -> tuple[str, int]:
+    """The axle that requires most of the road, and the row in which it does."""
+    asked = demand(table)
+    axle = max(asked, key=asked.get)
+    return axle, int(np.nanargmax(axle_friction(table, axle)))
+
+
+def gained(table: Table, wheels: list[str], at: np.ndarray) -> float:
+    """Mean normal force of some wheels together over some instants, above that at the start."""
+    normal = force(table, wheels)
+    return float(np.mean(normal[at]) - normal[0])
 
 
 def dive(table: Table, at: np.ndarray) -> float:
     """Moment of the chassis' weight as it pitches about its hubs, N m; positive towards the rear axle."""
     return -M_B * G * (H_B - R) * float(np.mean(table["pitch"][at]))
-
-
-def mean_rate(table: Table, name: str, window: np.ndarray) -> float:
-    """Slope of a straight line through a window."""
-    return float(np.polyfit(table["time"][window], table[name][window], 1)[0])
 
 
 def resistance(manoeuvre: Manoeuvre) -> tuple[float, float]:
@@ -75,59 +106,57 @@ def launch(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     window = (t > off - 1) & (t < off)
     drag, grade = resistance(manoeuvre)
     a = (manoeuvre["M_0"] - drag - R * MASS * grade) / (R * M_T)
-    gained = load(table, REAR, window) - load(table, REAR, 0)
-    expected = (a * INERTIA + drag + grade * HEIGHTS + dive(table, window)) / WHEELBASE
+    moved = (a * INERTIA + drag + grade * HEIGHTS + dive(table, window)) / WHEELBASE
     return [
-        Finding("acceleration of the launch", "m/s2", mean_rate(table, "v", window), a),
-        Finding("load moved to the rear axle by the launch", "N", gained, expected),
+        Finding("acceleration of the launch", "m/s2", float(np.polyfit(t[window], table["v"][window], 1)[0]), a),
+        Finding("load moved to the rear axle by the launch", "N", gained(table, REAR, window), moved),
     ]
 
 
 def standing(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     """A car that its brakes hold on a slope, just before the drive torque comes, and at the end of the run."""
-    t, (_, grade) = table["time"], resistance(manoeuvre)
+    t, (_, grade), found = table["time"], resistance(manoeuvre), []
     window = (t > manoeuvre["t_on"] - 0.1) & (t < manoeuvre["t_on"])
-    found = []
     for at, when in ((window, "by the brakes"), (t > t[-1] - 0.1, "parked")):
-        push = float(np.mean(sum(table[f"{w}.lambda_1"] for w in WHEELS)[at]))
-        moved = load(table, REAR, at) - load(table, REAR, 0)
-        expected = (grade * HEIGHTS + dive(table, at)) / WHEELBASE
+        push = float(np.mean(force(table, list(WHEELS), 1)[at]))
+        moved, what = (grade * HEIGHTS + dive(table, at)) / WHEELBASE, "load moved to the rear axle by the slope"
         found.append(Finding(f"force of the road that holds the car, {when}", "N", push, MASS * grade))
-        found.append(Finding(f"load moved to the rear axle by the slope, {when}", "N", moved, expected))
+        found.append(Finding(f"{what}, {when}", "N", gained(table, REAR, at), moved))
     return found
+
+
+def rise(t: np.ndarray, begin: float, duration: float) -> np.ndarray:
+    """From 0 to 1, with continuous second derivatives, as the driver's programmes."""
+    z = np.clip((t - begin) / duration, 0, 1)
+    return z**3 * (10 - 15 * z + 6 * z**2)
 
 
 def braking(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     """Instant and distance of the stop from the state at t_brake, and the load moved forwards."""
     t, begin, ramp = table["time"], manoeuvre["t_brake"], manoeuvre["ramp_M"]
-    i = int(np.searchsorted(t, begin - 1e-9))
-    fine = begin + np.arange(200001) * 1e-5 * (t[-1] - begin) / 2
-    capacity = np.array([rise(x, begin, ramp) for x in fine]) * manoeuvre["B_0"]
+    i, fine = int(np.searchsorted(t, begin - 1e-9)), np.linspace(begin, t[-1], 200001)
     drag, grade = resistance(manoeuvre)
-    a = (capacity + drag + R * MASS * grade) / (R * M_T)
-    v = table["v"][i] - np.concatenate([[0.0], np.cumsum((a[1:] + a[:-1]) / 2 * np.diff(fine))])
+    a = (rise(fine, begin, ramp) * manoeuvre["B_0"] + drag + R * MASS * grade) / (R * M_T)
+    v = table["v"][i] - cumulative_trapezoid(a, fine, initial=0)
     end = int(np.argmax(v <= 0))
-    way = float(np.sum((v[1 : end + 1] + v[:end]) / 2 * np.diff(fine[: end + 1])))
     full = (t > begin + ramp + 0.5 * (fine[end] - begin - ramp)) & (t < fine[end] - 0.05)
     spins = np.max([np.abs(table[f"{w}.omega_z"]) for w in WHEELS], axis=0)
-    stopped = int(np.argmax((t > begin) & (spins == 0)))
+    stopped, way = int(np.argmax((t > begin) & (spins == 0))), float(trapezoid(v[: end + 1], fine[: end + 1]))
     found = [
         Finding("instant of the stop after the brakes come", "s", float(t[stopped] - begin), float(fine[end] - begin)),
         Finding("stopping distance", "m", float(table["X"][-1] - table["X"][i]), way),
     ]
     if full.any():
-        moved = load(table, FRONT, full) - load(table, FRONT, 0)
-        expected = (a[-1] * INERTIA - drag - grade * HEIGHTS - dive(table, full)) / WHEELBASE
-        found.append(Finding("load moved to the front axle by the brakes", "N", moved, expected))
+        moved = (a[-1] * INERTIA - drag - grade * HEIGHTS - dive(table, full)) / WHEELBASE
+        found.append(Finding("load moved to the front axle by the brakes", "N", gained(table, FRONT, full), moved))
     return found
 
 
 def bend(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     """Steady state at the end of a run with a constant steer angle."""
     last = table["time"] > table["time"][-1] - 0.5
-    delta, v = float(np.mean(table["delta"][last])), float(np.mean(table["v"][last]))
-    omega, roll = float(np.mean(table["omega"][last])), float(np.mean(table["roll"][last]))
-    moved = (load(table, RIGHT, last) - load(table, LEFT, last)) / 2
+    delta, v, omega, roll = (float(np.mean(table[name][last])) for name in ("delta", "v", "omega", "roll"))
+    moved = float(np.mean((force(table, RIGHT) - force(table, LEFT))[last])) / 2
     exact = (v * omega * INERTIA + G * LEANING * roll) / TRACK
     return [
         Finding("radius of the rear point's circle", "m", v / omega, WHEELBASE / np.tan(delta)),
@@ -145,14 +174,6 @@ def _ackermann(table: Table, at: np.ndarray) -> tuple[float, float]:
     return 1 / np.tan(turned[1]) - 1 / np.tan(turned[0]), apart / (x - X_REAR)
 
 
-def understeer(table: Table) -> float:
-    """Understeer gradient d(delta - atan(L kappa)) / d a_y in rad s2/m, over the run's part with a constant angle."""
-    steady = table["time"] > 4.0
-    kappa = table["omega"][steady] / table["v"][steady]
-    a = table["omega"][steady] * table["v"][steady]
-    return float(np.polyfit(a, table["delta"][steady] - np.arctan(WHEELBASE * kappa), 1)[0])
-
-
 def closure(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     """The figure of eight after one lap: distance of the rear point from its start beside the way driven."""
     p = table["p"]
@@ -162,9 +183,85 @@ def closure(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     return [Finding("figure of eight: gap after one lap, and its length", "m", gap, way)]
 
 
+def circle(table: Table) -> list[Finding]:
+    """Gradients over lateral acceleration while the speed rises at a constant steer angle; the sideslip angle beside
+    that of a rear axle without any."""
+    steady = (table["time"] > 5.0) & (table["time"] < 22.0)
+    a, kappa, delta, beta, roll = (
+        x[steady] for x in (table["a_y"], table["omega"] / table["v"], *(table[n] for n in ("delta", "beta", "roll")))
+    )
+
+    def gradient(of: str, unit: str, y: np.ndarray, exact: float = 0.0) -> Finding:
+        return Finding(of, unit, float(np.polyfit(a, y, 1)[0]), exact)
+
+    drift = float(np.arctan(-X_REAR * np.tan(delta[0]) / WHEELBASE))
+    return [
+        Finding("largest lateral acceleration", "m/s2", float(a.max())),
+        gradient("understeer gradient", "rad s2/m", delta - np.arctan(WHEELBASE * kappa)),
+        gradient("gradient of the curvature", "s2/m2", kappa),
+        Finding("sideslip angle where the speed is least", "rad", float(beta[0]), drift),
+        gradient("gradient of the sideslip angle", "rad s2/m", beta),
+        gradient("gradient of the roll angle", "rad s2/m", roll, ROLL_GRADIENT),
+    ]
+
+
+def _first(t: np.ndarray, x: np.ndarray, level: float) -> float:
+    """When a rising signal first reaches a level, between samples by a straight line."""
+    i = int(np.argmax(x >= level))
+    return float(t[i - 1] + (level - x[i - 1]) / (x[i] - x[i - 1]) * (t[i] - t[i - 1]))
+
+
+def step(table: Table) -> list[Finding]:
+    """Response times from the instant at which the steering has gone half its way, overshoot and gains."""
+    t, last = table["time"], table["time"] > table["time"][-1] - 0.5
+    end = {name: float(np.mean(table[name][last])) for name in ("delta", "v", "omega", "a_y", "roll")}
+    half, tenth, most = (_first(t, table["delta"], share * end["delta"]) for share in (0.5, 0.1, 0.9))
+    yaw = end["v"] * np.tan(end["delta"]) / WHEELBASE
+    found = [Finding("time of the steer angle from 10 to 90 %", "s", most - tenth)]
+    for name, what, unit, theory in (
+        ("omega", "yaw rate", "1/s", yaw),
+        ("a_y", "lateral acceleration", "m/s2/rad", end["v"] * yaw),
+        ("roll", "roll angle", "1", ROLL_GRADIENT * end["v"] * yaw),
+    ):
+        x, level = table[name], end[name]
+        peak = int(np.argmax(x))
+        found += [
+            Finding(f"gain of the {what}", unit, level / end["delta"], float(theory / end["delta"])),
+            Finding(f"response time of the {what} (90 %)", "s", _first(t, x, 0.9 * level) - half),
+            Finding(f"time to the peak of the {what}", "s", float(t[peak]) - half),
+            Finding(f"overshoot of the {what}", "1", float(x[peak]) / level - 1),
+        ]
+    return found
+
+
+def lane(table: Table) -> list[Finding]:
+    """How hard the change of lanes is, and where it asks most of the road."""
+    axle, at = worst(table)
+    largest = {name: float(np.abs(table[name]).max()) for name in ("a_y", "omega", "roll")}
+    return [
+        Finding("largest lateral acceleration", "m/s2", largest["a_y"]),
+        Finding("largest yaw rate", "rad/s", largest["omega"]),
+        Finding("largest roll angle", "rad", largest["roll"]),
+        Finding(f"largest friction required, at the {axle} axle", "1", float(axle_friction(table, axle)[at])),
+        Finding("where: rear point, X", "m", float(table["X_R"][at])),
+        Finding("when", "s", float(table["time"][at])),
+    ]
+
+
+FIGURES = {f.__name__: f for f in (circle, step, lane)}
 JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure)}
 
 
 def judge(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     """All findings of a manoeuvre."""
     return [finding for name in manoeuvre.judges for finding in JUDGES[name](table, manoeuvre)]
+
+
+def findings(table: Table, manoeuvre: Manoeuvre) -> list[str]:
+    """Characteristic values of a manoeuvre, beside those of rigid links where these are known."""
+    with np.errstate(all="ignore"):
+        try:
+            figures = FIGURES[manoeuvre.figures](table) if manoeuvre.figures else []
+            return [f"  {finding}" for finding in [*judge(table, manoeuvre), *figures]]
+        except (ValueError, IndexError, TypeError, np.linalg.LinAlgError):
+            return ["The closed forms do not apply to these parameters."]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from ctypes import byref, c_double
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,25 +17,18 @@ LAST_SUCCESSFUL = 2  # fmi2StatusKind
 
 
 class Ended(Exception):  # noqa: N818 - an ending, such as a wheel's lift-off, is no error
-    """A component ended the run. `component`, `time` [s], `sentence`: the FMU's message."""
+    """A component ended the run. `component`, `time` [s], `message`: the FMU's."""
 
-    def __init__(self, component: str, time: float, sentence: str) -> None:
-        super().__init__(f"{component}: {sentence}")
-        self.component, self.time, self.sentence = component, time, sentence
-
-
-def sentence(end: Ended, names: dict[str, str]) -> str:
-    """Which component ended the run, and when; `names`: of the wheels."""
-    who = f"{names[end.component]} wheel" if end.component in names else end.component
-    return f"The {who} ended the run at t = {end.time:.3f} s: {end.sentence}"
+    def __init__(self, component: str, time: float, message: str) -> None:
+        super().__init__(f"{component}: {message}")
+        self.component, self.time, self.message = component, time, message
 
 
 def let_go_of_python(fmu: FMU2Slave) -> None:
     """For FMUs of pythonfmu 0.7.0, whose library keeps a shared pointer to its interpreter. When the process ends, the
     pointer's destructor and then the library's own each release it: the second writes into freed memory. Released here,
     it is empty by then; the instance keeps a separate pointer."""
-    release = getattr(fmu.dll, "finalizePythonInterpreter", None)
-    if release:
+    if release := getattr(fmu.dll, "finalizePythonInterpreter", None):
         release()
 
 
@@ -54,10 +47,8 @@ class Component:
         self.description = read_model_description(self.folder)
         self.variable = {v.name: v for v in self.description.modelVariables}
         self.references(self.start)  # a name that does not exist
-        self.fmu = FMU2Slave(
-            **{"guid": self.description.guid, "unzipDirectory": self.folder, "instanceName": self.name},
-            modelIdentifier=self.description.coSimulation.modelIdentifier,
-        )
+        of = {"guid": self.description.guid, "modelIdentifier": self.description.coSimulation.modelIdentifier}
+        self.fmu = FMU2Slave(unzipDirectory=self.folder, instanceName=self.name, **of)
         callbacks = fmi2CallbackFunctions()  # fmpy's own logger serves one instance per process
         callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
         self.fmu.instantiate(callbacks=callbacks)
@@ -65,14 +56,14 @@ class Component:
         self.asked(apply_start_values, self.fmu, self.description, self.start)
         self.asked(self.fmu.enterInitializationMode)
 
-    def asked(self, function, *arguments: object) -> None:
+    def asked(self, function: Callable, *arguments: object) -> None:
         """Calls a function of the FMU; where it refuses, a ValueError with its last message."""
         try:
             function(*arguments)
         except FMICallException as refusal:
-            raise ValueError(f"{self.name}: {self.last_words(str(refusal))}") from refusal
+            raise ValueError(f"{self.name}: {self.last_message(str(refusal))}") from refusal
 
-    def last_words(self, otherwise: str) -> str:
+    def last_message(self, otherwise: str) -> str:
         """FMI 2.0 doubles the characters % and # of a message."""
         return self.log[-1].replace("%%", "%").replace("##", "#") if self.log else otherwise
 
@@ -85,20 +76,18 @@ class Component:
 
     def references(self, names: Iterable[str]) -> list[int]:
         """Value references of variables."""
-        for name in names:
-            if name not in self.variable:
-                raise ValueError(f"{self.name} has no variable {name}.")
+        if unknown := [name for name in names if name not in self.variable]:
+            raise ValueError(f"{self.name} has no variable {unknown[0]}.")
         return [self.variable[name].valueReference for name in names]
 
     def feeds(self, output: str) -> list[str]:
         """Inputs on which an output depends directly; undeclared dependencies mean all."""
-        unknown = [u for u in self.description.outputs if u.variable.name == output]
-        if not unknown or unknown[0].dependencies is None:
-            return [v.name for v in self.description.modelVariables if v.causality == "input"]
-        return [v.name for v in unknown[0].dependencies]
+        declared = {u.variable.name: u.dependencies for u in self.description.outputs}.get(output)
+        inputs = [v for v in self.description.modelVariables if v.causality == "input"]
+        return [v.name for v in (inputs if declared is None else declared)]
 
     def ended(self, t: float) -> Ended:
         """How it ended the run in a step from t on."""
         last = c_double(t)
         self.fmu.dll.fmi2GetRealStatus(self.fmu.component, LAST_SUCCESSFUL, byref(last))
-        return Ended(self.name, last.value, self.last_words("it refused a call"))
+        return Ended(self.name, last.value, self.last_message("it refused a call"))

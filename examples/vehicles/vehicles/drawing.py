@@ -12,7 +12,9 @@ from matplotlib.axes import Axes
 from diagrams import style
 
 from .errors import Errors
+from .master import Table
 from .options import Manoeuvre
+from .vehicle import Vehicle
 
 COLOURS = (style.BLUE, style.VERMILLION, style.SKY, style.ORANGE, style.PURPLE, style.GREY)
 MARKS = {
@@ -24,58 +26,47 @@ MARKS = {
 DASHES = ("-", "--", ":", "-.")  # a curve that has the values of the one before is seen through its gaps
 GUIDES = {1: (0, (4, 2)), 2: (0, (1, 1))}  # lines of an order
 SCALES = {"deg": 180 / np.pi, "deg/s": 180 / np.pi, "km/h": 3.6, "kN": 1e-3, "mm": 1e3}  # of a label's unit
-Table = dict[str, np.ndarray]
+ABOVE = {"loc": "lower left", "bbox_to_anchor": (0, 0.98)}  # the axes
 Tracks = dict[str, tuple[np.ndarray, ...]]
 
 
 def draw(
-    manoeuvre: Manoeuvre,
-    table: Table,
-    names: dict[str, str],
-    tracks: Tracks,
-    path: Path,
-    title: str,
-    errors: Errors | None,
+    vehicle: Vehicle, manoeuvre: Manoeuvre, table: Table, path: Path, remark: str = "", errors: Errors | None = None
 ) -> Path:
-    """The manoeuvre's plot: "path", and panels [label [unit], column...]; *.NAME is a column per wheel of `names`,
-    %.NAME per axle, "NAME: TEXT" a column with its text."""
+    """The manoeuvre's plot: "path", and panels [label [unit], column...]; *.NAME is a column per wheel, %.NAME per
+    axle, "NAME: TEXT" a column with its text."""
     style.use_style()
     panels = {n: panel for n, panel in enumerate(manoeuvre.plot) if panel != "path"}
     cells = [*panels, *(["errors"] if errors else []), "."]
     rows = [*([["path"] * 2] if len(panels) < len(manoeuvre.plot) else []), *zip(cells[::2], cells[1::2], strict=False)]
     fig = style.figure_mm(style.PAGE, 6 + 50 * len(rows))
     fig.set_layout_engine("constrained", h_pad=0.06, wspace=0.06)
+    title = f"{manoeuvre.vehicle.capitalize()}: {manoeuvre.title}{vehicle.subtitle(manoeuvre)}{remark}"
     fig.suptitle(title, fontsize=9)
     for cell, ax in fig.subplot_mosaic([list(row) for row in rows]).items():
         if cell == "path":
-            draw_path(ax, table, names, tracks)
+            draw_path(ax, table, vehicle.wheels, vehicle.tracks(table))
         elif cell == "errors":
             draw_errors(ax, errors)
-            ax.legend(loc="lower left", bbox_to_anchor=(0, 0.98), ncols=3)
+            ax.legend(**ABOVE, ncols=3)
         else:
-            draw_panel(ax, table, *panels[cell], names=names)
+            draw_panel(ax, table, *panels[cell], names=vehicle.wheels)
     return style.save_png(fig, path)
 
 
 def draw_panel(ax: Axes, table: Table, label: str, *wanted: str, names: dict[str, str]) -> None:
     """Curves over time; the unit at the label's end scales them."""
     scale = SCALES.get(label.split("[")[-1].rstrip("]"), 1.0)
-    known = {
-        "*": names,
-        "%": {n.removesuffix(".mu"): f"{n.removesuffix('.mu')} axle" for n in table if n.endswith(".mu")},
-    }
-    curves = {}
+    axles = [name.removesuffix(".mu") for name in table if name.endswith(".mu")]
+    known, curves = {"*": names, "%": {axle: f"{axle} axle" for axle in axles}}, {}
     for column, _, text in (entry.partition(": ") for entry in wanted):
         first, _, name = column.partition(".")
-        of = {f"{key}.{name}": text for key, text in known.get(first, {}).items()}
-        curves |= of or {column: text or column}
+        curves |= {f"{key}.{name}": of for key, of in known.get(first, {}).items()} or {column: text or column}
     for (column, text), colour, dashes in zip(curves.items(), cycle(COLOURS), cycle(DASHES), strict=False):
         if column in table:
             ax.plot(table["time"], scale * table[column], color=colour, linestyle=dashes, label=text)
     if len(ax.lines) > 1:
-        ax.legend(
-            loc="lower left", bbox_to_anchor=(0, 0.98), ncols=4, borderaxespad=0.2, columnspacing=0.8, handlelength=1.5
-        )
+        ax.legend(**ABOVE, ncols=4, borderaxespad=0.2, columnspacing=0.8, handlelength=1.5)
     ax.ticklabel_format(axis="y", useOffset=False)
     ax.set(xlabel="time [s]", ylabel=label)
 
@@ -84,27 +75,22 @@ def draw_path(ax: Axes, table: Table, names: dict[str, str], tracks: Tracks) -> 
     """Tracks of the wheels' centres, and the wheels themselves a few times, 0.7 m long, along their headings. A path
     that would be a thin strip is stretched across, and the label names the factor."""
     at = np.unique(np.linspace(0, len(table["time"]) - 1, 9).astype(int))
-    paths = {text: (table[f"{w}.X_O"], table[f"{w}.Y_O"]) for w, text in names.items()} | tracks
     for wheel in names:
-        psi = table[f"{wheel}.psi"][at]
-        x, y = (
-            table[f"{wheel}.{n}"][at] + 0.35 * np.outer([-1, 1], f(psi)) for n, f in (("X_O", np.cos), ("Y_O", np.sin))
-        )
-        ax.plot(x, y, color=style.INK, linewidth=1.6, alpha=0.45, zorder=1, solid_capstyle="round")
+        x, y, psi = (table[f"{wheel}.{name}"][at] for name in ("X_O", "Y_O", "psi"))
+        centre, half = np.stack([x, y]), 0.35 * np.stack([np.cos(psi), np.sin(psi)])
+        ends = np.stack([centre - half, centre + half])  # (end, axis, instant)
+        ax.plot(ends[:, 0], ends[:, 1], color=style.INK, linewidth=1.6, alpha=0.45, zorder=1, solid_capstyle="round")
+    paths = {text: (table[f"{w}.X_O"], table[f"{w}.Y_O"]) for w, text in names.items()} | tracks
     for (text, (x, y)), colour, dashes in zip(paths.items(), cycle(COLOURS), cycle(DASHES[:2]), strict=False):
         ax.plot(x, y, color=colour, linewidth=0.9, linestyle=dashes, label=text, zorder=2)
-    spans = [
-        max(float(np.nanmax(v) - np.nanmin(v)), 0.1)
-        for v in (np.concatenate(p) for p in zip(*paths.values(), strict=True))
-    ]
-    stretch, across = (42 / spans[1]) / (162 / spans[0]), "Y [m]"
+    along, across = (max(float(np.nanmax(v) - np.nanmin(v)), 0.1) for v in np.hstack(list(paths.values())))
+    stretch = (42 / across) / (162 / along)
     if stretch > 2.5:
         ax.margins(0.02, 0.08)
-        across = f"Y [m], stretched {stretch:.0f} times"
     else:
         ax.set_aspect("equal", adjustable="datalim")
-    ax.legend(loc="lower left", bbox_to_anchor=(0, 0.98), ncols=6, borderaxespad=0.2)
-    ax.set(xlabel="X [m]", ylabel=across)
+    ax.legend(**ABOVE, ncols=6, borderaxespad=0.2)
+    ax.set(xlabel="X [m]", ylabel=f"Y [m], stretched {stretch:.0f} times" if stretch > 2.5 else "Y [m]")
 
 
 def draw_orders(errors: dict[str, Errors], path: Path) -> Path:

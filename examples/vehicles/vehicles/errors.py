@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 
 import numpy as np
 
@@ -38,13 +39,11 @@ def orders(steps: Sequence[float], errors: Sequence[float]) -> list[float]:
 
 def longest(steps: Sequence[float], error: Callable[[float], float]) -> float:
     """The longest of rising steps up to which a run neither ends early nor strays beyond 10 % of the range, s."""
-    found = 0.0
-    for h in steps:
+
+    def fits(h: float) -> bool:
         try:
-            near = error(h) < 0.1
+            return error(h) < 0.1
         except Ended:
-            break
-        if not near:
-            break
-        found = h
-    return found
+            return False
+
+    return max(takewhile(fits, steps), default=0.0)

@@ -8,7 +8,7 @@ dependencies in the model descriptions allow, and then all FMUs step alone. Over
     rollback     parabolas whose second derivatives are predicted from the last step; the step is undone, and taken
                  again on the cubics through the values and first derivatives at both ends
 
-Loading, order and initialization are here; the loop over the steps is in C (../master).
+Loading, order, initialization and records are here; the loop over the steps between two records is in C (../master).
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from ctypes import c_void_p, cast
 from dataclasses import dataclass, field
 from functools import cache
 from graphlib import TopologicalSorter
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -31,47 +30,41 @@ from .options import EXCHANGES
 
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
-KINDS = ("value", "rate", "at_end")  # of a record, as in master.h
+Table = dict[str, np.ndarray]
 FUNCTIONS = {
     **{"get": "GetReal", "set": "SetReal", "rates": "GetRealOutputDerivatives", "set_rates": "SetRealInputDerivatives"},
     **{"step": "DoStep", "keep": "GetFMUstate", "restore": "SetFMUstate", "forget": "FreeFMUstate"},
 }
 HEADER = Path(__file__).resolve().parents[1] / "master" / "master.h"
-PIECES = 100  # of a run, between which the progress is shown and Ctrl-C is heard
 ffi = FFI()
 
 
 @cache
 def library(folder: Path):
     """The loop in C, with the declarations of its header."""
-    text = HEADER.read_text()
     types = "".join(f"typedef void fmi2{name}TYPE;" for name in FUNCTIONS.values())
-    types += "typedef void* fmi2Component; typedef unsigned fmi2ValueReference;"
-    declared = "\n".join(line for line in text.splitlines() if not line.startswith("#")).replace("MASTER_API", "")
+    types += "typedef void *fmi2Component, *fmi2FMUstate; typedef unsigned fmi2ValueReference;"
+    declared = "\n".join(line for line in HEADER.read_text().splitlines() if not line.startswith("#"))
     ffi.cdef(types + declared, override=True)
     return ffi.dlopen(str(folder / f"master{sharedLibraryExtension}"))
 
 
 class Master:
-    """Components and connections [(source, output), (sink, input)], stepped together by the loop in C: in `folder`, or
-    beside one of the FMUs."""
+    """Components and connections [(source, output), (sink, input)], stepped together by the loop in C, which is beside
+    one of the FMUs."""
 
-    def __init__(
-        self, components: list[Component], connections: Iterable[Connection], folder: Path | None = None
-    ) -> None:
+    def __init__(self, components: list[Component], connections: Iterable[Connection]) -> None:
         self.components = {c.name: c for c in components}
-        self.places = {name: place for place, name in enumerate(self.components)}
         self.source_of = {sink: source for source, sink in connections}
-        self.loop, self.loaded = None, []
+        self.loop, self.rows, self.owned = None, [], []
         try:
             for component in components:
-                self.loaded.append(component)
                 component.load()
             self.levels = self._order()
         except BaseException:
             self.__exit__()
             raise
-        folders = [folder] if folder else [c.path.parent for c in components]
+        folders = [c.path.parent for c in components]
         self.c = library(next(f for f in folders if (f / f"master{sharedLibraryExtension}").exists()))
 
     def __enter__(self) -> Master:
@@ -80,8 +73,7 @@ class Master:
     def __exit__(self, *_: object) -> None:
         if self.loop:
             self.c.master_free(self.loop)
-        self.loop = None
-        for component in self.loaded:
+        for component in self.components.values():
             component.free()
 
     def _order(self) -> list[list[Signal]]:
@@ -97,31 +89,33 @@ class Master:
             sorter.done(*levels[-1])
         return levels
 
-    def _prepare(self, exchange: str, reject: bool, record: list[Signal]) -> None:
-        """Hands components, transfers and records to the loop."""
-        self.loop, room = self.c.master_new(EXCHANGES.index(exchange), reject), []
-        for component in self.components.values():
-            dll = component.fmu.dll
-            functions = {key: address(getattr(dll, f"fmi2{name}")) for key, name in FUNCTIONS.items()}
-            instance = ffi.cast("void *", component.fmu.component)
-            room.append(self.c.master_component(self.loop, instance, ffi.new("Functions *", functions)))
+    def _own(self, kind: str, values: object) -> object:
+        """Memory of the loop, as long as this master."""
+        self.owned.append(ffi.new(kind, values))
+        return self.owned[-1]
+
+    def _prepare(self, exchange: int) -> None:
+        """Fills the loop's tables of components, transfers and signals."""
         number = {signal: k for k, signal in enumerate(signal for level in self.levels for signal in level)}
+        transfers = []
         for level in self.levels:
             sinks = [(sink, source) for sink, source in self.source_of.items() if source in level]
             for reads, ends in ((1, [(source, source) for source in level]), (0, sinks)):
-                for name, component in self.components.items():
+                for place, (name, component) in enumerate(self.components.items()):
                     of = [(variable, number[source]) for (owner, variable), source in ends if owner == name]
-                    if of:
-                        variables, signals = component.references([v for v, _ in of]), [k for _, k in of]
-                        place = self.places[name]
-                        room.append(self.c.master_transfer(self.loop, place, reads, len(of), variables, signals))
-        for name, variable in record:
-            *kind, variable = variable.split()
-            reference = self.components[name].references([variable])[0]
-            which = KINDS.index(kind[0] if kind else "value")
-            room.append(self.c.master_record(self.loop, self.places[name], reference, which))
-        if not all(room):
-            raise ValueError("The system has more components, signals or records than master/master.c has room for.")
+                    variables = self._own("unsigned[]", component.references([v for v, _ in of]))
+                    signals = self._own("int[]", [k for _, k in of])
+                    transfers += [(place, reads, len(of), variables, signals)] * bool(of)
+        components = [
+            {key: address(getattr(c.fmu.dll, f"fmi2{name}")) for key, name in FUNCTIONS.items()}
+            | {"instance": ffi.cast("void *", c.fmu.component)}
+            for c in self.components.values()
+        ]
+        counts = {"components": len(components), "transfers": len(transfers), "signals": len(number)}
+        tables = {"component": self._own("Component[]", components), "transfer": self._own("Transfer[]", transfers)}
+        names = ("value", "rate", "begin_value", "begin_rate", "second", "third")
+        arrays = {name: self._own("double[]", len(number)) for name in names}
+        self.loop = self._own("Master *", {"exchange": exchange, **counts, **tables, **arrays})
 
     def run(
         self,
@@ -130,94 +124,108 @@ class Master:
         record: list[Signal],
         exchange: str = "held",
         every: int = 1,
-        reject: bool = False,
         progress: bool = False,
         act: Callable[[float], None] | None = None,
     ) -> np.ndarray:
         """Simulate from 0 to `stop`; a record array of time and "component.variable", every `every` steps.
 
         act(t) is called after the exchange at every communication point and may set inputs that are not connected.
-        reject: every step is taken, undone from a snapshot, and taken again, as an error-controlled master may do.
         A variable after "rate " or "at_end " is its derivative, or its value at the end of the step that begins there.
         Raises component.Ended; what was recorded until then is `self.table()`.
         """
-        self._prepare(exchange, reject, record)
+        self._prepare(EXCHANGES.index(exchange))
         self.names = ["time", *(f"{c}.{v}" for c, v in record)]
-        count = round(stop / step)
-        self.rows = np.full((count // every + 1, len(self.names)), np.nan)
-        self.spent = np.zeros((count + 1, len(self.components) + 1))
-        if not self.c.master_exchange(self.loop, 0):
-            raise self._refusal(0.0)
+        count, pace = round(stop / step), 1 if act else every
+        self.places: dict[Signal, dict[int, int]] = {}  # value references by column, by component and kind
+        for place, (name, variable) in enumerate(record, 1):
+            *kind, variable = variable.split()
+            (reference,) = self.components[name].references([variable])
+            self.places.setdefault((name, *(kind or ["value"])), {})[place] = reference
+        self.spent = np.zeros((count, len(self.components) + 1))
+        spent = ffi.from_buffer("double[]", self.spent)
+        self._exchange(0.0, with_rates=False)
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
-        rows, spent = (ffi.from_buffer("double[]", x) for x in (self.rows, self.spent))
-        pieces = np.unique(np.linspace(0, count, (count if act else PIECES) + 1).astype(int)).tolist()
-        for begin, end in tqdm([(0, 0), *pairwise(pieces)], disable=not progress, leave=False):
-            if act and end:
+        for begin in tqdm(range(0, count + 1, pace), disable=not progress, leave=False):
+            self._exchange(begin * step, exchange != "held")
+            if begin % every == 0:
+                self.rows.append(np.full(len(self.names), begin * step))
+                self._read("value", "rate")
+            if act and begin < count:
                 act(begin * step)
-            done = self.c.master_run(self.loop, step, begin, end, every, rows, spent)
+            end = min(count, begin + pace)
+            done = self.c.master_run(self.loop, step, begin, end, spent)
             if done < end:
                 raise self._refusal(done * step)
+            self._read("at_end")
         return self.table()
 
+    def _read(self, *kinds: str) -> None:
+        """Fills the columns of these kinds in the last row."""
+        for (name, kind), columns in self.places.items():
+            if kind in kinds:
+                fmu, references = self.components[name].fmu, list(columns.values())
+                rates = kind == "rate" and fmu.getRealOutputDerivatives(references, [1] * len(references))
+                self.rows[-1][list(columns)] = rates or fmu.getReal(references)
+
+    def _exchange(self, t: float, with_rates: bool) -> None:
+        if not self.c.master_exchange(self.loop, with_rates):
+            raise self._refusal(t)
+
     def _refusal(self, t: float) -> Ended:
-        return list(self.components.values())[self.c.master_refused(self.loop)].ended(t)
+        return list(self.components.values())[self.loop.refused].ended(t)
 
     def table(self) -> np.ndarray:
         """The records."""
-        known = self.rows[np.isfinite(self.rows[:, 0])]
-        return known.view([(name, float) for name in self.names])[:, 0]
+        return np.array(self.rows).view([(name, float) for name in self.names])[:, 0]
 
     def cost(self) -> dict[str, float]:
         """Medians over the steps in microseconds: of all, of the exchange, and of each component."""
-        total, *each = np.median(self.spent[:-1], axis=0)
-        exchange = float(np.median(self.spent[:-1, 0] - self.spent[:-1, 1:].sum(axis=1)))
+        total, *each = np.median(self.spent, axis=0)
+        exchange = float(np.median(self.spent[:, 0] - self.spent[:, 1:].sum(axis=1)))
         return {"total": float(total), "exchange": exchange, **dict(zip(self.components, each, strict=True))}
 
 
-def address(function) -> object:
+def address(function: Callable) -> object:
     """Of a C function that ctypes loaded, for cffi."""
     return ffi.cast("void *", cast(function, c_void_p).value)
-
-
-@dataclass(frozen=True)
-class System:
-    """FMUs and their connections; columns of the components in `bare` go by the variable's name alone."""
-
-    name: str
-    components: list[Component]
-    connections: list[Connection]
-    step: float  # s
-    stop: float  # s
-    bare: tuple[str, ...] = ()
-    folder: Path | None = None  # of the loop in C, where it is not beside one of the FMUs
 
 
 @dataclass(frozen=True)
 class Run:
     """Columns "component.variable" on a grid; how it ended, if early; microseconds per step, as Master.cost has it."""
 
-    table: dict[str, np.ndarray]
+    table: Table
     ending: Ended | None = None
     cost: dict[str, float] = field(default_factory=dict)
 
+    @property
+    def whole(self) -> Table:
+        """The table of a run that reached its end; raises Ended for another."""
+        if self.ending:
+            raise self.ending
+        return self.table
 
-def simulate(system: System, record: list[Signal], exchange: str, grid: float, **how: bool) -> Run:
-    """The system to its stop, or to where a component ends the run; recorded every `grid`, or every step."""
+
+def simulate(
+    components: list[Component],
+    connections: list[Connection],
+    record: list[Signal],
+    stop: float,
+    step: float,
+    exchange: str,
+    grid: float,
+    bare: tuple[str, ...] = (),
+    **how: bool,
+) -> Run:
+    """To `stop`, or to where a component ends the run; recorded every `grid`, or every step. Columns of the components
+    in `bare` go by the variable's name alone."""
     ending = None
-    with Master(system.components, system.connections, system.folder) as master:
+    with Master(components, connections) as master:
         try:
-            every = max(1, round(grid / system.step))
-            master.run(system.stop, system.step, record, exchange, every, **how)
+            master.run(stop, step, record, exchange, max(1, round(grid / step)), **how)
         except Ended as end:
             ending = end
         rows, cost = master.table(), master.cost()
-    names = {n: n.split(".")[-1] if n.split(".")[0] in system.bare else n for n in rows.dtype.names}
+    names = {n: n.split(".")[-1] if n.split(".")[0] in bare else n for n in rows.dtype.names}
     return Run({short: rows[name] for name, short in names.items()}, ending, cost)
-
-
-def whole(run: Run) -> dict[str, np.ndarray]:
-    """The table of a run that reached its end; raises Ended for another."""
-    if run.ending:
-        raise run.ending
-    return run.table

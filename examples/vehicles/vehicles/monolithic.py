@@ -1,96 +1,185 @@
-"""Wheel and quarter car as one set of equations, integrated by SciPy: the yardstick of the coupled run.
+"""Bodies on wheels that roll without slip, as one set of equations, integrated by SciPy: the independent check of the
+coupled vehicles. Fixed axes, no angles, SI, Z up.
 
-The wheel is rolling_wheels.py, the quarter car is written again from its equations (quarter_car.c); the FMUs give
-nothing but the start values of their tables. Fixed axes, SI units.
+Each wheel is its centre O, the unit vector a along its axle and its angular velocity w; all arrays are (wheels, 3).
+With u = (Z - (Z a) a) / |...| the contact point is O - rho, rho = r_0 u + r Z, and no slip means v_O = w x rho. Newton
+gives the ground's force lambda, Euler about O, with J = J_x 1 + (J_z - J_x) a a^T,
 
-State: position and velocity of the sprung mass B; the wheel's centre O, axle a and angular velocity w.
+    (J + m (rho^2 1 - rho rho^T)) w' = M + tau a - (J_z - J_x)(a w) (w x a) - rho x (m w x rho' - F - m g)
+
+Here g is the vector of gravity. tau, the moment of rolling friction and brake about the axle, follows from the law:
+rolling with sign sigma of a w it is -sigma (s N + B), held it is what keeps a w at zero. None of this shares code or
+formulation with the FMUs.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from reference.model import Wheel
 from scipy.integrate import solve_ivp
 
-from .options import starts
-from .rolling_wheels import Answer, Law, cross, lever, respond
+Z = np.array([0.0, 0.0, 1.0])
 
-TOLERANCE = 1e-11  # relative, of each step: the solution is then good to about 1e-9
-CAR = starts("quarter_car")
-K, C = (np.array([CAR[f"{name}_h"], CAR[f"{name}_h"], CAR[f"{name}_v"]]) for name in "kc")
-UP = np.array([0.0, 0.0, 1.0])
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Row by row; much quicker than numpy's for few rows."""
+    return a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]]
+
+
+def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Row by row, as a column."""
+    return (a * b).sum(axis=-1, keepdims=True)
 
 
 @dataclass(frozen=True)
-class Phase:
-    """From `begin` on [s]. Until the motor pulls, the friction holds the wheel; then it rolls forward."""
+class Load:
+    """Force and moment on each wheel (wheels, 3), and the capacity of its brake (wheels,)."""
 
-    wheel: Wheel
-    begin: float
-    coupled: bool
-    driven: bool
-
-    def load(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Force and moment on the wheel."""
-        r, v, centre, a, w = y.reshape(5, 3)
-        motor = CAR["M_drive"] * self.driven * a
-        if not self.coupled:
-            return np.zeros(3), motor
-        v_O = cross(w, lever(self.wheel, a[None], w[None])[0][0])
-        psi, theta, psi_dot, theta_dot = attitude(a, w)
-        e1 = np.array([np.cos(psi), np.sin(psi), 0.0])
-        M_1 = -CAR["k_theta"] * (theta - CAR["theta_0"]) - CAR["c_theta"] * theta_dot
-        M_2 = -CAR["k_psi"] * (psi - CAR["psi_0"]) - CAR["c_psi"] * psi_dot
-        return K * (r - centre - CAR["l_0"] * UP) + C * (v - v_O), motor + M_1 * e1 + M_2 * cross(a, e1)
-
-    def answer(self, y: np.ndarray) -> tuple[np.ndarray, Answer]:
-        """The force of the links on the wheel, and what the wheel does."""
-        F, M = self.load(y)
-        law = Law(np.array([-1.0 * self.driven]), np.zeros(1))
-        return F, respond(self.wheel, y[None, 9:12], y[None, 12:], (F[None], M[None]), law)
-
-    def rate(self, _t: float, y: np.ndarray) -> np.ndarray:
-        """dy/dt of wheel and sprung mass."""
-        _, v, _, a, w = y.reshape(5, 3)
-        F, wheel = self.answer(y)
-        body = self.coupled * np.concatenate([v, -F / CAR["m_B"] - CAR["g"] * UP])
-        return np.concatenate([body, wheel.v[0], cross(w, a), wheel.w_dot[0]])
-
-    def columns(self, t: float, y: np.ndarray) -> dict[str, float]:
-        """What is compared, at one instant; refuses a wheel for which the phase's branch of the friction is wrong."""
-        r, _, centre, a, w = y.reshape(5, 3)
-        psi, theta, psi_dot, theta_dot = attitude(a, w)
-        (F, answer), spin = self.answer(y), a @ w
-        N = answer.force[0, 2]
-        if N <= 0 or (spin > 0 if self.driven else abs(answer.tau[0]) >= self.wheel.s * N):
-            raise RuntimeError(f"the assumed branch of the friction does not hold at t = {t} s")
-        return {
-            **{"time": t, "X_O": centre[0], "theta": theta, "phi_dot": spin - psi_dot * a[2], "psi_dot": psi_dot},
-            **{"psi": psi, "theta_dot": theta_dot, "omega_z": spin, "lambda_3": N},
-            **dict(zip(("X_B", "Y_B", "Z_B", "F_X", "F_Y", "F_Z"), (*r, *F), strict=True)),
-        }
+    F: np.ndarray
+    M: np.ndarray
+    brake: np.ndarray
 
 
-def attitude(a: np.ndarray, w: np.ndarray) -> tuple[float, float, float, float]:
-    """psi, theta and their rates of an axle a = (sin psi sin theta, -cos psi sin theta, cos theta)."""
-    a_dot, flat = cross(w, a), np.hypot(a[0], a[1])
-    psi_dot = (a[0] * a_dot[1] - a[1] * a_dot[0]) / flat**2
-    return np.arctan2(a[0], -a[1]), np.arctan2(flat, a[2]), psi_dot, -a_dot[2] / flat
+@dataclass(frozen=True)
+class Answer:
+    """What a load does: w', lambda, tau and the velocity of O; (wheels, 3), tau (wheels,)."""
+
+    w_dot: np.ndarray
+    force: np.ndarray
+    tau: np.ndarray
+    v: np.ndarray
 
 
-def solve(wheel: Wheel, theta: float, times: np.ndarray) -> dict[str, np.ndarray]:
-    """The motion from rest at `times` (rising from 0), phase by phase."""
-    B = [CAR[f"{axis}_B_start"] for axis in "XYZ"]
-    centre, a = [0.0, 0.0, wheel.r_0 * np.sin(theta) + wheel.r], [0.0, -np.sin(theta), np.cos(theta)]
-    y, rows = np.concatenate([B, np.zeros(3), centre, a, np.zeros(3)]), []
-    begins = (0.0, CAR["t_couple"], CAR["t_drive"])
-    phases = [Phase(wheel, begin, k >= 1, k >= 2) for k, begin in enumerate(begins)]
-    for phase, end in zip(phases, (*begins[1:], float(times[-1])), strict=True):
-        inside = times[(times >= phase.begin) & ((times < end) | (phase.driven & (times == end)))]
-        at = np.union1d(inside, [end])
-        found = solve_ivp(phase.rate, (phase.begin, end), y, "DOP853", at, rtol=TOLERANCE, atol=TOLERANCE)
-        rows += [phase.columns(t, state) for t, state in zip(inside, found.y.T, strict=False)]
-        y = found.y[:, -1]
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+def lever(kind: Wheel, a: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """rho and its rate."""
+    a_dot = cross(w, a)
+    across = Z - a[:, 2:] * a
+    length = np.sqrt(dot(across, across))
+    u = across / length
+    rate = -a_dot[:, 2:] * a - a[:, 2:] * a_dot
+    return kind.r_0 * u + kind.r * Z, kind.r_0 * (rate - u * dot(u, rate)) / length
+
+
+def respond(kind: Wheel, a: np.ndarray, w: np.ndarray, load: Load, sigma: np.ndarray) -> Answer:
+    """Accelerations and reactions; sigma = -1, 1: the sign of a w while a wheel rolls, 0: it is held."""
+    rho, rho_dot = lever(kind, a, w)
+    spin = dot(a, w)
+    matrix = (kind.J_x + kind.m * dot(rho, rho))[:, :, None] * np.eye(3)
+    matrix += (kind.J_z - kind.J_x) * a[:, :, None] * a[:, None, :] - kind.m * rho[:, :, None] * rho[:, None, :]
+    at_rest = kind.m * cross(w, rho_dot) - load.F - np.multiply(kind.m, kind.gravity)
+    right = load.M - (kind.J_z - kind.J_x) * spin * cross(w, a) - cross(rho, at_rest)
+    solved = np.linalg.solve(matrix, np.stack([right, a], axis=2))
+    free, per_tau = solved[:, :, 0], solved[:, :, 1]
+    N = kind.m * cross(free, rho)[:, 2] + at_rest[:, 2]
+    N_per_tau = kind.m * cross(per_tau, rho)[:, 2]
+    holding = -dot(free, a)[:, 0] / dot(per_tau, a)[:, 0]
+    rolling = -sigma * (kind.s * N + load.brake) / (1 + sigma * kind.s * N_per_tau)
+    tau = np.where(sigma == 0, holding, rolling)
+    w_dot = free + tau[:, None] * per_tau
+    return Answer(w_dot, kind.m * cross(w_dot, rho) + at_rest, tau, cross(w, rho))
+
+
+class Joint:
+    """A vehicle: `size` states of its own, then O, a, w of its n wheels of one `kind`.
+
+    By the vehicle: start() and load(t, y); own_rates(t, y, load, answer), the rates of its own states;
+    columns(t, y, load, answer), what is compared. `begin`: the last of the instants `cuts` at which loads jump.
+    """
+
+    kind: Wheel
+    n: int
+    size: int
+    cuts: tuple[float, ...] = ()
+    begin = 0.0
+    known = None, None
+
+    def wheels(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """O, a, w."""
+        return tuple(y[self.size :].reshape(3, self.n, 3))
+
+    def answer(self, t: float, y: np.ndarray, sigma: np.ndarray) -> tuple[Load, Answer]:
+        """The load, and what the wheels do."""
+        _, a, w = self.wheels(y)
+        load = self.load(t, y)
+        return load, respond(self.kind, a, w, load, sigma)
+
+    def rate(self, t: float, y: np.ndarray, sigma: np.ndarray) -> np.ndarray:
+        """dy/dt on the friction branches sigma."""
+        _, a, w = self.wheels(y)
+        load, answer = self.answer(t, y, sigma)
+        wheels = (answer.v, cross(w, a), answer.w_dot)
+        return np.concatenate([self.own_rates(t, y, load, answer), *(x.ravel() for x in wheels)])
+
+    def margins(self, t: float, y: np.ndarray, sigma: np.ndarray) -> np.ndarray:
+        """Of each wheel what ends its branch at zero, sigma a w rolling, s N + B - |tau| held; then normal forces."""
+        _, a, w = self.wheels(y)
+        load, answer = self.answer(t, y, sigma)
+        N = answer.force[:, 2]
+        held = self.kind.s * N + load.brake - np.abs(answer.tau)
+        return np.concatenate([np.where(sigma == 0, held, sigma * dot(a, w)[:, 0]), N])
+
+    def solve(self, times: np.ndarray, tolerance: float) -> tuple[dict[str, np.ndarray], tuple[int, float] | None]:
+        """The motion at `times` (rising from 0), from one change of a wheel's friction branch to the next, up to where
+        a wheel lifts off: which, and when."""
+        t, y, rows = 0.0, self.start(), []
+        _, a, w = self.wheels(y)
+        sigma = np.sign(dot(a, w)[:, 0])
+        events = [self._event(i) for i in range(2 * self.n)]
+        while len(rows) < len(times):
+            end = next((cut for cut in self.cuts if cut > t), times[-1])
+            now, after = times[len(rows) :], times[-1] if end == times[-1] else np.nextafter(end, 0)
+            found = solve_ivp(
+                self.rate, (t, end), y, "DOP853", np.union1d(now[now <= after], [end]), events=events, args=(sigma,),
+                rtol=tolerance, atol=tolerance, max_step=0.05,
+            )  # fmt: skip
+            if not found.success:
+                raise RuntimeError(found.message)
+            inside = [(u, x) for u, x in zip(found.t, np.transpose(found.y), strict=True) if u <= after]
+            rows += [self.columns(u, x, *self.answer(u, x, sigma)) for u, x in inside]
+            if found.status:
+                first = next(i for i, at in enumerate(found.t_events) if len(at))
+                t, y = float(found.t_events[first][0]), found.y_events[first][0].copy()
+                if first >= self.n:
+                    return self._table(times, rows), (first - self.n, t)
+                sigma = self._change(t, y, sigma, first)
+            else:
+                t = self.begin = end
+                y = found.y[:, -1]
+                released = (sigma == 0) & (self.margins(t, y, sigma)[: self.n] < 0)
+                sigma = np.where(released, -np.sign(self.answer(t, y, sigma)[1].tau), sigma)
+        return self._table(times, rows), None
+
+    def _table(self, times: np.ndarray, rows: list[dict[str, float]]) -> dict[str, np.ndarray]:
+        columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+        return {"time": times[: len(rows)], **columns, "psi": np.unwrap(columns["psi"])}
+
+    def _event(self, i: int) -> Callable[..., float]:
+        def margin(t: float, y: np.ndarray, sigma: np.ndarray) -> float:
+            key = t, y.tobytes(), sigma.tobytes()
+            if key != self.known[0]:  # all events ask at the same instants
+                self.known = key, self.margins(t, y, sigma)
+            return float(self.known[1][i])
+
+        margin.terminal, margin.direction = True, -1
+        return margin
+
+    def _change(self, t: float, y: np.ndarray, sigma: np.ndarray, first: int) -> np.ndarray:
+        """The branches after an event: stopped wheels are held if the friction can, held ones set off where it cannot.
+
+        Wheels that change together, as those of one axle do, differ by rounding: all within it change at once.
+        """
+        margins, answer, after = self.margins(t, y, sigma)[: self.n], self.answer(t, y, sigma)[1], sigma.copy()
+        _, a, w = self.wheels(y)
+        slowing = sigma * dot(answer.w_dot, a)[:, 0] < 0
+        stopped = (sigma != 0) & (margins < 1e-9) & slowing
+        released = (sigma == 0) & (margins < 1e-6)
+        stopped[first], released[first] = sigma[first] != 0, sigma[first] == 0
+        after[released] = -np.sign(answer.tau[released])
+        after[stopped] = 0.0
+        w[stopped] -= a[stopped] * dot(a, w)[stopped]
+        through = stopped & (self.margins(t, y, after)[: self.n] < 0)
+        after[through] = -sigma[through]
+        return after

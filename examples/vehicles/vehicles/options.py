@@ -24,7 +24,7 @@ from values import Fault, limited, number, suggestion  # noqa: E402
 EXCHANGES = ("held", "derivatives", "rollback")
 FOLDERS = {"axle": "axle", "car": "car", "suspended": "quarter_car", "balance": "balance"}
 CONTROL = "For a control engineer: linearization, regulator, optimal control; without parameters"
-MODELS = {"axle": "axle", "quarter_car": "quarter_car", "chassis": "car", "driver": "car"}  # in C, and their folders
+MODELS = {"axle": "axle", "quarter_car": "quarter_car", "chassis": "car", "driver": "car"}  # in C++, and their folders
 FIXED = {"R", "g", "inner_step", "psi_start", "v_start", "omega_start"}  # of the wheels too, or set by the run
 
 
@@ -36,7 +36,7 @@ def file(vehicle: str) -> dict:
 
 @cache
 def parameters(model: str) -> dict[str, Variable]:
-    """The parameters of a model by name: in C from its table, those of balance.fmu from its list in Python."""
+    """The parameters of a model by name: in C++ from its table, those of balance.fmu from its list in Python."""
     if model == "balance":
         text = (EXAMPLES / "balance" / "balance.py").read_text()
         rows = re.findall(r'^    "(\w+)": ([-\d.]+),  # (\S+?)(?:, (.*))?$', text, re.MULTILINE)
@@ -111,6 +111,25 @@ def takes(vehicle: str) -> tuple[dict[str, tuple[str, ...]], dict[str, Variable]
     return words | ({"exchange": EXCHANGES} if "h" in numbers else {}), numbers
 
 
+def value(vehicle: str, argument: str) -> tuple[str, str | float]:
+    """The name, and the word or number, of an argument."""
+    (words, numbers), (name, equals, text) = takes(vehicle), argument.partition("=")
+    if not equals:
+        raise Fault(f'"{argument}" is not of the form name=value; --help lists the names.')
+    if name in words:
+        if text not in words[name]:
+            raise Fault(f"{name} is one of {', '.join(words[name])}, not {text}.")
+        return name, text
+    if name in numbers:
+        of = numbers[name]
+        low = 0 if of.limit else -math.inf
+        return name, limited(name, number(name, text, of.unit), of.unit, low, above=of.limit == ">0")
+    if not numbers:
+        raise Fault(f"{argument}: this example takes no parameters.")
+    meant = suggestion(name, dict.fromkeys(words, "") | {n: v.description for n, v in numbers.items()})
+    raise Fault(f"There is no parameter {name} here.{meant} ./scripts/example {vehicle} --help lists them.")
+
+
 @dataclass(frozen=True)
 class Asked:
     """What a command line asks for."""
@@ -118,38 +137,20 @@ class Asked:
     vehicle: str
     manoeuvre: Manoeuvre | None = None
     exchange: str = "derivatives"
-    h: float = 0.001
+    h: float = 0.001  # s
+    grid: float | None = None  # s, of the table
 
 
-def values(vehicle: str, arguments: list[str]) -> dict[str, str | float]:
-    """Words and numbers by name."""
-    (words, numbers), given = takes(vehicle), {}
-    for argument in arguments:
-        name, equals, text = argument.partition("=")
-        if not equals:
-            raise Fault(f'"{argument}" is not of the form name=value; --help lists the names.')
-        if name in words:
-            if text not in words[name]:
-                raise Fault(f"{name} is one of {', '.join(words[name])}, not {text}.")
-            given[name] = text
-        elif name in numbers:
-            of = numbers[name]
-            low = 0 if of.limit else -math.inf
-            given[name] = limited(name, number(name, text, of.unit), of.unit, low, above=of.limit == ">0")
-        else:
-            if not numbers:
-                raise Fault(f"{argument}: this example takes no parameters.")
-            meant = suggestion(name, dict.fromkeys(words, "") | {n: v.description for n, v in numbers.items()})
-            raise Fault(f"There is no parameter {name} here.{meant} ./scripts/example {vehicle} --help lists them.")
-    return given
-
-
-def chosen(vehicle: str, arguments: list[str]) -> Asked:
-    """The manoeuvre with what was given, and how it is run."""
-    given = values(vehicle, arguments)
+def asked(arguments: list[str]) -> Asked:
+    """The example that the command line asks for: the manoeuvre with what was given, and how it is run."""
+    vehicle, *rest = arguments or [""]
+    if vehicle not in ABOUT:
+        meant = suggestion(vehicle, dict.fromkeys(ABOUT, ""))
+        raise Fault(f'"{vehicle}" is no example; there are {", ".join(ABOUT)}.{meant}' if vehicle else usage("", []))
+    given = dict(value(vehicle, argument) for argument in rest)
     if vehicle == "control":
         return Asked(vehicle)
-    how = {name: given.pop(name) for name in ("exchange", "h") if name in given}
+    how = file(vehicle).get("how", {}) | {name: given.pop(name) for name in ("exchange", "h") if name in given}
     of = manoeuvres(vehicle)
     name = given.pop(file(vehicle).get("word"), file(vehicle).get("first", next(iter(of))))
     asked = Asked(vehicle, of[name].changed(**given), **how)
@@ -158,39 +159,29 @@ def chosen(vehicle: str, arguments: list[str]) -> Asked:
     return asked
 
 
+ABOUT = {vehicle: file(vehicle)["about"] for vehicle in FOLDERS} | {"control": CONTROL}
+
+
 def usage(name: str, arguments: list[str]) -> str:
     """All that one example takes, with the start values of the manoeuvre that is named; or the list of the examples."""
-    about = {vehicle: file(vehicle)["about"] for vehicle in FOLDERS} | {"control": CONTROL}
-    if name not in about:
-        rows = [f"  {vehicle:11s}{text}" for vehicle, text in about.items()]
-        line = f"./scripts/example {'|'.join(about)} [parameter=value ...]   a vehicle made of FMUs, run and drawn"
+    if name not in ABOUT:
+        rows = [f"  {vehicle:11s}{text}" for vehicle, text in ABOUT.items()]
+        line = f"./scripts/example {'|'.join(ABOUT)} [parameter=value ...]   a vehicle made of FMUs, run and drawn"
         return "\n".join([line, *rows, "./scripts/example NAME --help lists the parameters of one example."])
-    lines = [f"./scripts/example {name} [parameter=value ...]   {about[name]}"]
-    words, numbers = takes(name)
+    lines, (words, numbers) = [f"./scripts/example {name} [parameter=value ...]   {ABOUT[name]}"], takes(name)
     if not numbers:
         return lines[0]
     for word, choices in words.items():
         lines.append(f"  {word}={'|'.join(choices)}")
-        own = manoeuvres(name).values() if word == file(name).get("word") else ()
-        for one in own:
+        for one in manoeuvres(name).values() if word == file(name).get("word") else ():
             given = " ".join(f"{n}={x:.4g}" for n, x in one.given.items())
             lines.append(f"    {one.name}: {one.title}; stop={one.stop:g} {given}")
-    asked = chosen(name, arguments).manoeuvre
-    lines.append(f"Parameters, with their values in the run {asked.name}:")
+    run = asked([name, *arguments]).manoeuvre
+    lines.append(f"Parameters, with their values in the run {run.name}:")
     for v in numbers.values():
-        start = asked.stop if v.name == "stop" else asked[asked.followed(v.name)]
+        start = run.stop if v.name == "stop" else run[run.followed(v.name)]
         lines.append(f"  {v.name:16s}{v.unit:10s}{start:>9.6g} {v.limit:>4s}  {v.description}")
     return "\n".join(lines)
-
-
-def asked(arguments: list[str]) -> Asked:
-    """The example that the command line asks for."""
-    name, *rest = arguments or [""]
-    examples = (*FOLDERS, "control")
-    if name not in examples:
-        meant = suggestion(name, dict.fromkeys(examples, ""))
-        raise Fault(f'"{name}" is no example; there are {", ".join(examples)}.{meant}' if name else usage("", []))
-    return chosen(name, rest)
 
 
 def main() -> int:

@@ -17,33 +17,30 @@ from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import ParameterSet, find_components, read_ssd, read_ssv
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from .master import System
+from .component import Component
+from .master import Connection
 
 TEMPLATES = Environment(loader=FileSystemLoader(Path(__file__).parent), undefined=StrictUndefined, autoescape=True)
 
 
-def build(system: System, folder: Path) -> Path:
-    """folder/NAME.ssp. Connectors: all outputs, and the inputs that are connected; units as in the FMUs."""
+def build(package: Path, parts: list[Component], connections: list[Connection], step: float, stop: float) -> Path:
+    """The file `package`. Connectors: all outputs, and the inputs that are connected; units as in the FMUs."""
     structure, parameters = (TEMPLATES.get_template(f"{n}.jinja") for n in ("SystemStructure.ssd", "parameters.ssv"))
-    connected = {signal for pair in system.connections for signal in pair}
-    package, connectors, units = folder / f"{system.name}.ssp", {}, {}
+    connected, connectors, units = {signal for pair in connections for signal in pair}, {}, {}
     with zipfile.ZipFile(package, "w", zipfile.ZIP_DEFLATED) as archive:
-        for part in system.components:
+        for part in parts:
             of = read_model_description(str(part.path), validate=False)
-            connectors[part.name] = [
-                v
-                for v in of.modelVariables
-                if (part.name, v.name) in connected or (v.causality == "output" and v.type == "Real")
-            ]
-            for unit in of.unitDefinitions:
-                if unit.name in {v.unit for v in connectors[part.name]}:
-                    units[unit.name] = {n: getattr(unit.baseUnit, n) for n in ("kg", "m", "s", "rad")}
+            shown = {v.name for v in of.modelVariables if v.causality == "output" and v.type == "Real"}
+            shown |= {name for component, name in connected if component == part.name}
+            connectors[part.name] = [v for v in of.modelVariables if v.name in shown]
+            used = {v.unit for v in connectors[part.name]}
+            units |= {unit.name: unit.baseUnit for unit in of.unitDefinitions if unit.name in used}
             if part.start:
                 kinds = {v.name: v.type for v in of.modelVariables}
                 archive.writestr(f"resources/{part.name}.ssv", parameters.render(part=part, kinds=kinds))
-        text = structure.render(system=system, connectors=connectors, units=units)
-        archive.writestr("SystemStructure.ssd", text)
-        for path in dict.fromkeys(component.path for component in system.components):
+        system = {"name": package.stem, "parts": parts, "connections": connections, "step": step, "stop": stop}
+        archive.writestr("SystemStructure.ssd", structure.render(**system, connectors=connectors, units=units))
+        for path in dict.fromkeys(part.path for part in parts):
             archive.write(path, f"resources/{path.name}")
     return package
 

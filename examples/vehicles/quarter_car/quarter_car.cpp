@@ -1,0 +1,48 @@
+/* Quarter car: a sprung mass B above the wheel's centre O, linked to it by springs and dampers without mass. B does not
+ * turn; the hub carrier gives the moments M_1 (camber) and M_2 (toe) along the wheel's carrier axes, the hub motor M_3
+ * about the axle. Fixed axes X, Y, Z, Z up.
+ *
+ *   F   = k (r_B - r_O - (0, 0, l_0)) + c (v_B - v_O)         link force on the wheel, each axis its own k, c
+ *   M_1 = -k_theta (theta - theta_0) - c_theta theta_dot      camber, M_2 alike with psi (toe)
+ *   m_B a_B = -F - (0, 0, m_B g)
+ *
+ * Before t_couple the links carry nothing and B waits: a master that begins with all inputs at zero, as fmpy's SSP
+ * simulation does, then does no harm. From t_drive on the hub motor gives M_drive. */
+#include "model.hpp"
+
+using Eigen::Vector3d;
+
+void model_derive(const double*, double*) {}
+
+States model_start(const Now& now) {
+  States x = States::Zero();
+  x.head<3>() = Vector3d(now.u + X_B_start);
+  return x;
+}
+
+static Vector3d link_force(const Now& now, const States& x) {
+  const double* u = now.u;
+  const Vector3d k(u[k_h], u[k_h], u[k_v]), c(u[c_h], u[c_h], u[c_v]), rest(0, 0, u[l_0]);
+  if (!reached(now, t_couple)) return Vector3d::Zero();
+  return k.cwiseProduct(x.head<3>() - Vector3d(u + X_O) - rest) +
+         c.cwiseProduct(x.segment<3>(3) - Vector3d(u + X_O_dot));
+}
+
+States model_rates(const Now& now, const States& x) {
+  States x_dot = States::Zero();
+  if (!reached(now, t_couple)) return x_dot;
+  x_dot.head<3>() = x.segment<3>(3);
+  x_dot.segment<3>(3) = -link_force(now, x) / now.u[m_B] - Vector3d(0, 0, now.u[g]);
+  return x_dot;
+}
+
+void model_outputs(const Now& now, const States& x, double* y) {
+  const double* u = now.u;
+  const double coupled = reached(now, t_couple);
+  Vector3d::Map(y + F_X) = link_force(now, x);
+  Vector3d::Map(y + X_B) = x.head<3>();
+  Vector3d::Map(y + X_B_dot) = x.segment<3>(3);
+  y[M_1] = -coupled * (u[k_theta] * (u[theta] - u[theta_0]) + u[c_theta] * u[theta_dot]);
+  y[M_2] = -coupled * (u[k_psi] * (u[psi] - u[psi_0]) + u[c_psi] * u[psi_dot]);
+  y[M_3] = reached(now, t_drive) ? u[M_drive] : 0;
+}

@@ -1,0 +1,207 @@
+/* fmi2Functions of an example: co-simulation, inputs with derivatives up to order 3, outputs with first derivatives,
+ * snapshots that can be serialized. Nothing here knows which example it is. */
+#include "fmi2Functions.h"
+
+#include <cstring>
+#include <new>
+#include <string>
+#include <utility>
+
+#include "simulation.hpp"
+
+using Component = fmi2Component;
+using Refs = const fmi2ValueReference*;
+using Orders = const fmi2Integer*;
+using State = fmi2FMUstate;
+
+namespace {
+
+enum class Phase { instantiated, initializing, stepping, terminated };
+
+struct Snapshot {
+  Simulation simulation;
+  Phase phase = Phase::instantiated;
+};
+
+struct Instance : Snapshot {
+  std::string name;
+  fmi2CallbackLogger logger;
+  fmi2ComponentEnvironment environment;
+};
+
+/* Runs a call; what it throws is logged and refused. */
+template <class Act>
+fmi2Status run(Component c, Act act) {
+  auto& instance = *static_cast<Instance*>(c);
+  try {
+    act(instance);
+    return fmi2OK;
+  } catch (const std::exception& fault) {
+    if (instance.logger)
+      instance.logger(instance.environment, instance.name.c_str(), fmi2Error, "logStatusError", fault.what());
+    return fmi2Error;
+  }
+}
+
+void require(bool met, const char* message) {
+  if (!met) throw std::invalid_argument(message);
+}
+
+fmi2Status refuse(Component c, const char* message) {
+  return run(c, [&](Instance&) { require(false, message); });
+}
+
+fmi2Status start(Component c, Phase next) {
+  return run(c, [&](Instance& i) { i.simulation.start(), i.phase = next; });
+}
+
+/* What a state points to, made where there is none. */
+Snapshot& snapshot(State* state) {
+  if (!*state) *state = new Snapshot;
+  return *static_cast<Snapshot*>(*state);
+}
+
+/* There are no variables of other types. */
+fmi2Status none_of(Component c, size_t n) { return n ? refuse(c, "There are no variables of this type.") : fmi2OK; }
+
+}  // namespace
+
+const char* fmi2GetTypesPlatform() { return fmi2TypesPlatform; }
+const char* fmi2GetVersion() { return fmi2Version; }
+
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String,
+                              const fmi2CallbackFunctions* callbacks, fmi2Boolean, fmi2Boolean) {
+  if (type != fmi2CoSimulation || !name || !guid || std::strcmp(guid, MODEL_GUID) != 0) return nullptr;
+  const fmi2CallbackFunctions given = callbacks ? *callbacks : fmi2CallbackFunctions{};
+  return new (std::nothrow) Instance{{}, name, given.logger, given.componentEnvironment};
+}
+
+void fmi2FreeInstance(Component c) { delete static_cast<Instance*>(c); }
+
+fmi2Status fmi2SetupExperiment(Component c, fmi2Boolean, fmi2Real, fmi2Real start, fmi2Boolean, fmi2Real) {
+  return run(c, [&](Instance& i) { i.simulation.now.t = i.simulation.now.begin = start; });
+}
+
+fmi2Status fmi2EnterInitializationMode(Component c) { return start(c, Phase::initializing); }
+fmi2Status fmi2ExitInitializationMode(Component c) { return start(c, Phase::stepping); }
+
+fmi2Status fmi2Terminate(Component c) {
+  return run(c, [](Instance& i) { i.phase = Phase::terminated; });
+}
+
+fmi2Status fmi2Reset(Component c) {
+  return run(c, [](Instance& i) { static_cast<Snapshot&>(i) = {}; });
+}
+
+fmi2Status fmi2GetReal(Component c, Refs v, size_t n, fmi2Real values[]) {
+  return run(c, [&](const Instance& i) {
+    double y[variable_count];
+    require(std::all_of(v, v + n, [](auto r) { return r < variable_count; }), "fmi2GetReal: unknown value reference.");
+    std::copy_n(i.simulation.now.u, first_output, y);
+    if (std::any_of(v, v + n, [](auto r) { return r >= first_output; }))
+      model_outputs(i.simulation.now, i.simulation.x, y);
+    std::transform(v, v + n, values, [&](auto r) { return y[r]; });
+  });
+}
+
+fmi2Status fmi2SetReal(Component c, Refs v, size_t n, const fmi2Real values[]) {
+  return run(c, [&](Instance& i) {
+    for (size_t k = 0; k < n; ++k) {
+      require(v[k] < first_output && std::isfinite(values[k]), "fmi2SetReal: not settable, or not finite.");
+      require(v[k] >= first_input || i.phase != Phase::stepping,
+              "fmi2SetReal: parameters are fixed once the run has begun.");
+    }
+    for (size_t k = 0; k < n; ++k) i.simulation.now.u[v[k]] = values[k];
+  });
+}
+
+fmi2Status fmi2SetRealInputDerivatives(Component c, Refs v, size_t n, Orders orders, const fmi2Real values[]) {
+  return run(c, [&](Instance& i) {
+    for (size_t k = 0; k < n; ++k)
+      require(v[k] >= first_input && v[k] < first_output && orders[k] >= 1 && orders[k] <= Simulation::orders &&
+                  std::isfinite(values[k]),
+              "fmi2SetRealInputDerivatives: inputs have finite derivatives of order 1 to 3.");
+    for (size_t k = 0; k < n; ++k) {
+      i.simulation.slope[orders[k] - 1][v[k] - first_input] = values[k];
+      i.simulation.given[v[k] - first_input] = true;
+    }
+  });
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(Component c, Refs v, size_t n, Orders orders, fmi2Real values[]) {
+  return run(c, [&](const Instance& i) {
+    double y_dot[variable_count];
+    for (size_t k = 0; k < n; ++k)
+      require(v[k] >= first_output && v[k] < variable_count && orders[k] == 1,
+              "fmi2GetRealOutputDerivatives: outputs have first derivatives only.");
+    i.simulation.output_rates(y_dot);
+    std::transform(v, v + n, values, [&](auto r) { return y_dot[r]; });
+  });
+}
+
+fmi2Status fmi2DoStep(Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
+  return run(c, [&](Instance& i) {
+    require(i.phase == Phase::stepping, "fmi2DoStep: the run has not begun, or it has ended.");
+    require(h > 0 && std::isfinite(t), "fmi2DoStep: the step must be above 0 s.");
+    i.simulation.now.t = i.simulation.now.begin = t;
+    i.simulation.step(h);
+  });
+}
+
+fmi2Status fmi2GetFMUstate(Component c, State* state) {
+  return run(c, [&](const Instance& i) { snapshot(state) = i; });
+}
+
+fmi2Status fmi2SetFMUstate(Component c, State state) {
+  return run(c, [&](Instance& i) {
+    require(state, "fmi2SetFMUstate: no state is given.");
+    static_cast<Snapshot&>(i) = snapshot(&state);
+  });
+}
+
+fmi2Status fmi2FreeFMUstate(Component, State* state) {
+  if (state) delete static_cast<Snapshot*>(std::exchange(*state, nullptr));
+  return fmi2OK;
+}
+
+fmi2Status fmi2SerializedFMUstateSize(Component, State, size_t* size) {
+  *size = sizeof(Snapshot);
+  return fmi2OK;
+}
+
+fmi2Status fmi2SerializeFMUstate(Component c, State state, fmi2Byte bytes[], size_t size) {
+  return run(c, [&](const Instance&) {
+    require(state && size >= sizeof(Snapshot), "fmi2SerializeFMUstate: no state, or too few bytes.");
+    std::memcpy(bytes, state, sizeof(Snapshot));
+  });
+}
+
+fmi2Status fmi2DeSerializeFMUstate(Component c, const fmi2Byte bytes[], size_t size, State* state) {
+  return run(c, [&](const Instance&) {
+    require(size == sizeof(Snapshot), "fmi2DeSerializeFMUstate: these bytes are no state of this FMU.");
+    std::copy_n(bytes, size, reinterpret_cast<char*>(&snapshot(state)));
+  });
+}
+
+/* What the examples do not have: variables of other types, directional derivatives, asynchronous steps. The functions
+ * must exist all the same. */
+fmi2Status fmi2GetInteger(Component c, Refs, size_t n, fmi2Integer[]) { return none_of(c, n); }
+fmi2Status fmi2GetBoolean(Component c, Refs, size_t n, fmi2Boolean[]) { return none_of(c, n); }
+fmi2Status fmi2GetString(Component c, Refs, size_t n, fmi2String[]) { return none_of(c, n); }
+fmi2Status fmi2SetInteger(Component c, Refs, size_t n, const fmi2Integer[]) { return none_of(c, n); }
+fmi2Status fmi2SetBoolean(Component c, Refs, size_t n, const fmi2Boolean[]) { return none_of(c, n); }
+fmi2Status fmi2SetString(Component c, Refs, size_t n, const fmi2String[]) { return none_of(c, n); }
+
+fmi2Status fmi2GetStatus(Component, const fmi2StatusKind, fmi2Status*) { return fmi2Discard; }
+fmi2Status fmi2GetRealStatus(Component, const fmi2StatusKind, fmi2Real*) { return fmi2Discard; }
+fmi2Status fmi2GetIntegerStatus(Component, const fmi2StatusKind, fmi2Integer*) { return fmi2Discard; }
+fmi2Status fmi2GetBooleanStatus(Component, const fmi2StatusKind, fmi2Boolean*) { return fmi2Discard; }
+fmi2Status fmi2GetStringStatus(Component, const fmi2StatusKind, fmi2String*) { return fmi2Discard; }
+
+fmi2Status fmi2SetDebugLogging(Component, fmi2Boolean, size_t, const fmi2String[]) { return fmi2OK; }
+
+fmi2Status fmi2CancelStep(Component c) { return refuse(c, "fmi2CancelStep: no step is pending."); }
+
+fmi2Status fmi2GetDirectionalDerivative(Component c, Refs, size_t, Refs, size_t, const fmi2Real[], fmi2Real[]) {
+  return refuse(c, "fmi2GetDirectionalDerivative: not provided.");
+}

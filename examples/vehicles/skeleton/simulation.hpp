@@ -1,0 +1,88 @@
+/* One instance of an example: stored values, states, and the step that advances them, by the Runge-Kutta method of
+ * fourth order with a fixed inner step. No FMI here. */
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "model.hpp"
+
+struct Simulation {
+  static constexpr int orders = 3;
+
+  Now now{};
+  States x = States::Zero();
+  double slope[orders][input_count]{}; /* derivatives of the inputs, for one step */
+  bool given[input_count]{};           /* whether the master gave the first derivative for this step */
+
+  Simulation() {
+    for (int i = 0; i < first_output; ++i) now.u[i] = stored[i].start;
+  }
+
+  /* States from the parameters. */
+  void start() {
+    for (int i = 0; i < first_output; ++i) {
+      const auto& [name, unit, _, limit] = stored[i];
+      if (limit == none || now.u[i] > 0 || (now.u[i] == 0 && limit == not_below_0)) continue;
+      const char* least = limit == above_0 ? "above" : "at least";
+      char fault[160];
+      std::snprintf(fault, sizeof fault, "%s = %g: it must be %s 0 %s.", name, now.u[i], least, unit);
+      throw std::invalid_argument(fault);
+    }
+    model_derive(now.u, now.d);
+    x = model_start(now);
+  }
+
+  /* From now to t + h: the inputs follow their polynomials, which are used up. */
+  void step(double h) {
+    follow_rates();
+    const int n = std::max(1, static_cast<int>(std::ceil(h / now.u[inner_step] - 1e-6)));
+    const double e = h / n;
+    Now begin = now;
+    for (int i = 0; i < n; ++i) {
+      const Now middle = later(h * (i + 0.5) / n), end = later(h * (i + 1) / n);
+      const States k1 = model_rates(begin, x), k2 = model_rates(middle, x + e / 2 * k1);
+      const States k3 = model_rates(middle, x + e / 2 * k2), k4 = model_rates(end, x + e * k3);
+      x += e / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+      begin = end;
+    }
+    now = begin;
+    now.begin = now.t;
+    std::fill_n(&slope[0][0], orders * input_count, 0.0);
+    std::fill_n(given, input_count, false);
+  }
+
+  /* First derivatives of the outputs along the motion, with the inputs on their slopes: (y(x + e f, u + e u', t + e) -
+   * y(x - e f, ...)) / 2 e. The outputs are nearly linear along so short a line, so the error is rounding, some 1e-12
+   * of y per second. */
+  void output_rates(double* y_dot) const {
+    constexpr double e = 1e-4; /* s */
+    double before[variable_count];
+    Simulation line = *this;
+    line.follow_rates();
+    std::fill_n(&line.slope[1][0], (orders - 1) * input_count, 0.0);
+    const States f = model_rates(now, x);
+    model_outputs(line.later(-e), x - e * f, before);
+    model_outputs(line.later(e), x + e * f, y_dot);
+    for (int i = first_output; i < variable_count; ++i) y_dot[i] = (y_dot[i] - before[i]) / (2 * e);
+  }
+
+ private:
+  /* The instant tau after the last communication point: the inputs on their polynomials. */
+  Now later(double tau) const {
+    Now then = now;
+    then.t += tau;
+    for (int i = 0; i < input_count; ++i)
+      then.u[first_input + i] += tau * (slope[0][i] + tau / 2 * (slope[1][i] + tau / 3 * slope[2][i]));
+    return then;
+  }
+
+  /* With the parameter `follow`, an input whose rate is an input too follows that rate where the master gives no
+   * derivative: a position that is held would lag. */
+  void follow_rates() {
+    for (int i = 0; now.u[follow] != 0 && i < input_count; ++i)
+      if (rate_of[i] >= 0 && !given[i]) slope[0][i] = now.u[first_input + rate_of[i]];
+  }
+};

@@ -1,0 +1,108 @@
+"""Driven wheel: a controller FMU keeps a wheel upright along a line and then a circle; alone it falls over.
+
+The wheel rolls at 2 rad/s (0.7 m/s), below the speed at which upright rolling is stable, with rolling friction, and
+starts with a small push to the side. Fixed axes; theta is 90 degrees upright.
+"""
+
+from __future__ import annotations
+
+from math import inf, pi
+
+import numpy as np
+from fmpy import simulate_fmu
+
+from .component import Component
+from .master import Table
+from .options import Manoeuvre, manoeuvres
+from .vehicle import Fmus, Vehicle, wire
+
+CIRCLE = manoeuvres("balance")["circle"]
+STEP = 0.005  # s
+T_CIRCLE, RADIUS, SPEED = CIRCLE["t_circle"], CIRCLE["R"], 0.7  # s, m, m/s
+TURN = 2 * pi * RADIUS / SPEED  # s
+START = {
+    **{"s": 0.002, "psi_start": 0.0, "theta_start": pi / 2, "phi_dot_start": -2.0, "X_O_start": 0.0},
+    "theta_dot_start": 0.1,  # the push, rad/s
+}
+MEASURED = ("theta", "theta_dot", "psi", "psi_dot", "phi_dot")
+MOMENTS = ("M_1", "M_3")
+OF_WHEEL = ("X_O", "Y_O", "phi", *MEASURED, "omega_z", "lambda_3")
+RECORD = [*(("wheel", name) for name in OF_WHEEL), *(("balance", name) for name in MOMENTS)]
+CONNECTIONS = wire("balance", "wheel", "", MEASURED, MOMENTS)
+
+
+def parts(fmus: Fmus, course: Manoeuvre) -> list[Component]:
+    """Wheel and controller."""
+    return [Component("wheel", fmus["wheel"], START), Component("balance", fmus["balance"], course.given)]
+
+
+def beside_alone(table: Table, course: Manoeuvre, fmus: Fmus) -> Table:
+    """With the wheel without the controller, up to where its model ends, in columns alone.NAME."""
+    wheel, rows = str(fmus["wheel"]), len(table["time"])
+    how = {"fmi_type": "CoSimulation", "output": OF_WHEEL, "start_values": START, "output_interval": STEP}
+    alone = simulate_fmu(wheel, stop_time=course.stop, **how)[:rows]
+    missing = (0, rows - len(alone))
+    return table | {f"alone.{n}": np.pad(alone[n], missing, constant_values=np.nan) for n in OF_WHEEL}
+
+
+def fall_time(table: Table, of: str = "") -> float:
+    """When the wheel first leans by more than 45 degrees, s; infinite if never."""
+    fallen = np.abs(table[f"{of}theta"] - pi / 2) > pi / 4
+    return float(table["time"][fallen.argmax()]) if fallen.any() else inf
+
+
+def judge(table: Table) -> dict[str, float]:
+    """The figures of a run: on the line in its last second, on the circle in its last turn."""
+    t, tilt = table["time"], np.degrees(np.abs(table["theta"] - pi / 2))
+    line, turn = (t > T_CIRCLE - 1) & (t <= T_CIRCLE), t > CIRCLE.stop - TURN
+    x, y = table["X_O"][turn], table["Y_O"][turn]
+    a, b, c = np.linalg.lstsq(np.column_stack([x, y, np.ones_like(x)]), x**2 + y**2, rcond=None)[0]
+    radius = np.sqrt(c + (a**2 + b**2) / 4)
+    return {
+        "fall": fall_time(table, "alone."),
+        "line_tilt": tilt[line].max(),  # deg, largest departure from upright
+        "line_heading": np.degrees(np.abs(table["psi"][line])).max(),  # deg, from the line's direction
+        "circle_radius": radius,  # m, of the circle through the last turn
+        "circle_scatter": np.abs(np.hypot(x - a / 2, y - b / 2) - radius).max(),  # m, from that circle
+        "circle_tilt": tilt[t > T_CIRCLE].max(),  # deg, from upright on the whole circle
+        "speed_error": np.abs(table["omega_z"][turn] + 2).max(),  # rad/s, of omega_z from -2
+    }
+
+
+def fallen(table: Table, of: str = "") -> str:
+    """When the wheel leans over, and how near its plane comes to the ground, on either side."""
+    lowest = np.degrees(np.nanmin(np.pi / 2 - np.abs(table[f"{of}theta"] - np.pi / 2)))
+    after = f"leans over by more than 45 degrees after {fall_time(table, of):.2f} s"
+    return f"{after}, and is down to {lowest:.0f} degrees to the ground in the end"
+
+
+def verdict(table: Table, course: Manoeuvre) -> tuple[bool, list[str]]:
+    """Of the wheel alone, and of the one that was to drive a circle."""
+    wanted, single = course["R"], f"Alone it {fallen(table, 'alone.')}."
+    if np.isfinite(fall_time(table)):
+        return False, [single, f"Failed: the controller does not hold it: it {fallen(table)}."]
+    found = judge(table)
+    radius, scatter, tilt = (found[f"circle_{name}"] for name in ("radius", "scatter", "tilt"))
+    if not max(abs(radius - wanted), scatter) < 0.05 * wanted:
+        off = f"within {scatter:.2g} m of a circle of {radius:.3g} m"
+        held = f"the controller keeps it from falling over, but it leans by up to {tilt:.0f} degrees"
+        return False, [
+            single,
+            f"Failed: {held}, and its last turn is not the circle of {course['R']:g} m: it is {off}.",
+        ]
+    circle = f"a circle of {radius:.4f} m, where {course['R']:g} m was asked for"
+    return True, [single, f"Controlled it stays up, leaning by up to {tilt:.1f} degrees, and drives {circle}."]
+
+
+def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
+    """Paths of the wheel's centre."""
+    return {"alone": (table["alone.X_O"], table["alone.Y_O"]), "with controller": (table["X_O"], table["Y_O"])}
+
+
+BARE = ("wheel", "balance")
+BALANCE = Vehicle("balance", parts, CONNECTIONS, RECORD, verdict, BARE, complete=beside_alone, tracks=tracks)
+
+
+def drive(fmus: Fmus, course: Manoeuvre = CIRCLE) -> Table:
+    """Both runs as the example takes them."""
+    return BALANCE.drive(fmus, course, STEP, "held", STEP).table
