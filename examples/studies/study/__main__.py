@@ -8,9 +8,8 @@ import sys
 import time
 from pathlib import Path
 
-from .measures import StudyError
-from .options import ROOT, Fault, arguments_of, check, fields_of, file_of
-from .plan import Study
+from .options import ROOT, Fault, arguments_of, file_of, study_of
+from .plan import Study, StudyError
 
 
 def study_file(name: str, wheel: str | None = None) -> dict[str, object]:
@@ -29,12 +28,10 @@ def main(argv: list[str] | None = None) -> int:
     """Runs a study; a fault of the study is one line on stderr and exit status 2."""
     arguments = arguments_of(argv)
     try:
-        check(arguments)
-        content = (
-            study_file(arguments.study, arguments.wheel)
-            if arguments.study
-            else {"study": Study(**fields_of(arguments)), "name": "study"}
-        )
+        if arguments.study:
+            content = study_file(arguments.study, arguments.wheel)
+        else:
+            content = {"study": study_of(arguments), "name": "study"}
         conduct(content, arguments)
     except (StudyError, Fault) as fault:
         print(f"study: {fault}", file=sys.stderr)
@@ -51,7 +48,7 @@ def main(argv: list[str] | None = None) -> int:
 def conduct(content: dict[str, object], arguments: argparse.Namespace) -> None:
     """Runs, exports, draws, and prints the outcome and where it is."""
     from .compute import run
-    from .results import export, summarize
+    from .dataset import export, summarize
 
     stem = ROOT / "results" / "studies" / content["name"]
     out = arguments.out or str(stem.with_suffix(".zarr"))

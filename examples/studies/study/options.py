@@ -20,7 +20,7 @@ if not __package__:  # run as a file, by scripts/help
     sys.path.insert(0, str(EXAMPLES))
 from values import Fault, Variable, number, parted, ready, scale, suggestion, variables, wheels  # noqa: E402
 
-from study.measures import StudyError, parse_measure  # noqa: E402
+from study.plan import Study, StudyError  # noqa: E402
 
 SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
 USAGE = """examples:
@@ -48,9 +48,9 @@ def numbers(name: str, text: str, unit: str) -> list[float]:
     return [number(name, f"{value!r}{given}", unit) for value in evenly]
 
 
-def named(texts: list[str], convert: Callable[[str, str], object]) -> dict[str, object]:
+def pairs(texts: list[str]) -> dict[str, str]:
     """NAME=VALUE options as a dictionary."""
-    return {name: convert(name, value) for name, _, value in (text.partition("=") for text in texts)}
+    return dict(text.partition("=")[::2] for text in texts)
 
 
 def read_list(path: Path, value: Callable[[str, str], float]) -> dict[str, list[float]]:
@@ -63,8 +63,8 @@ def read_list(path: Path, value: Callable[[str, str], float]) -> dict[str, list[
         raise StudyError(f"--list {path}: a row of names, then rows of numbers, are expected ({fault}).") from None
 
 
-def fields_of(arguments: argparse.Namespace) -> dict[str, object]:
-    """The fields of a Study that the options give."""
+def study_of(arguments: argparse.Namespace) -> Study:
+    """The study that the options describe, checked."""
     known = variables(description(arguments.fmu))
 
     def unit(name: str) -> str:
@@ -74,16 +74,18 @@ def fields_of(arguments: argparse.Namespace) -> dict[str, object]:
     def value(name: str, text: str) -> float:
         return number(name, text, unit(name))
 
-    measures = named(arguments.measure, lambda _, text: parse_measure(text).text)
-    check_names((parse_measure(text).variable for text in measures.values()), READABLE, known)
-    check_names(arguments.history, READABLE, known)
-    grid = named(arguments.vary, lambda name, text: numbers(name, text, unit(name)))
-    rows = read_list(arguments.list, value) if arguments.list else {}
-    values = (ready(arguments.wheel) if arguments.wheel else {}) | named(arguments.set, value)
-    for name in (grid | rows).keys() - {text.partition("=")[0] for text in arguments.set}:
-        values.pop(name, None)  # of the ready wheel
     fields = {name: getattr(arguments, name) for name in ("history", "stop_time", "interval", "tolerance", "branch_at")}
-    return fields | {"grid": grid, "list": rows, "values": values} | ({"measures": measures} if measures else {})
+    fields |= {"measures": pairs(arguments.measure)} if arguments.measure else {}
+    grid = {name: numbers(name, text, unit(name)) for name, text in pairs(arguments.vary).items()}
+    rows = read_list(arguments.list, value) if arguments.list else {}
+    if bool(grid) == bool(rows):
+        raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
+    wheel = ready(arguments.wheel) if arguments.wheel else {}
+    values = {name: x for name, x in wheel.items() if name not in grid | rows}
+    values |= {name: value(name, text) for name, text in pairs(arguments.set).items()}
+    study = Study(grid=grid, list=rows, values=values, **fields)
+    study.check(known)
+    return study
 
 
 def description(fmu: Path) -> bytes:
@@ -110,18 +112,6 @@ def check_names(names: Iterable[str], causalities: tuple[str, str], known: Mappi
             hint = suggestion(name, there) or f" There are {', '.join(there)}."
             kind = "a parameter or input" if causalities == SETTABLE else "an output or local variable"
             raise StudyError(f"'{name}' is not {kind} of this FMU.{hint}")
-
-
-def check(arguments: argparse.Namespace) -> None:
-    """StudyError or Fault if there is no study of that name or no such wheel, or an option cannot be parsed."""
-    if arguments.study:
-        file_of(arguments.study)
-        if arguments.wheel:
-            ready(arguments.wheel)
-        return
-    fields = fields_of(arguments)
-    if bool(fields["grid"]) == bool(fields["list"]):
-        raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
 
 
 def seconds(text: str) -> float:
@@ -175,7 +165,13 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
 
 if __name__ == "__main__":
     try:
-        check(arguments_of())
+        arguments = arguments_of()
+        if not arguments.study:
+            study_of(arguments)
+        else:
+            file_of(arguments.study)
+            if arguments.wheel:
+                ready(arguments.wheel)
     except (StudyError, Fault) as fault:
         print(f"study: {fault}", file=sys.stderr)
         sys.exit(2)

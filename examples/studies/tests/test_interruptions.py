@@ -13,12 +13,12 @@ import numpy as np
 import psutil
 import pytest
 from distributed import Client
-from studies_support import as_one_worker, command
+from studies_support import command, same
 from study import Status, Study
 from study.__main__ import study_file
 from study.compute import run
-from study.results import open_results
-from study.runs import Result, Runner
+from study.dataset import open_results
+from study.instance import Result
 from study.worker import run_chunk
 
 OF_CALLER = signal.getsignal(signal.SIGINT)  # a command in the background ignores it from the start
@@ -81,7 +81,7 @@ def stopped(words: tuple, out: Path, ending: int) -> str:
 
 
 def test_a_study_continues_where_it_was_after_an_interrupt_a_killed_caller_and_a_killed_worker(
-    many: Path, fmu_path: Path, runner: Runner
+    many: Path, fmu_path: Path, alone
 ) -> None:
     out = many.with_suffix(".zarr")
     words = (many, "--fmu", fmu_path, "--out", out, "--workers", 2)
@@ -98,7 +98,7 @@ def test_a_study_continues_where_it_was_after_an_interrupt_a_killed_caller_and_a
     assert process.returncode == 0
     assert f"{done} of {status.size} wheels are there already" in errors
     assert kept.items() <= chunks(out).items()
-    assert as_one_worker(runner, study_file(str(many))["study"], open_results(out))
+    assert same(alone(study_file(str(many))["study"]), open_results(out))
 
 
 def full_at(size: int) -> object:
@@ -107,7 +107,7 @@ def full_at(size: int) -> object:
 
 
 def test_a_full_disk_is_a_message_and_the_study_continues_when_there_is_space(
-    many: Path, fmu_path: Path, runner: Runner
+    many: Path, fmu_path: Path, alone
 ) -> None:
     """A wheel that rolls on for 10 s has a history too large for the limit, one that falls at once has not."""
     many.write_text(OFTEN)
@@ -122,7 +122,7 @@ def test_a_full_disk_is_a_message_and_the_study_continues_when_there_is_space(
     assert not list(out.rglob("*.partial"))
     assert command(*words).wait(60) == 0
     assert kept.items() <= chunks(out).items()
-    assert as_one_worker(runner, study_file(str(many))["study"], open_results(out))
+    assert same(alone(study_file(str(many))["study"]), open_results(out))
 
 
 def die_at_upright(*task: object) -> Result | None:

@@ -16,13 +16,13 @@ import pytest
 import values
 import xarray as xr
 from distributed import Client, LocalCluster, SubprocessCluster
-from studies_support import ROOT, as_one_worker, command, same, single
+from studies_support import ROOT, command, same
 from study import Status, Study, StudyError, compute, curves, in_degrees
 from study.__main__ import study_file
 from study.compute import run
-from study.options import arguments_of, fields_of
-from study.results import open_results
-from study.runs import Result, Runner
+from study.dataset import open_results
+from study.instance import Result
+from study.options import arguments_of, study_of
 from study.worker import run_chunk
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
@@ -56,16 +56,16 @@ def test_the_guides_command_line_is_the_study_of_its_file(tmp_path: Path) -> Non
     file = tmp_path / "grid.py"
     file.write_text(EXAMPLE)
     words = shlex.split(re.search(r"scripts/study (--vary.*?)```", GUIDE, re.DOTALL)[1].replace("\\\n", " "))
-    assert Study(**fields_of(arguments_of(words))).spec() == study_file(str(file))["study"].spec()
+    assert study_of(arguments_of(words)) == study_file(str(file))["study"]
     other = ["s=0.02" if word == "s=0.01" else word for word in words]
-    assert Study(**fields_of(arguments_of(other))).spec() != study_file(str(file))["study"].spec()
+    assert study_of(arguments_of(other)) != study_file(str(file))["study"]
 
 
-def test_many_workers_and_one_give_bit_identical_results(fates: Study, here: Path, runner: Runner) -> None:
-    assert as_one_worker(runner, fates, open_results(here))
+def test_many_workers_and_one_give_bit_identical_results(fates: Study, here: Path, alone) -> None:
+    assert same(alone(fates), open_results(here))
     other = open_results(here).load()
     other["theta"][2, 1, 3, 100] = 0.0
-    assert not as_one_worker(runner, fates, other)
+    assert not same(alone(fates), other)
 
 
 def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(fates: Study, here: Path, fmu_path: Path) -> None:
@@ -189,19 +189,20 @@ VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3], "m=500
 
 @pytest.mark.parametrize(("axis", "expected"), VARY.items())
 def test_values_on_the_command_line_take_the_units_of_their_variables(axis: str, expected: list[float]) -> None:
-    ((_, got),) = fields_of(arguments_of(["--vary", axis]))["grid"].items()
+    ((_, got),) = study_of(arguments_of(["--vary", axis])).grid.items()
     within(absolute_error(got, expected), 8 * EPSILON, f"{axis}, SI")
-    ((_, one),) = fields_of(arguments_of(["--set", re.split("[:,]", axis)[0]]))["values"].items()
+    words = ["--vary", "J_x=1,2", "--set", re.split("[:,]", axis)[0]]
+    ((_, one),) = study_of(arguments_of(words)).values.items()
     within(absolute_error(one, expected[0]), 8 * EPSILON, f"{axis}, the first, SI")
 
 
 def test_a_time_on_the_command_line_takes_a_unit() -> None:
-    assert fields_of(arguments_of(["--stop-time", "2min", "--interval", "5ms"]))["stop_time"] == 120.0
+    assert arguments_of(["--stop-time", "2min", "--interval", "5ms"]).stop_time == 120.0
 
 
 def test_a_ready_wheel_gives_what_the_command_line_does_not() -> None:
     words = ["--wheel", "coin", "--vary", "r=1mm,2mm", "--set", "m=8g"]
-    study = Study(**fields_of(arguments_of(words)))
+    study = study_of(arguments_of(words))
     assert study.values["m"] == 0.008 and study.values["r_0"] == 0.011775 and "r" not in study.values
     assert study.grid == {"r": [0.001, 0.002]} and study.values["phi_dot_start"] < -10
 
@@ -233,7 +234,7 @@ def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> No
 
 
 def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(
-    runner: Runner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    alone, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The paper's shape at 1/100 of its size and 1/10^6 of its mass: ten times as fast, with the same angles."""
     measures = {"low": "lowest", "down": "first(plane_angle < 1.0)", "slow": "first(omega_z > -1.9)", "top": "max(Z_O)"}
@@ -244,11 +245,12 @@ def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(
     values.WHEELS.write_text(json.dumps({"small": {"title": "", "parameters": body}}))
     small = study.scaled("small")
     assert (small.stop_time, small.grid["M_3"][1]) == pytest.approx((0.4, -0.2e-8))
-    paper, scaled, unscaled = (single(runner, one) for one in (study, small, replace(small, grid=grid)))
+    paper, scaled, unscaled = (alone(one) for one in (study, small, replace(small, grid=grid)))
     for name, factor in {"low": 1, "down": 0.1, "slow": 0.1, "top": 0.01}.items():
-        there = np.isfinite(paper[name])
-        assert there.any() and (there == np.isfinite(scaled[name])).all()
-        within(relative_error(scaled[name][there], factor * paper[name][there]), 1e-6, f"{name}, relative")
+        before, after = paper[name].values, scaled[name].values
+        there = np.isfinite(before)
+        assert there.any() and (there == np.isfinite(after)).all()
+        within(relative_error(after[there], factor * before[there]), 1e-6, f"{name}, relative")
     beyond(absolute_error(unscaled["low"], paper["low"]), 0.1, "lowest angle with the paper's s and M_3, rad")
     with pytest.raises(StudyError, match="values of m, which are those of the wheel small"):
         replace(study, values={"m": 1.0}).scaled("small")
