@@ -1,6 +1,6 @@
 """One instance of wheel.fmu that runs one wheel after the other: fmi2Reset between runs, never a second instance.
 
-Built on fmpy's FMU2Slave; march.c steps along the communication points, where Python would take longer than the wheel.
+march.c steps along the communication points, where Python would take longer than the wheel.
 A start that several wheels share runs once. A wheel that fails is a status with the FMU's message; nothing in run_block
 raises because of what a wheel does.
 """
@@ -15,9 +15,9 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-from fmpy import read_model_description
+from fmpy import instantiate_fmu, read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2FMUstate
+from fmpy.fmi2 import fmi2FMUstate
 from numpy.typing import NDArray
 
 from .plan import PLANE_ANGLE, Measure, Status, Study, can_change, counters_of
@@ -37,23 +37,19 @@ ENDINGS = {
 }
 
 
-class FMU2Instance(FMU2Slave):
-    """The only instance of a worker. fmpy chooses the functions to load by the name FMU2."""
+class Instance:
+    """The only instance of a worker, made by fmpy."""
 
     def __init__(self, folder: str) -> None:
         description = read_model_description(folder, validate=False)
-        identifier = description.coSimulation.modelIdentifier
-        super().__init__(guid=description.guid, unzipDirectory=folder, modelIdentifier=identifier, instanceName="study")
         self.variables = {v.name: v for v in description.modelVariables}
-        self._by_type = cache(self._buffers)
-        self._snapshot, self._kept = fmi2FMUstate(), None  # at branch_at: values and messages of that start
         self.messages: list[str] = []  # since the start of the run
-        self._logging = fmi2CallbackFunctions()
-        self._logging.logger = fmi2CallbackLoggerTYPE(self._log)
-        self.instantiate(callbacks=self._logging)
+        self.fmu = instantiate_fmu(folder, description, "CoSimulation", logger=self._log)
+        self._buffers = cache(self._buffers_of)
+        self._snapshot, self._kept = fmi2FMUstate(), None  # at branch_at: values and messages of that start
         self._march = CDLL(str(Path(folder) / MARCH)).march
         self._march.argtypes = (c_void_p,) * 4 + (c_size_t, c_void_p, c_size_t, c_void_p, c_void_p)
-        self._functions_of_march = [cast(self.dll[name], c_void_p) for name in ("fmi2DoStep", "fmi2GetReal")]
+        self._functions_of_march = [cast(self.fmu.dll[name], c_void_p) for name in ("fmi2DoStep", "fmi2GetReal")]
 
     def _log(self, _environment: object, _name: bytes, status: int, _category: bytes, text: bytes) -> None:
         if status != OK:
@@ -63,52 +59,50 @@ class FMU2Instance(FMU2Slave):
         """The value references of some variables, as the FMU takes them."""
         return (c_uint * len(names))(*(self.variables[name].valueReference for name in names))
 
-    def _buffers(self, names: tuple[str, ...]) -> list[tuple[str, list[str], object, object]]:
-        """Type, names, value references and a buffer, for each type that there is among the names."""
-        types = {kind: [name for name in names if self.variables[name].type == kind] for kind in NUMBERS}
-        return [
-            (kind, mine, self.references(mine), (NUMBERS[kind] * len(mine))()) for kind, mine in types.items() if mine
-        ]
+    def _buffers_of(self, names: tuple[str, ...]) -> list[tuple[str, list[str], tuple[object, ...]]]:
+        """For each type among the names: the type, the names, and the arguments of fmi2Get and fmi2Set."""
+        found = []
+        for kind, number in NUMBERS.items():
+            if mine := [name for name in names if self.variables[name].type == kind]:
+                found.append((kind, mine, (self.references(mine), len(mine), (number * len(mine))())))
+        return found
 
     def set(self, values: Mapping[str, float]) -> None:
-        for kind, names, references, buffer in self._by_type(tuple(values)):
-            buffer[:] = [values[name] if kind == "Real" else int(values[name]) for name in names]
-            getattr(self, f"fmi2Set{kind}")(self.component, references, len(references), buffer)
+        for kind, names, arguments in self._buffers(tuple(values)):
+            arguments[-1][:] = [values[name] if kind == "Real" else int(values[name]) for name in names]
+            getattr(self.fmu, f"fmi2Set{kind}")(self.fmu.component, *arguments)
 
     def get(self, names: tuple[str, ...]) -> dict[str, float]:
         found = {}
-        for kind, mine, references, buffer in self._by_type(names):
-            getattr(self, f"fmi2Get{kind}")(self.component, references, len(references), buffer)
-            found.update(zip(mine, buffer, strict=True))
+        for kind, mine, arguments in self._buffers(names):
+            getattr(self.fmu, f"fmi2Get{kind}")(self.fmu.component, *arguments)
+            found.update(zip(mine, arguments[-1], strict=True))
         return found
 
-    def begin(
-        self, values: Mapping[str, float], tolerance: float | None, branch_at: float | None
-    ) -> tuple[Status, float]:
-        """To t = 0, or to `branch_at`: restored if the start that was kept last had these values, else run and kept."""
-        start = (values, tolerance, branch_at)
+    def begin(self, values: Mapping[str, float], study: Study) -> tuple[Status, float]:
+        """To t = 0, or to `branch_at`: restored if the start that was kept last had these values, else run and kept.
+
+        FMICallException if the FMU refuses a value.
+        """
+        fmu, start = self.fmu, (values, study.tolerance, study.branch_at)
         if self._kept and self._kept[0] == start:
             self.messages = [*self._kept[1]]
-            self.setFMUstate(self._snapshot)
-            return Status.reached, branch_at
+            fmu.setFMUstate(self._snapshot)
+            return Status.reached, study.branch_at
         self._kept, self.messages = None, []
         try:
-            self.reset()
+            fmu.reset()
         except FMICallException:  # after fmi2Fatal the standard allows no further call to an instance
-            self.instantiate(callbacks=self._logging)
-        try:
-            self.set(values)
-            self.setupExperiment(tolerance)
-            self.enterInitializationMode()
-            self.exitInitializationMode()
-        except FMICallException:
-            self.messages = self.messages or ["A value is outside its limits."]
-            return Status.refused, np.nan
-        if branch_at is None:
+            fmu.instantiate(callbacks=fmu.callbacks)
+        self.set(values)
+        fmu.setupExperiment(study.tolerance)
+        fmu.enterInitializationMode()
+        fmu.exitInitializationMode()
+        if study.branch_at is None:
             return Status.reached, 0.0
-        status, end, _ = self.march(np.array([0.0, branch_at]), self.references([]), np.empty(0))
+        status, end, _ = self.march(np.array([0.0, study.branch_at]), self.references([]), np.empty(0))
         if status == Status.reached:
-            self.fmi2GetFMUstate(self.component, byref(self._snapshot))
+            fmu.fmi2GetFMUstate(fmu.component, byref(self._snapshot))
             self._kept = (start, [*self.messages])
         return status, end
 
@@ -118,16 +112,16 @@ class FMU2Instance(FMU2Slave):
         Returns the fate of the wheel, its time [s], and the number of rows. `references` are of Real variables.
         """
         reached, arrays = c_size_t(), (times.ctypes.data, len(times), references, len(references), rows.ctypes.data)
-        status = self._march(*self._functions_of_march, self.component, *arrays, byref(reached))
+        status = self._march(*self._functions_of_march, self.fmu.component, *arrays, byref(reached))
         end, fate = times[max(reached.value, 1) - 1], Status.reached if status <= WARNING else Status.failed
         if status == DISCARD:
-            end, logged = self.getRealStatus(LAST_SUCCESSFUL_TIME), " ".join(self.messages)
-            if self.getBooleanStatus(TERMINATED):
+            end, logged = self.fmu.getRealStatus(LAST_SUCCESSFUL_TIME), " ".join(self.messages)
+            if self.fmu.getBooleanStatus(TERMINATED):
                 fate = next((fate for words, fate in ENDINGS.items() if words in logged), fate)
         return fate, end, reached.value
 
 
-def run_block(fmu: FMU2Instance, study: Study, points: Mapping[str, Array]) -> Result:
+def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Result:
     """The outcomes of wheels whose values by name are broadcast against each other, in C order.
 
     Of the study only what all its wheels have in common is used.
@@ -140,24 +134,23 @@ def run_block(fmu: FMU2Instance, study: Study, points: Mapping[str, Array]) -> R
     if late:  # those that share a start in a row
         order = sorted(order, key=lambda i: [*starts[i].values()])
     counters, sampled, times = counters_of(fmu.variables), tuple(study.sampled), np.array(study.times)
-    at_end = {name: m for name, m in study.parsed.items() if m.kind == "last"}
-    measures = {name: m for name, m in study.parsed.items() if m.kind != "last"}
+    at_end, measures = ({n: m for n, m in study.parsed.items() if (m.kind == "last") == last} for last in (True, False))
     asked = tuple(dict.fromkeys([*(m.variable for m in at_end.values()), *counters]))
     references, rows = fmu.references(sampled), np.empty((len(times) + 1, len(sampled)))  # one more for the end
-    numbers = ("status", "end_time", "fmu_time", "wall_time", *measures)
-    result = {name: np.full(len(starts), np.nan) for name in numbers}
+    result = {n: np.full(len(starts), np.nan) for n in ("status", "end_time", "fmu_time", "wall_time", *measures)}
     result |= {name: np.full((len(starts), len(times)), np.nan) for name in study.history}
     messages, ends = [""] * len(starts), [{}] * len(starts)
 
     for i in order:
         begin, n = perf_counter(), 0
         try:
-            status, end = fmu.begin(starts[i], study.tolerance, study.branch_at)
+            status, end = fmu.begin(starts[i], study)
             if status == Status.reached:
                 fmu.set(changes[i])
                 status, end, n = fmu.march(times, references, rows)
         except FMICallException:
             status, end = Status.refused, np.nan
+            fmu.messages = fmu.messages or ["A value is outside its limits."]
         if status != Status.refused:
             with suppress(FMICallException):  # an instance that failed may be unable to answer
                 ends[i] = fmu.get(asked)

@@ -19,13 +19,13 @@ from threading import Lock
 from distributed import get_worker
 from fmpy import extract
 
-from .instance import MARCH, Array, FMU2Instance, Result, run_block
+from .instance import MARCH, Array, Instance, Result, run_block
 from .plan import Study, StudyError
 
 Region = tuple[slice, ...]  # of the results: the wheels of a chunk
 FMU = "wheel.fmu"  # its name inside the uploaded file
 MARK = "caller"  # the attribute by which a worker recognizes the caller's store
-_instances: dict[str, FMU2Instance] = {}  # by the name of the uploaded file; one process works for one worker
+_instances: dict[str, Instance] = {}  # by the name of the uploaded file; one process works for one worker
 _turn = Lock()  # a worker's threads take turns at the instance
 
 
@@ -42,7 +42,7 @@ def run_chunk(
             folder = tempfile.mkdtemp(prefix="wheel-", dir=scratch)
             shutil.unpack_archive(scratch / upload, folder, "zip")
             extract(f"{folder}/{FMU}", folder)
-            _instances[upload] = FMU2Instance(folder)
+            _instances[upload] = Instance(folder)
         result = run_block(_instances[upload], study, points)
     try:
         write(place, mark, region, result)

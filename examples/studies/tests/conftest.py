@@ -21,7 +21,7 @@ sys.path[:0] = [str(STUDIES), str(STUDIES.parent / "python")]
 from study import Study  # noqa: E402
 from study.compute import cluster  # noqa: E402
 from study.dataset import axes_of, points, template  # noqa: E402
-from study.instance import FMU2Instance, run_block  # noqa: E402
+from study.instance import Instance, run_block  # noqa: E402
 from study.worker import compiled  # noqa: E402
 
 
@@ -30,7 +30,7 @@ def alone(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[
     """Runs a study by one instance in this process, one wheel after the other."""
     folder = extract(str(fmu_path), str(tmp_path_factory.mktemp("fmu")))
     compiled(Path(folder))
-    description, instance = read_model_description(folder), FMU2Instance(folder)
+    description, instance = read_model_description(folder), Instance(folder)
 
     def run(study: Study) -> xr.Dataset:
         study.check(instance.variables)
