@@ -17,7 +17,7 @@ from fmpy.model_description import ModelDescription, ScalarVariable
 from matplotlib.lines import Line2D
 
 from .instance import Array
-from .plan import PLANE_ANGLE, POINT, Measure, Status, Study, counters_of
+from .plan import PLANE_ANGLE, POINT, Status, Study, counters_of, parse_measure
 from .worker import Region
 
 Points = dict[str, Array]  # values by name
@@ -69,7 +69,7 @@ def template(study: Study, axes: Points, description: ModelDescription, size: in
     shape = shape if study.grid else {POINT: max(shape.values())}
     chunks = da.core.normalize_chunks("auto", tuple(shape.values()), limit=size, dtype="i1")
     columns = OWN | {name: (-1, "i8", *about[name]) for name in counters_of(variables)}
-    columns |= {name: (np.nan, "f8", *measured(m, variables[m.variable])) for name, m in study.parsed.items()}
+    columns |= {name: (np.nan, "f8", *measured(text, variables)) for name, text in study.measures.items()}
     columns |= {name: (np.nan, "f8", *about[name]) for name in study.history}
     results = {}
     for name, (nothing, dtype, *texts) in columns.items():
@@ -90,11 +90,13 @@ def attributes(unit: str | None, name: str, description: str | None) -> dict[str
     return {k: v for k, v in (("units", unit), ("long_name", name), ("description", description)) if v}
 
 
-def measured(measure: Measure, variable: ScalarVariable) -> tuple[str, str, str]:
-    """Unit, label and description of a measure of that variable."""
+def measured(text: str, variables: dict[str, ScalarVariable]) -> tuple[str, str, str]:
+    """Unit, label and description of a measure."""
+    measure = parse_measure(text)
+    variable = variables[measure.variable]
     quantity = PLANE if measure.quantity == PLANE_ANGLE else variable.description
     meaning = MEANING[measure.kind].format(measure.limit)
-    return "s" if measure.is_time else variable.unit, label(measure.text), f"{quantity}; {meaning}"
+    return "s" if measure.is_time else variable.unit, label(text), f"{quantity}; {meaning}"
 
 
 def label(text: str) -> str:

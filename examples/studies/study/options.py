@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 import csv
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from xml.etree import ElementTree
 from zipfile import BadZipFile, ZipFile
@@ -22,6 +22,7 @@ from values import Fault, Variable, number, parted, ready, scale, suggestion, va
 
 from study.plan import Study, StudyError  # noqa: E402
 
+NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))  # the studies that lie beside this package
 SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
 USAGE = """examples:
   ./scripts/study fates                     one of the examples: {names}
@@ -53,16 +54,6 @@ def pairs(texts: list[str]) -> dict[str, str]:
     return dict(text.partition("=")[::2] for text in texts)
 
 
-def read_list(path: Path, value: Callable[[str, str], float]) -> dict[str, list[float]]:
-    """The columns of a CSV file of numbers."""
-    try:
-        with path.open(newline="") as file:
-            rows = list(csv.DictReader(file))
-        return {name: [value(name, row[name]) for row in rows] for name in rows[0]}
-    except (OSError, UnicodeError, Fault, IndexError, TypeError, AttributeError) as fault:
-        raise StudyError(f"--list {path}: a row of names, then rows of numbers, are expected ({fault}).") from None
-
-
 def study_of(arguments: argparse.Namespace) -> Study:
     """The study that the options describe, checked."""
     known = variables(description(arguments.fmu))
@@ -74,18 +65,26 @@ def study_of(arguments: argparse.Namespace) -> Study:
     def value(name: str, text: str) -> float:
         return number(name, text, unit(name))
 
-    fields = {name: getattr(arguments, name) for name in ("history", "stop_time", "interval", "tolerance", "branch_at")}
-    fields |= {"measures": pairs(arguments.measure)} if arguments.measure else {}
     grid = {name: numbers(name, text, unit(name)) for name, text in pairs(arguments.vary).items()}
-    rows = read_list(arguments.list, value) if arguments.list else {}
+    rows = {name: [value(name, text) for text in column] for name, *column in columns(arguments.list)}
     if bool(grid) == bool(rows):
         raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
     wheel = ready(arguments.wheel) if arguments.wheel else {}
     values = {name: x for name, x in wheel.items() if name not in grid | rows}
     values |= {name: value(name, text) for name, text in pairs(arguments.set).items()}
+    fields = {name: getattr(arguments, name) for name in ("history", "stop_time", "interval", "tolerance", "branch_at")}
+    fields |= {"measures": pairs(arguments.measure)} if arguments.measure else {}
     study = Study(grid=grid, list=rows, values=values, **fields)
     study.check(known)
     return study
+
+
+def columns(path: Path | None) -> list[tuple[str, ...]]:
+    """Of a CSV file: each begins with a name."""
+    try:
+        return [*zip(*filter(None, csv.reader(path.open(newline=""))), strict=True)] if path else []
+    except (OSError, ValueError) as fault:
+        raise StudyError(f"--list {path}: a row of names, then rows of numbers, are expected ({fault}).") from None
 
 
 def description(fmu: Path) -> bytes:
@@ -123,21 +122,16 @@ def file_of(name: str) -> Path:
     """The file of a study that is given by its path or as an example's name."""
     path = Path(name) if name.endswith(".py") else EXAMPLES / f"{name}.py"
     if not path.is_file():
-        meant = suggestion(name, dict.fromkeys(example_names(), ""))
-        raise StudyError(f"There is no study {name}; the examples are {', '.join(example_names())}.{meant}")
+        meant = suggestion(name, dict.fromkeys(NAMES, ""))
+        raise StudyError(f"There is no study {name}; the examples are {', '.join(NAMES)}.{meant}")
     return path
-
-
-def example_names() -> list[str]:
-    """The studies that lie beside this package."""
-    return sorted(path.stem for path in EXAMPLES.glob("*.py"))
 
 
 def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="./scripts/study",
         description="Runs many wheels on all cores or on a Dask cluster. Started again, it continues where it stopped.",
-        epilog=USAGE.format(names=", ".join(example_names()), wheels=", ".join(wheels())),
+        epilog=USAGE.format(names=", ".join(NAMES), wheels=", ".join(wheels())),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add, several = parser.add_argument, {"action": "append", "default": []}
@@ -166,12 +160,9 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
 if __name__ == "__main__":
     try:
         arguments = arguments_of()
-        if not arguments.study:
-            study_of(arguments)
-        else:
-            file_of(arguments.study)
-            if arguments.wheel:
-                ready(arguments.wheel)
+        if arguments.wheel:
+            ready(arguments.wheel)
+        _ = file_of(arguments.study) if arguments.study else study_of(arguments)
     except (StudyError, Fault) as fault:
         print(f"study: {fault}", file=sys.stderr)
         sys.exit(2)

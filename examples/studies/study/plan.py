@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     import xarray
@@ -47,14 +47,12 @@ class Status(IntEnum):
     grip = 5  # mu_required came to mu_max
 
 
-@dataclass(frozen=True)
-class Measure:
+class Measure(NamedTuple):
     """One number of a run: `kind` is last, min, max, mean, < or >; SI units, `limit` in the quantity's unit."""
 
     kind: str
     quantity: str
     limit: float = 0.0
-    text: str = ""
 
     @property
     def variable(self) -> str:
@@ -76,8 +74,8 @@ def parse_measure(text: str) -> Measure:
             "first(name < number) or first(name > number)."
         )
     if found["side"]:
-        return Measure(found["side"], found["watched"], float(found["limit"]), text)
-    return Measure(found["kind"] or "last", found["of"] or found["last"], text=text)
+        return Measure(found["side"], found["watched"], float(found["limit"]))
+    return Measure(found["kind"] or "last", found["of"] or found["last"])
 
 
 def can_change(variable: Variable) -> bool:
