@@ -7,8 +7,6 @@ a linear-quadratic regulator from the same matrices, in co-simulation; an optima
 Straight rolling: upright, along X, omega_z < 0. SI units.
 """
 
-from __future__ import annotations
-
 import shutil
 import sys
 from contextlib import contextmanager, suppress

@@ -1,7 +1,5 @@
 """One wheel.fmu through plain FMPy, for the scripts of this folder: from the file to the first communication point."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

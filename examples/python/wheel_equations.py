@@ -5,8 +5,6 @@ and the ground's force at a state, in SI. `./scripts/run` or `./scripts/build` b
 variable WHEEL_BUILD names its folder where that is another than build/release.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import re

@@ -1,7 +1,5 @@
 """The control engineer's example: each of its three parts against what it must come to."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The scripts for importers pass on the built FMU, and fail where the feature that they try is missing."""
 
-from __future__ import annotations
-
 import runpy
 import sys
 from collections.abc import Callable
@@ -55,6 +53,6 @@ def test_the_script_passes_but_not_in_an_importer_without_the_feature(
     assert passed.count("pass: ") == 1
     monkeypatch.setattr(*MISSING[name])
     if name == "serialization":  # the other process is the one that cannot
-        assert run(name, "00").strip() not in passed
+        assert run(name, "00") != passed.split(" at 2 s ")[1]
     else:
         assert "pass: " not in run(name)

@@ -4,8 +4,6 @@ The caller hands out chunks, about two seconds of work each. Workers write the r
 store; else the results come back, and the caller writes them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import sys

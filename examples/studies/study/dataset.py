@@ -1,7 +1,5 @@
 """The labelled dataset of a study: empty before any wheel has run, opened, drawn, exported, summarized."""
 
-from __future__ import annotations
-
 import json
 import platform
 import re

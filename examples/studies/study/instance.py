@@ -5,8 +5,6 @@ A start that several wheels share runs once. A wheel that fails is a status with
 raises because of what a wheel does.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from ctypes import CDLL, byref, c_double, c_int, c_size_t, c_uint, c_void_p, cast
@@ -130,9 +128,7 @@ def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Resul
     late = [name for name in points if study.branch_at is not None and can_change(fmu.variables[name])]
     changes = [dict(zip(points, row, strict=True)) for row in zip(*columns, strict=True)]
     starts = [{n: change.pop(n) for n in points if n not in late} | study.values for change in changes]
-    order = range(len(starts))
-    if late:  # those that share a start in a row
-        order = sorted(order, key=lambda i: [*starts[i].values()])
+    order = sorted(range(len(starts)), key=lambda i: [*starts[i].values()] if late else i)  # a shared start in a row
     counters, sampled, times = counters_of(fmu.variables), tuple(study.sampled), np.array(study.times)
     at_end, measures = ({n: m for n, m in study.parsed.items() if (m.kind == "last") == last} for last in (True, False))
     asked = tuple(dict.fromkeys([*(m.variable for m in at_end.values()), *counters]))
@@ -166,12 +162,11 @@ def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Resul
                 result[name][i] = number(measure, t, rows[: len(t), sampled.index(measure.variable)])
         result["wall_time"][i] = perf_counter() - begin
 
-    result["message"] = np.array(messages, "T")
     result |= {name: np.array([end.get(name, -1) for end in ends]) for name in counters}
     for name, measure in at_end.items():
         values = np.array([end.get(measure.variable, np.nan) for end in ends])
         result[name] = plane_angle(values) if measure.quantity == PLANE_ANGLE else values
-    return result
+    return result | {"message": np.array(messages, "T")}
 
 
 def number(measure: Measure, t: Array, x: Array) -> float:

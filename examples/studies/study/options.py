@@ -3,8 +3,6 @@
 Names are checked against the FMU's modelDescription.xml. Values are in SI units, or have a unit behind them.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import sys

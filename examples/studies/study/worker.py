@@ -5,8 +5,6 @@ join later too, before they get any task. A worker loads zarr only to write its 
 the caller's store, which has the caller's mark, they go back to the caller.
 """
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import tempfile

@@ -1,7 +1,5 @@
 """The package of ./scripts/study on the import path, workers and an object store, and small studies to run."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable, Iterator

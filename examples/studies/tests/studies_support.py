@@ -1,7 +1,5 @@
 """Shared by the tests of studies: comparing results bit by bit, and the command as a process."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

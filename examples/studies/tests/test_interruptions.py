@@ -1,7 +1,5 @@
 """Nothing is lost, and nothing that is kept is run again, when a caller or a worker is killed or the disk is full."""
 
-from __future__ import annotations
-
 import os
 import resource
 import shlex
@@ -53,9 +51,7 @@ def begun(words: list[object], out: Path) -> tuple[subprocess.Popen, list[psutil
     return process, workers
 
 
-def test_a_study_continues_where_it_was_after_an_interrupt_a_killed_caller_and_a_killed_worker(
-    tmp_path: Path, fmu_path: Path, alone
-) -> None:
+def test_a_study_continues_after_an_interrupt_a_killed_caller_and_a_killed_worker(tmp_path, fmu_path, alone) -> None:
     """An interrupt, as by Ctrl-C, reaches the whole session; it is for the caller alone."""
     out, kept = tmp_path / "many.zarr", {}
     words = [*MANY, "--fmu", fmu_path, "--out", out, "--workers", 2]
@@ -82,9 +78,7 @@ def full_at(size: int) -> object:
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
 
 
-def test_a_full_disk_is_a_message_and_the_study_continues_when_there_is_space(
-    tmp_path: Path, fmu_path: Path, alone
-) -> None:
+def test_a_full_disk_is_a_message_and_the_study_continues_when_there_is_space(tmp_path, fmu_path, alone) -> None:
     """A wheel that rolls on for 10 s has a history too large for the limit, one that falls at once has not."""
     out = tmp_path / "often.zarr"
     words = [*OFTEN, "--fmu", fmu_path, "--out", out, "--workers", 1]
