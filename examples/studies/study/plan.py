@@ -112,7 +112,7 @@ class Study:
       list    name -> values, all of one length; the k-th wheel takes the k-th of each
       sample  name -> (lowest, highest); `count` wheels, a Latin hypercube drawn with `seed`
     values      name -> value, the same for all wheels; a name that is missing keeps the FMU's default
-    measures    name of a result -> text, see measures.py
+    measures    name of a result -> text, as above
     history     Real variables kept at every communication point
     interval    s between communication points, at which min, max, mean, first and the history are evaluated
     branch_at   s; until then tunable parameters and inputs of the grid keep their values of `values`: runs that differ
@@ -134,7 +134,8 @@ class Study:
 
     def __post_init__(self) -> None:
         plain = {kind: {n: numbers(n, x) for n, x in getattr(self, kind).items()} for kind in KINDS}
-        plain |= {"values": {n: float(x) for n, x in self.values.items()}, "history": [*self.history]}
+        plain |= {"values": {n: float(x) for n, x in self.values.items()}}
+        plain |= {"history": [*self.history], "count": int(self.count)}
         for name, value in plain.items():
             object.__setattr__(self, name, value)
 
