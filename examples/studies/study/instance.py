@@ -98,19 +98,24 @@ class Instance:
         fmu.exitInitializationMode()
         if study.branch_at is None:
             return Status.reached, 0.0
-        status, end, _ = self.march(np.array([0.0, study.branch_at]), self.references([]), np.empty(0))
+        times = np.array([0.0, study.branch_at])
+        status, end, _ = self.march(times, self.way(times, (), np.empty(0)))
         if status == Status.reached:
             fmu.fmi2GetFMUstate(fmu.component, byref(self._snapshot))
             self._kept = (start, [*self.messages])
         return status, end
 
-    def march(self, times: Array, references: object, rows: Array) -> tuple[Status, float, int]:
+    def way(self, times: Array, names: tuple[str, ...], rows: Array) -> tuple[object, ...]:
+        """For march: the times, and a row for each, to be filled with the values of these Real variables."""
+        return times.ctypes.data, len(times), self.references(names), len(names), rows.ctypes.data
+
+    def march(self, times: Array, way: tuple[object, ...]) -> tuple[Status, float, int]:
         """Steps along the times from times[0], the present one, and fills a row at each time that is reached.
 
-        Returns the fate of the wheel, its time [s], and the number of rows. `references` are of Real variables.
+        Returns the fate of the wheel, its time [s], and the number of rows.
         """
-        reached, arrays = c_size_t(), (times.ctypes.data, len(times), references, len(references), rows.ctypes.data)
-        status = self._march(*self._functions_of_march, self.fmu.component, *arrays, byref(reached))
+        reached = c_size_t()
+        status = self._march(*self._functions_of_march, self.fmu.component, *way, byref(reached))
         end, fate = times[max(reached.value, 1) - 1], Status.reached if status <= WARNING else Status.failed
         if status == DISCARD:
             end, logged = self.fmu.getRealStatus(LAST_SUCCESSFUL_TIME), " ".join(self.messages)
@@ -132,7 +137,8 @@ def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Resul
     counters, sampled, times = counters_of(fmu.variables), tuple(study.sampled), np.array(study.times)
     at_end, measures = ({n: m for n, m in study.parsed.items() if (m.kind == "last") == last} for last in (True, False))
     asked = tuple(dict.fromkeys([*(m.variable for m in at_end.values()), *counters]))
-    references, rows = fmu.references(sampled), np.empty((len(times) + 1, len(sampled)))  # one more for the end
+    rows = np.empty((len(times) + 1, len(sampled)))  # one more for the end
+    way = fmu.way(times, sampled, rows)
     result = {n: np.full(len(starts), np.nan) for n in ("status", "end_time", "fmu_time", "wall_time", *measures)}
     result |= {name: np.full((len(starts), len(times)), np.nan) for name in study.history}
     messages, ends = [""] * len(starts), [{}] * len(starts)
@@ -143,7 +149,7 @@ def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Resul
             status, end = fmu.begin(starts[i], study)
             if status == Status.reached:
                 fmu.set(changes[i])
-                status, end, n = fmu.march(times, references, rows)
+                status, end, n = fmu.march(times, way)
         except FMICallException:
             status, end = Status.refused, np.nan
             fmu.messages = fmu.messages or ["A value is outside its limits."]
