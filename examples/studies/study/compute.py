@@ -74,10 +74,11 @@ def run(
     study.check({v.name: v for v in description.modelVariables})
     sha256 = hashlib.sha256(Path(fmu).read_bytes()).hexdigest()
     fingerprint = hashlib.sha256(json.dumps([asdict(study), sha256]).encode()).hexdigest()
-    place, axes, mark = str(out) if "://" in str(out) else str(Path(out).resolve()), axes_of(study), uuid.uuid4().hex
+    place, mark = str(out) if "://" in str(out) else str(Path(out).resolve()), uuid.uuid4().hex
     group = kept(place, fingerprint, overwrite)
     if group and not missing(group):
         return open_results(place)
+    axes = axes_of(study)
     with nullcontext(client) if client else cluster(workers, scheduler) as user:
         with tempfile.TemporaryDirectory() as folder:
             upload = pack(fmu, Path(folder) / f"wheel-{sha256[:16]}.zip")

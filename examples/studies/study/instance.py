@@ -135,7 +135,8 @@ def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Resul
     starts = [{n: change.pop(n) for n in points if n not in late} | study.values for change in changes]
     order = sorted(range(len(starts)), key=lambda i: [*starts[i].values()] if late else i)  # a shared start in a row
     counters, sampled, times = counters_of(fmu.variables), tuple(study.sampled), np.array(study.times)
-    at_end, measures = ({n: m for n, m in study.parsed.items() if (m.kind == "last") == last} for last in (True, False))
+    at_end = {name: m for name, m in study.parsed.items() if m.kind == "last"}
+    measures = {name: m for name, m in study.parsed.items() if name not in at_end}
     asked = tuple(dict.fromkeys([*(m.variable for m in at_end.values()), *counters]))
     rows = np.empty((len(times) + 1, len(sampled)))  # one more for the end
     way = fmu.way(times, sampled, rows)

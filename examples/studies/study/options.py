@@ -160,7 +160,10 @@ if __name__ == "__main__":
         arguments = arguments_of()
         if arguments.wheel:
             ready(arguments.wheel)
-        _ = file_of(arguments.study) if arguments.study else study_of(arguments)
+        if arguments.study:
+            file_of(arguments.study)
+        else:
+            study_of(arguments)
     except (StudyError, Fault) as fault:
         print(f"study: {fault}", file=sys.stderr)
         sys.exit(2)
