@@ -7,8 +7,6 @@ a linear-quadratic regulator from the same matrices, in co-simulation; an optima
 Straight rolling: upright, along X, omega_z < 0. SI units.
 """
 
-from __future__ import annotations
-
 import shutil
 import sys
 from contextlib import contextmanager, suppress
@@ -18,9 +16,9 @@ from tempfile import mkdtemp
 import casadi as ca
 import matplotlib.pyplot as plt
 import numpy as np
-from fmpy import extract, read_model_description
-from fmpy.fmi2 import FMU2Model, FMU2Slave
+from fmpy import extract, instantiate_fmu, read_model_description
 from scipy.linalg import solve_continuous_are
+from scipy.optimize import bisect
 
 with suppress(ImportError):  # of the project; a copy of this folder has matplotlib's own look
     from diagrams import style
@@ -37,12 +35,11 @@ CRITICAL = np.sqrt(m * g * r_0 * J_x / (J_z * (J_z + m * R**2)))  # rad/s, below
 
 
 @contextmanager
-def instance(folder: str, driver: type, **values: float):
-    """An instance with these start values, initialized."""
+def instance(folder: str, kind: str, **values: float):
+    """An instance for "ModelExchange" or "CoSimulation" with these start values, initialized."""
     description = read_model_description(folder)
     references = {v.name: v.valueReference for v in description.modelVariables}
-    fmu = driver(guid=description.guid, unzipDirectory=folder, modelIdentifier="wheel", instanceName="wheel")
-    fmu.instantiate()
+    fmu = instantiate_fmu(folder, description, kind)
     fmu.setReal([references[name] for name in values], list(values.values()))
     fmu.setupExperiment()
     fmu.enterInitializationMode()
@@ -54,9 +51,9 @@ def instance(folder: str, driver: type, **values: float):
         fmu.freeInstance()
 
 
-def linearized(folder: str, omega_z: float, inputs: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
+def linearized(folder: str, omega_z: float, inputs: tuple[str, ...] = ()) -> tuple[np.ndarray, np.ndarray]:
     """A = d derivatives / d states and B = d derivatives / d inputs of straight rolling."""
-    with instance(folder, FMU2Model, **UPRIGHT, phi_dot_start=omega_z) as (fmu, reference):
+    with instance(folder, "ModelExchange", **UPRIGHT, phi_dot_start=omega_z) as (fmu, reference):
         unknowns = [reference[name] for name in DERIVATIVES]
         columns = [fmu.getDirectionalDerivative(unknowns, [reference[name]], [1.0]) for name in (*STATES, *inputs)]
     matrix = np.array(columns).T
@@ -64,22 +61,21 @@ def linearized(folder: str, omega_z: float, inputs: tuple[str, ...]) -> tuple[np
 
 
 def draw_eigenvalues(folder: str, picture: Path) -> float:
-    """The largest real part over the spin; returns the spin at which it vanishes, by bisection."""
+    """The real parts over the spin; returns the spin at which the largest vanishes, by bisection."""
+
+    def real_parts(spin: float) -> np.ndarray:
+        return np.linalg.eigvals(linearized(folder, -spin)[0]).real
+
     spins = np.linspace(0.5, 5, 91)
-    values = [np.linalg.eigvals(linearized(folder, -spin, ())[0]) for spin in spins]
+    values = [real_parts(spin) for spin in spins]
     figure, axes = plt.subplots(figsize=(7.2, 3.6), layout="constrained")
-    axes.plot(np.repeat(spins, len(STATES)), np.real(values).ravel(), ".", ms=3, label="real parts, by wheel.fmu")
+    axes.plot(np.repeat(spins, len(STATES)), np.ravel(values), ".", ms=3, label="real parts, by wheel.fmu")
     axes.axvline(CRITICAL, color="C1", label="critical spin, closed form")
     axes.set(xlabel=r"spin $|\omega_z|$ [rad/s]", ylabel="real part of the eigenvalues [1/s]")
     axes.set_title("Straight rolling, linearized")
     axes.legend()
     figure.savefig(picture, dpi=200)
-    low, high = 1.0, 5.0
-    for _ in range(40):
-        spin = (low + high) / 2
-        unstable = np.linalg.eigvals(linearized(folder, -spin, ())[0]).real.max() > 1e-4
-        low, high = (spin, high) if unstable else (low, spin)
-    return spin
+    return bisect(lambda spin: real_parts(spin).max() - 1e-4, 1.0, 5.0)
 
 
 def regulator(folder: str, omega_z: float) -> np.ndarray:
@@ -96,7 +92,7 @@ def rolled(folder: str, gains: np.ndarray | None, spin: float, h: float = 0.01, 
     """t, Y_O and the lean in degrees, in co-simulation; the controller reads and sets once per step of h, s."""
     begin = {**UPRIGHT, "theta_start": np.pi / 2 - 0.15, "Y_O_start": 0.3, "phi_dot_start": spin}
     rows = []
-    with instance(folder, FMU2Slave, **begin) as (fmu, reference):
+    with instance(folder, "CoSimulation", **begin) as (fmu, reference):
         observed = [reference[n] for n in ("Y_O", "psi", "theta", "theta_dot", "psi_dot", "omega_z")]
         moments = [reference[n] for n in ("M_1", "M_2", "M_3")]
         for t in np.arange(0, stop, h):
@@ -169,7 +165,7 @@ def checked(folder: str, t: np.ndarray, x: np.ndarray, moments: np.ndarray) -> n
     begin = dict(zip(("X_O_start", "Y_O_start", "psi_start", "theta_start", "phi_start"), x[:5, 0], strict=True))
     begin |= {"theta_dot_start": x[5, 0], "psi_dot_start": x[6, 0]}
     begin["phi_dot_start"] = x[7, 0] - x[6, 0] * np.cos(x[3, 0])
-    with instance(folder, FMU2Slave, **begin) as (fmu, reference):
+    with instance(folder, "CoSimulation", **begin) as (fmu, reference):
         for k, h in enumerate(np.diff(t)):
             fmu.setReal([reference["M_1"], reference["M_3"]], list(moments[:, k]))
             fmu.doStep(t[k], h)

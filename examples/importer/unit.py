@@ -1,11 +1,9 @@
 """One wheel.fmu through plain FMPy, for the scripts of this folder: from the file to the first communication point."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 
-from fmpy import extract, read_model_description
+from fmpy import extract, instantiate_fmu, read_model_description
 from fmpy.fmi2 import FMU2Slave
 
 FMU = Path(sys.argv[1] if sys.argv[1:] else Path(__file__).parents[2] / "wheel.fmu")
@@ -16,9 +14,7 @@ REFERENCE = {v.name: v.valueReference for v in DESCRIPTION.modelVariables}
 
 def wheel(**start: float) -> FMU2Slave:
     """A wheel at t = 0 with these real start values, tolerance 1e-8."""
-    identifier = DESCRIPTION.coSimulation.modelIdentifier
-    unit = FMU2Slave(guid=DESCRIPTION.guid, unzipDirectory=FOLDER, modelIdentifier=identifier, instanceName="wheel")
-    unit.instantiate()
+    unit = instantiate_fmu(FOLDER, DESCRIPTION, "CoSimulation")
     unit.setReal(references(*start), list(start.values()))
     unit.setupExperiment(tolerance=1e-8, startTime=0.0)
     unit.enterInitializationMode()

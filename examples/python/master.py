@@ -7,8 +7,7 @@ import shutil
 import sys
 from math import pi
 
-from fmpy import extract, read_model_description
-from fmpy.fmi2 import FMU2Slave
+from fmpy import extract, instantiate_fmu, read_model_description
 
 path, h = (sys.argv[1:] or ["wheel.fmu"])[0], 0.001  # the FMU; the communication step, s
 description = read_model_description(path)
@@ -17,8 +16,7 @@ inputs = [number[name] for name in ("M_1", "M_brake")]
 outputs = [number[name] for name in ("theta", "theta_dot", "omega_z")]
 
 folder = extract(path)
-wheel = FMU2Slave(guid=description.guid, unzipDirectory=folder, modelIdentifier="wheel")
-wheel.instantiate()
+wheel = instantiate_fmu(folder, description, "CoSimulation")
 wheel.setupExperiment(startTime=0.0)
 wheel.enterInitializationMode()
 wheel.setReal([number["theta_start"], number["phi_dot_start"]], [pi / 2, -10.0])  # upright, forward at 3.5 m/s

@@ -3,8 +3,6 @@
 Standard library alone, so that a command can refuse a typing error before anything is installed.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -5,12 +5,10 @@ and the ground's force at a state, in SI. `./scripts/run` or `./scripts/build` b
 variable WHEEL_BUILD names its folder where that is another than build/release.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from ctypes import CFUNCTYPE, POINTER, Structure, byref, c_char_p, c_double, c_int
 from keyword import iskeyword
 from pathlib import Path
@@ -98,36 +96,31 @@ def scene(
     return LIBRARY.wheel_scene(wheel, load, Friction(kind, sigma, omega_s))
 
 
+def _filled(out: Structure | np.ndarray, function: Callable, *arguments: object) -> Structure | np.ndarray:
+    """`out`, which the function fills from the arguments; ctypes passes records by their addresses."""
+    function(*(x.ctypes.data_as(DOUBLES) if isinstance(x, np.ndarray) else x for x in (*arguments, out)))
+    return out
+
+
 def start(formulation: Formulation, wheel: Parameters, motion: Motion) -> np.ndarray:
-    y = np.zeros(formulation.states)
-    formulation.start(byref(wheel), byref(motion), y.ctypes.data_as(DOUBLES))
-    return y
+    return _filled(np.zeros(formulation.states), formulation.start, wheel, motion)
 
 
 def derivative(formulation: Formulation, scene: Scene, y: np.ndarray) -> np.ndarray:
-    y_dot = np.zeros(formulation.states)
-    formulation.derivative(byref(scene), y.ctypes.data_as(DOUBLES), y_dot.ctypes.data_as(DOUBLES))
-    return y_dot
+    return _filled(np.zeros(formulation.states), formulation.derivative, scene, y)
 
 
 def kinematics(formulation: Formulation, wheel: Parameters, y: np.ndarray) -> Kinematics:
-    out = Kinematics()
-    formulation.kinematics(byref(wheel), y.ctypes.data_as(DOUBLES), byref(out))
-    return out
+    return _filled(Kinematics(), formulation.kinematics, wheel, y)
 
 
 def dynamics(formulation: Formulation, scene: Scene, y: np.ndarray) -> Dynamics:
-    out = Dynamics()
-    formulation.dynamics(byref(scene), y.ctypes.data_as(DOUBLES), byref(out))
-    return out
+    return _filled(Dynamics(), formulation.dynamics, scene, y)
 
 
 def rates(formulation: Formulation, scene: Scene, y: np.ndarray, load_dot: Load | None = None) -> ReactionRates:
     """Rates of lambda and tau along the motion; without load_dot the load is constant."""
-    out = ReactionRates()
-    change = byref(load_dot) if load_dot is not None else None
-    LIBRARY.wheel_reaction_rates(byref(formulation), byref(scene), change, y.ctypes.data_as(DOUBLES), byref(out))
-    return out
+    return _filled(ReactionRates(), LIBRARY.wheel_reaction_rates, formulation, scene, load_dot, y)
 
 
 def energy(wheel: Parameters, motion: Kinematics) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from drawing import rolling_inertia, upright_limit, wheel_of
+from matplotlib.ticker import LogLocator
 from study import Study
 from study.options import scale
 
@@ -55,13 +56,8 @@ def draw(rows: pd.DataFrame, stem: Path) -> Path:
         ax.annotate(f"{-spin:.3g} rad/s", (last["s"], last["up_time"]), xytext=(5, apart), **text)
     times, largest = scale(wheel, s=1) * np.array([0.2, 60.0]), rows["s"].max()
     ax.set(yscale="log", xlim=(0, largest), ylim=times, xlabel="coefficient of rolling friction $s$ [m]")
-    ticks = [
-        tick
-        for decade in (0.01, 0.1, 1, 10)
-        for tick in (decade, 2 * decade, 5 * decade)
-        if times[0] <= tick <= times[1]
-    ]
-    ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+    ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    ax.yaxis.set_major_formatter("{x:g}")
     ax.set_ylabel("time until it leans by 30° [s]")
     ax.set_title("solid: the wheel; dashed: spin down at the limit of upright rolling", fontsize=8.5)
     return style.save_png(fig, stem.with_suffix(".png"))

@@ -1,7 +1,5 @@
 """The control engineer's example: each of its three parts against what it must come to."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np
@@ -20,7 +18,7 @@ def folder(fmu) -> str:
 
 def test_the_eigenvalues_vanish_at_the_critical_spin_of_the_closed_form(folder):
     for check, aside in ((beyond, -1e-6), (within, 1e-6)):
-        A, _ = control.linearized(folder, -(control.CRITICAL + aside), ())
+        A, _ = control.linearized(folder, -(control.CRITICAL + aside))
         check(np.linalg.eigvals(A).real.max(), 5e-4, "largest real part, 1/s")
 
 

@@ -1,7 +1,5 @@
 """Shared by the examples' figures: two maps side by side, theta at the start over the spin at the start."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 

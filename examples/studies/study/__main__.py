@@ -1,16 +1,13 @@
 """The command ./scripts/study: a study from a file, one of the examples by name, or one written as options."""
 
-from __future__ import annotations
-
 import argparse
 import runpy
 import sys
 import time
 from pathlib import Path
 
-from .measures import StudyError
-from .options import ROOT, Fault, arguments_of, check, fields_of, file_of
-from .plan import Study
+from .options import ROOT, Fault, arguments_of, file_of, study_of
+from .plan import Study, StudyError
 
 
 def study_file(name: str, wheel: str | None = None) -> dict[str, object]:
@@ -27,31 +24,28 @@ def study_file(name: str, wheel: str | None = None) -> dict[str, object]:
 
 def main(argv: list[str] | None = None) -> int:
     """Runs a study; a fault of the study is one line on stderr and exit status 2."""
-    arguments = arguments_of(argv)
     try:
-        check(arguments)
-        content = (
-            study_file(arguments.study, arguments.wheel)
-            if arguments.study
-            else {"study": Study(**fields_of(arguments)), "name": "study"}
-        )
-        conduct(content, arguments)
+        conduct(arguments_of(argv))
     except (StudyError, Fault) as fault:
-        print(f"study: {fault}", file=sys.stderr)
-        return 2
+        code, text = 2, f"{fault}"
     except OSError as fault:  # a full disk, or one that cannot be reached any more
-        print(f"study: {fault}; results so far are kept; the same command continues from here.", file=sys.stderr)
-        return 2
+        code, text = 2, f"{fault}; results so far are kept; the same command continues from here."
     except KeyboardInterrupt:
-        print("study: stopped; the same command continues from here.", file=sys.stderr)
-        return 130
-    return 0
+        code, text = 130, "stopped; the same command continues from here."
+    else:
+        return 0
+    print(f"study: {text}", file=sys.stderr)
+    return code
 
 
-def conduct(content: dict[str, object], arguments: argparse.Namespace) -> None:
+def conduct(arguments: argparse.Namespace) -> None:
     """Runs, exports, draws, and prints the outcome and where it is."""
+    if arguments.study:
+        content = study_file(arguments.study, arguments.wheel)
+    else:
+        content = {"study": study_of(arguments), "name": "study"}
     from .compute import run
-    from .results import export, summarize
+    from .dataset import export, summarize
 
     stem = ROOT / "results" / "studies" / content["name"]
     out = arguments.out or str(stem.with_suffix(".zarr"))
@@ -62,12 +56,10 @@ def conduct(content: dict[str, object], arguments: argparse.Namespace) -> None:
     results = run(content["study"], out, **how)
     print(summarize(results, time.perf_counter() - begin))
     asked = {".nc": arguments.netcdf, ".csv": arguments.csv}
-    written = [out, *(export(results, stem.with_suffix(end)) for end in (".nc", ".csv") if asked[end])]
+    written = [out, *(export(results, stem.with_suffix(end)) for end in asked if asked[end])]
     if "table" in content:  # an example's own table and figure, beside the results or in docs/
-        data, figure = stem, stem
-        if arguments.publish:
-            data = ROOT / "docs" / "results" / "data" / f"study_{stem.name}"
-            figure = ROOT / "docs" / "figures" / f"study_{stem.name}"
+        published = ROOT / "docs" / "results" / "data", ROOT / "docs" / "figures"
+        data, figure = (folder / f"study_{stem.name}" if arguments.publish else stem for folder in published)
         table = content["table"](results)
         written.append(export(table, data.with_suffix(".csv" if hasattr(table, "to_csv") else ".nc")))
         written += [content["draw"](table, figure)] if "draw" in content else []

@@ -4,8 +4,6 @@ The caller hands out chunks, about two seconds of work each. Workers write the r
 store; else the results come back, and the caller writes them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import sys
@@ -14,10 +12,9 @@ import time
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
-from dataclasses import dataclass
+from dataclasses import asdict, replace
 from functools import partial
-from itertools import islice
-from math import prod
+from itertools import pairwise
 from pathlib import Path
 from resource import RUSAGE_SELF, getrusage
 
@@ -25,25 +22,23 @@ import dask
 import numpy as np
 import xarray as xr
 import zarr
-from distributed import Client, Future, LocalCluster, as_completed
+from dask.array.core import normalize_chunks, slices_from_chunks
+from distributed import Client, LocalCluster, as_completed
 from distributed.scheduler import KilledWorker
 from fmpy import read_model_description
 from fsspec.core import url_to_fs
 from tqdm import tqdm
 
-from .instance import Status
-from .layout import provenance, template
-from .measures import StudyError
-from .plan import Study
-from .results import open_results
-from .runs import Result
-from .store import MARK, Region, kept, missing, write
-from .worker import Points, pack, run_chunk
+from .dataset import TITLE, Points, axes_of, open_results, points, provenance, template
+from .instance import Result
+from .plan import Status, Study, StudyError
+from .worker import MARK, Region, pack, run_chunk, write
 
+Task = Callable[[Region, Points], Result | None]
 SECONDS = 2.0  # of work in a chunk, a thousand times the caller's time to hand it out
-RATE = 50  # chunks per second that the caller hands out at most: with more than 100 workers chunks are longer
+RATE = 50  # chunks per second that are handed out at most: with more than 100 workers chunks are longer
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
-AHEAD = 2  # chunks per worker on their way
+BATCH = 100  # chunks that the scheduler gets at a time; it hands them out as workers become free
 TRIED = 32  # wheels by which a chunk's size is chosen
 PIECES = 16  # a chunk during which a worker died is divided into so many
 PATIENCE = 60  # s for the first worker to appear
@@ -75,125 +70,125 @@ def run(
     """
     if not Path(fmu).is_file():
         raise StudyError(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
-    content, description = Path(fmu).read_bytes(), read_model_description(str(fmu), validate=False)
-    study.check(description)
-    sha256 = hashlib.sha256(content).hexdigest()
-    place, fingerprint = str(out) if "://" in str(out) else str(Path(out).resolve()), study.fingerprint(sha256)
+    description = read_model_description(str(fmu), validate=False)
+    study.check({v.name: v for v in description.modelVariables})
+    sha256 = hashlib.sha256(Path(fmu).read_bytes()).hexdigest()
+    fingerprint = hashlib.sha256(json.dumps([asdict(study), sha256]).encode()).hexdigest()
+    place, mark = str(out) if "://" in str(out) else str(Path(out).resolve()), uuid.uuid4().hex
     group = kept(place, fingerprint, overwrite)
     if group and not missing(group):
         return open_results(place)
+    axes = axes_of(study)
     with nullcontext(client) if client else cluster(workers, scheduler) as user:
-        upload, mark = f"wheel-{sha256[:16]}.zip", uuid.uuid4().hex
-        task = partial(work, upload, study.common(), place, mark)
         with tempfile.TemporaryDirectory() as folder:
-            user.upload_file(str(pack(content, Path(folder) / upload)))
+            upload = pack(fmu, Path(folder) / f"wheel-{sha256[:16]}.zip")
+            user.upload_file(str(upload))
+        task = partial(work, upload.name, replace(study, grid={}, list={}, sample={}), place, mark)
         try:
             user.wait_for_workers(1, timeout=PATIENCE)
         except TimeoutError:
             raise StudyError(f"There has been no worker for {PATIENCE} s.") from None
         if group is None:
-            wheels = chunk or chunk_size(user, study, task)
-            empty = template(study, description, wheels, provenance(study, description, sha256))
+            empty = template(study, axes, description, chunk or chunk_size(user, study, axes, task))
+            empty.attrs = provenance(study, description, sha256)
             empty.to_zarr(place, mode="w", compute=False, consolidated=False, zarr_format=3)
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = mark
-        Caller(user, study, group, task, place, mark).run(quiet)
-    return open_results(place)
-
-
-@dataclass
-class Caller:
-    """The caller's side: hands out chunks, and writes the results that come back."""
-
-    client: Client
-    study: Study
-    group: zarr.Group
-    task: Callable[[Region, Points], Result | None]
-    place: str
-    mark: str
-
-    def run(self, quiet: bool) -> None:
-        """All missing chunks, with a progress bar; notes at the end, whatever its reason, the cost of this session."""
-        status, begin = self.group["status"][:], time.perf_counter()
-        done = int((status != Status.not_computed).sum())
+        status, begin = group["status"][:], time.perf_counter()
+        done = before = int((status != Status.not_computed).sum())
         if done and not quiet:
             print(f"{done} of {status.size} wheels are there already.", file=sys.stderr)
         every = 0.2 if sys.stderr.isatty() else 10.0  # s
         with tqdm(total=status.size, initial=done, unit=" wheels", disable=quiet, mininterval=every) as bar:
-            wheels = 0
             try:
-                for region in self.finished():
-                    wheels += count(region)
-                    bar.update(count(region))
+                for region, result in finished(user, task, partial(points, study, axes), missing(group)):
+                    keep(place, mark, region, result)
+                    bar.update(status[region].size)
+                    done += status[region].size
             finally:
                 with suppress(OSError):  # of a full disk, which is reported already
-                    self.note({"wheels": wheels, "seconds": time.perf_counter() - begin})
+                    note(user, place, group, {"wheels": done - before, "seconds": time.perf_counter() - begin})
+    return open_results(place)
 
-    def finished(self) -> Iterator[Region]:
-        """The missing chunks as they are finished; those that killed a worker come last, in ever smaller pieces."""
-        waiting, running, deadly, coming = iter(missing(self.group)), {}, [], as_completed(loop=self.client.loop)
 
-        def hand_out() -> None:
-            """Some chunks per worker are on their way; workers come and go."""
-            for region in islice(waiting, max(0, AHEAD * max(1, len(self.client.nthreads())) - len(running))):
-                running[future := self.submit(region)] = region
-                coming.add(future)
+def kept(place: str, fingerprint: str, overwrite: bool) -> zarr.Group | None:
+    """The results of this study that are there; None if there are none or they are to be overwritten; or StudyError."""
+    try:
+        group = zarr.open_group(place, mode="r+")
+    except (FileNotFoundError, ValueError):  # zarr's own error for a missing group is both
+        if "://" in place or not Path(place).exists():
+            return None
+        raise StudyError(f"{place} exists and is not a Zarr group; choose another place (--out).") from None
+    if overwrite or (group.attrs.get("title") == TITLE and "fingerprint" not in group.attrs):
+        return None  # without its fingerprint: killed while it was made
+    if group.attrs.get("fingerprint") != fingerprint:
+        raise StudyError(
+            f"{place} holds the results of another study or of another wheel.fmu; choose another place (--out), "
+            "or discard them (--overwrite, in Python overwrite=True)."
+        )
+    return group
 
-        hand_out()
-        for future in coming:
-            region = running.pop(future)
-            hand_out()
-            if isinstance(future.exception(), KilledWorker):
-                deadly.append(region)
+
+def missing(group: zarr.Group) -> list[Region]:
+    """The chunks that have not been run, in order."""
+    status, codes = group["status"], group["status"][:]
+    chunks = slices_from_chunks(normalize_chunks(status.chunks, status.shape))
+    return [region for region in chunks if (codes[region] == Status.not_computed).any()]
+
+
+def finished(
+    client: Client, task: Task, points_of: Callable[[Region], Points], regions: list[Region]
+) -> Iterator[tuple[Region, Result | None]]:
+    """The regions as they are finished, with the results that are not written yet.
+
+    Those during which a worker died come last, alone and then in pieces, until the wheels that kill it are known.
+    """
+    batches = [regions]
+    while batches:
+        batch = batches.pop()
+        futures = client.map(task, batch, [*map(points_of, batch)], pure=False, batch_size=BATCH)
+        waiting = dict(zip(futures, batch, strict=True))
+        for future in as_completed(futures, loop=client.loop):
+            region = waiting.pop(future)
+            if not isinstance(future.exception(), KilledWorker):
+                yield region, future.result()
+            elif len(batch) > 1:
+                batches.append([region])
+            elif len(pieces := divided(region)) > 1:
+                batches += [[piece] for piece in pieces]
             else:
-                self.keep(region, future.result())
-                yield region
-        for region in deadly:
-            self.narrow(region)
-            yield region
-
-    def submit(self, region: Region) -> Future:
-        return self.client.submit(self.task, region, self.study.points(region), pure=False)
-
-    def keep(self, region: Region, result: Result | None) -> None:
-        """Writes the results that the worker could not write."""
-        if result is not None:
-            try:
-                write(self.place, self.mark, region, result)
-            except Exception as fault:
-                raise StudyError(
-                    f"{self.place} cannot be written ({fault}). The results so far are kept; "
-                    "the same command continues from here."
-                ) from fault
-
-    def narrow(self, region: Region) -> None:
-        """Runs a region during which a worker died, alone, then in pieces, until the wheels that kill it are known."""
-        future = self.submit(region)
-        if not isinstance(future.exception(), KilledWorker):
-            self.keep(region, future.result())
-        elif count(region) == 1:
-            message = np.array(["The worker process died during this run."], object)
-            self.keep(region, {"status": np.array([Status.failed]), "message": message})
-        else:
-            longest = int(np.argmax([part.stop - part.start for part in region]))
-            whole = np.arange(region[longest].start, region[longest].stop)
-            for part in np.array_split(whole, min(len(whole), PIECES)):
-                self.narrow((*region[:longest], slice(part[0], part[-1] + 1), *region[longest + 1 :]))
-
-    def note(self, took: dict[str, float]) -> None:
-        """Adds a session to the attributes of the store: its work, and the memory and disk [MB] by its end."""
-        files, root = url_to_fs(self.place)
-        memory = self.client.run(peak_memory).values()
-        took |= {"workers": len(memory), "caller_MB": peak_memory(), "worker_MB": max(memory, default=0)}
-        took["disk_MB"] = files.du(root) // 1_000_000
-        before = json.loads(self.group.attrs.get("sessions", "[]"))
-        self.group.attrs["sessions"] = json.dumps([*before, took])  # as text, which NetCDF can keep too
+                message = np.array(["The worker process died during this run."], "T")
+                yield region, {"status": np.array([Status.failed]), "message": message}
 
 
-def count(region: Region) -> int:
-    """The number of wheels in a region."""
-    return prod(part.stop - part.start for part in region)
+def divided(region: Region) -> list[Region]:
+    """The region in pieces along its longest side."""
+    k = int(np.argmax([part.stop - part.start for part in region]))
+    edges = np.unique(np.linspace(region[k].start, region[k].stop, PIECES + 1).astype(int)).tolist()
+    return [(*region[:k], slice(*ends), *region[k + 1 :]) for ends in pairwise(edges)]
+
+
+def keep(place: str, mark: str, region: Region, result: Result | None) -> None:
+    """Writes the results that the worker could not write."""
+    if result is not None:
+        try:
+            write(place, mark, region, result)
+        except Exception as fault:
+            raise StudyError(
+                f"{place} cannot be written ({fault}). The results so far are kept; "
+                "the same command continues from here."
+            ) from fault
+
+
+def note(client: Client, place: str, group: zarr.Group, took: dict[str, float]) -> None:
+    """Adds a session to the attributes of the store: its work, and the memory and disk [MB] by its end."""
+    files, root = url_to_fs(place)
+    memory = client.run(peak_memory).values()
+    took |= {"workers": len(memory), "caller_MB": peak_memory(), "worker_MB": max(memory, default=0)}
+    took["disk_MB"] = files.du(root) // 1_000_000
+    before = json.loads(group.attrs.get("sessions", "[]"))
+    group.attrs["sessions"] = json.dumps([*before, took])  # as text, which NetCDF can keep too
 
 
 def peak_memory() -> int:
@@ -206,16 +201,17 @@ def chunk_seconds(workers: int) -> float:
     return max(SECONDS, workers / RATE)
 
 
-def chunk_size(client: Client, study: Study, task: Callable[[Region, Points], Result | None]) -> int:
+def chunk_size(client: Client, study: Study, axes: Points, task: Task) -> int:
     """Wheels in a chunk, by the time that a worker takes for some of them, drawn at random."""
-    lengths, workers = tuple(study.shape.values()), len(client.nthreads())
-    total, history = prod(lengths), 8 * len(study.times) * len(study.history)  # wheels; bytes
-    some = np.unravel_index(np.random.default_rng(0).choice(total, min(total, TRIED), replace=False), lengths)
-    points = {name: values[k] for (name, values), k in zip(study.axes.items(), some * len(study.axes), strict=False)}
-    trial = client.submit(task, (), points, pure=False)  # no store has its mark yet, so the results come back
+    everywhere = points(study, axes, (slice(None),) * (len(axes) if study.grid else 1))
+    columns = np.broadcast_arrays(*everywhere.values())
+    total, history = columns[0].size, 8 * len(study.times) * len(study.history)  # wheels; bytes
+    some = np.random.default_rng(0).choice(total, min(total, TRIED), replace=False)
+    tried = {name: column.flat[some] for name, column in zip(axes, columns, strict=True)}
+    trial = client.submit(task, (), tried, pure=False)  # no store has its mark yet, so the results come back
     if isinstance(trial.exception(), KilledWorker):
         return FEWEST
-    seconds = float(np.nanmean(trial.result()["wall_time"]))
+    workers, seconds = len(client.nthreads()), float(np.nanmean(trial.result()["wall_time"]))
     most = min(total // (4 * workers), LARGEST // max(history, 1), int(chunk_seconds(workers) / seconds))
     return max(FEWEST, most)
 

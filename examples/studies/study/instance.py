@@ -1,40 +1,31 @@
 """One instance of wheel.fmu that runs one wheel after the other: fmi2Reset between runs, never a second instance.
 
-Built on fmpy's FMU2Slave. The calls for each wheel use buffers that are prepared once for many wheels, and march.c
-steps along the communication points: fmpy's loops would take longer than the wheel.
+march.c steps along the communication points, where Python would take longer than the wheel.
+A start that several wheels share runs once. A wheel that fails is a status with the FMU's message; nothing in run_block
+raises because of what a wheel does.
 """
 
-from __future__ import annotations
-
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from ctypes import CDLL, byref, c_double, c_int, c_size_t, c_uint, c_void_p, cast
-from enum import IntEnum
+from functools import cache
 from pathlib import Path
+from time import perf_counter
 
 import numpy as np
-from fmpy import read_model_description
+from fmpy import instantiate_fmu, read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
-from fmpy.model_description import ModelDescription
-from numpy.typing import ArrayLike, NDArray
+from fmpy.fmi2 import fmi2FMUstate
+from numpy.typing import NDArray
 
-OK, WARNING, DISCARD, ERROR, FATAL = range(5)  # fmi2Status
+from .plan import PLANE_ANGLE, Measure, Status, Study, can_change, counters_of
+
+Array = NDArray[np.float64]
+Result = dict[str, NDArray]
+OK, WARNING, DISCARD = range(3)  # fmi2Status
 LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # fmi2StatusKind
 MARCH = "march.library"  # march.c, compiled (Dask would take a .so for a module), beside the FMU's modelDescription.xml
-KINDS = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
-
-
-class Status(IntEnum):
-    """The fate of one wheel."""
-
-    not_computed = -1
-    reached = 0  # the stop time
-    flat = 1  # theta came to 0 or pi
-    lifted_off = 2  # N came to 0
-    refused = 3  # a start value or a parameter is impossible
-    failed = 4  # the run ended with an error, or the worker process died
-    grip = 5  # mu_required came to mu_max
-
+NUMBERS = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
 
 # Words of the FMU's message, for each way in which a run ends early.
 ENDINGS = {
@@ -44,113 +35,169 @@ ENDINGS = {
 }
 
 
-class Table:
-    """Values of some variables for many wheels; a row goes to or comes from the FMU by one call per type."""
-
-    def __init__(self, fmu: FMU2Instance, columns: Mapping[str, ArrayLike], rows: int) -> None:
-        self._fmu, self._parts, self._column = fmu, [], {}
-        for kind, number in KINDS.items():
-            mine = [name for name in columns if fmu.variables[name].type == kind]
-            if mine:
-                values, buffer = np.empty((rows, len(mine)), number), (number * len(mine))()
-                self._parts.append((kind, fmu.references(mine), buffer, np.ctypeslib.as_array(buffer), values))
-                self._column |= dict(zip(mine, values.T, strict=True))
-        for name, column in columns.items():
-            self._column[name][:] = column
-
-    def __getitem__(self, name: str) -> NDArray:
-        """All rows of one variable."""
-        return self._column[name]
-
-    def set(self, row: int) -> None:
-        for kind, references, buffer, row_of, values in self._parts:
-            row_of[:] = values[row]
-            getattr(self._fmu, f"fmi2Set{kind}")(self._fmu.component, references, len(references), buffer)
-
-    def get(self, row: int) -> None:
-        for kind, references, buffer, row_of, values in self._parts:
-            getattr(self._fmu, f"fmi2Get{kind}")(self._fmu.component, references, len(references), buffer)
-            values[row] = row_of
-
-    def key(self, row: int) -> tuple:
-        """Equal for rows of equal values."""
-        return tuple((name, column[row]) for name, column in self._column.items())
-
-
-class FMU2Instance(FMU2Slave):
-    """The only instance of a worker. fmpy chooses the functions to load by the name FMU2."""
+class Instance:
+    """The only instance of a worker, made by fmpy."""
 
     def __init__(self, folder: str) -> None:
-        self.description = read_model_description(folder, validate=False)
-        super().__init__(
-            guid=self.description.guid,
-            unzipDirectory=folder,
-            modelIdentifier=self.description.coSimulation.modelIdentifier,
-            instanceName="study",
-        )
-        self.variables = {v.name: v for v in self.description.modelVariables}
+        description = read_model_description(folder, validate=False)
+        self.variables = {v.name: v for v in description.modelVariables}
         self.messages: list[str] = []  # since the start of the run
-        self._logging = fmi2CallbackFunctions()
-        self._logging.logger = fmi2CallbackLoggerTYPE(self._log)
-        self.instantiate(callbacks=self._logging)
+        self.fmu = instantiate_fmu(folder, description, "CoSimulation", logger=self._log)
+        self._buffers = cache(self._buffers_of)
+        self._snapshot, self._kept = fmi2FMUstate(), None  # at branch_at: values and messages of that start
         self._march = CDLL(str(Path(folder) / MARCH)).march
         self._march.argtypes = (c_void_p,) * 4 + (c_size_t, c_void_p, c_size_t, c_void_p, c_void_p)
-        self._functions_of_march = [cast(self.dll[name], c_void_p) for name in ("fmi2DoStep", "fmi2GetReal")]
-
-    def references(self, names: Sequence[str]) -> object:
-        """The value references of some variables, as the FMU takes them."""
-        return (c_uint * len(names))(*(self.variables[name].valueReference for name in names))
+        self._functions_of_march = [cast(self.fmu.dll[name], c_void_p) for name in ("fmi2DoStep", "fmi2GetReal")]
 
     def _log(self, _environment: object, _name: bytes, status: int, _category: bytes, text: bytes) -> None:
         if status != OK:
             self.messages.append(text.decode())
 
-    def begin(self, values: Table, row: int, tolerance: float | None) -> tuple[Status, float]:
-        """From any state to t = 0 with these values."""
-        self.messages = []
-        try:
-            self.reset()
-        except FMICallException:  # after fmi2Fatal the standard allows no further call to an instance
-            self.instantiate(callbacks=self._logging)
-        try:
-            values.set(row)
-            self.setupExperiment(tolerance)
-            self.enterInitializationMode()
-            self.exitInitializationMode()
-        except FMICallException:
-            self.messages = self.messages or ["A value is outside its limits."]
-            return Status.refused, np.nan
-        return Status.reached, 0.0
+    def references(self, names: Iterable[str]) -> object:
+        """The value references of some variables, as the FMU takes them."""
+        return (c_uint * len(names))(*(self.variables[name].valueReference for name in names))
 
-    def march(self, times: NDArray, references: object, rows: NDArray) -> tuple[Status, float, int]:
+    def _buffers_of(self, names: tuple[str, ...]) -> list[tuple[str, list[str], tuple[object, ...]]]:
+        """For each type among the names: the type, the names, and the arguments of fmi2Get and fmi2Set."""
+        found = []
+        for kind, number in NUMBERS.items():
+            if mine := [name for name in names if self.variables[name].type == kind]:
+                found.append((kind, mine, (self.references(mine), len(mine), (number * len(mine))())))
+        return found
+
+    def set(self, values: Mapping[str, float]) -> None:
+        for kind, names, arguments in self._buffers(tuple(values)):
+            arguments[-1][:] = [values[name] if kind == "Real" else int(values[name]) for name in names]
+            getattr(self.fmu, f"fmi2Set{kind}")(self.fmu.component, *arguments)
+
+    def get(self, names: tuple[str, ...]) -> dict[str, float]:
+        found = {}
+        for kind, mine, arguments in self._buffers(names):
+            getattr(self.fmu, f"fmi2Get{kind}")(self.fmu.component, *arguments)
+            found.update(zip(mine, arguments[-1], strict=True))
+        return found
+
+    def begin(self, values: Mapping[str, float], study: Study) -> tuple[Status, float]:
+        """To t = 0, or to `branch_at`: restored if the start that was kept last had these values, else run and kept.
+
+        FMICallException if the FMU refuses a value.
+        """
+        fmu, start = self.fmu, (values, study.tolerance, study.branch_at)
+        if self._kept and self._kept[0] == start:
+            self.messages = [*self._kept[1]]
+            fmu.setFMUstate(self._snapshot)
+            return Status.reached, study.branch_at
+        self._kept, self.messages = None, []
+        try:
+            fmu.reset()
+        except FMICallException:  # after fmi2Fatal the standard allows no further call to an instance
+            fmu.instantiate(callbacks=fmu.callbacks)
+        self.set(values)
+        fmu.setupExperiment(study.tolerance)
+        fmu.enterInitializationMode()
+        fmu.exitInitializationMode()
+        if study.branch_at is None:
+            return Status.reached, 0.0
+        times = np.array([0.0, study.branch_at])
+        status, end, _ = self.march(times, self.way(times, (), np.empty(0)))
+        if status == Status.reached:
+            fmu.fmi2GetFMUstate(fmu.component, byref(self._snapshot))
+            self._kept = (start, [*self.messages])
+        return status, end
+
+    def way(self, times: Array, names: tuple[str, ...], rows: Array) -> tuple[object, ...]:
+        """For march: the times, and a row for each, to be filled with the values of these Real variables."""
+        return times.ctypes.data, len(times), self.references(names), len(names), rows.ctypes.data
+
+    def march(self, times: Array, way: tuple[object, ...]) -> tuple[Status, float, int]:
         """Steps along the times from times[0], the present one, and fills a row at each time that is reached.
 
-        Returns the fate of the wheel, its time [s], and the number of rows. `references` are of Real variables.
+        Returns the fate of the wheel, its time [s], and the number of rows.
         """
-        reached, arrays = c_size_t(), (times.ctypes.data, len(times), references, len(references), rows.ctypes.data)
-        status = self._march(*self._functions_of_march, self.component, *arrays, byref(reached))
-        last = times[max(reached.value, 1) - 1]
-        return *self._ending(status, last), reached.value
-
-    def _ending(self, status: int, last: float) -> tuple[Status, float]:
-        """After a march whose last completed step ended at `last`."""
-        if status <= WARNING:
-            return Status.reached, last
-        time, ended = c_double(last), c_int(0)
+        reached = c_size_t()
+        status = self._march(*self._functions_of_march, self.fmu.component, *way, byref(reached))
+        end, fate = times[max(reached.value, 1) - 1], Status.reached if status <= WARNING else Status.failed
         if status == DISCARD:
-            self.fmi2GetRealStatus(self.component, LAST_SUCCESSFUL_TIME, byref(time))
-            self.fmi2GetBooleanStatus(self.component, TERMINATED, byref(ended))
-        logged = " ".join(self.messages)
-        found = (kind for words, kind in ENDINGS.items() if words in logged and ended.value)
-        return next(found, Status.failed), time.value
+            end, logged = self.fmu.getRealStatus(LAST_SUCCESSFUL_TIME), " ".join(self.messages)
+            if self.fmu.getBooleanStatus(TERMINATED):
+                fate = next((fate for words, fate in ENDINGS.items() if words in logged), fate)
+        return fate, end, reached.value
 
 
-def counters_of(description: ModelDescription) -> list[str]:
-    """The FMU's counters: Integer variables whose name begins with n_."""
-    return [v.name for v in description.modelVariables if v.type == "Integer" and v.name.startswith("n_")]
+def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Result:
+    """The outcomes of wheels whose values by name are broadcast against each other, in C order.
+
+    Of the study only what all its wheels have in common is used.
+    """
+    columns = [column.ravel().tolist() for column in np.broadcast_arrays(*points.values())]
+    late = [name for name in points if study.branch_at is not None and can_change(fmu.variables[name])]
+    changes = [dict(zip(points, row, strict=True)) for row in zip(*columns, strict=True)]
+    starts = [{n: change.pop(n) for n in points if n not in late} | study.values for change in changes]
+    order = sorted(range(len(starts)), key=lambda i: [*starts[i].values()] if late else i)  # a shared start in a row
+    counters, sampled, times = counters_of(fmu.variables), tuple(study.sampled), np.array(study.times)
+    at_end = {name: m for name, m in study.parsed.items() if m.kind == "last"}
+    measures = {name: m for name, m in study.parsed.items() if name not in at_end}
+    asked = tuple(dict.fromkeys([*(m.variable for m in at_end.values()), *counters]))
+    rows = np.empty((len(times) + 1, len(sampled)))  # one more for the end
+    way = fmu.way(times, sampled, rows)
+    result = {n: np.full(len(starts), np.nan) for n in ("status", "end_time", "fmu_time", "wall_time", *measures)}
+    result |= {name: np.full((len(starts), len(times)), np.nan) for name in study.history}
+    messages, ends = [""] * len(starts), [{}] * len(starts)
+
+    for i in order:
+        begin, n = perf_counter(), 0
+        try:
+            status, end = fmu.begin(starts[i], study)
+            if status == Status.reached:
+                fmu.set(changes[i])
+                status, end, n = fmu.march(times, way)
+        except FMICallException:
+            status, end = Status.refused, np.nan
+            fmu.messages = fmu.messages or ["A value is outside its limits."]
+        if status != Status.refused:
+            with suppress(FMICallException):  # an instance that failed may be unable to answer
+                ends[i] = fmu.get(asked)
+        result["fmu_time"][i] = perf_counter() - begin
+        result["status"][i], result["end_time"][i], messages[i] = status, end, " ".join(fmu.messages)
+        if n and sampled:
+            for name, column in zip(study.history, rows.T, strict=False):
+                result[name][i, :n] = column[:n]
+            t = times[:n]
+            if end > t[-1] and ends[i]:  # the end of a run is a sample too
+                t, rows[n] = np.append(t, end), [*fmu.get(sampled).values()]
+            for name, measure in measures.items():
+                result[name][i] = number(measure, t, rows[: len(t), sampled.index(measure.variable)])
+        result["wall_time"][i] = perf_counter() - begin
+
+    result |= {name: np.array([end.get(name, -1) for end in ends]) for name in counters}
+    for name, measure in at_end.items():
+        values = np.array([end.get(measure.variable, np.nan) for end in ends])
+        result[name] = plane_angle(values) if measure.quantity == PLANE_ANGLE else values
+    return result | {"message": np.array(messages, "T")}
 
 
-def can_change(description: ModelDescription, name: str) -> bool:
-    """Whether a variable may be set between steps."""
-    variable = next(v for v in description.modelVariables if v.name == name)
-    return variable.causality == "input" or variable.variability == "tunable"
+def number(measure: Measure, t: Array, x: Array) -> float:
+    """The measure for samples x of its variable at the times t, the last of which is the end of the run."""
+    if measure.quantity == PLANE_ANGLE:
+        x = plane_angle(x)
+    if measure.is_time:
+        return first_passage(t, x, measure.limit, below=measure.kind == "<")
+    if measure.kind == "mean":
+        return float(np.trapezoid(x, t) / (t[-1] - t[0])) if t[-1] > t[0] else float(x[-1])
+    return float(x.min() if measure.kind == "min" else x.max())
+
+
+def plane_angle(theta: Array) -> Array:
+    """Angle [rad] of the wheel's plane to the ground, 0 to pi/2: 90 deg - |theta - 90 deg|."""
+    return np.pi / 2 - np.abs(theta - np.pi / 2)
+
+
+def first_passage(t: Array, x: Array, limit: float, below: bool) -> float:
+    """First time at which x is beyond the limit, interpolated linearly between two samples; NaN if it never is."""
+    beyond = x < limit if below else x > limit
+    if not beyond.any():
+        return np.nan
+    k = int(np.argmax(beyond))
+    if k == 0:
+        return float(t[0])
+    return float(t[k - 1] + (limit - x[k - 1]) / (x[k] - x[k - 1]) * (t[k] - t[k - 1]))

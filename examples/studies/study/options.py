@@ -3,12 +3,10 @@
 Names are checked against the FMU's modelDescription.xml. Values are in SI units, or have a unit behind them.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from xml.etree import ElementTree
 from zipfile import BadZipFile, ZipFile
@@ -20,8 +18,9 @@ if not __package__:  # run as a file, by scripts/help
     sys.path.insert(0, str(EXAMPLES))
 from values import Fault, Variable, number, parted, ready, scale, suggestion, variables, wheels  # noqa: E402
 
-from study.measures import StudyError, parse_measure  # noqa: E402
+from study.plan import Study, StudyError  # noqa: E402
 
+NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))  # the studies that lie beside this package
 SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
 USAGE = """examples:
   ./scripts/study fates                     one of the examples: {names}
@@ -48,23 +47,13 @@ def numbers(name: str, text: str, unit: str) -> list[float]:
     return [number(name, f"{value!r}{given}", unit) for value in evenly]
 
 
-def named(texts: list[str], convert: Callable[[str, str], object]) -> dict[str, object]:
+def pairs(texts: list[str]) -> dict[str, str]:
     """NAME=VALUE options as a dictionary."""
-    return {name: convert(name, value) for name, _, value in (text.partition("=") for text in texts)}
+    return dict(text.partition("=")[::2] for text in texts)
 
 
-def read_list(path: Path, value: Callable[[str, str], float]) -> dict[str, list[float]]:
-    """The columns of a CSV file of numbers."""
-    try:
-        with path.open(newline="") as file:
-            rows = list(csv.DictReader(file))
-        return {name: [value(name, row[name]) for row in rows] for name in rows[0]}
-    except (OSError, UnicodeError, Fault, IndexError, TypeError, AttributeError) as fault:
-        raise StudyError(f"--list {path}: a row of names, then rows of numbers, are expected ({fault}).") from None
-
-
-def fields_of(arguments: argparse.Namespace) -> dict[str, object]:
-    """The fields of a Study that the options give."""
+def study_of(arguments: argparse.Namespace) -> Study:
+    """The study that the options describe, checked."""
     known = variables(description(arguments.fmu))
 
     def unit(name: str) -> str:
@@ -74,16 +63,26 @@ def fields_of(arguments: argparse.Namespace) -> dict[str, object]:
     def value(name: str, text: str) -> float:
         return number(name, text, unit(name))
 
-    measures = named(arguments.measure, lambda _, text: parse_measure(text).text)
-    check_names((parse_measure(text).variable for text in measures.values()), READABLE, known)
-    check_names(arguments.history, READABLE, known)
-    grid = named(arguments.vary, lambda name, text: numbers(name, text, unit(name)))
-    rows = read_list(arguments.list, value) if arguments.list else {}
-    values = (ready(arguments.wheel) if arguments.wheel else {}) | named(arguments.set, value)
-    for name in (grid | rows).keys() - {text.partition("=")[0] for text in arguments.set}:
-        values.pop(name, None)  # of the ready wheel
+    grid = {name: numbers(name, text, unit(name)) for name, text in pairs(arguments.vary).items()}
+    rows = {name: [value(name, text) for text in column] for name, *column in columns(arguments.list)}
+    if bool(grid) == bool(rows):
+        raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
+    wheel = ready(arguments.wheel) if arguments.wheel else {}
+    values = {name: x for name, x in wheel.items() if name not in grid | rows}
+    values |= {name: value(name, text) for name, text in pairs(arguments.set).items()}
     fields = {name: getattr(arguments, name) for name in ("history", "stop_time", "interval", "tolerance", "branch_at")}
-    return fields | {"grid": grid, "list": rows, "values": values} | ({"measures": measures} if measures else {})
+    fields |= {"measures": pairs(arguments.measure)} if arguments.measure else {}
+    study = Study(grid=grid, list=rows, values=values, **fields)
+    study.check(known)
+    return study
+
+
+def columns(path: Path | None) -> list[tuple[str, ...]]:
+    """Of a CSV file: each begins with a name."""
+    try:
+        return [*zip(*filter(None, csv.reader(path.open(newline=""))), strict=True)] if path else []
+    except (OSError, ValueError) as fault:
+        raise StudyError(f"--list {path}: a row of names, then rows of numbers, are expected ({fault}).") from None
 
 
 def description(fmu: Path) -> bytes:
@@ -112,18 +111,6 @@ def check_names(names: Iterable[str], causalities: tuple[str, str], known: Mappi
             raise StudyError(f"'{name}' is not {kind} of this FMU.{hint}")
 
 
-def check(arguments: argparse.Namespace) -> None:
-    """StudyError or Fault if there is no study of that name or no such wheel, or an option cannot be parsed."""
-    if arguments.study:
-        file_of(arguments.study)
-        if arguments.wheel:
-            ready(arguments.wheel)
-        return
-    fields = fields_of(arguments)
-    if bool(fields["grid"]) == bool(fields["list"]):
-        raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
-
-
 def seconds(text: str) -> float:
     """A time, such as 2min."""
     return number("time", text, "s")
@@ -133,21 +120,16 @@ def file_of(name: str) -> Path:
     """The file of a study that is given by its path or as an example's name."""
     path = Path(name) if name.endswith(".py") else EXAMPLES / f"{name}.py"
     if not path.is_file():
-        meant = suggestion(name, dict.fromkeys(example_names(), ""))
-        raise StudyError(f"There is no study {name}; the examples are {', '.join(example_names())}.{meant}")
+        meant = suggestion(name, dict.fromkeys(NAMES, ""))
+        raise StudyError(f"There is no study {name}; the examples are {', '.join(NAMES)}.{meant}")
     return path
-
-
-def example_names() -> list[str]:
-    """The studies that lie beside this package."""
-    return sorted(path.stem for path in EXAMPLES.glob("*.py"))
 
 
 def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="./scripts/study",
         description="Runs many wheels on all cores or on a Dask cluster. Started again, it continues where it stopped.",
-        epilog=USAGE.format(names=", ".join(example_names()), wheels=", ".join(wheels())),
+        epilog=USAGE.format(names=", ".join(NAMES), wheels=", ".join(wheels())),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add, several = parser.add_argument, {"action": "append", "default": []}
@@ -175,7 +157,13 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
 
 if __name__ == "__main__":
     try:
-        check(arguments_of())
+        arguments = arguments_of()
+        if arguments.wheel:
+            ready(arguments.wheel)
+        if arguments.study:
+            file_of(arguments.study)
+        else:
+            study_of(arguments)
     except (StudyError, Fault) as fault:
         print(f"study: {fault}", file=sys.stderr)
         sys.exit(2)

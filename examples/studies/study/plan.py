@@ -1,27 +1,106 @@
-"""A study: which start values, parameters and inputs are run, and what is measured of each run."""
+"""A study: which start values, parameters and inputs are run, and what is measured of each run.
+
+A measure of a run is text, which can be kept with the results and compared when a study is started again: `theta` (at
+the end), `lowest`, `min(Z_O)`, `max(mu_required)`, `mean(E)`, `first(theta > 1.6)`. Besides the FMU's
+variables there is `plane_angle`, the angle of the wheel's plane to the ground on either side; `lowest` is its least.
+Plain data, by Python's standard library alone: scripts/study refuses an impossible study before anything is installed.
+"""
 
 from __future__ import annotations
 
-import hashlib
-import json
-from collections.abc import Mapping, Sequence
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from enum import IntEnum
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-import numpy as np
-from fmpy.model_description import ModelDescription
-from numpy.typing import NDArray
-
-from .measures import Measure, StudyError, parse_measure
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     import xarray
+    from values import Variable
 
-Array = NDArray[np.float64]
+KINDS = ("grid", "list", "sample")  # the ways to list wheels
 POINT = "wheel"  # the dimension of a list or a sample
-OWN = ("status", "message", "end_time", "wall_time", "fmu_time", "time", POINT)  # results of every study
+OWN = ("status", "message", "end_time", "wall_time", "fmu_time", "time", POINT)  # names that every study's results have
+PLANE_ANGLE = "plane_angle"
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_FORMS = re.compile(
+    rf"\s*(?:(?P<last>\w+)|(?P<kind>min|max|mean)\(\s*(?P<of>\w+)\s*\)"
+    rf"|first\(\s*(?P<watched>\w+)\s*(?P<side>[<>])\s*(?P<limit>{_NUMBER})\s*\))\s*"
+)
+
+
+class StudyError(ValueError):
+    """The study cannot be run as it is written; the text is one line for the user."""
+
+
+class Status(IntEnum):
+    """The fate of one wheel."""
+
+    not_computed = -1
+    reached = 0  # the stop time
+    flat = 1  # theta came to 0 or pi
+    lifted_off = 2  # N came to 0
+    refused = 3  # a start value or a parameter is impossible
+    failed = 4  # the run ended with an error, or the worker process died
+    grip = 5  # mu_required came to mu_max
+
+
+class Measure(NamedTuple):
+    """One number of a run: `kind` is last, min, max, mean, < or >; SI units, `limit` in the quantity's unit."""
+
+    kind: str
+    quantity: str
+    limit: float = 0.0
+
+    @property
+    def variable(self) -> str:
+        """The FMU's variable that has to be read."""
+        return "theta" if self.quantity == PLANE_ANGLE else self.quantity
+
+    @property
+    def is_time(self) -> bool:
+        """Whether the number is a time in s; otherwise it has the variable's unit."""
+        return self.kind in "<>"
+
+
+def parse_measure(text: str) -> Measure:
+    """The measure that the text describes; StudyError if it describes none."""
+    found = _FORMS.fullmatch(f"min({PLANE_ANGLE})" if text.strip() == "lowest" else text)
+    if not found:
+        raise StudyError(
+            f"'{text}' is not a measure: write lowest, a variable's name, min(name), max(name), mean(name), "
+            "first(name < number) or first(name > number)."
+        )
+    if found["side"]:
+        return Measure(found["side"], found["watched"], float(found["limit"]))
+    return Measure(found["kind"] or "last", found["of"] or found["last"])
+
+
+def can_change(variable: Variable) -> bool:
+    """Whether it may be set between steps."""
+    return variable.causality == "input" or variable.variability == "tunable"
+
+
+def counters_of(variables: Mapping[str, Variable]) -> list[str]:
+    """The FMU's counters: Integer variables whose name begins with n_."""
+    return [name for name, v in variables.items() if v.type == "Integer" and name.startswith("n_")]
+
+
+def numbers(name: str, values: Iterable[float]) -> list[float]:
+    """As Python's numbers: equal studies have equal fields, whatever types they were given in."""
+    try:
+        found = [float(value) for value in values]
+    except (TypeError, ValueError):
+        found = []
+    if not found:
+        raise StudyError(f"The values of '{name}' must be a list of numbers, at least one.")
+    return found
+
+
+def quoted(names: Iterable[str]) -> str:
+    return ", ".join(f"'{name}'" for name in dict.fromkeys(names))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,11 +112,11 @@ class Study:
       list    name -> values, all of one length; the k-th wheel takes the k-th of each
       sample  name -> (lowest, highest); `count` wheels, a Latin hypercube drawn with `seed`
     values      name -> value, the same for all wheels; a name that is missing keeps the FMU's default
-    measures    name of a result -> text, see measures.py
+    measures    name of a result -> text, as above
     history     Real variables kept at every communication point
     interval    s between communication points, at which min, max, mean, first and the history are evaluated
     branch_at   s; until then tunable parameters and inputs of the grid keep their values of `values`: runs that differ
-                in nothing else share one start, which is run once per worker and restored from a snapshot
+                in nothing else share one start, which a worker runs once and restores from a snapshot
     """
 
     grid: Mapping[str, Sequence[float]] = field(default_factory=dict)
@@ -52,6 +131,13 @@ class Study:
     interval: float = 0.01
     tolerance: float | None = None
     branch_at: float | None = None
+
+    def __post_init__(self) -> None:
+        plain = {kind: {n: numbers(n, x) for n, x in getattr(self, kind).items()} for kind in KINDS}
+        plain |= {"values": {n: float(x) for n, x in self.values.items()}}
+        plain |= {"history": [*self.history], "count": int(self.count)}
+        for name, value in plain.items():
+            object.__setattr__(self, name, value)
 
     def run(self, out: str | Path, **how: object) -> xarray.Dataset:
         """Runs the wheels that are missing in `out` (a Zarr folder or its URL) and returns the results.
@@ -70,58 +156,35 @@ class Study:
         from .options import factors, ready, scale
 
         body = ready(wheel)
-        given = self.grid | self.list | self.sample | self.values
+        given = self.varied | self.values
         if both := sorted({*body} & {*given} - {"phi_dot_start"}):
             raise StudyError(
                 f"The study has values of {', '.join(both)}, which are those of the wheel {wheel} already."
             )
-        factor, time = factors(body), scale(body, s=1)
+        factor = factors(body)
 
-        def similar(values: Mapping[str, object]) -> dict[str, object]:
-            return {n: np.multiply(x, factor.get(n, 1.0)).tolist() for n, x in values.items()}
+        def similar(kind: str) -> dict[str, list[float]]:
+            return {n: [x * factor.get(n, 1.0) for x in values] for n, values in getattr(self, kind).items()}
 
         def measured(text: str) -> str:
             m = parse_measure(text)
             return f"first({m.quantity} {m.kind} {m.limit * factor.get(m.variable, 1.0)!r})" if m.is_time else text
 
+        times = {n: getattr(self, n) for n in ("stop_time", "interval", "branch_at")}
+        times = {n: t if t is None else t * scale(body, s=1) for n, t in times.items()}
         return replace(
             self,
-            **{kind: similar(getattr(self, kind)) for kind in ("grid", "list", "sample")},
-            values={n: x for n, x in body.items() if n not in given} | similar(self.values),
+            **{kind: similar(kind) for kind in KINDS},
+            values={n: x for n, x in body.items() if n not in given}
+            | {n: x * factor.get(n, 1.0) for n, x in self.values.items()},
             measures={n: measured(text) for n, text in self.measures.items()},
-            stop_time=self.stop_time * time,
-            interval=self.interval * time,
-            branch_at=None if self.branch_at is None else self.branch_at * time,
+            **times,
         )
 
-    @cached_property
-    def axes(self) -> dict[str, Array]:
-        """Name -> values: per dimension of a grid, per wheel of a list or a sample."""
-        if not self.sample:
-            return {name: np.asarray(values, float) for name, values in (self.grid or self.list).items()}
-        from scipy.stats import qmc  # only the caller draws
-
-        unit = qmc.LatinHypercube(len(self.sample), rng=self.seed).random(self.count)
-        bounds = np.array([*self.sample.values()], float).T
-        return dict(zip(self.sample, qmc.scale(unit, *bounds).T, strict=True))
-
     @property
-    def shape(self) -> dict[str, int]:
-        """Dimension -> length, in the order of the results."""
-        lengths = {name: len(values) for name, values in self.axes.items()}
-        return lengths if self.grid else {POINT: next(iter(lengths.values()))}
-
-    def points(self, region: tuple[slice, ...] | None = None) -> dict[str, Array]:
-        """The values of a region of the results, or of all: arrays to be broadcast against each other."""
-        parts = region or (slice(None),) * len(self.shape)
-        if not self.grid:
-            return {name: axis[parts] for name, axis in self.axes.items()}
-        mesh = np.ix_(*(axis[part] for axis, part in zip(self.axes.values(), parts, strict=True)))
-        return dict(zip(self.axes, mesh, strict=True))
-
-    def common(self) -> Study:
-        """The study without its axes, as a worker needs it."""
-        return replace(self, grid={}, list={}, sample={})
+    def varied(self) -> dict[str, list[float]]:
+        """The names that vary, with their values or bounds."""
+        return self.grid | self.list | self.sample
 
     @property
     def parsed(self) -> dict[str, Measure]:
@@ -137,57 +200,34 @@ class Study:
     def times(self) -> list[float]:
         """The communication points in s; only the first and the last if nothing is read in between."""
         begin, end = self.branch_at or 0.0, float(self.stop_time)
-        if not self.sampled:
-            return [begin, end]
-        steps = int(np.ceil((end - begin) / self.interval * (1 - 1e-12)))
+        steps = math.ceil((end - begin) / self.interval * (1 - 1e-12)) if self.sampled else 1
         return [*(begin + k * self.interval for k in range(steps)), end]
 
-    def spec(self) -> dict[str, object]:
-        """The study as plain data: equal for equal studies, whatever types its numbers had."""
-        plain = {"stop_time": self.stop_time, "interval": self.interval, "tolerance": self.tolerance}
-        plain |= {"branch_at": self.branch_at, "seed": self.seed, "measures": dict(self.measures)}
-        plain |= {"history": [*self.history], "values": {n: float(v) for n, v in self.values.items()}}
-        kind = "grid" if self.grid else "sample" if self.sample else "list"
-        return plain | {"kind": kind, "axes": {name: values.tolist() for name, values in self.axes.items()}}
-
-    def fingerprint(self, fmu_sha256: str) -> str:
-        """Identifies kept results of this study with this FMU."""
-        return hashlib.sha256(json.dumps([self.spec(), fmu_sha256]).encode()).hexdigest()
-
-    def check(self, description: ModelDescription) -> None:
+    def check(self, variables: Mapping[str, Variable]) -> None:
         """StudyError if a name is unknown or the study does not suit the FMU."""
-        if sum(map(bool, (self.grid, self.list, self.sample))) != 1:
-            raise StudyError("Give exactly one of grid, list and sample: it lists the wheels.")
-        if self.sample and self.count < 1:
-            raise StudyError(f"count = {self.count}: a sample needs at least one wheel.")
         from .options import READABLE, SETTABLE, check_names
 
-        kinds = {v.name: v for v in description.modelVariables}
-        check_names([*self.axes, *self.values], SETTABLE, kinds)
-        check_names([*(m.variable for m in self.parsed.values()), *self.history], READABLE, kinds)
-        self._check_axes()
-        for name in self.sampled:
-            if kinds[name].type != "Real":
-                raise StudyError(f"'{name}' is an integer: only its value at the end can be measured.")
-        counters = [name for name in kinds if name.startswith("n_")]
-        names = [*self.measures, *self.history, *self.axes, *OWN, *counters]
-        for name in names:
-            if names.count(name) > 1:
-                raise StudyError(f"'{name}' would name two things in the results; give the measure another name.")
-        begin = self.branch_at or 0.0
-        if not (0 <= begin < self.stop_time < np.inf and 0 < self.interval < np.inf):
-            raise StudyError(
+        check_names([*self.varied, *self.values], SETTABLE, variables)
+        check_names([*(m.variable for m in self.parsed.values()), *self.history], READABLE, variables)
+        kinds = sum(bool(getattr(self, kind)) for kind in KINDS)
+        lengths = {name: len(column) for name, column in self.list.items()}
+        both = quoted(name for name in self.varied if name in self.values and self.branch_at is None)
+        integers = quoted(name for name in self.sampled if variables[name].type != "Real")
+        names = [*self.measures, *self.history, *self.varied, *OWN, *counters_of(variables)]
+        twice = quoted(name for name in names if names.count(name) > 1)
+        in_order = 0 <= (self.branch_at or 0.0) < self.stop_time < math.inf and 0 < self.interval < math.inf
+        for fault, text in (
+            (kinds != 1, "Give exactly one of grid, list and sample: it lists the wheels."),
+            (self.sample and self.count < 1, f"count = {self.count}: a sample needs at least one wheel."),
+            (both, f"{both} is in values and among the names that vary."),
+            (len({*lengths.values()}) > 1, f"The columns of a list must have one length; these have: {lengths}."),
+            (integers, f"{integers} is an integer: only its value at the end can be measured."),
+            (twice, f"{twice} would name two things in the results; give the measure another name."),
+            (
+                not in_order,
                 f"interval = {self.interval}, branch_at = {self.branch_at}, stop_time = {self.stop_time}: "
-                "the interval must be above zero, and branch_at before the stop time."
-            )
-
-    def _check_axes(self) -> None:
-        lengths = {name: len(values) if values.ndim == 1 else 0 for name, values in self.axes.items()}
-        for name, length in lengths.items():
-            if name in self.values and self.branch_at is None:
-                raise StudyError(f"'{name}' is in values and among the names that vary.")
-            if not length:
-                raise StudyError(f"The values of '{name}' must be a list of numbers, at least one.")
-        if not self.grid and len(set(lengths.values())) > 1:
-            listed = ", ".join(f"{name} {length}" for name, length in lengths.items())
-            raise StudyError(f"The columns of a list must have one length; these have: {listed}.")
+                "the interval must be above zero, and branch_at before the stop time.",
+            ),
+        ):
+            if fault:
+                raise StudyError(text)

@@ -1,17 +1,16 @@
 """The package of ./scripts/study on the import path, workers and an object store, and small studies to run."""
 
-from __future__ import annotations
-
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import fsspec
 import numpy as np
 import pytest
+import xarray as xr
 from distributed import Client
-from fmpy import extract
+from fmpy import extract, read_model_description
 from moto.server import ThreadedMotoServer
 
 STUDIES = Path(__file__).resolve().parents[1]
@@ -19,18 +18,28 @@ sys.path[:0] = [str(STUDIES), str(STUDIES.parent / "python")]
 
 from study import Study  # noqa: E402
 from study.compute import cluster  # noqa: E402
-from study.runs import Runner  # noqa: E402
+from study.dataset import axes_of, points, template  # noqa: E402
+from study.instance import Instance, run_block  # noqa: E402
 from study.worker import compiled  # noqa: E402
 
 
 @pytest.fixture(scope="session")
-def runner(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Runner]:
-    """One instance in this process, as a worker has it."""
+def alone(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[Study], xr.Dataset]:
+    """Runs a study by one instance in this process, one wheel after the other."""
     folder = extract(str(fmu_path), str(tmp_path_factory.mktemp("fmu")))
     compiled(Path(folder))
-    runner = Runner(folder)
-    yield runner
-    runner.close()
+    description, instance = read_model_description(folder), Instance(folder)
+
+    def run(study: Study) -> xr.Dataset:
+        study.check(instance.variables)
+        instance._kept = None  # no snapshot of an earlier call
+        axes = axes_of(study)
+        results = template(study, axes, description, 1_000_000)
+        found = run_block(instance, study, points(study, axes, (slice(None),) * results["status"].ndim))
+        assert found.keys() == results.keys()
+        return results.assign({n: (results[n].dims, x.reshape(results[n].shape)) for n, x in found.items()})
+
+    return run
 
 
 @pytest.fixture(scope="session")

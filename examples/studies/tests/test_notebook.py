@@ -1,7 +1,5 @@
 """The notebook is kept with what its cells give: they run from the first to the last, and give that again."""
 
-from __future__ import annotations
-
 import re
 from base64 import b64decode
 from io import BytesIO

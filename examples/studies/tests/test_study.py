@@ -1,12 +1,11 @@
 """Studies with many workers: bit-identical to one, with a scheduler elsewhere, and in an object store."""
 
-from __future__ import annotations
-
 import json
 import re
 import shlex
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,13 +15,12 @@ import pytest
 import values
 import xarray as xr
 from distributed import Client, LocalCluster, SubprocessCluster
-from studies_support import ROOT, as_one_worker, command, same, single
+from studies_support import ROOT, command, same
 from study import Status, Study, StudyError, compute, curves, in_degrees
 from study.__main__ import study_file
 from study.compute import run
-from study.options import arguments_of, fields_of
-from study.results import open_results
-from study.runs import Result, Runner
+from study.instance import Result
+from study.options import arguments_of, study_of
 from study.worker import run_chunk
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
@@ -31,11 +29,16 @@ EXAMPLE = re.findall(r"^```python\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)[
 
 
 @pytest.fixture(scope="module")
-def here(fates: Study, fmu_path: Path, crew: Client, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def conduct(fmu_path: Path, crew: Client, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., xr.Dataset]:
+    """Runs a study with the two workers."""
+    usual = {"fmu": fmu_path, "client": crew, "quiet": True}
+    return lambda study, out=None, **how: run(study, out or tmp_path_factory.mktemp("study") / "z", **(usual | how))
+
+
+@pytest.fixture(scope="module")
+def results(fates: Study, conduct) -> xr.Dataset:
     """The study of all fates, run by two workers on this machine, which write it."""
-    out = tmp_path_factory.mktemp("here") / "fates.zarr"
-    run(fates, out, fmu=fmu_path, client=crew, quiet=True, chunk=4, work=written_by_workers)
-    return out
+    return conduct(fates, chunk=4, work=written_by_workers).load()
 
 
 def written_by_workers(*task: object) -> None:
@@ -48,31 +51,26 @@ def without_the_store(upload: str, study: Study, _place: str, *task: object) -> 
     return run_chunk(upload, study, "/nowhere", *task)
 
 
-def test_the_guide_keeps_its_promise_of_ten_lines() -> None:
+def test_the_guides_study_takes_ten_lines_and_its_command_line_is_the_same(tmp_path: Path) -> None:
     assert len(EXAMPLE.splitlines()) <= 10
-
-
-def test_the_guides_command_line_is_the_study_of_its_file(tmp_path: Path) -> None:
     file = tmp_path / "grid.py"
     file.write_text(EXAMPLE)
+    study = study_file(str(file))["study"]
     words = shlex.split(re.search(r"scripts/study (--vary.*?)```", GUIDE, re.DOTALL)[1].replace("\\\n", " "))
-    assert Study(**fields_of(arguments_of(words))).spec() == study_file(str(file))["study"].spec()
     other = ["s=0.02" if word == "s=0.01" else word for word in words]
-    assert Study(**fields_of(arguments_of(other))).spec() != study_file(str(file))["study"].spec()
+    assert study_of(arguments_of(words)) == study != study_of(arguments_of(other))
 
 
-def test_many_workers_and_one_give_bit_identical_results(fates: Study, here: Path, runner: Runner) -> None:
-    assert as_one_worker(runner, fates, open_results(here))
-    other = open_results(here).load()
+def test_many_workers_and_one_give_bit_identical_results(fates: Study, results: xr.Dataset, alone) -> None:
+    assert same(alone(fates), results)
+    other = results.copy(deep=True)
     other["theta"][2, 1, 3, 100] = 0.0
-    assert not as_one_worker(runner, fates, other)
+    assert not same(alone(fates), other)
 
 
-def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(fates: Study, here: Path, fmu_path: Path) -> None:
-    results = open_results(here).load()
+def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(results: xr.Dataset) -> None:
     assert dict(results.sizes) == {"theta_start": 3, "s": 2, "phi_dot_start": 4, "time": 101}
     assert results["theta"].dims == ("theta_start", "s", "phi_dot_start", "time")
-    assert results["lowest"].attrs["units"] == results["theta_start"].attrs["units"] == "rad"
     fates_seen = {Status(code).name for code in np.unique(results["status"])}
     assert fates_seen == {"reached", "flat", "lifted_off", "refused"}
     assert set(results.attrs) >= {"fmu_sha256", "fmu_version", "fmu_guid", "seed", "numpy_version", "study"}
@@ -80,93 +78,72 @@ def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(fates: Stu
     assert float(begun["theta"][0]) == np.radians(75.0)
 
 
-def test_labels_are_short_and_the_description_is_kept(here: Path) -> None:
-    results = open_results(here)
+def test_labels_are_short_and_the_description_is_kept(results: xr.Dataset) -> None:
     labels = {name: values.attrs["long_name"] for name, values in results.variables.items()}
-    assert labels["theta_start"] == "θ at the start"
-    assert labels["s"] == "s"
-    assert labels["phi_dot_start"] == "φ\N{COMBINING DOT ABOVE} at the start"
-    assert labels["down"] == "first(θ < 0.5)"
+    expected = {"theta_start": "θ at the start", "s": "s", "down": "first(θ < 0.5)"}
+    assert (expected | {"phi_dot_start": "φ\N{COMBINING DOT ABOVE} at the start"}).items() <= labels.items()
     assert max(map(len, labels.values())) <= 30
     assert "upright" in results["theta_start"].attrs["description"]
     plane = results["plane"].attrs["description"]
     assert plane.startswith("Angle of the wheel's plane to the ground") and "smallest" in plane
     turned = in_degrees(results)
-    assert turned["theta_start"].attrs["units"] == turned["lowest"].attrs["units"] == "deg"
+    assert (results["lowest"].attrs["units"], turned["lowest"].attrs["units"]) == ("rad", "deg")
     within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "degrees, relative")
     np.testing.assert_array_equal(turned["energy"], results["energy"])
 
 
-def test_a_legend_stands_beside_the_curves(here: Path) -> None:
+def test_a_legend_stands_beside_the_curves(results: xr.Dataset) -> None:
     figure, axes = plt.subplots()
-    curves(in_degrees(open_results(here))["theta"].isel(theta_start=1, phi_dot_start=0), x="time", hue="s")
+    curves(in_degrees(results)["theta"].isel(theta_start=1, phi_dot_start=0), x="time", hue="s")
     figure.canvas.draw()
     legend = axes.get_legend()
-    assert legend.get_title().get_text() == "s [m]"
-    assert [text.get_text() for text in legend.get_texts()] == ["0", "0.03"]
+    assert [text.get_text() for text in (legend.get_title(), *legend.get_texts())] == ["s [m]", "0", "0.03"]
     assert legend.get_window_extent().x0 > axes.bbox.x1
     plt.close(figure)
 
 
-def test_another_study_is_overwritten_on_request_and_nothing_else(fmu_path: Path, crew: Client, tmp_path: Path) -> None:
-    how = {"fmu": fmu_path, "client": crew, "quiet": True, "overwrite": True}
+def test_another_study_is_overwritten_on_request_and_nothing_else(conduct, tmp_path: Path) -> None:
     for s in (0.0, 0.01):
-        assert Study(grid={"s": [s]}, stop_time=1.0).run(tmp_path / "one.zarr", **how)["s"].item() == s
+        assert conduct(Study(grid={"s": [s]}, stop_time=1.0), tmp_path / "z", overwrite=True)["s"].item() == s
     (tmp_path / "thesis.tex").write_text("years of work")
     with pytest.raises(StudyError, match="is not a Zarr group"):
-        Study(grid={"s": [0.0]}).run(tmp_path, **how)
+        conduct(Study(grid={"s": [0.0]}), tmp_path, overwrite=True)
     assert (tmp_path / "thesis.tex").exists()
 
 
-def test_a_cluster_elsewhere_gives_bit_identical_results(
-    fates: Study, here: Path, fmu_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_cluster_elsewhere_gives_bit_identical_results(fates, results, conduct, tmp_path, monkeypatch) -> None:
     """Scheduler and worker are processes without this package's path, as on other machines."""
     monkeypatch.delenv("PYTHONPATH", raising=False)
     monkeypatch.chdir(tmp_path)
     with SubprocessCluster(n_workers=1, threads_per_worker=2, dashboard_address=None) as there:
-        address = there.scheduler_address
-        found = run(fates, tmp_path / "there.zarr", fmu=fmu_path, scheduler=address, quiet=True, chunk=8)
-    assert same(found, open_results(here))
+        assert same(conduct(fates, client=None, scheduler=there.scheduler_address, chunk=8), results)
 
 
-def test_results_are_bit_identical_wherever_they_are_kept_and_whoever_writes_them(
-    fates: Study, here: Path, fmu_path: Path, crew: Client, bucket: str, tmp_path: Path
-) -> None:
+@pytest.mark.parametrize("work", [without_the_store, written_by_workers])
+def test_results_are_bit_identical_whoever_writes_them(fates, results, conduct, work, bucket, tmp_path) -> None:
     """Written by the caller into a folder that workers do not see, and by workers into an object store."""
-    places = {str(tmp_path / "sent.zarr"): without_the_store, f"{bucket}/fates.zarr": written_by_workers}
-    for out, work in places.items():
-        stored = run(fates, out, fmu=fmu_path, client=crew, quiet=True, chunk=8, work=work)
-        assert same(stored, open_results(here))
-        assert same(
-            run(fates, out, fmu=fmu_path, scheduler="tcp://nobody:1", quiet=True), stored
-        )  # nothing left to run
-        with pytest.raises(StudyError, match=r"another study .* \(--out\).* overwrite=True"):
-            run(Study(grid={"s": [0.0]}), out, fmu=fmu_path, quiet=True)
+    out = f"{bucket}/fates.zarr" if work == written_by_workers else tmp_path / "sent.zarr"
+    assert same(conduct(fates, out, chunk=8, work=work), results)
+    assert same(conduct(fates, out, client=None, scheduler="tcp://nobody:1"), results)  # nothing left to run
+    with pytest.raises(StudyError, match=r"another study .* \(--out\).* overwrite=True"):
+        conduct(Study(grid={"s": [0.0]}), out)
 
 
-def test_a_list_is_cut_into_chunks_of_its_rows(fmu_path: Path, crew: Client, tmp_path: Path) -> None:
-    s = np.linspace(0.0, 0.03, 50)
-    study = Study(list={"s": s, "theta_start": np.linspace(1.2, 1.4, 50)}, stop_time=1.0)
-    results = run(study, tmp_path / "list.zarr", fmu=fmu_path, client=crew, quiet=True)
+def test_a_list_is_cut_into_chunks_of_its_rows(conduct, alone) -> None:
+    study = Study(list={"s": np.linspace(0.0, 0.03, 50), "theta_start": np.linspace(1.2, 1.4, 50)}, stop_time=1.0)
+    results = conduct(study)
     assert results["status"].encoding["chunks"] == (16,)
-    np.testing.assert_array_equal(results["s"], s)
-    assert len(np.unique(results["theta_end"])) == 50
-    back = Study(list={name: values[::-1] for name, values in study.list.items()}, stop_time=1.0)
-    turned = run(back, tmp_path / "back.zarr", fmu=fmu_path, client=crew, quiet=True)
-    np.testing.assert_array_equal(turned["theta_end"][::-1], results["theta_end"])
+    assert same(results, alone(study)) and not same(results, alone(study).isel(wheel=slice(None, None, -1)))
 
 
-def test_a_study_without_workers_ends_with_a_message(
-    fates: Study, fmu_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_study_without_workers_ends_with_a_message(fates: Study, conduct, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(compute, "PATIENCE", 1.0)
     with (
         LocalCluster(n_workers=0, processes=False, dashboard_address=None) as nobody,
         Client(nobody) as client,
         pytest.raises(StudyError, match="no worker"),
     ):
-        run(fates, tmp_path / "nobody.zarr", fmu=fmu_path, client=client, quiet=True)
+        conduct(fates, client=client)
 
 
 def test_the_command_reads_a_list_and_exports_tables(fmu_path: Path, tmp_path: Path) -> None:
@@ -189,19 +166,15 @@ VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3], "m=500
 
 @pytest.mark.parametrize(("axis", "expected"), VARY.items())
 def test_values_on_the_command_line_take_the_units_of_their_variables(axis: str, expected: list[float]) -> None:
-    ((_, got),) = fields_of(arguments_of(["--vary", axis]))["grid"].items()
+    ((_, got),) = study_of(arguments_of(["--vary", axis, "--stop-time", "2min"])).grid.items()
     within(absolute_error(got, expected), 8 * EPSILON, f"{axis}, SI")
-    ((_, one),) = fields_of(arguments_of(["--set", re.split("[:,]", axis)[0]]))["values"].items()
-    within(absolute_error(one, expected[0]), 8 * EPSILON, f"{axis}, the first, SI")
-
-
-def test_a_time_on_the_command_line_takes_a_unit() -> None:
-    assert fields_of(arguments_of(["--stop-time", "2min", "--interval", "5ms"]))["stop_time"] == 120.0
+    study = study_of(arguments_of(["--vary", "J_x=1,2", "--set", re.split("[:,]", axis)[0], "--stop-time", "2min"]))
+    within(absolute_error([*study.values.values()], expected[:1]), 8 * EPSILON, f"{axis}, the first, SI")
+    assert study.stop_time == 120.0
 
 
 def test_a_ready_wheel_gives_what_the_command_line_does_not() -> None:
-    words = ["--wheel", "coin", "--vary", "r=1mm,2mm", "--set", "m=8g"]
-    study = Study(**fields_of(arguments_of(words)))
+    study = study_of(arguments_of(["--wheel", "coin", "--vary", "r=1mm,2mm", "--set", "m=8g"]))
     assert study.values["m"] == 0.008 and study.values["r_0"] == 0.011775 and "r" not in study.values
     assert study.grid == {"r": [0.001, 0.002]} and study.values["phi_dot_start"] < -10
 
@@ -232,9 +205,7 @@ def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> No
     assert len(done.stderr.splitlines()) == 1
 
 
-def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(
-    runner: Runner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(alone, tmp_path, monkeypatch) -> None:
     """The paper's shape at 1/100 of its size and 1/10^6 of its mass: ten times as fast, with the same angles."""
     measures = {"low": "lowest", "down": "first(plane_angle < 1.0)", "slow": "first(omega_z > -1.9)", "top": "max(Z_O)"}
     grid = {"theta_start": [1.2, 1.4], "s": [0.0, 0.03], "M_3": [0.0, -0.2]}
@@ -244,11 +215,12 @@ def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(
     values.WHEELS.write_text(json.dumps({"small": {"title": "", "parameters": body}}))
     small = study.scaled("small")
     assert (small.stop_time, small.grid["M_3"][1]) == pytest.approx((0.4, -0.2e-8))
-    paper, scaled, unscaled = (single(runner, one) for one in (study, small, replace(small, grid=grid)))
+    paper, scaled, unscaled = (alone(one) for one in (study, small, replace(small, grid=grid)))
     for name, factor in {"low": 1, "down": 0.1, "slow": 0.1, "top": 0.01}.items():
-        there = np.isfinite(paper[name])
-        assert there.any() and (there == np.isfinite(scaled[name])).all()
-        within(relative_error(scaled[name][there], factor * paper[name][there]), 1e-6, f"{name}, relative")
+        before, after = paper[name].values, scaled[name].values
+        there = np.isfinite(before)
+        assert there.any() and (there == np.isfinite(after)).all()
+        within(relative_error(after[there], factor * before[there]), 1e-6, f"{name}, relative")
     beyond(absolute_error(unscaled["low"], paper["low"]), 0.1, "lowest angle with the paper's s and M_3, rad")
     with pytest.raises(StudyError, match="values of m, which are those of the wheel small"):
         replace(study, values={"m": 1.0}).scaled("small")
@@ -256,11 +228,11 @@ def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(
 
 
 @pytest.mark.parametrize("name", ["fates", "grip", "uptime"])
-def test_an_example_draws_a_ready_wheel_beside_its_own(name: str, fmu_path: Path, crew: Client, tmp_path: Path) -> None:
+def test_an_example_draws_a_ready_wheel_beside_its_own(name: str, conduct, tmp_path: Path) -> None:
     content = study_file(name, "coin")
     assert content["name"] == f"{name}_coin"
     study = content["study"]
     few = {n: axis[:: max(1, len(axis) // 4)] for n, axis in study.grid.items()}
-    results = run(replace(study, grid=few), tmp_path / "few.zarr", fmu=fmu_path, client=crew, quiet=True)
+    results = conduct(replace(study, grid=few))
     assert content["draw"](content["table"](results), tmp_path / "few").is_file()
     assert (results["status"] != Status.refused).all()

@@ -1,0 +1,181 @@
+"""The labelled dataset of a study: empty before any wheel has run, opened, drawn, exported, summarized."""
+
+import json
+import platform
+import re
+from dataclasses import asdict
+from importlib.metadata import version
+from pathlib import Path
+
+import dask.array as da
+import numpy as np
+import pandas as pd
+import xarray as xr
+from fmpy.model_description import ModelDescription, ScalarVariable
+from matplotlib.lines import Line2D
+
+from .instance import Array
+from .plan import PLANE_ANGLE, POINT, Status, Study, counters_of, parse_measure
+from .worker import Region
+
+Points = dict[str, Array]  # values by name
+TITLE = "A study with wheel.fmu"
+GREEK = {"psi": "ψ", "theta": "θ", "phi": "φ", "omega": "ω", "lambda": "λ", "mu": "μ", "tau": "τ"}
+DOTS = {"_ddot": "\N{COMBINING DIAERESIS}", "_dot": "\N{COMBINING DOT ABOVE}"}
+ANGLE = "angle to the ground"
+MEANING = {
+    "last": "at the end of the run",
+    "min": "smallest value at the communication points and the end of the run",
+    "max": "largest value at the communication points and the end of the run",
+    "mean": "mean over time",
+    "<": "first time below {:g}",
+    ">": "first time above {:g}",
+}
+PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
+OWN = {  # results of every study: empty value, type, unit, label, description
+    "status": (int(Status.not_computed), "i1", "", "fate", "Fate of the wheel"),
+    "message": ("", np.dtypes.StringDType(), "", "message", "Messages of the FMU"),
+    "end_time": (np.nan, "f8", "s", "end of the run", "Time at which the run ended"),
+    "wall_time": (np.nan, "f8", "s", "computing time", "Computing time of the run"),
+    "fmu_time": (np.nan, "f8", "s", "time in the FMU", "Part of wall_time spent in calls of the FMU"),
+}
+
+
+def axes_of(study: Study) -> Points:
+    """Name -> values: per dimension of a grid, per wheel of a list or a sample."""
+    if not study.sample:
+        return {name: np.array(values) for name, values in study.varied.items()}
+    from scipy.stats import qmc  # slow to load
+
+    unit = qmc.LatinHypercube(len(study.sample), rng=study.seed).random(study.count)
+    columns = qmc.scale(unit, *zip(*study.sample.values(), strict=True)).T
+    return dict(zip(study.sample, columns, strict=True))
+
+
+def points(study: Study, axes: Points, region: Region) -> Points:
+    """The values of a region of the results: arrays to be broadcast against each other."""
+    parts = region if study.grid else region * len(axes)
+    cut = [axis[part] for axis, part in zip(axes.values(), parts, strict=True)]
+    return dict(zip(axes, np.ix_(*cut) if study.grid else cut, strict=True))
+
+
+def template(study: Study, axes: Points, description: ModelDescription, size: int) -> xr.Dataset:
+    """All coordinates, and columns that hold nothing yet, in chunks of at most `size` wheels."""
+    variables = {v.name: v for v in description.modelVariables}
+    about = {name: (v.unit, label(name), v.description) for name, v in variables.items()}
+    shape = {name: len(axis) for name, axis in axes.items()}
+    shape = shape if study.grid else {POINT: max(shape.values())}
+    chunks = da.core.normalize_chunks("auto", tuple(shape.values()), limit=size, dtype="i1")
+    columns = OWN | {name: (-1, "i8", *about[name]) for name in counters_of(variables)}
+    columns |= {name: (np.nan, "f8", *measured(text, variables)) for name, text in study.measures.items()}
+    columns |= {name: (np.nan, "f8", *about[name]) for name in study.history}
+    results = {}
+    for name, (nothing, dtype, *texts) in columns.items():
+        timed = name in study.history
+        lengths = (*shape.values(), *[len(study.times)] * timed)
+        empty = da.full(lengths, nothing, dtype=dtype, chunks=(*chunks, *[-1] * timed))
+        results[name] = xr.Variable((*shape, *["time"] * timed), empty, attributes(*texts), {"fill_value": nothing})
+    fates = [status for status in Status if status != Status.not_computed]
+    results["status"].attrs |= {"flag_values": [*map(int, fates)], "flag_meanings": " ".join(s.name for s in fates)}
+    coordinates = {n: (n if study.grid else POINT, axis, attributes(*about[n])) for n, axis in axes.items()}
+    if study.history:
+        coordinates["time"] = ("time", study.times, attributes("s", "time", ""))
+    return xr.Dataset(results, coordinates)
+
+
+def attributes(unit: str | None, name: str, description: str | None) -> dict[str, str]:
+    """Those that are not empty."""
+    return {k: v for k, v in (("units", unit), ("long_name", name), ("description", description)) if v}
+
+
+def measured(text: str, variables: dict[str, ScalarVariable]) -> tuple[str, str, str]:
+    """Unit, label and description of a measure."""
+    measure = parse_measure(text)
+    variable = variables[measure.variable]
+    quantity = PLANE if measure.quantity == PLANE_ANGLE else variable.description
+    meaning = MEANING[measure.kind].format(measure.limit)
+    return "s" if measure.is_time else variable.unit, label(text), f"{quantity}; {meaning}"
+
+
+def label(text: str) -> str:
+    """The short label of a variable, or of a measure of variables, for axes and legends: `θ at the start`."""
+    if text.strip() in ("lowest", f"min({PLANE_ANGLE})"):
+        return f"smallest {ANGLE}"
+    return re.sub(r"[A-Za-z]\w*", lambda found: _symbol(found[0]), text)
+
+
+def _symbol(name: str) -> str:
+    if name == PLANE_ANGLE:
+        return ANGLE
+    name, start = re.subn(r"_start$", "", name)
+    first, dot, rest = re.fullmatch(r"([A-Za-z]+)((?:_d?dot)?)(\w*)", name).groups()
+    return GREEK.get(first, first) + DOTS.get(dot, "") + rest + (" at the start" if start else "")
+
+
+def provenance(study: Study, description: ModelDescription, fmu_sha256: str) -> dict[str, object]:
+    """All that is needed to repeat the study: its definition, its seed, the FMU's hash, and versions."""
+    definition = {name: value for name, value in asdict(study).items() if name not in ("grid", "list")}
+    versions = {f"{name}_version": version(name) for name in ("fmpy", "numpy", "dask", "xarray", "zarr")}
+    versions |= {"python_version": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
+    fmu = {"fmu_sha256": fmu_sha256, "fmu_guid": description.guid, "fmu_version": description.version or ""}
+    return {"title": TITLE, "seed": study.seed, "study": json.dumps(definition)} | fmu | versions
+
+
+def open_results(place: Path | str) -> xr.Dataset:
+    """The results of a study, labelled; read when asked for."""
+    results = xr.open_zarr(place, consolidated=False, chunks=None)
+    first = ["status", "message", "end_time"]
+    return results[[*first, *sorted(set(results.data_vars) - set(first))]]
+
+
+def in_degrees(results: xr.Dataset) -> xr.Dataset:
+    """A copy for plots: angles in degrees, coordinates too; rates stay in rad/s."""
+    turned = results.copy()
+    for name, values in results.variables.items():
+        if values.attrs.get("units") == "rad":
+            turned[name] = np.degrees(results[name]).assign_attrs(values.attrs | {"units": "deg"})
+    return turned
+
+
+def curves(values: xr.DataArray, x: str, hue: str) -> list[Line2D]:
+    """Draws values over x, one line for each value of hue, with the legend beside the axes, where no line runs."""
+    lines = values.plot.line(x=x, hue=hue, add_legend=False)
+    about = values[hue].attrs
+    title = about["long_name"] + (f" [{about['units']}]" if "units" in about else "")
+    names = [f"{value:g}" for value in values[hue].values]
+    lines[0].axes.legend(lines, names, title=title, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    return lines
+
+
+def export(results: xr.Dataset | pd.DataFrame, path: Path) -> Path:
+    """Writes a copy as NetCDF (.nc), or as a table (.csv) with one row per wheel (and time)."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.suffix == ".nc":
+        packed = {n: {"zlib": True} for n in results.data_vars if results[n].dtype.kind in "fiu"}
+        results.drop_encoding().to_netcdf(path, encoding=packed)
+    elif isinstance(results, pd.DataFrame):
+        results.to_csv(path, index=False, float_format="%.6g", lineterminator="\n")
+    else:
+        rows = results.to_dataframe().reset_index()
+        rows["status"] = [Status(code).name for code in rows["status"]]
+        rows.to_csv(path, index=False)
+    return path
+
+
+def summarize(results: xr.Dataset, seconds: float) -> str:
+    """Counts per status, the first message of those that were not run, and speed.
+
+    The speed is of the runs themselves, summed over the workers; `seconds` is the time of this call, workers' start and
+    writing included, which may have run only a part of the study.
+    """
+    status = results["status"].values
+    lines = [f"{status.size} wheels in {seconds:.1f} s:"]
+    for code, found in zip(*np.unique(status, return_counts=True), strict=True):
+        lines.append(f"  {found:8d} {Status(code).name.replace('_', ' ')}")
+        if code in (Status.refused, Status.failed):
+            lines.append(f"           first: {results['message'].values[status == code][0]}")
+    wall, inside = results["wall_time"].values, float(results["fmu_time"].sum())
+    if (total := np.nansum(wall)) > 0:
+        speed, share = np.isfinite(wall).sum() / total, 100 * inside / total
+        lines.append(f"{speed:.0f} wheels per second and worker, {share:.0f} % of the time inside the FMU.")
+    return "\n".join(lines)
