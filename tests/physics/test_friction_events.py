@@ -15,7 +15,7 @@ from support.exchange import loaded
 from support.kept import kept
 from support.motion import Library
 
-from .measure import instants, instants_error, table_errors
+from .measure import instants, instants_error
 
 EVENTS = read_table("paper_friction_events")
 
@@ -95,32 +95,6 @@ def test_the_ever_weaker_releases_of_a_long_run_are_those_of_the_independent_ref
     assert len(modes) == 150
     within(abs(energy - want["E"][-1]), 5e-6, "E")  # J
     beyond(abs(late_releases(library, None, s=0.03 * (1 + 1e-4))[1] - want["E"][-1]), 5e-6, "E")
-
-
-def late_instants(library: Library, tolerance: float | None) -> list[float]:
-    return [t for t, _ in library.simulate([0.0, 150.0], tolerance, s=0.03).events if t > 140]
-
-
-def test_no_weak_release_is_lost_or_misplaced_between_seconds_140_and_150(library: Library) -> None:
-    def gap(tolerance: float | None) -> float:
-        found, exact = late_instants(library, tolerance), late_instants(library, 1e-12)
-        assert len(exact) == 56  # where |omega_z| stays below 1e-4 rad/s
-        return float(np.abs(np.subtract(found, exact)).max()) if len(found) == len(exact) else np.inf
-
-    within(gap(None), 2e-5, "gap")  # s
-    beyond(gap(1e-4) / gap(None), 50, "gap")
-
-
-def regularized_error(library: Library, omega_s: float) -> float:
-    return max(table_errors(library, "friction", 1e-10, friction_law=2, omega_s=omega_s).values())
-
-
-def test_the_regularized_law_tends_to_the_exact_one_at_first_order(library: Library) -> None:
-    errors = [regularized_error(library, omega_s) for omega_s in (1e-3, 1e-4, 1e-5)]
-    within(abs(errors[0] / errors[1] - 10), 4, "errors")
-    within(abs(errors[1] / errors[2] - 10), 4, "errors, 2")
-    exact = max(table_errors(library, "friction").values())
-    beyond(errors[2] / exact, 900, "errors")  # no width reaches the exact law
 
 
 FIRST = ("tau", "friction_mode", "omega_z_dot", "psi_ddot", "lambda_1", "lambda_2")
