@@ -15,6 +15,7 @@ from support.closed_forms import rolling_inertia
 from support.kept import kept
 from support.motion import Library, start_values
 
+from .cases import random_scene
 from .exact_motions import UPRIGHT
 
 R, WEIGHT = 0.35, 20 * 9.81
@@ -67,19 +68,6 @@ def test_a_level_road_has_no_direction(library: Library) -> None:
     motion = {"theta_start": 1.2, "psi_start": 0.4, "phi_dot_start": -6.0, "psi_dot_start": 0.5}
     level, turned = (library.simulate([0.0, 2.5, 5.0], slope_direction=way, **motion) for way in (0.0, 0.7))
     assert all((level[c] == turned[c]).all() for c in level.columns)
-
-
-def random_scene(random: np.random.Generator) -> tuple[Wheel, Start]:
-    """Light to heavy friction or none, any inertia, any slope to 50 degrees, rates of a few rad/s."""
-    a, b, c = random.uniform(0.2, 0.9, 3)
-    wheel = Wheel(
-        r=random.uniform(0, 0.1), J_x=b + c, J_y=a + c, J_z=a + b,
-        s=random.choice([0, random.uniform(0, 0.05)]),
-        slope=random.uniform(0, 0.9), slope_direction=random.uniform(-pi, pi),
-    )  # fmt: skip
-    motion = dict(zip(("psi_dot", "theta_dot", "phi_dot"), random.normal(0, 2, 3), strict=True))
-    motion |= dict(zip(("psi", "phi"), random.uniform(-pi, pi, 2), strict=True))
-    return wheel, Start(theta=random.uniform(0.8, 2.3), **motion)
 
 
 def reference_gap(library: Library, seed: int, formulation: int) -> tuple[float, float]:
