@@ -1,8 +1,6 @@
 // Forged states: a state of an instance, some of its words changed and its checksums made right again, brought to
 // another instance. It is refused with a sentence and the instance is as it was, or it is taken and whatever follows
 // ends soon and without harm.
-#include <algorithm>
-
 #include "bytes.hpp"
 #include "session.hpp"
 
@@ -23,7 +21,8 @@ void change(Digest& bytes, Bytes& in) {
     if (kind == 2) word[in.below(8)] ^= static_cast<unsigned char>(1u << in.below(8));
     std::memcpy(place, word, 8);
   }
-  if (in.chance(1)) bytes.resize(bytes.size() - 8 * in.below(static_cast<unsigned>(std::min<std::size_t>(words, 200))));
+  if (in.chance(1))
+    bytes.erase(bytes.end() - 8L * in.below(words < 200 ? static_cast<unsigned>(words) : 200), bytes.end());
 }
 
 // A mark, the size, the checksum of what follows, and that.
