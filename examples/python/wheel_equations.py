@@ -74,6 +74,7 @@ LIBRARY.wheel_set_slope.argtypes = [POINTER(Parameters), c_double, c_double, c_d
 LIBRARY.wheel_contact.restype = Contact
 LIBRARY.wheel_scene.restype = Scene
 LIBRARY.wheel_scene.argtypes = [POINTER(Parameters), POINTER(Load), Friction]
+LIBRARY.wheel_reaction_rates.argtypes = [POINTER(t) for t in (Formulation, Scene, Load, c_double, ReactionRates)]
 
 
 def paper_wheel(**changes: float) -> Parameters:

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from support import equations as eq
 
-from equations.paper_transcription import Paper, times
+from equations.paper_transcription import Paper
 
 PSI_DOT, SPIN, THETA = 9, 11, 4
 
@@ -37,11 +37,6 @@ class Stabilised(Paper):
         """a = 5 sqrt(g / (r_0 + r) + |omega|^2), 1/s."""
         w = self.wheel
         return 5 * np.sqrt(w["g"] / (w["r_0"] + w["r"]) + (self.omega**2).sum(axis=-1))
-
-    @cached_property
-    def slip(self) -> np.ndarray:
-        """[B]{q_dot}, m/s."""
-        return times(self.B, self.q_dot)
 
     @cached_property
     def height_error(self) -> np.ndarray:

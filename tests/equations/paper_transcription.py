@@ -218,6 +218,11 @@ class Paper:
         return np.concatenate([x[..., :9], (self.wheel["J_z"] * x[..., 9])[..., None]], axis=-1)
 
     @cached_property
+    def slip(self) -> np.ndarray:
+        """[B]{q_dot}, m/s."""
+        return times(self.B, self.q_dot)
+
+    @cached_property
     def omega(self) -> np.ndarray:  # (8), in body axes
         return times(self.Q, self.beta_dot)
 

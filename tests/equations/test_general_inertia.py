@@ -1,4 +1,4 @@
-"""The reduced form for any principal moments of inertia: continuous at J_x = J_y; how N answers the axle moment.
+"""Unequal moments of inertia: how N answers the moment about the axle.
 
 Random scenes with loads and brakes (random_scenes.py). Carrier frame.
 """
@@ -7,21 +7,9 @@ import numpy as np
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within
 
-from equations.pointwise import Table, distance, draw, dynamics
+from equations.pointwise import Table, draw, dynamics
 
 ROWS = 20_000
-
-
-def test_a_difference_of_rounding_between_J_x_and_J_y_changes_nothing_but_rounding(law: int) -> None:
-    """The simpler elimination for J_x = J_y is the limit of the general one."""
-    scenes, motions = draw(71, law, rows=ROWS)
-    equal = dynamics(eq.REDUCED, scenes, motions)
-    scenes["wheel"]["J_y"] *= 1 + 1e-15
-    assert (scenes["wheel"]["J_x"] != scenes["wheel"]["J_y"]).all()
-    # two eliminations
-    within(distance(dynamics(eq.REDUCED, scenes, motions), equal, scenes), 4096 * EPSILON, "relative error")
-    scenes["wheel"]["J_y"] *= 1 + 1e-8
-    beyond(distance(dynamics(eq.REDUCED, scenes, motions), equal, scenes), 2e-8, "relative error")
 
 
 def answer_of_N(scenes: Table, motions: Table) -> Table:

@@ -48,12 +48,6 @@ def test_a_scene_that_is_not_meant_answers_nan(formulation: eq.Formulation, choi
     assert np.isnan(answers(formulation, scene)).all()
 
 
-def test_a_record_with_a_coefficient_and_nothing_else_is_not_a_wheel_without_friction(
-    formulation: eq.Formulation,
-) -> None:
-    assert np.isnan(answers(formulation, eq.Scene(wheel=eq.paper_wheel(s=0.03)))).all()
-
-
 def test_a_load_cannot_be_left_out_by_forgetting_a_flag(formulation: eq.Formulation) -> None:
     scene = eq.scene(eq.paper_wheel())
     free = answers(formulation, scene)

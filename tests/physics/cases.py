@@ -4,9 +4,10 @@ The ground may pull in all of them (keep_contact).
 """
 
 from functools import cache
+from math import pi
 
 import numpy as np
-from reference import Solution, solve
+from reference import Solution, Start, Wheel, solve
 from support.kept import kept
 from support.motion import Library, Run
 from support.scenes import SCENES
@@ -51,3 +52,16 @@ def transitions_gap(library: Library, name: str, s: float) -> float:
     if [mode for _, mode in got] != [mode for _, mode in want]:
         return np.inf
     return max((abs(a - b) for (a, _), (b, _) in zip(got, want, strict=True)), default=0.0)
+
+
+def random_scene(random: np.random.Generator) -> tuple[Wheel, Start]:
+    """Light to heavy friction or none, any inertia, any slope to 50 degrees, rates of a few rad/s."""
+    a, b, c = random.uniform(0.2, 0.9, 3)
+    wheel = Wheel(
+        r=random.uniform(0, 0.1), J_x=b + c, J_y=a + c, J_z=a + b,
+        s=random.choice([0, random.uniform(0, 0.05)]),
+        slope=random.uniform(0, 0.9), slope_direction=random.uniform(-pi, pi),
+    )  # fmt: skip
+    motion = dict(zip(("psi_dot", "theta_dot", "phi_dot"), random.normal(0, 2, 3), strict=True))
+    motion |= dict(zip(("psi", "phi"), random.uniform(-pi, pi, 2), strict=True))
+    return wheel, Start(theta=random.uniform(0.8, 2.3), **motion)

@@ -32,12 +32,6 @@ def test_it_stops_the_wheel_at_its_instant_and_after_its_distance(library: Libra
     beyond(abs(late - instant), 8e-7, "instant, s")
 
 
-def test_with_rolling_friction_the_capacities_add_up(library: Library) -> None:
-    ((t, _),) = braked(library, [0.0, 2.0], {"M_brake": (BRAKE,)}, s=0.01).events
-    within(abs(t - 5.0 * J / (BRAKE + 0.01 * M * G)), 1e-9, "instant, s")
-    beyond(abs(t - 5.0 * J / BRAKE), 0.007, "instant, s")
-
-
 def test_it_lets_go_where_a_growing_force_exceeds_it(library: Library) -> None:
     rate = 200.0  # N/s
     run = braked(library, [0.0, 0.25, 0.5], {"M_brake": (BRAKE,), "F_X": (0.0, rate)}, phi_dot_start=0.0)

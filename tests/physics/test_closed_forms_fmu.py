@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from reference import Wheel
 from support.bounds import EPSILON, beyond, within
-from support.closed_forms import rolling_inertia, tipping_inertia, upright_deceleration
+from support.closed_forms import rolling_inertia, tipping_inertia
 from support.motion import Library
 from support.schedule import Schedule
 
@@ -22,16 +22,6 @@ def test_upright_rolling_slows_down_linearly_and_then_stands(library: Library, f
     rough = Wheel(s=0.03)
     within(straight_error(library, formulation, 0.03, rough), 1024 * 2 * EPSILON, "straight error")  # of 2 rad/s
     beyond(straight_error(library, formulation, 0.03, Wheel(s=0.03, r=0.0)), 0.1, "straight error")
-
-
-def test_the_upright_wheel_stops_once_at_the_known_instant(library: Library, formulation: int) -> None:
-    def gap(s: float) -> float:
-        events = library.simulate([0.0, 6.0], s=s, formulation=formulation, **UPRIGHT).events
-        assert [mode for _, mode in events] == [0]
-        return abs(events[0][0] - 2 / upright_deceleration(Wheel(s=0.03)))
-
-    within(gap(0.03), 2e-9, "gap")  # s: the log's rounding
-    beyond(gap(0.03 * (1 + 1e-6)), 1e-7, "gap")
 
 
 def test_a_standing_wheel_tips_by_the_hyperbolic_cosine(library: Library) -> None:

@@ -1,4 +1,4 @@
-"""A road that slopes: rolling down, standing and braked against closed forms, constant forces and the reference.
+"""A road that slopes: rolling down, standing and braked against closed forms and the reference.
 
 The axes are the road's, Z across it; the weight is m g (-sin a cos b, -sin a sin b, -cos a) for a slope a that rises
 towards b. Upright wheels head along X (psi = 0), R = r_0 + r. SI units.
@@ -13,9 +13,9 @@ from reference import Start, Wheel, solve
 from support.bounds import EPSILON, beyond, within
 from support.closed_forms import rolling_inertia
 from support.kept import kept
-from support.motion import Library, Run, start_values
-from support.schedule import Schedule
+from support.motion import Library, start_values
 
+from .cases import random_scene
 from .exact_motions import UPRIGHT
 
 R, WEIGHT = 0.35, 20 * 9.81
@@ -64,61 +64,10 @@ def test_a_brake_holds_exactly_up_to_its_capacity_and_lets_go_beyond(library: Li
     beyond(-parked(library, steepest * (1 + 1e-6), 5.0), 2e-6, "way beyond the capacity, m")
 
 
-def on_slope(library: Library, slope: float, direction: float, **values: float) -> Run:
-    return library.simulate(np.linspace(0, 5, 51), 1e-10, slope=slope, slope_direction=direction, **values)
-
-
-MOTION = {"theta_start": 1.2, "psi_start": 0.4, "phi_dot_start": -6.0, "psi_dot_start": 0.5}
-
-
-def test_a_slope_is_the_same_motion_as_a_constant_force(library: Library) -> None:
-    slope, direction = 0.3, 0.7
-
-    def gap(tilt: float) -> float:
-        along = -WEIGHT * sin(tilt)
-        force = {"F_X": along * cos(direction), "F_Y": along * sin(direction), "F_Z": WEIGHT * (1 - cos(tilt))}
-        times = np.linspace(0, 5, 51)
-        pushed = library.simulate(times, 1e-10, Schedule(((0.0, {k: (v,) for k, v in force.items()}),)), **MOTION)
-        run = on_slope(library, slope, direction, **MOTION)
-        return max(float(np.abs(run[c] - pushed[c]).max()) for c in ("X_O", "Y_O", "theta", "omega_z"))
-
-    within(gap(slope), 8192 * EPSILON, "gap")  # the motion amplifies rounding
-    beyond(gap(slope * (1 + 1e-8)), 2e-8, "gap to a steeper road")
-
-
-def test_the_energy_contains_the_height_along_the_slope(library: Library) -> None:
-    run = on_slope(library, 0.3, 0.7, **MOTION)
-    fallen = WEIGHT * sin(0.3) * (run["X_O"] * cos(0.7) + run["Y_O"] * sin(0.7))
-    within(np.ptp(run["E"]) / abs(run["E"]).max(), 3e-11, "energy")
-    beyond(np.ptp(run["E"] - fallen), 50, "energy without the height along the slope, J")
-
-
-def test_a_slope_turned_with_the_wheel_turns_the_motion(library: Library) -> None:
-    turn = 1.1
-    here = on_slope(library, 0.2, 0.0, **MOTION)
-    there = on_slope(library, 0.2, turn, **{**MOTION, "psi_start": 0.4 + turn, "X_O_start": 0.0, "Y_O_start": 0.0})
-    path = [(run["X_O"] - run["X_O"][0]) + 1j * (run["Y_O"] - run["Y_O"][0]) for run in (here, there)]
-    # the motion amplifies rounding
-    within(np.abs(path[0] * np.exp(1j * turn) - path[1]).max(), 2048 * EPSILON, "path, m")
-    beyond(np.abs(path[0] - path[1]).max(), 1, "path not turned, m")
-
-
 def test_a_level_road_has_no_direction(library: Library) -> None:
-    level, turned = (on_slope(library, 0.0, direction, **MOTION) for direction in (0.0, 0.7))
+    motion = {"theta_start": 1.2, "psi_start": 0.4, "phi_dot_start": -6.0, "psi_dot_start": 0.5}
+    level, turned = (library.simulate([0.0, 2.5, 5.0], slope_direction=way, **motion) for way in (0.0, 0.7))
     assert all((level[c] == turned[c]).all() for c in level.columns)
-
-
-def random_scene(random: np.random.Generator) -> tuple[Wheel, Start]:
-    """Light to heavy friction or none, any inertia, any slope to 50 degrees, rates of a few rad/s."""
-    a, b, c = random.uniform(0.2, 0.9, 3)
-    wheel = Wheel(
-        r=random.uniform(0, 0.1), J_x=b + c, J_y=a + c, J_z=a + b,
-        s=random.choice([0, random.uniform(0, 0.05)]),
-        slope=random.uniform(0, 0.9), slope_direction=random.uniform(-pi, pi),
-    )  # fmt: skip
-    motion = dict(zip(("psi_dot", "theta_dot", "phi_dot"), random.normal(0, 2, 3), strict=True))
-    motion |= dict(zip(("psi", "phi"), random.uniform(-pi, pi, 2), strict=True))
-    return wheel, Start(theta=random.uniform(0.8, 2.3), **motion)
 
 
 def reference_gap(library: Library, seed: int, formulation: int) -> tuple[float, float]:

@@ -46,7 +46,6 @@ class Run:
         self.t, self.y = self.times[0], y
         self.rows: list[Row] = []
         self.events: list[tuple[float, int]] = []
-        self.pulls: list[tuple[float, int]] = []
         self.ended: Ending | None = None
         self.first_step = 1e-4
 
@@ -136,8 +135,6 @@ class Run:
             self.events.append((self.t, mode.sigma))
             if len(self.events) > CIRCLE and self.t - self.events[-CIRCLE][0] < CIRCLE_TIME:
                 raise RuntimeError(f"no mode of friction holds at t = {self.t!r} s")
-        if not self.pulls or mode.ground != self.mode.ground:
-            self.pulls.append((self.t, mode.ground))
         self.mode = mode
         if mode.ground < 0 and not self.options.keep_contact:
             self.ended = Ending("lift-off", self.t)
@@ -160,24 +157,21 @@ def solve(
     *,
     rtol: float = 1e-13,
     keep_contact: bool = True,
-    friction: str | tuple[str, float] = "exact",
     flat: float | None = 1e-6,
     pulled_friction: str = "none",
 ) -> Solution:
     """The motion from `start` at times[0], reported at `times` (rising).
 
-    keep_contact False: N = 0 ends the run (lift-off).  friction: "exact", or
-    ("regularized", omega_s) for -(s N + brake) tanh(w_z / omega_s).  flat: the sine of theta at which the
+    keep_contact False: N = 0 ends the run (lift-off).  flat: the sine of theta at which the
     wheel counts as flat and the run ends; None: not watched.  An ended run has its last row at
     the ending.
     """
     inputs = inputs or Inputs()
-    omega_s = 0.0 if friction == "exact" else float(friction[1])
-    options = Options(rtol, keep_contact, omega_s, flat, pulled_friction)
+    options = Options(rtol, keep_contact, flat, pulled_friction)
     run = Run(options, times, initial_state(wheel, start))
     t_end = run.times[-1]
     for stop in [*sorted(t for t in inputs.jumps if run.t < t < t_end), t_end]:
         if run.ended is None:
             run.through(Switch(wheel, inputs.before(stop), options), stop)
     run.rows.append(Row(run.t, run.y, run.mode))
-    return build(Switch(wheel, inputs, options), run.rows, run.events, run.pulls, run.ended)
+    return build(Switch(wheel, inputs, options), run.rows, run.events, run.ended)

@@ -109,7 +109,7 @@ def derivative(contact: Contact, inputs: Inputs, law: Law) -> Callable[[float, S
     def rate(t: float, state: State) -> State:
         y = state.tolist()
         R, answer = respond(contact, inputs, t, y)
-        tau = axle_moment(law._replace(brake=inputs.brake(t)), answer, y[6])
+        tau = axle_moment(law._replace(brake=inputs.brake(t)), answer)
         x, d = answer.base, answer.unit
         a = to_fixed(R, (x[0] + tau * d[0], x[1] + tau * d[1], x[2] + tau * d[2]))
         alpha_z = 0.0 if law.hold else x[5] + tau * d[5]
@@ -150,7 +150,7 @@ def accelerations(
     w = body_rates(n, *rates)
     answer = Contact(wheel).respond(n, w, to_body(R, with_weight(wheel, F)), carrier_moment(n, M))
     law = Law(wheel.s, hold=True) if sigma is None else Law(wheel.s, sigma, brake=brake)
-    tau = axle_moment(law, answer, w[2])
+    tau = axle_moment(law, answer)
     x = [b + tau * u for b, u in zip(answer.base, answer.unit, strict=True)]
     a, reaction = to_fixed(R, tuple(x[0:3])), to_fixed(R, tuple(x[6:9]))
     return Accelerations(*a, *angle_accelerations(n, w, tuple(x[3:6])), *reaction, tau)

@@ -13,7 +13,7 @@ The axle moment tau of rolling friction is left open: the system is solved for t
 the response to a unit tau, and a friction law then fixes tau by a scalar linear equation.
 """
 
-from math import cos, sin, sqrt, tanh
+from math import cos, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -25,12 +25,11 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 class Law(NamedTuple):
-    """One branch of the friction law: tau = -(s N + brake) sigma, or the tau that holds w_z, or tanh."""
+    """One branch of the friction law: tau = -(s N + brake) sigma, or the tau that holds w_z."""
 
     s: float  # m; the wheel's s, or its negative or 0 while the ground pulls
     sigma: float = 0.0
     hold: bool = False
-    omega_s: float = 0.0  # rad/s; > 0: sigma = tanh(w_z / omega_s)
     brake: float = 0.0  # N m, capacity of the dry brake
 
 
@@ -152,12 +151,11 @@ class Contact:
         return Response(base, unit, N_0, N_1)
 
 
-def axle_moment(law: Law, answer: Response, w_z: float) -> float:
+def axle_moment(law: Law, answer: Response) -> float:
     """tau of the law's branch, N depending on tau (general J) included."""
     if law.hold:
         return -answer.base[5] / answer.unit[5]
-    sigma = tanh(w_z / law.omega_s) if law.omega_s else law.sigma
-    return -sigma * (law.s * answer.N_0 + law.brake) / (1 + law.s * sigma * answer.N_1)
+    return -law.sigma * (law.s * answer.N_0 + law.brake) / (1 + law.s * law.sigma * answer.N_1)
 
 
 def stick_margins(law: Law, answer: Response) -> tuple[float, float]:

@@ -4,7 +4,7 @@ Fixed axes for positions, velocities and reactions; Euler angles read from the a
 """
 
 from dataclasses import dataclass
-from math import atan2, hypot, nan, pi, sqrt
+from math import atan2, hypot, nan, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -35,15 +35,13 @@ class Solution:
     """Columns by name (solution["X_O"]), transitions and ending.
 
     events: (t, mode) of the exact law, the first at the start; mode is the sign of omega_z, 0 held.
-    pulls: (t, sign of N), the first at the start.  work_inputs, work_friction: J since the start.
-    residual_velocity, residual_height, residual_norm: |v_O - w x p| (m/s), Z_O - height of O above
-    its contact (m), |q| - 1.
+    work_inputs, work_friction: J since the start.  residual_velocity, residual_height: |v_O - w x p| (m/s), Z_O less
+    the height of O above its contact (m).
     """
 
     t: NDArray[np.float64]
     columns: dict[str, NDArray[np.float64]]
     events: list[tuple[float, int]]
-    pulls: list[tuple[float, int]]
     ended: Ending | None
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
@@ -61,7 +59,7 @@ def _row(switch: Switch, row: Row) -> dict[str, float]:
     wheel = switch.contact.wheel
     R, answer = respond(switch.contact, switch.inputs, t, y)
     n, w, v = R[2], tuple(y[4:7]), y[10:13]
-    tau = axle_moment(switch.law(mode, t), answer, w[2])
+    tau = axle_moment(switch.law(mode, t), answer)
     ground = tuple(b + tau * u for b, u in zip(answer.base[6:9], answer.unit[6:9], strict=True))
     reaction = to_fixed(R, ground)
     ux, uy, s = slope(n)
@@ -87,18 +85,11 @@ def _row(switch: Switch, row: Row) -> dict[str, float]:
         **{"work_inputs": y[15], "work_friction": y[16]},
         "residual_velocity": hypot(*slip),
         "residual_height": y[9] - to_fixed(R, p)[2],
-        "residual_norm": sqrt(sum(c * c for c in y[:4])) - 1,
     }
 
 
-def build(
-    switch: Switch,
-    rows: list[Row],
-    events: list[tuple[float, int]],
-    pulls: list[tuple[float, int]],
-    ended: Ending | None,
-) -> Solution:
+def build(switch: Switch, rows: list[Row], events: list[tuple[float, int]], ended: Ending | None) -> Solution:
     """The solution of the recorded rows."""
     table = [_row(switch, row) for row in rows]
     columns = {name: np.array([line[name] for line in table], dtype=float) for name in table[0]}
-    return Solution(np.array([row.t for row in rows]), columns, events, pulls, ended)
+    return Solution(np.array([row.t for row in rows]), columns, events, ended)

@@ -35,7 +35,6 @@ class Options:
 
     rtol: float
     keep_contact: bool
-    omega_s: float  # rad/s; 0: exact friction
     flat: float | None
     pulled_friction: str
 
@@ -48,7 +47,7 @@ class Switch:
         self.inputs = inputs
         self.options = options
         self.brakes = inputs.brake is not released
-        self.switches = (wheel.s > 0 or self.brakes) and not options.omega_s
+        self.switches = wheel.s > 0 or self.brakes
         self._pull = {"none": 0.0, "magnitude": -wheel.s}[options.pulled_friction]
 
     def _s(self, ground: int) -> float:
@@ -62,7 +61,7 @@ class Switch:
         """The friction branch of a mode, with the brake's capacity at t."""
         s, brake = self._s(mode.ground), self.inputs.brake(t)
         if not self.watched(mode.ground):
-            return Law(s, omega_s=self.options.omega_s, brake=brake)
+            return Law(s, brake=brake)
         return Law(s, mode.sigma, hold=mode.sigma == 0, brake=brake)
 
     def choose(self, t: float, y: State, ground: int | None = None) -> Mode:
@@ -100,7 +99,7 @@ class Switch:
         law = self.law(mode, t)
         if law.s * abs(answer.N_1) >= 1:
             raise RuntimeError(f"the contact is indeterminate at t = {t!r} s: s |dN/dtau| >= 1")
-        N = answer.N_0 + axle_moment(law, answer, values[OMEGA_Z]) * answer.N_1
+        N = answer.N_0 + axle_moment(law, answer) * answer.N_1
         found = [clear, mode.ground * N + self._rounding(values[4:7])]
         if law.hold:
             found += stick_margins(law, answer)

@@ -10,9 +10,10 @@ one go on with the bits of an undisturbed life.
 import json
 import sys
 from ctypes import CDLL, c_long
+from itertools import pairwise
 
 from fmpy import read_model_description
-from support.driver import ERROR, FMU2Wheel
+from support.driver import ERROR, FMU2Wheel, Message
 
 HOOK = CDLL(None)
 FOR_GOOD = 2**62
@@ -31,32 +32,33 @@ def fail(first: int, last: int) -> None:
 
 class Lives:
     def __init__(self, folder: str, choices: list[int], companions: int):
-        self.folder, self.description = folder, read_model_description(folder)
         self.values = dict(zip(("formulation", "friction_law", "method"), choices, strict=True)) | {"s": 0.3}
-        self.companions, self.loaded = companions, FMU2Wheel(self.folder, self.description)
+        self.companions, self.loaded = companions, FMU2Wheel(folder, read_model_description(folder))
+        self.taken: dict[str, int] = {}
 
     def begin(self) -> FMU2Wheel | None:
         """An instance, or none: then it was told why."""
-        told: list[str] = []
-
-        class FMU2Telling(FMU2Wheel):
-            def keep_message(self, _, name, status, category, text):
-                told.append(text.decode())
-                super().keep_message(_, name, status, category, text)
-
+        told: list[Message] = []
+        self.loaded.on_message = told.append
         try:
-            return FMU2Telling(self.folder, self.description).new()
+            return self.loaded.new()
         except Exception:
             assert told, "no instance and no sentence"
             return None
 
     def run(self, w: FMU2Wheel) -> list[bytes]:
-        """From instantiated, through sticks and releases, then back by a copy out of bytes."""
+        """From instantiated, through sticks and releases, then back by a copy out of bytes. The first run counts the
+        allocations of the start, of the steps, and of a snapshot that comes back from bytes."""
+        marks = [0, counted("number").value]
         rows = w.start(**self.values).run([0.1 * k for k in range(1, 31)])
+        marks.append(counted("number").value)
         blob = w.serialized()
         rows += w.run([3.1])
         assert w.restore(blob) != ERROR
+        marks.append(counted("number").value)
         w.time = 3.0
+        taken = [after - before for before, after in pairwise(marks)]
+        self.taken = self.taken or dict(zip(("start", "run", "snapshots"), taken, strict=True))
         return rows + w.run([3.1])
 
     def live(self, first: int, last: int, undisturbed: list[bytes] | None) -> list[bytes]:
@@ -90,22 +92,8 @@ class Lives:
             self.live(0, 0, usual)
             n += 1
 
-    def taken(self) -> dict[str, int]:
-        """Allocations of the start, of a run, and of a snapshot that comes back from bytes."""
-        beside = [self.loaded.new() for _ in range(self.companions)]
-        fail(0, 0)
-        w = self.begin()
-        start = counted("number").value
-        w.start(**self.values).run([0.1 * k for k in range(1, 31)])
-        run = counted("number").value
-        assert w.restore(w.serialized()) == 0
-        snapshots = counted("number").value
-        for instance in (w, *beside):
-            instance.close()
-        return {"start": start, "run": run - start, "snapshots": snapshots - run}
-
 
 if __name__ == "__main__":
     lives = Lives(sys.argv[1], [int(word) for word in sys.argv[2:5]], int(sys.argv[5]))
     failures = {"failed once": lives.disturbed(False), "failed for good": lives.disturbed(True)}
-    print(json.dumps(lives.taken() | failures))
+    print(json.dumps(lives.taken | failures))

@@ -33,30 +33,21 @@ BOUND = 1  # tolerance of the range of each state over the run
 random_cuts = st.lists(st.tuples(some(1e-3, STOP - 1e-3), st.sampled_from(GAPS)), max_size=12)
 
 
-def motion(wheel, kind, pieces, cuts=(), tolerance=1e-7):
-    w = wheel().start(tolerance=tolerance, **kind, **LEANING)
-    assert play(w, pieces, STOP, cuts) == OK, w.sentences
-    end = np.array(w.get(*STATES))
-    w.close()
-    return end
+@pytest.fixture
+def defect(played):
+    """defect(kind, pieces, cuts): the largest difference that the cuts make, in tolerances of each state's range."""
 
+    def motion(pieces, stop=STOP, cuts=(), **choices):
+        begun = [piece for piece in pieces if piece[0] < stop]
+        return np.array(played(begun, stop, cuts, STATES, **LEANING, **choices))
 
-def ranges(wheel, pieces):
-    """Of each state, from states every twentieth of the run."""
-    w, rows = wheel().start(tolerance=1e-7, **LEANING), []
-    for k in range(1, 21):
-        begin, inputs = max((p for p in pieces if p[0] <= w.time), key=lambda p: p[0])
-        w.give(inputs, w.time - begin).to(STOP * k / 20)
-        rows.append(w.get(*STATES))
-    w.close()
-    return np.ptp(rows, axis=0)
+    def find(kind, pieces, cuts, given_pieces=None, tolerance=1e-7):
+        whole = motion(pieces, tolerance=tolerance, **kind)
+        cut = motion(given_pieces or pieces, cuts=cuts, tolerance=tolerance, **kind)
+        ranges = np.ptp([motion(pieces, STOP * k / 20, tolerance=1e-7) for k in range(1, 21)], axis=0)
+        return float(np.max(np.abs(cut - whole) / ranges) / tolerance)
 
-
-def defect(wheel, kind, pieces, cuts, given_pieces=None, tolerance=1e-7):
-    """Largest difference that the cuts make, in tolerances of the range."""
-    whole = motion(wheel, kind, pieces, (), tolerance)
-    cut = motion(wheel, kind, given_pieces or pieces, cuts, tolerance)
-    return float(np.max(np.abs(cut - whole) / ranges(wheel, pieces)) / tolerance)
+    return find
 
 
 def with_gaps(drawn):
@@ -65,38 +56,38 @@ def with_gaps(drawn):
 
 
 @pytest.mark.parametrize("pieces", [VARIED, HELD], ids=["varied", "held"])
-def test_random_cuts_change_nothing(wheel, kind, pieces):
+def test_random_cuts_change_nothing(defect, kind, pieces):
     worst = []
 
     @quick(8)
     @given(random_cuts)
     def check(drawn):
-        worst.append(defect(wheel, kind, pieces, with_gaps(drawn)))
+        worst.append(defect(kind, pieces, with_gaps(drawn)))
         within(worst[-1], BOUND, "difference")
 
     check()
     assert len(worst) > 4
 
 
-def test_cuts_that_rounding_makes_change_nothing(wheel, kind):
+def test_cuts_that_rounding_makes_change_nothing(defect, kind):
     """Sums of a thousandth of a second, and a partner that splits at multiples of a tenth and its own sums."""
     sums = list(accumulate([1e-3] * 1999))
     tenths = [*(0.1 * k for k in range(1, 20)), *accumulate([0.1] * 19)]
-    within(defect(wheel, kind, VARIED, sums), BOUND, "defect")
-    within(defect(wheel, kind, VARIED, tenths), 0.2, "defect, 2")
+    within(defect(kind, VARIED, sums), BOUND, "defect")
+    within(defect(kind, VARIED, tenths), 0.2, "defect, 2")
 
 
 @pytest.mark.parametrize("gap", GAPS)
-def test_a_step_that_is_next_to_nothing_changes_nothing(wheel, kind, gap):
+def test_a_step_that_is_next_to_nothing_changes_nothing(defect, kind, gap):
     for tolerance in (1e-9, 1e-6, 1e-4):
         cuts = with_gaps([(1.0, gap)])
-        within(defect(wheel, kind, VARIED, cuts, tolerance=tolerance), BOUND, "defect")
+        within(defect(kind, VARIED, cuts, tolerance=tolerance), BOUND, "defect")
 
 
-def test_the_bound_sees_an_input_that_is_wrong_for_a_tenth_of_a_second(wheel, kind):
+def test_the_bound_sees_an_input_that_is_wrong_for_a_tenth_of_a_second(defect, kind):
     """The partner: a thousandth of one input is too much in a small part of the run."""
     wrong = [*VARIED[:2], (1.2, {"M_3": (-0.099 * 1.001,), "F_Y": (3.0,), "F_Z": (-0.8,)}), VARIED[2]]
-    beyond(defect(wheel, kind, VARIED, [1.25], wrong), 1000, "defect")
+    beyond(defect(kind, VARIED, [1.25], wrong), 1000, "defect")
 
 
 OFF = 1e-6  # of three start values, to see how errors grow
@@ -111,38 +102,40 @@ def brake_of(rng):
     return c / c[0] * 10 ** rng.uniform(-1.5, 1), np.sort(roots[roots < 1])
 
 
-def braked(wheel, start, brake, cuts, **choices):
-    """The states at 1 s: the brake as one polynomial, or cut where it passes zero, its pieces below zero left out."""
-    w = wheel().start(keep_contact=True, **start, **choices)
-    for begin, end in pairwise([0.0, *cuts, 1.0]):
-        acts = not cuts or np.polynomial.polynomial.polyval(0.5 * (begin + end), brake) > 0
-        piece = shifted(brake, begin) if begin == 0 else [0.0, *shifted(brake, begin)[1:]]
-        w.give({"M_brake": piece if acts else [0.0]})
-        assert w.step_to(end) == OK, w.sentences
-    states = np.array(w.get(*STATES))
-    w.close()
-    return states
+def cut_where_it_passes_zero(brake, passed):
+    """The brake as pieces of its own, none where the polynomial is below zero."""
+    pieces = []
+    for begin, end in pairwise([0.0, *passed, 1.0]):
+        acts = np.polynomial.polynomial.polyval(0.5 * (begin + end), brake) > 0
+        piece = [brake[0] if begin == 0 else 0.0, *shifted(brake, begin)[1:]]
+        pieces.append((begin, {"M_brake": piece if acts else [0.0]}))
+    return pieces
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_a_brake_that_passes_zero_inside_a_step_is_as_exact_as_one_cut_there(wheel, seed):
+def test_a_brake_that_passes_zero_inside_a_step_is_as_exact_as_one_cut_there(played, seed):
     rng = np.random.default_rng(seed)
     start = {"theta_start": rng.uniform(1.0, 2.1), "psi_dot_start": rng.uniform(-2, 2), "s": rng.choice([0.0, 0.01])}
-    start["phi_dot_start"] = rng.choice([-1, 1]) * 10 ** rng.uniform(-1.5, 0.7)
+    start |= {"phi_dot_start": rng.choice([-1, 1]) * 10 ** rng.uniform(-1.5, 0.7), "keep_contact": True}
     brake, passed = brake_of(rng)
-    exact = braked(wheel, start, brake, list(passed), tolerance=1e-13)
-    moved = [{**start, name: start[name] + OFF} for name in ("theta_start", "psi_dot_start", "phi_dot_start")]
-    growth = max(absolute_error(braked(wheel, m, brake, [], tolerance=1e-12), exact) / OFF for m in moved)
 
-    def worst(kind, tolerances, factor=1.0):
-        ends = [(braked(wheel, start, factor * brake, [], tolerance=t, **kind), t) for t in tolerances]
-        return max(absolute_error(end, exact) / t for end, t in ends) / max(growth, 1)
+    def error(tolerance, pieces, **choices):
+        return absolute_error(played(pieces, 1.0, (), STATES, tolerance=tolerance, **start | choices), exact)
+
+    exact = played(cut_where_it_passes_zero(brake, passed), 1.0, (), STATES, tolerance=1e-13, **start)
+    whole = [(0.0, {"M_brake": brake})]
+    moved = [{name: start[name] + OFF} for name in ("theta_start", "psi_dot_start", "phi_dot_start")]
+    growth = max(error(1e-12, whole, **choices) / OFF for choices in moved)
+
+    def worst(kind, tolerances, pieces=whole):
+        return max(error(tolerance, pieces, **kind) / tolerance for tolerance in tolerances) / max(growth, 1)
 
     for kind in FORCED:
         within(worst(kind, [10 ** rng.uniform(-12, -8)]), 30, "tolerances over growth")
     tolerances = np.geomspace(1e-12, 1e-9, 7)  # Runge-Kutta's long steps see most of the corner
     within(worst(RUNGE_KUTTA, tolerances), 1, "tolerances over growth, Runge-Kutta")
-    beyond(worst(RUNGE_KUTTA, tolerances, 1.001), 30, "tolerances over growth of a stronger brake")  # the partner
+    stronger = [(0.0, {"M_brake": 1.001 * brake})]  # the partner
+    beyond(worst(RUNGE_KUTTA, tolerances, stronger), 30, "tolerances over growth of a stronger brake")
 
 
 @pytest.mark.parametrize("kind", [kind for kind in FORCED if kind["method"] in (2, 3)], ids=str)

@@ -115,18 +115,19 @@ def test_a_run_whose_counts_are_as_large_as_can_be_can_be_saved_again(wheel, sta
     assert w.get("n_steps") == [2**31 - 1]
 
 
-@pytest.mark.parametrize("first", [{"psi_start": 0.3, "X_O_start": 7.0}, {"phi_start": -2.0, "Y_O_start": 0.1}])
-def test_an_orbit_kept_from_another_place_and_heading_is_the_one_built_here(wheel, first):
+@pytest.mark.parametrize(
+    ("first", "then"),
+    [
+        ({"psi_start": 0.3, "X_O_start": 7.0}, {}),
+        ({"phi_start": -2.0, "Y_O_start": 0.1}, {}),
+        ({"tolerance": 1e-5}, {"tolerance": 1e-10}),
+    ],
+    ids=["place and heading", "place and roll angle", "tolerance"],
+)
+def test_after_another_start_and_a_reset_the_orbit_is_the_one_built_here(wheel, first, then):
     w = wheel().start(**first).to(3.0)
     assert w.reset() == OK
-    assert w.start().to(5.0).bits() == wheel().start().to(5.0).bits()
-
-
-def test_another_tolerance_makes_another_orbit(wheel):
-    """After a reset too: the instance may have the orbit of the same wheel with another tolerance."""
-    w = wheel().start(tolerance=1e-5).to(1.0)
-    assert w.reset() == OK
-    assert w.start(tolerance=1e-10).to(5.0).bits() == wheel().start(tolerance=1e-10).to(5.0).bits()
+    assert w.start(**then).to(5.0).bits() == wheel().start(**then).to(5.0).bits()
 
 
 def test_the_time_of_the_last_change_is_part_of_a_state(wheel):

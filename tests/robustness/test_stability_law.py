@@ -32,16 +32,6 @@ def test_no_width_is_quietly_wrong(library: Library, truth: Run, omega_s: float,
     beyond(regularized.error_against(truth, lighter), bound, "error against")  # another friction
 
 
-def test_adams_and_bdf_agree_where_both_are_affordable(library: Library, truth: Run) -> None:
-    """Each to two tolerances, which grow with the motion as an error of the start does."""
-    tolerance, off = 1e-8, 1e-6
-    adams, bdf = (law_error(library, truth, 1e-4, tolerance, method) for method in ("adams", "bdf"))
-    tilted = run(library, {**FRICTION, "theta_start": 5 * np.pi / 12 + off}, regularized.TIMES, 1e-12)
-    bound = 4 * tolerance * regularized.error_against(truth, tilted) / off
-    within(abs(adams - bdf), bound, "adams")
-    beyond(abs(adams - law_error(library, truth, 1.1e-4, tolerance)), bound, "law error")  # a tenth wider
-
-
 @pytest.mark.parametrize(("factor", "layered"), [(0.5, False), (2.0, True)])
 def test_the_automatic_method_follows_the_decay_number(library: Library, factor: float, layered: bool) -> None:
     at_one = regularized.decay_number({**FRICTION, "omega_s": 1.0})

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.bounds import beyond, within
-from support.motion import Library, Run, run
+from support.motion import Library, run
 
 from robustness import judges
 from robustness.case import Case, Expectation
@@ -29,58 +29,40 @@ def test_an_extreme_wheel_goes_as_stated_at_every_tolerance(library: Library, ca
     assert [v.faults for v in verdicts if not v.holds] == []
 
 
-def ran(library: Library, name: str) -> tuple[Case, Run]:
-    return CASES[name], run(library, CASES[name].start, CASES[name].times, 1e-8)
+def faults_of(library: Library, name: str, changed: dict | None = None, **columns: np.ndarray) -> str:
+    """Of a run at a tolerance of 1e-8, judged as another case, or with some columns changed (factors)."""
+    case = CASES[name]
+    done = run(library, case.start, case.times, 1e-8, rates=judges.RATES)
+    done = replace(done, columns=done.columns | {column: done[column] * by for column, by in columns.items()})
+    return " ".join(judge(replace(case, **changed or {}), 1e-8, done, None).faults)
 
 
-def tampered(done: Run, **changes: np.ndarray) -> Run:
-    return Run({**done.columns, **changes}, done.messages, done.status, done.end, done.seconds, done.counters)
+SPIN, PAPERS, FALL = "spin: 1 rad/s", "friction: the paper's, s = 0.03 m", "fall from rest: 75 deg"
+LEAK = 1 - 1e-6 * np.linspace(0, 1, 401)
+ALL_BUT_ONE = np.where(np.arange(401) == 7, np.nan, 1)
+BROKEN = [
+    ("energy", SPIN, {}, {"E": LEAK}),
+    ("integrals", SPIN, {}, {"omega_z": 1 + 1e-5}),
+    ("integrals", SPIN, {"start": {**CASES[SPIN].start, "r": 0.051}}, {}),
+    ("not finite", SPIN, {}, {"theta": ALL_BUT_ONE}),
+    ("flat instead of finishes", FALL, {"expect": Expectation()}, {}),
+    ("instant", FALL, {"expect": Expectation("flat", CASES[FALL].expect.at + 1e-6)}, {}),
+]
 
 
-def faults_of(case: Case, done: Run) -> str:
-    return " ".join(judge(case, 1e-8, done, None).faults)
+@pytest.mark.parametrize(("fault", "name", "changed", "columns"), BROKEN)
+def test_every_judge_finds_what_is_broken_and_nothing_else(
+    library: Library, fault: str, name: str, changed: dict, columns: dict
+) -> None:
+    assert faults_of(library, name) == ""
+    assert fault in faults_of(library, name, changed, **columns)
 
 
-def test_energy_that_leaks_is_found(library: Library) -> None:
-    case, done = ran(library, "spin: 1 rad/s")
-    within(judges.energy(case, done), 4e-10, "energy")
-    leak = done["E"] * (1 - 1e-6 * np.linspace(0, 1, len(done["t"])))
-    assert "energy" in faults_of(case, tampered(done, E=leak))  # 1e-6
-
-
-def test_a_wrong_turn_breaks_the_linear_integrals(library: Library) -> None:
-    case, done = ran(library, "spin: 1 rad/s")
-    within(judges.integrals(case, done), 6e-10, "integrals")
-    assert "integrals" in faults_of(case, tampered(done, omega_z=done["omega_z"] + 1e-5))
-    other_wheel = replace(case, start={**case.start, "r": 0.051})
-    beyond(judges.integrals(other_wheel, done), 1e-4, "integrals")
-
-
-def test_friction_that_takes_too_little_is_found(library: Library) -> None:
-    case = replace(CASES["friction: the paper's, s = 0.03 m"], samples=4000, judges=(("energy", 10.0),))
+def test_friction_that_takes_too_little_and_spin_while_held_are_found(library: Library) -> None:
+    case = replace(CASES[PAPERS], samples=4000)
     done = run(library, case.start, case.times, 1e-8, rates=judges.RATES)
     within(judges.energy(case, done), 3e-8, "energy")
-    lighter = replace(case, start={"s": 0.03 * (1 - 1e-5)})
-    beyond(judges.energy(lighter, done), 1e-6, "energy")
-
-
-def test_spin_while_held_is_found(library: Library) -> None:
-    case = CASES["friction: the paper's, s = 0.03 m"]
-    done = run(library, case.start, case.times[::10], 1e-8)
+    beyond(judges.energy(replace(case, start={"s": 0.03 * (1 - 1e-5)}), done), 1e-6, "energy")  # lighter
     assert judges.fixed(case, done) == 0
-    assert judges.fixed(case, tampered(done, omega_z=done["omega_z"] + 1e-15)) > 0
-
-
-def test_a_number_that_is_not_finite_is_found(library: Library) -> None:
-    case, done = ran(library, "spin: 1 rad/s")
-    theta = done["theta"].copy()
-    theta[7] = np.nan
-    assert "not finite" in faults_of(case, tampered(done, theta=theta))
-
-
-def test_another_outcome_than_the_stated_one_is_found(library: Library) -> None:
-    case, done = ran(library, "fall from rest: 75 deg")
-    assert faults_of(case, done) == ""
-    assert "flat instead of finishes" in faults_of(replace(case, expect=Expectation()), done)
-    late = Expectation("flat", case.expect.at + 1e-6)
-    assert "instant" in faults_of(replace(case, expect=late), done)
+    slips = replace(done, columns=done.columns | {"omega_z": done["omega_z"] + 1e-15})
+    assert judges.fixed(case, slips) > 0

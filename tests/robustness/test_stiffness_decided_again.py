@@ -1,11 +1,8 @@
 """method = automatic follows what is tuned: a regularized law that becomes stiff is solved by BDF from there on."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
-from support.bounds import beyond, within
-from support.driver import OK
+from support.bounds import absolute_error, beyond, within
 
 FRICTION = 0.03  # m
 
@@ -58,29 +55,21 @@ def test_the_moment_that_acts_decides_and_not_the_weight(wheel, start, inputs, s
     within(steps[0] / steps[1], 1.5, "steps over those of BDF where the moment acts")
 
 
-def cut_run(wheel, start, brake, cuts, **choices):
-    """Steps, and omega_z and theta at 3 s, of a run whose brake grows along one polynomial, in communication steps."""
-    w = wheel().start(friction_law="regularized", keep_contact=True, **start, **choices)
-    for begin, end in pairwise([0.0, *cuts, 3.0]):
-        w.give({"M_brake": brake}, begin)
-        assert w.step_to(end) == OK, w.sentences
-    end = w.get("n_steps", "omega_z", "theta")
-    w.close()
-    return end
-
-
 @pytest.mark.parametrize("seed", range(40))
-def test_a_law_that_becomes_stiff_inside_a_step_costs_what_bdf_costs_on_any_grid(wheel, seed):
+def test_a_law_that_becomes_stiff_inside_a_step_costs_what_bdf_costs_on_any_grid(played, seed):
     rng = np.random.default_rng(seed)
     start = {"phi_dot_start": rng.choice([-1, 1]) * rng.uniform(0.2, 4), "theta_start": rng.uniform(1.2, 1.9)}
     start |= {"s": rng.choice([0.0, 0.01]), "omega_s": 10 ** rng.uniform(-8, -3)}
-    start["tolerance"] = 10 ** rng.uniform(-9, -6)
-    brake = (0.0, 10 ** rng.uniform(0, 1.3), rng.uniform(0, 2))
-    bdf = cut_run(wheel, start, brake, [], method="bdf")
+    start |= {"tolerance": 10 ** rng.uniform(-9, -6), "friction_law": "regularized", "keep_contact": True}
+    rise, bend = 10 ** rng.uniform(0, 1.3), rng.uniform(0, 2)
+
+    def end(cuts=(), factor=1.0, **choices):
+        brake = [(0.0, {"M_brake": (0.0, factor * rise, bend)})]
+        return played(brake, 3.0, cuts, ("n_steps", "omega_z", "theta"), **start, **choices)
+
+    bdf = end(method="bdf")
     for count in (0, 1, 30, 300):
-        cuts = np.sort(rng.uniform(0, 3, count))
-        steps, *end = cut_run(wheel, start, brake, cuts)
+        steps, *found = end(np.sort(rng.uniform(0, 3, count)))
         within((steps - count) / bdf[0], 1.5, "steps over those of BDF")  # an input that varies cuts at each point
-        within(np.abs(np.subtract(end, bdf[1:])).max(), 1e-4, "difference to BDF")
-    late = cut_run(wheel, start, (0.0, brake[1] * 1.01, brake[2]), [])  # the partner: a stronger brake
-    beyond(np.abs(np.subtract(late[1:], end)).max(), 1e-6, "difference to a stronger brake")
+        within(absolute_error(found, bdf[1:]), 1e-4, "difference to BDF")
+    beyond(absolute_error(end(factor=1.01)[1:], found), 1e-6, "difference to a stronger brake")  # the partner

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <vector>
 
 namespace fuzz {
 
@@ -16,11 +17,22 @@ class Bytes {
   bool empty() const { return at_ == end_; }
   unsigned byte() { return empty() ? 0 : *at_++; }
   unsigned below(unsigned n) { return byte() % n; }
+  unsigned word() {
+    const unsigned high = byte();
+    return high << 8 | byte();
+  }
+  int signed_byte() { return static_cast<int>(byte()) - 128; }
   // True in `sixteenths` of 16 cases.
   bool chance(unsigned sixteenths) { return byte() % 16 < sixteenths; }
 
   // One byte: a factor between 2^-4 and 2^4 around 1.
-  double factor() { return std::exp2((static_cast<double>(byte()) - 128) / 32); }
+  double factor() { return std::exp2(signed_byte() / 32.0); }
+
+  // An array as an argument: rarely it is missing.
+  template <class T>
+  T* array(std::vector<T>& values) {
+    return chance(1) ? nullptr : values.data();
+  }
 
   // Any double: a limit of the format, a decimal of ordinary size, or eight raw bytes.
   double any() {
@@ -30,7 +42,7 @@ class Bytes {
     constexpr double limits[] = {0, -0.0, 1, -1, 1e-300, 1e300, pi / 2, pi, infinite, -infinite, nan, most, least};
     const unsigned kind = byte();
     if (kind < 32) return limits[kind % (sizeof limits / sizeof *limits)];
-    if (kind < 224) return (static_cast<double>(byte()) - 128) * std::pow(10.0, static_cast<int>(kind % 9) - 5);
+    if (kind < 224) return signed_byte() * std::pow(10.0, static_cast<int>(kind % 9) - 5);
     std::uint64_t raw = 0;
     for (int i = 0; i < 8; ++i) raw = raw << 8 | byte();
     double number;

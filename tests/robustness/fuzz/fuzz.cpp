@@ -29,7 +29,9 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const itimerval limit = {{}, {most_seconds, 0}}, none = {};
   setitimer(ITIMER_VIRTUAL, &limit, nullptr);
-  fuzz::play(data, size);
+  fuzz::Session session(data, size);
+  while (session.go_on()) {
+  }
   setitimer(ITIMER_VIRTUAL, &none, nullptr);
   return 0;
 }

@@ -38,7 +38,9 @@ bool may_do_work(unsigned reference);
 enum State : unsigned { instantiated, initialization, step_complete, step_failed, terminated, error };
 constexpr unsigned I = 1u << instantiated, M = 1u << initialization, C = 1u << step_complete, F = 1u << step_failed,
                    T = 1u << terminated, X = 1u << error;
-constexpr unsigned anywhere = I | M | C | F | T | X;
+constexpr unsigned anywhere = I | M | C | F | T | X, settable = I | M | C;
+// Beside them: an error may change the instance; the numbers received are finite.
+constexpr unsigned may_fail = 1u << 16, finite = 1u << 17;
 
 // What the harness knows of an instance; saved and restored together with the FMU's own state.
 struct Model {
@@ -92,14 +94,14 @@ void check_after_start(Slot& slot);
 void check_after_step(const Slot& slot);
 
 // One call: illegal ones must fail, say why and change nothing; so must legal ones that report an error, unless
-// `may_fail`: doStep and the end of initialization lead to the error state.
-template <class Call>
-fmi2Status checked(Slot& slot, unsigned legal_in, Call&& call, bool may_fail = false) {
+// legal_in has `may_fail`: doStep and the end of initialization lead to the error state.
+template <class Function, class... Arguments>
+fmi2Status checked(Slot& slot, unsigned legal_in, Function* function, Arguments... arguments) {
   const bool legal = legal_in & (1u << slot.model.state);
   const unsigned said = log().messages;
   const Digest before = log().digests ? digest(slot.component) : Digest();
   log().caller = slot.component;
-  const fmi2Status status = call();
+  const fmi2Status status = function(slot.component, arguments...);
   log().caller = nullptr;
   ++log().calls;
   log().add(&status, sizeof status);
@@ -107,7 +109,8 @@ fmi2Status checked(Slot& slot, unsigned legal_in, Call&& call, bool may_fail = f
   if (!legal) expect(status == fmi2Error, "an illegal call returns fmi2Error");
   if (status != fmi2Error) return status;
   if (log().on) expect(log().messages > said, "an error is explained in the log");
-  if (log().digests && !(legal && may_fail)) expect(digest(slot.component) == before, "a refused call changes nothing");
+  const bool changes_nothing = !legal || !(legal_in & may_fail);
+  if (log().digests && changes_nothing) expect(digest(slot.component) == before, "a refused call changes nothing");
   return status;
 }
 

@@ -1,20 +1,19 @@
 // One fuzzed session: two instances, a few saved states, and the calls that the bytes choose.
 #pragma once
 
-#include "choices.hpp"
-#include "oracle.hpp"
+#include "arguments.hpp"
 
-// What a byte stands for while there is an instance, in the order of the corpus; AGAIN: one more place for
-// an action that is in the list already. One call each, with sound or unsound arguments (calls.cpp, values.cpp,
-// states.cpp, exchange.cpp), or several (session.cpp, states.cpp).
+// What a byte stands for while there is an instance; AGAIN: one more place for an action that is in the list already.
+// One call each, with sound or unsound arguments (calls.cpp), or several with a promise (promises.cpp, forge.cpp,
+// exchange.cpp).
 /* clang-format off */
 #define FUZZ_ACTIONS(ONCE, AGAIN) \
-  ONCE(step_often) ONCE(do_step) ONCE(set_reals) ONCE(set_choices) ONCE(start_quickly) \
-  ONCE(repeat_step_after_rollback) ONCE(repeat_step_in_new_instance) ONCE(set_input_derivatives) ONCE(get_values) \
+  ONCE(step_often) ONCE(do_step) ONCE(pass_values) AGAIN(pass_values) ONCE(start_quickly) \
+  ONCE(repeat_step_after_rollback) ONCE(repeat_step_in_new_instance) AGAIN(pass_values) AGAIN(pass_values) \
   ONCE(take_state) ONCE(restore_state) ONCE(set_up_experiment) ONCE(enter_initialization) ONCE(exit_initialization) \
-  ONCE(get_output_derivatives) ONCE(directional_derivative) ONCE(terminate) ONCE(reset) ONCE(compare_reset_with_new) \
-  ONCE(ask_status) ONCE(free_state) ONCE(serialize) ONCE(deserialize_damaged) ONCE(switch_logging) ONCE(strings) \
-  AGAIN(enter_initialization) ONCE(exchange) AGAIN(enter_initialization) ONCE(instantiate) ONCE(free_instance)
+  AGAIN(pass_values) AGAIN(pass_values) ONCE(terminate) ONCE(reset) ONCE(compare_reset_with_new) ONCE(free_state) \
+  ONCE(serialize) ONCE(deserialize_damaged) ONCE(switch_logging) ONCE(exchange) ONCE(forge_state) ONCE(instantiate) \
+  ONCE(free_instance)
 /* clang-format on */
 
 namespace fuzz {
@@ -26,7 +25,7 @@ struct Saved {
 
 class Session {
  public:
-  Session(const Bytes& in, unsigned watched, bool shared = false);
+  Session(const std::uint8_t* data, std::size_t size, bool shared = false);  // the first byte: how much is watched
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -46,13 +45,20 @@ class Session {
 #undef DECLARE
 #undef NOTHING
 
+  // A call on the present instance, see checked().
+  template <class Function, class... Arguments>
+  fmi2Status call(unsigned legal_in, Function* function, Arguments... arguments) {
+    return checked(*now_, legal_in, function, arguments...);
+  }
   fmi2Status step(Slot& slot, double t, double h);
-  double usual_step(const Slot& slot);
-  double value_for(unsigned reference);
-  unsigned reference();
+  double drawn_step();
+  template <unsigned legal_in, auto* function>
+  void with_drawn();
+  template <class... Parameters>
+  void with_drawn(unsigned legal_in, fmi2Status (*function)(fmi2Component, Parameters...));
 
-  Bytes in_;
   Log log_;
+  Bytes in_;
   unsigned actions_left_ = 40;
   Slot slots_[2];
   Slot* now_ = slots_;
@@ -61,9 +67,16 @@ class Session {
 };
 
 fmi2Component make_instance(fmi2Type kind = fmi2CoSimulation);
+// Every formulation, law and method; with and without friction, general inertia, a slope, torque, brake and contact
+// kept.
+void choose(fmi2Component c, Bytes& in);
 // s, a share of the shortest time in which the wheel moves noticeably: short steps keep the fuzzer fast.
 double short_step(fmi2Component c);
-void play_forged(Bytes& in, fmi2Type kind);             // forge.cpp
-void play(const std::uint8_t* data, std::size_t size);  // all bytes of an input
+// Model exchange (exchange.cpp). Euler's step in continuous-time mode, now and then to states that are anywhere;
+// whether an event is wanted. The decisions of event mode; true while the model lasts.
+bool move_freely(fmi2Component c, double h, Bytes& in);
+bool decide(fmi2Component c);
+// A state of `origin`, some words changed, is brought to `victim`, which is gone afterwards (forge.cpp).
+void bring_forged(fmi2Component origin, fmi2Component victim, fmi2Type kind, Bytes& in);
 
 }  // namespace fuzz

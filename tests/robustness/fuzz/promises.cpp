@@ -5,45 +5,39 @@ namespace fuzz {
 
 void Session::take_state() {
   Saved& saved = saved_[in_.below(3)];
-  const fmi2Status status = checked(*now_, anywhere, [&] { return fmi2GetFMUstate(now_->component, &saved.state); });
+  const fmi2Status status = call(anywhere, fmi2GetFMUstate, &saved.state);
   expect(status == fmi2OK && saved.state, "a state can always be taken");
   saved.model = now_->model;
 }
 
 void Session::restore_state() {
   const Saved& saved = saved_[in_.below(3)];
-  const fmi2Status status = checked(*now_, anywhere, [&] { return fmi2SetFMUstate(now_->component, saved.state); });
+  const fmi2Status status = call(anywhere, fmi2SetFMUstate, saved.state);
   expect(status == (saved.state ? fmi2OK : fmi2Error), "a state that was taken can be restored");
   if (saved.state) now_->model = saved.model;
 }
 
 void Session::free_state() {
-  Saved& saved = saved_[in_.below(3)];
-  fmi2FMUstate* null = nullptr;
-  fmi2FMUstate* state = in_.chance(2) ? null : &saved.state;
-  const fmi2Status status = checked(*now_, anywhere, [&] { return fmi2FreeFMUstate(now_->component, state); });
-  expect(status == fmi2OK, "freeing a state succeeds");
+  fmi2FMUstate* const state = &saved_[in_.below(3)].state;
+  expect(call(anywhere, fmi2FreeFMUstate, in_.chance(2) ? nullptr : state) == fmi2OK, "freeing a state succeeds");
 }
 
 void Session::serialize() {
   const Saved& saved = saved_[in_.below(3)];
   std::size_t size = 0;
   Digest bytes(1u << 17u);
-  const fmi2Component c = now_->component;
-  const fmi2Status sized = checked(*now_, anywhere, [&] { return fmi2SerializedFMUstateSize(c, saved.state, &size); });
+  const fmi2Status sized = call(anywhere, fmi2SerializedFMUstateSize, saved.state, &size);
   expect(sized == (saved.state ? fmi2OK : fmi2Error), "the size of a state is known");
   expect(size <= bytes.size(), "a state is small");
   const std::size_t given = in_.chance(4) ? size / 2 : size;
-  in_.byte();  // the corpus has one here
-  const fmi2Status status =
-      checked(*now_, anywhere, [&] { return fmi2SerializeFMUstate(c, saved.state, bytes.data(), given); });
+  const fmi2Status status = call(anywhere, fmi2SerializeFMUstate, saved.state, bytes.data(), given);
   expect(status == (saved.state && given == size ? fmi2OK : fmi2Error), "a state fits into its size, and no less");
 }
 
 // Any changed, missing or added byte is noticed.
 void Session::deserialize_damaged() {
   Digest bytes = digest(now_->component);
-  const std::size_t place = (in_.byte() << 8 | in_.byte()) % bytes.size();
+  const std::size_t place = in_.word() % bytes.size();
   const unsigned change = in_.byte();
   if (change == 0)
     bytes.resize(place);
@@ -52,17 +46,15 @@ void Session::deserialize_damaged() {
   else
     bytes[place] = static_cast<fmi2Byte>(static_cast<unsigned char>(bytes[place]) ^ change);
   fmi2FMUstate state = nullptr;
-  const fmi2Status status = checked(
-      *now_, anywhere, [&] { return fmi2DeSerializeFMUstate(now_->component, bytes.data(), bytes.size(), &state); });
-  const bool harmed = status != fmi2OK;
-  if (!harmed) fmi2FreeFMUstate(now_->component, &state);
-  expect(harmed && !state, "damaged bytes are refused");
+  const bool refused = call(anywhere, fmi2DeSerializeFMUstate, bytes.data(), bytes.size(), &state) != fmi2OK;
+  if (!refused) fmi2FreeFMUstate(now_->component, &state);
+  expect(refused && !state, "damaged bytes are refused");
 }
 
 void Session::repeat_step_after_rollback() {
   if (now_->model.state != step_complete) return;
   const Model before = now_->model;
-  const double t = time_of(now_->component), h = usual_step(*now_) * in_.factor();
+  const double t = time_of(now_->component), h = drawn_step();
   const bool reads_between = in_.chance(8);
   fmi2FMUstate state = nullptr;
   expect(fmi2GetFMUstate(now_->component, &state) == fmi2OK, "a state can always be taken");
@@ -79,7 +71,7 @@ void Session::repeat_step_after_rollback() {
 
 void Session::repeat_step_in_new_instance() {
   if (now_->model.state != step_complete) return;
-  const double t = time_of(now_->component), h = usual_step(*now_) * in_.factor();
+  const double t = time_of(now_->component), h = drawn_step();
   const Digest bytes = digest(now_->component);
   Slot other = {make_instance(), now_->model};
   fmi2FMUstate state = nullptr;
@@ -103,7 +95,8 @@ void Session::compare_reset_with_new() {
   Slot* const old = now_;
   for (Slot* slot : {&other, old}) {
     now_ = slot;
-    start_quickly();
+    enter_initialization();
+    exit_initialization();
     step(*now_, 0, 0.5);
   }
   expect(same_bits(readings(*old), readings(other)), "a reset instance runs as a new one");
