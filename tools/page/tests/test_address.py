@@ -28,7 +28,7 @@ CHOSEN = """() => {
   page.choose(1);
   player.seek(3.37);
 }"""
-SHOWN = "() => [page.switches.show, page.plots.portrait.kind.name, page.choice, page.player.t, page.live.plan]"
+SHOWN = "() => [page.switches.show, page.plots.portrait.name, page.choice, page.player.t, page.live.plan]"
 
 
 def test_a_link_opened_elsewhere_shows_the_same_motion_to_the_bit(live, live_file, browser):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 
 import numpy as np
@@ -11,7 +10,7 @@ from support.bounds import EPSILON, absolute_error, within
 
 from page.bodies import read_bodies
 from page.options import arguments
-from page.tests.pages import POSE, view, write_csv
+from page.tests.pages import POSE, opened, view, write_csv
 
 
 def columns_of(rows: np.ndarray, names=("time", *POSE)) -> dict[str, np.ndarray]:
@@ -136,17 +135,13 @@ def test_more_labels_than_bodies_are_refused_with_one_sentence(one):
     assert view(one, "--labels", "a").returncode == 0
 
 
-def data_of(path) -> dict:
-    """What a page carries."""
-    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', path.read_text())[1])
-
-
-def test_wheels_of_one_file_open_together_and_those_of_several_side_by_side(scenes, one, tmp_path):
+def test_wheels_of_one_file_open_together_and_those_of_several_side_by_side(browser, scenes, one, tmp_path):
     rows = columns_of(scenes["free"])
     both = {f"{name}.{column}": rows[column] for name in ("fl", "wheel_rr") for column in POSE}
     path = write_csv(tmp_path / "axle.csv", {"time": rows["time"]} | both)
     assert view(path).returncode == view(path, one, "--output", tmp_path / "two.html").returncode == 0
-    first, *_ = data_of(tmp_path / "axle.html")["choices"]
-    assert (first["label"], first["views"]) == ("Together", [["fl", "wheel_rr"]])
-    assert data_of(tmp_path / "two.html")["choices"][0]["label"] == "Side by side"
-    assert [wheel["label"] for wheel in data_of(tmp_path / "axle.html")["wheels"]] == ["front left", "rear right"]
+    with opened(browser, tmp_path / "axle.html") as page:
+        assert page.evaluate("page.choices[page.choice]") == {"label": "Together", "views": [["fl", "wheel_rr"]]}
+        assert page.locator(".label b").all_inner_texts() == ["front left", "rear right"]
+    with opened(browser, tmp_path / "two.html") as page:
+        assert page.locator("#choice [aria-checked=true]").inner_text() == "Side by side"

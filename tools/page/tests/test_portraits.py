@@ -56,16 +56,16 @@ def test_the_path_from_above_is_that_of_the_contact_point(recorded, simulate):
 
 @pytest.mark.parametrize("name", ["spin", "path", "phase"])
 def test_a_button_chooses_the_diagram_and_the_present_is_marked(recorded, name):
-    recorded.locator(f".portrait [data-name={name}]").click()
-    assert recorded.locator(".portrait [aria-checked=true]").get_attribute("data-name") == name
+    recorded.locator(f".portrait [name={name}]").click()
+    assert recorded.locator(".portrait [aria-checked=true]").get_attribute("name") == name
     mark = """(t) => {
       const {plots, player} = page;
       player.seek(t);
       plots.portrait.draw(t);
       const [wheel] = plots.portrait.wheels;
       const point = plots.portrait.at(wheel, t);
-      const {x, y, ratio, canvas} = {x: plots.portrait.x(point[0]), y: plots.portrait.y(point[1]), ...plots.portrait};
-      const colour = [...canvas.getContext('2d').getImageData(x * ratio, y * ratio, 1, 1).data].slice(0, 3);
+      const [x, y] = [plots.portrait.x(point[0]), plots.portrait.y(point[1])].map((place) => place * devicePixelRatio);
+      const colour = [...plots.portrait.pen.getImageData(x, y, 1, 1).data].slice(0, 3);
       return ['#' + colour.map((part) => part.toString(16).padStart(2, '0')).join(''), wheel.colour];
     }"""
     recorded.evaluate("page.choose(2)")

@@ -110,7 +110,7 @@ def test_the_values_that_a_file_holds_are_listed(browser, scenes, tmp_path):
     path.write_text("\n".join([f'{head},"keep_contact"', *(f"{line},False" for line in lines)]))
     assert view(path).returncode == 0
     with opened(browser, path.with_suffix(".html")) as page:
-        page.locator("#values summary").click()
+        page.locator("[popovertarget=values]").click()
         page.wait_for_selector("#values tr")
         found = [row.split("\t") for row in page.locator("#values tr").all_inner_texts()]
     assert found == [
@@ -128,7 +128,8 @@ def test_a_slope_that_the_command_gives_tilts_the_ground_and_is_marked_uphill(ca
     car.evaluate("page.player.seek(0); page.draw()")
     turned = "(v) => page.stage.camera.position.clone().set(...v).applyQuaternion(page.stage.road.quaternion).toArray()"
     assert car.evaluate(turned, up) == pytest.approx([0, 0, 1])
-    arrow = "(({visible: v, rotation: turn, position: p}) => [v, turn.z, p.x, p.y])(page.stage.models[0].uphill)"
+    wheel = "page.stage.models.find(({uphill}) => uphill).uphill"
+    arrow = f"(({{visible: v, rotation: turn, position: p}}) => [v, turn.z, p.x, p.y])({wheel})"
     visible, direction, x, y = car.evaluate(arrow)
     assert visible and direction == 1.5 == pytest.approx(np.arctan2(y, x))
     assert not recorded.evaluate("page.pose() ?? page.stage.models[0].uphill.visible")
@@ -185,10 +186,10 @@ def test_the_label_and_the_diagram_say_that_the_wheel_sticks(recorded):
     state = """(t) => {
       page.choose(3);
       page.player.seek(t);
-      page.labels.tell(page.shown, t);
+      page.draw();
       const plot = page.plots.curves[1];
-      const pixel = (at) => [...plot.faint.getContext('2d')
-        .getImageData(plot.x(at) * plot.ratio, plot.y(-1.5) * plot.ratio + 3, 1, 1).data];
+      const pixel = (at) => [...plot.layers.faint.getContext('2d')
+        .getImageData(plot.x(at) * devicePixelRatio, plot.y(-1.5) * devicePixelRatio + 3, 1, 1).data];
       return [document.querySelector('.label').dataset.state, pixel(t)];
     }"""
     before, clear = recorded.evaluate(state, 1.15)

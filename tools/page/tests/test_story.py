@@ -103,7 +103,7 @@ def test_a_motor_adds_energy_and_the_brake_takes_it(live, story):
 def test_without_spin_it_lies_flat_and_the_run_ends(live, story):
     assert numbers(story(8))[0] == pytest.approx(column(live, "time")[-1], abs=5e-3)
     assert column(live, "theta")[-1] < 1e-6
-    live.evaluate("page.player.seek(10); page.labels.tell(page.shown, 10)")
+    live.evaluate("page.player.seek(10); page.draw()")
     assert live.locator(".label").first.get_attribute("data-state") == "ended"
 
 

@@ -3,7 +3,12 @@
 // the short way round, and a fast wheel would seem to run backwards.
 
 /** Bytes of a base64 text. */
-export function bytesOf(text) { return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)); }
+export const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+
+/** The smallest and the largest of some values, or [Infinity, -Infinity]. */
+export function extent(values) {
+  return values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+}
 
 /** The index of the last of rising instants at or before t, or -1. */
 export function before(times, t) {
