@@ -10,18 +10,13 @@ import csv
 import sys
 from pathlib import Path
 
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser
 
-from page.browser import chromium
+from page.browser import chromium, show, surroundings
 
 DATA = Path(__file__).resolve().parents[2] / "docs" / "results" / "data" / "page.csv"
 FRAMES = 10
-LOOK = {
-    "viewport": {"width": 1280, "height": 800},
-    "device_scale_factor": 2,
-    "reduced_motion": "reduce",
-    "offline": True,
-}
+LOOK = {"viewport": {"width": 1280, "height": 800}, "device_scale_factor": 2}
 DRAW = """(frames) => {
   const gl = page.stage.renderer.getContext();
   let own = 0;
@@ -44,20 +39,13 @@ def processor_time(browser: Browser, kind: str = "") -> float:
     return sum(process["cpuTime"] for process in processes if kind in ("", process["type"]))
 
 
-def opened(browser: Browser, path: Path) -> Page:
-    page = browser.new_context(**LOOK).new_page()
-    page.goto(path.resolve().as_uri())
-    page.wait_for_function("window.page && page.first")
-    return page
-
-
 def measure(browser: Browser, name: str, path: Path) -> dict[str, float]:
     """Figures of one page; the first opening fills the browser's caches as any page before it does."""
-    opened(browser, path).close()
+    show(surroundings(browser, **LOOK), path).close()
     firsts, owns = [], []
     for _ in range(2):
         before = processor_time(browser, "renderer")
-        page = opened(browser, path)
+        page = show(surroundings(browser, **LOOK), path)
         firsts.append(page.evaluate("page.first") / 1000)
         owns.append(processor_time(browser, "renderer") - before)
         if len(firsts) < 2:
@@ -68,26 +56,19 @@ def measure(browser: Browser, name: str, path: Path) -> dict[str, float]:
     spent = processor_time(browser) - before
     took = page.evaluate("page.live?.took ?? 0")
     page.close()
-    figures = {
-        "megabytes": path.stat().st_size / 1e6,
-        "first": min(firsts),
-        "first_own": min(owns),
-        "frames": FRAMES / spent,
-        "own": FRAMES / own,
-    }
-    figures |= {"run": took} if took else {}
+    figures = {"megabytes": path.stat().st_size / 1e6, "first": min(firsts), "first_own": min(owns)}
+    figures |= {"frames": FRAMES / spent, "own": FRAMES / own} | ({"run": took} if took else {})
     return {f"{name}_{figure}": value for figure, value in figures.items()}
 
 
 def main() -> None:
-    live, recorded = (Path(argument) for argument in sys.argv[1:])
+    live, recorded = map(Path, sys.argv[1:])
     with chromium() as browser:
         figures = measure(browser, "live", live) | measure(browser, "recorded", recorded)
+    rows = [("figure", "measured"), *((name, f"{value:.4g}") for name, value in figures.items())]
     with DATA.open("w", newline="", encoding="utf-8") as file:
-        rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(["figure", "measured"])
-        rows.writerows((name, f"{value:.4g}") for name, value in figures.items())
-    print(*(f"{name}: {value:.4g}" for name, value in figures.items()), sep="\n")
+        csv.writer(file, lineterminator="\n").writerows(rows)
+    print(*(f"{name}: {value}" for name, value in rows[1:]), sep="\n")
 
 
 if __name__ == "__main__":

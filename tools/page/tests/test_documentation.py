@@ -52,17 +52,8 @@ def small_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("site")
     for name, text in WRITTEN.items():
         (folder / f"{name}.md").write_text(text)
-    command = [
-        "sphinx",
-        "-q",
-        "-c",
-        ROOT / "tools" / "publishing" / "site",
-        "-D",
-        "html_favicon=",
-        "-b",
-        "html",
-        folder,
-    ]
+    settings = ["-c", ROOT / "tools" / "publishing" / "site", "-D", "html_favicon="]
+    command = ["sphinx", "-q", *settings, "-b", "html", folder]
     subprocess.run([sys.executable, "-m", *map(str, command), str(folder / "out")], check=True)
     return folder / "out"
 

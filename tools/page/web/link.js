@@ -54,11 +54,11 @@ export class Link {
     if (this.live.wanted || now - this.at < (this.live.page.player.playing ? PLAYING : REST)) return;
     this.at = now;
     const text = this.write();
-    if (text === this.text) return;
-    if (this.live.refusal && this.text === location.hash.slice(1) && text === 'step=1') return;
-    this.text = text;
+    // An address that has come and is not followed yet stays, and a wrong one until the reader does something.
+    if (text === this.text || this.text !== location.hash.slice(1) || (this.live.refusal && text === 'step=1')) return;
     try {
       history.replaceState(null, '', `#${text}`);
+      this.text = text;
     } catch {  // a page inside another may not change its address; the button still copies the link
     }
   }
