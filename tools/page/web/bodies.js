@@ -6,11 +6,8 @@ import {dispose, makeArrow, makeLabel, makeRibbon, makeSolid, makeTexture, point
 import {before, contactOf} from '#table';
 import {THREE} from 'three';
 
-const METAL = {
-  color: '#9aa2ac',
-  specular: '#6a7078',
-  shininess: 40
-};
+const [METAL, FACE] = [['#9aa2ac', '#6a7078', 40], ['#8d949f', '#8a9098', 60]].map(
+    ([color, specular, shininess]) => ({color, specular, shininess}));
 const FORCE = ['lambda_1', 'lambda_2', 'lambda_3'];  // of the ground, fixed axes
 const UPRIGHT = [Math.PI / 2, 0, 0];                 // a cylinder's axis along z
 const {BoxGeometry, CylinderGeometry, TorusGeometry} = THREE;
@@ -57,9 +54,8 @@ function makeWheel(r_0, r, marked) {
 /** The thin disc, r = 0, with a marked radius at angle 0; it is drawn as thick as a coin. */
 function makeDisc(r_0, marked) {
   const thickness = 0.024 * r_0;
-  const face = {color: '#8d949f', specular: '#8a9098', shininess: 60};
   return [
-    makeSolid(new CylinderGeometry(r_0, r_0, thickness, 160), face, [0, 0, 0], UPRIGHT),
+    makeSolid(new CylinderGeometry(r_0, r_0, thickness, 160), FACE, [0, 0, 0], UPRIGHT),
     makeSolid(new BoxGeometry(0.995 * r_0, 0.16 * r_0, 1.3 * thickness), marked, [0.497 * r_0, 0, 0]),
     makeSolid(new TorusGeometry(r_0, 0.5 * thickness, 12, 160), METAL),
   ];

@@ -5,12 +5,7 @@ import {clearCanvas, colour, make, makeChoice, subscripted} from '#dom';
 import {before, contactOf, extent} from '#table';
 
 const DEGREES = 180 / Math.PI;
-const MARGIN = {
-  left: 46,
-  right: 8,
-  top: 10,
-  bottom: 20
-};
+const [LEFT, RIGHT, TOP, BOTTOM] = [46, 8, 10, 20];  // margins, CSS pixels
 const POSE = ['X_O', 'Y_O', 'psi', 'theta'];
 
 /** A kind of diagram: the columns it needs, and its point [x, y] from their values and the wheel. */
@@ -148,14 +143,14 @@ class Diagram {
     if (this.figure.hidden || !width) return;
     Object.assign(this, {width, height, pen: clearCanvas(this.canvas, width, height)});
     Object.assign(this, {ink: colour('--ink'), paper: colour('--paper')});
-    this.sizes = [width - MARGIN.left - MARGIN.right, height - MARGIN.top - MARGIN.bottom];
+    this.sizes = [width - LEFT - RIGHT, height - TOP - BOTTOM];
     this.lines = this.wheels.map((wheel) => this.line(wheel));
     this.range(axis);
     for (const [name, canvas] of Object.entries(this.layers)) {
       const pen = clearCanvas(canvas, width, height);
       const faint = name === 'faint';
       if (faint) this.grid(pen);
-      pen.rect(MARGIN.left, 0, this.sizes[0] + MARGIN.right, height - MARGIN.bottom + 2);
+      pen.rect(LEFT, 0, this.sizes[0] + RIGHT, height - BOTTOM + 2);
       pen.clip();
       if (this.timed) this.bands(pen, faint ? 0.16 : 0.34);
       pen.globalAlpha = faint ? 0.35 : 1;
@@ -185,17 +180,17 @@ class Diagram {
 
   x(value) {
     const [low, high] = this.ranges[0];
-    return MARGIN.left + ((value - low) / (high - low)) * this.sizes[0];
+    return LEFT + ((value - low) / (high - low)) * this.sizes[0];
   }
 
   y(value) {
     const [low, high] = this.ranges[1];
-    return MARGIN.top + ((high - value) / (high - low)) * this.sizes[1];
+    return TOP + ((high - value) / (high - low)) * this.sizes[1];
   }
 
   timeAt(x) {
     const {start, end} = this.player;
-    return start + ((x - MARGIN.left) / this.sizes[0]) * (end - start);
+    return start + ((x - LEFT) / this.sizes[0]) * (end - start);
   }
 
   /** Lines and numbers of both axes; over time the last number has the unit, and there are no lines across. */
@@ -208,14 +203,14 @@ class Diagram {
     Object.assign(pen, {textAlign: 'right', textBaseline: 'middle'});
     for (const tick of up.ticks) {
       const level = Math.round(this.y(tick)) + 0.5;
-      line([MARGIN.left, level], [this.width - MARGIN.right, level]);
-      pen.fillText(tick.toFixed(up.digits), MARGIN.left - 6, level);
+      line([LEFT, level], [this.width - RIGHT, level]);
+      pen.fillText(tick.toFixed(up.digits), LEFT - 6, level);
     }
     Object.assign(pen, {textAlign: 'center', textBaseline: 'top'});
     for (const tick of across.ticks) {
       const place = Math.round(this.x(tick)) + 0.5;
       const unit = this.timed && tick === across.ticks.at(-1) ? ' s' : '';
-      if (!this.timed) line([place, MARGIN.top], [place, this.height - MARGIN.bottom]);
+      if (!this.timed) line([place, TOP], [place, this.height - BOTTOM]);
       pen.fillText(tick.toFixed(across.digits) + unit, Math.min(this.x(tick), this.width - 14), this.height - 15);
     }
     pen.stroke();
@@ -227,9 +222,9 @@ class Diagram {
     for (const {phases} of this.wheels) {
       Object.assign(pen, {globalAlpha: strength, fillStyle: colour('--stick')});
       for (const [begin, end] of phases.sticks)
-        pen.fillRect(this.x(begin), MARGIN.top, this.x(end) - this.x(begin), this.sizes[1]);
+        pen.fillRect(this.x(begin), TOP, this.x(end) - this.x(begin), this.sizes[1]);
       Object.assign(pen, {globalAlpha: Math.min(1, 2.4 * strength), fillStyle: colour('--force')});
-      for (const t of phases.transitions) pen.fillRect(this.x(t) - 0.5, MARGIN.top - 7, 1, 7);
+      for (const t of phases.transitions) pen.fillRect(this.x(t) - 0.5, TOP - 7, 1, 7);
     }
   }
 
@@ -271,7 +266,7 @@ class Diagram {
     }
     pen.restore();
     pen.fillStyle = this.ink;
-    if (this.timed) pen.fillRect(this.x(t) - 0.5, MARGIN.top - 4, 1, this.sizes[1] + 4);
+    if (this.timed) pen.fillRect(this.x(t) - 0.5, TOP - 4, 1, this.sizes[1] + 4);
     const present = this.wheels.map((wheel) => this.at(wheel, t));
     present.forEach(([x, y], k) => {
       Object.assign(pen, {fillStyle: this.wheels[k].colour, strokeStyle: this.paper});

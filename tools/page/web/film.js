@@ -3,10 +3,6 @@
 import {$, colour, make} from '#dom';
 import {stateOf} from '#labels';
 
-const CODECS = {
-  V_VP9: 'vp09.00.51.08',
-  V_VP8: 'vp8'
-};
 const RATE = 30;         // pictures per second of the film
 const BITS = 8_000_000;  // per second
 const KEY = 60;          // pictures from one that stands alone to the next
@@ -101,28 +97,25 @@ function webm(codec, {width, height}, pictures, duration) {
   return new Blob([header, segment], {type: 'video/webm'});
 }
 
-/** A canvas encoded by WebCodecs: {codec, add(k), end(), pictures}; null where the browser has none. */
+/** A canvas encoded by WebCodecs: {codec, add(k), end(), pictures}; null where the browser cannot. */
 async function streamOf(canvas) {
   const {width, height} = canvas;
-  const settings = {width, height, bitrate: BITS, framerate: RATE};
+  const settings = {codec: 'vp09.00.51.08', width, height, bitrate: BITS, framerate: RATE};
+  if (!(await window.VideoEncoder?.isConfigSupported(settings))?.supported) return null;
   const pictures = [];
   const output = (chunk) => {
     const data = new Uint8Array(chunk.byteLength);
     chunk.copyTo(data);
     pictures.push({data, time: Math.round(chunk.timestamp / 1000), key: chunk.type === 'key'});
   };
-  for (const [name, codec] of Object.entries(window.VideoEncoder ? CODECS : {})) {
-    if (!(await VideoEncoder.isConfigSupported({...settings, codec})).supported) continue;
-    const encoder = new VideoEncoder({output, error: console.error});
-    encoder.configure({...settings, codec});
-    const add = (k) => {
-      const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / RATE)});
-      encoder.encode(picture, {keyFrame: k % KEY === 0});
-      picture.close();
-    };
-    return {codec: name, add, end: () => encoder.flush(), pictures};
-  }
-  return null;
+  const encoder = new VideoEncoder({output, error: console.error});
+  encoder.configure(settings);
+  const add = (k) => {
+    const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / RATE)});
+    encoder.encode(picture, {keyFrame: k % KEY === 0});
+    picture.close();
+  };
+  return {codec: 'V_VP9', add, end: () => encoder.flush(), pictures};
 }
 
 /** The same as single pictures: a WebP file holds a key frame of VP8. */

@@ -4,10 +4,6 @@ import {bytesOf, Table} from '#table';
 
 export const STEP = 0.01;  // s, between two communication points
 const [WARNING, DISCARD, LAST_TIME] = [1, 2, 2];
-const KINDS = {
-  Real: 'Real',
-  Boolean: 'Boolean'
-};  // of fmi2Get... and fmi2Set...; all others are integers
 const ROOM = 64;  // values of one call, at most
 
 export class Fmu {
@@ -63,7 +59,7 @@ export class Fmu {
     this.view(Uint32Array, this.list, names.length).set(names.map((name) => this.variable(name).reference));
     const cells = () => this.view(type === 'Real' ? Float64Array : Int32Array, this.cells, names.length);
     cells().set(values);
-    this.call(way + (KINDS[type] ?? 'Integer'), this.list, names.length, this.cells);
+    this.call(way + (type === 'Enumeration' ? 'Integer' : type), this.list, names.length, this.cells);
     return cells();
   }
 

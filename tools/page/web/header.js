@@ -1,11 +1,7 @@
 // The header: the parameters of what is shown in the card "Values", and the button for light, dark, or as the system.
 import {$, make} from '#dom';
 
-const SYMBOLS = {
-  auto: '◐',
-  light: '☀',
-  dark: '☾'
-};
+const SYMBOLS = new Map([['auto', '◐'], ['light', '☀'], ['dark', '☾']]);
 
 /** variables: of the description; wheels(): those shown, with their parameters {name: value}. */
 export function setUpValues(variables, wheels) {
@@ -26,12 +22,12 @@ export function setUpValues(variables, wheels) {
 /** Sets up the button; `changed` is called after every change, also of the system's own. */
 export function watchTheme(button, changed) {
   const dark = matchMedia('(prefers-color-scheme: dark)');
-  const choices = Object.keys(SYMBOLS);
+  const choices = [...SYMBOLS.keys()];
   let choice = 'auto';
   const apply = () => {
     const system = dark.matches ? 'dark' : 'light';
     document.documentElement.dataset.theme = choice === 'auto' ? system : choice;
-    button.textContent = SYMBOLS[choice];
+    button.textContent = SYMBOLS.get(choice);
     button.title = button.ariaLabel = `Colours: ${choice === 'auto' ? 'as the system' : choice}. Click to change`;
     changed();
   };

@@ -6,7 +6,6 @@ export const degrees = (angle) => angle / DEGREES;
 
 /**
  * Sliders: name, symbol, unit, lowest, highest and step as shown (angles in degrees; 'log': by ratios), and what it is.
- * Those whose variable the description lacks are left out.
  */
 export const START = [
   ['theta_start', 'θ', '°', 5, 175, 0.5, 'tilt'],
@@ -40,16 +39,11 @@ export const torqueOf = ({m, g, r_0, r}) =>
     Math.min(8, Number((6 * m * g * (r_0 + r) / (20 * 9.81 * 0.35)).toPrecision(6)));
 
 /** Lowest and highest, in SI, of what has no slider. */
-const OTHERS = {
-  g: [0.5, 30],
-  J_y: [1e-8, 1000],
-  psi_start: [-10, 10],
-  phi_start: [-10, 10],
-};
+const OTHERS = new Map([['g', [0.5, 30]], ['J_y', [1e-8, 1000]], ['psi_start', [-10, 10]], ['phi_start', [-10, 10]]]);
 
 /** [lowest, highest] in SI of what may be set at the start, or (now) while it rolls; undefined for all else. */
 export function limitsOf(name, now = false) {
   const knob = (now ? NOW : [...START, ...WHEEL, ...NOW]).find(([other]) => other === name);
-  if (!knob) return now ? undefined : OTHERS[name];
+  if (!knob) return now ? undefined : OTHERS.get(name);
   return [knob[3], knob[4]].map((value) => (knob[2] === '°' ? degrees(value) : value));
 }

@@ -2,7 +2,6 @@
 // its start, or s or M_3 while it rolls. A change while it rolls leaves the past alone and makes a new future.
 import {EMPTY} from '#address';
 import {Fmu, STEP} from '#fmu';
-import {NOW} from '#knobs';
 import {Link} from '#link';
 import {setUpPanel} from '#panel';
 import {chapters, scenes} from '#scenes';
@@ -12,13 +11,11 @@ const SIGNALS = ['omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_m
 const RECORD = [...POSE, ...POSE.map((name) => `${name}_dot`), ...SIGNALS];
 const SHAPE = ['r_0', 'r', 'slope', 'slope_direction'];
 const HOLDING = ['s', 'M_brake'];  // may hold the wheel at omega_z = 0
-const RUNNING = NOW.map(([name]) => name);
-const PAPER_RADIUS = 0.35;  // m, r_0 + r
+const PAPER_RADIUS = 0.35;         // m, r_0 + r
 
 export class LiveWheel {
   constructor(page, fmu) {
     Object.assign(this, {page, fmu, took: 0}, structuredClone(EMPTY.plan));
-    this.record = RECORD.filter((name) => name in fmu.variables);
     this.wheel = {name: 'live', label: 'This wheel'};
     page.bodies.push(this.wheel);
   }
@@ -83,7 +80,6 @@ export class LiveWheel {
 
   /** s or M_3 from now on; what had been planned for later is dropped. */
   setNow(name, value) {
-    if (!RUNNING.includes(name)) throw new Error(`${name} cannot change while the wheel rolls`);
     const t = this.now();
     this.changes = this.changes.filter((change) => change.name !== name || change.t < t - STEP / 2);
     if (t <= 0)
@@ -104,9 +100,9 @@ export class LiveWheel {
   /** The motion of the present plan, on the page. */
   compute() {
     [this.wanted, this.trouble] = [false, null];
-    const {page, wheel, values, changes, stop, record} = this;
+    const {page, wheel, values, changes, stop} = this;
     const begin = performance.now();
-    const {table, ended} = this.fmu.run({values, changes, stop, record});
+    const {table, ended} = this.fmu.run({values, changes, stop, record: RECORD});
     this.took = performance.now() - begin;
     const given = Object.fromEntries(SHAPE.map((name) => [name, this.value(name)]));
     const reshaped = given.r_0 !== wheel.r_0 || given.r !== wheel.r;

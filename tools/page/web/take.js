@@ -19,15 +19,11 @@ async function copy(text, {currentTarget: button}) {
   const before = button.textContent;
   try {
     await navigator.clipboard.writeText(text);
+    button.textContent = 'Copied';
+    setTimeout(() => (button.textContent = before), 1200);
   } catch {  // a page opened from the disk has no clipboard in every browser
-    const area = make('textarea', {value: text});
-    button.after(area);
-    area.select();
-    document.execCommand('copy');
-    area.remove();
+    prompt('To copy:', text);
   }
-  button.textContent = 'Copied';
-  setTimeout(() => (button.textContent = before), 1200);
 }
 
 /**
