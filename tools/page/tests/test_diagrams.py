@@ -21,20 +21,23 @@ def points(page, name: str) -> dict[str, np.ndarray]:
     return dict(zip(("free", "friction"), map(np.array, page.evaluate(POINTS, name)), strict=True))
 
 
-def test_the_phase_portrait_is_the_rate_of_the_tilt_over_the_tilt(recorded, scenes):
-    for name, rows in points(recorded, "phase").items():
-        expected = np.degrees(np.column_stack([scenes[name]["theta"], scenes[name]["theta_dot"]]))
-        within(absolute_error(rows, expected), 1e-9, "points off, deg")
+def expected(rows: np.ndarray) -> dict[str, list[np.ndarray]]:
+    """Both coordinates of each portrait: deg, deg/s; rad/s along e2 and e3; m."""
+    along_e2 = rows["psi_dot"] * np.sin(rows["theta"])
+    along_e3 = rows["phi_dot"] + rows["psi_dot"] * np.cos(rows["theta"])
+    tilt = [np.degrees(rows["theta"]), np.degrees(rows["theta_dot"])]
+    return {"phase": tilt, "spin": [along_e2, along_e3], "path": [rows["X_C"], rows["Y_C"]]}
 
 
-def test_the_angular_velocities_are_those_along_e2_and_e3(recorded, simulate):
-    rates = simulate(step=0.01, output=("psi_dot", "phi_dot", "theta"), s=0.03)
-    along_e2 = rates["psi_dot"] * np.sin(rates["theta"])
-    along_e3 = rates["phi_dot"] + rates["psi_dot"] * np.cos(rates["theta"])
-    found = points(recorded, "spin")
-    off = absolute_error(found["friction"], np.column_stack([along_e2, along_e3]))
-    within(off, 64 * 8 * EPSILON, "points off, rad/s")
-    beyond(absolute_error(found["free"], found["friction"]), 1, "the two wheels apart, rad/s")
+@pytest.mark.parametrize(("name", "bound"), [("phase", 1e-9), ("spin", 512 * EPSILON), ("path", 64 * EPSILON)])
+def test_a_portrait_shows_rates_over_tilt_or_along_e3_over_e2_or_the_path_of_the_contact_point(
+    recorded, simulate, name, bound
+):
+    names = ("psi_dot", "phi_dot", "theta_dot", "theta", "X_C", "Y_C")
+    found = points(recorded, name)
+    wanted = np.column_stack(expected(simulate(step=0.01, output=names, s=0.03))[name])
+    within(absolute_error(found["friction"], wanted), bound, "points off")
+    beyond(absolute_error(found["free"], wanted), 1, "points of the other wheel off")
 
 
 def test_without_friction_both_rates_lie_on_one_curve_and_with_friction_it_shrinks(recorded, scenes):
@@ -47,14 +50,11 @@ def test_without_friction_both_rates_lie_on_one_curve_and_with_friction_it_shrin
     assert (ends["friction"] < ends["free"]).all()
 
 
-def test_the_path_from_above_is_that_of_the_contact_point_in_one_scale(recorded, simulate):
-    rows = simulate(step=0.01, output=("X_C", "Y_C"), s=0.03)
-    off = absolute_error(points(recorded, "path")["friction"], np.column_stack([rows["X_C"], rows["Y_C"]]))
-    within(off, 64 * EPSILON, "points off, m")
+def test_the_path_from_above_has_one_scale(recorded):
     recorded.evaluate("page.plots.portrait.choose('path')")
     (x, y), (width, height) = recorded.evaluate("""() => {
-      const {ranges, width, height} = page.plots.portrait;
-      return [ranges.map(([low, high]) => high - low), [width - 54, height - 30]];
+      const {ranges, sizes} = page.plots.portrait;
+      return [ranges.map(([low, high]) => high - low), sizes];
     }""")
     recorded.evaluate("page.plots.portrait.choose('phase')")
     assert x / width == pytest.approx(y / height)

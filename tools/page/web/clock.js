@@ -1,6 +1,6 @@
 // The clock of the page: play, pause, speed, seek; its bar with the stick phases behind the slider; the keys and
 // switches. Time in s.
-import {$, clearCanvas, colour, make} from '#dom';
+import {$, make} from '#dom';
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
 
@@ -39,16 +39,12 @@ export class Player extends EventTarget {
   }
 }
 
-/** Draws the stick phases behind the slider. */
-export function drawBands(wheels, player) {
-  const canvas = $('#bands');
-  const {clientWidth: width, clientHeight: height} = canvas;
-  const pen = clearCanvas(canvas, width, height);
-  const thumb = 8;  // CSS pixels, half its width
-  const x = (t) => thumb + ((t - player.start) / (player.end - player.start || 1)) * (width - 2 * thumb);
-  pen.fillStyle = colour('--stick');
-  for (const {phases} of wheels)
-    for (const [a, b] of phases.sticks) pen.fillRect(x(a), 0, Math.max(1, x(b) - x(a)), height);
+/** Shows the stick phases behind the slider. */
+export function showBands(wheels, {start, end}) {
+  const part = (t) => (100 * t) / (end - start || 1);
+  const bands = wheels.flatMap(({phases}) => phases.sticks);
+  $('#bands').replaceChildren(...bands.map(
+      ([from, to]) => make('i', {style: `left:${part(from - start)}%; width:max(1px, ${part(to - from)}%)`})));
 }
 
 export function setUpTransport(player) {

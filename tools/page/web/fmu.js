@@ -90,15 +90,10 @@ export class Fmu {
       const status = this.api.fmi2DoStep(this.unit, k * STEP, STEP, 1);
       if (status > DISCARD) throw new Error(this.messages.at(-1) ?? `status ${status}`);
       if (status === DISCARD) ended = this.messages.at(-1) ?? 'The run has ended.';
-      note(ended ? this.lastTime() : (k + 1) * STEP);
+      if (ended) this.call('GetRealStatus', LAST_TIME, this.cells);
+      note(ended ? this.view(Float64Array, this.cells, 1)[0] : (k + 1) * STEP);
     }
     const columns = ['time', ...groups.flat()].map((name, i) => [name, Float64Array.from(rows, (row) => row[i])]);
     return {table: new Table(Object.fromEntries(columns)), ended};
-  }
-
-  /** The instant at which a discarded step stopped, s. */
-  lastTime() {
-    this.call('GetRealStatus', LAST_TIME, this.cells);
-    return this.view(Float64Array, this.cells, 1)[0];
   }
 }

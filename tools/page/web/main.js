@@ -1,6 +1,6 @@
 // The page: recorded wheels, a car's body, or the wheel itself (live), shown on one stage with one clock.
 import {ChassisModel, WheelModel} from '#bodies';
-import {drawBands, Player, setUpKeys, setUpSwitches, setUpTransport} from '#clock';
+import {Player, setUpKeys, setUpSwitches, setUpTransport, showBands} from '#clock';
 import {Plots} from '#diagrams';
 import {$, colour, makeChoice, wheelColour} from '#dom';
 import {setUpValues, watchTheme} from '#header';
@@ -131,7 +131,7 @@ class Page {
   layOut() {
     if (!this.views) return;
     this.stage.resize();
-    drawBands(this.shown, this.player);
+    showBands(this.shown, this.player);
     const wheels = this.views.map((view) => view.filter(({size}) => !size));
     layOutLabels($('#labels'), this.stage.rectangles(this.views.length), wheels);
     this.stage.dirty = true;

@@ -121,22 +121,18 @@ function makeHeld([text, name, part, what], live, touched) {
   return button;
 }
 
-/** A button for each scene, into #presets; returns a function that marks one of them, or none. */
+/** A button for each scene, into #presets; returns a function that marks one of them by name, or none. */
 function makeScenes(scenes, live) {
-  const buttons = scenes.map(({label, plan, about = ''}) => {
-    const button = makeButton({textContent: label, title: about || 'A scene of the paper'}, () => {
-      $('#about').textContent = about;
-      mark(button);
-      live.refusal = null;
-      live.page.player.seek(0);
-      live.load(plan);
-      live.page.player.play();
-    });
-    return button;
+  const options =
+      scenes.map(({label, about = 'A scene of the paper'}, name) => ({name, textContent: label, title: about}));
+  const mark = makeChoice($('#presets'), options, (i) => {
+    $('#about').textContent = scenes[i].about ?? '';
+    mark(i);
+    live.refusal = null;
+    live.page.player.seek(0);
+    live.load(scenes[i].plan);
+    live.page.player.play();
   });
-  $('#presets').append(...buttons);
-  const mark = (chosen) => buttons.forEach((button) => button.setAttribute('aria-pressed', button === chosen));
-  mark(null);
   return mark;
 }
 
