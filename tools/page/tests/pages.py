@@ -56,9 +56,8 @@ def opened(browser: Browser, path: Path, address: str = "", **look: object) -> I
 
 def write_csv(path: Path, columns: dict[str, np.ndarray]) -> Path:
     """A result file as FMPy writes it."""
-    rows = np.column_stack(list(columns.values()))
-    lines = [",".join(repr(float(value)) for value in row) for row in rows]
-    path.write_text("\n".join([",".join(f'"{name}"' for name in columns), *lines, ""]))
+    header = ",".join(f'"{name}"' for name in columns)
+    np.savetxt(path, np.column_stack([*columns.values()]), fmt="%.17g", delimiter=",", header=header, comments="")
     return path
 
 

@@ -197,24 +197,17 @@ class Diagram {
   grid(pen) {
     const across = ticksOf(this.ranges[0], Math.min(6, this.width / 48));
     const up = ticksOf(this.ranges[1], Math.min(5, this.height / 26));
-    Object.assign(
-        pen, {font: '11px system-ui, sans-serif', fillStyle: colour('--soft'), strokeStyle: colour('--rule')});
-    const line = (...ends) => ends.forEach(([x, y], i) => (i ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+    pen.fillStyle = colour('--rule');
+    for (const tick of up.ticks) pen.fillRect(LEFT, Math.round(this.y(tick)), this.sizes[0], 1);
+    for (const tick of this.timed ? [] : across.ticks) pen.fillRect(Math.round(this.x(tick)), TOP, 1, this.sizes[1]);
+    Object.assign(pen, {font: '11px system-ui, sans-serif', fillStyle: colour('--soft')});
     Object.assign(pen, {textAlign: 'right', textBaseline: 'middle'});
-    for (const tick of up.ticks) {
-      const level = Math.round(this.y(tick)) + 0.5;
-      line([LEFT, level], [this.width - RIGHT, level]);
-      pen.fillText(tick.toFixed(up.digits), LEFT - 6, level);
-    }
+    for (const tick of up.ticks) pen.fillText(tick.toFixed(up.digits), LEFT - 6, Math.round(this.y(tick)) + 0.5);
     Object.assign(pen, {textAlign: 'center', textBaseline: 'top'});
     for (const tick of across.ticks) {
-      const place = Math.round(this.x(tick)) + 0.5;
       const unit = this.timed && tick === across.ticks.at(-1) ? ' s' : '';
-      if (!this.timed) line([place, TOP], [place, this.height - BOTTOM]);
       pen.fillText(tick.toFixed(across.digits) + unit, Math.min(this.x(tick), this.width - 14), this.height - 15);
     }
-    pen.stroke();
-    pen.beginPath();
   }
 
   /** Stick phases as bands, transitions as ticks at the top. */

@@ -161,15 +161,14 @@ export function setUpPanel(live, scenes, wheels) {
     mark(null);
     live.refusal = null;
   };
-  const knobs = (place, list, change, present, hold) =>
-      list.filter(([name]) => name in live.fmu.variables).map((knob) => {
-        const take = (value) => {
-          touched();
-          change(knob[0], value);
-        };
-        const show = makeKnob($(place), knob, take, hold);
-        return () => show(present(knob[0]));
-      });
+  const knobs = (place, list, change, present, hold) => list.map((knob) => {
+    const take = (value) => {
+      touched();
+      change(knob[0], value);
+    };
+    const show = makeKnob($(place), knob, take, hold);
+    return () => show(present(knob[0]));
+  });
   const start = [(name, value) => live.setStart(name, value), (name) => live.value(name)];
   const now = [(name, value) => live.setNow(name, value), (name) => live.present(name), (on) => live.hold(on)];
   const all = [...knobs('#start', START, ...start), ...knobs('#wheel', WHEEL, ...start), ...knobs('#now', NOW, ...now)];

@@ -34,12 +34,12 @@ export class Stage {
     this.eye = new THREE.PerspectiveCamera();
     this.controls = new OrbitControls(this.camera, canvas);
     Object.assign(this.controls, {maxPolarAngle: 1.54, minDistance: 0.8 * size, maxDistance: 12 * size});
-    Object.assign(this.controls, {enableDamping: true, dampingFactor: 0.12, zoomSpeed: 0.8});
+    Object.assign(this.controls, {enableDamping: true, dampingFactor: 0.12, zoomSpeed: 0.8, keyRotateSpeed: 5});
     this.controls.addEventListener('change', () => (this.dirty = true));
-    canvas.addEventListener('keydown', ({key}) => {
-      const way = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[key];
-      if (way) this.turn(0.09 * way[0], 0.06 * way[1]);
-    });
+    // Arrow keys turn the view; by themselves the controls do so with shift alone.
+    const keys = (act) => (event) =>
+        act({code: event.code, shiftKey: true, preventDefault: () => event.preventDefault()});
+    this.controls.listenToKeyEvents({addEventListener: (kind, act) => canvas.addEventListener(kind, keys(act))});
     this.road = new THREE.Group();  // what is given in the road's axes: ground and bodies
     const surface = new THREE.MeshPhongMaterial({color: '#fff', shininess: 0, specular: '#000'});
     this.ground = new THREE.Mesh(new THREE.PlaneGeometry(GROUND, GROUND), surface);
@@ -149,18 +149,6 @@ export class Stage {
       this.renderer.render(this.scene, this.eye);
     });
     this.dirty = false;
-  }
-
-  /** Turns the view about the vertical and up or down, in rad. */
-  turn(around, over) {
-    const {camera: {position}, controls: {target}} = this;
-    position.sub(target);
-    const place = new THREE.Spherical().setFromCartesianCoords(position.x, position.z, -position.y);  // Y is up there
-    place.theta += around;
-    place.phi = Math.min(1.5, Math.max(0.12, place.phi + over));
-    position.setFromSpherical(place);
-    position.set(position.x, -position.z, position.y).add(target);
-    this.dirty = true;
   }
 
   /** The first camera again. */
