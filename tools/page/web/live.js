@@ -47,6 +47,7 @@ export class LiveWheel {
   /** Takes a plan; label: what its wheel is called. */
   load(plan, label = 'This wheel') {
     this.wheel.label = label;
+    this.page.offer(this.page.bodies.length);
     this.page.plots.axis = 'fitted';
     Object.assign(this, structuredClone({values: {}, changes: [], ...plan}));
     this.compute();
@@ -57,6 +58,7 @@ export class LiveWheel {
     const {page, wheel} = this;
     this.kept = on ? this.plan : null;
     page.bodies = [wheel, ...(on ? [{...wheel, name: 'kept', label}] : [])];
+    page.choice = 0;
     page.offer(page.bodies.length);
     page.dress();
     this.compare();

@@ -38,6 +38,7 @@ function choicesOf(bodies, wheels, sources) {
 class Page {
   constructor() {
     this.player = new Player();
+    this.choice = 0;
     this.plots = new Plots($('#plots'), this.player);
     this.bodies = data.bodies.map((body) => ({...body, table: Table.decode(body.columns)}));
     const latest = Math.max(...this.bodies.map(({table}) => table.end));
@@ -81,7 +82,6 @@ class Page {
   /** The buttons for what one can look at. sources: how many files or runs the bodies come from. */
   offer(sources) {
     this.choices = choicesOf(this.bodies, this.wheels, sources);
-    this.choice = 0;
     const options =
         this.choices.map(({label}, name) => ({name, textContent: label, title: `Show: ${label} (key ${name + 1})`}));
     $('#choice').hidden = options.length < 2;
