@@ -2,6 +2,7 @@
 // about Z, theta about the line of nodes e1, and phi about the axle e3 (paper, (3)), with its contact path, carrier
 // axes and the ground's force. A car's body: a box with its centre at X, Y, Z in m, turned by yaw, pitch, roll in rad
 // (in this order about z, y, x; x forward, y to the left, z up).
+import {colour} from '#dom';
 import {dispose, makeArrow, makeLabel, makeRibbon, makeSolid, makeTexture, pointArrow, showRibbon} from '#shapes';
 import {before, contactOf} from '#table';
 import {THREE} from 'three';
@@ -71,33 +72,30 @@ function makeNamed(name, vector, radius, height, colour, beyond) {
 }
 
 export class WheelModel {
-  /**
-   * wheel: {name, r_0, r, slope?, slope_direction?, table, trace, phases}; look: CSS colours {accent, stick, force,
-   * line, axes: [3]}, size of the scene in m.
-   */
-  constructor(wheel, look) {
+  /** wheel: {name, r_0, r, slope?, slope_direction?, colour, table, trace, phases}; size of the scene in m. */
+  constructor(wheel, size) {
     const {name, r_0, r, table} = wheel;
-    const size = r_0 + r;
-    Object.assign(this, {wheel, look, group: new THREE.Group(), path: new THREE.Group(), axes: new THREE.Group()});
-    const marked = {color: look.accent, specular: '#222', shininess: 15};
+    const radius = r_0 + r;
+    Object.assign(this, {wheel, size, group: new THREE.Group(), path: new THREE.Group(), axes: new THREE.Group()});
+    const marked = {color: wheel.colour, specular: '#222', shininess: 15};
     this.body = new THREE.Group().add(...(r > 0.01 * r_0 ? makeWheel(r_0, r, marked) : makeDisc(r_0, marked)));
     this.body.name = `spin:${name}`;
     for (const [i, length] of [1.5, 1.5, 1.125].entries()) {
-      const along = new THREE.Vector3().setComponent(i, length * size);
-      this.axes.add(
-          ...makeNamed(`e_${i + 1}`, along, 0.022 * r_0, 0.3 * r_0, look.axes[i], 1 + 0.12 / (length * size)));
+      const along = new THREE.Vector3().setComponent(i, length * radius);
+      this.axes.add(...makeNamed(
+          `e_${i + 1}`, along, 0.022 * r_0, 0.3 * r_0, colour(`--e${i + 1}`), 1 + 0.12 / (length * radius)));
     }
     this.carrier = new THREE.Group().add(this.body, this.axes);
-    this.force = makeArrow(0.03 * r_0, look.force);
-    const skin = {color: look.force, transparent: true, side: THREE.DoubleSide, depthWrite: false};
+    this.force = makeArrow(0.03 * r_0, colour('--force'));
+    const skin = {color: colour('--force'), transparent: true, side: THREE.DoubleSide, depthWrite: false};
     this.spot = new THREE.Mesh(
         new THREE.RingGeometry(0.07 * r_0, 0.11 * r_0, 40),
         new THREE.MeshBasicMaterial(skin),
     );
     this.spot.renderOrder = 900;
     const [arrow, label] =
-        makeNamed('uphill', new THREE.Vector3(0.8 * size, 0, 0), 0.03 * size, 0.24 * size, look.line, 0.5);
-    [arrow.position.z, label.position.z] = [0.03 * size, 0.24 * size];
+        makeNamed('uphill', new THREE.Vector3(0.8 * radius, 0, 0), 0.03 * radius, 0.24 * radius, colour('--line'), 0.5);
+    [arrow.position.z, label.position.z] = [0.03 * radius, 0.24 * radius];
     this.uphill = new THREE.Group().add(arrow, label);
     this.group.add(this.carrier, this.force, this.spot, this.uphill, this.path);
     this.drawPath();
@@ -107,7 +105,7 @@ export class WheelModel {
 
   /** The contact path anew: all of it faintly, up to now strongly, stick phases in a colour of their own. */
   drawPath() {
-    const {wheel: {trace: {points}, table, r_0, phases}, look: {accent, stick, size}} = this;
+    const {wheel: {trace: {points}, table, r_0, phases, colour: accent}, size} = this;
     const unit = Math.max(0.045 * r_0, 0.006 * size);
     const ribbon = ([begin, end], color, width, layer, opacity) => {
       const first = this.point(begin);
@@ -118,7 +116,8 @@ export class WheelModel {
       return found;
     };
     const all = [table.start, table.end];
-    this.past = [ribbon(all, accent, 1, 3, 0.95), ...phases.sticks.map((span) => ribbon(span, stick, 5, 2, 0.9))];
+    this.past =
+        [ribbon(all, accent, 1, 3, 0.95), ...phases.sticks.map((span) => ribbon(span, colour('--stick'), 5, 2, 0.9))];
     dispose(this.path);
     this.path.clear().add(ribbon(all, accent, 0.5, 1, 0.3), ...this.past);
   }
@@ -141,7 +140,7 @@ export class WheelModel {
       showRibbon(ribbon, this.point(t) - ribbon.userData.first);
     }
     const contact = contactOf(r_0, X, Y, psi, theta);
-    this.spot.position.set(...contact, 0.004 * this.look.size);
+    this.spot.position.set(...contact, 0.004 * this.size);
     this.uphill.visible = slope > 0;
     const reach = 1.2 * (r_0 + r);
     this.uphill.rotation.z = direction;
@@ -154,17 +153,17 @@ export class WheelModel {
 }
 
 export class ChassisModel {
-  /** chassis: {name, size: [length, width, height] in m, table}; look: CSS colours {body, line}. */
-  constructor(chassis, look) {
+  /** chassis: {name, size: [length, width, height] in m, table}. */
+  constructor(chassis) {
     const {name, size: [length, width, height], table} = chassis;
     Object.assign(this, {wheel: chassis, table, group: new THREE.Group()});
     const shape = new BoxGeometry(length, width, height);
-    const solid = makeSolid(shape, {color: look.body, transparent: true, opacity: 0.45});
+    const solid = makeSolid(shape, {color: colour('--body'), transparent: true, opacity: 0.45});
     const edges =
-        new THREE.LineSegments(new THREE.EdgesGeometry(shape), new THREE.LineBasicMaterial({color: look.line}));
+        new THREE.LineSegments(new THREE.EdgesGeometry(shape), new THREE.LineBasicMaterial({color: colour('--line')}));
     const place = [0.5 * length + 0.1 * width, 0, 0];
     const cone = new THREE.ConeGeometry(0.12 * width, 0.2 * width, 4);
-    const nose = makeSolid(cone, {color: look.line}, place, [0, 0, -Math.PI / 2]);
+    const nose = makeSolid(cone, {color: colour('--line')}, place, [0, 0, -Math.PI / 2]);
     this.box = new THREE.Group().add(solid, edges, nose);
     this.box.name = `body:${name}`;
     this.group.add(this.box);

@@ -2,7 +2,7 @@
 import {ChassisModel, WheelModel} from '#bodies';
 import {Player, setUpKeys, setUpSwitches, setUpTransport, showBands} from '#clock';
 import {Plots} from '#diagrams';
-import {$, colour, makeChoice, wheelColour} from '#dom';
+import {$, makeChoice, wheelColour} from '#dom';
 import {setUpValues, watchTheme} from '#header';
 import {endingOf, layOutLabels, showStates} from '#labels';
 import {startLive} from '#live';
@@ -91,14 +91,9 @@ class Page {
   /** Takes the theme's colours: every body is made anew. */
   dress() {
     this.stage.dress();
-    const names = {force: '--force', stick: '--stick', body: '--body', line: '--line'};
-    const look = Object.fromEntries(Object.entries(names).map(([name, variable]) => [name, colour(variable)]));
-    Object.assign(look, {size: this.size, axes: ['--e1', '--e2', '--e3'].map(colour)});
-    this.stage.zoom(look.size);
+    this.stage.zoom(this.size);
     this.wheels.forEach((wheel, i) => (wheel.colour = wheelColour(i)));
-    const model = (body) =>
-        body.size ? new ChassisModel(body, look) : new WheelModel(body, {...look, accent: body.colour});
-    this.stage.put(this.bodies.map(model));
+    this.stage.put(this.bodies.map((body) => (body.size ? new ChassisModel(body) : new WheelModel(body, this.size))));
     this.choose(this.choice);
   }
 

@@ -83,11 +83,7 @@ export function traceOf(table, r_0) {
   const {time, rows, columns: {psi}} = table;
   for (let i = 0; i + 1 < rows; ++i) {
     const step = time[i + 1] - time[i];
-    const [a, b, c] = [0, 0.5, 1].map((share) => contact(time[i] + share * step));
-    const [ax, ay, bx, by] = [b[0] - a[0], b[1] - a[1], c[0] - b[0], c[1] - b[1]];
-    const moves = Math.hypot(ax, ay, bx, by) > 1e-6 * r_0;  // the direction of less is rounding
-    const bend = moves ? Math.abs(Math.atan2(ax * by - ay * bx, ax * bx + ay * by)) : 0;
-    const turn = Math.max(2 * bend, Math.abs(psi[i + 1] - psi[i]));
+    const turn = Math.abs(psi[i + 1] - psi[i]);
     const count = Math.min(FINEST, Math.max(1, Math.ceil(turn / TURN)));
     for (let k = 0; k < count; ++k) add(time[i] + (k / count) * step);
   }
