@@ -88,10 +88,8 @@ export class WheelModel {
     this.carrier = new THREE.Group().add(this.body, this.axes);
     this.force = makeArrow(0.03 * r_0, colour('--force'));
     const skin = {color: colour('--force'), transparent: true, side: THREE.DoubleSide, depthWrite: false};
-    this.spot = new THREE.Mesh(
-        new THREE.RingGeometry(0.07 * r_0, 0.11 * r_0, 40),
-        new THREE.MeshBasicMaterial(skin),
-    );
+    const ring = new THREE.RingGeometry(0.07 * r_0, 0.11 * r_0, 40);
+    this.spot = new THREE.Mesh(ring, new THREE.MeshBasicMaterial(skin));
     this.spot.renderOrder = 900;
     const [arrow, label] =
         makeNamed('uphill', new THREE.Vector3(0.8 * radius, 0, 0), 0.03 * radius, 0.24 * radius, colour('--line'), 0.5);

@@ -235,13 +235,6 @@ class Diagram {
     pen.stroke();
   }
 
-  /** Whether what is shown at t has left the frame. */
-  leaves(t) {
-    const [low, high] = this.ranges?.[1] ?? [];
-    const outside = ([, value]) => value < low || value > high;
-    return !this.figure.hidden && this.wheels.some((wheel) => outside(this.at(wheel, t)));
-  }
-
   /** The picture at t. */
   draw(t) {
     if (this.figure.hidden || !this.width) return;
@@ -306,8 +299,9 @@ export class Plots {
   }
 
   draw(t) {
-    if (this.axis === 'held' && this.all.some((diagram) => diagram.leaves(t)))
-      for (const diagram of this.all) diagram.prepare('held');
-    for (const diagram of this.all) diagram.draw(t);
+    for (const diagram of this.all) {
+      if (this.axis === 'held') diagram.prepare('held');  // the present may have left the frame
+      diagram.draw(t);
+    }
   }
 }

@@ -70,23 +70,20 @@ export function contactOf(r_0, X_O, Y_O, psi, theta) {
 }
 
 const FINEST = 64;  // points of the path between two rows, at most
-const TURN = 0.06;  // rad, of the path's direction and of the wheel's heading from point to point
+const TURN = 0.06;  // rad, of the heading from point to point
 
-/** The contact point's path {times, points}: every row, and between two rows as many points as the path turns. */
+/**
+ * The contact point's path {times, points}: every row, and between two rows as many points as the wheel turns, along
+ * whose heading e1 it runs, but for r theta_dot across.
+ */
 export function traceOf(table, r_0) {
-  const contact = (t) => contactOf(r_0, ...['X_O', 'Y_O', 'psi', 'theta'].map((name) => table.value(name, t)));
-  const [times, points] = [[], []];
-  const add = (t) => {
-    times.push(t);
-    points.push(contact(t));
-  };
   const {time, rows, columns: {psi}} = table;
+  const times = [];
   for (let i = 0; i + 1 < rows; ++i) {
-    const step = time[i + 1] - time[i];
-    const turn = Math.abs(psi[i + 1] - psi[i]);
-    const count = Math.min(FINEST, Math.max(1, Math.ceil(turn / TURN)));
-    for (let k = 0; k < count; ++k) add(time[i] + (k / count) * step);
+    const count = Math.min(FINEST, Math.max(1, Math.ceil(Math.abs(psi[i + 1] - psi[i]) / TURN)));
+    for (let k = 0; k < count; ++k) times.push(time[i] + (k / count) * (time[i + 1] - time[i]));
   }
-  add(time[rows - 1]);
-  return {times, points};
+  times.push(table.end);
+  const pose = (t) => ['X_O', 'Y_O', 'psi', 'theta'].map((name) => table.value(name, t));
+  return {times, points: times.map((t) => contactOf(r_0, ...pose(t)))};
 }
