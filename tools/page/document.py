@@ -80,7 +80,6 @@ def write(output: Path, title: str, bodies: list[Body], sources: int = 1, live: 
     parts = {
         "title": title.replace("&", "&amp;").replace("<", "&lt;"),
         "licences": notice,
-        "help": (WEB / "help.html").read_text(encoding="utf-8"),
         "style": (WEB / "style.css").read_text(encoding="utf-8"),
         "data": json.dumps(data).replace("<", "\\u003c"),
         "modules": modules(three),
