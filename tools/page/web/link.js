@@ -58,7 +58,7 @@ export class Link {
     if (text === this.text || this.text !== location.hash.slice(1) || (this.live.refusal && text === 'step=1')) return;
     try {
       history.replaceState(null, '', `#${text}`);
-      this.text = text;
+      this.text = location.hash.slice(1);  // a browser may ignore changes that come too fast
     } catch {  // a page inside another may not change its address; the button still copies the link
     }
   }
