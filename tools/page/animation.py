@@ -8,7 +8,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from page.browser import chromium
+from page.browser import chromium, show, surroundings
 
 FRAMES_PER_SECOND = 12.5
 WINDOW = {"width": 1080, "height": 560}  # CSS pixels
@@ -23,10 +23,7 @@ page.stage.camera.position.multiplyScalar(0.72)"""
 def frames(page_file: Path) -> list[Image.Image]:
     """The page without its controls, from the first instant to the last."""
     with chromium() as browser:
-        page = browser.new_context(viewport=WINDOW, reduced_motion="reduce", offline=True).new_page()
-        page.set_default_timeout(120_000)
-        page.goto(page_file.resolve().as_uri())
-        page.wait_for_function("window.page && page.views")
+        page = show(surroundings(browser, viewport=WINDOW), page_file)
         page.evaluate(STILL)
         page.wait_for_function("!page.stage.dirty")
         end = page.evaluate("page.player.end")
@@ -51,7 +48,7 @@ def write(shots: list[Image.Image], output: Path) -> int:
 
 
 def main() -> None:
-    page_file, output = (Path(argument) for argument in sys.argv[1:])
+    page_file, output = map(Path, sys.argv[1:])
     size = write(frames(page_file), output)
     print(f"{output} ({size / 1e6:.1f} MB)")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import csv
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -41,12 +41,7 @@ class Body:
     columns: dict[str, Array]
     parameters: dict[str, float] = field(default_factory=dict)
     size: tuple[float, float, float] | None = None
-
-    @property
-    def start(self) -> Array:
-        """Position of the centre at the first row, in m."""
-        names = ("X_O", "Y_O", "Z_O") if self.size is None else ("X", "Y", "Z")
-        return np.array([self.columns[name][0] if name in self.columns else 0.0 for name in names])
+    label: str = ""
 
 
 def read_columns(path: Path) -> dict[str, list[str]]:
@@ -81,48 +76,54 @@ def numbers(path: Path, name: str, texts: list[str]) -> Array:
 
 def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | None = None) -> list[Body]:
     """All bodies of one file. given: parameters in the place of the file's; box: size of a car's body in m."""
-    groups: dict[str, dict[str, list[str]]] = defaultdict(dict)
     texts = read_columns(path)
     time = numbers(path, "time", texts.pop("time"))
     if not (np.diff(time) >= 0).all() or time[-1] <= time[0]:
         raise ViewError(f"{path}: the column time does not rise.")
     kept = np.append(np.diff(time) > 0, True)  # of two rows at one instant the later
+    groups: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for name, column in texts.items():
         prefix, _, short = name.rpartition(".")
         groups[prefix][short] = column
     bodies = []
     for prefix, group in groups.items():
-        group, wanted = known(group)
-        if not wanted and not prefix and len(groups) == 1:
-            missing = [column for column in POSE if column not in group]
-            raise ViewError(f"{path} lacks the column {', '.join(missing)}.")
-        columns = {column: numbers(path, column, group[column])[kept] for column in wanted}
-        if columns:
-            bodies.append(make_body(prefix or path.stem, {"time": time[kept]} | columns, given or {}, box))
+        rolls = group.keys() >= set(POSE)
+        if not rolls:
+            group = {ALIASES.get(short, short): column for short, column in group.items()}
+        wanted = (*POSE, *SHOWN, *RATES, *parameters()) if rolls else BODY_POSE
+        if rolls or group.keys() >= {"X", "Y", "Z"}:
+            columns = {short: numbers(path, short, group[short])[kept] for short in wanted if short in group}
+            body = Body(prefix or path.stem, {"time": time[kept]} | columns)
+            bodies.append(make_wheel(body, given or {}) if rolls else body)
+        elif not prefix and len(groups) == 1:
+            raise ViewError(f"{path} lacks the column {', '.join(short for short in POSE if short not in group)}.")
     if not bodies:
         raise ViewError(f"{path} holds no body: a wheel needs the columns {', '.join(POSE)}, a car's body X, Y, Z.")
-    return [fit_box(body, bodies, box) for body in bodies]
+    wheels = [body for body in bodies if body.parameters]
+    return [body if body.parameters else make_box(body, wheels, box) for body in bodies]
 
 
-def known(group: dict[str, list[str]]) -> tuple[dict[str, list[str]], list[str]]:
-    """A body's columns under the names used here, and those to show; none of a unit that is no body."""
-    if all(column in group for column in POSE):
-        return group, [column for column in (*POSE, *SHOWN, *RATES, *parameters()) if column in group]
-    if {"X", "Y", "Z"} <= group.keys():
-        group = {ALIASES.get(column, column): text for column, text in group.items()}
-        return group, [column for column in BODY_POSE if column in group]
-    return group, []
+def make_wheel(wheel: Body, given: dict[str, float]) -> Body:
+    """The columns that hold a parameter become its value."""
+    fixed = wheel.columns.keys() & set(parameters())
+    values = {name: float(wheel.columns[name][0]) for name in parameters() if name in fixed} | given
+    columns = {name: column for name, column in wheel.columns.items() if name not in fixed}
+    if not {"r_0", "r"} <= values.keys():
+        values |= dict(zip(("r_0", "r"), shape_of(columns), strict=True))
+    return replace(wheel, columns=columns, parameters=values)
 
 
-def make_body(name: str, columns: dict[str, Array], given: dict[str, float], box: tuple | None) -> Body:
-    """A wheel or a box out of its columns; angles of a box that are missing are zero."""
-    if "theta" in columns:
-        values = {value: float(columns.pop(value)[0]) for value in parameters() if value in columns} | given
-        if not {"r_0", "r"} <= values.keys():
-            values |= dict(zip(("r_0", "r"), shape_of(columns), strict=True))
-        return Body(name, columns, values)
-    zero = np.zeros_like(columns["time"])
-    return Body(name, dict.fromkeys(BODY_POSE, zero) | columns, size=box or (0.0, 0.0, 0.0))
+def make_box(body: Body, wheels: list[Body], box: tuple[float, float, float] | None) -> Body:
+    """A car's body; without a given size as long and wide as the wheels' centres stand apart at the start."""
+    columns = dict.fromkeys(BODY_POSE, np.zeros_like(body.columns["time"])) | body.columns  # missing angles: 0
+    size = box or (1.0, 0.6, 0.4)
+    if wheels and not box:
+        yaw = columns["yaw"][0]
+        apart = np.array([[wheel.columns[name][0] for name in ("X_O", "Y_O")] for wheel in wheels])
+        along, across = apart @ [np.cos(yaw), np.sin(yaw)], apart @ [-np.sin(yaw), np.cos(yaw)]
+        least = 2 * max(wheel.parameters["r_0"] + wheel.parameters["r"] for wheel in wheels)
+        size = (max(np.ptp(along), least), max(0.8 * np.ptp(across), 0.5 * least), 0.7 * least)
+    return replace(body, columns=columns, size=tuple(float(edge) for edge in size))
 
 
 def shape_of(columns: dict[str, Array]) -> tuple[float, float]:
@@ -139,18 +140,3 @@ def shape_of(columns: dict[str, Array]) -> tuple[float, float]:
     if not (r_0 > 0 and r > -1e-6 * r_0):
         return PAPER_WHEEL
     return float(r_0), float(r) if r > 1e-6 * r_0 else 0.0
-
-
-def fit_box(body: Body, bodies: list[Body], box: tuple[float, float, float] | None) -> Body:
-    """A car's body of no given size spans its wheels: as long and wide as their centres stand apart at the start."""
-    if body.size is None or box:
-        return body
-    wheels = [other for other in bodies if other.size is None]
-    size = (1.0, 0.6, 0.4)
-    if wheels:
-        yaw = body.columns["yaw"][0]
-        apart = np.array([wheel.start[:2] - body.start[:2] for wheel in wheels])
-        along, across = apart @ [np.cos(yaw), np.sin(yaw)], apart @ [-np.sin(yaw), np.cos(yaw)]
-        least = 2 * max(wheel.parameters["r_0"] + wheel.parameters["r"] for wheel in wheels)
-        size = (max(np.ptp(along), least), max(0.8 * np.ptp(across), 0.5 * least), 0.7 * least)
-    return Body(body.name, body.columns, size=tuple(float(edge) for edge in size))

@@ -6,13 +6,15 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 
 # The processor draws; the rest keeps the browser from looking for hosts.
 FLAGS = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
 FLAGS += ["--no-first-run", "--disable-component-update", "--disable-sync", "--disable-quic"]
 FLAGS += ["--no-sandbox"] if os.geteuid() == 0 else []
+PATIENCE = 120_000  # ms; a page is drawn by the processor
 
 
 @contextmanager
@@ -21,3 +23,18 @@ def chromium(*flags: str) -> Iterator[Browser]:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=[*FLAGS, *flags])
         yield browser
         browser.close()
+
+
+def surroundings(browser: Browser, **look: object) -> BrowserContext:
+    """Offline, and with pages that stand still at their start."""
+    found = browser.new_context(offline=True, reduced_motion="reduce", **look)
+    found.set_default_timeout(PATIENCE)
+    return found
+
+
+def show(context: BrowserContext, path: Path, address: str = "") -> Page:
+    """A page with its first picture. address: what stands after the #."""
+    page = context.new_page()
+    page.goto(f"{path.resolve().as_uri()}#{address}" if address else path.resolve().as_uri())
+    page.wait_for_function("window.page && page.first && !page.stage.dirty")
+    return page

@@ -8,12 +8,10 @@ from __future__ import annotations
 import base64
 import json
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
-
-import numpy as np
 
 from page import description
 from page.bodies import Body
@@ -23,14 +21,6 @@ SHAPE = ("r_0", "r", "slope", "slope_direction")
 PAGE_LIMIT = 3_000_000  # bytes of a page
 RECORDED_LIMIT = 1_500_000  # bytes of them for recorded motions
 THREE = "nicegui/elements/scene/dist/index.js"  # three.js and its OrbitControls, minified, within PyPI's nicegui
-
-
-@dataclass(frozen=True)
-class Choice:
-    """Something to look at: views side by side, each a list of bodies by name."""
-
-    label: str
-    views: list[list[str]]
 
 
 def base64_of(data: bytes) -> str:
@@ -61,49 +51,35 @@ def modules(three: str) -> str:
 
 
 def thinned(bodies: list[Body], limit: int = RECORDED_LIMIT) -> tuple[list[Body], int]:
-    """Every n-th row of each body, so that all fit into `limit` bytes; and n, 1 if nothing was left out."""
+    """Every n-th row of each body and the last, so that all fit into `limit` bytes; and n."""
     total = sum(len(column) for body in bodies for column in body.columns.values()) * 8 * 4 / 3
-    every = max(1, int(np.ceil(total / limit)))
-    if every == 1:
-        return bodies, 1
+    every = -int(-total // limit)
 
-    def few(column: np.ndarray) -> np.ndarray:
-        return column[sorted({*range(0, len(column), every), len(column) - 1})]
+    def few(body: Body) -> Body:
+        last = len(body.columns["time"]) - 1
+        rows = sorted({*range(0, last, every), last})
+        return replace(body, columns={name: column[rows] for name, column in body.columns.items()})
 
-    return [replace(body, columns={n: few(c) for n, c in body.columns.items()}) for body in bodies], every
+    return [few(body) for body in bodies], every
 
 
-def encoded(body: Body, label: str) -> dict:
+def encoded(body: Body) -> dict:
     columns = {name: base64_of(column.astype("<f8").tobytes()) for name, column in body.columns.items()}
-    entry = {"name": body.name, "label": label, "columns": columns}
+    entry = {"name": body.name, "label": body.label, "columns": columns}
     if body.size is not None:
         return entry | {"size": body.size}
     shape = {name: body.parameters[name] for name in SHAPE if name in body.parameters}
     return entry | shape | {"parameters": body.parameters}
 
 
-def write(
-    output: Path,
-    title: str,
-    bodies: list[Body],
-    labels: dict[str, str],
-    choices: list[Choice],
-    live: dict | None = None,
-) -> int:
-    """Write the page and return its size in bytes."""
+def write(output: Path, title: str, bodies: list[Body], sources: int = 1, live: dict | None = None) -> int:
+    """Write the page and return its size in bytes. sources: how many files the bodies come from."""
     three, notice = library()
-    every_body = [encoded(body, labels.get(body.name, body.name)) for body in bodies]
-    data = {
-        "wheels": [entry for entry in every_body if "r_0" in entry],
-        "bodies": [entry for entry in every_body if "size" in entry],
-        "choices": [{"label": choice.label, "views": choice.views} for choice in choices],
-        "variables": description.variables(),
-        "live": live,
-    }
+    recorded = {"bodies": [encoded(body) for body in bodies], "sources": sources}
+    data = recorded | {"variables": description.variables(), "live": live}
     parts = {
         "title": title.replace("&", "&amp;").replace("<", "&lt;"),
         "licences": notice,
-        "help": (WEB / "help.html").read_text(encoding="utf-8"),
         "style": (WEB / "style.css").read_text(encoding="utf-8"),
         "data": json.dumps(data).replace("<", "\\u003c"),
         "modules": modules(three),

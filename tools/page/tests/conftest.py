@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import subprocess
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -52,37 +51,19 @@ def recorded_file(scenes, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def live_file() -> Path:
+    build = ROOT / "build"
+    build.mkdir(exist_ok=True)
+    with (build / "wasm.lock").open("w") as file:  # one process at a time builds the module
+        fcntl.flock(file, fcntl.LOCK_EX)
+        subprocess.run([ROOT / "scripts" / "page", build / "wheel_live.html"], check=True, capture_output=True)
+        return build / "wheel_live.html"
+
+
+@pytest.fixture(scope="session")
 def recorded_page(browser, recorded_file) -> Iterator[Page]:
     with opened(browser, recorded_file) as page:
         yield page
-
-
-@pytest.fixture
-def recorded(recorded_page) -> Page:
-    recorded_page.bring_to_front()  # of several pages the browser draws the one in front
-    return recorded_page
-
-
-@pytest.fixture(scope="session")
-def locked() -> Callable:
-    """locked(name): one process at a time builds this folder of build/."""
-
-    @contextmanager
-    def lock(name: str) -> Iterator[Path]:
-        (ROOT / "build").mkdir(exist_ok=True)
-        with (ROOT / "build" / f"{name}.lock").open("w") as file:
-            fcntl.flock(file, fcntl.LOCK_EX)
-            yield ROOT / "build" / name
-
-    return lock
-
-
-@pytest.fixture(scope="session")
-def live_file(locked) -> Path:
-    with locked("wasm") as folder:
-        page = folder.with_name("wheel_live.html")
-        subprocess.run([ROOT / "scripts" / "page", page], check=True, capture_output=True)
-        return page
 
 
 @pytest.fixture(scope="session")
@@ -92,6 +73,18 @@ def live_page(browser, live_file) -> Iterator[Page]:
 
 
 @pytest.fixture
+def recorded(recorded_page) -> Page:
+    recorded_page.bring_to_front()  # of several pages the browser draws the one in front
+    return recorded_page
+
+
+@pytest.fixture
 def live(live_page) -> Page:
-    live_page.bring_to_front()  # of several pages the browser draws the one in front
+    live_page.bring_to_front()
     return live_page
+
+
+@pytest.fixture(params=["recorded", "live"])
+def either(request) -> Page:
+    """Each of the two pages."""
+    return request.getfixturevalue(request.param)

@@ -19,12 +19,19 @@ OVERFLOWING = """() => [document.documentElement, ...document.querySelectorAll('
     .map(part => part.tagName.toLowerCase())"""
 
 
-def overflowing(browser: Browser, fmu: str, width: int) -> set[str]:
-    page = browser.new_page(viewport={"width": width, "height": 900})
-    page.goto((Path(fmu) / "documentation" / "index.html").as_uri())
-    found = page.evaluate(OVERFLOWING)
+def ask(browser: Browser, page_file: Path, question: str, **look: object):
+    """What a document answers to a script, once its fonts are there."""
+    page = browser.new_page(**look)
+    page.goto(page_file.as_uri())
+    page.evaluate("document.fonts.ready")
+    found = page.evaluate(question)
     page.close()
-    return set(found)
+    return found
+
+
+def overflowing(browser: Browser, fmu: str, width: int) -> set[str]:
+    look = {"viewport": {"width": width, "height": 900}}
+    return set(ask(browser, Path(fmu) / "documentation" / "index.html", OVERFLOWING, **look))
 
 
 @pytest.mark.parametrize("width", [1280, 390])  # px: a screen, a telephone
@@ -41,6 +48,7 @@ WRITTEN = {
     "long": "# Much of both\n\nWhat is critical. A spin.\n\n" + "It is critical. So is spin.\n\n" * 3,
     "right": "# The answer\n\nAbove the critical spin $r_0$ it stays up; the critical spin follows from gravity.\n",
 }
+# How far a subscript stands below its letter, in heights of the letter.
 SUNK = """() => {
   const [base, low] = [...document.querySelector('msub').children].map((part) => part.getBoundingClientRect());
   return (low.bottom - base.bottom) / base.height;
@@ -52,35 +60,16 @@ def small_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("site")
     for name, text in WRITTEN.items():
         (folder / f"{name}.md").write_text(text)
-    command = [
-        "sphinx",
-        "-q",
-        "-c",
-        ROOT / "tools" / "publishing" / "site",
-        "-D",
-        "html_favicon=",
-        "-b",
-        "html",
-        folder,
-    ]
+    settings = ["-c", ROOT / "tools" / "publishing" / "site", "-D", "html_favicon="]
+    command = ["sphinx", "-q", *settings, "-b", "html", folder]
     subprocess.run([sys.executable, "-m", *map(str, command), str(folder / "out")], check=True)
     return folder / "out"
 
 
-def sunk(browser: Browser, page_file: Path) -> float:
-    """How far a subscript stands below its letter, in heights of the letter."""
-    page = browser.new_page()
-    page.goto(page_file.as_uri())
-    page.evaluate("document.fonts.ready")
-    found = page.evaluate(SUNK)
-    page.close()
-    return found
-
-
 def test_a_digit_below_a_letter_is_lowered(browser: Browser, small_site: Path) -> None:
-    beyond(sunk(browser, small_site / "right.html"), 0.1, "subscript below its letter, heights of the letter")
+    beyond(ask(browser, small_site / "right.html", SUNK), 0.1, "subscript below its letter, heights of the letter")
     (small_site / "_static" / "math.woff").rename(small_site / "math.woff")
-    without = sunk(browser, small_site / "right.html")
+    without = ask(browser, small_site / "right.html", SUNK)
     (small_site / "math.woff").rename(small_site / "_static" / "math.woff")
     within(without, 0.1, "subscript without a font for mathematics, heights of the letter")
 

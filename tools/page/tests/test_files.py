@@ -1,8 +1,7 @@
-"""What ./scripts/view makes of result files, without a browser."""
+"""What ./scripts/view makes of result files."""
 
 from __future__ import annotations
 
-import json
 import re
 
 import numpy as np
@@ -11,14 +10,20 @@ from support.bounds import EPSILON, absolute_error, within
 
 from page.bodies import read_bodies
 from page.options import arguments
-from page.tests.pages import POSE, view, write_csv
+from page.tests.pages import POSE, opened, view, write_csv
+
+T = np.linspace(0, 1, 11)
+UPRIGHT = {"X_O": T, "Y_O": 0 * T, "Z_O": 0 * T + 0.7, "psi": 0 * T, "theta": 0 * T + np.pi / 2, "phi": -T / 0.7}
 
 
 def columns_of(rows: np.ndarray, names=("time", *POSE)) -> dict[str, np.ndarray]:
     return {name: np.asarray(rows[name], dtype=float) for name in names}
 
 
-def shape(body) -> tuple[float, float]:
+def shape(path, columns: dict[str, np.ndarray]) -> tuple[float, float]:
+    """r_0 and r in m as read from a file with these columns, which keeps none of them."""
+    (body,) = read_bodies(write_csv(path / "wheel.csv", columns))
+    assert not {"r_0", "r"} & body.columns.keys()
     return body.parameters["r_0"], body.parameters["r"]
 
 
@@ -35,54 +40,36 @@ def test_slope_and_radii_take_units(one):
 @pytest.mark.parametrize(("r_0", "r"), [(0.3, 0.05), (0.2, 0.0)])
 def test_the_wheels_radii_follow_from_its_motion(simulate, tmp_path, r_0, r):
     rows = simulate(step=0.1, stop=2.0, output=POSE, r_0=r_0, r=r, J_x=0.4, J_y=0.4, J_z=0.8)
-    (body,) = read_bodies(write_csv(tmp_path / "wheel.csv", columns_of(rows)))
-    within(absolute_error(shape(body), (r_0, r)), 64 * EPSILON, "r_0, r, m")
+    within(absolute_error(shape(tmp_path, columns_of(rows)), (r_0, r)), 64 * EPSILON, "r_0, r, m")
 
 
-def test_a_wheel_that_stays_upright_gets_the_papers_proportions(tmp_path):
-    t = np.linspace(0, 1, 11)
-    pose = {"X_O": t, "Y_O": 0 * t, "Z_O": 0 * t + 0.7, "psi": 0 * t, "theta": 0 * t + np.pi / 2, "phi": -t / 0.7}
-    (body,) = read_bodies(write_csv(tmp_path / "upright.csv", {"time": t} | pose))
-    assert shape(body) == pytest.approx((0.6, 0.1))
+def test_a_wheel_that_stays_upright_gets_the_papers_proportions_or_those_of_its_file(tmp_path):
+    assert shape(tmp_path, {"time": T} | UPRIGHT) == pytest.approx((0.6, 0.1))
+    assert shape(tmp_path, {"time": T} | UPRIGHT | {"r_0": 0 * T + 0.4, "r": 0 * T + 0.3}) == (0.4, 0.3)
 
 
-def test_the_radii_that_a_file_tells_are_taken(tmp_path):
-    t = np.linspace(0, 1, 11)
-    pose = {"X_O": t, "Y_O": 0 * t, "Z_O": 0 * t + 0.7, "psi": 0 * t, "theta": 0 * t + np.pi / 2, "phi": -t / 0.7}
-    told = {"r_0": 0 * t + 0.4, "r": 0 * t + 0.3}
-    (body,) = read_bodies(write_csv(tmp_path / "told.csv", {"time": t} | pose | told))
-    assert shape(body) == (0.4, 0.3)
-    assert not set(told) & set(body.columns)
-
-
-def test_prefixes_make_several_wheels_and_a_box_that_spans_them(scenes, tmp_path):
-    rows = columns_of(scenes["free"])
-    table = {"time": rows["time"]}
+def test_prefixes_make_several_wheels_and_a_box_that_spans_them(tmp_path):
+    table = {"time": T} | {f"chassis.{column}": 0 * T for column in ("X", "Y", "Z", "psi")} | {"driver.speed": T}
     for name, x, y in (("wheel_fl", 2.6, 1.5), ("wheel_rr", 0.0, 0.0)):
-        moved = rows | {"X_O": rows["X_O"] + x, "Y_O": rows["Y_O"] + y}
+        moved = UPRIGHT | {"X_O": T + x, "Y_O": 0 * T + y}
         table |= {f"{name}.{column}": moved[column] for column in POSE}
-    table |= {f"chassis.{column}": 0 * rows["time"] for column in ("X", "Y", "Z", "psi")}
-    table |= {"driver.speed": rows["time"]}
-    bodies = {body.name: body for body in read_bodies(write_csv(tmp_path / "car.csv", table))}
-    assert set(bodies) == {"wheel_fl", "wheel_rr", "chassis"}
-    assert bodies["chassis"].size[:2] == pytest.approx((2.6, 0.8 * 1.5))
-    assert "yaw" in bodies["chassis"].columns
-
-
-def broken(columns: dict[str, np.ndarray], fault: str) -> dict[str, np.ndarray]:
-    if fault == "no psi":
-        return {name: column for name, column in columns.items() if name != "psi"}
-    if fault == "a gap":
-        return columns | {"phi": np.where(columns["time"] > 5, np.nan, columns["phi"])}
-    return columns | {"time": -columns["time"]}
+    chassis, *wheels = read_bodies(write_csv(tmp_path / "car.csv", table))
+    assert [body.name for body in (chassis, *wheels)] == ["chassis", "wheel_fl", "wheel_rr"]
+    assert chassis.size[:2] == pytest.approx((2.6, 0.8 * 1.5))
+    assert "yaw" in chassis.columns
 
 
 @pytest.mark.parametrize(
     ("fault", "sentence"),
-    [("no psi", "lacks the column psi"), ("a gap", "no finite number"), ("backwards", "time does not rise")],
+    [
+        ({"psi": None}, "lacks the column psi"),
+        ({"phi": np.where(T > 0.5, np.nan, T)}, "no finite number"),
+        ({"time": -T}, "time does not rise"),
+    ],
 )
-def test_a_file_that_cannot_be_shown_is_refused_with_one_sentence(scenes, tmp_path, fault, sentence):
-    path = write_csv(tmp_path / "bad.csv", broken(columns_of(scenes["free"]), fault))
+def test_a_file_that_cannot_be_shown_is_refused_with_one_sentence(tmp_path, fault, sentence):
+    columns = {"time": T} | UPRIGHT | fault
+    path = write_csv(tmp_path / "bad.csv", {name: column for name, column in columns.items() if column is not None})
     done = view(path)
     assert done.returncode == 1
     assert sentence in done.stderr
@@ -90,30 +77,31 @@ def test_a_file_that_cannot_be_shown_is_refused_with_one_sentence(scenes, tmp_pa
     assert not path.with_suffix(".html").exists()
 
 
-def test_a_missing_file_is_refused_with_one_sentence(tmp_path):
-    done = view(tmp_path / "none.csv")
+def test_a_missing_file_and_more_labels_than_bodies_are_refused_with_one_sentence(one, tmp_path):
+    missing = view(tmp_path / "none.csv")
+    assert missing.returncode == 1 and "cannot be read" in missing.stderr
+    done = view(one, "--labels", "a", "b", "c")
     assert done.returncode == 1
-    assert "cannot be read" in done.stderr
+    assert done.stderr == "view: --labels names 3 bodies, but the files hold 1 body.\n"
+    assert view(one, "--labels", "a").returncode == 0
 
 
-def test_the_page_is_one_file_that_asks_for_nothing_else(recorded_file):
+def test_the_page_is_one_file_that_asks_for_nothing_else_and_names_the_licence_of_three_js(recorded_file):
     text = recorded_file.read_text()
     addresses = re.findall(r"""(?:src|href|url|@import)\s*[=(]\s*["']?([^"')\s>]+)""", text)
     assert all(address.startswith("data:") for address in addresses)
     assert len(text.encode()) < 3_000_000
+    assert "three.js authors" in text and "Permission is hereby granted" in text
 
 
 def test_a_long_run_is_thinned_to_a_page_below_three_megabytes(scenes, one, tmp_path):
-    rows = columns_of(scenes["free"])
-    many = {name: np.tile(column, 120) for name, column in rows.items()}
+    many = {name: np.tile(column, 120) for name, column in columns_of(scenes["free"]).items()}
     many["time"] = np.arange(len(many["time"])) * 0.01
     done = view(write_csv(tmp_path / "long.csv", many))
     assert done.returncode == 0
     assert "row is kept" in done.stdout
     assert (tmp_path / "long.html").stat().st_size < 3_000_000
-    short = view(one).stdout
-    assert "row is kept" not in short
-    assert str(one.with_suffix(".html")) in short
+    assert "row is kept" not in view(one).stdout
 
 
 def test_without_a_name_the_page_stands_beside_the_first_file_and_the_command_says_where(one):
@@ -123,30 +111,12 @@ def test_without_a_name_the_page_stands_beside_the_first_file_and_the_command_sa
     assert view(one, "--output", other).stdout.startswith(f"{other} (") and other.exists()
 
 
-def test_the_page_names_the_licence_of_three_js(recorded_file):
-    text = recorded_file.read_text()
-    assert "three.js authors" in text
-    assert "Permission is hereby granted" in text
-
-
-def test_more_labels_than_bodies_are_refused_with_one_sentence(one):
-    done = view(one, "--labels", "a", "b", "c")
-    assert done.returncode == 1
-    assert done.stderr == "view: --labels names 3 bodies, but the files hold 1 body.\n"
-    assert view(one, "--labels", "a").returncode == 0
-
-
-def data_of(path) -> dict:
-    """What a page carries."""
-    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', path.read_text())[1])
-
-
-def test_wheels_of_one_file_open_together_and_those_of_several_side_by_side(scenes, one, tmp_path):
-    rows = columns_of(scenes["free"])
-    both = {f"{name}.{column}": rows[column] for name in ("fl", "wheel_rr") for column in POSE}
-    path = write_csv(tmp_path / "axle.csv", {"time": rows["time"]} | both)
+def test_wheels_of_one_file_open_together_and_those_of_several_side_by_side(browser, one, tmp_path):
+    both = {f"{name}.{column}": UPRIGHT[column] for name in ("fl", "wheel_rr") for column in POSE}
+    path = write_csv(tmp_path / "axle.csv", {"time": T} | both)
     assert view(path).returncode == view(path, one, "--output", tmp_path / "two.html").returncode == 0
-    first, *_ = data_of(tmp_path / "axle.html")["choices"]
-    assert (first["label"], first["views"]) == ("Together", [["fl", "wheel_rr"]])
-    assert data_of(tmp_path / "two.html")["choices"][0]["label"] == "Side by side"
-    assert [wheel["label"] for wheel in data_of(tmp_path / "axle.html")["wheels"]] == ["front left", "rear right"]
+    with opened(browser, tmp_path / "axle.html") as page:
+        assert page.evaluate("page.choices[page.choice]") == {"label": "Together", "views": [["fl", "wheel_rr"]]}
+        assert page.locator(".label b").all_inner_texts() == ["front left", "rear right"]
+    with opened(browser, tmp_path / "two.html") as page:
+        assert page.locator("#choice [aria-checked=true]").inner_text() == "Side by side"

@@ -8,10 +8,16 @@ import numpy as np
 import pytest
 from support.bounds import beyond, within
 
-from page.tests.pages import column
+from page.tests.pages import column, do
 
 STEPS = 8
 UPRIGHT = np.pi / 2
+OPEN = """(k) => {
+  const {story} = page.live.panel;
+  story.enter(k);
+  story.move(0);
+  page.player.pause();
+}"""
 
 
 @pytest.fixture
@@ -19,11 +25,7 @@ def story(live):
     """story(k): the page at step k; returns what its card says."""
 
     def at(k: int) -> str:
-        live.evaluate(
-            "(k) => { page.live.panel.story.step = k; page.live.panel.story.open = true;"
-            "page.live.panel.story.move(0); page.player.pause(); }",
-            k - 1,
-        )
+        live.evaluate(OPEN, k)
         assert live.locator("#story .count").inner_text() == f"{k} of {STEPS}"
         return live.locator("#story .text").inner_text()
 
@@ -34,16 +36,20 @@ def numbers(text: str) -> list[float]:
     return [float(number) for number in re.findall(r"\d+(?:\.\d+)?", text)]
 
 
+def lean(page, wheel: int = 0) -> np.ndarray:
+    """From upright, deg."""
+    return np.degrees(abs(column(page, "theta", wheel) - UPRIGHT))
+
+
 def test_the_wheel_rolls_straight_on_and_keeps_its_speed(live, story):
     spin, radius, speed = numbers(story(1).split("straight on")[1])
-    path = np.hypot(*(np.diff(column(live, name)[[0, -1]])[0] for name in ("X_O", "Y_O")))
+    path = np.hypot(*(column(live, name)[-1] - column(live, name)[0] for name in ("X_O", "Y_O")))
     assert path == pytest.approx(10 * speed) == pytest.approx(10 * spin * radius)
 
 
 def test_a_leaning_wheel_turns_and_does_not_fall(live, story):
     start, most = numbers(story(2))[:2]
-    lean = np.degrees(abs(column(live, "theta") - UPRIGHT))
-    assert lean[0] == pytest.approx(start) and lean.max() == pytest.approx(most, abs=0.05) and most < 30
+    assert lean(live)[0] == pytest.approx(start) and lean(live).max() == pytest.approx(most, abs=0.05) and most < 30
     assert abs(column(live, "psi")[-1] - column(live, "psi")[0]) > np.pi  # it runs in a circle
     live.evaluate("page.live.setStart('phi_dot_start', 0); page.live.compute()")
     assert "flat" in live.evaluate("page.wheels[0].ended")
@@ -51,18 +57,17 @@ def test_a_leaning_wheel_turns_and_does_not_fall(live, story):
 
 def test_the_critical_spin_parts_two_wheels(live, story):
     limit, high, low = numbers(story(3))
-    kept = np.array(live.evaluate("[...page.wheels[1].table.columns.theta]"))
-    assert np.degrees(abs(kept - UPRIGHT)).max() == pytest.approx(high, abs=0.05) and high < 10
-    assert np.degrees(abs(column(live, "theta") - UPRIGHT)).max() == pytest.approx(low, abs=0.05) and low > 20
+    assert lean(live, 1).max() == pytest.approx(high, abs=0.05) and high < 10
+    assert lean(live).max() == pytest.approx(low, abs=0.05) and low > 20
     assert column(live, "phi_dot")[0] == pytest.approx(-0.9 * limit, rel=1e-2)
-    assert live.evaluate("page.shown.map(({ label }) => label)") == ["10 % slower", "10 % faster"]
+    assert live.locator("#choice button").all_inner_texts()[2:] == ["10 % slower", "10 % faster"]
 
 
 def test_without_friction_the_phase_portrait_is_one_closed_curve(live, story):
+    theta, rate = column(live, "theta"), column(live, "theta_dot")
     assert numbers(story(4))[1] == pytest.approx(np.degrees(column(live, "theta").min()), abs=0.05)
     theta, rate = column(live, "theta"), column(live, "theta_dot")
-    start = np.array([theta[0], rate[0]])
-    away = np.hypot(theta - start[0], (rate - start[1]) / 5)
+    away = np.hypot(theta - theta[0], (rate - rate[0]) / 5)
     returns = [k for k in range(50, 1000) if away[k] == away[k - 20 : k + 21].min()]
     assert len(returns) >= 6 and away[returns].max() < 0.03  # rad; a row is 0.01 s
     assert away.max() > 0.4
@@ -72,20 +77,18 @@ def test_friction_stops_the_spin_and_holds_it(live, story):
     first, _, count = numbers(story(5).split("At ")[1])
     assert first == pytest.approx(1.2255, abs=5e-3)  # s, the trusted table
     assert count == 37 == live.evaluate("page.wheels[0].phases.transitions.length")
-    live.evaluate("page.player.seek(0); page.live.setNow('s', 0.01); page.live.compute()")
+    do(live, 0, s=0.01)
     assert live.evaluate("page.wheels[0].phases.sticks[0]?.[0] ?? 99") > first
 
 
 def test_a_held_wheel_nods_and_turns_and_loses_no_energy(live, story):
     _, turned = numbers(story(6).split("orange band")[1])[:2]
     begin, end = live.evaluate("page.wheels[0].phases.sticks[0]")
-    t = column(live, "time")
+    t, energy = column(live, "time"), column(live, "E")
     held = (t >= begin) & (t <= end)
     assert (column(live, "omega_z")[held] == 0).all()
-    assert (
-        np.ptp(column(live, "theta")[held]) > 0.01 and np.degrees(np.ptp(column(live, "psi")[held])) > 0.5 * turned > 1
-    )
-    energy = column(live, "E")
+    assert np.ptp(column(live, "theta")[held]) > 0.01
+    assert np.degrees(np.ptp(column(live, "psi")[held])) > 0.5 * turned > 1
     assert np.ptp(energy[held]) < 1e-6 * energy[0] < 0.1 < np.ptp(energy)
 
 
@@ -103,23 +106,25 @@ def test_a_motor_adds_energy_and_the_brake_takes_it(live, story):
 def test_without_spin_it_lies_flat_and_the_run_ends(live, story):
     assert numbers(story(8))[0] == pytest.approx(column(live, "time")[-1], abs=5e-3)
     assert column(live, "theta")[-1] < 1e-6
-    live.evaluate("page.player.seek(10); page.labels.tell(page.shown, 10)")
-    assert live.locator(".label").first.get_attribute("data-state") == "ended"
+    live.evaluate("page.player.seek(10); page.draw()")
+    assert live.locator(".label").get_attribute("data-state") == "ended"
+    told = live.locator(".label span").inner_text()
+    assert "flat" in told and "0.592" in told
+    assert max(len(number) for number in re.findall(r"[\d.]+", told)) <= 8
+    assert live.evaluate("page.wheels[0].phases.sticks") == []  # no friction holds it, omega_z is zero by itself
 
 
 def test_keys_and_buttons_lead_on_and_back(live, story):
+    count, back, on = (live.locator(f"#story {place}") for place in (".count", "[name=back]", "[name=next]"))
     story(1)
     live.evaluate("document.activeElement.blur()")
-    live.keyboard.press("n")
-    assert live.locator("#story .count").inner_text() == "2 of 8"
-    live.keyboard.press("b")
-    live.keyboard.press("b")
-    assert live.locator("#story .count").inner_text() == "1 of 8"
-    assert live.locator("#story [name=back]").is_disabled()
-    live.locator("#story [name=next]").click()
-    live.evaluate("(n) => { for (; n > 0; --n) document.querySelector('#story [name=next]').click(); }", STEPS - 2)
-    assert live.locator("#story .count").inner_text() == "8 of 8"
-    assert live.locator("#story [name=next]").is_disabled()
+    for key, step in (("n", 2), ("b", 1), ("b", 1)):
+        live.keyboard.press(key)
+        assert count.inner_text() == f"{step} of {STEPS}"
+    assert back.is_disabled()
+    on.evaluate("(button, n) => { for (; n > 0; --n) button.click(); }", STEPS - 1)
+    assert count.inner_text() == f"{STEPS} of {STEPS}"
+    assert on.is_disabled()
     live.evaluate("page.player.pause()")
 
 
@@ -135,19 +140,16 @@ def test_beside_another_motion_the_text_is_faint_and_leads_back(live, story):
     assert live.evaluate(faint)[0] is False and live.evaluate("page.live.value('slope')") == 0
 
 
-TURNS = """([times, points]) => {
-  const angle = ([a, b, c]) => {
-    const [x, y, u, v] = [b[0] - a[0], b[1] - a[1], c[0] - b[0], c[1] - b[1]];
-    return Math.abs(Math.atan2(x * v - y * u, x * u + y * v));
-  };
-  return Math.max(...points.slice(2).map((_, i) => angle(points.slice(i, i + 3))));
-}"""
+def turn(points: np.ndarray) -> float:
+    """The largest turn of a path from point to point, rad."""
+    heading = np.unwrap(np.arctan2(*np.diff(points, axis=0).T))
+    return abs(np.diff(heading)).max()
 
 
 def test_a_path_that_turns_fast_is_round(live, story):
     story(8)
     live.evaluate("page.live.setStart('phi_dot_start', -0.5); page.live.compute()")  # nearly flat it runs round fast
-    trace = live.evaluate("(({times, points}) => [times, points])(page.wheels[0].trace)")
-    rows = [[t, p] for t, p in zip(*trace, strict=True) if abs(t * 100 - round(t * 100)) < 1e-6]
-    within(live.evaluate(TURNS, trace), 0.15, "largest turn from point to point, rad")
-    beyond(live.evaluate(TURNS, [list(column) for column in zip(*rows, strict=True)]), 0.15, "the same of the rows")
+    times, points = map(np.array, live.evaluate("(({times, points}) => [times, points])(page.wheels[0].trace)"))
+    rows = abs(times * 100 - np.round(times * 100)) < 1e-6
+    within(turn(points), 0.15, "largest turn from point to point, rad")
+    beyond(turn(points[rows]), 0.15, "the same of the rows")

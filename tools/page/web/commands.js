@@ -1,17 +1,12 @@
 // The commands that make the same run outside of the page: fmpy's command line, Python with FMPy, and C.
+import {STEP} from '#fmu';
 
 const instant = (t) => Number(t.toFixed(4));  // s, a communication point in plain digits
 
-/** Start values that differ from the description's: [[name, value], ...]. */
-function starts({values}, variables) {
-  return Object.entries(values).filter(([name, value]) => value !== variables[name].start);
-}
-
 /** fmpy: changes as an input file, each jump as two rows at one instant. */
-function byFmpy({plan, step}, variables) {
-  const {changes, stop} = plan;
+function byFmpy({values, changes, stop}, given, variables) {
   const names = [...new Set(changes.map(({name}) => name))];
-  const now = Object.fromEntries(names.map((name) => [name, plan.values[name] ?? variables[name].start ?? 0]));
+  const now = Object.fromEntries(names.map((name) => [name, values[name] ?? variables[name].start ?? 0]));
   const row = (t) => [instant(t), ...names.map((name) => now[name])].join(',');
   const rows = [['time', ...names].join(','), row(0)];
   for (const {t, name, value} of changes) {
@@ -19,30 +14,29 @@ function byFmpy({plan, step}, variables) {
     now[name] = value;
     rows.push(row(t));
   }
-  const input = changes.length ? [`printf '${[...rows, row(stop)].join('\\n')}\\n' >inputs.csv`] : [];
-  const given = starts(plan, variables).flatMap(([name, value]) => [name, value]);
+  const input = `printf '${[...rows, row(stop)].join('\\n')}\\n' >inputs.csv`;
   const options = [
-    'fmpy simulate wheel.fmu', `--stop-time ${stop}`, `--output-interval ${step}`,
-    ...(given.length ? [`--start-values ${given.join(' ')}`] : []),
+    'fmpy simulate wheel.fmu', `--stop-time ${stop}`, `--output-interval ${STEP}`,
+    ...(given.length ? [`--start-values ${given.flat().join(' ')}`] : []),
     ...(changes.length ? ['--input-file inputs.csv'] : []), '--output-file motion.csv'
   ];
-  return [...input, options.join(' \\\n  ')].join('\n');
+  return [...(changes.length ? [input] : []), options.join(' \\\n  ')].join('\n');
 }
 
-function byPython({plan, step}, variables) {
-  const values = starts(plan, variables).map(([name, value]) => `"${name}": ${value}`);
-  const changes = plan.changes.map(({t, name, value}) => `(${instant(t)}, "${name}", ${value})`);
-  const end = `stop_time=${plan.stop}, output_interval=${step}, start_values={${values.join(', ')}}`;
+function byPython({changes, stop}, given) {
+  const values = given.map(([name, value]) => `"${name}": ${value}`);
+  const list = changes.map(({t, name, value}) => `(${instant(t)}, "${name}", ${value})`);
+  const end = `stop_time=${stop}, output_interval=${STEP}, start_values={${values.join(', ')}}`;
   if (!changes.length)
     return `from fmpy import simulate_fmu\n\nmotion = simulate_fmu("wheel.fmu", ${end})\nprint(motion["theta"][-1])`;
   return `from fmpy import read_model_description, simulate_fmu
 
-changes = [${changes.join(', ')}]  # s, variable, value
+changes = [${list.join(', ')}]  # s, variable, value
 reference = {v.name: v.valueReference for v in read_model_description("wheel.fmu").modelVariables}
 
 
 def change(time, recorder):
-    while changes and changes[0][0] <= time + ${step / 2}:
+    while changes and changes[0][0] <= time + ${STEP / 2}:
         _, name, value = changes.pop(0)
         recorder.fmu.setReal([reference[name]], [value])
     return True
@@ -52,7 +46,17 @@ motion = simulate_fmu("wheel.fmu", ${end}, step_finished=change)
 print(motion["theta"][-1])`;
 }
 
-const DECLARATIONS = `typedef void (*logger)(void*, const char*, int, const char*, const char*, ...);
+function byC({changes, stop}, given, variables, guid) {
+  const reference = (name) => variables[name].reference;
+  const start = given.map(([name, value]) => [0, reference(name), value]);
+  const later = changes.map(({t, name, value}) => [Math.round(t / STEP), reference(name), value]);
+  const shown = ['theta', 'omega_z', 'X_O', 'Y_O'];
+  const rows = [...start, ...later, [-1, 0, 0]].map((row) => `{${row.join(', ')}}`).join(', ');
+  return `// unzip wheel.fmu 'binaries/*' && cc run.c ./binaries/linux64/wheel.so -o run && ./run
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef void (*logger)(void*, const char*, int, const char*, const char*, ...);
 typedef struct {
   logger log;
   void* (*allocate)(size_t, size_t);
@@ -63,20 +67,7 @@ void* fmi2Instantiate(const char*, int, const char*, const char*, const callback
 int fmi2SetupExperiment(void*, int, double, double, int, double), fmi2EnterInitializationMode(void*);
 int fmi2ExitInitializationMode(void*), fmi2DoStep(void*, double, double, int), fmi2Terminate(void*);
 int fmi2SetReal(void*, const unsigned*, size_t, const double*), fmi2GetReal(void*, const unsigned*, size_t, double*);
-void fmi2FreeInstance(void*);`;
-
-function byC({plan, step, guid}, variables) {
-  const reference = (name) => variables[name].reference;
-  const list = (rows) => rows.map((row) => `{${row.join(', ')}}`).join(', ');
-  const given = starts(plan, variables).map(([name, value]) => [0, reference(name), value]);
-  const later = plan.changes.map(({t, name, value}) => [Math.round(t / step), reference(name), value]);
-  const shown = ['theta', 'omega_z', 'X_O', 'Y_O'];
-  const rows = list([...given, ...later, [-1, 0, 0]]);
-  return `// unzip wheel.fmu 'binaries/*' && cc run.c ./binaries/linux64/wheel.so -o run && ./run
-#include <stdio.h>
-#include <stdlib.h>
-
-${DECLARATIONS}
+void fmi2FreeInstance(void*);
 
 static void tell(void* e, const char* name, int status, const char* category, const char* text, ...) {
   fprintf(stderr, "%s\\n", text);
@@ -97,18 +88,23 @@ int main(void) {
   for (; next < ${given.length}; ++next) fmi2SetReal(wheel, &set[next].reference, 1, &set[next].value);
   fmi2SetupExperiment(wheel, 0, 0, 0, 0, 0);
   if (fmi2EnterInitializationMode(wheel) > 1 || fmi2ExitInitializationMode(wheel) > 1) return 1;
-  for (int k = 0; k < ${Math.round(plan.stop / step)} && status < 2; ++k) {
+  for (int k = 0; k < ${Math.round(stop / STEP)} && status < 2; ++k) {
     for (; set[next].step == k; ++next) fmi2SetReal(wheel, &set[next].reference, 1, &set[next].value);
-    status = fmi2DoStep(wheel, k * ${step}, ${step}, 1);
+    status = fmi2DoStep(wheel, k * ${STEP}, ${STEP}, 1);
     fmi2GetReal(wheel, shown, ${shown.length}, value);
-    printf("%.2f %.17g %.17g %.17g %.17g\\n", (k + 1) * ${step}, value[0], value[1], value[2], value[3]);
+    printf("%.2f %.17g %.17g %.17g %.17g\\n", (k + 1) * ${STEP}, value[0], value[1], value[2], value[3]);
   }
   fmi2Terminate(wheel);
   fmi2FreeInstance(wheel);
 }`;
 }
 
-/** {label: text} for run {plan: {values, changes, stop}, step in s, guid}; variables: of the description. */
-export function commands(run, variables) {
-  return {fmpy: byFmpy(run, variables), Python: byPython(run, variables), C: byC(run, variables)};
+/** {label: text} for a plan {values, changes, stop}; variables: of the description. */
+export function commands(plan, {guid, variables}) {
+  const given = Object.entries(plan.values).filter(([name, value]) => value !== variables[name].start);
+  return {
+    fmpy: byFmpy(plan, given, variables),
+    Python: byPython(plan, given),
+    C: byC(plan, given, variables, guid),
+  };
 }

@@ -1,53 +1,43 @@
 // Pictures of what is shown: the scene with its labels above, the diagrams beneath, as one PNG or as a film, whose
-// pictures are drawn at instants of the motion and encoded as WebM.
-import {short} from '#labels';
-import {colour} from '#theme';
+// pictures are drawn at instants of the motion and written into a WebM file with these instants.
+import {$, colour, make} from '#dom';
+import {stateOf} from '#labels';
 
-const CODECS = {
-  V_VP9: 'vp09.00.51.08',
-  V_VP8: 'vp8'
-};
 const RATE = 30;         // pictures per second of the film
 const BITS = 8_000_000;  // per second
 const KEY = 60;          // pictures from one that stands alone to the next
 const GAP = 10;          // CSS pixels
 
-/** A text such as "ω_z rad/s" with its subscript; returns its width. */
+/** A text such as "ω_z rad/s" with its subscript. */
 function write(pen, text, x, y, size) {
-  let at = x;
-  for (const [i, part] of text.split('_').entries()) {
-    const [low, rest] = i === 0 ? ['', part] : [part[0], part.slice(1)];
-    pen.font = `${0.72 * size}px system-ui, sans-serif`;
-    if (low) pen.fillText(low, at, y + 0.22 * size);
-    at += low ? pen.measureText(low).width : 0;
-    pen.font = `${size}px system-ui, sans-serif`;
-    pen.fillText(rest, at, y);
-    at += pen.measureText(rest).width;
-  }
-  return at - x;
+  text.split(/_(.)/).forEach((part, i) => {
+    const low = i % 2 === 1;
+    pen.font = `${low ? 0.72 * size : size}px system-ui, sans-serif`;
+    pen.fillText(part, x, low ? y + 0.22 * size : y);
+    x += pen.measureText(part).width;
+  });
 }
 
-function drawLabels(pen, page) {
-  pen.textBaseline = 'middle';
-  page.stage.rectangles(page.views.length).forEach(({x, y}, v) => {
-    page.shown.filter((wheel) => page.views[v].includes(wheel)).forEach((wheel, i) => {
+function drawLabels(pen, {stage, views, wheels, player}) {
+  stage.rectangles(views.length).forEach(({x, y}, v) => {
+    wheels.filter((wheel) => views[v].includes(wheel)).forEach((wheel, i) => {
       const line = y + 24 + 26 * i;
       pen.fillStyle = wheel.colour;
       pen.beginPath();
       pen.arc(x + 22, line, 6, 0, 7);
       pen.fill();
       pen.fillStyle = colour('--ink');
-      const state = {sticks: 'held: ω_z = 0', ended: short(wheel.ended ?? '')}[wheel.tag.dataset.state];
-      write(pen, [wheel.label, state].filter(Boolean).join(' – '), x + 36, line, 15);
+      write(pen, [wheel.label, stateOf(wheel, player.t)[1]].filter(Boolean).join(' – '), x + 36, line, 15);
     });
   });
 }
 
 /** One picture of the page at the present instant, on a canvas that is made or used again. */
-export function compose(page, canvas = document.createElement('canvas')) {
-  const ratio = page.stage.renderer.getPixelRatio();
-  const {clientWidth: width, clientHeight: height} = page.stage.canvas;
-  const host = document.querySelector('#plots').getBoundingClientRect();
+export function compose(page, canvas = make('canvas')) {
+  const {stage, plots, player} = page;
+  const ratio = stage.renderer.getPixelRatio();
+  const {clientWidth: width, clientHeight: height} = stage.canvas;
+  const host = $('#plots').getBoundingClientRect();
   const scale = (width - GAP) / host.width;
   const size = [width, height + GAP + scale * host.height + GAP].map((edge) => 2 * Math.round(ratio * edge / 2));
   if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
@@ -55,128 +45,96 @@ export function compose(page, canvas = document.createElement('canvas')) {
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.fillStyle = colour('--paper');
   pen.fillRect(0, 0, canvas.width, canvas.height);
-  pen.drawImage(page.stage.canvas, 0, 0, width, height);
+  pen.drawImage(stage.canvas, 0, 0, width, height);
+  Object.assign(pen, {textBaseline: 'middle', textAlign: 'left'});
   drawLabels(pen, page);
-  pen.textAlign = 'right';
-  pen.fillText(`t = ${page.player.t.toFixed(2)} s`, width - 16, height - 20);
-  pen.textAlign = 'left';
-  for (const plot of page.plots.all) {
-    if (plot.figure.hidden) continue;
+  const instant = `t = ${player.t.toFixed(2)} s`;
+  write(pen, instant, width - 16 - pen.measureText(instant).width, height - 20, 15);
+  for (const plot of plots.all.filter(({figure}) => !figure.hidden)) {
     const place = plot.canvas.getBoundingClientRect();
     const [x, y] = [scale * (place.left - host.left), height + GAP + scale * (place.top - host.top)];
     pen.drawImage(plot.canvas, x, y, scale * place.width, scale * place.height);
-    pen.fillStyle = colour('--ink');
     write(pen, plot.title, x + 6, y - 10 * scale, 13 * scale);
   }
   return canvas;
 }
 
-/**
- * An element of a WebM file: its id, eight bytes of length, its content: a list of parts, a text, or a whole number.
- */
-function element(id, content) {
-  const digits = id.toString(16);
-  const name = Uint8Array.from(digits.match(/../g), (byte) => parseInt(byte, 16));
-  const number = (value) => {
-    const bytes = new Uint8Array(8);
-    new DataView(bytes.buffer).setBigUint64(0, BigInt(value));
-    return bytes;
-  };
-  const parts = typeof content === 'string' ? [new TextEncoder().encode(content)] :
-      Array.isArray(content)                ? content :
-                                              [number(content)];
-  const body = new Blob(parts);
-  const length = number(body.size);
+/** Eight bytes of a whole number, or of a real one. */
+function bytes(value, real = false) {
+  const view = new DataView(new ArrayBuffer(8));
+  if (real)
+    view.setFloat64(0, value);
+  else
+    view.setBigUint64(0, BigInt(value));
+  return new Uint8Array(view.buffer);
+}
+
+/** An element of a WebM file: id, length in eight bytes, and content: texts, bytes, whole numbers, other elements. */
+function element(id, ...content) {
+  const body = new Blob(content.map((part) => (typeof part === 'number' ? bytes(part) : part)));
+  const length = bytes(body.size);
   length[0] = 1;  // eight bytes
-  return new Blob([name, length, body]);
+  return new Blob([bytes(id).slice(id < 256 ? 7 : id < 65536 ? 6 : id < 2 ** 24 ? 5 : 4), length, body]);
 }
 
 /** A WebM file of pictures [{data, time: ms, key}] in a codec, `duration` ms long. */
-function webm(codec, [width, height], pictures, duration) {
-  const seconds = new Uint8Array(8);
-  new DataView(seconds.buffer).setFloat64(0, duration);
+function webm(codec, {width, height}, pictures, duration) {
   const clusters = [];
   for (const {data, time, key} of pictures) {
     if (key) clusters.push({time, blocks: []});
-    const cluster = clusters.at(-1);
-    const head = new DataView(new ArrayBuffer(4));
-    head.setUint8(0, 0x81);  // track 1
-    head.setInt16(1, time - cluster.time);
-    head.setUint8(3, key ? 0x80 : 0);
-    cluster.blocks.push(element(0xa3, [head, data]));
+    const {time: begin, blocks} = clusters.at(-1);
+    const head =
+        Uint8Array.of(0x81, (time - begin) >> 8, time - begin, key ? 0x80 : 0);  // track 1, time, whether a key
+    blocks.push(element(0xa3, head, data));
   }
-  const info =
-      [element(0x2ad7b1, 1_000_000), element(0x4489, [seconds]), element(0x4d80, 'wheel'), element(0x5741, 'wheel')];
-  const video = element(0xe0, [element(0xb0, width), element(0xba, height)]);
+  const header = element(0x1a45dfa3, element(0x4282, 'webm'), element(0x4287, 4), element(0x4285, 2));
+  const names = [element(0x4d80, 'wheel'), element(0x5741, 'wheel')];
+  const info = element(0x1549a966, element(0x2ad7b1, 1_000_000), element(0x4489, bytes(duration, true)), ...names);
+  const video = element(0xe0, element(0xb0, width), element(0xba, height));
   const track = [element(0xd7, 1), element(0x73c5, 1), element(0x83, 1), element(0x86, codec), video];
-  return new Blob(
-      [
-        element(0x1a45dfa3, [element(0x4282, 'webm'), element(0x4287, 4), element(0x4285, 2)]),
-        element(
-            0x18538067,
-            [
-              element(0x1549a966, info),
-              element(0x1654ae6b, [element(0xae, track)]),
-              ...clusters.map(({time, blocks}) => element(0x1f43b675, [element(0xe7, time), ...blocks])),
-            ]),
-      ],
-      {type: 'video/webm'});
+  const parts = clusters.map(({time, blocks}) => element(0x1f43b675, element(0xe7, time), ...blocks));
+  const segment = element(0x18538067, info, element(0x1654ae6b, element(0xae, ...track)), ...parts);
+  return new Blob([header, segment], {type: 'video/webm'});
 }
 
-/**
- * {add(draw, k), end(count)}: draws the k-th picture and encodes it at its instant, where the browser has WebCodecs.
- */
-async function encoder(canvas) {
+/** A canvas encoded by WebCodecs: {codec, add(k), end(), pictures}; null where the browser cannot. */
+async function streamOf(canvas) {
   const {width, height} = canvas;
-  const settings = {width, height, bitrate: BITS, framerate: RATE};
+  const settings = {codec: 'vp09.00.51.08', width, height, bitrate: BITS, framerate: RATE};
+  if (!(await window.VideoEncoder?.isConfigSupported(settings))?.supported) return null;
   const pictures = [];
   const output = (chunk) => {
     const data = new Uint8Array(chunk.byteLength);
     chunk.copyTo(data);
     pictures.push({data, time: Math.round(chunk.timestamp / 1000), key: chunk.type === 'key'});
   };
-  for (const [name, codec] of Object.entries(window.VideoEncoder ? CODECS : {})) {
-    if (!(await VideoEncoder.isConfigSupported({...settings, codec})).supported) continue;
-    const inner = new VideoEncoder({output, error: console.error});
-    inner.configure({...settings, codec});
-    const add = (draw, k) => {
-      draw();
-      const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / RATE)});
-      inner.encode(picture, {keyFrame: k % KEY === 0});
-      picture.close();
-    };
-    return {add, end: (count) => inner.flush().then(() => webm(name, [width, height], pictures, 1000 * count / RATE))};
-  }
-  return null;
+  const encoder = new VideoEncoder({output, error: console.error});
+  encoder.configure(settings);
+  const add = (k) => {
+    const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / RATE)});
+    encoder.encode(picture, {keyFrame: k % KEY === 0});
+    picture.close();
+  };
+  return {codec: 'V_VP9', add, end: () => encoder.flush(), pictures};
 }
 
-/** The same by MediaRecorder, whose clock runs only while a picture is drawn and shown to it. */
-function recorder(canvas) {
-  const inner = new MediaRecorder(canvas.captureStream(RATE), {mimeType: 'video/webm', videoBitsPerSecond: BITS});
-  const parts = [];
-  inner.addEventListener('dataavailable', ({data}) => parts.push(data));
-  inner.start();
-  inner.pause();
-  const pen = canvas.getContext('2d');
-  const add = async (draw) => {
-    draw();
-    inner.resume();
-    const begin = performance.now();
-    pen.resetTransform();
-    pen.drawImage(canvas, 0, 0);  // the browser takes what was drawn since its last picture of the page
-    await new Promise(requestAnimationFrame);
-    await new Promise((done) => setTimeout(done, 1000 / RATE - (performance.now() - begin)));
-    inner.pause();
+/** The same as single pictures: a WebP file holds a key frame of VP8. */
+function stillsOf(canvas) {
+  const pictures = [];
+  const add = async (k) => {
+    const blob = await new Promise((done) => canvas.toBlob(done, 'image/webp', 0.9));
+    const file = new DataView(await blob.arrayBuffer());
+    let at = 12;  // chunks: a name, a length, an even number of bytes
+    const length = () => file.getUint32(at + 4, true);
+    while (file.getUint32(at) !== 0x56503820) at += 8 + length() + (length() % 2);  // 'VP8 '
+    pictures.push({data: blob.slice(at + 8, at + 8 + length()), time: Math.round(1000 * k / RATE), key: true});
   };
-  const end = () => new Promise((done) => {
-    inner.addEventListener('stop', () => done(new Blob(parts, {type: 'video/webm'})));
-    inner.stop();
-  });
-  return {add, end};
+  return {codec: 'V_VP8', add, end: () => {}, pictures};
 }
 
 /** Whether this browser makes films. */
-export const films = () => Boolean(window.VideoEncoder) || Boolean(window.MediaRecorder?.isTypeSupported('video/webm'));
+export const films = () =>
+    Boolean(window.VideoEncoder) || make('canvas').toDataURL('image/webp').startsWith('data:image/webp');
 
 /**
  * A film of the motion from its start to its end at the speed of the clock, as a Blob, however long a picture takes to
@@ -185,19 +143,23 @@ export const films = () => Boolean(window.VideoEncoder) || Boolean(window.MediaR
 export async function film(page, going) {
   const {player} = page;
   const {start, end, speed, t} = player;
+  const canvas = make('canvas');
+  const show = (instant) => {
+    player.seek(instant);
+    page.draw();
+    compose(page, canvas);
+  };
   player.pause();
-  player.seek(start);
-  page.draw();
-  const canvas = compose(page);
-  const writer = await encoder(canvas) ?? recorder(canvas);
+  show(start);
+  const {codec, add, end: finish, pictures} = await streamOf(canvas) ?? stillsOf(canvas);
   const count = Math.floor((end - start) / speed * RATE) + 1;
   let k = 0;
   for (; k < count && going(); ++k) {
-    player.seek(start + k * speed / RATE);
-    page.draw();
-    await writer.add(() => compose(page, canvas), k);
+    show(start + k * speed / RATE);
+    await add(k);
     await new Promise((next) => setTimeout(next));  // the page stays alive
   }
   player.seek(t);
-  return writer.end(k);
+  await finish();
+  return webm(codec, canvas, pictures, 1000 * k / RATE);
 }

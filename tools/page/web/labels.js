@@ -1,5 +1,6 @@
 // The wheels' names over their views, with what each does at the present: rolls, is held, or why its motion has ended.
-import {sticksAt} from '#phases';
+import {make, subscripted} from '#dom';
+import {extent} from '#table';
 
 const FLAT = 1e-4;    // rad from lying flat
 const LIFTED = 1e-3;  // of the largest normal force
@@ -15,44 +16,35 @@ export function endingOf(table, latest) {
   const when = `${short(String(table.end.toFixed(4)))} s`;
   if (Math.min(last('theta'), Math.PI - last('theta')) < FLAT) return `fell flat at ${when}`;
   const N = table.columns.lambda_3;
-  if (N && N.at(-1) < LIFTED * N.reduce((most, value) => Math.max(most, value), 0)) return `lifted off at ${when}`;
+  if (N && N.at(-1) < LIFTED * extent(N)[1]) return `lifted off at ${when}`;
   return table.end < latest - 1e-9 ? `its record ends at ${when}` : null;
 }
 
-export class Labels {
-  constructor(host) { this.host = host; }
-
-  /** rectangles: {x, y, w, h} of each view in CSS pixels; wheels: those of each view. */
-  layOut(rectangles, wheels) {
-    this.host.replaceChildren();
-    rectangles.forEach(({x, y, w, h}, v) => {
-      const edge = document.createElement('div');
-      edge.className = 'edge';
-      Object.assign(edge.style, {left: `${x}px`, top: `${y}px`, width: `${w}px`, height: `${h}px`});
-      const names = document.createElement('div');
-      names.className = 'names';
-      edge.append(names);
-      for (const wheel of wheels[v]) {
-        wheel.tag = document.createElement('div');
-        wheel.tag.className = 'label card';
-        wheel.tag.innerHTML = `<i style="background:${wheel.colour}"></i><b></b><span></span>`;
-        wheel.tag.querySelector('b').textContent = wheel.label;
-        names.append(wheel.tag);
-      }
-      this.host.append(edge);
-    });
-  }
-
-  /** What each wheel does at t, in a few words. */
-  tell(wheels, t) {
-    for (const {tag, ended, table, phases} of wheels) {
-      const over = ended && t >= table.end;
-      const sticks = sticksAt(phases, t);
-      const state = over ? 'ended' : sticks ? 'sticks' : 'rolls';
-      if (tag.dataset.state === state && !over) continue;
-      tag.dataset.state = state;
-      tag.lastChild.innerHTML = sticks && !over ? 'held: ω<sub>z</sub> = 0' : '';
-      if (over) tag.lastChild.textContent = short(ended);
+/** host: lies over the scene. rectangles: {x, y, w, h} of each view in CSS pixels; wheels: those of each view. */
+export function layOutLabels(host, rectangles, wheels) {
+  host.replaceChildren(...rectangles.map(({x, y, w, h}, v) => {
+    const names = make('div', {className: 'names'});
+    for (const wheel of wheels[v]) {
+      const dot = make('i', {style: `background:${wheel.colour}`});
+      wheel.tag = make('div', {className: 'label card'}, dot, make('b', {}, wheel.label), make('span'));
+      names.append(wheel.tag);
     }
+    return make('div', {className: 'edge', style: `left:${x}px;top:${y}px;width:${w}px;height:${h}px`}, names);
+  }));
+}
+
+/** What a wheel does at t: [state, in a few words]. */
+export function stateOf({ended, table, phases}, t) {
+  if (ended && t >= table.end) return ['ended', short(ended)];
+  return phases.sticks.some(([begin, end]) => begin <= t && t < end) ? ['sticks', 'held: ω_z = 0'] : ['rolls', ''];
+}
+
+/** Writes beside each wheel's name what it does at t. */
+export function showStates(wheels, t) {
+  for (const wheel of wheels) {
+    const [state, text] = stateOf(wheel, t);
+    if (wheel.tag.title === text && wheel.tag.dataset.state) continue;
+    Object.assign(wheel.tag, {title: text}).dataset.state = state;
+    wheel.tag.lastChild.replaceChildren(...(state === 'sticks' ? subscripted(text) : [text]));
   }
 }

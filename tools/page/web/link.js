@@ -7,26 +7,23 @@ const PLAYING = 1000;  // the same while the clock runs: browsers refuse more th
 
 export class Link {
   constructor(live) {
-    Object.assign(this, {live, text: null, at: 0});
+    Object.assign(this, {live, text: null, at: 0, states: live.steps.map(({state}) => state)});
     addEventListener('hashchange', () => location.hash.slice(1) !== this.text && this.follow());
   }
 
   /** The step of the story whose motion is shown, 1, 2 ..., or null. */
-  step(state) {
-    const {story, fmu: {variables}} = {...this.live.panel, fmu: this.live.fmu};
-    if (!story.open) return null;
-    const same = (a, b) =>
-        JSON.stringify(a && planParts(a, variables)) === JSON.stringify(b && planParts(b, variables));
-    const {state: there} = this.live.steps[story.step];
-    return same(state.plan, there.plan) && same(state.kept, there.kept) ? story.step + 1 : null;
+  step({plan, kept}) {
+    const {story} = this.live.panel;
+    const there = this.states[story.step];
+    const textOf = (plans) => JSON.stringify(plans.map((one) => one && planParts(one, this.live.fmu.variables)));
+    return story.open && textOf([plan, kept]) === textOf([there.plan, there.kept]) ? story.step + 1 : null;
   }
 
   /** The address of what is shown, without #. */
   write() {
     const state = this.live.state();
     const step = this.step(state);
-    const base = step ? this.live.steps[step - 1].state : EMPTY;
-    return write(state, base, step, this.live.fmu.variables);
+    return write(state, this.states[step - 1] ?? EMPTY, step, this.live.fmu.variables);
   }
 
   /** The whole link. */
@@ -34,19 +31,19 @@ export class Link {
 
   /** Shows what the address says; a wrong one gives the first step of the story and a sentence. */
   follow() {
-    const {live} = this;
+    const {live, states} = this;
     this.text = location.hash.slice(1);
+    const open = (state, step) => {
+      live.panel.story.enter(step);
+      live.apply(state, live.steps[step - 1]?.names);
+    };
     live.refusal = null;
     try {
-      const names = PORTRAITS.map(({name}) => name);
-      const states = live.steps.map(({state}) => state);
-      const {state, step} = this.text ? read(this.text, states, names, live.fmu.variables) : {step: 1};
-      live.panel.story.enter(step);
-      live.apply(state ?? states[0], step ? live.steps[step - 1].names : []);
+      const {state, step} = read(this.text || 'step=1', states, Object.keys(PORTRAITS), live.fmu.variables);
+      open(state, step);
     } catch (fault) {
       live.refusal = `This address cannot be shown: ${fault.message} Here is the first scene instead.`;
-      live.panel.story.enter(1);
-      live.apply(live.steps[0].state);
+      open(states[0], 1);
     }
     live.panel.story.tell();
   }
@@ -57,11 +54,11 @@ export class Link {
     if (this.live.wanted || now - this.at < (this.live.page.player.playing ? PLAYING : REST)) return;
     this.at = now;
     const text = this.write();
-    if (text === this.text) return;
-    if (this.live.refusal && this.text === location.hash.slice(1) && text === 'step=1') return;
-    this.text = text;
+    // An address that has come and is not followed yet stays, and a wrong one until the reader does something.
+    if (text === this.text || this.text !== location.hash.slice(1) || (this.live.refusal && text === 'step=1')) return;
     try {
       history.replaceState(null, '', `#${text}`);
+      this.text = location.hash.slice(1);  // a browser may ignore changes that come too fast
     } catch {  // a page inside another may not change its address; the button still copies the link
     }
   }

@@ -1,27 +1,23 @@
 // The live page: the wheel itself computes the whole motion anew, within some milliseconds, whenever the reader changes
 // its start, or s or M_3 while it rolls. A change while it rolls leaves the past alone and makes a new future.
 import {EMPTY} from '#address';
-import {Fmu} from '#fmu';
-import {NOW} from '#knobs';
+import {Fmu, STEP} from '#fmu';
 import {Link} from '#link';
 import {setUpPanel} from '#panel';
-import {moving} from '#phases';
 import {chapters, scenes} from '#scenes';
 
-export const STEP = 0.01;  // s, between two rows
-const RECORD =
-    ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi', 'X_O_dot', 'Y_O_dot', 'Z_O_dot', 'psi_dot', 'theta_dot', 'phi_dot'];
+const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
 const SIGNALS = ['omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode', 'n_events'];
-
-/** What holds the wheel at omega_z = 0, and what may change while it rolls. */
-const HOLDING = ['s', 'M_brake'];
-const RUNNING = NOW.map(([name]) => name);
-const PAPER_RADIUS = 0.35;  // m, r_0 + r
+const RECORD = [...POSE, ...POSE.map((name) => `${name}_dot`), ...SIGNALS];
+const SHAPE = ['r_0', 'r', 'slope', 'slope_direction'];
+const HOLDING = ['s', 'M_brake'];  // may hold the wheel at omega_z = 0
+const PAPER_RADIUS = 0.35;         // m, r_0 + r
 
 export class LiveWheel {
   constructor(page, fmu) {
-    Object.assign(this, {page, fmu, wanted: false}, structuredClone(EMPTY.plan));
-    this.record = [...RECORD, ...SIGNALS].filter((name) => name in fmu.variables);
+    Object.assign(this, {page, fmu, took: 0}, structuredClone(EMPTY.plan));
+    this.wheel = {name: 'live', label: 'This wheel'};
+    page.bodies.push(this.wheel);
   }
 
   /** What is done to the wheel: start values that are not the default's, changes while it rolls, end in s. */
@@ -30,22 +26,28 @@ export class LiveWheel {
   /** The start value that a run takes. */
   value(name) { return this.values[name] ?? this.fmu.variables[name]?.start ?? 0; }
 
+  /** Every parameter of the run by name. */
+  parameters() {
+    const names = Object.keys(this.fmu.variables).filter((name) => this.fmu.variables[name].causality === 'parameter');
+    return Object.fromEntries(names.map((name) => [name, Number(this.value(name))]));
+  }
+
   /** The value at the present, with the changes so far. */
   present(name) {
-    const now = this.now();
-    const before = this.changes.filter((change) => change.name === name && change.t <= now + STEP / 2);
-    return before.length ? before.at(-1).value : this.value(name);
+    const now = this.now() + STEP / 2;
+    return this.changes.findLast((change) => change.name === name && change.t <= now)?.value ?? this.value(name);
   }
 
   /** The present as a communication point. */
   now() { return Math.round(this.page.player.t / STEP) * STEP; }
 
   /** The sign of the present spin omega_z: negative rolls towards +e1, 0 does not roll. */
-  spin() { return Math.sign(this.page.wheels[0].table.value('omega_z', this.page.player.t)); }
+  spin() { return Math.sign(this.wheel.table.value('omega_z', this.page.player.t)); }
 
   /** Takes a plan; label: what its wheel is called. */
   load(plan, label = 'This wheel') {
-    this.page.wheels[0].label = label;
+    this.wheel.label = label;
+    this.page.offer(this.page.bodies.length);
     this.page.plots.axis = 'fitted';
     Object.assign(this, structuredClone({values: {}, changes: [], ...plan}));
     this.compute();
@@ -53,15 +55,11 @@ export class LiveWheel {
 
   /** Keeps the present motion beside those to come, or lets it go. */
   keep(on, label = 'Kept') {
-    const {page} = this;
-    page.wheels.length = 1;
+    const {page, wheel} = this;
     this.kept = on ? this.plan : null;
-    if (on) page.wheels.push({...page.wheels[0], name: 'kept', label, paint: 1});
-    const [live, kept] = ['live', 'kept'];
-    const both = [{label: 'Side by side', views: [[live], [kept]]}, {label: 'Together', views: [[live, kept]]}];
-    const alone = {label: 'This wheel', views: [[live]]};
+    page.bodies = [wheel, ...(on ? [{...wheel, name: 'kept', label}] : [])];
     page.choice = 0;
-    page.offer(on ? [...both, alone] : [alone]);
+    page.offer(page.bodies.length);
     page.dress();
     this.compare();
   }
@@ -75,16 +73,15 @@ export class LiveWheel {
 
   /** Another wheel: its spin and friction follow those of the paper's in proportion to its size. */
   setWheel(parameters) {
-    const radius = parameters.r_0 + parameters.r;
+    const size = (parameters.r_0 + parameters.r) / PAPER_RADIUS;
     Object.assign(this.values, parameters);
-    this.setStart('phi_dot_start', Number((-2 * Math.sqrt(PAPER_RADIUS / radius)).toPrecision(3)));
-    if (this.value('s')) this.values.s = Number((0.03 * radius / PAPER_RADIUS).toPrecision(3));
+    this.setStart('phi_dot_start', Number((-2 / Math.sqrt(size)).toPrecision(3)));
+    if (this.value('s')) this.values.s = Number((0.03 * size).toPrecision(3));
     this.page.player.seek(0);
   }
 
   /** s or M_3 from now on; what had been planned for later is dropped. */
   setNow(name, value) {
-    if (!RUNNING.includes(name)) throw new Error(`${name} cannot change while the wheel rolls`);
     const t = this.now();
     this.changes = this.changes.filter((change) => change.name !== name || change.t < t - STEP / 2);
     if (t <= 0)
@@ -105,26 +102,17 @@ export class LiveWheel {
   /** The motion of the present plan, on the page. */
   compute() {
     [this.wanted, this.trouble] = [false, null];
-    const {values, changes, stop, record} = this;
+    const {page, wheel, values, changes, stop} = this;
     const begin = performance.now();
-    const wheel = this.page.wheels[0];
-    const {table, ended} = this.fmu.run({values, changes, stop, step: STEP, record});
+    const {table, ended} = this.fmu.run({values, changes, stop, record: RECORD});
     this.took = performance.now() - begin;
-    const shape = ['r_0', 'r', 'slope', 'slope_direction'];
-    const given = Object.fromEntries(shape.map((name) => [name, this.value(name)]));
+    const given = Object.fromEntries(SHAPE.map((name) => [name, this.value(name)]));
     const reshaped = given.r_0 !== wheel.r_0 || given.r !== wheel.r;
+    const set = [...Object.entries(values), ...changes.map(({name, value}) => [name, value])];
+    const friction = set.some(([name, value]) => HOLDING.includes(name) && value > 0);
     Object.assign(wheel, given, {ended, parameters: this.parameters()});
-    const friction = HOLDING.some((name) => this.values[name] > 0) ||
-        changes.some(({name, value}) => HOLDING.includes(name) && value > 0);
-    this.page.exchange(0, table, friction);
-    if (reshaped && wheel.colour) this.page.rebuild();
+    page.exchange(wheel, table, friction, reshaped);
     this.compare();
-  }
-
-  /** Every parameter of the run by name. */
-  parameters() {
-    const kinds = Object.entries(this.fmu.variables).filter(([, {causality}]) => causality === 'parameter');
-    return Object.fromEntries(kinds.map(([name]) => [name, Number(this.value(name))]));
   }
 
   /** Whether the story's text describes what is shown. */
@@ -132,9 +120,15 @@ export class LiveWheel {
 
   /** All that was chosen; `apply` takes it. */
   state() {
-    const {switches, plots, choice, player} = this.page;
-    const diagram = plots.portrait.kind?.name ?? EMPTY.diagram;
-    return {plan: this.plan, kept: this.kept ?? null, show: {...switches.show}, diagram, view: choice, t: player.t};
+    const {switches: {show}, plots: {portrait}, choice, player} = this.page;
+    return {
+      plan: this.plan,
+      kept: this.kept ?? null,
+      show: {...show},
+      diagram: portrait.name,
+      view: choice,
+      t: player.t
+    };
   }
 
   /** names: what the wheel, and the one that is kept, are called. */
@@ -157,12 +151,10 @@ export class LiveWheel {
 
   /** Once a frame: at most one run, however fast a slider moves. */
   frame() {
-    if (this.wanted) {
-      try {
-        this.compute();
-      } catch (fault) {
-        this.trouble = fault.message;  // the wheel's own sentence about a start that cannot be
-      }
+    try {
+      if (this.wanted) this.compute();
+    } catch (fault) {
+      this.trouble = fault.message;  // the wheel's own sentence about a start that cannot be
     }
     this.panel.show();
     this.link?.frame();
@@ -172,14 +164,8 @@ export class LiveWheel {
 /** Loads the wheel and puts it on the page. source: {wasm, guid, wheels}; variables: of the description. */
 export async function startLive(page, {wasm, guid, wheels}, variables) {
   const fmu = await Fmu.load(wasm, {guid, variables});
-  const parameters =
-      Object.fromEntries(['m', 'g', 'r_0', 'r', 'J_x', 'J_z'].map((name) => [name, fmu.variable(name).start]));
-  const {r_0, r} = parameters;
-  const live = new LiveWheel(page, fmu);
-  const {table} = fmu.run({values: {}, changes: [], stop: live.stop, step: STEP, record: live.record});
-  page.wheels.unshift(
-      {...moving(table, r_0, false), name: 'live', label: 'This wheel', r_0, r, parameters: live.parameters()});
-  page.live = live;
-  live.steps = chapters(parameters);
-  live.panel = setUpPanel(live, scenes(parameters, live.steps), wheels);
+  const live = page.live = new LiveWheel(page, fmu);
+  live.compute();
+  live.steps = chapters(live.parameters());
+  live.panel = setUpPanel(live, scenes(live.parameters(), live.steps), wheels);
 }

@@ -1,27 +1,19 @@
 // The page: recorded wheels, a car's body, or the wheel itself (live), shown on one stage with one clock.
-import {setUpCards, setUpValues} from '#cards';
-import {ChassisModel} from '#chassis';
-import {drawBands, Player, setUpSwitches, setUpTransport} from '#clock';
+import {ChassisModel, WheelModel} from '#bodies';
+import {Player, setUpKeys, setUpSwitches, setUpTransport, showBands} from '#clock';
 import {Plots} from '#diagrams';
-import {endingOf, Labels} from '#labels';
+import {$, makeChoice, wheelColour} from '#dom';
+import {setUpValues, watchTheme} from '#header';
+import {endingOf, layOutLabels, showStates} from '#labels';
 import {startLive} from '#live';
-import {moving} from '#phases';
+import {phasesOf} from '#phases';
 import {Stage} from '#stage';
-import {Table} from '#table';
+import {Table, traceOf} from '#table';
 import {setUpTaking} from '#take';
-import {colour, watchTheme, wheelColour} from '#theme';
-import {WheelModel} from '#wheel';
 import {THREE} from 'three';
 
-const $ = (selector) => document.querySelector(selector);
 const data = JSON.parse($('#data').textContent);
 const CALM = matchMedia('(prefers-reduced-motion: reduce)').matches;
-
-/** A recorded body: {name, label, r_0, r | size, columns} -> with table, and a wheel with phases and trace. */
-function decode(body) {
-  const table = Table.decode(body.columns);
-  return {...body, ...('r_0' in body ? moving(table, body.r_0) : {table})};
-}
 
 /** The vertical in the road's axes of a body with a slope {slope, slope_direction} in rad, or of none. */
 function verticalOf({slope = 0, slope_direction: uphill = 0} = {}) {
@@ -29,144 +21,146 @@ function verticalOf({slope = 0, slope_direction: uphill = 0} = {}) {
   return new THREE.Vector3(along * Math.cos(uphill), along * Math.sin(uphill), Math.cos(slope));
 }
 
+/**
+ * What one can look at, [{label, views: lists of names}]: all together, wheels of several sources rather side by side,
+ * and each wheel alone.
+ */
+function choicesOf(bodies, wheels, sources) {
+  const names = bodies.map(({name}) => name);
+  const alone = wheels.map(({name, label}) => ({label, views: [[name]]}));
+  if (names.length === 1) return [{label: bodies[0].label, views: [names]}];
+  const together = {label: 'Together', views: [names]};
+  if (wheels.length < names.length || names.length > 3) return [together, ...(wheels.length <= 8 ? alone : [])];
+  const beside = {label: 'Side by side', views: names.map((name) => [name])};
+  return [...(sources === 1 ? [together, beside] : [beside, together]), ...alone];
+}
+
 class Page {
   constructor() {
-    this.wheels = data.wheels.map(decode);
-    this.bodies = data.bodies.map(decode);
     this.player = new Player();
-    this.stage = new Stage($('#stage'), this.size());
-    this.plots = new Plots($('#plots'), this.player);
-    this.labels = new Labels($('#labels'));
     this.choice = 0;
-    this.last = 0;
-    const ends = this.wheels.map(({table}) => table.end);
-    for (const wheel of this.wheels) wheel.ended = endingOf(wheel.table, Math.max(...ends));
+    this.plots = new Plots($('#plots'), this.player);
+    this.bodies = data.bodies.map((body) => ({...body, table: Table.decode(body.columns)}));
+    const latest = Math.max(...this.bodies.map(({table}) => table.end));
+    for (const wheel of this.wheels) {
+      this.exchange(wheel, wheel.table);
+      wheel.ended = endingOf(wheel.table, latest);
+    }
   }
 
+  /** The bodies that are no box. */
+  get wheels() { return this.bodies.filter(({size}) => !size); }
+
+  /** The wheels that are shown. */
+  get shown() { return this.wheels.filter((wheel) => this.views.flat().includes(wheel)); }
+
   /** The largest outer radius of the wheels, and how large the thing is that one looks at, in m. */
-  radius() { return this.wheels.reduce((most, {r_0, r}) => Math.max(most, r_0 + r), 0) || 0.35; }
+  get radius() { return Math.max(...this.wheels.map(({r_0, r}) => r_0 + r), 0) || 0.35; }
 
-  size() { return Math.max(2 * this.radius(), ...this.bodies.map(({size: [x, y]}) => 0.9 * Math.hypot(x, y))); }
+  get size() {
+    return Math.max(2 * this.radius, ...this.bodies.map(({size: [x, y] = [0, 0]}) => 0.9 * Math.hypot(x, y)));
+  }
 
-  start() {
-    setUpTransport(this.player);
+  async start() {
+    if (data.live) await startLive(this, data.live, data.variables);
+    this.stage = new Stage($('#stage'), this.size);
     this.switches = setUpSwitches(this);
-    this.show = this.switches.show;
-    this.offer(data.choices);
+    setUpTransport(this.player);
+    setUpKeys(this);
     setUpTaking(this);
-    setUpCards();
-    $('#values').hidden = this.wheels.every(({parameters}) => !parameters);
+    this.offer(data.sources);
+    $('[popovertarget=values]').hidden = this.wheels.every(({parameters}) => !parameters);
     setUpValues(data.variables, () => this.shown);
     watchTheme($('#theme'), () => this.dress());
-    this.player.addEventListener('time', () => (this.stage.dirty = true));
+    this.player.addEventListener('change', () => (this.stage.dirty = true));
     new ResizeObserver(() => this.layOut()).observe($('#stage'));
     this.live?.begin();
     if (!CALM && this.player.t === this.player.start) this.player.play();
-    requestAnimationFrame((now) => this.frame(now));
+    requestAnimationFrame((now) => this.frame(now, now));
   }
 
-  /** What one can look at: [{label, views: lists of names}]. */
-  offer(choices) {
-    this.choices = choices;
-    const host = $('#choice');
-    host.hidden = choices.length < 2;
-    host.replaceChildren();
-    choices.forEach((choice, i) => {
-      const button = document.createElement('button');
-      Object.assign(button, {type: 'button', textContent: choice.label, title: `Show: ${choice.label} (key ${i + 1})`});
-      button.setAttribute('role', 'radio');
-      button.addEventListener('click', () => this.choose(i));
-      host.append(button);
-    });
+  /** The buttons for what one can look at. sources: how many files or runs the bodies come from. */
+  offer(sources) {
+    this.choices = choicesOf(this.bodies, this.wheels, sources);
+    const options =
+        this.choices.map(({label}, name) => ({name, textContent: label, title: `Show: ${label} (key ${name + 1})`}));
+    $('#choice').hidden = options.length < 2;
+    this.markChoice = makeChoice($('#choice'), options, (i) => this.choose(i));
   }
 
   /** Takes the theme's colours: every body is made anew. */
   dress() {
     this.stage.dress();
-    this.wheels.forEach((wheel, i) => (wheel.colour = wheelColour(wheel.paint ?? i)));
-    this.rebuild();
-  }
-
-  /** Bodies, plots and clock after a change of data or colours. */
-  rebuild() {
-    const look = {force: colour('--force'), stick: colour('--stick'), body: colour('--body'), line: colour('--line')};
-    look.size = this.size();
-    this.stage.zoom(look.size);
-    look.axes = ['--e1', '--e2', '--e3'].map(colour);
-    const wheels = this.wheels.map((wheel) => new WheelModel(wheel, {...look, accent: wheel.colour}));
-    this.stage.put([...wheels, ...this.bodies.map((body) => new ChassisModel(body, look))]);
+    this.stage.zoom(this.size);
+    this.wheels.forEach((wheel, i) => (wheel.colour = wheelColour(i)));
+    this.stage.put(this.bodies.map((body) => (body.size ? new ChassisModel(body) : new WheelModel(body, this.size))));
     this.choose(this.choice);
   }
 
-  /** New motion of one wheel, same colours: path and plots only. */
-  exchange(i, table, friction) {
-    Object.assign(this.wheels[i], moving(table, this.wheels[i].r_0, friction));
-    this.stage.models[i]?.drawPath();
+  /**
+   * Another motion of a wheel. friction: whether there is any, where it is known; reshaped: the wheel itself has
+   * changed too.
+   */
+  exchange(wheel, table, friction, reshaped = false) {
+    Object.assign(wheel, {table, phases: phasesOf(table, friction), trace: traceOf(table, wheel.r_0)});
+    if (!wheel.colour) return;  // nothing is shown yet
+    if (reshaped) return this.dress();
+    this.stage.models.find((model) => model.wheel === wheel).drawPath();
     this.choose(this.choice);
   }
 
-  /** Shows choice i: a list of views, each a list of names. */
+  /** Shows choice i: a list of views, each a list of bodies. */
   choose(i) {
     this.choice = Math.min(i, this.choices.length - 1);
-    [...$('#choice').children].forEach((button, k) => button.setAttribute('aria-checked', k === this.choice));
-    const names = this.choices[this.choice].views;
-    const known = [...this.wheels, ...this.bodies];
-    this.views = names.map((view) => known.filter(({name}) => view.includes(name)));
-    this.shown = this.wheels.filter(({name}) => names.flat().includes(name));
+    this.markChoice(this.choice);
+    this.views = this.choices[this.choice].views.map((view) => this.bodies.filter(({name}) => view.includes(name)));
     const tables = this.views.flat().map(({table}) => table);
     const end = Math.max(...tables.map(({end}) => end));
     const kept = this.plots.axis === 'fitted' ? end : Math.max(end, this.player.end);
-    this.player.span(Math.min(...tables.map(({start}) => start)), kept);
+    this.player.set({start: Math.min(...tables.map(({start}) => start)), end: kept});
     this.plots.show(this.shown);
     this.layOut();
   }
 
   /** One label for each wheel shown, over its view. */
   layOut() {
-    this.stage.resize();
     if (!this.views) return;
-    drawBands(this.shown, this.player);
-    const wheels = this.views.map((view) => view.filter((body) => this.wheels.includes(body)));
-    this.labels.layOut(this.stage.rectangles(this.views.length), wheels);
+    this.stage.resize();
+    showBands(this.shown, this.player);
+    const wheels = this.views.map((view) => view.filter(({size}) => !size));
+    layOutLabels($('#labels'), this.stage.rectangles(this.views.length), wheels);
     this.stage.dirty = true;
   }
 
   /** What a view looks at: between its bodies if it follows, else the middle of their paths; and from how far. */
   aim(view, t) {
-    const {follow} = this.show;
-    const low = new THREE.Vector3(Infinity, Infinity, 0);
-    const high = new THREE.Vector3(-Infinity, -Infinity, 0);
+    const box = new THREE.Box3();
     for (const {table} of view) {
       const [x, y] = table.has('X_O') ? ['X_O', 'Y_O'] : ['X', 'Y'];
-      const rows = follow ? [0] : Array.from({length: 60}, (_, k) => Math.round((k * (table.rows - 1)) / 59));
-      for (const row of rows) {
-        const point = follow ? [table.value(x, t), table.value(y, t)] : [table.columns[x][row], table.columns[y][row]];
-        low.min(new THREE.Vector3(...point, 0));
-        high.max(new THREE.Vector3(...point, 0));
-      }
+      const path = Array.from({length: 60}, (_, k) => table.start + (k * (table.end - table.start)) / 59);
+      for (const instant of this.switches.show.follow ? [t] : path)
+        box.expandByPoint(new THREE.Vector3(table.value(x, instant), table.value(y, instant), 0));
     }
-    const away = Math.max(1, 0.5 + (0.5 * low.distanceTo(high)) / this.size());
     return {
       models: this.stage.models.filter((model) => view.includes(model.wheel)),
-      away,
-      anchor: low.add(high).multiplyScalar(0.5).setZ(0.8 * this.radius()),
-      up: verticalOf(view.find(({slope}) => slope))
+      away: Math.max(1, 0.5 + (0.5 * box.getSize(new THREE.Vector3()).length()) / this.size),
+      anchor: box.getCenter(new THREE.Vector3()).setZ(0.8 * this.radius),
+      up: verticalOf(view.find(({slope}) => slope)),
     };
   }
 
-  frame(now) {
-    this.player.advance((now - this.last) / 1000);
-    this.last = now;
+  frame(now, before) {
+    this.player.advance((now - before) / 1000);
     this.live?.frame();
     this.stage.controls.update();
     if (this.stage.dirty) this.draw();
-    requestAnimationFrame((next) => this.frame(next));
+    requestAnimationFrame((next) => this.frame(next, now));
   }
 
   /** The bodies where they are at the present instant; nothing is drawn. */
   pose() {
-    const {t} = this.player;
-    for (const model of this.stage.models) model.update(Math.min(t, model.wheel.table.end), this.show);
+    for (const model of this.stage.models)
+      model.update(Math.min(this.player.t, model.wheel.table.end), this.switches.show);
   }
 
   /** Everything at the present instant. */
@@ -176,19 +170,16 @@ class Page {
     const views = this.views.map((view) => this.aim(view, t));
     this.stage.render(views, Math.max(...views.map(({away}) => away)));
     this.plots.draw(t);
-    this.labels.tell(this.shown, t);
+    showStates(this.shown, t);
     this.first ??= performance.now();  // ms from the opening of the page to its first picture
   }
 }
 
 try {
-  const page = new Page();
-  window.page = page;  // for the console and the tests
-  if (data.live) await startLive(page, data.live, data.variables);
-  page.start();
+  window.page = new Page();  // for the console and the tests
+  await window.page.start();
 } catch (fault) {
-  const trouble = $('#trouble');
-  trouble.hidden = false;
-  trouble.textContent = `The page could not start: ${fault.message.replace(/\.+$/, '')}.`;
+  $('#trouble').hidden = false;
+  $('#trouble').textContent = `The page could not start: ${fault.message.replace(/\.+$/, '')}.`;
   console.error(fault);
 }

@@ -2,40 +2,35 @@
 // omega_z) and n_events, the wheel's own count of transitions. A transition lies between two rows; its instant is where
 // omega_z, carried on from the rows on a rolling side, is zero.
 
-import {traceOf} from '#table';
-
 /** -1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero. */
 function modeAt(table, row) {
   const source = table.columns.friction_mode ?? table.columns.omega_z;
   return Math.sign(source[row]);
 }
 
-/** Zero within [low, high] of the parabola through three points, or NaN. */
-function zeroOfParabola(t, y, low, high) {
+/** The zeros of the parabola through three points (t, y); NaN where there is none. */
+function zerosOfParabola(t, y) {
   const slope = (y[1] - y[0]) / (t[1] - t[0]);
   const bend = ((y[2] - y[1]) / (t[2] - t[1]) - slope) / (t[2] - t[0]);
   const b = slope - bend * (t[0] + t[1]);
   const c = y[0] - slope * t[0] + bend * t[0] * t[1];
-  const roots = [];
-  const q = b * b - 4 * bend * c;
-  if (Math.abs(bend) * (high - low) < 1e-9 * Math.abs(b))
-    roots.push(-c / b);
-  else if (q >= 0)
-    roots.push((-b - Math.sqrt(q)) / (2 * bend), (-b + Math.sqrt(q)) / (2 * bend));
-  const slack = 0.02 * (high - low);
-  const inside = roots.filter((root) => root >= low - slack && root <= high + slack);
-  return inside.length ? Math.min(high, Math.max(low, inside[0])) : NaN;
+  const q = -0.5 * (b + (b < 0 ? -1 : 1) * Math.sqrt(b * b - 4 * bend * c));  // no difference of equal numbers
+  return [c / q, q / bend];
 }
 
-/** Where omega_z, carried on through rows first to first + 2, is zero between rows k and k + 1; NaN if nowhere. */
+/**
+ * Where omega_z, carried on through rows first to first + 2, is zero between rows k and k + 1; undefined if nowhere.
+ */
 function zeroBetween(table, k, first) {
   const {time, rows, columns: {omega_z: omega}} = table;
-  if (!omega || first < 0 || first + 2 >= rows) return NaN;
   const three = [first, first + 1, first + 2];
-  const near = modeAt(table, first === k + 1 ? first : k);
-  if (near === 0 || three.some((row) => modeAt(table, row) !== near)) return NaN;
-  return time[k] +
-      zeroOfParabola(three.map((row) => time[row] - time[k]), three.map((row) => omega[row]), 0, time[k + 1] - time[k]);
+  if (!omega || first < 0 || first + 2 >= rows) return undefined;
+  const [mode, ...modes] = three.map((row) => modeAt(table, row));
+  if (mode === 0 || modes.some((other) => other !== mode)) return undefined;
+  const step = time[k + 1] - time[k];
+  const zeros = zerosOfParabola(three.map((row) => time[row] - time[k]), three.map((row) => omega[row]));
+  const zero = zeros.find((t) => t >= -0.02 * step && t <= 1.02 * step);
+  return zero === undefined ? zero : time[k] + Math.min(step, Math.max(0, zero));
 }
 
 /** How many transitions lie between rows k and k + 1: as the wheel counts them, else one where the mode changes. */
@@ -51,10 +46,9 @@ function countBetween(table, k) {
 function instants(table, k, n) {
   const [low, high] = [table.time[k], table.time[k + 1]];
   const [before, after] = [zeroBetween(table, k, k - 2), zeroBetween(table, k, k + 1)];
-  if (n === 1) return [[before, after].find((t) => !Number.isNaN(t)) ?? 0.5 * (low + high)];
+  if (n === 1) return [before ?? after ?? 0.5 * (low + high)];
   const even = (high - low) / (n + 1);
-  let first = Number.isNaN(before) ? low + even : before;
-  let last = Number.isNaN(after) ? high - even : after;
+  let [first, last] = [before ?? low + even, after ?? high - even];
   if (first > last) [first, last] = [low + even, high - even];
   return Array.from({length: n}, (_, i) => first + ((last - first) * i) / (n - 1));
 }
@@ -98,12 +92,4 @@ export function phasesOf(table, friction = mayHold(table)) {
   }
   if (modeAt(table, table.rows - 1) === 0) sticks.push([begin, table.end]);
   return {sticks, transitions};
-}
-
-/** Whether the wheel is held at t. */
-export function sticksAt(phases, t) { return phases.sticks.some(([begin, end]) => begin <= t && t < end); }
-
-/** A motion with what follows from it. friction: whether there is any, where that is known. */
-export function moving(table, r_0, friction) {
-  return {table, phases: phasesOf(table, friction), trace: traceOf(table, r_0)};
 }

@@ -3,16 +3,14 @@
 // the motion that is kept beside. A plan is {values: start values that differ from those of modelDescription.xml;
 // changes: what is done while it rolls, [{t [s], name, value}]; stop: s}. Angles in rad.
 import {EMPTY} from '#address';
-import {extent} from '#diagrams';
 import {degrees} from '#knobs';
+import {extent} from '#table';
 
 const DEGREES = 180 / Math.PI;
-const most = (values) => extent(values)[1];
-const least = (values) => extent(values)[0];
+const angle = (value) => (DEGREES * value).toFixed(1);
 /** The largest lean of a motion from upright, in degrees. */
-const lean = ({table}) =>
-    (DEGREES * most(table.columns.theta.map((theta) => Math.abs(theta - Math.PI / 2)))).toFixed(1);
-const lowest = ({table}) => (DEGREES * least(table.columns.theta)).toFixed(1);
+const lean = ({table}) => angle(extent(table.columns.theta.map((theta) => Math.abs(theta - Math.PI / 2)))[1]);
+const spin = ({table}) => Math.abs(table.value('omega_z', 0)).toFixed(0);
 const joules = ({table}, t) => table.value('E', t).toFixed(1);
 
 /**
@@ -24,115 +22,105 @@ function criticalSpin({m, g, r_0, r, J_x, J_z}) {
   return Math.sqrt((m * g * r_0 * J_x) / (J_z * (J_z + m * (r_0 + r) ** 2)));
 }
 
-/** Half a degree of lean, and a tenth more spin than the critical (+1) or less (-1). */
-function nearCritical(wheel, side) {
-  return {theta_start: degrees(89.5), phi_dot_start: Number((-(1 + 0.1 * side) * criticalSpin(wheel)).toFixed(3))};
-}
-
-/** A drive torque from 1 s to 3 s and the brake from 6 s to 7.5 s. */
-const DRIVEN = {
-  values: {theta_start: degrees(88), phi_dot_start: -4},
-  changes: [
-    {t: 1, name: 'M_3', value: -4}, {t: 3, name: 'M_3', value: 0}, {t: 6, name: 'M_brake', value: 4},
-    {t: 7.5, name: 'M_brake', value: 0}
-  ],
-};
-
-function state(values, more = {}) {
-  const {changes = [], show = {}, ...rest} = more;
+function state(values, {changes = [], show = {}, ...rest} = {}) {
   return {...EMPTY, plan: {values, changes, stop: 10}, ...rest, show: {...EMPTY.show, ...show}};
 }
 
-/**
- * The steps [{title, state, text(wheel, other), attempt, names?, speed?}] for the wheel's parameters {m, g, r_0, r,
- * J_x, J_z}.
- */
+/** The steps [{title, state, text(wheel, other), attempt, names?, speed?}] for the wheel's parameters by name. */
 export function chapters(parameters) {
   const {m, r_0, r} = parameters;
   const limit = criticalSpin(parameters);
+  /** Half a degree of lean, and a tenth more spin than the critical (+1) or less (-1). */
+  const nearLimit = (side) =>
+      ({theta_start: degrees(89.5), phi_dot_start: Number((-(1 + 0.1 * side) * limit).toFixed(3))});
   return [
     {
       title: 'It rolls',
       state: state({theta_start: degrees(90), phi_dot_start: -5}, {diagram: 'path'}),
-      text: ({table}) => `A wheel of ${m} kg, shaped as a torus, touches the ground at one point and does not slide ` +
-          `there. Upright, it rolls straight on: a spin of ${
-                             Math.abs(table.value('omega_z', 0)).toFixed(0)} rad/s times ` +
-          `a radius of ${(r_0 + r).toFixed(2)} m is ${
-                             Math.hypot(table.value('X_O_dot', 0), table.value('Y_O_dot', 0)).toFixed(2)} m/s.`,
+      text: (wheel) => {
+        const speed = Math.hypot(...['X_O_dot', 'Y_O_dot'].map((name) => wheel.table.value(name, 0)));
+        return `A wheel of ${m} kg, shaped as a torus, touches the ground at one point and does not slide there.
+            Upright, it rolls straight on: a spin of ${spin(wheel)} rad/s times a radius of ${(r_0 + r).toFixed(2)} m is
+            ${speed.toFixed(2)} m/s.`;
+      },
       attempt: 'Hold <b>push forward ▶</b> while it rolls, then <b>brake</b>, and watch the energy E.',
     },
     {
       title: 'Why it does not fall',
       state: state({theta_start: degrees(75), phi_dot_start: -6}, {diagram: 'path', show: {axes: true}}),
       text: (wheel) =>
-          `This one starts with 15° of lean, and never leans by more than ${lean(wheel)}°. A wheel that leans ` +
-          'turns towards its lean, and the turn rights it. So it does not fall but runs in a circle, and nods a little.',
+          `This one starts with 15° of lean, and never leans by more than ${lean(wheel)}°. A wheel that leans
+          turns towards its lean, and the turn rights it. So it does not fall but runs in a circle, and nods a little.`,
       attempt: 'Take its spin away: set φ̇ to 0. Nothing turns it now, and it falls.',
     },
     {
       title: 'The critical spin, from both sides',
-      state: state(nearCritical(parameters, -1), {kept: {values: nearCritical(parameters, 1), changes: [], stop: 10}}),
+      state: state(nearLimit(-1), {kept: {values: nearLimit(1), changes: [], stop: 10}}),
       names: ['10 % slower', '10 % faster'],
       text: (wheel, other) =>
-          `Upright rolling is stable above ${limit.toFixed(2)} rad/s: below, the weight tips the wheel ` +
-          'faster than the turn rights it. Both wheels start with half a degree of lean. The faster one sways by at most ' +
-          `${lean(other)}°, the slower one comes down by ${lean(wheel)}°.`,
+          `Upright rolling is stable above ${limit.toFixed(2)} rad/s: below, the weight tips the wheel
+          faster than the turn rights it. Both wheels start with half a degree of lean. The faster one sways by at most
+          ${lean(other)}°, the slower one comes down by ${lean(wheel)}°.`,
       attempt: 'Give the slower wheel more spin φ̇ and find where its swings become small.',
     },
     {
       title: 'Half a swing, for ever',
       state: state({}),
-      text: (wheel) => `The paper's wheel has ${
-                           Math.abs(wheel.table.value('omega_z', 0))
-                               .toFixed(0)} rad/s, too little to stay up. It comes down to θ = ${lowest(wheel)}°, ` +
-          'turns faster, and comes up again. Without friction every half swing is the one before, turned and mirrored: ' +
-          '(θ, θ̇) is one closed curve, run through for ever.',
+      text: (wheel) => `The paper's wheel has ${spin(wheel)} rad/s, too little to stay up. It comes down to θ =
+          ${angle(extent(wheel.table.columns.theta)[0])}°, turns faster, and comes up again. Without friction every half
+          swing is the one before, turned and mirrored: (θ, θ̇) is one closed curve, run through for ever.`,
       attempt: 'Choose ω<sub>3</sub> (ω<sub>2</sub>) in the diagram: one arc, run to and fro. Then the path: a ring.',
     },
     {
       title: 'Rolling friction stops the spin',
       state: state({s: 0.03}, {diagram: 'spin'}),
-      text: ({table, phases}) =>
-          'Rolling friction acts about the axle, against the spin, with at most s N. At ' +
-          `${
-              phases.sticks[0][0].toFixed(
-                  2)} s the spin is used up, and friction holds it at zero (orange) until that takes ` +
-          `more than s N. In ${table.end.toFixed(0)} s it is held, released or reversed ${
-              phases.transitions.length} times.`,
+      text: ({table, phases: {sticks: [[begin]], transitions}}) =>
+          `Rolling friction acts about the axle, against the spin,
+          with at most s N. At ${
+              begin.toFixed(2)} s the spin is used up, and friction holds it at zero (orange) until that
+          takes more than s N. In ${table.end.toFixed(0)} s it is held, released or reversed ${
+              transitions.length} times.`,
       attempt: 'Go to the start and drag s down to 0.01 m: the first stop comes later.',
     },
     {
       title: 'Held, but nodding and turning',
       state: state({s: 0.03}, {t: 1.1, show: {axes: true}}),
       speed: 0.25,
-      text: ({table, phases}) => {
-        const [begin, end] = phases.sticks[0];
+      text: ({table, phases: {sticks: [[begin, end]]}}) => {
         const turn = DEGREES * Math.abs(table.value('psi', end) - table.value('psi', begin));
-        return 'Friction holds the turn about the axle e₃. About the other two axes it gives no moment, so the held wheel ' +
-            'nods and turns, as a coin that pivots on a table: in the first orange band, ' +
-            `${(end - begin).toFixed(2)} s long, its heading turns by ${
-                   turn.toFixed(0)}°. What does not move takes no energy: ` +
-            'E stays level while it is held.';
+        return `Friction holds the turn about the axle e₃. About the other two axes it gives no moment, so the held wheel
+            nods and turns, as a coin that pivots on a table: in the first orange band, ${
+            (end - begin).toFixed(2)} s long,
+            its heading turns by ${
+            turn.toFixed(0)}°. What does not move takes no energy: E stays level while it is held.`;
       },
       attempt: 'Play it at a quarter of the speed. Look at E where the band is orange, and where it is not.',
     },
     {
       title: 'Pushed and braked',
-      state: state(DRIVEN.values, {changes: DRIVEN.changes, diagram: 'path'}),
+      state: state({theta_start: degrees(88), phi_dot_start: -4}, {
+        changes: [
+          {t: 1, name: 'M_3', value: -4},
+          {t: 3, name: 'M_3', value: 0},
+          {t: 6, name: 'M_brake', value: 4},
+          {t: 7.5, name: 'M_brake', value: 0},
+        ],
+        diagram: 'path'
+      }),
       text: (wheel) =>
-          `A motor pushes with 4 N m about the axle from 1 s to 3 s: the energy rises from ${joules(wheel, 1)} J ` +
-          `to ${joules(wheel, 3)} J. From 6 s to 7.5 s a dry brake acts and takes it down to ${
-              joules(wheel, 7.5)} J. Between ` +
-          'them, and after, the energy stays what it is.',
+          `A motor pushes with 4 N m about the axle from 1 s to 3 s: the energy rises from ${joules(wheel, 1)} J
+          to ${joules(wheel, 3)} J. From 6 s to 7.5 s a dry brake acts and takes it down to ${
+              joules(wheel, 7.5)} J. Between
+          them, and after, the energy stays what it is.`,
       attempt: 'Hold a button anywhere on the way: the past stays, and a new future is computed at once.',
     },
     {
       title: 'Where the model ends',
       state: state({phi_dot_start: 0}),
       text: ({table}) =>
-          `Let go without spin, it falls. At ${table.end.toFixed(2)} s it lies flat and touches the ground along a ` +
-          'circle instead of a point: the equations end there, and so does the run. It also ends where the wheel would lift ' +
-          'off (N = 0). Sliding is not in the model: its ground has all the grip that is needed.',
+          `Let go without spin, it falls. At ${table.end.toFixed(2)} s it lies flat and touches the ground
+          along a circle instead of a point: the equations end there, and so does the run. It also ends where the wheel
+          would lift off (N = 0). Sliding is not in the model: its ground has all the grip that is needed.`,
       attempt: 'Give it a little spin φ̇. How little lets it come up again?',
     },
   ];

@@ -3,7 +3,12 @@
 // the short way round, and a fast wheel would seem to run backwards.
 
 /** Bytes of a base64 text. */
-export function bytesOf(text) { return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)); }
+export const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+
+/** The smallest and the largest of some values, or [Infinity, -Infinity]. */
+export function extent(values) {
+  return values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+}
 
 /** The index of the last of rising instants at or before t, or -1. */
 export function before(times, t) {
@@ -65,27 +70,20 @@ export function contactOf(r_0, X_O, Y_O, psi, theta) {
 }
 
 const FINEST = 64;  // points of the path between two rows, at most
-const TURN = 0.06;  // rad, of the path's direction and of the wheel's heading from point to point
+const TURN = 0.06;  // rad, of the heading from point to point
 
-/** The contact point's path {times, points}: every row, and between two rows as many points as the path turns. */
+/**
+ * The contact point's path {times, points}: every row, and between two rows as many points as the wheel turns, along
+ * whose heading e1 it runs, but for r theta_dot across.
+ */
 export function traceOf(table, r_0) {
-  const contact = (t) => contactOf(r_0, ...['X_O', 'Y_O', 'psi', 'theta'].map((name) => table.value(name, t)));
-  const [times, points] = [[], []];
-  const add = (t) => {
-    times.push(t);
-    points.push(contact(t));
-  };
   const {time, rows, columns: {psi}} = table;
+  const times = [];
   for (let i = 0; i + 1 < rows; ++i) {
-    const step = time[i + 1] - time[i];
-    const [a, b, c] = [0, 0.5, 1].map((share) => contact(time[i] + share * step));
-    const [ax, ay, bx, by] = [b[0] - a[0], b[1] - a[1], c[0] - b[0], c[1] - b[1]];
-    const moves = Math.hypot(ax, ay, bx, by) > 1e-6 * r_0;  // the direction of less is rounding
-    const bend = moves ? Math.abs(Math.atan2(ax * by - ay * bx, ax * bx + ay * by)) : 0;
-    const turn = Math.max(2 * bend, Math.abs(psi[i + 1] - psi[i]));
-    const count = Math.min(FINEST, Math.max(1, Math.ceil(turn / TURN)));
-    for (let k = 0; k < count; ++k) add(time[i] + (k / count) * step);
+    const count = Math.min(FINEST, Math.max(1, Math.ceil(Math.abs(psi[i + 1] - psi[i]) / TURN)));
+    for (let k = 0; k < count; ++k) times.push(time[i] + (k / count) * (time[i + 1] - time[i]));
   }
-  add(time[rows - 1]);
-  return {times, points};
+  times.push(table.end);
+  const pose = (t) => ['X_O', 'Y_O', 'psi', 'theta'].map((name) => table.value(name, t));
+  return {times, points: times.map((t) => contactOf(r_0, ...pose(t)))};
 }

@@ -1,89 +1,89 @@
 // The card "Take with you": the values, a picture, a film, and of the live page its link and the commands that make the
 // same run.
 import {commands} from '#commands';
+import {$, make, makeChoice} from '#dom';
 import {compose, film, films} from '#film';
-import {STEP} from '#live';
-import {csvFiles} from '#values';
+
+const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
+const FIXED = ['r_0', 'r', 'slope', 'slope_direction'];
+const wordOf = (name) => name.replace(/[^\w]+/g, '_');
 
 /** Hands a file to the reader. */
-function save(name, blob) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+function save(download, blob) {
+  const href = URL.createObjectURL(blob);
+  make('a', {href, download}).click();
+  setTimeout(() => URL.revokeObjectURL(href), 10_000);
 }
 
-async function copy(text, button) {
+async function copy(text, {currentTarget: button}) {
   const before = button.textContent;
   try {
     await navigator.clipboard.writeText(text);
+    button.textContent = 'Copied';
+    setTimeout(() => (button.textContent = before), 1200);
   } catch {  // a page opened from the disk has no clipboard in every browser
-    const area = document.createElement('textarea');
-    area.value = text;
-    document.body.append(area);
-    area.select();
-    document.execCommand('copy');
-    area.remove();
+    prompt('To copy:', text);
   }
-  button.textContent = 'Copied';
-  setTimeout(() => (button.textContent = before), 1200);
 }
 
-class Taking {
-  constructor(page, host) {
-    Object.assign(this, {page, host, filming: false});
-    this.on('csv', () => this.saveValues());
-    this.on('png', () => this.savePicture());
-    this.on('film', () => this.record());
-    if (!films()) Object.assign(this.button('film'), {disabled: true, title: 'This browser records no WebM'});
-    const {live} = page;
-    this.button('link').hidden = host.querySelector('#commands').hidden = !live;
-    if (!live) return;
-    this.on('link', (button) => copy(live.link.href, button));
-    this.on('copy', (button) => copy(host.querySelector('pre').textContent, button));
-    for (const tab of host.querySelectorAll('.tabs button')) tab.addEventListener('click', () => this.tell(tab.name));
-    host.addEventListener('toggle', () => host.open && this.tell(this.kind ?? 'fmpy'));
-  }
+/**
+ * Bodies as CSV files [{name, text}] in the columns that `./scripts/view` reads back: SI, numbers with all their
+ * digits; bodies that share their instants share a file.
+ */
+function csvFiles(bodies) {
+  const groups = Map.groupBy(bodies, ({table}) => table.time.join());
+  return [...groups.values()].map((group) => {
+    const [{name, table: {time, rows}}] = group;
+    const plain = group.length === 1 && POSE.every((column) => group[0].table.has(column));
+    const columns = group.flatMap((body) => {
+      const prefix = plain ? '' : `${wordOf(body.name)}.`;
+      const fixed = FIXED.filter((column) => column in body).map((column) => [column, Array(rows).fill(body[column])]);
+      const moving = Object.entries(body.table.columns).filter(([column]) => column !== 'time');
+      return [...moving, ...fixed].map(([column, values]) => [prefix + column, values]);
+    });
+    const all = [['time', time], ...columns];
+    const lines = Array.from({length: rows}, (_, i) => all.map(([, values]) => values[i]).join(','));
+    const head = all.map(([column]) => `"${column}"`).join(',');
+    return {name: groups.size > 1 ? wordOf(name) : 'motion', text: `${head}\n${lines.join('\n')}\n`};
+  });
+}
 
-  button(name) { return this.host.querySelector(`button[name=${name}]`); }
-
-  on(name, act) {
-    const button = this.button(name);
-    button.addEventListener('click', () => act(button));
-  }
-
-  /** The commands of one kind, for the motion that is shown now. */
-  tell(kind) {
-    const {live} = this.page;
-    this.kind = kind;
-    const run = {plan: live.plan, step: STEP, guid: live.fmu.guid};
-    this.host.querySelector('pre').textContent = commands(run, live.fmu.variables)[kind];
-    for (const tab of this.host.querySelectorAll('.tabs button')) tab.setAttribute('aria-checked', tab.name === kind);
-  }
-
-  saveValues() {
-    const bodies = [...new Set(this.page.views.flat())];
-    for (const {name, text} of csvFiles(bodies)) save(`${name}.csv`, new Blob([text], {type: 'text/csv'}));
-  }
-
-  savePicture() {
-    this.page.draw();
-    const name = `wheel_${this.page.player.t.toFixed(2)}s.png`;
-    compose(this.page).toBlob((blob) => save(name, blob), 'image/png');
-  }
-
-  /** Begins a film of the whole motion at the chosen speed; again: ends it there. */
-  async record() {
-    this.filming = !this.filming;
-    if (!this.filming) return;
-    const button = this.button('film');
+/** What the buttons of the card do. */
+export function setUpTaking(page) {
+  const host = $('#take');
+  const {live} = page;
+  const on = (name, act) => $(`[name=${name}]`, host).addEventListener('click', act);
+  on('csv', () => {
+    for (const {name, text} of csvFiles([...new Set(page.views.flat())]))
+      save(`${name}.csv`, new Blob([text], {type: 'text/csv'}));
+  });
+  on('png', () => {
+    page.draw();
+    const name = `wheel_${page.player.t.toFixed(2)}s.png`;
+    compose(page).toBlob((blob) => save(name, blob), 'image/png');
+  });
+  let filming = false;
+  on('film', async ({currentTarget: button}) => {  // a second click ends it
+    filming = !filming;
+    if (!filming) return;
     button.textContent = 'End the film';
-    const blob = await film(this.page, () => this.filming);
-    this.filming = false;
+    const blob = await film(page, () => filming);
+    filming = false;
     button.textContent = 'Film (WebM)';
     save('wheel.webm', blob);
-  }
+  });
+  if (!films()) Object.assign($('[name=film]', host), {disabled: true, title: 'This browser makes no WebM'});
+  if (!live) return;
+  on('link', (event) => copy(live.link.href, event));
+  on('copy', (event) => copy($('pre', host).textContent, event));
+  const titles = {fmpy: 'The command line of FMPy', Python: 'A script with FMPy', C: 'A program without any library'};
+  const options = Object.entries(titles).map(([name, title]) => ({name, title, textContent: name}));
+  let chosen = 'fmpy';
+  const tell = (name) => {
+    chosen = name;
+    mark(name);
+    $('pre', host).textContent = commands(live.plan, live.fmu)[name];
+  };
+  const mark = makeChoice($('.tabs', host), options, tell);
+  host.addEventListener('beforetoggle', () => tell(chosen));
 }
-
-export function setUpTaking(page) { return new Taking(page, document.querySelector('#take')); }

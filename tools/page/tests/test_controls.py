@@ -1,0 +1,129 @@
+"""What both pages share: keys, mouse, cards, tooltips, and their layout on a screen and on a phone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from page.tests.pages import opened, start
+
+CAMERA = "[...page.stage.camera.position]"
+
+
+def test_keys_move_the_time_and_switch_what_is_shown(either):
+    either.evaluate("page.player.pause(); page.player.seek(2); document.activeElement.blur()")
+    for key in ("ArrowRight", "Shift+ArrowRight"):
+        either.keyboard.press(key)
+    assert either.evaluate("page.player.t") == pytest.approx(2.55)
+    either.keyboard.press("Home")
+    assert either.evaluate("page.player.t") == 0
+    either.keyboard.press(" ")
+    either.wait_for_function("page.player.t > 0.05")
+    either.keyboard.press(" ")
+    assert not either.evaluate("page.player.playing")
+    for shown in (True, False):
+        either.keyboard.press("g")
+        assert either.evaluate("page.pose() ?? page.stage.models[0].force.visible") is shown
+
+
+def test_a_number_chooses_what_is_shown(recorded):
+    for key, names in (("3", ["free"]), ("1", ["free", "friction"])):
+        recorded.keyboard.press(key)
+        assert recorded.evaluate("page.shown.map(({name}) => name)") == names
+
+
+def test_the_mouse_turns_the_view(either):
+    before = either.evaluate(CAMERA)
+    box = either.locator("#stage").bounding_box()
+    either.mouse.move(box["x"] + 100, box["y"] + 100)
+    either.mouse.down()
+    either.mouse.move(box["x"] + 220, box["y"] + 120, steps=3)
+    either.mouse.up()
+    assert abs(np.subtract(either.evaluate(CAMERA), before)).max() > 0.1
+    either.keyboard.press("r")
+
+
+def test_arrow_keys_turn_the_scene_that_has_the_focus(either):
+    before = either.evaluate(CAMERA)
+    either.evaluate("page.player.pause(); page.player.seek(0.25)")
+    either.locator("#stage").focus()
+    for key in ("ArrowLeft", "ArrowUp"):
+        either.keyboard.press(key)
+    either.evaluate("document.activeElement.blur()")
+    after = either.evaluate(CAMERA)
+    assert abs(np.subtract(after, before)).max() > 0.02
+    assert np.linalg.norm(after) == pytest.approx(np.linalg.norm(before))
+    assert either.evaluate("page.player.t") == 0.25
+    either.keyboard.press("r")
+
+
+def test_after_a_click_the_space_bar_plays_and_by_keyboard_it_presses_the_button(either):
+    theme = either.locator("#theme")
+    either.evaluate("page.player.pause(); page.player.seek(0)")
+    for _ in range(3):
+        theme.click()
+    either.keyboard.press(" ")
+    assert either.evaluate("page.player.playing")
+    either.evaluate("page.player.pause(); document.querySelector('#theme').focus()")
+    before = theme.get_attribute("title")
+    either.keyboard.press(" ")
+    assert theme.get_attribute("title") != before and not either.evaluate("page.player.playing")
+    theme.click()
+    theme.click()
+
+
+@pytest.mark.parametrize("way", ["Escape", "a click elsewhere"])
+def test_a_card_closes(either, way):
+    either.locator("[popovertarget=help]").click()
+    assert either.locator("#help").is_visible()
+    if way == "Escape":
+        either.keyboard.press("Escape")
+    else:
+        either.locator("h1").click()
+    assert not either.locator("#help").is_visible()
+
+
+TOLD = """all => all.map((x) => [x.title || x.closest('label')?.title || '', x.outerHTML])"""
+
+
+def test_every_button_has_a_tooltip_and_the_help_names_it(either):
+    told = either.eval_on_selector_all("button, summary, input[type=range], #toggles label", TOLD)
+    assert len(told) > 20 and [button for title, button in told if not title] == []
+    diagrams = either.eval_on_selector_all(".plot canvas", "all => all.map((x) => x.ariaLabel)")
+    assert len(set(diagrams)) == 5 and all(len(name) > 20 for name in diagrams)  # for screen readers
+    either.locator("[popovertarget=help]").click()
+    text = either.locator("#help").inner_text()
+    either.keyboard.press("Escape")
+    names = "Follow,Path,Axes,Force,Take with you,colours,play,Values"
+    names += ",Push forward,push back,brake,Keep this motion,Scenes,Story,The wheel itself" * either.evaluate(
+        "'live' in page"
+    )
+    assert [name for name in names.split(",") if name not in text] == []
+
+
+@pytest.mark.parametrize("kind", ["recorded", "live"])
+def test_a_phone_shows_everything_without_scrolling_sideways(browser, request, kind):
+    phone = {"viewport": {"width": 360, "height": 740}, "has_touch": True, "is_mobile": True}
+    with opened(browser, request.getfixturevalue(f"{kind}_file"), **phone) as page:
+        for scheme in ("light", "dark"):
+            page.emulate_media(color_scheme=scheme)
+            page.wait_for_function("(scheme) => document.documentElement.dataset.theme === scheme", arg=scheme)
+            assert page.evaluate("document.documentElement.scrollWidth") <= 360
+        edges = page.evaluate("page.stage.rectangles(page.views.length).map(({y}) => y)")
+        assert len(set(edges)) == len(edges)  # above each other
+        scene, switches = (page.locator(place).bounding_box() for place in ("#scene", "#toggles"))
+        assert switches["y"] >= scene["y"] + scene["height"] - 2.5  # px; the switches cover no part of the scene
+        page.evaluate("page.player.pause(); page.player.seek(0)")
+        page.locator("#play").tap()
+        page.wait_for_function("page.player.t > 0.05")
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (1366, 768), (390, 844)])
+def test_push_and_brake_stand_in_sight_beside_play(live, size):
+    start(live)
+    live.set_viewport_size({"width": size[0], "height": size[1]})
+    boxes = [live.locator(place).bounding_box() for place in ("#play", *(f".push >> nth={k}" for k in range(3)))]
+    live.set_viewport_size({"width": 900, "height": 640})
+    for box, other in zip(boxes, boxes[1:], strict=False):
+        assert 0 <= box["x"] < other["x"] < size[0] - other["width"]
+        assert abs(box["y"] - other["y"]) < 20 and other["y"] + other["height"] <= size[1]

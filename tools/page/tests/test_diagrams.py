@@ -1,0 +1,129 @@
+"""The diagrams: curves over time, phase portrait, angular velocities, path from above."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from support.bounds import EPSILON, absolute_error, beyond, within
+
+from page.tests.pages import start
+
+POINTS = """(name) => {
+  page.plots.portrait.choose(name);
+  const {lines, wheels} = page.plots.portrait;  // those of the rows
+  const found = lines.map(({times, points}, k) => points.filter((_, i) => wheels[k].table.time.includes(times[i])));
+  page.plots.portrait.choose('phase');
+  return found;
+}"""
+
+
+def points(page, name: str) -> dict[str, np.ndarray]:
+    return dict(zip(("free", "friction"), map(np.array, page.evaluate(POINTS, name)), strict=True))
+
+
+def expected(rows: np.ndarray) -> dict[str, list[np.ndarray]]:
+    """Both coordinates of each portrait: deg, deg/s; rad/s along e2 and e3; m."""
+    along_e2 = rows["psi_dot"] * np.sin(rows["theta"])
+    along_e3 = rows["phi_dot"] + rows["psi_dot"] * np.cos(rows["theta"])
+    tilt = [np.degrees(rows["theta"]), np.degrees(rows["theta_dot"])]
+    return {"phase": tilt, "spin": [along_e2, along_e3], "path": [rows["X_C"], rows["Y_C"]]}
+
+
+@pytest.mark.parametrize(("name", "bound"), [("phase", 1e-9), ("spin", 512 * EPSILON), ("path", 64 * EPSILON)])
+def test_a_portrait_shows_rates_over_tilt_or_along_e3_over_e2_or_the_path_of_the_contact_point(
+    recorded, simulate, name, bound
+):
+    names = ("psi_dot", "phi_dot", "theta_dot", "theta", "X_C", "Y_C")
+    found = points(recorded, name)
+    wanted = np.column_stack(expected(simulate(step=0.01, output=names, s=0.03))[name])
+    within(absolute_error(found["friction"], wanted), bound, "points off")
+    beyond(absolute_error(found["free"], wanted), 1, "points of the other wheel off")
+
+
+def test_without_friction_both_rates_lie_on_one_curve_and_with_friction_it_shrinks(recorded, scenes):
+    """Chaplygin: without friction both are functions of theta alone."""
+    found = points(recorded, "spin")
+    order = np.argsort(scenes["free"]["theta"])
+    rough = {name: abs(np.diff(found[name][order, 1], 2)).max() for name in found}
+    within(rough["free"] / rough["friction"], 0.03, "roughness without friction over that with it")
+    ends = {name: np.ptp(found[name][-300:], axis=0) for name in found}
+    assert (ends["friction"] < ends["free"]).all()
+
+
+def test_the_path_from_above_has_one_scale(recorded):
+    recorded.evaluate("page.plots.portrait.choose('path')")
+    (x, y), (width, height) = recorded.evaluate("""() => {
+      const {ranges, sizes} = page.plots.portrait;
+      return [ranges.map(([low, high]) => high - low), sizes];
+    }""")
+    recorded.evaluate("page.plots.portrait.choose('phase')")
+    assert x / width == pytest.approx(y / height)
+
+
+PIXEL = """([name, t]) => {
+  const {plots, player} = page;
+  player.seek(t);
+  plots.draw(t);
+  const plot = plots.all.find((one) => one.name === name);
+  const place = plot.at(plot.wheels[0], t);
+  const [x, y] = [plot.x(place[0]), plot.y(place[1])].map((edge) => edge * devicePixelRatio);
+  const colour = [...plot.pen.getImageData(x, y, 1, 1).data].slice(0, 3);
+  return ['#' + colour.map((part) => part.toString(16).padStart(2, '0')).join(''), plot.wheels[0].colour];
+}"""
+
+
+@pytest.mark.parametrize("name", ["spin", "path", "phase"])
+def test_a_button_chooses_the_diagram_and_the_present_is_marked(recorded, name):
+    recorded.locator(f".portrait [name={name}]").click()
+    assert recorded.locator(".portrait [aria-checked=true]").get_attribute("name") == name
+    recorded.evaluate("page.choose(2)")
+    colour, wanted = recorded.evaluate(PIXEL, [name, 3.0])
+    recorded.evaluate("page.choose(0)")
+    assert colour == wanted
+
+
+def test_the_label_and_the_diagram_say_that_the_wheel_sticks(recorded):
+    state = """(t) => {
+      page.choose(3);
+      page.player.seek(t);
+      page.draw();
+      const plot = page.plots.curves[1];
+      const [x, y] = [plot.x(t), plot.y(-1.5) + 3].map((edge) => edge * devicePixelRatio);
+      const pixel = plot.layers.faint.getContext('2d').getImageData(x, y, 1, 1);
+      return [document.querySelector('.label').dataset.state, pixel.data[3]];
+    }"""
+    (before, clear), (during, band) = (recorded.evaluate(state, t) for t in (1.15, 1.26))
+    recorded.evaluate("page.choose(0)")
+    assert (before, during) == ("rolls", "sticks")
+    assert clear == 0 < band
+
+
+def test_a_click_into_a_diagram_goes_there(recorded):
+    canvas = recorded.locator(".plot canvas").first
+    canvas.click(position={"x": 100, "y": 40})
+    expected = canvas.evaluate("() => page.plots.curves[0].timeAt(100)")
+    assert recorded.evaluate("page.player.t") == pytest.approx(expected)
+    assert 0.5 < expected < 9.5
+
+
+@pytest.mark.parametrize("diagram", ["phase", "spin", "path"])
+def test_while_a_button_is_held_the_diagrams_keep_their_axes(live, diagram):
+    axes = """() => [[page.player.start, page.player.end],
+      ...page.plots.curves.map(({ranges}) => ranges[1]), ...page.plots.portrait.ranges]"""
+    start(live, at=1)
+    live.evaluate("(name) => page.plots.portrait.choose(name)", diagram)
+    before = live.evaluate(axes)
+    button = live.locator(".push", has_text="forward")
+    # In one piece: pressed, the button plays, and what is past may widen an axis.
+    button.evaluate("""(button) => {
+      button.dispatchEvent(new PointerEvent("pointerdown", {pointerId: 1}));
+      page.player.pause();
+      page.live.compute();
+    }""")
+    assert live.evaluate("page.wheels[0].table.columns.E.at(-1)") > before[4][1]  # the future leaves the frame
+    assert live.evaluate(axes) == before
+    button.dispatch_event("pointerup", {"pointerId": 1})
+    live.evaluate("page.live.compute()")
+    assert all(low <= a and high >= b for (low, high), (a, b) in zip(live.evaluate(axes), before, strict=True))
+    start(live, phi_dot_start=-9)
+    assert live.evaluate(axes) != before

@@ -1,0 +1,176 @@
+// Bodies in the scene, in the road's axes. A wheel: a torus of ring radius r_0 and tube radius r in m, turned by psi
+// about Z, theta about the line of nodes e1, and phi about the axle e3 (paper, (3)), with its contact path, carrier
+// axes and the ground's force. A car's body: a box with its centre at X, Y, Z in m, turned by yaw, pitch, roll in rad
+// (in this order about z, y, x; x forward, y to the left, z up).
+import {colour} from '#dom';
+import {dispose, makeArrow, makeLabel, makeRibbon, makeSolid, makeTexture, pointArrow, showRibbon} from '#shapes';
+import {before, contactOf} from '#table';
+import {THREE} from 'three';
+
+const [METAL, FACE] = [['#9aa2ac', '#6a7078', 40], ['#8d949f', '#8a9098', 60]].map(
+    ([color, specular, shininess]) => ({color, specular, shininess}));
+const FORCE = ['lambda_1', 'lambda_2', 'lambda_3'];  // of the ground, fixed axes
+const UPRIGHT = [Math.PI / 2, 0, 0];                 // a cylinder's axis along z
+const {BoxGeometry, CylinderGeometry, TorusGeometry} = THREE;
+
+/** The tyre's skin: tread on the outside, a stripe on each side wall, and the mark at phi = 0. x: along the ring. */
+function drawTyre(pen, accent) {
+  const fill = (colour, ...boxes) => {
+    pen.fillStyle = colour;
+    for (const box of boxes) pen.fillRect(...box);
+  };
+  fill('#2b2e34', [0, 0, 2048, 256]);
+  // The tube's angle runs down the picture: 0 and 256 the outside, 128 the inside.
+  Object.assign(pen, {strokeStyle: '#191b1f', lineWidth: 5});
+  for (let x = 0; x < 2048; x += 32) {
+    for (const [from, to] of [[0, 46], [256, 210]]) {
+      pen.moveTo(x, from);
+      pen.lineTo(x + 14, to);
+    }
+  }
+  pen.stroke();
+  fill('#191b1f', ...[0, 22, 229, 252].map((y) => [0, y, 2048, 4]));
+  fill(accent, ...[74, 177].map((y) => [0, y, 2048, 5]), ...[0, 2008].map((x) => [x, 0, 40, 256]));
+}
+
+/** Tyre, rim, spokes and hub about the axle z; marked spoke and mark on the tyre at angle 0. */
+function makeWheel(r_0, r, marked) {
+  const map = makeTexture(2048, 256, (pen) => drawTyre(pen, marked.color));
+  const inner = r_0 - 0.72 * r;
+  const middle = 0.5 * (inner + 0.1 * r_0);
+  const spokes = [0, 1, 2, 3, 4].map((i) => {
+    const shape = new BoxGeometry(inner - 0.1 * r_0, (i === 0 ? 0.2 : 0.13) * r_0, 0.55 * r);
+    const angle = (2 * Math.PI * i) / 5;
+    const place = [middle * Math.cos(angle), middle * Math.sin(angle), 0];
+    return makeSolid(shape, i === 0 ? marked : METAL, place, [0, 0, angle]);
+  });
+  return [
+    makeSolid(new TorusGeometry(r_0, r, 40, 180), {map, specular: '#26282c', shininess: 12}),
+    makeSolid(new TorusGeometry(inner, 0.42 * r, 16, 120), METAL),
+    makeSolid(new CylinderGeometry(0.2 * r_0, 0.2 * r_0, 1.1 * r, 48), METAL, [0, 0, 0], UPRIGHT),
+    ...spokes,
+  ];
+}
+
+/** The thin disc, r = 0, with a marked radius at angle 0; it is drawn as thick as a coin. */
+function makeDisc(r_0, marked) {
+  const thickness = 0.024 * r_0;
+  return [
+    makeSolid(new CylinderGeometry(r_0, r_0, thickness, 160), FACE, [0, 0, 0], UPRIGHT),
+    makeSolid(new BoxGeometry(0.995 * r_0, 0.16 * r_0, 1.3 * thickness), marked, [0.497 * r_0, 0, 0]),
+    makeSolid(new TorusGeometry(r_0, 0.5 * thickness, 12, 160), METAL),
+  ];
+}
+
+/** An arrow of the length of `vector` with a name beyond its tip. */
+function makeNamed(name, vector, radius, height, colour, beyond) {
+  const arrow = makeArrow(radius, colour);
+  pointArrow(arrow, vector);
+  const label = makeLabel(name, colour, height);
+  label.position.copy(vector).multiplyScalar(beyond);
+  return [arrow, label];
+}
+
+export class WheelModel {
+  /** wheel: {name, r_0, r, slope?, slope_direction?, colour, table, trace, phases}; size of the scene in m. */
+  constructor(wheel, size) {
+    const {name, r_0, r, table} = wheel;
+    const radius = r_0 + r;
+    Object.assign(this, {wheel, size, group: new THREE.Group(), path: new THREE.Group(), axes: new THREE.Group()});
+    const marked = {color: wheel.colour, specular: '#222', shininess: 15};
+    this.body = new THREE.Group().add(...(r > 0.01 * r_0 ? makeWheel(r_0, r, marked) : makeDisc(r_0, marked)));
+    this.body.name = `spin:${name}`;
+    for (const [i, length] of [1.5, 1.5, 1.125].entries()) {
+      const along = new THREE.Vector3().setComponent(i, length * radius);
+      this.axes.add(...makeNamed(
+          `e_${i + 1}`, along, 0.022 * r_0, 0.3 * r_0, colour(`--e${i + 1}`), 1 + 0.12 / (length * radius)));
+    }
+    this.carrier = new THREE.Group().add(this.body, this.axes);
+    this.force = makeArrow(0.03 * r_0, colour('--force'));
+    const skin = {color: colour('--force'), transparent: true, side: THREE.DoubleSide, depthWrite: false};
+    const ring = new THREE.RingGeometry(0.07 * r_0, 0.11 * r_0, 40);
+    this.spot = new THREE.Mesh(ring, new THREE.MeshBasicMaterial(skin));
+    this.spot.renderOrder = 900;
+    const [arrow, label] =
+        makeNamed('uphill', new THREE.Vector3(0.8 * radius, 0, 0), 0.03 * radius, 0.24 * radius, colour('--line'), 0.5);
+    [arrow.position.z, label.position.z] = [0.03 * radius, 0.24 * radius];
+    this.uphill = new THREE.Group().add(arrow, label);
+    this.group.add(this.carrier, this.force, this.spot, this.uphill, this.path);
+    this.drawPath();
+    const N = table.columns.lambda_3 ?? [1];
+    this.weight = N.reduce((sum, value) => sum + value, 0) / N.length || 1;
+  }
+
+  /** The contact path anew: all of it faintly, up to now strongly, stick phases in a colour of their own. */
+  drawPath() {
+    const {wheel: {trace: {points}, table, r_0, phases, colour: accent}, size} = this;
+    const unit = Math.max(0.045 * r_0, 0.006 * size);
+    const ribbon = ([begin, end], color, width, layer, opacity) => {
+      const first = this.point(begin);
+      const height = 0.0005 * (1 + layer) * size;
+      const part = points.slice(first, this.point(end) + 1);
+      const found = makeRibbon(part, {width: width * unit, height, layer, color, opacity});
+      found.userData = {begin, first};
+      return found;
+    };
+    const all = [table.start, table.end];
+    this.past =
+        [ribbon(all, accent, 1, 3, 0.95), ...phases.sticks.map((span) => ribbon(span, colour('--stick'), 5, 2, 0.9))];
+    dispose(this.path);
+    this.path.clear().add(ribbon(all, accent, 0.5, 1, 0.3), ...this.past);
+  }
+
+  /** The last point of the path at or before t. */
+  point(t) { return Math.max(0, before(this.wheel.trace.times, t + 1e-9)); }
+
+  /** Pose, path and force at t. show: {path, axes, force}. */
+  update(t, show) {
+    const {table, r_0, r, slope = 0, slope_direction: direction = 0} = this.wheel;
+    const at = (name) => table.value(name, t);
+    const [X, Y, psi, theta, phi] = ['X_O', 'Y_O', 'psi', 'theta', 'phi'].map(at);
+    this.carrier.position.set(X, Y, table.has('Z_O') ? at('Z_O') : r_0 * Math.sin(theta) + r);
+    this.carrier.rotation.set(theta, 0, psi, 'ZYX');
+    this.body.rotation.z = phi;
+    this.axes.visible = show.axes;
+    this.path.visible = this.spot.visible = show.path;
+    for (const ribbon of this.past) {
+      ribbon.visible = t >= ribbon.userData.begin;
+      showRibbon(ribbon, this.point(t) - ribbon.userData.first);
+    }
+    const contact = contactOf(r_0, X, Y, psi, theta);
+    this.spot.position.set(...contact, 0.004 * this.size);
+    this.uphill.visible = slope > 0;
+    const reach = 1.2 * (r_0 + r);
+    this.uphill.rotation.z = direction;
+    this.uphill.position.set(contact[0] + reach * Math.cos(direction), contact[1] + reach * Math.sin(direction), 0);
+    this.force.visible = show.force && FORCE.every((name) => table.has(name));
+    if (!this.force.visible) return;
+    this.force.position.set(...contact, 0);
+    pointArrow(this.force, new THREE.Vector3(...FORCE.map(at)).multiplyScalar((1.1 * (r_0 + r)) / this.weight));
+  }
+}
+
+export class ChassisModel {
+  /** chassis: {name, size: [length, width, height] in m, table}. */
+  constructor(chassis) {
+    const {name, size: [length, width, height], table} = chassis;
+    Object.assign(this, {wheel: chassis, table, group: new THREE.Group()});
+    const shape = new BoxGeometry(length, width, height);
+    const solid = makeSolid(shape, {color: colour('--body'), transparent: true, opacity: 0.45});
+    const edges =
+        new THREE.LineSegments(new THREE.EdgesGeometry(shape), new THREE.LineBasicMaterial({color: colour('--line')}));
+    const place = [0.5 * length + 0.1 * width, 0, 0];
+    const cone = new THREE.ConeGeometry(0.12 * width, 0.2 * width, 4);
+    const nose = makeSolid(cone, {color: colour('--line')}, place, [0, 0, -Math.PI / 2]);
+    this.box = new THREE.Group().add(solid, edges, nose);
+    this.box.name = `body:${name}`;
+    this.group.add(this.box);
+  }
+
+  update(t) {
+    const [X, Y, Z, roll, pitch, yaw] =
+        ['X', 'Y', 'Z', 'roll', 'pitch', 'yaw'].map((name) => this.table.value(name, t));
+    this.box.position.set(X, Y, Z);
+    this.box.rotation.set(roll, pitch, yaw, 'ZYX');
+  }
+}

@@ -1,0 +1,43 @@
+// Elements of the page: found, made, and rows of buttons of which one is on; the colours of style.css.
+
+export const $ = (selector, host = document) => host.querySelector(selector);
+
+/** A new element with these properties, or attributes where it has no such property, and with children. */
+export function make(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name in element)
+      element[name] = value;
+    else
+      element.setAttribute(name, value);
+  }
+  element.append(...children);
+  return element;
+}
+
+export const makeButton = (properties, onclick) => make('button', {type: 'button', onclick, ...properties});
+
+/** Fills a row with buttons, given by name and other properties; returns mark(name), which turns one on. */
+export function makeChoice(row, options, act) {
+  const buttons = options.map((option) => makeButton({role: 'radio', ...option}, () => act(option.name)));
+  row.replaceChildren(...buttons);
+  return (chosen) => buttons.forEach((button, i) => button.setAttribute('aria-checked', options[i].name === chosen));
+}
+
+/** A text such as ω_z as nodes, with its subscript. */
+export const subscripted = (text) => text.split(/_(.)/).map((part, i) => (i % 2 ? make('sub', {}, part) : part));
+
+/** A canvas of this size in CSS pixels, cleared, and a pen in CSS pixels. */
+export function clearCanvas(canvas, width, height) {
+  const ratio = Math.min(2, devicePixelRatio);
+  [canvas.width, canvas.height] = [width * ratio, height * ratio];
+  const pen = canvas.getContext('2d');
+  pen.scale(ratio, ratio);
+  return pen;
+}
+
+/** The value of a colour variable of style.css, as text. */
+export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** The colour of the i-th wheel. */
+export const wheelColour = (i) => colour(`--wheel-${i % 6}`);

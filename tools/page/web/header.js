@@ -1,0 +1,40 @@
+// The header: the parameters of what is shown in the card "Values", and the button for light, dark, or as the system.
+import {$, make} from '#dom';
+
+const SYMBOLS = new Map([['auto', '◐'], ['light', '☀'], ['dark', '☾']]);
+
+/** variables: of the description; wheels(): those shown, with their parameters {name: value}. */
+export function setUpValues(variables, wheels) {
+  const row = (title, kind, first, ...cells) =>
+      make('tr', {title}, make('th', {}, first), ...cells.map((text) => make(kind, {}, text)));
+  $('#values').addEventListener('beforetoggle', ({newState}) => {
+    if (newState !== 'open') return;
+    const shown = wheels().filter(({parameters}) => parameters);
+    const known = Object.entries(variables).filter(([name]) => shown.some(({parameters}) => name in parameters));
+    const rows = known.map(([name, {meaning, unit}]) => {
+      const values = shown.map(({parameters}) => String(Number(parameters[name]?.toPrecision(6) ?? NaN)));
+      return row(meaning, 'td', name, ...values.map((text) => text.replace('NaN', '')), unit);
+    });
+    $('#values').replaceChildren(make('table', {}, row('', 'th', '', ...shown.map(({label}) => label), ''), ...rows));
+  });
+}
+
+/** Sets up the button; `changed` is called after every change, also of the system's own. */
+export function watchTheme(button, changed) {
+  const dark = matchMedia('(prefers-color-scheme: dark)');
+  const choices = [...SYMBOLS.keys()];
+  let choice = 'auto';
+  const apply = () => {
+    const system = dark.matches ? 'dark' : 'light';
+    document.documentElement.dataset.theme = choice === 'auto' ? system : choice;
+    button.textContent = SYMBOLS.get(choice);
+    button.title = button.ariaLabel = `Colours: ${choice === 'auto' ? 'as the system' : choice}. Click to change`;
+    changed();
+  };
+  button.addEventListener('click', () => {
+    choice = choices[(choices.indexOf(choice) + 1) % choices.length];
+    apply();
+  });
+  dark.addEventListener('change', apply);
+  apply();
+}
