@@ -82,7 +82,7 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
   } else if (is_positive(v) ? value <= row.min : value < row.min) {
     fault = is_positive(v) ? "%s = %s: it must be greater than %s." : "%s = %s: it must be at least %s.";
   } else if (v == slope ? value >= row.max : value > row.max) {
-    fault = v == slope ? "%s = %s: it must be less than %s." : "%s = %s: it must be at most %s.";
+    fault = v == slope ? "%s = %s rad: it must be less than %s." : "%s = %s: it must be at most %s.";
     limit = row.max;
   }
   return reporter.check(!fault, fault, row.name, Digits{value, 9}, Digits{limit, 6});

@@ -106,4 +106,4 @@ def test_a_road_of_ninety_degrees_is_refused_with_a_sentence(library: Library) -
     with library.wheel(logging=True) as wheel:
         wheel.set(slope=pi / 2)
         wheel.initialise()
-        assert any("slope = 1.57079633: it must be less than 1.5708." in sentence for sentence in wheel.sentences)
+        assert any("slope = 1.57079633 rad: it must be less than 1.5708." in sentence for sentence in wheel.sentences)

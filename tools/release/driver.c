@@ -13,8 +13,6 @@ enum {
 #define STORED(name, ...) ref_##name,
 #define COMPUTED(name, ...) ref_##name,
 #include "variables.inc"
-#undef STORED
-#undef COMPUTED
 };
 enum { first_output = ref_X_O, output_count = ref_E - ref_X_O };
 

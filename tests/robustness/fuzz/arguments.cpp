@@ -4,17 +4,11 @@
 namespace fuzz {
 namespace {
 
-constexpr double usual_size(double start, bool is_input) { return is_input ? 10 : start == 0 ? 0.1 : start; }
-constexpr bool parameter = false, tunable = false, input = true;
-
 // Sizes that matter: the start values of the parameters as modelDescription.xml has them, and what moves a wheel.
-constexpr double usual[] = {
-#define STORED(name, type, role, start, ...) usual_size(start, role),
-#define COMPUTED(...)
-#include "variables.inc"
-#undef STORED
-#undef COMPUTED
-};
+double usual_size(unsigned reference) {
+  const Row& row = row_of(reference);
+  return row.role == Role::input ? 10 : row.start == 0 ? 0.1 : row.start;
+}
 
 struct Range {
   unsigned first, count;
@@ -31,7 +25,7 @@ double value_for(unsigned reference, Bytes& in) {
     return reference >= ref_first_input && std::isfinite(value) ? std::remainder(value, 1e4) : value;
   }
   if (in.chance(2)) return 0;
-  const double value = usual[reference] * in.factor();
+  const double value = usual_size(reference) * in.factor();
   return in.chance(4) ? -value : value;
 }
 
