@@ -62,8 +62,11 @@ WheelLoad load_rate_of(const Polynomials& inputs) {
 void Inputs::take_over(double t, const Polynomials& asked) {
   origin = t;
   std::copy_n(asked[0], sizeof c / sizeof c[0][0], c[0]);
-  varies = std::any_of(c, c + inputs_count, [](const double* own) { return acts(own + 1, own + max_order + 1); });
-  loaded = acts(c[0], c[0] + sizeof c / sizeof c[0][0]);
+  const auto any = [&](int from) {
+    return std::any_of(c, c + inputs_count, [=](const double* own) { return acts(own + from, own + max_order + 1); });
+  };
+  varies = any(1);
+  loaded = any(0);
   braked = acts(c[brake_input], c[brake_input] + max_order + 1);
 }
 
