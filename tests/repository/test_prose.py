@@ -26,7 +26,7 @@ GOOD = (
     "DOP853 restarts cheaply after a discontinuity.",
     "Parameters are initialized; 3 meters is `what tells by itself`.".replace("meters", "metres"),
     "$the unit$ and\n\n```\nsame bits\n```\n",
-    "<!-- table = x -->\n\n| told, of its own |\n\n<!-- end of table -->",
+    "<!-- variables -->\n\n| told, of its own |\n\n<!-- end of variables -->",
 )
 
 
