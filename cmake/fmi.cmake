@@ -39,8 +39,8 @@ function(add_fmu target)
   add_custom_command(
     OUTPUT ${fmu}
     COMMAND
-      ${Python3_EXECUTABLE} ${packer} --output ${fmu} --sundials ${SUNDIALS_SOURCE} ${licences} --binary
-      ${wheel_platform}=$<TARGET_FILE:${target}>
+      ${Python3_EXECUTABLE} ${packer} --output ${fmu} --sundials ${SUNDIALS_SOURCE} ${licences} --platform
+      ${wheel_platform} --library $<TARGET_FILE:${target}>
     DEPENDS ${target} ${packer} ${contents} modelDescription.xml LICENSE
     COMMENT "Packing wheel.fmu"
   )

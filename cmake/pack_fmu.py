@@ -13,15 +13,7 @@ import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ENDINGS = {"linux64": ".so", "aarch64-linux": ".so", "win64": ".dll", "darwin64": ".dylib", "aarch64-darwin": ".dylib"}
 FIGURES = ("wheel.png", "paper_diagrams.png")
-# Linked in by the cross compiler itself: its run-time, in part ported from musl, and those of C++ and of Windows.
-ZIG_LICENCES = {
-    "zig-license.txt": "LICENSE",
-    "libcxx-license.txt": "lib/libcxx/LICENSE.TXT",
-    "mingw-w64-license.txt": "lib/libc/mingw/COPYING",
-    "musl-license.txt": "lib/libc/musl/COPYRIGHT",
-}
 Content = Path | bytes
 
 
@@ -46,26 +38,19 @@ def licences(arguments: argparse.Namespace) -> dict[str, Content]:
     if arguments.libm:
         entries["fdlibm-notice.txt"] = notice(arguments.libm / "s_sin.c")
         entries["arm-math-license.txt"] = notice(arguments.libm / "pow.c")
-    if arguments.zig:
-        entries |= {name: arguments.zig / path for name, path in ZIG_LICENCES.items()}
     return {f"licenses/{name}": content for name, content in entries.items()}
 
 
-def contents(
-    binaries: dict[str, Path], licence_texts: dict[str, Content], evidence: Path | None = None
-) -> dict[str, Content]:
+def contents(platform: str, library: Path, licence_texts: dict[str, Content]) -> dict[str, Content]:
     """Archive name of every entry and what goes into it."""
     entries: dict[str, Content] = {"modelDescription.xml": ROOT / "modelDescription.xml", **licence_texts}
     archive = ROOT / "fmu-src" / "archive"
     for path in archive.rglob("*"):
         if path.is_file():
             entries[path.relative_to(archive).as_posix()] = path
-    for path in sorted(evidence.iterdir()) if evidence else ():
-        entries[f"extra/org.fmi-standard.fmi-ls-ref/{path.name}"] = path
     for name in FIGURES:
         entries[f"documentation/{name}"] = ROOT / "docs" / "figures" / name
-    for platform, path in binaries.items():
-        entries[f"binaries/{platform}/wheel{ENDINGS.get(platform, path.suffix)}"] = path
+    entries[f"binaries/{platform}/wheel{library.suffix}"] = library
     return entries
 
 
@@ -89,15 +74,10 @@ def main() -> None:
     parser.add_argument(
         "--libm", type=Path, help="folder of libm's sources, for their notices, where they are linked in"
     )
-    parser.add_argument("--zig", type=Path, help="folder of ziglang where it is the compiler, for what it links in")
-    parser.add_argument("--evidence", type=Path, help="folder of the evidence of a release")
-    parser.add_argument("--binary", action="append", default=[], help="platform=library")
+    parser.add_argument("--platform", required=True, help="folder of the library in the archive")
+    parser.add_argument("--library", type=Path, required=True)
     arguments = parser.parse_args()
-    binaries = {}
-    for pair in arguments.binary:
-        platform, path = pair.split("=", 1)
-        binaries[platform] = Path(path)
-    pack(contents(binaries, licences(arguments), arguments.evidence), arguments.output)
+    pack(contents(arguments.platform, arguments.library, licences(arguments)), arguments.output)
 
 
 if __name__ == "__main__":

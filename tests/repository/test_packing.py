@@ -3,7 +3,6 @@
 No part of the paper. The cross compiler is not needed here; scripts/release checks the libraries themselves.
 """
 
-import argparse
 import shutil
 import struct
 import subprocess
@@ -15,10 +14,10 @@ import pytest
 from support.paths import ROOT, build_folder
 
 sys.path.insert(0, str(ROOT / "cmake"))
-sys.path.insert(0, str(ROOT / "tools" / "release"))
 import pack_fmu
-import universal
 from description.numbering import guid_of
+
+from release import fmu as released
 
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 CLAUSES = (
@@ -61,33 +60,26 @@ def test_the_licence_of_eigen_is_packed_in_full_beside_ours_and_that_of_sundials
     assert not contains(notice, "Limitation of Liability")  # the partner: our own words about it
 
 
-def release(tmp_path: Path, left_out: str = "") -> dict[str, pack_fmu.Content]:
-    """The licences of a release whose compiler is an empty shell of ziglang, without one of its files."""
-    for name in pack_fmu.ZIG_LICENCES.values():
+@pytest.mark.parametrize("left_out", released.LICENCES.values())
+def test_a_release_carries_the_licences_of_what_the_cross_compiler_links_in(tmp_path, left_out):
+    for name in released.LICENCES.values():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        if name != left_out:
-            (tmp_path / name).write_text(name)
-    arguments = argparse.Namespace(sundials=tmp_path, fmi_headers=HEADERS, eigen_license=None, libm=None, zig=tmp_path)
-    (tmp_path / "NOTICE").write_text("NOTICE")
-    return pack_fmu.licences(arguments)
-
-
-def test_a_release_carries_the_licences_of_what_the_cross_compiler_links_in(tmp_path):
-    entries = release(tmp_path / "whole")
-    names = {"zig", "musl", "mingw-w64", "libcxx", "sundials"}
-    assert {f"licenses/{name}-license.txt" for name in names} <= set(entries)
+        (tmp_path / name).write_text(name)
+    entries = released.licences(tmp_path)
+    assert {f"licenses/{name}-license.txt" for name in ("zig", "musl", "mingw-w64", "libcxx")} == set(entries)
     pack_fmu.pack(entries, tmp_path / "whole.fmu")
+    (tmp_path / left_out).unlink()
     with pytest.raises(FileNotFoundError):  # a licence that is not found is not passed over
-        pack_fmu.pack(release(tmp_path / "less", "lib/libc/musl/COPYRIGHT"), tmp_path / "less.fmu")
+        pack_fmu.pack(entries, tmp_path / "less.fmu")
 
 
 def mach_o(processor: int, size: int) -> bytes:
-    return struct.pack("<III", universal.MACHO_64, processor, 0).ljust(size, bytes([processor & 0xFF]))
+    return struct.pack("<III", released.MACHO_64, processor, 0).ljust(size, bytes([processor & 0xFF]))
 
 
 def test_the_universal_library_holds_each_processors_library_whole_and_on_its_page():
     libraries = {X86_64: mach_o(X86_64, PAGE + 5), ARM64: mach_o(ARM64, 3 * PAGE - 1)}
-    joined = universal.universal([*libraries.values()])
+    joined = released.universal([*libraries.values()])
     magic, count = struct.unpack_from(">II", joined)
     assert (magic, count) == (0xCAFEBABE, 2)
     for k, (processor, library) in enumerate(libraries.items()):
@@ -96,7 +88,7 @@ def test_the_universal_library_holds_each_processors_library_whole_and_on_its_pa
         assert joined[offset : offset + size] == library
         assert joined[offset + 1 : offset + 1 + size] != library
     with pytest.raises(ValueError, match="not a 64-bit Mach-O"):
-        universal.universal([b"\x7fELF".ljust(64, b"\0")])
+        released.universal([b"\x7fELF".ljust(64, b"\0")])
 
 
 def test_the_guid_is_the_digest_of_the_variables(description):
@@ -154,7 +146,7 @@ def test_a_local_build_on_arm_linux_is_where_fmpy_looks_for_it(tmp_path):
     runs = {}
     for folder in ((tmp_path / "folder").read_text(), "aarch64-linux"):  # that of a release is the partner
         fmu = tmp_path / f"{folder}.fmu"
-        pack_fmu.pack(pack_fmu.contents({folder: build_folder() / "wheel.so"}, {}), fmu)
+        pack_fmu.pack(pack_fmu.contents(folder, build_folder() / "wheel.so", {}), fmu)
         runs[folder] = subprocess.run([sys.executable, "-c", ON_ARM, fmu], capture_output=True, text=True, check=False)
     assert [run.returncode for run in runs.values()] == [0, 1], runs
     assert "cannot be simulated on the current platform" in runs["aarch64-linux"].stderr

@@ -1,6 +1,6 @@
 """Runs the Windows library of a release by FMPy itself: FMPy's remoting starts it under wine and talks to it by TCP.
 
-by_fmpy.py FMU REPORT, with `wine64` on the path. Scenes of the paper, SI units.
+python -m release.by_fmpy FMU, with `wine64` on the path: prints a line of the report. Scenes of the paper, SI units.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def trajectory(folder: Path, s: float) -> np.ndarray:
 
 
 def main() -> None:
-    fmu, report = (Path(argument) for argument in sys.argv[1:])
+    fmu = Path(sys.argv[1])
     if problems := validate_fmu(str(fmu)):
         raise SystemExit(f"{fmu}: {problems}")
     with tempfile.TemporaryDirectory() as scratch:
@@ -48,10 +48,10 @@ def main() -> None:
             here, there = trajectory(linux, s), trajectory(windows, s)
             if len(here) != 1001 or here.tobytes() != there.tobytes():
                 raise SystemExit(f"FMPy under wine gives another {scene} wheel than on Linux.")
-    report.write_text(
-        f"FMPy {fmpy.__version__} finds no fault in the FMU. It simulated the paper's two scenes with the Windows\n"
-        f"library, through its remoting and wine, and with the Linux library: {len(here.dtype) - 1} outputs at\n"
-        f"{len(here)} instants, bit-identical.\n"
+    print(
+        f"FMPy {fmpy.__version__} finds no fault in the FMU. It simulated the paper's two scenes with the Windows "
+        f"library, through its remoting and wine, and with the Linux library: {len(here.dtype) - 1} outputs at "
+        f"{len(here)} instants, bit-identical."
     )
 
 
