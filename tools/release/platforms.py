@@ -1,37 +1,64 @@
-"""Runs ten scenes on every platform that this machine can run.
-
-The driver (driver.c) is compiled by zig for each platform; Windows runs under wine, arm under qemu, WebAssembly
-in wasmtime. macOS is only built. Scenes of the paper, SI units.
+"""Runs a release on every platform that this machine can run: Windows under wine, arm under qemu, WebAssembly in
+wasmtime. macOS is only built. Scenes of the paper, SI units.
 """
 
 from __future__ import annotations
 
+import contextlib
+import io
+import os
+import re
+import shutil
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import fmpy
 import wasmtime
+from fmpy.util import add_remoting
+from fmpy.validation import validate_fmu
 
 from publishing import markdown
-from release.compiling import ROOT, compiler, wasm
+from release.compiling import ROOT, WASM, build
 from release.fmu import ARM, LINUX, WINDOWS
 
 DESCRIPTION = fmpy.read_model_description(str(ROOT), validate=False)
-Scenes = dict[str, str]  # the digest of each scene's trajectory, all bits
+OUTPUTS = [v.name for v in DESCRIPTION.modelVariables if v.causality == "output"]
+WINE = shutil.which("wine64") or "/usr/lib/wine/wine64"
+# FMPy's server ends itself when it can write to its lock file, as root always can: it is started without one.
+WITHOUT_LOCK = f'#!/bin/sh\nexec {WINE} "$1" "$2"\n'
 
 
-def build_driver(platform: str, out: Path) -> Path:
-    driver = out / platform / ("driver.exe" if platform == WINDOWS else "driver")
-    headers = (Path(fmpy.__file__).parent / "c-code", ROOT / "tests" / "support", out / platform / "generated")
-    system = [] if platform == WINDOWS else ["-ldl"]
-    source = [f"-I{folder}" for folder in headers] + [ROOT / "tools" / "release" / "driver.c"]
-    subprocess.run([compiler() / "zig", "cc", "-target", platform, "-O1", *source, "-o", driver, *system], check=True)
-    return driver
+def start_wine(out: Path, scratch: Path) -> None:
+    path = f"{scratch}:{os.environ['PATH']}"
+    os.environ |= {"WINEPREFIX": str(out / "wine"), "WINEDEBUG": "-all", "PATH": path}
+    # Its first start makes a folder, which takes a while.
+    subprocess.run([WINE, "wineboot", "--init"], capture_output=True, check=False)
+    (scratch / "wine64").write_text(WITHOUT_LOCK)
+    (scratch / "wine64").chmod(0o755)
+
+
+def by_fmpy(fmu: Path, scratch: Path) -> str:
+    """FMPy's remoting starts the Windows library under wine and talks to it by TCP."""
+    if problems := validate_fmu(str(fmu)):
+        raise SystemExit(f"{fmu}: {problems}")
+    windows = fmpy.extract(fmu, scratch / "windows")
+    shutil.rmtree(scratch / "windows" / "binaries" / "linux64")
+    add_remoting(windows, "linux64", "win64")
+    for scene, s in {"free": 0.0, "friction": 0.03}.items():
+        with contextlib.redirect_stdout(io.StringIO()):  # the remoting tells each attempt to connect
+            runs = [fmpy.simulate_fmu(place, start_values={"s": s}, output=OUTPUTS) for place in (str(fmu), windows)]
+        if len(runs[0]) != 1001 or runs[0].tobytes() != runs[1].tobytes():
+            raise SystemExit(f"FMPy under wine gives another {scene} wheel than on Linux.")
+    return (
+        f"FMPy {fmpy.__version__} finds no fault in the FMU. It simulated the paper's two scenes with the Windows "
+        f"library, through its remoting and wine, and with the Linux library: {len(OUTPUTS)} outputs at 1001 instants, "
+        "bit-identical."
+    )
 
 
 def run(*command: str | Path) -> str:
-    """What a driver prints."""
+    """What a driver prints (driver.c)."""
     done = subprocess.run([*command, DESCRIPTION.guid], capture_output=True, text=True, timeout=900, check=False)
     if done.returncode:
         raise SystemExit(f"{' '.join(map(str, command))} failed: {done.stderr[-500:]}")
@@ -39,17 +66,17 @@ def run(*command: str | Path) -> str:
 
 
 def run_wasm(program: Path) -> str:
-    """What a WebAssembly program of WASI prints in wasmtime."""
+    """The same in wasmtime."""
     printed = program.with_suffix(".out")
     configuration = wasmtime.WasiConfig()
     configuration.argv = [program.name, "linked in", DESCRIPTION.guid]
-    configuration.stdout_file = str(printed)
+    configuration.stdout_file = printed
     configuration.inherit_stderr()
     store = wasmtime.Store()
     store.set_wasi(configuration)
     linker = wasmtime.Linker(store.engine)
     linker.define_wasi()
-    start = linker.instantiate(store, wasmtime.Module.from_file(store.engine, str(program))).exports(store)["_start"]
+    start = linker.instantiate(store, wasmtime.Module.from_file(store.engine, program)).exports(store)["_start"]
     try:
         start(store)
     except wasmtime.ExitTrap as ended:
@@ -58,28 +85,42 @@ def run_wasm(program: Path) -> str:
     return printed.read_text()
 
 
-def printed(out: Path, wine: str, old: tuple[str, Path] | None) -> Iterator[tuple[str, str]]:
+def old_glibc(folder: Path) -> str:
+    """The version of the C library of an older Debian, fetched into a folder; nothing if it cannot be had."""
+    command = [ROOT / "tools" / "release" / "old_glibc", "bullseye", folder]
+    if subprocess.run(command, check=False).returncode:
+        return ""
+    (package,) = folder.glob("libc6_*.deb")
+    return f"glibc {re.match(r'libc6_([0-9.]*)', package.name)[1]}"
+
+
+def printed(out: Path, glibc: str, libc: Path) -> Iterator[tuple[str, str]]:
     """The name of each place where a library runs, and what the driver prints there."""
-    linux, arm, windows = (build_driver(platform, out) for platform in (LINUX, ARM, WINDOWS))
-    library = out / LINUX / "wheel.so"
-    yield "linux64", run(linux, library)
-    if old:
-        name, libc = old
-        yield f"linux64, {name}", run(libc / "ld-linux-x86-64.so.2", "--library-path", libc, linux, library)
-    yield "this machine's compiler", run(linux, ROOT / "build" / "release" / "wheel.so")
-    yield "win64, wine", run(wine, windows, out / WINDOWS / "wheel.dll")
-    yield "aarch64-linux, qemu", run("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", arm, out / ARM / "wheel.so")
-    yield "wasm32, wasmtime", run_wasm(wasm(out / "wasm32-wasi", "wheel_driver"))
+    for platform in (LINUX, ARM, WINDOWS, WASM):
+        build(out / platform, platform, "wheel_driver")
+    driver, library = out / LINUX / "wheel_driver", out / LINUX / "wheel.so"
+    yield "linux64", run(driver, library)
+    if glibc:
+        yield f"linux64, {glibc}", run(libc / "ld-linux-x86-64.so.2", "--library-path", libc, driver, library)
+    yield "this machine's compiler", run(driver, ROOT / "build" / "release" / "wheel.so")
+    yield "win64, wine", run(WINE, out / WINDOWS / "wheel_driver.exe", out / WINDOWS / "wheel.dll")
+    arm = out / ARM
+    yield (
+        "aarch64-linux, qemu",
+        run("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", arm / "wheel_driver", arm / "wheel.so"),
+    )
+    yield "wasm32, wasmtime", run_wasm(out / WASM / "wheel_driver.wasm")
 
 
-def scenes(*place: object) -> dict[str, Scenes]:
-    return {name: dict(line.split("\t") for line in text.splitlines()) for name, text in printed(*place)}
-
-
-def table(run: dict[str, Scenes]) -> str:
-    """A row for each scene; the digest on the first platform, and on each other one whether it is equal."""
-    first, *others = run.values()
-    rows = []
-    for scene, digest in first.items():
-        rows.append([scene, digest, *("equal" if other[scene] == digest else other[scene] for other in others)])
-    return markdown.table(["scene", *run], rows)
+def scenes(out: Path, scratch: Path) -> dict[str, object]:
+    """For the page: a row for each scene, with the digest on the first platform and whether the others are equal."""
+    glibc = old_glibc(scratch)
+    places = printed(out, glibc, scratch / "root" / "lib" / "x86_64-linux-gnu")
+    digests = {place: dict(line.split("\t") for line in text.splitlines()) for place, text in places}
+    first, *others = digests.values()
+    rows = [
+        [scene, digest, *("equal" if other[scene] == digest else other[scene] for other in others)]
+        for scene, digest in first.items()
+    ]
+    different = [scene for scene, _, *equal in rows if {*equal} != {"equal"}]
+    return {"old": glibc, "run": markdown.table(["scene", *digests], rows), "different": different}
