@@ -5,12 +5,11 @@ python -m release.folder: whether the versions agree.
 
 from __future__ import annotations
 
-import gzip
 import hashlib
 import re
 import shutil
+import subprocess
 import sys
-import tarfile
 from pathlib import Path
 
 from publishing.markdown import ROOT
@@ -46,21 +45,9 @@ def notes(changelog: str, number: str) -> tuple[str, bool]:
 
 def pack(site: Path, archive: Path) -> None:
     """The site in one file; the same content gives the same bytes."""
-
-    def plain(entry: tarfile.TarInfo) -> tarfile.TarInfo:
-        entry.uid = entry.gid = entry.mtime = 0
-        entry.uname = entry.gname = ""
-        entry.mode = 0o755 if entry.isdir() else 0o644
-        return entry
-
-    with (
-        archive.open("wb") as raw,
-        gzip.GzipFile("", "wb", 9, raw, mtime=0) as file,
-        tarfile.open(fileobj=file, mode="w") as tar,
-    ):
-        for path in sorted(site.rglob("*")):
-            name = Path("wheel-site") / path.relative_to(site)
-            tar.add(path, str(name), recursive=False, filter=plain)
+    plain = ["--sort=name", "--mtime=@0", "--owner=0", "--group=0", "--numeric-owner", "--mode=u=rwX,go=rX"]
+    folder = ["--transform=s,^[.],wheel-site,", "-C", site, "."]
+    subprocess.run(["tar", "--format=gnu", *plain, "-I", "gzip -9n", "-cf", archive, *folder], check=True)
 
 
 def write(out: Path, fmu: Path, site: Path, text: str) -> None:
