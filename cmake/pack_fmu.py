@@ -26,24 +26,12 @@ def notice(source: Path) -> bytes:
     return (textwrap.dedent("\n".join(lines)).strip() + "\n").encode()
 
 
-def licences(arguments: argparse.Namespace) -> dict[str, Content]:
-    entries: dict[str, Content] = {
-        "license.txt": ROOT / "LICENSE",
-        "sundials-license.txt": arguments.sundials / "LICENSE",
-        "sundials-notice.txt": arguments.sundials / "NOTICE",
-        "fmi-headers-notice.txt": notice(arguments.fmi_headers / "fmi2Functions.h"),
-    }
-    if arguments.eigen_license:
-        entries["eigen-license.txt"] = arguments.eigen_license
-    if arguments.libm:
-        entries["fdlibm-notice.txt"] = notice(arguments.libm / "s_sin.c")
-        entries["arm-math-license.txt"] = notice(arguments.libm / "pow.c")
-    return {f"licenses/{name}": content for name, content in entries.items()}
-
-
-def contents(platform: str, library: Path, licence_texts: dict[str, Content]) -> dict[str, Content]:
+def contents(platform: str, library: Path, licences: dict[str, Content]) -> dict[str, Content]:
     """Archive name of every entry and what goes into it."""
-    entries: dict[str, Content] = {"modelDescription.xml": ROOT / "modelDescription.xml", **licence_texts}
+    entries: dict[str, Content] = {
+        "modelDescription.xml": ROOT / "modelDescription.xml",
+        "licenses/license.txt": ROOT / "LICENSE",
+    } | licences
     archive = ROOT / "fmu-src" / "archive"
     for path in archive.rglob("*"):
         if path.is_file():
@@ -68,16 +56,15 @@ def pack(entries: dict[str, Content], output: Path) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, required=True)
-    parser.add_argument("--sundials", type=Path, required=True, help="SUNDIALS source, for its licence")
-    parser.add_argument("--fmi-headers", type=Path, required=True, help="folder of the FMI headers, for their notice")
-    parser.add_argument("--eigen-license", type=Path, help="Eigen's licence")
-    parser.add_argument(
-        "--libm", type=Path, help="folder of libm's sources, for their notices, where they are linked in"
-    )
     parser.add_argument("--platform", required=True, help="folder of the library in the archive")
     parser.add_argument("--library", type=Path, required=True)
+    texts = {"action": "append", "nargs": 2, "default": [], "metavar": ("NAME", "FILE")}
+    parser.add_argument("--licence", **texts, help="a file of licences/ in the archive")
+    parser.add_argument("--notice", **texts, help="the same, out of a comment of a source")
     arguments = parser.parse_args()
-    pack(contents(arguments.platform, arguments.library, licences(arguments)), arguments.output)
+    licences: dict[str, Content] = {f"licenses/{name}": Path(file) for name, file in arguments.licence}
+    licences |= {f"licenses/{name}": notice(Path(file)) for name, file in arguments.notice}
+    pack(contents(arguments.platform, arguments.library, licences), arguments.output)
 
 
 if __name__ == "__main__":
