@@ -29,18 +29,21 @@ function(add_fmu target)
     NO_DEFAULT_PATH
     NO_CMAKE_FIND_ROOT_PATH
   )
-  set(licences --fmi-headers ${FMI2_INCLUDE_DIR})
+  set(licences --licence sundials-license.txt ${SUNDIALS_SOURCE}/LICENSE)
+  list(APPEND licences --licence sundials-notice.txt ${SUNDIALS_SOURCE}/NOTICE)
+  list(APPEND licences --notice fmi-headers-notice.txt ${FMI2_INCLUDE_DIR}/fmi2Functions.h)
   if(EIGEN_LICENSE)
-    list(APPEND licences --eigen-license ${EIGEN_LICENSE})
+    list(APPEND licences --licence eigen-license.txt ${EIGEN_LICENSE})
   endif()
   if(TARGET libm)
-    list(APPEND licences --libm ${LIBM_FOLDER})
+    list(APPEND licences --notice fdlibm-notice.txt ${LIBM_FOLDER}/s_sin.c)
+    list(APPEND licences --notice arm-math-license.txt ${LIBM_FOLDER}/pow.c)
   endif()
   add_custom_command(
     OUTPUT ${fmu}
     COMMAND
-      ${Python3_EXECUTABLE} ${packer} --output ${fmu} --sundials ${SUNDIALS_SOURCE} ${licences} --binary
-      ${wheel_platform}=$<TARGET_FILE:${target}>
+      ${Python3_EXECUTABLE} ${packer} --output ${fmu} ${licences} --platform ${wheel_platform} --library
+      $<TARGET_FILE:${target}>
     DEPENDS ${target} ${packer} ${contents} modelDescription.xml LICENSE
     COMMENT "Packing wheel.fmu"
   )

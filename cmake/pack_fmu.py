@@ -13,15 +13,7 @@ import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ENDINGS = {"linux64": ".so", "aarch64-linux": ".so", "win64": ".dll", "darwin64": ".dylib", "aarch64-darwin": ".dylib"}
 FIGURES = ("wheel.png", "paper_diagrams.png")
-# Linked in by the cross compiler itself: its run-time, in part ported from musl, and those of C++ and of Windows.
-ZIG_LICENCES = {
-    "zig-license.txt": "LICENSE",
-    "libcxx-license.txt": "lib/libcxx/LICENSE.TXT",
-    "mingw-w64-license.txt": "lib/libc/mingw/COPYING",
-    "musl-license.txt": "lib/libc/musl/COPYRIGHT",
-}
 Content = Path | bytes
 
 
@@ -34,38 +26,19 @@ def notice(source: Path) -> bytes:
     return (textwrap.dedent("\n".join(lines)).strip() + "\n").encode()
 
 
-def licences(arguments: argparse.Namespace) -> dict[str, Content]:
-    entries: dict[str, Content] = {
-        "license.txt": ROOT / "LICENSE",
-        "sundials-license.txt": arguments.sundials / "LICENSE",
-        "sundials-notice.txt": arguments.sundials / "NOTICE",
-        "fmi-headers-notice.txt": notice(arguments.fmi_headers / "fmi2Functions.h"),
-    }
-    if arguments.eigen_license:
-        entries["eigen-license.txt"] = arguments.eigen_license
-    if arguments.libm:
-        entries["fdlibm-notice.txt"] = notice(arguments.libm / "s_sin.c")
-        entries["arm-math-license.txt"] = notice(arguments.libm / "pow.c")
-    if arguments.zig:
-        entries |= {name: arguments.zig / path for name, path in ZIG_LICENCES.items()}
-    return {f"licenses/{name}": content for name, content in entries.items()}
-
-
-def contents(
-    binaries: dict[str, Path], licence_texts: dict[str, Content], evidence: Path | None = None
-) -> dict[str, Content]:
+def contents(platform: str, library: Path, licences: dict[str, Content]) -> dict[str, Content]:
     """Archive name of every entry and what goes into it."""
-    entries: dict[str, Content] = {"modelDescription.xml": ROOT / "modelDescription.xml", **licence_texts}
+    entries: dict[str, Content] = {
+        "modelDescription.xml": ROOT / "modelDescription.xml",
+        "licenses/license.txt": ROOT / "LICENSE",
+    } | licences
     archive = ROOT / "fmu-src" / "archive"
     for path in archive.rglob("*"):
         if path.is_file():
             entries[path.relative_to(archive).as_posix()] = path
-    for path in sorted(evidence.iterdir()) if evidence else ():
-        entries[f"extra/org.fmi-standard.fmi-ls-ref/{path.name}"] = path
     for name in FIGURES:
         entries[f"documentation/{name}"] = ROOT / "docs" / "figures" / name
-    for platform, path in binaries.items():
-        entries[f"binaries/{platform}/wheel{ENDINGS.get(platform, path.suffix)}"] = path
+    entries[f"binaries/{platform}/wheel{library.suffix}"] = library
     return entries
 
 
@@ -83,21 +56,15 @@ def pack(entries: dict[str, Content], output: Path) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, required=True)
-    parser.add_argument("--sundials", type=Path, required=True, help="SUNDIALS source, for its licence")
-    parser.add_argument("--fmi-headers", type=Path, required=True, help="folder of the FMI headers, for their notice")
-    parser.add_argument("--eigen-license", type=Path, help="Eigen's licence")
-    parser.add_argument(
-        "--libm", type=Path, help="folder of libm's sources, for their notices, where they are linked in"
-    )
-    parser.add_argument("--zig", type=Path, help="folder of ziglang where it is the compiler, for what it links in")
-    parser.add_argument("--evidence", type=Path, help="folder of the evidence of a release")
-    parser.add_argument("--binary", action="append", default=[], help="platform=library")
+    parser.add_argument("--platform", required=True, help="folder of the library in the archive")
+    parser.add_argument("--library", type=Path, required=True)
+    texts = {"action": "append", "nargs": 2, "default": [], "metavar": ("NAME", "FILE")}
+    parser.add_argument("--licence", **texts, help="a file of licences/ in the archive")
+    parser.add_argument("--notice", **texts, help="the same, out of a comment of a source")
     arguments = parser.parse_args()
-    binaries = {}
-    for pair in arguments.binary:
-        platform, path = pair.split("=", 1)
-        binaries[platform] = Path(path)
-    pack(contents(binaries, licences(arguments), arguments.evidence), arguments.output)
+    licences: dict[str, Content] = {f"licenses/{name}": Path(file) for name, file in arguments.licence}
+    licences |= {f"licenses/{name}": notice(Path(file)) for name, file in arguments.notice}
+    pack(contents(arguments.platform, arguments.library, licences), arguments.output)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,6 @@ function(fetch_sundials source_dir)
     set(cache ${CMAKE_SOURCE_DIR}/build/sundials)
   endif()
   set(${source_dir} ${cache}/${sundials_crate}/vendor PARENT_SCOPE)
-  set(WHEEL_SUNDIALS_FETCHED ${cache}/${sundials_crate}/vendor CACHE INTERNAL "")
   file(MAKE_DIRECTORY ${cache})
   file(LOCK ${cache}/lock GUARD FUNCTION TIMEOUT 900)
   set(stamp ${cache}/complete)
@@ -68,17 +67,12 @@ function(add_sundials)
     fetch_sundials(source)
   endif()
   foreach(
-    package
-    ARKODE
-    CVODES
-    IDA
-    IDAS
-    KINSOL
-  )
-    set(BUILD_${package} OFF CACHE INTERNAL "")
-  endforeach()
-  foreach(
     off
+    BUILD_ARKODE
+    BUILD_CVODES
+    BUILD_IDA
+    BUILD_IDAS
+    BUILD_KINSOL
     BUILD_SHARED_LIBS
     EXAMPLES_ENABLE_C
     EXAMPLES_INSTALL

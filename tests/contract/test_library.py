@@ -1,6 +1,5 @@
 """The library and the archive as files: what they need, export, contain and carry of licences."""
 
-import argparse
 import importlib.util
 import shutil
 import struct
@@ -16,9 +15,9 @@ from support.paths import ROOT, build_folder
 from contract.call_states import TABLE
 
 sys.path.insert(0, str(ROOT / "cmake"))
-sys.path.insert(0, str(ROOT / "tools" / "release"))
 import pack_fmu
-import universal
+
+from release import fmu as released
 
 pytestmark = pytest.mark.local
 # Beside those of the table of call states.
@@ -146,44 +145,36 @@ def test_the_archive_carries_the_licences_word_for_word(fmu):
         assert contains(text, notice) and not contains(text, notice.replace("must reproduce", "should reproduce"))
 
 
-def release(tmp_path: Path, left_out: str = "") -> dict[str, pack_fmu.Content]:
-    """The licences of a release whose compiler is an empty shell of ziglang, without one of its files."""
-    for name in pack_fmu.ZIG_LICENCES.values():
+@pytest.mark.parametrize("left_out", released.LICENCES.values())
+def test_a_release_carries_the_licences_of_what_the_cross_compiler_links_in(tmp_path, left_out):
+    for name in released.LICENCES.values():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        if name != left_out:
-            (tmp_path / name).write_text(name)
-    arguments = argparse.Namespace(sundials=tmp_path, fmi_headers=HEADERS, eigen_license=None, libm=None, zig=tmp_path)
-    (tmp_path / "NOTICE").write_text("NOTICE")
-    return pack_fmu.licences(arguments)
-
-
-def test_a_release_carries_the_licences_of_what_the_cross_compiler_links_in(tmp_path):
-    entries = release(tmp_path / "whole")
-    assert {f"licenses/{name}-license.txt" for name in ("zig", "musl", "mingw-w64", "libcxx", "sundials")} <= set(
-        entries
-    )
+        (tmp_path / name).write_text(name)
+    entries = released.licences(tmp_path)
+    assert {f"licenses/{name}-license.txt" for name in ("zig", "musl", "mingw-w64", "libcxx")} == set(entries)
     pack_fmu.pack(entries, tmp_path / "whole.fmu")
+    (tmp_path / left_out).unlink()
     with pytest.raises(FileNotFoundError):  # a licence that is not found is not passed over
-        pack_fmu.pack(release(tmp_path / "less", "lib/libc/musl/COPYRIGHT"), tmp_path / "less.fmu")
+        pack_fmu.pack(entries, tmp_path / "less.fmu")
 
 
 PAGE, X86_64, ARM64 = 1 << 14, 0x01000007, 0x0100000C
 
 
 def mach_o(processor: int, size: int) -> bytes:
-    return struct.pack("<III", universal.MACHO_64, processor, 0).ljust(size, bytes([processor & 0xFF]))
+    return struct.pack("<III", released.MACHO_64, processor, 0).ljust(size, bytes([processor & 0xFF]))
 
 
 def test_the_universal_library_holds_each_processors_library_whole_and_on_its_page():
     libraries = {X86_64: mach_o(X86_64, PAGE + 5), ARM64: mach_o(ARM64, 3 * PAGE - 1)}
-    joined = universal.universal([*libraries.values()])
+    joined = released.universal([*libraries.values()])
     assert struct.unpack_from(">II", joined) == (0xCAFEBABE, 2)
     for k, (processor, library) in enumerate(libraries.items()):
         kind, _, offset, size, alignment = struct.unpack_from(">5I", joined, 8 + 20 * k)
         assert (kind, size, offset % PAGE, 1 << alignment) == (processor, len(library), 0, PAGE)
         assert joined[offset : offset + size] == library != joined[offset + 1 : offset + 1 + size]
     with pytest.raises(ValueError, match="not a 64-bit Mach-O"):
-        universal.universal([b"\x7fELF".ljust(64, b"\0")])
+        released.universal([b"\x7fELF".ljust(64, b"\0")])
 
 
 # A project without languages: what cmake/fmi.cmake makes of a machine.
@@ -217,7 +208,7 @@ def test_a_local_build_on_arm_linux_is_where_fmpy_looks_for_it(tmp_path):
     runs = {}
     for folder in ((tmp_path / "folder").read_text(), "aarch64-linux"):  # that of a release is the partner
         fmu = tmp_path / f"{folder}.fmu"
-        pack_fmu.pack(pack_fmu.contents({folder: build_folder() / "wheel.so"}, {}), fmu)
+        pack_fmu.pack(pack_fmu.contents(folder, build_folder() / "wheel.so", {}), fmu)
         runs[folder] = subprocess.run([sys.executable, "-c", ON_ARM, fmu], capture_output=True, text=True, check=False)
     assert [run.returncode for run in runs.values()] == [0, 1], runs
     assert "cannot be simulated on the current platform" in runs["aarch64-linux"].stderr

@@ -17,7 +17,7 @@ from lxml import etree
 from support.paths import ROOT
 
 from publishing import prose, variables
-from publishing.documents import PLACE, UnknownFigure, pages, read_figures, with_figures
+from publishing.documents import PLACE, UnknownFigure, pages, read_figures, reflowed, with_figures
 from publishing.markdown import number
 
 RESULTS = ROOT / "docs" / "results"
@@ -59,6 +59,17 @@ def test_an_unknown_figure_is_refused_and_a_known_one_is_filled(tmp_path: Path) 
     assert with_figures(page, figures) == "an error of <!-- = report.error -->4e-8<!-- . -->."
     with pytest.raises(UnknownFigure, match="asks for report.time"):
         with_figures("<!-- = report.time --><!-- . -->", figures)
+
+
+# Markdown takes a comment that opens a line or an item for a block of HTML.
+BROKEN = re.compile(r"^[ \t]*(?:(?:[-*+>]|\d+\.) +)*<!-- =", re.MULTILINE)
+
+
+def test_no_line_begins_with_a_marked_figure_which_would_break_its_paragraph() -> None:
+    assert [name for name, text in TEXTS.items() if name.endswith(".md") and BROKEN.search(text)] == []
+    broken = "The run takes\n<!-- = commands.disk_run -->0.8<!-- . --> GB.\n"
+    assert BROKEN.search(broken) and BROKEN.search("- <!-- = commands.disk_run -->0.8<!-- . --> GB")
+    assert reflowed(broken) == "The run\ntakes <!-- = commands.disk_run -->0.8<!-- . --> GB.\n"
 
 
 SHORT = {4.04e-8: "4e-8", 3.46e-9: "3.5e-9", 1.25e-3: "0.00125", 0.0: "0", 123456.0: "1.2e5", 37: "37", inf: "inf"}
@@ -190,7 +201,7 @@ GOOD = (
     "DOP853 restarts cheaply after a discontinuity.",
     "Parameters are initialized; 3 metres is `what tells by itself`.",
     "$the unit$ and\n\n```\nsame bits\n```\n",
-    "<!-- table = x -->\n\n| told, of its own |\n\n<!-- end of table -->",
+    "<!-- variables -->\n\n| told, of its own |\n\n<!-- end of variables -->",
 )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from matplotlib.axes import Axes
 from matplotlib.patches import FancyBboxPatch
 
 from diagrams import style
@@ -12,28 +11,26 @@ from diagrams import style
 ARROW = {"arrowstyle": "-|>,head_width=0.18,head_length=0.36", "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0}
 
 
-def _box(ax: Axes, x: float, y: float, w: float, h: float, title: str, text: str, color: str) -> None:
-    look = {"boxstyle": "round,pad=0,rounding_size=2", "linewidth": 1.0, "edgecolor": color, "facecolor": "white"}
-    ax.add_patch(FancyBboxPatch((x, y), w, h, **look))
-    ax.text(x + w / 2, y + h - 5, title, ha="center", va="center", fontsize=10, color=color)
-    ax.text(x + w / 2, y + (h - 7) / 2, text, ha="center", va="center", fontsize=8, linespacing=1.5)
-
-
-def _arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float], text: str, color: str) -> None:
-    ax.annotate("", end, start, arrowprops={**ARROW, "color": color})
-    ax.text((start[0] + end[0]) / 2, start[1] + 1.6, text, ha="center", va="bottom", fontsize=8, linespacing=1.4)
-
-
-def _signals(ax: Axes) -> None:
-    """The arrows between the boxes."""
-    pose = r"$X_O\;Y_O\;Z_O\;\dot X_O\;\dot Y_O\;\dot Z_O\;\psi\;\theta\;\dot\psi\;\dot\theta$"
-    motion = r"$\dot\varphi\;\omega_z\;\psi\;\dot\psi\;\theta\;\dot\theta\;\;\lambda_x\;\lambda_y\;\lambda_3\;\tau$"
-    _arrow(ax, (58, 70), (124, 70), r"$F_X\;F_Y\;F_Z$ at $O$;  $M_1$ camber, $M_2$ toe", style.BLUE)
-    _arrow(ax, (124, 55), (58, 55), pose, style.INK)
-    _arrow(ax, (58, 31), (124, 31), r"$M_3$ drive torque;  $M_\mathrm{brake}$ capacity of the brake", style.GREEN)
-    _arrow(ax, (124, 16), (58, 16), motion, style.INK)
-    when = "values and first derivatives at every communication point"
-    ax.text(91, 40.5, when, ha="center", fontsize=7.5, color=style.GREY)
+LOOK = {"boxstyle": "round,pad=0,rounding_size=2", "linewidth": 1.0, "facecolor": "white"}
+# Left, bottom, width and height in mm; title, text and colour.
+BOXES = (
+    (124, 4, 52, 76, "wheel.fmu", "torus wheel on the ground\nrolling without slip\nrolling friction $s$", style.INK),
+    (6, 48, 52, 32, "suspension", "springs, dampers, body\n(quarter_car.fmu)", style.BLUE),
+    (6, 4, 52, 32, "drive, brake, driver", "controller, motor\n(balance.fmu)", style.GREEN),
+)
+# Start and end in X, and height in mm; signals and colour.
+SIGNALS = (
+    (58, 124, 70, r"$F_X\;F_Y\;F_Z$ at $O$;  $M_1$ camber, $M_2$ toe", style.BLUE),
+    (124, 58, 55, r"$X_O\;Y_O\;Z_O\;\dot X_O\;\dot Y_O\;\dot Z_O\;\psi\;\theta\;\dot\psi\;\dot\theta$", style.INK),
+    (58, 124, 31, r"$M_3$ drive torque;  $M_\mathrm{brake}$ capacity of the brake", style.GREEN),
+    (
+        124,
+        58,
+        16,
+        r"$\dot\varphi\;\omega_z\;\psi\;\dot\psi\;\theta\;\dot\theta\;\;\lambda_x\;\lambda_y\;\lambda_3\;\tau$",
+        style.INK,
+    ),
+)
 
 
 def draw(stem: Path) -> None:
@@ -44,11 +41,15 @@ def draw(stem: Path) -> None:
     ax.set_xlim(0, style.PAGE)
     ax.set_ylim(0, 88)
     ax.axis("off")
-    wheel = "torus wheel on the ground\nrolling without slip\nrolling friction $s$"
-    _box(ax, 124, 4, 52, 76, "wheel.fmu", wheel, style.INK)
-    _box(ax, 6, 48, 52, 32, "suspension", "springs, dampers, body\n(quarter_car.fmu)", style.BLUE)
-    _box(ax, 6, 4, 52, 32, "drive, brake, driver", "controller, motor\n(balance.fmu)", style.GREEN)
-    _signals(ax)
+    for x, y, w, h, title, text, color in BOXES:
+        ax.add_patch(FancyBboxPatch((x, y), w, h, edgecolor=color, **LOOK))
+        ax.text(x + w / 2, y + h - 5, title, ha="center", va="center", fontsize=10, color=color)
+        ax.text(x + w / 2, y + (h - 7) / 2, text, ha="center", va="center", fontsize=8, linespacing=1.5)
+    for start, end, y, text, color in SIGNALS:
+        ax.annotate("", (end, y), (start, y), arrowprops={**ARROW, "color": color})
+        ax.text((start + end) / 2, y + 1.6, text, ha="center", va="bottom", fontsize=8, linespacing=1.4)
+    when = "values and first derivatives at every communication point"
+    ax.text(91, 40.5, when, ha="center", fontsize=7.5, color=style.GREY)
     style.save(fig, stem)
 
 

@@ -7,7 +7,6 @@ diagram_NAME_SCENE, and leave those of the paper in place. All as SVG and PNG. F
 beside.
 """
 
-import argparse
 import re
 import sys
 from collections.abc import Callable, Sequence
@@ -21,6 +20,7 @@ from diagrams import panels, style
 from diagrams.scene import Scene, SceneError, read_scene
 from diagrams.start_values import PAPER_S, ROOT, RUN, outputs, variables
 
+RESULTS = ROOT / "results"
 SETTINGS = variables("parameter", "input")
 NO_BREAK = "\u00a0"  # a space at which no line ends
 PITCH = 3.4  # mm from one line of a caption to the next
@@ -97,7 +97,7 @@ def events_of(scene: Scene) -> list[str]:
     if phases and not count:
         return [r"$\omega_z$ is held at zero all the time (stick)."]
     bands = [r"Bands, thick among the rates: stick ($\omega_z$ held at zero)."] if phases else []
-    ticks = [r"Ticks at the top: $\omega_z$ changes sign."] if scene.reversals() else []
+    ticks = [r"Ticks at the top: $\omega_z$ changes sign."] if len(scene.reversals()) else []
     return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene.time[-1]:.3g} s.", *bands, *ticks]
 
 
@@ -191,20 +191,15 @@ def draw_all(scenes: Sequence[Scene], out: Path) -> list[Path]:
 
 def main() -> int:
     """Draw everything; a fault of the input is one sentence on stderr and exit status 1."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    results = ROOT / "results"
-    parser.add_argument("--results", type=Path, default=results, help="where the CSV files are")
-    parser.add_argument("--out", type=Path, help="where the figures go (default: the same)")
-    arguments = parser.parse_args()
     style.use_style()
     try:
-        scenes = [read_scene(arguments.results / f"{name}.csv", ("time", *outputs())) for name in ("free", "friction")]
+        scenes = [read_scene(RESULTS / f"{name}.csv", ("time", *outputs())) for name in ("free", "friction")]
     except SceneError as fault:
         print(f"run: {fault}", file=sys.stderr)
         return 1
     if scenes[0].value("r") > scenes[0].value("r_0"):
         print("run: r > r_0: this torus intersects itself; the model rolls it all the same.", file=sys.stderr)
-    print("\n".join(str(path) for path in draw_all(scenes, arguments.out or arguments.results)))
+    print("\n".join(str(path) for path in draw_all(scenes, RESULTS)))
     return 0
 
 

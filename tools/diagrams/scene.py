@@ -51,14 +51,11 @@ class Scene:
         return self.value(name) if name in self.columns else 0.0
 
     @cached_property
-    def mode(self) -> NDArray[np.int_]:
-        """-1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero (it sticks)."""
-        return self["friction_mode"].astype(int)
-
-    @cached_property
-    def _changes(self) -> NDArray[np.int_]:
-        """Rows whose mode differs from the next row's."""
-        return np.flatnonzero(np.diff(self.mode))
+    def transitions(self) -> tuple[NDArray[np.int_], Array]:
+        """Rows whose friction mode differs from the next row's, and the instants half-way: the mode is the sign of
+        omega_z while it rolls, 0 while it is held at zero (it sticks); without friction and brake there are none."""
+        rows = np.flatnonzero(np.diff(self["friction_mode"])) if self.resisted else np.array([], dtype=int)
+        return rows, (self.time[rows] + self.time[rows + 1]) / 2
 
     @property
     def one_arc(self) -> bool:
@@ -78,25 +75,16 @@ class Scene:
         """Whether the rates keep their values."""
         return max(np.ptp(self["psi_dot"]), np.ptp(self["phi_dot"])) <= STILL
 
-    def _instant(self, row: int) -> float:
-        """A transition between row and row + 1, placed half-way."""
-        return 0.5 * float(self.time[row] + self.time[row + 1])
-
     def stick_phases(self) -> list[tuple[float, float]]:
         """Begin and end in s of every phase with omega_z held at zero."""
-        if not self.resisted:
-            return []
-        edges = [float(self.time[0])]
-        edges += [self._instant(row) for row in self._changes]
-        edges.append(float(self.time[-1]))
-        modes = [self.mode[0], *self.mode[self._changes + 1]]
-        spans = zip(modes, edges[:-1], edges[1:], strict=True)
-        return [(begin, end) for mode, begin, end in spans if mode == 0]
+        rows, instants = self.transitions
+        modes, edges = self["friction_mode"][[*rows, -1]], [self.time[0], *instants, self.time[-1]]
+        return [edges[k : k + 2] for k in np.flatnonzero(modes == 0)] if self.resisted else []
 
-    def reversals(self) -> list[float]:
+    def reversals(self) -> Array:
         """Instants in s at which omega_z changes sign without a stick phase."""
-        rows = self._changes if self.resisted else []
-        return [self._instant(row) for row in rows if self.mode[row] * self.mode[row + 1] < 0]
+        rows, instants = self.transitions
+        return instants[self["friction_mode"][rows] * self["friction_mode"][rows + 1] < 0]
 
     def smooth(self, subdivision: int, *names: str) -> tuple[Array, ...]:
         """Columns with points between the rows, for curves that turn sharply.
@@ -109,24 +97,16 @@ class Scene:
 
 
 def read_scene(path: Path, needed: tuple[str, ...]) -> Scene:
-    """Read a CSV file; every column of `needed` must be there, with finite numbers."""
+    """Read a CSV file; every column of `needed` must be there."""
     try:
         with path.open(encoding="utf-8") as file:
             table = np.genfromtxt(file, delimiter=",", names=True, ndmin=1, dtype=None, encoding="utf-8")
-    except OSError as fault:
-        raise SceneError(f"{path} cannot be read ({fault.strerror}): simulate first.") from fault
-    except ValueError as fault:
-        raise SceneError(f"{path} is not a table: its rows have different lengths.") from fault
+    except (OSError, ValueError) as fault:
+        raise SceneError(f"{path} cannot be read as a table ({fault}): simulate first.") from fault
     if missing := [name for name in needed if name not in (table.dtype.names or ())]:
         raise SceneError(f"{path} lacks the column {', '.join(missing)}.")
-    if len(table) < 2:
-        raise SceneError(f"{path} has {len(table)} rows of data; a curve needs at least two.")
     scene = Scene(path, {name: np.asarray(table[name], dtype=float) for name in needed})
-    for name in needed:
-        if name != "mu_required" and not np.isfinite(scene[name]).all():  # it has no value where N = 0
-            row = np.flatnonzero(~np.isfinite(scene[name]))[0] + 1
-            raise SceneError(f"{path} has no finite number for {name} in data row {row}.")
-    if scene.time[-1] <= scene.time[0]:
+    if len(table) < 2 or scene.time[-1] <= scene.time[0]:
         why = (scene.ending or "stands at one instant").replace("$", "")
         raise SceneError(f"{path} has no motion to draw: the wheel {why}.")
     return scene

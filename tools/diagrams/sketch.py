@@ -19,17 +19,6 @@ HALO = [withStroke(linewidth=1.7, foreground="white")]
 
 
 @dataclass(frozen=True)
-class Pen:
-    """How a line looks; `hidden` is the opacity of its dashed part behind the wheel."""
-
-    color: str
-    width: float = 1.0
-    style: str = "-"
-    hidden: float = 0.0
-    layer: float = 3.0
-
-
-@dataclass(frozen=True)
 class Sketch:
     """A drawing of one wheel in one view."""
 
@@ -37,27 +26,24 @@ class Sketch:
     wheel: Wheel
     view: View
 
-    def line(self, points: Array, pen: Pen) -> None:
-        """A polyline; what the wheel covers is dashed or left out."""
+    def line(self, points: Array, color: str, width: float, hidden: float = 0.0, layer: float = 3.0) -> None:
+        """A polyline; hidden: the opacity of its dashed part behind the wheel, which is left out without it."""
         points = _refine(np.asarray(points, dtype=float))
-        flat = self.view.project(points)
-        covered = self.view.hides(self.wheel, points)
-        look = {"color": pen.color, "linewidth": pen.width, "solid_capstyle": "butt"}
-        shown = np.where(covered[:, None], np.nan, flat)
-        self.ax.plot(*shown.T, linestyle=pen.style, zorder=pen.layer, **look)
-        if pen.hidden and covered.any():
-            behind = np.where(covered[:, None], flat, np.nan)
-            look |= {"alpha": pen.hidden, "dashes": (2.5, 1.8), "linewidth": 0.8 * pen.width}
-            self.ax.plot(*behind.T, zorder=pen.layer, **look)
+        covered = self.view.hides(self.wheel, points)[:, None]
+        looks = [(~covered, width, {})]
+        if hidden and covered.any():
+            looks.append((covered, 0.8 * width, {"alpha": hidden, "dashes": (2.5, 1.8)}))
+        for shown, linewidth, look in looks:
+            part = np.where(shown, self.view.project(points), np.nan)
+            self.ax.plot(*part.T, color=color, lw=linewidth, zorder=layer, solid_capstyle="butt", **look)
 
-    def arrow(self, points: Array, pen: Pen, head: float = 8.0) -> None:
+    def arrow(self, points: Array, color: str, width: float, hidden: float = 0.0) -> None:
         """A polyline with a head at its last point."""
         points = _refine(np.asarray(points, dtype=float))
-        self.line(points, pen)
+        self.line(points, color, width, hidden)
         tail, tip = self.view.project(points[[-3, -1]])
-        look = {"mutation_scale": head, "color": pen.color, "linewidth": 0, "shrinkA": 0, "shrinkB": 0}
-        shape = "-|>,head_length=0.45,head_width=0.17"
-        self.ax.add_patch(FancyArrowPatch(tail, tip + 0.3 * (tip - tail), arrowstyle=shape, zorder=pen.layer, **look))
+        look = {"arrowstyle": "-|>,head_length=0.45,head_width=0.17", "mutation_scale": 8.0, "shrinkA": 0, "shrinkB": 0}
+        self.ax.add_patch(FancyArrowPatch(tail, tip + 0.3 * (tip - tail), color=color, lw=0, zorder=3.0, **look))
 
     def dot(self, point: Array, color: str, size: float = 4.0) -> None:
         """A point, never hidden."""

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from scipy.spatial.transform import Rotation
 
 from diagrams.scene import Array
 
@@ -34,9 +35,7 @@ class Wheel:
     @cached_property
     def carrier(self) -> Array:
         """Columns e1, e2, e3 in fixed axes: [psi][theta] of (3)."""
-        cp, sp = np.cos(self.psi), np.sin(self.psi)
-        ct, st = np.cos(self.theta), np.sin(self.theta)
-        return np.array([[cp, -sp * ct, sp * st], [sp, cp * ct, -cp * st], [0.0, st, ct]])
+        return Rotation.from_euler("ZX", [self.psi, self.theta]).as_matrix()
 
     @cached_property
     def centre(self) -> Array:

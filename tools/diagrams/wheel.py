@@ -13,10 +13,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
+from scipy.spatial.transform import Rotation
 
 from diagrams import style
 from diagrams.scene import Array, Scene, SceneError, read_scene
-from diagrams.sketch import Pen, Sketch
+from diagrams.sketch import Sketch
 from diagrams.torus import View, Wheel, draw
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,7 +32,6 @@ ICON = 176  # pixels
 SUBDIVISION = 5  # drawn points of the path per row
 ICON_FILE = ROOT / "fmu-src" / "archive" / "model.png"
 GROUND = ((-0.9, 0.3), (-0.4, 0.7))  # m, X and Y of the grid
-Z = np.array([0.0, 0.0, 1.0])
 
 CARRIER = "#00507C"
 ANGLE = "#00704F"
@@ -41,75 +41,69 @@ SMALL = {"fontsize": 8.0, "color": "#5A5A5A"}
 
 def draw_ground(sketch: Sketch, path: Array) -> None:
     """A grid of 0.1 m, the fixed axes, and the path of the contact point."""
-    pen = Pen("#D9DCDF", 0.5, layer=0)
-    (x0, x1), (y0, y1) = GROUND
-    for x in np.arange(round(10 * x0), round(10 * x1) + 1) / 10:
-        sketch.line([(x, y0, 0), (x, y1, 0)], pen)
-    for y in np.arange(round(10 * y0), round(10 * y1) + 1) / 10:
-        sketch.line([(x0, y, 0), (x1, y, 0)], pen)
-    sketch.line(path, Pen(PATH, 1.3, layer=1.5))
+    for along, (low, high) in enumerate(GROUND):
+        ends = np.zeros((2, 3))
+        ends[:, 1 - along] = GROUND[1 - along]
+        for ends[:, along] in np.arange(round(10 * low), round(10 * high) + 1) / 10:
+            sketch.line(ends, "#D9DCDF", 0.5, layer=0)
+    sketch.line(path, PATH, 1.3, layer=1.5)
     leftmost = path[np.argmin(sketch.view.project(path)[:, 0])]
     look = {"ha": "left", "fontsize": 8.5, "color": PATH, "linespacing": 1.0}
     sketch.label(leftmost, "path of the\ncontact point", (14, 0), **look)
     for axis, name, shift in zip(np.eye(3), "XYZ", ((-7, -5), (9, -3), (0, 8)), strict=True):
-        sketch.arrow([0 * axis, 0.25 * axis], Pen(style.INK, 1.2))
+        sketch.arrow([0 * axis, 0.25 * axis], style.INK, 1.2)
         sketch.label(0.25 * axis, f"${name}$", shift)
 
 
 def draw_carrier(sketch: Sketch) -> None:
     """O and the axes e1, e2, e3, which do not spin with the wheel."""
-    wheel = sketch.wheel
-    pen = Pen(CARRIER, 1.3, hidden=0.6)
-    ends = ((0.42, (9, 2)), (0.19, (-9, 3)), (0.50, (10, 2)))
-    for i, (length, shift) in enumerate(ends):
-        tip = wheel.centre + length * wheel.carrier[:, i]
-        sketch.arrow([wheel.centre, tip], pen)
+    centre = sketch.wheel.centre
+    for i, (length, shift) in enumerate(((0.42, (9, 2)), (0.19, (-9, 3)), (0.50, (10, 2)))):
+        tip = centre + length * sketch.wheel.carrier[:, i]
+        sketch.arrow([centre, tip], CARRIER, 1.3, hidden=0.6)
         sketch.label(tip, rf"$\mathbf{{e}}_{i + 1}$", shift, color=CARRIER)
-    sketch.dot(wheel.centre, style.INK)
-    sketch.label(wheel.centre, "$O$", (-9, -4))
+    sketch.dot(centre, style.INK)
+    sketch.label(centre, "$O$", (-9, -4))
 
 
 def draw_angles(sketch: Sketch) -> None:
     """psi from X to e1 on the ground, theta from Z to e3, phi from e1 to the body's x axis."""
-    wheel = sketch.wheel
-    thin, arc = Pen(style.GREY, 0.7, hidden=0.5), Pen(ANGLE, 1.1, hidden=0.5)
-    e1 = wheel.carrier[:, 0]
-    psi, phi = wheel.psi % (2 * np.pi), wheel.phi % (2 * np.pi)
-    turn = np.linspace(0.0, 1.0, 80)
-    sweep = turn * psi
-    ground = np.stack([np.cos(sweep), np.sin(sweep), 0 * sweep], axis=1)
-    for direction, name, shift in ((ground[0], "X", (-2, -6)), (e1, r"\mathbf{e}_1", (4, 7))):
-        end = wheel.contact + 0.24 * direction
-        sketch.line([wheel.contact, end], thin)
-        sketch.label(end, f"${name}$", shift, **SMALL)
-    sketch.arrow(wheel.contact + 0.20 * ground, arc)
-    sketch.label(wheel.contact + 0.20 * ground[36], r"$\psi$", (8, -7), color=ANGLE)
-    tilt = turn * wheel.theta
-    lean = wheel.carrier[:, 2] - Z * np.cos(wheel.theta)
-    lean /= np.linalg.norm(lean)
-    rise = np.cos(tilt)[:, None] * Z + np.sin(tilt)[:, None] * lean
-    sketch.line([wheel.centre, wheel.centre + 0.235 * Z], thin)
-    sketch.label(wheel.centre + 0.235 * Z, "$Z$", (-5, -2), **SMALL)
-    sketch.arrow(wheel.centre + 0.13 * rise, arc)
-    sketch.label(wheel.centre + 0.13 * rise[16], r"$\theta$", (3, 8), color=ANGLE)
-    sketch.line([wheel.centre, wheel.centre + (R_0 - R) * wheel.rim(phi)], thin)
-    spin = wheel.rim(turn * phi)
-    sketch.arrow(wheel.centre + 0.20 * spin, arc)
-    sketch.label(wheel.centre + 0.20 * spin[12], r"$\varphi$", (-8, -1), color=ANGLE)
-    sketch.label(wheel.centre + (R_0 + 1.2 * R) * wheel.rim(phi), "$x$", (6, 5))
+    wheel, turn = sketch.wheel, np.linspace(0.0, 1.0, 80)
+
+    def arc(start: Array, axis: Array, angle: float, radius: float, name: str, row: int, shift: tuple) -> None:
+        way = Rotation.from_rotvec(np.outer(turn * angle, axis)).apply(start)
+        sketch.arrow(centre + radius * way, ANGLE, 1.1, hidden=0.5)
+        sketch.label(centre + radius * way[row], name, shift, color=ANGLE)
+
+    def side(end: Array, name: str = "", shift: tuple = (0, 0)) -> None:
+        sketch.line([centre, centre + end], style.GREY, 0.7, hidden=0.5)
+        sketch.label(centre + end, name, shift, **SMALL)
+
+    (e1, _, _), (X, _, Z) = wheel.carrier.T, np.eye(3)
+    centre = wheel.contact
+    side(0.24 * X, "$X$", (-2, -6))
+    side(0.24 * e1, r"$\mathbf{e}_1$", (4, 7))
+    arc(X, Z, wheel.psi % (2 * np.pi), 0.20, r"$\psi$", 36, (8, -7))
+    centre = wheel.centre
+    side(0.235 * Z, "$Z$", (-5, -2))
+    arc(Z, e1, wheel.theta, 0.13, r"$\theta$", 16, (3, 8))
+    phi = wheel.phi % (2 * np.pi)
+    side((R_0 - R) * wheel.rim(phi))
+    arc(e1, wheel.carrier[:, 2], phi, 0.20, r"$\varphi$", 12, (-8, -1))
+    sketch.label(centre + (R_0 + 1.2 * R) * wheel.rim(phi), "$x$", (6, 5))
 
 
 def draw_radii(sketch: Sketch) -> None:
     """r_0 from O to the tube's centre, r from there down to the contact point."""
     wheel = sketch.wheel
-    pen = Pen(style.INK, 1.0, hidden=1.0, layer=5)
-    sketch.line([wheel.centre, wheel.tube_centre], pen)
-    sketch.line([wheel.tube_centre, wheel.contact], pen)
+    for start, end, name, shift in (
+        (wheel.centre, wheel.tube_centre, "$r_0$", (-9, 0)),
+        (wheel.tube_centre, wheel.contact, "$r$", (-6, 0)),
+    ):
+        sketch.line([start, end], style.INK, 1.0, hidden=1.0, layer=5)
+        sketch.label(0.5 * (start + end), name, shift)
     sketch.dot(wheel.tube_centre, style.INK, 2.6)
     sketch.dot(wheel.contact, PATH)
-    middle = 0.5 * (wheel.centre + wheel.tube_centre)
-    sketch.label(middle, "$r_0$", (-9, 0))
-    sketch.label(0.5 * (wheel.tube_centre + wheel.contact), "$r$", (-6, 0))
 
 
 def draw_picture(scene: Scene, stem: Path) -> list[Path]:

@@ -2,8 +2,7 @@
 
 A place in Markdown or HTML is `<!-- = report.figure -->4e-8<!-- . -->`: the comment names a row of
 docs/results/data/report.csv, which `scripts/report` measures, and what stands up to the next comment is written here.
-Between `<!-- table = name -->` and `<!-- end of table -->` stands docs/results/data/name.csv as a table; between
-`<!-- file = path -->` and `<!-- end of file -->` a file as code; after `<!-- variables -->` all variables.
+After `<!-- variables -->` stand all variables.
 No line begins with a place: Markdown takes a comment at the beginning of a line for a block of HTML, which ends the
 paragraph. With --check nothing is changed; the exit status is 1 where a page differs from the data or breaks the rule.
 """
@@ -19,16 +18,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from publishing import variables
-from publishing.markdown import ROOT, number, table
+from publishing.markdown import ROOT, number
 
 DATA = ROOT / "docs" / "results" / "data"
 PLACE = re.compile(r"(<!-- = ([\w.]+) -->)(.*?)(<!-- \. -->)", re.DOTALL)
-TABLE = re.compile(r"(<!-- table = (\w+) -->)(.*?)(<!-- end of table -->)", re.DOTALL)
-FILE = re.compile(r"(<!-- file = ([\w./]+) -->)(.*?)(<!-- end of file -->)", re.DOTALL)
 # The end of a line, from the last word that may begin one, and the place that begins the next line.
 WORD = r"(?:<!-- = [\w.]+ -->[^\n]*?<!-- \. -->|\S)+"
 BEGINNING = re.compile(rf" ((?![-+*=#>|<]){WORD}(?: [-+*=#>|]\S*)*)\n([ \t]*)(?=<!-- = )")
-SCIENTIFIC = re.compile(r"[\d.]+e-?\d+")
 
 
 class UnknownFigure(Exception):
@@ -46,29 +42,15 @@ def read_figures(folder: Path = DATA) -> dict[str, str]:
     return figures
 
 
-def csv_table(path: Path) -> str:
-    """A CSV file in Markdown."""
-    with path.open(newline="", encoding="utf-8") as file:
-        head, *rows = csv.reader(file)
-    return table(head, [[float(cell) if SCIENTIFIC.fullmatch(cell) else cell for cell in row] for row in rows])
-
-
-def with_figures(text: str, figures: Mapping[str, str], name: str = "the page", folder: Path = DATA) -> str:
-    """The page's text with every marked place and table filled."""
+def with_figures(text: str, figures: Mapping[str, str], name: str = "the page") -> str:
+    """The page's text with every marked place filled."""
 
     def fill(place: re.Match[str]) -> str:
         if place[2] not in figures:
             raise UnknownFigure(f"{name} asks for {place[2]}, which no report has measured.")
         return f"{place[1]}{figures[place[2]]}{place[4]}"
 
-    def fill_table(place: re.Match[str]) -> str:
-        return f"{place[1]}\n\n{csv_table(folder / f'{place[2]}.csv')}\n\n{place[4]}"
-
-    def fill_file(place: re.Match[str]) -> str:
-        source = ROOT / place[2]
-        return f"{place[1]}\n\n```{source.suffix[1:]}\n{source.read_text(encoding='utf-8')}```\n\n{place[4]}"
-
-    return FILE.sub(fill_file, TABLE.sub(fill_table, PLACE.sub(fill, text)))
+    return PLACE.sub(fill, text)
 
 
 def reflowed(text: str) -> str:

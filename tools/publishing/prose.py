@@ -43,7 +43,7 @@ VOCABULARY = {
     "British spelling with -ize": r"colors?|(?-i:gray)|behaviors?|meters?|centers?|modeling|modeled",  # Gray is a name
 }
 BLANKED = re.compile(
-    r"^ *```.*?^ *```|^ {4}\S[^\n]*$|`[^`\n]*`|<!-- (?:table|variables|file).*?<!-- end of \w+ -->|<!--.*?-->|"
+    r"^ *```.*?^ *```|^ {4}\S[^\n]*$|`[^`\n]*`|<!-- variables -->.*?<!-- end of variables -->|<!--.*?-->|"
     r"\$\$.*?\$\$|\$[^$\n]+\$|\]\([^)]*\)|\"[^\"\n]{1,200}\"|\b[\w./-]+\.(?:md|py|cpp|hpp|csv|fmu)\b",
     re.DOTALL | re.MULTILINE,
 )

@@ -1,20 +1,19 @@
 """The folder that is given away: the archive, the site, notes from CHANGELOG.md, and the sums of all three.
 
-python -m release.folder [--check] [--fmu FMU --site FOLDER --out FOLDER]; --check: only whether the versions agree.
+python -m release.folder: whether the versions agree.
 """
 
 from __future__ import annotations
 
-import argparse
-import gzip
 import hashlib
 import re
 import shutil
+import subprocess
 import sys
-import tarfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from publishing.markdown import ROOT
+
 VERSIONS = {
     "CMakeLists.txt": r"project\(wheel VERSION (\S+)",
     "modelDescription.xml": r'\bversion="([^"]+)" license',
@@ -46,21 +45,9 @@ def notes(changelog: str, number: str) -> tuple[str, bool]:
 
 def pack(site: Path, archive: Path) -> None:
     """The site in one file; the same content gives the same bytes."""
-
-    def plain(entry: tarfile.TarInfo) -> tarfile.TarInfo:
-        entry.uid = entry.gid = entry.mtime = 0
-        entry.uname = entry.gname = ""
-        entry.mode = 0o755 if entry.isdir() else 0o644
-        return entry
-
-    with (
-        archive.open("wb") as raw,
-        gzip.GzipFile("", "wb", 9, raw, mtime=0) as file,
-        tarfile.open(fileobj=file, mode="w") as tar,
-    ):
-        for path in sorted(site.rglob("*")):
-            name = Path("wheel-site") / path.relative_to(site)
-            tar.add(path, str(name), recursive=False, filter=plain)
+    plain = ["--sort=name", "--mtime=@0", "--owner=0", "--group=0", "--numeric-owner", "--mode=u=rwX,go=rX"]
+    folder = ["--transform=s,^[.],wheel-site,", "-C", site, "."]
+    subprocess.run(["tar", "--format=gnu", *plain, "-I", "gzip -9n", "-cf", archive, *folder], check=True)
 
 
 def write(out: Path, fmu: Path, site: Path, text: str) -> None:
@@ -73,24 +60,24 @@ def write(out: Path, fmu: Path, site: Path, text: str) -> None:
     (out / "SHA256SUMS").write_text("".join(f"{digest}  {name}\n" for digest, name in sums), encoding="utf-8")
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true")
-    for name in ("fmu", "site", "out"):
-        parser.add_argument(f"--{name}", type=Path)
-    arguments = parser.parse_args()
+def described() -> tuple[str, str]:
+    """The version and its notes."""
     number = version()
     text, draft = notes((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), number)
     if draft:
         print(f"CHANGELOG.md has a section {DRAFT}: give it the version and the date before you tag.", file=sys.stderr)
-    if arguments.check:
-        return
-    write(arguments.out, arguments.fmu, arguments.site, text)
-    print(f"{arguments.out} holds {', '.join(sorted(path.name for path in arguments.out.iterdir()))}. To tag it:")
-    print(f"  git tag -a v{number} -F {arguments.out / 'NOTES.md'} --cleanup=whitespace")
+    return number, text
+
+
+def publish(fmu: Path, site: Path) -> None:
+    number, text = described()
+    out = (ROOT / "build" / f"wheel-{number}").relative_to(Path.cwd())
+    write(out, fmu, site, text)
+    print(f"{out} holds {', '.join(sorted(path.name for path in out.iterdir()))}. To tag it:")
+    print(f"  git tag -a v{number} -F {out / 'NOTES.md'} --cleanup=whitespace")
     print(f"  git push origin v{number}")
     print("and attach the files of the folder; who has them checks them with sha256sum -c SHA256SUMS.")
 
 
 if __name__ == "__main__":
-    main()
+    described()

@@ -1,18 +1,20 @@
 """Judges the libraries of a release as files: processor, exports, imports, oldest system; no part of the paper.
 
-libraries.py FOLDER REPORT. Each rule is checked on every library; the first that is broken ends the release.
+Each rule is checked on every library; the first that is broken ends the release.
 """
 
 from __future__ import annotations
 
 import hashlib
 import struct
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 import lief
+
+from publishing import markdown
+from release.fmu import ARM, ARM_MAC, LINUX, UNIVERSAL, WINDOWS
 
 GLIBC_FLOOR = (2, 17)
 MACOS_FLOOR = [11, 0, 0]
@@ -108,29 +110,21 @@ def judge(facts: Facts) -> None:
 
 
 def libraries(folder: Path) -> Iterator[Facts]:
-    yield linux("linux64", folder / "x86_64-linux-gnu.2.17" / "wheel.so", lief.ELF.ARCH.X86_64)
-    yield linux("aarch64-linux", folder / "aarch64-linux-gnu.2.17" / "wheel.so", lief.ELF.ARCH.AARCH64)
-    yield windows("win64", folder / "x86_64-windows-gnu" / "wheel.dll")
-    yield macos("darwin64 (x86-64)", folder / "wheel.dylib", lief.MachO.Header.CPU_TYPE.X86_64)
-    yield macos("darwin64 (arm64)", folder / "wheel.dylib", lief.MachO.Header.CPU_TYPE.ARM64)
-    yield macos("aarch64-darwin", folder / "aarch64-macos.11.0" / "wheel.dylib", lief.MachO.Header.CPU_TYPE.ARM64)
+    yield linux("linux64", folder / LINUX / "wheel.so", lief.ELF.ARCH.X86_64)
+    yield linux("aarch64-linux", folder / ARM / "wheel.so", lief.ELF.ARCH.AARCH64)
+    yield windows("win64", folder / WINDOWS / "wheel.dll")
+    yield macos("darwin64 (x86-64)", folder / UNIVERSAL, lief.MachO.Header.CPU_TYPE.X86_64)
+    yield macos("darwin64 (arm64)", folder / UNIVERSAL, lief.MachO.Header.CPU_TYPE.ARM64)
+    yield macos("aarch64-darwin", folder / ARM_MAC / "wheel.dylib", lief.MachO.Header.CPU_TYPE.ARM64)
 
 
-def row(facts: Facts) -> str:
-    mathematics = ", ".join(sorted(facts.imports & EXACT)) or "nothing"
-    needs = ", ".join(sorted(Path(n).name for n in facts.needs))
-    return f"| {facts.name} | {facts.size / 1e3:.0f} kB | {facts.oldest} | {needs} | {mathematics} |"
-
-
-def main() -> None:
-    folder, report = (Path(argument) for argument in sys.argv[1:])
+def table(folder: Path) -> str:
+    """What was found of each library, all of them judged."""
     lief.logging.disable()
-    lines = ["| library | size | loads from | needs | of the system's mathematics |", "|---|---|---|---|---|"]
+    rows = []
     for facts in libraries(folder):
         judge(facts)
-        lines.append(row(facts))
-    report.write_text("\n".join(lines) + "\n")
-
-
-if __name__ == "__main__":
-    main()
+        mathematics = ", ".join(sorted(facts.imports & EXACT)) or "nothing"
+        needs = ", ".join(sorted(Path(name).name for name in facts.needs))
+        rows.append([facts.name, f"{facts.size / 1e3:.0f} kB", facts.oldest, needs, mathematics])
+    return markdown.table(["library", "size", "loads from", "needs", "of the system's mathematics"], rows)

@@ -1,128 +1,126 @@
-"""Runs ten scenes on every platform that this machine can run and writes docs/results/platforms.md.
-
-The driver (driver.c) is compiled by zig for each platform; Windows runs under wine, arm under qemu, WebAssembly
-in wasmtime. macOS is only built. Scenes of the paper, SI units.
+"""Runs a release on every platform that this machine can run: Windows under wine, arm under qemu, WebAssembly in
+wasmtime. macOS is only built. Scenes of the paper, SI units.
 """
 
 from __future__ import annotations
 
-import argparse
+import contextlib
+import io
 import os
+import re
+import shutil
 import subprocess
-import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 import fmpy
+import wasmtime
+from fmpy.util import add_remoting
+from fmpy.validation import validate_fmu
 
 from publishing import markdown
+from release.compiling import ROOT, WASM, build
+from release.fmu import ARM, LINUX, WINDOWS
 
-ROOT = Path(__file__).resolve().parents[2]
-HERE = Path(__file__).parent
 DESCRIPTION = fmpy.read_model_description(str(ROOT), validate=False)
-WASM = "wasm32-wasi"
-LINUX, ARM, WINDOWS = "x86_64-linux-gnu.2.17", "aarch64-linux-gnu.2.17", "x86_64-windows-gnu"
+OUTPUTS = [v.name for v in DESCRIPTION.modelVariables if v.causality == "output"]
+WINE = shutil.which("wine64") or "/usr/lib/wine/wine64"
+# FMPy's server ends itself when it can write to its lock file, as root always can: it is started without one.
+WITHOUT_LOCK = f'#!/bin/sh\nexec {WINE} "$1" "$2"\n'
 
 
-class Place(NamedTuple):
-    """Where a library runs: the driver's target, the command in front of the driver, the library."""
-
-    name: str
-    target: str
-    runner: list[str]
-    library: Path
-
-
-Scenes = dict[str, str]  # the digest of each scene's trajectory, all bits
+def start_wine(out: Path, scratch: Path) -> None:
+    path = f"{scratch}:{os.environ['PATH']}"
+    os.environ |= {"WINEPREFIX": str(out / "wine"), "WINEDEBUG": "-all", "PATH": path}
+    # Its first start makes a folder, which takes a while.
+    subprocess.run([WINE, "wineboot", "--init"], capture_output=True, check=False)
+    (scratch / "wine64").write_text(WITHOUT_LOCK)
+    (scratch / "wine64").chmod(0o755)
 
 
-def build_driver(zig: Path, target: str, folder: Path) -> Path:
-    rows = [ROOT / "cmake" / "variable_rows.py", ROOT / "modelDescription.xml", folder / "variables.inc"]
-    subprocess.run([sys.executable, *map(str, rows)], check=True)
-    driver = folder / target / ("driver.exe" if target == WINDOWS else "driver")
-    headers = (Path(fmpy.__file__).parent / "c-code", ROOT / "tests" / "support", folder)
-    command = [zig / "zig", "cc", "-target", target, "-O1", *(f"-I{path}" for path in headers), HERE / "driver.c"]
-    system = [] if target == WINDOWS else ["-ldl"]
-    subprocess.run([*map(str, command), "-o", str(driver), *system], check=True)
-    return driver
+def by_fmpy(fmu: Path, scratch: Path) -> str:
+    """FMPy's remoting starts the Windows library under wine and talks to it by TCP."""
+    if problems := validate_fmu(str(fmu)):
+        raise SystemExit(f"{fmu}: {problems}")
+    windows = fmpy.extract(fmu, scratch / "windows")
+    shutil.rmtree(scratch / "windows" / "binaries" / "linux64")
+    add_remoting(windows, "linux64", "win64")
+    for scene, s in {"free": 0.0, "friction": 0.03}.items():
+        with contextlib.redirect_stdout(io.StringIO()):  # the remoting tells each attempt to connect
+            runs = [fmpy.simulate_fmu(place, start_values={"s": s}, output=OUTPUTS) for place in (str(fmu), windows)]
+        if len(runs[0]) != 1001 or runs[0].tobytes() != runs[1].tobytes():
+            raise SystemExit(f"FMPy under wine gives another {scene} wheel than on Linux.")
+    return (
+        f"FMPy {fmpy.__version__} finds no fault in the FMU. It simulated the paper's two scenes with the Windows "
+        f"library, through its remoting and wine, and with the Linux library: {len(OUTPUTS)} outputs at 1001 instants, "
+        "bit-identical."
+    )
 
 
-def run_scenes(place: Place, driver: Path) -> Scenes:
-    command = [*place.runner, str(driver), str(place.library), DESCRIPTION.guid]
-    quiet = os.environ | {"WINEDEBUG": "-all"}
-    result = subprocess.run(command, capture_output=True, text=True, timeout=900, check=False, env=quiet)
-    if result.returncode:
-        raise SystemExit(f"{place.name}: {' '.join(command)} failed: {result.stderr[-500:]}")
-    return dict(line.split("\t") for line in result.stdout.splitlines())
+def run(*command: str | Path) -> str:
+    """What a driver prints (driver.c)."""
+    done = subprocess.run([*command, DESCRIPTION.guid], capture_output=True, text=True, timeout=900, check=False)
+    if done.returncode:
+        raise SystemExit(f"{' '.join(map(str, command))} failed: {done.stderr[-500:]}")
+    return done.stdout
 
 
-def places(arguments: argparse.Namespace) -> list[Place]:
-    folder = arguments.folder
-    found = [
-        Place("linux64", LINUX, [], folder / LINUX / "wheel.so"),
-        Place("this machine's compiler", LINUX, [], arguments.own),
-        Place("win64, wine", WINDOWS, [arguments.wine], folder / WINDOWS / "wheel.dll"),
-        Place("aarch64-linux, qemu", ARM, ["qemu-aarch64", "-L", arguments.arm_root], folder / ARM / "wheel.so"),
+def run_wasm(program: Path) -> str:
+    """The same in wasmtime."""
+    printed = program.with_suffix(".out")
+    configuration = wasmtime.WasiConfig()
+    configuration.argv = [program.name, "linked in", DESCRIPTION.guid]
+    configuration.stdout_file = printed
+    configuration.inherit_stderr()
+    store = wasmtime.Store()
+    store.set_wasi(configuration)
+    linker = wasmtime.Linker(store.engine)
+    linker.define_wasi()
+    start = linker.instantiate(store, wasmtime.Module.from_file(store.engine, program)).exports(store)["_start"]
+    try:
+        start(store)
+    except wasmtime.ExitTrap as ended:
+        if ended.code:
+            raise SystemExit(f"{program} ended with status {ended.code}.") from ended
+    return printed.read_text()
+
+
+def old_glibc(folder: Path) -> str:
+    """The version of the C library of an older Debian, fetched into a folder; nothing if it cannot be had."""
+    command = [ROOT / "tools" / "release" / "old_glibc", "bullseye", folder]
+    if subprocess.run(command, check=False).returncode:
+        return ""
+    (package,) = folder.glob("libc6_*.deb")
+    return f"glibc {re.match(r'libc6_([0-9.]*)', package.name)[1]}"
+
+
+def printed(out: Path, glibc: str, libc: Path) -> Iterator[tuple[str, str]]:
+    """The name of each place where a library runs, and what the driver prints there."""
+    for platform in (LINUX, ARM, WINDOWS, WASM):
+        build(out / platform, platform, "wheel_driver")
+    driver, library = out / LINUX / "wheel_driver", out / LINUX / "wheel.so"
+    yield "linux64", run(driver, library)
+    if glibc:
+        yield f"linux64, {glibc}", run(libc / "ld-linux-x86-64.so.2", "--library-path", libc, driver, library)
+    yield "this machine's compiler", run(driver, ROOT / "build" / "release" / "wheel.so")
+    yield "win64, wine", run(WINE, out / WINDOWS / "wheel_driver.exe", out / WINDOWS / "wheel.dll")
+    arm = out / ARM
+    yield (
+        "aarch64-linux, qemu",
+        run("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", arm / "wheel_driver", arm / "wheel.so"),
+    )
+    yield "wasm32, wasmtime", run_wasm(out / WASM / "wheel_driver.wasm")
+
+
+def scenes(out: Path, scratch: Path) -> dict[str, object]:
+    """For the page: a row for each scene, with the digest on the first platform and whether the others are equal."""
+    glibc = old_glibc(scratch)
+    places = printed(out, glibc, scratch / "root" / "lib" / "x86_64-linux-gnu")
+    digests = {place: dict(line.split("\t") for line in text.splitlines()) for place, text in places}
+    first, *others = digests.values()
+    rows = [
+        [scene, digest, *("equal" if other[scene] == digest else other[scene] for other in others)]
+        for scene, digest in first.items()
     ]
-    wasm = [arguments.wasm_python, str(HERE / "run_wasm.py")]
-    found.append(Place("wasm32, wasmtime", WASM, wasm, Path("linked in")))
-    if arguments.old_glibc:
-        name, libc = arguments.old_glibc
-        start = [str(Path(libc) / "ld-linux-x86-64.so.2"), "--library-path", libc]
-        found.insert(2, Place(f"linux64, {name}", LINUX, start, folder / LINUX / "wheel.so"))
-    return found
-
-
-def table(run: dict[str, Scenes]) -> str:
-    """A row for each scene; the digest on the first platform, and on each other one whether it is equal."""
-    first, *others = run.values()
-    rows = []
-    for scene, digest in first.items():
-        rows.append([scene, digest, *("equal" if other[scene] == digest else other[scene] for other in others)])
-    return markdown.table(["scene", *run], rows)
-
-
-def write(arguments: argparse.Namespace, run: dict[str, Scenes], **found: object) -> None:
-    folder = arguments.folder
-    text = markdown.page(
-        "platforms.md.j2",
-        commit=markdown.said("git", "describe", "--always", "--dirty"),
-        size=(folder / "wheel.fmu").stat().st_size / 1e3,
-        outputs=sum(v.causality == "output" for v in DESCRIPTION.modelVariables),
-        compiler=markdown.said("c++", "--version"),
-        old=arguments.old_glibc and arguments.old_glibc[0],
-        wine=markdown.said(arguments.wine, "--version"),
-        qemu=markdown.said("qemu-aarch64", "--version").replace("qemu-aarch64 version", "qemu"),
-        run=table(run),
-        **{name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in ("libraries", "fmpy", "twice")},
-        **found,
-    )
-    arguments.report.write_text(text, encoding="utf-8")
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--folder", type=Path, required=True, help="of the release, as tools/release/build left it")
-    parser.add_argument("--zig", type=Path, required=True)
-    parser.add_argument("--wine", required=True)
-    parser.add_argument("--arm-root", required=True, help="folder of the arm C library")
-    parser.add_argument("--wasm", type=Path, required=True, help="the driver with the wheel linked in")
-    parser.add_argument("--wasm-python", required=True, help="a Python with wasmtime")
-    parser.add_argument(
-        "--old-glibc", nargs=2, metavar=("NAME", "FOLDER"), help="an older C library than this machine's"
-    )
-    parser.add_argument("--own", type=Path, required=True, help="the library that this machine's own compiler made")
-    parser.add_argument("--report", type=Path, required=True)
-    arguments = parser.parse_args()
-    folder = arguments.folder
-    drivers = {target: build_driver(arguments.zig, target, folder) for target in (LINUX, ARM, WINDOWS)}
-    drivers[WASM] = arguments.wasm
-    run = {place.name: run_scenes(place, drivers[place.target]) for place in places(arguments)}
-    different = [scene for scene in run["linux64"] if len({scenes[scene] for scenes in run.values()}) > 1]
-    write(arguments, run, different=different)
-    if different:
-        raise SystemExit(f"The trajectories differ between platforms: {different}; see {arguments.report}")
-
-
-if __name__ == "__main__":
-    main()
+    different = [scene for scene, _, *equal in rows if {*equal} != {"equal"}]
+    return {"old": glibc, "run": markdown.table(["scene", *digests], rows), "different": different}

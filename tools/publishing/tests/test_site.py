@@ -5,13 +5,10 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 from support.paths import ROOT
-
-from publishing.documents import reflowed
 
 CONF = ROOT / "tools" / "publishing" / "site"
 LOADED = re.compile(r"""<(?:script|img|iframe|source|link)\b[^>]*?\b(?:src|href)=["']((?:https?:)?//[^"']+)""")
@@ -53,40 +50,6 @@ def test_the_site_asks_for_nothing_from_elsewhere(site: Path) -> None:
         page.name: [] for page in pages
     }
     assert LOADED.findall('<script src="https://example.org/x.js"></script>') == ["https://example.org/x.js"]
-
-
-class Places(HTMLParser):
-    """The comments of filled places that stand in no paragraph, cell or heading: there they would split a sentence."""
-
-    HOLDERS = frozenset({"p", "td", "th", "h1", "h2", "h3", "dd"})
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.open, self.found, self.split = 0, 0, 0
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list) -> None:
-        self.open += tag in self.HOLDERS
-
-    def handle_endtag(self, tag: str) -> None:
-        self.open -= tag in self.HOLDERS
-
-    def handle_comment(self, data: str) -> None:
-        self.found += data.startswith(" = ")
-        self.split += data.startswith(" = ") and not self.open
-
-
-def test_a_filled_figure_stands_within_its_sentence(site: Path, tmp_path: Path) -> None:
-    places = {page: Places(page.read_text(encoding="utf-8")) for page in site.rglob("*.html")}
-    assert sum(page.found for page in places.values()) > 50
-    assert [path for path, page in places.items() if page.split] == []
-    sentence = "# A page\n\nThe run took about\n<!-- = commands.first_run -->44<!-- . --> s.\n"
-    (tmp_path / "README.md").write_text(sentence)
-    (tmp_path / "mended.md").write_text(reflowed(sentence))
-    build(tmp_path, tmp_path / "out", "-D", "html_favicon=")
-    for name, split in (("README", 1), ("mended", 0)):
-        page = Places((tmp_path / "out" / f"{name}.html").read_text(encoding="utf-8"))
-        assert (page.found, page.split) == (1, split)
 
 
 def test_a_link_is_called_as_its_document(site: Path) -> None:

@@ -1,0 +1,63 @@
+"""The project's sources compiled for another platform by PyPI's ziglang: clang, every target's libc, and the linkers.
+
+python -m release.compiling FOLDER TARGET: WebAssembly in a build folder, wheel_page (the module of the live page) or
+wheel_driver (the release's ten scenes). It prints the file, which is made anew only where a source has changed.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from importlib.resources import files
+from pathlib import Path
+
+from publishing.markdown import ROOT
+
+WASM = "wasm32-wasi"
+
+
+def compiler() -> Path:
+    """The folder of ziglang, which has the licences too."""
+    return Path(str(files("ziglang")))
+
+
+def build(
+    out: Path, platform: str, target: str, sources: Path = ROOT, zig: Path | None = None, sundials: str = ""
+) -> None:
+    """One CMake target for one platform of zig's; sundials: its source tree, fetched if it is not given."""
+    cache = out / "CMakeCache.txt"
+    # CMake's cache holds absolute paths: in a checkout that was moved or copied the folder is built anew.
+    if cache.exists() and f"CMAKE_HOME_DIRECTORY:INTERNAL={sources}\n" not in cache.read_text(encoding="utf-8"):
+        shutil.rmtree(out)
+    options = {
+        "CMAKE_BUILD_TYPE": "Release",
+        "CMAKE_TOOLCHAIN_FILE": sources / "cmake" / "zig.cmake",
+        "CMAKE_MODULE_LINKER_FLAGS_RELEASE": "-s",
+        "CMAKE_SHARED_LINKER_FLAGS_RELEASE": "-s",
+        "Python3_EXECUTABLE": sys.executable,
+        "WHEEL_ZIG": (zig or compiler()) / "zig",
+        "WHEEL_ZIG_TARGET": platform,
+        "WHEEL_SUNDIALS_SOURCE": sundials or os.environ.get("WHEEL_SUNDIALS_SOURCE", ""),
+    }
+    given = [f"-D{name}={value}" for name, value in options.items()]
+    out.mkdir(parents=True, exist_ok=True)
+    log = out / "build.log"
+    with log.open("w", encoding="utf-8") as file:
+        for command in (
+            ["cmake", "-Wno-dev", "-S", sources, "-B", out, *given],
+            ["cmake", "--build", out, "--target", target, "--parallel", str(os.cpu_count())],
+        ):
+            if subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode:
+                print(*log.read_text(encoding="utf-8").splitlines()[-40:], sep="\n", file=sys.stderr)
+                raise SystemExit(f"The build for {platform} failed; the whole log is {log}.")
+
+
+def wasm(out: Path, target: str) -> Path:
+    build(out, WASM, target)
+    return out / f"{target}.wasm"
+
+
+if __name__ == "__main__":
+    print(wasm(ROOT / sys.argv[1], sys.argv[2]))
