@@ -13,9 +13,9 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-from fmpy import instantiate_fmu, read_model_description
+from fmpy import read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import fmi2FMUstate
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2FMUstate
 from numpy.typing import NDArray
 
 from .plan import PLANE_ANGLE, Measure, Status, Study, can_change, counters_of
@@ -42,7 +42,11 @@ class Instance:
         description = read_model_description(folder, validate=False)
         self.variables = {v.name: v for v in description.modelVariables}
         self.messages: list[str] = []  # since the start of the run
-        self.fmu = instantiate_fmu(folder, description, "CoSimulation", logger=self._log)
+        of = {"guid": description.guid, "modelIdentifier": description.coSimulation.modelIdentifier}
+        self.fmu = FMU2Slave(unzipDirectory=folder, instanceName="wheel", **of)
+        callbacks = fmi2CallbackFunctions()  # the logger of instantiate_fmu would stay that of the process
+        callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
+        self.fmu.instantiate(callbacks=callbacks)
         self._buffers = cache(self._buffers_of)
         self._snapshot, self._kept = fmi2FMUstate(), None  # at branch_at: values and messages of that start
         self._march = CDLL(str(Path(folder) / MARCH)).march
