@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from orbit.orbit import Halves, reduced
 from reference import Inputs, solve
-from reference.motion import derivative, initial_state
+from reference.motion import OMEGA_Z, derivative, initial_state
 from reference.newton_euler import Contact, Law
 from scipy.integrate import solve_ivp
 from support.driver import HEADLINE
@@ -33,8 +33,16 @@ def headline(scene: Scene, points: int, label: str = "", inputs: Inputs | None =
 
 def stiff(scene: Scene, times: Array) -> Array:
     """The regularized law by SciPy's Radau, without inputs."""
-    law = Law(scene.wheel.s, omega_s=scene.start.get("omega_s", 1e-3))
-    rate, y_0 = derivative(Contact(scene.wheel), Inputs(), law), initial_state(scene.wheel, scene.motion)
+    contact, omega_s, y_0 = (
+        Contact(scene.wheel),
+        scene.start.get("omega_s", 1e-3),
+        initial_state(scene.wheel, scene.motion),
+    )
+
+    def rate(t: float, y: Array) -> Array:
+        law = Law(scene.wheel.s, sigma=np.tanh(y[OMEGA_Z] / omega_s))
+        return derivative(contact, Inputs(), law)(t, y)
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of Radau's difference quotients
         found = solve_ivp(rate, (0, scene.duration), y_0, "Radau", times, rtol=1e-11, atol=1e-12)
