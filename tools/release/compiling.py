@@ -27,9 +27,10 @@ def build(
     out: Path, platform: str, target: str, sources: Path = ROOT, zig: Path | None = None, sundials: str = ""
 ) -> None:
     """One CMake target for one platform of zig's; sundials: its source tree, fetched if it is not given."""
-    cache = out / "CMakeCache.txt"
-    # CMake's cache holds absolute paths: in a checkout that was moved or copied the folder is built anew.
-    if cache.exists() and f"CMAKE_HOME_DIRECTORY:INTERNAL={sources}\n" not in cache.read_text(encoding="utf-8"):
+    cache, program = out / "CMakeCache.txt", (zig or compiler()) / "zig"
+    # CMake's cache holds absolute paths: where the checkout or the compiler has another one, the folder is built anew.
+    paths = (f"CMAKE_HOME_DIRECTORY:INTERNAL={sources}\n", f"={program}\n")
+    if cache.exists() and not all(path in cache.read_text(encoding="utf-8") for path in paths):
         shutil.rmtree(out)
     options = {
         "CMAKE_BUILD_TYPE": "Release",
@@ -37,7 +38,7 @@ def build(
         "CMAKE_MODULE_LINKER_FLAGS_RELEASE": "-s",
         "CMAKE_SHARED_LINKER_FLAGS_RELEASE": "-s",
         "Python3_EXECUTABLE": sys.executable,
-        "WHEEL_ZIG": (zig or compiler()) / "zig",
+        "WHEEL_ZIG": program,
         "WHEEL_ZIG_TARGET": platform,
         "WHEEL_SUNDIALS_SOURCE": sundials or os.environ.get("WHEEL_SUNDIALS_SOURCE", ""),
     }
