@@ -64,7 +64,7 @@ Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind)
 
 bool Instance::listens(const void* instance, Topic topic) {
   const Instance& i = *static_cast<const Instance*>(instance);
-  return i.logger_ && i.logged_topics & (1u << static_cast<unsigned>(topic));
+  return i.logger_ && i.logged_topics & bits(topic);
 }
 
 void Instance::take(const void* instance, Topic topic, const char* message) {
@@ -80,7 +80,7 @@ Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callba
   if (!memory) return nullptr;
   auto* instance = ::new (memory) Instance(callbacks, kind);
   instance->name_ = static_cast<char*>(std::memcpy(static_cast<char*>(memory) + sizeof(Instance), name, name_size));
-  const unsigned all = 0xf, quiet = all & ~(1u << static_cast<unsigned>(Topic::event));
+  const unsigned all = 0xf, quiet = all & ~bits(Topic::event);
   instance->logged_topics = logging ? all : quiet;
   return instance;
 }

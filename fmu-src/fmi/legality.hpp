@@ -8,24 +8,23 @@ namespace fmi {
 
 using wheel::Kind, wheel::Phase;
 
+// One bit for each of some enumerators.
+template <class... Each>
+constexpr unsigned bits(Each... each) {
+  return ((1u << static_cast<unsigned>(each)) | ...);
+}
+
 // Where a function is legal: one bit for each phase, and one for each kind of instance.
 struct Rule {
   unsigned phases, kinds;
 
-  constexpr bool is_for(Kind kind) const { return (kinds & (1u << static_cast<unsigned>(kind))) != 0; }
-  constexpr bool allows(Kind kind, Phase phase) const {
-    return is_for(kind) && (phases & (1u << static_cast<unsigned>(phase))) != 0;
-  }
+  constexpr bool is_for(Kind kind) const { return (kinds & bits(kind)) != 0; }
+  constexpr bool allows(Kind kind, Phase phase) const { return is_for(kind) && (phases & bits(phase)) != 0; }
 };
 
 // One rule for each function, or for several that are legal together. Whether a variable may be set depends on the
 // variable too: see values.cpp.
 namespace legality {
-
-template <class... Each>
-constexpr unsigned bits(Each... each) {
-  return ((1u << static_cast<unsigned>(each)) | ...);
-}
 
 inline constexpr unsigned instantiated = bits(Phase::created),
                           initialization = bits(Phase::initializing, Phase::faulty, Phase::initial),

@@ -33,7 +33,7 @@ unsigned topics_of(const char* category) {
   unsigned topics = 0;
   for (const Topic topic : {Topic::event, Topic::warning, Topic::error, Topic::discard})
     if (category && (!std::strcmp(category, "logAll") || !std::strcmp(category, fmi::category_of(topic))))
-      topics |= 1u << static_cast<unsigned>(topic);
+      topics |= fmi::bits(topic);
   return topics;
 }
 

@@ -14,14 +14,18 @@ bool check_count(Instance& i, const void* values, std::size_t count, int needed)
                  needed, count, values ? "" : ", and it is a null pointer");
 }
 
-// Reads as many numbers as are needed, in initialization mode from the start values; false where they are not finite.
-template <class Read>
+bool are_finite(const double* values, std::size_t count) {
+  return std::all_of(values, values + count, [](double value) { return std::isfinite(value); });
+}
+
+// Reads as many numbers as are needed, in initialization mode from the start values; Discard where they are not finite.
 fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], std::size_t count, int needed,
-                        const char* what, Read read) {
+                        const char* what, void (Simulation::*read)(double*)) {
   return guarded(c, legality::get_states, name, [=](Instance& i) {
     if (!check_count(i, values, count, needed)) return fmi2Error;
     if (!i.simulation.is_prepared() || !has_state(i.simulation.phase())) return fmi2Discard;
-    if (read(i.simulation)) return fmi2OK;
+    (i.simulation.*read)(values);
+    if (are_finite(values, count)) return fmi2OK;
     return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.simulation.time(), what);
   });
 }
@@ -77,36 +81,28 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
   return guarded(c, legality::while_integrating, "fmi2SetContinuousStates", [=](Instance& i) {
     if (!check_count(i, x, n, wheel::state_count)) return fmi2Error;
-    if (!std::all_of(x, x + n, [](double value) { return std::isfinite(value); }))
-      return i.log(Topic::discard, "%s: a state is not finite.");
+    if (!are_finite(x, n)) return i.log(Topic::discard, "%s: a state is not finite.");
     i.simulation.set_states(x);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_numbers(c, "fmi2GetContinuousStates", x, n, wheel::state_count, "states", [=](Simulation& simulation) {
-    std::copy_n(simulation.states(), n, x);
-    return true;
-  });
+  return read_numbers(c, "fmi2GetContinuousStates", x, n, wheel::state_count, "states", &Simulation::states);
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
   return read_numbers(c, "fmi2GetNominalsOfContinuousStates", x, n, wheel::state_count, "nominals",
-                      [=](Simulation& simulation) {
-                        simulation.nominals(x);
-                        return true;
-                      });
+                      &Simulation::nominals);
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
-  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count, "derivatives",
-                      [=](Simulation& simulation) { return simulation.derivatives(x_dot); });
+  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count, "derivatives", &Simulation::derivatives);
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
   return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count(), "indicators",
-                      [=](Simulation& simulation) { return simulation.indicators(z); });
+                      &Simulation::indicators);
 }
 
 }  // extern "C"

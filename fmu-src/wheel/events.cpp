@@ -201,7 +201,7 @@ void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter)
 
 Ending ending_of(const Setup& setup, Event event) {
   Ending ending;
-  std::snprintf(ending.text, sizeof ending.text, row_of(event).ending, NumberText(setup.mu_max).text);
+  std::snprintf(ending.text, sizeof ending.text, row_of(event).ending, NumberText(Digits{setup.mu_max}).text);
   return ending;
 }
 

@@ -19,11 +19,11 @@ int state_index_of(unsigned variable);
 void take_at_once(const Setup& setup, Demand& demand, Run& run);
 
 // Out: state_count rates. A solver may try states beyond flat: there rates and margins are those of the flat wheel,
-// which are finite. False where they are not finite.
-bool derivatives(const Setup& setup, Run& run, double* x_dot);
+// which are finite.
+void derivatives(const Setup& setup, Run& run, double* x_dot);
 
-// Out: indicator_count() margins. False where they are not finite.
-bool indicators(const Setup& setup, Run& run, double* z);
+// Out: indicator_count() margins.
+void indicators(const Setup& setup, Run& run, double* z);
 bool has_event(const Setup& setup, Run& run);
 
 // Event mode: the law that holds from here on. True where the motion bends here, a state or the law: some solvers go on

@@ -7,33 +7,23 @@
 
 namespace wheel {
 
-// A number of a message that is written with so many digits.
+// A number of a message that is written with so many digits; 0: as many as it needs.
 struct Digits {
   double x;
-  int digits;
+  int digits = 0;
 };
 
-// A number as text, with as many digits as it needs: the shortest of 15 to 17 that reads back as the same double; or as
-// many as are asked for. It has a point whatever the host's locale is.
+// A number as text; as many digits as it needs are the fewest of 15 to 17 that read back as the same double. It has a
+// point whatever the host's locale is.
 struct NumberText {
-  explicit NumberText(double x) {
-    int digits = 15;
-    do write(x, digits);
-    while (std::strtod(text, nullptr) != x && ++digits <= 17);
-    point();
-  }
   explicit NumberText(Digits number) {
-    write(number.x, number.digits);
-    point();
-  }
-  char text[32];
-
- private:
-  // By the C library: std::to_chars would bring C++'s run-time library, with exceptions, into a release.
-  void write(double x, int digits) { std::snprintf(text, sizeof text, "%.*g", digits, x); }
-  void point() {
+    int digits = number.digits > 0 ? number.digits : 15;
+    // By the C library: std::to_chars would bring C++'s run-time library, with exceptions, into a release.
+    do std::snprintf(text, sizeof text, "%.*g", digits, number.x);
+    while (number.digits == 0 && std::strtod(text, nullptr) != number.x && ++digits <= 17);
     if (char* comma = std::strchr(text, ',')) *comma = '.';
   }
+  char text[32];
 };
 
 enum class Topic { event, warning, error, discard };
@@ -59,7 +49,7 @@ struct Reporter {
   }
 
  private:
-  static NumberText written(double x) { return NumberText(x); }
+  static NumberText written(double x) { return NumberText(Digits{x}); }
   static NumberText written(Digits number) { return NumberText(number); }
   template <class Part>
   static Part written(Part part) {

@@ -86,10 +86,10 @@ class Simulation {
   // Model exchange: see exchange.hpp.
   void set_time(double t);
   void set_states(const double* x) { std::copy_n(x, state_count, run_.change().y); }
-  const double* states() const { return run_->y; }
-  void nominals(double* x) const { scales_at(setup_, run_->y[setup_.formulation->spin_index], x); }
-  bool derivatives(double* x_dot) { return wheel::derivatives(setup_, run_.change(), x_dot); }
-  bool indicators(double* z) { return wheel::indicators(setup_, run_.change(), z); }
+  void states(double* x) { std::copy_n(run_->y, state_count, x); }
+  void nominals(double* x) { scales_at(setup_, run_->y[setup_.formulation->spin_index], x); }
+  void derivatives(double* x_dot) { wheel::derivatives(setup_, run_.change(), x_dot); }
+  void indicators(double* z) { wheel::indicators(setup_, run_.change(), z); }
   bool has_event() { return wheel::has_event(setup_, run_.change()); }
   bool decide() { return wheel::decide(setup_, run_.change(), solution_, reporter_); }
 
