@@ -90,9 +90,7 @@ def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-10])
-def test_a_wheel_that_is_off_the_ground_at_the_start_ends_there_however_soon_it_would_be_pressed_again(
-    wheel, tolerance
-):
+def test_a_wheel_off_the_ground_at_the_start_ends_there_however_soon_it_would_be_pressed_again(wheel, tolerance):
     """The force is back long before the solver's first step ends: both its ends, or its end alone, tell nothing."""
     motion = {"theta_start": 1.0, "psi_dot_start": 6.0, "theta_dot_start": 4.0, "phi_dot_start": 2.0}
     w, kept = (wheel().start(tolerance=tolerance, keep_contact=k, **motion).put(F_Z=-10.5) for k in (0, 1))

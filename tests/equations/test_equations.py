@@ -115,9 +115,7 @@ def test_spin_and_tilt_are_omega_z_and_theta() -> None:
         assert not np.allclose(k["omega_z"], k["phi_dot"])
 
 
-def test_stop_spin_leaves_a_rolling_wheel_without_spin_that_holding_takes_no_energy_from(
-    formulation: eq.Formulation,
-) -> None:
+def test_stop_spin_leaves_a_rolling_wheel_that_holding_takes_no_energy_from(formulation: eq.Formulation) -> None:
     scenes, motions = draw(32, eq.HELD, symmetric=False)
     y = eq.start_each(formulation, scenes, motions)
     before = eq.kinematics_each(formulation, scenes, y)

@@ -361,9 +361,7 @@ def jacobian_error(wheel: FMU2Wheel, knowns: tuple[str, ...], h: float, share: f
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_directional_derivatives_next_to_lift_off_are_those_of_the_side_on_which_the_wheel_is(
-    library: Library, seed: int
-) -> None:
+def test_directional_derivatives_next_to_lift_off_are_those_of_the_wheels_side(library: Library, seed: int) -> None:
     rng = np.random.default_rng(seed)
     law = {"s": rng.uniform(0.01, 0.1), "keep_contact": True, "friction_law": rng.choice([1, 2]), "omega_s": 0.3}
     share = rng.choice([-1, 1]) * 10 ** rng.uniform(-6, -2)

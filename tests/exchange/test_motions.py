@@ -67,9 +67,7 @@ def test_the_papers_scenes_and_all_37_transitions_come_out_of_another_solver(lib
 
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-10])
-def test_fmpys_cvode_finds_them_too_within_some_thousand_of_its_tolerances(
-    library: Library, tolerance: float, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_fmpys_cvode_finds_them_too_within_some_thousand_of_its_tolerances(library, tolerance: float, capfd) -> None:
     want = read_table("paper_friction")
     run = by_cvode(library, 10, 0.1, tolerance, HEADLINE, debug_logging=True)
     error = range_error(run, want, HEADLINE)

@@ -167,9 +167,7 @@ def test_below_the_critical_speed_and_next_to_it_straight_rolling_is_not_taken_f
 
 
 @pytest.mark.parametrize("lean", [1e-13, 1e-10, 1e-8, 1e-4])
-def test_next_to_a_steady_motion_the_small_nutation_is_kept_or_too_small_to_matter(
-    library: ctypes.CDLL, lean: float
-) -> None:
+def test_next_to_a_steady_motion_the_nutation_is_kept_or_too_small_to_matter(library: ctypes.CDLL, lean: float):
     start = Start(theta=np.pi / 2 + lean, phi_dot=-9.0)
     orbit = Orbit(library, start=start)
     assert orbit.kind == "folded"
@@ -179,10 +177,8 @@ def test_next_to_a_steady_motion_the_small_nutation_is_kept_or_too_small_to_matt
 
 @pytest.mark.parametrize("theta", [0.05, 0.1, 0.35, 1.0])
 @pytest.mark.parametrize("psi_dot", [10.0, -40.0])
-def test_what_is_taken_for_steady_swings_by_a_thousandth_of_the_tolerance_in_angle_and_rates_alike(
-    library: ctypes.CDLL, theta: float, psi_dot: float
-) -> None:
-    """Near flat the rates swing much further than theta."""
+def test_what_is_taken_for_steady_swings_by_a_thousandth_of_the_tolerance(library, theta: float, psi_dot: float):
+    """In angle and rates alike: near flat the rates swing much further than theta."""
     tolerance, phi_dot = 1e-8, circle_spin(Wheel(), theta, psi_dot) - psi_dot * np.cos(theta)
 
     def beside(lean: float) -> Start:

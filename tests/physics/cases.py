@@ -3,27 +3,18 @@
 The ground may pull in all of them (keep_contact).
 """
 
-from functools import cache
 from math import pi
 
 import numpy as np
-from reference import Solution, Start, Wheel, solve
-from support.kept import kept
+from reference import Start, Wheel
 from support.motion import Library, Run
 from support.scenes import SCENES
+from support.scenes import by_reference as expected
 
 NAMES = ("fast rolling", "fast spin the other way", "near flat", "thin disc", "general inertia")
 NAMES += ("general inertia, friction", "light friction", "heavy friction", "heavy friction, J_x = J_y")
 NAMES += ("past upright", "pushed", "pushed, general inertia", "braked")
 CASES = {name: SCENES[name] for name in NAMES}
-
-
-@cache
-def expected(name: str) -> Solution:
-    case = CASES[name]
-    times = np.linspace(0, case.duration, 51)
-    question = ("case", name, case.duration)
-    return kept(question, lambda: solve(case.wheel, case.motion, times, case.inputs.for_reference(), rtol=1e-12))
 
 
 def found(library: Library, name: str, tolerance: float | None = None, **changes: float) -> Run:

@@ -17,14 +17,8 @@ START = {
     **{"psi_start": 0.4, "theta_start": 1.2, "phi_start": 0.3, "psi_dot_start": 0.5, "theta_dot_start": -0.3},
     **{"phi_dot_start": 3.0, "X_O_start": 0.2, "Y_O_start": -0.1, "s": 0.03, "keep_contact": True},
 }
-LOAD = {
-    "F_X": (1.0, 2.0),
-    "F_Y": (-2.0, 0.5),
-    "F_Z": (3.0, -1.0),
-    "M_1": (0.1,),
-    "M_2": (-0.2, 0.1),
-    "M_3": (0.5, -0.4),
-}
+LOAD = {"F_X": (1.0, 2.0), "F_Y": (-2.0, 0.5), "F_Z": (3.0, -1.0)}
+LOAD |= {"M_1": (0.1,), "M_2": (-0.2, 0.1), "M_3": (0.5, -0.4)}
 TIMES = np.linspace(0, 4, 81)
 UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 WHEELS = {"J_x = J_y": {}, "J_x != J_y": UNEQUAL, "J_x != J_y, multibody": {**UNEQUAL, "formulation": 3}}
@@ -103,9 +97,7 @@ def difference(expected: dict[str, NDArray[np.float64]], found: Run) -> float:
 
 @wheels
 @pytest.mark.parametrize("name", SYMMETRIES)
-def test_the_motion_keeps_the_symmetries_of_plane_and_wheel(
-    library: Library, name: str, inertia: dict[str, float]
-) -> None:
+def test_the_motion_keeps_the_symmetries_of_plane_and_wheel(library: Library, name: str, inertia: dict) -> None:
     symmetry = SYMMETRIES[name]
     plain = Symmetry(np.eye(2))
     before = library.simulate(TIMES, 1e-11, image_of_load(plain, (1, 1, 1)), **START, **inertia)

@@ -5,7 +5,6 @@ parameter, a law) and must exceed the bound.
 """
 
 from dataclasses import replace
-from functools import cache
 from itertools import pairwise
 from math import cos, pi, sin
 
@@ -14,11 +13,11 @@ import pytest
 from scipy.optimize import brentq
 from support.bounds import EPSILON, beyond, relative_error, within
 from support.closed_forms import circle_spin, fall_normal_force, fall_time
-from support.kept import kept
 from support.scenes import GENERAL
 from support.scenes import SCENES as ALL_SCENES
+from support.scenes import by_reference as run
 
-from reference import Inputs, Solution, Start, Wheel, newton_euler, solve
+from reference import Inputs, Start, Wheel, newton_euler, solve
 from reference.crossing import NODES, first_fall
 from reference.judge import accelerations_gap, contact_gap, energy_gap, impulse_gap
 
@@ -28,13 +27,6 @@ PUSHED = Inputs(
     moment=lambda t: (0.3 * cos(t), 0.2 * sin(2 * t), 0.5 * sin(3 * t)),
 )
 all_scenes = pytest.mark.parametrize("scene", SCENES)
-
-
-@cache
-def run(scene: str) -> Solution:
-    s = SCENES[scene]
-    times = np.linspace(0, s.duration, 51)
-    return kept(("scene", scene), lambda: solve(s.wheel, s.motion, times, s.inputs.for_reference()))
 
 
 @pytest.fixture
@@ -136,9 +128,7 @@ def drive_gap(ramp: bool, s: float, brake: float) -> tuple[float, float]:
 
 @pytest.mark.parametrize("ramp", [True, False])
 @pytest.mark.parametrize(("s", "brake"), [(0.03, 0.0), (0.0, HOLDS), (0.01, HOLDS * 2 / 3)])
-def test_a_standing_wheel_rolls_away_when_the_drive_torque_beats_s_N_and_the_brake(
-    ramp: bool, s: float, brake: float
-) -> None:
+def test_a_standing_wheel_rolls_away_when_the_drive_torque_beats_s_N_and_the_brake(ramp, s, brake) -> None:
     within(max(drive_gap(ramp, s, brake)), 128 * EPSILON, "drive gap")
     beyond(max(drive_gap(ramp, s + 1e-4, brake)), 1e-3, "drive gap")
 

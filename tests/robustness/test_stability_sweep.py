@@ -51,9 +51,7 @@ BROKEN = [
 
 
 @pytest.mark.parametrize(("fault", "name", "changed", "columns"), BROKEN)
-def test_every_judge_finds_what_is_broken_and_nothing_else(
-    library: Library, fault: str, name: str, changed: dict, columns: dict
-) -> None:
+def test_every_judge_finds_what_is_broken_and_nothing_else(library, fault, name, changed, columns) -> None:
     assert faults_of(library, name) == ""
     assert fault in faults_of(library, name, changed, **columns)
 

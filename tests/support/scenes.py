@@ -4,11 +4,14 @@ Every scene can be given to the FMU (start values, inputs) and to the independen
 """
 
 from dataclasses import dataclass, field, fields
+from functools import cache
 from math import pi, sin
 
-from reference import Start, Wheel
+import numpy as np
+from reference import Solution, Start, Wheel, solve
 
 from .driver import Values
+from .kept import kept
 from .schedule import Schedule
 
 THETA_0 = 5 * pi / 12  # the paper's start
@@ -77,6 +80,15 @@ SCENES = {
     "pushed, general inertia": Scene({**GENERAL, "s": 0.01}, 5.0, PUSH),
     "braked": Scene({"s": 0.01}, 2.0, BRAKE),
 }
+
+
+@cache
+def by_reference(name: str) -> Solution:
+    """A scene at 51 instants."""
+    scene = SCENES[name]
+    times = np.linspace(0, scene.duration, 51)
+    return kept(("scene", name), lambda: solve(scene.wheel, scene.motion, times, scene.inputs.for_reference()))
+
 
 # Six inputs that change all the time: amplitude (N and N.m), rate (rad/s) and phase of a sine each.
 SINES = {"F_X": (3.0, 2.0, 0.0), "F_Y": (2.0, 3.0, pi / 2), "F_Z": (-5.0, 1.0, 0.0)}

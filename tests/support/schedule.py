@@ -2,9 +2,10 @@
 
 from bisect import bisect_right
 from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
-from numpy.polynomial import Polynomial
+from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import ArrayLike, NDArray
 from reference import Inputs
 
@@ -21,21 +22,24 @@ class Schedule:
     def jumps(self) -> tuple[float, ...]:
         return tuple(t for t, _ in self.pieces[1:])
 
+    @cached_property
+    def rows(self) -> list[list[list[float]]]:
+        """Of each piece the four coefficients of each input."""
+        return [[[*np.ravel(piece.get(name, 0)), 0, 0, 0][:4] for name in INPUTS] for _, piece in self.pieces]
+
+    def at(self, t: float) -> list[list[float]]:
+        """The rows of the piece at t, from the right."""
+        return self.rows[bisect_right(self.jumps, t)]
+
     def derivatives(self, t: float) -> NDArray[np.float64]:
         """Row k: the k-th derivative of the inputs at t, from the right; k = 0 ... 3."""
-        piece = self.pieces[bisect_right([start for start, _ in self.pieces], t) - 1][1]
-        table = np.zeros((4, len(INPUTS)))
-        for name, coefficients in piece.items():
-            p = Polynomial(coefficients)
-            table[:, INPUTS.index(name)] = [p.deriv(k)(t) for k in range(4)]
-        return table
+        return np.array([polyval(t, polyder(np.transpose(self.at(t)), k)) for k in range(4)])
 
     def for_reference(self) -> Inputs:
+        def values(which: slice, t: float) -> tuple[float, ...]:
+            return tuple(a + t * (b + t * (c + t * d)) for a, b, c, d in self.at(t)[which])
+
         if not self.pieces:
             return Inputs()
-        return Inputs(
-            lambda t: tuple(self.derivatives(t)[0, :3].tolist()),
-            lambda t: tuple(self.derivatives(t)[0, 3:6].tolist()),
-            self.jumps,
-            lambda t: float(self.derivatives(t)[0, 6]),
-        )
+        force, moment = partial(values, slice(3)), partial(values, slice(3, 6))
+        return Inputs(force, moment, self.jumps, lambda t: values(slice(6, 7), t)[0])
