@@ -61,34 +61,21 @@ def sound_arguments(w: FMU2Wheel) -> dict[str, tuple[Any, ...]]:
     """Behind the component, for every function; no variable is a string, and no choice can be set while running."""
     force, reaction, count, flag = (w.refer(name) for name in ("F_X", "lambda_3", "n_steps", "keep_contact"))
     state, blob, eight = w.snapshot(), w.serialized(), [0, 0, 0, 1.2, 0, 0, 0, -2.0]
-    arguments = {
-        "SetDebugLogging": (0, 1, [b"logAll"]),
-        "SetupExperiment": (0, 0.0, 0.0, 0, 0.0),
-        "GetReal": (reaction, 1, [0]),
-        "GetInteger": (count, 1, [0]),
-        "GetBoolean": (flag, 1, [0]),
-        "SetReal": (force, 1, [0]),
-        **dict.fromkeys(("SetInteger", "SetBoolean", "GetString", "SetString"), (None, 0, None)),
-        "GetFMUstate": (byref(state),),
-        "SetFMUstate": (state,),
-        "FreeFMUstate": (byref(state),),
-        "SerializedFMUstateSize": (state, byref(c_size_t())),
-        "SerializeFMUstate": (state, bytes(len(blob)), len(blob)),
-        "DeSerializeFMUstate": (blob, len(blob), byref(state)),
-        "GetDirectionalDerivative": (reaction, 1, force, 1, [0], [0]),
-        "SetRealInputDerivatives": (force, 1, [1], [0]),
-        "GetRealOutputDerivatives": (reaction, 1, [1], [0]),
-        "DoStep": (w.time, 0.0, 0),
-        "GetStatus": (driver.DO_STEP_STATUS, [0]),
-        "GetRealStatus": (driver.LAST_SUCCESSFUL_TIME, [0]),
-        "GetIntegerStatus": (driver.DO_STEP_STATUS, [0]),  # there is none: Discard
-        "GetBooleanStatus": (driver.TERMINATED, [0]),
-        "GetStringStatus": (driver.PENDING_STATUS, [None]),
-        "NewDiscreteStates": (byref(fmi2EventInfo()),),
-        "CompletedIntegratorStep": (1, [0], [0]),
-        "SetTime": (1.0,),
-        "GetEventIndicators": ([0] * len(INDICATORS), len(INDICATORS)),
-        **dict.fromkeys(("SetContinuousStates", "GetContinuousStates", "GetDerivatives"), (eight, 8)),
-        "GetNominalsOfContinuousStates": (eight, 8),
-    }
+    arguments = {"SetDebugLogging": (0, 1, [b"logAll"]), "SetupExperiment": (0, 0.0, 0.0, 0, 0.0)}
+    arguments |= {"GetReal": (reaction, 1, [0]), "GetInteger": (count, 1, [0]), "GetBoolean": (flag, 1, [0])}
+    arguments |= {"SetReal": (force, 1, [0]), "SetRealInputDerivatives": (force, 1, [1], [0])}
+    arguments |= dict.fromkeys(("SetInteger", "SetBoolean", "GetString", "SetString"), (None, 0, None))
+    arguments |= dict.fromkeys(("GetFMUstate", "FreeFMUstate"), (byref(state),)) | {"SetFMUstate": (state,)}
+    arguments |= {"SerializedFMUstateSize": (state, byref(c_size_t()))}
+    arguments |= {"SerializeFMUstate": (state, bytes(len(blob)), len(blob))}
+    arguments |= {"DeSerializeFMUstate": (blob, len(blob), byref(state))}
+    arguments |= {"GetDirectionalDerivative": (reaction, 1, force, 1, [0], [0])}
+    arguments |= {"GetRealOutputDerivatives": (reaction, 1, [1], [0]), "DoStep": (w.time, 0.0, 0)}
+    arguments |= dict.fromkeys(("GetStatus", "GetIntegerStatus"), (driver.DO_STEP_STATUS, [0]))  # no integer: Discard
+    arguments |= {"GetRealStatus": (driver.LAST_SUCCESSFUL_TIME, [0]), "GetBooleanStatus": (driver.TERMINATED, [0])}
+    arguments |= {"GetStringStatus": (driver.PENDING_STATUS, [None])}
+    arguments |= {"NewDiscreteStates": (byref(fmi2EventInfo()),), "CompletedIntegratorStep": (1, [0], [0])}
+    arguments |= {"SetTime": (1.0,), "GetEventIndicators": ([0] * len(INDICATORS), len(INDICATORS))}
+    of_states = ("SetContinuousStates", "GetContinuousStates", "GetDerivatives", "GetNominalsOfContinuousStates")
+    arguments |= dict.fromkeys(of_states, (eight, 8))
     return {function: arguments.get(function.removeprefix("fmi2"), ()) for function in TABLE}

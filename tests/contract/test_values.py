@@ -28,10 +28,8 @@ def test_unknown_references_and_wrong_types_are_errors_and_leave_the_array_alone
         for bad in (len(w.references), 2**32 - 1, *others):
             assert get_many(w, kind, [good, bad]) == (ERROR, [-77, -77])
             assert set_many(w, kind, [bad], [1]) == ERROR
-            told = [
-                f"fmi2{verb}{kind}: no variable of this type has the value reference {bad}." for verb in ("Get", "Set")
-            ]
-            assert w.texts() == told
+            why = f"{kind}: no variable of this type has the value reference {bad}."
+            assert w.texts() == [f"fmi2Get{why}", f"fmi2Set{why}"]
     assert get_many(w, "Integer", w.refer("formulation")) == (OK, [1])  # an enumeration is an Integer
 
 
@@ -56,14 +54,8 @@ def test_a_refused_call_sets_none_of_its_values(wheel):
     w = wheel().start()
     before = w.serialized()
     force, mass, theta, s = w.refer("F_X", "m", "theta", "s")
-    wrong = (
-        (len(w.references), 1, ERROR),
-        (mass, 21, ERROR),
-        (theta, 1, ERROR),
-        (s, -1, DISCARD),
-        (force, np.nan, DISCARD),
-    )
-    for bad, value, status in wrong:
+    wrong = [(len(w.references), 1, ERROR), (mass, 21, ERROR), (theta, 1, ERROR)]
+    for bad, value, status in [*wrong, (s, -1, DISCARD), (force, np.nan, DISCARD)]:
         assert set_many(w, "Real", [force, bad], [5.0, value]) == status
     assert w.serialized() == before
     assert set_many(w, "Real", [force], [5.0]) == OK and w.serialized() != before

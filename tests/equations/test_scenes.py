@@ -7,26 +7,13 @@ import pytest
 from support import equations as eq
 
 MOTION = eq.Motion(1, 1.2, 0.3, 0.5, -0.2, -2, 0, 0)
-MEANT = [
-    {"kind": eq.FRICTIONLESS},
-    {"kind": eq.ROLLING, "sigma": -1},
-    {"kind": eq.ROLLING, "sigma": 1, "brake": 5.0},
-    {"kind": eq.HELD, "sigma": 0, "omega_s": 0},
-    {"kind": eq.REGULARIZED, "omega_s": 1e-6},
-]
-NOT_MEANT = [
-    {"kind": eq.NO_LAW},
-    {"kind": 17},
-    {"kind": eq.ROLLING, "sigma": 0},
-    {"kind": eq.ROLLING, "sigma": 0.5},
-    {"kind": eq.ROLLING, "sigma": nan},
-    {"kind": eq.REGULARIZED, "omega_s": 0},
-    {"kind": eq.REGULARIZED, "omega_s": -1e-3},
-    {"kind": eq.REGULARIZED, "omega_s": nan},
-    {"kind": eq.ROLLING, "sigma": 1, "brake": -1.0},
-    {"kind": eq.HELD, "brake": nan},
-    {"kind": eq.ROLLING, "sigma": 1, "s": -1e-3},
-]
+MEANT = [{"kind": eq.FRICTIONLESS}, {"kind": eq.ROLLING, "sigma": -1}, {"kind": eq.ROLLING, "sigma": 1, "brake": 5.0}]
+MEANT += [{"kind": eq.HELD, "sigma": 0, "omega_s": 0}, {"kind": eq.REGULARIZED, "omega_s": 1e-6}]
+NOT_MEANT = [{"kind": kind} for kind in (eq.NO_LAW, 17)]
+NOT_MEANT += [{"kind": eq.ROLLING, "sigma": sigma} for sigma in (0, 0.5, nan)]
+NOT_MEANT += [{"kind": eq.REGULARIZED, "omega_s": omega_s} for omega_s in (0, -1e-3, nan)]
+NOT_MEANT += [{"kind": eq.ROLLING, "sigma": 1, **below} for below in ({"brake": -1.0}, {"s": -1e-3})]
+NOT_MEANT += [{"kind": eq.HELD, "brake": nan}]
 
 
 def answers(formulation: eq.Formulation, scene: eq.Scene) -> np.ndarray:

@@ -61,15 +61,13 @@ def test_an_unknown_figure_is_refused_and_a_known_one_is_filled(tmp_path: Path) 
         with_figures("<!-- = report.time --><!-- . -->", figures)
 
 
-# Markdown takes a comment that opens a line or an item for a block of HTML.
-BROKEN = re.compile(r"^[ \t]*(?:(?:[-*+>]|\d+\.) +)*<!-- =", re.MULTILINE)
-
-
 def test_no_line_begins_with_a_marked_figure_which_would_break_its_paragraph() -> None:
-    assert [name for name, text in TEXTS.items() if name.endswith(".md") and BROKEN.search(text)] == []
+    """Markdown takes a comment that opens a line or an item for a block of HTML."""
     broken = "The run takes\n<!-- = commands.disk_run -->0.8<!-- . --> GB.\n"
-    assert BROKEN.search(broken) and BROKEN.search("- <!-- = commands.disk_run -->0.8<!-- . --> GB")
     assert reflowed(broken) == "The run\ntakes <!-- = commands.disk_run -->0.8<!-- . --> GB.\n"
+    begins = re.compile(r"^[ \t]*(?:(?:[-*+>]|\d+\.) +)*<!-- =", re.MULTILINE)
+    assert begins.search(broken) and begins.search("- <!-- = commands.disk_run -->0.8<!-- . --> GB")
+    assert [name for name, text in TEXTS.items() if name.endswith(".md") and begins.search(text)] == []
 
 
 SHORT = {4.04e-8: "4e-8", 3.46e-9: "3.5e-9", 1.25e-3: "0.00125", 0.0: "0", 123456.0: "1.2e5", 37: "37", inf: "inf"}
@@ -129,18 +127,13 @@ def test_every_command_and_file_that_a_document_names_exists_and_every_decision_
 OUTSIDE = r"(^|[^A-Za-z0-9_./])/(work|home|root|Users)/[A-Za-z0-9_.-]|ROOT\.parent|CMAKE_SOURCE_DIR\}/\.\."
 
 
-# Noticed below, each on a line of its own.
-PLACES = (
-    "file(READ ${CMAKE_SOURCE_DIR}/../x)",
-    'ROOT.parent / "neighbour"',
-    "cat /home/someone/table.csv",
-)
+PLACES = "${CMAKE_SOURCE_DIR}/../x ROOT.parent cat /home/someone/table.csv"
 
 
 def test_no_file_names_a_place_of_some_machine_or_above_the_root() -> None:
     """What a file does at run time is tried by .ci/run, in a clone with nothing beside it."""
     found = run("git", "grep", "-IcE", "--untracked", OUTSIDE)
-    assert found.stdout == f"tests/repository/{Path(__file__).name}:{len(PLACES)}\n"
+    assert found.stdout == f"tests/repository/{Path(__file__).name}:1\n" and len(re.findall(OUTSIDE, PLACES)) == 3
 
 
 PIECE = r'"(?:[^"\\\n]|\\.)*"'
@@ -183,26 +176,13 @@ def test_the_page_lists_every_message_of_the_code_and_every_reason_of_the_solver
     assert whole(texts(LITERAL, bare(code))) == {"…: the …-th wheel is …."}
 
 
-HABITS = (
-    "The log tells when the wheel stops.",
-    "A sentence per fault.",
-    "It is made of what the reader offers.",
-    "The page has a clock of its own.",
-    "A held wheel stops by itself.",
-    "With constant inputs the grid changes no bit.",
-    "A restored instance gives the same bits.",
-    "The unit contains its solver.",
-    "The call is refused.",
-    "The Newton matrix is factorised.",
-    "The colors follow the system.",
-)
+HABITS = ("The log tells when the wheel stops.", "The colors follow the system.", "A held wheel stops by itself.")
 GOOD = (
-    "Stick, release and reversal are located as events; the run ends and the log says why.",
-    "DOP853 restarts cheaply after a discontinuity.",
-    "Parameters are initialized; 3 metres is `what tells by itself`.",
+    "Stick and release are located as events.",
+    "3 metres is `what tells by itself`.",
     "$the unit$ and\n\n```\nsame bits\n```\n",
-    "<!-- variables -->\n\n| told, of its own |\n\n<!-- end of variables -->",
 )
+GOOD += ("<!-- variables -->\n\n| told, of its own |\n\n<!-- end of variables -->",)
 
 
 def test_the_lint_of_prose_finds_habits_with_their_line_and_leaves_code_formulas_and_tables_alone() -> None:

@@ -13,68 +13,79 @@ from support.scenes import PAPER, THETA_0, motion_of, wheel_of
 from .case import PI, Case, Expectation, brushing, similar, spinless, tilted
 
 FLAT = 1e-7  # sin(theta) at which the wheel counts as flat
-FREE = (("energy", 10.0), ("integrals", 10.0))
 ROLLING = (("energy", 10.0), ("fixed", 0.0))
 CHECKED = (*ROLLING, ("reference", 1e3))
-LIGHT = Wheel(J_x=0.01, J_y=0.01, J_z=0.01)  # mass near its centre: leaves the ground while it falls
+
+
+def free(bound: float) -> tuple[tuple[str, float], ...]:
+    """Judges of a wheel that nothing brakes."""
+    return ("energy", bound), ("integrals", bound)
+
+
+FREE = free(10.0)
+
+
+def resting(degrees: float) -> dict[str, float]:
+    return tilted(degrees, phi_dot_start=0.0)
 
 
 def fall(degrees: float, wheel: Wheel = PAPER) -> Expectation:
     return Expectation("flat", fall_time(wheel, float(np.radians(degrees)), FLAT))
 
 
+def sphere(J: float) -> Wheel:
+    return Wheel(J_x=J, J_y=J, J_z=J)
+
+
 def inertia(wheel: Wheel) -> dict[str, float]:
-    return {"J_x": wheel.J_x, "J_y": wheel.J_y, "J_z": wheel.J_z}
+    return {name: getattr(wheel, name) for name in ("J_x", "J_y", "J_z")}
 
 
 def falls() -> Iterator[Case]:
-    for degrees, instant in ((89.999, 2e3), (75.0, 10.0), (45.0, 10.0), (10.0, 10.0), (1.0, 10.0)):
-        start = tilted(degrees, phi_dot_start=0.0)
-        remark = "1.7e-5 rad from the unstable equilibrium: errors grow 1e4-fold" if degrees > 89 else ""
-        name, end = f"{degrees:g} deg", fall(degrees)
-        yield Case("fall from rest", name, start, 5.0, end, FREE, instant=instant, remark=remark)
+    remark = "1.7e-5 rad from the unstable equilibrium: errors grow 1e4-fold"
+    for degrees, instant, why in ((89.999, 2e3, remark), *((degrees, 10.0, "") for degrees in (75.0, 45.0, 10.0, 1.0))):
+        how = {"instant": instant, "remark": why}
+        yield Case("fall from rest", f"{degrees:g} deg", resting(degrees), 5.0, fall(degrees), FREE, **how)
 
 
 def uprights() -> Iterator[Case]:
     limit, upright = critical_spin(PAPER), {"theta_start": PI / 2}
     yield Case("upright", "at rest, 2 s", {**upright, "phi_dot_start": 0.0}, 2.0, judges=(("still", 1.0),))
     yield Case("upright", "rolling at 4 rad/s", {**upright, "phi_dot_start": -4.0}, judges=(("straight", 1.0),))
-    for name, ratio in (("1 % below", 0.99), ("1 % above", 1.01)):
+    for side, ratio in (("below", 0.99), ("above", 1.01)):
         start = {"theta_start": PI / 2 - 1e-5, "phi_dot_start": -ratio * limit}
-        judges = (*FREE, ("linear", 100.0))
-        yield Case("stability limit", f"{name} {limit:.4f} rad/s, lean 1e-5", start, 5.0, judges=judges)
+        name = f"1 % {side} {limit:.4f} rad/s, lean 1e-5"
+        yield Case("stability limit", name, start, 5.0, judges=(*FREE, ("linear", 100.0)))
 
 
 def spins() -> Iterator[Case]:
-    start = {"theta_start": PI / 2 - 0.1}
-    instant = fall_time(PAPER, PI / 2 - 0.1, FLAT)
-    yield Case("spin", "1e-9 rad/s", {**start, "phi_dot_start": -1e-9}, 2.0, Expectation("flat", instant), FREE)
-    yield Case("spin", "1e-6 rad/s: clears the ground by 1e-7 m", {**start, "phi_dot_start": -1e-6}, 1.0)
-    for spin in (1e-3, 1.0, 1e2, 1e3, 1e4):
-        remark = "N ~ omega_z omega_2: an error of 1e-3 rad/s in omega_2 lifts the wheel" if spin == 1e4 else ""
-        loosest = 1e-6 if spin == 1e4 else 1e-4
-        spinning = {**start, "phi_dot_start": -spin}
-        yield Case("spin", f"{spin:g} rad/s", spinning, 1.0, remark=remark, loosest=loosest)
+    def spinning(omega: float) -> dict[str, float]:
+        return {"theta_start": PI / 2 - 0.1, "phi_dot_start": -omega}
+
+    flat = Expectation("flat", fall_time(PAPER, PI / 2 - 0.1, FLAT))
+    yield Case("spin", "1e-9 rad/s", spinning(1e-9), 2.0, flat, FREE)
+    yield Case("spin", "1e-6 rad/s: clears the ground by 1e-7 m", spinning(1e-6), 1.0)
+    yield from (Case("spin", f"{spin:g} rad/s", spinning(spin), 1.0) for spin in (1e-3, 1.0, 1e2, 1e3))
+    remark = "N ~ omega_z omega_2: an error of 1e-3 rad/s in omega_2 lifts the wheel"
+    yield Case("spin", "10000 rad/s", spinning(1e4), 1.0, remark=remark, loosest=1e-6)
 
 
 def tilts() -> Iterator[Case]:
-    judges, remark = (("energy", 200.0), ("integrals", 200.0)), "one error per bounce, some fifty bounces"
+    remark = "one error per bounce, some fifty bounces"
     for degrees in (1.0, 0.1, 0.01):
         start = brushing(degrees)
         name = f"theta = {degrees:g} deg, psi_dot = {start['psi_dot_start']:.0f} rad/s"
-        yield Case("brushing the ground", name, start, judges=judges, samples=2000, remark=remark)
+        yield Case("brushing the ground", name, start, judges=free(200.0), samples=2000, remark=remark)
     for degrees, bound in ((91.0, 10.0), (100.0, 10.0), (135.0, 20.0), (170.0, 200.0)):
-        judges = (("energy", bound), ("integrals", bound))
-        yield Case("past upright", f"theta = {degrees:g} deg", tilted(degrees), judges=judges)
+        yield Case("past upright", f"theta = {degrees:g} deg", tilted(degrees), judges=free(bound))
 
 
 def frictions() -> Iterator[Case]:
     yield Case("friction", "the paper's, s = 0.03 m", {"s": 0.03}, 10.0, judges=CHECKED, samples=10000)
-    for s in (0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1):
-        yield Case("friction", f"s = {s:g} m", {"s": s}, 5.0, judges=CHECKED, samples=4000)
-    for s in (1.0, 10.0):
-        judges = (("energy", 1e3), ("fixed", 0.0), ("reference", 1e5))
-        yield Case("friction", f"s = {s:g} m", {"s": s}, 5.0, judges=judges, samples=20000)
+    usual = {"judges": CHECKED, "samples": 4000}
+    yield from (Case("friction", f"s = {s:g} m", {"s": s}, 5.0, **usual) for s in (0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1))
+    large = {"judges": (("energy", 1e3), ("fixed", 0.0), ("reference", 1e5)), "samples": 20000}
+    yield from (Case("friction", f"s = {s:g} m", {"s": s}, 5.0, **large) for s in (1.0, 10.0))
 
 
 def sticking() -> Iterator[Case]:
@@ -82,8 +93,8 @@ def sticking() -> Iterator[Case]:
     rates = (3.0, 1.0, start["phi_dot_start"])
     held = accelerations(PAPER, (PI / 2, start["theta_start"], 0.0), rates, sigma=None)
     edge = abs(held.tau) / held.lambda_3
-    still, group = tilted(75.0, phi_dot_start=0.0, s=0.03), "omega_z = 0 at the start"
-    yield Case(group, "at rest: sticks and falls", still, 2.0, fall(75.0), CHECKED, 2000)
+    group = "omega_z = 0 at the start"
+    yield Case(group, "at rest: sticks and falls", {**resting(75.0), "s": 0.03}, 2.0, fall(75.0), CHECKED, 2000)
     for name, s in (("sticks", 2 * edge), ("released at once", edge / 2), ("on the edge |tau| = s N", edge)):
         yield Case(group, f"{name}, s = {s:.4g} m", {**start, "s": s}, 5.0, judges=CHECKED, samples=5000)
 
@@ -128,15 +139,15 @@ def weightless() -> list[Case]:
 
 
 def lift_offs() -> Iterator[Case]:
-    rest = tilted(75.0, phi_dot_start=0.0)
-    light, lifts = {**inertia(LIGHT), **rest}, Expectation("lifts", fall_lift_off(LIGHT, THETA_0))
+    rest, ball = resting(75.0), sphere(0.01)  # mass near its centre: leaves the ground while it falls
+    light, lifts = {**inertia(ball), **rest}, Expectation("lifts", fall_lift_off(ball, THETA_0))
     yield Case("lift-off", "light wheel falling from 75 deg", light, 2.0, lifts, FREE)
-    yield Case("lift-off", "the same, contact kept", {**light, "keep_contact": True}, 2.0, fall(75.0, LIGHT), FREE)
+    yield Case("lift-off", "the same, contact kept", {**light, "keep_contact": True}, 2.0, fall(75.0, ball), FREE)
     for spin, s in ((-0.1, 0.0), (-1.0, 0.0), (-0.6, 0.03), (-1.0, 0.03)):
-        rolling = {"J_x": 0.1, "J_y": 0.1, "J_z": 0.1, "phi_dot_start": spin, "s": s}
+        rolling = {**inertia(sphere(0.1)), "phi_dot_start": spin, "s": s}
         name = f"light wheel rolling at {-spin:g} rad/s, s = {s:g} m"
         yield Case("lift-off", name, rolling, 2.0, reference_ending(rolling), CHECKED, 4000)
-    pulled = {"J_x": 0.1, "J_y": 0.1, "J_z": 0.1, "phi_dot_start": -0.3, "s": 0.03, "keep_contact": True}
+    pulled = {**inertia(sphere(0.1)), "phi_dot_start": -0.3, "s": 0.03, "keep_contact": True}
     name, remark = "contact kept with friction, s = 0.03 m", "a ground that pulls has no rolling friction"
     judges = (("fixed", 0.0), ("reference", 1e3))  # no energy: the mode does not show where the ground pulls
     yield Case("lift-off", name, pulled, 0.9, judges=judges, samples=2000, remark=remark)
@@ -157,12 +168,8 @@ def reference_ending(start: dict[str, float]) -> Expectation:
 @cache
 def grazing(force: float) -> Wheel:
     """The sphere-like wheel whose least normal force in the fall from 75 deg is `force` m g."""
-
-    def wheel(J: float) -> Wheel:
-        return Wheel(J_x=J, J_y=J, J_z=J)
-
     weight = PAPER.m * PAPER.g
-    return wheel(brentq(lambda J: lowest_fall_force(wheel(J), THETA_0)[1] / weight - force, 0.01, 2.0, xtol=1e-14))
+    return sphere(brentq(lambda J: lowest_fall_force(sphere(J), THETA_0)[1] / weight - force, 0.01, 2.0, xtol=1e-14))
 
 
 def sweep() -> list[Case]:

@@ -29,18 +29,10 @@ def cubic(size, offset=0.0):
     return [offset, 0.5 * size / STEP, -1.5 * size / STEP**2, size / STEP**3]
 
 
-SHAPES = {
-    "just above": parabola(0, 1.0001),
-    "1.1 weights": parabola(0, 1.1),
-    "3 weights": parabola(0, 3),
-    "300 weights": parabola(0, 300),
-    "pressed at both ends": parabola(-20, 1.001),
-    "pressed hard at both ends": parabola(-1000, 1.1),
-    "cubic": cubic(21.0),
-    "steep cubic": cubic(400.0),
-    "cubic, falling first": cubic(-40.0),
-    "pressed cubic": cubic(1000.0, -40.0),
-}
+SHAPES = {f"{peak:g} weights": parabola(0, peak) for peak in (1.0001, 1.1, 3, 300)}
+SHAPES |= {"pressed at both ends": parabola(-20, 1.001), "pressed hard at both ends": parabola(-1000, 1.1)}
+SHAPES |= {"cubic": cubic(21.0), "steep cubic": cubic(400.0), "cubic, falling first": cubic(-40.0)}
+SHAPES |= {"pressed cubic": cubic(1000.0, -40.0)}
 
 
 def first_root(shape):

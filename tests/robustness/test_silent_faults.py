@@ -115,15 +115,11 @@ def test_a_run_whose_counts_are_as_large_as_can_be_can_be_saved_again(wheel, sta
     assert w.get("n_steps") == [2**31 - 1]
 
 
-@pytest.mark.parametrize(
-    ("first", "then"),
-    [
-        ({"psi_start": 0.3, "X_O_start": 7.0}, {}),
-        ({"phi_start": -2.0, "Y_O_start": 0.1}, {}),
-        ({"tolerance": 1e-5}, {"tolerance": 1e-10}),
-    ],
-    ids=["place and heading", "place and roll angle", "tolerance"],
-)
+BEFORE = [({"psi_start": 0.3, "X_O_start": 7.0}, {}), ({"phi_start": -2.0, "Y_O_start": 0.1}, {})]
+BEFORE += [({"tolerance": 1e-5}, {"tolerance": 1e-10})]
+
+
+@pytest.mark.parametrize(("first", "then"), BEFORE, ids=["place and heading", "place and roll angle", "tolerance"])
 def test_after_another_start_and_a_reset_the_orbit_is_the_one_built_here(wheel, first, then):
     w = wheel().start(**first).to(3.0)
     assert w.reset() == OK
