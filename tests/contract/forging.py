@@ -4,7 +4,7 @@ import struct
 
 import numpy as np
 from support.driver import FMU2Wheel, State, Values
-from support.pieces import play
+from support.schedule import play
 
 HEADER = 3  # words: mark, size, checksum of what follows
 SUM = HEADER - 1

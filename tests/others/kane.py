@@ -12,8 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 import sympy as sp
+from equations.pointwise import answers, draw
 from reference import Wheel
 from reference.model import Vector
+from support import equations as eq
 from symbrim.bicycle import FlatGround, InContactTire, ToroidalWheel
 from symbrim.other import RollingDisc
 from sympy.physics.mechanics import Force, Torque, inertia
@@ -102,3 +104,21 @@ def accelerations(
     else:
         tau = -sigma * (wheel.s * free[3] + brake) / (1 + sigma * wheel.s * per_tau[3])
     return Motion(*(free + tau * per_tau))
+
+
+NAMES = ("psi_ddot", "theta_ddot", "phi_ddot")
+
+
+def distance(rows: int = 200, symmetric: bool = False, stretched: float = 1.0) -> float:
+    """Of wheel_equations.h at random states: accelerations relative to the largest of a state, N to the ground's force.
+
+    stretched: factor on the tube radius that Kane's method is given.
+    """
+    scenes, motions = draw(24, None, symmetric, rows)
+    found = eq.dynamics_each(eq.REDUCED, scenes, eq.start_each(eq.REDUCED, scenes, motions))
+    scenes["wheel"]["r"] *= stretched
+    other = np.array([*answers(accelerations, scenes, motions)])
+    ours = eq.columns(found, *NAMES)
+    angles = np.abs(ours - other[:, :3]).max(axis=1) / np.abs(ours).max(axis=1)
+    forces = np.abs(found["lambda_"][:, 2] - other[:, 3]) / np.abs(found["lambda_"]).max(axis=1)
+    return float(max(angles.max(), forces.max()))

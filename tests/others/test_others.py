@@ -8,14 +8,14 @@ from physics.leaning import measured_critical_spin
 from support.bounds import EPSILON, beyond, within
 from support.motion import Library
 
-from . import kane_states, wheels
+from . import kane, wheels
 from .numbers import read
 
 
 @pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
 def test_kanes_method_gives_the_same_accelerations_and_normal_force(symmetric: bool) -> None:
-    within(kane_states.distance(symmetric=symmetric), 16384 * EPSILON, "symbrim: relative")  # two solutions
-    beyond(kane_states.distance(10, symmetric, stretched=1 + 1e-9), 2e-11, "symbrim, a tube 1e-9 thicker: relative")
+    within(kane.distance(symmetric=symmetric), 16384 * EPSILON, "symbrim: relative")  # two solutions
+    beyond(kane.distance(10, symmetric, stretched=1 + 1e-9), 2e-11, "symbrim, a tube 1e-9 thicker: relative")
 
 
 def test_modelicas_wheel_is_as_far_from_ours_as_from_an_independent_integration(library: Library) -> None:

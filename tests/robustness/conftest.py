@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import pytest
 from support.driver import OK, FMU2Wheel, Value, Values
-from support.pieces import Piece, play
 from support.scenes import FORCED
+from support.schedule import Piece, play
 
 
 @pytest.fixture(params=FORCED, ids=lambda kind: "-".join(map(str, kind.values())))

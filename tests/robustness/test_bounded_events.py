@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
-from support.pieces import play
 from support.scenes import FORCED
+from support.schedule import play
 
 NONE = EPSILON  # rad/s: what rounding leaves of phi_dot while omega_z is zero
 SOON = 5.0  # s of computing, many times what is needed: a scene that chatters takes for ever

@@ -14,8 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.bounds import absolute_error, beyond, within
 from support.driver import OK, Values, shifted
-from support.pieces import Piece, play
 from support.scenes import FORCED
+from support.schedule import Piece, play
 
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot")
 RUNGE_KUTTA: Values = {"formulation": 2, "method": 4}

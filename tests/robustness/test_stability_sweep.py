@@ -13,8 +13,8 @@ from support.motion import Library, run
 
 from robustness import judges
 from robustness.case import Case, Expectation
+from robustness.judges import judge, judge_case
 from robustness.sweep import sweep
-from robustness.verdicts import judge, judge_case
 
 SLOW = ("friction", "omega_z = 0")  # with the reference and dense outputs: a second each
 CASES = {str(case): case for case in sweep()}

@@ -7,8 +7,8 @@ import pytest
 from contract.forging import as_word, saved, signed, words_of
 from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import ERROR, OK
-from support.pieces import play
 from support.scenes import PAPER
+from support.schedule import play
 
 WEIGHT = PAPER.m * PAPER.g
 

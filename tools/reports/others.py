@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
-from others import kane_states, wheels
+from others import wheels
+from others.kane import distance
 from others.numbers import read
 from physics.leaning import measured_critical_spin
 from reference import Start, Wheel
@@ -34,7 +35,7 @@ def ends(table: dict, *names: str, places: int = 8) -> str:
 
 def kane(library: Library) -> Compared:
     scene = "200 random states, loads, inertias and laws of friction: ψ̈, θ̈, φ̈, N"
-    return "symbrim 0.1.0 (TU Delft; SymPy, Kane)", scene, "derived", "same", kane_states.distance(), "rounding"
+    return "symbrim 0.1.0 (TU Delft; SymPy, Kane)", scene, "derived", "same", distance(), "rounding"
 
 
 def modelica(library: Library) -> Compared:

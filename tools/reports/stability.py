@@ -13,8 +13,8 @@ import numpy as np
 import pandas as pd
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 from robustness.case import Case
+from robustness.judges import TOLERANCES, Verdict, judge_case
 from robustness.sweep import sweep
-from robustness.verdicts import TOLERANCES, Verdict, judge_case
 from support.driver import ERROR
 from support.motion import Library, run
 
