@@ -10,9 +10,10 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 from reference import Start, Wheel
+from reference.frames import rotation
 from reference.model import Inputs
 from reference.motion import derivative, initial_state
-from reference.newton_euler import Contact, Law, rotation
+from reference.newton_euler import Contact, Law
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from support.motion import start_values

@@ -5,7 +5,6 @@ from ctypes import byref, c_double
 import numpy as np
 from numpy.typing import NDArray
 from reference.tables import read_table
-from scipy.integrate import solve_ivp
 from support import equations as eq
 from support.bounds import range_error
 from support.driver import HEADLINE
@@ -56,22 +55,3 @@ def constraint_drift(
     columns = np.column_stack([run[name] for name, _ in eq.Kinematics._fields_])
     velocity, height = np.array([residual(wheel, eq.Kinematics(*row)) for row in columns]).T
     return velocity, height, run
-
-
-def unstabilised_drift(times: NDArray[np.float64], tolerance: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The same for (24) as it stands, free wheel: its accelerations integrated by SciPy, nothing pulls back.
-
-    y = X_O, Y_O, Z_O, psi, theta, phi, the rates of the first five, omega_z.
-    """
-    scene = eq.scene(eq.paper_wheel())
-
-    def rate(_t: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
-        d = eq.dynamics(eq.MULTIBODY, scene, y)
-        phi_dot = y[11] - y[9] * np.cos(y[4])
-        accelerations = (d.X_O_ddot, d.Y_O_ddot, d.Z_O_ddot, d.psi_ddot, d.theta_ddot, d.omega_z_dot)
-        return np.array([*y[6:11], phi_dot, *accelerations])
-
-    start = eq.start(eq.MULTIBODY, scene.wheel, eq.PAPER_START)
-    run = solve_ivp(rate, (0, times[-1]), start, "DOP853", times, rtol=tolerance, atol=0.1 * tolerance)
-    residuals = [residual(scene.wheel, eq.kinematics(eq.MULTIBODY, scene.wheel, y)) for y in run.y.T.copy()]
-    return tuple(np.array(residuals).T)

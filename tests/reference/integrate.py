@@ -6,15 +6,15 @@ start, and outputs are reached in the same way, so that nothing rests on the den
 """
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.integrate import DOP853
 
 from .crossing import NODES, first_fall
+from .frames import rotation, slope
 from .model import Inputs, Start, Wheel
 from .motion import OMEGA_Z, State, derivative, initial_state
-from .newton_euler import rotation, slope
 from .outputs import Ending, Row, Solution, build
 from .switching import CLEAR, ROLL, Mode, Options, Side, Switch
 
@@ -149,25 +149,12 @@ class Run:
                 self.turn(margin)
 
 
-def solve(
-    wheel: Wheel,
-    start: Start,
-    times: Sequence[float],
-    inputs: Inputs | None = None,
-    *,
-    rtol: float = 1e-13,
-    keep_contact: bool = True,
-    flat: float | None = 1e-6,
-    pulled_friction: str = "none",
-) -> Solution:
-    """The motion from `start` at times[0], reported at `times` (rising).
+def solve(wheel: Wheel, start: Start, times: Sequence[float], inputs: Inputs | None = None, **how: Any) -> Solution:
+    """The motion from `start` at times[0], reported at `times` (rising); `how`: the fields of Options.
 
-    keep_contact False: N = 0 ends the run (lift-off).  flat: the sine of theta at which the
-    wheel counts as flat and the run ends; None: not watched.  An ended run has its last row at
-    the ending.
+    An ended run has its last row at the ending.
     """
-    inputs = inputs or Inputs()
-    options = Options(rtol, keep_contact, flat, pulled_friction)
+    inputs, options = inputs or Inputs(), Options(**how)
     run = Run(options, times, initial_state(wheel, start))
     t_end = run.times[-1]
     for stop in [*sorted(t for t in inputs.jumps if run.t < t < t_end), t_end]:

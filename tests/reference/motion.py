@@ -12,22 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .frames import Matrix, cross, quaternion, rotation, slope, to_body, to_fixed
 from .model import ZERO, Inputs, Start, Vector, Wheel
-from .newton_euler import (
-    Contact,
-    Law,
-    Matrix,
-    Response,
-    arm,
-    axle_moment,
-    carrier_moment,
-    cross,
-    quaternion,
-    rotation,
-    slope,
-    to_body,
-    to_fixed,
-)
+from .newton_euler import Contact, Law, Response, arm, axle_moment, carrier_moment
 
 State = NDArray[np.float64]
 OMEGA_Z = 6

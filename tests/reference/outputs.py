@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .frames import cross, slope, to_fixed
 from .motion import OMEGA_Z, State, angle_rates, respond
-from .newton_euler import arm, axle_moment, cross, slope, to_fixed
+from .newton_euler import arm, axle_moment
 from .switching import Mode, Switch
 
 

@@ -10,9 +10,10 @@ then drive the wheel and its zero would repel) and sigma is not watched; pulled_
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from .frames import rotation, slope
 from .model import Inputs, Wheel, released
 from .motion import OMEGA_Z, State, respond
-from .newton_euler import Contact, Law, axle_moment, rotation, slope, stick_margins
+from .newton_euler import Contact, Law, axle_moment, stick_margins
 
 CLEAR, PUSH, ROLL = 0, 1, 2  # positions in Switch.margins; held: ROLL towards +, ROLL + 1 towards -
 Side = tuple[float, float]
@@ -31,12 +32,16 @@ class Mode(NamedTuple):
 
 @dataclass(frozen=True)
 class Options:
-    """How solve() treats contact and time; see solve()."""
+    """How solve() treats contact and time.
 
-    rtol: float
-    keep_contact: bool
-    flat: float | None
-    pulled_friction: str
+    keep_contact False: N = 0 ends the run (lift-off).  flat: the sine of theta at which the wheel counts as flat and
+    the run ends; None: not watched.
+    """
+
+    rtol: float = 1e-13
+    keep_contact: bool = True
+    flat: float | None = 1e-6
+    pulled_friction: str = "none"
 
 
 class Switch:
