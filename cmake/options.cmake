@@ -29,7 +29,7 @@ if(WHEEL_FUZZ)
   set(fuzzer_instrumentation -fsanitize=fuzzer-no-link)
 endif()
 if(WHEEL_COVERAGE)
-  # Our own code only: more is slow and tells nothing.
+  # Our own code only: more is slow and shows nothing.
   set(coverage_instrumentation --coverage -fprofile-update=atomic -Og)
   add_link_options(--coverage)
 endif()

@@ -9,7 +9,7 @@ if(CMAKE_MATCH_2 STREQUAL windows)
 elseif(CMAKE_MATCH_2 STREQUAL macos)
   set(CMAKE_SYSTEM_NAME Darwin)
 elseif(CMAKE_MATCH_2 STREQUAL wasi)
-  set(CMAKE_SYSTEM_NAME Generic) # no shared libraries, no threads, no system of its own
+  set(CMAKE_SYSTEM_NAME Generic) # no shared libraries, no threads, no system below
 else()
   set(CMAKE_SYSTEM_NAME Linux)
   # CMake does not find out that zig can optimise while linking. It cannot for macOS.

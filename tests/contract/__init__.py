@@ -1,1 +1,1 @@
-"""Tests of the FMU's C interface: what a master may do, and what it must be told when it may not."""
+"""Tests of the FMU's C interface: what a master may do, and which message it gets where it may not."""

@@ -69,26 +69,26 @@ def grids(stop: float = 1.0) -> st.SearchStrategy[list[float]]:
 
 def play_anything(w: FMU2Wheel, start: Values, load: Values) -> list[tuple[int, list[float], list[str]]]:
     """One life with any values: after each call its status, the outputs where they can be read, what was logged."""
-    told: list[tuple[int, list[float], list[str]]] = []
+    logged: list[tuple[int, list[float], list[str]]] = []
     finite = [name for name in w.reals if name != "mu_required"]  # infinite where the ground does not press
     assert w.set(**start) == w.setupExperiment() == w.enterInitializationMode() == OK
     for call in (w.exitInitializationMode, lambda: w.set(**load), *[lambda: w.step(0.02)] * 3):
         status = call()
-        told.append((status, w.get(*finite) if status <= WARNING else [], w.texts()))
-    return told
+        logged.append((status, w.get(*finite) if status <= WARNING else [], w.texts()))
+    return logged
 
 
 def is_sentence(text: str) -> bool:
     return text[:1].isalpha() and text.endswith(".") and 20 < len(text) < 1000
 
 
-def is_honest(told: list[tuple[int, list[float], list[str]]]) -> bool:
+def is_honest(logged: list[tuple[int, list[float], list[str]]]) -> bool:
     """Every call gave finite outputs, or said in a sentence why it did not."""
     return all(
         status in (OK, WARNING, DISCARD, ERROR)
         and all(map(is_sentence, texts))
         and (bool(texts) if status > WARNING else all(map(isfinite, outputs)))
-        for status, outputs, texts in told
+        for status, outputs, texts in logged
     )
 
 

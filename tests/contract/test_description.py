@@ -226,7 +226,7 @@ FAULTY += [(OF_X_O, 'dependencies="mass"', "refers to mass, which is none of its
 
 
 @pytest.mark.parametrize(("old", "new", "sentence"), FAULTY)
-def test_a_description_that_cannot_be_numbered_is_refused_with_a_sentence(old, new, sentence):
+def test_a_description_that_cannot_be_numbered_is_refused_with_a_message(old, new, sentence):
     with pytest.raises(SystemExit, match=sentence):
         numbered(TEXT.replace(old, new, 1))
 

@@ -29,18 +29,18 @@ def test_the_end_does_not_depend_on_the_communication_grid(wheel):
 
 
 @pytest.mark.parametrize(("values", "what"), [(DROP, "fell flat"), (LIFT, "lifted off the ground")])
-def test_an_ending_is_told_with_every_digit_of_its_instant_and_no_later_step_is_answered_with_ok(wheel, values, what):
+def test_an_ending_is_logged_with_every_digit_of_its_instant_and_no_later_step_is_answered_with_ok(wheel, values, what):
     w = wheel().start(start=0.1, **values)
     assert w.step(10.0) == DISCARD
     end, bits = ended(w), w.bits()
-    told = f"{what} at t = {np.format_float_positional(end, trim='-')} s"  # the shortest decimal that is this number
+    logged = f"{what} at t = {np.format_float_positional(end, trim='-')} s"  # the shortest decimal that is this number
     (message,) = w.take_messages()
     assert (message.status, message.category) == (WARNING, "logStatusDiscard")
-    assert message.text.startswith(f"The wheel {told}") and message.text.endswith("the model ends there.")
+    assert message.text.startswith(f"The wheel {logged}") and message.text.endswith("the model ends there.")
     w.time = end
     for h in (0.0, 1e-300, 1e-12, 0.1, 1e6):
         assert w.step(h) == ERROR
-        assert w.said() == f"fmi2DoStep: the wheel {told}. Restore a state or reset."
+        assert w.said() == f"fmi2DoStep: the wheel {logged}. Restore a state or reset."
     assert w.set(s=0.01) == ERROR and what in w.said()
     for leaving in (lambda: OK, w.terminate):
         assert leaving() == OK

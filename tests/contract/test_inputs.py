@@ -141,9 +141,9 @@ def test_a_step_may_end_on_the_very_instant_of_a_release(wheel):
         released = ramp_and_hold(wheel(), middle)[0]
         early, late = (early, middle) if released else (middle, late)
     ends = early + np.spacing(early) * np.arange(-20, 20)
-    told = [ramp_and_hold(wheel(), h) for h in ends]
-    assert {released for released, _ in told} == {0, 1}  # the instant lies among them
-    assert {status for _, status in told} == {OK}  # with the stop time kept, 8 of the 40 ended in an error
+    logged = [ramp_and_hold(wheel(), h) for h in ends]
+    assert {released for released, _ in logged} == {0, 1}  # the instant lies among them
+    assert {status for _, status in logged} == {OK}  # with the stop time kept, 8 of the 40 ended in an error
 
 
 @pytest.mark.parametrize("method", [2, 3])

@@ -95,12 +95,12 @@ WRONG += [(b"wheel", kind, None, "the type is not known") for kind in (2, 7, -1,
 
 @pytest.mark.parametrize(("name", "kind", "guid", "why"), WRONG)
 def test_an_instantiation_that_is_wrong_is_refused_with_the_reason(wheel, name, kind, guid, why):
-    w, told = wheel(), []
+    w, logged = wheel(), []
     callbacks = fmi2CallbackFunctions()
-    callbacks.logger = fmi2CallbackLoggerTYPE(lambda environment, instance, *message: told.append(message))
+    callbacks.logger = fmi2CallbackLoggerTYPE(lambda environment, instance, *message: logged.append(message))
     guid = w.guid.encode() if guid is None else guid
     assert w.fmi2Instantiate(name, kind, guid, None, byref(callbacks), 0, 0) is None
-    ((status, category, text),) = told
+    ((status, category, text),) = logged
     assert (status, category) == (ERROR, b"logStatusError")
     assert text.startswith(b"fmi2Instantiate: " + why.encode()) and text.endswith(b".")
     assert w.fmi2Instantiate(name, kind, guid, None, None, 0, 0) is None  # nobody to tell: still refused

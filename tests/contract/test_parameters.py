@@ -1,4 +1,4 @@
-"""Faulty parameters: told all together, one sentence each, at the end of initialization; correcting them helps."""
+"""Faulty parameters: reported all together, one message each, at the end of initialization; correcting them helps."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
 NUMBER, ABOVE = "a finite number is needed.", "it must be greater than 0."
 TRIANGLE = "kg m2: none may exceed the sum of the other two."
 STANDS = "the wheel must stand above the ground, 0 < theta < 3.14159."
-# Name, value, the sentence, and a value next to it that is taken.
+# Name, value, the message, and a value next to it that is taken.
 FAULTS: list[tuple[str, float, str, float]] = [
     ("m", np.nan, f"m = nan: {NUMBER}", 1e-3),
     ("r_0", np.inf, f"r_0 = inf: {NUMBER}", 0.01),
@@ -45,17 +45,17 @@ def initialize(w: FMU2Wheel, **values: float) -> tuple[int, list[str]]:
     return status, [m.text for m in messages]
 
 
-def test_all_faults_are_told_at_once_one_sentence_each(wheel):
-    status, told = initialize(wheel(), **{name: value for name, value, *_ in FAULTS})
+def test_all_faults_are_reported_at_once_one_message_each(wheel):
+    status, logged = initialize(wheel(), **{name: value for name, value, *_ in FAULTS})
     assert status == ERROR
-    assert sorted(told) == sorted(sentence for _, _, sentence, _ in FAULTS)
+    assert sorted(logged) == sorted(text for _, _, text, _ in FAULTS)
 
 
-@pytest.mark.parametrize(("name", "value", "sentence", "near"), FAULTS + ALONE)
-def test_each_fault_is_told_and_after_a_reset_and_a_correction_the_wheel_runs(wheel, name, value, sentence, near):
+@pytest.mark.parametrize(("name", "value", "text", "near"), FAULTS + ALONE)
+def test_each_fault_is_reported_and_after_a_reset_and_a_correction_the_wheel_runs(wheel, name, value, text, near):
     w = wheel()
-    status, told = initialize(w, **{name: value})
-    assert status == ERROR and sentence in told
+    status, logged = initialize(w, **{name: value})
+    assert status == ERROR and text in logged
     assert w.get_one("theta")[0] == ERROR and "theta" in w.said()
     assert w.reset() == OK
     assert initialize(w, **{name: near}) == (OK, [])
@@ -72,7 +72,7 @@ def test_a_weight_that_moves_nothing_is_none(wheel, s):
 
 @pytest.mark.parametrize("most", ["psi_dot_start", "theta_dot_start", "phi_dot_start"])
 def test_without_a_weight_rates_of_a_thousand_times_give_the_same_motion_as_much_faster(wheel, most):
-    """To the bit, since the factor is 1024: nothing else has a time of its own."""
+    """To the bit, since the factor is 1024: nothing else has a time scale."""
     places = []
     for faster in (1, 1024):
         rates = {f"{angle}_dot_start": faster * 0.25 for angle in ("psi", "theta", "phi")} | {most: 2.0 * faster}
@@ -120,8 +120,8 @@ def test_experiments_that_make_no_sense_are_refused_and_an_infinite_stop_time_is
     assert wheel().back(endless.serialized()).bits() == endless.bits()
 
 
-def test_sound_values_whose_products_are_no_numbers_are_refused_with_a_sentence(wheel):
-    status, told = initialize(wheel(), m=1.7e308)
+def test_sound_values_whose_products_are_no_numbers_are_refused_with_a_message(wheel):
+    status, logged = initialize(wheel(), m=1.7e308)
     assert status == ERROR
-    assert [text.split(":")[0] for text in told] == ["The initial energy or reaction force overflows"]
+    assert [text.split(":")[0] for text in logged] == ["The initial energy or reaction force overflows"]
     assert wheel().start(m=1e100, J_x=1e100, J_y=1e100, J_z=1.5e100).step(0.1) == OK

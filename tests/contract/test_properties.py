@@ -21,10 +21,10 @@ extreme_loads = st.fixed_dictionaries({}, optional=dict.fromkeys(INPUTS, propert
 
 
 @pytest.mark.parametrize("silent", [False, True])
-def test_any_values_give_finite_outputs_or_a_sentence(wheel, silent):
+def test_any_values_give_finite_outputs_or_a_message(wheel, silent):
     def holds(start: Values, load: Values) -> None:
-        told = play_anything(wheel(), start, load)
-        assert is_honest([(status, outputs, [] if silent else texts) for status, outputs, texts in told])
+        logged = play_anything(wheel(), start, load)
+        assert is_honest([(status, outputs, [] if silent else texts) for status, outputs, texts in logged])
 
     check(holds, 60, mistakes, extreme_loads, broken=silent)
 

@@ -79,7 +79,7 @@ def test_a_caller_that_passes_a_state_where_its_address_belongs_frees_nothing(wh
     """fmusim 0.0.39 does so after saving and after restoring a state."""
     w = wheel().start(s=0.03)
     state = w.snapshot()
-    # What fmi2FreeFMUstate takes for the state is a word of its own memory, which was never handed out.
+    # What fmi2FreeFMUstate takes for the state is a word of the FMU's memory, which was never handed out.
     assert w.ask("FreeFMUstate", cast(state, POINTER(fmi2FMUstate))) == OK
     ahead = w.run([1.5])
     assert w.ask("SetFMUstate", state) == OK
@@ -112,7 +112,7 @@ def test_a_state_is_taken_into_a_pointer_that_was_never_handed_out(wheel):
         w.back(blob)
 
 
-def test_an_unknown_state_is_refused_with_a_sentence_and_freeing_it_has_no_effect(wheel):
+def test_an_unknown_state_is_refused_with_a_message_and_freeing_it_has_no_effect(wheel):
     w, undisturbed = wheel().start(s=0.03), wheel().start(s=0.03)
     freed, size, buffer = w.snapshot(), c_size_t(), bytes(1 << 17)
     gone = fmi2FMUstate(freed.value)
@@ -168,7 +168,7 @@ def test_in_another_process_a_restored_wheel_goes_on_with_the_same_bits(wheel, f
         expected.append(continued(w))
     with get_context("spawn").Pool(1) as pool:
         assert pool.starmap(restored_and_continued, blobs) == expected
-    assert len({state for _, state in expected}) == len(KINDS)  # the partner: each scene has bits of its own
+    assert len({state for _, state in expected}) == len(KINDS)  # the partner: no two scenes have the same bits
 
 
 def changes(word: int, seed: int) -> list[int]:
@@ -276,7 +276,7 @@ def test_a_choice_that_is_no_number_reads_as_the_least_integer(wheel):
     assert w.back(signed(words)).get("formulation") == [-(2**31)]
 
 
-def test_a_state_of_another_version_is_refused_with_a_sentence(wheel):
+def test_a_state_of_another_version_is_refused_with_a_message(wheel):
     """Version 2.0.0 had a header for the call state in front of the mark; later ones have another mark."""
     w = wheel().start()
     words = list(words_of(w.serialized()))

@@ -98,8 +98,8 @@ NO_SENSE += [(t, 0.1, "the FMU has reached 0.5 s") for t in (0.4, 0.5 + 1e-6)]
 def test_times_that_make_no_sense_are_refused_and_nothing_changes(wheel, t, h, why):
     w, other = (wheel().start().by(0.5) for _ in range(2))
     assert w.ask("DoStep", t, h, 1) == ERROR
-    told = w.said()
-    assert why in told and told.startswith("fmi2DoStep ")
+    logged = w.said()
+    assert why in logged and logged.startswith("fmi2DoStep ")
     assert w.run([1.0]) == other.run([1.0])
     assert w.ask("DoStep", 1.0 + 1e-14, 0.1, 1) == OK  # the partner: rounding is no fault
 

@@ -84,7 +84,7 @@ def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(l
         force = found["lambda_"]
         if formulation is not eq.MULTIBODY:
             assert (normal == force[:, 2]).all()
-        # multibody: two solutions of (24), stabilised and pure, each with rounding of its own
+        # multibody: two solutions of (24), stabilised and pure, each with its rounding
         within(relative(y_dot, stated), 4096 * EPSILON, "relative difference, 2")
         within((np.abs(normal - force[:, 2]) / np.abs(force).max(axis=1)).max(), 4096 * EPSILON, "normal force")
 

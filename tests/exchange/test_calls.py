@@ -243,7 +243,7 @@ NO_START = {
 
 
 @pytest.mark.parametrize("fault", NO_START)
-def test_a_start_that_model_exchange_cannot_have_is_refused_with_a_sentence(library: Library, fault: str) -> None:
+def test_a_start_that_model_exchange_cannot_have_is_refused_with_a_message(library: Library, fault: str) -> None:
     with loaded(library).new() as wheel:
         assert wheel.set(**NO_START[fault]) == OK and wheel.initialise() == ERROR
         assert wheel.said().startswith(fault)

@@ -36,7 +36,7 @@ MOST, MOST_OF_A_TEST = 400, 60  # s of processor time of all tests; of one test,
 AT_FIRST = 6  # files of tests that are asked before all others
 THE_BUILD, NOTHING = "the build, which runs the paper's scenes", "nothing: it does not compile or changes no bit"
 SPARE = 3  # drawn for each that is wanted, more than enough: many do not compile
-# Without link-time optimisation, which costs more than it tells; the bits are the same.
+# Without link-time optimisation, which costs more than it shows; the bits are the same.
 FAST = [f"-DCMAKE_{language}_FLAGS_RELWITHDEBINFO=-O2 -DNDEBUG" for language in ("C", "CXX")]
 
 
@@ -117,7 +117,7 @@ class Copy:
 
 
 def usual_failures(copy: Copy, tests: Sequence[str]) -> list[str]:
-    """What fails without a fault tells nothing."""
+    """What fails without a fault shows nothing."""
     usual: list[str] = []
     while failing := copy.failing(tests, usual):
         assert not set(failing) & set(usual), f"{failing} fail without any fault, even when they are left out"

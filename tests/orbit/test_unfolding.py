@@ -97,20 +97,20 @@ def test_a_wheel_that_ends_does_so_in_its_first_nutation(library: ctypes.CDLL) -
     beyond(before, 1e-2 * 196.2, "normal force before, N")
 
 
-def test_excursions_below_zero_are_told_at_their_instants_however_late(library: ctypes.CDLL) -> None:
+def test_excursions_below_zero_are_found_at_their_instants_however_late(library: ctypes.CDLL) -> None:
     orbit = Orbit(library, start=LEAPING, keep_contact=True)
     assert orbit.kind == "folded"
     t = np.linspace(0, 12 * orbit.half_period, 20_001)
     N = orbit.read(t)[1]
     falls = t[1:][(N[:-1] >= 0) & (N[1:] < 0)]
-    told = [orbit.fall(n) for n in range(orbit.falls_until(t[-1]))]
-    assert len(told) == len(falls) >= 6
-    assert (np.abs(falls - told) <= t[1]).all()
+    found = [orbit.fall(n) for n in range(orbit.falls_until(t[-1]))]
+    assert len(found) == len(falls) >= 6
+    assert (np.abs(falls - found) <= t[1]).all()
     # Less than one part in 1e9 of the weight, 196 N, counts as zero.
-    within(np.abs(orbit.read(told)[1]).max(), 4e-7, "normal force, N")
+    within(np.abs(orbit.read(found)[1]).max(), 4e-7, "normal force, N")
     late = orbit.falls_until(1e6)
     assert orbit.fall(late - 1) <= 1e6 < orbit.fall(late)
-    within(abs(orbit.fall(late - 1) - orbit.fall(late - 1 - len(told) // 6) - 2 * orbit.half_period), 5e-10, "fall")
+    within(abs(orbit.fall(late - 1) - orbit.fall(late - 1 - len(found) // 6) - 2 * orbit.half_period), 5e-10, "fall")
     assert orbit.falls_until(np.nextafter(orbit.fall(late - 1), 0)) == late - 1
 
 
@@ -241,11 +241,11 @@ BROKEN |= {f"{name}, steady": (name, STEADY) for name in DISTURBANCES[:6]}
 
 @pytest.mark.parametrize(("name", "start"), BROKEN.values(), ids=BROKEN)
 def test_what_breaks_the_symmetry_is_noticed_whatever_it_is(library: ctypes.CDLL, name: str, start: Start) -> None:
-    """Nobody tells the orbit what acts on the wheel: a force that a list of conditions forgets must not be lost."""
+    """The orbit has no list of what acts on the wheel: a force that such a list forgets must not be lost."""
     orbit, kind = Orbit(library, start=start), DISTURBANCES.index(name)
     assert orbit.kind == "folded"
     try:
-        for size in (1e-2, 1e-5, 1e-7, 1e-12):  # the last is less than the tolerance can tell
+        for size in (1e-2, 1e-5, 1e-7, 1e-12):  # the last is below what the tolerance resolves
             library.probe_disturb(kind, ctypes.c_double(size))
             assert orbit.build() == ("refused" if size > 1e-12 else "folded"), size
     finally:

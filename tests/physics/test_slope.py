@@ -102,7 +102,7 @@ def test_multibody_jls_wheel_on_45_degrees_gains_the_same_spin_in_each_half_seco
     within(abs(gains[0] - gain), 64 * 8 * EPSILON, "gain, rad/s")
 
 
-def test_a_road_of_ninety_degrees_is_refused_with_a_sentence(library: Library) -> None:
+def test_a_road_of_ninety_degrees_is_refused_with_a_message(library: Library) -> None:
     with library.wheel(logging=True) as wheel:
         wheel.set(slope=pi / 2)
         wheel.initialise()

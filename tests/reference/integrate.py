@@ -50,7 +50,7 @@ class Run:
         self.first_step = 1e-4
 
     def reach(self, rate: Rate, t_1: float) -> State:
-        """The state at t_1, by a step of its own from the present."""
+        """The state at t_1, by one separate step from the present."""
         h = t_1 - self.t
         if h <= 0:
             return self.y

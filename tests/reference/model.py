@@ -1,4 +1,4 @@
-"""The wheel, its start and its inputs, as plain data (reference solution, no frame of its own).
+"""The wheel, its start and its inputs, as plain data (reference solution, no frame).
 
 Symbols, defaults and units are those of the paper's (27)-(33); SI throughout.
 """

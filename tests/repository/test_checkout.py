@@ -78,7 +78,7 @@ def test_the_python_environment_of_another_place_is_made_anew(checkout: Path, tm
 
 
 class Fetch:
-    """fetch_sundials of cmake/sundials.cmake in a folder of its own, with a registry that holds a small archive."""
+    """fetch_sundials of cmake/sundials.cmake in an empty folder, with a registry that holds a small archive."""
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.cache = folder, folder / "build" / "sundials"

@@ -39,7 +39,7 @@ def call(folder: Path, name: str, *words: str, **variables: str) -> subprocess.C
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
 
 
-def test_the_folder_holds_commands_alone_among_them_those_that_newcomers_are_told_of() -> None:
+def test_the_folder_holds_commands_alone_among_them_those_that_newcomers_are_logged_of() -> None:
     assert {"run", "test", "build", "setup", "lint", "release", "report", *PARTS} <= {*COMMANDS, *GONE}
     for name in COMMANDS:
         path = ROOT / "scripts" / name
@@ -58,7 +58,7 @@ def test_help_tells_what_a_command_does_and_does_nothing(bare: Path, name: str, 
 
 
 @pytest.mark.parametrize("name", [name for name in WRONG if name in COMMANDS])
-def test_a_typing_error_is_told_before_anything_is_installed(bare: Path, name: str) -> None:
+def test_a_typing_error_is_logged_before_anything_is_installed(bare: Path, name: str) -> None:
     before = files(bare)
     done = call(bare, name, *WRONG[name])
     assert done.returncode in (1, 2) and not done.stdout

@@ -1,5 +1,5 @@
 /* malloc, calloc and free in front of the C library's or of a sanitizer's, by LD_PRELOAD: what wheel.so takes and gives
- * back is counted, and fails where it is told to. No paper equation, no frame. */
+ * back is counted, and fails where it is asked to. No paper equation, no frame. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <string.h>
@@ -28,7 +28,7 @@ static void* keep(int watched, void* block) {
   return block;
 }
 
-/* By the block, not by the caller: a call at a function's end does not tell who made it. */
+/* By the block, not by the caller: a call at a function's end does not show who made it. */
 static void forget(const void* block) {
   for (long i = live - 1; block && i >= 0; --i)
     if (blocks[i] == block) {

@@ -3,7 +3,7 @@
     LD_PRELOAD=short_memory.so python -m robustness.short_memory FOLDER FORMULATION LAW METHOD COMPANIONS
 
 FOLDER holds the unpacked FMU; companions are instances made before. Prints as JSON what was counted. It fails where a
-promise is broken: no crash, no leak; an error has its sentence; once there is memory again, the same instance and a new
+promise is broken: no crash, no leak; an error has its message; once there is memory again, the same instance and a new
 one go on with the bits of an undisturbed life.
 """
 
@@ -37,13 +37,13 @@ class Lives:
         self.taken: dict[str, int] = {}
 
     def begin(self) -> FMU2Wheel | None:
-        """An instance, or none: then it was told why."""
-        told: list[Message] = []
-        self.loaded.on_message = told.append
+        """An instance, or none: then the reason was logged."""
+        logged: list[Message] = []
+        self.loaded.on_message = logged.append
         try:
             return self.loaded.new()
         except Exception:
-            assert told, "no instance and no sentence"
+            assert logged, "no instance and no message"
             return None
 
     def run(self, w: FMU2Wheel) -> list[bytes]:
@@ -70,7 +70,7 @@ class Lives:
             try:
                 rows = self.run(w)
             except AssertionError:
-                assert w.sentences and counted("failed").value, "an error without a sentence or a cause"
+                assert w.sentences and counted("failed").value, "an error without a message or a cause"
             counted("last_failing").value = 0
             assert w.reset() == 0, "an instance that was short of memory cannot be reset"
             rows = self.run(w)

@@ -11,7 +11,7 @@ from support.driver import ERROR, OK
 from support.paths import ROOT
 
 # formulation, friction law, method (4: Runge-Kutta): here every allocation is our own. SUNDIALS does not survive each
-# of its own that fails (docs/decisions/others.md), so its methods are not played with.
+# failure of one it makes (docs/decisions/others.md), so its methods are not played with.
 SCENES = {"reduced": (2, 1, 4), "multibody": (3, 1, 4), "reduced, regularized": (2, 2, 4)}
 
 
@@ -37,7 +37,7 @@ def play(tmp_path_factory: pytest.TempPathFactory, fmu: str) -> Callable[..., di
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_no_failed_allocation_crashes_leaks_goes_untold_or_changes_a_later_bit(play, scene):
+def test_no_failed_allocation_crashes_leaks_goes_unlogged_or_changes_a_later_bit(play, scene):
     counted = play(scene)
     # the instance; a state, the scratch instance that judges bytes, and the state that they become: each failed
     assert counted["failed once"] == counted["failed for good"] == counted["start"] + counted["snapshots"]
@@ -49,7 +49,7 @@ def test_an_instance_takes_one_block_however_many_are_alive(play):
     assert [play("reduced", companions)["start"] for companions in (7, 8)] == [1, 1]
 
 
-def test_a_solver_that_gives_up_tells_its_reason_in_one_sentence_with_the_callers_time(wheel):
+def test_a_solver_that_gives_up_logs_its_reason_in_one_message_with_the_callers_time(wheel):
     w = wheel().start(start=7.0, method=2)
     assert (w.step(0.5), w.take_messages()) == (OK, [])
     assert (w.set(M_3=1e300), w.step(0.5)) == (OK, ERROR)

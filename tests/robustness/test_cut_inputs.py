@@ -103,7 +103,7 @@ def brake_of(rng):
 
 
 def cut_where_it_passes_zero(brake, passed):
-    """The brake as pieces of its own, none where the polynomial is below zero."""
+    """The brake in several pieces, none where the polynomial is below zero."""
     pieces = []
     for begin, end in pairwise([0.0, *passed, 1.0]):
         acts = np.polynomial.polynomial.polyval(0.5 * (begin + end), brake) > 0

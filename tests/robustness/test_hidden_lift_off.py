@@ -105,10 +105,10 @@ def test_a_brake_that_gives_way_inside_one_step_lets_the_wheel_turn_at_its_insta
     w, held = (wheel(logging=True).start(theta_start=pi / 2, phi_dot_start=0.0, **kind) for _ in range(2))
     inputs = {"M_3": [2.0], "M_brake": [5.0, -4 * 4 / STEP, 4 * 4 / STEP**2]}
     w.give(inputs).to(STEP)
-    told = [m for m in w.sentences if "release" in m]
+    logged = [m for m in w.sentences if "release" in m]
     x = 0.5 * (1 - np.sqrt(0.25))  # 5 - 16 x (1 - x) = 2
-    assert len(told) == 1
-    within(abs(float(told[0].split()[2]) - x * STEP), 64 * EPSILON, "split")
+    assert len(logged) == 1
+    within(abs(float(logged[0].split()[2]) - x * STEP), 64 * EPSILON, "split")
     assert w.get("phi")[0] != 0
     inputs["M_brake"][0] = 6.1  # the partner: it sinks to 2.1
     assert held.give(inputs).to(STEP).get("phi") == [0.0]

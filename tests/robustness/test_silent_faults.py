@@ -11,10 +11,10 @@ from support.scenes import PAPER
 
 WEIGHT = PAPER.m * PAPER.g
 PULLING = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}
-MANY = 100  # pulls that are told one by one
+MANY = 100  # pulls that are logged one by one
 
 
-def told(w):
+def pulls_of(w):
     return [sentence for sentence in w.sentences if "pull" in sentence]
 
 
@@ -23,9 +23,9 @@ def test_the_log_of_a_ground_that_pulls_often_does_not_depend_on_the_grid(wheel,
     logs = []
     for step in (0.25, 4.0, 100.0):
         w = wheel().start(method=method, **PULLING).to(*np.arange(step, 100.0 + step / 2, step))
-        assert len(told(w)) == MANY
+        assert len(pulls_of(w)) == MANY
         assert w.terminate() == OK
-        logs.append(told(w))
+        logs.append(pulls_of(w))
     assert logs[0] == logs[1] == logs[2] and len(logs[0]) == MANY + 1
     words = logs[0][-1].split()
     assert logs[0][-1].startswith("The ground has pulled ") and int(words[4]) > 300
@@ -36,35 +36,35 @@ def test_pulls_of_a_wheel_that_falls_flat_are_summed_up_once(wheel):
     w = wheel().start(keep_contact=True, theta_start=0.3, phi_dot_start=0.0, method=4).to(0.05)
     w.back(forged(w, w.serialized(), pulls=MANY + 1))
     assert (w.step_to(9.0), w.terminate()) == (DISCARD, OK)
-    assert [sentence[:33] for sentence in told(w)] == ["The ground has pulled 101 times, "]
+    assert [sentence[:33] for sentence in pulls_of(w)] == ["The ground has pulled 101 times, "]
 
 
 def test_few_pulls_are_not_summed_up(wheel):
     w = wheel().start(**PULLING).to(1.0)
-    assert 0 < len(told(w)) < MANY and w.terminate() == OK
-    assert not any("has pulled" in sentence for sentence in told(w))
+    assert 0 < len(pulls_of(w)) < MANY and w.terminate() == OK
+    assert not any("has pulled" in sentence for sentence in pulls_of(w))
 
 
 @pytest.mark.parametrize("phi_dot", [-2.0, -2e4])
-def test_a_ground_that_pulls_by_rounding_alone_is_not_told(wheel, phi_dot):
+def test_a_ground_that_pulls_by_rounding_alone_is_not_logged(wheel, phi_dot):
     """Without weight N is zero but for rounding."""
     w = wheel().start(g=0.0, keep_contact=True, formulation=3, phi_dot_start=phi_dot, theta_start=pi / 2)
-    assert told(w.to(0.01, 0.1)) == []
+    assert pulls_of(w.to(0.01, 0.1)) == []
 
 
 @pytest.mark.parametrize("method", [1, 2, 4])
 @pytest.mark.parametrize("t", [0.3, 0.35, 0.4, 0.45, 0.5, 0.55])
-def test_a_restored_run_tells_the_same_pulls(wheel, method, t):
+def test_a_restored_run_logs_the_same_pulls(wheel, method, t):
     """Saved while the ground pulls or presses; afterwards a small push, which takes the run off the orbit."""
     w = wheel().start(method=method, **PULLING).to(t)
     other = wheel().back(w.serialized())
     w.take_messages()
     for each in (w, other):
         each.put(M_1=1e-6).to(1.0, 3.0)
-    assert told(w) == told(other) and len(told(w)) > 5
+    assert pulls_of(w) == pulls_of(other) and len(pulls_of(w)) > 5
     assert w.bits() == other.bits()
-    starts = [float(sentence.split(" = ")[1].split()[0]) for sentence in told(w)]
-    assert min(starts) > t  # a pull that had begun before is not told again
+    starts = [float(sentence.split(" = ")[1].split()[0]) for sentence in pulls_of(w)]
+    assert min(starts) > t  # a pull that had begun before is not logged again
 
 
 @pytest.mark.parametrize("braked", [0.0, 2.0])

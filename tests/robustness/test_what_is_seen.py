@@ -64,7 +64,7 @@ def pulls(w):
 
 
 @pytest.mark.parametrize("kind", [(2, 1, 0.03), (2, 2, 0.0), (3, 2, 0.0), (3, 4, 0.03)], ids=str)
-def test_each_pull_is_told_at_its_instant_and_none_that_an_input_prevents(wheel, kind):
+def test_each_pull_is_logged_at_its_instant_and_none_that_an_input_prevents(wheel, kind):
     formulation, method, s = kind
     values = {"theta_start": pi / 2, "phi_dot_start": -8.0, "keep_contact": True, "formulation": formulation}
     w = wheel().start(method=method, s=s, **values)
@@ -77,18 +77,18 @@ def test_each_pull_is_told_at_its_instant_and_none_that_an_input_prevents(wheel,
     assert pulls(prevented) == []
 
 
-def test_a_ground_that_pulls_from_the_start_is_told_once_by_the_unfolded_wheel_too(wheel):
+def test_a_ground_that_pulls_from_the_start_is_logged_once_by_the_unfolded_wheel_too(wheel):
     """A wheel that tips fast is off the ground at once; unfolded (method automatic) or stepped through, seven pulls."""
     fast = {"theta_start": 1.48, "psi_dot_start": -1.52, "theta_dot_start": -6.5, "phi_dot_start": 4.4}
-    told = []
+    logged = []
     for method in (1, 1, 2, 4):
         w = wheel().start(keep_contact=True, method=method, **fast)
-        steps = 1 if told else 20  # twice unfolded: whatever the steps
+        steps = 1 if logged else 20  # twice unfolded: whatever the steps
         assert [w.step(2.0 / steps) for _ in range(steps)] == [OK] * steps
-        told.append(pulls(w))
-    assert told[0][0] == 0.0 and len(told[0]) == 7
-    for other in told[1:]:
-        within(absolute_error(other, told[0]), 2e-8, "other")
+        logged.append(pulls(w))
+    assert logged[0][0] == 0.0 and len(logged[0]) == 7
+    for other in logged[1:]:
+        within(absolute_error(other, logged[0]), 2e-8, "other")
 
 
 def test_a_polynomial_that_takes_the_brake_below_zero_takes_it_off(wheel):

@@ -27,7 +27,7 @@ class Setting(Structure):
 
 
 class Solver:
-    """At t = 0. each_step, by_margin: functions of (t, y) that are watched, events 1 and 2; extremes: told instants."""
+    """At t = 0. each_step, by_margin: functions of (t, y) that are watched, events 1 and 2; extremes: instants."""
 
     def __init__(
         self, library, method, problem="harmonic", parameter=0.0, tolerance=1e-8, longest_step=1.0,

@@ -51,7 +51,7 @@ def test_the_work_of_the_search_is_bounded(solver, method):
     within(now.roots / now.steps, 100, "roots")
 
 
-def test_where_no_parabola_tells_the_search_of_one_step_gives_up_in_time(solver):
+def test_where_no_parabola_fits_the_search_of_one_step_gives_up_in_time(solver):
     one = solver("runge_kutta", "clock", each_step=lambda t, y: 1.001 + sin(777 * t))
     assert one.step() == STEPPED
     within(one.now.roots, 69, "values in one step")
@@ -63,7 +63,7 @@ def test_a_fall_after_the_step_is_none_of_the_step(solver):
 
 
 def double_dip(solver, method, depth):
-    """g = (t - 0.3)^2 (t - 0.7)^2 - depth, in a step of 1 s whose extremes are told."""
+    """g = (t - 0.3)^2 (t - 0.7)^2 - depth, in a step of 1 s whose extremes are given."""
     one = solver(method, "clock", by_margin=lambda t, y: ((t - 0.3) * (t - 0.7)) ** 2 - depth, extremes=(0.3, 0.5, 0.7))
     return one.run(2.0), one.now
 

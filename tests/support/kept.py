@@ -21,7 +21,7 @@ def sources() -> bytes:
 
 
 def kept(question: tuple, answer: Callable[[], Any]) -> Any:
-    """The answer of the same question under the same sources, or a new one. `question` tells all that it depends on."""
+    """The answer of the same question under the same sources, or a new one. `question` holds all that it depends on."""
     file = FOLDER / hashlib.sha256(sources() + repr(question).encode()).hexdigest()
     if file.exists():
         return pickle.loads(file.read_bytes())

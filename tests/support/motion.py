@@ -49,13 +49,13 @@ class Run:
 
     @property
     def events(self) -> list[tuple[float, int]]:
-        """Transitions of the friction as the log tells them: instant, and sign of omega_z after it (0 held)."""
+        """Transitions of the friction as the log has them: instant, and sign of omega_z after it (0 held)."""
         found = [TRANSITION.match(message) for message in self.messages]
         return [(float(match[1]), MODES[match[2]]) for match in found if match]
 
     @property
     def ended(self) -> str | None:
-        """The sentence that tells the ending."""
+        """The message of the ending."""
         return None if self.end is None else self.messages[-1]
 
 

@@ -46,7 +46,7 @@ def by_fmpy(fmu: Path, scratch: Path) -> str:
     shutil.rmtree(scratch / "windows" / "binaries" / "linux64")
     add_remoting(windows, "linux64", "win64")
     for scene, s in {"free": 0.0, "friction": 0.03}.items():
-        with contextlib.redirect_stdout(io.StringIO()):  # the remoting tells each attempt to connect
+        with contextlib.redirect_stdout(io.StringIO()):  # the remoting prints each attempt to connect
             runs = [fmpy.simulate_fmu(place, start_values={"s": s}, output=OUTPUTS) for place in (str(fmu), windows)]
         if len(runs[0]) != 1001 or runs[0].tobytes() != runs[1].tobytes():
             raise SystemExit(f"FMPy under wine gives another {scene} wheel than on Linux.")

@@ -41,7 +41,7 @@ def chunks(out: Path) -> dict[Path, int]:
 
 
 def begun(words: list[object], out: Path) -> tuple[subprocess.Popen, list[psutil.Process]]:
-    """The command when it has written a chunk, in a session of its own, and its two workers."""
+    """The command when it has written a chunk, in a new session, and its two workers."""
     before, interruptible = chunks(out), lambda: signal.signal(signal.SIGINT, signal.default_int_handler)
     process = command(*words, preexec_fn=interruptible, start_new_session=True)
     until(lambda: len(chunks(out)) > len(before), "no chunk was written")

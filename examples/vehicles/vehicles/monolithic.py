@@ -83,9 +83,9 @@ def respond(kind: Wheel, a: np.ndarray, w: np.ndarray, load: Load, sigma: np.nda
 
 
 class Joint:
-    """A vehicle: `size` states of its own, then O, a, w of its n wheels of one `kind`.
+    """A vehicle: `size` states, then O, a, w of its n wheels of one `kind`.
 
-    By the vehicle: start() and load(t, y); own_rates(t, y, load, answer), the rates of its own states;
+    By the vehicle: start() and load(t, y); own_rates(t, y, load, answer), the rates of these states;
     columns(t, y, load, answer), what is compared. `begin`: the last of the instants `cuts` at which loads jump.
     """
 

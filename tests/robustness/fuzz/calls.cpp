@@ -215,7 +215,7 @@ void Session::switch_logging() {
   std::vector<fmi2String> categories = {"logAll", "logStatusError", "nonsense %s", nullptr, "logEvents"};
   const unsigned count = in_.below(6);
   const bool on = in_.chance(8), was_on = log().on;
-  log().on = false;  // whether this call's own faults are told depends on what it switches
+  log().on = false;  // whether this call's own faults are logged depends on what it switches
   call(anywhere, fmi2SetDebugLogging, on, count, in_.array(categories));
   log().on = was_on && fmi2SetDebugLogging(now_->component, fmi2True, 0, nullptr) == fmi2OK;
 }

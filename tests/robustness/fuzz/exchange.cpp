@@ -1,4 +1,4 @@
-// Model exchange: an instance of its own, moved by hand through any states, inputs and events, with what must hold.
+// Model exchange: one more instance, moved by hand through any states, inputs and events, with what must hold.
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // Forged states: a state of an instance, some of its words changed and its checksums made right again, brought to
-// another instance. It is refused with a sentence and the instance is as it was, or it is taken and whatever follows
+// another instance. It is refused with a message and the instance is as it was, or it is taken and whatever follows
 // ends soon and without harm.
 #include "bytes.hpp"
 #include "session.hpp"
@@ -85,7 +85,7 @@ void bring_forged(fmi2Component origin, fmi2Component victim, fmi2Type kind, Byt
   const fmi2Status status = fmi2DeSerializeFMUstate(victim, forged.data(), forged.size(), &state);
   trace("  %d\n", status);
   const bool refused = status == fmi2Error && (log().messages == said + 1 || !log().on);
-  expect(status == fmi2OK || refused, "a refused state is told in one sentence");
+  expect(status == fmi2OK || refused, "a refused state is reported in one message");
   expect(digest(victim) == before, "bytes that are only read change nothing");
   if (status == fmi2OK) {
     expect(fmi2SetFMUstate(victim, state) == fmi2OK, "a state that was taken can be restored");

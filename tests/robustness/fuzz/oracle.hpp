@@ -1,5 +1,5 @@
 // What a master may expect of one FMU instance: a model of its call state beside the instance itself, and the checks
-// that compare the two after every call. A broken expectation aborts with a sentence, which the fuzzer records.
+// that compare the two after every call. A broken expectation aborts with a message, which the fuzzer records.
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 import {$, make, makeButton, makeChoice, subscripted} from '#dom';
 import {HELD, NOW, START, torqueOf, WHEEL} from '#knobs';
 
-/** The card that tells the story beside the picture: text, something to try, one step on or back. */
+/** The card with the story beside the picture: text, something to try, one step on or back. */
 class Story {
   constructor(live) {
     Object.assign(this, {host: $('#story'), live, step: 0, open: true});
