@@ -195,7 +195,7 @@ def without_numbers(text: str) -> str:
     return re.sub(r'( guid| valueReference|index|dependencies| derivative)="[^"]*"', "", text)
 
 
-def test_a_variable_that_comes_or_goes_changes_numbers_alone(depends):
+def test_a_variable_that_comes_or_goes_changes_numbers_alone_and_states_are_numbered_by_name(depends):
     added = numbered(with_new(TEXT))
     assert 'name="drag" valueReference="0"' in added and 'name="m" valueReference="1"' in added
     assert without_numbers(added) == without_numbers(with_new(TEXT))
@@ -206,9 +206,6 @@ def test_a_variable_that_comes_or_goes_changes_numbers_alone(depends):
     assert numbered(removed) == TEXT != removed
     added_again = numbered(removed, {"Outputs": depends["Outputs"]})
     assert f'index="{index_of(TEXT, "theta")}"/>' in added_again  # what was not measured is not stated
-
-
-def test_states_and_derivatives_are_numbered_by_name():
     moved = re.sub(r'(name="Z_O_dot".*?<Real )', r'\1derivative="Z_O" ', TEXT, count=1, flags=re.DOTALL)
     states = numbered(with_new(moved))
     assert f'derivative="{index_of(TEXT, "Z_O") + 1}"' in states

@@ -112,12 +112,10 @@ def test_packing_the_same_content_gives_the_same_bytes(fmu_path, fmu, tmp_path):
     assert again.read_bytes() == fmu_path.read_bytes() != other.read_bytes()
 
 
-CLAUSES = (
-    "Redistributions of source code must retain the above copyright notice",
-    "Redistributions in binary form must reproduce the above copyright notice",
-    "THIS SOFTWARE IS PROVIDED BY THE COPYRIGHT HOLDERS AND CONTRIBUTORS",
-    "EVEN IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE",
-)
+FORMS = ("of source code must retain", "in binary form must reproduce")
+CLAUSES = [f"Redistributions {form} the above copyright notice" for form in FORMS]
+CLAUSES += ["THIS SOFTWARE IS PROVIDED BY THE COPYRIGHT HOLDERS AND CONTRIBUTORS"]
+CLAUSES += ["EVEN IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE"]
 IN_LICENCE = {  # each piece as it stands there
     "license.txt": ["wheel.fmu founders"],
     "sundials-license.txt": ["Lawrence Livermore"],

@@ -130,12 +130,9 @@ def test_counters_count_on_through_restarts(wheel):
 
 # What a scene does not need is not done; what each omission saves is in docs/results/speed.md. Each statement has a
 # partner in which the thing is asked for and the same counter moves.
-WITHOUT_FRICTION = {
-    "free": {},
-    "fast spin": {"phi_dot_start": -60.0},
-    "near flat": {"theta_start": np.pi / 6, "psi_dot_start": 0.1, "phi_dot_start": 0.0, "keep_contact": True},
-    "general inertia": {"J_x": 0.7, "J_y": 1.2},
-}
+FLAT = {"theta_start": np.pi / 6, "psi_dot_start": 0.1, "phi_dot_start": 0.0, "keep_contact": True}
+WITHOUT_FRICTION = {"free": {}, "fast spin": {"phi_dot_start": -60.0}, "near flat": FLAT}
+WITHOUT_FRICTION |= {"general inertia": {"J_x": 0.7, "J_y": 1.2}}
 REGULARIZED = {"s": 0.03, "friction_law": 2}
 SMOOTH = {**WITHOUT_FRICTION, "regularized": REGULARIZED}
 STIFF = {**REGULARIZED, "omega_s": 1e-6}

@@ -17,9 +17,7 @@ GROUPS = (("X_O_ddot", "Y_O_ddot", "Z_O_ddot"), ("psi_ddot", "theta_ddot", "phi_
 ACCELERATIONS = (*GROUPS[0], *GROUPS[1][:3])
 
 
-def draw(
-    seed: int, law: int | None = None, symmetric: bool = True, rows: int = random_scenes.COUNT
-) -> tuple[Table, Table]:
+def draw(seed: int, law=None, symmetric: bool = True, rows: int = random_scenes.COUNT) -> tuple[Table, Table]:
     """Scenes and motions."""
     random = np.random.default_rng(seed)
     return random_scenes.scenes(random, law, symmetric, rows), random_scenes.motions(random, rows)

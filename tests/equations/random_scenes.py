@@ -34,9 +34,7 @@ def level(scene: np.ndarray) -> None:
     scene["wheel"]["g_X"] = scene["wheel"]["g_Y"] = 0
 
 
-def scenes(
-    random: np.random.Generator, kind: int | None = None, symmetric: bool = True, rows: int = COUNT
-) -> np.ndarray:
+def scenes(random: np.random.Generator, kind=None, symmetric: bool = True, rows: int = COUNT) -> np.ndarray:
     """Scenes under random loads; kind None draws one of the four laws per row."""
     scene = eq.table(eq.Scene, rows)
     scene["wheel"] = wheels(random, rows, symmetric)

@@ -1,8 +1,7 @@
 """Three formulations, one wheel: reduced, multibody (24), and two derivations that share no code.
 
-Pointwise, at ten thousand random states each: wheels, motions and loads of random_scenes.py. The
-numpy transcription of the paper and the rotation-matrix reference under reference/ judge the
-product.
+Pointwise, at ten thousand random states each: wheels, motions and loads of random_scenes.py. The numpy transcription
+of the paper and the rotation-matrix reference under reference/ judge the product.
 """
 
 import numpy as np

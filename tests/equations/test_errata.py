@@ -55,7 +55,6 @@ def test_mended_the_free_wheel_keeps_its_energy_and_stays_on_the_ground() -> Non
 
 def test_printed_U_theta_of_5_is_not_the_generator_of_A_theta() -> None:
     paper = Paper(WHEEL, states(), ["U_theta"])
-    within(absolute_error(Paper(WHEEL, states()).A_theta, slope("A", THETA)), 64 * EPSILON, "difference")
     beyond(absolute_error(paper.A_theta, slope("A", THETA)), 1, "difference")
     spin = transposed(paper.A) @ paper.A_dot
     beyond(absolute_error(spin, -transposed(spin)), 1, "difference, 2")  # [A]^T[A_dot] is no angular velocity
@@ -69,7 +68,6 @@ def test_printed_U_theta_of_5_sinks_the_free_wheel_into_the_ground() -> None:
 
 
 def test_printed_Q_theta_of_9_is_not_the_derivative_of_Q() -> None:
-    within(absolute_error(Paper(WHEEL, states()).Q_theta, slope("Q", THETA)), 64 * EPSILON, "difference")
     printed = Paper(WHEEL, states(), ["Q_theta"]).Q_theta
     difference = printed - slope("Q", THETA)
     within(absolute_error(difference[:, 2, 0], np.sin(states()[:, THETA])), 64 * EPSILON, "difference, 2")

@@ -1,8 +1,7 @@
 """The paper's matrices (1)-(23) state what they should: the numpy transcription against geometry.
 
-Derivatives are taken by a complex step, which is exact to rounding. Body axes for rotation, fixed
-axes for O. test_equations.py then holds the product against this transcription; test_errata.py
-holds each misprint against it.
+Derivatives are taken by a complex step, which is exact to rounding. Body axes for rotation, fixed axes for O.
+test_equations.py then holds the product against this transcription; test_errata.py holds each misprint against it.
 """
 
 import numpy as np

@@ -32,9 +32,7 @@ def start(law: int) -> Table:
     return y
 
 
-def stabilised(
-    now: eq.Scene, y: Table, times: Table, tolerance: float = 1e-12, method: str = "DOP853"
-) -> tuple[Table, Table]:
+def stabilised(now: eq.Scene, y: Table, times: Table, tolerance=1e-12, method="DOP853") -> tuple[Table, Table]:
     """The product's states along its own derivative, and the integral of the decay rate."""
     wheel = np.frombuffer(bytes(now.wheel), np.dtype(eq.Parameters))
 

@@ -32,14 +32,7 @@ class Orbit:
     RESULTS = {"make": c_void_p, "falls_until": c_longlong, "steps": c_longlong}
     RESULTS |= dict.fromkeys(("end_time", "half_period", "fall"), c_double)
 
-    def __init__(
-        self,
-        library: ctypes.CDLL,
-        wheel: Wheel | None = None,
-        start: Start | None = None,
-        tolerance: float = 1e-8,
-        keep_contact: bool = False,
-    ) -> None:
+    def __init__(self, library: ctypes.CDLL, wheel=None, start=None, tolerance=1e-8, keep_contact=False) -> None:
         self.library = library
         for name, result in self.RESULTS.items():
             getattr(library, f"probe_{name}").restype = result

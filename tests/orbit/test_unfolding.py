@@ -11,11 +11,17 @@ from reference import Start, Wheel
 from scipy.optimize import brentq
 from support.bounds import EPSILON, beyond, within
 from support.closed_forms import circle_spin, critical_spin
+from support.paths import probe
 
 from .orbit import Array, Halves, Orbit, stepped
 
 PAPER = Start()
 SLANTED = Start(psi=0.4, theta=1.2, psi_dot=0.5, theta_dot=0.3, phi_dot=-5.0, X_O=0.5, Y_O=-0.3)
+
+
+@pytest.fixture(scope="session")
+def library() -> ctypes.CDLL:
+    return probe("orbit")
 
 
 def error(got: Array, want: Array) -> float:

@@ -46,15 +46,10 @@ def model() -> RollingDisc:
     disc.define_loads()
     fixed, F_X, F_Y, F_Z, M_1, M_2, M_3, tau = disc.ground.frame, *LOADS
     weight = body.mass * sp.Symbol("g")
-    disc.system.add_loads(
-        Force(disc.wheel.center, F_X * fixed.x - F_Y * fixed.y + (weight - F_Z) * fixed.z),
-        Torque(
-            disc.wheel.frame,
-            M_1 * disc.tire.longitudinal_axis
-            + M_2 * disc.tire.upward_radial_axis
-            + (M_3 + tau) * disc.wheel.rotation_axis,
-        ),
-    )
+    force = F_X * fixed.x - F_Y * fixed.y + (weight - F_Z) * fixed.z
+    moment = M_1 * disc.tire.longitudinal_axis + M_2 * disc.tire.upward_radial_axis
+    moment += (M_3 + tau) * disc.wheel.rotation_axis
+    disc.system.add_loads(Force(disc.wheel.center, force), Torque(disc.wheel.frame, moment))
     disc.define_constraints()
     return disc
 
@@ -82,9 +77,7 @@ def numeric() -> Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]]:
     return sp.lambdify(given, (matrix, right.subs(tau, 0), per_tau), "numpy", cse=True)
 
 
-def accelerations(
-    wheel: Wheel, angles: Vector, rates: Vector, F: Vector, M: Vector, sigma: float | None = 0.0, brake: float = 0.0
-) -> Motion:
+def accelerations(wheel: Wheel, angles: Vector, rates: Vector, F: Vector, M: Vector, sigma=0.0, brake=0.0) -> Motion:
     """At (psi, theta, phi) and their rates; tau = -(s lambda_3 + brake) sigma, sigma None: the tau that holds."""
     (psi, theta, phi), (psi_dot, theta_dot, phi_dot) = angles, rates
     yaw, roll, pitch = -psi, theta - np.pi / 2, phi

@@ -29,9 +29,7 @@ DISCS = (Wheel(r=0.0), MODELICA, SYMPY_DISC, Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.
 DISC_START = Start(theta=1.2, theta_dot=0.3, psi_dot=1.0, phi_dot=-4.0)
 
 
-def motion(
-    library: Library, wheel: Wheel, start: Start, times: Array, tolerance: float | None = None, **more: float
-) -> Run:
+def motion(library: Library, wheel: Wheel, start: Start, times: Array, tolerance=None, **more: float) -> Run:
     return library.simulate(times, tolerance, keep_contact=True, **start_values(wheel, start), **more)
 
 

@@ -8,7 +8,7 @@ from reference.tables import read_table
 from support import equations as eq
 from support.bounds import range_error
 from support.driver import HEADLINE
-from support.motion import Library, Run
+from support.motion import Library
 
 FRICTION = {"free": 0.0, "friction": 0.03}  # s of the paper's two scenes, m
 
@@ -46,9 +46,7 @@ def residual(wheel: eq.Parameters, motion: eq.Kinematics) -> tuple[float, float]
     return velocity.value, height.value
 
 
-def constraint_drift(
-    library: Library, times: NDArray[np.float64], tolerance: float | None, **start: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], Run]:
+def constraint_drift(library: Library, times: NDArray[np.float64], tolerance: float | None, **start: float) -> tuple:
     """How far the FMU is off the constraints at each instant: velocity (m/s) and height (m)."""
     run = library.simulate(times, tolerance, **start)
     wheel = eq.paper_wheel(**{k: v for k, v in start.items() if k in dict(eq.Parameters._fields_)})

@@ -8,11 +8,8 @@ from support.motion import Library, Run
 from support.schedule import Schedule
 
 STATES = ("X_O", "Y_O", "theta", "psi", "phi", "psi_dot", "theta_dot", "phi_dot")
-SCENES: dict[str, tuple[Values, Schedule]] = {
-    "free": ({}, Schedule()),
-    "friction": ({"s": 0.03}, Schedule()),
-    "loaded": ({}, Schedule(((0.0, {"F_Z": -30.0, "M_1": 1.0}),))),
-}
+SCENES: dict[str, tuple[Values, Schedule]] = {"free": ({}, Schedule()), "friction": ({"s": 0.03}, Schedule())}
+SCENES |= {"loaded": ({}, Schedule(((0.0, {"F_Z": -30.0, "M_1": 1.0}),)))}
 BOUND = 100  # tolerances of the range
 KINDS = [(1, 1), (2, 2), (2, 3), (2, 4), (3, 1), (3, 2), (3, 3), (3, 4)]
 

@@ -91,7 +91,7 @@ def test_instants_in_random_scenes_are_those_of_the_reference(library: Library) 
             assert run.end is None or end == 0.0 or "mu_max" not in str(run.ended), (k, run.ended)
             continue
         times = [*np.linspace(0, end - instant, 60), end + instant, end + 1e-4]
-        want = margin(mu, solve(wheel, start, times, inputs.for_reference(), rtol=1e-12, keep_contact=True))
+        want = margin(mu, solve(wheel, start, times, inputs.for_reference(), rtol=1e-11, keep_contact=True))
         weight = (wheel.m * wheel.g) ** 2
         if (want[-1] - want[-3]) > -1e-4 * 1e-2 * weight:  # it only touches zero: no instant to compare
             continue
@@ -107,10 +107,8 @@ def test_every_way_of_running_ends_at_the_same_instant(library: Library) -> None
     """Unfolded, stepped, under a friction that is nearly none, multibody, and by another solver."""
     free = library.simulate(np.linspace(0, 3, 301), 1e-10, **FAST)
     mu = 0.5 * float(free["mu_required"].max() + free["mu_required"][0])
-    ends = [
-        library.simulate([0.0, 3.0], 1e-12, mu_max=mu, **FAST, **how).end for how in ({}, {"method": 2}, {"method": 4})
-    ]
-    ends += [library.simulate([0.0, 3.0], 1e-12, mu_max=mu, formulation=3, **FAST).end]
+    ways = ({}, {"method": 2}, {"method": 4}, {"formulation": 3})
+    ends = [library.simulate([0.0, 3.0], 1e-12, mu_max=mu, **FAST, **how).end for how in ways]
     with exchange(library, logging=True, mu_max=mu, **FAST) as wheel:
         run = ExchangeRun(wheel, 1e-11, no_inputs)
         run.to(3.0)

@@ -1,8 +1,7 @@
 """The first instant within one step at which a margin falls through zero.
 
-A margin is positive while the present mode may last. It is known at Chebyshev points of the step,
-x in (0, 1); its polynomial through them gives every root, so a brief excursion between two steps,
-there and back, is seen.
+A margin is positive while the present mode may last. It is known at Chebyshev points of the step, x in (0, 1); its
+polynomial through them gives every root, so a brief excursion between two steps, there and back, is seen.
 """
 
 from math import cos, pi

@@ -104,29 +104,15 @@ def derivative(contact: Contact, inputs: Inputs, law: Law) -> Callable[[float, S
         psi_dot, _, phi_dot = angle_rates(R[2], (wx, wy, wz))
         F, M, v = inputs.force(t), carrier_moment(R[2], inputs.moment(t)), y[10:13]
         power = F[0] * v[0] + F[1] * v[1] + F[2] * v[2] + M[0] * wx + M[1] * wy + M[2] * wz
-        return np.array(
-            (
-                *(-0.5 * (q1 * wx + q2 * wy + q3 * wz), 0.5 * (q0 * wx + q2 * wz - q3 * wy)),
-                *(0.5 * (q0 * wy + q3 * wx - q1 * wz), 0.5 * (q0 * wz + q1 * wy - q2 * wx)),
-                *(x[3] + tau * d[3], x[4] + tau * d[4], alpha_z),
-                *v,
-                *a,
-                *(psi_dot, phi_dot, power, tau * wz),
-            )
-        )
+        turning = (-q1 * wx - q2 * wy - q3 * wz, q0 * wx + q2 * wz - q3 * wy)
+        turning += (q0 * wy + q3 * wx - q1 * wz, q0 * wz + q1 * wy - q2 * wx)
+        alpha = x[3] + tau * d[3], x[4] + tau * d[4], alpha_z
+        return np.array((*(0.5 * q_dot for q_dot in turning), *alpha, *v, *a, psi_dot, phi_dot, power, tau * wz))
 
     return rate
 
 
-def accelerations(
-    wheel: Wheel,
-    angles: Vector,
-    rates: Vector,
-    F: Vector = ZERO,
-    M: Vector = ZERO,
-    sigma: float | None = 0.0,
-    brake: float = 0.0,
-) -> Accelerations:
+def accelerations(wheel: Wheel, angles: Vector, rates: Vector, F=ZERO, M=ZERO, sigma=0.0, brake=0.0) -> Accelerations:
     """Accelerations and reactions at (psi, theta, phi) and their rates.
 
     The moment of ground and brake about the axle is -(s N + brake) sigma, sigma in [-1, 1]; sigma

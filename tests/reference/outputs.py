@@ -76,14 +76,12 @@ def _row(switch: Switch, row: Row) -> dict[str, float]:
         "theta": atan2(s, n[2]),
         "phi": _turned(atan2(ux, uy), y[14]),
         **{"psi_dot": psi_dot, "theta_dot": theta_dot, "phi_dot": phi_dot},
-        "omega_z": w[2],
+        **dict(zip(("omega_z", "tau", "work_inputs", "work_friction"), (w[2], tau, y[15], y[16]), strict=True)),
         **dict(zip(("lambda_1", "lambda_2", "lambda_3"), reaction, strict=True)),
         "E": (wheel.m * sum(c * c for c in v) + spin) / 2
         - wheel.m * sum(a * b for a, b in zip(wheel.gravity, y[7:10], strict=True)),
         "mu_required": hypot(reaction[0], reaction[1]) / (reaction[2] or nan),
         "friction_mode": mode.sigma if switch.watched(mode.ground) else np.sign(y[OMEGA_Z]),
-        "tau": tau,
-        **{"work_inputs": y[15], "work_friction": y[16]},
         "residual_velocity": hypot(*slip),
         "residual_height": y[9] - to_fixed(R, p)[2],
     }

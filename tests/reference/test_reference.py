@@ -1,7 +1,6 @@
 """The reference solution judged: its search for events, integral laws, closed forms; its tables in test_tables.py.
 
-Every bound has a partner that breaks something (an equation, a
-parameter, a law) and must exceed the bound.
+Every bound has a partner that breaks an equation, a parameter or a law, and must exceed the bound.
 """
 
 from dataclasses import replace

@@ -1,7 +1,6 @@
 """The trusted tables of the paper's two scenes: the reference solution makes them again, all transitions included.
 
-Every bound has a partner that breaks something (an equation, a
-parameter, a law) and must exceed the bound.
+Every bound has a partner that breaks an equation, a parameter or a law, and must exceed the bound.
 """
 
 import numpy as np

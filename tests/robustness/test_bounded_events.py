@@ -73,19 +73,16 @@ def test_a_torque_exactly_at_the_limit_is_held(wheel, kind):
 def random_scene(seed):
     r = Random(seed)
     s = r.choice([0.03, 10 ** r.uniform(-15, -0.5), 0.0])
-    start = {
-        "theta_start": r.choice([pi / 2, 1.4, r.uniform(0.5, 2.6)]),
-        "phi_dot_start": r.choice([0.0, r.gauss(0, 1)]),
-    }
+    start = {"theta_start": r.choice([pi / 2, 1.4, r.uniform(0.5, 2.6)])}
+    start |= {"phi_dot_start": r.choice([0.0, r.gauss(0, 1)])}
     start |= {"psi_dot_start": r.choice([0.0, r.gauss(0, 1)]), "s": s, "keep_contact": r.random() < 0.6}
     pieces = []
     for k in range(3):
         force, torque = r.choice([0.0, r.uniform(-300, 600)]), r.choice([0.0, s * 196.2, 1e-9, r.gauss(0, 5)])
         rate = r.choice([0.0, r.gauss(0, 4000)])
         brake = (r.choice([0.0, 1e-9, abs(torque)]), r.choice([0.0, 90.0]))
-        pieces.append(
-            (0.1 * k, {"F_Z": (force, rate), "M_3": (torque, r.choice([0.0, r.gauss(0, 20)])), "M_brake": brake})
-        )
+        twist = (torque, r.choice([0.0, r.gauss(0, 20)]))
+        pieces.append((0.1 * k, {"F_Z": (force, rate), "M_3": twist, "M_brake": brake}))
     return start, [*pieces, (0.3, {"F_Z": (0.0,), "M_3": (0.0,), "M_brake": (0.0,)})]
 
 

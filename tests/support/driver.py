@@ -22,11 +22,9 @@ OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
 DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED = range(4)
 HEADLINE = ("X_O", "theta", "phi_dot", "psi_dot")
 COUNTERS = ("n_steps", "n_rhs", "n_jac", "n_roots", "n_events", "n_restarts")
-CHOICES = {
-    "formulation": {"automatic": 1, "reduced": 2, "multibody": 3},
-    "friction_law": {"exact": 1, "regularized": 2},
-    "method": {"automatic": 1, "adams": 2, "bdf": 3, "runge_kutta": 4},
-}
+CHOICES = {"formulation": {"automatic": 1, "reduced": 2, "multibody": 3}}
+CHOICES |= {"friction_law": {"exact": 1, "regularized": 2}}
+CHOICES |= {"method": {"automatic": 1, "adams": 2, "bdf": 3, "runge_kutta": 4}}
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "theta_dot", "psi_dot", "omega_z")
 DERIVATIVES = ("X_O_dot", "Y_O_dot", "psi_dot", "theta_dot", "phi_dot", "theta_ddot", "psi_ddot", "omega_z_dot")
 INDICATORS = ("spin_changes", "lost_grip", "lost_contact", "fell_flat")  # the events of model exchange
@@ -137,13 +135,7 @@ class FMU2Wheel(FMU2Slave, FMU2Model, AbstractContextManager):
         assert self.initialise(tolerance, start, stop) in (OK, WARNING)
         return self
 
-    def initialise(
-        self,
-        tolerance: float | None = None,
-        start: float = 0.0,
-        stop: float | None = None,
-        set_inputs: Callable[[], int] = lambda: OK,
-    ) -> int:
+    def initialise(self, tolerance=None, start=0.0, stop=None, set_inputs=lambda: OK) -> int:
         """From instantiated to the first communication point, inputs set on the way: the worst status, or that of the
         first refusal."""
         self.time, worst = start, OK

@@ -188,24 +188,22 @@ void Session::with_drawn(unsigned legal_in, fmi2Status (*function)(fmi2Component
 // Calls that take arrays, or nothing but a kind of status: all arguments drawn by their types.
 void Session::pass_values() {
   constexpr unsigned running = C | F | T | X, readable = M | running, ended = C | F | T;
-  constexpr void (Session::* calls[])() = {
-      &Session::with_drawn<settable, fmi2SetReal>,
-      &Session::with_drawn<settable, fmi2SetInteger>,
-      &Session::with_drawn<settable, fmi2SetBoolean>,
-      &Session::with_drawn<settable, fmi2SetString>,
-      &Session::with_drawn<settable, fmi2SetRealInputDerivatives>,
-      &Session::with_drawn<readable, fmi2GetReal>,
-      &Session::with_drawn<readable, fmi2GetInteger>,
-      &Session::with_drawn<readable, fmi2GetBoolean>,
-      &Session::with_drawn<readable, fmi2GetString>,
-      &Session::with_drawn<readable | finite, fmi2GetDirectionalDerivative>,
-      &Session::with_drawn<running | finite, fmi2GetRealOutputDerivatives>,
-      &Session::with_drawn<ended, fmi2GetStatus>,
-      &Session::with_drawn<ended, fmi2GetRealStatus>,
-      &Session::with_drawn<ended, fmi2GetIntegerStatus>,
-      &Session::with_drawn<ended, fmi2GetBooleanStatus>,
-      &Session::with_drawn<ended, fmi2GetStringStatus>,
-  };
+  constexpr void (Session::* calls[])() = {&Session::with_drawn<settable, fmi2SetReal>,
+                                           &Session::with_drawn<settable, fmi2SetInteger>,
+                                           &Session::with_drawn<settable, fmi2SetBoolean>,
+                                           &Session::with_drawn<settable, fmi2SetString>,
+                                           &Session::with_drawn<settable, fmi2SetRealInputDerivatives>,
+                                           &Session::with_drawn<readable, fmi2GetReal>,
+                                           &Session::with_drawn<readable, fmi2GetInteger>,
+                                           &Session::with_drawn<readable, fmi2GetBoolean>,
+                                           &Session::with_drawn<readable, fmi2GetString>,
+                                           &Session::with_drawn<readable | finite, fmi2GetDirectionalDerivative>,
+                                           &Session::with_drawn<running | finite, fmi2GetRealOutputDerivatives>,
+                                           &Session::with_drawn<ended, fmi2GetStatus>,
+                                           &Session::with_drawn<ended, fmi2GetRealStatus>,
+                                           &Session::with_drawn<ended, fmi2GetIntegerStatus>,
+                                           &Session::with_drawn<ended, fmi2GetBooleanStatus>,
+                                           &Session::with_drawn<ended, fmi2GetStringStatus>};
   const unsigned chosen = in_.below(std::size(calls));
   trace("  number %u\n", chosen);
   (this->*calls[chosen])();
