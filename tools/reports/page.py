@@ -32,7 +32,7 @@ RESULTS = ROOT / "docs" / "results"
 Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]
 Axis = Mapping[str, Any] | Sequence[Any] | Callable  # of the report
-PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka", "numba", "numbalsoda")
+PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka")
 REDUCTIONS = ("max", "min", "median", "sum")
 REQUIREMENTS = pd.read_csv(Path(__file__).with_name("requirements.csv")).set_index(["report", "figure"])
 
@@ -156,7 +156,8 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     table = {"figure": asked["what"], "required": bounds, "measured": measured}
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
-    values = {f.figure: number(float(f.measured)) for f in figures.itertuples()}
+    values = dict.fromkeys(REQUIREMENTS.loc[name].index, "–")  # without a solver that is not installed
+    values |= {f.figure: number(float(f.measured)) for f in figures.itertuples()}
     given = {"name": name, "f": values, "t": views(read_tables(name, folder)), "run": run}
     return page(f"{name}.md.j2", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
 

@@ -20,8 +20,8 @@ from support.scenes import SCENES, SINES, Scene, sines
 from . import plots
 from .native import Master, Solve, bytes_in_use, ffi, repeated
 from .page import Report, Row, Tables, number, part
-from .peers import CPP, HEYOKA, peers
-from .plots import Sheet
+from .peers import CPP, HEYOKA, PEERS
+from .plots import Sheet, style
 from .truth import Array, headline, range_error
 
 TARGETS = (1e-4, 1e-6, 1e-8)  # errors at which set-ups are compared
@@ -85,9 +85,9 @@ def race(report: Report, name: str) -> list[Row]:
     again: it is missing, or takes too long."""
     scene, entries = SCENES[name], []
     want = headline(scene, POINTS)
-    setups = {f"FMU {method}": partial(in_fmu, report.master, method) for method in METHODS} | peers(scene)
+    setups = {f"FMU {method}": partial(in_fmu, report.master, method) for method in METHODS} | PEERS
     for setup, make in setups.items():
-        slow = setup.startswith("SciPy") or (name == "stiff law" and setup in ("FMU adams", "FMU runge_kutta"))
+        slow = name == "stiff law" and setup in ("FMU adams", "FMU runge_kutta")
         tolerances = [10.0**-k for k in ((4, 6, 8, 10) if report.quick or slow else range(3, 14))]
         entries += [Entry(name, setup, tolerance, partial(make, scene, tolerance, POINTS)) for tolerance in tolerances]
     for turn in range(1 if report.quick else 5):
@@ -96,7 +96,7 @@ def race(report: Report, name: str) -> list[Row]:
             entry.note = entry.note or reasons.get(entry.setup, "")
             if not entry.note and not (turn and min(entry.seconds) > SLOW):
                 entry.take_turn(0.004 if report.quick else 0.01, want)
-            if entry.note and not entry.setup.startswith("FMU"):
+            if entry.note and entry.setup in PEERS:
                 reasons[entry.setup] = entry.note
     return [entry.row() for entry in entries]
 
@@ -243,33 +243,27 @@ def price_of_choice(runs: pd.DataFrame) -> Row:
     return {"automatic": shown, "automatic over the fastest fixed one": ratio}
 
 
-LOOKS = {
-    **{CPP: (plots.style.VERMILLION, "-", "s"), HEYOKA: (plots.style.GREEN, "-", "^")},
-    **{"numbalsoda lsoda": (plots.style.PURPLE, "-", "D"), "numbalsoda dop853": (plots.style.PURPLE, "--", "D")},
-    **{OURS: (plots.style.BLUE, "-", "o"), "FMU adams": (plots.style.SKY, "-", "v")},
-    **{"FMU bdf": (plots.style.SKY, "--", "<"), "FMU runge_kutta": (plots.style.SKY, ":", ">")},
-    **{"SciPy DOP853": (plots.style.GREY, "-", "."), "SciPy LSODA": (plots.style.GREY, "--", ".")},
-    **{"SciPy Radau": (plots.style.GREY, ":", "."), "SciPy LSODA, tanh()": (plots.style.ORANGE, "--", ".")},
-    **{"SciPy DOP853, tanh()": (plots.style.ORANGE, "-", ".")},
+LOOKS = {  # colour, marker and line
+    OURS: (style.BLUE, "o-"),
+    "FMU adams": (style.SKY, "v-"),
+    "FMU bdf": (style.SKY, "<--"),
+    "FMU runge_kutta": (style.SKY, ">:"),
+    CPP: (style.VERMILLION, "s-"),
+    HEYOKA: (style.GREEN, "^-"),
 }
 
 
 def draw_races(tables: Tables) -> Sheet:
     """A sheet for each scene, one legend; automatic lies on top, half transparent, so that what it equals shows."""
     figure, axes = plots.sheet(2, -(-len(TITLES) // 2), 68)
-    shown: dict[str, object] = {}
+    solved = tables["runs"].dropna(subset="error")
     for ax, (scene, title) in zip(axes, TITLES.items(), strict=False):
-        runs = tables["runs"]
-        solved = runs[(runs["scene"] == scene) & runs["error"].notna()]
-        for setup, points in solved.groupby("setup", sort=False):
-            colour, line, marker = LOOKS.get(setup, (plots.style.INK, "-", "x"))
+        for setup, points in solved[solved["scene"] == scene].groupby("setup", sort=False):
+            colour, mark = LOOKS[setup]
             look = {"lw": 3.5, "alpha": 0.55, "ms": 5} if setup == OURS else {"lw": 1, "ms": 3}
-            x, y = points["best_us"], points["error"].clip(lower=1e-14)
-            (curve,) = ax.plot(x, y, color=colour, ls=line, marker=marker, label=setup, **look)
-            shown.setdefault(setup, curve)
-        plots.label(ax, "best time [µs]", "error / range", title, "xy")
-        ax.set_ylim(1e-14, 3)
-    figure.legend(list(shown.values()), list(shown), loc="outside lower center", ncols=4)
+            ax.plot(points["best_us"], points["error"].clip(lower=1e-14), mark, color=colour, label=setup, **look)
+        plots.label(ax, "best time [µs]", "error / range", title, "xy", ylim=(1e-14, 3))
+    plots.legend_below(figure, axes, 3)
     return figure
 
 
