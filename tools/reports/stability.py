@@ -126,4 +126,4 @@ def contract(report: Report) -> dict[str, object]:
 
 
 FURTHER = (law, long_runs)
-PICTURES = {"cases": draw_cases, "law": law.draw_law, "methods": law.draw_methods}
+PICTURES = {"cases": draw_cases, "law": law.draw_law}
