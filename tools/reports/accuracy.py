@@ -70,7 +70,7 @@ def tolerances(report: Report, tolerance: float) -> Row:
 
 def draw_tolerances(tables: Tables) -> Sheet:
     rows = tables["tolerances"].query(f"{TOLERANCES[-1]} <= tolerance <= {TOLERANCES[0]}")
-    figure, (left, right) = plots.sheet(2)
+    figure, (left, right) = plots.sheet("ab")
     t = rows["tolerance"]
     for ax, names in ((left, ("free", "friction")), (right, ("energy, free", "instants, s"))):
         for name, colour, marker in zip(names, (style.BLUE, style.VERMILLION), "os", strict=True):

@@ -29,7 +29,7 @@ def law(report: Report, tolerance: float, omega_s: float, method: str) -> Row:
 
 
 def draw_law(tables: Tables) -> Sheet:
-    figure, axes = plots.sheet(2)
+    figure, axes = plots.sheet("ab")
     for colour, (tolerance, points) in zip(plots.COLOURS, tables["law"].groupby("tolerance", sort=False), strict=False):
         for method, marker in zip(METHODS, ("o-", "x--"), strict=True):
             chain = points[(points["omega_s, rad/s"] > 0) & (points["method"] == method)]

@@ -255,9 +255,9 @@ LOOKS = {  # colour, marker and line
 
 def draw_races(tables: Tables) -> Sheet:
     """A sheet for each scene, one legend; automatic lies on top, half transparent, so that what it equals shows."""
-    figure, axes = plots.sheet(2, -(-len(TITLES) // 2), 68)
+    figure, axes = plots.sheet("ab;cd;ef", 68)
     solved = tables["runs"].dropna(subset="error")
-    for ax, (scene, title) in zip(axes, TITLES.items(), strict=False):
+    for ax, (scene, title) in zip(axes, TITLES.items(), strict=True):
         for setup, points in solved[solved["scene"] == scene].groupby("setup", sort=False):
             colour, mark = LOOKS[setup]
             look = {"lw": 3.5, "alpha": 0.55, "ms": 5} if setup == OURS else {"lw": 1, "ms": 3}

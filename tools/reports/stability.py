@@ -81,7 +81,7 @@ def amplification(rows: pd.DataFrame, judge: str) -> Row:
 
 def draw_cases(tables: Tables) -> Sheet:
     """Errors that the judge sees, of what is claimed."""
-    figure, axes = plots.sheet(2)
+    figure, axes = plots.sheet("ab")
     titles = {"energy": "energy balance", "reference": "outputs against the independent reference"}
     for ax, (judge, title) in zip(axes, titles.items(), strict=True):
         for case, rows in tables["sweep"].groupby("case", sort=False):
