@@ -33,11 +33,8 @@ def headline(scene: Scene, points: int, label: str = "", inputs: Inputs | None =
 
 def stiff(scene: Scene, times: Array) -> Array:
     """The regularized law by SciPy's Radau, without inputs."""
-    contact, omega_s, y_0 = (
-        Contact(scene.wheel),
-        scene.start.get("omega_s", 1e-3),
-        initial_state(scene.wheel, scene.motion),
-    )
+    contact, omega_s = Contact(scene.wheel), scene.start.get("omega_s", 1e-3)
+    y_0 = initial_state(scene.wheel, scene.motion)
 
     def rate(t: float, y: Array) -> Array:
         law = Law(scene.wheel.s, sigma=np.tanh(y[OMEGA_Z] / omega_s))
