@@ -46,14 +46,18 @@ class Solution {
   }
 
  private:
-  // From y at t, with the step size reached so far; the first one is a guess from the size of y' alone.
+  // From y at t, with the step size reached so far.
   void restart(double t, const State& y) {
     t_ = t_old_ = t;
     y_ = y;
     evaluate(y_, f_[0]);
-    if (h_ > 0) return;
-    const double rate = (f_[0].abs() / (1 + y.abs())).maxCoeff();
-    h_ = 0.5 * std::pow(tolerance_, 1.0 / 8) / std::fmax(rate, 1e-3);
+    if (h_ == 0) h_ = first_step();
+  }
+
+  // A guess from the size of y' alone; the first steps correct it.
+  double first_step() const {
+    const double rate = (f_[0].abs() / (1 + y_.abs())).maxCoeff();
+    return 0.5 * std::pow(tolerance_, 1.0 / 8) / std::fmax(rate, 1e-3);
   }
 
   // One accepted step. False: the step became too small.

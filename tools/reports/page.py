@@ -42,7 +42,8 @@ class Part:
     """A function of a report, which measures in so many seconds.
 
     It returns numbers and tables by name, or one table, which gets the function's name. With axes it is called for each
-    combination of their values, and returns the rest of a row that begins with these values, or with their names.
+    combination of their values, and returns the rest of a row, or of several, that begin with these values, or with
+    their names.
     """
 
     measure: Callable
@@ -60,8 +61,11 @@ class Part:
     def rows(self, report: Report) -> list[Row]:
         axes = [axis(report) if callable(axis) else axis for axis in self.axes.values()]
         named = (axis.items() if isinstance(axis, Mapping) else [(value, value) for value in axis] for axis in axes)
-        cases = (zip(*case, strict=True) for case in product(*named))
-        return [dict(zip(self.axes, names, strict=True)) | self.measure(report, *of) for names, of in cases]
+        rows = []
+        for names, values in (zip(*case, strict=True) for case in product(*named)):
+            found, head = self.measure(report, *values), dict(zip(self.axes, names, strict=True))
+            rows += [head | row for row in (found if isinstance(found, list) else [found])]
+        return rows
 
 
 def part(seconds: float, axes: Mapping[str, Axis] | None = None) -> Callable[[Callable], Part]:

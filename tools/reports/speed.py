@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property, partial
+from itertools import product
 from math import exp, log, nan
 
 import numpy as np
@@ -24,7 +25,7 @@ from .peers import CPP, HEYOKA, PEERS
 from .plots import Sheet, style
 from .truth import Array, headline, range_error
 
-TARGETS = (1e-4, 1e-6, 1e-8)  # errors at which set-ups are compared
+TARGETS = {4: 1e-4, 6: 1e-6, 8: 1e-8}  # errors at which set-ups are compared
 POINTS = 101
 OURS, METHODS = "FMU automatic", ("automatic", "adams", "bdf", "runge_kutta")
 TITLES = {
@@ -43,7 +44,6 @@ SLOW = 0.05  # s: what takes longer is measured once
 class Entry:
     """One set-up at one tolerance; seconds of every repetition; why it has no error."""
 
-    scene: str
     setup: str
     tolerance: float
     make: Callable[[], Solve]
@@ -70,9 +70,9 @@ class Entry:
 
     def row(self) -> Row:
         micro = 1e6 * np.array(self.seconds or [nan])
-        row = {name: getattr(self, name) for name in ("scene", "setup", "tolerance", "error")}
-        counts = {name: self.counts.get(name) for name in ("steps", "rhs", "events")}
-        return {**row, "best_us": micro.min(), "median_us": np.median(micro), **counts, "note": self.note}
+        row = {"setup": self.setup, "tolerance": self.tolerance, "error": self.error}
+        row |= {"best_us": micro.min(), "median_us": np.median(micro)}
+        return row | {name: self.counts.get(name) for name in ("steps", "rhs", "events")} | {"note": self.note}
 
 
 def in_fmu(master: Master, method: str, scene: Scene, tolerance: float, points: int) -> Solve:
@@ -80,16 +80,20 @@ def in_fmu(master: Master, method: str, scene: Scene, tolerance: float, points: 
     return master.made({**scene.start, "method": method}, scene.duration / steps, steps, tolerance)
 
 
-def race(report: Report, name: str) -> list[Row]:
-    """In rounds, so that noise of the machine meets all alike. A peer that failed at a looser tolerance is not asked
-    again: it is missing, or takes too long."""
+@part(108, {"scene": tuple(TITLES)})
+def runs(report: Report, name: str) -> list[Row]:
+    """error against run time, scene by scene
+
+    In rounds, so that noise of the machine meets all alike. A peer that failed at a looser tolerance is not asked
+    again: it is missing, or takes too long.
+    """
     scene, entries = SCENES[name], []
     want = headline(scene, POINTS)
     setups = {f"FMU {method}": partial(in_fmu, report.master, method) for method in METHODS} | PEERS
     for setup, make in setups.items():
         slow = name == "stiff law" and setup in ("FMU adams", "FMU runge_kutta")
         tolerances = [10.0**-k for k in ((4, 6, 8, 10) if report.quick or slow else range(3, 14))]
-        entries += [Entry(name, setup, tolerance, partial(make, scene, tolerance, POINTS)) for tolerance in tolerances]
+        entries += [Entry(setup, tolerance, partial(make, scene, tolerance, POINTS)) for tolerance in tolerances]
     for turn in range(1 if report.quick else 5):
         reasons: dict[str, str] = {}
         for entry in entries:
@@ -99,12 +103,6 @@ def race(report: Report, name: str) -> list[Row]:
             if entry.note and entry.setup in PEERS:
                 reasons[entry.setup] = entry.note
     return [entry.row() for entry in entries]
-
-
-@part(108)
-def runs(report: Report) -> list[Row]:
-    """error against run time, scene by scene"""
-    return [row for name in TITLES for row in race(report, name)]
 
 
 def time_at(runs: pd.DataFrame, setup: str, error: float) -> float:
@@ -135,10 +133,8 @@ def compare(report: Report) -> Row:
     runs = dict(list(report.tables["runs"].groupby("scene", sort=False)))
     D = time_at(runs["free"], CPP, 1e-6)
     found = {"yardstick": D, "heyoka": time_at(runs["free"], HEYOKA, 1e-6)}
-    for error in TARGETS:
-        for peer, key in ((HEYOKA, "heyoka"), (CPP, "dop853")):
-            ratio = time_at(runs["free"], OURS, error) / time_at(runs["free"], peer, error)
-            found[f"free_{key}_{-round(np.log10(error))}"] = ratio
+    for (digits, error), (peer, key) in product(TARGETS.items(), ((HEYOKA, "heyoka"), (CPP, "dop853"))):
+        found[f"free_{key}_{digits}"] = time_at(runs["free"], OURS, error) / time_at(runs["free"], peer, error)
     for name in ("free", "friction"):
         ours = at_default(runs[name], OURS)
         found |= {name: ours.best_us / D, f"{name}_time": ours.best_us, f"{name}_error": ours.error}
@@ -158,13 +154,10 @@ def timed_steps(report: Report, values: Values, count: int, **changing: object) 
     solve, paces = report.master.made(values, 1e-3, count, **changing), np.zeros(count)
     costs, *_ = repeated(solve, 0.1 if report.quick else 0.5)
     solve(paces)
-    return {
-        "per step, best run, ns": 1e9 * min(costs) / count,
-        "in empty calls": min(costs) / count / empty_call(report),
-        "median single step, ns": 1e9 * np.median(paces),
-        "99.9th percentile, µs": 1e6 * np.percentile(paces, 99.9),
-        "longest, µs": 1e6 * paces.max(),
-    }
+    best = min(costs) / count
+    row = {"per step, best run, ns": 1e9 * best, "in empty calls": best / empty_call(report)}
+    row |= {"median single step, ns": 1e9 * np.median(paces), "99.9th percentile, µs": 1e6 * np.percentile(paces, 99.9)}
+    return row | {"longest, µs": 1e6 * paces.max()}
 
 
 @part(2, {"scene": ("free", "friction")})
@@ -176,17 +169,18 @@ def steps(report: Report, scene: str) -> Row:
 @part(6, {"spin, rad/s": SPINS})
 def inputs_held(report: Report, spin: float) -> Row:
     """steps of 1 ms, six inputs that change, held"""
-    return timed_steps(report, leaning(spin), 1000, inputs=tuple(SINES), table=sine_table(1000, 0))
+    return timed_inputs(report, spin, 0)
 
 
 @part(6, {"spin, rad/s": SPINS})
 def inputs_linear(report: Report, spin: float) -> Row:
     """steps of 1 ms, six inputs that change, with first derivatives"""
-    return timed_steps(report, leaning(spin), 1000, inputs=tuple(SINES), table=sine_table(1000, 1))
+    return timed_inputs(report, spin, 1)
 
 
-def leaning(spin: float) -> Values:
-    return {"theta_start": 1.4, "phi_dot_start": -spin}
+def timed_inputs(report: Report, spin: float, orders: int) -> Row:
+    start = {"theta_start": 1.4, "phi_dot_start": -spin}
+    return timed_steps(report, start, 1000, inputs=tuple(SINES), table=sine_table(1000, orders))
 
 
 @part(4, {"scene": {"free": 0, "friction": 1}})
@@ -228,7 +222,7 @@ def views(tables: Tables) -> Tables:
 def fastest(runs: pd.DataFrame) -> Row:
     """Who is fastest at each error, and the FMU's time over that of each peer that gets there."""
     row = {}
-    for error in TARGETS:
+    for error in TARGETS.values():
         times = pd.Series({setup: time_at(runs, setup, error) for setup in runs["setup"].unique()}).dropna()
         ratios = [f"{times[OURS] / times[p]:.2f}" if {p, OURS} <= set(times.index) else "–" for p in (CPP, HEYOKA)]
         row[f"at {number(error)}"] = f"{times.idxmin() if len(times) else 'none'} ({', '.join(ratios)})"
