@@ -14,6 +14,7 @@ from cffi import FFI
 from support.driver import COUNTERS, HEADLINE, Values
 from support.motion import Library
 from support.paths import ROOT, build_target
+from support.scenes import SINES
 
 from .truth import Array
 
@@ -62,17 +63,12 @@ class Master:
         self.code.load(str(file).encode())
 
     def made(
-        self,
-        values: Values,
-        step: float,
-        steps: int,
-        tolerance: float | None = None,
-        inputs: tuple[str, ...] = (),
-        table: Array | None = None,
+        self, values: Values, step: float, steps: int, tolerance: float | None = None, table: Array | None = None
     ) -> Solve:
         """A run, ready to be repeated: its seconds, headline outputs at the start and after each step, counters.
 
-        table: steps x (orders + 1) x inputs. With paces, they get the seconds of each step."""
+        table: steps x (orders + 1) x the inputs of SINES. With paces, they get the seconds of each step."""
+        inputs = () if table is None else SINES
         table = np.zeros((steps, 1, 0)) if table is None else np.ascontiguousarray(table)
         rows = np.zeros((steps + 1, len(HEADLINE)))
         references = [ffi.new("unsigned[]", [self.references[name] for name in of]) for of in (inputs, HEADLINE)]

@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 from support.driver import Values
 from support.paths import build_folder
-from support.scenes import SCENES, SINES, Scene, sines
+from support.scenes import SCENES, Scene, sines
 
 from . import plots
 from .native import Master, Solve, bytes_in_use, ffi, repeated
@@ -149,9 +149,9 @@ def sine_table(steps: int, orders: int, shift: float = 0.0) -> Array:
     return np.array([[sines(1e-3 * k + shift, order) for order in range(orders + 1)] for k in range(steps)])
 
 
-def timed_steps(report: Report, values: Values, count: int, **changing: object) -> Row:
+def timed_steps(report: Report, values: Values, count: int, table: Array | None = None) -> Row:
     """Of 1 ms each, four outputs read."""
-    solve, paces = report.master.made(values, 1e-3, count, **changing), np.zeros(count)
+    solve, paces = report.master.made(values, 1e-3, count, None, table), np.zeros(count)
     costs, *_ = repeated(solve, 0.1 if report.quick else 0.5)
     solve(paces)
     best = min(costs) / count
@@ -180,7 +180,7 @@ def inputs_linear(report: Report, spin: float) -> Row:
 
 def timed_inputs(report: Report, spin: float, orders: int) -> Row:
     start = {"theta_start": 1.4, "phi_dot_start": -spin}
-    return timed_steps(report, start, 1000, inputs=tuple(SINES), table=sine_table(1000, orders))
+    return timed_steps(report, start, 1000, sine_table(1000, orders))
 
 
 @part(4, {"scene": {"free": 0, "friction": 1}})

@@ -24,12 +24,8 @@ from .plots import Sheet, style
 
 DEADLINE = 120.0  # s
 COLUMNS = ("case", "expected", "tolerance", "outcome", "as expected", "claimed", "steps", "fault")
-JUDGES = {
-    "energy": "energy",
-    "integrals": "linear integrals",
-    "reference": "outputs against the reference",
-    "instant": "instant of the ending, s",
-}
+JUDGES = {"energy": "energy", "integrals": "linear integrals", "reference": "outputs against the reference"}
+JUDGES |= {"instant": "instant of the ending, s"}
 
 
 def alone(folder: str, case: Case) -> list[Verdict]:
