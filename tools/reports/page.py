@@ -166,18 +166,12 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     return page(f"{name}.md.j2", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
 
 
-def cached(name: str) -> str:
-    """An entry of the build's CMakeCache.txt."""
-    text = (build_folder() / "CMakeCache.txt").read_text()
-    entry = re.search(rf"^{name}:[A-Z]+=(.*)$", text, re.MULTILINE)
-    return entry[1] if entry else ""
-
-
 def made(name: str) -> Row:
     """Machine, versions, commit, date; no names of users or folders. Files that reports write are no change."""
     info = Path("/proc/cpuinfo")
-    model = re.search(r"^model name\s*:\s*(.+)$", info.read_text(), re.MULTILINE) if info.exists() else None
-    processor = model[1] if model else platform.processor() or platform.machine()
+    models = re.findall(r"^model name\s*:\s*(.+)$", info.read_text() if info.exists() else "", re.MULTILINE)
+    (processor, *_) = [*models, platform.processor() or platform.machine()]
+    build = dict(re.findall(r"^(\w+):[A-Z]+=(.*)$", (build_folder() / "CMakeCache.txt").read_text(), re.MULTILINE))
     installed = {found.name.lower(): found.version for found in distributions()}
     versions = [f"{p} {installed[p.lower()]}" if p.lower() in installed else f"no {p}" for p in PACKAGES]
     changed = said("git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs", ":!*.md", ":!*.html")
@@ -185,7 +179,7 @@ def made(name: str) -> Row:
         "report": name,
         "date": f"{datetime.now(UTC):%Y-%m-%d}",
         "machine": f"{processor}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {platform.system()}",
-        "compiler": f"{said(cached('CMAKE_CXX_COMPILER'), '--version')}, {cached('CMAKE_CXX_FLAGS_RELEASE')}",
+        "compiler": f"{said(build['CMAKE_CXX_COMPILER'], '--version')}, {build['CMAKE_CXX_FLAGS_RELEASE']}",
         "versions": ", ".join([f"Python {platform.python_version()}", *versions]),
         "commit": said("git", "rev-parse", "--short=12", "HEAD") + (", with local changes" if changed else ""),
     }
