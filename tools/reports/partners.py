@@ -43,8 +43,7 @@ def suspended_wheel(report: Report) -> dict[str, object]:
     launch = suspended.coupled(units, 0.000625, "derivatives", grid=0.005)
     drawing.draw(suspended.SUSPENDED, suspended.LAUNCH, launch, report.folder / "partners_suspended.png", errors=found)
     packaged = [{"step, ms": 1000 * h, "error": suspended.package_distance(package, h, truth)} for h in steps[1:4]]
-    order = 2 - min(errors.orders(steps, found.of["derivatives"]))
-    return {"orders": orders, "package": packaged, "order": order}
+    return {"orders": orders, "package": packaged, "order": 2 - min(errors.orders(steps, found.of["derivatives"]))}
 
 
 @part(5, {"step, ms": {1000 * h: h for h in suspended.LARGE_STEPS}})

@@ -7,26 +7,26 @@ reason. Ratios to DOP853 in C++ (D) or to an empty call of the FMU are what is a
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cached_property, partial
 from itertools import product
 from math import exp, log, nan
 
 import numpy as np
 import pandas as pd
-from support.driver import Values
+from support.driver import HEADLINE, Values
 from support.paths import build_folder
 from support.scenes import SCENES, Scene, sines
 
 from . import plots
-from .native import Master, Solve, bytes_in_use, ffi, repeated
+from .native import Master, Solve, bytes_in_use, ffi, in_cpp, repeated, width
 from .page import Report, Row, Tables, number, part
-from .peers import CPP, HEYOKA, PEERS
 from .plots import Sheet, style
 from .truth import Array, headline, range_error
 
 TARGETS = {4: 1e-4, 6: 1e-6, 8: 1e-8}  # errors at which set-ups are compared
 POINTS = 101
+CPP, HEYOKA = "DOP853 C++", "heyoka"
 OURS, METHODS = "FMU automatic", ("automatic", "adams", "bdf", "runge_kutta")
 TITLES = {
     "free": "Free wheel, the paper's scene, 10 s",
@@ -78,6 +78,23 @@ class Entry:
 def in_fmu(master: Master, method: str, scene: Scene, tolerance: float, points: int) -> Solve:
     steps = points - 1
     return master.made({**scene.start, "method": method}, scene.duration / steps, steps, tolerance)
+
+
+def in_heyoka(scene: Scene, tolerance: float, points: int) -> Solve:
+    """Or an ImportError, where it is not installed."""
+    from . import taylor
+
+    wheel = taylor.Wheel(asdict(scene.wheel) | asdict(scene.motion), "angles", tolerance, omega_s=width(scene))
+    grid, shown = np.linspace(0, scene.duration, points), [taylor.OUTPUTS.index(name) for name in HEADLINE]
+
+    def solve() -> tuple[float, Array, dict[str, int]]:
+        found = wheel.solve(grid)
+        return found.seconds, found.rows[:, shown], {"steps": found.steps, "events": len(found.transitions)}
+
+    return solve
+
+
+PEERS = {CPP: in_cpp, HEYOKA: in_heyoka}
 
 
 @part(108, {"scene": tuple(TITLES)})

@@ -18,6 +18,8 @@ from .page import Report, Row, Tables, part, read_tables
 from .plots import Sheet
 
 STEP = 0.1  # s, over which the drag is held
+SHOWN = {"Michelin 4575r16": (40, "Left"), "Vittoria Corsa Open": (100, "Right"), "Michelin 44-406": (60, "Right")}
+SHOWN |= {"Grandprix": (140, "Right")}
 TUBE = 0.0125  # m, radius of a tyre of 25 mm
 GRAVITY = 9.81  # m/s^2
 DISK = {"m": 0.4, "r_0": 0.0375, "r": 0.0, "J_x": 0.4 * 0.0375**2 / 4, "J_y": 0.4 * 0.0375**2 / 4}
@@ -30,8 +32,8 @@ RIG = ("rig", "runs_left_out", "trials_again", "loads")  # tables out of the raw
 def rig(report: Report) -> dict[str, object]:
     """coefficients of rolling resistance out of the raw files, or those kept in docs/results/data"""
     folder = report.options.get("rig")
-    tables = coast_down.tables(Path(folder)) if folder else {name: read_tables("validation")[name] for name in RIG}
-    rows, left_out, again, loads = tables.values()
+    tables = coast_down.tables(Path(folder)) if folder else read_tables("validation")
+    rows, left_out, again, loads = (tables[name] for name in RIG)
     repeat = coast_down.repeatability(rows) / rows.groupby("speed")["C"].mean()
     means = again.groupby(KEYS)[["C", "C again"]].mean()
     forces = loads[loads["speed"] > loads["speed"].min()].groupby("load")["force"].mean()
@@ -43,7 +45,8 @@ def rig(report: Report) -> dict[str, object]:
     found |= {"repeat": 100 * repeat.max(), "inertia": 100 * (rows["C_inertia"].abs() / rows["C"]).max()}
     found |= {"again": 100 * (means["C again"] / means["C"] - 1).abs().max(), "load_least": least, "load_most": most}
     found |= {"load_exponent": np.log(strong / weak) / np.log(most / least)}
-    return tables | found | {"C_least": 1e3 * weak / least, "C_most": 1e3 * strong / most}
+    found |= {name: tables[name] for name in RIG}
+    return found | {"C_least": 1e3 * weak / least, "C_most": 1e3 * strong / most}
 
 
 def equivalent(run: pd.DataFrame, C: float) -> dict[str, float]:
@@ -146,31 +149,24 @@ def between(values: pd.Series, digits: int) -> str:
     return " to ".join(dict.fromkeys(f"{value:.{digits}f}" for value in (values.min(), values.max())))
 
 
-def one_side(rows: pd.DataFrame, tyre: str, psi: int) -> pd.DataFrame:
-    """Of the drum's two directions the last."""
-    rows = rows[(rows["tyre"] == tyre) & (rows["psi"] == psi)]
-    return rows[rows["direction"] == rows["direction"].max()]
-
-
 def picture(tables: Tables) -> Sheet:
     """C over the speed with its uncertainty, and the measured coast-down beside the one of wheel.fmu."""
     sheet, (left, right) = plots.sheet("ab", 80)
-    chosen = (("Michelin 4575r16", 40), ("Vittoria Corsa Open", 100), ("Michelin 44-406", 60), ("Grandprix", 140))
     repeat = coast_down.repeatability(tables["rig"])
-    for (tyre, psi), colour in zip(chosen, plots.COLOURS, strict=False):
-        run, curve = (one_side(tables[name], tyre, psi) for name in ("rig", "coasts"))
+    for (tyre, (psi, direction)), colour in zip(SHOWN.items(), plots.COLOURS, strict=False):
+        one = f"tyre == {tyre!r} and psi == {psi} and direction == {direction!r}"
+        run, curve = (tables[name].query(one) for name in ("rig", "coasts"))
         error = np.hypot(run["C_inertia"], repeat.loc[run["speed"]].to_numpy())
         bars = {"color": colour, "fmt": "o", "ms": 3, "capsize": 2, "lw": 0.8, "label": f"{tyre}, {psi} psi"}
         left.errorbar(run["speed"], 1e3 * run["C"], 1e3 * error, **bars)
         left.axhline(1e3 * run["C"].mean(), color=colour, lw=0.8, ls="--")
         right.plot(curve["t"], curve["speed"], color=colour)
         right.plot(run["t"], run["speed"], "o", color=colour, ms=3.5, label=f"{tyre}, {psi} psi")
-    left.set(ylim=(0, 6.5))
     left.legend(loc="upper center", ncols=2, fontsize=7)
-    title = "Measured, and a constant s (dashed)"
-    plots.label(left, "rim speed [m/s]", "rolling resistance $1000\\,C$", title)
-    right.set(xlim=(0, None), ylim=(0, 22))
-    plots.label(right, "time [s]", "rim speed [m/s]", "Coast-down: measured (dots), wheel.fmu (lines)")
+    title, y = "Measured, and a constant s (dashed)", "rolling resistance $1000\\,C$"
+    plots.label(left, "rim speed [m/s]", y, title, ylim=(0, 6.5))
+    title, limits = "Coast-down: measured (dots), wheel.fmu (lines)", {"xlim": (0, None), "ylim": (0, 22)}
+    plots.label(right, "time [s]", "rim speed [m/s]", title, **limits)
     return sheet
 
 
