@@ -53,28 +53,29 @@ def measure(names: list[str], folder: Path, options: Namespace) -> None:
 
 
 def rendered(name: str, folder: Path) -> tuple[str, str]:
-    return render(name, folder, getattr(module(name), "views", dict))
+    """The page, none where it is written by hand, and the requirements that are not met."""
+    has_page = (TEMPLATES / f"{name}.md.j2").exists()
+    return render(name, folder, getattr(module(name), "views", dict)) if has_page else ("", "")
 
 
 def draw(name: str, folder: Path) -> bool:
     """The pictures that are drawn from tables, and the page; whether all requirements are met."""
-    missed = ""
     for picture, sheet in getattr(module(name), "PICTURES", {}).items():
         style.save_png(sheet(read_tables(name, folder)), folder / f"{name}_{picture}.png", plots.DPI)
-    if (TEMPLATES / f"{name}.md.j2").exists():
-        text, missed = rendered(name, folder)
+    text, missed = rendered(name, folder)
+    if text:
         (folder / f"{name}.md").write_text(text, encoding="utf-8")
     print(f"{name}: {f'not met: {missed}' if missed else 'all requirements are met'}.")
     return not missed
 
 
-def fresh(name: str, folder: Path) -> bool:
-    """Whether the page that is there is the one of the data; a report that was not published yet has none."""
+def stale(name: str, folder: Path) -> bool:
+    """Whether the page that is there is not the one of the data; a report that was not published yet has none."""
     page = folder / f"{name}.md"
-    same = not page.exists() or rendered(name, folder)[0] == page.read_text(encoding="utf-8")
-    if not same:
+    differs = page.exists() and rendered(name, folder)[0] != page.read_text(encoding="utf-8")
+    if differs:
         print(f"{name}.md is not the page of the data: run ./scripts/report {name} --render.")
-    return same
+    return differs
 
 
 def main() -> int:
@@ -84,7 +85,7 @@ def main() -> int:
     folder = RESULTS if published else ROOT / "build" / "report" / ("quick" if options.quick else "latest")
     folder.mkdir(parents=True, exist_ok=True)
     if options.check:
-        return int(sum(fresh(name, folder) for name in names) < len(names))
+        return int(sum(stale(name, folder) for name in names) > 0)
     if not options.render:
         measure(names, folder, options)
     met = [draw(name, folder) for name in names]

@@ -7,6 +7,7 @@ agree on. The problems in words are in docs/benchmark.md.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 from time import perf_counter
 from typing import Any
 
@@ -17,30 +18,26 @@ from benchmark.problems import INSTANTS, OUTPUTS, PROBLEMS, by_fmu, by_reference
 from .page import Report, Row, part, write_csv
 
 LOOSE, TIGHT = "1e-22", "1e-28"
+QUADRUPLE = "heyoka, quadruple precision"
 
 
-def quadruple(report: Report) -> tuple[list[Row], dict[str, float]]:
-    """Writes the reference values: two formulations; how long they took, and how far they are apart, by scene."""
+def quadruple(report: Report, name: str) -> list[Row]:
+    """Writes the reference values: two formulations at two tolerances, how long they took, how far they are apart."""
     try:
         from .taylor import FORMS, Wheel, paper, quad
     except ImportError:
         raise SystemExit("The reference values need heyoka: ./scripts/report --peers benchmark installs it.") from None
-    apart, rows = {}, []
-    for name, problem in PROBLEMS.items():
-        runs = {}
-        for form in FORMS:
-            for tolerance in (LOOSE, TIGHT):
-                solver = Wheel(paper(quad, **problem.decimals), form, tolerance, quad)
-                begin = perf_counter()
-                best = solver.solve(INSTANTS)
-                runs[form, tolerance] = best, perf_counter() - begin
-        write(report, name, best)
-        off = {key: distance(motion, best) for key, (motion, _) in runs.items()}
-        apart[name] = max(off.values())
-        for (form, tolerance), (_, seconds) in runs.items():
-            program = f"heyoka, quadruple precision, {form}"
-            rows.append(row(name, program, tolerance, seconds, off[form, tolerance]))
-    return rows, apart
+    runs = {}
+    for case in product(FORMS, (LOOSE, TIGHT)):
+        solver = Wheel(paper(quad, **PROBLEMS[name].decimals), *case, quad)
+        begin = perf_counter()
+        best = solver.solve(INSTANTS)
+        runs[case] = best, perf_counter() - begin
+    write(report, name, best)
+    return [
+        row(f"{QUADRUPLE}, {form}", tolerance, seconds, distance(motion, best))
+        for (form, tolerance), (motion, seconds) in runs.items()
+    ]
 
 
 def distance(motion: Any, other: Any) -> float:
@@ -62,35 +59,34 @@ def write(report: Report, name: str, best: Any) -> None:
         write_csv(report.folder, f"benchmark_{name}_transitions", found)
 
 
-def row(scene: str, program: str, tolerance: str, seconds: float, error: float, instants: float | None = None) -> Row:
-    return {
-        **{"scene": scene, "program": program, "tolerance": tolerance, "error / range": error},
-        **{"instants, s": instants, "ms": 1e3 * seconds},
-    }
+def row(program: str, tolerance: str, seconds: float, error: float, instants: float | None = None) -> Row:
+    how = {"program": program, "tolerance": tolerance}
+    return how | {"error / range": error, "instants, s": instants, "ms": 1e3 * seconds}
 
 
-@part(90)
-def programs(report: Report) -> dict[str, object]:
+@part(90, {"scene": tuple(PROBLEMS)})
+def programs(report: Report, name: str) -> list[Row]:
     """reference values in quadruple precision; error against run time"""
-    rows, apart = quadruple(report)
-    for name, problem in PROBLEMS.items():
-        multibody = replace(problem, start={**problem.start, "formulation": 3})
-        cases = [("wheel.fmu", problem, f"1e-{n}", 3 if report.quick else 20) for n in (6, 8, 10, 12, 13)]
-        cases += [("wheel.fmu, the paper's (24)", multibody, "1e-12", 1)]
-        for program, scene, tolerance, repeats in cases:
-            runs = [by_fmu(report.library, scene, float(tolerance)) for _ in range(repeats)]
-            best = min(run.seconds for run in runs)
-            rows.append(row(name, program, tolerance, best, *errors(name, runs[0], report.folder)))
-        for tolerance in ("1e-10", "1e-13"):
-            begin = perf_counter()
-            solution = by_reference(problem, float(tolerance))
-            spent = perf_counter() - begin
-            rows.append(row(name, "tests/reference", tolerance, spent, *errors(name, solution, report.folder)))
-    worst = pd.DataFrame(rows).query("program == 'wheel.fmu' and tolerance == '1e-13'").max()
-    rows.sort(key=lambda row: list(PROBLEMS).index(str(row["scene"])))
-    return {
-        "programs": rows,
-        "formulations": [{"scene": name, "largest difference": value} for name, value in apart.items()],
-        "ours": worst["error / range"],
-        "instants": worst["instants, s"],
-    }
+    rows, problem = quadruple(report, name), PROBLEMS[name]
+    multibody = replace(problem, start={**problem.start, "formulation": 3})
+    cases = [("wheel.fmu", problem, f"1e-{n}", 3 if report.quick else 20) for n in (6, 8, 10, 12, 13)]
+    for program, scene, tolerance, repeats in [*cases, ("wheel.fmu, the paper's (24)", multibody, "1e-12", 1)]:
+        runs = [by_fmu(report.library, scene, float(tolerance)) for _ in range(repeats)]
+        best = min(run.seconds for run in runs)
+        rows.append(row(program, tolerance, best, *errors(name, runs[0], report.folder)))
+    for tolerance in ("1e-10", "1e-13"):
+        begin = perf_counter()
+        solution = by_reference(problem, float(tolerance))
+        spent = perf_counter() - begin
+        rows.append(row("tests/reference", tolerance, spent, *errors(name, solution, report.folder)))
+    return rows
+
+
+@part(1)
+def formulations(report: Report) -> dict[str, object]:
+    """how far the four solutions in quadruple precision are apart; the errors of wheel.fmu"""
+    programs = report.tables["programs"]
+    apart = programs[programs["program"].str.startswith(QUADRUPLE)].groupby("scene", sort=False)["error / range"].max()
+    ours = programs.query("program == 'wheel.fmu' and tolerance == '1e-13'")[["error / range", "instants, s"]].max()
+    table = apart.rename("largest difference").reset_index()
+    return {"formulations": table, "ours": ours["error / range"], "instants": ours["instants, s"]}

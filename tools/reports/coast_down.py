@@ -18,7 +18,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Key = tuple[str, int, str, str]  # tyre, psi, direction, kind
+Key = tuple[str, int, str]
+Name = tuple[str, int, str, str]  # a key and the kind, Contact or Separate
 Run = tuple[Array, Array]  # instants at which a revolution of the drum and of the wheel ended
 LOAD = 557.4  # N, the rig's own value
 DRUM_LENGTH = 4.709  # m, circumference, likewise
@@ -89,38 +90,36 @@ def rolling_length(drum: Array, wheel: Array) -> float:
     return float(np.median(np.interp(middle, t, v) * np.diff(inside)))
 
 
-def one(tyre: str, contact: Run, separate: Run) -> pd.DataFrame:
+def one(key: Key, contact: Run, separate: Run) -> pd.DataFrame:
     """One tyre, pressure and direction: instants, drag of drum and wheel alone, and C over the speed."""
-    length = rolling_length(*contact)
-    wheel_mass = SHARE * WHEELS[tyre]
+    length, mass = rolling_length(*contact), WHEELS[key[0]]
     runs = (contact[0], DRUM_LENGTH), (separate[0], DRUM_LENGTH), (separate[1], length)
     found = [np.array([deceleration(*speed(instants, c), at) for at in SPEEDS]).T for instants, c in runs]
     (t, both), (_, drum), (_, wheel) = found
-    drag = DRUM_MASS * drum + wheel_mass * wheel
-    force = (DRUM_MASS + wheel_mass) * both - drag
-    error = SHARE_ERROR * WHEELS[tyre] * (both - wheel) / LOAD  # of a heavier rim
-    columns = {"speed": SPEEDS, "t": t - t[-1], "drag": drag, "C": force / LOAD, "C_inertia": error}
-    return pd.DataFrame(columns).assign(R=length / (2 * np.pi), M=DRUM_MASS + wheel_mass)
+    drag, M = DRUM_MASS * drum + SHARE * mass * wheel, DRUM_MASS + SHARE * mass
+    columns = {"speed": SPEEDS, "t": t - t[-1], "drag": drag, "C": (M * both - drag) / LOAD}
+    columns["C_inertia"] = SHARE_ERROR * mass * (both - wheel) / LOAD  # of a heavier rim
+    return pd.DataFrame(dict(zip(KEYS, key, strict=True)) | columns | {"R": length / (2 * np.pi), "M": M})
 
 
-def named(path: Path) -> Key | None:
+def named(path: Path) -> Name | None:
     name = NAME.fullmatch(path.stem)
     known = name and name["tyre"] in WHEELS
     return (name["tyre"], int(name["psi"]), name["direction"], name["kind"]) if known else None
 
 
-def read(folder: Path) -> tuple[dict[Key, Run], dict[Key, Key]]:
+def read(folder: Path) -> tuple[dict[Name, Run], dict[Name, Name]]:
     """The runs of a folder, and the names that hold a run once more; the first in the alphabet keeps it."""
-    found: dict[Key, Run] = {}
-    copies: dict[Key, Key] = {}
+    found, copies = {}, {}
     for path in filter(named, sorted(folder.glob("*.csv"))):
         run = triggers(path)
         twin = next((other for other in found if same_run(run, found[other])), None)
-        if twin:
-            copies[named(path)] = twin
-        else:
-            found[named(path)] = run
+        (copies if twin else found)[named(path)] = twin or run
     return found, copies
+
+
+def in_contact(name: Name) -> bool:
+    return name[-1] == "Contact"
 
 
 def plausible(rows: pd.DataFrame) -> bool:
@@ -129,25 +128,20 @@ def plausible(rows: pd.DataFrame) -> bool:
     return bool(rows[["t", "drag", "C"]].notna().all(axis=None) and jumps.max() < 1 / 3)
 
 
-def evaluate(runs: dict[Key, Run], copies: dict[Key, Key]) -> tuple[pd.DataFrame, pd.DataFrame]:
+def evaluate(runs: dict[Name, Run], copies: dict[Name, Name]) -> tuple[pd.DataFrame, pd.DataFrame]:
     """All usable pairs of runs, and the pairs that are left out with the reason."""
-    unused = {
-        key[:3]: f"a copy of {of[0]}, {of[1]} psi, {of[2].lower()}" for key, of in copies.items() if "Contact" in key
-    }
-    used = []
-    for *key, kind in runs:
+    used, unused = [], []
+    for *key, _ in filter(in_contact, copies):
+        tyre, psi, direction, _ = copies[*key, "Contact"]
+        unused.append((*key, f"a copy of {tyre}, {psi} psi, {direction.lower()}"))
+    for *key, _ in filter(in_contact, runs):
         alone = runs.get((*key, "Separate"))
-        if kind == "Separate":
-            continue
-        rows = one(key[0], runs[*key, kind], alone) if alone else None
+        rows = one(key, runs[*key, "Contact"], alone) if alone else None
         if rows is not None and plausible(rows):
-            used.append(rows.assign(**dict(zip(KEYS, key, strict=True))))
+            used.append(rows)
         else:
-            unused[tuple(key)] = "no separate run" if alone is None else "lost or false triggers"
-    found = pd.concat(used, ignore_index=True)
-    columns = [*KEYS, *(name for name in found if name not in KEYS)]
-    left_out = pd.DataFrame([(*key, why) for key, why in unused.items()], columns=[*KEYS, "reason"])
-    return found[columns], left_out.sort_values(KEYS)
+            unused.append((*key, "lost or false triggers" if alone else "no separate run"))
+    return pd.concat(used, ignore_index=True), pd.DataFrame(unused, columns=[*KEYS, "reason"]).sort_values(KEYS)
 
 
 def repeatability(rows: pd.DataFrame) -> pd.Series:
@@ -157,29 +151,36 @@ def repeatability(rows: pd.DataFrame) -> pd.Series:
     return np.sqrt(apart.groupby("speed").mean())
 
 
-def beside(runs: dict[Key, Run], tyre: str, psi: int, direction: str, run: Run) -> pd.DataFrame:
+def beside(runs: dict[Name, Run], key: Key, run: Run) -> pd.DataFrame:
     """A further run, with the one without contact at the nearest pressure, which changes a free wheel's drag little."""
-    near = [key for key in runs if key[0] == tyre and key[2:] == (direction, "Separate")]
-    return one(tyre, run, runs[min(near, key=lambda key: abs(key[1] - psi))])
+    tyre, psi, direction = key
+    near = [name for name in runs if (name[0], *name[2:]) == (tyre, direction, "Separate")]
+    return one(key, run, runs[min(near, key=lambda name: abs(name[1] - psi))])
 
 
-def again(runs: dict[Key, Run], copies: dict[Key, Key], folder: Path) -> pd.DataFrame:
+def again(runs: dict[Name, Run], copies: dict[Name, Name], folder: Path) -> pd.DataFrame:
     """C of the runs that the rig repeated, first and second time, with the same run without contact."""
     rows = []
     for path in sorted(folder.glob("*Contact*.csv")):
-        key = named(path)
-        first, second = (beside(runs, *key[:3], run)["C"] for run in (runs[copies.get(key, key)], triggers(path)))
-        both = pd.DataFrame({"speed": SPEEDS, "C": first, "C again": second})
-        rows.append(both.assign(**dict(zip(KEYS, key, strict=False))))
-    return pd.concat(rows, ignore_index=True)
+        *key, _ = name = named(path)
+        first, second = (beside(runs, key, run) for run in (runs[copies.get(name, name)], triggers(path)))
+        rows.append(first.assign(**{"C again": second["C"]}))
+    return pd.concat(rows, ignore_index=True)[["speed", "C", "C again", *KEYS]]
 
 
-def loaded(runs: dict[Key, Run], folder: Path) -> pd.DataFrame:
+def loaded(runs: dict[Name, Run], folder: Path) -> pd.DataFrame:
     """The force of rolling resistance under two other loads."""
-    names = {path: LOADED.fullmatch(path.stem) for path in sorted(folder.glob("*.csv"))}
     rows = []
-    for path, name in names.items():
-        force = LOAD * beside(runs, *OF_LOADED, name["direction"], triggers(path))["C"]
-        about = {"direction": name["direction"], "load": POUND * float(name["pounds"])}
-        rows.append(pd.DataFrame({"speed": SPEEDS, "force": force}).assign(**about))
-    return pd.concat(rows, ignore_index=True)
+    for path in sorted(folder.glob("*.csv")):
+        name = LOADED.fullmatch(path.stem)
+        found = beside(runs, (*OF_LOADED, name["direction"]), triggers(path))
+        rows.append(found.assign(force=LOAD * found["C"], load=POUND * float(name["pounds"])))
+    return pd.concat(rows, ignore_index=True)[["speed", "force", "direction", "load"]]
+
+
+def tables(folder: Path) -> dict[str, pd.DataFrame]:
+    """Of the rig's raw files: all usable runs, what was left out, the repetitions, and the runs under other loads."""
+    runs, copies = read(folder / "aero")
+    rows, left_out = evaluate(runs, copies)
+    repeated = again(runs, copies, folder / "aero" / "Repeats")
+    return {"rig": rows, "runs_left_out": left_out, "trials_again": repeated, "loads": loaded(runs, folder / "force")}

@@ -19,17 +19,45 @@ namespace {
 namespace pair = solver::dormand_prince;
 using State = Eigen::Array<double, WHEEL_REDUCED_STATES, 1>;
 
-class Dop853 {
- public:
-  Dop853(const WheelScene& of, const State& y, double tolerance) : scene(of), tolerance_(tolerance) { restart(0, y); }
+constexpr long most_steps = 200000, most_events = 1000;
 
+// One solution on a grid of equal spacing, with exact or regularized friction or none.
+class Solution {
+ public:
+  Solution(const WheelScene& scene, const State& y, double tolerance, double spacing, int points, double* rows)
+      : scene_(scene), tolerance_(tolerance), spacing_(spacing), points_(points), rows_(rows) {
+    exact_ = scene.friction.kind == WHEEL_ROLLING;
+    if (exact_) scene_.friction.sigma = y[3] > 0 ? 1 : -1;
+    restart(0, y);
+    write(y);
+  }
+
+  // counts: steps, right-hand sides, transitions. False where it does not reach the end.
+  bool run(long* counts) {
+    while (done_ < points_) {
+      if (!step() || steps_ > most_steps || counts[2] > most_events) return false;
+      const bool falls = exact_ && margin(y_) < 0;
+      const double t = falls ? fall() : t_;
+      for (double next; done_ < points_ && (next = spacing_ * done_) <= t;) write(at(next));
+      if (falls) change_mode(t), ++counts[2];
+    }
+    counts[0] = steps_, counts[1] = evaluations_;
+    return true;
+  }
+
+ private:
   // From y at t, with the step size reached so far.
   void restart(double t, const State& y) {
     t_ = t_old_ = t;
     y_ = y;
-    interpolates_ = false;
     evaluate(y_, f_[0]);
     if (h_ == 0) h_ = first_step();
+  }
+
+  // A guess from the size of y' alone; the first steps correct it.
+  double first_step() const {
+    const double rate = (f_[0].abs() / (1 + y_.abs())).maxCoeff();
+    return 0.5 * std::pow(tolerance_, 1.0 / 8) / std::fmax(rate, 1e-3);
   }
 
   // One accepted step. False: the step became too small.
@@ -44,7 +72,7 @@ class Dop853 {
       h_ *= error < 1 ? (rejected ? std::fmin(1, factor) : std::fmin(10, factor)) : std::fmax(0.2, factor);
       if (error < 1) break;
     }
-    ++steps;
+    ++steps_;
     y_old_ = y_, y_ = y_new_;
     t_old_ = t_, t_ += h_done_;
     interpolates_ = false;
@@ -60,17 +88,9 @@ class Dop853 {
     return y_old_ + y;
   }
 
-  WheelScene scene;
-  long steps = 0, evaluations = 0;
-
- protected:
-  double t_, t_old_;
-  State y_;
-
- private:
   void evaluate(const State& y, State& y_dot) {
-    derivative(&scene, y.data(), y_dot.data());
-    ++evaluations;
+    derivative(&scene_, y.data(), y_dot.data());
+    ++evaluations_;
   }
 
   // The sum of a row's terms, unrolled at compile time.
@@ -107,12 +127,6 @@ class Dop853 {
     return std::isfinite(error) ? std::fmax(error, 1e-9) : 1e9;
   }
 
-  // A guess from the size of y' alone; the first steps correct it.
-  double first_step() const {
-    const double rate = (f_[0].abs() / (1 + y_.abs())).maxCoeff();
-    return 0.5 * std::pow(tolerance_, 1.0 / 8) / std::fmax(rate, 1e-3);
-  }
-
   void prepare_interpolant() {
     evaluate_stage<13, pair::a_13>(y_old_, h_done_), evaluate_stage<14, pair::a_14>(y_old_, h_done_);
     evaluate_stage<15, pair::a_15>(y_old_, h_done_);
@@ -125,63 +139,28 @@ class Dop853 {
     interpolates_ = true;
   }
 
-  double tolerance_, h_ = 0, h_done_ = 0;
-  bool interpolates_ = false;
-  State y_old_, y_new_;
-  std::array<State, 16> f_;
-  std::array<State, 7> F_;
-};
-
-constexpr long most_steps = 200000, most_events = 1000;
-
-// One solution on a grid of equal spacing.
-class Solution : Dop853 {
- public:
-  Solution(const WheelScene& of, const State& y, double tolerance, double spacing, int points, double* rows)
-      : Dop853(of, y, tolerance), spacing_(spacing), points_(points), rows_(rows) {
-    exact_ = scene.friction.kind == WHEEL_ROLLING;
-    if (exact_) scene.friction.sigma = y[3] > 0 ? 1 : -1;
-    restart(0, y);
-    write(y);
-  }
-
-  bool run(long* counts) {
-    while (done_ < points_) {
-      if (!step() || steps > most_steps || counts[2] > most_events) return false;
-      const bool falls = exact_ && margin(y_) < 0;
-      const double t = falls ? fall() : t_;
-      for (double next; done_ < points_ && (next = spacing_ * done_) <= t;) write(at(next));
-      if (falls) change_mode(t), ++counts[2];
-    }
-    counts[0] = steps, counts[1] = evaluations;
-    return true;
-  }
-
- private:
   // X_O, theta, phi_dot, psi_dot
   void write(const State& y) {
     WheelKinematics k;
-    pose(&scene.wheel, y.data(), &k);
-    const double row[] = {k.X_O, k.theta, k.phi_dot, k.psi_dot};
-    for (int i = 0; i < 4; ++i) rows_[4 * done_ + i] = row[i];
-    ++done_;
+    pose(&scene_.wheel, y.data(), &k);
+    Eigen::Map<Eigen::Array4d>(rows_ + 4 * done_++) = Eigen::Array4d(k.X_O, k.theta, k.phi_dot, k.psi_dot);
   }
 
-  // The moment that would hold omega_z = 0.
-  double holding(const State& y, double* spare) const {
-    WheelScene held = scene;
+  // The moment that would hold omega_z = 0, and how far its size lies below s N.
+  struct Grip {
+    double tau, spare;
+  };
+  Grip grip(const State& y) const {
+    WheelScene held = scene_;
     held.friction.kind = WHEEL_HELD;
     WheelDynamics now;
     dynamics(&held, y.data(), &now);
-    *spare = held.wheel.s * std::fmax(now.lambda[2], 0) - std::fabs(now.tau);
-    return now.tau;
+    return {now.tau, held.wheel.s * std::fmax(now.lambda[2], 0) - std::fabs(now.tau)};
   }
 
+  // The mode ends where it falls below zero.
   double margin(const State& y) const {
-    const WheelFriction& friction = scene.friction;
-    double spare = friction.sigma * y[3];
-    if (friction.kind == WHEEL_HELD) holding(y, &spare);
-    return spare;
+    return scene_.friction.kind == WHEEL_HELD ? grip(y).spare : scene_.friction.sigma * y[3];
   }
 
   // The margin's fall through zero in the last step (Illinois). Its zero at the start, after a release, is left out.
@@ -205,20 +184,25 @@ class Solution : Dop853 {
 
   void change_mode(double t) {
     State y = at(t);
-    WheelFriction& friction = scene.friction;
+    WheelFriction& friction = scene_.friction;
     const bool released = friction.kind == WHEEL_HELD;
     if (!released) y[3] = 0;
-    double spare;
-    const double tau = holding(y, &spare);
-    friction.kind = !released && spare >= 0 ? WHEEL_HELD : WHEEL_ROLLING;
-    friction.sigma = tau > 0 ? -1 : 1;
+    const Grip now = grip(y);
+    friction.kind = !released && now.spare >= 0 ? WHEEL_HELD : WHEEL_ROLLING;
+    friction.sigma = now.tau > 0 ? -1 : 1;
     restart(t, y);
   }
 
-  double spacing_;
+  WheelScene scene_;
+  double tolerance_, spacing_;
   int points_, done_ = 0;
   double* rows_;
-  bool exact_;
+  bool exact_, interpolates_ = false;
+  long steps_ = 0, evaluations_ = 0;
+  double t_ = 0, t_old_ = 0, h_ = 0, h_done_ = 0;
+  State y_, y_old_, y_new_;
+  std::array<State, 16> f_;
+  std::array<State, 7> F_;
 };
 
 }  // namespace
@@ -228,15 +212,7 @@ extern "C" {
 // rows: points x 4; counts: steps, right-hand sides, transitions. 0 where it did not reach the end.
 int dop853(const WheelScene* scene, const double* y_0, double tolerance, double stop, int points, double* rows,
            long* counts) {
-  const State y = Eigen::Map<const State>(y_0);
   counts[0] = counts[1] = counts[2] = 0;
-  return Solution(*scene, y, tolerance, stop / (points - 1), points, rows).run(counts);
-}
-
-// As numbalsoda calls a right-hand side.
-long wheel_rhs_count = 0;
-void wheel_rhs(double, const double* y, double* y_dot, const WheelScene* const* scene) {
-  ++wheel_rhs_count;
-  derivative(*scene, y, y_dot);
+  return Solution(*scene, Eigen::Map<const State>(y_0), tolerance, stop / (points - 1), points, rows).run(counts);
 }
 }

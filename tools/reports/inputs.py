@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from reference import Inputs
-from support.scenes import SCENES, SINES, sines
+from support.scenes import SCENES, sines
 
 from .native import repeated
 from .page import Report, Row, part
@@ -37,8 +37,8 @@ def cost(report: Report, case: tuple, method: str) -> Row:
     """what inputs cost, and their error"""
     scene, (judge, table_of) = replace(SCENES["free"], duration=2.0 if report.quick else 10.0), case
     steps = round(scene.duration / STEP)
-    want, table = headline(scene, steps // EVERY + 1, judge, TRUTHS[judge]), table_of(steps)
-    solve = report.master.made({"method": method}, STEP, steps, None, () if table is None else tuple(SINES), table)
+    want = headline(scene, steps // EVERY + 1, judge, TRUTHS[judge])
+    solve = report.master.made({"method": method}, STEP, steps, None, table_of(steps))
     try:
         costs, rows, counts = repeated(solve, 0.05)
     except RuntimeError:

@@ -5,15 +5,19 @@ from __future__ import annotations
 import ctypes
 import re
 from collections.abc import Callable
-from ctypes import c_double, c_int, c_void_p
+from ctypes import byref, c_double, c_int, c_long, c_void_p
+from dataclasses import asdict
 from functools import cache
 from pathlib import Path
+from time import perf_counter
 
 import numpy as np
 from cffi import FFI
+from support import equations as eq
 from support.driver import COUNTERS, HEADLINE, Values
 from support.motion import Library
 from support.paths import ROOT, build_target
+from support.scenes import SINES, Scene
 
 from .truth import Array
 
@@ -41,13 +45,6 @@ def driver_code() -> object:
     return ffi.dlopen(timed())
 
 
-@cache
-def dop853_code() -> ctypes.CDLL:
-    code = ctypes.CDLL(timed())
-    code.dop853.argtypes = [c_void_p, c_void_p, c_double, c_double, c_int, c_void_p, c_void_p]
-    return code
-
-
 def bytes_in_use(code: object) -> int:
     sizes = code.mallinfo2().sizes
     return sizes[7] + sizes[4]  # uordblks, hblkhd
@@ -62,17 +59,12 @@ class Master:
         self.code.load(str(file).encode())
 
     def made(
-        self,
-        values: Values,
-        step: float,
-        steps: int,
-        tolerance: float | None = None,
-        inputs: tuple[str, ...] = (),
-        table: Array | None = None,
+        self, values: Values, step: float, steps: int, tolerance: float | None = None, table: Array | None = None
     ) -> Solve:
         """A run, ready to be repeated: its seconds, headline outputs at the start and after each step, counters.
 
-        table: steps x (orders + 1) x inputs. With paces, they get the seconds of each step."""
+        table: steps x (orders + 1) x the inputs of SINES. With paces, they get the seconds of each step."""
+        inputs = () if table is None else SINES
         table = np.zeros((steps, 1, 0)) if table is None else np.ascontiguousarray(table)
         rows = np.zeros((steps + 1, len(HEADLINE)))
         references = [ffi.new("unsigned[]", [self.references[name] for name in of]) for of in (inputs, HEADLINE)]
@@ -103,3 +95,30 @@ def repeated(solve: Solve, seconds: float) -> tuple[list[float], Array, dict[str
         costs.append(cost)
         spent += cost
     return costs, rows, counts
+
+
+def width(scene: Scene) -> float:
+    """Of the regularized law, rad/s; 0: the law is exact."""
+    return float(scene.start.get("omega_s", 1e-3)) if scene.start.get("friction_law") == "regularized" else 0.0
+
+
+def in_cpp(scene: Scene, tolerance: float, points: int) -> Solve:
+    """DOP853, hand-inlined (dop853.cpp)."""
+    constants = asdict(scene.wheel).items()
+    wheel = eq.paper_wheel(**{name: value for name, value in constants if hasattr(eq.Parameters, name)})
+    kind = eq.FRICTIONLESS if wheel.s == 0 else eq.REGULARIZED if width(scene) else eq.ROLLING
+    problem = eq.scene(wheel, kind, omega_s=width(scene) or 1e-3)
+    y_0 = eq.start(eq.REDUCED, wheel, eq.Motion(**asdict(scene.motion)))
+    rows, counts, run = np.zeros((points, 4)), (c_long * 3)(), ctypes.CDLL(timed()).dop853
+    run.argtypes = [c_void_p, c_void_p, c_double, c_double, c_int, c_void_p, c_void_p]
+    start, out = (array.ctypes.data_as(c_void_p) for array in (y_0, rows))
+
+    def solve() -> tuple[float, Array, dict[str, int]]:
+        begin = perf_counter()
+        reached = run(byref(problem), start, tolerance, scene.duration, points, out, counts)
+        spent = perf_counter() - begin
+        if not reached:
+            raise RuntimeError("did not reach the end")
+        return spent, rows, dict(zip(("steps", "rhs", "events"), counts, strict=True))
+
+    return solve

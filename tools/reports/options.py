@@ -23,9 +23,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--render", action="store_true", help="measure nothing: publish what the data in docs/ say")
     parser.add_argument("--check", action="store_true", help="change nothing: are the pages those of the data?")
     parser.add_argument("--tools", metavar="PYTHON", help="vehicles: an interpreter with libcosimpy and ecospy")
-    parser.add_argument(
-        "--rig", metavar="FOLDER", help="validation: raw coast-down files (see its page); else derived data"
-    )
+    parser.add_argument("--rig", metavar="FOLDER", help="validation: raw coast-down files (see its page)")
     return parser.parse_args()
 
 

@@ -1,7 +1,6 @@
 """Numbers of other people, beside those of wheel.fmu: derivations, reference results, closed forms (tests/others).
 
 Each comparison is a row: whose number it is, which scene, both values, how far they are apart, and whose error that is.
-Exudyn runs where it is installed; else its rows are those kept in tests/others.
 """
 
 from __future__ import annotations
@@ -10,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
+from others import wheel_sets as sets
 from others import wheels
 from others.kane import distance
 from others.numbers import read
@@ -64,15 +64,9 @@ def multibody_jl(library: Library) -> Compared:
 
 
 def coin(library: Library) -> Compared:
-    ours, table, made = wheels.coin(library, 1e-12), read("exudyn_coin"), "kept"
-    try:
-        from .exudyn_coin import steps
-    except ImportError:
-        pass
-    else:
-        table, made = steps(table["h"]), "run"
-    limit = wheels.coin_limit(table)
-    whose = f"neither's; at its step of 0.5 ms it is {number(float(abs(table['x'][0] - ours[0])))} m off ({made})"
+    ours, table = wheels.coin(library, 1e-12), read("exudyn_coin")
+    limit, off = wheels.coin_limit(table), float(abs(table["x"][0] - ours[0]))
+    whose = f"neither's; at its step of 0.5 ms it is {number(off)} m off"
     who, scene = "Exudyn 1.13.6, extrapolated to h = 0", "rollingCoinTest, 0.5 s: X_C, Y_C"
     return who, scene, digits(*limit, places=15), digits(*ours, places=15), float(np.abs(limit - ours).max()), whose
 
@@ -100,11 +94,9 @@ def ramp(library: Library) -> Compared:
     return "Multibody.jl, test_wheels.jl", scene, "between 5 and 9.81", digits(gained[0], places=6), off.max(), whose
 
 
-def printed_instants(library: Library) -> Compared:
-    from others.wheel_sets import rigid_at
-
+def printed_instants() -> Compared:
     printed = read("multibody_jl_driving")
-    exact = rigid_at("driving", printed["time"])
+    exact = sets.rigid_at("driving", printed["time"])
     apart = float(np.hypot(printed["x"] - exact["x"], printed["y"] - exact["y"]).max())
     who, scene = "Multibody.jl, test_wheels.jl", "DrivingWheelSet, 11 instants, 1 s: x, y"
     return who, scene, *(ends(source, "x", "y", places=6) for source in (printed, exact)), apart, "theirs: 1e-3"
@@ -112,14 +104,12 @@ def printed_instants(library: Library) -> Compared:
 
 def wheel_set(report: Report, scene: str, factors: tuple[int, ...]) -> tuple[Compared, Row]:
     """Modelica's wheel set: axle.fmu with ever stiffer links, and the limit of rigid ones."""
-    from others import wheel_sets as sets
-
     table, rigid = sets.table(scene), sets.rigid(scene)
     runs = [sets.coupled(report.fmus, scene, factor, 0.002 / factor) for factor in factors]
     limit = sets.limit(runs)
+    at = {f"at {name}": sets.distance(run, rigid) for name, run in zip(("k", "2 k", "4 k"), runs, strict=True)}
     own, theirs = sets.distance(limit, rigid), sets.distance(table, rigid)
-    errors = {name: sets.distance(run, rigid) for name, run in zip(("at k", "at 2 k", "at 4 k"), runs, strict=True)}
-    stiffness = {"scene": scene, "k, N/m": sets.SOFT * factors[0], **errors, "limit": own, "Modelica": theirs}
+    stiffness = {"scene": scene, "k, N/m": sets.SOFT * factors[0]} | at | {"limit": own, "Modelica": theirs}
     name = f"RollingWheelSet{scene.capitalize()}, 3 s: x, y, φ; links → ∞"
     whose = f"the table's; ours is {number(own)} from the rigid wheel set"
     printed = (ends(source, *sets.COMPARED, places=7) for source in (table, limit))
@@ -129,9 +119,8 @@ def wheel_set(report: Report, scene: str, factors: tuple[int, ...]) -> tuple[Com
 @part(100)
 def numbers(report: Report) -> dict[str, object]:
     """numbers of others beside ours"""
-    found = {f.__name__: f(report.library) for f in (kane, modelica, multibody_jl, coin, critical, legendre, ramp)}
-    sets = [wheel_set(report, *scene) for scene in STIFFNESSES.items()]
-    rows = [*found.values(), *(row for row, _ in sets), printed_instants(report.library)]
-    asked = {name: found[name][4] for name in ("kane", "modelica", "coin", "critical", "legendre")}
+    singles = [f(report.library) for f in (kane, modelica, multibody_jl, coin, critical, legendre, ramp)]
+    rows, stiffness = zip(*(wheel_set(report, *scene) for scene in STIFFNESSES.items()), strict=True)
+    found = pd.DataFrame([*singles, *rows, printed_instants()], columns=HEAD)
     own = {"modelica_energy": modelica_drift(), "modelica_own": modelica_own(report.library)}
-    return {"numbers": pd.DataFrame(rows, columns=HEAD), "stiffness": [row for _, row in sets]} | asked | own
+    return {"numbers": found, "stiffness": stiffness} | own

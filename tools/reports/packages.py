@@ -16,46 +16,39 @@ from vehicles.layout import LANE
 
 from .page import Report, Row, part, read_tables
 
-GRID = 0.05  # s
+STEP, GRID = 0.0005, 0.05  # s
+CASES = {
+    "axle.ssp": (AXLE, axle_study.TRAILING.changed(stop=2.0), ("axle.X", "axle.Y")),
+    "car.ssp": (CAR, LANE, ("chassis.X_R", "chassis.Y_R")),
+}
 
 
-@part(120)
-def packages(report: Report) -> list[Row]:
+@part(120, {"package": CASES})
+def packages(report: Report, case: tuple) -> list[Row]:
     """the packages in other tools, beside the master of the examples"""
-    units, h = report.fmus, 0.0005
-    folder, scene, wait = units["chassis"].parent, axle_study.TRAILING.changed(stop=2.0), {"t_couple": 3 * h}
-    waiting, later = LANE.changed(**wait), scene.changed(**wait)
-    axles = [AXLE.drive(units, s, h, e, GRID).whole for s, e in ((scene, "rollback"), (later, "held"))]
-    cars = [CAR.drive(units, m, h, e, GRID).table for m, e in ((LANE, "rollback"), (waiting, "held"))]
-    cases = (
-        (AXLE.package(units, scene, h, folder), scene.stop, ("axle.X", "axle.Y"), axles),
-        (CAR.package(units, LANE, h, folder), LANE.stop, ("chassis.X_R", "chassis.Y_R"), cars),
-    )
-    rows: list[Row] = []
-    for package, stop, wanted, own in cases:
-        names = [name.split(".")[1] for name in wanted]
-        ends = [(f"master.py, {e}", "", run, names) for e, run in zip(("rollback", "held"), own, strict=True)]
-        ends.append(("fmpy.ssp", f"FMPy {version('fmpy')}", ssp.run(package, h, stop, GRID), wanted))
-        found = [(tool, number, [run[name][-1] for name in names]) for tool, number, run, names in ends]
-        for tool, number, command in tools_at_hand(report.options["tools"]):
-            said = subprocess.run([*command, package, repr(h), repr(stop), *wanted], capture_output=True, check=True)
-            values = dict(line.split() for line in said.stdout.decode().splitlines() if line.startswith(wanted))
-            found.append((tool, number, [float(values[name]) for name in wanted]))
-        new = [
-            {"package": package.name, "tool": tool, "version": number}
-            | {f"{axis} at the end, m": f"{x:.8f}" for axis, x in zip("XY", values, strict=True)}
-            for tool, number, values in found
-        ]
-        rows += new + of_other_tools(new)
-    return rows
+    (vehicle, scene, wanted), units, found = case, report.fmus, []
+    package = vehicle.package(units, scene, STEP, units["chassis"].parent)
+    for exchange, over in {"rollback": scene, "held": scene.changed(t_couple=3 * STEP)}.items():
+        run = vehicle.drive(units, over, STEP, exchange, GRID).whole
+        found.append((f"master.py, {exchange}", "", [run[name.split(".")[1]][-1] for name in wanted]))
+    run = ssp.run(package, STEP, scene.stop, GRID)
+    found.append(("fmpy.ssp", f"FMPy {version('fmpy')}", [run[name][-1] for name in wanted]))
+    for tool, number, command in tools_at_hand(report.options["tools"]):
+        arguments = [package, repr(STEP), repr(scene.stop), *wanted]
+        said = subprocess.run([*command, *arguments], capture_output=True, check=True)
+        values = dict(line.split() for line in said.stdout.decode().splitlines() if line.startswith(wanted))
+        found.append((tool, number, [float(values[name]) for name in wanted]))
+    head = ("tool", "version", "X at the end, m", "Y at the end, m")
+    rows = [dict(zip(head, (tool, number, *(f"{x:.8f}" for x in ends)), strict=True)) for tool, number, ends in found]
+    return rows + of_other_tools(package.name, rows)
 
 
-def of_other_tools(new: list[Row]) -> list[Row]:
+def of_other_tools(package: str, new: list[Row]) -> list[Row]:
     """Published rows of tools that are not at hand now, if all that is at hand has the values that it had then."""
     old = read_tables("vehicles", dtype=str).get("packages", pd.DataFrame({"package": []})).fillna("")
-    old = {row["tool"]: row for row in old[old["package"] == new[0]["package"]].to_dict("records")}
-    same = all(old.get(row["tool"]) == row for row in new)
-    return [row for tool, row in old.items() if same and tool not in [row["tool"] for row in new]]
+    old = old[old["package"] == package].drop(columns="package").to_dict("records")
+    same = all(row in old for row in new)
+    return [row for row in old if same and row["tool"] not in [found["tool"] for found in new]]
 
 
 def tools_at_hand(python: str | None) -> list[tuple[str, str, list[str]]]:

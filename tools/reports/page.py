@@ -32,7 +32,7 @@ RESULTS = ROOT / "docs" / "results"
 Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]
 Axis = Mapping[str, Any] | Sequence[Any] | Callable  # of the report
-PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka", "numba", "numbalsoda")
+PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka")
 REDUCTIONS = ("max", "min", "median", "sum")
 REQUIREMENTS = pd.read_csv(Path(__file__).with_name("requirements.csv")).set_index(["report", "figure"])
 
@@ -42,7 +42,8 @@ class Part:
     """A function of a report, which measures in so many seconds.
 
     It returns numbers and tables by name, or one table, which gets the function's name. With axes it is called for each
-    combination of their values, and returns the rest of a row that begins with these values, or with their names.
+    combination of their values, and returns the rest of a row, or of several, that begin with these values, or with
+    their names.
     """
 
     measure: Callable
@@ -60,8 +61,11 @@ class Part:
     def rows(self, report: Report) -> list[Row]:
         axes = [axis(report) if callable(axis) else axis for axis in self.axes.values()]
         named = (axis.items() if isinstance(axis, Mapping) else [(value, value) for value in axis] for axis in axes)
-        cases = (zip(*case, strict=True) for case in product(*named))
-        return [dict(zip(self.axes, names, strict=True)) | self.measure(report, *of) for names, of in cases]
+        rows = []
+        for names, values in (zip(*case, strict=True) for case in product(*named)):
+            found, head = self.measure(report, *values), dict(zip(self.axes, names, strict=True))
+            rows += [head | row for row in (found if isinstance(found, list) else [found])]
+        return rows
 
 
 def part(seconds: float, axes: Mapping[str, Axis] | None = None) -> Callable[[Callable], Part]:
@@ -156,23 +160,18 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     table = {"figure": asked["what"], "required": bounds, "measured": measured}
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
-    values = {f.figure: number(float(f.measured)) for f in figures.itertuples()}
+    values = dict.fromkeys(REQUIREMENTS.loc[name].index, "–")  # without a solver that is not installed
+    values |= {f.figure: number(float(f.measured)) for f in figures.itertuples()}
     given = {"name": name, "f": values, "t": views(read_tables(name, folder)), "run": run}
     return page(f"{name}.md.j2", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
-
-
-def cached(name: str) -> str:
-    """An entry of the build's CMakeCache.txt."""
-    text = (build_folder() / "CMakeCache.txt").read_text()
-    entry = re.search(rf"^{name}:[A-Z]+=(.*)$", text, re.MULTILINE)
-    return entry[1] if entry else ""
 
 
 def made(name: str) -> Row:
     """Machine, versions, commit, date; no names of users or folders. Files that reports write are no change."""
     info = Path("/proc/cpuinfo")
-    model = re.search(r"^model name\s*:\s*(.+)$", info.read_text(), re.MULTILINE) if info.exists() else None
-    processor = model[1] if model else platform.processor() or platform.machine()
+    models = re.findall(r"^model name\s*:\s*(.+)$", info.read_text() if info.exists() else "", re.MULTILINE)
+    (processor, *_) = [*models, platform.processor() or platform.machine()]
+    build = dict(re.findall(r"^(\w+):[A-Z]+=(.*)$", (build_folder() / "CMakeCache.txt").read_text(), re.MULTILINE))
     installed = {found.name.lower(): found.version for found in distributions()}
     versions = [f"{p} {installed[p.lower()]}" if p.lower() in installed else f"no {p}" for p in PACKAGES]
     changed = said("git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs", ":!*.md", ":!*.html")
@@ -180,7 +179,7 @@ def made(name: str) -> Row:
         "report": name,
         "date": f"{datetime.now(UTC):%Y-%m-%d}",
         "machine": f"{processor}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {platform.system()}",
-        "compiler": f"{said(cached('CMAKE_CXX_COMPILER'), '--version')}, {cached('CMAKE_CXX_FLAGS_RELEASE')}",
+        "compiler": f"{said(build['CMAKE_CXX_COMPILER'], '--version')}, {build['CMAKE_CXX_FLAGS_RELEASE']}",
         "versions": ", ".join([f"Python {platform.python_version()}", *versions]),
         "commit": said("git", "rev-parse", "--short=12", "HEAD") + (", with local changes" if changed else ""),
     }

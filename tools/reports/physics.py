@@ -37,8 +37,8 @@ def lean(found: Run) -> np.ndarray:
 
 
 @contextmanager
-def picture(report: Report, name: str, rows: int = 1, height: float = 70.0) -> Iterator[list[Axes]]:
-    sheet, axes = plots.sheet(2, rows, height)
+def picture(report: Report, name: str, layout: str = "ab", height: float = 70.0) -> Iterator[list[Axes]]:
+    sheet, axes = plots.sheet(layout, height)
     yield axes
     style.save_png(sheet, report.folder.parent / "figures" / f"{name}.png", plots.DPI)
 
@@ -74,18 +74,14 @@ def held(report: Report) -> Row:
     curves = {
         (r"$\theta$ [deg]", "it nods"): np.degrees(found["theta"]),
         (r"$\dot\psi$ [rad/s]", "it turns"): found["psi_dot"],
-        ("energy $E$ [J]", "it loses nothing"): found["E"],
+        (ENERGY, "it loses nothing"): found["E"],
     }
-    with picture(report, "physics_held", 3, 30.0) as axes:
-        sheet = axes[0].figure
-        right = sheet.add_subplot(axes[0].get_gridspec()[:, 1])
-        right.grid(alpha=0.3, linewidth=0.4)
-        for ((name, what), values), left, spare in zip(curves.items(), axes[::2], axes[1::2], strict=True):
-            spare.remove()
-            left.plot(found.t, values, color=style.BLUE)
-            label(left, "", name, what, xlim=(0, 2), ylim=(0, 1.15 * values.max()))
-        axes[4].set_xlabel(TIME)
-        sheet.suptitle("A wheel held at $\\omega_z = 0$ by a strong brake", fontsize=9.5)
+    with picture(report, "physics_held", "ad;bd;cd", 30.0) as (first, right, *further):
+        for ax, ((name, title), values) in zip((first, *further), curves.items(), strict=True):
+            ax.plot(found.t, values, color=style.BLUE)
+            label(ax, "", name, title, xlim=(0, 2), ylim=(0, 1.15 * values.max()))
+        ax.set_xlabel(TIME)
+        ax.figure.suptitle("A wheel held at $\\omega_z = 0$ by a strong brake", fontsize=9.5)
         right.plot(found["X_C"], found["Y_C"], color=style.BLUE, label="contact point")
         right.plot(found["X_O"], found["Y_O"], color=style.VERMILLION, label="centre O, seen from above")
         from_above(right, "it pivots like a coin", "upper left")
@@ -113,11 +109,8 @@ def energy(report: Report) -> Row:
         label(right, TIME, ENERGY, "The releases go on, ever weaker", xlim=(0, 150))
     figures = {"energy_start": rough["E"][0], "energy_end": rough["E"][-1], "energy_long": long["E"][-1]}
     figures |= {"transitions": rough.counters["n_events"], "transitions_long": long.counters["n_events"]}
-    for name, scene in (("free", free), ("friction", rough)):
-        figures[f"lowest_{name}"], figures[f"grip_{name}"] = (
-            np.degrees(scene["theta"].min()),
-            scene["mu_required"].max(),
-        )
+    figures |= {"lowest_free": np.degrees(free["theta"].min()), "grip_free": free["mu_required"].max()}
+    figures |= {"lowest_friction": np.degrees(rough["theta"].min()), "grip_friction": rough["mu_required"].max()}
     return figures | {"held_share": 100 * np.mean(sticks)}
 
 

@@ -11,15 +11,15 @@ DPI = 150
 COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.ORANGE, style.SKY, style.GREY, style.INK)
 
 
-def sheet(columns: int = 1, rows: int = 1, height: float = 70.0) -> tuple[Sheet, list[Axes]]:
-    """A figure of the page's width, `height` mm for each row of axes."""
+def sheet(layout: str, height: float = 70.0) -> tuple[Sheet, list[Axes]]:
+    """A figure of the page's width: a letter for each axes, rows parted by semicolons, `height` mm each."""
     style.use_style()
-    figure = style.figure_mm(style.PAGE, height * rows)
+    figure = style.figure_mm(style.PAGE, height * (layout.count(";") + 1))
     figure.set_layout_engine("constrained")
-    axes = figure.subplots(rows, columns, squeeze=False).ravel()
-    for ax in axes:
+    axes = figure.subplot_mosaic(layout)
+    for ax in axes.values():
         ax.grid(alpha=0.3, linewidth=0.4)
-    return figure, list(axes)
+    return figure, list(axes.values())
 
 
 def label(

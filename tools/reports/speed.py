@@ -7,25 +7,26 @@ reason. Ratios to DOP853 in C++ (D) or to an empty call of the FMU are what is a
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cached_property, partial
+from itertools import product
 from math import exp, log, nan
 
 import numpy as np
 import pandas as pd
-from support.driver import Values
+from support.driver import HEADLINE, Values
 from support.paths import build_folder
-from support.scenes import SCENES, SINES, Scene, sines
+from support.scenes import SCENES, Scene, sines
 
 from . import plots
-from .native import Master, Solve, bytes_in_use, ffi, repeated
+from .native import Master, Solve, bytes_in_use, ffi, in_cpp, repeated, width
 from .page import Report, Row, Tables, number, part
-from .peers import CPP, HEYOKA, peers
-from .plots import Sheet
+from .plots import Sheet, style
 from .truth import Array, headline, range_error
 
-TARGETS = (1e-4, 1e-6, 1e-8)  # errors at which set-ups are compared
+TARGETS = {4: 1e-4, 6: 1e-6, 8: 1e-8}  # errors at which set-ups are compared
 POINTS = 101
+CPP, HEYOKA = "DOP853 C++", "heyoka"
 OURS, METHODS = "FMU automatic", ("automatic", "adams", "bdf", "runge_kutta")
 TITLES = {
     "free": "Free wheel, the paper's scene, 10 s",
@@ -43,7 +44,6 @@ SLOW = 0.05  # s: what takes longer is measured once
 class Entry:
     """One set-up at one tolerance; seconds of every repetition; why it has no error."""
 
-    scene: str
     setup: str
     tolerance: float
     make: Callable[[], Solve]
@@ -70,9 +70,9 @@ class Entry:
 
     def row(self) -> Row:
         micro = 1e6 * np.array(self.seconds or [nan])
-        row = {name: getattr(self, name) for name in ("scene", "setup", "tolerance", "error")}
-        counts = {name: self.counts.get(name) for name in ("steps", "rhs", "events")}
-        return {**row, "best_us": micro.min(), "median_us": np.median(micro), **counts, "note": self.note}
+        row = {"setup": self.setup, "tolerance": self.tolerance, "error": self.error}
+        row |= {"best_us": micro.min(), "median_us": np.median(micro)}
+        return row | {name: self.counts.get(name) for name in ("steps", "rhs", "events")} | {"note": self.note}
 
 
 def in_fmu(master: Master, method: str, scene: Scene, tolerance: float, points: int) -> Solve:
@@ -80,31 +80,46 @@ def in_fmu(master: Master, method: str, scene: Scene, tolerance: float, points: 
     return master.made({**scene.start, "method": method}, scene.duration / steps, steps, tolerance)
 
 
-def race(report: Report, name: str) -> list[Row]:
-    """In rounds, so that noise of the machine meets all alike. A peer that failed at a looser tolerance is not asked
-    again: it is missing, or takes too long."""
+def in_heyoka(scene: Scene, tolerance: float, points: int) -> Solve:
+    """Or an ImportError, where it is not installed."""
+    from . import taylor
+
+    wheel = taylor.Wheel(asdict(scene.wheel) | asdict(scene.motion), "angles", tolerance, omega_s=width(scene))
+    grid, shown = np.linspace(0, scene.duration, points), [taylor.OUTPUTS.index(name) for name in HEADLINE]
+
+    def solve() -> tuple[float, Array, dict[str, int]]:
+        found = wheel.solve(grid)
+        return found.seconds, found.rows[:, shown], {"steps": found.steps, "events": len(found.transitions)}
+
+    return solve
+
+
+PEERS = {CPP: in_cpp, HEYOKA: in_heyoka}
+
+
+@part(108, {"scene": tuple(TITLES)})
+def runs(report: Report, name: str) -> list[Row]:
+    """error against run time, scene by scene
+
+    In rounds, so that noise of the machine meets all alike. A peer that failed at a looser tolerance is not asked
+    again: it is missing, or takes too long.
+    """
     scene, entries = SCENES[name], []
     want = headline(scene, POINTS)
-    setups = {f"FMU {method}": partial(in_fmu, report.master, method) for method in METHODS} | peers(scene)
+    setups = {f"FMU {method}": partial(in_fmu, report.master, method) for method in METHODS} | PEERS
     for setup, make in setups.items():
-        slow = setup.startswith("SciPy") or (name == "stiff law" and setup in ("FMU adams", "FMU runge_kutta"))
+        slow = name == "stiff law" and setup in ("FMU adams", "FMU runge_kutta")
         tolerances = [10.0**-k for k in ((4, 6, 8, 10) if report.quick or slow else range(3, 14))]
-        entries += [Entry(name, setup, tolerance, partial(make, scene, tolerance, POINTS)) for tolerance in tolerances]
+        entries += [Entry(setup, tolerance, partial(make, scene, tolerance, POINTS)) for tolerance in tolerances]
     for turn in range(1 if report.quick else 5):
         reasons: dict[str, str] = {}
         for entry in entries:
             entry.note = entry.note or reasons.get(entry.setup, "")
             if not entry.note and not (turn and min(entry.seconds) > SLOW):
                 entry.take_turn(0.004 if report.quick else 0.01, want)
-            if entry.note and not entry.setup.startswith("FMU"):
+            if entry.note and entry.setup in PEERS:
                 reasons[entry.setup] = entry.note
     return [entry.row() for entry in entries]
-
-
-@part(108)
-def runs(report: Report) -> list[Row]:
-    """error against run time, scene by scene"""
-    return [row for name in TITLES for row in race(report, name)]
 
 
 def time_at(runs: pd.DataFrame, setup: str, error: float) -> float:
@@ -135,10 +150,8 @@ def compare(report: Report) -> Row:
     runs = dict(list(report.tables["runs"].groupby("scene", sort=False)))
     D = time_at(runs["free"], CPP, 1e-6)
     found = {"yardstick": D, "heyoka": time_at(runs["free"], HEYOKA, 1e-6)}
-    for error in TARGETS:
-        for peer, key in ((HEYOKA, "heyoka"), (CPP, "dop853")):
-            ratio = time_at(runs["free"], OURS, error) / time_at(runs["free"], peer, error)
-            found[f"free_{key}_{-round(np.log10(error))}"] = ratio
+    for (digits, error), (peer, key) in product(TARGETS.items(), ((HEYOKA, "heyoka"), (CPP, "dop853"))):
+        found[f"free_{key}_{digits}"] = time_at(runs["free"], OURS, error) / time_at(runs["free"], peer, error)
     for name in ("free", "friction"):
         ours = at_default(runs[name], OURS)
         found |= {name: ours.best_us / D, f"{name}_time": ours.best_us, f"{name}_error": ours.error}
@@ -153,18 +166,15 @@ def sine_table(steps: int, orders: int, shift: float = 0.0) -> Array:
     return np.array([[sines(1e-3 * k + shift, order) for order in range(orders + 1)] for k in range(steps)])
 
 
-def timed_steps(report: Report, values: Values, count: int, **changing: object) -> Row:
+def timed_steps(report: Report, values: Values, count: int, table: Array | None = None) -> Row:
     """Of 1 ms each, four outputs read."""
-    solve, paces = report.master.made(values, 1e-3, count, **changing), np.zeros(count)
+    solve, paces = report.master.made(values, 1e-3, count, None, table), np.zeros(count)
     costs, *_ = repeated(solve, 0.1 if report.quick else 0.5)
     solve(paces)
-    return {
-        "per step, best run, ns": 1e9 * min(costs) / count,
-        "in empty calls": min(costs) / count / empty_call(report),
-        "median single step, ns": 1e9 * np.median(paces),
-        "99.9th percentile, µs": 1e6 * np.percentile(paces, 99.9),
-        "longest, µs": 1e6 * paces.max(),
-    }
+    best = min(costs) / count
+    row = {"per step, best run, ns": 1e9 * best, "in empty calls": best / empty_call(report)}
+    row |= {"median single step, ns": 1e9 * np.median(paces), "99.9th percentile, µs": 1e6 * np.percentile(paces, 99.9)}
+    return row | {"longest, µs": 1e6 * paces.max()}
 
 
 @part(2, {"scene": ("free", "friction")})
@@ -176,17 +186,18 @@ def steps(report: Report, scene: str) -> Row:
 @part(6, {"spin, rad/s": SPINS})
 def inputs_held(report: Report, spin: float) -> Row:
     """steps of 1 ms, six inputs that change, held"""
-    return timed_steps(report, leaning(spin), 1000, inputs=tuple(SINES), table=sine_table(1000, 0))
+    return timed_inputs(report, spin, 0)
 
 
 @part(6, {"spin, rad/s": SPINS})
 def inputs_linear(report: Report, spin: float) -> Row:
     """steps of 1 ms, six inputs that change, with first derivatives"""
-    return timed_steps(report, leaning(spin), 1000, inputs=tuple(SINES), table=sine_table(1000, 1))
+    return timed_inputs(report, spin, 1)
 
 
-def leaning(spin: float) -> Values:
-    return {"theta_start": 1.4, "phi_dot_start": -spin}
+def timed_inputs(report: Report, spin: float, orders: int) -> Row:
+    start = {"theta_start": 1.4, "phi_dot_start": -spin}
+    return timed_steps(report, start, 1000, sine_table(1000, orders))
 
 
 @part(4, {"scene": {"free": 0, "friction": 1}})
@@ -228,7 +239,7 @@ def views(tables: Tables) -> Tables:
 def fastest(runs: pd.DataFrame) -> Row:
     """Who is fastest at each error, and the FMU's time over that of each peer that gets there."""
     row = {}
-    for error in TARGETS:
+    for error in TARGETS.values():
         times = pd.Series({setup: time_at(runs, setup, error) for setup in runs["setup"].unique()}).dropna()
         ratios = [f"{times[OURS] / times[p]:.2f}" if {p, OURS} <= set(times.index) else "–" for p in (CPP, HEYOKA)]
         row[f"at {number(error)}"] = f"{times.idxmin() if len(times) else 'none'} ({', '.join(ratios)})"
@@ -243,33 +254,27 @@ def price_of_choice(runs: pd.DataFrame) -> Row:
     return {"automatic": shown, "automatic over the fastest fixed one": ratio}
 
 
-LOOKS = {
-    **{CPP: (plots.style.VERMILLION, "-", "s"), HEYOKA: (plots.style.GREEN, "-", "^")},
-    **{"numbalsoda lsoda": (plots.style.PURPLE, "-", "D"), "numbalsoda dop853": (plots.style.PURPLE, "--", "D")},
-    **{OURS: (plots.style.BLUE, "-", "o"), "FMU adams": (plots.style.SKY, "-", "v")},
-    **{"FMU bdf": (plots.style.SKY, "--", "<"), "FMU runge_kutta": (plots.style.SKY, ":", ">")},
-    **{"SciPy DOP853": (plots.style.GREY, "-", "."), "SciPy LSODA": (plots.style.GREY, "--", ".")},
-    **{"SciPy Radau": (plots.style.GREY, ":", "."), "SciPy LSODA, tanh()": (plots.style.ORANGE, "--", ".")},
-    **{"SciPy DOP853, tanh()": (plots.style.ORANGE, "-", ".")},
+LOOKS = {  # colour, marker and line
+    OURS: (style.BLUE, "o-"),
+    "FMU adams": (style.SKY, "v-"),
+    "FMU bdf": (style.SKY, "<--"),
+    "FMU runge_kutta": (style.SKY, ">:"),
+    CPP: (style.VERMILLION, "s-"),
+    HEYOKA: (style.GREEN, "^-"),
 }
 
 
 def draw_races(tables: Tables) -> Sheet:
     """A sheet for each scene, one legend; automatic lies on top, half transparent, so that what it equals shows."""
-    figure, axes = plots.sheet(2, -(-len(TITLES) // 2), 68)
-    shown: dict[str, object] = {}
-    for ax, (scene, title) in zip(axes, TITLES.items(), strict=False):
-        runs = tables["runs"]
-        solved = runs[(runs["scene"] == scene) & runs["error"].notna()]
-        for setup, points in solved.groupby("setup", sort=False):
-            colour, line, marker = LOOKS.get(setup, (plots.style.INK, "-", "x"))
+    figure, axes = plots.sheet("ab;cd;ef", 68)
+    solved = tables["runs"].dropna(subset="error")
+    for ax, (scene, title) in zip(axes, TITLES.items(), strict=True):
+        for setup, points in solved[solved["scene"] == scene].groupby("setup", sort=False):
+            colour, mark = LOOKS[setup]
             look = {"lw": 3.5, "alpha": 0.55, "ms": 5} if setup == OURS else {"lw": 1, "ms": 3}
-            x, y = points["best_us"], points["error"].clip(lower=1e-14)
-            (curve,) = ax.plot(x, y, color=colour, ls=line, marker=marker, label=setup, **look)
-            shown.setdefault(setup, curve)
-        plots.label(ax, "best time [µs]", "error / range", title, "xy")
-        ax.set_ylim(1e-14, 3)
-    figure.legend(list(shown.values()), list(shown), loc="outside lower center", ncols=4)
+            ax.plot(points["best_us"], points["error"].clip(lower=1e-14), mark, color=colour, label=setup, **look)
+        plots.label(ax, "best time [µs]", "error / range", title, "xy", ylim=(1e-14, 3))
+    plots.legend_below(figure, axes, 3)
     return figure
 
 

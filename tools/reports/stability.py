@@ -14,22 +14,21 @@ import pandas as pd
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 from robustness.case import Case
 from robustness.judges import TOLERANCES, Verdict, judge_case
+from robustness.regularized import FRICTION, TIMES, TOLERANCE_FACTOR, WIDTH_FACTOR, error_against
 from robustness.sweep import sweep
-from support.driver import ERROR
+from support.driver import ERROR, Values
 from support.motion import Library, run
 
-from . import law, long_runs, plots
-from .page import Report, Row, Tables, part
+from . import long_runs, plots
+from .page import Report, Row, Tables, number, part
 from .plots import Sheet, style
 
 DEADLINE = 120.0  # s
+METHODS = ("automatic", "bdf")
+OF_LAW = {"tolerance": (1e-4, 1e-6, 1e-8), "omega_s, rad/s": (0.0, *(10.0**-k for k in range(1, 9))), "method": METHODS}
 COLUMNS = ("case", "expected", "tolerance", "outcome", "as expected", "claimed", "steps", "fault")
-JUDGES = {
-    "energy": "energy",
-    "integrals": "linear integrals",
-    "reference": "outputs against the reference",
-    "instant": "instant of the ending, s",
-}
+JUDGES = {"energy": "energy", "integrals": "linear integrals", "reference": "outputs against the reference"}
+JUDGES |= {"instant": "instant of the ending, s"}
 
 
 def alone(folder: str, case: Case) -> list[Verdict]:
@@ -81,7 +80,7 @@ def amplification(rows: pd.DataFrame, judge: str) -> Row:
 
 def draw_cases(tables: Tables) -> Sheet:
     """Errors that the judge sees, of what is claimed."""
-    figure, axes = plots.sheet(2)
+    figure, axes = plots.sheet("ab")
     titles = {"energy": "energy balance", "reference": "outputs against the independent reference"}
     for ax, (judge, title) in zip(axes, titles.items(), strict=True):
         for case, rows in tables["sweep"].groupby("case", sort=False):
@@ -92,6 +91,36 @@ def draw_cases(tables: Tables) -> Sheet:
             ax.plot(rows["tolerance"], seen, ".-", alpha=0.6, lw=0.8, ms=3, **look)
         ax.plot(TOLERANCES, TOLERANCES, "--", color=style.INK, lw=0.9, label="error = tolerance")
         plots.label(ax, "tolerance", "relative error", title, "xy")
+    plots.legend_below(figure, axes, 3)
+    return figure
+
+
+def regularized(values: Values, omega_s: float, method: str) -> Values:
+    return {**values, "friction_law": "regularized", "omega_s": omega_s, "method": method}
+
+
+@part(15, OF_LAW)
+def law(report: Report, tolerance: float, omega_s: float, method: str) -> Row:
+    """the regularized law in the paper's friction scene; omega_s = 0: the exact law"""
+    values = regularized(FRICTION, omega_s, method) if omega_s else FRICTION
+    truth, found = (run(report.library, v, TIMES, t) for v, t in ((FRICTION, 1e-12), (values, tolerance)))
+    in_one_step, error = report.master.made(values, TIMES[-1], 1, tolerance), error_against(truth, found)
+    row = {"error": error, "ms": 1e3 * min(in_one_step()[0] for _ in range(5)), "steps": found.counters["n_steps"]}
+    return row | ({"error / bound": error / (WIDTH_FACTOR * omega_s + TOLERANCE_FACTOR * tolerance)} if omega_s else {})
+
+
+def draw_law(tables: Tables) -> Sheet:
+    figure, axes = plots.sheet("ab")
+    for colour, (tolerance, points) in zip(plots.COLOURS, tables["law"].groupby("tolerance", sort=False), strict=False):
+        for method, marker in zip(METHODS, ("o-", "x--"), strict=True):
+            chain = points[(points["omega_s, rad/s"] > 0) & (points["method"] == method)]
+            words = f"{method}, tolerance {number(tolerance)}"
+            for ax, x in zip(axes, ("omega_s, rad/s", "ms"), strict=True):
+                ax.plot(chain[x], chain["error"], marker, color=colour, ms=4, lw=0.8, label=words)
+        exact = points[points["omega_s, rad/s"] == 0]
+        axes[1].plot(exact["ms"], exact["error"], "*", color=colour, ms=10)
+    plots.label(axes[0], r"$\omega_s$ [rad/s]", "error against the exact law", "convergence", "xy")
+    plots.label(axes[1], "time for 10 s [ms]", "error", "cost; stars: the exact law itself", "xy")
     plots.legend_below(figure, axes, 3)
     return figure
 
@@ -110,20 +139,17 @@ def contract(report: Report) -> dict[str, object]:
     equal, split = {"method": "adams"}, {"method": "adams", "J_y": 0.9 * (1 - 1e-12)}
     whole, parted = (run(report.library, values, np.linspace(0, 10, 101), 1e-8) for values in (equal, split))
     apart = max(np.abs(whole[n] - parted[n]).max() / np.ptp(whole[n]) for n in ("X_O", "theta", "psi_dot"))
-    checks = [
-        ("J_x and J_y differ by 1e-12: outputs apart, tolerance 1e-8", 1e-6, apart),
-        ("the same: right-hand sides", 3.0, parted.counters["n_rhs"] / whole.counters["n_rhs"]),
-    ]
-    scenes = {"free wheel": {}, "friction": law.FRICTION, "upright, fast": {"theta_start": pi / 2 - 0.1}}
+    checks = [("J_x and J_y differ by 1e-12: outputs apart, tolerance 1e-8", 1e-6, apart)]
+    checks += [("the same: right-hand sides", 3.0, parted.counters["n_rhs"] / whole.counters["n_rhs"])]
+    scenes = {"free wheel": {}, "friction": FRICTION, "upright, fast": {"theta_start": pi / 2 - 0.1}}
     checks += [(f"watching for endings over not, {name}", 1.03, watching(report, v)) for name, v in scenes.items()]
-    rows = [{"what": what, "below": bound, "found": found, "holds": found < bound} for what, bound, found in checks]
     with report.library.wheel() as wheel:
-        wheel.start(tolerance=1e-8, **law.regularized(law.FRICTION, 1e-8, "adams"))
-        refused = wheel.step_to(10.0) == ERROR and bool(wheel.sentences)
-    what = "10 s in one step, Adams, omega_s = 1e-8 rad/s: ends without an error and its reason"
-    rows.append({"what": what, "below": 1, "found": int(not refused), "holds": refused})
+        wheel.start(tolerance=1e-8, **regularized(FRICTION, 1e-8, "adams"))
+        silent = int(wheel.step_to(10.0) != ERROR or not wheel.sentences)
+    checks += [("10 s in one step, Adams, omega_s = 1e-8 rad/s: ends without an error and its reason", 1, silent)]
+    rows = [{"what": what, "below": bound, "found": found, "holds": found < bound} for what, bound, found in checks]
     return {"contract": rows, "checks": len(rows), "checks_failed": sum(not row["holds"] for row in rows)}
 
 
-FURTHER = (law, long_runs)
-PICTURES = {"cases": draw_cases, "law": law.draw_law, "methods": law.draw_methods}
+FURTHER = (long_runs,)
+PICTURES = {"cases": draw_cases, "law": draw_law}

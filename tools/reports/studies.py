@@ -7,6 +7,7 @@ unless the caller would be busy all the time handing out tasks.
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter, process_time
@@ -49,30 +50,25 @@ def speed(report: Report) -> dict[str, object]:
 
     runs = []
     with TemporaryDirectory() as folder, cluster(1, None) as one, cluster(2, None) as two:
-        for turn in range(2 if report.quick else REPEATS + 1):
-            for what, (_, wheels) in ASKED.items():
-                for n, client in ((1, one), (2, two)):
-                    found = timed(what, wheels if turn and not report.quick else FEW, Path(folder), client)
-                    runs += [{"asked": what, "workers": n} | found] * (turn > 0)
+        turns = range(2 if report.quick else REPEATS + 1)
+        for turn, (what, (_, wheels)), (n, client) in product(turns, ASKED.items(), ((1, one), (2, two))):
+            found = timed(what, wheels if turn and not report.quick else FEW, Path(folder), client)
+            runs += [{"asked": what, "workers": n} | found] * (turn > 0)
         part = list(np.zeros((8, 100)))  # the axes of a task
         begin = process_time()
         two.gather(two.map(len, [part] * 500, pure=False))
         task = (process_time() - begin) / 500
     table = pd.DataFrame(runs).groupby(["asked", "workers"], sort=False).median()
     wheels = table["wheels_per_s"].unstack(sort=False)
-    rows = [
-        (what, n, n * wheels[1][what] * min(1.0, wheels[2][what] / (2 * wheels[1][what])) * min(1.0, 1 / busy), busy)
-        for what in ASKED
-        for n, busy in ((n, task * n / chunk_seconds(n)) for n in (10, 100, 1000))
-    ]
-    estimate = pd.DataFrame(rows, columns=["asked", "workers", "wheels_per_s", "caller_busy"])
+    alone, estimate = np.minimum(wheels[1], wheels[2] / 2), []
+    for what, n in product(ASKED, (10, 100, 1000)):
+        busy = task * n / chunk_seconds(n)
+        speed = n * alone[what] * min(1.0, 1 / busy)
+        estimate.append({"asked": what, "workers": n, "wheels_per_s": speed, "caller_busy": busy})
     return {"speed": table.reset_index(), "estimate": estimate, "task": 1e3 * task}
 
 
 def views(tables: Tables) -> Tables:
     """Columns in words."""
+    words = {"wheels_per_s": "wheels/s", "fmu_share": "fmu share", "caller_busy": "caller busy"}
     return {name: rows.rename(columns=words) for name, rows in tables.items()}
-
-
-def words(column: str) -> str:
-    return column.replace("_per_s", "/s").replace("_", " ")

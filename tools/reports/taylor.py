@@ -93,13 +93,9 @@ def angles(values: Values) -> Form:
     g_1 = 2 * phi_dot * (q * w_2 - p * w_1) + w_2 * H_3 - Omega_3 * H_2
     g_2 = 2 * phi_dot * (q * w_1 + p * w_2) + Omega_3 * H_1 - w_1 * H_3
     g_3 = p * (w_1 * w_1 - w_2 * w_2) - 2 * q * w_1 * w_2
-    matrix = np.array(
-        [
-            [I_11 + m * (rho * rho + eta * eta), p, zero],
-            [p, I_22 + m * eta * eta, -m * eta * rho],
-            [zero, -m * eta * rho, J_z + m * rho * rho],
-        ]
-    )
+    M_11, M_22 = I_11 + m * (rho * rho + eta * eta), I_22 + m * eta * eta
+    M_23, M_33 = -m * eta * rho, J_z + m * rho * rho
+    matrix = np.array([[M_11, p, zero], [p, M_22, M_23], [zero, M_23, M_33]])
     right = np.array([eta * k_2 - g_1 - rho * k_3, -g_2 - eta * k_1, torque(values) - g_3 + rho * k_1])
     base, unit = solved(matrix, right, symmetric), solved(matrix, np.array([zero, zero, one]), symmetric)
     lever = m * r_0 * cos

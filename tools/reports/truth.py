@@ -6,15 +6,15 @@ import warnings
 
 import numpy as np
 from numpy.typing import NDArray
-from orbit.orbit import Halves, reduced
+from orbit.orbit import reduced
 from reference import Inputs, solve
 from reference.motion import OMEGA_Z, derivative, initial_state
 from reference.newton_euler import Contact, Law
 from scipy.integrate import solve_ivp
 from support.driver import HEADLINE
 from support.kept import kept
-from support.motion import Library, Run
-from support.scenes import SCENES, Scene
+from support.motion import Run
+from support.scenes import Scene
 
 Array = NDArray[np.float64]
 
@@ -33,11 +33,8 @@ def headline(scene: Scene, points: int, label: str = "", inputs: Inputs | None =
 
 def stiff(scene: Scene, times: Array) -> Array:
     """The regularized law by SciPy's Radau, without inputs."""
-    contact, omega_s, y_0 = (
-        Contact(scene.wheel),
-        scene.start.get("omega_s", 1e-3),
-        initial_state(scene.wheel, scene.motion),
-    )
+    contact, omega_s = Contact(scene.wheel), scene.start.get("omega_s", 1e-3)
+    y_0 = initial_state(scene.wheel, scene.motion)
 
     def rate(t: float, y: Array) -> Array:
         law = Law(scene.wheel.s, sigma=np.tanh(y[OMEGA_Z] / omega_s))
@@ -65,10 +62,3 @@ def range_error(rows: Array, want: Array) -> float:
     if rows.shape != want.shape or not np.isfinite(rows).all():
         return np.inf
     return float((np.abs(rows - want).max(axis=0) / np.ptp(want, axis=0)).max())
-
-
-def long_error(library: Library, tolerance: float) -> float:
-    """Error / range of the free wheel over 1000 s, against half a nutation of the reference laid end to end."""
-    times = np.arange(0.05, 1000, 0.73)
-    want = headline_of(Halves(SCENES["free"].wheel, SCENES["free"].motion).read(times))
-    return range_error(columns(library.simulate([0.0, *times], tolerance))[1:], want)

@@ -18,36 +18,34 @@ from .page import Report, Row, Tables, part, read_tables
 from .plots import Sheet
 
 STEP = 0.1  # s, over which the drag is held
+SHOWN = {"Michelin 4575r16": (40, "Left"), "Vittoria Corsa Open": (100, "Right"), "Michelin 44-406": (60, "Right")}
+SHOWN |= {"Grandprix": (140, "Right")}
 TUBE = 0.0125  # m, radius of a tyre of 25 mm
 GRAVITY = 9.81  # m/s^2
 DISK = {"m": 0.4, "r_0": 0.0375, "r": 0.0, "J_x": 0.4 * 0.0375**2 / 4, "J_y": 0.4 * 0.0375**2 / 4}
 DISK |= {"J_z": 0.4 * 0.0375**2 / 2, "g": GRAVITY}  # a thin disk of the size of the toy, SI
 DISK_TIME = 100.0  # s
+RIG = ("rig", "runs_left_out", "trials_again", "loads")  # tables out of the raw files
 
 
 @part(10)
 def rig(report: Report) -> dict[str, object]:
     """coefficients of rolling resistance out of the raw files, or those kept in docs/results/data"""
-    if folder := report.options.get("rig"):
-        aero, force = Path(folder) / "aero", Path(folder) / "force"
-        runs, copies = coast_down.read(aero)
-        rows, left_out = coast_down.evaluate(runs, copies)
-        again, loads = coast_down.again(runs, copies, aero / "Repeats"), coast_down.loaded(runs, force)
-    else:
-        kept = read_tables("validation")
-        rows, left_out, again, loads = (kept[name] for name in ("rig", "runs_left_out", "trials_again", "loads"))
+    folder = report.options.get("rig")
+    tables = coast_down.tables(Path(folder)) if folder else read_tables("validation")
+    rows, left_out, again, loads = (tables[name] for name in RIG)
     repeat = coast_down.repeatability(rows) / rows.groupby("speed")["C"].mean()
     means = again.groupby(KEYS)[["C", "C again"]].mean()
     forces = loads[loads["speed"] > loads["speed"].min()].groupby("load")["force"].mean()
     (least, most), (weak, strong) = forces.index, forces
-    found = {"rig": rows, "runs_left_out": left_out, "trials_again": again, "loads": loads}
+    found = {"runs": len(rows.drop_duplicates(KEYS)), "left_out": len(left_out), "tyres": rows["tyre"].nunique()}
     for name, sign in (("light", -1), ("heavy", 1)):
         tilted = rows.assign(C=rows["C"] + sign * rows["C_inertia"]).groupby(KEYS)["C"]
         found[f"spread_{name}"] = 100 * tilted.agg(lambda C: (C / C.mean() - 1).abs().max()).median()
-    found |= {"runs": len(rows.drop_duplicates(KEYS)), "left_out": len(left_out), "tyres": rows["tyre"].nunique()}
     found |= {"repeat": 100 * repeat.max(), "inertia": 100 * (rows["C_inertia"].abs() / rows["C"]).max()}
     found |= {"again": 100 * (means["C again"] / means["C"] - 1).abs().max(), "load_least": least, "load_most": most}
     found |= {"load_exponent": np.log(strong / weak) / np.log(most / least)}
+    found |= {name: tables[name] for name in RIG}
     return found | {"C_least": 1e3 * weak / least, "C_most": 1e3 * strong / most}
 
 
@@ -90,18 +88,12 @@ def tyres(report: Report) -> dict[str, object]:
         about, C, duration = dict(zip(KEYS, key, strict=True)), run["C"].mean(), run["t"].max()
         off = 100 * (run["C"] / C - 1)
         t, v = coast(report.library, run, C)
-        at = np.interp(run["speed"], v[::-1], t[::-1])
-        rows.append(
-            about
-            | {
-                "1000 C": 1e3 * C,
-                "±": 1e3 * np.hypot(run["C_inertia"].mean(), repeat),
-                "s [mm]": 1e3 * C * run["R"].iloc[0],
-            }
-            | {"C off its mean [%]": off.abs().max(), "at 3 m/s [%]": off[run["speed"].idxmin()], "coast [s]": duration}
-            | {"wheel.fmu: coast [%]": 100 * (at.max() / duration - 1)}
-            | {"worst speed [m/s]": np.abs(np.interp(run["t"], t, v) - run["speed"]).max()}
-        )
+        at, uncertain = np.interp(run["speed"], v[::-1], t[::-1]), np.hypot(run["C_inertia"].mean(), repeat)
+        level = {"1000 C": 1e3 * C, "±": 1e3 * uncertain, "s [mm]": 1e3 * C * run["R"].iloc[0]}
+        shape = {"C off its mean [%]": off.abs().max(), "at 3 m/s [%]": off[run["speed"].idxmin()]}
+        of_fmu = {"coast [s]": duration, "wheel.fmu: coast [%]": 100 * (at.max() / duration - 1)}
+        worst = np.abs(np.interp(run["t"], t, v) - run["speed"]).max()
+        rows.append(about | level | shape | of_fmu | {"worst speed [m/s]": worst})
         few = np.unique(np.append(np.arange(0, len(t), 80), len(t) - 1))
         curves.append(pd.DataFrame({**about, "t": t[few], "speed": v[few]}))
     found = pd.DataFrame(rows)
@@ -157,31 +149,24 @@ def between(values: pd.Series, digits: int) -> str:
     return " to ".join(dict.fromkeys(f"{value:.{digits}f}" for value in (values.min(), values.max())))
 
 
-def one_side(rows: pd.DataFrame, tyre: str, psi: int) -> pd.DataFrame:
-    """Of the drum's two directions the last."""
-    rows = rows[(rows["tyre"] == tyre) & (rows["psi"] == psi)]
-    return rows[rows["direction"] == rows["direction"].max()]
-
-
 def picture(tables: Tables) -> Sheet:
     """C over the speed with its uncertainty, and the measured coast-down beside the one of wheel.fmu."""
-    sheet, (left, right) = plots.sheet(2, height=80)
-    chosen = (("Michelin 4575r16", 40), ("Vittoria Corsa Open", 100), ("Michelin 44-406", 60), ("Grandprix", 140))
+    sheet, (left, right) = plots.sheet("ab", 80)
     repeat = coast_down.repeatability(tables["rig"])
-    for (tyre, psi), colour in zip(chosen, plots.COLOURS, strict=False):
-        run, curve = (one_side(tables[name], tyre, psi) for name in ("rig", "coasts"))
+    for (tyre, (psi, direction)), colour in zip(SHOWN.items(), plots.COLOURS, strict=False):
+        one = f"tyre == {tyre!r} and psi == {psi} and direction == {direction!r}"
+        run, curve = (tables[name].query(one) for name in ("rig", "coasts"))
         error = np.hypot(run["C_inertia"], repeat.loc[run["speed"]].to_numpy())
         bars = {"color": colour, "fmt": "o", "ms": 3, "capsize": 2, "lw": 0.8, "label": f"{tyre}, {psi} psi"}
         left.errorbar(run["speed"], 1e3 * run["C"], 1e3 * error, **bars)
         left.axhline(1e3 * run["C"].mean(), color=colour, lw=0.8, ls="--")
         right.plot(curve["t"], curve["speed"], color=colour)
         right.plot(run["t"], run["speed"], "o", color=colour, ms=3.5, label=f"{tyre}, {psi} psi")
-    left.set(ylim=(0, 6.5))
     left.legend(loc="upper center", ncols=2, fontsize=7)
-    title = "Measured, and a constant s (dashed)"
-    plots.label(left, "rim speed [m/s]", "rolling resistance $1000\\,C$", title)
-    right.set(xlim=(0, None), ylim=(0, 22))
-    plots.label(right, "time [s]", "rim speed [m/s]", "Coast-down: measured (dots), wheel.fmu (lines)")
+    title, y = "Measured, and a constant s (dashed)", "rolling resistance $1000\\,C$"
+    plots.label(left, "rim speed [m/s]", y, title, ylim=(0, 6.5))
+    title, limits = "Coast-down: measured (dots), wheel.fmu (lines)", {"xlim": (0, None), "ylim": (0, 22)}
+    plots.label(right, "time [s]", "rim speed [m/s]", title, **limits)
     return sheet
 
 

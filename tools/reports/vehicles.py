@@ -19,22 +19,19 @@ from .page import Report, Row, Tables, part
 
 LIMITS = (0.001, 0.00125, 0.002, 0.0025, 0.003125, 0.00390625, 0.005)  # s; each divides the grid of the tables
 BUDGET = 10.0  # us per step of 1 ms for four wheels
-BONDS = ("F_X", "F_Y", "F_Z", "M_1", "M_2")
+BONDS = ("F_X, J", "F_Y, J", "F_Z, J", "M_1, J", "M_2, J")
 # How the inputs behave over a step: the exchange, and whether positions follow the velocities.
 OVER = {"held, positions lag": ("held", {"follow": 0.0}), **{exchange: (exchange, {}) for exchange in EXCHANGES}}
 GIVEN = {name: OVER[name] for name in ("held, positions lag", "held", "derivatives")}
 STEPS_MS = [1000 * h for h in STEPS]
 
 
-@part(30)
-def axle_steps(report: Report) -> list[Row]:
+@part(30, {"inputs over the step": OVER})
+def axle_steps(report: Report, over: tuple) -> list[Row]:
     """the axle: error against the step"""
-    rows = []
-    for label, (exchange, more) in OVER.items():
-        errors = axle_study.step_errors(report.fmus, axle_study.TRAILING.changed(stop=2.0, **more), exchange, STEPS)
-        pairs = zip(STEPS_MS, errors, strict=True)
-        rows += [{"inputs over the step": label, "step, ms": ms, "error / range": error} for ms, error in pairs]
-    return rows
+    exchange, more = over
+    errors = axle_study.step_errors(report.fmus, axle_study.TRAILING.changed(stop=2.0, **more), exchange, STEPS)
+    return [{"step, ms": 1000 * h, "error / range": error} for h, error in zip(STEPS, errors, strict=True)]
 
 
 @part(30, {"scene": axle_study.SCENES})
@@ -61,8 +58,7 @@ def axle_energy(report: Report, over: tuple) -> Row:
     scene = axle_study.TRAILING.changed(stop=2.0, **({"follow": 1.0} | more))
     found = axle_study.energy(report.fmus, scene, 0.001, exchange)
     sums = sum(found.bonds.values())
-    of_bonds = {f"{n}, J": float(x) for n, x in zip(BONDS, sums, strict=True)}
-    return of_bonds | {"sum, J": float(sums.sum()), "gain, J": found.drift}
+    return dict(zip(BONDS, sums, strict=True)) | {"sum, J": float(sums.sum()), "gain, J": found.drift}
 
 
 def manoeuvres(report: Report) -> tuple[str, ...]:
@@ -95,18 +91,16 @@ def car_endings(report: Report) -> list[Row]:
     return [{"system": system, "how it ended": end} for system, end in ends.items()]
 
 
-@part(40)
-def car_figures(report: Report) -> pd.DataFrame:
+@part(40, {"manoeuvre": ("circle", "step", "lane")})
+def car_figures(report: Report, name: str) -> list[Row]:
     """the car: the figures of road tests, of the coupled car and of one set of equations on the same grid"""
-    rows = []
-    for name, grid in (("circle", 0.01), ("step", 0.001), ("lane", 0.005)):
-        manoeuvre = MANOEUVRES[name]
-        coupled = CAR.drive(report.fmus, manoeuvre, grid=grid).table
-        whole = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / grid) + 1) * grid, 1e-9)
-        both = (car_judges.FIGURES[name](table) for table in (coupled, whole))
-        rows += [(name, a.what, a.unit, a.measured, b.measured, a.exact) for a, b in zip(*both, strict=True)]
-    head = ["manoeuvre", "quantity", "unit", "coupled FMUs", "one set of equations", "rigid links"]
-    return pd.DataFrame(rows, columns=head)
+    manoeuvre, grid = MANOEUVRES[name], {"circle": 0.01, "step": 0.001, "lane": 0.005}[name]  # s
+    coupled = CAR.drive(report.fmus, manoeuvre, grid=grid).table
+    whole = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / grid) + 1) * grid, 1e-9)
+    both = (car_judges.FIGURES[name](table) for table in (coupled, whole))
+    head = ("quantity", "unit", "coupled FMUs", "one set of equations", "rigid links")
+    rows = ((a.what, a.unit, a.measured, b.measured, a.exact) for a, b in zip(*both, strict=True))
+    return [dict(zip(head, row, strict=True)) for row in rows]
 
 
 def errors(report: Report, name: str, exchange: str, h: float, complete: bool = False) -> dict[str, float]:
@@ -153,15 +147,10 @@ def car_cost(report: Report, exchange: str) -> Row:
     """the car: microseconds per step of 1 ms: medians over the steps of the change of lanes, and over runs"""
     runs = pd.DataFrame([CAR.drive(report.fmus, layout.LANE, exchange=exchange, grid=1.0).cost for _ in range(5)])
     wheels, bodies = (runs[list(names)].sum(axis=1).median() for names in (layout.WHEELS, ("chassis", "driver")))
-    all_of_it = runs["total"].median()
-    return {
-        "four wheels [us]": wheels,
-        f"within {BUDGET:g} us": "yes" if wheels <= BUDGET else "no",
-        "chassis, driver [us]": bodies,
-        "exchange [us]": runs["exchange"].median(),
-        "all [us]": all_of_it,
-        "times real time": 1000 / all_of_it,
-    }
+    exchanged, whole = runs["exchange"].median(), runs["total"].median()
+    row = {"four wheels [us]": wheels, f"within {BUDGET:g} us": "yes" if wheels <= BUDGET else "no"}
+    row |= {"chassis, driver [us]": bodies, "exchange [us]": exchanged, "all [us]": whole}
+    return row | {"times real time": 1000 / whole}
 
 
 def views(tables: Tables) -> Tables:
