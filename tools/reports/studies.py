@@ -45,7 +45,7 @@ def timed(what: str, wheels: int, folder: Path, client: object) -> dict[str, flo
 @part(300)
 def speed(report: Report) -> dict[str, object]:
     """one and two workers in turn; the estimate for many"""
-    from study.compute import chunk_seconds, cluster
+    from study.compute import cluster, most
 
     runs = []
     with TemporaryDirectory() as folder, cluster(1, None) as one, cluster(2, None) as two:
@@ -63,7 +63,7 @@ def speed(report: Report) -> dict[str, object]:
     rows = [
         (what, n, n * wheels[1][what] * min(1.0, wheels[2][what] / (2 * wheels[1][what])) * min(1.0, 1 / busy), busy)
         for what in ASKED
-        for n, busy in ((n, task * n / chunk_seconds(n)) for n in (10, 100, 1000))
+        for n, busy in ((n, task * n * wheels[1][what] / most(1000, n)) for n in (10, 100, 1000))
     ]
     estimate = pd.DataFrame(rows, columns=["asked", "workers", "wheels_per_s", "caller_busy"])
     return {"speed": table.reset_index(), "estimate": estimate, "task": 1e3 * task}

@@ -11,25 +11,24 @@ import dask.array as da
 import numpy as np
 import pandas as pd
 import xarray as xr
-from fmpy.model_description import ModelDescription, ScalarVariable
+from fmpy.model_description import ModelDescription
 from matplotlib.lines import Line2D
 
 from .instance import Array
-from .plan import PLANE_ANGLE, POINT, Status, Study, counters_of, parse_measure
+from .plan import PLANE_ANGLE, POINT, Status, Study, counters_of
 from .worker import Region
 
 Points = dict[str, Array]  # values by name
 TITLE = "A study with wheel.fmu"
-GREEK = {"psi": "ψ", "theta": "θ", "phi": "φ", "omega": "ω", "lambda": "λ", "mu": "μ", "tau": "τ"}
-DOTS = {"_ddot": "\N{COMBINING DIAERESIS}", "_dot": "\N{COMBINING DOT ABOVE}"}
 ANGLE = "angle to the ground"
-MEANING = {
-    "last": "at the end of the run",
-    "min": "smallest value at the communication points and the end of the run",
-    "max": "largest value at the communication points and the end of the run",
-    "mean": "mean over time",
-    "<": "first time below {:g}",
-    ">": "first time above {:g}",
+GREEK = {"psi": "ψ", "theta": "θ", "phi": "φ", "omega": "ω", "lambda": "λ", "mu": "μ", "tau": "τ"}
+SYMBOLS = {  # in labels, by the text of a measure
+    rf"\s*(lowest|min\({PLANE_ANGLE}\))\s*": f"smallest {ANGLE}",
+    rf"\b{PLANE_ANGLE}\b": ANGLE,
+    r"_start\b": " at the start",
+    **{rf"\b{name}(?![a-z])": symbol for name, symbol in GREEK.items()},
+    r"\b(\w)_ddot": "\\1\N{COMBINING DIAERESIS}",
+    r"\b(\w)_dot": "\\1\N{COMBINING DOT ABOVE}",
 }
 PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
 OWN = {  # results of every study: empty value, type, unit, label, description
@@ -59,15 +58,24 @@ def points(study: Study, axes: Points, region: Region) -> Points:
     return dict(zip(axes, np.ix_(*cut) if study.grid else cut, strict=True))
 
 
+def shape_of(study: Study, axes: Points) -> dict[str, int]:
+    """The lengths of the results' dimensions, without time."""
+    lengths = {name: len(axis) for name, axis in axes.items()}
+    return lengths if study.grid else {POINT: max(lengths.values())}
+
+
 def template(study: Study, axes: Points, description: ModelDescription, size: int) -> xr.Dataset:
     """All coordinates, and columns that hold nothing yet, in chunks of at most `size` wheels."""
     variables = {v.name: v for v in description.modelVariables}
     about = {name: (v.unit, label(name), v.description) for name, v in variables.items()}
-    shape = {name: len(axis) for name, axis in axes.items()}
-    shape = shape if study.grid else {POINT: max(shape.values())}
+    about[PLANE_ANGLE] = ("rad", ANGLE, PLANE)
+    shape = shape_of(study, axes)
     chunks = da.core.normalize_chunks("auto", tuple(shape.values()), limit=size, dtype="i1")
     columns = OWN | {name: (-1, "i8", *about[name]) for name in counters_of(variables)}
-    columns |= {name: (np.nan, "f8", *measured(text, variables)) for name, text in study.measures.items()}
+    for name, measure in study.parsed.items():
+        unit, _, meaning = about[measure.quantity]
+        text = study.measures[name]
+        columns[name] = (np.nan, "f8", "s" if measure.is_time else unit, label(text), f"{meaning}; {text}")
     columns |= {name: (np.nan, "f8", *about[name]) for name in study.history}
     results = {}
     for name, (nothing, dtype, *texts) in columns.items():
@@ -88,28 +96,11 @@ def attributes(unit: str | None, name: str, description: str | None) -> dict[str
     return {k: v for k, v in (("units", unit), ("long_name", name), ("description", description)) if v}
 
 
-def measured(text: str, variables: dict[str, ScalarVariable]) -> tuple[str, str, str]:
-    """Unit, label and description of a measure."""
-    measure = parse_measure(text)
-    variable = variables[measure.variable]
-    quantity = PLANE if measure.quantity == PLANE_ANGLE else variable.description
-    meaning = MEANING[measure.kind].format(measure.limit)
-    return "s" if measure.is_time else variable.unit, label(text), f"{quantity}; {meaning}"
-
-
 def label(text: str) -> str:
     """The short label of a variable, or of a measure of variables, for axes and legends: `θ at the start`."""
-    if text.strip() in ("lowest", f"min({PLANE_ANGLE})"):
-        return f"smallest {ANGLE}"
-    return re.sub(r"[A-Za-z]\w*", lambda found: _symbol(found[0]), text)
-
-
-def _symbol(name: str) -> str:
-    if name == PLANE_ANGLE:
-        return ANGLE
-    name, start = re.subn(r"_start$", "", name)
-    first, dot, rest = re.fullmatch(r"([A-Za-z]+)((?:_d?dot)?)(\w*)", name).groups()
-    return GREEK.get(first, first) + DOTS.get(dot, "") + rest + (" at the start" if start else "")
+    for pattern, symbol in SYMBOLS.items():
+        text = re.sub(pattern, symbol, text)
+    return text
 
 
 def provenance(study: Study, description: ModelDescription, fmu_sha256: str) -> dict[str, object]:
