@@ -148,8 +148,7 @@ def export(results: xr.Dataset | pd.DataFrame, path: Path) -> Path:
         results.to_csv(path, index=False, float_format="%.6g", lineterminator="\n")
     else:
         rows = results.to_dataframe().reset_index()
-        rows["status"] = [Status(code).name for code in rows["status"]]
-        rows.to_csv(path, index=False)
+        rows.assign(status=[Status(code).name for code in rows["status"]]).to_csv(path, index=False)
     return path
 
 
@@ -165,8 +164,6 @@ def summarize(results: xr.Dataset, seconds: float) -> str:
         lines.append(f"  {found:8d} {Status(code).name.replace('_', ' ')}")
         if code in (Status.refused, Status.failed):
             lines.append(f"           first: {results['message'].values[status == code][0]}")
-    wall, inside = results["wall_time"].values, float(results["fmu_time"].sum())
-    if (total := np.nansum(wall)) > 0:
-        speed, share = np.isfinite(wall).sum() / total, 100 * inside / total
-        lines.append(f"{speed:.0f} wheels per second and worker, {share:.0f} % of the time inside the FMU.")
+    speed, share = 1 / results["wall_time"].mean(), 100 * results["fmu_time"].sum() / results["wall_time"].sum()
+    lines.append(f"{speed:.0f} wheels per second and worker, {share:.0f} % of the time inside the FMU.")
     return "\n".join(lines)

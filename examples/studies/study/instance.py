@@ -7,7 +7,7 @@ raises because of what a wheel does.
 
 from collections.abc import Mapping
 from contextlib import suppress
-from ctypes import CDLL, byref, c_double, c_int, c_size_t, c_uint, c_void_p, cast
+from ctypes import CDLL, byref, c_size_t, c_uint, c_void_p, cast
 from functools import cache
 from pathlib import Path
 from time import perf_counter
@@ -25,7 +25,7 @@ Result = dict[str, NDArray]
 OK, WARNING, DISCARD = range(3)  # fmi2Status
 LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # fmi2StatusKind
 MARCH = "march.library"  # march.c, compiled (Dask would take a .so for a module), beside the FMU's modelDescription.xml
-NUMBERS = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
+NUMBERS = {"Real": float, "Integer": int, "Boolean": int}
 
 # Words of the FMU's message, for each way in which a run ends early.
 ENDINGS = {
@@ -47,7 +47,7 @@ class Instance:
         callbacks = fmi2CallbackFunctions()  # the logger of instantiate_fmu would stay that of the process
         callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
         self.fmu.instantiate(callbacks=callbacks)
-        self._buffers, self._references = cache(self._buffers_of), cache(self._references_of)
+        self.typed = cache(self._typed)
         self._snapshot, self._kept = fmi2FMUstate(), None  # at branch_at: values and messages of that start
         self._march = CDLL(str(Path(folder) / MARCH)).march
         self._march.argtypes = (c_void_p,) * 4 + (c_size_t, c_void_p, c_size_t, c_void_p, c_void_p)
@@ -57,28 +57,19 @@ class Instance:
         if status != OK:
             self.messages.append(text.decode())
 
-    def _references_of(self, names: tuple[str, ...]) -> object:
-        """The value references of some variables, as the FMU takes them."""
-        return (c_uint * len(names))(*(self.variables[name].valueReference for name in names))
-
-    def _buffers_of(self, names: tuple[str, ...]) -> list[tuple[str, list[str], tuple[object, ...]]]:
-        """For each type among the names: the type, the names, and the arguments of fmi2Get and fmi2Set."""
-        found = []
-        for kind, number in NUMBERS.items():
-            if mine := [name for name in names if self.variables[name].type == kind]:
-                found.append((kind, mine, (self._references_of(mine), len(mine), (number * len(mine))())))
-        return found
+    def _typed(self, names: tuple[str, ...]) -> list[tuple[str, list[str], list[int]]]:
+        """For each type among the names: the type, the names and their value references."""
+        of = {kind: [name for name in names if self.variables[name].type == kind] for kind in NUMBERS}
+        return [(kind, mine, [self.variables[n].valueReference for n in mine]) for kind, mine in of.items() if mine]
 
     def set(self, values: Mapping[str, float]) -> None:
-        for kind, names, arguments in self._buffers(tuple(values)):
-            arguments[-1][:] = [values[name] if kind == "Real" else int(values[name]) for name in names]
-            getattr(self.fmu, f"fmi2Set{kind}")(self.fmu.component, *arguments)
+        for kind, names, references in self.typed(tuple(values)):
+            getattr(self.fmu, f"set{kind}")(references, [NUMBERS[kind](values[name]) for name in names])
 
     def get(self, names: tuple[str, ...]) -> dict[str, float]:
         found = {}
-        for kind, mine, arguments in self._buffers(names):
-            getattr(self.fmu, f"fmi2Get{kind}")(self.fmu.component, *arguments)
-            found.update(zip(mine, arguments[-1], strict=True))
+        for kind, mine, references in self.typed(names):
+            found |= zip(mine, getattr(self.fmu, f"get{kind}")(references), strict=True)
         return found
 
     def begin(self, values: Mapping[str, float], study: Study) -> tuple[Status, float]:
@@ -114,7 +105,8 @@ class Instance:
         Returns the fate of the wheel, its time [s], and a row of these Real variables at each time that is reached.
         """
         rows, reached = np.empty((len(times), len(names))), c_size_t()
-        way = (times.ctypes.data, len(times), self._references(names), len(names), rows.ctypes.data)
+        references = (c_uint * len(names))(*(self.variables[name].valueReference for name in names))
+        way = (times.ctypes.data, len(times), references, len(names), rows.ctypes.data)
         status = self._march(*self._functions_of_march, self.fmu.component, *way, byref(reached))
         end, fate = times[max(reached.value, 1) - 1], Status.reached if status <= WARNING else Status.failed
         if status == DISCARD:
