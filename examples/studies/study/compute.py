@@ -27,7 +27,7 @@ from distributed.scheduler import KilledWorker
 from fmpy import read_model_description
 from tqdm import tqdm
 
-from .dataset import TITLE, Points, axes_of, open_results, points, provenance, shape_of, template
+from .dataset import TITLE, axes_of, open_results, points, provenance, template
 from .instance import Result
 from .plan import Status, Study, StudyError
 from .worker import MARK, Region, pack, run_chunk, write
@@ -90,7 +90,7 @@ def run(
             print(f"{there} of {status.size} wheels are there already.", file=sys.stderr)
         every = 0.2 if sys.stderr.isatty() else 10.0  # s
         with tqdm(total=status.size, initial=there, unit=" wheels", disable=quiet, mininterval=every) as bar:
-            for region, result in finished(user, task, partial(points, study, axes), missing(group)):
+            for region, result in finished(user, task, partial(points, axes), missing(group)):
                 if result is not None:
                     write(place, mark, region, result)
                 bar.update(status[region].size)
@@ -123,7 +123,7 @@ def missing(group: zarr.Group) -> list[Region]:
 
 
 def finished(
-    client: Client, task: Callable[..., Result | None], points_of: Callable[[Region], Points], regions: list[Region]
+    client: Client, task: Callable[..., Result | None], points_of: Callable[[Region], dict], regions: list[Region]
 ) -> Iterator[tuple[Region, Result | None]]:
     """The regions as they are finished, with the results that are not written yet.
 
@@ -153,13 +153,13 @@ def divided(region: Region) -> list[Region]:
 
 
 def most(points: int, workers: int) -> int:
-    """Wheels in a chunk: some seconds of work, more with more than 100 workers, whom the caller can just supply."""
+    """Wheels in a chunk: some seconds of work; with more than 100 workers longer, so that the caller keeps up."""
     return STEPS // max(points, 1000) * max(1, workers // 100)
 
 
-def chunk_size(study: Study, axes: Points, workers: int) -> int:
+def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
     """Wheels in a chunk; at least four chunks for each worker, so that they end together."""
-    wheels, times = math.prod(shape_of(study, axes).values()), len(study.times)
+    wheels, times = math.prod(axes.sizes.values()), len(study.times)
     history = 8 * times * len(study.history)  # bytes of a wheel
     return max(FEWEST, min(wheels // (4 * workers), most(times, workers), LARGEST // max(history, 1)))
 

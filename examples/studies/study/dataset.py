@@ -18,7 +18,6 @@ from .instance import Array
 from .plan import PLANE_ANGLE, POINT, Status, Study, counters_of
 from .worker import Region
 
-Points = dict[str, Array]  # values by name
 TITLE = "A study with wheel.fmu"
 ANGLE = "angle to the ground"
 GREEK = {"psi": "ψ", "theta": "θ", "phi": "φ", "omega": "ω", "lambda": "λ", "mu": "μ", "tau": "τ"}
@@ -40,37 +39,29 @@ OWN = {  # results of every study: empty value, type, unit, label, description
 }
 
 
-def axes_of(study: Study) -> Points:
-    """Name -> values: per dimension of a grid, per wheel of a list or a sample."""
-    if not study.sample:
-        return {name: np.array(values) for name, values in study.varied.items()}
-    from scipy.stats import qmc  # slow to load
+def axes_of(study: Study) -> xr.Dataset:
+    """The values that vary: each a dimension of a grid, or all along the wheels of a list or a sample."""
+    axes = study.varied
+    if study.sample:
+        from scipy.stats import qmc  # slow to load
 
-    unit = qmc.LatinHypercube(len(study.sample), rng=study.seed).random(study.count)
-    columns = qmc.scale(unit, *zip(*study.sample.values(), strict=True)).T
-    return dict(zip(study.sample, columns, strict=True))
-
-
-def points(study: Study, axes: Points, region: Region) -> Points:
-    """The values of a region of the results: arrays to be broadcast against each other."""
-    parts = region if study.grid else region * len(axes)
-    cut = [axis[part] for axis, part in zip(axes.values(), parts, strict=True)]
-    return dict(zip(axes, np.ix_(*cut) if study.grid else cut, strict=True))
+        unit = qmc.LatinHypercube(len(study.sample), rng=study.seed).random(study.count)
+        axes = dict(zip(axes, qmc.scale(unit, *zip(*axes.values(), strict=True)).T, strict=True))
+    return xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in axes.items()})
 
 
-def shape_of(study: Study, axes: Points) -> dict[str, int]:
-    """The lengths of the results' dimensions, without time."""
-    lengths = {name: len(axis) for name, axis in axes.items()}
-    return lengths if study.grid else {POINT: max(lengths.values())}
+def points(axes: xr.Dataset, region: Region) -> dict[str, Array]:
+    """The values of a region of the results, by name: arrays to be broadcast against each other."""
+    part = axes.isel(dict(zip(axes.sizes, region, strict=True)))
+    return {name: values.variable.set_dims([*axes.sizes]).values for name, values in part.coords.items()}
 
 
-def template(study: Study, axes: Points, description: ModelDescription, size: int) -> xr.Dataset:
+def template(study: Study, axes: xr.Dataset, description: ModelDescription, size: int) -> xr.Dataset:
     """All coordinates, and columns that hold nothing yet, in chunks of at most `size` wheels."""
     variables = {v.name: v for v in description.modelVariables}
     about = {name: (v.unit, label(name), v.description) for name, v in variables.items()}
     about[PLANE_ANGLE] = ("rad", ANGLE, PLANE)
-    shape = shape_of(study, axes)
-    chunks = da.core.normalize_chunks("auto", tuple(shape.values()), limit=size, dtype="i1")
+    chunks = da.core.normalize_chunks("auto", tuple(axes.sizes.values()), limit=size, dtype="i1")
     columns = OWN | {name: (-1, "i8", *about[name]) for name in counters_of(variables)}
     for name, measure in study.parsed.items():
         unit, _, meaning = about[measure.quantity]
@@ -79,13 +70,12 @@ def template(study: Study, axes: Points, description: ModelDescription, size: in
     columns |= {name: (np.nan, "f8", *about[name]) for name in study.history}
     results = {}
     for name, (nothing, dtype, *texts) in columns.items():
-        timed = name in study.history
-        lengths = (*shape.values(), *[len(study.times)] * timed)
-        empty = da.full(lengths, nothing, dtype=dtype, chunks=(*chunks, *[-1] * timed))
-        results[name] = xr.Variable((*shape, *["time"] * timed), empty, attributes(*texts), {"fill_value": nothing})
+        sizes = {**axes.sizes, **({"time": len(study.times)} if name in study.history else {})}
+        empty = da.full(tuple(sizes.values()), nothing, dtype=dtype, chunks=(*chunks, -1)[: len(sizes)])
+        results[name] = xr.Variable([*sizes], empty, attributes(*texts), {"fill_value": nothing})
     fates = [status for status in Status if status != Status.not_computed]
     results["status"].attrs |= {"flag_values": [*map(int, fates)], "flag_meanings": " ".join(s.name for s in fates)}
-    coordinates = {n: (n if study.grid else POINT, axis, attributes(*about[n])) for n, axis in axes.items()}
+    coordinates = {name: values.assign_attrs(attributes(*about[name])) for name, values in axes.coords.items()}
     if study.history:
         coordinates["time"] = ("time", study.times, attributes("s", "time", ""))
     return xr.Dataset(results, coordinates)

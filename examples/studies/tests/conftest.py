@@ -33,7 +33,7 @@ def alone(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[
         instance._kept = None  # no snapshot of an earlier call
         axes = axes_of(study)
         results = template(study, axes, description, 1_000_000)
-        found = run_block(instance, study, points(study, axes, (slice(None),) * results["status"].ndim))
+        found = run_block(instance, study, points(axes, (slice(None),) * results["status"].ndim))
         assert found.keys() == results.keys()
         return results.assign({n: (results[n].dims, x.reshape(results[n].shape)) for n, x in found.items()})
 
