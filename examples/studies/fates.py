@@ -28,7 +28,7 @@ LEVELS = [0, 5, 15, 30, 45, 60, 75]  # degrees
 def table(results: xr.Dataset) -> xr.Dataset:
     """Status, and the smallest angle between the wheel's plane and the ground [deg] to a tenth."""
     angle = np.degrees(results["lowest"]).round(1).astype("f4")
-    angle.attrs = {"units": "deg", "long_name": "Smallest angle to the ground"}
+    angle = angle.assign_attrs(units="deg", long_name="Smallest angle to the ground")
     return results[["status"]].load().assign(smallest_angle=angle)
 
 
