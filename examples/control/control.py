@@ -7,11 +7,10 @@ a linear-quadratic regulator from the same matrices, in co-simulation; an optima
 Straight rolling: upright, along X, omega_z < 0. SI units.
 """
 
-import shutil
 import sys
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from tempfile import mkdtemp
+from tempfile import TemporaryDirectory
 
 import casadi as ca
 import matplotlib.pyplot as plt
@@ -28,9 +27,11 @@ with suppress(ImportError):  # of the project; a copy of this folder has matplot
 
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "theta_dot", "psi_dot", "omega_z")
 DERIVATIVES = ("X_O_dot", "Y_O_dot", "psi_dot", "theta_dot", "phi_dot", "theta_ddot", "psi_ddot", "omega_z_dot")
+OFF = ("Y_O", "psi", "theta", "theta_dot", "psi_dot", "omega_z")  # what the regulator holds
+MOMENTS = ("M_1", "M_2", "M_3")
 UPRIGHT = {"theta_start": np.pi / 2, "psi_start": 0.0, "X_O_start": 0.0}
 J_x, J_z, m, r_0, R, g = 0.9, 1.8, 20.0, 0.3, 0.35, 9.81  # the paper's wheel
-BOUNDS = 10.0, 6.0  # N m, of |M_1| and |M_3| in the optimal control problem
+BOUNDS = np.array([10.0, 6.0])  # N m, of |M_1| and |M_3| in the optimal control problem
 CRITICAL = np.sqrt(m * g * r_0 * J_x / (J_z * (J_z + m * R**2)))  # rad/s, below it straight rolling is unstable
 
 
@@ -60,28 +61,28 @@ def linearized(folder: str, omega_z: float, inputs: tuple[str, ...] = ()) -> tup
     return matrix[:, : len(STATES)], matrix[:, len(STATES) :]
 
 
-def draw_eigenvalues(folder: str, picture: Path) -> float:
-    """The real parts over the spin; returns the spin at which the largest vanishes, by bisection."""
+def draw_eigenvalues(folder: str) -> str:
+    """The real parts over the spin, and the spin at which the largest vanishes, by bisection."""
 
     def real_parts(spin: float) -> np.ndarray:
         return np.linalg.eigvals(linearized(folder, -spin)[0]).real
 
     spins = np.linspace(0.5, 5, 91)
     values = [real_parts(spin) for spin in spins]
-    figure, axes = plt.subplots(figsize=(7.2, 3.6), layout="constrained")
+    _, axes = plt.subplots(figsize=(7.2, 3.6), layout="constrained")
     axes.plot(np.repeat(spins, len(STATES)), np.ravel(values), ".", ms=3, label="real parts, by wheel.fmu")
     axes.axvline(CRITICAL, color="C1", label="critical spin, closed form")
     axes.set(xlabel=r"spin $|\omega_z|$ [rad/s]", ylabel="real part of the eigenvalues [1/s]")
     axes.set_title("Straight rolling, linearized")
     axes.legend()
-    figure.savefig(picture, dpi=200)
-    return bisect(lambda spin: real_parts(spin).max() - 1e-4, 1.0, 5.0)
+    spin = bisect(lambda spin: real_parts(spin).max() - 1e-4, 1.0, 5.0)
+    return f"critical spin: {spin:.6f} rad/s by the eigenvalues, {CRITICAL:.6f} rad/s by the closed form"
 
 
 def regulator(folder: str, omega_z: float) -> np.ndarray:
-    """Gains on (Y_O, psi, theta, theta_dot, psi_dot, omega_z) for M_1, M_2, M_3, from the Riccati equation."""
-    kept = [STATES.index(name) for name in ("Y_O", "psi", "theta", "theta_dot", "psi_dot", "omega_z")]
-    A, B = linearized(folder, omega_z, ("M_1", "M_2", "M_3"))
+    """Gains on OFF for M_1, M_2, M_3, from the Riccati equation."""
+    kept = [STATES.index(name) for name in OFF]
+    A, B = linearized(folder, omega_z, MOMENTS)
     A, B = A[np.ix_(kept, kept)], B[kept]
     weight = np.diag([100.0, 30.0, 100.0, 1.0, 1.0, 10.0])
     effort = np.diag([0.01, 0.1, 0.1])
@@ -93,8 +94,7 @@ def rolled(folder: str, gains: np.ndarray | None, spin: float, h: float = 0.01, 
     begin = {**UPRIGHT, "theta_start": np.pi / 2 - 0.15, "Y_O_start": 0.3, "phi_dot_start": spin}
     rows = []
     with instance(folder, "CoSimulation", **begin) as (fmu, reference):
-        observed = [reference[n] for n in ("Y_O", "psi", "theta", "theta_dot", "psi_dot", "omega_z")]
-        moments = [reference[n] for n in ("M_1", "M_2", "M_3")]
+        observed, moments = ([reference[n] for n in names] for names in (OFF, MOMENTS))
         for t in np.arange(0, stop, h):
             z = np.array(fmu.getReal(observed)) - [0, 0, np.pi / 2, 0, 0, spin]
             rows.append((t, z[0], np.degrees(z[2])))
@@ -106,20 +106,20 @@ def rolled(folder: str, gains: np.ndarray | None, spin: float, h: float = 0.01, 
     return np.array(rows).T
 
 
-def draw_regulated(folder: str, picture: Path) -> tuple[float, float]:
-    """A wheel below the critical spin; returns its largest lean alone, and the lean at the end with the regulator."""
+def draw_regulator(folder: str) -> str:
+    """A wheel below the critical spin: its largest lean alone, and the lean at the end with the regulator."""
     spin = -1.5
     alone, regulated = rolled(folder, None, spin), rolled(folder, regulator(folder, spin), spin)
-    figure, axes = plt.subplots(2, 1, figsize=(7.2, 4.4), sharex=True, layout="constrained")
-    for k, label in ((1, "off the line, $Y_O$ [m]"), (2, r"lean, $\theta - 90°$ [deg]")):
-        axes[k - 1].plot(alone[0], alone[k], label="alone")
-        axes[k - 1].plot(regulated[0], regulated[k], label="with the regulator")
-        axes[k - 1].set_ylabel(label)
+    _, axes = plt.subplots(2, 1, figsize=(7.2, 4.4), sharex=True, layout="constrained")
+    for ax, k, label in zip(axes, (1, 2), ("off the line, $Y_O$ [m]", r"lean, $\theta - 90°$ [deg]"), strict=True):
+        ax.plot(alone[0], alone[k], label="alone")
+        ax.plot(regulated[0], regulated[k], label="with the regulator")
+        ax.set_ylabel(label)
     axes[0].set_title(rf"Below the critical spin: $|\omega_z|$ = {-spin} rad/s")
     axes[1].set(xlabel="time [s]", yticks=range(-90, 91, 45))
     axes[1].legend(loc="upper right")
-    figure.savefig(picture, dpi=200)
-    return float(np.abs(alone[2]).max()), float(abs(regulated[2][-1]))
+    fallen, held = np.abs(alone[2]).max(), abs(regulated[2][-1])
+    return f"lean: {fallen:.0f} deg alone, {held:.2g} deg after 6 s with the regulator"
 
 
 def optimal(folder: str, duration: float = 3.0, intervals: int = 60) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -132,39 +132,33 @@ def optimal(folder: str, duration: float = 3.0, intervals: int = 60) -> tuple[np
     f = dae.create("f", ["x", "u"], ["ode"])
     opti, h = ca.Opti(), duration / intervals
     x, moments = opti.variable(len(names), intervals + 1), opti.variable(2, intervals)
-    place = {name: names.index(name) for name in names}
     scale = ca.DM([0.05 if n == "phi" else 1.0 for n in names])
     begin = {"theta": np.pi / 2 - 0.2, "Y_O": 0.2, "omega_z": -4.0}
     start = ca.DM([begin.get(n, 0.0) for n in names])
     opti.subject_to(x[:, 0] == start)
-    load = ca.DM.zeros(len(u_names), 2)
-    load[u_names.index("M_1"), 0] = load[u_names.index("M_3"), 1] = 1
+    load = ca.DM([[n == "M_1", n == "M_3"] for n in u_names])
     for k in range(intervals):
-        middle = f((x[:, k] + x[:, k + 1]) / 2, ca.mtimes(load, moments[:, k]))
+        middle = f((x[:, k] + x[:, k + 1]) / 2, load @ moments[:, k])
         opti.subject_to(scale * (x[:, k + 1] - x[:, k] - h * middle) == 0)
-    end = {"theta": np.pi / 2, "theta_dot": 0.0, "psi": 0.0, "psi_dot": 0.0, "Y_O": 0.0}
-    for name, value in end.items():
-        opti.subject_to(x[place[name], -1] == value)
+    for name, value in {"theta": np.pi / 2, "theta_dot": 0.0, "psi": 0.0, "psi_dot": 0.0, "Y_O": 0.0}.items():
+        opti.subject_to(x[names.index(name), -1] == value)
     for row, bound in enumerate(BOUNDS):
         opti.subject_to(opti.bounded(-bound, moments[row, :], bound))
-    opti.minimize(h * (ca.sumsqr(moments[0, :] / BOUNDS[0]) + ca.sumsqr(moments[1, :] / BOUNDS[1])))
-    guess = np.linspace(0, duration, intervals + 1)
+    opti.minimize(h * ca.sumsqr(ca.DM(1 / BOUNDS) * moments))
+    t = np.linspace(0, duration, intervals + 1)
     opti.set_initial(x, ca.repmat(start, 1, intervals + 1))
-    opti.set_initial(x[place["phi"], :], -4.0 * guess)
-    opti.set_initial(x[place["X_O"], :], 4.0 * R * guess)
-    opti.set_initial(x[place["theta"], :], np.pi / 2)
+    for name, guess in {"phi": -4.0 * t, "X_O": 4.0 * R * t, "theta": np.pi / 2}.items():
+        opti.set_initial(x[names.index(name), :], guess)
     options = {"ipopt.hessian_approximation": "limited-memory", "ipopt.print_level": 0, "ipopt.sb": "yes"}
     opti.solver("ipopt", {**options, "print_time": False})
     solution = opti.solve()
-    order = [place[name] for name in STATES]
-    return guess, solution.value(x)[order], solution.value(moments)
+    return t, solution.value(x)[[names.index(name) for name in STATES]], solution.value(moments)
 
 
 def checked(folder: str, t: np.ndarray, x: np.ndarray, moments: np.ndarray) -> np.ndarray:
     """The states at the end when co-simulation follows the moments found."""
-    begin = dict(zip(("X_O_start", "Y_O_start", "psi_start", "theta_start", "phi_start"), x[:5, 0], strict=True))
-    begin |= {"theta_dot_start": x[5, 0], "psi_dot_start": x[6, 0]}
-    begin["phi_dot_start"] = x[7, 0] - x[6, 0] * np.cos(x[3, 0])
+    begin = {f"{name}_start": value for name, value in zip(STATES[:-1], x[:-1, 0], strict=True)}
+    begin["phi_dot_start"] = x[7, 0] - x[6, 0] * np.cos(x[3, 0])  # omega_z - psi_dot cos(theta)
     with instance(folder, "CoSimulation", **begin) as (fmu, reference):
         for k, h in enumerate(np.diff(t)):
             fmu.setReal([reference["M_1"], reference["M_3"]], list(moments[:, k]))
@@ -172,38 +166,32 @@ def checked(folder: str, t: np.ndarray, x: np.ndarray, moments: np.ndarray) -> n
         return np.array(fmu.getReal([reference[name] for name in STATES]))
 
 
-def draw_optimal(folder: str, picture: Path) -> float:
-    """Returns how far co-simulation ends from the optimum's end: the error of 60 steps of the midpoint rule."""
+def draw_optimal(folder: str) -> str:
+    """The optimum, and how far co-simulation ends from its end: the error of 60 steps of the midpoint rule."""
     t, x, moments = optimal(folder)
-    figure, axes = plt.subplots(3, 1, figsize=(7.2, 5.8), layout="constrained")
+    _, axes = plt.subplots(3, 1, figsize=(7.2, 5.8), layout="constrained")
     axes[0].plot(x[0], x[1])
-    axes[0].set(xlabel="$X_O$ [m]", ylabel="$Y_O$ [m]", title="Upright and onto the line, with the least effort")
-    axes[0].set_aspect("equal")
+    axes[0].set(xlabel="$X_O$ [m]", ylabel="$Y_O$ [m]", aspect="equal")
+    axes[0].set_title("Upright and onto the line, with the least effort")
     axes[1].plot(t, np.degrees(x[3]) - 90, label=r"lean, $\theta - 90°$")
     axes[1].plot(t, np.degrees(x[2]), label=r"heading $\psi$")
     axes[1].set(xlabel="time [s]", ylabel="angle [deg]")
-    axes[2].step(t[:-1], moments[0], where="post", label="$M_1$")
-    axes[2].step(t[:-1], moments[1], where="post", label="$M_3$")
+    axes[2].step(t[:-1], moments.T, where="post", label=["$M_1$", "$M_3$"])
     axes[2].set(xlabel="time [s]", ylabel="moment [N m]")
     for part in axes[1:]:
         part.legend()
-    figure.savefig(picture, dpi=200)
-    return float(np.abs(checked(folder, t, x, moments) - x[:, -1])[[1, 2, 3]].max())
+    off = np.abs(checked(folder, t, x, moments) - x[:, -1])[[1, 2, 3]].max()
+    return f"optimal moments, followed in co-simulation: {off:.2g} off the end"
 
 
 def main() -> None:
     fmu, results = Path(sys.argv[1]), Path(sys.argv[2])
     results.mkdir(parents=True, exist_ok=True)
-    folder = str(extract(str(fmu), unzipdir=mkdtemp()))
-    try:
-        spin = draw_eigenvalues(folder, results / "eigenvalues.png")
-        print(f"critical spin: {spin:.6f} rad/s by the eigenvalues, {CRITICAL:.6f} rad/s by the closed form")
-        alone, regulated = draw_regulated(folder, results / "regulator.png")
-        print(f"lean: {alone:.0f} deg alone, {regulated:.2g} deg after 6 s with the regulator")
-        off = draw_optimal(folder, results / "optimal.png")
-        print(f"optimal moments, followed in co-simulation: {off:.2g} off the end")
-    finally:
-        shutil.rmtree(folder)
+    with TemporaryDirectory() as folder:
+        extract(fmu, unzipdir=folder)
+        for draw in (draw_eigenvalues, draw_regulator, draw_optimal):
+            print(draw(folder))
+            plt.savefig(results / f"{draw.__name__.removeprefix('draw_')}.png", dpi=200)
     print(f"Pictures are in {results}.")
 
 

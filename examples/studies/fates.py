@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import scaled, studied, two_maps, upright_limit, wheel_of
+from drawing import two_maps, upright_limit, wheel_of
 from study import Study
 from study.options import scale
 
@@ -27,18 +27,17 @@ LEVELS = [0, 5, 15, 30, 45, 60, 75]  # degrees
 
 def table(results: xr.Dataset) -> xr.Dataset:
     """Status, and the smallest angle between the wheel's plane and the ground [deg] to a tenth."""
-    small = results[["status"]].load()
     angle = np.degrees(results["lowest"]).round(1).astype("f4")
-    small["smallest_angle"] = angle.assign_attrs(units="deg", long_name="Smallest angle to the ground")
-    return small
+    angle = angle.assign_attrs(units="deg", long_name="Smallest angle to the ground")
+    return results[["status"]].load().assign(smallest_angle=angle)
 
 
 def draw(small: xr.Dataset, stem: Path) -> Path:
     """Two maps: how far the wheel goes down, and in flat colours where the model ends."""
     wheel = wheel_of(small)
     limit, faster = upright_limit(wheel), scale(wheel, s=-1)
-    text = f"smallest angle to the ground within {studied(small)['stop_time']:.3g} s [deg]"
-    fig, axes = two_maps(small, "smallest_angle", scaled("cividis", LEVELS), text, side="left")
+    text = "smallest angle to the ground within {:.3g} s [deg]"
+    fig, axes = two_maps(small, "smallest_angle", "cividis", LEVELS, text, side=-1)
     linear = 0.05 * faster  # rad/s, up to which the scale is linear
     ticks = [0, *(tick for tick in (0.1, 1, 10, 100) if tick >= 2 * linear)]
     for ax in axes:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import scaled, studied, two_maps, wheel_of
+from drawing import two_maps, wheel_of
 from study import Study
 from study.options import scale
 
@@ -28,15 +28,14 @@ LEVELS = [0, 0.2, 0.4, 0.6, DRY_ASPHALT, 1, 2, 5]
 
 def table(results: xr.Dataset) -> xr.Dataset:
     """Status and the largest mu_required, to three decimals."""
-    small = results[["status"]].load()
-    small["mu"] = results["mu"].round(3).astype("f4").assign_attrs(units="1", long_name="Largest mu_required")
-    return small
+    mu = results["mu"].round(3).astype("f4").assign_attrs(units="1", long_name="Largest mu_required")
+    return results[["status"]].load().assign(mu=mu)
 
 
 def draw(small: xr.Dataset, stem: Path) -> Path:
     """Two maps in steps, with a line at 0.8."""
-    text = rf"largest $\mu_\mathrm{{required}}$ within {studied(small)['stop_time']:.3g} s (white line: 0.8)"
-    fig, axes = two_maps(small, "mu", scaled("viridis", LEVELS), text)
+    text = r"largest $\mu_\mathrm{{required}}$ within {:.3g} s (white line: 0.8)"
+    fig, axes = two_maps(small, "mu", "viridis", LEVELS, text)
     spin, angle = -small["phi_dot_start"].values, np.degrees(small["theta_start"].values)
     for ax, s in zip(axes, small["s"].values, strict=True):
         ax.contour(spin, angle, small["mu"].sel(s=s), levels=[DRY_ASPHALT], colors="white", linewidths=1.4)

@@ -5,7 +5,6 @@ It counts as up until it leans by more than 30 degrees. The spin of an upright w
 second; dashed: the time at which it comes down to the limit of upright rolling.
 """
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -33,12 +32,6 @@ def table(results: xr.Dataset) -> pd.DataFrame:
     return rows
 
 
-def time_to_limit(wheel: Mapping[str, float], spin: float, s: np.ndarray) -> np.ndarray:
-    """Time [s] in which friction slows upright rolling down to the limit of stability."""
-    slowing = s * wheel["m"] * wheel["g"] / rolling_inertia(**wheel)
-    return (spin - upright_limit(wheel)) / slowing
-
-
 def draw(rows: pd.DataFrame, stem: Path) -> Path:
     """Time over s, one curve per spin, with the closed form dashed."""
     style.use_style()
@@ -50,7 +43,8 @@ def draw(rows: pd.DataFrame, stem: Path) -> Path:
     beside = (-5, 3, 0, 0)  # points, so that labels do not touch
     for colour, apart, (spin, group) in zip(colours, beside, groups, strict=True):
         s = group.loc[group["s"] > 0, "s"].to_numpy()
-        ax.plot(s, time_to_limit(wheel, -spin, s), color=colour, linestyle=(0, (4, 2)), linewidth=0.8)
+        slowing = s * wheel["m"] * wheel["g"] / rolling_inertia(**wheel)  # rad/s2
+        ax.plot(s, (-spin - upright_limit(wheel)) / slowing, color=colour, linestyle=(0, (4, 2)), linewidth=0.8)
         ax.plot(group["s"], group["up_time"], color=colour, linewidth=1.4)
         last, text = group.iloc[-1], {"textcoords": "offset points", "va": "center", "color": colour}
         ax.annotate(f"{-spin:.3g} rad/s", (last["s"], last["up_time"]), xytext=(5, apart), **text)

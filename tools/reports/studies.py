@@ -46,7 +46,7 @@ def timed(what: str, wheels: int, folder: Path, client: object) -> dict[str, flo
 @part(300)
 def speed(report: Report) -> dict[str, object]:
     """one and two workers in turn; the estimate for many"""
-    from study.compute import chunk_seconds, cluster
+    from study.compute import cluster, most
 
     runs = []
     with TemporaryDirectory() as folder, cluster(1, None) as one, cluster(2, None) as two:
@@ -62,7 +62,7 @@ def speed(report: Report) -> dict[str, object]:
     wheels = table["wheels_per_s"].unstack(sort=False)
     alone, estimate = np.minimum(wheels[1], wheels[2] / 2), []
     for what, n in product(ASKED, (10, 100, 1000)):
-        busy = task * n / chunk_seconds(n)
+        busy = task * n * wheels[1][what] / most(1000, n)
         speed = n * alone[what] * min(1.0, 1 / busy)
         estimate.append({"asked": what, "workers": n, "wheels_per_s": speed, "caller_busy": busy})
     return {"speed": table.reset_index(), "estimate": estimate, "task": 1e3 * task}

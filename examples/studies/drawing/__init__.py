@@ -16,11 +16,7 @@ from diagrams import style
 
 PAPER = (2.0, 75.0)  # |phi_dot| in rad/s and theta in degrees of the paper's scenes
 HEIGHT = 92.0  # mm, of a figure
-FATES = {
-    Status.flat: style.INK,
-    Status.lifted_off: style.VERMILLION,
-    Status.grip: style.PURPLE,
-}  # where a run ends early
+FATES = {Status.flat: style.INK, Status.lifted_off: style.VERMILLION, Status.grip: style.PURPLE}  # ends of a run
 WHEEL = {"m": 20.0, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_z": 1.8, "g": 9.81}  # SI; the FMU's defaults
 
 
@@ -44,29 +40,33 @@ def upright_limit(w: Mapping[str, float]) -> float:
     return float(np.sqrt(w["m"] * w["g"] * w["r_0"] * w["J_x"] / (w["J_z"] * rolling_inertia(**w))))
 
 
-def two_maps(small: xr.Dataset, name: str, look: dict[str, object], text: str, side: str = "right") -> tuple:
+def two_maps(small: xr.Dataset, name: str, tones: str, levels: list[float], text: str, side: int = 1) -> tuple:
     """Maps of the variable `name`, for the free wheel and for the one with friction, and a scale; figure and axes.
 
-    side: of the paper's mark on which its name stands.
+    tones: the colour map, in steps, one tone between each two levels and one above the last.
+    text: of the scale, with {} for the runs' length in s.
+    side: of the paper's mark on which its name stands, 1 right, -1 left.
     """
     style.use_style()
     fig = style.figure_mm(style.PAGE, HEIGHT)
     axes = [style.axes_mm(fig, 14.0 + 75.0 * k, 14.0, 70.0, HEIGHT - 24.0) for k in range(2)]
+    colours = style.mpl.colormaps[tones].resampled(len(levels))
+    look = {"cmap": colours, "norm": BoundaryNorm(levels, len(levels), extend="max")}
+    faster = scale(wheel_of(small), s=-1)
+    start, beside = (PAPER[0] * faster, PAPER[1]), {"xytext": (6 * side, 3), "ha": "left" if side > 0 else "right"}
     for ax, s in zip(axes, small["s"].values, strict=True):
         shades = fill(ax, small[name].sel(s=s), small["status"].sel(s=s), look)
-        label(ax, s, side, scale(wheel_of(small), s=-1))
+        ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:.3g} m", fontsize=9)
+        ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"spin at the start $|\dot\varphi|$ [rad/s]")
+        ax.plot(*start, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
+        paper = "paper" if faster == 1 else "paper, scaled"
+        ax.annotate(paper, start, textcoords="offset points", color="white", fontsize=8, **beside)
     axes[0].set_ylabel(r"angle at the start $\theta$ [deg]")
     axes[1].set_yticklabels([])
     bar = fig.colorbar(shades, cax=style.axes_mm(fig, 163.0, 14.0, 4.0, HEIGHT - 24.0), spacing="uniform")
-    bar.set_label(text)
+    bar.set_label(text.format(studied(small)["stop_time"]))
     bar.ax.tick_params(size=0)
     return fig, axes
-
-
-def scaled(name: str, levels: list[float]) -> dict[str, object]:
-    """Colour map in steps, one tone between each two levels and one above the last."""
-    colours = style.mpl.colormaps[name].resampled(len(levels))
-    return {"cmap": colours, "norm": BoundaryNorm(levels, len(levels), extend="max")}
 
 
 def fill(ax: Axes, one: xr.DataArray, status: xr.DataArray, look: dict[str, object]) -> ScalarMappable:
@@ -77,14 +77,3 @@ def fill(ax: Axes, one: xr.DataArray, status: xr.DataArray, look: dict[str, obje
         fate = np.ma.masked_where(status.values != code, np.ones(status.shape))
         ax.pcolormesh(spin, angle, fate, cmap=ListedColormap([colour]), rasterized=True)
     return shades
-
-
-def label(ax: Axes, s: float, side: str, faster: float) -> None:
-    """Title, axes and the paper's start, with the spin so many times faster."""
-    start = (PAPER[0] * faster, PAPER[1])
-    beside = {"right": {"xytext": (6, 3), "ha": "left"}, "left": {"xytext": (-6, 3), "ha": "right"}}[side]
-    ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:.3g} m", fontsize=9)
-    ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"spin at the start $|\dot\varphi|$ [rad/s]")
-    ax.plot(*start, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
-    name = "paper" if faster == 1 else "paper, scaled"
-    ax.annotate(name, start, textcoords="offset points", color="white", fontsize=8, **beside)

@@ -6,13 +6,12 @@ import sys
 import time
 from pathlib import Path
 
-from .options import ROOT, Fault, arguments_of, file_of, study_of
+from .options import ROOT, arguments_of
 from .plan import Study, StudyError
 
 
-def study_file(name: str, wheel: str | None = None) -> dict[str, object]:
+def study_file(path: Path, wheel: str | None = None) -> dict[str, object]:
     """The names that a study's file defines: `study`, of a ready wheel if one is given, perhaps `table` and `draw`."""
-    path = file_of(name)
     sys.path.insert(0, str(path.resolve().parent))
     content = runpy.run_path(str(path))
     if not isinstance(content.get("study"), Study):
@@ -22,28 +21,26 @@ def study_file(name: str, wheel: str | None = None) -> dict[str, object]:
     return content | {"name": f"{path.stem}_{wheel}" if wheel else path.stem}
 
 
-def main(argv: list[str] | None = None) -> int:
+def main() -> int:
     """Runs a study; a fault of the study is one line on stderr and exit status 2."""
     try:
-        conduct(arguments_of(argv))
-    except (StudyError, Fault) as fault:
+        conduct(arguments_of())
+        return 0
+    except StudyError as fault:
         code, text = 2, f"{fault}"
     except OSError as fault:  # a full disk, or one that cannot be reached any more
         code, text = 2, f"{fault}; results so far are kept; the same command continues from here."
     except KeyboardInterrupt:
         code, text = 130, "stopped; the same command continues from here."
-    else:
-        return 0
     print(f"study: {text}", file=sys.stderr)
     return code
 
 
 def conduct(arguments: argparse.Namespace) -> None:
     """Runs, exports, draws, and prints the outcome and where it is."""
-    if arguments.study:
+    content = {"study": arguments.study, "name": "study"}
+    if isinstance(arguments.study, Path):
         content = study_file(arguments.study, arguments.wheel)
-    else:
-        content = {"study": study_of(arguments), "name": "study"}
     from .compute import run
     from .dataset import export, summarize
 

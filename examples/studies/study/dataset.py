@@ -11,25 +11,23 @@ import dask.array as da
 import numpy as np
 import pandas as pd
 import xarray as xr
-from fmpy.model_description import ModelDescription, ScalarVariable
+from fmpy.model_description import ModelDescription
 from matplotlib.lines import Line2D
 
 from .instance import Array
-from .plan import PLANE_ANGLE, POINT, Status, Study, counters_of, parse_measure
+from .plan import PLANE_ANGLE, POINT, Status, Study, counters_of
 from .worker import Region
 
-Points = dict[str, Array]  # values by name
 TITLE = "A study with wheel.fmu"
-GREEK = {"psi": "ψ", "theta": "θ", "phi": "φ", "omega": "ω", "lambda": "λ", "mu": "μ", "tau": "τ"}
-DOTS = {"_ddot": "\N{COMBINING DIAERESIS}", "_dot": "\N{COMBINING DOT ABOVE}"}
 ANGLE = "angle to the ground"
-MEANING = {
-    "last": "at the end of the run",
-    "min": "smallest value at the communication points and the end of the run",
-    "max": "largest value at the communication points and the end of the run",
-    "mean": "mean over time",
-    "<": "first time below {:g}",
-    ">": "first time above {:g}",
+GREEK = {"psi": "ψ", "theta": "θ", "phi": "φ", "omega": "ω", "lambda": "λ", "mu": "μ", "tau": "τ"}
+SYMBOLS = {  # in labels, by the text of a measure
+    rf"\s*(lowest|min\({PLANE_ANGLE}\))\s*": f"smallest {ANGLE}",
+    rf"\b{PLANE_ANGLE}\b": ANGLE,
+    r"_start\b": " at the start",
+    **{rf"\b{name}(?![a-z])": symbol for name, symbol in GREEK.items()},
+    r"\b(\w)_ddot": "\\1\N{COMBINING DIAERESIS}",
+    r"\b(\w)_dot": "\\1\N{COMBINING DOT ABOVE}",
 }
 PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
 OWN = {  # results of every study: empty value, type, unit, label, description
@@ -41,43 +39,43 @@ OWN = {  # results of every study: empty value, type, unit, label, description
 }
 
 
-def axes_of(study: Study) -> Points:
-    """Name -> values: per dimension of a grid, per wheel of a list or a sample."""
-    if not study.sample:
-        return {name: np.array(values) for name, values in study.varied.items()}
-    from scipy.stats import qmc  # slow to load
+def axes_of(study: Study) -> xr.Dataset:
+    """The values that vary: each a dimension of a grid, or all along the wheels of a list or a sample."""
+    axes = study.varied
+    if study.sample:
+        from scipy.stats import qmc  # slow to load
 
-    unit = qmc.LatinHypercube(len(study.sample), rng=study.seed).random(study.count)
-    columns = qmc.scale(unit, *zip(*study.sample.values(), strict=True)).T
-    return dict(zip(study.sample, columns, strict=True))
-
-
-def points(study: Study, axes: Points, region: Region) -> Points:
-    """The values of a region of the results: arrays to be broadcast against each other."""
-    parts = region if study.grid else region * len(axes)
-    cut = [axis[part] for axis, part in zip(axes.values(), parts, strict=True)]
-    return dict(zip(axes, np.ix_(*cut) if study.grid else cut, strict=True))
+        unit = qmc.LatinHypercube(len(study.sample), rng=study.seed).random(study.count)
+        axes = dict(zip(axes, qmc.scale(unit, *zip(*axes.values(), strict=True)).T, strict=True))
+    return xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in axes.items()})
 
 
-def template(study: Study, axes: Points, description: ModelDescription, size: int) -> xr.Dataset:
+def points(axes: xr.Dataset, region: Region) -> dict[str, Array]:
+    """The values of a region of the results, by name: arrays to be broadcast against each other."""
+    part = axes.isel(dict(zip(axes.sizes, region, strict=True)))
+    return {name: values.variable.set_dims([*axes.sizes]).values for name, values in part.coords.items()}
+
+
+def template(study: Study, axes: xr.Dataset, description: ModelDescription, size: int) -> xr.Dataset:
     """All coordinates, and columns that hold nothing yet, in chunks of at most `size` wheels."""
     variables = {v.name: v for v in description.modelVariables}
     about = {name: (v.unit, label(name), v.description) for name, v in variables.items()}
-    shape = {name: len(axis) for name, axis in axes.items()}
-    shape = shape if study.grid else {POINT: max(shape.values())}
-    chunks = da.core.normalize_chunks("auto", tuple(shape.values()), limit=size, dtype="i1")
+    about[PLANE_ANGLE] = ("rad", ANGLE, PLANE)
+    chunks = da.core.normalize_chunks("auto", tuple(axes.sizes.values()), limit=size, dtype="i1")
     columns = OWN | {name: (-1, "i8", *about[name]) for name in counters_of(variables)}
-    columns |= {name: (np.nan, "f8", *measured(text, variables)) for name, text in study.measures.items()}
+    for name, measure in study.parsed.items():
+        unit, _, meaning = about[measure.quantity]
+        text = study.measures[name]
+        columns[name] = (np.nan, "f8", "s" if measure.is_time else unit, label(text), f"{meaning}; {text}")
     columns |= {name: (np.nan, "f8", *about[name]) for name in study.history}
     results = {}
     for name, (nothing, dtype, *texts) in columns.items():
-        timed = name in study.history
-        lengths = (*shape.values(), *[len(study.times)] * timed)
-        empty = da.full(lengths, nothing, dtype=dtype, chunks=(*chunks, *[-1] * timed))
-        results[name] = xr.Variable((*shape, *["time"] * timed), empty, attributes(*texts), {"fill_value": nothing})
+        sizes = {**axes.sizes, **({"time": len(study.times)} if name in study.history else {})}
+        empty = da.full(tuple(sizes.values()), nothing, dtype=dtype, chunks=(*chunks, -1)[: len(sizes)])
+        results[name] = xr.Variable([*sizes], empty, attributes(*texts), {"fill_value": nothing})
     fates = [status for status in Status if status != Status.not_computed]
     results["status"].attrs |= {"flag_values": [*map(int, fates)], "flag_meanings": " ".join(s.name for s in fates)}
-    coordinates = {n: (n if study.grid else POINT, axis, attributes(*about[n])) for n, axis in axes.items()}
+    coordinates = {name: values.assign_attrs(attributes(*about[name])) for name, values in axes.coords.items()}
     if study.history:
         coordinates["time"] = ("time", study.times, attributes("s", "time", ""))
     return xr.Dataset(results, coordinates)
@@ -88,28 +86,11 @@ def attributes(unit: str | None, name: str, description: str | None) -> dict[str
     return {k: v for k, v in (("units", unit), ("long_name", name), ("description", description)) if v}
 
 
-def measured(text: str, variables: dict[str, ScalarVariable]) -> tuple[str, str, str]:
-    """Unit, label and description of a measure."""
-    measure = parse_measure(text)
-    variable = variables[measure.variable]
-    quantity = PLANE if measure.quantity == PLANE_ANGLE else variable.description
-    meaning = MEANING[measure.kind].format(measure.limit)
-    return "s" if measure.is_time else variable.unit, label(text), f"{quantity}; {meaning}"
-
-
 def label(text: str) -> str:
     """The short label of a variable, or of a measure of variables, for axes and legends: `θ at the start`."""
-    if text.strip() in ("lowest", f"min({PLANE_ANGLE})"):
-        return f"smallest {ANGLE}"
-    return re.sub(r"[A-Za-z]\w*", lambda found: _symbol(found[0]), text)
-
-
-def _symbol(name: str) -> str:
-    if name == PLANE_ANGLE:
-        return ANGLE
-    name, start = re.subn(r"_start$", "", name)
-    first, dot, rest = re.fullmatch(r"([A-Za-z]+)((?:_d?dot)?)(\w*)", name).groups()
-    return GREEK.get(first, first) + DOTS.get(dot, "") + rest + (" at the start" if start else "")
+    for pattern, symbol in SYMBOLS.items():
+        text = re.sub(pattern, symbol, text)
+    return text
 
 
 def provenance(study: Study, description: ModelDescription, fmu_sha256: str) -> dict[str, object]:
@@ -157,8 +138,7 @@ def export(results: xr.Dataset | pd.DataFrame, path: Path) -> Path:
         results.to_csv(path, index=False, float_format="%.6g", lineterminator="\n")
     else:
         rows = results.to_dataframe().reset_index()
-        rows["status"] = [Status(code).name for code in rows["status"]]
-        rows.to_csv(path, index=False)
+        rows.assign(status=[Status(code).name for code in rows["status"]]).to_csv(path, index=False)
     return path
 
 
@@ -174,8 +154,6 @@ def summarize(results: xr.Dataset, seconds: float) -> str:
         lines.append(f"  {found:8d} {Status(code).name.replace('_', ' ')}")
         if code in (Status.refused, Status.failed):
             lines.append(f"           first: {results['message'].values[status == code][0]}")
-    wall, inside = results["wall_time"].values, float(results["fmu_time"].sum())
-    if (total := np.nansum(wall)) > 0:
-        speed, share = np.isfinite(wall).sum() / total, 100 * inside / total
-        lines.append(f"{speed:.0f} wheels per second and worker, {share:.0f} % of the time inside the FMU.")
+    speed, share = 1 / results["wall_time"].mean(), 100 * results["fmu_time"].sum() / results["wall_time"].sum()
+    lines.append(f"{speed:.0f} wheels per second and worker, {share:.0f} % of the time inside the FMU.")
     return "\n".join(lines)

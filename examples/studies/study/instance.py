@@ -5,9 +5,9 @@ A start that several wheels share runs once. A wheel that fails is a status with
 raises because of what a wheel does.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
-from ctypes import CDLL, byref, c_double, c_int, c_size_t, c_uint, c_void_p, cast
+from ctypes import CDLL, byref, c_size_t, c_uint, c_void_p, cast
 from functools import cache
 from pathlib import Path
 from time import perf_counter
@@ -25,7 +25,7 @@ Result = dict[str, NDArray]
 OK, WARNING, DISCARD = range(3)  # fmi2Status
 LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # fmi2StatusKind
 MARCH = "march.library"  # march.c, compiled (Dask would take a .so for a module), beside the FMU's modelDescription.xml
-NUMBERS = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
+NUMBERS = {"Real": float, "Integer": int, "Boolean": int}
 
 # Words of the FMU's message, for each way in which a run ends early.
 ENDINGS = {
@@ -47,7 +47,7 @@ class Instance:
         callbacks = fmi2CallbackFunctions()  # the logger of instantiate_fmu would stay that of the process
         callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
         self.fmu.instantiate(callbacks=callbacks)
-        self._buffers = cache(self._buffers_of)
+        self.typed = cache(self._typed)
         self._snapshot, self._kept = fmi2FMUstate(), None  # at branch_at: values and messages of that start
         self._march = CDLL(str(Path(folder) / MARCH)).march
         self._march.argtypes = (c_void_p,) * 4 + (c_size_t, c_void_p, c_size_t, c_void_p, c_void_p)
@@ -57,28 +57,19 @@ class Instance:
         if status != OK:
             self.messages.append(text.decode())
 
-    def references(self, names: Iterable[str]) -> object:
-        """The value references of some variables, as the FMU takes them."""
-        return (c_uint * len(names))(*(self.variables[name].valueReference for name in names))
-
-    def _buffers_of(self, names: tuple[str, ...]) -> list[tuple[str, list[str], tuple[object, ...]]]:
-        """For each type among the names: the type, the names, and the arguments of fmi2Get and fmi2Set."""
-        found = []
-        for kind, number in NUMBERS.items():
-            if mine := [name for name in names if self.variables[name].type == kind]:
-                found.append((kind, mine, (self.references(mine), len(mine), (number * len(mine))())))
-        return found
+    def _typed(self, names: tuple[str, ...]) -> list[tuple[str, list[str], list[int]]]:
+        """For each type among the names: the type, the names and their value references."""
+        of = {kind: [name for name in names if self.variables[name].type == kind] for kind in NUMBERS}
+        return [(kind, mine, [self.variables[n].valueReference for n in mine]) for kind, mine in of.items() if mine]
 
     def set(self, values: Mapping[str, float]) -> None:
-        for kind, names, arguments in self._buffers(tuple(values)):
-            arguments[-1][:] = [values[name] if kind == "Real" else int(values[name]) for name in names]
-            getattr(self.fmu, f"fmi2Set{kind}")(self.fmu.component, *arguments)
+        for kind, names, references in self.typed(tuple(values)):
+            getattr(self.fmu, f"set{kind}")(references, [NUMBERS[kind](values[name]) for name in names])
 
     def get(self, names: tuple[str, ...]) -> dict[str, float]:
         found = {}
-        for kind, mine, arguments in self._buffers(names):
-            getattr(self.fmu, f"fmi2Get{kind}")(self.fmu.component, *arguments)
-            found.update(zip(mine, arguments[-1], strict=True))
+        for kind, mine, references in self.typed(names):
+            found |= zip(mine, getattr(self.fmu, f"get{kind}")(references), strict=True)
         return found
 
     def begin(self, values: Mapping[str, float], study: Study) -> tuple[Status, float]:
@@ -102,30 +93,27 @@ class Instance:
         fmu.exitInitializationMode()
         if study.branch_at is None:
             return Status.reached, 0.0
-        times = np.array([0.0, study.branch_at])
-        status, end, _ = self.march(times, self.way(times, (), np.empty(0)))
+        status, end, _ = self.march(np.array([0.0, study.branch_at]), ())
         if status == Status.reached:
             fmu.fmi2GetFMUstate(fmu.component, byref(self._snapshot))
             self._kept = (start, [*self.messages])
         return status, end
 
-    def way(self, times: Array, names: tuple[str, ...], rows: Array) -> tuple[object, ...]:
-        """For march: the times, and a row for each, to be filled with the values of these Real variables."""
-        return times.ctypes.data, len(times), self.references(names), len(names), rows.ctypes.data
+    def march(self, times: Array, names: tuple[str, ...]) -> tuple[Status, float, Array]:
+        """Steps along the times from times[0], the present one.
 
-    def march(self, times: Array, way: tuple[object, ...]) -> tuple[Status, float, int]:
-        """Steps along the times from times[0], the present one, and fills a row at each time that is reached.
-
-        Returns the fate of the wheel, its time [s], and the number of rows.
+        Returns the fate of the wheel, its time [s], and a row of these Real variables at each time that is reached.
         """
-        reached = c_size_t()
+        rows, reached = np.empty((len(times), len(names))), c_size_t()
+        references = (c_uint * len(names))(*(self.variables[name].valueReference for name in names))
+        way = (times.ctypes.data, len(times), references, len(names), rows.ctypes.data)
         status = self._march(*self._functions_of_march, self.fmu.component, *way, byref(reached))
         end, fate = times[max(reached.value, 1) - 1], Status.reached if status <= WARNING else Status.failed
         if status == DISCARD:
             end, logged = self.fmu.getRealStatus(LAST_SUCCESSFUL_TIME), " ".join(self.messages)
             if self.fmu.getBooleanStatus(TERMINATED):
                 fate = next((fate for words, fate in ENDINGS.items() if words in logged), fate)
-        return fate, end, reached.value
+        return fate, end, rows[: reached.value]
 
 
 def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Result:
@@ -142,66 +130,58 @@ def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Resul
     at_end = {name: m for name, m in study.parsed.items() if m.kind == "last"}
     measures = {name: m for name, m in study.parsed.items() if name not in at_end}
     asked = tuple(dict.fromkeys([*(m.variable for m in at_end.values()), *counters]))
-    rows = np.empty((len(times) + 1, len(sampled)))  # one more for the end
-    way = fmu.way(times, sampled, rows)
     result = {n: np.full(len(starts), np.nan) for n in ("status", "end_time", "fmu_time", "wall_time", *measures)}
     result |= {name: np.full((len(starts), len(times)), np.nan) for name in study.history}
     messages, ends = [""] * len(starts), [{}] * len(starts)
 
     for i in order:
-        begin, n = perf_counter(), 0
+        begin, rows = perf_counter(), np.empty(0)
         try:
             status, end = fmu.begin(starts[i], study)
             if status == Status.reached:
                 fmu.set(changes[i])
-                status, end, n = fmu.march(times, way)
+                status, end, rows = fmu.march(times, sampled)
         except FMICallException:
             status, end = Status.refused, np.nan
             fmu.messages = fmu.messages or ["A value is outside its limits."]
-        if status != Status.refused:
+        else:
             with suppress(FMICallException):  # an instance that failed may be unable to answer
                 ends[i] = fmu.get(asked)
         result["fmu_time"][i] = perf_counter() - begin
         result["status"][i], result["end_time"][i], messages[i] = status, end, " ".join(fmu.messages)
-        if n and sampled:
+        if rows.size:
+            t = times[: len(rows)]
             for name, column in zip(study.history, rows.T, strict=False):
-                result[name][i, :n] = column[:n]
-            t = times[:n]
+                result[name][i, : len(t)] = column
             if end > t[-1] and ends[i]:  # the end of a run is a sample too
-                t, rows[n] = np.append(t, end), [*fmu.get(sampled).values()]
+                t, rows = np.append(t, end), np.vstack([rows, [*fmu.get(sampled).values()]])
             for name, measure in measures.items():
-                result[name][i] = number(measure, t, rows[: len(t), sampled.index(measure.variable)])
+                result[name][i] = number(measure, t, rows[:, sampled.index(measure.variable)])
         result["wall_time"][i] = perf_counter() - begin
 
     result |= {name: np.array([end.get(name, -1) for end in ends]) for name in counters}
     for name, measure in at_end.items():
-        values = np.array([end.get(measure.variable, np.nan) for end in ends])
-        result[name] = plane_angle(values) if measure.quantity == PLANE_ANGLE else values
+        result[name] = quantity(measure, np.array([end.get(measure.variable, np.nan) for end in ends]))
     return result | {"message": np.array(messages, "T")}
 
 
+def quantity(measure: Measure, x: Array) -> Array:
+    """What is measured, for values x of its variable; plane_angle is 90 deg - |theta - 90 deg|, in rad."""
+    return np.pi / 2 - np.abs(x - np.pi / 2) if measure.quantity == PLANE_ANGLE else x
+
+
 def number(measure: Measure, t: Array, x: Array) -> float:
-    """The measure for samples x of its variable at the times t, the last of which is the end of the run."""
-    if measure.quantity == PLANE_ANGLE:
-        x = plane_angle(x)
+    """The measure for samples x of its variable at the times t, the last of which is the end of the run.
+
+    A time is that of the first passage, interpolated linearly between two samples; NaN if there is none.
+    """
+    x = quantity(measure, x)
     if measure.is_time:
-        return first_passage(t, x, measure.limit, below=measure.kind == "<")
+        beyond = x < measure.limit if measure.kind == "<" else x > measure.limit
+        k = int(np.argmax(beyond))
+        if k == 0:
+            return t[0] if beyond[0] else np.nan
+        return t[k - 1] + (measure.limit - x[k - 1]) / (x[k] - x[k - 1]) * (t[k] - t[k - 1])
     if measure.kind == "mean":
-        return float(np.trapezoid(x, t) / (t[-1] - t[0])) if t[-1] > t[0] else float(x[-1])
-    return float(x.min() if measure.kind == "min" else x.max())
-
-
-def plane_angle(theta: Array) -> Array:
-    """Angle [rad] of the wheel's plane to the ground, 0 to pi/2: 90 deg - |theta - 90 deg|."""
-    return np.pi / 2 - np.abs(theta - np.pi / 2)
-
-
-def first_passage(t: Array, x: Array, limit: float, below: bool) -> float:
-    """First time at which x is beyond the limit, interpolated linearly between two samples; NaN if it never is."""
-    beyond = x < limit if below else x > limit
-    if not beyond.any():
-        return np.nan
-    k = int(np.argmax(beyond))
-    if k == 0:
-        return float(t[0])
-    return float(t[k - 1] + (limit - x[k - 1]) / (x[k] - x[k - 1]) * (t[k] - t[k - 1]))
+        return np.trapezoid(x, t) / (t[-1] - t[0]) if len(t) > 1 else x[-1]
+    return x.min() if measure.kind == "min" else x.max()

@@ -67,8 +67,7 @@ def study_of(arguments: argparse.Namespace) -> Study:
     rows = {name: [value(name, text) for text in column] for name, *column in columns(arguments.list)}
     if bool(grid) == bool(rows):
         raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
-    wheel = ready(arguments.wheel) if arguments.wheel else {}
-    values = {name: x for name, x in wheel.items() if name not in grid | rows}
+    values = {name: x for name, x in arguments.body.items() if name not in grid | rows}
     values |= {name: value(name, text) for name, text in pairs(arguments.set).items()}
     fields = {name: getattr(arguments, name) for name in ("history", "stop_time", "interval", "tolerance", "branch_at")}
     fields |= {"measures": pairs(arguments.measure)} if arguments.measure else {}
@@ -96,8 +95,8 @@ def description(fmu: Path) -> bytes:
 def factors(body: Mapping[str, float]) -> dict[str, float]:
     """By variable: its value in a motion of this wheel over that in the similar motion of the paper's."""
     text = description(ROOT / "wheel.fmu")
-    units = {unit.get("name"): unit.find("BaseUnit").attrib for unit in ElementTree.fromstring(text).iter("Unit")}
-    powers = {unit: {n: int(base[n]) for n in ("kg", "m", "s") if n in base} for unit, base in units.items()}
+    bases = {unit.get("name"): unit.find("BaseUnit").attrib for unit in ElementTree.fromstring(text).iter("Unit")}
+    powers = {unit: {n: int(base[n]) for n in ("kg", "m", "s") if n in base} for unit, base in bases.items()}
     return {name: scale(body, **powers.get(v.unit, {})) for name, v in variables(text).items()}
 
 
@@ -126,6 +125,10 @@ def file_of(name: str) -> Path:
 
 
 def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
+    """The arguments, `study` as the path of a file or as the Study that the others describe.
+
+    What cannot be meant is one line on stderr and exit status 2.
+    """
     parser = argparse.ArgumentParser(
         prog="./scripts/study",
         description="Runs many wheels on all cores or on a Dask cluster. Started again, it continues where it stopped.",
@@ -152,18 +155,14 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--netcdf", action="store_true", help="a copy as NetCDF beside the Zarr folder")
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
     add("--publish", action="store_true", help="write an example's data and figure into docs/")
-    return parser.parse_args(argv)
+    arguments = parser.parse_args(argv)
+    try:
+        arguments.body = ready(arguments.wheel) if arguments.wheel else {}
+        arguments.study = file_of(arguments.study) if arguments.study else study_of(arguments)
+    except (StudyError, Fault) as fault:
+        parser.exit(2, f"study: {fault}\n")
+    return arguments
 
 
 if __name__ == "__main__":
-    try:
-        arguments = arguments_of()
-        if arguments.wheel:
-            ready(arguments.wheel)
-        if arguments.study:
-            file_of(arguments.study)
-        else:
-            study_of(arguments)
-    except (StudyError, Fault) as fault:
-        print(f"study: {fault}", file=sys.stderr)
-        sys.exit(2)
+    arguments_of()

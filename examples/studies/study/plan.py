@@ -156,29 +156,25 @@ class Study:
         from .options import factors, ready, scale
 
         body = ready(wheel)
-        given = self.varied | self.values
+        factor, slower, given = factors(body), scale(body, s=1), self.varied | self.values
         if both := sorted({*body} & {*given} - {"phi_dot_start"}):
-            raise StudyError(
-                f"The study has values of {', '.join(both)}, which are those of the wheel {wheel} already."
-            )
-        factor = factors(body)
+            raise StudyError(f"The study has values of {', '.join(both)}, which are those of the wheel {wheel}.")
 
-        def similar(kind: str) -> dict[str, list[float]]:
-            return {n: [x * factor.get(n, 1.0) for x in values] for n, values in getattr(self, kind).items()}
+        def similar(name: str, *values: float) -> list[float]:
+            return [value * factor.get(name, 1.0) for value in values]
 
         def measured(text: str) -> str:
             m = parse_measure(text)
-            return f"first({m.quantity} {m.kind} {m.limit * factor.get(m.variable, 1.0)!r})" if m.is_time else text
+            return f"first({m.quantity} {m.kind} {similar(m.variable, m.limit)[0]!r})" if m.is_time else text
 
         times = {n: getattr(self, n) for n in ("stop_time", "interval", "branch_at")}
-        times = {n: t if t is None else t * scale(body, s=1) for n, t in times.items()}
+        own = {n: similar(n, x)[0] for n, x in self.values.items()}
         return replace(
             self,
-            **{kind: similar(kind) for kind in KINDS},
-            values={n: x for n, x in body.items() if n not in given}
-            | {n: x * factor.get(n, 1.0) for n, x in self.values.items()},
+            **{kind: {n: similar(n, *x) for n, x in getattr(self, kind).items()} for kind in KINDS},
+            **{n: t and t * slower for n, t in times.items()},
+            values={n: x for n, x in body.items() if n not in given} | own,
             measures={n: measured(text) for n, text in self.measures.items()},
-            **times,
         )
 
     @property
@@ -223,11 +219,7 @@ class Study:
             (len({*lengths.values()}) > 1, f"The columns of a list must have one length; these have: {lengths}."),
             (integers, f"{integers} is an integer: only its value at the end can be measured."),
             (twice, f"{twice} would name two things in the results; give the measure another name."),
-            (
-                not in_order,
-                f"interval = {self.interval}, branch_at = {self.branch_at}, stop_time = {self.stop_time}: "
-                "the interval must be above zero, and branch_at before the stop time.",
-            ),
+            (not in_order, "The interval must be above zero, and branch_at from zero to below a finite stop_time."),
         ):
             if fault:
                 raise StudyError(text)

@@ -1,29 +1,26 @@
 """A worker's side: the FMU unpacked once, one instance, and chunks of wheels that come from the caller.
 
-The caller uploads one zip file with this package, wheel.fmu and the compiled march.c. Dask passes it to workers that
-join later too, before they get any task. A worker loads zarr only to write its results itself; where it cannot reach
-the caller's store, which has the caller's mark, they go back to the caller.
+The caller uploads wheel.fmu with this package and the compiled march.c in it. Dask passes it to workers that join later
+too, before they get any task. A worker loads zarr only to write its results itself; where it cannot reach the caller's
+store, which has the caller's mark, they go back to the caller.
 """
 
 import shutil
 import subprocess
-import tempfile
 import zipfile
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from pathlib import Path
 from threading import Lock
 
 from distributed import get_worker
-from fmpy import extract
 
 from .instance import MARCH, Array, Instance, Result, run_block
 from .plan import Study, StudyError
 
 Region = tuple[slice, ...]  # of the results: the wheels of a chunk
-FMU = "wheel.fmu"  # its name inside the uploaded file
 MARK = "caller"  # the attribute by which a worker recognizes the caller's store
-_instances: dict[str, Instance] = {}  # by the name of the uploaded file; one process works for one worker
 _turn = Lock()  # a worker's threads take turns at the instance
 
 
@@ -35,18 +32,20 @@ def run_chunk(
     upload: name of the uploaded file; study: without its axes; place, mark: of the caller's store.
     """
     with _turn:
-        if upload not in _instances:  # unpacked in the worker's own folder, which Dask removes
-            scratch = Path(get_worker().local_directory)
-            folder = tempfile.mkdtemp(prefix="wheel-", dir=scratch)
-            shutil.unpack_archive(scratch / upload, folder, "zip")
-            extract(f"{folder}/{FMU}", folder)
-            _instances[upload] = Instance(folder)
-        result = run_block(_instances[upload], study, points)
+        result = run_block(instance(upload), study, points)
     try:
         write(place, mark, region, result)
     except Exception:  # noqa: BLE001 - no zarr, folder, permission, network or space: the caller tries, and reports
         return result
     return None
+
+
+@cache
+def instance(upload: str) -> Instance:
+    """The only one of this process, unpacked in the worker's own folder, which Dask removes."""
+    package = Path(get_worker().local_directory) / upload
+    shutil.unpack_archive(package, package.with_suffix(""))
+    return Instance(str(package.with_suffix("")))
 
 
 def write(place: str, mark: str, region: Region, result: Result) -> None:
@@ -70,20 +69,15 @@ def write(place: str, mark: str, region: Region, result: Result) -> None:
 
 
 def pack(fmu: str | Path, path: Path) -> Path:
-    """Writes the file to be uploaded: this package's sources, the FMU and the loop over the steps."""
-    with zipfile.ZipFile(path, "w") as package:
-        package.write(fmu, FMU)
-        package.write(compiled(path.parent), MARCH)
-        for source in Path(__file__).parent.glob("*.py"):
-            package.write(source, f"{__package__}/{source.name}")
-    return path
-
-
-def compiled(folder: Path) -> Path:
-    """march.c as a library in that folder."""
-    library, source = folder / MARCH, Path(__file__).with_name("march.c")
+    """Writes the file to be uploaded: the FMU, with this package's sources and the loop over the steps, compiled."""
+    library, source = path.with_name(MARCH), Path(__file__).with_name("march.c")
     try:
         subprocess.run(["cc", "-O2", "-shared", "-fPIC", source, "-o", library], check=True)
     except FileNotFoundError:
         raise StudyError("A study needs a C compiler, cc, on the machine where it is started.") from None
-    return library
+    shutil.copy(fmu, path)
+    with zipfile.ZipFile(path, "a") as package:
+        package.write(library, MARCH)
+        for source in Path(__file__).parent.glob("*.py"):
+            package.write(source, f"{__package__}/{source.name}")
+    return path

@@ -16,18 +16,16 @@ from moto.server import ThreadedMotoServer
 STUDIES = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(STUDIES), str(STUDIES.parent / "python")]
 
-from study import Study  # noqa: E402
-from study.compute import cluster  # noqa: E402
+from study import Study, compute  # noqa: E402
 from study.dataset import axes_of, points, template  # noqa: E402
 from study.instance import Instance, run_block  # noqa: E402
-from study.worker import compiled  # noqa: E402
+from study.worker import pack  # noqa: E402
 
 
 @pytest.fixture(scope="session")
 def alone(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[Study], xr.Dataset]:
     """Runs a study by one instance in this process, one wheel after the other."""
-    folder = extract(str(fmu_path), str(tmp_path_factory.mktemp("fmu")))
-    compiled(Path(folder))
+    folder = extract(pack(fmu_path, tmp_path_factory.mktemp("fmu") / "wheel.zip"))
     description, instance = read_model_description(folder), Instance(folder)
 
     def run(study: Study) -> xr.Dataset:
@@ -35,7 +33,7 @@ def alone(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[
         instance._kept = None  # no snapshot of an earlier call
         axes = axes_of(study)
         results = template(study, axes, description, 1_000_000)
-        found = run_block(instance, study, points(study, axes, (slice(None),) * results["status"].ndim))
+        found = run_block(instance, study, points(axes, (slice(None),) * results["status"].ndim))
         assert found.keys() == results.keys()
         return results.assign({n: (results[n].dims, x.reshape(results[n].shape)) for n, x in found.items()})
 
@@ -47,9 +45,8 @@ def bucket() -> Iterator[str]:
     """The URL of a bucket in an object store on this machine; set before workers start, which find it there."""
     server = ThreadedMotoServer(ip_address="127.0.0.1", port=0, verbose=False)
     server.start()
-    host, port = server.get_host_and_port()
     keys = {"AWS_ACCESS_KEY_ID": "a", "AWS_SECRET_ACCESS_KEY": "b", "AWS_DEFAULT_REGION": "us-east-1"}
-    os.environ.update(keys, AWS_ENDPOINT_URL=f"http://{host}:{port}")
+    os.environ.update(keys, AWS_ENDPOINT_URL="http://{}:{}".format(*server.get_host_and_port()))
     fsspec.filesystem("s3").mkdir("studies")
     yield "s3://studies"
     server.stop()
@@ -58,19 +55,28 @@ def bucket() -> Iterator[str]:
 @pytest.fixture(scope="session")
 def crew(bucket: str) -> Iterator[Client]:
     """Two workers on this machine, for all tests of a process."""
-    with cluster(2, None) as client:
+    with compute.cluster(2, None) as client:
         yield client
+
+
+@pytest.fixture(scope="session")
+def conduct(fmu_path: Path, crew: Client, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., xr.Dataset]:
+    """Runs a study with the two workers, which do `work` with each chunk."""
+
+    def conduct(study: Study, out: Path | str | None = None, work: object = compute.run_chunk, **how) -> xr.Dataset:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(compute, "run_chunk", work)
+            how = {"fmu": fmu_path, "client": crew, "quiet": True} | how
+            return study.run(out or tmp_path_factory.mktemp("study") / "z", **how)
+
+    return conduct
 
 
 @pytest.fixture(scope="session")
 def fates() -> Study:
     """24 wheels of every fate: impossible ones, some that fall flat, one that lifts off, and those that roll on."""
     return Study(
-        grid={
-            "theta_start": np.radians([15.0, 75.0, 200.0]),
-            "s": [0.0, 0.03],
-            "phi_dot_start": [-2, 0.0, -6.0, -40.0],
-        },
+        grid={"theta_start": np.radians([15, 75, 200]), "s": [0.0, 0.03], "phi_dot_start": [-2, 0.0, -6.0, -40.0]},
         measures={"plane": "lowest", "lowest": "min(theta)", "down": "first(theta < 0.5)", "energy": "E"},
         history=["theta", "X_O"],
         stop_time=5.0,

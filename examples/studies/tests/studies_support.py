@@ -19,6 +19,5 @@ def same(a: xr.Dataset, b: xr.Dataset) -> bool:
 def command(*options: object, **more: object) -> subprocess.Popen:
     """The command behind ./scripts/study, in the Python of the tests."""
     path = os.pathsep.join(str(ROOT / folder) for folder in ("examples/studies", "tools"))
-    words = [sys.executable, "-m", "study", *map(str, options)]
-    how = {"env": os.environ | {"PYTHONPATH": path}, "stderr": subprocess.PIPE, "text": True}
-    return subprocess.Popen(words, **(how | more))
+    how = {"env": os.environ | {"PYTHONPATH": path}, "stderr": subprocess.PIPE, "text": True} | more
+    return subprocess.Popen([sys.executable, "-m", "study", *map(str, options)], **how)

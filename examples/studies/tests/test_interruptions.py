@@ -1,6 +1,7 @@
 """Nothing is lost, and nothing that is kept is run again, when a caller or a worker is killed or the disk is full."""
 
 import os
+import re
 import resource
 import shlex
 import signal
@@ -10,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import psutil
+import pytest
 from distributed import Client
 from studies_support import command, same
 from study import Status, Study
-from study.compute import run
 from study.dataset import open_results
 from study.instance import Result
-from study.options import arguments_of, study_of
+from study.options import arguments_of
 from study.worker import run_chunk
 
 MANY = shlex.split(
@@ -25,14 +26,6 @@ MANY = shlex.split(
 # Sixteen wheels that fall at once and sixteen that roll on, with a long history.
 SPINS = ",".join(map(str, [0.0] * 16 + [-2 - k / 15 for k in range(16)]))
 OFTEN = ["--vary", f"phi_dot_start={SPINS}", "--history", "theta", "--interval", "1e-4"]
-
-
-def until(happened: object, fault: str) -> None:
-    """Waits for it, at most a minute."""
-    give_up = time.monotonic() + 60
-    while not happened():
-        assert time.monotonic() < give_up, fault
-        time.sleep(0.01)
 
 
 def chunks(out: Path) -> dict[Path, int]:
@@ -44,7 +37,10 @@ def begun(words: list[object], out: Path) -> tuple[subprocess.Popen, list[psutil
     """The command when it has written a chunk, in a new session, and its two workers."""
     before, interruptible = chunks(out), lambda: signal.signal(signal.SIGINT, signal.default_int_handler)
     process = command(*words, preexec_fn=interruptible, start_new_session=True)
-    until(lambda: len(chunks(out)) > len(before), "no chunk was written")
+    give_up = time.monotonic() + 60
+    while len(chunks(out)) <= len(before):
+        assert time.monotonic() < give_up, "no chunk was written"
+        time.sleep(0.01)
     children = psutil.Process(process.pid).children(recursive=True)
     workers = [p for p in children if "spawn_main" in " ".join(p.cmdline())]
     assert len(workers) == 2
@@ -70,27 +66,27 @@ def test_a_study_continues_after_an_interrupt_a_killed_caller_and_a_killed_worke
     _, errors = process.communicate(timeout=120)
     assert process.returncode == 0 and f"{done} of {status.size} wheels are there already" in errors
     assert kept.items() <= chunks(out).items()
-    assert same(alone(study_of(arguments_of(MANY))), open_results(out))
+    assert same(alone(arguments_of(MANY).study), open_results(out))
 
 
-def full_at(size: int) -> object:
-    """Before a process starts: no file may grow beyond that many bytes, which is an error as of a full disk."""
-    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+def full() -> None:
+    """Before a process starts: no file may grow beyond four megabytes, which is an error as of a full disk."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4_000_000, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
 
 
 def test_a_full_disk_is_a_message_and_the_study_continues_when_there_is_space(tmp_path, fmu_path, alone) -> None:
     """A wheel that rolls on for 10 s has a history too large for the limit, one that falls at once has not."""
     out = tmp_path / "often.zarr"
     words = [*OFTEN, "--fmu", fmu_path, "--out", out, "--workers", 1]
-    process = command(*words, preexec_fn=full_at(4_000_000))
+    process = command(*words, preexec_fn=full)
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 2
-    assert errors.strip().splitlines()[-1].startswith(f"study: {out} cannot be written ([Errno 27] File too large")
+    assert re.search(r"^study: \[Errno 27\] File too large.*; results so far are kept; the same", errors, re.MULTILINE)
     kept = chunks(out)
     assert len(kept) == 1 and not list(out.rglob("*.partial"))
     assert command(*words).wait(60) == 0
     assert kept.items() <= chunks(out).items()
-    assert same(alone(study_of(arguments_of(OFTEN))), open_results(out))
+    assert same(alone(arguments_of(OFTEN).study), open_results(out))
 
 
 def die_at_upright(*task: object) -> Result | None:
@@ -100,11 +96,10 @@ def die_at_upright(*task: object) -> Result | None:
     return run_chunk(*task)
 
 
-def test_a_worker_that_dies_costs_one_wheel(fmu_path: Path, crew: Client, tmp_path: Path) -> None:
+def test_a_worker_that_dies_costs_one_wheel(conduct, crew: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(crew.cluster.scheduler, "allowed_failures", 0)
     study = Study(grid={"theta_start": np.r_[1.2:1.4:32j, 1.5, 1.41:1.49:7j]}, stop_time=1.0)
-    crew.cluster.scheduler.allowed_failures = 0
-    results = run(study, tmp_path / "d.zarr", fmu=fmu_path, client=crew, quiet=True, chunk=40, work=die_at_upright)
-    crew.cluster.scheduler.allowed_failures = 1
+    results = conduct(study, chunk=40, work=die_at_upright)
     died = results["theta_start"] == 1.5
     assert (results["status"] == np.where(died, Status.failed, Status.reached)).all()
     assert "died" in results["message"].values[died].item()

@@ -62,8 +62,7 @@ def test_measures_are_those_of_the_history(rolled: xr.Dataset) -> None:
     one = rolled.sel(s=0.0)
     t, theta = one["time"].values, one["theta"].values
     assert (one["low"], one["high"], one["end"]) == (theta.min(), theta.max(), theta[-1])
-    # a sum of 1001 terms
-    within(relative_error(one["mean"], np.trapezoid(theta, t) / 10), 1024 * EPSILON, "mean, relative")
+    within(relative_error(one["mean"], np.trapezoid(theta, t) / 10), 1024 * EPSILON, "mean of 1001 terms, relative")
     k = int(np.argmax(theta < 0.8))  # it passes 0.8 once here
     assert t[k - 1] < one["down"] <= t[k]
     within(abs(np.interp(one["down"], t, theta) - 0.8), 64 * EPSILON, "theta then, rad")

@@ -5,7 +5,6 @@ import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,25 +13,17 @@ import numpy as np
 import pytest
 import values
 import xarray as xr
-from distributed import Client, LocalCluster, SubprocessCluster
+from distributed import Client, SubprocessCluster
 from studies_support import ROOT, command, same
 from study import Status, Study, StudyError, compute, curves, in_degrees
 from study.__main__ import study_file
-from study.compute import run
 from study.instance import Result
-from study.options import arguments_of, study_of
+from study.options import arguments_of, file_of
 from study.worker import run_chunk
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
 GUIDE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
 EXAMPLE = re.findall(r"^```python\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)[0]
-
-
-@pytest.fixture(scope="module")
-def conduct(fmu_path: Path, crew: Client, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., xr.Dataset]:
-    """Runs a study with the two workers."""
-    usual = {"fmu": fmu_path, "client": crew, "quiet": True}
-    return lambda study, out=None, **how: run(study, out or tmp_path_factory.mktemp("study") / "z", **(usual | how))
 
 
 @pytest.fixture(scope="module")
@@ -55,10 +46,10 @@ def test_the_guides_study_takes_ten_lines_and_its_command_line_is_the_same(tmp_p
     assert len(EXAMPLE.splitlines()) <= 10
     file = tmp_path / "grid.py"
     file.write_text(EXAMPLE)
-    study = study_file(str(file))["study"]
+    study = study_file(file)["study"]
     words = shlex.split(re.search(r"scripts/study (--vary.*?)```", GUIDE, re.DOTALL)[1].replace("\\\n", " "))
     other = ["s=0.02" if word == "s=0.01" else word for word in words]
-    assert study_of(arguments_of(words)) == study != study_of(arguments_of(other))
+    assert arguments_of(words).study == study != arguments_of(other).study
 
 
 def test_many_workers_and_one_give_bit_identical_results(fates: Study, results: xr.Dataset, alone) -> None:
@@ -69,8 +60,7 @@ def test_many_workers_and_one_give_bit_identical_results(fates: Study, results: 
 
 
 def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(results: xr.Dataset) -> None:
-    assert dict(results.sizes) == {"theta_start": 3, "s": 2, "phi_dot_start": 4, "time": 101}
-    assert results["theta"].dims == ("theta_start", "s", "phi_dot_start", "time")
+    assert {*results["theta"].sizes.items()} == {("theta_start", 3), ("s", 2), ("phi_dot_start", 4), ("time", 101)}
     fates_seen = {Status(code).name for code in np.unique(results["status"])}
     assert fates_seen == {"reached", "flat", "lifted_off", "refused"}
     assert set(results.attrs) >= {"fmu_sha256", "fmu_version", "fmu_guid", "seed", "numpy_version", "study"}
@@ -85,7 +75,7 @@ def test_labels_are_short_and_the_description_is_kept(results: xr.Dataset) -> No
     assert max(map(len, labels.values())) <= 30
     assert "upright" in results["theta_start"].attrs["description"]
     plane = results["plane"].attrs["description"]
-    assert plane.startswith("Angle of the wheel's plane to the ground") and "smallest" in plane
+    assert plane.startswith("Angle of the wheel's plane to the ground") and plane.endswith("; lowest")
     turned = in_degrees(results)
     assert (results["lowest"].attrs["units"], turned["lowest"].attrs["units"]) == ("rad", "deg")
     within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "degrees, relative")
@@ -138,25 +128,20 @@ def test_a_list_is_cut_into_chunks_of_its_rows(conduct, alone) -> None:
 
 def test_a_study_without_workers_ends_with_a_message(fates: Study, conduct, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(compute, "PATIENCE", 1.0)
-    with (
-        LocalCluster(n_workers=0, processes=False, dashboard_address=None) as nobody,
-        Client(nobody) as client,
-        pytest.raises(StudyError, match="no worker"),
-    ):
-        conduct(fates, client=client)
+    nobody = Client(n_workers=0, processes=False, dashboard_address=None)
+    with nobody, pytest.raises(TimeoutError, match="workers"):
+        conduct(fates, client=nobody)
 
 
 def test_the_command_reads_a_list_and_exports_tables(fmu_path: Path, tmp_path: Path) -> None:
     starts = tmp_path / "starts.csv"
     starts.write_text("theta_start,phi_dot_start\n75deg,-2\n1.2,0\n")
-    out = ("--fmu", fmu_path, "--out", tmp_path / "list.zarr")
-    process = command("--list", starts, *out, "--workers", 1, "--csv", "--netcdf", stdout=subprocess.PIPE)
+    out = ("--fmu", fmu_path, "--out", tmp_path / "list.zarr", "--workers", 1, "--csv", "--netcdf")
+    process = command("--list", starts, *out, stdout=subprocess.PIPE)
     printed, _ = process.communicate(timeout=60)
-    assert process.returncode == 0
-    assert "1 flat" in printed
-    table = (tmp_path / "list.csv").read_text().splitlines()
-    assert len(table) == 3
-    assert table[0].startswith("wheel,")
+    assert process.returncode == 0 and "1 flat" in printed
+    names, *rows = (tmp_path / "list.csv").read_text().splitlines()
+    assert names.startswith("wheel,") and len(rows) == 2
     assert xr.open_dataset(tmp_path / "list.nc")["theta_start"].values[0] == np.radians(75)
 
 
@@ -166,15 +151,15 @@ VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3], "m=500
 
 @pytest.mark.parametrize(("axis", "expected"), VARY.items())
 def test_values_on_the_command_line_take_the_units_of_their_variables(axis: str, expected: list[float]) -> None:
-    ((_, got),) = study_of(arguments_of(["--vary", axis, "--stop-time", "2min"])).grid.items()
+    ((_, got),) = arguments_of(["--vary", axis, "--stop-time", "2min"]).study.grid.items()
     within(absolute_error(got, expected), 8 * EPSILON, f"{axis}, SI")
-    study = study_of(arguments_of(["--vary", "J_x=1,2", "--set", re.split("[:,]", axis)[0], "--stop-time", "2min"]))
+    study = arguments_of(["--vary", "J_x=1,2", "--set", re.split("[:,]", axis)[0], "--stop-time", "2min"]).study
     within(absolute_error([*study.values.values()], expected[:1]), 8 * EPSILON, f"{axis}, the first, SI")
     assert study.stop_time == 120.0
 
 
 def test_a_ready_wheel_gives_what_the_command_line_does_not() -> None:
-    study = study_of(arguments_of(["--wheel", "coin", "--vary", "r=1mm,2mm", "--set", "m=8g"]))
+    study = arguments_of(["--wheel", "coin", "--vary", "r=1mm,2mm", "--set", "m=8g"]).study
     assert study.values["m"] == 0.008 and study.values["r_0"] == 0.011775 and "r" not in study.values
     assert study.grid == {"r": [0.001, 0.002]} and study.values["phi_dot_start"] < -10
 
@@ -201,8 +186,7 @@ def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> No
     isolated = [sys.executable, "-I", "-S", options, *words.split()]
     done = subprocess.run(isolated, capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert done.stderr.startswith(f"study: {message}")
-    assert len(done.stderr.splitlines()) == 1
+    assert done.stderr.startswith(f"study: {message}") and len(done.stderr.splitlines()) == 1
 
 
 def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(alone, tmp_path, monkeypatch) -> None:
@@ -229,7 +213,7 @@ def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(alone, tmp_pa
 
 @pytest.mark.parametrize("name", ["fates", "grip", "uptime"])
 def test_an_example_draws_a_ready_wheel_beside_its_own(name: str, conduct, tmp_path: Path) -> None:
-    content = study_file(name, "coin")
+    content = study_file(file_of(name), "coin")
     assert content["name"] == f"{name}_coin"
     study = content["study"]
     few = {n: axis[:: max(1, len(axis) // 4)] for n, axis in study.grid.items()}
