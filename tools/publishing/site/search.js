@@ -1,5 +1,5 @@
-// Ranks the documents of Sphinx's search by how often the words asked for, and above all the whole phrase, stand in them.
-// TEXTS: {address of a page: its text}, written by conf.py.
+// Ranks the documents of Sphinx's search by how often the words asked for, and above all the whole phrase, stand in
+// them. TEXTS: {address of a page: its text}, written by conf.py.
 const asked = (new URLSearchParams(location.search).get('q') ?? '').toLowerCase().trim();
 const words = asked.split(/\s+/).filter(Boolean);
 const often = (text, piece) => Math.log1p(text.toLowerCase().split(piece).length - 1);
