@@ -161,10 +161,10 @@ def main() -> None:
     """Both, from what `./scripts/run` left; a fault of the input is one line on stderr and exit status 1."""
     style.use_style()
     try:
-        scene = read_scene(ROOT / "results" / "free.csv", ("time", "X_C", "Y_C", *POSE))
+        scene = read_scene(ROOT / "results" / "free.csv")
+        print(*draw_picture(scene, ROOT / "docs" / "figures" / "wheel"), draw_icon(ICON_FILE), sep="\n")
     except SceneError as fault:
         sys.exit(f"picture: {fault}")
-    print(*draw_picture(scene, ROOT / "docs" / "figures" / "wheel"), draw_icon(ICON_FILE), sep="\n")
 
 
 if __name__ == "__main__":

@@ -84,7 +84,7 @@ DIFFERENT = {"Boolean": 1.0, "Integer": 2.0, "Real": 0.25}
 @pytest.mark.parametrize("name", sorted({*paper.SETTINGS} - {"s"}))
 def test_a_caption_lists_whatever_is_not_the_papers(name: str) -> None:
     other = scene(0.03, **{name: DIFFERENT[paper.SETTINGS[name].type]})
-    assert f"{name} = " in " ".join(paper.caption([other], paper.PAPERS, 150)).replace(paper.NO_BREAK, " ")
+    assert f"{name} = " in " ".join(paper.caption([other], [[]], 150)).replace(paper.NO_BREAK, " ")
     assert not paper.is_paper([other, other])
 
 
@@ -100,8 +100,6 @@ def test_figure_numbers_and_file_names_of_the_paper_belong_to_its_two_scenes(mon
     for others in (longer, [scene(), scene(0.02)], [scene(slope=0.1), scene(0.03, slope=0.1)]):
         paper.draw_all(others, Path("results"))
     assert "diagrams" in stems and not of_paper & {*stems}
-    assert "Fig" in paper.heading(paper.PAPERS[0], papers[0], True)
-    assert "Fig" not in paper.heading(paper.PAPERS[0], papers[0], False)
     assert "stop_time = 20 s" in " ".join(paper.unlike_paper(longer[0]))
 
 
@@ -128,7 +126,7 @@ def scene_of(folder: Path, last: float, said: str) -> Path:
 def test_the_caption_names_the_end_of_a_run(tmp_path: Path) -> None:
     said = "[WARNING] The wheel fell flat at t = 0.5927504146949162 s: the model ends there.\n"
     path = scene_of(tmp_path, 0.59, said)
-    assert read_scene(path, ("time", "theta")).ending == "fell flat at $t$ = 0.593 s"
-    assert read_scene(scene_of(tmp_path, 10, ""), ("time", "theta")).ending == ""
+    assert read_scene(path).ending == "fell flat at $t$ = 0.593 s"
+    assert read_scene(scene_of(tmp_path, 10, "")).ending == ""
     with pytest.raises(SceneError, match="no motion to draw: the wheel fell flat"):
-        read_scene(scene_of(tmp_path, 0, said), ("time", "theta"))
+        read_scene(scene_of(tmp_path, 0, said))
