@@ -147,7 +147,8 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     fig.set_layout_engine("none")  # the texts beside a curve need the places of the panels
     for ax, scene in rates:
         panels.write_rates(ax, scene)
-    style.text_mm(fig, 2.0, 1.8, "\n".join(lines), fontsize=7.5 if sheet else 7.0, linespacing=1.03)
+    for i, line in enumerate(reversed(lines)):
+        style.text_mm(fig, 2.0, 1.8 + PITCH * i, line, fontsize=7.5 if sheet else 7.0)
     return style.save(fig, stem)
 
 
