@@ -120,7 +120,7 @@ def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], columns: 
 def wrapped(text: str, columns: int) -> list[str]:
     """Lines with as many words as have room; a formula is one word, as wide as its letters."""
     formulas = iter(re.findall(r"\$[^$]*\$", text))
-    shown = re.sub(r"\$[^$]*\$", lambda found: "$" * len(re.findall(r"\\[a-z]+|[^${}_^\\]", found[0])), text)
+    shown = re.sub(r"\$[^$]*\$", lambda found: "$" * len(re.findall(r"\\[a-z]+|[^${}_^\\ ]", found[0])), text)
     return [re.sub(r"\$+", lambda _: next(formulas), line) for line in textwrap.wrap(shown, columns)]
 
 
