@@ -23,7 +23,6 @@ from publishing.markdown import number
 RESULTS = ROOT / "docs" / "results"
 BY_HAND = ROOT / "docs" / "interoperability.md"  # runs of other programs, which no command of this project starts
 TEXTS = {str(page.relative_to(ROOT)): page.read_text(encoding="utf-8") for page in pages()}
-prose.register()
 
 
 def run(*command: str, **variables: str) -> subprocess.CompletedProcess[str]:

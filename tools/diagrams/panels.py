@@ -1,14 +1,15 @@
 """The panels of ./scripts/run, each drawn into axes: the paper's three, the path, and what the ground has to give.
 
 Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta. Friction and brake leave marks: a band
-per stick phase, a tick at the top for each change of sign of omega_z.
+per stick phase, a tick at the top for each change of sign of omega_z. A panel returns what the caption has to explain.
 """
 
 import numpy as np
 import textalloc
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.ticker import AutoMinorLocator, MaxNLocator, MultipleLocator, NullLocator, ScalarFormatter
+from matplotlib.patches import StepPatch
+from matplotlib.ticker import AutoMinorLocator, MaxNLocator, NullLocator, ScalarFormatter
 
 from diagrams import style
 from diagrams.scene import Array, Scene
@@ -25,86 +26,75 @@ PSI_DOT = r"$\dot\psi$"
 PHI_DOT = r"$\dot\varphi$"
 
 
-def draw_position(ax: Axes, scene: Scene) -> None:
+def draw_position(ax: Axes, scene: Scene) -> list[str]:
     """Fig. 1, 4: X_O over time."""
     _time_axis(ax, scene)
-    _over_time(ax, scene.time, scene["X_O"])
     ax.set_ylabel(r"position $X_O$ [m]")
     _ticks(ax.yaxis, 5)
     _widen(ax.yaxis, scene["X_O"], 1e-3 * scene.value("r_0"))
+    return _over_time(ax, scene.time, scene["X_O"])
 
 
-def draw_tilt(ax: Axes, scene: Scene) -> None:
+def draw_tilt(ax: Axes, scene: Scene) -> list[str]:
     """Fig. 2, 5: theta over time, rad on the left and degrees on the right."""
     _time_axis(ax, scene)
     theta = scene["theta"]
-    _over_time(ax, scene.time, theta)
     ax.set_ylabel(r"angle $\theta$ [rad]")
     degrees = ax.secondary_yaxis("right", functions=(np.degrees, np.radians))
     degrees.set_ylabel(r"$\theta$ [deg]")
     degrees.spines["right"].set_visible(True)
+    _ticks(ax.yaxis, 7, (1, 2, 5, 10))
+    _ticks(degrees.yaxis, 6, (1, 1.5, 2, 3, 5, 10))
     if np.ptp(theta) < np.pi / 6:
         _widen(ax.yaxis, theta, 1e-3)
-        for axis in (ax.yaxis, degrees.yaxis):
-            _ticks(axis, 5)
-        return
-    past_upright = theta.max() > np.pi / 2 - 0.02  # a line at the frame cannot be seen
-    ax.set_ylim(0.0, np.pi if past_upright else np.pi / 2)
-    ax.yaxis.set_major_locator(MultipleLocator(0.5))
-    ax.yaxis.set_minor_locator(MultipleLocator(0.25 if past_upright else 0.1))
-    degrees.yaxis.set_major_locator(MultipleLocator(30 if past_upright else 15))
+    else:
+        ax.set_ylim(0.0, np.pi if theta.max() > np.pi / 2 - 0.02 else np.pi / 2)  # a line at the frame cannot be seen
+    return _over_time(ax, scene.time, theta)
 
 
-def draw_path(ax: Axes, scene: Scene) -> None:
+def draw_path(ax: Axes, scene: Scene) -> list[str]:
     """The path of the contact point from above, in one scale."""
-    x, y = scene.smooth(SUBDIVISION, "X_C", "Y_C")
-    _track(ax, x, y, np.zeros(len(x), dtype=bool))
+    _track(ax, *scene.smooth(SUBDIVISION, "X_C", "Y_C"))
     ax.set(xlabel="$X$ [m]", ylabel="$Y$ [m]")
     for axis, name in ((ax.xaxis, "X_C"), (ax.yaxis, "Y_C")):
         _ticks(axis, 5)
         _widen(axis, scene[name], 0.1 * scene.value("r_0"))
     ax.set_aspect("equal", adjustable="datalim")
-    if scene.setting("slope") > 0:
-        down = scene.setting("slope_direction") + np.pi
+    if scene.value("slope") > 0:
+        down = scene.value("slope_direction") + np.pi
         step = np.array([np.cos(down), np.sin(down)]) * 12.0
         arrow = {"arrowstyle": "<|-", "color": style.GREY, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", (0.12, 0.83), step, "axes fraction", "offset points", arrowprops=arrow)
         ax.text(0.02, 0.93, "downhill", transform=ax.transAxes, color=style.GREY, fontsize=style.NOTE)
+    return []
 
 
-def draw_ground(ax: Axes, scene: Scene) -> None:
+def draw_ground(ax: Axes, scene: Scene) -> list[str]:
     """Above, the normal force; below, the coefficient of friction that rolling needs, and mu_max if it is set."""
     _time_axis(ax, scene)
-    weight = scene.value("m") * scene.value("g")
-    _over_time(ax, scene.time, scene["lambda_3"])
-    ax.set_ylabel("normal force $N$ [N]", color=style.BLUE)
-    _ticks(ax.yaxis, 5)
-    _widen(ax.yaxis, scene["lambda_3"], 0.02 * weight)
-    right = ax.twinx()
+    right, force, limit = ax.twinx(), scene["lambda_3"], scene.value("mu_max")
+    needed = np.clip(np.nan_to_num(scene["mu_required"], nan=MOST), 0.0, MOST)
     right.spines["right"].set_visible(True)
-    needed, limit = needed_friction(scene), scene.setting("mu_max")
-    _over_time(right, scene.time, needed, style.VERMILLION)
+    ax.set_ylabel("normal force $N$ [N]", color=style.BLUE)
     right.set_ylabel(r"$\mu$ required", color=style.VERMILLION)
+    remarks = _over_time(ax, scene.time, force) + _over_time(right, scene.time, needed, style.VERMILLION)
+    _widen(ax.yaxis, force, 0.02 * scene.value("m") * scene.value("g"))
     right.set_ylim(0.0, 1.1 * max(needed.max(), limit, 0.05))
-    _ticks(right.yaxis, 5)
     for side, below, above in ((ax, 1.1, 0.0), (right, 0.0, 1.1)):
+        _ticks(side.yaxis, 5)
         low, high = side.get_ylim()
         side.set_yticks([tick for tick in side.get_yticks() if low <= tick <= high])
         side.yaxis.set_minor_locator(NullLocator())
         side.set_ylim(low - below * (high - low), high + above * (high - low))
     if limit:
         right.axhline(limit, color=style.VERMILLION, linewidth=0.8, linestyle=(0, (4, 2)))
-        right.annotate(r"$\mu_\mathrm{max}$", (0.02, limit), (0, 2), right.get_yaxis_transform(), "offset points",
-                       color=style.VERMILLION, fontsize=style.NOTE)  # fmt: skip
+        place = {"color": style.VERMILLION, "xycoords": right.get_yaxis_transform()}
+        style.note(right, r"$\mu_\mathrm{max}$", (0.02, limit), (0, 2), **place)
+    return remarks + [rf"$\mu$ is drawn up to {MOST:g}."] * int(needed.max() == MOST)
 
 
-def needed_friction(scene: Scene) -> Array:
-    """mu_required up to MOST."""
-    return np.clip(np.nan_to_num(scene["mu_required"], nan=MOST), 0.0, MOST)
-
-
-def draw_rates(ax: Axes, scene: Scene) -> None:
-    """Fig. 3, 6: phi_dot over psi_dot; stick phases are thick. What is written into it comes with write_rates."""
+def draw_rates(ax: Axes, scene: Scene) -> list[str]:
+    """Fig. 3, 6: phi_dot over psi_dot; stick phases are thick. The texts beside the curve come with write_rates."""
     ax.set_xlabel(rf"precession rate {PSI_DOT} [rad/s]")
     ax.set_ylabel(rf"spin rate {PHI_DOT} [rad/s]")
     x, y, stick = _rates(scene)
@@ -118,8 +108,14 @@ def draw_rates(ax: Axes, scene: Scene) -> None:
     for axis, rate in ((ax.xaxis, x), (ax.yaxis, y)):
         _ticks(axis, 5)
         _widen(axis, rate, 1.0 if scene.still else 1e-3 + 1e-5 * abs(rate).max())
-    if not scene.one_arc and narrow(scene):
-        _draw_inset(ax, scene, x, y, stick)
+    if scene.one_arc and not scene.still:
+        return [r"The rates depend on $\theta$ alone: the wheel runs to and fro on one arc."]
+    # omega_z = phi_dot + psi_dot cos(theta) is small, and so is the angle at which a narrow bundle lies.
+    shear = float(-np.sign(np.cos(scene["theta"].mean())) or -1.0)
+    if scene.still or np.ptp(y - shear * x) >= NARROW * np.ptp(y):
+        return []
+    _draw_inset(ax, x, y, stick, shear)
+    return ["Inset: the same motion sheared, which opens the narrow bundle."]
 
 
 def write_rates(ax: Axes, scene: Scene) -> None:
@@ -160,8 +156,7 @@ def _rates(scene: Scene) -> tuple[Array, Array, Array]:
         rows = np.argsort(scene["theta"])
         return scene["psi_dot"][rows], scene["phi_dot"][rows], np.zeros(len(rows), dtype=bool)
     time, x, y = scene.smooth(SUBDIVISION, "time", "psi_dot", "phi_dot")
-    phases = [(time > begin) & (time < end) for begin, end in scene.stick_phases()]
-    return x, y, np.any(phases, axis=0) if phases else np.zeros(len(time), dtype=bool)
+    return x, y, scene.mode[np.searchsorted(scene.edges[1:-1], time)] == 0
 
 
 def _marks(ax: Axes, scene: Scene) -> dict[tuple[float, float], str]:
@@ -185,20 +180,8 @@ def _marks(ax: Axes, scene: Scene) -> dict[tuple[float, float], str]:
     return texts
 
 
-def narrow(scene: Scene) -> bool:
-    """Whether the rates run in a bundle that has to be sheared to be seen."""
-    sheared = scene["phi_dot"] - _shear(scene) * scene["psi_dot"]
-    return 0 < np.ptp(sheared) < NARROW * np.ptp(scene["phi_dot"])
-
-
-def _shear(scene: Scene) -> float:
-    """Slope of the bundle: omega_z = phi_dot + psi_dot cos(theta) is small, and so is the angle at which it lies."""
-    return float(-np.sign(np.cos(scene["theta"].mean())) or -1.0)
-
-
-def _draw_inset(ax: Axes, scene: Scene, x: Array, y: Array, stick: Array) -> None:
+def _draw_inset(ax: Axes, x: Array, y: Array, stick: Array, shear: float) -> None:
     """The bundle sheared, above it: the axes grow there, so that it covers nothing of the curve."""
-    shear = _shear(scene)
     (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     width, height = 0.1 * (right - left), 0.1 * (top - bottom)
     ax.set(xlim=(left, right + width) if shear < 0 else (left - width, right), ylim=(bottom, top + height))
@@ -215,7 +198,7 @@ def _draw_inset(ax: Axes, scene: Scene, x: Array, y: Array, stick: Array) -> Non
     inset.tick_params(labelsize=7)
 
 
-def _track(ax: Axes, x: Array, y: Array, stick: Array) -> None:
+def _track(ax: Axes, x: Array, y: Array, stick: Array | bool = False) -> None:
     """A curve that may cross itself: stick phases thick, its start a dot, its end a square."""
     ax.plot(x, y, color=style.BLUE, linewidth=min(0.7, 80 / max(_turns(x), _turns(y), 1)))
     ax.plot(x, np.where(stick, y, np.nan), color=style.VERMILLION, linewidth=1.8, solid_capstyle="butt")
@@ -223,27 +206,31 @@ def _track(ax: Axes, x: Array, y: Array, stick: Array) -> None:
     ax.plot(x[-1], y[-1], "s", color=style.INK, markersize=4, fillstyle="none")
 
 
-def _over_time(ax: Axes, time: Array, values: Array, color: str = style.BLUE) -> None:
+def _time_axis(ax: Axes, scene: Scene) -> None:
+    """Time in s over the whole scene, the marks of friction behind the curve."""
+    ax.set(xlim=scene.time[[0, -1]], xlabel="time $t$ [s]")
+    _ticks(ax.xaxis, 6)
+    place = {"transform": ax.get_xaxis_transform()}
+    ax.add_artist(StepPatch(scene.mode == 0, scene.edges, fill=True, color=style.BAND, linewidth=0, zorder=0, **place))
+    ax.vlines(scene.reversals, 0.955, 1.0, color=style.VERMILLION, linewidth=0.8, zorder=1, **place)
+
+
+def _over_time(ax: Axes, time: Array, values: Array, color: str = style.BLUE) -> list[str]:
     """A curve over time; where its swings lie too close to be seen apart, their envelope."""
     turns = _turns(values)
     if turns < SOLID:
         ax.plot(time, values, color=color, linewidth=1.0 if turns < DENSE else 0.5)
-        return
+        return []
     parts = np.array_split(np.arange(len(time)), min(SOLID, turns // 6))  # some swings in each
     edges = np.array([(time[rows].mean(), values[rows].min(), values[rows].max()) for rows in parts]).T
     ax.fill_between(*edges, color=color, alpha=0.35, linewidth=0.5)
+    return ["Filled: the envelope of a fast nutation."]
 
 
 def _turns(values: Array) -> int:
     """How often a curve turns, rounding aside."""
     steps, rounding = np.diff(values), 1e-6 * np.ptp(values) + 1e-9 * abs(values).max() + 1e-12
     return int(np.count_nonzero(np.diff(np.sign(steps[abs(steps) > rounding]))))
-
-
-def envelope(scene: Scene) -> bool:
-    """Whether a curve over time is drawn as its envelope."""
-    curves = [*(scene[name] for name in ("X_O", "theta", "lambda_3")), needed_friction(scene)]
-    return max(map(_turns, curves)) >= SOLID
 
 
 def _widen(axis: Axis, values: Array, least: float) -> None:
@@ -253,21 +240,9 @@ def _widen(axis: Axis, values: Array, least: float) -> None:
         axis.axes.set(**{f"{axis.axis_name}lim": (middle - least, middle + least)})
 
 
-def _ticks(axis: Axis, most: int) -> None:
+def _ticks(axis: Axis, most: int, steps: tuple[float, ...] = (1, 2, 4, 5, 10)) -> None:
     """Few ticks, numbers in full: no offset or power of ten stands over the title."""
-    axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 4, 5, 10]))
+    axis.set_major_locator(MaxNLocator(most, steps=steps))
     axis.set_minor_locator(AutoMinorLocator(2))
-    full = ScalarFormatter(useOffset=False)
+    axis.set_major_formatter(full := ScalarFormatter(useOffset=False))
     full.set_scientific(False)
-    axis.set_major_formatter(full)
-
-
-def _time_axis(ax: Axes, scene: Scene) -> None:
-    """Time in s over the whole scene, its events behind the curve."""
-    ax.set_xlim(scene.time[0], scene.time[-1])
-    ax.set_xlabel("time $t$ [s]")
-    _ticks(ax.xaxis, 6)
-    for begin, end in scene.stick_phases():
-        ax.axvspan(begin, end, color=style.BAND, linewidth=0, zorder=0)
-    place = {"transform": ax.get_xaxis_transform(), "color": style.VERMILLION, "linewidth": 0.8, "zorder": 1}
-    ax.vlines(scene.reversals(), 0.955, 1.0, **place)

@@ -9,6 +9,7 @@ beside.
 
 import re
 import sys
+import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +19,7 @@ from matplotlib.axes import Axes
 
 from diagrams import panels, style
 from diagrams.scene import Scene, SceneError, read_scene
-from diagrams.start_values import PAPER_S, ROOT, RUN, outputs, variables
+from diagrams.start_values import PAPER_S, ROOT, RUN, variables
 
 RESULTS = ROOT / "results"
 SETTINGS = variables("parameter", "input")
@@ -28,23 +29,23 @@ PITCH = 3.4  # mm from one line of a caption to the next
 
 @dataclass(frozen=True)
 class Panel:
-    """One row of a sheet; `figures`: its numbers in the paper, without and with friction; height in mm."""
+    """One row of a sheet; `figures`: its numbers in the paper, without and with friction; height in mm in all."""
 
     name: str
     subject: str
     height: float
-    draw: Callable[[Axes, Scene], None]
+    draw: Callable[[Axes, Scene], list[str]]
     figures: tuple[int, int] | None = None
 
 
 PAPERS = (
-    Panel("position", r"$X_O(t)$", 40.0, panels.draw_position, (1, 4)),
-    Panel("tilt", r"$\theta(t)$", 40.0, panels.draw_tilt, (2, 5)),
-    Panel("rates", r"$\dot\varphi(\dot\psi)$", 58.0, panels.draw_rates, (3, 6)),
+    Panel("position", r"$X_O(t)$", 57.0, panels.draw_position, (1, 4)),
+    Panel("tilt", r"$\theta(t)$", 57.0, panels.draw_tilt, (2, 5)),
+    Panel("rates", r"$\dot\varphi(\dot\psi)$", 75.0, panels.draw_rates, (3, 6)),
 )
 OTHERS = (
-    Panel("path", "Path of the contact point", 50.0, panels.draw_path),
-    Panel("ground", r"$N(t)$ and required $\mu(t)$", 50.0, panels.draw_ground),
+    Panel("path", "Path of the contact point", 67.0, panels.draw_path),
+    Panel("ground", r"$N(t)$ and required $\mu(t)$", 67.0, panels.draw_ground),
 )
 
 
@@ -88,90 +89,64 @@ def start_of(scene: Scene) -> str:
 
 def title_of(scene: Scene) -> str:
     s = scene.value("s")
-    return rf"rolling friction, $s = {s:.4g}$ m" if s > 0 else r"no rolling friction, $s = 0$"
+    return rf"Rolling friction, $s = {s:.4g}$ m" if s > 0 else r"No rolling friction, $s = 0$"
 
 
 def events_of(scene: Scene) -> list[str]:
-    """What friction and brake did, and the marks that are there."""
-    phases, count = scene.stick_phases(), int(scene["n_events"][-1])
-    if phases and not count:
+    """The action of friction and brake, and the marks that are there."""
+    sticks, count = (scene.mode == 0).any(), int(scene["n_events"][-1])
+    if not scene.resisted:
+        return []
+    if sticks and not count:
         return [r"$\omega_z$ is held at zero all the time (stick)."]
-    bands = [r"Bands, thick among the rates: stick ($\omega_z$ held at zero)."] if phases else []
-    ticks = [r"Ticks at the top: $\omega_z$ changes sign."] if len(scene.reversals()) else []
+    bands = [r"Bands, thick among the rates: stick ($\omega_z$ held at zero)."] * bool(sticks)
+    ticks = [r"Ticks at the top: $\omega_z$ changes sign."] * (len(scene.reversals) > 0)
     return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene.time[-1]:.3g} s.", *bands, *ticks]
 
 
-def remarks_of(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
-    """What has to be said of one scene below these panels, a sentence each."""
-    rates = panels.draw_rates in [panel.draw for panel in drawn]
-    over_time = any(panel.draw not in (panels.draw_rates, panels.draw_path) for panel in drawn)
-    remarks = events_of(scene) if scene.resisted else []
-    if rates and not scene.still:
-        if scene.one_arc:
-            remarks.append(r"The rates depend on $\theta$ alone: the wheel runs to and fro on one arc.")
-        elif panels.narrow(scene):
-            remarks.append("Inset: the same motion sheared, which opens the narrow bundle.")
-    if over_time and panels.envelope(scene):
-        remarks.append("Filled: the envelope of a fast nutation.")
-    if panels.draw_ground in [panel.draw for panel in drawn] and panels.needed_friction(scene).max() == panels.MOST:
-        remarks.append(rf"$\mu$ is drawn up to {panels.MOST:g}.")
-    return remarks + [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
-
-
-def caption(scenes: Sequence[Scene], drawn: Sequence[Panel], columns: int) -> list[str]:
-    """The parameters, all that is not the paper's, and what the marks mean."""
+def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], columns: int) -> list[str]:
+    """The parameters, all that is not the paper's, and the remarks on each scene."""
     texts = [f"Torus wheel: {wheel_of(scenes[-1])}. {start_of(scenes[-1])}."]
     if other := unlike_paper(scenes[-1]):
         texts.append(f"Unlike the paper: {', '.join(said.replace(' ', NO_BREAK) for said in other)}.")
-    for scene in scenes:
-        name = [f"{title_of(scene).split(',')[0].capitalize()}:"] if len(scenes) > 1 else []
-        remarks = remarks_of(scene, drawn)
-        texts += [" ".join(name + remarks)] if remarks else []
+    for scene, drawn in zip(scenes, remarks, strict=True):
+        name = [f"{title_of(scene).split(',')[0]}:"] * (len(scenes) > 1)
+        ends = [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
+        said = [*dict.fromkeys([*events_of(scene), *drawn]), *ends]
+        texts += [" ".join([*name, *said])] * bool(said)
     return [line for text in texts for line in wrapped(text, columns)]
 
 
 def wrapped(text: str, columns: int) -> list[str]:
     """Lines with as many words as have room; a formula is one word, as wide as its letters."""
-    lines = [""]
-    for word in re.findall(r"(?:\$[^$]*\$|[^ $])+", text):
-        longer = f"{lines[-1]} {word}".strip()
-        if lines[-1] and len(re.sub(r"\\[a-z]+|[${}_^\\]", "", longer)) > columns:
-            lines.append(word)
-        else:
-            lines[-1] = longer
-    return lines
-
-
-def heading(panel: Panel, scene: Scene, paper: bool) -> str:
-    """Number, for the paper's scenes alone, and subject."""
-    number = panel.figures[scene.value("s") > 0] if paper and panel.figures else 0
-    return rf"$\mathbf{{Fig.\,{number}}}$   {panel.subject}" if number else panel.subject
+    formulas = iter(re.findall(r"\$[^$]*\$", text))
+    shown = re.sub(r"\$[^$]*\$", lambda found: "$" * len(re.findall(r"\\[a-z]+|[^${}_^\\ ]", found[0])), text)
+    return [re.sub(r"\$+", lambda _: next(formulas), line) for line in textwrap.wrap(shown, columns)]
 
 
 def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: bool) -> list[Path]:
     """A sheet: a row per panel, a column per scene; one panel of one scene is a journal column wide."""
-    sheet = len(scenes) > 1
-    lines = caption(scenes, drawn, 150 if sheet else 72)
-    head, foot = (9.0 if sheet else 1.0), 3.0 + PITCH * len(lines)
-    height = head + foot + sum(panel.height + 17.0 for panel in drawn)
-    fig = style.figure_mm(style.PAGE if sheet else style.COLUMN, height)
-    rect = (0, foot / height, 1, 1 - (foot + head) / height)
-    fig.set_layout_engine("constrained", rect=rect, hspace=0.03, wspace=0.04)
-    axes = fig.subplots(len(drawn), len(scenes), squeeze=False, height_ratios=[panel.height for panel in drawn])
-    rows = zip(axes, drawn, strict=True)
-    cells = [(ax, panel, scene) for row, panel in rows for ax, scene in zip(row, scenes, strict=True)]
-    for ax, panel, scene in cells:
-        panel.draw(ax, scene)
-        title = heading(panel, scene, paper) + ("" if sheet else f", {title_of(scene)}")
-        ax.set_title(title, loc="left", fontsize=9)
+    sheet, heights = len(scenes) > 1, [panel.height for panel in drawn]
+    fig = style.figure_mm(style.PAGE if sheet else style.COLUMN, sum(heights) + 9.0 * sheet)
+    axes = fig.subplots(len(drawn), len(scenes), squeeze=False, height_ratios=heights)
+    rates, remarks = [], [[] for _ in scenes]
+    for row, panel in zip(axes, drawn, strict=True):
+        for ax, scene, said in zip(row, scenes, remarks, strict=True):
+            said += panel.draw(ax, scene)
+            number = panel.figures[scene.value("s") > 0] if paper and panel.figures else 0
+            title = rf"$\mathbf{{Fig.\,{number}}}$   {panel.subject}" if number else panel.subject
+            ax.set_title(title if sheet else f"{title}, {title_of(scene).lower()}", loc="left", fontsize=9)
+            if sheet and panel is drawn[0]:
+                style.note(ax, title_of(scene), (0, 1), (0, 24), xycoords="axes fraction", fontsize=10.5)
+            rates += [(ax, scene)] * (panel.draw is panels.draw_rates)
+    lines = caption(scenes, remarks, 150 if sheet else 72)
+    foot, (width, height) = (3.0 + PITCH * len(lines)) * style.MM, fig.get_size_inches()
+    fig.set_size_inches(width, height + foot)
+    fig.set_layout_engine("constrained", rect=(0, foot / (height + foot), 1, height / (height + foot)))
     fig.get_layout_engine().execute(fig)
-    fig.set_layout_engine("none")  # what follows needs the places of the panels
-    for ax, panel, scene in cells:
-        if sheet and panel is drawn[0]:
-            left, title = ax.get_position().x0 * style.PAGE, title_of(scene)
-            style.text_mm(fig, left, height - 6.0, title[0].upper() + title[1:], fontsize=10.5)
-        if panel.draw is panels.draw_rates:
-            panels.write_rates(ax, scene)
+    fig.set_layout_engine("none")  # the texts beside a curve need the places of the panels
+    for ax, scene in rates:
+        panels.write_rates(ax, scene)
     for i, line in enumerate(reversed(lines)):
         style.text_mm(fig, 2.0, 1.8 + PITCH * i, line, fontsize=7.5 if sheet else 7.0)
     return style.save(fig, stem)
@@ -189,19 +164,17 @@ def draw_all(scenes: Sequence[Scene], out: Path) -> list[Path]:
     return written
 
 
-def main() -> int:
-    """Draw everything; a fault of the input is one sentence on stderr and exit status 1."""
+def main() -> None:
+    """Draw everything; a fault of the input is one line on stderr and exit status 1."""
     style.use_style()
     try:
-        scenes = [read_scene(RESULTS / f"{name}.csv", ("time", *outputs())) for name in ("free", "friction")]
+        scenes = [read_scene(RESULTS / f"{name}.csv") for name in ("free", "friction")]
+        if scenes[0].value("r") > scenes[0].value("r_0"):
+            print("run: r > r_0: this torus intersects itself; the model rolls it all the same.", file=sys.stderr)
+        print(*draw_all(scenes, RESULTS), sep="\n")
     except SceneError as fault:
-        print(f"run: {fault}", file=sys.stderr)
-        return 1
-    if scenes[0].value("r") > scenes[0].value("r_0"):
-        print("run: r > r_0: this torus intersects itself; the model rolls it all the same.", file=sys.stderr)
-    print("\n".join(str(path) for path in draw_all(scenes, RESULTS)))
-    return 0
+        sys.exit(f"run: {fault}")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -4,6 +4,7 @@ Names and units are those of the model's variables: SI, fixed axes X, Y, Z, Z up
 """
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -26,14 +27,16 @@ class Scene:
     """The columns of one simulation, one row per communication point."""
 
     path: Path
-    columns: dict[str, Array]
+    columns: Mapping[str, Array]
 
     def __getitem__(self, name: str) -> Array:
+        if name not in self.columns:
+            raise SceneError(f"{self.path} lacks the column {name}.")
         return self.columns[name]
 
     @property
     def time(self) -> Array:
-        return self.columns["time"]
+        return self["time"]
 
     @cached_property
     def ending(self) -> str:
@@ -46,16 +49,25 @@ class Scene:
         """A parameter of the run, which the file holds as a column of equal numbers."""
         return float(self[name][0])
 
-    def setting(self, name: str) -> float:
-        """The same, 0 where there is no such column."""
-        return self.value(name) if name in self.columns else 0.0
+    @property
+    def resisted(self) -> bool:
+        """Whether friction or a brake acts about the axle."""
+        return self.value("s") > 0 or self.value("M_brake") > 0
 
-    @cached_property
-    def transitions(self) -> tuple[NDArray[np.int_], Array]:
-        """Rows whose friction mode differs from the next row's, and the instants half-way: the mode is the sign of
-        omega_z while it rolls, 0 while it is held at zero (it sticks); without friction and brake there are none."""
-        rows = np.flatnonzero(np.diff(self["friction_mode"])) if self.resisted else np.array([], dtype=int)
-        return rows, (self.time[rows] + self.time[rows + 1]) / 2
+    @property
+    def edges(self) -> Array:
+        """Instants in s between which a row's friction mode is drawn: half-way to the rows beside it."""
+        return np.concatenate([self.time[:1], (self.time[:-1] + self.time[1:]) / 2, self.time[-1:]])
+
+    @property
+    def mode(self) -> Array:
+        """The sign of omega_z while the wheel rolls, 0 while omega_z is held at zero (stick); 1 without resistance."""
+        return np.sign(self["friction_mode"]) if self.resisted else np.ones(len(self.time))
+
+    @property
+    def reversals(self) -> Array:
+        """Instants in s at which omega_z changes sign without a stick phase."""
+        return self.edges[1:-1][self.mode[:-1] * self.mode[1:] < 0]
 
     @property
     def one_arc(self) -> bool:
@@ -66,25 +78,9 @@ class Scene:
         return bool(turns.any() and (beside < ARC * np.ptp(rates, axis=0)).all())
 
     @property
-    def resisted(self) -> bool:
-        """Whether friction or a brake acts about the axle."""
-        return self.setting("s") > 0 or self.setting("M_brake") > 0
-
-    @property
     def still(self) -> bool:
         """Whether the rates keep their values."""
         return max(np.ptp(self["psi_dot"]), np.ptp(self["phi_dot"])) <= STILL
-
-    def stick_phases(self) -> list[tuple[float, float]]:
-        """Begin and end in s of every phase with omega_z held at zero."""
-        rows, instants = self.transitions
-        modes, edges = self["friction_mode"][[*rows, -1]], [self.time[0], *instants, self.time[-1]]
-        return [edges[k : k + 2] for k in np.flatnonzero(modes == 0)] if self.resisted else []
-
-    def reversals(self) -> Array:
-        """Instants in s at which omega_z changes sign without a stick phase."""
-        rows, instants = self.transitions
-        return instants[self["friction_mode"][rows] * self["friction_mode"][rows + 1] < 0]
 
     def smooth(self, subdivision: int, *names: str) -> tuple[Array, ...]:
         """Columns with points between the rows, for curves that turn sharply.
@@ -96,17 +92,14 @@ class Scene:
         return tuple(Akima1DInterpolator(rows, self[name])(fine) for name in names)
 
 
-def read_scene(path: Path, needed: tuple[str, ...]) -> Scene:
-    """Read a CSV file; every column of `needed` must be there."""
+def read_scene(path: Path) -> Scene:
+    """Read a CSV file."""
     try:
-        with path.open(encoding="utf-8") as file:
-            table = np.genfromtxt(file, delimiter=",", names=True, ndmin=1, dtype=None, encoding="utf-8")
+        table = np.genfromtxt(path, delimiter=",", names=True, dtype=None, ndmin=1, encoding="utf-8")
     except (OSError, ValueError) as fault:
         raise SceneError(f"{path} cannot be read as a table ({fault}): simulate first.") from fault
-    if missing := [name for name in needed if name not in (table.dtype.names or ())]:
-        raise SceneError(f"{path} lacks the column {', '.join(missing)}.")
-    scene = Scene(path, {name: np.asarray(table[name], dtype=float) for name in needed})
-    if len(table) < 2 or scene.time[-1] <= scene.time[0]:
+    scene = Scene(path, {name: table[name].astype(float) for name in table.dtype.names})
+    if np.ptp(scene.time) <= 0:
         why = (scene.ending or "stands at one instant").replace("$", "")
         raise SceneError(f"{path} has no motion to draw: the wheel {why}.")
     return scene

@@ -17,7 +17,6 @@ from values import variables as described  # noqa: E402
 
 PAPER_S = 0.03  # m, (29)
 
-
 RUN = {
     "stop_time": Variable("stop_time", "run", "Real", "s", "10", "0", "", "End of the runs, above 0"),
     "output_interval": Variable("output_interval", "run", "Real", "s", "0.01", "0", "", "Time between rows, above 0"),
@@ -41,21 +40,16 @@ def usage() -> str:
     return "\n".join([*(line[2:] for line in comment), "", *ready, "", "The values that can be given:", *rows])
 
 
-def of_wheel(name: str) -> dict[str, str]:
-    """Its parameters, and the paper's start, friction and rows in proportion to its radius."""
-    body = ready(name)
-    more = {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
-    return {n: repr(value) for n, value in (body | more).items()}
-
-
 def values(arguments: list[str]) -> dict[str, str]:
-    """What is given, by name, in SI."""
+    """What is given, by name, in SI; of a ready wheel also friction and rows, in proportion to its radius."""
     takes, names = known(), wheels()
     found, given = {}, {}
     for argument in arguments:
         name, equals, text = argument.partition("=")
         if name == "wheel" or (not equals and name in names):
-            found = of_wheel(text or name)
+            body = ready(text or name)
+            rows = 0.01 / max(1, round(scale(body, s=-1)))
+            found = {n: repr(v) for n, v in (body | {"s": PAPER_S * scale(body, m=1), "output_interval": rows}).items()}
         elif not equals:
             meant = suggestion(name, dict.fromkeys(names, ""))
             raise Fault(f'"{argument}" is neither name=value nor a ready wheel.{meant} See ./scripts/run --help.')
@@ -81,20 +75,17 @@ def outputs() -> list[str]:
     return [v.name for v in variables().values() if v.causality != "local" or v.name in wanted]
 
 
-def main() -> int:
-    arguments = sys.argv[1:]
+def main(arguments: list[str]) -> None:
     try:
         if arguments == ["outputs"]:
-            print("\n".join(outputs()))
+            print(*outputs(), sep="\n")
         elif {"-h", "--help"} & set(arguments):
             print(usage())
         else:
             print("\n".join(f"{name} {value}" for name, value in values(arguments).items()))
     except Fault as fault:
-        print(f"run: {fault}", file=sys.stderr)
-        return 1
-    return 0
+        sys.exit(f"run: {fault}")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main(sys.argv[1:])

@@ -2,41 +2,76 @@
 
 The picture shows the paper's free wheel at one instant of results/free.csv, and the path of its contact
 point up to then: fixed axes X, Y, Z; carrier axes e1, e2, e3; angles psi, theta, phi of (3);
-r_0, r and O as in (27) and (32). Orthographic, so that lengths in one direction compare.
+r_0, r and O as in (27) and (32). Lines are vectors, dashed or left out behind the wheel.
 """
 
 import sys
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from diagrams import style
 from diagrams.scene import Array, Scene, SceneError, read_scene
-from diagrams.sketch import Sketch
-from diagrams.torus import View, Wheel, draw
+from diagrams.torus import Wheel, draw, project
 
 ROOT = Path(__file__).resolve().parents[2]
-POSE = ("X_O", "Y_O", "psi", "theta", "phi")
+POSE = ("psi", "theta", "phi", "X_O", "Y_O")
 R_0, R = 0.3, 0.05  # m, (27)
 INSTANT = 2.86  # s
-VIEW = View(azimuth=np.radians(36.0), elevation=np.radians(17.0))
 WINDOW = np.array([-0.52, 1.12, -0.25, 0.75])  # m in the image plane: left, right, bottom, top
-WIDTH = 165.0  # mm
-PIXELS = 730  # per m in the image plane
+SIZE = 165.0, 165.0 / 1.64  # mm
+DPI = 184
 ICON = 176  # pixels
-SUBDIVISION = 5  # drawn points of the path per row
 ICON_FILE = ROOT / "fmu-src" / "archive" / "model.png"
 GROUND = ((-0.9, 0.3), (-0.4, 0.7))  # m, X and Y of the grid
+CARRIER, ANGLE, PATH = "#00507C", "#00704F", style.VERMILLION
+HEAD = {
+    "arrowstyle": "-|>,head_length=0.45,head_width=0.17",
+    "mutation_scale": 8.0,
+    "shrinkA": 0,
+    "shrinkB": 0,
+    "lw": 0,
+}
+HALO = [withStroke(linewidth=1.7, foreground="white")]
 
-CARRIER = "#00507C"
-ANGLE = "#00704F"
-PATH = style.VERMILLION
-SMALL = {"fontsize": 8.0, "color": "#5A5A5A"}
+
+@dataclass(frozen=True)
+class Sketch:
+    """A drawing of one wheel; points in fixed axes in m."""
+
+    ax: Axes
+    wheel: Wheel
+
+    def line(self, points: Array, color: str, width: float, hidden: float = 0.0, layer: float = 3.0) -> Array:
+        """Between two points, or a fine polyline, in the image; hidden: the opacity of its dashes behind the wheel."""
+        points = np.linspace(*points, 300) if len(points) == 2 else points
+        covered, image = self.wheel.hides(points)[:, None], project(points)
+        dashed = {"alpha": hidden, "dashes": (2.5, 1.8)}
+        for shown, linewidth, look in ((~covered, width, {}), (covered & (hidden > 0), 0.8 * width, dashed)):
+            part = np.where(shown, image, np.nan)
+            self.ax.plot(*part.T, color=color, lw=linewidth, zorder=layer, solid_capstyle="butt", **look)
+        return image
+
+    def arrow(self, points: Array, color: str, width: float, hidden: float = 0.0) -> None:
+        """A line with a head at its last point."""
+        tail, tip = self.line(points, color, width, hidden)[[-4, -1]]
+        self.ax.annotate("", tip + 0.3 * (tip - tail), tail, arrowprops=HEAD | {"color": color}, zorder=3.0)
+
+    def label(self, point: Array, text: str, shift: tuple[float, float], color: str = style.INK, **how: object) -> None:
+        """Text centred at a point, moved by `shift` in typographic points."""
+        look = {"ha": "center", "va": "center", "fontsize": 10.5, "path_effects": HALO, "zorder": 7} | how
+        style.note(self.ax, text, project(point), shift, color=color, **look)
+
+    def dot(self, point: Array, color: str, size: float = 4.0) -> None:
+        """A point, never hidden."""
+        self.ax.plot(*project(point), "o", mfc=color, mec="white", mew=0.6, markersize=size, zorder=6)
 
 
 def draw_ground(sketch: Sketch, path: Array) -> None:
@@ -47,119 +82,90 @@ def draw_ground(sketch: Sketch, path: Array) -> None:
         for ends[:, along] in np.arange(round(10 * low), round(10 * high) + 1) / 10:
             sketch.line(ends, "#D9DCDF", 0.5, layer=0)
     sketch.line(path, PATH, 1.3, layer=1.5)
-    leftmost = path[np.argmin(sketch.view.project(path)[:, 0])]
-    look = {"ha": "left", "fontsize": 8.5, "color": PATH, "linespacing": 1.0}
-    sketch.label(leftmost, "path of the\ncontact point", (14, 0), **look)
+    leftmost = path[np.argmin(project(path)[:, 0])]
+    sketch.label(leftmost, "path of the\ncontact point", (14, 0), PATH, ha="left", fontsize=8.5, linespacing=1.0)
     for axis, name, shift in zip(np.eye(3), "XYZ", ((-7, -5), (9, -3), (0, 8)), strict=True):
         sketch.arrow([0 * axis, 0.25 * axis], style.INK, 1.2)
         sketch.label(0.25 * axis, f"${name}$", shift)
 
 
-def draw_carrier(sketch: Sketch) -> None:
-    """O and the axes e1, e2, e3, which do not spin with the wheel."""
-    centre = sketch.wheel.centre
-    for i, (length, shift) in enumerate(((0.42, (9, 2)), (0.19, (-9, 3)), (0.50, (10, 2)))):
-        tip = centre + length * sketch.wheel.carrier[:, i]
-        sketch.arrow([centre, tip], CARRIER, 1.3, hidden=0.6)
-        sketch.label(tip, rf"$\mathbf{{e}}_{i + 1}$", shift, color=CARRIER)
-    sketch.dot(centre, style.INK)
-    sketch.label(centre, "$O$", (-9, -4))
-
-
-def draw_angles(sketch: Sketch) -> None:
-    """psi from X to e1 on the ground, theta from Z to e3, phi from e1 to the body's x axis."""
-    wheel, turn = sketch.wheel, np.linspace(0.0, 1.0, 80)
-
-    def arc(start: Array, axis: Array, angle: float, radius: float, name: str, row: int, shift: tuple) -> None:
-        way = Rotation.from_rotvec(np.outer(turn * angle, axis)).apply(start)
-        sketch.arrow(centre + radius * way, ANGLE, 1.1, hidden=0.5)
-        sketch.label(centre + radius * way[row], name, shift, color=ANGLE)
-
-    def side(end: Array, name: str = "", shift: tuple = (0, 0)) -> None:
-        sketch.line([centre, centre + end], style.GREY, 0.7, hidden=0.5)
-        sketch.label(centre + end, name, shift, **SMALL)
-
-    (e1, _, _), (X, _, Z) = wheel.carrier.T, np.eye(3)
-    centre = wheel.contact
-    side(0.24 * X, "$X$", (-2, -6))
-    side(0.24 * e1, r"$\mathbf{e}_1$", (4, 7))
-    arc(X, Z, wheel.psi % (2 * np.pi), 0.20, r"$\psi$", 36, (8, -7))
-    centre = wheel.centre
-    side(0.235 * Z, "$Z$", (-5, -2))
-    arc(Z, e1, wheel.theta, 0.13, r"$\theta$", 16, (3, 8))
-    phi = wheel.phi % (2 * np.pi)
-    side((R_0 - R) * wheel.rim(phi))
-    arc(e1, wheel.carrier[:, 2], phi, 0.20, r"$\varphi$", 12, (-8, -1))
-    sketch.label(centre + (R_0 + 1.2 * R) * wheel.rim(phi), "$x$", (6, 5))
-
-
-def draw_radii(sketch: Sketch) -> None:
-    """r_0 from O to the tube's centre, r from there down to the contact point."""
-    wheel = sketch.wheel
+def draw_wheel(sketch: Sketch) -> None:
+    """O and the axes that do not spin; psi from X to e1, theta from Z to e3, phi from e1 to the body's x; r_0 and r."""
+    wheel, X, Z = sketch.wheel, *np.eye(3)[[0, 2]]
+    (e1, e2, e3), centre, phi = wheel.carrier.T, wheel.centre, wheel.phi % (2 * np.pi)
+    tube, contact = centre - R_0 * e2, centre - R_0 * e2 - R * Z
+    for end, name, shift in ((0.42 * e1, "1", (9, 2)), (0.19 * e2, "2", (-9, 3)), (0.50 * e3, "3", (10, 2))):
+        sketch.arrow([centre, centre + end], CARRIER, 1.3, hidden=0.6)
+        sketch.label(centre + end, rf"$\mathbf{{e}}_{name}$", shift, CARRIER)
     for start, end, name, shift in (
-        (wheel.centre, wheel.tube_centre, "$r_0$", (-9, 0)),
-        (wheel.tube_centre, wheel.contact, "$r$", (-6, 0)),
+        (contact, 0.24 * X, "$X$", (-2, -6)),
+        (contact, 0.24 * e1, r"$\mathbf{e}_1$", (4, 7)),
+        (centre, 0.235 * Z, "$Z$", (-5, -2)),
+        (centre, (R_0 - R) * wheel.rim(phi), "", (0, 0)),
     ):
+        sketch.line([start, start + end], style.GREY, 0.7, hidden=0.5)
+        sketch.label(start + end, name, shift, "#5A5A5A", fontsize=8.0)
+    for middle, start, axis, angle, name, at, shift in (
+        (contact, 0.20 * X, Z, wheel.psi % (2 * np.pi), r"$\psi$", 137, (8, -7)),
+        (centre, 0.13 * Z, e1, wheel.theta, r"$\theta$", 60, (3, 8)),
+        (centre, 0.20 * e1, e3, phi, r"$\varphi$", 45, (-8, -1)),
+    ):
+        arc = middle + Rotation.from_rotvec(np.outer(np.linspace(0.0, angle, 300), axis)).apply(start)
+        sketch.arrow(arc, ANGLE, 1.1, hidden=0.5)
+        sketch.label(arc[at], name, shift, ANGLE)
+    for start, end, name, shift in ((centre, tube, "$r_0$", (-9, 0)), (tube, contact, "$r$", (-6, 0))):
         sketch.line([start, end], style.INK, 1.0, hidden=1.0, layer=5)
-        sketch.label(0.5 * (start + end), name, shift)
-    sketch.dot(wheel.tube_centre, style.INK, 2.6)
-    sketch.dot(wheel.contact, PATH)
+        sketch.label((start + end) / 2, name, shift)
+    sketch.label(centre + (R_0 + 1.2 * R) * wheel.rim(phi), "$x$", (6, 5))
+    sketch.label(centre, "$O$", (-9, -4))
+    for point, color, size in ((centre, style.INK, 4.0), (tube, style.INK, 2.6), (contact, PATH, 4.0)):
+        sketch.dot(point, color, size)
 
 
 def draw_picture(scene: Scene, stem: Path) -> list[Path]:
     """docs/figures/wheel: the paper's free wheel at one instant, and its path up to then."""
     row = int(np.argmin(abs(scene.time - INSTANT)))
     wheel = Wheel(R_0, R, *(float(scene[name][row]) for name in POSE))
-    left, right, bottom, top = WINDOW
-    height = WIDTH * (top - bottom) / (right - left)
-    fig = style.figure_mm(WIDTH, height)
-    ax = whole(fig, WINDOW)
-    draw(ax, wheel, VIEW)
-    sketch = Sketch(ax, wheel, VIEW)
-    x, y = (column[: SUBDIVISION * row + 1] for column in scene.smooth(SUBDIVISION, "X_C", "Y_C"))
-    draw_ground(sketch, np.column_stack([x, y, 0 * x]))
-    draw_carrier(sketch)
-    draw_angles(sketch)
-    draw_radii(sketch)
+    fig = style.figure_mm(*SIZE)
+    sketch = Sketch(whole(fig, WINDOW), wheel)
+    draw(sketch.ax, wheel)
+    time, x, y = scene.smooth(5, "time", "X_C", "Y_C")
+    draw_ground(sketch, np.column_stack([x, y, 0 * x])[time <= INSTANT])
+    draw_wheel(sketch)
     note = f"The paper’s free wheel at $t$ = {scene.time[row]:.2f} s. Grid: 0.1 m."
     style.text_mm(fig, 3.0, 3.0, note, fontsize=8.5, color=style.GREY)
-    svg, png = style.save(fig, stem, dpi=round(PIXELS * (right - left) / (WIDTH * style.MM)))
+    svg, png = style.save(fig, stem, DPI)
     Image.open(png).convert("RGB").quantize(256).save(png, optimize=True)  # it goes into the archive
     return [svg, png]
 
 
 def whole(fig: Figure, window: Array) -> Axes:
     """Axes without a frame that fill the figure; window: left, right, bottom, top in m."""
-    ax = fig.add_axes((0, 0, 1, 1))
+    ax = fig.add_axes((0, 0, 1, 1), xlim=window[:2], ylim=window[2:])
     ax.set_axis_off()
-    ax.set(xlim=window[:2], ylim=window[2:])
     return ax
 
 
 def draw_icon(path: Path) -> Path:
     """The FMU's icon: the wheel alone, leaning, transparent around it."""
-    pose = {"psi": np.radians(166.0), "theta": np.radians(66.0), "phi": np.radians(40.0)}
-    wheel = Wheel(R_0, 0.07, 0.0, 0.0, **pose)  # a thicker tyre reads better when small
-    (u, v), half = VIEW.project(wheel.centre), 0.40  # m
+    wheel = Wheel(R_0, 0.07, *np.radians([166.0, 66.0, 40.0]))  # a thicker tyre reads better when small
+    (u, v), half = project(wheel.centre), 0.40  # m
     fig, large = Figure(figsize=(1, 1)), BytesIO()
-    draw(whole(fig, (u - half, u + half, v - half, v + half)), wheel, VIEW, mark=0.08, shadow=False)
+    draw(whole(fig, (u - half, u + half, v - half, v + half)), wheel, mark=0.08, shadow=False)
     fig.savefig(large, dpi=4 * ICON, transparent=True)
     Image.open(large).resize((ICON, ICON), Image.Resampling.LANCZOS).save(path, optimize=True)
     return path
 
 
-def main() -> int:
-    """Both, from what `./scripts/run` left; a fault of the input is one sentence on stderr and exit status 1."""
+def main() -> None:
+    """Both, from what `./scripts/run` left; a fault of the input is one line on stderr and exit status 1."""
     style.use_style()
     try:
-        scene = read_scene(ROOT / "results" / "free.csv", ("time", "X_C", "Y_C", *POSE))
+        scene = read_scene(ROOT / "results" / "free.csv")
+        print(*draw_picture(scene, ROOT / "docs" / "figures" / "wheel"), draw_icon(ICON_FILE), sep="\n")
     except SceneError as fault:
-        print(f"picture: {fault}", file=sys.stderr)
-        return 1
-    written = [*draw_picture(scene, ROOT / "docs" / "figures" / "wheel"), draw_icon(ICON_FILE)]
-    print("\n".join(str(path) for path in written))
-    return 0
+        sys.exit(f"picture: {fault}")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -9,26 +9,18 @@ import re
 import sys
 
 from proselint.checks import __register__ as usual
-from proselint.config import DEFAULT
+from proselint.config import Config
 from proselint.registry import CheckRegistry
-from proselint.registry.checks import Check, Padding
-from proselint.registry.checks.types import Existence
 from proselint.tools import LintFile
 
 from publishing.documents import ROOT, pages
 
-# Checks of proselint that judge names, numbers or terms of mechanics.
-UNUSED = (
-    "lexical_illusions",
-    "typography",
-    "spelling",
-    "needless_variants",
-    "terms",
-    "restricted",
-    "misc.preferred_forms",
-    "misc.phrasal_adjectives",
-    "annotations",
-)
+# But for those that judge names, numbers or terms of mechanics.
+UNUSED = ("lexical_illusions", "typography", "spelling", "needless_variants", "terms", "restricted", "annotations")
+UNUSED += ("misc.preferred_forms", "misc.phrasal_adjectives")
+CHECKS = tuple(check for check in usual if not check.path.startswith(UNUSED))
+CheckRegistry().register_many(CHECKS)
+CONFIG = Config(max_errors=1000, checks={check.path.split(".")[0]: True for check in CHECKS})
 VOCABULARY = {
     "software logs, returns, reports or shows": r"tells?|told|telling|is said|are said|sa(?:ys|id) so",
     "a message or a line, not a sentence": r"sentences?",
@@ -48,42 +40,18 @@ BLANKED = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 SPANS_ARE_PROSE = "docs/messages.md"
-CONFIG = DEFAULT | {
-    "checks": dict.fromkeys((*sorted({check.path.split(".")[0] for check in usual} - set(UNUSED)), "wheel"), True)
-}
-
-
-def checks() -> list[Check]:
-    own = [
-        Check(
-            check_type=Existence(items=(f"(?:{pattern})",), padding=Padding.WORDS_IN_TEXT),
-            path="wheel",
-            message=f"'{{}}': {advice}.",
-        )
-        for advice, pattern in VOCABULARY.items()
-    ]
-    return [check for check in usual if not check.path.startswith(UNUSED)] + own
-
-
-def prose_of(text: str, spans: bool = False) -> str:
-    """The text with everything that is not prose blanked, in place."""
-
-    def blank(found: re.Match[str]) -> str:
-        if spans and found[0].startswith("`") and not found[0].startswith("``"):
-            return f" {found[0][1:-1]} "
-        return re.sub(r"[^\n]", " ", found[0])
-
-    return BLANKED.sub(blank, text)
 
 
 def faults(name: str, text: str) -> list[str]:
-    """`file:line: message` of each fault."""
-    found = LintFile(source=name, content=prose_of(text, name == SPANS_ARE_PROSE)).lint(CONFIG)
-    return [f"{name}:{fault.pos[0]}: {fault.check_result.message}" for fault in found]
-
-
-def register() -> None:
-    CheckRegistry().register_many(tuple(checks()))
+    """`file:line: message` of each fault; all that is no prose is blanked in place."""
+    if name == SPANS_ARE_PROSE:
+        text = re.sub("(?<!`)`(?!`)", " ", text)
+    prose = BLANKED.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
+    found = [(fault.pos[0], fault.check_result.message) for fault in LintFile(name, prose).lint(CONFIG)]
+    for advice, pattern in VOCABULARY.items():
+        words = re.finditer(rf"\b(?:{pattern})\b", prose, re.IGNORECASE)
+        found += [(1 + prose.count("\n", 0, word.start()), f"'{word[0]}': {advice}.") for word in words]
+    return [f"{name}:{line}: {message}" for line, message in sorted(found)]
 
 
 def help_of(script: str) -> str:
@@ -92,12 +60,9 @@ def help_of(script: str) -> str:
 
 
 def main() -> int:
-    register()
     names = [str(page.relative_to(ROOT)) for page in pages() if page.suffix == ".md"]
     texts = {name: (ROOT / name).read_text(encoding="utf-8") for name in names}
-    texts |= {
-        f"scripts/{path.name}": help_of(path.read_text(encoding="utf-8")) for path in (ROOT / "scripts").iterdir()
-    }
+    texts |= {f"scripts/{path.name}": help_of(path.read_text(encoding="utf-8")) for path in ROOT.glob("scripts/*")}
     found = [fault for name, text in texts.items() for fault in faults(name, text)]
     print(*found, sep="\n", end="\n" if found else "")
     return int(bool(found))
