@@ -61,10 +61,8 @@ function(add_sundials)
   endif()
   set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
   # SUNDIALS writes the time of its configuration into a header; a fixed one, else each configuration compiles it anew.
-  set(time_given "$ENV{SOURCE_DATE_EPOCH}")
   set(ENV{SOURCE_DATE_EPOCH} 315532800) # 1980-01-01
   add_subdirectory(${source} ${CMAKE_BINARY_DIR}/_sundials/build EXCLUDE_FROM_ALL SYSTEM)
-  set(ENV{SOURCE_DATE_EPOCH} "${time_given}")
   # The private headers hold CVODE's memory record: solver/cvode_history.cpp alone reads them, for snapshots.
   add_library(sundials_private INTERFACE)
   target_include_directories(sundials_private SYSTEM INTERFACE ${source}/src/cvode ${source}/src/sundials)
