@@ -7,13 +7,8 @@ string(REGEX REPLACE ".*guid=\"([^\"]*)\".*" "\\1" WHEEL_GUID "${guid_line}")
 
 # The folder under binaries/ in which masters look on the machine that it is built for, whatever its processor:
 # docs/decisions/platform_folders.md.
-if(WIN32)
-  set(wheel_platform win64)
-elseif(APPLE)
-  set(wheel_platform darwin64)
-else()
-  set(wheel_platform linux64)
-endif()
+string(TOLOWER ${CMAKE_SYSTEM_NAME}64 wheel_platform)
+string(REPLACE windows win wheel_platform ${wheel_platform})
 
 # wheel.fmu in the build folder: description, library, documentation, licences; same commit, same bytes.
 function(add_fmu target)
@@ -29,21 +24,19 @@ function(add_fmu target)
     NO_DEFAULT_PATH
     NO_CMAKE_FIND_ROOT_PATH
   )
-  set(licences --licence sundials-license.txt ${SUNDIALS_SOURCE}/LICENSE)
-  list(APPEND licences --licence sundials-notice.txt ${SUNDIALS_SOURCE}/NOTICE)
-  list(APPEND licences --notice fmi-headers-notice.txt ${FMI2_INCLUDE_DIR}/fmi2Functions.h)
-  if(EIGEN_LICENSE)
-    list(APPEND licences --licence eigen-license.txt ${EIGEN_LICENSE})
-  endif()
-  if(TARGET libm)
-    list(APPEND licences --notice fdlibm-notice.txt ${LIBM_FOLDER}/s_sin.c)
-    list(APPEND licences --notice arm-math-license.txt ${LIBM_FOLDER}/pow.c)
-  endif()
+  set(
+    licences
+    sundials-license.txt=${SUNDIALS_SOURCE}/LICENSE
+    sundials-notice.txt=${SUNDIALS_SOURCE}/NOTICE
+    fmi-headers-notice.txt=${FMI2_INCLUDE_DIR}/fmi2Functions.h
+    $<$<BOOL:${EIGEN_LICENSE}>:eigen-license.txt=${EIGEN_LICENSE}>
+    $<$<TARGET_EXISTS:libm>:fdlibm-notice.txt=${LIBM_FOLDER}/s_sin.c>
+    $<$<TARGET_EXISTS:libm>:arm-math-license.txt=${LIBM_FOLDER}/pow.c>
+  )
   add_custom_command(
     OUTPUT ${fmu}
-    COMMAND
-      ${Python3_EXECUTABLE} ${packer} --output ${fmu} ${licences} --platform ${wheel_platform} --library
-      $<TARGET_FILE:${target}>
+    COMMAND ${Python3_EXECUTABLE} ${packer} ${fmu} ${wheel_platform} $<TARGET_FILE:${target}> ${licences}
+    COMMAND_EXPAND_LISTS
     DEPENDS ${target} ${packer} ${contents} modelDescription.xml LICENSE
     COMMENT "Packing wheel.fmu"
   )

@@ -33,33 +33,13 @@ set(
   common/math_config.h
 )
 
-# SHA-256 over those of the files in a folder; of nothing where one is missing.
-function(hash_libm folder result)
-  set(hashes)
-  foreach(name ${ARGN})
-    cmake_path(GET name FILENAME file)
-    if(NOT EXISTS ${folder}/${file})
-      set(${result} "" PARENT_SCOPE)
-      return()
-    endif()
-    file(SHA256 ${folder}/${file} hash)
-    list(APPEND hashes ${hash})
-  endforeach()
-  string(SHA256 hash "${hashes}")
-  set(${result} ${hash} PARENT_SCOPE)
-endfunction()
-
-# The files in one folder, from an archive or a tree, once: beside each other, but without newlib's own fdlibm.h.
+# The files in one folder, from an archive or a tree: beside each other, but without newlib's own fdlibm.h.
 function(unpack_libm folder)
-  hash_libm(${folder} hash ${ARGN})
-  if(hash IN_LIST libm_sha256)
-    return()
+  set(tree ${WHEEL_LIBM_SOURCE})
+  if(NOT tree)
+    file(GLOB tree /usr/src/newlib/newlib-*.tar.xz)
   endif()
-  set(source ${WHEEL_LIBM_SOURCE})
-  if(NOT source)
-    file(GLOB source /usr/src/newlib/newlib-*.tar.xz)
-  endif()
-  if(NOT EXISTS "${source}")
+  if(NOT EXISTS "${tree}")
     message(
       FATAL_ERROR
       "The source of libm is missing: install Debian's package newlib-source, or give "
@@ -67,21 +47,20 @@ function(unpack_libm folder)
       "whose results differ from those of the releases in the last bits."
     )
   endif()
-  file(REMOVE_RECURSE ${folder})
-  file(MAKE_DIRECTORY ${folder})
-  set(tree ${source})
-  if(NOT IS_DIRECTORY ${source})
+  if(NOT IS_DIRECTORY ${tree})
     list(TRANSFORM ARGN PREPEND "*/newlib/libm/" OUTPUT_VARIABLE patterns)
-    file(ARCHIVE_EXTRACT INPUT ${source} DESTINATION ${folder}/archive PATTERNS ${patterns})
+    file(ARCHIVE_EXTRACT INPUT ${tree} DESTINATION ${folder}/archive PATTERNS ${patterns})
     file(GLOB tree ${folder}/archive/*)
   endif()
   foreach(name ${ARGN})
     file(COPY ${tree}/newlib/libm/${name} DESTINATION ${folder})
+    file(SHA256 ${tree}/newlib/libm/${name} hash)
+    list(APPEND hashes ${hash})
   endforeach()
   file(REMOVE_RECURSE ${folder}/archive)
-  hash_libm(${folder} hash ${ARGN})
+  string(SHA256 hash "${hashes}")
   if(NOT hash IN_LIST libm_sha256)
-    message(FATAL_ERROR "The libm in ${source} is not a known one: SHA-256 ${hash}, expected ${libm_sha256}.")
+    message(FATAL_ERROR "The libm in ${tree} is not a known one: SHA-256 ${hash}, expected ${libm_sha256}.")
   endif()
 endfunction()
 
@@ -99,23 +78,12 @@ function(add_libm)
   set_target_properties(libm PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF EXPORT_COMPILE_COMMANDS OFF)
   target_include_directories(libm PRIVATE cmake/libm ${LIBM_FOLDER})
   target_compile_definitions(libm PRIVATE WANT_ERRNO=0 HAVE_FAST_FMA=0)
-  target_compile_options(libm PRIVATE -w -fno-lto)
+  separate_arguments(own UNIX_COMMAND "sin cos sincos tanh cosh exp expm1 pow")
+  list(TRANSFORM own PREPEND -fno-builtin-)
+  target_compile_options(libm PRIVATE -w -fno-lto ${own})
   if(WHEEL_SANITIZE) # it shifts negative numbers, which every compiler here does alike
     target_compile_options(libm PRIVATE -fno-sanitize=all)
   endif()
-  foreach(
-    name
-    sin
-    cos
-    sincos
-    tanh
-    cosh
-    exp
-    expm1
-    pow
-  )
-    target_compile_options(libm PRIVATE -fno-builtin-${name})
-  endforeach()
   if(APPLE) # its compiler would merge sin and cos into a call of the system's
     target_compile_options(wheel_options INTERFACE -fno-builtin-sin -fno-builtin-cos)
   endif()

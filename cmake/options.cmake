@@ -35,22 +35,11 @@ if(WHEEL_COVERAGE)
 endif()
 
 add_library(wheel_options INTERFACE)
-target_compile_options(
-  wheel_options
-  INTERFACE
-    -Wall
-    -Wextra
-    -Wpedantic
-    -Wshadow
-    -Wconversion
-    -Wno-sign-conversion
-    $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions
-    -fno-rtti
-    -Wold-style-cast>
-    $<$<BOOL:${WHEEL_WERROR}>:-Werror>
-    ${fuzzer_instrumentation}
-    ${coverage_instrumentation}
-)
+target_compile_options(wheel_options INTERFACE -Wall -Wextra -Wpedantic)
+target_compile_options(wheel_options INTERFACE -Wshadow -Wconversion -Wno-sign-conversion)
+target_compile_options(wheel_options INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions;-fno-rtti;-Wold-style-cast>")
+target_compile_options(wheel_options INTERFACE $<$<BOOL:${WHEEL_WERROR}>:-Werror>)
+target_compile_options(wheel_options INTERFACE ${fuzzer_instrumentation} ${coverage_instrumentation})
 
 # Needs libc and libm only, exports fmi2* only.
 function(link_self_contained target)

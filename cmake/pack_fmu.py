@@ -53,19 +53,13 @@ def pack(entries: dict[str, Content], output: Path) -> None:
             archive.writestr(info, data, compresslevel=9)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--output", type=Path, required=True)
-    parser.add_argument("--platform", required=True, help="folder of the library in the archive")
-    parser.add_argument("--library", type=Path, required=True)
-    texts = {"action": "append", "nargs": 2, "default": [], "metavar": ("NAME", "FILE")}
-    parser.add_argument("--licence", **texts, help="a file of licences/ in the archive")
-    parser.add_argument("--notice", **texts, help="the same, out of a comment of a source")
-    arguments = parser.parse_args()
-    licences: dict[str, Content] = {f"licenses/{name}": Path(file) for name, file in arguments.licence}
-    licences |= {f"licenses/{name}": notice(Path(file)) for name, file in arguments.notice}
-    pack(contents(arguments.platform, arguments.library, licences), arguments.output)
-
-
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("output", type=Path)
+    parser.add_argument("platform", help="folder of the library in the archive")
+    parser.add_argument("library", type=Path)
+    parser.add_argument("licences", nargs="*", help="NAME=FILE for licenses/NAME, or for a C source its notice alone")
+    given = parser.parse_args()
+    files = {name: Path(file) for name, file in (pair.split("=", 1) for pair in given.licences)}
+    licences = {f"licenses/{n}": notice(file) if file.suffix in (".c", ".h") else file for n, file in files.items()}
+    pack(contents(given.platform, given.library, licences), given.output)

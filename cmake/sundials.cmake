@@ -2,12 +2,11 @@
 # built with its own CMake as static, optimised, position-independent code. Alternatives:
 #   -DWHEEL_SUNDIALS_SOURCE=<folder>   a SUNDIALS 7.1.1 source tree you have
 set(WHEEL_SUNDIALS_SOURCE "" CACHE PATH "SUNDIALS 7.1.1 source tree; empty: fetch the pinned one")
-set(sundials_version 7.1.1)
 set(sundials_crate sundials-sys-0.6.2)
 set(sundials_sha256 6fbd1d53481b83fc758406097f07b668bf243945e2b1f7db93a8f997cf6b44c9)
 
-# The fetched source is shared by all build folders inside the project. It counts as there only when the stamp says so,
-# which is written last: whatever was interrupted before is fetched or unpacked again.
+# The fetched source is shared by all build folders inside the project. Its folder gets its name last: a fetch that was
+# interrupted is done again.
 function(fetch_sundials source_dir)
   set(cache ${CMAKE_BINARY_DIR}/_sundials)
   cmake_path(IS_PREFIX CMAKE_SOURCE_DIR ${CMAKE_BINARY_DIR} NORMALIZE inside)
@@ -15,50 +14,35 @@ function(fetch_sundials source_dir)
     set(cache ${CMAKE_SOURCE_DIR}/build/sundials)
   endif()
   set(${source_dir} ${cache}/${sundials_crate}/vendor PARENT_SCOPE)
-  file(MAKE_DIRECTORY ${cache})
-  file(LOCK ${cache}/lock GUARD FUNCTION TIMEOUT 900)
-  set(stamp ${cache}/complete)
-  if(EXISTS ${stamp} AND EXISTS ${cache}/${sundials_crate}/vendor/CMakeLists.txt)
-    file(READ ${stamp} unpacked)
-    if(unpacked STREQUAL "${sundials_sha256}")
-      return()
-    endif()
+  file(LOCK ${cache} DIRECTORY GUARD FUNCTION TIMEOUT 900)
+  if(EXISTS ${cache}/${sundials_crate})
+    return()
   endif()
-  fetch_crate(${cache} crate)
-  file(REMOVE_RECURSE ${stamp} ${cache}/${sundials_crate})
-  file(ARCHIVE_EXTRACT INPUT ${crate} DESTINATION ${cache})
-  file(WRITE ${stamp} ${sundials_sha256})
-endfunction()
-
-# The archive of the registry, whole: one that an interrupted download left behind is fetched again.
-function(fetch_crate cache crate)
-  set(trouble "")
-  foreach(fetched IN ITEMS FALSE TRUE)
-    file(GLOB found ${cache}/cargo/registry/cache/*/${sundials_crate}.crate)
-    if(found)
-      file(SHA256 ${found} hash)
-      if(hash STREQUAL "${sundials_sha256}")
-        set(${crate} ${found} PARENT_SCOPE)
-        return()
-      endif()
-      string(APPEND trouble "${found} has SHA-256 ${hash}, expected ${sundials_sha256}")
-    endif()
-    if(fetched)
-      message(FATAL_ERROR "SUNDIALS could not be fetched: ${trouble}")
-    endif()
-    file(REMOVE_RECURSE ${cache}/cargo)
-    find_program(CARGO cargo DOC "fetches the pinned SUNDIALS source")
-    if(NOT CARGO)
-      message(FATAL_ERROR "cargo is missing: it fetches SUNDIALS. Or give -DWHEEL_SUNDIALS_SOURCE=<folder>.")
-    endif()
-    message(STATUS "Fetching SUNDIALS ${sundials_version} (${sundials_crate})")
-    execute_process(
-      COMMAND ${CMAKE_COMMAND} -E env CARGO_HOME=${cache}/cargo ${CARGO} info sundials-sys@0.6.2
-      WORKING_DIRECTORY ${cache}
-      OUTPUT_QUIET
-      ERROR_VARIABLE trouble
-    )
-  endforeach()
+  find_program(CARGO cargo DOC "fetches the pinned SUNDIALS source")
+  if(NOT CARGO)
+    message(FATAL_ERROR "cargo is missing: it fetches SUNDIALS. Or give -DWHEEL_SUNDIALS_SOURCE=<folder>.")
+  endif()
+  message(STATUS "Fetching SUNDIALS (${sundials_crate})")
+  set(new ${cache}/new)
+  file(REMOVE_RECURSE ${new})
+  file(MAKE_DIRECTORY ${new})
+  execute_process(
+    COMMAND ${CMAKE_COMMAND} -E env CARGO_HOME=${new} ${CARGO} info sundials-sys@0.6.2
+    WORKING_DIRECTORY ${new}
+    OUTPUT_QUIET
+    ERROR_VARIABLE trouble
+  )
+  set(hash none)
+  file(GLOB crate ${new}/registry/cache/*/${sundials_crate}.crate)
+  if(crate)
+    file(SHA256 ${crate} hash)
+  endif()
+  if(NOT hash STREQUAL sundials_sha256)
+    message(FATAL_ERROR "SUNDIALS could not be fetched: SHA-256 ${hash}, expected ${sundials_sha256}. ${trouble}")
+  endif()
+  file(ARCHIVE_EXTRACT INPUT ${crate} DESTINATION ${new})
+  file(RENAME ${new}/${sundials_crate} ${cache}/${sundials_crate})
+  file(REMOVE_RECURSE ${new})
 endfunction()
 
 function(add_sundials)
@@ -66,36 +50,20 @@ function(add_sundials)
   if(NOT source)
     fetch_sundials(source)
   endif()
-  foreach(
-    off
-    BUILD_ARKODE
-    BUILD_CVODES
-    BUILD_IDA
-    BUILD_IDAS
-    BUILD_KINSOL
-    BUILD_SHARED_LIBS
-    EXAMPLES_ENABLE_C
-    EXAMPLES_INSTALL
-    SUNDIALS_ENABLE_ERROR_CHECKS
-    SUNDIALS_BUILD_WITH_PROFILING
-    SUNDIALS_BUILD_WITH_MONITORING
-    ENABLE_MPI
-  )
-    set(${off} OFF CACHE INTERNAL "")
+  set(SUNDIALS_SOURCE ${source} PARENT_SCOPE)
+  foreach(off BUILD_SHARED_LIBS EXAMPLES_ENABLE_C SUNDIALS_ENABLE_ERROR_CHECKS)
+    set(${off} OFF)
   endforeach()
-  set(SUNDIALS_LOGGING_LEVEL 0 CACHE INTERNAL "")
+  set(SUNDIALS_LOGGING_LEVEL 0)
   set(CMAKE_POLICY_DEFAULT_CMP0069 NEW)
   if(NOT WHEEL_COVERAGE)
     add_compile_options(-ffile-prefix-map=${source}=sundials)
   endif()
   set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
   # SUNDIALS writes the time of its configuration into a header; a fixed one, else each configuration compiles it anew.
-  set(time_given "$ENV{SOURCE_DATE_EPOCH}")
   set(ENV{SOURCE_DATE_EPOCH} 315532800) # 1980-01-01
   add_subdirectory(${source} ${CMAKE_BINARY_DIR}/_sundials/build EXCLUDE_FROM_ALL SYSTEM)
-  set(ENV{SOURCE_DATE_EPOCH} "${time_given}")
   # The private headers hold CVODE's memory record: solver/cvode_history.cpp alone reads them, for snapshots.
   add_library(sundials_private INTERFACE)
   target_include_directories(sundials_private SYSTEM INTERFACE ${source}/src/cvode ${source}/src/sundials)
-  set(SUNDIALS_SOURCE ${source} PARENT_SCOPE)
 endfunction()

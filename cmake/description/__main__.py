@@ -10,26 +10,17 @@ from . import numbering
 
 DESCRIPTION = Path(__file__).resolve().parents[2] / "modelDescription.xml"
 
+parser = argparse.ArgumentParser(prog="scripts/variables", description=__doc__)
+parser.add_argument("--check", action="store_true", help="change nothing; exit status 1 if a number is stale")
+parser.add_argument("--measure", type=Path, metavar="FMU", help="take dependencies and event indicators from this FMU")
+arguments = parser.parse_args()
+text, depends = DESCRIPTION.read_text(encoding="utf-8"), None
+if arguments.measure:
+    from . import measuring
 
-def main() -> int:
-    parser = argparse.ArgumentParser(prog="scripts/variables", description=__doc__)
-    parser.add_argument("--check", action="store_true", help="change nothing; exit status 1 if a number is stale")
-    parser.add_argument(
-        "--measure", type=Path, metavar="FMU", help="take dependencies and event indicators from this built FMU"
-    )
-    arguments = parser.parse_args()
-    text = DESCRIPTION.read_text(encoding="utf-8")
-    depends = None
-    if arguments.measure:
-        from . import measuring
-
-        depends = measuring.measured(arguments.measure)
-        text = numbering.with_event_indicators(text, measuring.event_indicators(arguments.measure))
-    fresh = numbering.numbered(text, depends)
-    if not arguments.check:
-        DESCRIPTION.write_text(fresh, encoding="utf-8")
-    return int(arguments.check and fresh != text)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    depends = measuring.measured(arguments.measure)
+    text = numbering.with_event_indicators(text, measuring.event_indicators(arguments.measure))
+fresh = numbering.numbered(text, depends)
+if arguments.check:
+    sys.exit(fresh != text)
+DESCRIPTION.write_text(fresh, encoding="utf-8")

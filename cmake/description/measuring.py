@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import shutil
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from ctypes import c_double
 from math import cos
@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 from fmpy import extract, instantiate_fmu, read_model_description
 from fmpy.fmi1 import FMICallException
+from fmpy.model_description import Unknown
 
 from .numbering import Dependencies
 
@@ -30,12 +31,6 @@ UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 LAW = {"s": 0.03, "friction_law": 2, "phi_dot_start": -GENERAL["psi_dot_start"] * cos(GENERAL["theta_start"]) + 5e-4}
 SCENES = ({}, {**UNEQUAL, "s": 0.03}, LAW, {**UNEQUAL, **LAW})
 ROUNDING = 1e-11  # what changes less, relative to 1 + its size, has not changed: the formulation changes no more
-Change = Callable[[bool], None]  # puts another value of one known, or the old one back
-SECTIONS = {
-    "Outputs": "outputs",
-    "Derivatives": "derivatives",
-    "InitialUnknowns": "initialUnknowns",
-}  # as FMPy names them
 
 
 class Unit:
@@ -44,6 +39,7 @@ class Unit:
     def __init__(self, folder: str, kind: str, scene: dict[str, float]) -> None:
         self.description = read_model_description(folder, validate=False)
         self.variables = {v.name: v for v in self.description.modelVariables}
+        self.states: list[str] = []  # in continuous-time mode
         self.fmu = instantiate_fmu(folder, self.description, kind)
         zeros = [v.name for v in self.variables.values() if v.type == "Real" and v.start == "0"]
         for name, value in {**dict.fromkeys(zeros, 0.1), **GENERAL, **scene}.items():
@@ -51,54 +47,42 @@ class Unit:
         self.fmu.setupExperiment()
         self.fmu.enterInitializationMode()
 
-    def continuous_time(self) -> None:
-        """From initialization mode into continuous-time mode of model exchange."""
+    def enter_continuous_time(self) -> None:
         self.fmu.exitInitializationMode()
         while self.fmu.newDiscreteStates()[0]:
             pass
         self.fmu.enterContinuousTimeMode()
+        self.states = [row.variable.derivative.name for row in self.description.derivatives]
 
-    def get(self, name: str) -> float:
-        v = self.variables[name]
-        return getattr(self.fmu, f"get{v.type}")([v.valueReference])[0]
+    def get(self, *names: str) -> np.ndarray:
+        found = [self.variables[name] for name in names]
+        return np.array([getattr(self.fmu, f"get{v.type}")([v.valueReference])[0] for v in found], float)
 
     def set(self, name: str, value: float) -> None:
         v = self.variables[name]
-        getattr(self.fmu, f"set{v.type}")([v.valueReference], [value])
+        if name in self.states:
+            x = (c_double * len(self.states))()
+            self.fmu.getContinuousStates(x, len(x))
+            x[self.states.index(name)] = value
+            self.fmu.setContinuousStates(x, len(x))
+        else:
+            getattr(self.fmu, f"set{v.type}")([v.valueReference], [value if v.type == "Real" else int(value)])
 
-    def changes(self, *causalities: str) -> Iterator[tuple[str, Change]]:
-        """Of each parameter or input: a real number a little, a choice to its last value or from there to its first."""
-        for name, v in self.variables.items():
-            if v.causality in causalities:
-                value = self.get(name)
-                if v.type == "Real":
-                    other = value * 1.01 + 1e-3
-                else:
-                    other = int((v.min or 0) if value == int(v.max or 1) else (v.max or 1))
-                yield name, lambda on, name=name, values=(value, other): self.set(name, values[on])
+    def named(self, *causalities: str) -> list[str]:
+        return [name for name, v in self.variables.items() if v.causality in causalities]
 
-    def changes_of_states(self) -> Iterator[tuple[str, Change]]:
-        """Of each continuous state, in continuous-time mode."""
-        count = len(self.description.derivatives)
-        x = (c_double * count)()
-        self.fmu.getContinuousStates(x, count)
-        for k, row in enumerate(self.description.derivatives):
-
-            def change(on: bool, k: int = k, values: tuple[float, float] = (x[k], x[k] * 1.01 + 1e-3)) -> None:
-                x[k] = values[on]
-                self.fmu.setContinuousStates(x, count)
-
-            yield row.variable.derivative.name, change
-
-    def depends(self, section: str, *changes: tuple[str, Change]) -> dict[str, set[str]]:
-        """Of each unknown of a section of ModelStructure: what moves it among the knowns that are changed."""
-        names = [row.variable.name for row in getattr(self.description, SECTIONS[section])]
+    def depends(self, unknowns: list[Unknown], knowns: list[str]) -> dict[str, set[str]]:
+        """Of each unknown: the knowns that move it. A real number is changed a little, a choice to its last value or
+        from there to its first."""
+        names = [row.variable.name for row in unknowns]
         found: dict[str, set[str]] = {name: set() for name in names}
-        for known, change in changes:
-            before = np.array([self.get(name) for name in names])
-            change(True)
-            after = np.array([self.get(name) for name in names])
-            change(False)
+        before = self.get(*names)
+        for known in knowns:
+            v, (value,) = self.variables[known], self.get(known)
+            first, last = float(v.min or 0), float(v.max or 1)
+            self.set(known, value * 1.01 + 1e-3 if v.type == "Real" else first if value == last else last)
+            after = self.get(*names)
+            self.set(known, value)
             for k in np.flatnonzero(np.abs(after - before) > ROUNDING * (1 + np.abs(before))):
                 found[names[k]].add(known)
         return found
@@ -118,7 +102,7 @@ def unit(fmu: Path, kind: str, scene: dict[str, float]) -> Iterator[Unit]:
 def event_indicators(fmu: Path) -> int:
     """How many event indicators model exchange has: the one length of array that the FMU fills."""
     with unit(fmu, "ModelExchange", {}) as u:
-        u.continuous_time()
+        u.enter_continuous_time()
         u.fmu.setDebugLogging(False, [])
         for count in range(1, 100):
             with suppress(FMICallException):  # another length is refused
@@ -129,15 +113,16 @@ def event_indicators(fmu: Path) -> int:
 
 def measured(fmu: Path) -> Dependencies:
     """All dependencies of the FMU, by section of ModelStructure."""
-    found: Dependencies = {section: defaultdict(set) for section in SECTIONS}
+    found: Dependencies = defaultdict(lambda: defaultdict(set))
     for scene in SCENES:
         with unit(fmu, "CoSimulation", scene) as u:
-            parts = {"InitialUnknowns": u.depends("InitialUnknowns", *u.changes("parameter", "input"))}
+            parts = {"InitialUnknowns": u.depends(u.description.initialUnknowns, u.named("parameter", "input"))}
         with unit(fmu, "ModelExchange", scene) as u:
-            u.continuous_time()
-            changes = [*u.changes("input"), *u.changes_of_states()]
-            parts |= {section: u.depends(section, *changes) for section in ("Outputs", "Derivatives")}
+            u.enter_continuous_time()
+            knowns = [*u.named("input"), *u.states]
+            parts["Outputs"] = u.depends(u.description.outputs, knowns)
+            parts["Derivatives"] = u.depends(u.description.derivatives, knowns)
         for section, unknowns in parts.items():
-            for name, knowns in unknowns.items():
-                found[section][name] |= knowns
+            for name, moved in unknowns.items():
+                found[section][name] |= moved
     return found

@@ -20,91 +20,80 @@ BINDING = ("ModelExchange", "CoSimulation", "UnitDefinitions", "ModelVariables",
 TAG = re.compile(r'<ScalarVariable name="([^"]*)"(?: valueReference="\d+")?')
 
 
-def variables_of(root: ElementTree.Element) -> list[ElementTree.Element]:
-    return list(root.iter("ScalarVariable"))
-
-
 def names_by_index(root: ElementTree.Element) -> Callable[[str], list[str]]:
     """Reads indices of the present numbering, or names, as names; what is gone is left out."""
-    variables = variables_of(root)
-    present = {v.get("name") for v in variables}
     old: dict[str, str] = {}
-    for v in variables:
-        index = str(int(v.get("valueReference", -1)) + 1)
-        if index in old:
-            raise SystemExit(f"{old[index]} and {v.get('name')} have one valueReference: leave it out of the new one.")
-        if index != "0":
-            old[index] = v.get("name")
+    for v in root.iter("ScalarVariable"):
+        name, reference = v.get("name"), v.get("valueReference")
+        if name in old:
+            raise SystemExit("modelDescription.xml has two variables of one name.")
+        old[name] = name
+        if reference and old.setdefault(index := str(int(reference) + 1), name) != name:
+            raise SystemExit(f"{old[index]} and {name} have one valueReference: leave it out of the new one.")
 
     def names(tokens: str) -> list[str]:
         for token in tokens.split():
-            if not token.isdigit() and token not in present:
+            if not token.isdigit() and token not in old:
                 raise SystemExit(f"modelDescription.xml refers to {token}, which is none of its variables.")
-        return [old.get(token, token) for token in tokens.split() if token in old or token in present]
+        return [old[token] for token in tokens.split() if token in old]
 
     return names
 
 
-def dependencies_of(root: ElementTree.Element) -> Dependencies:
+def dependencies_of(root: ElementTree.Element, names: Callable[[str], list[str]]) -> Dependencies:
     """The dependencies that the description declares, by name."""
-    names = names_by_index(root)
     return {
         section.tag: {
             name: names(row.get("dependencies"))
-            for row in section
+            for row in section.iterfind("*[@dependencies]")
             for name in names(row.get("index"))
-            if row.get("dependencies") is not None
         }
         for section in root.iterfind("ModelStructure/*")
     }
 
 
-def unknowns_of(root: ElementTree.Element) -> dict[str, list[str]]:
-    """The unknowns of each section of ModelStructure, and the continuous states in the order of their derivatives: that
-    of the section Derivatives, new ones last."""
-    variables = variables_of(root)
-    names = names_by_index(root)
-    state_of = {v.get("name"): state for v in variables for state in names(v[0].get("derivative", ""))}
-    known = [n for row in root.findall("ModelStructure/Derivatives/Unknown") for n in names(row.get("index"))]
-    state_of = {name: state_of[name] for name in dict.fromkeys([*known, *state_of]) if name in state_of}
-    calculated = {v.get("name") for v in variables if v.get("initial") in ("approx", "calculated")}
-    outputs = [v.get("name") for v in variables if v.get("causality") == "output"]
-    parameters = [v.get("name") for v in variables if v.get("causality") == "calculatedParameter"]
-    at_start = calculated.intersection([*outputs, *state_of, *state_of.values()]).union(parameters)
+def unknowns_of(root: ElementTree.Element, names: Callable[[str], list[str]]) -> dict[str, list[str]]:
+    """The unknowns of each section of ModelStructure; derivatives in their order there, new ones last."""
+    variables = {v.get("name"): v for v in root.iter("ScalarVariable")}
+    state_of = {name: state for name, v in variables.items() for state in names(v[0].get("derivative", ""))}
+    known = [n for row in root.iterfind("ModelStructure/Derivatives/Unknown") for n in names(row.get("index"))]
+    derivatives = [name for name in dict.fromkeys([*known, *state_of]) if name in state_of]
+    outputs = [name for name, v in variables.items() if v.get("causality") == "output"]
+    follow = {*outputs, *state_of, *state_of.values()}  # at the start, where they are calculated
+
+    def unknown_at_start(name: str) -> bool:
+        v = variables[name]
+        calculated = v.get("initial") in ("approx", "calculated")
+        return v.get("causality") == "calculatedParameter" or (calculated and name in follow)
+
     return {
         "Outputs": outputs,
-        "Derivatives": list(state_of),
-        "InitialUnknowns": [v.get("name") for v in variables if v.get("name") in at_start],
-        "States": list(state_of.values()),
+        "Derivatives": derivatives,
+        "InitialUnknowns": list(filter(unknown_at_start, variables)),
     }
 
 
 def structure(sections: dict[str, list[str]], index: dict[str, int], depends: Dependencies) -> str:
     lines = ["<ModelStructure>"]
-    for section in ("Outputs", "Derivatives", "InitialUnknowns"):
-        rows = sections[section]
-        if not rows:
-            continue
-        lines.append(f"    <{section}>")
+    for section, rows in sections.items():
+        lines += [f"    <{section}>"] if rows else []
         for name in rows:
             known = depends.get(section, {}).get(name)
             numbers = "" if known is None else f' dependencies="{" ".join(map(str, sorted(index[k] for k in known)))}"'
             lines.append(f'      <Unknown index="{index[name]}"{numbers}/><!-- {name} -->')
-        lines.append(f"    </{section}>")
+        lines += [f"    </{section}>"] if rows else []
     return "\n".join([*lines, "  </ModelStructure>"])
 
 
 def numbered(text: str, depends: Dependencies | None = None) -> str:
     """The description with all its numbers and its GUID; dependencies as given, else those that it declares."""
     root = ElementTree.fromstring(text.encode())
-    variables = variables_of(root)
-    index = {v.get("name"): place for place, v in enumerate(variables, 1)}
-    if len(index) != len(variables):
-        raise SystemExit("modelDescription.xml has two variables of one name.")
     names = names_by_index(root)
+    index = {v.get("name"): place for place, v in enumerate(root.iter("ScalarVariable"), 1)}
     text = TAG.sub(lambda tag: f'<ScalarVariable name="{tag[1]}" valueReference="{index[tag[1]] - 1}"', text)
     text = re.sub(r' derivative="([^"]*)"', lambda found: f' derivative="{index[names(found[1])[0]]}"', text)
-    sections = structure(unknowns_of(root), index, dependencies_of(root) if depends is None else depends)
+    known = dependencies_of(root, names) if depends is None else depends
+    sections = structure(unknowns_of(root, names), index, known)
     text = re.sub(r"<ModelStructure>.*</ModelStructure>|<ModelStructure/>", sections, text, count=1, flags=re.DOTALL)
     return re.sub(r' guid="[^"]*"', f' guid="{guid_of(text)}"', text, count=1)
 

@@ -55,10 +55,7 @@ def build(
                 raise SystemExit(f"The build for {platform} failed; the whole log is {log}.")
 
 
-def wasm(out: Path, target: str) -> Path:
-    build(out, WASM, target)
-    return out / f"{target}.wasm"
-
-
 if __name__ == "__main__":
-    print(wasm(ROOT / sys.argv[1], sys.argv[2]))
+    folder, made = ROOT / sys.argv[1], sys.argv[2]
+    build(folder, WASM, made)
+    print(folder / f"{made}.wasm")

@@ -5,7 +5,6 @@ python -m release.folder: whether the versions agree.
 
 from __future__ import annotations
 
-import hashlib
 import re
 import shutil
 import subprocess
@@ -24,10 +23,8 @@ DRAFT = "Unreleased"
 
 def version(root: Path = ROOT) -> str:
     """The version that all files name; SystemExit with one sentence if they differ."""
-    found = {}
-    for name, pattern in VERSIONS.items():
-        match = re.search(pattern, (root / name).read_text(encoding="utf-8"), re.MULTILINE)
-        found[name] = match[1] if match else "none"
+    texts = {name: (root / name).read_text(encoding="utf-8") for name in VERSIONS}
+    found = {name: "".join(re.findall(VERSIONS[name], text, re.MULTILINE) or ["none"]) for name, text in texts.items()}
     if len(set(found.values())) > 1:
         named = ", ".join(f"{name} names {value}" for name, value in found.items())
         raise SystemExit(f"The versions differ: {named}.")
@@ -56,8 +53,9 @@ def write(out: Path, fmu: Path, site: Path, text: str) -> None:
     shutil.copyfile(fmu, out / "wheel.fmu")
     pack(site, out / "wheel-site.tar.gz")
     (out / "NOTES.md").write_text(text, encoding="utf-8")
-    sums = [(hashlib.sha256(path.read_bytes()).hexdigest(), path.name) for path in sorted(out.iterdir())]
-    (out / "SHA256SUMS").write_text("".join(f"{digest}  {name}\n" for digest, name in sums), encoding="utf-8")
+    names = sorted(path.name for path in out.iterdir())
+    sums = subprocess.check_output(["sha256sum", *names], cwd=out)
+    (out / "SHA256SUMS").write_bytes(sums)
 
 
 def described() -> tuple[str, str]:
