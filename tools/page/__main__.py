@@ -1,6 +1,4 @@
-"""Command line of the pages: `recorded` for result files, `live` for the wheel itself."""
-
-from __future__ import annotations
+"""Command line of the pages: `recorded FILE.csv...` for result files, `live WASM OUTPUT` for the wheel itself."""
 
 import argparse
 import sys
@@ -9,30 +7,23 @@ from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
 
-from page import description, document, options
+from page import document, options
 from page.bodies import Body, ViewError, read_bodies
 
 PLACES = {"fl": "front left", "fr": "front right", "rl": "rear left", "rr": "rear right"}
 
 
-def main() -> int:
-    """Write a page; a fault of the input is one sentence on stderr and exit status 1."""
-    kind, *words = sys.argv[1:]
+def main(kind: str, *words: str) -> None:
+    """Write a page; a fault of the input ends the program with one sentence."""
     try:
-        output, size = live(words) if kind == "live" else recorded(options.arguments(words))
+        output, size = live(*map(Path, words)) if kind == "live" else recorded(options.arguments(words))
     except ViewError as fault:
-        print(f"view: {fault}", file=sys.stderr)
-        return 1
+        sys.exit(f"view: {fault}")
     print(f"{output} ({size / 1e6:.1f} MB): open it in a browser.")
-    return 0
 
 
-def live(words: list[str]) -> tuple[Path, int]:
-    parser = argparse.ArgumentParser(prog="scripts/page", description="The page that holds the wheel itself.")
-    parser.add_argument("--wasm", type=Path, required=True)
-    parser.add_argument("--output", "-o", type=Path, required=True)
-    given = parser.parse_args(words)
-    return given.output, document.write(given.output, "The wheel, live", [], live=description.live(given.wasm))
+def live(wasm: Path, output: Path) -> tuple[Path, int]:
+    return output, document.write(output, "The wheel, live", [], wasm=wasm)
 
 
 def recorded(given: argparse.Namespace) -> tuple[Path, int]:
@@ -59,4 +50,4 @@ def named(bodies: list[Body], labels: list[str]) -> list[Body]:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main(*sys.argv[1:])

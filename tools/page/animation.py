@@ -1,7 +1,5 @@
 """An animated picture of a page, frame by frame in headless Chromium: animation.py PAGE.html PICTURE.webp."""
 
-from __future__ import annotations
-
 import io
 import sys
 from pathlib import Path
@@ -23,7 +21,7 @@ page.stage.camera.position.multiplyScalar(0.72)"""
 def frames(page_file: Path) -> list[Image.Image]:
     """The page without its controls, from the first instant to the last."""
     with chromium() as browser:
-        page = show(surroundings(browser, viewport=WINDOW), page_file)
+        page = show(surroundings(browser, viewport=WINDOW).new_page(), page_file)
         page.evaluate(STILL)
         page.wait_for_function("!page.stage.dirty")
         end = page.evaluate("page.player.end")
@@ -35,23 +33,17 @@ def frames(page_file: Path) -> list[Image.Image]:
     return shots
 
 
-def write(shots: list[Image.Image], output: Path) -> int:
-    """The best quality whose file stays below LIMIT; its size in bytes."""
-    for quality in (80, 70, 60, 50, 40, 30):
-        buffer = io.BytesIO()
-        how = {"save_all": True, "append_images": shots[1:], "duration": 1000 / FRAMES_PER_SECOND, "loop": 0}
-        shots[0].save(buffer, "WEBP", quality=quality, method=4, **how)
-        if len(buffer.getvalue()) < LIMIT:
-            output.write_bytes(buffer.getvalue())
-            return len(buffer.getvalue())
-    raise SystemExit(f"{output} would be larger than {LIMIT} bytes.")
-
-
-def main() -> None:
-    page_file, output = map(Path, sys.argv[1:])
-    size = write(frames(page_file), output)
-    print(f"{output} ({size / 1e6:.1f} MB)")
+def main(page_file: str, picture: str) -> None:
+    """Write the best quality whose file stays below LIMIT."""
+    first, *others = frames(Path(page_file))
+    for quality in range(80, 20, -10):
+        how = {"save_all": True, "append_images": others, "duration": 1000 / FRAMES_PER_SECOND, "loop": 0}
+        first.save(picture, "WEBP", quality=quality, method=4, **how)
+        if (size := Path(picture).stat().st_size) < LIMIT:
+            print(f"{picture} ({size / 1e6:.1f} MB)")
+            return
+    sys.exit(f"{picture} is larger than {LIMIT} bytes.")
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])

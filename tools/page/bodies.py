@@ -4,8 +4,6 @@ SI units, fixed axes X, Y, Z, Z up, angles in rad and not wrapped. A column `nam
 columns without such a prefix are one wheel, called as the file.
 """
 
-from __future__ import annotations
-
 import csv
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
@@ -14,12 +12,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from page.description import parameters
+from diagrams.start_values import variables
 
 Array = NDArray[np.float64]
 POSE = ("X_O", "Y_O", "psi", "theta", "phi")
 SHOWN = ("Z_O", "omega_z", "friction_mode", "n_events", "lambda_1", "lambda_2", "lambda_3", "E")
 RATES = tuple(f"{name}_dot" for name in (*POSE, "Z_O"))
+PARAMETERS = tuple(variables("parameter"))
 BODY_POSE = ("X", "Y", "Z", "yaw", "pitch", "roll")
 BOOLEANS = {"False": "0", "True": "1"}  # as FMPy writes them
 ALIASES = {"psi": "yaw", "theta": "pitch", "phi": "roll"}  # of a car's body
@@ -50,16 +49,14 @@ def read_columns(path: Path) -> dict[str, list[str]]:
         with path.open(newline="", encoding="utf-8") as file:
             header, *rows = [row for row in csv.reader(file) if row] or [[]]
     except (OSError, UnicodeDecodeError) as fault:
-        raise ViewError(
-            f"{path} cannot be read: {getattr(fault, 'strerror', None) or 'it is no text file'}."
-        ) from fault
+        reason = getattr(fault, "strerror", None) or "it is no text file"
+        raise ViewError(f"{path} cannot be read: {reason}.") from fault
     if "time" not in header:
         raise ViewError(f"{path} has no column time; a file as `fmpy simulate --output-file` writes it is needed.")
     if len(rows) < 2:
         raise ViewError(f"{path} has {len(rows)} rows of data; a motion needs at least two.")
-    for number, row in enumerate(rows, 2):
-        if len(row) != len(header):
-            raise ViewError(f"{path}, line {number}: {len(row)} values under {len(header)} names.")
+    if wrong := [number for number, row in enumerate(rows, 2) if len(row) != len(header)]:
+        raise ViewError(f"{path}, line {wrong[0]}: not as many values as the {len(header)} names of the first line.")
     return dict(zip(header, map(list, zip(*rows, strict=True)), strict=True))
 
 
@@ -90,7 +87,7 @@ def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | 
         rolls = group.keys() >= set(POSE)
         if not rolls:
             group = {ALIASES.get(short, short): column for short, column in group.items()}
-        wanted = (*POSE, *SHOWN, *RATES, *parameters()) if rolls else BODY_POSE
+        wanted = (*POSE, *SHOWN, *RATES, *PARAMETERS) if rolls else BODY_POSE
         if rolls or group.keys() >= {"X", "Y", "Z"}:
             columns = {short: numbers(path, short, group[short])[kept] for short in wanted if short in group}
             body = Body(prefix or path.stem, {"time": time[kept]} | columns)
@@ -105,8 +102,8 @@ def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | 
 
 def make_wheel(wheel: Body, given: dict[str, float]) -> Body:
     """The columns that hold a parameter become its value."""
-    fixed = wheel.columns.keys() & set(parameters())
-    values = {name: float(wheel.columns[name][0]) for name in parameters() if name in fixed} | given
+    fixed = wheel.columns.keys() & set(PARAMETERS)
+    values = {name: float(wheel.columns[name][0]) for name in PARAMETERS if name in fixed} | given
     columns = {name: column for name, column in wheel.columns.items() if name not in fixed}
     if not {"r_0", "r"} <= values.keys():
         values |= dict(zip(("r_0", "r"), shape_of(columns), strict=True))

@@ -1,7 +1,5 @@
 """Headless Chromium without a graphics card: it makes pictures, measures, and runs the tests of the pages."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from collections.abc import Iterator
@@ -32,9 +30,8 @@ def surroundings(browser: Browser, **look: object) -> BrowserContext:
     return found
 
 
-def show(context: BrowserContext, path: Path, address: str = "") -> Page:
+def show(page: Page, path: Path, address: str = "") -> Page:
     """A page with its first picture. address: what stands after the #."""
-    page = context.new_page()
-    page.goto(f"{path.resolve().as_uri()}#{address}" if address else path.resolve().as_uri())
+    page.goto(f"{path.resolve().as_uri()}{f'#{address}' if address else ''}")
     page.wait_for_function("window.page && page.first && !page.stage.dirty")
     return page

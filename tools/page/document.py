@@ -3,21 +3,21 @@
 The scripts are ECMAScript modules, each a data: address in an import map, so that the browser itself joins them.
 """
 
-from __future__ import annotations
-
 import base64
 import json
 import re
+import sys
 from dataclasses import replace
-from importlib.metadata import version
-from importlib.util import find_spec
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
-from page import description
+from jinja2 import Environment, FileSystemLoader
+
+from diagrams.start_values import ROOT, wheels
+from diagrams.start_values import variables as described
 from page.bodies import Body
 
 WEB = Path(__file__).parent / "web"
-SHAPE = ("r_0", "r", "slope", "slope_direction")
 PAGE_LIMIT = 3_000_000  # bytes of a page
 RECORDED_LIMIT = 1_500_000  # bytes of them for recorded motions
 THREE = "nicegui/elements/scene/dist/index.js"  # three.js and its OrbitControls, minified, within PyPI's nicegui
@@ -29,15 +29,15 @@ def base64_of(data: bytes) -> str:
 
 def library() -> tuple[str, str]:
     """three.js as the text of a module, and its notice."""
-    spec = find_spec("nicegui")
-    if spec is None or spec.origin is None:
-        raise SystemExit("three.js is missing: run ./scripts/setup, which fetches it with the package nicegui.")
-    site = Path(spec.origin).parent.parent
-    text = (site / THREE).read_text(encoding="utf-8")
+    try:
+        package = distribution("nicegui")
+    except PackageNotFoundError:
+        sys.exit("three.js is missing: run ./scripts/setup, which fetches it with the package nicegui.")
+    text = Path(package.locate_file(THREE)).read_text(encoding="utf-8")
     revision = re.search(r'const \w+="(1\d\d)"', text)
-    licence = (site / f"nicegui-{version('nicegui')}.dist-info" / "licenses" / "LICENSE").read_text(encoding="utf-8")
     name = f"three.js r{revision.group(1)}" if revision else "three.js"
-    notice = f"{name}, Copyright (c) 2010-2025 three.js authors, as bundled by NiceGUI {version('nicegui')}:\n{licence}"
+    notice = f"{name}, Copyright (c) 2010-2025 three.js authors, as bundled by NiceGUI {package.version}:\n"
+    notice += package.read_text("licenses/LICENSE")
     return re.sub(r"\n//# sourceMappingURL=.*", "", text), notice.replace("--", "-")
 
 
@@ -65,26 +65,24 @@ def thinned(bodies: list[Body], limit: int = RECORDED_LIMIT) -> tuple[list[Body]
 
 def encoded(body: Body) -> dict:
     columns = {name: base64_of(column.astype("<f8").tobytes()) for name, column in body.columns.items()}
-    entry = {"name": body.name, "label": body.label, "columns": columns}
-    if body.size is not None:
-        return entry | {"size": body.size}
-    shape = {name: body.parameters[name] for name in SHAPE if name in body.parameters}
-    return entry | shape | {"parameters": body.parameters}
+    kind = {"size": body.size} if body.size else {"parameters": body.parameters}
+    return {"name": body.name, "label": body.label, "columns": columns} | kind
 
 
-def write(output: Path, title: str, bodies: list[Body], sources: int = 1, live: dict | None = None) -> int:
+def wheel_itself(wasm: Path) -> dict:
+    """What the live page holds: the wheel as a WebAssembly module, and ready wheels."""
+    guid = re.search(r'guid="(.*?)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"))
+    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid[1], "wheels": wheels()}
+
+
+def write(output: Path, title: str, bodies: list[Body], sources: int = 1, wasm: Path | None = None) -> int:
     """Write the page and return its size in bytes. sources: how many files the bodies come from."""
     three, notice = library()
-    recorded = {"bodies": [encoded(body) for body in bodies], "sources": sources}
-    data = recorded | {"variables": description.variables(), "live": live}
-    parts = {
-        "title": title.replace("&", "&amp;").replace("<", "&lt;"),
-        "licences": notice,
-        "style": (WEB / "style.css").read_text(encoding="utf-8"),
-        "data": json.dumps(data).replace("<", "\\u003c"),
-        "modules": modules(three),
-    }
-    page = re.sub(r"\{\{(\w+)\}\}", lambda m: parts[m.group(1)], (WEB / "page.html").read_text(encoding="utf-8"))
+    variables = {name: v._asdict() | {"start": v.preset if v.start else None} for name, v in described().items()}
+    data = {"bodies": [encoded(body) for body in bodies], "sources": sources, "variables": variables}
+    data |= {"live": wheel_itself(wasm) if wasm else None}
+    parts = {"licences": notice, "data": json.dumps(data).replace("<", "\\u003c"), "modules": modules(three)}
+    page = Environment(loader=FileSystemLoader(WEB)).get_template("page.html").render(title=title, **parts)
     output.parent.mkdir(parents=True, exist_ok=True)
     output.write_text(page, encoding="utf-8")
     return len(page.encode())

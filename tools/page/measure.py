@@ -4,9 +4,6 @@ Sizes, the time to the first picture, and pictures per second, without drawing t
 docs/results/data/page.csv.
 """
 
-from __future__ import annotations
-
-import csv
 import sys
 from pathlib import Path
 
@@ -35,7 +32,7 @@ def measure(browser: Browser, name: str, path: Path) -> dict[str, float]:
     """Figures of one page, opened some times: the browser's caches fill as any page before it fills them."""
     firsts = []
     for _ in range(3):
-        page = show(surroundings(browser, **LOOK), path)
+        page = show(surroundings(browser, **LOOK).new_page(), path)
         firsts.append(page.evaluate("page.first") / 1000)
         own, took = page.evaluate(DRAW, FRAMES), page.evaluate("page.live?.took ?? 0")
         page.context.close()
@@ -47,10 +44,9 @@ def main() -> None:
     live, recorded = map(Path, sys.argv[1:])
     with chromium() as browser:
         figures = measure(browser, "live", live) | measure(browser, "recorded", recorded)
-    rows = [("figure", "measured"), *((name, f"{value:.4g}") for name, value in figures.items())]
-    with DATA.open("w", newline="", encoding="utf-8") as file:
-        csv.writer(file, lineterminator="\n").writerows(rows)
-    print(*(f"{name}: {value}" for name, value in rows[1:]), sep="\n")
+    text = "".join(f"{name},{value:.4g}\n" for name, value in figures.items())
+    DATA.write_text(f"figure,measured\n{text}", encoding="utf-8")
+    print(text, end="")
 
 
 if __name__ == "__main__":

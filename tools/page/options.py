@@ -1,10 +1,9 @@
 """The arguments of ./scripts/view, read before anything is built or installed."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "examples" / "python"))
@@ -22,7 +21,7 @@ def length(text: str) -> float:
     return number("length", text, "m")
 
 
-def arguments(words: list[str] | None = None) -> argparse.Namespace:
+def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     """The options; what cannot be meant ends the program with a sentence."""
     parser = argparse.ArgumentParser(prog="scripts/view", description="An offline 3-D page of results (docs/page.md).")
     add = parser.add_argument

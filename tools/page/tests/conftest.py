@@ -1,21 +1,19 @@
 """The pages, and headless Chromium to look at them."""
 
-from __future__ import annotations
-
 import fcntl
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from playwright.sync_api import Browser, Page
-from support.driver import HEADLINE
+from playwright.sync_api import Browser, BrowserContext, Page
 from support.paths import ROOT
 
 from page.browser import chromium
-from page.tests.pages import FLAGS, RECORD, opened, view, write_csv
+from page.tests.pages import FLAGS, RECORD, opened, view, window_of, write_csv
 
 
 @pytest.fixture(scope="session")
@@ -25,50 +23,48 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="session")
-def simulate(fmu: str, description):
-    """simulate(step, stop, output, **start values) -> record array of these outputs, by `fmpy.simulate_fmu`."""
-
-    def run(step: float = 0.1, stop: float = 10.0, output: tuple[str, ...] = HEADLINE, **start: float) -> np.ndarray:
-        options = {"model_description": description, "output_interval": step, "stop_time": stop, "output": output}
-        return simulate_fmu(fmu, start_values=start, **options)
-
-    return run
+def simulate(fmu: str, description) -> Callable[..., np.ndarray]:
+    return partial(simulate_fmu, fmu, model_description=description, stop_time=10)
 
 
 @pytest.fixture(scope="session")
 def scenes(simulate) -> dict[str, np.ndarray]:
     """The paper's two scenes as ./scripts/run records them."""
-    return {name: simulate(step=0.01, output=RECORD, s=s) for name, s in (("free", 0.0), ("friction", 0.03))}
+    options = {"output_interval": 0.01, "output": RECORD}
+    return {name: simulate(start_values={"s": s}, **options) for name, s in (("free", 0.0), ("friction", 0.03))}
 
 
 @pytest.fixture(scope="session")
 def recorded_file(scenes, tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("page")
     files = [write_csv(folder / f"{n}.csv", {c: rows[c] for c in rows.dtype.names}) for n, rows in scenes.items()]
-    done = view(*files, "--output", folder / "wheel.html")
-    assert done.returncode == 0, done.stderr
+    view(*files, "--output", folder / "wheel.html")
     return folder / "wheel.html"
 
 
 @pytest.fixture(scope="session")
 def live_file() -> Path:
-    build = ROOT / "build"
-    build.mkdir(exist_ok=True)
-    with (build / "wasm.lock").open("w") as file:  # one process at a time builds the module
+    (ROOT / "build").mkdir(exist_ok=True)
+    with (ROOT / "build" / "wasm.lock").open("w") as file:  # one process at a time builds the module
         fcntl.flock(file, fcntl.LOCK_EX)
-        subprocess.run([ROOT / "scripts" / "page", build / "wheel_live.html"], check=True, capture_output=True)
-        return build / "wheel_live.html"
+        subprocess.run([ROOT / "scripts" / "page", ROOT / "build" / "wheel_live.html"], check=True, capture_output=True)
+    return ROOT / "build" / "wheel_live.html"
 
 
 @pytest.fixture(scope="session")
-def recorded_page(browser, recorded_file) -> Iterator[Page]:
-    with opened(browser, recorded_file) as page:
+def window(browser) -> BrowserContext:
+    return window_of(browser, viewport={"width": 900, "height": 640})
+
+
+@pytest.fixture(scope="session")
+def recorded_page(window, recorded_file) -> Iterator[Page]:
+    with opened(window, recorded_file) as page:
         yield page
 
 
 @pytest.fixture(scope="session")
-def live_page(browser, live_file) -> Iterator[Page]:
-    with opened(browser, live_file) as page:
+def live_page(window, live_file) -> Iterator[Page]:
+    with opened(window, live_file) as page:
         yield page
 
 
@@ -86,5 +82,4 @@ def live(live_page) -> Page:
 
 @pytest.fixture(params=["recorded", "live"])
 def either(request) -> Page:
-    """Each of the two pages."""
     return request.getfixturevalue(request.param)

@@ -1,18 +1,13 @@
 """Result files, pages, and a browser that looks at them."""
 
-from __future__ import annotations
-
-import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from playwright.sync_api import Browser, Page
-from support.paths import ROOT
+from playwright.sync_api import Browser, BrowserContext, Page
 
+from page.__main__ import main
 from page.browser import show, surroundings
 
 POSE = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi")
@@ -22,14 +17,37 @@ RECORD = (*POSE, *RATES, "omega_z", "lambda_1", "lambda_2", "lambda_3", "E", "fr
 FLAGS = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas")
 # Advice of the browser on how the tests look at pictures.
 NOISE = ("GPU stall due to ReadPixels", "willReadFrequently")
-# The calls that make the processor draw the scene: most tests look at everything but its pixels.
+# Most tests look at everything but the pixels of the scene: the calls that make the processor draw it are left out, and
+# a second has twenty frames.
 UNDRAWN = """window.undrawn = true;
 for (const call of ["clear", "drawElements", "drawArrays", "texSubImage2D", "generateMipmap"]) {
   const draw = WebGL2RenderingContext.prototype[call];
   WebGL2RenderingContext.prototype[call] = function (...all) { window.undrawn || draw.apply(this, all); };
-}"""
+}
+const frame = window.requestAnimationFrame;
+window.requestAnimationFrame = (act) => setTimeout(() => frame(act), 40);"""
 # A vector in the road's axes as the scene shows it.
 TURN = "(v) => page.stage.camera.position.clone().set(...v).applyQuaternion(page.stage.road.quaternion).toArray()"
+
+
+def window_of(browser: Browser, **look: object) -> BrowserContext:
+    """A window, whose tabs share a process of the browser."""
+    window = surroundings(browser, **look)
+    window.add_init_script(UNDRAWN)
+    return window
+
+
+@contextmanager
+def opened(window: BrowserContext, path: Path, address: str = "") -> Iterator[Page]:
+    """A page that stands still at its start; afterwards its console must hold no error and no warning."""
+    page = window.new_page()
+    faults: list[str] = []
+    page.on("console", lambda message: faults.append(message.text) if message.type in ("error", "warning") else None)
+    page.on("pageerror", lambda fault: faults.append(str(fault)))
+    yield show(page, path, address)
+    page.close()
+    faults = [line for line in faults if not any(noise in line for noise in NOISE)]
+    assert not faults, faults
 
 
 @contextmanager
@@ -40,20 +58,6 @@ def drawn(page: Page) -> Iterator[Page]:
     page.evaluate("window.undrawn = true")
 
 
-@contextmanager
-def opened(browser: Browser, path: Path, address: str = "", **look: object) -> Iterator[Page]:
-    """A page that stands still at its start; afterwards its console must hold no error and no warning."""
-    context = surroundings(browser, **{"viewport": {"width": 900, "height": 640}} | look)
-    context.add_init_script(UNDRAWN)
-    faults: list[str] = []
-    context.on("console", lambda message: faults.append(message.text) if message.type in ("error", "warning") else None)
-    context.on("weberror", lambda fault: faults.append(str(fault.error)))
-    yield show(context, path, address)
-    context.close()
-    faults = [line for line in faults if not any(noise in line for noise in NOISE)]
-    assert not faults, faults
-
-
 def write_csv(path: Path, columns: dict[str, np.ndarray]) -> Path:
     """A result file as FMPy writes it."""
     header = ",".join(f'"{name}"' for name in columns)
@@ -61,11 +65,9 @@ def write_csv(path: Path, columns: dict[str, np.ndarray]) -> Path:
     return path
 
 
-def view(*arguments: object) -> subprocess.CompletedProcess[str]:
+def view(*arguments: object) -> None:
     """What ./scripts/view does, once all is set up."""
-    command = [sys.executable, "-P", "-m", "page", "recorded", *map(str, arguments)]
-    environment = os.environ | {"PYTHONPATH": str(ROOT / "tools")}
-    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    main("recorded", *map(str, arguments))
 
 
 def column(page: Page, name: str, wheel: int = 0) -> np.ndarray:
@@ -82,7 +84,7 @@ def listed(page: Page) -> list[list[str]]:
 
 def start(page: Page, at: float = 0.0, **values: float) -> None:
     """The live page with the paper's wheel, but for these start values, and its clock standing at `at`."""
-    load = "([values, t]) => { page.player.pause(); page.live.load({values, stop: 10}); page.player.seek(t); }"
+    load = "([values, t]) => { page.player.pause(); page.live.load({values}); page.player.seek(t); }"
     page.evaluate(load, [values, at])
 
 

@@ -1,7 +1,5 @@
 """A link is a state: what was chosen on the live page is in its address, and opened elsewhere it is the same."""
 
-from __future__ import annotations
-
 import pytest
 
 from page.tests.pages import column, do, opened, start
@@ -11,7 +9,7 @@ BITS = "page.wheels.map(({table}) => Object.values(table.columns).map((column) =
 SHOWN = "[page.switches.show, page.plots.portrait.name, page.choice, page.player.t, page.live.plan]"
 
 
-def test_a_link_opened_elsewhere_shows_the_same_motion_to_the_bit(live, live_file, browser):
+def test_a_link_opened_elsewhere_shows_the_same_motion_to_the_bit(live, live_file, window):
     start(live, theta_start=live.evaluate("61.5 / (180 / Math.PI)"), psi_dot_start=0.1 + 0.2)
     live.evaluate("page.live.keep(true)")
     for t, name, value in ((0, "s", 0.0125), (1.23, "M_3", -3.1), (2.57, "M_3", 0), (4.01, "M_brake", 2)):
@@ -24,7 +22,7 @@ def test_a_link_opened_elsewhere_shows_the_same_motion_to_the_bit(live, live_fil
         "&kept.theta=61.5deg&kept.psi_dot=0.30000000000000004&show=path+force&diagram=path&view=2&t=3.37"
     )
     bits, shown = live.evaluate(BITS), live.evaluate(SHOWN)
-    with opened(browser, live_file, address=link) as other:
+    with opened(window, live_file, link) as other:
         assert [other.evaluate(what) for what in (BITS, SHOWN, LINK)] == [bits, shown, link]
         other.evaluate("page.live.setStart('psi_dot_start', 0.3); page.live.compute()")
         assert other.evaluate(BITS) != bits
@@ -39,7 +37,7 @@ def follow(page, text: str) -> None:
 @pytest.mark.parametrize("step", [2, 8])
 def test_the_address_names_the_step_of_the_story_that_is_shown(live, step):
     follow(live, f"step={step}")
-    assert live.evaluate("page.live.panel.story.step") == step - 1
+    assert live.evaluate("page.live.step") == step - 1
     assert live.evaluate(LINK) == f"step={step}"
     live.evaluate("page.live.setStart('phi_dot_start', -1); page.live.compute()")
     assert live.evaluate(LINK).startswith(("theta=", "phi_dot=-1"))
@@ -73,28 +71,15 @@ WRONG = {
     "no such part": ("show=path+ghost", "ghost"),
     "a stray escape": ("%E0%A4%A", "is no part of an address"),
 }
-READ = """async (text) => {
-  const {read} = await import('#address');
-  try {
-    return read(text, page.live.steps.map(({state}) => state), ['phase', 'spin', 'path'], page.live.fmu.variables);
-  } catch (fault) {
-    return fault.message;
-  }
-}"""
+READ = """(text) => import('#address')
+  .then(({read}) => read(text, page.live.link.states)).catch(({message}) => message)"""
 
 
 @pytest.mark.parametrize("fault", WRONG)
 def test_a_wrong_address_is_refused_with_one_sentence(live, fault):
     text, sentence = WRONG[fault]
     told = live.evaluate(READ, text)
-    assert sentence in told
-    assert "\n" not in told and told.endswith(".") and len(told) < 150
-
-
-def test_a_right_address_is_read(live):
-    plan = live.evaluate(READ, "s=0.02&M_3=1:-6,1.5:0")["state"]["plan"]
-    push = [{"t": 1, "name": "M_3", "value": -6}, {"t": 1.5, "name": "M_3", "value": 0}]
-    assert plan == {"values": {"s": 0.02}, "changes": push, "stop": 10}
+    assert sentence in told and "\n" not in told and told.endswith(".") and len(told) < 150
 
 
 @pytest.mark.parametrize(("text", "sentence"), [WRONG["a script"], ("J_x=90", "J_x")])
@@ -104,7 +89,7 @@ def test_a_wrong_address_gives_the_first_scene_and_says_why(live, text, sentence
     live.wait_for_function("!document.querySelector('#refusal').hidden")
     told = live.locator("#refusal").inner_text()
     assert sentence in told and told.startswith("This address cannot be shown: ")
-    assert live.evaluate("[page.live.panel.story.step, page.live.trouble]") == [0, None]
+    assert live.evaluate("[page.live.step, page.live.trouble]") == [0, None]
     assert column(live, "phi_dot")[0] == -5
     live.locator("#story [name=next]").click()
     live.wait_for_function("document.querySelector('#refusal').hidden")

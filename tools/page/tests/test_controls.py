@@ -1,11 +1,12 @@
 """What both pages share: keys, mouse, cards, tooltips, and their layout on a screen and on a phone."""
 
-from __future__ import annotations
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from playwright.sync_api import BrowserContext
 
-from page.tests.pages import opened, start
+from page.tests.pages import opened, start, window_of
 
 CAMERA = "[...page.stage.camera.position]"
 
@@ -34,10 +35,9 @@ def test_a_number_chooses_what_is_shown(recorded):
 
 def test_the_mouse_turns_the_view(either):
     before = either.evaluate(CAMERA)
-    box = either.locator("#stage").bounding_box()
-    either.mouse.move(box["x"] + 100, box["y"] + 100)
+    either.hover("#stage", position={"x": 100, "y": 100})
     either.mouse.down()
-    either.mouse.move(box["x"] + 220, box["y"] + 120, steps=3)
+    either.hover("#stage", position={"x": 220, "y": 120})
     either.mouse.up()
     assert abs(np.subtract(either.evaluate(CAMERA), before)).max() > 0.1
     either.keyboard.press("r")
@@ -72,15 +72,12 @@ def test_after_a_click_the_space_bar_plays_and_by_keyboard_it_presses_the_button
     theme.click()
 
 
-@pytest.mark.parametrize("way", ["Escape", "a click elsewhere"])
-def test_a_card_closes(either, way):
-    either.locator("[popovertarget=help]").click()
-    assert either.locator("#help").is_visible()
-    if way == "Escape":
-        either.keyboard.press("Escape")
-    else:
-        either.locator("h1").click()
-    assert not either.locator("#help").is_visible()
+def test_a_card_is_closed_by_escape_or_by_a_click_elsewhere(either):
+    for close in (lambda: either.keyboard.press("Escape"), lambda: either.click("h1")):
+        either.click("[popovertarget=help]")
+        assert either.is_visible("#help")
+        close()
+        assert not either.is_visible("#help")
 
 
 TOLD = """all => all.map((x) => [x.title || x.closest('label')?.title || '', x.outerHTML])"""
@@ -95,16 +92,19 @@ def test_every_button_has_a_tooltip_and_the_help_names_it(either):
     text = either.locator("#help").inner_text()
     either.keyboard.press("Escape")
     names = "Follow,Path,Axes,Force,Take with you,colours,play,Values"
-    names += ",Push forward,push back,brake,Keep this motion,Scenes,Story,The wheel itself" * either.evaluate(
-        "'live' in page"
-    )
+    if either.evaluate("'live' in page"):
+        names += ",Push forward,push back,brake,Keep this motion,Scenes,Story,The wheel itself"
     assert [name for name in names.split(",") if name not in text] == []
 
 
+@pytest.fixture(scope="module")
+def phone(browser) -> BrowserContext:
+    return window_of(browser, viewport={"width": 360, "height": 740}, has_touch=True, is_mobile=True)
+
+
 @pytest.mark.parametrize("kind", ["recorded", "live"])
-def test_a_phone_shows_everything_without_scrolling_sideways(browser, request, kind):
-    phone = {"viewport": {"width": 360, "height": 740}, "has_touch": True, "is_mobile": True}
-    with opened(browser, request.getfixturevalue(f"{kind}_file"), **phone) as page:
+def test_a_phone_shows_everything_without_scrolling_sideways(phone, request, kind):
+    with opened(phone, request.getfixturevalue(f"{kind}_file")) as page:
         for scheme in ("light", "dark"):
             page.emulate_media(color_scheme=scheme)
             page.wait_for_function("(scheme) => document.documentElement.dataset.theme === scheme", arg=scheme)
@@ -122,8 +122,9 @@ def test_a_phone_shows_everything_without_scrolling_sideways(browser, request, k
 def test_push_and_brake_stand_in_sight_beside_play(live, size):
     start(live)
     live.set_viewport_size({"width": size[0], "height": size[1]})
-    boxes = [live.locator(place).bounding_box() for place in ("#play", *(f".push >> nth={k}" for k in range(3)))]
+    boxes = [button.bounding_box() for button in live.locator("#play, .push").all()]
     live.set_viewport_size({"width": 900, "height": 640})
-    for box, other in zip(boxes, boxes[1:], strict=False):
+    assert len(boxes) == 4
+    for box, other in pairwise(boxes):
         assert 0 <= box["x"] < other["x"] < size[0] - other["width"]
         assert abs(box["y"] - other["y"]) < 20 and other["y"] + other["height"] <= size[1]

@@ -1,7 +1,5 @@
 """The diagrams: curves over time, phase portrait, angular velocities, path from above."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
@@ -35,7 +33,7 @@ def test_a_portrait_shows_rates_over_tilt_or_along_e3_over_e2_or_the_path_of_the
 ):
     names = ("psi_dot", "phi_dot", "theta_dot", "theta", "X_C", "Y_C")
     found = points(recorded, name)
-    wanted = np.column_stack(expected(simulate(step=0.01, output=names, s=0.03))[name])
+    wanted = np.column_stack(expected(simulate(output_interval=0.01, output=names, start_values={"s": 0.03}))[name])
     within(absolute_error(found["friction"], wanted), bound, "points off")
     beyond(absolute_error(found["free"], wanted), 1, "points of the other wheel off")
 
@@ -52,12 +50,11 @@ def test_without_friction_both_rates_lie_on_one_curve_and_with_friction_it_shrin
 
 def test_the_path_from_above_has_one_scale(recorded):
     recorded.evaluate("page.plots.portrait.choose('path')")
-    (x, y), (width, height) = recorded.evaluate("""() => {
-      const {ranges, sizes} = page.plots.portrait;
-      return [ranges.map(([low, high]) => high - low), sizes];
-    }""")
+    (left, right), (low, high), (width, height) = recorded.evaluate(
+        "(({ranges, sizes}) => [...ranges, sizes])(page.plots.portrait)"
+    )
     recorded.evaluate("page.plots.portrait.choose('phase')")
-    assert x / width == pytest.approx(y / height)
+    assert (right - left) / width == pytest.approx((high - low) / height)
 
 
 PIXEL = """([name, t]) => {
@@ -99,11 +96,9 @@ def test_the_label_and_the_diagram_say_that_the_wheel_sticks(recorded):
 
 
 def test_a_click_into_a_diagram_goes_there(recorded):
-    canvas = recorded.locator(".plot canvas").first
-    canvas.click(position={"x": 100, "y": 40})
-    expected = canvas.evaluate("() => page.plots.curves[0].timeAt(100)")
-    assert recorded.evaluate("page.player.t") == pytest.approx(expected)
-    assert 0.5 < expected < 9.5
+    recorded.locator(".plot canvas").first.click(position={"x": 100, "y": 40})
+    t, expected = recorded.evaluate("[page.player.t, page.plots.curves[0].timeAt(100)]")
+    assert 0.5 < t < 9.5 and t == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("diagram", ["phase", "spin", "path"])

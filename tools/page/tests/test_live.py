@@ -1,7 +1,5 @@
 """The live page in headless Chromium: the wheel itself in WebAssembly, and the FMU beside it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -25,6 +23,7 @@ RUN = """([values, changes, record]) => {
   const {table, ended} = page.live.fmu.run({values, changes: list, stop: 10, record});
   return [record.map((name) => [...table.columns[name]]), ended];
 }"""
+CHANGES = "page.live.plan.changes.map(({t, name, value}) => [t, name, value])"
 INERTIA = (1.8 + 20 * 0.35**2, 20 * 0.35**2)  # kg m2: J_z + m R^2, m R^2
 
 
@@ -33,8 +32,7 @@ def by_fmu(fmu: FMU2Wheel, values: dict, changes: list) -> np.ndarray:
     fmu.start(**values)
     rows = [fmu.get(*NAMES)]
     for k in range(1000):
-        for _, name, value in [change for change in changes if round(change[0] / STEP) == k]:
-            fmu.set(**{name: value})
+        fmu.set(**{name: value for t, name, value in changes if round(t / STEP) == k})
         fmu.fmi2DoStep(fmu.component, k * STEP, STEP, 1)
         rows.append(fmu.get(*NAMES))
     return np.array(rows)
@@ -54,13 +52,12 @@ def test_dragging_s_changes_the_motion_from_now_on_and_not_before(live):
     start(live, at=3)
     before = column(live, "theta")
     slider = live.locator("#live [name=s]")
-    slider.scroll_into_view_if_needed()
-    box = slider.bounding_box()
-    live.mouse.move(box["x"] + 3, box["y"] + box["height"] / 2)
+    width, height = (slider.bounding_box()[edge] for edge in ("width", "height"))
+    slider.hover(position={"x": 3, "y": height / 2})
     live.mouse.down()
-    live.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + box["height"] / 2, steps=4)
+    slider.hover(position={"x": 0.4 * width, "y": height / 2})
     live.mouse.up()
-    live.wait_for_function("page.live.changes.length > 0 && !page.live.wanted")
+    live.wait_for_function("page.live.plan.changes.length > 0 && !page.live.wanted")
     after = column(live, "theta")
     assert 0.02 < float(live.evaluate("page.live.present('s')")) < 0.06
     assert (before[:301] == after[:301]).all()
@@ -75,10 +72,7 @@ def test_the_future_after_a_push_is_that_of_a_run_with_that_input(live):
     assert (pushed == columns[0]).all()
     do(live, 1, M_3=0)
     assert (column(live, "omega_z") != pushed).any()  # what was planned for later is dropped
-    assert live.evaluate("page.live.changes.map(({value}) => value)") == [0]
-
-
-CHANGES = "page.live.changes.map(({t, name, value}) => [t, name, value])"
+    assert live.evaluate(CHANGES) == [[1, "M_3", 0]]
 
 
 def test_a_push_lasts_as_long_as_the_button_is_held(live):
@@ -126,11 +120,9 @@ def test_forward_is_the_way_the_wheel_rolls_and_back_is_against_it(live, spin):
 
 def test_an_impossible_start_is_refused_with_the_wheels_own_sentence(live):
     start(live)
-    live.evaluate("page.live.setStart('r_0', -1); page.live.frame()")
-    assert "r_0" in live.locator("#message").inner_text()
-    start(live)
-    live.evaluate("page.live.frame()")
-    assert "computed in" in live.locator("#message").inner_text()
+    for r_0, told in ((-1, "r_0"), (0.3, "computed in")):
+        live.evaluate("(r_0) => { page.live.setStart('r_0', r_0); page.live.frame(); }", r_0)
+        assert told in live.locator("#message").inner_text()
 
 
 def test_every_scene_runs_to_its_end(live):

@@ -1,7 +1,5 @@
 """The story of the live page: every step is a scene, and what its text says holds for the scene's motion."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np
@@ -12,12 +10,7 @@ from page.tests.pages import column, do
 
 STEPS = 8
 UPRIGHT = np.pi / 2
-OPEN = """(k) => {
-  const {story} = page.live.panel;
-  story.enter(k);
-  story.move(0);
-  page.player.pause();
-}"""
+OPEN = "(k) => { Object.assign(page.live, {step: k - 1, open: true}).turn(0); page.player.pause(); }"
 
 
 @pytest.fixture
@@ -64,7 +57,6 @@ def test_the_critical_spin_parts_two_wheels(live, story):
 
 
 def test_without_friction_the_phase_portrait_is_one_closed_curve(live, story):
-    theta, rate = column(live, "theta"), column(live, "theta_dot")
     assert numbers(story(4))[1] == pytest.approx(np.degrees(column(live, "theta").min()), abs=0.05)
     theta, rate = column(live, "theta"), column(live, "theta_dot")
     away = np.hypot(theta - theta[0], (rate - rate[0]) / 5)

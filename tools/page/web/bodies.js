@@ -15,10 +15,7 @@ const {BoxGeometry, CylinderGeometry, TorusGeometry} = THREE;
 
 /** The tyre's skin: tread on the outside, a stripe on each side wall, and the mark at phi = 0. x: along the ring. */
 function drawTyre(pen, accent) {
-  const fill = (colour, ...boxes) => {
-    pen.fillStyle = colour;
-    for (const box of boxes) pen.fillRect(...box);
-  };
+  const fill = (fillStyle, ...boxes) => boxes.forEach((box) => Object.assign(pen, {fillStyle}).fillRect(...box));
   fill('#2b2e34', [0, 0, 2048, 256]);
   // The tube's angle runs down the picture: 0 and 256 the outside, 128 the inside.
   Object.assign(pen, {strokeStyle: '#191b1f', lineWidth: 5});
@@ -72,11 +69,12 @@ function makeNamed(name, vector, radius, height, colour, beyond) {
 }
 
 export class WheelModel {
-  /** wheel: {name, r_0, r, slope?, slope_direction?, colour, table, trace, phases}; size of the scene in m. */
+  /** wheel: {name, parameters, colour, table, trace, phases}; size of the scene in m. */
   constructor(wheel, size) {
-    const {name, r_0, r, table} = wheel;
+    const {name, parameters: {r_0, r}, table} = wheel;
     const radius = r_0 + r;
-    Object.assign(this, {wheel, size, group: new THREE.Group(), path: new THREE.Group(), axes: new THREE.Group()});
+    Object.assign(
+        this, {wheel, size, r_0, r, group: new THREE.Group(), path: new THREE.Group(), axes: new THREE.Group()});
     const marked = {color: wheel.colour, specular: '#222', shininess: 15};
     this.body = new THREE.Group().add(...(r > 0.01 * r_0 ? makeWheel(r_0, r, marked) : makeDisc(r_0, marked)));
     this.body.name = `spin:${name}`;
@@ -88,8 +86,7 @@ export class WheelModel {
     this.carrier = new THREE.Group().add(this.body, this.axes);
     this.force = makeArrow(0.03 * r_0, colour('--force'));
     const skin = {color: colour('--force'), transparent: true, side: THREE.DoubleSide, depthWrite: false};
-    const ring = new THREE.RingGeometry(0.07 * r_0, 0.11 * r_0, 40);
-    this.spot = new THREE.Mesh(ring, new THREE.MeshBasicMaterial(skin));
+    this.spot = new THREE.Mesh(new THREE.RingGeometry(0.07 * r_0, 0.11 * r_0, 40), new THREE.MeshBasicMaterial(skin));
     this.spot.renderOrder = 900;
     const [arrow, label] =
         makeNamed('uphill', new THREE.Vector3(0.8 * radius, 0, 0), 0.03 * radius, 0.24 * radius, colour('--line'), 0.5);
@@ -103,15 +100,13 @@ export class WheelModel {
 
   /** The contact path anew: all of it faintly, up to now strongly, stick phases in a colour of their own. */
   drawPath() {
-    const {wheel: {trace: {points}, table, r_0, phases, colour: accent}, size} = this;
+    const {wheel: {trace: {points}, table, phases, colour: accent}, size, r_0} = this;
     const unit = Math.max(0.045 * r_0, 0.006 * size);
     const ribbon = ([begin, end], color, width, layer, opacity) => {
       const first = this.point(begin);
-      const height = 0.0005 * (1 + layer) * size;
       const part = points.slice(first, this.point(end) + 1);
-      const found = makeRibbon(part, {width: width * unit, height, layer, color, opacity});
-      found.userData = {begin, first};
-      return found;
+      const look = {width: width * unit, height: 0.0005 * (1 + layer) * size, layer, color, opacity};
+      return Object.assign(makeRibbon(part, look), {userData: {begin, first}});
     };
     const all = [table.start, table.end];
     this.past =
@@ -125,7 +120,7 @@ export class WheelModel {
 
   /** Pose, path and force at t. show: {path, axes, force}. */
   update(t, show) {
-    const {table, r_0, r, slope = 0, slope_direction: direction = 0} = this.wheel;
+    const {wheel: {table, parameters: {slope = 0, slope_direction: direction = 0}}, r_0, r} = this;
     const at = (name) => table.value(name, t);
     const [X, Y, psi, theta, phi] = ['X_O', 'Y_O', 'psi', 'theta', 'phi'].map(at);
     this.carrier.position.set(X, Y, table.has('Z_O') ? at('Z_O') : r_0 * Math.sin(theta) + r);

@@ -24,12 +24,8 @@ export class Player extends EventTarget {
 
   pause() { this.set({playing: false}); }
 
-  toggle() { this.playing ? this.pause() : this.play(); }
-
-  setSpeed(speed) { this.set({speed}); }
-
   /** The next faster (+1) or slower (-1) speed. */
-  shift(direction) { this.setSpeed(SPEEDS[SPEEDS.indexOf(this.speed) + direction] ?? this.speed); }
+  shift(direction) { this.set({speed: SPEEDS[SPEEDS.indexOf(this.speed) + direction] ?? this.speed}); }
 
   /** A frame that lasted dt seconds of the reader's time. */
   advance(dt) {
@@ -50,16 +46,16 @@ export function showBands(wheels, {start, end}) {
 export function setUpTransport(player) {
   const [button, slider, clock, speed] = ['#play', '#time', '#clock', '#speed'].map((place) => $(place));
   speed.append(...SPEEDS.map((value) => make('option', {value}, `${value} ×`)));
-  button.addEventListener('click', () => player.toggle());
-  slider.addEventListener('input', () => player.seek(Number(slider.value)));
-  speed.addEventListener('change', () => player.setSpeed(Number(speed.value)));
+  button.onclick = () => (player.playing ? player.pause() : player.play());
+  slider.oninput = () => player.seek(Number(slider.value));
+  speed.onchange = () => player.set({speed: Number(speed.value)});
   const show = () => {
     const t = player.t.toFixed(2);
     [slider.min, slider.max, slider.value] = [player.start, player.end, player.t];
-    slider.setAttribute('aria-valuetext', `${t} seconds`);
+    slider.ariaValueText = `${t} seconds`;
     clock.textContent = `${t} s`;
     button.dataset.playing = player.playing;
-    button.setAttribute('aria-label', player.playing ? 'Pause' : 'Play');
+    button.ariaLabel = player.playing ? 'Pause' : 'Play';
     speed.value = player.speed;
   };
   player.addEventListener('change', show);
@@ -67,47 +63,40 @@ export function setUpTransport(player) {
 }
 
 /** What the scene shows, from the boxes of page.html: {show: {name: on}, flip(name, on)}. */
-export function setUpSwitches(page) {
+export function setUpSwitches(stage) {
   const boxes = [...document.querySelectorAll('#toggles input')];
   const show = Object.fromEntries(boxes.map(({name, checked}) => [name, checked]));
   const flip = (name, on = !show[name]) => {
-    $(`#toggles [name=${name}]`).checked = show[name] = on;
-    page.stage.dirty = true;
+    boxes.find((box) => box.name === name).checked = show[name] = on;
+    stage.dirty = true;
   };
-  for (const box of boxes) box.addEventListener('change', () => flip(box.name, box.checked));
+  $('#toggles').onchange = ({target: {name, checked}}) => flip(name, checked);
   return {show, flip};
 }
 
 const PRESSED = 'button, select, summary, input[type=checkbox]';  // by the space bar
 const MOVED = 'input, select, summary, textarea, canvas';         // by arrow keys; of the canvas, the scene turns
 
-/** The page's keys. Fields keep their own. */
-export function setUpKeys(page) {
-  const {player, switches, plots} = page;
+/** The page's keys: those here, and for the rest the button that has the key as its shortcut. Fields keep their own. */
+export function setUpKeys({player, stage, plots}) {
   const seek = (by) => ({shiftKey}) => player.seek(player.t + (shiftKey ? 10 : 1) * by);
   const keys = {
-    'ArrowLeft': seek(-0.05),
-    'ArrowRight': seek(0.05),
-    'Home': () => player.seek(player.start),
-    'End': () => player.seek(player.end),
-    ' ': () => player.toggle(),
+    'arrowleft': seek(-0.05),
+    'arrowright': seek(0.05),
+    'home': () => player.seek(player.start),
+    'end': () => player.seek(player.end),
     '+': () => player.shift(1),
     '-': () => player.shift(-1),
-    'f': () => switches.flip('follow'),
-    'p': () => switches.flip('path'),
-    'a': () => switches.flip('axes'),
-    'g': () => switches.flip('force'),
-    'r': () => page.stage.home(),
+    'r': () => stage.controls.reset(),
     'd': () => plots.portrait.next(),
-    'n': () => page.live?.panel.story.move(1),
-    'b': () => page.live?.panel.story.move(-1),
   };
-  for (let i = 0; i < 9; ++i) keys[i + 1] = () => i < page.choices.length && page.choose(i);
   addEventListener('keydown', (event) => {
-    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    const kept = key === ' ' ? PRESSED : key.length > 1 ? MOVED : '_';
-    if (event.ctrlKey || event.metaKey || event.altKey || !(key in keys) || event.target.matches?.(kept)) return;
-    keys[key](event);
+    const key = event.key === ' ' ? 'space' : event.key.toLowerCase();
+    const kept = key === 'space' ? PRESSED : key.length > 1 ? MOVED : '_';
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.(kept)) return;
+    const button = $(`[aria-keyshortcuts="${CSS.escape(key)}" i]`);
+    if (!button && !keys[key]) return;
+    button ? button.click() : keys[key](event);
     event.preventDefault();
   });
   // A button that was clicked does not keep the focus: the space bar plays, and does not click it again.

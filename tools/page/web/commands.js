@@ -1,10 +1,11 @@
 // The commands that make the same run outside of the page: fmpy's command line, Python with FMPy, and C.
+import {variables} from '#data';
 import {STEP} from '#fmu';
 
 const instant = (t) => Number(t.toFixed(4));  // s, a communication point in plain digits
 
 /** fmpy: changes as an input file, each jump as two rows at one instant. */
-function byFmpy({values, changes, stop}, given, variables) {
+function byFmpy({values, changes, stop}, given) {
   const names = [...new Set(changes.map(({name}) => name))];
   const now = Object.fromEntries(names.map((name) => [name, values[name] ?? variables[name].start ?? 0]));
   const row = (t) => [instant(t), ...names.map((name) => now[name])].join(',');
@@ -46,12 +47,11 @@ motion = simulate_fmu("wheel.fmu", ${end}, step_finished=change)
 print(motion["theta"][-1])`;
 }
 
-function byC({changes, stop}, given, variables, guid) {
-  const reference = (name) => variables[name].reference;
-  const start = given.map(([name, value]) => [0, reference(name), value]);
-  const later = changes.map(({t, name, value}) => [Math.round(t / STEP), reference(name), value]);
+function byC({changes, stop}, given, guid) {
+  const set = (name, value) => `set(${variables[name].reference}, ${value});`;
+  const start = given.map((pair) => `  ${set(...pair)}\n`);
+  const later = changes.map(({t, name, value}) => `    if (k == ${Math.round(t / STEP)}) ${set(name, value)}\n`);
   const shown = ['theta', 'omega_z', 'X_O', 'Y_O'];
-  const rows = [...start, ...later, [-1, 0, 0]].map((row) => `{${row.join(', ')}}`).join(', ');
   return `// unzip wheel.fmu 'binaries/*' && cc run.c ./binaries/linux64/wheel.so -o run && ./run
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,24 +73,20 @@ static void tell(void* e, const char* name, int status, const char* category, co
   fprintf(stderr, "%s\\n", text);
 }
 
+static void* wheel;
+static void set(unsigned reference, double value) { fmi2SetReal(wheel, &reference, 1, &value); }
+
 int main(void) {
   static const callbacks functions = {tell, calloc, free, NULL, NULL};
-  static const struct {
-    int step;
-    unsigned reference;
-    double value;
-  } set[] = {${rows}};
-  static const unsigned shown[] = {${shown.map(reference).join(', ')}}; /* ${shown.join(', ')} */
+  static const unsigned shown[] = {${shown.map((name) => variables[name].reference).join(', ')}}; /* ${
+      shown.join(', ')} */
   double value[${shown.length}];
-  void* wheel = fmi2Instantiate("wheel", 1, "${guid}", "", &functions, 0, 0);
-  if (!wheel) return 1;
-  int next = 0, status = 0;
-  for (; next < ${given.length}; ++next) fmi2SetReal(wheel, &set[next].reference, 1, &set[next].value);
-  fmi2SetupExperiment(wheel, 0, 0, 0, 0, 0);
+  int status = 0;
+  if (!(wheel = fmi2Instantiate("wheel", 1, "${guid}", "", &functions, 0, 0))) return 1;
+${start.join('')}  fmi2SetupExperiment(wheel, 0, 0, 0, 0, 0);
   if (fmi2EnterInitializationMode(wheel) > 1 || fmi2ExitInitializationMode(wheel) > 1) return 1;
   for (int k = 0; k < ${Math.round(stop / STEP)} && status < 2; ++k) {
-    for (; set[next].step == k; ++next) fmi2SetReal(wheel, &set[next].reference, 1, &set[next].value);
-    status = fmi2DoStep(wheel, k * ${STEP}, ${STEP}, 1);
+${later.join('')}    status = fmi2DoStep(wheel, k * ${STEP}, ${STEP}, 1);
     fmi2GetReal(wheel, shown, ${shown.length}, value);
     printf("%.2f %.17g %.17g %.17g %.17g\\n", (k + 1) * ${STEP}, value[0], value[1], value[2], value[3]);
   }
@@ -99,12 +95,8 @@ int main(void) {
 }`;
 }
 
-/** {label: text} for a plan {values, changes, stop}; variables: of the description. */
-export function commands(plan, {guid, variables}) {
+/** {label: text} for a plan {values, changes, stop}. */
+export function commands(plan, guid) {
   const given = Object.entries(plan.values).filter(([name, value]) => value !== variables[name].start);
-  return {
-    fmpy: byFmpy(plan, given, variables),
-    Python: byPython(plan, given),
-    C: byC(plan, given, variables, guid),
-  };
+  return {fmpy: byFmpy(plan, given), Python: byPython(plan, given), C: byC(plan, given, guid)};
 }

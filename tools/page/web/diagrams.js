@@ -32,7 +32,7 @@ export const PORTRAITS = {
       ([theta, psi_dot, omega_z]) => [psi_dot * Math.sin(theta), omega_z]),
   path: kind(
       'path', ['m', 'm'], POSE, 'Path of the contact point on the ground, from above',
-      (values, {r_0}) => contactOf(r_0, ...values), {even: true}),
+      (values, {parameters: {r_0}}) => contactOf(r_0, ...values), {even: true}),
 };
 
 /** Round numbers, at most about `count` of them, that span low to high. */
@@ -70,7 +70,7 @@ class Diagram {
     this.unit = make('span', {className: 'unit'});
     this.values = make('output');
     this.canvas = make('canvas', {role: 'img'});
-    this.choice = make('span', {className: 'segments', role: 'radiogroup', 'aria-label': 'Diagram'});
+    this.choice = make('span', {className: 'segments', role: 'radiogroup', ariaLabel: 'Diagram'});
     const title = this.timed ? make('b', {}, make('i', {}, ...subscripted(this.kind.symbol))) : this.choice;
     const caption = make('figcaption', {}, title, this.unit, this.values);
     this.figure = make('figure', {className: this.timed ? 'plot' : 'plot portrait'}, caption, this.canvas);
@@ -104,14 +104,12 @@ class Diagram {
     Object.assign(this, {all: wheels, wheels: showing(this.kind)});
     const [across, up] = this.kind.units;
     this.unit.textContent = this.timed || across === up ? up : '';
-    this.canvas.title = this.kind.what;
-    this.canvas.setAttribute('aria-label', this.kind.what);
+    this.canvas.title = this.canvas.ariaLabel = this.kind.what;
     if (this.timed) return;
-    const buttons = this.possible.map((other) => {
-      const {symbol, what} = this.kinds[other];
-      return {name: other, title: what, innerHTML: make('i', {}, ...subscripted(symbol)).innerHTML};
-    });
+    const buttons = this.possible.map((other) => ({name: other, title: this.kinds[other].what}));
     makeChoice(this.choice, buttons, (other) => this.choose(other))(this.name);
+    [...this.choice.children].forEach(
+        (button, i) => button.append(...subscripted(this.kinds[this.possible[i]].symbol)));
   }
 
   choose(name) {
@@ -178,15 +176,14 @@ class Diagram {
     });
   }
 
-  x(value) {
-    const [low, high] = this.ranges[0];
-    return LEFT + ((value - low) / (high - low)) * this.sizes[0];
+  /** How far along the axis across (0) or up (1) a value lies, in CSS pixels. */
+  along(side, value) {
+    return (value - this.ranges[side][0]) * (this.sizes[side] / (this.ranges[side][1] - this.ranges[side][0]));
   }
 
-  y(value) {
-    const [low, high] = this.ranges[1];
-    return TOP + ((high - value) / (high - low)) * this.sizes[1];
-  }
+  x(value) { return LEFT + this.along(0, value); }
+
+  y(value) { return TOP + this.sizes[1] - this.along(1, value); }
 
   timeAt(x) {
     const {start, end} = this.player;
@@ -214,8 +211,8 @@ class Diagram {
   bands(pen, strength) {
     for (const {phases} of this.wheels) {
       Object.assign(pen, {globalAlpha: strength, fillStyle: colour('--stick')});
-      for (const [begin, end] of phases.sticks)
-        pen.fillRect(this.x(begin), TOP, this.x(end) - this.x(begin), this.sizes[1]);
+      const spans = phases.sticks.map((span) => span.map((t) => this.x(t)));
+      for (const [left, right] of spans) pen.fillRect(left, TOP, right - left, this.sizes[1]);
       Object.assign(pen, {globalAlpha: Math.min(1, 2.4 * strength), fillStyle: colour('--force')});
       for (const t of phases.transitions) pen.fillRect(this.x(t) - 0.5, TOP - 7, 1, 7);
     }
@@ -224,8 +221,7 @@ class Diagram {
   /** The line of wheel k up to its point `last`; over time with a cross where its motion ended. */
   stroke(pen, k, last) {
     const points = this.lines[k].points.slice(0, last + 1).map(([x, y]) => [this.x(x), this.y(y)]);
-    Object.assign(pen, {lineWidth: 1.6, lineJoin: 'round', strokeStyle: this.wheels[k].colour});
-    pen.beginPath();
+    Object.assign(pen, {lineWidth: 1.6, lineJoin: 'round', strokeStyle: this.wheels[k].colour}).beginPath();
     for (const [x, y] of points) pen.lineTo(x, y);
     const [x, y] = points.at(-1) ?? [];
     for (const side of this.timed && this.wheels[k].ended ? [-4, 4] : []) {
@@ -241,22 +237,14 @@ class Diagram {
     const {pen, width, height, layers: {faint, strong}} = this;
     pen.clearRect(0, 0, width, height);
     pen.drawImage(faint, 0, 0, width, height);
-    pen.save();
-    if (this.timed) {
-      pen.beginPath();
-      pen.rect(0, 0, t < this.player.end ? this.x(t) : width, height);
-      pen.clip();
-      pen.drawImage(strong, 0, 0, width, height);
-    } else {
-      this.lines.forEach(({times}, k) => this.stroke(pen, k, before(times, t)));
-    }
-    pen.restore();
+    const past = t < this.player.end ? this.x(t) / width : 1;
+    if (this.timed) pen.drawImage(strong, 0, 0, past * strong.width, strong.height, 0, 0, past * width, height);
+    if (!this.timed) this.lines.forEach(({times}, k) => this.stroke(pen, k, before(times, t)));
     pen.fillStyle = this.ink;
     if (this.timed) pen.fillRect(this.x(t) - 0.5, TOP - 4, 1, this.sizes[1] + 4);
     const present = this.wheels.map((wheel) => this.at(wheel, t));
     present.forEach(([x, y], k) => {
-      Object.assign(pen, {fillStyle: this.wheels[k].colour, strokeStyle: this.paper});
-      pen.beginPath();
+      Object.assign(pen, {lineWidth: 1, fillStyle: this.wheels[k].colour, strokeStyle: this.paper}).beginPath();
       pen.arc(this.x(x), this.y(y), 3.6, 0, 7);
       pen.fill();
       pen.stroke();
@@ -284,17 +272,17 @@ export class Plots {
     this.curves = CURVES.map((kind) => new Diagram(host, player, {curve: kind}));
     this.portrait = new Diagram(host, player, PORTRAITS);
     this.all = [...this.curves, this.portrait];
-    new ResizeObserver(() => this.prepare(this.axis)).observe(host);
+    new ResizeObserver(() => this.prepare()).observe(host);
   }
 
   /** wheels: [{table, phases, trace, colour}], those that are shown. */
   show(wheels) {
     for (const diagram of this.all) diagram.select(wheels);  // all of them first: they share the width
-    this.prepare(this.axis);
+    this.prepare();
   }
 
-  prepare(axis) {
-    for (const diagram of this.all) diagram.prepare(axis);
+  prepare() {
+    for (const diagram of this.all) diagram.prepare(this.axis);
     this.draw(this.player.t);
   }
 

@@ -2,15 +2,9 @@
 
 export const $ = (selector, host = document) => host.querySelector(selector);
 
-/** A new element with these properties, or attributes where it has no such property, and with children. */
-export function make(tag, properties = {}, ...children) {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(properties)) {
-    if (name in element)
-      element[name] = value;
-    else
-      element.setAttribute(name, value);
-  }
+/** A new element with these properties and children. */
+export function make(tag, properties, ...children) {
+  const element = Object.assign(document.createElement(tag), properties);
   element.append(...children);
   return element;
 }
@@ -21,7 +15,7 @@ export const makeButton = (properties, onclick) => make('button', {type: 'button
 export function makeChoice(row, options, act) {
   const buttons = options.map((option) => makeButton({role: 'radio', ...option}, () => act(option.name)));
   row.replaceChildren(...buttons);
-  return (chosen) => buttons.forEach((button, i) => button.setAttribute('aria-checked', options[i].name === chosen));
+  return onChange((chosen) => buttons.forEach((button, i) => (button.ariaChecked = options[i].name === chosen)));
 }
 
 /** A text such as ω_z as nodes, with its subscript. */
@@ -39,5 +33,8 @@ export function clearCanvas(canvas, width, height) {
 /** The value of a colour variable of style.css, as text. */
 export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/** The colour of the i-th wheel. */
-export const wheelColour = (i) => colour(`--wheel-${i % 6}`);
+/** A function that acts upon a value, and again only once the value is another. */
+export function onChange(act) {
+  let before;
+  return (value) => value !== before && act(before = value);
+}

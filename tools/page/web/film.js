@@ -62,10 +62,7 @@ export function compose(page, canvas = make('canvas')) {
 /** Eight bytes of a whole number, or of a real one. */
 function bytes(value, real = false) {
   const view = new DataView(new ArrayBuffer(8));
-  if (real)
-    view.setFloat64(0, value);
-  else
-    view.setBigUint64(0, BigInt(value));
+  real ? view.setFloat64(0, value) : view.setBigUint64(0, BigInt(value));
   return new Uint8Array(view.buffer);
 }
 
@@ -79,21 +76,16 @@ function element(id, ...content) {
 
 /** A WebM file of pictures [{data, time: ms, key}] in a codec, `duration` ms long. */
 function webm(codec, {width, height}, pictures, duration) {
-  const clusters = [];
-  for (const {data, time, key} of pictures) {
-    if (key) clusters.push({time, blocks: []});
-    const {time: begin, blocks} = clusters.at(-1);
-    const head =
-        Uint8Array.of(0x81, (time - begin) >> 8, time - begin, key ? 0x80 : 0);  // track 1, time, whether a key
-    blocks.push(element(0xa3, head, data));
-  }
+  const clusters = pictures.map(({data, time, key}) => {
+    const head = Uint8Array.of(0x81, 0, 0, key ? 0x80 : 0);  // track 1, at the time of the cluster, whether a key
+    return element(0x1f43b675, element(0xe7, time), element(0xa3, head, data));
+  });
   const header = element(0x1a45dfa3, element(0x4282, 'webm'), element(0x4287, 4), element(0x4285, 2));
   const names = [element(0x4d80, 'wheel'), element(0x5741, 'wheel')];
   const info = element(0x1549a966, element(0x2ad7b1, 1_000_000), element(0x4489, bytes(duration, true)), ...names);
   const video = element(0xe0, element(0xb0, width), element(0xba, height));
   const track = [element(0xd7, 1), element(0x73c5, 1), element(0x83, 1), element(0x86, codec), video];
-  const parts = clusters.map(({time, blocks}) => element(0x1f43b675, element(0xe7, time), ...blocks));
-  const segment = element(0x18538067, info, element(0x1654ae6b, element(0xae, ...track)), ...parts);
+  const segment = element(0x18538067, info, element(0x1654ae6b, element(0xae, ...track)), ...clusters);
   return new Blob([header, segment], {type: 'video/webm'});
 }
 

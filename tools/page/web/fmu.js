@@ -1,5 +1,6 @@
 // The FMU inside the page: wheel.fmu's own sources as WebAssembly, called as any master calls them (FMI 2.0
 // co-simulation). Variables are found by name in the description, which is made from modelDescription.xml.
+import {variables} from '#data';
 import {bytesOf, Table} from '#table';
 
 export const STEP = 0.01;  // s, between two communication points
@@ -7,9 +8,9 @@ const [WARNING, DISCARD, LAST_TIME] = [1, 2, 2];
 const ROOM = 64;  // values of one call, at most
 
 export class Fmu {
-  /** wasm: base64 of the module; description: {guid, variables: {name: {reference, type, start, ...}}}. */
-  static async load(wasm, {guid, variables}) {
-    const fmu = Object.assign(new Fmu(), {guid, variables, messages: []});
+  /** wasm: base64 of the module. */
+  static async load(wasm, guid) {
+    const fmu = Object.assign(new Fmu(), {guid, messages: []});
     const log = (status, category, message) => fmu.messages.push(fmu.text(message));
     const module = await WebAssembly.compile(bytesOf(wasm));
     const imports = {page: {log}, wasi_snapshot_preview1: {}};
@@ -47,16 +48,10 @@ export class Fmu {
     if (status > WARNING) throw new Error(this.messages.at(-1) ?? `status ${status}`);
   }
 
-  variable(name) {
-    const variable = this.variables[name];
-    if (!variable) throw new Error(`wheel.fmu has no variable ${name}`);
-    return variable;
-  }
-
   /** Get or Set of variables of one type; returns their values in the module's memory. */
   exchange(way, names, values = []) {
-    const {type} = this.variable(names[0]);
-    this.view(Uint32Array, this.list, names.length).set(names.map((name) => this.variable(name).reference));
+    const {type} = variables[names[0]];
+    this.view(Uint32Array, this.list, names.length).set(names.map((name) => variables[name].reference));
     const cells = () => this.view(type === 'Real' ? Float64Array : Int32Array, this.cells, names.length);
     cells().set(values);
     this.call(way + (type === 'Enumeration' ? 'Integer' : type), this.list, names.length, this.cells);
@@ -76,9 +71,7 @@ export class Fmu {
     this.call('SetupExperiment', 0, 0, 0, 0, 0);
     this.call('EnterInitializationMode');
     this.call('ExitInitializationMode');
-    const reals = record.filter((name) => this.variable(name).type === 'Real');
-    const whole = record.filter((name) => !reals.includes(name));
-    const groups = [reals, whole].filter((names) => names.length);
+    const groups = Object.values(Object.groupBy(record, (name) => variables[name].type));
     const rows = [];
     const note = (t) => rows.push([t, ...groups.flatMap((names) => [...this.exchange('Get', names)])]);
     note(0);

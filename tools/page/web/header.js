@@ -1,26 +1,28 @@
 // The header: the parameters of what is shown in the card "Values", and the button for light, dark, or as the system.
+import {variables} from '#data';
 import {$, make} from '#dom';
 
 const SYMBOLS = new Map([['auto', '◐'], ['light', '☀'], ['dark', '☾']]);
 
-/** variables: of the description; wheels(): those shown, with their parameters {name: value}. */
-export function setUpValues(variables, wheels) {
+export function setUpValues(page) {
   const row = (title, kind, first, ...cells) =>
       make('tr', {title}, make('th', {}, first), ...cells.map((text) => make(kind, {}, text)));
+  $('[popovertarget=values]').hidden = !page.wheels.length;
   $('#values').addEventListener('beforetoggle', ({newState}) => {
     if (newState !== 'open') return;
-    const shown = wheels().filter(({parameters}) => parameters);
+    const {shown} = page;
     const known = Object.entries(variables).filter(([name]) => shown.some(({parameters}) => name in parameters));
-    const rows = known.map(([name, {meaning, unit}]) => {
-      const values = shown.map(({parameters}) => String(Number(parameters[name]?.toPrecision(6) ?? NaN)));
-      return row(meaning, 'td', name, ...values.map((text) => text.replace('NaN', '')), unit);
+    const rows = known.map(([name, {description, unit}]) => {
+      const values = shown.map(({parameters}) => parameters[name]?.toPrecision(6));
+      return row(description, 'td', name, ...values.map((text) => (text ? String(Number(text)) : '')), unit);
     });
     $('#values').replaceChildren(make('table', {}, row('', 'th', '', ...shown.map(({label}) => label), ''), ...rows));
   });
 }
 
-/** Sets up the button; `changed` is called after every change, also of the system's own. */
-export function watchTheme(button, changed) {
+/** Sets up the button for the theme; `changed` is called after every change, also of the system's own. */
+export function watchTheme(changed) {
+  const button = $('#theme');
   const dark = matchMedia('(prefers-color-scheme: dark)');
   const choices = [...SYMBOLS.keys()];
   let choice = 'auto';

@@ -1,41 +1,46 @@
 // The live page: the wheel itself computes the whole motion anew, within some milliseconds, whenever the reader changes
 // its start, or s or M_3 while it rolls. A change while it rolls leaves the past alone and makes a new future.
-import {EMPTY} from '#address';
+import {EMPTY, sameMotions} from '#address';
+import {variables} from '#data';
 import {Fmu, STEP} from '#fmu';
 import {Link} from '#link';
 import {setUpPanel} from '#panel';
-import {chapters, scenes} from '#scenes';
+import {chapters} from '#scenes';
 
 const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
 const SIGNALS = ['omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode', 'n_events'];
 const RECORD = [...POSE, ...POSE.map((name) => `${name}_dot`), ...SIGNALS];
-const SHAPE = ['r_0', 'r', 'slope', 'slope_direction'];
 const HOLDING = ['s', 'M_brake'];  // may hold the wheel at omega_z = 0
 const PAPER_RADIUS = 0.35;         // m, r_0 + r
+const NAMES = ['This wheel', 'Kept'];
 
+/**
+ * What the reader has chosen: plan, what is done to the wheel; kept: the plan of the motion beside, or null; step 0, 1
+ * ... of the story, if it is open; scene: the number of the one that was loaded. refusal, trouble: why an address or a
+ * start cannot be; wanted: whether the motion is still to be computed.
+ */
 export class LiveWheel {
   constructor(page, fmu) {
-    Object.assign(this, {page, fmu, took: 0}, structuredClone(EMPTY.plan));
-    this.wheel = {name: 'live', label: 'This wheel'};
+    Object.assign(this, {page, fmu, plan: EMPTY.plan, kept: null, step: 0, open: true, scene: null, refusal: null});
+    this.steps = chapters(this.parameters());
+    this.wheel = {name: 'live', label: NAMES[0]};
     page.bodies.push(this.wheel);
+    this.compute();
   }
 
-  /** What is done to the wheel: start values that are not the default's, changes while it rolls, end in s. */
-  get plan() { return structuredClone({values: this.values, changes: this.changes, stop: this.stop}); }
-
   /** The start value that a run takes. */
-  value(name) { return this.values[name] ?? this.fmu.variables[name]?.start ?? 0; }
+  value(name) { return this.plan.values[name] ?? variables[name]?.start ?? 0; }
 
   /** Every parameter of the run by name. */
   parameters() {
-    const names = Object.keys(this.fmu.variables).filter((name) => this.fmu.variables[name].causality === 'parameter');
+    const names = Object.keys(variables).filter((name) => variables[name].causality === 'parameter');
     return Object.fromEntries(names.map((name) => [name, Number(this.value(name))]));
   }
 
   /** The value at the present, with the changes so far. */
   present(name) {
     const now = this.now() + STEP / 2;
-    return this.changes.findLast((change) => change.name === name && change.t <= now)?.value ?? this.value(name);
+    return this.plan.changes.findLast((change) => change.name === name && change.t <= now)?.value ?? this.value(name);
   }
 
   /** The present as a communication point. */
@@ -45,109 +50,106 @@ export class LiveWheel {
   spin() { return Math.sign(this.wheel.table.value('omega_z', this.page.player.t)); }
 
   /** Takes a plan; label: what its wheel is called. */
-  load(plan, label = 'This wheel') {
+  load(plan, label = NAMES[0]) {
     this.wheel.label = label;
     this.page.offer(this.page.bodies.length);
     this.page.plots.axis = 'fitted';
-    Object.assign(this, structuredClone({values: {}, changes: [], ...plan}));
+    this.plan = structuredClone({...EMPTY.plan, ...plan});
     this.compute();
   }
 
   /** Keeps the present motion beside those to come, or lets it go. */
-  keep(on, label = 'Kept') {
+  keep(on, label = NAMES[1]) {
     const {page, wheel} = this;
-    this.kept = on ? this.plan : null;
+    this.kept = on ? structuredClone(this.plan) : null;
     page.bodies = [wheel, ...(on ? [{...wheel, name: 'kept', label}] : [])];
     page.choice = 0;
     page.offer(page.bodies.length);
     page.dress();
-    this.compare();
+  }
+
+  /** Asks for a new motion; axis: how the diagrams take it. */
+  change(axis) {
+    this.page.plots.axis = axis;
+    Object.assign(this, {wanted: true, scene: null, refusal: null});
   }
 
   setStart(name, value) {
-    this.values[name] = value;
-    if (name === 'J_x') this.values.J_y = value;
-    this.page.plots.axis = 'fitted';
-    this.wanted = true;
+    this.plan.values[name] = value;
+    if (name === 'J_x') this.plan.values.J_y = value;
+    this.change('fitted');
   }
 
   /** Another wheel: its spin and friction follow those of the paper's in proportion to its size. */
   setWheel(parameters) {
     const size = (parameters.r_0 + parameters.r) / PAPER_RADIUS;
-    Object.assign(this.values, parameters);
+    Object.assign(this.plan.values, parameters);
     this.setStart('phi_dot_start', Number((-2 / Math.sqrt(size)).toPrecision(3)));
-    if (this.value('s')) this.values.s = Number((0.03 * size).toPrecision(3));
+    if (this.value('s')) this.plan.values.s = Number((0.03 * size).toPrecision(3));
     this.page.player.seek(0);
   }
 
   /** s or M_3 from now on; what had been planned for later is dropped. */
   setNow(name, value) {
+    const {plan, page: {plots}} = this;
     const t = this.now();
-    this.changes = this.changes.filter((change) => change.name !== name || change.t < t - STEP / 2);
-    if (t <= 0)
-      this.values[name] = value;
-    else
-      this.changes.push({t, name, value});
-    this.changes.sort((a, b) => a.t - b.t);
-    if (this.page.plots.axis === 'fitted') this.page.plots.axis = 'kept';
-    this.wanted = true;
+    plan.changes = plan.changes.filter((change) => change.name !== name || change.t < t - STEP / 2);
+    t <= 0 ? plan.values[name] = value : plan.changes.push({t, name, value});
+    plan.changes.sort((a, b) => a.t - b.t);
+    this.change(plots.axis === 'fitted' ? 'kept' : plots.axis);
   }
 
   /** While the reader pushes or drags, the diagrams' axes stay. */
-  hold(on) {
-    this.page.plots.axis = on ? 'held' : 'kept';
-    this.wanted = true;
-  }
+  hold(on) { this.change(on ? 'held' : 'kept'); }
 
   /** The motion of the present plan, on the page. */
   compute() {
     [this.wanted, this.trouble] = [false, null];
-    const {page, wheel, values, changes, stop} = this;
+    const {wheel, plan: {values, changes}} = this;
     const begin = performance.now();
-    const {table, ended} = this.fmu.run({values, changes, stop, record: RECORD});
+    const {table, ended} = this.fmu.run({...this.plan, record: RECORD});
     this.took = performance.now() - begin;
-    const given = Object.fromEntries(SHAPE.map((name) => [name, this.value(name)]));
-    const reshaped = given.r_0 !== wheel.r_0 || given.r !== wheel.r;
     const set = [...Object.entries(values), ...changes.map(({name, value}) => [name, value])];
     const friction = set.some(([name, value]) => HOLDING.includes(name) && value > 0);
-    Object.assign(wheel, given, {ended, parameters: this.parameters()});
-    page.exchange(wheel, table, friction, reshaped);
-    this.compare();
+    this.page.exchange(Object.assign(wheel, {ended, friction, parameters: this.parameters()}), table);
   }
-
-  /** Whether the story's text describes what is shown. */
-  compare() { this.panel?.story.compare(!this.panel.story.open || this.link?.step(this.state()) !== null); }
 
   /** All that was chosen; `apply` takes it. */
   state() {
-    const {switches: {show}, plots: {portrait}, choice, player} = this.page;
-    return {
-      plan: this.plan,
-      kept: this.kept ?? null,
-      show: {...show},
-      diagram: portrait.name,
-      view: choice,
-      t: player.t
-    };
+    const {plan, kept, page: {switches: {show}, plots: {portrait}, choice, player: {t}}} = this;
+    return {plan, kept, show, diagram: portrait.name, view: choice, t};
   }
 
-  /** names: what the wheel, and the one that is kept, are called. */
-  apply(state, names = []) {
-    const {page} = this;
-    if (state.kept) this.load(state.kept, names[1]);
-    this.keep(Boolean(state.kept), names[1]);
-    this.load(state.plan, names[0]);
-    for (const [name, on] of Object.entries(state.show)) page.switches.flip(name, on);
-    page.plots.portrait.choose(state.diagram);
-    page.choose(state.view);
-    page.player.seek(state.t);
+  /** Whether the story is open and its text describes what is shown. */
+  get told() { return this.open && sameMotions(this.state(), this.steps[this.step].state); }
+
+  /** Shows a state: of a step of the story 0, 1 ..., or (null) of none. */
+  apply({plan, kept, show, diagram, view, t}, step) {
+    const {page, steps: {[step]: {names, text} = {}}} = this;
+    if (kept) this.load(kept);
+    this.keep(Boolean(kept), names?.[1]);
+    this.load(plan, names?.[0]);
+    for (const [name, on] of Object.entries(show)) page.switches.flip(name, on);
+    page.plots.portrait.choose(diagram);
+    page.choose(view);
+    page.player.seek(t);
+    [this.step, this.open, this.text] = [step ?? this.step, step !== null, text?.(...page.wheels)];
+    [this.scene, this.refusal] = [null, null];
+    this.show();
+  }
+
+  /** The story one step on (1), back (-1), or at the same again (0), played from its beginning. */
+  turn(by) {
+    const step = this.open ? this.step + by : this.step;
+    if (!this.steps[step]) return;
+    const {state, speed = 1} = this.steps[step];
+    this.apply(state, step);
+    this.page.player.set({speed});
+    this.page.player.play();
   }
 
   /** What the page begins with: its address, else the story. */
-  begin() {
-    this.link = new Link(this);
-    this.link.follow();
-  }
+  begin() { this.link = new Link(this); }
 
   /** Once a frame: at most one run, however fast a slider moves. */
   frame() {
@@ -156,16 +158,13 @@ export class LiveWheel {
     } catch (fault) {
       this.trouble = fault.message;  // the wheel's own sentence about a start that cannot be
     }
-    this.panel.show();
+    this.show();
     this.link?.frame();
   }
 }
 
-/** Loads the wheel and puts it on the page. source: {wasm, guid, wheels}; variables: of the description. */
-export async function startLive(page, {wasm, guid, wheels}, variables) {
-  const fmu = await Fmu.load(wasm, {guid, variables});
-  const live = page.live = new LiveWheel(page, fmu);
-  live.compute();
-  live.steps = chapters(live.parameters());
-  live.panel = setUpPanel(live, scenes(live.parameters(), live.steps), wheels);
+/** Loads the wheel and puts it on the page. source: {wasm, guid, wheels}. */
+export async function startLive(page, {wasm, guid, wheels}) {
+  page.live = new LiveWheel(page, await Fmu.load(wasm, guid));
+  page.live.show = setUpPanel(page.live, wheels);
 }

@@ -1,8 +1,9 @@
 // The page: recorded wheels, a car's body, or the wheel itself (live), shown on one stage with one clock.
 import {ChassisModel, WheelModel} from '#bodies';
 import {Player, setUpKeys, setUpSwitches, setUpTransport, showBands} from '#clock';
+import * as data from '#data';
 import {Plots} from '#diagrams';
-import {$, makeChoice, wheelColour} from '#dom';
+import {$, colour, makeChoice} from '#dom';
 import {setUpValues, watchTheme} from '#header';
 import {endingOf, layOutLabels, showStates} from '#labels';
 import {startLive} from '#live';
@@ -12,26 +13,18 @@ import {Table, traceOf} from '#table';
 import {setUpTaking} from '#take';
 import {THREE} from 'three';
 
-const data = JSON.parse($('#data').textContent);
 const CALM = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
-/** The vertical in the road's axes of a body with a slope {slope, slope_direction} in rad, or of none. */
-function verticalOf({slope = 0, slope_direction: uphill = 0} = {}) {
-  const along = Math.sin(slope);
-  return new THREE.Vector3(along * Math.cos(uphill), along * Math.sin(uphill), Math.cos(slope));
-}
-
 /**
- * What one can look at, [{label, views: lists of names}]: all together, wheels of several sources rather side by side,
+ * What one can look at, [{label, views: lists of bodies}]: all together, wheels of several sources rather side by side,
  * and each wheel alone.
  */
 function choicesOf(bodies, wheels, sources) {
-  const names = bodies.map(({name}) => name);
-  const alone = wheels.map(({name, label}) => ({label, views: [[name]]}));
-  if (names.length === 1) return [{label: bodies[0].label, views: [names]}];
-  const together = {label: 'Together', views: [names]};
-  if (wheels.length < names.length || names.length > 3) return [together, ...(wheels.length <= 8 ? alone : [])];
-  const beside = {label: 'Side by side', views: names.map((name) => [name])};
+  if (bodies.length === 1) return [{label: bodies[0].label, views: [bodies]}];
+  const alone = wheels.map((wheel) => ({label: wheel.label, views: [[wheel]]}));
+  const together = {label: 'Together', views: [bodies]};
+  if (wheels.length < bodies.length || bodies.length > 3) return [together, ...(wheels.length <= 8 ? alone : [])];
+  const beside = {label: 'Side by side', views: bodies.map((body) => [body])};
   return [...(sources === 1 ? [together, beside] : [beside, together]), ...alone];
 }
 
@@ -55,23 +48,22 @@ class Page {
   get shown() { return this.wheels.filter((wheel) => this.views.flat().includes(wheel)); }
 
   /** The largest outer radius of the wheels, and how large the thing is that one looks at, in m. */
-  get radius() { return Math.max(...this.wheels.map(({r_0, r}) => r_0 + r), 0) || 0.35; }
+  get radius() { return Math.max(...this.wheels.map(({parameters: {r_0, r}}) => r_0 + r), 0) || 0.35; }
 
   get size() {
     return Math.max(2 * this.radius, ...this.bodies.map(({size: [x, y] = [0, 0]}) => 0.9 * Math.hypot(x, y)));
   }
 
   async start() {
-    if (data.live) await startLive(this, data.live, data.variables);
+    if (data.live) await startLive(this, data.live);
     this.stage = new Stage($('#stage'), this.size);
-    this.switches = setUpSwitches(this);
+    this.switches = setUpSwitches(this.stage);
     setUpTransport(this.player);
     setUpKeys(this);
     setUpTaking(this);
     this.offer(data.sources);
-    $('[popovertarget=values]').hidden = this.wheels.every(({parameters}) => !parameters);
-    setUpValues(data.variables, () => this.shown);
-    watchTheme($('#theme'), () => this.dress());
+    setUpValues(this);
+    watchTheme(() => this.dress());
     this.player.addEventListener('change', () => (this.stage.dirty = true));
     new ResizeObserver(() => this.layOut()).observe($('#stage'));
     this.live?.begin();
@@ -82,8 +74,9 @@ class Page {
   /** The buttons for what one can look at. sources: how many files or runs the bodies come from. */
   offer(sources) {
     this.choices = choicesOf(this.bodies, this.wheels, sources);
-    const options =
-        this.choices.map(({label}, name) => ({name, textContent: label, title: `Show: ${label} (key ${name + 1})`}));
+    const options = this.choices.map(
+        ({label: textContent}, name) =>
+            ({name, textContent, title: `Show: ${textContent} (key ${name + 1})`, ariaKeyShortcuts: name + 1}));
     $('#choice').hidden = options.length < 2;
     this.markChoice = makeChoice($('#choice'), options, (i) => this.choose(i));
   }
@@ -92,20 +85,19 @@ class Page {
   dress() {
     this.stage.dress();
     this.stage.zoom(this.size);
-    this.wheels.forEach((wheel, i) => (wheel.colour = wheelColour(i)));
+    this.wheels.forEach((wheel, i) => (wheel.colour = colour(`--wheel-${i % 6}`)));
     this.stage.put(this.bodies.map((body) => (body.size ? new ChassisModel(body) : new WheelModel(body, this.size))));
     this.choose(this.choice);
   }
 
-  /**
-   * Another motion of a wheel. friction: whether there is any, where it is known; reshaped: the wheel itself has
-   * changed too.
-   */
-  exchange(wheel, table, friction, reshaped = false) {
-    Object.assign(wheel, {table, phases: phasesOf(table, friction), trace: traceOf(table, wheel.r_0)});
-    if (!wheel.colour) return;  // nothing is shown yet
-    if (reshaped) return this.dress();
-    this.stage.models.find((model) => model.wheel === wheel).drawPath();
+  /** Another motion of a wheel, whose radii may have changed. */
+  exchange(wheel, table) {
+    const {friction, parameters: {r_0, r}} = wheel;
+    Object.assign(wheel, {table, phases: phasesOf(table, friction), trace: traceOf(table, r_0)});
+    const model = this.stage?.models.find((one) => one.wheel === wheel);
+    if (!model) return;  // nothing is shown yet
+    if (model.r_0 !== r_0 || model.r !== r) return this.dress();
+    model.drawPath();
     this.choose(this.choice);
   }
 
@@ -113,7 +105,7 @@ class Page {
   choose(i) {
     this.choice = Math.min(i, this.choices.length - 1);
     this.markChoice(this.choice);
-    this.views = this.choices[this.choice].views.map((view) => this.bodies.filter(({name}) => view.includes(name)));
+    this.views = this.choices[this.choice].views;
     const tables = this.views.flat().map(({table}) => table);
     const end = Math.max(...tables.map(({end}) => end));
     const kept = this.plots.axis === 'fitted' ? end : Math.max(end, this.player.end);
@@ -135,6 +127,7 @@ class Page {
   /** What a view looks at: between its bodies if it follows, else the middle of their paths; and from how far. */
   aim(view, t) {
     const box = new THREE.Box3();
+    const {slope = 0, slope_direction = 0} = view.find(({parameters}) => parameters?.slope)?.parameters ?? {};
     for (const {table} of view) {
       const [x, y] = table.has('X_O') ? ['X_O', 'Y_O'] : ['X', 'Y'];
       const path = Array.from({length: 60}, (_, k) => table.start + (k * (table.end - table.start)) / 59);
@@ -145,7 +138,7 @@ class Page {
       models: this.stage.models.filter((model) => view.includes(model.wheel)),
       away: Math.max(1, 0.5 + (0.5 * box.getSize(new THREE.Vector3()).length()) / this.size),
       anchor: box.getCenter(new THREE.Vector3()).setZ(0.8 * this.radius),
-      up: verticalOf(view.find(({slope}) => slope)),
+      up: new THREE.Vector3(0, 0, 1).applyEuler(new THREE.Euler(0, slope, slope_direction, 'ZYX')),
     };
   }
 

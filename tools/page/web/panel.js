@@ -1,65 +1,63 @@
 // The controls of the live page: the story or the scenes to begin with, the start, and what the reader does to the
-// wheel while it rolls.
-import {$, make, makeButton, makeChoice, subscripted} from '#dom';
+// wheel while it rolls. Each sets up its elements and returns a function that shows the present state.
+import {$, make, makeButton, makeChoice, onChange, subscripted} from '#dom';
 import {HELD, NOW, START, torqueOf, WHEEL} from '#knobs';
+import {scenes} from '#scenes';
 
 /** The card with the story beside the picture: text, something to try, one step on or back. */
-class Story {
-  constructor(live) {
-    Object.assign(this, {host: $('#story'), live, step: 0, open: true});
-    for (const [name, by] of [['back', -1], ['next', 1], ['again', 0]]) this.button(name).onclick = () => this.move(by);
-  }
-
-  button(name) { return $(`[name=${name}]`, this.host); }
-
-  /** The story at step 1, 2 ..., or closed (null). */
-  enter(step) {
-    this.open = step !== null;
-    if (this.open) this.step = step - 1;
-  }
-
-  /** One step on (1), back (-1), or the same again (0), shown from its beginning. */
-  move(by) {
-    const {live} = this;
-    const next = this.open ? this.step + by : this.step;
-    if (!live.steps[next]) return;
-    this.enter(next + 1);
-    const {state, names, speed = 1} = live.steps[next];
-    live.refusal = null;
-    live.apply(state, names);
-    live.page.player.setSpeed(speed);
-    live.page.player.play();
-    this.tell();
-  }
-
-  /** Writes the step's text, with the figures of its motion. */
-  tell() {
-    const {live: {steps, page, panel}, host, step} = this;
-    panel.turn(this.open ? 'story' : 'scenes');
-    if (!this.open) return;
-    const {title, text, attempt} = steps[step];
-    const html = {'.count': `${step + 1} of ${steps.length}`, 'h3': title, '.text': text(...page.wheels)};
-    html['.try'] = `<b>Try</b> ${attempt}`;
-    for (const [place, words] of Object.entries(html)) $(place, host).innerHTML = words;
-    this.button('back').disabled = step === 0;
-    this.button('next').disabled = step === steps.length - 1;
-  }
-
-  /** The text describes the step's own motion: beside another one it is faint. */
-  compare(same) {
-    this.host.classList.toggle('apart', !same);
-    this.button('again').hidden = same;
-  }
+function setUpStory(live) {
+  const host = $('#story');
+  const [back, next, again] = ['back', 'next', 'again'].map((name) => $(`[name=${name}]`, host));
+  [back.onclick, next.onclick, again.onclick] = [-1, 1, 0].map((by) => () => live.turn(by));
+  const write = onChange((words) => {
+    const {steps, step, steps: {[step]: {title, attempt}}} = live;
+    const html = [`${step + 1} of ${steps.length}`, title, words, `<b>Try</b> ${attempt}`];
+    ['.count', 'h3', '.text', '.try'].forEach((place, i) => ($(place, host).innerHTML = html[i]));
+    [back.disabled, next.disabled] = [step === 0, step === steps.length - 1];
+  });
+  return () => {
+    if (live.open) write(live.text);
+    const apart = live.open && !live.told;  // the text describes the step's own motion
+    host.classList.toggle('apart', apart);
+    again.hidden = !apart;
+  };
 }
 
-/** One slider; take(value in SI) when it moves, hold(on) while it is dragged. Returns a function that shows a value. */
-function makeKnob(host, [name, symbol, unit, low, high, step, what], take, hold = () => {}) {
+/** The tabs, story or scenes, and a button for each scene. */
+function setUpScenes(live) {
+  const tabs = [
+    {name: 'story', textContent: 'Story', title: 'What the wheel does and why, step by step'},
+    {name: 'scenes', textContent: 'Scenes', title: 'Scenes to begin with'},
+  ];
+  const markTab = makeChoice($('#live .tabs'), tabs, (name) => {
+    if (name === 'story' && !live.open) live.turn(0);
+    live.open = name === 'story';
+  });
+  const all = scenes(live.parameters(), live.steps);
+  const options =
+      all.map(({label, about = 'A scene of the paper'}, name) => ({name, textContent: label, title: about}));
+  const mark = makeChoice($('#presets'), options, (scene) => {
+    $('#about').textContent = all[scene].about ?? '';
+    live.page.player.seek(0);
+    live.load(all[scene].plan);
+    Object.assign(live, {scene, refusal: null});
+    live.page.player.play();
+  });
+  return () => {
+    markTab(live.open ? 'story' : 'scenes');
+    [$('#story').hidden, $('#scenes').hidden] = [!live.open, live.open];
+    mark(live.scene);
+  };
+}
+
+/** One slider: take(value in SI) when it moves, hold(on) while it is dragged, present() for what it shows. */
+function makeKnob(host, [name, symbol, unit, low, high, step, what], {take, present, hold = () => {}}) {
   const ratios = step === 'log';
   const scale = unit === '°' ? 180 / Math.PI : 1;
   const digits = Math.ceil(-Math.log10(step) - 1e-9);
   const toSlider = (value) => (ratios ? Math.log10(value) : value * scale);
   const fromSlider = (place) => (ratios ? Number((10 ** place).toPrecision(3)) : place / scale);
-  const [min, max] = ratios ? [Math.log10(low), Math.log10(high)] : [low, high];
+  const [min, max] = ratios ? [low, high].map(toSlider) : [low, high];
   const input = make('input', {type: 'range', name, min, max, step: ratios ? 0.01 : step});
   const output = make('output');
   const title = `${what.replace('_', '')}: ${low} to ${high} ${unit}`;
@@ -67,32 +65,30 @@ function makeKnob(host, [name, symbol, unit, low, high, step, what], take, hold 
   const words = make('span', {}, label, ' ', make('small', {}, ...subscripted(what)));
   host.append(make('label', {className: 'knob', title}, words, input, output));
   let before = 0;  // a finger that scrolls the page has first moved the slider that it began on
-  input.oninput = () => take(fromSlider(Number(input.value)));
+  input.oninput = () => take(name, fromSlider(Number(input.value)));
   input.onpointerdown = () => {
     before = Number(input.value);
     hold(true);
   };
   input.onpointerup = () => hold(false);
   input.onpointercancel = () => {
-    take(fromSlider(before));
+    take(name, fromSlider(before));
     hold(false);
   };
-  let shown = null;
-  return (value) => {
-    if (value === shown) return;
-    shown = value;
+  const show = onChange((value) => {
     input.value = toSlider(value);
     const text = ratios ? String(Number(value.toPrecision(3))) : (value * scale).toFixed(digits);
     output.textContent = `${text.replaceAll('-', '−')} ${unit}`;
-  };
+  });
+  return () => show(present(name));
 }
 
 /** A button that sets a variable as long as it is held, by pointer or by key. */
-function makeHeld([text, name, part, what], live, touched) {
+function makeHeld([text, name, part, what], live) {
   let before = null;  // the value to return to; null while the button is not held
-  const press = () => {
+  const press = ({pointerId}) => {
     if (before !== null) return;
-    touched();
+    if (pointerId) button.setPointerCapture(pointerId);
     before = live.present(name);
     live.hold(true);
     live.setNow(name, part(live.spin()) * torqueOf(live.parameters()));
@@ -104,99 +100,56 @@ function makeHeld([text, name, part, what], live, touched) {
     live.hold(false);
     before = null;
   };
-  const button = makeButton({
-    className: 'push',
-    textContent: text,
-    title: `${what}, as long as you hold it (6 N m for the paper's wheel)`,
-    onpointerdown: ({pointerId}) => {
-      button.setPointerCapture(pointerId);
-      press();
-    },
-    onpointerup: release,
-    onpointercancel: release,
-    onblur: release,
-    onkeydown: ({key}) => [' ', 'Enter'].includes(key) && press(),
-    onkeyup: ({key}) => [' ', 'Enter'].includes(key) && release(),
-  });
+  const title = `${what}, as long as you hold it (6 N m for the paper's wheel)`;
+  const button = makeButton({className: 'push', textContent: text, title});
+  button.onpointerdown = press;
+  button.onkeydown = (event) => [' ', 'Enter'].includes(event.key) && press(event);
+  button.onpointerup = button.onpointercancel = button.onkeyup = button.onblur = release;
   return button;
 }
 
-/** A button for each scene, into #presets; returns a function that marks one of them by name, or none. */
-function makeScenes(scenes, live) {
-  const options =
-      scenes.map(({label, about = 'A scene of the paper'}, name) => ({name, textContent: label, title: about}));
-  const mark = makeChoice($('#presets'), options, (i) => {
-    $('#about').textContent = scenes[i].about ?? '';
-    mark(i);
-    live.refusal = null;
-    live.page.player.seek(0);
-    live.load(scenes[i].plan);
-    live.page.player.play();
-  });
-  return mark;
-}
-
 /** The list of ready wheels {name: {title, source, parameters}}. */
-function setUpReady(wheels, live, touched) {
-  const select = $('#ready');
+function setUpReady(live, wheels) {
   const options =
       Object.entries(wheels).map(([value, {title, source}]) => make('option', {value, title: source}, title));
-  select.append(make('option', {value: ''}, 'Ready wheels …'), ...options);
-  select.addEventListener('change', () => {
-    if (!select.value) return;
-    const {parameters, title, source} = wheels[select.value];
-    touched();
+  $('#ready').append(make('option', {value: ''}, 'Ready wheels …'), ...options);
+  $('#ready').addEventListener('change', ({target}) => {
+    if (!target.value) return;
+    const {parameters, title, source} = wheels[target.value];
     live.setWheel(parameters);
-    Object.assign(select, {title: source, ariaLabel: `Ready wheel: ${title}`});
+    Object.assign(target, {title: source, ariaLabel: `Ready wheel: ${title}`});
   });
 }
 
-/** Builds the panel; returns {story, show(): once a frame, turn(name): to the story or to the scenes}. */
-export function setUpPanel(live, scenes, wheels) {
-  $('#live').hidden = false;
-  document.body.classList.add('live');
-  const story = new Story(live);
-  const mark = makeScenes(scenes, live);
-  const touched = () => {
-    mark(null);
-    live.refusal = null;
-  };
-  const knobs = (place, list, change, present, hold) => list.map((knob) => {
-    const take = (value) => {
-      touched();
-      change(knob[0], value);
-    };
-    const show = makeKnob($(place), knob, take, hold);
-    return () => show(present(knob[0]));
-  });
-  const start = [(name, value) => live.setStart(name, value), (name) => live.value(name)];
-  const now = [(name, value) => live.setNow(name, value), (name) => live.present(name), (on) => live.hold(on)];
-  const all = [...knobs('#start', START, ...start), ...knobs('#wheel', WHEEL, ...start), ...knobs('#now', NOW, ...now)];
-  setUpReady(wheels, live, touched);
-  $('#push').append(...HELD.map((held) => makeHeld(held, live, touched)));
+/** What the page says of the last run and of a wrong address, and the box that keeps a motion. */
+function setUpNotes(live) {
   $('#keep').addEventListener('change', ({target}) => live.keep(target.checked));
-  const tabs = [
-    {name: 'story', textContent: 'Story', title: 'What the wheel does and why, step by step'},
-    {name: 'scenes', textContent: 'Scenes', title: 'Scenes to begin with'},
-  ];
-  const markTab = makeChoice($('#live .tabs'), tabs, (name) => {
-    if (name === 'story') return story.open || story.move(0);
-    story.enter(null);
-    return turn('scenes');
-  });
-  const turn = (chosen) => {
-    markTab(chosen);
-    for (const {name} of tabs) $(`#${name}`).hidden = name !== chosen;
-  };
-  const show = () => {
-    for (const update of all) update();
-    const seconds = Number(live.page.wheels[0].table.end.toPrecision(4));
-    const message = live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`;
-    if ($('#message').textContent !== message) $('#message').textContent = message;
+  const write = onChange((text) => ($('#message').textContent = text));
+  const refuse = onChange((text) => ($('#refusal').textContent = text));
+  return () => {
+    const seconds = Number(live.wheel.table.end.toPrecision(4));
+    tell(live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`);
     $('#message').classList.toggle('trouble', Boolean(live.trouble));
     $('#keep').checked = Boolean(live.kept);
     $('#refusal').hidden = !live.refusal;
-    if (live.refusal) $('#refusal').textContent = live.refusal;
+    refuse(live.refusal);
   };
-  return {story, turn, show};
+}
+
+/** Builds the panel; returns what shows the present state, once a frame. */
+export function setUpPanel(live, wheels) {
+  $('#live').hidden = false;
+  document.body.classList.add('live');
+  const start = {take: (...given) => live.setStart(...given), present: (name) => live.value(name)};
+  const now = {
+    take: (...given) => live.setNow(...given),
+    present: (name) => live.present(name),
+    hold: (on) => live.hold(on)
+  };
+  const knobs = [['#start', START, start], ['#wheel', WHEEL, start], ['#now', NOW, now]].flatMap(
+      ([place, list, acts]) => list.map((knob) => makeKnob($(place), knob, acts)));
+  setUpReady(live, wheels);
+  $('#push').append(...HELD.map((held) => makeHeld(held, live)));
+  const all = [setUpStory(live), setUpScenes(live), setUpNotes(live), ...knobs];
+  return () => all.forEach((show) => show());
 }

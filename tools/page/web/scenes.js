@@ -33,34 +33,31 @@ export function chapters(parameters) {
   /** Half a degree of lean, and a tenth more spin than the critical (+1) or less (-1). */
   const nearLimit = (side) =>
       ({theta_start: degrees(89.5), phi_dot_start: Number((-(1 + 0.1 * side) * limit).toFixed(3))});
+  const speed = ({table}) => Math.hypot(table.value('X_O_dot', 0), table.value('Y_O_dot', 0)).toFixed(2);
   return [
     {
       title: 'It rolls',
       state: state({theta_start: degrees(90), phi_dot_start: -5}, {diagram: 'path'}),
-      text: (wheel) => {
-        const speed = Math.hypot(...['X_O_dot', 'Y_O_dot'].map((name) => wheel.table.value(name, 0)));
-        return `A wheel of ${m} kg, shaped as a torus, touches the ground at one point and does not slide there.
-            Upright, it rolls straight on: a spin of ${spin(wheel)} rad/s times a radius of ${(r_0 + r).toFixed(2)} m is
-            ${speed.toFixed(2)} m/s.`;
-      },
+      text: (wheel) => `A wheel of ${m} kg, shaped as a torus, touches the ground at one point and does not slide there.
+          Upright, it rolls straight on: a spin of ${spin(wheel)} rad/s times a radius of ${(r_0 + r).toFixed(2)} m is
+          ${speed(wheel)} m/s.`,
       attempt: 'Hold <b>push forward ▶</b> while it rolls, then <b>brake</b>, and watch the energy E.',
     },
     {
       title: 'Why it does not fall',
       state: state({theta_start: degrees(75), phi_dot_start: -6}, {diagram: 'path', show: {axes: true}}),
-      text: (wheel) =>
-          `This one starts with 15° of lean, and never leans by more than ${lean(wheel)}°. A wheel that leans
-          turns towards its lean, and the turn rights it. So it does not fall but runs in a circle, and nods a little.`,
+      text: (wheel) => `This one starts with 15° of lean, and never leans by more than ${lean(wheel)}°. A wheel that
+          leans turns towards its lean, and the turn rights it. So it does not fall but runs in a circle, and nods a
+          little.`,
       attempt: 'Take its spin away: set φ̇ to 0. Nothing turns it now, and it falls.',
     },
     {
       title: 'The critical spin, from both sides',
       state: state(nearLimit(-1), {kept: {values: nearLimit(1), changes: [], stop: 10}}),
       names: ['10 % slower', '10 % faster'],
-      text: (wheel, other) =>
-          `Upright rolling is stable above ${limit.toFixed(2)} rad/s: below, the weight tips the wheel
-          faster than the turn rights it. Both wheels start with half a degree of lean. The faster one sways by at most
-          ${lean(other)}°, the slower one comes down by ${lean(wheel)}°.`,
+      text: (wheel, other) => `Upright rolling is stable above ${limit.toFixed(2)} rad/s: below, the weight tips the
+          wheel faster than the turn rights it. Both wheels start with half a degree of lean. The faster one sways by at
+          most ${lean(other)}°, the slower one comes down by ${lean(wheel)}°.`,
       attempt: 'Give the slower wheel more spin φ̇ and find where its swings become small.',
     },
     {
@@ -74,12 +71,10 @@ export function chapters(parameters) {
     {
       title: 'Rolling friction stops the spin',
       state: state({s: 0.03}, {diagram: 'spin'}),
-      text: ({table, phases: {sticks: [[begin]], transitions}}) =>
-          `Rolling friction acts about the axle, against the spin,
-          with at most s N. At ${
-              begin.toFixed(2)} s the spin is used up, and friction holds it at zero (orange) until that
-          takes more than s N. In ${table.end.toFixed(0)} s it is held, released or reversed ${
-              transitions.length} times.`,
+      text: ({table, phases: {sticks: [[begin]], transitions}}) => `Rolling friction acts about the axle, against the
+          spin, with at most s N. At ${begin.toFixed(2)} s the spin is used up, and friction holds it at zero (orange)
+          until that takes more than s N. In ${table.end.toFixed(0)} s it is held, released or reversed
+          ${transitions.length} times.`,
       attempt: 'Go to the start and drag s down to 0.01 m: the first stop comes later.',
     },
     {
@@ -88,30 +83,23 @@ export function chapters(parameters) {
       speed: 0.25,
       text: ({table, phases: {sticks: [[begin, end]]}}) => {
         const turn = DEGREES * Math.abs(table.value('psi', end) - table.value('psi', begin));
-        return `Friction holds the turn about the axle e₃. About the other two axes it gives no moment, so the held wheel
-            nods and turns, as a coin that pivots on a table: in the first orange band, ${
-            (end - begin).toFixed(2)} s long,
-            its heading turns by ${
-            turn.toFixed(0)}°. What does not move takes no energy: E stays level while it is held.`;
+        return `Friction holds the turn about the axle e₃. About the other two axes it gives no moment, so the held
+            wheel nods and turns, as a coin that pivots on a table: in the first orange band,
+            ${(end - begin).toFixed(2)} s long, its heading turns by ${turn.toFixed(0)}°. What does not move takes no
+            energy: E stays level while it is held.`;
       },
       attempt: 'Play it at a quarter of the speed. Look at E where the band is orange, and where it is not.',
     },
     {
       title: 'Pushed and braked',
       state: state({theta_start: degrees(88), phi_dot_start: -4}, {
-        changes: [
-          {t: 1, name: 'M_3', value: -4},
-          {t: 3, name: 'M_3', value: 0},
-          {t: 6, name: 'M_brake', value: 4},
-          {t: 7.5, name: 'M_brake', value: 0},
-        ],
+        changes: [[1, 'M_3', -4], [3, 'M_3', 0], [6, 'M_brake', 4], [7.5, 'M_brake', 0]].map(
+            ([t, name, value]) => ({t, name, value})),
         diagram: 'path'
       }),
-      text: (wheel) =>
-          `A motor pushes with 4 N m about the axle from 1 s to 3 s: the energy rises from ${joules(wheel, 1)} J
-          to ${joules(wheel, 3)} J. From 6 s to 7.5 s a dry brake acts and takes it down to ${
-              joules(wheel, 7.5)} J. Between
-          them, and after, the energy stays what it is.`,
+      text: (wheel) => `A motor pushes with 4 N m about the axle from 1 s to 3 s: the energy rises from
+          ${joules(wheel, 1)} J to ${joules(wheel, 3)} J. From 6 s to 7.5 s a dry brake acts and takes it down to
+          ${joules(wheel, 7.5)} J. Between them, and after, the energy stays what it is.`,
       attempt: 'Hold a button anywhere on the way: the past stays, and a new future is computed at once.',
     },
     {

@@ -6,11 +6,8 @@ import {THREE} from 'three';
 export function makeTexture(width, height, draw) {
   const canvas = make('canvas', {width, height});
   draw(canvas.getContext('2d', {willReadFrequently: true}));
-  const texture = new THREE.CanvasTexture(canvas);
-  texture.colorSpace = THREE.SRGBColorSpace;
-  texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
-  texture.anisotropy = 2;
-  return texture;
+  const repeated = {wrapS: THREE.RepeatWrapping, wrapT: THREE.RepeatWrapping, anisotropy: 2};
+  return Object.assign(new THREE.CanvasTexture(canvas), {colorSpace: THREE.SRGBColorSpace, ...repeated});
 }
 
 /** A body of one shape, with a shadow, at `place`, turned by `angles` about x, y, z. */
@@ -26,9 +23,7 @@ export function makeSolid(geometry, material, place = [0, 0, 0], angles = [0, 0,
 export function makeArrow(radius, color) {
   const shaft = makeSolid(new THREE.CylinderGeometry(radius, radius, 1, 20).rotateX(Math.PI / 2), {color});
   const head = makeSolid(new THREE.ConeGeometry(2.6 * radius, 7 * radius, 24).rotateX(Math.PI / 2), {color});
-  const arrow = new THREE.Group().add(shaft, head);
-  arrow.userData = {shaft, head, headLength: 7 * radius};
-  return arrow;
+  return Object.assign(new THREE.Group().add(shaft, head), {userData: {shaft, head, headLength: 7 * radius}});
 }
 
 /** Points an arrow of makeArrow along a vector whose length is that of the arrow in m. */
@@ -63,10 +58,7 @@ export function makeRibbon(points, {width, height, layer, color, opacity}) {
   geometry.setIndex(corners.flat());
   const material =
       new THREE.MeshBasicMaterial({color, opacity, transparent: true, side: THREE.DoubleSide, depthWrite: false});
-  const ribbon = new THREE.Mesh(geometry, material);
-  ribbon.frustumCulled = false;
-  ribbon.renderOrder = layer;
-  return ribbon;
+  return Object.assign(new THREE.Mesh(geometry, material), {frustumCulled: false, renderOrder: layer});
 }
 
 /** Shows a ribbon up to its row-th point. */
@@ -85,8 +77,7 @@ export function makeLabel(text, colour, height) {
   });
   const label = new THREE.Sprite(new THREE.SpriteMaterial({map, depthTest: false, transparent: true}));
   label.scale.set((height * width) / 96, height, 1);
-  label.renderOrder = 5;
-  return label;
+  return Object.assign(label, {renderOrder: 5});
 }
 
 /** Frees what a group holds on the graphics card. */

@@ -10,10 +10,8 @@ const SUN = new THREE.Vector3(1.4, -1.1, 3.6);  // where it stands, in sizes of 
 
 /** One square of the ground: lines about it and, finer, ten within it. */
 function drawSquare(pen) {
-  const fill = (name, ...boxes) => {
-    pen.fillStyle = colour(name);
-    for (const box of boxes) pen.fillRect(...box);
-  };
+  const fill = (name, ...boxes) =>
+      boxes.forEach((box) => Object.assign(pen, {fillStyle: colour(name)}).fillRect(...box));
   fill('--ground', [0, 0, 1024, 1024]);
   for (let i = 1; i < 10; ++i) fill('--grid-fine', [102.4 * i - 1.5, 0, 3, 1024], [0, 102.4 * i - 1.5, 1024, 3]);
   for (const edge of [0, 1019]) fill('--grid', [edge, 0, 5, 1024], [0, edge, 1024, 5]);
@@ -66,17 +64,13 @@ export class Stage {
     this.scene.background = this.scene.fog.color = new THREE.Color(colour('--sky'));
     const {material} = this.ground;
     material.map?.dispose();
-    material.map = makeTexture(1024, 1024, drawSquare);
-    material.needsUpdate = true;
+    Object.assign(material, {map: makeTexture(1024, 1024, drawSquare), needsUpdate: true});
     this.dirty = true;
   }
 
   /** Replaces the bodies: [WheelModel or ChassisModel]. */
   put(models) {
-    for (const {group} of this.models) {
-      this.road.remove(group);
-      dispose(group);
-    }
+    for (const {group} of this.models) dispose(group.removeFromParent());
     for (const {group} of models) this.road.add(group);
     Object.assign(this, {models, dirty: true});
   }
@@ -84,9 +78,8 @@ export class Stage {
   /** The views' rectangles in CSS pixels: beside each other, above each other where the canvas is tall. */
   rectangles(count) {
     const {clientWidth: width, clientHeight: height} = this.canvas;
-    const [across, down] = width >= 0.9 * height ? [1, 0] : [0, 1];
-    const [w, h] = [width / (across ? count : 1), height / (down ? count : 1)];
-    return Array.from({length: count}, (_, i) => ({x: across * i * w, y: down * i * h, w, h}));
+    const [w, h] = width >= 0.9 * height ? [width / count, height] : [width, height / count];
+    return Array.from({length: count}, (_, i) => ({x: (i * w) % width, y: w < width ? 0 : i * h, w, h}));
   }
 
   resize() {
@@ -131,7 +124,6 @@ export class Stage {
    * `away` times as far off, and the road turned so that `up`, the vertical, is the scene's Z.
    */
   render(views, away) {
-    this.controls.update();
     this.widen(away);
     this.rectangles(views.length).forEach(({x, y, w, h}, i) => {
       const {models, anchor, up} = views[i];
@@ -149,11 +141,5 @@ export class Stage {
       this.renderer.render(this.scene, this.eye);
     });
     this.dirty = false;
-  }
-
-  /** The first camera again. */
-  home() {
-    this.controls.reset();
-    this.dirty = true;
   }
 }

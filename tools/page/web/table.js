@@ -15,10 +15,7 @@ export function before(times, t) {
   let [low, high] = [-1, times.length];
   while (high - low > 1) {
     const middle = (low + high) >> 1;
-    if (times[middle] <= t)
-      low = middle;
-    else
-      high = middle;
+    [low, high] = times[middle] <= t ? [middle, high] : [low, middle];
   }
   return low;
 }
@@ -33,9 +30,8 @@ export class Table {
 
   /** From base64 of little-endian doubles, as the page carries them. */
   static decode(texts) {
-    const columns = {};
-    for (const [name, text] of Object.entries(texts)) columns[name] = new Float64Array(bytesOf(text).buffer);
-    return new Table(columns);
+    const columns = Object.entries(texts).map(([name, text]) => [name, new Float64Array(bytesOf(text).buffer)]);
+    return new Table(Object.fromEntries(columns));
   }
 
   has(name) { return name in this.columns; }

@@ -27,7 +27,7 @@ async function copy(text, {currentTarget: button}) {
 }
 
 /**
- * Bodies as CSV files [{name, text}] in the columns that `./scripts/view` reads back: SI, numbers with all their
+ * Bodies as CSV files [[name, content]] in the columns that `./scripts/view` reads back: SI, numbers with all their
  * digits; bodies that share their instants share a file.
  */
 function csvFiles(bodies) {
@@ -37,14 +37,16 @@ function csvFiles(bodies) {
     const plain = group.length === 1 && POSE.every((column) => group[0].table.has(column));
     const columns = group.flatMap((body) => {
       const prefix = plain ? '' : `${wordOf(body.name)}.`;
-      const fixed = FIXED.filter((column) => column in body).map((column) => [column, Array(rows).fill(body[column])]);
+      const given = Object.entries(body.parameters ?? {}).filter(([column]) => FIXED.includes(column));
+      const fixed = given.map(([column, value]) => [column, Array(rows).fill(value)]);
       const moving = Object.entries(body.table.columns).filter(([column]) => column !== 'time');
       return [...moving, ...fixed].map(([column, values]) => [prefix + column, values]);
     });
     const all = [['time', time], ...columns];
     const lines = Array.from({length: rows}, (_, i) => all.map(([, values]) => values[i]).join(','));
     const head = all.map(([column]) => `"${column}"`).join(',');
-    return {name: groups.size > 1 ? wordOf(name) : 'motion', text: `${head}\n${lines.join('\n')}\n`};
+    const text = `${head}\n${lines.join('\n')}\n`;
+    return [groups.size > 1 ? `${wordOf(name)}.csv` : 'motion.csv', new Blob([text], {type: 'text/csv'})];
   });
 }
 
@@ -53,10 +55,7 @@ export function setUpTaking(page) {
   const host = $('#take');
   const {live} = page;
   const on = (name, act) => $(`[name=${name}]`, host).addEventListener('click', act);
-  on('csv', () => {
-    for (const {name, text} of csvFiles([...new Set(page.views.flat())]))
-      save(`${name}.csv`, new Blob([text], {type: 'text/csv'}));
-  });
+  on('csv', () => csvFiles([...new Set(page.views.flat())]).forEach((file) => save(...file)));
   on('png', () => {
     page.draw();
     const name = `wheel_${page.player.t.toFixed(2)}s.png`;
@@ -82,7 +81,7 @@ export function setUpTaking(page) {
   const tell = (name) => {
     chosen = name;
     mark(name);
-    $('pre', host).textContent = commands(live.plan, live.fmu)[name];
+    $('pre', host).textContent = commands(live.plan, live.fmu.guid)[name];
   };
   const mark = makeChoice($('.tabs', host), options, tell);
   host.addEventListener('beforetoggle', () => tell(chosen));
