@@ -16,6 +16,7 @@ struct Simulation {
   States x = States::Zero();
   double slope[orders][input_count]{}; /* derivatives of the inputs, for one step */
   bool given[input_count]{};           /* whether the master gave the first derivative for this step */
+  bool running = false;                /* parameters are fixed */
 
   Simulation() {
     for (int i = 0; i < first_output; ++i) now.u[i] = stored[i].start;

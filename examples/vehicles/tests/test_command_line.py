@@ -17,7 +17,7 @@ import pytest
 from support.bounds import EPSILON, relative_error, within
 from support.paths import ROOT
 from vehicles import axle, example, options
-from vehicles.component import Component
+from vehicles.component import Component, loaded
 
 READS = [sys.executable, "-S", "-B", str(ROOT / "examples" / "vehicles" / "vehicles" / "options.py")]
 UNITS = {"h=1ms": 1e-3, "k_fl=60e3": 60e3, "k_fl=60kN/m": 60e3, "delta_0=-4deg": -4 * pi / 180, "v=36km/h": 10.0}
@@ -86,10 +86,8 @@ def test_what_only_the_unit_can_refuse_is_said_in_its_own_words(
     fmus: dict[str, Path], model: str, given: dict[str, float], said: str
 ) -> None:
     component = Component(model, fmus[model], given)
-    with pytest.raises(ValueError) as refusal:
-        component.load()
+    with pytest.raises(ValueError) as refusal, loaded(component):
         component.asked(component.fmu.exitInitializationMode)
-    component.free()
     assert str(refusal.value).startswith(said)
 
 
@@ -193,11 +191,8 @@ def test_an_example_is_copied_into_an_empty_folder_by_the_recipe_of_the_document
     recipe = recipe.replace("/path/to/this/checkout", str(ROOT))
     subprocess.run(["bash", "-e", "-c", recipe], cwd=tmp_path, check=True, capture_output=True)
     copied = Component("axle", tmp_path / "build" / "axle.fmu", {"m_B": 100.0})
-    try:
-        copied.load()
-    finally:
-        copied.free()
-    assert set(copied.variable) >= {"X", "F_X_left"}
+    with loaded(copied):
+        assert set(copied.variable) >= {"X", "F_X_left"}
 
 
 def test_ctrl_c_ends_a_run_with_one_word(fmus: dict[str, Path]) -> None:

@@ -91,7 +91,7 @@ def example(fmus: dict[str, Path], asked: options.Asked, folder: Path) -> bool:
 def main() -> int:
     """One example."""
     try:
-        asked = options.asked(sys.argv[1:])
+        asked = options.asked(*sys.argv[1:])
         fmus, folder = build.build_all(build.ROOT / "build" / "examples"), RESULTS / asked.vehicle
         shutil.rmtree(folder, ignore_errors=True)  # an earlier run's
         folder.mkdir(parents=True)
