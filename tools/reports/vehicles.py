@@ -59,10 +59,10 @@ def axle_energy(report: Report, over: tuple) -> Row:
     """the axle: energy added per bond"""
     exchange, more = over
     scene = axle_study.TRAILING.changed(stop=2.0, **({"follow": 1.0} | more))
-    found = axle_study.energy(report.fmus, scene, 0.001, exchange)
-    sums = sum(found.bonds.values())
+    bonds, gain = axle_study.energy(report.fmus, scene, 0.001, exchange)
+    sums = sum(bonds.values())
     of_bonds = {f"{n}, J": float(x) for n, x in zip(BONDS, sums, strict=True)}
-    return of_bonds | {"sum, J": float(sums.sum()), "gain, J": found.drift}
+    return of_bonds | {"sum, J": float(sums.sum()), "gain, J": gain}
 
 
 def manoeuvres(report: Report) -> tuple[str, ...]:
@@ -76,7 +76,8 @@ def car_runs(report: Report) -> dict[str, object]:
     for name in manoeuvres(report):
         manoeuvre = MANOEUVRES[name]
         table = CAR.drive(report.fmus, manoeuvre).table
-        judged += [(name, f.what, f.unit, f.measured, f.exact) for f in car_judges.judge(table, manoeuvre)]
+        found = car_judges.judge(table, manoeuvre, *manoeuvre.judges)
+        judged += [(name, f.what, f.unit, f.measured, f.exact) for f in found]
         at = car_judges.worst(table)[1]
         where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]
         demands.append((manoeuvre.title, *car_judges.demand(table).values(), *where))
@@ -102,8 +103,8 @@ def car_figures(report: Report) -> pd.DataFrame:
     for name, grid in (("circle", 0.01), ("step", 0.001), ("lane", 0.005)):
         manoeuvre = MANOEUVRES[name]
         coupled = CAR.drive(report.fmus, manoeuvre, grid=grid).table
-        whole = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / grid) + 1) * grid, 1e-9)
-        both = (car_judges.FIGURES[name](table) for table in (coupled, whole))
+        whole = monolithic_car.solve(manoeuvre, grid, 1e-9)
+        both = (car_judges.judge(table, manoeuvre, name) for table in (coupled, whole))
         rows += [(name, a.what, a.unit, a.measured, b.measured, a.exact) for a, b in zip(*both, strict=True)]
     head = ["manoeuvre", "quantity", "unit", "coupled FMUs", "one set of equations", "rigid links"]
     return pd.DataFrame(rows, columns=head)
@@ -138,7 +139,7 @@ def car_errors(report: Report, name: str, exchange: str, ms: float) -> Row:
 @part(30)
 def pictures(report: Report) -> dict[str, float]:
     """pictures of the motions; the largest error where no wheel stops"""
-    table = axle.coupled(report.fmus, axle_study.TRAILING, 0.0005, "derivatives", 0.02)
+    table = axle.AXLE.drive(report.fmus, axle_study.TRAILING, 0.0005, "derivatives", 0.02).whole
     draw(axle.AXLE, axle_study.TRAILING, table, report.folder / "vehicles_axle.png", ", step 0.5 ms")
     for name, manoeuvre in MANOEUVRES.items():
         draw(CAR, manoeuvre, CAR.drive(report.fmus, manoeuvre).table, report.folder / f"vehicles_{name}.png")

@@ -38,11 +38,6 @@ class Variable:
     description: str
     of: str = ""
 
-    @property
-    def given(self) -> bool:
-        """Whether it has a start value."""
-        return self.causality in ("parameter", "input")
-
 
 Wheels = dict[str, dict[str, float | str]]
 

@@ -3,6 +3,7 @@
 #include "fmi2Functions.h"
 
 #include <cstring>
+#include <functional>
 #include <new>
 #include <string>
 #include <utility>
@@ -28,7 +29,7 @@ template <class Act>
 fmi2Status run(Component c, Act act) {
   auto& instance = *static_cast<Instance*>(c);
   try {
-    act(instance.simulation);
+    std::invoke(act, instance.simulation);
     return fmi2OK;
   } catch (const std::exception& fault) {
     if (instance.logger)
@@ -72,21 +73,10 @@ fmi2Status fmi2SetupExperiment(Component c, fmi2Boolean, fmi2Real, fmi2Real star
   return run(c, [&](Simulation& s) { s.now.t = s.now.begin = start; });
 }
 
-fmi2Status fmi2EnterInitializationMode(Component c) {
-  return run(c, [](Simulation& s) { s.start(); });
-}
-
-fmi2Status fmi2ExitInitializationMode(Component c) {
-  return run(c, [](Simulation& s) { s.start(), s.running = true; });
-}
-
-fmi2Status fmi2Terminate(Component c) {
-  return run(c, [](Simulation& s) { s.running = false; });
-}
-
-fmi2Status fmi2Reset(Component c) {
-  return run(c, [](Simulation& s) { s = {}; });
-}
+fmi2Status fmi2EnterInitializationMode(Component c) { return run(c, &Simulation::start); }
+fmi2Status fmi2ExitInitializationMode(Component c) { return run(c, &Simulation::go); }
+fmi2Status fmi2Terminate(Component c) { return run(c, &Simulation::stop); }
+fmi2Status fmi2Reset(Component c) { return run(c, &Simulation::reset); }
 
 fmi2Status fmi2GetReal(Component c, Refs v, size_t n, fmi2Real values[]) {
   return run(c, [&](const Simulation& s) {
@@ -135,8 +125,7 @@ fmi2Status fmi2DoStep(Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
   return run(c, [&](Simulation& s) {
     require(s.running, "fmi2DoStep: the run has not begun, or it has ended.");
     require(h > 0 && std::isfinite(t), "fmi2DoStep: the step must be above 0 s.");
-    s.now.t = s.now.begin = t;
-    s.step(h);
+    s.step(t, h);
   });
 }
 

@@ -14,7 +14,6 @@ Loading, order, initialization and records are here; the loop over the steps bet
 import re
 from collections.abc import Callable, Iterable
 from ctypes import c_void_p, cast
-from dataclasses import dataclass, field
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -23,12 +22,13 @@ from cffi import FFI
 from fmpy import sharedLibraryExtension
 from tqdm import tqdm
 
-from .component import Component, Ended, loaded
+from .component import Component
 from .options import EXCHANGES
 
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
-Table = dict[str, np.ndarray]
+Signals = list[Signal]
+Act = Callable[[float], None] | None
 HEADER = (Path(__file__).resolve().parents[1] / "master" / "master.h").read_text()
 LIBRARY = f"master{sharedLibraryExtension}"
 ffi = FFI()
@@ -92,16 +92,9 @@ class Master:
         self.loop = self._own("Master *", {"exchange": exchange, **counts, **tables, **arrays})
 
     def run(
-        self,
-        stop: float,
-        step: float,
-        record: list[Signal],
-        exchange: str = "held",
-        every: int = 1,
-        progress: bool = False,
-        act: Callable[[float], None] | None = None,
+        self, stop: float, h: float, record: Signals, exchange: str, every: int, progress: bool = False, act: Act = None
     ) -> np.ndarray:
-        """Simulate from 0 to `stop`; a record array of time and "component.variable", every `every` steps.
+        """Simulate from 0 to `stop`; a record array of time and "component.variable", every `every` steps h.
 
         act(t) is called after the exchange at every communication point and may set inputs that are not connected.
         A variable after "rate " or "at_end " is its derivative, or its value at the end of the step that begins there.
@@ -109,7 +102,7 @@ class Master:
         """
         self._prepare(EXCHANGES.index(exchange))
         self.names = ["time", *(f"{c}.{v}" for c, v in record)]
-        count, pace = round(stop / step), 1 if act else every
+        count, pace = round(stop / h), 1 if act else every
         self.places: dict[Signal, dict[int, int]] = {}  # value references by column, by component and kind
         for place, (name, variable) in enumerate(record, 1):
             *kind, variable = variable.split()
@@ -121,15 +114,15 @@ class Master:
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
         for begin in tqdm(range(0, count + 1, pace), disable=not progress, leave=False):
-            self._require(self.c.master_exchange(self.loop, exchange != "held"), begin * step)
+            self._require(self.c.master_exchange(self.loop, exchange != "held"), begin * h)
             if begin % every == 0:
-                self.rows.append(np.full(len(self.names), begin * step))
+                self.rows.append(np.full(len(self.names), begin * h))
                 self._read("value", "rate")
             if act and begin < count:
-                act(begin * step)
+                act(begin * h)
             end = min(count, begin + pace)
-            done = self.c.master_run(self.loop, step, begin, end, spent)
-            self._require(done == end, done * step)
+            done = self.c.master_run(self.loop, h, begin, end, spent)
+            self._require(done == end, done * h)
             self._read("at_end")
         return self.table()
 
@@ -155,44 +148,3 @@ class Master:
         total, *each = np.median(self.spent, axis=0)
         exchange = float(np.median(self.spent[:, 0] - self.spent[:, 1:].sum(axis=1)))
         return {"total": float(total), "exchange": exchange, **dict(zip(self.components, each, strict=True))}
-
-
-@dataclass(frozen=True)
-class Run:
-    """Columns "component.variable" on a grid; how it ended, if early; microseconds per step, as Master.cost has it."""
-
-    table: Table
-    ending: Ended | None = None
-    cost: dict[str, float] = field(default_factory=dict)
-
-    @property
-    def whole(self) -> Table:
-        """The table of a run that reached its end; raises Ended for another."""
-        if self.ending:
-            raise self.ending
-        return self.table
-
-
-def simulate(
-    components: list[Component],
-    connections: list[Connection],
-    record: list[Signal],
-    stop: float,
-    step: float,
-    exchange: str,
-    grid: float,
-    bare: tuple[str, ...] = (),
-    **how: bool,
-) -> Run:
-    """To `stop`, or to where a component ends the run; recorded every `grid`, or every step. Columns of the components
-    in `bare` go by the variable's name alone."""
-    ending = None
-    with loaded(*components):
-        master = Master(components, connections)
-        try:
-            master.run(stop, step, record, exchange, max(1, round(grid / step)), **how)
-        except Ended as end:
-            ending = end
-        rows, cost = master.table(), master.cost()
-    names = {n: n.split(".")[-1] if n.split(".")[0] in bare else n for n in rows.dtype.names}
-    return Run({short: rows[name] for name, short in names.items()}, ending, cost)

@@ -21,19 +21,14 @@ from values import Fault, limited, number, suggestion  # noqa: E402
 
 EXCHANGES = ("held", "derivatives", "rollback")
 FOLDERS = {"axle": "axle", "car": "car", "suspended": "quarter_car", "balance": "balance"}
-CONTROL = {
-    "about": "For a control engineer: linearization, regulator, optimal control; without parameters",
-    "models": [],
-    "manoeuvre": {},
-}
+CONTROL = {"about": "For a control engineer: linearization, regulator, optimal control; without parameters"}
 
 
 @cache
 def file(vehicle: str) -> dict:
     """A vehicle's manoeuvres.toml."""
-    if vehicle == "control":
-        return CONTROL
-    return tomllib.loads((EXAMPLES / FOLDERS[vehicle] / "manoeuvres.toml").read_text())
+    folder = FOLDERS.get(vehicle)
+    return tomllib.loads((EXAMPLES / folder / "manoeuvres.toml").read_text()) if folder else CONTROL
 
 
 @cache
@@ -51,9 +46,9 @@ def starts(model: str) -> dict[str, float]:
 @cache
 def every(vehicle: str) -> dict[str, Variable]:
     """All parameters of a vehicle: of the run and the wheels first, then those of its models."""
-    rows = file(vehicle).get("parameters", {}).items()
+    rows, models = file(vehicle).get("parameters", {}).items(), file(vehicle).get("models", ())
     own = {name: Variable("parameter", name, unit, x, limit, (), about) for name, (unit, x, limit, about) in rows}
-    return own | {n: v for model in file(vehicle)["models"] for n, v in parameters(model).items() if n not in own}
+    return own | {n: v for model in models for n, v in parameters(model).items() if n not in own}
 
 
 @dataclass(frozen=True)
@@ -67,7 +62,7 @@ class Manoeuvre:
     given: dict[str, float]  # parameters that differ from their start values
     ends: tuple[str, ...] = ()
     judges: tuple[str, ...] = ()
-    figures: str = ""
+    figures: tuple[str, ...] = ()
     plot: tuple[str | list[str], ...] = ()
 
     def __getitem__(self, name: str) -> float:
@@ -90,7 +85,7 @@ class Manoeuvre:
 def manoeuvres(vehicle: str) -> dict[str, Manoeuvre]:
     """By name."""
     found = {}
-    for name, of in file(vehicle)["manoeuvre"].items():
+    for name, of in file(vehicle).get("manoeuvre", {}).items():
         given = {n: number(n, str(x), every(vehicle)[n].unit) for n, x in of.get("given", {}).items()}
         stop = of["stop"] if "stop" in of else every(vehicle)["stop"].start
         found[name] = Manoeuvre(vehicle, name, **{**of, "stop": stop, "given": given})
