@@ -4,8 +4,6 @@ TOOL is fmpy, ecos or libcosim, of the interpreter's packages fmpy, ecospy, libc
 Prints the variables' values at the end, one a line.
 """
 
-from __future__ import annotations
-
 import csv
 import subprocess
 import sys
@@ -59,8 +57,8 @@ def by_omsimulator(package: str, step: float, stop: float, names: list[str]) -> 
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         if done.returncode or not result.exists():
             raise RuntimeError(f"OMSimulator printed:\n{done.stdout}{done.stderr}")
-        head, *table = csv.reader(result.read_text().splitlines(), skipinitialspace=True)
-    return [float(table[-1][[title.endswith(f".{name}") for title in head].index(True)]) for name in names]
+        *_, last = csv.DictReader(result.read_text().splitlines(), skipinitialspace=True)
+    return [float(next(x for title, x in last.items() if title.endswith(f".{name}"))) for name in names]
 
 
 def main() -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from vehicles.axle import CONNECTIONS, WHEELS
-from vehicles.component import Component
+from vehicles.component import Component, loaded
 from vehicles.master import Master
 from vehicles.vehicle import upright
 
@@ -108,7 +108,9 @@ def coupled(fmus: dict[str, Path], scene: str, factor: float, step: float, stop:
         for wheel, y in zip(WHEELS, (B, -B), strict=True)
     ]
     free = [(source, sink) for source, sink in CONNECTIONS if sink[1] != "M_3"]
-    with Master([*wheels, Component("axle", fmus["axle"], {**BODY, **place})], free) as master:
+    parts = [*wheels, Component("axle", fmus["axle"], {**BODY, **place})]
+    with loaded(*parts):
+        master = Master(parts, free)
         record, act = [("axle", name) for name in ("X", "Y", "psi")], driver(master, SCENES[scene])
         rows = master.run(stop, step, record, "derivatives", round(0.3 / step), act=act)
     return {name: rows[f"axle.{of}"] for name, of in zip(COMPARED, ("X", "Y", "psi"), strict=True)}

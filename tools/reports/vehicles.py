@@ -56,9 +56,9 @@ def axle_energy(report: Report, over: tuple) -> Row:
     """the axle: energy added per bond"""
     exchange, more = over
     scene = axle_study.TRAILING.changed(stop=2.0, **({"follow": 1.0} | more))
-    found = axle_study.energy(report.fmus, scene, 0.001, exchange)
-    sums = sum(found.bonds.values())
-    return dict(zip(BONDS, sums, strict=True)) | {"sum, J": float(sums.sum()), "gain, J": found.drift}
+    bonds, gain = axle_study.energy(report.fmus, scene, 0.001, exchange)
+    sums = sum(bonds.values())
+    return dict(zip(BONDS, sums, strict=True)) | {"sum, J": float(sums.sum()), "gain, J": gain}
 
 
 def manoeuvres(report: Report) -> tuple[str, ...]:
@@ -72,7 +72,8 @@ def car_runs(report: Report) -> dict[str, object]:
     for name in manoeuvres(report):
         manoeuvre = MANOEUVRES[name]
         table = CAR.drive(report.fmus, manoeuvre).table
-        judged += [(name, f.what, f.unit, f.measured, f.exact) for f in car_judges.judge(table, manoeuvre)]
+        found = car_judges.judge(table, manoeuvre, *manoeuvre.judges)
+        judged += [(name, f.what, f.unit, f.measured, f.exact) for f in found]
         at = car_judges.worst(table)[1]
         where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]
         demands.append((manoeuvre.title, *car_judges.demand(table).values(), *where))
@@ -96,8 +97,8 @@ def car_figures(report: Report, name: str) -> list[Row]:
     """the car: the figures of road tests, of the coupled car and of one set of equations on the same grid"""
     manoeuvre, grid = MANOEUVRES[name], {"circle": 0.01, "step": 0.001, "lane": 0.005}[name]  # s
     coupled = CAR.drive(report.fmus, manoeuvre, grid=grid).table
-    whole = monolithic_car.solve(manoeuvre, np.arange(round(manoeuvre.stop / grid) + 1) * grid, 1e-9)
-    both = (car_judges.FIGURES[name](table) for table in (coupled, whole))
+    whole = monolithic_car.solve(manoeuvre, grid, 1e-9)
+    both = (car_judges.judge(table, manoeuvre, name) for table in (coupled, whole))
     head = ("quantity", "unit", "coupled FMUs", "one set of equations", "rigid links")
     rows = ((a.what, a.unit, a.measured, b.measured, a.exact) for a, b in zip(*both, strict=True))
     return [dict(zip(head, row, strict=True)) for row in rows]
@@ -132,7 +133,7 @@ def car_errors(report: Report, name: str, exchange: str, ms: float) -> Row:
 @part(30)
 def pictures(report: Report) -> dict[str, float]:
     """pictures of the motions; the largest error where no wheel stops"""
-    table = axle.coupled(report.fmus, axle_study.TRAILING, 0.0005, "derivatives", 0.02)
+    table = axle.AXLE.drive(report.fmus, axle_study.TRAILING, 0.0005, "derivatives", 0.02).whole
     draw(axle.AXLE, axle_study.TRAILING, table, report.folder / "vehicles_axle.png", ", step 0.5 ms")
     for name, manoeuvre in MANOEUVRES.items():
         draw(CAR, manoeuvre, CAR.drive(report.fmus, manoeuvre).table, report.folder / f"vehicles_{name}.png")

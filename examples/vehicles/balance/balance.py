@@ -11,25 +11,14 @@ a = J_z omega_ref / J_x is the wheel's gyroscopic gain: without a moment about e
 upright, which is how leaning steers.
 """
 
+import csv
 from math import cos, pi
+from pathlib import Path
 
 from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 
-PARAMETERS = {
-    "omega_ref": -2.0,  # rad/s, about the axle; negative rolls along +e1
-    "a": -4.0,  # 1/s, J_z omega_ref / J_x of the paper's wheel
-    "r_roll": 0.35,  # m, r_0 + r
-    "R": 1.5,  # m, radius of the circle
-    "t_circle": 5.0,  # s, when the line ends
-    "t_bend": 1.0,  # s, over which the curvature grows
-    "k_psi": 1.0,  # 1/s
-    "k_theta": 250.0,  # N.m/rad, above the 59 N.m/rad of gravity, m g r_0
-    "c_theta": 40.0,  # N.m.s/rad
-    "k_omega": 8.0,  # N.m.s/rad
-    "k_i": 8.0,  # N.m/rad
-}
-INPUTS = {"theta": pi / 2, "theta_dot": 0.0, "psi": 0.0, "psi_dot": 0.0, "phi_dot": 0.0}
-OUTPUTS = {"M_1": 0.0, "M_3": 0.0}
+with Path(__file__).with_name("balance.csv").open() as table:
+    VARIABLES = list(csv.DictReader(line for line in table if not line.startswith("#")))
 
 
 class Balance(Fmi2Slave):
@@ -40,15 +29,11 @@ class Balance(Fmi2Slave):
     def __init__(self, **kwargs: object) -> None:
         super().__init__(**kwargs)
         self.modelName = "balance"
-        for name, start in (PARAMETERS | INPUTS | OUTPUTS).items():
-            setattr(self, name, start)
-        for name in PARAMETERS:
-            how = {"causality": Fmi2Causality.parameter, "variability": Fmi2Variability.tunable}
-            self.register_variable(Real(name, **how))
-        for name in INPUTS:
-            self.register_variable(Real(name, causality=Fmi2Causality.input))
-        for name in OUTPUTS:
-            self.register_variable(Real(name, causality=Fmi2Causality.output))
+        for row in VARIABLES:
+            setattr(self, row["name"], float(row["start"] or 0))
+            parameter = row["causality"] == "parameter"
+            how = {"variability": Fmi2Variability.tunable if parameter else Fmi2Variability.continuous}
+            self.register_variable(Real(row["name"], causality=Fmi2Causality[row["causality"]], **how))
         self.psi_ref = self.integral = 0.0
 
     def do_step(self, current_time: float, step_size: float) -> bool:

@@ -14,10 +14,10 @@ static fmi2Status call(const Component* c, const Transfer* t, fmi2Integer order,
   fmi2Integer orders[n];
   for (size_t k = 0; k < n; ++k) orders[k] = order;
   if (t->reads)
-    return order ? c->rates(c->instance, t->variables, n, orders, numbers)
-                 : c->get(c->instance, t->variables, n, numbers);
-  return order ? c->set_rates(c->instance, t->variables, n, orders, numbers)
-               : c->set(c->instance, t->variables, n, numbers);
+    return order ? c->fmi2GetRealOutputDerivatives(c->instance, t->variables, n, orders, numbers)
+                 : c->fmi2GetReal(c->instance, t->variables, n, numbers);
+  return order ? c->fmi2SetRealInputDerivatives(c->instance, t->variables, n, orders, numbers)
+               : c->fmi2SetReal(c->instance, t->variables, n, numbers);
 }
 
 /* All transfers in turn, of values (order 0) or derivatives of this order; reads: outputs too, else inputs are set to
@@ -69,9 +69,9 @@ static double microseconds(void) {
 typedef enum Act { try_out, undo, take_again, take_for_good } Act;
 
 static fmi2Status act_on(Component* c, Act act, double t, double h) {
-  if (act == undo) return c->restore(c->instance, c->state);
-  const fmi2Status kept = act == try_out ? c->keep(c->instance, &c->state) : fmi2OK;
-  return kept == fmi2OK ? c->step(c->instance, t, h, act == take_for_good) : kept;
+  if (act == undo) return c->fmi2SetFMUstate(c->instance, c->state);
+  const fmi2Status kept = act == try_out ? c->fmi2GetFMUstate(c->instance, &c->state) : fmi2OK;
+  return kept == fmi2OK ? c->fmi2DoStep(c->instance, t, h, act == take_for_good) : kept;
 }
 
 static int all(Master* m, Act act, double t, double h, double* cost) {
@@ -92,16 +92,14 @@ static int take_step(Master* m, double t, double h, int first, double* cost) {
 }
 
 long master_run(Master* m, double h, long from, long to, double* cost) {
-  for (long i = from; i < to; ++i) {
+  long i = from;
+  for (int going = 1; going && i < to; i += going) {
     const double t = (double)i * h, begin = microseconds();
     double* spent = cost + i * (m->components + 1);
-    if (i > from && !master_exchange(m, m->exchange != held)) return i;
-    if (!take_step(m, t, (double)(i + 1) * h - t, i == 0, spent + 1)) return i;
+    going = (i == from || master_exchange(m, m->exchange != held)) &&
+            take_step(m, t, (double)(i + 1) * h - t, i == 0, spent + 1);
     spent[0] = microseconds() - begin;
   }
-  return to;
-}
-
-void master_free(Master* m) {
-  for (Component* c = m->component; c < m->component + m->components; ++c) c->forget(c->instance, &c->state);
+  for (Component* c = m->component; c < m->component + m->components; ++c) c->fmi2FreeFMUstate(c->instance, &c->state);
+  return i;
 }

@@ -6,16 +6,16 @@
 #include "fmi2FunctionTypes.h"
 
 typedef struct Component {
-  fmi2GetRealTYPE* get;
-  fmi2SetRealTYPE* set;
-  fmi2GetRealOutputDerivativesTYPE* rates;
-  fmi2SetRealInputDerivativesTYPE* set_rates;
-  fmi2DoStepTYPE* step;
-  fmi2GetFMUstateTYPE* keep;
-  fmi2SetFMUstateTYPE* restore;
-  fmi2FreeFMUstateTYPE* forget;
+  fmi2GetRealTYPE* fmi2GetReal;
+  fmi2SetRealTYPE* fmi2SetReal;
+  fmi2GetRealOutputDerivativesTYPE* fmi2GetRealOutputDerivatives;
+  fmi2SetRealInputDerivativesTYPE* fmi2SetRealInputDerivatives;
+  fmi2DoStepTYPE* fmi2DoStep;
+  fmi2GetFMUstateTYPE* fmi2GetFMUstate;
+  fmi2SetFMUstateTYPE* fmi2SetFMUstate;
+  fmi2FreeFMUstateTYPE* fmi2FreeFMUstate;
   fmi2Component instance;
-  fmi2FMUstate state; /* the snapshot, kept from step to step */
+  fmi2FMUstate state; /* the snapshot, kept from step to step of one call */
 } Component;
 
 /* Variables of a component that are read (outputs) or set (inputs) together, and the signals that they exchange,
@@ -45,6 +45,5 @@ int master_exchange(Master* m, int with_rates);
 /* Steps `from` to `to` of the length h with the exchanges between them; the first was made before. Row i of `cost` has
  * the microseconds of step i, all of it and in each component. Returns `to`, or the step that a component refused. */
 long master_run(Master* m, double h, long from, long to, double* cost);
-void master_free(Master* m); /* the snapshots */
 
 #endif

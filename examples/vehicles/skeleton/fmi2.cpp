@@ -3,6 +3,7 @@
 #include "fmi2Functions.h"
 
 #include <cstring>
+#include <functional>
 #include <new>
 #include <string>
 #include <utility>
@@ -16,14 +17,8 @@ using State = fmi2FMUstate;
 
 namespace {
 
-enum class Phase { instantiated, initializing, stepping, terminated };
-
-struct Snapshot {
+struct Instance {
   Simulation simulation;
-  Phase phase = Phase::instantiated;
-};
-
-struct Instance : Snapshot {
   std::string name;
   fmi2CallbackLogger logger;
   fmi2ComponentEnvironment environment;
@@ -34,7 +29,7 @@ template <class Act>
 fmi2Status run(Component c, Act act) {
   auto& instance = *static_cast<Instance*>(c);
   try {
-    act(instance);
+    std::invoke(act, instance.simulation);
     return fmi2OK;
   } catch (const std::exception& fault) {
     if (instance.logger)
@@ -48,17 +43,13 @@ void require(bool met, const char* message) {
 }
 
 fmi2Status refuse(Component c, const char* message) {
-  return run(c, [&](Instance&) { require(false, message); });
-}
-
-fmi2Status start(Component c, Phase next) {
-  return run(c, [&](Instance& i) { i.simulation.start(), i.phase = next; });
+  return run(c, [&](Simulation&) { require(false, message); });
 }
 
 /* What a state points to, made where there is none. */
-Snapshot& snapshot(State* state) {
-  if (!*state) *state = new Snapshot;
-  return *static_cast<Snapshot*>(*state);
+Simulation& snapshot(State* state) {
+  if (!*state) *state = new Simulation;
+  return *static_cast<Simulation*>(*state);
 }
 
 /* There are no variables of other types. */
@@ -79,106 +70,96 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
 void fmi2FreeInstance(Component c) { delete static_cast<Instance*>(c); }
 
 fmi2Status fmi2SetupExperiment(Component c, fmi2Boolean, fmi2Real, fmi2Real start, fmi2Boolean, fmi2Real) {
-  return run(c, [&](Instance& i) { i.simulation.now.t = i.simulation.now.begin = start; });
+  return run(c, [&](Simulation& s) { s.now.t = s.now.begin = start; });
 }
 
-fmi2Status fmi2EnterInitializationMode(Component c) { return start(c, Phase::initializing); }
-fmi2Status fmi2ExitInitializationMode(Component c) { return start(c, Phase::stepping); }
-
-fmi2Status fmi2Terminate(Component c) {
-  return run(c, [](Instance& i) { i.phase = Phase::terminated; });
-}
-
-fmi2Status fmi2Reset(Component c) {
-  return run(c, [](Instance& i) { static_cast<Snapshot&>(i) = {}; });
-}
+fmi2Status fmi2EnterInitializationMode(Component c) { return run(c, &Simulation::start); }
+fmi2Status fmi2ExitInitializationMode(Component c) { return run(c, &Simulation::go); }
+fmi2Status fmi2Terminate(Component c) { return run(c, &Simulation::stop); }
+fmi2Status fmi2Reset(Component c) { return run(c, &Simulation::reset); }
 
 fmi2Status fmi2GetReal(Component c, Refs v, size_t n, fmi2Real values[]) {
-  return run(c, [&](const Instance& i) {
+  return run(c, [&](const Simulation& s) {
     double y[variable_count];
     require(std::all_of(v, v + n, [](auto r) { return r < variable_count; }), "fmi2GetReal: unknown value reference.");
-    std::copy_n(i.simulation.now.u, first_output, y);
-    if (std::any_of(v, v + n, [](auto r) { return r >= first_output; }))
-      model_outputs(i.simulation.now, i.simulation.x, y);
+    std::copy_n(s.now.u, first_output, y);
+    model_outputs(s.now, s.x, y);
     std::transform(v, v + n, values, [&](auto r) { return y[r]; });
   });
 }
 
 fmi2Status fmi2SetReal(Component c, Refs v, size_t n, const fmi2Real values[]) {
-  return run(c, [&](Instance& i) {
+  return run(c, [&](Simulation& s) {
     for (size_t k = 0; k < n; ++k) {
       require(v[k] < first_output && std::isfinite(values[k]), "fmi2SetReal: not settable, or not finite.");
-      require(v[k] >= first_input || i.phase != Phase::stepping,
-              "fmi2SetReal: parameters are fixed once the run has begun.");
+      require(v[k] >= first_input || !s.running, "fmi2SetReal: parameters are fixed once the run has begun.");
+      s.now.u[v[k]] = values[k];
     }
-    for (size_t k = 0; k < n; ++k) i.simulation.now.u[v[k]] = values[k];
   });
 }
 
 fmi2Status fmi2SetRealInputDerivatives(Component c, Refs v, size_t n, Orders orders, const fmi2Real values[]) {
-  return run(c, [&](Instance& i) {
-    for (size_t k = 0; k < n; ++k)
+  return run(c, [&](Simulation& s) {
+    for (size_t k = 0; k < n; ++k) {
       require(v[k] >= first_input && v[k] < first_output && orders[k] >= 1 && orders[k] <= Simulation::orders &&
                   std::isfinite(values[k]),
               "fmi2SetRealInputDerivatives: inputs have finite derivatives of order 1 to 3.");
-    for (size_t k = 0; k < n; ++k) {
-      i.simulation.slope[orders[k] - 1][v[k] - first_input] = values[k];
-      i.simulation.given[v[k] - first_input] = true;
+      s.slope[orders[k] - 1][v[k] - first_input] = values[k];
+      s.given[v[k] - first_input] = true;
     }
   });
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(Component c, Refs v, size_t n, Orders orders, fmi2Real values[]) {
-  return run(c, [&](const Instance& i) {
+  return run(c, [&](const Simulation& s) {
     double y_dot[variable_count];
     for (size_t k = 0; k < n; ++k)
       require(v[k] >= first_output && v[k] < variable_count && orders[k] == 1,
               "fmi2GetRealOutputDerivatives: outputs have first derivatives only.");
-    i.simulation.output_rates(y_dot);
+    s.output_rates(y_dot);
     std::transform(v, v + n, values, [&](auto r) { return y_dot[r]; });
   });
 }
 
 fmi2Status fmi2DoStep(Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
-  return run(c, [&](Instance& i) {
-    require(i.phase == Phase::stepping, "fmi2DoStep: the run has not begun, or it has ended.");
+  return run(c, [&](Simulation& s) {
+    require(s.running, "fmi2DoStep: the run has not begun, or it has ended.");
     require(h > 0 && std::isfinite(t), "fmi2DoStep: the step must be above 0 s.");
-    i.simulation.now.t = i.simulation.now.begin = t;
-    i.simulation.step(h);
+    s.step(t, h);
   });
 }
 
 fmi2Status fmi2GetFMUstate(Component c, State* state) {
-  return run(c, [&](const Instance& i) { snapshot(state) = i; });
+  return run(c, [&](const Simulation& s) { snapshot(state) = s; });
 }
 
 fmi2Status fmi2SetFMUstate(Component c, State state) {
-  return run(c, [&](Instance& i) {
+  return run(c, [&](Simulation& s) {
     require(state, "fmi2SetFMUstate: no state is given.");
-    static_cast<Snapshot&>(i) = snapshot(&state);
+    s = snapshot(&state);
   });
 }
 
 fmi2Status fmi2FreeFMUstate(Component, State* state) {
-  if (state) delete static_cast<Snapshot*>(std::exchange(*state, nullptr));
+  if (state) delete static_cast<Simulation*>(std::exchange(*state, nullptr));
   return fmi2OK;
 }
 
 fmi2Status fmi2SerializedFMUstateSize(Component, State, size_t* size) {
-  *size = sizeof(Snapshot);
+  *size = sizeof(Simulation);
   return fmi2OK;
 }
 
 fmi2Status fmi2SerializeFMUstate(Component c, State state, fmi2Byte bytes[], size_t size) {
-  return run(c, [&](const Instance&) {
-    require(state && size >= sizeof(Snapshot), "fmi2SerializeFMUstate: no state, or too few bytes.");
-    std::memcpy(bytes, state, sizeof(Snapshot));
+  return run(c, [&](const Simulation&) {
+    require(state && size >= sizeof(Simulation), "fmi2SerializeFMUstate: no state, or too few bytes.");
+    std::memcpy(bytes, state, sizeof(Simulation));
   });
 }
 
 fmi2Status fmi2DeSerializeFMUstate(Component c, const fmi2Byte bytes[], size_t size, State* state) {
-  return run(c, [&](const Instance&) {
-    require(size == sizeof(Snapshot), "fmi2DeSerializeFMUstate: these bytes are no state of this FMU.");
+  return run(c, [&](const Simulation&) {
+    require(size == sizeof(Simulation), "fmi2DeSerializeFMUstate: these bytes are no state of this FMU.");
     std::copy_n(bytes, size, reinterpret_cast<char*>(&snapshot(state)));
   });
 }

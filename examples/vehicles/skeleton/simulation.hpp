@@ -16,6 +16,7 @@ struct Simulation {
   States x = States::Zero();
   double slope[orders][input_count]{}; /* derivatives of the inputs, for one step */
   bool given[input_count]{};           /* whether the master gave the first derivative for this step */
+  bool running = false;                /* parameters are fixed */
 
   Simulation() {
     for (int i = 0; i < first_output; ++i) now.u[i] = stored[i].start;
@@ -35,8 +36,13 @@ struct Simulation {
     x = model_start(now);
   }
 
-  /* From now to t + h: the inputs follow their polynomials, which are used up. */
-  void step(double h) {
+  void go() { start(), running = true; }
+  void stop() { running = false; }
+  void reset() { *this = {}; }
+
+  /* From t to t + h: the inputs follow their polynomials, which are used up. */
+  void step(double t, double h) {
+    now.t = now.begin = t;
     follow_rates();
     const int n = std::max(1, static_cast<int>(std::ceil(h / now.u[inner_step] - 1e-6)));
     const double e = h / n;

@@ -1,7 +1,5 @@
 """The example FMUs, built once per session, and the folders the examples are imported from."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

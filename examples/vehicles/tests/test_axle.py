@@ -1,17 +1,13 @@
 """The axle against the rigid axle on wheels that never slip: closed forms, orders in h and 1/k, energy per bond."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
-from functools import cache
-
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, relative_error, within
 from vehicles import axle, axle_study, errors
+from vehicles.axle import AXLE
 from vehicles.axle_study import CLOTHOID, ROLLING_OUT, SCENES, STRAIGHT, TRAILING
-from vehicles.master import Table
-from vehicles.options import Manoeuvre
+from vehicles.errors import Table
+from vehicles.master import EXCHANGES
 from vehicles.vehicle import Fmus
 
 SHORT = TRAILING.changed(stop=1.0)
@@ -33,7 +29,7 @@ def test_a_wrong_constant_of_the_closed_form_shows(changed: dict[str, float]) ->
     beyond(off, 0.0062, "error of a wrong constant / range")  # more than that of links four times as stiff
 
 
-def acceleration(table: Table, name: str = "v") -> float:
+def acceleration(table: Table, name: str) -> float:
     """Once the links have settled."""
     return np.polyfit(table["time"][50:], table[name][50:], 1)[0]
 
@@ -41,41 +37,41 @@ def acceleration(table: Table, name: str = "v") -> float:
 @pytest.mark.parametrize("slope", [0.0, 0.1])
 def test_equal_torques_drive_straight_also_uphill(fmus: Fmus, slope: float) -> None:
     scene = STRAIGHT.changed(stop=2.0, slope=slope)
-    table, c = axle.coupled(fmus, scene, 0.0005), axle.constants(scene)
+    table, c = AXLE.drive(fmus, scene, 0.0005).whole, axle.constants(scene)
     within(np.abs(table["Y"]).max(), 64 * EPSILON, "off the line, m")
     force = 2 * 30.0 / c.R - c.mass * c.g * np.sin(slope)
-    within(relative_error(acceleration(table), force / c.m_t), 1e-3, "acceleration, relative")
-    beyond(relative_error(acceleration(table), force / c.mass), 0.1, "without J_z, relative")
+    within(relative_error(acceleration(table, "v"), force / c.m_t), 1e-3, "acceleration, relative")
+    beyond(relative_error(acceleration(table, "v"), force / c.mass), 0.1, "without J_z, relative")
 
 
 def test_on_a_slope_the_energy_stays(fmus: Fmus) -> None:
     scene = STRAIGHT.changed(stop=2.0, slope=0.1, M_left=0.0, M_right=0.0)
-    drift = axle_study.energy(fmus, scene, 0.0005, "derivatives").drift
+    _, drift = axle_study.energy(fmus, scene, 0.0005, "derivatives")
     within(abs(drift), 0.1, "drift of the energy, J")  # the height along the slope is worth 150 J
     level = scene.changed(slope=0.0, v=1.0)
-    within(np.abs(axle.coupled(fmus, level, 0.0005)["v"] - 1.0).max(), 1e-9, "change of speed on the level, m/s")
+    within(np.abs(AXLE.drive(fmus, level, 0.0005).whole["v"] - 1.0).max(), 1e-9, "change of speed on the level, m/s")
 
 
 def test_unequal_torques_draw_a_clothoid(fmus: Fmus) -> None:
     c = axle.constants(CLOTHOID)
-    yaw = acceleration(axle.coupled(fmus, CLOTHOID.changed(stop=2.0), 0.0005), "omega")
+    yaw = acceleration(AXLE.drive(fmus, CLOTHOID.changed(stop=2.0), 0.0005).whole, "omega")
     within(relative_error(yaw, 6.0 * c.b / (c.R * c.I_t)), 6e-3, "yaw acceleration, relative")
 
 
 @pytest.mark.parametrize("v", [-1.0, 0.0, 0.5])
 def test_whatever_the_start_it_ends_with_the_mass_in_front(fmus: Fmus, v: float) -> None:
     scene = TRAILING.changed(v=v, omega=2.0, a=0.3, stop=8.0)
-    table, c = axle.coupled(fmus, scene, 0.002), axle.constants(scene)
+    table, c = AXLE.drive(fmus, scene, 0.002).whole, axle.constants(scene)
     V = np.sqrt(c.v**2 + c.I_t / c.m_t * c.omega**2)
     within(relative_error(table["v"][-1], V), 0.01, "speed at the end, relative")
     within(abs(table["omega"][-1] / c.omega), 0.02, "yaw rate at the end / at the start")
-    behind = axle.coupled(fmus, scene.changed(a=-0.3, v=abs(v) + 0.1, stop=8.0), 0.002)
+    behind = AXLE.drive(fmus, scene.changed(a=-0.3, v=abs(v) + 0.1, stop=8.0), 0.002).whole
     assert behind["v"][-1] < 0  # partner: with the mass behind it turns round
 
 
 def test_each_wheel_of_a_turning_axle_stops_at_its_own_instant(fmus: Fmus) -> None:
-    inner, outer = axle.stops(ROLLING_OUT)
-    table = axle.coupled(fmus, ROLLING_OUT.changed(stiffness=4.0), 0.0005, grid=0.005)
+    inner, outer = axle.velocities(ROLLING_OUT)[1]
+    table = AXLE.drive(fmus, ROLLING_OUT.changed(stiffness=4.0), 0.0005, grid=0.005).whole
     for wheel, stop in (("left", inner), ("right", outer)):
         spin = table[f"{wheel}.omega_z"]
         within(abs(table["time"][np.argmax(spin == 0)] - stop), 0.02, f"the {wheel} wheel stops, s")  # grid: 5 ms
@@ -83,42 +79,22 @@ def test_each_wheel_of_a_turning_axle_stops_at_its_own_instant(fmus: Fmus) -> No
     assert outer - inner > 1  # partner: the instants are far apart
 
 
-@pytest.fixture(scope="module")
-def error(fmus: Fmus) -> Callable[..., float]:
-    """error(exchange, h, scene) of the short scene, as axle_study.step_errors has it; each run is made once."""
-    truth = axle.coupled(fmus, SHORT, 0.00025, "rollback", 0.02)
-
-    @cache
-    def of(exchange: str, h: float = 0.001, scene: Manoeuvre = SHORT) -> float:
-        return axle_study.distance(axle.coupled(fmus, scene, h, exchange, 0.02), truth)
-
-    return of
-
-
-@pytest.mark.parametrize(("exchange", "order", "off"), [("held", 1, 0.15), ("derivatives", 2, 0.25)])
-def test_held_values_have_order_one_first_derivatives_two(
-    error: Callable[..., float], exchange: str, order: int, off: float
-) -> None:
-    (found,) = errors.orders((0.002, 0.001), [error(exchange, h) for h in (0.002, 0.001)])
-    within(abs(found - order), off, "off the order")
-
-
-def test_positions_that_do_not_follow_their_rates_drag(fmus: Fmus, error: Callable[..., float]) -> None:
-    """Partner: held positions lag by h / 2, a drag k v h / 2 at each hub; the axle is soon at rest."""
-    held = axle_study.step_errors(fmus, SHORT.changed(follow=0), "held", (0.001,), 0.02)[0]
-    beyond(held / error("held"), 20, "error of positions that lag over that of those that follow")
-
-
-def test_rollback_beats_first_derivatives_a_hundredfold(error: Callable[..., float]) -> None:
-    within(error("rollback") / error("derivatives"), 0.01, "error of rollback over that of derivatives")
+def test_held_values_have_order_one_first_derivatives_two_and_rollback_beats_both(fmus: Fmus) -> None:
+    """Partner: held positions that do not follow their rates lag by h / 2, a drag k v h / 2 at each hub; the axle is
+    soon at rest."""
+    steps = (0.002, 0.001)
+    found = {exchange: axle_study.step_errors(fmus, SHORT, exchange, steps) for exchange in EXCHANGES}
+    for exchange, order, off in (("held", 1, 0.15), ("derivatives", 2, 0.25)):
+        within(abs(errors.orders(steps, found[exchange])[0] - order), off, f"{exchange}: off the order")
+    within(found["rollback"][1] / found["derivatives"][1], 0.01, "error of rollback over that of derivatives")
+    lag = axle_study.step_errors(fmus, SHORT.changed(follow=0), "held", (0.001,))[0]
+    beyond(lag / found["held"][1], 20, "error of positions that lag over that of those that follow")
 
 
 def test_the_energy_that_the_bonds_add_is_what_the_whole_gains(fmus: Fmus) -> None:
     """Held positions that do not follow take energy; bonds and the sum of all energies agree on how much."""
-    found, lines = (
-        axle_study.energy(fmus, SHORT.changed(follow=0), 0.0005, exchange) for exchange in ("held", "derivatives")
-    )
-    counted = sum(bonds.sum() for bonds in found.bonds.values())
-    beyond(-found.drift, 10, "energy taken, J")  # of some 90 J
-    within(relative_error(counted, found.drift), 0.1, "bonds beside the sum, relative")
-    within(abs(lines.drift / found.drift), 5e-4, "drift of straight lines over that of held positions")
+    short = SHORT.changed(follow=0)
+    (bonds, drift), (_, of_lines) = (axle_study.energy(fmus, short, 0.0005, e) for e in ("held", "derivatives"))
+    beyond(-drift, 10, "energy taken, J")  # of some 90 J
+    within(relative_error(sum(b.sum() for b in bonds.values()), drift), 0.1, "bonds beside the sum, relative")
+    within(abs(of_lines / drift), 5e-4, "drift of straight lines over that of held positions")

@@ -1,7 +1,5 @@
 """Driven wheel: a pythonfmu controller keeps upright what alone would fall, along a line and a circle."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
@@ -13,7 +11,7 @@ import pytest
 from support.bounds import beyond, within
 from support.paths import ROOT
 from vehicles import balance
-from vehicles.master import Table
+from vehicles.errors import Table
 
 
 @pytest.fixture(scope="module")
@@ -27,12 +25,9 @@ def test_the_controlled_wheel_drives_its_course_where_the_wheel_alone_falls(driv
     assert balance.fall_time(drive) == np.inf
     known = np.isfinite(drive["alone.theta"])  # partner: the same figures of the wheel alone, which ends early
     alone = balance.judge({n: drive.get(f"alone.{n}", x)[known] for n, x in drive.items()})
-    for name, bound, broken in (
-        ("line_tilt", 0.01, 10),  # deg
-        ("line_heading", 0.03, 30),  # deg
-        ("circle_scatter", 0.003, 0.1),  # m
-        ("speed_error", 0.003, 0.1),  # rad/s
-    ):
+    bounds = {"line_tilt": (0.01, 10), "line_heading": (0.03, 30)}  # deg
+    bounds |= {"circle_scatter": (0.003, 0.1), "speed_error": (0.003, 0.1)}  # m, rad/s
+    for name, (bound, broken) in bounds.items():
         within(found[name], bound, name)
         beyond(alone[name], broken, f"{name} of the wheel alone")
     within(abs(found["circle_radius"] - balance.RADIUS), 0.01, "radius off, m")

@@ -1,8 +1,6 @@
 """What other tools read: SSP packages, valid, parameters bound at the component, run by fmpy to the right end; the
 bodies' terminals, which wire the signals that the master wires."""
 
-from __future__ import annotations
-
 import zipfile
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,8 +14,8 @@ from support.bounds import beyond, within
 from vehicles import axle_study, ssp, suspended
 from vehicles.axle import AXLE
 from vehicles.car import CAR
+from vehicles.errors import Table
 from vehicles.layout import LANE
-from vehicles.master import Table
 from vehicles.options import Manoeuvre
 from vehicles.suspended import LAUNCH, SUSPENDED
 from vehicles.vehicle import Fmus, Vehicle
@@ -45,11 +43,12 @@ def test_fmpy_runs_the_package_and_converges_with_order_one(package: Path, truth
     within(fine, 0.06, "error / range")
 
 
-def test_a_package_without_its_parameters_is_another_system(package: Path, truth: Table) -> None:
+def test_a_package_without_its_parameters_is_another_system(
+    package: Path, truth: Table, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Partner: the start values come from the SSV."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ssp, "parameter_set", lambda _package: None)
-        beyond(suspended.package_distance(package, 0.005, truth, stop=0.3), 100, "error / range")
+    monkeypatch.setattr(ssp, "parameter_set", lambda _package: None)
+    beyond(suspended.package_distance(package, 0.005, truth, stop=0.3), 100, "error / range")
 
 
 def off_the_end(fmus: Fmus, vehicle: Vehicle, manoeuvre: Manoeuvre, step: float, folder: Path, *names: str) -> float:
@@ -75,8 +74,7 @@ def test_the_package_of_the_axle_runs_in_fmpy(fmus: Fmus, tmp_path: Path) -> Non
 
 
 def terminals(fmu: Path) -> etree._Element:
-    with zipfile.ZipFile(fmu) as archive:
-        return etree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+    return etree.fromstring(zipfile.ZipFile(fmu).read("terminalsAndIcons/terminalsAndIcons.xml"))
 
 
 def members(terminal: etree._Element) -> dict[str, str]:

@@ -1,7 +1,5 @@
 """What the data of the report on axle and car say is what is claimed."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

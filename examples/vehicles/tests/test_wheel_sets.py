@@ -1,7 +1,5 @@
 """Two wheels on axle.fmu become Modelica's wheel sets as the links are made stiffer."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

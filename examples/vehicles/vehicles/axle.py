@@ -7,8 +7,7 @@ middle and the yaw rate:
     m_t v' = S w^2 + (M_left + M_right) / R - friction,    I_t w' = -S v w + b (M_right - M_left) / R - friction
 """
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -18,18 +17,11 @@ from scipy.optimize import brentq
 
 from . import options
 from .component import Component
-from .errors import distance
-from .master import Signal, Table
+from .errors import Table, distance
 from .options import Manoeuvre
-from .vehicle import Fmus, Vehicle, road, upright, wire
+from .vehicle import Fmus, Vehicle, recorded, road, upright, wire
 
 WHEELS = {"left": "left", "right": "right"}
-CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel, f"_{wheel}")]
-RECORD: list[Signal] = [
-    *(("axle", name) for name in ("X", "Y", "psi", "v", "omega", "E", "W_loss")),
-    *((wheel, name) for wheel in WHEELS for name in ("omega_z", "lambda_3", "mu_required", "E")),
-    *((wheel, name) for wheel in WHEELS for name in ("X_O", "Y_O", "psi", "theta", "phi")),  # scripts/view needs these
-]
 COMPARED = ("X", "Y", "psi", "v", "omega")
 OF_WHEEL = {"m": 20.0, "J_x": 0.9, "J_z": 1.8}  # the wheels' defaults
 LINKS = ("k", "c", "k_a", "c_a", "k_p", "c_p")
@@ -69,78 +61,74 @@ def without_closed_form(scene: Manoeuvre) -> str:
     return ""
 
 
-def velocities(scene: Manoeuvre, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """v and omega of the rigid axle at `times`, for the scenes that have a closed form."""
+Velocities = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+def velocities(scene: Manoeuvre) -> tuple[Velocities, tuple[float, ...]]:
+    """v and omega of the rigid axle over time, for the scenes that have a closed form, and when one of its wheels
+    stops."""
     c = constants(scene)
     if c.s:
-        return rolling_out(scene, times)
+        return rolling_out(c)
     if c.S:
-        return trailing(scene, times)
-    pull = (c.M_left + c.M_right) / c.R - c.mass * c.g * np.sin(c.slope)
-    return c.v + pull / c.m_t * times, c.omega + c.b * (c.M_right - c.M_left) / (c.R * c.I_t) * times
+        return trailing(c), ()
+    a = ((c.M_left + c.M_right) / c.R - c.mass * c.g * np.sin(c.slope)) / c.m_t
+    return lambda t: (c.v + a * t, c.omega + c.b * (c.M_right - c.M_left) / (c.R * c.I_t) * t), ()
 
 
-def trailing(scene: Manoeuvre, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def trailing(c: SimpleNamespace) -> Velocities:
     """No torque, mass ahead of the axle: m_t v^2 + I_t w^2 = m_t V^2 stays, and v' = kappa (V^2 - v^2) / V.
 
-    So v = V tanh(kappa t + c), w = V sqrt(m_t / I_t) sech(kappa t + c), kappa = S V / I_t: whatever the start, it ends
+    So v = V tanh(kappa t + p), w = V sqrt(m_t / I_t) sech(kappa t + p), kappa = S V / I_t: whatever the start, it ends
     running straight with the mass in front.
     """
-    c = constants(scene)
     V = np.sqrt(c.v**2 + c.I_t / c.m_t * c.omega**2)
-    phase = c.S * V / c.I_t * times + np.arctanh(c.v / V)
-    return V * np.tanh(phase), np.sign(c.omega) * V * np.sqrt(c.m_t / c.I_t) / np.cosh(phase)
+    kappa, p, most = c.S * V / c.I_t, np.arctanh(c.v / V), np.sign(c.omega) * V * np.sqrt(c.m_t / c.I_t)
+    return lambda t: (V * np.tanh(kappa * t + p), most / np.cosh(kappa * t + p))
 
 
-def stops(scene: Manoeuvre) -> tuple[float, float]:
-    """Instants at which the inner and the outer wheel stop, s: rolling friction, S = 0, no torque, v > b |omega| > 0.
+def rolling_out(c: SimpleNamespace) -> tuple[Velocities, tuple[float, float]]:
+    """Rolling friction brings a turning axle to rest, wheel by wheel: S = 0, no torque, v > b |omega| > 0.
 
     Both roll: v' = -A with A = s m g / (R m_t). The load moves outwards by dN = m_t R v w / (2 b) per wheel, so
-    w' = -(s m_t / I_t) v w and w = omega exp(-(s m_t / I_t) x), x = v t - A t^2 / 2. The inner wheel stops where
-    v = b w. Then the axle turns about it: w' = -D (1 + B w^2), B = m_t R / (m g), D = s b m g / (R (m_t b^2 + I_t)).
+    w' = -(s m_t / I_t) v w and w = omega exp(-(s m_t / I_t) x), x = v t - A t^2 / 2. The inner wheel stops at t_1,
+    where v = b w. Then the axle turns about it: w' = -D (1 + B w^2), B = m_t R / (m g),
+    D = s b m g / (R (m_t b^2 + I_t)), so sqrt(B) w = tan(angle) with an angle that falls by D sqrt(B) per second.
     """
-    _, D, B, w_1, t_1, _ = _rolling_out(scene)
-    return t_1, t_1 + np.arctan(np.sqrt(B) * w_1) / (D * np.sqrt(B))
-
-
-def _rolling_out(scene: Manoeuvre) -> tuple:
-    c = constants(scene)
     A = c.s * c.mass * c.g / (c.R * c.m_t)
-    D = c.s * c.b * c.mass * c.g / (c.R * (c.m_t * c.b**2 + c.I_t))
+    root = np.sqrt(c.m_t * c.R / (c.mass * c.g))
+    fall = root * c.s * c.b * c.mass * c.g / (c.R * (c.m_t * c.b**2 + c.I_t))
 
     def omega(t: np.ndarray) -> np.ndarray:
         return abs(c.omega) * np.exp(-c.s * c.m_t / c.I_t * (c.v * t - A * t**2 / 2))
 
     t_1 = brentq(lambda t: c.v - A * t - c.b * omega(t), 0.0, c.v / A, xtol=1e-14)
-    return A, D, c.m_t * c.R / (c.mass * c.g), omega(t_1), t_1, omega
+    angle = np.arctan(root * omega(t_1))
 
+    def at(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        about = np.tan(np.maximum(angle - fall * np.maximum(t - t_1, 0.0), 0.0)) / root
+        turning = np.where(t < t_1, omega(np.minimum(t, t_1)), about)
+        return np.where(t < t_1, c.v - A * t, c.b * about), np.sign(c.omega) * turning
 
-def rolling_out(scene: Manoeuvre, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """v and omega of a turning axle that rolling friction brings to rest, wheel by wheel; see `stops`."""
-    A, D, B, w_1, t_1, omega = _rolling_out(scene)
-    angle = np.arctan(np.sqrt(B) * w_1) - D * np.sqrt(B) * np.maximum(times - t_1, 0.0)
-    about = np.tan(np.maximum(angle, 0.0)) / np.sqrt(B)
-    both = times < t_1
-    turning = np.where(both, omega(np.minimum(times, t_1)), about)
-    return np.where(both, scene["v"] - A * times, scene["b"] * about), np.sign(scene["omega"]) * turning
+    return at, (t_1, t_1 + angle / fall)
 
 
 def rigid(scene: Manoeuvre, times: np.ndarray) -> Table:
     """X, Y, psi, v, omega of the rigid axle at `times` (rising from 0); the path from v and omega by SciPy."""
 
+    at, stops = velocities(scene)
+
     def rate(t: float, y: np.ndarray) -> tuple[float, float, float]:
-        v, omega = velocities(scene, t)
+        v, omega = at(t)
         return v * np.cos(y[2]), v * np.sin(y[2]), omega
 
-    cuts = [t for t in stops(scene) if 0 < t < times[-1]] if scene["s"] else []  # where a wheel stops
     y, path = np.zeros(3), []
-    for begin, end in pairwise([0.0, *cuts, times[-1]]):
-        at = times[(times >= begin) & ((times < end) | (end == times[-1]))]
-        found = solve_ivp(rate, (begin, end), y, "DOP853", np.union1d(at, [end]), rtol=1e-12, atol=1e-12)
+    for begin, end in pairwise([0.0, *(t for t in stops if 0 < t < times[-1]), times[-1]]):
+        now = times[(times >= begin) & ((times < end) | (end == times[-1]))]
+        found = solve_ivp(rate, (begin, end), y, "DOP853", np.union1d(now, [end]), rtol=1e-12, atol=1e-12)
         y = found.y[:, -1]
-        path.append(found.y[:, : len(at)])
-    v, omega = velocities(scene, times)
-    return {"time": times, **dict(zip(("X", "Y", "psi"), np.hstack(path), strict=True)), "v": v, "omega": omega}
+        path.append(found.y[:, : len(now)])
+    return dict(zip(("time", *COMPARED), (times, *np.hstack(path), *at(times)), strict=True))
 
 
 def beside_rigid(table: Table, scene: Manoeuvre, _fmus: Fmus) -> Table:
@@ -165,11 +153,6 @@ def verdict(table: Table, scene: Manoeuvre) -> tuple[bool, list[str]]:
     return True, [f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."]
 
 
-AXLE = Vehicle("axle", parts, CONNECTIONS, RECORD, verdict, ("axle",), WHEELS, beside_rigid, tracks, waits=True)
-
-
-def coupled(
-    fmus: Fmus, scene: Manoeuvre, step: float = 0.001, exchange: str = "derivatives", grid: float = 0.01
-) -> Table:
-    """The whole co-simulation on the grid; columns by "component.variable", those of the axle by variable."""
-    return AXLE.drive(fmus, scene, step, exchange, grid).whole
+CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel, f"_{wheel}")]
+RECORD = recorded("axle", WHEELS)
+AXLE = Vehicle("axle", parts, CONNECTIONS, RECORD, verdict, WHEELS, beside_rigid, tracks, waits=True)

@@ -6,16 +6,15 @@ of the effort it received with its flow. The difference is the energy that the c
 communication step with straight lines between the values at its ends.
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from . import axle, errors
-from .axle import AXLE, WHEELS, coupled, rigid
-from .master import Signal, Table, simulate
+from .axle import AXLE, WHEELS, rigid
+from .errors import Table
+from .master import Signal
 from .options import Manoeuvre, manoeuvres
 from .vehicle import FORCE, Fmus
 
@@ -29,26 +28,16 @@ KINDS = ("value", "rate", "at_end")
 distance = partial(errors.distance, names=axle.COMPARED)
 
 
-def step_errors(
-    fmus: Fmus, scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = errors.STEPS, grid: float = 0.02
-) -> list[float]:
+def step_errors(fmus: Fmus, scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = errors.STEPS) -> list[float]:
     """Error against h at this stiffness: the truth is the run with rollback at a quarter of the smallest step."""
-    truth = coupled(fmus, scene, min(steps) / 4, "rollback", grid)
-    return [distance(coupled(fmus, scene, h, exchange, grid), truth) for h in steps]
+    truth = AXLE.drive(fmus, scene, min(steps) / 4, "rollback", 0.02).whole
+    return [distance(AXLE.drive(fmus, scene, h, exchange, 0.02).whole, truth) for h in steps]
 
 
 def stiffness_errors(fmus: Fmus, scene: Manoeuvre, factors: tuple[float, ...], step: float = 0.0005) -> list[float]:
     """Error against the closed form of the rigid axle, with a step small enough for it not to matter."""
-    tables = [coupled(fmus, scene.changed(stiffness=factor), step, "rollback", 0.02) for factor in factors]
+    tables = [AXLE.drive(fmus, scene.changed(stiffness=factor), step, "rollback", 0.02).whole for factor in factors]
     return [distance(table, rigid(scene, table["time"])) for table in tables]
-
-
-@dataclass(frozen=True)
-class Energy:
-    """Energy added over a run, J: by wheel and bond, and the gain of the sum of all energies."""
-
-    bonds: Table
-    drift: float
 
 
 def signals(wheel: str, bond: str, kind: str) -> tuple[Signal, Signal]:
@@ -57,23 +46,23 @@ def signals(wheel: str, bond: str, kind: str) -> tuple[Signal, Signal]:
     return ("axle", f"{before}{bond}_{wheel}"), (wheel, f"{before}{BONDS[bond]}")
 
 
-def energy(fmus: Fmus, scene: Manoeuvre, step: float, exchange: str) -> Energy:
-    """Of a scene without drive and rolling friction, in which all energy is in the wheels, the beam and its dampers."""
+def energy(fmus: Fmus, scene: Manoeuvre, step: float, exchange: str) -> tuple[Table, float]:
+    """Energy added over a run [J], by wheel and bond, and the gain of the sum of all energies: of a scene without drive
+    and rolling friction, in which all energy is in the wheels, the beam and its dampers."""
     stored = [("left", "E"), ("right", "E"), ("axle", "E"), ("axle", "W_loss")]
     record = [s for wheel in WHEELS for bond in BONDS for kind in KINDS for s in signals(wheel, bond, kind)]
-    wired = AXLE.parts(fmus, scene), AXLE.connections
-    table = simulate(*wired, [*record, *stored], scene.stop, step, exchange, step).whole
-    total = sum(table[".".join(signal)] for signal in stored)
+    table = replace(AXLE, record=[*record, *stored]).drive(fmus, scene, step, exchange, step).whole
+    total = sum(table[AXLE.column(signal)] for signal in stored)
     h = step * (exchange == "derivatives")  # inputs go on straight lines, else they are held
 
     def added(wheel: str, bond: str) -> float:
-        rows = [[table[".".join(s)][:-1] for s in signals(wheel, bond, kind)] for kind in KINDS]
+        rows = [[table[AXLE.column(s)][:-1] for s in signals(wheel, bond, kind)] for kind in KINDS]
         (e, f), (e_dot, f_dot), (e_end, f_end) = rows
         received, given = product(e, e + h * e_dot, f, f_end), product(e, e_end, f, f + h * f_dot)
         return step * float((received - given).sum())
 
     bonds = {wheel: np.array([added(wheel, bond) for bond in BONDS]) for wheel in WHEELS}
-    return Energy(bonds, float(total[-1] - total[0]))
+    return bonds, float(total[-1] - total[0])
 
 
 def product(a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray) -> np.ndarray:
@@ -85,4 +74,4 @@ def longest_step(fmus: Fmus, scene: Manoeuvre, exchange: str) -> float:
     """Of LIMIT_STEPS, s."""
     truth = rigid(scene, np.arange(int(scene.stop / GRID) + 1) * GRID)
     scene = scene.changed(stop=float(truth["time"][-1]))
-    return errors.longest(LIMIT_STEPS, lambda h: distance(coupled(fmus, scene, h, exchange, GRID), truth))
+    return errors.longest(LIMIT_STEPS, lambda h: distance(AXLE.drive(fmus, scene, h, exchange, GRID).whole, truth))

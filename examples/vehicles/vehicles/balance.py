@@ -4,31 +4,26 @@ The wheel rolls at 2 rad/s (0.7 m/s), below the speed at which upright rolling i
 starts with a small push to the side. Fixed axes; theta is 90 degrees upright.
 """
 
-from __future__ import annotations
-
 from math import inf, pi
 
 import numpy as np
 from fmpy import simulate_fmu
 
 from .component import Component
-from .master import Table
+from .errors import Table
 from .options import Manoeuvre, manoeuvres
-from .vehicle import Fmus, Vehicle, wire
+from .vehicle import Fmus, Vehicle, recorded, wire
 
 CIRCLE = manoeuvres("balance")["circle"]
 STEP = 0.005  # s
 T_CIRCLE, RADIUS, SPEED = CIRCLE["t_circle"], CIRCLE["R"], 0.7  # s, m, m/s
 TURN = 2 * pi * RADIUS / SPEED  # s
-START = {
-    **{"s": 0.002, "psi_start": 0.0, "theta_start": pi / 2, "phi_dot_start": -2.0, "X_O_start": 0.0},
-    "theta_dot_start": 0.1,  # the push, rad/s
-}
+START = {"s": 0.002, "psi_start": 0.0, "theta_start": pi / 2, "phi_dot_start": -2.0, "X_O_start": 0.0}
+START["theta_dot_start"] = 0.1  # the push, rad/s
 MEASURED = ("theta", "theta_dot", "psi", "psi_dot", "phi_dot")
 MOMENTS = ("M_1", "M_3")
-OF_WHEEL = ("X_O", "Y_O", "phi", *MEASURED, "omega_z", "lambda_3")
-RECORD = [*(("wheel", name) for name in OF_WHEEL), *(("balance", name) for name in MOMENTS)]
-CONNECTIONS = wire("balance", "wheel", "", MEASURED, MOMENTS)
+RECORD = recorded("balance")
+OF_WHEEL = [name for part, name in RECORD if part == "wheel"]
 
 
 def parts(fmus: Fmus, course: Manoeuvre) -> list[Component]:
@@ -83,15 +78,12 @@ def verdict(table: Table, course: Manoeuvre) -> tuple[bool, list[str]]:
         return False, [single, f"Failed: the controller does not hold it: it {fallen(table)}."]
     found = judge(table)
     radius, scatter, tilt = (found[f"circle_{name}"] for name in ("radius", "scatter", "tilt"))
-    if not max(abs(radius - wanted), scatter) < 0.05 * wanted:
-        off = f"within {scatter:.2g} m of a circle of {radius:.3g} m"
-        held = f"the controller keeps it from falling over, but it leans by up to {tilt:.0f} degrees"
-        return False, [
-            single,
-            f"Failed: {held}, and its last turn is not the circle of {course['R']:g} m: it is {off}.",
-        ]
-    circle = f"a circle of {radius:.4f} m, where {course['R']:g} m was asked for"
-    return True, [single, f"Controlled it stays up, leaning by up to {tilt:.1f} degrees, and drives {circle}."]
+    if max(abs(radius - wanted), scatter) < 0.05 * wanted:
+        circle = f"a circle of {radius:.4f} m, where {wanted:g} m was asked for"
+        return True, [single, f"Controlled it stays up, leaning by up to {tilt:.1f} degrees, and drives {circle}."]
+    off = f"its last turn is not the circle of {wanted:g} m: it is within {scatter:.2g} m of a circle of {radius:.3g} m"
+    held = f"the controller keeps it from falling over, but it leans by up to {tilt:.0f} degrees"
+    return False, [single, f"Failed: {held}, and {off}."]
 
 
 def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
@@ -99,8 +91,8 @@ def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
     return {"alone": (table["alone.X_O"], table["alone.Y_O"]), "with controller": (table["X_O"], table["Y_O"])}
 
 
-BARE = ("wheel", "balance")
-BALANCE = Vehicle("balance", parts, CONNECTIONS, RECORD, verdict, BARE, complete=beside_alone, tracks=tracks)
+CONNECTIONS = wire("balance", "wheel", "", MEASURED, MOMENTS)
+BALANCE = Vehicle("balance", parts, CONNECTIONS, RECORD, verdict, complete=beside_alone, tracks=tracks)
 
 
 def drive(fmus: Fmus, course: Manoeuvre = CIRCLE) -> Table:

@@ -4,32 +4,21 @@ Steering angles to the left; lateral acceleration and load in the words of ISO 8
 car/manoeuvres.toml is judged by closed forms (car_judges.py) and by the same car as one set of equations.
 """
 
-from __future__ import annotations
-
 from math import cos, pi, sin, tan
 
 import numpy as np
 
 from .car_judges import axle_friction, demand, findings
 from .component import Component
+from .errors import Table
 from .layout import AXLES, MASS, NAMES, WHEELS, R, chassis_start, driver_start
-from .master import Connection, Signal, Table
 from .options import Manoeuvre
-from .vehicle import LOAD, POSE, Fmus, Vehicle, road, upright, wire
+from .vehicle import LOAD, POSE, Fmus, Vehicle, recorded, road, upright, wire
 
-CONNECTIONS: list[Connection] = [
+CONNECTIONS = [
     *(c for w in WHEELS for c in wire("chassis", w, f"_{w}", (*POSE, "tau", "lambda_3"), (*LOAD, "M_brake"))),
     *((("chassis", name), ("driver", name)) for name in ("X_R", "Y_R", "psi", "v")),
     *((("driver", name), ("chassis", name)) for name in ("delta", "delta_dot", "M_drive", "M_brake")),
-]
-OF_CHASSIS = ("X", "Y", "Z", "psi", "roll", "pitch", "v", "omega", "X_R", "Y_R")
-OF_DRIVER = ("delta", "M_drive", "M_brake", "p", "off")
-OF_WHEEL = ("X_O", "Y_O", "psi", "theta", "phi", "omega_z", "lambda_1", "lambda_2", "lambda_3", "mu_required", "tau")
-RECORD: list[Signal] = [
-    *(("chassis", name) for name in OF_CHASSIS),
-    *(("driver", name) for name in OF_DRIVER),
-    *(("chassis", f"{name}_{w}") for w in WHEELS for name in ("d", "delta")),
-    *((w, name) for w in WHEELS for name in OF_WHEEL),
 ]
 AT_REST = 0.5  # m: a car that moves less has not set off
 ROLL_BACK = 1e-3  # m
@@ -88,41 +77,27 @@ def cut_short(manoeuvre: Manoeuvre) -> str:
     return ""
 
 
-def sets_off(table: Table, _manoeuvre: Manoeuvre) -> str:
-    moved = float(np.ptp(table["X"]))
-    return f"the car does not set off: it moves by {moved:.2g} m" if moved < AT_REST else ""
-
-
-def stands(table: Table, _manoeuvre: Manoeuvre) -> str:
-    rolls = any(table[f"{w}.omega_z"][-1] for w in WHEELS)
-    return f"the car does not stand at the end: it rolls at {table['v'][-1]:.2g} m/s" if rolls else ""
-
-
-def does_not_roll_back(table: Table, _manoeuvre: Manoeuvre) -> str:
-    back = rolled_back(table)
-    return f"a wheel rolls back by {back:.3g} m" if back > ROLL_BACK else ""
-
-
-def on_path(table: Table, manoeuvre: Manoeuvre) -> str:
-    off, end = float(np.abs(table["off"]).max()), manoeuvre["x_back"] + 2 * manoeuvre["length"]
-    share = table["p"][-1] / (2 * pi if manoeuvre["path"] == 1 else end)
-    if off > OFF_PATH:
-        return f"the car leaves its path by up to {off:.2g} m"
-    return f"the run ends after {100 * max(share, 0):.0f} % of the path" if share < 1 else ""
-
-
-def lifts_off(_table: Table, _manoeuvre: Manoeuvre) -> str:
-    return "no wheel lifts off"
-
-
-ENDS = {f.__name__: f for f in (sets_off, stands, does_not_roll_back, on_path, lifts_off)}
+def unmet(table: Table, manoeuvre: Manoeuvre) -> dict[str, str]:
+    """Why a run is not to end as it did, by the names of `ends` in manoeuvres.toml; empty where it is."""
+    moved, back, off = float(np.ptp(table["X"])), rolled_back(table), float(np.abs(table["off"]).max())
+    whole = 2 * pi if manoeuvre["path"] == 1 else manoeuvre["x_back"] + 2 * manoeuvre["length"]
+    share, rolls = table["p"][-1] / whole, any(table[f"{w}.omega_z"][-1] for w in WHEELS)
+    found = {
+        "sets_off": (moved < AT_REST, f"the car does not set off: it moves by {moved:.2g} m"),
+        "stands": (rolls, f"the car does not stand at the end: it rolls at {table['v'][-1]:.2g} m/s"),
+        "does_not_roll_back": (back > ROLL_BACK, f"a wheel rolls back by {back:.3g} m"),
+        "on_path": (off > OFF_PATH, f"the car leaves its path by up to {off:.2g} m"),
+        "to_its_end": (share < 1, f"the run ends after {100 * max(share, 0):.0f} % of the path"),
+        "lifts_off": (True, "no wheel lifts off"),
+    }
+    return {end: why for end, (fails, why) in found.items() if fails}
 
 
 def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
     """Whether a run that reached its end is the manoeuvre, and the reason or its demand on the road."""
-    for why in (cut_short(manoeuvre), *(ENDS[name](table, manoeuvre) for name in manoeuvre.ends)):
-        if why:
-            return False, [f"Failed: {why}."]
+    reasons = [reason for end, reason in unmet(table, manoeuvre).items() if end in manoeuvre.ends]
+    if why := cut_short(manoeuvre) or next(iter(reasons), ""):
+        return False, [f"Failed: {why}."]
     asked = demand(table)
     most = max(asked.values())
     each = ", ".join(f"{axle} {mu:.2f}" for axle, mu in asked.items())
@@ -135,6 +110,6 @@ def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
     return True, [f"Possible: it {needs}.", taken, f"Smallest normal force: {lowest}.", *findings(table, manoeuvre)]
 
 
-BODIES = ("chassis", "driver")
-CAR = Vehicle("car", parts, CONNECTIONS, RECORD, verdict, BODIES, NAMES, complete, waits=True, subtitle=subtitle)
+RECORD = recorded("car", WHEELS)
+CAR = Vehicle("car", parts, CONNECTIONS, RECORD, verdict, NAMES, complete, waits=True, subtitle=subtitle)
 drive = CAR.drive

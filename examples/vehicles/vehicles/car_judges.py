@@ -15,15 +15,13 @@ Characteristic values in the manner of ISO 4138 (constant steer angle, rising sp
 omega, psi, roll, delta, a_y and beta, and the ground's forces on each wheel.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
+from .errors import Table
 from .layout import AXLES, J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, X_REAR, G, R
-from .master import Table
 from .options import Manoeuvre
 
 N_WHEELS = len(WHEELS)
@@ -33,7 +31,6 @@ HEIGHTS = M_B * H_B + N_WHEELS * M_WHEEL * R  # kg m
 INERTIA = HEIGHTS + N_WHEELS * J_Z / R  # kg m
 LEANING = M_B * (H_B - (R - R_0)) + N_WHEELS * M_WHEEL * R_0  # kg m, about the contact points, per roll angle
 LEFT, RIGHT = ([name for name, wheel in WHEELS.items() if side * wheel["y"] > 0] for side in (1, -1))
-FRONT, REAR = ([name for name, wheel in WHEELS.items() if side * wheel["x"] > 0] for side in (1, -1))
 STRUTS = sum(w["k"] * w["y"] ** 2 for w in WHEELS.values())  # N m/rad, as the bars; wheels stand on the ground
 BARS = sum(w["k_bar"] * (w["y"] - WHEELS[w["bar_to"]]["y"]) ** 2 for w in WHEELS.values() if "bar_to" in w)
 # Roll angle per lateral acceleration, rad s2/m: the chassis leans outwards by its height, the contact inwards.
@@ -84,15 +81,12 @@ def worst(table: Table) -> tuple[str, int]:
     return axle, int(np.nanargmax(axle_friction(table, axle)))
 
 
-def gained(table: Table, wheels: list[str], at: np.ndarray) -> float:
-    """Mean normal force of some wheels together over some instants, above that at the start."""
-    normal = force(table, wheels)
-    return float(np.mean(normal[at]) - normal[0])
-
-
-def dive(table: Table, at: np.ndarray) -> float:
-    """Moment of the chassis' weight as it pitches about its hubs, N m; positive towards the rear axle."""
-    return -M_B * G * (H_B - R) * float(np.mean(table["pitch"][at]))
+def load_moved(table: Table, axle: str, cause: str, at: np.ndarray, moment: float) -> Finding:
+    """Mean normal force of an axle over some instants, above that at the start. `moment` [N m] moves load to the rear
+    axle, together with that of the chassis' weight as it pitches about its hubs."""
+    normal, pitch = force(table, AXLES[axle]), float(np.mean(table["pitch"][at]))
+    exact = (moment - M_B * G * (H_B - R) * pitch) / WHEELBASE * (1 if axle == "rear" else -1)
+    return Finding(f"load moved to the {axle} axle by the {cause}", "N", float(np.mean(normal[at]) - normal[0]), exact)
 
 
 def resistance(manoeuvre: Manoeuvre) -> tuple[float, float]:
@@ -106,10 +100,9 @@ def launch(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     window = (t > off - 1) & (t < off)
     drag, grade = resistance(manoeuvre)
     a = (manoeuvre["M_0"] - drag - R * MASS * grade) / (R * M_T)
-    moved = (a * INERTIA + drag + grade * HEIGHTS + dive(table, window)) / WHEELBASE
     return [
         Finding("acceleration of the launch", "m/s2", float(np.polyfit(t[window], table["v"][window], 1)[0]), a),
-        Finding("load moved to the rear axle by the launch", "N", gained(table, REAR, window), moved),
+        load_moved(table, "rear", "launch", window, a * INERTIA + drag + grade * HEIGHTS),
     ]
 
 
@@ -119,9 +112,8 @@ def standing(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     window = (t > manoeuvre["t_on"] - 0.1) & (t < manoeuvre["t_on"])
     for at, when in ((window, "by the brakes"), (t > t[-1] - 0.1, "parked")):
         push = float(np.mean(force(table, list(WHEELS), 1)[at]))
-        moved, what = (grade * HEIGHTS + dive(table, at)) / WHEELBASE, "load moved to the rear axle by the slope"
         found.append(Finding(f"force of the road that holds the car, {when}", "N", push, MASS * grade))
-        found.append(Finding(f"{what}, {when}", "N", gained(table, REAR, at), moved))
+        found.append(load_moved(table, "rear", f"slope, {when}", at, grade * HEIGHTS))
     return found
 
 
@@ -147,31 +139,26 @@ def braking(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
         Finding("stopping distance", "m", float(table["X"][-1] - table["X"][i]), way),
     ]
     if full.any():
-        moved = (a[-1] * INERTIA - drag - grade * HEIGHTS - dive(table, full)) / WHEELBASE
-        found.append(Finding("load moved to the front axle by the brakes", "N", gained(table, FRONT, full), moved))
+        found.append(load_moved(table, "front", "brakes", full, drag + grade * HEIGHTS - a[-1] * INERTIA))
     return found
 
 
 def bend(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
-    """Steady state at the end of a run with a constant steer angle."""
+    """Steady state at the end of a run with a constant steer angle. Ackermann: cot delta_outer - cot delta_inner of the
+    foremost steered wheels."""
     last = table["time"] > table["time"][-1] - 0.5
     delta, v, omega, roll = (float(np.mean(table[name][last])) for name in ("delta", "v", "omega", "roll"))
     moved = float(np.mean((force(table, RIGHT) - force(table, LEFT))[last])) / 2
-    exact = (v * omega * INERTIA + G * LEANING * roll) / TRACK
-    return [
-        Finding("radius of the rear point's circle", "m", v / omega, WHEELBASE / np.tan(delta)),
-        Finding("Ackermann, from the wheels' headings", "1", *_ackermann(table, last)),
-        Finding("load moved outwards", "N", moved, exact),
-    ]
-
-
-def _ackermann(table: Table, at: np.ndarray) -> tuple[float, float]:
-    """cot delta_outer - cot delta_inner of the foremost steered wheels, and T / L."""
     x = max(w["x"] for w in WHEELS.values() if w["steer"])
     inner, outer = sorted((n for n in WHEELS if WHEELS[n]["x"] == x), key=lambda n: -WHEELS[n]["y"])
-    turned = [float(np.mean((table[f"{n}.psi"] - table["psi"])[at])) for n in (inner, outer)]
-    apart = WHEELS[inner]["y"] - WHEELS[outer]["y"]
-    return 1 / np.tan(turned[1]) - 1 / np.tan(turned[0]), apart / (x - X_REAR)
+    turned = {n: float(np.mean((table[f"{n}.psi"] - table["psi"])[last])) for n in (inner, outer)}
+    apart = 1 / np.tan(turned[outer]) - 1 / np.tan(turned[inner])
+    across = (WHEELS[inner]["y"] - WHEELS[outer]["y"]) / (x - X_REAR)
+    return [
+        Finding("radius of the rear point's circle", "m", v / omega, WHEELBASE / np.tan(delta)),
+        Finding("Ackermann, from the wheels' headings", "1", apart, across),
+        Finding("load moved outwards", "N", moved, (v * omega * INERTIA + G * LEANING * roll) / TRACK),
+    ]
 
 
 def closure(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
@@ -183,13 +170,11 @@ def closure(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     return [Finding("figure of eight: gap after one lap, and its length", "m", gap, way)]
 
 
-def circle(table: Table) -> list[Finding]:
+def circle(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     """Gradients over lateral acceleration while the speed rises at a constant steer angle; the sideslip angle beside
     that of a rear axle without any."""
     steady = (table["time"] > 5.0) & (table["time"] < 22.0)
-    a, kappa, delta, beta, roll = (
-        x[steady] for x in (table["a_y"], table["omega"] / table["v"], *(table[n] for n in ("delta", "beta", "roll")))
-    )
+    a, omega, v, delta, beta, roll = (table[n][steady] for n in ("a_y", "omega", "v", "delta", "beta", "roll"))
 
     def gradient(of: str, unit: str, y: np.ndarray, exact: float = 0.0) -> Finding:
         return Finding(of, unit, float(np.polyfit(a, y, 1)[0]), exact)
@@ -197,8 +182,8 @@ def circle(table: Table) -> list[Finding]:
     drift = float(np.arctan(-X_REAR * np.tan(delta[0]) / WHEELBASE))
     return [
         Finding("largest lateral acceleration", "m/s2", float(a.max())),
-        gradient("understeer gradient", "rad s2/m", delta - np.arctan(WHEELBASE * kappa)),
-        gradient("gradient of the curvature", "s2/m2", kappa),
+        gradient("understeer gradient", "rad s2/m", delta - np.arctan(WHEELBASE * (omega / v))),
+        gradient("gradient of the curvature", "s2/m2", omega / v),
         Finding("sideslip angle where the speed is least", "rad", float(beta[0]), drift),
         gradient("gradient of the sideslip angle", "rad s2/m", beta),
         gradient("gradient of the roll angle", "rad s2/m", roll, ROLL_GRADIENT),
@@ -211,7 +196,7 @@ def _first(t: np.ndarray, x: np.ndarray, level: float) -> float:
     return float(t[i - 1] + (level - x[i - 1]) / (x[i] - x[i - 1]) * (t[i] - t[i - 1]))
 
 
-def step(table: Table) -> list[Finding]:
+def step(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     """Response times from the instant at which the steering has gone half its way, overshoot and gains."""
     t, last = table["time"], table["time"] > table["time"][-1] - 0.5
     end = {name: float(np.mean(table[name][last])) for name in ("delta", "v", "omega", "a_y", "roll")}
@@ -224,44 +209,39 @@ def step(table: Table) -> list[Finding]:
         ("roll", "roll angle", "1", ROLL_GRADIENT * end["v"] * yaw),
     ):
         x, level = table[name], end[name]
-        peak = int(np.argmax(x))
         found += [
             Finding(f"gain of the {what}", unit, level / end["delta"], float(theory / end["delta"])),
             Finding(f"response time of the {what} (90 %)", "s", _first(t, x, 0.9 * level) - half),
-            Finding(f"time to the peak of the {what}", "s", float(t[peak]) - half),
-            Finding(f"overshoot of the {what}", "1", float(x[peak]) / level - 1),
+            Finding(f"time to the peak of the {what}", "s", float(t[np.argmax(x)]) - half),
+            Finding(f"overshoot of the {what}", "1", float(x.max()) / level - 1),
         ]
     return found
 
 
-def lane(table: Table) -> list[Finding]:
+def lane(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     """How hard the change of lanes is, and where it asks most of the road."""
     axle, at = worst(table)
-    largest = {name: float(np.abs(table[name]).max()) for name in ("a_y", "omega", "roll")}
+    largest = (("lateral acceleration", "m/s2", "a_y"), ("yaw rate", "rad/s", "omega"), ("roll angle", "rad", "roll"))
     return [
-        Finding("largest lateral acceleration", "m/s2", largest["a_y"]),
-        Finding("largest yaw rate", "rad/s", largest["omega"]),
-        Finding("largest roll angle", "rad", largest["roll"]),
+        *(Finding(f"largest {what}", unit, float(np.abs(table[name]).max())) for what, unit, name in largest),
         Finding(f"largest friction required, at the {axle} axle", "1", float(axle_friction(table, axle)[at])),
         Finding("where: rear point, X", "m", float(table["X_R"][at])),
         Finding("when", "s", float(table["time"][at])),
     ]
 
 
-FIGURES = {f.__name__: f for f in (circle, step, lane)}
-JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure)}
+JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure, circle, step, lane)}
 
 
-def judge(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
-    """All findings of a manoeuvre."""
-    return [finding for name in manoeuvre.judges for finding in JUDGES[name](table, manoeuvre)]
+def judge(table: Table, manoeuvre: Manoeuvre, *names: str) -> list[Finding]:
+    """The findings of these judges."""
+    return [finding for name in names for finding in JUDGES[name](table, manoeuvre)]
 
 
 def findings(table: Table, manoeuvre: Manoeuvre) -> list[str]:
     """Characteristic values of a manoeuvre, beside those of rigid links where these are known."""
     with np.errstate(all="ignore"):
         try:
-            figures = FIGURES[manoeuvre.figures](table) if manoeuvre.figures else []
-            return [f"  {finding}" for finding in [*judge(table, manoeuvre), *figures]]
+            return [f"  {finding}" for finding in judge(table, manoeuvre, *manoeuvre.judges, *manoeuvre.figures)]
         except (ValueError, IndexError, TypeError, np.linalg.LinAlgError):
             return ["The closed forms do not apply to these parameters."]

@@ -1,9 +1,8 @@
 """One FMU of a system: loaded, instantiated and freed by FMPy; its messages, and how it ended."""
 
-from __future__ import annotations
-
 import shutil
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from ctypes import byref, c_double
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,12 +15,13 @@ from fmpy.simulation import apply_start_values
 LAST_SUCCESSFUL = 2  # fmi2StatusKind
 
 
+@dataclass(eq=False)
 class Ended(Exception):  # noqa: N818 - an ending, such as a wheel's lift-off, is no error
-    """A component ended the run. `component`, `time` [s], `message`: the FMU's."""
+    """A component ended the run at `time` [s]; `message`: the FMU's."""
 
-    def __init__(self, component: str, time: float, message: str) -> None:
-        super().__init__(f"{component}: {message}")
-        self.component, self.time, self.message = component, time, message
+    component: str
+    time: float
+    message: str
 
 
 def let_go_of_python(fmu: FMU2Slave) -> None:
@@ -91,3 +91,15 @@ class Component:
         last = c_double(t)
         self.fmu.dll.fmi2GetRealStatus(self.fmu.component, LAST_SUCCESSFUL, byref(last))
         return Ended(self.name, last.value, self.last_message("it refused a call"))
+
+
+@contextmanager
+def loaded(*components: Component) -> Iterator[None]:
+    """With the components in initialization mode; they are freed in the end."""
+    try:
+        for component in components:
+            component.load()
+        yield
+    finally:
+        for component in components:
+            component.free()

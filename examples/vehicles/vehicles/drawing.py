@@ -1,8 +1,6 @@
 """A run drawn as its manoeuvre declares it: the path from above with the wheels, and panels over time; errors over the
 step, for the reports."""
 
-from __future__ import annotations
-
 from itertools import cycle
 from pathlib import Path
 
@@ -11,8 +9,7 @@ from matplotlib.axes import Axes
 
 from diagrams import style
 
-from .errors import Errors
-from .master import Table
+from .errors import Errors, Table
 from .options import Manoeuvre
 from .vehicle import Vehicle
 

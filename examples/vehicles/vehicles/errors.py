@@ -1,7 +1,5 @@
 """Errors of coupled runs: relative to each variable's range, over the communication step, and their order."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import takewhile

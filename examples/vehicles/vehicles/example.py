@@ -4,8 +4,6 @@ All output goes to results/examples/NAME/: the table, the picture, the FMUs and 
 command line before anything else. The exit status is 0 for a run that is the manoeuvre it was to be.
 """
 
-from __future__ import annotations
-
 import shutil
 import signal
 import sys
@@ -29,8 +27,8 @@ from .balance import BALANCE  # noqa: E402
 from .car import CAR  # noqa: E402
 from .car_judges import demand  # noqa: E402
 from .drawing import draw  # noqa: E402
-from .master import Run  # noqa: E402
 from .suspended import SUSPENDED  # noqa: E402
+from .vehicle import Run  # noqa: E402
 
 RESULTS = build.ROOT / "results" / "examples"
 VEHICLES = {"axle": AXLE, "car": CAR, "suspended": SUSPENDED, "balance": BALANCE}
@@ -55,23 +53,20 @@ def judged(fmus: dict[str, Path], asked: options.Asked, run: Run) -> tuple[bool,
     of, manoeuvre = VEHICLES[asked.vehicle], asked.manoeuvre
     if not run.ending:
         return of.verdict(run.table, manoeuvre)
-    how = of.describe(run.ending)
-    if cause := diverged(fmus, asked, run):
-        return False, [f"Failed: {how}", cause]
-    if "lifts_off" in manoeuvre.ends and "lifted off" in how:
+    how, cause = of.describe(run.ending), diverged(fmus, asked, run)
+    if not cause and "lifts_off" in manoeuvre.ends and "lifted off" in how:
         return True, [f"As intended: {how}"]
-    lines = [f"Failed: {how}"]
-    if manoeuvre["mu_max"] and of is CAR:
+    if not cause and manoeuvre["mu_max"] and of is CAR:
         each = ", ".join(f"{axle} {mu:.2f}" for axle, mu in demand(run.table).items())
-        lines.append(f"Until then the axles, their wheels together, required: {each}.")
-    return False, lines
+        cause = f"Until then the axles, their wheels together, required: {each}."
+    return False, [f"Failed: {how}", *filter(None, [cause])]
 
 
 def example(fmus: dict[str, Path], asked: options.Asked, folder: Path) -> bool:
     """One example: run, table, picture and package, verdict."""
-    of, manoeuvre, name = VEHICLES[asked.vehicle], asked.manoeuvre, asked.vehicle
+    of, manoeuvre, name, remark = VEHICLES[asked.vehicle], asked.manoeuvre, asked.vehicle, ""
     grid = asked.grid or max(1, round(manoeuvre.stop / PER_PICTURE / asked.h)) * asked.h
-    run, remark = of.drive(fmus, manoeuvre, asked.h, asked.exchange, grid, progress=True), ""
+    run = of.drive(fmus, manoeuvre, asked.h, asked.exchange, grid, progress=True)
     if run.ending:  # early, perhaps within the first rows
         run = of.drive(fmus, manoeuvre, asked.h, asked.exchange, run.ending.time / PER_PICTURE)
         remark = f"; ended at {run.ending.time:.2f} s"
@@ -91,7 +86,7 @@ def example(fmus: dict[str, Path], asked: options.Asked, folder: Path) -> bool:
 def main() -> int:
     """One example."""
     try:
-        asked = options.asked(sys.argv[1:])
+        asked = options.asked(*sys.argv[1:])
         fmus, folder = build.build_all(build.ROOT / "build" / "examples"), RESULTS / asked.vehicle
         shutil.rmtree(folder, ignore_errors=True)  # an earlier run's
         folder.mkdir(parents=True)

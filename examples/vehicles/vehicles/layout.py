@@ -1,7 +1,5 @@
 """The car's layout, car/car.toml, and what follows from it; SI, from the chassis' centre of mass."""
 
-from __future__ import annotations
-
 import tomllib
 
 import numpy as np

@@ -11,12 +11,9 @@ dependencies in the model descriptions allow, and then all FMUs step alone. Over
 Loading, order, initialization and records are here; the loop over the steps between two records is in C (../master).
 """
 
-from __future__ import annotations
-
+import re
 from collections.abc import Callable, Iterable
 from ctypes import c_void_p, cast
-from dataclasses import dataclass, field
-from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -25,56 +22,32 @@ from cffi import FFI
 from fmpy import sharedLibraryExtension
 from tqdm import tqdm
 
-from .component import Component, Ended
+from .component import Component
 from .options import EXCHANGES
 
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
-Table = dict[str, np.ndarray]
-FUNCTIONS = {
-    **{"get": "GetReal", "set": "SetReal", "rates": "GetRealOutputDerivatives", "set_rates": "SetRealInputDerivatives"},
-    **{"step": "DoStep", "keep": "GetFMUstate", "restore": "SetFMUstate", "forget": "FreeFMUstate"},
-}
-HEADER = Path(__file__).resolve().parents[1] / "master" / "master.h"
+Signals = list[Signal]
+Act = Callable[[float], None] | None
+HEADER = (Path(__file__).resolve().parents[1] / "master" / "master.h").read_text()
+LIBRARY = f"master{sharedLibraryExtension}"
 ffi = FFI()
-
-
-@cache
-def library(folder: Path):
-    """The loop in C, with the declarations of its header."""
-    types = "".join(f"typedef void fmi2{name}TYPE;" for name in FUNCTIONS.values())
-    types += "typedef void *fmi2Component, *fmi2FMUstate; typedef unsigned fmi2ValueReference;"
-    declared = "\n".join(line for line in HEADER.read_text().splitlines() if not line.startswith("#"))
-    ffi.cdef(types + declared, override=True)
-    return ffi.dlopen(str(folder / f"master{sharedLibraryExtension}"))
+ffi.cdef("typedef void *fmi2Component, *fmi2FMUstate; typedef unsigned fmi2ValueReference;")
+ffi.cdef("".join(f"typedef void {function};" for function in re.findall(r"fmi2\w+TYPE", HEADER)))
+ffi.cdef("\n".join(line for line in HEADER.splitlines() if not line.startswith("#")))
 
 
 class Master:
-    """Components and connections [(source, output), (sink, input)], stepped together by the loop in C, which is beside
-    one of the FMUs."""
+    """Loaded components and their connections [(source, output), (sink, input)], stepped together by the loop in C,
+    which is beside one of the FMUs."""
 
-    def __init__(self, components: list[Component], connections: Iterable[Connection]) -> None:
+    def __init__(self, components: Iterable[Component], connections: Iterable[Connection]) -> None:
         self.components = {c.name: c for c in components}
         self.source_of = {sink: source for source, sink in connections}
-        self.loop, self.rows, self.owned = None, [], []
-        try:
-            for component in components:
-                component.load()
-            self.levels = self._order()
-        except BaseException:
-            self.__exit__()
-            raise
-        folders = [c.path.parent for c in components]
-        self.c = library(next(f for f in folders if (f / f"master{sharedLibraryExtension}").exists()))
-
-    def __enter__(self) -> Master:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self.loop:
-            self.c.master_free(self.loop)
-        for component in self.components.values():
-            component.free()
+        self.levels = self._order()
+        self.rows, self.owned = [], []
+        libraries = (c.path.with_name(LIBRARY) for c in self.components.values())
+        self.c = ffi.dlopen(str(next(path for path in libraries if path.exists())))
 
     def _order(self) -> list[list[Signal]]:
         """Connected outputs, those together that depend on outputs before them alone; refuses algebraic loops."""
@@ -106,8 +79,9 @@ class Master:
                     variables = self._own("unsigned[]", component.references([v for v, _ in of]))
                     signals = self._own("int[]", [k for _, k in of])
                     transfers += [(place, reads, len(of), variables, signals)] * bool(of)
+        of_component = {name for name, _ in ffi.typeof("Component").fields if name.startswith("fmi2")}
         components = [
-            {key: address(getattr(c.fmu.dll, f"fmi2{name}")) for key, name in FUNCTIONS.items()}
+            {name: ffi.cast("void *", cast(getattr(c.fmu.dll, name), c_void_p).value) for name in of_component}
             | {"instance": ffi.cast("void *", c.fmu.component)}
             for c in self.components.values()
         ]
@@ -118,16 +92,9 @@ class Master:
         self.loop = self._own("Master *", {"exchange": exchange, **counts, **tables, **arrays})
 
     def run(
-        self,
-        stop: float,
-        step: float,
-        record: list[Signal],
-        exchange: str = "held",
-        every: int = 1,
-        progress: bool = False,
-        act: Callable[[float], None] | None = None,
+        self, stop: float, h: float, record: Signals, exchange: str, every: int, progress: bool = False, act: Act = None
     ) -> np.ndarray:
-        """Simulate from 0 to `stop`; a record array of time and "component.variable", every `every` steps.
+        """Simulate from 0 to `stop`; a record array of time and "component.variable", every `every` steps h.
 
         act(t) is called after the exchange at every communication point and may set inputs that are not connected.
         A variable after "rate " or "at_end " is its derivative, or its value at the end of the step that begins there.
@@ -135,7 +102,7 @@ class Master:
         """
         self._prepare(EXCHANGES.index(exchange))
         self.names = ["time", *(f"{c}.{v}" for c, v in record)]
-        count, pace = round(stop / step), 1 if act else every
+        count, pace = round(stop / h), 1 if act else every
         self.places: dict[Signal, dict[int, int]] = {}  # value references by column, by component and kind
         for place, (name, variable) in enumerate(record, 1):
             *kind, variable = variable.split()
@@ -143,20 +110,19 @@ class Master:
             self.places.setdefault((name, *(kind or ["value"])), {})[place] = reference
         self.spent = np.zeros((count, len(self.components) + 1))
         spent = ffi.from_buffer("double[]", self.spent)
-        self._exchange(0.0, with_rates=False)
+        self._require(self.c.master_exchange(self.loop, False), 0.0)
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
         for begin in tqdm(range(0, count + 1, pace), disable=not progress, leave=False):
-            self._exchange(begin * step, exchange != "held")
+            self._require(self.c.master_exchange(self.loop, exchange != "held"), begin * h)
             if begin % every == 0:
-                self.rows.append(np.full(len(self.names), begin * step))
+                self.rows.append(np.full(len(self.names), begin * h))
                 self._read("value", "rate")
             if act and begin < count:
-                act(begin * step)
+                act(begin * h)
             end = min(count, begin + pace)
-            done = self.c.master_run(self.loop, step, begin, end, spent)
-            if done < end:
-                raise self._refusal(done * step)
+            done = self.c.master_run(self.loop, h, begin, end, spent)
+            self._require(done == end, done * h)
             self._read("at_end")
         return self.table()
 
@@ -168,12 +134,10 @@ class Master:
                 rates = kind == "rate" and fmu.getRealOutputDerivatives(references, [1] * len(references))
                 self.rows[-1][list(columns)] = rates or fmu.getReal(references)
 
-    def _exchange(self, t: float, with_rates: bool) -> None:
-        if not self.c.master_exchange(self.loop, with_rates):
-            raise self._refusal(t)
-
-    def _refusal(self, t: float) -> Ended:
-        return list(self.components.values())[self.loop.refused].ended(t)
+    def _require(self, done: bool, t: float) -> None:
+        """Raises the ending of the component that refused a call after t."""
+        if not done:
+            raise list(self.components.values())[self.loop.refused].ended(t)
 
     def table(self) -> np.ndarray:
         """The records."""
@@ -184,48 +148,3 @@ class Master:
         total, *each = np.median(self.spent, axis=0)
         exchange = float(np.median(self.spent[:, 0] - self.spent[:, 1:].sum(axis=1)))
         return {"total": float(total), "exchange": exchange, **dict(zip(self.components, each, strict=True))}
-
-
-def address(function: Callable) -> object:
-    """Of a C function that ctypes loaded, for cffi."""
-    return ffi.cast("void *", cast(function, c_void_p).value)
-
-
-@dataclass(frozen=True)
-class Run:
-    """Columns "component.variable" on a grid; how it ended, if early; microseconds per step, as Master.cost has it."""
-
-    table: Table
-    ending: Ended | None = None
-    cost: dict[str, float] = field(default_factory=dict)
-
-    @property
-    def whole(self) -> Table:
-        """The table of a run that reached its end; raises Ended for another."""
-        if self.ending:
-            raise self.ending
-        return self.table
-
-
-def simulate(
-    components: list[Component],
-    connections: list[Connection],
-    record: list[Signal],
-    stop: float,
-    step: float,
-    exchange: str,
-    grid: float,
-    bare: tuple[str, ...] = (),
-    **how: bool,
-) -> Run:
-    """To `stop`, or to where a component ends the run; recorded every `grid`, or every step. Columns of the components
-    in `bare` go by the variable's name alone."""
-    ending = None
-    with Master(components, connections) as master:
-        try:
-            master.run(stop, step, record, exchange, max(1, round(grid / step)), **how)
-        except Ended as end:
-            ending = end
-        rows, cost = master.table(), master.cost()
-    names = {n: n.split(".")[-1] if n.split(".")[0] in bare else n for n in rows.dtype.names}
-    return Run({short: rows[name] for name, short in names.items()}, ending, cost)

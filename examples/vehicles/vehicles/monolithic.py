@@ -12,8 +12,6 @@ rolling with sign sigma of a w it is -sigma (s N + B), held it is what keeps a w
 formulation with the FMUs.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -124,17 +122,16 @@ class Joint:
     def solve(self, times: np.ndarray, tolerance: float) -> tuple[dict[str, np.ndarray], tuple[int, float] | None]:
         """The motion at `times` (rising from 0), from one change of a wheel's friction branch to the next, up to where
         a wheel lifts off: which, and when."""
-        t, y, rows = 0.0, self.start(), []
+        t, y, rows, lift_off = 0.0, self.start(), [], None
         _, a, w = self.wheels(y)
         sigma = np.sign(dot(a, w)[:, 0])
+        how = {"rtol": tolerance, "atol": tolerance, "max_step": 0.05}
         events = [self._event(i) for i in range(2 * self.n)]
-        while len(rows) < len(times):
+        while len(rows) < len(times) and not lift_off:
             end = next((cut for cut in self.cuts if cut > t), times[-1])
             now, after = times[len(rows) :], times[-1] if end == times[-1] else np.nextafter(end, 0)
-            found = solve_ivp(
-                self.rate, (t, end), y, "DOP853", np.union1d(now[now <= after], [end]), events=events, args=(sigma,),
-                rtol=tolerance, atol=tolerance, max_step=0.05,
-            )  # fmt: skip
+            at = np.union1d(now[now <= after], [end])
+            found = solve_ivp(self.rate, (t, end), y, "DOP853", at, events=events, args=(sigma,), **how)
             if not found.success:
                 raise RuntimeError(found.message)
             inside = [(u, x) for u, x in zip(found.t, np.transpose(found.y), strict=True) if u <= after]
@@ -142,19 +139,15 @@ class Joint:
             if found.status:
                 first = next(i for i, at in enumerate(found.t_events) if len(at))
                 t, y = float(found.t_events[first][0]), found.y_events[first][0].copy()
-                if first >= self.n:
-                    return self._table(times, rows), (first - self.n, t)
-                sigma = self._change(t, y, sigma, first)
+                lift_off = (first - self.n, t) if first >= self.n else None
+                sigma = sigma if lift_off else self._change(t, y, sigma, first)
             else:
                 t = self.begin = end
                 y = found.y[:, -1]
                 released = (sigma == 0) & (self.margins(t, y, sigma)[: self.n] < 0)
                 sigma = np.where(released, -np.sign(self.answer(t, y, sigma)[1].tau), sigma)
-        return self._table(times, rows), None
-
-    def _table(self, times: np.ndarray, rows: list[dict[str, float]]) -> dict[str, np.ndarray]:
         columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-        return {"time": times[: len(rows)], **columns, "psi": np.unwrap(columns["psi"])}
+        return {"time": times[: len(rows)], **columns, "psi": np.unwrap(columns["psi"])}, lift_off
 
     def _event(self, i: int) -> Callable[..., float]:
         def margin(t: float, y: np.ndarray, sigma: np.ndarray) -> float:

@@ -13,8 +13,6 @@ The manoeuvres over their full length are kept as tables, tests/car_NAME.csv:
 writes them again, which takes some minutes. The tests integrate a part of them once more.
 """
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np
@@ -42,36 +40,22 @@ def rise(t: float, begin: float, duration: float) -> float:
     return z**3 * (10 - 15 * z + 6 * z**2)
 
 
-class Path:
-    """Point, tangent and curvature of the driver's path as functions of its parameter."""
+def path(o: dict[str, float], p: complex) -> tuple[np.ndarray, np.ndarray]:
+    """Point P(p) of the driver's path and dP/dp."""
+    if o["path"] == 1:
+        s, c, half = np.sin(p), np.cos(p), o["size"] / np.sqrt(2)
+        x, dx, dy = s / (1 + c**2), c * (3 - c**2), 3 * c**2 - 1
+        return half * np.array([x + x * c, x * c - x]), half * np.array([dx + dy, dy - dx]) / (1 + c**2) ** 2
+    out, back = (np.tanh((p - o[end]) / o["length"]) for end in ("x_out", "x_back"))
+    half = o["width"] / 2
+    return np.array([p, half * (out - back)]), np.array([1.0, half * (back**2 - out**2) / o["length"]])
 
-    def __init__(self, o: dict[str, float]) -> None:
-        self.o = o
 
-    def point(self, p: float) -> np.ndarray:
-        """X, Y."""
-        o = self.o
-        if o["path"] == 1:
-            x = o["size"] * np.sin(p) / (1 + np.cos(p) ** 2)
-            return np.array([x + x * np.cos(p), x * np.cos(p) - x]) / np.sqrt(2)
-        out, back = (np.tanh((p - o[end]) / o["length"]) for end in ("x_out", "x_back"))
-        return np.array([p, o["width"] / 2 * (out - back)])
-
-    def tangent(self, p: complex) -> np.ndarray:
-        """dP/dp."""
-        o = self.o
-        if o["path"] == 1:
-            c = np.cos(p)
-            dx, dy = c * (3 - c**2), 3 * c**2 - 1
-            return o["size"] * np.array([dx + dy, dy - dx]) / (1 + c**2) ** 2 / np.sqrt(2)
-        out, back = (np.cosh((p - o[end]) / o["length"]) ** -2 for end in ("x_out", "x_back"))
-        return np.array([1.0, o["width"] / 2 * (out - back) / o["length"]])
-
-    def curvature(self, p: float) -> float:
-        """Positive to the left."""
-        h = 1e-30  # of the complex step, which has no error
-        d, dd = self.tangent(p), self.tangent(p + 1j * h).imag / h
-        return float((d[0] * dd[1] - d[1] * dd[0]) / np.hypot(*d) ** 3)
+def curvature(o: dict[str, float], p: float) -> float:
+    """Of the path, positive to the left."""
+    h = 1e-30  # of the complex step, which has no error
+    d, dd = path(o, p)[1], path(o, p + 1j * h)[1].imag / h
+    return float((d[0] * dd[1] - d[1] * dd[0]) / np.hypot(*d) ** 3)
 
 
 class Car(Joint):
@@ -82,7 +66,7 @@ class Car(Joint):
     def __init__(self, manoeuvre: Manoeuvre) -> None:
         self.o = starts("driver") | driver_start(manoeuvre)
         self.c = starts("chassis") | chassis_start(manoeuvre)
-        self.path, self.v = Path(self.o), manoeuvre["v"]
+        self.v = manoeuvre["v"]
         self.kind = Wheel(**{name: self.c[name] for name in ("s", "slope", "slope_direction")})
         self.R = self.kind.r_0 + self.kind.r
         self.hub = np.column_stack([OF["x"], OF["y"], np.full(self.n, self.R - self.c["h_B"])])
@@ -111,10 +95,9 @@ class Car(Joint):
         point, v, heading = self.rear(y)
         wanted, p_dot = o["delta_0"] * rise(t, o["t_delta"], o["ramp_delta"]), 0.0
         if o["path"]:
-            d = self.path.tangent(p)
-            away = point[:2] - self.path.point(p)
-            along = d / np.hypot(*d)
-            ahead = self.path.curvature(p + o["T_delta"] * v / np.hypot(*d))
+            P, d = path(o, p)
+            away, along = point[:2] - P, d / np.hypot(*d)
+            ahead = curvature(o, p + o["T_delta"] * v / np.hypot(*d))
             left = along[0] * away[1] - along[1] * away[0]
             turned = along[0] * np.sin(heading) - along[1] * np.cos(heading)
             wanted += np.arctan(WHEELBASE * (ahead - o["k_y"] * left - o["k_psi"] * turned))
@@ -185,26 +168,20 @@ class Car(Joint):
         }
 
 
-def solve(manoeuvre: Manoeuvre, times: np.ndarray, tolerance: float = 1e-9) -> dict[str, np.ndarray]:
-    """The manoeuvre at `times` (rising from 0)."""
-    return Car(manoeuvre).solve(times, tolerance)[0]
-
-
 def lift_off(manoeuvre: Manoeuvre) -> tuple[str, float]:
     """Which wheel lifts off first, and when [s], in a manoeuvre that is too fast for the car."""
     wheel, time = Car(manoeuvre).solve(np.array([0.0, manoeuvre.stop]), 1e-8)[1]
     return list(WHEELS)[wheel], time
 
 
-def integrate(manoeuvre: Manoeuvre, stop: float | None = None, tolerance: float = FINE) -> dict[str, np.ndarray]:
-    """The manoeuvre, or its begin up to `stop` [s], on the grid."""
-    times = np.arange(round((stop or manoeuvre.stop) / GRID) + 1) * GRID
-    found = solve(manoeuvre, times, tolerance)
-    return {name: found[name] for name in COLUMNS}
+def solve(manoeuvre: Manoeuvre, grid: float, tolerance: float, stop: float | None = None) -> dict[str, np.ndarray]:
+    """The manoeuvre, or its begin up to `stop` [s], on a grid [s]."""
+    times = np.arange(round((stop or manoeuvre.stop) / grid) + 1) * grid
+    return Car(manoeuvre).solve(times, tolerance)[0]
 
 
 def read(name: str) -> dict[str, np.ndarray]:
-    """A manoeuvre from its table; columns as those of car.Run."""
+    """A manoeuvre from its table; columns as those of a run of the car."""
     return dict(zip(COLUMNS, read_table(str(FOLDER / f"car_{name}")).values(), strict=True))
 
 
@@ -219,7 +196,8 @@ def apart(table: dict[str, np.ndarray], truth: dict[str, np.ndarray]) -> dict[st
 def main() -> None:
     """The tables named, or all."""
     for name in sys.argv[1:] or NAMES:
-        write_table(FOLDER / f"car_{name}.csv", integrate(MANOEUVRES[name]))
+        found = solve(MANOEUVRES[name], GRID, FINE)
+        write_table(FOLDER / f"car_{name}.csv", {column: found[column] for column in COLUMNS})
         print(f"car_{name}.csv")
 
 

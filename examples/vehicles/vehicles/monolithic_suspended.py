@@ -4,8 +4,6 @@ The quarter car is written again from its equations (quarter_car.cpp); the FMUs 
 their tables. Its own states: position and velocity of the sprung mass B.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from reference.model import Wheel
 

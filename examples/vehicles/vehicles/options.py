@@ -5,16 +5,14 @@ the tables of variables. It needs the standard library alone; numbers may carry 
 (examples/python/values.py).
 """
 
-from __future__ import annotations
-
 import math
-import re
 import signal
 import sys
 import tomllib
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from typing import Self
 
 EXAMPLES = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(EXAMPLES / "skeleton"), str(EXAMPLES.parent / "python")]
@@ -23,28 +21,21 @@ from values import Fault, limited, number, suggestion  # noqa: E402
 
 EXCHANGES = ("held", "derivatives", "rollback")
 FOLDERS = {"axle": "axle", "car": "car", "suspended": "quarter_car", "balance": "balance"}
-CONTROL = "For a control engineer: linearization, regulator, optimal control; without parameters"
-MODELS = {"axle": "axle", "quarter_car": "quarter_car", "chassis": "car", "driver": "car"}  # in C++, and their folders
-FIXED = {"R", "g", "inner_step", "psi_start", "v_start", "omega_start"}  # of the wheels too, or set by the run
+CONTROL = {"about": "For a control engineer: linearization, regulator, optimal control; without parameters"}
 
 
 @cache
 def file(vehicle: str) -> dict:
     """A vehicle's manoeuvres.toml."""
-    return tomllib.loads((EXAMPLES / FOLDERS[vehicle] / "manoeuvres.toml").read_text())
+    folder = FOLDERS.get(vehicle)
+    return tomllib.loads((EXAMPLES / folder / "manoeuvres.toml").read_text()) if folder else CONTROL
 
 
 @cache
 def parameters(model: str) -> dict[str, Variable]:
-    """The parameters of a model by name: in C++ from its table, those of balance.fmu from its list in Python."""
-    if model == "balance":
-        text = (EXAMPLES / "balance" / "balance.py").read_text()
-        rows = re.findall(r'^    "(\w+)": ([-\d.]+),  # (\S+?)(?:, (.*))?$', text, re.MULTILINE)
-        return {n: Variable("parameter", n, unit, float(start), "", (), about) for n, start, unit, about in rows}
-    folder = EXAMPLES / MODELS[model]
-    layout = folder / f"{folder.name}.toml"
-    of = tomllib.loads(layout.read_text()) if layout.exists() else {}
-    return {v.name: v for v in read(model, folder / f"{model}.csv", of)[1] if v.causality == "parameter"}
+    """The parameters in a model's table, by name."""
+    (table,) = EXAMPLES.glob(f"*/{model}.csv")
+    return {v.name: v for v in read(table)[2] if v.causality == "parameter"}
 
 
 def starts(model: str) -> dict[str, float]:
@@ -55,9 +46,9 @@ def starts(model: str) -> dict[str, float]:
 @cache
 def every(vehicle: str) -> dict[str, Variable]:
     """All parameters of a vehicle: of the run and the wheels first, then those of its models."""
-    rows = file(vehicle).get("parameters", {}).items()
+    rows, models = file(vehicle).get("parameters", {}).items(), file(vehicle).get("models", ())
     own = {name: Variable("parameter", name, unit, x, limit, (), about) for name, (unit, x, limit, about) in rows}
-    return own | {n: v for model in file(vehicle)["models"] for n, v in parameters(model).items() if n not in own}
+    return own | {n: v for model in models for n, v in parameters(model).items() if n not in own}
 
 
 @dataclass(frozen=True)
@@ -67,11 +58,11 @@ class Manoeuvre:
     vehicle: str
     name: str
     title: str
-    stop: float = math.nan  # s
-    given: dict[str, float] | None = None  # parameters that differ from their start values
+    stop: float  # s
+    given: dict[str, float]  # parameters that differ from their start values
     ends: tuple[str, ...] = ()
     judges: tuple[str, ...] = ()
-    figures: str = ""
+    figures: tuple[str, ...] = ()
     plot: tuple[str | list[str], ...] = ()
 
     def __getitem__(self, name: str) -> float:
@@ -81,7 +72,7 @@ class Manoeuvre:
         """The parameter whose value an unset one takes: the driver keeps the speed at the start."""
         return "v" if name in ("v_0", "v_1") and name not in self.given else name
 
-    def changed(self, **values: float) -> Manoeuvre:
+    def changed(self, **values: float) -> Self:
         """With other parameters, or another stop."""
         return replace(self, stop=values.pop("stop", self.stop), given={**self.given, **values})
 
@@ -94,7 +85,7 @@ class Manoeuvre:
 def manoeuvres(vehicle: str) -> dict[str, Manoeuvre]:
     """By name."""
     found = {}
-    for name, of in file(vehicle)["manoeuvre"].items():
+    for name, of in file(vehicle).get("manoeuvre", {}).items():
         given = {n: number(n, str(x), every(vehicle)[n].unit) for n, x in of.get("given", {}).items()}
         stop = of["stop"] if "stop" in of else every(vehicle)["stop"].start
         found[name] = Manoeuvre(vehicle, name, **{**of, "stop": stop, "given": given})
@@ -103,11 +94,9 @@ def manoeuvres(vehicle: str) -> dict[str, Manoeuvre]:
 
 def takes(vehicle: str) -> tuple[dict[str, tuple[str, ...]], dict[str, Variable]]:
     """Words with their choices, and numbers, that may be given."""
-    if vehicle == "control":
-        return {}, {}
-    fixed = {"axle": FIXED | {"slope_direction"}, "balance": set()}.get(vehicle, FIXED)
-    numbers = {name: v for name, v in every(vehicle).items() if name not in fixed}
-    words = {file(vehicle)["word"]: tuple(manoeuvres(vehicle))} if "word" in file(vehicle) else {}
+    of = file(vehicle)
+    numbers = {name: v for name, v in every(vehicle).items() if name not in of.get("fixed", ())}
+    words = {of["word"]: tuple(manoeuvres(vehicle))} if "word" in of else {}
     return words | ({"exchange": EXCHANGES} if "h" in numbers else {}), numbers
 
 
@@ -120,8 +109,7 @@ def value(vehicle: str, argument: str) -> tuple[str, str | float]:
         if text not in words[name]:
             raise Fault(f"{name} is one of {', '.join(words[name])}, not {text}.")
         return name, text
-    if name in numbers:
-        of = numbers[name]
+    if of := numbers.get(name):
         low = 0 if of.limit else -math.inf
         return name, limited(name, number(name, text, of.unit), of.unit, low, above=of.limit == ">0")
     if not numbers:
@@ -141,43 +129,39 @@ class Asked:
     grid: float | None = None  # s, of the table
 
 
-def asked(arguments: list[str]) -> Asked:
-    """The example that the command line asks for: the manoeuvre with what was given, and how it is run."""
-    vehicle, *rest = arguments or [""]
+ABOUT = {vehicle: file(vehicle)["about"] for vehicle in [*FOLDERS, "control"]}
+
+
+def asked(vehicle: str = "", *rest: str) -> Asked:
+    """The example that the command line asks for: the manoeuvre with the parameters given, and how it is run."""
     if vehicle not in ABOUT:
         meant = suggestion(vehicle, dict.fromkeys(ABOUT, ""))
-        raise Fault(f'"{vehicle}" is no example; there are {", ".join(ABOUT)}.{meant}' if vehicle else usage("", []))
-    given = dict(value(vehicle, argument) for argument in rest)
-    if vehicle == "control":
+        raise Fault(f'"{vehicle}" is no example; there are {", ".join(ABOUT)}.{meant}' if vehicle else usage())
+    given, of, described = dict(value(vehicle, argument) for argument in rest), manoeuvres(vehicle), file(vehicle)
+    if not of:
         return Asked(vehicle)
-    how = file(vehicle).get("how", {}) | {name: given.pop(name) for name in ("exchange", "h") if name in given}
-    of = manoeuvres(vehicle)
-    name = given.pop(file(vehicle).get("word"), file(vehicle).get("first", next(iter(of))))
+    how = described.get("how", {}) | {name: given.pop(name) for name in ("exchange", "h") if name in given}
+    name = given.pop(described.get("word"), described.get("first", next(iter(of))))
     asked = Asked(vehicle, of[name].changed(**given), **how)
     if asked.manoeuvre.stop < asked.h:
         raise Fault(f"stop = {asked.manoeuvre.stop:g}: it must be at least the step h, {asked.h:g} s.")
     return asked
 
 
-ABOUT = {vehicle: file(vehicle)["about"] for vehicle in FOLDERS} | {"control": CONTROL}
-
-
-def usage(name: str, arguments: list[str]) -> str:
+def usage(name: str = "", *arguments: str) -> str:
     """All that one example takes, with the start values of the manoeuvre that is named; or the list of the examples."""
     if name not in ABOUT:
         rows = [f"  {vehicle:11s}{text}" for vehicle, text in ABOUT.items()]
         line = f"./scripts/example {'|'.join(ABOUT)} [parameter=value ...]   a vehicle made of FMUs, run and drawn"
         return "\n".join([line, *rows, "./scripts/example NAME --help lists the parameters of one example."])
     lines, (words, numbers) = [f"./scripts/example {name} [parameter=value ...]   {ABOUT[name]}"], takes(name)
-    if not numbers:
-        return lines[0]
     for word, choices in words.items():
         lines.append(f"  {word}={'|'.join(choices)}")
         for one in manoeuvres(name).values() if word == file(name).get("word") else ():
             given = " ".join(f"{n}={x:.4g}" for n, x in one.given.items())
             lines.append(f"    {one.name}: {one.title}; stop={one.stop:g} {given}")
-    run = asked([name, *arguments]).manoeuvre
-    lines.append(f"Parameters, with their values in the run {run.name}:")
+    if run := asked(name, *arguments).manoeuvre:
+        lines.append(f"Parameters, with their values in the run {run.name}:")
     for v in numbers.values():
         start = run.stop if v.name == "stop" else run[run.followed(v.name)]
         lines.append(f"  {v.name:16s}{v.unit:10s}{start:>9.6g} {v.limit:>4s}  {v.description}")
@@ -186,13 +170,12 @@ def usage(name: str, arguments: list[str]) -> str:
 
 def main() -> int:
     """Prints the help, or checks the arguments."""
-    arguments = sys.argv[1:]
-    rest = [a for a in arguments if a not in ("-h", "--help")]
+    arguments = [a for a in sys.argv[1:] if a not in ("-h", "--help")]
     try:
-        if rest != arguments:
-            print(usage(rest[0] if rest else "", rest[1:]))
+        if len(arguments) < len(sys.argv) - 1:
+            print(usage(*arguments))
         else:
-            asked(arguments)
+            asked(*arguments)
     except Fault as reason:
         print(reason, file=sys.stderr)
         return 2

@@ -6,8 +6,6 @@ FMUs in parallel with held values. It begins with every connector at zero, which
 (t_couple), and it takes one parameter set for all components: `run` puts them together.
 """
 
-from __future__ import annotations
-
 import zipfile
 from pathlib import Path
 

@@ -4,8 +4,6 @@ Coupled through F_X, F_Y, F_Z, M_1, M_2, M_3 and the pose and velocity of O, by 
 step or by straight lines (derivatives of first order); compared with the same system as one set of equations.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from math import exp, pi
@@ -15,11 +13,11 @@ import numpy as np
 
 from . import errors
 from .component import Component
-from .master import Signal, Table
+from .errors import Table
 from .monolithic_suspended import TOLERANCE, Suspended
 from .options import Manoeuvre, manoeuvres
 from .ssp import run as run_package
-from .vehicle import LOAD, Fmus, Vehicle, road, wire
+from .vehicle import Fmus, Vehicle, recorded, road, wire
 
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
@@ -27,12 +25,6 @@ STEPS = (0.005, 0.0025, 0.00125, 0.000625, 0.0003125)  # s
 LARGE_STEPS = (0.0125, 0.015, 0.02, 0.025)  # s, around the limit of stability
 START = {"s": 0.01, "psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_start": 0.0, "X_O_start": 0.0}
 COMPARED = ("X_O", "theta", "phi_dot", "psi_dot", "X_B", "Z_B")
-OF_WHEEL = ("theta", "phi_dot", "psi_dot", "psi", "theta_dot", "omega_z", "lambda_3", "mu_required")
-RECORD: list[Signal] = [
-    *(("wheel", name) for name in ("X_O", "Y_O", "phi", "X_O_dot", *OF_WHEEL)),  # scripts/view needs the first three
-    *(("quarter_car", name) for name in ("X_B", "Y_B", "Z_B", "X_B_dot", *LOAD)),
-]
-CONNECTIONS = wire("quarter_car", "wheel", "")
 
 
 def parts(fmus: Fmus, run: Manoeuvre) -> list[Component]:
@@ -49,8 +41,7 @@ def verdict(table: Table, _run: Manoeuvre) -> tuple[bool, list[str]]:
     return True, [f"{speed}; friction required: {grip:.2f}."]
 
 
-BARE = ("wheel", "quarter_car")
-SUSPENDED = Vehicle("suspended_wheel", parts, CONNECTIONS, RECORD, verdict, BARE)
+SUSPENDED = Vehicle("suspended_wheel", parts, wire("quarter_car", "wheel", ""), recorded("suspended"), verdict)
 
 
 def coupled(fmus: Fmus, step: float, exchange: str, grid: float = GRID, **changed: float) -> Table:
@@ -83,11 +74,11 @@ def ends(fmus: Fmus, step: float, exchange: str) -> bool:
 def convergence(fmus: Fmus, truth: Table, steps: Sequence[float] = STEPS) -> errors.Errors:
     """With all inputs held, with positions that follow the velocities beside them, and on straight lines."""
     kinds = {"positions held": ("held", {"follow": 0.0}), "held": ("held", {}), "derivatives": ("derivatives", {})}
-    found = {
-        name: [distance(coupled(fmus, h, exchange, **more), truth) for h in steps]
-        for name, (exchange, more) in kinds.items()
-    }
-    return errors.Errors(steps, found)
+
+    def error(exchange: str, more: dict[str, float], h: float) -> float:
+        return distance(coupled(fmus, h, exchange, **more), truth)
+
+    return errors.Errors(steps, {name: [error(*kind, h) for h in steps] for name, kind in kinds.items()})
 
 
 def drag_share(h: float, k: float = 60e3, mass: float = 334.7, duration: float = 2.5) -> float:

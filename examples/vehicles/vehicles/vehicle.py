@@ -3,35 +3,50 @@
 A body with hubs names its variables as the wheels do, with _ and the wheel's name behind.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from math import pi
 from pathlib import Path
 
 from . import ssp
-from .component import Component, Ended
-from .master import Connection, Run, Signal, Table, simulate
-from .options import Manoeuvre
+from .component import Component, Ended, loaded
+from .errors import Table
+from .master import Connection, Master, Signal
+from .options import Manoeuvre, file
 
 Fmus = dict[str, Path]
+Names = tuple[str, ...]
 POSE = ("X_O", "Y_O", "Z_O", "X_O_dot", "Y_O_dot", "Z_O_dot", "psi", "theta", "psi_dot", "theta_dot")
 FORCE = ("F_X", "F_Y", "F_Z")
 LOAD = (*FORCE, "M_1", "M_2", "M_3")
 
 
 @dataclass(frozen=True)
+class Run:
+    """Columns on a grid; how it ended, if early; microseconds per step, as Master.cost has it."""
+
+    table: Table
+    ending: Ended | None
+    cost: dict[str, float]
+
+    @property
+    def whole(self) -> Table:
+        """The table of a run that reached its end; raises Ended for another."""
+        if self.ending:
+            raise self.ending
+        return self.table
+
+
+@dataclass(frozen=True)
 class Vehicle:
-    """`name`: of its package; `wheels`: what pictures call the components that are wheels; `bare`: components whose
-    columns go by the variable's name alone."""
+    """`name`: of its package; `wheels`: what pictures call the components that are wheels, whose columns are
+    "wheel.variable"; other components' columns go by the variable's name alone."""
 
     name: str
     parts: Callable[[Fmus, Manoeuvre], list[Component]]
     connections: list[Connection]
     record: list[Signal]
     verdict: Callable[[Table, Manoeuvre], tuple[bool, list[str]]]  # of a run that reached its end
-    bare: tuple[str, ...]
     wheels: dict[str, str] = field(default_factory=dict)
     complete: Callable[[Table, Manoeuvre, Fmus], Table] = lambda table, _manoeuvre, _fmus: table
     tracks: Callable[[Table], dict[str, tuple]] = lambda _table: {}  # besides those of the wheels
@@ -39,18 +54,24 @@ class Vehicle:
     subtitle: Callable[[Manoeuvre], str] = lambda _manoeuvre: ""
 
     def drive(
-        self,
-        fmus: Fmus,
-        manoeuvre: Manoeuvre,
-        step: float = 0.001,
-        exchange: str = "derivatives",
-        grid: float = 0.01,
-        **how: bool,
+        self, fmus: Fmus, of: Manoeuvre, h: float = 1e-3, exchange: str = "derivatives", grid: float = 0.01, **how: bool
     ) -> Run:
-        """The co-simulation, with the columns that `complete` adds."""
-        wired = self.parts(fmus, manoeuvre), self.connections
-        run = simulate(*wired, self.record, manoeuvre.stop, step, exchange, grid, self.bare, **how)
-        return replace(run, table=self.complete(run.table, manoeuvre, fmus))
+        """The co-simulation, recorded every `grid`, or every step, to its end or to where a component ends it; with the
+        columns that `complete` adds."""
+        components, ending = self.parts(fmus, of), None
+        with loaded(*components):
+            master = Master(components, self.connections)
+            try:
+                master.run(of.stop, h, self.record, exchange, max(1, round(grid / h)), **how)
+            except Ended as end:
+                ending = end
+            rows, cost = master.table(), master.cost()
+        table = {"time": rows["time"]} | {self.column(signal): rows[".".join(signal)] for signal in self.record}
+        return Run(self.complete(table, of, fmus), ending, cost)
+
+    def column(self, signal: Signal) -> str:
+        """A recorded signal's name in the table."""
+        return ".".join(signal) if signal[0] in self.wheels else signal[1]
 
     def package(self, fmus: Fmus, manoeuvre: Manoeuvre, step: float, folder: Path) -> Path:
         """Its SSP package. A master that begins with zero inputs finds the body free until t_couple."""
@@ -64,9 +85,13 @@ class Vehicle:
         return f"The {who} ended the run at t = {end.time:.3f} s: {end.message}"
 
 
-def wire(
-    body: str, wheel: str, behind: str, pose: tuple[str, ...] = POSE, load: tuple[str, ...] = LOAD
-) -> list[Connection]:
+def recorded(vehicle: str, wheels: Iterable[str] = ()) -> list[Signal]:
+    """The signals that manoeuvres.toml lists by component; a row with {wheel} stands for one row per wheel."""
+    rows = [(row, w) for row in file(vehicle)["record"] for w in (wheels if "{wheel}" in "".join(row) else [""])]
+    return [(part.format(wheel=w), name.format(wheel=w)) for (part, *names), w in rows for name in names]
+
+
+def wire(body: str, wheel: str, behind: str, pose: Names = POSE, load: Names = LOAD) -> list[Connection]:
     """Pose and velocity to the body, forces and moments to the wheel; `behind` ends the body's names."""
     return [
         *(((wheel, name), (body, name + behind)) for name in pose),
