@@ -128,7 +128,7 @@ function setUpNotes(live) {
   const refuse = onChange((text) => ($('#refusal').textContent = text));
   return () => {
     const seconds = Number(live.wheel.table.end.toPrecision(4));
-    tell(live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`);
+    write(live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`);
     $('#message').classList.toggle('trouble', Boolean(live.trouble));
     $('#keep').checked = Boolean(live.kept);
     $('#refusal').hidden = !live.refusal;
