@@ -23,6 +23,7 @@ DIPS, LINE = re.compile(r"leans by more than .* from t = (\S+) s on"), re.compil
 LEAN = 1.29  # rad: the level of the recipe
 WAYS = {"unfolded": {}, "Runge-Kutta": {"method": 4}, "Adams": {"method": 2}, "multibody": {"formulation": 3}}
 STOP = 6.0
+pytestmark = pytest.mark.xdist_group("event recipe")  # one build for all
 
 
 # Another observed event: it depends on the place of the wheel, which is no symmetry of the unfolded motion.
@@ -67,7 +68,8 @@ def patch(folder: Path, name: str, value: str, row: str) -> None:
 
 
 def build(folder: Path) -> Path:
-    """The library with both events: `wheel` and `fmi` are compiled from the copy, the rest is taken as built."""
+    """The library with both events: `wheel` and `fmi` are compiled from the copy, without the optimisation that takes
+    long and changes no bit; the rest is taken as built."""
     built, library = build_folder(), folder / "wheel.so"
     commands = (built / "compile_commands.json").read_text(encoding="utf-8")
     link = shlex.split((built / "CMakeFiles" / "wheel_fmu.dir" / "link.txt").read_text(encoding="utf-8"))
@@ -79,7 +81,8 @@ def build(folder: Path) -> Path:
     made = {entry["output"]: entry for entry in json.loads(commands) if folder in Path(entry["file"]).parents}
     objects = {output: str(folder / output.replace("/", "_")) for output in made}
     compilations = [
-        [objects.get(word, word) for word in shlex.split(entry["command"])] for output, entry in made.items()
+        [*(objects.get(word, word) for word in shlex.split(entry["command"])), "-O1", "-fno-lto"]
+        for output, entry in made.items()
     ]
     with ThreadPoolExecutor(2) as pool:
         list(pool.map(lambda command: subprocess.run(command, cwd=built, check=True), compilations))
