@@ -109,7 +109,7 @@ def test_a_phone_shows_everything_without_scrolling_sideways(phone, request, kin
             page.emulate_media(color_scheme=scheme)
             page.wait_for_function("(scheme) => document.documentElement.dataset.theme === scheme", arg=scheme)
             assert page.evaluate("document.documentElement.scrollWidth") <= 360
-        edges = page.evaluate("page.stage.rectangles(page.views.length).map(({y}) => y)")
+        edges = page.evaluate("page.stage.rectangles.map(({y}) => y)")
         assert len(set(edges)) == len(edges)  # above each other
         scene, switches = (page.locator(place).bounding_box() for place in ("#scene", "#toggles"))
         assert switches["y"] >= scene["y"] + scene["height"] - 2.5  # px; the switches cover no part of the scene
