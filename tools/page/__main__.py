@@ -36,7 +36,7 @@ def recorded(given: argparse.Namespace) -> tuple[Path, int]:
 
 
 def named(bodies: list[Body], labels: list[str]) -> list[Body]:
-    """Bodies with names of their own, the second `wheel` as `wheel 2`; called by label, place on a car, or name."""
+    """Bodies with distinct names, the second `wheel` as `wheel 2`; called by label, place on a car, or name."""
     if len(labels) > len(bodies):
         count = f"{len(bodies)} {'body' if len(bodies) == 1 else 'bodies'}"
         raise ViewError(f"--labels names {len(labels)} bodies, but the files hold {count}.")

@@ -132,8 +132,7 @@ def shape_of(columns: dict[str, Array]) -> tuple[float, float]:
     if np.ptp(rise) < 1e-4:
         scale = float(columns["Z_O"].mean() / (r_0 * rise.mean() + r))
         return r_0 * scale, r * scale
-    matrix = np.column_stack([rise, np.ones_like(rise)])
-    (r_0, r), *_ = np.linalg.lstsq(matrix, columns["Z_O"], rcond=None)
+    r_0, r = np.polyfit(rise, columns["Z_O"], 1)
     if not (r_0 > 0 and r > -1e-6 * r_0):
         return PAPER_WHEEL
     return float(r_0), float(r) if r > 1e-6 * r_0 else 0.0

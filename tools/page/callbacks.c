@@ -7,14 +7,14 @@
 __attribute__((import_module("page"), import_name("log"))) void page_log(int status, const char* category,
                                                                          const char* message);
 
-static void tell(fmi2ComponentEnvironment environment, fmi2String instance, fmi2Status status, fmi2String category,
-                 fmi2String message, ...) {
+static void forward(fmi2ComponentEnvironment environment, fmi2String instance, fmi2Status status, fmi2String category,
+                    fmi2String message, ...) {
   (void)environment, (void)instance;
   page_log(status, category, message);
 }
 
 /* The callbacks of every instance; they outlive all of them. */
 const fmi2CallbackFunctions* page_callbacks(void) {
-  static const fmi2CallbackFunctions callbacks = {tell, calloc, free, NULL, NULL};
+  static const fmi2CallbackFunctions callbacks = {forward, calloc, free, NULL, NULL};
   return &callbacks;
 }

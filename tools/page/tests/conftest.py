@@ -3,7 +3,8 @@
 import fcntl
 import subprocess
 from collections.abc import Callable, Iterator
-from functools import partial
+from contextlib import ExitStack
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from playwright.sync_api import Browser, BrowserContext, Page
 from support.paths import ROOT
 
 from page.browser import chromium
-from page.tests.pages import FLAGS, RECORD, opened, view, window_of, write_csv
+from page.tests.pages import FLAGS, RECORD, REST, opened, view, window_of, write_csv
 
 
 @pytest.fixture(scope="session")
@@ -57,29 +58,29 @@ def window(browser) -> BrowserContext:
 
 
 @pytest.fixture(scope="session")
-def recorded_page(window, recorded_file) -> Iterator[Page]:
-    with opened(window, recorded_file) as page:
-        yield page
+def tab(window, request) -> Iterator[Callable[[str], Page]]:
+    """tab("recorded") or tab("live"): the page, opened once, in front and at rest."""
+    with ExitStack() as stack:
+        page_of = cache(lambda kind: stack.enter_context(opened(window, request.getfixturevalue(f"{kind}_file"))))
 
+        def at_rest(kind: str) -> Page:
+            page_of(kind).bring_to_front()  # of several pages the browser draws the one in front
+            page_of(kind).evaluate(REST)
+            return page_of(kind)
 
-@pytest.fixture(scope="session")
-def live_page(window, live_file) -> Iterator[Page]:
-    with opened(window, live_file) as page:
-        yield page
-
-
-@pytest.fixture
-def recorded(recorded_page) -> Page:
-    recorded_page.bring_to_front()  # of several pages the browser draws the one in front
-    return recorded_page
+        yield at_rest
 
 
 @pytest.fixture
-def live(live_page) -> Page:
-    live_page.bring_to_front()
-    return live_page
+def recorded(tab) -> Page:
+    return tab("recorded")
+
+
+@pytest.fixture
+def live(tab) -> Page:
+    return tab("live")
 
 
 @pytest.fixture(params=["recorded", "live"])
-def either(request) -> Page:
-    return request.getfixturevalue(request.param)
+def either(tab, request) -> Page:
+    return tab(request.param)

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 from playwright.sync_api import Browser, BrowserContext, Page
 
+from page import bodies
 from page.__main__ import main
 from page.browser import show, surroundings
 
-POSE = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi")
-RATES = tuple(f"{name}_dot" for name in POSE)
-RECORD = (*POSE, *RATES, "omega_z", "lambda_1", "lambda_2", "lambda_3", "E", "friction_mode", "n_events")
+POSE = (*bodies.POSE, "Z_O")
+RECORD = (*bodies.POSE, *bodies.RATES, *bodies.SHOWN)
 # The page beside the scene is composed at once, instead of by the processor in the place of a graphics card.
 FLAGS = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas")
 # Advice of the browser on how the tests look at pictures.
@@ -26,6 +26,13 @@ for (const call of ["clear", "drawElements", "drawArrays", "texSubImage2D", "gen
 }
 const frame = window.requestAnimationFrame;
 window.requestAnimationFrame = (act) => setTimeout(() => frame(act), 40);"""
+# The first view of a page, at its start.
+REST = """if (page.live?.kept) page.live.keep(false);
+page.choose(0);
+page.player.set({playing: false, t: 0, speed: 1});
+page.plots.portrait.choose('phase');
+for (const [name, on] of [['follow', true], ['force', false]]) page.switches.flip(name, on);
+page.stage.controls.reset()"""
 # A vector in the road's axes as the scene shows it.
 TURN = "(v) => page.stage.camera.position.clone().set(...v).applyQuaternion(page.stage.road.quaternion).toArray()"
 

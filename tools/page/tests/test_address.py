@@ -26,7 +26,6 @@ def test_a_link_opened_elsewhere_shows_the_same_motion_to_the_bit(live, live_fil
         assert [other.evaluate(what) for what in (BITS, SHOWN, LINK)] == [bits, shown, link]
         other.evaluate("page.live.setStart('psi_dot_start', 0.3); page.live.compute()")
         assert other.evaluate(BITS) != bits
-    live.evaluate("page.live.keep(false); page.switches.flip('force'); page.switches.flip('follow')")
 
 
 def follow(page, text: str) -> None:
@@ -48,7 +47,6 @@ def test_the_page_writes_what_the_reader_does_into_its_address(live):
     live.wait_for_function("location.hash.startsWith('#s=0.03') && location.hash.endsWith('&t=2.5')")
     live.evaluate("page.player.play()")
     live.wait_for_function("/&t=(2.[6-9]|3)/.test(location.hash)")  # while it plays, too
-    live.evaluate("page.player.pause()")
 
 
 WRONG = {
@@ -78,8 +76,8 @@ READ = """(text) => import('#address')
 @pytest.mark.parametrize("fault", WRONG)
 def test_a_wrong_address_is_refused_with_one_sentence(live, fault):
     text, sentence = WRONG[fault]
-    told = live.evaluate(READ, text)
-    assert sentence in told and "\n" not in told and told.endswith(".") and len(told) < 150
+    message = live.evaluate(READ, text)
+    assert sentence in message and "\n" not in message and message.endswith(".") and len(message) < 150
 
 
 @pytest.mark.parametrize(("text", "sentence"), [WRONG["a script"], ("J_x=90", "J_x")])
@@ -87,8 +85,8 @@ def test_a_wrong_address_gives_the_first_scene_and_says_why(live, text, sentence
     follow(live, "s=0.02")
     live.evaluate("(text) => { location.hash = text; }", text)
     live.wait_for_function("!document.querySelector('#refusal').hidden")
-    told = live.locator("#refusal").inner_text()
-    assert sentence in told and told.startswith("This address cannot be shown: ")
+    message = live.locator("#refusal").inner_text()
+    assert sentence in message and message.startswith("This address cannot be shown: ")
     assert live.evaluate("[page.live.step, page.live.trouble]") == [0, None]
     assert column(live, "phi_dot")[0] == -5
     live.locator("#story [name=next]").click()

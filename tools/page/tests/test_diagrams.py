@@ -9,9 +9,7 @@ from page.tests.pages import start
 POINTS = """(name) => {
   page.plots.portrait.choose(name);
   const {lines, wheels} = page.plots.portrait;  // those of the rows
-  const found = lines.map(({times, points}, k) => points.filter((_, i) => wheels[k].table.time.includes(times[i])));
-  page.plots.portrait.choose('phase');
-  return found;
+  return lines.map(({times, points}, k) => points.filter((_, i) => wheels[k].table.time.includes(times[i])));
 }"""
 
 
@@ -53,7 +51,6 @@ def test_the_path_from_above_has_one_scale(recorded):
     (left, right), (low, high), (width, height) = recorded.evaluate(
         "(({ranges, sizes}) => [...ranges, sizes])(page.plots.portrait)"
     )
-    recorded.evaluate("page.plots.portrait.choose('phase')")
     assert (right - left) / width == pytest.approx((high - low) / height)
 
 
@@ -75,7 +72,6 @@ def test_a_button_chooses_the_diagram_and_the_present_is_marked(recorded, name):
     assert recorded.locator(".portrait [aria-checked=true]").get_attribute("name") == name
     recorded.evaluate("page.choose(2)")
     colour, wanted = recorded.evaluate(PIXEL, [name, 3.0])
-    recorded.evaluate("page.choose(0)")
     assert colour == wanted
 
 
@@ -90,7 +86,6 @@ def test_the_label_and_the_diagram_say_that_the_wheel_sticks(recorded):
       return [document.querySelector('.label').dataset.state, pixel.data[3]];
     }"""
     (before, clear), (during, band) = (recorded.evaluate(state, t) for t in (1.15, 1.26))
-    recorded.evaluate("page.choose(0)")
     assert (before, during) == ("rolls", "sticks")
     assert clear == 0 < band
 

@@ -81,7 +81,6 @@ def test_a_push_lasts_as_long_as_the_button_is_held(live):
     live.mouse.down()
     live.wait_for_function("page.player.t > 1.1")
     live.mouse.up()
-    live.evaluate("page.player.pause()")
     (begin, *pushed), (end, *released) = live.evaluate(CHANGES)
     assert (pushed, released) == (["M_3", 6], ["M_3", 0])
     assert end > begin == pytest.approx(1.0)
@@ -120,19 +119,18 @@ def test_forward_is_the_way_the_wheel_rolls_and_back_is_against_it(live, spin):
 
 def test_an_impossible_start_is_refused_with_the_wheels_own_sentence(live):
     start(live)
-    for r_0, told in ((-1, "r_0"), (0.3, "computed in")):
+    for r_0, words in ((-1, "r_0"), (0.3, "computed in")):
         live.evaluate("(r_0) => { page.live.setStart('r_0', r_0); page.live.frame(); }", r_0)
-        assert told in live.locator("#message").inner_text()
+        assert words in live.locator("#message").inner_text()
 
 
 def test_every_scene_runs_to_its_end(live):
     live.locator("#live [name=scenes]").click()
     for button in live.locator("#presets button").all():
         button.click()
-        assert live.evaluate("page.live.trouble ?? page.wheels[0].ended") is None
+        assert live.evaluate("page.live.frame() ?? page.live.trouble ?? page.wheels[0].ended") is None
         assert live.evaluate("page.wheels[0].table.end") == pytest.approx(10)
         assert button.get_attribute("aria-checked") == "true"
-    live.evaluate("page.player.pause()")
 
 
 def test_a_kept_motion_stays_beside_the_next(live):

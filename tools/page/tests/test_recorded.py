@@ -159,7 +159,6 @@ def test_the_force_points_along_lambda(recorded, scenes):
       const {force} = page.stage.models[1];
       return force.up.clone().set(0, 0, 1).applyQuaternion(force.quaternion).toArray();
     }""")
-    recorded.evaluate("page.switches.flip('force', false)")
     force = np.array([scenes["friction"][500][f"lambda_{k}"] for k in (1, 2, 3)])
     within(abs(direction @ force / np.linalg.norm(force) - 1), 1e-12, "cosine off 1")
 

@@ -100,9 +100,9 @@ def test_without_spin_it_lies_flat_and_the_run_ends(live, story):
     assert column(live, "theta")[-1] < 1e-6
     live.evaluate("page.player.seek(10); page.draw()")
     assert live.locator(".label").get_attribute("data-state") == "ended"
-    told = live.locator(".label span").inner_text()
-    assert "flat" in told and "0.592" in told
-    assert max(len(number) for number in re.findall(r"[\d.]+", told)) <= 8
+    label = live.locator(".label span").inner_text()
+    assert "flat" in label and "0.592" in label
+    assert max(len(number) for number in re.findall(r"[\d.]+", label)) <= 8
     assert live.evaluate("page.wheels[0].phases.sticks") == []  # no friction holds it, omega_z is zero by itself
 
 
@@ -117,7 +117,6 @@ def test_keys_and_buttons_lead_on_and_back(live, story):
     on.evaluate("(button, n) => { for (; n > 0; --n) button.click(); }", STEPS - 1)
     assert count.inner_text() == f"{STEPS} of {STEPS}"
     assert on.is_disabled()
-    live.evaluate("page.player.pause()")
 
 
 def test_beside_another_motion_the_text_is_faint_and_leads_back(live, story):
@@ -128,7 +127,6 @@ def test_beside_another_motion_the_text_is_faint_and_leads_back(live, story):
     assert live.evaluate(faint)[0] and "ended" not in live.locator("#story .text").inner_text()
     assert f"{live.evaluate('page.wheels[0].table.end'):.4g} s computed" in live.locator("#message").inner_text()
     live.get_by_role("button", name="Back to the story's wheel").click()
-    live.evaluate("page.player.pause()")
     assert live.evaluate(faint)[0] is False and live.evaluate("page.live.value('slope')") == 0
 
 

@@ -41,7 +41,7 @@ def test_two_wheels_that_are_shown_are_two_wheels_of_the_file(recorded, scenes, 
 
 def test_a_picture_shows_scene_and_diagrams(either, tmp_path):
     with drawn(either):
-        either.evaluate("page.player.pause(); page.player.seek(0.3)")
+        either.evaluate("page.player.seek(0.3)")
         path = taken(either, "png", tmp_path)
     assert path.name == "wheel_0.30s.png"
     picture = np.asarray(Image.open(path).convert("RGB"), dtype=int)
@@ -89,7 +89,7 @@ def test_a_film_lasts_as_long_as_its_motion_with_webcodecs_and_without(live, tmp
     live.evaluate("(codec) => { window.VideoEncoder = codec === 'V_VP9' ? kept : undefined; }", codec)
     with drawn(live):
         data = taken(live, "film", tmp_path).read_bytes()  # 0.59 s of falling, four times as fast: 5 pictures
-    live.evaluate("window.VideoEncoder = kept; page.player.set({speed: 1})")
+    live.evaluate("() => { window.VideoEncoder = kept; }")
     assert data.startswith(b"\x1a\x45\xdf\xa3") and b"webm" in data[:64] and codec.encode() in data  # EBML
     seconds, (first, last, again) = live.evaluate(FILM, list(data))
     within(abs(seconds - 0.5928 / 4), 1 / 30, "length of the film off that of the motion, s")  # one picture

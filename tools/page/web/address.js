@@ -115,7 +115,7 @@ function split(text) {
 }
 
 /** {state, step} of an address without #; throws one sentence. steps: the states of the story. */
-export function read(text, steps) {
+export function read(text, steps = []) {
   const [{step, show, diagram, view, t, kept, ...own}, beside] = split(text);
   const state = structuredClone(step ? steps[step - 1] ?? refuse(`there is no step ${step.slice(0, 20)}.`) : EMPTY);
   if (show) state.show = readShow(show, state.show);

@@ -98,7 +98,7 @@ export class WheelModel {
     this.weight = N.reduce((sum, value) => sum + value, 0) / N.length || 1;
   }
 
-  /** The contact path anew: all of it faintly, up to now strongly, stick phases in a colour of their own. */
+  /** The contact path anew: all of it faintly, up to now strongly, stick phases in another colour. */
   drawPath() {
     const {wheel: {trace: {points}, table, phases, colour: accent}, size, r_0} = this;
     const unit = Math.max(0.045 * r_0, 0.006 * size);

@@ -69,7 +69,7 @@ int fmi2ExitInitializationMode(void*), fmi2DoStep(void*, double, double, int), f
 int fmi2SetReal(void*, const unsigned*, size_t, const double*), fmi2GetReal(void*, const unsigned*, size_t, double*);
 void fmi2FreeInstance(void*);
 
-static void tell(void* e, const char* name, int status, const char* category, const char* text, ...) {
+static void report(void* e, const char* name, int status, const char* category, const char* text, ...) {
   fprintf(stderr, "%s\\n", text);
 }
 
@@ -77,7 +77,7 @@ static void* wheel;
 static void set(unsigned reference, double value) { fmi2SetReal(wheel, &reference, 1, &value); }
 
 int main(void) {
-  static const callbacks functions = {tell, calloc, free, NULL, NULL};
+  static const callbacks functions = {report, calloc, free, NULL, NULL};
   static const unsigned shown[] = {${shown.map((name) => variables[name].reference).join(', ')}}; /* ${
       shown.join(', ')} */
   double value[${shown.length}];

@@ -1,7 +1,6 @@
 // Pictures of what is shown: the scene with its labels above, the diagrams beneath, as one PNG or as a film, whose
 // pictures are drawn at instants of the motion and written into a WebM file with these instants.
 import {$, colour, make} from '#dom';
-import {stateOf} from '#labels';
 
 const RATE = 30;         // pictures per second of the film
 const BITS = 8_000_000;  // per second
@@ -18,18 +17,18 @@ function write(pen, text, x, y, size) {
   });
 }
 
-function drawLabels(pen, {stage, views, wheels, player}) {
-  stage.rectangles(views.length).forEach(({x, y}, v) => {
-    wheels.filter((wheel) => views[v].includes(wheel)).forEach((wheel, i) => {
-      const line = y + 24 + 26 * i;
-      pen.fillStyle = wheel.colour;
-      pen.beginPath();
-      pen.arc(x + 22, line, 6, 0, 7);
-      pen.fill();
-      pen.fillStyle = colour('--ink');
-      write(pen, [wheel.label, stateOf(wheel, player.t)[1]].filter(Boolean).join(' – '), x + 36, line, 15);
-    });
-  });
+/** The wheels' labels where they stand over the scene. */
+function drawLabels(pen, {stage, shown}) {
+  const scene = stage.canvas.getBoundingClientRect();
+  for (const {tag, label, colour: fillStyle} of shown) {
+    const {x, y, height} = tag.getBoundingClientRect();
+    const [left, line] = [x - scene.x + 12, y - scene.y + height / 2];
+    Object.assign(pen, {fillStyle}).beginPath();
+    pen.arc(left + 6, line, 6, 0, 7);
+    pen.fill();
+    pen.fillStyle = colour('--ink');
+    write(pen, [label, tag.title].filter(Boolean).join(' – '), left + 20, line, 15);
+  }
 }
 
 /** One picture of the page at the present instant, on a canvas that is made or used again. */

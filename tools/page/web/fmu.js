@@ -9,7 +9,7 @@ const ROOM = 64;  // values of one call, at most
 
 export class Fmu {
   /** wasm: base64 of the module. */
-  static async load(wasm, guid) {
+  static async load({wasm, guid}) {
     const fmu = Object.assign(new Fmu(), {guid, messages: []});
     const log = (status, category, message) => fmu.messages.push(fmu.text(message));
     const module = await WebAssembly.compile(bytesOf(wasm));

@@ -2,7 +2,7 @@
 import {variables} from '#data';
 import {$, make} from '#dom';
 
-const SYMBOLS = new Map([['auto', '◐'], ['light', '☀'], ['dark', '☾']]);
+const THEMES = [['as the system', '◐'], ['light', '☀'], ['dark', '☾']];
 
 export function setUpValues(page) {
   const row = (title, kind, first, ...cells) =>
@@ -24,17 +24,16 @@ export function setUpValues(page) {
 export function watchTheme(changed) {
   const button = $('#theme');
   const dark = matchMedia('(prefers-color-scheme: dark)');
-  const choices = [...SYMBOLS.keys()];
-  let choice = 'auto';
+  let choice = 0;
   const apply = () => {
-    const system = dark.matches ? 'dark' : 'light';
-    document.documentElement.dataset.theme = choice === 'auto' ? system : choice;
-    button.textContent = SYMBOLS.get(choice);
-    button.title = button.ariaLabel = `Colours: ${choice === 'auto' ? 'as the system' : choice}. Click to change`;
+    const [name, symbol] = THEMES[choice];
+    document.documentElement.dataset.theme = choice > 0 ? name : dark.matches ? 'dark' : 'light';
+    button.textContent = symbol;
+    button.title = button.ariaLabel = `Colours: ${name}. Click to change`;
     changed();
   };
   button.addEventListener('click', () => {
-    choice = choices[(choices.indexOf(choice) + 1) % choices.length];
+    choice = (choice + 1) % THEMES.length;
     apply();
   });
   dark.addEventListener('change', apply);

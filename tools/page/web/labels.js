@@ -20,31 +20,23 @@ export function endingOf(table, latest) {
   return table.end < latest - 1e-9 ? `its record ends at ${when}` : null;
 }
 
-/** host: lies over the scene. rectangles: {x, y, w, h} of each view in CSS pixels; wheels: those of each view. */
-export function layOutLabels(host, rectangles, wheels) {
-  host.replaceChildren(...rectangles.map(({x, y, w, h}, v) => {
-    const names = make('div', {className: 'names'});
-    for (const wheel of wheels[v]) {
-      const dot = make('i', {style: `background:${wheel.colour}`});
-      wheel.tag = make('div', {className: 'label card'}, dot, make('b', {}, wheel.label), make('span'));
-      names.append(wheel.tag);
-    }
-    return make('div', {className: 'edge', style: `left:${x}px;top:${y}px;width:${w}px;height:${h}px`}, names);
-  }));
+/** host: lies over the scene and gets an element for each view, laid out by style.css; views: the wheels of each. */
+export function layOutLabels(host, views) {
+  for (const wheel of views.flat()) {
+    const dot = make('i', {style: `background:${wheel.colour}`});
+    wheel.tag = make('div', {className: 'label card'}, dot, make('b', {}, wheel.label), make('span'));
+  }
+  host.replaceChildren(...views.map((wheels) => make('div', {className: 'view'}, ...wheels.map(({tag}) => tag))));
 }
 
-/** What a wheel does at t: [state, in a few words]. */
-export function stateOf({ended, table, phases}, t) {
-  if (ended && t >= table.end) return ['ended', short(ended)];
-  return phases.sticks.some(([begin, end]) => begin <= t && t < end) ? ['sticks', 'held: ω_z = 0'] : ['rolls', ''];
-}
-
-/** Writes beside each wheel's name what it does at t. */
+/** Writes beside each wheel's name how it moves at t. */
 export function showStates(wheels, t) {
-  for (const wheel of wheels) {
-    const [state, text] = stateOf(wheel, t);
-    if (wheel.tag.title === text && wheel.tag.dataset.state) continue;
-    Object.assign(wheel.tag, {title: text}).dataset.state = state;
-    wheel.tag.lastChild.replaceChildren(...(state === 'sticks' ? subscripted(text) : [text]));
+  for (const {tag, ended, table, phases} of wheels) {
+    const over = ended && t >= table.end;
+    const held = phases.sticks.some(([begin, end]) => begin <= t && t < end);
+    const [state, title] = over ? ['ended', short(ended)] : held ? ['sticks', 'held: ω_z = 0'] : ['rolls', ''];
+    if (tag.title === title && tag.dataset.state) continue;
+    Object.assign(tag, {title}).dataset.state = state;
+    tag.lastChild.replaceChildren(...(held ? subscripted(title) : [title]));
   }
 }

@@ -12,7 +12,7 @@ export class Link {
   }
 
   /** The address of what is shown, without #. */
-  write() { return write(this.live.state(), this.live.told ? this.live.step + 1 : null, this.states); }
+  write() { return write(this.live.state(), this.live.narrated ? this.live.step + 1 : null, this.states); }
 
   /** The whole link. */
   get href() { return `${location.href.split('#')[0]}#${this.write()}`; }

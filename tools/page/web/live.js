@@ -2,7 +2,7 @@
 // its start, or s or M_3 while it rolls. A change while it rolls leaves the past alone and makes a new future.
 import {EMPTY, sameMotions} from '#address';
 import {variables} from '#data';
-import {Fmu, STEP} from '#fmu';
+import {STEP} from '#fmu';
 import {Link} from '#link';
 import {setUpPanel} from '#panel';
 import {chapters} from '#scenes';
@@ -20,12 +20,14 @@ const NAMES = ['This wheel', 'Kept'];
  * start cannot be; wanted: whether the motion is still to be computed.
  */
 export class LiveWheel {
-  constructor(page, fmu) {
+  /** wheels: the ready ones. */
+  constructor(page, fmu, wheels) {
     Object.assign(this, {page, fmu, plan: EMPTY.plan, kept: null, step: 0, open: true, scene: null, refusal: null});
     this.steps = chapters(this.parameters());
     this.wheel = {name: 'live', label: NAMES[0]};
     page.bodies.push(this.wheel);
     this.compute();
+    this.show = setUpPanel(this, wheels);
   }
 
   /** The start value that a run takes. */
@@ -121,7 +123,7 @@ export class LiveWheel {
   }
 
   /** Whether the story is open and its text describes what is shown. */
-  get told() { return this.open && sameMotions(this.state(), this.steps[this.step].state); }
+  get narrated() { return this.open && sameMotions(this.state(), this.steps[this.step].state); }
 
   /** Shows a state: of a step of the story 0, 1 ..., or (null) of none. */
   apply({plan, kept, show, diagram, view, t}, step) {
@@ -161,10 +163,4 @@ export class LiveWheel {
     this.show();
     this.link?.frame();
   }
-}
-
-/** Loads the wheel and puts it on the page. source: {wasm, guid, wheels}. */
-export async function startLive(page, {wasm, guid, wheels}) {
-  page.live = new LiveWheel(page, await Fmu.load(wasm, guid));
-  page.live.show = setUpPanel(page.live, wheels);
 }

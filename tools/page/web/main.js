@@ -4,9 +4,10 @@ import {Player, setUpKeys, setUpSwitches, setUpTransport, showBands} from '#cloc
 import * as data from '#data';
 import {Plots} from '#diagrams';
 import {$, colour, makeChoice} from '#dom';
+import {Fmu} from '#fmu';
 import {setUpValues, watchTheme} from '#header';
 import {endingOf, layOutLabels, showStates} from '#labels';
-import {startLive} from '#live';
+import {LiveWheel} from '#live';
 import {phasesOf} from '#phases';
 import {Stage} from '#stage';
 import {Table, traceOf} from '#table';
@@ -55,7 +56,7 @@ class Page {
   }
 
   async start() {
-    if (data.live) await startLive(this, data.live);
+    if (data.live) this.live = new LiveWheel(this, await Fmu.load(data.live), data.live.wheels);
     this.stage = new Stage($('#stage'), this.size);
     this.switches = setUpSwitches(this.stage);
     setUpTransport(this.player);
@@ -117,11 +118,9 @@ class Page {
   /** One label for each wheel shown, over its view. */
   layOut() {
     if (!this.views) return;
-    this.stage.resize();
     showBands(this.shown, this.player);
-    const wheels = this.views.map((view) => view.filter(({size}) => !size));
-    layOutLabels($('#labels'), this.stage.rectangles(this.views.length), wheels);
-    this.stage.dirty = true;
+    layOutLabels($('#labels'), this.views.map((view) => view.filter(({size}) => !size)));
+    this.stage.resize([...$('#labels').children]);
   }
 
   /** What a view looks at: between its bodies if it follows, else the middle of their paths; and from how far. */

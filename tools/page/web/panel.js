@@ -17,7 +17,7 @@ function setUpStory(live) {
   });
   return () => {
     if (live.open) write(live.text);
-    const apart = live.open && !live.told;  // the text describes the step's own motion
+    const apart = live.open && !live.narrated;  // the text describes the step's own motion
     host.classList.toggle('apart', apart);
     again.hidden = !apart;
   };
@@ -140,12 +140,8 @@ function setUpNotes(live) {
 export function setUpPanel(live, wheels) {
   $('#live').hidden = false;
   document.body.classList.add('live');
-  const start = {take: (...given) => live.setStart(...given), present: (name) => live.value(name)};
-  const now = {
-    take: (...given) => live.setNow(...given),
-    present: (name) => live.present(name),
-    hold: (on) => live.hold(on)
-  };
+  const start = {take: live.setStart.bind(live), present: live.value.bind(live)};
+  const now = {take: live.setNow.bind(live), present: live.present.bind(live), hold: live.hold.bind(live)};
   const knobs = [['#start', START, start], ['#wheel', WHEEL, start], ['#now', NOW, now]].flatMap(
       ([place, list, acts]) => list.map((knob) => makeKnob($(place), knob, acts)));
   setUpReady(live, wheels);

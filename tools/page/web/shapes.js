@@ -42,7 +42,7 @@ export function pointArrow(arrow, vector) {
 
 /** A flat band on the ground along points [[x, y], ...], in layers one over the other. */
 export function makeRibbon(points, {width, height, layer, color, opacity}) {
-  const vertices = [];
+  const [vertices, corners] = [[], []];
   let across = [0, 1];
   points.forEach(([x, y], i) => {
     const [a, b] = [points[i - 1] ?? points[i], points[i + 1] ?? points[i]];
@@ -50,12 +50,11 @@ export function makeRibbon(points, {width, height, layer, color, opacity}) {
     if (length > 1e-9) across = [-(b[1] - a[1]) / length, (b[0] - a[0]) / length];
     const [dx, dy] = across.map((part) => (part * width) / 2);
     vertices.push(x + dx, y + dy, height, x - dx, y - dy, height);
+    if (i > 0) corners.push(...[-2, -1, 0, -1, 1, 0].map((k) => 2 * i + k));
   });
-  const corners =
-      Array.from({length: Math.max(0, points.length - 1)}, (_, i) => [0, 1, 2, 1, 3, 2].map((k) => 2 * i + k));
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.Float32BufferAttribute(vertices, 3));
-  geometry.setIndex(corners.flat());
+  geometry.setIndex(corners);
   const material =
       new THREE.MeshBasicMaterial({color, opacity, transparent: true, side: THREE.DoubleSide, depthWrite: false});
   return Object.assign(new THREE.Mesh(geometry, material), {frustumCulled: false, renderOrder: layer});

@@ -75,17 +75,13 @@ export class Stage {
     Object.assign(this, {models, dirty: true});
   }
 
-  /** The views' rectangles in CSS pixels: beside each other, above each other where the canvas is tall. */
-  rectangles(count) {
-    const {clientWidth: width, clientHeight: height} = this.canvas;
-    const [w, h] = width >= 0.9 * height ? [width / count, height] : [width, height / count];
-    return Array.from({length: count}, (_, i) => ({x: (i * w) % width, y: w < width ? 0 : i * h, w, h}));
-  }
-
-  resize() {
-    const {clientWidth, clientHeight} = this.canvas;
-    if (this.renderer.getSize(new THREE.Vector2()).equals({x: clientWidth, y: clientHeight})) return;
-    this.renderer.setSize(clientWidth, clientHeight, false);
+  /** Takes the canvas's size, and the views' rectangles {x, y, w, h} in CSS pixels from elements that lie over it. */
+  resize(elements) {
+    const [{x: left, y: top, width, height}, ...views] =
+        [this.canvas, ...elements].map((element) => element.getBoundingClientRect());
+    this.rectangles = views.map(({x, y, width: w, height: h}) => ({x: x - left, y: y - top, w, h}));
+    if (!this.renderer.getSize(new THREE.Vector2()).equals({x: width, y: height}))
+      this.renderer.setSize(width, height, false);
     this.dirty = true;
   }
 
@@ -125,7 +121,7 @@ export class Stage {
    */
   render(views, away) {
     this.widen(away);
-    this.rectangles(views.length).forEach(({x, y, w, h}, i) => {
+    this.rectangles.forEach(({x, y, w, h}, i) => {
       const {models, anchor, up} = views[i];
       for (const model of this.models) model.group.visible = models.includes(model);
       this.road.quaternion.setFromUnitVectors(up, THREE.Object3D.DEFAULT_UP);

@@ -77,12 +77,10 @@ export function setUpTaking(page) {
   on('copy', (event) => copy($('pre', host).textContent, event));
   const titles = {fmpy: 'The command line of FMPy', Python: 'A script with FMPy', C: 'A program without any library'};
   const options = Object.entries(titles).map(([name, title]) => ({name, title, textContent: name}));
-  let chosen = 'fmpy';
-  const tell = (name) => {
-    chosen = name;
+  const mark = makeChoice($('.tabs', host), options, (name) => {
     mark(name);
     $('pre', host).textContent = commands(live.plan, live.fmu.guid)[name];
-  };
-  const mark = makeChoice($('.tabs', host), options, tell);
-  host.addEventListener('beforetoggle', () => tell(chosen));
+  });
+  mark('fmpy');
+  host.addEventListener('beforetoggle', () => $('[aria-checked=true]', host).click());  // for the present plan
 }
