@@ -48,7 +48,7 @@ def answer(future: ProcessFuture) -> list[Verdict]:
 
 @part(75)
 def cases(report: Report) -> dict[str, object]:
-    """the sweep: each case at five tolerances, in a process of its own with a deadline"""
+    """the sweep: each case at five tolerances, in a separate process with a deadline"""
     chosen = sweep()[:: 6 if report.quick else 1]
     with ProcessPool(2, max_tasks=1, context=get_context("fork")) as pool:
         futures = [pool.schedule(alone, (report.library.folder, case), timeout=DEADLINE) for case in chosen]
