@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from study import Status
-from study.options import scale
+from values import scale
 
 from diagrams import style
 
