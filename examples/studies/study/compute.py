@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, replace
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 
 import dask
@@ -148,8 +147,8 @@ def finished(
 def divided(region: Region) -> list[Region]:
     """The region in pieces along its longest side; one wheel is one piece."""
     k = int(np.argmax([part.stop - part.start for part in region]))
-    edges = np.unique(np.linspace(region[k].start, region[k].stop, PIECES + 1).astype(int)).tolist()
-    return [(*region[:k], slice(*ends), *region[k + 1 :]) for ends in pairwise(edges)]
+    parts = [part.tolist() for part in np.array_split(range(region[k].start, region[k].stop), PIECES) if part.size]
+    return [(*region[:k], slice(part[0], part[-1] + 1), *region[k + 1 :]) for part in parts]
 
 
 def most(points: int, workers: int) -> int:
