@@ -176,8 +176,8 @@ class Study:
     def __post_init__(self) -> None:
         try:  # Python's numbers: equal studies have equal fields, whatever types they were given in
             plain = {kind: {n: [*map(float, x)] for n, x in getattr(self, kind).items()} for kind in KINDS}
-        except (TypeError, ValueError):
-            raise StudyError("The values of a name that varies must be a list of numbers.") from None
+        except (TypeError, ValueError) as fault:
+            raise StudyError(f"A name that varies needs a list of numbers ({fault}).") from None
         plain |= {"values": {n: float(x) for n, x in self.values.items()}}
         for name, value in (plain | {"history": [*self.history], "count": int(self.count)}).items():
             object.__setattr__(self, name, value)
@@ -248,6 +248,7 @@ class Study:
         check_names([*(m.variable for m in self.parsed.values()), *self.history], READABLE, variables)
         kinds = sum(bool(getattr(self, kind)) for kind in KINDS)
         lengths = {name: len(column) for name, column in self.list.items()}
+        empty = quoted(name for name, values in self.varied.items() if not values)
         both = quoted(name for name in self.varied if name in self.values and self.branch_at is None)
         integers = quoted(name for name in self.sampled if variables[name].type != "Real")
         names = [*self.measures, *self.history, *self.varied, *OWN, *counters_of(variables)]
@@ -256,7 +257,7 @@ class Study:
         for fault, text in (
             (kinds != 1, "Give exactly one of grid, list and sample: it lists the wheels."),
             (self.sample and self.count < 1, f"count = {self.count}: a sample needs at least one wheel."),
-            (not all(self.varied.values()), "A name that varies must have a list of numbers, at least one."),
+            (empty, f"The values of {empty} must be a list of numbers, at least one."),
             (both, f"{both} is in values and among the names that vary."),
             (len({*lengths.values()}) > 1, f"The columns of a list must have one length; these have: {lengths}."),
             (integers, f"{integers} is an integer: only its value at the end can be measured."),

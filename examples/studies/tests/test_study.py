@@ -148,6 +148,8 @@ VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3], "m=500
 def test_values_on_the_command_line_take_the_units_of_their_variables(axis: str, expected: list[float]) -> None:
     ((_, got),) = arguments_of(["--vary", axis]).study.grid.items()
     within(absolute_error(got, expected), 8 * EPSILON, f"{axis}, SI")
+    study = arguments_of(["--vary", "J_x=1,2", "--set", re.split("[:,]", axis)[0]]).study
+    within(absolute_error([*study.values.values()], expected[:1]), 8 * EPSILON, f"{axis}, the first, SI")
 
 
 def test_a_ready_wheel_gives_what_the_command_line_does_not() -> None:
