@@ -17,8 +17,6 @@ import numpy as np
 
 NO_LAW, FRICTIONLESS, ROLLING, HELD, REGULARIZED = range(5)
 LAWS = {"frictionless": FRICTIONLESS, "rolling": ROLLING, "held": HELD, "regularized": REGULARIZED}
-
-
 HEADER = Path(__file__).resolve().parents[2] / "fmu-src" / "equations" / "wheel_equations.h"
 
 
@@ -53,16 +51,10 @@ Parameters, Load, Friction, Scene, Motion = map(TYPES.get, ("Parameters", "Load"
 Kinematics, Dynamics, ReactionRates = map(TYPES.get, ("Kinematics", "Dynamics", "ReactionRates"))
 Contact, Formulation, DOUBLES = TYPES["Contact"], TYPES["Formulation"], POINTER(c_double)
 
-
-def load_library() -> ctypes.CDLL:
-    build = Path(os.environ.get("WHEEL_BUILD", Path(__file__).resolve().parents[2] / "build" / "release"))
-    (path, *_) = [*build.glob("libwheel_equations.*"), build]
-    if path == build:
-        raise FileNotFoundError(f"{build} holds no libwheel_equations: run ./scripts/build first.")
-    return ctypes.CDLL(str(path))
-
-
-LIBRARY = load_library()
+BUILD = Path(os.environ.get("WHEEL_BUILD", Path(__file__).resolve().parents[2] / "build" / "release"))
+if not (found := [*BUILD.glob("libwheel_equations.*")]):
+    raise FileNotFoundError(f"{BUILD} holds no libwheel_equations: run ./scripts/build first.")
+LIBRARY = ctypes.CDLL(str(found[0]))
 REDUCED = Formulation.in_dll(LIBRARY, "wheel_reduced")
 EULER = Formulation.in_dll(LIBRARY, "wheel_euler")
 MULTIBODY = Formulation.in_dll(LIBRARY, "wheel_multibody")
@@ -79,8 +71,7 @@ LIBRARY.wheel_reaction_rates.argtypes = [POINTER(t) for t in (Formulation, Scene
 
 def paper_wheel(**changes: float) -> Parameters:
     """The wheel of (27)-(31) without friction, with the named constants changed."""
-    constants = {"m": 20, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_y": 0.9, "J_z": 1.8, "g": 9.81}
-    return Parameters(**{**constants, **changes})
+    return Parameters(**{"m": 20, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_y": 0.9, "J_z": 1.8, "g": 9.81} | changes)
 
 
 def scene(

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from drawing import two_maps, wheel_of
 from study import Study
-from study.options import scale
+from values import scale
 
 from diagrams import style
 

@@ -13,7 +13,7 @@ import xarray as xr
 from drawing import rolling_inertia, upright_limit, wheel_of
 from matplotlib.ticker import LogLocator
 from study import Study
-from study.options import scale
+from values import scale
 
 from diagrams import style
 

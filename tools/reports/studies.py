@@ -49,7 +49,7 @@ def speed(report: Report) -> dict[str, object]:
     from study.compute import cluster, most
 
     runs = []
-    with TemporaryDirectory() as folder, cluster(1, None) as one, cluster(2, None) as two:
+    with TemporaryDirectory() as folder, cluster(1) as one, cluster(2) as two:
         turns = range(2 if report.quick else REPEATS + 1)
         for turn, (what, (_, wheels)), (n, client) in product(turns, ASKED.items(), ((1, one), (2, two))):
             found = timed(what, wheels if turn and not report.quick else FEW, Path(folder), client)

@@ -6,11 +6,9 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from study import Status
-from study.options import scale
+from values import scale
 
 from diagrams import style
 
@@ -43,6 +41,8 @@ def upright_limit(w: Mapping[str, float]) -> float:
 def two_maps(small: xr.Dataset, name: str, tones: str, levels: list[float], text: str, side: int = 1) -> tuple:
     """Maps of the variable `name`, for the free wheel and for the one with friction, and a scale; figure and axes.
 
+    Where a run ended early they have the flat colours of FATES.
+
     tones: the colour map, in steps, one tone between each two levels and one above the last.
     text: of the scale, with {} for the runs' length in s.
     side: of the paper's mark on which its name stands, 1 right, -1 left.
@@ -54,8 +54,13 @@ def two_maps(small: xr.Dataset, name: str, tones: str, levels: list[float], text
     look = {"cmap": colours, "norm": BoundaryNorm(levels, len(levels), extend="max")}
     faster = scale(wheel_of(small), s=-1)
     start, beside = (PAPER[0] * faster, PAPER[1]), {"xytext": (6 * side, 3), "ha": "left" if side > 0 else "right"}
+    spin, angle = np.abs(small["phi_dot_start"]), np.degrees(small["theta_start"])
     for ax, s in zip(axes, small["s"].values, strict=True):
-        shades = fill(ax, small[name].sel(s=s), small["status"].sel(s=s), look)
+        one = small.sel(s=s)
+        shades = ax.pcolormesh(spin, angle, one[name].where(one["status"] == Status.reached), rasterized=True, **look)
+        for code, colour in FATES.items():
+            fate = one["status"].where(one["status"] == code)
+            ax.pcolormesh(spin, angle, fate, cmap=ListedColormap([colour]), rasterized=True)
         ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:.3g} m", fontsize=9)
         ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"spin at the start $|\dot\varphi|$ [rad/s]")
         ax.plot(*start, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
@@ -67,13 +72,3 @@ def two_maps(small: xr.Dataset, name: str, tones: str, levels: list[float], text
     bar.set_label(text.format(studied(small)["stop_time"]))
     bar.ax.tick_params(size=0)
     return fig, axes
-
-
-def fill(ax: Axes, one: xr.DataArray, status: xr.DataArray, look: dict[str, object]) -> ScalarMappable:
-    """A map of `one`, with the flat colours of FATES where the run ended early."""
-    spin, angle = np.abs(one["phi_dot_start"].values), np.degrees(one["theta_start"].values)
-    shades = ax.pcolormesh(spin, angle, one.where(status == Status.reached), rasterized=True, **look)
-    for code, colour in FATES.items():
-        fate = np.ma.masked_where(status.values != code, np.ones(status.shape))
-        ax.pcolormesh(spin, angle, fate, cmap=ListedColormap([colour]), rasterized=True)
-    return shades

@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, replace
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 
 import dask
@@ -28,9 +27,8 @@ from fmpy import read_model_description
 from tqdm import tqdm
 
 from .dataset import TITLE, axes_of, open_results, points, provenance, template
-from .instance import Result
 from .plan import Status, Study, StudyError
-from .worker import MARK, Region, pack, run_chunk, write
+from .worker import MARK, Region, Result, pack, run_chunk, write
 
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
 STEPS = 10_000_000  # between communication points, in a chunk
@@ -72,7 +70,8 @@ def run(
     if group and not missing(group):
         return open_results(place)
     axes = axes_of(study)
-    with nullcontext(client) if client else cluster(workers, scheduler) as user:
+    there = nullcontext(client) if client else Client(scheduler, timeout="30s") if scheduler else cluster(workers)
+    with there as user:
         with tempfile.TemporaryDirectory() as folder:
             upload = pack(fmu, Path(folder) / f"wheel-{sha256[:16]}.zip")
             user.upload_file(str(upload))
@@ -148,8 +147,8 @@ def finished(
 def divided(region: Region) -> list[Region]:
     """The region in pieces along its longest side; one wheel is one piece."""
     k = int(np.argmax([part.stop - part.start for part in region]))
-    edges = np.unique(np.linspace(region[k].start, region[k].stop, PIECES + 1).astype(int)).tolist()
-    return [(*region[:k], slice(*ends), *region[k + 1 :]) for ends in pairwise(edges)]
+    parts = [part.tolist() for part in np.array_split(range(region[k].start, region[k].stop), PIECES) if part.size]
+    return [(*region[:k], slice(part[0], part[-1] + 1), *region[k + 1 :]) for part in parts]
 
 
 def most(points: int, workers: int) -> int:
@@ -165,12 +164,8 @@ def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
 
 
 @contextmanager
-def cluster(workers: int | None, scheduler: str | None) -> Iterator[Client]:
-    """A client of the scheduler at that address, or of a LocalCluster with one thread per process."""
-    if scheduler:
-        with Client(scheduler, timeout="30s") as client:
-            yield client
-        return
+def cluster(workers: int | None = None) -> Iterator[Client]:
+    """A client of a LocalCluster with one thread per process."""
     options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
     # Dask inspects itself so rarely that the caller's processor is free for a worker.
     options |= {"distributed.admin.tick.interval": "1s", "distributed.admin.system-monitor.interval": "10s"}

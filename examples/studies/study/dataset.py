@@ -14,9 +14,8 @@ import xarray as xr
 from fmpy.model_description import ModelDescription
 from matplotlib.lines import Line2D
 
-from .instance import Array
 from .plan import PLANE_ANGLE, POINT, Status, Study, counters_of
-from .worker import Region
+from .worker import Array, Region
 
 TITLE = "A study with wheel.fmu"
 ANGLE = "angle to the ground"

@@ -8,27 +8,29 @@ Plain data, by Python's standard library alone: scripts/study refuses an impossi
 
 from __future__ import annotations
 
+import ast
 import math
-import re
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
+from xml.etree import ElementTree
+from zipfile import BadZipFile, ZipFile
 
 if TYPE_CHECKING:
+    import numpy
     import xarray
     from values import Variable
 
+ROOT = Path(__file__).resolve().parents[3]
+SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
 KINDS = ("grid", "list", "sample")  # the ways to list wheels
 POINT = "wheel"  # the dimension of a list or a sample
 OWN = ("status", "message", "end_time", "wall_time", "fmu_time", "time", POINT)  # names that every study's results have
 PLANE_ANGLE = "plane_angle"
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_FORMS = re.compile(
-    rf"\s*(?:(?P<last>\w+)|(?P<kind>min|max|mean)\(\s*(?P<of>\w+)\s*\)"
-    rf"|first\(\s*(?P<watched>\w+)\s*(?P<side>[<>])\s*(?P<limit>{_NUMBER})\s*\))\s*"
-)
 
 
 class StudyError(ValueError):
@@ -64,18 +66,38 @@ class Measure(NamedTuple):
         """Whether the number is a time in s; otherwise it has the variable's unit."""
         return self.kind in "<>"
 
+    def value(self, t: numpy.ndarray, x: numpy.ndarray | float) -> float:
+        """For samples x of the variable at times t, the last of which is the end of the run; x at the end for `last`.
+
+        A time is that of the first passage, interpolated linearly between two samples; NaN if there is none.
+        """
+        if self.quantity == PLANE_ANGLE:
+            x = math.pi / 2 - abs(x - math.pi / 2)
+        if self.is_time:
+            beyond = x < self.limit if self.kind == "<" else x > self.limit
+            k = beyond.argmax()
+            if k == 0:
+                return t[0] if beyond[0] else math.nan
+            return t[k - 1] + (self.limit - x[k - 1]) / (x[k] - x[k - 1]) * (t[k] - t[k - 1])
+        if self.kind == "mean":
+            return ((t[1:] - t[:-1]) * (x[1:] + x[:-1]) / 2).sum() / (t[-1] - t[0]) if len(t) > 1 else x[-1]
+        return x if self.kind == "last" else getattr(x, self.kind)()
+
 
 def parse_measure(text: str) -> Measure:
-    """The measure that the text describes; StudyError if it describes none."""
-    found = _FORMS.fullmatch(f"min({PLANE_ANGLE})" if text.strip() == "lowest" else text)
-    if not found:
-        raise StudyError(
-            f"'{text}' is not a measure: write lowest, a variable's name, min(name), max(name), mean(name), "
-            "first(name < number) or first(name > number)."
-        )
-    if found["side"]:
-        return Measure(found["side"], found["watched"], float(found["limit"]))
-    return Measure(found["kind"] or "last", found["of"] or found["last"])
+    """The measure that the text, an expression in Python's grammar, describes; StudyError if it describes none."""
+    with suppress(SyntaxError, ValueError):
+        match ast.parse(text.replace("lowest", f"min({PLANE_ANGLE})").strip(), mode="eval").body:
+            case ast.Name(name):
+                return Measure("last", name)
+            case ast.Call(ast.Name("min" | "max" | "mean" as kind), [ast.Name(name)], []):
+                return Measure(kind, name)
+            case ast.Call(ast.Name("first"), [ast.Compare(ast.Name(name), [ast.Lt() | ast.Gt() as side], [limit])], []):
+                return Measure("<" if isinstance(side, ast.Lt) else ">", name, float(ast.literal_eval(limit)))
+    raise StudyError(
+        f"'{text}' is not a measure: write lowest, a variable's name, min(name), max(name), mean(name), "
+        "first(name < number) or first(name > number)."
+    )
 
 
 def can_change(variable: Variable) -> bool:
@@ -88,15 +110,34 @@ def counters_of(variables: Mapping[str, Variable]) -> list[str]:
     return [name for name, v in variables.items() if v.type == "Integer" and name.startswith("n_")]
 
 
-def numbers(name: str, values: Iterable[float]) -> list[float]:
-    """As Python's numbers: equal studies have equal fields, whatever types they were given in."""
+def description(fmu: Path) -> bytes:
+    """modelDescription.xml of the FMU or, before it is built, of the project."""
     try:
-        found = [float(value) for value in values]
-    except (TypeError, ValueError):
-        found = []
-    if not found:
-        raise StudyError(f"The values of '{name}' must be a list of numbers, at least one.")
-    return found
+        return ZipFile(fmu).read("modelDescription.xml")
+    except (OSError, BadZipFile, KeyError):
+        return (ROOT / "modelDescription.xml").read_bytes()
+
+
+def factors(body: Mapping[str, float]) -> dict[str, float]:
+    """By variable: its value in a motion of this wheel over that in the similar motion of the paper's."""
+    from values import scale, variables
+
+    text = description(ROOT / "wheel.fmu")
+    bases = {unit.get("name"): unit.find("BaseUnit").attrib for unit in ElementTree.fromstring(text).iter("Unit")}
+    powers = {unit: {n: int(base[n]) for n in ("kg", "m", "s") if n in base} for unit, base in bases.items()}
+    return {name: scale(body, **powers.get(v.unit, {})) for name, v in variables(text).items()}
+
+
+def check_names(names: Iterable[str], causalities: tuple[str, str], known: Mapping[str, Variable]) -> None:
+    """StudyError about the first name that is not a variable of these causalities."""
+    from values import suggestion
+
+    there = {name: v.description or "" for name, v in known.items() if v.causality in causalities}
+    for name in names:
+        if name not in there:
+            hint = suggestion(name, there) or f" There are {', '.join(there)}."
+            kind = "a parameter or input" if causalities == SETTABLE else "an output or local variable"
+            raise StudyError(f"'{name}' is not {kind} of this FMU.{hint}")
 
 
 def quoted(names: Iterable[str]) -> str:
@@ -133,10 +174,12 @@ class Study:
     branch_at: float | None = None
 
     def __post_init__(self) -> None:
-        plain = {kind: {n: numbers(n, x) for n, x in getattr(self, kind).items()} for kind in KINDS}
+        try:  # Python's numbers: equal studies have equal fields, whatever types they were given in
+            plain = {kind: {n: [*map(float, x)] for n, x in getattr(self, kind).items()} for kind in KINDS}
+        except (TypeError, ValueError) as fault:
+            raise StudyError(f"A name that varies needs a list of numbers ({fault}).") from None
         plain |= {"values": {n: float(x) for n, x in self.values.items()}}
-        plain |= {"history": [*self.history], "count": int(self.count)}
-        for name, value in plain.items():
+        for name, value in (plain | {"history": [*self.history], "count": int(self.count)}).items():
             object.__setattr__(self, name, value)
 
     def run(self, out: str | Path, **how: object) -> xarray.Dataset:
@@ -153,26 +196,26 @@ class Study:
 
         Lengths are in proportion to R = r_0 + r, times to sqrt(R), masses to m. StudyError if it sets such a parameter.
         """
-        from .options import factors, ready, scale
+        from values import ready, scale
 
         body = ready(wheel)
         factor, slower, given = factors(body), scale(body, s=1), self.varied | self.values
         if both := sorted({*body} & {*given} - {"phi_dot_start"}):
             raise StudyError(f"The study has values of {', '.join(both)}, which are those of the wheel {wheel}.")
 
-        def similar(name: str, *values: float) -> list[float]:
-            return [value * factor.get(name, 1.0) for value in values]
+        def similar(name: str, value: float) -> float:
+            return value * factor.get(name, 1.0)
 
         def measured(text: str) -> str:
             m = parse_measure(text)
-            return f"first({m.quantity} {m.kind} {similar(m.variable, m.limit)[0]!r})" if m.is_time else text
+            return f"first({m.quantity} {m.kind} {similar(m.variable, m.limit)!r})" if m.is_time else text
 
-        times = {n: getattr(self, n) for n in ("stop_time", "interval", "branch_at")}
-        own = {n: similar(n, x)[0] for n, x in self.values.items()}
+        columns = {kind: getattr(self, kind).items() for kind in KINDS}
+        own = {n: similar(n, x) for n, x in self.values.items()}
         return replace(
             self,
-            **{kind: {n: similar(n, *x) for n, x in getattr(self, kind).items()} for kind in KINDS},
-            **{n: t and t * slower for n, t in times.items()},
+            **{kind: {n: [similar(n, x) for x in column] for n, column in of} for kind, of in columns.items()},
+            **{n: t * slower for n in ("stop_time", "interval", "branch_at") if (t := getattr(self, n))},
             values={n: x for n, x in body.items() if n not in given} | own,
             measures={n: measured(text) for n, text in self.measures.items()},
         )
@@ -182,15 +225,15 @@ class Study:
         """The names that vary, with their values or bounds."""
         return self.grid | self.list | self.sample
 
-    @property
+    @cached_property
     def parsed(self) -> dict[str, Measure]:
         """The measures by the name of their result; StudyError if one cannot be parsed."""
         return {name: parse_measure(text) for name, text in self.measures.items()}
 
-    @property
-    def sampled(self) -> list[str]:
-        """Variables read at every communication point; the history comes first."""
-        return [*dict.fromkeys([*self.history, *(m.variable for m in self.parsed.values() if m.kind != "last")])]
+    @cached_property
+    def sampled(self) -> tuple[str, ...]:
+        """Variables read at every communication point."""
+        return tuple(dict.fromkeys([*self.history, *(m.variable for m in self.parsed.values() if m.kind != "last")]))
 
     @property
     def times(self) -> list[float]:
@@ -201,12 +244,11 @@ class Study:
 
     def check(self, variables: Mapping[str, Variable]) -> None:
         """StudyError if a name is unknown or the study does not suit the FMU."""
-        from .options import READABLE, SETTABLE, check_names
-
         check_names([*self.varied, *self.values], SETTABLE, variables)
         check_names([*(m.variable for m in self.parsed.values()), *self.history], READABLE, variables)
         kinds = sum(bool(getattr(self, kind)) for kind in KINDS)
         lengths = {name: len(column) for name, column in self.list.items()}
+        empty = quoted(name for name, values in self.varied.items() if not values)
         both = quoted(name for name in self.varied if name in self.values and self.branch_at is None)
         integers = quoted(name for name in self.sampled if variables[name].type != "Real")
         names = [*self.measures, *self.history, *self.varied, *OWN, *counters_of(variables)]
@@ -215,6 +257,7 @@ class Study:
         for fault, text in (
             (kinds != 1, "Give exactly one of grid, list and sample: it lists the wheels."),
             (self.sample and self.count < 1, f"count = {self.count}: a sample needs at least one wheel."),
+            (empty, f"The values of {empty} must be a list of numbers, at least one."),
             (both, f"{both} is in values and among the names that vary."),
             (len({*lengths.values()}) > 1, f"The columns of a list must have one length; these have: {lengths}."),
             (integers, f"{integers} is an integer: only its value at the end can be measured."),

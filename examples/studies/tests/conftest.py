@@ -14,12 +14,11 @@ from fmpy import extract, read_model_description
 from moto.server import ThreadedMotoServer
 
 STUDIES = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(STUDIES), str(STUDIES.parent / "python")]
+sys.path.insert(0, str(STUDIES))
 
 from study import Study, compute  # noqa: E402
 from study.dataset import axes_of, points, template  # noqa: E402
-from study.instance import Instance, run_block  # noqa: E402
-from study.worker import pack  # noqa: E402
+from study.worker import Instance, pack, run_block  # noqa: E402
 
 
 @pytest.fixture(scope="session")
@@ -55,7 +54,7 @@ def bucket() -> Iterator[str]:
 @pytest.fixture(scope="session")
 def crew(bucket: str) -> Iterator[Client]:
     """Two workers on this machine, for all tests of a process."""
-    with compute.cluster(2, None) as client:
+    with compute.cluster(2) as client:
         yield client
 
 

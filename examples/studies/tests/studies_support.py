@@ -3,11 +3,9 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import xarray as xr
-
-ROOT = Path(__file__).resolve().parents[3]
+from support.paths import ROOT
 
 
 def same(a: xr.Dataset, b: xr.Dataset) -> bool:

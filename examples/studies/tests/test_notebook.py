@@ -12,8 +12,6 @@ from support.bounds import beyond, within
 
 from publishing.notebook import NOTEBOOK, executed
 
-KEPT = nbformat.read(NOTEBOOK, as_version=4)
-
 
 def contents(notebook: nbformat.NotebookNode) -> tuple[list[str], list[np.ndarray]]:
     """The printed texts, with nine digits, for the last ones depend on the machine; the pictures in tones of grey."""
@@ -25,8 +23,8 @@ def contents(notebook: nbformat.NotebookNode) -> tuple[list[str], list[np.ndarra
     return words, [np.asarray(Image.open(file).convert("L"), dtype=float) for file in files]
 
 
-def test_what_the_notebook_keeps_is_what_its_cells_give(fmu_path: Path, tmp_path: Path) -> None:
-    words, pictures = contents(KEPT)
+def test_the_notebook_keeps_what_its_cells_give_and_nothing_of_the_machine(fmu_path: Path, tmp_path: Path) -> None:
+    words, pictures = contents(nbformat.read(NOTEBOOK, as_version=4))
     fresh_words, fresh_pictures = contents(executed(str(fmu_path), str(tmp_path)))
     assert words == fresh_words, "run ./scripts/notebook --write"
     for one, other in zip(pictures, fresh_pictures, strict=True):
@@ -35,10 +33,6 @@ def test_what_the_notebook_keeps_is_what_its_cells_give(fmu_path: Path, tmp_path
     height, width = np.minimum(pictures[0].shape, pictures[1].shape)
     apart = abs(pictures[0][:height, :width] - pictures[1][:height, :width]).mean()
     beyond(apart, 5, "another picture apart, of 255 tones of grey")
-
-
-def test_the_notebook_keeps_its_message_counts_and_pictures_and_nothing_of_the_machine() -> None:
-    words, pictures = contents(KEPT)
     printed, text = "".join(words), NOTEBOOK.read_text(encoding="utf-8")
     assert len(pictures) == 3
     assert "ended at t = 0.59" in printed and printed.count("of 40 wheels") == 3 and "nan" not in printed

@@ -16,10 +16,8 @@ import xarray as xr
 from distributed import Client, SubprocessCluster
 from studies_support import ROOT, command, same
 from study import Status, Study, StudyError, compute, curves, in_degrees
-from study.__main__ import study_file
-from study.instance import Result
-from study.options import arguments_of, file_of
-from study.worker import run_chunk
+from study.__main__ import arguments_of, file_of, study_file
+from study.worker import Result, run_chunk
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
 GUIDE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
@@ -59,16 +57,13 @@ def test_many_workers_and_one_give_bit_identical_results(fates: Study, results: 
     assert not same(alone(fates), other)
 
 
-def test_results_are_labelled_and_carry_what_is_needed_to_repeat_them(results: xr.Dataset) -> None:
+def test_results_have_short_labels_and_descriptions_and_carry_all_that_repeats_them(results: xr.Dataset) -> None:
     assert {*results["theta"].sizes.items()} == {("theta_start", 3), ("s", 2), ("phi_dot_start", 4), ("time", 101)}
     fates_seen = {Status(code).name for code in np.unique(results["status"])}
     assert fates_seen == {"reached", "flat", "lifted_off", "refused"}
     assert set(results.attrs) >= {"fmu_sha256", "fmu_version", "fmu_guid", "seed", "numpy_version", "study"}
     begun = results.sel(theta_start=np.radians(75.0), s=0.03, phi_dot_start=-2.0)
     assert float(begun["theta"][0]) == np.radians(75.0)
-
-
-def test_labels_are_short_and_the_description_is_kept(results: xr.Dataset) -> None:
     labels = {name: values.attrs["long_name"] for name, values in results.variables.items()}
     expected = {"theta_start": "θ at the start", "s": "s", "down": "first(θ < 0.5)"}
     assert (expected | {"phi_dot_start": "φ\N{COMBINING DOT ABOVE} at the start"}).items() <= labels.items()
@@ -151,16 +146,20 @@ VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3], "m=500
 
 @pytest.mark.parametrize(("axis", "expected"), VARY.items())
 def test_values_on_the_command_line_take_the_units_of_their_variables(axis: str, expected: list[float]) -> None:
-    ((_, got),) = arguments_of(["--vary", axis, "--stop-time", "2min"]).study.grid.items()
+    ((_, got),) = arguments_of(["--vary", axis]).study.grid.items()
     within(absolute_error(got, expected), 8 * EPSILON, f"{axis}, SI")
-    study = arguments_of(["--vary", "J_x=1,2", "--set", re.split("[:,]", axis)[0], "--stop-time", "2min"]).study
+    study = arguments_of(["--vary", "J_x=1,2", "--set", re.split("[:,]", axis)[0]]).study
     within(absolute_error([*study.values.values()], expected[:1]), 8 * EPSILON, f"{axis}, the first, SI")
-    assert study.stop_time == 120.0
 
 
 def test_a_ready_wheel_gives_what_the_command_line_does_not() -> None:
-    study = arguments_of(["--wheel", "coin", "--vary", "r=1mm,2mm", "--set", "m=8g"]).study
-    assert study.values["m"] == 0.008 and study.values["r_0"] == 0.011775 and "r" not in study.values
+    study = arguments_of(["--wheel", "coin", "--vary", "r=1mm,2mm", "--set", "m=8g", "--stop-time", "2min"]).study
+    assert (
+        study.stop_time == 120
+        and study.values["m"] == 0.008
+        and study.values["r_0"] == 0.011775
+        and "r" not in study.values
+    )
     assert study.grid == {"r": [0.001, 0.002]} and study.values["phi_dot_start"] < -10
 
 
@@ -182,7 +181,7 @@ def test_a_ready_wheel_gives_what_the_command_line_does_not() -> None:
 )
 def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> None:
     """Isolated, so without any installed package, as scripts/help asks before anything is built."""
-    options = ROOT / "examples" / "studies" / "study" / "options.py"
+    options = ROOT / "examples" / "studies" / "study" / "__main__.py"
     isolated = [sys.executable, "-I", "-S", options, *words.split()]
     done = subprocess.run(isolated, capture_output=True, text=True, check=False)
     assert done.returncode == 2
