@@ -28,6 +28,7 @@ X, Y, Z = np.eye(3)
 # Unit vectors in fixed axes. The eye stands 36 deg from X towards Y and 17 deg above the ground, the lamp left of it.
 EYE, RIGHT, UP = Rotation.from_euler("ZY", [36.0, -17.0], degrees=True).as_matrix().T
 LAMP = (Z + 0.55 * (EYE - RIGHT)) / np.linalg.norm(Z + 0.55 * (EYE - RIGHT))
+HALF = (LAMP + EYE) / np.linalg.norm(LAMP + EYE)  # normal of a surface that mirrors the lamp
 TYRE, MARK, SHADOW = (0.72, 0.79, 0.86), (1.0, 0.66, 0.12), (0.0, 0.0, 0.0, 0.17)
 INK, CARRIER, ANGLE, PATH = style.INK, "#00507C", "#00704F", style.VERMILLION
 REFERENCE = {"color": "#5A5A5A", "width": 0.7, "arrow": False}
@@ -44,19 +45,13 @@ class Wheel(NamedTuple):
 
     r_0: float
     r: float
-    psi: float
-    theta: float
-    phi: float
-    X_O: float
-    Y_O: float
+    angles: Sequence[float]  # psi, theta, phi of (3)
+    place: Sequence[float] = (0.0, 0.0)  # X_O, Y_O
 
-    def axes(self) -> Array:
-        """Rows e1, e2, e3 in fixed axes: [psi][theta] of (3)."""
-        return Rotation.from_euler("ZX", [self.psi, self.theta]).as_matrix().T
-
-    def centre(self) -> Array:
-        """O; its height follows from contact, (32)."""
-        return np.array([self.X_O, self.Y_O, self.r_0 * np.sin(self.theta) + self.r])
+    def frame(self) -> Array:
+        """Rows e1, e2, e3 in fixed axes, [psi][theta] of (3), and O, whose height follows from contact, (32)."""
+        axes = Rotation.from_euler("ZX", self.angles[:2]).as_matrix().T
+        return np.array([*axes, [*self.place, self.r_0 * np.sin(self.angles[1]) + self.r]])
 
     def image(self, window: Sequence[float], pixels: int, shadow: bool) -> Image.Image:
         """The wheel, transparent around it, `pixels` wide; window: left, right, bottom, top in m.
@@ -66,10 +61,10 @@ class Wheel(NamedTuple):
         left, right, bottom, top = window
         scale = 2 * pixels / (right - left)
         around, turn = (np.linspace(0, 2 * np.pi, int(9 * size * scale)) for size in (self.r, self.r_0 + self.r))
-        around, turn, (e1, e2, e3) = around[:, None, None], turn[:, None], self.axes()
-        outward = np.cos(turn + self.phi) * e1 + np.sin(turn + self.phi) * e2
+        around, turn, (e1, e2, e3, centre) = around[:, None, None], turn[:, None], self.frame()
+        outward = np.cos(turn + self.angles[2]) * e1 + np.sin(turn + self.angles[2]) * e2
         normal = np.cos(around) * outward + np.sin(around) * e3
-        points = self.centre() + self.r_0 * outward + self.r * normal
+        points = centre + self.r_0 * outward + self.r * normal
         order = np.argsort(points @ EYE, axis=None)
         colours = shaded(normal, np.where(np.cos(turn) > np.cos(0.06), MARK, TYRE)).reshape(-1, 4)[order]
         canvas = np.zeros((round((top - bottom) * scale), 2 * pixels, 4))
@@ -81,8 +76,7 @@ class Wheel(NamedTuple):
 
 def shaded(normal: Array, base: Array) -> Array:
     """RGBA in soft diffuse light, with a dark edge and a small highlight."""
-    half = (LAMP + EYE) / np.linalg.norm(LAMP + EYE)
-    diffuse, facing, shine = (np.clip(normal @ to, 0.0, 1.0)[..., None] for to in (LAMP, EYE, half))
+    diffuse, facing, shine = (np.clip(normal @ to, 0.0, 1.0)[..., None] for to in (LAMP, EYE, HALF))
     edge = np.clip(facing / 0.35, 0.0, 1.0) ** 0.6
     shade = (0.45 + 0.11 * normal[..., 2:] + 0.52 * diffuse) * (0.45 + 0.55 * edge)
     return np.insert(np.clip(base * shade + 0.30 * shine**40, 0.0, 1.0), 3, 1.0, axis=-1)
@@ -107,7 +101,7 @@ def stroke(ax: Axes, line: Array, color: str, width: float = 1.2, arrow: bool = 
 def draw_lines(ax: Axes, wheel: Wheel, path: Array) -> None:
     """A grid of 0.1 m, the path, fixed axes, axes that do not spin, r_0 and r; psi from X to e1, theta from Z to e3,
     phi from e1 to the body's x."""
-    (e1, e2, e3), centre, phi = wheel.axes(), wheel.centre(), wheel.phi % (2 * np.pi)
+    (e1, e2, e3, centre), (psi, theta, phi) = wheel.frame(), np.mod(wheel.angles, 2 * np.pi)
     x, tube = np.cos(phi) * e1 + np.sin(phi) * e2, centre - wheel.r_0 * e2
     contact = tube - wheel.r * Z
     grid = project(np.stack([*np.mgrid[-0.9:0.3:13j, -0.4:0.7:12j], np.zeros((13, 12))], axis=-1)).T
@@ -129,8 +123,8 @@ def draw_lines(ax: Axes, wheel: Wheel, path: Array) -> None:
         stroke(ax, [origin, origin + end], **look)
         label(ax, origin + end, name, shift, look["color"], 8.0 if look is REFERENCE else 10.5)
     for start, axis, angle, middle, name, at, shift in (
-        (0.20 * X, Z, wheel.psi % (2 * np.pi), contact, r"$\psi$", 137, (8, -7)),
-        (0.13 * Z, e1, wheel.theta, centre, r"$\theta$", 60, (3, 8)),
+        (0.20 * X, Z, psi, contact, r"$\psi$", 137, (8, -7)),
+        (0.13 * Z, e1, theta, centre, r"$\theta$", 60, (3, 8)),
         (0.20 * e1, e3, phi, centre, r"$\varphi$", 45, (-8, -1)),
     ):
         arc = middle + Rotation.from_rotvec(np.outer(np.linspace(0.0, angle, 300), axis)).apply(start)
@@ -154,7 +148,8 @@ def main() -> None:
     except SceneError as fault:
         sys.exit(f"picture: {fault}")
     row = int(np.argmin(abs(scene.time - INSTANT)))
-    wheel = Wheel(*(float(scene[name][row]) for name in Wheel._fields))
+    angles, place = ([scene[name][row] for name in names] for names in (("psi", "theta", "phi"), ("X_O", "Y_O")))
+    wheel = Wheel(scene.value("r_0"), scene.value("r"), angles, place)
     fig = style.figure_mm(WIDTH, WIDTH / 1.64)
     ax = fig.add_axes((0, 0, 1, 1))
     ax.set_axis_off()
@@ -166,8 +161,8 @@ def main() -> None:
     style.text_mm(fig, 3.0, 3.0, note, fontsize=8.5, color=style.GREY)
     svg, png = style.save(fig, ROOT / "docs" / "figures" / "wheel", DPI)
     Image.open(png).convert("RGB").quantize(256, kmeans=1).save(png, optimize=True)  # it goes into the archive
-    leaning = Wheel(0.3, 0.07, *np.radians([166.0, 66.0, 40.0]), 0.0, 0.0)  # a thicker tyre reads better when small
-    (u, v), half = project(leaning.centre()), 0.40  # m
+    leaning = Wheel(0.3, 0.07, np.radians([166.0, 66.0, 40.0]))  # a thicker tyre reads better when small
+    (u, v), half = project(leaning.frame()[3]), 0.40  # m
     icon = ROOT / "fmu-src" / "archive" / "model.png"
     leaning.image((u - half, u + half, v - half, v + half), ICON, shadow=False).save(icon, optimize=True)
     print(svg, png, icon, sep="\n")
