@@ -69,9 +69,8 @@ function(add_libm)
   if(WHEEL_SANITIZE) # it shifts negative numbers, which every compiler here does alike
     target_compile_options(libm PRIVATE -fno-sanitize=all)
   endif()
-  if(APPLE) # its compiler would merge sin and cos into a call of the system's
-    target_compile_options(wheel_options INTERFACE -fno-builtin-sin -fno-builtin-cos)
-  endif()
+  # Apple's compiler would merge sin and cos into a call of the system's.
+  target_compile_options(wheel_options INTERFACE "$<$<PLATFORM_ID:Darwin>:-fno-builtin-sin;-fno-builtin-cos>")
 endfunction()
 
 function(link_libm target)

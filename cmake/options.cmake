@@ -27,9 +27,7 @@ target_compile_options(
   INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
 )
 target_compile_options(wheel_options INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions;-fno-rtti;-Wold-style-cast>")
-if(WHEEL_FUZZ)
-  target_compile_options(wheel_options INTERFACE -fsanitize=fuzzer-no-link)
-endif()
+target_compile_options(wheel_options INTERFACE $<$<BOOL:${WHEEL_FUZZ}>:-fsanitize=fuzzer-no-link>)
 if(WHEEL_COVERAGE)
   target_compile_options(wheel_options INTERFACE --coverage -fprofile-update=atomic -Og)
   add_link_options(--coverage)
@@ -41,10 +39,11 @@ endif()
 
 # Needs libc and libm only, exports fmi2* only.
 function(link_self_contained target)
-  set_target_properties(${target} PROPERTIES PREFIX "")
-  if(APPLE) # no path of the building machine as the library's own name
-    set_target_properties(${target} PROPERTIES INSTALL_NAME_DIR @rpath BUILD_WITH_INSTALL_NAME_DIR ON)
-  endif()
+  # On macOS no path of the building machine as the library's own name.
+  set_target_properties(
+    ${target}
+    PROPERTIES PREFIX "" INSTALL_NAME_DIR @rpath BUILD_WITH_INSTALL_NAME_DIR ON
+  )
   if(NOT APPLE AND NOT WIN32)
     set(exports ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
     target_link_options(${target} PRIVATE -Wl,--version-script=${exports} -Wl,--gc-sections -Wl,--build-id=none)
