@@ -5,16 +5,9 @@ if(NOT Python3_EXECUTABLE AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/../.venv/bin/pyth
 endif()
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
-if(NOT FMI2_INCLUDE_DIR)
-  execute_process(
-    COMMAND
-      ${Python3_EXECUTABLE} -c "import importlib.util as u; print(u.find_spec('fmpy').submodule_search_locations[0])"
-    OUTPUT_VARIABLE fmpy_folder
-    OUTPUT_STRIP_TRAILING_WHITESPACE
-    ERROR_QUIET
-  )
-  find_path(FMI2_INCLUDE_DIR fmi2Functions.h HINTS ${fmpy_folder}/c-code NO_DEFAULT_PATH)
-endif()
+set(packages ${Python3_SITELIB} ${Python3_SITEARCH})
+list(TRANSFORM packages APPEND /fmpy/c-code)
+find_path(FMI2_INCLUDE_DIR fmi2Functions.h HINTS ${packages} NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
 if(NOT FMI2_INCLUDE_DIR)
   message(
     FATAL_ERROR

@@ -12,26 +12,11 @@ set(
 # Each behind those that it calls: a linker that has met a call takes the function from the C library.
 set(
   libm_compiled
-  common/math_err.c
-  common/exp_data.c
-  common/pow_log_data.c
-  common/exp.c
-  common/s_expm1.c
-  common/pow.c
-  math/k_rem_pio2.c
-  math/s_tanh.c
-  math/e_cosh.c
+  "common/math_err.c;common/exp_data.c;common/pow_log_data.c;common/exp.c;common/s_expm1.c;common/pow.c"
 )
+list(APPEND libm_compiled "math/k_rem_pio2.c;math/s_tanh.c;math/e_cosh.c")
 # Read by cmake/libm/trigonometry.c, or headers.
-set(
-  libm_included
-  math/k_sin.c
-  math/k_cos.c
-  math/e_rem_pio2.c
-  math/s_sin.c
-  math/s_cos.c
-  common/math_config.h
-)
+set(libm_included "math/k_sin.c;math/k_cos.c;math/e_rem_pio2.c;math/s_sin.c;math/s_cos.c;common/math_config.h")
 
 # The files in one folder, from an archive or a tree: beside each other, but without newlib's own fdlibm.h.
 function(unpack_libm folder)
@@ -84,9 +69,8 @@ function(add_libm)
   if(WHEEL_SANITIZE) # it shifts negative numbers, which every compiler here does alike
     target_compile_options(libm PRIVATE -fno-sanitize=all)
   endif()
-  if(APPLE) # its compiler would merge sin and cos into a call of the system's
-    target_compile_options(wheel_options INTERFACE -fno-builtin-sin -fno-builtin-cos)
-  endif()
+  # Apple's compiler would merge sin and cos into a call of the system's.
+  target_compile_options(wheel_options INTERFACE "$<$<PLATFORM_ID:Darwin>:-fno-builtin-sin;-fno-builtin-cos>")
 endfunction()
 
 function(link_libm target)

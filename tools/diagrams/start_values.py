@@ -48,8 +48,8 @@ def values(arguments: list[str]) -> dict[str, str]:
         name, equals, text = argument.partition("=")
         if name == "wheel" or (not equals and name in names):
             body = ready(text or name)
-            rows = 0.01 / max(1, round(scale(body, s=-1)))
-            found = {n: repr(v) for n, v in (body | {"s": PAPER_S * scale(body, m=1), "output_interval": rows}).items()}
+            body |= {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
+            found = {name: repr(value) for name, value in body.items()}
         elif not equals:
             meant = suggestion(name, dict.fromkeys(names, ""))
             raise Fault(f'"{argument}" is neither name=value nor a ready wheel.{meant} See ./scripts/run --help.')

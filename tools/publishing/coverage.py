@@ -30,15 +30,8 @@ REASONS = (
     ("fmu-src/wheel/events.cpp", "Consequence observe(", OBSERVED),
     ("fmu-src/solver/solver.cpp", "step_.set_point(stop,", "a stop time within rounding of a step's end: none was met"),
 )
-
-
-COLUMNS = {
-    "filename": "file",
-    "line_covered": "lines reached",
-    "line_total": "lines",
-    "branch_covered": "branches reached",
-    "branch_total": "branches",
-}
+COLUMNS = {"filename": "file", "line_covered": "lines reached", "line_total": "lines"}
+COLUMNS |= {"branch_covered": "branches reached", "branch_total": "branches"}
 
 
 def unreached(report: Path) -> pd.DataFrame:
@@ -59,12 +52,9 @@ def unreached(report: Path) -> pd.DataFrame:
 def main(by_file: Path, report: Path) -> int:
     table, missing = pd.read_csv(by_file)[[*COLUMNS]].rename(columns=COLUMNS), unreached(report)
     share = {of: 100 * table[f"{of} reached"].sum() / table[of].sum() for of in ("lines", "branches")}
-    figures = [
-        ("lines", round(share["lines"], 1), "%", "lines of fmu-src reached"),
-        ("branches", round(share["branches"], 1), "%", "branches reached"),
-    ]
-    all_of_it = pd.DataFrame(figures, columns=["figure", "measured", "unit", "what"])
-    for name, rows in (("", table), ("_unreached", missing), ("_all", all_of_it)):
+    whats = {"lines": "lines of fmu-src reached", "branches": "branches reached"}
+    figures = [{"figure": of, "measured": round(share[of], 1), "unit": "%", "what": what} for of, what in whats.items()]
+    for name, rows in (("", table), ("_unreached", missing), ("_all", pd.DataFrame(figures))):
         rows.to_csv(DATA / f"coverage{name}.csv", index=False)
     unknown = missing["why"].str.startswith("**").sum()
     gone = [f"{name}: {piece}" for name, piece, _ in REASONS if piece not in (ROOT / name).read_text(encoding="utf-8")]

@@ -9,7 +9,6 @@ paragraph. With --check nothing is changed; the exit status is 1 where a page di
 
 from __future__ import annotations
 
-import argparse
 import csv
 import re
 import subprocess
@@ -68,9 +67,7 @@ def pages() -> list[Path]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true", help="change nothing; exit status 1 if a page is stale")
-    check = parser.parse_args().check
+    check = sys.argv[1:] == ["--check"]
     figures, known, stale = read_figures(), variables.read_variables(), 0
     for page in pages():
         text = page.read_text(encoding="utf-8")

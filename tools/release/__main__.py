@@ -25,12 +25,6 @@ def step(text: str) -> None:
     print(f"\n== {text} ({time.monotonic() - BEGIN:.0f} s)", flush=True)
 
 
-def test_contract() -> None:
-    judge = [sys.executable, "-m", "pytest", "-q", "-n", str(os.cpu_count()), "-m", "not local"]
-    tests = ["tests/contract", "tests/robustness/test_allocations.py"]
-    subprocess.run([*judge, *tests], env=os.environ | {"WHEEL_BUILD": str(OUT)}, check=True)
-
-
 def build_elsewhere(first: Path, scratch: Path) -> str:
     """The same again, from sources, SUNDIALS and compiler in other folders: the two FMUs must be identical.
 
@@ -73,7 +67,16 @@ def main() -> None:
         step("the libraries as files")
         table = libraries.table(OUT)
         step("the contract's tests on the released Linux library")
-        test_contract()
+        tests = [
+            "-q",
+            "-n",
+            str(os.cpu_count()),
+            "-m",
+            "not local",
+            "tests/contract",
+            "tests/robustness/test_allocations.py",
+        ]
+        subprocess.run([sys.executable, "-m", "pytest", *tests], env=os.environ | {"WHEEL_BUILD": str(OUT)}, check=True)
         step("the same again in another folder")
         twice = build_elsewhere(released, scratch)
         step("FMPy, with the Windows library under wine")

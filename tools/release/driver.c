@@ -16,23 +16,24 @@ enum {
 };
 enum { first_output = ref_X_O, output_count = ref_E - ref_X_O };
 
-struct scene {
+static const fmi2ValueReference choices[] = {ref_formulation, ref_friction_law, ref_method},
+                                reals[] = {ref_s, ref_J_y, ref_r, ref_psi_dot_start, ref_M_3},
+                                contact = ref_keep_contact, force = ref_F_X;
+static const struct scene {
   const char* name;
-  int choices[3];                                /* formulation, friction law, method */
-  double s, J_y, r, rate, M_3, slope, tolerance; /* slope: of F_X in time, N/s */
-};
-
-static const struct scene scenes[] = {
-    {"free", {1, 1, 1}, 0, 0.9, 0.05, 0, 0, 0, 1e-8},
-    {"friction", {1, 1, 1}, 0.03, 0.9, 0.05, 0, 0, 0, 1e-8},
-    {"free, multibody", {3, 1, 1}, 0, 0.9, 0.05, 0, 0, 0, 1e-8},
-    {"friction, multibody", {3, 1, 1}, 0.03, 0.9, 0.05, 0, 0, 0, 1e-8},
-    {"general inertia", {1, 1, 1}, 0, 1.1, 0.05, 0, 0, 0, 1e-8},
-    {"regularized friction, bdf", {1, 2, 3}, 0.03, 0.9, 0.05, 0, 0, 0, 1e-8},
-    {"thin disc", {1, 1, 1}, 0, 0.9, 0, 1, 0, 0, 1e-8},
-    {"driven", {1, 1, 1}, 0, 0.9, 0.05, 0, 0.5, 0, 1e-8},
-    {"driven on a slope in time", {1, 1, 1}, 0.01, 0.9, 0.05, 0, 0.2, 0.1, 1e-6},
-    {"tight tolerance", {1, 1, 1}, 0, 0.9, 0.05, 0.5, 0, 0, 1e-12},
+  int choices[3];
+  double reals[5], slope, tolerance; /* slope: of F_X in time, N/s */
+} scenes[] = {
+    {"free", {1, 1, 1}, {0, 0.9, 0.05, 0, 0}, 0, 1e-8},
+    {"friction", {1, 1, 1}, {0.03, 0.9, 0.05, 0, 0}, 0, 1e-8},
+    {"free, multibody", {3, 1, 1}, {0, 0.9, 0.05, 0, 0}, 0, 1e-8},
+    {"friction, multibody", {3, 1, 1}, {0.03, 0.9, 0.05, 0, 0}, 0, 1e-8},
+    {"general inertia", {1, 1, 1}, {0, 1.1, 0.05, 0, 0}, 0, 1e-8},
+    {"regularized friction, bdf", {1, 2, 3}, {0.03, 0.9, 0.05, 0, 0}, 0, 1e-8},
+    {"thin disc", {1, 1, 1}, {0, 0.9, 0, 1, 0}, 0, 1e-8},
+    {"driven", {1, 1, 1}, {0, 0.9, 0.05, 0, 0.5}, 0, 1e-8},
+    {"driven on a slope in time", {1, 1, 1}, {0.01, 0.9, 0.05, 0, 0.2}, 0.1, 1e-6},
+    {"tight tolerance", {1, 1, 1}, {0, 0.9, 0.05, 0.5, 0}, 0, 1e-12},
 };
 
 /* Steps of one instance; `table` has for each step the values of the inputs, then their derivatives of order 1 to
@@ -54,15 +55,13 @@ typedef struct Outcome {
 enum { most_inputs = 8 };
 static Fmu fmu;
 
-static struct timespec now(void) {
-  struct timespec t;
-  timespec_get(&t, TIME_UTC);
-  return t;
-}
-
-static double since(struct timespec begin) {
-  const struct timespec end = now();
-  return (double)(end.tv_sec - begin.tv_sec) + 1e-9 * (double)(end.tv_nsec - begin.tv_nsec);
+/* Since the program's first call. */
+static double seconds(void) {
+  static struct timespec first;
+  struct timespec now;
+  timespec_get(&now, TIME_UTC);
+  if (!first.tv_sec) first = now;
+  return (double)(now.tv_sec - first.tv_sec) + 1e-9 * (double)(now.tv_nsec - first.tv_nsec);
 }
 
 void load(const char* path) { fmu = fmu_of(path); }
@@ -84,22 +83,22 @@ static fmi2Status communicate(fmi2Component c, const Run* run, long step, double
 
 /* rows: the outputs after each step; paces: seconds of each step, the clock's own cost included, or null. */
 Outcome march(fmi2Component c, const Run* run, double* rows, double* paces) {
-  const struct timespec begin = now();
+  const double begin = seconds();
   Outcome done = {0, 0};
   for (; done.steps < run->steps; ++done.steps) {
-    const struct timespec before = paces ? now() : begin;
+    const double before = paces ? seconds() : begin;
     if (communicate(c, run, done.steps, rows + (size_t)done.steps * run->output_count) > fmi2Warning) break;
-    if (paces) paces[done.steps] = since(before);
+    if (paces) paces[done.steps] = seconds() - before;
   }
-  done.seconds = since(begin);
+  done.seconds = seconds() - begin;
   return done;
 }
 
 /* Seconds of a call that does nothing. */
 double empty_call(fmi2Component c, long calls) {
-  const struct timespec begin = now();
+  const double begin = seconds();
   for (long i = 0; i < calls; ++i) fmu.GetReal(c, NULL, 0, NULL);
-  return since(begin) / (double)calls;
+  return (seconds() - begin) / (double)calls;
 }
 
 static void quiet(fmi2ComponentEnvironment e, fmi2String n, fmi2Status status, fmi2String c, fmi2String m, ...) {
@@ -111,13 +110,10 @@ static fmi2Component start(const struct scene* scene, const char* guid) {
   static const fmi2CallbackFunctions functions = {quiet, calloc, free, NULL, NULL};
   const fmi2Component c = fmu.Instantiate("wheel", fmi2CoSimulation, guid, "", &functions, 0, 0);
   if (!c) exit(1);
-  const fmi2ValueReference reals[] = {ref_s, ref_J_y, ref_r, ref_psi_dot_start, ref_M_3},
-                           whole[] = {ref_formulation, ref_friction_law, ref_method}, contact = ref_keep_contact;
-  const double values[] = {scene->s, scene->J_y, scene->r, scene->rate, scene->M_3};
   const fmi2Boolean kept = fmi2True;
   fmu.SetupExperiment(c, 1, scene->tolerance, 0, 0, 0);
-  fmu.SetReal(c, reals, 5, values);
-  fmu.SetInteger(c, whole, 3, scene->choices);
+  fmu.SetReal(c, reals, 5, scene->reals);
+  fmu.SetInteger(c, choices, 3, scene->choices);
   fmu.SetBoolean(c, &contact, 1, &kept);
   fmu.EnterInitializationMode(c);
   if (fmu.ExitInitializationMode(c) != fmi2OK) exit(1);
@@ -126,20 +122,19 @@ static fmi2Component start(const struct scene* scene, const char* guid) {
 
 /* Seconds to create, initialize and free an instance in one of the scenes below. */
 double life(const char* guid, int scene) {
-  const struct timespec begin = now();
+  const double begin = seconds();
   fmu.FreeInstance(start(scenes + scene, guid));
-  return since(begin);
+  return seconds() - begin;
 }
 
 /* FNV-1a over the bits of 500 rows, 0.02 s apart. */
 static void print_hash(const struct scene* scene, const char* guid) {
   enum { steps = 500 };
-  static double force[2 * steps], rows[steps * output_count];
+  static double pushes[2 * steps], rows[steps * output_count];
   static fmi2ValueReference outputs[output_count];
-  const fmi2ValueReference pushed = ref_F_X;
   for (unsigned i = 0; i < output_count; ++i) outputs[i] = first_output + i;
-  for (int i = 0; i < steps; ++i) force[2 * i] = scene->slope * 0.02 * i, force[2 * i + 1] = scene->slope;
-  const Run run = {&pushed, outputs, scene->slope != 0, output_count, 1, force, 0.02, steps};
+  for (int i = 0; i < steps; ++i) pushes[2 * i] = scene->slope * 0.02 * i, pushes[2 * i + 1] = scene->slope;
+  const Run run = {&force, outputs, scene->slope != 0, output_count, 1, pushes, 0.02, steps};
   const fmi2Component c = start(scene, guid);
   const long done = march(c, &run, rows, NULL).steps;
   uint64_t hash = 0xcbf29ce484222325u;

@@ -6,10 +6,9 @@ Each rule is checked on every library; the first that is broken ends the release
 from __future__ import annotations
 
 import hashlib
+import re
 import struct
-from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 import lief
 
@@ -19,6 +18,18 @@ from release.fmu import ARM, ARM_MAC, LINUX, UNIVERSAL, WINDOWS
 GLIBC_FLOOR = (2, 17)
 MACOS_FLOOR = [11, 0, 0]
 FUNCTIONS = 44  # of FMI 2.0
+NEEDS = re.compile(
+    r"lib[cm]\.so\.6|ld-linux-(x86-64|aarch64)\.so\.[12]|(?i:kernel32\.dll)|api-ms-win-crt-.*|/usr/lib/libSystem\.B\.dylib"
+)
+INTEL, ARM_64 = lief.Header.ARCHITECTURES.X86_64, lief.Header.ARCHITECTURES.ARM64
+LIBRARIES = (
+    ("linux64", f"{LINUX}/wheel.so", INTEL),
+    ("aarch64-linux", f"{ARM}/wheel.so", ARM_64),
+    ("win64", f"{WINDOWS}/wheel.dll", INTEL),
+    ("darwin64 (x86-64)", UNIVERSAL, INTEL),
+    ("darwin64 (arm64)", UNIVERSAL, ARM_64),
+    ("aarch64-darwin", f"{ARM_MAC}/wheel.dylib", ARM_64),
+)
 LARGEST = 1 << 20  # bytes of a library for one processor
 # What the systems' own mathematics may be asked for: it is exact. All else is compiled in.
 EXACT = {"floor", "ceil", "trunc", "fabs", "sqrt", "fmod", "scalbn", "ldexp", "frexp", "modf", "copysign"}
@@ -27,62 +38,24 @@ INEXACT = {"sin", "cos", "sincos", "tan", "asin", "acos", "atan", "atan2", "sinh
 INEXACT |= {"atanh", "exp", "exp2", "expm1", "log", "log2", "log10", "log1p", "pow", "cbrt", "hypot"}
 
 
-class Facts(NamedTuple):
-    name: str
-    size: int
-    exports: set[str]
-    imports: set[str]
-    needs: set[str]  # libraries
-    oldest: str  # system on which it loads
-
-
 def require(name: str, holds: bool, rule: str) -> None:
     if not holds:
         raise SystemExit(f"{name}: {rule}")
 
 
-def linux(name: str, path: Path, machine: lief.ELF.ARCH) -> Facts:
-    library = lief.ELF.parse(str(path))
-    require(name, library.header.machine_type == machine, "is for another processor")
-    needs = set(library.libraries)
-    allowed = {"libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
-    require(name, needs <= allowed, f"needs {needs - allowed}")
-    asked = {v.name for r in library.symbols_version_requirement for v in r.get_auxiliary_symbols()}
-    versions = [tuple(int(n) for n in version.removeprefix("GLIBC_").split(".")) for version in asked]
-    require(name, max(versions) <= GLIBC_FLOOR, f"asks for glibc {max(versions)}")
-    stack = library.get(lief.ELF.Segment.TYPE.GNU_STACK)
-    require(name, stack is not None and not stack.has(lief.ELF.Segment.FLAGS.X), "has an executable stack")
-    exports = {s.name for s in library.exported_symbols} - {"WHEEL", "wheel_1"}
-    imports = {s.name for s in library.imported_symbols}
-    newest = ".".join(map(str, max(versions)))
-    return Facts(name, path.stat().st_size, exports, imports, needs, f"glibc 2.17; newest symbol asked for: {newest}")
-
-
-def windows(name: str, path: Path) -> Facts:
-    library = lief.PE.parse(str(path))
-    require(name, library.header.machine == lief.PE.Header.MACHINE_TYPES.AMD64, "is for another processor")
-    needs = {entry.name for entry in library.imports}
-    foreign = {n for n in needs if n.lower() != "kernel32.dll" and not n.startswith("api-ms-win-crt-")}
-    require(name, not foreign, f"needs {foreign}")
-    exports = {entry.name for entry in library.get_export().entries}
-    imports = {f.name for entry in library.imports for f in entry.entries}
-    return Facts(name, path.stat().st_size, exports, imports, {"kernel32", "the C run-time"}, "Windows 10")
-
-
-def macos(name: str, path: Path, processor: lief.MachO.Header.CPU_TYPE) -> Facts:
-    fat = lief.MachO.parse(str(path))
-    (library,) = [part for part in fat if part.header.cpu_type == processor]
+def oldest(name: str, library: lief.Binary) -> str:
+    """The oldest system on which it loads; the rules of its format."""
+    if library.format == lief.Binary.FORMATS.ELF:
+        asked = {v.name for r in library.symbols_version_requirement for v in r.get_auxiliary_symbols()}
+        newest = max(tuple(int(n) for n in version.removeprefix("GLIBC_").split(".")) for version in asked)
+        require(name, newest <= GLIBC_FLOOR, f"asks for glibc {newest}")
+        require(name, library.has(lief.ELF.Segment.TYPE.GNU_STACK) and library.has_nx, "has an executable stack")
+        return f"glibc 2.17; newest symbol asked for: {'.'.join(map(str, newest))}"
+    if library.format == lief.Binary.FORMATS.PE:
+        return "Windows 10"
     require(name, library.header.file_type == lief.MachO.Header.FILE_TYPE.DYLIB, "is not a dynamic library")
     require(name, library.build_version.minos == MACOS_FLOOR, f"wants macOS {library.build_version.minos}")
-    own, *needs = [item.name for item in library.libraries]
-    require(name, own == "@rpath/wheel.dylib", f"is called {own}")
-    require(name, needs == ["/usr/lib/libSystem.B.dylib"], f"needs {needs}")
-    if processor == lief.MachO.Header.CPU_TYPE.ARM64:  # Apple's processors load nothing unsigned
-        require(name, signed(path.read_bytes(), library), "its signature is not that of its pages")
-    exports = {s.name.removeprefix("_") for s in library.exported_symbols}
-    imports = {s.name.removeprefix("_") for s in library.imported_symbols}
-    exports -= {"_mh_dylib_header", "__dso_handle"}  # every library of this linker has these
-    return Facts(name, library.original_size, exports, imports, set(needs), "macOS 11.0")
+    return "macOS 11.0"
 
 
 def signed(data: bytes, library: lief.MachO.Binary) -> bool:
@@ -100,31 +73,39 @@ def signed(data: bytes, library: lief.MachO.Binary) -> bool:
     return kind == 2 and pages == -(-limit // (1 << shift)) and found == own
 
 
-def judge(facts: Facts) -> None:
-    require(facts.name, facts.size < LARGEST, f"has {facts.size} bytes")
-    foreign = {name for name in facts.exports if not name.startswith("fmi2")}
-    require(facts.name, not foreign, f"exports {sorted(foreign)[:9]}")
-    require(facts.name, len(facts.exports) == FUNCTIONS, f"exports {len(facts.exports)} functions")
-    inexact = facts.imports & INEXACT
-    require(facts.name, not inexact, f"takes {inexact} from the system: they round differently from machine to machine")
-
-
-def libraries(folder: Path) -> Iterator[Facts]:
-    yield linux("linux64", folder / LINUX / "wheel.so", lief.ELF.ARCH.X86_64)
-    yield linux("aarch64-linux", folder / ARM / "wheel.so", lief.ELF.ARCH.AARCH64)
-    yield windows("win64", folder / WINDOWS / "wheel.dll")
-    yield macos("darwin64 (x86-64)", folder / UNIVERSAL, lief.MachO.Header.CPU_TYPE.X86_64)
-    yield macos("darwin64 (arm64)", folder / UNIVERSAL, lief.MachO.Header.CPU_TYPE.ARM64)
-    yield macos("aarch64-darwin", folder / ARM_MAC / "wheel.dylib", lief.MachO.Header.CPU_TYPE.ARM64)
+def judged(name: str, path: Path, processor: lief.Header.ARCHITECTURES) -> list[str]:
+    """A row of the table."""
+    # The libraries in one file for macOS live no longer than what was parsed.
+    parts = lief.MachO.parse(str(path)) if lief.is_macho(str(path)) else [lief.parse(str(path))]
+    fitting = [part for part in parts if part.abstract.header.architecture == processor]
+    require(name, len(fitting) == 1, "is for another processor")
+    (library,) = fitting
+    needs = list(library.abstract.libraries)
+    if library.format == lief.Binary.FORMATS.MACHO:
+        own, *needs = needs
+        require(name, own == "@rpath/wheel.dylib", f"is called {own}")
+        unsigned = processor == ARM_64 and not signed(path.read_bytes(), library)
+        require(name, not unsigned, "its signature is not that of its pages")  # Apple's own processors ask for it
+    kind = "functions" if library.format == lief.Binary.FORMATS.PE else "symbols"
+    found = [getattr(library, f"{way}_{kind}") for way in ("exported", "imported")]
+    exports, imports = ({symbol.name.removeprefix("_") for symbol in symbols} for symbols in found)
+    exports -= {"WHEEL", "wheel_1", "_mh_dylib_header", "__dso_handle"}  # every library of these linkers has them
+    size = library.original_size
+    foreign = [need for need in needs if not NEEDS.fullmatch(need)]
+    require(name, not foreign, f"needs {foreign}")
+    require(name, size < LARGEST, f"has {size} bytes")
+    others = sorted(export for export in exports if not export.startswith("fmi2"))
+    require(name, not others, f"exports {others[:9]}")
+    require(name, len(exports) == FUNCTIONS, f"exports {len(exports)} functions")
+    inexact = imports & INEXACT
+    require(name, not inexact, f"takes {inexact} from the system: they round differently from machine to machine")
+    shown = {"the C run-time" if need.startswith("api-ms") else Path(need).name for need in needs}
+    mathematics = ", ".join(sorted(imports & EXACT)) or "nothing"
+    return [name, f"{size / 1e3:.0f} kB", oldest(name, library), ", ".join(sorted(shown)), mathematics]
 
 
 def table(folder: Path) -> str:
     """What was found of each library, all of them judged."""
     lief.logging.disable()
-    rows = []
-    for facts in libraries(folder):
-        judge(facts)
-        mathematics = ", ".join(sorted(facts.imports & EXACT)) or "nothing"
-        needs = ", ".join(sorted(Path(name).name for name in facts.needs))
-        rows.append([facts.name, f"{facts.size / 1e3:.0f} kB", facts.oldest, needs, mathematics])
+    rows = [judged(name, folder / file, processor) for name, file, processor in LIBRARIES]
     return markdown.table(["library", "size", "loads from", "needs", "of the system's mathematics"], rows)

@@ -99,11 +99,8 @@ def printed(out: Path, glibc: str, libc: Path) -> Iterator[tuple[str, str]]:
         yield f"linux64, {glibc}", run(libc / "ld-linux-x86-64.so.2", "--library-path", libc, driver, library)
     yield "this machine's compiler", run(driver, ROOT / "build" / "release" / "wheel.so")
     yield "win64, wine", run(WINE, out / WINDOWS / "wheel_driver.exe", out / WINDOWS / "wheel.dll")
-    arm = out / ARM
-    yield (
-        "aarch64-linux, qemu",
-        run("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", arm / "wheel_driver", arm / "wheel.so"),
-    )
+    arm = ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", out / ARM / "wheel_driver", out / ARM / "wheel.so")
+    yield "aarch64-linux, qemu", run(*arm)
     yield "wasm32, wasmtime", run_wasm(out / WASM / "wheel_driver.wasm")
 
 

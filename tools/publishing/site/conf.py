@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import re
-import sys
 from importlib.resources import files
 from pathlib import Path
 
@@ -20,8 +19,6 @@ from sphinx.application import Sphinx
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
-sys.path.insert(0, str(HERE))
-from c_header import reference  # noqa: E402
 
 project, author = "wheel.fmu", "the maintainers of wheel.fmu"
 copyright = "the maintainers of wheel.fmu, BSD-3-Clause"  # noqa: A001 - Sphinx's name for it
@@ -53,14 +50,13 @@ html_math_renderer = "mathml"
 # Letters, digits and punctuation; accents, Greek, arrows, operators, brackets, and the italic letters of formulas.
 GLYPHS = "U+20-7E,U+A0-FF,U+300-36F,U+370-3FF,U+2000-206F,U+2100-23FF,U+27C0-27FF,U+2A00-2AFF,U+1D400-1D7FF"
 THIN = '<mspace width="0.17em"/>'
+HEADER = "```{literalinclude} /fmu-src/equations/wheel_equations.h\n:language: c\n:start-after: '#endif'\n```\n"
+MORE = {root_doc: (HERE / "contents.txt").read_text(encoding="utf-8"), "docs/c_header": f"\n## Reference\n\n{HEADER}"}
 
 
 def read(app: Sphinx, name: str, source: list[str]) -> None:
-    """The README gets the chapters of the site, the page of the C header its reference."""
-    if name == root_doc:
-        source[0] += (HERE / "contents.txt").read_text(encoding="utf-8")
-    if name == "docs/c_header":
-        source[0] += reference((ROOT / "fmu-src" / "equations" / "wheel_equations.h").read_text(encoding="utf-8"))
+    """The README gets the chapters of the site, the page of the C header the header."""
+    source[0] += MORE.get(name, "")
 
 
 def formula(writer: object, node: nodes.Element) -> None:

@@ -48,12 +48,10 @@ def test_formulas_are_drawn_by_the_browser_itself(site: Path) -> None:
     assert text.count("<math") > 50 and "MathJax" not in text
 
 
-def test_the_reference_of_the_c_header_has_every_function(site: Path) -> None:
-    header = (ROOT / "fmu-src" / "equations" / "wheel_equations.h").read_text(encoding="utf-8")
-    functions = set(re.findall(r"^\w[\w ]*\*? ?(wheel_\w+)\(", header, re.MULTILINE))
-    text = (site / "docs" / "c_header.html").read_text(encoding="utf-8")
-    assert len(functions) > 5
-    assert {name for name in functions if f'id="{name.replace("_", "-")}' not in text and name not in text} == set()
+def test_the_page_of_the_c_header_has_every_function(site: Path) -> None:
+    header, page = ROOT / "fmu-src" / "equations" / "wheel_equations.h", site / "docs" / "c_header.html"
+    functions = set(re.findall(r"\b(wheel_\w+)\(", header.read_text(encoding="utf-8")))
+    assert len(functions) > 5 and not functions - {*re.findall(r"\w+", page.read_text(encoding="utf-8"))}
 
 
 GONE = ["[gone](gone.md)", "[gone](#gone)", "[gone](gone.py)", "[gone](gone/)", "![gone](gone.png)"]

@@ -15,16 +15,6 @@ from release import folder
 CHANGES = "# Changes\n\nWords.\n\n## 2.1.0, 2026-12-01\n\n- New.\n\n## 2.0.0\n\n- Old.\n"
 
 
-@pytest.fixture
-def parts(tmp_path: Path) -> tuple[Path, Path]:
-    fmu, site = tmp_path / "built.fmu", tmp_path / "site"
-    fmu.write_bytes(b"archive")
-    (site / "docs").mkdir(parents=True)
-    (site / "index.html").write_text("front")
-    (site / "docs" / "physics.html").write_text("page")
-    return fmu, site
-
-
 def test_the_files_name_one_version_and_another_one_is_noticed(tmp_path: Path) -> None:
     number = folder.version()
     for name in folder.VERSIONS:
@@ -44,8 +34,12 @@ def test_the_notes_are_the_newest_section_of_the_changelog() -> None:
     assert folder.notes((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), folder.version())[0].count("\n- ") > 0
 
 
-def test_the_folder_holds_what_its_sums_say_and_the_same_bytes_each_time(tmp_path: Path, parts) -> None:
-    fmu, site = parts
+def test_the_folder_holds_what_its_sums_say_and_the_same_bytes_each_time(tmp_path: Path) -> None:
+    fmu, site = tmp_path / "built.fmu", tmp_path / "site"
+    fmu.write_bytes(b"archive")
+    (site / "docs").mkdir(parents=True)
+    for page in ("index.html", "docs/physics.html"):
+        (site / page).write_text("page")
     folder.write(tmp_path / "one", fmu, site, "notes\n")
     for path in site.rglob("*"):
         path.touch()
