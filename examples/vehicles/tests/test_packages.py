@@ -11,14 +11,13 @@ from fmpy import read_model_description
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from lxml import etree
 from support.bounds import beyond, within
-from vehicles import axle_study, ssp, suspended
+from vehicles import axle, ssp, suspended
 from vehicles.axle import AXLE
 from vehicles.car import CAR
-from vehicles.errors import Table
 from vehicles.layout import LANE
 from vehicles.options import Manoeuvre
 from vehicles.suspended import LAUNCH, SUSPENDED
-from vehicles.vehicle import Fmus, Vehicle
+from vehicles.vehicle import Fmus, Table, Vehicle
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +67,7 @@ def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(fmus: 
 
 
 def test_the_package_of_the_axle_runs_in_fmpy(fmus: Fmus, tmp_path: Path) -> None:
-    scene = axle_study.TRAILING.changed(stop=1.0)
+    scene = axle.TRAILING.changed(stop=1.0)
     off = off_the_end(fmus, AXLE, scene, 0.0005, tmp_path, "axle.X", "axle.Y", "axle.psi")
     within(off, 0.01, "off the end, m, rad")
 

@@ -15,14 +15,14 @@ Characteristic values in the manner of ISO 4138 (constant steer angle, rising sp
 omega, psi, roll, delta, a_y and beta, and the ground's forces on each wheel.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
-from .errors import Table
 from .layout import AXLES, J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, X_REAR, G, R
 from .options import Manoeuvre
+from .vehicle import Table
 
 N_WHEELS = len(WHEELS)
 M_T = MASS + N_WHEELS * J_Z / R**2
@@ -37,19 +37,13 @@ BARS = sum(w["k_bar"] * (w["y"] - WHEELS[w["bar_to"]]["y"]) ** 2 for w in WHEELS
 ROLL_GRADIENT = INERTIA / (STRUTS + BARS - G * LEANING)
 
 
-@dataclass(frozen=True)
-class Finding:
+class Finding(NamedTuple):
     """One quantity as measured in a run, and of rigid links and wheels that never slip, where that is known."""
 
     what: str
     unit: str
     measured: float
     exact: float | None = None
-
-    @property
-    def error(self) -> float:
-        """Relative."""
-        return abs(self.measured - self.exact) / abs(self.exact)
 
     def __str__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
@@ -72,6 +66,11 @@ def axle_friction(table: Table, axle: str) -> np.ndarray:
 def demand(table: Table) -> dict[str, float]:
     """Largest friction coefficient that each axle requires: the road on which the manoeuvre would be possible."""
     return {axle: float(np.nanmax(axle_friction(table, axle))) for axle in AXLES}
+
+
+def per_axle(asked: dict[str, float]) -> str:
+    """In words."""
+    return ", ".join(f"{axle} {mu:.2f}" for axle, mu in asked.items())
 
 
 def worst(table: Table) -> tuple[str, int]:
@@ -117,9 +116,9 @@ def standing(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     return found
 
 
-def rise(t: np.ndarray, begin: float, duration: float) -> np.ndarray:
+def rise(t: float | np.ndarray, begin: float, duration: float) -> float | np.ndarray:
     """From 0 to 1, with continuous second derivatives, as the driver's programmes."""
-    z = np.clip((t - begin) / duration, 0, 1)
+    z = np.minimum(np.maximum((t - begin) / duration, 0), 1)
     return z**3 * (10 - 15 * z + 6 * z**2)
 
 
@@ -193,7 +192,7 @@ def circle(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
 def _first(t: np.ndarray, x: np.ndarray, level: float) -> float:
     """When a rising signal first reaches a level, between samples by a straight line."""
     i = int(np.argmax(x >= level))
-    return float(t[i - 1] + (level - x[i - 1]) / (x[i] - x[i - 1]) * (t[i] - t[i - 1]))
+    return float(np.interp(level, x[i - 1 : i + 1], t[i - 1 : i + 1]))
 
 
 def step(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:

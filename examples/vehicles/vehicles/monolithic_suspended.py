@@ -39,7 +39,7 @@ class Suspended(Joint):
         F = K * (r - centre - CAR["l_0"] * Z) + C * (v - v_O)
         coupled, driven = (self.begin >= cut for cut in self.cuts)
         M = coupled * (M_1 * e1 + M_2 * cross(a, e1)) + driven * CAR["M_drive"] * a
-        return Load(coupled * F[None], M[None], np.zeros(1))
+        return Load(F=coupled * F[None], M=M[None], brake=np.zeros(1))
 
     def own_rates(self, _t: float, y: np.ndarray, load: Load, _answer: Answer) -> np.ndarray:
         """Of the sprung mass, which waits until t_couple."""
