@@ -21,18 +21,14 @@ if __name__ == "__main__":  # also while the packages below are loaded
 
 import numpy as np  # noqa: E402
 
-from . import build, options  # noqa: E402
-from .axle import AXLE  # noqa: E402
-from .balance import BALANCE  # noqa: E402
-from .car import CAR  # noqa: E402
+from . import axle, balance, build, car, options, suspended  # noqa: E402
 from .car_judges import demand, per_axle  # noqa: E402
 from .drawing import draw  # noqa: E402
 from .options import Manoeuvre  # noqa: E402
-from .suspended import SUSPENDED  # noqa: E402
 from .vehicle import Fmus, Run  # noqa: E402
 
 RESULTS = build.ROOT / "results" / "examples"
-VEHICLES = {"axle": AXLE, "car": CAR, "suspended": SUSPENDED, "balance": BALANCE}
+VEHICLES = {"axle": axle.AXLE, "car": car.CAR, "suspended": suspended.SUSPENDED, "balance": balance.BALANCE}
 PER_PICTURE = 600  # rows, about
 SHORT = 1e-4  # s, a step that is short for every link here
 
@@ -57,7 +53,7 @@ def judged(fmus: Fmus, asked: Manoeuvre, run: Run) -> tuple[bool, list[str]]:
     how, cause = of.describe(run.ending), diverged(fmus, asked, run)
     if not cause and "lifts_off" in asked.ends and "lifted off" in how:
         return True, [f"As intended: {how}"]
-    if not cause and asked["mu_max"] and of is CAR:
+    if not cause and asked["mu_max"] and of is car.CAR:
         cause = f"Until then the axles, their wheels together, required: {per_axle(demand(run.table))}."
     return False, [f"Failed: {how}", *filter(None, [cause])]
 

@@ -28,7 +28,6 @@ from .options import EXCHANGES
 
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
-Signals = list[Signal]
 HEADER = (Path(__file__).resolve().parents[1] / "master" / "master.h").read_text()
 LIBRARY = f"master{sharedLibraryExtension}"
 ffi = FFI()
@@ -49,7 +48,7 @@ class Master:
         libraries = (c.path.with_name(LIBRARY) for c in self.components.values())
         self.c = ffi.dlopen(str(next(path for path in libraries if path.exists())))
 
-    def _order(self) -> list[Signals]:
+    def _order(self) -> list[list[Signal]]:
         """Connected outputs, those together that depend on outputs before them alone; refuses algebraic loops."""
         graph = {}
         for component, output in self.source_of.values():
@@ -90,7 +89,7 @@ class Master:
         return self._own("Master *", [EXCHANGES.index(exchange), 0, *counts, *tables, *arrays])
 
     def steps(
-        self, stop: float, h: float, exchange: str, every: int = 1, progress: bool = False, ends: Signals = ()
+        self, stop: float, h: float, exchange: str, every: int = 1, progress: bool = False, ends: Iterable[Signal] = ()
     ) -> Iterator[float]:
         """Simulates from 0 to `stop`, and waits after the exchange at the communication points 0, `every`, ...: yields
         the time, at which variables may be read, and inputs set that are not connected.
@@ -112,7 +111,7 @@ class Master:
             self._require(done == end, done * h)
             self.at_end.append(self.read(ends))
 
-    def read(self, signals: Signals, rates: bool = False) -> list[float]:
+    def read(self, signals: Iterable[Signal], rates: bool = False) -> list[float]:
         """Their values, or their first derivatives."""
         found = []
         for component, of in groupby(signals, lambda signal: self.components[signal[0]]):

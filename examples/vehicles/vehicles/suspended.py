@@ -11,11 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from . import errors
+from . import errors, ssp
 from .component import Component
 from .monolithic_suspended import TOLERANCE, Suspended
 from .options import Manoeuvre, manoeuvres
-from .ssp import run as run_package
 from .vehicle import Fmus, Table, Vehicle, recorded, road, wire
 
 LAUNCH = manoeuvres("suspended")["launch"]
@@ -59,7 +58,7 @@ distance = partial(errors.distance, names=COMPARED, least=0)
 
 def package_distance(package: Path, step: float, truth: Table, stop: float = LAUNCH.stop) -> float:
     """Largest difference over time of X_O, theta and psi_dot in fmpy's run of the package, relative to their ranges."""
-    table, names = run_package(package, step, stop, GRID), ("X_O", "theta", "psi_dot")
+    table, names = ssp.run(package, step, stop, GRID), ("X_O", "theta", "psi_dot")
     count = len(table["time"])
     columns = {n: np.concatenate([truth[n][:1], table[f"wheel.{n}"], truth[n][1 + count :]]) for n in names}
     return errors.distance(columns, truth, names, 0)
