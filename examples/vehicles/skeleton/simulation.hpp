@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <cstdio>
 #include <stdexcept>
 
 #include "model.hpp"
@@ -38,9 +38,9 @@ struct Simulation {
       const auto& [name, unit, _, limit] = stored[i];
       if (limit == none || now.u[i] > 0 || (now.u[i] == 0 && limit == not_below_0)) continue;
       const char* least = limit == above_0 ? "above" : "at least";
-      std::ostringstream fault;
-      fault << name << " = " << now.u[i] << ": it must be " << least << " 0 " << unit << ".";
-      throw std::invalid_argument(fault.str());
+      char fault[160];
+      std::snprintf(fault, sizeof fault, "%s = %g: it must be %s 0 %s.", name, now.u[i], least, unit);
+      throw std::invalid_argument(fault);
     }
     model_derive(now.u, now.d);
     x = model_start(now);

@@ -4,15 +4,18 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, relative_error, within
-from vehicles import build, car, car_judges, layout, monolithic_car
+from vehicles import build, car, car_judges, errors, layout, monolithic_car
 from vehicles.layout import CIRCLE, HILL, LANE, LAYOUT, MANOEUVRES, STEP, STRAIGHT, TOO_FAST, WHEELS
-from vehicles.options import Manoeuvre
+from vehicles.options import EXCHANGES, Manoeuvre
 from vehicles.vehicle import Fmus, Table
+
+from reports.page import read_tables
 
 Drive = Callable[..., Table]
 
@@ -34,6 +37,12 @@ def error(finding: car_judges.Finding) -> float:
 
 def stand(table: Table, when: np.ndarray) -> bool:
     return all((table[f"{w}.omega_z"][when] == 0).all() for w in WHEELS)
+
+
+def test_the_report_has_every_manoeuvre_with_every_master() -> None:
+    table = read_tables("vehicles")["car_errors"]
+    found = set(table[["manoeuvre", "inputs over the step", "step [ms]"]].itertuples(index=False, name=None))
+    assert found == set(product(monolithic_car.NAMES, EXCHANGES, [1000 * h for h in errors.STEPS]))
 
 
 OF_HILL = {"held": 0.01, "derivatives": 3e-4, "rollback": 1e-4}

@@ -66,14 +66,12 @@ class Joint:
     """A vehicle: `size` states, then O, a, w of its n wheels of one `kind`.
 
     By the vehicle: start() and load(t, y); own_rates(t, y, load, answer), the rates of these states;
-    columns(t, y, load, answer), what is compared. `begin`: the last of the instants `cuts` at which loads jump.
+    columns(t, y, load, answer), what is compared.
     """
 
     kind: Wheel
     n: int
     size: int
-    cuts: tuple[float, ...] = ()
-    begin = 0.0
 
     def wheels(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """O, a, w."""
@@ -115,24 +113,17 @@ class Joint:
 
         least.terminal, least.direction = True, -1
         while len(rows) < len(times) and not lift_off:
-            end = next((cut for cut in self.cuts if cut > t), times[-1])
-            now, after = times[len(rows) :], times[-1] if end == times[-1] else np.nextafter(end, 0)
-            at = np.union1d(now[now <= after], [end])
-            found = solve_ivp(self.rate, (t, end), y, "DOP853", at, events=least, args=(sigma,), **how)
+            rest = times[len(rows) :]
+            found = solve_ivp(self.rate, (t, times[-1]), y, "DOP853", rest, events=least, args=(sigma,), **how)
             if not found.success:
                 raise RuntimeError(found.message)
-            inside = [(u, x) for u, x in zip(found.t, np.transpose(found.y), strict=True) if u <= after]
-            rows += [self.columns(u, x, *self.answer(u, x, sigma)) for u, x in inside]
+            motion = zip(found.t, np.transpose(found.y), strict=True)
+            rows += [self.columns(u, x, *self.answer(u, x, sigma)) for u, x in motion]
             if found.status:
                 t, y = float(found.t_events[0][0]), found.y_events[0][0].copy()
                 first = int(self.margins(t, y, sigma).argmin())
                 lift_off = (first - self.n, t) if first >= self.n else None
-                sigma = sigma if lift_off else self._change(t, y, sigma, first)
-            else:
-                t, y = end, found.y[:, -1]
-                self.begin = end
-                released = (sigma == 0) & (self.margins(t, y, sigma)[: self.n] < 0)
-                sigma = np.where(released, -np.sign(self.answer(t, y, sigma)[1].tau), sigma)
+                sigma = sigma if lift_off else self._change(t + 1e-12, y, sigma, first)  # s: loads may jump there
         columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
         return {"time": times[: len(rows)], **columns, "psi": np.unwrap(columns["psi"])}, lift_off
 
