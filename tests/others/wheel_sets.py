@@ -110,10 +110,13 @@ def coupled(fmus: dict[str, Path], scene: str, factor: float, step: float, stop:
     free = [(source, sink) for source, sink in CONNECTIONS if sink[1] != "M_3"]
     parts = [*wheels, Component("axle", fmus["axle"], {**BODY, **place})]
     with loaded(*parts):
-        master = Master(parts, free)
-        record, act = [("axle", name) for name in ("X", "Y", "psi")], driver(master, SCENES[scene])
-        rows = master.run(stop, step, record, "derivatives", round(0.3 / step), act=act)
-    return {name: rows[f"axle.{of}"] for name, of in zip(COMPARED, ("X", "Y", "psi"), strict=True)}
+        master, rows, every = Master(parts, free), [], round(0.3 / step)
+        drive, record = driver(master, SCENES[scene]), [("axle", name) for name in ("X", "Y", "psi")]
+        for k, t in enumerate(master.steps(stop, step, "derivatives")):
+            if k % every == 0:
+                rows.append(master.read(record))
+            drive(t)
+    return dict(zip(COMPARED, np.transpose(rows), strict=True))
 
 
 def distance(found: dict[str, Array], truth: dict[str, Array]) -> float:

@@ -9,7 +9,7 @@ from importlib.metadata import version
 
 import pandas as pd
 from support.paths import ROOT
-from vehicles import axle_study, build, ssp
+from vehicles import axle, build, ssp
 from vehicles.axle import AXLE
 from vehicles.car import CAR
 from vehicles.layout import LANE
@@ -18,7 +18,7 @@ from .page import Report, Row, part, read_tables
 
 STEP, GRID = 0.0005, 0.05  # s
 CASES = {
-    "axle.ssp": (AXLE, axle_study.TRAILING.changed(stop=2.0), ("axle.X", "axle.Y")),
+    "axle.ssp": (AXLE, axle.TRAILING.changed(stop=2.0), ("axle.X", "axle.Y")),
     "car.ssp": (CAR, LANE, ("chassis.X_R", "chassis.Y_R")),
 }
 

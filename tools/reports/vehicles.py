@@ -6,10 +6,10 @@ from functools import cache
 
 import numpy as np
 import pandas as pd
-from vehicles import axle, axle_study, car_judges, layout, monolithic_car
+from vehicles import axle, car_judges, layout, monolithic_car
 from vehicles.car import CAR
 from vehicles.drawing import draw, draw_orders
-from vehicles.errors import STEPS, Errors, longest, orders
+from vehicles.errors import STEPS, longest, orders
 from vehicles.layout import MANOEUVRES
 from vehicles.master import EXCHANGES
 from vehicles.options import Manoeuvre
@@ -30,24 +30,24 @@ STEPS_MS = [1000 * h for h in STEPS]
 def axle_steps(report: Report, over: tuple) -> list[Row]:
     """the axle: error against the step"""
     exchange, more = over
-    errors = axle_study.step_errors(report.fmus, axle_study.TRAILING.changed(stop=2.0, **more), exchange, STEPS)
-    return [{"step, ms": 1000 * h, "error / range": error} for h, error in zip(STEPS, errors, strict=True)]
+    errors = axle.step_errors(report.fmus, axle.TRAILING.changed(stop=2.0, **more), exchange, STEPS)
+    return [{"step, ms": 1000 * h, "error / range": error} for h, error in errors.items()]
 
 
-@part(30, {"scene": axle_study.SCENES})
+@part(30, {"scene": axle.SCENES})
 def axle_stiffness(report: Report, scene: Manoeuvre) -> Row:
     """the axle: error against the stiffness"""
     factors = (1.0, 2.0, 4.0)
-    errors = axle_study.stiffness_errors(report.fmus, scene.changed(stop=2.0), factors)
-    found = {f"stiffness x {f:g}": e for f, e in zip(factors, errors, strict=True)}
-    return found | {"order in 1/k": float(-orders(factors, errors)[-1])}
+    errors = axle.stiffness_errors(report.fmus, scene.changed(stop=2.0), factors)
+    found = {f"stiffness x {f:g}": e for f, e in errors.items()}
+    return found | {"order in 1/k": float(-orders(errors)[-1])}
 
 
 @part(30, {"stiffness x": (0.5, 1.0, 2.0, 4.0)})
 def axle_limits(report: Report, factor: float) -> Row:
     """the axle: the longest step for each stiffness, beside 2 J_x / c_a"""
-    scene = axle_study.CLOTHOID.changed(stop=1.0, stiffness=factor)
-    found = {f"{e}, ms": 1000 * axle_study.longest_step(report.fmus, scene, e) for e in EXCHANGES}
+    scene = axle.CLOTHOID.changed(stop=1.0, stiffness=factor)
+    found = {f"{e}, ms": 1000 * axle.longest_step(report.fmus, scene, e) for e in EXCHANGES}
     return found | {"2 J_x / c_a, ms": 1000 * 2 * axle.constants(scene).J_x / (500.0 * factor)}
 
 
@@ -55,9 +55,9 @@ def axle_limits(report: Report, factor: float) -> Row:
 def axle_energy(report: Report, over: tuple) -> Row:
     """the axle: energy added per bond"""
     exchange, more = over
-    scene = axle_study.TRAILING.changed(stop=2.0, **({"follow": 1.0} | more))
-    bonds, gain = axle_study.energy(report.fmus, scene, 0.001, exchange)
-    sums = sum(bonds.values())
+    scene = axle.TRAILING.changed(stop=2.0, **({"follow": 1.0} | more))
+    bonds, gain = axle.energy(report.fmus, scene, 0.001, exchange)
+    sums = bonds.sum(axis=0)
     return dict(zip(BONDS, sums, strict=True)) | {"sum, J": float(sums.sum()), "gain, J": gain}
 
 
@@ -133,14 +133,17 @@ def car_errors(report: Report, name: str, exchange: str, ms: float) -> Row:
 @part(30)
 def pictures(report: Report) -> dict[str, float]:
     """pictures of the motions; the largest error where no wheel stops"""
-    table = axle.AXLE.drive(report.fmus, axle_study.TRAILING, 0.0005, "derivatives", 0.02).whole
-    draw(axle.AXLE, axle_study.TRAILING, table, report.folder / "vehicles_axle.png", ", step 0.5 ms")
+    table = axle.AXLE.drive(report.fmus, axle.TRAILING, 0.0005, "derivatives", 0.02).whole
+    draw(axle.AXLE, axle.TRAILING, table, report.folder / "vehicles_axle.png", ", step 0.5 ms")
     for name, manoeuvre in MANOEUVRES.items():
         draw(CAR, manoeuvre, CAR.drive(report.fmus, manoeuvre).table, report.folder / f"vehicles_{name}.png")
     found = report.tables["car_errors"].groupby(["manoeuvre", "inputs over the step"], sort=False)["largest"].agg(list)
-    of = {name: Errors(STEPS, found[name].to_dict()) for name in manoeuvres(report)}
+    of = {
+        name: {e: dict(zip(STEPS, errors, strict=True)) for e, errors in found[name].items()}
+        for name in manoeuvres(report)
+    }
     draw_orders(of, report.folder / "vehicles_orders.png")
-    return {"rollback": max(of[name].of["rollback"][0] for name in of if name not in ("straight", "hill"))}
+    return {"rollback": max(of[name]["rollback"][STEPS[0]] for name in of if name not in ("straight", "hill"))}
 
 
 @part(20, {"inputs over the step": EXCHANGES})

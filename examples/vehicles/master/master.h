@@ -1,7 +1,6 @@
 /* The loop of a parallel (Jacobi) co-simulation master with fixed steps. vehicles/master.py loads and initializes the
  * FMUs, fills a Master, whose arrays it owns, and calls these functions; nothing here allocates or prints. */
-#ifndef MASTER_H
-#define MASTER_H
+#pragma once
 
 #include "fmi2FunctionTypes.h"
 
@@ -45,5 +44,3 @@ int master_exchange(Master* m, int with_rates);
 /* Steps `from` to `to` of the length h with the exchanges between them; the first was made before. Row i of `cost` has
  * the microseconds of step i, all of it and in each component. Returns `to`, or the step that a component refused. */
 long master_run(Master* m, double h, long from, long to, double* cost);
-
-#endif

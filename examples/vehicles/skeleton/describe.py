@@ -16,17 +16,16 @@ import csv
 import re
 import sys
 import tomllib
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import NamedTuple
 from xml.etree import ElementTree
 
 HERE = Path(__file__).parent
 RATE = re.compile(r"^([XYZ]_O|psi|theta|delta)(?=_|$)")  # inputs that may have their rate beside them: X_O_dot_left
 
 
-@dataclass(frozen=True)
-class Variable:
+class Variable(NamedTuple):
     """One scalar variable; `of` is its name with `each` in the place of the wheel, empty if it is of no wheel."""
 
     causality: str
@@ -69,35 +68,30 @@ def main() -> None:
 
     table, folder = map(Path, sys.argv[1:])
     about, wheels, variables = read(table)
-    templates = Environment(
-        loader=FileSystemLoader(HERE), autoescape=lambda name: ".xml" in name, undefined=StrictUndefined,
-        keep_trailing_newline=True,
-    )  # fmt: skip
+    inputs, parameters, outputs = (
+        {v.name: v.depends for v in variables if v.causality == kind} for kind in ("input", "parameter", "output")
+    )
+    known = {output: [n for n in inputs if any(fnmatchcase(n, p) for p in on)] for output, on in outputs.items()}
+    at_start = {output: [*parameters, *on] for output, on in known.items()}  # states follow from parameters
+    number = {name: k for k, name in enumerate(inputs)}
+    rates = [number.get(rate, -1) if found else -1 for rate, found in (RATE.subn(r"\1_dot", name) for name in inputs)]
+    values = {"variables": variables, "wheels": wheels, "rates": rates, "name": table.stem, "about": about}
+    values["units"] = {row["unit"]: row for row in csv.DictReader((HERE / "units.csv").read_text().splitlines())}
+    how = {"undefined": StrictUndefined, "keep_trailing_newline": True}
+    templates = Environment(loader=FileSystemLoader(HERE), autoescape=lambda name: ".xml" in name, **how)
 
-    def write(file: str, text: str) -> None:
-        (folder / file).parent.mkdir(parents=True, exist_ok=True)
-        (folder / file).write_text(text)
+    def write(path: str, text: str = "") -> None:
+        file = folder / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text or templates.get_template(f"{file.name}.jinja").render(values))
 
-    def rendered(file: str, **values: object) -> str:
-        return templates.get_template(f"{file}.jinja").render(variables=variables, wheels=wheels, **values)
-
-    inputs, parameters = ([v.name for v in variables if v.causality == kind] for kind in ("input", "parameter"))
-    outputs = {
-        v.name: [n for n in inputs if any(fnmatchcase(n, p) for p in v.depends)]
-        for v in variables
-        if v.causality == "output"
-    }
-    unknowns = {output: parameters + on for output, on in outputs.items()}  # states at the start follow from parameters
-    units = {row["unit"]: row for row in csv.DictReader((HERE / "units.csv").read_text().splitlines())}
-    description = rendered("modelDescription.xml", name=table.stem, about=about, units=units)
-    description = numbered(description, {"Outputs": outputs, "InitialUnknowns": unknowns})
-    guid = ElementTree.fromstring(description.encode()).get("guid")
-    rates = [RATE.sub(r"\1_dot", n) for n in inputs]
-    of_input = [inputs.index(r) if r in inputs and r != n else -1 for n, r in zip(inputs, rates, strict=True)]
-    write("variables.hpp", rendered("variables.hpp", guid=guid, rates=of_input))
+    description = templates.get_template("modelDescription.xml.jinja").render(values)
+    description = numbered(description, {"Outputs": known, "InitialUnknowns": at_start})
+    values["guid"] = ElementTree.fromstring(description.encode()).get("guid")
+    write("variables.hpp")
     write("fmu/modelDescription.xml", description)
     if wheels:
-        write("fmu/terminalsAndIcons/terminalsAndIcons.xml", rendered("terminalsAndIcons.xml"))
+        write("fmu/terminalsAndIcons/terminalsAndIcons.xml")
 
 
 if __name__ == "__main__":

@@ -20,20 +20,18 @@ namespace {
 struct Instance {
   Simulation simulation;
   std::string name;
-  fmi2CallbackLogger logger;
-  fmi2ComponentEnvironment environment;
+  fmi2CallbackFunctions callbacks;
 };
 
 /* Runs a call; what it throws is logged and refused. */
 template <class Act>
 fmi2Status run(Component c, Act act) {
-  auto& instance = *static_cast<Instance*>(c);
+  auto& [simulation, name, to] = *static_cast<Instance*>(c);
   try {
-    std::invoke(act, instance.simulation);
+    std::invoke(act, simulation);
     return fmi2OK;
   } catch (const std::exception& fault) {
-    if (instance.logger)
-      instance.logger(instance.environment, instance.name.c_str(), fmi2Error, "logStatusError", fault.what());
+    if (to.logger) to.logger(to.componentEnvironment, name.c_str(), fmi2Error, "logStatusError", fault.what());
     return fmi2Error;
   }
 }
@@ -42,8 +40,9 @@ void require(bool met, const char* message) {
   if (!met) throw std::invalid_argument(message);
 }
 
-fmi2Status refuse(Component c, const char* message) {
-  return run(c, [&](Simulation&) { require(false, message); });
+/* Of what the examples do not have; its functions must exist all the same. */
+fmi2Status refuse(Component c, bool asked = true) {
+  return run(c, [&](Simulation&) { require(!asked, "There is no such variable, derivative or step."); });
 }
 
 /* What a state points to, made where there is none. */
@@ -51,9 +50,6 @@ Simulation& snapshot(State* state) {
   if (!*state) *state = new Simulation;
   return *static_cast<Simulation*>(*state);
 }
-
-/* There are no variables of other types. */
-fmi2Status none_of(Component c, size_t n) { return n ? refuse(c, "There are no variables of this type.") : fmi2OK; }
 
 }  // namespace
 
@@ -63,8 +59,7 @@ const char* fmi2GetVersion() { return fmi2Version; }
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String,
                               const fmi2CallbackFunctions* callbacks, fmi2Boolean, fmi2Boolean) {
   if (type != fmi2CoSimulation || !name || !guid || std::strcmp(guid, MODEL_GUID) != 0) return nullptr;
-  const fmi2CallbackFunctions given = callbacks ? *callbacks : fmi2CallbackFunctions{};
-  return new (std::nothrow) Instance{{}, name, given.logger, given.componentEnvironment};
+  return new (std::nothrow) Instance{{}, name, callbacks ? *callbacks : fmi2CallbackFunctions{}};
 }
 
 void fmi2FreeInstance(Component c) { delete static_cast<Instance*>(c); }
@@ -80,11 +75,8 @@ fmi2Status fmi2Reset(Component c) { return run(c, &Simulation::reset); }
 
 fmi2Status fmi2GetReal(Component c, Refs v, size_t n, fmi2Real values[]) {
   return run(c, [&](const Simulation& s) {
-    double y[variable_count];
     require(std::all_of(v, v + n, [](auto r) { return r < variable_count; }), "fmi2GetReal: unknown value reference.");
-    std::copy_n(s.now.u, first_output, y);
-    model_outputs(s.now, s.x, y);
-    std::transform(v, v + n, values, [&](auto r) { return y[r]; });
+    std::transform(v, v + n, values, [y = values_at(s.now, s.x)](auto r) { return y[r]; });
   });
 }
 
@@ -101,8 +93,8 @@ fmi2Status fmi2SetReal(Component c, Refs v, size_t n, const fmi2Real values[]) {
 fmi2Status fmi2SetRealInputDerivatives(Component c, Refs v, size_t n, Orders orders, const fmi2Real values[]) {
   return run(c, [&](Simulation& s) {
     for (size_t k = 0; k < n; ++k) {
-      require(v[k] >= first_input && v[k] < first_output && orders[k] >= 1 && orders[k] <= Simulation::orders &&
-                  std::isfinite(values[k]),
+      const bool input = v[k] >= first_input && v[k] < first_output && std::isfinite(values[k]);
+      require(input && orders[k] >= 1 && orders[k] <= Simulation::orders,
               "fmi2SetRealInputDerivatives: inputs have finite derivatives of order 1 to 3.");
       s.slope[orders[k] - 1][v[k] - first_input] = values[k];
       s.given[v[k] - first_input] = true;
@@ -112,12 +104,10 @@ fmi2Status fmi2SetRealInputDerivatives(Component c, Refs v, size_t n, Orders ord
 
 fmi2Status fmi2GetRealOutputDerivatives(Component c, Refs v, size_t n, Orders orders, fmi2Real values[]) {
   return run(c, [&](const Simulation& s) {
-    double y_dot[variable_count];
     for (size_t k = 0; k < n; ++k)
       require(v[k] >= first_output && v[k] < variable_count && orders[k] == 1,
               "fmi2GetRealOutputDerivatives: outputs have first derivatives only.");
-    s.output_rates(y_dot);
-    std::transform(v, v + n, values, [&](auto r) { return y_dot[r]; });
+    std::transform(v, v + n, values, [y_dot = s.output_rates()](auto r) { return y_dot[r]; });
   });
 }
 
@@ -164,14 +154,13 @@ fmi2Status fmi2DeSerializeFMUstate(Component c, const fmi2Byte bytes[], size_t s
   });
 }
 
-/* What the examples do not have: variables of other types, directional derivatives, asynchronous steps. The functions
- * must exist all the same. */
-fmi2Status fmi2GetInteger(Component c, Refs, size_t n, fmi2Integer[]) { return none_of(c, n); }
-fmi2Status fmi2GetBoolean(Component c, Refs, size_t n, fmi2Boolean[]) { return none_of(c, n); }
-fmi2Status fmi2GetString(Component c, Refs, size_t n, fmi2String[]) { return none_of(c, n); }
-fmi2Status fmi2SetInteger(Component c, Refs, size_t n, const fmi2Integer[]) { return none_of(c, n); }
-fmi2Status fmi2SetBoolean(Component c, Refs, size_t n, const fmi2Boolean[]) { return none_of(c, n); }
-fmi2Status fmi2SetString(Component c, Refs, size_t n, const fmi2String[]) { return none_of(c, n); }
+/* Variables of other types: none of them may be asked for. */
+fmi2Status fmi2GetInteger(Component c, Refs, size_t n, fmi2Integer[]) { return refuse(c, n); }
+fmi2Status fmi2GetBoolean(Component c, Refs, size_t n, fmi2Boolean[]) { return refuse(c, n); }
+fmi2Status fmi2GetString(Component c, Refs, size_t n, fmi2String[]) { return refuse(c, n); }
+fmi2Status fmi2SetInteger(Component c, Refs, size_t n, const fmi2Integer[]) { return refuse(c, n); }
+fmi2Status fmi2SetBoolean(Component c, Refs, size_t n, const fmi2Boolean[]) { return refuse(c, n); }
+fmi2Status fmi2SetString(Component c, Refs, size_t n, const fmi2String[]) { return refuse(c, n); }
 
 fmi2Status fmi2GetStatus(Component, const fmi2StatusKind, fmi2Status*) { return fmi2Discard; }
 fmi2Status fmi2GetRealStatus(Component, const fmi2StatusKind, fmi2Real*) { return fmi2Discard; }
@@ -181,8 +170,8 @@ fmi2Status fmi2GetStringStatus(Component, const fmi2StatusKind, fmi2String*) { r
 
 fmi2Status fmi2SetDebugLogging(Component, fmi2Boolean, size_t, const fmi2String[]) { return fmi2OK; }
 
-fmi2Status fmi2CancelStep(Component c) { return refuse(c, "fmi2CancelStep: no step is pending."); }
+fmi2Status fmi2CancelStep(Component c) { return refuse(c); }
 
 fmi2Status fmi2GetDirectionalDerivative(Component c, Refs, size_t, Refs, size_t, const fmi2Real[], fmi2Real[]) {
-  return refuse(c, "fmi2GetDirectionalDerivative: not provided.");
+  return refuse(c);
 }

@@ -9,6 +9,16 @@
 
 #include "model.hpp"
 
+using Values = Eigen::Vector<double, variable_count>;
+
+/* All values, by value reference. */
+inline Values values_at(const Now& now, const States& x) {
+  Values y;
+  std::copy_n(now.u, first_output, y.data());
+  model_outputs(now, x, y.data());
+  return y;
+}
+
 struct Simulation {
   static constexpr int orders = 3;
 
@@ -63,16 +73,13 @@ struct Simulation {
   /* First derivatives of the outputs along the motion, with the inputs on their slopes: (y(x + e f, u + e u', t + e) -
    * y(x - e f, ...)) / 2 e. The outputs are nearly linear along so short a line, so the error is rounding, some 1e-12
    * of y per second. */
-  void output_rates(double* y_dot) const {
+  Values output_rates() const {
     constexpr double e = 1e-4; /* s */
-    double before[variable_count];
     Simulation line = *this;
     line.follow_rates();
     std::fill_n(&line.slope[1][0], (orders - 1) * input_count, 0.0);
     const States f = model_rates(now, x);
-    model_outputs(line.later(-e), x - e * f, before);
-    model_outputs(line.later(e), x + e * f, y_dot);
-    for (int i = first_output; i < variable_count; ++i) y_dot[i] = (y_dot[i] - before[i]) / (2 * e);
+    return (values_at(line.later(e), x + e * f) - values_at(line.later(-e), x - e * f)) / (2 * e);
   }
 
  private:

@@ -1,14 +1,15 @@
-"""The axle against the rigid axle on wheels that never slip: closed forms, orders in h and 1/k, energy per bond."""
+"""The axle against the rigid axle on wheels that never slip: closed forms, orders in h and 1/k, energy per bond;
+Modelica's wheel sets, which two wheels on axle.fmu become as the links are made stiffer."""
 
 import numpy as np
 import pytest
+from others import wheel_sets as sets
+from others.numbers import read
 from support.bounds import EPSILON, beyond, relative_error, within
-from vehicles import axle, axle_study, errors
-from vehicles.axle import AXLE
-from vehicles.axle_study import CLOTHOID, ROLLING_OUT, SCENES, STRAIGHT, TRAILING
-from vehicles.errors import Table
+from vehicles import axle, errors
+from vehicles.axle import AXLE, CLOTHOID, ROLLING_OUT, SCENES, STRAIGHT, TRAILING
 from vehicles.master import EXCHANGES
-from vehicles.vehicle import Fmus
+from vehicles.vehicle import Fmus, Table
 
 SHORT = TRAILING.changed(stop=1.0)
 
@@ -16,7 +17,7 @@ SHORT = TRAILING.changed(stop=1.0)
 @pytest.mark.parametrize("name", SCENES)
 def test_the_error_of_the_closed_form_falls_as_one_over_the_stiffness(fmus: Fmus, name: str) -> None:
     scene = SCENES[name].changed(stop=2.0)
-    soft, stiff = axle_study.stiffness_errors(fmus, scene, (2.0, 4.0), 0.0005)
+    soft, stiff = axle.stiffness_errors(fmus, scene, (2.0, 4.0), 0.0005).values()
     within(stiff, 0.008, "error of links four times as stiff / range")
     within(abs(np.log2(soft / stiff) - 1), 0.25, "order in 1/k off 1")
 
@@ -25,7 +26,7 @@ def test_the_error_of_the_closed_form_falls_as_one_over_the_stiffness(fmus: Fmus
 def test_a_wrong_constant_of_the_closed_form_shows(changed: dict[str, float]) -> None:
     """Partner: each mass and inertia enters m_t, I_t or S as derived; the bound of the test above separates them."""
     scene, times = TRAILING.changed(stop=2.0), np.arange(101) * 0.02
-    off = axle_study.distance(axle.rigid(scene.changed(**changed), times), axle.rigid(scene, times))
+    off = axle.distance(axle.rigid(scene.changed(**changed), times), axle.rigid(scene, times))
     beyond(off, 0.0062, "error of a wrong constant / range")  # more than that of links four times as stiff
 
 
@@ -46,7 +47,7 @@ def test_equal_torques_drive_straight_also_uphill(fmus: Fmus, slope: float) -> N
 
 def test_on_a_slope_the_energy_stays(fmus: Fmus) -> None:
     scene = STRAIGHT.changed(stop=2.0, slope=0.1, M_left=0.0, M_right=0.0)
-    _, drift = axle_study.energy(fmus, scene, 0.0005, "derivatives")
+    _, drift = axle.energy(fmus, scene, 0.0005, "derivatives")
     within(abs(drift), 0.1, "drift of the energy, J")  # the height along the slope is worth 150 J
     level = scene.changed(slope=0.0, v=1.0)
     within(np.abs(AXLE.drive(fmus, level, 0.0005).whole["v"] - 1.0).max(), 1e-9, "change of speed on the level, m/s")
@@ -83,18 +84,37 @@ def test_held_values_have_order_one_first_derivatives_two_and_rollback_beats_bot
     """Partner: held positions that do not follow their rates lag by h / 2, a drag k v h / 2 at each hub; the axle is
     soon at rest."""
     steps = (0.002, 0.001)
-    found = {exchange: axle_study.step_errors(fmus, SHORT, exchange, steps) for exchange in EXCHANGES}
+    found = {exchange: axle.step_errors(fmus, SHORT, exchange, steps) for exchange in EXCHANGES}
     for exchange, order, off in (("held", 1, 0.15), ("derivatives", 2, 0.25)):
-        within(abs(errors.orders(steps, found[exchange])[0] - order), off, f"{exchange}: off the order")
-    within(found["rollback"][1] / found["derivatives"][1], 0.01, "error of rollback over that of derivatives")
-    lag = axle_study.step_errors(fmus, SHORT.changed(follow=0), "held", (0.001,))[0]
-    beyond(lag / found["held"][1], 20, "error of positions that lag over that of those that follow")
+        within(abs(errors.orders(found[exchange])[0] - order), off, f"{exchange}: off the order")
+    within(found["rollback"][0.001] / found["derivatives"][0.001], 0.01, "error of rollback over that of derivatives")
+    lag = axle.step_errors(fmus, SHORT.changed(follow=0), "held", (0.001,))[0.001]
+    beyond(lag / found["held"][0.001], 20, "error of positions that lag over that of those that follow")
 
 
 def test_the_energy_that_the_bonds_add_is_what_the_whole_gains(fmus: Fmus) -> None:
     """Held positions that do not follow take energy; bonds and the sum of all energies agree on how much."""
     short = SHORT.changed(follow=0)
-    (bonds, drift), (_, of_lines) = (axle_study.energy(fmus, short, 0.0005, e) for e in ("held", "derivatives"))
+    (bonds, drift), (_, of_lines) = (axle.energy(fmus, short, 0.0005, e) for e in ("held", "derivatives"))
     beyond(-drift, 10, "energy taken, J")  # of some 90 J
-    within(relative_error(sum(b.sum() for b in bonds.values()), drift), 0.1, "bonds beside the sum, relative")
+    within(relative_error(bonds.sum(), drift), 0.1, "bonds beside the sum, relative")
     within(abs(of_lines / drift), 5e-4, "drift of straight lines over that of held positions")
+
+
+@pytest.mark.parametrize("scene", sets.SCENES)
+def test_the_rigid_wheel_set_has_modelicas_numbers(scene: str) -> None:
+    within(sets.distance(sets.table(scene), sets.rigid(scene)), 1e-5, "Modelica's table, m, rad")
+    at = read("multibody_jl_driving")
+    exact = sets.rigid_at("driving", at["time"])
+    within(np.hypot(at["x"] - exact["x"], at["y"] - exact["y"]).max(), 1e-3, "Multibody.jl's test, m")
+
+
+@pytest.mark.parametrize("scene", sets.SCENES)
+def test_the_error_falls_as_one_over_the_stiffness_to_modelicas_numbers(fmus: Fmus, scene: str) -> None:
+    stop, factors = 1.5, (5, 10, 20)
+    runs = [sets.coupled(fmus, scene, factor, 0.002 / factor, stop) for factor in factors]
+    errors = [sets.distance(run, sets.rigid(scene)) for run in runs]
+    within(relative_error(np.array(errors[:-1]) / errors[1:], [2, 2]), 0.05, "ratio of errors off 2, relative")
+    limit = sets.distance(sets.limit(runs), sets.rigid(scene))
+    within(limit / errors[-1], 0.02, "error of the limit over that of the stiffest links")
+    beyond(errors[0] / errors[-1], 3.5, "error of the softest links over that of the stiffest")

@@ -4,16 +4,18 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
-from support.bounds import EPSILON, beyond, within
-from vehicles import build, car, car_judges, layout, monolithic_car
-from vehicles.errors import Table
+from support.bounds import EPSILON, beyond, relative_error, within
+from vehicles import build, car, car_judges, errors, layout, monolithic_car
 from vehicles.layout import CIRCLE, HILL, LANE, LAYOUT, MANOEUVRES, STEP, STRAIGHT, TOO_FAST, WHEELS
-from vehicles.options import Manoeuvre
-from vehicles.vehicle import Fmus
+from vehicles.options import EXCHANGES, Manoeuvre
+from vehicles.vehicle import Fmus, Table
+
+from reports.page import read_tables
 
 Drive = Callable[..., Table]
 
@@ -29,8 +31,18 @@ def worst(table: Table, name: str) -> float:
     return max(monolithic_car.apart(table, monolithic_car.read(name)).values())
 
 
+def error(finding: car_judges.Finding) -> float:
+    return relative_error(finding.measured, finding.exact)
+
+
 def stand(table: Table, when: np.ndarray) -> bool:
     return all((table[f"{w}.omega_z"][when] == 0).all() for w in WHEELS)
+
+
+def test_the_report_has_every_manoeuvre_with_every_master() -> None:
+    table = read_tables("vehicles")["car_errors"]
+    found = set(table[["manoeuvre", "inputs over the step", "step [ms]"]].itertuples(index=False, name=None))
+    assert found == set(product(monolithic_car.NAMES, EXCHANGES, [1000 * h for h in errors.STEPS]))
 
 
 OF_HILL = {"held": 0.01, "derivatives": 3e-4, "rollback": 1e-4}
@@ -67,7 +79,7 @@ def test_the_car_stands_starts_and_parks_on_the_hill_without_rolling_back(drive:
     assert car.rolled_back({name: values[start] for name, values in table.items()}) == 0
     within(car.rolled_back(table), car.ROLL_BACK, "rolls back, m")
     for finding in car_judges.standing(table, HILL):
-        within(finding.error, 0.01 if finding.what.startswith("load") else 1e-3, f"{finding.what}, relative")
+        within(error(finding), 0.01 if finding.what.startswith("load") else 1e-3, f"{finding.what}, relative")
     weak = HILL.changed(B_hold=400.0)  # partner: below m g R sin(slope), 652 N m
     beyond(car.rolled_back(drive(weak)), 0.1, "rolls back with weak brakes, m")
 
@@ -115,8 +127,8 @@ def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
     soft, stiff = ([f for f in car_judges.JUDGES[judge](table, manoeuvre) if f.exact] for table in tables)
     assert len(soft) == count
     for finding, nearer in zip(soft, stiff, strict=True):
-        within(finding.error, 0.04, "error, relative")
-        within(nearer.error / max(0.45 * finding.error, rest), 1, "error of stiff links over what 1/k allows")
+        within(error(finding), 0.04, "error, relative")
+        within(error(nearer) / max(0.45 * error(finding), rest), 1, "error of stiff links over what 1/k allows")
 
 
 def test_the_lateral_acceleration_overshoots_after_a_step_of_the_steering(drive: Drive) -> None:
@@ -126,7 +138,7 @@ def test_the_lateral_acceleration_overshoots_after_a_step_of_the_steering(drive:
 
 def test_the_stopping_distance_is_that_of_the_closed_form(drive: Drive) -> None:
     for finding in car_judges.braking(drive(STRAIGHT), STRAIGHT):
-        within(finding.error, 0.05 if finding.what.startswith("load") else 0.02, f"{finding.what}, relative")
+        within(error(finding), 0.05 if finding.what.startswith("load") else 0.02, f"{finding.what}, relative")
 
 
 def test_wheels_that_never_slip_do_not_understeer(drive: Drive) -> None:

@@ -11,7 +11,7 @@ import pytest
 from support.bounds import beyond, within
 from support.paths import ROOT
 from vehicles import balance
-from vehicles.errors import Table
+from vehicles.vehicle import Table
 
 
 @pytest.fixture(scope="module")

@@ -1,5 +1,5 @@
-"""What other tools read: SSP packages, valid, parameters bound at the component, run by fmpy to the right end; the
-bodies' terminals, which wire the signals that the master wires."""
+"""What other tools read: SSP packages, valid, parameters bound at the component, run by fmpy to the right end, and, as
+reported, by OMSimulator; the bodies' terminals, which wire the signals that the master wires."""
 
 import zipfile
 from importlib.util import find_spec
@@ -10,26 +10,23 @@ import pytest
 from fmpy import read_model_description
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from lxml import etree
-from support.bounds import beyond, within
-from vehicles import axle_study, ssp, suspended
-from vehicles.axle import AXLE
-from vehicles.car import CAR
-from vehicles.errors import Table
-from vehicles.layout import LANE
+from support.bounds import absolute_error, beyond, within
+from vehicles import axle, car, layout, ssp, suspended
 from vehicles.options import Manoeuvre
-from vehicles.suspended import LAUNCH, SUSPENDED
-from vehicles.vehicle import Fmus, Vehicle
+from vehicles.vehicle import Fmus, Table, Vehicle
+
+from reports.page import read_tables
 
 
 @pytest.fixture(scope="module")
 def package(fmus: Fmus, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return SUSPENDED.package(fmus, LAUNCH, 0.001, tmp_path_factory.mktemp("ssp"))
+    return suspended.SUSPENDED.package(fmus, suspended.LAUNCH, 0.001, tmp_path_factory.mktemp("ssp"))
 
 
 def test_the_package_is_valid_ssp_and_its_parameters_are_bound_at_the_component(package: Path) -> None:
     structure = read_ssd(str(package), validate=True)
     assert structure.version == "1.0"
-    assert len(structure.system.connections) == len(SUSPENDED.connections)
+    assert len(structure.system.connections) == len(suspended.SUSPENDED.connections)
     assert structure.system.parameterBindings == []
     bound = {c.name: [b.source for b in c.parameterBindings] for c in structure.system.elements}
     assert bound == {"wheel": ["resources/wheel.ssv"], "quarter_car": []}
@@ -61,16 +58,27 @@ def off_the_end(fmus: Fmus, vehicle: Vehicle, manoeuvre: Manoeuvre, step: float,
 
 
 def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(fmus: Fmus, tmp_path: Path) -> None:
-    manoeuvre = LANE.changed(stop=1.5)
-    errors = [off_the_end(fmus, CAR, manoeuvre, h, tmp_path, "chassis.X_R") for h in (0.001, 0.0005)]
+    manoeuvre = layout.LANE.changed(stop=1.5)
+    errors = [off_the_end(fmus, car.CAR, manoeuvre, h, tmp_path, "chassis.X_R") for h in (0.001, 0.0005)]
     within(abs(np.log2(errors[0] / errors[1]) - 1), 0.005, "order off 1")
     within(errors[1], 0.01, "off the end, m")  # of 22 m
 
 
 def test_the_package_of_the_axle_runs_in_fmpy(fmus: Fmus, tmp_path: Path) -> None:
-    scene = axle_study.TRAILING.changed(stop=1.0)
-    off = off_the_end(fmus, AXLE, scene, 0.0005, tmp_path, "axle.X", "axle.Y", "axle.psi")
+    scene = axle.TRAILING.changed(stop=1.0)
+    off = off_the_end(fmus, axle.AXLE, scene, 0.0005, tmp_path, "axle.X", "axle.Y", "axle.psi")
     within(off, 0.01, "off the end, m, rad")
+
+
+@pytest.mark.parametrize("package", ["axle.ssp", "car.ssp"])
+def test_omsimulator_has_the_values_of_the_master_of_the_examples(package: str) -> None:
+    ends = {
+        row["tool"]: [float(row[f"{axis} at the end, m"]) for axis in "XY"]
+        for row in read_tables("vehicles")["packages"].to_dict("records")
+        if row["package"] == package
+    }
+    within(absolute_error(ends["OMSimulator"], ends["master.py, held"]), 2e-8, "at the end, m")  # the table's digits
+    beyond(absolute_error(ends["OMSimulator"], ends["fmpy.ssp"]), 1e-3, "fmpy.ssp, which begins later, m")
 
 
 def terminals(fmu: Path) -> etree._Element:
@@ -82,7 +90,7 @@ def members(terminal: etree._Element) -> dict[str, str]:
     return {m.get("memberName"): m.get("variableName") for m in terminal.iter("TerminalMemberVariable")}
 
 
-@pytest.mark.parametrize(("name", "vehicle"), [("axle", AXLE), ("chassis", CAR)])
+@pytest.mark.parametrize(("name", "vehicle"), [("axle", axle.AXLE), ("chassis", car.CAR)])
 def test_joining_the_terminals_of_a_valid_file_wires_the_wheels(fmus: Fmus, name: str, vehicle: Vehicle) -> None:
     """As a tool does that joins each terminal of the body to the terminal of the wheel of that name."""
     root, (hub,) = terminals(fmus[name]), terminals(fmus["wheel"]).iter("Terminal")

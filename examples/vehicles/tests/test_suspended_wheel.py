@@ -7,10 +7,9 @@ import pytest
 from support.bounds import beyond, relative_error, within
 from vehicles import errors, suspended
 from vehicles.component import Component, loaded
-from vehicles.errors import Table
 from vehicles.master import Master
 from vehicles.suspended import SUSPENDED
-from vehicles.vehicle import Fmus, upright
+from vehicles.vehicle import Fmus, Table, upright
 
 STEPS = (0.0025, 0.00125, 0.000625)  # s
 
@@ -22,20 +21,20 @@ def found(fmus: Fmus, truth: Table) -> errors.Errors:
 
 def test_held_values_converge_with_order_one_first_derivatives_with_two(found: errors.Errors) -> None:
     for kind, order, pairs in (("positions held", 1, 1), ("derivatives", 2, 2)):
-        orders = errors.orders(STEPS, found.of[kind])[-pairs:]
+        orders = errors.orders(found[kind])[-pairs:]
         within(np.abs(np.subtract(orders, order)).max(), 0.1, f"{kind}: off the order")
 
 
 def test_with_derivatives_the_coupled_run_meets_the_joint_equations(found: errors.Errors, truth: Table) -> None:
     beyond(truth["lambda_3"].min(), 190, "normal force, N")
-    linear, held = (found.of[kind][-1] for kind in ("derivatives", "positions held"))
+    linear, held = (found[kind][STEPS[-1]] for kind in ("derivatives", "positions held"))
     within(linear, 2e-4, "error / range")
     beyond(held / linear, 100, "error of held values over that of derivatives")
 
 
 def test_the_error_of_held_positions_is_the_drag_of_their_lag(found: errors.Errors) -> None:
-    lagging = found.of["positions held"]
-    within(np.divide(found.of["held"], lagging).max(), 0.25, "error of those that follow over that of held positions")
+    held, lagging = ([*found[kind].values()] for kind in ("held", "positions held"))
+    within(np.divide(held, lagging).max(), 0.25, "error of those that follow over that of held positions")
     for factor, check in ((1, within), (2, beyond)):  # of the step, and so of the drag
         predicted = [suspended.drag_share(factor * h) for h in STEPS]
         check(relative_error(lagging, predicted), 0.05, "error beside the drag, relative")

@@ -5,9 +5,16 @@ m_t = m + 2 J_z / R^2, I_t the moment of inertia about the axle's middle with 2 
 middle and the yaw rate:
 
     m_t v' = S w^2 + (M_left + M_right) / R - friction,    I_t w' = -S v w + b (M_right - M_left) / R - friction
+
+Its studies: error against the communication step and against the stiffness, limits, energy per bond. A bond is an
+effort (force, moment) that a body gives to a wheel, and the flow (velocity, angular velocity) that the wheel gives
+back. The body's side of it is the integral of its effort with the flow it received; the wheel's side that of the effort
+it received with its flow. The difference is the energy that the coupling added. Both are taken over each communication
+step with straight lines between the values at its ends.
 """
 
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -15,16 +22,22 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from . import options
-from .component import Component
-from .errors import Table, distance
-from .options import Manoeuvre
-from .vehicle import Fmus, Vehicle, recorded, road, upright, wire
+from . import errors, options
+from .component import Component, loaded
+from .master import Master
+from .options import Manoeuvre, manoeuvres
+from .vehicle import FORCE, Fmus, Table, Vehicle, recorded, road, upright, wire
 
 WHEELS = {"left": "left", "right": "right"}
 COMPARED = ("X", "Y", "psi", "v", "omega")
+SCENES = manoeuvres("axle")
+STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT = SCENES.values()
+LIMIT_STEPS = (0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
+GRID = 0.048  # s, which all of them divide
+BONDS = dict(zip(FORCE, ("X_O_dot", "Y_O_dot", "Z_O_dot"), strict=True)) | {"M_1": "theta_dot", "M_2": "psi_dot"}
 OF_WHEEL = {"m": 20.0, "J_x": 0.9, "J_z": 1.8}  # the wheels' defaults
 LINKS = ("k", "c", "k_a", "c_a", "k_p", "c_p")
+distance = partial(errors.distance, names=COMPARED)
 
 
 def parts(fmus: Fmus, scene: Manoeuvre) -> list[Component]:
@@ -139,20 +152,58 @@ def beside_rigid(table: Table, scene: Manoeuvre, _fmus: Fmus) -> Table:
     return table | {f"rigid.{name}": exact[name] for name in COMPARED}
 
 
-def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
-    """Paths besides those of the wheels."""
-    names = {"middle of the axle": "", "rigid axle, closed form": "rigid."}
-    return {label: (table[f"{n}X"], table[f"{n}Y"]) for label, n in names.items() if f"{n}X" in table}
-
-
 def verdict(table: Table, scene: Manoeuvre) -> tuple[bool, list[str]]:
     """How near the run is to the rigid axle."""
     if why := without_closed_form(scene):
         return True, [f"No closed form to compare with: {why}."]
-    off = distance(table, {name: table[f"rigid.{name}"] for name in COMPARED}, COMPARED)
+    off = distance(table, {name: table[f"rigid.{name}"] for name in COMPARED})
     return True, [f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."]
 
 
 CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel, f"_{wheel}")]
 RECORD = recorded("axle", WHEELS)
-AXLE = Vehicle("axle", parts, CONNECTIONS, RECORD, verdict, WHEELS, beside_rigid, tracks, waits=True)
+TRACKS = {"middle of the axle": ("X", "Y"), "rigid axle, closed form": ("rigid.X", "rigid.Y")}
+AXLE = Vehicle("axle", parts, CONNECTIONS, RECORD, verdict, WHEELS, beside_rigid, TRACKS, waits=True)
+
+
+def step_errors(fmus: Fmus, scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = errors.STEPS) -> dict:
+    """Error by h at this stiffness: the truth is the run with rollback at a quarter of the smallest step."""
+    truth = AXLE.drive(fmus, scene, min(steps) / 4, "rollback", 0.02).whole
+    return {h: distance(AXLE.drive(fmus, scene, h, exchange, 0.02).whole, truth) for h in steps}
+
+
+def stiffness_errors(fmus: Fmus, scene: Manoeuvre, factors: tuple[float, ...], step: float = 0.0005) -> dict:
+    """Error by factor against the closed form of the rigid axle, with a step small enough for it not to matter."""
+    tables = [AXLE.drive(fmus, scene.changed(stiffness=factor), step, "rollback", 0.02).whole for factor in factors]
+    return {k: distance(table, rigid(scene, table["time"])) for k, table in zip(factors, tables, strict=True)}
+
+
+def energy(fmus: Fmus, scene: Manoeuvre, step: float, exchange: str) -> tuple[np.ndarray, float]:
+    """Energy added over a run [J], of each wheel by bond, and the gain of the sum of all energies: of a scene without
+    drive and rolling friction, in which all energy is in the wheels, the beam and its dampers."""
+    efforts = [("axle", f"{effort}_{wheel}") for wheel in WHEELS for effort in BONDS]
+    flows = [(wheel, flow) for wheel in WHEELS for flow in BONDS.values()]
+    stored = [("left", "E"), ("right", "E"), ("axle", "E"), ("axle", "W_loss")]
+    parts, bonds, rows = AXLE.parts(fmus, scene), [*efforts, *flows], []
+    with loaded(*parts):
+        master = Master(parts, AXLE.connections)
+        for _ in master.steps(scene.stop, step, exchange, ends=bonds):
+            rows.append((master.read(bonds), master.read(bonds, rates=True), master.read(stored)))
+    begin, rate, total = (np.array(column) for column in zip(*rows, strict=True))
+    h = step * (exchange == "derivatives")  # inputs go on straight lines, else they are held
+    instants = begin, begin + h * rate, np.array(master.at_end)
+    (e, f), (e_line, f_line), (e_end, f_end) = (np.split(x, 2, axis=1) for x in instants)
+    added = step * (product(e, e_line, f, f_end) - product(e, e_end, f, f_line))[:-1].sum(axis=0)
+    return added.reshape(len(WHEELS), -1), float(total[-1].sum() - total[0].sum())
+
+
+def product(a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray) -> np.ndarray:
+    """Mean of the product of two straight lines."""
+    return (2 * a0 * b0 + a0 * b1 + a1 * b0 + 2 * a1 * b1) / 6
+
+
+def longest_step(fmus: Fmus, scene: Manoeuvre, exchange: str) -> float:
+    """Of LIMIT_STEPS, s."""
+    truth = rigid(scene, np.arange(int(scene.stop / GRID) + 1) * GRID)
+    scene = scene.changed(stop=float(truth["time"][-1]))
+    return errors.longest(LIMIT_STEPS, lambda h: distance(AXLE.drive(fmus, scene, h, exchange, GRID).whole, truth))

@@ -10,9 +10,8 @@ import numpy as np
 from fmpy import simulate_fmu
 
 from .component import Component
-from .errors import Table
 from .options import Manoeuvre, manoeuvres
-from .vehicle import Fmus, Vehicle, recorded, wire
+from .vehicle import Fmus, Table, Vehicle, recorded, wire
 
 CIRCLE = manoeuvres("balance")["circle"]
 STEP = 0.005  # s
@@ -86,13 +85,9 @@ def verdict(table: Table, course: Manoeuvre) -> tuple[bool, list[str]]:
     return False, [single, f"Failed: {held}, and {off}."]
 
 
-def tracks(table: Table) -> dict[str, tuple[np.ndarray, ...]]:
-    """Paths of the wheel's centre."""
-    return {"alone": (table["alone.X_O"], table["alone.Y_O"]), "with controller": (table["X_O"], table["Y_O"])}
-
-
+TRACKS = {"alone": ("alone.X_O", "alone.Y_O"), "with controller": ("X_O", "Y_O")}
 CONNECTIONS = wire("balance", "wheel", "", MEASURED, MOMENTS)
-BALANCE = Vehicle("balance", parts, CONNECTIONS, RECORD, verdict, complete=beside_alone, tracks=tracks)
+BALANCE = Vehicle("balance", parts, CONNECTIONS, RECORD, verdict, complete=beside_alone, tracks=TRACKS)
 
 
 def drive(fmus: Fmus, course: Manoeuvre = CIRCLE) -> Table:

@@ -8,12 +8,11 @@ from math import cos, pi, sin, tan
 
 import numpy as np
 
-from .car_judges import axle_friction, demand, findings
+from .car_judges import axle_friction, demand, findings, force, per_axle
 from .component import Component
-from .errors import Table
 from .layout import AXLES, MASS, NAMES, WHEELS, R, chassis_start, driver_start
 from .options import Manoeuvre
-from .vehicle import LOAD, POSE, Fmus, Vehicle, recorded, road, upright, wire
+from .vehicle import LOAD, POSE, Fmus, Table, Vehicle, recorded, road, upright, wire
 
 CONNECTIONS = [
     *(c for w in WHEELS for c in wire("chassis", w, f"_{w}", (*POSE, "tau", "lambda_3"), (*LOAD, "M_brake"))),
@@ -50,7 +49,7 @@ def complete(table: Table, _manoeuvre: Manoeuvre, _fmus: Fmus) -> Table:
     if len(table["time"]) < 3:
         return table
     c, s = np.cos(table["psi"]), np.sin(table["psi"])
-    forces = [sum(table[f"{w}.lambda_{k}"] for w in WHEELS) / MASS for k in (1, 2)]
+    forces = [force(table, WHEELS, k) / MASS for k in (1, 2)]
     moved = [np.gradient(table[n], table["time"], edge_order=2) for n in ("X", "Y")]
     beta = np.arctan2(c * moved[1] - s * moved[0], np.abs(c * moved[0] + s * moved[1]))
     required = {f"{axle}.mu": axle_friction(table, axle) for axle in AXLES}
@@ -100,8 +99,7 @@ def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
         return False, [f"Failed: {why}."]
     asked = demand(table)
     most = max(asked.values())
-    each = ", ".join(f"{axle} {mu:.2f}" for axle, mu in asked.items())
-    needs = f"needs a road with a friction coefficient of {most:.2f} (per axle: {each})"
+    needs = f"needs a road with a friction coefficient of {most:.2f} (per axle: {per_axle(asked)})"
     if most > DRY_ROAD:
         return False, [f"Failed: the manoeuvre {needs}; a dry road has about {DRY_ROAD:g}."]
     least = min(WHEELS, key=lambda w: table[f"{w}.lambda_3"].min())

@@ -15,14 +15,15 @@ Characteristic values in the manner of ISO 4138 (constant steer angle, rising sp
 omega, psi, roll, delta, a_y and beta, and the ground's forces on each wheel.
 """
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
-from .errors import Table
 from .layout import AXLES, J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, X_REAR, G, R
 from .options import Manoeuvre
+from .vehicle import Table
 
 N_WHEELS = len(WHEELS)
 M_T = MASS + N_WHEELS * J_Z / R**2
@@ -37,19 +38,13 @@ BARS = sum(w["k_bar"] * (w["y"] - WHEELS[w["bar_to"]]["y"]) ** 2 for w in WHEELS
 ROLL_GRADIENT = INERTIA / (STRUTS + BARS - G * LEANING)
 
 
-@dataclass(frozen=True)
-class Finding:
+class Finding(NamedTuple):
     """One quantity as measured in a run, and of rigid links and wheels that never slip, where that is known."""
 
     what: str
     unit: str
     measured: float
     exact: float | None = None
-
-    @property
-    def error(self) -> float:
-        """Relative."""
-        return abs(self.measured - self.exact) / abs(self.exact)
 
     def __str__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
@@ -74,6 +69,11 @@ def demand(table: Table) -> dict[str, float]:
     return {axle: float(np.nanmax(axle_friction(table, axle))) for axle in AXLES}
 
 
+def per_axle(asked: dict[str, float]) -> str:
+    """In words."""
+    return ", ".join(f"{axle} {mu:.2f}" for axle, mu in asked.items())
+
+
 def worst(table: Table) -> tuple[str, int]:
     """The axle that requires most of the road, and the row in which it does."""
     asked = demand(table)
@@ -94,36 +94,33 @@ def resistance(manoeuvre: Manoeuvre) -> tuple[float, float]:
     return manoeuvre["s"] * MASS * G * np.cos(manoeuvre["slope"]), G * np.sin(manoeuvre["slope"])
 
 
-def launch(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
+def launch(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """Acceleration and load transfer in the last second of full torque."""
     t, off = table["time"], manoeuvre["t_off"]
     window = (t > off - 1) & (t < off)
     drag, grade = resistance(manoeuvre)
     a = (manoeuvre["M_0"] - drag - R * MASS * grade) / (R * M_T)
-    return [
-        Finding("acceleration of the launch", "m/s2", float(np.polyfit(t[window], table["v"][window], 1)[0]), a),
-        load_moved(table, "rear", "launch", window, a * INERTIA + drag + grade * HEIGHTS),
-    ]
+    yield Finding("acceleration of the launch", "m/s2", float(np.polyfit(t[window], table["v"][window], 1)[0]), a)
+    yield load_moved(table, "rear", "launch", window, a * INERTIA + drag + grade * HEIGHTS)
 
 
-def standing(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
+def standing(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """A car that its brakes hold on a slope, just before the drive torque comes, and at the end of the run."""
-    t, (_, grade), found = table["time"], resistance(manoeuvre), []
+    t, (_, grade) = table["time"], resistance(manoeuvre)
     window = (t > manoeuvre["t_on"] - 0.1) & (t < manoeuvre["t_on"])
     for at, when in ((window, "by the brakes"), (t > t[-1] - 0.1, "parked")):
         push = float(np.mean(force(table, list(WHEELS), 1)[at]))
-        found.append(Finding(f"force of the road that holds the car, {when}", "N", push, MASS * grade))
-        found.append(load_moved(table, "rear", f"slope, {when}", at, grade * HEIGHTS))
-    return found
+        yield Finding(f"force of the road that holds the car, {when}", "N", push, MASS * grade)
+        yield load_moved(table, "rear", f"slope, {when}", at, grade * HEIGHTS)
 
 
-def rise(t: np.ndarray, begin: float, duration: float) -> np.ndarray:
+def rise(t: float | np.ndarray, begin: float, duration: float) -> float | np.ndarray:
     """From 0 to 1, with continuous second derivatives, as the driver's programmes."""
-    z = np.clip((t - begin) / duration, 0, 1)
+    z = np.minimum(np.maximum((t - begin) / duration, 0), 1)
     return z**3 * (10 - 15 * z + 6 * z**2)
 
 
-def braking(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
+def braking(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """Instant and distance of the stop from the state at t_brake, and the load moved forwards."""
     t, begin, ramp = table["time"], manoeuvre["t_brake"], manoeuvre["ramp_M"]
     i, fine = int(np.searchsorted(t, begin - 1e-9)), np.linspace(begin, t[-1], 200001)
@@ -134,16 +131,13 @@ def braking(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
     full = (t > begin + ramp + 0.5 * (fine[end] - begin - ramp)) & (t < fine[end] - 0.05)
     spins = np.max([np.abs(table[f"{w}.omega_z"]) for w in WHEELS], axis=0)
     stopped, way = int(np.argmax((t > begin) & (spins == 0))), float(trapezoid(v[: end + 1], fine[: end + 1]))
-    found = [
-        Finding("instant of the stop after the brakes come", "s", float(t[stopped] - begin), float(fine[end] - begin)),
-        Finding("stopping distance", "m", float(table["X"][-1] - table["X"][i]), way),
-    ]
+    yield Finding("instant of the stop after the brakes come", "s", float(t[stopped] - begin), float(fine[end] - begin))
+    yield Finding("stopping distance", "m", float(table["X"][-1] - table["X"][i]), way)
     if full.any():
-        found.append(load_moved(table, "front", "brakes", full, drag + grade * HEIGHTS - a[-1] * INERTIA))
-    return found
+        yield load_moved(table, "front", "brakes", full, drag + grade * HEIGHTS - a[-1] * INERTIA)
 
 
-def bend(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
+def bend(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """Steady state at the end of a run with a constant steer angle. Ackermann: cot delta_outer - cot delta_inner of the
     foremost steered wheels."""
     last = table["time"] > table["time"][-1] - 0.5
@@ -154,23 +148,21 @@ def bend(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
     turned = {n: float(np.mean((table[f"{n}.psi"] - table["psi"])[last])) for n in (inner, outer)}
     apart = 1 / np.tan(turned[outer]) - 1 / np.tan(turned[inner])
     across = (WHEELS[inner]["y"] - WHEELS[outer]["y"]) / (x - X_REAR)
-    return [
-        Finding("radius of the rear point's circle", "m", v / omega, WHEELBASE / np.tan(delta)),
-        Finding("Ackermann, from the wheels' headings", "1", apart, across),
-        Finding("load moved outwards", "N", moved, (v * omega * INERTIA + G * LEANING * roll) / TRACK),
-    ]
+    yield Finding("radius of the rear point's circle", "m", v / omega, WHEELBASE / np.tan(delta))
+    yield Finding("Ackermann, from the wheels' headings", "1", apart, across)
+    yield Finding("load moved outwards", "N", moved, (v * omega * INERTIA + G * LEANING * roll) / TRACK)
 
 
-def closure(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
+def closure(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """The figure of eight after one lap: distance of the rear point from its start beside the way driven."""
     p = table["p"]
     x, y = (np.interp(2 * np.pi, p, table[name]) for name in ("X_R", "Y_R"))
     way = float(np.hypot(np.diff(table["X_R"]), np.diff(table["Y_R"]))[p[1:] <= 2 * np.pi].sum())
     gap = float(np.hypot(x - table["X_R"][0], y))
-    return [Finding("figure of eight: gap after one lap, and its length", "m", gap, way)]
+    yield Finding("figure of eight: gap after one lap, and its length", "m", gap, way)
 
 
-def circle(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
+def circle(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """Gradients over lateral acceleration while the speed rises at a constant steer angle; the sideslip angle beside
     that of a rear axle without any."""
     steady = (table["time"] > 5.0) & (table["time"] < 22.0)
@@ -180,54 +172,47 @@ def circle(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
         return Finding(of, unit, float(np.polyfit(a, y, 1)[0]), exact)
 
     drift = float(np.arctan(-X_REAR * np.tan(delta[0]) / WHEELBASE))
-    return [
-        Finding("largest lateral acceleration", "m/s2", float(a.max())),
-        gradient("understeer gradient", "rad s2/m", delta - np.arctan(WHEELBASE * (omega / v))),
-        gradient("gradient of the curvature", "s2/m2", omega / v),
-        Finding("sideslip angle where the speed is least", "rad", float(beta[0]), drift),
-        gradient("gradient of the sideslip angle", "rad s2/m", beta),
-        gradient("gradient of the roll angle", "rad s2/m", roll, ROLL_GRADIENT),
-    ]
+    yield Finding("largest lateral acceleration", "m/s2", float(a.max()))
+    yield gradient("understeer gradient", "rad s2/m", delta - np.arctan(WHEELBASE * (omega / v)))
+    yield gradient("gradient of the curvature", "s2/m2", omega / v)
+    yield Finding("sideslip angle where the speed is least", "rad", float(beta[0]), drift)
+    yield gradient("gradient of the sideslip angle", "rad s2/m", beta)
+    yield gradient("gradient of the roll angle", "rad s2/m", roll, ROLL_GRADIENT)
 
 
 def _first(t: np.ndarray, x: np.ndarray, level: float) -> float:
     """When a rising signal first reaches a level, between samples by a straight line."""
     i = int(np.argmax(x >= level))
-    return float(t[i - 1] + (level - x[i - 1]) / (x[i] - x[i - 1]) * (t[i] - t[i - 1]))
+    return float(np.interp(level, x[i - 1 : i + 1], t[i - 1 : i + 1]))
 
 
-def step(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
+def step(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """Response times from the instant at which the steering has gone half its way, overshoot and gains."""
     t, last = table["time"], table["time"] > table["time"][-1] - 0.5
     end = {name: float(np.mean(table[name][last])) for name in ("delta", "v", "omega", "a_y", "roll")}
     half, tenth, most = (_first(t, table["delta"], share * end["delta"]) for share in (0.5, 0.1, 0.9))
     yaw = end["v"] * np.tan(end["delta"]) / WHEELBASE
-    found = [Finding("time of the steer angle from 10 to 90 %", "s", most - tenth)]
+    yield Finding("time of the steer angle from 10 to 90 %", "s", most - tenth)
     for name, what, unit, theory in (
         ("omega", "yaw rate", "1/s", yaw),
         ("a_y", "lateral acceleration", "m/s2/rad", end["v"] * yaw),
         ("roll", "roll angle", "1", ROLL_GRADIENT * end["v"] * yaw),
     ):
         x, level = table[name], end[name]
-        found += [
-            Finding(f"gain of the {what}", unit, level / end["delta"], float(theory / end["delta"])),
-            Finding(f"response time of the {what} (90 %)", "s", _first(t, x, 0.9 * level) - half),
-            Finding(f"time to the peak of the {what}", "s", float(t[np.argmax(x)]) - half),
-            Finding(f"overshoot of the {what}", "1", float(x.max()) / level - 1),
-        ]
-    return found
+        yield Finding(f"gain of the {what}", unit, level / end["delta"], float(theory / end["delta"]))
+        yield Finding(f"response time of the {what} (90 %)", "s", _first(t, x, 0.9 * level) - half)
+        yield Finding(f"time to the peak of the {what}", "s", float(t[np.argmax(x)]) - half)
+        yield Finding(f"overshoot of the {what}", "1", float(x.max()) / level - 1)
 
 
-def lane(table: Table, _manoeuvre: Manoeuvre) -> list[Finding]:
+def lane(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """How hard the change of lanes is, and where it asks most of the road."""
     axle, at = worst(table)
     largest = (("lateral acceleration", "m/s2", "a_y"), ("yaw rate", "rad/s", "omega"), ("roll angle", "rad", "roll"))
-    return [
-        *(Finding(f"largest {what}", unit, float(np.abs(table[name]).max())) for what, unit, name in largest),
-        Finding(f"largest friction required, at the {axle} axle", "1", float(axle_friction(table, axle)[at])),
-        Finding("where: rear point, X", "m", float(table["X_R"][at])),
-        Finding("when", "s", float(table["time"][at])),
-    ]
+    yield from (Finding(f"largest {what}", unit, float(np.abs(table[name]).max())) for what, unit, name in largest)
+    yield Finding(f"largest friction required, at the {axle} axle", "1", float(axle_friction(table, axle)[at]))
+    yield Finding("where: rear point, X", "m", float(table["X_R"][at]))
+    yield Finding("when", "s", float(table["time"][at]))
 
 
 JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure, circle, step, lane)}

@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from ctypes import byref, c_double
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -96,10 +96,8 @@ class Component:
 @contextmanager
 def loaded(*components: Component) -> Iterator[None]:
     """With the components in initialization mode; they are freed in the end."""
-    try:
+    with ExitStack() as stack:
         for component in components:
+            stack.callback(component.free)
             component.load()
         yield
-    finally:
-        for component in components:
-            component.free()

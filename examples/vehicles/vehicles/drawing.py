@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 
 from diagrams import style
 
-from .errors import Errors, Table
+from .errors import Errors
 from .options import Manoeuvre
-from .vehicle import Vehicle
+from .vehicle import Table, Vehicle
 
 COLOURS = (style.BLUE, style.VERMILLION, style.SKY, style.ORANGE, style.PURPLE, style.GREY)
 MARKS = {
@@ -24,7 +24,6 @@ DASHES = ("-", "--", ":", "-.")  # a curve that has the values of the one before
 GUIDES = {1: (0, (4, 2)), 2: (0, (1, 1))}  # lines of an order
 SCALES = {"deg": 180 / np.pi, "deg/s": 180 / np.pi, "km/h": 3.6, "kN": 1e-3, "mm": 1e3}  # of a label's unit
 ABOVE = {"loc": "lower left", "bbox_to_anchor": (0, 0.98)}  # the axes
-Tracks = dict[str, tuple[np.ndarray, ...]]
 
 
 def draw(
@@ -42,7 +41,7 @@ def draw(
     fig.suptitle(title, fontsize=9)
     for cell, ax in fig.subplot_mosaic([list(row) for row in rows]).items():
         if cell == "path":
-            draw_path(ax, table, vehicle.wheels, vehicle.tracks(table))
+            draw_path(ax, table, vehicle.wheels, vehicle.tracks)
         elif cell == "errors":
             draw_errors(ax, errors)
             ax.legend(**ABOVE, ncols=3)
@@ -68,7 +67,7 @@ def draw_panel(ax: Axes, table: Table, label: str, *wanted: str, names: dict[str
     ax.set(xlabel="time [s]", ylabel=label)
 
 
-def draw_path(ax: Axes, table: Table, names: dict[str, str], tracks: Tracks) -> None:
+def draw_path(ax: Axes, table: Table, names: dict[str, str], tracks: dict[str, tuple[str, ...]]) -> None:
     """Tracks of the wheels' centres, and the wheels themselves a few times, 0.7 m long, along their headings. A path
     that would be a thin strip is stretched across, and the label names the factor."""
     at = np.unique(np.linspace(0, len(table["time"]) - 1, 9).astype(int))
@@ -77,7 +76,8 @@ def draw_path(ax: Axes, table: Table, names: dict[str, str], tracks: Tracks) -> 
         centre, half = np.stack([x, y]), 0.35 * np.stack([np.cos(psi), np.sin(psi)])
         ends = np.stack([centre - half, centre + half])  # (end, axis, instant)
         ax.plot(ends[:, 0], ends[:, 1], color=style.INK, linewidth=1.6, alpha=0.45, zorder=1, solid_capstyle="round")
-    paths = {text: (table[f"{w}.X_O"], table[f"{w}.Y_O"]) for w, text in names.items()} | tracks
+    columns = {text: (f"{wheel}.X_O", f"{wheel}.Y_O") for wheel, text in names.items()} | tracks
+    paths = {text: (table[x], table[y]) for text, (x, y) in columns.items() if x in table}
     for (text, (x, y)), colour, dashes in zip(paths.items(), cycle(COLOURS), cycle(DASHES[:2]), strict=False):
         ax.plot(x, y, color=colour, linewidth=0.9, linestyle=dashes, label=text, zorder=2)
     along, across = (max(float(np.nanmax(v) - np.nanmin(v)), 0.1) for v in np.hstack(list(paths.values())))
@@ -94,29 +94,24 @@ def draw_orders(errors: dict[str, Errors], path: Path) -> Path:
     """The errors of several runs, one panel each."""
     style.use_style()
     fig = style.figure_mm(style.PAGE, 62)
-    width = (style.PAGE - 16) / len(errors)
-    for i, (name, of) in enumerate(errors.items()):
-        ax = style.axes_mm(fig, 16 + i * width, 12, width - 5, 34)
+    fig.set_layout_engine("constrained")
+    for ax, (name, of) in zip(fig.subplots(1, len(errors), sharey=True, squeeze=False)[0], errors.items(), strict=True):
         draw_errors(ax, of)
-        ax.set_title(name, fontsize=9)
-        ax.set_ylim(1e-10, 0.1)
-        if i:
-            ax.set_ylabel("")
-            ax.set_yticklabels([])
-    fig.legend(*ax.get_legend_handles_labels(), loc="upper center", ncols=5)
+        ax.set(title=name, ylim=(1e-10, 0.1))
+        ax.label_outer()
+    fig.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=5)
     return style.save_png(fig, path)
 
 
 def draw_errors(ax: Axes, errors: Errors) -> None:
     """Error against the step, with a line of each order that is expected."""
-    h, drawn = 1000 * np.array(errors.steps), set()
-    for exchange, values in errors.of.items():
-        mark, colour, order = MARKS[exchange]
+    for exchange, by_step in errors.items():
+        h, values, (mark, colour, order) = 1000 * np.array([*by_step]), [*by_step.values()], MARKS[exchange]
         ax.loglog(h, values, mark, color=colour, markersize=3, label=exchange)
         if order and np.isfinite(values[-1]):
-            label = {} if order in drawn else {"label": f"order {order}"}
-            drawn.add(order)
-            ax.loglog(h, values[-1] * (h / h[-1]) ** order, color=style.GREY, linestyle=GUIDES[order], **label)
+            known = f"order {order}" in ax.get_legend_handles_labels()[1]
+            guide = {"color": style.GREY, "linestyle": GUIDES[order], "label": None if known else f"order {order}"}
+            ax.loglog(h, values[-1] * (h / h[-1]) ** order, **guide)
     ax.set_xticks(h, [f"{x:g}" for x in h])
     ax.minorticks_off()
     ax.set(xlabel="step [ms]", ylabel="error / range")

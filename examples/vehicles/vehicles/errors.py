@@ -1,23 +1,16 @@
 """Errors of coupled runs: relative to each variable's range, over the communication step, and their order."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
 from itertools import takewhile
 
 import numpy as np
 
 from .component import Ended
+from .vehicle import Table
 
 STEPS = (0.002, 0.001, 0.0005)  # s
-Table = dict[str, np.ndarray]
-
-
-@dataclass(frozen=True)
-class Errors:
-    """Errors relative to the range over the communication step, by exchange."""
-
-    steps: Sequence[float]
-    of: dict[str, list[float]]
+Errors = dict[str, dict[float, float]]  # relative to the range: by exchange and communication step
 
 
 def apart(table: Table, truth: Table, names: Sequence[str], least: float = 0.01) -> dict[str, float]:
@@ -30,18 +23,15 @@ def distance(table: Table, truth: Table, names: Sequence[str], least: float = 0.
     return max(apart(table, truth, names, least).values())
 
 
-def orders(steps: Sequence[float], errors: Sequence[float]) -> list[float]:
-    """Observed order between neighbours."""
-    return list(np.diff(np.log(errors)) / np.diff(np.log(steps)))
+def orders(errors: dict[float, float]) -> np.ndarray:
+    """Observed order between neighbours of the errors by step."""
+    return np.diff(np.log([*errors.values()])) / np.diff(np.log([*errors]))
 
 
 def longest(steps: Sequence[float], error: Callable[[float], float]) -> float:
     """The longest of rising steps up to which a run neither ends early nor strays beyond 10 % of the range, s."""
-
-    def fits(h: float) -> bool:
-        try:
-            return error(h) < 0.1
-        except Ended:
-            return False
-
-    return max(takewhile(fits, steps), default=0.0)
+    reached = 0.0
+    with suppress(Ended):
+        for h in takewhile(lambda h: error(h) < 0.1, steps):
+            reached = h
+    return reached

@@ -21,25 +21,22 @@ if __name__ == "__main__":  # also while the packages below are loaded
 
 import numpy as np  # noqa: E402
 
-from . import build, options  # noqa: E402
-from .axle import AXLE  # noqa: E402
-from .balance import BALANCE  # noqa: E402
-from .car import CAR  # noqa: E402
-from .car_judges import demand  # noqa: E402
+from . import axle, balance, build, car, options, suspended  # noqa: E402
+from .car_judges import demand, per_axle  # noqa: E402
 from .drawing import draw  # noqa: E402
-from .suspended import SUSPENDED  # noqa: E402
-from .vehicle import Run  # noqa: E402
+from .options import Manoeuvre  # noqa: E402
+from .vehicle import Fmus, Run  # noqa: E402
 
 RESULTS = build.ROOT / "results" / "examples"
-VEHICLES = {"axle": AXLE, "car": CAR, "suspended": SUSPENDED, "balance": BALANCE}
+VEHICLES = {"axle": axle.AXLE, "car": car.CAR, "suspended": suspended.SUSPENDED, "balance": balance.BALANCE}
 PER_PICTURE = 600  # rows, about
 SHORT = 1e-4  # s, a step that is short for every link here
 
 
-def diverged(fmus: dict[str, Path], asked: options.Asked, run: Run) -> str:
+def diverged(fmus: Fmus, asked: Manoeuvre, run: Run) -> str:
     """Whether an ending comes from the coupling: with a much shorter step it comes elsewhere, or not at all."""
     end, h = run.ending.time, min(asked.h / 4, max(asked.h / 16, SHORT))
-    beyond = asked.manoeuvre.changed(stop=min(asked.manoeuvre.stop, 1.1 * end + 10 * asked.h))
+    beyond = asked.changed(stop=min(asked.stop, 1.1 * end + 10 * asked.h))
     again = VEHICLES[asked.vehicle].drive(fmus, beyond, h, asked.exchange, end).ending
     if again and abs(again.time - end) < 2 * asked.h + 0.02 * end:
         return ""
@@ -48,36 +45,35 @@ def diverged(fmus: dict[str, Path], asked: options.Asked, run: Run) -> str:
     return f"{cause} (a run with {1000 * h:g} ms {instead}). Choose a shorter step: docs/vehicle.md."
 
 
-def judged(fmus: dict[str, Path], asked: options.Asked, run: Run) -> tuple[bool, list[str]]:
+def judged(fmus: Fmus, asked: Manoeuvre, run: Run) -> tuple[bool, list[str]]:
     """Whether the run is the manoeuvre, and why."""
-    of, manoeuvre = VEHICLES[asked.vehicle], asked.manoeuvre
+    of = VEHICLES[asked.vehicle]
     if not run.ending:
-        return of.verdict(run.table, manoeuvre)
+        return of.verdict(run.table, asked)
     how, cause = of.describe(run.ending), diverged(fmus, asked, run)
-    if not cause and "lifts_off" in manoeuvre.ends and "lifted off" in how:
+    if not cause and "lifts_off" in asked.ends and "lifted off" in how:
         return True, [f"As intended: {how}"]
-    if not cause and manoeuvre["mu_max"] and of is CAR:
-        each = ", ".join(f"{axle} {mu:.2f}" for axle, mu in demand(run.table).items())
-        cause = f"Until then the axles, their wheels together, required: {each}."
+    if not cause and asked["mu_max"] and of is car.CAR:
+        cause = f"Until then the axles, their wheels together, required: {per_axle(demand(run.table))}."
     return False, [f"Failed: {how}", *filter(None, [cause])]
 
 
-def example(fmus: dict[str, Path], asked: options.Asked, folder: Path) -> bool:
+def example(fmus: Fmus, asked: Manoeuvre, folder: Path) -> bool:
     """One example: run, table, picture and package, verdict."""
-    of, manoeuvre, name, remark = VEHICLES[asked.vehicle], asked.manoeuvre, asked.vehicle, ""
-    grid = asked.grid or max(1, round(manoeuvre.stop / PER_PICTURE / asked.h)) * asked.h
-    run = of.drive(fmus, manoeuvre, asked.h, asked.exchange, grid, progress=True)
+    of, name, remark = VEHICLES[asked.vehicle], asked.vehicle, ""
+    grid = asked.grid or max(1, round(asked.stop / PER_PICTURE / asked.h)) * asked.h
+    run = of.drive(fmus, asked, asked.h, asked.exchange, grid, progress=True)
     if run.ending:  # early, perhaps within the first rows
-        run = of.drive(fmus, manoeuvre, asked.h, asked.exchange, run.ending.time / PER_PICTURE)
+        run = of.drive(fmus, asked, asked.h, asked.exchange, run.ending.time / PER_PICTURE)
         remark = f"; ended at {run.ending.time:.2f} s"
     passed, lines = judged(fmus, asked, run)
-    print(f"{manoeuvre.title[0].upper()}{manoeuvre.title[1:]}.", *lines, sep="\n")
+    print(f"{asked.title[0].upper()}{asked.title[1:]}.", *lines, sep="\n")
     table = {n: x for n, x in run.table.items() if not n.startswith("alone.")}
     rows, head = np.column_stack(list(table.values())), ",".join(table)
     np.savetxt(folder / f"{name}.csv", rows, "%.9g", delimiter=",", header=head, comments="")
     if len(rows):
-        draw(of, manoeuvre, run.table, folder / f"{name}.png", remark)
-    of.package(fmus, manoeuvre, min(asked.h, 0.0005) if of.waits else asked.h, folder)
+        draw(of, asked, run.table, folder / f"{name}.png", remark)
+    of.package(fmus, asked, min(asked.h, 0.0005) if of.waits else asked.h, folder)
     for part in ("wheel", *options.file(name)["models"]):
         shutil.copyfile(fmus[part], folder / f"{part}.fmu")
     return passed
@@ -95,7 +91,7 @@ def main() -> int:
         print(reason, file=sys.stderr)
         return 1
     print(f"In {folder.relative_to(build.ROOT)}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")
-    return 0 if passed else 1
+    return not passed
 
 
 if __name__ == "__main__":

@@ -8,13 +8,14 @@ dependencies in the model descriptions allow, and then all FMUs step alone. Over
     rollback     parabolas whose second derivatives are predicted from the last step; the step is undone, and taken
                  again on the cubics through the values and first derivatives at both ends
 
-Loading, order, initialization and records are here; the loop over the steps between two records is in C (../master).
+Loading, order and initialization are here; the loop over the steps between two waits is in C (../master).
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Iterator
 from ctypes import c_void_p, cast
 from graphlib import TopologicalSorter
+from itertools import chain, groupby
 from pathlib import Path
 
 import numpy as np
@@ -27,8 +28,6 @@ from .options import EXCHANGES
 
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
-Signals = list[Signal]
-Act = Callable[[float], None] | None
 HEADER = (Path(__file__).resolve().parents[1] / "master" / "master.h").read_text()
 LIBRARY = f"master{sharedLibraryExtension}"
 ffi = FFI()
@@ -45,7 +44,7 @@ class Master:
         self.components = {c.name: c for c in components}
         self.source_of = {sink: source for source, sink in connections}
         self.levels = self._order()
-        self.rows, self.owned = [], []
+        self.owned = []
         libraries = (c.path.with_name(LIBRARY) for c in self.components.values())
         self.c = ffi.dlopen(str(next(path for path in libraries if path.exists())))
 
@@ -67,9 +66,9 @@ class Master:
         self.owned.append(ffi.new(kind, values))
         return self.owned[-1]
 
-    def _prepare(self, exchange: int) -> None:
-        """Fills the loop's tables of components, transfers and signals."""
-        number = {signal: k for k, signal in enumerate(signal for level in self.levels for signal in level)}
+    def _prepare(self, exchange: str) -> object:
+        """The loop's tables of components, transfers and signals."""
+        number = {signal: k for k, signal in enumerate(chain(*self.levels))}
         transfers = []
         for level in self.levels:
             sinks = [(sink, source) for sink, source in self.source_of.items() if source in level]
@@ -79,69 +78,52 @@ class Master:
                     variables = self._own("unsigned[]", component.references([v for v, _ in of]))
                     signals = self._own("int[]", [k for _, k in of])
                     transfers += [(place, reads, len(of), variables, signals)] * bool(of)
-        of_component = {name for name, _ in ffi.typeof("Component").fields if name.startswith("fmi2")}
-        components = [
-            {name: ffi.cast("void *", cast(getattr(c.fmu.dll, name), c_void_p).value) for name in of_component}
-            | {"instance": ffi.cast("void *", c.fmu.component)}
-            for c in self.components.values()
-        ]
-        counts = {"components": len(components), "transfers": len(transfers), "signals": len(number)}
-        tables = {"component": self._own("Component[]", components), "transfer": self._own("Transfer[]", transfers)}
-        names = ("value", "rate", "begin_value", "begin_rate", "second", "third")
-        arrays = {name: self._own("double[]", len(number)) for name in names}
-        self.loop = self._own("Master *", {"exchange": exchange, **counts, **tables, **arrays})
+        functions = [name for name, _ in ffi.typeof("Component").fields if name.startswith("fmi2")]
+        components = []
+        for fmu in (component.fmu for component in self.components.values()):
+            addresses = [*(cast(getattr(fmu.dll, name), c_void_p).value for name in functions), fmu.component]
+            components.append([ffi.cast("void *", address) for address in addresses])
+        counts = (len(components), len(transfers), len(number))
+        tables = (self._own("Component[]", components), self._own("Transfer[]", transfers))
+        arrays = (self._own("double[]", len(number)) for _ in range(6))
+        return self._own("Master *", [EXCHANGES.index(exchange), 0, *counts, *tables, *arrays])
 
-    def run(
-        self, stop: float, h: float, record: Signals, exchange: str, every: int, progress: bool = False, act: Act = None
-    ) -> np.ndarray:
-        """Simulate from 0 to `stop`; a record array of time and "component.variable", every `every` steps h.
+    def steps(
+        self, stop: float, h: float, exchange: str, every: int = 1, progress: bool = False, ends: Iterable[Signal] = ()
+    ) -> Iterator[float]:
+        """Simulates from 0 to `stop`, and waits after the exchange at the communication points 0, `every`, ...: yields
+        the time, at which variables may be read, and inputs set that are not connected.
 
-        act(t) is called after the exchange at every communication point and may set inputs that are not connected.
-        A variable after "rate " or "at_end " is its derivative, or its value at the end of the step that begins there.
-        Raises component.Ended; what was recorded until then is `self.table()`.
+        `at_end`: values of the signals `ends` at the end of the steps before a wait, before the exchange there. Raises
+        component.Ended.
         """
-        self._prepare(EXCHANGES.index(exchange))
-        self.names = ["time", *(f"{c}.{v}" for c, v in record)]
-        count, pace = round(stop / h), 1 if act else every
-        self.places: dict[Signal, dict[int, int]] = {}  # value references by column, by component and kind
-        for place, (name, variable) in enumerate(record, 1):
-            *kind, variable = variable.split()
-            (reference,) = self.components[name].references([variable])
-            self.places.setdefault((name, *(kind or ["value"])), {})[place] = reference
+        self.loop, self.at_end, count = self._prepare(exchange), [], round(stop / h)
         self.spent = np.zeros((count, len(self.components) + 1))
         spent = ffi.from_buffer("double[]", self.spent)
         self._require(self.c.master_exchange(self.loop, False), 0.0)
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
-        for begin in tqdm(range(0, count + 1, pace), disable=not progress, leave=False):
+        for begin in tqdm(range(0, count + 1, every), disable=not progress, leave=False):
             self._require(self.c.master_exchange(self.loop, exchange != "held"), begin * h)
-            if begin % every == 0:
-                self.rows.append(np.full(len(self.names), begin * h))
-                self._read("value", "rate")
-            if act and begin < count:
-                act(begin * h)
-            end = min(count, begin + pace)
+            yield begin * h
+            end = min(count, begin + every)
             done = self.c.master_run(self.loop, h, begin, end, spent)
             self._require(done == end, done * h)
-            self._read("at_end")
-        return self.table()
+            self.at_end.append(self.read(ends))
 
-    def _read(self, *kinds: str) -> None:
-        """Fills the columns of these kinds in the last row."""
-        for (name, kind), columns in self.places.items():
-            if kind in kinds:
-                fmu, references = self.components[name].fmu, list(columns.values())
-                rates = kind == "rate" and fmu.getRealOutputDerivatives(references, [1] * len(references))
-                self.rows[-1][list(columns)] = rates or fmu.getReal(references)
+    def read(self, signals: Iterable[Signal], rates: bool = False) -> list[float]:
+        """Their values, or their first derivatives."""
+        found = []
+        for component, of in groupby(signals, lambda signal: self.components[signal[0]]):
+            numbers = component.references([name for _, name in of])
+            more = (component.fmu.getRealOutputDerivatives, [1] * len(numbers)) if rates else (component.fmu.getReal,)
+            found += more[0](numbers, *more[1:])
+        return found
 
     def _require(self, done: bool, t: float) -> None:
         """Raises the ending of the component that refused a call after t."""
         if not done:
             raise list(self.components.values())[self.loop.refused].ended(t)
-
-    def table(self) -> np.ndarray:
-        """The records."""
-        return np.array(self.rows).view([(name, float) for name in self.names])[:, 0]
 
     def cost(self) -> dict[str, float]:
         """Medians over the steps in microseconds: of all, of the exchange, and of each component."""

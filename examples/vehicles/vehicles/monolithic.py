@@ -12,14 +12,15 @@ rolling with sign sigma of a w it is -sigma (s N + B), held it is what keeps a w
 formulation with the FMUs.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 from reference.model import Wheel
 from scipy.integrate import solve_ivp
 
 Z = np.array([0.0, 0.0, 1.0])
+Load = SimpleNamespace  # F, M: force and moment on each wheel (wheels, 3); brake: the capacity of its brake (wheels,)
+Answer = SimpleNamespace  # to a load: w_dot, force (lambda), v of O, all (wheels, 3), and tau (wheels,)
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -30,25 +31,6 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Row by row, as a column."""
     return (a * b).sum(axis=-1, keepdims=True)
-
-
-@dataclass(frozen=True)
-class Load:
-    """Force and moment on each wheel (wheels, 3), and the capacity of its brake (wheels,)."""
-
-    F: np.ndarray
-    M: np.ndarray
-    brake: np.ndarray
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What a load does: w', lambda, tau and the velocity of O; (wheels, 3), tau (wheels,)."""
-
-    w_dot: np.ndarray
-    force: np.ndarray
-    tau: np.ndarray
-    v: np.ndarray
 
 
 def lever(kind: Wheel, a: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -77,32 +59,33 @@ def respond(kind: Wheel, a: np.ndarray, w: np.ndarray, load: Load, sigma: np.nda
     rolling = -sigma * (kind.s * N + load.brake) / (1 + sigma * kind.s * N_per_tau)
     tau = np.where(sigma == 0, holding, rolling)
     w_dot = free + tau[:, None] * per_tau
-    return Answer(w_dot, kind.m * cross(w_dot, rho) + at_rest, tau, cross(w, rho))
+    return Answer(w_dot=w_dot, force=kind.m * cross(w_dot, rho) + at_rest, tau=tau, v=cross(w, rho))
 
 
 class Joint:
     """A vehicle: `size` states, then O, a, w of its n wheels of one `kind`.
 
     By the vehicle: start() and load(t, y); own_rates(t, y, load, answer), the rates of these states;
-    columns(t, y, load, answer), what is compared. `begin`: the last of the instants `cuts` at which loads jump.
+    columns(t, y, load, answer), what is compared.
     """
 
     kind: Wheel
     n: int
     size: int
-    cuts: tuple[float, ...] = ()
-    begin = 0.0
-    known = None, None
 
     def wheels(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """O, a, w."""
         return tuple(y[self.size :].reshape(3, self.n, 3))
 
+    def spins(self, y: np.ndarray) -> np.ndarray:
+        """a w."""
+        _, a, w = self.wheels(y)
+        return dot(a, w)[:, 0]
+
     def answer(self, t: float, y: np.ndarray, sigma: np.ndarray) -> tuple[Load, Answer]:
         """The load, and what the wheels do."""
-        _, a, w = self.wheels(y)
         load = self.load(t, y)
-        return load, respond(self.kind, a, w, load, sigma)
+        return load, respond(self.kind, *self.wheels(y)[1:], load, sigma)
 
     def rate(self, t: float, y: np.ndarray, sigma: np.ndarray) -> np.ndarray:
         """dy/dt on the friction branches sigma."""
@@ -113,66 +96,48 @@ class Joint:
 
     def margins(self, t: float, y: np.ndarray, sigma: np.ndarray) -> np.ndarray:
         """Of each wheel what ends its branch at zero, sigma a w rolling, s N + B - |tau| held; then normal forces."""
-        _, a, w = self.wheels(y)
         load, answer = self.answer(t, y, sigma)
         N = answer.force[:, 2]
         held = self.kind.s * N + load.brake - np.abs(answer.tau)
-        return np.concatenate([np.where(sigma == 0, held, sigma * dot(a, w)[:, 0]), N])
+        return np.concatenate([np.where(sigma == 0, held, sigma * self.spins(y)), N])
 
     def solve(self, times: np.ndarray, tolerance: float) -> tuple[dict[str, np.ndarray], tuple[int, float] | None]:
         """The motion at `times` (rising from 0), from one change of a wheel's friction branch to the next, up to where
         a wheel lifts off: which, and when."""
         t, y, rows, lift_off = 0.0, self.start(), [], None
-        _, a, w = self.wheels(y)
-        sigma = np.sign(dot(a, w)[:, 0])
+        sigma = np.sign(self.spins(y))
         how = {"rtol": tolerance, "atol": tolerance, "max_step": 0.05}
-        events = [self._event(i) for i in range(2 * self.n)]
+
+        def least(t: float, y: np.ndarray, sigma: np.ndarray) -> float:
+            return self.margins(t, y, sigma).min()
+
+        least.terminal, least.direction = True, -1
         while len(rows) < len(times) and not lift_off:
-            end = next((cut for cut in self.cuts if cut > t), times[-1])
-            now, after = times[len(rows) :], times[-1] if end == times[-1] else np.nextafter(end, 0)
-            at = np.union1d(now[now <= after], [end])
-            found = solve_ivp(self.rate, (t, end), y, "DOP853", at, events=events, args=(sigma,), **how)
+            rest = times[len(rows) :]
+            found = solve_ivp(self.rate, (t, times[-1]), y, "DOP853", rest, events=least, args=(sigma,), **how)
             if not found.success:
                 raise RuntimeError(found.message)
-            inside = [(u, x) for u, x in zip(found.t, np.transpose(found.y), strict=True) if u <= after]
-            rows += [self.columns(u, x, *self.answer(u, x, sigma)) for u, x in inside]
+            motion = zip(found.t, np.transpose(found.y), strict=True)
+            rows += [self.columns(u, x, *self.answer(u, x, sigma)) for u, x in motion]
             if found.status:
-                first = next(i for i, at in enumerate(found.t_events) if len(at))
-                t, y = float(found.t_events[first][0]), found.y_events[first][0].copy()
+                t, y = float(found.t_events[0][0]), found.y_events[0][0].copy()
+                first = int(self.margins(t, y, sigma).argmin())
                 lift_off = (first - self.n, t) if first >= self.n else None
-                sigma = sigma if lift_off else self._change(t, y, sigma, first)
-            else:
-                t = self.begin = end
-                y = found.y[:, -1]
-                released = (sigma == 0) & (self.margins(t, y, sigma)[: self.n] < 0)
-                sigma = np.where(released, -np.sign(self.answer(t, y, sigma)[1].tau), sigma)
+                sigma = sigma if lift_off else self._change(t + 1e-12, y, sigma, first)  # s: loads may jump there
         columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
         return {"time": times[: len(rows)], **columns, "psi": np.unwrap(columns["psi"])}, lift_off
-
-    def _event(self, i: int) -> Callable[..., float]:
-        def margin(t: float, y: np.ndarray, sigma: np.ndarray) -> float:
-            key = t, y.tobytes(), sigma.tobytes()
-            if key != self.known[0]:  # all events ask at the same instants
-                self.known = key, self.margins(t, y, sigma)
-            return float(self.known[1][i])
-
-        margin.terminal, margin.direction = True, -1
-        return margin
 
     def _change(self, t: float, y: np.ndarray, sigma: np.ndarray, first: int) -> np.ndarray:
         """The branches after an event: stopped wheels are held if the friction can, held ones set off where it cannot.
 
         Wheels that change together, as those of one axle do, differ by rounding: all within it change at once.
         """
-        margins, answer, after = self.margins(t, y, sigma)[: self.n], self.answer(t, y, sigma)[1], sigma.copy()
+        margins, answer = self.margins(t, y, sigma)[: self.n], self.answer(t, y, sigma)[1]
         _, a, w = self.wheels(y)
-        slowing = sigma * dot(answer.w_dot, a)[:, 0] < 0
-        stopped = (sigma != 0) & (margins < 1e-9) & slowing
-        released = (sigma == 0) & (margins < 1e-6)
-        stopped[first], released[first] = sigma[first] != 0, sigma[first] == 0
-        after[released] = -np.sign(answer.tau[released])
-        after[stopped] = 0.0
+        rolling, slowing = sigma != 0, sigma * dot(answer.w_dot, a)[:, 0] < 0
+        stopped, released = rolling & (margins < 1e-9) & slowing, ~rolling & (margins < 1e-6)
+        stopped[first], released[first] = rolling[first], not rolling[first]
+        after = np.select([released, stopped], [-np.sign(answer.tau), 0.0], sigma)
         w[stopped] -= a[stopped] * dot(a, w)[stopped]
         through = stopped & (self.margins(t, y, after)[: self.n] < 0)
-        after[through] = -sigma[through]
-        return after
+        return np.where(through, -sigma, after)

@@ -20,6 +20,7 @@ from reference.model import Wheel
 from reference.tables import read_table, write_table
 
 from . import errors
+from .car_judges import rise
 from .layout import COMPARED, MANOEUVRES, MASS, TOO_FAST, WHEELBASE, WHEELS, X_REAR, chassis_start, driver_start
 from .monolithic import Answer, Joint, Load, cross, dot, lever
 from .options import EXAMPLES, Manoeuvre, starts
@@ -34,27 +35,24 @@ OF = {key: np.array([w[key] for w in WHEELS.values()]) for key in ("x", "y", "k"
 BARS = [(i, list(WHEELS).index(w["bar_to"]), w["k_bar"]) for i, w in enumerate(WHEELS.values()) if "bar_to" in w]
 
 
-def rise(t: float, begin: float, duration: float) -> float:
-    """From 0 to 1, with continuous second derivatives."""
-    z = min(max((t - begin) / duration, 0.0), 1.0)
-    return z**3 * (10 - 15 * z + 6 * z**2)
-
-
-def path(o: dict[str, float], p: complex) -> tuple[np.ndarray, np.ndarray]:
-    """Point P(p) of the driver's path and dP/dp."""
+def path(o: dict[str, float], p: complex) -> np.ndarray:
+    """Point P(p) of the driver's path."""
     if o["path"] == 1:
-        s, c, half = np.sin(p), np.cos(p), o["size"] / np.sqrt(2)
-        x, dx, dy = s / (1 + c**2), c * (3 - c**2), 3 * c**2 - 1
-        return half * np.array([x + x * c, x * c - x]), half * np.array([dx + dy, dy - dx]) / (1 + c**2) ** 2
+        s, c = np.sin(p), np.cos(p)
+        return o["size"] / np.sqrt(2) * s / (1 + c**2) * np.array([1 + c, c - 1])
     out, back = (np.tanh((p - o[end]) / o["length"]) for end in ("x_out", "x_back"))
-    half = o["width"] / 2
-    return np.array([p, half * (out - back)]), np.array([1.0, half * (back**2 - out**2) / o["length"]])
+    return np.array([p, o["width"] / 2 * (out - back)])
+
+
+def tangent(o: dict[str, float], p: float) -> np.ndarray:
+    """dP/dp, by a complex step, which has no error."""
+    return path(o, p + 1e-30j).imag / 1e-30
 
 
 def curvature(o: dict[str, float], p: float) -> float:
     """Of the path, positive to the left."""
-    h = 1e-30  # of the complex step, which has no error
-    d, dd = path(o, p)[1], path(o, p + 1j * h)[1].imag / h
+    h = 1e-5  # of the central difference: errors of some 1e-10
+    d, dd = tangent(o, p), (tangent(o, p + h) - tangent(o, p - h)) / (2 * h)
     return float((d[0] * dd[1] - d[1] * dd[0]) / np.hypot(*d) ** 3)
 
 
@@ -95,8 +93,8 @@ class Car(Joint):
         point, v, heading = self.rear(y)
         wanted, p_dot = o["delta_0"] * rise(t, o["t_delta"], o["ramp_delta"]), 0.0
         if o["path"]:
-            P, d = path(o, p)
-            away, along = point[:2] - P, d / np.hypot(*d)
+            d = tangent(o, p)
+            away, along = point[:2] - path(o, p), d / np.hypot(*d)
             ahead = curvature(o, p + o["T_delta"] * v / np.hypot(*d))
             left = along[0] * away[1] - along[1] * away[0]
             turned = along[0] * np.sin(heading) - along[1] * np.cos(heading)
@@ -136,7 +134,7 @@ class Car(Joint):
         axle = np.column_stack([np.sin(angle), -np.cos(angle), np.zeros(self.n)]) @ turn.T
         relative = spin - w - rate[:, None] * turn[:, 2]
         M = c["k_a"] * cross(a, axle) - c["c_a"] * (relative - a * dot(a, relative))
-        return Load(f @ turn.T, M - drive * OF["drive"][:, None] * a, capacity * OF["brake"])
+        return Load(F=f @ turn.T, M=M - drive * OF["drive"][:, None] * a, brake=capacity * OF["brake"])
 
     def own_rates(self, t: float, y: np.ndarray, load: Load, answer: Answer) -> np.ndarray:
         """Of chassis and driver. Of the moment about an axle the chassis carries the brake's part."""

@@ -18,7 +18,7 @@ K, C = (np.array([CAR[f"{name}_h"], CAR[f"{name}_h"], CAR[f"{name}_v"]]) for nam
 class Suspended(Joint):
     """From rest, at the lean `theta`."""
 
-    n, size, cuts = 1, 6, (CAR["t_couple"], CAR["t_drive"])
+    n, size = 1, 6
 
     def __init__(self, s: float, theta: float) -> None:
         self.kind, self.theta = Wheel(s=s), theta
@@ -28,7 +28,7 @@ class Suspended(Joint):
         B = [CAR[f"{axis}_B_start"] for axis in "XYZ"]
         return np.concatenate([B, np.zeros(3), [0.0, 0.0, height], axle, np.zeros(3)])
 
-    def load(self, _t: float, y: np.ndarray) -> Load:
+    def load(self, t: float, y: np.ndarray) -> Load:
         """By the links, which carry from t_couple on, and by the motor, which pulls from t_drive on."""
         r, v, centre, a, w = y.reshape(5, 3)
         psi, theta, psi_dot, theta_dot = attitude(a, w)
@@ -37,13 +37,13 @@ class Suspended(Joint):
         M_2 = -CAR["k_psi"] * (psi - CAR["psi_0"]) - CAR["c_psi"] * psi_dot
         v_O = cross(w, lever(self.kind, a[None], w[None])[0][0])
         F = K * (r - centre - CAR["l_0"] * Z) + C * (v - v_O)
-        coupled, driven = (self.begin >= cut for cut in self.cuts)
+        coupled, driven = (t >= CAR[name] for name in ("t_couple", "t_drive"))
         M = coupled * (M_1 * e1 + M_2 * cross(a, e1)) + driven * CAR["M_drive"] * a
-        return Load(coupled * F[None], M[None], np.zeros(1))
+        return Load(F=coupled * F[None], M=M[None], brake=np.zeros(1))
 
-    def own_rates(self, _t: float, y: np.ndarray, load: Load, _answer: Answer) -> np.ndarray:
+    def own_rates(self, t: float, y: np.ndarray, load: Load, _answer: Answer) -> np.ndarray:
         """Of the sprung mass, which waits until t_couple."""
-        coupled = self.begin >= CAR["t_couple"]
+        coupled = t >= CAR["t_couple"]
         return coupled * np.concatenate([y[3:6], -load.F[0] / CAR["m_B"] - CAR["g"] * Z])
 
     def columns(self, _t: float, y: np.ndarray, _load: Load, answer: Answer) -> dict[str, float]:

@@ -64,6 +64,9 @@ class Manoeuvre:
     judges: tuple[str, ...] = ()
     figures: tuple[str, ...] = ()
     plot: tuple[str | list[str], ...] = ()
+    exchange: str = "derivatives"
+    h: float = 0.001  # s
+    grid: float | None = None  # s, of the table
 
     def __getitem__(self, name: str) -> float:
         return self.given[name] if name in self.given else every(self.vehicle)[name].start
@@ -73,8 +76,9 @@ class Manoeuvre:
         return "v" if name in ("v_0", "v_1") and name not in self.given else name
 
     def changed(self, **values: float) -> Self:
-        """With other parameters, or another stop."""
-        return replace(self, stop=values.pop("stop", self.stop), given={**self.given, **values})
+        """With other parameters, or another stop, step or exchange."""
+        own = {name: values.pop(name) for name in ("stop", "h", "exchange") if name in values}
+        return replace(self, **own, given=self.given | values)
 
     def of(self, model: str) -> dict[str, float]:
         """The parameters given of one model."""
@@ -88,7 +92,7 @@ def manoeuvres(vehicle: str) -> dict[str, Manoeuvre]:
     for name, of in file(vehicle).get("manoeuvre", {}).items():
         given = {n: number(n, str(x), every(vehicle)[n].unit) for n, x in of.get("given", {}).items()}
         stop = of["stop"] if "stop" in of else every(vehicle)["stop"].start
-        found[name] = Manoeuvre(vehicle, name, **{**of, "stop": stop, "given": given})
+        found[name] = Manoeuvre(vehicle, name, **file(vehicle).get("how", {}) | of | {"stop": stop, "given": given})
     return found
 
 
@@ -118,34 +122,21 @@ def value(vehicle: str, argument: str) -> tuple[str, str | float]:
     raise Fault(f"There is no parameter {name} here.{meant} ./scripts/example {vehicle} --help lists them.")
 
 
-@dataclass(frozen=True)
-class Asked:
-    """What a command line asks for."""
-
-    vehicle: str
-    manoeuvre: Manoeuvre | None = None
-    exchange: str = "derivatives"
-    h: float = 0.001  # s
-    grid: float | None = None  # s, of the table
-
-
 ABOUT = {vehicle: file(vehicle)["about"] for vehicle in [*FOLDERS, "control"]}
 
 
-def asked(vehicle: str = "", *rest: str) -> Asked:
-    """The example that the command line asks for: the manoeuvre with the parameters given, and how it is run."""
+def asked(vehicle: str = "", *rest: str) -> Manoeuvre | None:
+    """The run that the command line asks for: the manoeuvre with the parameters given; None where there is none."""
     if vehicle not in ABOUT:
         meant = suggestion(vehicle, dict.fromkeys(ABOUT, ""))
         raise Fault(f'"{vehicle}" is no example; there are {", ".join(ABOUT)}.{meant}' if vehicle else usage())
     given, of, described = dict(value(vehicle, argument) for argument in rest), manoeuvres(vehicle), file(vehicle)
     if not of:
-        return Asked(vehicle)
-    how = described.get("how", {}) | {name: given.pop(name) for name in ("exchange", "h") if name in given}
-    name = given.pop(described.get("word"), described.get("first", next(iter(of))))
-    asked = Asked(vehicle, of[name].changed(**given), **how)
-    if asked.manoeuvre.stop < asked.h:
-        raise Fault(f"stop = {asked.manoeuvre.stop:g}: it must be at least the step h, {asked.h:g} s.")
-    return asked
+        return None
+    run = of[given.pop(described.get("word"), described.get("first", next(iter(of))))].changed(**given)
+    if run.stop < run.h:
+        raise Fault(f"stop = {run.stop:g}: it must be at least the step h, {run.h:g} s.")
+    return run
 
 
 def usage(name: str = "", *arguments: str) -> str:
@@ -160,10 +151,10 @@ def usage(name: str = "", *arguments: str) -> str:
         for one in manoeuvres(name).values() if word == file(name).get("word") else ():
             given = " ".join(f"{n}={x:.4g}" for n, x in one.given.items())
             lines.append(f"    {one.name}: {one.title}; stop={one.stop:g} {given}")
-    if run := asked(name, *arguments).manoeuvre:
+    if run := asked(name, *arguments):
         lines.append(f"Parameters, with their values in the run {run.name}:")
     for v in numbers.values():
-        start = run.stop if v.name == "stop" else run[run.followed(v.name)]
+        start = getattr(run, v.name) if v.name in ("h", "stop") else run[run.followed(v.name)]
         lines.append(f"  {v.name:16s}{v.unit:10s}{start:>9.6g} {v.limit:>4s}  {v.description}")
     return "\n".join(lines)
 

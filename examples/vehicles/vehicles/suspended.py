@@ -11,13 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from . import errors
+from . import errors, ssp
 from .component import Component
-from .errors import Table
 from .monolithic_suspended import TOLERANCE, Suspended
 from .options import Manoeuvre, manoeuvres
-from .ssp import run as run_package
-from .vehicle import Fmus, Vehicle, recorded, road, wire
+from .vehicle import Fmus, Table, Vehicle, recorded, road, wire
 
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
@@ -60,7 +58,7 @@ distance = partial(errors.distance, names=COMPARED, least=0)
 
 def package_distance(package: Path, step: float, truth: Table, stop: float = LAUNCH.stop) -> float:
     """Largest difference over time of X_O, theta and psi_dot in fmpy's run of the package, relative to their ranges."""
-    table, names = run_package(package, step, stop, GRID), ("X_O", "theta", "psi_dot")
+    table, names = ssp.run(package, step, stop, GRID), ("X_O", "theta", "psi_dot")
     count = len(table["time"])
     columns = {n: np.concatenate([truth[n][:1], table[f"wheel.{n}"], truth[n][1 + count :]]) for n in names}
     return errors.distance(columns, truth, names, 0)
@@ -74,11 +72,10 @@ def ends(fmus: Fmus, step: float, exchange: str) -> bool:
 def convergence(fmus: Fmus, truth: Table, steps: Sequence[float] = STEPS) -> errors.Errors:
     """With all inputs held, with positions that follow the velocities beside them, and on straight lines."""
     kinds = {"positions held": ("held", {"follow": 0.0}), "held": ("held", {}), "derivatives": ("derivatives", {})}
-
-    def error(exchange: str, more: dict[str, float], h: float) -> float:
-        return distance(coupled(fmus, h, exchange, **more), truth)
-
-    return errors.Errors(steps, {name: [error(*kind, h) for h in steps] for name, kind in kinds.items()})
+    return {
+        name: {h: distance(coupled(fmus, h, exchange, **more), truth) for h in steps}
+        for name, (exchange, more) in kinds.items()
+    }
 
 
 def drag_share(h: float, k: float = 60e3, mass: float = 334.7, duration: float = 2.5) -> float:

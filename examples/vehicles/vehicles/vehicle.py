@@ -8,13 +8,15 @@ from dataclasses import dataclass, field
 from math import pi
 from pathlib import Path
 
+import numpy as np
+
 from . import ssp
 from .component import Component, Ended, loaded
-from .errors import Table
 from .master import Connection, Master, Signal
 from .options import Manoeuvre, file
 
 Fmus = dict[str, Path]
+Table = dict[str, np.ndarray]
 Names = tuple[str, ...]
 POSE = ("X_O", "Y_O", "Z_O", "X_O_dot", "Y_O_dot", "Z_O_dot", "psi", "theta", "psi_dot", "theta_dot")
 FORCE = ("F_X", "F_Y", "F_Z")
@@ -49,7 +51,7 @@ class Vehicle:
     verdict: Callable[[Table, Manoeuvre], tuple[bool, list[str]]]  # of a run that reached its end
     wheels: dict[str, str] = field(default_factory=dict)
     complete: Callable[[Table, Manoeuvre, Fmus], Table] = lambda table, _manoeuvre, _fmus: table
-    tracks: Callable[[Table], dict[str, tuple]] = lambda _table: {}  # besides those of the wheels
+    tracks: dict[str, Names] = field(default_factory=dict)  # besides those of the wheels: label, columns of X and Y
     waits: bool = False  # whether a package sets t_couple
     subtitle: Callable[[Manoeuvre], str] = lambda _manoeuvre: ""
 
@@ -58,20 +60,18 @@ class Vehicle:
     ) -> Run:
         """The co-simulation, recorded every `grid`, or every step, to its end or to where a component ends it; with the
         columns that `complete` adds."""
-        components, ending = self.parts(fmus, of), None
+        components, rows, ending = self.parts(fmus, of), [], None
         with loaded(*components):
             master = Master(components, self.connections)
             try:
-                master.run(of.stop, h, self.record, exchange, max(1, round(grid / h)), **how)
+                for t in master.steps(of.stop, h, exchange, max(1, round(grid / h)), **how):
+                    rows.append([t, *master.read(self.record)])
             except Ended as end:
                 ending = end
-            rows, cost = master.table(), master.cost()
-        table = {"time": rows["time"]} | {self.column(signal): rows[".".join(signal)] for signal in self.record}
-        return Run(self.complete(table, of, fmus), ending, cost)
-
-    def column(self, signal: Signal) -> str:
-        """A recorded signal's name in the table."""
-        return ".".join(signal) if signal[0] in self.wheels else signal[1]
+            cost = master.cost()
+        names = ["time", *(f"{part}.{name}" if part in self.wheels else name for part, name in self.record)]
+        columns = np.reshape(rows, (-1, len(names))).T
+        return Run(self.complete(dict(zip(names, columns, strict=True)), of, fmus), ending, cost)
 
     def package(self, fmus: Fmus, manoeuvre: Manoeuvre, step: float, folder: Path) -> Path:
         """Its SSP package. A master that begins with zero inputs finds the body free until t_couple."""
