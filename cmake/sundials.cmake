@@ -51,7 +51,14 @@ function(add_sundials)
     fetch_sundials(source)
   endif()
   set(SUNDIALS_SOURCE ${source} PARENT_SCOPE)
-  foreach(off BUILD_SHARED_LIBS EXAMPLES_ENABLE_C SUNDIALS_ENABLE_ERROR_CHECKS CMAKE_COMPILE_WARNING_AS_ERROR)
+  foreach(
+    off
+    BUILD_SHARED_LIBS
+    EXAMPLES_ENABLE_C
+    SUNDIALS_ENABLE_ERROR_CHECKS
+    CMAKE_COMPILE_WARNING_AS_ERROR
+    CMAKE_UNITY_BUILD
+  )
     set(${off} OFF)
   endforeach()
   set(SUNDIALS_LOGGING_LEVEL 0)

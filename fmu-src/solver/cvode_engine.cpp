@@ -15,7 +15,7 @@ namespace solver {
 namespace {
 
 // The error that one step may make, as a fraction of the tolerance of the whole solution. Tuned on the wheel's scenes.
-constexpr double share_of_tolerance = 0.003;
+constexpr double cvode_share = 0.003;
 
 // The step size is kept while it would change by a factor between these two. CVODE's defaults, 0 and 1.5, avoid the
 // cost of a new matrix in stiff problems; here a changed step costs nothing. Version 7.1.1 ignores a lower bound of 1.
@@ -41,7 +41,7 @@ int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
 
 int weights(N_Vector y, N_Vector w, void* user) {
   const Problem& problem = *static_cast<CvodeCall*>(user)->problem;
-  problem.weights(problem.owner, share_of_tolerance * problem.share, data(y), data(w));
+  problem.weights(problem.owner, cvode_share * problem.share, data(y), data(w));
   return 0;
 }
 

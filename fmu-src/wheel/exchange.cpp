@@ -17,9 +17,9 @@ constexpr double distance = 1e-12;
 // little before the sign changes, and would stop there again and again.
 constexpr double soon = 1e-7;
 
-constexpr unsigned states[] = {variable::X_O, variable::Y_O,       variable::psi,     variable::theta,
-                               variable::phi, variable::theta_dot, variable::psi_dot, variable::omega_z};
-static_assert(std::size(states) == state_count);
+constexpr unsigned state_variables[] = {variable::X_O, variable::Y_O,       variable::psi,     variable::theta,
+                                        variable::phi, variable::theta_dot, variable::psi_dot, variable::omega_z};
+static_assert(std::size(state_variables) == state_count);
 
 auto above_ground(const Setup& setup, const double* y) {
   std::array<double, WHEEL_MAX_STATES> trial = {};
@@ -70,8 +70,8 @@ int indicator_count() {
 }
 
 int state_index_of(unsigned variable) {
-  const auto* found = std::find(std::begin(states), std::end(states), variable);
-  return found == std::end(states) ? -1 : static_cast<int>(found - states);
+  const auto* found = std::find(std::begin(state_variables), std::end(state_variables), variable);
+  return found == std::end(state_variables) ? -1 : static_cast<int>(found - state_variables);
 }
 
 void take_at_once(const Setup& setup, Demand& demand, Run& run) {

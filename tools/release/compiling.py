@@ -34,6 +34,7 @@ def build(
         shutil.rmtree(out)
     options = {
         "CMAKE_BUILD_TYPE": "Release",
+        "CMAKE_UNITY_BUILD": platform == WASM,
         "CMAKE_TOOLCHAIN_FILE": sources / "cmake" / "zig.cmake",
         "CMAKE_MODULE_LINKER_FLAGS_RELEASE": "-s",
         "CMAKE_SHARED_LINKER_FLAGS_RELEASE": "-s",
