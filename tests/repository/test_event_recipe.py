@@ -74,8 +74,14 @@ def build(folder: Path) -> Path:
     commands = (built / "compile_commands.json").read_text(encoding="utf-8")
     link = shlex.split((built / "CMakeFiles" / "wheel_fmu.dir" / "link.txt").read_text(encoding="utf-8"))
     for module in ("wheel", "fmi"):
-        shutil.copytree(ROOT / "fmu-src" / module, folder / module)
-        commands = commands.replace(str(ROOT / "fmu-src" / module), str(folder / module))
+        original, copy = str(ROOT / "fmu-src" / module), folder / module
+        shutil.copytree(original, copy)
+        units = built / "CMakeFiles" / f"{module}.dir" / "Unity"  # each includes the files that are compiled at once
+        for unit in units.glob("*.cxx"):
+            (copy / unit.name).write_text(
+                unit.read_text(encoding="utf-8").replace(original, str(copy)), encoding="utf-8"
+            )
+        commands = commands.replace(original, str(copy)).replace(str(units), str(copy))
     patch(folder, *recipe())
     patch(folder, LINE_NAME, LINE_VALUE, LINE_ROW)
     made = {entry["output"]: entry for entry in json.loads(commands) if folder in Path(entry["file"]).parents}
