@@ -33,8 +33,8 @@ def test_bounds_prints_the_value_nearest_to_each_bound_if_asked(tmp_path: Path) 
     (tmp_path / "test_two.py").write_text(TWO_TESTS, encoding="utf-8")
 
     def printed(*options: str) -> list[str]:
-        command = [sys.executable, "-m", "pytest", "-p", "support.bounds", *options]
-        tests = os.environ | {"PYTHONPATH": str(ROOT / "tests")}
+        command = [sys.executable, "-m", "pytest", "-p", "support.bounds", "-p", "xdist", *options]
+        tests = os.environ | {"PYTHONPATH": str(ROOT / "tests"), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
         done = subprocess.run(command, cwd=tmp_path, env=tests, capture_output=True, text=True, check=True)
         return [line for line in done.stdout.splitlines() if "slack" in line]
 
