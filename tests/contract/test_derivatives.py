@@ -96,6 +96,15 @@ def test_while_friction_holds_the_wheel_the_derivatives_are_those_of_a_held_whee
     beyond(np.max(np.abs(jacobian(w) - jacobian(rolling))), 0.1, "jacobian")
 
 
+def test_at_rest_without_friction_nothing_holds_the_wheel(wheel):
+    rest = {"theta_start": np.pi / 2, "theta_dot_start": 0.0, "psi_dot_start": 0.0, "phi_dot_start": 0.0}
+    w = wheel().start(**rest)
+    free = jacobian(w)
+    within(np.max(np.abs(free - difference_jacobian(w))), 64 * 200 * EPSILON, "jacobian")
+    held = wheel().start(s=0.03, **rest)
+    beyond(np.max(np.abs(free - jacobian(held))), 0.1, "jacobian")
+
+
 def test_directional_derivatives_add_up_the_seeds(wheel):
     w = wheel().start()
     unknowns, knowns, seeds = w.refer(*outputs(w)), w.refer(*INPUTS), [1.0, -2.0, 0.5, 3.0, 0.0, 7.0]

@@ -184,3 +184,4 @@ def test_the_free_wheel_is_integrated_over_one_nutation_only(counters):
     unfolded, stepped = counters(stop=10.0), counters(stop=10.0, formulation=2)
     assert counters(stop=1000.0, step=100.0) == unfolded
     within(unfolded["n_rhs"] / stepped["n_rhs"], 0.2, "evaluations")
+    assert unfolded["n_steps"] > 0  # one nutation is counted
