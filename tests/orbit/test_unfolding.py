@@ -46,7 +46,8 @@ def test_after_1000_s_each_output_is_right_to_a_millionth_of_its_range(library: 
     assert orbit.kind == "folded"
     within(range_error(orbit(t), want), 1e-6, "range error")
     within(range_error(Orbit(library, tolerance=1e-12)(t), want), 1e-9, "range error, 2")
-    beyond(range_error(orbit(t), Halves(Wheel(), PAPER, mirrored=False).read(t)), 0.1, "range error")
+    few = t[::20]
+    beyond(range_error(orbit(few), Halves(Wheel(), PAPER, mirrored=False).read(few)), 0.1, "range error")
 
 
 def test_the_half_period_has_thirteen_digits_and_the_error_of_a_long_run_is_its_error(library: ctypes.CDLL) -> None:
