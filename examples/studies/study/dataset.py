@@ -12,9 +12,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from fmpy.model_description import ModelDescription
-from matplotlib.lines import Line2D
 
-from .plan import PLANE_ANGLE, POINT, Status, Study, counters_of
+from .plan import OWN, PLANE_ANGLE, POINT, Status, Study, counters_of
 from .worker import Array, Region
 
 TITLE = "A study with wheel.fmu"
@@ -29,13 +28,6 @@ SYMBOLS = {  # in labels, by the text of a measure
     r"\b(\w)_dot": "\\1\N{COMBINING DOT ABOVE}",
 }
 PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
-OWN = {  # results of every study: empty value, type, unit, label, description
-    "status": (int(Status.not_computed), "i1", "", "fate", "Fate of the wheel"),
-    "message": ("", np.dtypes.StringDType(), "", "message", "Messages of the FMU"),
-    "end_time": (np.nan, "f8", "s", "end of the run", "Time at which the run ended"),
-    "wall_time": (np.nan, "f8", "s", "computing time", "Computing time of the run"),
-    "fmu_time": (np.nan, "f8", "s", "time in the FMU", "Part of wall_time spent in calls of the FMU"),
-}
 
 
 def axes_of(study: Study) -> xr.Dataset:
@@ -104,8 +96,7 @@ def provenance(study: Study, description: ModelDescription, fmu_sha256: str) -> 
 def open_results(place: Path | str) -> xr.Dataset:
     """The results of a study, labelled; read when asked for."""
     results = xr.open_zarr(place, consolidated=False, chunks=None)
-    first = ["status", "message", "end_time"]
-    return results[[*first, *sorted(set(results.data_vars) - set(first))]]
+    return results[[*OWN, *sorted(results.data_vars.keys() - OWN.keys())]]
 
 
 def in_degrees(results: xr.Dataset) -> xr.Dataset:
@@ -117,13 +108,13 @@ def in_degrees(results: xr.Dataset) -> xr.Dataset:
     return turned
 
 
-def curves(values: xr.DataArray, x: str, hue: str) -> list[Line2D]:
-    """Draws values over x, one line for each value of hue, with the legend beside the axes, where no line runs."""
-    lines = values.plot.line(x=x, hue=hue, add_legend=False)
-    about = values[hue].attrs
-    title = about["long_name"] + (f" [{about['units']}]" if "units" in about else "")
-    names = [f"{value:g}" for value in values[hue].values]
-    lines[0].axes.legend(lines, names, title=title, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+def curves(values: xr.DataArray, x: str, hue: str) -> list:
+    """Draws and returns lines, values over x, one for each value of hue, with the legend beside the axes, where no line runs."""
+    lines = values.plot.line(x=x, hue=hue)
+    legend = lines[0].axes.get_legend()
+    legend.set(loc="center left", bbox_to_anchor=(1.0, 0.5), frame_on=False)
+    for text in legend.texts:
+        text.set_text(f"{float(text.get_text()):g}")
     return lines
 
 

@@ -29,7 +29,6 @@ ROOT = Path(__file__).resolve().parents[3]
 SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
 KINDS = ("grid", "list", "sample")  # the ways to list wheels
 POINT = "wheel"  # the dimension of a list or a sample
-OWN = ("status", "message", "end_time", "wall_time", "fmu_time", "time", POINT)  # names that every study's results have
 PLANE_ANGLE = "plane_angle"
 
 
@@ -47,6 +46,15 @@ class Status(IntEnum):
     refused = 3  # a start value or a parameter is impossible
     failed = 4  # the run ended with an error, or the worker process died
     grip = 5  # mu_required came to mu_max
+
+
+OWN = {  # results of every study: empty value, type, unit, label, description
+    "status": (int(Status.not_computed), "i1", "", "fate", "Fate of the wheel"),
+    "message": ("", "T", "", "message", "Messages of the FMU"),
+    "end_time": (math.nan, "f8", "s", "end of the run", "Time at which the run ended"),
+    "wall_time": (math.nan, "f8", "s", "computing time", "Computing time of the run"),
+    "fmu_time": (math.nan, "f8", "s", "time in the FMU", "Part of wall_time spent in calls of the FMU"),
+}
 
 
 class Measure(NamedTuple):
@@ -251,7 +259,7 @@ class Study:
         empty = quoted(name for name, values in self.varied.items() if not values)
         both = quoted(name for name in self.varied if name in self.values and self.branch_at is None)
         integers = quoted(name for name in self.sampled if variables[name].type != "Real")
-        names = [*self.measures, *self.history, *self.varied, *OWN, *counters_of(variables)]
+        names = [*self.measures, *self.history, *self.varied, *OWN, "time", POINT, *counters_of(variables)]
         twice = quoted(name for name in names if names.count(name) > 1)
         in_order = 0 <= (self.branch_at or 0.0) < self.stop_time < math.inf and 0 < self.interval < math.inf
         for fault, text in (

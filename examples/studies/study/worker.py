@@ -159,20 +159,23 @@ class Instance:
 
 
 def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Result:
-    """The outcomes of wheels whose values by name are broadcast against each other, in C order.
+    """The outcomes of wheels whose values by name are broadcast against each other, in their common shape.
 
     Of the study only what all its wheels have in common is used.
     """
-    columns = [column.ravel().tolist() for column in np.broadcast_arrays(*points.values())]
+    columns = np.broadcast_arrays(*points.values())
     late = [name for name in points if study.branch_at is not None and can_change(fmu.variables[name])]
-    changes = [dict(zip(points, row, strict=True)) for row in zip(*columns, strict=True)]
+    changes = [dict(zip(points, row, strict=True)) for row in zip(*(x.ravel().tolist() for x in columns), strict=True)]
     starts = [{n: change.pop(n) for n in points if n not in late} | study.values for change in changes]
     order = sorted(range(len(starts)), key=lambda i: [*starts[i].values()] if late else i)  # a shared start in a row
-    times, wheels = np.array(study.times), {}
-    for i in order:
-        wheels[i] = fmu.wheel(starts[i], changes[i], study, times)
-    result = {name: np.array([wheels[i][name] for i in range(len(starts))]) for name in wheels[0]}
-    return result | {"message": result["message"].astype("T")}
+    times = np.array(study.times)
+    wheels = {i: fmu.wheel(starts[i], changes[i], study, times) for i in order}
+
+    def column(name: str) -> NDArray:
+        values = np.array([wheels[i][name] for i in range(len(starts))], "T" if name == "message" else None)
+        return values.reshape(*columns[0].shape, *values.shape[1:])
+
+    return {name: column(name) for name in wheels[0]}
 
 
 def run_chunk(
@@ -209,14 +212,10 @@ def write(place: str, mark: str, region: Region, result: Result) -> None:
     group = zarr.open_group(place, mode="r+")
     if group.attrs.get(MARK) != mark:
         raise FileNotFoundError(f"{place} does not have the mark of this caller.")
-    shape = [part.stop - part.start for part in region]
-
-    def put(name: str) -> None:
-        group[name][region] = result[name].reshape(*shape, *result[name].shape[1:])
-
+    others = result.keys() - {"status"}
     with ThreadPoolExecutor(len(result)) as pool:  # the files of a remote store travel at the same time
-        list(pool.map(put, result.keys() - {"status"}))
-    put("status")
+        list(pool.map(lambda name: group[name].set_basic_selection(region, result[name]), others))
+    group["status"][region] = result["status"]
 
 
 def pack(fmu: str | Path, path: Path) -> Path:

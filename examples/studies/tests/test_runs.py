@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 import xarray as xr
 from fmpy import simulate_fmu
-from studies_support import ROOT, same
+from studies_support import same
 from study import Status, Study, StudyError
 from study.dataset import axes_of
 from study.plan import can_change
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
+from support.paths import ROOT
 from values import variables
 
 BRANCHING = Study(
