@@ -24,16 +24,15 @@ def test_the_eigenvalues_vanish_at_the_critical_spin_of_the_closed_form(folder):
 
 def test_the_regulator_holds_a_wheel_that_falls_alone(folder):
     gains = control.regulator(folder, -1.5)
-    beyond(np.abs(control.rolled(folder, None, -1.5)[2]).max(), 45, "lean alone, deg")
-    _, off, lean = control.rolled(folder, gains, -1.5)
-    within(abs(lean[-1]), 0.1, "lean at the end, deg")
-    within(abs(off[-1]), 0.01, "off the line at the end, m")
+    beyond(np.abs(control.leaning(folder, 0 * gains, -1.5)["lean"]).max(), 45, "lean alone, deg")
+    held = control.leaning(folder, gains, -1.5)
+    within(abs(held["lean"][-1]), 0.1, "lean at the end, deg")
+    within(abs(held["off"][-1]), 0.01, "off the line at the end, m")
 
 
 def test_the_optimal_moments_stay_in_their_bounds_and_lead_to_the_line(folder):
     t, x, moments = control.optimal(folder)
     within((np.abs(moments).max(axis=1) / control.BOUNDS).max(), 1 + 1e-6, "moment over its bound")
-    end = control.checked(folder, t, x, moments)
-    off = np.abs(end - x[:, -1])[[1, 2, 3]]  # Y_O, psi, theta
+    off = np.abs(control.followed(folder, t, x, moments))
     within(off.max(), 0.05, "off the end, m, rad")  # the midpoint rule with steps of 50 ms
-    beyond(np.abs(control.checked(folder, t, x, 0 * moments) - x[:, -1])[[1, 2, 3]].max(), 1, "without moments")
+    beyond(np.abs(control.followed(folder, t, x, 0 * moments)).max(), 1, "without moments")

@@ -109,7 +109,7 @@ def in_degrees(results: xr.Dataset) -> xr.Dataset:
 
 
 def curves(values: xr.DataArray, x: str, hue: str) -> list:
-    """Draws and returns lines, values over x, one for each value of hue, with the legend beside the axes, where no line runs."""
+    """Draws a line for each value of hue, values over x, with the legend beside the axes, where no line runs."""
     lines = values.plot.line(x=x, hue=hue)
     legend = lines[0].axes.get_legend()
     legend.set(loc="center left", bbox_to_anchor=(1.0, 0.5), frame_on=False)
