@@ -36,7 +36,7 @@ CRITICAL = np.sqrt(m * g * r_0 * J_x / (J_z * (J_z + m * R**2)))  # rad/s, below
 
 @cache
 def model(folder: str) -> ca.DaeBuilder:
-    """The FMU for model exchange; its states are X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z in some order."""
+    """The FMU for model exchange; its states: X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z in some order."""
     return ca.DaeBuilder("wheel", folder, {"debug": False})
 
 

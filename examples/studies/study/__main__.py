@@ -159,7 +159,7 @@ def conduct(arguments: argparse.Namespace) -> None:
         published = ROOT / "docs" / "results" / "data", ROOT / "docs" / "figures"
         data, figure = (folder / f"study_{stem.name}" if arguments.publish else stem for folder in published)
         table = content["table"](results)
-        written.append(export(table, data.with_suffix(".csv" if hasattr(table, "to_csv") else ".nc")))
+        written.append(export(table, data.with_suffix(".nc")))
         written += [content["draw"](table, figure)] if "draw" in content else []
     print("\n".join(f"Wrote {path}" for path in written))
 

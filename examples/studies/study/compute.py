@@ -82,7 +82,7 @@ def run(
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = mark
-        status, common = group["status"][:], replace(study, grid={}, list={}, sample={})
+        status, common = group["status"][:], replace(study, grid={}, list={})
         task = partial(run_chunk, upload.name, common, place, mark)
         if done := int((status != Status.not_computed).sum()):
             print(f"{done} of {status.size} wheels are there already.", file=sys.stderr)

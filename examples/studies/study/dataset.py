@@ -3,15 +3,17 @@
 import json
 import platform
 import re
+from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
+from resource import RUSAGE_CHILDREN, RUSAGE_SELF, getrusage
 
 import dask.array as da
 import numpy as np
-import pandas as pd
 import xarray as xr
 from fmpy.model_description import ModelDescription
+from fsspec.core import url_to_fs
 
 from .plan import OWN, PLANE_ANGLE, POINT, Status, Study, counters_of
 from .worker import Array, Region
@@ -31,14 +33,16 @@ PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either si
 
 
 def axes_of(study: Study) -> xr.Dataset:
-    """The values that vary: each a dimension of a grid, or all along the wheels of a list or a sample."""
-    axes = study.varied
-    if study.sample:
-        from scipy.stats import qmc  # slow to load
+    """The values that vary: each a dimension of a grid, or all along the wheels of a list."""
+    return xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in study.varied.items()})
 
-        unit = qmc.LatinHypercube(len(study.sample), rng=study.seed).random(study.count)
-        axes = dict(zip(axes, qmc.scale(unit, *zip(*axes.values(), strict=True)).T, strict=True))
-    return xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in axes.items()})
+
+def sample(bounds: Mapping[str, tuple[float, float]], count: int, seed: int = 0) -> dict[str, Array]:
+    """A list of wheels for a study: a Latin hypercube between the lowest and the highest value of each name."""
+    from scipy.stats import qmc  # slow to load
+
+    unit = qmc.LatinHypercube(len(bounds), rng=seed).random(count)
+    return dict(zip(bounds, qmc.scale(unit, *zip(*bounds.values(), strict=True)).T, strict=True))
 
 
 def points(axes: xr.Dataset, region: Region) -> dict[str, Array]:
@@ -57,7 +61,7 @@ def template(study: Study, axes: xr.Dataset, description: ModelDescription, size
     for name, measure in study.parsed.items():
         unit, _, meaning = about[measure.quantity]
         text = study.measures[name]
-        columns[name] = (np.nan, "f8", "s" if measure.is_time else unit, label(text), f"{meaning}; {text}")
+        columns[name] = (np.nan, "f8", "s" if measure.kind in "<>" else unit, label(text), f"{meaning}; {text}")
     columns |= {name: (np.nan, "f8", *about[name]) for name in study.history}
     results = {}
     for name, (nothing, dtype, *texts) in columns.items():
@@ -85,12 +89,12 @@ def label(text: str) -> str:
 
 
 def provenance(study: Study, description: ModelDescription, fmu_sha256: str) -> dict[str, object]:
-    """All that is needed to repeat the study: its definition, its seed, the FMU's hash, and versions."""
+    """With the axes all that is needed to repeat the study: its definition, the FMU's hash, and versions."""
     definition = {name: value for name, value in asdict(study).items() if name not in ("grid", "list")}
     versions = {f"{name}_version": version(name) for name in ("fmpy", "numpy", "dask", "xarray", "zarr")}
     versions |= {"python_version": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
     fmu = {"fmu_sha256": fmu_sha256, "fmu_guid": description.guid, "fmu_version": description.version or ""}
-    return {"title": TITLE, "seed": study.seed, "study": json.dumps(definition)} | fmu | versions
+    return {"title": TITLE, "study": json.dumps(definition)} | fmu | versions
 
 
 def open_results(place: Path | str) -> xr.Dataset:
@@ -118,14 +122,12 @@ def curves(values: xr.DataArray, x: str, hue: str) -> list:
     return lines
 
 
-def export(results: xr.Dataset | pd.DataFrame, path: Path) -> Path:
+def export(results: xr.Dataset, path: Path) -> Path:
     """Writes a copy as NetCDF (.nc), or as a table (.csv) with one row per wheel (and time)."""
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".nc":
         packed = {n: {"zlib": True} for n in results.data_vars if results[n].dtype.kind in "fiu"}
         results.drop_encoding().to_netcdf(path, encoding=packed)
-    elif isinstance(results, pd.DataFrame):
-        results.to_csv(path, index=False, float_format="%.6g", lineterminator="\n")
     else:
         rows = results.to_dataframe().reset_index()
         rows.assign(status=[Status(code).name for code in rows["status"]]).to_csv(path, index=False)
@@ -133,7 +135,7 @@ def export(results: xr.Dataset | pd.DataFrame, path: Path) -> Path:
 
 
 def summarize(results: xr.Dataset, seconds: float) -> str:
-    """Counts per status, the first message of those that were not run, and speed.
+    """Counts per status, the first message of those that were not run, speed, the largest memory, and disk space.
 
     The speed is of the runs themselves, summed over the workers; `seconds` is the time of this call, workers' start and
     writing included, which may have run only a part of the study.
@@ -146,4 +148,7 @@ def summarize(results: xr.Dataset, seconds: float) -> str:
             lines.append(f"           first: {results['message'].values[status == code][0]}")
     speed, share = 1 / results["wall_time"].mean(), 100 * results["fmu_time"].sum() / results["wall_time"].sum()
     lines.append(f"{speed:.0f} wheels per second and worker, {share:.0f} % of the time inside the FMU.")
+    files, place = url_to_fs(results.encoding["source"])
+    caller, worker = (getrusage(processes).ru_maxrss // 1000 for processes in (RUSAGE_SELF, RUSAGE_CHILDREN))
+    lines.append(f"{caller} MB of memory, {worker} MB in a worker here, {files.du(place) / 1e6:.3g} MB of disk.")
     return "\n".join(lines)

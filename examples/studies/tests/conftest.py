@@ -13,8 +13,7 @@ from distributed import LocalCluster
 from fmpy import extract, read_model_description
 from moto.server import ThreadedMotoServer
 
-STUDIES = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(STUDIES))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from study import Study, compute  # noqa: E402
 from study.dataset import axes_of, points, template  # noqa: E402
@@ -65,19 +64,6 @@ def conduct(fmu_path: Path, crew: LocalCluster, tmp_path_factory: pytest.TempPat
     def conduct(study: Study, out: Path | str | None = None, work: object = compute.run_chunk, **how) -> xr.Dataset:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(compute, "run_chunk", work)
-            place = out or tmp_path_factory.mktemp("study") / "z"
-            return study.run(place, **{"fmu": fmu_path, "workers": crew} | how)
+            return study.run(out or tmp_path_factory.mktemp("study") / "z", **{"fmu": fmu_path, "workers": crew} | how)
 
     return conduct
-
-
-@pytest.fixture(scope="session")
-def fates() -> Study:
-    """24 wheels of every fate: impossible ones, some that fall flat, one that lifts off, and those that roll on."""
-    return Study(
-        grid={"theta_start": np.radians([15, 75, 200]), "s": [0.0, 0.03], "phi_dot_start": [-2, 0.0, -6.0, -40.0]},
-        measures={"plane": "lowest", "lowest": "min(theta)", "down": "first(theta < 0.5)", "energy": "E"},
-        history=["theta", "X_O"],
-        stop_time=5.0,
-        interval=0.05,
-    )

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -36,29 +37,26 @@ def whole(alone) -> xr.Dataset:
     return alone(arguments_of(WORDS).study)
 
 
-def has_little_space() -> None:
-    """No file may grow beyond 1.5 MB, an error as of a full disk. The history of wheels that fall is smaller."""
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1_500_000, 1_500_000))
-
-
-def can_be_interrupted() -> None:
-    """As at a terminal."""
+def at_a_terminal(space: int) -> None:
+    """Ctrl-C interrupts. No file may grow beyond so many bytes, an error as of a full disk."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (space, space))
 
 
 @pytest.mark.parametrize(
-    ("begin", "stop", "code", "words"),
+    ("space", "stop", "code", "words"),
     [
-        (can_be_interrupted, lambda caller: os.killpg(caller, signal.SIGINT), 130, "^study: stopped; the same command"),
-        (can_be_interrupted, lambda caller: os.kill(caller, signal.SIGKILL), -signal.SIGKILL, ""),
-        (has_little_space, lambda _: None, 2, r"^study: .*/z: \[Errno 27\] File too large; results so far are kept"),
+        (2**40, lambda caller: os.killpg(caller, signal.SIGINT), 130, "^study: stopped; the same command"),
+        (2**40, lambda caller: os.kill(caller, signal.SIGKILL), -signal.SIGKILL, ""),
+        (1_500_000, lambda _: None, 2, r"^study: .*/z: \[Errno 27\] File too large; results so far are kept"),
     ],
     ids=["an interrupt, as by Ctrl-C", "a killed caller", "a full disk"],
 )
-def test_a_study_continues_after(begin, stop, code, words, tmp_path, fmu_path, crew, whole, capsys) -> None:
+def test_a_study_continues_after(space, stop, code, words, tmp_path, fmu_path, crew, whole, capsys) -> None:
     """An interrupt reaches the whole session; it is for the caller alone."""
     options, place = [*WORDS, "--fmu", str(fmu_path), "--out", str(tmp_path / "z")], ROOT / "examples" / "studies"
-    how = {"cwd": place, "stderr": subprocess.PIPE, "text": True, "start_new_session": True, "preexec_fn": begin}
+    how = {"cwd": place, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
+    how |= {"preexec_fn": partial(at_a_terminal, space)}
     process = subprocess.Popen([sys.executable, "-m", "study", *options, "--workers", "1"], **how)
     give_up = time.monotonic() + 60
     while not chunks(tmp_path) and time.monotonic() < give_up:
