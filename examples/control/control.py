@@ -35,19 +35,19 @@ CRITICAL = np.sqrt(m * g * r_0 * J_x / (J_z * (J_z + m * R**2)))  # rad/s, below
 
 
 @cache
-def model(folder: str) -> ca.DaeBuilder:
+def model(folder: Path) -> ca.DaeBuilder:
     """The FMU for model exchange; its states: X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z in some order."""
-    return ca.DaeBuilder("wheel", folder, {"debug": False})
+    return ca.DaeBuilder("wheel", str(folder), {"debug": False})
 
 
-def linearized(folder: str, omega_z: float) -> list[np.ndarray]:
+def linearized(folder: Path, omega_z: float) -> list[np.ndarray]:
     """A = d derivatives / d states and B = d derivatives / d inputs of straight rolling, in the order of the model."""
     dae, rolling = model(folder), {"theta": np.pi / 2, "omega_z": omega_z}
     jacobian = dae.create("jacobian", ["x", "u"], ["jac_ode_x", "jac_ode_u"])
     return [matrix.full() for matrix in jacobian([rolling.get(name, 0.0) for name in dae.x()], 0)]
 
 
-def draw_eigenvalues(folder: str) -> str:
+def draw_eigenvalues(folder: Path) -> str:
     """The real parts over the spin, and the spin at which the largest vanishes, by bisection."""
 
     def real_parts(spin: float) -> np.ndarray:
@@ -65,17 +65,16 @@ def draw_eigenvalues(folder: str) -> str:
     return f"critical spin: {spin:.6f} rad/s by the eigenvalues, {CRITICAL:.6f} rad/s by the closed form"
 
 
-def regulator(folder: str, omega_z: float) -> np.ndarray:
+def regulator(folder: Path, omega_z: float) -> np.ndarray:
     """Gains on OFF for M_1, M_2, M_3, from the Riccati equation."""
     dae, (A, B) = model(folder), linearized(folder, omega_z)
     kept = [dae.x().index(name) for name in OFF]
     A, B = A[np.ix_(kept, kept)], B[np.ix_(kept, [dae.u().index(name) for name in MOMENTS])]
-    weight = np.diag([100.0, 30.0, 100.0, 1.0, 1.0, 10.0])
-    effort = np.diag([0.01, 0.1, 0.1])
+    weight, effort = np.diag([100.0, 30.0, 100.0, 1.0, 1.0, 10.0]), np.diag([0.01, 0.1, 0.1])
     return np.linalg.solve(effort, B.T @ solve_continuous_are(A, B, weight, effort))
 
 
-def rolled(folder: str, times: np.ndarray, law: Callable[[int, dict], np.ndarray], **start: float) -> dict:
+def rolled(folder: Path, times: np.ndarray, law: Callable[[int, dict], np.ndarray], **start: float) -> dict:
     """The states by name at the times, in co-simulation, until the wheel lies nearly flat.
 
     law(k, states): the moments from times[k] to times[k + 1], of the states at times[k].
@@ -99,7 +98,7 @@ def rolled(folder: str, times: np.ndarray, law: Callable[[int, dict], np.ndarray
     return dict(zip(names, np.array(rows).T, strict=True))
 
 
-def leaning(folder: str, gains: np.ndarray, spin: float, h: float = 0.01, stop: float = 6.0) -> dict[str, np.ndarray]:
+def leaning(folder: Path, gains: np.ndarray, spin: float, h: float = 0.01, stop: float = 6.0) -> dict[str, np.ndarray]:
     """Time, distance from the line and lean in degrees of a wheel that starts with both; gains: of the regulator."""
     rolling, times = {"theta": np.pi / 2, "omega_z": spin}, np.arange(0, stop + h / 2, h)
     start = {"psi": 0.0, "X_O": 0.0, "theta": np.pi / 2 - 0.15, "Y_O": 0.3, "phi_dot": spin}
@@ -107,7 +106,7 @@ def leaning(folder: str, gains: np.ndarray, spin: float, h: float = 0.01, stop: 
     return {"t": times[: len(x["theta"])], "off": x["Y_O"], "lean": np.degrees(x["theta"]) - 90}
 
 
-def draw_regulator(folder: str) -> str:
+def draw_regulator(folder: Path) -> str:
     """A wheel below the critical spin: its largest lean alone, and the lean at the end with the regulator."""
     spin = -1.5
     gains = regulator(folder, spin)
@@ -125,7 +124,7 @@ def draw_regulator(folder: str) -> str:
     return f"lean: {fallen.max():.0f} deg alone, {held[-1]:.2g} deg after 6 s with the regulator"
 
 
-def optimal(folder: str, duration: float = 3.0, intervals: int = 60) -> tuple[np.ndarray, dict, np.ndarray]:
+def optimal(folder: Path, duration: float = 3.0, intervals: int = 60) -> tuple[np.ndarray, dict, np.ndarray]:
     """Times, states by name and moments M_1, M_3 that bring a leaning wheel upright onto Y_O = 0, heading along X.
 
     Direct transcription by the implicit midpoint rule; CasADi takes the derivatives from the FMU.
@@ -134,14 +133,13 @@ def optimal(folder: str, duration: float = 3.0, intervals: int = 60) -> tuple[np
     names, f = dae.x(), dae.create("f", ["x", "u"], ["ode"])
     opti, h = ca.Opti(), duration / intervals
     x, moments = opti.variable(len(names), intervals + 1), opti.variable(2, intervals)
-    scale = ca.DM([0.05 if n == "phi" else 1.0 for n in names])
+    scale = ca.diag([0.05 if n == "phi" else 1.0 for n in names])
     begin = {"theta": np.pi / 2 - 0.2, "Y_O": 0.2, "omega_z": -4.0}
     start = ca.DM([begin.get(n, 0.0) for n in names])
     opti.subject_to(x[:, 0] == start)
     load = ca.DM([[n == "M_1", n == "M_3"] for n in dae.u()])
-    for k in range(intervals):
-        middle = f((x[:, k] + x[:, k + 1]) / 2, load @ moments[:, k])
-        opti.subject_to(scale * (x[:, k + 1] - x[:, k] - h * middle) == 0)
+    middle = f.map(intervals)((x[:, :-1] + x[:, 1:]) / 2, load @ moments)
+    opti.subject_to(ca.vec(scale @ (x[:, 1:] - x[:, :-1] - h * middle)) == 0)
     for name, value in {"theta": np.pi / 2, "theta_dot": 0.0, "psi": 0.0, "psi_dot": 0.0, "Y_O": 0.0}.items():
         opti.subject_to(x[names.index(name), -1] == value)
     for row, bound in enumerate(BOUNDS):
@@ -157,7 +155,7 @@ def optimal(folder: str, duration: float = 3.0, intervals: int = 60) -> tuple[np
     return t, dict(zip(names, solution.value(x), strict=True)), solution.value(moments)
 
 
-def followed(folder: str, t: np.ndarray, x: dict, moments: np.ndarray) -> np.ndarray:
+def followed(folder: Path, t: np.ndarray, x: dict, moments: np.ndarray) -> np.ndarray:
     """How far Y_O, psi and theta are off the optimum's end when co-simulation follows these moments."""
     start = {name: x[name][0] for name in x if name != "omega_z"}
     start["phi_dot"] = x["omega_z"][0] - x["psi_dot"][0] * np.cos(x["theta"][0])
@@ -165,7 +163,7 @@ def followed(folder: str, t: np.ndarray, x: dict, moments: np.ndarray) -> np.nda
     return np.array([end[name][-1] - x[name][-1] for name in ("Y_O", "psi", "theta")])
 
 
-def draw_optimal(folder: str) -> str:
+def draw_optimal(folder: Path) -> str:
     """The optimum, and how far co-simulation ends from its end: the error of 60 steps of the midpoint rule."""
     t, x, moments = optimal(folder)
     _, axes = plt.subplots(3, 1, figsize=(7.2, 5.8), layout="constrained")
@@ -189,7 +187,7 @@ def main() -> None:
     with TemporaryDirectory() as folder:
         extract(fmu, unzipdir=folder)
         for draw in (draw_eigenvalues, draw_regulator, draw_optimal):
-            print(draw(folder))
+            print(draw(Path(folder)))
             plt.savefig(results / f"{draw.__name__.removeprefix('draw_')}.png", dpi=200)
     print(f"Pictures are in {results}.")
 
