@@ -149,6 +149,6 @@ def summarize(results: xr.Dataset, seconds: float) -> str:
     speed, share = 1 / results["wall_time"].mean(), 100 * results["fmu_time"].sum() / results["wall_time"].sum()
     lines.append(f"{speed:.0f} wheels per second and worker, {share:.0f} % of the time inside the FMU.")
     files, place = url_to_fs(results.encoding["source"])
-    caller, worker = (getrusage(processes).ru_maxrss // 1000 for processes in (RUSAGE_SELF, RUSAGE_CHILDREN))
-    lines.append(f"{caller} MB of memory, {worker} MB in a worker here, {files.du(place) / 1e6:.3g} MB of disk.")
+    memory = max(getrusage(processes).ru_maxrss // 1000 for processes in (RUSAGE_SELF, RUSAGE_CHILDREN))
+    lines.append(f"{memory} MB of memory in the largest process here, {files.du(place) / 1e6:.3g} MB of disk.")
     return "\n".join(lines)
