@@ -22,12 +22,10 @@ UNITS = {
     "s": {"ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
     "rad": {"deg": DEGREE, "°": DEGREE},
     "rad/s": {"deg/s": DEGREE, "deg": DEGREE, "rpm": 2 * math.pi / 60},
-    "N": {"kN": 1e3},
-    "Nm": {"kNm": 1e3},
     "Nm/rad": {"kNm/rad": 1e3, "Nm/deg": 1 / DEGREE},
     "Nms/rad": {"kNms/rad": 1e3, "Nms/deg": 1 / DEGREE},
     "N/m": {"kN/m": 1e3, "N/mm": 1e3},
-    "Ns/m": {"kNs/m": 1e3},
+    **{unit: {f"k{unit}": 1e3} for unit in ("N", "Nm", "Ns/m")},
 }
 WHEELS = Path(__file__).resolve().parents[1] / "wheels.json"
 

@@ -55,12 +55,9 @@ BUILD = Path(os.environ.get("WHEEL_BUILD", Path(__file__).resolve().parents[2] /
 if not (found := [*BUILD.glob("libwheel_equations.*")]):
     raise FileNotFoundError(f"{BUILD} holds no libwheel_equations: run ./scripts/build first.")
 LIBRARY = ctypes.CDLL(str(found[0]))
-REDUCED = Formulation.in_dll(LIBRARY, "wheel_reduced")
-EULER = Formulation.in_dll(LIBRARY, "wheel_euler")
-MULTIBODY = Formulation.in_dll(LIBRARY, "wheel_multibody")
-LIBRARY.wheel_energy.restype = c_double
-LIBRARY.wheel_required_friction.restype = c_double
-LIBRARY.wheel_height.restype = c_double
+REDUCED, EULER, MULTIBODY = (Formulation.in_dll(LIBRARY, f"wheel_{n}") for n in ("reduced", "euler", "multibody"))
+for function in (LIBRARY.wheel_energy, LIBRARY.wheel_required_friction, LIBRARY.wheel_height):
+    function.restype = c_double
 LIBRARY.wheel_height.argtypes = [POINTER(Parameters), c_double]
 LIBRARY.wheel_set_slope.argtypes = [POINTER(Parameters), c_double, c_double, c_double]
 LIBRARY.wheel_contact.restype = Contact

@@ -8,7 +8,6 @@ second; dashed: the time at which it comes down to the limit of upright rolling.
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 from drawing import rolling_inertia, upright_limit, wheel_of
 from matplotlib.ticker import LogLocator
@@ -25,31 +24,28 @@ study = Study(
 )
 
 
-def table(results: xr.Dataset) -> pd.DataFrame:
-    """One row per wheel: spin [rad/s], s [m], time until it leans by 30 degrees [s], empty if it never does."""
-    rows = results["up_time"].to_dataframe().reset_index()
-    rows.attrs = results.attrs
-    return rows
+def table(results: xr.Dataset) -> xr.Dataset:
+    """Time until the wheel leans by 30 degrees, to a millisecond; NaN if it never does."""
+    return results[["up_time"]].load().round(3)
 
 
-def draw(rows: pd.DataFrame, stem: Path) -> Path:
+def draw(small: xr.Dataset, stem: Path) -> Path:
     """Time over s, one curve per spin, with the closed form dashed."""
     style.use_style()
     fig = style.figure_mm(116.0, 80.0)
     ax = style.axes_mm(fig, 14.0, 12.0, 84.0, 62.0)
     colours = (style.GREEN, style.ORANGE, style.BLUE, style.PURPLE)
-    wheel = wheel_of(rows)
-    groups = rows.groupby("phi_dot_start", sort=False)
+    wheel, s = wheel_of(small), small["s"].values
     beside = (-5, 3, 0, 0)  # points, so that labels do not touch
-    for colour, apart, (spin, group) in zip(colours, beside, groups, strict=True):
-        s = group.loc[group["s"] > 0, "s"].to_numpy()
-        slowing = s * wheel["m"] * wheel["g"] / rolling_inertia(**wheel)  # rad/s2
-        ax.plot(s, (-spin - upright_limit(wheel)) / slowing, color=colour, linestyle=(0, (4, 2)), linewidth=0.8)
-        ax.plot(group["s"], group["up_time"], color=colour, linewidth=1.4)
-        last, text = group.iloc[-1], {"textcoords": "offset points", "va": "center", "color": colour}
-        ax.annotate(f"{-spin:.3g} rad/s", (last["s"], last["up_time"]), xytext=(5, apart), **text)
-    times, largest = scale(wheel, s=1) * np.array([0.2, 60.0]), rows["s"].max()
-    ax.set(yscale="log", xlim=(0, largest), ylim=times, xlabel="coefficient of rolling friction $s$ [m]")
+    slowing = s[1:] * wheel["m"] * wheel["g"] / rolling_inertia(**wheel)  # rad/s2, where s > 0
+    for colour, apart, spin in zip(colours, beside, small["phi_dot_start"].values, strict=True):
+        times = small["up_time"].sel(phi_dot_start=spin).values
+        ax.plot(s[1:], (-spin - upright_limit(wheel)) / slowing, color=colour, linestyle=(0, (4, 2)), linewidth=0.8)
+        ax.plot(s, times, color=colour, linewidth=1.4)
+        text = {"textcoords": "offset points", "va": "center", "color": colour}
+        ax.annotate(f"{-spin:.3g} rad/s", (s[-1], times[-1]), xytext=(5, apart), **text)
+    limits = scale(wheel, s=1) * np.array([0.2, 60.0])
+    ax.set(yscale="log", xlim=(0, s[-1]), ylim=limits, xlabel="coefficient of rolling friction $s$ [m]")
     ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     ax.yaxis.set_major_formatter("{x:g}")
     ax.set_ylabel("time until it leans by 30° [s]")

@@ -29,15 +29,14 @@ ASKED = {  # what is asked, and of how many wheels
 FEW = 800  # wheels
 
 
-def timed(what: str, wheels: int, folder: Path, client: object) -> dict[str, float]:
+def timed(what: str, wheels: int, folder: Path, workers: object) -> dict[str, float]:
     """Of wheels between 10 and 89 degrees, 0.5 and 12 rad/s, 10 s each."""
     from study import Study
 
     angles = np.radians(np.linspace(10, 89, wheels // 80))
     study = Study(grid={"theta_start": angles, "phi_dot_start": -np.linspace(0.5, 12, 80)}, **ASKED[what][0])
     begin, busy = perf_counter(), process_time()
-    how = {"fmu": build_folder() / "wheel.fmu", "overwrite": True, "quiet": True}
-    results = study.run(folder / "timed.zarr", client=client, **how)
+    results = study.run(folder / "timed.zarr", fmu=build_folder() / "wheel.fmu", workers=workers, overwrite=True)
     seconds, busy = perf_counter() - begin, process_time() - busy
     share = float(results["fmu_time"].sum() / results["wall_time"].sum())
     return {"wheels_per_s": results["status"].size / seconds, "fmu_share": share, "caller_busy": busy / seconds}
@@ -46,17 +45,18 @@ def timed(what: str, wheels: int, folder: Path, client: object) -> dict[str, flo
 @part(300)
 def speed(report: Report) -> dict[str, object]:
     """one and two workers in turn; the estimate for many"""
+    from distributed import Client
     from study.compute import cluster, most
 
     runs = []
-    with TemporaryDirectory() as folder, cluster(1) as one, cluster(2) as two:
+    with TemporaryDirectory() as folder, cluster(1) as one, cluster(2) as two, Client(two) as client:
         turns = range(2 if report.quick else REPEATS + 1)
-        for turn, (what, (_, wheels)), (n, client) in product(turns, ASKED.items(), ((1, one), (2, two))):
-            found = timed(what, wheels if turn and not report.quick else FEW, Path(folder), client)
+        for turn, (what, (_, wheels)), (n, workers) in product(turns, ASKED.items(), ((1, one), (2, two))):
+            found = timed(what, wheels if turn and not report.quick else FEW, Path(folder), workers)
             runs += [{"asked": what, "workers": n} | found] * (turn > 0)
         part = list(np.zeros((8, 100)))  # the axes of a task
         begin = process_time()
-        two.gather(two.map(len, [part] * 500, pure=False))
+        client.gather(client.map(len, [part] * 500, pure=False))
         task = (process_time() - begin) / 500
     table = pd.DataFrame(runs).groupby(["asked", "workers"], sort=False).median()
     wheels = table["wheels_per_s"].unstack(sort=False)

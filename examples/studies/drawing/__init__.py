@@ -4,7 +4,6 @@ import json
 from collections.abc import Mapping
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from study import Status
@@ -23,12 +22,12 @@ def rolling_inertia(m: float, r_0: float, r: float, J_z: float, **_: float) -> f
     return J_z + m * (r_0 + r) ** 2
 
 
-def studied(table: xr.Dataset | pd.DataFrame) -> dict[str, object]:
+def studied(table: xr.Dataset) -> dict[str, object]:
     """The definition of the study whose results these are."""
     return json.loads(table.attrs["study"])
 
 
-def wheel_of(table: xr.Dataset | pd.DataFrame) -> dict[str, float]:
+def wheel_of(table: xr.Dataset) -> dict[str, float]:
     """The study's wheel."""
     return WHEEL | studied(table)["values"]
 

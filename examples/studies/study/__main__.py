@@ -93,10 +93,7 @@ def file_of(name: str) -> Path:
 
 
 def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
-    """The arguments, `study` as the path of a file or as the Study that the others describe.
-
-    What cannot be meant is one line on stderr and exit status 2.
-    """
+    """The arguments, `study` as the path of a file or as the Study that the others describe; Fault, StudyError."""
     parser = argparse.ArgumentParser(
         prog="./scripts/study",
         description="Runs many wheels on all cores or on a Dask cluster. Started again, it continues where it stopped.",
@@ -124,11 +121,8 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
     add("--publish", action="store_true", help="write an example's data and figure into docs/")
     arguments = parser.parse_args(argv)
-    try:
-        arguments.body = ready(arguments.wheel) if arguments.wheel else {}
-        arguments.study = file_of(arguments.study) if arguments.study else study_of(arguments)
-    except (StudyError, Fault) as fault:
-        parser.exit(2, f"study: {fault}\n")
+    arguments.body = ready(arguments.wheel) if arguments.wheel else {}
+    arguments.study = file_of(arguments.study) if arguments.study else study_of(arguments)
     return arguments
 
 
@@ -156,8 +150,8 @@ def conduct(arguments: argparse.Namespace) -> None:
     if "://" not in out:
         stem = Path(out).with_suffix("")
     begin = time.perf_counter()
-    how = {name: getattr(arguments, name) for name in ("fmu", "workers", "scheduler", "overwrite")}
-    results = run(content["study"], out, **how)
+    workers = arguments.scheduler or arguments.workers
+    results = run(content["study"], out, fmu=arguments.fmu, workers=workers, overwrite=arguments.overwrite)
     print(summarize(results, time.perf_counter() - begin))
     asked = {".nc": arguments.netcdf, ".csv": arguments.csv}
     written = [out, *(export(results, stem.with_suffix(end)) for end in asked if asked[end])]
@@ -165,19 +159,19 @@ def conduct(arguments: argparse.Namespace) -> None:
         published = ROOT / "docs" / "results" / "data", ROOT / "docs" / "figures"
         data, figure = (folder / f"study_{stem.name}" if arguments.publish else stem for folder in published)
         table = content["table"](results)
-        written.append(export(table, data.with_suffix(".csv" if hasattr(table, "to_csv") else ".nc")))
+        written.append(export(table, data.with_suffix(".nc")))
         written += [content["draw"](table, figure)] if "draw" in content else []
     print("\n".join(f"Wrote {path}" for path in written))
 
 
-def main() -> int:
+def main(argv: list[str] | None = None) -> int:
     """Runs a study; a fault of the study is one line on stderr and exit status 2."""
-    arguments = arguments_of()
     try:
+        arguments = arguments_of(argv)
         if __package__:  # else the arguments alone are checked
             conduct(arguments)
         return 0
-    except StudyError as fault:
+    except (StudyError, Fault) as fault:
         code, text = 2, f"{fault}"
     except OSError as fault:  # a full disk, or one that cannot be reached any more
         code, text = 2, f"{arguments.out}: {fault}; results so far are kept; the same command continues from here."

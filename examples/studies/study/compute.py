@@ -22,6 +22,7 @@ import xarray as xr
 import zarr
 from dask.array.core import normalize_chunks, slices_from_chunks
 from distributed import Client, LocalCluster, as_completed
+from distributed.deploy import Cluster
 from distributed.scheduler import KilledWorker
 from fmpy import read_model_description
 from tqdm import tqdm
@@ -44,20 +45,18 @@ def run(
     out: str | Path,
     *,
     fmu: str | Path = "wheel.fmu",
-    workers: int | None = None,
-    scheduler: str | None = None,
-    client: Client | None = None,
+    workers: int | str | Cluster | None = None,
     chunk: int | None = None,
     overwrite: bool = False,
-    quiet: bool = False,
 ) -> xr.Dataset:
     """Runs the wheels that are missing in `out`, a folder or a URL, and returns the results.
 
-    workers    processes of the LocalCluster; all cores if None
-    scheduler  address of a running Dask scheduler, tcp://host:port, instead of a LocalCluster
-    client     an open Dask client, instead of both; it stays open
+    workers    processes of a LocalCluster, all cores if None; or a running Dask cluster, or its scheduler's address,
+               tcp://host:port
     chunk      wheels that are run and written together; by the size of the study if None
     overwrite  discards the results that are there, also those of another study
+
+    The environment variable TQDM_DISABLE=1 hides the progress bar.
     """
     if not Path(fmu).is_file():
         raise StudyError(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
@@ -70,26 +69,26 @@ def run(
     if group and not missing(group):
         return open_results(place)
     axes = axes_of(study)
-    there = nullcontext(client) if client else Client(scheduler, timeout="30s") if scheduler else cluster(workers)
-    with there as user:
+    there = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
+    with there as running, Client(running, timeout="30s") as client:
         with tempfile.TemporaryDirectory() as folder:
             upload = pack(fmu, Path(folder) / f"wheel-{sha256[:16]}.zip")
-            user.upload_file(str(upload))
-        user.wait_for_workers(1, timeout=PATIENCE)
+            client.upload_file(str(upload))
+        client.wait_for_workers(1, timeout=PATIENCE)
         if group is None:
-            empty = template(study, axes, description, chunk or chunk_size(study, axes, len(user.nthreads())))
+            empty = template(study, axes, description, chunk or chunk_size(study, axes, len(client.nthreads())))
             empty.attrs = provenance(study, description, sha256)
             empty.to_zarr(place, mode="w", compute=False, consolidated=False, zarr_format=3)
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = mark
-        status, common = group["status"][:], replace(study, grid={}, list={}, sample={})
+        status, common = group["status"][:], replace(study, grid={}, list={})
         task = partial(run_chunk, upload.name, common, place, mark)
-        if (there := int((status != Status.not_computed).sum())) and not quiet:
-            print(f"{there} of {status.size} wheels are there already.", file=sys.stderr)
+        if done := int((status != Status.not_computed).sum()):
+            print(f"{done} of {status.size} wheels are there already.", file=sys.stderr)
         every = 0.2 if sys.stderr.isatty() else 10.0  # s
-        with tqdm(total=status.size, initial=there, unit=" wheels", disable=quiet, mininterval=every) as bar:
-            for region, result in finished(user, task, partial(points, axes), missing(group)):
+        with tqdm(total=status.size, initial=done, unit=" wheels", mininterval=every) as bar:
+            for region, result in finished(client, task, partial(points, axes), missing(group)):
                 if result is not None:
                     write(place, mark, region, result)
                 bar.update(status[region].size)
@@ -140,8 +139,7 @@ def finished(
             elif len(pieces := divided(region)) > 1 or len(batch) > 1:
                 batches += [[piece] for piece in pieces]
             else:
-                message = np.array(["The worker process died during this run."], "T")
-                yield region, {"status": np.array([Status.failed]), "message": message}
+                yield region, {"status": Status.failed, "message": "The worker process died during this run."}
 
 
 def divided(region: Region) -> list[Region]:
@@ -164,8 +162,8 @@ def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
 
 
 @contextmanager
-def cluster(workers: int | None = None) -> Iterator[Client]:
-    """A client of a LocalCluster with one thread per process."""
+def cluster(workers: int | None = None) -> Iterator[LocalCluster]:
+    """A LocalCluster with one thread per process."""
     options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
     # Dask inspects itself so rarely that the caller's processor is free for a worker.
     options |= {"distributed.admin.tick.interval": "1s", "distributed.admin.system-monitor.interval": "10s"}
@@ -173,5 +171,5 @@ def cluster(workers: int | None = None) -> Iterator[Client]:
     # to be starting again after another one.
     options |= {"distributed.deploy.lost-worker-timeout": "1000 hours", "distributed.worker.preload": [DEAF]}
     processes = {"n_workers": workers, "threads_per_worker": 1, "memory_limit": 0, "silence_logs": "ERROR"}
-    with dask.config.set(options), LocalCluster(**processes, dashboard_address=":0") as local, Client(local) as client:
-        yield client
+    with dask.config.set(options), LocalCluster(**processes, dashboard_address=":0") as local:
+        yield local

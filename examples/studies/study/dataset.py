@@ -3,18 +3,19 @@
 import json
 import platform
 import re
+from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
+from resource import RUSAGE_CHILDREN, RUSAGE_SELF, getrusage
 
 import dask.array as da
 import numpy as np
-import pandas as pd
 import xarray as xr
 from fmpy.model_description import ModelDescription
-from matplotlib.lines import Line2D
+from fsspec.core import url_to_fs
 
-from .plan import PLANE_ANGLE, POINT, Status, Study, counters_of
+from .plan import OWN, PLANE_ANGLE, POINT, Status, Study, counters_of
 from .worker import Array, Region
 
 TITLE = "A study with wheel.fmu"
@@ -29,24 +30,19 @@ SYMBOLS = {  # in labels, by the text of a measure
     r"\b(\w)_dot": "\\1\N{COMBINING DOT ABOVE}",
 }
 PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
-OWN = {  # results of every study: empty value, type, unit, label, description
-    "status": (int(Status.not_computed), "i1", "", "fate", "Fate of the wheel"),
-    "message": ("", np.dtypes.StringDType(), "", "message", "Messages of the FMU"),
-    "end_time": (np.nan, "f8", "s", "end of the run", "Time at which the run ended"),
-    "wall_time": (np.nan, "f8", "s", "computing time", "Computing time of the run"),
-    "fmu_time": (np.nan, "f8", "s", "time in the FMU", "Part of wall_time spent in calls of the FMU"),
-}
 
 
 def axes_of(study: Study) -> xr.Dataset:
-    """The values that vary: each a dimension of a grid, or all along the wheels of a list or a sample."""
-    axes = study.varied
-    if study.sample:
-        from scipy.stats import qmc  # slow to load
+    """The values that vary: each a dimension of a grid, or all along the wheels of a list."""
+    return xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in study.varied.items()})
 
-        unit = qmc.LatinHypercube(len(study.sample), rng=study.seed).random(study.count)
-        axes = dict(zip(axes, qmc.scale(unit, *zip(*axes.values(), strict=True)).T, strict=True))
-    return xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in axes.items()})
+
+def sample(bounds: Mapping[str, tuple[float, float]], count: int, seed: int = 0) -> dict[str, Array]:
+    """A list of wheels for a study: a Latin hypercube between the lowest and the highest value of each name."""
+    from scipy.stats import qmc  # slow to load
+
+    unit = qmc.LatinHypercube(len(bounds), rng=seed).random(count)
+    return dict(zip(bounds, qmc.scale(unit, *zip(*bounds.values(), strict=True)).T, strict=True))
 
 
 def points(axes: xr.Dataset, region: Region) -> dict[str, Array]:
@@ -65,7 +61,7 @@ def template(study: Study, axes: xr.Dataset, description: ModelDescription, size
     for name, measure in study.parsed.items():
         unit, _, meaning = about[measure.quantity]
         text = study.measures[name]
-        columns[name] = (np.nan, "f8", "s" if measure.is_time else unit, label(text), f"{meaning}; {text}")
+        columns[name] = (np.nan, "f8", "s" if measure.kind in "<>" else unit, label(text), f"{meaning}; {text}")
     columns |= {name: (np.nan, "f8", *about[name]) for name in study.history}
     results = {}
     for name, (nothing, dtype, *texts) in columns.items():
@@ -93,19 +89,18 @@ def label(text: str) -> str:
 
 
 def provenance(study: Study, description: ModelDescription, fmu_sha256: str) -> dict[str, object]:
-    """All that is needed to repeat the study: its definition, its seed, the FMU's hash, and versions."""
+    """With the axes all that is needed to repeat the study: its definition, the FMU's hash, and versions."""
     definition = {name: value for name, value in asdict(study).items() if name not in ("grid", "list")}
     versions = {f"{name}_version": version(name) for name in ("fmpy", "numpy", "dask", "xarray", "zarr")}
     versions |= {"python_version": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
     fmu = {"fmu_sha256": fmu_sha256, "fmu_guid": description.guid, "fmu_version": description.version or ""}
-    return {"title": TITLE, "seed": study.seed, "study": json.dumps(definition)} | fmu | versions
+    return {"title": TITLE, "study": json.dumps(definition)} | fmu | versions
 
 
 def open_results(place: Path | str) -> xr.Dataset:
     """The results of a study, labelled; read when asked for."""
     results = xr.open_zarr(place, consolidated=False, chunks=None)
-    first = ["status", "message", "end_time"]
-    return results[[*first, *sorted(set(results.data_vars) - set(first))]]
+    return results[[*OWN, *sorted(results.data_vars.keys() - OWN.keys())]]
 
 
 def in_degrees(results: xr.Dataset) -> xr.Dataset:
@@ -117,24 +112,22 @@ def in_degrees(results: xr.Dataset) -> xr.Dataset:
     return turned
 
 
-def curves(values: xr.DataArray, x: str, hue: str) -> list[Line2D]:
-    """Draws values over x, one line for each value of hue, with the legend beside the axes, where no line runs."""
-    lines = values.plot.line(x=x, hue=hue, add_legend=False)
-    about = values[hue].attrs
-    title = about["long_name"] + (f" [{about['units']}]" if "units" in about else "")
-    names = [f"{value:g}" for value in values[hue].values]
-    lines[0].axes.legend(lines, names, title=title, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+def curves(values: xr.DataArray, x: str, hue: str) -> list:
+    """Draws a line for each value of hue, values over x, with the legend beside the axes, where no line runs."""
+    lines = values.plot.line(x=x, hue=hue)
+    legend = lines[0].axes.get_legend()
+    legend.set(loc="center left", bbox_to_anchor=(1.0, 0.5), frame_on=False)
+    for text in legend.texts:
+        text.set_text(f"{float(text.get_text()):g}")
     return lines
 
 
-def export(results: xr.Dataset | pd.DataFrame, path: Path) -> Path:
+def export(results: xr.Dataset, path: Path) -> Path:
     """Writes a copy as NetCDF (.nc), or as a table (.csv) with one row per wheel (and time)."""
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".nc":
         packed = {n: {"zlib": True} for n in results.data_vars if results[n].dtype.kind in "fiu"}
         results.drop_encoding().to_netcdf(path, encoding=packed)
-    elif isinstance(results, pd.DataFrame):
-        results.to_csv(path, index=False, float_format="%.6g", lineterminator="\n")
     else:
         rows = results.to_dataframe().reset_index()
         rows.assign(status=[Status(code).name for code in rows["status"]]).to_csv(path, index=False)
@@ -142,7 +135,7 @@ def export(results: xr.Dataset | pd.DataFrame, path: Path) -> Path:
 
 
 def summarize(results: xr.Dataset, seconds: float) -> str:
-    """Counts per status, the first message of those that were not run, and speed.
+    """Counts per status, the first message of those that were not run, speed, the largest memory, and disk space.
 
     The speed is of the runs themselves, summed over the workers; `seconds` is the time of this call, workers' start and
     writing included, which may have run only a part of the study.
@@ -155,4 +148,7 @@ def summarize(results: xr.Dataset, seconds: float) -> str:
             lines.append(f"           first: {results['message'].values[status == code][0]}")
     speed, share = 1 / results["wall_time"].mean(), 100 * results["fmu_time"].sum() / results["wall_time"].sum()
     lines.append(f"{speed:.0f} wheels per second and worker, {share:.0f} % of the time inside the FMU.")
+    files, place = url_to_fs(results.encoding["source"])
+    memory = max(getrusage(processes).ru_maxrss // 1000 for processes in (RUSAGE_SELF, RUSAGE_CHILDREN))
+    lines.append(f"{memory} MB of memory in the largest process here, {files.du(place) / 1e6:.3g} MB of disk.")
     return "\n".join(lines)

@@ -27,9 +27,8 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[3]
 SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
-KINDS = ("grid", "list", "sample")  # the ways to list wheels
-POINT = "wheel"  # the dimension of a list or a sample
-OWN = ("status", "message", "end_time", "wall_time", "fmu_time", "time", POINT)  # names that every study's results have
+KINDS = ("grid", "list")  # the ways to list wheels
+POINT = "wheel"  # the dimension of a list
 PLANE_ANGLE = "plane_angle"
 
 
@@ -49,8 +48,17 @@ class Status(IntEnum):
     grip = 5  # mu_required came to mu_max
 
 
+OWN = {  # results of every study: empty value, type, unit, label, description
+    "status": (int(Status.not_computed), "i1", "", "fate", "Fate of the wheel"),
+    "message": ("", "T", "", "message", "Messages of the FMU"),
+    "end_time": (math.nan, "f8", "s", "end of the run", "Time at which the run ended"),
+    "wall_time": (math.nan, "f8", "s", "computing time", "Computing time of the run"),
+    "fmu_time": (math.nan, "f8", "s", "time in the FMU", "Part of wall_time spent in calls of the FMU"),
+}
+
+
 class Measure(NamedTuple):
-    """One number of a run: `kind` is last, min, max, mean, < or >; SI units, `limit` in the quantity's unit."""
+    """One number of a run: `kind` is last, min, max, mean, or of a time < or >; `limit` is in the quantity's unit."""
 
     kind: str
     quantity: str
@@ -61,11 +69,6 @@ class Measure(NamedTuple):
         """The FMU's variable that has to be read."""
         return "theta" if self.quantity == PLANE_ANGLE else self.quantity
 
-    @property
-    def is_time(self) -> bool:
-        """Whether the number is a time in s; otherwise it has the variable's unit."""
-        return self.kind in "<>"
-
     def value(self, t: numpy.ndarray, x: numpy.ndarray | float) -> float:
         """For samples x of the variable at times t, the last of which is the end of the run; x at the end for `last`.
 
@@ -73,7 +76,7 @@ class Measure(NamedTuple):
         """
         if self.quantity == PLANE_ANGLE:
             x = math.pi / 2 - abs(x - math.pi / 2)
-        if self.is_time:
+        if self.kind in "<>":
             beyond = x < self.limit if self.kind == "<" else x > self.limit
             k = beyond.argmax()
             if k == 0:
@@ -123,8 +126,8 @@ def factors(body: Mapping[str, float]) -> dict[str, float]:
     from values import scale, variables
 
     text = description(ROOT / "wheel.fmu")
-    bases = {unit.get("name"): unit.find("BaseUnit").attrib for unit in ElementTree.fromstring(text).iter("Unit")}
-    powers = {unit: {n: int(base[n]) for n in ("kg", "m", "s") if n in base} for unit, base in bases.items()}
+    units = ElementTree.fromstring(text).iter("Unit")
+    powers = {u.get("name"): {n: int(u[0].get(n, 0)) for n in ("kg", "m", "s")} for u in units}
     return {name: scale(body, **powers.get(v.unit, {})) for name, v in variables(text).items()}
 
 
@@ -150,8 +153,7 @@ class Study:
 
     Exactly one of these lists the wheels:
       grid    name -> values; every combination is run; the names are the dimensions of the results
-      list    name -> values, all of one length; the k-th wheel takes the k-th of each
-      sample  name -> (lowest, highest); `count` wheels, a Latin hypercube drawn with `seed`
+      list    name -> values, all of one length; the k-th wheel takes the k-th of each; dataset.sample draws them
     values      name -> value, the same for all wheels; a name that is missing keeps the FMU's default
     measures    name of a result -> text, as above
     history     Real variables kept at every communication point
@@ -162,9 +164,6 @@ class Study:
 
     grid: Mapping[str, Sequence[float]] = field(default_factory=dict)
     list: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    sample: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    count: int = 0
-    seed: int = 0
     values: Mapping[str, float] = field(default_factory=dict)
     measures: Mapping[str, str] = field(default_factory=lambda: {"theta_end": "theta"})
     history: Sequence[str] = ()
@@ -178,8 +177,8 @@ class Study:
             plain = {kind: {n: [*map(float, x)] for n, x in getattr(self, kind).items()} for kind in KINDS}
         except (TypeError, ValueError) as fault:
             raise StudyError(f"A name that varies needs a list of numbers ({fault}).") from None
-        plain |= {"values": {n: float(x) for n, x in self.values.items()}}
-        for name, value in (plain | {"history": [*self.history], "count": int(self.count)}).items():
+        plain |= {"values": {n: float(x) for n, x in self.values.items()}, "history": [*self.history]}
+        for name, value in plain.items():
             object.__setattr__(self, name, value)
 
     def run(self, out: str | Path, **how: object) -> xarray.Dataset:
@@ -203,27 +202,26 @@ class Study:
         if both := sorted({*body} & {*given} - {"phi_dot_start"}):
             raise StudyError(f"The study has values of {', '.join(both)}, which are those of the wheel {wheel}.")
 
-        def similar(name: str, value: float) -> float:
-            return value * factor.get(name, 1.0)
+        def similar(columns: Mapping[str, Sequence[float]]) -> dict[str, Sequence[float]]:
+            return {name: [x * factor.get(name, 1.0) for x in column] for name, column in columns.items()}
 
         def measured(text: str) -> str:
             m = parse_measure(text)
-            return f"first({m.quantity} {m.kind} {similar(m.variable, m.limit)!r})" if m.is_time else text
+            return f"first({m.quantity} {m.kind} {m.limit * factor.get(m.variable, 1.0)!r})" if m.kind in "<>" else text
 
-        columns = {kind: getattr(self, kind).items() for kind in KINDS}
-        own = {n: similar(n, x) for n, x in self.values.items()}
         return replace(
             self,
-            **{kind: {n: [similar(n, x) for x in column] for n, column in of} for kind, of in columns.items()},
+            **{kind: similar(getattr(self, kind)) for kind in KINDS},
             **{n: t * slower for n in ("stop_time", "interval", "branch_at") if (t := getattr(self, n))},
-            values={n: x for n, x in body.items() if n not in given} | own,
+            values={n: x for n, x in body.items() if n not in given}
+            | {n: x * factor.get(n, 1.0) for n, x in self.values.items()},
             measures={n: measured(text) for n, text in self.measures.items()},
         )
 
     @property
     def varied(self) -> dict[str, list[float]]:
-        """The names that vary, with their values or bounds."""
-        return self.grid | self.list | self.sample
+        """The names that vary, with their values."""
+        return self.grid | self.list
 
     @cached_property
     def parsed(self) -> dict[str, Measure]:
@@ -246,17 +244,15 @@ class Study:
         """StudyError if a name is unknown or the study does not suit the FMU."""
         check_names([*self.varied, *self.values], SETTABLE, variables)
         check_names([*(m.variable for m in self.parsed.values()), *self.history], READABLE, variables)
-        kinds = sum(bool(getattr(self, kind)) for kind in KINDS)
         lengths = {name: len(column) for name, column in self.list.items()}
         empty = quoted(name for name, values in self.varied.items() if not values)
         both = quoted(name for name in self.varied if name in self.values and self.branch_at is None)
         integers = quoted(name for name in self.sampled if variables[name].type != "Real")
-        names = [*self.measures, *self.history, *self.varied, *OWN, *counters_of(variables)]
+        names = [*self.measures, *self.history, *self.varied, *OWN, "time", POINT, *counters_of(variables)]
         twice = quoted(name for name in names if names.count(name) > 1)
         in_order = 0 <= (self.branch_at or 0.0) < self.stop_time < math.inf and 0 < self.interval < math.inf
         for fault, text in (
-            (kinds != 1, "Give exactly one of grid, list and sample: it lists the wheels."),
-            (self.sample and self.count < 1, f"count = {self.count}: a sample needs at least one wheel."),
+            (bool(self.grid) == bool(self.list), "Give either grid or list: it lists the wheels."),
             (empty, f"The values of {empty} must be a list of numbers, at least one."),
             (both, f"{both} is in values and among the names that vary."),
             (len({*lengths.values()}) > 1, f"The columns of a list must have one length; these have: {lengths}."),

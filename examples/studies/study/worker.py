@@ -14,7 +14,7 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from ctypes import CDLL, byref, c_size_t, c_uint, c_void_p, cast
+from ctypes import CDLL, byref, c_size_t, c_uint, c_void_p
 from functools import cache
 from pathlib import Path
 from threading import Lock
@@ -65,8 +65,6 @@ class Instance:
         self.typed = cache(self._typed)
         self._snapshot, self._kept = fmi2FMUstate(), None  # at branch_at: values and messages of that start
         self._march = CDLL(str(Path(folder) / MARCH)).march
-        self._march.argtypes = (c_void_p,) * 4 + (c_size_t, c_void_p, c_size_t, c_void_p, c_void_p)
-        self._functions_of_march = [cast(self.fmu.dll[name], c_void_p) for name in ("fmi2DoStep", "fmi2GetReal")]
 
     def _log(self, _environment: object, _name: bytes, status: int, _category: bytes, text: bytes) -> None:
         if status != OK:
@@ -118,8 +116,9 @@ class Instance:
         """Steps along the times from times[0], the present one, and reads these Real variables at each."""
         rows, reached = np.empty((len(times), len(names))), c_size_t()
         references = (c_uint * len(names))(*(self.variables[name].valueReference for name in names))
-        way = (times.ctypes.data, len(times), references, len(names), rows.ctypes.data)
-        status = self._march(*self._functions_of_march, self.fmu.component, *way, byref(reached))
+        calls = self.fmu.dll.fmi2DoStep, self.fmu.dll.fmi2GetReal, c_void_p(self.fmu.component)
+        way = times.ctypes, c_size_t(len(times)), references, c_size_t(len(names)), rows.ctypes, byref(reached)
+        status = self._march(*calls, *way)
         end, fate = times[max(reached.value, 1) - 1], Status.reached if status <= WARNING else Status.failed
         if status == DISCARD:
             end, logged = self.fmu.getRealStatus(LAST_SUCCESSFUL_TIME), " ".join(self.messages)
@@ -147,9 +146,8 @@ class Instance:
         result["fmu_time"] = perf_counter() - begin
         result |= {name: last.get(name, -1) for name in self.counters}
         samples, t = dict(zip(study.sampled, rows.T, strict=False)) if rows.size else {}, times[: len(rows)]
-        for name in study.history:
-            result[name] = np.full(len(times), np.nan)
-            result[name][: len(t)] = samples.get(name, np.nan)
+        beyond = np.full(len(times) - len(t), np.nan)
+        result |= {name: np.append(samples.get(name, []), beyond) for name in study.history}
         if samples and last and end > t[-1]:  # the end of a run is a sample too
             t, samples = np.append(t, end), {name: np.append(x, last[name]) for name, x in samples.items()}
         for name, measure in study.parsed.items():
@@ -159,20 +157,23 @@ class Instance:
 
 
 def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Result:
-    """The outcomes of wheels whose values by name are broadcast against each other, in C order.
+    """The outcomes of wheels whose values by name are broadcast against each other, in their common shape.
 
     Of the study only what all its wheels have in common is used.
     """
-    columns = [column.ravel().tolist() for column in np.broadcast_arrays(*points.values())]
+    columns = np.broadcast_arrays(*points.values())
     late = [name for name in points if study.branch_at is not None and can_change(fmu.variables[name])]
-    changes = [dict(zip(points, row, strict=True)) for row in zip(*columns, strict=True)]
+    changes = [dict(zip(points, row, strict=True)) for row in zip(*(x.ravel().tolist() for x in columns), strict=True)]
     starts = [{n: change.pop(n) for n in points if n not in late} | study.values for change in changes]
     order = sorted(range(len(starts)), key=lambda i: [*starts[i].values()] if late else i)  # a shared start in a row
-    times, wheels = np.array(study.times), {}
-    for i in order:
-        wheels[i] = fmu.wheel(starts[i], changes[i], study, times)
-    result = {name: np.array([wheels[i][name] for i in range(len(starts))]) for name in wheels[0]}
-    return result | {"message": result["message"].astype("T")}
+    times = np.array(study.times)
+    wheels = {i: fmu.wheel(starts[i], changes[i], study, times) for i in order}
+
+    def column(name: str) -> NDArray:
+        values = np.array([wheels[i][name] for i in range(len(starts))], "T" if name == "message" else None)
+        return values.reshape(*columns[0].shape, *values.shape[1:])
+
+    return {name: column(name) for name in wheels[0]}
 
 
 def run_chunk(
@@ -209,23 +210,18 @@ def write(place: str, mark: str, region: Region, result: Result) -> None:
     group = zarr.open_group(place, mode="r+")
     if group.attrs.get(MARK) != mark:
         raise FileNotFoundError(f"{place} does not have the mark of this caller.")
-    shape = [part.stop - part.start for part in region]
-
-    def put(name: str) -> None:
-        group[name][region] = result[name].reshape(*shape, *result[name].shape[1:])
-
+    others = result.keys() - {"status"}
     with ThreadPoolExecutor(len(result)) as pool:  # the files of a remote store travel at the same time
-        list(pool.map(put, result.keys() - {"status"}))
-    put("status")
+        list(pool.map(lambda name: group[name].set_basic_selection(region, result[name]), others))
+    group["status"][region] = result["status"]
 
 
 def pack(fmu: str | Path, path: Path) -> Path:
     """Writes the file to be uploaded: the FMU, with this package's sources and the loop over the steps, compiled."""
     library, source = path.with_name(MARCH), Path(__file__).with_name("march.c")
-    try:
-        subprocess.run(["cc", "-O2", "-shared", "-fPIC", source, "-o", library], check=True)
-    except FileNotFoundError:
-        raise StudyError("A study needs a C compiler, cc, on the machine where it is started.") from None
+    if not shutil.which("cc"):
+        raise StudyError("A study needs a C compiler, cc, on the machine where it is started.")
+    subprocess.run(["cc", "-O2", "-shared", "-fPIC", source, "-o", library], check=True)
     shutil.copy(fmu, path)
     with zipfile.ZipFile(path, "a") as package:
         package.write(library, MARCH)

@@ -9,12 +9,11 @@ import fsspec
 import numpy as np
 import pytest
 import xarray as xr
-from distributed import Client
+from distributed import LocalCluster
 from fmpy import extract, read_model_description
 from moto.server import ThreadedMotoServer
 
-STUDIES = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(STUDIES))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from study import Study, compute  # noqa: E402
 from study.dataset import axes_of, points, template  # noqa: E402
@@ -34,7 +33,7 @@ def alone(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[
         results = template(study, axes, description, 1_000_000)
         found = run_block(instance, study, points(axes, (slice(None),) * results["status"].ndim))
         assert found.keys() == results.keys()
-        return results.assign({n: (results[n].dims, x.reshape(results[n].shape)) for n, x in found.items()})
+        return results.assign({name: (results[name].dims, values) for name, values in found.items()})
 
     return run
 
@@ -52,32 +51,19 @@ def bucket() -> Iterator[str]:
 
 
 @pytest.fixture(scope="session")
-def crew(bucket: str) -> Iterator[Client]:
+def crew(bucket: str) -> Iterator[LocalCluster]:
     """Two workers on this machine, for all tests of a process."""
-    with compute.cluster(2) as client:
-        yield client
+    with compute.cluster(2) as workers:
+        yield workers
 
 
 @pytest.fixture(scope="session")
-def conduct(fmu_path: Path, crew: Client, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., xr.Dataset]:
+def conduct(fmu_path: Path, crew: LocalCluster, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., xr.Dataset]:
     """Runs a study with the two workers, which do `work` with each chunk."""
 
     def conduct(study: Study, out: Path | str | None = None, work: object = compute.run_chunk, **how) -> xr.Dataset:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(compute, "run_chunk", work)
-            how = {"fmu": fmu_path, "client": crew, "quiet": True} | how
-            return study.run(out or tmp_path_factory.mktemp("study") / "z", **how)
+            return study.run(out or tmp_path_factory.mktemp("study") / "z", **{"fmu": fmu_path, "workers": crew} | how)
 
     return conduct
-
-
-@pytest.fixture(scope="session")
-def fates() -> Study:
-    """24 wheels of every fate: impossible ones, some that fall flat, one that lifts off, and those that roll on."""
-    return Study(
-        grid={"theta_start": np.radians([15, 75, 200]), "s": [0.0, 0.03], "phi_dot_start": [-2, 0.0, -6.0, -40.0]},
-        measures={"plane": "lowest", "lowest": "min(theta)", "down": "first(theta < 0.5)", "energy": "E"},
-        history=["theta", "X_O"],
-        stop_time=5.0,
-        interval=0.05,
-    )

@@ -31,8 +31,7 @@ def test_the_notebook_keeps_what_its_cells_give_and_nothing_of_the_machine(fmu_p
         assert one.shape == other.shape
         within(abs(one - other).mean(), 0.5, "pictures apart, of 255 tones of grey")  # other fonts
     height, width = np.minimum(pictures[0].shape, pictures[1].shape)
-    apart = abs(pictures[0][:height, :width] - pictures[1][:height, :width]).mean()
-    beyond(apart, 5, "another picture apart, of 255 tones of grey")
+    beyond(abs(pictures[0][:height, :width] - pictures[1][:height, :width]).mean(), 5, "another picture apart, tones")
     printed, text = "".join(words), NOTEBOOK.read_text(encoding="utf-8")
     assert len(pictures) == 3
     assert "ended at t = 0.59" in printed and printed.count("of 40 wheels") == 3 and "nan" not in printed

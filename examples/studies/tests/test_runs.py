@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 import xarray as xr
 from fmpy import simulate_fmu
-from studies_support import ROOT, same
+from studies_support import FATES, same
 from study import Status, Study, StudyError
-from study.dataset import axes_of
+from study.dataset import sample
 from study.plan import can_change
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
+from support.paths import ROOT
 from values import variables
 
 BRANCHING = Study(
@@ -69,10 +70,9 @@ def test_measures_are_those_of_the_history(rolled: xr.Dataset) -> None:
     assert one["at_once"] == 0 and np.isnan(one["never"])
 
 
-@pytest.mark.parametrize("study", ["fates", BRANCHING], ids=["own starts", "shared starts"])
-def test_a_run_is_bit_identical_whatever_was_run_before_it(alone, study: Study | str, request) -> None:
+@pytest.mark.parametrize("study", [FATES, BRANCHING], ids=["own starts", "shared starts"])
+def test_a_run_is_bit_identical_whatever_was_run_before_it(alone, study: Study) -> None:
     """Also a run that continues from the snapshot of a shared start: against one that has fetched none."""
-    study = request.getfixturevalue(study) if isinstance(study, str) else study
     together = alone(study)
     for point in product(*study.grid.values()):
         where = {name: [value] for name, value in zip(study.grid, point, strict=True)}
@@ -82,13 +82,12 @@ def test_a_run_is_bit_identical_whatever_was_run_before_it(alone, study: Study |
 
 
 FAULTS = {
-    "exactly one": {"list": {"s": [0.0]}},
+    "either grid or list": {"list": {"s": [0.0]}},
     "one length": {"grid": {}, "list": {"s": [0.0, 0.1], "theta_start": [1.0]}},
     "a list of numbers": {"grid": {"s": []}},
     "two things": {"measures": {"s": "theta"}},
     "an integer": {"measures": {"n": "max(n_steps)"}},
     "above zero": {"interval": 0.0},
-    "at least one wheel": {"grid": {}, "sample": {"s": (0.0, 0.1)}},
     "is in values": {"values": {"s": 0.0}},
 }
 NO_MEASURES = ("", "theta <", "first(theta)", "min(theta", "min(a, b)", "first(theta < x)")
@@ -100,15 +99,13 @@ def test_an_impossible_study_is_refused_with_a_message() -> None:
         with pytest.raises(StudyError, match=words):
             Study(**(good | fields)).check(known)
     Study(**good).check(known)
-    BRANCHING.check(known)
     assert [name for name in BRANCHING.grid if can_change(known[name])] == ["s", "M_3"]
 
 
 def test_a_sample_is_drawn_by_its_seed_and_within_its_bounds() -> None:
-    study = Study(sample={"theta_start": (1.0, 1.5), "s": (0.0, 0.1)}, count=50, seed=7)
-    again, other = (axes_of(replace(study, seed=seed))["s"] for seed in (7, 8))
-    assert (axes_of(study)["s"] == again).all() and (again != other).any()
-    theta = np.sort(axes_of(study)["theta_start"])
+    one, again, other = (sample({"theta_start": (1.0, 1.5), "s": (0.0, 0.1)}, 50, seed) for seed in (7, 7, 8))
+    assert (one["s"] == again["s"]).all() and (again["s"] != other["s"]).any()
+    theta = np.sort(Study(list=one).list["theta_start"])
     assert (np.floor((theta - 1.0) / 0.01) == np.arange(50)).all()  # a Latin hypercube: one wheel in each fiftieth
 
 
