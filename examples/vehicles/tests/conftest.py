@@ -13,9 +13,9 @@ from vehicles import build, suspended  # noqa: E402
 
 
 @pytest.fixture(scope="session")
-def fmus(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+def fmus() -> dict[str, Path]:
     """wheel, the FMUs compiled from C++, and balance (made by pythonfmu)."""
-    return build.build_all(tmp_path_factory.mktemp("examples"))
+    return build.build_all()
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""Errors of coupled runs: relative to each variable's range, over the communication step, and their order."""
+"""Errors of coupled runs over the communication step: their order, and the longest step."""
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -7,20 +7,9 @@ from itertools import takewhile
 import numpy as np
 
 from .component import Ended
-from .vehicle import Table
 
 STEPS = (0.002, 0.001, 0.0005)  # s
 Errors = dict[str, dict[float, float]]  # relative to the range: by exchange and communication step
-
-
-def apart(table: Table, truth: Table, names: Sequence[str], least: float = 0.01) -> dict[str, float]:
-    """Largest difference over time of each variable, relative to its range, or to `least` where that is larger."""
-    return {n: float(np.abs(table[n] - truth[n]).max() / max(np.ptp(truth[n]), least)) for n in names}
-
-
-def distance(table: Table, truth: Table, names: Sequence[str], least: float = 0.01) -> float:
-    """The largest of them."""
-    return max(apart(table, truth, names, least).values())
 
 
 def orders(errors: dict[float, float]) -> np.ndarray:

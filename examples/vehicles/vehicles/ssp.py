@@ -45,13 +45,11 @@ def build(package: Path, parts: list[Component], connections: list[Connection], 
 
 def parameter_set(package: Path) -> ParameterSet:
     """The parameter sets bound at the components as one, each name with its component in front."""
-    every = ParameterSet(name="all", parameters=[])
-    for component in find_components(read_ssd(str(package)).system):
-        for binding in component.parameterBindings:
-            for parameter in read_ssv(str(package), binding.source).parameters:
-                parameter.name = f"{component.name}.{parameter.name}"
-                every.parameters.append(parameter)
-    return every
+    bound = [(c.name, b.source) for c in find_components(read_ssd(str(package)).system) for b in c.parameterBindings]
+    every = [(name, parameter) for name, source in bound for parameter in read_ssv(str(package), source).parameters]
+    for name, parameter in every:
+        parameter.name = f"{name}.{parameter.name}"
+    return ParameterSet(name="all", parameters=[parameter for _, parameter in every])
 
 
 def run(package: Path, step: float, stop: float, grid: float) -> dict[str, np.ndarray]:
