@@ -49,7 +49,8 @@ def suspended_wheel(report: Report) -> dict[str, object]:
 @part(5, {"step, ms": {1000 * h: h for h in suspended.LARGE_STEPS}})
 def limits(report: Report, h: float) -> dict[str, str]:
     """the suspended wheel: steps that are too large"""
-    return {e: "breaks" if suspended.ends(report.fmus, h, e) else "runs" for e in ("held", "derivatives")}
+    runs = {e: suspended.SUSPENDED.drive(report.fmus, suspended.LAUNCH, h, e, h) for e in ("held", "derivatives")}
+    return {e: "breaks" if run.ending else "runs" for e, run in runs.items()}
 
 
 @part(3)

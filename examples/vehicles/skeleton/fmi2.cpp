@@ -13,7 +13,6 @@
 using Component = fmi2Component;
 using Refs = const fmi2ValueReference*;
 using Orders = const fmi2Integer*;
-using State = fmi2FMUstate;
 
 struct Instance {
   Simulation simulation;
@@ -109,29 +108,29 @@ fmi2Status fmi2DoStep(Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
   });
 }
 
-fmi2Status fmi2GetFMUstate(Component c, State* state) {
+fmi2Status fmi2GetFMUstate(Component c, fmi2FMUstate* state) {
   return run(c, [&](const Simulation& s) {
     if (!*state) *state = new Simulation;
     *static_cast<Simulation*>(*state) = s;
   });
 }
 
-fmi2Status fmi2SetFMUstate(Component c, State state) {
+fmi2Status fmi2SetFMUstate(Component c, fmi2FMUstate state) {
   return run(c, [&](Simulation& s) {
     require(state, "fmi2SetFMUstate: no state is given.");
     s = *static_cast<Simulation*>(state);
   });
 }
 
-fmi2Status fmi2FreeFMUstate(Component, State* state) {
+fmi2Status fmi2FreeFMUstate(Component, fmi2FMUstate* state) {
   if (state) delete static_cast<Simulation*>(std::exchange(*state, nullptr));
   return fmi2OK;
 }
 
 /* Snapshots stay in their process. */
-fmi2Status fmi2SerializedFMUstateSize(Component c, State, size_t*) { return refuse(c); }
-fmi2Status fmi2SerializeFMUstate(Component c, State, fmi2Byte[], size_t) { return refuse(c); }
-fmi2Status fmi2DeSerializeFMUstate(Component c, const fmi2Byte[], size_t, State*) { return refuse(c); }
+fmi2Status fmi2SerializedFMUstateSize(Component c, fmi2FMUstate, size_t*) { return refuse(c); }
+fmi2Status fmi2SerializeFMUstate(Component c, fmi2FMUstate, fmi2Byte[], size_t) { return refuse(c); }
+fmi2Status fmi2DeSerializeFMUstate(Component c, const fmi2Byte[], size_t, fmi2FMUstate*) { return refuse(c); }
 
 /* Variables of other types: none of them may be asked for. */
 fmi2Status fmi2GetInteger(Component c, Refs, size_t n, fmi2Integer[]) { return refuse(c, n); }

@@ -8,8 +8,7 @@ from others.numbers import read
 from support.bounds import EPSILON, beyond, relative_error, within
 from vehicles import axle, errors
 from vehicles.axle import AXLE, ROLLING_OUT, SCENES, STRAIGHT, TRAILING
-from vehicles.master import EXCHANGES
-from vehicles.options import Manoeuvre
+from vehicles.options import EXCHANGES, Manoeuvre
 from vehicles.vehicle import Fmus
 
 SHORT = TRAILING.changed(stop=1.0)

@@ -23,7 +23,7 @@ VEHICLES = ROOT / "examples" / "vehicles"
 READS = [sys.executable, "-S", "-B", str(VEHICLES / "vehicles" / "options.py")]
 UNITS = {"h=1ms": 1e-3, "k_fl=60e3": 60e3, "k_fl=60kN/m": 60e3, "delta_0=-4deg": -4 * pi / 180, "v=36km/h": 10.0}
 UNITS |= {"c_fl=2kN.s/m": 2e3, "M_0=1.5kN.m": 1500.0, "J_2=12kg.m2": 12.0, "slope=10%": atan(0.1), "t_on=1min": 60.0}
-PAGES = [*VEHICLES.rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
+PAGES = (*VEHICLES.rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md")
 TEXT = "\n".join(page.read_text() for page in PAGES)
 PRINTED = {line.strip() for line in re.findall(r"\./scripts/example ([a-z]+\b(?!\|)[^`#\n]*)", TEXT)} - {"control"}
 RUNS = sorted(line for line in PRINTED if "--help" not in line)
@@ -76,7 +76,6 @@ def test_the_unit_refuses_a_value_in_its_own_words(fmus: Fmus, model: str, name:
 @pytest.fixture
 def run(fmus: Fmus, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> Callable:
     """run(line): exit status and output of the example, which writes into tmp_path/NAME."""
-    monkeypatch.setattr(example.build, "ROOT", tmp_path)
     monkeypatch.setattr(example, "RESULTS", tmp_path)
     monkeypatch.setattr(example.build, "build_all", lambda: fmus)
 

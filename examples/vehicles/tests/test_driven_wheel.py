@@ -10,15 +10,11 @@ import pytest
 from support.bounds import beyond, within
 from support.paths import ROOT
 from vehicles import balance
-from vehicles.vehicle import Fmus, Table
+from vehicles.vehicle import Fmus
 
 
-@pytest.fixture(scope="module")
-def drive(fmus: Fmus) -> Table:
-    return balance.drive(fmus)
-
-
-def test_the_controlled_wheel_drives_its_course_where_the_wheel_alone_falls(drive: Table) -> None:
+def test_the_controlled_wheel_drives_its_course_where_the_wheel_alone_falls(fmus: Fmus) -> None:
+    drive = balance.drive(fmus)
     found = balance.judge(drive)
     within(found["fall"], 2, "the wheel alone falls, s")
     assert balance.fall_time(drive) == np.inf

@@ -16,18 +16,17 @@ CIRCLE = manoeuvres("balance")["circle"]
 STEP = 0.005  # s
 T_CIRCLE, RADIUS, SPEED = CIRCLE["t_circle"], CIRCLE["R"], 0.7  # s, m, m/s
 TURN = 2 * pi * RADIUS / SPEED  # s
-START = {"s": 0.002, "psi_start": 0.0, "theta_start": pi / 2, "phi_dot_start": -2.0, "X_O_start": 0.0}
-START["theta_dot_start"] = 0.1  # the push, rad/s
+# theta_dot_start is the push.
+START = {"s": 2e-3, "psi_start": 0, "theta_start": pi / 2, "phi_dot_start": -2, "theta_dot_start": 0.1, "X_O_start": 0}
 OF_WHEEL = file("balance")["record"][0][1:]  # the columns of the wheel
 
 
 def beside_alone(table: Table, course: Manoeuvre, fmus: Fmus) -> Table:
     """With the wheel without the controller, up to where its model ends, in columns alone.NAME."""
-    wheel, rows = str(fmus["wheel"]), len(table["time"])
+    rows = len(table["time"])
     how = {"fmi_type": "CoSimulation", "output": OF_WHEEL, "start_values": START, "output_interval": STEP}
-    alone = simulate_fmu(wheel, stop_time=course.stop, **how)[:rows]
-    missing = (0, rows - len(alone))
-    return table | {f"alone.{n}": np.pad(alone[n], missing, constant_values=np.nan) for n in OF_WHEEL}
+    alone = simulate_fmu(str(fmus["wheel"]), stop_time=course.stop, **how)[:rows]
+    return table | {f"alone.{n}": np.pad(alone[n], (0, rows - len(alone)), constant_values=np.nan) for n in OF_WHEEL}
 
 
 def fall_time(table: Table, of: str = "") -> float:

@@ -14,8 +14,7 @@ def build_c(folder: Path) -> dict[str, Path]:
     """The FMUs in C++, by name; also the C master, folder/master."""
     cache = folder / "CMakeCache.txt"  # it holds absolute paths: of a folder that was moved it is made anew
     moved = cache.exists() and f"CMAKE_HOME_DIRECTORY:INTERNAL={EXAMPLES}\n" not in cache.read_text()
-    fresh = ["--fresh"] if moved else []
-    configure = ["cmake", *fresh, "-S", EXAMPLES, "-B", folder, f"-DPython3_EXECUTABLE={sys.executable}"]
+    configure = ["cmake", *["--fresh"] * moved, "-S", EXAMPLES, "-B", folder, f"-DPython3_EXECUTABLE={sys.executable}"]
     for command in (configure, ["cmake", "--build", folder]):
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     return {fmu.stem: fmu for fmu in folder.glob("*.fmu")}

@@ -87,4 +87,3 @@ def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
 
 
 CAR = Vehicle("car", starts, verdict, wheels=NAMES, complete=complete, subtitle=subtitle)
-drive = CAR.drive

@@ -30,12 +30,11 @@ from .vehicle import Fmus, Run  # noqa: E402
 RESULTS = build.ROOT / "results" / "examples"
 VEHICLES = {of.name: of for of in (axle.AXLE, car.CAR, suspended.SUSPENDED, balance.BALANCE)}
 PER_PICTURE = 600  # rows, about
-SHORT = 1e-4  # s, a step that is short for every link here
 
 
 def diverged(fmus: Fmus, asked: Manoeuvre, run: Run) -> str:
     """Whether an ending comes from the coupling: with a much shorter step it comes elsewhere, or not at all."""
-    end, h = run.ending.time, min(asked.h / 4, max(asked.h / 16, SHORT))
+    end, h = run.ending.time, min(asked.h / 4, max(asked.h / 16, 1e-4))  # s, which is short for every link here
     beyond = asked.changed(stop=min(asked.stop, 1.1 * end + 10 * asked.h))
     again = VEHICLES[asked.vehicle].drive(fmus, beyond, h, asked.exchange, end).ending
     if again and abs(again.time - end) < 2 * asked.h + 0.02 * end:
@@ -90,7 +89,7 @@ def main() -> int:
     except ValueError as reason:
         print(reason, file=sys.stderr)
         return 1
-    print(f"In {folder.relative_to(build.ROOT)}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")
+    print(f"In results/examples/{folder.name}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")
     return not passed
 
 

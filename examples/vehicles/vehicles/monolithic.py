@@ -69,10 +69,6 @@ class Joint:
     columns(t, y, load, answer), what is compared.
     """
 
-    kind: Wheel
-    n: int
-    size: int
-
     def wheels(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """O, a, w."""
         return tuple(y[self.size :].reshape(3, self.n, 3))

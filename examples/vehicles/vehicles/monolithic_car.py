@@ -26,7 +26,6 @@ from .options import EXAMPLES, Manoeuvre, file, starts
 
 FOLDER = EXAMPLES / "tests"
 GRID = 0.25  # s
-FINE = 1e-10  # relative and absolute, of each step
 OF_WHEELS = tuple(f"{w}.{n}" for w in WHEELS for n in ("lambda_3", "omega_z"))
 COLUMNS = ("time", *file("car")["compared"], "X_R", "Y_R", "delta", "a_y", "beta", *OF_WHEELS)
 NAMES = tuple(name for name in MANOEUVRES if name != TOO_FAST.name)
@@ -178,13 +177,8 @@ def read(name: str) -> dict[str, np.ndarray]:
     return dict(zip(COLUMNS, read_table(str(FOLDER / f"car_{name}")).values(), strict=True))
 
 
-def main() -> None:
-    """The tables named, or all."""
+if __name__ == "__main__":
     for name in sys.argv[1:] or NAMES:
-        found = solve(MANOEUVRES[name], GRID, FINE)
+        found = solve(MANOEUVRES[name], GRID, 1e-10)
         write_table(FOLDER / f"car_{name}.csv", {column: found[column] for column in COLUMNS})
         print(f"car_{name}.csv")
-
-
-if __name__ == "__main__":
-    main()

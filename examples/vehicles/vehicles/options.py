@@ -21,14 +21,14 @@ from values import Fault, limited, number, suggestion  # noqa: E402
 
 EXCHANGES = ("held", "derivatives", "rollback")
 FOLDERS = {"axle": "axle", "car": "car", "suspended": "quarter_car", "balance": "balance"}
-CONTROL = {"about": "For a control engineer: linearization, regulator, optimal control; without parameters"}
 
 
 @cache
 def file(vehicle: str) -> dict:
     """A vehicle's manoeuvres.toml."""
-    folder = FOLDERS.get(vehicle)
-    return tomllib.loads((EXAMPLES / folder / "manoeuvres.toml").read_text()) if folder else CONTROL
+    if vehicle == "control":
+        return {"about": "For a control engineer: linearization, regulator, optimal control; without parameters"}
+    return tomllib.loads((EXAMPLES / FOLDERS[vehicle] / "manoeuvres.toml").read_text())
 
 
 @cache
@@ -70,8 +70,7 @@ class Manoeuvre:
     grid: float | None = None  # s, of the table
 
     def __getitem__(self, name: str) -> float:
-        if name not in self.given and name in self.follows:
-            return self[self.follows[name]]
+        name = name if name in self.given else self.follows.get(name, name)
         return self.given.get(name, every(self.vehicle)[name].start)
 
     def changed(self, **values: float) -> Self:

@@ -57,8 +57,7 @@ def run(package: Path, step: float, stop: float, grid: float) -> dict[str, np.nd
 
     fmpy labels the state after a step with the time before it.
     """
-    rows = simulate_ssp(str(package), stop_time=stop - step / 2, step_size=step, parameter_set=parameter_set(package))
-    every = round(grid / step)
-    rows = rows[every - 1 :: every]
+    how, every = {"step_size": step, "parameter_set": parameter_set(package)}, round(grid / step)
+    rows = simulate_ssp(str(package), stop_time=stop - step / 2, **how)[every - 1 :: every]
     rows["time"] += step
     return {name: rows[name] for name in rows.dtype.names}

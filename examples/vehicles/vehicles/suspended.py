@@ -100,11 +100,6 @@ def package_distance(package: Path, step: float, truth: Table, stop: float = LAU
     return max(float(np.abs(run[f"wheel.{n}"] - truth[n][driven]).max() / np.ptp(truth[n])) for n in names)
 
 
-def ends(fmus: Fmus, step: float, exchange: str) -> bool:
-    """Whether the coupled run breaks: the hopping wheel leaves the ground and its FMU ends the step."""
-    return SUSPENDED.drive(fmus, LAUNCH, step, exchange, step).ending is not None
-
-
 def convergence(fmus: Fmus, truth: Table, steps: Sequence[float] = STEPS) -> errors.Errors:
     """With all inputs held, with positions that follow the velocities beside them, and on straight lines."""
     kinds = {"positions held": ("held", {"follow": 0.0}), "held": ("held", {}), "derivatives": ("derivatives", {})}

@@ -6,7 +6,7 @@ A body with hubs names its variables as the wheels do, with _ and the wheel's na
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import pi
+from math import inf, pi
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +18,6 @@ from .options import Manoeuvre, file
 
 Fmus = dict[str, Path]
 Table = dict[str, np.ndarray]
-Names = tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -109,8 +108,9 @@ class Vehicle:
         return max(self.apart(table, truth).values())
 
     def error(self, fmus: Fmus, of: Manoeuvre, truth: Table, h: float, exchange: str) -> float:
-        """Distance of a whole co-simulation with the step h from the truth."""
-        return self.distance(self.drive(fmus, of, h, exchange, truth["time"][1]).whole, truth)
+        """Distance of a co-simulation with the step h from the truth; infinite if it ends early."""
+        run = self.drive(fmus, of, h, exchange, truth["time"][1])
+        return inf if run.ending else self.distance(run.table, truth)
 
     def describe(self, end: Ended) -> str:
         """Which component ended a run, and when."""
@@ -126,5 +126,4 @@ def upright(x: float, y: float, heading: float, speed: float, turn: float, R: fl
 
 def road(manoeuvre: Manoeuvre) -> dict[str, float]:
     """The wheels' parameters that a manoeuvre gives: friction, slope, and the grip that a wheel checks, if any."""
-    names = ("s", "slope", "slope_direction", "mu_max")
-    return {name: manoeuvre[name] for name in names if manoeuvre.given.get(name)}
+    return {n: manoeuvre[n] for n in ("s", "slope", "slope_direction", "mu_max") if manoeuvre.given.get(n)}
