@@ -65,6 +65,7 @@ def test_a_damper_bounds_the_step_by_the_reduced_mass_of_both_partners(fmus: Fmu
     """2 m / c = 31.1 ms for 34.7 kg of wheel and 300 kg of body; the wheel's inertia alone would allow 34.7 ms."""
     free = {"k_h": 0.0, "k_v": 0.0, "c_v": 0.0, "t_couple": 0.0, "M_drive": 0.0}
     damper = replace(SUSPENDED, starts=lambda _run: {"wheel": upright(0.0, 0.0, 0.0, 1.0, 0.0, 0.35)})
+    # The damper along X alone is left of what manoeuvres.toml connects.
     vars(damper)["connections"] = [c for c in SUSPENDED.connections if c[0][1] in ("X_O", "X_O_dot", "F_X")]
     table = damper.drive(fmus, LAUNCH.changed(stop=300 * h, **free), h, "held", h).table
     apart = np.abs(table["X_O_dot"] - table["X_B_dot"])[-10:].max()
