@@ -61,13 +61,8 @@ def by_omsimulator(package: str, step: float, stop: float, names: list[str]) -> 
     return [float(next(x for title, x in last.items() if title.endswith(f".{name}"))) for name in names]
 
 
-def main() -> None:
-    """One run."""
+if __name__ == "__main__":
     tool, package, step, stop, *names = sys.argv[1:]
     values = globals()[f"by_{tool.lower()}"](package, float(step), float(stop), names)
     for name, value in zip(names, values, strict=True):
         print(name, repr(float(value)))
-
-
-if __name__ == "__main__":
-    main()

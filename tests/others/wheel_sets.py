@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
-from vehicles.axle import CONNECTIONS, WHEELS
+from vehicles.axle import AXLE, WHEELS
 from vehicles.component import Component, loaded
 from vehicles.master import Master
 from vehicles.vehicle import upright
@@ -107,7 +107,7 @@ def coupled(fmus: dict[str, Path], scene: str, factor: float, step: float, stop:
         Component(wheel, fmus["wheel"], {**WHEEL, **upright(START, START + y, 0.0, 0.0, 0.0, R)})
         for wheel, y in zip(WHEELS, (B, -B), strict=True)
     ]
-    free = [(source, sink) for source, sink in CONNECTIONS if sink[1] != "M_3"]
+    free = [(source, sink) for source, sink in AXLE.connections if sink[1] != "M_3"]
     parts = [*wheels, Component("axle", fmus["axle"], {**BODY, **place})]
     with loaded(*parts):
         master, rows, every = Master(parts, free), [], round(0.3 / step)

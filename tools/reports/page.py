@@ -96,7 +96,7 @@ class Report:
         """Every FMU of the examples, built."""
         from vehicles.build import build_all
 
-        return build_all(ROOT / "build" / "examples")
+        return build_all()
 
     def measure(self, part: Part) -> None:
         for name, found in part(self).items():

@@ -40,7 +40,7 @@ def suspended_wheel(report: Report) -> dict[str, object]:
     orders.insert(0, "step, ms", 1000 * np.array(steps))
     orders["share lost to the lag of a held position"] = [suspended.drag_share(h) for h in steps]
     package = suspended.SUSPENDED.package(units, suspended.LAUNCH, 0.001, ROOT / "build" / "examples")
-    launch = suspended.coupled(units, 0.000625, "derivatives", grid=0.005)
+    launch = suspended.SUSPENDED.drive(units, suspended.LAUNCH, 0.000625, grid=0.005).whole
     drawing.draw(suspended.SUSPENDED, suspended.LAUNCH, launch, report.folder / "partners_suspended.png", errors=found)
     packaged = [{"step, ms": 1000 * h, "error": suspended.package_distance(package, h, truth)} for h in steps[1:4]]
     return {"orders": orders, "package": packaged, "order": 2 - min(errors.orders(found["derivatives"]))}
@@ -49,7 +49,8 @@ def suspended_wheel(report: Report) -> dict[str, object]:
 @part(5, {"step, ms": {1000 * h: h for h in suspended.LARGE_STEPS}})
 def limits(report: Report, h: float) -> dict[str, str]:
     """the suspended wheel: steps that are too large"""
-    return {e: "breaks" if suspended.ends(report.fmus, h, e) else "runs" for e in ("held", "derivatives")}
+    runs = {e: suspended.SUSPENDED.drive(report.fmus, suspended.LAUNCH, h, e, h) for e in ("held", "derivatives")}
+    return {e: "breaks" if run.ending else "runs" for e, run in runs.items()}
 
 
 @part(3)

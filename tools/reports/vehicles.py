@@ -74,7 +74,7 @@ def car_runs(report: Report) -> dict[str, object]:
         table = CAR.drive(report.fmus, manoeuvre).table
         found = car_judges.judge(table, manoeuvre, *manoeuvre.judges)
         judged += [(name, f.what, f.unit, f.measured, f.exact) for f in found]
-        at = car_judges.worst(table)[1]
+        *_, at = car_judges.worst(table)
         where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]
         demands.append((manoeuvre.title, *car_judges.demand(table).values(), *where))
     most = ["manoeuvre", *(f"{axle} axle" for axle in layout.AXLES), "most at t [s]", "X [m]", "Y [m]"]
@@ -104,12 +104,6 @@ def car_figures(report: Report, name: str) -> list[Row]:
     return [dict(zip(head, row, strict=True)) for row in rows]
 
 
-def errors(report: Report, name: str, exchange: str, h: float, complete: bool = False) -> dict[str, float]:
-    """Of each output against one set of equations; complete: of a run that must not end early."""
-    run = CAR.drive(report.fmus, MANOEUVRES[name], h, exchange, monolithic_car.GRID)
-    return monolithic_car.apart(run.whole if complete else run.table, truth(name))
-
-
 truth = cache(monolithic_car.read)
 
 
@@ -118,7 +112,7 @@ def car_longest(report: Report, exchange: str) -> Row:
     """the car: the longest step with which a manoeuvre runs to its end with errors below 10 % of the ranges"""
 
     def longest_step(name: str) -> float:
-        return longest(LIMITS, lambda h: max(errors(report, name, exchange, h, complete=True).values()))
+        return longest(LIMITS, lambda h: CAR.error(report.fmus, MANOEUVRES[name], truth(name), h, exchange))
 
     return {f"{name} [ms]": 1000 * longest_step(name) for name in manoeuvres(report)}
 
@@ -126,7 +120,8 @@ def car_longest(report: Report, exchange: str) -> Row:
 @part(120, {"manoeuvre": manoeuvres, "inputs over the step": EXCHANGES, "step [ms]": STEPS_MS})
 def car_errors(report: Report, name: str, exchange: str, ms: float) -> Row:
     """the car: error against one set of equations, by manoeuvre, master, step and output"""
-    found = errors(report, name, exchange, ms / 1000)
+    run = CAR.drive(report.fmus, MANOEUVRES[name], ms / 1000, exchange, monolithic_car.GRID)
+    found = CAR.apart(run.whole, truth(name))
     return found | {"largest": max(found.values())}
 
 

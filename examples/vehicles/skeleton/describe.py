@@ -68,9 +68,8 @@ def main() -> None:
 
     table, folder = map(Path, sys.argv[1:])
     about, wheels, variables = read(table)
-    inputs, parameters, outputs = (
-        {v.name: v.depends for v in variables if v.causality == kind} for kind in ("input", "parameter", "output")
-    )
+    kinds = ("input", "parameter", "output")
+    inputs, parameters, outputs = ({v.name: v.depends for v in variables if v.causality == kind} for kind in kinds)
     known = {output: [n for n in inputs if any(fnmatchcase(n, p) for p in on)] for output, on in outputs.items()}
     at_start = {output: [*parameters, *on] for output, on in known.items()}  # states follow from parameters
     number = {name: k for k, name in enumerate(inputs)}

@@ -1,5 +1,5 @@
 /* fmi2Functions of an example: co-simulation, inputs with derivatives up to order 3, outputs with first derivatives,
- * snapshots that can be serialized. Nothing here knows which example it is. */
+ * snapshots. Nothing here knows which example it is. */
 #include "fmi2Functions.h"
 
 #include <cstring>
@@ -13,9 +13,6 @@
 using Component = fmi2Component;
 using Refs = const fmi2ValueReference*;
 using Orders = const fmi2Integer*;
-using State = fmi2FMUstate;
-
-namespace {
 
 struct Instance {
   Simulation simulation;
@@ -25,7 +22,7 @@ struct Instance {
 
 /* Runs a call; what it throws is logged and refused. */
 template <class Act>
-fmi2Status run(Component c, Act act) {
+static fmi2Status run(Component c, Act act) {
   auto& [simulation, name, to] = *static_cast<Instance*>(c);
   try {
     std::invoke(act, simulation);
@@ -36,22 +33,14 @@ fmi2Status run(Component c, Act act) {
   }
 }
 
-void require(bool met, const char* message) {
+static void require(bool met, const char* message) {
   if (!met) throw std::invalid_argument(message);
 }
 
 /* Of what the examples do not have; its functions must exist all the same. */
-fmi2Status refuse(Component c, bool asked = true) {
-  return run(c, [&](Simulation&) { require(!asked, "There is no such variable, derivative or step."); });
+static fmi2Status refuse(Component c, bool asked = true) {
+  return run(c, [&](Simulation&) { require(!asked, "There is no such variable, derivative or function."); });
 }
-
-/* What a state points to, made where there is none. */
-Simulation& snapshot(State* state) {
-  if (!*state) *state = new Simulation;
-  return *static_cast<Simulation*>(*state);
-}
-
-}  // namespace
 
 const char* fmi2GetTypesPlatform() { return fmi2TypesPlatform; }
 const char* fmi2GetVersion() { return fmi2Version; }
@@ -119,40 +108,29 @@ fmi2Status fmi2DoStep(Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
   });
 }
 
-fmi2Status fmi2GetFMUstate(Component c, State* state) {
-  return run(c, [&](const Simulation& s) { snapshot(state) = s; });
-}
-
-fmi2Status fmi2SetFMUstate(Component c, State state) {
-  return run(c, [&](Simulation& s) {
-    require(state, "fmi2SetFMUstate: no state is given.");
-    s = snapshot(&state);
+fmi2Status fmi2GetFMUstate(Component c, fmi2FMUstate* state) {
+  return run(c, [&](const Simulation& s) {
+    if (!*state) *state = new Simulation;
+    *static_cast<Simulation*>(*state) = s;
   });
 }
 
-fmi2Status fmi2FreeFMUstate(Component, State* state) {
+fmi2Status fmi2SetFMUstate(Component c, fmi2FMUstate state) {
+  return run(c, [&](Simulation& s) {
+    require(state, "fmi2SetFMUstate: no state is given.");
+    s = *static_cast<Simulation*>(state);
+  });
+}
+
+fmi2Status fmi2FreeFMUstate(Component, fmi2FMUstate* state) {
   if (state) delete static_cast<Simulation*>(std::exchange(*state, nullptr));
   return fmi2OK;
 }
 
-fmi2Status fmi2SerializedFMUstateSize(Component, State, size_t* size) {
-  *size = sizeof(Simulation);
-  return fmi2OK;
-}
-
-fmi2Status fmi2SerializeFMUstate(Component c, State state, fmi2Byte bytes[], size_t size) {
-  return run(c, [&](const Simulation&) {
-    require(state && size >= sizeof(Simulation), "fmi2SerializeFMUstate: no state, or too few bytes.");
-    std::memcpy(bytes, state, sizeof(Simulation));
-  });
-}
-
-fmi2Status fmi2DeSerializeFMUstate(Component c, const fmi2Byte bytes[], size_t size, State* state) {
-  return run(c, [&](const Simulation&) {
-    require(size == sizeof(Simulation), "fmi2DeSerializeFMUstate: these bytes are no state of this FMU.");
-    std::copy_n(bytes, size, reinterpret_cast<char*>(&snapshot(state)));
-  });
-}
+/* Snapshots stay in their process. */
+fmi2Status fmi2SerializedFMUstateSize(Component c, fmi2FMUstate, size_t*) { return refuse(c); }
+fmi2Status fmi2SerializeFMUstate(Component c, fmi2FMUstate, fmi2Byte[], size_t) { return refuse(c); }
+fmi2Status fmi2DeSerializeFMUstate(Component c, const fmi2Byte[], size_t, fmi2FMUstate*) { return refuse(c); }
 
 /* Variables of other types: none of them may be asked for. */
 fmi2Status fmi2GetInteger(Component c, Refs, size_t n, fmi2Integer[]) { return refuse(c, n); }

@@ -35,11 +35,11 @@ struct Simulation {
   /* States from the parameters. */
   void start() {
     for (int i = 0; i < first_output; ++i) {
-      const auto& [name, unit, _, limit] = stored[i];
-      if (limit == none || now.u[i] > 0 || (now.u[i] == 0 && limit == not_below_0)) continue;
-      const char* least = limit == above_0 ? "above" : "at least";
+      const auto& [name, unit, _, least] = stored[i];
+      if (now.u[i] >= least) continue;
       char fault[160];
-      std::snprintf(fault, sizeof fault, "%s = %g: it must be %s 0 %s.", name, now.u[i], least, unit);
+      const char* relation = least > 0 ? "above" : "at least";
+      std::snprintf(fault, sizeof fault, "%s = %g: it must be %s 0 %s.", name, now.u[i], relation, unit);
       throw std::invalid_argument(fault);
     }
     model_derive(now.u, now.d);

@@ -1,24 +1,23 @@
 """The example FMUs, built once per session, and the folders the examples are imported from."""
 
 import sys
-from pathlib import Path
 
-import numpy as np
 import pytest
 from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT / "examples" / "vehicles"))
 
 from vehicles import build, suspended  # noqa: E402
+from vehicles.vehicle import Fmus, Table  # noqa: E402
 
 
 @pytest.fixture(scope="session")
-def fmus(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+def fmus(tmp_path_factory: pytest.TempPathFactory) -> Fmus:
     """wheel, the FMUs compiled from C++, and balance (made by pythonfmu)."""
     return build.build_all(tmp_path_factory.mktemp("examples"))
 
 
 @pytest.fixture(scope="session")
-def truth() -> dict[str, np.ndarray]:
+def truth() -> Table:
     """Wheel and quarter car as one set of equations."""
     return suspended.together()

@@ -14,41 +14,35 @@ step with straight lines between the values at its ends.
 """
 
 from collections.abc import Callable
-from functools import partial
-from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import odeint
 from scipy.optimize import brentq
 
 from . import errors, options
-from .component import Component, loaded
+from .component import loaded
 from .master import Master
 from .options import Manoeuvre, manoeuvres
-from .vehicle import FORCE, Fmus, Table, Vehicle, recorded, road, upright, wire
+from .vehicle import Fmus, Table, Vehicle, road, upright
 
 WHEELS = {"left": "left", "right": "right"}
-COMPARED = ("X", "Y", "psi", "v", "omega")
+COMPARED = options.file("axle")["compared"]
 SCENES = manoeuvres("axle")
 STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT = SCENES.values()
 LIMIT_STEPS = (0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
 GRID = 0.048  # s, which all of them divide
-BONDS = dict(zip(FORCE, ("X_O_dot", "Y_O_dot", "Z_O_dot"), strict=True)) | {"M_1": "theta_dot", "M_2": "psi_dot"}
+BONDS = {"F_X": "X_O_dot", "F_Y": "Y_O_dot", "F_Z": "Z_O_dot", "M_1": "theta_dot", "M_2": "psi_dot"}
 OF_WHEEL = {"m": 20.0, "J_x": 0.9, "J_z": 1.8}  # the wheels' defaults
-LINKS = ("k", "c", "k_a", "c_a", "k_p", "c_p")
-distance = partial(errors.distance, names=COMPARED)
 
 
-def parts(fmus: Fmus, scene: Manoeuvre) -> list[Component]:
-    """Two wheels and the beam."""
-    factor, wheels = scene["stiffness"], []
-    for wheel, y in zip(WHEELS, (scene["b"], -scene["b"]), strict=True):
-        start = upright(0.0, y, 0.0, scene["v"] - y * scene["omega"], scene["omega"], scene["R"])
-        wheels.append(Component(wheel, fmus["wheel"], {**road(scene), **start}))
-    links = {name: scene[name] * factor for name in LINKS} | {"inner_step": min(5e-4, 5e-4 / factor)}
-    start = {"v_start": scene["v"], "omega_start": scene["omega"]}
-    return [*wheels, Component("axle", fmus["axle"], {**start, **scene.of("axle"), **links})]
+def starts(scene: Manoeuvre) -> dict[str, dict[str, float]]:
+    """Of two wheels and the beam."""
+    v, omega, R, factor = (scene[name] for name in ("v", "omega", "R", "stiffness"))
+    hubs = zip(WHEELS, (scene["b"], -scene["b"]), strict=True)
+    wheels = {wheel: road(scene) | upright(0.0, y, 0.0, v - y * omega, omega, R) for wheel, y in hubs}
+    links = {name: scene[name] * factor for name in ("k", "c", "k_a", "c_a", "k_p", "c_p")}
+    return wheels | {"axle": links | {"inner_step": min(5e-4, 5e-4 / factor)}}
 
 
 def constants(scene: Manoeuvre) -> SimpleNamespace:
@@ -128,20 +122,14 @@ def rolling_out(c: SimpleNamespace) -> tuple[Velocities, tuple[float, float]]:
 
 def rigid(scene: Manoeuvre, times: np.ndarray) -> Table:
     """X, Y, psi, v, omega of the rigid axle at `times` (rising from 0); the path from v and omega by SciPy."""
-
     at, stops = velocities(scene)
 
     def rate(t: float, y: np.ndarray) -> tuple[float, float, float]:
         v, omega = at(t)
         return v * np.cos(y[2]), v * np.sin(y[2]), omega
 
-    y, path = np.zeros(3), []
-    for begin, end in pairwise([0.0, *(t for t in stops if 0 < t < times[-1]), times[-1]]):
-        now = times[(times >= begin) & ((times < end) | (end == times[-1]))]
-        found = solve_ivp(rate, (begin, end), y, "DOP853", np.union1d(now, [end]), rtol=1e-12, atol=1e-12)
-        y = found.y[:, -1]
-        path.append(found.y[:, : len(now)])
-    return dict(zip(("time", *COMPARED), (times, *np.hstack(path), *at(times)), strict=True))
+    path = odeint(rate, np.zeros(3), times, tfirst=True, rtol=1e-12, atol=1e-12, tcrit=stops or None)
+    return dict(zip(("time", *COMPARED), (times, *path.T, *at(times)), strict=True))
 
 
 def beside_rigid(table: Table, scene: Manoeuvre, _fmus: Fmus) -> Table:
@@ -156,26 +144,23 @@ def verdict(table: Table, scene: Manoeuvre) -> tuple[bool, list[str]]:
     """How near the run is to the rigid axle."""
     if why := without_closed_form(scene):
         return True, [f"No closed form to compare with: {why}."]
-    off = distance(table, {name: table[f"rigid.{name}"] for name in COMPARED})
+    off = AXLE.distance(table, {n: table[f"rigid.{n}"] for n in COMPARED} | {"time": table["time"]})
     return True, [f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."]
 
 
-CONNECTIONS = [connection for wheel in WHEELS for connection in wire("axle", wheel, f"_{wheel}")]
-RECORD = recorded("axle", WHEELS)
-TRACKS = {"middle of the axle": ("X", "Y"), "rigid axle, closed form": ("rigid.X", "rigid.Y")}
-AXLE = Vehicle("axle", parts, CONNECTIONS, RECORD, verdict, WHEELS, beside_rigid, TRACKS, waits=True)
+AXLE = Vehicle("axle", starts, verdict, wheels=WHEELS, complete=beside_rigid)
 
 
 def step_errors(fmus: Fmus, scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = errors.STEPS) -> dict:
     """Error by h at this stiffness: the truth is the run with rollback at a quarter of the smallest step."""
     truth = AXLE.drive(fmus, scene, min(steps) / 4, "rollback", 0.02).whole
-    return {h: distance(AXLE.drive(fmus, scene, h, exchange, 0.02).whole, truth) for h in steps}
+    return {h: AXLE.error(fmus, scene, truth, h, exchange) for h in steps}
 
 
 def stiffness_errors(fmus: Fmus, scene: Manoeuvre, factors: tuple[float, ...], step: float = 0.0005) -> dict:
     """Error by factor against the closed form of the rigid axle, with a step small enough for it not to matter."""
-    tables = [AXLE.drive(fmus, scene.changed(stiffness=factor), step, "rollback", 0.02).whole for factor in factors]
-    return {k: distance(table, rigid(scene, table["time"])) for k, table in zip(factors, tables, strict=True)}
+    truth = rigid(scene, np.arange(round(scene.stop / 0.02) + 1) * 0.02)
+    return {k: AXLE.error(fmus, scene.changed(stiffness=k), truth, step, "rollback") for k in factors}
 
 
 def energy(fmus: Fmus, scene: Manoeuvre, step: float, exchange: str) -> tuple[np.ndarray, float]:
@@ -206,4 +191,4 @@ def longest_step(fmus: Fmus, scene: Manoeuvre, exchange: str) -> float:
     """Of LIMIT_STEPS, s."""
     truth = rigid(scene, np.arange(int(scene.stop / GRID) + 1) * GRID)
     scene = scene.changed(stop=float(truth["time"][-1]))
-    return errors.longest(LIMIT_STEPS, lambda h: distance(AXLE.drive(fmus, scene, h, exchange, GRID).whole, truth))
+    return errors.longest(LIMIT_STEPS, lambda h: AXLE.error(fmus, scene, truth, h, exchange))

@@ -25,12 +25,11 @@ from .layout import AXLES, J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WH
 from .options import Manoeuvre
 from .vehicle import Table
 
-N_WHEELS = len(WHEELS)
-M_T = MASS + N_WHEELS * J_Z / R**2
-H_B, M_B = LAYOUT["chassis"]["h_B"], LAYOUT["chassis"]["m_B"]
-HEIGHTS = M_B * H_B + N_WHEELS * M_WHEEL * R  # kg m
-INERTIA = HEIGHTS + N_WHEELS * J_Z / R  # kg m
-LEANING = M_B * (H_B - (R - R_0)) + N_WHEELS * M_WHEEL * R_0  # kg m, about the contact points, per roll angle
+N, H_B, M_B = len(WHEELS), LAYOUT["chassis"]["h_B"], LAYOUT["chassis"]["m_B"]
+M_T = MASS + N * J_Z / R**2
+HEIGHTS = M_B * H_B + N * M_WHEEL * R  # kg m
+INERTIA = HEIGHTS + N * J_Z / R  # kg m
+LEANING = M_B * (H_B - (R - R_0)) + N * M_WHEEL * R_0  # kg m, about the contact points, per roll angle
 LEFT, RIGHT = ([name for name, wheel in WHEELS.items() if side * wheel["y"] > 0] for side in (1, -1))
 STRUTS = sum(w["k"] * w["y"] ** 2 for w in WHEELS.values())  # N m/rad, as the bars; wheels stand on the ground
 BARS = sum(w["k_bar"] * (w["y"] - WHEELS[w["bar_to"]]["y"]) ** 2 for w in WHEELS.values() if "bar_to" in w)
@@ -57,16 +56,16 @@ def force(table: Table, wheels: list[str], k: int = 3) -> np.ndarray:
     return sum(table[f"{w}.lambda_{k}"] for w in wheels)
 
 
-def axle_friction(table: Table, axle: str) -> np.ndarray:
-    """Horizontal over normal force of an axle's wheels together: wheels that never slip are redundant across, and only
-    the bushings decide which of them carries the lateral force."""
-    along, across, normal = (force(table, AXLES[axle], k) for k in (1, 2, 3))
-    return np.hypot(along, across) / normal
+def friction(table: Table) -> dict[str, np.ndarray]:
+    """Horizontal over normal force of each axle's wheels together: wheels that never slip are redundant across, and
+    only the bushings decide which of them carries the lateral force."""
+    forces = {axle: [force(table, wheels, k) for k in (1, 2, 3)] for axle, wheels in AXLES.items()}
+    return {axle: np.hypot(along, across) / normal for axle, (along, across, normal) in forces.items()}
 
 
 def demand(table: Table) -> dict[str, float]:
     """Largest friction coefficient that each axle requires: the road on which the manoeuvre would be possible."""
-    return {axle: float(np.nanmax(axle_friction(table, axle))) for axle in AXLES}
+    return {axle: float(np.nanmax(mu)) for axle, mu in friction(table).items()}
 
 
 def per_axle(asked: dict[str, float]) -> str:
@@ -74,11 +73,9 @@ def per_axle(asked: dict[str, float]) -> str:
     return ", ".join(f"{axle} {mu:.2f}" for axle, mu in asked.items())
 
 
-def worst(table: Table) -> tuple[str, int]:
-    """The axle that requires most of the road, and the row in which it does."""
-    asked = demand(table)
-    axle = max(asked, key=asked.get)
-    return axle, int(np.nanargmax(axle_friction(table, axle)))
+def worst(table: Table) -> tuple[float, str, int]:
+    """Largest friction coefficient required; the axle that requires it, and the row in which it does."""
+    return max((float(np.nanmax(mu)), axle, int(np.nanargmax(mu))) for axle, mu in friction(table).items())
 
 
 def load_moved(table: Table, axle: str, cause: str, at: np.ndarray, moment: float) -> Finding:
@@ -155,10 +152,9 @@ def bend(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
 
 def closure(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """The figure of eight after one lap: distance of the rear point from its start beside the way driven."""
-    p = table["p"]
-    x, y = (np.interp(2 * np.pi, p, table[name]) for name in ("X_R", "Y_R"))
-    way = float(np.hypot(np.diff(table["X_R"]), np.diff(table["Y_R"]))[p[1:] <= 2 * np.pi].sum())
-    gap = float(np.hypot(x - table["X_R"][0], y))
+    p, at = table["p"], table["X_R"] + 1j * table["Y_R"]
+    way = float(np.abs(np.diff(at))[p[1:] <= 2 * np.pi].sum())
+    gap = float(np.abs(np.interp(2 * np.pi, p, at) - at[0]))
     yield Finding("figure of eight: gap after one lap, and its length", "m", gap, way)
 
 
@@ -207,10 +203,10 @@ def step(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
 
 def lane(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """How hard the change of lanes is, and where it asks most of the road."""
-    axle, at = worst(table)
+    most, axle, at = worst(table)
     largest = (("lateral acceleration", "m/s2", "a_y"), ("yaw rate", "rad/s", "omega"), ("roll angle", "rad", "roll"))
     yield from (Finding(f"largest {what}", unit, float(np.abs(table[name]).max())) for what, unit, name in largest)
-    yield Finding(f"largest friction required, at the {axle} axle", "1", float(axle_friction(table, axle)[at]))
+    yield Finding(f"largest friction required, at the {axle} axle", "1", most)
     yield Finding("where: rear point, X", "m", float(table["X_R"][at]))
     yield Finding("when", "s", float(table["time"][at]))
 

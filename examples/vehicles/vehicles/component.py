@@ -9,10 +9,8 @@ from pathlib import Path
 
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2LastSuccessfulTime
 from fmpy.simulation import apply_start_values
-
-LAST_SUCCESSFUL = 2  # fmi2StatusKind
 
 
 @dataclass(eq=False)
@@ -89,7 +87,7 @@ class Component:
     def ended(self, t: float) -> Ended:
         """How it ended the run in a step from t on."""
         last = c_double(t)
-        self.fmu.dll.fmi2GetRealStatus(self.fmu.component, LAST_SUCCESSFUL, byref(last))
+        self.fmu.dll.fmi2GetRealStatus(self.fmu.component, fmi2LastSuccessfulTime, byref(last))
         return Ended(self.name, last.value, self.last_message("it refused a call"))
 
 

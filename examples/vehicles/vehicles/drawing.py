@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from diagrams import style
 
 from .errors import Errors
-from .options import Manoeuvre
+from .options import Manoeuvre, file
 from .vehicle import Table, Vehicle
 
 COLOURS = (style.BLUE, style.VERMILLION, style.SKY, style.ORANGE, style.PURPLE, style.GREY)
@@ -41,7 +41,7 @@ def draw(
     fig.suptitle(title, fontsize=9)
     for cell, ax in fig.subplot_mosaic([list(row) for row in rows]).items():
         if cell == "path":
-            draw_path(ax, table, vehicle.wheels, vehicle.tracks)
+            draw_path(ax, table, vehicle.wheels, file(vehicle.name).get("tracks", {}))
         elif cell == "errors":
             draw_errors(ax, errors)
             ax.legend(**ABOVE, ncols=3)

@@ -28,14 +28,13 @@ from .options import Manoeuvre  # noqa: E402
 from .vehicle import Fmus, Run  # noqa: E402
 
 RESULTS = build.ROOT / "results" / "examples"
-VEHICLES = {"axle": axle.AXLE, "car": car.CAR, "suspended": suspended.SUSPENDED, "balance": balance.BALANCE}
+VEHICLES = {of.name: of for of in (axle.AXLE, car.CAR, suspended.SUSPENDED, balance.BALANCE)}
 PER_PICTURE = 600  # rows, about
-SHORT = 1e-4  # s, a step that is short for every link here
 
 
 def diverged(fmus: Fmus, asked: Manoeuvre, run: Run) -> str:
     """Whether an ending comes from the coupling: with a much shorter step it comes elsewhere, or not at all."""
-    end, h = run.ending.time, min(asked.h / 4, max(asked.h / 16, SHORT))
+    end, h = run.ending.time, min(asked.h / 4, max(asked.h / 16, 1e-4))  # s, which is short for every link here
     beyond = asked.changed(stop=min(asked.stop, 1.1 * end + 10 * asked.h))
     again = VEHICLES[asked.vehicle].drive(fmus, beyond, h, asked.exchange, end).ending
     if again and abs(again.time - end) < 2 * asked.h + 0.02 * end:
@@ -73,7 +72,7 @@ def example(fmus: Fmus, asked: Manoeuvre, folder: Path) -> bool:
     np.savetxt(folder / f"{name}.csv", rows, "%.9g", delimiter=",", header=head, comments="")
     if len(rows):
         draw(of, asked, run.table, folder / f"{name}.png", remark)
-    of.package(fmus, asked, min(asked.h, 0.0005) if of.waits else asked.h, folder)
+    of.package(fmus, asked, min(asked.h, 0.0005) if "waits" in options.file(name) else asked.h, folder)
     for part in ("wheel", *options.file(name)["models"]):
         shutil.copyfile(fmus[part], folder / f"{part}.fmu")
     return passed
@@ -83,14 +82,14 @@ def main() -> int:
     """One example."""
     try:
         asked = options.asked(*sys.argv[1:])
-        fmus, folder = build.build_all(build.ROOT / "build" / "examples"), RESULTS / asked.vehicle
+        fmus, folder = build.build_all(), RESULTS / asked.vehicle
         shutil.rmtree(folder, ignore_errors=True)  # an earlier run's
         folder.mkdir(parents=True)
         passed = example(fmus, asked, folder)
     except ValueError as reason:
         print(reason, file=sys.stderr)
         return 1
-    print(f"In {folder.relative_to(build.ROOT)}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")
+    print(f"In results/examples/{folder.name}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")
     return not passed
 
 

@@ -4,7 +4,7 @@ import tomllib
 
 import numpy as np
 
-from .options import EXAMPLES, Manoeuvre, manoeuvres
+from .options import EXAMPLES, manoeuvres
 
 LAYOUT = tomllib.loads((EXAMPLES / "car" / "car.toml").read_text())
 WHEELS: dict[str, dict[str, float | str]] = LAYOUT["wheel"]
@@ -16,20 +16,4 @@ R_0, R, M_WHEEL, J_Z, G = 0.3, 0.35, 20.0, 1.8, 9.81  # the wheels' defaults
 MASS = LAYOUT["chassis"]["m_B"] + M_WHEEL * len(WHEELS)
 MANOEUVRES = manoeuvres("car")
 STRAIGHT, CIRCLE, STEP, EIGHT, LANE, HILL, TOO_FAST = MANOEUVRES.values()
-COMPARED = ("X", "Y", "psi", "roll", "pitch", "v", "omega")
-# Wheels that stand side by side, by the axle's name.
-PLACES = sorted({float(w["x"]) for w in WHEELS.values()}, reverse=True)
-AXLES = {
-    {PLACES[-1]: "rear", PLACES[0]: "front"}.get(x, f"axle {k + 1}"): [n for n, w in WHEELS.items() if w["x"] == x]
-    for k, x in enumerate(PLACES)
-}
-
-
-def chassis_start(manoeuvre: Manoeuvre) -> dict[str, float]:
-    """Parameters of chassis.fmu."""
-    return {"v_start": manoeuvre["v"], **manoeuvre.of("chassis")}
-
-
-def driver_start(manoeuvre: Manoeuvre) -> dict[str, float]:
-    """Parameters of driver.fmu."""
-    return {"v_0": manoeuvre["v"], "v_1": manoeuvre["v"], "L": WHEELBASE, **manoeuvre.of("driver")}
+AXLES = {w["axle"]: [n for n, other in WHEELS.items() if other["axle"] == w["axle"]] for w in WHEELS.values()}

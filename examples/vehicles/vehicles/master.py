@@ -29,7 +29,6 @@ from .options import EXCHANGES
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
 HEADER = (Path(__file__).resolve().parents[1] / "master" / "master.h").read_text()
-LIBRARY = f"master{sharedLibraryExtension}"
 ffi = FFI()
 ffi.cdef("typedef void *fmi2Component, *fmi2FMUstate; typedef unsigned fmi2ValueReference;")
 ffi.cdef("".join(f"typedef void {function};" for function in re.findall(r"fmi2\w+TYPE", HEADER)))
@@ -45,7 +44,7 @@ class Master:
         self.source_of = {sink: source for source, sink in connections}
         self.levels = self._order()
         self.owned = []
-        libraries = (c.path.with_name(LIBRARY) for c in self.components.values())
+        libraries = (c.path.with_name(f"master{sharedLibraryExtension}") for c in self.components.values())
         self.c = ffi.dlopen(str(next(path for path in libraries if path.exists())))
 
     def _order(self) -> list[list[Signal]]:
@@ -99,7 +98,6 @@ class Master:
         """
         self.loop, self.at_end, count = self._prepare(exchange), [], round(stop / h)
         self.spent = np.zeros((count, len(self.components) + 1))
-        spent = ffi.from_buffer("double[]", self.spent)
         self._require(self.c.master_exchange(self.loop, False), 0.0)
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
@@ -107,7 +105,7 @@ class Master:
             self._require(self.c.master_exchange(self.loop, exchange != "held"), begin * h)
             yield begin * h
             end = min(count, begin + every)
-            done = self.c.master_run(self.loop, h, begin, end, spent)
+            done = self.c.master_run(self.loop, h, begin, end, ffi.from_buffer("double[]", self.spent))
             self._require(done == end, done * h)
             self.at_end.append(self.read(ends))
 

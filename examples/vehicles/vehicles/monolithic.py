@@ -19,13 +19,14 @@ from reference.model import Wheel
 from scipy.integrate import solve_ivp
 
 Z = np.array([0.0, 0.0, 1.0])
+NEXT, LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # of an axis
 Load = SimpleNamespace  # F, M: force and moment on each wheel (wheels, 3); brake: the capacity of its brake (wheels,)
 Answer = SimpleNamespace  # to a load: w_dot, force (lambda), v of O, all (wheels, 3), and tau (wheels,)
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Row by row; much quicker than numpy's for few rows."""
-    return a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]]
+    return a.take(NEXT, -1) * b.take(LAST, -1) - a.take(LAST, -1) * b.take(NEXT, -1)
 
 
 def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -51,8 +52,7 @@ def respond(kind: Wheel, a: np.ndarray, w: np.ndarray, load: Load, sigma: np.nda
     matrix += (kind.J_z - kind.J_x) * a[:, :, None] * a[:, None, :] - kind.m * rho[:, :, None] * rho[:, None, :]
     at_rest = kind.m * cross(w, rho_dot) - load.F - np.multiply(kind.m, kind.gravity)
     right = load.M - (kind.J_z - kind.J_x) * spin * cross(w, a) - cross(rho, at_rest)
-    solved = np.linalg.solve(matrix, np.stack([right, a], axis=2))
-    free, per_tau = solved[:, :, 0], solved[:, :, 1]
+    free, per_tau = np.linalg.solve(matrix, np.stack([right, a], axis=2)).transpose(2, 0, 1)
     N = kind.m * cross(free, rho)[:, 2] + at_rest[:, 2]
     N_per_tau = kind.m * cross(per_tau, rho)[:, 2]
     holding = -dot(free, a)[:, 0] / dot(per_tau, a)[:, 0]
@@ -68,10 +68,6 @@ class Joint:
     By the vehicle: start() and load(t, y); own_rates(t, y, load, answer), the rates of these states;
     columns(t, y, load, answer), what is compared.
     """
-
-    kind: Wheel
-    n: int
-    size: int
 
     def wheels(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """O, a, w."""
@@ -106,15 +102,14 @@ class Joint:
         a wheel lifts off: which, and when."""
         t, y, rows, lift_off = 0.0, self.start(), [], None
         sigma = np.sign(self.spins(y))
-        how = {"rtol": tolerance, "atol": tolerance, "max_step": 0.05}
 
         def least(t: float, y: np.ndarray, sigma: np.ndarray) -> float:
             return self.margins(t, y, sigma).min()
 
         least.terminal, least.direction = True, -1
+        how = {"events": least, "rtol": tolerance, "atol": tolerance, "max_step": 0.05}
         while len(rows) < len(times) and not lift_off:
-            rest = times[len(rows) :]
-            found = solve_ivp(self.rate, (t, times[-1]), y, "DOP853", rest, events=least, args=(sigma,), **how)
+            found = solve_ivp(self.rate, (t, times[-1]), y, "DOP853", times[len(rows) :], args=(sigma,), **how)
             if not found.success:
                 raise RuntimeError(found.message)
             motion = zip(found.t, np.transpose(found.y), strict=True)

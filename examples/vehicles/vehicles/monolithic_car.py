@@ -19,41 +19,40 @@ import numpy as np
 from reference.model import Wheel
 from reference.tables import read_table, write_table
 
-from . import errors
 from .car_judges import rise
-from .layout import COMPARED, MANOEUVRES, MASS, TOO_FAST, WHEELBASE, WHEELS, X_REAR, chassis_start, driver_start
+from .layout import MANOEUVRES, MASS, TOO_FAST, WHEELBASE, WHEELS, X_REAR
 from .monolithic import Answer, Joint, Load, cross, dot, lever
-from .options import EXAMPLES, Manoeuvre, starts
+from .options import EXAMPLES, Manoeuvre, file, starts
 
 FOLDER = EXAMPLES / "tests"
 GRID = 0.25  # s
-FINE = 1e-10  # relative and absolute, of each step
 OF_WHEELS = tuple(f"{w}.{n}" for w in WHEELS for n in ("lambda_3", "omega_z"))
-COLUMNS = ("time", *COMPARED, "X_R", "Y_R", "delta", "a_y", "beta", *OF_WHEELS)
+COLUMNS = ("time", *file("car")["compared"], "X_R", "Y_R", "delta", "a_y", "beta", *OF_WHEELS)
 NAMES = tuple(name for name in MANOEUVRES if name != TOO_FAST.name)
 OF = {key: np.array([w[key] for w in WHEELS.values()]) for key in ("x", "y", "k", "c", "steer", "drive", "brake")}
 BARS = [(i, list(WHEELS).index(w["bar_to"]), w["k_bar"]) for i, w in enumerate(WHEELS.values()) if "bar_to" in w]
 
 
-def path(o: dict[str, float], p: complex) -> np.ndarray:
-    """Point P(p) of the driver's path."""
+def path(o: dict[str, float], p: complex) -> tuple[complex, complex]:
+    """Point P(p) of the driver's path: X, Y."""
     if o["path"] == 1:
         s, c = np.sin(p), np.cos(p)
-        return o["size"] / np.sqrt(2) * s / (1 + c**2) * np.array([1 + c, c - 1])
+        reach = o["size"] / np.sqrt(2) * s / (1 + c**2)
+        return reach * (1 + c), reach * (c - 1)
     out, back = (np.tanh((p - o[end]) / o["length"]) for end in ("x_out", "x_back"))
-    return np.array([p, o["width"] / 2 * (out - back)])
+    return p, o["width"] / 2 * (out - back)
 
 
-def tangent(o: dict[str, float], p: float) -> np.ndarray:
-    """dP/dp, by a complex step, which has no error."""
-    return path(o, p + 1e-30j).imag / 1e-30
+def tangent(o: dict[str, float], p: float) -> complex:
+    """dP/dp as X + i Y, by a complex step, which has no error."""
+    return complex(*(of.imag / 1e-30 for of in path(o, p + 1e-30j)))
 
 
 def curvature(o: dict[str, float], p: float) -> float:
     """Of the path, positive to the left."""
     h = 1e-5  # of the central difference: errors of some 1e-10
     d, dd = tangent(o, p), (tangent(o, p + h) - tangent(o, p - h)) / (2 * h)
-    return float((d[0] * dd[1] - d[1] * dd[0]) / np.hypot(*d) ** 3)
+    return (d.conjugate() * dd).imag / abs(d) ** 3
 
 
 class Car(Joint):
@@ -62,8 +61,7 @@ class Car(Joint):
     n, size = len(WHEELS), 21
 
     def __init__(self, manoeuvre: Manoeuvre) -> None:
-        self.o = starts("driver") | driver_start(manoeuvre)
-        self.c = starts("chassis") | chassis_start(manoeuvre)
+        self.o, self.c = (starts(model) | manoeuvre.of(model) for model in ("driver", "chassis"))
         self.v = manoeuvre["v"]
         self.kind = Wheel(**{name: self.c[name] for name in ("s", "slope", "slope_direction")})
         self.R = self.kind.r_0 + self.kind.r
@@ -94,12 +92,11 @@ class Car(Joint):
         wanted, p_dot = o["delta_0"] * rise(t, o["t_delta"], o["ramp_delta"]), 0.0
         if o["path"]:
             d = tangent(o, p)
-            away, along = point[:2] - path(o, p), d / np.hypot(*d)
-            ahead = curvature(o, p + o["T_delta"] * v / np.hypot(*d))
-            left = along[0] * away[1] - along[1] * away[0]
-            turned = along[0] * np.sin(heading) - along[1] * np.cos(heading)
-            wanted += np.arctan(WHEELBASE * (ahead - o["k_y"] * left - o["k_psi"] * turned))
-            p_dot = (v * (np.array([np.cos(heading), np.sin(heading)]) @ along) + 4 * away @ along) / np.hypot(*d)
+            back = d.conjugate() / abs(d)  # from X + i Y to along + i left of the path
+            away, turned = back * (complex(*point[:2]) - complex(*path(o, p))), back * np.exp(1j * heading)
+            ahead = curvature(o, p + o["T_delta"] * v / abs(d))
+            wanted += np.arctan(WHEELBASE * (ahead - o["k_y"] * away.imag - o["k_psi"] * turned.imag))
+            p_dot = (v * turned.real + 4 * away.real) / abs(d)
         lost = o["v_0"] + (o["v_1"] - o["v_0"]) * rise(t, o["t_v"], o["ramp_v"]) - v
         drive = o["k_v"] * lost + o["k_i"] * integral
         drive += o["M_0"] * (rise(t, o["t_on"], o["ramp_M"]) - rise(t, o["t_off"], o["ramp_M"]))
@@ -118,8 +115,8 @@ class Car(Joint):
     def load(self, t: float, y: np.ndarray) -> Load:
         """By struts, bushings, drive and brakes."""
         c, turn, w = self.c, y[6:15].reshape(3, 3), y[15:18]
-        rates, drive, capacity = self.driver(t, y)
-        angle, rate = self.steering(y[18], rates[0])
+        driver, drive, capacity = self.driver(t, y)
+        angle, rate = self.steering(y[18], driver[0])
         centres, a, spin = self.wheels(y)
         arm = centres - y[:3]
         way = arm @ turn - self.hub
@@ -134,9 +131,10 @@ class Car(Joint):
         axle = np.column_stack([np.sin(angle), -np.cos(angle), np.zeros(self.n)]) @ turn.T
         relative = spin - w - rate[:, None] * turn[:, 2]
         M = c["k_a"] * cross(a, axle) - c["c_a"] * (relative - a * dot(a, relative))
-        return Load(F=f @ turn.T, M=M - drive * OF["drive"][:, None] * a, brake=capacity * OF["brake"])
+        M -= drive * OF["drive"][:, None] * a
+        return Load(F=f @ turn.T, M=M, brake=capacity * OF["brake"], driver=driver)
 
-    def own_rates(self, t: float, y: np.ndarray, load: Load, answer: Answer) -> np.ndarray:
+    def own_rates(self, _t: float, y: np.ndarray, load: Load, answer: Answer) -> np.ndarray:
         """Of chassis and driver. Of the moment about an axle the chassis carries the brake's part."""
         c, turn, w = self.c, y[6:15].reshape(3, 3), y[15:18]
         centres, a, _ = self.wheels(y)
@@ -146,24 +144,20 @@ class Car(Joint):
         J = (turn * [c["J_1"], c["J_2"], c["J_3"]]) @ turn.T
         w_dot = np.linalg.solve(J, moment - cross(w, J @ w))
         v_dot = -load.F.sum(axis=0) / c["m_B"] + self.kind.gravity
-        return np.concatenate([y[3:6], v_dot, cross(w[None], turn.T).T.ravel(), w_dot, self.driver(t, y)[0]])
+        return np.concatenate([y[3:6], v_dot, cross(w[None], turn.T).T.ravel(), w_dot, load.driver])
 
     def columns(self, _t: float, y: np.ndarray, _load: Load, answer: Answer) -> dict[str, float]:
         """What is compared, at one instant."""
-        turn = y[6:15].reshape(3, 3)
-        point, v, heading = self.rear(y)
-        _, a, spin = self.wheels(y)
-        back = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])  # along, to the left
-        along, left = back @ y[3:5]
+        turn, (point, v, heading), (_, a, spin) = y[6:15].reshape(3, 3), self.rear(y), self.wheels(y)
+        back = np.exp(-1j * heading)  # from X + i Y to along + i left
+        moved, pushed = (back * complex(*x) for x in (y[3:5], answer.force[:, :2].sum(axis=0)))
+        beta = np.arctan(moved.imag / moved.real) if abs(moved.real) > 0.01 else 0.0
+        angles = {"psi": heading, "roll": np.arcsin(turn[2, 1]), "pitch": -np.arcsin(turn[2, 0]), "beta": beta}
+        of_car = {"a_y": pushed.imag / MASS, "v": v, "omega": y[17], "delta": y[18], "p": y[20]}
+        places = dict(zip(("X", "Y", "Z", "X_R", "Y_R"), (*y[:3], *point[:2]), strict=True))
         of_wheels = {f"lambda_{k + 1}": answer.force[:, k] for k in range(3)} | {"omega_z": dot(a, spin)[:, 0]}
-        return {
-            **dict(zip(("X", "Y", "Z"), y[:3], strict=True)),
-            "a_y": back[1] @ answer.force[:, :2].sum(axis=0) / MASS,
-            "beta": np.arctan(left / along) if abs(along) > 0.01 else 0.0,
-            **{"psi": heading, "roll": np.arcsin(turn[2, 1]), "pitch": -np.arcsin(turn[2, 0])},
-            **{"v": v, "omega": y[17], "X_R": point[0], "Y_R": point[1], "delta": y[18], "p": y[20]},
-            **{f"{wheel}.{n}": x[i] for n, x in of_wheels.items() for i, wheel in enumerate(WHEELS)},
-        }
+        wheels = {f"{wheel}.{n}": x[i] for n, x in of_wheels.items() for i, wheel in enumerate(WHEELS)}
+        return places | angles | of_car | wheels
 
 
 def lift_off(manoeuvre: Manoeuvre) -> tuple[str, float]:
@@ -183,21 +177,8 @@ def read(name: str) -> dict[str, np.ndarray]:
     return dict(zip(COLUMNS, read_table(str(FOLDER / f"car_{name}")).values(), strict=True))
 
 
-def apart(table: dict[str, np.ndarray], truth: dict[str, np.ndarray]) -> dict[str, float]:
-    """Error of each compared variable."""
-    every, count = round(GRID / (table["time"][1] - table["time"][0])), len(truth["time"])
-    assert np.allclose(table["time"][::every][:count], truth["time"]), "the run has other instants than the table"
-    on_grid = {name: table[name][::every][:count] for name in COMPARED}
-    return errors.apart(on_grid, truth, COMPARED)
-
-
-def main() -> None:
-    """The tables named, or all."""
+if __name__ == "__main__":
     for name in sys.argv[1:] or NAMES:
-        found = solve(MANOEUVRES[name], GRID, FINE)
+        found = solve(MANOEUVRES[name], GRID, 1e-10)
         write_table(FOLDER / f"car_{name}.csv", {column: found[column] for column in COLUMNS})
         print(f"car_{name}.csv")
-
-
-if __name__ == "__main__":
-    main()

@@ -9,7 +9,7 @@ import math
 import signal
 import sys
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Self
@@ -21,14 +21,14 @@ from values import Fault, limited, number, suggestion  # noqa: E402
 
 EXCHANGES = ("held", "derivatives", "rollback")
 FOLDERS = {"axle": "axle", "car": "car", "suspended": "quarter_car", "balance": "balance"}
-CONTROL = {"about": "For a control engineer: linearization, regulator, optimal control; without parameters"}
 
 
 @cache
 def file(vehicle: str) -> dict:
     """A vehicle's manoeuvres.toml."""
-    folder = FOLDERS.get(vehicle)
-    return tomllib.loads((EXAMPLES / folder / "manoeuvres.toml").read_text()) if folder else CONTROL
+    if vehicle == "control":
+        return {"about": "For a control engineer: linearization, regulator, optimal control; without parameters"}
+    return tomllib.loads((EXAMPLES / FOLDERS[vehicle] / "manoeuvres.toml").read_text())
 
 
 @cache
@@ -60,6 +60,7 @@ class Manoeuvre:
     title: str
     stop: float  # s
     given: dict[str, float]  # parameters that differ from their start values
+    follows: dict[str, str] = field(default_factory=dict)  # parameter -> the one whose value it takes where not given
     ends: tuple[str, ...] = ()
     judges: tuple[str, ...] = ()
     figures: tuple[str, ...] = ()
@@ -69,11 +70,8 @@ class Manoeuvre:
     grid: float | None = None  # s, of the table
 
     def __getitem__(self, name: str) -> float:
-        return self.given[name] if name in self.given else every(self.vehicle)[name].start
-
-    def followed(self, name: str) -> str:
-        """The parameter whose value an unset one takes: the driver keeps the speed at the start."""
-        return "v" if name in ("v_0", "v_1") and name not in self.given else name
+        name = name if name in self.given else self.follows.get(name, name)
+        return self.given.get(name, every(self.vehicle)[name].start)
 
     def changed(self, **values: float) -> Self:
         """With other parameters, or another stop, step or exchange."""
@@ -81,8 +79,8 @@ class Manoeuvre:
         return replace(self, **own, given=self.given | values)
 
     def of(self, model: str) -> dict[str, float]:
-        """The parameters given of one model."""
-        return {name: x for name, x in self.given.items() if name in parameters(model)}
+        """The parameters of one model that are given, or follow one that is."""
+        return {n: self[n] for n in parameters(model) if n in self.given or self.follows.get(n) in self.given}
 
 
 @cache
@@ -154,7 +152,7 @@ def usage(name: str = "", *arguments: str) -> str:
     if run := asked(name, *arguments):
         lines.append(f"Parameters, with their values in the run {run.name}:")
     for v in numbers.values():
-        start = getattr(run, v.name) if v.name in ("h", "stop") else run[run.followed(v.name)]
+        start = getattr(run, v.name) if v.name in ("h", "stop") else run[v.name]
         lines.append(f"  {v.name:16s}{v.unit:10s}{start:>9.6g} {v.limit:>4s}  {v.description}")
     return "\n".join(lines)
 

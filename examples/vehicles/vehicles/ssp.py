@@ -45,13 +45,11 @@ def build(package: Path, parts: list[Component], connections: list[Connection], 
 
 def parameter_set(package: Path) -> ParameterSet:
     """The parameter sets bound at the components as one, each name with its component in front."""
-    every = ParameterSet(name="all", parameters=[])
-    for component in find_components(read_ssd(str(package)).system):
-        for binding in component.parameterBindings:
-            for parameter in read_ssv(str(package), binding.source).parameters:
-                parameter.name = f"{component.name}.{parameter.name}"
-                every.parameters.append(parameter)
-    return every
+    bound = [(c.name, b.source) for c in find_components(read_ssd(str(package)).system) for b in c.parameterBindings]
+    every = [(name, parameter) for name, source in bound for parameter in read_ssv(str(package), source).parameters]
+    for name, parameter in every:
+        parameter.name = f"{name}.{parameter.name}"
+    return ParameterSet(name="all", parameters=[parameter for _, parameter in every])
 
 
 def run(package: Path, step: float, stop: float, grid: float) -> dict[str, np.ndarray]:
@@ -59,8 +57,7 @@ def run(package: Path, step: float, stop: float, grid: float) -> dict[str, np.nd
 
     fmpy labels the state after a step with the time before it.
     """
-    rows = simulate_ssp(str(package), stop_time=stop - step / 2, step_size=step, parameter_set=parameter_set(package))
-    every = round(grid / step)
-    rows = rows[every - 1 :: every]
+    how, every = {"step_size": step, "parameter_set": parameter_set(package)}, round(grid / step)
+    rows = simulate_ssp(str(package), stop_time=stop - step / 2, **how)[every - 1 :: every]
     rows["time"] += step
     return {name: rows[name] for name in rows.dtype.names}

@@ -3,9 +3,10 @@
 A body with hubs names its variables as the wheels do, with _ and the wheel's name behind.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from math import pi
+from functools import cached_property
+from math import inf, pi
 from pathlib import Path
 
 import numpy as np
@@ -17,10 +18,6 @@ from .options import Manoeuvre, file
 
 Fmus = dict[str, Path]
 Table = dict[str, np.ndarray]
-Names = tuple[str, ...]
-POSE = ("X_O", "Y_O", "Z_O", "X_O_dot", "Y_O_dot", "Z_O_dot", "psi", "theta", "psi_dot", "theta_dot")
-FORCE = ("F_X", "F_Y", "F_Z")
-LOAD = (*FORCE, "M_1", "M_2", "M_3")
 
 
 @dataclass(frozen=True)
@@ -41,19 +38,38 @@ class Run:
 
 @dataclass(frozen=True)
 class Vehicle:
-    """`name`: of its package; `wheels`: what pictures call the components that are wheels, whose columns are
-    "wheel.variable"; other components' columns go by the variable's name alone."""
+    """`name`: of the command line; manoeuvres.toml has connections, columns, tracks. `wheels`: what pictures call the
+    components that are wheels, whose columns are "wheel.variable"; other columns are the variable's name."""
 
     name: str
-    parts: Callable[[Fmus, Manoeuvre], list[Component]]
-    connections: list[Connection]
-    record: list[Signal]
+    starts: Callable[[Manoeuvre], dict[str, dict[str, float]]]  # start values of its wheels, and more of its models
     verdict: Callable[[Table, Manoeuvre], tuple[bool, list[str]]]  # of a run that reached its end
     wheels: dict[str, str] = field(default_factory=dict)
     complete: Callable[[Table, Manoeuvre, Fmus], Table] = lambda table, _manoeuvre, _fmus: table
-    tracks: dict[str, Names] = field(default_factory=dict)  # besides those of the wheels: label, columns of X and Y
-    waits: bool = False  # whether a package sets t_couple
     subtitle: Callable[[Manoeuvre], str] = lambda _manoeuvre: ""
+
+    def parts(self, fmus: Fmus, of: Manoeuvre) -> list[Component]:
+        """The wheels, and the models with the parameters that a manoeuvre gives."""
+        starts, models = self.starts(of), file(self.name)["models"]
+        wheels = [Component(name, fmus["wheel"], start) for name, start in starts.items() if name not in models]
+        return wheels + [Component(model, fmus[model], of.of(model) | starts.get(model, {})) for model in models]
+
+    def rows(self, table: str) -> Iterator[list[str]]:
+        """Of a table in manoeuvres.toml; a row with {wheel} stands for one row per wheel."""
+        for row in file(self.name)[table]:
+            for wheel in self.wheels if "{wheel}" in "".join(row) else [""]:
+                yield [text.format(wheel=wheel) for text in row]
+
+    @cached_property
+    def record(self) -> list[Signal]:
+        """What a run records."""
+        return [(part, name) for part, *names in self.rows("record") for name in names]
+
+    @cached_property
+    def connections(self) -> list[Connection]:
+        """What a body calls NAME_fl is NAME of the wheel fl."""
+        rows = [((source, sink), names) for source, sink, *names in self.rows("connect")]
+        return [tuple((part, n.removesuffix(f"_{part}")) for part in ends) for ends, names in rows for n in names]
 
     def drive(
         self, fmus: Fmus, of: Manoeuvre, h: float = 1e-3, exchange: str = "derivatives", grid: float = 0.01, **how: bool
@@ -75,28 +91,31 @@ class Vehicle:
 
     def package(self, fmus: Fmus, manoeuvre: Manoeuvre, step: float, folder: Path) -> Path:
         """Its SSP package. A master that begins with zero inputs finds the body free until t_couple."""
-        waits = {"t_couple": 3 * step} if self.waits and "t_couple" not in manoeuvre.given else {}
-        parts = self.parts(fmus, manoeuvre.changed(**waits))
-        return ssp.build(folder / f"{self.name}.ssp", parts, self.connections, step, manoeuvre.stop)
+        waits = {"t_couple": 3 * step} if "waits" in file(self.name) and "t_couple" not in manoeuvre.given else {}
+        parts, name = self.parts(fmus, manoeuvre.changed(**waits)), file(self.name).get("package", self.name)
+        return ssp.build(folder / f"{name}.ssp", parts, self.connections, step, manoeuvre.stop)
+
+    def apart(self, table: Table, truth: Table) -> dict[str, float]:
+        """Largest difference of each compared variable at the instants of `truth`, which are some of the table's;
+        relative to the variable's range, or to `least` where that is larger."""
+        at = np.searchsorted(table["time"], truth["time"] - 1e-9)
+        assert np.allclose(table["time"][at], truth["time"]), "the run has other instants than its truth"
+        least, names = file(self.name).get("least", 0), file(self.name)["compared"]
+        return {n: float(np.abs(table[n][at] - truth[n]).max() / max(np.ptp(truth[n]), least)) for n in names}
+
+    def distance(self, table: Table, truth: Table) -> float:
+        """The largest of them."""
+        return max(self.apart(table, truth).values())
+
+    def error(self, fmus: Fmus, of: Manoeuvre, truth: Table, h: float, exchange: str) -> float:
+        """Distance of a co-simulation with the step h from the truth; infinite if it ends early."""
+        run = self.drive(fmus, of, h, exchange, truth["time"][1])
+        return inf if run.ending else self.distance(run.table, truth)
 
     def describe(self, end: Ended) -> str:
         """Which component ended a run, and when."""
         who = f"{self.wheels[end.component]} wheel" if end.component in self.wheels else end.component
         return f"The {who} ended the run at t = {end.time:.3f} s: {end.message}"
-
-
-def recorded(vehicle: str, wheels: Iterable[str] = ()) -> list[Signal]:
-    """The signals that manoeuvres.toml lists by component; a row with {wheel} stands for one row per wheel."""
-    rows = [(row, w) for row in file(vehicle)["record"] for w in (wheels if "{wheel}" in "".join(row) else [""])]
-    return [(part.format(wheel=w), name.format(wheel=w)) for (part, *names), w in rows for name in names]
-
-
-def wire(body: str, wheel: str, behind: str, pose: Names = POSE, load: Names = LOAD) -> list[Connection]:
-    """Pose and velocity to the body, forces and moments to the wheel; `behind` ends the body's names."""
-    return [
-        *(((wheel, name), (body, name + behind)) for name in pose),
-        *(((body, name + behind), (wheel, name)) for name in load),
-    ]
 
 
 def upright(x: float, y: float, heading: float, speed: float, turn: float, R: float) -> dict[str, float]:
@@ -107,5 +126,4 @@ def upright(x: float, y: float, heading: float, speed: float, turn: float, R: fl
 
 def road(manoeuvre: Manoeuvre) -> dict[str, float]:
     """The wheels' parameters that a manoeuvre gives: friction, slope, and the grip that a wheel checks, if any."""
-    names = ("s", "slope", "slope_direction", "mu_max")
-    return {name: manoeuvre[name] for name in names if manoeuvre.given.get(name)}
+    return {n: manoeuvre[n] for n in ("s", "slope", "slope_direction", "mu_max") if manoeuvre.given.get(n)}
