@@ -79,18 +79,14 @@ def test_a_caption_lists_whatever_is_not_the_papers(name: str) -> None:
     assert not paper.is_paper([other, other])
 
 
-def test_figure_numbers_and_file_names_of_the_paper_belong_to_its_two_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
-    stems: list[str] = []
-    monkeypatch.setattr(paper, "draw", lambda stem, *_: stems.append(stem.name) or [])
-    papers = [scene(), scene(0.03)]
-    longer = [scene(s, time=2 * TIME) for s in (0.0, 0.03)]
-    paper.draw_all(papers, Path("results"))
-    assert "paper_diagrams" in stems and {f"fig_{n}" for n in range(1, 7)} < {*stems}
-    of_paper = {*stems}
-    stems.clear()
+def test_figure_numbers_and_file_names_of_the_paper_belong_to_its_two_scenes() -> None:
+    def stems(*scenes: Scene) -> set[str]:
+        return {stem.name for stem, *_ in paper.pictures(scenes, Path("results"))}
+
+    of_paper, longer = stems(scene(), scene(0.03)), [scene(s, time=2 * TIME) for s in (0.0, 0.03)]
+    assert {"paper_diagrams", *(f"fig_{n}" for n in range(1, 7))} < of_paper
     for others in (longer, [scene(), scene(0.02)], [scene(slope=0.1), scene(0.03, slope=0.1)]):
-        paper.draw_all(others, Path("results"))
-    assert "diagrams" in stems and not of_paper & {*stems}
+        assert "diagrams" in stems(*others) and not of_paper & stems(*others)
     assert "stop_time = 20 s" in " ".join(paper.unlike_paper(longer[0]))
 
 
