@@ -10,11 +10,8 @@ set(
   32f41240daa3f050c6cef212a39b85bb9b120a202646763a12571db0867a0a72 # 4.5.0, Debian 13
 )
 # Each behind those that it calls: a linker that has met a call takes the function from the C library.
-set(
-  libm_compiled
-  "common/math_err.c;common/exp_data.c;common/pow_log_data.c;common/exp.c;common/s_expm1.c;common/pow.c"
-)
-list(APPEND libm_compiled "math/k_rem_pio2.c;math/s_tanh.c;math/e_cosh.c")
+set(libm_compiled "common/math_err.c;common/exp_data.c;common/pow_log_data.c;common/exp.c;common/s_expm1.c")
+list(APPEND libm_compiled "common/pow.c;math/k_rem_pio2.c;math/s_tanh.c;math/e_cosh.c")
 # Read by cmake/libm/trigonometry.c, or headers.
 set(libm_included "math/k_sin.c;math/k_cos.c;math/e_rem_pio2.c;math/s_sin.c;math/s_cos.c;common/math_config.h")
 
@@ -25,12 +22,7 @@ function(unpack_libm folder)
     file(GLOB tree /usr/src/newlib/newlib-*.tar.xz)
   endif()
   if(NOT EXISTS "${tree}")
-    message(
-      FATAL_ERROR
-      "The source of libm is missing: install Debian's package newlib-source, or give "
-      "-DWHEEL_LIBM_SOURCE=<newlib's source tree or archive>, or -DWHEEL_LIBM_SOURCE=system for the system's libm, "
-      "whose results differ from those of the releases in the last bits."
-    )
+    message(FATAL_ERROR "The source of libm is missing: install Debian's newlib-source, or see cmake/libm.cmake.")
   endif()
   if(NOT IS_DIRECTORY ${tree})
     list(TRANSFORM ARGN PREPEND "*/newlib/libm/" OUTPUT_VARIABLE patterns)
