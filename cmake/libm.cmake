@@ -41,30 +41,6 @@ function(unpack_libm folder)
   endif()
 endfunction()
 
-# The objects that link_libm links.
-function(add_libm)
-  # Eigen's vector code sums in another order, and on arm fuses multiply and add.
-  target_compile_definitions(wheel_options INTERFACE EIGEN_DONT_VECTORIZE)
-  if(WHEEL_LIBM_SOURCE STREQUAL system)
-    return()
-  endif()
-  set(LIBM_FOLDER ${CMAKE_BINARY_DIR}/_libm CACHE INTERNAL "")
-  unpack_libm(${LIBM_FOLDER} ${libm_compiled} ${libm_included})
-  list(TRANSFORM libm_compiled REPLACE ".*/" ${LIBM_FOLDER}/)
-  add_library(libm OBJECT ${libm_compiled} cmake/libm/trigonometry.c)
-  set_target_properties(libm PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF EXPORT_COMPILE_COMMANDS OFF)
-  target_include_directories(libm PRIVATE cmake/libm ${LIBM_FOLDER})
-  target_compile_definitions(libm PRIVATE WANT_ERRNO=0 HAVE_FAST_FMA=0)
-  separate_arguments(own UNIX_COMMAND "sin cos sincos tanh cosh exp expm1 pow")
-  list(TRANSFORM own PREPEND -fno-builtin-)
-  target_compile_options(libm PRIVATE -w -fno-lto ${own})
-  if(WHEEL_SANITIZE) # it shifts negative numbers, which every compiler here does alike
-    target_compile_options(libm PRIVATE -fno-sanitize=all)
-  endif()
-  # Apple's compiler would merge sin and cos into a call of the system's.
-  target_compile_options(wheel_options INTERFACE "$<$<PLATFORM_ID:Darwin>:-fno-builtin-sin;-fno-builtin-cos>")
-endfunction()
-
 function(link_libm target)
   if(TARGET libm)
     get_target_property(type ${target} TYPE)
@@ -75,3 +51,25 @@ function(link_libm target)
     target_sources(${target} ${where} $<TARGET_OBJECTS:libm>)
   endif()
 endfunction()
+
+# Eigen's vector code sums in another order, and on arm fuses multiply and add.
+target_compile_definitions(wheel_options INTERFACE EIGEN_DONT_VECTORIZE)
+if(WHEEL_LIBM_SOURCE STREQUAL system)
+  return()
+endif()
+# The objects that link_libm links.
+set(LIBM_FOLDER ${CMAKE_BINARY_DIR}/_libm)
+unpack_libm(${LIBM_FOLDER} ${libm_compiled} ${libm_included})
+list(TRANSFORM libm_compiled REPLACE ".*/" ${LIBM_FOLDER}/)
+add_library(libm OBJECT ${libm_compiled} cmake/libm/trigonometry.c)
+set_target_properties(libm PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF EXPORT_COMPILE_COMMANDS OFF)
+target_include_directories(libm PRIVATE cmake/libm ${LIBM_FOLDER})
+target_compile_definitions(libm PRIVATE WANT_ERRNO=0 HAVE_FAST_FMA=0)
+separate_arguments(own UNIX_COMMAND "sin cos sincos tanh cosh exp expm1 pow")
+list(TRANSFORM own PREPEND -fno-builtin-)
+target_compile_options(libm PRIVATE -w -fno-lto ${own})
+if(WHEEL_SANITIZE) # it shifts negative numbers, which every compiler here does alike
+  target_compile_options(libm PRIVATE -fno-sanitize=all)
+endif()
+# Apple's compiler would merge sin and cos into a call of the system's.
+target_compile_options(wheel_options INTERFACE "$<$<PLATFORM_ID:Darwin>:-fno-builtin-sin;-fno-builtin-cos>")

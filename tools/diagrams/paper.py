@@ -55,7 +55,7 @@ def unlike_paper(scene: Scene) -> list[str]:
     """All that was set otherwise than in (27)-(33), the start values of the description; the title has s."""
     own = {name: scene.value(name) for name in SETTINGS if name != "s"}
     said = [SETTINGS[name].said(value) for name, value in own.items() if abs(value - SETTINGS[name].preset) > 1e-12]
-    rows = {"stop_time": scene.time[-1], "output_interval": scene.time[1] - scene.time[0]}
+    rows = {"stop_time": scene["time"][-1], "output_interval": scene["time"][1] - scene["time"][0]}
     if scene.ending:
         del rows["stop_time"]
     said += [RUN[name].said(value) for name, value in rows.items() if abs(value - RUN[name].preset) > 1e-9]
@@ -103,7 +103,7 @@ def events_of(scene: Scene) -> list[str]:
         return [r"$\omega_z$ is held at zero all the time (stick)."]
     bands = [r"Bands, thick among the rates: stick ($\omega_z$ held at zero)."] * bool(sticks)
     ticks = [r"Ticks at the top: $\omega_z$ changes sign."] * (len(scene.reversals) > 0)
-    return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene.time[-1]:.3g} s.", *bands, *ticks]
+    return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s.", *bands, *ticks]
 
 
 def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], columns: int) -> list[str]:
