@@ -55,9 +55,8 @@ def unlike_paper(scene: Scene) -> list[str]:
     """All that was set otherwise than in (27)-(33), the start values of the description; the title has s."""
     own = {name: scene.value(name) for name in SETTINGS if name != "s"}
     said = [SETTINGS[name].said(value) for name, value in own.items() if abs(value - SETTINGS[name].preset) > 1e-12]
-    rows = {"stop_time": scene["time"][-1], "output_interval": scene["time"][1] - scene["time"][0]}
-    if scene.ending:
-        del rows["stop_time"]
+    rows = {} if scene.ending else {"stop_time": scene["time"][-1]}
+    rows["output_interval"] = scene["time"][1] - scene["time"][0]
     said += [RUN[name].said(value) for name, value in rows.items() if abs(value - RUN[name].preset) > 1e-9]
     return said + ["r > r_0, the torus intersects itself"] * (own["r"] > own["r_0"])
 
