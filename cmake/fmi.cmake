@@ -17,19 +17,13 @@ function(add_fmu target)
   file(GLOB_RECURSE contents CONFIGURE_DEPENDS fmu-src/archive/*)
   # Eigen's licence: beside its headers, or in Debian's package.
   get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
-  find_file(
-    EIGEN_LICENSE
-    NAMES COPYING.MPL2 copyright
-    HINTS ${eigen} ${eigen}/../../share/doc/libeigen3-dev
-    NO_DEFAULT_PATH
-    NO_CMAKE_FIND_ROOT_PATH
-  )
+  file(GLOB eigen_license ${eigen}/COPYING.MPL2 ${eigen}/../../share/doc/libeigen3-dev/copyright)
   set(
     licences
     sundials-license.txt=${SUNDIALS_SOURCE}/LICENSE
     sundials-notice.txt=${SUNDIALS_SOURCE}/NOTICE
     fmi-headers-notice.txt=${FMI2_INCLUDE_DIR}/fmi2Functions.h
-    $<$<BOOL:${EIGEN_LICENSE}>:eigen-license.txt=${EIGEN_LICENSE}>
+    $<$<BOOL:${eigen_license}>:eigen-license.txt=${eigen_license}>
     $<$<TARGET_EXISTS:libm>:fdlibm-notice.txt=${LIBM_FOLDER}/s_sin.c>
     $<$<TARGET_EXISTS:libm>:arm-math-license.txt=${LIBM_FOLDER}/pow.c>
   )

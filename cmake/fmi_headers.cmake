@@ -9,9 +9,5 @@ set(packages ${Python3_SITELIB} ${Python3_SITEARCH})
 list(TRANSFORM packages APPEND /fmpy/c-code)
 find_path(FMI2_INCLUDE_DIR fmi2Functions.h HINTS ${packages} NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
 if(NOT FMI2_INCLUDE_DIR)
-  message(
-    FATAL_ERROR
-    "fmi2Functions.h was not found: run ./scripts/setup, or install the Python package fmpy, "
-    "or set FMI2_INCLUDE_DIR to a folder with the FMI 2.0 headers."
-  )
+  message(FATAL_ERROR "fmi2Functions.h is missing: run ./scripts/setup, or set FMI2_INCLUDE_DIR to its folder.")
 endif()

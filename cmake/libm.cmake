@@ -10,11 +10,8 @@ set(
   32f41240daa3f050c6cef212a39b85bb9b120a202646763a12571db0867a0a72 # 4.5.0, Debian 13
 )
 # Each behind those that it calls: a linker that has met a call takes the function from the C library.
-set(
-  libm_compiled
-  "common/math_err.c;common/exp_data.c;common/pow_log_data.c;common/exp.c;common/s_expm1.c;common/pow.c"
-)
-list(APPEND libm_compiled "math/k_rem_pio2.c;math/s_tanh.c;math/e_cosh.c")
+set(libm_compiled "common/math_err.c;common/exp_data.c;common/pow_log_data.c;common/exp.c;common/s_expm1.c")
+list(APPEND libm_compiled "common/pow.c;math/k_rem_pio2.c;math/s_tanh.c;math/e_cosh.c")
 # Read by cmake/libm/trigonometry.c, or headers.
 set(libm_included "math/k_sin.c;math/k_cos.c;math/e_rem_pio2.c;math/s_sin.c;math/s_cos.c;common/math_config.h")
 
@@ -25,12 +22,7 @@ function(unpack_libm folder)
     file(GLOB tree /usr/src/newlib/newlib-*.tar.xz)
   endif()
   if(NOT EXISTS "${tree}")
-    message(
-      FATAL_ERROR
-      "The source of libm is missing: install Debian's package newlib-source, or give "
-      "-DWHEEL_LIBM_SOURCE=<newlib's source tree or archive>, or -DWHEEL_LIBM_SOURCE=system for the system's libm, "
-      "whose results differ from those of the releases in the last bits."
-    )
+    message(FATAL_ERROR "The source of libm is missing: install Debian's newlib-source, or see cmake/libm.cmake.")
   endif()
   if(NOT IS_DIRECTORY ${tree})
     list(TRANSFORM ARGN PREPEND "*/newlib/libm/" OUTPUT_VARIABLE patterns)
@@ -49,33 +41,6 @@ function(unpack_libm folder)
   endif()
 endfunction()
 
-# The objects that link_libm links.
-function(add_libm)
-  # Eigen's vector code sums in another order, and on arm fuses multiply and add.
-  target_compile_definitions(wheel_options INTERFACE EIGEN_DONT_VECTORIZE)
-  if(WHEEL_LIBM_SOURCE STREQUAL system)
-    return()
-  endif()
-  set(LIBM_FOLDER ${CMAKE_BINARY_DIR}/_libm CACHE INTERNAL "")
-  unpack_libm(${LIBM_FOLDER} ${libm_compiled} ${libm_included})
-  list(TRANSFORM libm_compiled REPLACE ".*/" ${LIBM_FOLDER}/)
-  add_library(libm OBJECT ${libm_compiled} cmake/libm/trigonometry.c)
-  set_target_properties(
-    libm
-    PROPERTIES UNITY_BUILD OFF INTERPROCEDURAL_OPTIMIZATION OFF EXPORT_COMPILE_COMMANDS OFF
-  )
-  target_include_directories(libm PRIVATE cmake/libm ${LIBM_FOLDER})
-  target_compile_definitions(libm PRIVATE WANT_ERRNO=0 HAVE_FAST_FMA=0)
-  separate_arguments(own UNIX_COMMAND "sin cos sincos tanh cosh exp expm1 pow")
-  list(TRANSFORM own PREPEND -fno-builtin-)
-  target_compile_options(libm PRIVATE -w -fno-lto ${own})
-  if(WHEEL_SANITIZE) # it shifts negative numbers, which every compiler here does alike
-    target_compile_options(libm PRIVATE -fno-sanitize=all)
-  endif()
-  # Apple's compiler would merge sin and cos into a call of the system's.
-  target_compile_options(wheel_options INTERFACE "$<$<PLATFORM_ID:Darwin>:-fno-builtin-sin;-fno-builtin-cos>")
-endfunction()
-
 function(link_libm target)
   if(TARGET libm)
     get_target_property(type ${target} TYPE)
@@ -86,3 +51,25 @@ function(link_libm target)
     target_sources(${target} ${where} $<TARGET_OBJECTS:libm>)
   endif()
 endfunction()
+
+# Eigen's vector code sums in another order, and on arm fuses multiply and add.
+target_compile_definitions(wheel_options INTERFACE EIGEN_DONT_VECTORIZE)
+if(WHEEL_LIBM_SOURCE STREQUAL system)
+  return()
+endif()
+# The objects that link_libm links.
+set(LIBM_FOLDER ${CMAKE_BINARY_DIR}/_libm)
+unpack_libm(${LIBM_FOLDER} ${libm_compiled} ${libm_included})
+list(TRANSFORM libm_compiled REPLACE ".*/" ${LIBM_FOLDER}/)
+add_library(libm OBJECT ${libm_compiled} cmake/libm/trigonometry.c)
+set_target_properties(libm PROPERTIES UNITY_BUILD OFF INTERPROCEDURAL_OPTIMIZATION OFF EXPORT_COMPILE_COMMANDS OFF)
+target_include_directories(libm PRIVATE cmake/libm ${LIBM_FOLDER})
+target_compile_definitions(libm PRIVATE WANT_ERRNO=0 HAVE_FAST_FMA=0)
+separate_arguments(own UNIX_COMMAND "sin cos sincos tanh cosh exp expm1 pow")
+list(TRANSFORM own PREPEND -fno-builtin-)
+target_compile_options(libm PRIVATE -w -fno-lto ${own})
+if(WHEEL_SANITIZE) # it shifts negative numbers, which every compiler here does alike
+  target_compile_options(libm PRIVATE -fno-sanitize=all)
+endif()
+# Apple's compiler would merge sin and cos into a call of the system's.
+target_compile_options(wheel_options INTERFACE "$<$<PLATFORM_ID:Darwin>:-fno-builtin-sin;-fno-builtin-cos>")

@@ -8,6 +8,9 @@ set(CMAKE_C_VISIBILITY_PRESET hidden)
 set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+# On macOS no path of the building machine as a library's own name.
+set(CMAKE_INSTALL_NAME_DIR @rpath)
+set(CMAKE_BUILD_WITH_INSTALL_NAME_DIR ON)
 add_compile_options(-ffp-contract=off -fno-math-errno)
 # No path of the building machine in the binary: two builds in two folders are the same bytes. Only gcov needs the paths.
 if(NOT WHEEL_COVERAGE)
@@ -22,10 +25,8 @@ endif()
 
 # Our own code: the fuzzer is not to chase branches inside CVODE, whose coverage shows nothing either.
 add_library(wheel_options INTERFACE)
-target_compile_options(
-  wheel_options
-  INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-)
+set(warnings "-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Wno-sign-conversion")
+target_compile_options(wheel_options INTERFACE ${warnings})
 target_compile_options(wheel_options INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions;-fno-rtti;-Wold-style-cast>")
 target_compile_options(wheel_options INTERFACE $<$<BOOL:${WHEEL_FUZZ}>:-fsanitize=fuzzer-no-link>)
 if(WHEEL_COVERAGE)
@@ -39,17 +40,13 @@ endif()
 
 # Needs libc and libm only, exports fmi2* only.
 function(link_self_contained target)
-  # On macOS no path of the building machine as the library's own name.
-  set_target_properties(
-    ${target}
-    PROPERTIES PREFIX "" INSTALL_NAME_DIR @rpath BUILD_WITH_INSTALL_NAME_DIR ON
-  )
+  set_target_properties(${target} PROPERTIES PREFIX "")
   if(NOT APPLE AND NOT WIN32)
     set(exports ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
     target_link_options(${target} PRIVATE -Wl,--version-script=${exports} -Wl,--gc-sections -Wl,--build-id=none)
     set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${exports})
-  endif()
-  if(NOT APPLE AND NOT WIN32 AND NOT WHEEL_SANITIZE)
-    target_link_options(${target} PRIVATE -static-libgcc -static-libstdc++ -Wl,--no-undefined)
+    if(NOT WHEEL_SANITIZE)
+      target_link_options(${target} PRIVATE -static-libgcc -static-libstdc++ -Wl,--no-undefined)
+    endif()
   endif()
 endfunction()

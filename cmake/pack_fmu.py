@@ -37,14 +37,13 @@ def contents(platform: str, library: Path, licences: dict[str, Content]) -> dict
 
 
 def pack(entries: dict[str, Content], output: Path) -> None:
-    with zipfile.ZipFile(output, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+    with zipfile.ZipFile(output, "w") as archive:
         for name, content in sorted(entries.items()):
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
-            info.compress_type = zipfile.ZIP_DEFLATED
             info.create_system = 3  # Unix, so that the permissions below are read
             info.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
             data = content if isinstance(content, bytes) else content.read_bytes()
-            archive.writestr(info, data, compresslevel=9)
+            archive.writestr(info, data, zipfile.ZIP_DEFLATED, compresslevel=9)
 
 
 if __name__ == "__main__":

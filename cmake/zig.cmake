@@ -4,15 +4,12 @@
 set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES WHEEL_ZIG WHEEL_ZIG_TARGET)
 string(REGEX MATCH "^([a-z0-9_]+)-([a-z]+)" _ "${WHEEL_ZIG_TARGET}")
 set(CMAKE_SYSTEM_PROCESSOR ${CMAKE_MATCH_1})
-if(CMAKE_MATCH_2 STREQUAL windows)
-  set(CMAKE_SYSTEM_NAME Windows)
-elseif(CMAKE_MATCH_2 STREQUAL macos)
-  set(CMAKE_SYSTEM_NAME Darwin)
-elseif(CMAKE_MATCH_2 STREQUAL wasi)
-  set(CMAKE_SYSTEM_NAME Generic) # no shared libraries, no threads, no system below
-else()
-  set(CMAKE_SYSTEM_NAME Linux)
-  # CMake does not find out that zig can optimise while linking. It cannot for macOS.
+set(system_linux Linux)
+set(system_windows Windows)
+set(system_macos Darwin)
+set(system_wasi Generic) # no shared libraries, no threads, no system below
+set(CMAKE_SYSTEM_NAME ${system_${CMAKE_MATCH_2}})
+if(CMAKE_SYSTEM_NAME STREQUAL Linux) # CMake does not find out that zig can optimise while linking. It cannot for macOS.
   set(CMAKE_C_FLAGS_INIT -flto)
   set(CMAKE_CXX_FLAGS_INIT -flto)
 endif()

@@ -1,6 +1,7 @@
 """The values that ./scripts/run takes: parameters, inputs, units, ready wheels; a fault is one sentence."""
 
 import json
+import re
 import subprocess
 import sys
 from math import atan, pi
@@ -24,13 +25,22 @@ def ask(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def given(done: subprocess.CompletedProcess[str]) -> dict[str, str]:
-    return dict(line.split() for line in done.stdout.splitlines())
+    """Times and start values among the arguments of FMPy."""
+    options, _, start = done.stdout.partition("--start-values\n")
+    times = {name.replace("-", "_"): value for name, value in re.findall(r"--(\S+)=(\S+)", options)}
+    return times | dict(re.findall(r"(\S+)\n(\S+)", start))
 
 
 def test_values_become_start_values_in_si(root):
     values = given(ask(root, "s=0.01", "theta_start=60deg", "formulation=2", "keep_contact=true", "stop_time=20"))
     within(abs(float(values.pop("theta_start")) - pi / 3), 16 * EPSILON, "theta_start")
-    assert values == {"s": "0.01", "formulation": "2", "keep_contact": "true", "stop_time": "20"}
+    assert values == {
+        "s": "0.01",
+        "formulation": "2",
+        "keep_contact": "true",
+        "stop_time": "20",
+        "output_interval": "0.01",
+    }
 
 
 UNITS = {"m=12kg": 12, "m=500g": 0.5, "r_0=30cm": 0.3, "slope=8deg": 8 * pi / 180, "slope=12%": atan(0.12)}
@@ -68,7 +78,7 @@ def test_a_ready_wheel_has_a_source_is_a_body_that_can_exist_and_rolls(root, nam
     assert {"m", "r_0", "r", "J_x", "J_y", "J_z"} == {*wheel["parameters"]} < {*p}
     assert max(p["J_x"], p["J_y"], p["J_z"]) <= (p["J_x"] + p["J_y"] + p["J_z"]) / 2 * (1 + 4 * EPSILON)
     assert 0.3 < p["J_z"] / (p["m"] * (p["r_0"] + p["r"]) ** 2) < 1  # all of its mass lies within its radius
-    start = {key: value for key, value in p.items() if key != "output_interval"}
+    start = {key: value for key, value in p.items() if key not in ("stop_time", "output_interval")}
     end = simulate_fmu(str(root / "wheel.fmu"), start_values=start, stop_time=0.1, output=["E"])
     assert end["time"][-1] == 0.1 and end["E"][-1] < end["E"][0]
 

@@ -30,9 +30,8 @@ def draw_position(ax: Axes, scene: Scene) -> list[str]:
     """Fig. 1, 4: X_O over time."""
     _time_axis(ax, scene)
     ax.set_ylabel(r"position $X_O$ [m]")
-    _ticks(ax.yaxis, 5)
-    _widen(ax.yaxis, scene["X_O"], 1e-3 * scene.value("r_0"))
-    return _over_time(ax, scene.time, scene["X_O"])
+    _scale(ax.yaxis, 5, scene["X_O"], 1e-3 * scene.value("r_0"))
+    return _over_time(ax, scene["time"], scene["X_O"])
 
 
 def draw_tilt(ax: Axes, scene: Scene) -> list[str]:
@@ -43,13 +42,11 @@ def draw_tilt(ax: Axes, scene: Scene) -> list[str]:
     degrees = ax.secondary_yaxis("right", functions=(np.degrees, np.radians))
     degrees.set_ylabel(r"$\theta$ [deg]")
     degrees.spines["right"].set_visible(True)
-    _ticks(ax.yaxis, 7, (1, 2, 5, 10))
-    _ticks(degrees.yaxis, 6, (1, 1.5, 2, 3, 5, 10))
-    if np.ptp(theta) < np.pi / 6:
-        _widen(ax.yaxis, theta, 1e-3)
-    else:
+    _scale(ax.yaxis, 7, theta, 1e-3, steps=(1, 2, 5, 10))
+    _scale(degrees.yaxis, 6, steps=(1, 1.5, 2, 3, 5, 10))
+    if np.ptp(theta) >= np.pi / 6:
         ax.set_ylim(0.0, np.pi if theta.max() > np.pi / 2 - 0.02 else np.pi / 2)  # a line at the frame cannot be seen
-    return _over_time(ax, scene.time, theta)
+    return _over_time(ax, scene["time"], theta)
 
 
 def draw_path(ax: Axes, scene: Scene) -> list[str]:
@@ -57,8 +54,7 @@ def draw_path(ax: Axes, scene: Scene) -> list[str]:
     _track(ax, *scene.smooth(SUBDIVISION, "X_C", "Y_C"))
     ax.set(xlabel="$X$ [m]", ylabel="$Y$ [m]")
     for axis, name in ((ax.xaxis, "X_C"), (ax.yaxis, "Y_C")):
-        _ticks(axis, 5)
-        _widen(axis, scene[name], 0.1 * scene.value("r_0"))
+        _scale(axis, 5, scene[name], 0.1 * scene.value("r_0"))
     ax.set_aspect("equal", adjustable="datalim")
     if scene.value("slope") > 0:
         down = scene.value("slope_direction") + np.pi
@@ -77,11 +73,11 @@ def draw_ground(ax: Axes, scene: Scene) -> list[str]:
     right.spines["right"].set_visible(True)
     ax.set_ylabel("normal force $N$ [N]", color=style.BLUE)
     right.set_ylabel(r"$\mu$ required", color=style.VERMILLION)
-    remarks = _over_time(ax, scene.time, force) + _over_time(right, scene.time, needed, style.VERMILLION)
-    _widen(ax.yaxis, force, 0.02 * scene.value("m") * scene.value("g"))
+    remarks = _over_time(ax, scene["time"], force) + _over_time(right, scene["time"], needed, style.VERMILLION)
     right.set_ylim(0.0, 1.1 * max(needed.max(), limit, 0.05))
+    _scale(ax.yaxis, 5, force, 0.02 * scene.value("m") * scene.value("g"))
+    _scale(right.yaxis, 5)
     for side, below, above in ((ax, 1.1, 0.0), (right, 0.0, 1.1)):
-        _ticks(side.yaxis, 5)
         low, high = side.get_ylim()
         side.set_yticks([tick for tick in side.get_yticks() if low <= tick <= high])
         side.yaxis.set_minor_locator(NullLocator())
@@ -106,8 +102,7 @@ def draw_rates(ax: Axes, scene: Scene) -> list[str]:
         _track(ax, x, y, stick)
     ax.margins(0.14)
     for axis, rate in ((ax.xaxis, x), (ax.yaxis, y)):
-        _ticks(axis, 5)
-        _widen(axis, rate, 1.0 if scene.still else 1e-3 + 1e-5 * abs(rate).max())
+        _scale(axis, 5, rate, 1.0 if scene.still else 1e-3 + 1e-5 * abs(rate).max())
     if scene.one_arc and not scene.still:
         return [r"The rates depend on $\theta$ alone: the wheel runs to and fro on one arc."]
     # omega_z = phi_dot + psi_dot cos(theta) is small, and so is the angle at which a narrow bundle lies.
@@ -123,7 +118,7 @@ def write_rates(ax: Axes, scene: Scene) -> None:
     x, y, _ = _rates(scene)
     marks = _marks(ax, scene) if scene.one_arc and not scene.still else {
         (x[0], y[0]): "both rates keep\ntheir values" if scene.still else "$t = 0$",
-        **({} if scene.still else {(x[-1], y[-1]): f"$t = {scene.time[-1]:.3g}$ s"}),
+        **({} if scene.still else {(x[-1], y[-1]): f"$t = {scene['time'][-1]:.3g}$ s"}),
     }  # fmt: skip
     lines = [np.column_stack([x, y])]
     for inset in ax.child_axes:
@@ -193,8 +188,8 @@ def _draw_inset(ax: Axes, x: Array, y: Array, stick: Array, shear: float) -> Non
     inset.spines["right"].set_visible(True)
     inset.set_xlabel(rf"{PSI_DOT} [rad/s]", fontsize=7.5, labelpad=1)
     inset.set_ylabel(rf"{PHI_DOT} {'+' if shear < 0 else '−'} {PSI_DOT} [rad/s]", fontsize=7.5, labelpad=3)
-    _ticks(inset.xaxis, 4)
-    _ticks(inset.yaxis, 5)
+    _scale(inset.xaxis, 4)
+    _scale(inset.yaxis, 5)
     inset.tick_params(labelsize=7)
 
 
@@ -208,8 +203,8 @@ def _track(ax: Axes, x: Array, y: Array, stick: Array | bool = False) -> None:
 
 def _time_axis(ax: Axes, scene: Scene) -> None:
     """Time in s over the whole scene, the marks of friction behind the curve."""
-    ax.set(xlim=scene.time[[0, -1]], xlabel="time $t$ [s]")
-    _ticks(ax.xaxis, 6)
+    ax.set(xlim=scene["time"][[0, -1]], xlabel="time $t$ [s]")
+    _scale(ax.xaxis, 6)
     place = {"transform": ax.get_xaxis_transform()}
     ax.add_artist(StepPatch(scene.mode == 0, scene.edges, fill=True, color=style.BAND, linewidth=0, zorder=0, **place))
     ax.vlines(scene.reversals, 0.955, 1.0, color=style.VERMILLION, linewidth=0.8, zorder=1, **place)
@@ -233,16 +228,13 @@ def _turns(values: Array) -> int:
     return int(np.count_nonzero(np.diff(np.sign(steps[abs(steps) > rounding]))))
 
 
-def _widen(axis: Axis, values: Array, least: float) -> None:
-    """An axis no narrower than `least`: what differs by rounding alone is a straight line."""
-    if np.ptp(values) < least:
-        middle = float(np.min(values) + np.max(values)) / 2
-        axis.axes.set(**{f"{axis.axis_name}lim": (middle - least, middle + least)})
-
-
-def _ticks(axis: Axis, most: int, steps: tuple[float, ...] = (1, 2, 4, 5, 10)) -> None:
-    """Few ticks, numbers in full: no offset or power of ten stands over the title."""
+def _scale(axis: Axis, most: int, values: Array = (0,), least: float = 0, steps: tuple = (1, 2, 4, 5, 10)) -> None:
+    """Few ticks, numbers in full: no offset or power of ten stands over the title. An axis is no narrower than `least`:
+    what differs by rounding alone is a straight line."""
     axis.set_major_locator(MaxNLocator(most, steps=steps))
     axis.set_minor_locator(AutoMinorLocator(2))
     axis.set_major_formatter(full := ScalarFormatter(useOffset=False))
     full.set_scientific(False)
+    if np.ptp(values) < least:
+        middle = float(np.min(values) + np.max(values)) / 2
+        axis.axes.set(**{f"{axis.axis_name}lim": (middle - least, middle + least)})

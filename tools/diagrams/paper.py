@@ -12,6 +12,8 @@ import sys
 import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import chain
+from multiprocessing import Pool
 from pathlib import Path
 
 import numpy as np
@@ -53,9 +55,8 @@ def unlike_paper(scene: Scene) -> list[str]:
     """All that was set otherwise than in (27)-(33), the start values of the description; the title has s."""
     own = {name: scene.value(name) for name in SETTINGS if name != "s"}
     said = [SETTINGS[name].said(value) for name, value in own.items() if abs(value - SETTINGS[name].preset) > 1e-12]
-    rows = {"stop_time": scene.time[-1], "output_interval": scene.time[1] - scene.time[0]}
-    if scene.ending:
-        del rows["stop_time"]
+    rows = {} if scene.ending else {"stop_time": scene["time"][-1]}
+    rows["output_interval"] = scene["time"][1] - scene["time"][0]
     said += [RUN[name].said(value) for name, value in rows.items() if abs(value - RUN[name].preset) > 1e-9]
     return said + ["r > r_0, the torus intersects itself"] * (own["r"] > own["r_0"])
 
@@ -101,7 +102,7 @@ def events_of(scene: Scene) -> list[str]:
         return [r"$\omega_z$ is held at zero all the time (stick)."]
     bands = [r"Bands, thick among the rates: stick ($\omega_z$ held at zero)."] * bool(sticks)
     ticks = [r"Ticks at the top: $\omega_z$ changes sign."] * (len(scene.reversals) > 0)
-    return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene.time[-1]:.3g} s.", *bands, *ticks]
+    return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s.", *bands, *ticks]
 
 
 def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], columns: int) -> list[str]:
@@ -152,16 +153,16 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     return style.save(fig, stem)
 
 
-def draw_all(scenes: Sequence[Scene], out: Path) -> list[Path]:
-    """The sheets, then each panel of each scene; the names show whether the scenes are the paper's."""
+def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
+    """Arguments of draw for sheets, then each panel of each scene; names show whether the scenes are the paper's."""
     paper = is_paper(scenes)
     sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": PAPERS + OTHERS}
-    written = [path for name, drawn in sheets.items() for path in draw(out / name, scenes, drawn, paper)]
+    wanted = [(out / name, scenes, drawn, paper) for name, drawn in sheets.items()]
     for friction, scene in enumerate(scenes):
         for panel in PAPERS + OTHERS * (not paper):
             name = f"diagram_{panel.name}_{('free', 'friction')[friction]}"
-            written += draw(out / (f"fig_{panel.figures[friction]}" if paper else name), [scene], [panel], paper)
-    return written
+            wanted.append((out / (f"fig_{panel.figures[friction]}" if paper else name), [scene], [panel], paper))
+    return wanted
 
 
 def main() -> None:
@@ -171,7 +172,8 @@ def main() -> None:
         scenes = [read_scene(RESULTS / f"{name}.csv") for name in ("free", "friction")]
         if scenes[0].value("r") > scenes[0].value("r_0"):
             print("run: r > r_0: this torus intersects itself; the model rolls it all the same.", file=sys.stderr)
-        print(*draw_all(scenes, RESULTS), sep="\n")
+        with Pool() as processes:
+            print(*chain(*processes.starmap(draw, pictures(scenes, RESULTS), chunksize=1)), sep="\n")
     except SceneError as fault:
         sys.exit(f"run: {fault}")
 

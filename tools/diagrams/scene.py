@@ -34,10 +34,6 @@ class Scene:
             raise SceneError(f"{self.path} lacks the column {name}.")
         return self.columns[name]
 
-    @property
-    def time(self) -> Array:
-        return self["time"]
-
     @cached_property
     def ending(self) -> str:
         """What ended the run before its time, such as `fell flat at t = 0.593 s`: from the log beside the table."""
@@ -57,12 +53,12 @@ class Scene:
     @property
     def edges(self) -> Array:
         """Instants in s between which a row's friction mode is drawn: half-way to the rows beside it."""
-        return np.concatenate([self.time[:1], (self.time[:-1] + self.time[1:]) / 2, self.time[-1:]])
+        return np.concatenate([self["time"][:1], (self["time"][:-1] + self["time"][1:]) / 2, self["time"][-1:]])
 
     @property
     def mode(self) -> Array:
         """The sign of omega_z while the wheel rolls, 0 while omega_z is held at zero (stick); 1 without resistance."""
-        return np.sign(self["friction_mode"]) if self.resisted else np.ones(len(self.time))
+        return np.sign(self["friction_mode"]) if self.resisted else np.ones(len(self["time"]))
 
     @property
     def reversals(self) -> Array:
@@ -87,7 +83,7 @@ class Scene:
 
         Akima's cubic is local: a kink at a transition rings nowhere else.
         """
-        rows = np.arange(len(self.time))
+        rows = np.arange(len(self["time"]))
         fine = np.linspace(0, rows[-1], rows[-1] * subdivision + 1)
         return tuple(Akima1DInterpolator(rows, self[name])(fine) for name in names)
 
@@ -99,7 +95,7 @@ def read_scene(path: Path) -> Scene:
     except (OSError, ValueError) as fault:
         raise SceneError(f"{path} cannot be read as a table ({fault}): simulate first.") from fault
     scene = Scene(path, {name: table[name].astype(float) for name in table.dtype.names})
-    if np.ptp(scene.time) <= 0:
+    if np.ptp(scene["time"]) <= 0:
         why = (scene.ending or "stands at one instant").replace("$", "")
         raise SceneError(f"{path} has no motion to draw: the wheel {why}.")
     return scene

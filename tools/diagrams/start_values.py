@@ -1,13 +1,14 @@
 """The arguments of ./scripts/run: checked against modelDescription.xml, or to be read again by what draws the results.
 
-Prints `name value` pairs in SI, one a line: stop_time, output_interval, and start values for `fmpy simulate
---start-values`, which an input keeps. `outputs` prints the variables to record, with all that was set, so that
-a figure can say what was run. It needs no package, so that `--help` works before anything is installed.
+Prints the arguments of `fmpy simulate`, one a line: times, the variables to record, with all that was set, so that a
+figure can say what was run, and start values in SI, which an input keeps. It needs no package, so that `--help` works
+before anything is installed.
 """
 
 from __future__ import annotations
 
 import sys
+from itertools import chain
 from pathlib import Path
 
 ROOT = next(folder for folder in Path(__file__).resolve().parents if (folder / "modelDescription.xml").exists())
@@ -69,20 +70,18 @@ def values(arguments: list[str]) -> dict[str, str]:
     return found
 
 
-def outputs() -> list[str]:
-    """All that a figure or a page may need: outputs, energy, friction, and the values that were set."""
+def command(found: dict[str, str]) -> list[str]:
+    """Arguments of `fmpy simulate`; the figures and the page need outputs, energy, friction, and all that was set."""
     wanted = ("E", "mu_required", "friction_mode", "n_events")
-    return [v.name for v in variables().values() if v.causality != "local" or v.name in wanted]
+    outputs = [v.name for v in variables().values() if v.causality != "local" or v.name in wanted]
+    start = {"s": str(PAPER_S)} | found
+    times = [f"--{name.replace('_', '-')}={start.pop(name, v.start)}" for name, v in RUN.items()]
+    return [*times, "--output-variables", *outputs, "--start-values", *chain(*start.items())]
 
 
 def main(arguments: list[str]) -> None:
     try:
-        if arguments == ["outputs"]:
-            print(*outputs(), sep="\n")
-        elif {"-h", "--help"} & set(arguments):
-            print(usage())
-        else:
-            print("\n".join(f"{name} {value}" for name, value in values(arguments).items()))
+        print(usage() if {"-h", "--help"} & {*arguments} else "\n".join(command(values(arguments))))
     except Fault as fault:
         sys.exit(f"run: {fault}")
 

@@ -49,8 +49,7 @@ def axes_mm(fig: Figure, left: float, bottom: float, width: float, height: float
 
 def text_mm(fig: Figure, x: float, y: float, text: str, **how: object) -> None:
     """Text whose anchor lies at this place in mm from the figure's lower left corner."""
-    w, h = (size / MM for size in fig.get_size_inches())
-    fig.text(x / w, y / h, text, **how)
+    fig.text(x * MM, y * MM, text, transform=fig.dpi_scale_trans, **how)
 
 
 def note(ax: Axes, text: str, at: Sequence[float], shift: Sequence[float], **how: object) -> None:

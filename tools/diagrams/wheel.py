@@ -8,7 +8,6 @@ wheel is an image; lines are vectors, solid below it and dashed above it.
 
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -19,8 +18,8 @@ from scipy.spatial.transform import Rotation
 
 from diagrams import style
 from diagrams.scene import Array, SceneError, read_scene
+from diagrams.start_values import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 INSTANT = 2.86  # s
 WINDOW = (-0.52, 1.12, -0.25, 0.75)  # m in the image: left, right, bottom, top
 WIDTH, DPI, ICON = 165.0, 184, 176  # mm; pixels per inch; pixels
@@ -147,7 +146,7 @@ def main() -> None:
         scene = read_scene(ROOT / "results" / "free.csv")
     except SceneError as fault:
         sys.exit(f"picture: {fault}")
-    row = int(np.argmin(abs(scene.time - INSTANT)))
+    row = int(np.argmin(abs(scene["time"] - INSTANT)))
     angles, place = ([scene[name][row] for name in names] for names in (("psi", "theta", "phi"), ("X_O", "Y_O")))
     wheel = Wheel(scene.value("r_0"), scene.value("r"), angles, place)
     fig = style.figure_mm(WIDTH, WIDTH / 1.64)
@@ -157,7 +156,7 @@ def main() -> None:
     time, x, y = scene.smooth(5, "time", "X_C", "Y_C")
     draw_lines(ax, wheel, np.column_stack([x, y, 0 * x])[time <= INSTANT])
     ax.set(xlim=WINDOW[:2], ylim=WINDOW[2:])
-    note = f"The paper’s free wheel at $t$ = {scene.time[row]:.2f} s. Grid: 0.1 m."
+    note = f"The paper’s free wheel at $t$ = {scene['time'][row]:.2f} s. Grid: 0.1 m."
     style.text_mm(fig, 3.0, 3.0, note, fontsize=8.5, color=style.GREY)
     svg, png = style.save(fig, ROOT / "docs" / "figures" / "wheel", DPI)
     Image.open(png).convert("RGB").quantize(256, kmeans=1).save(png, optimize=True)  # it goes into the archive

@@ -26,18 +26,17 @@ WORD = r"(?:<!-- = [\w.]+ -->[^\n]*?<!-- \. -->|\S)+"
 BEGINNING = re.compile(rf" ((?![-+*=#>|<]){WORD}(?: [-+*=#>|]\S*)*)\n([ \t]*)(?=<!-- = )")
 
 
-class UnknownFigure(Exception):
-    """The message is one sentence for the writer of the page."""
+class UnknownFigure(SystemExit):
+    """The message is one line for the writer of the page."""
 
 
 def read_figures(folder: Path = DATA) -> dict[str, str]:
     """Text of each figure by `report.figure`."""
     figures = {}
     for path in sorted(folder.glob("*.csv")):
-        with path.open(newline="", encoding="utf-8") as file:
-            rows = csv.DictReader(file)
-            if rows.fieldnames and {"figure", "measured"} <= set(rows.fieldnames):
-                figures |= {f"{path.stem}.{row['figure']}": number(float(row["measured"])) for row in rows}
+        rows = csv.DictReader(path.read_text(encoding="utf-8").splitlines(keepends=True))
+        figured = (row for row in rows if {"figure", "measured"} <= {*row})
+        figures |= {f"{path.stem}.{row['figure']}": number(float(row["measured"])) for row in figured}
     return figures
 
 
@@ -46,7 +45,7 @@ def with_figures(text: str, figures: Mapping[str, str], name: str = "the page") 
 
     def fill(place: re.Match[str]) -> str:
         if place[2] not in figures:
-            raise UnknownFigure(f"{name} asks for {place[2]}, which no report has measured.")
+            raise UnknownFigure(f"documents: {name} asks for {place[2]}, which no report has measured.")
         return f"{place[1]}{figures[place[2]]}{place[4]}"
 
     return PLACE.sub(fill, text)
@@ -82,7 +81,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except UnknownFigure as fault:
-        sys.exit(f"documents: {fault}")
+    sys.exit(main())

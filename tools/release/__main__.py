@@ -67,15 +67,7 @@ def main() -> None:
         step("the libraries as files")
         table = libraries.table(OUT)
         step("the contract's tests on the released Linux library")
-        tests = [
-            "-q",
-            "-n",
-            str(os.cpu_count()),
-            "-m",
-            "not local",
-            "tests/contract",
-            "tests/robustness/test_allocations.py",
-        ]
+        tests = ["-q", "-n", "auto", "-m", "not local", "tests/contract", "tests/robustness/test_allocations.py"]
         subprocess.run([sys.executable, "-m", "pytest", *tests], env=os.environ | {"WHEEL_BUILD": str(OUT)}, check=True)
         step("the same again in another folder")
         twice = build_elsewhere(released, scratch)

@@ -1,7 +1,4 @@
-"""The folder that is given away: the archive, the site, notes from CHANGELOG.md, and the sums of all three.
-
-python -m release.folder: whether the versions agree.
-"""
+"""The folder that is given away: the archive, the site, notes from CHANGELOG.md, and the sums of all three."""
 
 from __future__ import annotations
 
@@ -75,7 +72,3 @@ def publish(fmu: Path, site: Path) -> None:
     print(f"  git tag -a v{number} -F {out / 'NOTES.md'} --cleanup=whitespace")
     print(f"  git push origin v{number}")
     print("and attach the files of the folder; who has them checks them with sha256sum -c SHA256SUMS.")
-
-
-if __name__ == "__main__":
-    described()

@@ -6,6 +6,7 @@ Each rule is checked on every library; the first that is broken ends the release
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 import struct
 from pathlib import Path
@@ -13,7 +14,7 @@ from pathlib import Path
 import lief
 
 from publishing import markdown
-from release.fmu import ARM, ARM_MAC, LINUX, UNIVERSAL, WINDOWS
+from release.fmu import BINARIES, UNIVERSAL
 
 GLIBC_FLOOR = (2, 17)
 MACOS_FLOOR = [11, 0, 0]
@@ -22,20 +23,13 @@ NEEDS = re.compile(
     r"lib[cm]\.so\.6|ld-linux-(x86-64|aarch64)\.so\.[12]|(?i:kernel32\.dll)|api-ms-win-crt-.*|/usr/lib/libSystem\.B\.dylib"
 )
 INTEL, ARM_64 = lief.Header.ARCHITECTURES.X86_64, lief.Header.ARCHITECTURES.ARM64
-LIBRARIES = (
-    ("linux64", f"{LINUX}/wheel.so", INTEL),
-    ("aarch64-linux", f"{ARM}/wheel.so", ARM_64),
-    ("win64", f"{WINDOWS}/wheel.dll", INTEL),
-    ("darwin64 (x86-64)", UNIVERSAL, INTEL),
-    ("darwin64 (arm64)", UNIVERSAL, ARM_64),
-    ("aarch64-darwin", f"{ARM_MAC}/wheel.dylib", ARM_64),
-)
+LIBRARIES = [(name, file, ARM_64 if "aarch64" in name else INTEL) for name, file in BINARIES.items()]
+LIBRARIES.append(("darwin64 (arm64)", UNIVERSAL, ARM_64))
 LARGEST = 1 << 20  # bytes of a library for one processor
 # What the systems' own mathematics may be asked for: it is exact. All else is compiled in.
 EXACT = {"floor", "ceil", "trunc", "fabs", "sqrt", "fmod", "scalbn", "ldexp", "frexp", "modf", "copysign"}
-EXACT |= {"nearbyint", "remainder", "fma"}  # each rounded correctly, as IEEE 754 asks
-INEXACT = {"sin", "cos", "sincos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh"}
-INEXACT |= {"atanh", "exp", "exp2", "expm1", "log", "log2", "log10", "log1p", "pow", "cbrt", "hypot"}
+EXACT |= {"nearbyint", "nextafter", "remainder", "fma", "isfinite", "isinf", "isnan"}  # rounded as IEEE 754 asks
+INEXACT = {"sincos", *dir(math)} - EXACT
 
 
 def require(name: str, holds: bool, rule: str) -> None:
@@ -67,10 +61,9 @@ def signed(data: bytes, library: lief.MachO.Binary) -> bool:
     directory = blob + dict(slots)[0]
     _, _, _, _, hashes, _, _, pages, limit = struct.unpack_from(">9I", data, directory)
     length, kind, _, shift = struct.unpack_from(">4B", data, directory + 36)
-    code = data[start : start + limit]
+    code, page = data[start : start + limit], 1 << shift
     found = [data[directory + hashes + length * k :][:length] for k in range(pages)]
-    own = [hashlib.sha256(code[k << shift : (k + 1) << shift]).digest() for k in range(pages)]
-    return kind == 2 and pages == -(-limit // (1 << shift)) and found == own
+    return kind == 2 and found == [hashlib.sha256(code[k : k + page]).digest() for k in range(0, limit, page)]
 
 
 def judged(name: str, path: Path, processor: lief.Header.ARCHITECTURES) -> list[str]:
@@ -84,21 +77,19 @@ def judged(name: str, path: Path, processor: lief.Header.ARCHITECTURES) -> list[
     if library.format == lief.Binary.FORMATS.MACHO:
         own, *needs = needs
         require(name, own == "@rpath/wheel.dylib", f"is called {own}")
-        unsigned = processor == ARM_64 and not signed(path.read_bytes(), library)
-        require(name, not unsigned, "its signature is not that of its pages")  # Apple's own processors ask for it
+        trusted = processor == INTEL or signed(path.read_bytes(), library)  # Apple's arm processors ask for it
+        require(name, trusted, "its signature does not fit its pages")
     kind = "functions" if library.format == lief.Binary.FORMATS.PE else "symbols"
     found = [getattr(library, f"{way}_{kind}") for way in ("exported", "imported")]
     exports, imports = ({symbol.name.removeprefix("_") for symbol in symbols} for symbols in found)
     exports -= {"WHEEL", "wheel_1", "_mh_dylib_header", "__dso_handle"}  # every library of these linkers has them
-    size = library.original_size
-    foreign = [need for need in needs if not NEEDS.fullmatch(need)]
+    size, foreign = library.original_size, [need for need in needs if not NEEDS.fullmatch(need)]
     require(name, not foreign, f"needs {foreign}")
     require(name, size < LARGEST, f"has {size} bytes")
     others = sorted(export for export in exports if not export.startswith("fmi2"))
     require(name, not others, f"exports {others[:9]}")
     require(name, len(exports) == FUNCTIONS, f"exports {len(exports)} functions")
-    inexact = imports & INEXACT
-    require(name, not inexact, f"takes {inexact} from the system: they round differently from machine to machine")
+    require(name, not imports & INEXACT, f"takes {imports & INEXACT} from the system, where they round differently")
     shown = {"the C run-time" if need.startswith("api-ms") else Path(need).name for need in needs}
     mathematics = ", ".join(sorted(imports & EXACT)) or "nothing"
     return [name, f"{size / 1e3:.0f} kB", oldest(name, library), ", ".join(sorted(shown)), mathematics]

@@ -17,10 +17,8 @@ LOADED = re.compile(r"""<(?:script|img|iframe|source|link)\b[^>]*?\b(?:src|href)
 
 
 def build(source: Path, out: Path, *more: str) -> subprocess.CompletedProcess[str]:
-    words = ["-q", "-n", "-W", "--keep-going", "-c", str(CONF), "-d", str(out / "trees"), "-b", "html", *more]
-    return subprocess.run(
-        [sys.executable, "-m", "sphinx", *words, str(source), str(out)], capture_output=True, text=True, check=False
-    )
+    words = ["-q", "-n", "-W", "--keep-going", "-c", CONF, "-d", out / "trees", "-b", "html", *more, source, out]
+    return subprocess.run([sys.executable, "-m", "sphinx", *words], capture_output=True, text=True, check=False)
 
 
 @pytest.fixture(scope="module")

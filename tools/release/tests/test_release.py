@@ -1,16 +1,16 @@
-"""The release folder: sums that are right, notes of the version, the same bytes for the same content."""
+"""The release folder: right sums, notes of the version, equal bytes for equal content; the bill of materials."""
 
 from __future__ import annotations
 
-import hashlib
 import shutil
+import subprocess
 import tarfile
 from pathlib import Path
 
 import pytest
 from support.paths import ROOT
 
-from release import folder
+from release import folder, sbom
 
 CHANGES = "# Changes\n\nWords.\n\n## 2.1.0, 2026-12-01\n\n- New.\n\n## 2.0.0\n\n- Old.\n"
 
@@ -44,13 +44,24 @@ def test_the_folder_holds_what_its_sums_say_and_the_same_bytes_each_time(tmp_pat
     for path in site.rglob("*"):
         path.touch()
     folder.write(tmp_path / "two", fmu, site, "notes\n")
-    lines = (tmp_path / "one" / "SHA256SUMS").read_text().splitlines()
-    assert [line.split()[1] for line in lines] == ["NOTES.md", "wheel-site.tar.gz", "wheel.fmu"]
-    for line in lines:
-        digest, name = line.split()
-        assert hashlib.sha256((tmp_path / "two" / name).read_bytes()).hexdigest() == digest
+    sums = tmp_path / "one" / "SHA256SUMS"
+    assert sums.read_text().split()[1::2] == ["NOTES.md", "wheel-site.tar.gz", "wheel.fmu"]
+    check = ["sha256sum", "--check", "--quiet", sums]
+    subprocess.run(check, cwd=tmp_path / "two", check=True)
     with tarfile.open(tmp_path / "one" / "wheel-site.tar.gz") as tar:
         assert {"wheel-site/index.html", "wheel-site/docs/physics.html"} <= set(tar.getnames())
     (site / "index.html").write_text("another front")
-    folder.write(tmp_path / "three", fmu, site, "notes\n")
-    assert (tmp_path / "three" / "SHA256SUMS").read_text().splitlines()[1] != lines[1]
+    folder.write(tmp_path / "two", fmu, site, "notes\n")
+    assert subprocess.run(check, cwd=tmp_path / "two", capture_output=True, check=False).returncode == 1
+
+
+def test_the_bill_of_materials_is_that_of_the_pins() -> None:
+    assert sbom.KEPT.read_text(encoding="utf-8") == sbom.bill(), "run tools/release/sbom.py"
+
+
+def test_another_eigen_would_be_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    macros = tmp_path / "include" / "eigen3" / "Eigen" / "src" / "Core" / "util" / "Macros.h"
+    macros.parent.mkdir(parents=True)
+    macros.write_text("".join(f"#define EIGEN_{part}_VERSION 9\n" for part in ("WORLD", "MAJOR", "MINOR")))
+    monkeypatch.setenv("Eigen3_DIR", str(tmp_path / "share" / "eigen3" / "cmake"))
+    assert "pkg:generic/eigen@9.9.9" in sbom.bill() != sbom.KEPT.read_text(encoding="utf-8")
