@@ -62,7 +62,10 @@ set(LIBM_FOLDER ${CMAKE_BINARY_DIR}/_libm)
 unpack_libm(${LIBM_FOLDER} ${libm_compiled} ${libm_included})
 list(TRANSFORM libm_compiled REPLACE ".*/" ${LIBM_FOLDER}/)
 add_library(libm OBJECT ${libm_compiled} cmake/libm/trigonometry.c)
-set_target_properties(libm PROPERTIES UNITY_BUILD OFF INTERPROCEDURAL_OPTIMIZATION OFF EXPORT_COMPILE_COMMANDS OFF)
+set_target_properties(
+  libm
+  PROPERTIES UNITY_BUILD OFF INTERPROCEDURAL_OPTIMIZATION OFF EXPORT_COMPILE_COMMANDS OFF
+)
 target_include_directories(libm PRIVATE cmake/libm ${LIBM_FOLDER})
 target_compile_definitions(libm PRIVATE WANT_ERRNO=0 HAVE_FAST_FMA=0)
 separate_arguments(own UNIX_COMMAND "sin cos sincos tanh cosh exp expm1 pow")
