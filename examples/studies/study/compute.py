@@ -72,7 +72,8 @@ def run(
     there = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
     with there as running, Client(running, timeout="30s") as client:
         with tempfile.TemporaryDirectory() as folder:
-            upload = pack(fmu, Path(folder) / f"wheel-{sha256[:16]}.zip")
+            # Of its own name: a worker reads modules from the one of an earlier study, which must not be written over.
+            upload = pack(fmu, Path(folder) / f"wheel-{mark}.zip")
             client.upload_file(str(upload))
         client.wait_for_workers(1, timeout=PATIENCE)
         if group is None:

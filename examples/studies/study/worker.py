@@ -194,7 +194,7 @@ def run_chunk(
 
 @cache
 def instance(upload: str) -> Instance:
-    """The only one of this process, unpacked in the worker's own folder, which Dask removes."""
+    """The only one of a study in this process, unpacked in the worker's own folder, which Dask removes."""
     package = Path(get_worker().local_directory) / upload
     shutil.unpack_archive(package, package.with_suffix(""))
     return Instance(str(package.with_suffix("")))
