@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel
-from support.scenes import KINDS
+from support.scenes import AT_REST, KINDS
 
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 H = 2.0**-8  # s, between the points of the difference
@@ -97,11 +97,10 @@ def test_while_friction_holds_the_wheel_the_derivatives_are_those_of_a_held_whee
 
 
 def test_at_rest_without_friction_nothing_holds_the_wheel(wheel):
-    rest = {"theta_start": np.pi / 2, "theta_dot_start": 0.0, "psi_dot_start": 0.0, "phi_dot_start": 0.0}
-    w = wheel().start(**rest)
+    w = wheel().start(**AT_REST)
     free = jacobian(w)
     within(np.max(np.abs(free - difference_jacobian(w))), 64 * 200 * EPSILON, "jacobian")
-    held = wheel().start(s=0.03, **rest)
+    held = wheel().start(s=0.03, **AT_REST)
     beyond(np.max(np.abs(free - jacobian(held))), 0.1, "jacobian")
 
 

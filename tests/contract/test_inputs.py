@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import ERROR, OK, FMU2Wheel, shifted
+from support.scenes import AT_REST
 
-UPRIGHT = {"theta_start": np.pi / 2, "phi_dot_start": 0.0}
 RHO = 0.35
 INERTIA = 1.8 + 20 * RHO**2  # about the contact, kg m2
 WEIGHT = 20 * 9.81
@@ -37,7 +37,7 @@ def follow(w: FMU2Wheel, taylor: Callable[[float], list[float]], times: np.ndarr
 
 @pytest.fixture
 def upright(wheel) -> Callable[[], FMU2Wheel]:
-    return lambda: wheel().start(tolerance=1e-12, M_3=1.0, **UPRIGHT)
+    return lambda: wheel().start(tolerance=1e-12, M_3=1.0, **AT_REST)
 
 
 @pytest.mark.parametrize("times", [[0, 2], np.linspace(0, 2, 21), [0, 0.1, 0.35, 1.2, 1.3, 2]], ids=len)
@@ -101,7 +101,7 @@ def test_reactions_answer_an_input_before_the_step_and_the_motion_does_not(wheel
 @pytest.mark.parametrize("formulation", [2, 3])
 def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(wheel, formulation):
     """|M_3| <= s N holds it; 2 N m/s from zero lets it go at s N / 2 seconds."""
-    standing = wheel(logging=True).start(s=0.03, formulation=formulation, **UPRIGHT)
+    standing = wheel(logging=True).start(s=0.03, formulation=formulation, **AT_REST)
     limit = 0.03 * WEIGHT
     for torque in (0.999 * limit, -0.999 * limit, 0.0):
         assert standing.put(M_3=torque).by(0.5).get("friction_mode") == [0]
@@ -129,7 +129,7 @@ def test_a_held_wheel_stays_held_when_an_input_changes(wheel):
 
 def ramp_and_hold(w: FMU2Wheel, h: float) -> tuple[float, int]:
     """Held by friction, over h with M_3 = 3 t: whether it was released, and the status of going on from there."""
-    w.start(s=0.03, **UPRIGHT).give({"M_3": (0.0, 3.0)}).by(h)
+    w.start(s=0.03, **AT_REST).give({"M_3": (0.0, 3.0)}).by(h)
     return w.get("n_events")[0], w.step(0.1)
 
 

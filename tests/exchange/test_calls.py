@@ -12,9 +12,9 @@ from support.bounds import absolute_error, beyond, within
 from support.driver import DERIVATIVES, DISCARD, ERROR, INDICATORS, OK, STATES, FMU2Wheel
 from support.exchange import Run, exchange, loaded, no_inputs
 from support.motion import Library
+from support.scenes import AT_REST
 
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "slope": 0.2, "slope_direction": 0.7, "psi_dot_start": 0.5, "F_X": 3.0, "M_2": 0.4}
-UPRIGHT = {"theta_start": np.pi / 2, "phi_dot_start": 0.0}
 WEIGHT = 20 * 9.81  # N
 ODD = np.array([0.1, -0.2, 0.3, 1.1, 0.7, 0.9, 1 / 3, -1.7])  # a state off every symmetry
 
@@ -170,7 +170,7 @@ def test_a_spin_that_steps_without_a_search_lead_across_zero_still_stops(library
     """The partner: Euler's method. omega_z goes beyond zero by up to a step."""
     rng = np.random.default_rng(5)
     for spin, torque in rng.uniform((0.3, 0.0), (2.0, 30.0), (20, 2)):
-        with exchange(library, s=0.03, M_brake=torque, **{**UPRIGHT, "phi_dot_start": spin}) as wheel:
+        with exchange(library, s=0.03, M_brake=torque, **{**AT_REST, "phi_dot_start": spin}) as wheel:
             x, t = wheel.x(), 0.0
             while not wheel.wants_event():
                 x, t = x + h * wheel.derivatives(), t + h
@@ -180,11 +180,11 @@ def test_a_spin_that_steps_without_a_search_lead_across_zero_still_stops(library
 
 
 def test_a_held_wheel_stays_at_exactly_zero(library: Library) -> None:
-    with exchange(library, s=0.03, **UPRIGHT) as wheel:
+    with exchange(library, s=0.03, **AT_REST) as wheel:
         assert wheel.get("friction_mode") == [0]
         x = wheel.x()
         assert wheel.derivatives()[-1] == 0
-        with exchange(library, s=0.06, **UPRIGHT) as twice:  # what is left is s N
+        with exchange(library, s=0.06, **AT_REST) as twice:  # what is left is s N
             assert wheel.indicator("spin_changes") == pytest.approx(twice.indicator("spin_changes") / 2)
         wheel.place(0.1, x + np.array([0, 0, 0, 0, 0, 0, 0, 1e-19]))
         assert wheel.event().valuesOfContinuousStatesChanged == 1
@@ -235,7 +235,7 @@ def test_indicators_are_finite_wherever_the_derivatives_are_and_else_refused(lib
     assert {(OK, True, True), (OK, True, False), (OK, False, False), (DISCARD, False, False)} <= seen
 
 
-LIFTED = {"F_Z": 500.0, **UPRIGHT}
+LIFTED = {"F_Z": 500.0, **AT_REST}
 NO_START = {
     "The ground does not press on the wheel at the start: N = -303.8 N.": LIFTED,
     "formulation = 3 (multibody): model exchange needs": {"formulation": "multibody"},
@@ -266,7 +266,7 @@ def test_wrong_arrays_and_numbers_are_refused_and_change_nothing(library: Librar
 
 @pytest.mark.parametrize("slope", [0.0, 0.3, 1.4, 1.57])
 def test_the_third_indicator_is_the_normal_force_over_the_weight_across_the_road(library: Library, slope) -> None:
-    with exchange(library, slope=slope, **UPRIGHT) as wheel:
+    with exchange(library, slope=slope, **AT_REST) as wheel:
         assert wheel.indicators()[2] == pytest.approx(1, abs=1e-8)
         assert wheel.set(F_Z=-10.0) == OK  # the partner
         assert wheel.indicators()[2] == pytest.approx(1 + 10 / (WEIGHT * np.cos(slope)), rel=1e-8)
@@ -299,7 +299,7 @@ def test_a_release_counts_that_lies_ahead_by_less_than_the_wheels_own_tenmillion
     rng, found = np.random.default_rng(8), {-1.0: 0, 1.0: 0}
     while min(found.values()) < 6:
         s, side = 10 ** rng.uniform(-3, -0.5), rng.choice([-1.0, 1.0])
-        with exchange(library, s=s, **UPRIGHT) as wheel:
+        with exchange(library, s=s, **AT_REST) as wheel:
             x = wheel.x() + [0, 0, 0, rng.uniform(-0.6, 0.6), 0, *rng.uniform(-2, 2, 2), 0]
             wheel.place(0.0, x)
             assert wheel.set(M_3=side * (20 + 200 * s)) == OK  # beyond what holds, on its side of the corner at tau = 0

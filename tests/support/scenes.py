@@ -16,6 +16,7 @@ from .schedule import Schedule
 
 THETA_0 = 5 * pi / 12  # the paper's start
 PAPER = Wheel()
+AT_REST = {"theta_start": pi / 2, "phi_dot_start": 0.0}  # upright
 
 
 def wheel_of(start: Values) -> Wheel:

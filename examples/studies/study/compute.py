@@ -72,7 +72,7 @@ def run(
     there = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
     with there as running, Client(running, timeout="30s") as client:
         with tempfile.TemporaryDirectory() as folder:
-            # Of its own name: a worker reads modules from the one of an earlier study, which must not be written over.
+            # A new name per run: workers still read modules from the file of an earlier run, which must not change.
             upload = pack(fmu, Path(folder) / f"wheel-{mark}.zip")
             client.upload_file(str(upload))
         client.wait_for_workers(1, timeout=PATIENCE)
