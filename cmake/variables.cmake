@@ -9,3 +9,4 @@ add_custom_command(
   DEPENDS ${made_from}
   COMMENT "Writing the rows of modelDescription.xml"
 )
+add_custom_target(variable_rows DEPENDS ${VARIABLE_ROWS})

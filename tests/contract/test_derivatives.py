@@ -190,6 +190,14 @@ def test_every_pair_that_the_description_declares_for_the_start_is_answered_and_
     assert w.messages == []
 
 
+def test_a_parameter_that_cannot_change_has_no_derivative(wheel):
+    w = wheel().initializing(J_x=1.0, J_y=1.0, J_z=1e-12)  # no inertia is larger than the two others together
+    refused, answered = ([w.refer("lambda_3"), 1, w.refer(name), 1, [1], [0]] for name in ("J_x", "m"))
+    assert w.ask("GetDirectionalDerivative", *refused) == ERROR
+    assert w.texts() == ["fmi2GetDirectionalDerivative: no valid initial values near J_x = 1 for a derivative."]
+    assert w.ask("GetDirectionalDerivative", *answered) == OK
+
+
 def test_asking_leaves_the_start_as_it_was(wheel):
     w, other = (wheel().initializing(**GENERAL).give({"M_3": (0.0, 0.3)}) for _ in range(2))
     for instance in (w, other):

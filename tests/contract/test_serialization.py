@@ -184,7 +184,7 @@ def changes(word: int, seed: int) -> list[int]:
 def what_follows(w: FMU2Wheel) -> list[tuple[int, bytes]]:
     """Two steps from 0.7 s on, which end soon, whatever their status."""
     begin, seen, w.time = process_time(), [], 0.7
-    for h in (0.05, 0.3):
+    for h in (0.05, 0.1):
         seen.append((w.step(h), w.bits()))
         if seen[-1][0] != OK:
             break

@@ -74,7 +74,7 @@ def margin(mu: float, run: Solution) -> np.ndarray:
 def test_instants_in_random_scenes_are_those_of_the_reference(library: Library) -> None:
     """The limit is that needed at a random instant; the reference's margin changes sign around the FMU's."""
     random, lost, instant = np.random.default_rng(31), 0, 1e-8
-    for k in range(240):
+    for k in range(80):
         (wheel, start), choice = random_scene(random), random.uniform(0.05, 1.0)
         if k % 4 == 0:
             wheel = replace(PAPER, r=wheel.r)  # free and symmetric: it can be unfolded
@@ -97,7 +97,7 @@ def test_instants_in_random_scenes_are_those_of_the_reference(library: Library) 
             continue
         assert (want[:-2] > 0).all() and want[-2] < 0 and want[-1] < 0, (k, mu, end, want[-4:] / weight)
         lost += 1
-    assert lost >= 100, lost
+    assert lost >= 30, lost
 
 
 FAST = {"theta_start": 1.2, "psi_dot_start": 0.3, "phi_dot_start": -6.0}  # free, symmetric: it can be unfolded

@@ -100,7 +100,14 @@ def test_a_solution_that_cannot_go_on_fails_with_a_sentence_where_it_ends(solver
     one = solver(method, problem)
     assert one.run(2.0, 100_000) == FAILED
     within(absolute_error(one.now.known, 1), 4e-8, "until")
-    assert len(one.failure.split()) > 3
+    assert one.failure == "the step size became too small"
+
+
+def test_rates_that_are_not_finite_are_named_as_the_reason(solver, method):
+    one = solver(method, "ending")
+    one.restart(2.0, [1.0])  # behind the instant from which its rate is no number
+    assert one.run(3.0) == FAILED
+    assert one.failure == "the rates of the states are not finite"
 
 
 def test_bdf_solves_a_stiff_problem_in_a_hundredth_of_the_steps_of_an_explicit_method(solver):

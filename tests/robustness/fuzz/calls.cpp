@@ -29,14 +29,14 @@ fmi2Component make_instance(fmi2Type kind) {
 }
 
 void choose(fmi2Component c, Bytes& in) {
-  constexpr unsigned choices[] = {ref_formulation, ref_friction_law, ref_method}, keep = ref_keep_contact;
+  constexpr unsigned integers[] = {ref_formulation, ref_friction_law, ref_method}, keep = ref_keep_contact;
   constexpr unsigned reals[] = {ref_s, ref_J_x, ref_slope, ref_M_3, ref_M_brake};
   const int picked[] = {1 + static_cast<int>(in.below(3)), 1 + static_cast<int>(in.below(2)),
                         1 + static_cast<int>(in.below(4))};
   const double values[] = {in.chance(8) ? 0.03 : 0, in.chance(8) ? 0.9 : 1, in.chance(4) ? 0.2 : 0,
                            in.chance(4) ? 0.2 : 0, in.chance(4) ? 0.1 : 0};
   const int kept = in.chance(8);
-  fmi2SetInteger(c, choices, 3, picked);
+  fmi2SetInteger(c, integers, 3, picked);
   fmi2SetReal(c, reals, 5, values);
   fmi2SetBoolean(c, &keep, 1, &kept);
 }
