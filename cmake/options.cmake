@@ -17,10 +17,9 @@ if(NOT WHEEL_COVERAGE)
   add_compile_options(-ffile-prefix-map=${CMAKE_SOURCE_DIR}=. -ffile-prefix-map=${CMAKE_BINARY_DIR}=.)
 endif()
 
-include(CheckIPOSupported)
-check_ipo_supported(RESULT ipo OUTPUT reason LANGUAGES C CXX)
-if(ipo AND CMAKE_BUILD_TYPE STREQUAL Release AND NOT WHEEL_SANITIZE)
-  set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ON)
+if(CMAKE_BUILD_TYPE STREQUAL Release AND NOT WHEEL_SANITIZE)
+  include(CheckIPOSupported)
+  check_ipo_supported(RESULT CMAKE_INTERPROCEDURAL_OPTIMIZATION OUTPUT reason LANGUAGES C CXX)
 endif()
 
 # Our own code: the fuzzer is not to chase branches inside CVODE, whose coverage shows nothing either.

@@ -234,6 +234,7 @@ FORGERIES = {
         ],
         "a change lies ahead of the time reached": [{"t": -1.0}],
         "time reached, s": [{"t": np.inf}],
+        "inputs asked for, with their derivatives": [{"slope_asked": np.nan}],
         "whose solver moves the wheel": [{"kind": 2}],
         "the state is outside the model": NO_WHEEL,
     },

@@ -106,10 +106,11 @@ def test_an_example_writes_table_figure_fmus_and_package_and_nothing_else(run: C
 @pytest.mark.parametrize(("package", "rest"), PACKAGES)
 def test_every_package_of_a_document_has_its_values(run: Callable, tmp_path: Path, package: str, rest: str) -> None:
     run(f"{package.split('/')[0]} stop=0.1")
-    command = [sys.executable, VEHICLES / "run_package.py", "fmpy", tmp_path / package, *rest.split()]
+    step, _, *names = rest.split()
+    command = [sys.executable, VEHICLES / "run_package.py", "fmpy", tmp_path / package, step, "0.1", *names]
     lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
     values = {line.split()[0]: np.isfinite(float(line.split()[1])) for line in lines}
-    assert values == dict.fromkeys(rest.split()[2:], True)
+    assert values == dict.fromkeys(names, True)
 
 
 def test_the_documents_print_commands_for_every_vehicle() -> None:

@@ -58,10 +58,10 @@ def off_the_end(fmus: Fmus, vehicle: Vehicle, manoeuvre: Manoeuvre, step: float,
 
 
 def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(fmus: Fmus, tmp_path: Path) -> None:
-    manoeuvre = layout.LANE.changed(stop=1.5)
+    manoeuvre = layout.LANE.changed(stop=0.75)
     errors = [off_the_end(fmus, car.CAR, manoeuvre, h, tmp_path, "chassis.X_R") for h in (0.001, 0.0005)]
     within(abs(np.log2(errors[0] / errors[1]) - 1), 0.005, "order off 1")
-    within(errors[1], 0.01, "off the end, m")  # of 22 m
+    within(errors[1], 0.01, "off the end, m")  # of 11 m
 
 
 def test_the_package_of_the_axle_runs_in_fmpy(fmus: Fmus, tmp_path: Path) -> None:
