@@ -94,8 +94,7 @@ def test_an_example_writes_table_figure_fmus_and_package_and_nothing_else(run: C
 
     before, (status, said) = changes(), run("axle scene=straight M_left=40 M_right=40 stop=0.5")
     assert (status, changes()) == (0, before)
-    names = {p.name for p in (tmp_path / "axle").iterdir()}
-    assert names == {"axle.csv", "axle.png", "axle.ssp", "axle.fmu", "wheel.fmu"}
+    assert {p.name for p in tmp_path.glob("axle/*")} == {"axle.csv", "axle.png", "axle.ssp", "axle.fmu", "wheel.fmu"}
     last = np.genfromtxt(tmp_path / "axle" / "axle.csv", delimiter=",", names=True)[-1]
     assert last["time"] == pytest.approx(0.5)
     exact = 80 / (0.35 * axle.constants(options.manoeuvres("axle")["straight"]).m_t) * 0.5
@@ -127,9 +126,8 @@ def test_the_exit_status_follows_from_the_verdict_and_table_and_picture_are_kept
     """Also of every command that a document prints: it runs, is the manoeuvre it names, and draws it."""
     if case["line"] not in RUNS:
         monkeypatch.setattr(style, "save_png", lambda _, path: path.touch())
-    status, output = run(case["line"])
+    (status, output), name = run(case["line"]), case["line"].split()[0]
     assert (status, case["said"] in output, case["unsaid"] in output) == (int(case["status"]), True, False), output
-    name = case["line"].split()[0]
     kept = {p.name for p in (tmp_path / name).iterdir()}
     assert kept >= {f"{name}.csv", f"{name}.png", "wheel.fmu"} or "x_fl" in case["line"]
 
@@ -138,8 +136,7 @@ def test_an_example_is_copied_into_an_empty_folder_by_the_recipe_of_the_document
     (recipe,) = re.findall(r"```\n(project=.*?)```", (VEHICLES / "README.md").read_text(), re.DOTALL)
     recipe = recipe.replace("/path/to/this/checkout", str(ROOT))
     subprocess.run(["bash", "-e", "-c", recipe], cwd=tmp_path, check=True, capture_output=True)
-    copied = Component("axle", tmp_path / "build" / "axle.fmu", {"m_B": 100.0})
-    with loaded(copied):
+    with loaded(copied := Component("axle", tmp_path / "build" / "axle.fmu", {"m_B": 100.0})):
         assert set(copied.variable) >= {"X", "F_X_left"}
 
 
