@@ -1,7 +1,5 @@
 """Memory that runs short: every allocation of an instance's life fails in turn, once, or from there on for good."""
 
-import ctypes
-import gc
 import json
 import os
 import subprocess
@@ -9,7 +7,6 @@ import sys
 from collections.abc import Callable
 
 import pytest
-from support.bounds import beyond, within
 from support.driver import ERROR, OK
 from support.paths import ROOT
 
@@ -50,37 +47,6 @@ def test_no_failed_allocation_crashes_leaks_goes_unlogged_or_changes_a_later_bit
 
 def test_an_instance_takes_one_block_however_many_are_alive(play):
     assert [play("reduced", companions)["start"] for companions in (7, 8)] == [1, 1]
-
-
-class Mallinfo(ctypes.Structure):
-    """glibc's struct mallinfo2; numbers[7] are the bytes in use."""
-
-    _fields_ = [("numbers", ctypes.c_size_t * 10)]
-
-
-@pytest.mark.local
-@pytest.mark.parametrize("method", [2, 3, 4])
-def test_a_freed_instance_leaves_no_memory_behind(library, method):
-    mallinfo = ctypes.CDLL(None).mallinfo2
-    mallinfo.restype = Mallinfo
-    alive = []
-
-    def taken(kept: bool) -> float:
-        """Bytes an instance that has been stepped; freed, or kept."""
-        gc.collect()
-        before = mallinfo().numbers[7]
-        for _ in range(200):
-            w = library.wheel().start(method=method, s=0.01)
-            assert w.step(0.01) == OK
-            alive.append(w) if kept else w.close()
-        gc.collect()
-        return (mallinfo().numbers[7] - before) / 200
-
-    taken(False)  # what Python keeps from the first time
-    within(taken(False), 30, "left behind, bytes an instance")
-    beyond(taken(True), 2000, "in use, bytes an instance")
-    for w in alive:
-        w.close()
 
 
 def test_a_solver_that_gives_up_logs_its_reason_in_one_message_with_the_callers_time(wheel):
