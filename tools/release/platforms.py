@@ -30,7 +30,9 @@ WITHOUT_LOCK = f'#!/bin/sh\nexec {WINE} "$1" "$2"\n'
 
 
 def start_wine(out: Path, scratch: Path) -> None:
-    os.environ |= {"WINEPREFIX": f"{out}/wine", "WINEDEBUG": "-all", "PATH": f"{scratch}:{os.environ['PATH']}"}
+    # Only in a UTF-8 locale does wine find a folder whose name is not ASCII.
+    os.environ |= {"WINEPREFIX": f"{out}/wine", "WINEDEBUG": "-all", "LC_ALL": "C.UTF-8"}
+    os.environ["PATH"] = f"{scratch}:{os.environ['PATH']}"
     # Its first start makes a folder, which takes a while.
     subprocess.run([WINE, "wineboot", "--init"], capture_output=True, check=False)
     (scratch / "wine64").write_text(WITHOUT_LOCK)
