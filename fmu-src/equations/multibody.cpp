@@ -139,7 +139,8 @@ Solution solve(const WheelScene& scene, const Multibody& s, const Vector9& colum
 // the stiffest part.
 double decay_rate(const Multibody& s) {
   const double omega_squared = (s.Q * s.attitude.beta_dot).squaredNorm();
-  return 5 * std::sqrt(s.wheel.g / (s.wheel.r_0 + s.wheel.r) + omega_squared);
+  const double gravity = Vector3(s.wheel.g_X, s.wheel.g_Y, s.wheel.g).stableNorm();
+  return 5 * std::sqrt(gravity / (s.wheel.r_0 + s.wheel.r) + omega_squared);
 }
 
 // (24) with -[B_dot]{q_dot} - decay_rate [B]{q_dot} in the last rows, and a height that decays to that of (32)

@@ -50,6 +50,12 @@ double wheel_required_friction(const double lambda[3]) {
   return sqrt(lambda[0] * lambda[0] + lambda[1] * lambda[1]) / lambda[2];
 }
 
+double wheel_required_friction_rate(const double lambda[3], const double lambda_dot[3]) {
+  double mu = wheel_required_friction(lambda), N = lambda[2];
+  if (mu == 0) return 0;
+  return (lambda[0] * lambda_dot[0] + lambda[1] * lambda_dot[1]) / (mu * N) / N - mu * lambda_dot[2] / N;
+}
+
 void wheel_constraint_residuals(const WheelParameters* wheel, const WheelKinematics* k, double* velocity,
                                 double* height) {
   double s = sin(k->theta), c = cos(k->theta), sin_psi = sin(k->psi), cos_psi = cos(k->psi);

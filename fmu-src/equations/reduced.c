@@ -361,13 +361,13 @@ static void add_reaction(const WheelScene* scene, const AxleLaw* law, const doub
  * difference quotient of fourth order. Its step is a small part of the time in which the wheel itself moves. */
 void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
                           const double* state, WheelReactionRates* out) {
-  const double turn = 6.283185307179586, share = 1e-3;
+  const double share = 1e-3;
   static const WheelLoad constant = {{0}, {0}, 0};
   if (!load_dot) load_dot = &constant;
   double y[WHEEL_REDUCED_STATES], y_dot[WHEEL_REDUCED_STATES];
   formulation->reduce(state, y);
-  y[PSI] = remainder(y[PSI], turn); /* a small step must not vanish in the rounding of a large angle */
-  y[PHI] = remainder(y[PHI], turn);
+  y[PSI] = wheel_less_turns(y[PSI]); /* a small step must not vanish in the rounding of a large angle */
+  y[PHI] = wheel_less_turns(y[PHI]);
   AxleLaw law;
   double N = rates_of(scene, y, y_dot, &law);
   AxleLaw changing = law; /* of (s N + brake) kappa at a constant N */

@@ -1,4 +1,5 @@
-/* The law of friction; makes a scene of a wheel, a load and a law, and checks the law; puts a wheel on a slope. */
+/* The law of friction; makes a scene of a wheel, a load and a law, and checks the law; puts a wheel on a slope; turns
+ * taken off an angle. */
 #include <math.h>
 
 #include "wheel_equations.h"
@@ -22,6 +23,15 @@ WheelScene wheel_scene(const WheelParameters* wheel, const WheelLoad* load, Whee
   if (load) scene.load = *load;
   if (!is_meant(wheel, scene.load.brake, &friction)) scene.friction.kind = WHEEL_NO_LAW;
   return scene;
+}
+
+double wheel_less_turns(double angle) {
+  const double pi = 3.141592653589793;
+  if (fabs(angle) <= pi) return angle;
+  /* The nearest multiple of a rounded 2 pi is off by less than 1e-4 rad; sine and cosine of the whole angle are not. */
+  double rest = remainder(angle, 2 * pi);
+  for (int i = 0; i < 2; ++i) rest += sin(angle) * cos(rest) - cos(angle) * sin(rest);
+  return rest;
 }
 
 void wheel_set_slope(WheelParameters* wheel, double g, double slope, double direction) {

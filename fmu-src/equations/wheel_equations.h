@@ -161,6 +161,9 @@ double wheel_energy(const WheelParameters* wheel, const WheelKinematics* motion)
 /* Ratio of tangential to normal force of the ground: the friction coefficient that rolling without slip needs.
  * Infinite where the ground does not press (lambda_3 <= 0). */
 double wheel_required_friction(const double lambda[3]);
+/* Its rate of change from that of the force; the mean of both sides, 0, where no force is tangential. NaN where it is
+ * infinite. */
+double wheel_required_friction_rate(const double lambda[3], const double lambda_dot[3]);
 
 /* The point of the ground that the wheel touches, and how fast it moves along the ground (not the wheel's material
  * point there, which rests). Fixed axes, m, m/s. */
@@ -175,6 +178,9 @@ WheelContact wheel_contact(const WheelParameters* wheel, const WheelKinematics* 
 void wheel_horizontal_force(const WheelKinematics* motion, const double lambda[3], double force[2]);
 void wheel_horizontal_force_rates(const WheelKinematics* motion, const double lambda[3], const double lambda_dot[3],
                                   double force_dot[2]);
+
+/* The same angle, rad, less whole turns: from -pi to pi, exact to the last digit however large it is. */
+double wheel_less_turns(double angle);
 
 /* Height of O, m: r_0 sin(theta) + r, (32). */
 double wheel_height(const WheelParameters* wheel, double theta);

@@ -79,16 +79,11 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     for (std::size_t u = 0; u < n_unknowns; ++u)
       if (!check_unknown(i, unknowns[u])) return fmi2Error;
     if (const fmi2Status status = i.prepare_reading(unknowns, n_unknowns)) return status;
-    for (std::size_t u = 0; u < n_unknowns; ++u) {
-      values[u] = 0;
-      for (std::size_t k = 0; k < n_knowns; ++k) {
-        const std::optional<double> slope = i.simulation.derivative(unknowns[u], knowns[k]);
-        if (!slope)
-          return i.log(Topic::error, "%s: no valid initial values near %s = %s for a derivative.",
-                       wheel::row_of(knowns[k]).name, i.simulation.value(knowns[k]));
-        values[u] += seeds[k] * *slope;
-      }
-    }
+    std::fill_n(values, n_unknowns, 0.0);
+    for (std::size_t k = 0; k < n_knowns; ++k)
+      if (!i.simulation.add_slopes(knowns[k], seeds[k], unknowns, n_unknowns, values))
+        return i.log(Topic::error, "%s: no valid initial values near %s = %s for a derivative.",
+                     wheel::row_of(knowns[k]).name, i.simulation.value(knowns[k]));
     if (std::all_of(values, values + n_unknowns, [](double value) { return std::isfinite(value); })) return fmi2OK;
     return i.log(Topic::discard, "%s: a derivative is not finite here.");
   });

@@ -1,5 +1,4 @@
-// Half a nutation of the free wheel is integrated, its symmetry is tested against the right-hand side, and any later
-// instant is read from it by reflections and sums. Reduced form, carrier frame; path of O in fixed axes as X_O + i Y_O.
+// Any instant of the free wheel, read from half a nutation by reflections and sums. Path of O as X_O + i Y_O.
 #include "orbit.hpp"
 
 #include <algorithm>
@@ -7,49 +6,6 @@
 #include <numbers>
 
 namespace orbit {
-
-namespace {
-
-// The error of the half period is added once for every half. The half is therefore integrated to a fraction of the
-// tolerance, but not more exactly than rounding allows.
-constexpr double finer = 0.1, finest = 1e-14;
-// A looser tolerance than this would save little, since one nutation costs little, and its long steps would not be as
-// accurate as they estimate.
-constexpr double loosest = 1e-8;
-// In units of that fraction: a swing of omega_1 below least_swing cannot be separated from the errors of a few steps
-// (each may be 0.003), and a wheel that swings less than largest_rest is in steady motion. largest_break: how much a
-// state may change within the longest step by what breaks the symmetry, which rounding does too.
-constexpr double least_swing = 0.01, largest_rest = 0.003, largest_break = 0.1;
-
-}  // namespace
-
-// Whether a symmetry that maps y at t onto `image` at t_image holds there: the right-hand side at the image is the
-// mapped one, `expected`, and every watched function is the same.
-bool Orbit::holds(const solver::Problem& problem, double t, const double* y, double t_image, const double* image,
-                  const double* expected) {
-  constexpr double alike = 1e-5;
-  double rate[states], weights[states];
-  problem.derivative(problem.owner, t_image, image, rate);
-  problem.weights(problem.owner, problem.share, y, weights);
-  for (int i = 0; i < states; ++i)
-    if (!(std::fabs(rate[i] - expected[i]) * problem.longest_step * weights[i] <= largest_break)) return false;
-  return std::all_of(problem.watched, problem.watched + problem.watched_count, [&](const solver::Watched& watched) {
-    const double a = watched.value(problem.owner, watched.event, t, y);
-    const double b = watched.value(problem.owner, watched.event, t_image, image);
-    return std::fabs(a - b) <= alike * (1 + std::fabs(a));
-  });
-}
-
-Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
-                         solver::Solver& solver) {
-  double own[states] = {y0[theta], y0[omega_1], y0[omega_2], y0[omega_3]};  // psi, phi, X_O and Y_O are zero
-  problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
-  *this = Orbit();
-  if (rests(problem, own)) return kind_ = Kind::folded;
-  kind_ = follow(problem, pass, own, solver);
-  counters_ = solver.counters();
-  return kind_;
-}
 
 bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
   half_ = {};
@@ -61,180 +17,7 @@ bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
   track_.read(0, own);
   problem.derivative(problem.owner, 0, own, rate);
   set_place(rate, lead_.turn * place_of(rate));
-  return holds(problem, 0, own, 0, y0, rate);
-}
-
-// Steps past T1 and T2. A start with omega_1 = 0 is T1.
-Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
-  double y[states], rate[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1], t = 0;
-  bool turned = before == 0;
-  problem.derivative(problem.owner, 0, y0, rate);
-  if (!track_.begin(0, y0, rate) || !solver.start(problem, solver::Method::adams, 0, y0)) return Kind::refused;
-  for (;;) {
-    const solver::Outcome outcome = step(problem, pass, solver);
-    if (outcome == solver::Outcome::failed) return Kind::refused;
-    const double t_before = t;
-    t = solver.known_until();
-    solver.read(t, y);
-    problem.derivative(problem.owner, t, y, rate);
-    if (!track_.add(t, y, rate)) return Kind::refused;
-    if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
-      if (turned) {
-        track_.finish();
-        T1_ = turning_point(T1[0], T1[1]);
-        T2_ = turning_point(t_before, t);
-        return fold(problem, swing) ? Kind::folded : Kind::refused;
-      }
-      T1[0] = t_before;
-      T1[1] = t;
-      turned = true;
-      swing = 0;
-    }
-    if (outcome == solver::Outcome::event) {
-      track_.finish();
-      end_time_ = t;
-      event_ = solver.event();
-      return Kind::ended;
-    }
-    if (y[omega_1] != 0) before = y[omega_1];
-    swing = std::fmax(swing, std::fabs(y[omega_1]));
-  }
-}
-
-// To the end of a step, past the events after which the motion goes on; fails if these are too many to be kept.
-solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::Solver& solver) {
-  for (;;) {
-    const solver::Outcome outcome = solver.step();
-    if (outcome != solver::Outcome::event) return outcome;
-    double y[states];
-    solver.read(solver.event_time(), y);
-    const solver::Consequence consequence = pass(problem.owner, solver.event(), solver.event_time(), y);
-    if (consequence == solver::Consequence::ends) return outcome;
-    if (consequence == solver::Consequence::bends || !take_crossing(solver.event(), solver.event_time()))
-      return solver::Outcome::failed;
-    solver.resume();
-  }
-}
-
-// False if it is one too many.
-bool Orbit::take_crossing(int event, double t) {
-  recurs_ = true;
-  Recurrence& own = recurrences_[event];
-  const bool falls = own.falls == own.rises;
-  int& count = falls ? own.falls : own.rises;
-  if (count == most_crossings) return false;
-  (falls ? own.fall : own.rise)[count++] = t;
-  return true;
-}
-
-// The zero of omega_1 between two instants of the track, by regula falsi (Illinois).
-double Orbit::turning_point(double a, double b) const {
-  const auto rate = [this](double t) {
-    double y[states];
-    track_.read(t, y);
-    return y[omega_1];
-  };
-  double f_a = rate(a), f_b = rate(b);
-  if (f_a == 0 || a == b) return a;
-  for (int i = 0; i < 60 && f_b != 0 && a != b; ++i) {
-    const double t = b - f_b * (b - a) / (f_b - f_a), f = rate(t);
-    if (t == b) break;
-    if (std::signbit(f) != std::signbit(f_b)) {
-      a = b;
-      f_a = f_b;
-    } else {
-      f_a *= 0.5;
-    }
-    b = t;
-    f_b = f;
-  }
-  return b;
-}
-
-// Whether the half from T1 to T2 represents the whole motion.
-bool Orbit::fold(const solver::Problem& problem, double swing) {
-  constexpr int samples = 8;
-  double weights[states];
-  take_half();
-  problem.weights(problem.owner, problem.share, second_, weights);
-  if (!(T2_ > T1_) || swing * weights[omega_1] < least_swing) return false;
-  kind_ = Kind::folded;
-  for (int i = 0; i < samples; ++i)
-    if (!is_mirrored(problem, (i + 0.5) / samples * (T2_ - T1_))) return false;
-  return true;
-}
-
-// Whether the right-hand side, as long after T2 as the state was before, is the mirror image with time reversed.
-bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
-  double y[states], rate[states], image[states];
-  track_.read(T2_ - since, y);
-  read(T2_ + since, image);
-  problem.derivative(problem.owner, T2_ - since, y, rate);
-  for (const State i : {theta, omega_2, omega_3}) rate[i] = -rate[i];
-  set_place(rate, -half_of(T2_ + since).turn * std::conj(place_of(rate)));
-  return holds(problem, T2_ - since, y, T2_ + since, image, rate);
-}
-
-// Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing,
-// and no event occurs.
-// With omega_2 and omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the initial
-// state repeats for ever.
-bool Orbit::rests(const solver::Problem& problem, const double* y0) {
-  const double h = 1e-4 * std::sin(y0[theta]), slowest = 0.5 / problem.longest_step;
-  double y[states], rate[states], along[states], ahead[states], behind[states], weights[states];
-  problem.derivative(problem.owner, 0, y0, rate);
-  problem.weights(problem.owner, problem.share, y0, weights);
-  if (!(std::fabs(y0[omega_1]) * weights[omega_1] < 1)) return false;
-  for (int i = 0; i < problem.watched_count; ++i)
-    if (problem.watched[i].value(problem.owner, problem.watched[i].event, 0, y0) < 0) return false;
-  std::copy_n(y0, states, y);
-  y[omega_1] = 1;
-  problem.derivative(problem.owner, 0, y, along);
-  y[omega_1] = 0;
-  const auto lean = [&](double by, double* out) {
-    y[theta] = y0[theta] + by;
-    y[omega_2] = y0[omega_2] + by * along[omega_2];
-    y[omega_3] = y0[omega_3] + by * along[omega_3];
-    problem.derivative(problem.owner, 0, y, out);
-  };
-  lean(h, ahead);
-  lean(-h, behind);
-  const double stiffness = (behind[omega_1] - ahead[omega_1]) / (2 * h);
-  if (!(stiffness > 1e-3 * slowest * slowest)) return false;
-  const double swing = std::fabs(rate[omega_1]) / stiffness + std::fabs(y0[omega_1]) / std::sqrt(stiffness);
-  const double most_weight = std::fmax(weights[theta], std::fmax(std::fabs(along[omega_2]) * weights[omega_2],
-                                                                 std::fabs(along[omega_3]) * weights[omega_3]));
-  if (!(swing * most_weight < largest_rest)) return false;
-  return keep_rest(problem, y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
-}
-
-// The circle (or straight line) of a steady motion over `length`, s, in which psi turns by 0.2 rad at most; false where
-// the right-hand side leads off it.
-bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length) {
-  constexpr int parts = 5;
-  double y[states], y_dot[states] = {}, expected[states];
-  std::copy_n(y0, states, y);
-  y[omega_1] = 0;
-  y_dot[psi] = rate[psi];
-  y_dot[phi] = rate[phi];
-  const Complex start = place_of(y0), velocity = place_of(rate);
-  for (int i = 0; i <= parts; ++i) {
-    const double t = length * i / parts, turn = rate[psi] * t;
-    const double shortened = turn == 0 ? 1 : std::sin(0.5 * turn) / (0.5 * turn);  // chord over arc
-    y[psi] = y0[psi] + turn;
-    y[phi] = y0[phi] + rate[phi] * t;
-    set_place(y, start + velocity * (t * shortened) * std::polar(1.0, 0.5 * turn));
-    set_place(y_dot, velocity * std::polar(1.0, turn));
-    std::copy_n(y_dot, states, expected);
-    expected[omega_1] = rate[omega_1];  // `rests` has seen to it
-    if (!holds(problem, 0, y0, t, y, expected)) return false;
-    if (!(i == 0 ? track_.begin(t, y, y_dot) : track_.add(t, y, y_dot))) return false;
-  }
-  track_.finish();
-  T1_ = 0;
-  T2_ = length;
-  take_half();
-  return true;
+  return maps(problem, 0, own, 0, y0, rate);
 }
 
 // What the sums need, from the states at T1 and T2, and the recurring events.
@@ -242,21 +25,11 @@ void Orbit::take_half() {
   track_.read(T1_, first_);
   track_.read(T2_, second_);
   delta_ = std::remainder(second_[psi] - first_[psi], std::numbers::pi);
-  step_ = (place_of(second_) - place_of(first_)) * std::polar(1.0, -first_[psi]);
-  pair_ = 2 * (step_ * std::polar(1.0, -delta_)).real();
+  displacement_ = (place_of(second_) - place_of(first_)) * std::polar(1.0, -first_[psi]);
+  pair_ = 2 * (displacement_ * std::polar(1.0, -delta_)).real();
   first_turn_ = std::polar(1.0, first_[psi]);
   mirror_turn_ = std::polar(1.0, 2 * second_[psi]);
   for (Recurrence& recurrence : recurrences_) recurrence.repeat(T1_, T2_);
-}
-
-// The falls in the two halves after T2, of which the first is mirrored.
-void Orbit::Recurrence::repeat(double T1, double T2) {
-  const double period = 2 * (T2 - T1);
-  while (falls > 0 && fall[falls - 1] > T2) --falls;
-  for (int i = rises - 1; i >= 0; --i)
-    if (rise[i] > T1 && rise[i] < T2) later_fall[later_falls++] = T2 - rise[i];
-  for (int i = 0; i < falls; ++i)
-    if (fall[i] > T1) later_fall[later_falls++] = period - (T2 - fall[i]);
 }
 
 // The sum of k halves, each the mirror image of the one before: with d the displacement of O in the
@@ -270,7 +43,7 @@ Orbit::Half Orbit::half_at(double k) const {
   const Complex turned = std::polar(1.0, n * delta_), pairs_turn = turned * turned;
   const double quotient = delta_ == 0 ? n : turned.imag() / std::sin(delta_);
   Complex way = pair_ * quotient * turned;
-  if (half.mirrored) way += step_ * pairs_turn;
+  if (half.mirrored) way += displacement_ * pairs_turn;
   half.place = lead_.place + lead_.turn * (place_of(first_) + way * first_turn_);
   half.turn = lead_.turn * (half.mirrored ? -pairs_turn * mirror_turn_ : pairs_turn);
   half.psi_sum = lead_.psi_sum + (half.mirrored ? 2 * second_[psi] + (k - 1) * turn : k * turn);
@@ -314,24 +87,6 @@ void Orbit::read(double t, double* y) const {
     y[phi] = -y[phi];
   }
   turn_by(half, way, y);
-}
-
-double Orbit::fall(int event, long long n) const {
-  const Recurrence& own = recurrences_[event];
-  if (n < own.falls) return own.fall[n];
-  const long long periods = (n - own.falls) / own.later_falls;
-  return begin_of(1 + 2 * static_cast<double>(periods)) + own.later_fall[(n - own.falls) % own.later_falls];
-}
-
-long long Orbit::falls_until(int event, double t) const {
-  const auto& [falls, rises, later_falls, fall, rise, later_fall] = recurrences_[event];
-  if (kind_ != Kind::folded || t <= T2_ || later_falls == 0) return std::upper_bound(fall, fall + falls, t) - fall;
-  constexpr double most_periods = 1e15;  // later, times have no more digits for them
-  const double periods = std::floor(std::fmin((t - T2_) / (2 * (T2_ - T1_)), most_periods));
-  const double begin = begin_of(1 + 2 * periods);
-  const auto is_before = [begin](double instant, double later) { return instant < begin + later; };
-  const long long last = std::upper_bound(later_fall, later_fall + later_falls, t, is_before) - later_fall;
-  return falls + static_cast<long long>(periods) * later_falls + last;
 }
 
 }  // namespace orbit

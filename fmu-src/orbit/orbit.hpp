@@ -10,12 +10,21 @@
 // Heading, roll angle and place of the start are symmetries too: the motion is integrated from zeros, and psi, phi, X_O
 // and Y_O of the start are added when it is read. Many turns at the start cost no digits.
 //
+//     theta
+//       |       T1              T3
+//       |     .    .          .    .            integrated: from 0 past T2
+//       |   .        .      .        .          T1 to T2:   L, the half that is kept
+//       |  .           .  .            .        T2 to T3:   its mirror image about T2, turned and displaced
+//       +--0-----------T2----------------- t    from T3 on: images of images, L each
+//
 // State of the reduced form (wheel_equations.h): theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O. Time in s, zero
 // at the start.
 #pragma once
 
 #include <complex>
 #include <limits>
+
+#include "recurrence.hpp"
 #include "solver.hpp"
 #include "track.hpp"
 
@@ -52,17 +61,14 @@ class Orbit {
   // rad/s, the larger of the mean rates of psi and phi; folded only.
   double fastest_turn() const;
 
-  // Whether some event recurs; and the instants at which one falls below zero, in order and numbered from 0: how many
-  // there are up to t, and when the number n is (n below falls_until of some t). A start below zero counts. The cost
-  // does not depend on t or n.
+  // Whether some event recurs, and the instants at which one does.
   bool recurs() const { return recurs_; }
-  long long falls_until(int event, double t) const;
-  double fall(int event, long long n) const;
+  const Recurrence& recurrence(int event) const { return recurrences_[event]; }
 
  private:
   enum State { theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O };
   using Complex = std::complex<double>;
-  static constexpr int states = Track::states, most_crossings = 16;
+  static constexpr int states = Track::states;
   static Complex place_of(const double* y) { return {y[X_O], y[Y_O]}; }
   static void set_place(double* y, Complex place) {
     y[X_O] = place.real();
@@ -78,24 +84,17 @@ class Orbit {
     Complex place = 0, turn = 1;
   };
 
-  // What recurs of one event: instants up to T2 at which it falls below zero and rises again; falls in one period from
-  // T2 on, counted from T2.
-  struct Recurrence {
-    int falls = 0, rises = 0, later_falls = 0;
-    double fall[most_crossings] = {}, rise[most_crossings] = {}, later_fall[2 * most_crossings] = {};
-    void repeat(double T1, double T2);
-  };
-
-  static bool holds(const solver::Problem& problem, double t, const double* y, double t_image, const double* image,
-                    const double* expected);
+  // building.cpp
+  static bool maps(const solver::Problem& problem, double t, const double* y, double t_image, const double* image,
+                   const double* expected);
   bool rests(const solver::Problem& problem, const double* y0);
   bool keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length);
   Kind follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
   solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
-  bool take_crossing(int event, double t);
   double turning_point(double t_lo, double t_hi) const;
   bool fold(const solver::Problem& problem, double swing);
   bool is_mirrored(const solver::Problem& problem, double since) const;
+  // orbit.cpp
   void take_half();
   static void turn_by(const Half& half, Complex way, double* y);
 
@@ -114,7 +113,7 @@ class Orbit {
   double delta_ = 0;                                 // psi(T2) - psi(T1) less the nearest multiple of pi
   double pair_ = 0;                                  // factor of the sum over pairs of halves
   Complex first_turn_, mirror_turn_;                 // exp(i psi(T1)), exp(2 i psi(T2))
-  Complex step_;                                     // from O(T1) to O(T2), seen along psi(T1)
+  Complex displacement_;                             // from O(T1) to O(T2), seen along psi(T1)
 
   bool recurs_ = false;
   Recurrence recurrences_[solver::max_watched + 1] = {};  // by event

@@ -121,10 +121,11 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
     if (next_ == Next::starts_after_stop) ++counters->restarts;
     if (first) {
       std::copy_n(step->y_end, o.states, data(o.y));
-      CVodeReInit(o.cvode, step->end, o.y);
+      flag = CVodeReInit(o.cvode, step->end, o.y);
       next_ = Next::goes_on;
     }
-    std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
+    if (flag >= 0) flag = std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
+    if (flag < 0) break;
     const long jacobians = first ? 0 : jacobians_of(o);  // CVODE's own count starts anew with its first step
     // The size of CVODE's first step depends on the time it is asked for, so it is always asked for the same time
     // ahead.
@@ -148,16 +149,16 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
 }
 
 void Cvode::expand(const Problem& problem, Counters*, Step* step) {
-  int order = 1;
-  CVodeGetLastOrder(objects_->cvode, &order);
+  int order = 0;
+  bool done = CVodeGetLastOrder(objects_->cvode, &order) == CV_SUCCESS;
   const double h = step->end - step->start;
   double factor = 1;
-  step->degree = 0;
-  for (int k = 0; k <= order; ++k, factor *= h / k) {
-    if (CVodeGetDky(objects_->cvode, step->end, k, objects_->y) != CV_SUCCESS) break;
+  for (int k = 0; k <= order && done; ++k, factor *= h / k) {
+    done = CVodeGetDky(objects_->cvode, step->end, k, objects_->y) == CV_SUCCESS;
     for (int i = 0; i < problem.states; ++i) step->c[k][i] = factor * data(objects_->y)[i];
-    step->degree = k;
   }
+  step->degree = order;
+  if (!done) step->set_chord(problem.states);
 }
 
 }  // namespace solver

@@ -182,7 +182,7 @@ struct RungeKutta::Work {
   // Here it is sorted by the powers of s = x - 1.
   void expand() {
     double p_3[width], p_4[width], p_5[width], p_6[width], margin;
-    if (engine.rates_ == 12) evaluate_rest(&margin);
+    if (engine.rates_ == 12 && !evaluate_rest(&margin)) return step.set_chord(width);
     combine<table::d_3>(p_3);
     combine<table::d_4>(p_4);
     combine<table::d_5>(p_5);

@@ -16,7 +16,7 @@ bool Solver::start(const Problem& problem, Method method, double t, const double
 }
 
 bool Solver::restart(const Problem& problem, Method method, double t, const double* y) {
-  stop_time_ = time_to_look_again(t);
+  first_stop_ = time_to_look_again(t);
   problem_ = problem;
   method_ = method;
   known_until_ = event_time_ = t;
@@ -51,18 +51,17 @@ double Solver::time_to_look_again(double t) const {
 
 bool Solver::reaches(double t) const { return known_until_ >= t - rounding_at(t); }
 
-Outcome Solver::step() {
+Outcome Solver::step(double stop) {
   if (pending_ != Outcome::stepped) return pending_;
   const double from = known_until_;
-  if (known_until_ == step_.end && !make_step()) return pending_ = Outcome::failed;
+  if (known_until_ == step_.end && !make_step(std::fmin(stop, first_stop_))) return pending_ = Outcome::failed;
   known_until_ = step_.end;
   if (step_.end > step_.start) look_for_events(from);
   return pending_;
 }
 
-bool Solver::make_step() {
-  const double stop = stop_time_;
-  stop_time_ = never;
+bool Solver::make_step(double stop) {
+  first_stop_ = never;
   // Where the stop time differs from the time reached by rounding only, the solution is moved there.
   if (stop > known_until_ && reaches(stop)) {
     step_.set_point(stop, step_.y_end, problem_.states);
@@ -71,7 +70,7 @@ bool Solver::make_step() {
   step_.start = step_.end;
   std::copy_n(step_.y_end, max_states, step_.y_start);
   step_.inside_share = 0;
-  step_.degree = -1;
+  step_.degree = Step::unknown;
   const bool done = engine().advance(problem_, stop, &counters_, &step_);
   if (done) {
     ++counters_.steps;
@@ -83,7 +82,7 @@ bool Solver::make_step() {
 }
 
 void Solver::expand(Counters* counters) const {
-  if (step_.degree < 0 && step_.end > step_.start) engine().expand(problem_, counters, &step_);
+  if (step_.degree == Step::unknown && step_.end > step_.start) engine().expand(problem_, counters, &step_);
 }
 
 // Looks from `from` to the end of the step for the first event.
@@ -146,24 +145,18 @@ void Solver::visit(support::Archive& archive) {
   archive("time known, s").number(known_until_);
   archive("time of the event, s").number(event_time_);
   archive("values of watched functions").numbers(values_, max_watched);
-  archive("time of a stop, s").range(stop_time_, -archive.greatest, never);
+  archive("latest end of the first step, s").range(first_stop_, -archive.greatest, never);
   archive("counters");
   for (long long* count : counters_.all()) archive.tally(*count);
-  archive("start of the step, s").number(step_.start);
-  archive("end of the step, s").number(step_.end);
-  archive("states at the ends of the step").numbers(step_.y_start, problem_.states);
-  archive.numbers(step_.y_end, problem_.states);
+  step_.visit(archive, problem_.states);
   if (archive.reads() && !restored_fits()) archive.refuse();
   for (Engine* one : engines_)
     if (!archive.fault()) one->visit(archive, problem_, &step_, one == &engine());
 }
 
-void Solver::save_history(support::Archive& archive) const { const_cast<Solver&>(*this).visit(archive); }
-
 bool Solver::restore_history(const Problem& problem, support::Archive& archive) {
   problem_ = problem;
   step_ = {};
-  step_.degree = -1;
   runge_kutta_ = {};
   visit(archive);
   failure_ = pending_ == Outcome::failed ? "the solver had failed before the state was saved" : nullptr;

@@ -21,11 +21,15 @@ enum class Outcome { stepped, event, failed };
 
 class Solver {
  public:
+  Solver() = default;
+  Solver(const Solver&) = delete;  // it points to engines of its own
+  Solver& operator=(const Solver&) = delete;
+
   // Starts, or starts anew, from y at time t (s); history is dropped. The first start sets the counters to zero, later
   // ones go on counting (`restarts` counts all but the first). Runge-Kutta keeps the step size that it wanted last.
   // False where SUNDIALS could not be set up: failure().
-  bool start(const Problem& problem, Method method, double t, const double* y);
-  bool restart(const Problem& problem, Method method, double t, const double* y);
+  [[nodiscard]] bool start(const Problem& problem, Method method, double t, const double* y);
+  [[nodiscard]] bool restart(const Problem& problem, Method method, double t, const double* y);
 
   // After an event that changes nothing of the motion, only what is watched: the same step goes on.
   void resume();
@@ -36,11 +40,10 @@ class Solver {
 
   // One internal step, or the rest of one that was resumed. After an event known_until() is event_time(), and the owner
   // restarts from there, resumes or ends.
-  Outcome step();
-
-  // The next step ends at t, s, at the latest; one that would end within a few roundings of t ends at t. CVODE starts
-  // anew there: the short step would leave a history over nodes that lie close together, which rounding ruins.
-  void stop_before(double t) { stop_time_ = std::fmin(stop_time_, t); }
+  // A new step ends at `stop`, s, at the latest; one that would end within a few roundings of it ends there. CVODE
+  // starts anew at a stop: the short step would leave a history over nodes that lie close together, which rounding
+  // ruins.
+  [[nodiscard]] Outcome step(double stop = never);
 
   // Whether y(t) is known: known_until() is at t, up to a few roundings of t, or past it.
   bool reaches(double t) const;
@@ -58,13 +61,13 @@ class Solver {
 
   // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on bit-identically. It is
   // the last part of an archive; restore refuses what could not have been saved (false; no solution then until start).
-  void save_history(support::Archive& archive) const;
-  bool restore_history(const Problem& problem, support::Archive& archive);
+  void save_history(support::Archive& archive) { visit(archive); }
+  [[nodiscard]] bool restore_history(const Problem& problem, support::Archive& archive);
 
  private:
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }
   double time_to_look_again(double t) const;
-  bool make_step();
+  bool make_step(double stop);
   void expand(Counters* counters) const;
   void look_for_events(double from);
   bool comes_near(const Search& search);
@@ -78,7 +81,7 @@ class Solver {
   const char* failure_ = "the solver was not started";  // null: the engine knows
   double known_until_ = 0, event_time_ = 0;             // s
   int event_ = 0;
-  double stop_time_ = 0;             // s, of the next step
+  double first_stop_ = never;        // s, latest end of the first step after a start
   double values_[max_watched] = {};  // of what is watched at each step, at its end or where the solution was resumed
   Counters counters_ = {};
   // The dense output of the last step is computed when it is first needed: a pure function of the step.

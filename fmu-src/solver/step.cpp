@@ -2,7 +2,6 @@
 #include "step.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace solver {
 namespace {
@@ -12,12 +11,10 @@ namespace {
 template <int width>
 void evaluate(const double (*c)[max_states], int degree, double s, double* y) {
   const int even = degree - degree % 2, odd = degree - 1 + degree % 2;
-  double sum[2][width];
-  std::memcpy(sum[0], c[even], sizeof sum[0]);
-  std::memcpy(sum[1], c[odd], sizeof sum[1]);
-  for (int k = even - 2; k >= 0; k -= 2)
+  double sum[2][width] = {};
+  for (int k = even; k >= 0; k -= 2)
     for (int i = 0; i < width; ++i) sum[0][i] = sum[0][i] * (s * s) + c[k][i];
-  for (int k = odd - 2; k > 0; k -= 2)
+  for (int k = odd; k > 0; k -= 2)
     for (int i = 0; i < width; ++i) sum[1][i] = sum[1][i] * (s * s) + c[k][i];
   for (int i = 0; i < width; ++i) y[i] = sum[0][i] + sum[1][i] * s;
 }
@@ -31,6 +28,25 @@ void Step::set_point(double t, const double* y, int states) {
   degree = 0;
   std::copy_n(y, states, y_start);
   std::copy_n(y_start, states, y_end);
+}
+
+void Step::set_chord(int states) {
+  degree = 1;
+  for (int i = 0; i < states; ++i) {
+    c[0][i] = y_end[i];
+    c[1][i] = y_end[i] - y_start[i];
+  }
+}
+
+void Step::visit(support::Archive& archive, int states) {
+  if (archive.reads()) degree = unknown;
+  archive("start of the step, s").number(start);
+  archive("end of the step, s").number(end);
+  archive("states at the ends of the step").numbers(y_start, states);
+  archive.numbers(y_end, states);
+  archive("lowest margin in the step").range(lowest_margin, -archive.greatest, never);
+  archive("state inside the step, and where").range(inside_share, 0, 1);
+  archive.numbers(y_inside, states);
 }
 
 void Step::read(double t, int states, double* y) const {

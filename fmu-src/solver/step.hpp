@@ -36,12 +36,19 @@ struct Step {
   // none.
   double inside_share;
   alignas(16) double y_inside[max_states];
-  // y(t) = sum of c_k s^k, s = (t - end) / (end - start) from -1 to 0; degree -1: not computed yet.
-  int degree;
+  // y(t) = sum of c_k s^k, s = (t - end) / (end - start) from -1 to 0.
+  static constexpr int unknown = -1;
+  int degree;  // unknown: the polynomial is not computed yet
   alignas(16) double c[max_degree + 1][max_states];
 
   // A step of no length: y is known at t alone. y may be y_end.
   void set_point(double t, const double* y, int states);
+
+  // The chord as polynomial, where no better one exists.
+  void set_chord(int states);
+
+  // What is saved of the step: all but its polynomial.
+  void visit(support::Archive& archive, int states);
 
   // y (states entries) at t inside the step; at its ends, up to a few roundings of t, what is kept there.
   void read(double t, int states, double* y) const;
@@ -51,13 +58,13 @@ struct Step {
 class Engine {
  public:
   // The next step starts anew. False where the engine could not be set up: failure().
-  virtual bool start(const Problem& problem) = 0;
+  [[nodiscard]] virtual bool start(const Problem& problem) = 0;
 
   // One step from the end of the last one, which `step` is moved to, up to `stop` (s) at the latest. False where none
   // is accepted: failure() gives the reason.
-  virtual bool advance(const Problem& problem, double stop, Counters* counters, Step* step) = 0;
+  [[nodiscard]] virtual bool advance(const Problem& problem, double stop, Counters* counters, Step* step) = 0;
 
-  // The polynomial of the step, which is not known yet.
+  // The polynomial of the step, which is not known yet; the chord where rates inside the step are not finite.
   virtual void expand(const Problem& problem, Counters* counters, Step* step) = 0;
 
   // All that is needed to go on after the step, saved or read; `active`: the step is this engine's. What is read and

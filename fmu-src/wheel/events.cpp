@@ -1,8 +1,12 @@
-// The table of events, and how they are passed, counted and logged.
+// The table of events.
 #include "events.hpp"
 
-#include <cstdio>
+#include <algorithm>
 #include <iterator>
+#include <limits>
+#include <utility>
+
+#include "law.hpp"
 
 namespace wheel {
 namespace {
@@ -13,7 +17,7 @@ bool varies_and_can_stiffen(const Setup& setup, const InForce& now) {
 }
 
 double softness(const Setup& setup, const InForce& now, double t, const double* y) {
-  return layer_margin(setup, now.scene_at(t), y);
+  return softness_of(setup, now.scene_at(t), y);
 }
 
 // The law that is decided where the layer of a stiff regularized law is entered, left, or begins to hold the wheel.
@@ -22,7 +26,7 @@ bool is_layered(const Setup&, const InForce& now) { return now.layer != Layer::n
 
 // What holding leaves unused.
 double holding_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  return holding_margin(setup, now.scene_at(t), y) / setup.moment_scale;
+  return holding_reserve(setup, now.scene_at(t), y) / setup.moment_scale;
 }
 
 double holding_lacks(const Setup& setup, const InForce& now, double t, const double* y) {
@@ -63,25 +67,27 @@ Consequence change_spin(const Setup& setup, Event, double t, double* y, InForce&
   return Consequence::bends;
 }
 
-// (mu_max N)^2 - lambda_t^2 over the weight squared, below zero too where the ground pulls.
+// N^2 - (lambda_t / mu_max)^2 over the weight squared, below zero too where the ground pulls. Rounding is relative to
+// mu_max N, and that of a tangential force of zero.
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
+  constexpr double rounding = 1e-12, rounding_of_zero = 1e-15;
   const WheelScene scene = now.scene_at(t);
   WheelDynamics dynamics;
   setup.formulation->dynamics(&scene, y, &dynamics);
   const double* lambda = dynamics.lambda;
-  const double X = lambda[0] / setup.weight, Y = lambda[1] / setup.weight;
-  const double normal = setup.mu_max * (lambda[2] / setup.weight);
-  constexpr double rounding = 1e-12;
-  return normal * std::fabs(normal) - (X * X + Y * Y) + rounding;
+  const double X = lambda[0] / setup.weight / setup.mu_max, Y = lambda[1] / setup.weight / setup.mu_max;
+  const double N = lambda[2] / setup.weight * (1 + rounding) + std::fmin(rounding_of_zero / setup.mu_max, 1);
+  return N * std::fabs(N) - (X * X + Y * Y);
 }
 
 bool always(const Setup&, const InForce&) { return true; }
 bool always_ends(const Setup&) { return true; }
 
-double contact_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  double y_dot[WHEEL_MAX_STATES];
-  const WheelScene scene = now.scene_at(t);
-  return pressure_of(setup, setup.formulation->derivative(&scene, y, y_dot));
+// N over the weight.
+double pressure_of(const Setup& setup, const double*, double N) { return N / setup.weight; }
+// rad from where the wheel counts as flat.
+double height_of(const Setup& setup, const double* y, double) {
+  return angle_from_flat(y[setup.formulation->tilt_index]) - flat_angle;
 }
 
 // The ground begins to pull or to press. Without friction the motion goes on as it was.
@@ -97,7 +103,7 @@ constexpr EventRow layer_event(Event event, decltype(EventRow::can_occur) can_oc
 
 }  // namespace
 
-const EventRow event_rows[] = {
+constexpr EventRow event_rows[] = {
     layer_event(Event::stiffens, varies_and_can_stiffen, softness),
     layer_event(Event::sticks_in_layer, is_passing, holding_lacks),
     layer_event(Event::crosses_layer, is_layered, way_to_edge),
@@ -106,38 +112,35 @@ const EventRow event_rows[] = {
      .can_occur = [](const Setup& setup, const InForce&) { return setup.mu_max > 0; },
      .value = grip_left,
      .ends = always_ends,
-     .ending = "needs a coefficient of friction above mu_max = %s",
-     .ended = "The wheel %s at t = %s s, theta = %s rad: a model without slip ends here.",
-     .refused = "At the start, where N = %s N, the wheel needs a coefficient of friction of %s, above mu_max = %s."},
+     .ending = "needs a coefficient of friction above mu_max",
+     .limit = [](const Setup& setup) { return setup.mu_max; }},
     {.event = Event::lost_contact,
      .can_occur = always,
-     .value = contact_left,
-     .rounding = pressure_rounding,
-     .by_margin = true,
+     .quick_value = pressure_of,
+     .rounding = 1e-9,
      .ends = [](const Setup& setup) { return !setup.keep_contact; },
      .follow = change_contact,
      .ending = "lifted off the ground",
-     .ended = "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
-     .refused = "The ground does not press on the wheel at the start: N = %s N.",
-     .observed = "The ground pulls from t = %s s on: keep_contact holds a wheel that would have lifted off.",
-     .summary = "The ground has pulled %s times, of which the first %s were logged; last from t = %s s on."},
+     .observed = "the ground pulls, without keep_contact the wheel would lift off"},
     {.event = Event::fell_flat,
      .can_occur = always,
-     .value = [](const Setup& setup, const InForce&, double, const double* y) { return height_of(setup, y); },
-     .by_margin = true,
+     .quick_value = height_of,
      .ends = always_ends,
-     .ending = "fell flat",
-     .ended = "The wheel %s at t = %s s: the model ends there.",
-     .refused = "The wheel lies flat at the start: N = %s N."},
+     .ending = "fell flat"},
 };
-static_assert(std::size(event_rows) == row_count && row_count <= solver::max_watched);
 
 namespace {
 
-// An instant for messages: it is not found more exactly than to a nanosecond.
-double instant_of(const Setup& setup, double t) {
-  const double time = setup.start_time + t;
-  return std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time;
+constexpr bool is_sound(const EventRow& row) {
+  return row.event == static_cast<Event>(&row - event_rows + 1) && !row.value == !!row.quick_value && row.can_occur &&
+         !row.ends == !row.ending && (row.follow || row.ends);
+}
+static_assert(std::size(event_rows) == row_count && row_count <= solver::max_watched);
+static_assert(std::all_of(event_rows, event_rows + row_count, is_sound), "order of Event, one value, what follows");
+
+// Below zero where the event has occurred.
+double signed_margin(const EventRow& row, const InForce& now, double value) {
+  return row.observed ? (now.is_below(row.event) ? -value : value) + row.rounding : value;
 }
 
 }  // namespace
@@ -148,61 +151,29 @@ Consequence observe(const Setup&, Event event, double, double*, InForce& now) {
 }
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
-  if (!row.observed) return row.value(setup, now, t, y);
-  const double value = row.value(setup, now, t, y);
-  return (now.is_below(row.event) ? -value : value) + row.rounding;
+  if (row.value) return signed_margin(row, now, row.value(setup, now, t, y));
+  double y_dot[WHEEL_MAX_STATES];
+  const WheelScene scene = now.scene_at(t);
+  return signed_margin(row, now, row.quick_value(setup, y, setup.formulation->derivative(&scene, y, y_dot)));
+}
+
+double least_margin(const Setup& setup, const InForce& now, const double* y, double N) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto take = [&]<std::size_t i>() {
+    constexpr const EventRow& row = event_rows[i];
+    if constexpr (row.quick_value != nullptr)
+      if (const double own = signed_margin(row, now, row.quick_value(setup, y, N)); own < least) least = own;
+  };
+  [&]<std::size_t... i>(std::index_sequence<i...>) {
+    (take.template operator()<i>(), ...);
+  }(std::make_index_sequence<row_count>());
+  return least;
 }
 
 void place_observed(const Setup& setup, double t, const double* y, InForce& now) {
   for (const EventRow& row : event_rows)
     if (is_observed(row, setup) && row.can_occur(setup, now) && margin_of(row, setup, now, t, y) < 0)
       now.set_below(row.event, !now.is_below(row.event));
-}
-
-Consequence pass_event(const Setup& setup, Event event, Run& run, const Reporter& reporter) {
-  const EventRow& row = row_of(event);
-  const WheelFriction before = run.in_force.scene.friction;
-  const Consequence consequence = row.follow(setup, event, run.t, run.y, run.in_force);
-  if (is_observed(row, setup) && run.in_force.is_below(event)) count_event(setup, event, run.t, run, reporter);
-  log_transition(setup, before, run, reporter);
-  return consequence;
-}
-
-void count_event(const Setup& setup, Event event, double t, Run& run, const Reporter& reporter) {
-  Tally& tally = run.tallies[static_cast<int>(event)];
-  tally.last = t;
-  if (tally.count++ >= logged_one_by_one) return;
-  reporter.log(Topic::warning, row_of(event).observed, instant_of(setup, t));
-}
-
-// A change to another law is not a transition.
-void log_transition(const Setup& setup, const WheelFriction& before, Run& run, const Reporter& reporter) {
-  const WheelFriction& friction = run.in_force.scene.friction;
-  const auto is_exact = [](WheelFrictionKind law) { return law == WHEEL_ROLLING || law == WHEEL_HELD; };
-  if (!is_exact(before.kind) || !is_exact(friction.kind) || !differ(before, friction)) return;
-  ++run.transitions;
-  const double instant = instant_of(setup, run.t);
-  const char* const change = before.kind == WHEEL_HELD ? "release" : "reversal";
-  if (friction.kind == WHEEL_HELD)
-    reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant);
-  else
-    reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant, change,
-                 friction.sigma > 0 ? "positive" : "negative");
-}
-
-void log_summaries(const Setup& setup, const Run& run, const Reporter& reporter) {
-  for (const EventRow& row : event_rows) {
-    const Tally& tally = run.tallies[static_cast<int>(row.event)];
-    if (row.summary && tally.count > logged_one_by_one)
-      reporter.log(Topic::warning, row.summary, static_cast<double>(tally.count),
-                   static_cast<double>(logged_one_by_one), instant_of(setup, tally.last));
-  }
-}
-
-Ending ending_of(const Setup& setup, Event event) {
-  Ending ending;
-  std::snprintf(ending.text, sizeof ending.text, row_of(event).ending, NumberText(Digits{setup.mu_max}).text);
-  return ending;
 }
 
 }  // namespace wheel

@@ -6,6 +6,10 @@
 #include <cmath>
 #include <iterator>
 
+#include "law.hpp"
+#include "logbook.hpp"
+#include "motion.hpp"
+
 namespace wheel {
 namespace {
 
@@ -39,17 +43,6 @@ double indicator(const EventRow& row, const Setup& setup, const Run& run) {
   return margin_at(row, setup, run.in_force, run.t, run.y) + distance;
 }
 
-bool has_occurred(const EventRow& row, const Setup& setup, const Run& run) {
-  const InForce& now = run.in_force;
-  if (!row.exchanged || !row.can_occur(setup, now)) return false;
-  if (margin_at(row, setup, now, run.t, run.y) <= 0) return true;
-  const double time = soon * setup.own_time;
-  double ahead[WHEEL_MAX_STATES], rates[WHEEL_MAX_STATES];
-  setup.formulation->derivative(&now.scene, run.y, rates);
-  for (int i = 0; i < state_count; ++i) ahead[i] = run.y[i] + time * rates[i];
-  return margin_at(row, setup, now, run.t + time, ahead) <= 0;
-}
-
 // Whether the motion can have led the spin across zero, or away from where it was held, within its longest step. Else
 // the caller has set it, and it is kept.
 bool is_led(const Setup& setup, const Run& run) {
@@ -74,32 +67,45 @@ int state_index_of(unsigned variable) {
   return found == std::end(state_variables) ? -1 : static_cast<int>(found - state_variables);
 }
 
-void take_at_once(const Setup& setup, Demand& demand, Run& run) {
-  InForce& now = run.in_force;
+bool has_occurred(const EventRow& row, const Setup& setup, const Run& run) {
+  const InForce& now = run.in_force;
+  if (!row.exchanged || !row.can_occur(setup, now)) return false;
+  if (margin_at(row, setup, now, run.t, run.y) <= 0) return true;
+  const double time = soon * setup.own_time;
+  double ahead[WHEEL_MAX_STATES], rates[WHEEL_MAX_STATES];
+  setup.formulation->derivative(&now.scene, run.y, rates);
+  for (int i = 0; i < state_count; ++i) ahead[i] = run.y[i] + time * rates[i];
+  return margin_at(row, setup, now, run.t + time, ahead) <= 0;
+}
+
+void take_at_once(Wheel& w) {
+  InForce& now = w.run.in_force;
   const double s = now.scene.wheel.s;
-  let_act(setup, demand.parameters[variable::s], run.t, demand.inputs, now);
-  demand.changed = false;
-  if (now.scene.wheel.s != s) decide_law(setup, run.t, run.y, now);
+  let_act(w.setup, w.demand.parameters[variable::s], w.run.t, w.demand.inputs, now);
+  w.demand.changed = false;
+  if (now.scene.wheel.s != s) decide_law(w.setup, w.run.t, w.run.y, now);
 }
 
-void derivatives(const Setup& setup, Run& run, double* x_dot) {
-  ++run.counted.rhs;
-  setup.formulation->derivative(&run.in_force.scene, above_ground(setup, run.y).data(), x_dot);
+void derivatives(Wheel& w, double* x_dot) {
+  ++w.run.counted.rhs;
+  w.setup.formulation->derivative(&w.run.in_force.scene, above_ground(w.setup, w.run.y).data(), x_dot);
 }
 
-void indicators(const Setup& setup, Run& run, double* z) {
-  ++run.counted.roots;
+void indicators(Wheel& w, double* z) {
+  ++w.run.counted.roots;
   for (const EventRow& row : event_rows)
-    if (row.exchanged) *z++ = indicator(row, setup, run);
+    if (row.exchanged) *z++ = indicator(row, w.setup, w.run);
 }
 
-bool has_event(const Setup& setup, Run& run) {
-  ++run.counted.roots;
+bool has_event(Wheel& w) {
+  ++w.run.counted.roots;
   return std::any_of(std::begin(event_rows), std::end(event_rows),
-                     [&](const EventRow& row) { return row.exchanged && indicator(row, setup, run) <= 0; });
+                     [&](const EventRow& row) { return row.exchanged && indicator(row, w.setup, w.run) <= 0; });
 }
 
-bool decide(const Setup& setup, Run& run, const Solution& solution, const Reporter& reporter) {
+bool decide(Wheel& w) {
+  const Setup& setup = w.setup;
+  Run& run = w.run;
   InForce& now = run.in_force;
   const WheelFriction law = now.scene.friction;
   const WheelGround ground = now.scene.ground;
@@ -110,13 +116,12 @@ bool decide(const Setup& setup, Run& run, const Solution& solution, const Report
   for (const EventRow& row : event_rows)
     if (ends_run(row, setup) && has_occurred(row, setup, run)) ending = row.event;
   if (ending != Event::none) {
-    end_run(setup, ending, run, solution, reporter);
+    end_run(w, ending);
     return false;
   }
   const EventRow& changes = row_of(Event::spin_changes);
   for (const EventRow& row : event_rows)
-    if (&row != &changes && !ends_run(row, setup) && has_occurred(row, setup, run))
-      pass_event(setup, row.event, run, reporter);
+    if (&row != &changes && !ends_run(row, setup) && has_occurred(row, setup, run)) pass_event(w, row.event);
   // The law is decided anew in each event mode. A wheel that has just been stopped can be let go at once.
   const auto change = [&] { changes.follow(setup, changes.event, run.t, run.y, now); };
   if (led && has_occurred(changes, setup, run))
@@ -125,22 +130,23 @@ bool decide(const Setup& setup, Run& run, const Solution& solution, const Report
     decide_law(setup, run.t, run.y, now);
   const bool sticks = law.kind != WHEEL_HELD && now.scene.friction.kind == WHEEL_HELD;
   if (sticks && has_occurred(changes, setup, run)) change();
-  log_transition(setup, law, run, reporter);
+  log_transition(w, law);
   const bool jumps = run.y[setup.formulation->spin_index] != spin;
   return jumps || differ(law, now.scene.friction) || ground != now.scene.ground;
 }
 
-bool starts_inside(const Setup& setup, const Run& run, const Reporter& reporter) {
+bool starts_inside(const Wheel& w) {
+  const InForce& now = w.run.in_force;
   const EventRow* fault = nullptr;
   for (const EventRow& row : event_rows)
-    if (ends_run(row, setup) && row.can_occur(setup, run.in_force) &&
-        !(margin_at(row, setup, run.in_force, run.t, run.y) > 0))
+    if (ends_run(row, w.setup) && row.can_occur(w.setup, now) && !(margin_at(row, w.setup, now, w.run.t, w.run.y) > 0))
       fault = &row;
   if (!fault) return true;
   WheelDynamics dynamics;
-  setup.formulation->dynamics(&run.in_force.scene, run.y, &dynamics);
-  const double needed = wheel_required_friction(dynamics.lambda);
-  reporter.log(Topic::error, fault->refused, Digits{dynamics.lambda[2], 6}, Digits{needed, 6}, setup.mu_max);
+  w.setup.formulation->dynamics(&now.scene, w.run.y, &dynamics);
+  w.reporter.log(Topic::error, "At the start the wheel %s (N = %s N, mu_required = %s): the model ends there.",
+                 ending_of(w.setup, fault->event).text, Digits{dynamics.lambda[2], 6},
+                 Digits{wheel_required_friction(dynamics.lambda), 6});
   return false;
 }
 

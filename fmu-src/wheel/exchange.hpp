@@ -4,7 +4,8 @@
 // the law of friction is decided anew at events only, by the function that co-simulation uses.
 #pragma once
 
-#include "motion.hpp"
+#include "events.hpp"
+#include "wheel.hpp"
 
 namespace wheel {
 
@@ -16,22 +17,25 @@ int indicator_count();
 int state_index_of(unsigned variable);
 
 // What was set takes effect: at once, except for the law. A changed s asks for another law, whatever the mode is.
-void take_at_once(const Setup& setup, Demand& demand, Run& run);
+// Writes run.in_force and demand.changed.
+void take_at_once(Wheel& wheel);
 
 // Out: state_count rates. A solver may try states beyond flat: there rates and margins are those of the flat wheel,
-// which are finite.
-void derivatives(const Setup& setup, Run& run, double* x_dot);
-
+// which are finite. These three write run.counted.
+void derivatives(Wheel& wheel, double* x_dot);
 // Out: indicator_count() margins.
-void indicators(const Setup& setup, Run& run, double* z);
-bool has_event(const Setup& setup, Run& run);
+void indicators(Wheel& wheel, double* z);
+bool has_event(Wheel& wheel);
+
+// Whether an event has occurred at the instant reached, or lies so close ahead that it counts as occurred.
+bool has_occurred(const EventRow& row, const Setup& setup, const Run& run);
 
 // Event mode: the law that holds from here on. True where the motion bends here, a state or the law: some solvers go on
-// from a step that they took under the old law, unless the states are called new. Where the
-// model ends here, the run does.
-bool decide(const Setup& setup, Run& run, const Solution& solution, const Reporter& reporter);
+// from a step that they took under the old law, unless the states are called new. Where the model ends here, the run
+// does. Writes run.
+bool decide(Wheel& wheel);
 
 // Whether a run can begin: another solver cannot learn that the model ends where it starts. Else a message.
-bool starts_inside(const Setup& setup, const Run& run, const Reporter& reporter);
+bool starts_inside(const Wheel& wheel);
 
 }  // namespace wheel

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace wheel {
@@ -61,7 +62,7 @@ WheelLoad load_rate_of(const Polynomials& inputs) {
 
 void Inputs::take_over(double t, const Polynomials& asked) {
   origin = t;
-  std::copy_n(asked[0], sizeof c / sizeof c[0][0], c[0]);
+  std::memcpy(c, asked, sizeof c);
   const auto any = [&](int from) {
     return std::any_of(c, c + inputs_count, [=](const double* own) { return acts(own + from, own + max_order + 1); });
   };
@@ -77,7 +78,7 @@ bool Inputs::change_at(double t, double rounding, const Polynomials& asked) cons
   return false;
 }
 
-void Inputs::hold(double t, Polynomials& asked) const {
+void Inputs::stay(double t, Polynomials& asked) const {
   for (int i = 0; i < inputs_count; ++i) {
     std::fill_n(asked[i] + 1, max_order, 0.0);
     asked[i][0] = evaluate(c[i], t - origin);

@@ -34,7 +34,7 @@ struct Inputs {
   bool change_at(double t, double rounding, const Polynomials& asked) const;
   WheelLoad load_at(double t) const { return load_of(c, t - origin); }
   // A derivative holds for one step: at its end, t, every input stays where its polynomial arrived.
-  void hold(double t, Polynomials& asked) const;
+  void stay(double t, Polynomials& asked) const;
   // Instants strictly inside (t_lo, t_hi), ascending, at which an input has an extreme; returns their number.
   int extremes(double t_lo, double t_hi, double* instants) const;
   // The first instant in (t, until] at which the brake's polynomial passes zero, where the capacity has a corner, s;

@@ -1,5 +1,5 @@
 // The law of friction after Filippov, and the choice of the method.
-#include "run.hpp"
+#include "law.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace {
 
 // A wheel that is held: the moment about the axle, N m, and what of the capacity s N + M_brake is left, N m.
 struct Held {
-  double tau, margin;
+  double tau, reserve;
 };
 
 Held held_at(const Setup& setup, const WheelScene& scene, const double* y) {
@@ -33,7 +33,7 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
   const double omega_z = y[setup.formulation->spin_index];
   if (omega_z != 0) return {WHEEL_ROLLING, omega_z > 0 ? 1.0 : -1.0, 0};
   const Held held = held_at(setup, scene, y);
-  return held.margin >= 0 ? WheelFriction{WHEEL_HELD, 0, 0} : against(held);
+  return held.reserve >= 0 ? WheelFriction{WHEEL_HELD, 0, 0} : against(held);
 }
 
 void enter_layer(const Setup& setup, const WheelScene& scene, const double* y, InForce& now) {
@@ -42,7 +42,7 @@ void enter_layer(const Setup& setup, const WheelScene& scene, const double* y, I
     now.layer = Layer::outside;
     now.scene.friction = {WHEEL_ROLLING, omega_z > 0 ? 1.0 : -1.0, 0};
   } else {
-    now.layer = holding_margin(setup, scene, y) >= 0 ? Layer::sticking : Layer::passing;
+    now.layer = holding_reserve(setup, scene, y) >= 0 ? Layer::sticking : Layer::passing;
     now.scene.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
   }
 }
@@ -66,7 +66,7 @@ void decide_law(const Setup& setup, double t, const double* y, InForce& now, boo
   WheelScene scene = now.scene_at(t);
   scene.friction = released ? against(held_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
   now.scene.friction = scene.friction;
-  const bool stiff = can_stiffen(setup, now) && layer_margin(setup, scene, y) < 0;
+  const bool stiff = can_stiffen(setup, now) && softness_of(setup, scene, y) < 0;
   if (stiff || now.layer != Layer::none) enter_layer(setup, scene, y, now);
 }
 
@@ -77,7 +77,7 @@ bool can_stiffen(const Setup& setup, const InForce& now) {
 
 // The fastest decay of the law is that at omega_z = 0: (s N + M_brake) / omega_s over the spin inertia, to be compared
 // with the wheel's own time scale; below the limit DOP853 alone is faster (docs/results/stability.md).
-double layer_margin(const Setup& setup, const WheelScene& scene, const double* y) {
+double softness_of(const Setup& setup, const WheelScene& scene, const double* y) {
   constexpr double stiff = 1000;
   const WheelParameters& wheel = scene.wheel;
   const double inertia = wheel.J_z + wheel.m * setup.length * setup.length;
@@ -86,8 +86,8 @@ double layer_margin(const Setup& setup, const WheelScene& scene, const double* y
   return 1 - (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia) * setup.own_time / stiff;
 }
 
-double holding_margin(const Setup& setup, const WheelScene& scene, const double* y) {
-  return held_at(setup, scene, y).margin;
+double holding_reserve(const Setup& setup, const WheelScene& scene, const double* y) {
+  return held_at(setup, scene, y).reserve;
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {

@@ -1,74 +1,257 @@
-// What the solver asks: right-hand side, error weights, watched functions.
+// How a run moves on by one communication step: `advance_by_stages` lists the stages, the functions before it are the
+// stages.
 #include "motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "law.hpp"
+#include "logbook.hpp"
+#include "problem.hpp"
 
 namespace wheel {
 namespace {
 
-const Owner& owner_of(void* owner) { return *static_cast<const Owner*>(owner); }
+using solver::Outcome;
 
-double derivative(void* owner, double t, const double* y, double* y_dot) {
-  const Setup& setup = *owner_of(owner).setup;
-  const InForce& now = *owner_of(owner).in_force;
-  const auto rates = [&](const WheelScene& scene) { return setup.formulation->derivative(&scene, y, y_dot); };
-  const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
-  double sum = 0;
-  for (int i = 0; i < setup.formulation->states; ++i) sum += y_dot[i];
-  if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
-  return least_margin(setup, now, y, N);
+// The most work that one call may do, in internal steps, however long its communication step is: some seconds of
+// computing.
+constexpr long long most_work = 1000000;
+// The work of passing an event, in internal steps: the search for it, a new start, the short steps after it.
+constexpr long long work_per_event = 20;
+// The work of one internal step of the multibody form, whose system is larger.
+constexpr long long work_per_multibody_step = 8;
+
+bool is_known(const Wheel& w, double t) {
+  if (w.run.phase == Phase::stepping) return w.solution.solver.reaches(t);
+  return w.run.phase == Phase::unfolded && t <= w.solution.orbit_until;
 }
 
-// The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
-// turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a fraction of that width.
-void weights(void* owner, double share, const double* y, double* weights) {
-  const Setup& setup = *owner_of(owner).setup;
-  const int states = setup.formulation->states, spin = setup.formulation->spin_index;
-  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  const double slow = share * setup.tolerance;
-  const double tolerance = std::fmax(slow * share_at(setup, y[spin]), std::fmin(slow, rounding));
-  double scales[WHEEL_MAX_STATES];
-  scales_at(setup, y[spin], scales);
-  for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
-  if (owner_of(owner).in_force->scene.friction.kind != WHEEL_REGULARIZED) return;
-  const double part = 10 * std::sqrt(tolerance);
-  const double layer = part * setup.omega_s + tolerance * std::fabs(y[spin]);
-  weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
+// Whether what was set since the last step differs from what is in force.
+bool has_changed(const Wheel& w) {
+  const InForce& now = w.run.in_force;
+  const double t = w.run.t;
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(w.setup.start_time) + std::fabs(t));
+  return now.scene.wheel.s != w.demand.parameters[variable::s] || now.inputs.change_at(t, rounding, w.demand.inputs);
 }
 
-double margin(void* owner, int event, double t, const double* y) {
-  return margin_of(row_of(static_cast<Event>(event)), *owner_of(owner).setup, *owner_of(owner).in_force, t, y);
+// Starts the solver at the present instant, from nothing or, again, where it goes on counting.
+Outcome start_solver(Wheel& w, bool again) {
+  const auto start = again ? &solver::Solver::restart : &solver::Solver::start;
+  const auto method = method_of(w.setup, w.run.in_force);
+  return (w.solution.solver.*start)(problem_of(w), method, w.run.t, w.run.y) ? Outcome::stepped : Outcome::failed;
 }
 
-int extremes(void* owner, double t_lo, double t_hi, double* instants) {
-  static_assert(most_extremes <= solver::max_extremes);
-  return owner_of(owner).in_force->inputs.extremes(t_lo, t_hi, instants);
+// Stage 1: what was set since the last step takes effect.
+Outcome take_demand(Wheel& w) {
+  Run& run = w.run;
+  const bool changed = w.demand.changed && has_changed(w);
+  w.demand.changed = false;
+  if (!changed) return Outcome::stepped;
+  const WheelFriction before = run.in_force.scene.friction;
+  if (run.phase == Phase::unfolded) place_observed(w.setup, run.t, run.y, run.in_force);
+  put_in_force(w.setup, w.demand, run.t, run.y, run.in_force);
+  log_transition(w, before);
+  if (run.phase == Phase::at_start) return Outcome::stepped;
+  const double interval = run.t - run.last_change;
+  run.last_change = run.t;
+  const bool again = run.phase == Phase::stepping;
+  if (!again) ++run.counted.restarts;
+  run.phase = Phase::stepping;
+  const Outcome outcome = start_solver(w, again);
+  if (again) w.solution.solver.limit_first_step(interval);
+  return outcome;
+}
+
+// The orbit of a run, from its start.
+Shape shape_of(const Demand& demand) {
+  Shape shape = {{}, demand.tolerance};
+  std::copy_n(demand.parameters, first_input, shape.parameters);
+  for (const unsigned v : {variable::psi_start, variable::phi_start, variable::X_O_start, variable::Y_O_start})
+    shape.parameters[v] = 0;
+  return shape;
+}
+
+// Whether the motion is unfolded. Builds the orbit of the run, or keeps that of an earlier run of the same shape.
+// False: the solver has to step through the motion.
+bool enter_orbit(Wheel& w) {
+  orbit::Orbit& orbit = w.solution.orbit;
+  const Shape asked = shape_of(w.demand);
+  const solver::Problem problem = problem_of(w);
+  if (w.solution.orbit_shape != asked) {
+    const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
+    const auto kind = orbit.build(problem, w.demand.tolerance, pass_on_orbit, w.setup.start, w.solution.solver);
+    w.run.in_force = at_start;
+    w.solution.orbit_shape = kind == orbit::Orbit::Kind::refused ? Shape() : asked;
+  }
+  if (w.solution.orbit_shape != asked || !orbit.start_at(problem, w.setup.start)) return false;
+  w.run.counted = orbit.counters();
+  const bool ends = orbit.end_time() < solver::never;
+  w.solution.orbit_until = ends ? orbit.end_time() : largest_angle / orbit.fastest_turn();
+  return true;
+}
+
+// Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
+Outcome set_in_motion(Wheel& w) {
+  const bool is_ready = w.run.phase == Phase::unfolded && w.solution.orbit_until != Solution::none;
+  if (w.run.phase == Phase::stepping || is_ready) return Outcome::stepped;
+  const bool unfolds = is_unfoldable(w.setup, w.run.in_force) && enter_orbit(w);
+  w.run.phase = unfolds ? Phase::unfolded : Phase::stepping;
+  return unfolds ? Outcome::stepped : start_solver(w, false);
+}
+
+// Counts and logs what is observed on the orbit up to t.
+void observe_orbit(Wheel& w, double t) {
+  const orbit::Orbit& orbit = w.solution.orbit;
+  auto& tallies = w.run.tallies;
+  const auto next_of = [&](int event) {
+    const long long next = tallies[event].count, falls = orbit.recurrence(event).falls_until(t);
+    return next < std::min(falls, logged_one_by_one) ? orbit.recurrence(event).fall(next) : solver::never;
+  };
+  for (;;) {  // in the order of time
+    int first = 0;
+    for (int event = 1; event < event_count; ++event)
+      if (next_of(event) < next_of(first)) first = event;
+    const double instant = next_of(first);
+    if (instant == solver::never) break;
+    count_event(w, static_cast<Event>(first), instant);
+  }
+  for (int event = 0; event < event_count; ++event) {
+    const long long falls = orbit.recurrence(event).falls_until(t);
+    if (falls > tallies[event].count) tallies[event] = {falls, orbit.recurrence(event).fall(falls - 1)};
+  }
+}
+
+void move_to(Wheel& w, double t) {
+  if (w.run.phase == Phase::unfolded && w.solution.orbit.recurs()) observe_orbit(w, t);
+  w.run.t = t;
+}
+
+// Latest end of the next step on the way to t, s.
+double stop_of(const Wheel& w, double t) {
+  const Inputs& inputs = w.run.in_force.inputs;
+  const solver::Solver& solver = w.solution.solver;
+  // CVODE may step past the communication point although an input varies: the input's polynomial may go on there, and
+  // a step that is cut short costs CVODE its history. Runge-Kutta has no history to lose.
+  double stop = inputs.varies && solver.method() == solver::Method::runge_kutta ? t : solver::never;
+  if (inputs.varies && inputs.braked) {
+    // No step goes across a corner of a prescribed input. One next to the time reached has been met.
+    const double reached = solver.known_until(), ahead = 2 * w.setup.longest_step;
+    stop = std::fmin(stop, inputs.corner(reached + solver::rounding_at(reached) + 1e-12 * ahead, reached + ahead));
+  }
+  return stop;
+}
+
+// Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.
+Outcome step_to(Wheel& w, double t) {
+  solver::Solver& solver = w.solution.solver;
+  const long long work_per_step = w.setup.formulation == &wheel_multibody ? work_per_multibody_step : 1;
+  for (long long work = 0; !solver.reaches(t);) {
+    if (work >= most_work) {
+      w.solution.failure = "one call may take no more internal steps; use shorter communication steps";
+      return Outcome::failed;
+    }
+    const Outcome outcome = solver.step(stop_of(w, t));
+    if (outcome == Outcome::failed) return outcome;
+    work += (outcome == Outcome::event ? work_per_event : 1) * work_per_step;
+    if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event after t waits until it is reached
+    move_to(w, solver.event_time());
+    state_now(w);
+    const auto event = static_cast<Event>(solver.event());
+    if (ends_run(row_of(event), w.setup)) return outcome;
+    if (pass_event(w, event) == Consequence::goes_on)
+      solver.resume();
+    else if (start_solver(w, true) == Outcome::failed)
+      return Outcome::failed;
+  }
+  return Outcome::stepped;
+}
+
+// Stage 3: the solution becomes known up to t, or up to an event that ends the run.
+Outcome proceed(Wheel& w, double t) {
+  if (w.run.phase == Phase::stepping) return step_to(w, t);
+  if (t <= w.solution.orbit_until) return Outcome::stepped;
+  if (w.solution.orbit_until == w.solution.orbit.end_time()) return Outcome::event;
+  w.solution.failure = "psi or phi would turn so far that the angle has too few digits";
+  return Outcome::failed;
+}
+
+// Stage 4: the run stands at t, up to which the solution is known. Inputs that vary stay where they arrived, unless
+// they are set again.
+void arrive(Wheel& w, double t) {
+  if (!(t > w.run.t)) return;
+  move_to(w, t);
+  const Inputs& inputs = w.run.in_force.inputs;
+  if (!inputs.varies) return;
+  inputs.stay(t, w.demand.inputs);
+  w.demand.changed = true;
+}
+
+// The event of the solution that ends the run.
+void end(Wheel& w) {
+  const bool unfolded = w.run.phase == Phase::unfolded;
+  if (unfolded) move_to(w, w.solution.orbit.end_time());
+  end_run(w, static_cast<Event>(unfolded ? w.solution.orbit.event() : w.solution.solver.event()));
+}
+
+// The state is that before the step, and stays so.
+void fail(Wheel& w, const Run& before) {
+  if (w.run.phase == Phase::stepping) move_to(w, w.solution.solver.known_until());
+  w.reporter.log(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.",
+                 w.setup.start_time + w.run.t, Digits{state_now(w)[w.setup.formulation->spin_index], 4},
+                 w.solution.failure ? w.solution.failure : w.solution.solver.failure());
+  w.run = before;
+  w.run.phase = Phase::failed;
+}
+
+Outcome advance_by_stages(Wheel& w, double t) {
+  state_now(w);
+  Run before = w.run;
+  before.counted = counters_of(w.run, w.solution.solver);
+  const bool changed = w.demand.changed, moves = t > w.run.t;
+  w.solution.failure = nullptr;
+  Outcome outcome = take_demand(w);
+  if (outcome == Outcome::stepped && moves) outcome = set_in_motion(w);
+  if (outcome == Outcome::stepped && moves) outcome = proceed(w, t);
+  if (outcome == Outcome::stepped) arrive(w, t);
+  if (outcome == Outcome::event) end(w);
+  if (outcome == Outcome::failed) {
+    fail(w, before);
+    w.demand.changed = changed;
+  }
+  return outcome;
 }
 
 }  // namespace
 
-solver::Problem problem_of(Owner& owner) {
-  solver::Problem problem = {};
-  problem.states = owner.setup->formulation->states;
-  problem.owner = &owner;
-  problem.derivative = derivative;
-  problem.weights = weights;
-  problem.extremes = extremes;
-  problem.near = 0.1;  // of the weight, or rad from lying flat
-  problem.longest_step = owner.setup->longest_step;
-  problem.passage = owner.in_force->layer == Layer::passing;
-  for (const EventRow& row : event_rows)
-    if (row.can_occur(*owner.setup, *owner.in_force))
-      problem.watch({static_cast<int>(row.event), margin, row.by_margin});
-  return problem;
+Outcome advance(Wheel& w, double t) {
+  if (w.demand.changed || !is_known(w, t)) return advance_by_stages(w, t);
+  arrive(w, t);
+  return Outcome::stepped;
 }
 
-Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
-  const Setup& setup = *owner_of(owner).setup;
-  const EventRow& row = row_of(static_cast<Event>(event));
-  if (ends_run(row, setup)) return Consequence::ends;
-  return row.follow(setup, row.event, t, y, *static_cast<Owner*>(owner)->in_force);
+const double* state_now(Wheel& w) {
+  Run& run = w.run;
+  if (run.y_time == run.t) return run.y;
+  run.phase == Phase::unfolded ? w.solution.orbit.read(run.t, run.y) : w.solution.solver.read(run.t, run.y);
+  run.y_time = run.t;
+  return run.y;
+}
+
+void freeze(Wheel& w, Phase phase) {
+  state_now(w);
+  w.run.counted = counters_of(w.run, w.solution.solver);
+  w.run.phase = phase;
+}
+
+void end_run(Wheel& w, Event event) {
+  w.run.ended_by = event;
+  freeze(w, Phase::ended);
+  log_summaries(w);
+  w.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
+                 ending_of(w.setup, event).text, w.setup.start_time + w.run.t,
+                 Digits{w.run.y[w.setup.formulation->tilt_index], 6});
 }
 
 }  // namespace wheel

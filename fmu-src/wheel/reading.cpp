@@ -1,8 +1,6 @@
 // Quantities at one instant, on request.
 #include "reading.hpp"
 
-#include "motion.hpp"
-
 namespace wheel {
 
 // True once per part and instant; marks it as present.
@@ -13,17 +11,18 @@ bool Reading::missing(unsigned part) {
 }
 
 const WheelKinematics& Reading::pose() {
-  if (!(have_ & have_kinematics) && missing(have_pose)) now_.formulation->pose(&now_.scene.wheel, now_.y, &kinematics_);
+  if (!(have_ & have_kinematics) && missing(have_pose))
+    now_.setup->formulation->pose(&now_.scene.wheel, now_.y, &kinematics_);
   return kinematics_;
 }
 
 const WheelKinematics& Reading::kinematics() {
-  if (missing(have_kinematics)) now_.formulation->kinematics(&now_.scene.wheel, now_.y, &kinematics_);
+  if (missing(have_kinematics)) now_.setup->formulation->kinematics(&now_.scene.wheel, now_.y, &kinematics_);
   return kinematics_;
 }
 
 const WheelDynamics& Reading::dynamics() {
-  if (missing(have_dynamics)) now_.formulation->dynamics(&now_.scene, now_.y, &dynamics_);
+  if (missing(have_dynamics)) now_.setup->formulation->dynamics(&now_.scene, now_.y, &dynamics_);
   return dynamics_;
 }
 
@@ -38,24 +37,23 @@ const ReactionRates& Reading::reaction_rates() {
     WheelReactionRates rates;
     double force_dot[2];
     const WheelLoad load_rate = load_rate_of(*now_.inputs);
-    wheel_reaction_rates(now_.formulation, &now_.scene, &load_rate, now_.y, &rates);
+    wheel_reaction_rates(now_.setup->formulation, &now_.scene, &load_rate, now_.y, &rates);
     wheel_horizontal_force_rates(&pose(), dynamics().lambda, rates.lambda_dot, force_dot);
     rates_ = {rates, force_dot[0], force_dot[1]};
   }
   return rates_;
 }
 
-ReactionRates Reading::response(const WheelLoad& load_dot) {
-  WheelReactionRates rates;
-  double force_dot[2];
-  wheel_reaction_response(now_.formulation, &now_.scene, &load_dot, now_.y, &rates);
-  wheel_horizontal_force(&pose(), rates.lambda_dot, force_dot);
-  return {rates, force_dot[0], force_dot[1]};
-}
-
 const WheelContact& Reading::contact() {
   if (missing(have_contact)) contact_ = wheel_contact(&now_.scene.wheel, &kinematics());
   return contact_;
+}
+
+double Reading::energy() {
+  WheelKinematics whole = kinematics();
+  whole.X_O = setup().X_O.whole(whole.X_O);
+  whole.Y_O = setup().Y_O.whole(whole.Y_O);
+  return wheel_energy(&now_.scene.wheel, &whole);
 }
 
 int Reading::friction_mode() {
@@ -65,7 +63,5 @@ int Reading::friction_mode() {
   const double omega_z = pose().omega_z;
   return (omega_z > 0) - (omega_z < 0);
 }
-
-solver::Counters Reading::counters() const { return counters_of(*now_.run, *now_.solution); }
 
 }  // namespace wheel

@@ -7,16 +7,14 @@
 
 namespace wheel {
 
-struct Solution;
-
 // The instant to read; scene and inputs are those that hold for what follows it.
 struct Present {
-  const WheelFormulation* formulation;
+  const Setup* setup;
   const double* y;
   WheelScene scene;
   const Polynomials* inputs;
-  const Run* run = nullptr;  // its counts, with those of its solution
-  const Solution* solution = nullptr;
+  const Run* run = nullptr;  // its counts, with those of the solver
+  const solver::Solver* solver = nullptr;
 };
 
 // Rates along the motion: of the ground's force in fixed axes and of the moment about the axle, N/s and N m/s, and of
@@ -27,35 +25,35 @@ struct ReactionRates : WheelReactionRates {
 
 class Reading {
  public:
-  // `version`: counts the changes of instant and inputs.
-  void set(const Present& now, long long version = none) {
+  void set(const Present& now) {
     now_ = now;
     have_ = 0;
-    version_ = version;
+    is_set_ = true;
   }
-  bool is_of(long long version) const { return version_ == version; }
+  // The instant or what acts there changes.
+  void forget() { is_set_ = false; }
+  bool is_set() const { return is_set_; }
 
-  const WheelScene& scene() const { return now_.scene; }
+  const Setup& setup() const { return *now_.setup; }
+  // psi, phi, X_O and Y_O as the state counts them.
   const WheelKinematics& pose();  // all of the kinematics but X_O_dot and Y_O_dot
   const WheelKinematics& kinematics();
   const WheelDynamics& dynamics();
   // N, the ground's: along e1 (0) or across it (1).
   double horizontal_force(int axis);
   const ReactionRates& reaction_rates();
-  // How the reactions answer a change of the load alone, per unit of it.
-  ReactionRates response(const WheelLoad& load_dot);
-  const WheelContact& contact();
+  const WheelContact& contact();  // X_C and Y_C as the state counts X_O and Y_O
+  double energy();                // J, of the whole X_O and Y_O
   int friction_mode();
-  solver::Counters counters() const;
+  solver::Counters counters() const { return counters_of(*now_.run, *now_.solver); }
   long long transitions() const { return now_.run->transitions; }  // of the friction
 
  private:
   enum : unsigned { have_pose = 1, have_kinematics = 2, have_dynamics = 4, have_rates = 8, have_contact = 16 };
   bool missing(unsigned part);
 
-  static constexpr long long none = -1;
   Present now_ = {};
-  long long version_ = none;
+  bool is_set_ = false;
   unsigned have_ = 0;
   WheelKinematics kinematics_ = {};
   WheelDynamics dynamics_ = {};

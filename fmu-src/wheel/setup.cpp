@@ -116,7 +116,7 @@ bool check_values(const Demand& demand, const Reporter& reporter) {
 }
 
 bool is_inside(Reading& now) {
-  double sum = wheel_energy(&now.scene().wheel, &now.kinematics()) + now.dynamics().tau;
+  double sum = now.energy() + now.dynamics().tau;
   for (const double force : now.dynamics().lambda) sum += force;
   return angle_from_flat(now.pose().theta) > 0 && std::isfinite(sum);
 }
@@ -151,8 +151,12 @@ Setup setup_of(const Demand& demand) {
   setup.keep_contact = v[keep_contact] != 0;
   setup.mu_max = v[mu_max];
   setup.tolerance = demand.tolerance;
-  const WheelMotion motion = {v[psi_start],       v[theta_start],   v[phi_start], v[psi_dot_start],
-                              v[theta_dot_start], v[phi_dot_start], v[X_O_start], v[Y_O_start]};
+  setup.psi = {v[psi_start], exchanged ? v[psi_start] : wheel_less_turns(v[psi_start])};
+  setup.phi = {v[phi_start], exchanged ? v[phi_start] : wheel_less_turns(v[phi_start])};
+  setup.X_O = {v[X_O_start], exchanged ? v[X_O_start] : 0};
+  setup.Y_O = {v[Y_O_start], exchanged ? v[Y_O_start] : 0};
+  const WheelMotion motion = {setup.psi.own,      v[theta_start],   setup.phi.own, v[psi_dot_start],
+                              v[theta_dot_start], v[phi_dot_start], setup.X_O.own, setup.Y_O.own};
   WheelKinematics start;
   setup.formulation->start(&setup.wheel, &motion, setup.start);
   setup.formulation->kinematics(&setup.wheel, setup.start, &start);

@@ -37,6 +37,13 @@ struct Demand {
   }
 };
 
+// What the state counts: an angle from its start less whole turns, a place from its start. So a wheel that starts far
+// away, or after many turns, loses no digits. In model exchange the state is the whole.
+struct Origin {
+  double start, own;  // where the whole and the state begin
+  double whole(double state) const { return start == own ? state : start + (state - own); }
+};
+
 struct Setup {
   Kind kind;
   double start_time;  // s
@@ -47,9 +54,10 @@ struct Setup {
   SolverMethod method = automatic_method;
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y, a level road, choices automatic
   bool keep_contact;
-  double mu_max;                         // the road's coefficient of friction; 0: not checked
-  double tolerance;                      // relative, of the whole solution
-  double start[WHEEL_MAX_STATES];        // the initial state
+  double mu_max;                   // the road's coefficient of friction; 0: not checked
+  double tolerance;                // relative, of the whole solution
+  double start[WHEEL_MAX_STATES];  // the initial state
+  Origin psi, phi, X_O, Y_O;
   double tilting;                        // rad/s, initial rate of turning about e1 and e2
   double own_time;                       // s, the wheel's own time scale
   double longest_step;                   // s

@@ -1,16 +1,27 @@
-// The complete state of a run as portable bytes: a header (mark, size, checksum), then numbers of 8 bytes each, then
-// the solver's own history. Bytes may come from anywhere: each number is checked before it is used.
+// Bytes may come from anywhere: each number is checked before it is used.
+#include "snapshot.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "bytes.hpp"
-#include "simulation.hpp"
+#include "events.hpp"
+#include "exchange.hpp"
+#include "law.hpp"
+#include "motion.hpp"
+#include "problem.hpp"
 
 namespace wheel {
 namespace {
 
-constexpr std::uint64_t mark = 0x3630554d46484557;  // "WEHFMU06": a change of the layout raises the number
+// Of this FMU and version: its GUID, which follows from the description.
+constexpr std::uint64_t mark_of(const char* text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (; *text; ++text) hash = (hash ^ static_cast<unsigned char>(*text)) * 0x100000001b3u;
+  return hash;
+}
+constexpr std::uint64_t mark = mark_of(WHEEL_GUID);
 
 struct Header {
   std::uint64_t mark, size, checksum;
@@ -39,7 +50,8 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
   archive("place in the layer of a stiff law").count(now.layer, 0, static_cast<int>(Layer::sticking));
   archive("origin of the inputs in force, s").number(now.inputs.origin);
-  archive("inputs in force").numbers(now.inputs.c[0], inputs_count * (max_order + 1));
+  archive("inputs in force");
+  for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
   archive("time reached, s").number(run.t);
   archive("time of the last change, s").range(run.last_change, 0, archive.greatest);
   archive("state").numbers(run.y, WHEEL_MAX_STATES);
@@ -70,7 +82,10 @@ bool law_fits(const Setup& setup, const InForce& now) {
 bool end_fits(const Setup& setup, const Run& run) {
   const bool over = run.phase == Phase::ended || run.phase == Phase::closed;
   if (run.ended_by == Event::none) return run.phase != Phase::ended;
-  return over && ends_run(row_of(run.ended_by), setup);
+  const EventRow& row = row_of(run.ended_by);
+  constexpr double rounding = 1e-3;  // of a margin, where an instant has been found
+  return over && ends_run(row, setup) && row.can_occur(setup, run.in_force) &&
+         (has_occurred(row, setup, run) || margin_of(row, setup, run.in_force, run.t, run.y) < rounding);
 }
 
 // Events that are observed, and no others, may lie below zero and be counted.
@@ -110,29 +125,29 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   return nullptr;
 }
 
-}  // namespace
-
-void Simulation::write(support::Archive& archive) {
-  visit(archive, demand_.change(), run_.change());
-  if (phase() == Phase::stepping) solution_.solver.save_history(archive);
+void write(Wheel& w, support::Archive& archive) {
+  visit(archive, w.demand, w.run);
+  if (w.run.phase == Phase::stepping) w.solution.solver.save_history(archive);
 }
 
-std::size_t Simulation::state_size() {
+}  // namespace
+
+std::size_t state_size(Wheel& w) {
   support::Archive archive = support::Archive::counting();
-  write(archive);
+  write(w, archive);
   return sizeof(Header) + archive.bytes();
 }
 
-void Simulation::save_state(unsigned char* bytes) {
-  if (has_state(phase())) state_now(run_.change(), solution_);
+void save_state(Wheel& w, unsigned char* bytes) {
+  if (has_state(w.run.phase)) state_now(w);
   support::Archive archive = support::Archive::writing(bytes + sizeof(Header));
-  write(archive);
+  write(w, archive);
   const std::size_t size = archive.bytes();
   const Header header = {mark, sizeof header + size, support::checksum_of(bytes + sizeof header, size)};
   std::memcpy(bytes, &header, sizeof header);
 }
 
-const char* Simulation::load_state(const unsigned char* bytes, std::size_t size, bool foreign) {
+const char* load_state(Wheel& w, const unsigned char* bytes, std::size_t size, bool foreign) {
   Header header;
   if (size < sizeof header) return "they are too few";
   std::memcpy(&header, bytes, sizeof header);
@@ -148,21 +163,19 @@ const char* Simulation::load_state(const unsigned char* bytes, std::size_t size,
   if (archive.fault()) return archive.fault();
   if (const char* fault = complete(demand, setup, run)) return fault;
   Reading reading;
-  reading.set({setup.formulation, run.y, run.in_force.scene_at(run.t), nullptr});
+  reading.set({&setup, run.y, run.in_force.scene_at(run.t), nullptr});
   if (foreign && has_state(run.phase) && !is_inside(reading)) return "the state is outside the model";
-  if (demand.kind != kind()) return "they belong to an instance of the other kind";
+  if (demand.kind != w.demand.kind) return "they belong to an instance of the other kind";
   if (run.phase != Phase::stepping && !archive.is_sound()) return "bytes are left over";
-  demand_.change() = demand;
-  setup_ = setup;
-  run_.change() = run;
-  solution_.orbit_until = Solution::none;
-  if (run.phase != Phase::stepping) return nullptr;
-  solver::Solver& solver = solution_.solver;
-  solution_.owner = {&setup_, &run_.change().in_force};
-  if (solver.restore_history(problem_of(solution_.owner), archive) && solver.step_start() <= run.t &&
-      solver.reaches(run.t))
+  w.demand = demand;
+  w.setup = setup;
+  w.run = run;
+  w.solution.orbit_until = Solution::none;
+  solver::Solver& solver = w.solution.solver;
+  if (run.phase != Phase::stepping ||
+      (solver.restore_history(problem_of(w), archive) && solver.step_start() <= run.t && solver.reaches(run.t)))
     return nullptr;
-  enter(Phase::failed);
+  w.run.phase = Phase::failed;
   return "the history of the solver could not be restored";
 }
 

@@ -18,20 +18,18 @@ struct Access {
   variable::Reference variable;
   double (*read)(Reading&);
   double (*read_rate)(Reading&) = nullptr;
-  double (*reaction_rate)(const ReactionRates&) = nullptr;
+  double (*by_force)(const Force&, const Force&) = nullptr;
 };
 
 #define AT(expression) [](Reading& now) -> double { return expression; }
-#define REACTION(value, component) \
-  AT(now.value), AT(now.reaction_rates().component), [](const ReactionRates& rates) { return rates.component; }
 
 constexpr Access readers[] = {
-    {variable::X_O, AT(now.pose().X_O), AT(now.kinematics().X_O_dot)},
-    {variable::Y_O, AT(now.pose().Y_O), AT(now.kinematics().Y_O_dot)},
+    {variable::X_O, AT(now.setup().X_O.whole(now.pose().X_O)), AT(now.kinematics().X_O_dot)},
+    {variable::Y_O, AT(now.setup().Y_O.whole(now.pose().Y_O)), AT(now.kinematics().Y_O_dot)},
     {variable::Z_O, AT(now.pose().Z_O), AT(now.pose().Z_O_dot)},
-    {variable::psi, AT(now.pose().psi), AT(now.pose().psi_dot)},
+    {variable::psi, AT(now.setup().psi.whole(now.pose().psi)), AT(now.pose().psi_dot)},
     {variable::theta, AT(now.pose().theta), AT(now.pose().theta_dot)},
-    {variable::phi, AT(now.pose().phi), AT(now.pose().phi_dot)},
+    {variable::phi, AT(now.setup().phi.whole(now.pose().phi)), AT(now.pose().phi_dot)},
     {variable::X_O_dot, AT(now.kinematics().X_O_dot), AT(now.dynamics().X_O_ddot)},
     {variable::Y_O_dot, AT(now.kinematics().Y_O_dot), AT(now.dynamics().Y_O_ddot)},
     {variable::Z_O_dot, AT(now.pose().Z_O_dot), AT(now.dynamics().Z_O_ddot)},
@@ -39,20 +37,21 @@ constexpr Access readers[] = {
     {variable::theta_dot, AT(now.pose().theta_dot), AT(now.dynamics().theta_ddot)},
     {variable::phi_dot, AT(now.pose().phi_dot), AT(now.dynamics().phi_ddot)},
     {variable::omega_z, AT(now.pose().omega_z), AT(now.dynamics().omega_z_dot)},
-    {variable::lambda_1, REACTION(dynamics().lambda[0], lambda_dot[0])},
-    {variable::lambda_2, REACTION(dynamics().lambda[1], lambda_dot[1])},
-    {variable::lambda_3, REACTION(dynamics().lambda[2], lambda_dot[2])},
-    {variable::X_C, AT(now.contact().X_C), AT(now.contact().X_C_dot)},
-    {variable::Y_C, AT(now.contact().Y_C), AT(now.contact().Y_C_dot)},
-    {variable::lambda_x, REACTION(horizontal_force(0), lambda_x_dot)},
-    {variable::lambda_y, REACTION(horizontal_force(1), lambda_y_dot)},
-    {variable::tau, REACTION(dynamics().tau, tau_dot)},
+    {variable::lambda_1, AT(now.dynamics().lambda[0]), AT(now.reaction_rates().lambda_dot[0])},
+    {variable::lambda_2, AT(now.dynamics().lambda[1]), AT(now.reaction_rates().lambda_dot[1])},
+    {variable::lambda_3, AT(now.dynamics().lambda[2]), AT(now.reaction_rates().lambda_dot[2])},
+    {variable::X_C, AT(now.setup().X_O.whole(now.contact().X_C)), AT(now.contact().X_C_dot)},
+    {variable::Y_C, AT(now.setup().Y_O.whole(now.contact().Y_C)), AT(now.contact().Y_C_dot)},
+    {variable::lambda_x, AT(now.horizontal_force(0)), AT(now.reaction_rates().lambda_x_dot)},
+    {variable::lambda_y, AT(now.horizontal_force(1)), AT(now.reaction_rates().lambda_y_dot)},
+    {variable::tau, AT(now.dynamics().tau), AT(now.reaction_rates().tau_dot)},
     {variable::theta_ddot, AT(now.dynamics().theta_ddot)},
     {variable::psi_ddot, AT(now.dynamics().psi_ddot)},
     {variable::phi_ddot, AT(now.dynamics().phi_ddot)},
     {variable::omega_z_dot, AT(now.dynamics().omega_z_dot)},
-    {variable::E, AT(wheel_energy(&now.scene().wheel, &now.kinematics()))},
-    {variable::mu_required, AT(wheel_required_friction(now.dynamics().lambda))},
+    {variable::E, AT(now.energy())},
+    {variable::mu_required, AT(wheel_required_friction(now.dynamics().lambda)), nullptr,
+     [](const Force& force, const Force& rate) { return wheel_required_friction_rate(force.lambda, rate.lambda); }},
     {variable::friction_mode, AT(now.friction_mode())},
     {variable::n_steps, AT(double(now.counters().steps))},
     {variable::n_rhs, AT(double(now.counters().rhs))},
@@ -62,7 +61,6 @@ constexpr Access readers[] = {
     {variable::n_restarts, AT(double(now.counters().restarts))},
 };
 
-#undef REACTION
 #undef AT
 
 constexpr Row stored_row(const char* name, Type type, Role role, double start, double min, double max) {
@@ -75,7 +73,7 @@ constexpr Row computed_row(const char* name, Type type, Role role) {
   constexpr auto reads_it = [](const Access& reader) { return reader.variable == variable; };
   static_assert(std::count_if(std::begin(readers), std::end(readers), reads_it) == 1, "one reader for each");
   const Access& r = *std::find_if(std::begin(readers), std::end(readers), reads_it);
-  return {name, type, role, 0, 0, 0, r.read, r.read_rate, r.reaction_rate};
+  return {name, type, role, 0, 0, 0, r.read, r.read_rate, r.by_force};
 }
 
 constexpr Row rows[] = {

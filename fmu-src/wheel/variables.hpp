@@ -8,7 +8,11 @@
 namespace wheel {
 
 class Reading;
-struct ReactionRates;
+
+// The ground's force on the wheel, fixed axes, N; or its rate of change by some quantity.
+struct Force {
+  double lambda[3];
+};
 
 enum class Type : unsigned char { real, integer, boolean, string };  // no variable is a string
 enum class Role : unsigned char { parameter, tunable, input, output, local };
@@ -34,10 +38,11 @@ struct Row {
   const char* name;
   Type type;
   Role role;
-  double start, min, max;                         // stored variables
-  double (*read)(Reading&);                       // computed variables, else null
-  double (*read_rate)(Reading&);                  // d/dt of an output, else null
-  double (*reaction_rate)(const ReactionRates&);  // of an output that answers an input at once, else null
+  double start, min, max;         // stored variables
+  double (*read)(Reading&);       // computed variables, else null
+  double (*read_rate)(Reading&);  // d/dt of an output, else null
+  // The derivative of what is not linear in the ground's force, from force and derivative of the force; else null.
+  double (*by_force)(const Force& force, const Force& rate);
 };
 
 const Row& row_of(unsigned variable);

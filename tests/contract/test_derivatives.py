@@ -114,6 +114,23 @@ def test_directional_derivatives_add_up_the_seeds(wheel):
     beyond(np.max(np.abs(together - jacobian(w) @ seeds[::-1])), 1, "jacobian")
 
 
+@pytest.mark.parametrize("share", [0.5, 3e-3, 1.5e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize("kind", ["instant", "initialization"])
+def test_the_friction_that_is_required_next_to_lift_off_has_the_derivative_of_its_quotient(wheel, share, kind):
+    """mu = lambda_t / N, with N a share of the weight; the other unknowns of the call are answered too."""
+    start = {"psi_dot_start": 0.5, "keep_contact": True}
+    w = wheel().initializing(**start) if kind == "initialization" else wheel().start(**start)
+    forces = ("lambda_1", "lambda_2", "lambda_3")
+    slopes = w.jacobian(forces, ["F_Z"])[:, 0]
+    assert w.set(F_Z=(share * 98.1 - w.get("lambda_3")[0]) / slopes[2]) == OK
+    (X, Y, N), mu = w.get(*forces), w.get("mu_required")[0]
+    expected = (X * slopes[0] + Y * slopes[1]) / np.hypot(X, Y) / N - mu / N * slopes[2]
+    got = w.jacobian(["mu_required", *forces], ["F_Z"])[:, 0]
+    within(abs(got[0] / expected - 1), 1e-11 / share, "derivative, relative")
+    within(np.abs(got[1:] - slopes).max(), 1e-11, "derivatives of the force")
+    beyond(abs(mu / N / expected), 0.5, "the part of N")
+
+
 def test_wrong_requests_for_derivatives_are_refused(wheel):
     w = wheel().start()
     theta, force, mass, energy, mode = w.refer("theta", "F_X", "m", "E", "friction_mode")

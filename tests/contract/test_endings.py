@@ -36,8 +36,7 @@ def test_an_ending_is_logged_with_every_digit_of_its_instant_and_no_later_step_i
     logged = f"{what} at t = {np.format_float_positional(end, trim='-')} s"  # the shortest decimal that is this number
     (message,) = w.take_messages()
     assert (message.status, message.category) == (WARNING, "logStatusDiscard")
-    tilt = f", theta = {w.get('theta')[0]:.6g} rad" if values == LIFT else ""
-    assert message.text == f"The wheel {logged}{tilt}: the model ends there."
+    assert message.text == f"The wheel {logged}, theta = {w.get('theta')[0]:.6g} rad: the model ends there."
     w.time = end
     for h in (0.0, 1e-300, 1e-12, 0.1, 1e6):
         assert w.step(h) == ERROR

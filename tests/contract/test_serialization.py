@@ -241,7 +241,11 @@ FORGERIES = {
     "Runge-Kutta": {"": [{"below": 1}, {"below": 2}, *IN_NO_LAW], "the state is outside the model": NO_WHEEL},
     "Adams": {"the state is outside the model": NO_WHEEL},
     "contact kept": {"": [{"below": 2}, {"below": 3}, *IN_NO_LAW]},
-    "ended": {"": [{"ended_by": FELL_FLAT + 1}, {"ended_by": FELL_FLAT + 2}]},
+    "ended": {
+        "": [{"ended_by": FELL_FLAT + 1}, {"ended_by": FELL_FLAT + 2}],
+        # Events that cannot occur here, and one that has not occurred.
+        "no such event ends a run": [{"ended_by": forging.LOST_GRIP}, {"ended_by": forging.LOST_CONTACT}, {"y_0": 0.5}],
+    },
 }  # fmt: skip
 
 

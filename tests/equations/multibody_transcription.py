@@ -34,9 +34,10 @@ class Stabilised(Paper):
 
     @cached_property
     def decay_rate(self) -> np.ndarray:
-        """a = 5 sqrt(g / (r_0 + r) + |omega|^2), 1/s."""
+        """a = 5 sqrt(|g| / (r_0 + r) + |omega|^2), 1/s; |g|: of the whole of gravity."""
         w = self.wheel
-        return 5 * np.sqrt(w["g"] / (w["r_0"] + w["r"]) + (self.omega**2).sum(axis=-1))
+        gravity = np.sqrt(w["g"] ** 2 + w["g_X"] ** 2 + w["g_Y"] ** 2)
+        return 5 * np.sqrt(gravity / (w["r_0"] + w["r"]) + (self.omega**2).sum(axis=-1))
 
     @cached_property
     def height_error(self) -> np.ndarray:

@@ -1,7 +1,7 @@
 """The multibody state and its stabilisation: omega_z is a state, and errors of the constraints decay.
 
 (24) fixes the constraints as accelerations: alone it keeps an error of [B]{q_dot} and lets that of the height grow. The
-product's derivative draws both to zero at the rate a = 5 sqrt(g / (r_0 + r) + |omega|^2): docs/decisions/
+product's derivative draws both to zero at the rate a = 5 sqrt(|g| / (r_0 + r) + |omega|^2): docs/decisions/
 multibody_state.md. Integrated by SciPy, so that no solver of the product takes part. Fixed axes for O.
 """
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <new>
 
-#include "motion.hpp"
-#include "orbit.hpp"
+#include "law.hpp"
+#include "problem.hpp"
 
 #ifdef _WIN32
 #define PUBLIC extern "C" __declspec(dllexport)
@@ -14,15 +14,14 @@
 namespace {
 
 struct Probe {
-  wheel::Setup setup;
-  wheel::InForce in_force;
-  solver::Solver solver;
-  orbit::Orbit orbit;
+  wheel::Wheel wheel{wheel::Reporter(), wheel::Kind::co_simulation};
+  solver::Solver& solver = wheel.solution.solver;
+  orbit::Orbit& orbit = wheel.solution.orbit;
 };
 
 double force(const Probe& probe, const double* y) {
   double y_dot[8];
-  return wheel_reduced.derivative(&probe.in_force.scene, y, y_dot);
+  return wheel_reduced.derivative(&probe.wheel.run.in_force.scene, y, y_dot);
 }
 
 // What is added to the rates of the wheel, of size `added`: no wheel with such a force may be unfolded.
@@ -53,11 +52,11 @@ double disturbed(void* owner, double t, const double* y, double* y_dot) {
 PUBLIC Probe* probe_make(const unsigned* references, const double* values, int count, double tolerance) {
   Probe* probe = new (std::nothrow) Probe;
   if (!probe) return nullptr;
-  wheel::Demand demand;
-  for (int i = 0; i < count; ++i) demand.parameters[references[i]] = values[i];
-  demand.tolerance = tolerance;
-  probe->setup = wheel::setup_of(demand);
-  wheel::put_in_force(probe->setup, demand, 0, probe->setup.start, probe->in_force);
+  wheel::Wheel& wheel = probe->wheel;
+  for (int i = 0; i < count; ++i) wheel.demand.parameters[references[i]] = values[i];
+  wheel.demand.tolerance = tolerance;
+  wheel.setup = wheel::setup_of(wheel.demand);
+  wheel::put_in_force(wheel.setup, wheel.demand, 0, wheel.setup.start, wheel.run.in_force);
   return probe;
 }
 
@@ -68,14 +67,14 @@ PUBLIC void probe_disturb(int what, double size) { kind = what, added = size; }
 
 // 0 refused, 1 folded, 2 ended.
 PUBLIC int probe_build(Probe* probe) {
-  wheel::InForce in_force = probe->in_force;
-  wheel::Owner owner = {&probe->setup, &in_force};
-  solver::Problem problem = wheel::problem_of(owner);
+  const wheel::InForce at_start = probe->wheel.run.in_force;
+  solver::Problem problem = wheel::problem_of(probe->wheel);
   rates_of_wheel = problem.derivative;
   if (added != 0) problem.derivative = disturbed;
-  const wheel::Setup& setup = probe->setup;
+  const wheel::Setup& setup = probe->wheel.setup;
   const auto kind = probe->orbit.build(problem, setup.tolerance, wheel::pass_on_orbit, setup.start, probe->solver);
   const bool starts = kind != orbit::Orbit::Kind::refused && probe->orbit.start_at(problem, setup.start);
+  probe->wheel.run.in_force = at_start;
   return starts ? static_cast<int>(kind) : 0;
 }
 
@@ -91,9 +90,9 @@ PUBLIC double probe_end_time(Probe* probe) { return probe->orbit.end_time(); }
 PUBLIC double probe_half_period(Probe* probe) { return probe->orbit.half_period(); }
 // Of N, the only event that recurs.
 PUBLIC long long probe_falls_until(Probe* probe, double t) {
-  return probe->orbit.falls_until(static_cast<int>(wheel::Event::lost_contact), t);
+  return probe->orbit.recurrence(static_cast<int>(wheel::Event::lost_contact)).falls_until(t);
 }
 PUBLIC double probe_fall(Probe* probe, long long n) {
-  return probe->orbit.fall(static_cast<int>(wheel::Event::lost_contact), n);
+  return probe->orbit.recurrence(static_cast<int>(wheel::Event::lost_contact)).fall(n);
 }
 PUBLIC long long probe_steps(Probe* probe) { return probe->solver.counters().steps; }

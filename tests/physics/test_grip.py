@@ -48,6 +48,16 @@ def test_a_braked_wheel_runs_out_of_grip_at_the_closed_forms_instant(library: Li
     beyond(abs(end(0.501) - braked_instant(0.5)), 1e-4, "instant with another mu_max, s")
 
 
+@pytest.mark.parametrize("mu", [1e-9, 1e-7, 1e-5, 1e-3, 0.3])
+def test_a_slippery_road_ends_the_run_at_its_own_coefficient_however_small(library: Library, mu: float) -> None:
+    """On a ramp of the brake in proportion to mu_max, so that the instant is the same."""
+    ramp = Schedule(((0.0, {"M_brake": (0.0, RAMP * mu)}),))
+    times = np.linspace(0, 2 * braked_instant(1.0), 5)
+    ends = [library.simulate(times, 1e-10, ramp, mu_max=limit, **UPRIGHT).end or np.nan for limit in (mu, 1.00001 * mu)]
+    within(abs(ends[0] / braked_instant(1.0) - 1), 2e-6, "instant, relative")
+    beyond(abs(ends[1] / braked_instant(1.0) - 1), 2e-6, "instant with another mu_max, relative")
+
+
 def test_a_braked_wheel_that_is_not_checked_goes_on(library: Library) -> None:
     assert library.simulate([0.0, 3.0], 1e-10, SOON, **UPRIGHT).end is None
 
@@ -125,10 +135,11 @@ def test_model_exchange_refuses_a_start_without_grip_and_co_simulation_ends_ther
     wheel = loaded(library).new()
     assert wheel.set(mu_max=0.01, **FAST) == OK
     assert wheel.initialise() == ERROR
-    assert wheel.sentences[-1].startswith("At the start, where N = ") and wheel.sentences[-1].endswith("mu_max = 0.01.")
+    refusal = "At the start the wheel needs a coefficient of friction above mu_max = 0.01 (N = "
+    assert wheel.sentences[-1].startswith(refusal)
     run = library.simulate([0.0, 1.0], mu_max=0.01, **FAST)
     assert (run.status, run.end) == (DISCARD, 0.0)
-    assert run.ended == MESSAGE.format(0.01, 0) + ", theta = 1.2 rad: a model without slip ends here."
+    assert run.ended == MESSAGE.format(0.01, 0) + ", theta = 1.2 rad: the model ends there."
 
 
 def test_a_ground_that_pulls_has_no_grip(library: Library) -> None:
@@ -145,5 +156,5 @@ def test_the_indicator_of_grip_is_positive_and_constant_where_grip_is_not_checke
         assert free.indicator("lost_grip") == 1.0 and INDICATORS.index("lost_grip") == 1
         needed = checked.get("mu_required")[0]
         N, weight = checked.get("lambda_3")[0], PAPER.m * PAPER.g
-        expected = (5.0**2 - needed**2) * (N / weight) ** 2
+        expected = (1 - (needed / 5.0) ** 2) * (N / weight) ** 2
         within(abs(checked.indicator("lost_grip") - expected), 1e-9, "indicator")

@@ -27,22 +27,21 @@ def test_the_log_of_a_ground_that_pulls_often_does_not_depend_on_the_grid(wheel,
         assert w.terminate() == OK
         logs.append(pulls_of(w))
     assert logs[0] == logs[1] == logs[2] and len(logs[0]) == MANY + 1
-    words = logs[0][-1].split()
-    assert logs[0][-1].startswith("The ground has pulled ") and int(words[4]) > 300
-    assert 99 < float(words[-3]) < 100
+    times, last = logs[0][-1].split(" times, "), logs[0][-1].split(" last at t = ")
+    assert int(times[0]) > 300 and 99 < float(last[1].split()[0]) < 100
 
 
 def test_pulls_of_a_wheel_that_falls_flat_are_summed_up_once(wheel):
     w = wheel().start(keep_contact=True, theta_start=0.3, phi_dot_start=0.0, method=4).to(0.05)
     w.back(forged(w, w.serialized(), pulls=MANY + 1))
     assert (w.step_to(9.0), w.terminate()) == (DISCARD, OK)
-    assert [sentence[:33] for sentence in pulls_of(w)] == ["The ground has pulled 101 times, "]
+    assert [sentence.split(",")[0] for sentence in pulls_of(w)] == ["101 times"]
 
 
 def test_few_pulls_are_not_summed_up(wheel):
     w = wheel().start(**PULLING).to(1.0)
     assert 0 < len(pulls_of(w)) < MANY and w.terminate() == OK
-    assert not any("has pulled" in sentence for sentence in pulls_of(w))
+    assert not any(" times, " in sentence for sentence in pulls_of(w))
 
 
 @pytest.mark.parametrize("phi_dot", [-2.0, -2e4])

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <utility>
 
 #include "cvode_objects.hpp"
 #include "solver.hpp"
@@ -32,6 +33,7 @@ struct Setting {
 struct Probe {
   Setting setting;
   solver::Solver solver;
+  double stop = solver::never;  // of the next step
 };
 
 const Setting& of(void* owner) { return *static_cast<Setting*>(owner); }
@@ -81,11 +83,11 @@ solver::Problem problem_of(Probe* probe) {
 
 }  // namespace
 
-PUBLIC Probe* probe_new(const Setting* setting) { return new (std::nothrow) Probe{*setting, {}}; }
+PUBLIC Probe* probe_new(const Setting* setting) { return new (std::nothrow) Probe{*setting, {}, solver::never}; }
 
 // At t = 0.
 PUBLIC void probe_start(Probe* probe) {
-  probe->solver.start(problem_of(probe), probe->setting.method, 0, probe->setting.y);
+  (void)probe->solver.start(problem_of(probe), probe->setting.method, 0, probe->setting.y);
 }
 
 PUBLIC void probe_free(Probe* probe) { delete probe; }
@@ -93,17 +95,19 @@ PUBLIC void probe_free(Probe* probe) { delete probe; }
 // At most so many steps, until t is known or something else than a step happens. 0 stepped, 1 event, 2 failed.
 PUBLIC int probe_run(Probe* probe, double t, long long most) {
   solver::Outcome outcome = solver::Outcome::stepped;
-  while (!probe->solver.reaches(t) && outcome == solver::Outcome::stepped && most-- > 0) outcome = probe->solver.step();
+  while (!probe->solver.reaches(t) && outcome == solver::Outcome::stepped && most-- > 0)
+    outcome = probe->solver.step(std::exchange(probe->stop, solver::never));
   return static_cast<int>(outcome);
 }
 
 PUBLIC void probe_read(const Probe* probe, double t, double* y) { probe->solver.read(t, y); }
 PUBLIC const char* probe_failure(const Probe* probe) { return probe->solver.failure(); }
-PUBLIC void probe_stop_before(Probe* probe, double t) { probe->solver.stop_before(t); }
+PUBLIC void probe_stop_before(Probe* probe, double t) { probe->stop = t; }
+PUBLIC void probe_resume(Probe* probe) { probe->solver.resume(); }
 PUBLIC void probe_limit_first_step(Probe* probe, double dt) { probe->solver.limit_first_step(dt); }
 
 PUBLIC void probe_restart(Probe* probe, double t, const double* y) {
-  probe->solver.restart(problem_of(probe), probe->setting.method, t, y);
+  (void)probe->solver.restart(problem_of(probe), probe->setting.method, t, y);
 }
 
 // Begin of the last step, time known, instant and name of the event; steps, evaluations, Jacobians, roots, restarts.
@@ -116,7 +120,7 @@ PUBLIC void probe_progress(const Probe* probe, double now[9]) {
 }
 
 // The history as bytes; their number.
-PUBLIC std::size_t probe_save(const Probe* probe, unsigned char* bytes) {
+PUBLIC std::size_t probe_save(Probe* probe, unsigned char* bytes) {
   support::Archive archive = bytes ? support::Archive::writing(bytes) : support::Archive::counting();
   probe->solver.save_history(archive);
   return archive.bytes();

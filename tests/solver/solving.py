@@ -48,7 +48,7 @@ class Solver:
         self.library.probe_free(self.probe)
 
     def __getattr__(self, name):
-        """A function of probe.cpp that takes numbers alone: start, stop_before, limit_first_step."""
+        """A function of probe.cpp that takes numbers alone: start, stop_before, limit_first_step, resume."""
         function = getattr(self.library, f"probe_{name}")
         return lambda *numbers: function(self.probe, *map(c_double, numbers))
 

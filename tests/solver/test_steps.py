@@ -4,7 +4,7 @@ from math import hypot, inf, log2
 
 import numpy as np
 import pytest
-from solving import FAILED, harmonic, vector
+from solving import EVENT, FAILED, harmonic, vector
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
 
@@ -159,3 +159,43 @@ def test_a_restored_solver_goes_on_with_the_same_bits(watched, steps):
 
 def test_a_history_is_small(watched):
     within(len(watched(60).save()), 4096, "bytes")
+
+
+def resumed_at_events(solver, method, cuts, save=False):
+    """The oscillator up to the last cut, with the crossings of y_0 as events after which the same step goes on. Each
+    step may go up to the next of the cuts. With `save` another solver takes over after each step. For each way of
+    watching the lengths of all steps, and the last counts."""
+    runs = []
+    for way in ("each_step", "by_margin"):
+        sign = [1]
+        watched = {way: lambda _, y, sign=sign: sign[0] * y[0] + 1e-9}
+        one, lengths = solver(method, **watched), []
+        for cut in cuts:
+            while one.now.known < cut * (1 - 64 * EPSILON):
+                one.stop_before(cut)
+                outcome = one.step()
+                assert outcome != FAILED, one.failure
+                lengths.append(one.now.known - one.now.begin)
+                if outcome == EVENT:
+                    sign[0] = -sign[0]
+                    one.resume()
+                if save:
+                    other = solver(method, **watched)
+                    assert other.restore(one.save())
+                    one = other
+        runs.append((lengths, one.now))
+    return runs
+
+
+def test_a_stop_does_not_outlive_its_step_where_an_event_cut_the_step_in_two(solver, method):
+    """An old stop that lies behind would make a step of no length, which CVODE refuses."""
+    random = np.random.default_rng(7)
+    for _ in range(20):
+        for lengths, _ in resumed_at_events(solver, method, np.cumsum(random.uniform(0.05, 0.6, 30))):
+            beyond(min(lengths), 64 * EPSILON * 20, "length of a step, s")
+
+
+def test_a_history_saved_at_any_cut_leads_to_the_same_counts_also_between_events(solver, method):
+    cuts = np.cumsum(np.random.default_rng(8).uniform(0.2, 1.5, 20))
+    assert resumed_at_events(solver, method, cuts, save=True) == resumed_at_events(solver, method, cuts)
+    assert resumed_at_events(solver, method, cuts[1:])[0][1] != resumed_at_events(solver, method, cuts)[0][1]

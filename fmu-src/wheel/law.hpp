@@ -1,0 +1,41 @@
+// What acts on the wheel from an instant on: inputs, the law of friction after Filippov, the method that solves what
+// follows, and whether the motion can be unfolded. Pure functions of setup, load and state.
+#pragma once
+
+#include "run.hpp"
+
+namespace wheel {
+
+// What acts from t on: `s` and inputs.
+void let_act(const Setup& setup, double s, double t, const Polynomials& inputs, InForce& in_force);
+
+// Puts in force, at the state y, what is asked for: `s`, inputs from t on, and the law of friction that goes with them.
+void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& in_force);
+
+// Decides the law of friction from t and y on. At omega_z = 0 after Filippov: held where the moment that holds the
+// wheel is within s N + M_brake, else rolling against that moment. `released`: friction and brake can no longer hold
+// it. A stiff regularized law is decided by the place of omega_z in its layer.
+void decide_law(const Setup& setup, double t, const double* y, InForce& in_force, bool released = false);
+
+// Whether two laws differ in kind, or in the side to which the wheel spins.
+inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.kind != b.kind || a.sigma != b.sigma; }
+
+// s N + M_brake - |tau| of a held wheel, N m; where rounding alone decides, the wheel stays held.
+double holding_reserve(const Setup& setup, const WheelScene& scene, const double* y);
+
+// rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last
+// digit.
+inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
+
+// Below zero where a regularized law is so steep that it is solved by its layer and, around it, by the exact law. Once
+// solved so, it stays so until an input changes.
+bool can_stiffen(const Setup& setup, const InForce& in_force);
+double softness_of(const Setup& setup, const WheelScene& scene, const double* y);
+
+// What solves the motion that is not unfolded.
+solver::Method method_of(const Setup& setup, const InForce& in_force);
+
+// Whether the motion repeats and can be unfolded from half a nutation.
+bool is_unfoldable(const Setup& setup, const InForce& in_force);
+
+}  // namespace wheel

@@ -1,0 +1,71 @@
+// Messages of a run's events, with instants on the caller's clock.
+#include "logbook.hpp"
+
+#include <cstdio>
+
+#include "law.hpp"
+
+namespace wheel {
+namespace {
+
+// An instant for messages: it is not found more exactly than to a nanosecond.
+double instant_of(const Setup& setup, double t) {
+  const double time = setup.start_time + t;
+  return std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time;
+}
+
+}  // namespace
+
+Consequence pass_event(Wheel& wheel, Event event) {
+  Run& run = wheel.run;
+  const EventRow& row = row_of(event);
+  const WheelFriction before = run.in_force.scene.friction;
+  const Consequence consequence = row.follow(wheel.setup, event, run.t, run.y, run.in_force);
+  if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) count_event(wheel, event, run.t);
+  log_transition(wheel, before);
+  return consequence;
+}
+
+void count_event(Wheel& wheel, Event event, double t) {
+  Tally& tally = wheel.run.tallies[static_cast<int>(event)];
+  tally.last = t;
+  if (tally.count++ >= logged_one_by_one) return;
+  wheel.reporter.log(Topic::warning, "t = %s s: %s.", instant_of(wheel.setup, t), row_of(event).observed);
+}
+
+// A change to another law is not a transition.
+void log_transition(Wheel& wheel, const WheelFriction& before) {
+  const WheelFriction& friction = wheel.run.in_force.scene.friction;
+  const auto is_exact = [](WheelFrictionKind law) { return law == WHEEL_ROLLING || law == WHEEL_HELD; };
+  if (!is_exact(before.kind) || !is_exact(friction.kind) || !differ(before, friction)) return;
+  ++wheel.run.transitions;
+  const double instant = instant_of(wheel.setup, wheel.run.t);
+  const char* const change = before.kind == WHEEL_HELD ? "release" : "reversal";
+  if (friction.kind == WHEEL_HELD)
+    wheel.reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant);
+  else
+    wheel.reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant, change,
+                       friction.sigma > 0 ? "positive" : "negative");
+}
+
+void log_summaries(const Wheel& wheel) {
+  for (const EventRow& row : event_rows) {
+    const Tally& tally = wheel.run.tallies[static_cast<int>(row.event)];
+    if (tally.count > logged_one_by_one)
+      wheel.reporter.log(Topic::warning, "%s times, of which the first %s were logged, last at t = %s s: %s.",
+                         static_cast<double>(tally.count), static_cast<double>(logged_one_by_one),
+                         instant_of(wheel.setup, tally.last), row.observed);
+  }
+}
+
+Ending ending_of(const Setup& setup, Event event) {
+  Ending ending;
+  const EventRow& row = row_of(event);
+  if (row.limit)
+    std::snprintf(ending.text, sizeof ending.text, "%s = %s", row.ending, NumberText(Digits{row.limit(setup)}).text);
+  else
+    std::snprintf(ending.text, sizeof ending.text, "%s", row.ending);
+  return ending;
+}
+
+}  // namespace wheel

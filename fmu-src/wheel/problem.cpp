@@ -1,0 +1,75 @@
+// What the solver asks: right-hand side, error weights, watched functions.
+#include "problem.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace wheel {
+namespace {
+
+const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
+
+double derivative(void* owner, double t, const double* y, double* y_dot) {
+  const Setup& setup = wheel_of(owner).setup;
+  const InForce& now = wheel_of(owner).run.in_force;
+  const auto rates = [&](const WheelScene& scene) { return setup.formulation->derivative(&scene, y, y_dot); };
+  const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
+  double sum = 0;
+  for (int i = 0; i < setup.formulation->states; ++i) sum += y_dot[i];
+  if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
+  return least_margin(setup, now, y, N);
+}
+
+// The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
+// turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a fraction of that width.
+void weights(void* owner, double share, const double* y, double* weights) {
+  const Setup& setup = wheel_of(owner).setup;
+  const int states = setup.formulation->states, spin = setup.formulation->spin_index;
+  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  const double slow = share * setup.tolerance;
+  const double tolerance = std::fmax(slow * share_at(setup, y[spin]), std::fmin(slow, rounding));
+  double scales[WHEEL_MAX_STATES];
+  scales_at(setup, y[spin], scales);
+  for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
+  if (wheel_of(owner).run.in_force.scene.friction.kind != WHEEL_REGULARIZED) return;
+  const double part = 10 * std::sqrt(tolerance);
+  const double layer = part * setup.omega_s + tolerance * std::fabs(y[spin]);
+  weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
+}
+
+double margin(void* owner, int event, double t, const double* y) {
+  return margin_of(row_of(static_cast<Event>(event)), wheel_of(owner).setup, wheel_of(owner).run.in_force, t, y);
+}
+
+int extremes(void* owner, double t_lo, double t_hi, double* instants) {
+  static_assert(most_extremes <= solver::max_extremes);
+  return wheel_of(owner).run.in_force.inputs.extremes(t_lo, t_hi, instants);
+}
+
+}  // namespace
+
+solver::Problem problem_of(Wheel& wheel) {
+  const Setup& setup = wheel.setup;
+  const InForce& now = wheel.run.in_force;
+  solver::Problem problem = {};
+  problem.states = setup.formulation->states;
+  problem.owner = &wheel;
+  problem.derivative = derivative;
+  problem.weights = weights;
+  problem.extremes = extremes;
+  problem.near = 0.1;  // of the weight, or rad from lying flat
+  problem.longest_step = setup.longest_step;
+  problem.passage = now.layer == Layer::passing;
+  for (const EventRow& row : event_rows)
+    if (row.can_occur(setup, now)) problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr});
+  return problem;
+}
+
+Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
+  auto& wheel = *static_cast<Wheel*>(owner);
+  const EventRow& row = row_of(static_cast<Event>(event));
+  if (ends_run(row, wheel.setup)) return Consequence::ends;
+  return row.follow(wheel.setup, row.event, t, y, wheel.run.in_force);
+}
+
+}  // namespace wheel
