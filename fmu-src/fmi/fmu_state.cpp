@@ -1,7 +1,6 @@
 // FMI 2.0 functions: rollback. An FMU state is its own serialization: portable bytes that hold no pointers.
 //
-// A master may pass any pointer: only states that this library handed out are touched, and bytes from elsewhere become
-// a state only after a scratch instance has taken them.
+// Bytes from elsewhere become a state only after a scratch instance has taken them.
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
@@ -9,32 +8,28 @@
 
 #include "instance.hpp"
 
-using fmi::guarded, fmi::Held, fmi::Instance, fmi::no_fault, wheel::Topic;
+using fmi::guarded, fmi::handle_of, fmi::Instance, fmi::no_fault, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
 
-struct Snapshot : Held {
+struct Snapshot : fmi::Handle {
+  static constexpr std::uint64_t own_mark = 0x535f554d46484557;  // "WEHFMU_S"
+
   std::size_t size;  // of the bytes behind this header
   unsigned char* bytes() { return reinterpret_cast<unsigned char*>(this + 1); }
 };
 
-Snapshot* snapshot_of(fmi2FMUstate state) { return static_cast<Snapshot*>(fmi::fmu_states.find(state)); }
-
-// A pointer that was never handed out is left alone.
-void free_state(fmi2FMUstate state) { std::free(static_cast<Snapshot*>(fmi::fmu_states.remove(state))); }
-
-// A state of `size` bytes: the previous one where its size fits, else a new one, and the previous one is freed. Null
-// without memory: then the previous one is kept.
+// A state of `size` bytes: the previous one where its size fits, else a new one, and the previous one is freed. A
+// pointer to something else counts as none. Null without memory: then the previous one is kept.
 Snapshot* allocate(fmi2FMUstate* state, std::size_t size) {
-  Snapshot* const old = snapshot_of(*state);
+  auto* const old = handle_of<Snapshot>(*state);
   if (old && old->size == size) return old;
   void* const memory = std::malloc(sizeof(Snapshot) + size);
   if (!memory) return nullptr;
-  free_state(*state);
-  auto* const snapshot = ::new (memory) Snapshot{{}, size};
-  fmi::fmu_states.add(snapshot);
-  *state = static_cast<Held*>(snapshot);
+  if (old) fmi::release(old);
+  auto* const snapshot = ::new (memory) Snapshot{{.mark = Snapshot::own_mark}, size};
+  *state = static_cast<fmi::Handle*>(snapshot);
   return snapshot;
 }
 
@@ -45,7 +40,7 @@ constexpr const char *null_pointer = "the state, the size or the bytes are a nul
 template <class Body>
 fmi2Status with_state(fmi2Component c, const char* name, fmi2FMUstate state, bool complete, Body body) {
   return guarded(c, legality::always, name, [=](Instance& i) {
-    Snapshot* const snapshot = snapshot_of(state);
+    auto* const snapshot = handle_of<Snapshot>(state);
     return !state || !complete ? null_pointer : snapshot ? body(i, *snapshot) : unknown_state;
   });
 }
@@ -72,8 +67,9 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, legality::always, "fmi2FreeFMUstate", [=](Instance&) {
-    if (!state || !snapshot_of(*state)) return;
-    free_state(*state);
+    auto* const snapshot = state ? handle_of<Snapshot>(*state) : nullptr;
+    if (!snapshot) return;
+    fmi::release(snapshot);
     *state = nullptr;
   });
 }
@@ -99,7 +95,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     Instance* scratch = Instance::create("scratch", nullptr, false, i.simulation.kind());
     if (!scratch) return i.fail(no_memory);
     const char* fault = scratch->simulation.load_state(reinterpret_cast<const unsigned char*>(bytes), size, true);
-    Instance::destroy(scratch);
+    fmi::release(scratch);
     if (fault)
       return i.log(Topic::error, "%s: the bytes are damaged or not a state of this FMU and version (%s).", fault);
     Snapshot* snapshot = allocate(state, size);

@@ -56,7 +56,7 @@ const char* name_of_state(Phase phase) {
 const char* category_of(Topic topic) { return topics[static_cast<unsigned>(topic)].category; }
 
 Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind)
-    : reporter{.owner = this, .listens = listens, .take = take}, simulation(reporter, kind) {
+    : Handle{.mark = own_mark}, reporter{.owner = this, .listens = listens, .take = take}, simulation(reporter, kind) {
   if (!callbacks) return;
   logger_ = callbacks->logger;
   environment_ = callbacks->componentEnvironment;
@@ -83,11 +83,6 @@ Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callba
   const unsigned all = 0xf, quiet = all & ~bits(Topic::event);
   instance->logged_topics = logging ? all : quiet;
   return instance;
-}
-
-void Instance::destroy(Instance* instance) {
-  instance->~Instance();
-  std::free(instance);
 }
 
 // After the end of a run the message says what happened to the wheel, which helps a user more than a call state.

@@ -4,16 +4,17 @@
 #include <type_traits>
 
 #include "fmi2Functions.h"
+#include "handle.hpp"
 #include "legality.hpp"
-#include "registry.hpp"
 #include "simulation.hpp"
 
 namespace fmi {
 
-struct Instance : Held {
+struct Instance : Handle {
+  static constexpr std::uint64_t own_mark = 0x495f554d46484557;  // "WEHFMU_I"
+
   // One block of memory, the name included. What takes memory later: docs/decisions/others.md. Null if there is none.
   static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind);
-  static void destroy(Instance* instance);
 
   // Passes a message to the master, if its category is switched on: printf-like, the name of the function under way
   // first. Returns the status of a call that ends with this message.
@@ -61,11 +62,11 @@ const char* category_of(wheel::Topic topic);
 
 inline constexpr const char* no_fault = nullptr;
 
-// Every call on an instance: not null, not from within its own logger, legal in its state. An illegal call changes
-// nothing. The body returns a status, or what is wrong; one without a result cannot fail.
+// Every call on an instance: one of this library, not from within its own logger, legal in its state. An illegal call
+// changes nothing. The body returns a status, or what is wrong; one without a result cannot fail.
 template <class Body>
 fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, Body&& body) {
-  auto* instance = static_cast<Instance*>(static_cast<Held*>(component));
+  auto* const instance = handle_of<Instance>(component);
   if (!instance || instance->called) return fmi2Error;
   instance->called = name;
   fmi2Status status = fmi2OK;

@@ -62,16 +62,13 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   const bool slave = !reason && type == fmi2CoSimulation;
   const auto kind = slave ? wheel::Kind::co_simulation : wheel::Kind::model_exchange;
   Instance* const instance = reason ? nullptr : Instance::create(name, callbacks, logging != fmi2False, kind);
-  if (instance)
-    fmi::instances.add(instance);
-  else
-    complain(callbacks, name, reason ? reason : "fmi2Instantiate: out of memory.");
-  return static_cast<fmi::Held*>(instance);
+  if (!instance) complain(callbacks, name, reason ? reason : "fmi2Instantiate: out of memory.");
+  return static_cast<fmi::Handle*>(instance);
 }
 
 void fmi2FreeInstance(fmi2Component c) {
-  auto* instance = static_cast<Instance*>(fmi::instances.find(c));
-  if (instance && !instance->called && fmi::instances.remove(c)) Instance::destroy(instance);
+  auto* const instance = fmi::handle_of<Instance>(c);
+  if (instance && !instance->called) fmi::release(instance);
 }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
@@ -103,12 +100,10 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-  if (!fmi::instances.find(c)) return fmi2Error;
   return guarded(c, legality::terminate, "fmi2Terminate", [](Instance& i) { i.simulation.close(); });
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-  if (!fmi::instances.find(c)) return fmi2Error;
   return guarded(c, legality::always, "fmi2Reset", [](Instance& i) { i.simulation.reset(); });
 }
 

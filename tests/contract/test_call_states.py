@@ -1,6 +1,6 @@
 """Every function in every state: what the standard allows works, all else is an error with a sentence and no effect."""
 
-from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_void_p
+from ctypes import POINTER, addressof, byref, c_char, c_char_p, c_double, c_int, c_void_p
 
 import pytest
 from hypothesis import given
@@ -99,12 +99,16 @@ def test_a_snapshot_brings_back_the_call_state_it_was_taken_in(wheel, state):
 
 
 def test_calls_on_no_instance_are_errors(wheel):
-    w, other = wheel(), wheel()
-    arguments = sound_arguments(w)
+    """On a null pointer, a state, the middle of an instance, memory of the caller's, an odd number."""
+    w, other = wheel(), wheel().start()
+    state, own, arguments, undisturbed = other.snapshot(), (c_char * 64)(), sound_arguments(w), other.serialized()
     w.close()
-    assert {w.ask(function.removeprefix("fmi2"), *arguments[function]) for function in TABLE} == {ERROR}
-    w.fmi2FreeInstance(None)  # without effect
-    assert call(other, "fmi2GetFMUstate") == OK
+    for w.component in (None, state.value, other.component + 8, addressof(own), 1):
+        assert {w.ask(function.removeprefix("fmi2"), *arguments[function]) for function in TABLE} == {ERROR}
+        w.fmi2FreeInstance(w.component)  # without effect
+    w.component = None
+    assert own.raw == bytes(64) and other.serialized() == undisturbed
+    assert other.ask("SetFMUstate", state) == OK
 
 
 @given(st.one_of(st.integers(-1, 8), anything_whole))

@@ -89,6 +89,20 @@ def test_the_library_has_no_executable_stack_no_late_relocations_in_code_and_no_
     assert b"fmi2DoStep" in content
 
 
+START_UP = 16  # bytes: the handle and the flag of the compiler's start-up code, a word each
+
+
+def shared_memory(library: Path) -> int:
+    """Bytes that all instances can write to."""
+    lines = [line.split("]")[-1].split() for line in lines_of("readelf", "--sections", "--wide", library)]
+    return sum(int(line[4], 16) for line in lines if line[:1] in ([".data"], [".bss"]))
+
+
+def test_the_library_shares_no_memory_between_instances(library):
+    """So there is no list of them, and no lock."""
+    assert shared_memory(library) <= START_UP < shared_memory(of_numpy("linalg._umath_linalg"))
+
+
 def test_the_archive_is_laid_out_as_the_standard_says(fmu_path):
     with zipfile.ZipFile(fmu_path) as archive:
         assert archive.testzip() is None

@@ -1,12 +1,12 @@
 /* malloc, calloc and free in front of the C library's or of a sanitizer's, by LD_PRELOAD: what wheel.so takes and gives
- * back is counted, and fails where it is asked to. No paper equation, no frame. */
+ * back is counted, fails where it is asked to, and stays in place if so wanted. No paper equation, no frame. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <string.h>
 
 /* While `watching`, allocations of these numbers fail, counted since `number` was set to zero; `live`: blocks not given
- * back. */
-long watching, number, first_failing, last_failing, failed, live;
+ * back. While `holding`, what is given back is kept as it is. */
+long watching, number, first_failing, last_failing, failed, live, holding;
 static void* blocks[1 << 12];
 enum { MOST = sizeof blocks / sizeof *blocks };
 
@@ -29,12 +29,13 @@ static void* keep(int watched, void* block) {
 }
 
 /* By the block, not by the caller: a call at a function's end does not show who made it. */
-static void forget(const void* block) {
+static int forget(const void* block) {
   for (long i = live - 1; block && i >= 0; --i)
     if (blocks[i] == block) {
       blocks[i] = blocks[--live];
-      return;
+      return 1;
     }
+  return 0;
 }
 
 /* Those behind: of the address sanitizer where it is loaded, else of the C library; found without asking the loader,
@@ -58,6 +59,5 @@ void* calloc(size_t count, size_t size) {
 }
 
 void free(void* block) {
-  forget(block);
-  NEXT(free)(block);
+  if (!forget(block) || !holding) NEXT(free)(block);
 }

@@ -1,8 +1,8 @@
 """Lives of one instance in which memory runs short, at each allocation in turn, once or from there on.
 
-    LD_PRELOAD=short_memory.so python -m robustness.short_memory FOLDER FORMULATION LAW METHOD COMPANIONS
+    LD_PRELOAD=short_memory.so python -m robustness.short_memory FOLDER FORMULATION LAW METHOD
 
-FOLDER holds the unpacked FMU; companions are instances made before. Prints as JSON what was counted. It fails where a
+FOLDER holds the unpacked FMU. Prints as JSON what was counted. It fails where a
 promise is broken: no crash, no leak; an error has its message; once there is memory again, the same instance and a new
 one go on with the bits of an undisturbed life.
 """
@@ -31,9 +31,9 @@ def fail(first: int, last: int) -> None:
 
 
 class Lives:
-    def __init__(self, folder: str, choices: list[int], companions: int):
+    def __init__(self, folder: str, choices: list[int]):
         self.values = dict(zip(("formulation", "friction_law", "method"), choices, strict=True)) | {"s": 0.3}
-        self.companions, self.loaded = companions, FMU2Wheel(folder, read_model_description(folder))
+        self.loaded = FMU2Wheel(folder, read_model_description(folder))
         self.taken: dict[str, int] = {}
 
     def begin(self) -> FMU2Wheel | None:
@@ -62,8 +62,6 @@ class Lives:
         return rows + w.run([3.1])
 
     def live(self, first: int, last: int, undisturbed: list[bytes] | None) -> list[bytes]:
-        fail(0, 0)
-        beside = [self.loaded.new() for _ in range(self.companions)]
         fail(first, last)
         w = self.begin()
         if w:
@@ -76,8 +74,6 @@ class Lives:
             rows = self.run(w)
             assert undisturbed in (None, rows), "other bits"
             w.close()
-        for other in beside:
-            other.close()
         assert counted("live").value == 0, "memory has leaked"
         return rows if w else []
 
@@ -94,6 +90,6 @@ class Lives:
 
 
 if __name__ == "__main__":
-    lives = Lives(sys.argv[1], [int(word) for word in sys.argv[2:5]], int(sys.argv[5]))
+    lives = Lives(sys.argv[1], [int(word) for word in sys.argv[2:5]])
     failures = {"failed once": lives.disturbed(False), "failed for good": lives.disturbed(True)}
     print(json.dumps(lives.taken | failures))

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from support.driver import ERROR, OK
@@ -16,19 +17,14 @@ SCENES = {"reduced": (2, 1, 4), "multibody": (3, 1, 4), "reduced, regularized": 
 
 
 @pytest.fixture(scope="module")
-def play(tmp_path_factory: pytest.TempPathFactory, fmu: str) -> Callable[..., dict[str, int]]:
-    """play(scene, companions): what is counted in all lives of an instance, by short_memory.py."""
-    hook = tmp_path_factory.mktemp("memory") / "short_memory.so"
-    source = ROOT / "tests" / "robustness" / "short_memory.c"
-    clean = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
-    flags = ["-std=gnu11", "-O1", "-fPIC", "-shared", "-Wall", "-Wextra", "-Werror"]
-    subprocess.run(["cc", *flags, str(source), "-o", str(hook), "-ldl"], check=True, env=clean)
-    preloaded = f"{hook}:{os.environ.get('LD_PRELOAD', '')}".rstrip(":")
+def play(memory_hook: Path, fmu: str) -> Callable[[str], dict[str, int]]:
+    """play(scene): what is counted in all lives of an instance, by short_memory.py."""
+    preloaded = f"{memory_hook}:{os.environ.get('LD_PRELOAD', '')}".rstrip(":")
     options = f"{os.environ.get('ASAN_OPTIONS', '')}:verify_asan_link_order=0"
     environment = os.environ | {"LD_PRELOAD": preloaded, "ASAN_OPTIONS": options, "PYTHONPATH": str(ROOT / "tests")}
 
-    def run(scene: str, companions: int = 0) -> dict[str, int]:
-        words = [sys.executable, "-m", "robustness.short_memory", fmu, *map(str, SCENES[scene]), str(companions)]
+    def run(scene: str) -> dict[str, int]:
+        words = [sys.executable, "-m", "robustness.short_memory", fmu, *map(str, SCENES[scene])]
         done = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=100, check=False)
         assert (done.returncode, done.stderr) == (0, "")
         return json.loads(done.stdout)
@@ -43,10 +39,6 @@ def test_no_failed_allocation_crashes_leaks_goes_unlogged_or_changes_a_later_bit
     assert counted["failed once"] == counted["failed for good"] == counted["start"] + counted["snapshots"]
     assert counted["start"] == 1
     assert counted["run"] == 0
-
-
-def test_an_instance_takes_one_block_however_many_are_alive(play):
-    assert [play("reduced", companions)["start"] for companions in (7, 8)] == [1, 1]
 
 
 def test_a_solver_that_gives_up_logs_its_reason_in_one_message_with_the_callers_time(wheel):

@@ -51,22 +51,18 @@ void Session::instantiate() {
   const fmi2Component component =
       fmi2Instantiate(name, fmi2CoSimulation, guid, "file:///x", flaw == 6 ? &silent : &functions, fmi2False, log().on);
   expect((component == nullptr) == (flaw >= 1 && flaw <= 5), "only sound arguments give an instance");
-  if (flaw == 6) {
+  if (flaw == 6)
     fmi2FreeInstance(component);
-    freed_ = component;
-  } else {
+  else
     *now_ = {component, {}};
-  }
 }
 
 void Session::free_instance() {
-  for (const Slot& slot : slots_)
-    if (slot.component == freed_ || log().shared) freed_ = nullptr;  // its place in memory may live again
-  expect(fmi2Terminate(freed_) == fmi2Error, "an instance that is gone cannot be terminated");
-  fmi2FreeInstance(freed_);
-  if (!now_->component) return;
-  freed_ = now_->component;
-  fmi2FreeInstance(freed_);
+  for (const Saved& saved : saved_) {
+    expect(fmi2Terminate(saved.state) == fmi2Error, "a state, or none, is no instance");
+    fmi2FreeInstance(saved.state);
+  }
+  fmi2FreeInstance(now_->component);
   *now_ = {};
 }
 

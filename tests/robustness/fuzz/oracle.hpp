@@ -63,7 +63,6 @@ struct Log {
   bool on = true, calls_back = false;
   fmi2Component caller = nullptr;          // while one of its calls is under way
   bool digests = false;                    // serialize before and after every call that must change nothing
-  bool shared = false;                     // other sessions are under way in other threads
   std::uint64_t sum = 0xcbf29ce484222325;  // of all that was seen: statuses, messages, readings, states
 
   void add(const void* data, std::size_t size);

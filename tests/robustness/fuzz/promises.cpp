@@ -18,6 +18,9 @@ void Session::restore_state() {
 }
 
 void Session::free_state() {
+  fmi2FMUstate no_state = now_->component;
+  expect(call(anywhere, fmi2SetFMUstate, no_state) == fmi2Error, "an instance is no state");
+  expect(call(anywhere, fmi2FreeFMUstate, &no_state) == fmi2OK && no_state, "an instance is not freed as a state");
   fmi2FMUstate* const state = &saved_[in_.below(3)].state;
   expect(call(anywhere, fmi2FreeFMUstate, in_.chance(2) ? nullptr : state) == fmi2OK, "freeing a state succeeds");
 }

@@ -5,12 +5,11 @@
 
 namespace fuzz {
 
-Session::Session(const std::uint8_t* data, std::size_t size, bool shared) : in_(data, size) {
+Session::Session(const std::uint8_t* data, std::size_t size) : in_(data, size) {
   const unsigned watched = in_.byte();
   log_.digests = watched & 1;
   log_.calls_back = watched & 2;
   log_.on = !(watched & 4);
-  log_.shared = shared;
 }
 
 Session::~Session() {

@@ -25,7 +25,7 @@ struct Saved {
 
 class Session {
  public:
-  Session(const std::uint8_t* data, std::size_t size, bool shared = false);  // the first byte: how much is watched
+  Session(const std::uint8_t* data, std::size_t size);  // the first byte: how much is watched
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -63,7 +63,6 @@ class Session {
   Slot slots_[2];
   Slot* now_ = slots_;
   Saved saved_[3];
-  fmi2Component freed_ = nullptr;
 };
 
 fmi2Component make_instance(fmi2Type kind = fmi2CoSimulation);

@@ -22,9 +22,7 @@ struct Input {
   std::vector<std::uint8_t> bytes;
   std::uint64_t sum_alone = 0;
 
-  std::unique_ptr<fuzz::Session> session() const {
-    return std::make_unique<fuzz::Session>(bytes.data(), bytes.size(), true);
-  }
+  std::unique_ptr<fuzz::Session> session() const { return std::make_unique<fuzz::Session>(bytes.data(), bytes.size()); }
 };
 
 // Inputs in hexadecimal, one a line, each played alone.
