@@ -335,16 +335,6 @@ static void respond(const WheelScene* scene, const WheelLoad* load_dot, const Ax
   out->tau_dot = a.tau;
 }
 
-void wheel_reaction_response(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
-                             const double* state, WheelReactionRates* out) {
-  double y[WHEEL_REDUCED_STATES], y_dot[WHEEL_REDUCED_STATES];
-  AxleLaw law;
-  formulation->reduce(state, y);
-  rates_of(scene, y, y_dot, &law);
-  law.brake = wheel_kappa(&scene->friction, y[OMEGA_3]) * load_dot->brake;
-  respond(scene, load_dot, &law, y, out);
-}
-
 /* weight * (lambda, tau) at y + h y_dot under a frozen law, added to out. */
 static void add_reaction(const WheelScene* scene, const AxleLaw* law, const double* y, const double* y_dot, double h,
                          double weight, WheelReactionRates* out) {

@@ -151,9 +151,6 @@ extern const WheelFormulation wheel_multibody;
  * the load (NULL: constant). */
 void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
                           const double* y, WheelReactionRates* out);
-/* The part of load_dot in it alone: with a unit in one entry, the derivative of lambda and tau by this entry. */
-void wheel_reaction_response(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
-                             const double* y, WheelReactionRates* out);
 
 /* Total energy, J: translation, rotation, height of O against gravity, zero at the origin. */
 double wheel_energy(const WheelParameters* wheel, const WheelKinematics* motion);

@@ -150,15 +150,17 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
 
 void Cvode::expand(const Problem& problem, Counters*, Step* step) {
   int order = 0;
-  bool done = CVodeGetLastOrder(objects_->cvode, &order) == CV_SUCCESS;
+  if (CVodeGetLastOrder(objects_->cvode, &order) != CV_SUCCESS) order = 0;
   const double h = step->end - step->start;
   double factor = 1;
-  for (int k = 0; k <= order && done; ++k, factor *= h / k) {
-    done = CVodeGetDky(objects_->cvode, step->end, k, objects_->y) == CV_SUCCESS;
+  step->degree = 0;
+  std::copy_n(step->y_end, problem.states, step->c[0]);
+  for (int k = 1; k <= order; ++k) {
+    factor *= h / k;
+    if (CVodeGetDky(objects_->cvode, step->end, k, objects_->y) != CV_SUCCESS) break;
     for (int i = 0; i < problem.states; ++i) step->c[k][i] = factor * data(objects_->y)[i];
+    step->degree = k;
   }
-  step->degree = order;
-  if (!done) step->set_chord(problem.states);
 }
 
 }  // namespace solver

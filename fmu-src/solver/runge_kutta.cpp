@@ -182,13 +182,14 @@ struct RungeKutta::Work {
   // Here it is sorted by the powers of s = x - 1.
   void expand() {
     double p_3[width], p_4[width], p_5[width], p_6[width], margin;
-    if (engine.rates_ == 12 && !evaluate_rest(&margin)) return step.set_chord(width);
+    const bool finite = engine.rates_ == 16 || evaluate_rest(&margin);
     combine<table::d_3>(p_3);
     combine<table::d_4>(p_4);
     combine<table::d_5>(p_5);
     combine<table::d_6>(p_6);
     const auto& f = engine.f_;
     auto& c = step.c;
+    step.degree = finite ? 7 : 0;
     for (int i = 0; i < width; ++i) {
       const double p_0 = step.y_end[i] - step.y_start[i], p_1 = h * f[0][i] - p_0;
       const double p_2 = 2 * p_0 - h * (f[0][i] + f[12][i]);
@@ -201,7 +202,6 @@ struct RungeKutta::Work {
       c[6][i] = -(p_5[i] + 4 * p_6[i]);
       c[7][i] = -p_6[i];
     }
-    step.degree = 7;
   }
 };
 

@@ -30,14 +30,6 @@ void Step::set_point(double t, const double* y, int states) {
   std::copy_n(y_start, states, y_end);
 }
 
-void Step::set_chord(int states) {
-  degree = 1;
-  for (int i = 0; i < states; ++i) {
-    c[0][i] = y_end[i];
-    c[1][i] = y_end[i] - y_start[i];
-  }
-}
-
 void Step::visit(support::Archive& archive, int states) {
   if (archive.reads()) degree = unknown;
   archive("start of the step, s").number(start);

@@ -44,9 +44,6 @@ struct Step {
   // A step of no length: y is known at t alone. y may be y_end.
   void set_point(double t, const double* y, int states);
 
-  // The chord as polynomial, where no better one exists.
-  void set_chord(int states);
-
   // What is saved of the step: all but its polynomial.
   void visit(support::Archive& archive, int states);
 
@@ -64,7 +61,7 @@ class Engine {
   // is accepted: failure() gives the reason.
   [[nodiscard]] virtual bool advance(const Problem& problem, double stop, Counters* counters, Step* step) = 0;
 
-  // The polynomial of the step, which is not known yet; the chord where rates inside the step are not finite.
+  // The polynomial of the step, which is not known yet; of degree zero where rates inside the step are not finite.
   virtual void expand(const Problem& problem, Counters* counters, Step* step) = 0;
 
   // All that is needed to go on after the step, saved or read; `active`: the step is this engine's. What is read and

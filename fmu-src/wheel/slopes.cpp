@@ -21,44 +21,28 @@ constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12,
                                 {{1, 2, 3, 4}, {4, -3, 4.0 / 3, -1.0 / 4}},
                                 {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}}};
 
-constexpr unsigned forces[] = {variable::lambda_1, variable::lambda_2, variable::lambda_3};
-
-// What is read at each place, and the derivatives; entries of variables that are not asked for are not used.
+// Of all calculated variables: the value at x, and the derivative.
 struct Pass {
-  bool asked[variable_count] = {};
   double centre[variable_count], slope[variable_count];
-
-  Pass(const unsigned* unknowns, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) asked[unknowns[k]] = true;
-    const auto by_force = [](unsigned v) { return row_of(v).by_force != nullptr; };
-    if (std::any_of(unknowns, unknowns + count, by_force))
-      for (const unsigned force : forces) asked[force] = true;
-  }
-  template <class Function>
-  void each(const Function& body) {
-    for (unsigned v = stored_count; v < variable_count; ++v)
-      if (asked[v]) body(v);
-  }
 
   // Differences from the value at x itself, so that what does not depend on x has the derivative zero. `read_at` gives
   // the reading at a place, null where there is none.
   template <class ReadAt>
   bool take(const Stencil& stencil, double x, double h, const ReadAt& read_at) {
-    Reading* reading = read_at(x);
-    if (!reading) return false;
-    each([&](unsigned v) {
-      centre[v] = row_of(v).read(*reading);
-      slope[v] = 0;
-    });
-    for (int k = 0; k < 4; ++k) {
-      reading = read_at(x + stencil.places[k] * h);
+    for (int k = -1; k < 4; ++k) {
+      Reading* const reading = read_at(k < 0 ? x : x + stencil.places[k] * h);
       if (!reading) return false;
-      each([&](unsigned v) { slope[v] += stencil.weights[k] * (row_of(v).read(*reading) - centre[v]) / h; });
+      for (unsigned v = stored_count; v < variable_count; ++v) {
+        const double value = row_of(v).read(*reading);
+        slope[v] = k < 0 ? 0 : slope[v] + stencil.weights[k] * (value - centre[v]) / h;
+        if (k < 0) centre[v] = value;
+      }
     }
-    const auto of = [](const double* values) { return Force{values[forces[0]], values[forces[1]], values[forces[2]]}; };
-    each([&](unsigned v) {
-      if (row_of(v).by_force) slope[v] = row_of(v).by_force(of(centre), of(slope));
-    });
+    const auto force = [](const double* of) {
+      return Force{of[variable::lambda_1], of[variable::lambda_2], of[variable::lambda_3]};
+    };
+    for (unsigned v = stored_count; v < variable_count; ++v)
+      if (row_of(v).by_force) slope[v] = row_of(v).by_force(force(centre), force(slope));
     return true;
   }
 };
@@ -132,7 +116,7 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
 bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns, std::size_t count, double* sums) {
   const bool parameter = known < first_input;
   if (parameter && row_of(known).type != Type::real) return true;
-  Pass pass(unknowns, count);
+  Pass pass;
   if (!(parameter ? take_by_parameter(w, known, pass) : take_at_instant(w, known, pass))) return false;
   for (std::size_t k = 0; k < count; ++k) sums[k] += seed * pass.slope[unknowns[k]];
   return true;

@@ -147,17 +147,3 @@ def test_a_load_without_a_rate_is_a_constant_load(formulation: eq.Formulation) -
         without = eq.values(eq.rates(formulation, eq.Scene.from_buffer_copy(rows.scenes[i]), y[i]))
         assert (without == constant[i]).all()
     beyond((changing != constant).any(axis=1).mean(), 0.8, "changing")  # a tenth has no load
-
-
-def test_the_response_to_a_load_is_what_it_adds_to_the_rates(formulation: eq.Formulation, law: int) -> None:
-    rows = Rows(law)
-    y = rows.states(formulation)
-    response = eq.response_each(formulation, rows.scenes, rows.load_dot, y)
-    with_change = rows.rates(formulation)
-    rows.load_dot, load_dot = np.zeros_like(rows.load_dot), rows.load_dot
-    difference = with_change - rows.rates(formulation)
-    size = np.abs(with_change).max(axis=1, keepdims=True)
-    within((np.abs(response - difference) / size).max(), 4e-11, "relative error")
-    load_dot["brake"] *= 1.001
-    other = eq.response_each(formulation, rows.scenes, load_dot, y)
-    assert ((np.abs(other - difference) / size).max() > 1e-6) == (law in (eq.ROLLING, eq.REGULARIZED))
