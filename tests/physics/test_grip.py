@@ -151,6 +151,23 @@ def test_a_ground_that_pulls_has_no_grip(library: Library) -> None:
     assert "mu_max = 2" in str(run.ended) and run["lambda_3"][-1] > 0
 
 
+def test_a_ground_that_pulls_gives_no_grip_however_little_of_it_is_needed(library: Library) -> None:
+    """Upright and straight nothing acts along the road: N = m g - F_Z alone decides, and the run ends where it
+    vanishes, or at once where it is below zero already."""
+    weight, vanishes = PAPER.m * PAPER.g, 0.5
+    ramp, jump = (Schedule(((0.0, {"F_Z": shape}),)) for shape in ((0.0, weight / vanishes), (2 * weight,)))
+    rolling = {"theta_start": pi / 2, "phi_dot_start": -3.0, "keep_contact": True}
+    for inputs, end in ((ramp, vanishes), (jump, 0.0)):
+        run = library.simulate([0.0, 0.3, 1.0], 1e-10, inputs, mu_max=0.5, **rolling)
+        assert run.end is not None and "mu_max = 0.5" in str(run.ended)
+        within(abs(run.end - end), 1e-5, "instant at which N vanishes, s")
+        free = library.simulate([0.0, 0.3, 1.0], 1e-10, inputs, **rolling)  # the partner: grip is not checked
+        assert free.end is None and any("The ground pulls" in message for message in free.messages)
+    wheel = loaded(library).new()
+    assert wheel.set(mu_max=0.5, F_Z=2 * weight, **rolling) == OK
+    assert wheel.initialise() == ERROR and "mu_max = 0.5" in wheel.said()
+
+
 def test_the_indicator_of_grip_is_positive_and_constant_where_grip_is_not_checked(library: Library) -> None:
     with exchange(library, **FAST) as free, exchange(library, mu_max=5.0, **FAST) as checked:
         assert free.indicator("lost_grip") == 1.0 and INDICATORS.index("lost_grip") == 1
