@@ -264,6 +264,18 @@ def test_wrong_arrays_and_numbers_are_refused_and_change_nothing(library: Librar
         assert (wheel.x() == ODD).all()
 
 
+@pytest.mark.parametrize("state", STATES)
+def test_a_state_that_is_set_must_be_a_finite_number(library: Library, state: str) -> None:
+    with at_odd(library, s=0.02) as wheel:
+        own, before, bits = ODD[STATES.index(state)], wheel.serialized(), wheel.bits()
+        for value in (np.nan, np.inf, -np.inf):
+            assert wheel.set(**{state: value}) == DISCARD
+            assert wheel.said().endswith(f"a finite number is needed; the value stays {float(own)!r}."), state
+        assert (wheel.x() == ODD).all() and (wheel.bits(), wheel.serialized()) == (bits, before)
+        assert wheel.set(**{state: np.nextafter(own, 2)}) == OK  # the partner
+        assert (wheel.x() != ODD).sum() == 1
+
+
 @pytest.mark.parametrize("slope", [0.0, 0.3, 1.4, 1.57])
 def test_the_third_indicator_is_the_normal_force_over_the_weight_across_the_road(library: Library, slope) -> None:
     with exchange(library, slope=slope, **AT_REST) as wheel:
@@ -277,9 +289,9 @@ SOON = 1e-7 * (0.35 / 9.81) ** 0.5  # s: an event that lies ahead by less has ha
 
 def aimed(wheel: FMU2Wheel, t: float, x: np.ndarray, indicator: int, known: str, ahead: float) -> bool:
     """Sets an input so that the indicator falls to zero in `ahead` seconds at its present rate, which is a difference
-    along the motion. False where it rises."""
+    along the motion. False where it rises, or where no such input is found."""
     d = 1e-5
-    for _ in range(3):
+    for _ in range(9):
         sides, rate = [], wheel.derivatives()
         for step in (d, -d):
             wheel.place(t, x + step * rate)
@@ -287,10 +299,12 @@ def aimed(wheel: FMU2Wheel, t: float, x: np.ndarray, indicator: int, known: str,
         fall = (sides[1] - sides[0]) / (2 * d)
         wheel.place(t, x)
         (value,), here = wheel.get(known), wheel.indicators()[indicator]
+        if fall > 1e-3 and abs(here / (fall * ahead) - 1) < 0.02:
+            return True
         assert wheel.set(**{known: value + 1.0}) == OK
         slope = wheel.indicators()[indicator] - here
         assert wheel.set(**{known: value + (fall * ahead - here) / slope}) == OK
-    return fall > 1e-3
+    return False
 
 
 @pytest.mark.parametrize("share", [0.9, 1.1])
@@ -324,6 +338,36 @@ def test_a_change_of_contact_counts_that_lies_ahead_by_less_than_that(library: L
             if aimed(wheel, 0.0, x, 2, "F_Z", share * SOON):
                 assert bool(wheel.event().valuesOfContinuousStatesChanged) == (share < 1)
                 found += 1
+
+
+LIMITED = [("lost_contact", "F_Z", {}), ("lost_grip", "F_X", {"mu_max": 0.5}), ("lost_grip", "M_1", {"mu_max": 0.2})]
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+@pytest.mark.parametrize(("event", "known", "values"), LIMITED, ids=lambda part: part if isinstance(part, str) else "")
+def test_an_end_of_the_run_counts_that_lies_ahead_by_less_than_that(library: Library, event, known, values, share):
+    rng, found = np.random.default_rng(11), 0
+    while found < 8:
+        with exchange(library, logging=True, theta_start=np.pi / 2, phi_dot_start=-3.0, **values) as wheel:
+            x = wheel.x() + [0, 0, 0, rng.uniform(-0.6, 0.6), 0, *rng.uniform(-2, 2, 3)]
+            wheel.place(0.0, x)
+            if not aimed(wheel, 0.0, x, INDICATORS.index(event), known, share * SOON):
+                continue
+            if wheel.get("lambda_3")[0] < -1e-3 * WEIGHT:  # a load under which nothing presses
+                continue
+            assert bool(wheel.event().terminateSimulation) == (share < 1)
+            found += 1
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_wheel_counts_as_flat_that_is_so_soon(library: Library, side: int, share: float) -> None:
+    for rate in (0.1, 1.0, 10.0):
+        with exchange(library) as wheel:
+            x = wheel.x()
+            x[3], x[5:] = np.pi / 2 - side * (np.pi / 2 - 1e-7 - share * SOON * rate), [-side * rate, 0, 0]
+            wheel.place(0.1, x)
+            assert bool(wheel.event().terminateSimulation) == (share < 1), rate
 
 
 def test_nominal_values_are_the_scales_of_the_error(library: Library) -> None:
