@@ -5,6 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 from contract.forging import forged, place_of, signed, words_of
+from support.bounds import beyond
 from support.closed_forms import rolling_inertia
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
 from support.scenes import PAPER
@@ -29,6 +30,16 @@ def test_the_log_of_a_ground_that_pulls_often_does_not_depend_on_the_grid(wheel,
     assert logs[0] == logs[1] == logs[2] and len(logs[0]) == MANY + 1
     times, last = logs[0][-1].split(" times, "), logs[0][-1].split(" last at t = ")
     assert int(times[0]) > 300 and 99 < float(last[1].split()[0]) < 100
+
+
+@pytest.mark.parametrize("method", [1, 4], ids=["unfolded", "stepped"])
+def test_a_restored_run_that_ends_before_the_next_pull_sums_up_as_the_one_that_was_saved(wheel, method):
+    w, other = wheel().start(method=method, **PULLING).to(100.0), wheel()
+    other.back(w.serialized())
+    assert w.terminate() == other.terminate() == OK
+    (summary,) = pulls_of(other)
+    assert summary == pulls_of(w)[-1]
+    beyond(float(summary.split()[-3]), 99, "instant of the last pull, s")
 
 
 def test_pulls_of_a_wheel_that_falls_flat_are_summed_up_once(wheel):
@@ -84,6 +95,18 @@ def test_a_step_that_is_lost_in_the_rounding_of_time_is_refused(wheel, start, st
     assert "the step is lost in the rounding of the time" in w.sentences[-1]
     assert w.bits() == before
     assert w.fmi2DoStep(w.component, start, abs(start) / 1e8, 0) == OK  # the partner
+
+
+@pytest.mark.parametrize("start", [1e9, -1e9])
+@pytest.mark.parametrize(("units", "status"), [(1.3, ERROR), (1.6, ERROR), (7.5, OK), (8.0, OK)])
+def test_a_step_of_which_a_part_is_lost_in_the_rounding_of_time_is_refused(wheel, start, units, status):
+    """Lengths in units of the last place of the start time, to which t + h is rounded: of 1.3 a quarter is lost, of 1.6
+    a quarter is added, of 7.5 a fifteenth."""
+    w = wheel().start(start=start)
+    before = w.bits()
+    assert w.ask("DoStep", start, units * np.spacing(1e9), 0) == status
+    assert (w.bits() == before) == (status == ERROR)
+    assert status == OK or "the step is lost in the rounding of the time" in w.sentences[-1]
 
 
 def test_a_step_past_the_digits_of_the_angles_is_refused(wheel):
