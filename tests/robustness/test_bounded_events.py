@@ -111,6 +111,21 @@ def test_one_call_takes_at_most_a_million_internal_steps_and_shorter_calls_go_on
     within(abs(careful.get("n_steps")[0] * stopped / 10.0 / 1e6 - 1), 1e-5, "part of a million")
 
 
+@pytest.mark.parametrize("when", [0.0, 0.5])
+@pytest.mark.parametrize("start", [{}, {"s": 0.03}, {"formulation": 3}], ids=["free", "friction", "multibody"])
+def test_after_a_failed_step_the_reactions_are_those_of_the_inputs_that_were_set_before_it(wheel, start, when):
+    """Not of those in force during the step before."""
+    w, other = (wheel().start(keep_contact=True, **start).to(when) for _ in range(2))
+    reactions = "lambda_1", "lambda_2", "lambda_3"
+    bits = w.put(F_X=1e80).bits()
+    assert w.step(0.01) == ERROR and w.bits() == bits
+    assert w.get("F_X") == [1e80]
+    beyond(max(map(abs, w.get(*reactions))), 1e77, "reaction, N")
+    within(max(map(abs, other.get(*reactions))), 1e4, "reaction without the load, N")
+    again = wheel()
+    assert again.back(w.serialized()).bits() == bits
+
+
 def test_a_step_that_fails_late_leaves_the_instance_as_it_was_and_its_state_can_be_taken(wheel):
     """A call that is asked for more than its share of work gives up thousands of seconds ahead of the last state."""
     w, other = wheel().start(s=0.03, tolerance=1e-4).by(1.0), wheel()
