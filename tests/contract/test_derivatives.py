@@ -207,6 +207,18 @@ def test_every_pair_that_the_description_declares_for_the_start_is_answered_and_
     assert w.messages == []
 
 
+@pytest.mark.parametrize("omega_s", [1e-2, 1e-4, 1e-6, 1e-9])
+def test_the_step_of_a_derivative_by_a_small_parameter_is_small_against_it(wheel, omega_s):
+    """Upright and straight N = m g: |tau| = s N tanh(x) with x = |omega_z| / omega_s, and its slope by omega_s is
+    -s N x / omega_s / cosh(x)^2."""
+    x, law = 0.7, {"friction_law": "regularized", "omega_s": omega_s, "s": 0.03}
+    w = wheel().initializing(theta_start=np.pi / 2, phi_dot_start=x * omega_s, **law)
+    slope = 0.03 * 20 * 9.81 * x / omega_s / np.cosh(x) ** 2
+    within(abs(abs(w.jacobian(["tau"], ["omega_s"])[0, 0]) / slope - 1), 1e-9, "relative error")
+    ends = [w.put(omega_s=omega_s * part).get("tau")[0] for part in (1.1, 0.9)]
+    beyond(abs(abs(ends[0] - ends[1]) / (0.2 * omega_s * slope) - 1), 1e-4, "relative error over a tenth of omega_s")
+
+
 def test_a_parameter_that_cannot_change_has_no_derivative(wheel):
     w = wheel().initializing(J_x=1.0, J_y=1.0, J_z=1e-12)  # no inertia is larger than the two others together
     refused, answered = ([w.refer("lambda_3"), 1, w.refer(name), 1, [1], [0]] for name in ("J_x", "m"))
