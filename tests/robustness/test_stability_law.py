@@ -39,6 +39,22 @@ def test_the_automatic_method_follows_the_decay_number(library: Library, factor:
     assert regularized.is_layered(library, law) == layered
 
 
+@pytest.mark.parametrize("x", [3.0, 6.5, 9.0, 12.0])
+@pytest.mark.parametrize("omega_s", [1e-4, 1e-6, 1e-8])
+def test_a_spin_that_a_stiff_law_balances_far_out_in_its_layer_stays_there(wheel, omega_s: float, x: float) -> None:
+    """Upright and straight: a torque of s N tanh(x) is balanced at omega_z = x omega_s, where the exact law, s N, would
+    brake the wheel."""
+    capacity = 0.03 * 20 * 9.81
+    law = {"friction_law": "regularized", "omega_s": omega_s, "s": 0.03}
+
+    def drift(part: float) -> float:
+        w = wheel().start(tolerance=1e-12, theta_start=np.pi / 2, phi_dot_start=x * omega_s, **law)
+        return abs(w.put(M_3=part * capacity).to(1.0).get("omega_z")[0] / omega_s - x)
+
+    within(drift(np.tanh(x)), 1e-6, "drift of the spin in widths of the law")
+    beyond(drift(0.5 * np.tanh(x)), 2, "drift under half the torque, in widths")
+
+
 def random_law(seed: int) -> tuple[Values, float]:
     """A stiff regularized law on a random wheel: start values and width."""
     random = np.random.default_rng(seed)
