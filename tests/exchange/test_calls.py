@@ -379,6 +379,14 @@ def test_nominal_values_are_the_scales_of_the_error(library: Library) -> None:
         assert nominals[:5] == pytest.approx([1.05, 1.05, 3, tilt, 3])
 
 
+def test_nominal_rates_are_the_wheel_s_own_or_that_of_its_tilting_at_the_start_about_both_its_diameters(library):
+    own, theta = (9.81 / 0.35) ** 0.5, 1.1
+    for about_e1, about_e2, tilting in ((0.0, 0.0, own), (50.0, 0.0, 50), (0.0, -50.0, 50), (-30.0, 40.0, 50)):
+        rates = {"theta_dot_start": about_e1, "psi_dot_start": about_e2 / np.sin(theta)}
+        with exchange(library, theta_start=theta, keep_contact=True, **rates) as wheel:
+            assert wheel.vector("NominalsOfContinuousStates")[5:] == pytest.approx([tilting] * 3)
+
+
 def press(wheel: FMU2Wheel, share: float) -> None:
     """Sets F_Z so that N is this share of the weight: N is linear in it on either side of zero."""
     first = -9e3 if share > 0 else 9e3
