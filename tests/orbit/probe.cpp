@@ -26,9 +26,12 @@ double force(const Probe& probe, const double* y) {
 
 // What is added to the rates of the wheel, of size `added`: no wheel with such a force may be unfolded.
 enum { drag, towards_north, towards_east, beside_a_line, unbalanced, growing, wind, turning, rolling, drifting };
+// Or to what is watched for an event: the limit depends on heading, place, roll angle or time.
+enum { limit_by_heading = drifting + 1, limit_by_place, limit_by_roll, limit_by_time };
 int kind = 0;
 double added = 0;
 decltype(solver::Problem::derivative) rates_of_wheel = nullptr;
+decltype(solver::Watched::value) value_of_wheel = nullptr;
 
 double disturbed(void* owner, double t, const double* y, double* y_dot) {
   const double margin = rates_of_wheel(owner, t, y, y_dot);
@@ -44,6 +47,20 @@ double disturbed(void* owner, double t, const double* y, double* y_dot) {
   if (kind == rolling) y_dot[5] += added * y[1];
   if (kind == drifting) y_dot[7] += added * y[1];
   return margin;
+}
+
+double other_limit(void* owner, int event, double t, const double* y) {
+  const double by[] = {std::cos(y[4]), y[6], std::cos(y[5]), t};
+  return value_of_wheel(owner, event, t, y) + added * by[kind - limit_by_heading];
+}
+
+void disturb(solver::Problem& problem) {
+  rates_of_wheel = problem.derivative;
+  value_of_wheel = problem.watched[0].value;  // one function for all events
+  if (kind < limit_by_heading)
+    problem.derivative = disturbed;
+  else
+    for (solver::Watched& watched : problem.watched) watched.value = other_limit;
 }
 
 }  // namespace
@@ -69,8 +86,7 @@ PUBLIC void probe_disturb(int what, double size) { kind = what, added = size; }
 PUBLIC int probe_build(Probe* probe) {
   const wheel::InForce at_start = probe->wheel.run.in_force;
   solver::Problem problem = wheel::problem_of(probe->wheel);
-  rates_of_wheel = problem.derivative;
-  if (added != 0) problem.derivative = disturbed;
+  if (added != 0) disturb(problem);
   const wheel::Setup& setup = probe->wheel.setup;
   const auto kind = probe->orbit.build(problem, setup.tolerance, wheel::pass_on_orbit, setup.start, probe->solver);
   const bool starts = kind != orbit::Orbit::Kind::refused && probe->orbit.start_at(problem, setup.start);

@@ -238,22 +238,40 @@ def test_the_order_of_readings_does_not_change_a_bit(library: ctypes.CDLL) -> No
     assert not np.array_equal(first(t), Orbit(library, start=SLANTED, tolerance=1.01e-8)(t))
 
 
-# In the order of probe.cpp. The last three change psi, phi and Y_O alone, with the rate of theta.
+# In the order of probe.cpp. The last three of the rates change psi, phi and Y_O alone, with the rate of theta.
 DISTURBANCES = ["drag", "towards north", "towards east", "beside a line", "unbalanced", "growing"]
 DISTURBANCES += ["wind", "turning", "rolling", "drifting"]
+LIMITS = ["limit by heading", "limit by place", "limit by roll angle", "limit by time"]
 STEADY = Start(psi=0.4, theta=np.pi / 2, phi_dot=-9.0, X_O=2.0)  # a steady wind keeps straight rolling straight
 BROKEN = {f"{name}, swinging": (name, PAPER) for name in DISTURBANCES}
 BROKEN |= {f"{name}, steady": (name, STEADY) for name in DISTURBANCES[:6]}
+REFUSED = ["refused"] * 3
+
+
+def built_with(library: ctypes.CDLL, kind: int, start: Start, sizes: tuple[float, ...]) -> list[str]:
+    """What comes of the orbit under disturbances of these sizes."""
+    orbit = Orbit(library, start=start)
+    assert orbit.kind == "folded"
+    try:
+        found = []
+        for size in sizes:
+            library.probe_disturb(kind, ctypes.c_double(size))
+            found.append(orbit.build())
+        return found
+    finally:
+        library.probe_disturb(kind, ctypes.c_double(0))
 
 
 @pytest.mark.parametrize(("name", "start"), BROKEN.values(), ids=BROKEN)
 def test_what_breaks_the_symmetry_is_noticed_whatever_it_is(library: ctypes.CDLL, name: str, start: Start) -> None:
     """The orbit has no list of what acts on the wheel: a force that such a list forgets must not be lost."""
-    orbit, kind = Orbit(library, start=start), DISTURBANCES.index(name)
-    assert orbit.kind == "folded"
-    try:
-        for size in (1e-2, 1e-5, 1e-7, 1e-12):  # the last is below what the tolerance resolves
-            library.probe_disturb(kind, ctypes.c_double(size))
-            assert orbit.build() == ("refused" if size > 1e-12 else "folded"), size
-    finally:
-        library.probe_disturb(kind, ctypes.c_double(0))
+    # The last size is below what the tolerance resolves.
+    assert built_with(library, DISTURBANCES.index(name), start, (1e-2, 1e-5, 1e-7, 1e-12)) == [*REFUSED, "folded"]
+
+
+@pytest.mark.parametrize("name", LIMITS)
+@pytest.mark.parametrize("start", [PAPER, STEADY], ids=["swinging", "steady"])
+def test_an_event_whose_limit_breaks_the_symmetry_is_noticed_too(library: ctypes.CDLL, name: str, start: Start) -> None:
+    """The motion repeats, the event does not: what happens in the first nutation shows nothing of later ones."""
+    number = len(DISTURBANCES) + LIMITS.index(name)
+    assert built_with(library, number, start, (0.1, 1e-2, 1e-3, 1e-12)) == [*REFUSED, "folded"]
