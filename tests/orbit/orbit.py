@@ -88,6 +88,16 @@ def reduced(row: Array) -> Array:
     return np.array([np.arctan2(s, n[2]), omega_1, omega_2, w[2], row[13], row[14], row[7], row[8]])
 
 
+def energies(wheel: Wheel, y: Array) -> Array:
+    """Of translation, rotation and height; the contact lies rho below O along e2 and eta along e3, so that O moves at
+    eta omega_2 - rho omega_3 along e1, and across it at omega_1 times its distance from the contact."""
+    s, c = np.sin(y[:, 0]), np.cos(y[:, 0])
+    rho, eta, (omega_1, omega_2, omega_3) = wheel.r_0 + wheel.r * s, wheel.r * c, y.T[1:4]
+    speed_2 = (eta * omega_2 - rho * omega_3) ** 2 + (rho**2 + eta**2) * omega_1**2
+    turning = wheel.J_x * omega_1**2 + wheel.J_y * omega_2**2 + wheel.J_z * omega_3**2
+    return 0.5 * (wheel.m * speed_2 + turning) + wheel.m * wheel.g * (wheel.r_0 * s + wheel.r)
+
+
 def stepped(wheel: Wheel, start: Start, t: Array) -> Array:
     """Every step of the way by the reference: Newton and Euler in body axes, 17 states, DOP853."""
     rate = derivative(Contact(wheel), Inputs(), Law(0.0))

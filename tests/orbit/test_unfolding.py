@@ -4,6 +4,7 @@ J_x = J_y, no friction, no load; scaled errors: angles 1 rad, rates the largest 
 """
 
 import ctypes
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from support.bounds import EPSILON, beyond, within
 from support.closed_forms import circle_spin, critical_spin
 from support.paths import probe
 
-from .orbit import Array, Halves, Orbit, stepped
+from .orbit import Array, Halves, Orbit, energies, stepped
 
 PAPER = Start()
 SLANTED = Start(psi=0.4, theta=1.2, psi_dot=0.5, theta_dot=0.3, phi_dot=-5.0, X_O=0.5, Y_O=-0.3)
@@ -71,13 +72,18 @@ def test_it_is_the_motion_that_the_reference_steps_through(library: ctypes.CDLL,
     beyond(error(Orbit(library, wheel, start, 1e-5)(t), want), 1e-9, "error")
 
 
-def test_two_thousand_random_starts_end_in_their_first_nutation_or_fold(library: ctypes.CDLL) -> None:
+def random_starts(count: int) -> Iterator[Start]:
     random = np.random.default_rng(7)
-    ended, differences = 0, []
-    for _ in range(2000):
+    for _ in range(count):
         angles = {"psi": random.uniform(0, 6), "theta": random.uniform(0.3, np.pi - 0.3)}
         rates = dict(zip(("psi_dot", "theta_dot", "phi_dot"), random.normal(0, (3, 1.5, 6)), strict=True))
-        orbit = Orbit(library, start=Start(**angles, **rates))
+        yield Start(**angles, **rates)
+
+
+def test_two_thousand_random_starts_end_in_their_first_nutation_or_fold(library: ctypes.CDLL) -> None:
+    ended, differences = 0, []
+    for start in random_starts(2000):
+        orbit = Orbit(library, start=start)
         assert orbit.kind != "refused"
         if orbit.kind == "ended":
             ended += 1
@@ -91,6 +97,24 @@ def test_two_thousand_random_starts_end_in_their_first_nutation_or_fold(library:
     # One period later tilt and rates are the same, from the direct part to the unfolded one.
     within(np.percentile(differences, 99), 1e-9, "differences")
     within(max(differences), 1e-5, "differences, 2")  # beside an unstable rest errors grow
+
+
+@pytest.mark.parametrize(("tolerance", "share"), [(1e-9, 100), (1e-10, 100), (1e-12, 90)])
+def test_the_energy_is_kept_to_half_the_tolerance_wherever_it_is_read(library, tolerance: float, share: float) -> None:
+    """Between the steps too: interpolation over steps that lie close together would magnify what rounds. Of all random
+    starts, or, next to rounding, of nine in ten."""
+    changes, tilted = [], []
+    for start in random_starts(2000):
+        orbit = Orbit(library, start=start, tolerance=tolerance)
+        if orbit.kind == "ended":
+            continue
+        y = orbit(np.linspace(0, 2 * orbit.half_period, 300))
+        for found, lean in ((changes, 0), (tilted, 100)):  # the partner: every second state leans by 100 tolerances
+            y[::2, 0] += lean * tolerance
+            E = energies(Wheel(), y)
+            found.append(np.ptp(E) / E.max() / tolerance)
+    within(np.percentile(changes, share), 0.5, "change of the energy, tolerances")
+    beyond(np.percentile(tilted, share), 30, "change of the energy of a motion that leans, tolerances")
 
 
 LEAPING = Start(theta=0.7, psi_dot=-4.0, theta_dot=3.0, phi_dot=-3.0)
