@@ -1,6 +1,6 @@
 """The documents are true: figures and tables are those of the data, what they name exists, messages are the code's.
 
-Links and formulas are judged by the strict build of the site, prose by ./scripts/lint. Each check has a partner.
+The strict build of the site checks links and formulas, ./scripts/lint the spelling.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import pytest
 from lxml import etree
 from support.paths import ROOT
 
-from publishing import prose, variables
+from publishing import variables
 from publishing.documents import PLACE, UnknownFigure, pages, read_figures, reflowed, with_figures
 from publishing.markdown import number
 
@@ -173,26 +173,6 @@ def test_the_page_lists_every_message_of_the_code_and_every_reason_of_the_solver
     assert listed - literals == reasons - listed == set()
     code = 'i.log(e, "%s: the %d-th wheel "\n  "is %s.", a); // "a comment is no message."\nlog("x");'
     assert whole(texts(LITERAL, bare(code))) == {"…: the …-th wheel is …."}
-
-
-HABITS = ("The log tells when the wheel stops.", "The colors follow the system.", "A held wheel stops by itself.")
-GOOD = (
-    "Stick and release are located as events.",
-    "3 metres is `what tells by itself`.",
-    "$the unit$ and\n\n```\nsame bits\n```\n",
-)
-GOOD += ("<!-- variables -->\n\n| told, of its own |\n\n<!-- end of variables -->",)
-
-
-def test_the_lint_of_prose_finds_habits_with_their_line_and_leaves_code_formulas_and_tables_alone() -> None:
-    for text in HABITS:
-        (fault, *_) = prose.faults("page.md", f"A wheel rolls.\n\n{text}\n")
-        assert fault.startswith("page.md:3: ")
-    assert [prose.faults("page.md", text) for text in GOOD] == [[]] * len(GOOD)
-    assert prose.faults("page.md", "| `the call is refused` | x |") == []
-    assert len(prose.faults("docs/messages.md", "| `the call is refused` | x |")) == 1  # messages are prose
-    script = '#!/usr/bin/env bash\n# The log tells the end.\nprintf "that of"\n'
-    assert len(prose.faults("scripts/x", prose.help_of(script))) == 1
 
 
 def test_the_fmus_page_is_well_formed_and_complete_offline(fmu: str) -> None:

@@ -14,7 +14,7 @@ PARTS = {"page": "tools/page", "view": "tools/page", "study": "examples/studies"
 GONE = [name for name, folder in PARTS.items() if not (ROOT / folder).exists()]
 COMMANDS = sorted({p.name for p in (ROOT / "scripts").iterdir()} - set(GONE))
 WRONG = {
-    **{"build": ("relase",), "documents": ("--chek",), "example": ("car", "m_B=-1"), "fuzz": ("a minute",)},
+    **{"build": ("faster",), "documents": ("--chek",), "example": ("car", "m_B=-1"), "fuzz": ("a minute",)},
     **{"lint": ("--fixx",), "page": ("--output",), "report": ("sped",), "run": ("m=-5",), "setup": ("tests",)},
     **{"study": ("--vary", "tetha_start=1,2"), "view": ("there_is_no_such_file.csv",)},
 }
