@@ -7,7 +7,6 @@ docs/decisions/others.md says why it is made like this.
 
 from __future__ import annotations
 
-import json
 import re
 from importlib.resources import files
 from pathlib import Path
@@ -39,7 +38,7 @@ suppress_warnings += ["myst.xref_missing"] * any(not (ROOT / part).exists() for 
 html_theme = "furo"
 html_title = f"wheel.fmu {release}"
 html_favicon = "../../../fmu-src/archive/model.png"
-html_static_path = ["site.css", "search.js"]
+html_static_path = ["site.css"]
 html_css_files = ["site.css"]
 html_copy_source = False
 html_show_sphinx = False
@@ -74,27 +73,17 @@ def widen(app: Sphinx, document: nodes.document) -> None:
             cell["classes"].append("prose")
 
 
-def text_of(document: nodes.document) -> str:
-    """The words of a document, without formulas and marks."""
-    left_out = (nodes.math, nodes.math_block, nodes.raw)
-    texts = [text for text in document.findall(nodes.Text) if not isinstance(text.parent, left_out)]
-    return " ".join(" ".join(texts).split())
-
-
-def bring_along(app: Sphinx, fault: Exception | None) -> None:
-    """The main parts of all pages, for the search; the font, with the glyphs of formulas and their tables."""
-    if fault:
-        return
-    static = Path(app.outdir) / "_static"
-    texts = {f"./{name}.html": text_of(app.env.get_doctree(name)) for name in sorted(app.env.found_docs)}
-    (static / "texts.js").write_text(f"const TEXTS = {json.dumps(texts, ensure_ascii=False)};\n", encoding="utf-8")
-    font = files("ziamath") / "fonts" / "STIXTwoMath-Regular.ttf"
-    options = ["--layout-features=*", "--flavor=woff", f"--unicodes={GLYPHS}", "--name-IDs=*"]
-    subset.main([str(font), f"--output-file={static / 'math.woff'}", *options])
+def bring_font(app: Sphinx, fault: Exception | None) -> None:
+    """The font, with the glyphs of formulas and their tables."""
+    if not fault:
+        font = files("ziamath") / "fonts" / "STIXTwoMath-Regular.ttf"
+        made = Path(app.outdir) / "_static" / "math.woff"
+        options = ["--layout-features=*", "--flavor=woff", f"--unicodes={GLYPHS}", "--name-IDs=*"]
+        subset.main([str(font), f"--output-file={made}", *options])
 
 
 def setup(app: Sphinx) -> None:
     app.connect("source-read", read)
     app.connect("doctree-read", widen)
-    app.connect("build-finished", bring_along)
+    app.connect("build-finished", bring_font)
     app.add_html_math_renderer("mathml", (formula, None), (formula, None))
