@@ -1,14 +1,17 @@
 """The documents are true: figures and tables are those of the data, what they name exists, messages are the code's.
 
-The strict build of the site checks links and formulas, ./scripts/lint the spelling.
+figures.csv lists the measured figures in prose. The strict build of the site checks links and formulas, ./scripts/lint
+the spelling.
 """
 
 from __future__ import annotations
 
+import csv
 import os
 import re
 import subprocess
 import sys
+from decimal import Decimal
 from math import inf
 from pathlib import Path
 
@@ -17,11 +20,9 @@ from lxml import etree
 from support.paths import ROOT
 
 from publishing import variables
-from publishing.documents import PLACE, UnknownFigure, pages, read_figures, reflowed, with_figures
-from publishing.markdown import number
+from publishing.markdown import number, pages
 
 RESULTS = ROOT / "docs" / "results"
-BY_HAND = ROOT / "docs" / "interoperability.md"  # runs of other programs, which no command of this project starts
 TEXTS = {str(page.relative_to(ROOT)): page.read_text(encoding="utf-8") for page in pages()}
 
 
@@ -31,42 +32,48 @@ def run(*command: str, **variables: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.mark.parametrize(
     ("module", "folders"),
-    [(("publishing.documents",), ("tools",)), (("reports", "all"), ("tools", "examples/vehicles", "tests"))],
+    [(("publishing.variables",), ("tools",)), (("reports", "all"), ("tools", "examples/vehicles", "tests"))],
 )
-def test_pages_and_reports_are_those_of_the_data(module: tuple[str, ...], folders: tuple[str, ...]) -> None:
+def test_tables_of_variables_and_reports_are_those_of_the_data(
+    module: tuple[str, ...], folders: tuple[str, ...]
+) -> None:
     done = run(sys.executable, "-m", *module, "--check", PYTHONPATH=":".join(folders))
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_another_figure_or_variable_would_be_noticed() -> None:
-    text, figures = TEXTS["README.md"], read_figures()
-    names = [place[1] for place in PLACE.findall(text)]
-    assert len(names) >= 5 and with_figures(text, figures | {names[0]: "other"}) != text
+def test_another_variable_would_be_noticed() -> None:
     rows = variables.read_variables()
     for page in variables.PAGES:
-        assert variables.with_tables(page.read_text(encoding="utf-8"), rows[1:], page) != page.read_text(
-            encoding="utf-8"
-        )
+        text = page.read_text(encoding="utf-8")
+        assert variables.with_tables(text, rows[1:], page) != text
 
 
-def test_an_unknown_figure_is_refused_and_a_known_one_is_filled(tmp_path: Path) -> None:
-    (tmp_path / "report.csv").write_text("figure,measured\nerror,4.04e-08\n")
-    (tmp_path / "report_rows.csv").write_text("t,x\n0,1\n")
-    figures = read_figures(tmp_path)
-    assert figures == {"report.error": "4e-8"}
-    page = "an error of <!-- = report.error -->?<!-- . -->."
-    assert with_figures(page, figures) == "an error of <!-- = report.error -->4e-8<!-- . -->."
-    with pytest.raises(UnknownFigure, match="asks for report.time"):
-        with_figures("<!-- = report.time --><!-- . -->", figures)
+FIGURES = list(csv.DictReader(Path(__file__).with_name("figures.csv").read_text(encoding="utf-8").splitlines()))
 
 
-def test_no_line_begins_with_a_marked_figure_which_would_break_its_paragraph() -> None:
-    """Markdown takes a comment that opens a line or an item for a block of HTML."""
-    broken = "The run takes\n<!-- = commands.disk_run -->0.8<!-- . --> GB.\n"
-    assert reflowed(broken) == "The run\ntakes <!-- = commands.disk_run -->0.8<!-- . --> GB.\n"
-    begins = re.compile(r"^[ \t]*(?:(?:[-*+>]|\d+\.) +)*<!-- =", re.MULTILINE)
-    assert begins.search(broken) and begins.search("- <!-- = commands.disk_run -->0.8<!-- . --> GB")
-    assert [name for name, text in TEXTS.items() if name.endswith(".md") and begins.search(text)] == []
+def measured(figure: str) -> float:
+    """A figure of a report, REPORT.NAME, from docs/results/data."""
+    report, name = figure.split(".")
+    rows = csv.DictReader((RESULTS / "data" / f"{report}.csv").read_text(encoding="utf-8").splitlines())
+    return next(float(row["measured"]) for row in rows if row["figure"] == name)
+
+
+def rounds_to(text: str, value: float) -> bool:
+    """Within half a unit of the last digit of the text; a zero at the end of an integer is no digit."""
+    digits = Decimal(text).normalize()
+    return abs(Decimal(value) - digits) <= Decimal("0.501") * Decimal(10) ** digits.as_tuple().exponent
+
+
+@pytest.mark.parametrize("row", FIGURES, ids=lambda row: f"{row['page']}:{row['figure']}")
+def test_a_measured_figure_in_a_document_is_that_of_its_report(row: dict[str, str]) -> None:
+    page = (ROOT / row["page"]).read_text(encoding="utf-8").replace("−", "-")
+    assert re.search(rf"(?<![\w.]){re.escape(row['text'])}(?![\w.]\d)", page)
+    assert rounds_to(row["text"], measured(row["figure"]))
+
+
+def test_a_figure_off_by_a_digit_would_be_noticed() -> None:
+    assert rounds_to("3.1e-9", 3.06e-9) and not rounds_to("3.2e-9", 3.06e-9)
+    assert rounds_to("60", 56.3) and not rounds_to("60", 54.9) and not rounds_to("60.1", 60.2)
 
 
 SHORT = {4.04e-8: "4e-8", 3.46e-9: "3.5e-9", 1.25e-3: "0.00125", 0.0: "0", 123456.0: "1.2e5", 37: "37", inf: "inf"}
@@ -74,33 +81,6 @@ SHORT = {4.04e-8: "4e-8", 3.46e-9: "3.5e-9", 1.25e-3: "0.00125", 0.0: "0", 12345
 
 def test_a_number_is_short() -> None:
     assert {value: number(value) for value in SHORT} == SHORT
-
-
-CODE = re.compile(
-    r"```.*?```|(?m:^ {4}[^\n]*$)|`[^`]*`|<pre>.*?</pre>|<code>.*?</code>|<math.*?</math>|<!--.*?-->|]\([^)]*\)",
-    re.DOTALL,
-)
-# What looks measured: a mantissa with a negative exponent (a power of ten is a tolerance), or a time or size.
-TYPED = re.compile(r"(?<![\w.])(?!1e)\d+(?:\.\d+)?e-\d+\b|\b\d[\d.,]* ?(?:ns|µs|us|KiB|MiB)\b")
-# Figures that no report measures: the rounding of a constant, a limit that the code sets.
-GIVEN = {"docs/physics.md": {"6e-17"}, "docs/decisions/others.md": {"128 KiB"}}
-COUNTS = {"right to 4e-8 of the range": 1, "it takes 0.5 µs a step": 1, "1,420 KiB and 94 ns": 2}
-COUNTS |= {"a tolerance of 1e-8": 0, "run `x = 4e-8`": 0}
-COUNTS |= {"right to <!-- = accuracy.error_free -->4e-8<!-- . --> of the range": 0}
-
-
-def typed(text: str) -> list[str]:
-    """What looks like a measured figure outside of marked places, code and links."""
-    return TYPED.findall(CODE.sub(" ", PLACE.sub(" ", text)))
-
-
-def test_no_measured_figure_is_typed_by_hand() -> None:
-    written = {
-        name: text for name, text in TEXTS.items() if RESULTS not in (ROOT / name).parents and ROOT / name != BY_HAND
-    }
-    found = {name: {*typed(text)} - GIVEN.get(name, set()) for name, text in written.items()}
-    assert {name: figures for name, figures in found.items() if figures} == {}
-    assert {text: len(typed(text)) for text in COUNTS} == COUNTS
 
 
 COMMAND = re.compile(r"\./scripts/(\w+)")

@@ -1,1 +1,1 @@
-"""What the machine writes into documents: measured figures, tables of the variables, the page of the coverage."""
+"""Parts of the documents that programs write, and the site."""

@@ -24,6 +24,13 @@ def said(*command: str) -> str:
     return ""
 
 
+def pages() -> list[Path]:
+    """Every document under version control, and new ones."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "*.md", "*.html"]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return [ROOT / name for name in sorted(listed.stdout.split("\0")) if name and (ROOT / name).is_file()]
+
+
 def number(value: object) -> str:
     """Short text of a value: 3 digits of a float, or 2 and a plain exponent; integers and text as they are."""
     if isinstance(value, bool):

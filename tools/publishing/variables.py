@@ -1,9 +1,13 @@
-"""The variables of modelDescription.xml as tables, for docs/variables.md and the FMU's documentation."""
+"""Writes the variables of modelDescription.xml as tables into docs/variables.md and the FMU's documentation.
+
+With --check nothing is changed; the exit status is 1 where a page differs from the description.
+"""
 
 from __future__ import annotations
 
 import html
 import re
+import sys
 from pathlib import Path
 
 from diagrams.start_values import Variable
@@ -43,3 +47,20 @@ def tables(variables: list[Variable], suffix: str) -> str:
 def with_tables(text: str, variables: list[Variable], place: Path) -> str:
     """The text of the page at a place, with what stands between the two marks replaced, if it has them."""
     return PLACE.sub(lambda found: f"{found[1]}\n\n{tables(variables, place.suffix)}\n\n{found[2]}", text)
+
+
+def main() -> int:
+    check, known, stale = sys.argv[1:] == ["--check"], read_variables(), 0
+    for place in PAGES:
+        text = place.read_text(encoding="utf-8")
+        fresh = with_tables(text, known, place)
+        if text != fresh:
+            stale += 1
+            print(f"{'Stale' if check else 'Filled'}: {place.relative_to(ROOT)}")
+            if not check:
+                place.write_text(fresh, encoding="utf-8")
+    return int(check and stale > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

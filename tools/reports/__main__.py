@@ -1,8 +1,9 @@
 """./scripts/report NAME…|all: measures, and writes the page NAME.md, its pictures and data into build/report/latest.
 
-With --publish they go to docs/results, which is kept under version control, and the figures in all pages are filled in
-from them. A report is a module NAME: its parts measure, in their order, its PICTURES are drawn from tables, its `views`
-add tables that follow from others, and templates/NAME.md.j2 is its page; one without is written by hand.
+With --publish they go to docs/results, which is kept under version control; the figures in prose are then typed again
+where tests/repository/test_documents.py fails. A report is a module NAME: its parts measure, in their order, its
+PICTURES are drawn from tables, its `views` add tables that follow from others, and templates/NAME.md.j2 is its page;
+one without is written by hand.
 """
 
 from __future__ import annotations
@@ -18,7 +19,6 @@ from support.paths import ROOT, build_folder
 from tqdm import tqdm
 
 from diagrams import style
-from publishing import documents
 
 from . import plots
 from .options import NAMES, arguments
@@ -89,10 +89,7 @@ def main() -> int:
     if not options.render:
         measure(names, folder, options)
     met = [draw(name, folder) for name in names]
-    if published:
-        sys.argv = sys.argv[:1]
-        documents.main()
-    else:
+    if not published:
         print(f"Written into {folder.relative_to(ROOT)}.")
     return int(not all(met))
 

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its data into build/report/latest, or with
---publish into docs/results, which is kept under version control, and then the figures in all pages are filled in."""
+--publish into docs/results, which is kept under version control."""
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 OF = {"partners": "vehicles", "vehicles": "vehicles", "others": "vehicles", "studies": "studies"}  # may be deleted
 EVERY = "accuracy stability speed inputs partners vehicles studies others validation benchmark physics"
@@ -17,7 +17,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/report", description=DESCRIPTION)
     parser.add_argument("names", nargs="+", metavar="NAME", choices=(*NAMES, "all"), help=", ".join((*NAMES, "all")))
     target = parser.add_mutually_exclusive_group()
-    target.add_argument("--publish", action="store_true", help="write docs/results and the figures in the pages")
+    target.add_argument("--publish", action="store_true", help="write into docs/results")
     parser.add_argument("--peers", action="store_true", help="first install the programs named peers in pyproject.toml")
     target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick: to try it out")
     parser.add_argument("--render", action="store_true", help="measure nothing: publish what the data in docs/ say")

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from support.paths import ROOT
 
-from publishing.documents import pages
+from publishing.markdown import pages
 
 CONF = ROOT / "tools" / "publishing" / "site"
 LOADED = re.compile(r"""<(?:script|img|iframe|source|link)\b[^>]*?\b(?:src|href)=["']((?:https?:)?//[^"']+)""")

@@ -10,17 +10,12 @@ import pandas as pd
 import pytest
 from support.bounds import beyond, within
 from support.motion import Library
-from support.paths import ROOT
 
-from publishing.documents import read_figures
 from reports import coast_down, validation
 from reports.coast_down import DRUM_LENGTH, DRUM_MASS, LOAD, SHARE, WHEELS
 
 TYRE, C, R = "Michelin 44-406", 2.5e-3, 0.24  # R in m
 MASSES = np.array([DRUM_MASS, SHARE * WHEELS[TYRE]])
-SRMD = ROOT / "fmu-src" / "archive" / "extra" / "org.fmi-standard.fmi-ls-ref" / "credibility.srmd"
-STATED = {"spread": "%", "spread_median": "%", "coast": "%", "coast_speed": "m/s", "again": "%"}
-STATED |= {"load_most": "N", "load_exponent": ""}
 
 
 class Coast(NamedTuple):
@@ -107,9 +102,3 @@ def test_a_thin_disk_on_its_steady_circle_keeps_inclination_and_energy(
     monkeypatch.setattr(validation, "turn_rate", lambda at: 1.01 * rate(at))
     off, _ = validation.held_disk(library, inclination, 5.0)
     beyond(off, 1e-3, "inclination at 101 % of the precession")
-
-
-def test_the_credibility_in_the_archive_has_the_figures_of_the_data() -> None:
-    figures, text = read_figures(), SRMD.read_text(encoding="utf-8")
-    stated = [f"{figures[f'validation.{name}']} {unit}".strip() for name, unit in STATED.items()]
-    assert [words for words in stated if words not in text] == []
