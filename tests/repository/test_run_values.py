@@ -53,8 +53,7 @@ def test_parameters_and_inputs_take_units(root, argument, value):
     within(abs(float(values[argument.partition("=")[0]]) / value - 1), 4 * EPSILON, "the value in SI")
 
 
-REFUSED = {"theta=1": "Do you mean theta_start", "mass=3": "Do you mean m?", "radius=1": "Do you mean r_0 or r"}
-REFUSED |= {"speed=3": "phi_dot_start = -v/(r_0 + r)", "slope=-8deg": "slope_direction", "koin": "Do you mean coin?"}
+REFUSED = {"theta=1": "theta_start", "speed=3": "phi_dot_start = -v/(r_0 + r)", "slope=-8deg": "slope_direction"}
 REFUSED |= {"s": "neither name=value nor a ready wheel", "s=0": "above 0", "m=heavy": "not a number", "m=3m": "kg or g"}
 REFUSED |= {"output_interval=20": "too long", "wheel=tank": "There is no wheel", "slope_direction=10%": "rad or deg"}
 
