@@ -119,7 +119,7 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--overwrite", action="store_true", help="discard the results that are there")
     add("--netcdf", action="store_true", help="a copy as NetCDF beside the Zarr folder")
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
-    add("--publish", action="store_true", help="write an example's data and figure into docs/")
+    add("--publish", action="store_true", help="write an example's figure into docs/figures")
     arguments = parser.parse_args(argv)
     arguments.body = ready(arguments.wheel) if arguments.wheel else {}
     arguments.study = file_of(arguments.study) if arguments.study else study_of(arguments)
@@ -155,11 +155,10 @@ def conduct(arguments: argparse.Namespace) -> None:
     print(summarize(results, time.perf_counter() - begin))
     asked = {".nc": arguments.netcdf, ".csv": arguments.csv}
     written = [out, *(export(results, stem.with_suffix(end)) for end in asked if asked[end])]
-    if "table" in content:  # an example's own table and figure, beside the results or in docs/
-        published = ROOT / "docs" / "results" / "data", ROOT / "docs" / "figures"
-        data, figure = (folder / f"study_{stem.name}" if arguments.publish else stem for folder in published)
+    if "table" in content:  # an example's own table and figure
         table = content["table"](results)
-        written.append(export(table, data.with_suffix(".nc")))
+        written.append(export(table, stem.with_suffix(".nc")))
+        figure = ROOT / "docs" / "figures" / f"study_{stem.name}" if arguments.publish else stem
         written += [content["draw"](table, figure)] if "draw" in content else []
     print("\n".join(f"Wrote {path}" for path in written))
 

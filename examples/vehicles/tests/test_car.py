@@ -1,22 +1,19 @@
-"""The car: coupled FMUs against one set of equations and against closed forms; orders, lift-off, the C master."""
+"""The car: coupled FMUs against closed forms; orders of the masters."""
 
 import os
 import shutil
 import subprocess
 import sys
-from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, relative_error, within
 from support.paths import ROOT
-from vehicles import car, car_judges, errors, layout, monolithic_car
-from vehicles.layout import CIRCLE, HILL, LANE, LAYOUT, MANOEUVRES, STEP, STRAIGHT, TOO_FAST, WHEELS
-from vehicles.options import EXCHANGES, Manoeuvre
+from vehicles import car, car_judges, layout
+from vehicles.layout import CIRCLE, HILL, LANE, LAYOUT, STEP, STRAIGHT, WHEELS
+from vehicles.options import Manoeuvre
 from vehicles.vehicle import Fmus, Table
-
-from reports.page import read_tables
 
 
 def drive(fmus: Fmus, *how: object) -> Table:
@@ -24,45 +21,8 @@ def drive(fmus: Fmus, *how: object) -> Table:
     return car.CAR.drive(fmus, *how).table
 
 
-def worst(table: Table, name: str) -> float:
-    """Largest difference from one set of equations over the whole manoeuvre, over all that is compared."""
-    return car.CAR.distance(table, monolithic_car.read(name))
-
-
 def error(finding: car_judges.Finding) -> float:
     return relative_error(finding.measured, finding.exact)
-
-
-def test_the_report_has_every_manoeuvre_with_every_master() -> None:
-    table = read_tables("vehicles")["car_errors"]
-    found = set(table[["manoeuvre", "inputs over the step", "step [ms]"]].itertuples(index=False, name=None))
-    assert found == set(product(monolithic_car.NAMES, EXCHANGES, [1000 * h for h in errors.STEPS]))
-
-
-SOFTER = {f"k_{w}": 0.99 * float(wheel["k"]) for w, wheel in WHEELS.items()}  # springs, by 1 %
-
-
-@pytest.mark.parametrize(
-    ("name", "exchange", "bound", "changed", "broken"),
-    [
-        *((name, "rollback", 1e-5, SOFTER, 1e-3) for name in ("circle", "step", "eight", "lane")),
-        ("straight", "rollback", 1e-4, {"B_0": 0.0}, 0.1),
-        *(("hill", e, bound, {"slope": 0.0}, 0.1) for e, bound in zip(EXCHANGES, (0.01, 3e-4, 1e-4), strict=True)),
-    ],
-)
-def test_the_coupled_car_moves_as_one_set_of_equations(
-    fmus: Fmus, name: str, exchange: str, bound: float, changed: dict, broken: float
-) -> None:
-    """Over the full length: up to 25 s, 125 m. Friction and brakes hold wheels, let go and stop them inside steps:
-    events in four FMUs and in one solver."""
-    step, truth = 0.001 if changed is not SOFTER else 0.002, monolithic_car.read(name)
-    table = drive(fmus, MANOEUVRES[name], step, exchange, 0.25)
-    assert len(table["time"]) == len(truth["time"])
-    within(worst(table, name), bound, f"{exchange}: motion apart / range")
-    for w in WHEELS if changed is SOFTER else ():
-        within(np.abs(table[f"{w}.lambda_3"] - truth[f"{w}.lambda_3"]).max(), 0.02, "normal force apart, N")
-    off = worst(drive(fmus, MANOEUVRES[name].changed(**changed), step, exchange, 0.25), name)
-    beyond(off, broken, "motion apart / range, of another car")
 
 
 def test_the_car_stands_starts_and_parks_on_the_hill_without_rolling_back(fmus: Fmus) -> None:
@@ -78,25 +38,15 @@ def test_the_car_stands_starts_and_parks_on_the_hill_without_rolling_back(fmus: 
     beyond(car.rolled_back(drive(fmus, weak)), 0.1, "rolls back with weak brakes, m")
 
 
-@pytest.mark.parametrize(("name", "stop"), [(name, 2.5 if name == "lane" else 1.5) for name in monolithic_car.NAMES])
-def test_the_tables_of_one_set_of_equations_are_what_it_gives(name: str, stop: float) -> None:
-    """Their begin, integrated again with a looser tolerance, which makes the difference."""
-    again = monolithic_car.solve(MANOEUVRES[name], monolithic_car.GRID, 1e-7, stop)
-    for column, values in monolithic_car.read(name).items():
-        part, span = values[: len(again["time"])], max(float(np.ptp(values)), 0.01)
-        within(np.abs(again[column] - part).max() / span, 1e-5, "apart / range")
-
-
-@pytest.mark.parametrize(("exchange", "order"), [("held", 1), ("derivatives", 2), ("rollback", 4)])
-def test_the_orders_of_the_masters(fmus: Fmus, exchange: str, order: int) -> None:
-    coarse, fine = (worst(drive(fmus, LANE, h, exchange, 0.25), "lane") for h in (0.002, 0.001))
-    within(abs(np.log2(coarse / fine) - order), 0.3, "off the order")
-
-
-def test_one_set_of_equations_lifts_off_where_the_coupled_car_does(fmus: Fmus) -> None:
-    wheel, time = monolithic_car.lift_off(TOO_FAST)
-    ending = car.CAR.drive(fmus, TOO_FAST, 0.001, "rollback").ending
-    assert (ending.component, f"{ending.time:.6f}") == (wheel, f"{time:.6f}")
+def test_the_orders_of_the_masters(fmus: Fmus) -> None:
+    """Reference: rollback at half of the smallest step."""
+    lane = LANE.changed(stop=3.0)
+    truth = drive(fmus, lane, 0.0005, "rollback", 0.25)
+    for exchange, order in (("held", 1), ("derivatives", 2), ("rollback", 4)):
+        coarse, fine = (car.CAR.error(fmus, lane, truth, h, exchange) for h in (0.002, 0.001))
+        within(abs(np.log2(coarse / fine) - order), 0.3, f"{exchange}: off the order")
+    softer = lane.changed(**{f"k_{w}": 0.99 * float(wheel["k"]) for w, wheel in WHEELS.items()})
+    beyond(car.CAR.error(fmus, softer, truth, 0.002, "rollback") / coarse, 100, "error of springs 1 % softer")
 
 
 def stiffer(manoeuvre: Manoeuvre, factor: float) -> Manoeuvre:

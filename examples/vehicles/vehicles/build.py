@@ -11,7 +11,7 @@ from .options import EXAMPLES
 
 
 def build_c(folder: Path) -> dict[str, Path]:
-    """The FMUs in C++, by name; also the C master, folder/master."""
+    """The FMUs in C++, by name."""
     cache = folder / "CMakeCache.txt"  # it holds absolute paths: of a folder that was moved it is made anew
     moved = cache.exists() and f"CMAKE_HOME_DIRECTORY:INTERNAL={EXAMPLES}\n" not in cache.read_text()
     configure = ["cmake", *["--fresh"] * moved, "-S", EXAMPLES, "-B", folder, f"-DPython3_EXECUTABLE={sys.executable}"]

@@ -1,7 +1,7 @@
 """The car: chassis, driver and a wheel per strut, wired from the layout car/car.toml; the verdict on its manoeuvres.
 
 Steering angles to the left; lateral acceleration and load in the words of ISO 8855. Each manoeuvre of
-car/manoeuvres.toml is judged by closed forms (car_judges.py) and by the same car as one set of equations.
+car/manoeuvres.toml is compared with closed forms (car_judges.py).
 """
 
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""A parallel (Jacobi) master for FMI 2.0 co-simulation with fixed steps; the connections are a table.
+"""A parallel (Jacobi) master for FMI 2.0 co-simulation with fixed steps, on FMPy; the connections are a table.
 
 At every communication point all outputs are brought up to date with the inputs just set, in the order that the
 dependencies in the model descriptions allow, and then all FMUs step alone. Over the step the inputs are one of
@@ -7,85 +7,75 @@ dependencies in the model descriptions allow, and then all FMUs step alone. Over
     derivatives  straight lines, from the first derivatives of the sources' outputs: order 2
     rollback     parabolas whose second derivatives are predicted from the last step; the step is undone, and taken
                  again on the cubics through the values and first derivatives at both ends
-
-Loading, order and initialization are here; the loop over the steps between two waits is in C (../master).
 """
 
-import re
 from collections.abc import Iterable, Iterator
-from ctypes import c_void_p, cast
+from ctypes import POINTER, byref, c_double, c_int, c_uint, c_void_p
 from graphlib import TopologicalSorter
-from itertools import chain, groupby
-from pathlib import Path
+from itertools import groupby
 
 import numpy as np
-from cffi import FFI
-from fmpy import sharedLibraryExtension
+from fmpy.fmi1 import FMICallException
 from tqdm import tqdm
 
 from .component import Component
-from .options import EXCHANGES
 
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
-HEADER = (Path(__file__).resolve().parents[1] / "master" / "master.h").read_text()
-ffi = FFI()
-ffi.cdef("typedef void *fmi2Component, *fmi2FMUstate; typedef unsigned fmi2ValueReference;")
-ffi.cdef("".join(f"typedef void {function};" for function in re.findall(r"fmi2\w+TYPE", HEADER)))
-ffi.cdef("\n".join(line for line in HEADER.splitlines() if not line.startswith("#")))
+
+
+class Transfer:
+    """Variables of one component that are read (outputs) or set (inputs) together: elements of the arrays of all
+    signals."""
+
+    def __init__(self, component: Component, reads: bool, variables: list[str], signals: list[int]) -> None:
+        n, fmu = len(variables), component.fmu
+        self.component, self.reads, self.signals, self.numbers = component, reads, np.array(signals), np.zeros(n)
+        self.variables = fmu.component, (c_uint * n)(*component.references(variables)), n
+        self.values = self.numbers.ctypes.data_as(POINTER(c_double))
+        self.orders = [(c_int * n)(*[order] * n) for order in range(4)]
+        self.of_values = fmu.fmi2GetReal if reads else fmu.fmi2SetReal
+        self.of_derivatives = fmu.fmi2GetRealOutputDerivatives if reads else fmu.fmi2SetRealInputDerivatives
+
+    def __call__(self, order: int, signals: np.ndarray) -> None:
+        """The values (order 0), or derivatives of this order."""
+        if not self.reads:
+            self.numbers[:] = signals[self.signals]
+        if order:
+            self.of_derivatives(*self.variables, self.orders[order], self.values)
+        else:
+            self.of_values(*self.variables, self.values)
+        if self.reads:
+            signals[self.signals] = self.numbers
 
 
 class Master:
-    """Loaded components and their connections [(source, output), (sink, input)], stepped together by the loop in C,
-    which is beside one of the FMUs."""
+    """Loaded components and their connections [(source, output), (sink, input)], stepped together."""
 
     def __init__(self, components: Iterable[Component], connections: Iterable[Connection]) -> None:
         self.components = {c.name: c for c in components}
         self.source_of = {sink: source for source, sink in connections}
-        self.levels = self._order()
-        self.owned = []
-        libraries = (c.path.with_name(f"master{sharedLibraryExtension}") for c in self.components.values())
-        self.c = ffi.dlopen(str(next(path for path in libraries if path.exists())))
+        self.transfers, self.number = [], {}
+        for level in self._levels():
+            self.number |= {source: len(self.number) + k for k, source in enumerate(level)}
+            sinks = [(sink, source) for sink, source in self.source_of.items() if source in level]
+            for reads, ends in ((True, [(source, source) for source in level]), (False, sinks)):
+                for name, component in self.components.items():
+                    if of := [(variable, self.number[source]) for (owner, variable), source in ends if owner == name]:
+                        self.transfers.append(Transfer(component, reads, *map(list, zip(*of, strict=True))))
+        self.sets = [transfer for transfer in self.transfers if not transfer.reads]
 
-    def _order(self) -> list[list[Signal]]:
-        """Connected outputs, those together that depend on outputs before them alone; refuses algebraic loops."""
+    def _levels(self) -> Iterator[list[Signal]]:
+        """Connected outputs, those together that depend on outputs before them alone; rejects algebraic loops."""
         graph = {}
         for component, output in self.source_of.values():
             inputs = [(component, name) for name in self.components[component].feeds(output)]
             graph[component, output] = {self.source_of[i] for i in inputs if i in self.source_of}
-        sorter, levels = TopologicalSorter(graph), []
+        sorter = TopologicalSorter(graph)
         sorter.prepare()
         while sorter.is_active():
-            levels.append(list(sorter.get_ready()))
-            sorter.done(*levels[-1])
-        return levels
-
-    def _own(self, kind: str, values: object) -> object:
-        """Memory of the loop, as long as this master."""
-        self.owned.append(ffi.new(kind, values))
-        return self.owned[-1]
-
-    def _prepare(self, exchange: str) -> object:
-        """The loop's tables of components, transfers and signals."""
-        number = {signal: k for k, signal in enumerate(chain(*self.levels))}
-        transfers = []
-        for level in self.levels:
-            sinks = [(sink, source) for sink, source in self.source_of.items() if source in level]
-            for reads, ends in ((1, [(source, source) for source in level]), (0, sinks)):
-                for place, (name, component) in enumerate(self.components.items()):
-                    of = [(variable, number[source]) for (owner, variable), source in ends if owner == name]
-                    variables = self._own("unsigned[]", component.references([v for v, _ in of]))
-                    signals = self._own("int[]", [k for _, k in of])
-                    transfers += [(place, reads, len(of), variables, signals)] * bool(of)
-        functions = [name for name, _ in ffi.typeof("Component").fields if name.startswith("fmi2")]
-        components = []
-        for fmu in (component.fmu for component in self.components.values()):
-            addresses = [*(cast(getattr(fmu.dll, name), c_void_p).value for name in functions), fmu.component]
-            components.append([ffi.cast("void *", address) for address in addresses])
-        counts = (len(components), len(transfers), len(number))
-        tables = (self._own("Component[]", components), self._own("Transfer[]", transfers))
-        arrays = (self._own("double[]", len(number)) for _ in range(6))
-        return self._own("Master *", [EXCHANGES.index(exchange), 0, *counts, *tables, *arrays])
+            yield (level := list(sorter.get_ready()))
+            sorter.done(*level)
 
     def steps(
         self, stop: float, h: float, exchange: str, every: int = 1, progress: bool = False, ends: Iterable[Signal] = ()
@@ -96,18 +86,67 @@ class Master:
         `at_end`: values of the signals `ends` at the end of the steps before a wait, before the exchange there. Raises
         component.Ended.
         """
-        self.loop, self.at_end, count = self._prepare(exchange), [], round(stop / h)
-        self.spent = np.zeros((count, len(self.components) + 1))
-        self._require(self.c.master_exchange(self.loop, False), 0.0)
+        self.value, self.rate, self.begin_value, self.begin_rate = np.zeros((4, len(self.number)))
+        self.at_end, self.states, count = [], {name: c_void_p() for name in self.components}, round(stop / h)
+        self._exchange(0.0, rates=False)
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
-        for begin in tqdm(range(0, count + 1, every), disable=not progress, leave=False):
-            self._require(self.c.master_exchange(self.loop, exchange != "held"), begin * h)
-            yield begin * h
-            end = min(count, begin + every)
-            done = self.c.master_run(self.loop, h, begin, end, ffi.from_buffer("double[]", self.spent))
-            self._require(done == end, done * h)
-            self.at_end.append(self.read(ends))
+        try:
+            for i in tqdm(range(count + 1), disable=not progress, leave=False):
+                t = i * h
+                self._exchange(t, rates=exchange != "held")
+                if i % every == 0:
+                    yield t
+                if i < count and exchange == "rollback":
+                    self._step_twice(t, (i + 1) * h - t, i == 0)
+                elif i < count:
+                    self._all(t, "fmi2DoStep", t, (i + 1) * h - t, 1)
+                if (i + 1) % every == 0 or i == count:
+                    self.at_end.append(self.read(ends))
+        finally:
+            for name, state in self.states.items():
+                self.components[name].fmu.freeFMUState(state)
+
+    def _step_twice(self, t: float, h: float, first: bool) -> None:
+        """On parabolas with the second derivatives of the last step, and again on the cubics through both ends."""
+        second = (self.rate - self.begin_rate) / h
+        self.begin_value[:], self.begin_rate[:] = self.value, self.rate
+        if not first:
+            self._transfer(t, self.sets, 2, second)
+        for name, component in self.components.items():
+            component.fmu.fmi2GetFMUstate(component.fmu.component, byref(self.states[name]))
+            self._call(t, component, "fmi2DoStep", t, h, 0)
+        self._exchange(t, rates=True)
+        for name, component in self.components.items():
+            self._call(t, component, "fmi2SetFMUstate", self.states[name])
+        mean, begin, end = (self.value - self.begin_value) / h, self.begin_rate, self.rate
+        cubic = (self.begin_value, begin, 2 * (3 * mean - 2 * begin - end) / h, 6 * (begin + end - 2 * mean) / (h * h))
+        for order, signals in enumerate(cubic):
+            self._transfer(t, self.sets, order, signals)
+        self._all(t, "fmi2DoStep", t, h, 0)
+
+    def _exchange(self, t: float, rates: bool) -> None:
+        self._transfer(t, self.transfers, 0, self.value)
+        if rates:
+            self._transfer(t, self.transfers, 1, self.rate)
+
+    def _transfer(self, t: float, transfers: list[Transfer], order: int, signals: np.ndarray) -> None:
+        for transfer in transfers:
+            try:
+                transfer(order, signals)
+            except FMICallException:
+                raise transfer.component.ended(t) from None
+
+    def _all(self, t: float, function: str, *arguments: object) -> None:
+        for component in self.components.values():
+            self._call(t, component, function, *arguments)
+
+    def _call(self, t: float, component: Component, function: str, *arguments: object) -> None:
+        """Of an FMU; raises the ending of a component that rejects a call after t."""
+        try:
+            getattr(component.fmu, function)(component.fmu.component, *arguments)
+        except FMICallException:
+            raise component.ended(t) from None
 
     def read(self, signals: Iterable[Signal], rates: bool = False) -> list[float]:
         """Their values, or their first derivatives."""
@@ -117,14 +156,3 @@ class Master:
             more = (component.fmu.getRealOutputDerivatives, [1] * len(numbers)) if rates else (component.fmu.getReal,)
             found += more[0](numbers, *more[1:])
         return found
-
-    def _require(self, done: bool, t: float) -> None:
-        """Raises the ending of the component that refused a call after t."""
-        if not done:
-            raise list(self.components.values())[self.loop.refused].ended(t)
-
-    def cost(self) -> dict[str, float]:
-        """Medians over the steps in microseconds: of all, of the exchange, and of each component."""
-        total, *each = np.median(self.spent, axis=0)
-        exchange = float(np.median(self.spent[:, 0] - self.spent[:, 1:].sum(axis=1)))
-        return {"total": float(total), "exchange": exchange, **dict(zip(self.components, each, strict=True))}

@@ -1,30 +1,28 @@
 """Suspended wheel: a quarter car on its wheel, launched from rest by a step of the drive torque.
 
 Coupled through F_X, F_Y, F_Z, M_1, M_2, M_3 and the pose and velocity of O, by values held over the communication
-step or by straight lines (derivatives of first order); compared with the same system as one set of equations, in which
-the quarter car is written again (quarter_car.cpp), and which takes nothing from the FMUs but their start values.
+step or by straight lines (derivatives of first order). In the end both move on together: with m all masses, R the
+wheel's rolling radius,
+
+    (m + J_z / R^2) a = (M_drive - s m g) / R
 """
 
 from collections.abc import Sequence
-from math import exp, pi
+from math import exp, pi, sin
 from pathlib import Path
 
 import numpy as np
-from reference.model import Wheel
 
 from . import errors, ssp
-from .monolithic import Answer, Joint, Load, Z, cross, lever
-from .options import Manoeuvre, manoeuvres, starts
+from .options import Manoeuvre, manoeuvres
 from .vehicle import Fmus, Table, Vehicle, road
 
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
 STEPS = (0.005, 0.0025, 0.00125, 0.000625, 0.0003125)  # s
 LARGE_STEPS = (0.0125, 0.015, 0.02, 0.025)  # s, around the limit of stability
-TOLERANCE = 1e-11  # relative, of each step of the one set of equations, which is then good to about 1e-9
 START = {"s": 0.01, "psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_start": 0.0, "X_O_start": 0.0}
-CAR = starts("quarter_car")
-K, C = (np.array([CAR[f"{name}_h"], CAR[f"{name}_h"], CAR[f"{name}_v"]]) for name in "kc")
+MASS, J_Z, RADIUS, GRAVITY = 300.0 + 20.0, 1.8, 0.3 + 0.05 * sin(START["theta_start"]), 9.81  # SI
 
 
 def start(run: Manoeuvre) -> dict[str, dict[str, float]]:
@@ -42,62 +40,22 @@ def verdict(table: Table, _run: Manoeuvre) -> tuple[bool, list[str]]:
 SUSPENDED = Vehicle("suspended", start, verdict)
 
 
-class Together(Joint):
-    """Wheel and quarter car as one set of equations; its own states: position and velocity of the sprung mass B."""
-
-    n, size = 1, 6
-
-    def __init__(self, s: float) -> None:
-        self.kind, self.theta = Wheel(s=s), START["theta_start"]
-
-    def start(self) -> np.ndarray:
-        axle, height = [0.0, -np.sin(self.theta), np.cos(self.theta)], self.kind.r_0 * np.sin(self.theta) + self.kind.r
-        B = [CAR[f"{axis}_B_start"] for axis in "XYZ"]
-        return np.concatenate([B, np.zeros(3), [0.0, 0.0, height], axle, np.zeros(3)])
-
-    def load(self, t: float, y: np.ndarray) -> Load:
-        """By the links, which carry from t_couple on, and by the motor, which pulls from t_drive on."""
-        r, v, centre, a, w = y.reshape(5, 3)
-        psi, theta, psi_dot, theta_dot = attitude(a, w)
-        e1 = np.array([np.cos(psi), np.sin(psi), 0.0])
-        M_1 = -CAR["k_theta"] * (theta - CAR["theta_0"]) - CAR["c_theta"] * theta_dot
-        M_2 = -CAR["k_psi"] * (psi - CAR["psi_0"]) - CAR["c_psi"] * psi_dot
-        v_O = cross(w, lever(self.kind, a[None], w[None])[0][0])
-        F = K * (r - centre - CAR["l_0"] * Z) + C * (v - v_O)
-        coupled, driven = (t >= CAR[name] for name in ("t_couple", "t_drive"))
-        M = coupled * (M_1 * e1 + M_2 * cross(a, e1)) + driven * CAR["M_drive"] * a
-        return Load(F=coupled * F[None], M=M[None], brake=np.zeros(1))
-
-    def own_rates(self, t: float, y: np.ndarray, load: Load, _answer: Answer) -> np.ndarray:
-        """Of the sprung mass, which waits until t_couple."""
-        coupled = t >= CAR["t_couple"]
-        return coupled * np.concatenate([y[3:6], -load.F[0] / CAR["m_B"] - CAR["g"] * Z])
-
-    def columns(self, _t: float, y: np.ndarray, _load: Load, answer: Answer) -> dict[str, float]:
-        """What is compared, at one instant."""
-        r, _, centre, a, w = y.reshape(5, 3)
-        psi, theta, psi_dot, _ = attitude(a, w)
-        of_wheel = {"X_O": centre[0], "theta": theta, "phi_dot": a @ w - psi_dot * a[2], "psi": psi, "psi_dot": psi_dot}
-        return of_wheel | {"lambda_3": answer.force[0, 2], "X_B": r[0], "Z_B": r[2]}
-
-
-def attitude(a: np.ndarray, w: np.ndarray) -> tuple[float, float, float, float]:
-    """psi, theta and their rates of an axle a = (sin psi sin theta, -cos psi sin theta, cos theta)."""
-    a_dot, flat = cross(w, a), np.hypot(a[0], a[1])
-    psi_dot = (a[0] * a_dot[1] - a[1] * a_dot[0]) / flat**2
-    return np.arctan2(a[0], -a[1]), np.arctan2(flat, a[2]), psi_dot, -a_dot[2] / flat
-
-
-def together(s: float = START["s"]) -> Table:
-    """The launch as one set of equations."""
-    return Together(s).solve(np.arange(round(LAUNCH.stop / GRID) + 1) * GRID, TOLERANCE)[0]
-
-
 def package_distance(package: Path, step: float, truth: Table, stop: float = LAUNCH.stop) -> float:
     """Largest difference over time of X_O, theta and psi_dot in fmpy's run of the package, relative to their ranges."""
     run, names = ssp.run(package, step, stop, GRID), ("X_O", "theta", "psi_dot")
     driven = slice(1, 1 + len(run["time"]))
     return max(float(np.abs(run[f"wheel.{n}"] - truth[n][driven]).max() / np.ptp(truth[n])) for n in names)
+
+
+def acceleration(torque: float, s: float = START["s"]) -> float:
+    """Of wheel and sprung mass together, m/s2."""
+    return (torque - s * MASS * GRAVITY) / RADIUS / (MASS + J_Z / RADIUS**2)
+
+
+def fine(fmus: Fmus, step: float) -> Table:
+    """The reference of the coupled runs: the launch on straight lines at a small step. (With rollback the cubics would
+    smear the step of the torque over the communication step before it.)"""
+    return SUSPENDED.drive(fmus, LAUNCH, step, "derivatives", GRID).whole
 
 
 def convergence(fmus: Fmus, truth: Table, steps: Sequence[float] = STEPS) -> errors.Errors:

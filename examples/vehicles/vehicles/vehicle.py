@@ -22,11 +22,10 @@ Table = dict[str, np.ndarray]
 
 @dataclass(frozen=True)
 class Run:
-    """Columns on a grid; how it ended, if early; microseconds per step, as Master.cost has it."""
+    """Columns on a grid; how it ended, if early."""
 
     table: Table
     ending: Ended | None
-    cost: dict[str, float]
 
     @property
     def whole(self) -> Table:
@@ -84,10 +83,9 @@ class Vehicle:
                     rows.append([t, *master.read(self.record)])
             except Ended as end:
                 ending = end
-            cost = master.cost()
         names = ["time", *(f"{part}.{name}" if part in self.wheels else name for part, name in self.record)]
         columns = np.reshape(rows, (-1, len(names))).T
-        return Run(self.complete(dict(zip(names, columns, strict=True)), of, fmus), ending, cost)
+        return Run(self.complete(dict(zip(names, columns, strict=True)), of, fmus), ending)
 
     def package(self, fmus: Fmus, manoeuvre: Manoeuvre, step: float, folder: Path) -> Path:
         """Its SSP package. A master that begins with zero inputs finds the body free until t_couple."""
