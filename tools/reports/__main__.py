@@ -33,8 +33,8 @@ def module(name: str) -> ModuleType:
 
 
 def parts_of(module: ModuleType) -> list[Part]:
-    """The module's parts, in their order, and those of the modules that it takes over."""
-    modules = (module, *getattr(module, "FURTHER", ()))
+    """The module's parts, in their order, and those of the modules that it names."""
+    modules = (module, *(import_module(f".{name}", __package__) for name in getattr(module, "FURTHER", ())))
     return [part for module in modules for part in vars(module).values() if isinstance(part, Part)]
 
 

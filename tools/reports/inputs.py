@@ -1,4 +1,4 @@
-"""What inputs cost and how exact they are: the free wheel pushed by six sines, or by constants, in steps of 1 ms."""
+"""Cost and accuracy of inputs, for `speed`: the free wheel pushed by six sines, or by constants, in steps of 1 ms."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ CASES = {
 
 
 @part(20, {"inputs": CASES, "method": ("automatic", "adams", "bdf")})
-def cost(report: Report, case: tuple, method: str) -> Row:
-    """what inputs cost, and their error"""
+def inputs(report: Report, case: tuple, method: str) -> Row:
+    """cost of inputs, and their error"""
     scene, (judge, table_of) = replace(SCENES["free"], duration=2.0 if report.quick else 10.0), case
     steps = round(scene.duration / STEP)
     want = headline(scene, steps // EVERY + 1, judge, TRUTHS[judge])

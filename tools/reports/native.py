@@ -1,19 +1,14 @@
-"""Machine code that the reports time: the C driver of tools/release, and DOP853 in C++ (CMakeLists.txt)."""
+"""Machine code that the reports time: the C driver of tools/release (CMakeLists.txt)."""
 
 from __future__ import annotations
 
-import ctypes
 import re
 from collections.abc import Callable
-from ctypes import byref, c_double, c_int, c_long, c_void_p
-from dataclasses import asdict
 from functools import cache
 from pathlib import Path
-from time import perf_counter
 
 import numpy as np
 from cffi import FFI
-from support import equations as eq
 from support.driver import COUNTERS, HEADLINE, Values
 from support.motion import Library
 from support.paths import ROOT, build_target
@@ -31,7 +26,7 @@ LEAST_RUNS, LONG = 5, 0.1  # runs; s: the best of two or three runs of some mill
 
 @cache
 def timed() -> str:
-    """The library with the driver and DOP853."""
+    """The library with the driver."""
     return str(build_target("wheel_timed") / "tools" / "reports" / "libwheel_timed.so")
 
 
@@ -100,25 +95,3 @@ def repeated(solve: Solve, seconds: float) -> tuple[list[float], Array, dict[str
 def width(scene: Scene) -> float:
     """Of the regularized law, rad/s; 0: the law is exact."""
     return float(scene.start.get("omega_s", 1e-3)) if scene.start.get("friction_law") == "regularized" else 0.0
-
-
-def in_cpp(scene: Scene, tolerance: float, points: int) -> Solve:
-    """DOP853, hand-inlined (dop853.cpp)."""
-    constants = asdict(scene.wheel).items()
-    wheel = eq.paper_wheel(**{name: value for name, value in constants if hasattr(eq.Parameters, name)})
-    kind = eq.FRICTIONLESS if wheel.s == 0 else eq.REGULARIZED if width(scene) else eq.ROLLING
-    problem = eq.scene(wheel, kind, omega_s=width(scene) or 1e-3)
-    y_0 = eq.start(eq.REDUCED, wheel, eq.Motion(**asdict(scene.motion)))
-    rows, counts, run = np.zeros((points, 4)), (c_long * 3)(), ctypes.CDLL(timed()).dop853
-    run.argtypes = [c_void_p, c_void_p, c_double, c_double, c_int, c_void_p, c_void_p]
-    start, out = (array.ctypes.data_as(c_void_p) for array in (y_0, rows))
-
-    def solve() -> tuple[float, Array, dict[str, int]]:
-        begin = perf_counter()
-        reached = run(byref(problem), start, tolerance, scene.duration, points, out, counts)
-        spent = perf_counter() - begin
-        if not reached:
-            raise RuntimeError("did not reach the end")
-        return spent, rows, dict(zip(("steps", "rhs", "events"), counts, strict=True))
-
-    return solve

@@ -8,8 +8,8 @@ from pathlib import Path
 DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its data into build/report/latest, or with
 --publish into docs/results, which is kept under version control."""
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-OF = {"partners": "vehicles", "vehicles": "vehicles", "others": "vehicles", "studies": "studies"}  # may be deleted
-EVERY = "accuracy stability speed inputs partners vehicles studies others validation benchmark physics"
+OF = {"vehicles": "vehicles", "others": "vehicles"}  # may be deleted
+EVERY = "accuracy stability speed vehicles others validation physics"
 NAMES = tuple(name for name in EVERY.split() if (EXAMPLES / OF.get(name, "")).exists())
 
 
@@ -22,7 +22,6 @@ def arguments() -> argparse.Namespace:
     target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick: to try it out")
     parser.add_argument("--render", action="store_true", help="measure nothing: publish what the data in docs/ say")
     parser.add_argument("--check", action="store_true", help="change nothing: are the pages those of the data?")
-    parser.add_argument("--tools", metavar="PYTHON", help="vehicles: an interpreter with libcosimpy and ecospy")
     parser.add_argument("--rig", metavar="FOLDER", help="validation: raw coast-down files (see its page)")
     return parser.parse_args()
 

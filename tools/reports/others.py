@@ -1,6 +1,6 @@
-"""Numbers of other people, beside those of wheel.fmu: derivations, reference results, closed forms (tests/others).
+"""Results of other programs, compared with wheel.fmu: derivations, reference results, closed forms (tests/others).
 
-Each comparison is a row: whose number it is, which scene, both values, how far they are apart, and whose error that is.
+Each comparison is a row: source, scene, both values, their difference, and its cause.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from support.schedule import Schedule
 
 from .page import Report, Row, number, part
 
-HEAD = ["who", "scene", "theirs", "ours", "apart", "whose error"]
+HEAD = ["source", "scene", "reference", "wheel.fmu", "difference", "cause of the difference"]
 Compared = tuple[str, str, str, str, float, str]
 STIFFNESSES = {"driving": (40, 80, 160), "pulling": (10, 20, 40)}  # times that of the bushings of axle.fmu
 
@@ -41,7 +41,7 @@ def kane(library: Library) -> Compared:
 def modelica(library: Library) -> Compared:
     theirs, ours = read("modelica_wheel"), wheels.modelica(library)
     drift, own = modelica_drift(), modelica_own(library)
-    whose = f"the table's: its energy drifts by {number(drift)}; tests/reference is {number(own)} m from ours"
+    whose = f"the table: its energy drifts by {number(drift)}; wheel.fmu is within {number(own)} m of tests/reference"
     who, scene = "Modelica Standard Library 4.0, reference result", "RollingWheel, 4 s: X_O, Y_O"
     apart = wheels.apart(theirs, wheels.modelica_reference())
     return who, scene, ends(theirs, "x", "y"), ends(ours, "X_O", "Y_O"), apart, whose
@@ -58,7 +58,7 @@ def modelica_own(library: Library) -> float:
 
 
 def multibody_jl(library: Library) -> Compared:
-    ours, whose = wheels.modelica(library), "theirs: Modelica's values, compared to 1e-3"
+    ours, whose = wheels.modelica(library), "the test: Modelica's values, to 1e-3"
     who, printed = "Multibody.jl, test_wheels.jl", ends(ours, "X_O", "Y_O")
     return who, "the same wheel", "0.162547, -2.23778", printed, float(ours["X_O"][-1] - 0.162547), whose
 
@@ -66,7 +66,7 @@ def multibody_jl(library: Library) -> Compared:
 def coin(library: Library) -> Compared:
     ours, table = wheels.coin(library, 1e-12), read("exudyn_coin")
     limit, off = wheels.coin_limit(table), float(abs(table["x"][0] - ours[0]))
-    whose = f"neither's; at its step of 0.5 ms it is {number(off)} m off"
+    whose = f"rounding; at its step of 0.5 ms Exudyn is {number(off)} m off"
     who, scene = "Exudyn 1.13.6, extrapolated to h = 0", "rollingCoinTest, 0.5 s: X_C, Y_C"
     return who, scene, digits(*limit, places=15), digits(*ours, places=15), float(np.abs(limit - ours).max()), whose
 
@@ -74,13 +74,13 @@ def coin(library: Library) -> Compared:
 def critical(library: Library) -> Compared:
     ours, theirs = measured_critical_spin(library, wheels.SYMPY_DISC), wheels.SYMPY_CRITICAL_SPIN
     who, scene = "SymPy 1.14, test_linearize", "spin at which all eigenvalues vanish"
-    return who, scene, f"1/√3 = {theirs:.12f}", digits(ours), float(abs(ours - theirs)), "ours: measured"
+    return who, scene, f"1/√3 = {theirs:.12f}", digits(ours), float(abs(ours - theirs)), "wheel.fmu: measured"
 
 
 def legendre(library: Library) -> Compared:
     worst = max(wheels.legendre_error(library, disc) for disc in wheels.DISCS)
     who, scene = "Chaplygin, Appell, Korteweg, 1897–1900", "four discs, 10 s: ω_2 and ω_3 as functions of θ"
-    return who, scene, "Legendre functions", "same", worst, "ours: the solver's, at tolerance 1e-13"
+    return who, scene, "Legendre functions", "same", worst, "wheel.fmu: its solver at tolerance 1e-13"
 
 
 def ramp(library: Library) -> Compared:
@@ -90,7 +90,10 @@ def ramp(library: Library) -> Compared:
     inputs, tilted = Schedule(((0.0, {"F_X": [wheel.m * pull]}),)), replace(wheel, g=wheel.g * np.cos(np.pi / 4))
     gained = np.abs(np.diff(wheels.motion(library, tilted, start, np.linspace(0, 4, 9), inputs=inputs)["omega_z"]))
     off = np.abs(gained - pull / wheel.r_0 / (1 + wheel.J_z / (wheel.m * wheel.r_0**2)) / 2)
-    scene, whose = "wheel on a ramp of 45°: spin gained in each 0.5 s, rad/s", "neither's; ours beside g sin α / R (…)"
+    scene, whose = (
+        "wheel on a ramp of 45°: spin gained in each 0.5 s, rad/s",
+        "rounding; wheel.fmu against g sin α / R (…)",
+    )
     return "Multibody.jl, test_wheels.jl", scene, "between 5 and 9.81", digits(gained[0], places=6), off.max(), whose
 
 
@@ -99,7 +102,13 @@ def printed_instants() -> Compared:
     exact = sets.rigid_at("driving", printed["time"])
     apart = float(np.hypot(printed["x"] - exact["x"], printed["y"] - exact["y"]).max())
     who, scene = "Multibody.jl, test_wheels.jl", "DrivingWheelSet, 11 instants, 1 s: x, y"
-    return who, scene, *(ends(source, "x", "y", places=6) for source in (printed, exact)), apart, "theirs: 1e-3"
+    return (
+        who,
+        scene,
+        *(ends(source, "x", "y", places=6) for source in (printed, exact)),
+        apart,
+        "the printed digits: 1e-3",
+    )
 
 
 def wheel_set(report: Report, scene: str, factors: tuple[int, ...]) -> tuple[Compared, Row]:
@@ -111,14 +120,14 @@ def wheel_set(report: Report, scene: str, factors: tuple[int, ...]) -> tuple[Com
     own, theirs = sets.distance(limit, rigid), sets.distance(table, rigid)
     stiffness = {"scene": scene, "k, N/m": sets.SOFT * factors[0]} | at | {"limit": own, "Modelica": theirs}
     name = f"RollingWheelSet{scene.capitalize()}, 3 s: x, y, φ; links → ∞"
-    whose = f"the table's; ours is {number(own)} from the rigid wheel set"
+    whose = f"the table; wheel.fmu is within {number(own)} of the rigid wheel set"
     printed = (ends(source, *sets.COMPARED, places=7) for source in (table, limit))
     return ("Modelica Standard Library 4.0", name, *printed, sets.distance(limit, table), whose), stiffness
 
 
 @part(100)
 def numbers(report: Report) -> dict[str, object]:
-    """numbers of others beside ours"""
+    """results of other programs"""
     singles = [f(report.library) for f in (kane, modelica, multibody_jl, coin, critical, legendre, ramp)]
     rows, stiffness = zip(*(wheel_set(report, *scene) for scene in STIFFNESSES.items()), strict=True)
     found = pd.DataFrame([*singles, *rows, printed_instants()], columns=HEAD)

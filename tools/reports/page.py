@@ -2,8 +2,9 @@
 
 requirements.csv lists every figure in its report's order: the cell of a table (its row by the first column) or the
 reduction of a column that it is, unless a part measures it; unit, what is asked of it (an upper bound, zero included,
-or nothing), and words. docs/results/data/NAME.csv has the figures as measured, NAME.txt the tables one below the other,
-made.csv the machine, versions, commit and date of each report.
+or nothing), and words. docs/results/data/NAME.csv has the figures as measured, NAME_TABLE.csv each long table, NAME.txt
+the short ones, which are on the page, one below the other; made.csv the machine, versions, commit and date of each
+report.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]
 Axis = Mapping[str, Any] | Sequence[Any] | Callable  # of the report
 PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka")
+SHORT = 15  # rows
 REDUCTIONS = ("max", "min", "median", "sum")
 REQUIREMENTS = pd.read_csv(Path(__file__).with_name("requirements.csv")).set_index(["report", "figure"])
 
@@ -83,7 +85,6 @@ class Report:
     options: Mapping[str, Any] = field(default_factory=dict)
     figures: dict[str, float] = field(default_factory=dict)
     tables: Tables = field(default_factory=dict)
-    words: dict[str, str] = field(default_factory=dict)  # what each table shows
 
     @cached_property
     def master(self) -> Any:
@@ -104,7 +105,7 @@ class Report:
                 assert (self.name, name) in REQUIREMENTS.index, f"requirements.csv does not list {name} of {self.name}"
                 self.figures[name] = float(found)
             else:
-                self.tables[name], self.words[name] = pd.DataFrame(found), part.words
+                self.tables[name] = pd.DataFrame(found)
 
     def value(self, figure: Any) -> float:
         """What a part has returned, or a cell or reduction of a table; NaN: not yet."""
@@ -123,8 +124,10 @@ class Report:
         found = wanted.assign(measured=[self.value(figure) for figure in wanted.itertuples()]).dropna(subset="measured")
         columns = ["figure", "measured", "unit", "asked", "what"]
         write_csv(self.folder, self.name, found.rename_axis("figure").reset_index()[columns])
-        texts = [f"# {name}: {self.words[name]}\n{csv_of(frame)}" for name, frame in self.tables.items()]
-        if texts:
+        short = {name: frame for name, frame in self.tables.items() if len(frame) <= SHORT}
+        for name in self.tables.keys() - short.keys():
+            write_csv(self.folder, f"{self.name}_{name}", self.tables[name])
+        if texts := [f"# {name}\n{csv_of(frame)}" for name, frame in short.items()]:
             (self.folder / "data" / f"{self.name}.txt").write_text("\n".join(texts), encoding="utf-8")
         path = self.folder / "data" / "made.csv"
         others = pd.read_csv(path, dtype=str) if path.exists() else pd.DataFrame({"report": []})
@@ -141,12 +144,13 @@ def write_csv(folder: Path, name: str, frame: pd.DataFrame) -> None:
     (folder / "data" / f"{name}.csv").write_text(csv_of(frame), encoding="utf-8")
 
 
-def read_tables(name: str, folder: Path = RESULTS, **how: Any) -> Tables:
+def read_tables(name: str, folder: Path = RESULTS) -> Tables:
     """The tables of a report by name; one without rows may lack its columns too."""
     path = folder / "data" / f"{name}.txt"
-    _, *texts = re.split(r"^# (\w+): .*\n", path.read_text(encoding="utf-8") if path.exists() else "", flags=re.M)
-    read = (pd.read_csv(StringIO(text), **how) if text.strip() else pd.DataFrame() for text in texts[1::2])
-    return dict(zip(texts[::2], read, strict=True))
+    _, *texts = re.split(r"^# (\w+)\n", path.read_text(encoding="utf-8") if path.exists() else "", flags=re.M)
+    read = (pd.read_csv(StringIO(text)) if text.strip() else pd.DataFrame() for text in texts[1::2])
+    long = {file.stem.removeprefix(f"{name}_"): pd.read_csv(file) for file in path.parent.glob(f"{name}_*.csv")}
+    return dict(zip(texts[::2], read, strict=True)) | long
 
 
 def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) -> tuple[str, str]:

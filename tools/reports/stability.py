@@ -19,7 +19,7 @@ from robustness.sweep import sweep
 from support.driver import ERROR, Values
 from support.motion import Library, run
 
-from . import long_runs, plots
+from . import plots
 from .page import Report, Row, Tables, number, part
 from .plots import Sheet, style
 
@@ -151,5 +151,5 @@ def contract(report: Report) -> dict[str, object]:
     return {"contract": rows, "checks": len(rows), "checks_failed": sum(not row["holds"] for row in rows)}
 
 
-FURTHER = (long_runs,)
+FURTHER = ("long_runs",)
 PICTURES = {"cases": draw_cases, "law": draw_law}
