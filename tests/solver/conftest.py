@@ -4,8 +4,9 @@ import ctypes
 from functools import partial
 
 import pytest
-import solving
 from support.paths import probe
+
+from . import solving
 
 
 @pytest.fixture(scope="session")

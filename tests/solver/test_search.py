@@ -3,8 +3,9 @@
 from math import acos, asin, pi, sin, sqrt
 
 import pytest
-from solving import EVENT, STEPPED, harmonic
 from support.bounds import EPSILON, absolute_error, relative_error, within
+
+from .solving import EVENT, STEPPED, harmonic
 
 
 def dips(solver, method, depth):

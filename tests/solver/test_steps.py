@@ -4,8 +4,9 @@ from math import hypot, inf, log2
 
 import numpy as np
 import pytest
-from solving import EVENT, FAILED, harmonic, vector
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
+
+from .solving import EVENT, FAILED, harmonic, vector
 
 
 def errors_of_steps(solver, h):

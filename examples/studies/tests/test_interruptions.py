@@ -15,12 +15,13 @@ import psutil
 import pytest
 import xarray as xr
 from distributed import LocalCluster
-from studies_support import same
 from study import Status, Study
 from study.__main__ import arguments_of, main
 from study.dataset import open_results
 from study.worker import Result, run_chunk
 from support.paths import ROOT
+
+from .studies_support import same
 
 # A chunk of wheels that fall at once, and three of wheels that roll on for 10 s, with a long history.
 SPINS = [0.0] * 24 + [-2 - k / 60 for k in range(72)]

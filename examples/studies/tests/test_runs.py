@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 import xarray as xr
 from fmpy import simulate_fmu
-from studies_support import FATES, same
 from study import Status, Study, StudyError
 from study.dataset import sample
 from study.plan import can_change
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 from support.paths import ROOT
 from values import variables
+
+from .studies_support import FATES, same
 
 BRANCHING = Study(
     grid={"phi_dot_start": [0.0, -2.0], "s": [0.0, 0.01, 0.03], "M_3": [0.0, -0.2]},

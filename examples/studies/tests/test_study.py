@@ -16,13 +16,14 @@ import pytest
 import values
 import xarray as xr
 from distributed import LocalCluster, SubprocessCluster
-from studies_support import FATES, same
 from study import Status, Study, StudyError, compute
 from study.__main__ import arguments_of, file_of, main, study_file
 from study.dataset import curves, in_degrees
 from study.worker import Result, run_chunk
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 from support.paths import ROOT
+
+from .studies_support import FATES, same
 
 GUIDE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
 EXAMPLE = re.findall(r"^```python\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)[0]

@@ -1,1 +1,0 @@
-"""Physics of the built FMU: every motion here comes out of wheel.fmu, through fmpy."""

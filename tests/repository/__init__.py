@@ -1,1 +1,0 @@
-"""The repository itself: its checkout, commands, documents and releases."""

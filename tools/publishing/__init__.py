@@ -1,1 +1,0 @@
-"""Parts of the documents that programs write, and the site."""
