@@ -37,7 +37,8 @@ def test_formulas_tables_and_commands_fit_a_screen_and_a_telephone_and_no_narrow
 WRITTEN = {
     "README": "# Start\n\n```{toctree}\nlong\nright\n```\n",
     "long": "# Much of both\n\nWhat is critical. A spin.\n\n" + "It is critical. So is spin.\n\n" * 3,
-    "right": "# The answer\n\nAbove the critical spin $r_0$ it stays up; the critical spin follows from gravity.\n",
+    "right": "# The answer\n\nAbove the critical spin $r_0$ it stays up; the critical spin follows from gravity.\n"
+    "\n```math\n" + "a + b + " * 40 + "c\n```\n",
 }
 # How far a subscript stands below its letter, in heights of the letter.
 SUNK = """() => {
@@ -63,6 +64,25 @@ def test_a_digit_below_a_letter_is_lowered(window, small_site):
     without = ask(window, small_site / "right.html", SUNK)
     (small_site / "math.woff").rename(small_site / "_static" / "math.woff")
     within(without, 0.1, "subscript without a font for mathematics, heights of the letter")
+
+
+# Whether the formula is wider than its frame, and whether its end comes into sight by scrolling the frame alone.
+SCROLLED = """() => {
+  const frame = document.querySelector('math[display=block]').parentElement;
+  frame.scrollLeft = 1e6;
+  const end = document.querySelector('math[display=block] :is(mi, mo):last-child').getBoundingClientRect().right;
+  const {documentElement: page} = document;
+  return [frame.scrollWidth > frame.clientWidth, end <= innerWidth && page.scrollWidth <= page.clientWidth];
+}"""
+
+
+def test_a_formula_that_is_wider_than_a_telephone_scrolls_in_its_frame(window, small_site):
+    assert ask(window, small_site / "right.html", SCROLLED, width=390) == [True, True]
+    style = small_site / "_static" / "site.css"
+    text = style.read_text()
+    style.write_text(text.replace(".formula { overflow-x: auto; overflow-y: hidden;", ".formula {"))
+    assert ask(window, small_site / "right.html", SCROLLED, width=390)[1] is False
+    style.write_text(text)
 
 
 def test_the_search_finds_first_what_holds_the_phrase_and_shows_it_without_a_server(window, small_site):

@@ -46,8 +46,13 @@ templates_path = ["_templates"]
 html_additional_pages = {"index": "front.html"}
 html_math_renderer = "mathml"
 
+# A letter with a subscript in prose, such as r_0, X_O, ω_crit; a name of a variable, such as phi_dot, begins with more.
+SYMBOL = re.compile(r"(?<![\w/.'])([A-Za-zα-ωΑ-Ω])(\u0307?)_(\w+)")
+ALIGNED = {"aligned": "split"}  # environments that latex2mathml lacks, and its own of the same layout
 # Letters, digits and punctuation; accents, Greek, arrows, operators, brackets, and the italic letters of formulas.
 GLYPHS = "U+20-7E,U+A0-FF,U+300-36F,U+370-3FF,U+2000-206F,U+2100-23FF,U+27C0-27FF,U+2A00-2AFF,U+1D400-1D7FF"
+KEPT = (nodes.literal, nodes.literal_block, nodes.raw, nodes.math, nodes.math_block, nodes.comment)
+BAR = '<mo stretchy="false">&#x0007C;</mo>'
 THIN = '<mspace width="0.17em"/>'
 HEADER = "```{literalinclude} /fmu-src/equations/wheel_equations.h\n:language: c\n:start-after: '#endif'\n```\n"
 MORE = {root_doc: (HERE / "contents.txt").read_text(encoding="utf-8"), "docs/c_header": f"\n## Reference\n\n{HEADER}"}
@@ -58,12 +63,40 @@ def read(app: Sphinx, name: str, source: list[str]) -> None:
     source[0] += MORE.get(name, "")
 
 
+def mathml(latex: str, display: str) -> str:
+    """A formula as MathML, with thin spaces about the names of functions, and none beside bars and brackets."""
+    for name, own in ALIGNED.items():
+        latex = latex.replace(f"{{{name}}}", f"{{{own}}}")
+    written = latex2mathml.converter.convert(latex, display=display)
+    written = written.replace(BAR, BAR.replace(">", ' lspace="0" rspace="0">', 1))
+    written = re.sub(r"(?<!<msup>)(<mi>(?:(?:sin|cos|tan)h?|exp)</mi>)", rf"{THIN}\1{THIN}", written)
+    return re.sub(rf"(?<=&#x00028;</mo>){THIN}|{THIN}(?=<mo[^>]*>&#x00028;)", "", written)
+
+
 def formula(writer: object, node: nodes.Element) -> None:
-    """Writes a formula as MathML, with thin spaces about the names of functions."""
-    display = "block" if isinstance(node, nodes.math_block) else "inline"
-    written = latex2mathml.converter.convert(node.astext(), display=display)
-    writer.body.append(re.sub(r"(?<!<msup>)(<mi>(?:sin|cos|tan|exp)</mi>)", rf"{THIN}\1{THIN}", written))
+    """Writes a formula; one that is wider than the page scrolls in its frame."""
+    block = isinstance(node, nodes.math_block)
+    written = mathml(node.astext(), "block" if block else "inline")
+    writer.body.append(f'<div class="formula">{written}</div>' if block else written)
     raise nodes.SkipNode
+
+
+def symbol(found: re.Match[str]) -> nodes.math:
+    """A symbol of prose as a formula."""
+    letter, dot, low = found.groups()
+    base, index = f"{{\\dot {letter}}}" if dot else letter, low if len(low) == 1 else f"\\mathrm{{{low}}}"
+    return nodes.math(found[0], f"{base}_{{{index}}}")
+
+
+def set_symbols(app: Sphinx, document: nodes.document) -> None:
+    """Symbols in prose become formulas."""
+    for text in [*document.findall(nodes.Text)]:
+        parts, rest = [], "" if isinstance(text.parent, KEPT) else text.astext()
+        while found := SYMBOL.search(rest):
+            parts += [nodes.Text(rest[: found.start()]), symbol(found)]
+            rest = rest[found.end() :]
+        if parts:
+            text.parent.replace(text, [*parts, nodes.Text(rest)])
 
 
 def widen(app: Sphinx, document: nodes.document) -> None:
