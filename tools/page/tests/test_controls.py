@@ -70,6 +70,35 @@ def test_after_a_click_the_space_bar_plays_and_by_keyboard_it_presses_the_button
     theme.click()
 
 
+# Numbers what the keyboard can reach, in the order of the page, and goes to the first; how many there are.
+NUMBER = """() => {
+  document.querySelectorAll('details').forEach((part) => (part.open = true));
+  const every = document.querySelectorAll('a[href], button, input, select, summary, [tabindex="0"]');
+  window.reachable = [...every].filter((part) => !part.disabled && part.checkVisibility());
+  window.reachable[0].focus();
+  return window.reachable.length;
+}"""
+
+
+def walk(page, key: str, steps: int) -> list[int]:
+    """The numbers of what has the focus after each stroke of a key; -1: nothing has."""
+    found = []
+    for _ in range(steps):
+        page.keyboard.press(key)
+        found.append(page.evaluate("window.reachable.indexOf(document.activeElement)"))
+    return found
+
+
+def test_tab_walks_the_whole_page_and_shift_tab_walks_back(either):
+    count = either.evaluate(NUMBER)
+    assert count > 15
+    assert walk(either, "Tab", count - 1) == [*range(1, count)]
+    assert walk(either, "Shift+Tab", count - 1) == [*range(count - 1)][::-1]
+    either.evaluate("() => { window.reachable[5].onkeydown = () => false; }")  # the partner: a trap
+    assert walk(either, "Tab", 7)[5:] == [5, 5]
+    either.evaluate("() => { window.reachable[5].onkeydown = null; document.activeElement.blur(); }")
+
+
 def test_a_card_is_closed_by_escape_or_by_a_click_elsewhere(either):
     for close in (lambda: either.keyboard.press("Escape"), lambda: either.click("h1")):
         either.click("[popovertarget=help]")

@@ -75,12 +75,14 @@ def test_the_future_after_a_push_is_that_of_a_run_with_that_input(live):
     assert live.evaluate(CHANGES) == [[1, "M_3", 0]]
 
 
-def test_a_push_lasts_as_long_as_the_button_is_held(live):
+@pytest.mark.parametrize("by", ["mouse", "keyboard"])
+def test_a_push_lasts_as_long_as_the_button_is_held(live, by):
     start(live, at=1)
-    live.locator(".push").first.hover()
-    live.mouse.down()
+    button, device, which = live.locator(".push").first, getattr(live, by), [" "] * (by == "keyboard")
+    button.hover() if by == "mouse" else button.focus()
+    device.down(*which)
     live.wait_for_function("page.player.t > 1.1")
-    live.mouse.up()
+    device.up(*which)
     (begin, *pushed), (end, *released) = live.evaluate(CHANGES)
     assert (pushed, released) == (["M_3", 6], ["M_3", 0])
     assert end > begin == pytest.approx(1.0)

@@ -103,7 +103,9 @@ function makeHeld([text, name, part, what], live) {
   const title = `${what}, as long as you hold it (6 N m for the paper's wheel)`;
   const button = makeButton({className: 'push', textContent: text, title});
   button.onpointerdown = press;
-  button.onkeydown = (event) => [' ', 'Enter'].includes(event.key) && press(event);
+  button.onkeydown = (event) => {  // returns nothing: false would swallow Tab and all other keys
+    if ([' ', 'Enter'].includes(event.key)) press(event);
+  };
   button.onpointerup = button.onpointercancel = button.onkeyup = button.onblur = release;
   return button;
 }
