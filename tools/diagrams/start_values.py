@@ -8,7 +8,7 @@ before anything is installed.
 from __future__ import annotations
 
 import sys
-from itertools import chain
+from itertools import chain, takewhile
 from pathlib import Path
 
 ROOT = next(folder for folder in Path(__file__).resolve().parents if (folder / "modelDescription.xml").exists())
@@ -35,10 +35,11 @@ def known() -> dict[str, Variable]:
 
 def usage() -> str:
     """The comment of scripts/run, the ready wheels and all names."""
-    comment = (ROOT / "scripts" / "run").read_text(encoding="utf-8").partition("\nset ")[0].splitlines()[1:]
+    _, *lines = (ROOT / "scripts" / "run").read_text(encoding="utf-8").splitlines()
+    comment = [line[2:] for line in takewhile(lambda line: line.startswith("#"), lines)]
     ready = [f"  {name:20s}{wheel['title']}" for name, wheel in wheels().items()]
     rows = [f"  {v.name:16s}{v.unit:8s}{v.start:>22s}   {v.description}" for v in known().values()]
-    return "\n".join([*(line[2:] for line in comment), "", *ready, "", "The values that can be given:", *rows])
+    return "\n".join([*comment, "", *ready, "", "The values that can be given:", *rows])
 
 
 def values(arguments: list[str]) -> dict[str, str]:

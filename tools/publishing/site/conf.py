@@ -118,5 +118,6 @@ def bring_font(app: Sphinx, fault: Exception | None) -> None:
 def setup(app: Sphinx) -> None:
     app.connect("source-read", read)
     app.connect("doctree-read", widen)
+    app.connect("doctree-read", set_symbols)
     app.connect("build-finished", bring_font)
     app.add_html_math_renderer("mathml", (formula, None), (formula, None))
