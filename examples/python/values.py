@@ -27,7 +27,11 @@ UNITS = {
     "N/m": {"kN/m": 1e3, "N/mm": 1e3},
     **{unit: {f"k{unit}": 1e3} for unit in ("N", "Nm", "Ns/m")},
 }
-WHEELS = Path(__file__).resolve().parents[1] / "wheels.json"
+EXAMPLES = Path(__file__).resolve().parents[1]
+WHEELS, BODIES = EXAMPLES / "wheels.json", EXAMPLES / "bodies.json"
+MOMENTS = ("J_x", "J_y", "J_z")
+HUB = 0.1  # of the radius: how far hub and spokes may be from the plane of a wheel with a thin tube, root mean square
+ROUNDING = 1e-9  # of a moment: an excess that is no fault
 
 
 class Fault(ValueError):
@@ -159,3 +163,51 @@ def scale(body: Mapping[str, float], kg: int = 0, m: int = 0, s: int = 0) -> flo
     Under the same gravity a wheel of the same shape then moves alike: times are in proportion to sqrt(R).
     """
     return (body["m"] / 20) ** kg * ((body["r_0"] + body["r"]) / 0.35) ** (m + s / 2)
+
+
+def bodies() -> dict[str, dict[str, object]]:
+    """The ready bodies: name -> title, source, and J_x = J_y and J_z over m, as parts of the squares of lengths."""
+    return json.loads(BODIES.read_text(encoding="utf-8"))
+
+
+def formula(parts: Mapping[str, str]) -> str:
+    """`m (1/2 r_0^2 + 5/8 r^2)`, `1/2 m R^2`."""
+    if len(parts) == 1:
+        return "".join(f"{part} m {length}^2" for length, part in parts.items()).removeprefix("1 ")
+    return f"m ({' + '.join(f'{part} {length}^2'.removeprefix('1 ') for length, part in parts.items())})"
+
+
+def moments(body: str, m: float = 20.0, r_0: float = 0.3, r: float = 0.05) -> dict[str, float]:
+    """J_x, J_y, J_z in kg m2 of a ready body of this mass in kg and these radii in m; of the paper's, if not given."""
+    if body not in bodies():
+        meant = suggestion(body, {n: str(one["title"]) for n, one in bodies().items()})
+        raise Fault(f'There is no body "{body}"; there are {", ".join(bodies())}.{meant}')
+    lengths, found = {"r_0": r_0, "r": r, "R": r_0 + r}, {}
+    for name in ("J_x", "J_z"):
+        squares = 0.0
+        for length, part in bodies()[body][name].items():
+            above, _, below = part.partition("/")
+            squares += int(above) / int(below or 1) * (lengths[length] * lengths[length])
+        found[name] = m * squares
+    return {"J_x": found["J_x"], "J_y": found["J_x"], "J_z": found["J_z"]}
+
+
+def doubt(body: Mapping[str, float]) -> str:
+    """One sentence if no mass within the wheel's outline has its moments; else nothing.
+
+    The outline is the convex hull of the torus. The mean square of the mass's distance from the wheel's plane,
+    w = (J_x + J_y - J_z) / (2 m), is at most r^2, that from the axle, J_z / m, at most (r_0 + sqrt(r^2 - w))^2. Hub and
+    spokes may be wider than a thin tube: up to sqrt(w) = HUB (r_0 + r).
+    """
+    m, r_0, r, J_x, J_y, J_z = (body[name] for name in ("m", "r_0", "r", *MOMENTS))
+    across, slack, width = (J_x + J_y - J_z) / 2, ROUNDING * (J_x + J_y + J_z), max(r, HUB * (r_0 + r))
+    about, beside = f"J_z = {J_z:.4g} kg m2 is more than", f"(J_x + J_y - J_z)/2 = {across:.4g} kg m2"
+    if J_z > (most := m * (r_0 + r) ** 2) + slack:
+        return f"{about} m (r_0 + r)^2 = {most:.4g} kg m2: no mass within the wheel's radius has this moment."
+    if across > (most := m * width**2) + slack:
+        limit = "m r^2" if width == r else f"m ({HUB:g} (r_0 + r))^2"
+        return f"{beside} is more than {limit} = {most:.4g} kg m2: so far from its plane the wheel has no mass."
+    most = m * (r_0 + math.sqrt(max(r * r - across / m, 0.0))) ** 2
+    if across <= m * r * r and J_z > most + slack:
+        return f"{about} {most:.4g} kg m2: no mass within the wheel's outline has it together with {beside}."
+    return ""

@@ -4,13 +4,20 @@ import json
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from math import atan, pi
 from pathlib import Path
 
+import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from support.bounds import EPSILON, within
+from support.bounds import EPSILON, beyond, within
 from support.paths import ROOT, build_folder
+
+sys.path.append(str(ROOT / "examples" / "python"))
+from values import doubt  # noqa: E402
+
+BODIES = json.loads((ROOT / "examples" / "bodies.json").read_text(encoding="utf-8"))
 
 
 @pytest.fixture
@@ -55,6 +62,7 @@ def test_parameters_and_inputs_take_units(root, argument, value):
 
 REFUSED = {"theta=1": "theta_start", "speed=3": "phi_dot_start = -v/(r_0 + r)", "slope=-8deg": "slope_direction"}
 REFUSED |= {"s": "neither name=value nor a ready wheel", "s=0": "above 0", "m=heavy": "not a number", "m=3m": "kg or g"}
+REFUSED |= {"body=ball": "There is no body", "hopp": "Do you mean hoop?"}
 REFUSED |= {"output_interval=20": "too long", "wheel=tank": "There is no wheel", "slope_direction=10%": "rad or deg"}
 
 
@@ -63,6 +71,78 @@ def test_what_cannot_be_meant_is_refused_with_one_sentence(root, argument, words
     done = ask(root, argument)
     assert done.returncode == 1 and done.stdout == ""
     assert words in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_of_a_ready_body_and_its_moments_one_is_given(root):
+    done = ask(root, "body=torus", "m=12kg", "J_z=1")
+    assert done.returncode == 1 and "J_z follows from m, r_0 and r with body=torus" in done.stderr
+
+
+def rings(rho: np.ndarray, z: np.ndarray, masses: np.ndarray) -> dict[str, float]:
+    """m, J_x = J_y and J_z in SI of rings of radius rho about the axle, one at each of +z and -z."""
+    across = (masses * (rho**2 / 2 + z**2)).sum()
+    return {"m": masses.sum(), "J_x": across, "J_y": across, "J_z": (masses * rho**2).sum()}
+
+
+def solid(rho: tuple[float, float], height: Callable[[np.ndarray], np.ndarray], m: float) -> dict[str, float]:
+    """A homogeneous body of revolution between two radii, of this half height over the radius: Gauss's rule in both."""
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    angle = np.pi / 2 * nodes  # the radius over an angle: smooth where the height is a circle's
+    middle, half = (rho[0] + rho[1]) / 2, (rho[1] - rho[0]) / 2
+    radius, width = middle + half * np.sin(angle), half * np.cos(angle) * np.pi / 2 * weights
+    z = height(radius)[:, None] * nodes
+    share = (radius * width * height(radius))[:, None] * weights
+    return rings(np.broadcast_to(radius[:, None], z.shape), z, m * share / share.sum())
+
+
+SIZES = [(20.0, 0.3, 0.05), (12.0, 0.2, 0.2), (0.0085, 0.011775, 0.0011)]
+
+
+def integrated(body: str, m: float, r_0: float, r: float) -> dict[str, float]:
+    if body == "torus":
+        return solid((r_0 - r, r_0 + r), lambda rho: np.sqrt(np.maximum(r * r - (rho - r_0) ** 2, 0)), m)
+    if body == "disc":
+        return solid((0, r_0 + r), lambda rho: r + 0 * rho, m)
+    return rings(np.array([r_0]), np.array([0.0]), np.array([m]))
+
+
+@pytest.mark.parametrize(("m", "r_0", "r"), SIZES)
+@pytest.mark.parametrize("body", BODIES)
+def test_the_moments_of_a_ready_body_are_those_of_its_mass_in_space(root, body, m, r_0, r):
+    size = {"m": m, "r_0": r_0, "r": r}
+    p = {k: float(v) for k, v in given(ask(root, f"body={body}", *(f"{k}={v}" for k, v in size.items()))).items()}
+    exact, other = integrated(body, **size), integrated("hoop" if body == "torus" else "torus", **size)
+    for name in ("J_x", "J_y", "J_z"):
+        within(abs(p[name] / exact[name] - 1), 1e-9, f"{name} of a {body}")
+        beyond(abs(p[name] / other[name] - 1), 1e-3, f"{name} of another body")
+
+
+def test_the_coin_is_the_ready_disc_of_its_size(root):
+    coin = given(ask(root, "coin"))
+    disc = given(ask(root, "body=disc", *(f"{name}={coin[name]}" for name in ("m", "r_0", "r"))))
+    within(max(abs(float(disc[name]) / float(coin[name]) - 1) for name in ("J_x", "J_y", "J_z")), 1e-9, "moments")
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_mass_within_the_outline_is_never_doubted_and_mass_beyond_it_always(seed):
+    """The outline: the convex hull of the torus. Mass within, mass on its border, and 1 % of the tube beyond."""
+    rng, count = np.random.default_rng(seed), 30
+    r_0 = rng.uniform(0.1, 0.5)
+    r = r_0 * rng.choice([0.2, 0.5, 1.0])
+    z, masses = r * rng.uniform(-1, 1, count), rng.uniform(0, 2, count)
+    inside = rng.uniform(0, 1, count) * (r_0 + np.sqrt(r * r - z * z))
+    size = {"r_0": r_0, "r": r}
+    assert doubt(rings(inside, z, masses) | size) == ""
+    angle = rng.uniform(-np.pi / 2, np.pi / 2)
+    for tube, possible in ((r, True), (1.01 * r, False)):
+        border = (np.array([part]) for part in (r_0 + tube * np.cos(angle), tube * np.sin(angle), 3.0))
+        assert (doubt(rings(*border) | size) == "") is possible
+
+
+def test_a_hub_may_be_wider_than_a_thin_tube_but_not_as_wide_as_a_drum():
+    for width, possible in ((0.09, True), (0.11, False)):
+        wheel = rings(np.array([0.2, 0.9]), np.array([width, width]), np.array([1.0, 1.0]))
+        assert (doubt(wheel | {"r_0": 1.0, "r": 0.0}) == "") is possible
 
 
 WHEELS = json.loads((ROOT / "examples" / "wheels.json").read_text(encoding="utf-8"))
@@ -76,7 +156,7 @@ def test_a_ready_wheel_has_a_source_is_a_body_that_can_exist_and_rolls(root, nam
     assert p == {key: float(value) for key, value in given(ask(root, f"wheel={name}")).items()}
     assert {"m", "r_0", "r", "J_x", "J_y", "J_z"} == {*wheel["parameters"]} < {*p}
     assert max(p["J_x"], p["J_y"], p["J_z"]) <= (p["J_x"] + p["J_y"] + p["J_z"]) / 2 * (1 + 4 * EPSILON)
-    assert 0.3 < p["J_z"] / (p["m"] * (p["r_0"] + p["r"]) ** 2) < 1  # all of its mass lies within its radius
+    assert p["J_z"] / (p["m"] * (p["r_0"] + p["r"]) ** 2) > 0.3 and not doubt(p)
     start = {key: value for key, value in p.items() if key not in ("stop_time", "output_interval")}
     end = simulate_fmu(str(root / "wheel.fmu"), start_values=start, stop_time=0.1, output=["E"])
     assert end["time"][-1] == 0.1 and end["E"][-1] < end["E"][0]
@@ -86,7 +166,7 @@ def test_a_name_given_beside_a_ready_wheel_prevails(root):
     assert given(ask(root, "coin", "m=1g", "s=2mm"))["m"] == "0.001"
 
 
-def test_help_lists_every_parameter_input_and_ready_wheel(root, description):
+def test_help_lists_every_parameter_input_ready_wheel_and_body(root, description):
     done = ask(root, "--help")
     names = [v.name for v in description.modelVariables if v.causality in ("parameter", "input")]
-    assert done.returncode == 0 and all(f"  {name} " in done.stdout for name in [*names, *WHEELS])
+    assert done.returncode == 0 and all(f"  {name} " in done.stdout for name in [*names, *WHEELS, *BODIES])

@@ -21,7 +21,7 @@ from matplotlib.axes import Axes
 
 from diagrams import panels, style
 from diagrams.scene import Scene, SceneError, read_scene
-from diagrams.start_values import PAPER_S, ROOT, RUN, variables
+from diagrams.start_values import MOMENTS, PAPER_S, ROOT, RUN, doubt, variables
 
 RESULTS = ROOT / "results"
 SETTINGS = variables("parameter", "input")
@@ -58,7 +58,16 @@ def unlike_paper(scene: Scene) -> list[str]:
     rows = {} if scene.ending else {"stop_time": scene["time"][-1]}
     rows["output_interval"] = scene["time"][1] - scene["time"][0]
     said += [RUN[name].said(value) for name, value in rows.items() if abs(value - RUN[name].preset) > 1e-9]
-    return said + ["r > r_0, the torus intersects itself"] * (own["r"] > own["r_0"])
+    said += ["r > r_0, the torus intersects itself"] * (own["r"] > own["r_0"])
+    return said + ["no mass within this outline has these moments of inertia"] * bool(doubt(own))
+
+
+def warnings_of(scene: Scene) -> list[str]:
+    """A wheel that cannot exist, which the model rolls all the same."""
+    own = {name: scene.value(name) for name in ("m", "r_0", "r", *MOMENTS)}
+    found = ["r > r_0: this torus intersects itself."] * (own["r"] > own["r_0"])
+    about = doubt(own)
+    return found + [f"{about} Give J_x, J_y and J_z too, or a body that has them, such as body=torus."] * bool(about)
 
 
 def is_paper(scenes: Sequence[Scene]) -> bool:
@@ -170,10 +179,10 @@ def main() -> None:
     style.use_style()
     try:
         scenes = [read_scene(RESULTS / f"{name}.csv") for name in ("free", "friction")]
-        if scenes[0].value("r") > scenes[0].value("r_0"):
-            print("run: r > r_0: this torus intersects itself; the model rolls it all the same.", file=sys.stderr)
         with Pool() as processes:
             print(*chain(*processes.starmap(draw, pictures(scenes, RESULTS), chunksize=1)), sep="\n")
+        for warning in warnings_of(scenes[0]):
+            print(f"run: warning: {warning}", file=sys.stderr)
     except SceneError as fault:
         sys.exit(f"run: {fault}")
 

@@ -13,7 +13,8 @@ from pathlib import Path
 
 ROOT = next(folder for folder in Path(__file__).resolve().parents if (folder / "modelDescription.xml").exists())
 sys.path.insert(0, str(ROOT / "examples" / "python"))
-from values import Fault, Variable, ready, scale, suggestion, wheels  # noqa: E402
+from values import MOMENTS, Fault, Variable, bodies, formula, moments, ready, scale, suggestion, wheels  # noqa: E402
+from values import doubt as doubt  # noqa: E402 - for the diagrams
 from values import variables as described  # noqa: E402
 
 PAPER_S = 0.03  # m, (29)
@@ -38,6 +39,9 @@ def usage() -> str:
     _, *lines = (ROOT / "scripts" / "run").read_text(encoding="utf-8").splitlines()
     comment = [line[2:] for line in takewhile(lambda line: line.startswith("#"), lines)]
     ready = [f"  {name:20s}{wheel['title']}" for name, wheel in wheels().items()]
+    ready += ["", "Bodies, whose moments of inertia follow from m, r_0 and r:"]
+    for name, body in bodies().items():
+        ready.append(f"  {name:20s}{body['title']}: J_z = {formula(body['J_z'])}, J_x = J_y = {formula(body['J_x'])}")
     rows = [f"  {v.name:16s}{v.unit:8s}{v.start:>22s}   {v.description}" for v in known().values()]
     return "\n".join([*comment, "", *ready, "", "The values that can be given:", *rows])
 
@@ -45,16 +49,19 @@ def usage() -> str:
 def values(arguments: list[str]) -> dict[str, str]:
     """What is given, by name, in SI; of a ready wheel also friction and rows, in proportion to its radius."""
     takes, names = known(), wheels()
-    found, given = {}, {}
+    found, given, solid = {}, {}, ""
     for argument in arguments:
         name, equals, text = argument.partition("=")
         if name == "wheel" or (not equals and name in names):
             body = ready(text or name)
             body |= {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
             found = {name: repr(value) for name, value in body.items()}
+        elif name == "body" or (not equals and name in bodies()):
+            solid = text or name
         elif not equals:
-            meant = suggestion(name, dict.fromkeys(names, ""))
-            raise Fault(f'"{argument}" is neither name=value nor a ready wheel.{meant} See ./scripts/run --help.')
+            meant = suggestion(name, dict.fromkeys([*names, *bodies()], ""))
+            kinds = "neither name=value nor a ready wheel or body"
+            raise Fault(f'"{argument}" is {kinds}.{meant} See ./scripts/run --help.')
         elif name not in takes:
             meant = suggestion(name, {n: v.description for n, v in takes.items()})
             if name in ("v", "speed", "velocity"):
@@ -62,7 +69,12 @@ def values(arguments: list[str]) -> dict[str, str]:
             raise Fault(f'wheel.fmu has no parameter or input "{name}".{meant} ./scripts/run --help lists them.')
         else:
             given[name] = takes[name].value_of(text)
+    if solid and (both := [name for name in MOMENTS if name in given]):
+        raise Fault(f"{both[0]} follows from m, r_0 and r with body={solid}: leave one of the two out.")
     found |= given
+    if solid:
+        size = {name: float(found.get(name, takes[name].start)) for name in ("m", "r_0", "r")}
+        found |= {name: repr(value) for name, value in moments(solid, **size).items()}
     if float(found.get("s", 1)) <= 0:
         raise Fault("s must be above 0 here: the scene without friction is drawn beside it anyway.")
     stop, interval = (float(found.get(name, v.start)) for name, v in RUN.items())

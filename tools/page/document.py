@@ -14,6 +14,7 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader
 
 from diagrams.start_values import ROOT, wheels
+from diagrams.start_values import bodies as ready_bodies
 from diagrams.start_values import variables as described
 from page.bodies import Body
 
@@ -70,9 +71,9 @@ def encoded(body: Body) -> dict:
 
 
 def wheel_itself(wasm: Path) -> dict:
-    """What the live page holds: the wheel as a WebAssembly module, and ready wheels."""
+    """What the live page holds: the wheel as a WebAssembly module, ready wheels and bodies."""
     guid = re.search(r'guid="(.*?)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"))
-    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid[1], "wheels": wheels()}
+    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid[1], "wheels": wheels(), "bodies": ready_bodies()}
 
 
 def write(output: Path, title: str, bodies: list[Body], sources: int = 1, wasm: Path | None = None) -> int:

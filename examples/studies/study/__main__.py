@@ -6,6 +6,7 @@ the FMU's modelDescription.xml. Values are in SI units, or have a unit behind th
 examples:
   ./scripts/study fates                     one of the examples: {names}
   ./scripts/study fates --wheel coin        with a ready wheel: {wheels}
+  ./scripts/study fates --body disc         with a homogeneous body of the same m, r_0 and r
   ./scripts/study my_study.py               a file that defines study = Study(...); see docs/studies.md
   ./scripts/study --vary theta_start=60deg:90deg:31 --vary s=0,0.01,0.03 --set phi_dot_start=-3 \\
       --measure lowest=lowest --out results/studies/lean.zarr --csv
@@ -17,12 +18,13 @@ import csv
 import runpy
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 EXAMPLES = Path(__file__).resolve().parent.parent
 if not __package__:  # run as a file, by scripts/help
     sys.path[:0] = [str(EXAMPLES), str(EXAMPLES.parent / "python")]
-from values import Fault, number, parted, ready, suggestion, variables, wheels  # noqa: E402
+from values import MOMENTS, Fault, bodies, number, parted, ready, suggestion, variables, wheels  # noqa: E402
 
 from study.plan import ROOT, SETTABLE, Study, StudyError, check_names, description  # noqa: E402
 
@@ -61,9 +63,11 @@ def study_of(arguments: argparse.Namespace) -> Study:
     rows = {name: numbers(name, ",".join(column), unit(name)) for name, *column in columns(arguments.list)}
     if bool(grid) == bool(rows):
         raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
-    values = {name: x for name, x in arguments.body.items() if name not in grid | rows}
+    derived = MOMENTS if arguments.body else ()
+    values = {name: x for name, x in arguments.ready.items() if name not in {*grid, *rows, *derived}}
     values |= {name: number(name, text, unit(name)) for name, text in pairs(arguments.set).items()}
-    fields = {name: getattr(arguments, name) for name in ("history", "stop_time", "interval", "tolerance", "branch_at")}
+    names = ("history", "stop_time", "interval", "tolerance", "branch_at", "body")
+    fields = {name: getattr(arguments, name) for name in names}
     fields |= {"measures": pairs(arguments.measure)} if arguments.measure else {}
     study = Study(grid=grid, list=rows, values=values, **fields)
     study.check(known)
@@ -103,6 +107,7 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add, several = parser.add_argument, {"action": "append", "default": []}
     add("study", nargs="?", help="an example's name or a Python file")
     add("--wheel", metavar="NAME", help="a ready wheel, to which lengths, times and rates of a study's file are scaled")
+    add("--body", metavar="NAME", help=f"{', '.join(bodies())}: J_x, J_y, J_z follow from m, r_0, r of each wheel")
     add("--vary", **several, metavar="NAME=VALUES", help="an axis of the grid: 1,2,3 or first:last:count")
     add("--list", type=Path, metavar="CSV", help="one wheel per row instead of a grid")
     add("--set", **several, metavar="NAME=VALUE", help="a value for all wheels, such as slope=12%%")
@@ -121,27 +126,29 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
     add("--publish", action="store_true", help="write an example's figure into docs/figures")
     arguments = parser.parse_args(argv)
-    arguments.body = ready(arguments.wheel) if arguments.wheel else {}
+    arguments.ready = ready(arguments.wheel) if arguments.wheel else {}
     arguments.study = file_of(arguments.study) if arguments.study else study_of(arguments)
     return arguments
 
 
-def study_file(path: Path, wheel: str | None = None) -> dict[str, object]:
-    """The names that a study's file defines: `study`, of a ready wheel if one is given, perhaps `table` and `draw`."""
+def study_file(path: Path, wheel: str | None = None, body: str | None = None) -> dict[str, object]:
+    """The names that a study's file defines: `study`, of a ready wheel or body if given, perhaps `table` and `draw`."""
     sys.path.insert(0, str(path.resolve().parent))
     content = runpy.run_path(str(path))
     if not isinstance(content.get("study"), Study):
         raise StudyError(f"{path} does not define study = Study(...).")
+    if body:
+        content["study"] = replace(content["study"], body=body)
     if wheel:
-        content |= {"study": content["study"].scaled(wheel)}
-    return content | {"name": f"{path.stem}_{wheel}" if wheel else path.stem}
+        content["study"] = content["study"].scaled(wheel)
+    return content | {"name": "_".join(filter(None, [path.stem, wheel, body]))}
 
 
 def conduct(arguments: argparse.Namespace) -> None:
     """Runs, exports, draws, and prints the outcome and where it is."""
     content = {"study": arguments.study, "name": "study"}
     if isinstance(arguments.study, Path):
-        content = study_file(arguments.study, arguments.wheel)
+        content = study_file(arguments.study, arguments.wheel, arguments.body)
     from .compute import run
     from .dataset import export, summarize
 

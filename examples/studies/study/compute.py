@@ -27,7 +27,7 @@ from distributed.scheduler import KilledWorker
 from fmpy import read_model_description
 from tqdm import tqdm
 
-from .dataset import TITLE, axes_of, open_results, points, provenance, template
+from .dataset import TITLE, axes_of, doubtful, open_results, points, provenance, template
 from .plan import Status, Study, StudyError
 from .worker import MARK, Region, Result, pack, run_chunk, write
 
@@ -69,6 +69,8 @@ def run(
     if group and not missing(group):
         return open_results(place)
     axes = axes_of(study)
+    if doubt := doubtful(study, axes, description):
+        print(f"study: warning: {doubt}", file=sys.stderr)
     there = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
     with there as running, Client(running, timeout="30s") as client:
         with tempfile.TemporaryDirectory() as folder:

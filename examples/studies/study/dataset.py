@@ -1,6 +1,7 @@
 """The labelled dataset of a study: empty before any wheel has run, opened, drawn, exported, summarized."""
 
 import json
+import math
 import platform
 import re
 from collections.abc import Mapping
@@ -20,6 +21,7 @@ from .worker import Array, Region
 
 TITLE = "A study with wheel.fmu"
 ANGLE = "angle to the ground"
+SIZE = ("m", "r_0", "r")
 GREEK = {"psi": "ψ", "theta": "θ", "phi": "φ", "omega": "ω", "lambda": "λ", "mu": "μ", "tau": "τ"}
 SYMBOLS = {  # in labels, by the text of a measure
     rf"\s*(lowest|min\({PLANE_ANGLE}\))\s*": f"smallest {ANGLE}",
@@ -33,8 +35,28 @@ PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either si
 
 
 def axes_of(study: Study) -> xr.Dataset:
-    """The values that vary: each a dimension of a grid, or all along the wheels of a list."""
-    return xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in study.varied.items()})
+    """The values that vary: each a dimension of a grid, or all along the wheels of a list; and moments that follow."""
+    axes = xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in study.varied.items()})
+    if not study.body:
+        return axes
+    from values import moments
+
+    size = {name: study.values[name] for name in SIZE if name in study.values}
+    size |= {name: axes[name] for name in SIZE if name in axes.coords}
+    return axes.assign_coords(moments(study.body, **size))
+
+
+def doubtful(study: Study, axes: xr.Dataset, description: ModelDescription) -> str:
+    """One sentence if there are wheels that no body can be, with their number; else nothing."""
+    from values import MOMENTS, doubt
+
+    names = (*SIZE, *MOMENTS)
+    fixed = {v.name: float(v.start) for v in description.modelVariables if v.name in names} | study.values
+    columns = [axes.coords[name] if name in axes.coords else xr.DataArray(fixed[name]) for name in names]
+    rows = zip(*(column.values.ravel().tolist() for column in xr.broadcast(*columns)), strict=True)
+    said = [doubt(dict(zip(names, row, strict=True))) for row in rows]
+    wheels, found = math.prod(axes.sizes.values()), [text for text in said if text]
+    return f"{len(found) * wheels // len(said)} of {wheels} wheels cannot exist. The first: {found[0]}" if found else ""
 
 
 def sample(bounds: Mapping[str, tuple[float, float]], count: int, seed: int = 0) -> dict[str, Array]:

@@ -158,6 +158,7 @@ class Study:
     measures    name of a result -> text, as above
     history     Real variables kept at every communication point
     interval    s between communication points, at which min, max, mean, first and the history are evaluated
+    body        `torus`, `disc` or `hoop` (examples/bodies.json): J_x, J_y, J_z follow from m, r_0 and r of each wheel
     branch_at   s; until then tunable parameters and inputs of the grid keep their values of `values`: runs that differ
                 in nothing else share one start, which a worker runs once and restores from a snapshot
     """
@@ -171,6 +172,7 @@ class Study:
     interval: float = 0.01
     tolerance: float | None = None
     branch_at: float | None = None
+    body: str | None = None
 
     def __post_init__(self) -> None:
         try:  # Python's numbers: equal studies have equal fields, whatever types they were given in
@@ -195,9 +197,9 @@ class Study:
 
         Lengths are in proportion to R = r_0 + r, times to sqrt(R), masses to m. StudyError if it sets such a parameter.
         """
-        from values import ready, scale
+        from values import MOMENTS, ready, scale
 
-        body = ready(wheel)
+        body = {n: x for n, x in ready(wheel).items() if not (self.body and n in MOMENTS)}
         factor, slower, given = factors(body), scale(body, s=1), self.varied | self.values
         if both := sorted({*body} & {*given} - {"phi_dot_start"}):
             raise StudyError(f"The study has values of {', '.join(both)}, which are those of the wheel {wheel}.")
@@ -242,17 +244,27 @@ class Study:
 
     def check(self, variables: Mapping[str, Variable]) -> None:
         """StudyError if a name is unknown or the study does not suit the FMU."""
+        from values import MOMENTS, bodies
+
         check_names([*self.varied, *self.values], SETTABLE, variables)
         check_names([*(m.variable for m in self.parsed.values()), *self.history], READABLE, variables)
         lengths = {name: len(column) for name, column in self.list.items()}
         empty = quoted(name for name, values in self.varied.items() if not values)
         both = quoted(name for name in self.varied if name in self.values and self.branch_at is None)
         integers = quoted(name for name in self.sampled if variables[name].type != "Real")
+        derived = MOMENTS if self.body else ()
+        fixed = quoted(name for name in derived if name in self.varied | self.values)
         names = [*self.measures, *self.history, *self.varied, *OWN, "time", POINT, *counters_of(variables)]
+        names += [name for name in derived if name not in self.varied]
         twice = quoted(name for name in names if names.count(name) > 1)
         in_order = 0 <= (self.branch_at or 0.0) < self.stop_time < math.inf and 0 < self.interval < math.inf
         for fault, text in (
             (bool(self.grid) == bool(self.list), "Give either grid or list: it lists the wheels."),
+            (
+                self.body is not None and self.body not in bodies(),
+                f"There is no body '{self.body}'; there are {', '.join(bodies())}.",
+            ),
+            (fixed, f"{fixed} follows from m, r_0 and r with body {self.body}: leave one of the two out."),
             (empty, f"The values of {empty} must be a list of numbers, at least one."),
             (both, f"{both} is in values and among the names that vary."),
             (len({*lengths.values()}) > 1, f"The columns of a list must have one length; these have: {lengths}."),

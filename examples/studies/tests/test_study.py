@@ -155,6 +155,8 @@ def test_a_ready_wheel_gives_what_the_command_line_does_not() -> None:
         ("--vary s=0:1:one", "--vary s=0:1:one: write --vary NAME=1,2,3 or NAME=first:last:count."),
         ("--vary s=0,1 --set m=12rad", 'm = "12rad": it takes no unit but kg or g or t.'),
         ("--vary s=0,1 --wheel koin", 'There is no wheel "koin"; there are car_tyre'),
+        ("--body ball --vary s=0,1", "There is no body 'ball'; there are torus, disc, hoop."),
+        ("--body disc --vary J_z=1,2", "'J_z' follows from m, r_0 and r with body disc: leave one of the two out."),
         ("--vary theta_strat=1,2", "'theta_strat' is not a parameter or input of this FMU. Do you mean theta_start"),
         ("--vary s=0,1 --measure low=least(theta)", "'least(theta)' is not a measure"),
         ("--vary s=0,1 --measure low=min(teta)", "'teta' is not an output or local variable"),
@@ -169,6 +171,37 @@ def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> No
     done = subprocess.run(isolated, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(f"study: {message}") and len(done.stderr.splitlines()) == 1
+
+
+def test_of_a_ready_body_every_wheel_has_the_moments_of_its_mass_and_size_and_mass_alone_changes_nothing(
+    alone,
+) -> None:
+    """The equations of a wheel without applied loads are homogeneous in m and J."""
+    study = Study(grid={"m": [5.0, 20.0], "r_0": [0.2, 0.3]}, measures={"end": "theta"}, body="torus", stop_time=2.0)
+    results = alone(study)
+    m, r_0 = results["m"], results["r_0"]
+    within(relative_error(results["J_z"].values, (m * (r_0**2 + 0.75 * 0.05**2)).values), 8 * EPSILON, "J_z, relative")
+    end = results["end"].values
+    within(absolute_error(end[0], end[1]), 1e-9, "theta at the end of wheels of two masses, rad")
+    beyond(absolute_error(end[:, 0], end[:, 1]), 1e-3, "theta at the end of wheels of two sizes, rad")
+    fixed = alone(replace(study, body=None))["end"].values
+    beyond(absolute_error(fixed[0], fixed[1]), 1e-3, "theta at the end of two masses that keep the paper's J, rad")
+
+
+def test_wheels_that_cannot_exist_are_run_with_a_warning_that_counts_them(conduct, capsys) -> None:
+    study = Study(grid={"m": [10.0, 15.0, 20.0], "s": [0.0, 0.01]}, stop_time=0.1)
+    assert (conduct(study)["status"] == Status.reached).all()
+    said = capsys.readouterr().err
+    assert "study: warning: 2 of 6 wheels cannot exist. The first: J_z = 1.8 kg m2 is more than m (r_0 + r)^2" in said
+    conduct(replace(study, body="hoop"))
+    assert "warning" not in capsys.readouterr().err
+
+
+def test_a_body_of_a_ready_wheels_size_has_its_own_moments() -> None:
+    study = arguments_of(["--wheel", "coin", "--body", "hoop", "--vary", "s=0,1mm"]).study
+    assert study.values["m"] == 0.0085 and "J_z" not in study.values
+    scaled = Study(grid={"s": [0.0]}, body="disc").scaled("coin")
+    assert scaled.values["r"] == 0.0011 and "J_z" not in scaled.values
 
 
 def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(alone, tmp_path, monkeypatch) -> None:

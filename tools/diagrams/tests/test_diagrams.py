@@ -66,6 +66,25 @@ def test_nothing_is_cut_off_and_no_power_of_ten_stands_over_a_title(monkeypatch:
         assert fig.axes[0].get_tightbbox().x0 < fig.bbox.x0
 
 
+DOUBTED = [
+    ({"m": 12}, "J_z = 1.8 kg m2 is more than m (r_0 + r)^2 = 1.47 kg m2"),
+    ({"J_x": 1.2}, "(J_x + J_y - J_z)/2 = 0.15 kg m2 is more than m r^2 = 0.05 kg m2"),
+    ({"J_x": 0.4, "J_y": 0.4, "J_z": 0.5, "r": 0.0}, "is more than m (0.1 (r_0 + r))^2 = 0.018 kg m2"),
+    ({"J_x": 1.25, "J_y": 1.25, "J_z": 2.44}, "no mass within the wheel's outline has it together with"),
+    ({"r": 0.4}, "this torus intersects itself"),
+]
+
+
+@pytest.mark.parametrize(("values", "words"), DOUBTED)
+def test_a_wheel_that_cannot_exist_is_drawn_with_a_warning(values: dict[str, float], words: str) -> None:
+    (said,) = paper.warnings_of(scene(**values))
+    assert words in said
+    remark = " ".join(paper.caption([scene(**values)], [[]], 500)).replace(paper.NO_BREAK, " ")
+    assert "intersects itself" in remark or "no mass within this outline has these moments" in remark
+    assert paper.warnings_of(scene()) == []
+    assert paper.unlike_paper(scene(s=0.02)) == []
+
+
 DIFFERENT = {"Boolean": 1.0, "Integer": 2.0, "Real": 0.25}
 
 

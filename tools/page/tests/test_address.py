@@ -64,6 +64,8 @@ WRONG = {
     "too long": ("M_3=" + ",".join(["1:1"] * 2000), "more than 4000 characters"),
     "after the end": ("M_3=11:1", "the time of M_3 = 11"),
     "a start that changes": ("theta=1:1.2", "cannot be set"),
+    "no such body": ("body=ball", "no body ball"),
+    "a body and one of its moments": ("body=disc&J_z=1", "J_z follows from m, r_0 and r"),
     "no such step": ("step=99", "no step 99"),
     "no such diagram": ("diagram=pie", "no diagram pie"),
     "no such part": ("show=path+ghost", "ghost"),

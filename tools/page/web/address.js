@@ -2,9 +2,11 @@
 // are written so that reading gives the same bits; an angle in degrees where that holds, as for every slider.
 //   #theta=89.5deg&phi_dot=-2.9&s=0.03&M_3=1:-6,1.5:0&show=path+force&diagram=path&t=3.2
 // `_start` is left out of names; `M_3=1:-6,1.5:0` are changes at 1 s and 1.5 s; `kept.` precedes the plan of the motion
-// that is kept beside; `step` is a step of the story. What is not there is as at first.
+// that is kept beside; `body` gives the moments of inertia of a ready one; `step` is a step of the story. What is not
+// there is as at first.
 import {variables} from '#data';
 import {PORTRAITS} from '#diagrams';
+import {bodies, MOMENTS, momentsOf} from '#inertia';
 import {degrees, limitsOf} from '#knobs';
 
 const LONGEST = 4000;  // characters
@@ -12,7 +14,7 @@ const MOST = 400;      // changes while it rolls
 const NUMBER = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(deg)?$/;
 
 export const EMPTY = {
-  plan: {values: {}, changes: [], stop: 10},
+  plan: {values: {}, changes: [], stop: 10, body: null},
   kept: null,
   show: {follow: true, path: true, axes: false, force: false},
   diagram: 'phase',
@@ -39,11 +41,18 @@ function numberOf(text, name, limits) {
   return refuse(`${name} = ${shown[0]} is not between ${shown[1]} and ${shown[2]}.`);
 }
 
-/** A plan {values, changes, stop} as the parts of an address, whose names begin with `prefix`. */
-function planParts({values, changes, stop}, prefix = '') {
-  const parts = {};
+/** Gives a plan with a body the moments of its mass and radii. */
+export function derive({values, body}) {
+  const [m, r_0, r] = ['m', 'r_0', 'r'].map((name) => values[name] ?? variables[name].start);
+  if (body) Object.assign(values, momentsOf(body, {m, r_0, r}));
+}
+
+/** A plan {values, changes, stop, body} as the parts of an address, whose names begin with `prefix`. */
+function planParts({values, changes, stop, body}, prefix = '') {
+  const parts = body ? {[`${prefix}body`]: body} : {};
   for (const [name, value] of Object.entries(values))
-    if (value !== variables[name]?.start) parts[prefix + name.replace(/_start$/, '')] = textOf(name, value);
+    if (value !== variables[name]?.start && !(body && MOMENTS.includes(name)))
+      parts[prefix + name.replace(/_start$/, '')] = textOf(name, value);
   for (const {t, name, value} of changes) {
     const [part, change] = [prefix + name, `${Number(t.toFixed(4))}:${textOf(name, value)}`];
     parts[part] = part in parts ? `${parts[part]},${change}` : change;
@@ -70,14 +79,16 @@ export function write(state, step, steps) {
 }
 
 /** A plan from the parts of an address {name: text}: `value`, or `value,t:value,...` with changes while it rolls. */
-function planOf({stop: end, ...parts}) {
+function planOf({stop: end, body = null, ...parts}) {
   const stop = end ? Math.round(100 * numberOf(end, 'stop', [1, 60])) / 100 : EMPTY.plan.stop;
-  const plan = {values: {}, changes: [], stop};
+  const plan = {values: {}, changes: [], stop, body};
+  if (body && !Object.hasOwn(bodies, body)) refuse(`there is no body ${body.slice(0, 20)}.`);
   for (const [part, text] of Object.entries(parts)) {
     const name = [`${part}_start`, part].find((other) => Object.hasOwn(variables, other)) ??
         refuse(`it names ${part.slice(0, 30)}, which the wheel has not.`);
     for (const item of text.split(',')) {
       const [value, t] = item.split(':').reverse();
+      if (body && MOMENTS.includes(name)) refuse(`${name} follows from m, r_0 and r of the body.`);
       const found = numberOf(value, name, limitsOf(name, t !== undefined));
       if (t === undefined) plan.values[name] = found;
       if (t !== undefined) plan.changes.push({t: numberOf(t, `the time of ${name}`, [0, stop]), name, value: found});
@@ -85,6 +96,7 @@ function planOf({stop: end, ...parts}) {
   }
   if (plan.changes.length > MOST) refuse(`it holds more than ${MOST} changes.`);
   plan.changes.sort((a, b) => a.t - b.t);
+  derive(plan);
   return plan;
 }
 

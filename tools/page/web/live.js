@@ -1,8 +1,9 @@
 // The live page: the wheel itself computes the whole motion anew, within some milliseconds, whenever the reader changes
 // its start, or s or M_3 while it rolls. A change while it rolls leaves the past alone and makes a new future.
-import {EMPTY, sameMotions} from '#address';
+import {derive, EMPTY, sameMotions} from '#address';
 import {variables} from '#data';
 import {STEP} from '#fmu';
+import {MOMENTS} from '#inertia';
 import {Link} from '#link';
 import {setUpPanel} from '#panel';
 import {chapters} from '#scenes';
@@ -76,9 +77,19 @@ export class LiveWheel {
     Object.assign(this, {wanted: true, scene: null, refusal: null});
   }
 
+  /** A start value or parameter; a body's moments follow its mass and radii until one of them is set. */
   setStart(name, value) {
-    this.plan.values[name] = value;
-    if (name === 'J_x') this.plan.values.J_y = value;
+    const {plan} = this;
+    plan.values[name] = value;
+    if (name === 'J_x') plan.values.J_y = value;
+    if (MOMENTS.includes(name)) plan.body = null;
+    derive(plan);
+    this.change('fitted');
+  }
+
+  /** The moments of a ready body of this mass and size. */
+  setBody(body) {
+    derive(Object.assign(this.plan, {body}));
     this.change('fitted');
   }
 
@@ -86,6 +97,7 @@ export class LiveWheel {
   setWheel(parameters) {
     const size = (parameters.r_0 + parameters.r) / PAPER_RADIUS;
     Object.assign(this.plan.values, parameters);
+    this.plan.body = null;
     this.setStart('phi_dot_start', Number((-2 / Math.sqrt(size)).toPrecision(3)));
     if (this.value('s')) this.plan.values.s = Number((0.03 * size).toPrecision(3));
     this.page.player.seek(0);

@@ -1,6 +1,7 @@
 // The controls of the live page: the story or the scenes to begin with, the start, and what the reader does to the
 // wheel while it rolls. Each sets up its elements and returns a function that shows the present state.
 import {$, make, makeButton, makeChoice, onChange, subscripted} from '#dom';
+import {bodies, doubtOf} from '#inertia';
 import {HELD, NOW, START, torqueOf, WHEEL} from '#knobs';
 import {scenes} from '#scenes';
 
@@ -110,17 +111,30 @@ function makeHeld([text, name, part, what], live) {
   return button;
 }
 
-/** The list of ready wheels {name: {title, source, parameters}}. */
+/** The list of ready bodies, whose moments follow from mass and radii, and of ready wheels. */
 function setUpReady(live, wheels) {
-  const options =
-      Object.entries(wheels).map(([value, {title, source}]) => make('option', {value, title: source}, title));
-  $('#ready').append(make('option', {value: ''}, 'Ready wheels …'), ...options);
-  $('#ready').addEventListener('change', ({target}) => {
-    if (!target.value) return;
-    const {parameters, title, source} = wheels[target.value];
-    live.setWheel(parameters);
-    Object.assign(target, {title: source, ariaLabel: `Ready wheel: ${title}`});
+  const host = $('#ready');
+  const option = (kind) => ([name, {title, source}]) =>
+      make('option', {value: `${kind}:${name}`, title: source}, title);
+  const group = (label, kind, list) => make('optgroup', {label}, ...Object.entries(list).map(option(kind)));
+  const none = make('option', {value: ''}, 'Bodies and ready wheels …');
+  host.append(
+      none, group('Bodies: J follows from m, r₀ and r', 'body', bodies), group('Ready wheels', 'wheel', wheels));
+  host.addEventListener('change', ({target: {value}}) => {
+    const [kind, name] = value.split(':');
+    if (kind === 'body') live.setBody(name);
+    if (kind === 'wheel') live.setWheel(wheels[name].parameters);
   });
+  const shown = onChange((value) => {
+    host.value = value;
+    host.title = host.selectedOptions[0].title || 'Ready bodies and wheels, with their sources';
+  });
+  const same = ([, {parameters}]) => Object.entries(parameters).every(([name, value]) => live.value(name) === value);
+  return () => {
+    const {plan: {body}} = live;
+    const [wheel] = body ? [] : Object.entries(wheels).find(same) ?? [];
+    shown(body ? `body:${body}` : wheel ? `wheel:${wheel}` : '');
+  };
 }
 
 /** What the page says of the last run and of a wrong address, and the box that keeps a motion. */
@@ -128,6 +142,10 @@ function setUpNotes(live) {
   $('#keep').addEventListener('change', ({target}) => live.keep(target.checked));
   const write = onChange((text) => ($('#message').textContent = text));
   const refuse = onChange((text) => ($('#refusal').textContent = text));
+  const doubt = onChange((text) => {
+    $('#doubt').hidden = !text;
+    $('#doubt').replaceChildren(...subscripted(text ? `${text} Choose a body: its moments follow.` : ''));
+  });
   return () => {
     const seconds = Number(live.wheel.table.end.toPrecision(4));
     write(live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`);
@@ -135,6 +153,7 @@ function setUpNotes(live) {
     $('#keep').checked = Boolean(live.kept);
     $('#refusal').hidden = !live.refusal;
     refuse(live.refusal);
+    doubt(doubtOf(live.parameters()));
   };
 }
 
@@ -146,8 +165,7 @@ export function setUpPanel(live, wheels) {
   const now = {take: live.setNow.bind(live), present: live.present.bind(live), hold: live.hold.bind(live)};
   const knobs = [['#start', START, start], ['#wheel', WHEEL, start], ['#now', NOW, now]].flatMap(
       ([place, list, acts]) => list.map((knob) => makeKnob($(place), knob, acts)));
-  setUpReady(live, wheels);
   $('#push').append(...HELD.map((held) => makeHeld(held, live)));
-  const all = [setUpStory(live), setUpScenes(live), setUpNotes(live), ...knobs];
+  const all = [setUpStory(live), setUpScenes(live), setUpReady(live, wheels), setUpNotes(live), ...knobs];
   return () => all.forEach((show) => show());
 }

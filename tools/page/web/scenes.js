@@ -93,13 +93,16 @@ export function chapters(parameters) {
 export function scenes(parameters, steps) {
   const [, , critical, free, friction, , driven] = steps.map(({state}) => state);
   const limit = `Upright rolling is stable above ${criticalSpin(parameters).toFixed(2)} rad/s; this wheel is 10 %`;
-  const disc = read('r=0&theta=20deg&psi_dot=9&phi_dot=-9').state;
+  const disc = read('body=disc&r=0&theta=20deg&psi_dot=9&phi_dot=-9').state;
   return [
     ['Paper, no friction', free.plan],
     ['Paper, s = 0.03 m', friction.plan],
     ['Just stable', critical.kept, `${limit} faster, leans by half a degree and stays up.`],
     ['Just unstable', critical.plan, `${limit} slower, leans as much and tumbles.`],
-    ['Thin disc', disc.plan, 'No tube (r = 0): the rolling disc of the textbooks, low and wobbling like a coin.'],
+    [
+      'Thin disc', disc.plan,
+      'No tube (r = 0), homogeneous: the rolling disc of the textbooks, low and wobbling like a coin.'
+    ],
     ['Driven', driven.plan, 'A motor pushes with M₃ = −4 N m from 1 s to 3 s, the brake with 4 N m from 6 s to 7.5 s.'],
   ].map(([label, plan, about]) => ({label, plan, about}));
 }
