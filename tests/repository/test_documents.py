@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import os
 import re
+import shlex
 import subprocess
 import sys
 from decimal import Decimal
@@ -24,6 +25,7 @@ from publishing.markdown import number, pages
 
 RESULTS = ROOT / "docs" / "results"
 TEXTS = {str(page.relative_to(ROOT)): page.read_text(encoding="utf-8") for page in pages()}
+PAGES = {name: text for name, text in TEXTS.items() if name.endswith(".md")}
 
 
 def run(*command: str, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -83,24 +85,96 @@ def test_a_number_is_short() -> None:
     assert {value: number(value) for value in SHORT} == SHORT
 
 
-COMMAND = re.compile(r"\./scripts/(\w+)")
 NAMED = re.compile(r"`((?:cmake|docs|examples|fmu-src|publishing|release|reports|scripts|tests|tools)/[\w./-]*)`")
 
 
 def missing(text: str, beside: Path = ROOT) -> list[str]:
-    """Commands and places that the text names and the project has not."""
-    gone = [f"./scripts/{name}" for name in COMMAND.findall(text) if not (ROOT / "scripts" / name).is_file()]
+    """Places that the text names and the project has not."""
     named = [name for name in NAMED.findall(text) if "NAME" not in name]
-    return gone + [name for name in named if not (ROOT / name).exists() and not (beside / name).exists()]
+    return [name for name in named if not (ROOT / name).exists() and not (beside / name).exists()]
 
 
-def test_every_command_and_file_that_a_document_names_exists_and_every_decision_is_listed() -> None:
-    found = {name: missing(text, (ROOT / name).parent) for name, text in TEXTS.items() if name.endswith(".md")}
+def test_every_file_that_a_document_names_exists_and_every_decision_is_listed() -> None:
+    found = {name: missing(text, (ROOT / name).parent) for name, text in PAGES.items()}
     assert {name: gone for name, gone in found.items() if gone} == {}
-    assert missing("`./scripts/run`, `tests/support/bounds.py`, `fmu-src/`") == []
-    assert missing("`./scripts/walk` and `tests/support/bounds.cpp`") == ["./scripts/walk", "tests/support/bounds.cpp"]
+    assert missing("`tests/support/bounds.py`, `fmu-src/`, `tests/support/bounds.cpp`") == ["tests/support/bounds.cpp"]
     listed = re.findall(r"\]\((decisions/\w+\.md)\)", TEXTS["docs/README.md"])
     assert set(listed) == {f"decisions/{path.name}" for path in (ROOT / "docs" / "decisions").glob("*.md")}
+
+
+def words(*patterns: str) -> set[str]:
+    """Of files and their names."""
+    files = run("git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", *patterns).stdout.split("\0")
+    found = (path.read_text(encoding="utf-8", errors="ignore") for path in map(ROOT.joinpath, files) if path.is_file())
+    return {word for text in (*found, *files) for word in re.findall(r"\w+", text)}
+
+
+# Of other programs, and of examples in the text.
+FOREIGN = """CosimLogLevel addConnection carRollingDiscTest createRollingDiscTest rollingCoinPenaltyTest dask_jobqueue
+fmi_CommunicationStepSize fmi_StopTime fmi_loggingOn frame_a kind_CS load_fmu relTol setReal set_input_derivatives
+I_axis I_long J_hub allocateMemory analyze_mutants der_angles my_study noSetFMUStatePriorToCurrentPoint v_1
+terminateSimulation"""
+
+
+def unknown(text: str, known: set[str]) -> set[str]:
+    """Identifiers in backticks, words with an underscore or a capital inside, that no code has."""
+    marked = re.findall(r"(?<!`)`([^`\n]+)`(?!`)", text)
+    names = {word for span in marked for word in re.findall(r"(?<!\w)[A-Za-z]\w*", span)}
+    return {name for name in names if re.search(r"\w_\w|[a-z][A-Z]", name) and name not in known}
+
+
+def test_every_identifier_in_backticks_stands_in_the_code() -> None:
+    known = words(":!*.md", ":!CHANGELOG.md", ":!docs", ":!tests/repository/test_documents.py") | {*FOREIGN.split()}
+    found = {name: unknown(text, known) for name, text in PAGES.items() if name != "CHANGELOG.md"}
+    assert {name: names for name, names in found.items() if names} == {}
+    assert unknown("`error_scales` of `slope`, `fmi2DoStep(...)`", known) == {"error_scales"}
+
+
+PRINTED = re.compile(r"""\./scripts/(\w+)((?: +(?:'[^'\n]*'|[^\s`#'"|)&;]+))*)""")
+
+
+def printed(text: str) -> set[tuple[str, ...]]:
+    """The commands under scripts/ with their arguments; ... and NAME stand for what a reader types."""
+    joined = re.sub(r"\\\n *", "", text)
+    spans = re.findall(r"```.*?```|`[^`\n]+`|^ {4}.*$", joined, re.DOTALL | re.MULTILINE)
+    return {(name, *shlex.split(rest)) for span in spans for name, rest in PRINTED.findall(span)}
+
+
+def accepted(name: str, *arguments: str) -> bool:
+    """Whether the command takes the arguments: by the program that reads them, or by its list of words."""
+    script = (ROOT / "scripts" / name).read_text(encoding="utf-8") if (ROOT / "scripts" / name).is_file() else ""
+    reads, takes = re.search(r"\breads=(\S+)", script), re.search(r'^takes=(?:"([^"]*)"|(\S+))', script, re.MULTILINE)
+    if reads and arguments and "--help" not in arguments:
+        return run(sys.executable, "-B", reads[1], *arguments).returncode == 0
+    known = ((takes[1] or takes[2] or "").split() + ["--help"]) if takes else arguments
+    return bool(script) and {*arguments} <= {*known}
+
+
+COMMANDS = sorted({command for text in PAGES.values() for command in printed(text)})
+MADE_UP = re.compile(r"…|\b(?:NAME|FILE|FOLDER|PRESET|SECONDS|results|upright|my_study)\b")  # by the reader
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+def test_every_printed_command_takes_its_arguments(command: tuple[str, ...]) -> None:
+    """Those of the README, of the guides for FMPy, of studies and vehicles are run as well, by other tests."""
+    assert MADE_UP.search(" ".join(command)) or accepted(*command)
+
+
+def test_a_wrong_command_would_be_noticed() -> None:
+    assert ("run", "s=0.01") in COMMANDS or len(COMMANDS) > 30
+    assert not accepted("walk") and not accepted("lint", "--fixx") and not accepted("run", "m=-5")
+
+
+ROW = re.compile(r"^\| (\([^|]*?) \| [^|]* \| ([^|]*) \| ([^|]*) \|$", re.MULTILINE)
+
+
+def test_the_table_of_equations_has_each_of_the_paper_once_with_a_function_and_a_test() -> None:
+    numbers = []
+    for equations, functions, tests in ROW.findall(TEXTS["docs/equations.md"]):
+        first, *rest = (int(number) for number in re.findall(r"\d+", equations))
+        numbers += range(first, rest[0] + 1) if "–" in equations else [first, *rest]  # noqa: RUF001
+        assert "`" in functions and "`test_" in tests, equations
+    assert sorted(numbers) == list(range(1, 34))
 
 
 OUTSIDE = r"(^|[^A-Za-z0-9_./])/(work|home|root|Users)/[A-Za-z0-9_.-]|ROOT\.parent|CMAKE_SOURCE_DIR\}/\.\."
