@@ -61,10 +61,9 @@ void log_summaries(const Wheel& wheel) {
 Ending ending_of(const Setup& setup, Event event) {
   Ending ending;
   const EventRow& row = row_of(event);
-  if (row.limit)
-    std::snprintf(ending.text, sizeof ending.text, "%s = %s", row.ending, NumberText(Digits{row.limit(setup)}).text);
-  else
-    std::snprintf(ending.text, sizeof ending.text, "%s", row.ending);
+  const NumberText limit(Digits{row.limit ? row.limit(setup) : 0});
+  std::snprintf(ending.text, sizeof ending.text, "%s%s%s", row.ending, row.limit ? " = " : "",
+                row.limit ? limit.text : "");
   return ending;
 }
 

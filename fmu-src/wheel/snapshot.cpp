@@ -16,12 +16,11 @@ namespace wheel {
 namespace {
 
 // Of this FMU and version: its GUID, which follows from the description.
-constexpr std::uint64_t mark_of(const char* text) {
+constexpr std::uint64_t mark = [] {
   std::uint64_t hash = 0xcbf29ce484222325u;
-  for (; *text; ++text) hash = (hash ^ static_cast<unsigned char>(*text)) * 0x100000001b3u;
+  for (const char letter : WHEEL_GUID) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3u;
   return hash;
-}
-constexpr std::uint64_t mark = mark_of(WHEEL_GUID);
+}();
 
 struct Header {
   std::uint64_t mark, size, checksum;

@@ -6,12 +6,11 @@ of the paper and the rotation-matrix reference under reference/ judge the produc
 
 import numpy as np
 import pytest
-from support import equations as eq
-from support.bounds import EPSILON, beyond, within
-
 from equations.multibody_transcription import omega_z_dot, papers_state, solved
 from equations.paper_transcription import Paper
 from equations.pointwise import ACCELERATIONS, distance, draw, dynamics, referenced, relative
+from support import equations as eq
+from support.bounds import EPSILON, beyond, within
 
 
 def test_the_random_states_include_both_signs_of_the_normal_force() -> None:

@@ -6,13 +6,12 @@ by 1e-40 i. Fixed axes, N/s and N m/s; errors relative to the row's largest rate
 
 import numpy as np
 import pytest
-from support import equations as eq
-from support.bounds import EPSILON, beyond, within
-
 from equations import random_scenes
 from equations.multibody_transcription import papers_state, solved
 from equations.paper_transcription import Paper
 from equations.pointwise import Table, relative
+from support import equations as eq
+from support.bounds import EPSILON, beyond, within
 
 BOUND = 1e-9
 PRESSES, PULLS = 1, 2  # WheelGround

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
+from robustness import regularized
+from robustness.regularized import FRICTION, TOLERANCE_FACTOR, WIDTH_FACTOR
 from support.bounds import beyond, within
 from support.driver import OK, Values
 from support.motion import Library, Run, run
-
-from robustness import regularized
-from robustness.regularized import FRICTION, TOLERANCE_FACTOR, WIDTH_FACTOR
 
 
 @pytest.fixture(scope="module")
