@@ -110,6 +110,40 @@ def test_instants_in_random_scenes_are_those_of_the_reference(library: Library) 
     assert lost >= 30, lost
 
 
+def first_peak(library: Library, start: dict[str, float]) -> tuple[float, float] | None:
+    """The instant and the size of the largest coefficient that is needed in the first swing, read closer and closer."""
+    swing = library.simulate(np.linspace(0, 1, 401), 1e-4, method=4, **start)
+    mu, width = swing["mu_required"], 1 / 400
+    rises = [k for k in range(2, len(mu) - 2) if mu[k - 1] < mu[k] >= mu[k + 1] and mu[k] >= mu[:k].max()]
+    if swing.end is not None or not rises:
+        return None
+    instant = swing.t[rises[0]]
+    for _ in range(3):
+        close = library.simulate([0.0, *np.linspace(instant - width, instant + width, 201)], 1e-4, method=4, **start)
+        instant, width = close.t[1 + np.argmax(close["mu_required"][1:])], width / 50
+    return instant, float(close["mu_required"][1:].max())
+
+
+def test_a_loss_of_grip_however_brief_is_found_inside_one_long_step(library: Library) -> None:
+    """mu_max lies below the largest coefficient that is needed by a millionth and less: the loss would be over within a
+    thousandth of the step. The partner: as much above it nothing ends. The limit changes no step of the motion."""
+
+    def end(stop: float, mu: float) -> float | None:
+        return library.simulate([0.0, stop], 1e-4, method=4, mu_max=mu, **start).end
+
+    random, found, rates = np.random.default_rng(3), 0, ("psi_dot_start", "theta_dot_start", "phi_dot_start")
+    while found < 40:
+        start = dict(zip(rates, random.normal(0, (2, 1, 5)), strict=True)) | {"theta_start": random.uniform(0.7, 2.4)}
+        peak = first_peak(library, start)
+        if peak is None or not 0.02 < peak[1] < 3:
+            continue
+        for off in (1e-3, 1e-6, 1e-7):
+            lost = end(peak[0] + 1e-6, peak[1] * (1 - off))
+            assert lost is not None and lost <= peak[0] + 1e-6, (start, off)
+            assert end(peak[0] + 0.01, peak[1] * (1 + off)) is None, (start, off)
+        found += 1
+
+
 FAST = {"theta_start": 1.2, "psi_dot_start": 0.3, "phi_dot_start": -6.0}  # free, symmetric: it can be unfolded
 
 
