@@ -68,8 +68,7 @@ Outcome take_demand(Wheel& w) {
 Shape shape_of(const Demand& demand) {
   Shape shape = {{}, demand.tolerance};
   std::copy_n(demand.parameters, first_input, shape.parameters);
-  for (const unsigned v : {variable::psi_start, variable::phi_start, variable::X_O_start, variable::Y_O_start})
-    shape.parameters[v] = 0;
+  for (const unsigned v : {variable::psi_start, variable::phi_start}) shape.parameters[v] = 0;
   return shape;
 }
 

@@ -7,8 +7,8 @@
 
 namespace wheel {
 
-// What shapes the motion on an orbit: the parameters without heading, roll angle and place of the start, which are zero
-// here, and the tolerance.
+// What shapes the motion on an orbit: the parameters without heading and roll angle of the start, which are zero here,
+// and the tolerance.
 struct Shape {
   double parameters[first_input] = {}, tolerance = 0;  // 0: no orbit
   bool operator==(const Shape&) const = default;

@@ -18,8 +18,11 @@ from support import exchange as exchanging
 from support.bounds import beyond, within
 from support.motion import Library
 from support.paths import ROOT, build_folder
+from support.scenes import PAPER
 
-DIPS, LINE = re.compile(r"leans by more than .* from t = (\S+) s on"), re.compile(r"crosses the line at t = (\S+) s")
+DIPS, LINE, LIGHT = (
+    re.compile(rf"t = (\S+) s: the wheel {what}") for what in ("leans by more", "crosses the line", "presses less")
+)
 LEAN = 1.29  # rad: the level of the recipe
 WAYS = {"unfolded": {}, "Runge-Kutta": {"method": 4}, "Adams": {"method": 2}, "multibody": {"formulation": 3}}
 STOP = 6.0
@@ -34,14 +37,25 @@ bool has_line(const Setup& setup, const InForce&) { return setup.keep_contact; }
 double short_of_line(const Setup& setup, const InForce&, double, const double* y) {
   WheelKinematics pose;
   setup.formulation->pose(&setup.wheel, y, &pose);
-  return (pose.X_O + 0.5) / setup.length;
+  return (setup.X_O.whole(pose.X_O) + 0.5) / setup.length;
 }
 """
 LINE_ROW = """    {.event = Event::crosses_line,
      .can_occur = has_line,
      .value = short_of_line,
      .follow = observe,
-     .observed = "The wheel crosses the line at t = %s s."},
+     .observed = "the wheel crosses the line"},
+"""
+# A third one, whose value comes with the rates: N below a share of the weight.
+LIGHT_NAME, SHARE = "presses_less", 0.95
+LIGHT_VALUE = f"""
+double above_share(const Setup& setup, const double*, double N) {{ return N / setup.weight - {SHARE}; }}
+"""
+LIGHT_ROW = """    {.event = Event::presses_less,
+     .can_occur = always,
+     .quick_value = above_share,
+     .follow = observe,
+     .observed = "the wheel presses less than usual"},
 """
 
 
@@ -63,8 +77,8 @@ def insert(path: Path, before: str, text: str) -> None:
 def patch(folder: Path, name: str, value: str, row: str) -> None:
     insert(folder / "wheel" / "run.hpp", "  count\n};", f"  {name},\n")
     events = folder / "wheel" / "events.cpp"
-    insert(events, "}  // namespace\n\nconst EventRow event_rows[]", f"{value}\n")
-    insert(events, "};\nstatic_assert(std::size(event_rows)", row)
+    insert(events, "}  // namespace\n\nconstexpr EventRow event_rows[]", f"{value}\n")
+    insert(events, "};\n\nnamespace {\n\nconstexpr bool is_sound", row)
 
 
 def build(folder: Path) -> Path:
@@ -84,6 +98,7 @@ def build(folder: Path) -> Path:
         commands = commands.replace(original, str(copy)).replace(str(units), str(copy))
     patch(folder, *recipe())
     patch(folder, LINE_NAME, LINE_VALUE, LINE_ROW)
+    patch(folder, LIGHT_NAME, LIGHT_VALUE, LIGHT_ROW)
     made = {entry["output"]: entry for entry in json.loads(commands) if folder in Path(entry["file"]).parents}
     objects = {output: str(folder / output.replace("/", "_")) for output in made}
     compilations = [
@@ -132,8 +147,10 @@ def test_every_crossing_is_logged_whatever_the_grid(library: Library, patched: L
     want = falls(library, "theta", LEAN)
     within(gap(want, logged(DIPS, run.messages)), 1e-6, "instant, s")
     beyond(gap(falls(library, "theta", LEAN - 1e-3), logged(DIPS, run.messages)), 1e-5, "instant of another level, s")
+    light = falls(library, "lambda_3", SHARE * PAPER.m * PAPER.g, **WAYS[way])
+    within(gap(light, logged(LIGHT, run.messages)), 2e-5, "instant of a smaller N, s")  # N curves within a millisecond
     if way == "unfolded":  # it still is
-        assert run.counters["n_rhs"] == library.simulate(times, 1e-11).counters["n_rhs"]
+        assert run.counters["n_steps"] == library.simulate(times, 1e-11).counters["n_steps"]
 
 
 @pytest.mark.parametrize("way", WAYS)
@@ -157,7 +174,7 @@ def test_a_restored_run_logs_what_lies_ahead_and_nothing_else(patched: Library, 
 
 
 def test_another_solver_finds_it_by_its_indicator(library, patched, monkeypatch) -> None:
-    names = (*driver.INDICATORS, "leans", "crosses_line")
+    names = (*driver.INDICATORS, "leans", "crosses_line", "presses_less")
     monkeypatch.setattr(driver, "INDICATORS", names)
     with exchanging.exchange(patched, logging=True, keep_contact=True) as wheel:
         run = exchanging.Run(wheel, 1e-10, exchanging.no_inputs)
