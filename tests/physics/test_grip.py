@@ -7,7 +7,7 @@ psi_dot v_O, so mu_required = |psi_dot| v_O / g.
 """
 
 from dataclasses import replace
-from math import cos, pi
+from math import cos, pi, tan
 
 import numpy as np
 import pytest
@@ -176,6 +176,19 @@ def test_model_exchange_refuses_a_start_without_grip_and_co_simulation_ends_ther
     assert run.ended == MESSAGE.format(0.01, 0) + ", theta = 1.2 rad: the model ends there."
 
 
+@pytest.mark.parametrize("alpha", [0.2, 0.7, 1.2])
+def test_a_wheel_held_on_a_slope_starts_where_mu_max_is_the_slopes_tangent_and_not_below(library, alpha: float):
+    """To a billionth, by both kinds of run alike; in model exchange the first event mode does not end it either."""
+    held = {"slope": alpha, "theta_start": pi / 2, "psi_start": 0.0, "phi_dot_start": 0.0, "s": 2.0}
+    for off, taken in ((1e-9, True), (-1e-9, False)):
+        mu_max = tan(alpha) * (1 + off)
+        assert library.simulate([0.0, 1.0], mu_max=mu_max, **held).end == (None if taken else 0.0)
+        with loaded(library).new() as wheel:
+            assert wheel.set(mu_max=mu_max, **held) == OK
+            assert wheel.initialise() == (OK if taken else ERROR)
+            assert not taken or not wheel.decide().terminateSimulation
+
+
 def test_a_ground_that_pulls_has_no_grip(library: Library) -> None:
     """With keep_contact the ground may pull; where mu_max is given, the run ends before it does."""
     rim = {"J_x": 0.05, "J_y": 0.05, "J_z": 0.1, "theta_start": 1.4, "phi_dot_start": 0.0, "keep_contact": True}
@@ -197,9 +210,9 @@ def test_a_ground_that_pulls_gives_no_grip_however_little_of_it_is_needed(librar
         within(abs(run.end - end), 1e-5, "instant at which N vanishes, s")
         free = library.simulate([0.0, 0.3, 1.0], 1e-10, inputs, **rolling)  # the partner: grip is not checked
         assert free.end is None and any("The ground pulls" in message for message in free.messages)
-    wheel = loaded(library).new()
-    assert wheel.set(mu_max=0.5, F_Z=2 * weight, **rolling) == OK
-    assert wheel.initialise() == ERROR and "mu_max = 0.5" in wheel.said()
+    with loaded(library).new() as wheel:
+        assert wheel.set(mu_max=0.5, F_Z=2 * weight, **rolling) == OK
+        assert wheel.initialise() == ERROR and "mu_max = 0.5" in wheel.said()
 
 
 def test_the_indicator_of_grip_is_positive_and_constant_where_grip_is_not_checked(library: Library) -> None:
