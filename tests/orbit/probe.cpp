@@ -94,11 +94,15 @@ PUBLIC int probe_build(Probe* probe) {
   return starts ? static_cast<int>(kind) : 0;
 }
 
-// States at `count` instants, 8 numbers each, and N.
+// States at `count` instants, 8 numbers each, psi, phi, X_O and Y_O whole; and N.
 PUBLIC void probe_read(Probe* probe, const double* t, int count, double* y, double* N) {
   for (int i = 0; i < count; ++i) {
-    probe->orbit.read(t[i], y + 8 * i);
-    N[i] = force(*probe, y + 8 * i);
+    double* const state = y + 8 * i;
+    probe->orbit.read(t[i], state);
+    N[i] = force(*probe, state);
+    const wheel::Setup& setup = probe->wheel.setup;
+    const wheel::Origin* const origins[] = {&setup.psi, &setup.phi, &setup.X_O, &setup.Y_O};
+    for (int k = 0; k < 4; ++k) state[4 + k] = origins[k]->whole(state[4 + k]);
   }
 }
 
