@@ -117,10 +117,12 @@ terminateSimulation"""
 
 
 def unknown(text: str, known: set[str]) -> set[str]:
-    """Identifiers in backticks, words with an underscore or a capital inside, that no code has."""
+    """Identifiers in backticks, words with an underscore or a capital inside, that neither code nor the page's own
+    lines of code have."""
+    shown = {word for block in re.findall(r"```.*?```", text, re.DOTALL) for word in re.findall(r"\w+", block)}
     marked = re.findall(r"(?<!`)`([^`\n]+)`(?!`)", text)
     names = {word for span in marked for word in re.findall(r"(?<!\w)[A-Za-z]\w*", span)}
-    return {name for name in names if re.search(r"\w_\w|[a-z][A-Z]", name) and name not in known}
+    return {name for name in names - known - shown if re.search(r"\w_\w|[a-z][A-Z]", name)}
 
 
 def test_every_identifier_in_backticks_stands_in_the_code() -> None:

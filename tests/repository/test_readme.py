@@ -151,3 +151,21 @@ def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_it
         late = float(stopped) - (1.0 + inertia * omega / float(brake))  # seen at the next step of 1 ms
         assert 0 <= late <= 0.001
     assert found["30"] != found["60"]
+
+
+TUTORIAL = (ROOT / "docs" / "first_suspension.md").read_text(encoding="utf-8")
+
+
+def test_the_tutorial_of_the_suspension_prints_what_it_shows(root):
+    printed = run("python", "-c", "".join(blocks("python", TUTORIAL)), folder=root)
+    shown = "".join(blocks("text", TUTORIAL))
+    assert [line for line in printed.splitlines() if not line.startswith("[")] == shown.splitlines()
+
+
+@pytest.mark.parametrize("page", ["in_your_tool.md", "model_exchange.md"])
+def test_the_lines_of_python_of_a_guide_run(root, page):
+    (lines,) = blocks("python", (ROOT / "docs" / page).read_text(encoding="utf-8"))
+    found = python(f"{lines}print(run['time'][-1], run['theta'][-1])", root)
+    assert [float(word) for word in found.split()[-2:-1]] == [
+        {"in_your_tool.md": 20.0, "model_exchange.md": 10.0}[page]
+    ]
