@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from fmpy.fmi2 import fmi2EventInfo
 from support import driver
-from support.driver import CO_SIMULATION, DISCARD, ERROR, INDICATORS, MODEL_EXCHANGE, OK, FMU2Wheel
+from support.driver import CO_SIMULATION, DISCARD, ERROR, MODEL_EXCHANGE, OK, FMU2Wheel
 
 KINDS = ("model exchange", "co-simulation")  # at the place of FMI's number
 Situation = tuple[int, str]  # kind and state
@@ -75,7 +75,7 @@ def sound_arguments(w: FMU2Wheel) -> dict[str, tuple[Any, ...]]:
     arguments |= {"GetRealStatus": (driver.LAST_SUCCESSFUL_TIME, [0]), "GetBooleanStatus": (driver.TERMINATED, [0])}
     arguments |= {"GetStringStatus": (driver.PENDING_STATUS, [None])}
     arguments |= {"NewDiscreteStates": (byref(fmi2EventInfo()),), "CompletedIntegratorStep": (1, [0], [0])}
-    arguments |= {"SetTime": (1.0,), "GetEventIndicators": ([0] * len(INDICATORS), len(INDICATORS))}
+    arguments |= {"SetTime": (1.0,), "GetEventIndicators": ([0] * w.indicator_count, w.indicator_count)}
     of_states = ("SetContinuousStates", "GetContinuousStates", "GetDerivatives", "GetNominalsOfContinuousStates")
     arguments |= dict.fromkeys(of_states, (eight, 8))
     return {function: arguments.get(function.removeprefix("fmi2"), ()) for function in TABLE}

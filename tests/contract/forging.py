@@ -1,15 +1,19 @@
 """Serialized states word by word: changed, with the checksum made right again. Rows as in wheel/snapshot.cpp."""
 
+import re
 import struct
 
 import numpy as np
 from support.driver import FMU2Wheel, State, Values
+from support.paths import ROOT
 from support.schedule import play
 
 HEADER = 3  # words: mark, size, checksum of what follows
 SUM = HEADER - 1
 CREATED, INITIALIZING, FAULTY, INITIAL, AT_START, STEPPING, UNFOLDED, EVENT_MODE, CONTINUOUS_TIME, ENDED = range(10)
-SPIN_CHANGES, LOST_GRIP, LOST_CONTACT, FELL_FLAT, EVENTS = range(4, 9)  # of the list in wheel/run.hpp
+RUN = (ROOT / "fmu-src" / "wheel" / "run.hpp").read_text(encoding="utf-8")
+EVENTS = re.findall(r"^ *(\w+),", re.search(r"enum class Event\b.*?\};", RUN, re.DOTALL)[0], re.MULTILINE)
+SPIN_CHANGES, LOST_CONTACT, FELL_FLAT = map(EVENTS.index, ("spin_changes", "lost_contact", "fell_flat"))
 PASSING, STICKING = 2, 3
 RUNS: dict[str, tuple[Values, dict[str, tuple[float, ...]]]] = {
     "unfolded": ({}, {}),
@@ -68,7 +72,7 @@ def place_of(w: FMU2Wheel, row: str) -> int:
     of_phase = ("phase", "ended by", "s", "law", "sigma", "layer", "origin")
     t = phase + len(of_phase) + inputs
     of_events = t + 14  # for each: whether it lies below zero, how often it occurred, when it last did
-    contact, flat, transitions = (of_events + 3 * event for event in (LOST_CONTACT, FELL_FLAT, EVENTS))
+    contact, flat, transitions = (of_events + 3 * event for event in (LOST_CONTACT, FELL_FLAT, len(EVENTS)))
     places = {"stop time": stop, "tolerance": stop + 1, "slope asked": asked + 1, "kind": phase - 2}
     places |= {name: phase + k for k, name in enumerate(of_phase)}
     places |= {"t": t, "last change": t + 1, **{f"y {k}": t + 2 + k for k in range(4)}, "transitions": transitions}

@@ -17,7 +17,19 @@ from support.motion import Library
 from support.scenes import KINDS
 
 from contract import forging
-from contract.forging import FELL_FLAT, HEADER, RUNS, UNFOLDED, as_word, forged, place_of, saved, signed, words_of
+from contract.forging import (
+    EVENTS,
+    FELL_FLAT,
+    HEADER,
+    RUNS,
+    UNFOLDED,
+    as_word,
+    forged,
+    place_of,
+    saved,
+    signed,
+    words_of,
+)
 
 UNKNOWN = "this FMU did not create the state"
 DAMAGED = "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version ({})."
@@ -240,7 +252,7 @@ FORGERIES = {
     "Adams": {"the state is outside the model": NO_WHEEL},
     "contact kept": {"": [{"below": 2}, {"below": 3}, *IN_NO_LAW]},
     "ended": {
-        "": [{"ended_by": FELL_FLAT + 1}, {"ended_by": FELL_FLAT + 2}],
+        "": [{"ended_by": len(EVENTS)}, {"ended_by": len(EVENTS) + 1}],
         # Events that cannot occur here, and one that has not occurred.
         "no such event ends a run": [{"ended_by": forging.LOST_GRIP}, {"ended_by": forging.LOST_CONTACT}, {"y_0": 0.5}],
     },

@@ -27,7 +27,7 @@ CHOICES |= {"friction_law": {"exact": 1, "regularized": 2}}
 CHOICES |= {"method": {"automatic": 1, "adams": 2, "bdf": 3, "runge_kutta": 4}}
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "theta_dot", "psi_dot", "omega_z")
 DERIVATIVES = ("X_O_dot", "Y_O_dot", "psi_dot", "theta_dot", "phi_dot", "theta_ddot", "psi_ddot", "omega_z_dot")
-INDICATORS = ("spin_changes", "lost_grip", "lost_contact", "fell_flat")  # the events of model exchange
+INDICATORS = ("spin_changes", "lost_grip", "lost_contact", "fell_flat")  # the first of the events of model exchange
 
 Array = NDArray[np.float64]
 Value = float | str | bool
@@ -74,6 +74,7 @@ class FMU2Wheel(FMU2Slave, FMU2Model, AbstractContextManager):
         outputs = [v for v in description.modelVariables if v.causality in ("output", "local")]
         self.reals = [v.name for v in outputs if v.type == "Real"]
         self.integers = [v.name for v in outputs if v.type == "Integer"]
+        self.indicator_count = description.numberOfEventIndicators
         self.on_message: Callable[[Message], None] | None = None
         self.kind, self.time = CO_SIMULATION, 0.0
 
@@ -299,7 +300,7 @@ class FMU2Wheel(FMU2Slave, FMU2Model, AbstractContextManager):
         assert self.ask(f"Get{call}Status", kind, byref(value)) == OK
         return value.value
 
-    # Model exchange: vectors in the order of STATES, DERIVATIVES and INDICATORS.
+    # Model exchange: vectors in the order of STATES, DERIVATIVES and INDICATORS; events that are added come last.
 
     def vector(self, what: str, size: int = len(STATES)) -> Array:
         values = np.zeros(size)
@@ -313,7 +314,7 @@ class FMU2Wheel(FMU2Slave, FMU2Model, AbstractContextManager):
         return self.vector("Derivatives")
 
     def indicators(self) -> Array:
-        return self.vector("EventIndicators", len(INDICATORS))
+        return self.vector("EventIndicators", self.indicator_count)
 
     def indicator(self, event: str) -> float:
         return float(self.indicators()[INDICATORS.index(event)])
