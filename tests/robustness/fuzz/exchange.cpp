@@ -7,7 +7,7 @@
 namespace fuzz {
 namespace {
 
-constexpr int states = 8, indicators = 4;
+constexpr int states = 8, indicators = WHEEL_INDICATORS;
 
 bool all_finite(const double* values, int count) {
   return std::all_of(values, values + count, [](double value) { return std::isfinite(value); });
