@@ -111,7 +111,13 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--vary", **several, metavar="NAME=VALUES", help="an axis of the grid: 1,2,3 or first:last:count")
     add("--list", type=Path, metavar="CSV", help="one wheel per row instead of a grid")
     add("--set", **several, metavar="NAME=VALUE", help="a value for all wheels, such as slope=12%%")
-    add("--measure", **several, metavar="NAME=MEASURE", help="for instance 'highest=max(theta)', or lowest=lowest")
+    add(
+        "--measure",
+        **several,
+        metavar="NAME=MEASURE",
+        help="for instance 'highest=max(theta)', lowest=lowest, "
+        "'down=first(theta<30deg)' (theta_end=theta, at the end of the run)",
+    )
     add("--history", nargs="+", default=[], metavar="NAME", help="variables to keep at every communication point")
     add("--stop-time", type=seconds, default=10.0, help="s (10)")
     add("--interval", type=seconds, default=0.01, help="s between communication points (0.01)")
@@ -149,17 +155,17 @@ def conduct(arguments: argparse.Namespace) -> None:
     content = {"study": arguments.study, "name": "study"}
     if isinstance(arguments.study, Path):
         content = study_file(arguments.study, arguments.wheel, arguments.body)
-    from .compute import run
+    from .compute import computed, run
     from .dataset import export, summarize
 
     stem = ROOT / "results" / "studies" / content["name"]
     arguments.out = out = arguments.out or str(stem.with_suffix(".zarr"))
     if "://" not in out:
         stem = Path(out).with_suffix("")
-    begin = time.perf_counter()
+    begin, there = time.perf_counter(), 0 if arguments.overwrite else computed(out)
     workers = arguments.scheduler or arguments.workers
     results = run(content["study"], out, fmu=arguments.fmu, workers=workers, overwrite=arguments.overwrite)
-    print(summarize(results, time.perf_counter() - begin))
+    print(summarize(results, time.perf_counter() - begin, there))
     asked = {".nc": arguments.netcdf, ".csv": arguments.csv}
     written = [out, *(export(results, stem.with_suffix(end)) for end in asked if asked[end])]
     if "table" in content:  # an example's own table and figure

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import uuid
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
@@ -28,7 +28,7 @@ from fmpy import read_model_description
 from tqdm import tqdm
 
 from .dataset import TITLE, axes_of, doubtful, open_results, points, provenance, template
-from .plan import Status, Study, StudyError
+from .plan import Status, Study, StudyError, in_si
 from .worker import MARK, Region, Result, pack, run_chunk, write
 
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
@@ -85,7 +85,8 @@ def run(
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = mark
-        status, common = group["status"][:], replace(study, grid={}, list={})
+        status, plain = group["status"][:], {name: in_si(text) for name, text in study.measures.items()}
+        common = replace(study, grid={}, list={}, measures=plain)
         task = partial(run_chunk, upload.name, common, place, mark)
         if done := int((status != Status.not_computed).sum()):
             print(f"{done} of {status.size} wheels are there already.", file=sys.stderr)
@@ -96,6 +97,13 @@ def run(
                     write(place, mark, region, result)
                 bar.update(status[region].size)
     return open_results(place)
+
+
+def computed(out: str | Path) -> int:
+    """How many wheels have been run in a place, a folder or a URL; 0 if there are no results."""
+    with suppress(FileNotFoundError, KeyError, ValueError):
+        return int((zarr.open_group(str(out), mode="r")["status"][:] != Status.not_computed).sum())
+    return 0
 
 
 def kept(place: str, fingerprint: str, overwrite: bool) -> zarr.Group | None:

@@ -107,7 +107,7 @@ def label(text: str) -> str:
     """The short label of a variable, or of a measure of variables, for axes and legends: `θ at the start`."""
     for pattern, symbol in SYMBOLS.items():
         text = re.sub(pattern, symbol, text)
-    return text
+    return re.sub(r"\d+\.\d{5,}(?!\d*e)", lambda found: f"{float(found[0]):.4g}", text)
 
 
 def provenance(study: Study, description: ModelDescription, fmu_sha256: str) -> dict[str, object]:
@@ -156,14 +156,15 @@ def export(results: xr.Dataset, path: Path) -> Path:
     return path
 
 
-def summarize(results: xr.Dataset, seconds: float) -> str:
+def summarize(results: xr.Dataset, seconds: float, there: int = 0) -> str:
     """Counts per status, the first message of those that were not run, speed, the largest memory, and disk space.
 
-    The speed is of the runs themselves, summed over the workers; `seconds` is the time of this call, workers' start and
-    writing included, which may have run only a part of the study.
+    seconds: of this call, with workers' start and writing; there: wheels that earlier calls had run. The speed is of
+    the runs themselves, summed over the workers.
     """
     status = results["status"].values
-    lines = [f"{status.size} wheels in {seconds:.1f} s:"]
+    fresh = f"{status.size - there} of them in {seconds:.1f} s, the others earlier" if there else f"in {seconds:.1f} s"
+    lines = [f"{status.size} wheels{',' * bool(there)} {fresh if there < status.size else 'all run earlier'}:"]
     for code, found in zip(*np.unique(status, return_counts=True), strict=True):
         lines.append(f"  {found:8d} {Status(code).name.replace('_', ' ')}")
         if code in (Status.refused, Status.failed):

@@ -1,8 +1,8 @@
 """A study: which start values, parameters and inputs are run, and what is measured of each run.
 
 A measure of a run is text, which can be kept with the results and compared when a study is started again: `theta` (at
-the end), `lowest`, `min(Z_O)`, `max(mu_required)`, `mean(E)`, `first(theta > 1.6)`. Besides the FMU's
-variables there is `plane_angle`, the angle of the wheel's plane to the ground on either side; `lowest` is its least.
+the end), `lowest`, `min(Z_O)`, `max(mu_required)`, `mean(E)`, `first(theta > 1.6)`, `first(theta > 95deg)`. Besides the
+FMU's variables there is `plane_angle`, of the wheel's plane to the ground on either side; `lowest` is its least.
 Plain data, by Python's standard library alone: scripts/study refuses an impossible study before anything is installed.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ast
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -89,8 +90,9 @@ class Measure(NamedTuple):
 
 def parse_measure(text: str) -> Measure:
     """The measure that the text, an expression in Python's grammar, describes; StudyError if it describes none."""
+    plain = in_si(text)
     with suppress(SyntaxError, ValueError):
-        match ast.parse(text.replace("lowest", f"min({PLANE_ANGLE})").strip(), mode="eval").body:
+        match ast.parse(plain.replace("lowest", f"min({PLANE_ANGLE})").strip(), mode="eval").body:
             case ast.Name(name):
                 return Measure("last", name)
             case ast.Call(ast.Name("min" | "max" | "mean" as kind), [ast.Name(name)], []):
@@ -99,8 +101,21 @@ def parse_measure(text: str) -> Measure:
                 return Measure("<" if isinstance(side, ast.Lt) else ">", name, float(ast.literal_eval(limit)))
     raise StudyError(
         f"'{text}' is not a measure: write lowest, a variable's name, min(name), max(name), mean(name), "
-        "first(name < number) or first(name > number)."
+        "first(name < number) or first(name > number), as first(theta < 30deg)."
     )
+
+
+def in_si(text: str) -> str:
+    """A measure whose limit has a unit, with the limit in SI, for the caller alone; others as they are."""
+    passage = re.fullmatch(r"\s*first\(\s*(\w+)\s*([<>])\s*([-+\d.e]*\d\.?)\s*((?:[^\W\d_]|[°%])[^)]*?)\s*\)\s*", text)
+    if not passage:
+        return text
+    from values import number, variables
+
+    name, side, limit, unit = passage.groups()
+    known = {n: v.unit or "1" for n, v in variables(description(ROOT / "wheel.fmu")).items()} | {PLANE_ANGLE: "rad"}
+    value = repr(number(name, limit + unit, known[name])) if name in known else limit
+    return f"first({name} {side} {value})"
 
 
 def can_change(variable: Variable) -> bool:
@@ -257,6 +272,8 @@ class Study:
         names = [*self.measures, *self.history, *self.varied, *OWN, "time", POINT, *counters_of(variables)]
         names += [name for name in derived if name not in self.varied]
         twice = quoted(name for name in names if names.count(name) > 1)
+        still = quoted(name for name in self.varied if name in variables and not can_change(variables[name]))
+        shared = self.branch_at is None or any(can_change(variables[name]) for name in self.varied)
         in_order = 0 <= (self.branch_at or 0.0) < self.stop_time < math.inf and 0 < self.interval < math.inf
         for fault, text in (
             (bool(self.grid) == bool(self.list), "Give either grid or list: it lists the wheels."),
@@ -270,6 +287,10 @@ class Study:
             (len({*lengths.values()}) > 1, f"The columns of a list must have one length; these have: {lengths}."),
             (integers, f"{integers} is an integer: only its value at the end can be measured."),
             (twice, f"{twice} would name two things in the results; give the measure another name."),
+            (
+                not shared,
+                f"With branch_at nothing would be shared: {still} cannot change during a run. Vary s or an input too.",
+            ),
             (not in_order, "The interval must be above zero, and branch_at from zero to below a finite stop_time."),
         ):
             if fault:
