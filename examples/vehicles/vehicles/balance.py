@@ -54,10 +54,12 @@ def judge(table: Table) -> dict[str, float]:
 
 
 def fallen(table: Table, of: str = "") -> str:
-    """When the wheel leans over, and how near its plane comes to the ground, on either side."""
-    lowest = np.degrees(np.nanmin(np.pi / 2 - np.abs(table[f"{of}theta"] - np.pi / 2)))
+    """When the wheel leans over, how near its plane comes to the ground, on either side, and how it stands at the end."""
+    plane = np.degrees(np.pi / 2 - np.abs(table[f"{of}theta"] - np.pi / 2))
+    plane = plane[np.isfinite(plane)]
+    lowest, end = (f"{angle:.0f} degree{'s' * (round(angle) != 1)}" for angle in (plane.min(), plane[-1]))
     after = f"leans over by more than 45 degrees after {fall_time(table, of):.2f} s"
-    return f"{after}, and is down to {lowest:.0f} degrees to the ground in the end"
+    return f"{after}, comes down to {lowest} to the ground, and is at {end} at the end of the run"
 
 
 def verdict(table: Table, course: Manoeuvre) -> tuple[bool, list[str]]:
