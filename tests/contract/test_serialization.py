@@ -254,7 +254,9 @@ FORGERIES = {
     "ended": {
         "": [{"ended_by": len(EVENTS)}, {"ended_by": len(EVENTS) + 1}],
         # Events that cannot occur here, and one that has not occurred.
-        "no such event ends a run": [{"ended_by": forging.LOST_GRIP}, {"ended_by": forging.LOST_CONTACT}, {"y_0": 0.5}],
+        "no such event ends a run": [
+            *({"ended_by": EVENTS.index(event)} for event in ("lost_grip", "lost_contact")), {"y_0": 0.5},
+        ],
     },
 }  # fmt: skip
 

@@ -223,7 +223,8 @@ def whole(literals: set[str]) -> set[str]:
 
 def test_the_page_lists_every_message_of_the_code_and_every_reason_of_the_solver_and_no_other() -> None:
     literals = texts(LITERAL, code_of("fmi", "wheel", "solver", "orbit", "support"))
-    reasons, listed = texts(REASON, code_of("solver")), {*re.findall(r"^\| `([^`]+)` \|", TEXTS["docs/messages.md"], re.M)}
+    reasons = texts(REASON, code_of("solver"))
+    listed = {*re.findall(r"^\| `([^`]+)` \|", TEXTS["docs/messages.md"], re.MULTILINE)}
     assert len(whole(literals)) > 50 and len(reasons) > 5
     assert whole(literals) ^ whole(listed) == set()
     assert listed - literals == reasons - listed == set()

@@ -26,7 +26,7 @@ INTEL, ARM_64 = lief.Header.ARCHITECTURES.X86_64, lief.Header.ARCHITECTURES.ARM6
 LIBRARIES = [(name, file, ARM_64 if "aarch64" in name else INTEL) for name, file in BINARIES.items()]
 LIBRARIES.append(("darwin64 (arm64)", UNIVERSAL, ARM_64))
 LARGEST = 1 << 20  # bytes of a library for one processor
-# What the systems' own mathematics may be asked for: it is exact. All else is compiled in.
+# Functions of the system's libm that may be used, because they are exact; all others are compiled in.
 EXACT = {"floor", "ceil", "trunc", "fabs", "sqrt", "fmod", "scalbn", "ldexp", "frexp", "modf", "copysign"}
 EXACT |= {"nearbyint", "nextafter", "remainder", "fma", "isfinite", "isinf", "isnan"}  # rounded as IEEE 754 asks
 INEXACT = {"sincos", *dir(math)} - EXACT
@@ -44,7 +44,7 @@ def oldest(name: str, library: lief.Binary) -> str:
         newest = max(tuple(int(n) for n in version.removeprefix("GLIBC_").split(".")) for version in asked)
         require(name, newest <= GLIBC_FLOOR, f"asks for glibc {newest}")
         require(name, library.has(lief.ELF.Segment.TYPE.GNU_STACK) and library.has_nx, "has an executable stack")
-        return f"glibc 2.17; newest symbol asked for: {'.'.join(map(str, newest))}"
+        return f"glibc 2.17; newest versioned symbol required: GLIBC_{'.'.join(map(str, newest))}"
     if library.format == lief.Binary.FORMATS.PE:
         return "Windows 10"
     require(name, library.header.file_type == lief.MachO.Header.FILE_TYPE.DYLIB, "is not a dynamic library")
@@ -99,4 +99,4 @@ def table(folder: Path) -> str:
     """What was found of each library, all of them judged."""
     lief.logging.disable()
     rows = [judged(name, folder / file, processor) for name, file, processor in LIBRARIES]
-    return markdown.table(["library", "size", "loads from", "needs", "of the system's mathematics"], rows)
+    return markdown.table(["library", "size", "loads from", "needs", "functions of the system's libm"], rows)

@@ -139,7 +139,7 @@ def contract(report: Report) -> dict[str, object]:
     equal, split = {"method": "adams"}, {"method": "adams", "J_y": 0.9 * (1 - 1e-12)}
     whole, parted = (run(report.library, values, np.linspace(0, 10, 101), 1e-8) for values in (equal, split))
     apart = max(np.abs(whole[n] - parted[n]).max() / np.ptp(whole[n]) for n in ("X_O", "theta", "psi_dot"))
-    checks = [("J_x and J_y differ by 1e-12: outputs apart, tolerance 1e-8", 1e-6, apart)]
+    checks = [("J_x and J_y differ by 1e-12: difference of the outputs, tolerance 1e-8", 1e-6, apart)]
     checks += [("the same: right-hand sides", 3.0, parted.counters["n_rhs"] / whole.counters["n_rhs"])]
     scenes = {"free wheel": {}, "friction": FRICTION, "upright, fast": {"theta_start": pi / 2 - 0.1}}
     checks += [(f"watching for endings over not, {name}", 1.03, watching(report, v)) for name, v in scenes.items()]

@@ -90,14 +90,14 @@ def tyres(report: Report) -> dict[str, object]:
         t, v = coast(report.library, run, C)
         at, uncertain = np.interp(run["speed"], v[::-1], t[::-1]), np.hypot(run["C_inertia"].mean(), repeat)
         level = {"1000 C": 1e3 * C, "±": 1e3 * uncertain, "s [mm]": 1e3 * C * run["R"].iloc[0]}
-        shape = {"C off its mean [%]": off.abs().max(), "at 3 m/s [%]": off[run["speed"].idxmin()]}
-        of_fmu = {"coast [s]": duration, "wheel.fmu: coast [%]": 100 * (at.max() / duration - 1)}
+        shape = {"largest deviation of C [%]": off.abs().max(), "at 3 m/s [%]": off[run["speed"].idxmin()]}
+        of_fmu = {"coast [s]": duration, "error of the duration [%]": 100 * (at.max() / duration - 1)}
         worst = np.abs(np.interp(run["t"], t, v) - run["speed"]).max()
-        rows.append(about | level | shape | of_fmu | {"worst speed [m/s]": worst})
+        rows.append(about | level | shape | of_fmu | {"largest speed error [m/s]": worst})
         few = np.unique(np.append(np.arange(0, len(t), 80), len(t) - 1))
         curves.append(pd.DataFrame({**about, "t": t[few], "speed": v[few]}))
     found = pd.DataFrame(rows)
-    figures = {"slow_end": -found["at 3 m/s [%]"].min(), "coast": found["wheel.fmu: coast [%]"].abs().max()}
+    figures = {"slow_end": -found["at 3 m/s [%]"].min(), "coast": found["error of the duration [%]"].abs().max()}
     return {"by_run": found, "coasts": pd.concat(curves)} | figures
 
 
@@ -138,9 +138,9 @@ def views(tables: Tables) -> Tables:
         "psi": runs["psi"].agg(between, digits=0),
         "runs": runs.size(),
         "1000 C": runs["1000 C"].agg(between, digits=2),
-        "C off its mean [%]": runs["C off its mean [%]"].max(),
+        "largest deviation of C [%]": runs["largest deviation of C [%]"].max(),
         "at 3 m/s [%]": runs["at 3 m/s [%]"].min(),
-        "wheel.fmu: speed off [m/s]": runs["worst speed [m/s]"].max(),
+        "largest speed error of wheel.fmu [m/s]": runs["largest speed error [m/s]"].max(),
     }
     return tables | {"by_tyre": pd.DataFrame(by_tyre).reset_index()}
 
