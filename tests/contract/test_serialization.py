@@ -11,11 +11,6 @@ from time import process_time
 
 import numpy as np
 import pytest
-from fmpy.fmi2 import fmi2FMUstate
-from support.driver import ERROR, OK, FMU2Wheel
-from support.motion import Library
-from support.scenes import KINDS
-
 from contract import forging
 from contract.forging import (
     EVENTS,
@@ -30,6 +25,10 @@ from contract.forging import (
     signed,
     words_of,
 )
+from fmpy.fmi2 import fmi2FMUstate
+from support.driver import ERROR, OK, FMU2Wheel
+from support.motion import Library
+from support.scenes import KINDS
 
 UNKNOWN = "this FMU did not create the state"
 DAMAGED = "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version ({})."

@@ -54,7 +54,7 @@ def judge(table: Table) -> dict[str, float]:
 
 
 def fallen(table: Table, of: str = "") -> str:
-    """When the wheel leans over, how near its plane comes to the ground, on either side, and how it stands at the end."""
+    """When the wheel leans over, how near its plane comes to the ground on either side, how it stands at the end."""
     plane = np.degrees(np.pi / 2 - np.abs(table[f"{of}theta"] - np.pi / 2))
     plane = plane[np.isfinite(plane)]
     lowest, end = (f"{angle:.0f} degree{'s' * (round(angle) != 1)}" for angle in (plane.min(), plane[-1]))
