@@ -21,9 +21,19 @@ constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12,
                                 {{1, 2, 3, 4}, {4, -3, 4.0 / 3, -1.0 / 4}},
                                 {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}}};
 
-// Of all calculated variables: the value at x, and the derivative.
+constexpr unsigned forces[] = {variable::lambda_1, variable::lambda_2, variable::lambda_3};
+Force force_of(const double* values) { return {values[forces[0]], values[forces[1]], values[forces[2]]}; }
+
+// Of the variables that are asked for: the value at x, and the derivative.
 struct Pass {
+  bool asked[variable_count] = {};
   double centre[variable_count], slope[variable_count];
+
+  void ask(unsigned variable) {
+    asked[variable] = true;
+    if (row_of(variable).by_force)
+      for (const unsigned force : forces) asked[force] = true;
+  }
 
   // Differences from the value at x itself, so that what does not depend on x has the derivative zero. `read_at` gives
   // the reading at a place, null where there is none.
@@ -33,16 +43,14 @@ struct Pass {
       Reading* const reading = read_at(k < 0 ? x : x + stencil.places[k] * h);
       if (!reading) return false;
       for (unsigned v = stored_count; v < variable_count; ++v) {
+        if (!asked[v]) continue;
         const double value = row_of(v).read(*reading);
         slope[v] = k < 0 ? 0 : slope[v] + stencil.weights[k] * (value - centre[v]) / h;
         if (k < 0) centre[v] = value;
       }
     }
-    const auto force = [](const double* of) {
-      return Force{of[variable::lambda_1], of[variable::lambda_2], of[variable::lambda_3]};
-    };
     for (unsigned v = stored_count; v < variable_count; ++v)
-      if (row_of(v).by_force) slope[v] = row_of(v).by_force(force(centre), force(slope));
+      if (asked[v] && row_of(v).by_force) slope[v] = row_of(v).by_force(force_of(centre), force_of(slope));
     return true;
   }
 };
@@ -117,6 +125,7 @@ bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns,
   const bool parameter = known < first_input;
   if (parameter && row_of(known).type != Type::real) return true;
   Pass pass;
+  for (std::size_t k = 0; k < count; ++k) pass.ask(unknowns[k]);
   if (!(parameter ? take_by_parameter(w, known, pass) : take_at_instant(w, known, pass))) return false;
   for (std::size_t k = 0; k < count; ++k) sums[k] += seed * pass.slope[unknowns[k]];
   return true;
