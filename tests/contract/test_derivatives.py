@@ -42,7 +42,8 @@ def test_output_derivatives_are_those_of_the_motion(wheel, scene):
             if slope is not None:
                 push(w, slope)
             exact, difference = rates(w), forward_difference(w)
-            within(np.max(np.abs(exact - difference) / (1 + np.abs(exact))), 2e-6, "error")
+            errors = np.abs(exact - difference) / (1 + np.abs(exact))
+            within(dict(zip(outputs(w), errors, strict=True)), 2e-6, "error")
         push(w, 5.001)  # the partner: another slope of the inputs is seen in the reactions
         beyond(np.max(np.abs(rates(w) - difference) / (1 + np.abs(exact))), 2e-6, "rates")
         w.back(blob)
@@ -80,7 +81,8 @@ def test_directional_derivatives_are_those_of_the_reactions(wheel, scene):
     for t in (0.25, 1.0, 3.0):
         checked.append((jacobian(w.to(t)), difference_jacobian(w)))
     for exact, difference in checked:
-        within(np.max(np.abs(exact - difference)), 64 * 200 * EPSILON, "difference")  # of reactions of 200 N
+        errors = dict(zip(outputs(w), np.abs(exact - difference).max(axis=1), strict=True))
+        within(errors, 64 * 200 * EPSILON, "difference")  # of reactions of 200 N
         answers = [name.startswith(("lambda", "tau")) for name in outputs(w)]
         assert np.all(exact[np.invert(answers)] == 0)
         assert np.linalg.matrix_rank(exact[answers], 1e-3) >= 3
@@ -199,7 +201,7 @@ def test_every_pair_that_the_description_declares_for_the_start_is_answered_and_
             assert exact == 0  # a choice has no small change
             continue
         difference, size = difference_upwards(w, unknown, known), 1 + abs(exact)
-        within(abs(exact - difference) / size, 2e-5, "relative error")
+        within({f"d {unknown} / d {known}": abs(exact - difference) / size}, 2e-5, "relative error")
         assert w.getDirectionalDerivative(w.refer(unknown), w.refer(known), [-2.0]) == [-2 * exact]
         moved, off = moved + (abs(exact) > 1e-6), max(off, abs(1.01 * exact - difference) / size)
     beyond(off, 2e-5, "relative error")

@@ -13,7 +13,7 @@ from physics.exact_motions import UPRIGHT
 from physics.measure import FRICTION, instants_error
 from reference import Start, Wheel, solve
 from reference.tables import read_table
-from support.bounds import beyond, range_error, within
+from support.bounds import beyond, range_error, range_errors, within
 from support.closed_forms import fall_time, rolling_inertia
 from support.driver import HEADLINE
 from support.exchange import Run, exchange, no_inputs
@@ -70,8 +70,7 @@ def test_the_papers_scenes_and_all_37_transitions_come_out_of_another_solver(lib
 def test_fmpys_cvode_finds_them_too_within_some_thousand_of_its_tolerances(library, tolerance: float, capfd) -> None:
     want = read_table("paper_friction")
     run = by_cvode(library, 10, 0.1, tolerance, HEADLINE, debug_logging=True)
-    error = range_error(run, want, HEADLINE)
-    within(error / tolerance, 1e4, "error over tolerance")
+    within(range_errors(run, want, HEADLINE), 1e4 * tolerance, "error")
     # FMPy prints the sentences. (Its argument `logger` would stay in use, freed, by all later runs of this process.)
     found = [float(t) for t in re.findall(r"^\[OK\] t = (\S+) s", capfd.readouterr().out, re.M)]
     assert len(found) == 37

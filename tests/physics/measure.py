@@ -6,18 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 from reference.tables import read_table
 from support import equations as eq
-from support.bounds import range_error
+from support.bounds import Errors, range_errors
 from support.driver import HEADLINE
 from support.motion import Library
 
 FRICTION = {"free": 0.0, "friction": 0.03}  # s of the paper's two scenes, m
 
 
-def table_errors(library: Library, scene: str, tolerance: float | None = None, **start: float) -> dict[str, float]:
+def table_errors(library: Library, scene: str, tolerance: float | None = None, **start: float) -> Errors:
     """Largest error of each headline output over the trusted table's 101 rows, as a part of the output's range."""
     want = read_table(f"paper_{scene}")
     got = library.simulate(want["t"], tolerance, **{"s": FRICTION[scene], **start})
-    return {name: range_error(got, want, [name]) for name in HEADLINE}
+    return range_errors(got, want, HEADLINE)
 
 
 def energy_error(library: Library, tolerance: float | None = None, **start: float) -> float:

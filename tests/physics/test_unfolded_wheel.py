@@ -4,7 +4,7 @@ s = 0, no input, J_x = J_y, method automatic. A forced method (2: adams) steps t
 """
 
 import numpy as np
-from support.bounds import beyond, range_error, within
+from support.bounds import beyond, range_error, range_errors, within
 from support.driver import HEADLINE
 from support.motion import Library
 
@@ -14,7 +14,7 @@ ADAMS = 2
 def test_unfolding_is_the_motion_that_stepping_gives(library: Library) -> None:
     t = np.linspace(0, 30, 301)
     want = library.simulate(t, 1e-13, method=ADAMS)
-    within(range_error(library.simulate(t, 1e-12), want, HEADLINE), 1e-9, "range error")
+    within(range_errors(library.simulate(t, 1e-12), want, HEADLINE), 1e-9, "range error")
     beyond(range_error(library.simulate(t, 1e-5), want, HEADLINE), 1e-9, "range error")
 
 

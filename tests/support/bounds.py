@@ -10,12 +10,19 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+Errors = dict[str, float]  # by variable
+
 EPSILON = float(np.finfo(float).eps)  # the relative distance of neighbouring doubles, 2.2e-16
 
 
-def within(value: float, bound: float, quantity: str) -> None:
-    """The value lies below the bound; `quantity` names it."""
-    assert value < bound, f"{quantity} is {value:.3g} and must be below {bound:.3g}"
+def within(value: float | Mapping[str, float], bound: float, quantity: str) -> None:
+    """The value lies below the bound; `quantity` names it. Of values by name, of variables for instance, the largest
+    counts and is named where it fails."""
+    of = ""
+    if isinstance(value, Mapping):
+        name, value = max(value.items(), key=lambda item: np.inf if np.isnan(item[1]) else item[1])
+        of = f" of {name}"
+    assert value < bound, f"{quantity}{of} is {value:.3g} and must be below {bound:.3g}"
 
 
 def beyond(value: float, bound: float, quantity: str) -> None:
@@ -34,6 +41,11 @@ def relative_error(found: ArrayLike, expected: ArrayLike) -> float:
     return float(np.max(np.where(difference == 0, 0.0, difference / np.where(size == 0, np.finfo(float).tiny, size))))
 
 
+def range_errors(found: Mapping[str, NDArray], expected: Mapping[str, NDArray], names: Iterable[str]) -> Errors:
+    """The largest error of each column, relative to its range."""
+    return {name: float(np.abs(found[name] - expected[name]).max() / np.ptp(expected[name])) for name in names}
+
+
 def range_error(found: Mapping[str, NDArray], expected: Mapping[str, NDArray], names: Iterable[str]) -> float:
-    """The largest error of the columns, each relative to its range."""
-    return max(float(np.abs(found[name] - expected[name]).max() / np.ptp(expected[name])) for name in names)
+    """The largest of them."""
+    return max(range_errors(found, expected, names).values())
