@@ -3,18 +3,10 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 
 #include "run.hpp"
 
 namespace wheel {
-
-// Angle from lying flat, rad, below which the wheel counts as flat: at the paper's scale about 1e-8 s before theta = 0.
-inline constexpr double flat_angle = 1e-7;
-
-inline constexpr double upright = 0.5 * std::numbers::pi;  // rad
-// rad, from the side that is nearer.
-inline double angle_from_flat(double theta) { return upright - std::fabs(theta - upright); }
 
 using solver::Consequence;
 

@@ -230,14 +230,6 @@ Outcome advance(Wheel& w, double t) {
   return Outcome::stepped;
 }
 
-const double* state_now(Wheel& w) {
-  Run& run = w.run;
-  if (run.y_time == run.t) return run.y;
-  run.phase == Phase::unfolded ? w.solution.orbit.read(run.t, run.y) : w.solution.solver.read(run.t, run.y);
-  run.y_time = run.t;
-  return run.y;
-}
-
 void freeze(Wheel& w, Phase phase) {
   state_now(w);
   w.run.counted = counters_of(w.run, w.solution.solver);

@@ -13,9 +13,6 @@
 
 namespace wheel {
 
-// The state at the instant reached; writes run.y.
-const double* state_now(Wheel& wheel);
-
 // To t. `stepped`: it was reached; `event`: the run ended at run.t; `failed`: the state is that before the call.
 [[nodiscard]] solver::Outcome advance(Wheel& wheel, double t);
 // To a phase without further steps: the solution is not needed any more.

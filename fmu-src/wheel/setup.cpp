@@ -8,9 +8,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "events.hpp"
-#include "reading.hpp"
-
 namespace wheel {
 namespace {
 
@@ -113,23 +110,6 @@ bool check_values(const Demand& demand, const Reporter& reporter) {
   sound &= check_inertia(reporter, demand.parameters);
   sound &= check_kind(reporter, demand);
   return sound;
-}
-
-bool is_inside(Reading& now) {
-  double sum = now.energy() + now.dynamics().tau;
-  for (const double force : now.dynamics().lambda) sum += force;
-  return angle_from_flat(now.pose().theta) > 0 && std::isfinite(sum);
-}
-
-bool check_start(const Demand& demand, Reading& start, const Reporter& reporter) {
-  if (is_inside(start)) return true;
-  const auto set = [&](variable::Reference v) { return Digits{demand.parameters[v], 3}; };
-  reporter.log(Topic::error,
-               "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, g = %s m/s2, "
-               "omega_z = %s rad/s.",
-               set(variable::m), set(variable::J_z), set(variable::r_0), set(variable::g),
-               Digits{start.kinematics().omega_z, 3});
-  return false;
 }
 
 Setup setup_of(const Demand& demand) {

@@ -2,7 +2,9 @@
 // function computes the setup, nothing writes it later; a restored run computes it anew.
 #pragma once
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "inputs.hpp"
 #include "reporter.hpp"
@@ -78,17 +80,17 @@ void scales_at(const Setup& setup, double omega_z, double* out);
 // spin omega_z, rad/s: below one where the wheel turns very often within its own time scale.
 double share_at(const Setup& setup, double omega_z);
 
+// Angle from lying flat, rad, below which the wheel counts as flat: at the paper's scale about 1e-8 s before theta = 0.
+inline constexpr double flat_angle = 1e-7;
+
+inline constexpr double upright = 0.5 * std::numbers::pi;  // rad
+// rad, from the side that is nearer.
+inline double angle_from_flat(double theta) { return upright - std::fabs(theta - upright); }
+
 // rad: a larger angle has too few digits for a heading.
 inline constexpr double largest_angle = 1e12;
 
 // Logs one message per fault; true if there is none.
 bool check_values(const Demand& demand, const Reporter& reporter);
-
-// Whether the wheel stands, and its energy and reactions are finite.
-bool is_inside(Reading& now);
-
-// The same of the initial state, with a message: values that are sound one by one can have products that are not
-// finite.
-bool check_start(const Demand& demand, Reading& start, const Reporter& reporter);
 
 }  // namespace wheel

@@ -4,9 +4,38 @@
 #include <algorithm>
 
 #include "law.hpp"
-#include "motion.hpp"
 
 namespace wheel {
+namespace {
+
+// Whether the initial state is inside the model, with a message: values that are sound one by one can have products
+// that are not finite.
+bool check_start(const Demand& demand, Reading& start, const Reporter& reporter) {
+  if (is_inside(start)) return true;
+  const auto set = [&](variable::Reference v) { return Digits{demand.parameters[v], 3}; };
+  reporter.log(Topic::error,
+               "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, g = %s m/s2, "
+               "omega_z = %s rad/s.",
+               set(variable::m), set(variable::J_z), set(variable::r_0), set(variable::g),
+               Digits{start.kinematics().omega_z, 3});
+  return false;
+}
+
+}  // namespace
+
+const double* state_now(Wheel& w) {
+  Run& run = w.run;
+  if (run.y_time == run.t) return run.y;
+  run.phase == Phase::unfolded ? w.solution.orbit.read(run.t, run.y) : w.solution.solver.read(run.t, run.y);
+  run.y_time = run.t;
+  return run.y;
+}
+
+bool is_inside(Reading& now) {
+  double sum = now.energy() + now.dynamics().tau;
+  for (const double force : now.dynamics().lambda) sum += force;
+  return angle_from_flat(now.pose().theta) > 0 && std::isfinite(sum);
+}
 
 bool prepare(Wheel& w, const Reporter& reporter) {
   Run& run = w.run;

@@ -35,6 +35,12 @@ struct Wheel {
   Solution solution;
 };
 
+// The state at the instant reached; writes run.y.
+const double* state_now(Wheel& wheel);
+
+// Whether the wheel stands, and its energy and reactions are finite.
+bool is_inside(Reading& now);
+
 // The initial state from the present parameters, true if it exists. Else one message per fault. Writes setup and run,
 // demand.changed and solution.orbit_until.
 bool prepare(Wheel& wheel, const Reporter& reporter);
