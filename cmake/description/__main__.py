@@ -23,4 +23,5 @@ if arguments.measure:
 fresh = numbering.numbered(text, depends)
 if arguments.check:
     sys.exit(fresh != text)
-DESCRIPTION.write_text(fresh, encoding="utf-8")
+if fresh != DESCRIPTION.read_text(encoding="utf-8"):
+    DESCRIPTION.write_text(fresh, encoding="utf-8")

@@ -2,7 +2,8 @@
 inputs and continuous states, by model exchange.
 
 No paper equation. One known is changed at a time and all unknowns are read again, in wheels off every symmetry, so that
-no dependency hides behind a zero: each real start value of zero is set to 0.1.
+no dependency hides behind a zero: each real start value of zero is set to 0.1, unless the wheel then does not start, as
+with a limit that 0 switches off.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from .numbering import Dependencies
 
 GENERAL = {
     **{"theta_start": 1.1, "psi_start": 0.7, "phi_start": 0.4, "psi_dot_start": 0.9, "theta_dot_start": -0.6},
-    **{"phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "J_z": 1.6, "s": 0.0, "mu_max": 9.0},
+    **{"phi_dot_start": -3.0, "X_O_start": 0.2, "Y_O_start": -0.4, "m": 17.0, "J_z": 1.6, "s": 0.0},
 }
 UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 # omega_z below omega_s, where the regularized law is neither zero nor one
@@ -41,15 +42,14 @@ class Unit:
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.states: list[str] = []  # in continuous-time mode
         self.fmu = instantiate_fmu(folder, self.description, kind)
-        zeros = [v.name for v in self.variables.values() if v.type == "Real" and v.start == "0"]
-        for name, value in {**dict.fromkeys(zeros, 0.1), **GENERAL, **scene}.items():
+        self.fmu.setDebugLogging(False, [])
+        for name, value in scene.items():
             self.set(name, value)
         self.fmu.setupExperiment()
         self.fmu.enterInitializationMode()
         if kind == "ModelExchange":
             self.fmu.exitInitializationMode()
-            while self.fmu.newDiscreteStates()[0]:
-                pass
+            _, self.ended, *_ = self.fmu.newDiscreteStates()
             self.fmu.enterContinuousTimeMode()
             self.states = [row.variable.derivative.name for row in self.description.derivatives]
 
@@ -68,35 +68,58 @@ class Unit:
             getattr(self.fmu, f"set{v.type}")([v.valueReference], [value if v.type == "Real" else int(value)])
 
     def depends(self, unknowns: list[Unknown], *causalities: str) -> dict[str, set[str]]:
-        """Of each unknown: the states and the variables of these causalities that move it. A real number is changed a
-        little, a choice to its last value or from there to its first."""
+        """Of each unknown: the states and the variables of these causalities that move it."""
         knowns = [name for name, v in self.variables.items() if v.causality in causalities or name in self.states]
         names = [row.variable.name for row in unknowns]
         found: dict[str, set[str]] = {name: set() for name in names}
         before = self.get(names)
         for known in knowns:
-            v, (value,) = self.variables[known], self.get([known])
-            first, last = float(v.min or 0), float(v.max or 1)
-            self.set(known, value * 1.01 + 1e-3 if v.type == "Real" else first if value == last else last)
-            after = self.get(names)
+            (value,) = self.get([known])
+            after = self.get_with(known, value, names)
             self.set(known, value)
             for k in np.flatnonzero(np.abs(after - before) > ROUNDING * (1 + np.abs(before))):
                 found[names[k]].add(known)
         return found
 
+    def get_with(self, known: str, value: float, names: list[str]) -> np.ndarray:
+        """These variables with another value of one. A real number is changed a little, downwards where it can be no
+        larger; a choice to its last value or from there to its first."""
+        v = self.variables[known]
+        first, last = float(v.min or 0), float(v.max or 1)
+        others = (value * 1.01 + 1e-3, value * 0.99 - 1e-3) if v.type == "Real" else (first if value == last else last,)
+        for other in others:
+            with suppress(FMICallException):
+                self.set(known, other)
+                return self.get(names)
+        raise SystemExit(f"{known} cannot be measured: the wheel starts with {value:g} alone.")
+
 
 @contextmanager
-def unit(fmu: Path, kind: str, scene: dict[str, float]) -> Iterator[Unit]:
-    with TemporaryDirectory() as folder:
-        made = Unit(extract(str(fmu), folder), kind, scene)
-        yield made
-        made.fmu.freeInstance()
+def unit(folder: str, kind: str, scene: dict[str, float]) -> Iterator[Unit]:
+    made = Unit(folder, kind, scene)
+    yield made
+    made.fmu.freeInstance()
+
+
+def starts(folder: str, scene: dict[str, float]) -> bool:
+    """Whether a run can begin and does not end there."""
+    with suppress(FMICallException), unit(folder, "ModelExchange", scene) as u:
+        return not u.ended
+    return False
+
+
+def without_zeros(folder: str, scene: dict[str, float]) -> dict[str, float]:
+    """The scene with the start values of zero set to 0.1, one after the other, as far as the wheel starts."""
+    scene = {**GENERAL, **scene}
+    for v in read_model_description(folder, validate=False).modelVariables:
+        if v.type == "Real" and v.start == "0" and v.name not in scene and starts(folder, {**scene, v.name: 0.1}):
+            scene[v.name] = 0.1
+    return scene
 
 
 def event_indicators(fmu: Path) -> int:
     """How many event indicators model exchange has: the one length of array that the FMU fills."""
-    with unit(fmu, "ModelExchange", {}) as u:
-        u.fmu.setDebugLogging(False, [])
+    with TemporaryDirectory() as folder, unit(extract(str(fmu), folder), "ModelExchange", {}) as u:
         for count in range(1, 100):
             with suppress(FMICallException):  # another length is refused
                 u.fmu.getEventIndicators((c_double * count)(), count)
@@ -107,13 +130,15 @@ def event_indicators(fmu: Path) -> int:
 def measured(fmu: Path) -> Dependencies:
     """All dependencies of the FMU, by section of ModelStructure."""
     found: Dependencies = defaultdict(lambda: defaultdict(set))
-    for scene in SCENES:
-        with unit(fmu, "CoSimulation", scene) as u:
-            parts = {"InitialUnknowns": u.depends(u.description.initialUnknowns, "parameter", "input")}
-        with unit(fmu, "ModelExchange", scene) as u:
-            parts["Outputs"] = u.depends(u.description.outputs, "input")
-            parts["Derivatives"] = u.depends(u.description.derivatives, "input")
-        for section, unknowns in parts.items():
-            for name, moved in unknowns.items():
-                found[section][name] |= moved
+    with TemporaryDirectory() as folder:
+        extract(str(fmu), folder)
+        for scene in (without_zeros(folder, changed) for changed in SCENES):
+            with unit(folder, "CoSimulation", scene) as u:
+                parts = {"InitialUnknowns": u.depends(u.description.initialUnknowns, "parameter", "input")}
+            with unit(folder, "ModelExchange", scene) as u:
+                parts["Outputs"] = u.depends(u.description.outputs, "input")
+                parts["Derivatives"] = u.depends(u.description.derivatives, "input")
+            for section, unknowns in parts.items():
+                for name, moved in unknowns.items():
+                    found[section][name] |= moved
     return found

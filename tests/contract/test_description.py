@@ -16,7 +16,7 @@ from support.driver import CHOICES, DERIVATIVES, DISCARD, INDICATORS, OK, STATES
 from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT / "cmake"))
-from description.measuring import event_indicators, measured
+from description.measuring import event_indicators, measured, starts, without_zeros
 from description.numbering import guid_of, numbered
 
 FULL_TURN = 2 * np.pi
@@ -185,6 +185,16 @@ def test_the_description_lists_exactly_the_dependencies_that_are_measured_which_
 
 
 FIRST, SECOND = re.findall(r'<ScalarVariable name="(\w+)"', TEXT)[:2]
+
+
+def test_dependencies_are_measured_off_zero_unless_the_wheel_would_not_start_there(fmu):
+    """With mu_max = 0.1 it has no grip; 0 is no limit."""
+    values = without_zeros(fmu, {})
+    assert values["slope"] == values["F_X"] == values["M_brake"] == 0.1 and "mu_max" not in values
+    assert starts(fmu, values) and not starts(fmu, values | {"mu_max": 0.1})
+    assert starts(fmu, values | {"mu_max": 9.0})  # the partner
+
+
 NEW = """    <ScalarVariable name="of_this_test" causality="parameter" variability="fixed" initial="exact"
       description="Added first"><Real unit="m" start="0"/></ScalarVariable>
 """

@@ -50,16 +50,15 @@ def with_tables(text: str, variables: list[Variable], place: Path) -> str:
 
 
 def main() -> int:
-    check, known, stale = sys.argv[1:] == ["--check"], read_variables(), 0
-    for place in PAGES:
-        text = place.read_text(encoding="utf-8")
-        fresh = with_tables(text, known, place)
-        if text != fresh:
-            stale += 1
-            print(f"{'Stale' if check else 'Filled'}: {place.relative_to(ROOT)}")
-            if not check:
-                place.write_text(fresh, encoding="utf-8")
-    return int(check and stale > 0)
+    check, known = sys.argv[1:] == ["--check"], read_variables()
+    texts = {place: place.read_text(encoding="utf-8") for place in PAGES}
+    filled = {place: with_tables(text, known, place) for place, text in texts.items()}  # all of them, then they are written
+    stale = [place for place in PAGES if texts[place] != filled[place]]
+    for place in stale:
+        print(f"{'Stale' if check else 'Filled'}: {place.relative_to(ROOT)}")
+        if not check:
+            place.write_text(filled[place], encoding="utf-8")
+    return int(check and bool(stale))
 
 
 if __name__ == "__main__":
