@@ -52,7 +52,8 @@ def with_tables(text: str, variables: list[Variable], place: Path) -> str:
 def main() -> int:
     check, known = sys.argv[1:] == ["--check"], read_variables()
     texts = {place: place.read_text(encoding="utf-8") for place in PAGES}
-    filled = {place: with_tables(text, known, place) for place, text in texts.items()}  # all of them, then they are written
+    filled = {place: with_tables(text, known, place) for place, text in texts.items()}
+    # All of them are filled before the first is written.
     stale = [place for place in PAGES if texts[place] != filled[place]]
     for place in stale:
         print(f"{'Stale' if check else 'Filled'}: {place.relative_to(ROOT)}")
