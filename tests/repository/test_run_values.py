@@ -62,7 +62,7 @@ def test_parameters_and_inputs_take_units(root, argument, value):
 
 REFUSED = {"theta=1": "theta_start", "speed=3": "phi_dot_start = -v/(r_0 + r)", "slope=-8deg": "slope_direction"}
 REFUSED |= {"s": "neither name=value nor a ready wheel", "s=0": "above 0", "m=heavy": "not a number", "m=3m": "kg or g"}
-REFUSED |= {"body=ball": "There is no body", "hopp": "Do you mean hoop?"}
+REFUSED |= {"body=ball": "There is no body", "hopp": "hoop"}
 REFUSED |= {"output_interval=20": "too long", "wheel=tank": "There is no wheel", "slope_direction=10%": "rad or deg"}
 
 
