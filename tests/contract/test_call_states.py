@@ -3,14 +3,13 @@
 from ctypes import POINTER, addressof, byref, c_char, c_char_p, c_double, c_int, c_void_p
 
 import pytest
+from contract.call_states import KINDS, OF, SITUATIONS, STATES, TABLE, bring_to, call, sound_arguments
+from contract.properties import anything_whole, quick
 from hypothesis import given
 from hypothesis import strategies as st
 from support.driver import CO_SIMULATION, DISCARD, ERROR, OK
 from support.exchange import loaded
 from support.scenes import KINDS as SCENES
-
-from contract.call_states import KINDS, OF, SITUATIONS, STATES, TABLE, bring_to, call, sound_arguments
-from contract.properties import anything_whole, quick
 
 each = pytest.mark.parametrize("situation", SITUATIONS, ids=lambda s: f"{s[1]}, {KINDS[s[0]]}")
 

@@ -10,9 +10,8 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from support.paths import ROOT, build_folder
-
 from contract.call_states import TABLE
+from support.paths import ROOT, build_folder
 
 sys.path.insert(0, str(ROOT / "cmake"))
 import pack_fmu

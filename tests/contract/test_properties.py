@@ -4,12 +4,11 @@ hypothesis draws the examples, the same in every run. Each property has a partne
 """
 
 import pytest
+from contract import properties
+from contract.properties import INPUTS, Values, check, energy_defect, grids, is_honest, loads, play_anything, scenes
 from hypothesis import strategies as st
 from support.bounds import within
 from support.driver import OK
-
-from contract import properties
-from contract.properties import INPUTS, Values, check, energy_defect, grids, is_honest, loads, play_anything, scenes
 
 BOUND = 6e-11  # of the energy moved; a part that is left out shows by far more
 CHOICES = ("formulation", "friction_law", "method")

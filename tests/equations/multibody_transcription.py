@@ -8,9 +8,8 @@ from collections.abc import Mapping
 from functools import cached_property
 
 import numpy as np
-from support import equations as eq
-
 from equations.paper_transcription import Paper
+from support import equations as eq
 
 PSI_DOT, SPIN, THETA = 9, 11, 4
 

@@ -7,10 +7,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
+from equations import random_scenes
 from reference import Wheel, accelerations
 from support import equations as eq
-
-from equations import random_scenes
 
 Table = np.ndarray
 GROUPS = (("X_O_ddot", "Y_O_ddot", "Z_O_ddot"), ("psi_ddot", "theta_ddot", "phi_ddot", "omega_z_dot"), ("lambda_",))

@@ -3,11 +3,10 @@
 from ctypes import byref
 
 import numpy as np
-from support import equations as eq
-from support.bounds import EPSILON, beyond, relative_error, within
-
 from equations.paper_transcription import Paper, times
 from equations.pointwise import Table, draw
+from support import equations as eq
+from support.bounds import EPSILON, beyond, relative_error, within
 
 ROWS = 2000
 

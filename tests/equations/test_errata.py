@@ -7,12 +7,11 @@ derivatives (complex step); the paper's free wheel (27)-(33) is set rolling with
 from functools import cache
 
 import numpy as np
+from equations.multibody_transcription import papers_state
+from equations.paper_transcription import THETA, Paper, derivative, paper_table, states, times, transposed
 from scipy.integrate import solve_ivp
 from support import equations as eq
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
-
-from equations.multibody_transcription import papers_state
-from equations.paper_transcription import THETA, Paper, derivative, paper_table, states, times, transposed
 
 WHEEL = paper_table()
 ENERGY = 75.1168064  # J, at the start of the free wheel

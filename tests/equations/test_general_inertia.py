@@ -4,10 +4,9 @@ Random scenes with loads and brakes (random_scenes.py). Carrier frame.
 """
 
 import numpy as np
+from equations.pointwise import Table, draw, dynamics
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within
-
-from equations.pointwise import Table, draw, dynamics
 
 ROWS = 20_000
 

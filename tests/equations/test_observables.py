@@ -7,11 +7,10 @@ from ctypes import c_double
 
 import numpy as np
 import pytest
-from support import equations as eq
-from support.bounds import EPSILON, beyond, relative_error, within
-
 from equations.paper_transcription import Paper, times
 from equations.pointwise import Table, draw
+from support import equations as eq
+from support.bounds import EPSILON, beyond, relative_error, within
 
 ROWS = 2000
 

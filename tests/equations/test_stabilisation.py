@@ -6,14 +6,13 @@ multibody_state.md. Integrated by SciPy, so that no solver of the product takes 
 """
 
 import numpy as np
-from scipy.integrate import solve_ivp
-from support import equations as eq
-from support.bounds import EPSILON, beyond, within
-
 from equations import random_scenes
 from equations.multibody_transcription import Stabilised, papers_state, products_state, solved, stabilised_rate
 from equations.paper_transcription import Paper
 from equations.pointwise import Table, relative
+from scipy.integrate import solve_ivp
+from support import equations as eq
+from support.bounds import EPSILON, beyond, within
 
 OFF_THE_CONSTRAINTS = np.array([0, 0, 1, 0, 0, 0, 1, 1, 1, 0, 0, 0])  # m in Z_O, m/s in the velocity of O
 PLANTED = np.array([0, 0, 2e-3, 0, 0, 0, 1e-2, -2e-2, 3e-2, 0, 0, 0])  # the same, of unlike sizes

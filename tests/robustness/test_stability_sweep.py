@@ -8,13 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.bounds import beyond, within
-from support.motion import Library, run
-
 from robustness import judges
 from robustness.case import Case, Expectation
 from robustness.judges import judge, judge_case
 from robustness.sweep import sweep
+from support.bounds import beyond, within
+from support.motion import Library, run
 
 SLOW = ("friction", "omega_z = 0")  # with the reference and dense outputs: a second each
 CASES = {str(case): case for case in sweep()}

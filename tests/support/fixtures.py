@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from fmpy import extract, read_model_description
 from reference.tables import read_table
-
 from support.driver import FMU2Wheel
 from support.motion import Library
 from support.paths import ROOT, build_folder
