@@ -10,6 +10,9 @@ namespace solver {
 bool Solver::start(const Problem& problem, Method method, double t, const double* y) {
   pending_ = Outcome::failed;
   runge_kutta_ = {};
+  step_ = {};  // nothing that is saved is left of an earlier solution
+  event_ = 0;
+  std::fill_n(values_, max_watched, 0.0);
   counters_ = {};
   counters_.restarts = -1;  // the restart below does not count
   return restart(problem, method, t, y);

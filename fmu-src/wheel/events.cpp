@@ -161,8 +161,10 @@ double least_margin(const Setup& setup, const InForce& now, const double* y, dou
   double least = std::numeric_limits<double>::infinity();
   const auto take = [&]<std::size_t i>() {
     constexpr const EventRow& row = event_rows[i];
-    if constexpr (row.quick_value != nullptr)
+    if constexpr (row.quick_value != nullptr) {
+      if (!row.can_occur(setup, now)) return;
       if (const double own = signed_margin(row, now, row.quick_value(setup, y, N)); own < least) least = own;
+    }
   };
   [&]<std::size_t... i>(std::index_sequence<i...>) {
     (take.template operator()<i>(), ...);

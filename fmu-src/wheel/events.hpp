@@ -47,7 +47,7 @@ inline bool is_observed(const EventRow& row, const Setup& setup) { return row.ob
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y);
 
-// The least margin of the rows with a quick value, at the state y where the normal force is N.
+// The least margin of the rows with a quick value that can occur, at the state y where the normal force is N.
 double least_margin(const Setup& setup, const InForce& now, const double* y, double N);
 
 // Observed events that lie below zero at t and y, from a motion in which they were not followed.

@@ -150,7 +150,8 @@ def test_hundreds_of_states_are_kept_apart(wheel):
 def test_the_bytes_depend_on_the_past_alone(wheel):
     """No pointer and no leftover goes into them: another instance, elsewhere in memory, has the same bytes."""
     for values in KINDS.values():
-        w, other = wheel().start(**values), wheel().start(m=3.0).to(0.3)
+        w, other = wheel().start(**values), wheel().start(m=3.0, s=0.05, mu_max=0.3).to(0.1)
+        other.step_to(3.0)  # up to an event
         assert other.reset() == OK
         other.start(**values)
         assert w.run([0.5, 2.0]) == other.run([0.5, 2.0])

@@ -1,137 +1,195 @@
-"""CONTRIBUTING's recipe for an event, carried out on a copy of the core, and a second event of the same kind: each is
-logged at every crossing in every way of running, before and after a snapshot. The crossings are those of theta and X_O,
-read on a fine grid."""
+"""CONTRIBUTING's recipes for an event and for one with its own parameter, carried out on a copy with a third event.
+Each crossing is logged in every way of running, before and after a snapshot, and the tests of the contract hold. The
+crossings are those of theta, the normal force and X_O, read on a fine grid."""
 
 import json
+import os
 import re
 import shlex
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
-from support import driver
 from support import exchange as exchanging
 from support.bounds import beyond, within
-from support.motion import Library
+from support.motion import Library, Run
 from support.paths import ROOT, build_folder
-from support.scenes import PAPER
 
-DIPS, LINE, LIGHT = (
-    re.compile(rf"t = (\S+) s: the wheel {what}") for what in ("leans by more", "crosses the line", "presses less")
-)
+sys.path.insert(0, str(ROOT / "cmake"))
+from description.measuring import event_indicators, measured
+from description.numbering import numbered, with_event_indicators
+
 LEAN = 1.29  # rad: the level of the recipe
 WAYS = {"unfolded": {}, "Runge-Kutta": {"method": 4}, "Adams": {"method": 2}, "multibody": {"formulation": 3}}
 STOP = 6.0
 pytestmark = pytest.mark.xdist_group("event recipe")  # one build for all
 
-
 # Another observed event: it depends on the place of the wheel, which is no symmetry of the unfolded motion.
-LINE_NAME = "crosses_line"
-LINE_VALUE = """
-bool has_line(const Setup& setup, const InForce&) { return setup.keep_contact; }
+LINE = {
+    "fmu-src/wheel/run.hpp": ["crosses_line,\n"],
+    "fmu-src/wheel/events.cpp": [
+        """bool has_line(const Setup& setup, const InForce&) { return setup.keep_contact; }
 
 double short_of_line(const Setup& setup, const InForce&, double, const double* y) {
   WheelKinematics pose;
   setup.formulation->pose(&setup.wheel, y, &pose);
   return (setup.X_O.whole(pose.X_O) + 0.5) / setup.length;
 }
-"""
-LINE_ROW = """    {.event = Event::crosses_line,
+""",
+        """    {.event = Event::crosses_line,
      .can_occur = has_line,
      .value = short_of_line,
      .follow = observe,
      .observed = "the wheel crosses the line"},
-"""
-# A third one, whose value comes with the rates: N below a share of the weight.
-LIGHT_NAME, SHARE = "presses_less", 0.95
-LIGHT_VALUE = f"""
-double above_share(const Setup& setup, const double*, double N) {{ return N / setup.weight - {SHARE}; }}
-"""
-LIGHT_ROW = """    {.event = Event::presses_less,
-     .can_occur = always,
-     .quick_value = above_share,
-     .follow = observe,
-     .observed = "the wheel presses less than usual"},
-"""
+""",
+    ],
+}
+# In front of what a new variable, member, assignment, name, function and row stand.
+PLACES = {
+    "modelDescription.xml": ['    <ScalarVariable name="F_X"'],
+    "fmu-src/wheel/setup.hpp": ["};\n\nSetup setup_of("],
+    "fmu-src/wheel/setup.cpp": ["  return setup;\n}\n\nvoid scales_at"],
+    "fmu-src/wheel/run.hpp": ["  count\n};"],
+    "fmu-src/wheel/events.cpp": [
+        "}  // namespace\n\nconstexpr EventRow event_rows[]",
+        "};\n\nnamespace {\n\nconstexpr bool is_sound",
+    ],
+}
+# What the recipes define, but for the setup's members, has another name here, so that who follows them to the letter
+# meets nothing twice.
+DEFINED = re.compile(r'<ScalarVariable name="(\w+)"|^ *(\w+),$|^(?:bool|double) (\w+)\(', re.MULTILINE)
+
+Blocks = dict[str, list[str]]  # of code, by file
 
 
-def recipe() -> tuple[str, str, str]:
-    """The name, the value and the row of CONTRIBUTING.md."""
+def recipes() -> list[Blocks]:
+    """Of CONTRIBUTING.md: the blocks of code, each of the file that was named last, under names of this test."""
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     section = re.search(r"^## Add an event\n(.*?)^## ", text, re.DOTALL | re.MULTILINE)[1]
-    blocks = re.findall(r"```cpp\n(.*?)```", section, re.DOTALL)
-    name, value, row = (re.sub(r"^   ", "", block, flags=re.MULTILINE) for block in blocks)
-    return name.strip().rstrip(","), value, row
+    found: list[Blocks] = []
+    for part in section.split("\nAn event with its own parameter"):
+        blocks, file = Blocks(), ""
+        for said, block in re.findall(r"(.*?)```\w+\n(.*?) *```", part, re.DOTALL):
+            named = [place for name in re.findall(r"`([\w./-]+)`", said) for place in PLACES if place.endswith(name)]
+            file = named[-1] if named else file
+            blocks.setdefault(file, []).append(re.sub(r"^   ", "", block, flags=re.MULTILINE))
+        found.append(renamed(blocks))
+    return found
 
 
-def insert(path: Path, before: str, text: str) -> None:
-    old = path.read_text(encoding="utf-8")
-    assert old.count(before) == 1, (path, before)
-    path.write_text(old.replace(before, text + before), encoding="utf-8")
+def renamed(blocks: Blocks) -> Blocks:
+    names = {name for each in blocks.values() for text in each for found in DEFINED.findall(text) for name in found}
+    word = re.compile(rf"\b({'|'.join(names - {''})})\b")
+    return {
+        file: [re.sub(r'(\.observed = ")', r"\1test, ", word.sub(r"\1_of_this_test", text)) for text in texts]
+        for file, texts in blocks.items()
+    }
 
 
-def patch(folder: Path, name: str, value: str, row: str) -> None:
-    insert(folder / "wheel" / "run.hpp", "  count\n};", f"  {name},\n")
-    events = folder / "wheel" / "events.cpp"
-    insert(events, "}  // namespace\n\nconstexpr EventRow event_rows[]", f"{value}\n")
-    insert(events, "};\n\nnamespace {\n\nconstexpr bool is_sound", row)
+def patch(folder: Path, blocks: Blocks) -> None:
+    for file, texts in blocks.items():
+        path = folder / file
+        for before, text in zip(PLACES[file], texts, strict=True):
+            old = path.read_text(encoding="utf-8")
+            assert old.count(before) == 1, (path, before)
+            path.write_text(old.replace(before, text + before), encoding="utf-8")
+
+
+@dataclass
+class Patched:
+    """A checkout with all events, and the FMU that it makes."""
+
+    root: Path
+    fmu: Path
+    library: Library
+    lean: str  # the text of its message
+    load: str
+    line: str
+
+
+def checkout(folder: Path) -> Path:
+    """The core, its description and its tests, all events in the place of the recipe; numbered."""
+    for name in ("fmu-src", "cmake", "tests"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("modelDescription.xml", "pyproject.toml"):
+        shutil.copy(ROOT / name, folder)
+    events = [*recipes(), LINE]
+    for blocks in events:
+        patch(folder, blocks)
+    description = folder / "modelDescription.xml"
+    text = description.read_text(encoding="utf-8")
+    count = int(re.search(r'numberOfEventIndicators="(\d+)"', text)[1]) + len(events)
+    description.write_text(numbered(with_event_indicators(text, count)), encoding="utf-8")
+    return folder
+
+
+def guid(folder: Path) -> str:
+    return re.search(r'guid="([^"]*)"', (folder / "modelDescription.xml").read_text(encoding="utf-8"))[1]
 
 
 def build(folder: Path) -> Path:
-    """The library with both events: `wheel` and `fmi` are compiled from the copy, without the optimisation that takes
-    long and changes no bit; the rest is taken as built."""
-    built, library = build_folder(), folder / "wheel.so"
+    """The checkout's library: `wheel` and `fmi` are compiled, without the optimisation that takes long and changes no
+    bit; the rest is taken as built."""
+    built, objects_folder = build_folder(), folder / "build"
+    objects_folder.mkdir()
     commands = (built / "compile_commands.json").read_text(encoding="utf-8")
     link = shlex.split((built / "CMakeFiles" / "wheel_fmu.dir" / "link.txt").read_text(encoding="utf-8"))
+    rows = [folder / "cmake" / "variable_rows.py", folder / "modelDescription.xml", objects_folder / "variables.inc"]
+    subprocess.run([sys.executable, *rows], check=True)
+    commands = commands.replace(str(built / "generated"), str(objects_folder)).replace(guid(ROOT), guid(folder))
     for module in ("wheel", "fmi"):
-        original, copy = str(ROOT / "fmu-src" / module), folder / module
-        shutil.copytree(original, copy)
+        original, copy = str(ROOT / "fmu-src" / module), folder / "fmu-src" / module
         units = built / "CMakeFiles" / f"{module}.dir" / "Unity"  # each includes the files that are compiled at once
         for unit in units.glob("*.cxx"):
             (copy / unit.name).write_text(
                 unit.read_text(encoding="utf-8").replace(original, str(copy)), encoding="utf-8"
             )
         commands = commands.replace(original, str(copy)).replace(str(units), str(copy))
-    patch(folder, *recipe())
-    patch(folder, LINE_NAME, LINE_VALUE, LINE_ROW)
-    patch(folder, LIGHT_NAME, LIGHT_VALUE, LIGHT_ROW)
     made = {entry["output"]: entry for entry in json.loads(commands) if folder in Path(entry["file"]).parents}
-    objects = {output: str(folder / output.replace("/", "_")) for output in made}
+    objects = {output: str(objects_folder / output.replace("/", "_")) for output in made}
     compilations = [
         [*(objects.get(word, word) for word in shlex.split(entry["command"])), "-O1", "-fno-lto"]
         for output, entry in made.items()
     ]
     with ThreadPoolExecutor(2) as pool:
         list(pool.map(lambda command: subprocess.run(command, cwd=built, check=True), compilations))
+    library = objects_folder / "wheel.so"
     link[link.index("-o") + 1] = str(library)
     subprocess.run([objects.get(word, word) for word in link], cwd=built, check=True)
     return library
 
 
 @pytest.fixture(scope="module")
-def patched(fmu: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Library]:
-    folder = tmp_path_factory.mktemp("event")
-    unpacked = folder / "fmu"
+def patched(fmu: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
+    root = checkout(tmp_path_factory.mktemp("event") / "checkout")
+    unpacked = root.parent / "fmu"
     shutil.copytree(fmu, unpacked)
     (binary,) = unpacked.glob("binaries/*/wheel.so")
-    shutil.copy(build(folder), binary)
-    yield Library(Path(unpacked))
+    shutil.copy(build(root), binary)
+    shutil.copy(root / "modelDescription.xml", unpacked)
+    packed = shutil.make_archive(str(root / "build" / "wheel"), "zip", unpacked)
+    rows = [blocks["fmu-src/wheel/events.cpp"][1] for blocks in (*recipes(), LINE)]
+    texts = [re.search(r'observed = "([^"]*)', row)[1] for row in rows]
+    yield Patched(root, Path(packed).rename(root / "build" / "wheel.fmu"), Library(unpacked), *texts)
 
 
-def falls(library: Library, name: str, level: float, **start: float) -> list[float]:
-    """Where the output falls below the level, by the secant on a grid of a millisecond."""
-    run = library.simulate(np.linspace(0, STOP, 6001), 1e-11, **start)
-    t, x = run.t, run[name] - level
+def falls(run: Run, name: str, level: float, sign: float = 1.0) -> list[float]:
+    """Where the output, or its negative, falls below the level, by the secant on the grid of the run."""
+    t, x = run.t, sign * (run[name] - level)
     k = np.flatnonzero((x[:-1] >= 0) & (x[1:] < 0))
     return [float(v) for v in t[k] - x[k] * (t[k + 1] - t[k]) / (x[k + 1] - x[k])]
 
 
-def logged(pattern: re.Pattern, messages: list[str]) -> list[float]:
-    return [float(found[1]) for message in messages if (found := pattern.search(message))]
+def logged(text: str, messages: list[str]) -> list[float]:
+    """The instants of the messages with this text."""
+    found = (re.match(rf"t = (\S+) s: {text}", message) for message in messages)
+    return [float(match[1]) for match in found if match]
 
 
 def gap(want: list[float], got: list[float]) -> float:
@@ -139,60 +197,105 @@ def gap(want: list[float], got: list[float]) -> float:
     return float(np.abs(np.array(want) - got).max())
 
 
+@pytest.fixture(scope="module")
+def fine(library: Library) -> Run:
+    """The motion of the core without these events, every millisecond."""
+    return library.simulate(np.linspace(0, STOP, 6001), 1e-11)
+
+
+@pytest.fixture(scope="module")
+def fine_kept(library: Library) -> Run:
+    return library.simulate(np.linspace(0, STOP, 6001), 1e-11, keep_contact=True)
+
+
+@pytest.fixture(scope="module")
+def limit(fine: Run) -> dict[str, float]:
+    """The parameter, halfway between the least and the largest normal force."""
+    (name,) = re.findall(r'<ScalarVariable name="(\w+)"', recipes()[1]["modelDescription.xml"][0])
+    return {name: 0.5 * float(fine["lambda_3"].min() + fine["lambda_3"].max())}
+
+
+def test_the_description_of_the_copy_is_numbered_and_measured(patched: Patched) -> None:
+    text = (patched.root / "modelDescription.xml").read_text(encoding="utf-8")
+    assert numbered(text, measured(patched.fmu)) == text != numbered(text, {"Outputs": {"theta": {"F_X"}}})
+    assert event_indicators(patched.fmu) == patched.library.description.numberOfEventIndicators
+
+
+def test_the_tests_of_the_contract_hold_with_these_events_too(patched: Patched) -> None:
+    names = ("contract/test_call_states", "contract/test_description", "contract/test_serialization")
+    tests = [f"tests/{name}.py" for name in (*names, "exchange/test_calls")]
+    environment = os.environ | {"WHEEL_BUILD": str(patched.fmu.parent)}
+    # These read the only message; the wheel of the copy logs its leans too.
+    others = "not (damaged_truncated or place_in_a_layer or spin_set_across)"
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests, "-k", others]
+    done = subprocess.run(command, cwd=patched.root, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout[-3000:]
+
+
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("step", [0.01, 1.0, STOP])
-def test_every_crossing_is_logged_whatever_the_grid(library: Library, patched: Library, way: str, step: float) -> None:
+def test_every_crossing_is_logged_whatever_the_grid(library, patched: Patched, fine, limit, way: str, step: float):
     times = np.arange(0, STOP + step / 2, step)
-    run = patched.simulate(times, 1e-11, **WAYS[way])
-    want = falls(library, "theta", LEAN)
-    within(gap(want, logged(DIPS, run.messages)), 1e-6, "instant, s")
-    beyond(gap(falls(library, "theta", LEAN - 1e-3), logged(DIPS, run.messages)), 1e-5, "instant of another level, s")
-    light = falls(library, "lambda_3", SHARE * PAPER.m * PAPER.g, **WAYS[way])
-    within(gap(light, logged(LIGHT, run.messages)), 2e-5, "instant of a smaller N, s")  # N curves within a millisecond
+    run = patched.library.simulate(times, 1e-11, **WAYS[way], **limit)
+    (level,) = limit.values()
+    leans, loads = logged(patched.lean, run.messages), logged(patched.load, run.messages)
+    within(gap(falls(fine, "theta", LEAN), leans), 1e-6, "instant, s")
+    within(gap(falls(fine, "lambda_3", level, -1), loads), 1e-6, "instant of an overload, s")
+    beyond(gap(falls(fine, "theta", LEAN - 1e-3), leans), 1e-5, "instant of another level, s")
+    beyond(gap(falls(fine, "lambda_3", level + 1, -1), loads), 1e-5, "instant of another limit, s")
     if way == "unfolded":  # it still is
         assert run.counters["n_steps"] == library.simulate(times, 1e-11).counters["n_steps"]
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_an_event_that_is_no_symmetry_of_the_motion_keeps_it_from_being_unfolded(library, patched, way: str) -> None:
-    run = patched.simulate([0.0, 2.0, STOP], 1e-11, keep_contact=True, **WAYS[way])
-    within(gap(falls(library, "X_O", -0.5, keep_contact=True), logged(LINE, run.messages)), 1e-6, "instant, s")
-    within(gap(falls(library, "theta", LEAN), logged(DIPS, run.messages)), 1e-6, "instant, s")
+def test_a_limit_of_zero_is_none(patched: Patched, way: str) -> None:
+    run = patched.library.simulate([0.0, STOP], **WAYS[way])
+    assert logged(patched.load, run.messages) == [] != logged(patched.lean, run.messages)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_an_event_that_is_no_symmetry_of_the_motion_keeps_it_from_being_unfolded(library, patched, fine_kept, way: str):
+    run = patched.library.simulate([0.0, 2.0, STOP], 1e-11, keep_contact=True, **WAYS[way])
+    within(gap(falls(fine_kept, "X_O", -0.5), logged(patched.line, run.messages)), 1e-6, "instant, s")
+    within(gap(falls(fine_kept, "theta", LEAN), logged(patched.lean, run.messages)), 1e-6, "instant, s")
     if way == "unfolded":
         assert run.counters["n_rhs"] > 2 * library.simulate([0.0, STOP], 1e-11, keep_contact=True).counters["n_rhs"]
 
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("cut", [0.9, 2.1, 3.4])
-def test_a_restored_run_logs_what_lies_ahead_and_nothing_else(patched: Library, way: str, cut: float) -> None:
-    whole, other = patched.wheel(logging=True).start(**WAYS[way]).to(cut), patched.wheel(logging=True)
+def test_a_restored_run_logs_what_lies_ahead_and_nothing_else(patched: Patched, limit, way: str, cut: float) -> None:
+    whole = patched.library.wheel(logging=True).start(**WAYS[way], **limit).to(cut)
+    other = patched.library.wheel(logging=True)
     whole.take_messages()
     assert other.back(whole.serialized()).messages == []
     for wheel in (whole, other):
         wheel.put(M_1=1e-7).to(STOP)  # off the orbit
-    assert whole.sentences == other.sentences and min(logged(DIPS, other.sentences)) > cut
+    assert whole.sentences == other.sentences
+    for sentence in (patched.lean, patched.load):
+        assert min(logged(sentence, other.sentences)) > cut
 
 
-def test_another_solver_finds_it_by_its_indicator(library, patched, monkeypatch) -> None:
-    names = (*driver.INDICATORS, "leans", "crosses_line", "presses_less")
-    monkeypatch.setattr(driver, "INDICATORS", names)
-    with exchanging.exchange(patched, logging=True, keep_contact=True) as wheel:
+def test_another_solver_finds_them_by_their_indicators(patched: Patched, fine_kept: Run, limit) -> None:
+    (level,) = limit.values()
+    with exchanging.exchange(patched.library, logging=True, keep_contact=True, **limit) as wheel:
         run = exchanging.Run(wheel, 1e-10, exchanging.no_inputs)
         run.to(2.0)
         blob = wheel.serialized()
         run.to(STOP)
         found = wheel.sentences
-        within(gap(falls(library, "X_O", -0.5, keep_contact=True), logged(LINE, found)), 1e-6, "instant, s")
-        within(gap(falls(library, "theta", LEAN), logged(DIPS, found)), 1e-6, "instant, s")
+        within(gap(falls(fine_kept, "X_O", -0.5), logged(patched.line, found)), 1e-6, "instant, s")
+        within(gap(falls(fine_kept, "theta", LEAN), logged(patched.lean, found)), 1e-6, "instant, s")
+        within(gap(falls(fine_kept, "lambda_3", level, -1), logged(patched.load, found)), 1e-6, "instant, s")
         wheel.take_messages()
         assert wheel.back(blob).messages == []
         again = exchanging.Run(wheel, 1e-10, exchanging.no_inputs)
         again.t = 2.0
         again.to(STOP)
-        later = [t for t in logged(DIPS, found) if t > 2.0]
-        within(gap(later, logged(DIPS, wheel.sentences)), 1e-6, "instant after the snapshot, s")
+        later = [t for t in logged(patched.lean, found) if t > 2.0]
+        within(gap(later, logged(patched.lean, wheel.sentences)), 1e-6, "instant after the snapshot, s")
 
 
-def test_many_occurrences_are_counted_and_the_first_hundred_logged(patched: Library) -> None:
-    run = patched.simulate([0.0, 1000.0], 1e-9)
-    assert len(logged(DIPS, run.messages)) == 100
+def test_many_occurrences_are_counted_and_the_first_hundred_logged(patched: Patched) -> None:
+    run = patched.library.simulate([0.0, 1000.0], 1e-9)
+    assert len(logged(patched.lean, run.messages)) == 100
