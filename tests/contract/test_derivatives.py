@@ -83,8 +83,8 @@ def test_directional_derivatives_are_those_of_the_reactions(wheel, scene):
     for exact, difference in checked:
         errors = dict(zip(outputs(w), np.abs(exact - difference).max(axis=1), strict=True))
         within(errors, 64 * 200 * EPSILON, "difference")  # of reactions of 200 N
-        answers = [name.startswith(("lambda", "tau")) for name in outputs(w)]
-        assert np.all(exact[np.invert(answers)] == 0)
+        answers = np.any(difference != 0, axis=1)  # whatever its name: no output is left out
+        assert np.all(exact[~answers] == 0)
         assert np.linalg.matrix_rank(exact[answers], 1e-3) >= 3
     beyond(np.max(np.abs(checked[0][0] - checked[-1][1])), 0.07, "checked")  # the partner: another instant
 
