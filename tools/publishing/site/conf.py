@@ -41,6 +41,7 @@ html_favicon = "../../../fmu-src/archive/model.png"
 html_static_path = ["site.css"]
 html_css_files = ["site.css"]
 html_copy_source = False
+html_show_search_summary = False  # a browser fetches no pages for it without a server
 html_show_sphinx = False
 templates_path = ["_templates"]
 html_additional_pages = {"index": "front.html"}
