@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -32,7 +33,8 @@ def checkout(tmp_path: Path) -> Path:
         text = (tmp_path / name).read_text(encoding="utf-8")
         (tmp_path / name).write_text(TABLE.sub("<!-- variables --><!-- end of variables -->", text), encoding="utf-8")
     stand_in(tmp_path / "scripts" / "setup", "")
-    stand_in(tmp_path / "scripts" / "build", f"mkdir -p build/release && cp {build_folder()}/wheel.fmu build/release")
+    fmu = shlex.quote(str(build_folder() / "wheel.fmu"))
+    stand_in(tmp_path / "scripts" / "build", f"mkdir -p build/release && cp {fmu} build/release")
     subprocess.run(["git", "init", "-q", tmp_path], check=True)
     return tmp_path
 
