@@ -14,7 +14,8 @@ Values = dict[str, float]
 
 
 def quick(examples: int, *, shrink: bool = True) -> settings:
-    """The same examples in every run, those that are written down first. Partners do not shrink: that they fail is all that is asked."""
+    """The same examples in every run, those that are written down first. Partners do not shrink: that they fail is all
+    that is asked."""
     phases = (Phase.explicit, Phase.generate, Phase.shrink) if shrink else (Phase.generate,)
     no_check = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
     same = {"derandomize": True, "deadline": None, "database": None}
