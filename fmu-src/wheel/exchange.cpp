@@ -136,14 +136,12 @@ bool decide(Wheel& w) {
 }
 
 bool starts_inside(const Wheel& w) {
-  const InForce& now = w.run.in_force;
   const EventRow* fault = nullptr;
   for (const EventRow& row : event_rows)
-    if (ends_run(row, w.setup) && row.can_occur(w.setup, now) && !(margin_at(row, w.setup, now, w.run.t, w.run.y) > 0))
-      fault = &row;
+    if (ends_run(row, w.setup) && has_occurred(row, w.setup, w.run)) fault = &row;
   if (!fault) return true;
   WheelDynamics dynamics;
-  w.setup.formulation->dynamics(&now.scene, w.run.y, &dynamics);
+  w.setup.formulation->dynamics(&w.run.in_force.scene, w.run.y, &dynamics);
   w.reporter.log(Topic::error, "At the start the wheel %s (N = %s N, mu_required = %s): the model ends there.",
                  ending_of(w.setup, fault->event).text, Digits{dynamics.lambda[2], 6},
                  Digits{wheel_required_friction(dynamics.lambda), 6});

@@ -176,7 +176,24 @@ def test_model_exchange_refuses_a_start_without_grip_and_co_simulation_ends_ther
     assert run.ended == MESSAGE.format(0.01, 0) + ", theta = 1.2 rad: the model ends there."
 
 
-@pytest.mark.parametrize("alpha", [0.2, 0.7, 1.2])
+@pytest.mark.parametrize("seed", range(5))
+def test_model_exchange_refuses_a_start_that_its_first_event_mode_would_end(library: Library, seed: int) -> None:
+    """Events that lie ahead by less than 1e-7 of the wheel's own time, here 0.2 s, have occurred for it."""
+    random = np.random.default_rng(seed)
+    rates = {"psi_dot_start": random.uniform(0.2, 2), "phi_dot_start": random.uniform(-8, -3)}
+    start = {"theta_start": random.uniform(0.9, 1.4), "theta_dot_start": random.choice((-1, 1)), **rates}
+    mu = library.simulate([0.0, 1e-4], 1e-12, **start)["mu_required"]
+    rise = abs(mu[1] - mu[0]) / 1e-4
+    if mu[1] < mu[0]:  # the mirror image of the motion in time
+        start |= {name: -rate for name, rate in start.items() if "dot" in name}
+    for ahead, taken in ((1e-9, False), (1e-5, True)):
+        with loaded(library).new() as wheel:
+            assert wheel.set(mu_max=mu[0] + rise * ahead, **start) == OK
+            assert wheel.initialise() == (OK if taken else ERROR)
+            assert not taken or not wheel.decide().terminateSimulation
+
+
+@pytest.mark.parametrize("alpha", [0.01, 0.2, 0.7, 1.2])
 def test_a_wheel_held_on_a_slope_starts_where_mu_max_is_the_slopes_tangent_and_not_below(library, alpha: float):
     """To a billionth, by both kinds of run alike; in model exchange the first event mode does not end it either."""
     held = {"slope": alpha, "theta_start": pi / 2, "psi_start": 0.0, "phi_dot_start": 0.0, "s": 2.0}
