@@ -1,0 +1,330 @@
+"""Reference solution of the wheel that rolls, slides and grips again under Coulomb's law, every transition located.
+
+No constraint is solved in advance: while it slides, friction is a force at the contact (sliding_contact.py); while it
+grips, all reactions are unknown (newton_euler.py). Explicit steps of SciPy's DOP853 run, while the wheel slides, in a
+progress sigma in which |u| falls exponentially to zero; where the direction of slip is stiff, sliding_layer.py steps.
+Events are searched and located as in integrate.py.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import atan2, cos, hypot, nan, sin
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from .crossing import NODES, first_fall
+from .frames import cross, rotation, slope, to_fixed
+from .integrate import CIRCLE, CIRCLE_TIME, INSTANT, LONGEST
+from .model import Inputs, Start, Wheel
+from .motion import OMEGA_Z, State, angle_rates, initial_state
+from .newton_euler import arm
+from .outputs import Ending, Solution, _turned
+from .sliding_layer import Array, LayerStep, layer_step, stiff
+from .sliding_modes import CHI, FREE, GRIPS, SLIDES, SPEED, TIME, Contacts, Mode, Options, Road, Side
+
+NEAR, REST = 0.05, 1e-12  # of sqrt(g (r_0 + r)): the speed at which sigma departs from time; at which u counts as 0
+LAYER = 0.02  # s, the first try of a step in the layer
+
+
+@dataclass(frozen=True)
+class SlidingSolution(Solution):
+    """contacts: (t, 1 slides or 0 grips), the first at the start; a second 1 goes on in another direction at once."""
+
+    contacts: list[tuple[float, int]]
+
+
+class Fall(NamedTuple):
+    """A margin's fall in a step: at the fraction x of it, with d(margin)/dx = slope there."""
+
+    x: float
+    name: str
+    slope: float
+    side: Side
+
+
+class ExplicitStep:
+    """A step of DOP853 in sigma, with true integration to any part of it."""
+
+    def __init__(self, contacts: Contacts, mode: Mode, solver: DOP853, start: State, near: float) -> None:
+        self.contacts, self.mode, self.start, self.near = contacts, mode, start, near
+        self.end, self.length = solver.y.copy(), solver.t - solver.t_old
+        self._polynomial, self._from = solver.dense_output(), solver.t_old
+
+    def dense(self, x: Array) -> Array:
+        return self._polynomial(self._from + np.asarray(x) * self.length).T
+
+    def part(self, x: float) -> State:
+        rate = self.contacts.by_progress(self.mode, self.near)
+        return run_through(rate, 0.0, self.start, x * self.length, self.contacts.options.rtol)
+
+    def to(self, t: float) -> State:
+        rate = self.contacts.by_time(self.mode)
+        return run_through(rate, float(self.start[TIME]), self.start, t, self.contacts.options.rtol)
+
+
+def solver_of(rate: Any, t: float, y: State, bound: float, first: float, rtol: float) -> DOP853:
+    scale = np.full(len(y), 0.1 * rtol)
+    scale[SPEED] = 1e-6 * rtol  # |u| counts by its own size
+    return DOP853(rate, t, y, bound, LONGEST, rtol, scale, first_step=min(first, bound - t, LONGEST))
+
+
+def run_through(rate: Any, t: float, y: State, bound: float, rtol: float) -> State:
+    if bound <= t:
+        return y
+    solver = solver_of(rate, t, y, bound, bound - t, rtol)
+    while solver.status == "running":
+        solver.step()
+    return solver.y
+
+
+class Run:
+    """One solve() in progress."""
+
+    contacts: Contacts
+
+    def __init__(self, wheel: Wheel, road: Road, options: Options, times: Sequence[float], y: State) -> None:
+        self.road, self.options, self.times, self.y = road, options, [float(t) for t in times], y
+        self.rows: list[tuple[float, State, Mode]] = []
+        self.events: list[tuple[float, int]] = []
+        self.slides: list[tuple[float, int]] = []
+        self.ended: Ending | None = None
+        contact = FREE if road.mu_max == 0 else SLIDES if y[SPEED] > 0 else GRIPS
+        self.mode = Mode(contact, int(np.sign(y[OMEGA_Z])), 1)  # until the first choice
+        self.first_step, self.layer = 1e-4, LAYER
+        speed = np.sqrt(wheel.g * (wheel.r_0 + wheel.r))
+        self.near, self.rest = NEAR * speed, REST * speed
+
+    @property
+    def t(self) -> float:
+        return float(self.y[TIME])
+
+    # ---- one mode ----
+
+    def follow(self, stop: float) -> str:
+        """Integrate the present mode up to `stop`, or to the fall of a margin: its name."""
+        solver: DOP853 | None = None
+        rolls_from_zero = self.mode.sigma != 0 and self.y[OMEGA_Z] == 0
+        while self.t < stop:
+            from_zero = {"rolls"} if rolls_from_zero else set()
+            step: LayerStep | ExplicitStep
+            if self._stiff():
+                solver, step = None, self._layer_step(stop)
+                from_zero |= {"rest"} if self.y[SPEED] == 0 else set()
+            else:
+                solver = solver or self._solver(stop)
+                message = solver.step()
+                if solver.status == "failed":
+                    raise RuntimeError(f"the solver gave up at t = {self.t!r} s: {message}")
+                step = ExplicitStep(self.contacts, self.mode, solver, self.y, self.near)
+                self.first_step = step.length
+                if solver.status == "finished":
+                    step.end[TIME] = stop
+            fall = self._search(step, stop, from_zero)
+            end = step.end.copy() if fall is None else self._land(step, fall, stop)
+            self._record(step, float(end[TIME]))
+            self.y, rolls_from_zero = end, False
+            if fall is not None:
+                return fall.name
+        return "stop"
+
+    def _stiff(self) -> bool:
+        return self.mode.contact == SLIDES and stiff(self.contacts, self.mode, self.y)
+
+    def _layer_step(self, stop: float) -> LayerStep:
+        h = min(2 * self.layer, stop - self.t)
+        grow = self.contacts.by_time(self.mode)(self.t, self.y)[SPEED] if self.y[SPEED] > 0 else 0.0
+        if grow < 0:
+            h = min(h, 1.2 * float(self.y[SPEED]) / -grow)
+        step = layer_step(self.contacts, self.mode, self.y, h)
+        self.layer = max(step.h, 1e-6)
+        return step
+
+    def _solver(self, stop: float) -> DOP853:
+        rate = self.contacts.by_progress(self.mode, self.near)
+        bound = 1e9 if self.mode.contact == SLIDES else stop - self.t
+        return solver_of(rate, 0.0, self.y, bound, self.first_step, self.options.rtol)
+
+    def _margins(self, side: Side, y: State, stop: float, layer: bool) -> tuple[dict[str, float], Side]:
+        found, side = self.contacts.margins(self.mode, side, y)
+        if self.mode.contact == SLIDES:
+            found["rest"] = float(y[SPEED]) - (0.0 if layer else self.rest)
+            found["stop"] = stop - float(y[TIME])
+        return found, side
+
+    def _search(self, step: LayerStep | ExplicitStep, stop: float, from_zero: set[str]) -> Fall | None:
+        """The first fall of a margin in the step."""
+        layer = isinstance(step, LayerStep)
+        sides = [slope(rotation(*self.y[:4].tolist())[2])[:2]]
+        values = []
+        for y in step.dense(NODES):
+            margins, side = self._margins(sides[-1], y, stop, layer)
+            values.append(margins)
+            sides.append(side)
+        falls = []
+        for name in values[0]:
+            fall = first_fall(np.array([row[name] for row in values]), name in from_zero)
+            if fall is not None and not (layer and name == "stop"):
+                falls.append(Fall(fall[0], name, fall[1], sides[int(np.searchsorted(NODES, fall[0]))]))
+        return min(falls, default=None)
+
+    def _land(self, step: LayerStep | ExplicitStep, fall: Fall, stop: float) -> State:
+        """Newton on the margin with the polynomial's slope; each state by true integration."""
+        if fall.name == "stop":
+            return step.to(stop).copy()
+        x, y, layer = fall.x, step.start, isinstance(step, LayerStep)
+        for _ in range(8 if x > 0 else 0):
+            y = step.to(self.t + x * step.h) if isinstance(step, LayerStep) else step.part(x)
+            margins, _ = self._margins(fall.side, y, stop, layer)
+            dx = -margins[fall.name] / fall.slope
+            if abs(dx) * (step.h if isinstance(step, LayerStep) else step.length) <= INSTANT * abs(y[TIME]):
+                break
+            x = min(max(x + dx, 0.0), 1.0)
+        return y.copy()
+
+    def _record(self, step: LayerStep | ExplicitStep, t_1: float) -> None:
+        """Rows of every asked time in [present, t_1)."""
+        while len(self.rows) < len(self.times) and self.times[len(self.rows)] < t_1:
+            t = self.times[len(self.rows)]
+            self.rows.append((t, self.y if t <= self.t else step.to(t), self.mode))
+
+    # ---- from mode to mode ----
+
+    def through(self, contacts: Contacts, stop: float) -> None:
+        """Mode after mode up to `stop`; the inputs are smooth there."""
+        self.contacts = contacts
+        if self.mode.ground > 0:
+            self._enter(contacts.choose(self.y))
+        while self.t < stop and self.ended is None:
+            name = self.follow(stop)
+            if name != "stop":
+                self._turn(name)
+
+    def _turn(self, name: str) -> None:
+        """Enter the next mode, or end, after the fall of a margin at the present."""
+        y, contacts = self.y, self.contacts
+        if name in ("flat", "room") or (name == "presses" and not self.options.keep_contact):
+            self.ended = Ending({"flat": "flat", "room": "jams", "presses": "lift-off"}[name], self.t)
+        elif name == "presses":
+            self._cross_over()
+        elif name == "rest":
+            self._come_to_rest()
+            self._enter(contacts.choose(y))
+        elif name in ("rises", "falls"):
+            self._enter(contacts.choose(y, self.mode.ground, sigma=1 if name == "rises" else -1))
+        elif name == "rolls":
+            y[OMEGA_Z] = 0.0
+            self._enter(contacts.choose(y, self.mode.ground))
+        else:
+            self._enter(contacts.choose(y, gone=self.mode.contact))
+
+    def _come_to_rest(self) -> None:
+        """|u| to exactly 0: it falls linearly over what is left of it."""
+        y = self.y
+        if y[SPEED] > 0:
+            rate = self.contacts.by_time(self.mode)(self.t, y)
+            left = -float(y[SPEED] / rate[SPEED])
+            chi = y[CHI]
+            y += left * rate
+            y[CHI] = chi
+        y[SPEED] = 0.0
+
+    def _cross_over(self) -> None:
+        """To the other sign of N: a ground that pulls has no friction, and its slip is u_X and u_Y."""
+        u, ground = self.contacts.slip(self.mode, self.y), -self.mode.ground
+        if ground < 0:
+            self.y[SPEED], self.y[CHI] = u
+        elif self.road.mu_max > 0:
+            self.y[SPEED], self.y[CHI] = hypot(*u), atan2(u[1], u[0])
+        self._enter(self.contacts.choose(self.y, ground))
+
+    def _enter(self, found: tuple[Mode, float] | None) -> None:
+        """Go on in a mode, or end where there is none; refuses to chatter."""
+        if found is None:
+            lifts = self.contacts.now(Mode(FREE, self.mode.sigma, 1), self.y).force[2] < 0
+            if lifts and self.options.keep_contact and self.mode.ground > 0:
+                self._cross_over()
+            else:
+                self.ended = Ending("lift-off" if lifts else "jams", self.t)
+            return
+        (mode, chi), slides = found, int(found[0].contact != GRIPS)
+        if mode.contact == SLIDES and self.y[SPEED] == 0:
+            self.y[CHI], self.layer = chi, LAYER
+        if mode.contact == GRIPS:
+            self.y[SPEED] = self.y[CHI] = 0.0
+        if self.contacts.watched(mode.ground) and (not self.events or mode.sigma != self.events[-1][1]):
+            self.events.append((self.t, mode.sigma))
+        if not self.slides or slides != self.slides[-1][1] or (mode.contact == SLIDES and self.y[SPEED] == 0):
+            self.slides.append((self.t, slides))
+        for log in (self.events, self.slides):
+            if len(log) > CIRCLE and self.t - log[-CIRCLE][0] < CIRCLE_TIME:
+                raise RuntimeError(f"no mode of friction holds at t = {self.t!r} s")
+        self.mode = mode
+
+
+def started(wheel: Wheel, start: Start, road: Road) -> State:
+    """The rolling start and the slip on top."""
+    y = initial_state(wheel, start)
+    c, s = cos(start.psi), sin(start.psi)
+    along, left = road.slip
+    u = along * c - left * s, along * s + left * c
+    y[10:12] += u
+    slip = u if road.mu_max == 0 else (hypot(*u), atan2(u[1], u[0]) if any(u) else 0.0)
+    return np.array([*y, 0.0, *slip, 0.0])
+
+
+def solve_sliding(
+    wheel: Wheel, start: Start, road: Road, times: Sequence[float], inputs: Inputs | None = None, **how: Any
+) -> SlidingSolution:
+    """The motion from `start` at times[0], reported at `times` (rising); `how`: the fields of Options.
+
+    An ended run has its last row at the ending.
+    """
+    inputs, options = inputs or Inputs(), Options(**how)
+    y = started(wheel, start, road)
+    y[TIME] = times[0]
+    run = Run(wheel, road, options, times, y)
+    t_end = run.times[-1]
+    for stop in [*sorted(t for t in inputs.jumps if run.t < t < t_end), t_end]:
+        if run.ended is None:
+            run.through(Contacts(wheel, road, inputs.before(stop), options), stop)
+    run.rows.append((run.t, run.y, run.mode))
+    contacts = Contacts(wheel, road, inputs, options)
+    table = [_row(contacts, *row) for row in run.rows]
+    columns = {name: np.array([line[name] for line in table], dtype=float) for name in table[0]}
+    return SlidingSolution(np.array([t for t, _, _ in run.rows]), columns, run.events, run.ended, run.slides)
+
+
+def _row(contacts: Contacts, _t: float, state: State, mode: Mode) -> dict[str, float]:
+    y, wheel = state.tolist(), contacts.wheel
+    now = contacts.now(mode, state)
+    n, w, v = now.R[2], (y[4], y[5], y[6]), y[10:13]
+    ux, uy, s = slope(n)
+    line = to_fixed(now.R, (uy, -ux, 0.0))
+    psi_dot, theta_dot, phi_dot = angle_rates(n, w)
+    p = arm(wheel, n)
+    u = contacts.slip(mode, state)
+    gap = [a - b for a, b in zip(v, to_fixed(now.R, cross(w, p)), strict=True)]
+    X, Y, N = now.force
+    spin = wheel.J_x * w[0] ** 2 + wheel.J_y * w[1] ** 2 + wheel.J_z * w[2] ** 2
+    watched = contacts.watched(mode.ground)
+    return {
+        **dict(zip(("X_O", "Y_O", "Z_O"), y[7:10], strict=True)),
+        **dict(zip(("X_O_dot", "Y_O_dot", "Z_O_dot"), v, strict=True)),
+        "psi": _turned(atan2(line[1], line[0]), y[13]),
+        "theta": atan2(s, n[2]),
+        "phi": _turned(atan2(ux, uy), y[14]),
+        **{"psi_dot": psi_dot, "theta_dot": theta_dot, "phi_dot": phi_dot},
+        **{"omega_z": w[2], "tau": now.tau, "lambda_1": X, "lambda_2": Y, "lambda_3": N},
+        **{"lambda_x": X * line[0] + Y * line[1], "lambda_y": Y * line[0] - X * line[1]},
+        **{"slip_x": u[0] * line[0] + u[1] * line[1], "slip_y": u[1] * line[0] - u[0] * line[1]},
+        "contact_mode": int(mode.contact != GRIPS),
+        "friction_mode": mode.sigma if watched else np.sign(w[2]),
+        "mu_required": hypot(X, Y) / (N or nan),
+        "E": (wheel.m * sum(c * c for c in v) + spin) / 2
+        - wheel.m * sum(a * b for a, b in zip(wheel.gravity, y[7:10], strict=True)),
+        **{"work_inputs": y[15], "work_friction": y[16], "work_sliding": y[17]},
+        "residual_velocity": hypot(gap[0] - u[0], gap[1] - u[1], gap[2]),
+        "residual_height": y[9] - to_fixed(now.R, p)[2],
+    }
