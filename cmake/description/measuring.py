@@ -31,6 +31,9 @@ UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 # omega_z below omega_s, where the regularized law is neither zero nor one
 LAW = {"s": 0.03, "friction_law": 2, "phi_dot_start": -GENERAL["psi_dot_start"] * cos(GENERAL["theta_start"]) + 5e-4}
 SCENES = ({}, {**UNEQUAL, "s": 0.03}, LAW, {**UNEQUAL, **LAW})
+# Co-simulation alone slides: a slip changes what the force of the ground depends on.
+ROAD = {"mu_max": 9.0, "mu_slide": 0.1}
+SLIPS = ({"slip_x_start": 0.0, "slip_y_start": 0.0}, {"slip_x_start": 0.1, "slip_y_start": 0.1})
 ROUNDING = 1e-11  # what changes less, relative to 1 + its size, has not changed: the formulation changes no more
 
 
@@ -133,12 +136,14 @@ def measured(fmu: Path) -> Dependencies:
     with TemporaryDirectory() as folder:
         extract(str(fmu), folder)
         for scene in (without_zeros(folder, changed) for changed in SCENES):
-            with unit(folder, "CoSimulation", scene) as u:
-                parts = {"InitialUnknowns": u.depends(u.description.initialUnknowns, "parameter", "input")}
+            parts = []
+            for slip in SLIPS:
+                with unit(folder, "CoSimulation", {**scene, **ROAD, **slip}) as u:
+                    parts += [("InitialUnknowns", u.depends(u.description.initialUnknowns, "parameter", "input"))]
             with unit(folder, "ModelExchange", scene) as u:
-                parts["Outputs"] = u.depends(u.description.outputs, "input")
-                parts["Derivatives"] = u.depends(u.description.derivatives, "input")
-            for section, unknowns in parts.items():
+                parts += [("Outputs", u.depends(u.description.outputs, "input"))]
+                parts += [("Derivatives", u.depends(u.description.derivatives, "input"))]
+            for section, unknowns in parts:
                 for name, moved in unknowns.items():
                     found[section][name] |= moved
     return found

@@ -49,19 +49,26 @@ def fields_of(body: str, types: dict[str, type]) -> Iterator[tuple[str, type]]:
 TYPES = read_header(HEADER.read_text(encoding="utf-8"))
 Parameters, Load, Friction, Scene, Motion = map(TYPES.get, ("Parameters", "Load", "Friction", "Scene", "Motion"))
 Kinematics, Dynamics, ReactionRates = map(TYPES.get, ("Kinematics", "Dynamics", "ReactionRates"))
-Contact, Formulation, DOUBLES = TYPES["Contact"], TYPES["Formulation"], POINTER(c_double)
+Contact, Slip, Formulation = map(TYPES.get, ("Contact", "Slip", "Formulation"))
+DOUBLES = POINTER(c_double)
 
 BUILD = Path(os.environ.get("WHEEL_BUILD", Path(__file__).resolve().parents[2] / "build" / "release"))
 if not (found := [*BUILD.glob("libwheel_equations.*")]):
     raise FileNotFoundError(f"{BUILD} holds no libwheel_equations: run ./scripts/build first.")
 LIBRARY = ctypes.CDLL(str(found[0]))
-REDUCED, EULER, MULTIBODY = (Formulation.in_dll(LIBRARY, f"wheel_{n}") for n in ("reduced", "euler", "multibody"))
+FORMULATIONS = ("reduced", "euler", "multibody", "sliding", "multibody_sliding")
+REDUCED, EULER, MULTIBODY, SLIDING, MULTIBODY_SLIDING = (
+    Formulation.in_dll(LIBRARY, f"wheel_{name}") for name in FORMULATIONS
+)
 for function in (LIBRARY.wheel_energy, LIBRARY.wheel_required_friction, LIBRARY.wheel_height):
     function.restype = c_double
 LIBRARY.wheel_height.argtypes = [POINTER(Parameters), c_double]
 LIBRARY.wheel_set_slope.argtypes = [POINTER(Parameters), c_double, c_double, c_double]
 LIBRARY.wheel_contact.restype = Contact
 LIBRARY.wheel_scene.restype = Scene
+LIBRARY.wheel_slip.restype, LIBRARY.wheel_slip_direction.restype = Slip, c_double
+LIBRARY.wheel_slip.argtypes = [POINTER(Scene), DOUBLES, c_double]
+LIBRARY.wheel_slip_direction.argtypes = [POINTER(Scene), DOUBLES]
 LIBRARY.wheel_scene.argtypes = [POINTER(Parameters), POINTER(Load), Friction]
 LIBRARY.wheel_reaction_rates.argtypes = [POINTER(t) for t in (Formulation, Scene, Load, c_double, ReactionRates)]
 

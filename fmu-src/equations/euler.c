@@ -58,5 +58,5 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
   y[SPIN] = 0;
 }
 
-const WheelFormulation wheel_euler = {"euler",    WHEEL_REDUCED_STATES, start,    derivative, SPIN,     THETA,
-                                      kinematics, kinematics,           dynamics, reduce,     stop_spin};
+const WheelFormulation wheel_euler = {"euler",    WHEEL_REDUCED_STATES, start,    derivative, SPIN,      THETA, -1,
+                                      kinematics, kinematics,           dynamics, reduce,     stop_spin, 0};

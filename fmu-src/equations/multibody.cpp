@@ -4,6 +4,7 @@
 // Unknowns q_ddot (6) and lambda (3); rows: motion of O (fixed axes), rotation (body axes), constraint [B]{q_ddot} =
 // -[B_dot]{q_dot}. Mended misprints, see docs/errata.md: the sign and the bracket of F_beta (16), q_ddot in (24).
 #include <Eigen/LU>
+#include <array>
 
 #include "paper_matrices.hpp"
 
@@ -82,13 +83,21 @@ Vector3 F_beta(const Multibody& s) {
   return -(inertia * s.Q_dot + s.A.transpose() * s.A_dot * inertia * s.Q) * s.attitude.beta_dot;
 }
 
-// Matrix of (24), with [M] from (18).
-Matrix9 system_matrix(const Multibody& s, double kappa) {
+// The ground's friction against a slip: mu_slide along the direction of the slip, fixed axes. Zero where it pulls.
+using Against = Eigen::Vector2d;
+
+// Matrix of (24), with [M] from (18). `slides`: lambda_1 + mu d_X lambda_3 = 0 and the same along Y stand in the place
+// of the horizontal constraints.
+Matrix9 system_matrix(const Multibody& s, double kappa, const Against* slides = nullptr) {
   Matrix9 K = Matrix9::Zero();
   K.block<3, 3>(0, 0) = s.wheel.m * Matrix3::Identity();
   K.block<3, 3>(3, 3) = J(s.wheel) * s.Q;
   K.block<6, 3>(0, 6) = -B_tilde(s, kappa);
   K.block<3, 6>(6, 0) = B(s);
+  if (!slides) return K;
+  K.block<2, 9>(6, 0).setZero();
+  K.block<2, 2>(6, 6).setIdentity();
+  K.block<2, 1>(6, 8) = *slides;
   return K;
 }
 
@@ -110,29 +119,35 @@ struct Solution {
 };
 
 // omega_z held: the moment tau about the axle is found from omega_z_dot = 0, linearly.
-Solution solve_held(const Multibody& s, const Vector9& column) {
-  const Eigen::PartialPivLU<Matrix9> K(system_matrix(s, 0));
+Solution solve_held(const Multibody& s, const Vector9& column, const Against* slides) {
+  const Eigen::PartialPivLU<Matrix9> K(system_matrix(s, 0, slides));
   const Vector9 free = K.solve(column), unit = K.solve(Vector9::Unit(about_axle));
   const double tau = -omega_z_dot(s, free) / s.Q.row(2).dot(unit.segment<3>(3));
   return {free + unit * tau, tau};
 }
 
-// The moment -(s N + brake) kappa about the axle; where the ground pulls, only the brake's part is left.
-Solution solve_rolling(const WheelScene& scene, const Multibody& s, Vector9 column) {
+// The moment -(s N + brake) kappa about the axle.
+Solution solve_rolling(const WheelScene& scene, const Multibody& s, Vector9 column, bool pulls, const Against* slides) {
   const double kappa = wheel_kappa(&scene.friction, omega_z(s)), brake = scene.load.brake;
   column[about_axle] -= brake * kappa;
-  if (scene.ground != WHEEL_GROUND_PULLS) {
-    const Vector9 unknowns = system_matrix(s, kappa).partialPivLu().solve(column);
-    if (kappa == 0) return {unknowns, 0};
-    if (unknowns[lambda_3] > 0 || scene.ground == WHEEL_GROUND_PRESSES)
-      return {unknowns, -(s.wheel.s * unknowns[lambda_3] + brake) * kappa};
-  }
-  return {system_matrix(s, 0).partialPivLu().solve(column), -brake * kappa};
+  const Vector9 unknowns = system_matrix(s, pulls ? 0 : kappa, slides).partialPivLu().solve(column);
+  if (kappa == 0) return {unknowns, 0};
+  return {unknowns, -((pulls ? 0 : s.wheel.s * unknowns[lambda_3]) + brake) * kappa};
 }
 
-// (24) under the scene's law of friction.
-Solution solve(const WheelScene& scene, const Multibody& s, const Vector9& column) {
-  return scene.friction.kind == WHEEL_HELD ? solve_held(s, column) : solve_rolling(scene, s, column);
+// (24) under the scene's law of friction. A ground that pulls has no friction: only the brake's part is left.
+Solution solve(const WheelScene& scene, const Multibody& s, const Vector9& column, const Against* slides = nullptr) {
+  const bool held = scene.friction.kind == WHEEL_HELD;
+  const Against none = Against::Zero();
+  const auto by_law = [&](bool pulls) {
+    const Against* const against = slides && pulls ? &none : slides;
+    return held ? solve_held(s, column, against) : solve_rolling(scene, s, column, pulls, against);
+  };
+  if (scene.ground == WHEEL_GROUND_PULLS) return by_law(true);
+  Solution presses = by_law(false);
+  if (scene.ground == WHEEL_GROUND_PRESSES || (held && !slides)) return presses;
+  const bool pulls = (slides ? by_law(true) : presses).unknowns[lambda_3] <= 0;  // sliding friction keeps the sign of N
+  return pulls ? by_law(true) : presses;
 }
 
 // Rate at which errors of the constraints decay, 1/s: a few times the rates of the motion itself, so that it is never
@@ -179,11 +194,15 @@ void kinematics(const WheelParameters*, const double* y, WheelKinematics* out) {
           y[Y_O_dot], y[Z_O_dot], y[psi_dot], y[theta_dot], phi_dot,  y[spin]};
 }
 
+void fill_dynamics(const WheelScene& scene, const Multibody& s, const Solution& solution, WheelDynamics* out) {
+  const auto& [x, tau] = solution;
+  const double spin_dot = scene.friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, x);
+  *out = {x[X_O], x[Y_O], x[Z_O], x[psi], x[theta], x[phi], spin_dot, {x[lambda_1], x[lambda_2], x[lambda_3]}, tau};
+}
+
 void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   const Multibody s(scene->wheel, y);
-  const auto [x, tau] = solve(*scene, s, system_column(s, scene->load));
-  const double spin_dot = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, x);
-  *out = {x[X_O], x[Y_O], x[Z_O], x[psi], x[theta], x[phi], spin_dot, {x[lambda_1], x[lambda_2], x[lambda_3]}, tau};
+  fill_dynamics(*scene, s, solve(*scene, s, system_column(s, scene->load)), out);
 }
 
 void stop_spin(const WheelParameters* wheel, double* y) {
@@ -196,12 +215,110 @@ void reduce(const double* y, double* reduced) {
       y[psi_dot] * std::sin(y[theta]), y[spin], y[psi], y[phi], y[X_O], y[Y_O];
 }
 
+// The wheel that slides: |u| and chi are states in the place of X_O_dot and Y_O_dot.
+enum SlipState { speed = X_O_dot, chi = Y_O_dot };
+
+Eigen::Vector2d slip_direction(const double* y) { return {std::cos(y[psi] + y[chi]), std::sin(y[psi] + y[chi])}; }
+
+// y (multibody state) of a sliding state: (19) with the slip on its right-hand side, but for Z_O_dot, which is a state.
+void release(const WheelParameters* wheel, const double* sliding, double* y) {
+  std::copy_n(sliding, WHEEL_MULTIBODY_STATES, y);
+  set_rolling_velocity(*wheel, y);
+  Eigen::Map<Eigen::Vector2d>(y + X_O_dot) += sliding[speed] * slip_direction(sliding);
+  y[Z_O_dot] = sliding[Z_O_dot];
+}
+
+struct Sliding {
+  std::array<double, WHEEL_MULTIBODY_STATES> y;
+  Multibody s;
+  Against slides;
+  Vector9 column;
+
+  Sliding(const WheelScene& scene, const double* sliding)
+      : y(released(scene.wheel, sliding)),
+        s(scene.wheel, y.data()),
+        slides(scene.mu_slide * slip_direction(sliding)),
+        column(system_column(s, scene.load)) {
+    column.segment<2>(6).setZero();
+  }
+  static std::array<double, WHEEL_MULTIBODY_STATES> released(const WheelParameters& wheel, const double* sliding) {
+    std::array<double, WHEEL_MULTIBODY_STATES> y;
+    release(&wheel, sliding, y.data());
+    return y;
+  }
+};
+
+// As `derivative`, with the two rows that are left; the slip's rate is that of [B]{q_dot}, its axes turn with psi.
+double sliding_derivative(const WheelScene* scene, const double* y, double* y_dot) {
+  Sliding now(*scene, y);
+  const Multibody& s = now.s;
+  const double rate = decay_rate(s);
+  now.column[8] -= rate * (B(s) * s.q_dot)[2];
+  const Solution solution = solve(*scene, s, now.column, &now.slides);
+  Eigen::Map<Vector6> velocities(y_dot), accelerations(y_dot + 6);
+  const Vector3 slip_dot = B(s) * solution.unknowns.head<6>() + B_dot(s) * s.q_dot;
+  const Eigen::Vector2d d = slip_direction(y);
+  velocities = s.q_dot;
+  velocities[Z_O] -= rate * (y[Z_O] - (scene->wheel.r_0 * s.attitude.sin_theta + scene->wheel.r));
+  accelerations = solution.unknowns.head<6>();
+  y_dot[speed] = slip_dot.head<2>().dot(d);
+  y_dot[chi] = y[speed] == 0 ? 0 : (slip_dot[1] * d[0] - slip_dot[0] * d[1]) / y[speed] - y[psi_dot];
+  y_dot[spin] = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, solution.unknowns);
+  const double N = solution.unknowns[lambda_3];
+  if (N >= 0) return N;
+  const Against none = Against::Zero();  // without sliding friction N has the same sign, or friction wedges the wheel
+  return solve(*scene, s, now.column, &none).unknowns[lambda_3] > 0 ? INFINITY : N;
+}
+
+void sliding_start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
+  start(wheel, motion, y);
+  y[speed] = Eigen::Vector2d(motion->slip_x, motion->slip_y).norm();
+  y[chi] = wheel_angle_of(motion->slip_x, motion->slip_y);
+}
+
+void sliding_kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
+  kinematics(wheel, Sliding::released(*wheel, y).data(), out);
+}
+
+void sliding_dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
+  const Sliding now(*scene, y);
+  fill_dynamics(*scene, now.s, solve(*scene, now.s, now.column, &now.slides), out);
+}
+
+void sliding_stop_spin(const WheelParameters*, double* y) { y[spin] = 0; }
+
+void sliding_grip(const WheelParameters* wheel, double* y) { set_rolling_velocity(*wheel, y); }
+
+void sliding_reduce(const double* y, double* reduced) {
+  std::fill_n(reduced, WHEEL_SLIDING_STATES, 0.0);
+  reduce(y, reduced);
+  std::copy_n(y + speed, 2, reduced + WHEEL_REDUCED_STATES);
+}
+
 }  // namespace
 }  // namespace wheel::paper
 
 using namespace wheel::paper;
 
 // Its velocities are states: the pose takes no more than they do.
-const WheelFormulation wheel_multibody = {
-    "multibody", WHEEL_MULTIBODY_STATES, start, derivative, spin, theta, kinematics, kinematics, dynamics, reduce,
-    stop_spin};
+const WheelFormulation wheel_multibody = {"multibody", WHEEL_MULTIBODY_STATES,
+                                          start,       derivative,
+                                          spin,        theta,
+                                          -1,          kinematics,
+                                          kinematics,  dynamics,
+                                          reduce,      stop_spin,
+                                          nullptr};
+
+const WheelFormulation wheel_multibody_sliding = {"multibody_sliding",
+                                                  WHEEL_MULTIBODY_STATES,
+                                                  sliding_start,
+                                                  sliding_derivative,
+                                                  spin,
+                                                  theta,
+                                                  speed,
+                                                  sliding_kinematics,
+                                                  sliding_kinematics,
+                                                  sliding_dynamics,
+                                                  sliding_reduce,
+                                                  sliding_stop_spin,
+                                                  sliding_grip};

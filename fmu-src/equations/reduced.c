@@ -2,32 +2,11 @@
  * solved in advance; equivalent to the paper's (24). Carrier frame e1, e2, e3, see wheel_equations.h.
  *
  * The reaction R (carrier) is eliminated from m a = F + R and dH/dt = M + c x R + tau e3, where c = (0, -rho, -eta)
- * points from O to the contact. docs/equations.md derives every line. */
+ * points from O to the contact. docs/equations.md derives every line. State and geometry: carrier.h. */
 #include <math.h>
 #include <string.h>
 
-#include "wheel_equations.h"
-
-/* The state. */
-enum { THETA, OMEGA_1, OMEGA_2, OMEGA_3, PSI, PHI, X_O, Y_O };
-
-/* Geometry and velocity of O at one state; components along e1, e2, e3. */
-typedef struct Carrier {
-  double sin_theta, cos_theta, sin_psi, cos_psi;
-  double rho, eta; /* contact below O along e2, r_0 + r sin(theta), and along e3, r cos(theta) */
-  double omega_1, omega_2, omega_3;
-  double Omega_3; /* psi_dot cos(theta), third component of the carrier's own angular velocity */
-  double psi_dot, phi_dot;
-  double v_1, v_2, v_3; /* v_O = omega x (r_0 e2 + r e_Z), e_Z vertical: rolling without slip */
-} Carrier;
-
-/* The inertia diag(J_x, J_y, J_z) of the body axes seen from the carrier, which it turns against by phi:
- *   [ I_11  p     0   ]
- *   [ p     I_22  0   ]    I_11, I_22 = (J_x + J_y)/2 +- q,  q = D cos(2 phi), p = D sin(2 phi), D = (J_x - J_y)/2
- *   [ 0     0     J_z ]    p = q = 0 where J_x = J_y */
-typedef struct Inertia {
-  double I_11, I_22, p, q;
-} Inertia;
+#include "carrier.h"
 
 /* The terms of Newton's and Euler's equations without omega_dot: the force k = m b - F, N (b: acceleration of O without
  * its part in omega_dot, F: external force, weight included), and the external less the gyroscopic moment, N m. */
@@ -63,53 +42,20 @@ typedef struct Accelerations {
   double tau; /* moment of ground and brake about the axle */
 } Accelerations;
 
-/* Inlined: what a caller does not read is not computed. */
-__attribute__((always_inline)) static inline Carrier carrier_of(const WheelParameters* w, const double* y) {
-  Carrier c = {.sin_theta = sin(y[THETA]), .cos_theta = cos(y[THETA])};
-  c.sin_psi = sin(y[PSI]);
-  c.cos_psi = cos(y[PSI]);
-  c.omega_1 = y[OMEGA_1];
-  c.omega_2 = y[OMEGA_2];
-  c.omega_3 = y[OMEGA_3];
-  c.rho = w->r_0 + w->r * c.sin_theta;
-  c.eta = w->r * c.cos_theta;
-  c.psi_dot = c.omega_2 / c.sin_theta;
-  c.Omega_3 = c.psi_dot * c.cos_theta;
-  c.phi_dot = c.omega_3 - c.Omega_3;
-  c.v_1 = c.eta * c.omega_2 - c.rho * c.omega_3;
-  c.v_2 = -(c.eta * c.omega_1);
-  c.v_3 = c.rho * c.omega_1;
-  return c;
-}
-
-static inline Inertia inertia_of(const WheelParameters* w, double phi) {
-  if (w->J_x == w->J_y) return (Inertia){.I_11 = w->J_x, .I_22 = w->J_x};
-  double mean = 0.5 * (w->J_x + w->J_y), D = 0.5 * (w->J_x - w->J_y);
-  double q = D * cos(2.0 * phi), p = D * sin(2.0 * phi);
-  return (Inertia){.I_11 = mean + q, .I_22 = mean - q, .p = p, .q = q};
-}
-
-/* Drift under the weight's part across the road alone. H: angular momentum about O. */
+/* Drift under the weight's part across the road alone. */
 static inline Drift drift_of(const WheelParameters* w, const Inertia* I, const Carrier* c) {
   double b_1 = c->omega_1 * (w->r_0 * c->omega_2 - c->eta * c->phi_dot);
   double b_2 = w->r * c->sin_theta * (c->omega_1 * c->omega_1) + c->Omega_3 * c->v_1 - c->omega_1 * c->v_3;
   double b_3 = c->eta * (c->omega_1 * c->omega_1) + c->omega_1 * c->v_2 - c->omega_2 * c->v_1;
-  double H_1 = I->I_11 * c->omega_1 + I->p * c->omega_2;
-  double H_2 = I->p * c->omega_1 + I->I_22 * c->omega_2;
-  double H_3 = w->J_z * c->omega_3;
-  Drift d = {
+  Moment M = gyroscopic_moment(w, I, c);
+  return (Drift){
       .k_1 = w->m * b_1,
       .k_2 = w->m * (b_2 + w->g * c->sin_theta),
       .k_3 = w->m * (b_3 + w->g * c->cos_theta),
-      .M_1 = c->Omega_3 * H_2 - c->omega_2 * H_3,
-      .M_2 = c->omega_1 * H_3 - c->Omega_3 * H_1,
-      .M_3 = c->omega_2 * H_1 - c->omega_1 * H_2,
+      .M_1 = M.M_1,
+      .M_2 = M.M_2,
+      .M_3 = M.M_3,
   };
-  if (w->J_x != w->J_y) { /* the inertia itself turns against the carrier */
-    d.M_1 += 2.0 * c->phi_dot * (I->p * c->omega_1 - I->q * c->omega_2);
-    d.M_2 -= 2.0 * c->phi_dot * (I->q * c->omega_1 + I->p * c->omega_2);
-  }
-  return d;
 }
 
 /* Adds {F} of (15), F turned from fixed axes into the carrier, M already there; and a weight (N) along the road. */
@@ -301,14 +247,7 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   Accelerations a = move(&now.system, &law);
   reaction_of(w, &now, &a, out->lambda);
   out->tau = a.tau;
-  out->omega_z_dot = a.omega_3_dot;
-  out->theta_ddot = a.omega_1_dot;
-  out->psi_ddot = (a.omega_2_dot - c->omega_1 * c->Omega_3) / c->sin_theta;
-  out->phi_ddot = a.omega_3_dot - out->psi_ddot * c->cos_theta + c->omega_1 * c->omega_2;
-  /* m a = lambda + F + weight */
-  out->X_O_ddot = (out->lambda[0] + scene->load.F[0]) / w->m + w->g_X;
-  out->Y_O_ddot = (out->lambda[1] + scene->load.F[1]) / w->m + w->g_Y;
-  out->Z_O_ddot = (out->lambda[2] + scene->load.F[2]) / w->m - w->g;
+  set_accelerations(scene, c, a.omega_1_dot, a.omega_2_dot, a.omega_3_dot, out);
 }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {
@@ -318,8 +257,9 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
 
 static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_REDUCED_STATES); }
 
-const WheelFormulation wheel_reduced = {
-    "reduced", WHEEL_REDUCED_STATES, start, derivative, OMEGA_3, THETA, kinematics, pose, dynamics, reduce, stop_spin};
+const WheelFormulation wheel_reduced = {"reduced", WHEEL_REDUCED_STATES, start, derivative, OMEGA_3, THETA,
+                                        -1,        kinematics,           pose,  dynamics,   reduce,  stop_spin,
+                                        0};
 
 /* For a given pose, lambda and tau are linear in the load and in the moments of friction. The law's grip is kept; its
  * `brake` is the rate of the moment that does not follow N. */
@@ -347,17 +287,25 @@ static void add_reaction(const WheelScene* scene, const AxleLaw* law, const doub
   out->tau_dot += weight * a.tau;
 }
 
+double wheel_rate_of(const double* y, const double* y_dot) {
+  double swing = fabs(y_dot[OMEGA_1]) + fabs(y_dot[OMEGA_2]) + fabs(y_dot[OMEGA_3]);
+  return (fabs(y[OMEGA_1]) + fabs(y[OMEGA_2])) / sin(y[THETA]) + fabs(y[OMEGA_3]) + sqrt(swing);
+}
+
 /* Three parts: the load's rate and the law's own rate, exact, and the state's motion under a frozen load and law, by a
  * difference quotient of fourth order. Its step is a small part of the time in which the wheel itself moves. */
 void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
                           const double* state, WheelReactionRates* out) {
-  const double share = 1e-3;
   static const WheelLoad constant = {{0}, {0}, 0};
   if (!load_dot) load_dot = &constant;
-  double y[WHEEL_REDUCED_STATES], y_dot[WHEEL_REDUCED_STATES];
+  double y[WHEEL_SLIDING_STATES], y_dot[WHEEL_REDUCED_STATES];
   formulation->reduce(state, y);
   y[PSI] = wheel_less_turns(y[PSI]); /* a small step must not vanish in the rounding of a large angle */
   y[PHI] = wheel_less_turns(y[PHI]);
+  if (formulation->slip_index >= 0) {
+    wheel_sliding_reaction_rates(scene, load_dot, y, out);
+    return;
+  }
   AxleLaw law;
   double N = rates_of(scene, y, y_dot, &law);
   AxleLaw changing = law; /* of (s N + brake) kappa at a constant N */
@@ -369,10 +317,9 @@ void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene*
   }
   respond(scene, load_dot, &changing, y, out);
 
-  double swing = fabs(y_dot[OMEGA_1]) + fabs(y_dot[OMEGA_2]) + fabs(y_dot[OMEGA_3]);
-  double rate = (fabs(y[OMEGA_1]) + fabs(y[OMEGA_2])) / sin(y[THETA]) + fabs(y[OMEGA_3]) + sqrt(swing);
+  double rate = wheel_rate_of(y, y_dot);
   if (rate == 0) return; /* the wheel is at rest and stays so */
-  double h = share / rate;
+  double h = WHEEL_SHARE_OF_TIME / rate;
   add_reaction(scene, &law, y, y_dot, h, 8 / (12 * h), out);
   add_reaction(scene, &law, y, y_dot, -h, -8 / (12 * h), out);
   add_reaction(scene, &law, y, y_dot, 2 * h, -1 / (12 * h), out);

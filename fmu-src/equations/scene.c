@@ -34,6 +34,14 @@ double wheel_less_turns(double angle) {
   return rest;
 }
 
+double wheel_angle_of(double x, double y) {
+  double size = sqrt(x * x + y * y), angle = x < 0 ? copysign(3.141592653589793, y) : 0;
+  if (size == 0) return 0;
+  /* The rest is less than a quarter turn; each time its sine is taken off. */
+  for (int i = 0; i < 6; ++i) angle += y / size * cos(angle) - x / size * sin(angle);
+  return angle;
+}
+
 void wheel_set_slope(WheelParameters* wheel, double g, double slope, double direction) {
   wheel->g = g * cos(slope);
   wheel->g_X = -g * sin(slope) * cos(direction);

@@ -1,10 +1,12 @@
 /* The wheel's equations behind one C header: "Dynamics of an automobile wheel" (Stanescu & Mihalcea).
  *
- * A torus-shaped wheel rolls without slip on the plane Z = 0, with or without rolling friction. Two formulations
- * compute the same motion for any principal moments of inertia:
+ * A torus-shaped wheel rolls without slip on the plane Z = 0, with or without rolling friction, or slides on it under
+ * Coulomb's friction. Two formulations compute the same motion for any principal moments of inertia:
  *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states; as `euler` with
  *              the Euler angles' rates in the place of the angular velocity
  *   multibody  the paper's system (24); unknowns q and q_dot, constraints held at acceleration level; 12 states
+ * While the wheel slides, two constraints are released, and each has a form of its own, `sliding` and
+ * `multibody_sliding`: the slip joins the state.
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
  *
  * Frames (docs/variables.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the carrier e1 (along
@@ -17,7 +19,7 @@
 extern "C" {
 #endif
 
-enum { WHEEL_REDUCED_STATES = 8, WHEEL_MULTIBODY_STATES = 12, WHEEL_MAX_STATES = 12 };
+enum { WHEEL_REDUCED_STATES = 8, WHEEL_SLIDING_STATES = 12, WHEEL_MULTIBODY_STATES = 12, WHEEL_MAX_STATES = 12 };
 
 /* Constants of one wheel, (1), (2), (27)-(31). */
 typedef struct WheelParameters {
@@ -68,12 +70,18 @@ typedef enum WheelGround {
   WHEEL_GROUND_PULLS     /* nowhere */
 } WheelGround;
 
-/* All that a right-hand side needs besides the state. `wheel_scene` makes one and checks it. */
+/* Whether the material point at the contact rests on the ground, or slides over it. */
+typedef enum WheelContactMode { WHEEL_GRIPS, WHEEL_SLIDES } WheelContactMode;
+
+/* All that a right-hand side needs besides the state. `wheel_scene` makes one and checks it; it grips. One that slides
+ * belongs to the formulations with a slip, and others ignore its mu_slide. */
 typedef struct WheelScene {
   WheelParameters wheel;
   WheelFriction friction;
   WheelLoad load;
   WheelGround ground;
+  WheelContactMode contact;
+  double mu_slide; /* >= 0, coefficient of sliding friction: the ground's horizontal force is mu_slide N */
 } WheelScene;
 
 /* The scene of a wheel under a load (NULL: none) and a law of friction, for example
@@ -88,6 +96,7 @@ typedef struct WheelMotion {
   double psi, theta, phi;             /* rad */
   double psi_dot, theta_dot, phi_dot; /* rad/s */
   double X_O, Y_O;                    /* m */
+  double slip_x, slip_y;              /* m/s, of the material point at the contact, see WheelFormulation.slip_index */
 } WheelMotion;
 
 /* Positions and velocities, fixed axes. */
@@ -124,14 +133,21 @@ typedef struct WheelFormulation {
   double (*derivative)(const WheelScene* scene, const double* y, double* y_dot);
   /* Where y holds omega_z, (21), and theta. */
   int spin_index, tilt_index;
+  /* Where y holds |u|, m/s, and chi behind it; -1: the wheel grips. u = |u| (cos(chi), sin(chi)) is the slip, the
+   * velocity of the wheel's material point at the contact, along e1 and across it to the left. At |u| = 0 the rate of
+   * chi is written as zero: it is any, or infinite. */
+  int slip_index;
   void (*kinematics)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
   /* The same without X_O_dot and Y_O_dot, which cost the sine and cosine of psi. */
   void (*pose)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
   void (*dynamics)(const WheelScene* scene, const double* y, WheelDynamics* out);
-  /* The state of `wheel_reduced` (out) with the same position and angular velocity. */
+  /* The state of `wheel_reduced` (out) with the same position and angular velocity; with a slip, that of
+   * `wheel_sliding`. */
   void (*reduce)(const double* y, double* reduced);
   /* Sets omega_z to exactly zero: the start of a phase in which it is held there. */
   void (*stop_spin)(const WheelParameters* wheel, double* y);
+  /* The end of the slip: y becomes a state of the form that grips; null in these. */
+  void (*grip)(const WheelParameters* wheel, double* y);
 } WheelFormulation;
 
 /* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Where J_x = J_y, phi enters nothing, and a
@@ -146,6 +162,30 @@ extern const WheelFormulation wheel_euler;
  * whose spin is held keeps it at exactly zero. The constraints are stabilised: what rounding and step errors leave of
  * [B]{q_dot} and of Z_O - height decays, on the true motion nothing changes. */
 extern const WheelFormulation wheel_multibody;
+
+/* y = that of `wheel_reduced`, |u|, chi, and two zeros that rest: Newton and Euler, with the ground's horizontal force
+ * -mu_slide N u / |u| given and the vertical constraint alone solved in advance. */
+extern const WheelFormulation wheel_sliding;
+
+/* y = that of `wheel_multibody` with |u| and chi in the place of X_O_dot and Y_O_dot: (24) with the law of friction in
+ * the place of the two horizontal constraints. */
+extern const WheelFormulation wheel_multibody_sliding;
+
+/* A slip in the direction chi, at a state of `wheel_reduced` under the scene's laws, whatever its `contact` is: its own
+ * rate without the turning of e1 is (growth d + turn t), d along the slip and t a quarter turn ahead, whatever |u| is.
+ * So |u| chi_dot = turn - |u| psi_dot: near |u| = 0 chi settles where turn falls through zero. */
+typedef struct WheelSlip {
+  double N;            /* N, normal force */
+  double room;         /* 1 without sliding friction; where it falls to zero, friction wedges the wheel: no N holds */
+  double growth, turn; /* m/s2 */
+  double settling;     /* m/s2, -d(turn)/d(chi) */
+} WheelSlip;
+WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi);
+
+/* The direction chi in which a slip from |u| = 0 begins: it grows and its direction is kept (turn = 0, settling > 0).
+ * Of several that nearest to the direction against the force that grip would need. NaN where there is none: the ground
+ * does not press, or friction wedges the wheel. */
+double wheel_slip_direction(const WheelScene* scene, const double* reduced);
 
 /* Time derivatives of lambda and tau along the motion, while the law and the sign of N last; load_dot is the rate of
  * the load (NULL: constant). */
@@ -178,6 +218,9 @@ void wheel_horizontal_force_rates(const WheelKinematics* motion, const double la
 
 /* The same angle, rad, less whole turns: from -pi to pi, exact to the last digit however large it is. */
 double wheel_less_turns(double angle);
+
+/* The angle from the first axis to (x, y), rad, from -pi to pi; 0 for (0, 0). */
+double wheel_angle_of(double x, double y);
 
 /* Height of O, m: r_0 sin(theta) + r, (32). */
 double wheel_height(const WheelParameters* wheel, double theta);

@@ -16,8 +16,8 @@ bool check_input(const Instance& i, fmi2ValueReference variable) {
 }
 
 bool check_output(const Instance& i, fmi2ValueReference variable) {
-  const bool output = variable < wheel::variable_count && wheel::row_of(variable).role == Role::output;
-  return i.check(output, misfit, variable, "an output");
+  const bool output = wheel::is_variable(variable, wheel::Type::real) && wheel::row_of(variable).role == Role::output;
+  return i.check(output, misfit, variable, "a real output");
 }
 
 // Of a directional derivative.

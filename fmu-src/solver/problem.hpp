@@ -5,9 +5,9 @@
 
 namespace solver {
 
-inline constexpr int max_states = 12, max_extremes = 16, max_degree = 12, max_watched = 12;
+inline constexpr int max_states = 12, max_extremes = 16, max_degree = 12, max_watched = 16;
 
-enum class Method : int { adams, bdf, runge_kutta };
+enum class Method : int { adams, bdf, runge_kutta, collocation };
 
 // What follows from an event, for the owner to decide: the motion ends there; it goes on from there under other rates;
 // or nothing of it changes.
@@ -20,6 +20,14 @@ struct Watched {
   // Whether the margins that `derivative` returns count this function in. It is then looked at only in steps in which
   // a margin came near zero, else at each step. It must be scaled as they are.
   bool by_margin;
+};
+
+// A state whose rate is turning / y[speed]: where the speed is small, or zero at the start of a step, it settles at
+// once where the turning vanishes. What `derivative` gives as its rate is then not used.
+struct Settling {
+  int state, speed;
+  // Out: the derivative of the turning by the state.
+  double (*turning)(void* owner, double t, const double* y, double* slope);
 };
 
 // `owner` is passed to each function. The solver may ask at any (t, y) in any order, and the answer depends on
@@ -42,6 +50,7 @@ struct Problem {
   int (*extremes)(void* owner, double t_lo, double t_hi, double* instants);
   double near;          // margins below this are near zero
   double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
+  Settling settling;    // for collocation alone
   bool passage;      // brief: Runge-Kutta keeps the step size that it wants outside of passages for the time after it
   double share = 1;  // of the error that a step may otherwise make
 

@@ -28,9 +28,6 @@ constexpr double safety = 0.9;
 // step, and adds at most 8 % to the step's error.
 constexpr double stretch = 1.01;
 
-// Made of square roots, because pow may differ between platforms in the last bit.
-double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
-
 }  // namespace
 
 // One step of the engine, as wide as the state.

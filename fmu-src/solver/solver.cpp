@@ -10,6 +10,7 @@ namespace solver {
 bool Solver::start(const Problem& problem, Method method, double t, const double* y) {
   pending_ = Outcome::failed;
   runge_kutta_ = {};
+  collocation_ = {};
   step_ = {};  // nothing that is saved is left of an earlier solution
   event_ = 0;
   std::fill_n(values_, max_watched, 0.0);

@@ -1,12 +1,13 @@
 // One initial-value problem y' = f(t, y) and its solution step by step: dense output, events, endings, snapshots.
 //
-// Engines behind one interface (step.hpp): CVODE's Adams and BDF, and DOP853.
+// Engines behind one interface (step.hpp): CVODE's Adams and BDF, DOP853, and collocation.
 // Knows no wheel and no FMI. Time is the owner's own clock (s). Steps never see the times at which results are read, so
 // the communication grid cannot change a bit of the solution; only a stop time that the owner sets cuts a step short.
 #pragma once
 
 #include <cmath>
 
+#include "collocation.hpp"
 #include "cvode_engine.hpp"
 #include "problem.hpp"
 #include "runge_kutta.hpp"
@@ -88,7 +89,8 @@ class Solver {
   mutable Step step_ = {};
   Cvode adams_{Method::adams}, bdf_{Method::bdf};
   RungeKutta runge_kutta_;
-  Engine* const engines_[3] = {&adams_, &bdf_, &runge_kutta_};  // in the order of Method
+  Collocation collocation_;
+  Engine* const engines_[4] = {&adams_, &bdf_, &runge_kutta_, &collocation_};  // in the order of Method
 };
 
 }  // namespace solver

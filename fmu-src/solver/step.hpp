@@ -17,6 +17,9 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 // Two times closer than this are the same instant, s.
 inline double rounding_at(double t) { return 8 * std::numeric_limits<double>::epsilon() * std::fabs(t); }
 
+// Made of square roots, because pow may differ between platforms in the last bit.
+inline double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
+
 // Root mean square of weight times entry: even and odd ones apart, which the processor sums side by side.
 template <int width>
 double weighted_norm(const double* x, const double* weights) {

@@ -62,22 +62,41 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
 
 Consequence change_spin(const Setup& setup, Event, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
-  if (law != WHEEL_FRICTIONLESS) setup.formulation->stop_spin(&now.scene.wheel, y);
+  if (law != WHEEL_FRICTIONLESS) formulation_of(setup, now.scene).stop_spin(&now.scene.wheel, y);
   decide_law(setup, t, y, now, law == WHEEL_HELD);
   return Consequence::bends;
 }
 
-// N^2 - (lambda_t / mu_max)^2 over the weight squared, below zero too where the ground pulls. Rounding is relative to
-// mu_max N, and that of a tangential force of zero.
-double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  constexpr double rounding = 1e-12, rounding_of_zero = 1e-15;
-  const WheelScene scene = now.scene_at(t);
-  WheelDynamics dynamics;
-  setup.formulation->dynamics(&scene, y, &dynamics);
-  const double* lambda = dynamics.lambda;
-  const double X = lambda[0] / setup.weight / setup.mu_max, Y = lambda[1] / setup.weight / setup.mu_max;
-  const double N = lambda[2] / setup.weight * (1 + rounding) + std::fmin(rounding_of_zero / setup.mu_max, 1);
-  return N * std::fabs(N) - (X * X + Y * Y);
+double grip_reserve(const Setup& setup, const InForce& now, double t, const double* y) {
+  return grip_left(setup, now.scene_at(t), y);
+}
+
+Consequence lose_grip(const Setup& setup, Event, double t, double* y, InForce& now) {
+  begin_slide(setup, t, y, now);
+  return Consequence::bends;
+}
+
+bool is_sliding(const Setup&, const InForce& now) { return now.slides(); }
+
+double way_to_settle(const Setup& setup, const InForce& now, double t, const double* y) {
+  return settling_left(setup, now.scene_at(t), now.contact == Contact::settled, y);
+}
+
+Consequence change_settling(const Setup&, Event, double, double*, InForce& now) {
+  now.set_contact(now.contact == Contact::settled ? Contact::slides : Contact::settled);
+  return Consequence::bends;
+}
+
+// What is left of the slip at its end falls at once.
+double slip_left(const Setup& setup, const InForce& now, double t, const double* y) {
+  const double least = now.contact == Contact::settled ? 0 : least_slip(setup, t);
+  return (y[setup.sliding->slip_index] - least) / setup.slip_scale;
+}
+
+Consequence end_slip(const Setup& setup, Event, double t, double* y, InForce& now) {
+  y[setup.sliding->slip_index] = 0;
+  decide_contact(setup, t, y, now);
+  return Consequence::bends;
 }
 
 bool always(const Setup&, const InForce&) { return true; }
@@ -85,6 +104,11 @@ bool always_ends(const Setup&) { return true; }
 
 // N over the weight.
 double pressure_of(const Setup& setup, const double*, double N) { return N / setup.weight; }
+// N grows without bound where friction wedges the wheel.
+double wedging_left(const Setup& setup, const double*, double N) {
+  constexpr double largest = 1e8;
+  return 1 - N / (largest * setup.whole_weight);
+}
 // rad from where the wheel counts as flat.
 double height_of(const Setup& setup, const double* y, double) {
   return angle_from_flat(y[setup.formulation->tilt_index]) - flat_angle;
@@ -93,7 +117,8 @@ double height_of(const Setup& setup, const double* y, double) {
 // The ground begins to pull or to press. Without friction the motion goes on as it was.
 Consequence change_contact(const Setup&, Event event, double, double*, InForce& now) {
   now.set_below(event, !now.is_below(event));
-  return now.scene.friction.kind == WHEEL_FRICTIONLESS ? Consequence::goes_on : Consequence::bends;
+  const bool same = now.scene.friction.kind == WHEEL_FRICTIONLESS && !now.slides();
+  return same ? Consequence::goes_on : Consequence::bends;
 }
 
 // Model exchange leaves a stiff law to the caller's solver.
@@ -109,11 +134,18 @@ constexpr EventRow event_rows[] = {
     layer_event(Event::crosses_layer, is_layered, way_to_edge),
     {.event = Event::spin_changes, .can_occur = can_change_spin, .value = spin_left, .follow = change_spin},
     {.event = Event::lost_grip,
-     .can_occur = [](const Setup& setup, const InForce&) { return setup.mu_max > 0; },
-     .value = grip_left,
-     .ends = always_ends,
+     .can_occur = [](const Setup& setup, const InForce& now) { return setup.mu_max > 0 && !now.slides(); },
+     .value = grip_reserve,
+     .ends = [](const Setup& setup) { return !setup.sliding; },
+     .follow = lose_grip,
      .ending = "needs a coefficient of friction above mu_max",
      .limit = [](const Setup& setup) { return setup.mu_max; }},
+    {.event = Event::settles,
+     .can_occur = is_sliding,
+     .value = way_to_settle,
+     .exchanged = false,
+     .follow = change_settling},
+    {.event = Event::slip_ends, .can_occur = is_sliding, .value = slip_left, .exchanged = false, .follow = end_slip},
     {.event = Event::lost_contact,
      .can_occur = always,
      .quick_value = pressure_of,
@@ -122,6 +154,13 @@ constexpr EventRow event_rows[] = {
      .follow = change_contact,
      .ending = "lifted off the ground",
      .observed = "the ground pulls, without keep_contact the wheel would lift off"},
+    {.event = Event::jams,
+     .can_occur = is_sliding,
+     .quick_value = wedging_left,
+     .exchanged = false,
+     .ends = always_ends,
+     .ending = "jams: friction wedges it, with mu_slide",
+     .limit = [](const Setup& setup) { return setup.mu_slide; }},
     {.event = Event::fell_flat,
      .can_occur = always,
      .quick_value = height_of,
@@ -154,7 +193,7 @@ double margin_of(const EventRow& row, const Setup& setup, const InForce& now, do
   if (row.value) return signed_margin(row, now, row.value(setup, now, t, y));
   double y_dot[WHEEL_MAX_STATES];
   const WheelScene scene = now.scene_at(t);
-  return signed_margin(row, now, row.quick_value(setup, y, setup.formulation->derivative(&scene, y, y_dot)));
+  return signed_margin(row, now, row.quick_value(setup, y, formulation_of(setup, scene).derivative(&scene, y, y_dot)));
 }
 
 double least_margin(const Setup& setup, const InForce& now, const double* y, double N) {

@@ -17,7 +17,7 @@ Held held_at(const Setup& setup, const WheelScene& scene, const double* y) {
   WheelScene trial = scene;
   trial.friction = {WHEEL_HELD, 0, 0};
   WheelDynamics held;
-  setup.formulation->dynamics(&trial, y, &held);
+  formulation_of(setup, scene).dynamics(&trial, y, &held);
   const double capacity = scene.wheel.s * std::max(held.lambda[2], 0.0) + scene.load.brake;
   const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
   return {held.tau, capacity + rounding - std::fabs(held.tau)};
@@ -47,19 +47,113 @@ void enter_layer(const Setup& setup, const WheelScene& scene, const double* y, I
   }
 }
 
+// The laws to try where the wheel loses its grip: without spin, with rolling friction or brake, first that it is held.
+bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
+  const bool some = now.scene.wheel.s != 0 || now.inputs.braked;
+  return some && setup.friction_law == exact_law && y[setup.formulation->spin_index] == 0;
+}
+
+// Whether a law of a wheel without spin agrees with the motion that it gives.
+bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
+  if (scene.friction.kind == WHEEL_HELD) return held_at(setup, scene, y).reserve >= 0;
+  WheelDynamics dynamics;
+  setup.sliding->dynamics(&scene, y, &dynamics);
+  return scene.friction.sigma * dynamics.omega_z_dot >= 0;
+}
+
+void settle(const Setup& setup, double t, const double* y, InForce& now) {
+  const bool settled = settling_left(setup, now.scene_at(t), false, y) < 0;
+  now.set_contact(settled ? Contact::settled : Contact::slides);
+}
+
 }  // namespace
 
 void let_act(const Setup& setup, double s, double t, const Polynomials& inputs, InForce& now) {
   now.scene.wheel = setup.wheel;
   now.scene.wheel.s = s;
+  now.scene.mu_slide = setup.mu_slide;
   now.scene.load = load_of(inputs);
   now.inputs.take_over(t, inputs);
 }
 
-void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& now) {
+void put_in_force(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
   let_act(setup, demand.parameters[variable::s], t, demand.inputs, now);
   now.layer = Layer::none;
+  setup.sliding ? decide_contact(setup, t, y, now) : decide_law(setup, t, y, now);
+}
+
+void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
+  if (now.slides() && y[setup.sliding->slip_index] > least_slip(setup, t)) {
+    decide_law(setup, t, y, now);
+    return settle(setup, t, y, now);
+  }
+  if (now.slides()) setup.sliding->grip(&now.scene.wheel, y);
+  now.set_contact(Contact::grips);
   decide_law(setup, t, y, now);
+  if (!(grip_left(setup, now.scene_at(t), y) >= 0)) begin_slide(setup, t, y, now);
+}
+
+// Without a direction a slip of no account is there already: the event that ends the run follows at once, or the ground
+// begins to pull. Where it pulls, the slip begins along the forces.
+void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
+  double reduced[WHEEL_MAX_STATES];
+  setup.formulation->reduce(y, reduced);
+  now.set_contact(Contact::settled);
+  WheelScene scene = now.scene_at(t);
+  const auto take = [&](const WheelFriction& law) {
+    scene.friction = now.scene.friction = law;
+    double chi = wheel_slip_direction(&scene, reduced);
+    const bool begins = !std::isnan(chi);
+    if (!begins) {
+      WheelScene slippery = scene;
+      slippery.mu_slide = 0;
+      const WheelSlip free = wheel_slip(&slippery, reduced, 0);
+      chi = wheel_angle_of(free.growth, free.turn);
+    }
+    now.set_contact(begins || now.pulls() ? Contact::settled : Contact::slides);
+    y[setup.sliding->slip_index] = now.contact == Contact::settled ? 0 : least_slip(setup, t);
+    y[setup.sliding->slip_index + 1] = chi;
+  };
+  if (may_be_held(setup, now, y)) {
+    for (const WheelFriction& law : {WheelFriction{WHEEL_HELD, 0, 0}, {WHEEL_ROLLING, 1, 0}, {WHEEL_ROLLING, -1, 0}}) {
+      take(law);
+      if (agrees(setup, scene, y)) break;
+    }
+  } else {
+    take(friction_at(setup, scene, now.inputs.braked, y));
+    decide_law(setup, t, y, now);
+  }
+}
+
+double least_slip(const Setup& setup, double t) {
+  constexpr double part = 0.01, roundings = 64;
+  return setup.slip_scale * (part * setup.tolerance + roundings * solver::rounding_at(t) / setup.own_time);
+}
+
+// Rounding is relative to mu_max N, and that of a tangential force of zero.
+double grip_left(const Setup& setup, const WheelScene& scene, const double* y) {
+  constexpr double rounding = 1e-12, rounding_of_zero = 1e-15;
+  WheelDynamics dynamics;
+  setup.formulation->dynamics(&scene, y, &dynamics);
+  const double* lambda = dynamics.lambda;
+  const double X = lambda[0] / setup.weight / setup.mu_max, Y = lambda[1] / setup.weight / setup.mu_max;
+  const double N = lambda[2] / setup.weight * (1 + rounding) + std::fmin(rounding_of_zero / setup.mu_max, 1);
+  return N * std::fabs(N) - (X * X + Y * Y);
+}
+
+// settling^2 - (rates |u| / own_time)^2 - (ratio growth)^2 over the scale of accelerations squared. A settled slide
+// stays so up to a smaller ratio, and its growth counts only when the slip is no longer near zero.
+double settling_left(const Setup& setup, const WheelScene& scene, bool settled, const double* y) {
+  constexpr double rates = 100, ratio = 15, looser = 0.25;
+  double reduced[WHEEL_MAX_STATES];
+  setup.sliding->reduce(y, reduced);
+  const double* const slip = y + setup.sliding->slip_index;
+  const WheelSlip now = wheel_slip(&scene, reduced, slip[1]);
+  const double scale = setup.length / (setup.own_time * setup.own_time), settling = now.settling / scale;
+  const double begun = settled ? slip[0] / (slip[0] + setup.slip_scale) : 1;
+  const double turning = rates * slip[0] / setup.own_time / scale, growth = ratio * begun * now.growth / scale;
+  const double left = settling * std::fabs(settling) - (settled ? looser : 1) * (turning * turning + growth * growth);
+  return settled ? left : -left;
 }
 
 void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
@@ -82,7 +176,7 @@ double softness_of(const Setup& setup, const WheelScene& scene, const double* y)
   const WheelParameters& wheel = scene.wheel;
   const double inertia = wheel.J_z + wheel.m * setup.length * setup.length;
   double y_dot[WHEEL_MAX_STATES];
-  const double N = std::max(setup.weight, setup.formulation->derivative(&scene, y, y_dot));
+  const double N = std::max(setup.weight, formulation_of(setup, scene).derivative(&scene, y, y_dot));
   return 1 - (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia) * setup.own_time / stiff;
 }
 
@@ -91,13 +185,15 @@ double holding_reserve(const Setup& setup, const WheelScene& scene, const double
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {
+  if (now.contact == Contact::settled) return solver::Method::collocation;
   if (setup.method == adams_method) return solver::Method::adams;
   const bool stiff = setup.method == bdf_method || now.layer == Layer::sticking;
   return stiff ? solver::Method::bdf : solver::Method::runge_kutta;
 }
 
 bool is_unfoldable(const Setup& setup, const InForce& in_force) {
-  return setup.unfolds && in_force.scene.friction.kind == WHEEL_FRICTIONLESS && !in_force.inputs.loaded;
+  return setup.unfolds && in_force.scene.friction.kind == WHEEL_FRICTIONLESS && !in_force.inputs.loaded &&
+         !in_force.slides();
 }
 
 }  // namespace wheel

@@ -9,8 +9,27 @@ namespace wheel {
 // What acts from t on: `s` and inputs.
 void let_act(const Setup& setup, double s, double t, const Polynomials& inputs, InForce& in_force);
 
-// Puts in force, at the state y, what is asked for: `s`, inputs from t on, and the law of friction that goes with them.
-void put_in_force(const Setup& setup, const Demand& demand, double t, const double* y, InForce& in_force);
+// Puts in force, at the state y, what is asked for: `s`, inputs from t on, and the contact and the law of friction that
+// go with them. Writes the slip in y.
+void put_in_force(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
+
+// Decides contact and law from t and y on. A slip that is more than nothing goes on; else the wheel grips where it can,
+// and begins to slide where it cannot. Writes the slip in y: zero, in the direction in which it begins.
+void decide_contact(const Setup& setup, double t, double* y, InForce& in_force);
+
+// The wheel, without slip at y, loses its grip: Coulomb's law, in the direction in which it lets a slip grow and stay.
+void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
+
+// m/s, the slip at which one ends that is not settled: its direction turns ever faster. Errors of it do not count, and
+// instants have digits for it.
+double least_slip(const Setup& setup, double t);
+
+// N^2 - (lambda_t / mu_max)^2 over the weight squared, of a wheel that grips; below zero too where the ground pulls.
+double grip_left(const Setup& setup, const WheelScene& scene, const double* y);
+
+// Above zero while a slide stays settled, or while it stays unsettled: the rate at which its direction settles against
+// the wheel's own rate and the growth of the slip.
+double settling_left(const Setup& setup, const WheelScene& scene, bool settled, const double* y);
 
 // Decides the law of friction from t and y on. At omega_z = 0 after Filippov: held where the moment that holds the
 // wheel is within s N + M_brake, else rolling against that moment. `released`: friction and brake can no longer hold

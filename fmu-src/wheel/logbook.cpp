@@ -20,9 +20,11 @@ Consequence pass_event(Wheel& wheel, Event event) {
   Run& run = wheel.run;
   const EventRow& row = row_of(event);
   const WheelFriction before = run.in_force.scene.friction;
+  const bool slid = run.in_force.slides();
   const Consequence consequence = row.follow(wheel.setup, event, run.t, run.y, run.in_force);
   if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) count_event(wheel, event, run.t);
   log_transition(wheel, before);
+  log_contact(wheel, slid, event != Event::slip_ends);
   return consequence;
 }
 
@@ -46,6 +48,16 @@ void log_transition(Wheel& wheel, const WheelFriction& before) {
   else
     wheel.reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant, change,
                        friction.sigma > 0 ? "positive" : "negative");
+}
+
+void log_contact(Wheel& wheel, bool slid, bool goes_on) {
+  const bool slides = wheel.run.in_force.slides();
+  if (slides == slid && (goes_on || !slides)) return;
+  ++wheel.run.transitions;
+  wheel.reporter.log(Topic::event, "t = %s s: the wheel %s.", instant_of(wheel.setup, wheel.run.t),
+                     !slides ? "grips"
+                     : slid  ? "slides in another direction"
+                             : "slides");
 }
 
 void log_summaries(const Wheel& wheel) {

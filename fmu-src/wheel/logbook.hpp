@@ -17,6 +17,9 @@ void count_event(Wheel& wheel, Event event, double t);
 
 // Counts and logs a change between held, positive and negative spin since the law `before`.
 void log_transition(Wheel& wheel, const WheelFriction& before);
+// The same between grip and sliding since `slid`; goes_on: the slip has not ended, so that a wheel that still slides
+// has not lost its grip anew.
+void log_contact(Wheel& wheel, bool slid, bool goes_on);
 // At the end of a run: the observed events that were not logged one by one.
 void log_summaries(const Wheel& wheel);
 

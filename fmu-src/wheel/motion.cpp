@@ -50,9 +50,11 @@ Outcome take_demand(Wheel& w) {
   w.demand.changed = false;
   if (!changed) return Outcome::stepped;
   const WheelFriction before = run.in_force.scene.friction;
+  const bool slid = run.in_force.slides();
   if (run.phase == Phase::unfolded) place_observed(w.setup, run.t, run.y, run.in_force);
   put_in_force(w.setup, w.demand, run.t, run.y, run.in_force);
   log_transition(w, before);
+  log_contact(w, slid, true);
   if (run.phase == Phase::at_start) return Outcome::stepped;
   const double interval = run.t - run.last_change;
   run.last_change = run.t;

@@ -1,6 +1,7 @@
 // What the solver asks: right-hand side, error weights, watched functions.
 #include "problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,12 +13,29 @@ const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(own
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
-  const auto rates = [&](const WheelScene& scene) { return setup.formulation->derivative(&scene, y, y_dot); };
+  const WheelFormulation& formulation = formulation_of(setup, now.scene);
+  const auto rates = [&](const WheelScene& scene) { return formulation.derivative(&scene, y, y_dot); };
   const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
   double sum = 0;
-  for (int i = 0; i < setup.formulation->states; ++i) sum += y_dot[i];
+  for (int i = 0; i < formulation.states; ++i) sum += y_dot[i];
   if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
   return least_margin(setup, now, y, N);
+}
+
+// Outside of a settled slide a small slip has small errors of its own, so that the polynomial of a step does not pass
+// zero; its direction may have larger ones: they are errors of a small velocity, and of a force that acts briefly.
+void weigh_slip(const Setup& setup, double tolerance, bool settled, const double* y, double* weights) {
+  constexpr double largest = 0.01, part_of_slip = 1e-3, rounding = 32 * std::numeric_limits<double>::epsilon();
+  const int slip = setup.sliding->slip_index;
+  const double speed = std::fabs(y[slip]), part = 0.01 * setup.slip_scale / speed;
+  double of_speed = tolerance * setup.slip_scale, of_direction = tolerance;
+  if (!settled) {
+    of_speed = std::fmin(of_speed, part_of_slip * speed);
+    of_direction *= std::clamp(part, 1.0, largest / tolerance);
+  }
+  for (int i = slip + 2; i < setup.sliding->states && setup.sliding == &wheel_sliding; ++i) weights[i] = 1;  // at rest
+  weights[slip] = 1 / (of_speed + rounding * speed);
+  weights[slip + 1] = 1 / (of_direction + rounding * std::fabs(y[slip + 1]));
 }
 
 // The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
@@ -31,7 +49,9 @@ void weights(void* owner, double share, const double* y, double* weights) {
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
-  if (wheel_of(owner).run.in_force.scene.friction.kind != WHEEL_REGULARIZED) return;
+  const InForce& now = wheel_of(owner).run.in_force;
+  if (now.slides()) weigh_slip(setup, tolerance, now.contact == Contact::settled, y, weights);
+  if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
   const double part = 10 * std::sqrt(tolerance);
   const double layer = part * setup.omega_s + tolerance * std::fabs(y[spin]);
   weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
@@ -39,6 +59,18 @@ void weights(void* owner, double share, const double* y, double* weights) {
 
 double margin(void* owner, int event, double t, const double* y) {
   return margin_of(row_of(static_cast<Event>(event)), wheel_of(owner).setup, wheel_of(owner).run.in_force, t, y);
+}
+
+// Of the direction of slip: |u| chi_dot.
+double turning(void* owner, double t, const double* y, double* slope) {
+  const Setup& setup = wheel_of(owner).setup;
+  const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
+  double reduced[WHEEL_MAX_STATES];
+  setup.sliding->reduce(y, reduced);
+  const double* const slip = y + setup.sliding->slip_index;
+  const WheelSlip now = wheel_slip(&scene, reduced, slip[1]);
+  *slope = -now.settling;
+  return now.turn - slip[0] * reduced[2] / std::sin(reduced[0]);
 }
 
 int extremes(void* owner, double t_lo, double t_hi, double* instants) {
@@ -52,14 +84,15 @@ solver::Problem problem_of(Wheel& wheel) {
   const Setup& setup = wheel.setup;
   const InForce& now = wheel.run.in_force;
   solver::Problem problem = {};
-  problem.states = setup.formulation->states;
+  problem.states = formulation_of(setup, now.scene).states;
   problem.owner = &wheel;
   problem.derivative = derivative;
   problem.weights = weights;
   problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
-  problem.passage = now.layer == Layer::passing;
+  problem.passage = now.layer == Layer::passing || now.slides();
+  if (now.slides()) problem.settling = {setup.sliding->slip_index + 1, setup.sliding->slip_index, turning};
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr});
   return problem;
@@ -69,7 +102,9 @@ Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
   auto& wheel = *static_cast<Wheel*>(owner);
   const EventRow& row = row_of(static_cast<Event>(event));
   if (ends_run(row, wheel.setup)) return Consequence::ends;
-  return row.follow(wheel.setup, row.event, t, y, wheel.run.in_force);
+  double state[WHEEL_MAX_STATES] = {};  // longer than that of the orbit, which no event moves
+  std::copy_n(y, WHEEL_REDUCED_STATES, state);
+  return row.follow(wheel.setup, row.event, t, state, wheel.run.in_force);
 }
 
 }  // namespace wheel

@@ -1,6 +1,8 @@
 // Quantities at one instant, on request.
 #include "reading.hpp"
 
+#include <cmath>
+
 namespace wheel {
 
 // True once per part and instant; marks it as present.
@@ -11,18 +13,17 @@ bool Reading::missing(unsigned part) {
 }
 
 const WheelKinematics& Reading::pose() {
-  if (!(have_ & have_kinematics) && missing(have_pose))
-    now_.setup->formulation->pose(&now_.scene.wheel, now_.y, &kinematics_);
+  if (!(have_ & have_kinematics) && missing(have_pose)) formulation().pose(&now_.scene.wheel, now_.y, &kinematics_);
   return kinematics_;
 }
 
 const WheelKinematics& Reading::kinematics() {
-  if (missing(have_kinematics)) now_.setup->formulation->kinematics(&now_.scene.wheel, now_.y, &kinematics_);
+  if (missing(have_kinematics)) formulation().kinematics(&now_.scene.wheel, now_.y, &kinematics_);
   return kinematics_;
 }
 
 const WheelDynamics& Reading::dynamics() {
-  if (missing(have_dynamics)) now_.setup->formulation->dynamics(&now_.scene, now_.y, &dynamics_);
+  if (missing(have_dynamics)) formulation().dynamics(&now_.scene, now_.y, &dynamics_);
   return dynamics_;
 }
 
@@ -32,12 +33,27 @@ double Reading::horizontal_force(int axis) {
   return force[axis];
 }
 
+double Reading::slip(int axis) const {
+  if (contact_mode() == WHEEL_GRIPS) return 0;
+  const double* const u = now_.y + formulation().slip_index;
+  return u[0] * (axis == 0 ? std::cos(u[1]) : std::sin(u[1]));
+}
+
+double Reading::slip_rate(int axis) const {
+  if (contact_mode() == WHEEL_GRIPS) return 0;
+  double y_dot[WHEEL_MAX_STATES];
+  formulation().derivative(&now_.scene, now_.y, y_dot);
+  const double *const u = now_.y + formulation().slip_index, *const u_dot = y_dot + formulation().slip_index;
+  const double c = std::cos(u[1]), s = std::sin(u[1]), across = u[0] * u_dot[1];
+  return axis == 0 ? u_dot[0] * c - across * s : u_dot[0] * s + across * c;
+}
+
 const ReactionRates& Reading::reaction_rates() {
   if (missing(have_rates)) {
     WheelReactionRates rates;
     double force_dot[2];
     const WheelLoad load_rate = load_rate_of(*now_.inputs);
-    wheel_reaction_rates(now_.setup->formulation, &now_.scene, &load_rate, now_.y, &rates);
+    wheel_reaction_rates(&formulation(), &now_.scene, &load_rate, now_.y, &rates);
     wheel_horizontal_force_rates(&pose(), dynamics().lambda, rates.lambda_dot, force_dot);
     rates_ = {rates, force_dot[0], force_dot[1]};
   }

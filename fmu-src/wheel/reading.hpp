@@ -41,6 +41,10 @@ class Reading {
   const WheelDynamics& dynamics();
   // N, the ground's: along e1 (0) or across it (1).
   double horizontal_force(int axis);
+  // m/s and m/s2, of the wheel's material point at the contact: along e1 (0) or across it (1).
+  double slip(int axis) const;
+  double slip_rate(int axis) const;
+  int contact_mode() const { return now_.scene.contact; }
   const ReactionRates& reaction_rates();
   const WheelContact& contact();  // X_C and Y_C as the state counts X_O and Y_O
   double energy();                // J, of the whole X_O and Y_O
@@ -51,6 +55,7 @@ class Reading {
  private:
   enum : unsigned { have_pose = 1, have_kinematics = 2, have_dynamics = 4, have_rates = 8, have_contact = 16 };
   bool missing(unsigned part);
+  const WheelFormulation& formulation() const { return formulation_of(*now_.setup, now_.scene); }
 
   Present now_ = {};
   bool is_set_ = false;

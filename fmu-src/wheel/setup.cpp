@@ -53,6 +53,7 @@ void set_error_scales(Setup& setup) {
   const double reduced[] = {1, turn, turn, turn, 3, 3, 3 * length, 3 * length};
   // The velocity of O is bound to the rates by the constraints: weighed lower, it strays less from them.
   const double speed = 0.15 * slowest * length;
+  setup.slip_scale = speed;
   const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, turn};
   const double euler[] = {3 * length, 3 * length, 3, 1, 3, turn, turn, turn};
   std::copy_n(f == &wheel_reduced ? reduced : f == &wheel_euler ? euler : multibody, f->states, setup.slow_scales);
@@ -92,6 +93,22 @@ bool check_kind(const Reporter& reporter, const Demand& demand) {
                         "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
 }
 
+// Its slip would be two more states than another solver is given.
+bool check_sliding(const Reporter& reporter, const Demand& demand) {
+  const double* v = demand.parameters;
+  const double mu_max = v[variable::mu_max], mu_slide = v[variable::mu_slide];
+  const double slip_x = v[variable::slip_x_start], slip_y = v[variable::slip_y_start];
+  const bool slips = std::fabs(slip_x) + std::fabs(slip_y) > 0;
+  bool sound = reporter.check(!(mu_slide > mu_max), "mu_slide = %s: it must be at most mu_max = %s.",
+                              Digits{mu_slide, 9}, Digits{mu_max, 9});
+  sound &= reporter.check(!slips || mu_slide > 0,
+                          "slip_x_start, slip_y_start = %s, %s m/s: a start with slip needs mu_slide.",
+                          Digits{slip_x, 9}, Digits{slip_y, 9});
+  sound &= reporter.check(mu_slide == 0 || demand.kind == Kind::co_simulation,
+                          "mu_slide = %s: model exchange has no states for a slip and needs 0.", Digits{mu_slide, 9});
+  return sound;
+}
+
 // No mass distribution has one principal moment above the sum of the others; the limit is the flat disc.
 bool check_inertia(const Reporter& reporter, const double* v) {
   constexpr double rounding = 1e-12;
@@ -109,6 +126,7 @@ bool check_values(const Demand& demand, const Reporter& reporter) {
   for (unsigned v = 0; v < stored_count; ++v) sound &= check_value(reporter, v, demand.value(v));
   sound &= check_inertia(reporter, demand.parameters);
   sound &= check_kind(reporter, demand);
+  sound &= check_sliding(reporter, demand);
   return sound;
 }
 
@@ -121,6 +139,7 @@ Setup setup_of(const Demand& demand) {
   const bool multibody = choice_of(v[formulation]) == multibody_formulation,
              exchanged = setup.kind == Kind::model_exchange;
   setup.formulation = exchanged ? &wheel_euler : multibody ? &wheel_multibody : &wheel_reduced;
+  if (v[mu_slide] > 0) setup.sliding = multibody ? &wheel_multibody_sliding : &wheel_sliding;
   setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
   if (v[slope] != 0) wheel_set_slope(&setup.wheel, v[g], v[slope], v[slope_direction]);
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
@@ -130,20 +149,23 @@ Setup setup_of(const Demand& demand) {
                   setup.method == automatic_method;
   setup.keep_contact = v[keep_contact] != 0;
   setup.mu_max = v[mu_max];
+  setup.mu_slide = v[mu_slide];
   setup.tolerance = demand.tolerance;
   setup.psi = {v[psi_start], exchanged ? v[psi_start] : wheel_less_turns(v[psi_start])};
   setup.phi = {v[phi_start], exchanged ? v[phi_start] : wheel_less_turns(v[phi_start])};
   setup.X_O = {v[X_O_start], exchanged ? v[X_O_start] : 0};
   setup.Y_O = {v[Y_O_start], exchanged ? v[Y_O_start] : 0};
-  const WheelMotion motion = {setup.psi.own,      v[theta_start],   setup.phi.own, v[psi_dot_start],
-                              v[theta_dot_start], v[phi_dot_start], setup.X_O.own, setup.Y_O.own};
+  const WheelMotion motion = {setup.psi.own,    v[theta_start], setup.phi.own, v[psi_dot_start], v[theta_dot_start],
+                              v[phi_dot_start], setup.X_O.own,  setup.Y_O.own, v[slip_x_start],  v[slip_y_start]};
   WheelKinematics start;
-  setup.formulation->start(&setup.wheel, &motion, setup.start);
-  setup.formulation->kinematics(&setup.wheel, setup.start, &start);
+  setup.starts_sliding = setup.sliding && (motion.slip_x != 0 || motion.slip_y != 0);
+  const WheelFormulation& formulation = setup.starts_sliding ? *setup.sliding : *setup.formulation;
+  formulation.start(&setup.wheel, &motion, setup.start);
+  formulation.kinematics(&setup.wheel, setup.start, &start);
   // omega_z = phi_dot + psi_dot cos(theta): of two parts that cancel only rounding is left, which has no sign.
   const double rounding = 4 * std::numeric_limits<double>::epsilon();
   if (std::fabs(start.omega_z) <= rounding * (std::fabs(start.phi_dot) + std::fabs(start.psi_dot)))
-    setup.formulation->stop_spin(&setup.wheel, setup.start);
+    formulation.stop_spin(&setup.wheel, setup.start);
   set_scales(setup, start);
   set_error_scales(setup);
   return setup;

@@ -48,16 +48,19 @@ struct Origin {
 
 struct Setup {
   Kind kind;
-  double start_time;  // s
-  const WheelFormulation* formulation;
-  WheelParameters wheel;  // its `s` is zero here: the one in force is part of the run
+  double start_time;                    // s
+  const WheelFormulation* formulation;  // while the wheel grips
+  const WheelFormulation* sliding;      // while it slides; null: it never does
+  WheelParameters wheel;                // its `s` is zero here: the one in force is part of the run
   FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
   SolverMethod method = automatic_method;
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y, a level road, choices automatic
   bool keep_contact;
   double mu_max;                   // the road's coefficient of friction; 0: not checked
+  double mu_slide;                 // coefficient of sliding friction
   double tolerance;                // relative, of the whole solution
+  bool starts_sliding;             // with a slip
   double start[WHEEL_MAX_STATES];  // the initial state
   Origin psi, phi, X_O, Y_O;
   double tilting;                        // rad/s, initial rate of turning about e1 and e2
@@ -67,10 +70,16 @@ struct Setup {
   double whole_weight;                   // N, or the force that the time scale stands for without a weight
   double weight;                         // N, scale of the normal force: its part across the road
   double rate_scale, moment_scale;       // rad/s, N m, of margins; powers of two, so that scaling rounds nothing
+  double slip_scale;                     // m/s, of the slip: error that counts as one, and of its margin
   double slow_scales[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly
 };
 
 Setup setup_of(const Demand& demand);
+
+// The equations of the contact's mode.
+inline const WheelFormulation& formulation_of(const Setup& setup, const WheelScene& scene) {
+  return scene.contact == WHEEL_SLIDES && setup.sliding ? *setup.sliding : *setup.formulation;
+}
 
 // The scales at the spin omega_z, rad/s. A fast wheel hardly tilts: the range of theta falls with the square of the
 // spin, that of the rates with the spin, and errors are weighed by these ranges.

@@ -82,7 +82,9 @@ Present present_for(Wheel& w, unsigned known) {
   Present now = present(w);
   const bool brake = known == first_input + brake_input && w.demand.kind == Kind::co_simulation;
   if (!brake || now.scene.friction.kind != WHEEL_FRICTIONLESS) return now;
-  InForce used = in_force_now(w);
+  double y[WHEEL_MAX_STATES];
+  std::copy_n(now.y, WHEEL_MAX_STATES, y);
+  InForce used = in_force_now(w, y);
   used.inputs.braked = true;
   decide_law(w.setup, w.run.t, now.y, used);
   now.scene.friction = used.scene.friction;
@@ -124,6 +126,9 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
 bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns, std::size_t count, double* sums) {
   const bool parameter = known < first_input;
   if (parameter && row_of(known).type != Type::real) return true;
+  const bool of_slip =
+      known == variable::slip_x_start || known == variable::slip_y_start || known == variable::mu_slide;
+  if (of_slip && !w.setup.sliding) return true;  // a wheel that never slides has no slip
   Pass pass;
   for (std::size_t k = 0; k < count; ++k) pass.ask(unknowns[k]);
   if (!(parameter ? take_by_parameter(w, known, pass) : take_at_instant(w, known, pass))) return false;

@@ -48,6 +48,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
   archive("place in the layer of a stiff law").count(now.layer, 0, static_cast<int>(Layer::sticking));
+  archive("contact with the ground").count(now.contact, 0, static_cast<int>(Contact::slides));
   archive("origin of the inputs in force, s").number(now.inputs.origin);
   archive("inputs in force");
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
@@ -96,6 +97,16 @@ bool observed_fit(const Setup& setup, const Run& run) {
   return true;
 }
 
+// Whether the state is that of the start, with the slip that follows from what is in force.
+bool starts_there(const Setup& setup, const Run& run) {
+  double y[WHEEL_MAX_STATES];
+  std::copy_n(setup.start, WHEEL_MAX_STATES, y);
+  InForce now = run.in_force;
+  now.set_contact(setup.starts_sliding ? Contact::slides : Contact::grips);
+  if (setup.sliding) decide_contact(setup, 0, y, now);
+  return std::equal(y, y + WHEEL_MAX_STATES, run.y);
+}
+
 // Completes a run that was read by what follows from its demand. Null where a run can have been in this state, else
 // what is wrong with it.
 const char* complete(const Demand& demand, Setup& setup, Run& run) {
@@ -108,6 +119,8 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   let_act(setup, now.scene.wheel.s, now.inputs.origin, Inputs(now.inputs).c, now);
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
   now.set_below(Event::lost_contact, now.pulls());
+  if (now.slides() && !setup.sliding) return "the wheel slides without mu_slide";
+  now.set_contact(now.contact);
   if (!end_fits(setup, run)) return "no such event ends a run";
   if (!law_fits(setup, now)) return "the law of friction does not fit s and the brake";
   if (!observed_fit(setup, run)) return "an event is counted that cannot be observed";
@@ -119,8 +132,7 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   const bool stepped = run.phase == Phase::at_start || run.phase == Phase::stepping || run.phase == Phase::unfolded;
   if (demand.kind == Kind::model_exchange ? stepped : exchanged) return "the phase is one of the other kind of run";
   const bool at_start = run.phase == Phase::initial || run.phase == Phase::at_start;
-  if (at_start && !(run.t == 0 && std::equal(setup.start, setup.start + WHEEL_MAX_STATES, run.y)))
-    return "a run that has not begun stands at its start";
+  if (at_start && !(run.t == 0 && starts_there(setup, run))) return "a run that has not begun stands at its start";
   return nullptr;
 }
 

@@ -45,6 +45,9 @@ constexpr Access readers[] = {
     {variable::lambda_x, AT(now.horizontal_force(0)), AT(now.reaction_rates().lambda_x_dot)},
     {variable::lambda_y, AT(now.horizontal_force(1)), AT(now.reaction_rates().lambda_y_dot)},
     {variable::tau, AT(now.dynamics().tau), AT(now.reaction_rates().tau_dot)},
+    {variable::slip_x, AT(now.slip(0)), AT(now.slip_rate(0))},
+    {variable::slip_y, AT(now.slip(1)), AT(now.slip_rate(1))},
+    {variable::contact_mode, AT(now.contact_mode())},
     {variable::theta_ddot, AT(now.dynamics().theta_ddot)},
     {variable::psi_ddot, AT(now.dynamics().psi_ddot)},
     {variable::phi_ddot, AT(now.dynamics().phi_ddot)},
@@ -82,7 +85,9 @@ constexpr Row rows[] = {
 #include "variables.inc"
 };
 
-constexpr auto has_rate = [](const Row& row) { return row.role != Role::output || row.read_rate; };
+constexpr auto has_rate = [](const Row& row) {
+  return row.role != Role::output || row.type != Type::real || row.read_rate;
+};
 static_assert(std::size(rows) == variable_count && std::size(readers) == variable_count - stored_count);
 static_assert(std::all_of(std::begin(rows), std::end(rows), has_rate));
 

@@ -44,8 +44,9 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   w.solution.orbit_until = Solution::none;
   if (!check_values(w.demand, reporter)) return false;
   w.setup = setup_of(w.demand);
-  put_in_force(w.setup, w.demand, 0, w.setup.start, run.in_force);
-  std::copy_n(w.setup.start, w.setup.formulation->states, run.y);
+  std::copy_n(w.setup.start, WHEEL_MAX_STATES, run.y);
+  run.in_force.set_contact(w.setup.starts_sliding ? Contact::slides : Contact::grips);
+  put_in_force(w.setup, w.demand, 0, run.y, run.in_force);
   w.demand.changed = false;
   Reading start;
   start.set(present(w));
@@ -53,16 +54,17 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   return run.phase == Phase::initial;
 }
 
-InForce in_force_now(const Wheel& w) {
+InForce in_force_now(const Wheel& w, double* y) {
   InForce now = w.run.in_force;
-  if (w.demand.changed) put_in_force(w.setup, w.demand, w.run.t, w.run.y, now);
+  if (w.demand.changed) put_in_force(w.setup, w.demand, w.run.t, y, now);
   return now;
 }
 
 // Where nothing was set, without a copy of all that is in force.
 Present present(Wheel& w) {
-  const double* const y = state_now(w);
-  const WheelScene scene = w.demand.changed ? in_force_now(w).scene : w.run.in_force.scene_at(w.run.t);
+  const double* y = state_now(w);
+  if (w.demand.changed) y = std::copy_n(y, WHEEL_MAX_STATES, w.y_ahead) - WHEEL_MAX_STATES;
+  const WheelScene scene = w.demand.changed ? in_force_now(w, w.y_ahead).scene : w.run.in_force.scene_at(w.run.t);
   Present now = {&w.setup, y, scene, &w.demand.inputs, &w.run, &w.solution.solver};
   now.scene.ground = WHEEL_GROUND_BY_FORCE;
   return now;

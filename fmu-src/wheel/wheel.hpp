@@ -33,6 +33,7 @@ struct Wheel {
   Setup setup = {};  // of the demand, from the first state on
   Run run;
   Solution solution;
+  double y_ahead[WHEEL_MAX_STATES] = {};  // of a reading: run.y with the slip that follows from what was set
 };
 
 // The state at the instant reached; writes run.y.
@@ -45,9 +46,9 @@ bool is_inside(Reading& now);
 // demand.changed and solution.orbit_until.
 bool prepare(Wheel& wheel, const Reporter& reporter);
 
-// The instant reached, with what was set since the last step. Writes run.y.
+// The instant reached, with what was set since the last step. Writes run.y and y_ahead.
 Present present(Wheel& wheel);
-// What acts there.
-InForce in_force_now(const Wheel& wheel);
+// What acts there; y: a copy of run.y, whose slip it writes.
+InForce in_force_now(const Wheel& wheel, double* y);
 
 }  // namespace wheel

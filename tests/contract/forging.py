@@ -69,7 +69,7 @@ def place_of(w: FMU2Wheel, row: str) -> int:
     after = HEADER + parameters
     stop, asked = after + 1, after + 3
     phase = asked + inputs + 2
-    of_phase = ("phase", "ended by", "s", "law", "sigma", "layer", "origin")
+    of_phase = ("phase", "ended by", "s", "law", "sigma", "layer", "contact", "origin")
     t = phase + len(of_phase) + inputs
     of_events = t + 14  # for each: whether it lies below zero, how often it occurred, when it last did
     contact, flat, transitions = (of_events + 3 * event for event in (LOST_CONTACT, FELL_FLAT, len(EVENTS)))

@@ -60,9 +60,10 @@ def test_variables_are_those_of_the_contract_in_its_order_with_its_units_and_kin
     assert [name for name in parameters if name in PARAMETERS] == PARAMETERS and outputs[: len(OUTPUTS)] == OUTPUTS
     assert [v.name for v in description.modelVariables] == [*parameters, *INPUTS, *outputs, *LOCALS]
     kinds = dict.fromkeys(parameters, ("fixed", "exact")) | {"s": ("tunable", "exact")}
-    kinds |= dict.fromkeys(outputs, ("continuous", "calculated")) | dict.fromkeys(INPUTS, ("continuous", "exact"))
-    kinds |= {name: ("continuous" if UNITS[name] else "discrete", "calculated") for name in LOCALS}
+    kinds |= dict.fromkeys(INPUTS, ("continuous", "exact"))
     for number, v in enumerate(description.modelVariables):
+        if v.name in outputs or v.name in LOCALS:
+            kinds[v.name] = ("continuous" if v.type == "Real" else "discrete", "calculated")
         assert (v.valueReference, (v.variability, v.initial)) == (number, kinds[v.name]), v.name
         assert unit_of(v) == UNITS.get(v.name, unit_of(v)), v.name
         assert v.type != "Real" or unit_of(v), v.name

@@ -31,8 +31,9 @@ def test_reduced_and_multibody_give_the_same_positions_and_velocities() -> None:
     )
     a, b = (eq.columns(k, *k.dtype.names) for k in (reduced, multibody))
     within(relative(a, b), 64 * EPSILON, "relative difference")
-    given = eq.columns(motions, *motions.dtype.names)
-    within(relative(eq.columns(reduced, *motions.dtype.names), given), 64 * EPSILON, "relative difference, 2")
+    names = [name for name in motions.dtype.names if name not in ("slip_x", "slip_y")]
+    given = eq.columns(motions, *names)
+    within(relative(eq.columns(reduced, *names), given), 64 * EPSILON, "relative difference, 2")
     scenes["wheel"]["r"] += 1e-9
     moved = eq.kinematics_each(eq.REDUCED, scenes, eq.start_each(eq.REDUCED, scenes, motions))
     beyond(relative(eq.columns(moved, *moved.dtype.names), b), 1e-10, "relative difference")  # r longer by 1 nm

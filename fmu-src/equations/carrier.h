@@ -1,0 +1,100 @@
+/* What the reduced forms share, rolling and sliding: the state, geometry and velocity in the carrier, the inertia seen
+ * from it. Carrier frame e1, e2, e3, see wheel_equations.h. For the files of this folder alone. */
+#ifndef WHEEL_CARRIER_H
+#define WHEEL_CARRIER_H
+
+#include <math.h>
+
+#include "wheel_equations.h"
+
+/* The state; the last two while the wheel slides. */
+enum { THETA, OMEGA_1, OMEGA_2, OMEGA_3, PSI, PHI, X_O, Y_O, SPEED, CHI };
+
+/* Geometry and velocity of O at one state; components along e1, e2, e3. */
+typedef struct Carrier {
+  double sin_theta, cos_theta, sin_psi, cos_psi;
+  double rho, eta; /* contact below O along e2, r_0 + r sin(theta), and along e3, r cos(theta) */
+  double omega_1, omega_2, omega_3;
+  double Omega_3; /* psi_dot cos(theta), third component of the carrier's own angular velocity */
+  double psi_dot, phi_dot;
+  double v_1, v_2, v_3; /* v_O = omega x (r_0 e2 + r e_Z), e_Z vertical: rolling without slip */
+} Carrier;
+
+/* The inertia diag(J_x, J_y, J_z) of the body axes seen from the carrier, which it turns against by phi:
+ *   [ I_11  p     0   ]
+ *   [ p     I_22  0   ]    I_11, I_22 = (J_x + J_y)/2 +- q,  q = D cos(2 phi), p = D sin(2 phi), D = (J_x - J_y)/2
+ *   [ 0     0     J_z ]    p = q = 0 where J_x = J_y */
+typedef struct Inertia {
+  double I_11, I_22, p, q;
+} Inertia;
+
+/* N m, components along e1, e2, e3. */
+typedef struct Moment {
+  double M_1, M_2, M_3;
+} Moment;
+
+/* Inlined: what a caller does not read is not computed. */
+__attribute__((always_inline)) static inline Carrier carrier_of(const WheelParameters* w, const double* y) {
+  Carrier c = {.sin_theta = sin(y[THETA]), .cos_theta = cos(y[THETA])};
+  c.sin_psi = sin(y[PSI]);
+  c.cos_psi = cos(y[PSI]);
+  c.omega_1 = y[OMEGA_1];
+  c.omega_2 = y[OMEGA_2];
+  c.omega_3 = y[OMEGA_3];
+  c.rho = w->r_0 + w->r * c.sin_theta;
+  c.eta = w->r * c.cos_theta;
+  c.psi_dot = c.omega_2 / c.sin_theta;
+  c.Omega_3 = c.psi_dot * c.cos_theta;
+  c.phi_dot = c.omega_3 - c.Omega_3;
+  c.v_1 = c.eta * c.omega_2 - c.rho * c.omega_3;
+  c.v_2 = -(c.eta * c.omega_1);
+  c.v_3 = c.rho * c.omega_1;
+  return c;
+}
+
+static inline Inertia inertia_of(const WheelParameters* w, double phi) {
+  if (w->J_x == w->J_y) return (Inertia){.I_11 = w->J_x, .I_22 = w->J_x};
+  double mean = 0.5 * (w->J_x + w->J_y), D = 0.5 * (w->J_x - w->J_y);
+  double q = D * cos(2.0 * phi), p = D * sin(2.0 * phi);
+  return (Inertia){.I_11 = mean + q, .I_22 = mean - q, .p = p, .q = q};
+}
+
+/* The moment by which the wheel resists being turned with its axle; H: angular momentum about O. */
+static inline Moment gyroscopic_moment(const WheelParameters* w, const Inertia* I, const Carrier* c) {
+  double H_1 = I->I_11 * c->omega_1 + I->p * c->omega_2;
+  double H_2 = I->p * c->omega_1 + I->I_22 * c->omega_2;
+  double H_3 = w->J_z * c->omega_3;
+  Moment M = {
+      .M_1 = c->Omega_3 * H_2 - c->omega_2 * H_3,
+      .M_2 = c->omega_1 * H_3 - c->Omega_3 * H_1,
+      .M_3 = c->omega_2 * H_1 - c->omega_1 * H_2,
+  };
+  if (w->J_x != w->J_y) { /* the inertia itself turns against the carrier */
+    M.M_1 += 2.0 * c->phi_dot * (I->p * c->omega_1 - I->q * c->omega_2);
+    M.M_2 -= 2.0 * c->phi_dot * (I->q * c->omega_1 + I->p * c->omega_2);
+  }
+  return M;
+}
+
+/* All of `out` but the reactions, which are set, from omega_dot; m a = lambda + F + weight. */
+static inline void set_accelerations(const WheelScene* scene, const Carrier* c, double omega_1_dot, double omega_2_dot,
+                                     double omega_3_dot, WheelDynamics* out) {
+  const WheelParameters* w = &scene->wheel;
+  out->omega_z_dot = omega_3_dot;
+  out->theta_ddot = omega_1_dot;
+  out->psi_ddot = (omega_2_dot - c->omega_1 * c->Omega_3) / c->sin_theta;
+  out->phi_ddot = omega_3_dot - out->psi_ddot * c->cos_theta + c->omega_1 * c->omega_2;
+  out->X_O_ddot = (out->lambda[0] + scene->load.F[0]) / w->m + w->g_X;
+  out->Y_O_ddot = (out->lambda[1] + scene->load.F[1]) / w->m + w->g_Y;
+  out->Z_O_ddot = (out->lambda[2] + scene->load.F[2]) / w->m - w->g;
+}
+
+/* 1/s, how fast the wheel moves, and the part of its time over which rates of the reactions are taken. */
+#define WHEEL_SHARE_OF_TIME 1e-3
+double wheel_rate_of(const double* y, const double* y_dot);
+
+/* How `wheel_reaction_rates` is answered while the wheel slides; y: the state of `wheel_sliding`. */
+void wheel_sliding_reaction_rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y,
+                                  WheelReactionRates* out);
+
+#endif

@@ -1,0 +1,34 @@
+// Collocation at the six points of Radau IIA, order 11: for a problem in which one state settles, however fast, on
+// where its turning vanishes. The points leave out the start of the step, so the step may begin where the settling is
+// infinitely fast (Problem::settling).
+//
+// Nothing is kept from step to step except the wanted size of the next one.
+#pragma once
+
+#include "step.hpp"
+
+namespace solver {
+
+class Collocation final : public Engine {
+ public:
+  bool start(const Problem&) override {
+    known_ = false;
+    return true;
+  }
+  bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
+  void expand(const Problem& problem, Counters* counters, Step* step) override;
+  void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) override;
+
+ private:
+  static constexpr int points = 6;
+  bool predict(const Problem& problem, const Step& last, Counters* counters, Step* step);
+  double try_size(const Problem& problem, const double* weights, Counters* counters, Step* step);
+  double sweep(const Problem& problem, const double* weights, Counters* counters, Step* step);
+  bool fits(const Problem& problem, const Step* step) const;
+
+  double liked_ = 0, size_ = 0;        // size of the next step and of the last, s; 0: none was made
+  bool known_ = false;                 // the rates are those of the last step
+  double f_[points][max_states] = {};  // at its points
+};
+
+}  // namespace solver

@@ -1,0 +1,205 @@
+"""The wheel that slides: two forms, and Newton and Euler with friction as a force at the contact (tests/reference).
+
+Random states of any inertia, under loads, each law of rolling friction, any slip; some wheels are wedged, so that N is
+infinite. Errors relative to the largest entry of their group.
+"""
+
+from ctypes import byref
+from dataclasses import replace
+from math import pi, tanh
+
+import numpy as np
+import pytest
+from equations import random_scenes
+from equations.pointwise import Table, distance, relative
+from reference import Wheel
+from reference.frames import quaternion, rotation, to_body, to_fixed
+from reference.motion import angle_accelerations, body_rates
+from reference.newton_euler import Law, carrier_moment
+from reference.sliding_contact import Sliding, respond, resting_directions
+from support import equations as eq
+from support.bounds import EPSILON, beyond, within
+
+ROWS = 3000
+FORMS = pytest.mark.parametrize("form", [eq.SLIDING, eq.MULTIBODY_SLIDING], ids=["reduced", "multibody"])
+ROOM = 0.05  # states with less are not judged: N grows without bound
+BOUND = 1e-9
+
+
+class Rows:
+    """Scenes and motions; `found`: by the reference, with the sign of N decided."""
+
+    def __init__(self, seed: int = 46) -> None:
+        random = np.random.default_rng(seed)
+        self.scenes = random_scenes.scenes(random, None, False, ROWS)
+        self.scenes["contact"], self.scenes["mu_slide"] = 1, random.uniform(0, 1.2, ROWS)
+        self.motions = random_scenes.motions(random, ROWS)
+        for axis in ("slip_x", "slip_y"):
+            self.motions[axis] = random.normal(size=ROWS) * 10 ** random.uniform(-6, 1, ROWS)
+        self.chi = np.arctan2(self.motions["slip_y"], self.motions["slip_x"])
+        self.found = [self.by_reference(scene, motion) for scene, motion in zip(self.scenes, self.motions, strict=True)]
+        pushes = [found.push(mu, chi) for (found, mu, _), chi in zip(self.found, self.turned(), strict=True)]
+        self.judged = np.array([push.room > ROOM for push in pushes])
+        self.pushes = pushes
+
+    def turned(self) -> list[float]:
+        """Directions of slip from X."""
+        return (self.chi + self.motions["psi"]).tolist()
+
+    @staticmethod
+    def by_reference(scene: Table, motion: Table) -> tuple[Sliding, float, tuple]:
+        """The answer, the coefficient of a ground that does not pull, and attitude and rotation."""
+        constants, friction, load = scene["wheel"], scene["friction"], scene["load"]
+        names = ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")
+        wheel = Wheel(**{name: float(constants[name]) for name in names})
+        R = rotation(*quaternion(*(float(motion[name]) for name in ("psi", "theta", "phi"))))
+        w = body_rates(R[2], *(float(motion[name]) for name in ("psi_dot", "theta_dot", "phi_dot")))
+        weight = [wheel.m * float(g) for g in (constants["g_X"], constants["g_Y"], -constants["g"])]
+        F = to_body(R, tuple(a + b for a, b in zip(load["F"].tolist(), weight, strict=True)))
+        M = carrier_moment(R[2], tuple(load["M"].tolist()))
+        kind = int(friction["kind"])
+        sigma = [0.0, 0.0, float(friction["sigma"]), 0.0, tanh(w[2] / float(friction["omega_s"]))][kind]
+        law = Law(wheel.s, sigma, kind == eq.HELD, float(load["brake"]))
+        found = respond(wheel, R, w, F, M, law)
+        if found.base[6] > 0:
+            return found, float(scene["mu_slide"]), (R, w)
+        return respond(replace(wheel, s=0.0), R, w, F, M, law._replace(s=0.0)), 0.0, (R, w)
+
+    def referenced(self) -> Table:
+        """WheelDynamics."""
+        out = eq.table(eq.Dynamics, ROWS)
+        for row, (found, _, (R, w)), push in zip(out, self.found, self.pushes, strict=True):
+            x = found.at(*push.force)
+            for name, value in zip(("X_O_ddot", "Y_O_ddot", "Z_O_ddot"), to_fixed(R, tuple(x[:3])), strict=True):
+                row[name] = value
+            turning = angle_accelerations(R[2], w, tuple(x[3:6]))
+            for name, value in zip(("psi_ddot", "theta_ddot", "phi_ddot"), turning, strict=True):
+                row[name] = value
+            row["omega_z_dot"], row["tau"], row["lambda_"] = x[5], x[7], (*push.force, x[6])
+        return out
+
+
+@pytest.fixture(scope="module")
+def rows() -> Rows:
+    return Rows()
+
+
+def states(form: eq.Formulation, rows: Rows) -> Table:
+    return eq.start_each(form, rows.scenes, rows.motions)
+
+
+@FORMS
+def test_accelerations_and_reactions_of_a_sliding_wheel_are_newtons_and_eulers(form, rows: Rows) -> None:
+    judge, seen = rows.referenced()[rows.judged], rows.judged
+    assert seen.sum() > 0.6 * ROWS and (judge["lambda_"][:, 2] > 0).sum() > 0.3 * ROWS
+
+    def error(scenes: Table) -> float:
+        return distance(eq.dynamics_each(form, scenes, states(form, rows))[seen], judge, scenes[seen])
+
+    within(error(rows.scenes), BOUND, "distance")
+    wrong = rows.scenes.copy()
+    wrong["mu_slide"] *= 1 + 1e-6
+    beyond(error(wrong), 1e-7, "distance with another coefficient")
+
+
+@FORMS
+def test_the_slip_changes_as_newton_and_euler_have_it(form, rows: Rows) -> None:
+    """|u|' and |u| (chi' + psi_dot), over their size."""
+    y = states(form, rows)
+    y_dot, _ = eq.derivative_each(form, rows.scenes, y)
+    speed, psi_dot = y[:, form.slip_index], rows.motions["psi_dot"]
+    got = np.column_stack([y_dot[:, form.slip_index], speed * (y_dot[:, form.slip_index + 1] + psi_dot)])
+    want = np.array([(push.grow, push.turn) for push in rows.pushes])
+    within(relative(got[rows.judged], want[rows.judged]), 1e-8, "rate of the slip")
+    slow = np.column_stack([got[:, 0], speed * y_dot[:, form.slip_index + 1]])
+    beyond(relative(slow[rows.judged], want[rows.judged]), 1e-2, "without the turning of the axes")
+
+
+@FORMS
+def test_the_velocity_of_O_is_that_of_rolling_and_the_slip_on_top(form, rows: Rows) -> None:
+    y = states(form, rows)
+    fast, still = y.copy(), y.copy()
+    still[:, form.slip_index] = 0
+    fast = eq.columns(eq.kinematics_each(form, rows.scenes, fast), "X_O_dot", "Y_O_dot", "Z_O_dot")
+    still = eq.columns(eq.kinematics_each(form, rows.scenes, still), "X_O_dot", "Y_O_dot", "Z_O_dot")
+    rolling = eq.kinematics_each(eq.REDUCED, rows.scenes, eq.start_each(eq.REDUCED, rows.scenes, rows.motions))
+    within(relative(still, eq.columns(rolling, "X_O_dot", "Y_O_dot", "Z_O_dot")), 64 * EPSILON, "velocity without slip")
+    slip = (rows.motions["slip_x"] + 1j * rows.motions["slip_y"]) * np.exp(1j * rows.motions["psi"])
+    off = (fast - still)[:, 0] + 1j * (fast - still)[:, 1] - slip
+    within(float((np.abs(off) / (1 + np.abs(fast).max(axis=1))).max()), 64 * EPSILON, "slip")
+
+
+def slips(rows: Rows, directions: Table) -> Table:
+    """wheel_slip in each direction: N, room, growth, turn, settling."""
+    reduced = eq.start_each(eq.REDUCED, rows.scenes, rows.motions)
+    out = []
+    for scene, y, chi in zip(rows.scenes, reduced, directions, strict=True):
+        record = eq.Scene.from_buffer_copy(scene.tobytes())
+        out.append(eq.values(eq.LIBRARY.wheel_slip(byref(record), y.ctypes.data_as(eq.DOUBLES), chi)))
+    return np.array(out)
+
+
+def test_growth_turning_and_settling_of_a_slip_follow_from_three_quantities(rows: Rows) -> None:
+    want = []
+    for (found, mu, _), push, chi in zip(rows.found, rows.pushes, rows.turned(), strict=True):
+        want.append((push.N, push.room, push.grow, push.turn, -found.turning(mu, chi)))
+    got, judge, seen = slips(rows, rows.chi), np.array(want), rows.judged
+    within(relative(got[seen][:, :1], judge[seen][:, :1]), BOUND, "normal force")
+    within(relative(got[seen][:, 1:2], judge[seen][:, 1:2]), BOUND, "room")
+    within(relative(got[seen][:, 2:], judge[seen][:, 2:]), BOUND, "rates")
+    beyond(relative(slips(rows, rows.chi + 1e-6)[seen][:, 2:], judge[seen][:, 2:]), 1e-7, "in another direction")
+
+
+def test_a_slip_begins_in_the_direction_that_grows_and_is_kept(rows: Rows) -> None:
+    """Against the roots of a quartic, the nearest to the opposite of grip's force first; none where there is none."""
+    reduced = eq.start_each(eq.REDUCED, rows.scenes, rows.motions)
+    worst, none, count = 0.0, 0, 0
+    for scene, y, (found, mu, _), psi in zip(rows.scenes, reduced, rows.found, rows.motions["psi"], strict=True):
+        record = eq.Scene.from_buffer_copy(scene.tobytes())
+        got = eq.LIBRARY.wheel_slip_direction(byref(record), y.ctypes.data_as(eq.DOUBLES))
+        least = 1e-10 * float(np.hypot(*found.free))
+        starts = []
+        for chi in resting_directions(found, mu):
+            push = found.push(mu, chi)
+            if push.grow > -least and push.room > 0 and push.N > 0 and found.turning(mu, chi) < 0:
+                starts.append(chi)
+        f_X, f_Y = found.grip()
+        starts.sort(key=lambda chi: -np.cos(chi - np.arctan2(-f_Y, -f_X)))
+        if not starts:
+            none += bool(np.isnan(got))
+            count += 1
+            continue
+        worst = max(worst, abs(np.remainder(got + psi - starts[0] + pi, 2 * pi) - pi))
+    assert none == count > 100 and ROWS - count > 500
+    within(worst, 1e-6, "direction, rad")
+
+
+def test_reactions_of_a_sliding_wheel_have_their_rates(rows: Rows) -> None:
+    """Central differences of sixth order along state, load and law."""
+    random, h = np.random.default_rng(8), 1e-4
+    load_dot = rows.scenes["load"].copy()
+    for part in ("F", "M", "brake"):
+        load_dot[part] *= random.normal(size=load_dot[part].shape)
+    rows.scenes["friction"]["omega_s"] = 5
+    for form in (eq.SLIDING, eq.MULTIBODY_SLIDING):
+        y = states(form, rows)
+        slow = np.hypot(rows.motions["slip_x"], rows.motions["slip_y"]) < 0.3
+        y_dot, N = eq.derivative_each(form, rows.scenes, y)
+        seen = (
+            rows.judged
+            & ~slow
+            & (np.abs(N) > 0.1 * np.abs(N[np.isfinite(N)]).mean())
+            & (np.abs(y_dot).max(axis=1) < 300)
+        )
+        seen &= (rows.scenes["mu_slide"] < 0.5) & (rows.motions["theta"] > 0.3) & (rows.motions["theta"] < 2.8)
+        assert seen.sum() > 100
+        total = np.zeros((ROWS, 4))
+        for k, weight in zip((-3, -2, -1, 1, 2, 3), np.array([-1, 9, -45, 45, -9, 1]) / 60, strict=True):
+            scenes = rows.scenes.copy()
+            for part in ("F", "M", "brake"):
+                scenes["load"][part] += k * h * load_dot[part]
+            moved = eq.dynamics_each(form, scenes, y + k * h * y_dot)
+            total += weight / h * np.column_stack([moved["lambda_"], moved["tau"]])
+        got = eq.rates_each(form, rows.scenes, load_dot, y)
+        within(relative(got[seen], total[seen]), 1e-4, "rates")
+        beyond(relative(1.001 * got[seen], total[seen]), 9e-4, "rates, 0.1 % off")

@@ -1,0 +1,427 @@
+"""The wheel slides where grip ends, and grips again: closed forms, balances, the independent reference.
+
+Coulomb's law: grip up to mu_max N, then mu_slide N against the slip. Upright and straight: R = r_0 + r, v of O along
+e1, slip_x = v + R omega_z. SI.
+"""
+
+from math import cos, degrees, pi, radians, sin
+
+import numpy as np
+import pytest
+from reference import Solution, Start, Wheel
+from reference.judge import carrier_axes, momenta
+from support import sliding
+from support.bounds import absolute_error, beyond, within
+from support.closed_forms import circle_spin
+from support.driver import ERROR, OK
+from support.exchange import loaded
+from support.motion import Library, Run, start_values
+from support.motion import run as attempt
+from support.schedule import Schedule
+from support.sliding import HUB, LOCK, ROAD, SLIDES, UPRIGHT, Slide, random_slide
+
+PAPER = Wheel()
+R = PAPER.r_0 + PAPER.r
+KINDS = (("X_O", "Y_O", "Z_O"), ("psi", "theta", "phi"), ("X_O_dot", "Y_O_dot", "Z_O_dot", "slip_x", "slip_y"))
+KINDS += (("psi_dot", "theta_dot", "phi_dot", "omega_z"), ("lambda_x", "lambda_y", "lambda_3"), ("E",))
+all_slides = pytest.mark.parametrize("name", [name for name in SLIDES if name != "jams"])
+GRIPS, SLIDING = 0, 1
+
+
+def simulate(library: Library, scene: Slide, times, tolerance: float | None = 1e-10, **changes: float) -> Run:
+    return library.simulate(times, tolerance, scene.inputs, **{**scene.start, **changes})
+
+
+def straight(library: Library, times, inputs: Schedule | None = None, **start: float) -> Run:
+    """Upright, heading along X, at 1e-11."""
+    return library.simulate(times, 1e-11, inputs, **{**UPRIGHT, **ROAD, **start})
+
+
+# ---- closed forms, upright and straight ----
+
+
+def test_a_locked_wheel_stops_after_v_squared_over_2_mu_g_and_stays(library: Library) -> None:
+    t, way = sliding.stopping(PAPER, 0.4, 7.0)
+    times = [0.0, t / 2, t - 1e-7, t + 1e-7, t + 1]
+    run = straight(library, times, LOCK, slip_x_start=7.0)
+    assert run["contact_mode"].tolist() == [1, 1, 1, 0, 0]
+    assert not run["omega_z"].any() and not run["slip_x"][3:].any()
+    within(absolute_error(run["X_O_dot"][3:], 0), 1e-15, "velocity after the stop, m/s")
+    within(absolute_error(run["X_O"][[1, 4]], [0.75 * way, way]), 1e-9, "way, m")
+    within(absolute_error(run["lambda_x"][:2], -0.4 * PAPER.m * PAPER.g), 1e-9, "force of the road, N")
+    within(absolute_error(run["tau"][:2], 0.4 * PAPER.m * PAPER.g * R), 1e-9, "moment of the brake, N m")
+    free = straight(library, times, slip_x_start=7.0)
+    beyond(free["X_O"][-1] / way, 1.1, "way of the wheel that is not locked, relative")
+
+
+@pytest.mark.parametrize("mu", [0.3, 0.05])
+def test_a_wheel_thrown_with_backspin_slides_grips_and_comes_back(library: Library, mu: float) -> None:
+    t, v, way = sliding.backspin(PAPER, mu, 2.0, 10.0)
+
+    def error(judged: float) -> float:
+        throw = {"phi_dot_start": 10.0, "slip_x_start": 2 + R * 10.0, "mu_max": judged, "mu_slide": judged}
+        run = straight(library, [0.0, t - 1e-7, t + 1e-7, t + 1], **throw)
+        assert run["X_O_dot"][0] == pytest.approx(2.0, abs=1e-14)
+        if judged == mu:
+            assert run["contact_mode"].tolist() == [1, 1, 0, 0]
+        after = [run["X_O_dot"][-1] - v, run["omega_z"][-1] + v / R, run["X_O"][-1] - way - v]
+        return absolute_error(after, 0.0)
+
+    assert v < 0
+    within(error(mu), 1e-9, "velocity, spin and place")
+    beyond(error(mu * 1.001), 1e-5, "with a coefficient 0.1 % larger")
+
+
+@pytest.mark.parametrize("excess", [1.0001, 1.5])
+def test_a_motor_spins_the_wheel_only_beyond_the_torque_that_the_road_can_hold(library: Library, excess: float) -> None:
+    limit = sliding.gripping_torque(PAPER, 0.45)
+    a, spin = sliding.spinning(PAPER, 0.4, excess * limit)
+
+    def drive(torque: float) -> Run:
+        return straight(library, [0.0, 0.5, 1.0], Schedule(((0.0, {"M_3": -torque}),)))
+
+    run = drive(excess * limit)
+    assert run["contact_mode"].tolist() == [1, 1, 1]
+    found = run["X_O_dot"][1:], run["omega_z"][1:], run["slip_x"][1:]
+    within(absolute_error(np.array(found).T, np.outer([0.5, 1], [a, spin, a + R * spin])), 1e-9, "velocity, spin, slip")
+    rolls = drive(limit / 1.0001)
+    assert not rolls["contact_mode"].any() and not rolls["slip_x"].any()
+    beyond(abs(rolls["omega_z"][-1] - spin), 0.3, "spin below the limit, rad/s")
+
+
+def test_a_motor_on_a_ramp_spins_the_wheel_from_the_closed_forms_instant_on(library: Library) -> None:
+    rate = 100.0  # N m/s
+    t = sliding.gripping_torque(PAPER, 0.45) / rate
+    ramp = Schedule(((0.0, {"M_3": (0.0, -rate)}),))
+
+    def modes(shift: float, **road: float) -> list[float]:
+        return straight(library, [0.0, t - 1e-7 + shift, t + 1e-7 + shift], ramp, **road)["contact_mode"].tolist()
+
+    assert modes(0.0) == [GRIPS, GRIPS, SLIDING]
+    assert modes(0.0, mu_max=0.4501) == [GRIPS, GRIPS, GRIPS]
+    assert modes(1e-4) == [GRIPS, SLIDING, SLIDING]
+
+
+@pytest.mark.parametrize("share", [0.9999, 1.0001])
+@pytest.mark.parametrize("mu_slide", [0.2, 0.15])
+def test_on_a_slope_the_wheel_rolls_up_to_its_limit_and_slides_above(library, share: float, mu_slide: float) -> None:
+    slope, slides = share * sliding.gripping_slope(PAPER, 0.2), share > 1
+    road = {"mu_max": 0.2, "mu_slide": mu_slide, "slope": slope, "slope_direction": pi}  # downhill is +X
+    run = straight(library, [0.0, 1.0], **road)
+    assert run["contact_mode"].tolist() == [int(slides)] * 2
+
+    def error(judged: bool) -> float:
+        a, spin = sliding.downhill(PAPER, mu_slide, slope, judged)
+        return max(abs(run["X_O_dot"][-1] - a), abs(run["omega_z"][-1] + spin))
+
+    within(error(slides), 1e-9, "velocity and spin after 1 s")
+    if mu_slide < 0.2:
+        beyond(error(not slides), 0.3, "by the other closed form")
+
+
+def test_a_locked_wheel_stays_on_a_slope_up_to_mu_max_and_slides_down_above(library: Library) -> None:
+    def on(slope: float) -> Run:
+        return straight(library, [0.0, 1.0], LOCK, slope=slope, slope_direction=pi)
+
+    above, below = on(np.arctan(0.4501)), on(np.arctan(0.4499))
+    assert below["contact_mode"].tolist() == [GRIPS] * 2
+    within(abs(below["X_O"][-1]), 1e-14, "way of the wheel that grips, m")
+    a = PAPER.g * (sin(np.arctan(0.4501)) - 0.4 * cos(np.arctan(0.4501)))
+    assert above["contact_mode"].tolist() == [SLIDING] * 2
+    within(abs(above["slip_x"][-1] - a), 1e-9, "slip after 1 s, m/s")
+
+
+def test_a_steady_circle_slides_outwards_where_the_road_gives_less_than_psi_dot_v_over_g(library: Library) -> None:
+    theta, psi_dot = 1.2, 1.5
+    omega_z = circle_spin(PAPER, theta, psi_dot)
+    start = start_values(PAPER, Start(theta=theta, psi_dot=psi_dot, phi_dot=omega_z - psi_dot * cos(theta)))
+    free = library.simulate([0.0], **start)
+    needed = psi_dot * float(np.hypot(free["X_O_dot"], free["Y_O_dot"])[0]) / PAPER.g
+
+    def after(share: float) -> Run:
+        mu = needed * share
+        return library.simulate([0.0, 0.05, 3.0], 1e-10, mu_max=mu, mu_slide=0.99 * mu, **start)
+
+    slides, grips = after(1 - 1e-6), after(1 + 1e-6)
+    assert slides["contact_mode"][:2].tolist() == [SLIDING] * 2 and not grips["contact_mode"].any()
+    assert slides["slip_y"][1] * slides["lambda_y"][0] < 0  # off the force that pulls inwards
+    within(absolute_error(grips["theta"], theta), 1e-9, "lean of the wheel that grips, rad")
+    beyond(absolute_error(slides["theta"], theta), 1e-3, "lean of the wheel that slides, rad")
+
+
+# ---- balances ----
+
+
+def power(run: Run, mu: float, s: float) -> np.ndarray:
+    """Of both frictions: tau omega_z - mu N |u|."""
+    assert (run["contact_mode"] == SLIDING).all()
+    speed = np.hypot(run["slip_x"], run["slip_y"])
+    return run["tau"] * run["omega_z"] * (s > 0) - mu * run["lambda_3"] * speed
+
+
+@pytest.mark.parametrize("formulation", [2, 3])
+@pytest.mark.parametrize("s", [0.0, 0.01])
+def test_energy_falls_by_what_both_frictions_take(library: Library, formulation: int, s: float) -> None:
+    """Gauss's rule over a part of a slide without transitions."""
+    nodes, weights = np.polynomial.legendre.leggauss(30)
+    times = [0.0, *(0.15 * (nodes + 1) / 2), 0.15]
+    run = simulate(library, SLIDES["thrown"], times, s=s, formulation=formulation)
+    lost = run["E"][-1] - run["E"][0]
+    within(abs(weights @ power(run, 0.4, s)[1:-1] * 0.15 / 2 / lost - 1), 1e-8, "energy balance, relative")
+    beyond(abs(weights @ power(run, 0.4004, s)[1:-1] * 0.15 / 2 / lost - 1), 5e-4, "with 0.1 % more friction")
+
+
+@all_slides
+def test_the_road_pushes_against_the_slip_with_mu_slide_N_or_holds_with_at_most_mu_max_N(library, name: str) -> None:
+    scene = SLIDES[name]
+    run = simulate(library, scene, np.linspace(0, scene.duration, 401))
+    slides, N = run["contact_mode"] == SLIDING, run["lambda_3"]
+    slip, force = (np.array([run[f"{what}_x"], run[f"{what}_y"]]) for what in ("slip", "lambda"))
+    speed = np.hypot(*slip)
+    assert slides.any() and set(run["contact_mode"]) <= {0, 1}
+    assert (speed[~slides] == 0).all() and (speed[slides] > 0).sum() >= slides.sum() - 1  # the instant of the loss
+    off = force[:, slides] * speed[slides] + scene.road.mu_slide * np.maximum(N, 0)[slides] * slip[:, slides]
+    within(np.abs(off / N[slides]).max(), 1e-12, "force beside friction, times slip over N, m/s")
+    within((run["mu_required"][~slides] / scene.road.mu_max).max(initial=0.0), 1 + 1e-8, "mu_required over mu_max")
+
+
+def test_the_slip_is_what_velocity_and_rotation_leave_at_the_contact(library: Library) -> None:
+    """u = v_O - omega x p, p from the contact to O; with another tube it is another."""
+    scene = SLIDES["pushed"]
+    run = simulate(library, scene, np.linspace(0, scene.duration, 101))
+
+    def gap(r: float) -> float:
+        e1, e2, e3 = carrier_axes(run["psi"], run["theta"])
+        p = PAPER.r_0 * e2 + np.outer(np.ones_like(run.t), (0, 0, r))
+        across = (run["psi_dot"] * np.sin(run["theta"]))[:, None]
+        omega = run["theta_dot"][:, None] * e1 + across * e2 + run["omega_z"][:, None] * e3
+        v = np.column_stack([run["X_O_dot"], run["Y_O_dot"], run["Z_O_dot"]])
+        left = np.cross([0.0, 0.0, 1.0], e1)
+        u = run["slip_x"][:, None] * e1 + run["slip_y"][:, None] * left
+        return float(np.abs(v - np.cross(omega, p) - u).max())
+
+    within(gap(PAPER.r), 1e-12, "slip, m/s")
+    beyond(gap(PAPER.r * 1.001), 1e-6, "slip with another tube, m/s")
+
+
+@pytest.mark.parametrize("r", [0.0, 0.05])
+def test_with_hardly_any_friction_the_sliding_disc_keeps_its_momenta(library: Library, r: float) -> None:
+    """Vertical and axle angular momentum, horizontal momentum, energy (O'Reilly 1996), to mu times the weight."""
+    wheel = Wheel(r=r)
+
+    def change(mu: float, judged: Wheel = wheel) -> float:
+        throw = {"psi_dot_start": 1.5, "phi_dot_start": -3.0, "slip_x_start": 1.0, "slip_y_start": 2.0}
+        run = library.simulate(np.linspace(0, 1, 11), 1e-11, r=r, mu_max=0.5, mu_slide=mu, **throw)
+        assert (run["contact_mode"] == SLIDING).all()
+        p, L = momenta(judged, _as_solution(run))
+        _, _, e3 = carrier_axes(run["psi"], run["theta"])
+        kept = np.column_stack([p[:, :2], L[:, 2], np.sum(L * e3, axis=1), run["E"]])
+        return absolute_error(kept, kept[0])
+
+    within(change(1e-11), 1e-7, "change of what is conserved")
+    beyond(change(1e-3), 1e-2, "change with a coefficient of 1e-3")
+    beyond(change(1e-11, Wheel(r=r, J_x=0.91, J_y=0.91)), 1e-3, "change judged by another inertia")
+
+
+def _as_solution(run: Run) -> Solution:
+    return Solution(run.t, run.columns, [], None)
+
+
+# ---- the independent reference ----
+
+
+def error(library: Library, scene: Slide, tolerance: float | None, **changes: float) -> float:
+    """Largest error of an output over 51 instants, relative to the largest value of its kind or to 1."""
+    times = np.linspace(0, scene.duration, 51)
+    want, got = scene.solved(times), simulate(library, scene, times, tolerance, **changes)
+    assert len(got.t) == len(want.t)
+    errors = []
+    for kind in KINDS:
+        size = max(1.0, *(float(np.abs(want[column]).max()) for column in kind))
+        errors += [float(np.abs(got[column] - want[column]).max()) / size for column in kind]
+    return max(errors)
+
+
+@all_slides
+@pytest.mark.parametrize("formulation", [2, 3])
+def test_every_output_agrees_with_the_independent_reference(library: Library, name: str, formulation: int) -> None:
+    scene = SLIDES[name]
+    within(error(library, scene, 1e-11, formulation=formulation), 1e-7, "error")
+    mu = scene.road.mu_slide * (1 - 1e-4)
+    beyond(error(library, scene, 1e-11, formulation=formulation, mu_slide=mu), 1e-6, "error with another coefficient")
+
+
+def moments(scene: Slide) -> list[tuple[float, int]]:
+    """Loss and return of grip by the reference, after the start."""
+    times = np.linspace(0, scene.duration, 51)
+    return scene.solved(times).contacts[1:]
+
+
+def modes_missed(library: Library, scene: Slide, width: float, shift: float = 0.0, **changes: float) -> int:
+    """How many readings just before and after a transition (shifted) show another mode than the reference."""
+    events = moments(scene)
+    before = [scene.solved([0.0]).contacts[0][1], *(mode for _, mode in events[:-1])]
+    times = [0.0, *(t + shift + side * width for t, _ in events for side in (-1, 1)), scene.duration]
+    found = simulate(library, scene, times, 1e-11, **changes)["contact_mode"][1:-1]
+    return int(sum(found[::2] != before) + sum(found[1::2] != [mode for _, mode in events]))
+
+
+@pytest.mark.parametrize("name", [n for n in SLIDES if n not in ("jams", "turns at once", "locked, leaning")])
+def test_grip_is_lost_and_regained_at_the_references_instants(library: Library, name: str) -> None:
+    scene = SLIDES[name]
+    assert len(moments(scene)) > 0
+    assert modes_missed(library, scene, 1e-7) == 0
+    assert modes_missed(library, scene, 1e-7, shift=1e-5) == len(moments(scene))
+    assert modes_missed(library, scene, 1e-7, mu_slide=scene.road.mu_slide * 0.999) > 0 or name == "locked"
+
+
+def test_the_papers_wheel_slides_twice_on_a_wet_road_and_in_every_swing_on_a_slippery_one(library: Library) -> None:
+    def slides(mu_max: float, mu_slide: float) -> tuple[int, float]:
+        run = library.simulate(np.linspace(0, 10, 5001), mu_max=mu_max, mu_slide=mu_slide)
+        return int((np.diff(run["contact_mode"]) == 1).sum()), float(run["E"][-1])
+
+    wet, slippery, dry = slides(0.45, 0.4), slides(0.3, 0.25), slides(0.49, 0.4)
+    swings = Slide({"mu_max": 0.3, "mu_slide": 0.25}, 10.0).solved([0.0, 10.0]).contacts
+    assert (wet[0], slippery[0], dry[0]) == (2, sum(mode for _, mode in swings), 0)
+    within(abs(wet[1] - 66.557), 6e-4, "energy left on the wet road, by another derivation, J")
+    within(abs(slippery[1] - 32.6), 0.06, "energy left on the slippery road, by another derivation, J")
+    beyond(dry[1], 75, "energy left on the dry road, J")
+
+
+def test_random_wheels_on_random_roads_follow_the_reference(library: Library) -> None:
+    """Every output of 0.6 s, over the growth of a relative change of 1e-9 of the spin at the start."""
+    random, worst, judged, transitions = np.random.default_rng(46), 0.0, 0, 0
+    times = np.linspace(0, 0.6, 21)
+    for _ in range(25):
+        scene = random_slide(random)
+        moved = {**scene.start, "phi_dot_start": scene.start["phi_dot_start"] * (1 + 1e-9)}
+        want, near = scene.solved(times), Slide(moved, 0.6, scene.inputs).solved(times, rtol=1e-11)
+        if want.ended or near.ended or [m for _, m in want.contacts] != [m for _, m in near.contacts]:
+            continue
+        got = simulate(library, scene, times, 1e-11)
+        assert got.end is None, (scene, got.ended)
+        for kind in KINDS:
+            size = max(float(np.abs(want[column]).max()) for column in kind)
+            growth = max(float(np.abs(near[column] - want[column]).max()) for column in kind) / size
+            off = max(float(np.abs(got[column] - want[column]).max()) for column in kind) / size
+            worst = max(worst, off / max(1.0, growth / 1e-9))
+        judged, transitions = judged + 1, transitions + len(want.contacts) - 1
+    assert judged >= 12 and transitions >= 15, (judged, transitions)
+    within(worst, 1e-7, "error over growth")
+
+
+# ---- cost ----
+
+
+@pytest.mark.parametrize("mu_slide", [0.45, 0.44, 0.4])
+def test_a_slide_costs_some_tens_of_steps_and_the_rest_what_it_costs_without(library: Library, mu_slide: float) -> None:
+    stepped = library.simulate([0.0, 10.0], method=4).counters
+    run = library.simulate(np.linspace(0, 10, 2001), mu_max=0.45, mu_slide=mu_slide)
+    slides = int((np.diff(run["contact_mode"]) == 1).sum())
+    assert slides > 0
+    within((run.counters["n_steps"] - stepped["n_steps"]) / slides, 80, "steps more than without, per slide")
+    within(run.counters["n_rhs"] / stepped["n_rhs"], 2, "evaluations over those without")
+
+
+def test_a_locked_wheel_costs_no_more_steps_than_a_rolling_one(library: Library) -> None:
+    rolls = library.simulate([0.0, 1.5], None, **{**UPRIGHT, "phi_dot_start": -20.0, "s": 0.01}).counters["n_steps"]
+    within(library.simulate([0.0, 1.5], None, LOCK, **{**UPRIGHT, **ROAD, "slip_x_start": 7.0}).counters["n_steps"],
+           rolls + 1, "steps")  # fmt: skip
+
+
+# ---- rates ----
+
+
+def test_slip_and_reactions_have_their_derivatives(library: Library) -> None:
+    """Central differences of sixth order while the wheel slides."""
+    scene, h, t = SLIDES["thrown"], 1e-3, 0.1
+    weights = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60
+    around = simulate(library, scene, [0.0, *(t + h * np.arange(-3, 4))], 1e-12)
+    names = ["slip_x", "slip_y", "lambda_x", "lambda_y", "lambda_3", "tau", "X_O_dot", "omega_z"]
+    with library.wheel() as wheel:
+        assert wheel.set(**scene.start) == 0 and wheel.initialise(1e-12) == 0
+        wheel.to(t)
+        rates = dict(zip(names, wheel.rates(names)(), strict=True))
+    for name in names:
+        difference = float(weights @ around[name][1:] / h)
+        within(abs(rates[name] - difference) / (1 + abs(difference)), 1e-7, f"rate of {name}, relative")
+        beyond(abs(rates[name] - 1.001 * difference) / abs(difference), 9e-4, f"rate of {name}, 0.1 % off")
+
+
+# ---- endings ----
+
+
+def test_friction_jams_a_wheel_that_it_rights_and_the_run_ends_there(library: Library) -> None:
+    scene = SLIDES["jams"]
+    ended = scene.solved([0.0, scene.duration]).ended
+    assert ended and ended.kind == "jams"
+    run = simulate(library, scene, [0.0, scene.duration])
+    assert run.end is not None and "jam" in str(run.ended)
+    within(abs(run.end - ended.time), 1e-6, "instant, s")  # N grows without bound there
+    light = simulate(library, scene, [0.0, scene.duration], mu_slide=0.4, mu_max=0.4)  # below 2 sqrt(0.05 * 1.05)
+    assert light.end is None
+
+
+def test_a_wheel_on_the_upright_side_of_the_jam_is_pushed_back(library: Library) -> None:
+    start = {**HUB, "theta_start": radians(88.0), "theta_dot_start": -2.0, "slip_y_start": -5.0}
+
+    def lean(mu: float) -> float:
+        run = library.simulate([0.0, 0.2], 1e-10, mu_max=mu, mu_slide=mu, **start)
+        return degrees(run["theta"][-1])
+
+    beyond(lean(0.8), 90, "lean after 0.2 s, degrees")
+    within(lean(0.1), 90, "lean with little friction, degrees")
+
+
+@pytest.mark.parametrize(("kind", "start"), [
+    ("lift", {"theta_start": 0.4, "theta_dot_start": 7.0, "phi_dot_start": 0.0, "slip_y_start": 3.0, "mu_max": 0.3}),
+    ("flat", {"theta_start": 1.2, "phi_dot_start": 0.0, "mu_max": 0.3}),
+])  # fmt: skip
+def test_a_sliding_wheel_lifts_off_and_falls_flat_at_the_references_instants(library, kind, start) -> None:
+    scene = Slide({**start, "mu_slide": 0.3}, 3.0)
+    ended = scene.solved([0.0, 3.0], flat=float(np.sin(1e-7))).ended
+    assert ended and ended.kind.startswith(kind)
+    run = simulate(library, scene, [0.0, 3.0])
+    assert run.end is not None and kind in str(run.ended).replace("-", " ").lower()
+    assert run["contact_mode"][-1] == SLIDING
+    within(abs(run.end - ended.time), 1e-8, "instant, s")
+    rolling = library.simulate([0.0, 3.0], 1e-10, **{k: v for k, v in start.items() if k[:2] not in ("mu", "sl")})
+    beyond(abs((rolling.end or 3.0) - ended.time), 1e-4, "instant of the wheel that rolls, s")
+
+
+@pytest.mark.parametrize("wrong", [
+    {"mu_max": 0.3, "mu_slide": 0.4},
+    {"mu_slide": 0.3},
+    {"mu_max": 0.3, "slip_x_start": 1.0},
+    {"slip_y_start": 1.0},
+])  # fmt: skip
+def test_a_road_that_cannot_be_is_rejected_and_names_the_parameter(library: Library, wrong: dict[str, float]) -> None:
+    done = attempt(library, wrong, [0.0, 0.1])
+    assert done.status == ERROR and "mu_slide" in done.messages[-1]
+    assert attempt(library, {**wrong, "mu_max": 0.4, "mu_slide": 0.4}, [0.0, 0.1]).status == OK
+
+
+def test_model_exchange_rejects_a_road_on_which_the_wheel_slides(library: Library) -> None:
+    with loaded(library).new() as wheel:
+        assert wheel.set(**ROAD) == OK and wheel.initialise() == ERROR and "mu_slide" in wheel.sentences[-1]
+    with loaded(library).new() as wheel:
+        assert wheel.set(mu_max=0.45) == OK and wheel.initialise() == OK
+
+
+def test_without_mu_slide_the_run_ends_where_grip_does(library: Library) -> None:
+    t = moments(SLIDES["paper's wheel"])[0][0]
+    run = library.simulate([0.0, 3.0], 1e-11, mu_max=0.45)
+    assert run.end is not None and "mu_max" in str(run.ended)
+    within(abs(run.end - t), 1e-8, "instant, s")
+    assert library.simulate([0.0, 3.0], mu_max=0.45, mu_slide=0.4).end is None
+
+
+@pytest.mark.parametrize("steps", [0.5, 0.05, 0.003])
+def test_the_communication_grid_changes_no_bit(library: Library, steps: float) -> None:
+    grid = np.arange(0, 2.5 + steps / 2, steps)
+    coarse = library.simulate([0.0, 2.5], **ROAD)
+    fine = library.simulate([0.0, *grid[1:-1], 2.5], **ROAD)
+    for name in ("X_O", "theta", "slip_x", "slip_y", "E", "contact_mode"):
+        assert fine[name][-1] == coarse[name][-1], name
+    other = library.simulate([0.0, *grid[1:-1], 2.5], **{**ROAD, "mu_slide": 0.4 * (1 + 1e-12)})
+    assert other["X_O"][-1] != coarse["X_O"][-1]
