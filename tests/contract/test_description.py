@@ -263,7 +263,7 @@ def test_the_guid_changes_with_every_attribute_of_a_variable_and_stays_with_pros
     assert prose != TEXT and guid_of(prose) == guid_of(TEXT)
 
 
-def test_the_terminal_of_the_hub_is_valid_and_names_every_input_with_pose_velocity_and_reaction(fmu, description):
+def test_the_terminal_of_the_hub_is_valid_and_names_every_input_with_pose_velocity_spin_and_reaction(fmu, description):
     """FMI 2.0.4 (section 2.3) refers to FMI 3.0 (section 2.4.9), whose schema comes with FMPy. Kind `signal` is for
     inputs, outputs and parameters; rule `bus` needs a member name, unique in its terminal."""
     terminals = etree.parse(Path(fmu) / "terminalsAndIcons" / "terminalsAndIcons.xml").getroot()
@@ -272,7 +272,8 @@ def test_the_terminal_of_the_hub_is_valid_and_names_every_input_with_pose_veloci
     (hub,) = terminals.iter("Terminal")
     assert (hub.get("name"), hub.get("matchingRule")) == ("hub", "bus")
     pose = ("X_O", "Y_O", "Z_O", "psi", "theta")
-    outputs = {*pose, *(f"{name}_dot" for name in pose), "tau", "lambda_3"}
+    reaction = ("lambda_1", "lambda_2", "lambda_3", "lambda_x", "lambda_y", "tau")
+    outputs = {*pose, *(f"{name}_dot" for name in pose), "omega_z", *reaction}
     named = [member.get("variableName") for member in hub]
     assert [name for name in named if name not in outputs] == INPUTS and sorted(named) == sorted({*INPUTS, *outputs})
     for member in hub:

@@ -242,3 +242,20 @@ def test_the_fmus_page_is_well_formed_and_complete_offline(fmu: str) -> None:
         assert known, reference
     with pytest.raises(etree.XMLSyntaxError):
         etree.fromstring(b"<p><b>crossed</p></b>", strict)
+
+
+def signals(page: str) -> list[str]:
+    """Variables in the first column of the tables of signals; `_dot` stands for the rates of those before it."""
+    found = []
+    for cell in re.findall(r"^\| (`[^|]+) \|", page, re.MULTILINE):
+        names = re.findall(r"`(\w+)`", cell)
+        found += [n for n in names if n != "_dot"] + [f"{n}_dot" for n in names[:-1] if names[-1] == "_dot"]
+    return found
+
+
+def test_the_terminal_of_the_hub_joins_the_signals_of_the_vehicles_page_and_no_others(fmu: str) -> None:
+    page, _, _ = PAGES["docs/vehicle.md"].partition("## Order of exchange")
+    (hub,) = etree.parse(Path(fmu) / "terminalsAndIcons" / "terminalsAndIcons.xml").getroot().iter("Terminal")
+    members = [member.get("variableName") for member in hub]
+    assert sorted(signals(page)) == sorted(members)
+    assert sorted(signals(page.replace("| `omega_z`", "| "))) != sorted(members)  # the partner
