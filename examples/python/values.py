@@ -30,6 +30,7 @@ UNITS = {
 EXAMPLES = Path(__file__).resolve().parents[1]
 WHEELS, BODIES = EXAMPLES / "wheels.json", EXAMPLES / "bodies.json"
 MOMENTS = ("J_x", "J_y", "J_z")
+UPRIGHT = {"psi_start": 0.0, "theta_start": math.pi / 2, "X_O_start": 0.0, "Y_O_start": 0.0}  # a vehicle's, along X
 HUB = 0.1  # of the radius: how far hub and spokes may be from the plane of a wheel with a thin tube, root mean square
 ROUNDING = 1e-9  # of a moment: an excess that is no fault
 
@@ -163,6 +164,11 @@ def scale(body: Mapping[str, float], kg: int = 0, m: int = 0, s: int = 0) -> flo
     Under the same gravity a wheel of the same shape then moves alike: times are in proportion to sqrt(R).
     """
     return (body["m"] / 20) ** kg * ((body["r_0"] + body["r"]) / 0.35) ** (m + s / 2)
+
+
+def spin(v: float, r_0: float, r: float, theta: float = math.pi / 2, psi_dot: float = 0.0) -> float:
+    """phi_dot in rad/s of a wheel whose centre moves at v in m/s along e1; forward is negative."""
+    return 0.0 - (v + psi_dot * r_0 * math.cos(theta)) / (r_0 + r * math.sin(theta))
 
 
 def bodies() -> dict[str, dict[str, object]]:

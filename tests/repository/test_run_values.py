@@ -60,9 +60,9 @@ def test_parameters_and_inputs_take_units(root, argument, value):
     within(abs(float(values[argument.partition("=")[0]]) / value - 1), 4 * EPSILON, "the value in SI")
 
 
-REFUSED = {"theta=1": "theta_start", "speed=3": "phi_dot_start = -v/(r_0 + r)", "slope=-8deg": "slope_direction"}
+REFUSED = {"theta=1": "theta_start", "speed=3": "Do you mean", "slope=-8deg": "slope_direction"}
 REFUSED |= {"s": "neither name=value nor a ready wheel", "s=0": "above 0", "m=heavy": "not a number", "m=3m": "kg or g"}
-REFUSED |= {"body=ball": "There is no body", "hopp": "hoop"}
+REFUSED |= {"v=3furlong": "it takes no unit but m/s or km/h", "body=ball": "There is no body", "hopp": "hoop"}
 REFUSED |= {"output_interval=20": "too long", "wheel=tank": "There is no wheel", "slope_direction=10%": "rad or deg"}
 
 
@@ -71,6 +71,40 @@ def test_what_cannot_be_meant_is_refused_with_one_sentence(root, argument, words
     done = ask(root, argument)
     assert done.returncode == 1 and done.stdout == ""
     assert words in done.stderr and done.stderr.count("\n") == 1
+
+
+def start_of(folder: Path, *arguments: str) -> dict[str, float]:
+    """The first row of the motion that the arguments ask for."""
+    asked = given(ask(folder, *arguments))
+    values = {n: float(x) for n, x in asked.items() if n not in ("stop_time", "output_interval")}
+    names = ("X_O", "Y_O", "Z_O", "X_O_dot", "Y_O_dot", "Z_O_dot", "psi", "theta", "omega_z")
+    row = simulate_fmu(str(folder / "wheel.fmu"), start_values=values, stop_time=0.1, output=names)[0]
+    return {name: float(row[name]) for name in names}
+
+
+@pytest.mark.parametrize(("more", "R"), [([], 0.35), (["car_tyre"], 0.3135), (["r_0=0.5", "coin"], 0.5011)])
+def test_a_speed_starts_a_wheel_upright_from_the_origin_forward_along_x(root, more, R):
+    start = start_of(root, "v=18km/h", *more)
+    want = {"X_O": 0, "Y_O": 0, "Z_O": R, "X_O_dot": 5, "Y_O_dot": 0, "Z_O_dot": 0}
+    want |= {"psi": 0, "theta": pi / 2, "omega_z": -5 / R}
+    off = max(abs(start[name] - value) for name, value in want.items())
+    within(off, 16 * EPSILON * 5 / R, "start")
+    beyond(abs(start["omega_z"] - 5 / R), 5, "start")  # the other sign rolls backwards
+
+
+@pytest.mark.parametrize("psi_dot", [0.0, 0.7])
+@pytest.mark.parametrize("theta", [0.6, 2.0])
+def test_a_speed_is_that_of_the_centre_along_the_heading_of_a_leaning_wheel_too(root, theta, psi_dot):
+    start = start_of(root, f"theta_start={theta}", f"psi_dot_start={psi_dot}", "v=3", "psi_start=1", "X_O_start=2")
+    along = start["X_O_dot"] * np.cos(1) + start["Y_O_dot"] * np.sin(1)
+    within(abs(along - 3), 32 * EPSILON * 3, "speed")
+    assert (start["X_O"], start["psi"], start["theta"]) == (2, 1, theta)
+    beyond(abs(3 * 0.35 / (0.3 + 0.05 * np.sin(theta)) - 3), 0.03, "speed")  # the radius of an upright wheel
+
+
+def test_a_speed_and_a_spin_are_not_given_together(root):
+    done = ask(root, "v=3", "phi_dot_start=-2")
+    assert done.returncode == 1 and "phi_dot_start follows from v" in done.stderr
 
 
 def test_of_a_ready_body_and_its_moments_one_is_given(root):

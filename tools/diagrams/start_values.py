@@ -13,7 +13,20 @@ from pathlib import Path
 
 ROOT = next(folder for folder in Path(__file__).resolve().parents if (folder / "modelDescription.xml").exists())
 sys.path.insert(0, str(ROOT / "examples" / "python"))
-from values import MOMENTS, Fault, Variable, bodies, formula, moments, ready, scale, suggestion, wheels  # noqa: E402
+from values import (  # noqa: E402
+    MOMENTS,
+    UPRIGHT,
+    Fault,
+    Variable,
+    bodies,
+    formula,
+    moments,
+    ready,
+    scale,
+    spin,
+    suggestion,
+    wheels,
+)
 from values import doubt as doubt  # noqa: E402 - for the diagrams
 from values import variables as described  # noqa: E402
 
@@ -23,6 +36,8 @@ RUN = {
     "stop_time": Variable("stop_time", "run", "Real", "s", "10", "0", "", "End of the runs, above 0"),
     "output_interval": Variable("output_interval", "run", "Real", "s", "0.01", "0", "", "Time between rows, above 0"),
 }
+ABOUT_SPEED = "Speed at the start, forward: upright, along X, from the origin, unless the start values are given"
+SPEED = Variable("v", "run", "Real", "m/s", "", "", "", ABOUT_SPEED)
 
 
 def variables(*causalities: str) -> dict[str, Variable]:
@@ -31,7 +46,7 @@ def variables(*causalities: str) -> dict[str, Variable]:
 
 
 def known() -> dict[str, Variable]:
-    return variables("parameter", "input") | RUN
+    return variables("parameter", "input") | RUN | {"v": SPEED}
 
 
 def usage() -> str:
@@ -64,14 +79,12 @@ def values(arguments: list[str]) -> dict[str, str]:
             raise Fault(f'"{argument}" is {kinds}.{meant} See ./scripts/run --help.')
         elif name not in takes:
             meant = suggestion(name, {n: v.description for n, v in takes.items()})
-            if name in ("v", "speed", "velocity"):
-                meant = " To start at the speed v, give phi_dot_start = -v/(r_0 + r)."
             raise Fault(f'wheel.fmu has no parameter or input "{name}".{meant} ./scripts/run --help lists them.')
         else:
             given[name] = takes[name].value_of(text)
     if solid and (both := [name for name in MOMENTS if name in given]):
         raise Fault(f"{both[0]} follows from m, r_0 and r with body={solid}: leave one of the two out.")
-    found |= given
+    found |= rolling(given, takes, found)
     if solid:
         size = {name: float(found.get(name, takes[name].start)) for name in ("m", "r_0", "r")}
         found |= {name: repr(value) for name, value in moments(solid, **size).items()}
@@ -81,6 +94,18 @@ def values(arguments: list[str]) -> dict[str, str]:
     if interval > stop / 2:
         raise Fault(f"output_interval = {interval:g} s is too long: at least two have to fit into the {stop:g} s.")
     return found
+
+
+def rolling(given: dict[str, str], takes: dict[str, Variable], wheel: dict[str, str]) -> dict[str, str]:
+    """What is given, with a vehicle's start in the place of a speed."""
+    if "v" not in given:
+        return given
+    if "phi_dot_start" in given:
+        raise Fault("phi_dot_start follows from v: leave one of the two out.")
+    start = {name: repr(value) for name, value in UPRIGHT.items()} | {n: x for n, x in given.items() if n != "v"}
+    names = ("r_0", "r", "theta_start", "psi_dot_start")
+    size = (float((wheel | start).get(name, takes[name].start)) for name in names)
+    return start | {"phi_dot_start": repr(spin(float(given["v"]), *size))}
 
 
 def command(found: dict[str, str]) -> list[str]:
