@@ -54,6 +54,18 @@ def test_the_coupled_wheel_stands_until_the_drive_pulls(fmus: Fmus) -> None:
     beyond(-table["omega_z"][~standing].max(), 0.01, "spin after the drive pulls, rad/s")
 
 
+@pytest.mark.parametrize("exchange", ["held", "derivatives", "rollback"])
+@pytest.mark.parametrize(("h", "grid"), [(0.0002, 0.0017), (0.007, 0.01)])
+def test_a_run_ends_at_its_stop_whether_or_not_the_step_divides_it(
+    fmus: Fmus, truth: Table, exchange: str, h: float, grid: float
+) -> None:
+    stop = 0.7
+    table = SUSPENDED.drive(fmus, LAUNCH.changed(stop=stop), h, exchange, grid).whole
+    assert table["time"][-1] == stop and np.all(np.diff(table["time"]) > 0)
+    speed = np.interp(stop, truth["time"], truth["X_O_dot"])
+    within(abs(table["X_O_dot"][-1] / speed - 1), 0.05, "speed at the end, relative")
+
+
 @pytest.mark.parametrize("exchange", ["held", "derivatives"])
 def test_the_step_may_not_exceed_twice_the_inertia_over_the_damping(fmus: Fmus, exchange: str) -> None:
     """2 (J_x + m R^2) / (c_theta + c_h R^2) = 17 ms for the lean of this wheel on its suspension. With a longer one the

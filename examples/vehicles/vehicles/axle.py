@@ -24,7 +24,7 @@ from . import errors, options
 from .component import loaded
 from .master import Master
 from .options import Manoeuvre, manoeuvres
-from .vehicle import Fmus, Table, Vehicle, road, upright
+from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, beyond_dry, road, upright
 
 WHEELS = {"left": "left", "right": "right"}
 COMPARED = options.file("axle")["compared"]
@@ -141,14 +141,21 @@ def beside_rigid(table: Table, scene: Manoeuvre, _fmus: Fmus) -> Table:
 
 
 def verdict(table: Table, scene: Manoeuvre) -> tuple[bool, list[str]]:
-    """How near the run is to the rigid axle."""
+    """How near the run is to the rigid axle; no road has the grip for wheels that require more than a dry one."""
+    if (most := grip(table)) > DRY_ROAD:
+        return False, [f"Failed: a wheel requires a friction coefficient of {beyond_dry(most)}."]
     if why := without_closed_form(scene):
         return True, [f"No closed form to compare with: {why}."]
     off = AXLE.distance(table, {n: table[f"rigid.{n}"] for n in COMPARED} | {"time": table["time"]})
     return True, [f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."]
 
 
-AXLE = Vehicle("axle", starts, verdict, wheels=WHEELS, complete=beside_rigid)
+def grip(table: Table) -> float:
+    """Of the wheel that requires most."""
+    return max(float(np.nanmax(table[f"{wheel}.mu_required"])) for wheel in WHEELS)
+
+
+AXLE = Vehicle("axle", starts, verdict, wheels=WHEELS, complete=beside_rigid, grip=grip)
 
 
 def step_errors(fmus: Fmus, scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = errors.STEPS) -> dict:

@@ -12,7 +12,7 @@ import numpy as np
 from .car_judges import demand, findings, force, friction, per_axle
 from .layout import MASS, NAMES, WHEELBASE, WHEELS, R
 from .options import Manoeuvre, file
-from .vehicle import Fmus, Table, Vehicle, road, upright
+from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, road, upright
 
 LIMITS = file("car")["limits"]
 
@@ -73,11 +73,16 @@ def failures(table: Table, manoeuvre: Manoeuvre) -> Iterator[str]:
     yield from (why for end, (fails, why) in found.items() if fails and end in manoeuvre.ends)
 
 
+def grip(table: Table) -> float:
+    """Of the axle that requires most."""
+    return max(demand(table).values())
+
+
 def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
     """Whether a run that reached its end is the manoeuvre, and the reason or its demand on the road."""
-    most, limit = max(demand(table).values()), LIMITS["dry_road"]
+    most = grip(table)
     needs = f"needs a road with a friction coefficient of {most:.2f} (per axle: {per_axle(demand(table))})"
-    slippery = [f"the manoeuvre {needs}; a dry road has about {limit:g}"] if most > limit else []
+    slippery = [f"the manoeuvre {needs}; a dry road has about {DRY_ROAD:g}"] if most > DRY_ROAD else []
     if reasons := [*failures(table, manoeuvre), *slippery]:
         return False, [f"Failed: {reasons[0]}."]
     least, name = min((table[f"{w}.lambda_3"].min(), name) for w, name in NAMES.items())
@@ -86,4 +91,4 @@ def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
     return True, [f"Possible: it {needs}.", taken, lowest, *findings(table, manoeuvre)]
 
 
-CAR = Vehicle("car", starts, verdict, wheels=NAMES, complete=complete, subtitle=subtitle)
+CAR = Vehicle("car", starts, verdict, wheels=NAMES, complete=complete, subtitle=subtitle, grip=grip)

@@ -23,6 +23,7 @@ MARKS = {
 DASHES = ("-", "--", ":", "-.")  # a curve that has the values of the one before is seen through its gaps
 GUIDES = {1: (0, (4, 2)), 2: (0, (1, 1))}  # lines of an order
 SCALES = {"deg": 180 / np.pi, "deg/s": 180 / np.pi, "km/h": 3.6, "kN": 1e-3, "mm": 1e3}  # of a label's unit
+LEAST = 1e-3  # of a label's unit: what differs by less is a line, not its rounding
 ABOVE = {"loc": "lower left", "bbox_to_anchor": (0, 0.98)}  # the axes
 
 
@@ -37,7 +38,7 @@ def draw(
     rows = [*([["path"] * 2] if len(panels) < len(manoeuvre.plot) else []), *zip(cells[::2], cells[1::2], strict=False)]
     fig = style.figure_mm(style.PAGE, 6 + 50 * len(rows))
     fig.set_layout_engine("constrained", h_pad=0.06, wspace=0.06)
-    title = f"{manoeuvre.vehicle.capitalize()}: {manoeuvre.title}{vehicle.subtitle(manoeuvre)}{remark}"
+    title = f"{manoeuvre.vehicle.capitalize()}: {manoeuvre.called}{vehicle.subtitle(manoeuvre)}{remark}"
     fig.suptitle(title, fontsize=9)
     for cell, ax in fig.subplot_mosaic([list(row) for row in rows]).items():
         if cell == "path":
@@ -63,7 +64,10 @@ def draw_panel(ax: Axes, table: Table, label: str, *wanted: str, names: dict[str
             ax.plot(table["time"], scale * table[column], color=colour, linestyle=dashes, label=text)
     if len(ax.lines) > 1:
         ax.legend(**ABOVE, ncols=4, borderaxespad=0.2, columnspacing=0.8, handlelength=1.5)
-    ax.ticklabel_format(axis="y", useOffset=False)
+    ax.ticklabel_format(axis="y", useOffset=False, style="plain")  # else a power of ten stands over the legend
+    low, high = ax.dataLim.intervaly
+    if high - low < LEAST:
+        ax.set_ylim((low + high) / 2 - LEAST, (low + high) / 2 + LEAST)
     ax.set(xlabel="time [s]", ylabel=label)
 
 

@@ -25,7 +25,7 @@ from . import axle, balance, build, car, options, suspended  # noqa: E402
 from .car_judges import demand, per_axle  # noqa: E402
 from .drawing import draw  # noqa: E402
 from .options import Manoeuvre  # noqa: E402
-from .vehicle import Fmus, Run  # noqa: E402
+from .vehicle import DRY_ROAD, Fmus, Run  # noqa: E402
 
 RESULTS = build.ROOT / "results" / "examples"
 VEHICLES = {of.name: of for of in (axle.AXLE, car.CAR, suspended.SUSPENDED, balance.BALANCE)}
@@ -33,13 +33,18 @@ PER_PICTURE = 600  # rows, about
 
 
 def diverged(fmus: Fmus, asked: Manoeuvre, run: Run) -> str:
-    """Whether an ending comes from the coupling: with a much shorter step it comes elsewhere, or not at all."""
-    end, h = run.ending.time, min(asked.h / 4, max(asked.h / 16, 1e-4))  # s, which is short for every link here
-    beyond = asked.changed(stop=min(asked.stop, 1.1 * end + 10 * asked.h))
-    again = VEHICLES[asked.vehicle].drive(fmus, beyond, h, asked.exchange, end).ending
-    if again and abs(again.time - end) < 2 * asked.h + 0.02 * end:
+    """Whether an ending, or a friction that no road has, comes from the coupling: with a much shorter step it comes
+    elsewhere, or not at all."""
+    of, h = VEHICLES[asked.vehicle], min(asked.h / 4, max(asked.h / 16, 1e-4))  # s, which is short for every link here
+    end = run.ending.time if run.ending else asked.stop
+    again = of.drive(fmus, asked.changed(stop=min(asked.stop, 1.1 * end + 10 * asked.h)), h, asked.exchange, asked.h)
+    if again.ending and abs(again.ending.time - end) < 2 * asked.h + 0.02 * end:
         return ""
-    instead = f"ends at t = {again.time:.3f} s" if again else "goes on"
+    instead = f"ends at t = {again.ending.time:.3f} s" if again.ending else "goes on"
+    if not run.ending and not again.ending:
+        if of.grip(again.table) > DRY_ROAD:
+            return ""
+        instead = f"requires {of.grip(again.table):.2f}"
     cause = f"The likely cause is the communication step h = {1000 * asked.h:g} ms: the coupling diverges numerically"
     return f"{cause} (a run with {1000 * h:g} ms {instead}). Choose a shorter step: docs/vehicle.md."
 
@@ -48,7 +53,9 @@ def judged(fmus: Fmus, asked: Manoeuvre, run: Run) -> tuple[bool, list[str]]:
     """Whether the run is the manoeuvre, and why."""
     of = VEHICLES[asked.vehicle]
     if not run.ending:
-        return of.verdict(run.table, asked)
+        passed, lines = of.verdict(run.table, asked)
+        cause = of.grip(run.table) > DRY_ROAD and diverged(fmus, asked, run)
+        return passed, [*lines, *filter(None, [cause])]
     how, cause = of.describe(run.ending), diverged(fmus, asked, run)
     if not cause and "lifts_off" in asked.ends and "lifted off" in how:
         return True, [f"As intended: {how}"]
@@ -62,11 +69,13 @@ def example(fmus: Fmus, asked: Manoeuvre, folder: Path) -> bool:
     of, name, remark = VEHICLES[asked.vehicle], asked.vehicle, ""
     grid = asked.grid or max(1, round(asked.stop / PER_PICTURE / asked.h)) * asked.h
     run = of.drive(fmus, asked, asked.h, asked.exchange, grid, progress=True)
-    if run.ending:  # early, perhaps within the first rows
-        run = of.drive(fmus, asked, asked.h, asked.exchange, run.ending.time / PER_PICTURE)
+    if run.ending:  # early, perhaps within the first rows: more of them, the last where all FMUs reach one instant
+        before = asked.changed(stop=run.ending.time * (1 - 1e-9))
+        again = of.drive(fmus, before, asked.h, asked.exchange, before.stop / PER_PICTURE)
+        run = Run(again.table, run.ending)
         remark = f"; ended at {run.ending.time:.2f} s"
     passed, lines = judged(fmus, asked, run)
-    print(f"{asked.title[0].upper()}{asked.title[1:]}.", *lines, sep="\n")
+    print(f"{asked.called[0].upper()}{asked.called[1:]}.", *lines, sep="\n")
     table = {n: x for n, x in run.table.items() if not n.startswith("alone.")}
     rows, head = np.column_stack(list(table.values())), ",".join(table)
     np.savetxt(folder / f"{name}.csv", rows, "%.9g", delimiter=",", header=head, comments="")

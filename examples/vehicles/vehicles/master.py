@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from ctypes import POINTER, byref, c_double, c_int, c_uint, c_void_p
 from graphlib import TopologicalSorter
 from itertools import groupby
+from math import ceil
 
 import numpy as np
 from fmpy.fmi1 import FMICallException
@@ -80,28 +81,29 @@ class Master:
     def steps(
         self, stop: float, h: float, exchange: str, every: int = 1, progress: bool = False, ends: Iterable[Signal] = ()
     ) -> Iterator[float]:
-        """Simulates from 0 to `stop`, and waits after the exchange at the communication points 0, `every`, ...: yields
-        the time, at which variables may be read, and inputs set that are not connected.
+        """Simulates from 0 to `stop`, with a shorter last step where h does not divide it, and waits after the exchange
+        at the communication points 0, `every`, ... and `stop`: yields the time, at which variables may be read, and
+        inputs set that are not connected.
 
         `at_end`: values of the signals `ends` at the end of the steps before a wait, before the exchange there. Raises
         component.Ended.
         """
         self.value, self.rate, self.begin_value, self.begin_rate = np.zeros((4, len(self.number)))
-        self.at_end, self.states, count = [], {name: c_void_p() for name in self.components}, round(stop / h)
+        self.at_end, self.states, count = [], {name: c_void_p() for name in self.components}, ceil(stop / h - 1e-9)
         self._exchange(0.0, rates=False)
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
         try:
             for i in tqdm(range(count + 1), disable=not progress, leave=False):
-                t = i * h
+                t, to = (k * h if k < count else stop for k in (i, i + 1))
                 self._exchange(t, rates=exchange != "held")
-                if i % every == 0:
+                if i % every == 0 or i == count:
                     yield t
                 if i < count and exchange == "rollback":
-                    self._step_twice(t, (i + 1) * h - t, i == 0)
+                    self._step_twice(t, to - t, i == 0)
                 elif i < count:
-                    self._all(t, "fmi2DoStep", t, (i + 1) * h - t, 1)
-                if (i + 1) % every == 0 or i == count:
+                    self._all(t, "fmi2DoStep", t, to - t, 1)
+                if (i + 1) % every == 0 or i + 1 >= count:
                     self.at_end.append(self.read(ends))
         finally:
             for name, state in self.states.items():

@@ -69,6 +69,11 @@ class Manoeuvre:
     h: float = 0.001  # s
     grid: float | None = None  # s, of the table
 
+    @property
+    def called(self) -> str:
+        """Its title, with the parameters that the title names."""
+        return self.title.format_map(self)
+
     def __getitem__(self, name: str) -> float:
         name = name if name in self.given else self.follows.get(name, name)
         return self.given.get(name, every(self.vehicle)[name].start)
@@ -148,7 +153,7 @@ def usage(name: str = "", *arguments: str) -> str:
         lines.append(f"  {word}={'|'.join(choices)}")
         for one in manoeuvres(name).values() if word == file(name).get("word") else ():
             given = " ".join(f"{n}={x:.4g}" for n, x in one.given.items())
-            lines.append(f"    {one.name}: {one.title}; stop={one.stop:g} {given}")
+            lines.append(f"    {one.name}: {one.called}; stop={one.stop:g} {given}")
     if run := asked(name, *arguments):
         lines.append(f"Parameters, with their values in the run {run.name}:")
     for v in numbers.values():

@@ -15,7 +15,7 @@ import numpy as np
 
 from . import errors, ssp
 from .options import Manoeuvre, manoeuvres
-from .vehicle import Fmus, Table, Vehicle, road
+from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, beyond_dry, road
 
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
@@ -31,13 +31,20 @@ def start(run: Manoeuvre) -> dict[str, dict[str, float]]:
 
 
 def verdict(table: Table, _run: Manoeuvre) -> tuple[bool, list[str]]:
-    """Its state at the end."""
-    least, grip = table["lambda_3"].min(), np.nanmax(table["mu_required"])
+    """Its state at the end; no road has the grip for a wheel that requires more than a dry one."""
+    least, most = table["lambda_3"].min(), grip(table)
     speed = f"Speed at the end: {-0.35 * table['omega_z'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
-    return True, [f"{speed}; friction required: {grip:.2f}."]
+    if most > DRY_ROAD:
+        return False, [f"Failed: the wheel requires a friction coefficient of {beyond_dry(most)}."]
+    return True, [f"{speed}; friction required: {most:.2f}."]
 
 
-SUSPENDED = Vehicle("suspended", start, verdict)
+def grip(table: Table) -> float:
+    """Of the wheel."""
+    return float(np.nanmax(table["mu_required"]))
+
+
+SUSPENDED = Vehicle("suspended", start, verdict, grip=grip)
 
 
 def package_distance(package: Path, step: float, truth: Table, stop: float = LAUNCH.stop) -> float:

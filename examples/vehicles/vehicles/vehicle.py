@@ -18,6 +18,7 @@ from .options import Manoeuvre, file
 
 Fmus = dict[str, Path]
 Table = dict[str, np.ndarray]
+DRY_ROAD = 1.0  # friction coefficient of tyres on dry asphalt, about
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,7 @@ class Vehicle:
     verdict: Callable[[Table, Manoeuvre], tuple[bool, list[str]]]  # of a run that reached its end
     wheels: dict[str, str] = field(default_factory=dict)
     complete: Callable[[Table, Manoeuvre, Fmus], Table] = lambda table, _manoeuvre, _fmus: table
+    grip: Callable[[Table], float] = lambda _table: 0.0  # largest friction coefficient that a run requires
     subtitle: Callable[[Manoeuvre], str] = lambda _manoeuvre: ""
 
     def parts(self, fmus: Fmus, of: Manoeuvre) -> list[Component]:
@@ -114,6 +116,11 @@ class Vehicle:
         """Which component ended a run, and when."""
         who = f"{self.wheels[end.component]} wheel" if end.component in self.wheels else end.component
         return f"The {who} ended the run at t = {end.time:.3f} s: {end.message}"
+
+
+def beyond_dry(mu: float) -> str:
+    """A friction coefficient, in words."""
+    return f"{mu:.2f}; a dry road has about {DRY_ROAD:g}"
 
 
 def upright(x: float, y: float, heading: float, speed: float, turn: float, R: float) -> dict[str, float]:
