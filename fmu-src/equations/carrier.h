@@ -89,12 +89,4 @@ static inline void set_accelerations(const WheelScene* scene, const Carrier* c, 
   out->Z_O_ddot = (out->lambda[2] + scene->load.F[2]) / w->m - w->g;
 }
 
-/* 1/s, how fast the wheel moves, and the part of its time over which rates of the reactions are taken. */
-#define WHEEL_SHARE_OF_TIME 1e-3
-double wheel_rate_of(const double* y, const double* y_dot);
-
-/* How `wheel_reaction_rates` is answered while the wheel slides; y: the state of `wheel_sliding`. */
-void wheel_sliding_reaction_rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y,
-                                  WheelReactionRates* out);
-
 #endif

@@ -1,8 +1,9 @@
 /* Quantities read off a motion, whatever formulation computed it: energy, contact point, force of the ground in wheel
- * axes, required friction coefficient, residuals of the constraints (19) and (32). Fixed axes unless said. */
+ * axes, required friction coefficient, rates of the reactions, residuals of the constraints (19) and (32). Fixed axes
+ * unless said. */
 #include <math.h>
 
-#include "wheel_equations.h"
+#include "carrier.h"
 
 double wheel_height(const WheelParameters* wheel, double theta) { return wheel->r_0 * sin(theta) + wheel->r; }
 
@@ -54,6 +55,57 @@ double wheel_required_friction_rate(const double lambda[3], const double lambda_
   double mu = wheel_required_friction(lambda), N = lambda[2];
   if (mu == 0) return 0;
   return (lambda[0] * lambda_dot[0] + lambda[1] * lambda_dot[1]) / (mu * N) / N - mu * lambda_dot[2] / N;
+}
+
+/* weight * (lambda, tau) at the time h from y, added to out. */
+static void add_reaction(const WheelFormulation* form, const WheelScene* scene, const WheelLoad* load_dot,
+                         const double* y, const double* y_dot, double h, double weight, WheelReactionRates* out) {
+  double moved[WHEEL_MAX_STATES];
+  WheelScene then = *scene;
+  WheelDynamics dynamics;
+  for (int i = 0; i < form->states; ++i) moved[i] = y[i] + h * y_dot[i];
+  for (int i = 0; i < 3; ++i) then.load.F[i] += h * load_dot->F[i];
+  for (int i = 0; i < 3; ++i) then.load.M[i] += h * load_dot->M[i];
+  then.load.brake += h * load_dot->brake;
+  form->dynamics(&then, moved, &dynamics);
+  for (int i = 0; i < 3; ++i) out->lambda_dot[i] += weight * dynamics.lambda[i];
+  out->tau_dot += weight * dynamics.tau;
+}
+
+/* 1/s, how fast the wheel moves. */
+static double rate_of(const WheelFormulation* form, const double* y, const double* y_dot) {
+  double swing = fabs(y_dot[OMEGA_1]) + fabs(y_dot[OMEGA_2]) + fabs(y_dot[OMEGA_3]);
+  double turning = form->slip_index < 0 ? 0 : fabs(y_dot[CHI]);
+  return (fabs(y[OMEGA_1]) + fabs(y[OMEGA_2])) / sin(y[THETA]) + fabs(y[OMEGA_3]) + sqrt(swing) + turning;
+}
+
+/* By a difference quotient of fourth order along state and load, whose step is a small part of the time in which the
+ * wheel itself moves. kappa is frozen: its own rate can be large, and acts as a moment about the axle. */
+void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
+                          const double* state, WheelReactionRates* out) {
+  const WheelFormulation* form = formulation->slip_index < 0 ? &wheel_reduced : &wheel_sliding;
+  double y[WHEEL_MAX_STATES], y_dot[WHEEL_MAX_STATES], kappa_moment_dot = 0;
+  formulation->reduce(state, y);
+  y[PSI] = wheel_less_turns(y[PSI]); /* a small step must not vanish in the rounding of a large angle */
+  y[PHI] = wheel_less_turns(y[PHI]);
+  WheelScene frozen = *scene;
+  WheelLoad rate = {{0}, {0}, 0};
+  if (load_dot) rate = *load_dot;
+  double N = form->derivative(scene, y, y_dot);
+  if (scene->ground == WHEEL_GROUND_BY_FORCE) frozen.ground = N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
+  if (scene->friction.kind == WHEEL_REGULARIZED) {
+    double omega_s = scene->friction.omega_s, c = cosh(y[OMEGA_3] / omega_s);
+    double s = frozen.ground == WHEEL_GROUND_PULLS ? 0 : scene->wheel.s;
+    kappa_moment_dot = -(y_dot[OMEGA_3] / omega_s / c / c) * (s * N + scene->load.brake);
+    frozen.friction = (WheelFriction){WHEEL_ROLLING, wheel_kappa(&scene->friction, y[OMEGA_3]), 0};
+    rate.M[2] += kappa_moment_dot;
+  }
+  double pace = rate_of(form, y, y_dot), h = pace > 0 ? 1e-3 / pace : 1;
+  *out = (WheelReactionRates){.tau_dot = kappa_moment_dot};
+  add_reaction(form, &frozen, &rate, y, y_dot, -2 * h, 1 / (12 * h), out);
+  add_reaction(form, &frozen, &rate, y, y_dot, -h, -8 / (12 * h), out);
+  add_reaction(form, &frozen, &rate, y, y_dot, h, 8 / (12 * h), out);
+  add_reaction(form, &frozen, &rate, y, y_dot, 2 * h, -1 / (12 * h), out);
 }
 
 void wheel_constraint_residuals(const WheelParameters* wheel, const WheelKinematics* k, double* velocity,

@@ -123,13 +123,11 @@ static inline Accelerations solve(const System* s, const AxleLaw* law) {
 }
 
 /* The same where the ground may pull (N <= 0): then the ground's part of the friction is zero, in the law too. */
-static inline Accelerations move(const System* s, AxleLaw* law) {
-  Accelerations a = solve(s, law);
-  if (a.N > 0 || law->branch_kept) return a;
-  law->grips = 0;
-  if (law->grip == 0) return a;
-  law->grip = 0;
-  return solve(s, law);
+static inline Accelerations move(const System* s, AxleLaw law) {
+  Accelerations a = solve(s, &law);
+  if (a.N > 0 || law.branch_kept || law.grip == 0) return a;
+  law.grip = 0;
+  return solve(s, &law);
 }
 
 /* One state under a load, ready for a law of friction. Inlined as the carrier is. */
@@ -163,12 +161,10 @@ static inline void reaction_of(const WheelParameters* w, const Instant* now, con
 
 static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
   double kappa = wheel_kappa(&scene->friction, omega_3);
-  int grips = scene->ground != WHEEL_GROUND_PULLS;
   return (AxleLaw){
       .held = scene->friction.kind == WHEEL_HELD,
-      .grips = grips,
       .branch_kept = scene->ground == WHEEL_GROUND_PRESSES,
-      .grip = grips ? scene->wheel.s * kappa : 0.0,
+      .grip = scene->ground == WHEEL_GROUND_PULLS ? 0.0 : scene->wheel.s * kappa,
       .brake = scene->load.brake * kappa,
   };
 }
@@ -192,12 +188,9 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
   y[Y_O] = motion->Y_O;
 }
 
-/* y_dot, the normal force, and the law of friction with the sign of N decided (out). */
-__attribute__((always_inline)) static inline double rates_of(const WheelScene* scene, const double* y, double* y_dot,
-                                                             AxleLaw* law) {
+static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   Instant now = instant_of(scene, y);
-  *law = law_of(scene, y[OMEGA_3]);
-  Accelerations a = move(&now.system, law);
+  Accelerations a = move(&now.system, law_of(scene, y[OMEGA_3]));
   y_dot[THETA] = now.carrier.omega_1;
   y_dot[OMEGA_1] = a.omega_1_dot;
   y_dot[OMEGA_2] = a.omega_2_dot;
@@ -206,11 +199,6 @@ __attribute__((always_inline)) static inline double rates_of(const WheelScene* s
   y_dot[PHI] = now.carrier.phi_dot;
   set_velocity(&scene->wheel, &now.carrier, &y_dot[X_O], &y_dot[Y_O]);
   return a.N;
-}
-
-static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  AxleLaw law;
-  return rates_of(scene, y, y_dot, &law);
 }
 
 __attribute__((always_inline)) static inline Carrier read_pose(const WheelParameters* wheel, const double* y,
@@ -243,8 +231,7 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   const WheelParameters* w = &scene->wheel;
   Instant now = instant_of(scene, y);
   const Carrier* c = &now.carrier;
-  AxleLaw law = law_of(scene, y[OMEGA_3]);
-  Accelerations a = move(&now.system, &law);
+  Accelerations a = move(&now.system, law_of(scene, y[OMEGA_3]));
   reaction_of(w, &now, &a, out->lambda);
   out->tau = a.tau;
   set_accelerations(scene, c, a.omega_1_dot, a.omega_2_dot, a.omega_3_dot, out);
@@ -260,68 +247,3 @@ static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof
 const WheelFormulation wheel_reduced = {"reduced", WHEEL_REDUCED_STATES, start, derivative, OMEGA_3, THETA,
                                         -1,        kinematics,           pose,  dynamics,   reduce,  stop_spin,
                                         0};
-
-/* For a given pose, lambda and tau are linear in the load and in the moments of friction. The law's grip is kept; its
- * `brake` is the rate of the moment that does not follow N. */
-static void respond(const WheelScene* scene, const WheelLoad* load_dot, const AxleLaw* law, const double* y,
-                    WheelReactionRates* out) {
-  const WheelParameters* w = &scene->wheel;
-  Inertia inertia = inertia_of(w, y[PHI]);
-  Instant now = {.carrier = carrier_of(w, y)};
-  add_load(&now.drift, &now.carrier, load_dot, 0, 0);
-  now.system = system_of(w, &inertia, &now.carrier, &now.drift);
-  Accelerations a = solve(&now.system, law);
-  reaction_of(w, &now, &a, out->lambda_dot);
-  out->tau_dot = a.tau;
-}
-
-/* weight * (lambda, tau) at y + h y_dot under a frozen law, added to out. */
-static void add_reaction(const WheelScene* scene, const AxleLaw* law, const double* y, const double* y_dot, double h,
-                         double weight, WheelReactionRates* out) {
-  double moved[WHEEL_REDUCED_STATES], lambda[3];
-  for (int i = 0; i < WHEEL_REDUCED_STATES; ++i) moved[i] = y[i] + h * y_dot[i];
-  Instant now = instant_of(scene, moved);
-  Accelerations a = solve(&now.system, law);
-  reaction_of(&scene->wheel, &now, &a, lambda);
-  for (int i = 0; i < 3; ++i) out->lambda_dot[i] += weight * lambda[i];
-  out->tau_dot += weight * a.tau;
-}
-
-double wheel_rate_of(const double* y, const double* y_dot) {
-  double swing = fabs(y_dot[OMEGA_1]) + fabs(y_dot[OMEGA_2]) + fabs(y_dot[OMEGA_3]);
-  return (fabs(y[OMEGA_1]) + fabs(y[OMEGA_2])) / sin(y[THETA]) + fabs(y[OMEGA_3]) + sqrt(swing);
-}
-
-/* Three parts: the load's rate and the law's own rate, exact, and the state's motion under a frozen load and law, by a
- * difference quotient of fourth order. Its step is a small part of the time in which the wheel itself moves. */
-void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
-                          const double* state, WheelReactionRates* out) {
-  static const WheelLoad constant = {{0}, {0}, 0};
-  if (!load_dot) load_dot = &constant;
-  double y[WHEEL_SLIDING_STATES], y_dot[WHEEL_REDUCED_STATES];
-  formulation->reduce(state, y);
-  y[PSI] = wheel_less_turns(y[PSI]); /* a small step must not vanish in the rounding of a large angle */
-  y[PHI] = wheel_less_turns(y[PHI]);
-  if (formulation->slip_index >= 0) {
-    wheel_sliding_reaction_rates(scene, load_dot, y, out);
-    return;
-  }
-  AxleLaw law;
-  double N = rates_of(scene, y, y_dot, &law);
-  AxleLaw changing = law; /* of (s N + brake) kappa at a constant N */
-  changing.brake = wheel_kappa(&scene->friction, y[OMEGA_3]) * load_dot->brake;
-  if (scene->friction.kind == WHEEL_REGULARIZED) {
-    double omega_s = scene->friction.omega_s, c = cosh(y[OMEGA_3] / omega_s);
-    double kappa_dot = y_dot[OMEGA_3] / omega_s / c / c;
-    changing.brake += kappa_dot * ((law.grips ? scene->wheel.s * N : 0) + scene->load.brake);
-  }
-  respond(scene, load_dot, &changing, y, out);
-
-  double rate = wheel_rate_of(y, y_dot);
-  if (rate == 0) return; /* the wheel is at rest and stays so */
-  double h = WHEEL_SHARE_OF_TIME / rate;
-  add_reaction(scene, &law, y, y_dot, h, 8 / (12 * h), out);
-  add_reaction(scene, &law, y, y_dot, -h, -8 / (12 * h), out);
-  add_reaction(scene, &law, y, y_dot, 2 * h, -1 / (12 * h), out);
-  add_reaction(scene, &law, y, y_dot, -2 * h, 1 / (12 * h), out);
-}

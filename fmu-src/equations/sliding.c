@@ -36,9 +36,9 @@ typedef struct Response {
   double g_x, g_y, A_xx, A_xy, A_yx, A_yy;
 } Response;
 
-__attribute__((always_inline)) static inline Body body_of(const WheelScene* scene, const WheelLoad* load,
-                                                          const double* y, double chi) {
+__attribute__((always_inline)) static inline Body body_of(const WheelScene* scene, const double* y, double chi) {
   const WheelParameters* w = &scene->wheel;
+  const WheelLoad* load = &scene->load;
   Body b = {.carrier = carrier_of(w, y), .inertia = inertia_of(w, y[PHI]), .d_x = cos(chi), .d_y = sin(chi)};
   const Carrier* c = &b.carrier;
   double F_X = load->F[0] + w->m * w->g_X, F_Y = load->F[1] + w->m * w->g_Y;
@@ -102,7 +102,7 @@ static inline Answer respond(const WheelScene* scene, Body* b) {
 
 static Response response_of(const WheelScene* scene, const double* y) {
   const WheelParameters* w = &scene->wheel;
-  Body b = body_of(scene, &scene->load, y, 0);
+  Body b = body_of(scene, y, 0);
   const Inertia* I = &b.inertia;
   double mu = b.mu;
   b.mu = 0;
@@ -200,27 +200,20 @@ static inline void set_velocity(const Body* b, double speed, double* X_dot, doub
   *Y_dot = along * c->sin_psi + left * c->cos_psi;
 }
 
-/* y_dot, and the body with the sign of N decided (out). */
-static inline Answer rates_of(const WheelScene* scene, const double* y, double* y_dot, Body* b) {
-  *b = body_of(scene, &scene->load, y, y[CHI]);
-  Answer a = respond(scene, b);
-  y_dot[THETA] = b->carrier.omega_1;
+/* N is infinite where friction wedges the wheel. */
+static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+  Body b = body_of(scene, y, y[CHI]);
+  Answer a = respond(scene, &b);
+  y_dot[THETA] = b.carrier.omega_1;
   y_dot[OMEGA_1] = a.omega_1_dot;
   y_dot[OMEGA_2] = a.omega_2_dot;
   y_dot[OMEGA_3] = a.omega_3_dot;
-  y_dot[PSI] = b->carrier.psi_dot;
-  y_dot[PHI] = b->carrier.phi_dot;
-  set_velocity(b, y[SPEED], &y_dot[X_O], &y_dot[Y_O]);
-  y_dot[SPEED] = a.u_x * b->d_x + a.u_y * b->d_y;
-  y_dot[CHI] = y[SPEED] == 0 ? 0 : (a.u_y * b->d_x - a.u_x * b->d_y) / y[SPEED] - b->carrier.psi_dot;
+  y_dot[PSI] = b.carrier.psi_dot;
+  y_dot[PHI] = b.carrier.phi_dot;
+  set_velocity(&b, y[SPEED], &y_dot[X_O], &y_dot[Y_O]);
+  y_dot[SPEED] = a.u_x * b.d_x + a.u_y * b.d_y;
+  y_dot[CHI] = y[SPEED] == 0 ? 0 : (a.u_y * b.d_x - a.u_x * b.d_y) / y[SPEED] - b.carrier.psi_dot;
   y_dot[CHI + 1] = y_dot[CHI + 2] = 0;
-  return a;
-}
-
-/* N is infinite where friction wedges the wheel. */
-static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  Body b;
-  Answer a = rates_of(scene, y, y_dot, &b);
   return a.room > 0 ? a.N : INFINITY;
 }
 
@@ -236,16 +229,12 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
   set_velocity(&b, y[SPEED], &out->X_O_dot, &out->Y_O_dot);
 }
 
-static inline void set_reaction(const Carrier* c, const Answer* a, double lambda[3]) {
-  lambda[0] = a->f_x * c->cos_psi - a->f_y * c->sin_psi;
-  lambda[1] = a->f_x * c->sin_psi + a->f_y * c->cos_psi;
-  lambda[2] = a->N;
-}
-
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  Body b = body_of(scene, &scene->load, y, y[CHI]);
+  Body b = body_of(scene, y, y[CHI]);
   Answer a = respond(scene, &b);
-  set_reaction(&b.carrier, &a, out->lambda);
+  out->lambda[0] = a.f_x * b.carrier.cos_psi - a.f_y * b.carrier.sin_psi;
+  out->lambda[1] = a.f_x * b.carrier.sin_psi + a.f_y * b.carrier.cos_psi;
+  out->lambda[2] = a.N;
   out->tau = a.tau;
   set_accelerations(scene, &b.carrier, a.omega_1_dot, a.omega_2_dot, a.omega_3_dot, out);
 }
@@ -262,39 +251,3 @@ static void grip(const WheelParameters* wheel, double* y) {
 const WheelFormulation wheel_sliding = {"sliding", WHEEL_SLIDING_STATES, start, derivative, OMEGA_3, THETA,
                                         SPEED,     kinematics,           pose,  dynamics,   reduce,  stop_spin,
                                         grip};
-
-/* weight * (lambda, tau) at the time h from y, under a frozen law, added to out. */
-static void add_reaction(const WheelScene* scene, const Body* law, const WheelLoad* load_dot, const double* y,
-                         const double* y_dot, double h, double weight, WheelReactionRates* out) {
-  double moved[WHEEL_SLIDING_STATES], lambda[3];
-  WheelLoad load = scene->load;
-  for (int i = 0; i < WHEEL_SLIDING_STATES; ++i) moved[i] = y[i] + h * y_dot[i];
-  for (int i = 0; i < 3; ++i) load.F[i] += h * load_dot->F[i];
-  for (int i = 0; i < 3; ++i) load.M[i] += h * load_dot->M[i];
-  Body b = body_of(scene, &load, moved, moved[CHI]);
-  b.mu = law->mu;
-  b.s = law->s;
-  b.kappa = law->kappa;
-  b.brake = law->brake + h * load_dot->brake;
-  Answer a = answer_of(&scene->wheel, &b);
-  set_reaction(&b.carrier, &a, lambda);
-  for (int i = 0; i < 3; ++i) out->lambda_dot[i] += weight * lambda[i];
-  out->tau_dot += weight * a.tau;
-}
-
-/* By a difference quotient of fourth order along state and load, as in `wheel_reaction_rates`; the law's own rate,
- * exact, is in tau alone. */
-void wheel_sliding_reaction_rates(const WheelScene* scene, const WheelLoad* load_dot, const double* y,
-                                  WheelReactionRates* out) {
-  double y_dot[WHEEL_SLIDING_STATES];
-  Body b;
-  Answer a = rates_of(scene, y, y_dot, &b);
-  *out = (WheelReactionRates){.tau_dot = 0};
-  if (scene->friction.kind == WHEEL_REGULARIZED) {
-    double omega_s = scene->friction.omega_s, c = cosh(y[OMEGA_3] / omega_s);
-    out->tau_dot = -(y_dot[OMEGA_3] / omega_s / c / c) * (b.s * a.N + b.brake);
-  }
-  double h = WHEEL_SHARE_OF_TIME / (wheel_rate_of(y, y_dot) + fabs(y_dot[CHI]));
-  const double places[] = {-2, -1, 1, 2}, weights[] = {1, -8, 8, -1};
-  for (int i = 0; i < 4; ++i) add_reaction(scene, &b, load_dot, y, y_dot, places[i] * h, weights[i] / (12 * h), out);
-}
