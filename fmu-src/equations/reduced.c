@@ -30,8 +30,7 @@ typedef struct System {
 /* The law of friction at one instant: tau = -(grip N + brake), or, if held, the tau that keeps omega_3 constant. */
 typedef struct AxleLaw {
   int held;
-  int grips;       /* the ground has friction */
-  int branch_kept; /* it keeps it where N < 0 */
+  int branch_kept; /* where N < 0 too */
   double grip;     /* m, s kappa */
   double brake;    /* N m, capacity of the brake times kappa */
 } AxleLaw;
