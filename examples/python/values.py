@@ -111,6 +111,12 @@ class Variable(NamedTuple):
             if text not in ("true", "false"):
                 raise Fault(f'{self.name} = "{text}" must be true or false.')
             return text
+        if self.type == "Integer" and (words := dict(re.findall(r"\b(\d) ([a-z]\w*)", self.description))):
+            numbers = {word: number for number, word in words.items()}
+            if text not in words and text not in numbers:
+                listed = ", ".join(f"{number} ({word})" for number, word in words.items())
+                raise Fault(f'{self.name} = "{text}" is not one of {listed}.')
+            return numbers.get(text, text)
         value = number(self.name, text, self.unit or "1")
         if self.name == "slope" and value < 0:
             raise Fault("slope must be at least 0: slope_direction=180deg turns uphill into downhill.")

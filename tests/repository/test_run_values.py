@@ -50,6 +50,14 @@ def test_values_become_start_values_in_si(root):
     }
 
 
+CHOICES = {"formulation=multibody": "3", "friction_law=regularized": "2", "method=runge_kutta": "4", "method=2": "2"}
+
+
+@pytest.mark.parametrize(("argument", "number"), CHOICES.items())
+def test_a_choice_is_given_by_its_word_or_number(root, argument, number):
+    assert given(ask(root, argument))[argument.partition("=")[0]] == number
+
+
 UNITS = {"m=12kg": 12, "m=500g": 0.5, "r_0=30cm": 0.3, "slope=8deg": 8 * pi / 180, "slope=12%": atan(0.12)}
 UNITS |= {"M_brake=20": 20, "M_3=-2Nm": -2, "F_X=0.3kN": 300, "phi_dot_start=-30rpm": -pi, "output_interval=5ms": 0.005}
 
@@ -62,6 +70,7 @@ def test_parameters_and_inputs_take_units(root, argument, value):
 
 REFUSED = {"theta=1": "theta_start", "speed=3": "Do you mean", "slope=-8deg": "slope_direction"}
 REFUSED |= {"s": "neither name=value nor a ready wheel", "s=0": "above 0", "m=heavy": "not a number", "m=3m": "kg or g"}
+REFUSED |= {"method=euler": "1 (automatic), 2 (adams), 3 (bdf), 4 (runge_kutta)", "friction_law=0": "1 (exact), 2 ("}
 REFUSED |= {"v=3furlong": "it takes no unit but m/s or km/h", "body=ball": "There is no body", "hopp": "hoop"}
 REFUSED |= {"output_interval=20": "too long", "wheel=tank": "There is no wheel", "slope_direction=10%": "rad or deg"}
 

@@ -31,7 +31,7 @@ def recorded(given: argparse.Namespace) -> tuple[Path, int]:
     bodies = [body for path in given.files for body in read_bodies(path, parameters, given.box)]
     bodies, every = document.thinned(named(bodies, given.labels))
     if every > 1:
-        print(f"Every {every}th row is kept, so that the page stays below {document.PAGE_LIMIT / 1e6:g} MB.")
+        print(f"One row in {every} is kept, so that the page stays below {document.PAGE_LIMIT / 1e6:g} MB.")
     return given.output, document.write(given.output, given.title, bodies, len(given.files))
 
 

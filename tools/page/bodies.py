@@ -75,8 +75,10 @@ def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | 
     """All bodies of one file. given: parameters in the place of the file's; box: size of a car's body in m."""
     texts = read_columns(path)
     time = numbers(path, "time", texts.pop("time"))
-    if not (np.diff(time) >= 0).all() or time[-1] <= time[0]:
+    if not (np.diff(time) >= 0).all():
         raise ViewError(f"{path}: the column time does not rise.")
+    if time[-1] == time[0]:
+        raise ViewError(f"{path} has no motion to show: all rows are of one instant.")
     kept = np.append(np.diff(time) > 0, True)  # of two rows at one instant the later
     groups: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for name, column in texts.items():

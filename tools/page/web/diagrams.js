@@ -6,6 +6,8 @@ import {before, contactOf, extent} from '#table';
 
 const DEGREES = 180 / Math.PI;
 const [LEFT, RIGHT, TOP, BOTTOM] = [46, 8, 10, 20];  // margins, CSS pixels
+const MANY = 3;                                      // wheels, whose values still fit beside the title
+const LETTER = 7.5;  // CSS pixels, of a digit below the title, with a share of the gap between values
 const POSE = ['X_O', 'Y_O', 'psi', 'theta'];
 
 /** A kind of diagram: the columns it needs, and its point [x, y] from their values and the wheel. */
@@ -100,6 +102,7 @@ class Diagram {
     const showing = (kind) => wheels.filter(({table}) => kind.columns.every((column) => table.has(column)));
     this.possible = Object.keys(this.kinds).filter((other) => showing(this.kinds[other]).length);
     this.figure.hidden = !this.possible.length;
+    this.figure.classList.toggle('many', wheels.length > MANY);
     this.name = this.possible.includes(name) ? name : this.possible[0] ?? this.name;
     Object.assign(this, {all: wheels, wheels: showing(this.kind)});
     const [across, up] = this.kind.units;
@@ -252,17 +255,17 @@ class Diagram {
     if (this.timed) this.show(present.map(([, value]) => value));
   }
 
-  /** The values as numbers in the caption; of more than three wheels shorter and smaller, to fit beside each other. */
+  /** The values as numbers in the caption; of many wheels in a line below the title, with the digits that have room. */
   show(values) {
-    const many = values.length > 3;
+    const many = values.length > MANY;
     const size = Math.max(...this.ranges[1].map(Math.abs));  // what is small has more digits
     const least = size < 1 ? Math.min(8, Math.ceil(2 - Math.log10(size))) : 0;
-    const digits = Math.max(0, this.kind.digits - Number(many), least);
-    this.values.classList.toggle('many', many);
-    this.values.replaceChildren(...values.map((value, i) => {
-      const text = value.toFixed(digits).replace(/^-([0.]+)$/, '$1').replace('-', '−');
-      return make('span', {style: `color:${this.wheels[i].colour}`}, text);
-    }));
+    const texts = (digits) =>
+        values.map((value) => value.toFixed(digits).replace(/^-([0.]+)$/, '$1').replace('-', '−'));
+    let digits = Math.max(0, this.kind.digits - Number(many), least);
+    while (many && digits > 0 && LETTER * texts(digits).join(' ').length > this.width) digits -= 1;
+    this.values.replaceChildren(
+        ...texts(digits).map((text, i) => make('span', {style: `color:${this.wheels[i].colour}`}, text)));
   }
 }
 
