@@ -53,8 +53,10 @@ def draw_path(ax: Axes, scene: Scene) -> list[str]:
     """The path of the contact point from above, in one scale."""
     _track(ax, *scene.smooth(SUBDIVISION, "X_C", "Y_C"))
     ax.set(xlabel="$X$ [m]", ylabel="$Y$ [m]")
-    for axis, name in ((ax.xaxis, "X_C"), (ax.yaxis, "Y_C")):
-        _scale(axis, 5, scene[name], 0.1 * scene.value("r_0"))
+    least, middle = 0.1 * scene.value("r_0"), [(scene[n].min() + scene[n].max()) / 2 for n in ("X_C", "Y_C")]
+    ax.update_datalim(np.add.outer([-least, least], middle))  # set limits could not follow the aspect
+    for axis in (ax.xaxis, ax.yaxis):
+        _scale(axis, 5)
     ax.set_aspect("equal", adjustable="datalim")
     if scene.value("slope") > 0:
         down = scene.value("slope_direction") + np.pi
@@ -104,7 +106,7 @@ def draw_rates(ax: Axes, scene: Scene) -> list[str]:
     for axis, rate in ((ax.xaxis, x), (ax.yaxis, y)):
         _scale(axis, 5, rate, 1.0 if scene.still else 1e-3 + 1e-5 * abs(rate).max())
     if scene.one_arc and not scene.still:
-        return [r"The rates depend on $\theta$ alone: the wheel runs to and fro on one arc."]
+        return [r"Both rates depend on $\theta$ alone, so the curve is a single arc, traced back and forth."]
     # omega_z = phi_dot + psi_dot cos(theta) is small, and so is the angle at which a narrow bundle lies.
     shear = float(-np.sign(np.cos(scene["theta"].mean())) or -1.0)
     if scene.still or np.ptp(y - shear * x) >= NARROW * np.ptp(y):

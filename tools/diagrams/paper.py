@@ -72,7 +72,8 @@ def warnings_of(scene: Scene) -> list[str]:
 
 def is_paper(scenes: Sequence[Scene]) -> bool:
     """Whether the runs are the paper's."""
-    return scenes[1].value("s") == PAPER_S and not any(scene.ending or unlike_paper(scene) for scene in scenes)
+    whole = len(scenes) == 2 and not any(scene.ending or unlike_paper(scene) for scene in scenes)
+    return whole and scenes[1].value("s") == PAPER_S
 
 
 def short(value: float) -> str:
@@ -167,7 +168,8 @@ def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
     paper = is_paper(scenes)
     sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": PAPERS + OTHERS}
     wanted = [(out / name, scenes, drawn, paper) for name, drawn in sheets.items()]
-    for friction, scene in enumerate(scenes):
+    for scene in scenes:
+        friction = int(scene.value("s") > 0)
         for panel in PAPERS + OTHERS * (not paper):
             name = f"diagram_{panel.name}_{('free', 'friction')[friction]}"
             wanted.append((out / (f"fig_{panel.figures[friction]}" if paper else name), [scene], [panel], paper))
@@ -175,13 +177,20 @@ def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
 
 
 def main() -> None:
-    """Draw everything; a fault of the input is one line on stderr and exit status 1."""
+    """Draw everything, or the one scene that has a motion; else one line on stderr and exit status 1."""
     style.use_style()
+    scenes, faults = [], []
+    for name in ("free", "friction"):
+        try:
+            scenes.append(read_scene(RESULTS / f"{name}.csv"))
+        except SceneError as fault:
+            faults.append(str(fault))
     try:
-        scenes = [read_scene(RESULTS / f"{name}.csv") for name in ("free", "friction")]
+        if not scenes:
+            raise SceneError("Neither scene has a motion to draw.")
         with Pool() as processes:
             print(*chain(*processes.starmap(draw, pictures(scenes, RESULTS), chunksize=1)), sep="\n")
-        for warning in warnings_of(scenes[0]):
+        for warning in [*warnings_of(scenes[0]), *faults]:
             print(f"run: warning: {warning}", file=sys.stderr)
     except SceneError as fault:
         sys.exit(f"run: {fault}")

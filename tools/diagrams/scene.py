@@ -97,5 +97,5 @@ def read_scene(path: Path) -> Scene:
     scene = Scene(path, {name: table[name].astype(float) for name in table.dtype.names})
     if np.ptp(scene["time"]) <= 0:
         why = (scene.ending or "stands at one instant").replace("$", "")
-        raise SceneError(f"{path} has no motion to draw: the wheel {why}.")
+        raise SceneError(f'The scene "{path.stem}" has no motion to draw: the wheel {why}.')
     return scene

@@ -18,6 +18,7 @@ CURVES = {
     "bent": np.column_stack([T, (1 - T) ** 3]),
     "bundle": np.column_stack([T * np.cos(90 * T) ** 2, 4 * T * np.cos(90 * T) ** 2 + 0.2 * T]),
 }
+PICTURES = paper.pictures
 TIME = np.linspace(0.0, 10.0, 1001)
 SWING = 1.0 + 0.3 * np.cos(3 * TIME)  # rad
 
@@ -104,6 +105,53 @@ def test_figure_numbers_and_file_names_of_the_paper_belong_to_its_two_scenes() -
     for others in (longer, [scene(), scene(0.02)], [scene(slope=0.1), scene(0.03, slope=0.1)]):
         assert "diagrams" in stems(*others) and not of_paper & stems(*others)
     assert "stop_time = 20 s" in " ".join(paper.unlike_paper(longer[0]))
+
+
+def written(folder: Path, name: str, one: Scene, rows: int) -> None:
+    columns = {n: values[:rows] for n, values in one.columns.items()}
+    columns["time"] = np.arange(rows) * 0.01 if rows > 2 else np.zeros(rows)
+    table, names = np.column_stack(list(columns.values())), ",".join(columns)
+    np.savetxt(folder / f"{name}.csv", table, delimiter=",", header=names, comments="")
+    (folder / f"{name}.log").write_text("[WARNING] The wheel lifted off the ground at t = 0 s: the model ends there.\n")
+
+
+@pytest.mark.parametrize(("free", "friction"), [(1001, 2), (2, 1001)])
+def test_of_two_scenes_the_one_that_moves_is_drawn_and_the_other_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, free: int, friction: int
+) -> None:
+    drawn = []
+    monkeypatch.setattr(paper, "RESULTS", tmp_path)
+    monkeypatch.setattr(paper, "pictures", lambda scenes, out: drawn.extend(scenes) or PICTURES(scenes, out)[:1])
+    written(tmp_path, "free", scene(), free)
+    written(tmp_path, "friction", scene(0.03), friction)
+    paper.main()
+    still, moving = ("free", "friction") if free < friction else ("friction", "free")
+    assert f'The scene "{still}" has no motion to draw: the wheel lifted off the ground' in capsys.readouterr().err
+    assert [one.path.stem for one in drawn] == [moving] and (tmp_path / "diagrams.png").stat().st_size > 1e5
+    (tmp_path / f"{moving}.csv").write_text((tmp_path / f"{still}.csv").read_text())
+    with pytest.raises(SystemExit, match="^run: Neither scene has a motion to draw"):
+        paper.main()
+
+
+PATHS = {"along X": (TIME, 0 * TIME), "along Y": (1e-17 * TIME, -TIME), "still": (0 * TIME, 0 * TIME)}
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_a_path_along_an_axis_is_drawn_in_one_scale_without_a_warning(
+    name: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    x, y = PATHS[name]
+    fig = style.figure_mm(style.COLUMN, 60.0)
+    ax = fig.subplots()
+    panels.draw_path(ax, scene(X_C=x, Y_C=y))
+    fig.draw_without_rendering()
+    assert not caplog.records
+    corners = ax.transData.transform([(0, 0), (1, 0), (0, 1)])
+    assert np.ptp(corners[:, 0]) == pytest.approx(np.ptp(corners[:, 1]))
+    assert np.ptp(ax.get_ylim()) > 0.05 < np.ptp(ax.get_xlim())  # a tenth of r_0 on either side at least
+    ax.set(xlim=(0, 1), ylim=(0, 1))  # the partner
+    fig.draw_without_rendering()
+    assert "Ignoring fixed" in caplog.text
 
 
 NO_ARC = {
