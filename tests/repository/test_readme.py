@@ -153,6 +153,19 @@ def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_it
     assert found["30"] != found["60"]
 
 
+def test_one_newton_step_keeps_the_brake_within_the_grip_and_stops_in_the_shortest_way(root):
+    page = (ROOT / "docs" / "vehicle.md").read_text(encoding="utf-8")
+    (lines,), (shown,) = blocks("python", page), blocks("text", page)
+    assert python(lines, root) == shown
+    way, shortest = map(float, re.findall(r"([\d.]+) m[;.]", shown))
+    within(abs(shortest - 25**2 / (2 * 0.4 * 9.81)), 0.005, "v^2 / (2 mu g), m")  # as printed
+    within(abs(way - shortest), 0.01, "stopping distance, m")
+    locked = python(lines.replace("if mu > grip", "if mu > 9"), root)  # the partner: more than the road bears
+    beyond(shortest - float(re.search(r"([\d.]+) m;", locked)[1]), 50, "stopping distance, m")
+    ending = lines.replace('"s": 0.004', '"s": 0.004, "mu_max": 0.41')
+    assert python(ending, root) == shown  # the grip is never exceeded within a step
+
+
 TUTORIAL = (ROOT / "docs" / "first_suspension.md").read_text(encoding="utf-8")
 
 
