@@ -23,7 +23,8 @@ typedef struct Body {
 
 /* What follows. */
 typedef struct Answer {
-  double room, N, tau;
+  double room; /* above zero as long as friction does not wedge the wheel */
+  double N, tau;
   double omega_1_dot, omega_2_dot, omega_3_dot;
   double f_x, f_y; /* N, horizontal force of the ground */
   double u_x, u_y; /* m/s2, rate of the slip without the turning of the axes */
@@ -76,18 +77,18 @@ static inline Answer answer_of(const WheelParameters* w, const Body* b) {
   double a_21 = I->p - w->m * b->l * along, a_22 = I->I_22;
   double b_1 = b->M.M_1 - arm * b->N_rest, b_2 = b->M.M_2 + along * b->N_rest;
   double determinant = a_11 * a_22 - a_12 * a_21;
-  double free = (I->I_11 + w->m * b->l * b->l) * I->I_22 - I->p * I->p; /* the determinant for mu = 0 */
-  Answer a = {.room = determinant / free};
-  a.omega_1_dot = (a_22 * b_1 - a_12 * b_2) / determinant;
-  a.omega_2_dot = (a_11 * b_2 - a_21 * b_1) / determinant;
+  double inverse = 1 / determinant, per_mass = 1 / w->m;
+  Answer a = {.room = determinant}; /* for mu = 0 it is positive */
+  a.omega_1_dot = (a_22 * b_1 - a_12 * b_2) * inverse;
+  a.omega_2_dot = (a_11 * b_2 - a_21 * b_1) * inverse;
   a.N = b->N_rest + w->m * b->l * a.omega_1_dot;
   a.f_x = -b->mu * a.N * b->d_x;
   a.f_y = -b->mu * a.N * b->d_y;
   double M_3 = b->M.M_3 + c->rho * a.f_x;
   a.tau = b->held ? -M_3 : -(b->s * a.N + b->brake) * b->kappa;
   a.omega_3_dot = b->held ? 0 : (M_3 + a.tau) / w->J_z;
-  a.u_x = b->a_x + (b->F_x + a.f_x) / w->m - c->eta * a.omega_2_dot + c->rho * a.omega_3_dot;
-  a.u_y = b->a_y + (b->F_y + a.f_y) / w->m + b->h * a.omega_1_dot;
+  a.u_x = b->a_x + (b->F_x + a.f_x) * per_mass - c->eta * a.omega_2_dot + c->rho * a.omega_3_dot;
+  a.u_y = b->a_y + (b->F_y + a.f_y) * per_mass + b->h * a.omega_1_dot;
   return a;
 }
 

@@ -70,8 +70,10 @@ Row state_at(int j, const Step& step, double size, const double (&f)[points][max
 
 }  // namespace
 
-// The change of the states by one sweep, in units of the weights; infinite where rates are not finite.
-double Collocation::sweep(const Problem& problem, const double* weights, Counters* counters, Step* step) {
+// The change of the states by one sweep, in units of the weights; infinite where rates are not finite. The slopes are
+// those of the first sweep.
+double Collocation::sweep(const Problem& problem, const double* weights, bool first, double* slopes, Counters* counters,
+                          Step* step) {
   const int turned = problem.settling.state, speed = problem.settling.speed;
   Eigen::Map<Rates> before(&f_[0][0]);
   Rates f = Rates::Zero();
@@ -84,9 +86,9 @@ double Collocation::sweep(const Problem& problem, const double* weights, Counter
     ++counters->rhs;
     if (std::isnan(margin)) return INFINITY;
     step->lowest_margin = j == 0 ? margin : std::fmin(step->lowest_margin, margin);
-    double slope;
-    turning[j] = problem.settling.turning(problem.owner, t, y.data(), &slope) - y[speed] * f_[j][turned];
-    jacobian.row(j) *= slope;
+    turning[j] = y[speed] * (f(j, turned) - f_[j][turned]);
+    if (first) slopes[j] = problem.settling.slope(problem.owner, t, y.data());
+    jacobian.row(j) *= slopes[j];
     jacobian(j, j) -= y[speed];
   }
   ++counters->jacobians;
@@ -120,11 +122,11 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
 
 // The error of the step over size_ in units of the weights; infinite where the sweeps do not converge.
 double Collocation::try_size(const Problem& problem, const double* weights, Counters* counters, Step* step) {
-  double change = INFINITY;
+  double change = INFINITY, slopes[points];
   bool done = false;
   for (int sweeps = 0; sweeps < most_sweeps && !done; ++sweeps) {
     const double before = change;
-    change = sweep(problem, weights, counters, step);
+    change = sweep(problem, weights, sweeps == 0, slopes, counters, step);
     if (!std::isfinite(change)) return INFINITY;
     done = change < last_change || (change < largest_rounding && change > 0.5 * before);
   }

@@ -23,7 +23,8 @@ class Collocation final : public Engine {
   static constexpr int points = 6;
   bool predict(const Problem& problem, const Step& last, Counters* counters, Step* step);
   double try_size(const Problem& problem, const double* weights, Counters* counters, Step* step);
-  double sweep(const Problem& problem, const double* weights, Counters* counters, Step* step);
+  double sweep(const Problem& problem, const double* weights, bool first, double* slopes, Counters* counters,
+               Step* step);
   bool fits(const Problem& problem, const Step* step) const;
 
   double liked_ = 0, size_ = 0;        // size of the next step and of the last, s; 0: none was made

@@ -22,12 +22,11 @@ struct Watched {
   bool by_margin;
 };
 
-// A state whose rate is turning / y[speed]: where the speed is small, or zero at the start of a step, it settles at
-// once where the turning vanishes. What `derivative` gives as its rate is then not used.
+// A state whose rate is turning / y[speed] + ...: where the speed is small, or zero at the start of a step, it settles
+// at once where the turning vanishes.
 struct Settling {
   int state, speed;
-  // Out: the derivative of the turning by the state.
-  double (*turning)(void* owner, double t, const double* y, double* slope);
+  double (*slope)(void* owner, double t, const double* y);  // of the turning by the state
 };
 
 // `owner` is passed to each function. The solver may ask at any (t, y) in any order, and the answer depends on

@@ -23,15 +23,17 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
 }
 
 // Outside of a settled slide a small slip has small errors of its own, so that the polynomial of a step does not pass
-// zero; its direction may have larger ones: they are errors of a small velocity, and of a force that acts briefly.
+// zero; its direction may have larger ones: they are errors of a small velocity, and of a force that acts briefly;
+// where the slip is not small either, they decay.
 void weigh_slip(const Setup& setup, double tolerance, bool settled, const double* y, double* weights) {
-  constexpr double largest = 0.01, part_of_slip = 1e-3, rounding = 32 * std::numeric_limits<double>::epsilon();
+  constexpr double larger = 10, largest = 0.01, part_of_slip = 1e-3,
+                   rounding = 32 * std::numeric_limits<double>::epsilon();
   const int slip = setup.sliding->slip_index;
   const double speed = std::fabs(y[slip]), part = 0.01 * setup.slip_scale / speed;
   double of_speed = tolerance * setup.slip_scale, of_direction = tolerance;
   if (!settled) {
     of_speed = std::fmin(of_speed, part_of_slip * speed);
-    of_direction *= std::clamp(part, 1.0, largest / tolerance);
+    of_direction = std::clamp(part * larger * tolerance, larger * tolerance, largest);
   }
   for (int i = slip + 2; i < setup.sliding->states && setup.sliding == &wheel_sliding; ++i) weights[i] = 1;  // at rest
   weights[slip] = 1 / (of_speed + rounding * speed);
@@ -61,16 +63,13 @@ double margin(void* owner, int event, double t, const double* y) {
   return margin_of(row_of(static_cast<Event>(event)), wheel_of(owner).setup, wheel_of(owner).run.in_force, t, y);
 }
 
-// Of the direction of slip: |u| chi_dot.
-double turning(void* owner, double t, const double* y, double* slope) {
+// Of |u| chi_dot by the direction chi of the slip.
+double slope_of_turning(void* owner, double t, const double* y) {
   const Setup& setup = wheel_of(owner).setup;
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
   double reduced[WHEEL_MAX_STATES];
   setup.sliding->reduce(y, reduced);
-  const double* const slip = y + setup.sliding->slip_index;
-  const WheelSlip now = wheel_slip(&scene, reduced, slip[1]);
-  *slope = -now.settling;
-  return now.turn - slip[0] * reduced[2] / std::sin(reduced[0]);
+  return -wheel_slip(&scene, reduced, y[setup.sliding->slip_index + 1]).settling;
 }
 
 int extremes(void* owner, double t_lo, double t_hi, double* instants) {
@@ -92,7 +91,7 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
   problem.passage = now.layer == Layer::passing || now.slides();
-  if (now.slides()) problem.settling = {setup.sliding->slip_index + 1, setup.sliding->slip_index, turning};
+  if (now.slides()) problem.settling = {setup.sliding->slip_index + 1, setup.sliding->slip_index, slope_of_turning};
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr});
   return problem;
