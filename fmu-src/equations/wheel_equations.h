@@ -202,6 +202,21 @@ double wheel_required_friction(const double lambda[3]);
  * infinite. */
 double wheel_required_friction_rate(const double lambda[3], const double lambda_dot[3]);
 
+/* What acts about the axle, or its rate by some quantity. */
+typedef struct WheelAxleMoment {
+  double tau;   /* N m, moment of ground and brake */
+  double N;     /* N, normal force */
+  double s;     /* m */
+  double brake; /* N m, capacity of the brake */
+} WheelAxleMoment;
+
+/* The brake's part of tau, N m: brake and rolling friction share it in proportion to their capacities, brake and s N.
+ * So it is -brake kappa while the wheel rolls, and has no corner where the wheel is released or held. */
+double wheel_brake_moment(const WheelAxleMoment* now);
+
+/* Its rate by some quantity. */
+double wheel_brake_moment_rate(const WheelAxleMoment* now, const WheelAxleMoment* rate);
+
 /* The point of the ground that the wheel touches, and how fast it moves along the ground (not the wheel's material
  * point there, which rests). Fixed axes, m, m/s. */
 typedef struct WheelContact {

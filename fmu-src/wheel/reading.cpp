@@ -48,6 +48,24 @@ double Reading::slip_rate(int axis) const {
   return axis == 0 ? u_dot[0] * c - across * s : u_dot[0] * s + across * c;
 }
 
+Force Reading::force() {
+  const WheelDynamics& now = dynamics();
+  const WheelScene& scene = now_.scene;
+  return {{now.lambda[0], now.lambda[1], now.lambda[2]}, {now.tau, now.lambda[2], scene.wheel.s, scene.load.brake}};
+}
+
+double Reading::brake_moment() {
+  const WheelAxleMoment axle = force().axle;
+  return wheel_brake_moment(&axle);
+}
+
+double Reading::brake_moment_rate() {
+  const WheelAxleMoment axle = force().axle;
+  const ReactionRates& rates = reaction_rates();
+  const WheelAxleMoment rate = {rates.tau_dot, rates.lambda_dot[2], 0, load_rate_of(*now_.inputs).brake};
+  return wheel_brake_moment_rate(&axle, &rate);
+}
+
 const ReactionRates& Reading::reaction_rates() {
   if (missing(have_rates)) {
     WheelReactionRates rates;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "run.hpp"
+#include "variables.hpp"
 
 namespace wheel {
 
@@ -45,6 +46,9 @@ class Reading {
   double slip(int axis) const;
   double slip_rate(int axis) const;
   int contact_mode() const { return now_.scene.contact; }
+  Force force();
+  double brake_moment();       // N m, the brake's part of tau
+  double brake_moment_rate();  // N m/s
   const ReactionRates& reaction_rates();
   const WheelContact& contact();  // X_C and Y_C as the state counts X_O and Y_O
   double energy();                // J, of the whole X_O and Y_O

@@ -1,8 +1,10 @@
 // Difference quotients of fourth order. The reactions are linear in the load, so those by an input are exact up to
-// rounding; a variable that is not linear in the ground's force follows from those of the force (Row::by_force).
+// rounding; a variable that is not linear in the forces follows from those of the forces (Row::by_force).
 #include "slopes.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "exchange.hpp"
@@ -21,24 +23,31 @@ constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12,
                                 {{1, 2, 3, 4}, {4, -3, 4.0 / 3, -1.0 / 4}},
                                 {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}}};
 
-constexpr unsigned forces[] = {variable::lambda_1, variable::lambda_2, variable::lambda_3};
-Force force_of(const double* values) { return {values[forces[0]], values[forces[1]], values[forces[2]]}; }
+// sum + weight (at - centre), number by number.
+Force sum_of(const Force& sum, double weight, const Force& at, const Force& centre) {
+  constexpr std::size_t count = sizeof(Force) / sizeof(double);
+  using Numbers = std::array<double, count>;
+  Numbers total = std::bit_cast<Numbers>(sum);
+  const Numbers there = std::bit_cast<Numbers>(at), here = std::bit_cast<Numbers>(centre);
+  for (std::size_t i = 0; i < count; ++i) total[i] += weight * (there[i] - here[i]);
+  return std::bit_cast<Force>(total);
+}
 
 // Of the variables that are asked for: the value at x, and the derivative.
 struct Pass {
-  bool asked[variable_count] = {};
+  bool asked[variable_count] = {}, forces_asked = false;
   double centre[variable_count], slope[variable_count];
 
   void ask(unsigned variable) {
     asked[variable] = true;
-    if (row_of(variable).by_force)
-      for (const unsigned force : forces) asked[force] = true;
+    forces_asked = forces_asked || row_of(variable).by_force;
   }
 
   // Differences from the value at x itself, so that what does not depend on x has the derivative zero. `read_at` gives
   // the reading at a place, null where there is none.
   template <class ReadAt>
   bool take(const Stencil& stencil, double x, double h, const ReadAt& read_at) {
+    Force force = {}, rate = {};
     for (int k = -1; k < 4; ++k) {
       Reading* const reading = read_at(k < 0 ? x : x + stencil.places[k] * h);
       if (!reading) return false;
@@ -48,9 +57,15 @@ struct Pass {
         slope[v] = k < 0 ? 0 : slope[v] + stencil.weights[k] * (value - centre[v]) / h;
         if (k < 0) centre[v] = value;
       }
+      if (!forces_asked) continue;
+      const Force there = reading->force();
+      if (k < 0)
+        force = there;
+      else
+        rate = sum_of(rate, stencil.weights[k] / h, there, force);
     }
     for (unsigned v = stored_count; v < variable_count; ++v)
-      if (asked[v] && row_of(v).by_force) slope[v] = row_of(v).by_force(force_of(centre), force_of(slope));
+      if (asked[v] && row_of(v).by_force) slope[v] = row_of(v).by_force(force, rate);
     return true;
   }
 };

@@ -45,6 +45,8 @@ constexpr Access readers[] = {
     {variable::lambda_x, AT(now.horizontal_force(0)), AT(now.reaction_rates().lambda_x_dot)},
     {variable::lambda_y, AT(now.horizontal_force(1)), AT(now.reaction_rates().lambda_y_dot)},
     {variable::tau, AT(now.dynamics().tau), AT(now.reaction_rates().tau_dot)},
+    {variable::tau_brake, AT(now.brake_moment()), AT(now.brake_moment_rate()),
+     [](const Force& force, const Force& rate) { return wheel_brake_moment_rate(&force.axle, &rate.axle); }},
     {variable::slip_x, AT(now.slip(0)), AT(now.slip_rate(0))},
     {variable::slip_y, AT(now.slip(1)), AT(now.slip_rate(1))},
     {variable::contact_mode, AT(now.contact_mode())},

@@ -5,13 +5,16 @@
 
 #include <limits>
 
+#include "wheel_equations.h"
+
 namespace wheel {
 
 class Reading;
 
-// The ground's force on the wheel, fixed axes, N; or its rate of change by some quantity.
+// What acts on the wheel at the ground, fixed axes, N, and about the axle; or its rate of change by some quantity.
 struct Force {
   double lambda[3];
+  WheelAxleMoment axle;
 };
 
 enum class Type : unsigned char { real, integer, boolean, string };  // no variable is a string
@@ -41,7 +44,7 @@ struct Row {
   double start, min, max;         // stored variables
   double (*read)(Reading&);       // computed variables, else null
   double (*read_rate)(Reading&);  // d/dt of an output, else null
-  // The derivative of what is not linear in the ground's force, from force and derivative of the force; else null.
+  // The derivative of what is not linear in the forces, from forces and derivatives of the forces; else null.
   double (*by_force)(const Force& force, const Force& rate);
 };
 

@@ -248,3 +248,26 @@ def test_asking_leaves_the_start_as_it_was(wheel):
     assert w.serialized() == before
     assert w.exitInitializationMode() == other.exitInitializationMode() == OK
     assert w.run([1.0]) == other.run([1.0])
+
+
+BRAKED = {"theta_start": np.pi / 2, "phi_dot_start": 0.0, "s": 0.02}
+
+
+def test_the_brakes_moment_on_a_held_wheel_has_the_derivatives_of_its_share(wheel):
+    """Upright, held: tau = -M_3 of a torque alone, N = m g, and the share is M_brake / (M_brake + s N)."""
+    brake, torque, N = 50.0, -40.0, 20 * 9.81
+    rolling = 0.02 * N
+    w = wheel().start(**BRAKED).put(M_brake=brake, M_3=torque).to(0.01)
+    assert w.get("friction_mode") == [0]
+    tau, capacity = -torque, brake + rolling
+    want = np.array([tau * rolling / capacity**2, -brake / capacity, tau * brake * 0.02 / capacity**2])  # F_Z lifts
+    (found,) = w.jacobian(["tau_brake"], ["M_brake", "M_3", "F_Z"])
+    within(np.abs(found / want - 1).max(), 1e-10, "derivatives, relative")
+    beyond(abs(w.jacobian(["tau"], ["M_3"])[0, 0] / want[1] - 1), 0.05, "that of both, relative")
+
+
+def test_a_brake_about_to_be_put_on_has_the_derivative_of_its_capacity(wheel):
+    for s in (0.0, 0.02):
+        w = wheel().start(theta_start=np.pi / 2, phi_dot_start=-5.0, s=s).to(0.01)
+        within(abs(w.jacobian(["tau_brake"], ["M_brake"])[0, 0] - 1), 1e-10, "derivative")
+        assert w.get("tau_brake") == [0]

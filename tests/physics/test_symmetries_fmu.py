@@ -18,7 +18,7 @@ START = {
     **{"phi_dot_start": 3.0, "X_O_start": 0.2, "Y_O_start": -0.1, "s": 0.03, "keep_contact": True},
 }
 LOAD = {"F_X": (1.0, 2.0), "F_Y": (-2.0, 0.5), "F_Z": (3.0, -1.0)}
-LOAD |= {"M_1": (0.1,), "M_2": (-0.2, 0.1), "M_3": (0.5, -0.4)}
+LOAD |= {"M_1": (0.1,), "M_2": (-0.2, 0.1), "M_3": (0.5, -0.4), "M_brake": (0.3, 0.1)}
 TIMES = np.linspace(0, 4, 81)
 UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 WHEELS = {"J_x = J_y": {}, "J_x != J_y": UNEQUAL, "J_x != J_y, multibody": {**UNEQUAL, "formulation": 3}}
@@ -84,7 +84,7 @@ def image_of_motion(symmetry: Symmetry, run: Run) -> dict[str, NDArray[np.float6
     for point in "OC":
         out[f"X_{point}"] = out[f"X_{point}"] + symmetry.move[0]
         out[f"Y_{point}"] = out[f"Y_{point}"] + symmetry.move[1]
-    for name in ("omega_z", "omega_z_dot", "friction_mode", "tau"):
+    for name in ("omega_z", "omega_z_dot", "friction_mode", "tau", "tau_brake"):
         out[name] = symmetry.signs[2] * run[name]
     turned = -1 if symmetry.shifts[0] == pi else 1  # e1 points the other way than the image of e1
     for vector in ("lambda", "slip"):

@@ -8,9 +8,8 @@
  *
  * Steering (Ackermann): all wheels turn about one point on the line through the wheels that are not steered. With L
  * from that line to the steered wheels, tan delta_i = (x_i - x_R) tan delta / (L - y_i tan delta). Drive: M_3 = -share
- * M_drive, taken from the chassis. Brake: of the moment tau that the wheel feels, the share B / (s N + B) is the
- * brake's, which the chassis carries; B is its capacity, s N that of rolling friction. Until t_couple the chassis runs
- * on straight and each strut gives F_i alone. */
+ * M_drive, taken from the chassis. Brake: the chassis carries its moment, tau_brake of the wheel. Until t_couple the
+ * chassis runs on straight and each strut gives F_i alone. */
 #include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
@@ -61,20 +60,13 @@ static double strut(const double* u, int i, const Hub& hub) {
   return of_wheel(u, k_each, i) * d + of_wheel(u, c_each, i) * hub.d_dot[2] + std::copysign(u[k_stop] * e * e, d);
 }
 
-/* The part of tau that the brake gives. */
-static double braking(const double* u, int i) {
-  const double B = u[M_brake] * of_wheel(u, brake_each, i);
-  const double tau = u[tau_each + i * wheel_inputs], N = u[lambda_3_each + i * wheel_inputs];
-  return B > 0 ? tau * B / (B + u[s] * std::fmax(N, 0)) : 0;
-}
-
 Hubs read_hubs(const Now& now, const Body& body) {
   const double* u = now.u;
   Hubs hubs;
   for (int i = 0; i < wheel_count; ++i) {
     const Vector3d p(of_wheel(u, x_each, i), of_wheel(u, y_each, i), u[R] - u[h_B]);
     Hub& hub = hubs[i] = read_hub(now, body, i, p, steering(now, i));
-    hub.M_3 = braking(u, i) - u[M_drive] * of_wheel(u, drive_each, i);
+    hub.M_3 = u[tau_brake_each + i * wheel_inputs] - u[M_drive] * of_wheel(u, drive_each, i);
     if (reached(now, t_couple)) {
       hub.f = -u[k_h] * hub.d - u[c_h] * hub.d_dot;
       hub.f[2] = -strut(u, i, hub);
