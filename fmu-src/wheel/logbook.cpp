@@ -60,6 +60,32 @@ void log_contact(Wheel& wheel, bool slid, bool goes_on) {
                              : "slides");
 }
 
+void warn_of_grip(Wheel& wheel, double t, const double* y) {
+  constexpr double looks = 16, dry_road = 1;
+  const Setup& setup = wheel.setup;
+  const WheelScene scene = wheel.run.in_force.scene_at(t);
+  WheelDynamics dynamics;
+  setup.formulation->dynamics(&scene, y, &dynamics);
+  const double mu = wheel_required_friction(dynamics.lambda);
+  const bool exceeds = std::isfinite(mu) && mu > dry_road;
+  wheel.run.grip_due = exceeds ? Demand::never : t + setup.own_time / looks;
+  if (exceeds)
+    wheel.reporter.log(Topic::warning,
+                       "t = %s s: mu_required = %s, more than a dry road gives; mu_max = 0 sets no limit.",
+                       instant_of(setup, t), Digits{mu, 3});
+}
+
+void log_ending(Wheel& wheel, Event event) {
+  const Run& run = wheel.run;
+  if (wheel.endings++ >= logged_one_by_one) return;
+  wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
+                     ending_of(wheel.setup, event).text, wheel.setup.start_time + run.t,
+                     Digits{run.y[wheel.setup.formulation->tilt_index], 6});
+  if (wheel.endings == logged_one_by_one)
+    wheel.reporter.log(Topic::discard, "%s endings were logged; further ones are not, until a reset.",
+                       static_cast<double>(logged_one_by_one));
+}
+
 void log_summaries(const Wheel& wheel) {
   for (const EventRow& row : event_rows) {
     const Tally& tally = wheel.run.tallies[static_cast<int>(row.event)];

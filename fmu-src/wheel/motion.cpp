@@ -166,6 +166,15 @@ double stop_of(const Wheel& w, double t) {
   return stop;
 }
 
+// Of a loaded wheel on a road without a limit.
+void look_at_grip(Wheel& w, double t) {
+  const Inputs& inputs = w.run.in_force.inputs;
+  if (t < w.run.grip_due || w.setup.mu_max > 0 || !(inputs.loaded || inputs.braked)) return;
+  double y[WHEEL_MAX_STATES];
+  w.solution.solver.read(t, y);
+  warn_of_grip(w, t, y);
+}
+
 // Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.
 Outcome step_to(Wheel& w, double t) {
   solver::Solver& solver = w.solution.solver;
@@ -177,6 +186,7 @@ Outcome step_to(Wheel& w, double t) {
     }
     const Outcome outcome = solver.step(stop_of(w, t));
     if (outcome == Outcome::failed) return outcome;
+    look_at_grip(w, std::fmin(t, solver.known_until()));
     work += (outcome == Outcome::event ? work_per_event : 1) * work_per_step;
     if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event after t waits until it is reached
     move_to(w, solver.event_time());
@@ -264,9 +274,7 @@ void end_run(Wheel& w, Event event) {
   w.run.ended_by = event;
   freeze(w, Phase::ended);
   log_summaries(w);
-  w.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
-                 ending_of(w.setup, event).text, w.setup.start_time + w.run.t,
-                 Digits{w.run.y[w.setup.formulation->tilt_index], 6});
+  log_ending(w, event);
 }
 
 }  // namespace wheel

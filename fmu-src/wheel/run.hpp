@@ -99,6 +99,7 @@ struct Run {
   double t = 0;            // s, own clock: the instant reached
   double y_time = 0;       // s, own clock: the instant of y
   double last_change = 0;  // s, own clock: when an input or a tunable parameter last changed
+  double grip_due = 0;     // s, own clock: from when on mu_required is looked at; infinite after its warning
   double y[WHEEL_MAX_STATES] = {};
   Tally tallies[event_count] = {};
   long long transitions = 0;      // of the friction, rolling and sliding

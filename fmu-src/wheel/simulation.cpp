@@ -10,6 +10,7 @@ void Simulation::reset() {
   Wheel& w = change();
   w.demand = Demand(kind());
   w.run = Run();
+  w.endings = 0;
 }
 
 void Simulation::set_experiment(double start_time, double stop_time, double tolerance) {

@@ -54,6 +54,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
   archive("time reached, s").number(run.t);
   archive("time of the last change, s").range(run.last_change, 0, archive.greatest);
+  archive("when mu_required is looked at, s; infinite for never").range(run.grip_due, 0, Demand::never);
   archive("state").numbers(run.y, WHEEL_MAX_STATES);
   for (int i = 0; i < event_count; ++i) {
     archive("whether an observed event lies below zero").count(now.below[i], 0, 1);

@@ -34,6 +34,7 @@ struct Wheel {
   Run run;
   Solution solution;
   double y_ahead[WHEEL_MAX_STATES] = {};  // of a reading: run.y with the slip that follows from what was set
+  long long endings = 0;  // logged, of all runs since the last reset, those that a state led back from included
 };
 
 // The state at the instant reached; writes run.y.

@@ -99,3 +99,54 @@ def test_a_wheel_off_the_ground_at_the_start_ends_there_however_soon_it_would_be
     assert w.step(0.1) == DISCARD
     assert ended(w) == 0
     wheel().start(tolerance=tolerance, **motion).put(F_Z=-15.0).by(0.1)  # the partner: N = 0.7 N at the start
+
+
+ROLLING = {"theta_start": np.pi / 2, "phi_dot_start": -60.0}
+FULL = (1.8 / 0.35**2 + 20) * 9.81 * 0.35  # N m: an upright wheel that brakes so requires lambda_x = N
+
+
+def grip_warnings(w: FMU2Wheel) -> list[str]:
+    return [text for text in w.texts() if "more than a dry road gives" in text]
+
+
+def braked(w: FMU2Wheel, until: float, h: float, mu_max: float = 0.0) -> FMU2Wheel:
+    """A brake that grows by 100 N m/s from a little below its full capacity."""
+    w.start(mu_max=mu_max, **ROLLING)
+    for k in range(round(until / h)):
+        w.give({"M_brake": (FULL - 20 + 100 * k * h, 100.0)}).by(h)
+    return w
+
+
+@pytest.mark.parametrize("h", [0.001, 0.01, 0.3])
+def test_a_road_without_a_limit_warns_once_where_rolling_requires_a_coefficient_above_one(wheel, h):
+    w = braked(wheel(), 0.3, h)
+    (text,) = grip_warnings(w)
+    instant = float(text.split()[2])
+    late = np.sqrt(0.35 / 9.81) / 16 + h  # it looks so often, at the ends of the solver's steps
+    assert 0.2 <= instant <= 0.2 + late
+    mu = float(text.split("mu_required = ")[1].split(",")[0])
+    within(abs(mu - (1 + 100 * (instant - 0.2) / FULL)), 0.006, "coefficient, three digits")
+    assert grip_warnings(braked(wheel(), 0.15, h)) == []  # the partners: below one, and with a limit
+    assert grip_warnings(braked(wheel(), 0.3, h, mu_max=3.0)) == []
+
+
+def test_a_state_from_before_the_warning_warns_again_and_one_from_after_does_not(wheel):
+    before, after = (braked(wheel(), until, 0.01).serialized() for until in (0.15, 0.25))
+    for blob, count in ((before, 1), (after, 0)):
+        w = wheel().back(blob)
+        w.take_messages()
+        w.give({"M_brake": (FULL + 30.0,)}).by(0.1).by(0.1)
+        assert len(grip_warnings(w)) == count
+
+
+def test_of_very_many_endings_that_a_master_goes_back_from_the_first_hundred_are_logged(wheel):
+    w = wheel().start(**DROP).to(0.5)
+    before = w.serialized()
+    w.take_messages()
+    for _ in range(120):
+        assert w.back(before).step(1.0) == DISCARD
+    texts = w.texts()
+    assert sum("fell flat" in text for text in texts) == 100
+    assert texts[-1] == "100 endings were logged; further ones are not, until a reset."
+    assert w.reset() == OK and w.start(**DROP).step(1.0) == DISCARD  # the partner
+    assert "fell flat" in w.said()
