@@ -239,6 +239,7 @@ FORGERIES = {
             *NOT_RUNNING, *({"phase": phase} for phase in (13, forging.EVENT_MODE, 2**63, forging.ENDED)),
             {"phase": forging.ENDED, "ended_by": forging.SPIN_CHANGES}, {"ended_by": FELL_FLAT},
             {"stop_time": np.nan}, {"stop_time": -np.inf}, {"tolerance": 1.0}, {"last_change": 9.0}, {"origin": 9.0},
+            {"grip_due": np.nan}, {"grip_due": -1.0},
             {"s": -1.0}, {"s": 0.1}, {"law": 0}, {"law": 2}, {"layer": 1},
             {"below": 1}, {"below": 2}, {"below_flat": 1}, {"times_flat": 1}, {"pulls": 1},
         ],
