@@ -265,9 +265,10 @@ double sliding_derivative(const WheelScene* scene, const double* y, double* y_do
   y_dot[chi] = y[speed] == 0 ? 0 : (slip_dot[1] * d[0] - slip_dot[0] * d[1]) / y[speed] - y[psi_dot];
   y_dot[spin] = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, solution.unknowns);
   const double N = solution.unknowns[lambda_3];
-  if (N >= 0) return N;
-  const Against none = Against::Zero();  // without sliding friction N has the same sign, or friction wedges the wheel
-  return solve(*scene, s, now.column, &none).unknowns[lambda_3] > 0 ? INFINITY : N;
+  constexpr double least_room = 1e-5, usual = 100;  // of N over that without friction; and weights
+  if (N >= 0 && N < usual * scene->wheel.m * scene->wheel.g) return N;
+  const Against none = Against::Zero();
+  return solve(*scene, s, now.column, &none).unknowns[lambda_3] / N < least_room ? INFINITY : N;
 }
 
 void sliding_start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {

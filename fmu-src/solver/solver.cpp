@@ -143,7 +143,7 @@ void Solver::read(double t, double* y) const {
 
 // Fields are written only when they are read; a solver that is saved stays as it is.
 void Solver::visit(support::Archive& archive) {
-  archive("method").count(method_, 0, static_cast<int>(Method::runge_kutta));
+  archive("method").count(method_, 0, static_cast<int>(Method::collocation));
   archive("outcome of the last step").count(pending_, 0, static_cast<int>(Outcome::failed));
   archive("event").count(event_, 0, std::numeric_limits<int>::max());
   archive("time known, s").number(known_until_);

@@ -63,7 +63,10 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
 Consequence change_spin(const Setup& setup, Event, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
   if (law != WHEEL_FRICTIONLESS) formulation_of(setup, now.scene).stop_spin(&now.scene.wheel, y);
-  decide_law(setup, t, y, now, law == WHEEL_HELD);
+  if (now.slides() && y[setup.sliding->slip_index] <= least_slip(setup, t))
+    decide_contact(setup, t, y, now);  // a slip that begins has the direction of the new law
+  else
+    decide_law(setup, t, y, now, law == WHEEL_HELD);
   return Consequence::bends;
 }
 
@@ -87,9 +90,10 @@ Consequence change_settling(const Setup&, Event, double, double*, InForce& now) 
   return Consequence::bends;
 }
 
-// What is left of the slip at its end falls at once.
+// What is left of the slip at its end falls at once. A settled slip may grow from zero with no acceleration.
 double slip_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  const double least = now.contact == Contact::settled ? 0 : least_slip(setup, t);
+  constexpr double rounding = 1e-14;
+  const double least = now.contact == Contact::settled ? -rounding * setup.slip_scale : least_slip(setup, t);
   return (y[setup.sliding->slip_index] - least) / setup.slip_scale;
 }
 
@@ -104,11 +108,8 @@ bool always_ends(const Setup&) { return true; }
 
 // N over the weight.
 double pressure_of(const Setup& setup, const double*, double N) { return N / setup.weight; }
-// N grows without bound where friction wedges the wheel.
-double wedging_left(const Setup& setup, const double*, double N) {
-  constexpr double largest = 1e8;
-  return 1 - N / (largest * setup.whole_weight);
-}
+// N is infinite where friction wedges the wheel.
+double wedging_left(const Setup&, const double*, double N) { return N < solver::never ? 1 : -1; }
 // rad from where the wheel counts as flat.
 double height_of(const Setup& setup, const double* y, double) {
   return angle_from_flat(y[setup.formulation->tilt_index]) - flat_angle;

@@ -142,7 +142,7 @@ double grip_left(const Setup& setup, const WheelScene& scene, const double* y) {
 }
 
 // settling^2 - (rates |u| / own_time)^2 - (ratio growth)^2 over the scale of accelerations squared. A settled slide
-// stays so up to a smaller ratio, and its growth counts only when the slip is no longer near zero.
+// stays so up to a smaller ratio, and while it is near zero its growth does not count; its fall does.
 double settling_left(const Setup& setup, const WheelScene& scene, bool settled, const double* y) {
   constexpr double rates = 100, ratio = 15, looser = 0.25;
   double reduced[WHEEL_MAX_STATES];
@@ -150,7 +150,7 @@ double settling_left(const Setup& setup, const WheelScene& scene, bool settled, 
   const double* const slip = y + setup.sliding->slip_index;
   const WheelSlip now = wheel_slip(&scene, reduced, slip[1]);
   const double scale = setup.length / (setup.own_time * setup.own_time), settling = now.settling / scale;
-  const double begun = settled ? slip[0] / (slip[0] + setup.slip_scale) : 1;
+  const double begun = settled && now.growth > 0 ? slip[0] / (slip[0] + setup.slip_scale) : 1;
   const double turning = rates * slip[0] / setup.own_time / scale, growth = ratio * begun * now.growth / scale;
   const double left = settling * std::fabs(settling) - (settled ? looser : 1) * (turning * turning + growth * growth);
   return settled ? left : -left;
@@ -185,10 +185,11 @@ double holding_reserve(const Setup& setup, const WheelScene& scene, const double
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {
-  if (now.contact == Contact::settled) return solver::Method::collocation;
-  if (setup.method == adams_method) return solver::Method::adams;
-  const bool stiff = setup.method == bdf_method || now.layer == Layer::sticking;
-  return stiff ? solver::Method::bdf : solver::Method::runge_kutta;
+  const bool regularized = now.scene.friction.kind == WHEEL_REGULARIZED;
+  if (now.layer == Layer::sticking || (setup.method == bdf_method && regularized)) return solver::Method::bdf;
+  if (now.slides()) return now.contact == Contact::settled ? solver::Method::collocation : solver::Method::runge_kutta;
+  if (setup.method == bdf_method) return solver::Method::bdf;
+  return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
 }
 
 bool is_unfoldable(const Setup& setup, const InForce& in_force) {

@@ -51,7 +51,8 @@ inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
 bool can_stiffen(const Setup& setup, const InForce& in_force);
 double softness_of(const Setup& setup, const WheelScene& scene, const double* y);
 
-// What solves the motion that is not unfolded.
+// What solves the motion that is not unfolded. CVODE's history and Jacobian do not follow a direction of slip that
+// turns ever faster: a slide has methods of its own.
 solver::Method method_of(const Setup& setup, const InForce& in_force);
 
 // Whether the motion repeats and can be unfolded from half a nutation.

@@ -20,8 +20,8 @@ using solver::Outcome;
 constexpr long long most_work = 1000000;
 // The work of passing an event, in internal steps: the search for it, a new start, the short steps after it.
 constexpr long long work_per_event = 20;
-// The work of one internal step of the multibody form, whose system is larger.
-constexpr long long work_per_multibody_step = 8;
+// Evaluations that count as one internal step, and the work of one of the multibody form, whose system is larger.
+constexpr long long evaluations_per_step = 16, work_per_multibody_step = 8;
 
 bool is_known(const Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return w.solution.solver.reaches(t);
@@ -184,10 +184,12 @@ Outcome step_to(Wheel& w, double t) {
       w.solution.failure = "one call may take no more internal steps; use shorter communication steps";
       return Outcome::failed;
     }
+    const long long before = solver.counters().rhs;
     const Outcome outcome = solver.step(stop_of(w, t));
     if (outcome == Outcome::failed) return outcome;
     look_at_grip(w, std::fmin(t, solver.known_until()));
-    work += (outcome == Outcome::event ? work_per_event : 1) * work_per_step;
+    const long long steps = std::max((solver.counters().rhs - before) / evaluations_per_step, 1LL);
+    work += (outcome == Outcome::event ? work_per_event : steps) * work_per_step;
     if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event after t waits until it is reached
     move_to(w, solver.event_time());
     state_now(w);

@@ -99,7 +99,7 @@ bool check_sliding(const Reporter& reporter, const Demand& demand) {
   const double mu_max = v[variable::mu_max], mu_slide = v[variable::mu_slide];
   const double slip_x = v[variable::slip_x_start], slip_y = v[variable::slip_y_start];
   const bool slips = std::fabs(slip_x) + std::fabs(slip_y) > 0;
-  bool sound = reporter.check(!(mu_slide > mu_max), "mu_slide = %s: it must be at most mu_max = %s.",
+  bool sound = reporter.check(!(mu_slide > mu_max), "mu_slide = %s: mu_max must be at least as large, and is %s.",
                               Digits{mu_slide, 9}, Digits{mu_max, 9});
   sound &= reporter.check(!slips || mu_slide > 0,
                           "slip_x_start, slip_y_start = %s, %s m/s: a start with slip needs mu_slide.",
