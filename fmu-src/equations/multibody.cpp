@@ -240,6 +240,7 @@ struct Sliding {
         slides(scene.mu_slide * slip_direction(sliding)),
         column(system_column(s, scene.load)) {
     column.segment<2>(6).setZero();
+    column[8] -= decay_rate(s) * (B(s) * s.q_dot)[2];  // in `dynamics` too: rates and the release agree on N
   }
   static std::array<double, WHEEL_MULTIBODY_STATES> released(const WheelParameters& wheel, const double* sliding) {
     std::array<double, WHEEL_MULTIBODY_STATES> y;
@@ -250,16 +251,14 @@ struct Sliding {
 
 // As `derivative`, with the two rows that are left; the slip's rate is that of [B]{q_dot}, its axes turn with psi.
 double sliding_derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  Sliding now(*scene, y);
+  const Sliding now(*scene, y);
   const Multibody& s = now.s;
-  const double rate = decay_rate(s);
-  now.column[8] -= rate * (B(s) * s.q_dot)[2];
   const Solution solution = solve(*scene, s, now.column, &now.slides);
   Eigen::Map<Vector6> velocities(y_dot), accelerations(y_dot + 6);
   const Vector3 slip_dot = B(s) * solution.unknowns.head<6>() + B_dot(s) * s.q_dot;
   const Eigen::Vector2d d = slip_direction(y);
   velocities = s.q_dot;
-  velocities[Z_O] -= rate * (y[Z_O] - (scene->wheel.r_0 * s.attitude.sin_theta + scene->wheel.r));
+  velocities[Z_O] -= decay_rate(s) * (y[Z_O] - (scene->wheel.r_0 * s.attitude.sin_theta + scene->wheel.r));
   accelerations = solution.unknowns.head<6>();
   y_dot[speed] = slip_dot.head<2>().dot(d);
   y_dot[chi] = y[speed] == 0 ? 0 : (slip_dot[1] * d[0] - slip_dot[0] * d[1]) / y[speed] - y[psi_dot];

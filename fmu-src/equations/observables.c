@@ -77,19 +77,27 @@ double wheel_brake_moment_rate(const WheelAxleMoment* now, const WheelAxleMoment
   return rate->tau * share + now->tau * share_rate;
 }
 
-/* weight * (lambda, tau) at the time h from y, added to out. */
-static void add_reaction(const WheelFormulation* form, const WheelScene* scene, const WheelLoad* load_dot,
-                         const double* y, const double* y_dot, double h, double weight, WheelReactionRates* out) {
+/* weight * (lambda, tau) at y + h y_dot, added to out. */
+static void add_reaction(const WheelFormulation* form, const WheelScene* scene, const double* y, const double* y_dot,
+                         double h, double weight, WheelReactionRates* out) {
   double moved[WHEEL_MAX_STATES];
-  WheelScene then = *scene;
   WheelDynamics dynamics;
   for (int i = 0; i < form->states; ++i) moved[i] = y[i] + h * y_dot[i];
-  for (int i = 0; i < 3; ++i) then.load.F[i] += h * load_dot->F[i];
-  for (int i = 0; i < 3; ++i) then.load.M[i] += h * load_dot->M[i];
-  then.load.brake += h * load_dot->brake;
-  form->dynamics(&then, moved, &dynamics);
+  form->dynamics(scene, moved, &dynamics);
   for (int i = 0; i < 3; ++i) out->lambda_dot[i] += weight * dynamics.lambda[i];
   out->tau_dot += weight * dynamics.tau;
+}
+
+/* The same for a rate of the load, in which lambda and tau are linear: over a long time, so that little is rounded. */
+static void add_load_rate(const WheelFormulation* form, const WheelScene* scene, const WheelLoad* rate, const double* y,
+                          const double* y_dot, WheelReactionRates* out) {
+  const double time = 1024;
+  WheelScene then = *scene;
+  for (int i = 0; i < 3; ++i) then.load.F[i] += time * rate->F[i];
+  for (int i = 0; i < 3; ++i) then.load.M[i] += time * rate->M[i];
+  then.load.brake += time * rate->brake;
+  add_reaction(form, &then, y, y_dot, 0, 1 / time, out);
+  add_reaction(form, scene, y, y_dot, 0, -1 / time, out);
 }
 
 /* 1/s, how fast the wheel moves. */
@@ -99,8 +107,9 @@ static double rate_of(const WheelFormulation* form, const double* y, const doubl
   return (fabs(y[OMEGA_1]) + fabs(y[OMEGA_2])) / sin(y[THETA]) + fabs(y[OMEGA_3]) + sqrt(swing) + turning;
 }
 
-/* By a difference quotient of fourth order along state and load, whose step is a small part of the time in which the
- * wheel itself moves. kappa is frozen: its own rate can be large, and acts as a moment about the axle. */
+/* Two parts: the load's rate, and the state's motion by a difference quotient of fourth order, whose step is a small
+ * part of the time in which the wheel itself moves. kappa is frozen: its own rate can be large, and acts as a moment
+ * about the axle. */
 void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
                           const double* state, WheelReactionRates* out) {
   const WheelFormulation* form = formulation->slip_index < 0 ? &wheel_reduced : &wheel_sliding;
@@ -122,10 +131,11 @@ void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene*
   }
   double pace = rate_of(form, y, y_dot), h = pace > 0 ? 1e-3 / pace : 1;
   *out = (WheelReactionRates){.tau_dot = kappa_moment_dot};
-  add_reaction(form, &frozen, &rate, y, y_dot, -2 * h, 1 / (12 * h), out);
-  add_reaction(form, &frozen, &rate, y, y_dot, -h, -8 / (12 * h), out);
-  add_reaction(form, &frozen, &rate, y, y_dot, h, 8 / (12 * h), out);
-  add_reaction(form, &frozen, &rate, y, y_dot, 2 * h, -1 / (12 * h), out);
+  add_load_rate(form, &frozen, &rate, y, y_dot, out);
+  add_reaction(form, &frozen, y, y_dot, h, 8 / (12 * h), out);
+  add_reaction(form, &frozen, y, y_dot, -h, -8 / (12 * h), out);
+  add_reaction(form, &frozen, y, y_dot, 2 * h, -1 / (12 * h), out);
+  add_reaction(form, &frozen, y, y_dot, -2 * h, 1 / (12 * h), out);
 }
 
 void wheel_constraint_residuals(const WheelParameters* wheel, const WheelKinematics* k, double* velocity,

@@ -141,7 +141,7 @@ static double zero_of_turning(const WheelParameters* w, const Body* b, double lo
 }
 
 double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
-  enum { parts = 180 };
+  const int parts = 180;
   static const Action none = {.brake = 0};
   const double part = 2 * 3.141592653589793 / parts, rounding = 1e-9;
   const WheelParameters* w = &scene->wheel;

@@ -92,9 +92,16 @@ Consequence change_settling(const Setup&, Event, double, double*, InForce& now) 
 
 // What is left of the slip at its end falls at once. A settled slip may grow from zero with no acceleration.
 double slip_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  constexpr double rounding = 1e-14;
-  const double least = now.contact == Contact::settled ? -rounding * setup.slip_scale : least_slip(setup, t);
-  return (y[setup.sliding->slip_index] - least) / setup.slip_scale;
+  constexpr double rounding = 1e-14, near = 1e3;
+  const int slip = setup.sliding->slip_index;
+  double least = now.contact == Contact::settled ? -rounding * setup.slip_scale : least_slip(setup, t);
+  if (y[slip] < near * least) {  // a slip that falls faster than by g needs more digits of the instant
+    const WheelScene scene = now.scene_at(t);
+    double y_dot[WHEEL_MAX_STATES];
+    setup.sliding->derivative(&scene, y, y_dot);
+    least *= std::fmax(1, std::fabs(y_dot[slip]) * setup.own_time * setup.own_time / setup.length);
+  }
+  return (y[slip] - least) / setup.slip_scale;
 }
 
 Consequence end_slip(const Setup& setup, Event, double t, double* y, InForce& now) {

@@ -425,3 +425,70 @@ def test_the_communication_grid_changes_no_bit(library: Library, steps: float) -
         assert fine[name][-1] == coarse[name][-1], name
     other = library.simulate([0.0, *grid[1:-1], 2.5], **{**ROAD, "mu_slide": 0.4 * (1 + 1e-12)})
     assert other["X_O"][-1] != coarse["X_O"][-1]
+
+
+# ---- snapshots, hard scenes ----
+
+
+@pytest.mark.parametrize("how", [{}, {"formulation": 3}, {"mu_slide": 0.45}, {"method": 3}], ids=str)
+def test_a_state_saved_anywhere_in_a_slide_goes_on_with_the_same_bits(library: Library, how: dict) -> None:
+    """Before, just after the loss of grip, while the direction settles, later, and at both transitions."""
+    with library.wheel() as wheel:
+        wheel.start(**{**ROAD, **how})
+        found = []
+        for t in (0.5, 0.5708271565, 0.57083, 0.571, 0.575, 0.58, 0.6, 0.8, 0.955, 0.9550033402, 1.5, 1.88):
+            wheel.to(t)
+            saved = wheel.snapshot()
+            wheel.to(2.0)
+            found.append(wheel.bits())
+            assert wheel.ask("SetFMUstate", saved) == OK
+            wheel.time = t
+            wheel.to(2.0)
+            assert wheel.bits() == found[-1], t
+            assert wheel.ask("SetFMUstate", saved) == OK
+            wheel.time = t
+        assert len(set(found)) == 1
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-12])
+@pytest.mark.parametrize("formulation", [2, 3])
+def test_a_jam_is_the_same_at_every_tolerance(library: Library, tolerance: float, formulation: int) -> None:
+    """Friction of 4 against a fast slip across: the normal force grows as the inverse root of the time left."""
+    scene = Slide({"mu_max": 5.0, "mu_slide": 4.0, "theta_start": 2.0, "slip_y_start": -10.0}, 0.4)
+    ended = scene.solved([0.0, 0.4]).ended
+    run = simulate(library, scene, [0.0, 0.4], tolerance, formulation=formulation)
+    assert ended and ended.kind == "jams" and run.end is not None and "jam" in str(run.ended)
+    within(abs(run.end - ended.time) / tolerance, 1e3, "instant over tolerance, s")
+    beyond(abs((simulate(library, scene, [0.0, 0.4], mu_slide=4.04).end or 0) - ended.time), 1e-4, "with 1 % more friction, s")
+
+
+@pytest.mark.parametrize(("start", "brake"), [
+    ({"mu_max": 0.1, "mu_slide": 0.1, "s": 0.3, "omega_s": 1e-6}, 0.0),
+    ({"mu_max": 0.4, "mu_slide": 0.3, "omega_s": 1e-4}, 1e3),
+    ({"mu_max": 0.4, "mu_slide": 0.4, "omega_s": 1e-6}, 1e3),
+])  # fmt: skip
+def test_a_stiff_law_in_a_slide_is_solved_in_some_thousand_steps(library: Library, start: dict, brake: float) -> None:
+    held = library.simulate([0.0, 1.0], 1e-6, Schedule(((0.0, {"M_brake": brake}),)), **{**start, "omega_s": 1.0})
+    run = library.simulate([0.0, 1.0], 1e-6, Schedule(((0.0, {"M_brake": brake}),)), friction_law="regularized", **start)
+    assert (run["contact_mode"] == SLIDING).any()
+    within(run.counters["n_steps"], 2e4, "steps")
+    within(abs(run["theta"][-1] - held["theta"][-1]), 1e-2, "lean apart from that under the exact law, rad")
+
+
+def test_a_slip_that_falls_at_forty_times_g_ends_at_the_references_instants(library: Library) -> None:
+    rod = {"J_x": 0.02, "J_y": 0.01, "J_z": 0.01, "s": 0.02, "theta_start": 1.6, "phi_start": -2.0, "theta_dot_start": 1.0}
+    scene = Slide({**rod, "mu_max": 0.33, "mu_slide": 0.3, "phi_dot_start": 2.0}, 0.6)
+    assert len(moments(scene)) > 10
+    assert modes_missed(library, scene, 1e-7) == 0
+    assert modes_missed(library, scene, 1e-7, shift=1e-5) > 0
+
+
+def test_a_wheel_that_slides_and_grips_hundreds_of_times_is_counted_and_logged_each_time(library: Library) -> None:
+    """A motor that is switched on and off every 5 ms; the wheel grips again within each pause."""
+    torque = 1.05 * sliding.gripping_torque(PAPER, 0.45)
+    pieces = tuple((0.005 * k, {"M_3": 0.0 if k % 4 else -torque}) for k in range(400))
+    run = straight(library, [0.0, 2.0], Schedule(pieces))
+    said = [message for message in run.messages if "slides" in message or "grips" in message]
+    assert run.counters["n_events"] >= 190
+    assert len(said) == run.counters["n_events"] and not any("another direction" in message for message in said)
+    within(run.counters["n_steps"] / run.counters["n_events"], 30, "steps per transition")
