@@ -70,10 +70,6 @@ Consequence change_spin(const Setup& setup, Event, double t, double* y, InForce&
   return Consequence::bends;
 }
 
-double grip_reserve(const Setup& setup, const InForce& now, double t, const double* y) {
-  return grip_left(setup, now.scene_at(t), y);
-}
-
 Consequence lose_grip(const Setup& setup, Event, double t, double* y, InForce& now) {
   begin_slide(setup, t, y, now);
   return Consequence::bends;
@@ -142,12 +138,12 @@ constexpr EventRow event_rows[] = {
     layer_event(Event::crosses_layer, is_layered, way_to_edge),
     {.event = Event::spin_changes, .can_occur = can_change_spin, .value = spin_left, .follow = change_spin},
     {.event = Event::lost_grip,
-     .can_occur = [](const Setup& setup, const InForce& now) { return setup.mu_max > 0 && !now.slides(); },
-     .value = grip_reserve,
+     .can_occur = [](const Setup&, const InForce& now) { return now.mu_max > 0 && !now.slides(); },
+     .value = grip_left,
      .ends = [](const Setup& setup) { return !setup.sliding; },
      .follow = lose_grip,
      .ending = "needs a coefficient of friction above mu_max",
-     .limit = [](const Setup& setup) { return setup.mu_max; }},
+     .limit = [](const InForce& now) { return now.mu_max; }},
     {.event = Event::settles,
      .can_occur = is_sliding,
      .value = way_to_settle,
@@ -168,7 +164,7 @@ constexpr EventRow event_rows[] = {
      .exchanged = false,
      .ends = always_ends,
      .ending = "jams: friction wedges it, with mu_slide",
-     .limit = [](const Setup& setup) { return setup.mu_slide; }},
+     .limit = [](const InForce& now) { return now.scene.mu_slide; }},
     {.event = Event::fell_flat,
      .can_occur = always,
      .quick_value = height_of,

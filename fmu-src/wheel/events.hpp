@@ -31,7 +31,7 @@ struct EventRow {
   // For messages, as plain text: what has ended the run, to stand behind "the wheel"; the value of the parameter at its
   // end, if it names one; and what is observed, to stand behind the instant.
   const char* ending = nullptr;
-  double (*limit)(const Setup& setup) = nullptr;
+  double (*limit)(const InForce& now) = nullptr;
   const char* observed = nullptr;
 };
 

@@ -81,7 +81,7 @@ bool has_occurred(const EventRow& row, const Setup& setup, const Run& run) {
 void take_at_once(Wheel& w) {
   InForce& now = w.run.in_force;
   const double s = now.scene.wheel.s;
-  let_act(w.setup, w.demand.parameters[variable::s], w.run.t, w.demand.inputs, now);
+  let_act(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
   w.demand.changed = false;
   if (now.scene.wheel.s != s) decide_law(w.setup, w.run.t, w.run.y, now);
 }
@@ -143,7 +143,7 @@ bool starts_inside(const Wheel& w) {
   WheelDynamics dynamics;
   w.setup.formulation->dynamics(&w.run.in_force.scene, w.run.y, &dynamics);
   w.reporter.log(Topic::error, "At the start the wheel %s (N = %s N, mu_required = %s): the model ends there.",
-                 ending_of(w.setup, fault->event).text, Digits{dynamics.lambda[2], 6},
+                 ending_of(w.run.in_force, fault->event).text, Digits{dynamics.lambda[2], 6},
                  Digits{wheel_required_friction(dynamics.lambda), 6});
   return false;
 }

@@ -68,16 +68,17 @@ void settle(const Setup& setup, double t, const double* y, InForce& now) {
 
 }  // namespace
 
-void let_act(const Setup& setup, double s, double t, const Polynomials& inputs, InForce& now) {
+void let_act(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
   now.scene.wheel = setup.wheel;
-  now.scene.wheel.s = s;
-  now.scene.mu_slide = setup.mu_slide;
+  now.scene.wheel.s = road.s;
+  now.mu_max = road.mu_max;
+  now.scene.mu_slide = road.mu_max > 0 ? std::fmin(setup.mu_slide, road.mu_max) : setup.mu_slide;
   now.scene.load = load_of(inputs);
   now.inputs.take_over(t, inputs);
 }
 
 void put_in_force(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
-  let_act(setup, demand.parameters[variable::s], t, demand.inputs, now);
+  let_act(setup, road_asked(demand), t, demand.inputs, now);
   now.layer = Layer::none;
   setup.sliding ? decide_contact(setup, t, y, now) : decide_law(setup, t, y, now);
 }
@@ -90,7 +91,7 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   if (now.slides()) setup.sliding->grip(&now.scene.wheel, y);
   now.set_contact(Contact::grips);
   decide_law(setup, t, y, now);
-  if (!(grip_left(setup, now.scene_at(t), y) >= 0)) begin_slide(setup, t, y, now);
+  if (now.mu_max > 0 && !(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
 }
 
 // Without a direction a slip of no account is there already: the event that ends the run follows at once, or the ground
@@ -131,13 +132,14 @@ double least_slip(const Setup& setup, double t) {
 }
 
 // Rounding is relative to mu_max N, and that of a tangential force of zero.
-double grip_left(const Setup& setup, const WheelScene& scene, const double* y) {
+double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
   constexpr double rounding = 1e-12, rounding_of_zero = 1e-15;
+  const WheelScene scene = now.scene_at(t);
   WheelDynamics dynamics;
   setup.formulation->dynamics(&scene, y, &dynamics);
   const double* lambda = dynamics.lambda;
-  const double X = lambda[0] / setup.weight / setup.mu_max, Y = lambda[1] / setup.weight / setup.mu_max;
-  const double N = lambda[2] / setup.weight * (1 + rounding) + std::fmin(rounding_of_zero / setup.mu_max, 1);
+  const double X = lambda[0] / setup.weight / now.mu_max, Y = lambda[1] / setup.weight / now.mu_max;
+  const double N = lambda[2] / setup.weight * (1 + rounding) + std::fmin(rounding_of_zero / now.mu_max, 1);
   return N * std::fabs(N) - (X * X + Y * Y);
 }
 

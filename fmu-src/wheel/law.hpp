@@ -6,11 +6,19 @@
 
 namespace wheel {
 
-// What acts from t on: `s` and inputs.
-void let_act(const Setup& setup, double s, double t, const Polynomials& inputs, InForce& in_force);
+// What acts from t on: the road, which are `s` and mu_max, and inputs. A mu_max set below mu_slide counts for both.
+struct Road {
+  double s, mu_max;
+  bool operator==(const Road&) const = default;
+};
+inline Road road_asked(const Demand& demand) {
+  return {demand.parameters[variable::s], demand.parameters[variable::mu_max]};
+}
+inline Road road_of(const InForce& now) { return {now.scene.wheel.s, now.mu_max}; }
+void let_act(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
 
-// Puts in force, at the state y, what is asked for: `s`, inputs from t on, and the contact and the law of friction that
-// go with them. Writes the slip in y.
+// Puts in force, at the state y, what is asked for: road, inputs from t on, and the contact and the law of friction
+// that go with them. Writes the slip in y.
 void put_in_force(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
 // Decides contact and law from t and y on. A slip that is more than nothing goes on; else the wheel grips where it can,
@@ -25,7 +33,7 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
 double least_slip(const Setup& setup, double t);
 
 // N^2 - (lambda_t / mu_max)^2 over the weight squared, of a wheel that grips; below zero too where the ground pulls.
-double grip_left(const Setup& setup, const WheelScene& scene, const double* y);
+double grip_left(const Setup& setup, const InForce& now, double t, const double* y);
 
 // Above zero while a slide stays settled, or while it stays unsettled: the rate at which its direction settles against
 // the wheel's own rate and the growth of the slip.

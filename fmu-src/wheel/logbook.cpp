@@ -79,7 +79,7 @@ void log_ending(Wheel& wheel, Event event) {
   const Run& run = wheel.run;
   if (wheel.endings++ >= logged_one_by_one) return;
   wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
-                     ending_of(wheel.setup, event).text, wheel.setup.start_time + run.t,
+                     ending_of(run.in_force, event).text, wheel.setup.start_time + run.t,
                      Digits{run.y[wheel.setup.formulation->tilt_index], 6});
   if (wheel.endings == logged_one_by_one)
     wheel.reporter.log(Topic::discard, "%s endings were logged; further ones are not, until a reset.",
@@ -96,10 +96,10 @@ void log_summaries(const Wheel& wheel) {
   }
 }
 
-Ending ending_of(const Setup& setup, Event event) {
+Ending ending_of(const InForce& now, Event event) {
   Ending ending;
   const EventRow& row = row_of(event);
-  const NumberText limit(Digits{row.limit ? row.limit(setup) : 0});
+  const NumberText limit(Digits{row.limit ? row.limit(now) : 0});
   std::snprintf(ending.text, sizeof ending.text, "%s%s%s", row.ending, row.limit ? " = " : "",
                 row.limit ? limit.text : "");
   return ending;

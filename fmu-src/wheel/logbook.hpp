@@ -34,6 +34,6 @@ void log_summaries(const Wheel& wheel);
 struct Ending {
   char text[96];
 };
-Ending ending_of(const Setup& setup, Event event);
+Ending ending_of(const InForce& now, Event event);
 
 }  // namespace wheel

@@ -62,6 +62,7 @@ struct InForce {
   WheelScene scene = {
       .wheel = {}, .friction = {}, .load = {}, .ground = WHEEL_GROUND_PRESSES, .contact = WHEEL_GRIPS, .mu_slide = 0};
   Inputs inputs;
+  double mu_max = 0;  // the road's coefficient of friction; 0: not checked
   Layer layer = Layer::none;
   Contact contact = Contact::grips;
   bool below[event_count] = {};  // for each observed event: its value has fallen below zero and has not risen since

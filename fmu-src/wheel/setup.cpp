@@ -94,13 +94,14 @@ bool check_kind(const Reporter& reporter, const Demand& demand) {
 }
 
 // Its slip would be two more states than another solver is given.
-bool check_sliding(const Reporter& reporter, const Demand& demand) {
+bool check_sliding(const Reporter& reporter, const Demand& demand, bool at_start) {
   const double* v = demand.parameters;
   const double mu_max = v[variable::mu_max], mu_slide = v[variable::mu_slide];
   const double slip_x = v[variable::slip_x_start], slip_y = v[variable::slip_y_start];
   const bool slips = std::fabs(slip_x) + std::fabs(slip_y) > 0;
-  bool sound = reporter.check(!(mu_slide > mu_max), "mu_slide = %s: mu_max must be at least as large, and is %s.",
-                              Digits{mu_slide, 9}, Digits{mu_max, 9});
+  bool sound =
+      reporter.check(!at_start || !(mu_slide > mu_max), "mu_slide = %s: mu_max must be at least as large, and is %s.",
+                     Digits{mu_slide, 9}, Digits{mu_max, 9});
   sound &= reporter.check(!slips || mu_slide > 0,
                           "slip_x_start, slip_y_start = %s, %s m/s: a start with slip needs mu_slide.",
                           Digits{slip_x, 9}, Digits{slip_y, 9});
@@ -121,12 +122,12 @@ bool check_inertia(const Reporter& reporter, const double* v) {
 
 }  // namespace
 
-bool check_values(const Demand& demand, const Reporter& reporter) {
+bool check_values(const Demand& demand, const Reporter& reporter, bool at_start) {
   bool sound = true;
   for (unsigned v = 0; v < stored_count; ++v) sound &= check_value(reporter, v, demand.value(v));
   sound &= check_inertia(reporter, demand.parameters);
   sound &= check_kind(reporter, demand);
-  sound &= check_sliding(reporter, demand);
+  sound &= check_sliding(reporter, demand, at_start);
   return sound;
 }
 
@@ -148,7 +149,6 @@ Setup setup_of(const Demand& demand) {
   setup.unfolds = v[J_x] == v[J_y] && v[slope] == 0 && choice_of(v[formulation]) == automatic_formulation &&
                   setup.method == automatic_method;
   setup.keep_contact = v[keep_contact] != 0;
-  setup.mu_max = v[mu_max];
   setup.mu_slide = v[mu_slide];
   setup.tolerance = demand.tolerance;
   setup.psi = {v[psi_start], exchanged ? v[psi_start] : wheel_less_turns(v[psi_start])};

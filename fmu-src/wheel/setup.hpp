@@ -57,7 +57,6 @@ struct Setup {
   SolverMethod method = automatic_method;
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y, a level road, choices automatic
   bool keep_contact;
-  double mu_max;                   // the road's coefficient of friction; 0: not checked
   double mu_slide;                 // coefficient of sliding friction
   double tolerance;                // relative, of the whole solution
   bool starts_sliding;             // with a slip
@@ -99,7 +98,7 @@ inline double angle_from_flat(double theta) { return upright - std::fabs(theta -
 // rad: a larger angle has too few digits for a heading.
 inline constexpr double largest_angle = 1e12;
 
-// Logs one message per fault; true if there is none.
-bool check_values(const Demand& demand, const Reporter& reporter);
+// Logs one message per fault; true if there is none. Later than at the start, mu_max may have been set below mu_slide.
+bool check_values(const Demand& demand, const Reporter& reporter, bool at_start);
 
 }  // namespace wheel

@@ -51,7 +51,7 @@ class Simulation {
   double stop_time() const { return wheel_.demand.stop_time; }
   bool has_ended() const { return wheel_.run.ended_by != Event::none; }
   // What ended the model, to stand behind "the wheel".
-  Ending ending() const { return ending_of(wheel_.setup, wheel_.run.ended_by); }
+  Ending ending() const { return ending_of(wheel_.run.in_force, wheel_.run.ended_by); }
   // The calculated variables now; inputs just set take effect at once. Valid until the next call that changes anything.
   Reading& reading() {
     if (!reading_.is_set()) reading_.set(present(wheel_));

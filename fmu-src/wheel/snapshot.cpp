@@ -30,7 +30,7 @@ struct Header {
 // field and gives its kind and its bounds.
 void visit(support::Archive& archive, Demand& demand, Run& run) {
   InForce& now = run.in_force;
-  archive("parameters as they were set, `s` asked for among them");
+  archive("parameters as they were set, those asked for among them");
   for (double& parameter : demand.parameters) archive.anything(parameter);
   archive("start time, s").number(demand.start_time);
   archive("stop time, s; infinite for none").range(demand.stop_time, -archive.greatest, Demand::never);
@@ -45,6 +45,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("phase").count(run.phase, 0, phase_count - 1);
   archive("event that ended the model").count(run.ended_by, 0, event_count - 1);
   archive("s in force, m").range(now.scene.wheel.s, 0, archive.greatest);
+  archive("mu_max in force").range(now.mu_max, 0, archive.greatest);
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
   archive("place in the layer of a stiff law").count(now.layer, 0, static_cast<int>(Layer::sticking));
@@ -113,11 +114,11 @@ bool starts_there(const Setup& setup, const Run& run) {
 const char* complete(const Demand& demand, Setup& setup, Run& run) {
   if (run.phase == Phase::faulty) run.phase = Phase::initializing;  // the faults are logged again
   if (!has_state(run.phase)) return run.ended_by == Event::none ? nullptr : "no such event ends a run";
-  if (!check_values(demand, Reporter())) return "parameters and inputs describe no wheel";
+  if (!check_values(demand, Reporter(), false)) return "parameters and inputs describe no wheel";
   setup = setup_of(demand);
   run.y_time = run.t;
   InForce& now = run.in_force;
-  let_act(setup, now.scene.wheel.s, now.inputs.origin, Inputs(now.inputs).c, now);
+  let_act(setup, Road(road_of(now)), now.inputs.origin, Inputs(now.inputs).c, now);
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
   now.set_below(Event::lost_contact, now.pulls());
   if (now.slides() && !setup.sliding) return "the wheel slides without mu_slide";

@@ -42,7 +42,7 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   run = Run();
   run.phase = Phase::faulty;
   w.solution.orbit_until = Solution::none;
-  if (!check_values(w.demand, reporter)) return false;
+  if (!check_values(w.demand, reporter, true)) return false;
   w.setup = setup_of(w.demand);
   std::copy_n(w.setup.start, WHEEL_MAX_STATES, run.y);
   run.in_force.set_contact(w.setup.starts_sliding ? Contact::slides : Contact::grips);

@@ -69,13 +69,14 @@ def place_of(w: FMU2Wheel, row: str) -> int:
     after = HEADER + parameters
     stop, asked = after + 1, after + 3
     phase = asked + inputs + 2
-    of_phase = ("phase", "ended by", "s", "law", "sigma", "layer", "contact", "origin")
+    of_phase = ("phase", "ended by", "s", "mu_max", "law", "sigma", "layer", "contact", "origin")
     t = phase + len(of_phase) + inputs
     of_events = t + 15  # for each: whether it lies below zero, how often it occurred, when it last did
     contact, flat, transitions = (of_events + 3 * event for event in (LOST_CONTACT, FELL_FLAT, len(EVENTS)))
     places = {"stop time": stop, "tolerance": stop + 1, "slope asked": asked + 1, "kind": phase - 2}
     places |= {name: phase + k for k, name in enumerate(of_phase)}
-    places |= {"t": t, "last change": t + 1, "grip due": t + 2, **{f"y {k}": t + 3 + k for k in range(4)}, "transitions": transitions}
+    places |= {"t": t, "last change": t + 1, "grip due": t + 2, "transitions": transitions}
+    places |= {f"y {k}": t + 3 + k for k in range(4)}
     places |= {"below": contact, "pulls": contact + 1, "below flat": flat, "times flat": flat + 1}
     return (places | {f"count {k}": transitions + k for k in range(6)})[row]
 

@@ -150,3 +150,53 @@ def test_of_very_many_endings_that_a_master_goes_back_from_the_first_hundred_are
     assert texts[-1] == "100 endings were logged; further ones are not, until a reset."
     assert w.reset() == OK and w.start(**DROP).step(1.0) == DISCARD  # the partner
     assert "fell flat" in w.said()
+
+
+def onto(w: FMU2Wheel, mu_max: float, before: float) -> FMU2Wheel:
+    """A wheel that requires 0.5 rolls onto another road after 0.25 s."""
+    return w.start(mu_max=before, **ROLLING).put(M_brake=FULL / 2).to(0.25).put(mu_max=mu_max)
+
+
+def test_a_road_that_becomes_too_slippery_ends_the_run_at_once_and_one_with_the_grip_does_not(wheel):
+    for before in (0.0, 0.9):
+        w = onto(wheel(), 0.3, before)
+        w.take_messages()
+        assert (w.step(0.01), w.status(LAST_SUCCESSFUL_TIME)) == (DISCARD, 0.25)
+        assert "needs a coefficient of friction above mu_max = 0.3 at t = 0.25 s" in w.said()
+    w = onto(wheel(), 0.6, 0.9)
+    assert (w.step(0.5), w.status(TERMINATED)) == (OK, 0)
+    w.put(M_brake=0.62 * FULL)
+    assert w.step(0.01) == DISCARD and "mu_max = 0.6" in w.said()
+
+
+def test_a_limit_that_is_taken_away_in_time_ends_nothing(wheel):
+    """The brake grows past the limit of 0.55 after 0.05 s."""
+    for mu_max, status in ((0.55, DISCARD), (0.7, OK), (0.0, OK)):
+        w = wheel().start(mu_max=0.55, **ROLLING).give({"M_brake": (FULL / 2, FULL)}).by(0.04)
+        w.give({"M_brake": (0.54 * FULL, FULL)})
+        assert w.put(mu_max=mu_max).step(0.06) == status
+
+
+def test_a_limit_set_between_steps_is_that_of_a_run_which_had_it_from_the_start_and_of_a_restored_one(wheel):
+    """In a brake that grows: the same instant, in one step or many."""
+    always = wheel().start(mu_max=0.8, **ROLLING).give({"M_brake": (0.0, FULL)})
+    assert always.step(2.0) == DISCARD
+    w = wheel().start(**ROLLING).give({"M_brake": (0.0, FULL)}).by(0.3)
+    w.put(mu_max=0.8).give({"M_brake": (0.3 * FULL, FULL)})
+    pending = w.serialized()
+    in_force = w.by(0.1).serialized()
+    for blob in (pending, in_force):
+        other = wheel().back(blob)
+        while (status := other.step(0.05)) == OK:
+            other.give({"M_brake": (other.time * FULL, FULL)})
+        within(abs(other.status(LAST_SUCCESSFUL_TIME) - ended(always)), 1e-9, "instant, s")
+        assert status == DISCARD
+    within(abs(ended(always) - 0.8), 1e-9, "instant, s")
+
+
+def test_an_unfolded_wheel_takes_another_limit_and_ends_where_it_requires_more(wheel):
+    """The paper's free wheel requires 0.3 after 0.35 s for the first time."""
+    always, later, never = wheel().start(mu_max=0.3), wheel().start().to(0.2), wheel().start().to(0.2)
+    assert always.step(1.0) == later.put(mu_max=0.3).step(1.0) == DISCARD
+    assert never.step(1.0) == OK
+    within(abs(ended(later) - ended(always)), 1e-7, "instant, s")

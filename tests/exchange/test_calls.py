@@ -8,7 +8,7 @@ from contract.forging import AT_START, STEPPING, UNFOLDED, forged
 from contract.properties import loads, quick, some
 from hypothesis import example, given
 from hypothesis import strategies as st
-from support.bounds import absolute_error, beyond, within
+from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import DERIVATIVES, DISCARD, ERROR, INDICATORS, OK, STATES, FMU2Wheel
 from support.exchange import Run, exchange, loaded, no_inputs
 from support.motion import Library
@@ -359,6 +359,19 @@ def test_an_end_of_the_run_counts_that_lies_ahead_by_less_than_that(library: Lib
                 continue
             assert bool(wheel.event().terminateSimulation) == (share < 1)
             found += 1
+
+
+@pytest.mark.parametrize(("mu_max", "ends"), [(0.3, True), (0.6, False), (0.0, False)])
+def test_another_limit_of_the_grip_is_decided_in_the_event_mode_that_sets_it(library: Library, mu_max, ends) -> None:
+    """An upright wheel that F_X pushes requires |lambda_x| / N = 0.4 with F_X = 0.4 m g (1 + m R^2 / J_z)."""
+    push = 0.4 * WEIGHT * (1 + 20 * 0.35**2 / 1.8)
+    with exchange(library, theta_start=np.pi / 2, phi_dot_start=-3.0, mu_max=0.5, F_X=push, psi_start=0.0) as wheel:
+        within(abs(wheel.get("mu_required")[0] - 0.4), 64 * EPSILON, "friction required")
+        assert wheel.indicator("lost_grip") > 0
+        assert wheel.enterEventMode() == OK
+        wheel.put(mu_max=mu_max)
+        assert bool(wheel.decide().terminateSimulation) == ends
+        assert (wheel.indicator("lost_grip") > 0) == (not ends)
 
 
 @pytest.mark.parametrize("share", [0.9, 1.1])

@@ -492,3 +492,20 @@ def test_a_wheel_that_slides_and_grips_hundreds_of_times_is_counted_and_logged_e
     assert run.counters["n_events"] >= 190
     assert len(said) == run.counters["n_events"] and not any("another direction" in message for message in said)
     within(run.counters["n_steps"] / run.counters["n_events"], 30, "steps per transition")
+
+
+def test_a_locked_wheel_slides_over_an_ice_patch_with_the_coefficient_of_the_ice(library: Library) -> None:
+    """mu_max set below mu_slide counts for both, in a saved state too; mu_slide counts again behind the patch."""
+    with library.wheel() as wheel:
+        wheel.start(**{**UPRIGHT, **ROAD, "slip_x_start": 7.0, "M_brake": 1e3})
+        speeds = [7.0]
+        for t, mu_max in ((0.5, 0.1), (1.0, 0.1), (1.5, 0.45)):
+            wheel.to(t)
+            speeds += wheel.get("X_O_dot")
+            assert wheel.set(mu_max=mu_max) == OK
+            assert wheel.ask("SetFMUstate", wheel.snapshot()) == OK
+        wheel.to(1.7)
+        speeds += wheel.get("X_O_dot")
+        assert wheel.get("contact_mode") == [SLIDING]
+    slowing = -np.diff(speeds) / np.diff([0, 0.5, 1, 1.5, 1.7]) / PAPER.g
+    within(absolute_error(slowing, [0.4, 0.1, 0.1, 0.4]), 1e-9, "deceleration over g")
