@@ -20,7 +20,7 @@ NARROW = 0.25  # a bundle is narrow, and shown sheared in an inset, if shearing 
 INSET = (0.39, 0.40)  # width and height in the axes
 SUBDIVISION = 4  # drawn points per row among the rates
 MOST = 2.0  # coefficient of friction that no road has; without a normal force no coefficient would do
-DENSE, SOLID = 60, 200  # turns of a curve over time: from here on a thin line; from here on its envelope
+DENSE, SOLID = 60, 400  # turns of a curve over time: from here on a thin line; from here on its envelope
 LEADER = 10.0  # points: from here on a thin line leads from a text to what it names
 PSI_DOT = r"$\dot\psi$"
 PHI_DOT = r"$\dot\varphi$"
@@ -213,15 +213,20 @@ def _time_axis(ax: Axes, scene: Scene) -> None:
 
 
 def _over_time(ax: Axes, time: Array, values: Array, color: str = style.BLUE) -> list[str]:
-    """A curve over time; where its swings lie too close to be seen apart, their envelope."""
+    """A curve over time; where its swings lie too close to be seen apart, their highest and lowest values as two
+    lines, and the room between them filled."""
     turns = _turns(values)
     if turns < SOLID:
-        ax.plot(time, values, color=color, linewidth=1.0 if turns < DENSE else 0.5)
+        ax.plot(time, values, color=color, linewidth=min(1.0, max(0.35, DENSE / 1.5 / max(turns, 1))))
         return []
-    parts = np.array_split(np.arange(len(time)), min(SOLID, turns // 6))  # some swings in each
-    edges = np.array([(time[rows].mean(), values[rows].min(), values[rows].max()) for rows in parts]).T
-    ax.fill_between(*edges, color=color, alpha=0.35, linewidth=0.5)
-    return ["Filled: the envelope of a fast nutation."]
+    parts = np.array_split(np.arange(len(time)), min(SOLID // 2, turns // 4))  # a swing or more in each
+    middle, low, high = np.array([(time[rows].mean(), values[rows].min(), values[rows].max()) for rows in parts]).T
+    ax.fill_between(middle, low, high, color=color, alpha=0.2, linewidth=0)
+    for edge in (low, high):
+        ax.plot(middle, edge, color=color, linewidth=0.7)
+    look = {"ha": "right", "va": "bottom", "color": color}
+    style.note(ax, "swings between two lines", (middle[-1], high[-1]), (-2, 3), **look)
+    return ["Swings too close to be drawn: their highest and lowest values."]
 
 
 def _turns(values: Array) -> int:

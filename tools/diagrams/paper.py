@@ -9,15 +9,16 @@ beside.
 
 import re
 import sys
-import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import chain
 from multiprocessing import Pool
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.textpath import TextPath
 
 from diagrams import panels, style
 from diagrams.scene import Scene, SceneError, read_scene
@@ -26,28 +27,31 @@ from diagrams.start_values import MOMENTS, PAPER_S, ROOT, RUN, doubt, variables
 RESULTS = ROOT / "results"
 SETTINGS = variables("parameter", "input")
 NO_BREAK = "\u00a0"  # a space at which no line ends
+MARGIN = 2.0  # mm beside a caption
 PITCH = 3.4  # mm from one line of a caption to the next
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One row of a sheet; `figures`: its numbers in the paper, without and with friction; height in mm in all."""
+    """One row of a sheet; height in mm in all; `timed`: whether it is over time, with the marks of friction; `figures`:
+    its numbers in the paper, without and with friction."""
 
     name: str
     subject: str
     height: float
     draw: Callable[[Axes, Scene], list[str]]
+    timed: bool
     figures: tuple[int, int] | None = None
 
 
 PAPERS = (
-    Panel("position", r"$X_O(t)$", 57.0, panels.draw_position, (1, 4)),
-    Panel("tilt", r"$\theta(t)$", 57.0, panels.draw_tilt, (2, 5)),
-    Panel("rates", r"$\dot\varphi(\dot\psi)$", 75.0, panels.draw_rates, (3, 6)),
+    Panel("position", r"$X_O(t)$", 57.0, panels.draw_position, True, (1, 4)),
+    Panel("tilt", r"$\theta(t)$", 57.0, panels.draw_tilt, True, (2, 5)),
+    Panel("rates", r"$\dot\varphi(\dot\psi)$", 75.0, panels.draw_rates, False, (3, 6)),
 )
 OTHERS = (
-    Panel("path", "Path of the contact point", 67.0, panels.draw_path),
-    Panel("ground", r"$N(t)$ and required $\mu(t)$", 67.0, panels.draw_ground),
+    Panel("path", "Path of the contact point", 67.0, panels.draw_path, False),
+    Panel("ground", r"$N(t)$ and required $\mu(t)$", 67.0, panels.draw_ground, True),
 )
 
 
@@ -103,36 +107,50 @@ def title_of(scene: Scene) -> str:
     return rf"Rolling friction, $s = {s:.4g}$ m" if s > 0 else r"No rolling friction, $s = 0$"
 
 
-def events_of(scene: Scene) -> list[str]:
-    """The action of friction and brake, and the marks that are there."""
+def events_of(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
+    """The action of friction and brake, and its marks in the panels that are drawn: over time, among the rates."""
     sticks, count = (scene.mode == 0).any(), int(scene["n_events"][-1])
     if not scene.resisted:
         return []
     if sticks and not count:
         return [r"$\omega_z$ is held at zero all the time (stick)."]
-    bands = [r"Bands, thick among the rates: stick ($\omega_z$ held at zero)."] * bool(sticks)
-    ticks = [r"Ticks at the top: $\omega_z$ changes sign."] * (len(scene.reversals) > 0)
+    timed, rates = any(panel.timed for panel in drawn), any(panel.draw is panels.draw_rates for panel in drawn)
+    marks = ["Bands"] * timed + ["thick among the rates" if timed else "Thick"] * rates
+    bands = [rf"{', '.join(marks)}: stick ($\omega_z$ held at zero)."] * bool(sticks and marks)
+    ticks = [r"Ticks at the top: $\omega_z$ changes sign."] * bool(timed and len(scene.reversals))
     return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s.", *bands, *ticks]
 
 
-def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], columns: int) -> list[str]:
-    """The parameters, all that is not the paper's, and the remarks on each scene."""
+def caption(
+    scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], drawn: Sequence[Panel], width: float, size: float
+) -> list[str]:
+    """The parameters, all that is not the paper's, and the remarks on each scene; lines of at most `width` mm."""
     texts = [f"Torus wheel: {wheel_of(scenes[-1])}. {start_of(scenes[-1])}."]
     if other := unlike_paper(scenes[-1]):
         texts.append(f"Unlike the paper: {', '.join(said.replace(' ', NO_BREAK) for said in other)}.")
-    for scene, drawn in zip(scenes, remarks, strict=True):
+    for scene, of_panels in zip(scenes, remarks, strict=True):
         name = [f"{title_of(scene).split(',')[0]}:"] * (len(scenes) > 1)
         ends = [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
-        said = [*dict.fromkeys([*events_of(scene), *drawn]), *ends]
+        said = [*dict.fromkeys([*events_of(scene, drawn), *of_panels]), *ends]
         texts += [" ".join([*name, *said])] * bool(said)
-    return [line for text in texts for line in wrapped(text, columns)]
+    return [line for text in texts for line in wrapped(text, width, size)]
 
 
-def wrapped(text: str, columns: int) -> list[str]:
-    """Lines with as many words as have room; a formula is one word, as wide as its letters."""
-    formulas = iter(re.findall(r"\$[^$]*\$", text))
-    shown = re.sub(r"\$[^$]*\$", lambda found: "$" * len(re.findall(r"\\[a-z]+|[^${}_^\\ ]", found[0])), text)
-    return [re.sub(r"\$+", lambda _: next(formulas), line) for line in textwrap.wrap(shown, columns)]
+@cache
+def breadth(text: str, size: float) -> float:
+    """Of a text of this size in points, with the room after its last letter, in mm."""
+    ends = [TextPath((0, 0), one, size=size).get_extents().x1 for one in (f"{text}n", "n")]
+    return (ends[0] - ends[1]) / 72 / style.MM
+
+
+def wrapped(text: str, width: float, size: float) -> list[str]:
+    """Lines with as many words as have room; a formula is a part of one word."""
+    lines, space = [[]], breadth(" ", size)
+    for word in re.findall(r"(?:\$[^$]*\$|[^ $])+", text):
+        if lines[-1] and sum(breadth(one, size) + space for one in [*lines[-1], word]) > width:
+            lines.append([])
+        lines[-1].append(word)
+    return [" ".join(line) for line in lines]
 
 
 def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: bool) -> list[Path]:
@@ -150,8 +168,9 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
             if sheet and panel is drawn[0]:
                 style.note(ax, title_of(scene), (0, 1), (0, 24), xycoords="axes fraction", fontsize=10.5)
             rates += [(ax, scene)] * (panel.draw is panels.draw_rates)
-    lines = caption(scenes, remarks, 150 if sheet else 72)
-    foot, (width, height) = (3.0 + PITCH * len(lines)) * style.MM, fig.get_size_inches()
+    (width, height), size = fig.get_size_inches(), 7.5 if sheet else 7.0
+    lines = caption(scenes, remarks, drawn, width / style.MM - 2 * MARGIN, size)
+    foot = (3.0 + PITCH * len(lines)) * style.MM
     fig.set_size_inches(width, height + foot)
     fig.set_layout_engine("constrained", rect=(0, foot / (height + foot), 1, height / (height + foot)))
     fig.get_layout_engine().execute(fig)
@@ -159,7 +178,7 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     for ax, scene in rates:
         panels.write_rates(ax, scene)
     for i, line in enumerate(reversed(lines)):
-        style.text_mm(fig, 2.0, 1.8 + PITCH * i, line, fontsize=7.5 if sheet else 7.0)
+        style.text_mm(fig, MARGIN, 1.8 + PITCH * i, line, fontsize=size)
     return style.save(fig, stem)
 
 

@@ -62,7 +62,7 @@ def usage() -> str:
 
 
 def values(arguments: list[str]) -> dict[str, str]:
-    """What is given, by name, in SI; of a ready wheel also friction and rows, in proportion to its radius."""
+    """What is given, by name, in SI; of a ready wheel also friction and times, in proportion to its radius."""
     takes, names = known(), wheels()
     found, given, solid = {}, {}, ""
     for argument in arguments:
@@ -70,6 +70,7 @@ def values(arguments: list[str]) -> dict[str, str]:
         if name == "wheel" or (not equals and name in names):
             body = ready(text or name)
             body |= {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
+            body["stop_time"] = float(f"{10 * scale(body, s=1):.2g}")
             found = {name: repr(value) for name, value in body.items()}
         elif name == "body" or (not equals and name in bodies()):
             solid = text or name

@@ -32,6 +32,11 @@ def scene(s: float = 0.0, time: np.ndarray = TIME, **columns: np.ndarray | float
     return Scene(Path("scene.csv"), {name: np.broadcast_to(value, len(TIME)) for name, value in everything.items()})
 
 
+def caption(one: Scene, drawn: tuple[paper.Panel, ...] = paper.PAPERS) -> str:
+    """Of a sheet with these panels, in one line."""
+    return " ".join(paper.caption([one], [[]], drawn, 175.0, 7.5)).replace(paper.NO_BREAK, " ")
+
+
 @pytest.mark.parametrize("name", CURVES)
 def test_texts_cover_neither_the_curve_nor_each_other(name: str) -> None:
     style.use_style()
@@ -51,20 +56,49 @@ def test_texts_cover_neither_the_curve_nor_each_other(name: str) -> None:
 def test_nothing_is_cut_off_and_no_power_of_ten_stands_over_a_title(monkeypatch: pytest.MonkeyPatch) -> None:
     flat = scene(theta=1.2 + 1e-15 * np.sin(99 * TIME), X_O=3e5 + 1e-9 * TIME, phi_dot=-31234.5, psi_dot=1e-15 * TIME)
     fast = scene(s=0.03, theta=1.2 + 1e-3 * np.sin(300 * TIME), phi_dot=-60.0 + 1e-4 * np.sin(300 * TIME))
+    coin = scene(0.001104, m=0.0085, J_x=3.556802865e-7, J_y=3.556802865e-7, J_z=7.0450390625e-7, phi_dot_start=-10.43)
     figures: list[Figure] = []
     monkeypatch.setattr(style, "save", lambda fig, stem: figures.append(fig) or [stem])
     style.use_style()
-    for one in (flat, fast):
-        paper.draw(Path("x"), [one], paper.PAPERS + paper.OTHERS, False)
+    for one in (flat, fast, coin):
+        for scenes in ([one], [one, one]):
+            paper.draw(Path("x"), scenes, paper.PAPERS + paper.OTHERS, False)
     for fig in figures:
+        lines = [text.get_window_extent() for text in fig.texts]
+        assert lines and all(fig.bbox.x0 < line.x0 and line.x1 < fig.bbox.x1 for line in lines)
+        assert max(line.x1 for line in lines) > 0.8 * fig.bbox.x1  # the lines are filled
         for ax in fig.axes:
             outer = ax.get_tightbbox()
             assert fig.bbox.x0 <= outer.x0 and outer.x1 <= fig.bbox.x1
             assert not ax.yaxis.get_offset_text().get_text() and not ax.xaxis.get_offset_text().get_text()
-        tilt = fig.axes[1].get_ylim()
-        assert 1e-4 < np.ptp(tilt) < 0.1  # neither noise nor 0 to 90 deg
+        if len(fig.axes) < 10 and fig is not figures[-2]:  # one scene, flat or fast: neither noise nor 0 to 90 deg
+            assert 1e-4 < np.ptp(fig.axes[1].get_ylim()) < 0.1
         fig.axes[0].set_position([0.01, 0.8, 0.5, 0.1])  # the partner
         assert fig.axes[0].get_tightbbox().x0 < fig.bbox.x0
+
+
+def test_a_caption_names_the_marks_of_friction_where_they_are() -> None:
+    """Bands and ticks over time, thick lines among the rates, none on the path."""
+    modes = np.where(abs(TIME - 3) < 1, 0, np.where(TIME < 7, -1, 1))
+    held = scene(0.03, friction_mode=modes, n_events=3)
+    by_name = {panel.name: caption(held, (panel,)) for panel in paper.PAPERS + paper.OTHERS}
+    for name, said in by_name.items():
+        timed = name in ("position", "tilt", "ground")
+        assert ("Ticks at the top" in said) is timed and ("Bands: stick" in said) is timed
+        assert ("Thick: stick" in said) is (name == "rates") and "3 transitions" in said
+    assert "Bands, thick among the rates: stick" in caption(held)
+
+
+def test_swings_are_drawn_one_by_one_until_they_lie_too_close_and_then_as_two_lines() -> None:
+    style.use_style()
+    for swings, lines in ((40, 1), (150, 1), (400, 2)):
+        time = np.linspace(0, 1, 40 * swings)
+        ax = style.figure_mm(style.COLUMN, 60.0).subplots()
+        said = panels._over_time(ax, time, (2 - time) * np.cos(2 * np.pi * swings * time))
+        assert len(ax.lines) == lines and len(said) == lines - 1
+    low, high = (line.get_ydata() for line in ax.lines)
+    middle = ax.lines[0].get_xdata()
+    assert abs(high - (2 - middle)).max() < 0.02 and abs(low + (2 - middle)).max() < 0.02
 
 
 DOUBTED = [
@@ -80,7 +114,7 @@ DOUBTED = [
 def test_a_wheel_that_cannot_exist_is_drawn_with_a_warning(values: dict[str, float], words: str) -> None:
     (said,) = paper.warnings_of(scene(**values))
     assert words in said
-    remark = " ".join(paper.caption([scene(**values)], [[]], 500)).replace(paper.NO_BREAK, " ")
+    remark = caption(scene(**values))
     assert "intersects itself" in remark or "no mass within this outline has these moments" in remark
     assert paper.warnings_of(scene()) == []
     assert paper.unlike_paper(scene(s=0.02)) == []
@@ -92,7 +126,7 @@ DIFFERENT = {"Boolean": 1.0, "Integer": 2.0, "Real": 0.25}
 @pytest.mark.parametrize("name", sorted({*paper.SETTINGS} - {"s"}))
 def test_a_caption_lists_whatever_is_not_the_papers(name: str) -> None:
     other = scene(0.03, **{name: DIFFERENT[paper.SETTINGS[name].type]})
-    assert f"{name} = " in " ".join(paper.caption([other], [[]], 150)).replace(paper.NO_BREAK, " ")
+    assert f"{name} = " in caption(other)
     assert not paper.is_paper([other, other])
 
 
