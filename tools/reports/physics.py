@@ -164,16 +164,21 @@ def brake_hold_steer(report: Report) -> Row:
         "s = 0.03 m": (style.GREEN, "-", FRICTION),
     }
     steered = on_a_suspension(report)
-    with picture(report, "brake_hold_steer") as (left, right):
+    with picture(report, "brake_hold_steer", "ab;ac;ad;ae", 24.0) as (left, *right):
         for name, (colour, line, way) in ways.items():
             found = run(report, 5, theta_start=UPRIGHT, psi_start=0.0, phi_dot_start=-10.0, **way)
             left.plot(found.t, -HEIGHT * found["omega_z"], line, color=colour, label=name)
         left.axhline(0, color=style.GREY, lw=0.6)
         label(left, TIME, "speed [m/s]", "A brake stops; a torque goes on", legend="lower left", xlim=(0, 5))
-        steered.plot(x="time", ax=right, color=[style.BLUE, style.ORANGE, style.VERMILLION, style.GREEN])
-        title, limits = "Held upright by $M_1$, steered by $M_2$, braked, held", {"xlim": (0, 6), "ylim": (-8.5, 14)}
-        label(right, TIME, "", title, "", "upper right", 2, **limits)
-    return {"steer_M_1": 10 * steered["$M_1$ / 10 [N m]"].min()}
+        for ax, (name, values) in zip(right, steered.items(), strict=True):
+            ax.plot(steered.index, values, color=style.BLUE)
+            label(ax, "", name, xlim=(0, 6))
+            ax.margins(y=0.15)
+        right[0].set_title("Held upright by $M_1$, steered by $M_2$, braked, held", fontsize=9, loc="left")
+        for ax in right[:-1]:
+            ax.tick_params(labelbottom=False)
+        right[-1].set_xlabel(TIME)
+    return {"steer_M_1": steered["$M_1$ [N m]"].min()}
 
 
 def on_a_suspension(report: Report, h: float = 1e-3, stop: float = 6.0) -> pd.DataFrame:
@@ -189,8 +194,8 @@ def on_a_suspension(report: Report, h: float = 1e-3, stop: float = 6.0) -> pd.Da
             psi, theta, psi_dot, theta_dot, omega_z = read()
             tilt, wanted = theta - UPRIGHT, np.radians(90) * np.clip(t - 1, 0, 1)
             M_1, M_2 = -3000 * tilt - 100 * theta_dot, 300 * (wanted - psi) - 40 * psi_dot
-            rows.append((t, -HEIGHT * omega_z, np.degrees(psi) / 10, np.degrees(tilt), M_1 / 10))
+            rows.append((t, -HEIGHT * omega_z, np.degrees(psi), np.degrees(tilt), M_1))
             wheel.set(M_1=M_1, M_2=M_2, M_brake=30.0 * (t >= 3))
             wheel.step(h)
-    names = ("time", "speed [m/s]", "heading / 10 [deg]", "lean to the right [deg]", "$M_1$ / 10 [N m]")
-    return pd.DataFrame(rows, columns=names)
+    names = ("time", "speed [m/s]", r"$\psi$ [deg]", "lean [deg]", "$M_1$ [N m]")
+    return pd.DataFrame(rows, columns=names).set_index("time")

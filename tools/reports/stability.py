@@ -11,6 +11,7 @@ from multiprocessing import get_context
 
 import numpy as np
 import pandas as pd
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 from robustness.case import Case
 from robustness.judges import TOLERANCES, Verdict, judge_case
@@ -121,6 +122,9 @@ def draw_law(tables: Tables) -> Sheet:
         axes[1].plot(exact["ms"], exact["error"], "*", color=colour, ms=10)
     plots.label(axes[0], r"$\omega_s$ [rad/s]", "error against the exact law", "convergence", "xy")
     plots.label(axes[1], "time for 10 s [ms]", "error", "cost; stars: the exact law itself", "xy")
+    axes[1].xaxis.set_minor_formatter(NullFormatter())
+    axes[1].xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes[1].xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     plots.legend_below(figure, axes, 3)
     return figure
 
