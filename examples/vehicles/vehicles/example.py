@@ -66,21 +66,20 @@ def judged(fmus: Fmus, asked: Manoeuvre, run: Run) -> tuple[bool, list[str]]:
 
 def example(fmus: Fmus, asked: Manoeuvre, folder: Path) -> bool:
     """One example: run, table, picture and package, verdict."""
-    of, name, remark = VEHICLES[asked.vehicle], asked.vehicle, ""
+    of, name = VEHICLES[asked.vehicle], asked.vehicle
     grid = asked.grid or max(1, round(asked.stop / PER_PICTURE / asked.h)) * asked.h
     run = of.drive(fmus, asked, asked.h, asked.exchange, grid, progress=True)
     if run.ending:  # early, perhaps within the first rows: more of them, the last where all FMUs reach one instant
         before = asked.changed(stop=run.ending.time * (1 - 1e-9))
         again = of.drive(fmus, before, asked.h, asked.exchange, before.stop / PER_PICTURE)
         run = Run(again.table, run.ending)
-        remark = f"; ended at {run.ending.time:.2f} s"
     passed, lines = judged(fmus, asked, run)
     print(f"{asked.called[0].upper()}{asked.called[1:]}.", *lines, sep="\n")
     table = {n: x for n, x in run.table.items() if not n.startswith("alone.")}
     rows, head = np.column_stack(list(table.values())), ",".join(table)
     np.savetxt(folder / f"{name}.csv", rows, "%.9g", delimiter=",", header=head, comments="")
     if len(rows):
-        draw(of, asked, run.table, folder / f"{name}.png", remark)
+        draw(of, asked, run.table, folder / f"{name}.png", of.remark(run.ending))
     of.package(fmus, asked, min(asked.h, 0.0005) if "waits" in options.file(name) else asked.h, folder)
     for part in ("wheel", *options.file(name)["models"]):
         shutil.copyfile(fmus[part], folder / f"{part}.fmu")

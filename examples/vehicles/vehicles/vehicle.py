@@ -3,6 +3,7 @@
 A body with hubs names its variables as the wheels do, with _ and the wheel's name behind.
 """
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -114,8 +115,18 @@ class Vehicle:
 
     def describe(self, end: Ended) -> str:
         """Which component ended a run, and when."""
-        who = f"{self.wheels[end.component]} wheel" if end.component in self.wheels else end.component
-        return f"The {who} ended the run at t = {end.time:.3f} s: {end.message}"
+        return f"The {self.who(end)} ended the run at t = {end.time:.3f} s: {end.message}"
+
+    def remark(self, end: Ended | None) -> str:
+        """A second line for the title of a picture, where a run ended early."""
+        if not end:
+            return ""
+        what = re.search("lifted off|fell flat", end.message)
+        how = what[0] if what else "ended the run"
+        return f"\nThe {self.who(end)} {how} at t = {end.time:.2f} s, where the curves end."
+
+    def who(self, end: Ended) -> str:
+        return f"{self.wheels[end.component]} wheel" if end.component in self.wheels else end.component
 
 
 def beyond_dry(mu: float) -> str:
