@@ -12,7 +12,7 @@ sys.path.append(str(ROOT / "examples" / "python"))
 from values import bodies, doubt, moments  # noqa: E402
 
 SAME = """async ([sizes, wheels]) => {
-  const {bodies, doubtOf, momentsOf} = await import('#inertia');
+  const {bodies, doubtOf, momentsOf} = await import('#mechanics');
   const found = Object.keys(bodies).map((name) => sizes.map((size) => momentsOf(name, size)));
   return [found, wheels.map((wheel) => doubtOf(wheel) !== null)];
 }"""

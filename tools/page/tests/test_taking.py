@@ -78,23 +78,48 @@ FILM = """async (bytes) => {
     pen.drawImage(video, 0, 0, 64, 64);
     pictures.push([...pen.getImageData(0, 0, 64, 64).data]);
   }
-  return [video.duration, pictures];
+  return [video.duration, video.videoWidth, pictures];
 }"""
 
 
-@pytest.mark.parametrize("codec", ["V_VP9", "V_VP8"])
-def test_a_film_lasts_as_long_as_its_motion_with_webcodecs_and_without(live, tmp_path, codec):
+FILMS = [("V_VP9", "small", 20), ("V_VP8", "small", 20), ("V_VP9", "large", 30)]  # codec, size, pictures per second
+
+
+@pytest.mark.parametrize(("codec", "size", "rate"), FILMS)
+def test_a_film_lasts_as_long_as_its_motion_with_webcodecs_and_without(live, tmp_path, codec, size, rate):
     start(live, phi_dot_start=0)
     live.evaluate("window.kept = VideoEncoder; page.player.set({speed: 4})")
     live.evaluate("(codec) => { window.VideoEncoder = codec === 'V_VP9' ? kept : undefined; }", codec)
+    live.evaluate("(size) => { document.querySelector('#take [name=size]').value = size; }", size)
     with drawn(live):
-        data = taken(live, "film", tmp_path).read_bytes()  # 0.59 s of falling, four times as fast: 5 pictures
+        before = live.evaluate("page.stage.renderer.getPixelRatio()")
+        data = taken(live, "film", tmp_path).read_bytes()  # 0.59 s of falling, four times as fast: 3 or 5 pictures
+        assert live.evaluate("page.stage.renderer.getPixelRatio()") == before
     live.evaluate("() => { window.VideoEncoder = kept; }")
     assert data.startswith(b"\x1a\x45\xdf\xa3") and b"webm" in data[:64] and codec.encode() in data  # EBML
-    seconds, (first, last, again) = live.evaluate(FILM, list(data))
-    within(abs(seconds - 0.5928 / 4), 1 / 30, "length of the film off that of the motion, s")  # one picture
+    seconds, width, (first, last, again) = live.evaluate(FILM, list(data))
+    shown = live.evaluate("page.stage.canvas.clientWidth")
+    assert width == pytest.approx(min(640, shown) if size == "small" else shown, abs=2)
+    within(abs(seconds - 0.5928 / 4), 1 / rate, "length of the film off that of the motion, s")  # one picture
     within(absolute_error(first, again), 20, "parts of 255 between the first picture and itself")
     beyond(absolute_error(first, last), 20, "parts of 255 between the first picture and the last")
+
+
+TEXT = "document.querySelector('#take [name=film]').textContent"
+
+
+def test_a_film_shows_the_time_that_it_still_takes_and_ends_at_a_second_click(live, tmp_path):
+    start(live)
+    button = live.locator("#take [name=film]")
+    live.locator("[popovertarget=take]").click()
+    with live.expect_download() as download:
+        button.click()
+        live.wait_for_function(f"/End the film: \\d+ s left/.test({TEXT})")
+        button.click()
+    download.value.save_as(tmp_path / "short.webm")
+    assert (tmp_path / "short.webm").stat().st_size > 0
+    assert button.inner_text() == "Film (WebM)"
+    live.keyboard.press("Escape")
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@
 // there is as at first.
 import {variables} from '#data';
 import {PORTRAITS} from '#diagrams';
-import {bodies, MOMENTS, momentsOf} from '#inertia';
 import {degrees, limitsOf} from '#knobs';
+import {bodies, MOMENTS, momentsOf} from '#mechanics';
 
 const LONGEST = 4000;  // characters
 const MOST = 400;      // changes while it rolls
@@ -37,7 +37,8 @@ function numberOf(text, name, limits) {
   const value = unit ? degrees(Number(digits)) : Number(digits);
   const slack = 1e-9 * Math.max(Math.abs(low), Math.abs(high));
   if (value >= low - slack && value <= high + slack) return value;
-  const shown = [value, low, high].map((number) => Number(number.toPrecision(4)));
+  const scale = unit ? 180 / Math.PI : 1;  // the answer has the unit of the question
+  const shown = [value, low, high].map((number) => `${Number((number * scale).toPrecision(4))}${unit ? '°' : ''}`);
   return refuse(`${name} = ${shown[0]} is not between ${shown[1]} and ${shown[2]}.`);
 }
 

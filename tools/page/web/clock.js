@@ -30,7 +30,7 @@ export class Player extends EventTarget {
   /** A frame that lasted dt seconds of the reader's time. */
   advance(dt) {
     if (!this.playing) return;
-    this.seek(this.t + Math.min(dt, 0.1) * this.speed);
+    this.seek(this.t + dt * this.speed);
     if (this.t >= this.end) this.pause();
   }
 }
@@ -93,7 +93,7 @@ export function setUpKeys({player, stage, plots}) {
   addEventListener('keydown', (event) => {
     const key = event.key === ' ' ? 'space' : event.key.toLowerCase();
     const kept = key === 'space' ? PRESSED : key.length > 1 ? MOVED : '_';
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.(kept)) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.(`${kept}, [type=number]`)) return;
     const button = $(`[aria-keyshortcuts="${CSS.escape(key)}" i]`);
     if (!button && !keys[key]) return;
     button ? button.click() : keys[key](event);

@@ -18,8 +18,8 @@ export function makeChoice(row, options, act) {
   return onChange((chosen) => buttons.forEach((button, i) => (button.ariaChecked = options[i].name === chosen)));
 }
 
-/** A text such as ω_z as nodes, with its subscript. */
-export const subscripted = (text) => text.split(/_(.)/).map((part, i) => (i % 2 ? make('sub', {}, part) : part));
+/** A text such as ω_z or ω_crit as nodes, with its subscript. */
+export const subscripted = (text) => text.split(/_(crit|.)/).map((part, i) => (i % 2 ? make('sub', {}, part) : part));
 
 /** A canvas of this size in CSS pixels, cleared, and a pen in CSS pixels. */
 export function clearCanvas(canvas, width, height) {

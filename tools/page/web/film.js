@@ -2,7 +2,11 @@
 // pictures are drawn at instants of the motion and written into a WebM file with these instants.
 import {$, colour, make} from '#dom';
 
-const RATE = 30;         // pictures per second of the film
+/** Kinds of film: the width in pixels, at most that of the scene on the screen, and pictures per second. */
+export const FILMS = {
+  small: {text: 'small: 640 pixels wide', width: 640, rate: 20},
+  large: {text: 'as large as on the screen', width: Infinity, rate: 30},
+};
 const BITS = 8_000_000;  // per second
 const KEY = 60;          // pictures from one that stands alone to the next
 const GAP = 10;          // CSS pixels
@@ -89,9 +93,9 @@ function webm(codec, {width, height}, pictures, duration) {
 }
 
 /** A canvas encoded by WebCodecs: {codec, add(k), end(), pictures}; null where the browser cannot. */
-async function streamOf(canvas) {
+async function streamOf(canvas, rate) {
   const {width, height} = canvas;
-  const settings = {codec: 'vp09.00.51.08', width, height, bitrate: BITS, framerate: RATE};
+  const settings = {codec: 'vp09.00.51.08', width, height, bitrate: BITS, framerate: rate};
   if (!(await window.VideoEncoder?.isConfigSupported(settings))?.supported) return null;
   const pictures = [];
   const output = (chunk) => {
@@ -102,7 +106,7 @@ async function streamOf(canvas) {
   const encoder = new VideoEncoder({output, error: console.error});
   encoder.configure(settings);
   const add = (k) => {
-    const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / RATE)});
+    const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / rate)});
     encoder.encode(picture, {keyFrame: k % KEY === 0});
     picture.close();
   };
@@ -110,7 +114,7 @@ async function streamOf(canvas) {
 }
 
 /** The same as single pictures: a WebP file holds a key frame of VP8. */
-function stillsOf(canvas) {
+function stillsOf(canvas, rate) {
   const pictures = [];
   const add = async (k) => {
     const blob = await new Promise((done) => canvas.toBlob(done, 'image/webp', 0.9));
@@ -118,7 +122,7 @@ function stillsOf(canvas) {
     let at = 12;  // chunks: a name, a length, an even number of bytes
     const length = () => file.getUint32(at + 4, true);
     while (file.getUint32(at) !== 0x56503820) at += 8 + length() + (length() % 2);  // 'VP8 '
-    pictures.push({data: blob.slice(at + 8, at + 8 + length()), time: Math.round(1000 * k / RATE), key: true});
+    pictures.push({data: blob.slice(at + 8, at + 8 + length()), time: Math.round(1000 * k / rate), key: true});
   };
   return {codec: 'V_VP8', add, end: () => {}, pictures};
 }
@@ -129,28 +133,31 @@ export const films = () =>
 
 /**
  * A film of the motion from its start to its end at the speed of the clock, as a Blob, however long a picture takes to
- * draw; going() false: it ends there.
+ * draw. kind: of FILMS; left(seconds): called before each picture with the time that the rest will take; false ends it.
  */
-export async function film(page, going) {
-  const {player} = page;
+export async function film(page, {width, rate}, left) {
+  const {player, stage: {canvas: scene, renderer}} = page;
   const {start, end, speed, t} = player;
-  const canvas = make('canvas');
+  const [canvas, ratio] = [make('canvas'), renderer.getPixelRatio()];
   const show = (instant) => {
     player.seek(instant);
     page.draw();
     compose(page, canvas);
   };
   player.pause();
+  renderer.setPixelRatio(Math.min(ratio, width / scene.clientWidth));
   show(start);
-  const {codec, add, end: finish, pictures} = await streamOf(canvas) ?? stillsOf(canvas);
-  const count = Math.floor((end - start) / speed * RATE) + 1;
+  const {codec, add, end: finish, pictures} = await streamOf(canvas, rate) ?? stillsOf(canvas, rate);
+  const count = Math.floor((end - start) / speed * rate) + 1;
+  const begin = performance.now();
   let k = 0;
-  for (; k < count && going(); ++k) {
-    show(start + k * speed / RATE);
+  for (; k < count && left((performance.now() - begin) / 1000 / k * (count - k)); ++k) {
+    show(start + k * speed / rate);
     await add(k);
     await new Promise((next) => setTimeout(next));  // the page stays alive
   }
+  renderer.setPixelRatio(ratio);
   player.seek(t);
   await finish();
-  return webm(codec, canvas, pictures, 1000 * k / RATE);
+  return webm(codec, canvas, pictures, 1000 * k / rate);
 }

@@ -1,32 +1,59 @@
-// What the reader of the live page can set: sliders, buttons, and within which limits an address may set the rest.
+// What the reader of the live page can set: sliders with numbers beside them, buttons, and within which limits a number
+// or an address may set the rest. The sliders' ranges follow the wheel.
+import {criticalSpin} from '#mechanics';
+
 const DEGREES = 180 / Math.PI;
+const ROUND = [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 10];
 
 /** An angle in rad as a slider gives it. */
 export const degrees = (angle) => angle / DEGREES;
 
+/** The next round number at or above a positive one. */
+function roundUp(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return Number((power * ROUND.find((digit) => digit * power >= value * (1 - 1e-9))).toPrecision(6));
+}
+
+/** Some 200 round steps to a side. */
+function stepOf(high) {
+  const power = 10 ** Math.floor(Math.log10(high / 200));
+  return Number((power * [5, 2, 1].find((digit) => digit * power <= high / 200)).toPrecision(6));
+}
+
+const upTo = (high) => [0, high, stepOf(high)];
+const both = (high) => [-high, high, stepOf(high)];
+/** m g (r_0 + r) in N m, over the paper's wheel's. */
+const strength = ({m, g, r_0, r}) => m * g * (r_0 + r) / (20 * 9.81 * 0.35);
+const spins = (wheel) => both(roundUp(4.5 * criticalSpin(wheel)));
+const inertias = (low, high) =>
+    ({m, r_0, r}) => [...[low, high].map((part) => Number((part * m * (r_0 + r) ** 2).toPrecision(2))), 'log'];
+
 /**
- * Sliders: name, symbol, unit, lowest, highest and step as shown (angles in degrees; 'log': by ratios), and what it is.
+ * A quantity: its name, symbol, unit and meaning as shown (angles in degrees), the limits of a number that is typed or
+ * in an address, and the slider's range(wheel): lowest, highest, step ('log': by ratios).
  */
+const knob = (name, symbol, unit, what, limits, range) => ({name, symbol, unit, what, limits, range});
+
 export const START = [
-  ['theta_start', 'θ', '°', 5, 175, 0.5, 'tilt'],
-  ['phi_dot_start', 'φ̇', 'rad/s', -12, 12, 0.05, 'spin'],
-  ['psi_dot_start', 'ψ̇', 'rad/s', -12, 12, 0.05, 'precession'],
-  ['slope', 'α', '°', 0, 30, 0.5, 'slope'],
-  ['slope_direction', 'β', '°', -180, 180, 1, 'uphill'],
-  ['mu_max', 'μ', '', 0, 2, 0.01, 'grip, 0: any'],
+  knob('theta_start', 'θ', '°', 'tilt', [1, 179], () => [5, 175, 0.5]),
+  knob('phi_dot_start', 'φ̇', 'rad/s', 'spin', [-1000, 1000], spins),
+  knob('psi_dot_start', 'ψ̇', 'rad/s', 'precession', [-1000, 1000], spins),
+  knob('slope', 'α', '°', 'slope', [0, 60], () => [0, 30, 0.5]),
+  knob('slope_direction', 'β', '°', 'uphill', [-360, 360], () => [-180, 180, 1]),
+  knob('mu_max', 'μ', '', 'grip, 0: any', [0, 10], () => upTo(2)),
 ];
 export const WHEEL = [
-  ['m', 'm', 'kg', 0.001, 1000, 'log', 'mass'],
-  ['r_0', 'r_0', 'm', 0.005, 2, 'log', 'ring radius'],
-  ['r', 'r', 'm', 0, 0.5, 0.0005, 'tube radius'],
-  ['J_x', 'J_x', 'kg m²', 1e-8, 1000, 'log', '= J_y'],
-  ['J_z', 'J_z', 'kg m²', 1e-8, 1000, 'log', 'axle'],
+  knob('m', 'm', 'kg', 'mass', [1e-4, 1e4], () => [1e-3, 1e3, 'log']),
+  knob('r_0', 'r_0', 'm', 'ring radius', [1e-3, 10], () => [0.005, 2, 'log']),
+  knob('r', 'r', 'm', 'tube radius', [0, 10], ({r_0}) => upTo(r_0)),
+  knob('J_x', 'J_x', 'kg m²', '= J_y', [1e-10, 1e6], inertias(0.02, 1)),
+  knob('J_z', 'J_z', 'kg m²', 'axle', [1e-10, 1e6], inertias(0.04, 1.2)),
 ];
 /** These act from the present on. */
 export const NOW = [
-  ['s', 's', 'm', 0, 0.1, 0.0005, 'friction'],
-  ['M_3', 'M₃', 'N m', -8, 8, 0.1, 'axle torque'],
-  ['M_brake', 'M_b', 'N m', 0, 8, 0.1, 'brake'],
+  knob('s', 's', 'm', 'friction', [0, 1], ({r_0, r}) => upTo(roundUp(0.1 / 0.35 * (r_0 + r)))),
+  knob('M_3', 'M₃', 'N m', 'torque', [-1e5, 1e5], (wheel) => both(roundUp(8 * strength(wheel)))),
+  knob('M_brake', 'M_b', 'N m', 'brake', [0, 1e5], (wheel) => upTo(roundUp(8 * strength(wheel)))),
 ];
 /** Buttons that act as long as they are held: text, variable, value in parts of the torque from the spin, tooltip. */
 export const HELD = [
@@ -35,15 +62,14 @@ export const HELD = [
   ['push forward ▶', 'M_3', (spin) => spin || -1, 'Push on the way it rolls, about the axle'],
 ];
 /** Their torque, N m: 6 N m for the paper's wheel, for others as their weight times radius. */
-export const torqueOf = ({m, g, r_0, r}) =>
-    Math.min(8, Number((6 * m * g * (r_0 + r) / (20 * 9.81 * 0.35)).toPrecision(6)));
+export const torqueOf = (wheel) => Number((6 * strength(wheel)).toPrecision(6));
 
 /** Lowest and highest, in SI, of what has no slider. */
-const OTHERS = new Map([['g', [0.5, 30]], ['J_y', [1e-8, 1000]], ['psi_start', [-10, 10]], ['phi_start', [-10, 10]]]);
+const OTHERS = new Map([['g', [0.5, 30]], ['J_y', [1e-10, 1e6]], ['psi_start', [-10, 10]], ['phi_start', [-10, 10]]]);
 
 /** [lowest, highest] in SI of what may be set at the start, or (now) while it rolls; undefined for all else. */
 export function limitsOf(name, now = false) {
-  const knob = (now ? NOW : [...START, ...WHEEL, ...NOW]).find(([other]) => other === name);
-  if (!knob) return now ? undefined : OTHERS.get(name);
-  return [knob[3], knob[4]].map((value) => (knob[2] === '°' ? degrees(value) : value));
+  const found = (now ? NOW : [...START, ...WHEEL, ...NOW]).find((one) => one.name === name);
+  if (!found) return now ? undefined : OTHERS.get(name);
+  return found.limits.map((value) => (found.unit === '°' ? degrees(value) : value));
 }

@@ -3,8 +3,8 @@
 import {derive, EMPTY, sameMotions} from '#address';
 import {variables} from '#data';
 import {STEP} from '#fmu';
-import {MOMENTS} from '#inertia';
 import {Link} from '#link';
+import {MOMENTS} from '#mechanics';
 import {setUpPanel} from '#panel';
 import {chapters} from '#scenes';
 
@@ -18,12 +18,13 @@ const NAMES = ['This wheel', 'Kept'];
 /**
  * What the reader has chosen: plan, what is done to the wheel; kept: the plan of the motion beside, or null; step 0, 1
  * ... of the story, if it is open; scene: the number of the one that was loaded. refusal, trouble: why an address or a
- * start cannot be; wanted: whether the motion is still to be computed.
+ * start cannot be; scaled: what a ready wheel has set; wanted: whether the motion is still to be computed.
  */
 export class LiveWheel {
   /** wheels: the ready ones. */
   constructor(page, fmu, wheels) {
-    Object.assign(this, {page, fmu, plan: EMPTY.plan, kept: null, step: 0, open: true, scene: null, refusal: null});
+    Object.assign(
+        this, {page, fmu, plan: EMPTY.plan, kept: null, step: 0, open: true, scene: null, refusal: null, scaled: null});
     this.steps = chapters(this.parameters());
     this.wheel = {name: 'live', label: NAMES[0]};
     page.bodies.push(this.wheel);
@@ -74,7 +75,7 @@ export class LiveWheel {
   /** Asks for a new motion; axis: how the diagrams take it. */
   change(axis) {
     this.page.plots.axis = axis;
-    Object.assign(this, {wanted: true, scene: null, refusal: null});
+    Object.assign(this, {wanted: true, scene: null, refusal: null, scaled: null});
   }
 
   /** A start value or parameter; a body's moments follow its mass and radii until one of them is set. */
@@ -98,8 +99,12 @@ export class LiveWheel {
     const size = (parameters.r_0 + parameters.r) / PAPER_RADIUS;
     Object.assign(this.plan.values, parameters);
     this.plan.body = null;
-    this.setStart('phi_dot_start', Number((-2 / Math.sqrt(size)).toPrecision(3)));
-    if (this.value('s')) this.plan.values.s = Number((0.03 * size).toPrecision(3));
+    const [spin, s] = [-2 / Math.sqrt(size), 0.03 * size].map((value) => Number(value.toPrecision(3)));
+    const friction = this.value('s') > 0;
+    if (friction) this.plan.values.s = s;
+    this.setStart('phi_dot_start', spin);
+    const set = `φ̇ is ${spin} rad/s now${friction ? `, and s is ${s} m` : ''}.`;
+    this.scaled = `As fast for its size as the paper's wheel: ${set.replace('-', '−')}`;
     this.page.player.seek(0);
   }
 
@@ -148,7 +153,7 @@ export class LiveWheel {
     page.choose(view);
     page.player.seek(t);
     [this.step, this.open, this.text] = [step ?? this.step, step !== null, text?.(...page.wheels)];
-    [this.scene, this.refusal] = [null, null];
+    [this.scene, this.refusal, this.scaled] = [null, null, null];
     this.show();
   }
 

@@ -69,7 +69,9 @@ class Page {
     new ResizeObserver(() => this.layOut()).observe($('#stage'));
     this.live?.begin();
     if (!CALM && this.player.t === this.player.start) this.player.play();
-    requestAnimationFrame((now) => this.frame(now, now));
+    // The clock stands while the page is out of sight.
+    document.addEventListener('visibilitychange', () => (this.ticked = undefined));
+    requestAnimationFrame((now) => this.frame(now));
   }
 
   /** The buttons for what one can look at. sources: how many files or runs the bodies come from. */
@@ -141,12 +143,19 @@ class Page {
     };
   }
 
-  frame(now, before) {
-    this.player.advance((now - before) / 1000);
+  /** The clock goes on to an instant, ms from the opening of the page, however long the last picture took. */
+  tick(now) {
+    const before = this.ticked ?? now;
+    this.ticked = Math.max(now, before);
+    this.player.advance((this.ticked - before) / 1000);
+  }
+
+  frame(now) {
+    this.tick(now);
     this.live?.frame();
     this.stage.controls.update();
     if (this.stage.dirty) this.draw();
-    requestAnimationFrame((next) => this.frame(next, now));
+    requestAnimationFrame((next) => this.frame(next));
   }
 
   /** The bodies where they are at the present instant; nothing is drawn. */

@@ -1,8 +1,8 @@
 // The controls of the live page: the story or the scenes to begin with, the start, and what the reader does to the
 // wheel while it rolls. Each sets up its elements and returns a function that shows the present state.
 import {$, make, makeButton, makeChoice, onChange, subscripted} from '#dom';
-import {bodies, doubtOf} from '#inertia';
 import {HELD, NOW, START, torqueOf, WHEEL} from '#knobs';
+import {bodies, criticalSpin, doubtOf} from '#mechanics';
 import {scenes} from '#scenes';
 
 /** The card with the story beside the picture: text, something to try, one step on or back. */
@@ -51,52 +51,74 @@ function setUpScenes(live) {
   };
 }
 
-/** One slider: take(value in SI) when it moves, hold(on) while it is dragged, present() for what it shows. */
-function makeKnob(host, [name, symbol, unit, low, high, step, what], {take, present, hold = () => {}}) {
-  const ratios = step === 'log';
+/**
+ * One quantity's slider, and its number to be typed: take(name, value in SI) when one is set, hold(on) while the slider
+ * is dragged, present(name) for what they show.
+ */
+function makeKnob(host, {name, symbol, unit, what, limits, range}, {take, present, hold = () => {}}) {
   const scale = unit === '°' ? 180 / Math.PI : 1;
-  const digits = Math.ceil(-Math.log10(step) - 1e-9);
-  const toSlider = (value) => (ratios ? Math.log10(value) : value * scale);
-  const fromSlider = (place) => (ratios ? Number((10 ** place).toPrecision(3)) : place / scale);
-  const [min, max] = ratios ? [low, high].map(toSlider) : [low, high];
-  const input = make('input', {type: 'range', name, min, max, step: ratios ? 0.01 : step});
-  const output = make('output');
-  const title = `${what.replace('_', '')}: ${low} to ${high} ${unit}`;
-  const label = make('b', {}, make('i', {}, ...subscripted(symbol)));
-  const words = make('span', {}, label, ' ', make('small', {}, ...subscripted(what)));
-  host.append(make('label', {className: 'knob', title}, words, input, output));
+  const about = what.replace('_', '');
+  const [low, high] = limits;
+  const slider = make('input', {type: 'range', name, id: `slider_${name}`});
+  const title = `${about}: type a number from ${low} to ${high} ${unit}`;
+  const number = make('input', {type: 'number', name: `${name}_number`, min: low, max: high, title, ariaLabel: title});
+  const words = make(
+      'label', {htmlFor: slider.id}, make('b', {}, make('i', {}, ...subscripted(symbol))), ' ',
+      make('small', {}, ...subscripted(what)));
+  host.append(make('div', {className: 'knob'}, words, slider, number, make('span', {}, unit)));
+  let ratios = false;
+  const place = (value) => (ratios ? Math.log10(value) : value * scale);
+  const at = (position) => (ratios ? Number((10 ** position).toPrecision(3)) : position / scale);
+  const write = () => (number.value = Number((present(name) * scale).toPrecision(7)));
   let before = 0;  // a finger that scrolls the page has first moved the slider that it began on
-  input.oninput = () => take(name, fromSlider(Number(input.value)));
-  input.onpointerdown = () => {
-    before = Number(input.value);
+  slider.oninput = () => take(name, at(Number(slider.value)));
+  slider.onpointerdown = () => {
+    before = Number(slider.value);
     hold(true);
   };
-  input.onpointerup = () => hold(false);
-  input.onpointercancel = () => {
-    take(name, fromSlider(before));
+  slider.onpointerup = () => hold(false);
+  slider.onpointercancel = () => {
+    take(name, at(before));
     hold(false);
   };
-  const show = onChange((value) => {
-    input.value = toSlider(value);
-    const text = ratios ? String(Number(value.toPrecision(3))) : (value * scale).toFixed(digits);
-    output.textContent = `${text.replaceAll('-', '−')} ${unit}`;
-  });
-  return () => show(present(name));
+  number.onchange = () => {
+    if (number.value) take(name, Math.min(high, Math.max(low, Number(number.value))) / scale);
+    write();
+  };
+  number.onblur = write;
+  number.onkeydown = ({key}) => {
+    if (key === 'Escape') write();
+    if (['Enter', 'Escape'].includes(key)) number.blur();
+  };
+  let shown = '';
+  return (wheel) => {
+    const [value, [from, to, step]] = [present(name), range(wheel)];
+    if (shown === [value, from, to].join()) return;
+    shown = [value, from, to].join();
+    ratios = step === 'log';
+    const [min, max] = ratios ? [from, to].map(place) : [from, to];
+    Object.assign(slider, {min, max, step: ratios ? 0.01 : step, title: `${about}: ${from} to ${to} ${unit}`});
+    slider.value = place(value);
+    number.step = ratios ? 'any' : step;
+    if (document.activeElement !== number) write();
+  };
 }
 
 /** A button that sets a variable as long as it is held, by pointer or by key. */
 function makeHeld([text, name, part, what], live) {
   let before = null;  // the value to return to; null while the button is not held
-  const press = ({pointerId}) => {
+  const press = ({pointerId, timeStamp}) => {
     if (before !== null) return;
+    live.page.tick(timeStamp);  // the clock goes on to the instant at which the button was pressed, not drawn
     if (pointerId) button.setPointerCapture(pointerId);
     before = live.present(name);
     live.hold(true);
     live.setNow(name, part(live.spin()) * torqueOf(live.parameters()));
     live.page.player.play();
   };
-  const release = () => {
+  const release = ({timeStamp}) => {
     if (before === null) return;
+    live.page.tick(timeStamp);
     live.setNow(name, before);
     live.hold(false);
     before = null;
@@ -137,6 +159,21 @@ function setUpReady(live, wheels) {
   };
 }
 
+/** Where the present spin is beside the critical one. */
+function setUpCritical(live) {
+  const host = $('#critical');
+  const write = onChange((text) => host.replaceChildren(...subscripted(text)));
+  return (wheel) => {
+    const [spin, limit] = [Math.abs(live.wheel.table.value('omega_z', live.page.player.t)), criticalSpin(wheel)];
+    const side = spin > limit ? 'above' : 'below';
+    host.dataset.side = side;
+    write(
+        `Now |ω_z| = ${spin.toFixed(2)} rad/s, ${side} ω_crit = ${
+            limit.toFixed(2)} rad/s: upright rolling on a level ` +
+        `road is ${spin > limit ? 'stable' : 'unstable'}.`);
+  };
+}
+
 /** What the page says of the last run and of a wrong address, and the box that keeps a motion. */
 function setUpNotes(live) {
   $('#keep').addEventListener('change', ({target}) => live.keep(target.checked));
@@ -146,14 +183,17 @@ function setUpNotes(live) {
     $('#doubt').hidden = !text;
     $('#doubt').replaceChildren(...subscripted(text ? `${text} Choose a body: its moments follow.` : ''));
   });
-  return () => {
+  const scaled = onChange((text) => ($('#scaled').textContent = text ?? ''));
+  return (wheel) => {
     const seconds = Number(live.wheel.table.end.toPrecision(4));
     write(live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`);
     $('#message').classList.toggle('trouble', Boolean(live.trouble));
     $('#keep').checked = Boolean(live.kept);
     $('#refusal').hidden = !live.refusal;
     refuse(live.refusal);
-    doubt(doubtOf(live.parameters()));
+    doubt(doubtOf(wheel));
+    scaled(live.scaled);
+    $('#scaled').hidden = !live.scaled;
   };
 }
 
@@ -166,6 +206,10 @@ export function setUpPanel(live, wheels) {
   const knobs = [['#start', START, start], ['#wheel', WHEEL, start], ['#now', NOW, now]].flatMap(
       ([place, list, acts]) => list.map((knob) => makeKnob($(place), knob, acts)));
   $('#push').append(...HELD.map((held) => makeHeld(held, live)));
-  const all = [setUpStory(live), setUpScenes(live), setUpReady(live, wheels), setUpNotes(live), ...knobs];
-  return () => all.forEach((show) => show());
+  const ready = setUpReady(live, wheels);
+  const all = [setUpStory(live), setUpScenes(live), ready, setUpCritical(live), setUpNotes(live), ...knobs];
+  return () => {
+    const wheel = live.parameters();
+    all.forEach((show) => show(wheel));
+  };
 }

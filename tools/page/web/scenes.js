@@ -2,6 +2,7 @@
 // with. Each step is a scene; its text takes every figure from the scene's own motion. wheel: {table, phases}; other:
 // the motion that is kept beside. A scene is written as the address that shows it (address.js).
 import {read} from '#address';
+import {criticalSpin} from '#mechanics';
 import {extent} from '#table';
 
 const DEGREES = 180 / Math.PI;
@@ -13,15 +14,6 @@ const joules = ({table}, t) => table.value('E', t).toFixed(1);
 /** By how much a quantity changes while friction holds the wheel for the first time. */
 const whileHeld = ({table, phases: {sticks: [[begin, end]]}}, name) =>
     Math.abs(table.value(name, end) - table.value(name, begin));
-
-/**
- * |omega_z| above which upright straight rolling is stable, rad/s: a small lean a turns the wheel at
- * omega_2 = (J_z / J_x) omega_z a, and (J_x + m rho^2) a'' = m g r_0 a - (J_z + m rho^2) omega_2 omega_z, rho = r_0 +
- * r.
- */
-function criticalSpin({m, g, r_0, r, J_x, J_z}) {
-  return Math.sqrt((m * g * r_0 * J_x) / (J_z * (J_z + m * (r_0 + r) ** 2)));
-}
 
 /** A step of the story. more: {names: labels of both wheels, speed: of the clock}. */
 const step = (title, address, text, attempt, more) => ({title, state: read(address).state, text, attempt, ...more});
@@ -84,7 +76,7 @@ export function chapters(parameters) {
         'Where the model ends', 'phi_dot=0',
         ({table}) => `Let go without spin, it falls. At ${table.end.toFixed(2)} s it lies flat and touches the ground
           along a circle instead of a point: the equations end there, and so does the run. It also ends where the wheel
-          would lift off (N = 0). Sliding is not in the model: its ground has all the grip that is needed.`,
+          would lift off (N = 0), and, with a grip μ, where rolling would need more: this model does not slide.`,
         'Give it a little spin φ̇. How little lets it come up again?'),
   ];
 }

@@ -1,5 +1,6 @@
-// Moments of inertia: those of ready bodies (examples/bodies.json), which follow from mass and radii, and whether any
-// mass within the wheel's outline has the given ones. The same as examples/python/values.py. SI.
+// The wheel's mechanics as far as the page itself computes it. Moments of inertia: those of ready bodies
+// (examples/bodies.json), which follow from mass and radii, and whether any mass within the wheel's outline has the
+// given ones, as in examples/python/values.py; the critical spin. SI.
 import {live} from '#data';
 
 const HUB = 0.1;        // of the radius: how far hub and spokes may be from the plane of a wheel with a thin tube
@@ -41,4 +42,13 @@ export function doubtOf({m, r_0, r, J_x, J_y, J_z}) {
   if (across <= m * r * r && J_z > most + slack)
     return `${about} ${short(most)} kg m²: no mass within the wheel's outline has it together with ${beside}.`;
   return null;
+}
+
+/**
+ * |omega_z| above which upright straight rolling is stable, rad/s: a small lean a turns the wheel at
+ * omega_2 = (J_z / J_x) omega_z a, and (J_x + m rho^2) a'' = m g r_0 a - (J_z + m rho^2) omega_2 omega_z, rho = r_0 +
+ * r.
+ */
+export function criticalSpin({m, g, r_0, r, J_x, J_z}) {
+  return Math.sqrt((m * g * r_0 * J_x) / (J_z * (J_z + m * (r_0 + r) ** 2)));
 }
