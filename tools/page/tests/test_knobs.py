@@ -52,6 +52,20 @@ def test_a_number_keeps_its_keys_from_the_page_and_escape_leaves_it_as_it_was(li
     assert live.evaluate("page.player.t") == 0
 
 
+OVERFLOWS = "all => all.filter((field) => field.scrollWidth > field.clientWidth).map(({value}) => value)"
+
+
+def test_no_number_is_wider_than_its_field(live):
+    start(live, **COIN, theta_start=np.radians(123.456), phi_dot_start=-1000 / 7, M_3=-1e-4 / 7)
+    live.evaluate("document.querySelector('#wheel').open = true; page.live.frame()")
+    fields = "#live .knob [type=number]"
+    shown = dict(live.eval_on_selector_all(fields, "all => all.map(({name, value}) => [name, value])"))
+    assert float(shown["J_z_number"]) == pytest.approx(COIN["J_z"], rel=1e-5)
+    assert live.eval_on_selector_all(fields, OVERFLOWS) == []
+    live.evaluate("document.querySelector('#live [name=J_z_number]').value = -7.0450390625e-7")
+    assert live.eval_on_selector_all(fields, OVERFLOWS) == ["-7.0450390625e-7"]
+
+
 def range_of(page, name: str) -> list[float]:
     return page.evaluate("(name) => { const {min, max, step} = document.querySelector(`#live [name=${name}]`); "
                          "return [min, max, step].map(Number); }", name)  # fmt: skip
@@ -101,6 +115,16 @@ def test_a_ready_wheel_says_which_spin_and_friction_it_has_set(live):
     assert live.evaluate("[page.live.value('phi_dot_start'), page.live.value('s')]") == [-10.4, 0.0011]
     live.evaluate("page.live.setStart('phi_dot_start', -9); page.live.frame()")
     assert not live.locator("#scaled").is_visible()
+
+
+def test_a_motion_of_the_story_has_its_name_until_it_is_another(live):
+    names = "page.choices.map(({label}) => label)"
+    live.evaluate("page.live.turn(0); page.live.apply(page.live.steps[2].state, 2); page.player.pause()")
+    assert {"10 % slower", "10 % faster"} <= set(live.evaluate(names))
+    live.evaluate("page.live.setStart('phi_dot_start', -3); page.live.frame()")
+    assert "10 % slower" not in live.evaluate(names) and {"This wheel", "10 % faster"} <= set(live.evaluate(names))
+    assert live.locator(".label b").all_inner_texts() == ["This wheel", "10 % faster"]
+    assert live.locator("#choice [aria-checked=true]").count() == 1
 
 
 SLOW = """async (pause) => {

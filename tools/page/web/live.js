@@ -72,9 +72,14 @@ export class LiveWheel {
     page.dress();
   }
 
-  /** Asks for a new motion; axis: how the diagrams take it. */
+  /** Asks for a new motion, which is no longer the one that had a name; axis: how the diagrams take it. */
   change(axis) {
-    this.page.plots.axis = axis;
+    const {page, wheel} = this;
+    if (wheel.label !== NAMES[0]) {
+      wheel.label = NAMES[0];
+      page.offer(page.bodies.length);
+    }
+    page.plots.axis = axis;
     Object.assign(this, {wanted: true, scene: null, refusal: null, scaled: null});
   }
 

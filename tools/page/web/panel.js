@@ -69,7 +69,10 @@ function makeKnob(host, {name, symbol, unit, what, limits, range}, {take, presen
   let ratios = false;
   const place = (value) => (ratios ? Math.log10(value) : value * scale);
   const at = (position) => (ratios ? Number((10 ** position).toPrecision(3)) : position / scale);
-  const write = () => (number.value = Number((present(name) * scale).toPrecision(7)));
+  const write = () => {
+    const value = Number((present(name) * scale).toPrecision(6));
+    number.value = value && Math.abs(value) < 1e-3 ? value.toExponential() : value;  // as short as the field is wide
+  };
   let before = 0;  // a finger that scrolls the page has first moved the slider that it began on
   slider.oninput = () => take(name, at(Number(slider.value)));
   slider.onpointerdown = () => {
