@@ -47,8 +47,9 @@ templates_path = ["_templates"]
 html_additional_pages = {"index": "front.html"}
 html_math_renderer = "mathml"
 
-# A letter with a subscript in prose, such as r_0, X_O, ω_crit; a name of a variable, such as phi_dot, begins with more.
-SYMBOL = re.compile(r"(?<![\w/.'])([A-Za-zα-ωΑ-Ω])(\u0307?)_(\w+)")
+# A letter with a subscript in prose, such as r_0, X_O, ω_crit, 1/m_1, and no part of a path; a name of a variable
+# begins with more letters.
+SYMBOL = re.compile(r"(?<![\w.'])(?<![a-z]{2}/)([A-Za-zα-ωΑ-Ω])(\u0307?)_(\w+)")
 ALIGNED = {"aligned": "split"}  # environments that latex2mathml lacks, and its own of the same layout
 # Letters, digits and punctuation; accents, Greek, arrows, operators, brackets, and the italic letters of formulas.
 GLYPHS = "U+20-7E,U+A0-FF,U+300-36F,U+370-3FF,U+2000-206F,U+2100-23FF,U+27C0-27FF,U+2A00-2AFF,U+1D400-1D7FF"
