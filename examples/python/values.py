@@ -151,7 +151,7 @@ def variables(description: str | bytes, *causalities: str) -> dict[str, Variable
 
 
 def wheels() -> dict[str, dict[str, object]]:
-    """The ready wheels: name -> title, source, parameters in SI."""
+    """The ready wheels: name -> title, source, parameters in SI; `start`, of a ready case, is how the wheel moves."""
     return json.loads(WHEELS.read_text(encoding="utf-8"))
 
 
@@ -162,6 +162,11 @@ def ready(name: str) -> dict[str, float]:
         raise Fault(f'There is no wheel "{name}"; there are {", ".join(wheels())}.{meant}')
     body = {n: float(value) for n, value in wheels()[name]["parameters"].items()}
     return body | {"phi_dot_start": -2 * scale(body, s=-1)}
+
+
+def thrown(name: str) -> dict[str, float]:
+    """Road and start of a ready case, none of a wheel alone."""
+    return {n: float(value) for n, value in wheels()[name].get("start", {}).items()}
 
 
 def scale(body: Mapping[str, float], kg: int = 0, m: int = 0, s: int = 0) -> float:

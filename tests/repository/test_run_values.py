@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
+from reference import Wheel
+from support import sliding
 from support.bounds import EPSILON, beyond, within
 from support.paths import ROOT, build_folder
 
@@ -203,6 +205,23 @@ def test_a_ready_wheel_has_a_source_is_a_body_that_can_exist_and_rolls(root, nam
     start = {key: value for key, value in p.items() if key not in ("stop_time", "output_interval")}
     end = simulate_fmu(str(root / "wheel.fmu"), start_values=start, stop_time=0.1, output=["E"])
     assert end["time"][-1] == 0.1 and end["E"][-1] < end["E"][0]
+
+
+def test_the_hoop_thrown_with_backspin_slides_grips_at_the_closed_forms_instant_and_comes_back(root):
+    def error(scale: float) -> float:
+        p = {key: float(value) for key, value in given(ask(root, "backspin", f"mu_slide={0.3 * scale}")).items()}
+        wheel = Wheel(**{name: p[name] for name in ("m", "r_0", "r", "J_x", "J_y", "J_z")})
+        t, v, way = sliding.backspin(wheel, 0.3, 2.0, 10.0)
+        assert v < -1 and t < p["stop_time"] / 2
+        start = {n: x for n, x in p.items() if n not in ("stop_time", "output_interval")} | {"s": 0}
+        grid = {"stop_time": t + 1, "output_interval": t + 1, "relative_tolerance": 1e-11}
+        rows = simulate_fmu(str(root / "wheel.fmu"), start_values=start, output=["X_O", "X_O_dot", "omega_z"], **grid)
+        assert tuple(rows[0])[1:] == pytest.approx((0, 2, 10), abs=1e-14)
+        off = np.array(list(rows[-1])[1:]) - [way + v, v, -v / (wheel.r_0 + wheel.r)]
+        return float(abs(off).max())
+
+    within(error(1), 1e-9, "place, velocity and spin 1 s after the grip")
+    beyond(error(1.001), 1e-5, "with a coefficient 0.1 % larger")
 
 
 def test_a_name_given_beside_a_ready_wheel_prevails(root):

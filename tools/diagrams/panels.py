@@ -1,7 +1,8 @@
-"""The panels of ./scripts/run, each drawn into axes: the paper's three, the path, and what the ground has to give.
+"""The panels of ./scripts/run, each drawn into axes: the paper's three, the path, what the ground has to give, the slip.
 
 Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta. Friction and brake leave marks: a band
-per stick phase, a tick at the top for each change of sign of omega_z. A panel returns what the caption has to explain.
+per stick phase, a tick at the top for each change of sign of omega_z. A slide has a bar on the time axis between thin
+lines where grip is lost and returns. A panel returns what the caption has to explain.
 """
 
 import numpy as np
@@ -21,6 +22,7 @@ INSET = (0.39, 0.40)  # width and height in the axes
 SUBDIVISION = 4  # drawn points per row among the rates
 MOST = 2.0  # coefficient of friction that no road has; without a normal force no coefficient would do
 DENSE, SOLID = 60, 400  # turns of a curve over time: from here on a thin line; from here on its envelope
+BAR = 0.025  # of the axes: the height of the bar of a slide
 LEADER = 10.0  # points: from here on a thin line leads from a text to what it names
 PSI_DOT = r"$\dot\psi$"
 PHI_DOT = r"$\dot\varphi$"
@@ -51,7 +53,8 @@ def draw_tilt(ax: Axes, scene: Scene) -> list[str]:
 
 def draw_path(ax: Axes, scene: Scene) -> list[str]:
     """The path of the contact point from above, in one scale."""
-    _track(ax, *scene.smooth(SUBDIVISION, "X_C", "Y_C"))
+    time, x, y = scene.smooth(SUBDIVISION, "time", "X_C", "Y_C")
+    _track(ax, x, y, scene.slides[scene.rows_at(time)], style.PURPLE)
     ax.set(xlabel="$X$ [m]", ylabel="$Y$ [m]")
     least, middle = 0.1 * scene.value("r_0"), [(scene[n].min() + scene[n].max()) / 2 for n in ("X_C", "Y_C")]
     ax.update_datalim(np.add.outer([-least, least], middle))  # set limits could not follow the aspect
@@ -89,6 +92,22 @@ def draw_ground(ax: Axes, scene: Scene) -> list[str]:
         place = {"color": style.VERMILLION, "xycoords": right.get_yaxis_transform()}
         style.note(right, r"$\mu_\mathrm{max}$", (0.02, limit), (0, 2), **place)
     return remarks + [rf"$\mu$ is drawn up to {MOST:g}."] * int(needed.max() == MOST)
+
+
+def draw_slip(ax: Axes, scene: Scene) -> list[str]:
+    """The slip along and across the rolling direction."""
+    _time_axis(ax, scene)
+    ax.set_ylabel("slip [m/s]")
+    remarks, parts = [], {"slip_x": (style.BLUE, "along"), "slip_y": (style.GREEN, "across")}
+    for name, (color, text) in parts.items():
+        remarks += _over_time(ax, scene["time"], scene[name], color)
+        most = int(np.argmax(abs(scene[name])))
+        if abs(scene[name][most]) > 1e-3 * scene.slip.max():
+            place = {"color": color, "textcoords": "offset points", "va": "center", "fontsize": style.NOTE}
+            ax.annotate(text, (scene["time"][most], scene[name][most]), xytext=(5, 0), **place)
+    _scale(ax.yaxis, 5, np.array([scene[name] for name in parts]), 0.01)
+    ax.margins(y=0.12)
+    return remarks
 
 
 def draw_rates(ax: Axes, scene: Scene) -> list[str]:
@@ -153,7 +172,7 @@ def _rates(scene: Scene) -> tuple[Array, Array, Array]:
         rows = np.argsort(scene["theta"])
         return scene["psi_dot"][rows], scene["phi_dot"][rows], np.zeros(len(rows), dtype=bool)
     time, x, y = scene.smooth(SUBDIVISION, "time", "psi_dot", "phi_dot")
-    return x, y, scene.mode[np.searchsorted(scene.edges[1:-1], time)] == 0
+    return x, y, scene.mode[scene.rows_at(time)] == 0
 
 
 def _marks(ax: Axes, scene: Scene) -> dict[tuple[float, float], str]:
@@ -195,21 +214,25 @@ def _draw_inset(ax: Axes, x: Array, y: Array, stick: Array, shear: float) -> Non
     inset.tick_params(labelsize=7)
 
 
-def _track(ax: Axes, x: Array, y: Array, stick: Array | bool = False) -> None:
-    """A curve that may cross itself: stick phases thick, its start a dot, its end a square."""
+def _track(ax: Axes, x: Array, y: Array, thick: Array | bool = False, color: str = style.VERMILLION) -> None:
+    """A curve that may cross itself: a part of it thick, its start a dot, its end a square."""
     ax.plot(x, y, color=style.BLUE, linewidth=min(0.7, 80 / max(_turns(x), _turns(y), 1)))
-    ax.plot(x, np.where(stick, y, np.nan), color=style.VERMILLION, linewidth=1.8, solid_capstyle="butt")
+    ax.plot(x, np.where(thick, y, np.nan), color=color, linewidth=1.8, solid_capstyle="butt")
     ax.plot(x[0], y[0], "o", color=style.BLUE, markersize=3.6)
     ax.plot(x[-1], y[-1], "s", color=style.INK, markersize=4, fillstyle="none")
 
 
 def _time_axis(ax: Axes, scene: Scene) -> None:
-    """Time in s over the whole scene, the marks of friction behind the curve."""
+    """Time in s over the whole scene, the marks of friction and of slides behind the curve."""
     ax.set(xlim=scene["time"][[0, -1]], xlabel="time $t$ [s]")
     _scale(ax.xaxis, 6)
     place = {"transform": ax.get_xaxis_transform()}
     ax.add_artist(StepPatch(scene.mode == 0, scene.edges, fill=True, color=style.BAND, linewidth=0, zorder=0, **place))
     ax.vlines(scene.reversals, 0.955, 1.0, color=style.VERMILLION, linewidth=0.8, zorder=1, **place)
+    if scene.slides.any():
+        bars = np.where(scene.slides, BAR, 0.0)
+        ax.add_artist(StepPatch(bars, scene.edges, fill=True, color=style.PURPLE, linewidth=0, zorder=1, **place))
+        ax.vlines(scene.transitions, 0.0, 1.0, color=style.PURPLE, linewidth=0.5, alpha=0.6, zorder=0, **place)
 
 
 def _over_time(ax: Axes, time: Array, values: Array, color: str = style.BLUE) -> list[str]:

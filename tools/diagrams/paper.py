@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, and what the ground has to give.
+"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, what the ground has to give, the slip.
 
 Reads free.csv (s = 0) and friction.csv (s > 0), which hold all that was set as columns: titles and captions come from
 there. The paper's two scenes make paper_diagrams, paper_path_and_ground and fig_1 ... fig_6; others make diagrams and
@@ -53,6 +53,7 @@ OTHERS = (
     Panel("path", "Path of the contact point", 67.0, panels.draw_path, False),
     Panel("ground", r"$N(t)$ and required $\mu(t)$", 67.0, panels.draw_ground, True),
 )
+SLIDES = (Panel("slip", "Slip at the contact", 57.0, panels.draw_slip, True),)
 
 
 def unlike_paper(scene: Scene) -> list[str]:
@@ -121,6 +122,15 @@ def events_of(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
     return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s.", *bands, *ticks]
 
 
+def slides_of(scene: Scene) -> list[str]:
+    """How often the wheel slides, and the marks that show it."""
+    if not scene.slides.any():
+        return ["It never slides."] * (scene.value("mu_slide") > 0)
+    count, most = int((np.diff(scene.slides.astype(int), prepend=0) > 0).sum()), scene.slip.max()
+    often = "once" if count == 1 else f"{count} times"
+    return [f"It slides {often}, at up to {most:.3g} m/s (purple; thin lines: grip is lost and returns)."]
+
+
 def caption(
     scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], drawn: Sequence[Panel], width: float, size: float
 ) -> list[str]:
@@ -131,7 +141,7 @@ def caption(
     for scene, of_panels in zip(scenes, remarks, strict=True):
         name = [f"{title_of(scene).split(',')[0]}:"] * (len(scenes) > 1)
         ends = [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
-        said = [*dict.fromkeys([*events_of(scene, drawn), *of_panels]), *ends]
+        said = [*dict.fromkeys([*events_of(scene, drawn), *slides_of(scene), *of_panels]), *ends]
         texts += [" ".join([*name, *said])] * bool(said)
     return [line for text in texts for line in wrapped(text, width, size)]
 
@@ -185,11 +195,12 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
 def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
     """Arguments of draw for sheets, then each panel of each scene; names show whether the scenes are the paper's."""
     paper = is_paper(scenes)
-    sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": PAPERS + OTHERS}
+    others = OTHERS + SLIDES * any(scene.slides.any() for scene in scenes)
+    sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": PAPERS + others}
     wanted = [(out / name, scenes, drawn, paper) for name, drawn in sheets.items()]
     for scene in scenes:
         friction = int(scene.value("s") > 0)
-        for panel in PAPERS + OTHERS * (not paper):
+        for panel in PAPERS + others * (not paper):
             name = f"diagram_{panel.name}_{('free', 'friction')[friction]}"
             wanted.append((out / (f"fig_{panel.figures[friction]}" if paper else name), [scene], [panel], paper))
     return wanted

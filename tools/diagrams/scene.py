@@ -66,6 +66,25 @@ class Scene:
         return self.edges[1:-1][self.mode[:-1] * self.mode[1:] < 0]
 
     @property
+    def slides(self) -> Array:
+        """Whether the wheel slides, by row."""
+        return self["contact_mode"] == 1
+
+    @property
+    def transitions(self) -> Array:
+        """Instants in s at which grip is lost or returns."""
+        return self.edges[1:-1][self.slides[:-1] != self.slides[1:]]
+
+    @property
+    def slip(self) -> Array:
+        """Speed of the slip in m/s."""
+        return np.hypot(self["slip_x"], self["slip_y"])
+
+    def rows_at(self, time: Array) -> NDArray[np.int64]:
+        """The row next to each instant."""
+        return np.searchsorted(self.edges[1:-1], time)
+
+    @property
     def one_arc(self) -> bool:
         """Whether the data show it run to and fro on one arc: the tilt turns, and both rates are functions of it."""
         rows, turns = np.argsort(self["theta"]), np.diff(np.sign(np.diff(self["theta"])))

@@ -25,6 +25,7 @@ from values import (  # noqa: E402
     scale,
     spin,
     suggestion,
+    thrown,
     wheels,
 )
 from values import doubt as doubt  # noqa: E402 - for the diagrams
@@ -71,7 +72,7 @@ def values(arguments: list[str]) -> dict[str, str]:
             body = ready(text or name)
             body |= {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
             body["stop_time"] = float(f"{10 * scale(body, s=1):.2g}")
-            found = {name: repr(value) for name, value in body.items()}
+            found = {name: repr(value) for name, value in (body | thrown(text or name)).items()}
         elif name == "body" or (not equals and name in bodies()):
             solid = text or name
         elif not equals:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from diagrams import panels, paper, style
@@ -19,6 +20,7 @@ CURVES = {
     "bundle": np.column_stack([T * np.cos(90 * T) ** 2, 4 * T * np.cos(90 * T) ** 2 + 0.2 * T]),
 }
 PICTURES = paper.pictures
+PURPLE = to_rgb(style.PURPLE)
 TIME = np.linspace(0.0, 10.0, 1001)
 SWING = 1.0 + 0.3 * np.cos(3 * TIME)  # rad
 
@@ -28,6 +30,7 @@ def scene(s: float = 0.0, time: np.ndarray = TIME, **columns: np.ndarray | float
     rates = {"psi_dot": 2 / SWING**2, "phi_dot": -2 / SWING**3}
     motion = {"time": time, "theta": SWING, "X_O": SWING, "X_C": np.sin(TIME), "Y_C": TIME, "lambda_3": 200 * SWING}
     settings = {name: v.preset for name, v in paper.SETTINGS.items()} | {"s": s, "n_events": 0, "friction_mode": 1}
+    settings |= {"contact_mode": 0, "slip_x": 0, "slip_y": 0}
     everything = settings | rates | motion | {"mu_required": SWING / 3} | columns
     return Scene(Path("scene.csv"), {name: np.broadcast_to(value, len(TIME)) for name, value in everything.items()})
 
@@ -215,3 +218,40 @@ def test_the_caption_names_the_end_of_a_run(tmp_path: Path) -> None:
     assert read_scene(scene_of(tmp_path, 10, "")).ending == ""
     with pytest.raises(SceneError, match="no motion to draw: the wheel fell flat"):
         read_scene(scene_of(tmp_path, 0, said))
+
+
+SLIDES = (TIME > 1) & (TIME < 2) | (TIME > 4.5) & (TIME < 5)
+
+
+def slid() -> Scene:
+    return scene(contact_mode=SLIDES, slip_x=-0.3 * SLIDES, slip_y=0.4 * SLIDES, mu_max=0.45, mu_slide=0.4)
+
+
+def test_a_slide_is_marked_on_the_path_and_on_the_axes_of_time_between_loss_and_return_of_grip() -> None:
+    style.use_style()
+    for one in (slid(), scene()):
+        expected = [1, 2, 4.5, 5] if one.slides.any() else []
+        assert one.transitions == pytest.approx(expected, abs=0.01)
+        path, tilt = style.figure_mm(80, 160).subplots(2)
+        panels.draw_path(path, one)
+        panels.draw_tilt(tilt, one)
+        thick = next(line for line in path.lines if line.get_color() == style.PURPLE)
+        shown = thick.get_ydata()[np.isfinite(thick.get_ydata())]  # Y_C = t
+        if not one.slides.any():
+            assert not len(shown) and not any(tuple(of.get_color()[0][:3]) == PURPLE for of in tilt.collections)
+            continue
+        apart = np.flatnonzero(np.diff(shown) > 0.1)
+        ends = [shown[0], shown[apart[0]], shown[apart[0] + 1], shown[-1]]
+        assert len(apart) == 1 and ends == pytest.approx(expected, abs=0.02)
+        (lines,) = (of for of in tilt.collections if tuple(of.get_color()[0][:3]) == PURPLE)
+        assert [segment[0][0] for segment in lines.get_segments()] == pytest.approx(expected, abs=0.01)
+
+
+def test_the_slip_has_a_panel_and_the_caption_its_size_where_a_scene_slides() -> None:
+    def names(*scenes: Scene) -> set[str]:
+        return {panel.name for _, _, drawn, _ in paper.pictures(scenes, Path("results")) for panel in drawn}
+
+    assert "slip" in names(slid(), slid()) and "slip" not in names(scene(mu_max=0.45), scene(0.03))
+    assert "slides 2 times, at up to 0.5 m/s" in " ".join(paper.caption([slid()], [[]], 500))
+    assert "never slides" in " ".join(paper.caption([scene(mu_max=0.45, mu_slide=0.4)], [[]], 500))
+    assert "slides" not in " ".join(paper.caption([scene()], [[]], 500))
