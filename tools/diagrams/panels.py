@@ -1,4 +1,4 @@
-"""The panels of ./scripts/run, each drawn into axes: the paper's three, the path, what the ground has to give, the slip.
+"""The panels of ./scripts/run, each drawn into axes: the paper's three, the path, the ground's share, the slip.
 
 Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta. Friction and brake leave marks: a band
 per stick phase, a tick at the top for each change of sign of omega_z. A slide has a bar on the time axis between thin

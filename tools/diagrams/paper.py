@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, what the ground has to give, the slip.
+"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, forces of the ground, slip.
 
 Reads free.csv (s = 0) and friction.csv (s > 0), which hold all that was set as columns: titles and captions come from
 there. The paper's two scenes make paper_diagrams, paper_path_and_ground and fig_1 ... fig_6; others make diagrams and

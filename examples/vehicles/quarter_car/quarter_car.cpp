@@ -6,7 +6,7 @@
  *   M_1 = -k_theta (theta - theta_0) - c_theta theta_dot      camber, M_2 alike with psi (toe)
  *   m_B a_B = -F - (0, 0, m_B g)
  *
- * Before t_couple the links carry nothing and B waits: a master that begins with all inputs at zero, as fmpy's SSP
+ * Before t_couple the links carry nothing and B only runs on: a master that begins with all inputs at zero, as fmpy's SSP
  * simulation does, then does no harm. From t_drive on the hub motor gives M_drive. */
 #include "model.hpp"
 
@@ -17,6 +17,7 @@ void model_derive(const double*, double*) {}
 States model_start(const Now& now) {
   States x = States::Zero();
   x.head<3>() = Vector3d(now.u + X_B_start);
+  x[3] = now.u[v_start];
   return x;
 }
 
@@ -30,8 +31,8 @@ static Vector3d link_force(const Now& now, const States& x) {
 
 States model_rates(const Now& now, const States& x) {
   States x_dot = States::Zero();
-  if (!reached(now, t_couple)) return x_dot;
   x_dot.head<3>() = x.segment<3>(3);
+  if (!reached(now, t_couple)) return x_dot;
   x_dot.segment<3>(3) = -link_force(now, x) / now.u[m_B] - Vector3d(0, 0, now.u[g]);
   return x_dot;
 }

@@ -8,6 +8,7 @@ from support.bounds import beyond, relative_error, within
 from vehicles import errors, suspended
 from vehicles.component import Component, loaded
 from vehicles.master import Master
+from vehicles.options import manoeuvres
 from vehicles.suspended import LAUNCH, SUSPENDED
 from vehicles.vehicle import Fmus, Table, upright
 
@@ -84,6 +85,47 @@ def test_a_damper_bounds_the_step_by_the_reduced_mass_of_both_partners(fmus: Fmu
     table = damper.drive(fmus, LAUNCH.changed(stop=300 * h, **free), h, "held", h).table
     apart = np.abs(table["X_O_dot"] - table["X_B_dot"])[-10:].max()
     check(apart, 1, "relative speed, 1 m/s at the start")
+
+
+ABS = manoeuvres("suspended")["abs"]
+
+
+@pytest.fixture(scope="module")
+def stops(fmus: Fmus) -> Table:
+    return SUSPENDED.drive(fmus, ABS, ABS.h, ABS.exchange, 0.002).whole
+
+
+def test_a_locked_and_an_ideal_brake_stop_after_the_closed_forms_way(stops: Table) -> None:
+    for name, exact in (("locked", suspended.sliding_way(stops, ABS)), ("ideal", suspended.gripping_way(stops, ABS))):
+        off = suspended.way(stops, ABS, name) / exact - 1
+        within(abs(off), 1e-3, f"{name}: way off the closed form, relative")
+        beyond(abs(1.005 * (off + 1) - 1), 3e-3, f"{name}: with 0.5 % more")
+    assert np.any(stops["locked.slip_x"]) and not np.any(stops["ideal.slip_x"])
+
+
+def test_a_locked_wheel_is_retarded_by_mu_slide_g_and_an_ideal_brake_by_its_share_of_mu_max_g(stops: Table) -> None:
+    full = (stops["time"] > 1) & (stops["time"] < 2)
+    for name, mu in (("locked", 0.5), ("ideal", 0.97 * 0.7)):
+        a = -np.polyfit(stops["time"][full], stops[f"{name}.v"][full], 1)[0]
+        within(abs(a / (mu * 9.81) - 1), 1e-4, f"{name}: retardation, relative")  # the links' swing at its end
+        beyond(abs(1.001 * a / (mu * 9.81) - 1), 5e-4, f"{name}: with 0.1 % more")
+
+
+def test_the_anti_lock_controller_stops_between_both_and_keeps_the_wheel_turning(stops: Table, fmus: Fmus) -> None:
+    locked, best = suspended.way(stops, ABS, "locked"), suspended.shortest(stops, ABS)
+    found = suspended.way(stops, ABS, "abs")
+    assert best < found
+    within(found / locked, 0.95, "way over that of the locked wheel")
+
+    def least_turn(name: str) -> float:
+        fast = (stops["time"] > 0.5) & (stops[f"{name}.X_B_dot"] > 2)
+        return float((-0.35 * stops[f"{name}.omega_z"][fast] / stops[f"{name}.X_B_dot"][fast]).min())
+
+    beyond(least_turn("abs"), 0.4, "speed of the tread over that of the vehicle")
+    assert least_turn("locked") == 0
+    never = ABS.changed(slip_build=2.0, slip_dump=2.0)  # the controller never acts
+    lame = SUSPENDED.drive(fmus, never, ABS.h, ABS.exchange, 0.002).whole
+    assert suspended.way(lame, never, "abs") == suspended.way(lame, never, "locked")
 
 
 def test_a_smaller_grid_of_records_changes_no_bit(fmus: Fmus) -> None:

@@ -1,4 +1,4 @@
-"""Suspended wheel: a quarter car on its wheel, launched from rest by a step of the drive torque.
+"""Suspended wheel: a quarter car, launched from rest by a step of the drive torque, or stopped on a wet road.
 
 Coupled through F_X, F_Y, F_Z, M_1, M_2, M_3 and the pose and velocity of O, by values held over the communication
 step or by straight lines (derivatives of first order). In the end both move on together: with m all masses, R the
@@ -8,6 +8,7 @@ wheel's rolling radius,
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import exp, pi, sin
 from pathlib import Path
 
@@ -15,28 +16,120 @@ import numpy as np
 
 from . import errors, ssp
 from .options import Manoeuvre, manoeuvres
-from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, beyond_dry, road
+from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, beyond_dry, road, upright
 
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
 STEPS = (0.005, 0.0025, 0.00125, 0.000625, 0.0003125)  # s
 LARGE_STEPS = (0.0125, 0.015, 0.02, 0.025)  # s, around the limit of stability
 START = {"s": 0.01, "psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_start": 0.0, "X_O_start": 0.0}
-MASS, J_Z, RADIUS, GRAVITY = 300.0 + 20.0, 1.8, 0.3 + 0.05 * sin(START["theta_start"]), 9.81  # SI
+M_WHEEL, HUB_RADIUS = 20.0, 0.3 + 0.05  # of the wheel, upright; SI
+MASS, J_Z, RADIUS, GRAVITY = 300.0 + M_WHEEL, 1.8, 0.3 + 0.05 * sin(START["theta_start"]), 9.81  # SI
+CONTROLS = ("locked", "ideal")  # brakes beside the anti-lock controller, by their numbers in brakes.csv
+CENTRE = (("X", "X_O", "X_B"), ("v", "X_O_dot", "X_B_dot"))
+OF_BRAKE = ("X", "v", "X_O_dot", "X_B_dot", "omega_z", "M_brake", "slip_x")
+CLOSE = 0.002  # a way this near to its closed form, relative, agrees with it: a row of the table is 0.05 %
 
 
 def start(run: Manoeuvre) -> dict[str, dict[str, float]]:
-    """Of the wheel."""
-    return {"wheel": START | road(run)}
+    """Of the wheel; of the brake what follows from the wheel."""
+    upright_at_v = upright(0.0, 0.0, 0.0, run["v"], 0.0, HUB_RADIUS) if run["v"] else {}
+    per_N = run["share"] * run["mu_max"] * (HUB_RADIUS + J_Z / (MASS * HUB_RADIUS)) - START["s"]
+    control = {"control": float(CONTROLS.index(run.name)) if run.name in CONTROLS else 2.0, "R": HUB_RADIUS}
+    return {"wheel": START | road(run) | upright_at_v, "brakes": control | {"M_per_N": max(per_N, 0.0)}}
 
 
-def verdict(table: Table, _run: Manoeuvre) -> tuple[bool, list[str]]:
+def beside_others(table: Table, run: Manoeuvre, fmus: Fmus) -> Table:
+    """Of the anti-lock controller's run: with those of the other brakes, in columns locked.NAME and ideal.NAME; X and v
+    of all masses' centre. A wheel that rolls counts with J_z / R^2 more: the links' swing is not in them."""
+    rows = len(table["time"])
+    if run.name != "abs" or rows < 2:
+        return table
+    found = dict(table)
+    for name in (*CONTROLS, "abs"):
+        brake = replace(run, name=name)
+        one = table if name == "abs" else SUSPENDED.drive(fmus, brake, run.h, run.exchange, table["time"][1]).table
+        sprung, wheel = MASS - M_WHEEL, M_WHEEL + (J_Z / HUB_RADIUS**2 if name == "ideal" else 0.0)
+        centre = {n: (wheel * one[of] + sprung * one[body]) / (wheel + sprung) for n, of, body in CENTRE}
+        found |= {f"{name}.{n}": filled(x, rows) for n, x in (one | centre).items() if n in OF_BRAKE}
+    return found
+
+
+def filled(x: np.ndarray, rows: int) -> np.ndarray:
+    """A column of a run that ended early, as long as the others."""
+    return np.pad(x[:rows], (0, max(rows - len(x), 0)), constant_values=np.nan)
+
+
+def verdict(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
     """Its state at the end; no road has the grip for a wheel that requires more than a dry one."""
     least, most = table["lambda_3"].min(), grip(table)
-    speed = f"Speed at the end: {-0.35 * table['omega_z'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
     if most > DRY_ROAD:
         return False, [f"Failed: the wheel requires a friction coefficient of {beyond_dry(most)}."]
+    if run.name == "abs":
+        return stops(table, run)
+    speed = f"Speed at the end: {-0.35 * table['omega_z'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
     return True, [f"{speed}; friction required: {most:.2f}."]
+
+
+def stops(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
+    """The three ways to stop beside the closed forms, and whether the controller does what it is for."""
+    if not 0 < run["mu_slide"] <= run["mu_max"] or run["v"] <= 0 or run["M_drive"]:
+        return False, ["Failed: a stop on a wet road needs 0 < mu_slide <= mu_max, v > 0 and no drive."]
+    ways = {name: way(table, run, name) for name in ("locked", "ideal", "abs")}
+    if late := [name for name, found in ways.items() if not np.isfinite(found)]:
+        return False, [f"Failed: it does not stand by {run.stop:g} s: {', '.join(late)}."]
+    exact = {"locked": sliding_way(table, run), "ideal": gripping_way(table, run)}
+    slid = {name: bool(np.any(table[f"{name}.slip_x"])) for name in exact}
+    lines = [f"Way from {run['v']:g} m/s, of all masses together:"]
+    lines += [f"  {name}: {ways[name]:.2f} m (closed form: {exact[name]:.2f} m)" for name in exact]
+    lines.append(f"  anti-lock: {ways['abs']:.2f} m, {100 * (1 - ways['abs'] / ways['locked']):.0f} % less than locked")
+    off = {name: abs(ways[name] / exact[name] - 1) for name in exact}
+    faults = [f"{name}: {100 * off[name]:.1f} % off the closed form" for name in off if off[name] > CLOSE]
+    faults += ["the pedal does not lock the wheel"] * (not slid["locked"])
+    faults += ["under the ideal brake the wheel slides"] * slid["ideal"]
+    faults += ["the anti-lock controller stops no shorter than a locked wheel"] * (ways["abs"] >= ways["locked"])
+    faults += ["the anti-lock controller stops shorter than grip allows"] * (ways["abs"] < shortest(table, run))
+    return not faults, [*lines, *(f"Failed: {fault}." for fault in faults[:1])]
+
+
+def way(table: Table, run: Manoeuvre, name: str) -> float:
+    """Of all masses' centre from t_brake to where the wheel first stands, m; nan where it does not."""
+    begin = begins(table, run)
+    stands = np.flatnonzero(table[f"{name}.X_O_dot"] <= 1e-3 * run["v"])
+    if begin >= len(table["time"]) or not len(stands):
+        return np.nan
+    return float(table[f"{name}.X"][stands[0]] - table[f"{name}.X"][begin])
+
+
+def stopping(v: float, before: float, a: float, lag: float) -> float:
+    """Way from v under a retardation that goes from `before` to a with a lag: a - (a - before) exp(-t / lag)."""
+    late = (a - before) * lag
+    return (v + late) ** 2 / (2 * a) - late * lag
+
+
+def gripping_way(table: Table, run: Manoeuvre) -> float:
+    """Under the ideal brake: from the retardation s m g / (R (m + J_z / R^2)) to share mu_max g."""
+    before, v = -acceleration(0.0, radius=HUB_RADIUS), float(table["ideal.v"][begins(table, run)])
+    return stopping(v, before, run["share"] * run["mu_max"] * GRAVITY, run["T_brake"])
+
+
+def sliding_way(table: Table, run: Manoeuvre) -> float:
+    """Of the wheel that locks: as measured until grip is lost, then at mu_slide g."""
+    time, slip, v = (table[n] for n in ("time", "locked.slip_x", "locked.v"))
+    lost = int(np.argmax((time >= run["t_brake"]) & (slip > 0)))
+    begin = begins(table, run)
+    before = float(table["locked.X"][lost] - table["locked.X"][begin])
+    return before + float(v[lost]) ** 2 / (2 * run["mu_slide"] * GRAVITY)
+
+
+def shortest(table: Table, run: Manoeuvre) -> float:
+    """No brake on this road stops in less."""
+    return float(table["abs.v"][begins(table, run)]) ** 2 / (2 * run["mu_max"] * GRAVITY)
+
+
+def begins(table: Table, run: Manoeuvre) -> int:
+    """The row of t_brake, or the end of a shorter table."""
+    return int(np.searchsorted(table["time"], run["t_brake"] - 1e-9))
 
 
 def grip(table: Table) -> float:
@@ -44,7 +137,7 @@ def grip(table: Table) -> float:
     return float(np.nanmax(table["mu_required"]))
 
 
-SUSPENDED = Vehicle("suspended", start, verdict, grip=grip)
+SUSPENDED = Vehicle("suspended", start, verdict, complete=beside_others, grip=grip)
 
 
 def package_distance(package: Path, step: float, truth: Table, stop: float = LAUNCH.stop) -> float:
@@ -54,9 +147,9 @@ def package_distance(package: Path, step: float, truth: Table, stop: float = LAU
     return max(float(np.abs(run[f"wheel.{n}"] - truth[n][driven]).max() / np.ptp(truth[n])) for n in names)
 
 
-def acceleration(torque: float, s: float = START["s"]) -> float:
+def acceleration(torque: float, s: float = START["s"], radius: float = RADIUS) -> float:
     """Of wheel and sprung mass together, m/s2."""
-    return (torque - s * MASS * GRAVITY) / RADIUS / (MASS + J_Z / RADIUS**2)
+    return (torque - s * MASS * GRAVITY) / radius / (MASS + J_Z / radius**2)
 
 
 def fine(fmus: Fmus, step: float) -> Table:

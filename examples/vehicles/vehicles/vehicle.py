@@ -142,4 +142,4 @@ def upright(x: float, y: float, heading: float, speed: float, turn: float, R: fl
 
 def road(manoeuvre: Manoeuvre) -> dict[str, float]:
     """The wheels' parameters that a manoeuvre gives: friction, slope, and the grip that a wheel checks, if any."""
-    return {n: manoeuvre[n] for n in ("s", "slope", "slope_direction", "mu_max") if manoeuvre.given.get(n)}
+    return {n: manoeuvre[n] for n in ("s", "slope", "slope_direction", "mu_max", "mu_slide") if manoeuvre.given.get(n)}
