@@ -17,7 +17,7 @@ from vehicles.vehicle import Table
 from .page import Report, Row, Tables, part
 
 GRID = 0.25  # s, where runs of the car are compared
-COMPARED = tuple(name for name in MANOEUVRES if name != layout.TOO_FAST.name)
+COMPARED = tuple(name for name in MANOEUVRES if name not in (layout.TOO_FAST.name, layout.SPLIT.name))
 BONDS = ("F_X, J", "F_Y, J", "F_Z, J", "M_1, J", "M_2, J")
 # How the inputs behave over a step: the exchange, and whether positions follow the velocities.
 OVER = {"held, positions lag": ("held", {"follow": 0.0}), **{exchange: (exchange, {}) for exchange in EXCHANGES}}

@@ -11,7 +11,7 @@ import pytest
 from support.bounds import EPSILON, beyond, relative_error, within
 from support.paths import ROOT
 from vehicles import car, car_judges, layout
-from vehicles.layout import CIRCLE, HILL, LANE, LAYOUT, STEP, STRAIGHT, WHEELS
+from vehicles.layout import CIRCLE, HILL, LANE, LAYOUT, SPLIT, STEP, STRAIGHT, WHEELS
 from vehicles.options import Manoeuvre
 from vehicles.vehicle import Fmus, Table
 
@@ -78,6 +78,16 @@ def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
 def test_the_stopping_distance_is_that_of_the_closed_form(fmus: Fmus) -> None:
     for finding in car_judges.braking(drive(fmus, STRAIGHT), STRAIGHT):
         within(error(finding), 0.05 if finding.what.startswith("load") else 0.02, f"{finding.what}, relative")
+
+
+def test_on_a_split_road_the_car_keeps_its_course_at_the_closed_forms_retardation_and_moment(fmus: Fmus) -> None:
+    table = drive(fmus, SPLIT)
+    assert {*car_judges.slid(table)} == {"fr", "rr"} and car.verdict(table, SPLIT)[0]
+    other = SPLIT.changed(mu_slide_right=0.16)
+    for found, wrong in zip(car_judges.split(table, SPLIT), car_judges.split(table, other), strict=True):
+        if found.exact:
+            within(error(found), 1e-3, f"{found.what}, relative")
+            beyond(error(wrong), 5e-3, f"{found.what}, by another friction on the right, relative")
 
 
 def test_wheels_that_never_slip_do_not_understeer(fmus: Fmus) -> None:

@@ -9,7 +9,7 @@ from math import cos, pi, sin, tan
 
 import numpy as np
 
-from .car_judges import demand, findings, force, friction, per_axle
+from .car_judges import RIGHT, demand, findings, force, friction, per_axle, slid
 from .layout import MASS, NAMES, WHEELBASE, WHEELS, R
 from .options import Manoeuvre, file
 from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, road, upright
@@ -24,8 +24,14 @@ def starts(manoeuvre: Manoeuvre) -> dict[str, dict[str, float]]:
     for name in WHEELS:
         x, y = (manoeuvre[f"{axis}_{name}"] for axis in "xy")
         place = X + x * cos(psi) - y * sin(psi), Y + x * sin(psi) + y * cos(psi)
-        found[name] = road(manoeuvre) | upright(*place, psi, v, 0.0, R)
+        found[name] = road(manoeuvre) | beneath(manoeuvre, name) | upright(*place, psi, v, 0.0, R)
     return found
+
+
+def beneath(manoeuvre: Manoeuvre, wheel: str) -> dict[str, float]:
+    """The friction of a right wheel's road where it is another."""
+    of = {name: manoeuvre[f"{name}_right"] for name in ("mu_max", "mu_slide")} if wheel in RIGHT else {}
+    return {name: value for name, value in of.items() if value}
 
 
 def complete(table: Table, _manoeuvre: Manoeuvre, _fmus: Fmus) -> Table:
@@ -61,10 +67,15 @@ def failures(table: Table, manoeuvre: Manoeuvre) -> Iterator[str]:
             yield f"the run ends at {manoeuvre.stop:g} s, before {begin} + {ramp} = {end:g} s"
     moved, back, off = float(np.ptp(table["X"])), rolled_back(table), float(np.abs(table["off"]).max())
     whole = 2 * pi if manoeuvre["path"] == 1 else manoeuvre["x_back"] + 2 * manoeuvre["length"]
-    share, rolls = table["p"][-1] / whole, any(table[f"{w}.omega_z"][-1] for w in WHEELS)
+    share, moves = (
+        table["p"][-1] / whole,
+        any(table[f"{w}.{n}"][-1] for w in WHEELS for n in ("omega_z", "slip_x", "slip_y")),
+    )
+    turned = float(np.abs(table["psi"]).max())
     found = {
         "sets_off": (moved < LIMITS["at_rest"], f"the car does not set off: it moves by {moved:.2g} m"),
-        "stands": (rolls, f"the car does not stand at the end: it rolls at {table['v'][-1]:.2g} m/s"),
+        "stands": (moves, f"the car does not stand at the end: it moves at {table['v'][-1]:.2g} m/s"),
+        "keeps_course": (turned > LIMITS["off_course"], f"the car turns by up to {np.degrees(turned):.0f} deg"),
         "does_not_roll_back": (back > LIMITS["roll_back"], f"a wheel rolls back by {back:.3g} m"),
         "on_path": (off > LIMITS["off_path"], f"the car leaves its path by up to {off:.2g} m"),
         "to_its_end": (share < 1, f"the run ends after {100 * max(share, 0):.0f} % of the path"),
@@ -85,10 +96,16 @@ def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
     slippery = [f"the manoeuvre {needs}; a dry road has about {DRY_ROAD:g}"] if most > DRY_ROAD else []
     if reasons := [*failures(table, manoeuvre), *slippery]:
         return False, [f"Failed: {reasons[0]}."]
+    if times := slid(table):
+        needs = "slides at the " + ", the ".join(f"{NAMES[w]} wheel for {t:.2f} s" for w, t in times.items())
     least, name = min((table[f"{w}.lambda_3"].min(), name) for w, name in NAMES.items())
-    taken = "The wheels of an axle are taken together: without slip, nothing but bushings shares its lateral force."
+    taken = (
+        []
+        if times
+        else ["The wheels of an axle are taken together: without slip, nothing but bushings shares its lateral force."]
+    )
     lowest = f"Smallest normal force: {least:.0f} N at the {name} wheel."
-    return True, [f"Possible: it {needs}.", taken, lowest, *findings(table, manoeuvre)]
+    return True, [f"Possible: it {needs}.", *taken, lowest, *findings(table, manoeuvre)]
 
 
 CAR = Vehicle("car", starts, verdict, wheels=NAMES, complete=complete, subtitle=subtitle, grip=grip)

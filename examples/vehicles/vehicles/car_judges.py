@@ -211,7 +211,32 @@ def lane(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
     yield Finding("when", "s", float(table["time"][at]))
 
 
-JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure, circle, step, lane)}
+def slid(table: Table) -> dict[str, float]:
+    """How long each wheel slides, s; of those that do."""
+    t = table["time"]
+    moves = {w: (table[f"{w}.slip_x"] != 0) | (table[f"{w}.slip_y"] != 0) for w in WHEELS}
+    return {w: float(np.gradient(t)[at].sum()) for w, at in moves.items() if at.any()}
+
+
+def split(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
+    """Straight braking while the right wheels slide, locked, and the left ones roll: m_t counts these two alone. What
+    the brakes turn the car by, forces across hold, which the gripping wheels share out as their course demands."""
+    t, begin = table["time"], manoeuvre["t_brake"] + manoeuvre["ramp_M"]
+    locked = np.all([table[f"{w}.omega_z"] == 0 for w in RIGHT], axis=0)
+    window = (t > begin + 1) & locked & (table["v"] > 2)
+    load, wheels = MASS * G / 2, J_Z / R**2 * len(LEFT)
+    brakes = manoeuvre["B_0"] * sum(manoeuvre[f"brake_{w}"] for w in LEFT)
+    slides, rolls = manoeuvre["mu_slide_right"] * load, (brakes + manoeuvre["s"] * load) / R
+    a = (slides + rolls) / (MASS + wheels)
+    across = sum(float(np.mean(table[f"{w}.lambda_2"][window])) * of["x"] for w, of in WHEELS.items())
+    measured = -float(np.polyfit(t[window], table["v"][window], 1)[0])
+    yield Finding("retardation, the right wheels locked", "m/s2", measured, a)
+    turning = (rolls - wheels * a - slides) * TRACK / 2
+    yield Finding("moment of the forces across about the vertical", "N m", across, -turning)
+    yield Finding("largest angle of the heading", "rad", float(np.abs(table["psi"]).max()))
+
+
+JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure, circle, step, lane, split)}
 
 
 def judge(table: Table, manoeuvre: Manoeuvre, *names: str) -> list[Finding]:

@@ -15,5 +15,5 @@ TRACK = float(np.ptp([w["y"] for w in WHEELS.values() if w["steer"]]))  # of the
 R_0, R, M_WHEEL, J_Z, G = 0.3, 0.35, 20.0, 1.8, 9.81  # the wheels' defaults
 MASS = LAYOUT["chassis"]["m_B"] + M_WHEEL * len(WHEELS)
 MANOEUVRES = manoeuvres("car")
-STRAIGHT, CIRCLE, STEP, EIGHT, LANE, HILL, TOO_FAST = MANOEUVRES.values()
+STRAIGHT, CIRCLE, STEP, EIGHT, LANE, HILL, TOO_FAST, SPLIT = MANOEUVRES.values()
 AXLES = {w["axle"]: [n for n, other in WHEELS.items() if other["axle"] == w["axle"]] for w in WHEELS.values()}
