@@ -16,7 +16,7 @@ import xarray as xr
 from fmpy.model_description import ModelDescription
 from fsspec.core import url_to_fs
 
-from .plan import OWN, PLANE_ANGLE, POINT, Status, Study, counters_of
+from .plan import OWN, PLANE_ANGLE, POINT, SLIP, Status, Study, counters_of
 from .worker import Array, Region
 
 TITLE = "A study with wheel.fmu"
@@ -26,12 +26,16 @@ GREEK = {"psi": "ψ", "theta": "θ", "phi": "φ", "omega": "ω", "lambda": "λ",
 SYMBOLS = {  # in labels, by the text of a measure
     rf"\s*(lowest|min\({PLANE_ANGLE}\))\s*": f"smallest {ANGLE}",
     rf"\b{PLANE_ANGLE}\b": ANGLE,
+    rf"^\s*({SLIP}|max\({SLIP}\))\s*$": "largest slip",
+    r"^\s*slid\s*$": "time of sliding",
     r"_start\b": " at the start",
     **{rf"\b{name}(?![a-z])": symbol for name, symbol in GREEK.items()},
     r"\b(\w)_ddot": "\\1\N{COMBINING DIAERESIS}",
     r"\b(\w)_dot": "\\1\N{COMBINING DOT ABOVE}",
 }
 PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
+
+SPEED = "Speed of the slip: of the wheel's material point at the contact over the ground, 0 while it grips"
 
 
 def axes_of(study: Study) -> xr.Dataset:
@@ -77,13 +81,19 @@ def template(study: Study, axes: xr.Dataset, description: ModelDescription, size
     """All coordinates, and columns that hold nothing yet, in chunks of at most `size` wheels."""
     variables = {v.name: v for v in description.modelVariables}
     about = {name: (v.unit, label(name), v.description) for name, v in variables.items()}
-    about[PLANE_ANGLE] = ("rad", ANGLE, PLANE)
+    about |= {PLANE_ANGLE: ("rad", ANGLE, PLANE), SLIP: ("m/s", SLIP, SPEED)}
     chunks = da.core.normalize_chunks("auto", tuple(axes.sizes.values()), limit=size, dtype="i1")
     columns = OWN | {name: (-1, "i8", *about[name]) for name in counters_of(variables)}
     for name, measure in study.parsed.items():
         unit, _, meaning = about[measure.quantity]
         text = study.measures[name]
-        columns[name] = (np.nan, "f8", "s" if measure.kind in "<>" else unit, label(text), f"{meaning}; {text}")
+        columns[name] = (
+            np.nan,
+            "f8",
+            "s" if measure.kind in ("<", ">", "lasting") else unit,
+            label(text),
+            f"{meaning}; {text}",
+        )
     columns |= {name: (np.nan, "f8", *about[name]) for name in study.history}
     results = {}
     for name, (nothing, dtype, *texts) in columns.items():

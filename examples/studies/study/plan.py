@@ -2,7 +2,8 @@
 
 A measure of a run is text, which can be kept with the results and compared when a study is started again: `theta` (at
 the end), `lowest`, `min(Z_O)`, `max(mu_required)`, `mean(E)`, `first(theta > 1.6)`, `first(theta > 95deg)`. Besides the
-FMU's variables there is `plane_angle`, of the wheel's plane to the ground on either side; `lowest` is its least.
+FMU's variables there are `plane_angle`, of the wheel's plane to the ground on either side (`lowest` is its least), and
+the speed of the slip (`slip` is its largest, `slid` the time for which there is any).
 Plain data, by Python's standard library alone: scripts/study refuses an impossible study before anything is installed.
 """
 
@@ -30,7 +31,8 @@ ROOT = Path(__file__).resolve().parents[3]
 SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
 KINDS = ("grid", "list")  # the ways to list wheels
 POINT = "wheel"  # the dimension of a list
-PLANE_ANGLE = "plane_angle"
+PLANE_ANGLE, SLIP = "plane_angle", "slip"  # quantities of a measure beside the variables
+MADE_OF = {PLANE_ANGLE: ("theta",), SLIP: ("slip_x", "slip_y")}
 
 
 class StudyError(ValueError):
@@ -47,6 +49,7 @@ class Status(IntEnum):
     refused = 3  # a start value or a parameter is impossible
     failed = 4  # the run ended with an error, or the worker process died
     grip = 5  # mu_required came to mu_max
+    jammed = 6  # friction wedged the sliding wheel
 
 
 OWN = {  # results of every study: empty value, type, unit, label, description
@@ -59,24 +62,30 @@ OWN = {  # results of every study: empty value, type, unit, label, description
 
 
 class Measure(NamedTuple):
-    """One number of a run: `kind` is last, min, max, mean, or of a time < or >; `limit` is in the quantity's unit."""
+    """One number of a run: `kind` is last, min, max, mean, or of a time <, > or lasting; `limit` is in the quantity's
+    unit."""
 
     kind: str
     quantity: str
     limit: float = 0.0
 
     @property
-    def variable(self) -> str:
-        """The FMU's variable that has to be read."""
-        return "theta" if self.quantity == PLANE_ANGLE else self.quantity
+    def variables(self) -> tuple[str, ...]:
+        """The FMU's variables that have to be read."""
+        return MADE_OF.get(self.quantity, (self.quantity,))
 
-    def value(self, t: numpy.ndarray, x: numpy.ndarray | float) -> float:
-        """For samples x of the variable at times t, the last of which is the end of the run; x at the end for `last`.
+    def value(self, t: numpy.ndarray, x: numpy.ndarray | float, *y: numpy.ndarray) -> float:
+        """For samples of the variables at times t, the last of which is the end of the run; x at the end for `last`.
 
         A time is that of the first passage, interpolated linearly between two samples; NaN if there is none.
         """
         if self.quantity == PLANE_ANGLE:
             x = math.pi / 2 - abs(x - math.pi / 2)
+        elif self.quantity == SLIP:
+            x = (x * x + y[0] * y[0]) ** 0.5
+        if self.kind == "lasting":
+            slides = (x > 0) * 1.0
+            return ((t[1:] - t[:-1]) * (slides[1:] + slides[:-1]) / 2).sum()
         if self.kind in "<>":
             beyond = x < self.limit if self.kind == "<" else x > self.limit
             k = beyond.argmax()
@@ -93,6 +102,10 @@ def parse_measure(text: str) -> Measure:
     plain = in_si(text)
     with suppress(SyntaxError, ValueError):
         match ast.parse(plain.replace("lowest", f"min({PLANE_ANGLE})").strip(), mode="eval").body:
+            case ast.Name("slip"):
+                return Measure("max", SLIP)
+            case ast.Name("slid"):
+                return Measure("lasting", SLIP)
             case ast.Name(name):
                 return Measure("last", name)
             case ast.Call(ast.Name("min" | "max" | "mean" as kind), [ast.Name(name)], []):
@@ -100,7 +113,7 @@ def parse_measure(text: str) -> Measure:
             case ast.Call(ast.Name("first"), [ast.Compare(ast.Name(name), [ast.Lt() | ast.Gt() as side], [limit])], []):
                 return Measure("<" if isinstance(side, ast.Lt) else ">", name, float(ast.literal_eval(limit)))
     raise StudyError(
-        f"'{text}' is not a measure: write lowest, a variable's name, min(name), max(name), mean(name), "
+        f"'{text}' is not a measure: write lowest, slip, slid, a variable's name, min(name), max(name), mean(name), "
         "first(name < number) or first(name > number), as first(theta < 30deg)."
     )
 
@@ -113,7 +126,10 @@ def in_si(text: str) -> str:
     from values import number, variables
 
     name, side, limit, unit = passage.groups()
-    known = {n: v.unit or "1" for n, v in variables(description(ROOT / "wheel.fmu")).items()} | {PLANE_ANGLE: "rad"}
+    known = {n: v.unit or "1" for n, v in variables(description(ROOT / "wheel.fmu")).items()} | {
+        PLANE_ANGLE: "rad",
+        SLIP: "m/s",
+    }
     value = repr(number(name, limit + unit, known[name])) if name in known else limit
     return f"first({name} {side} {value})"
 
@@ -224,7 +240,11 @@ class Study:
 
         def measured(text: str) -> str:
             m = parse_measure(text)
-            return f"first({m.quantity} {m.kind} {m.limit * factor.get(m.variable, 1.0)!r})" if m.kind in "<>" else text
+            return (
+                f"first({m.quantity} {m.kind} {m.limit * factor.get(m.variables[0], 1.0)!r})"
+                if m.kind in "<>"
+                else text
+            )
 
         return replace(
             self,
@@ -248,7 +268,9 @@ class Study:
     @cached_property
     def sampled(self) -> tuple[str, ...]:
         """Variables read at every communication point."""
-        return tuple(dict.fromkeys([*self.history, *(m.variable for m in self.parsed.values() if m.kind != "last")]))
+        return tuple(
+            dict.fromkeys([*self.history, *(n for m in self.parsed.values() if m.kind != "last" for n in m.variables)])
+        )
 
     @property
     def times(self) -> list[float]:
@@ -262,7 +284,7 @@ class Study:
         from values import MOMENTS, bodies
 
         check_names([*self.varied, *self.values], SETTABLE, variables)
-        check_names([*(m.variable for m in self.parsed.values()), *self.history], READABLE, variables)
+        check_names([*(n for m in self.parsed.values() for n in m.variables), *self.history], READABLE, variables)
         lengths = {name: len(column) for name, column in self.list.items()}
         empty = quoted(name for name, values in self.varied.items() if not values)
         both = quoted(name for name in self.varied if name in self.values and self.branch_at is None)

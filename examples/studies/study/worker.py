@@ -46,6 +46,7 @@ ENDINGS = {
     "fell flat": Status.flat,
     "lifted off": Status.lifted_off,
     "needs a coefficient of friction": Status.grip,
+    "jams": Status.jammed,
 }
 
 
@@ -129,7 +130,9 @@ class Instance:
     def wheel(self, start: Values, change: Values, study: Study, times: Array) -> dict[str, object]:
         """All results of one wheel: NaN, of a counter -1, where the run has none."""
         begin, last = perf_counter(), {}
-        asked = dict.fromkeys([*self.counters, *study.sampled, *(m.variable for m in study.parsed.values())])
+        asked = dict.fromkeys(
+            [*self.counters, *study.sampled, *(n for m in study.parsed.values() for n in m.variables)]
+        )
         try:
             run = self.begin(start, study)
             if run[0] == Status.reached:
@@ -152,7 +155,7 @@ class Instance:
             t, samples = np.append(t, end), {name: np.append(x, last[name]) for name, x in samples.items()}
         for name, measure in study.parsed.items():
             there = samples if measure.kind != "last" else last
-            result[name] = measure.value(t, there[measure.variable]) if there else np.nan
+            result[name] = measure.value(t, *(there[n] for n in measure.variables)) if there else np.nan
         return result | {"wall_time": perf_counter() - begin}
 
 

@@ -13,10 +13,13 @@ from study.dataset import sample
 from study.plan import can_change, parse_measure
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 from support.paths import ROOT
+from support.sliding import SLIDES, UPRIGHT
 from values import variables
 
 from .studies_support import FATES, same
 
+DESCRIPTION = (ROOT / "modelDescription.xml").read_bytes()
+JAMS = SLIDES["jams"].start
 BRANCHING = Study(
     grid={"phi_dot_start": [0.0, -2.0], "s": [0.0, 0.01, 0.03], "M_3": [0.0, -0.2]},
     measures={"theta_end": "theta", "mu": "max(mu_required)"},
@@ -38,10 +41,12 @@ def test_each_fate_is_a_status_with_the_message_of_the_fmu(alone) -> None:
         ("flat", {"phi_dot_start": 0}, "flat"),
         ("lifted_off", {"theta_start": 0.26, "phi_dot_start": -40, "s": 0.03}, "lifted off"),
         ("grip", {"mu_max": 0.4}, "friction above mu_max"),
+        ("jammed", JAMS, "jams"),
         ("refused", {"theta_start": 4}, "theta_start"),
         ("refused", {"s": -1}, "s"),
     ]
-    usual = {"theta_start": 1.3, "phi_dot_start": -2, "s": 0, "mu_max": 0}
+    usual = {name: float(v.start) for name, v in variables(DESCRIPTION).items() if name in JAMS}
+    usual |= {"theta_start": 1.3, "s": 0}
     columns = {name: [(usual | changed)[name] for _, changed, _ in wheels] for name in usual}
     results = alone(Study(list=columns, measures={"lowest": "min(theta)"}))
     for k, (fate, _, words) in enumerate(wheels):
@@ -49,6 +54,23 @@ def test_each_fate_is_a_status_with_the_message_of_the_fmu(alone) -> None:
         assert Status(one["status"]).name == fate and words in one["message"].item()
         assert (one["n_steps"] > 0) == (one["end_time"] > 0) == (fate != "refused")
     assert results["end_time"][0] == 10
+
+
+def test_the_slip_and_the_time_of_sliding_of_a_locked_wheel_are_the_closed_forms(alone) -> None:
+    """From v it slides for v / (mu g)."""
+    measures = {"slip": "slip", "slid": "slid", "mean": "mean(slip)", "slow": "first(slip < 7.2km/h)"}
+    locked = UPRIGHT | {"mu_max": 0.45, "M_brake": 1000.0}
+    grid = {"slip_x_start": [0.0, 4.0, 7.0], "mu_slide": [0.3, 0.4]}
+    results = alone(Study(grid=grid, values=locked, measures=measures, stop_time=3.0))
+    v, mu = results["slip_x_start"], results["mu_slide"]
+    within(absolute_error(results["slip"], v + 0 * mu), 1e-12, "largest slip, m/s")
+    within(absolute_error(results["slid"], v / (mu * 9.81)), 0.01, "time of sliding, s")  # one interval
+    within(absolute_error(results["mean"], v**2 / (2 * mu * 9.81) / 3), 2e-5, "mean slip, m/s")  # the last interval of a slide
+    slow = ((v - 2) / (mu * 9.81)).where(v > 2, 0)
+    within(absolute_error(results["slow"], slow), 1e-7, "first passage of 2 m/s, s")
+    beyond(absolute_error(results["slid"].sel(mu_slide=0.3), (v / (0.31 * 9.81))), 0.05, "by another friction, s")
+    assert results["slid"].attrs["units"] == "s" and results["slip"].attrs["units"] == "m/s"
+    assert results["slid"].attrs["long_name"] == "time of sliding"
 
 
 def test_a_wheel_of_a_study_moves_as_fmpy_simulates_it(rolled: xr.Dataset, fmu_path: Path) -> None:
