@@ -273,7 +273,7 @@ def test_the_terminal_of_the_hub_is_valid_and_names_every_input_with_pose_veloci
     assert (hub.get("name"), hub.get("matchingRule")) == ("hub", "bus")
     pose = ("X_O", "Y_O", "Z_O", "psi", "theta")
     reaction = ("lambda_1", "lambda_2", "lambda_3", "lambda_x", "lambda_y", "tau", "tau_brake")
-    outputs = {*pose, *(f"{name}_dot" for name in pose), "omega_z", *reaction}
+    outputs = {*pose, *(f"{name}_dot" for name in pose), "omega_z", *reaction, "slip_x", "slip_y", "contact_mode"}
     named = [member.get("variableName") for member in hub]
     assert [name for name in named if name not in outputs] == INPUTS and sorted(named) == sorted({*INPUTS, *outputs})
     for member in hub:
