@@ -154,6 +154,48 @@ def tipping(report: Report) -> Row:
     return falls | {"tips_rolling": upright, "tips_rolling_tilted": np.degrees(tilted)}
 
 
+WET, SLIPPERY = {"mu_max": 0.45, "mu_slide": 0.4}, {"mu_max": 0.3, "mu_slide": 0.25}
+
+
+def transitions(report: Report, road: dict[str, float], stop: float) -> list[float]:
+    """Instants at which the paper's free wheel loses its grip and grips again, within 1e-9 s."""
+    found = []
+    coarse = run(report, stop, **road)
+    for k in np.flatnonzero(np.diff(coarse["contact_mode"])):
+        begin, end = coarse.t[k], coarse.t[k + 1]
+        while end - begin > 1e-9:
+            times = np.linspace(begin, end, 33)
+            (row, *_) = np.flatnonzero(np.diff(report.library.simulate([0.0, *times], **road)["contact_mode"][1:]))
+            begin, end = times[row], times[row + 1]
+        found.append((begin + end) / 2)
+    return found
+
+
+@part(5)
+def slides(report: Report) -> Row:
+    """the paper's free wheel on a wet and on a slippery road: where it slides, its slip, the energy that is left"""
+    wet, slippery = (run(report, 10, 1e-3, **road) for road in (WET, SLIPPERY))
+    instants, energy = transitions(report, WET, 10.0), {"wet": wet["E"][-1], "slippery": slippery["E"][-1]}
+    first = report.library.simulate([0.0, instants[0] + 1e-6], **WET)
+    psi, along, across = (first[name][-1] for name in ("psi", "slip_x", "slip_y"))
+    e_1 = np.array([np.cos(psi), np.sin(psi)])
+    X, Y = (along * e_1 + across * np.array([-e_1[1], e_1[0]])) / np.hypot(along, across)
+    with picture(report, "physics_slides") as (left, right):
+        left.plot(wet["X_C"], wet["Y_C"], color=style.BLUE, lw=0.7)
+        slides = np.where(wet["contact_mode"] == 1, wet["Y_C"], np.nan)
+        left.plot(wet["X_C"], slides, color=style.PURPLE, lw=1.8, label="it slides")
+        from_above(left, "0.45 and 0.4: it slides twice", "upper left")
+        for found, colour, text in ((slippery, style.VERMILLION, "0.3 and 0.25"), (wet, style.BLUE, "0.45 and 0.4")):
+            right.plot(found.t, np.hypot(found["slip_x"], found["slip_y"]), color=colour, label=text)
+        title = "On a slippery road it slides in every swing"
+        label(right, TIME, "slip [m/s]", title, legend="upper right", xlim=(0, 10))
+    ways = dict(zip(("slide_1", "grip_1", "slide_2", "grip_2"), instants, strict=True))
+    count = int((np.diff(slippery["contact_mode"]) == 1).sum())
+    most = float(np.hypot(wet["slip_x"], wet["slip_y"]).max())
+    left_over = {f"energy_{road}": value for road, value in energy.items()}
+    return ways | {"slide_X": X, "slide_Y": Y, "slip": most, "slides_slippery": count} | left_over
+
+
 @part(3)
 def brake_hold_steer(report: Report) -> Row:
     """three ways to slow an upright wheel down; a wheel on a suspension that is steered and stopped"""

@@ -65,7 +65,7 @@ def test_the_slip_and_the_time_of_sliding_of_a_locked_wheel_are_the_closed_forms
     v, mu = results["slip_x_start"], results["mu_slide"]
     within(absolute_error(results["slip"], v + 0 * mu), 1e-12, "largest slip, m/s")
     within(absolute_error(results["slid"], v / (mu * 9.81)), 0.01, "time of sliding, s")  # one interval
-    within(absolute_error(results["mean"], v**2 / (2 * mu * 9.81) / 3), 2e-5, "mean slip, m/s")  # the last interval of a slide
+    within(absolute_error(results["mean"], v**2 / (2 * mu * 9.81) / 3), 2e-5, "mean slip, m/s")  # its last interval
     slow = ((v - 2) / (mu * 9.81)).where(v > 2, 0)
     within(absolute_error(results["slow"], slow), 1e-7, "first passage of 2 m/s, s")
     beyond(absolute_error(results["slid"].sel(mu_slide=0.3), (v / (0.31 * 9.81))), 0.05, "by another friction, s")

@@ -2,9 +2,9 @@
  *
  *   M' = (M_ref - M) / T_brake,   M_ref = M_pedal (none), or at most M_per_N N (in proportion to the normal force)
  *
- * Anti-lock, from the slip over the speed, (v + R omega_z) / v: build up at rate_build, hold, release at rate_dump until
- * the wheel spins up. The first build-up is the pedal's. No cycle needs a discrete state: one ends as the wheel's slip
- * answers. Slower than v_low the pedal acts alone, and the wheel locks. */
+ * Anti-lock, from the slip over the speed, (v + R omega_z) / v: build up at rate_build, hold, release at rate_dump
+ * until the wheel spins up. The first build-up is the pedal's. No cycle needs a discrete state: one ends as the wheel's
+ * slip answers. Slower than v_low the pedal acts alone, and the wheel locks. */
 #include <algorithm>
 
 #include "model.hpp"

@@ -6,8 +6,8 @@
  *   M_1 = -k_theta (theta - theta_0) - c_theta theta_dot      camber, M_2 alike with psi (toe)
  *   m_B a_B = -F - (0, 0, m_B g)
  *
- * Before t_couple the links carry nothing and B only runs on: a master that begins with all inputs at zero, as fmpy's SSP
- * simulation does, then does no harm. From t_drive on the hub motor gives M_drive. */
+ * Before t_couple the links carry nothing and B only runs on: a master that begins with all inputs at zero, as fmpy's
+ * SSP simulation does, then does no harm. From t_drive on the hub motor gives M_drive. */
 #include "model.hpp"
 
 using Eigen::Vector3d;
