@@ -139,6 +139,12 @@ def asked(vehicle: str = "", *rest: str) -> Manoeuvre | None:
     run = of[given.pop(described.get("word"), described.get("first", next(iter(of))))].changed(**given)
     if run.stop < run.h:
         raise Fault(f"stop = {run.stop:g}: it must be at least the step h, {run.h:g} s.")
+    for side in ("", "_right"):
+        if f"mu_slide{side}" not in every(vehicle):
+            continue
+        slide, most = (run[f"{name}{side}"] or run[name] for name in ("mu_slide", "mu_max"))
+        if slide > most:
+            raise Fault(f"mu_slide{side} = {slide:g}: it must be at most mu_max{side} = {most:g}.")
     return run
 
 

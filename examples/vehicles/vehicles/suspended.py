@@ -84,9 +84,9 @@ def stops(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
     lines += [f"  {name}: {ways[name]:.2f} m (closed form: {exact[name]:.2f} m)" for name in exact]
     lines.append(f"  anti-lock: {ways['abs']:.2f} m, {100 * (1 - ways['abs'] / ways['locked']):.0f} % less than locked")
     off = {name: abs(ways[name] / exact[name] - 1) for name in exact}
-    faults = [f"{name}: {100 * off[name]:.1f} % off the closed form" for name in off if off[name] > CLOSE]
+    faults = ["under the ideal brake the wheel slides"] * slid["ideal"]
+    faults += [f"{name}: {100 * off[name]:.1f} % off the closed form" for name in off if off[name] > CLOSE]
     faults += ["the pedal does not lock the wheel"] * (not slid["locked"])
-    faults += ["under the ideal brake the wheel slides"] * slid["ideal"]
     faults += ["the anti-lock controller stops no shorter than a locked wheel"] * (ways["abs"] >= ways["locked"])
     faults += ["the anti-lock controller stops shorter than grip allows"] * (ways["abs"] < shortest(table, run))
     return not faults, [*lines, *(f"Failed: {fault}." for fault in faults[:1])]
