@@ -55,9 +55,8 @@ FIGURES = list(csv.DictReader(Path(__file__).with_name("figures.csv").read_text(
 
 def measured(figure: str) -> float:
     """A figure of a report, REPORT.NAME, from docs/results/data."""
-    report, name = figure.split(".")
-    rows = csv.DictReader((RESULTS / "data" / f"{report}.csv").read_text(encoding="utf-8").splitlines())
-    return next(float(row["measured"]) for row in rows if row["figure"] == name)
+    rows = csv.DictReader((RESULTS / "data" / "figures.csv").read_text(encoding="utf-8").splitlines())
+    return next(float(row["measured"]) for row in rows if f"{row['report']}.{row['figure']}" == figure)
 
 
 def rounds_to(text: str, value: float) -> bool:

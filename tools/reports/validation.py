@@ -1,7 +1,7 @@
 """wheel.fmu beside published measurements: bicycle tyres that coast down on a drum, and disks that spin to rest.
 
 The raw files of the drum carry no licence and stay outside; --rig FOLDER evaluates them (coast_down.py). Without it the
-derived figures in docs/results/data/validation_rig.csv are the measurement. disks.csv: what others published on disks.
+derived figures in docs/results/data/validation_rig.csv are the measurement.
 """
 
 from __future__ import annotations
@@ -125,10 +125,9 @@ def steady_circle(report: Report, degrees: float) -> Row:
 
 @part(1)
 def disks(report: Report) -> dict[str, object]:
-    """Euler's disk: the energy that the paper's friction takes, and published disks"""
+    """Euler's disk: the energy that the paper's friction takes"""
     off, loss = held_disk(report.library, np.radians(10), DISK_TIME, s=1e-3 * DISK["r_0"])
-    published = pd.read_csv(Path(__file__).with_name("disks.csv"))
-    return {"disks": published, "disk_loss": loss, "disk_falls": off}
+    return {"disk_loss": loss, "disk_falls": off}
 
 
 def views(tables: Tables) -> Tables:
