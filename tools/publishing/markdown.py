@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from tabulate import tabulate
@@ -53,7 +54,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in cells)
 
 
-def frame_table(frame: object) -> str:
+def frame_table(frame: Any) -> str:
     """A pandas table, the first column to the left, the others to the right; what it does not know stays empty."""
     if frame.empty:
         return "None."

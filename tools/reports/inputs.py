@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from reference import Inputs
@@ -15,11 +16,14 @@ from .truth import headline, range_error
 
 STEP, EVERY = 1e-3, 100  # s; steps between compared instants
 CONSTANT = sines(1.0)
-TRUTHS = {
-    "none": Inputs(),
-    "constant": Inputs(lambda _t: CONSTANT[:3], lambda _t: CONSTANT[3:]),
-    "sines": Inputs(lambda t: sines(t)[:3], lambda t: sines(t)[3:]),
-}
+
+
+def halves(inputs: Any) -> Inputs:
+    """Forces and moments out of all six."""
+    return Inputs(lambda t: inputs(t)[:3], lambda t: inputs(t)[3:])
+
+
+TRUTHS = {"none": Inputs(), "constant": halves(lambda _t: CONSTANT), "sines": halves(sines)}
 # How the inputs are given: what judges it, and the table of the master, of so many steps.
 CASES = {
     "never set": ("none", lambda steps: None),

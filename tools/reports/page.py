@@ -120,9 +120,9 @@ class Report:
 
     def write(self) -> None:
         """Figures and tables, and what they were measured with."""
-        wanted = REQUIREMENTS.loc[self.name].itertuples()
-        rows = [{"report": self.name, "figure": f.Index, "measured": self.value(f)} for f in wanted]
-        update(self.folder, "figures", pd.DataFrame(rows).dropna())
+        found = {figure.Index: self.value(figure) for figure in REQUIREMENTS.loc[self.name].itertuples()}
+        known = [(self.name, figure, f"{value:.7g}") for figure, value in found.items() if not np.isnan(value)]
+        update(self.folder, "figures", pd.DataFrame(known, columns=["report", "figure", "measured"]))
         short = {name: frame for name, frame in self.tables.items() if len(frame) <= SHORT}
         for name in self.tables.keys() - short.keys():
             write_csv(self.folder, f"{self.name}_{name}", self.tables[name])

@@ -105,7 +105,8 @@ def car_runs(report: Report) -> dict[str, object]:
 @part(600, {"manoeuvre": lambda report: ("step",) if report.quick else COMPARED, "inputs over the step": EXCHANGES})
 def car_errors(report: Report, name: str, exchange: str) -> list[Row]:
     """the car: error against rollback at half of the least step, by manoeuvre, master, step and output"""
-    truth, rows = fine(report, name), []
+    truth = fine(report, name)
+    rows: list[Row] = []
     for h in STEPS:
         found = CAR.apart(CAR.drive(report.fmus, begin(name), h, exchange, GRID).whole, truth)
         rows.append({"step [ms]": 1000 * h} | found | {"largest": max(found.values())})

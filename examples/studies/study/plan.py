@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
 from zipfile import BadZipFile, ZipFile
 
@@ -70,7 +70,7 @@ class Measure(NamedTuple):
         """The FMU's variable that has to be read."""
         return "theta" if self.quantity == PLANE_ANGLE else self.quantity
 
-    def value(self, t: numpy.ndarray, x: numpy.ndarray | float) -> float:
+    def value(self, t: numpy.ndarray, x: Any) -> float:
         """For samples x of the variable at times t, the last of which is the end of the run; x at the end for `last`.
 
         A time is that of the first passage, interpolated linearly between two samples; NaN if there is none.
@@ -236,7 +236,7 @@ class Study:
         )
 
     @property
-    def varied(self) -> dict[str, list[float]]:
+    def varied(self) -> dict[str, Sequence[float]]:
         """The names that vary, with their values."""
         return self.grid | self.list
 
@@ -251,7 +251,7 @@ class Study:
         return tuple(dict.fromkeys([*self.history, *(m.variable for m in self.parsed.values() if m.kind != "last")]))
 
     @property
-    def times(self) -> list[float]:
+    def times(self) -> Sequence[float]:
         """The communication points in s; only the first and the last if nothing is read in between."""
         begin, end = self.branch_at or 0.0, float(self.stop_time)
         steps = math.ceil((end - begin) / self.interval * (1 - 1e-12)) if self.sampled else 1

@@ -10,6 +10,7 @@ middle and the yaw rate:
 from collections.abc import Callable
 from itertools import takewhile
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 from scipy.integrate import odeint
@@ -60,7 +61,7 @@ def without_closed_form(scene: Manoeuvre) -> str:
     return ""
 
 
-Velocities = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+Velocities = Callable[[Any], tuple[np.ndarray, np.ndarray]]
 
 
 def velocities(scene: Manoeuvre) -> tuple[Velocities, tuple[float, ...]]:
@@ -116,7 +117,7 @@ def rigid(scene: Manoeuvre, times: np.ndarray) -> Table:
     """X, Y, psi, v, omega of the rigid axle at `times` (rising from 0); the path from v and omega by SciPy."""
     at, stops = velocities(scene)
 
-    def rate(t: float, y: np.ndarray) -> tuple[float, float, float]:
+    def rate(t: float, y: np.ndarray) -> tuple[np.ndarray, ...]:
         v, omega = at(t)
         return v * np.cos(y[2]), v * np.sin(y[2]), omega
 
