@@ -48,7 +48,8 @@ def fields_of(body: str, types: dict[str, type]) -> Iterator[tuple[str, type]]:
 
 
 TYPES = read_header(HEADER.read_text(encoding="utf-8"))
-Parameters, Load, Friction, Scene, Motion = map(TYPES.__getitem__, ("Parameters", "Load", "Friction", "Scene", "Motion"))
+Parameters, Load, Friction = map(TYPES.__getitem__, ("Parameters", "Load", "Friction"))
+Scene, Motion = TYPES["Scene"], TYPES["Motion"]
 Kinematics, Dynamics, ReactionRates = map(TYPES.__getitem__, ("Kinematics", "Dynamics", "ReactionRates"))
 Contact, Slip, Formulation = map(TYPES.__getitem__, ("Contact", "Slip", "Formulation"))
 DOUBLES = POINTER(c_double)
