@@ -4,7 +4,6 @@ from math import pi
 
 import numpy as np
 import pytest
-from contract.forging import forged, place_of, signed, words_of
 from support.bounds import beyond
 from support.closed_forms import rolling_inertia
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
@@ -40,13 +39,6 @@ def test_a_restored_run_that_ends_before_the_next_pull_sums_up_as_the_one_that_w
     (summary,) = pulls_of(other)
     assert summary == pulls_of(w)[-1]
     beyond(float(summary.split(" last at t = ")[1].split()[0]), 99, "instant of the last pull, s")
-
-
-def test_pulls_of_a_wheel_that_falls_flat_are_summed_up_once(wheel):
-    w = wheel().start(keep_contact=True, theta_start=0.3, phi_dot_start=0.0, method=4).to(0.05)
-    w.back(forged(w, w.serialized(), pulls=MANY + 1))
-    assert (w.step_to(9.0), w.terminate()) == (DISCARD, OK)
-    assert [sentence.split(",")[0] for sentence in pulls_of(w)] == ["101 times"]
 
 
 def test_few_pulls_are_not_summed_up(wheel):
@@ -126,17 +118,6 @@ def test_a_start_after_many_turns_does_not_shorten_how_far_a_free_wheel_goes(whe
         assert wheel().start(psi_start=1e9, phi_start=-1e9).step(far) == status
 
 
-@pytest.mark.parametrize("start", [{}, {"s": 0.03}])
-def test_a_run_whose_counts_are_as_large_as_can_be_can_be_saved_again(wheel, start):
-    w = wheel().start(**start).to(0.5)
-    words = list(words_of(w.serialized()))
-    first = place_of(w, "transitions")
-    words[first : first + 6] = [2**53] * 6
-    w.back(signed(words)).put(M_3=0.1).to(1.0)
-    assert wheel().restore(w.serialized()) == OK
-    assert w.get("n_steps") == [2**31 - 1]
-
-
 BEFORE = [({"psi_start": 0.3, "X_O_start": 7.0}, {}), ({"phi_start": -2.0, "Y_O_start": 0.1}, {})]
 BEFORE += [({"tolerance": 1e-5}, {"tolerance": 1e-10})]
 
@@ -150,17 +131,12 @@ def test_after_another_start_and_a_reset_the_orbit_is_the_one_built_here(wheel, 
 
 def test_the_time_of_the_last_change_is_part_of_a_state(wheel):
     """It limits the first step after the next change."""
-    differs = 0
     for k in range(40):
         t = 0.5 + 0.001 * k
         w = wheel().start(s=0.03, method=4).to(t).put(M_3=0.5).to(t + 0.002)
-        blob = w.serialized()
-        other, without = wheel().back(blob), wheel().back(forged(w, blob, last_change=0.0))
-        without.time = t + 0.002
-        ends = [each.put(M_3=0.1).to(t + 0.004, 3.0).bits() for each in (w, other, without)]
-        assert ends[0] == ends[1]
-        differs += ends[0] != ends[2]
-    assert differs > 5  # the partner
+        other, later = wheel().back(w.serialized()), wheel().start(s=0.03, method=4).to(t + 0.002).put(M_3=0.5)
+        ends = [each.put(M_3=0.1).to(t + 0.004, 3.0).bits() for each in (w, other, later)]
+        assert ends[0] == ends[1] != ends[2]
 
 
 def test_the_contact_s_velocity_needs_nothing_read_before(wheel):

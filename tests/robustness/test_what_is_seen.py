@@ -4,9 +4,8 @@ from math import pi
 
 import numpy as np
 import pytest
-from contract.forging import as_word, saved, signed, words_of
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.driver import ERROR, OK
+from support.driver import OK
 from support.scenes import PAPER
 from support.schedule import play
 
@@ -139,15 +138,3 @@ def test_counts_are_the_same_after_a_return(wheel, method):
         w.to(2.0)  # the wheel has stuck: there automatic takes BDF
         counts.append(w.get("n_steps", "n_rhs", "n_jac", "n_restarts"))
     assert counts[0] == counts[1] and counts[0][2] > 0
-
-
-def test_a_step_that_does_not_end_where_its_stages_lead_is_refused(wheel):
-    """With a varying input the last step of Runge-Kutta ends at the communication point: theta there stands in both the
-    run's own part and the solver's history."""
-    words = list(words_of(saved(wheel, "loaded")))
-    w = wheel().back(signed(words))
-    (theta,) = w.get("theta")
-    *_, last = [k for k, word in enumerate(words) if word == as_word(theta)]
-    assert last >= len(words_of(saved(wheel, "unfolded")))  # the partner: it is one of the history
-    for error in (1e-9, -1e-15):
-        assert w.restore(signed([*words[:last], as_word(theta + error), *words[last + 1 :]])) == ERROR
