@@ -1,5 +1,7 @@
-"""Random scenes and inputs: the energy balance of the scenes that other tests name holds for any. Random calls and values:
-the fuzzer. hypothesis draws the examples, the same in every run."""
+"""Random scenes and inputs: the energy balance of the scenes that other tests name holds for any.
+
+Random calls and values are the fuzzer's. hypothesis draws the examples, the same in every run.
+"""
 
 import pytest
 from contract.properties import INPUTS, Values, check, energy_defect, loads, scenes
