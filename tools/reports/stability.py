@@ -6,17 +6,15 @@ the independent reference or a closed form.
 
 from __future__ import annotations
 
-from math import pi
 from multiprocessing import get_context
 
-import numpy as np
 import pandas as pd
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 from robustness.case import Case
 from robustness.judges import TOLERANCES, Verdict, judge_case
 from robustness.regularized import FRICTION, TIMES, TOLERANCE_FACTOR, WIDTH_FACTOR, error_against
 from robustness.sweep import sweep
-from support.driver import ERROR, Values
+from support.driver import Values
 from support.motion import Library, run
 
 from . import plots
@@ -112,32 +110,6 @@ def draw_law(tables: Tables) -> Sheet:
     plots.label(axes[1], "time for 10 s [ms]", "error", "cost; stars: the exact law itself", "xy")
     plots.legend_below(figure, axes, 3)
     return figure
-
-
-def watching(report: Report, values: dict) -> float:
-    """Time with endings watched over time without lift-off watched (contact kept), best of interleaved runs."""
-    solves = [report.master.made(values | {"keep_contact": kept}, 10.0, 1) for kept in (False, True)]
-    watched, kept = np.min([[solve()[0] for solve in solves] for _ in range(60)], axis=0)
-    return watched / kept
-
-
-@part(20)
-def contract(report: Report) -> dict[str, object]:
-    """the contract at its edges: nearly equal inertias, a choice too dear, watching for endings"""
-    # A wheel with J_x = J_y is unfolded, others are stepped: with Adams both are.
-    equal, split = {"method": "adams"}, {"method": "adams", "J_y": 0.9 * (1 - 1e-12)}
-    whole, parted = (run(report.library, values, np.linspace(0, 10, 101), 1e-8) for values in (equal, split))
-    apart = max(np.abs(whole[n] - parted[n]).max() / np.ptp(whole[n]) for n in ("X_O", "theta", "psi_dot"))
-    checks = [("J_x and J_y differ by 1e-12: difference of the outputs, tolerance 1e-8", 1e-6, apart)]
-    checks += [("the same: right-hand sides", 3.0, parted.counters["n_rhs"] / whole.counters["n_rhs"])]
-    scenes = {"free wheel": {}, "friction": FRICTION, "upright, fast": {"theta_start": pi / 2 - 0.1}}
-    checks += [(f"watching for endings over not, {name}", 1.03, watching(report, v)) for name, v in scenes.items()]
-    with report.library.wheel() as wheel:
-        wheel.start(tolerance=1e-8, **regularized(FRICTION, 1e-8, "adams"))
-        silent = int(wheel.step_to(10.0) != ERROR or not wheel.sentences)
-    checks += [("10 s in one step, Adams, omega_s = 1e-8 rad/s: ends without an error and its reason", 1, silent)]
-    rows = [{"what": what, "below": bound, "found": found, "holds": found < bound} for what, bound, found in checks]
-    return {"contract": rows, "checks": len(rows), "checks_failed": sum(not row["holds"] for row in rows)}
 
 
 FURTHER = ("long_runs",)
