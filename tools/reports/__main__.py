@@ -45,7 +45,7 @@ def measure(names: list[str], folder: Path, options: Namespace) -> None:
     parts = {name: parts_of(module(name)) for name in names}
     with tqdm(total=sum(part.seconds for of in parts.values() for part in of), bar_format=BAR) as bar:
         for name in names:
-            report = Report(name, library, folder, options.quick, vars(options))
+            report = Report(name, library, folder, options.quick)
             for part in parts[name]:
                 bar.set_description_str(f"{name}: {part.words}")
                 report.measure(part)

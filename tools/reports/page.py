@@ -82,7 +82,6 @@ class Report:
     library: Library
     folder: Path
     quick: bool = False
-    options: Mapping[str, Any] = field(default_factory=dict)
     figures: dict[str, float] = field(default_factory=dict)
     tables: Tables = field(default_factory=dict)
 
