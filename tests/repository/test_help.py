@@ -1,6 +1,8 @@
 """Every command under scripts/ answers --help and a typing error at once, in a checkout where nothing is installed."""
 
+import re
 import subprocess
+from itertools import dropwhile
 from pathlib import Path
 
 import pytest
@@ -34,6 +36,25 @@ def call(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
 def test_help_explains_a_command_and_does_nothing(bare: Path, name: str) -> None:
     done = call(bare, name, "--help")
     assert done.returncode == 0 and not done.stderr and len(done.stdout.split()) >= 10
+
+
+SYNTAX = re.compile(r"\$[({\"@*\w]|=\$|^\s*(?:fi|done|esac|exit|exec)\b|2>&1")
+
+
+def shell_in(help_text: str, script: str) -> list[str]:
+    """Lines of a help text that are, or end, a line below the script's first comment, or that look like shell."""
+    _, *lines = script.splitlines()
+    body = [line for line in dropwhile(lambda line: line.startswith("#"), lines) if line.strip()]
+    said = [line for line in help_text.splitlines() if len(line.strip()) > 3]
+    return [line for line in said if SYNTAX.search(line) or any(one.endswith(line.strip()) for one in body)]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_no_line_of_a_scripts_body_is_in_its_help(bare: Path, name: str) -> None:
+    script = (ROOT / "scripts" / name).read_text()
+    assert shell_in(call(bare, name, "--help").stdout, script) == []
+    cut = [line[2:] for line in script.splitlines()[1:]]  # the partner: the whole file, two letters short
+    assert len(shell_in("\n".join(cut), script)) > 1
 
 
 @pytest.mark.parametrize("name", [name for name in WRONG if name in COMMANDS])
