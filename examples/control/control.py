@@ -8,11 +8,12 @@ Straight rolling: upright, along X, omega_z < 0. SI units.
 """
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import casadi as ca
 import matplotlib.pyplot as plt
@@ -74,7 +75,7 @@ def regulator(folder: Path, omega_z: float) -> np.ndarray:
     return np.linalg.solve(effort, B.T @ solve_continuous_are(A, B, weight, effort))
 
 
-def rolled(folder: Path, times: np.ndarray, law: Callable[[int, dict], np.ndarray], **start: float) -> dict:
+def rolled(folder: Path, times: np.ndarray, law: Callable[[int, dict], Sequence[float]], **start: float) -> dict:
     """The states by name at the times, in co-simulation, until the wheel lies nearly flat.
 
     law(k, states): the moments from times[k] to times[k + 1], of the states at times[k].
@@ -124,7 +125,7 @@ def draw_regulator(folder: Path) -> str:
     return f"lean: {fallen.max():.0f} deg alone, {held[-1]:.2g} deg after 6 s with the regulator"
 
 
-def optimal(folder: Path, duration: float = 3.0, intervals: int = 60) -> tuple[np.ndarray, dict, np.ndarray]:
+def optimal(folder: Path, duration: float = 3.0, intervals: int = 60) -> tuple[np.ndarray, dict, Any]:
     """Times, states by name and moments M_1, M_3 that bring a leaning wheel upright onto Y_O = 0, heading along X.
 
     Direct transcription by the implicit midpoint rule; CasADi takes the derivatives from the FMU.

@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping
 from difflib import get_close_matches
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 DEGREE = math.pi / 180
@@ -143,14 +143,15 @@ def variables(description: str | bytes, *causalities: str) -> dict[str, Variable
     """Those of a modelDescription.xml, in its order; all, or those of these causalities."""
     found = {}
     for row in ElementTree.fromstring(description).iter("ScalarVariable"):
-        texts = [row[0].get(attribute, "") for attribute in ("unit", "start", "min", "max")]
-        known = (row.get("name", ""), row.get("causality", "local"), row[0].tag, *texts, row.get("description", ""))
-        if known[1] in causalities or not causalities:
-            found[known[0]] = Variable(*known, row.get("variability", ""), int(row.get("valueReference", "-1")))
+        unit, start, low, high = (row[0].get(attribute, "") for attribute in ("unit", "start", "min", "max"))
+        name, causality, text = row.get("name", ""), row.get("causality", "local"), row.get("description", "")
+        rest = row.get("variability", ""), int(row.get("valueReference", "-1"))
+        if causality in causalities or not causalities:
+            found[name] = Variable(name, causality, row[0].tag, unit, start, low, high, text, *rest)
     return found
 
 
-def wheels() -> dict[str, dict[str, object]]:
+def wheels() -> dict[str, dict[str, Any]]:
     """The ready wheels: name -> title, source, parameters in SI; `start`, of a ready case, is how the wheel moves."""
     return json.loads(WHEELS.read_text(encoding="utf-8"))
 
@@ -182,7 +183,7 @@ def spin(v: float, r_0: float, r: float, theta: float = math.pi / 2, psi_dot: fl
     return 0.0 - (v + psi_dot * r_0 * math.cos(theta)) / (r_0 + r * math.sin(theta))
 
 
-def bodies() -> dict[str, dict[str, object]]:
+def bodies() -> dict[str, dict[str, Any]]:
     """The ready bodies: name -> title, source, and J_x = J_y and J_z over m, as parts of the squares of lengths."""
     return json.loads(BODIES.read_text(encoding="utf-8"))
 

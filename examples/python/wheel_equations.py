@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from ctypes import CFUNCTYPE, POINTER, Structure, byref, c_char_p, c_double, c_int
 from keyword import iskeyword
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +21,11 @@ LAWS = {"frictionless": FRICTIONLESS, "rolling": ROLLING, "held": HELD, "regular
 HEADER = Path(__file__).resolve().parents[2] / "fmu-src" / "equations" / "wheel_equations.h"
 
 
-def read_header(text: str) -> dict[str, type]:
+def read_header(text: str) -> dict[str, Any]:
     """The structs by their names without Wheel, as ctypes has them."""
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     enums = re.findall(r"typedef enum Wheel(\w+)", text)
-    types = {"void": None, "double": c_double, "int": c_int, **dict.fromkeys(enums, c_int)}
+    types: dict = {"void": None, "double": c_double, "int": c_int, **dict.fromkeys(enums, c_int)}
     for name, body in re.findall(r"typedef struct Wheel(\w+) \{(.*?)\} Wheel\1;", text, re.DOTALL):
         types[name] = type(name, (Structure,), {"_fields_": list(fields_of(body, types))})
     return types
@@ -47,9 +48,10 @@ def fields_of(body: str, types: dict[str, type]) -> Iterator[tuple[str, type]]:
 
 
 TYPES = read_header(HEADER.read_text(encoding="utf-8"))
-Parameters, Load, Friction, Scene, Motion = map(TYPES.get, ("Parameters", "Load", "Friction", "Scene", "Motion"))
-Kinematics, Dynamics, ReactionRates = map(TYPES.get, ("Kinematics", "Dynamics", "ReactionRates"))
-Contact, Slip, Formulation = map(TYPES.get, ("Contact", "Slip", "Formulation"))
+Parameters, Load, Friction = map(TYPES.__getitem__, ("Parameters", "Load", "Friction"))
+Scene, Motion = TYPES["Scene"], TYPES["Motion"]
+Kinematics, Dynamics, ReactionRates = map(TYPES.__getitem__, ("Kinematics", "Dynamics", "ReactionRates"))
+Contact, Slip, Formulation = map(TYPES.__getitem__, ("Contact", "Slip", "Formulation"))
 DOUBLES = POINTER(c_double)
 
 BUILD = Path(os.environ.get("WHEEL_BUILD", Path(__file__).resolve().parents[2] / "build" / "release"))
@@ -92,7 +94,7 @@ def scene(
     return LIBRARY.wheel_scene(wheel, load, Friction(kind, sigma, omega_s))
 
 
-def _filled(out: Structure | np.ndarray, function: Callable, *arguments: object) -> Structure | np.ndarray:
+def _filled(out: Any, function: Callable, *arguments: object) -> Any:
     """`out`, which the function fills from the arguments; ctypes passes records by their addresses."""
     function(*(x.ctypes.data_as(DOUBLES) if isinstance(x, np.ndarray) else x for x in (*arguments, out)))
     return out

@@ -1,13 +1,12 @@
 """What the property tests draw, play and judge: scenes sound and unsound, energy."""
 
 from collections.abc import Callable
-from math import isfinite
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
+from support.driver import FMU2Wheel
 
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 Values = dict[str, float]
@@ -57,40 +56,7 @@ def loads(size: float = 5.0) -> st.SearchStrategy[Values]:
     return st.fixed_dictionaries(dict.fromkeys(INPUTS, some(-size, size)))
 
 
-# Any number a program may pass by mistake: signs, zeros, limits of the format, not a number.
-anything = st.one_of(st.floats(), st.sampled_from([0.0, -0.0, -1.0, 1e-300, 1e300, 5e-324]), some(-10, 10))
 anything_whole = st.one_of(st.integers(0, 4), st.integers(-(2**31), 2**31 - 1))
-
-
-def grids(stop: float = 1.0) -> st.SearchStrategy[list[float]]:
-    """Communication points between 0 and `stop`, the last one at it."""
-    inside = st.lists(some(1e-6, stop - 1e-6), max_size=12, unique=True)
-    return inside.map(lambda points: [*sorted(points), stop])
-
-
-def play_anything(w: FMU2Wheel, start: Values, load: Values) -> list[tuple[int, list[float], list[str]]]:
-    """One life with any values: after each call its status, the outputs where they can be read, what was logged."""
-    logged: list[tuple[int, list[float], list[str]]] = []
-    finite = [name for name in w.reals if name != "mu_required"]  # infinite where the ground does not press
-    assert w.set(**start) == w.setupExperiment() == w.enterInitializationMode() == OK
-    for call in (w.exitInitializationMode, lambda: w.set(**load), *[lambda: w.step(0.02)] * 3):
-        status = call()
-        logged.append((status, w.get(*finite) if status <= WARNING else [], w.texts()))
-    return logged
-
-
-def is_sentence(text: str) -> bool:
-    return text[:1].isalpha() and text.endswith(".") and 20 < len(text) < 1000
-
-
-def is_honest(logged: list[tuple[int, list[float], list[str]]]) -> bool:
-    """Every call gave finite outputs, or said in a sentence why it did not."""
-    return all(
-        status in (OK, WARNING, DISCARD, ERROR)
-        and all(map(is_sentence, texts))
-        and (bool(texts) if status > WARNING else all(map(isfinite, outputs)))
-        for status, outputs, texts in logged
-    )
 
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)

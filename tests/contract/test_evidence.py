@@ -1,10 +1,7 @@
 """The evidence in the archive (FMI-LS-REF): all files are named, parameter sets are valid, results come again."""
 
 import csv
-import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -14,7 +11,6 @@ import pytest
 from fmpy import simulate_fmu
 from lxml import etree
 from support.motion import Library
-from support.paths import ROOT
 
 from release import evidence
 
@@ -68,15 +64,3 @@ def test_the_state_continues_with_the_bits_of_its_result(folder: Path, library: 
     with library.wheel() as wheel:
         wheel.start(tolerance=1e-8).back((folder / "state.bin").read_bytes()).time = evidence.STATE_AT
         assert wheel.to(evidence.STATE_TO).get(*evidence.OUTPUTS) == want != wheel.to(2.1).get(*evidence.OUTPUTS)
-
-
-OLDER = "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F"  # the system's libm then takes what older processors have
-
-
-@pytest.mark.parametrize("tunables", ["", OLDER])
-def test_the_evidence_has_the_same_bytes_on_another_processor(folder, fmu_path, tmp_path, tunables):
-    command = [sys.executable, ROOT / "tools" / "release" / "evidence.py", fmu_path, tmp_path]
-    subprocess.run(command, env=os.environ | {"GLIBC_TUNABLES": tunables}, check=True)
-    written = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    assert written == {name: (folder / name).read_bytes() for name in written}
-    assert written["paper_free_out.csv"] != written["paper_friction_out.csv"]

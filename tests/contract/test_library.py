@@ -1,8 +1,6 @@
 """The library and the archive as files: what they need, export, contain and carry of licences."""
 
 import importlib.util
-import shutil
-import struct
 import subprocess
 import sys
 import zipfile
@@ -11,12 +9,10 @@ from pathlib import Path
 import fmpy
 import pytest
 from contract.call_states import TABLE
-from support.paths import ROOT, build_folder
+from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT / "cmake"))
 import pack_fmu
-
-from release import fmu as released
 
 pytestmark = pytest.mark.local
 # Beside those of the table of call states.
@@ -154,72 +150,3 @@ def test_the_archive_carries_the_licences_word_for_word(fmu):
     for header in ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"):
         text = (HEADERS / header).read_text(encoding="utf-8")
         assert contains(text, notice) and not contains(text, notice.replace("must reproduce", "should reproduce"))
-
-
-@pytest.mark.parametrize("left_out", released.LICENCES.values())
-def test_a_release_carries_the_licences_of_what_the_cross_compiler_links_in(tmp_path, left_out):
-    for name in released.LICENCES.values():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(name)
-    entries = released.licences(tmp_path)
-    assert {f"licenses/{name}-license.txt" for name in ("zig", "musl", "mingw-w64", "libcxx")} == set(entries)
-    pack_fmu.pack(entries, tmp_path / "whole.fmu")
-    (tmp_path / left_out).unlink()
-    with pytest.raises(FileNotFoundError):  # a licence that is not found is not passed over
-        pack_fmu.pack(entries, tmp_path / "less.fmu")
-
-
-PAGE, X86_64, ARM64 = 1 << 14, 0x01000007, 0x0100000C
-
-
-def mach_o(processor: int, size: int) -> bytes:
-    return struct.pack("<III", released.MACHO_64, processor, 0).ljust(size, bytes([processor & 0xFF]))
-
-
-def test_the_universal_library_holds_each_processors_library_whole_and_on_its_page():
-    libraries = {X86_64: mach_o(X86_64, PAGE + 5), ARM64: mach_o(ARM64, 3 * PAGE - 1)}
-    joined = released.universal([*libraries.values()])
-    assert struct.unpack_from(">II", joined) == (0xCAFEBABE, 2)
-    for k, (processor, library) in enumerate(libraries.items()):
-        kind, _, offset, size, alignment = struct.unpack_from(">5I", joined, 8 + 20 * k)
-        assert (kind, size, offset % PAGE, 1 << alignment) == (processor, len(library), 0, PAGE)
-        assert joined[offset : offset + size] == library != joined[offset + 1 : offset + 1 + size]
-    with pytest.raises(ValueError, match="not a 64-bit Mach-O"):
-        released.universal([b"\x7fELF".ljust(64, b"\0")])
-
-
-# A project without languages: what cmake/fmi.cmake makes of a machine.
-FOLDER_OF = """
-cmake_minimum_required(VERSION 3.25)
-project(folder LANGUAGES NONE)
-set(CMAKE_SYSTEM_PROCESSOR aarch64)
-list(APPEND CMAKE_MODULE_PATH "{root}/cmake")
-include(fmi)
-file(WRITE ${{CMAKE_BINARY_DIR}}/folder ${{wheel_platform}})
-"""
-# FMPy on an arm machine, where the libraries that it brings for x86-64 cannot be loaded.
-ON_ARM = """
-import ctypes, platform, sys
-load = ctypes.cdll.LoadLibrary
-def loads(name):
-    if name and "site-packages" in name:
-        raise OSError(f"{name}: wrong ELF class")
-    return load(name)
-platform.machine, ctypes.cdll.LoadLibrary = lambda: "aarch64", loads
-import fmpy
-assert fmpy.platform_tuple == "aarch64-linux"
-assert fmpy.simulate_fmu(sys.argv[1], stop_time=0.1)["time"][-1] == 0.1
-"""
-
-
-def test_a_local_build_on_arm_linux_is_where_fmpy_looks_for_it(tmp_path):
-    shutil.copy(ROOT / "modelDescription.xml", tmp_path)
-    (tmp_path / "CMakeLists.txt").write_text(FOLDER_OF.format(root=ROOT))
-    lines_of("cmake", "-S", tmp_path, "-B", tmp_path, f"-DPython3_EXECUTABLE={sys.executable}")
-    runs = {}
-    for folder in ((tmp_path / "folder").read_text(), "aarch64-linux"):  # that of a release is the partner
-        fmu = tmp_path / f"{folder}.fmu"
-        pack_fmu.pack(pack_fmu.contents(folder, build_folder() / "wheel.so", {}), fmu)
-        runs[folder] = subprocess.run([sys.executable, "-c", ON_ARM, fmu], capture_output=True, text=True, check=False)
-    assert [run.returncode for run in runs.values()] == [0, 1], runs
-    assert "cannot be simulated on the current platform" in runs["aarch64-linux"].stderr

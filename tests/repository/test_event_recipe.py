@@ -2,24 +2,20 @@
 Each crossing is logged in every way of running, before and after a snapshot, and the tests of the contract hold. The
 crossings are those of theta, the normal force and X_O, read on a fine grid."""
 
-import json
 import os
 import re
-import shlex
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 from support import exchange as exchanging
 from support.bounds import beyond, within
 from support.motion import Library, Run
-from support.paths import ROOT, build_folder
+from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT / "cmake"))
 from description.measuring import event_indicators, measured
@@ -101,82 +97,41 @@ def patch(folder: Path, blocks: Blocks) -> None:
             path.write_text(old.replace(before, text + before), encoding="utf-8")
 
 
-@dataclass
-class Patched:
-    """A checkout with all events, and the FMU that it makes."""
+class Patched(NamedTuple):
+    """A checkout with all events, the FMU that it makes, and the texts of the messages."""
 
     root: Path
     fmu: Path
     library: Library
-    lean: str  # the text of its message
+    lean: str
     load: str
     line: str
 
 
-def checkout(folder: Path) -> Path:
-    """The core, its description and its tests, all events in the place of the recipe; numbered."""
-    for name in ("fmu-src", "cmake", "tests"):
-        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("modelDescription.xml", "pyproject.toml"):
-        shutil.copy(ROOT / name, folder)
-    events = [*recipes(), LINE]
+@pytest.fixture(scope="module")
+def patched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
+    """All events in the place of the recipes; numbered and built."""
+    root, events = tmp_path_factory.mktemp("checkout"), [*recipes(), LINE]
+    copy = f"git ls-files -coz --exclude-standard | xargs -0 cp --parents -t '{root}'"
+    subprocess.run(["bash", "-c", copy], cwd=ROOT, check=False)  # a file may be deleted
     for blocks in events:
-        patch(folder, blocks)
-    description = folder / "modelDescription.xml"
+        patch(root, blocks)
+    description = root / "modelDescription.xml"
     text = description.read_text(encoding="utf-8")
     count = int(re.search(r'numberOfEventIndicators="(\d+)"', text)[1]) + len(events)
     description.write_text(numbered(with_event_indicators(text, count)), encoding="utf-8")
-    return folder
-
-
-def guid(folder: Path) -> str:
-    return re.search(r'guid="([^"]*)"', (folder / "modelDescription.xml").read_text(encoding="utf-8"))[1]
-
-
-def build(folder: Path) -> Path:
-    """The checkout's library: `wheel` and `fmi` are compiled, without the optimisation that takes long and changes no
-    bit; the rest is taken as built."""
-    built, objects_folder = build_folder(), folder / "build"
-    objects_folder.mkdir()
-    commands = (built / "compile_commands.json").read_text(encoding="utf-8")
-    link = shlex.split((built / "CMakeFiles" / "wheel_fmu.dir" / "link.txt").read_text(encoding="utf-8"))
-    rows = [folder / "cmake" / "variable_rows.py", folder / "modelDescription.xml", objects_folder / "variables.inc"]
-    subprocess.run([sys.executable, *rows], check=True)
-    commands = commands.replace(str(built / "generated"), str(objects_folder)).replace(guid(ROOT), guid(folder))
-    for module in ("wheel", "fmi"):
-        original, copy = str(ROOT / "fmu-src" / module), folder / "fmu-src" / module
-        units = built / "CMakeFiles" / f"{module}.dir" / "Unity"  # each includes the files that are compiled at once
-        for unit in units.glob("*.cxx"):
-            (copy / unit.name).write_text(
-                unit.read_text(encoding="utf-8").replace(original, str(copy)), encoding="utf-8"
-            )
-        commands = commands.replace(original, str(copy)).replace(str(units), str(copy))
-    made = {entry["output"]: entry for entry in json.loads(commands) if folder in Path(entry["file"]).parents}
-    objects = {output: str(objects_folder / output.replace("/", "_")) for output in made}
-    compilations = [
-        [*(objects.get(word, word) for word in shlex.split(entry["command"])), "-O1", "-fno-lto"]
-        for output, entry in made.items()
-    ]
-    with ThreadPoolExecutor(2) as pool:
-        list(pool.map(lambda command: subprocess.run(command, cwd=built, check=True), compilations))
-    library = objects_folder / "wheel.so"
-    link[link.index("-o") + 1] = str(library)
-    subprocess.run([objects.get(word, word) for word in link], cwd=built, check=True)
-    return library
-
-
-@pytest.fixture(scope="module")
-def patched(fmu: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
-    root = checkout(tmp_path_factory.mktemp("event") / "checkout")
-    unpacked = root.parent / "fmu"
-    shutil.copytree(fmu, unpacked)
-    (binary,) = unpacked.glob("binaries/*/wheel.so")
-    shutil.copy(build(root), binary)
-    shutil.copy(root / "modelDescription.xml", unpacked)
-    packed = shutil.make_archive(str(root / "build" / "wheel"), "zip", unpacked)
-    rows = [blocks["fmu-src/wheel/events.cpp"][1] for blocks in (*recipes(), LINE)]
+    sundials = os.environ.get("WHEEL_SUNDIALS_SOURCE") or next((ROOT / "build" / "sundials").glob("*/vendor"))
+    options = {"CMAKE_BUILD_TYPE": "Release", "CMAKE_UNITY_BUILD": "ON", "Python3_EXECUTABLE": sys.executable}
+    options |= {"WHEEL_SUNDIALS_SOURCE": sundials}
+    configure = ["cmake", "-S", root, "-B", root / "build", *(f"-D{name}={value}" for name, value in options.items())]
+    for command in (configure, ["cmake", "--build", root / "build", "--target", "fmu", "-j2"]):
+        subprocess.run(command, check=True, capture_output=True)
+    rows = [blocks["fmu-src/wheel/events.cpp"][1] for blocks in events]
     texts = [re.search(r'observed = "([^"]*)', row)[1] for row in rows]
-    yield Patched(root, Path(packed).rename(root / "build" / "wheel.fmu"), Library(unpacked), *texts)
+    fmu = root / "build" / "wheel.fmu"
+    library = Library.unpacked(fmu)
+    yield Patched(root, fmu, library, *texts)
+    library.remove()
 
 
 def falls(run: Run, name: str, level: float, sign: float = 1.0) -> list[float]:

@@ -1,5 +1,4 @@
-"""Tests that name a kind run for each formulation by each method; `played` plays inputs to a new instance;
-`memory_hook` is short_memory.so."""
+"""Tests that name a kind run for each formulation by each method; `played` plays inputs to a new instance."""
 
 import os
 import subprocess
@@ -16,17 +15,6 @@ from support.schedule import Piece, play
 @pytest.fixture(params=FORCED, ids=lambda kind: "-".join(map(str, kind.values())))
 def kind(request) -> Values:
     return request.param
-
-
-@pytest.fixture(scope="session")
-def memory_hook(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """To be preloaded."""
-    hook = tmp_path_factory.mktemp("memory") / "short_memory.so"
-    source = ROOT / "tests" / "robustness" / "short_memory.c"
-    clean = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
-    flags = ["-std=gnu11", "-O1", "-fPIC", "-shared", "-Wall", "-Wextra", "-Werror"]
-    subprocess.run(["cc", *flags, str(source), "-o", str(hook), "-ldl"], check=True, env=clean)
-    return hook
 
 
 @pytest.fixture

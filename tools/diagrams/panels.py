@@ -5,12 +5,14 @@ per stick phase, a tick at the top for each change of sign of omega_z. A slide h
 lines where grip is lost and returns. A panel returns what the caption has to explain.
 """
 
+from typing import Any
+
 import numpy as np
 import textalloc
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
 from matplotlib.patches import StepPatch
 from matplotlib.ticker import AutoMinorLocator, MaxNLocator, NullLocator, ScalarFormatter
+from numpy.typing import ArrayLike
 
 from diagrams import style
 from diagrams.scene import Array, Scene
@@ -157,6 +159,7 @@ def write_beside(ax: Axes, texts: dict[tuple[float, float], str], lines: list[Ar
     _, _, _, leaders = textalloc.allocate(
         ax, x, y, [*texts.values()], x_scatter=x, y_scatter=y, x_lines=xs, y_lines=ys, **look, **place
     )
+    leader: Any
     for leader in filter(None, leaders):
         (left, bottom), (right, top) = leader.get_transform().transform(leader.get_xydata())
         if np.hypot(right - left, top - bottom) * 72 < LEADER * ax.figure.dpi:
@@ -184,7 +187,7 @@ def _marks(ax: Axes, scene: Scene) -> dict[tuple[float, float], str]:
     named |= {at: f"{at:.1f}°, {end}" for at, end in ((low, "lowest"), (high, "highest")) if abs(at - start) > 0.05}
     texts, taken = {}, []
     for angle in [*named, *np.arange(MARK_STEP * np.ceil(low / MARK_STEP), high, MARK_STEP)]:
-        at = tuple(float(np.interp(np.radians(angle), theta, rate)) for rate in (x, y))
+        at: Any = tuple(float(np.interp(np.radians(angle), theta, rate)) for rate in (x, y))
         place = ax.transAxes.inverted().transform(ax.transData.transform(at))
         solid = angle in named
         if not solid and any((abs(place - other) < MARK_ROOM).all() for other in taken):
@@ -258,7 +261,7 @@ def _turns(values: Array) -> int:
     return int(np.count_nonzero(np.diff(np.sign(steps[abs(steps) > rounding]))))
 
 
-def _scale(axis: Axis, most: int, values: Array = (0,), least: float = 0, steps: tuple = (1, 2, 4, 5, 10)) -> None:
+def _scale(axis: Any, most: int, values: ArrayLike = (0,), least: float = 0, steps: tuple = (1, 2, 4, 5, 10)) -> None:
     """Few ticks, numbers in full: no offset or power of ten stands over the title. An axis is no narrower than `least`:
     what differs by rounding alone is a straight line."""
     axis.set_major_locator(MaxNLocator(most, steps=steps))

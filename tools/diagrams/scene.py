@@ -95,7 +95,7 @@ class Scene:
     @property
     def still(self) -> bool:
         """Whether the rates keep their values."""
-        return max(np.ptp(self["psi_dot"]), np.ptp(self["phi_dot"])) <= STILL
+        return bool(max(np.ptp(self["psi_dot"]), np.ptp(self["phi_dot"])) <= STILL)
 
     def smooth(self, subdivision: int, *names: str) -> tuple[Array, ...]:
         """Columns with points between the rows, for curves that turn sharply.

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import csv
 import re
 import subprocess
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from tabulate import tabulate
@@ -53,7 +55,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in cells)
 
 
-def frame_table(frame: object) -> str:
+def frame_table(frame: Any) -> str:
     """A pandas table, the first column to the left, the others to the right; what it does not know stays empty."""
     if frame.empty:
         return "None."
@@ -61,6 +63,17 @@ def frame_table(frame: object) -> str:
     texts = [[number(cell).replace("|", "\\|") for cell in row] for row in cells.where(cells.notna(), None).to_numpy()]
     sides = ("left", *["right"] * (frame.shape[1] - 1))
     return tabulate(texts, list(frame.columns), "pipe", disable_numparse=True, colalign=sides)
+
+
+# A figure in prose: a number, and behind it its report and name as a comment.
+FIGURE = re.compile(r"[-−]?\d[\d.]*(?:e-?\d+)?<!--(\w+\.\w+)-->")
+
+
+def with_figures(text: str) -> str:
+    """The text with every figure in its prose as docs/results/data has it; KeyError: there is no such figure."""
+    rows = csv.DictReader((ROOT / "docs" / "results" / "data" / "figures.csv").open(encoding="utf-8"))
+    known = {f"{row['report']}.{row['figure']}": number(float(row["measured"])) for row in rows}
+    return FIGURE.sub(lambda found: f"{re.sub('^-', '−', known[found[1]])}<!--{found[1]}-->", text)
 
 
 def page(template: str, **values: object) -> str:

@@ -40,7 +40,7 @@ def notes(changelog: str, number: str) -> tuple[str, bool]:
 def pack(site: Path, archive: Path) -> None:
     """The site in one file; the same content gives the same bytes."""
     plain = ["--sort=name", "--mtime=@0", "--owner=0", "--group=0", "--numeric-owner", "--mode=u=rwX,go=rX"]
-    folder = ["--transform=s,^[.],wheel-site,", "-C", site, "."]
+    folder: list[str | Path] = ["--transform=s,^[.],wheel-site,", "-C", site, "."]
     subprocess.run(["tar", "--format=gnu", *plain, "-I", "gzip -9n", "-cf", archive, *folder], check=True)
 
 

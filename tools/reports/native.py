@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from cffi import FFI
@@ -31,7 +32,7 @@ def timed() -> str:
 
 
 @cache
-def driver_code() -> object:
+def driver_code() -> Any:
     """The driver, with what its source declares."""
     source = DRIVER.read_text()
     declared = re.findall(r"^typedef struct \w+ \{.*?^\} \w+;", source, re.MULTILINE | re.DOTALL)
@@ -40,7 +41,7 @@ def driver_code() -> object:
     return ffi.dlopen(timed())
 
 
-def bytes_in_use(code: object) -> int:
+def bytes_in_use(code: Any) -> int:
     sizes = code.mallinfo2().sizes
     return sizes[7] + sizes[4]  # uordblks, hblkhd
 

@@ -22,7 +22,6 @@ def arguments() -> argparse.Namespace:
     target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick: to try it out")
     parser.add_argument("--render", action="store_true", help="measure nothing: publish what the data in docs/ say")
     parser.add_argument("--check", action="store_true", help="change nothing: are the pages those of the data?")
-    parser.add_argument("--rig", metavar="FOLDER", help="validation: raw coast-down files (see its page)")
     return parser.parse_args()
 
 

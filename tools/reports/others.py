@@ -21,7 +21,7 @@ from support.schedule import Schedule
 from .page import Report, Row, number, part
 
 HEAD = ["source", "scene", "reference", "wheel.fmu", "difference", "cause of the difference"]
-Compared = tuple[str, str, str, str, float, str]
+Compared = tuple[object, ...]  # a row of HEAD
 STIFFNESSES = {"driving": (40, 80, 160), "pulling": (10, 20, 40)}  # times that of the bushings of axle.fmu
 
 

@@ -2,9 +2,9 @@
 
 requirements.csv lists every figure in its report's order: the cell of a table (its row by the first column) or the
 reduction of a column that it is, unless a part measures it; unit, what is asked of it (an upper bound, zero included,
-or nothing), and words. docs/results/data/NAME.csv has the figures as measured, NAME_TABLE.csv each long table, NAME.txt
-the short ones, which are on the page, one below the other; made.csv the machine, versions, commit and date of each
-report.
+or nothing), and words. In docs/results/data, figures.csv has the figures of all reports as measured, made.csv machine,
+versions, commit and date, NAME_TABLE.csv each long table, NAME.txt the short ones, which are on the page, one below the
+other.
 """
 
 from __future__ import annotations
@@ -82,7 +82,6 @@ class Report:
     library: Library
     folder: Path
     quick: bool = False
-    options: Mapping[str, Any] = field(default_factory=dict)
     figures: dict[str, float] = field(default_factory=dict)
     tables: Tables = field(default_factory=dict)
 
@@ -120,19 +119,23 @@ class Report:
 
     def write(self) -> None:
         """Figures and tables, and what they were measured with."""
-        wanted = REQUIREMENTS.loc[self.name]
-        found = wanted.assign(measured=[self.value(figure) for figure in wanted.itertuples()]).dropna(subset="measured")
-        columns = ["figure", "measured", "unit", "asked", "what"]
-        write_csv(self.folder, self.name, found.rename_axis("figure").reset_index()[columns])
+        found = {figure.Index: self.value(figure) for figure in REQUIREMENTS.loc[self.name].itertuples()}
+        known = [(self.name, figure, f"{value:.7g}") for figure, value in found.items() if not np.isnan(value)]
+        update(self.folder, "figures", pd.DataFrame(known, columns=["report", "figure", "measured"]))
         short = {name: frame for name, frame in self.tables.items() if len(frame) <= SHORT}
         for name in self.tables.keys() - short.keys():
             write_csv(self.folder, f"{self.name}_{name}", self.tables[name])
         if texts := [f"# {name}\n{csv_of(frame)}" for name, frame in short.items()]:
             (self.folder / "data" / f"{self.name}.txt").write_text("\n".join(texts), encoding="utf-8")
-        path = self.folder / "data" / "made.csv"
-        others = pd.read_csv(path, dtype=str) if path.exists() else pd.DataFrame({"report": []})
-        rows = pd.concat([others[others["report"] != self.name], pd.DataFrame([made(self.name)])])
-        write_csv(self.folder, "made", rows.sort_values("report"))
+        update(self.folder, "made", pd.DataFrame([made(self.name)]))
+
+
+def update(folder: Path, name: str, rows: pd.DataFrame) -> None:
+    """Replaces the rows of the same reports in a table of all reports."""
+    path = folder / "data" / f"{name}.csv"
+    others = pd.read_csv(path, dtype=str) if path.exists() else rows.iloc[:0]
+    rows = pd.concat([others[~others["report"].isin(rows["report"])], rows])
+    write_csv(folder, name, rows.sort_values("report", kind="stable"))
 
 
 def csv_of(frame: pd.DataFrame) -> str:
@@ -155,7 +158,8 @@ def read_tables(name: str, folder: Path = RESULTS) -> Tables:
 
 def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) -> tuple[str, str]:
     """The page out of the data, and what was not met in words; views: adds the tables that follow from others."""
-    figures = pd.read_csv(folder / "data" / f"{name}.csv").fillna({"unit": ""})
+    known = pd.read_csv(folder / "data" / "figures.csv").query("report == @name").set_index("figure")["measured"]
+    figures = REQUIREMENTS.loc[name].assign(measured=known).dropna(subset="measured").fillna({"unit": ""})
     figures["shown"] = [f"{number(float(f.measured))} {f.unit}".strip() for f in figures.itertuples()]
     asked = figures[figures["asked"].notna()]
     met = asked["measured"] <= asked["asked"]
@@ -165,7 +169,7 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
     values = dict.fromkeys(REQUIREMENTS.loc[name].index, "–")  # without a solver that is not installed
-    values |= {f.figure: number(float(f.measured)) for f in figures.itertuples()}
+    values |= {f.Index: number(float(f.measured)) for f in figures.itertuples()}
     given = {"name": name, "f": values, "t": views(read_tables(name, folder)), "run": run}
     return page(f"{name}.md.j2", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
 

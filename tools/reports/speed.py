@@ -7,12 +7,14 @@ reason. The requirements are ratios to heyoka or to an empty call of the FMU, wh
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property, partial
 from math import exp, log, nan
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from reference import Inputs
 from support.driver import HEADLINE, Values
 from support.paths import build_folder
 from support.scenes import SCENES, Scene, sines
@@ -196,6 +198,45 @@ def timed_inputs(report: Report, spin: float, orders: int) -> Row:
     return timed_steps(report, start, 1000, sine_table(1000, orders))
 
 
+# ---- cost and accuracy of inputs: the free wheel pushed by six sines, or by constants, in steps of 1 ms ----
+
+STEP, EVERY = 1e-3, 100  # s; steps between compared instants
+CONSTANT = sines(1.0)
+
+
+def halves(inputs: Any) -> Inputs:
+    """Forces and moments out of all six."""
+    return Inputs(lambda t: inputs(t)[:3], lambda t: inputs(t)[3:])
+
+
+TRUTHS = {"none": Inputs(), "constant": halves(lambda _t: CONSTANT), "sines": halves(sines)}
+# How the inputs are given: what judges it, and the table of the master, of so many steps.
+CASES = {
+    "never set": ("none", lambda steps: None),
+    "constant, set at every step": ("constant", lambda steps: np.tile(CONSTANT, (steps, 1, 1))),
+    "sines, held over the step": ("sines", lambda steps: sine_table(steps, 0)),
+    "sines, held at their value in mid-step": ("sines", lambda steps: sine_table(steps, 0, STEP / 2)),
+    "sines, first derivative given": ("sines", lambda steps: sine_table(steps, 1)),
+    "sines, derivatives up to order 2": ("sines", lambda steps: sine_table(steps, 2)),
+    "sines, derivatives up to order 3": ("sines", lambda steps: sine_table(steps, 3)),
+}
+
+
+@part(20, {"inputs": CASES, "method": ("automatic", "adams", "bdf")})
+def inputs(report: Report, case: tuple, method: str) -> Row:
+    """cost of inputs, and their error"""
+    scene, (judge, table_of) = replace(SCENES["free"], duration=2.0 if report.quick else 10.0), case
+    steps = round(scene.duration / STEP)
+    want = headline(scene, steps // EVERY + 1, judge, TRUTHS[judge])
+    solve = report.master.made({"method": method}, STEP, steps, None, table_of(steps))
+    try:
+        costs, rows, counts = repeated(solve, 0.05)
+    except RuntimeError:
+        return {"µs per step": np.nan, "error / range": np.inf}
+    found = {name: counts[name] for name in ("steps", "rhs", "restarts")}
+    return found | {"µs per step": 1e6 * min(costs) / steps, "error / range": range_error(rows[::EVERY], want)}
+
+
 @part(4, {"scene": {"free": 0, "friction": 1}})
 def instances(report: Report, scene: int) -> Row:
     """what an instance takes"""
@@ -273,5 +314,5 @@ def draw_races(tables: Tables) -> Sheet:
     return figure
 
 
-FURTHER = ("inputs", "benchmark", *["studies"] * (EXAMPLES / "studies").exists())
+FURTHER = ("benchmark", *["studies"] * (EXAMPLES / "studies").exists())
 PICTURES = {"races": draw_races}

@@ -111,10 +111,10 @@ def angles(values: Values) -> Form:
 
 def vectors(values: Values) -> Form:
     """Of a wheel that starts with phi = 0 and turns about its axle alone."""
-    m, r_0, r, *inertia, g = constants(values)
+    m, r_0, r, *principal, g = constants(values)
     symbols = hy.make_vars("n_x", "n_y", "n_z", "w_x", "w_y", "w_z", "psi", "phi", "X_O", "Y_O")
     n, w, (psi, phi, *place) = np.array(symbols[:3]), np.array(symbols[3:6]), symbols[6:]
-    zero, one, inertia = 0 * m, 0 * m + 1, np.array(inertia)
+    zero, one, inertia = 0 * m, 0 * m + 1, np.array(principal)
     steep = hy.sqrt(n[0] * n[0] + n[1] * n[1])
     up = np.array([n[0] / steep, n[1] / steep, zero])  # e2, up the slope of the wheel's plane
     n_dot = np.cross(n, w)

@@ -1,22 +1,21 @@
 """wheel.fmu beside published measurements: bicycle tyres that coast down on a drum, and disks that spin to rest.
 
-The raw files of the drum carry no licence and stay outside; --rig FOLDER evaluates them (coast_down.py). Without it the
-derived figures in docs/results/data/validation_rig.csv are the measurement. disks.csv: what others published on disks.
+The raw files of the drum carry no licence and stay outside. What coast_down.py, in the reports of version 2.1.0, made
+of them, docs/results/data/validation_rig.csv and the tables beside it, is the measurement.
 """
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from support.motion import Library
 
-from . import coast_down, plots
-from .coast_down import KEYS, LOAD
+from . import plots
 from .page import Report, Row, Tables, part, read_tables
 from .plots import Sheet
 
+LOAD = 557.4  # N, the rig's own value
+KEYS = ["tyre", "psi", "direction"]
 STEP = 0.1  # s, over which the drag is held
 SHOWN = {"Michelin 4575r16": (40, "Left"), "Vittoria Corsa Open": (100, "Right"), "Michelin 44-406": (60, "Right")}
 SHOWN |= {"Grandprix": (140, "Right")}
@@ -25,16 +24,22 @@ GRAVITY = 9.81  # m/s^2
 DISK = {"m": 0.4, "r_0": 0.0375, "r": 0.0, "J_x": 0.4 * 0.0375**2 / 4, "J_y": 0.4 * 0.0375**2 / 4}
 DISK |= {"J_z": 0.4 * 0.0375**2 / 2, "g": GRAVITY}  # a thin disk of the size of the toy, SI
 DISK_TIME = 100.0  # s
-RIG = ("rig", "runs_left_out", "trials_again", "loads")  # tables out of the raw files
+RIG = ("rig", "runs_left_out", "trials_again", "loads")  # tables
+
+
+def repeatability(rows: pd.DataFrame) -> pd.Series:
+    """Standard deviation of one C per speed, out of the two directions of each tyre and pressure."""
+    both = rows.pivot_table(index=["tyre", "psi", "speed"], columns="direction", values="C").dropna()
+    apart = (both["Left"] - both["Right"]) ** 2 / 2
+    return np.sqrt(apart.groupby("speed").mean())
 
 
 @part(10)
 def rig(report: Report) -> dict[str, object]:
-    """coefficients of rolling resistance out of the raw files, or those kept in docs/results/data"""
-    folder = report.options.get("rig")
-    tables = coast_down.tables(Path(folder)) if folder else read_tables("validation")
+    """coefficients of rolling resistance, as measured on the rig"""
+    tables = read_tables("validation")
     rows, left_out, again, loads = (tables[name] for name in RIG)
-    repeat = coast_down.repeatability(rows) / rows.groupby("speed")["C"].mean()
+    repeat = repeatability(rows) / rows.groupby("speed")["C"].mean()
     means = again.groupby(KEYS)[["C", "C again"]].mean()
     forces = loads[loads["speed"] > loads["speed"].min()].groupby("load")["force"].mean()
     (least, most), (weak, strong) = forces.index, forces
@@ -83,7 +88,7 @@ def coast(library: Library, run: pd.DataFrame, C: float) -> tuple[np.ndarray, np
 def tyres(report: Report) -> dict[str, object]:
     """a constant s per tyre, and the coast-down of wheel.fmu with it"""
     rows, curves, rig = [], [], report.tables["rig"]
-    repeat = coast_down.repeatability(rig).mean()
+    repeat = repeatability(rig).mean()
     for key, run in rig.groupby(KEYS):
         about, C, duration = dict(zip(KEYS, key, strict=True)), run["C"].mean(), run["t"].max()
         off = 100 * (run["C"] / C - 1)
@@ -125,10 +130,9 @@ def steady_circle(report: Report, degrees: float) -> Row:
 
 @part(1)
 def disks(report: Report) -> dict[str, object]:
-    """Euler's disk: the energy that the paper's friction takes, and published disks"""
+    """Euler's disk: the energy that the paper's friction takes"""
     off, loss = held_disk(report.library, np.radians(10), DISK_TIME, s=1e-3 * DISK["r_0"])
-    published = pd.read_csv(Path(__file__).with_name("disks.csv"))
-    return {"disks": published, "disk_loss": loss, "disk_falls": off}
+    return {"disk_loss": loss, "disk_falls": off}
 
 
 def views(tables: Tables) -> Tables:
@@ -152,7 +156,7 @@ def between(values: pd.Series, digits: int) -> str:
 def picture(tables: Tables) -> Sheet:
     """C over the speed with its uncertainty, and the measured coast-down beside the one of wheel.fmu."""
     sheet, (left, right) = plots.sheet("ab", 80)
-    repeat = coast_down.repeatability(tables["rig"])
+    repeat = repeatability(tables["rig"])
     for (tyre, (psi, direction)), colour in zip(SHOWN.items(), plots.COLOURS, strict=False):
         one = f"tyre == {tyre!r} and psi == {psi} and direction == {direction!r}"
         run, curve = (tables[name].query(one) for name in ("rig", "coasts"))

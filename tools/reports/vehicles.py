@@ -6,22 +6,19 @@ from functools import cache
 
 import numpy as np
 import pandas as pd
-from vehicles import axle, balance, car_judges, errors, layout, suspended
+from vehicles import axle, balance, car_judges, layout, suspended
 from vehicles.car import CAR
 from vehicles.drawing import draw, draw_orders
-from vehicles.errors import STEPS
 from vehicles.layout import MANOEUVRES
 from vehicles.options import EXCHANGES, Manoeuvre
-from vehicles.vehicle import Table
+from vehicles.vehicle import STEPS, Table, orders
 
 from .page import Report, Row, Tables, part
 
 GRID = 0.25  # s, where runs of the car are compared
 COMPARED = tuple(name for name in MANOEUVRES if name not in (layout.TOO_FAST.name, layout.SPLIT.name))
-BONDS = ("F_X, J", "F_Y, J", "F_Z, J", "M_1, J", "M_2, J")
 # How the inputs behave over a step: the exchange, and whether positions follow the velocities.
 OVER = {"held, positions lag": ("held", {"follow": 0.0}), **{exchange: (exchange, {}) for exchange in EXCHANGES}}
-GIVEN = {name: OVER[name] for name in ("held, positions lag", "held", "derivatives")}
 STEPS_MS = [1000 * h for h in STEPS]
 KINDS = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
 
@@ -50,7 +47,7 @@ def suspended_wheel(report: Report) -> dict[str, object]:
     draw(suspended.SUSPENDED, suspended.LAUNCH, launch, report.folder / "vehicles_suspended.png", errors=found)
     late = truth["time"] > 2.5  # s
     slope = np.polyfit(truth["time"][late], truth["X_B_dot"][late], 1)[0]
-    figures = {"order": 2 - min(errors.orders(found["derivatives"]))}
+    figures = {"order": 2 - min(orders(found["derivatives"]))}
     return {"suspended": table, "launch": abs(slope / suspended.acceleration(150.0) - 1)} | figures
 
 
@@ -62,13 +59,21 @@ def axle_steps(report: Report, over: tuple) -> list[Row]:
     return [{"step, ms": 1000 * h, "error / range": error} for h, error in found.items()]
 
 
+@part(10)
+def axle_picture(report: Report) -> dict[str, object]:
+    """the axle: picture of its motion"""
+    table = axle.AXLE.drive(report.fmus, axle.TRAILING, 0.0005, "derivatives", 0.02).whole
+    draw(axle.AXLE, axle.TRAILING, table, report.folder / "vehicles_axle.png", ", step 0.5 ms")
+    return {}
+
+
 @part(30, {"scene": axle.SCENES})
 def axle_stiffness(report: Report, scene: Manoeuvre) -> Row:
     """the axle: error against the stiffness"""
     factors = (1.0, 2.0, 4.0)
     found = axle.stiffness_errors(report.fmus, scene.changed(stop=2.0), factors)
     row = {f"stiffness x {f:g}": e for f, e in found.items()}
-    return row | {"order in 1/k": float(-errors.orders(found)[-1])}
+    return row | {"order in 1/k": float(-orders(found)[-1])}
 
 
 @part(30, {"stiffness x": (0.5, 1.0, 2.0, 4.0)})
@@ -77,16 +82,6 @@ def axle_limits(report: Report, factor: float) -> Row:
     scene = axle.CLOTHOID.changed(stop=1.0, stiffness=factor)
     found = {f"{e}, ms": 1000 * axle.longest_step(report.fmus, scene, e) for e in EXCHANGES}
     return found | {"2 J_x / c_a, ms": 1000 * 2 * axle.constants(scene).J_x / (500.0 * factor)}
-
-
-@part(10, {"inputs over the step": GIVEN})
-def axle_energy(report: Report, over: tuple) -> Row:
-    """the axle: energy added per bond"""
-    exchange, more = over
-    scene = axle.TRAILING.changed(stop=2.0, **({"follow": 1.0} | more))
-    bonds, gain = axle.energy(report.fmus, scene, 0.001, exchange)
-    sums = bonds.sum(axis=0)
-    return dict(zip(BONDS, sums, strict=True)) | {"sum, J": float(sums.sum()), "gain, J": gain}
 
 
 @part(120)
@@ -110,7 +105,8 @@ def car_runs(report: Report) -> dict[str, object]:
 @part(600, {"manoeuvre": lambda report: ("step",) if report.quick else COMPARED, "inputs over the step": EXCHANGES})
 def car_errors(report: Report, name: str, exchange: str) -> list[Row]:
     """the car: error against rollback at half of the least step, by manoeuvre, master, step and output"""
-    truth, rows = fine(report, name), []
+    truth = fine(report, name)
+    rows: list[Row] = []
     for h in STEPS:
         found = CAR.apart(CAR.drive(report.fmus, begin(name), h, exchange, GRID).whole, truth)
         rows.append({"step [ms]": 1000 * h} | found | {"largest": max(found.values())})
@@ -131,11 +127,9 @@ def fine(report: Report, name: str) -> Table:
     return fine_of(tuple(report.fmus.items()), name)
 
 
-@part(30)
-def pictures(report: Report) -> dict[str, float]:
-    """a picture of the axle's motion, and of the orders; the largest error where no wheel stops"""
-    table = axle.AXLE.drive(report.fmus, axle.TRAILING, 0.0005, "derivatives", 0.02).whole
-    draw(axle.AXLE, axle.TRAILING, table, report.folder / "vehicles_axle.png", ", step 0.5 ms")
+@part(1)
+def rollback(report: Report) -> dict[str, float]:
+    """the car: the largest error where no wheel stops; a picture of the orders"""
     found = report.tables["car_errors"].groupby(["manoeuvre", "inputs over the step"], sort=False)["largest"].agg(list)
     of = {
         name: {e: dict(zip(STEPS, largest, strict=True)) for e, largest in found[name].items()}
@@ -151,10 +145,10 @@ def views(tables: Tables) -> Tables:
     halved = np.log2(found["largest"]).groupby([found["manoeuvre"], found["inputs over the step"]]).diff()
     found = found.assign(order=-halved)
     at_1_ms = found[found["step [ms]"] == 1].rename(columns={"largest": "error"})
-    orders = at_1_ms.pivot(index="manoeuvre", columns="inputs over the step", values=["error", "order"])
-    orders = orders[[(what, exchange) for exchange in EXCHANGES for what in ("error", "order")]]
-    orders.columns = [f"{exchange}: {what}" for what, exchange in orders.columns]
+    by_name = at_1_ms.pivot(index="manoeuvre", columns="inputs over the step", values=["error", "order"])
+    by_name = by_name[[(what, exchange) for exchange in EXCHANGES for what in ("error", "order")]]
+    by_name.columns = [f"{exchange}: {what}" for what, exchange in by_name.columns]
     axle = tables["axle_steps"].pivot(index="step, ms", columns="inputs over the step", values="error / range")
     axle = axle[tables["axle_steps"]["inputs over the step"].unique()].sort_index(ascending=False)
-    orders = orders.loc[found["manoeuvre"].unique()]
-    return tables | {"car_orders": orders.reset_index(), "axle_by_step": axle.reset_index()}
+    by_name = by_name.loc[found["manoeuvre"].unique()]
+    return tables | {"car_orders": by_name.reset_index(), "axle_by_step": axle.reset_index()}

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
 from zipfile import BadZipFile, ZipFile
 
@@ -74,7 +74,7 @@ class Measure(NamedTuple):
         """The FMU's variables that have to be read."""
         return MADE_OF.get(self.quantity, (self.quantity,))
 
-    def value(self, t: numpy.ndarray, x: numpy.ndarray | float, *y: numpy.ndarray) -> float:
+    def value(self, t: numpy.ndarray, x: Any, *y: numpy.ndarray) -> float:
         """For samples of the variables at times t, the last of which is the end of the run; x at the end for `last`.
 
         A time is that of the first passage, interpolated linearly between two samples; NaN if there is none.
@@ -256,7 +256,7 @@ class Study:
         )
 
     @property
-    def varied(self) -> dict[str, list[float]]:
+    def varied(self) -> dict[str, Sequence[float]]:
         """The names that vary, with their values."""
         return self.grid | self.list
 
@@ -273,7 +273,7 @@ class Study:
         )
 
     @property
-    def times(self) -> list[float]:
+    def times(self) -> Sequence[float]:
         """The communication points in s; only the first and the last if nothing is read in between."""
         begin, end = self.branch_at or 0.0, float(self.stop_time)
         steps = math.ceil((end - begin) / self.interval * (1 - 1e-12)) if self.sampled else 1

@@ -32,7 +32,8 @@ from .plan import Status, Study, StudyError, can_change, counters_of
 Array = NDArray[np.float64]
 Result = dict[str, NDArray]
 Values = Mapping[str, float]
-Run = tuple[Status, float, Array]  # the fate of the wheel, its time [s], a row of samples at each time that is reached
+# The fate of the wheel, its time [s], a row of samples at each time that is reached.
+Run = tuple[Status, float | None, Array]
 OK, WARNING, DISCARD = range(3)  # fmi2Status
 LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # fmi2StatusKind
 MARCH = "march.library"  # march.c, compiled (Dask would take a .so for a module), beside the FMU's modelDescription.xml
@@ -64,7 +65,8 @@ class Instance:
         callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
         self.fmu.instantiate(callbacks=callbacks)
         self.typed = cache(self._typed)
-        self._snapshot, self._kept = fmi2FMUstate(), None  # at branch_at: values and messages of that start
+        self._snapshot = fmi2FMUstate()  # at branch_at
+        self._kept: tuple | None = None  # values and messages of that start
         self._march = CDLL(str(Path(folder) / MARCH)).march
 
     def _log(self, _environment: object, _name: bytes, status: int, _category: bytes, text: bytes) -> None:

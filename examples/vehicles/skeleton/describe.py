@@ -86,7 +86,7 @@ def main() -> None:
 
     description = templates.get_template("modelDescription.xml.jinja").render(values)
     description = numbered(description, {"Outputs": known, "InitialUnknowns": at_start})
-    values["guid"] = ElementTree.fromstring(description.encode()).get("guid")
+    values["guid"] = ElementTree.fromstring(description.encode()).attrib["guid"]
     write("variables.hpp")
     write("fmu/modelDescription.xml", description)
     if wheels:

@@ -60,14 +60,6 @@ def test_help_lists_every_parameter_and_all_of_them_are_taken(name: str) -> None
         assert options.value(name, f"{parameter}=1") == (parameter, 1.0)
 
 
-@pytest.mark.parametrize(
-    ("line", "start"), [("car", "0 15"), ("car manoeuvre=hill", "1500 0"), ("car M_0=7 v_1=3", "7 3")]
-)
-def test_help_has_the_values_of_the_manoeuvre_that_is_named(line: str, start: str) -> None:
-    listed = reads(f"{line} --help").stdout
-    assert [re.search(rf"\n  {name} +\S+ +(\S+)", listed)[1] for name in ("M_0", "v_1")] == start.split()
-
-
 @pytest.mark.parametrize(("model", "name", "said"), [("axle", "m_B", ": it must be above 0 kg."), ("wheel", "m", "")])
 def test_the_unit_refuses_a_value_in_its_own_words(fmus: Fmus, model: str, name: str, said: str) -> None:
     component = Component(model, fmus[model], {name: -1.0})
@@ -110,13 +102,6 @@ def test_every_package_of_a_document_has_its_values(run: Callable, tmp_path: Pat
     lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
     values = {line.split()[0]: np.isfinite(float(line.split()[1])) for line in lines}
     assert values == dict.fromkeys(names, True)
-
-
-def test_the_documents_print_commands_for_every_vehicle() -> None:
-    assert {line.split()[0] for line in PRINTED} == set(options.FOLDERS)
-    assert "car manoeuvre=hill slope=20%" in RUNS and PACKAGES
-    assert all("B_hold" in reads(line).stdout for line in PRINTED.difference(RUNS))
-    assert len(PRINTED) > len(RUNS)
 
 
 @pytest.mark.parametrize("case", [case for case in CASES.values() if case["status"] != "2"], ids=lambda of: of["line"])

@@ -5,25 +5,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.bounds import beyond, relative_error, within
-from vehicles import errors, suspended
+from vehicles import suspended
 from vehicles.component import Component, loaded
 from vehicles.master import Master
 from vehicles.options import manoeuvres
 from vehicles.suspended import LAUNCH, SUSPENDED
-from vehicles.vehicle import Fmus, Table, upright
+from vehicles.vehicle import Errors, Fmus, Table, orders, upright
 
 STEPS = (0.0025, 0.00125, 0.000625)  # s
 
 
 @pytest.fixture(scope="module")
-def found(fmus: Fmus, truth: Table) -> errors.Errors:
+def found(fmus: Fmus, truth: Table) -> Errors:
     return suspended.convergence(fmus, truth, STEPS)
 
 
-def test_held_values_converge_with_order_one_first_derivatives_with_two(found: errors.Errors) -> None:
+def test_held_values_converge_with_order_one_first_derivatives_with_two(found: Errors) -> None:
     for kind, order, pairs in (("positions held", 1, 1), ("derivatives", 2, 2)):
-        orders = errors.orders(found[kind])[-pairs:]
-        within(np.abs(np.subtract(orders, order)).max(), 0.1, f"{kind}: off the order")
+        measured = orders(found[kind])[-pairs:]
+        within(np.abs(np.subtract(measured, order)).max(), 0.1, f"{kind}: off the order")
 
 
 @pytest.mark.parametrize(("torque", "check"), [(150.0, within), (151.5, beyond)])
@@ -34,13 +34,13 @@ def test_wheel_and_mass_accelerate_together_as_newton_and_euler_say(truth: Table
         check(abs(found / suspended.acceleration(torque) - 1), 1e-4, f"slope of {body}, relative")
 
 
-def test_straight_lines_are_a_hundred_times_as_accurate_as_held_values(found: errors.Errors) -> None:
+def test_straight_lines_are_a_hundred_times_as_accurate_as_held_values(found: Errors) -> None:
     linear, held = (found[kind][STEPS[-1]] for kind in ("derivatives", "positions held"))
     within(linear, 2e-4, "error / range")
     beyond(held / linear, 100, "error of held values over that of derivatives")
 
 
-def test_the_error_of_held_positions_is_the_drag_of_their_lag(found: errors.Errors) -> None:
+def test_the_error_of_held_positions_is_the_drag_of_their_lag(found: Errors) -> None:
     held, lagging = ([*found[kind].values()] for kind in ("held", "positions held"))
     within(np.divide(held, lagging).max(), 0.25, "error of those that follow over that of held positions")
     for factor, check in ((1, within), (2, beyond)):  # of the step, and so of the drag

@@ -5,26 +5,20 @@ m_t = m + 2 J_z / R^2, I_t the moment of inertia about the axle's middle with 2 
 middle and the yaw rate:
 
     m_t v' = S w^2 + (M_left + M_right) / R - friction,    I_t w' = -S v w + b (M_right - M_left) / R - friction
-
-Its studies: error against the communication step and against the stiffness, limits, energy per bond. A bond is an
-effort (force, moment) that a body gives to a wheel, and the flow (velocity, angular velocity) that the wheel gives
-back. The body's side of it is the integral of its effort with the flow it received; the wheel's side that of the effort
-it received with its flow. The difference is the energy that the coupling added. Both are taken over each communication
-step with straight lines between the values at its ends.
 """
 
 from collections.abc import Callable
+from itertools import takewhile
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 from scipy.integrate import odeint
 from scipy.optimize import brentq
 
-from . import errors, options
-from .component import loaded
-from .master import Master
+from . import options
 from .options import Manoeuvre, manoeuvres
-from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, beyond_dry, road, upright
+from .vehicle import DRY_ROAD, STEPS, Fmus, Table, Vehicle, beyond_dry, road, upright
 
 WHEELS = {"left": "left", "right": "right"}
 COMPARED = options.file("axle")["compared"]
@@ -32,7 +26,6 @@ SCENES = manoeuvres("axle")
 STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT = SCENES.values()
 LIMIT_STEPS = (0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
 GRID = 0.048  # s, which all of them divide
-BONDS = {"F_X": "X_O_dot", "F_Y": "Y_O_dot", "F_Z": "Z_O_dot", "M_1": "theta_dot", "M_2": "psi_dot"}
 OF_WHEEL = {"m": 20.0, "J_x": 0.9, "J_z": 1.8}  # the wheels' defaults
 
 
@@ -68,7 +61,7 @@ def without_closed_form(scene: Manoeuvre) -> str:
     return ""
 
 
-Velocities = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+Velocities = Callable[[Any], tuple[np.ndarray, np.ndarray]]
 
 
 def velocities(scene: Manoeuvre) -> tuple[Velocities, tuple[float, ...]]:
@@ -124,7 +117,7 @@ def rigid(scene: Manoeuvre, times: np.ndarray) -> Table:
     """X, Y, psi, v, omega of the rigid axle at `times` (rising from 0); the path from v and omega by SciPy."""
     at, stops = velocities(scene)
 
-    def rate(t: float, y: np.ndarray) -> tuple[float, float, float]:
+    def rate(t: float, y: np.ndarray) -> tuple[np.ndarray, ...]:
         v, omega = at(t)
         return v * np.cos(y[2]), v * np.sin(y[2]), omega
 
@@ -158,7 +151,7 @@ def grip(table: Table) -> float:
 AXLE = Vehicle("axle", starts, verdict, wheels=WHEELS, complete=beside_rigid, grip=grip)
 
 
-def step_errors(fmus: Fmus, scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = errors.STEPS) -> dict:
+def step_errors(fmus: Fmus, scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = STEPS) -> dict:
     """Error by h at this stiffness: the truth is the run with rollback at a quarter of the smallest step."""
     truth = AXLE.drive(fmus, scene, min(steps) / 4, "rollback", 0.02).whole
     return {h: AXLE.error(fmus, scene, truth, h, exchange) for h in steps}
@@ -170,32 +163,14 @@ def stiffness_errors(fmus: Fmus, scene: Manoeuvre, factors: tuple[float, ...], s
     return {k: AXLE.error(fmus, scene.changed(stiffness=k), truth, step, "rollback") for k in factors}
 
 
-def energy(fmus: Fmus, scene: Manoeuvre, step: float, exchange: str) -> tuple[np.ndarray, float]:
-    """Energy added over a run [J], of each wheel by bond, and the gain of the sum of all energies: of a scene without
-    drive and rolling friction, in which all energy is in the wheels, the beam and its dampers."""
-    efforts = [("axle", f"{effort}_{wheel}") for wheel in WHEELS for effort in BONDS]
-    flows = [(wheel, flow) for wheel in WHEELS for flow in BONDS.values()]
-    stored = [("left", "E"), ("right", "E"), ("axle", "E"), ("axle", "W_loss")]
-    parts, bonds, rows = AXLE.parts(fmus, scene), [*efforts, *flows], []
-    with loaded(*parts):
-        master = Master(parts, AXLE.connections)
-        for _ in master.steps(scene.stop, step, exchange, ends=bonds):
-            rows.append((master.read(bonds), master.read(bonds, rates=True), master.read(stored)))
-    begin, rate, total = (np.array(column) for column in zip(*rows, strict=True))
-    h = step * (exchange == "derivatives")  # inputs go on straight lines, else they are held
-    instants = begin, begin + h * rate, np.array(master.at_end)
-    (e, f), (e_line, f_line), (e_end, f_end) = (np.split(x, 2, axis=1) for x in instants)
-    added = step * (product(e, e_line, f, f_end) - product(e, e_end, f, f_line))[:-1].sum(axis=0)
-    return added.reshape(len(WHEELS), -1), float(total[-1].sum() - total[0].sum())
-
-
-def product(a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray) -> np.ndarray:
-    """Mean of the product of two straight lines."""
-    return (2 * a0 * b0 + a0 * b1 + a1 * b0 + 2 * a1 * b1) / 6
+def energy_gain(table: Table) -> float:
+    """Of wheels, beam and dampers together over a run without drive and rolling friction, J: added by the coupling."""
+    total = table["E"] + table["left.E"] + table["right.E"] + table["W_loss"]
+    return float(total[-1] - total[0])
 
 
 def longest_step(fmus: Fmus, scene: Manoeuvre, exchange: str) -> float:
-    """Of LIMIT_STEPS, s."""
+    """The longest of LIMIT_STEPS up to which a run neither ends early nor strays beyond 10 % of the range, s."""
     truth = rigid(scene, np.arange(int(scene.stop / GRID) + 1) * GRID)
     scene = scene.changed(stop=float(truth["time"][-1]))
-    return errors.longest(LIMIT_STEPS, lambda h: AXLE.error(fmus, scene, truth, h, exchange))
+    return [0.0, *takewhile(lambda h: AXLE.error(fmus, scene, truth, h, exchange) < 0.1, LIMIT_STEPS)][-1]

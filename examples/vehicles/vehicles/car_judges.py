@@ -53,7 +53,7 @@ class Finding(NamedTuple):
 
 def force(table: Table, wheels: list[str], k: int = 3) -> np.ndarray:
     """Force of the ground on some wheels together, along X, Y or the normal."""
-    return sum(table[f"{w}.lambda_{k}"] for w in wheels)
+    return np.sum([table[f"{w}.lambda_{k}"] for w in wheels], axis=0)
 
 
 def friction(table: Table) -> dict[str, np.ndarray]:

@@ -9,9 +9,8 @@ from matplotlib.axes import Axes
 
 from diagrams import style
 
-from .errors import Errors
 from .options import Manoeuvre, file
-from .vehicle import Table, Vehicle
+from .vehicle import Errors, Table, Vehicle
 
 COLOURS = (style.BLUE, style.VERMILLION, style.SKY, style.ORANGE, style.PURPLE, style.GREY)
 MARKS = {

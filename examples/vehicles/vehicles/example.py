@@ -54,7 +54,7 @@ def judged(fmus: Fmus, asked: Manoeuvre, run: Run) -> tuple[bool, list[str]]:
     of = VEHICLES[asked.vehicle]
     if not run.ending:
         passed, lines = of.verdict(run.table, asked)
-        cause = of.grip(run.table) > DRY_ROAD and diverged(fmus, asked, run)
+        cause = diverged(fmus, asked, run) if of.grip(run.table) > DRY_ROAD else ""
         return passed, [*lines, *filter(None, [cause])]
     how, cause = of.describe(run.ending), diverged(fmus, asked, run)
     if not cause and "lifts_off" in asked.ends and "lifted off" in how:

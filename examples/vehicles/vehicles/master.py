@@ -78,18 +78,12 @@ class Master:
             yield (level := list(sorter.get_ready()))
             sorter.done(*level)
 
-    def steps(
-        self, stop: float, h: float, exchange: str, every: int = 1, progress: bool = False, ends: Iterable[Signal] = ()
-    ) -> Iterator[float]:
+    def steps(self, stop: float, h: float, exchange: str, every: int = 1, progress: bool = False) -> Iterator[float]:
         """Simulates from 0 to `stop`, with a shorter last step where h does not divide it, and waits after the exchange
         at the communication points 0, `every`, ... and `stop`: yields the time, at which variables may be read, and
-        inputs set that are not connected.
-
-        `at_end`: values of the signals `ends` at the end of the steps before a wait, before the exchange there. Raises
-        component.Ended.
-        """
+        inputs set that are not connected. Raises component.Ended."""
         self.value, self.rate, self.begin_value, self.begin_rate = np.zeros((4, len(self.number)))
-        self.at_end, self.states, count = [], {name: c_void_p() for name in self.components}, ceil(stop / h - 1e-9)
+        self.states, count = {name: c_void_p() for name in self.components}, ceil(stop / h - 1e-9)
         self._exchange(0.0, rates=False)
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
@@ -103,8 +97,6 @@ class Master:
                     self._step_twice(t, to - t, i == 0)
                 elif i < count:
                     self._all(t, "fmi2DoStep", t, to - t, 1)
-                if (i + 1) % every == 0 or i + 1 >= count:
-                    self.at_end.append(self.read(ends))
         finally:
             for name, state in self.states.items():
                 self.components[name].fmu.freeFMUState(state)
@@ -150,11 +142,9 @@ class Master:
         except FMICallException:
             raise component.ended(t) from None
 
-    def read(self, signals: Iterable[Signal], rates: bool = False) -> list[float]:
-        """Their values, or their first derivatives."""
+    def read(self, signals: Iterable[Signal]) -> list[float]:
+        """Their values."""
         found = []
         for component, of in groupby(signals, lambda signal: self.components[signal[0]]):
-            numbers = component.references([name for _, name in of])
-            more = (component.fmu.getRealOutputDerivatives, [1] * len(numbers)) if rates else (component.fmu.getReal,)
-            found += more[0](numbers, *more[1:])
+            found += component.fmu.getReal(component.references([name for _, name in of]))
         return found

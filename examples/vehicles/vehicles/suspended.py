@@ -14,9 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from . import errors, ssp
+from . import ssp
 from .options import Manoeuvre, manoeuvres
-from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, beyond_dry, road, upright
+from .vehicle import DRY_ROAD, Errors, Fmus, Table, Vehicle, beyond_dry, road, upright
 
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
@@ -158,7 +158,7 @@ def fine(fmus: Fmus, step: float) -> Table:
     return SUSPENDED.drive(fmus, LAUNCH, step, "derivatives", GRID).whole
 
 
-def convergence(fmus: Fmus, truth: Table, steps: Sequence[float] = STEPS) -> errors.Errors:
+def convergence(fmus: Fmus, truth: Table, steps: Sequence[float] = STEPS) -> Errors:
     """With all inputs held, with positions that follow the velocities beside them, and on straight lines."""
     kinds = {"positions held": ("held", {"follow": 0.0}), "held": ("held", {}), "derivatives": ("derivatives", {})}
     return {

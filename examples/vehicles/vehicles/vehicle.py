@@ -20,6 +20,13 @@ from .options import Manoeuvre, file
 Fmus = dict[str, Path]
 Table = dict[str, np.ndarray]
 DRY_ROAD = 1.0  # friction coefficient of tyres on dry asphalt, about
+STEPS = (0.002, 0.001, 0.0005)  # s
+Errors = dict[str, dict[float, float]]  # relative to the range: by exchange and communication step
+
+
+def orders(errors: dict[float, float]) -> np.ndarray:
+    """Observed order between neighbours of the errors by step."""
+    return np.diff(np.log([*errors.values()])) / np.diff(np.log([*errors]))
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,11 @@
-// The fuzzer's entry. An input that takes too much processor time is a finding, however busy the machine is:
-// libFuzzer's own limit counts the time on the clock.
+// The fuzzer's entry: bytes to a sequence of calls. An input that takes too much processor time is a finding, however
+// busy the machine is: libFuzzer's own limit counts the time on the clock.
 #include <sys/time.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
+#include <iterator>
 
 #include "session.hpp"
 
@@ -20,6 +21,48 @@ void give_up(int) {
 }
 
 }  // namespace
+
+namespace fuzz {
+
+Session::Session(const std::uint8_t* data, std::size_t size) : in_(data, size) {
+  const unsigned watched = in_.byte();
+  log_.digests = watched & 1;
+  log_.calls_back = watched & 2;
+  log_.on = !(watched & 4);
+}
+
+Session::~Session() {
+  use(log_);
+  for (Saved& saved : saved_) {
+    const fmi2Component any = make_instance();
+    expect(fmi2FreeFMUstate(any, &saved.state) == fmi2OK, "a state outlives its instance");
+    fmi2FreeInstance(any);
+  }
+  for (Slot& slot : slots_) fmi2FreeInstance(slot.component);
+}
+
+// The action that a byte stands for; without an instance few have a meaning.
+const Session::Action& Session::action(unsigned choice) const {
+#define ROW(name) {#name, &Session::name},
+  static constexpr Action with_instance[] = {FUZZ_ACTIONS(ROW, ROW)};
+  static constexpr Action always[] = {ROW(instantiate) ROW(free_instance) ROW(start_quickly) ROW(start_quickly)};
+#undef ROW
+  return now_->component ? with_instance[choice % std::size(with_instance)] : always[choice % std::size(always)];
+}
+
+bool Session::go_on() {
+  if (in_.empty() || actions_left_ == 0) return false;
+  use(log_);
+  --actions_left_;
+  const unsigned choice = in_.byte();
+  now_ = slots_ + (choice & 1);
+  const Action& chosen = action(choice / 2);
+  trace("%u: %s\n", choice & 1, chosen.name);
+  (this->*chosen.act)();
+  return true;
+}
+
+}  // namespace fuzz
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
   std::signal(SIGVTALRM, give_up);

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import latex2mathml.converter
 from docutils import nodes
@@ -75,7 +76,7 @@ def mathml(latex: str, display: str) -> str:
     return re.sub(rf"(?<=&#x00028;</mo>){THIN}|{THIN}(?=<mo[^>]*>&#x00028;)", "", written)
 
 
-def formula(writer: object, node: nodes.Element) -> None:
+def formula(writer: Any, node: nodes.Element) -> None:
     """Writes a formula; one that is wider than the page scrolls in its frame."""
     block = isinstance(node, nodes.math_block)
     written = mathml(node.astext(), "block" if block else "inline")

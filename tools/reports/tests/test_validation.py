@@ -1,8 +1,7 @@
-"""The evaluation of published measurements: coast-downs of known rolling resistance, and the mapping onto the FMU."""
+"""Published measurements on the FMU: a coast-down of known rolling resistance, a disk on its steady circle."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -11,11 +10,11 @@ import pytest
 from support.bounds import beyond, within
 from support.motion import Library
 
-from reports import coast_down, validation
-from reports.coast_down import DRUM_LENGTH, DRUM_MASS, LOAD, SHARE, WHEELS
+from reports import validation
+from reports.validation import LOAD
 
-TYRE, C, R = "Michelin 44-406", 2.5e-3, 0.24  # R in m
-MASSES = np.array([DRUM_MASS, SHARE * WHEELS[TYRE]])
+C, R = 2.5e-3, 0.24  # R in m
+MASSES = np.array([17.8, 0.41])  # kg, of drum and wheel at their rims
 
 
 class Coast(NamedTuple):
@@ -31,56 +30,14 @@ class Coast(NamedTuple):
     def speed(self, to_rest: np.ndarray) -> np.ndarray:
         return np.sqrt(self.a / self.b) * np.tan(np.sqrt(self.a * self.b) * to_rest)
 
-    def revolutions(self, length: float) -> np.ndarray:
-        """Instants at which the rim has turned once more, down to 1 m/s: v^2 + a / b falls like exp(-2 b x)."""
-        squares = (25**2 + self.a / self.b) * np.exp(-2 * self.b * length * np.arange(1, 5000)) - self.a / self.b
-        return self.to_rest(25) - self.to_rest(np.sqrt(squares[squares > 1]))
-
 
 ALONE = Coast(0.01, 2e-4), Coast(0.03, 2e-3)  # drum, wheel
 DRAG = MASSES @ ALONE  # without contact: N, N / (m/s)^2
 TOGETHER = Coast(*(DRAG + [C * LOAD, 0]) / MASSES.sum())
 
 
-def write(path: Path, drum: np.ndarray, wheel: np.ndarray) -> None:
-    """A file of the rig: a row per trigger with the counts before it; the drum has a false one after each 40th."""
-    counted = np.sort(np.concatenate([drum, drum[::40] + 0.03])), wheel
-    times = np.sort(np.concatenate([*counted, [drum[-1] + 100]]))
-    columns = np.zeros((len(times), 5))
-    columns[:, 0], columns[:, 2:5:2] = 1e6 * times, np.transpose([np.searchsorted(of, times) for of in counted])
-    np.savetxt(path, columns, "%.0f", ",")
-
-
-def evaluate(folder: Path, later: float = 0.0) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """What is found in a pair of runs, and in the same pair under another name, so many seconds later."""
-    for kind, (drum, wheel) in (("Contact", (TOGETHER, TOGETHER)), ("Separate", ALONE)):
-        runs = drum.revolutions(DRUM_LENGTH), wheel.revolutions(2 * np.pi * R)
-        for direction, shift in (("Left", 0.0), ("Right", later)):
-            write(folder / f"{TYRE} - {kind} - {direction} - 60 psi.csv", *(shift + run for run in runs))
-    return coast_down.evaluate(*coast_down.read(folder))
-
-
-def test_a_known_rolling_resistance_is_found_in_coast_downs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found, _ = evaluate(tmp_path)
-    assert list(found["speed"]) == list(coast_down.SPEEDS)
-    within(np.abs(found["C"] / C - 1).max(), 5e-3, "C")
-    within(abs(found["R"].iloc[0] / R - 1), 1e-3, "rolling radius")
-    monkeypatch.setattr(coast_down, "SHARE", 0.0)
-    without_wheel, _ = evaluate(tmp_path)
-    beyond(np.abs(without_wheel["C"] / C - 1).max(), 0.05, "C where the wheel has no inertia")
-
-
-def test_one_run_under_two_names_counts_once(tmp_path: Path) -> None:
-    found, left_out = evaluate(tmp_path)
-    assert set(found["direction"]) == {"Left"}
-    assert list(left_out["reason"]) == [f"a copy of {TYRE}, 60 psi, left"]
-    found, left_out = evaluate(tmp_path, 1.000003)
-    assert set(found["direction"]) == {"Left", "Right"}
-    assert left_out.empty
-
-
 def test_a_coast_down_of_the_fmu_is_that_of_drum_and_wheel(library: Library, monkeypatch: pytest.MonkeyPatch) -> None:
-    speeds = np.array(coast_down.SPEEDS)
+    speeds = np.arange(3.0, 22.0, 3.0)
     run = pd.DataFrame({"speed": speeds, "drag": DRAG @ [speeds**0, speeds**2]}).assign(R=R, M=MASSES.sum())
 
     def apart() -> float:
