@@ -122,13 +122,15 @@ def events_of(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
     return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s.", *bands, *ticks]
 
 
-def slides_of(scene: Scene) -> list[str]:
-    """How often the wheel slides, and the marks that show it."""
+def slides_of(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
+    """How often the wheel slides, and its marks in the panels that are drawn: over time, on the path."""
     if not scene.slides.any():
         return ["It never slides."] * (scene.value("mu_slide") > 0)
     count, most = int((np.diff(scene.slides.astype(int), prepend=0) > 0).sum()), scene.slip.max()
     often = "once" if count == 1 else f"{count} times"
-    return [f"It slides {often}, at up to {most:.3g} m/s (purple; thin lines: grip is lost and returns)."]
+    marks = ["purple"] * any(panel.timed or panel.draw is panels.draw_path for panel in drawn)
+    marks += ["thin lines: grip is lost and returns"] * any(panel.timed for panel in drawn)
+    return [f"It slides {often}, at up to {most:.3g} m/s" + (f" ({'; '.join(marks)})." if marks else ".")]
 
 
 def caption(
@@ -141,7 +143,7 @@ def caption(
     for scene, of_panels in zip(scenes, remarks, strict=True):
         name = [f"{title_of(scene).split(',')[0]}:"] * (len(scenes) > 1)
         ends = [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
-        said = [*dict.fromkeys([*events_of(scene, drawn), *slides_of(scene), *of_panels]), *ends]
+        said = [*dict.fromkeys([*events_of(scene, drawn), *slides_of(scene, drawn), *of_panels]), *ends]
         texts += [" ".join([*name, *said])] * bool(said)
     return [line for text in texts for line in wrapped(text, width, size)]
 

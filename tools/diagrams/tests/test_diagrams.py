@@ -229,6 +229,9 @@ def test_the_slip_has_a_panel_and_the_caption_its_size_where_a_scene_slides() ->
         return {panel.name for _, _, drawn, _ in paper.pictures(scenes, Path("results")) for panel in drawn}
 
     assert "slip" in names(slid(), slid()) and "slip" not in names(scene(mu_max=0.45), scene(0.03))
-    assert "slides 2 times, at up to 0.5 m/s" in " ".join(paper.caption([slid()], [[]], 500))
-    assert "never slides" in " ".join(paper.caption([scene(mu_max=0.45, mu_slide=0.4)], [[]], 500))
-    assert "slides" not in " ".join(paper.caption([scene()], [[]], 500))
+    by_name = {panel.name: caption(slid(), (panel,)) for panel in paper.PAPERS + paper.OTHERS}
+    assert all("slides 2 times, at up to 0.5 m/s" in text for text in by_name.values())
+    assert {name for name, text in by_name.items() if "thin lines" in text} == {"position", "tilt", "ground"}
+    assert {name for name, text in by_name.items() if "purple" not in text} == {"rates"}
+    assert "never slides" in caption(scene(mu_max=0.45, mu_slide=0.4))
+    assert "slides" not in caption(scene())
