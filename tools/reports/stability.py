@@ -58,7 +58,7 @@ def cases(report: Report) -> dict[str, object]:
         rows = [row_of(case, v) for case, future in zip(chosen, futures, strict=True) for v in answer(future)]
     rows = pd.DataFrame(rows).reindex(columns=[*COLUMNS, *JUDGES, *(f"{judge}: floor" for judge in JUDGES)])
     faults = rows[~rows["as expected"]]
-    found = {"sweep": rows, "faults": faults, "amplification": [amplification(rows, judge) for judge in JUDGES]}
+    found = {"sweep": rows, "faults": faults}
     found["loose"] = [{"case": str(c), "needs": c.loosest, "why": c.remark} for c in chosen if c.loosest < 1e-4]
     return found | {"cases": len(chosen), "runs": len(rows), "faults_found": len(faults)}
 
@@ -68,17 +68,6 @@ def row_of(case: Case, verdict: Verdict) -> Row:
     head = (str(case), str(case.expect), verdict.tolerance, verdict.outcome, verdict.holds, verdict.claimed)
     row = dict(zip(COLUMNS, (*head, verdict.steps, "; ".join(verdict.faults)), strict=True))
     return row | {f.judge: f.error for f in verdict.errors} | {f"{f.judge}: floor": f.floor for f in verdict.errors}
-
-
-def amplification(rows: pd.DataFrame, judge: str) -> Row:
-    """How many cases keep the error within the tolerance, and which exceed it most."""
-    rows = rows[rows["claimed"] & rows[judge].notna()]
-    ratios = (rows[judge] - rows[f"{judge}: floor"]).clip(lower=0) / rows["tolerance"]
-    worst = ratios.groupby(rows["case"], sort=False).max()
-    top = worst.sort_values(ascending=False, kind="stable")[:3]
-    row = {"judge": JUDGES[judge], "cases": len(worst), "within the tolerance": (worst <= 1).sum()}
-    largest = "; ".join(f"{name} ({ratio:.0f})" for name, ratio in top.items())
-    return row | {"within 10 ×": (worst <= 10).sum(), "largest, in tolerances": largest}
 
 
 def draw_cases(tables: Tables) -> Sheet:

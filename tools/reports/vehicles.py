@@ -19,7 +19,6 @@ GRID = 0.25  # s, where runs of the car are compared
 COMPARED = tuple(name for name in MANOEUVRES if name not in (layout.TOO_FAST.name, layout.SPLIT.name))
 # How the inputs behave over a step: the exchange, and whether positions follow the velocities.
 OVER = {"held, positions lag": ("held", {"follow": 0.0}), **{exchange: (exchange, {}) for exchange in EXCHANGES}}
-STEPS_MS = [1000 * h for h in STEPS]
 KINDS = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
 
 

@@ -21,7 +21,6 @@ from .vehicle import DRY_ROAD, Errors, Fmus, Table, Vehicle, beyond_dry, road, u
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
 STEPS = (0.005, 0.0025, 0.00125, 0.000625, 0.0003125)  # s
-LARGE_STEPS = (0.0125, 0.015, 0.02, 0.025)  # s, around the limit of stability
 START = {"s": 0.01, "psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_start": 0.0, "X_O_start": 0.0}
 M_WHEEL, HUB_RADIUS = 20.0, 0.3 + 0.05  # of the wheel, upright; SI
 MASS, J_Z, RADIUS, GRAVITY = 300.0 + M_WHEEL, 1.8, 0.3 + 0.05 * sin(START["theta_start"]), 9.81  # SI

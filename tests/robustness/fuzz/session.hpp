@@ -30,7 +30,6 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
   bool go_on();  // one action; false where there is none left
-  const Log& seen() const { return log_; }
 
  private:
   struct Action {

@@ -98,7 +98,9 @@ export class WheelModel {
     this.weight = N.reduce((sum, value) => sum + value, 0) / N.length || 1;
   }
 
-  /** The contact path anew: all of it faintly, up to now strongly, stick phases in another colour. */
+  /**
+   * The contact path anew: all of it faintly, up to now strongly, stick phases and skid marks in colours of their own.
+   */
   drawPath() {
     const {wheel: {trace: {points}, table, phases, colour: accent}, size, r_0} = this;
     const unit = Math.max(0.045 * r_0, 0.006 * size);
@@ -109,8 +111,9 @@ export class WheelModel {
       return Object.assign(makeRibbon(part, look), {userData: {begin, first}});
     };
     const all = [table.start, table.end];
+    const marks = (spans, name, width) => spans.map((span) => ribbon(span, colour(name), width, 2, 0.9));
     this.past =
-        [ribbon(all, accent, 1, 3, 0.95), ...phases.sticks.map((span) => ribbon(span, colour('--stick'), 5, 2, 0.9))];
+        [ribbon(all, accent, 1, 3, 0.95), ...marks(phases.slides, '--slide', 4), ...marks(phases.sticks, '--stick', 5)];
     dispose(this.path);
     this.path.clear().add(ribbon(all, accent, 0.5, 1, 0.3), ...this.past);
   }

@@ -35,12 +35,13 @@ export class Player extends EventTarget {
   }
 }
 
-/** Shows the stick phases behind the slider. */
+/** Shows the stick phases and slides behind the slider. */
 export function showBands(wheels, {start, end}) {
   const part = (t) => (100 * t) / (end - start || 1);
-  const bands = wheels.flatMap(({phases}) => phases.sticks);
-  $('#bands').replaceChildren(...bands.map(
-      ([from, to]) => make('i', {style: `left:${part(from - start)}%; width:max(1px, ${part(to - from)}%)`})));
+  const band = (className) => ([from, to]) =>
+      make('i', {className, style: `left:${part(from - start)}%; width:max(1px, ${part(to - from)}%)`});
+  const bands = wheels.flatMap(({phases: {slides, sticks}}) => [...slides.map(band('slide')), ...sticks.map(band(''))]);
+  $('#bands').replaceChildren(...bands);
 }
 
 export function setUpTransport(player) {

@@ -41,6 +41,8 @@ export const START = [
   knob('slope', 'α', '°', 'slope', [0, 60], () => [0, 30, 0.5]),
   knob('slope_direction', 'β', '°', 'uphill', [-360, 360], () => [-180, 180, 1]),
   knob('mu_max', 'μ', '', 'grip, 0: any', [0, 10], () => upTo(2)),
+  knob('mu_slide', 'μ_s', '', 'sliding, 0: ends', [0, 10], () => upTo(2)),
+  knob('slip_x_start', 'u', 'm/s', 'slip, with μ_s', [-100, 100], () => both(10)),
 ];
 export const WHEEL = [
   knob('m', 'm', 'kg', 'mass', [1e-4, 1e4], () => [1e-3, 1e3, 'log']),
@@ -65,7 +67,10 @@ export const HELD = [
 export const torqueOf = (wheel) => Number((6 * strength(wheel)).toPrecision(6));
 
 /** Lowest and highest, in SI, of what has no slider. */
-const OTHERS = new Map([['g', [0.5, 30]], ['J_y', [1e-10, 1e6]], ['psi_start', [-10, 10]], ['phi_start', [-10, 10]]]);
+const OTHERS = new Map([
+  ['g', [0.5, 30]], ['J_y', [1e-10, 1e6]], ['psi_start', [-10, 10]], ['phi_start', [-10, 10]],
+  ['slip_y_start', [-100, 100]]
+]);
 
 /** [lowest, highest] in SI of what may be set at the start, or (now) while it rolls; undefined for all else. */
 export function limitsOf(name, now = false) {

@@ -33,8 +33,12 @@ export function layOutLabels(host, views) {
 export function showStates(wheels, t) {
   for (const {tag, ended, table, phases} of wheels) {
     const over = ended && t >= table.end;
-    const held = phases.sticks.some(([begin, end]) => begin <= t && t < end);
-    const [state, title] = over ? ['ended', short(ended)] : held ? ['sticks', 'held: ω_z = 0'] : ['rolls', ''];
+    const [held, slides] =
+        [phases.sticks, phases.slides].map((all) => all.some(([begin, end]) => begin <= t && t < end));
+    const [state, title] = over ? ['ended', short(ended)] :
+        slides                  ? ['slides', held ? 'slides, held: ω_z = 0' : 'slides'] :
+        held                    ? ['sticks', 'held: ω_z = 0'] :
+                                  ['rolls', ''];
     if (tag.title === title && tag.dataset.state) continue;
     Object.assign(tag, {title}).dataset.state = state;
     tag.lastChild.replaceChildren(...(held ? subscripted(title) : [title]));

@@ -3,13 +3,16 @@
 import {derive, EMPTY, sameMotions} from '#address';
 import {variables} from '#data';
 import {STEP} from '#fmu';
+import {limitsOf} from '#knobs';
 import {Link} from '#link';
 import {MOMENTS} from '#mechanics';
 import {setUpPanel} from '#panel';
 import {chapters} from '#scenes';
 
 const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
-const SIGNALS = ['omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode', 'n_events'];
+const SIGNALS = [
+  'omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode', 'n_events', 'slip_x', 'slip_y', 'contact_mode'
+];
 const RECORD = [...POSE, ...POSE.map((name) => `${name}_dot`), ...SIGNALS];
 const HOLDING = ['s', 'M_brake'];  // may hold the wheel at omega_z = 0
 const PAPER_RADIUS = 0.35;         // m, r_0 + r
@@ -99,8 +102,17 @@ export class LiveWheel {
     this.change('fitted');
   }
 
-  /** Another wheel: its spin and friction follow those of the paper's in proportion to its size. */
-  setWheel(parameters) {
+  /**
+   * Another wheel: its spin and friction follow those of the paper's in proportion to its size, or a case's `start`.
+   */
+  setWheel({parameters, start}) {
+    if (start) {
+      const known = Object.entries(start).filter(([name]) => limitsOf(name));
+      Object.assign(this.plan.values, parameters, Object.fromEntries(known));
+      this.plan.body = null;
+      this.change('fitted');
+      return this.page.player.seek(0);
+    }
     const size = (parameters.r_0 + parameters.r) / PAPER_RADIUS;
     Object.assign(this.plan.values, parameters);
     this.plan.body = null;

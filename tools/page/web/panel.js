@@ -148,7 +148,7 @@ function setUpReady(live, wheels) {
   host.addEventListener('change', ({target: {value}}) => {
     const [kind, name] = value.split(':');
     if (kind === 'body') live.setBody(name);
-    if (kind === 'wheel') live.setWheel(wheels[name].parameters);
+    if (kind === 'wheel') live.setWheel(wheels[name]);
   });
   const shown = onChange((value) => {
     host.value = value;

@@ -1,6 +1,6 @@
-// When the rolling friction holds the wheel: stick phases and transitions, read off friction_mode (or the sign of
-// omega_z) and n_events, the wheel's own count of transitions. A transition lies between two rows; its instant is where
-// omega_z, carried on from the rows on a rolling side, is zero.
+// When the rolling friction holds the wheel, and when it slides: stick phases and transitions, read off friction_mode
+// (or the sign of omega_z) and n_events, the wheel's own count of transitions. A transition lies between two rows; its
+// instant is where omega_z, carried on from the rows on a rolling side, is zero.
 
 /** -1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero. */
 function modeAt(table, row) {
@@ -33,10 +33,21 @@ function zeroBetween(table, k, first) {
   return zero === undefined ? zero : time[k] + Math.min(step, Math.max(0, zero));
 }
 
-/** How many transitions lie between rows k and k + 1: as the wheel counts them, else one where the mode changes. */
+/**
+ * How many transitions of the friction lie between rows k and k + 1: as the wheel counts them less the loss or return
+ * of grip, else one where the mode changes.
+ */
 function countBetween(table, k) {
-  const count = table.columns.n_events;
-  return count ? count[k + 1] - count[k] : Number(modeAt(table, k) !== modeAt(table, k + 1));
+  const {n_events: count, contact_mode: contact} = table.columns;
+  if (!count) return Number(modeAt(table, k) !== modeAt(table, k + 1));
+  return count[k + 1] - count[k] - Number(contact !== undefined && contact[k] !== contact[k + 1]);
+}
+
+/** [[begin, end], ...] in s in which it slides, true to half a row. */
+export function slidesOf({columns: {contact_mode: contact = []}, time, end}) {
+  const turnAt = (t, k) => (contact[k] === (contact[k - 1] ?? 0) ? [] : [k ? 0.5 * (time[k - 1] + t) : t]);
+  const turns = Array.from(contact, (_, k) => turnAt(time[k], k)).flat();
+  return turns.flatMap((t, i) => (i % 2 ? [] : [[t, turns[i + 1] ?? end]]));
 }
 
 /**
@@ -72,13 +83,14 @@ function mayHold(table) {
 }
 
 /**
- * {sticks: [[begin, end], ...], transitions: [t, ...]} in s. friction: whether there is any, where it is known (without
- * it omega_z = 0 holds nothing).
+ * {sticks: [[begin, end], ...], slides: likewise, transitions: [t, ...]} in s. friction: whether there is any, where it
+ * is known (without it omega_z = 0 holds nothing).
  */
 export function phasesOf(table, friction = mayHold(table)) {
   const sticks = [];
   const transitions = [];
-  if (!friction) return {sticks, transitions};
+  const slides = slidesOf(table);
+  if (!friction) return {sticks, slides, transitions};
   let begin = table.start;
   for (let k = 0; k + 1 < table.rows; ++k) {
     const [from, to] = [modeAt(table, k), modeAt(table, k + 1)];
@@ -91,5 +103,5 @@ export function phasesOf(table, friction = mayHold(table)) {
     }
   }
   if (modeAt(table, table.rows - 1) === 0) sticks.push([begin, table.end]);
-  return {sticks, transitions};
+  return {sticks, slides, transitions};
 }
