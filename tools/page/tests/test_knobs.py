@@ -176,3 +176,30 @@ def test_a_page_out_of_sight_stands_still(either):
     }"""
     within(either.evaluate(away, False), 0.1, "time of the page out of sight, s")
     beyond(either.evaluate(away, True), 1.9, "time of a page in sight, s")
+
+
+def test_a_wheel_that_slides_leaves_marks_and_a_band_and_names_what_it_does(live):
+    """The paper's wheel at 0.45 / 0.4 slides twice; the instants are those of its record, 0.02 s apart at most."""
+    start(live, mu_max=0.45, mu_slide=0.4)
+    spans = live.evaluate("page.wheels[0].phases.slides")
+    within(np.abs(np.array(spans) - [[0.5708, 0.9550], [1.8742, 2.1902]]).max(), 0.02, "instants, s")
+    assert live.locator("#bands .slide").count() == 2
+    states = []
+    for t in (0.7, 1.2):
+        live.evaluate("(t) => page.player.seek(t)", t)
+        live.wait_for_function("!page.stage.dirty")
+        states.append(live.locator(".label").first.get_attribute("data-state"))
+    assert states == ["slides", "rolls"]
+    start(live, mu_max=0.45)
+    assert live.evaluate("page.wheels[0].phases.slides") == []
+
+
+def test_the_ready_case_backspin_slides_grips_and_comes_back(live):
+    start(live)
+    live.locator("#ready").select_option("wheel:backspin")
+    live.evaluate("page.live.frame()")
+    (begin, end), *others = live.evaluate("page.wheels[0].phases.slides")
+    assert begin == 0 and 0.9 < end < 1.2 and not others
+    X_O = column(live, "X_O")
+    assert max(X_O) > X_O[-1] and X_O[-1] < X_O[0]
+    start(live)
