@@ -40,7 +40,7 @@ def test_the_notebook_keeps_what_its_cells_give_and_nothing_of_the_machine(fmu_p
     height, width = np.minimum(pictures[0].shape, pictures[1].shape)
     beyond(abs(pictures[0][:height, :width] - pictures[1][:height, :width]).mean(), 5, "another picture apart, tones")
     printed, text = "".join(words), NOTEBOOK.read_text(encoding="utf-8")
-    assert len(pictures) == 4
+    assert len(pictures) == 5
     assert f"{critical_spin(PAPER):.4f} rad/s" in printed and "nan" not in printed
     assert "it/s" not in text and "iopub" not in text and "stderr" not in text
 
@@ -73,12 +73,22 @@ def test_the_linear_lean_of_the_lesson_is_the_wheels_for_small_leans(lesson, sha
     beyond(apart(0.1), 1e-3, "the same of a start with 6 deg")
 
 
+GRAVITY, RADIUS = 9.81, 0.35
+
+
+def test_the_hoop_of_the_lesson_grips_and_comes_back_as_by_hand(lesson) -> None:
+    run, t = lesson["run"], lesson["t_grip"]
+    slip = np.interp([t - 0.02, t + 0.02], run["time"], run["slip_x"])
+    assert slip[0] > 0 and slip[1] == 0
+    within(abs(run["X_O_dot"][-1] - 2 + lesson["mu"] * GRAVITY * t), 1e-7, "velocity after the slide, m/s")
+    beyond(abs(run["X_O_dot"][-1] - 2 + 1.01 * lesson["mu"] * GRAVITY * t), 0.01, "with 1 % more friction, m/s")
+
+
 SOLUTIONS = re.findall(
     r"\*\*(\d)\. .*?<details><summary>Solution</summary>\n(.*?)```python\n(.*?)```\n\n</details>",
     "".join(cell.source for cell in nbformat.read(NOTEBOOK, as_version=4).cells if "Exercises" in cell.source),
     re.DOTALL,
 )
-GRAVITY, RADIUS = 9.81, 0.35
 # By exercise: pairs of what is printed and what it must be, relative; None: any value.
 EXPECTED = {
     "1": [np.sqrt(GRAVITY / 4 / RADIUS), np.sqrt(GRAVITY / 4 / RADIUS)]
