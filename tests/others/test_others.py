@@ -40,6 +40,16 @@ def test_exudyns_coin_converges_to_ours(library: Library) -> None:
     beyond(off[-1], 1e-10, "the smallest step without extrapolation, m")
 
 
+def test_exudyns_thrown_disc_converges_to_the_reference_as_its_regularization_narrows() -> None:
+    table, ours = read("exudyn_slide"), wheels.thrown_reference()
+    off = np.abs(wheels.thrown_limit(table) - ours)
+    within(off[:2].max(), 5e-10, "centre apart while it slides, m")
+    within(off[2:].max(), 4e-9, "centre apart after it grips, m")
+    by_zone = np.abs(wheels.thrown_in_steps(table) - ours)
+    assert by_zone[:-1] / by_zone[1:] == pytest.approx(2, rel=0.05)  # of first order in the zone
+    beyond(by_zone[-1, 2:].max(), 1e-6, "centre apart at the narrowest zone, m")
+
+
 def test_the_critical_spin_is_that_of_sympys_disc(library: Library) -> None:
     off = measured_critical_spin(library, wheels.SYMPY_DISC) - wheels.SYMPY_CRITICAL_SPIN
     within(abs(off), 4e-9, "critical spin, rad/s")

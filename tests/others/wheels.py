@@ -10,6 +10,8 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 from reference import Start, Wheel, solve
+from reference.sliding import solve_sliding
+from reference.sliding_modes import Road
 from support.motion import Library, Run, start_values
 
 from .numbers import read
@@ -27,6 +29,8 @@ SYMPY_DISC = Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.25, J_y=0.25, J_z=0.5, g=1.0)
 SYMPY_CRITICAL_SPIN = 1 / np.sqrt(3)  # sympy 1.14.0, test_linearize.py: all eigenvalues vanish at q3' = 1/sqrt(3)
 DISCS = (Wheel(r=0.0), MODELICA, SYMPY_DISC, Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.5, J_y=0.5, J_z=1.0))
 DISC_START = Start(theta=1.2, theta_dot=0.3, psi_dot=1.0, phi_dot=-4.0)
+THROWN, THROW, ROAD = Wheel(r=0.0), Start(phi_dot=-6.0), Road(0.4, 0.4, (-1.5, 0.8))  # slides, then grips
+READ_AT = (0.15, 0.5)  # s
 
 
 def motion(library: Library, wheel: Wheel, start: Start, times: Array, tolerance=None, **more: float) -> Run:
@@ -79,6 +83,25 @@ def coin(library: Library, tolerance: float | None = None) -> Array:
     """(x, y) of the contact point after 0.5 s, m."""
     run = motion(library, COIN, COIN_START, np.array([0.0, 0.5]), tolerance)
     return np.array([run["X_C"][-1], run["Y_C"][-1]])
+
+
+def thrown_in_steps(table: dict[str, Array]) -> Array:
+    """(x, y) while the disc slides and after it grips, m: a row for each zone, extrapolated to h = 0 from two steps."""
+    places = np.column_stack([table[name] for name in ("x_1", "y_1", "x_2", "y_2")])
+    return 2 * places[1::2] - places[::2]  # of first order in h
+
+
+def thrown_limit(table: dict[str, Array]) -> Array:
+    """The same extrapolated to a zone of 0 from the two smallest, of first order in it."""
+    places = thrown_in_steps(table)
+    return 2 * places[-1] - places[-2]
+
+
+@cache
+def thrown_reference() -> Array:
+    """The same by tests/reference."""
+    at = solve_sliding(THROWN, THROW, ROAD, [0.0, *READ_AT])
+    return np.array([at["X_O"][1:], at["Y_O"][1:]]).T.ravel()
 
 
 def degree(wheel: Wheel) -> complex:
