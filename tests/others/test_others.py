@@ -50,6 +50,13 @@ def test_exudyns_thrown_disc_converges_to_the_reference_as_its_regularization_na
     beyond(by_zone[-1, 2:].max(), 1e-6, "centre apart at the narrowest zone, m")
 
 
+def test_the_thrown_disc_of_the_fmu_is_that_of_the_reference_and_of_exudyns_limit(library: Library) -> None:
+    ours = wheels.thrown(library, 1e-12)
+    within(np.abs(ours - wheels.thrown_reference()).max(), 1e-10, "reference and FMU apart, m")
+    within(np.abs(wheels.thrown_limit(read("exudyn_slide")) - ours).max(), 4e-9, "Exudyn's limit and FMU apart, m")
+    beyond(np.abs(wheels.thrown_in_steps(read("exudyn_slide"))[-1] - ours).max(), 1e-6, "at its narrowest zone, m")
+
+
 def test_the_critical_spin_is_that_of_sympys_disc(library: Library) -> None:
     off = measured_critical_spin(library, wheels.SYMPY_DISC) - wheels.SYMPY_CRITICAL_SPIN
     within(abs(off), 4e-9, "critical spin, rad/s")

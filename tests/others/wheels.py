@@ -97,6 +97,14 @@ def thrown_limit(table: dict[str, Array]) -> Array:
     return 2 * places[-1] - places[-2]
 
 
+def thrown(library: Library, tolerance: float | None = None) -> Array:
+    """The same by wheel.fmu."""
+    slides = {"mu_max": ROAD.mu_max, "mu_slide": ROAD.mu_slide}
+    slides |= dict(zip(("slip_x_start", "slip_y_start"), ROAD.slip, strict=True))
+    at = motion(library, THROWN, THROW, np.array([0.0, *READ_AT]), tolerance, **slides)
+    return np.array([at["X_O"][1:], at["Y_O"][1:]]).T.ravel()
+
+
 @cache
 def thrown_reference() -> Array:
     """The same by tests/reference."""

@@ -71,6 +71,15 @@ def coin(library: Library) -> Compared:
     return who, scene, digits(*limit, places=15), digits(*ours, places=15), float(np.abs(limit - ours).max()), whose
 
 
+def thrown(library: Library) -> Compared:
+    ours, table = wheels.thrown(library, 1e-12), read("exudyn_slide")
+    limit, off = wheels.thrown_limit(table), np.abs(wheels.thrown_in_steps(table)[-1] - ours).max()
+    whose = f"its regularization's: at a slip of {table['zone'][-1] * 1e6:.3g} µm/s it is {number(float(off))} m off"
+    who, scene = "Exudyn 1.13.6, extrapolated to no regularization", "thrown disc slides, grips; 0.5 s: X_O, Y_O"
+    apart = float(np.abs(limit - ours).max())
+    return who, scene, digits(*limit[2:]), digits(*ours[2:]), apart, whose
+
+
 def critical(library: Library) -> Compared:
     ours, theirs = measured_critical_spin(library, wheels.SYMPY_DISC), wheels.SYMPY_CRITICAL_SPIN
     who, scene = "SymPy 1.14, test_linearize", "spin at which all eigenvalues vanish"
@@ -128,7 +137,7 @@ def wheel_set(report: Report, scene: str, factors: tuple[int, ...]) -> tuple[Com
 @part(100)
 def numbers(report: Report) -> dict[str, object]:
     """results of other programs"""
-    singles = [f(report.library) for f in (kane, modelica, multibody_jl, coin, critical, legendre, ramp)]
+    singles = [f(report.library) for f in (kane, modelica, multibody_jl, coin, thrown, critical, legendre, ramp)]
     rows, stiffness = zip(*(wheel_set(report, *scene) for scene in STIFFNESSES.items()), strict=True)
     found = pd.DataFrame([*singles, *rows, printed_instants()], columns=HEAD)
     own = {"modelica_energy": modelica_drift(), "modelica_own": modelica_own(report.library)}
