@@ -121,7 +121,7 @@ def test_the_wheel_sticks_at_its_instant_and_without_friction_never(recorded):
     begin, end = friction["sticks"][0]
     within(abs(begin - read_table("paper_friction_events")["t"][1]), 1e-4, "instant, s")  # rows are 0.01 s apart
     beyond(end, 1.3, "end of the first stick, s")
-    assert free == {"sticks": [], "transitions": []}
+    assert free == {"sticks": [], "slides": [], "transitions": []}
 
 
 def test_transitions_between_two_rows_are_marked_though_no_row_lies_in_the_phase(recorded, simulate):
