@@ -167,7 +167,7 @@ def test_on_a_slope_the_ground_tilts_and_the_wheel_rolls_down(live):
 def test_another_wheel_fills_the_scene_and_its_values_are_listed(live):
     start(live, s=0.03)
     disc = {"m": 0.0085, "r_0": 0.0118, "r": 0.001, "J_x": 3.5e-7, "J_y": 3.5e-7, "J_z": 7e-7}
-    live.evaluate("(parts) => { page.live.setWheel(parts); page.live.compute(); page.draw(); }", disc)
+    live.evaluate("(parameters) => { page.live.setWheel({parameters}); page.live.compute(); page.draw(); }", disc)
     assert live.evaluate("page.live.trouble ?? page.stage.scale") == pytest.approx(0.35 / 0.0128)
     assert live.evaluate("page.live.value('s')") == pytest.approx(0.03 * 0.0128 / 0.35, rel=1e-2)
     rows = {row[0]: row[1] for row in listed(live)}
