@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 
 import numpy as np
@@ -152,9 +153,13 @@ PATHS = {"along X": (TIME, 0 * TIME), "along Y": (1e-17 * TIME, -TIME), "still":
 
 @pytest.mark.parametrize("name", PATHS)
 def test_a_path_along_an_axis_is_drawn_in_one_scale_without_a_warning(
-    name: str, caplog: pytest.LogCaptureFixture
+    name: str, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     x, y = PATHS[name]
+    for logger in (one for one in logging.root.manager.loggerDict.values() if isinstance(one, logging.Logger)):
+        monkeypatch.setattr(logger, "disabled", False)  # other tests' libraries switch loggers off
+    monkeypatch.setattr(logging.getLogger("matplotlib"), "propagate", True)
+    caplog.set_level(logging.WARNING, "matplotlib")
     fig = style.figure_mm(style.COLUMN, 60.0)
     ax = fig.subplots()
     panels.draw_path(ax, scene(X_C=x, Y_C=y))
