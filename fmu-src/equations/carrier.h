@@ -76,6 +76,17 @@ static inline Moment gyroscopic_moment(const WheelParameters* w, const Inertia* 
   return M;
 }
 
+/* A horizontal vector, along e1 and to the left of it, in fixed axes; and back. */
+static inline void to_fixed(const Carrier* c, double along, double left, double* X, double* Y) {
+  *X = along * c->cos_psi - left * c->sin_psi;
+  *Y = along * c->sin_psi + left * c->cos_psi;
+}
+
+static inline void from_fixed(const Carrier* c, double X, double Y, double* along, double* left) {
+  *along = X * c->cos_psi + Y * c->sin_psi;
+  *left = Y * c->cos_psi - X * c->sin_psi;
+}
+
 /* All of `out` but the reactions, which are set, from omega_dot; m a = lambda + F + weight. */
 static inline void set_accelerations(const WheelScene* scene, const Carrier* c, double omega_1_dot, double omega_2_dot,
                                      double omega_3_dot, WheelDynamics* out) {

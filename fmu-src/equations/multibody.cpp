@@ -220,16 +220,20 @@ enum SlipState { speed = X_O_dot, chi = Y_O_dot };
 
 Eigen::Vector2d slip_direction(const double* y) { return {std::cos(y[psi] + y[chi]), std::sin(y[psi] + y[chi])}; }
 
-// y (multibody state) of a sliding state: (19) with the slip on its right-hand side, but for Z_O_dot, which is a state.
-void release(const WheelParameters* wheel, const double* sliding, double* y) {
-  std::copy_n(sliding, WHEEL_MULTIBODY_STATES, y);
-  set_rolling_velocity(*wheel, y);
-  Eigen::Map<Eigen::Vector2d>(y + X_O_dot) += sliding[speed] * slip_direction(sliding);
+using States = std::array<double, WHEEL_MULTIBODY_STATES>;
+
+// The multibody state of a sliding one: (19) with the slip on its right-hand side, but for Z_O_dot, which is a state.
+States released(const WheelParameters& wheel, const double* sliding) {
+  States y;
+  std::copy_n(sliding, y.size(), y.data());
+  set_rolling_velocity(wheel, y.data());
+  Eigen::Map<Eigen::Vector2d>(y.data() + X_O_dot) += sliding[speed] * slip_direction(sliding);
   y[Z_O_dot] = sliding[Z_O_dot];
+  return y;
 }
 
 struct Sliding {
-  std::array<double, WHEEL_MULTIBODY_STATES> y;
+  States y;
   Multibody s;
   Against slides;
   Vector9 column;
@@ -241,11 +245,6 @@ struct Sliding {
         column(system_column(s, scene.load)) {
     column.segment<2>(6).setZero();
     column[8] -= decay_rate(s) * (B(s) * s.q_dot)[2];  // in `dynamics` too: rates and the release agree on N
-  }
-  static std::array<double, WHEEL_MULTIBODY_STATES> released(const WheelParameters& wheel, const double* sliding) {
-    std::array<double, WHEEL_MULTIBODY_STATES> y;
-    release(&wheel, sliding, y.data());
-    return y;
   }
 };
 
@@ -264,10 +263,10 @@ double sliding_derivative(const WheelScene* scene, const double* y, double* y_do
   y_dot[chi] = y[speed] == 0 ? 0 : (slip_dot[1] * d[0] - slip_dot[0] * d[1]) / y[speed] - y[psi_dot];
   y_dot[spin] = scene->friction.kind == WHEEL_HELD ? 0 : omega_z_dot(s, solution.unknowns);
   const double N = solution.unknowns[lambda_3];
-  constexpr double least_room = 1e-5, usual = 100;  // of N over that without friction; and weights
+  constexpr double usual = 100;  // weights
   if (N >= 0 && N < usual * scene->wheel.m * scene->wheel.g) return N;
   const Against none = Against::Zero();
-  return solve(*scene, s, now.column, &none).unknowns[lambda_3] / N < least_room ? INFINITY : N;
+  return solve(*scene, s, now.column, &none).unknowns[lambda_3] / N < WHEEL_LEAST_ROOM ? INFINITY : N;
 }
 
 void sliding_start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
@@ -277,7 +276,7 @@ void sliding_start(const WheelParameters* wheel, const WheelMotion* motion, doub
 }
 
 void sliding_kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  kinematics(wheel, Sliding::released(*wheel, y).data(), out);
+  kinematics(wheel, released(*wheel, y).data(), out);
 }
 
 void sliding_dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {

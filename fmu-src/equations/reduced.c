@@ -60,11 +60,8 @@ static inline Drift drift_of(const WheelParameters* w, const Inertia* I, const C
 /* Adds {F} of (15), F turned from fixed axes into the carrier, M already there; and a weight (N) along the road. */
 static inline void add_load(Drift* d, const Carrier* c, const WheelLoad* load, double weight_X, double weight_Y) {
   double F_X = load->F[0] + weight_X, F_Y = load->F[1] + weight_Y;
-  double F_1 = 0, F_h = 0;    /* in the road's plane: along e1 and across it */
-  if (F_X != 0 || F_Y != 0) { /* otherwise sine and cosine of psi are not needed */
-    F_1 = F_X * c->cos_psi + F_Y * c->sin_psi;
-    F_h = F_Y * c->cos_psi - F_X * c->sin_psi;
-  }
+  double F_1 = 0, F_h = 0;                                       /* in the road's plane: along e1 and across it */
+  if (F_X != 0 || F_Y != 0) from_fixed(c, F_X, F_Y, &F_1, &F_h); /* else sine and cosine of psi are not needed */
   d->k_1 -= F_1;
   d->k_2 -= c->cos_theta * F_h + c->sin_theta * load->F[2];
   d->k_3 -= c->cos_theta * load->F[2] - c->sin_theta * F_h;
@@ -153,8 +150,7 @@ static inline void reaction_of(const WheelParameters* w, const Instant* now, con
   double R_2 = now->drift.k_2 - w->m * (c->eta * a->omega_1_dot);
   double R_3 = now->drift.k_3 + w->m * (c->rho * a->omega_1_dot);
   double R_h = c->cos_theta * R_2 - c->sin_theta * R_3; /* horizontal, across e1 */
-  lambda[0] = R_1 * c->cos_psi - R_h * c->sin_psi;
-  lambda[1] = R_1 * c->sin_psi + R_h * c->cos_psi;
+  to_fixed(c, R_1, R_h, &lambda[0], &lambda[1]);
   lambda[2] = a->N;
 }
 
@@ -170,9 +166,7 @@ static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
 
 /* Horizontal velocity of O: v_1 along e1 and Z_O omega_1 across it. */
 static inline void set_velocity(const WheelParameters* w, const Carrier* c, double* X, double* Y) {
-  double across = (w->r_0 * c->sin_theta + w->r) * c->omega_1;
-  *X = c->v_1 * c->cos_psi + across * c->sin_psi;
-  *Y = c->v_1 * c->sin_psi - across * c->cos_psi;
+  to_fixed(c, c->v_1, -(w->r_0 * c->sin_theta + w->r) * c->omega_1, X, Y);
 }
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {

@@ -5,9 +5,6 @@
 
 #include "carrier.h"
 
-/* Below this, friction wedges the wheel: its N is that without friction over `room`. */
-static const double least_room = 1e-5;
-
 /* What acts apart from the ground's friction, or its change. */
 typedef struct Action {
   Moment M;        /* N m, external less gyroscopic moment */
@@ -63,10 +60,7 @@ __attribute__((always_inline)) static inline Body body_of(const WheelScene* scen
   Action* a = &b.given;
   double F_X = load->F[0] + w->m * w->g_X, F_Y = load->F[1] + w->m * w->g_Y, F_x = 0, F_y = 0;
   double omega_1_2 = c->omega_1 * c->omega_1, p = b.inertia.p;
-  if (F_X != 0 || F_Y != 0) {
-    F_x = F_X * c->cos_psi + F_Y * c->sin_psi;
-    F_y = F_Y * c->cos_psi - F_X * c->sin_psi;
-  }
+  if (F_X != 0 || F_Y != 0) from_fixed(c, F_X, F_Y, &F_x, &F_y);
   b.h = w->r_0 * c->sin_theta + w->r;
   b.l = w->r_0 * c->cos_theta;
   b.per_mass = 1 / w->m;
@@ -155,7 +149,7 @@ double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
     if (!(turning(w, &b, lo) > 0 && turning(w, &b, hi) <= 0)) continue;
     double chi = zero_of_turning(w, &b, lo, hi);
     WheelSlip slip = slip_of(w, &b, chi);
-    int admissible = slip.growth >= least && slip.room > least_room && slip.N > 0 && slip.settling > 0;
+    int admissible = slip.growth >= least && slip.room > WHEEL_LEAST_ROOM && slip.N > 0 && slip.settling > 0;
     if (admissible && !(cos(chi - against) <= cos(found - against))) found = chi;
   }
   return found;
@@ -170,9 +164,7 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 
 /* The velocity of O: that of rolling, and the slip u. */
 static inline void set_velocity(const Carrier* c, double h, double u_x, double u_y, double* X_dot, double* Y_dot) {
-  double along = c->v_1 + u_x, left = u_y - h * c->omega_1;
-  *X_dot = along * c->cos_psi - left * c->sin_psi;
-  *Y_dot = along * c->sin_psi + left * c->cos_psi;
+  to_fixed(c, c->v_1 + u_x, u_y - h * c->omega_1, X_dot, Y_dot);
 }
 
 /* N is infinite where friction wedges the wheel. */
@@ -191,7 +183,7 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
   y_dot[SPEED] = m.u_x * d_x + m.u_y * d_y;
   y_dot[CHI] = y[SPEED] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[SPEED] - c->psi_dot;
   y_dot[CHI + 1] = y_dot[CHI + 2] = 0;
-  return room_of(&b, d_x, d_y) > least_room ? m.N : INFINITY;
+  return room_of(&b, d_x, d_y) > WHEEL_LEAST_ROOM ? m.N : INFINITY;
 }
 
 static void pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {

@@ -5,8 +5,7 @@
  *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states; as `euler` with
  *              the Euler angles' rates in the place of the angular velocity
  *   multibody  the paper's system (24); unknowns q and q_dot, constraints held at acceleration level; 12 states
- * While the wheel slides, two constraints are released, and each has a form of its own, `sliding` and
- * `multibody_sliding`: the slip joins the state.
+ * While the wheel slides, two constraints are released; the slip joins the state of `sliding` and `multibody_sliding`.
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
  *
  * Frames (docs/variables.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the carrier e1 (along
@@ -170,6 +169,9 @@ extern const WheelFormulation wheel_sliding;
 /* y = that of `wheel_multibody` with |u| and chi in the place of X_O_dot and Y_O_dot: (24) with the law of friction in
  * the place of the two horizontal constraints. */
 extern const WheelFormulation wheel_multibody_sliding;
+
+/* Below this WheelSlip.room friction wedges the wheel: no normal force holds it. */
+#define WHEEL_LEAST_ROOM 1e-5
 
 /* A slip in the direction chi, at a state of `wheel_reduced` under the scene's laws, whatever its `contact` is: its own
  * rate without the turning of e1 is (growth d + turn t), d along the slip and t a quarter turn ahead, whatever |u| is.

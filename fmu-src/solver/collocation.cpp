@@ -11,24 +11,23 @@
 namespace solver {
 namespace {
 
-constexpr int points = 6;
-using Square = Eigen::Matrix<double, points, points, Eigen::RowMajor>;
+using Square = Eigen::Matrix<double, radau_points, radau_points, Eigen::RowMajor>;
 using Row = Eigen::Matrix<double, 1, max_states>;
-using Rates = Eigen::Matrix<double, points, max_states, Eigen::RowMajor>;
+using Rates = Eigen::Matrix<double, radau_points, max_states, Eigen::RowMajor>;
 
 // s = (t - end) / h of the points: c - 1, c the zeros of P_6 - P_5 on (0, 1], P Legendre's polynomials.
-constexpr double places[points] = {-0.96019014293854872, -0.80198658212639185,  -0.56202518975261390,
-                                   -0.30453572664636388, -0.098535085798826426, 0};
+constexpr double places[radau_points] = {-0.96019014293854872, -0.80198658212639185,  -0.56202518975261390,
+                                         -0.30453572664636388, -0.098535085798826426, 0};
 
 // Lagrange's polynomials of the points, by powers of s; their integrals from the start to each point; the last Legendre
 // coefficient of the polynomial through values at the points, as weights on them.
 struct Table {
-  double power[points][points] = {}, integral[points][points] = {}, last[points] = {};
+  double power[radau_points][radau_points] = {}, integral[radau_points][radau_points] = {}, last[radau_points] = {};
 };
 
-constexpr double integral_of(const double (&power)[points], double s) {
+constexpr double integral_of(const double (&power)[radau_points], double s) {
   double at_s = 0, at_start = 0;
-  for (int m = points - 1; m >= 0; --m) {
+  for (int m = radau_points - 1; m >= 0; --m) {
     at_s = (at_s + power[m] / (m + 1)) * s;
     at_start = -(at_start + power[m] / (m + 1));
   }
@@ -37,19 +36,19 @@ constexpr double integral_of(const double (&power)[points], double s) {
 
 constexpr Table make_table() {
   Table table;
-  for (int k = 0; k < points; ++k) {
-    double (&power)[points] = table.power[k];
+  for (int k = 0; k < radau_points; ++k) {
+    double (&power)[radau_points] = table.power[k];
     power[0] = 1;
-    for (int j = 0, degree = 0; j < points; ++j) {
+    for (int j = 0, degree = 0; j < radau_points; ++j) {
       if (j == k) continue;
       for (int m = ++degree; m >= 0; --m)
         power[m] = ((m > 0 ? power[m - 1] : 0) - places[j] * (m < degree ? power[m] : 0)) / (places[k] - places[j]);
     }
-    for (int j = 0; j < points; ++j) table.integral[j][k] = integral_of(power, places[j]);
+    for (int j = 0; j < radau_points; ++j) table.integral[j][k] = integral_of(power, places[j]);
   }
-  for (int k = 0; k < points; ++k) {  // sum of (2 n + 1) w_k P_n(x_k) f_k, n = 5
+  for (int k = 0; k < radau_points; ++k) {  // sum of (2 n + 1) w_k P_n(x_k) f_k, n = 5
     const double x = 2 * places[k] + 1, x_2 = x * x;
-    table.last[k] = 11 * table.integral[points - 1][k] * x * ((63 * x_2 - 70) * x_2 + 15) / 8;
+    table.last[k] = 11 * table.integral[radau_points - 1][k] * x * ((63 * x_2 - 70) * x_2 + 15) / 8;
   }
   return table;
 }
@@ -58,12 +57,12 @@ constexpr Table radau = make_table();
 // The error that one step may make, as a fraction of the tolerance of the whole solution.
 constexpr double part_of_tolerance = 0.03;
 // How far the sweeps may be from their limit, and the error of the polynomial against its last term.
-constexpr double last_change = 0.3, largest_rounding = 0.3, error_of_last = 0.005;
+constexpr double last_change = 0.3, error_of_last = 0.005;
 constexpr int most_sweeps = 30, most_tries = 40;
 constexpr double longer = 1.01, first_part = 0.1;  // of the stop; of the longest step
 
 // At the point j of a step of this size.
-Row state_at(int j, const Step& step, double size, const double (&f)[points][max_states]) {
+Row state_at(int j, const Step& step, double size, const double (&f)[radau_points][max_states]) {
   const Eigen::Map<const Rates> rates(&f[0][0]);
   return Eigen::Map<const Row>(step.y_start) + size * (Eigen::Map<const Square>(&radau.integral[0][0]).row(j) * rates);
 }
@@ -78,8 +77,8 @@ double Collocation::sweep(const Problem& problem, const double* weights, bool fi
   Eigen::Map<Rates> before(&f_[0][0]);
   Rates f = Rates::Zero();
   Square jacobian = size_ * Eigen::Map<const Square>(&radau.integral[0][0]);
-  Eigen::Matrix<double, points, 1> turning;
-  for (int j = 0; j < points; ++j) {
+  Eigen::Matrix<double, radau_points, 1> turning;
+  for (int j = 0; j < radau_points; ++j) {
     const Row y = state_at(j, *step, size_, f_);
     const double t = step->start + (1 + places[j]) * size_;
     const double margin = problem.derivative(problem.owner, t, y.data(), f.row(j).data());
@@ -94,7 +93,7 @@ double Collocation::sweep(const Problem& problem, const double* weights, bool fi
   ++counters->jacobians;
   f.col(turned) = before.col(turned) - jacobian.partialPivLu().solve(turning);
   double largest = 0;
-  for (int j = 0; j < points; ++j) {
+  for (int j = 0; j < radau_points; ++j) {
     const Row change = size_ * (f.row(j) - before.row(j));
     largest = std::fmax(largest, weighted_norm<max_states>(change.data(), weights));
   }
@@ -104,16 +103,16 @@ double Collocation::sweep(const Problem& problem, const double* weights, bool fi
 
 // First rates: those of the last step's polynomial, which goes on, or the rates at the start.
 bool Collocation::predict(const Problem& problem, const Step& last, Counters* counters, Step* step) {
-  if (last.degree != points) {
+  if (last.degree != radau_points) {
     ++counters->rhs;
     if (std::isnan(problem.derivative(problem.owner, step->start, step->y_start, f_[0]))) return false;
-    for (int j = 1; j < points; ++j) std::copy_n(f_[0], max_states, f_[j]);
+    for (int j = 1; j < radau_points; ++j) std::copy_n(f_[0], max_states, f_[j]);
     return true;
   }
   const double length = last.end - last.start;
-  for (int j = 0; j < points; ++j) {
+  for (int j = 0; j < radau_points; ++j) {
     Row f = Row::Zero();
-    for (int m = points; m > 0; --m)
+    for (int m = radau_points; m > 0; --m)
       f = f * ((1 + places[j]) * size_ / length) + Eigen::Map<const Row>(last.c[m]) * (m / length);
     std::copy_n(f.data(), max_states, f_[j]);
   }
@@ -122,17 +121,15 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
 
 // The error of the step over size_ in units of the weights; infinite where the sweeps do not converge.
 double Collocation::try_size(const Problem& problem, const double* weights, Counters* counters, Step* step) {
-  double change = INFINITY, slopes[points];
-  bool done = false;
-  for (int sweeps = 0; sweeps < most_sweeps && !done; ++sweeps) {
-    const double before = change;
+  double change = INFINITY, slopes[radau_points];
+  for (int sweeps = 0; sweeps < most_sweeps && !(change < last_change); ++sweeps) {
     change = sweep(problem, weights, sweeps == 0, slopes, counters, step);
     if (!std::isfinite(change)) return INFINITY;
-    done = change < last_change || (change < largest_rounding && change > 0.5 * before);
   }
-  if (!done) return INFINITY;
-  const Row last = error_of_last * size_ *
-                   (Eigen::Map<const Eigen::Matrix<double, 1, points>>(radau.last) * Eigen::Map<Rates>(&f_[0][0]));
+  if (!(change < last_change)) return INFINITY;
+  const Row last =
+      error_of_last * size_ *
+      (Eigen::Map<const Eigen::Matrix<double, 1, radau_points>>(radau.last) * Eigen::Map<Rates>(&f_[0][0]));
   return weighted_norm<max_states>(last.data(), weights);
 }
 
@@ -156,7 +153,7 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     known_ = error <= 1;
     if (!known_ || !stops || next < liked_) liked_ = next;
     if (!known_) continue;
-    const Row y_end = state_at(points - 1, *step, size_, f_);
+    const Row y_end = state_at(radau_points - 1, *step, size_, f_);
     std::copy_n(y_end.data(), max_states, step->y_end);
     failure_ = nullptr;
     return true;
@@ -168,23 +165,24 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
 void Collocation::expand(const Problem&, Counters*, Step* step) {
   const Eigen::Map<const Square> power(&radau.power[0][0]);
   const Eigen::Map<const Rates> f(&f_[0][0]);
-  step->degree = known_ ? points : 0;
+  step->degree = known_ ? radau_points : 0;
   std::copy_n(step->y_end, max_states, step->c[0]);
-  for (int m = 0; m < points; ++m) Eigen::Map<Row>(step->c[m + 1]) = size_ / (m + 1) * (power.col(m).transpose() * f);
+  for (int m = 0; m < radau_points; ++m)
+    Eigen::Map<Row>(step->c[m + 1]) = size_ / (m + 1) * (power.col(m).transpose() * f);
 }
 
 void Collocation::visit(support::Archive& archive, const Problem& problem, Step* step, bool active) {
   archive("step sizes of collocation");
   for (double* size : {&liked_, &size_}) archive.range(*size, 0, archive.greatest);
   archive("rates of collocation").count(known_, 0, 1);
-  for (int j = 0; known_ && j < points; ++j) archive.numbers(f_[j], problem.states);
+  for (int j = 0; known_ && j < radau_points; ++j) archive.numbers(f_[j], problem.states);
   if (active && archive.reads() && !fits(problem, step)) archive.refuse();
 }
 
 // Whether the restored numbers are those of the step, to the bit.
 bool Collocation::fits(const Problem& problem, const Step* step) const {
   if (!known_) return step->start == step->end;
-  const Row y_end = state_at(points - 1, *step, size_, f_);
+  const Row y_end = state_at(radau_points - 1, *step, size_, f_);
   return std::fabs(step->end - step->start - size_) <= rounding_at(step->end) &&
          std::equal(step->y_end, step->y_end + problem.states, y_end.data());
 }

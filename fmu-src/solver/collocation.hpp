@@ -2,12 +2,14 @@
 // where its turning vanishes. The points leave out the start of the step, so the step may begin where the settling is
 // infinitely fast (Problem::settling).
 //
-// Nothing is kept from step to step except the wanted size of the next one.
+// From step to step it keeps the wanted size of the next step, and the rates of the last one, which predict the next.
 #pragma once
 
 #include "step.hpp"
 
 namespace solver {
+
+inline constexpr int radau_points = 6;
 
 class Collocation final : public Engine {
  public:
@@ -20,16 +22,15 @@ class Collocation final : public Engine {
   void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) override;
 
  private:
-  static constexpr int points = 6;
   bool predict(const Problem& problem, const Step& last, Counters* counters, Step* step);
   double try_size(const Problem& problem, const double* weights, Counters* counters, Step* step);
   double sweep(const Problem& problem, const double* weights, bool first, double* slopes, Counters* counters,
                Step* step);
   bool fits(const Problem& problem, const Step* step) const;
 
-  double liked_ = 0, size_ = 0;        // size of the next step and of the last, s; 0: none was made
-  bool known_ = false;                 // the rates are those of the last step
-  double f_[points][max_states] = {};  // at its points
+  double liked_ = 0, size_ = 0;              // size of the next step and of the last, s; 0: none was made
+  bool known_ = false;                       // the rates are those of the last step
+  double f_[radau_points][max_states] = {};  // at its points
 };
 
 }  // namespace solver

@@ -60,7 +60,7 @@ bool can_stiffen(const Setup& setup, const InForce& in_force);
 double softness_of(const Setup& setup, const WheelScene& scene, const double* y);
 
 // What solves the motion that is not unfolded. CVODE's history and Jacobian do not follow a direction of slip that
-// turns ever faster: a slide has methods of its own.
+// turns ever faster: collocation and Runge-Kutta solve a slide.
 solver::Method method_of(const Setup& setup, const InForce& in_force);
 
 // Whether the motion repeats and can be unfolded from half a nutation.

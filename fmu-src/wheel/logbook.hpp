@@ -20,7 +20,6 @@ void log_transition(Wheel& wheel, const WheelFriction& before);
 // The same between grip and sliding since `slid`; goes_on: the slip has not ended, so that a wheel that still slides
 // has not lost its grip anew.
 void log_contact(Wheel& wheel, bool slid, bool goes_on);
-// At the end of a run: the observed events that were not logged one by one.
 // Once per run, where mu_required is found above 1 at t, s, own clock, and y, and mu_max sets no limit. Looks a few
 // times in the wheel's own time, so that it costs nothing noticeable. Writes run.grip_due.
 void warn_of_grip(Wheel& wheel, double t, const double* y);
@@ -28,6 +27,7 @@ void warn_of_grip(Wheel& wheel, double t, const double* y);
 // Of an ending; of very many, as of a search that goes back and tries again, the first ones alone. Writes endings.
 void log_ending(Wheel& wheel, Event event);
 
+// At the end of a run: the observed events that were not logged one by one.
 void log_summaries(const Wheel& wheel);
 
 // What ended a run, to stand behind "the wheel", with its limit.

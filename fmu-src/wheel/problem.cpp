@@ -22,7 +22,7 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   return least_margin(setup, now, y, N);
 }
 
-// Outside of a settled slide a small slip has small errors of its own, so that the polynomial of a step does not pass
+// Outside of a settled slide the error of a small slip is smaller still, so that the polynomial of a step does not pass
 // zero; its direction may have larger ones: they are errors of a small velocity, and of a force that acts briefly;
 // where the slip is not small either, they decay.
 void weigh_slip(const Setup& setup, double tolerance, bool settled, const double* y, double* weights) {
@@ -35,7 +35,6 @@ void weigh_slip(const Setup& setup, double tolerance, bool settled, const double
     of_speed = std::fmin(of_speed, part_of_slip * speed);
     of_direction = std::clamp(part * larger * tolerance, larger * tolerance, largest);
   }
-  for (int i = slip + 2; i < setup.sliding->states && setup.sliding == &wheel_sliding; ++i) weights[i] = 1;  // at rest
   weights[slip] = 1 / (of_speed + rounding * speed);
   weights[slip + 1] = 1 / (of_direction + rounding * std::fabs(y[slip + 1]));
 }
@@ -44,14 +43,14 @@ void weigh_slip(const Setup& setup, double tolerance, bool settled, const double
 // turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a fraction of that width.
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = wheel_of(owner).setup;
-  const int states = setup.formulation->states, spin = setup.formulation->spin_index;
+  const InForce& now = wheel_of(owner).run.in_force;
+  const int states = formulation_of(setup, now.scene).states, spin = setup.formulation->spin_index;
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const double slow = share * setup.tolerance;
   const double tolerance = std::fmax(slow * share_at(setup, y[spin]), std::fmin(slow, rounding));
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
-  const InForce& now = wheel_of(owner).run.in_force;
   if (now.slides()) weigh_slip(setup, tolerance, now.contact == Contact::settled, y, weights);
   if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
   const double part = 10 * std::sqrt(tolerance);

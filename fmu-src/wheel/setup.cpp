@@ -56,6 +56,7 @@ void set_error_scales(Setup& setup) {
   setup.slip_scale = speed;
   const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, turn};
   const double euler[] = {3 * length, 3 * length, 3, 1, 3, turn, turn, turn};
+  std::fill_n(setup.slow_scales, WHEEL_MAX_STATES, 1.0);  // also of states that rest while the wheel slides
   std::copy_n(f == &wheel_reduced ? reduced : f == &wheel_euler ? euler : multibody, f->states, setup.slow_scales);
 }
 
@@ -173,7 +174,7 @@ Setup setup_of(const Demand& demand) {
 
 void scales_at(const Setup& setup, double omega_z, double* out) {
   const WheelFormulation& f = *setup.formulation;
-  std::copy_n(setup.slow_scales, f.states, out);
+  std::copy_n(setup.slow_scales, std::max(f.states, setup.sliding ? setup.sliding->states : 0), out);
   const double spin = std::fabs(omega_z), own_rate = 1 / setup.own_time;
   if (!(spin > own_rate)) return;
   const double turn = own_rate * own_rate / spin + setup.tilting;  // rad/s, of a nutation

@@ -66,7 +66,7 @@ def verdict(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
         return False, [f"Failed: the wheel requires a friction coefficient of {beyond_dry(most)}."]
     if run.name == "abs":
         return stops(table, run)
-    speed = f"Speed at the end: {-0.35 * table['omega_z'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
+    speed = f"Speed at the end: {-HUB_RADIUS * table['omega_z'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
     return True, [f"{speed}; friction required: {most:.2f}."]
 
 

@@ -99,7 +99,7 @@ export class WheelModel {
   }
 
   /**
-   * The contact path anew: all of it faintly, up to now strongly, stick phases and skid marks in colours of their own.
+   * The contact path anew: all of it faintly, up to now strongly, stick phases and skid marks in other colours.
    */
   drawPath() {
     const {wheel: {trace: {points}, table, phases, colour: accent}, size, r_0} = this;

@@ -44,7 +44,7 @@ function countBetween(table, k) {
 }
 
 /** [[begin, end], ...] in s in which it slides, true to half a row. */
-export function slidesOf({columns: {contact_mode: contact = []}, time, end}) {
+function slidesOf({columns: {contact_mode: contact = []}, time, end}) {
   const turnAt = (t, k) => (contact[k] === (contact[k - 1] ?? 0) ? [] : [k ? 0.5 * (time[k - 1] + t) : t]);
   const turns = Array.from(contact, (_, k) => turnAt(time[k], k)).flat();
   return turns.flatMap((t, i) => (i % 2 ? [] : [[t, turns[i + 1] ?? end]]));
