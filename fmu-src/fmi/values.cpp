@@ -40,7 +40,7 @@ fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
   });
 }
 
-// Parameters before the run, inputs and `s` at any time, the states while another solver moves them.
+// Parameters before the run, inputs and the road at any time, the states while another solver moves them.
 bool check_settable(const Instance& i, fmi2ValueReference variable) {
   const wheel::Row& row = wheel::row_of(variable);
   const bool running = is_running(i.simulation.phase());
@@ -54,15 +54,20 @@ bool check_settable(const Instance& i, fmi2ValueReference variable) {
 // together at the end of initialization.
 bool check_value(Instance& i, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
-  const bool bounded = variable < wheel::stored_count, low = value < row.min;
-  const bool inside = std::isfinite(value) && (!bounded || (!low && value <= row.max));
-  if (!is_running(i.simulation.phase()) || inside) return true;
+  const bool bounded = variable < wheel::stored_count, open = variable == wheel::variable::slope;
+  const bool low = bounded && value < row.min, high = bounded && (open ? value >= row.max : value > row.max);
+  const bool switches = variable == wheel::variable::mu_slide && (value > 0) != i.simulation.can_slide();
+  if (!is_running(i.simulation.phase()) || (std::isfinite(value) && !low && !high && !switches)) return true;
   const double kept = i.simulation.value(variable);
-  if (std::isfinite(value))
-    i.log(Topic::discard, "%s: %s = %s: it must be at %s %s; the value stays %s.", row.name, value,
-          low ? "least" : "most", low ? row.min : row.max, kept);
-  else
+  const char* const bound = low ? "at least" : open ? "less than" : "at most";
+  if (!std::isfinite(value))
     i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", row.name, value, kept);
+  else if (low || high)
+    i.log(Topic::discard, "%s: %s = %s: it must be %s %s; the value stays %s.", row.name, value, bound,
+          low ? row.min : row.max, kept);
+  else
+    i.log(Topic::discard, "%s: %s = %s: whether the wheel can slide is decided at the start; the value stays %s.",
+          row.name, value, kept);
   return false;
 }
 

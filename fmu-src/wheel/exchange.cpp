@@ -80,10 +80,10 @@ bool has_occurred(const EventRow& row, const Setup& setup, const Run& run) {
 
 void take_at_once(Wheel& w) {
   InForce& now = w.run.in_force;
-  const double s = now.scene.wheel.s;
+  const Road before = now.road;
   let_act(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
   w.demand.changed = false;
-  if (now.scene.wheel.s != s) decide_law(w.setup, w.run.t, w.run.y, now);
+  if (now.road != before) decide_law(w.setup, w.run.t, w.run.y, now);
 }
 
 void derivatives(Wheel& w, double* x_dot) {

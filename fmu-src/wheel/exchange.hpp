@@ -16,7 +16,7 @@ int indicator_count();
 // The place of a variable among the states, or -1.
 int state_index_of(unsigned variable);
 
-// What was set takes effect: at once, except for the law. A changed s asks for another law, whatever the mode is.
+// What was set takes effect: at once, except for the law. Another road asks for another law, whatever the mode is.
 // Writes run.in_force and demand.changed.
 void take_at_once(Wheel& wheel);
 

@@ -69,10 +69,11 @@ void settle(const Setup& setup, double t, const double* y, InForce& now) {
 }  // namespace
 
 void let_act(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
+  now.road = road;
   now.scene.wheel = setup.wheel;
   now.scene.wheel.s = road.s;
-  now.mu_max = road.mu_max;
-  now.scene.mu_slide = road.mu_max > 0 ? std::fmin(setup.mu_slide, road.mu_max) : setup.mu_slide;
+  if (road.slope != 0) wheel_set_slope(&now.scene.wheel, setup.wheel.g, road.slope, road.slope_direction);
+  now.scene.mu_slide = road.mu_max > 0 ? std::fmin(road.mu_slide, road.mu_max) : road.mu_slide;
   now.scene.load = load_of(inputs);
   now.inputs.take_over(t, inputs);
 }
@@ -91,7 +92,7 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   if (now.slides()) setup.sliding->grip(&now.scene.wheel, y);
   now.set_contact(Contact::grips);
   decide_law(setup, t, y, now);
-  if (now.mu_max > 0 && !(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
+  if (now.road.mu_max > 0 && !(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
 }
 
 // Without a direction a slip of no account is there already: the event that ends the run follows at once, or the ground
@@ -138,8 +139,9 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
   WheelDynamics dynamics;
   setup.formulation->dynamics(&scene, y, &dynamics);
   const double* lambda = dynamics.lambda;
-  const double X = lambda[0] / setup.weight / now.mu_max, Y = lambda[1] / setup.weight / now.mu_max;
-  const double N = lambda[2] / setup.weight * (1 + rounding) + std::fmin(rounding_of_zero / now.mu_max, 1);
+  const double mu_max = now.road.mu_max, full = setup.weight;
+  const double X = lambda[0] / full / mu_max, Y = lambda[1] / full / mu_max;
+  const double N = lambda[2] / full * (1 + rounding) + std::fmin(rounding_of_zero / mu_max, 1);
   return N * std::fabs(N) - (X * X + Y * Y);
 }
 
@@ -196,7 +198,7 @@ solver::Method method_of(const Setup& setup, const InForce& now) {
 
 bool is_unfoldable(const Setup& setup, const InForce& in_force) {
   return setup.unfolds && in_force.scene.friction.kind == WHEEL_FRICTIONLESS && !in_force.inputs.loaded &&
-         !in_force.slides();
+         !in_force.slides() && in_force.road.slope == 0;
 }
 
 }  // namespace wheel

@@ -6,15 +6,7 @@
 
 namespace wheel {
 
-// What acts from t on: the road, which are `s` and mu_max, and inputs. A mu_max set below mu_slide counts for both.
-struct Road {
-  double s, mu_max;
-  bool operator==(const Road&) const = default;
-};
-inline Road road_asked(const Demand& demand) {
-  return {demand.parameters[variable::s], demand.parameters[variable::mu_max]};
-}
-inline Road road_of(const InForce& now) { return {now.scene.wheel.s, now.mu_max}; }
+// What acts from t on: road and inputs. A mu_max set below mu_slide counts for both.
 void let_act(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
 
 // Puts in force, at the state y, what is asked for: road, inputs from t on, and the contact and the law of friction

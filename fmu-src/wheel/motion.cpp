@@ -33,7 +33,7 @@ bool has_changed(const Wheel& w) {
   const InForce& now = w.run.in_force;
   const double t = w.run.t;
   const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(w.setup.start_time) + std::fabs(t));
-  return road_of(now) != road_asked(w.demand) || now.inputs.change_at(t, rounding, w.demand.inputs);
+  return now.road != road_asked(w.demand) || now.inputs.change_at(t, rounding, w.demand.inputs);
 }
 
 // Starts the solver at the present instant, from nothing or, again, where it goes on counting.
@@ -169,7 +169,7 @@ double stop_of(const Wheel& w, double t) {
 // Of a loaded wheel on a road without a limit.
 void look_at_grip(Wheel& w, double t) {
   const Inputs& inputs = w.run.in_force.inputs;
-  if (t < w.run.grip_due || w.run.in_force.mu_max > 0 || !(inputs.loaded || inputs.braked)) return;
+  if (t < w.run.grip_due || w.run.in_force.road.mu_max > 0 || !(inputs.loaded || inputs.braked)) return;
   double y[WHEEL_MAX_STATES];
   w.solution.solver.read(t, y);
   warn_of_grip(w, t, y);

@@ -56,13 +56,26 @@ enum class Layer : int { none, outside, passing, sticking };
 // faster than the slip grows or falls that the motion is stiff: near zero slip, and where the slip hardly grows.
 enum class Contact : int { grips, settled, slides };
 
+// The road, which may change during a run. Its variables stand together, in this order.
+struct Road {
+  double s, mu_max, mu_slide, slope, slope_direction;
+  bool operator==(const Road&) const = default;
+};
+static_assert(variable::slope_direction - variable::s == sizeof(Road) / sizeof(double) - 1);
+
+inline Road road_asked(const Demand& demand) {
+  const double* v = demand.parameters + variable::s;
+  return {v[0], v[1], v[2], v[3], v[4]};
+}
+
 // What acts on the wheel.
 struct InForce {
-  // Its load is that at the origin of the inputs; `ground` follows from `below`, `contact` from that below.
+  Road road = {};
+  // Its wheel and mu_slide follow from `road`; its load is that at the origin of the inputs; `ground` follows from
+  // `below`, `contact` from that below.
   WheelScene scene = {
       .wheel = {}, .friction = {}, .load = {}, .ground = WHEEL_GROUND_PRESSES, .contact = WHEEL_GRIPS, .mu_slide = 0};
   Inputs inputs;
-  double mu_max = 0;  // the road's coefficient of friction; 0: not checked
   Layer layer = Layer::none;
   Contact contact = Contact::grips;
   bool below[event_count] = {};  // for each observed event: its value has fallen below zero and has not risen since

@@ -11,31 +11,22 @@
 namespace wheel {
 namespace {
 
-// Written out, because std::hypot of three rounds otherwise in each library of C++.
-double gravity_of(const WheelParameters& wheel) {
-  const double largest = std::max({std::fabs(wheel.g), std::fabs(wheel.g_X), std::fabs(wheel.g_Y)});
-  if (largest == 0) return 0;
-  const double g = wheel.g / largest, g_X = wheel.g_X / largest, g_Y = wheel.g_Y / largest;
-  return largest * std::sqrt(g * g + g_X * g_X + g_Y * g_Y);
-}
-
 double power_of_two_below(double x) {
   constexpr std::uint64_t exponent = 0x7ff0000000000000;
   return std::fmax(std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & exponent),
                    std::numeric_limits<double>::min());
 }
 
-// The wheel's own time is sqrt(length / g), g the whole of gravity; without a weight that matters it is the time of a
-// turn at the initial rate.
+// The wheel's own time is sqrt(length / g); without a weight that matters it is the time of a turn at the initial rate.
+// The slope changes no scale: it may change during a run.
 void set_scales(Setup& setup, const WheelKinematics& start) {
-  const double gravity = gravity_of(setup.wheel), length = setup.wheel.r_0 + setup.wheel.r;
+  const double gravity = setup.wheel.g, length = setup.wheel.r_0 + setup.wheel.r;
   const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
   const bool matters = gravity > 1e-30 * length * rate * rate;
   setup.length = length;
   setup.own_time = matters ? std::sqrt(length / gravity) : rate > 0 ? 1 / rate : 1;
   setup.longest_step = 0.5 * setup.own_time;
-  setup.whole_weight = setup.wheel.m * length / (setup.own_time * setup.own_time);
-  setup.weight = setup.whole_weight * (gravity > 0 ? setup.wheel.g / gravity : 1);
+  setup.weight = setup.wheel.m * length / (setup.own_time * setup.own_time);
   setup.rate_scale = power_of_two_below(1 / setup.own_time);
   setup.moment_scale = power_of_two_below(setup.weight * length);
   const double omega_2 = start.psi_dot * std::sin(start.theta);
@@ -143,14 +134,12 @@ Setup setup_of(const Demand& demand) {
   setup.formulation = exchanged ? &wheel_euler : multibody ? &wheel_multibody : &wheel_reduced;
   if (v[mu_slide] > 0) setup.sliding = multibody ? &wheel_multibody_sliding : &wheel_sliding;
   setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
-  if (v[slope] != 0) wheel_set_slope(&setup.wheel, v[g], v[slope], v[slope_direction]);
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
   setup.omega_s = v[omega_s];
   setup.method = static_cast<SolverMethod>(choice_of(v[method]));
-  setup.unfolds = v[J_x] == v[J_y] && v[slope] == 0 && choice_of(v[formulation]) == automatic_formulation &&
-                  setup.method == automatic_method;
+  setup.unfolds =
+      v[J_x] == v[J_y] && choice_of(v[formulation]) == automatic_formulation && setup.method == automatic_method;
   setup.keep_contact = v[keep_contact] != 0;
-  setup.mu_slide = v[mu_slide];
   setup.tolerance = demand.tolerance;
   setup.psi = {v[psi_start], exchanged ? v[psi_start] : wheel_less_turns(v[psi_start])};
   setup.phi = {v[phi_start], exchanged ? v[phi_start] : wheel_less_turns(v[phi_start])};

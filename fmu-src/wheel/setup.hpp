@@ -19,12 +19,12 @@ inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, lo
 // Who integrates the motion.
 enum class Kind : int { co_simulation, model_exchange };
 
-// Parameters and tolerance make the setup when initialization ends; inputs, their derivatives and `s` may be set again
-// later and are in force from the next step on.
+// Parameters and tolerance make the setup when initialization ends; inputs, their derivatives and the road may be set
+// again later and are in force from the next step on.
 struct Demand {
   static constexpr double never = std::numeric_limits<double>::infinity();
 
-  double parameters[first_input];  // in the order of the variables; `s` is the one asked for
+  double parameters[first_input];  // in the order of the variables; the road is the one asked for
   Polynomials inputs = {};         // from the instant at which they take effect
   double start_time = 0, stop_time = never, tolerance = default_tolerance;
   Kind kind;
@@ -51,13 +51,12 @@ struct Setup {
   double start_time;                    // s
   const WheelFormulation* formulation;  // while the wheel grips
   const WheelFormulation* sliding;      // while it slides; null: it never does
-  WheelParameters wheel;                // its `s` is zero here: the one in force is part of the run
+  WheelParameters wheel;                // on a level road and with s = 0: the road in force is part of the run
   FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
   SolverMethod method = automatic_method;
-  bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y, a level road, choices automatic
+  bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y, choices automatic
   bool keep_contact;
-  double mu_slide;                 // coefficient of sliding friction
   double tolerance;                // relative, of the whole solution
   bool starts_sliding;             // with a slip
   double start[WHEEL_MAX_STATES];  // the initial state
@@ -66,8 +65,7 @@ struct Setup {
   double own_time;                       // s, the wheel's own time scale
   double longest_step;                   // s
   double length;                         // m, r_0 + r
-  double whole_weight;                   // N, or the force that the time scale stands for without a weight
-  double weight;                         // N, scale of the normal force: its part across the road
+  double weight;                         // N, or the force that the time scale stands for without a weight
   double rate_scale, moment_scale;       // rad/s, N m, of margins; powers of two, so that scaling rounds nothing
   double slip_scale;                     // m/s, of the slip: error that counts as one, and of its margin
   double slow_scales[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly

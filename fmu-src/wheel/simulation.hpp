@@ -49,6 +49,7 @@ class Simulation {
 
   double time() const { return wheel_.demand.start_time + wheel_.run.t; }
   double stop_time() const { return wheel_.demand.stop_time; }
+  bool can_slide() const { return wheel_.setup.sliding; }
   bool has_ended() const { return wheel_.run.ended_by != Event::none; }
   // What ended the model, to stand behind "the wheel".
   Ending ending() const { return ending_of(wheel_.run.in_force, wheel_.run.ended_by); }

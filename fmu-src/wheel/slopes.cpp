@@ -125,7 +125,7 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
       y[state_index_of(angle)] = wheel_less_turns(y[state_index_of(angle)]);
   const int state = exchanged ? state_index_of(known) : -1;
   double& place = state >= 0 ? y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
-  double h = state >= 0 ? scales[state] : std::fmax(setup.whole_weight, std::fabs(place));
+  double h = state >= 0 ? scales[state] : std::fmax(setup.weight, std::fabs(place));
   if (state == f.tilt_index) h *= std::sin(place);
   if (state == f.spin_index && now.scene.friction.kind == WHEEL_REGULARIZED) h = std::fmin(h, setup.omega_s);
   const auto read_at = [&](double x) {

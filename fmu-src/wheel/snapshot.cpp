@@ -44,8 +44,11 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("something was set since the last step").count(demand.changed, 0, 1);
   archive("phase").count(run.phase, 0, phase_count - 1);
   archive("event that ended the model").count(run.ended_by, 0, event_count - 1);
-  archive("s in force, m").range(now.scene.wheel.s, 0, archive.greatest);
-  archive("mu_max in force").range(now.mu_max, 0, archive.greatest);
+  archive("s in force, m").range(now.road.s, 0, archive.greatest);
+  archive("mu_max in force").range(now.road.mu_max, 0, archive.greatest);
+  archive("mu_slide in force").range(now.road.mu_slide, 0, archive.greatest);
+  archive("slope in force, rad").range(now.road.slope, 0, upright);
+  archive("direction of the slope in force, rad").number(now.road.slope_direction);
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
   archive("place in the layer of a stiff law").count(now.layer, 0, static_cast<int>(Layer::sticking));
@@ -118,7 +121,7 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   setup = setup_of(demand);
   run.y_time = run.t;
   InForce& now = run.in_force;
-  let_act(setup, Road(road_of(now)), now.inputs.origin, Inputs(now.inputs).c, now);
+  let_act(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c, now);
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
   now.set_below(Event::lost_contact, now.pulls());
   if (now.slides() && !setup.sliding) return "the wheel slides without mu_slide";

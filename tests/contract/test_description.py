@@ -59,7 +59,8 @@ def test_variables_are_those_of_the_contract_in_its_order_with_its_units_and_kin
     parameters, outputs = names_of(description, "parameter"), names_of(description, "output")
     assert [name for name in parameters if name in PARAMETERS] == PARAMETERS and outputs[: len(OUTPUTS)] == OUTPUTS
     assert [v.name for v in description.modelVariables] == [*parameters, *INPUTS, *outputs, *LOCALS]
-    kinds = dict.fromkeys(parameters, ("fixed", "exact")) | dict.fromkeys(("s", "mu_max"), ("tunable", "exact"))
+    road = ("s", "mu_max", "mu_slide", "slope", "slope_direction")
+    kinds = dict.fromkeys(parameters, ("fixed", "exact")) | dict.fromkeys(road, ("tunable", "exact"))
     kinds |= dict.fromkeys(INPUTS, ("continuous", "exact"))
     for number, v in enumerate(description.modelVariables):
         if v.name in outputs or v.name in LOCALS:

@@ -72,6 +72,13 @@ def test_fixed_parameters_and_calculated_variables_cannot_be_set_once_running(wh
     assert {before.set(**{name: 0}) for name in (*before.reals, *before.integers)} == {ERROR}
 
 
+def test_a_road_cannot_become_as_steep_as_a_wall(wheel):
+    w = wheel().start()
+    assert w.set(slope=np.pi / 2) == DISCARD
+    assert w.said().endswith("slope = 1.5707963267948966: it must be less than 1.5707963267948966; the value stays 0.")
+    assert w.put(slope=1.57).get("slope") == [1.57]
+
+
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, -1e-9])
 def test_a_value_out_of_bounds_is_discarded_while_running_and_the_old_one_stays(wheel, value):
     w = wheel().start(s=0.03, F_X=2.0)

@@ -275,11 +275,11 @@ def test_a_state_that_is_set_must_be_a_finite_number(library: Library, state: st
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.3, 1.4, 1.57])
-def test_the_indicator_of_contact_is_the_normal_force_over_the_weight_across_the_road(library: Library, slope) -> None:
+def test_the_indicator_of_contact_is_the_normal_force_over_the_weight(library: Library, slope) -> None:
     with exchange(library, slope=slope, **AT_REST) as wheel:
-        assert wheel.indicator("lost_contact") == pytest.approx(1, abs=1e-8)
+        assert wheel.indicator("lost_contact") == pytest.approx(np.cos(slope), abs=1e-8)
         assert wheel.set(F_Z=-10.0) == OK  # the partner
-        assert wheel.indicator("lost_contact") == pytest.approx(1 + 10 / (WEIGHT * np.cos(slope)), rel=1e-8)
+        assert wheel.indicator("lost_contact") == pytest.approx(np.cos(slope) + 10 / WEIGHT, abs=1e-8)
 
 
 SOON = 1e-7 * (0.35 / 9.81) ** 0.5  # s: an event that lies ahead by less has happened
@@ -368,6 +368,16 @@ def test_another_limit_of_the_grip_is_decided_in_the_event_mode_that_sets_it(lib
         wheel.put(mu_max=mu_max)
         assert bool(wheel.decide().terminateSimulation) == ends
         assert (wheel.indicator("lost_grip") > 0) == (not ends)
+
+
+@pytest.mark.parametrize(("share", "mode"), [(1 - 1e-9, 0), (1 + 1e-9, 1)])
+def test_a_held_wheel_is_released_in_the_event_mode_in_which_the_road_becomes_too_steep(library, share, mode) -> None:
+    """Uphill is X: it rolls back, omega_z > 0. At once its acceleration is that of the new slope."""
+    with exchange(library, **AT_REST, psi_start=0.0, s=0.03) as wheel:
+        assert wheel.get("friction_mode", "omega_z_dot") == [0, 0.0]
+        assert wheel.enterEventMode() == OK
+        wheel.put(slope=np.arctan(0.03 / 0.35) * share).decide()
+        assert wheel.get("friction_mode") == [mode] and (wheel.get("omega_z_dot")[0] > 0) == (mode > 0)
 
 
 @pytest.mark.parametrize("share", [0.9, 1.1])

@@ -13,7 +13,7 @@ from reference.judge import carrier_axes, momenta
 from support import sliding
 from support.bounds import absolute_error, beyond, within
 from support.closed_forms import circle_spin
-from support.driver import ERROR, OK
+from support.driver import DISCARD, ERROR, OK
 from support.exchange import loaded
 from support.motion import Library, Run, start_values
 from support.motion import run as attempt
@@ -497,18 +497,31 @@ def test_a_wheel_that_slides_and_grips_hundreds_of_times_is_counted_and_logged_e
     within(run.counters["n_steps"] / run.counters["n_events"], 30, "steps per transition")
 
 
-def test_a_locked_wheel_slides_over_an_ice_patch_with_the_coefficient_of_the_ice(library: Library) -> None:
-    """mu_max set below mu_slide counts for both, in a saved state too; mu_slide counts again behind the patch."""
-    with library.wheel() as wheel:
+ROADS = [{"mu_max": 0.1}, {"mu_max": 0.45}, {"mu_max": 0.2, "mu_slide": 0.15}, {"slope": 0.3}, {"slope_direction": pi}]
+
+
+def test_a_locked_wheel_slides_over_roads_that_change_with_the_deceleration_of_each(library: Library) -> None:
+    """g (mu cos a + sin a): mu_max set below mu_slide counts for both. Saved states have the road asked for and that in
+    force."""
+    with library.wheel() as wheel, library.wheel() as other:
         wheel.start(**{**UPRIGHT, **ROAD, "slip_x_start": 7.0, "M_brake": 1e3})
         speeds = [7.0]
-        for t, mu_max in ((0.5, 0.1), (1.0, 0.1), (1.5, 0.45)):
-            wheel.to(t)
+        for k, road in enumerate([*ROADS, {}]):
+            wheel.to(0.2 * (k + 1))
             speeds += wheel.get("X_O_dot")
-            assert wheel.set(mu_max=mu_max) == OK
-            assert wheel.ask("SetFMUstate", wheel.snapshot()) == OK
-        wheel.to(1.7)
-        speeds += wheel.get("X_O_dot")
+            wheel.back(other.back(wheel.put(**road).serialized()).serialized())
         assert wheel.get("contact_mode") == [SLIDING]
-    slowing = -np.diff(speeds) / np.diff([0, 0.5, 1, 1.5, 1.7]) / PAPER.g
-    within(absolute_error(slowing, [0.4, 0.1, 0.1, 0.4]), 1e-9, "deceleration over g")
+    slowing = -np.diff(speeds) / 0.2 / PAPER.g
+    hill = [0.15 * cos(0.3) + sin(0.3), 0.15 * cos(0.3) - sin(0.3)]
+    within(absolute_error(slowing, [0.4, 0.1, 0.4, 0.15, *hill]), 1e-9, "deceleration over g")
+
+
+def test_whether_the_wheel_can_slide_is_decided_at_the_start(library: Library) -> None:
+    for start, later in ((0.4, 0.0), (0.0, 0.4)):
+        with library.wheel(logging=True) as wheel:
+            wheel.start(**{**UPRIGHT, **ROAD, "mu_slide": start}).to(0.1)
+            assert wheel.set(mu_slide=later) == DISCARD
+            assert f"mu_slide = {later:.9g}: whether the wheel can slide is decided at the start" in wheel.sentences[-1]
+            assert wheel.sentences[-1].endswith(f"the value stays {start:.9g}.")
+            assert wheel.get("mu_slide") == [start]
+            wheel.put(mu_slide=0.9 * start)

@@ -1,4 +1,4 @@
-"""A road that slopes: rolling down, standing and braked against closed forms and the reference.
+"""A road that slopes, or begins to: rolling down, standing and braked against closed forms and the reference.
 
 The axes are the road's, Z across it; the weight is m g (-sin a cos b, -sin a sin b, -cos a) for a slope a that rises
 towards b. Upright wheels head along X (psi = 0), R = r_0 + r. SI units.
@@ -10,7 +10,7 @@ from math import atan, cos, pi, sin
 import numpy as np
 import pytest
 from reference import Start, Wheel, solve
-from support.bounds import EPSILON, beyond, within
+from support.bounds import EPSILON, absolute_error, beyond, within
 from support.closed_forms import rolling_inertia
 from support.kept import kept
 from support.motion import Library, start_values
@@ -107,3 +107,84 @@ def test_a_road_of_ninety_degrees_is_refused_with_a_message(library: Library) ->
         wheel.set(slope=pi / 2)
         wheel.initialise()
         assert any("slope = 1.57079633 rad: it must be less than 1.5708." in sentence for sentence in wheel.sentences)
+
+
+def on_a_hill(library: Library, slope: float, **values: float) -> np.ndarray:
+    """X_O after 0, 1 and 2 s on a hill that begins after 0.5 s on a level road, at 2.8 m/s."""
+    with library.wheel() as wheel:
+        wheel.start(tolerance=1e-10, **{**UPRIGHT, "phi_dot_start": -8.0, **values}).to(0.5)
+        foot = wheel.put(slope=slope).get("X_O")
+        return np.array([*foot, *wheel.to(1.5).get("X_O"), *wheel.to(2.5).get("X_O")])
+
+
+WAYS = {"free": {}, "may slide": {"mu_max": 0.9, "mu_slide": 0.8}, "Adams": {"method": 2}}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_wheel_that_meets_a_hill_rolls_up_slows_down_and_comes_back(library: Library, formulation: int, way) -> None:
+    """By g sin a / (1 + J_z / (m R^2)) from the foot on; it stands still after 1.27 s."""
+    since, slowing = np.array([0.0, 1.0, 2.0]), R**2 * WEIGHT * sin(0.4) / rolling_inertia(Wheel())
+    expected = 8.0 * R * (0.5 + since) - slowing * since**2 / 2
+    assert expected[2] < expected[1]
+    within(np.abs(on_a_hill(library, 0.4, formulation=formulation, **WAYS[way]) - expected).max(), 1e-11, "X_O, m")
+    steeper = on_a_hill(library, 0.4 * (1 + 1e-8), formulation=formulation, **WAYS[way])
+    beyond(np.abs(steeper - expected).max(), 1e-9, "X_O on a steeper hill, m")
+
+
+def test_a_parked_wheel_stays_while_the_road_tilts_and_rolls_where_it_tilts_too_far(library: Library) -> None:
+    """Step by step, up to the capacity of s; then beyond it, downhill whichever side that is."""
+    steepest = atan(0.03 / R)
+    for direction, sense in ((0.0, 1), (pi, -1)):
+        with library.wheel() as wheel:
+            wheel.start(s=0.03, **REST)
+            for k, share in enumerate((0.3, 0.9, 1 - 1e-9, 0.0, 1 - 1e-9)):
+                wheel.put(slope=share * steepest, slope_direction=direction).to(k + 1.0)
+            assert wheel.get("omega_z", "friction_mode") == [0.0, 0]
+            within(abs(wheel.get("X_O")[0]), EPSILON, "creep, m")
+            wheel.put(slope=steepest * (1 + 1e-6)).to(7.0)
+            assert wheel.get("friction_mode") == [sense] and -sense * wheel.get("X_O")[0] > 0
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_slope_set_before_the_first_step_is_that_of_the_start_to_the_bit(library: Library, seed: int) -> None:
+    body, start = random_scene(np.random.default_rng(seed))
+    values = {**start_values(body, start), "keep_contact": True, "formulation": 2 + seed % 2}
+
+    def run(*slopes: float) -> list[bytes]:
+        with library.wheel() as wheel:
+            wheel.start(**values | {"slope": slopes[0], "slope_direction": 1.0}).put(slope=slopes[-1])
+            return wheel.run((0.1, 0.5, 1.0))
+
+    assert run(0.2, 0.5) == run(0.5) != run(0.2, 0.5 * (1 + 1e-9))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_road_that_changes_is_the_next_road_from_the_state_reached(library: Library, seed: int) -> None:
+    """Beside a wheel that starts there; the energy jumps by the weight's turn about the origin. On the way the state is
+    saved with the next road asked for and in force: a restored wheel has the same bits."""
+    body, start = random_scene(np.random.default_rng(seed))
+    values = {**start_values(body, start), "keep_contact": True, "slope": 0.3}
+    names = ("X_O", "Y_O", "theta", "psi", "phi", "omega_z")
+    with library.wheel() as wheel, library.wheel() as fresh, library.wheel() as restored:
+        wheel.start(tolerance=1e-11, **values).to(0.4)
+        reached = ("psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot", "X_O", "Y_O")
+        there = dict(zip((f"{name}_start" for name in reached), wheel.get(*reached), strict=True))
+        E, place = wheel.get("E")[0], np.array(wheel.get("X_O", "Y_O", "Z_O"))
+        change = gravity(0.6, -2.0) - gravity(values["slope"], values["slope_direction"])
+        jump = wheel.put(slope=0.6, slope_direction=-2.0).get("E")[0] - E
+        within(abs(jump + body.m * change @ place) / E, 1e-13, "jump of the energy")
+        beyond(abs(jump) / E, 1e-4, "jump of the energy")
+        pending = wheel.serialized()
+        in_force = wheel.to(0.5).serialized()
+        end = wheel.to(0.8).bits()
+        for state, times in ((pending, (0.5, 0.8)), (in_force, (0.8,))):
+            assert restored.back(state).to(*times).bits() == end
+        fresh.start(tolerance=1e-11, **values | there | {"slope": 0.6, "slope_direction": -2.0}).to(0.4)
+        within(absolute_error(wheel.get(*names), fresh.get(*names)), 1e-8, "state")
+        fresh.put(slope=0.6 + 1e-5).to(0.5)
+        beyond(absolute_error(wheel.to(0.9).get(*names), fresh.get(*names)), 1e-8, "state on a steeper road")
+
+
+def gravity(slope: float, direction: float) -> np.ndarray:
+    """Its acceleration on a road that slopes, m/s2."""
+    return -9.81 * np.array([sin(slope) * cos(direction), sin(slope) * sin(direction), cos(slope)])
