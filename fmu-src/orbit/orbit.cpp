@@ -13,11 +13,14 @@ bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
   lead_.phi_sum = y0[phi];
   lead_.place = place_of(y0);
   lead_.turn = std::polar(1.0, y0[psi]);
-  double own[states], rate[states];
-  track_.read(0, own);
-  problem.derivative(problem.owner, 0, own, rate);
+  // On the way, since a straight line that starts where a watched function is the same may lead elsewhere.
+  const double t = 0.6 * (kind_ == Kind::folded ? T2_ : end_time_);
+  double own[states], rate[states], y[states];
+  track_.read(t, own);
+  read(t, y);
+  problem.derivative(problem.owner, t, own, rate);
   set_place(rate, lead_.turn * place_of(rate));
-  return maps(problem, 0, own, 0, y0, rate);
+  return maps(problem, t, own, t, y, rate);
 }
 
 // What the sums need, from the states at T1 and T2, and the recurring events.

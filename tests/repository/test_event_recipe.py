@@ -1,6 +1,6 @@
 """CONTRIBUTING's recipes for an event and for one with its own parameter, carried out on a copy with a third event.
 Each crossing is logged in every way of running, before and after a snapshot, and the tests of the contract hold. The
-crossings are those of theta, the normal force and X_O, read on a fine grid."""
+crossings are those of theta, the normal force and Y_O, read on a fine grid."""
 
 import os
 import re
@@ -35,7 +35,7 @@ LINE = {
 double short_of_line(const Setup& setup, const InForce&, double, const double* y) {
   WheelKinematics pose;
   setup.formulation->pose(&setup.wheel, y, &pose);
-  return (setup.X_O.whole(pose.X_O) + 0.5) / setup.length;
+  return (setup.Y_O.whole(pose.Y_O) + 0.1) / setup.length;
 }
 """,
         """    {.event = Event::crosses_line,
@@ -211,10 +211,21 @@ def test_a_limit_of_zero_is_none(patched: Patched, way: str) -> None:
 @pytest.mark.parametrize("way", WAYS)
 def test_an_event_that_is_no_symmetry_of_the_motion_keeps_it_from_being_unfolded(library, patched, fine_kept, way: str):
     run = patched.library.simulate([0.0, 2.0, STOP], 1e-11, keep_contact=True, **WAYS[way])
-    within(gap(falls(fine_kept, "X_O", -0.5), logged(patched.line, run.messages)), 1e-6, "instant, s")
+    within(gap(falls(fine_kept, "Y_O", -0.1), logged(patched.line, run.messages)), 1e-6, "instant, s")
     within(gap(falls(fine_kept, "theta", LEAN), logged(patched.lean, run.messages)), 1e-6, "instant, s")
     if way == "unfolded":
         assert run.counters["n_rhs"] > 2 * library.simulate([0.0, STOP], 1e-11, keep_contact=True).counters["n_rhs"]
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_wheel_in_steady_motion_meets_the_line_that_it_rolls_to(patched: Patched, way: str) -> None:
+    """Upright towards -Y at 1.4 m/s; at the start the line is as far from a wheel of any heading."""
+    steady = {"theta_start": np.pi / 2, "psi_start": -np.pi / 2, "phi_dot_start": -4.0, "keep_contact": True}
+    run = patched.library.simulate([0.0, 1.0], 1e-11, **steady, **WAYS[way])
+    (instant,) = logged(patched.line, run.messages)
+    within(abs(instant - 0.1 / 1.4), 1e-9, "instant, s")
+    parallel = patched.library.simulate([0.0, 1.0], 1e-11, **{**steady, "psi_start": 0.0}, **WAYS[way])
+    assert logged(patched.line, parallel.messages) == []
 
 
 @pytest.mark.parametrize("way", WAYS)
@@ -239,7 +250,7 @@ def test_another_solver_finds_them_by_their_indicators(patched: Patched, fine_ke
         blob = wheel.serialized()
         run.to(STOP)
         found = wheel.sentences
-        within(gap(falls(fine_kept, "X_O", -0.5), logged(patched.line, found)), 1e-6, "instant, s")
+        within(gap(falls(fine_kept, "Y_O", -0.1), logged(patched.line, found)), 1e-6, "instant, s")
         within(gap(falls(fine_kept, "theta", LEAN), logged(patched.lean, found)), 1e-6, "instant, s")
         within(gap(falls(fine_kept, "lambda_3", level, -1), logged(patched.load, found)), 1e-6, "instant, s")
         wheel.take_messages()
