@@ -81,20 +81,6 @@ def test_above_zero_two_dips_end_nothing(solver, method):
     assert double_dip(solver, method, -1e-8)[0] == STEPPED
 
 
-@pytest.mark.parametrize("end", [0.12, 0.5])
-def test_a_state_that_falls_straight_to_more_than_a_tenth_of_its_range_is_not_searched(solver, end):
-    """The stage inside a step of Runge-Kutta shows that the fall is straight: it is the state of its own instant. One
-    value at the start, one inside, one at the end."""
-
-    def values(of, last):
-        one = solver("runge_kutta", "clock", each_step=lambda t, y: 1 - (1 - last) * of(y[0]))
-        assert (one.step(), one.now.known) == (STEPPED, 1)
-        return one.now.roots
-
-    assert values(lambda y: y, end) == 3
-    assert values(lambda y: y, 0.05) > 3 < values(lambda y: 2 * y - y * y, 0.12)  # the partners: further, or bent
-
-
 def test_a_function_that_falls_to_a_twentieth_of_its_range_is_looked_at_again(solver):
     """Three samples lie on a straight line above zero; around 0.75 it dips below."""
     one = solver("runge_kutta", "clock", each_step=lambda t, y: 1 - 0.95 * t - max(0, 0.4 - 20 * (t - 0.75) ** 2))
