@@ -10,7 +10,7 @@ from support.bounds import beyond, within
 from support.closed_forms import critical_spin, upright_stiffness
 from support.motion import Library
 
-from .leaning import TORUS, lean_of, measured_critical_spin
+from .exact_motions import TORUS, lean_of, measured_critical_spin
 
 
 def test_a_lean_swings_or_grows_by_the_linearised_equation(library: Library) -> None:

@@ -11,11 +11,18 @@ import pandas as pd
 from equations import pointwise
 from orbit.orbit import Halves
 from physics import cases, measure
-from physics.exact_motions import UPRIGHT, circle_error, fall_error, lift_off_error, straight_error
-from physics.leaning import TORUS, measured_critical_spin
+from physics.exact_motions import (
+    UPRIGHT,
+    circle_error,
+    fall_error,
+    lift_off_error,
+    measured_critical_spin,
+    straight_error,
+)
 from reference import Start, Wheel
 from support import equations as eq
 from support.closed_forms import critical_spin, upright_deceleration
+from support.scenes import PAPER as TORUS
 from support.scenes import Scene
 
 from . import plots
@@ -94,10 +101,10 @@ def long(report: Report, tolerance: float) -> Row:
 def scenes(report: Report, name: str) -> Row:
     """other scenes against the reference"""
     library, scene = report.library, cases.CASES[name]
-    row = {"s": scene.duration} | {f"at {t}": cases.error(library, name, float(t)) for t in ("1e-8", "1e-10", "1e-12")}
+    row = {"s": scene.duration} | {f"at {t}": cases.error(library, scene, float(t)) for t in ("1e-8", "1e-10", "1e-12")}
     number, gap = 0, 0.0
     if (s := scene.wheel.s) > 0:
-        number, gap = len(cases.expected(name).events) - 1, cases.transitions_gap(library, name, s)
+        number, gap = len(scene.solved().events) - 1, cases.transitions_gap(library, scene, s)
     return row | {"transitions": number, "their error, s": gap}
 
 
