@@ -6,8 +6,7 @@ of the paper and the rotation-matrix reference under reference/ judge the produc
 
 import numpy as np
 import pytest
-from equations.multibody_transcription import omega_z_dot, papers_state, solved
-from equations.paper_transcription import Paper
+from equations.paper_transcription import Paper, omega_z_dot, papers_state, solved
 from equations.pointwise import ACCELERATIONS, distance, draw, dynamics, referenced, relative
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within

@@ -6,8 +6,7 @@ by 1e-40 i. Fixed axes, N/s and N m/s; errors relative to the row's largest rate
 
 import numpy as np
 import pytest
-from equations.multibody_transcription import papers_state, solved
-from equations.paper_transcription import Paper
+from equations.paper_transcription import Paper, papers_state, solved
 from equations.pointwise import Table, random_motions, random_scenes, relative
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within

@@ -6,7 +6,7 @@ multibody_state.md. Fixed axes for O.
 """
 
 import numpy as np
-from equations.multibody_transcription import stabilised_rate
+from equations.paper_transcription import stabilised_rate
 from equations.pointwise import Table, draw, relative
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within

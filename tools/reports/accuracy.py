@@ -11,14 +11,7 @@ import pandas as pd
 from equations import pointwise
 from orbit.orbit import Halves
 from physics import cases, measure
-from physics.exact_motions import (
-    UPRIGHT,
-    circle_error,
-    fall_error,
-    lift_off_error,
-    measured_critical_spin,
-    straight_error,
-)
+from physics import exact_motions as exact
 from reference import Start, Wheel
 from support import equations as eq
 from support.closed_forms import critical_spin, upright_deceleration
@@ -36,12 +29,12 @@ THIN, ROUGH = Wheel(r=0.0), Wheel(s=0.03)
 STOP = 2 / upright_deceleration(ROUGH)
 FORMS = {"reduced": 2, "multibody": 3}
 MOTIONS = {
-    "upright rolling slows down linearly: ω_z, rad/s": lambda fmu, form: straight_error(fmu, form, 0.03, ROUGH),
+    "upright rolling slows down linearly: ω_z, rad/s": lambda fmu, form: exact.straight_error(fmu, form, 0.03, ROUGH),
     f"and stops at {STOP:.6f} s: instant, s": lambda fmu, form: stop_error(fmu, form),
-    "released from rest it falls flat: instant, s": lambda fmu, form: fall_error(fmu, form, TORUS),
-    "a light rim lifts off while falling: s, rad": lambda fmu, form: lift_off_error(fmu, form, 0.0),
-    "steady circle, thin disc, 5 s": lambda fmu, form: circle_error(fmu, THIN, THIN, form, 1.0, 1.1),
-    "steady circle, torus, 5 s": lambda fmu, form: circle_error(fmu, TORUS, TORUS, form, 1.0, 1.1),
+    "released from rest it falls flat: instant, s": lambda fmu, form: exact.fall_error(fmu, form, TORUS),
+    "a light rim lifts off while falling: s, rad": lambda fmu, form: exact.lift_off_error(fmu, form, 0.0),
+    "steady circle, thin disc, 5 s": lambda fmu, form: exact.circle_error(fmu, THIN, THIN, form, 1.0, 1.1),
+    "steady circle, torus, 5 s": lambda fmu, form: exact.circle_error(fmu, TORUS, TORUS, form, 1.0, 1.1),
 }
 
 
@@ -109,7 +102,7 @@ def scenes(report: Report, name: str) -> Row:
 
 
 def stop_error(library, form: int) -> float:
-    return abs(library.simulate([0.0, 6.0], s=0.03, formulation=form, **UPRIGHT).events[0][0] - STOP)
+    return abs(library.simulate([0.0, 6.0], s=0.03, formulation=form, **exact.UPRIGHT).events[0][0] - STOP)
 
 
 @part(6, {"motion: error": MOTIONS})
@@ -133,7 +126,7 @@ def equations(report: Report, kind: int) -> Row:
 @part(4)
 def stability_limit(report: Report) -> Row:
     """the stability limit of upright rolling"""
-    found = measured_critical_spin(report.library)
+    found = exact.measured_critical_spin(report.library)
     return {"critical_spin": found, "critical": abs(found / critical_spin(TORUS) - 1)}
 
 
