@@ -45,7 +45,9 @@ class Orbit:
         self.library.probe_free(self.probe)
 
     def build(self) -> str:
-        return KINDS[self.library.probe_build(self.probe)]
+        kind = KINDS[self.library.probe_build(self.probe)]
+        self.half_period, self.steps = self.library.probe_half_period(self.probe), self.library.probe_steps(self.probe)
+        return kind
 
     def read(self, t: Array | list[float]) -> tuple[Array, Array]:
         """States (rows) and N at the instants t."""
@@ -57,14 +59,6 @@ class Orbit:
 
     def __call__(self, t: Array | list[float]) -> Array:
         return self.read(t)[0]
-
-    @property
-    def half_period(self) -> float:
-        return self.library.probe_half_period(self.probe)
-
-    @property
-    def steps(self) -> int:
-        return self.library.probe_steps(self.probe)
 
     def falls_until(self, t: float) -> int:
         return self.library.probe_falls_until(self.probe, c_double(t))

@@ -9,19 +9,19 @@ from .solving import EVENT, STEPPED, harmonic
 
 
 def dips(solver, method, depth):
-    """Instants of the falls of g = 1 + sin t - depth below zero up to t = 20, and what it took."""
+    """Instants of the falls of g = 1 + sin t - depth below zero up to t = 20."""
     one, found = solver(method, tolerance=1e-6, each_step=lambda t, y: 1 - y[1] - depth), []
     while one.run(20.0) == EVENT:
         found.append(one.now.instant)
         past = found[-1] + 2 * acos(1 - depth) + 0.1
         one.restart(past, harmonic(past))
-    return found, one.now
+    return found
 
 
 @pytest.mark.parametrize("depth", [1e-1, 1e-3, 1e-5])
 def test_every_dip_inside_a_step_is_found(solver, method, depth):
     """g = 1 + sin t - depth falls below zero for 2 sqrt(2 depth) s around each 3 pi / 2."""
-    found, _ = dips(solver, method, depth)
+    found = dips(solver, method, depth)
     first = pi + asin(1 - depth)
     expected = [first + 2 * pi * k for k in range(3)]
     assert len(found) == 3
@@ -44,12 +44,7 @@ def test_of_a_dip_however_brief_the_first_instant_is_found(solver, method):
 
 
 def test_a_function_that_comes_near_zero_and_turns_is_no_event(solver, method):
-    assert dips(solver, method, -1e-4)[0] == []
-
-
-def test_the_work_of_the_search_is_bounded(solver, method):
-    _, now = dips(solver, method, 1e-5)
-    within(now.roots / now.steps, 100, "roots")
+    assert dips(solver, method, -1e-4) == []
 
 
 def test_where_no_parabola_fits_the_search_of_one_step_gives_up_in_time(solver):
