@@ -15,6 +15,13 @@ from support.bounds import EPSILON, beyond, relative_error, within
 ROWS = 2000
 
 
+def rolling() -> tuple[Table, Table, Table]:
+    """Scenes, the multibody form's kinematics and its dynamics, any inertia."""
+    scenes, motions = draw(91, eq.ROLLING, symmetric=False, rows=ROWS)
+    y = eq.start_each(eq.MULTIBODY, scenes, motions)
+    return scenes, eq.kinematics_each(eq.MULTIBODY, scenes, y), eq.dynamics_each(eq.MULTIBODY, scenes, y)
+
+
 def state(k: Table) -> Table:
     """q, q_dot of (25)."""
     return eq.columns(k, *k.dtype.names[:12])
@@ -22,12 +29,6 @@ def state(k: Table) -> Table:
 
 def required_friction(*reaction: float) -> float:
     return eq.LIBRARY.wheel_required_friction((c_double * 3)(*reaction))
-
-
-def residuals(wheels: Table, k: Table) -> tuple[Table, Table]:
-    velocity, height = np.zeros((len(k), 1)), np.zeros((len(k), 1))
-    eq.each(eq.LIBRARY.wheel_constraint_residuals, wheels, k, velocity, height)
-    return velocity[:, 0], height[:, 0]
 
 
 def test_required_friction_is_tangential_over_normal_force() -> None:
@@ -53,7 +54,8 @@ def test_residuals_are_the_slip_B_q_dot_and_the_error_in_height() -> None:
     k["Z_O"] += random.normal(size=ROWS)
     k["omega_z"] = k["phi_dot"] + k["psi_dot"] * np.cos(k["theta"])
     paper = Paper(wheels, state(k))
-    velocity, height = residuals(wheels, k)
+    velocity, height = np.zeros(ROWS), np.zeros(ROWS)
+    eq.each(eq.LIBRARY.wheel_constraint_residuals, wheels, k, velocity, height)
     slip = np.abs(paper.slip).max(axis=1)
     off = np.abs(k["Z_O"] - wheels["r_0"] * paper.sin_theta - wheels["r"])
     within(np.abs(velocity - slip).max() / slip.max(), 64 * EPSILON, "slip")
@@ -62,13 +64,6 @@ def test_residuals_are_the_slip_B_q_dot_and_the_error_in_height() -> None:
 
 
 # ---- the contact ----
-
-
-def rolling() -> tuple[Table, Table, Table]:
-    """Scenes, the multibody form's kinematics and its dynamics, any inertia."""
-    scenes, motions = draw(91, eq.ROLLING, symmetric=False, rows=ROWS)
-    y = eq.start_each(eq.MULTIBODY, scenes, motions)
-    return scenes, eq.kinematics_each(eq.MULTIBODY, scenes, y), eq.dynamics_each(eq.MULTIBODY, scenes, y)
 
 
 def contacts(scenes: Table, k: Table) -> Table:
