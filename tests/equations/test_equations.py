@@ -1,13 +1,12 @@
 """Three formulations, one wheel: reduced, multibody (24), and two derivations that share no code.
 
-Pointwise, at ten thousand random states each: wheels, motions and loads of random_scenes.py. The numpy transcription
+Pointwise, at ten thousand random states each: wheels, motions and loads of pointwise.py. The numpy transcription
 of the paper and the rotation-matrix reference under reference/ judge the product.
 """
 
 import numpy as np
 import pytest
-from equations.multibody_transcription import omega_z_dot, papers_state, solved
-from equations.paper_transcription import Paper
+from equations.paper_transcription import Paper, omega_z_dot, papers_state, solved
 from equations.pointwise import ACCELERATIONS, distance, draw, dynamics, referenced, relative
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within
@@ -37,19 +36,6 @@ def test_reduced_and_multibody_give_the_same_positions_and_velocities() -> None:
     scenes["wheel"]["r"] += 1e-9
     moved = eq.kinematics_each(eq.REDUCED, scenes, eq.start_each(eq.REDUCED, scenes, motions))
     beyond(relative(eq.columns(moved, *moved.dtype.names), b), 1e-10, "relative difference")  # r longer by 1 nm
-
-
-def test_the_pose_is_the_kinematics_without_the_horizontal_velocity(formulation: eq.Formulation) -> None:
-    scenes, motions = draw(2)
-    kept = [name for name, _ in eq.Kinematics._fields_ if name not in ("X_O_dot", "Y_O_dot")]
-    y = eq.start_each(formulation, scenes, motions)
-    whole, pose = eq.kinematics_each(formulation, scenes, y), eq.table(eq.Kinematics, len(y))
-    eq.each(formulation.pose, scenes, y, pose)
-    assert (eq.columns(pose, *kept) == eq.columns(whole, *kept)).all()
-    assert (eq.columns(whole, *kept) != 0).all()  # nothing is equal for want of a value
-    y[:, formulation.spin_index] += 1e-9
-    eq.each(formulation.pose, scenes, y, pose)
-    assert (pose["omega_z"] != whole["omega_z"]).all()
 
 
 def test_the_euler_form_reads_its_state_back_to_the_bit_and_moves_as_the_reduced_form(symmetric: bool) -> None:
@@ -101,16 +87,6 @@ def rates_of(k: np.ndarray, d: np.ndarray) -> dict[str, np.ndarray]:
     rates |= {f"{name}_dot": d[f"{name}_ddot"] for name in (*PLACES, *ANGLES)}
     turning = k["psi_dot"] * k["theta_dot"] * np.cos(k["theta"])
     return rates | {"omega_z": d["omega_z_dot"], "omega_2": d["psi_ddot"] * np.sin(k["theta"]) + turning}
-
-
-def test_spin_and_tilt_are_omega_z_and_theta() -> None:
-    scenes, motions = draw(4)
-    for formulation, _ in STATES:
-        y = eq.start_each(formulation, scenes, motions)
-        k = eq.kinematics_each(formulation, scenes, y)
-        assert (y[:, formulation.spin_index] == k["omega_z"]).all()
-        assert (y[:, formulation.tilt_index] == k["theta"]).all()
-        assert not np.allclose(k["omega_z"], k["phi_dot"])
 
 
 def test_stop_spin_leaves_a_rolling_wheel_that_holding_takes_no_energy_from(formulation: eq.Formulation) -> None:

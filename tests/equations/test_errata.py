@@ -7,8 +7,7 @@ derivatives (complex step); the paper's free wheel (27)-(33) is set rolling with
 from functools import cache
 
 import numpy as np
-from equations.multibody_transcription import papers_state
-from equations.paper_transcription import THETA, Paper, derivative, paper_table, states, times, transposed
+from equations.paper_transcription import THETA, Paper, derivative, paper_table, papers_state, states, times, transposed
 from scipy.integrate import solve_ivp
 from support import equations as eq
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within

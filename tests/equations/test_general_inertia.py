@@ -1,6 +1,6 @@
 """Unequal moments of inertia: how N answers the moment about the axle.
 
-Random scenes with loads and brakes (random_scenes.py). Carrier frame.
+Random scenes with loads and brakes (pointwise.py). Carrier frame.
 """
 
 import numpy as np

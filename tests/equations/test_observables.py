@@ -1,9 +1,9 @@
-"""Energy, height, required friction and constraint residuals against their definitions.
+"""Required friction, constraint residuals, contact point and force in wheel axes against their definitions.
 
-Judged by the numpy transcription of the paper's matrices; fixed axes, body axes for omega.
+Judged by the numpy transcription of the paper's matrices and by differences; fixed axes.
 """
 
-from ctypes import c_double
+from ctypes import byref, c_double
 
 import numpy as np
 import pytest
@@ -15,11 +15,11 @@ from support.bounds import EPSILON, beyond, relative_error, within
 ROWS = 2000
 
 
-def rolling_states(seed: int) -> tuple[Table, Table]:
-    """Wheels and their kinematics on the constraints, any inertia."""
-    scenes, motions = draw(seed, eq.FRICTIONLESS, symmetric=False, rows=ROWS)
+def rolling() -> tuple[Table, Table, Table]:
+    """Scenes, the multibody form's kinematics and its dynamics, any inertia."""
+    scenes, motions = draw(91, eq.ROLLING, symmetric=False, rows=ROWS)
     y = eq.start_each(eq.MULTIBODY, scenes, motions)
-    return scenes["wheel"].copy(), eq.kinematics_each(eq.MULTIBODY, scenes, y)
+    return scenes, eq.kinematics_each(eq.MULTIBODY, scenes, y), eq.dynamics_each(eq.MULTIBODY, scenes, y)
 
 
 def state(k: Table) -> Table:
@@ -27,38 +27,8 @@ def state(k: Table) -> Table:
     return eq.columns(k, *k.dtype.names[:12])
 
 
-def energies(wheels: Table, k: Table) -> np.ndarray:
-    return np.array(eq.each(eq.LIBRARY.wheel_energy, wheels, k))
-
-
 def required_friction(*reaction: float) -> float:
     return eq.LIBRARY.wheel_required_friction((c_double * 3)(*reaction))
-
-
-def residuals(wheels: Table, k: Table) -> tuple[Table, Table]:
-    velocity, height = np.zeros((len(k), 1)), np.zeros((len(k), 1))
-    eq.each(eq.LIBRARY.wheel_constraint_residuals, wheels, k, velocity, height)
-    return velocity[:, 0], height[:, 0]
-
-
-def test_energy_is_that_of_translation_rotation_and_height() -> None:
-    wheels, k = rolling_states(41)
-    expected = Paper(wheels, state(k)).energy
-    # kinetic and potential energy may cancel
-    within(relative_error(energies(wheels, k), expected), 4096 * EPSILON, "energies")
-    k["phi"] += 1e-6  # J_x != J_y: the turn of the body counts
-    beyond(relative_error(energies(wheels, k), expected), 9e-7, "energies")
-
-
-def test_height_of_O_is_that_of_a_torus_on_the_ground() -> None:
-    wheels, k = rolling_states(42)
-    constants = map(eq.Parameters.from_buffer_copy, wheels)
-    heights = np.array([*map(eq.LIBRARY.wheel_height, constants, k["theta"].tolist())])
-    paper = Paper(wheels, state(k))
-    below = times(paper.A, paper.contact)[:, 2]
-    within(relative_error(heights, -below), 64 * EPSILON, "heights")
-    within(relative_error(heights, k["Z_O"]), 64 * EPSILON, "heights, 2")
-    beyond(relative_error(heights, -below - wheels["r"] * 1e-6), 7e-8, "heights")
 
 
 def test_required_friction_is_tangential_over_normal_force() -> None:
@@ -76,16 +46,91 @@ def test_a_ground_that_does_not_press_needs_infinite_friction(normal: float) -> 
 
 
 def test_residuals_are_the_slip_B_q_dot_and_the_error_in_height() -> None:
-    wheels, k = rolling_states(44)
+    scenes, k, _ = rolling()
+    wheels = scenes["wheel"].copy()
     random = np.random.default_rng(45)
     for name in k.dtype.names[6:12]:
         k[name] += random.normal(size=ROWS)
     k["Z_O"] += random.normal(size=ROWS)
     k["omega_z"] = k["phi_dot"] + k["psi_dot"] * np.cos(k["theta"])
     paper = Paper(wheels, state(k))
-    velocity, height = residuals(wheels, k)
+    velocity, height = np.zeros(ROWS), np.zeros(ROWS)
+    eq.each(eq.LIBRARY.wheel_constraint_residuals, wheels, k, velocity, height)
     slip = np.abs(paper.slip).max(axis=1)
     off = np.abs(k["Z_O"] - wheels["r_0"] * paper.sin_theta - wheels["r"])
     within(np.abs(velocity - slip).max() / slip.max(), 64 * EPSILON, "slip")
     assert height == pytest.approx(off, rel=1e-12, abs=64 * EPSILON)
     beyond(np.abs(velocity - np.linalg.norm(paper.slip, axis=1)).max(), 0.2, "norm")
+
+
+# ---- the contact ----
+
+
+def contacts(scenes: Table, k: Table) -> Table:
+    """X_C, Y_C, X_C_dot, Y_C_dot row by row."""
+    wheels, motions = map(eq.Parameters.from_buffer_copy, scenes["wheel"]), map(eq.Kinematics.from_buffer_copy, k)
+    rows = zip(wheels, motions, strict=True)
+    return np.array([eq.values(eq.LIBRARY.wheel_contact(byref(wheel), byref(motion))) for wheel, motion in rows])
+
+
+def horizontal(k: Table, *lambdas: Table) -> Table:
+    """wheel_horizontal_force(lambda), or ..._rates(lambda, lambda_dot), row by row."""
+    function = (eq.LIBRARY.wheel_horizontal_force, eq.LIBRARY.wheel_horizontal_force_rates)[len(lambdas) - 1]
+    out = np.zeros((len(k), 2))
+    eq.each(function, k, *(np.ascontiguousarray(x) for x in lambdas), out)
+    return out
+
+
+def test_the_contact_is_the_lowest_point_of_the_torus() -> None:
+    scenes, k, _ = rolling()
+    paper = Paper(scenes["wheel"], state(k))
+    place = eq.columns(k, "X_O", "Y_O", "Z_O") + times(paper.A, paper.contact)
+    found = contacts(scenes, k)
+    within(np.abs(found[:, :2] - place[:, :2]).max(), 32 * 5 * EPSILON, "difference")  # places of 5 m
+    within(np.abs(place[:, 2]).max(), 32 * 5 * EPSILON, "place")  # it lies on the ground
+    k["theta"] += 1e-9
+    beyond(np.abs(contacts(scenes, k)[:, :2] - place[:, :2]).max(), 1e-10, "contacts")
+
+
+def test_the_velocity_of_the_contact_is_the_slope_of_its_place() -> None:
+    scenes, k, _ = rolling()
+    h = 1e-5
+    ahead, behind = k.copy(), k.copy()
+    for name in ("X_O", "Y_O", "psi", "theta"):
+        ahead[name] += h * k[name + "_dot"]
+        behind[name] -= h * k[name + "_dot"]
+    slope = (contacts(scenes, ahead) - contacts(scenes, behind))[:, :2] / (2 * h)
+    found = contacts(scenes, k)[:, 2:]
+    speed = np.abs(found).max()
+    within(np.abs(found - slope).max() / speed, 1e-8, "speed")
+    k["theta_dot"] *= 1.001
+    beyond(np.abs(contacts(scenes, k)[:, 2:] - slope).max() / speed, 5e-5, "contacts")
+
+
+def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
+    _, k, d = rolling()
+    e1 = np.column_stack([np.cos(k["psi"]), np.sin(k["psi"]), np.zeros(ROWS)])
+    left = np.cross([0, 0, 1], e1)
+    expected = np.column_stack([(d["lambda_"] * e1).sum(axis=1), (d["lambda_"] * left).sum(axis=1)])
+    found = horizontal(k, d["lambda_"])
+    size = np.abs(d["lambda_"]).max()
+    within(np.abs(found - expected).max() / size, 64 * EPSILON, "relative error")
+    beyond(np.abs(found - expected * [1, -1]).max() / size, 0.1, "relative error")  # to the right
+    within(relative_error(np.hypot(*found.T), np.hypot(*d["lambda_"][:, :2].T)), 64 * EPSILON, "difference")
+
+
+def test_the_rates_of_the_force_in_wheel_axes_know_that_the_axes_turn() -> None:
+    _, k, d = rolling()
+    random, h = np.random.default_rng(92), 1e-6
+    lambda_dot = d["lambda_"] * random.normal(size=(ROWS, 3))
+
+    def after(time: float) -> Table:
+        moved = k.copy()
+        moved["psi"] += time * k["psi_dot"]
+        return horizontal(moved, d["lambda_"] + time * lambda_dot)
+
+    slope = (after(h) - after(-h)) / (2 * h)
+    found = horizontal(k, d["lambda_"], lambda_dot)
+    size = np.abs(slope).max()
+    within(np.abs(found - slope).max() / size, 1e-9, "relative error")
+    beyond(np.abs(horizontal(k, lambda_dot) - slope).max() / size, 0.1, "horizontal")  # axes that stand still

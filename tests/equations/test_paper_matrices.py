@@ -6,8 +6,18 @@ test_equations.py then holds the product against this transcription; test_errata
 
 import numpy as np
 import pytest
-from equations.multibody_transcription import products_state
-from equations.paper_transcription import PHI, PSI, THETA, Paper, derivative, paper_table, states, times, transposed
+from equations.paper_transcription import (
+    PHI,
+    PSI,
+    THETA,
+    Paper,
+    derivative,
+    paper_table,
+    products_state,
+    states,
+    times,
+    transposed,
+)
 from scipy.spatial.transform import Rotation
 from support import equations as eq
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within

@@ -6,10 +6,8 @@ by 1e-40 i. Fixed axes, N/s and N m/s; errors relative to the row's largest rate
 
 import numpy as np
 import pytest
-from equations import random_scenes
-from equations.multibody_transcription import papers_state, solved
-from equations.paper_transcription import Paper
-from equations.pointwise import Table, relative
+from equations.paper_transcription import Paper, papers_state, solved
+from equations.pointwise import Table, random_motions, random_scenes, relative
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within
 
@@ -24,9 +22,9 @@ class Rows:
 
     def __init__(self, law: int, symmetric: bool = False, width: tuple[float, float] = (-3, 1)) -> None:
         random = np.random.default_rng(8)
-        self.scenes = random_scenes.scenes(random, law, symmetric, ROWS)
+        self.scenes = random_scenes(random, law, symmetric, ROWS)
         self.scenes["friction"]["omega_s"] = omega_s = 10 ** random.uniform(*width, ROWS)
-        self.motions = random_scenes.motions(random, ROWS)
+        self.motions = random_motions(random, ROWS)
         if law == eq.REGULARIZED:  # within a few widths of zero spin
             held = -self.motions["psi_dot"] * np.cos(self.motions["theta"])
             near = held + omega_s * random.normal(0, 3, ROWS)

@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from reference import Start, Wheel
 from reference.frames import rotation
-from reference.model import Inputs
-from reference.motion import derivative, initial_state
-from reference.newton_euler import Contact, Law
+from reference.modes import rolling
+from reference.motion import initial_state
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from support.motion import start_values
@@ -30,7 +29,7 @@ class Orbit:
 
     # Of probe.cpp, by the names after `probe_`.
     RESULTS = {"make": c_void_p, "falls_until": c_longlong, "steps": c_longlong}
-    RESULTS |= dict.fromkeys(("end_time", "half_period", "fall"), c_double)
+    RESULTS |= dict.fromkeys(("half_period", "fall"), c_double)
 
     def __init__(self, library: ctypes.CDLL, wheel=None, start=None, tolerance=1e-8, keep_contact=False) -> None:
         self.library = library
@@ -46,7 +45,9 @@ class Orbit:
         self.library.probe_free(self.probe)
 
     def build(self) -> str:
-        return KINDS[self.library.probe_build(self.probe)]
+        kind = KINDS[self.library.probe_build(self.probe)]
+        self.half_period, self.steps = self.library.probe_half_period(self.probe), self.library.probe_steps(self.probe)
+        return kind
 
     def read(self, t: Array | list[float]) -> tuple[Array, Array]:
         """States (rows) and N at the instants t."""
@@ -58,18 +59,6 @@ class Orbit:
 
     def __call__(self, t: Array | list[float]) -> Array:
         return self.read(t)[0]
-
-    @property
-    def end_time(self) -> float:
-        return self.library.probe_end_time(self.probe)
-
-    @property
-    def half_period(self) -> float:
-        return self.library.probe_half_period(self.probe)
-
-    @property
-    def steps(self) -> int:
-        return self.library.probe_steps(self.probe)
 
     def falls_until(self, t: float) -> int:
         return self.library.probe_falls_until(self.probe, c_double(t))
@@ -88,6 +77,13 @@ def reduced(row: Array) -> Array:
     return np.array([np.arctan2(s, n[2]), omega_1, omega_2, w[2], row[13], row[14], row[7], row[8]])
 
 
+def headline_of(y: Array) -> Array:
+    """X_O, theta, phi_dot and psi_dot of rows of the reduced state."""
+    theta, _, omega_2, omega_3, _, _, X_O, _ = y.T
+    psi_dot = omega_2 / np.sin(theta)
+    return np.column_stack([X_O, theta, omega_3 - psi_dot * np.cos(theta), psi_dot])
+
+
 def energies(wheel: Wheel, y: Array) -> Array:
     """Of translation, rotation and height; the contact lies rho below O along e2 and eta along e3, so that O moves at
     eta omega_2 - rho omega_3 along e1, and across it at omega_1 times its distance from the contact."""
@@ -99,10 +95,8 @@ def energies(wheel: Wheel, y: Array) -> Array:
 
 
 def stepped(wheel: Wheel, start: Start, t: Array) -> Array:
-    """Every step of the way by the reference: Newton and Euler in body axes, 17 states, DOP853."""
-    rate = derivative(Contact(wheel), Inputs(), Law(0.0))
-    y0 = initial_state(wheel, start)
-    run = solve_ivp(rate, (0, t[-1]), y0, "DOP853", t, rtol=1e-13, atol=1e-14)
+    """Every step of the way by the reference: Newton and Euler in body axes, DOP853."""
+    run = solve_ivp(rolling(wheel), (0, t[-1]), initial_state(wheel, start), "DOP853", t, rtol=1e-13, atol=1e-14)
     return np.array([reduced(row) for row in run.y.T])
 
 
@@ -111,8 +105,7 @@ class Halves:
 
     def __init__(self, wheel: Wheel, start: Start, mirrored: bool = True) -> None:
         self.mirrored = mirrored
-        rate = derivative(Contact(wheel), Inputs(), Law(0.0))
-        y0 = initial_state(wheel, start)
+        rate, y0 = rolling(wheel), initial_state(wheel, start)
         run = solve_ivp(rate, (0, 0.7), y0, "DOP853", rtol=3e-14, atol=1e-15, max_step=0.01, dense_output=True)
         self.at = lambda t: reduced(run.sol(t))
         self.length = brentq(lambda t: self.at(t)[1], 0.5, 0.7, xtol=1e-16)

@@ -106,7 +106,6 @@ PUBLIC void probe_read(Probe* probe, const double* t, int count, double* y, doub
   }
 }
 
-PUBLIC double probe_end_time(Probe* probe) { return probe->orbit.end_time(); }
 PUBLIC double probe_half_period(Probe* probe) { return probe->orbit.half_period(); }
 // Of N, the only event that recurs.
 PUBLIC long long probe_falls_until(Probe* probe, double t) {

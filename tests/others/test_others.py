@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from physics.leaning import measured_critical_spin
+from physics.exact_motions import measured_critical_spin
 from support.bounds import EPSILON, beyond, within
 from support.motion import Library
 
 from . import kane, wheels
-from .numbers import read
+from .wheels import read
 
 
 @pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])
@@ -40,21 +40,14 @@ def test_exudyns_coin_converges_to_ours(library: Library) -> None:
     beyond(off[-1], 1e-10, "the smallest step without extrapolation, m")
 
 
-def test_exudyns_thrown_disc_converges_to_the_reference_as_its_regularization_narrows() -> None:
-    table, ours = read("exudyn_slide"), wheels.thrown_reference()
+def test_exudyns_thrown_disc_converges_to_ours_as_its_regularization_narrows(library: Library) -> None:
+    table, ours = read("exudyn_slide"), wheels.thrown(library, 1e-12)
     off = np.abs(wheels.thrown_limit(table) - ours)
     within(off[:2].max(), 5e-10, "centre apart while it slides, m")
     within(off[2:].max(), 4e-9, "centre apart after it grips, m")
     by_zone = np.abs(wheels.thrown_in_steps(table) - ours)
     assert by_zone[:-1] / by_zone[1:] == pytest.approx(2, rel=0.05)  # of first order in the zone
     beyond(by_zone[-1, 2:].max(), 1e-6, "centre apart at the narrowest zone, m")
-
-
-def test_the_thrown_disc_of_the_fmu_is_that_of_the_reference_and_of_exudyns_limit(library: Library) -> None:
-    ours = wheels.thrown(library, 1e-12)
-    within(np.abs(ours - wheels.thrown_reference()).max(), 1e-10, "reference and FMU apart, m")
-    within(np.abs(wheels.thrown_limit(read("exudyn_slide")) - ours).max(), 4e-9, "Exudyn's limit and FMU apart, m")
-    beyond(np.abs(wheels.thrown_in_steps(read("exudyn_slide"))[-1] - ours).max(), 1e-6, "at its narrowest zone, m")
 
 
 def test_the_critical_spin_is_that_of_sympys_disc(library: Library) -> None:

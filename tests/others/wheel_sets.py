@@ -19,7 +19,7 @@ from vehicles.component import Component, loaded
 from vehicles.master import Master
 from vehicles.vehicle import upright
 
-from .numbers import read
+from .wheels import read
 
 Array = NDArray[np.float64]
 Torques = Callable[[float, float], tuple[float, float]]  # of time and heading: left and right, positive forwards

@@ -5,16 +5,14 @@ What they found, the same by wheel.fmu and by the independent reference, and how
 
 from functools import cache
 from math import pi, sin
+from pathlib import Path
 
 import mpmath
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 from reference import Start, Wheel, solve
-from reference.sliding import solve_sliding
-from reference.sliding_modes import Road
 from support.motion import Library, Run, start_values
-
-from .numbers import read
 
 Array = NDArray[np.float64]
 # Modelica's default world has 9.80665 m/s2 as its gravity.
@@ -29,8 +27,14 @@ SYMPY_DISC = Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.25, J_y=0.25, J_z=0.5, g=1.0)
 SYMPY_CRITICAL_SPIN = 1 / np.sqrt(3)  # sympy 1.14.0, test_linearize.py: all eigenvalues vanish at q3' = 1/sqrt(3)
 DISCS = (Wheel(r=0.0), MODELICA, SYMPY_DISC, Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.5, J_y=0.5, J_z=1.0))
 DISC_START = Start(theta=1.2, theta_dot=0.3, psi_dot=1.0, phi_dot=-4.0)
-THROWN, THROW, ROAD = Wheel(r=0.0), Start(phi_dot=-6.0), Road(0.4, 0.4, (-1.5, 0.8))  # slides, then grips
+THROW = {"mu_max": 0.4, "mu_slide": 0.4, "slip_x_start": -1.5, "slip_y_start": 0.8}  # slides, then grips
 READ_AT = (0.15, 0.5)  # s
+
+
+def read(name: str) -> dict[str, Array]:
+    """A small table of other people's numbers, columns by name; its lines that begin with # name the source."""
+    table = pd.read_csv(Path(__file__).with_name(f"{name}.csv"), comment="#", dtype=float)
+    return {column: table[column].to_numpy() for column in table}
 
 
 def motion(library: Library, wheel: Wheel, start: Start, times: Array, tolerance=None, **more: float) -> Run:
@@ -99,16 +103,7 @@ def thrown_limit(table: dict[str, Array]) -> Array:
 
 def thrown(library: Library, tolerance: float | None = None) -> Array:
     """The same by wheel.fmu."""
-    slides = {"mu_max": ROAD.mu_max, "mu_slide": ROAD.mu_slide}
-    slides |= dict(zip(("slip_x_start", "slip_y_start"), ROAD.slip, strict=True))
-    at = motion(library, THROWN, THROW, np.array([0.0, *READ_AT]), tolerance, **slides)
-    return np.array([at["X_O"][1:], at["Y_O"][1:]]).T.ravel()
-
-
-@cache
-def thrown_reference() -> Array:
-    """The same by tests/reference."""
-    at = solve_sliding(THROWN, THROW, ROAD, [0.0, *READ_AT])
+    at = motion(library, Wheel(r=0.0), Start(phi_dot=-6.0), np.array([0.0, *READ_AT]), tolerance, **THROW)
     return np.array([at["X_O"][1:], at["Y_O"][1:]]).T.ravel()
 
 

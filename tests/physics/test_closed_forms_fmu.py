@@ -1,4 +1,5 @@
-"""Whole motions known in closed form: straight rolling, standing, tipping, falling, lifting off, steady circles.
+"""Whole motions known in closed form: straight rolling and its critical speed, standing, tipping, falling, lifting off,
+steady circles.
 
 J_x = J_y; formulas and their derivations in support/closed_forms.py.
 """
@@ -9,25 +10,25 @@ import numpy as np
 import pytest
 from reference import Wheel
 from support.bounds import EPSILON, beyond, within
-from support.closed_forms import rolling_inertia, tipping_inertia
+from support.closed_forms import critical_spin, rolling_inertia, tipping_inertia, upright_stiffness
 from support.motion import Library
 from support.schedule import Schedule
 
-from .exact_motions import UPRIGHT, circle_error, fall_error, lift_off_error, straight_error
+from . import exact_motions as exact
 
 THIN = Wheel(r=0.0)
 
 
 def test_upright_rolling_slows_down_linearly_and_then_stands(library: Library, formulation: int) -> None:
     rough = Wheel(s=0.03)
-    within(straight_error(library, formulation, 0.03, rough), 1024 * 2 * EPSILON, "straight error")  # of 2 rad/s
-    beyond(straight_error(library, formulation, 0.03, Wheel(s=0.03, r=0.0)), 0.1, "straight error")
+    within(exact.straight_error(library, formulation, 0.03, rough), 1024 * 2 * EPSILON, "straight error")  # of 2 rad/s
+    beyond(exact.straight_error(library, formulation, 0.03, Wheel(s=0.03, r=0.0)), 0.1, "straight error")
 
 
 def test_a_standing_wheel_tips_by_the_hyperbolic_cosine(library: Library) -> None:
     def gap(judged: Wheel) -> float:
         times = np.linspace(0, 1.5, 151)
-        start = {**UPRIGHT, "theta_start": pi / 2 - 1e-6, "phi_dot_start": 0.0}
+        start = {**exact.UPRIGHT, "theta_start": pi / 2 - 1e-6, "phi_dot_start": 0.0}
         lean = pi / 2 - library.simulate(times, 1e-12, s=0.03, **start)["theta"]
         growth = (58.86 / tipping_inertia(judged)) ** 0.5
         return float(np.abs(lean / [1e-6 * cosh(growth * t) for t in times] - 1).max())
@@ -41,7 +42,7 @@ def test_drive_and_brake_torque_move_an_upright_wheel_as_a_roller(library: Libra
 
     def gap(judged: Wheel) -> float:
         times = np.linspace(0, 2, 41)
-        run = library.simulate(times, inputs=torque, **{**UPRIGHT, "phi_dot_start": -10.0})
+        run = library.simulate(times, inputs=torque, **{**exact.UPRIGHT, "phi_dot_start": -10.0})
         smooth, late = np.minimum(times, 1), np.maximum(times - 1, 0)
         impulse = 3 * smooth - 2 * smooth**2 + 0.5 * smooth**3 - 2 * late
         return float(np.abs(run["omega_z"] + 10 - impulse / rolling_inertia(judged)).max())
@@ -51,13 +52,13 @@ def test_drive_and_brake_torque_move_an_upright_wheel_as_a_roller(library: Libra
 
 
 def test_the_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library, formulation: int) -> None:
-    within(fall_error(library, formulation, Wheel()), 4e-10, "fall error")  # s
-    beyond(fall_error(library, formulation, THIN), 1e-2, "fall error")
+    within(exact.fall_error(library, formulation, Wheel()), 4e-10, "fall error")  # s
+    beyond(exact.fall_error(library, formulation, THIN), 1e-2, "fall error")
 
 
 def test_a_light_rim_lifts_off_where_the_normal_force_of_the_fall_vanishes(library: Library, formulation: int) -> None:
-    within(lift_off_error(library, formulation, 0.0), 2e-8, "lift off error")
-    beyond(lift_off_error(library, formulation, 1e-5), 1e-6, "lift off error")
+    within(exact.lift_off_error(library, formulation, 0.0), 2e-8, "lift off error")
+    beyond(exact.lift_off_error(library, formulation, 1e-5), 1e-6, "lift off error")
 
 
 CIRCLES = [(THIN, Wheel(), 0.07, psi_dot, theta) for psi_dot, theta in ((1.0, 1.1), (-2.0, 1.1), (6.0, 0.3))]
@@ -68,5 +69,31 @@ CIRCLES += [(Wheel(), OFF, 2e-6, psi_dot, theta) for psi_dot, theta in ((1.0, 1.
 @pytest.mark.parametrize(("wheel", "other", "least", "psi_dot", "theta"), CIRCLES)
 def test_thin_disc_and_torus_stay_each_in_its_steady_circle(library, formulation, wheel, other, least, psi_dot, theta):
     """That of the disc is in textbooks; there a torus wanders."""
-    within(circle_error(library, wheel, wheel, formulation, psi_dot, theta), 1e-10, "circle error")  # ten tolerances
-    beyond(circle_error(library, other, wheel, formulation, psi_dot, theta), least, "circle error")
+    # ten tolerances
+    within(exact.circle_error(library, wheel, wheel, formulation, psi_dot, theta), 1e-10, "circle error")
+    beyond(exact.circle_error(library, other, wheel, formulation, psi_dot, theta), least, "circle error")
+
+
+# The critical speed of upright straight rolling: the paper's wheel needs 2.63 rad/s and has 2. A lean e = theta - pi/2
+# follows e'' = -kappa^2 e with kappa^2 linear in omega_z^2.
+
+
+def test_a_lean_swings_or_grows_by_the_linearised_equation(library: Library) -> None:
+    times = np.linspace(0, 1.5, 31)
+
+    def gap(judged: Wheel, factor: float) -> float:
+        omega_z = factor * critical_spin(exact.TORUS)
+        kappa = np.sqrt(complex(upright_stiffness(judged, omega_z)))
+        return float(np.abs(exact.lean_of(library, omega_z, times) - np.cos(kappa * times).real).max())
+
+    for factor in (0.5, 0.9, 1.1, 2.0):
+        within(gap(exact.TORUS, factor), 2e-6, "gap")
+        beyond(gap(Wheel(r=0.0), factor), 1e-2, "gap")
+
+
+def test_the_critical_speed_is_the_zero_of_the_measured_stiffness(library: Library) -> None:
+    found = exact.measured_critical_spin(library)
+    within(abs(found / critical_spin(exact.TORUS) - 1), 3e-9, "critical spin")
+    beyond(abs(found / critical_spin(Wheel(r=0.0)) - 1), 0.05, "critical spin")  # the thin disc's formula
+    lever = ((exact.TORUS.r_0 + exact.TORUS.r) / exact.TORUS.r_0) ** 0.5  # the weight's lever taken as r_0 + r
+    beyond(abs(found / (lever * critical_spin(exact.TORUS)) - 1), 0.05, "critical spin, 2")

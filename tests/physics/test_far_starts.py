@@ -4,7 +4,7 @@ are symmetries, and an angle of many turns is the same angle.
 The angle at home is atan2(sin, cos) of the far one, which the C library reduces exactly.
 """
 
-from math import atan2, cos, pi, sin
+from math import atan2, cos, sin
 
 import numpy as np
 import pytest
@@ -33,9 +33,7 @@ def run(wheel: FMU2Wheel, **values: object) -> np.ndarray:
     """Rows of SHAPES and the ways of O, psi and phi since the start; pushed along X in the second half."""
     rows, names = [], ("X_O", "Y_O", "psi", "phi")
     begin = np.array([float(values.get(f"{name}_start", 0)) for name in names])
-    wheel.start(tolerance=1e-10, X_O_start=0.0, **values) if "X_O_start" not in values else wheel.start(
-        tolerance=1e-10, **values
-    )
+    wheel.start(tolerance=1e-10, **{"X_O_start": 0.0, **values})
     for k, t in enumerate(TIMES):
         if k == 12:
             assert wheel.set(F_X=5.0) == OK
@@ -95,8 +93,3 @@ def test_derivatives_by_an_angle_of_many_turns_are_those_of_the_angle_at_home(li
             near = slopes(home(psi))
             within(np.abs(slopes(psi) - near).max() / np.abs(near).max(), 1e-9, f"{slopes.__name__} at {psi}")
             beyond(np.abs(slopes(home(psi) + 1e-3) - near).max() / np.abs(near).max(), 1e-9, "another heading")
-
-
-def test_the_partner_a_turn_that_is_no_whole_one_is_another_heading(wheel) -> None:
-    near, half = (run(wheel(), psi_start=psi, **SCENES["slope"]) for psi in (0.3, 0.3 + pi))
-    beyond(np.abs(near - half).max(), 0.1, "distance")

@@ -58,10 +58,6 @@ def test_a_slippery_road_ends_the_run_at_its_own_coefficient_however_small(libra
     beyond(abs(ends[1] / braked_instant(1.0) - 1), 2e-6, "instant with another mu_max, relative")
 
 
-def test_a_braked_wheel_that_is_not_checked_goes_on(library: Library) -> None:
-    assert library.simulate([0.0, 3.0], 1e-10, SOON, **UPRIGHT).end is None
-
-
 @pytest.mark.parametrize(("theta", "psi_dot"), [(1.2, 1.5), (1.0, -2.0), (2.1, 3.0)])
 def test_a_steady_circle_needs_its_centripetal_acceleration_over_g(library: Library, theta: float, psi_dot: float):
     omega_z = circle_spin(PAPER, theta, psi_dot)
@@ -204,15 +200,6 @@ def test_a_wheel_held_on_a_slope_starts_where_mu_max_is_the_slopes_tangent_and_n
             assert wheel.set(mu_max=mu_max, **held) == OK
             assert wheel.initialise() == (OK if taken else ERROR)
             assert not taken or not wheel.decide().terminateSimulation
-
-
-def test_a_ground_that_pulls_has_no_grip(library: Library) -> None:
-    """With keep_contact the ground may pull; where mu_max is given, the run ends before it does."""
-    rim = {"J_x": 0.05, "J_y": 0.05, "J_z": 0.1, "theta_start": 1.4, "phi_dot_start": 0.0, "keep_contact": True}
-    pulling = library.simulate([0.0, 0.5], 1e-10, **rim)
-    assert any("pulls" in message for message in pulling.messages)
-    run = library.simulate([0.0, 0.5], 1e-10, mu_max=2.0, **rim)
-    assert "mu_max = 2" in str(run.ended) and run["lambda_3"][-1] > 0
 
 
 def test_a_ground_that_pulls_gives_no_grip_however_little_of_it_is_needed(library: Library) -> None:

@@ -58,10 +58,7 @@ def test_a_ground_that_pulls_costs_no_accuracy(library: Library, tolerance: floa
 def test_the_reference_goes_the_same_way(library: Library, seed: int) -> None:
     start = violent(seed)
     got = motion(library, start, 1e-11)
-    want, other = (
-        solve(WHEEL, start, TIMES[: len(got.t) - 1], rtol=1e-12, pulled_friction=friction)
-        for friction in ("none", "magnitude")
-    )
+    want, other = (solve(WHEEL, start, TIMES[: len(got.t) - 1], rtol=1e-12, pulled=share) for share in (0, 1))
     within(distance(got, want), 1e-10, "distance from the reference")
     assert pulled(got) == (seed != 3)
     if pulled(got):

@@ -1,12 +1,12 @@
-"""Independent reference solution of the rolling torus wheel (the paper's (1)-(33)).
+"""Independent reference solution of the torus wheel (the paper's (1)-(33)), rolling and sliding.
 
-Newton-Euler with a unit quaternion in body axes, all reactions unknown; it shares no formulation
+Newton-Euler with a unit quaternion in body axes; no constraint is solved in advance. It shares no formulation
 with the product, which works with Euler angles in the carrier frame and with system (24).
 """
 
 from .integrate import solve
-from .model import Inputs, Start, Wheel
+from .model import Inputs, Road, Start, Wheel
 from .motion import Accelerations, accelerations
 from .outputs import Ending, Solution
 
-__all__ = ["Accelerations", "Ending", "Inputs", "Solution", "Start", "Wheel", "accelerations", "solve"]
+__all__ = ["Accelerations", "Ending", "Inputs", "Road", "Solution", "Start", "Wheel", "accelerations", "solve"]

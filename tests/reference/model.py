@@ -79,3 +79,33 @@ class Inputs:
         last, force, moment, brake = nextafter(stop, -inf), self.force, self.moment, self.brake
         held = released if brake is released else lambda t: brake(min(t, last))
         return Inputs(lambda t: force(min(t, last)), lambda t: moment(min(t, last)), brake=held)
+
+
+@dataclass(frozen=True)
+class Road:
+    """Coulomb's law: grip up to mu_max N, mu_slide N against the slip. mu_max = 0: an icy road without any friction;
+    infinite: the wheel rolls whatever that needs, also on a ground that pulls.
+
+    slip: velocity at the start of the wheel's material point at the contact, along e1 and to the left of it, m/s.
+    """
+
+    mu_max: float = inf
+    mu_slide: float = inf
+    slip: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Options:
+    """How solve() treats contact and time.
+
+    keep_contact False: N = 0 ends the run (lift-off).  flat: the sine of theta at which the wheel counts as flat and
+    the run ends; None: not watched.  omega_s > 0: the regularized law of rolling friction, of this width.
+    pulled: rolling friction on a ground that pulls, as a part of s |N|.  None is a choice: the paper's -s N sign(w_z)
+    would then drive the wheel and its zero would repel.
+    """
+
+    rtol: float = 1e-13
+    keep_contact: bool = True
+    flat: float | None = 1e-6
+    omega_s: float = 0.0
+    pulled: float = 0.0

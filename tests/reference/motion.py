@@ -1,23 +1,26 @@
-"""State of the rolling wheel, its time derivative, and the pointwise accelerations.
+"""State of the wheel, its start, and the pointwise accelerations of one that rolls.
 
-State, 17 floats: unit quaternion (w, x, y, z) of the body; angular velocity w in body axes;
+State, 21 floats: unit quaternion (w, x, y, z) of the body; angular velocity w in body axes;
 position and velocity of O in fixed axes; then quadratures: psi and phi (they only choose the
-turn of the angles read from the attitude), work of the inputs, work of rolling friction.
-The velocity of O is integrated from the accelerations, so v_O - w x p shows the drift.
+turn of the angles read from the attitude), work of the inputs, of rolling friction, of sliding
+friction; the slip u; the time. While friction acts against the slip it is |u| and its direction
+from X about Z: near |u| = 0 the direction is what stays finite. Without friction it is u_X and
+u_Y, which pass zero smoothly. The velocity of O is integrated for itself, so v_O - w x p - u
+shows the drift.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from math import atan2, cos, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .frames import Matrix, cross, quaternion, rotation, slope, to_body, to_fixed
-from .model import ZERO, Inputs, Start, Vector, Wheel
-from .newton_euler import Contact, Law, Response, arm, axle_moment, carrier_moment
+from .frames import cross, quaternion, rotation, slope, to_body, to_fixed
+from .model import ZERO, Road, Start, Vector, Wheel
+from .newton_euler import Contact, Law, arm, axle_moment, carrier_moment
 
 State = NDArray[np.float64]
-OMEGA_Z = 6
+OMEGA_Z, SPEED, CHI, TIME = 6, 18, 19, 20
 ZERO_SPIN = 4e-16  # psi' cos(theta) + phi' below this fraction of its terms is meant to be 0
 
 
@@ -63,53 +66,26 @@ def body_rates(n: Vector, psi_dot: float, theta_dot: float, phi_dot: float) -> V
     return (theta_dot * uy + psi_dot * s * ux, psi_dot * s * uy - theta_dot * ux, phi_dot + psi_dot * n[2])
 
 
-def initial_state(wheel: Wheel, start: Start) -> State:
-    """The start on the ground, rolling: Z_O from the height of O, v_O = w x p ((32), (33))."""
+def initial_state(wheel: Wheel, start: Start, road: Road | None = None, t: float = 0.0) -> State:
+    """The start on the ground: Z_O from the height of O, v_O = w x p ((32), (33)) and the slip on top."""
+    road = road or Road()
     q = quaternion(start.psi, start.theta, start.phi)
     R = rotation(*q)
     w = body_rates(R[2], start.psi_dot, start.theta_dot, start.phi_dot)
     if abs(w[2]) <= ZERO_SPIN * (abs(start.psi_dot) + abs(start.phi_dot)):
         w = (w[0], w[1], 0.0)
-    p = arm(wheel, R[2])
-    place = (start.X_O, start.Y_O, to_fixed(R, p)[2])
-    velocity = to_fixed(R, cross(w, p))
-    return np.array([*q, *w, *place, *velocity, start.psi, start.phi, 0.0, 0.0])
+    p, (along, left), c, s = arm(wheel, R[2]), road.slip, cos(start.psi), sin(start.psi)
+    u_X, u_Y = along * c - left * s, along * s + left * c
+    x, y, z = to_fixed(R, cross(w, p))
+    place, velocity = (start.X_O, start.Y_O, to_fixed(R, p)[2]), (x + u_X, y + u_Y, z)
+    slip = (u_X, u_Y) if road.mu_max == 0 else (hypot(u_X, u_Y), atan2(u_Y, u_X) if u_X or u_Y else 0.0)
+    return np.array([*q, *w, *place, *velocity, start.psi, start.phi, 0.0, 0.0, 0.0, *slip, t])
 
 
 def with_weight(wheel: Wheel, F: Vector) -> Vector:
     """F and the weight, fixed axes."""
     x, y, z = wheel.gravity
     return (F[0] + wheel.m * x, F[1] + wheel.m * y, F[2] + wheel.m * z)
-
-
-def respond(contact: Contact, inputs: Inputs, t: float, y: list[float]) -> tuple[Matrix, Response]:
-    """Attitude and answer of the 9 x 9 system at (t, y)."""
-    R = rotation(y[0], y[1], y[2], y[3])
-    F = to_body(R, with_weight(contact.wheel, inputs.force(t)))
-    M = carrier_moment(R[2], inputs.moment(t))
-    return R, contact.respond(R[2], (y[4], y[5], y[6]), F, M)
-
-
-def derivative(contact: Contact, inputs: Inputs, law: Law) -> Callable[[float, State], State]:
-    """dy/dt on one branch of the friction law, the brake's capacity that of each instant."""
-
-    def rate(t: float, state: State) -> State:
-        y = state.tolist()
-        R, answer = respond(contact, inputs, t, y)
-        tau = axle_moment(law._replace(brake=inputs.brake(t)), answer)
-        x, d = answer.base, answer.unit
-        a = to_fixed(R, (x[0] + tau * d[0], x[1] + tau * d[1], x[2] + tau * d[2]))
-        alpha_z = 0.0 if law.hold else x[5] + tau * d[5]
-        q0, q1, q2, q3, wx, wy, wz = y[:7]
-        psi_dot, _, phi_dot = angle_rates(R[2], (wx, wy, wz))
-        F, M, v = inputs.force(t), carrier_moment(R[2], inputs.moment(t)), y[10:13]
-        power = F[0] * v[0] + F[1] * v[1] + F[2] * v[2] + M[0] * wx + M[1] * wy + M[2] * wz
-        turning = (-q1 * wx - q2 * wy - q3 * wz, q0 * wx + q2 * wz - q3 * wy)
-        turning += (q0 * wy + q3 * wx - q1 * wz, q0 * wz + q1 * wy - q2 * wx)
-        alpha = x[3] + tau * d[3], x[4] + tau * d[4], alpha_z
-        return np.array((*(0.5 * q_dot for q_dot in turning), *alpha, *v, *a, psi_dot, phi_dot, power, tau * wz))
-
-    return rate
 
 
 def accelerations(wheel: Wheel, angles: Vector, rates: Vector, F=ZERO, M=ZERO, sigma=0.0, brake=0.0) -> Accelerations:

@@ -112,10 +112,3 @@ def axle_moment(law: Law, answer: Response) -> float:
     if law.hold:
         return -answer.base[5] / answer.unit[5]
     return -law.sigma * (law.s * answer.N_0 + law.brake) / (1 + law.s * law.sigma * answer.N_1)
-
-
-def stick_margins(law: Law, answer: Response) -> tuple[float, float]:
-    """(L + tau, L - tau), L = s N + brake, tau the one that holds w_z: both >= 0 while the wheel can stick."""
-    tau = -answer.base[5] / answer.unit[5]
-    limit = law.s * (answer.N_0 + answer.N_1 * tau) + law.brake
-    return limit + tau, limit - tau

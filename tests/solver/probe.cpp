@@ -5,7 +5,6 @@
 #include <new>
 #include <utility>
 
-#include "cvode_objects.hpp"
 #include "solver.hpp"
 
 #define PUBLIC extern "C" __attribute__((visibility("default")))
@@ -129,30 +128,4 @@ PUBLIC std::size_t probe_save(Probe* probe, unsigned char* bytes) {
 PUBLIC bool probe_restore(Probe* probe, const unsigned char* bytes, std::size_t size) {
   support::Archive archive = support::Archive::reading(bytes, size);
   return probe->solver.restore_history(problem_of(probe), archive);
-}
-
-// The vector's operations by SUNDIALS's public interface, on x_i = i - 1.25 and y_i = 2 + i: all entries of eight
-// results, then the largest |x|, the norm, and whether the fused operations are there. Some of them SUNDIALS demands
-// and this wheel never reaches.
-PUBLIC void probe_vector(int length, double* out) {
-  SUNContext context;
-  SUNContext_Create(SUN_COMM_NULL, &context);
-  N_Vector x = solver::make_vector(length, context), y = N_VClone(x), z = N_VClone(x);
-  for (int i = 0; i < length; ++i) solver::data(x)[i] = i - 1.25, solver::data(y)[i] = 2 + i;
-  const auto show = [&] {
-    out = std::copy_n(solver::data(z), length, out);
-    std::fill_n(solver::data(z), length, 0.0);
-  };
-  N_VConst(3, z), show();
-  N_VLinearSum(2, x, -3, y, z), show();
-  N_VProd(x, y, z), show();
-  N_VDiv(x, y, z), show();
-  N_VScale(-2, x, z), show();
-  N_VAbs(x, z), show();
-  N_VInv(x, z), show();
-  N_VAddConst(x, 0.5, z), show();
-  out[0] = N_VMaxNorm(x), out[1] = N_VWrmsNorm(x, y);
-  out[2] = x->ops->nvlinearcombination && x->ops->nvscaleaddmulti;
-  for (N_Vector v : {x, y, z}) N_VDestroy(v);
-  SUNContext_Free(&context);
 }

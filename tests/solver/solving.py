@@ -89,10 +89,3 @@ class Solver:
 def harmonic(t):
     """The solution of the problem of that name."""
     return np.array([np.cos(t), -np.sin(t)])
-
-
-def vector(library, states):
-    """Results of eight operations of the vector, entry by entry, its largest entry, its norm, fused operations."""
-    out = np.zeros(8 * states + 3)
-    library.probe_vector(states, out.ctypes.data_as(POINTER(c_double)))
-    return out[:-3].reshape(8, states), *out[-3:]

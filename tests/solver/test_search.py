@@ -9,19 +9,19 @@ from .solving import EVENT, STEPPED, harmonic
 
 
 def dips(solver, method, depth):
-    """Instants of the falls of g = 1 + sin t - depth below zero up to t = 20, and what it took."""
+    """Instants of the falls of g = 1 + sin t - depth below zero up to t = 20."""
     one, found = solver(method, tolerance=1e-6, each_step=lambda t, y: 1 - y[1] - depth), []
     while one.run(20.0) == EVENT:
         found.append(one.now.instant)
         past = found[-1] + 2 * acos(1 - depth) + 0.1
         one.restart(past, harmonic(past))
-    return found, one.now
+    return found
 
 
 @pytest.mark.parametrize("depth", [1e-1, 1e-3, 1e-5])
 def test_every_dip_inside_a_step_is_found(solver, method, depth):
     """g = 1 + sin t - depth falls below zero for 2 sqrt(2 depth) s around each 3 pi / 2."""
-    found, _ = dips(solver, method, depth)
+    found = dips(solver, method, depth)
     first = pi + asin(1 - depth)
     expected = [first + 2 * pi * k for k in range(3)]
     assert len(found) == 3
@@ -44,12 +44,7 @@ def test_of_a_dip_however_brief_the_first_instant_is_found(solver, method):
 
 
 def test_a_function_that_comes_near_zero_and_turns_is_no_event(solver, method):
-    assert dips(solver, method, -1e-4)[0] == []
-
-
-def test_the_work_of_the_search_is_bounded(solver, method):
-    _, now = dips(solver, method, 1e-5)
-    within(now.roots / now.steps, 100, "roots")
+    assert dips(solver, method, -1e-4) == []
 
 
 def test_where_no_parabola_fits_the_search_of_one_step_gives_up_in_time(solver):
@@ -79,20 +74,6 @@ def test_of_two_dips_between_bends_the_first_is_found(solver, method, depth):
 
 def test_above_zero_two_dips_end_nothing(solver, method):
     assert double_dip(solver, method, -1e-8)[0] == STEPPED
-
-
-@pytest.mark.parametrize("end", [0.12, 0.5])
-def test_a_state_that_falls_straight_to_more_than_a_tenth_of_its_range_is_not_searched(solver, end):
-    """The stage inside a step of Runge-Kutta shows that the fall is straight: it is the state of its own instant. One
-    value at the start, one inside, one at the end."""
-
-    def values(of, last):
-        one = solver("runge_kutta", "clock", each_step=lambda t, y: 1 - (1 - last) * of(y[0]))
-        assert (one.step(), one.now.known) == (STEPPED, 1)
-        return one.now.roots
-
-    assert values(lambda y: y, end) == 3
-    assert values(lambda y: y, 0.05) > 3 < values(lambda y: 2 * y - y * y, 0.12)  # the partners: further, or bent
 
 
 def test_a_function_that_falls_to_a_twentieth_of_its_range_is_looked_at_again(solver):

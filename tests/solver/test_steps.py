@@ -1,12 +1,44 @@
-"""Steps, dense output and histories of the solver alone: order, accuracy, grids, stops, failures."""
+"""Steps, dense output and histories of the solver alone: coefficients, order, accuracy, grids, stops, failures."""
 
+import re
 from math import hypot, inf, log2
 
 import numpy as np
 import pytest
+from scipy.integrate import DOP853
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
+from support.paths import ROOT
 
-from .solving import EVENT, FAILED, harmonic, vector
+from .solving import EVENT, FAILED, harmonic
+
+# The table of DOP853 (dormand_prince.hpp) is SciPy's, row by row.
+ROWS = {f"a_{i}": row for i, row in enumerate(DOP853.A)} | {f"a_{i}": row for i, row in enumerate(DOP853.A_EXTRA, 13)}
+ROWS |= {"b": DOP853.B, "e_3": DOP853.E3, "e_5": DOP853.E5} | {f"d_{k}": row for k, row in enumerate(DOP853.D, 3)}
+del ROWS["a_0"]  # the first stage is where the step begins
+
+
+@pytest.fixture(scope="module")
+def table() -> dict[str, np.ndarray]:
+    """Rows by name; stage 12 is the end of the step."""
+    text = (ROOT / "fmu-src" / "solver" / "dormand_prince.hpp").read_text(encoding="utf-8")
+    rows = {}
+    for name, terms in re.findall(r"constexpr Term (\w+)\[\] = \{(.*?)\};", text, re.DOTALL):
+        rows[name] = np.zeros(16)
+        for stage, weight in re.findall(r"\{(\d+), ([^}]+)\}", terms):
+            rows[name][int(stage)] = float(weight)
+    return rows
+
+
+def test_the_table_has_the_rows_of_the_method(table):
+    assert set(table) == set(ROWS)
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_a_row_is_scipys_and_one_wrong_digit_would_be_seen(table, name):
+    row = np.resize(ROWS[name], 16) * (np.arange(16) < len(ROWS[name]))
+    size = np.abs(row).max()
+    within(absolute_error(table[name], row) / size, 4 * EPSILON, "weights")
+    beyond(absolute_error(table[name] * (1 + 1e-12), row) / size, 4 * EPSILON, "weights with a wrong digit")
 
 
 def errors_of_steps(solver, h):
@@ -83,17 +115,6 @@ def test_after_a_change_runge_kutta_steps_no_further_than_the_last_interval_and_
     within(relative_error(limited.known - limited.begin, 0.01), 128 * EPSILON, "limited")
     beyond((one.now.known - one.now.begin) / (before.known - before.begin), 0.9, "next")
     assert limited.rhs - before.rhs == 12  # what only its dense output needs is left out
-
-
-@pytest.mark.parametrize("states", [8, 12])
-def test_the_vector_does_what_sundials_asks_of_it(library, states):
-    results, largest, norm, fused = vector(library, states)
-    x, y = np.arange(states) - 1.25, np.arange(states) + 2.0
-    asked = (0 * x + 3, 2 * x - 3 * y, x * y, x / y, -2 * x, abs(x), 1 / x, x + 0.5)
-    for result, want in zip(results, asked, strict=True):
-        assert result.tolist() == want.tolist()
-    assert largest == abs(x).max() and fused
-    within(relative_error(norm, np.sqrt(((x * y) ** 2).mean())), 64 * EPSILON, "norm")
 
 
 @pytest.mark.parametrize("problem", ["explosive", "ending"])

@@ -71,11 +71,6 @@ def rates_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarr
     return filled(np.zeros((len(y), 4)), LIBRARY.wheel_reaction_rates, scenes, load_dots, y, of=(formulation,))
 
 
-def response_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """The part of load_dots in `rates_each`."""
-    return filled(np.zeros((len(y), 4)), LIBRARY.wheel_reaction_response, scenes, load_dots, y, of=(formulation,))
-
-
 def columns(records: np.ndarray, *names: str) -> np.ndarray:
     """Named columns of a table side by side, one row per record."""
     return np.column_stack([records[name] for name in names])

@@ -4,11 +4,11 @@ Every scene can be given to the FMU (start values, inputs) and to the independen
 """
 
 from dataclasses import dataclass, field, fields
-from functools import cache
-from math import pi, sin
+from math import inf, pi, sin
 
 import numpy as np
-from reference import Solution, Start, Wheel, solve
+from numpy.typing import ArrayLike
+from reference import Road, Solution, Start, Wheel, solve
 
 from .driver import Values
 from .kept import kept
@@ -53,6 +53,21 @@ class Scene(Started):
     duration: float = 10.0
     inputs: Schedule = Schedule()
 
+    @property
+    def road(self) -> Road:
+        mu_slide, *slip = (float(self.start.get(name, 0)) for name in ("mu_slide", "slip_x_start", "slip_y_start"))
+        return Road(float(self.start.get("mu_max", inf)), mu_slide, tuple(slip))
+
+    def solved(self, times: ArrayLike | None = None, **how: float) -> Solution:
+        """By the reference, at `times` or at 51 instants of equal spacing."""
+        if self.start.get("friction_law") == "regularized":
+            how["omega_s"] = float(self.start["omega_s"])
+        how = {"keep_contact": bool(self.start.get("keep_contact", False)), **how}
+        asked = [float(t) for t in np.ravel(np.linspace(0, self.duration, 51) if times is None else times)]
+        question = ("scene", sorted(self.start.items()), self.inputs.pieces, asked, sorted(how.items()))
+        given = self.wheel, self.motion, asked, self.inputs.for_reference(), self.road
+        return kept(question, lambda: solve(*given, **how))
+
 
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 FORCES = {"F_X": (0, 6, -2.5, 0.2), "F_Y": (2, -1, -0.5, 0.1), "F_Z": (0, -5, 2, -0.2)}
@@ -81,14 +96,6 @@ SCENES = {
     "pushed, general inertia": Scene({**GENERAL, "s": 0.01}, 5.0, PUSH),
     "braked": Scene({"s": 0.01}, 2.0, BRAKE),
 }
-
-
-@cache
-def by_reference(name: str) -> Solution:
-    """A scene at 51 instants."""
-    scene = SCENES[name]
-    times = np.linspace(0, scene.duration, 51)
-    return kept(("scene", name), lambda: solve(scene.wheel, scene.motion, times, scene.inputs.for_reference()))
 
 
 # Six inputs that change all the time: amplitude (N and N.m), rate (rad/s) and phase of a sine each.

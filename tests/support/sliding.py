@@ -3,50 +3,17 @@
 SI; names of modelDescription.xml. Closed forms: R = r_0 + r, N = m g cos(slope), v of O along e1, slip = v + R omega_z.
 """
 
-from dataclasses import dataclass, field
-from functools import cache
 from math import atan, cos, pi, sin, tan
 
 import numpy as np
 from reference import Wheel
-from reference.sliding import SlidingSolution, solve_sliding
-from reference.sliding_modes import Road
 
 from .closed_forms import rolling_inertia
 from .driver import Values
-from .kept import kept
-from .scenes import GENERAL, PUSH, Started
+from .scenes import GENERAL, PUSH, Scene
 from .schedule import Schedule
 
-LAWS = {"friction_law", "omega_s", "keep_contact"}
 UPRIGHT = {"psi_start": 0.0, "theta_start": pi / 2, "phi_dot_start": 0.0, "X_O_start": 0.0}
-
-
-@dataclass(frozen=True)
-class Slide(Started):
-    """How long, s, and under which inputs."""
-
-    start: Values = field(default_factory=dict)
-    duration: float = 2.0
-    inputs: Schedule = Schedule()
-
-    @property
-    def road(self) -> Road:
-        names = ("mu_max", "mu_slide", "slip_x_start", "slip_y_start")
-        mu_max, mu_slide, x, y = (float(self.start.get(name, 0)) for name in names)
-        return Road(mu_max, mu_slide, (x, y))
-
-    def solved(self, times: np.typing.ArrayLike, **how: float) -> SlidingSolution:
-        """By the reference, at `times`."""
-        if self.start.get("friction_law") == "regularized":
-            how["omega_s"] = float(self.start["omega_s"])
-        how["keep_contact"] = bool(self.start.get("keep_contact", False))
-        asked = [float(t) for t in np.ravel(times)]
-        question = ("slide", sorted(self.start.items()), self.inputs.pieces, asked, sorted(how.items()))
-        given = self.wheel, self.motion, self.road, asked, self.inputs.for_reference()
-        return kept(question, lambda: solve_sliding(*given, **how))
-
-
 ROAD: Values = {"mu_max": 0.45, "mu_slide": 0.4}
 EQUAL: Values = {"mu_max": 0.4, "mu_slide": 0.4}
 THROWN: Values = {"slip_x_start": -1.5, "slip_y_start": 0.8, "phi_dot_start": -6.0}
@@ -56,39 +23,33 @@ ROLLER: Values = {"r": 0.1, "J_x": 1.62, "J_y": 1.69, "J_z": 0.36, "phi_start": 
 HUB: Values = {"r": 0.0, "J_x": 0.09, "J_y": 0.09, "J_z": 0.1, "psi_start": 0.0, "phi_dot_start": 0.0}
 
 SLIDES = {
-    "paper's wheel": Slide(ROAD, 2.5),
-    "slippery": Slide({"mu_max": 0.3, "mu_slide": 0.25}, 1.5),
-    "equal coefficients": Slide(EQUAL, 1.0),
-    "rolling friction": Slide({**ROAD, "s": 0.03}),
-    "general inertia, rolling friction": Slide({**GENERAL, "s": 0.03, "mu_max": 0.35, "mu_slide": 0.3}, 1.4),
-    "thrown": Slide({**ROAD, **THROWN, "s": 0.01}),
-    "thrown, equal coefficients": Slide({**EQUAL, **THROWN, **GENERAL}),
-    "thin disc": Slide({**ROAD, **THROWN, "r": 0.0}),
-    "slope": Slide({**ROAD, **THROWN, "slope": 0.5, "slope_direction": 0.7}, 1.0),
-    "pushed": Slide({**ROAD, **GENERAL, "s": 0.01}, 1.0, PUSH),
-    "driven and braked": Slide({**ROAD, "s": 0.01}, 1.5, STEPS),
-    "locked": Slide({**ROAD, **UPRIGHT, "slip_x_start": 7.0}, 2.5, LOCK),
-    "locked, leaning": Slide({**ROAD, "slip_x_start": 3.0, "phi_dot_start": 0.0}, 0.6, LOCK),
-    "regularized": Slide({**ROAD, **THROWN, "s": 0.03, "friction_law": "regularized", "omega_s": 0.05}),
-    "pulled": Slide({"mu_max": 0.3, "mu_slide": 0.25, "theta_start": 0.4, "theta_dot_start": 7.0, "phi_dot_start": -1.0}
+    "paper's wheel": Scene(ROAD, 2.5),
+    "slippery": Scene({"mu_max": 0.3, "mu_slide": 0.25}, 1.5),
+    "equal coefficients": Scene(EQUAL, 1.0),
+    "rolling friction": Scene({**ROAD, "s": 0.03}, 2.0),
+    "general inertia, rolling friction": Scene({**GENERAL, "s": 0.03, "mu_max": 0.35, "mu_slide": 0.3}, 1.4),
+    "thrown": Scene({**ROAD, **THROWN, "s": 0.01}, 2.0),
+    "thrown, equal coefficients": Scene({**EQUAL, **THROWN, **GENERAL}, 2.0),
+    "thin disc": Scene({**ROAD, **THROWN, "r": 0.0}, 2.0),
+    "slope": Scene({**ROAD, **THROWN, "slope": 0.5, "slope_direction": 0.7}, 1.0),
+    "pushed": Scene({**ROAD, **GENERAL, "s": 0.01}, 1.0, PUSH),
+    "driven and braked": Scene({**ROAD, "s": 0.01}, 1.5, STEPS),
+    "locked": Scene({**ROAD, **UPRIGHT, "slip_x_start": 7.0}, 2.5, LOCK),
+    "locked, leaning": Scene({**ROAD, "slip_x_start": 3.0, "phi_dot_start": 0.0}, 0.6, LOCK),
+    "regularized": Scene({**ROAD, **THROWN, "s": 0.03, "friction_law": "regularized", "omega_s": 0.05}, 2.0),
+    "pulled": Scene({"mu_max": 0.3, "mu_slide": 0.25, "theta_start": 0.4, "theta_dot_start": 7.0, "phi_dot_start": -1.0}
         | {"slip_y_start": 3.0, "keep_contact": True}, 0.8),
-    "turns at once": Slide(
+    "turns at once": Scene(
         {**ROLLER, "mu_max": 0.4, "mu_slide": 0.4, "psi_start": 0.0, "theta_start": 2.17, "psi_dot_start": -8.0}
         | {"theta_dot_start": 0.8, "phi_dot_start": 1.6, "slip_x_start": 0.0, "slip_y_start": 0.05},
         0.05,
     ),
-    "jams": Slide({**HUB, "mu_max": 0.8, "mu_slide": 0.8, "theta_start": 0.87, "theta_dot_start": 2.0}
+    "jams": Scene({**HUB, "mu_max": 0.8, "mu_slide": 0.8, "theta_start": 0.87, "theta_dot_start": 2.0}
         | {"slip_x_start": 2.0, "slip_y_start": -5.0}, 0.2),
 }  # fmt: skip
 
 
-@cache
-def by_reference(name: str) -> SlidingSolution:
-    """A scene at 51 instants."""
-    return SLIDES[name].solved(np.linspace(0, SLIDES[name].duration, 51))
-
-
-def random_slide(random: np.random.Generator) -> Slide:
+def random_slide(random: np.random.Generator) -> Scene:
     """0.6 s of any wheel on any road: thrown or not, loaded or not, with and without rolling friction and a brake."""
     a, b, c = random.uniform(0.2, 0.9, 3)
     a = b if random.random() < 0.3 else a
@@ -107,7 +68,7 @@ def random_slide(random: np.random.Generator) -> Slide:
         pieces[0][1].update({name: tuple(random.uniform(-2, 2, 2)) for name in ("M_1", "M_2", "M_3")})
         torque, brake = float(random.uniform(-20, 20)), tuple(random.uniform(0, 20, 2))
         pieces.append((float(random.uniform(0.1, 0.5)), {"M_3": torque, "M_brake": brake}))
-    return Slide({name: float(value) for name, value in start.items()}, 0.6, Schedule(tuple(pieces)))
+    return Scene({name: float(value) for name, value in start.items()}, 0.6, Schedule(tuple(pieces)))
 
 
 # ---- closed forms: upright and straight ----

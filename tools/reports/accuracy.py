@@ -11,11 +11,11 @@ import pandas as pd
 from equations import pointwise
 from orbit.orbit import Halves
 from physics import cases, measure
-from physics.exact_motions import UPRIGHT, circle_error, fall_error, lift_off_error, straight_error
-from physics.leaning import TORUS, measured_critical_spin
+from physics import exact_motions as exact
 from reference import Start, Wheel
 from support import equations as eq
 from support.closed_forms import critical_spin, upright_deceleration
+from support.scenes import PAPER as TORUS
 from support.scenes import Scene
 
 from . import plots
@@ -29,12 +29,12 @@ THIN, ROUGH = Wheel(r=0.0), Wheel(s=0.03)
 STOP = 2 / upright_deceleration(ROUGH)
 FORMS = {"reduced": 2, "multibody": 3}
 MOTIONS = {
-    "upright rolling slows down linearly: ω_z, rad/s": lambda fmu, form: straight_error(fmu, form, 0.03, ROUGH),
+    "upright rolling slows down linearly: ω_z, rad/s": lambda fmu, form: exact.straight_error(fmu, form, 0.03, ROUGH),
     f"and stops at {STOP:.6f} s: instant, s": lambda fmu, form: stop_error(fmu, form),
-    "released from rest it falls flat: instant, s": lambda fmu, form: fall_error(fmu, form, TORUS),
-    "a light rim lifts off while falling: s, rad": lambda fmu, form: lift_off_error(fmu, form, 0.0),
-    "steady circle, thin disc, 5 s": lambda fmu, form: circle_error(fmu, THIN, THIN, form, 1.0, 1.1),
-    "steady circle, torus, 5 s": lambda fmu, form: circle_error(fmu, TORUS, TORUS, form, 1.0, 1.1),
+    "released from rest it falls flat: instant, s": lambda fmu, form: exact.fall_error(fmu, form, TORUS),
+    "a light rim lifts off while falling: s, rad": lambda fmu, form: exact.lift_off_error(fmu, form, 0.0),
+    "steady circle, thin disc, 5 s": lambda fmu, form: exact.circle_error(fmu, THIN, THIN, form, 1.0, 1.1),
+    "steady circle, torus, 5 s": lambda fmu, form: exact.circle_error(fmu, TORUS, TORUS, form, 1.0, 1.1),
 }
 
 
@@ -94,15 +94,15 @@ def long(report: Report, tolerance: float) -> Row:
 def scenes(report: Report, name: str) -> Row:
     """other scenes against the reference"""
     library, scene = report.library, cases.CASES[name]
-    row = {"s": scene.duration} | {f"at {t}": cases.error(library, name, float(t)) for t in ("1e-8", "1e-10", "1e-12")}
+    row = {"s": scene.duration} | {f"at {t}": cases.error(library, scene, float(t)) for t in ("1e-8", "1e-10", "1e-12")}
     number, gap = 0, 0.0
     if (s := scene.wheel.s) > 0:
-        number, gap = len(cases.expected(name).events) - 1, cases.transitions_gap(library, name, s)
+        number, gap = len(scene.solved().events) - 1, cases.transitions_gap(library, scene, s)
     return row | {"transitions": number, "their error, s": gap}
 
 
 def stop_error(library, form: int) -> float:
-    return abs(library.simulate([0.0, 6.0], s=0.03, formulation=form, **UPRIGHT).events[0][0] - STOP)
+    return abs(library.simulate([0.0, 6.0], s=0.03, formulation=form, **exact.UPRIGHT).events[0][0] - STOP)
 
 
 @part(6, {"motion: error": MOTIONS})
@@ -126,7 +126,7 @@ def equations(report: Report, kind: int) -> Row:
 @part(4)
 def stability_limit(report: Report) -> Row:
     """the stability limit of upright rolling"""
-    found = measured_critical_spin(report.library)
+    found = exact.measured_critical_spin(report.library)
     return {"critical_spin": found, "critical": abs(found / critical_spin(TORUS) - 1)}
 
 

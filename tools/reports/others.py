@@ -12,8 +12,8 @@ import pandas as pd
 from others import wheel_sets as sets
 from others import wheels
 from others.kane import distance
-from others.numbers import read
-from physics.leaning import measured_critical_spin
+from others.wheels import read
+from physics.exact_motions import measured_critical_spin
 from reference import Start, Wheel
 from support.motion import Library
 from support.schedule import Schedule

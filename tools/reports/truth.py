@@ -6,10 +6,10 @@ import warnings
 
 import numpy as np
 from numpy.typing import NDArray
-from orbit.orbit import reduced
+from orbit.orbit import headline_of, reduced
 from reference import Inputs, solve
-from reference.motion import OMEGA_Z, derivative, initial_state
-from reference.newton_euler import Contact, Law
+from reference.modes import rolling
+from reference.motion import initial_state
 from scipy.integrate import solve_ivp
 from support.driver import HEADLINE
 from support.kept import kept
@@ -33,13 +33,7 @@ def headline(scene: Scene, points: int, label: str = "", inputs: Inputs | None =
 
 def stiff(scene: Scene, times: Array) -> Array:
     """The regularized law by SciPy's Radau, without inputs."""
-    contact, omega_s = Contact(scene.wheel), scene.start.get("omega_s", 1e-3)
-    y_0 = initial_state(scene.wheel, scene.motion)
-
-    def rate(t: float, y: Array) -> Array:
-        law = Law(scene.wheel.s, sigma=np.tanh(y[OMEGA_Z] / omega_s))
-        return derivative(contact, Inputs(), law)(t, y)
-
+    rate, y_0 = rolling(scene.wheel, scene.start.get("omega_s", 1e-3)), initial_state(scene.wheel, scene.motion)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of Radau's difference quotients
         found = solve_ivp(rate, (0, scene.duration), y_0, "Radau", times, rtol=1e-11, atol=1e-12)
@@ -48,13 +42,6 @@ def stiff(scene: Scene, times: Array) -> Array:
 
 def columns(run: Run) -> Array:
     return np.column_stack([run[name] for name in HEADLINE])
-
-
-def headline_of(states: Array) -> Array:
-    """The headline outputs of rows of the reduced state: theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O."""
-    theta, _, omega_2, omega_3, _, _, X_O, _ = states.T
-    psi_dot = omega_2 / np.sin(theta)
-    return np.column_stack([X_O, theta, omega_3 - psi_dot * np.cos(theta), psi_dot])
 
 
 def range_error(rows: Array, want: Array) -> float:

@@ -4,7 +4,7 @@ Modelica's wheel sets, which two wheels on axle.fmu become as the links are made
 import numpy as np
 import pytest
 from others import wheel_sets as sets
-from others.numbers import read
+from others.wheels import read
 from support.bounds import EPSILON, beyond, relative_error, within
 from vehicles import axle
 from vehicles.axle import AXLE, ROLLING_OUT, SCENES, STRAIGHT, TRAILING

@@ -1,50 +1,27 @@
 """Which contact holds: the wheel grips, slides, or has no friction; its motion in each, and the margins that end it.
 
-State, 21 floats: the 17 of motion.py, the work of sliding friction, the slip, the time. While friction acts against the
-slip it is |u| and its direction from X about Z: near |u| = 0 the direction is what stays finite. Without friction it is
-u_X and u_Y, which pass zero smoothly. The velocity of O is integrated for itself, so v_O - w x p - u shows the drift.
+While it grips, all reactions are unknown (newton_euler.py); while it slides, friction is a force at the contact
+(sliding_contact.py).
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import atan2, cos, hypot, inf, sin, tanh
 from typing import NamedTuple
 
 import numpy as np
 
 from .frames import Matrix, rotation, slope, to_body, to_fixed
-from .model import Inputs, Vector, Wheel, released
-from .motion import OMEGA_Z, State, angle_rates, with_weight
+from .model import Inputs, Options, Road, Vector, Wheel, released
+from .motion import CHI, OMEGA_Z, SPEED, TIME, State, angle_rates, with_weight
 from .newton_euler import Contact, Law, axle_moment, carrier_moment
 from .sliding_contact import Push, Sliding, respond, resting_directions
 
-WORK_SLIDING, SPEED, CHI, TIME = 17, 18, 19, 20
 GRIPS, SLIDES, FREE = "grips", "slides", "free"
-ROUNDING = 1e-12  # of the weight, or of the moment that it has with r_0: below it a margin counts as kept
+# Below this part of m (g + |w|^2 (r_0 + r)), or of the moment that it has with r_0, a margin counts as kept: rounding
+# leaves about 1e-15 of it, so that a wheel without weight rolling straight (N = 0 for ever) has no transitions.
+ROUNDING = 1e-12
 TIGHT, JAMMED = 0.05, 1e-12
 Side = tuple[float, float]
-
-
-@dataclass(frozen=True)
-class Road:
-    """Coulomb's law: grip up to mu_max N, mu_slide N against the slip. mu_max = 0: an icy road without any friction.
-
-    slip: velocity at the start of the wheel's material point at the contact, along e1 and to the left of it, m/s.
-    """
-
-    mu_max: float
-    mu_slide: float
-    slip: tuple[float, float] = (0.0, 0.0)
-
-
-@dataclass(frozen=True)
-class Options:
-    """How solve() treats contact and time; omega_s > 0: the regularized law of rolling friction, of this width."""
-
-    rtol: float = 1e-13
-    keep_contact: bool = False
-    flat: float | None = 1e-6
-    omega_s: float = 0.0
 
 
 class Mode(NamedTuple):
@@ -75,15 +52,25 @@ class Contacts:
         self.grip = Contact(wheel)
         self.brakes = inputs.brake is not released
         self.weight = wheel.m * wheel.g
+        self.pulled = GRIPS if road.mu_max == inf else FREE  # the contact of a ground that pulls, or of such a road
 
     # ---- laws ----
 
+    def s(self, ground: int) -> float:
+        """The lever of N in the law of rolling friction; N < 0 where the ground pulls."""
+        return self.wheel.s if ground > 0 else -self.options.pulled * self.wheel.s
+
     def watched(self, ground: int) -> bool:
         """True where sigma switches."""
-        return self.options.omega_s == 0 and (self.brakes or (self.wheel.s > 0 and ground > 0))
+        return self.options.omega_s == 0 and (self.brakes or self.s(ground) != 0)
+
+    def least(self, y: State) -> float:
+        """The normal force that is only rounding."""
+        spin = float(y[4:7] @ y[4:7]) * (self.wheel.r_0 + self.wheel.r)
+        return ROUNDING * self.wheel.m * (self.wheel.g + spin)
 
     def law(self, mode: Mode, t: float, w_z: float) -> Law:
-        s, brake = (self.wheel.s if mode.ground > 0 else 0.0), self.inputs.brake(t)
+        s, brake = self.s(mode.ground), self.inputs.brake(t)
         if self.options.omega_s > 0:
             return Law(s, tanh(w_z / self.options.omega_s), brake=brake)
         return Law(s, mode.sigma, hold=mode.sigma == 0 and self.watched(mode.ground), brake=brake)
@@ -165,15 +152,16 @@ class Contacts:
     def margins(self, mode: Mode, side: Side, y: State) -> tuple[dict[str, float], Side]:
         """By name, each positive while the mode lasts; `rises` and `falls` release a held wheel to w_z > 0 and < 0.
 
-        side: as in switching.py.
+        side: e2 in body axes shortly before; where e2 has turned over since, the wheel has passed flat, and
+        s = sin(theta) counts as negative. Returns the side here as well.
         """
         now = self.now(mode, y)
         ux, uy, s = slope(now.R[2])
         over = -1.0 if ux * side[0] + uy * side[1] < 0 else 1.0
         found = {} if self.options.flat is None else {"flat": over * s - self.options.flat}
         N = now.push.N * now.push.room if now.push else now.force[2]
-        found["presses"] = mode.ground * N + ROUNDING * self.weight
-        if mode.contact == GRIPS:
+        found["presses"] = mode.ground * N + self.least(y)
+        if mode.contact == GRIPS and self.road.mu_max < inf:
             found["grips"] = self.grip_margin(now)
         if now.push:
             found["room"] = now.push.room - JAMMED
@@ -187,7 +175,7 @@ class Contacts:
 
     def limit(self, mode: Mode, t: float, now: Now) -> float:
         """s N + brake."""
-        return (self.wheel.s * now.force[2] if mode.ground > 0 else 0.0) + self.inputs.brake(t)
+        return self.s(mode.ground) * now.force[2] + self.inputs.brake(t)
 
     def grip_margin(self, now: Now) -> float:
         """(mu_max N)^2 - f^2, over the weight squared; of the sign of mu_max N - |f|, smooth where f = 0."""
@@ -205,8 +193,8 @@ class Contacts:
         Tried in the order: held before rolling; grips, slides.
         """
         w_z = float(y[OMEGA_Z])
-        if ground < 0 or self.road.mu_max == 0:
-            options = [(FREE, 0.0)]
+        if ground < 0 or self.road.mu_max in (0, inf):
+            options = [(self.pulled, 0.0)]
         elif y[SPEED] > 0:
             options = [(SLIDES, float(y[CHI]))]
         else:
@@ -230,7 +218,7 @@ class Contacts:
         if mode.contact == SLIDES:
             at[CHI] = chi
         now = self.now(mode, at)
-        least = ROUNDING * self.weight
+        least = self.least(y)
         if mode.ground * now.force[2] < -least or (now.push and now.push.room <= 0):
             return False
         if mode.contact == GRIPS and self.grip_margin(now) < -ROUNDING:
@@ -264,3 +252,8 @@ class Contacts:
         if mode.contact == FREE:
             return float(y[SPEED]), float(y[CHI])
         return float(y[SPEED]) * cos(y[CHI]), float(y[SPEED]) * sin(y[CHI])
+
+
+def rolling(wheel: Wheel, omega_s: float = 0.0) -> Callable[[float, State], State]:
+    """dy/dt of a wheel that rolls without inputs: free, or under the regularized law of rolling friction."""
+    return Contacts(wheel, Road(), Inputs(), Options(omega_s=omega_s)).by_time(Mode(GRIPS, 0, 1))

@@ -10,8 +10,8 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from .motion import State
-from .sliding_modes import CHI, SPEED, TIME, Contacts, Mode
+from .modes import Contacts, Mode
+from .motion import CHI, SPEED, TIME, State
 
 Array = NDArray[np.float64]
 COUNT = 12
@@ -95,15 +95,18 @@ class LayerStep:
 
     def dense(self, x: Array) -> Array:
         """States at fractions x of the step, rows."""
-        return self.start + self.h * _integrals(np.asarray(x, dtype=float)) @ (_TO_COEFFICIENTS @ self.rates)
+        return self.start + self.h * _integrals(x) @ (_TO_COEFFICIENTS @ self.rates)
+
+    def part(self, x: float) -> State:
+        """The state at a fraction x: the polynomial is as good inside as at its end."""
+        return self.dense(np.array([x]))[0]
 
     def to(self, t: float) -> State:
-        """The state at t: the polynomial is as good inside as at its end."""
-        return self.dense(np.array([(t - float(self.start[TIME])) / self.h]))[0]
+        return self.part((t - float(self.start[TIME])) / self.h)
 
     @property
     def end(self) -> State:
-        return self.dense(np.array([1.0]))[0]
+        return self.part(1.0)
 
 
 def layer_step(contacts: Contacts, mode: Mode, y_0: State, h: float) -> LayerStep:
