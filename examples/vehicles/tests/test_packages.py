@@ -11,8 +11,7 @@ from fmpy import read_model_description
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from lxml import etree
 from support.bounds import beyond, within
-from vehicles import axle, car, layout, ssp, suspended
-from vehicles.options import Manoeuvre
+from vehicles import axle, car, car_judges, ssp, suspended
 from vehicles.vehicle import Fmus, Table, Vehicle
 
 
@@ -46,26 +45,15 @@ def test_a_package_without_its_parameters_is_another_system(
     beyond(suspended.package_distance(package, 0.005, truth, stop=0.3), 100, "error / range")
 
 
-def off_the_end(fmus: Fmus, vehicle: Vehicle, manoeuvre: Manoeuvre, step: float, folder: Path, *names: str) -> float:
-    """Largest difference at the end between fmpy's run of the package and the master's with rollback."""
-    package = vehicle.package(fmus, manoeuvre, step, folder)
-    read_ssd(str(package), validate=True)
-    table = vehicle.drive(fmus, manoeuvre, 0.0005, "rollback", 0.05).table
-    ends = ssp.run(package, step, manoeuvre.stop, 0.05)
-    return max(abs(ends[name][-1] - table[name.split(".")[1]][-1]) for name in names)
-
-
 def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(fmus: Fmus, tmp_path: Path) -> None:
-    manoeuvre = layout.LANE.changed(stop=0.75)
-    errors = [off_the_end(fmus, car.CAR, manoeuvre, h, tmp_path, "chassis.X_R") for h in (0.001, 0.0005)]
+    """To the end of the master's run with rollback."""
+    manoeuvre, errors = car_judges.LANE.changed(stop=0.75), []
+    end = car.CAR.drive(fmus, manoeuvre, 0.0005, "rollback", 0.05).table["X_R"][-1]
+    for step in (0.001, 0.0005):
+        package = car.CAR.package(fmus, manoeuvre, step, tmp_path)
+        errors.append(abs(ssp.run(package, step, manoeuvre.stop, 0.05)["chassis.X_R"][-1] - end))
     within(abs(np.log2(errors[0] / errors[1]) - 1), 0.005, "order off 1")
     within(errors[1], 0.01, "off the end, m")  # of 11 m
-
-
-def test_the_package_of_the_axle_runs_in_fmpy(fmus: Fmus, tmp_path: Path) -> None:
-    scene = axle.TRAILING.changed(stop=1.0)
-    off = off_the_end(fmus, axle.AXLE, scene, 0.0005, tmp_path, "axle.X", "axle.Y", "axle.psi")
-    within(off, 0.01, "off the end, m, rad")
 
 
 def terminals(fmu: Path) -> etree._Element:

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from support.bounds import beyond, relative_error, within
 from vehicles import suspended
-from vehicles.component import Component, loaded
-from vehicles.master import Master
+from vehicles.master import Component, Master, loaded
 from vehicles.options import manoeuvres
 from vehicles.suspended import LAUNCH, SUSPENDED
 from vehicles.vehicle import Errors, Fmus, Table, orders, upright
@@ -126,11 +125,6 @@ def test_the_anti_lock_controller_stops_between_both_and_keeps_the_wheel_turning
     never = ABS.changed(slip_build=2.0, slip_dump=2.0)  # the controller never acts
     lame = SUSPENDED.drive(fmus, never, ABS.h, ABS.exchange, 0.002).whole
     assert suspended.way(lame, never, "abs") == suspended.way(lame, never, "locked")
-
-
-def test_a_smaller_grid_of_records_changes_no_bit(fmus: Fmus) -> None:
-    coarse, fine = (SUSPENDED.drive(fmus, LAUNCH.changed(stop=0.7), 0.0025, grid=g).whole for g in (0.05, 0.0025))
-    assert all(np.array_equal(coarse[name], fine[name][::20]) for name in coarse)
 
 
 def test_the_master_refuses_an_algebraic_loop(fmus: Fmus) -> None:

@@ -9,8 +9,7 @@ from math import cos, pi, sin, tan
 
 import numpy as np
 
-from .car_judges import RIGHT, demand, findings, force, friction, per_axle, slid
-from .layout import MASS, NAMES, WHEELBASE, WHEELS, R
+from .car_judges import MASS, NAMES, RIGHT, WHEELBASE, WHEELS, R, demand, findings, force, friction, per_axle, slid
 from .options import Manoeuvre, file
 from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, road, upright
 

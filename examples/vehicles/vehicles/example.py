@@ -5,27 +5,16 @@ command line before anything else. The exit status is 0 for a run that is the ma
 """
 
 import shutil
-import signal
 import sys
 from pathlib import Path
 
+import numpy as np
 
-def interrupted(*_: object) -> None:
-    """Ctrl-C: nothing has been written yet, or all of it."""
-    print("\nInterrupted.", file=sys.stderr)
-    sys.exit(130)
-
-
-if __name__ == "__main__":  # also while the packages below are loaded
-    signal.signal(signal.SIGINT, interrupted)
-
-import numpy as np  # noqa: E402
-
-from . import axle, balance, build, car, options, suspended  # noqa: E402
-from .car_judges import demand, per_axle  # noqa: E402
-from .drawing import draw  # noqa: E402
-from .options import Manoeuvre  # noqa: E402
-from .vehicle import DRY_ROAD, Fmus, Run  # noqa: E402
+from . import axle, balance, build, car, options, suspended
+from .car_judges import demand, per_axle
+from .drawing import draw
+from .options import Manoeuvre
+from .vehicle import DRY_ROAD, Fmus, Run
 
 RESULTS = build.ROOT / "results" / "examples"
 VEHICLES = {of.name: of for of in (axle.AXLE, car.CAR, suspended.SUSPENDED, balance.BALANCE)}
@@ -97,6 +86,9 @@ def main() -> int:
     except ValueError as reason:
         print(reason, file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("\nInterrupted.", file=sys.stderr)
+        return 130
     print(f"In results/examples/{folder.name}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")
     return not passed
 

@@ -38,11 +38,6 @@ def parameters(model: str) -> dict[str, Variable]:
     return {v.name: v for v in read(table)[2] if v.causality == "parameter"}
 
 
-def starts(model: str) -> dict[str, float]:
-    """Their start values."""
-    return {name: v.start for name, v in parameters(model).items()}
-
-
 @cache
 def every(vehicle: str) -> dict[str, Variable]:
     """All parameters of a vehicle: of the run and the wheels first, then those of its models."""

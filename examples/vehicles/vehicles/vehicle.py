@@ -13,8 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from . import ssp
-from .component import Component, Ended, loaded
-from .master import Connection, Master, Signal
+from .master import Component, Connection, Ended, Master, Signal, loaded
 from .options import Manoeuvre, file
 
 Fmus = dict[str, Path]
