@@ -101,13 +101,6 @@ def test_the_figure_of_eight_closes(fmus: Fmus) -> None:
         check(gap.measured, 0.02, "gap, m")
 
 
-def test_the_double_lane_change_ends_in_its_lane(fmus: Fmus) -> None:
-    table = drive(fmus, LANE, 0.002)
-    beyond(table["Y_R"].max(), 2.5, "to the left, m")
-    within(abs(table["Y_R"][-1]), 0.01, "off the lane at the end, m")
-    within(np.abs(table["off"]).max(), 0.05, "off the path, m")
-
-
 def test_a_step_of_the_steering_overshoots_and_needs_the_friction_of_an_axle_not_of_a_wheel(fmus: Fmus) -> None:
     """A lateral acceleration a needs about a / g; partner: the wheel inside the bend."""
     table = drive(fmus, STEP.changed(v=60 / 3.6, delta_0=np.radians(3)), 0.002)

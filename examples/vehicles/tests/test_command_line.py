@@ -6,12 +6,10 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable
-from math import atan, pi
 from pathlib import Path
 
 import numpy as np
 import pytest
-from support.bounds import EPSILON, within
 from support.paths import ROOT
 from vehicles import example, options
 from vehicles.master import Component, loaded
@@ -21,8 +19,6 @@ from diagrams import style
 
 VEHICLES = ROOT / "examples" / "vehicles"
 READS = [sys.executable, "-S", "-B", str(VEHICLES / "vehicles" / "options.py")]
-UNITS = {"h=1ms": 1e-3, "k_fl=60e3": 60e3, "k_fl=60kN/m": 60e3, "delta_0=-4deg": -4 * pi / 180, "v=36km/h": 10.0}
-UNITS |= {"c_fl=2kN.s/m": 2e3, "M_0=1.5kN.m": 1500.0, "J_2=12kg.m2": 12.0, "slope=10%": atan(0.1), "t_on=1min": 60.0}
 PAGES = (*VEHICLES.rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md")
 TEXT = "\n".join(page.read_text() for page in PAGES)
 PRINTED = {line.strip() for line in re.findall(r"\./scripts/example ([a-z]+\b(?!\|)[^`#\n]*)", TEXT)} - {"control"}
@@ -36,11 +32,6 @@ PACKAGES = sorted(set(re.findall(r"run_package.py fmpy results/examples/(\S+) ([
 def reads(line: str) -> subprocess.CompletedProcess:
     """The command line as it is checked before anything is built, by the standard library alone."""
     return subprocess.run([*READS, *line.split()], capture_output=True, text=True)
-
-
-@pytest.mark.parametrize(("argument", "value"), UNITS.items())
-def test_a_number_may_carry_a_unit(argument: str, value: float) -> None:
-    within(abs(options.value("car", argument)[1] / value - 1), 4 * EPSILON, "the value in SI, relative")
 
 
 @pytest.mark.parametrize("case", [case for case in CASES.values() if case["status"] == "2"], ids=lambda of: of["line"])

@@ -11,7 +11,7 @@ from fmpy import read_model_description
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from lxml import etree
 from support.bounds import beyond, within
-from vehicles import axle, car, car_judges, ssp, suspended
+from vehicles import axle, car, ssp, suspended
 from vehicles.vehicle import Fmus, Table, Vehicle
 
 
@@ -43,17 +43,6 @@ def test_a_package_without_its_parameters_is_another_system(
     """Partner: the start values come from the SSV."""
     monkeypatch.setattr(ssp, "parameter_set", lambda _package: None)
     beyond(suspended.package_distance(package, 0.005, truth, stop=0.3), 100, "error / range")
-
-
-def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(fmus: Fmus, tmp_path: Path) -> None:
-    """To the end of the master's run with rollback."""
-    manoeuvre, errors = car_judges.LANE.changed(stop=0.75), []
-    end = car.CAR.drive(fmus, manoeuvre, 0.0005, "rollback", 0.05).table["X_R"][-1]
-    for step in (0.001, 0.0005):
-        package = car.CAR.package(fmus, manoeuvre, step, tmp_path)
-        errors.append(abs(ssp.run(package, step, manoeuvre.stop, 0.05)["chassis.X_R"][-1] - end))
-    within(abs(np.log2(errors[0] / errors[1]) - 1), 0.005, "order off 1")
-    within(errors[1], 0.01, "off the end, m")  # of 11 m
 
 
 def terminals(fmu: Path) -> etree._Element:
