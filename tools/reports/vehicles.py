@@ -91,7 +91,7 @@ def car_runs(report: Report) -> dict[str, object]:
         manoeuvre = MANOEUVRES[name]
         table = CAR.drive(report.fmus, manoeuvre).table
         draw(CAR, manoeuvre, table, report.folder / f"vehicles_{name}.png") if name in ("lane", "hill") else None
-        found = car_judges.judge(table, manoeuvre, *manoeuvre.judges, *manoeuvre.figures)
+        found = car_judges.judge(table, manoeuvre)
         judged += [(name, f.what, f.unit, f.measured, f.exact) for f in found]
         *_, at = car_judges.worst(table)
         where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]

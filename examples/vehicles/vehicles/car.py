@@ -92,12 +92,12 @@ def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
     slippery = [f"the manoeuvre {needs}; a dry road has about {DRY_ROAD:g}"] if most > DRY_ROAD else []
     if reasons := [*failures(table, manoeuvre), *slippery]:
         return False, [f"Failed: {reasons[0]}."]
-    said = "The wheels of an axle are taken together: without slip, nothing but bushings shares its lateral force."
+    note = "The wheels of an axle are taken together: without slip, nothing but bushings shares its lateral force."
     if times := slid(table):
-        needs, said = "slides at the " + ", the ".join(f"{NAMES[w]} wheel for {t:.2f} s" for w, t in times.items()), ""
+        needs, note = "slides at the " + ", the ".join(f"{NAMES[w]} wheel for {t:.2f} s" for w, t in times.items()), ""
     least, name = min((table[f"{w}.lambda_3"].min(), name) for w, name in NAMES.items())
     lowest = f"Smallest normal force: {least:.0f} N at the {name} wheel."
-    return True, [f"Possible: it {needs}.", *filter(None, [said]), lowest, *findings(table, manoeuvre)]
+    return True, [f"Possible: it {needs}.", *filter(None, [note]), lowest, *findings(table, manoeuvre)]
 
 
 CAR = Vehicle("car", starts, verdict, wheels=NAMES, complete=complete, subtitle=subtitle, grip=grip)

@@ -251,15 +251,15 @@ def split(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
 JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure, circle, step, lane, split)}
 
 
-def judge(table: Table, manoeuvre: Manoeuvre, *names: str) -> list[Finding]:
-    """The findings of these judges."""
-    return [finding for name in names for finding in JUDGES[name](table, manoeuvre)]
+def judge(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
+    """The findings of a manoeuvre's judges."""
+    return [finding for name in manoeuvre.judges for finding in JUDGES[name](table, manoeuvre)]
 
 
 def findings(table: Table, manoeuvre: Manoeuvre) -> list[str]:
     """Characteristic values of a manoeuvre, beside those of rigid links where these are known."""
     with np.errstate(all="ignore"):
         try:
-            return [f"  {finding}" for finding in judge(table, manoeuvre, *manoeuvre.judges, *manoeuvre.figures)]
+            return [f"  {finding}" for finding in judge(table, manoeuvre)]
         except (ValueError, IndexError, TypeError, np.linalg.LinAlgError):
             return ["The closed forms do not apply to these parameters."]

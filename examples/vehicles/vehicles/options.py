@@ -6,7 +6,6 @@ the tables of variables. It needs the standard library alone; numbers may carry 
 """
 
 import math
-import signal
 import sys
 import tomllib
 from dataclasses import dataclass, field, replace
@@ -58,7 +57,6 @@ class Manoeuvre:
     follows: dict[str, str] = field(default_factory=dict)  # parameter -> the one whose value it takes where not given
     ends: tuple[str, ...] = ()
     judges: tuple[str, ...] = ()
-    figures: tuple[str, ...] = ()
     plot: tuple[str | list[str], ...] = ()
     exchange: str = "derivatives"
     h: float = 0.001  # s
@@ -178,5 +176,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # as of --help | head
     sys.exit(main())
