@@ -113,8 +113,8 @@ def test_a_step_of_the_steering_overshoots_and_needs_the_friction_of_an_axle_not
 
 OF_FIVE_WHEELS = """
 import sys
-from vehicles import build, car, car_judges as of
-fmus = build.build_c(build.Path(sys.argv[1])) | {"wheel": build.Path(sys.argv[2])}
+from vehicles import car, car_judges as of, vehicle
+fmus = vehicle.build_c(vehicle.Path(sys.argv[1])) | {"wheel": vehicle.Path(sys.argv[2])}
 table = car.CAR.drive(fmus, of.LANE.changed(stop=1.0)).table
 print(*(table[f"{w}.lambda_3"][0] / (of.MASS * of.G) for w in of.WHEELS))
 """

@@ -60,7 +60,7 @@ def test_the_unit_refuses_a_value_in_its_own_words(fmus: Fmus, model: str, name:
 def run(fmus: Fmus, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> Callable:
     """run(line): exit status and output of the example, which writes into tmp_path/NAME."""
     monkeypatch.setattr(example, "RESULTS", tmp_path)
-    monkeypatch.setattr(example.build, "build_all", lambda: fmus)
+    monkeypatch.setattr(example, "build_all", lambda: fmus)
 
     def call(line: str) -> tuple[int, str]:
         monkeypatch.setattr(sys, "argv", ["example", *line.split()])

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
-from . import axle, balance, build, car, options, suspended
+from . import axle, balance, car, options, suspended
 from .car_judges import demand, per_axle
 from .drawing import draw
 from .options import Manoeuvre
-from .vehicle import DRY_ROAD, Fmus, Run
+from .vehicle import DRY_ROAD, ROOT, Fmus, Run, build_all
 
-RESULTS = build.ROOT / "results" / "examples"
+RESULTS = ROOT / "results" / "examples"
 VEHICLES = {of.name: of for of in (axle.AXLE, car.CAR, suspended.SUSPENDED, balance.BALANCE)}
 PER_PICTURE = 600  # rows, about
 
@@ -79,7 +79,7 @@ def main() -> int:
     """One example."""
     try:
         asked = options.asked(*sys.argv[1:])
-        fmus, folder = build.build_all(), RESULTS / asked.vehicle
+        fmus, folder = build_all(), RESULTS / asked.vehicle
         shutil.rmtree(folder, ignore_errors=True)  # an earlier run's
         folder.mkdir(parents=True)
         passed = example(fmus, asked, folder)
