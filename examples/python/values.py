@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Mapping
 from difflib import get_close_matches
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree import ElementTree
@@ -200,14 +201,13 @@ def moments(body: str, m: float = 20.0, r_0: float = 0.3, r: float = 0.05) -> di
     if body not in bodies():
         meant = suggestion(body, {n: str(one["title"]) for n, one in bodies().items()})
         raise Fault(f'There is no body "{body}"; there are {", ".join(bodies())}.{meant}')
-    lengths, found = {"r_0": r_0, "r": r, "R": r_0 + r}, {}
-    for name in ("J_x", "J_z"):
-        squares = 0.0
-        for length, part in bodies()[body][name].items():
-            above, _, below = part.partition("/")
-            squares += int(above) / int(below or 1) * (lengths[length] * lengths[length])
-        found[name] = m * squares
-    return {"J_x": found["J_x"], "J_y": found["J_x"], "J_z": found["J_z"]}
+    lengths = {"r_0": r_0, "r": r, "R": r_0 + r}
+
+    def moment(name: str) -> float:
+        parts = bodies()[body][name].items()
+        return m * sum(float(Fraction(part)) * (lengths[length] * lengths[length]) for length, part in parts)
+
+    return {"J_x": moment("J_x"), "J_y": moment("J_x"), "J_z": moment("J_z")}
 
 
 def doubt(body: Mapping[str, float]) -> str:

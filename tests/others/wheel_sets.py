@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from vehicles.axle import AXLE, WHEELS
-from vehicles.component import Component, loaded
-from vehicles.master import Master
+from vehicles.master import Component, Master, loaded
 from vehicles.vehicle import upright
 
 from .wheels import read

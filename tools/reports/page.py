@@ -94,7 +94,7 @@ class Report:
     @cached_property
     def fmus(self) -> dict[str, Path]:
         """Every FMU of the examples, built."""
-        from vehicles.build import build_all
+        from vehicles.vehicle import build_all
 
         return build_all()
 

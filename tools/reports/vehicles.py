@@ -6,17 +6,17 @@ from functools import cache
 
 import numpy as np
 import pandas as pd
-from vehicles import axle, balance, car_judges, layout, suspended
+from vehicles import axle, balance, car_judges, suspended
 from vehicles.car import CAR
+from vehicles.car_judges import MANOEUVRES
 from vehicles.drawing import draw, draw_orders
-from vehicles.layout import MANOEUVRES
 from vehicles.options import EXCHANGES, Manoeuvre
 from vehicles.vehicle import STEPS, Table, orders
 
 from .page import Report, Row, Tables, part
 
 GRID = 0.25  # s, where runs of the car are compared
-COMPARED = tuple(name for name in MANOEUVRES if name not in (layout.TOO_FAST.name, layout.SPLIT.name))
+COMPARED = tuple(name for name in MANOEUVRES if name not in (car_judges.TOO_FAST.name, car_judges.SPLIT.name))
 # How the inputs behave over a step: the exchange, and whether positions follow the velocities.
 OVER = {"held, positions lag": ("held", {"follow": 0.0}), **{exchange: (exchange, {}) for exchange in EXCHANGES}}
 KINDS = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
@@ -91,12 +91,12 @@ def car_runs(report: Report) -> dict[str, object]:
         manoeuvre = MANOEUVRES[name]
         table = CAR.drive(report.fmus, manoeuvre).table
         draw(CAR, manoeuvre, table, report.folder / f"vehicles_{name}.png") if name in ("lane", "hill") else None
-        found = car_judges.judge(table, manoeuvre, *manoeuvre.judges, *manoeuvre.figures)
+        found = car_judges.judge(table, manoeuvre)
         judged += [(name, f.what, f.unit, f.measured, f.exact) for f in found]
         *_, at = car_judges.worst(table)
         where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]
         demands.append((manoeuvre.title, *car_judges.demand(table).values(), *where))
-    most = ["manoeuvre", *(f"{axle} axle" for axle in layout.AXLES), "most at t [s]", "X [m]", "Y [m]"]
+    most = ["manoeuvre", *(f"{axle} axle" for axle in car_judges.AXLES), "most at t [s]", "X [m]", "Y [m]"]
     forms = ["manoeuvre", "quantity", "unit", "measured", "closed form"]
     return {"car_values": pd.DataFrame(judged, columns=forms), "car_demand": pd.DataFrame(demands, columns=most)}
 

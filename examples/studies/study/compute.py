@@ -28,7 +28,7 @@ from fmpy import read_model_description
 from tqdm import tqdm
 
 from .dataset import TITLE, axes_of, doubtful, open_results, points, provenance, template
-from .plan import Status, Study, StudyError, in_si
+from .plan import Status, Study, StudyError
 from .worker import MARK, Region, Result, pack, run_chunk, write
 
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
@@ -85,8 +85,7 @@ def run(
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = mark
-        status, plain = group["status"][:], {name: in_si(text) for name, text in study.measures.items()}
-        common = replace(study, grid={}, list={}, measures=plain)
+        status, common = group["status"][:], replace(study, grid={}, list={}, measures=study.restated({}))
         task = partial(run_chunk, upload.name, common, place, mark)
         if done := int((status != Status.not_computed).sum()):
             print(f"{done} of {status.size} wheels are there already.", file=sys.stderr)
@@ -160,16 +159,13 @@ def divided(region: Region) -> list[Region]:
     return [(*region[:k], slice(part[0], part[-1] + 1), *region[k + 1 :]) for part in parts]
 
 
-def most(points: int, workers: int) -> int:
-    """Wheels in a chunk: some seconds of work; with more than 100 workers longer, so that the caller keeps up."""
-    return STEPS // max(points, 1000) * max(1, workers // 100)
-
-
 def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
-    """Wheels in a chunk; at least four chunks for each worker, so that they end together."""
+    """Wheels in a chunk: some seconds of work, with more than 100 workers longer, so that the caller keeps up; at least
+    four chunks for each worker, so that they end together."""
     wheels, times = math.prod(axes.sizes.values()), len(study.times)
+    some_seconds = STEPS // max(times, 1000) * max(1, workers // 100)
     history = 8 * times * len(study.history)  # bytes of a wheel
-    return max(FEWEST, min(wheels // (4 * workers), most(times, workers), LARGEST // max(history, 1)))
+    return max(FEWEST, min(wheels // (4 * workers), some_seconds, LARGEST // max(history, 1)))
 
 
 @contextmanager

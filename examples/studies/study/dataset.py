@@ -85,15 +85,9 @@ def template(study: Study, axes: xr.Dataset, description: ModelDescription, size
     chunks = da.core.normalize_chunks("auto", tuple(axes.sizes.values()), limit=size, dtype="i1")
     columns = OWN | {name: (-1, "i8", *about[name]) for name in counters_of(variables)}
     for name, measure in study.parsed.items():
-        unit, _, meaning = about[measure.quantity]
-        text = study.measures[name]
-        columns[name] = (
-            np.nan,
-            "f8",
-            "s" if measure.kind in ("<", ">", "lasting") else unit,
-            label(text),
-            f"{meaning}; {text}",
-        )
+        (unit, _, meaning), text = about[measure.quantity], study.measures[name]
+        unit = "s" if measure.kind in ("<", ">", "lasting") else unit
+        columns[name] = (np.nan, "f8", unit, label(text), f"{meaning}; {text}")
     columns |= {name: (np.nan, "f8", *about[name]) for name in study.history}
     results = {}
     for name, (nothing, dtype, *texts) in columns.items():

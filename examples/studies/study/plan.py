@@ -9,7 +9,6 @@ Plain data, by Python's standard library alone: scripts/study refuses an impossi
 
 from __future__ import annotations
 
-import ast
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -97,41 +96,32 @@ class Measure(NamedTuple):
         return x if self.kind == "last" else getattr(x, self.kind)()
 
 
+MEASURE = re.compile(r"(\w+)|(min|max|mean)\((\w+)\)|first\((\w+)([<>])([-+]?\.?\d.*)\)")
+SHORT = {"lowest": Measure("min", PLANE_ANGLE), "slip": Measure("max", SLIP), "slid": Measure("lasting", SLIP)}
+
+
 def parse_measure(text: str) -> Measure:
-    """The measure that the text, an expression in Python's grammar, describes; StudyError if it describes none."""
-    plain = in_si(text)
-    with suppress(SyntaxError, ValueError):
-        match ast.parse(plain.replace("lowest", f"min({PLANE_ANGLE})").strip(), mode="eval").body:
-            case ast.Name("slip"):
-                return Measure("max", SLIP)
-            case ast.Name("slid"):
-                return Measure("lasting", SLIP)
-            case ast.Name(name):
-                return Measure("last", name)
-            case ast.Call(ast.Name("min" | "max" | "mean" as kind), [ast.Name(name)], []):
-                return Measure(kind, name)
-            case ast.Call(ast.Name("first"), [ast.Compare(ast.Name(name), [ast.Lt() | ast.Gt() as side], [limit])], []):
-                return Measure("<" if isinstance(side, ast.Lt) else ">", name, float(ast.literal_eval(limit)))
-    raise StudyError(
-        f"'{text}' is not a measure: write lowest, slip, slid, a variable's name, min(name), max(name), mean(name), "
-        "first(name < number) or first(name > number), as first(theta < 30deg)."
-    )
+    """The measure that the text describes, with a limit in SI; StudyError if it describes none."""
+    if not (found := MEASURE.fullmatch(text.replace(" ", ""))):
+        raise StudyError(
+            f"'{text}' is not a measure: write lowest, slip, slid, a variable's name, min(name), max(name), "
+            "mean(name), first(name < number) or first(name > number), as first(theta < 30deg)."
+        )
+    name, kind, of, quantity, side, limit = found.groups()
+    if name:
+        return SHORT.get(name, Measure("last", name))
+    return Measure(kind, of) if kind else Measure(side, quantity, in_si(quantity, limit))
 
 
-def in_si(text: str) -> str:
-    """A measure whose limit has a unit, with the limit in SI, for the caller alone; others as they are."""
-    passage = re.fullmatch(r"\s*first\(\s*(\w+)\s*([<>])\s*([-+\d.e]*\d\.?)\s*((?:[^\W\d_]|[°%])[^)]*?)\s*\)\s*", text)
-    if not passage:
-        return text
+def in_si(quantity: str, limit: str) -> float:
+    """A limit, which may have a unit; those that a worker gets have none."""
+    with suppress(ValueError):
+        return float(limit)
     from values import number, variables
 
-    name, side, limit, unit = passage.groups()
-    known = {n: v.unit or "1" for n, v in variables(description(ROOT / "wheel.fmu")).items()} | {
-        PLANE_ANGLE: "rad",
-        SLIP: "m/s",
-    }
-    value = repr(number(name, limit + unit, known[name])) if name in known else limit
-    return f"first({name} {side} {value})"
+    units = {name: v.unit or "1" for name, v in variables(description(ROOT / "wheel.fmu")).items()}
+    units |= {PLANE_ANGLE: "rad", SLIP: "m/s"}
+    return number(quantity, limit, units[quantity]) if quantity in units else math.nan
 
 
 def can_change(variable: Variable) -> bool:
@@ -238,22 +228,23 @@ class Study:
         def similar(columns: Mapping[str, Sequence[float]]) -> dict[str, Sequence[float]]:
             return {name: [x * factor.get(name, 1.0) for x in column] for name, column in columns.items()}
 
-        def measured(text: str) -> str:
-            m = parse_measure(text)
-            return (
-                f"first({m.quantity} {m.kind} {m.limit * factor.get(m.variables[0], 1.0)!r})"
-                if m.kind in "<>"
-                else text
-            )
-
         return replace(
             self,
             **{kind: similar(getattr(self, kind)) for kind in KINDS},
             **{n: t * slower for n in ("stop_time", "interval", "branch_at") if (t := getattr(self, n))},
             values={n: x for n, x in body.items() if n not in given}
             | {n: x * factor.get(n, 1.0) for n, x in self.values.items()},
-            measures={n: measured(text) for n, text in self.measures.items()},
+            measures=self.restated(factor),
         )
+
+    def restated(self, factor: Mapping[str, float]) -> dict[str, str]:
+        """The measures with limits in SI, times the factors of their variables."""
+        passages = {
+            name: f"first({m.quantity} {m.kind} {m.limit * factor.get(m.variables[0], 1.0)!r})"
+            for name, m in self.parsed.items()
+            if m.kind in "<>"
+        }
+        return {**self.measures, **passages}
 
     @property
     def varied(self) -> dict[str, Sequence[float]]:
@@ -268,9 +259,8 @@ class Study:
     @cached_property
     def sampled(self) -> tuple[str, ...]:
         """Variables read at every communication point."""
-        return tuple(
-            dict.fromkeys([*self.history, *(n for m in self.parsed.values() if m.kind != "last" for n in m.variables)])
-        )
+        watched = (name for m in self.parsed.values() if m.kind != "last" for name in m.variables)
+        return tuple(dict.fromkeys([*self.history, *watched]))
 
     @property
     def times(self) -> Sequence[float]:
@@ -294,15 +284,12 @@ class Study:
         names = [*self.measures, *self.history, *self.varied, *OWN, "time", POINT, *counters_of(variables)]
         names += [name for name in derived if name not in self.varied]
         twice = quoted(name for name in names if names.count(name) > 1)
-        still = quoted(name for name in self.varied if name in variables and not can_change(variables[name]))
         shared = self.branch_at is None or any(can_change(variables[name]) for name in self.varied)
+        still = "" if shared else quoted(self.varied)
         in_order = 0 <= (self.branch_at or 0.0) < self.stop_time < math.inf and 0 < self.interval < math.inf
         for fault, text in (
             (bool(self.grid) == bool(self.list), "Give either grid or list: it lists the wheels."),
-            (
-                self.body is not None and self.body not in bodies(),
-                f"There is no body '{self.body}'; there are {', '.join(bodies())}.",
-            ),
+            (self.body not in (None, *bodies()), f"There is no body '{self.body}'; there are {', '.join(bodies())}."),
             (fixed, f"{fixed} follows from m, r_0 and r with body {self.body}: leave one of the two out."),
             (empty, f"The values of {empty} must be a list of numbers, at least one."),
             (both, f"{both} is in values and among the names that vary."),
@@ -310,8 +297,8 @@ class Study:
             (integers, f"{integers} is an integer: only its value at the end can be measured."),
             (twice, f"{twice} would name two things in the results; give the measure another name."),
             (
-                not shared,
-                f"With branch_at nothing would be shared: {still} cannot change during a run. Vary s or an input too.",
+                still,
+                f"With branch_at nothing would be shared: {still} cannot change in a run. Vary s or an input too.",
             ),
             (not in_order, "The interval must be above zero, and branch_at from zero to below a finite stop_time."),
         ):

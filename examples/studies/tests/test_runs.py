@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from fmpy import read_model_description, simulate_fmu
+from fmpy import simulate_fmu
 from study import Status, Study, StudyError
-from study.dataset import axes_of, sample, template
+from study.dataset import sample
 from study.plan import can_change, parse_measure
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 from support.paths import ROOT
@@ -69,13 +69,6 @@ def test_the_slip_and_the_time_of_sliding_of_a_locked_wheel_are_the_closed_forms
     slow = ((v - 2) / (mu * 9.81)).where(v > 2, 0)
     within(absolute_error(results["slow"], slow), 1e-7, "first passage of 2 m/s, s")
     beyond(absolute_error(results["slid"].sel(mu_slide=0.3), (v / (0.31 * 9.81))), 0.05, "by another friction, s")
-
-
-def test_the_slip_and_the_time_of_sliding_have_units_and_labels(fmu_path: Path) -> None:
-    study = Study(grid={"s": [0.0]}, measures={"slip": "slip", "slid": "slid", "along": "max(slip_x)"})
-    found = template(study, axes_of(study), read_model_description(fmu_path), 1)
-    texts = {name: (found[name].attrs["long_name"], found[name].attrs["units"]) for name in study.measures}
-    assert texts == {"slip": ("largest slip", "m/s"), "slid": ("time of sliding", "s"), "along": ("max(slip_x)", "m/s")}
 
 
 def test_a_wheel_of_a_study_moves_as_fmpy_simulates_it(rolled: xr.Dataset, fmu_path: Path) -> None:

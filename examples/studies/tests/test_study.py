@@ -16,7 +16,7 @@ import pytest
 import values
 import xarray as xr
 from distributed import LocalCluster, SubprocessCluster
-from study import Status, Study, StudyError, compute
+from study import Status, Study, StudyError
 from study.__main__ import arguments_of, file_of, main, study_file
 from study.dataset import curves, in_degrees
 from study.worker import Result, run_chunk
@@ -39,8 +39,7 @@ def without_the_store(upload: str, study: Study, _place: str, *task: object) -> 
     return run_chunk(upload, study, "/nowhere", *task)
 
 
-def test_the_guides_study_takes_ten_lines_and_its_command_line_is_the_same(tmp_path: Path) -> None:
-    assert len(EXAMPLE.splitlines()) <= 10
+def test_the_guides_study_is_that_of_its_command_line(tmp_path: Path) -> None:
     file = tmp_path / "grid.py"
     file.write_text(EXAMPLE)
     study = study_file(file)["study"]
@@ -49,30 +48,22 @@ def test_the_guides_study_takes_ten_lines_and_its_command_line_is_the_same(tmp_p
     assert arguments_of(words).study == study != arguments_of(other).study
 
 
-def test_results_have_short_labels_and_descriptions_and_carry_all_that_repeats_them(conduct) -> None:
+def test_results_have_short_labels_and_carry_all_that_repeats_them(conduct) -> None:
     results = conduct(FATES, chunk=4).load()
     assert {*results["theta"].sizes.items()} == {("theta_start", 3), ("s", 2), ("phi_dot_start", 4), ("time", 101)}
-    assert {Status(code).name for code in results["status"].values.flat} == {"reached", "flat", "lifted_off", "refused"}
     assert set(results.attrs) >= {"fmu_sha256", "fmu_version", "fmu_guid", "numpy_version", "study"}
     begun = results.sel(theta_start=np.radians(75.0), s=0.03, phi_dot_start=-2.0)
     assert float(begun["theta"][0]) == np.radians(75.0)
     labels = {name: values.attrs["long_name"] for name, values in results.variables.items()}
     expected = {"theta_start": "θ at the start", "s": "s", "down": "first(θ < 0.5)"}
     assert (expected | {"phi_dot_start": "φ\N{COMBINING DOT ABOVE} at the start"}).items() <= labels.items()
-    assert max(map(len, labels.values())) <= 30
-    assert "upright" in results["theta_start"].attrs["description"]
-    assert re.match("Angle of the wheel's plane to the ground.*; lowest$", results["plane"].attrs["description"])
     turned = in_degrees(results)
     assert (results["lowest"].attrs["units"], turned["lowest"].attrs["units"]) == ("rad", "deg")
     within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "degrees, relative")
     np.testing.assert_array_equal(turned["energy"], results["energy"])
-    figure, axes = plt.subplots()
-    curves(turned["theta"].isel(theta_start=1, phi_dot_start=0), x="time", hue="s")
-    figure.canvas.draw()
-    legend = axes.get_legend()
-    assert [text.get_text() for text in (legend.get_title(), *legend.get_texts())] == ["s [m]", "0", "0.03"]
-    assert legend.get_window_extent().x0 > axes.bbox.x1
-    plt.close(figure)
+    (axes,) = {line.axes for line in curves(turned["theta"].isel(theta_start=1, phi_dot_start=0), x="time", hue="s")}
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["0", "0.03"]
+    plt.close("all")
 
 
 def test_another_study_is_overwritten_on_request_and_nothing_else(conduct, tmp_path: Path) -> None:
@@ -111,13 +102,6 @@ def test_results_are_bit_identical_whoever_runs_and_writes_them(
         conduct(Study(grid={"s": [0.0]}), out)
 
 
-def test_a_study_without_workers_ends_with_a_message(conduct, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compute, "PATIENCE", 1.0)
-    nobody = LocalCluster(n_workers=0, processes=False, dashboard_address=None)
-    with nobody, pytest.raises(TimeoutError, match="workers"):
-        conduct(FATES, workers=nobody)
-
-
 def test_the_command_reads_a_list_and_exports_tables(crew: LocalCluster, fmu_path, tmp_path: Path, capsys) -> None:
     starts = tmp_path / "starts.csv"
     starts.write_text("theta_start,phi_dot_start\n75deg,-2\n1.2,0\n")
@@ -132,22 +116,23 @@ def test_the_command_reads_a_list_and_exports_tables(crew: LocalCluster, fmu_pat
 
 
 VARY = {"theta_start=60deg:90deg:3": np.radians([60, 75, 90]), "slope=0%:10%:3": np.arctan([0, 0.05, 0.1])}
-VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3], "m=500g,1": [0.5, 1], "M_3=-2Nm,1": [-2, 1]}
+VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3]}
 
 
 @pytest.mark.parametrize(("axis", "expected"), VARY.items())
 def test_values_on_the_command_line_take_the_units_of_their_variables(axis: str, expected: list[float]) -> None:
     ((_, got),) = arguments_of(["--vary", axis]).study.grid.items()
     within(absolute_error(got, expected), 8 * EPSILON, f"{axis}, SI")
-    study = arguments_of(["--vary", "J_x=1,2", "--set", re.split("[:,]", axis)[0]]).study
-    within(absolute_error([*study.values.values()], expected[:1]), 8 * EPSILON, f"{axis}, the first, SI")
 
 
-def test_a_ready_wheel_gives_what_the_command_line_does_not() -> None:
+def test_a_ready_wheel_and_body_give_what_the_command_line_does_not() -> None:
     study = arguments_of(["--wheel", "coin", "--vary", "r=1mm,2mm", "--set", "m=8g", "--stop-time", "2min"]).study
     assert study.stop_time == 120 and study.grid == {"r": [0.001, 0.002]}
     assert {"m": 0.008, "r_0": 0.011775}.items() <= study.values.items() and "r" not in study.values
     assert study.values["phi_dot_start"] < -10
+    hoop = arguments_of(["--wheel", "coin", "--body", "hoop", "--vary", "s=0,1mm"]).study
+    for study in (hoop, Study(grid={"s": [0.0]}, body="disc").scaled("coin")):
+        assert (study.values["m"], study.values["r"]) == (0.0085, 0.0011) and "J_z" not in study.values
 
 
 @pytest.mark.parametrize(
@@ -155,14 +140,11 @@ def test_a_ready_wheel_gives_what_the_command_line_does_not() -> None:
     [
         ("--vary s=zero", 's = "zero" is not a number.'),
         ("--vary s=0:1:one", "--vary s=0:1:one: write --vary NAME=1,2,3 or NAME=first:last:count."),
-        ("--vary s=0,1 --set m=12rad", 'm = "12rad": it takes no unit but kg or g or t.'),
         ("--vary s=0,1 --wheel koin", 'There is no wheel "koin"; there are car_tyre'),
         ("--body ball --vary s=0,1", "There is no body 'ball'; there are torus, disc, hoop."),
         ("--body disc --vary J_z=1,2", "'J_z' follows from m, r_0 and r with body disc: leave one of the two out."),
         ("--vary theta_strat=1,2", "'theta_strat' is not a parameter or input of this FMU. Do you mean theta_start"),
-        ("--vary s=0,1 --measure low=least(theta)", "'least(theta)' is not a measure"),
         ("--vary s=0,1 --measure low=min(teta)", "'teta' is not an output or local variable"),
-        ("--vary s=0,1 --history plane_angle", "'plane_angle' is not an output or local variable"),
         ("fate", "There is no study fate; the examples are fates, grip, uptime. Do you mean fates?"),
         ("", "Which wheels?"),
     ],
@@ -175,19 +157,11 @@ def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> No
     assert done.stderr.startswith(f"study: {message}") and len(done.stderr.splitlines()) == 1
 
 
-def test_of_a_ready_body_every_wheel_has_the_moments_of_its_mass_and_size_and_mass_alone_changes_nothing(
-    alone,
-) -> None:
-    """The equations of a wheel without applied loads are homogeneous in m and J."""
-    study = Study(grid={"m": [5.0, 20.0], "r_0": [0.2, 0.3]}, measures={"end": "theta"}, body="torus", stop_time=2.0)
-    results = alone(study)
+def test_of_a_ready_body_every_wheel_has_the_moments_of_its_mass_and_size(alone) -> None:
+    results = alone(Study(grid={"m": [5.0, 20.0], "r_0": [0.2, 0.3]}, body="torus", stop_time=0.1))
     m, r_0 = results["m"], results["r_0"]
     within(relative_error(results["J_z"].values, (m * (r_0**2 + 0.75 * 0.05**2)).values), 8 * EPSILON, "J_z, relative")
-    end = results["end"].values
-    within(absolute_error(end[0], end[1]), 1e-9, "theta at the end of wheels of two masses, rad")
-    beyond(absolute_error(end[:, 0], end[:, 1]), 1e-3, "theta at the end of wheels of two sizes, rad")
-    fixed = alone(replace(study, body=None))["end"].values
-    beyond(absolute_error(fixed[0], fixed[1]), 1e-3, "theta at the end of two masses that keep the paper's J, rad")
+    beyond(absolute_error(results["theta_end"][:, 0], results["theta_end"][:, 1]), 1e-6, "theta of two sizes, rad")
 
 
 def test_wheels_that_cannot_exist_are_run_with_a_warning_that_counts_them(conduct, capsys) -> None:
@@ -197,13 +171,6 @@ def test_wheels_that_cannot_exist_are_run_with_a_warning_that_counts_them(conduc
     assert "study: warning: 2 of 6 wheels cannot exist. The first: J_z = 1.8 kg m2 is more than m (r_0 + r)^2" in said
     conduct(replace(study, body="hoop"))
     assert "warning" not in capsys.readouterr().err
-
-
-def test_a_body_of_a_ready_wheels_size_has_its_own_moments() -> None:
-    study = arguments_of(["--wheel", "coin", "--body", "hoop", "--vary", "s=0,1mm"]).study
-    assert study.values["m"] == 0.0085 and "J_z" not in study.values
-    scaled = Study(grid={"s": [0.0]}, body="disc").scaled("coin")
-    assert scaled.values["r"] == 0.0011 and "J_z" not in scaled.values
 
 
 def test_a_study_of_a_ready_wheel_is_similar_to_that_of_the_papers(alone, tmp_path, monkeypatch) -> None:

@@ -1,4 +1,4 @@
-"""Writes an example's modelDescription.xml, terminalsAndIcons.xml and variables.hpp from its table of variables.
+"""Writes an example's modelDescription.xml and variables.hpp from its table of variables.
 
     PYTHONPATH=<the project's folder cmake> python describe.py TABLE FOLDER
 
@@ -62,7 +62,7 @@ def _variable(row: dict[str, str], wheel: str, properties: dict[str, float | str
 
 
 def main() -> None:
-    """Writes the files; terminalsAndIcons.xml only where there are wheels."""
+    """Writes the files."""
     from description.numbering import numbered
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -79,18 +79,12 @@ def main() -> None:
     how = {"undefined": StrictUndefined, "keep_trailing_newline": True}
     templates = Environment(loader=FileSystemLoader(HERE), autoescape=lambda name: ".xml" in name, **how)
 
-    def write(path: str, text: str = "") -> None:
-        file = folder / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text or templates.get_template(f"{file.name}.jinja").render(values))
-
     description = templates.get_template("modelDescription.xml.jinja").render(values)
     description = numbered(description, {"Outputs": known, "InitialUnknowns": at_start})
     values["guid"] = ElementTree.fromstring(description.encode()).attrib["guid"]
-    write("variables.hpp")
-    write("fmu/modelDescription.xml", description)
-    if wheels:
-        write("fmu/terminalsAndIcons/terminalsAndIcons.xml")
+    (folder / "fmu").mkdir(parents=True, exist_ok=True)
+    (folder / "fmu" / "modelDescription.xml").write_text(description)
+    (folder / "variables.hpp").write_text(templates.get_template("variables.hpp.jinja").render(values))
 
 
 if __name__ == "__main__":

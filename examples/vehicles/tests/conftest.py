@@ -7,14 +7,14 @@ from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT / "examples" / "vehicles"))
 
-from vehicles import build, suspended  # noqa: E402
-from vehicles.vehicle import Fmus, Table  # noqa: E402
+from vehicles import suspended  # noqa: E402
+from vehicles.vehicle import Fmus, Table, build_all  # noqa: E402
 
 
 @pytest.fixture(scope="session")
 def fmus(tmp_path_factory: pytest.TempPathFactory) -> Fmus:
     """wheel, the FMUs compiled from C++, and balance (made by pythonfmu)."""
-    return build.build_all(tmp_path_factory.mktemp("examples"))
+    return build_all(tmp_path_factory.mktemp("examples"))
 
 
 @pytest.fixture(scope="session")

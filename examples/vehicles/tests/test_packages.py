@@ -1,19 +1,13 @@
-"""What other tools read: SSP packages, valid, parameters bound at the component, run by fmpy to the right end; the
-bodies' terminals, which wire the signals that the master wires."""
+"""What other tools read: SSP packages, valid, parameters bound at the component, run by fmpy to the right end."""
 
-import zipfile
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import read_model_description
 from fmpy.ssp.ssd import read_ssd, read_ssv
-from lxml import etree
 from support.bounds import beyond, within
-from vehicles import axle, car, layout, ssp, suspended
-from vehicles.options import Manoeuvre
-from vehicles.vehicle import Fmus, Table, Vehicle
+from vehicles import ssp, suspended
+from vehicles.vehicle import Fmus, Table
 
 
 @pytest.fixture(scope="module")
@@ -44,52 +38,3 @@ def test_a_package_without_its_parameters_is_another_system(
     """Partner: the start values come from the SSV."""
     monkeypatch.setattr(ssp, "parameter_set", lambda _package: None)
     beyond(suspended.package_distance(package, 0.005, truth, stop=0.3), 100, "error / range")
-
-
-def off_the_end(fmus: Fmus, vehicle: Vehicle, manoeuvre: Manoeuvre, step: float, folder: Path, *names: str) -> float:
-    """Largest difference at the end between fmpy's run of the package and the master's with rollback."""
-    package = vehicle.package(fmus, manoeuvre, step, folder)
-    read_ssd(str(package), validate=True)
-    table = vehicle.drive(fmus, manoeuvre, 0.0005, "rollback", 0.05).table
-    ends = ssp.run(package, step, manoeuvre.stop, 0.05)
-    return max(abs(ends[name][-1] - table[name.split(".")[1]][-1]) for name in names)
-
-
-def test_the_package_of_the_car_runs_in_fmpy_and_converges_with_order_one(fmus: Fmus, tmp_path: Path) -> None:
-    manoeuvre = layout.LANE.changed(stop=0.75)
-    errors = [off_the_end(fmus, car.CAR, manoeuvre, h, tmp_path, "chassis.X_R") for h in (0.001, 0.0005)]
-    within(abs(np.log2(errors[0] / errors[1]) - 1), 0.005, "order off 1")
-    within(errors[1], 0.01, "off the end, m")  # of 11 m
-
-
-def test_the_package_of_the_axle_runs_in_fmpy(fmus: Fmus, tmp_path: Path) -> None:
-    scene = axle.TRAILING.changed(stop=1.0)
-    off = off_the_end(fmus, axle.AXLE, scene, 0.0005, tmp_path, "axle.X", "axle.Y", "axle.psi")
-    within(off, 0.01, "off the end, m, rad")
-
-
-def terminals(fmu: Path) -> etree._Element:
-    return etree.fromstring(zipfile.ZipFile(fmu).read("terminalsAndIcons/terminalsAndIcons.xml"))
-
-
-def members(terminal: etree._Element) -> dict[str, str]:
-    """Variable by member name."""
-    return {m.get("memberName"): m.get("variableName") for m in terminal.iter("TerminalMemberVariable")}
-
-
-@pytest.mark.parametrize(("name", "vehicle"), [("axle", axle.AXLE), ("chassis", car.CAR)])
-def test_joining_the_terminals_of_a_valid_file_wires_the_wheels(fmus: Fmus, name: str, vehicle: Vehicle) -> None:
-    """As a tool does that joins each terminal of the body to the terminal of the wheel of that name."""
-    root, (hub,) = terminals(fmus[name]), terminals(fmus["wheel"]).iter("Terminal")
-    kinds = {v.name: v.causality for v in read_model_description(str(fmus["wheel"])).modelVariables}
-    connections = set()
-    for terminal in root.iter("Terminal"):
-        for member, variable in members(terminal).items():
-            ends = (terminal.get("name"), members(hub)[member]), (name, variable)
-            connections.add(ends if kinds[members(hub)[member]] == "output" else ends[::-1])
-    assert connections == {c for c in vehicle.connections if "driver" not in (c[0][0], c[1][0])}
-    folder = Path(find_spec("fmpy").origin).parent / "schema" / "fmi3"
-    schema = etree.XMLSchema(etree.parse(folder / "fmi3TerminalsAndIcons.xsd"))
-    schema.assertValid(root)
-    root[0][0].attrib.pop("matchingRule")
-    assert not schema.validate(root)  # partner

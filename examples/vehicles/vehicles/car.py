@@ -9,8 +9,7 @@ from math import cos, pi, sin, tan
 
 import numpy as np
 
-from .car_judges import RIGHT, demand, findings, force, friction, per_axle, slid
-from .layout import MASS, NAMES, WHEELBASE, WHEELS, R
+from .car_judges import MASS, NAMES, RIGHT, WHEELBASE, WHEELS, R, demand, findings, force, friction, per_axle, slid
 from .options import Manoeuvre, file
 from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, road, upright
 
@@ -67,11 +66,8 @@ def failures(table: Table, manoeuvre: Manoeuvre) -> Iterator[str]:
             yield f"the run ends at {manoeuvre.stop:g} s, before {begin} + {ramp} = {end:g} s"
     moved, back, off = float(np.ptp(table["X"])), rolled_back(table), float(np.abs(table["off"]).max())
     whole = 2 * pi if manoeuvre["path"] == 1 else manoeuvre["x_back"] + 2 * manoeuvre["length"]
-    share, moves = (
-        table["p"][-1] / whole,
-        any(table[f"{w}.{n}"][-1] for w in WHEELS for n in ("omega_z", "slip_x", "slip_y")),
-    )
-    turned = float(np.abs(table["psi"]).max())
+    share, turned = table["p"][-1] / whole, float(np.abs(table["psi"]).max())
+    moves = any(table[f"{w}.{n}"][-1] for w in WHEELS for n in ("omega_z", "slip_x", "slip_y"))
     found = {
         "sets_off": (moved < LIMITS["at_rest"], f"the car does not set off: it moves by {moved:.2g} m"),
         "stands": (moves, f"the car does not stand at the end: it moves at {table['v'][-1]:.2g} m/s"),
@@ -96,16 +92,12 @@ def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
     slippery = [f"the manoeuvre {needs}; a dry road has about {DRY_ROAD:g}"] if most > DRY_ROAD else []
     if reasons := [*failures(table, manoeuvre), *slippery]:
         return False, [f"Failed: {reasons[0]}."]
+    note = "The wheels of an axle are taken together: without slip, nothing but bushings shares its lateral force."
     if times := slid(table):
-        needs = "slides at the " + ", the ".join(f"{NAMES[w]} wheel for {t:.2f} s" for w, t in times.items())
+        needs, note = "slides at the " + ", the ".join(f"{NAMES[w]} wheel for {t:.2f} s" for w, t in times.items()), ""
     least, name = min((table[f"{w}.lambda_3"].min(), name) for w, name in NAMES.items())
-    taken = (
-        []
-        if times
-        else ["The wheels of an axle are taken together: without slip, nothing but bushings shares its lateral force."]
-    )
     lowest = f"Smallest normal force: {least:.0f} N at the {name} wheel."
-    return True, [f"Possible: it {needs}.", *taken, lowest, *findings(table, manoeuvre)]
+    return True, [f"Possible: it {needs}.", *filter(None, [note]), lowest, *findings(table, manoeuvre)]
 
 
 CAR = Vehicle("car", starts, verdict, wheels=NAMES, complete=complete, subtitle=subtitle, grip=grip)

@@ -15,16 +15,28 @@ Characteristic values in the manner of ISO 4138 (constant steer angle, rising sp
 omega, psi, roll, delta, a_y and beta, and the ground's forces on each wheel.
 """
 
+import tomllib
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
-from .layout import AXLES, J_Z, LAYOUT, M_WHEEL, MASS, R_0, TRACK, WHEELBASE, WHEELS, X_REAR, G, R
-from .options import Manoeuvre
+from .options import EXAMPLES, Manoeuvre, manoeuvres
 from .vehicle import Table
 
+# The layout, car/car.toml, and what follows from it; SI, from the chassis' centre of mass.
+LAYOUT = tomllib.loads((EXAMPLES / "car" / "car.toml").read_text())
+WHEELS: dict[str, dict[str, float | str]] = LAYOUT["wheel"]
+NAMES = {wheel: str(of["name"]) for wheel, of in WHEELS.items()}
+X_REAR = float(np.mean([w["x"] for w in WHEELS.values() if not w["steer"]]))  # rear point
+WHEELBASE = float(np.mean([w["x"] for w in WHEELS.values() if w["steer"]])) - X_REAR
+TRACK = float(np.ptp([w["y"] for w in WHEELS.values() if w["steer"]]))  # of the steered wheels
+R_0, R, M_WHEEL, J_Z, G = 0.3, 0.35, 20.0, 1.8, 9.81  # the wheels' defaults
+MASS = LAYOUT["chassis"]["m_B"] + M_WHEEL * len(WHEELS)
+MANOEUVRES = manoeuvres("car")
+STRAIGHT, CIRCLE, STEP, EIGHT, LANE, HILL, TOO_FAST, SPLIT = MANOEUVRES.values()
+AXLES = {w["axle"]: [n for n, other in WHEELS.items() if other["axle"] == w["axle"]] for w in WHEELS.values()}
 N, H_B, M_B = len(WHEELS), LAYOUT["chassis"]["h_B"], LAYOUT["chassis"]["m_B"]
 M_T = MASS + N * J_Z / R**2
 HEIGHTS = M_B * H_B + N * M_WHEEL * R  # kg m
@@ -239,15 +251,15 @@ def split(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
 JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure, circle, step, lane, split)}
 
 
-def judge(table: Table, manoeuvre: Manoeuvre, *names: str) -> list[Finding]:
-    """The findings of these judges."""
-    return [finding for name in names for finding in JUDGES[name](table, manoeuvre)]
+def judge(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
+    """The findings of a manoeuvre's judges."""
+    return [finding for name in manoeuvre.judges for finding in JUDGES[name](table, manoeuvre)]
 
 
 def findings(table: Table, manoeuvre: Manoeuvre) -> list[str]:
     """Characteristic values of a manoeuvre, beside those of rigid links where these are known."""
     with np.errstate(all="ignore"):
         try:
-            return [f"  {finding}" for finding in judge(table, manoeuvre, *manoeuvre.judges, *manoeuvre.figures)]
+            return [f"  {finding}" for finding in judge(table, manoeuvre)]
         except (ValueError, IndexError, TypeError, np.linalg.LinAlgError):
             return ["The closed forms do not apply to these parameters."]

@@ -5,29 +5,18 @@ command line before anything else. The exit status is 0 for a run that is the ma
 """
 
 import shutil
-import signal
 import sys
 from pathlib import Path
 
+import numpy as np
 
-def interrupted(*_: object) -> None:
-    """Ctrl-C: nothing has been written yet, or all of it."""
-    print("\nInterrupted.", file=sys.stderr)
-    sys.exit(130)
+from . import axle, balance, car, options, suspended
+from .car_judges import demand, per_axle
+from .drawing import draw
+from .options import Manoeuvre
+from .vehicle import DRY_ROAD, ROOT, Fmus, Run, build_all
 
-
-if __name__ == "__main__":  # also while the packages below are loaded
-    signal.signal(signal.SIGINT, interrupted)
-
-import numpy as np  # noqa: E402
-
-from . import axle, balance, build, car, options, suspended  # noqa: E402
-from .car_judges import demand, per_axle  # noqa: E402
-from .drawing import draw  # noqa: E402
-from .options import Manoeuvre  # noqa: E402
-from .vehicle import DRY_ROAD, Fmus, Run  # noqa: E402
-
-RESULTS = build.ROOT / "results" / "examples"
+RESULTS = ROOT / "results" / "examples"
 VEHICLES = {of.name: of for of in (axle.AXLE, car.CAR, suspended.SUSPENDED, balance.BALANCE)}
 PER_PICTURE = 600  # rows, about
 
@@ -90,13 +79,16 @@ def main() -> int:
     """One example."""
     try:
         asked = options.asked(*sys.argv[1:])
-        fmus, folder = build.build_all(), RESULTS / asked.vehicle
+        fmus, folder = build_all(), RESULTS / asked.vehicle
         shutil.rmtree(folder, ignore_errors=True)  # an earlier run's
         folder.mkdir(parents=True)
         passed = example(fmus, asked, folder)
     except ValueError as reason:
         print(reason, file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("\nInterrupted.", file=sys.stderr)
+        return 130
     print(f"In results/examples/{folder.name}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")
     return not passed
 

@@ -9,45 +9,113 @@ dependencies in the model descriptions allow, and then all FMUs step alone. Over
                  again on the cubics through the values and first derivatives at both ends
 """
 
-from collections.abc import Iterable, Iterator
-from ctypes import POINTER, byref, c_double, c_int, c_uint, c_void_p
+import shutil
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
+from ctypes import byref, c_double
+from dataclasses import dataclass, field
 from graphlib import TopologicalSorter
 from itertools import groupby
 from math import ceil
+from pathlib import Path
 
 import numpy as np
+from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2FMUstate, fmi2LastSuccessfulTime
+from fmpy.simulation import apply_start_values
 from tqdm import tqdm
-
-from .component import Component
 
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
 
 
-class Transfer:
-    """Variables of one component that are read (outputs) or set (inputs) together: elements of the arrays of all
-    signals."""
+@dataclass(eq=False)
+class Ended(Exception):  # noqa: N818 - an ending, such as a wheel's lift-off, is no error
+    """A component ended the run at `time` [s]; `message`: the FMU's."""
 
-    def __init__(self, component: Component, reads: bool, variables: list[str], signals: list[int]) -> None:
-        n, fmu = len(variables), component.fmu
-        self.component, self.reads, self.signals, self.numbers = component, reads, np.array(signals), np.zeros(n)
-        self.variables = fmu.component, (c_uint * n)(*component.references(variables)), n
-        self.values = self.numbers.ctypes.data_as(POINTER(c_double))
-        self.orders = [(c_int * n)(*[order] * n) for order in range(4)]
-        self.of_values = fmu.fmi2GetReal if reads else fmu.fmi2SetReal
-        self.of_derivatives = fmu.fmi2GetRealOutputDerivatives if reads else fmu.fmi2SetRealInputDerivatives
+    component: str
+    time: float
+    message: str
 
-    def __call__(self, order: int, signals: np.ndarray) -> None:
-        """The values (order 0), or derivatives of this order."""
-        if not self.reads:
-            self.numbers[:] = signals[self.signals]
-        if order:
-            self.of_derivatives(*self.variables, self.orders[order], self.values)
-        else:
-            self.of_values(*self.variables, self.values)
-        if self.reads:
-            signals[self.signals] = self.numbers
+
+def let_go_of_python(fmu: FMU2Slave) -> None:
+    """For FMUs of pythonfmu 0.7.0, whose library keeps a shared pointer to its interpreter. When the process ends, the
+    pointer's destructor and then the library's own each release it: the second writes into freed memory. Released here,
+    it is empty by then; the instance keeps a separate pointer."""
+    if release := getattr(fmu.dll, "finalizePythonInterpreter", None):
+        release()
+
+
+@dataclass
+class Component:
+    """One FMU: its name in the system, its file, and the start values of its parameters."""
+
+    name: str
+    path: Path
+    start: dict[str, float] = field(default_factory=dict)
+    fmu: FMU2Slave | None = field(default=None, init=False)
+
+    def load(self) -> None:
+        """Unpack, instantiate and initialize up to initialization mode; a ValueError has the FMU's message."""
+        self.folder, self.log = extract(str(self.path)), []
+        self.description = read_model_description(self.folder)
+        self.variable = {v.name: v for v in self.description.modelVariables}
+        self.references(self.start)  # a name that does not exist
+        of = {"guid": self.description.guid, "modelIdentifier": self.description.coSimulation.modelIdentifier}
+        self.fmu = FMU2Slave(unzipDirectory=self.folder, instanceName=self.name, **of)
+        callbacks = fmi2CallbackFunctions()  # fmpy's own logger serves one instance per process
+        callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
+        self.fmu.instantiate(callbacks=callbacks)
+        self.fmu.setupExperiment(startTime=0.0)
+        self.asked(apply_start_values, self.fmu, self.description, self.start)
+        self.asked(self.fmu.enterInitializationMode)
+
+    def asked(self, function: Callable, *arguments: object) -> None:
+        """Calls a function of the FMU; where it refuses, a ValueError with its last message."""
+        try:
+            function(*arguments)
+        except FMICallException as refusal:
+            raise ValueError(f"{self.name}: {self.last_message(str(refusal))}") from refusal
+
+    def ended(self, t: float) -> Ended:
+        """How it ended the run in a step from t on."""
+        last = c_double(t)
+        self.fmu.dll.fmi2GetRealStatus(self.fmu.component, fmi2LastSuccessfulTime, byref(last))
+        return Ended(self.name, last.value, self.last_message("it refused a call"))
+
+    def last_message(self, otherwise: str) -> str:
+        """FMI 2.0 doubles the characters % and # of a message."""
+        return self.log[-1].replace("%%", "%").replace("##", "#") if self.log else otherwise
+
+    def free(self) -> None:
+        """End the run and remove the unpacked files."""
+        if self.fmu:
+            let_go_of_python(self.fmu)
+            self.fmu.freeInstance()
+            shutil.rmtree(self.folder, ignore_errors=True)
+
+    def references(self, names: Iterable[str]) -> list[int]:
+        """Value references of variables."""
+        if unknown := [name for name in names if name not in self.variable]:
+            raise ValueError(f"{self.name} has no variable {unknown[0]}.")
+        return [self.variable[name].valueReference for name in names]
+
+    def feeds(self, output: str) -> list[str]:
+        """Inputs on which an output depends directly; undeclared dependencies mean all."""
+        declared = {u.variable.name: u.dependencies for u in self.description.outputs}.get(output)
+        inputs = [v for v in self.description.modelVariables if v.causality == "input"]
+        return [v.name for v in (inputs if declared is None else declared)]
+
+
+@contextmanager
+def loaded(*components: Component) -> Iterator[None]:
+    """With the components in initialization mode; they are freed in the end."""
+    with ExitStack() as stack:
+        for component in components:
+            stack.callback(component.free)
+            component.load()
+        yield
 
 
 class Master:
@@ -56,15 +124,20 @@ class Master:
     def __init__(self, components: Iterable[Component], connections: Iterable[Connection]) -> None:
         self.components = {c.name: c for c in components}
         self.source_of = {sink: source for source, sink in connections}
-        self.transfers, self.number = [], {}
+        # Variables of one component that are read (outputs) or set (inputs) together, with their places in the arrays
+        # of all signals.
+        self.transfers: list[tuple[Component, bool, list[int], np.ndarray]] = []
+        number: dict[Signal, int] = {}
         for level in self._levels():
-            self.number |= {source: len(self.number) + k for k, source in enumerate(level)}
+            number |= {source: len(number) + k for k, source in enumerate(level)}
             sinks = [(sink, source) for sink, source in self.source_of.items() if source in level]
             for reads, ends in ((True, [(source, source) for source in level]), (False, sinks)):
                 for name, component in self.components.items():
-                    if of := [(variable, self.number[source]) for (owner, variable), source in ends if owner == name]:
-                        self.transfers.append(Transfer(component, reads, *map(list, zip(*of, strict=True))))
-        self.sets = [transfer for transfer in self.transfers if not transfer.reads]
+                    if of := {variable: number[source] for (owner, variable), source in ends if owner == name}:
+                        at = np.array([*of.values()])
+                        self.transfers.append((component, reads, component.references(of), at))
+        self.sets = [transfer for transfer in self.transfers if not transfer[1]]
+        self.value, self.rate, self.begin_value, self.begin_rate = np.zeros((4, len(number)))
 
     def _levels(self) -> Iterator[list[Signal]]:
         """Connected outputs, those together that depend on outputs before them alone; rejects algebraic loops."""
@@ -81,9 +154,8 @@ class Master:
     def steps(self, stop: float, h: float, exchange: str, every: int = 1, progress: bool = False) -> Iterator[float]:
         """Simulates from 0 to `stop`, with a shorter last step where h does not divide it, and waits after the exchange
         at the communication points 0, `every`, ... and `stop`: yields the time, at which variables may be read, and
-        inputs set that are not connected. Raises component.Ended."""
-        self.value, self.rate, self.begin_value, self.begin_rate = np.zeros((4, len(self.number)))
-        self.states, count = {name: c_void_p() for name in self.components}, ceil(stop / h - 1e-9)
+        inputs set that are not connected. Raises Ended."""
+        self.states, count = {name: fmi2FMUstate() for name in self.components}, ceil(stop / h - 1e-9)
         self._exchange(0.0, rates=False)
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
@@ -96,10 +168,17 @@ class Master:
                 if i < count and exchange == "rollback":
                     self._step_twice(t, to - t, i == 0)
                 elif i < count:
-                    self._all(t, "fmi2DoStep", t, to - t, 1)
+                    self._step(t, to - t, no_way_back=True)
         finally:
             for name, state in self.states.items():
                 self.components[name].fmu.freeFMUState(state)
+
+    def _step(self, t: float, h: float, no_way_back: bool) -> None:
+        for component in self.components.values():
+            try:
+                component.fmu.doStep(t, h, no_way_back)
+            except FMICallException:
+                raise component.ended(t) from None
 
     def _step_twice(self, t: float, h: float, first: bool) -> None:
         """On parabolas with the second derivatives of the last step, and again on the cubics through both ends."""
@@ -109,38 +188,34 @@ class Master:
             self._transfer(t, self.sets, 2, second)
         for name, component in self.components.items():
             component.fmu.fmi2GetFMUstate(component.fmu.component, byref(self.states[name]))
-            self._call(t, component, "fmi2DoStep", t, h, 0)
+        self._step(t, h, no_way_back=False)
         self._exchange(t, rates=True)
         for name, component in self.components.items():
-            self._call(t, component, "fmi2SetFMUstate", self.states[name])
+            component.fmu.setFMUState(self.states[name])
         mean, begin, end = (self.value - self.begin_value) / h, self.begin_rate, self.rate
         cubic = (self.begin_value, begin, 2 * (3 * mean - 2 * begin - end) / h, 6 * (begin + end - 2 * mean) / (h * h))
         for order, signals in enumerate(cubic):
             self._transfer(t, self.sets, order, signals)
-        self._all(t, "fmi2DoStep", t, h, 0)
+        self._step(t, h, no_way_back=False)
 
     def _exchange(self, t: float, rates: bool) -> None:
         self._transfer(t, self.transfers, 0, self.value)
         if rates:
             self._transfer(t, self.transfers, 1, self.rate)
 
-    def _transfer(self, t: float, transfers: list[Transfer], order: int, signals: np.ndarray) -> None:
-        for transfer in transfers:
+    def _transfer(self, t: float, transfers: list, order: int, signals: np.ndarray) -> None:
+        """The values (order 0), or derivatives of this order."""
+        for component, reads, references, at in transfers:
+            fmu, orders = component.fmu, [order] * len(references)
             try:
-                transfer(order, signals)
+                if reads:
+                    signals[at] = fmu.getRealOutputDerivatives(references, orders) if order else fmu.getReal(references)
+                elif order:
+                    fmu.setRealInputDerivatives(references, orders, signals[at])
+                else:
+                    fmu.setReal(references, signals[at])
             except FMICallException:
-                raise transfer.component.ended(t) from None
-
-    def _all(self, t: float, function: str, *arguments: object) -> None:
-        for component in self.components.values():
-            self._call(t, component, function, *arguments)
-
-    def _call(self, t: float, component: Component, function: str, *arguments: object) -> None:
-        """Of an FMU; raises the ending of a component that rejects a call after t."""
-        try:
-            getattr(component.fmu, function)(component.fmu.component, *arguments)
-        except FMICallException:
-            raise component.ended(t) from None
+                raise component.ended(t) from None
 
     def read(self, signals: Iterable[Signal]) -> list[float]:
         """Their values."""

@@ -6,7 +6,6 @@ the tables of variables. It needs the standard library alone; numbers may carry 
 """
 
 import math
-import signal
 import sys
 import tomllib
 from dataclasses import dataclass, field, replace
@@ -38,11 +37,6 @@ def parameters(model: str) -> dict[str, Variable]:
     return {v.name: v for v in read(table)[2] if v.causality == "parameter"}
 
 
-def starts(model: str) -> dict[str, float]:
-    """Their start values."""
-    return {name: v.start for name, v in parameters(model).items()}
-
-
 @cache
 def every(vehicle: str) -> dict[str, Variable]:
     """All parameters of a vehicle: of the run and the wheels first, then those of its models."""
@@ -63,7 +57,6 @@ class Manoeuvre:
     follows: dict[str, str] = field(default_factory=dict)  # parameter -> the one whose value it takes where not given
     ends: tuple[str, ...] = ()
     judges: tuple[str, ...] = ()
-    figures: tuple[str, ...] = ()
     plot: tuple[str | list[str], ...] = ()
     exchange: str = "derivatives"
     h: float = 0.001  # s
@@ -183,5 +176,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # as of --help | head
     sys.exit(main())

@@ -15,8 +15,7 @@ from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import ParameterSet, find_components, read_ssd, read_ssv
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from .component import Component
-from .master import Connection
+from .master import Component, Connection
 
 TEMPLATES = Environment(loader=FileSystemLoader(Path(__file__).parent), undefined=StrictUndefined, autoescape=True)
 

@@ -1,9 +1,11 @@
-"""A vehicle: FMUs that are wired, and what is recorded of their run, added to it, and judged.
+"""A vehicle: FMUs that are built and wired, and what is recorded of their run, added to it, and judged.
 
 A body with hubs names its variables as the wheels do, with _ and the wheel's name behind.
 """
 
 import re
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,17 +13,37 @@ from math import inf, pi
 from pathlib import Path
 
 import numpy as np
+from pythonfmu.builder import FmuBuilder
+from support.paths import ROOT, build_folder
 
 from . import ssp
-from .component import Component, Ended, loaded
-from .master import Connection, Master, Signal
-from .options import Manoeuvre, file
+from .master import Component, Connection, Ended, Master, Signal, loaded
+from .options import EXAMPLES, Manoeuvre, file
 
 Fmus = dict[str, Path]
 Table = dict[str, np.ndarray]
 DRY_ROAD = 1.0  # friction coefficient of tyres on dry asphalt, about
 STEPS = (0.002, 0.001, 0.0005)  # s
 Errors = dict[str, dict[float, float]]  # relative to the range: by exchange and communication step
+
+
+def build_c(folder: Path) -> Fmus:
+    """The FMUs in C++, by name, by CMake (../CMakeLists.txt)."""
+    cache = folder / "CMakeCache.txt"  # it holds absolute paths: of a folder that was moved it is made anew
+    moved = cache.exists() and f"CMAKE_HOME_DIRECTORY:INTERNAL={EXAMPLES}\n" not in cache.read_text()
+    configure = ["cmake", *["--fresh"] * moved, "-S", EXAMPLES, "-B", folder, f"-DPython3_EXECUTABLE={sys.executable}"]
+    for command in (configure, ["cmake", "--build", folder]):
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    return {fmu.stem: fmu for fmu in folder.glob("*.fmu")}
+
+
+def build_all(folder: Path = ROOT / "build" / "examples") -> Fmus:
+    """Every FMU of the examples by name; balance.fmu, by pythonfmu, needs a host with a Python interpreter."""
+    folder.mkdir(parents=True, exist_ok=True)
+    script = EXAMPLES / "balance" / "balance.py"
+    how = {"project_files": [script.with_suffix(".csv")], "needsExecutionTool": "false"}
+    FmuBuilder.build_FMU(script, dest=folder / "balance.fmu", **how)
+    return {**build_c(folder), "wheel": build_folder() / "wheel.fmu"}
 
 
 def orders(errors: dict[float, float]) -> np.ndarray:
