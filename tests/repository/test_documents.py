@@ -10,15 +10,14 @@ import re
 import shlex
 import subprocess
 import sys
-from math import inf
 from pathlib import Path
 
 import pytest
 from lxml import etree
-from support.paths import ROOT
+from support.paths import ROOT, copy_checkout
 
 from publishing import variables
-from publishing.markdown import number, pages, with_figures
+from publishing.markdown import pages, with_figures
 
 TEXTS = {str(page.relative_to(ROOT)): page.read_text(encoding="utf-8") for page in pages()}
 PAGES = {name: text for name, text in TEXTS.items() if name.endswith(".md")}
@@ -52,13 +51,6 @@ def test_another_figure_in_prose_would_be_noticed() -> None:
         assert wrong != with_figures(wrong) == TEXTS[page]
     with pytest.raises(KeyError):
         with_figures("1<!--physics.nothing-->")
-
-
-SHORT = {4.04e-8: "4e-8", 3.46e-9: "3.5e-9", 1.25e-3: "0.00125", 0.0: "0", 123456.0: "1.2e5", 37: "37", inf: "inf"}
-
-
-def test_a_number_is_short() -> None:
-    assert {value: number(value) for value in SHORT} == SHORT
 
 
 NAMED = re.compile(r"`((?:cmake|docs|examples|fmu-src|publishing|release|reports|scripts|tests|tools)/[\w./-]*)`")
@@ -150,6 +142,32 @@ def test_every_printed_command_of_pytest_selects_tests(arguments: str) -> None:
 def test_a_wrong_command_would_be_noticed() -> None:
     assert ("run", "s=0.01") in COMMANDS or len(COMMANDS) > 30
     assert not accepted("walk") and not accepted("lint", "--fixx") and not accepted("run", "m=-5")
+
+
+# Commands of folders that can be deleted whole.
+PARTS = {"page": "tools/page", "view": "tools/page", "study": "examples/studies", "example": "examples/vehicles"}
+SCRIPTS = sorted(p.name for p in (ROOT / "scripts").iterdir() if (ROOT / PARTS.get(p.name, ".")).exists())
+WRONG = {"build": "faster", "example": "car m_B=-1", "fuzz": "soon", "lint": "--fixx", "page": "--output"}
+WRONG |= {"report": "sped", "run": "m=-5", "setup": "tests", "study": "--varies", "test": "slow", "view": "no_file.csv"}
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A fresh one, where nothing is built or installed."""
+    place = tmp_path_factory.mktemp("checkout")
+    copy_checkout(place)
+    return place
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_every_command_explains_itself_and_rejects_a_typing_error_before_anything_is_installed(checkout, name) -> None:
+    before = {*checkout.rglob("*")}
+    shown = run(str(checkout / "scripts" / name), "--help")
+    assert shown.returncode == 0 and not shown.stderr and len(shown.stdout.split()) >= 10
+    if name in WRONG:
+        done = run(str(checkout / "scripts" / name), *WRONG[name].split())
+        assert done.returncode in (1, 2) and not done.stdout and done.stderr.strip()
+    assert {*checkout.rglob("*")} == before
 
 
 ROW = re.compile(r"^\| (\([^|]*?) \| [^|]* \| ([^|]*) \| ([^|]*) \|$", re.MULTILINE)

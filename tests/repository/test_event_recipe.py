@@ -15,7 +15,7 @@ import pytest
 from support import exchange as exchanging
 from support.bounds import beyond, within
 from support.motion import Library, Run
-from support.paths import ROOT
+from support.paths import ROOT, copy_checkout
 
 sys.path.insert(0, str(ROOT / "cmake"))
 from description.measuring import event_indicators, measured
@@ -112,8 +112,7 @@ class Patched(NamedTuple):
 def patched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
     """All events in the place of the recipes; numbered and built."""
     root, events = tmp_path_factory.mktemp("checkout"), [*recipes(), LINE]
-    copy = f"git ls-files -coz --exclude-standard | xargs -0 cp --parents -t '{root}'"
-    subprocess.run(["bash", "-c", copy], cwd=ROOT, check=False)  # a file may be deleted
+    copy_checkout(root)
     for blocks in events:
         patch(root, blocks)
     description = root / "modelDescription.xml"
