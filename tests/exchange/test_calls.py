@@ -4,8 +4,7 @@ from ctypes import c_double
 
 import numpy as np
 import pytest
-from contract.properties import loads, quick, some
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import DERIVATIVES, DISCARD, ERROR, INDICATORS, OK, STATES, FMU2Wheel
@@ -15,6 +14,7 @@ from support.scenes import AT_REST
 
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "slope": 0.2, "slope_direction": 0.7, "psi_dot_start": 0.5, "F_X": 3.0, "M_2": 0.4}
 WEIGHT = 20 * 9.81  # N
+LOADS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 ODD = np.array([0.1, -0.2, 0.3, 1.1, 0.7, 0.9, 1 / 3, -1.7])  # a state off every symmetry
 
 
@@ -71,8 +71,12 @@ def test_a_restored_wheel_goes_on_with_the_same_bits(library: Library) -> None:
 def test_a_snapshot_between_trial_steps_that_went_back_in_time_is_restored(library: Library) -> None:
     """A solver that rejects a trial step sets an earlier time than that at which it set the inputs last."""
 
-    @quick(60)
-    @given(st.lists(st.tuples(some(-1e-6, 2.0), some(-1.0, 1.0)), min_size=1, max_size=5), some(-1e-3, 1.0), loads())
+    @settings(max_examples=60)
+    @given(
+        st.lists(st.tuples(st.floats(-1e-6, 2.0), st.floats(-1.0, 1.0)), min_size=1, max_size=5),
+        st.floats(-1e-3, 1.0),
+        st.fixed_dictionaries(dict.fromkeys(LOADS, st.floats(-5, 5))),
+    )
     def check(trials, t, load):
         with exchange(library, s=0.03, **load) as wheel, exchange(library) as other:
             for trial, torque in trials:
@@ -89,7 +93,6 @@ def test_a_snapshot_between_trial_steps_that_went_back_in_time_is_restored(libra
     check()
 
 
-LOADS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 REACTIONS = ("tau", "lambda_1", "lambda_3", "omega_z_dot", "theta_ddot", "psi_ddot")
 CENTRAL = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])  # of order 8
 ONE_SIDED = np.array([-49 / 20, 6, -15 / 2, 20 / 3, -15 / 4, 6 / 5, -1 / 6])  # of order 6, at the first of 7 points
@@ -141,8 +144,8 @@ def test_state_and_friction_may_be_set_at_any_time_and_the_law_follows(library: 
 def test_a_spin_set_across_an_event_is_kept_and_the_law_follows_it(library: Library) -> None:
     """By fmi2SetContinuousStates as by fmi2SetReal; there in the event mode that an indicator asks for."""
 
-    @quick(60)
-    @given(st.sampled_from([0.0, -2.0, 2.0]), some(-2.0, 1.3), st.sampled_from([-1.0, 1.0]), some(0.8, 2.2))
+    @settings(max_examples=60)
+    @given(st.sampled_from([0.0, -2.0, 2.0]), st.floats(-2.0, 1.3), st.sampled_from([-1.0, 1.0]), st.floats(0.8, 2.2))
     def check(start, power, side, theta):
         values = {"s": 0.03, "theta_start": theta, "phi_dot_start": start}
         with exchange(library, logging=True, **values) as wheel, exchange(library, **values) as other:
@@ -204,11 +207,11 @@ def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: 
 
 
 def test_indicators_are_finite_wherever_the_derivatives_are_and_else_refused(library: Library) -> None:
-    thetas = st.one_of(st.sampled_from([0.0, -0.0, np.pi, 2 * np.pi]), some(-7, 7), some(0.1, 3.0))
-    powers = st.one_of(some(0.0, 2.0), some(0.0, 300.0))
+    thetas = st.one_of(st.sampled_from([0.0, -0.0, np.pi, 2 * np.pi]), st.floats(-7, 7), st.floats(0.1, 3.0))
+    powers = st.one_of(st.floats(0.0, 2.0), st.floats(0.0, 300.0))
     seen = set()
 
-    @quick(150)
+    @settings(max_examples=150)
     @example(1.0, 1.0, 5, 1, -2.0)
     @example(1.0, 200.0, 5, 1, -2.0)
     @example(4.0, 1.0, 5, 1, 0.0)
