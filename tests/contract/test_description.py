@@ -198,8 +198,8 @@ def test_a_variable_that_comes_and_goes_again_leaves_the_numbers_and_the_guid_as
 
 def test_the_terminal_of_the_hub_is_valid_and_a_bus_of_signals(fmu, description):
     """FMI 2.0.4 (section 2.3) refers to FMI 3.0 (section 2.4.9), whose schema comes with FMPy. Kind `signal` is for
-    inputs, outputs and parameters; rule `bus` needs a member name, unique in its terminal. tests/repository compares the
-    variables with docs/vehicle.md."""
+    inputs, outputs and parameters; rule `bus` needs a member name, unique in its terminal. tests/repository compares
+    the variables with docs/vehicle.md."""
     terminals = etree.parse(Path(fmu) / "terminalsAndIcons" / "terminalsAndIcons.xml").getroot()
     schema = etree.XMLSchema(etree.parse(SCHEMAS / "fmi3" / "fmi3TerminalsAndIcons.xsd"))
     schema.assertValid(terminals)

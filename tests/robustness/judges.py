@@ -17,11 +17,12 @@ from typing import NamedTuple
 
 import numpy as np
 from reference import Wheel, solve
+from support.bounds import range_error
 from support.closed_forms import critical_spin, linear_integrals
-from support.driver import DISCARD, HEADLINE, WARNING
+from support.driver import DISCARD, HEADLINE, WARNING, Values
 from support.motion import Library, Run, run
 
-from .case import PI, Case
+from .sweep import PI, Case
 
 
 def friction_work(run: Run, s: float) -> np.ndarray:
@@ -135,6 +136,23 @@ FLOORS = {"energy": 2e-12, "integrals": 1e-10, "reference": 1e-9, "straight": 1e
 def floor(name: str, case: Case, run: Run) -> float:
     """What a judge cannot see: rounding, its own quadrature."""
     return FLOORS.get(name, 0.0) + (work_uncertainty(case, run) if name == "energy" else 0.0)
+
+
+# The regularized law -s N tanh(omega_z / omega_s) against the exact one, in the paper's scene with friction.
+FRICTION: Values = {"s": 0.03}
+TIMES = np.linspace(0.0, 10.0, 101)
+
+
+def law_bound(omega_s: float, tolerance: float) -> float:
+    """Error of the law allowed: per rad/s of its width, per tolerance."""
+    return 5.0 * omega_s + 100.0 * tolerance
+
+
+def error_against(truth: Run, found: Run) -> float:
+    """Of the headline outputs, relative to the range of each; nan where the run did not get to the end."""
+    if found.status > WARNING or len(found["t"]) != len(truth["t"]):
+        return float("nan")
+    return range_error(found, truth, HEADLINE)
 
 
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
