@@ -71,15 +71,6 @@ def test_a_start_time_of_a_billion_seconds_costs_no_bit(wheel):
     assert late.said() == "fmi2DoStep from 1000000004.875 s: the FMU has reached 1000000005 s."
 
 
-def test_a_step_of_no_length_changes_nothing(wheel):
-    w, other = (wheel().start(s=0.03) for _ in range(2))
-    for t in (0.0, 0.7, 1.3):
-        before = w.to(t).serialized()
-        assert w.by(0.0).serialized() == before
-    assert w.run([2.0]) == other.run([2.0])
-    assert w.by(1e-9).bits() != other.bits()
-
-
 def test_no_step_leads_past_the_stop_time(wheel):
     w = wheel().start(stop=1.0).by(0.5)
     before = w.serialized()
