@@ -19,6 +19,10 @@ def pulls_of(w):
     return [sentence for sentence in w.sentences if "pull" in sentence]
 
 
+def instants_of_pulls(w):
+    return [float(sentence.split(" = ")[1].split()[0]) for sentence in pulls_of(w)]
+
+
 @pytest.mark.parametrize("method", [1, 4], ids=["unfolded", "stepped"])
 def test_the_log_of_a_ground_that_pulls_often_does_not_depend_on_the_grid(wheel, method):
     logs = []
@@ -66,8 +70,7 @@ def test_a_restored_run_logs_the_same_pulls(wheel, method, t):
         each.put(M_1=1e-6).to(1.0, 3.0)
     assert pulls_of(w) == pulls_of(other) and len(pulls_of(w)) > 5
     assert w.bits() == other.bits()
-    starts = [float(sentence.split(" = ")[1].split()[0]) for sentence in pulls_of(w)]
-    assert min(starts) > t  # a pull that had begun before is not logged again
+    assert min(instants_of_pulls(w)) > t  # a pull that had begun before is not logged again
 
 
 @pytest.mark.parametrize("braked", [0.0, 2.0])
@@ -193,10 +196,6 @@ def test_a_small_change_of_a_value_is_taken(wheel):
     assert ends[1] > ends[0]
 
 
-def pulls(w):
-    return [float(m.split(" = ")[1].split()[0]) for m in w.sentences if "pulls" in m]
-
-
 @pytest.mark.parametrize("kind", [(2, 1, 0.03), (2, 2, 0.0), (3, 2, 0.0), (3, 4, 0.03)], ids=str)
 def test_each_pull_is_logged_at_its_instant_and_none_that_an_input_prevents(wheel, kind):
     formulation, method, s = kind
@@ -204,11 +203,11 @@ def test_each_pull_is_logged_at_its_instant_and_none_that_an_input_prevents(whee
     w = wheel().start(method=method, s=s, **values)
     ramps = {0.0: 0.0, 0.1: WEIGHT / 0.025, 0.15: 0.0, 0.3: WEIGHT / 0.05, 0.4: 0.0}
     assert play(w, [(begin, {"F_Z": (0.0, ramp)}) for begin, ramp in ramps.items()], 0.5) == OK
-    assert np.allclose(pulls(w), [0.125, 0.35], rtol=0, atol=1e-8)
+    assert np.allclose(instants_of_pulls(w), [0.125, 0.35], rtol=0, atol=1e-8)
     prevented = wheel().start(method=method, s=s, **values)
     for k in range(20):  # a ramp that would lift the wheel, taken back at every step
         prevented.give({"F_Z": (0.0, WEIGHT / 0.006)}).to(0.005 * (k + 1))
-    assert pulls(prevented) == []
+    assert instants_of_pulls(prevented) == []
 
 
 def test_a_ground_that_pulls_from_the_start_is_logged_once_by_the_unfolded_wheel_too(wheel):
@@ -219,7 +218,7 @@ def test_a_ground_that_pulls_from_the_start_is_logged_once_by_the_unfolded_wheel
         w = wheel().start(keep_contact=True, method=method, **fast)
         steps = 1 if logged else 20  # twice unfolded: whatever the steps
         assert [w.step(2.0 / steps) for _ in range(steps)] == [OK] * steps
-        logged.append(pulls(w))
+        logged.append(instants_of_pulls(w))
     assert logged[0][0] == 0.0 and len(logged[0]) == 7
     for other in logged[1:]:
         within(absolute_error(other, logged[0]), 2e-8, "other")

@@ -132,16 +132,6 @@ def test_a_coefficient_that_is_tuned_later_costs_no_more_steps(wheel, omega_s, t
     assert min(jacobians, of_tuned) > 0  # with the first choice kept, 36
 
 
-def test_a_brake_that_grows_along_one_polynomial_makes_the_law_stiff(wheel):
-    """The inputs do not change, only their values do."""
-    w = wheel().start(friction_law="regularized", omega_s=1e-4)
-    for k in range(40):
-        w.give({"M_brake": (1e-6 + 2.0 * k, 20.0)}).to((k + 1) / 10)
-    assert w.get("n_jac")[0] > 0
-    loose = wheel().start(friction_law="regularized", omega_s=1.0).to(4.0)
-    assert loose.get("n_jac") == [0]  # the partner: never stiff
-
-
 WITHOUT_WEIGHT = {"g": 0.0, "omega_s": 1e-6}, {"M_brake": 30.0}, 1.0
 PRESSED = {"s": FRICTION["s"], "omega_s": 2e-3}, {"F_Z": -5e4}, 1.0
 UPRIGHT = {"theta_start": np.pi / 2, **PRESSED[0]}, PRESSED[1], 0.1  # sticks soon, and has not fallen yet
