@@ -61,8 +61,20 @@ class Bytes {
   const std::uint8_t* end_;
 };
 
-// A value of ordinary or extreme size for a variable.
-double value_for(unsigned reference, Bytes& in);
+// A value of ordinary or extreme size for a variable: sizes that matter are the start values of the parameters as
+// modelDescription.xml has them, and what moves a wheel.
+inline double value_for(unsigned reference, Bytes& in) {
+  if (reference >= ref_first_output || in.chance(2)) {
+    // Extreme loads are limited: CVODE would honestly follow them through the million steps that a call may take.
+    const double value = in.any();
+    return reference >= ref_first_input && std::isfinite(value) ? std::remainder(value, 1e4) : value;
+  }
+  if (in.chance(2)) return 0;
+  const Row& row = row_of(reference);
+  const double size = row.role == Role::input ? 10 : row.start == 0 ? 0.1 : row.start;
+  const double value = size * in.factor();
+  return in.chance(4) ? -value : value;
+}
 
 class Arguments {
  public:
@@ -87,9 +99,30 @@ class Arguments {
   template <class Entry>
   using Arrays = std::list<std::vector<Entry>>;
 
-  void fill(std::vector<unsigned>& references);
-  void fill(std::vector<double>& values);
-  void fill(std::vector<int>& values);
+  void fill(std::vector<unsigned>& references) {
+    constexpr unsigned choices[] = {ref_formulation, ref_friction_law, ref_method, ref_keep_contact};
+    constexpr unsigned firsts[] = {0, ref_first_input, ref_first_output};
+    constexpr unsigned counts[] = {ref_count, input_count, output_count};
+    const unsigned kind = in_.below(4);
+    for (std::size_t k = 0; k < count_; ++k) {
+      const unsigned choice = in_.byte();
+      references[k] = kind == 3 ? choices[choice % 4] : firsts[kind] + choice % counts[kind];
+      if (choice >= 250) references[k] = choice * 0x01010101u;
+      trace("  variable %u\n", references[k]);
+    }
+  }
+  void fill(std::vector<double>& values) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      values[k] = value_for(std::get<Arrays<unsigned>>(arrays_).back()[k], in_);
+      trace("  %.17g\n", values[k]);
+    }
+  }
+  void fill(std::vector<int>& values) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      values[k] = static_cast<int>(in_.chance(14) ? in_.below(5) : in_.byte() * 0x01010101u);
+      trace("  %d\n", values[k]);
+    }
+  }
   void fill(std::vector<fmi2String>& texts) { texts.assign(most, ""); }
 
   Bytes& in_;
