@@ -70,36 +70,6 @@ def test_every_file_that_a_document_names_exists_and_every_decision_is_listed() 
     assert set(listed) == {f"decisions/{path.name}" for path in (ROOT / "docs" / "decisions").glob("*.md")}
 
 
-def words(*patterns: str) -> set[str]:
-    """Of files and their names."""
-    files = run("git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", *patterns).stdout.split("\0")
-    found = (path.read_text(encoding="utf-8", errors="ignore") for path in map(ROOT.joinpath, files) if path.is_file())
-    return {word for text in (*found, *files) for word in re.findall(r"\w+", text)}
-
-
-# Of other programs, and of examples in the text.
-FOREIGN = """CosimLogLevel addConnection carRollingDiscTest createRollingDiscTest rollingCoinPenaltyTest dask_jobqueue
-fmi_CommunicationStepSize fmi_StopTime fmi_loggingOn frame_a kind_CS load_fmu relTol setReal set_input_derivatives
-I_axis I_long J_hub allocateMemory analyze_mutants der_angles my_study noSetFMUStatePriorToCurrentPoint v_1
-terminateSimulation"""
-
-
-def unknown(text: str, known: set[str]) -> set[str]:
-    """Identifiers in backticks, words with an underscore or a capital inside, that neither code nor the page's own
-    lines of code have."""
-    shown = {word for block in re.findall(r"```.*?```", text, re.DOTALL) for word in re.findall(r"\w+", block)}
-    marked = re.findall(r"(?<!`)`([^`\n]+)`(?!`)", text)
-    names = {word for span in marked for word in re.findall(r"(?<!\w)[A-Za-z]\w*", span)}
-    return {name for name in names - known - shown if re.search(r"\w_\w|[a-z][A-Z]", name)}
-
-
-def test_every_identifier_in_backticks_stands_in_the_code() -> None:
-    known = words(":!*.md", ":!CHANGELOG.md", ":!docs", ":!tests/repository/test_documents.py") | {*FOREIGN.split()}
-    found = {name: unknown(text, known) for name, text in PAGES.items() if name != "CHANGELOG.md"}
-    assert {name: names for name, names in found.items() if names} == {}
-    assert unknown("`error_scales` of `slope`, `fmi2DoStep(...)`", known) == {"error_scales"}
-
-
 PRINTED = re.compile(r"""\./scripts/(\w+)((?: +(?:'[^'\n]*'|[^\s`#'"|)&;]+))*)""")
 
 
