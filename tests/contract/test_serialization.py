@@ -161,14 +161,8 @@ def test_in_another_process_a_restored_wheel_goes_on_with_the_same_bits(wheel, f
 
 
 RUNS: dict[str, tuple[Values, dict[str, tuple[float, ...]]]] = {
-    "unfolded": ({}, {}),
-    "Runge-Kutta": ({"s": 0.03}, {}),
-    "Adams": ({"method": 2}, {}),
-    "BDF": ({"method": 3}, {}),
-    "regularized": ({"friction_law": 2, "s": 0.03, "omega_s": 1e-3}, {}),
-    "multibody, Adams": ({"formulation": 3}, {}),
-    "multibody, Runge-Kutta": ({"formulation": 3, "s": 0.03}, {}),
-    "multibody, BDF": ({"formulation": 3, "method": 3}, {}),
+    **{name: (start, {}) for name, start in KINDS.items()},
+    "stiff law": ({"friction_law": 2, "s": 0.03, "omega_s": 1e-3}, {}),
     "loaded": ({"s": 0.03}, {"M_3": (0.0, 0.5), "F_Z": (1.0, 2.0, 3.0, 4.0)}),
     "braked, Adams": ({"method": 2}, {"M_brake": (1.0, 2.0)}),
     "held": ({"s": 0.2, "theta_start": np.pi / 2, "phi_dot_start": 0.0}, {"M_3": (0.1,)}),

@@ -57,15 +57,11 @@ PLACES = {
         "};\n\nnamespace {\n\nconstexpr bool is_sound",
     ],
 }
-# What the recipes define, but for the setup's members, has another name here, so that who follows them to the letter
-# meets nothing twice.
-DEFINED = re.compile(r'<ScalarVariable name="(\w+)"|^ *(\w+),$|^(?:bool|double) (\w+)\(', re.MULTILINE)
-
 Blocks = dict[str, list[str]]  # of code, by file
 
 
 def recipes() -> list[Blocks]:
-    """Of CONTRIBUTING.md: the blocks of code, each of the file that was named last, under names of this test."""
+    """Of CONTRIBUTING.md: the blocks of code, each of the file that was named last."""
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     section = re.search(r"^## Add an event\n(.*?)^## ", text, re.DOTALL | re.MULTILINE)[1]
     found: list[Blocks] = []
@@ -75,17 +71,8 @@ def recipes() -> list[Blocks]:
             named = [place for name in re.findall(r"`([\w./-]+)`", said) for place in PLACES if place.endswith(name)]
             file = named[-1] if named else file
             blocks.setdefault(file, []).append(re.sub(r"^   ", "", block, flags=re.MULTILINE))
-        found.append(renamed(blocks))
+        found.append(blocks)
     return found
-
-
-def renamed(blocks: Blocks) -> Blocks:
-    names = {name for each in blocks.values() for text in each for found in DEFINED.findall(text) for name in found}
-    word = re.compile(rf"\b({'|'.join(names - {''})})\b")
-    return {
-        file: [re.sub(r'(\.observed = ")', r"\1test, ", word.sub(r"\1_of_this_test", text)) for text in texts]
-        for file, texts in blocks.items()
-    }
 
 
 def patch(folder: Path, blocks: Blocks) -> None:

@@ -1,10 +1,12 @@
 // Arguments of one call, drawn by their types: arrays of a few variables and as many values, or rarely no array at all.
 #pragma once
 
+#include <fuzzer/FuzzedDataProvider.h>
+
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <list>
 #include <tuple>
@@ -16,20 +18,16 @@
 namespace fuzz {
 
 // The fuzzer's bytes read as choices and numbers. When they run out every choice is 0 and every number 0.
-class Bytes {
+class Bytes : public FuzzedDataProvider {
  public:
-  Bytes(const std::uint8_t* data, std::size_t size) : at_(data), end_(data + size) {}
-
-  bool empty() const { return at_ == end_; }
-  unsigned byte() { return empty() ? 0 : *at_++; }
-  unsigned below(unsigned n) { return byte() % n; }
-  unsigned word() {
-    const unsigned high = byte();
-    return high << 8 | byte();
-  }
+  using FuzzedDataProvider::FuzzedDataProvider;
+  bool empty() { return remaining_bytes() == 0; }
+  unsigned byte() { return ConsumeIntegral<std::uint8_t>(); }
+  unsigned word() { return ConsumeIntegral<std::uint16_t>(); }
+  unsigned below(unsigned n) { return ConsumeIntegralInRange(0u, n - 1); }
   int signed_byte() { return static_cast<int>(byte()) - 128; }
   // True in `sixteenths` of 16 cases.
-  bool chance(unsigned sixteenths) { return byte() % 16 < sixteenths; }
+  bool chance(unsigned sixteenths) { return below(16) < sixteenths; }
 
   // One byte: a factor between 2^-4 and 2^4 around 1.
   double factor() { return std::exp2(signed_byte() / 32.0); }
@@ -49,16 +47,8 @@ class Bytes {
     const unsigned kind = byte();
     if (kind < 32) return limits[kind % (sizeof limits / sizeof *limits)];
     if (kind < 224) return signed_byte() * std::pow(10.0, static_cast<int>(kind % 9) - 5);
-    std::uint64_t raw = 0;
-    for (int i = 0; i < 8; ++i) raw = raw << 8 | byte();
-    double number;
-    std::memcpy(&number, &raw, sizeof number);
-    return number;
+    return std::bit_cast<double>(ConsumeIntegral<std::uint64_t>());
   }
-
- private:
-  const std::uint8_t* at_;
-  const std::uint8_t* end_;
 };
 
 // A value of ordinary or extreme size for a variable: sizes that matter are the start values of the parameters as
