@@ -126,18 +126,6 @@ def test_a_pointer_to_something_else_is_refused_as_a_state_with_a_message_and_fr
     w.free(known)
 
 
-def test_the_bytes_depend_on_the_past_alone(wheel):
-    """No pointer and no leftover goes into them: another instance, elsewhere in memory, has the same bytes."""
-    for values in KINDS.values():
-        w, other = wheel().start(**values), wheel().start(m=3.0, s=0.05, mu_max=0.3).to(0.1)
-        other.step_to(3.0)  # up to an event
-        assert other.reset() == OK
-        other.start(**values)
-        assert w.run([0.5, 2.0]) == other.run([0.5, 2.0])
-        assert w.serialized() == other.serialized()
-        assert w.by(1e-3).serialized() != other.serialized()
-
-
 def continued(w: FMU2Wheel) -> tuple[list[bytes], bytes]:
     """All bits over the two seconds after 1.75 s, and the state at the end."""
     return w.run([1.75 + k / 4 for k in range(1, 9)]), w.serialized()

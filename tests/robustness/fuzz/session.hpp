@@ -56,7 +56,6 @@ class Session {
   template <class... Parameters>
   void with_drawn(unsigned legal_in, fmi2Status (*function)(fmi2Component, Parameters...));
 
-  Log log_;
   Bytes in_;
   unsigned actions_left_ = 40;
   Slot slots_[2];
