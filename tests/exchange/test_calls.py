@@ -24,15 +24,11 @@ def at_odd(library: Library, **values: float) -> FMU2Wheel:
     return wheel
 
 
-def test_states_are_read_back_to_the_bit_also_after_a_restored_state(library: Library) -> None:
-    with at_odd(library) as wheel, exchange(library) as other:
-        assert (wheel.x() == ODD).all()
-        assert wheel.get(*STATES) == ODD.tolist()
-        assert (other.back(wheel.serialized()).x() == ODD).all()
-        assert other.bits() == wheel.bits()
-        assert (other.derivatives() == wheel.derivatives()).all()
+def test_states_are_read_back_to_the_bit(library: Library) -> None:
+    with at_odd(library) as wheel:
+        assert (wheel.x() == ODD).all() and wheel.get(*STATES) == ODD.tolist()
         wheel.place(0.3, np.nextafter(ODD, np.inf))
-        assert other.bits() != wheel.bits()
+        assert (wheel.x() != ODD).all()
 
 
 @pytest.mark.parametrize("theta", [1.1, 1e-4, 1e-5, 1.1e-7, np.pi - 1.1e-7])

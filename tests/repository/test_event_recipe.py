@@ -18,7 +18,6 @@ from support.motion import Library, Run
 from support.paths import ROOT, copy_checkout
 
 sys.path.insert(0, str(ROOT / "cmake"))
-from description.measuring import event_indicators, measured
 from description.numbering import numbered, with_event_indicators
 
 LEAN = 1.29  # rad: the level of the recipe
@@ -154,12 +153,6 @@ def limit(fine: Run) -> dict[str, float]:
     """The parameter, halfway between the least and the largest normal force."""
     (name,) = re.findall(r'<ScalarVariable name="(\w+)"', recipes()[1]["modelDescription.xml"][0])
     return {name: 0.5 * float(fine["lambda_3"].min() + fine["lambda_3"].max())}
-
-
-def test_the_description_of_the_copy_is_numbered_and_measured(patched: Patched) -> None:
-    text = (patched.root / "modelDescription.xml").read_text(encoding="utf-8")
-    assert numbered(text, measured(patched.fmu)) == text != numbered(text, {"Outputs": {"theta": {"F_X"}}})
-    assert event_indicators(patched.fmu) == patched.library.description.numberOfEventIndicators
 
 
 def test_the_tests_of_the_contract_hold_with_these_events_too(patched: Patched) -> None:
