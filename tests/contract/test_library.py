@@ -121,19 +121,12 @@ def test_packing_the_same_content_gives_the_same_bytes(fmu_path, fmu, tmp_path):
     assert again.read_bytes() == fmu_path.read_bytes() != other.read_bytes()
 
 
-FORMS = ("of source code must retain", "in binary form must reproduce")
-CLAUSES = [f"Redistributions {form} the above copyright notice" for form in FORMS]
-CLAUSES += ["THIS SOFTWARE IS PROVIDED BY THE COPYRIGHT HOLDERS AND CONTRIBUTORS"]
-CLAUSES += ["EVEN IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE"]
-IN_LICENCE = {  # each piece as it stands there
-    "license.txt": ["wheel.fmu founders"],
-    "sundials-license.txt": ["Lawrence Livermore"],
-    "eigen-license.txt": [
-        *("Mozilla Public License", '1.1. "Contributor"', "Limitation of Liability"),
-        "Exhibit A - Source Code Form License Notice",
-    ],
-    "eigen-notice.txt": ["Mozilla Public"],
-    "fmi-headers-notice.txt": CLAUSES,
+IN_LICENCE = {
+    "license.txt": "wheel.fmu founders",
+    "sundials-license.txt": "Lawrence Livermore",
+    "eigen-license.txt": "Exhibit A - Source Code Form License Notice",  # its last section
+    "eigen-notice.txt": "Mozilla Public",
+    "fmi-headers-notice.txt": "EVEN IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE",  # its last words
 }
 
 
@@ -143,9 +136,7 @@ def contains(text: str, piece: str) -> bool:
 
 def test_the_archive_carries_the_licences_word_for_word(fmu):
     texts = {name: (Path(fmu) / "licenses" / name).read_text(encoding="utf-8") for name in IN_LICENCE}
-    for name, pieces in IN_LICENCE.items():
-        assert all(contains(texts[name], piece) for piece in pieces), name
-    assert not contains(texts["eigen-notice.txt"], "Limitation of Liability")  # the partner: our own words about it
+    assert all(contains(texts[name], piece) for name, piece in IN_LICENCE.items())
     notice = texts["fmi-headers-notice.txt"]
     for header in ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"):
         text = (HEADERS / header).read_text(encoding="utf-8")

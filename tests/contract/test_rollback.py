@@ -37,10 +37,11 @@ def test_a_restored_instance_goes_on_with_the_same_bits(wheel, scene, step):
     for k in (0, 1, 10, 22, 23):
         bits_of(w, step, range(round(w.time / STEP), k))
         blob, now = w.serialized(), w.bits()
-        ahead = bits_of(w, step, range(k, k + 16))
+        ahead, end = bits_of(w, step, range(k, k + 16)), w.serialized()
         for restored in (w, other, fresh):
             assert restored.back(blob).bits() == now and restored.serialized() == blob
             assert bits_of(restored, step, range(k, k + 16)) == ahead
+            assert restored.serialized() == end  # the bytes depend on the past alone: no pointer, no leftover
         assert coast(w.back(blob).put(F_X=1e-9), k).bits() != ahead[0]  # the partner: the smallest push shows
         w.back(blob)
 

@@ -126,27 +126,6 @@ def test_a_pointer_to_something_else_is_refused_as_a_state_with_a_message_and_fr
     w.free(known)
 
 
-def test_hundreds_of_states_are_kept_apart(wheel):
-    w = wheel().start()
-    states = [(w.to(k / 64).snapshot(), w.bits()) for k in range(300)]
-    for state, bits in states[::-7] + states[::7]:
-        assert w.ask("SetFMUstate", state) == OK and w.bits() == bits
-    for state, _ in states:
-        w.free(state)
-
-
-def test_the_bytes_depend_on_the_past_alone(wheel):
-    """No pointer and no leftover goes into them: another instance, elsewhere in memory, has the same bytes."""
-    for values in KINDS.values():
-        w, other = wheel().start(**values), wheel().start(m=3.0, s=0.05, mu_max=0.3).to(0.1)
-        other.step_to(3.0)  # up to an event
-        assert other.reset() == OK
-        other.start(**values)
-        assert w.run([0.5, 2.0]) == other.run([0.5, 2.0])
-        assert w.serialized() == other.serialized()
-        assert w.by(1e-3).serialized() != other.serialized()
-
-
 def continued(w: FMU2Wheel) -> tuple[list[bytes], bytes]:
     """All bits over the two seconds after 1.75 s, and the state at the end."""
     return w.run([1.75 + k / 4 for k in range(1, 9)]), w.serialized()
@@ -170,14 +149,9 @@ def test_in_another_process_a_restored_wheel_goes_on_with_the_same_bits(wheel, f
 
 
 RUNS: dict[str, tuple[Values, dict[str, tuple[float, ...]]]] = {
-    "unfolded": ({}, {}),
-    "Runge-Kutta": ({"s": 0.03}, {}),
-    "Adams": ({"method": 2}, {}),
-    "BDF": ({"method": 3}, {}),
-    "regularized": ({"friction_law": 2, "s": 0.03, "omega_s": 1e-3}, {}),
-    "multibody, Adams": ({"formulation": 3}, {}),
-    "multibody, Runge-Kutta": ({"formulation": 3, "s": 0.03}, {}),
-    "multibody, BDF": ({"formulation": 3, "method": 3}, {}),
+    **{name: (start, {}) for name, start in KINDS.items()},
+    "multibody, bdf": ({"formulation": 3, "method": 3}, {}),  # its law would take minutes under the sanitizers
+    "stiff law": ({"friction_law": 2, "s": 0.03, "omega_s": 1e-3}, {}),
     "loaded": ({"s": 0.03}, {"M_3": (0.0, 0.5), "F_Z": (1.0, 2.0, 3.0, 4.0)}),
     "braked, Adams": ({"method": 2}, {"M_brake": (1.0, 2.0)}),
     "held": ({"s": 0.2, "theta_start": np.pi / 2, "phi_dot_start": 0.0}, {"M_3": (0.1,)}),
@@ -213,19 +187,13 @@ def signed(words) -> bytes:
     return struct.pack("<3Q", *words[:SUM], checksum(body)) + body
 
 
-def as_word(x: float) -> int:
-    """A double as it is stored; a whole number is one."""
-    return struct.unpack("<Q", struct.pack("<d", x))[0] if isinstance(x, float) else x
+NAN, NEGATIVE = (struct.unpack("<Q", struct.pack("<d", x))[0] for x in (np.nan, -1.0))
+LARGE = (2, 13, 2**31, 2**53, 2**63 - 1, 2**64 - 1)
 
 
-def changes(word: int, seed: int) -> list[int]:
-    """What a word may be changed to: no number, nonsense for a double or an integer, and a small change; of nothing, a
-    negative number."""
-    special = [as_word(x) for x in (np.inf, -1.0, 0.0, 1e300, 5e-324)] + [2, 13, 2**31, 2**53, 2**63 - 1, 2**64 - 1]
-    small = [(word + 1) % 2**64, (word - 1) % 2**64, word ^ 1 << 63, word ^ 1 << 52]
-    chosen = np.random.default_rng(seed)
-    drawn = [int(chosen.choice(np.array(row, dtype=object))) for row in (special, small)]
-    return [new for new in (as_word(np.nan), *drawn, *[as_word(-1.0)] * (word == 0)) if new != word]
+def changes(word: int, place: int) -> set[int]:
+    """What a word may be changed to: no number, a negative one, nonsense for an integer, and a small change."""
+    return {NAN, NEGATIVE, LARGE[place % len(LARGE)], word ^ 1 << place % 64} - {word}
 
 
 def what_follows(w: FMU2Wheel) -> list[tuple[int, bytes]]:
@@ -256,7 +224,7 @@ def test_a_state_with_one_word_changed_is_refused_or_harmless_and_no_number_has_
             assert host.restore(changed) == status
             if status == OK:
                 seen = what_follows(w)
-                assert new != as_word(np.nan) or place < HEADER or seen == expected, place
+                assert new != NAN or place < HEADER or seen == expected, place
                 w.close()
                 w = wheel().start(s=0.01)
                 host.back(before)
@@ -269,6 +237,6 @@ def test_a_state_of_another_version_is_refused_with_a_message(wheel):
     """Version 2.0.0 had a header for the call state in front of the mark; later ones have another mark."""
     w = wheel().start()
     words = list(words_of(w.serialized()))
-    for old in ([2, as_word(np.inf), 77, 0x3430554D46484557, *words[1:]], [words[0] - (1 << 56), *words[1:]]):
+    for old in ([2, NAN, 77, 0x3430554D46484557, *words[1:]], [words[0] - (1 << 56), *words[1:]]):
         assert w.restore(struct.pack(f"<{len(old)}Q", *old)) == ERROR
         assert w.said() == DAMAGED.format("the mark of this version is missing")

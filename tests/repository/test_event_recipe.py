@@ -15,10 +15,9 @@ import pytest
 from support import exchange as exchanging
 from support.bounds import beyond, within
 from support.motion import Library, Run
-from support.paths import ROOT
+from support.paths import ROOT, copy_checkout
 
 sys.path.insert(0, str(ROOT / "cmake"))
-from description.measuring import event_indicators, measured
 from description.numbering import numbered, with_event_indicators
 
 LEAN = 1.29  # rad: the level of the recipe
@@ -57,15 +56,11 @@ PLACES = {
         "};\n\nnamespace {\n\nconstexpr bool is_sound",
     ],
 }
-# What the recipes define, but for the setup's members, has another name here, so that who follows them to the letter
-# meets nothing twice.
-DEFINED = re.compile(r'<ScalarVariable name="(\w+)"|^ *(\w+),$|^(?:bool|double) (\w+)\(', re.MULTILINE)
-
 Blocks = dict[str, list[str]]  # of code, by file
 
 
 def recipes() -> list[Blocks]:
-    """Of CONTRIBUTING.md: the blocks of code, each of the file that was named last, under names of this test."""
+    """Of CONTRIBUTING.md: the blocks of code, each of the file that was named last."""
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     section = re.search(r"^## Add an event\n(.*?)^## ", text, re.DOTALL | re.MULTILINE)[1]
     found: list[Blocks] = []
@@ -75,17 +70,8 @@ def recipes() -> list[Blocks]:
             named = [place for name in re.findall(r"`([\w./-]+)`", said) for place in PLACES if place.endswith(name)]
             file = named[-1] if named else file
             blocks.setdefault(file, []).append(re.sub(r"^   ", "", block, flags=re.MULTILINE))
-        found.append(renamed(blocks))
+        found.append(blocks)
     return found
-
-
-def renamed(blocks: Blocks) -> Blocks:
-    names = {name for each in blocks.values() for text in each for found in DEFINED.findall(text) for name in found}
-    word = re.compile(rf"\b({'|'.join(names - {''})})\b")
-    return {
-        file: [re.sub(r'(\.observed = ")', r"\1test, ", word.sub(r"\1_of_this_test", text)) for text in texts]
-        for file, texts in blocks.items()
-    }
 
 
 def patch(folder: Path, blocks: Blocks) -> None:
@@ -112,8 +98,7 @@ class Patched(NamedTuple):
 def patched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
     """All events in the place of the recipes; numbered and built."""
     root, events = tmp_path_factory.mktemp("checkout"), [*recipes(), LINE]
-    copy = f"git ls-files -coz --exclude-standard | xargs -0 cp --parents -t '{root}'"
-    subprocess.run(["bash", "-c", copy], cwd=ROOT, check=False)  # a file may be deleted
+    copy_checkout(root)
     for blocks in events:
         patch(root, blocks)
     description = root / "modelDescription.xml"
@@ -168,12 +153,6 @@ def limit(fine: Run) -> dict[str, float]:
     """The parameter, halfway between the least and the largest normal force."""
     (name,) = re.findall(r'<ScalarVariable name="(\w+)"', recipes()[1]["modelDescription.xml"][0])
     return {name: 0.5 * float(fine["lambda_3"].min() + fine["lambda_3"].max())}
-
-
-def test_the_description_of_the_copy_is_numbered_and_measured(patched: Patched) -> None:
-    text = (patched.root / "modelDescription.xml").read_text(encoding="utf-8")
-    assert numbered(text, measured(patched.fmu)) == text != numbered(text, {"Outputs": {"theta": {"F_X"}}})
-    assert event_indicators(patched.fmu) == patched.library.description.numberOfEventIndicators
 
 
 def test_the_tests_of_the_contract_hold_with_these_events_too(patched: Patched) -> None:

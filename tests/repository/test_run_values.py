@@ -11,8 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from reference import Wheel
-from support import sliding
+from scipy.integrate import quad
 from support.bounds import EPSILON, beyond, within
 from support.paths import ROOT, build_folder
 
@@ -129,15 +128,15 @@ def rings(rho: np.ndarray, z: np.ndarray, masses: np.ndarray) -> dict[str, float
     return {"m": masses.sum(), "J_x": across, "J_y": across, "J_z": (masses * rho**2).sum()}
 
 
-def solid(rho: tuple[float, float], height: Callable[[np.ndarray], np.ndarray], m: float) -> dict[str, float]:
-    """A homogeneous body of revolution between two radii, of this half height over the radius: Gauss's rule in both."""
-    nodes, weights = np.polynomial.legendre.leggauss(60)
-    angle = np.pi / 2 * nodes  # the radius over an angle: smooth where the height is a circle's
-    middle, half = (rho[0] + rho[1]) / 2, (rho[1] - rho[0]) / 2
-    radius, width = middle + half * np.sin(angle), half * np.cos(angle) * np.pi / 2 * weights
-    z = height(radius)[:, None] * nodes
-    share = (radius * width * height(radius))[:, None] * weights
-    return rings(np.broadcast_to(radius[:, None], z.shape), z, m * share / share.sum())
+def solid(rho: tuple[float, float], height: Callable[[float], float], m: float) -> dict[str, float]:
+    """A homogeneous body of revolution between two radii, of this half height over the radius: by quadrature."""
+
+    def over(power: int, of_height: int) -> float:
+        return quad(lambda x: x**power * height(x) ** of_height, *rho, epsabs=0, epsrel=1e-11)[0]
+
+    volume, J_z = over(1, 1), over(3, 1)
+    across = J_z / 2 + over(1, 3) / 3
+    return {"m": m} | {name: m * J / volume for name, J in (("J_x", across), ("J_y", across), ("J_z", J_z))}
 
 
 SIZES = [(20.0, 0.3, 0.05), (12.0, 0.2, 0.2), (0.0085, 0.011775, 0.0011)]
@@ -145,9 +144,9 @@ SIZES = [(20.0, 0.3, 0.05), (12.0, 0.2, 0.2), (0.0085, 0.011775, 0.0011)]
 
 def integrated(body: str, m: float, r_0: float, r: float) -> dict[str, float]:
     if body == "torus":
-        return solid((r_0 - r, r_0 + r), lambda rho: np.sqrt(np.maximum(r * r - (rho - r_0) ** 2, 0)), m)
+        return solid((r_0 - r, r_0 + r), lambda rho: max(r * r - (rho - r_0) ** 2, 0) ** 0.5, m)
     if body == "disc":
-        return solid((0, r_0 + r), lambda rho: r + 0 * rho, m)
+        return solid((0, r_0 + r), lambda _: r, m)
     return rings(np.array([r_0]), np.array([0.0]), np.array([m]))
 
 
@@ -160,12 +159,6 @@ def test_the_moments_of_a_ready_body_are_those_of_its_mass_in_space(root, body, 
     for name in ("J_x", "J_y", "J_z"):
         within(abs(p[name] / exact[name] - 1), 1e-9, f"{name} of a {body}")
         beyond(abs(p[name] / other[name] - 1), 1e-3, f"{name} of another body")
-
-
-def test_the_coin_is_the_ready_disc_of_its_size(root):
-    coin = given(ask(root, "coin"))
-    disc = given(ask(root, "body=disc", *(f"{name}={coin[name]}" for name in ("m", "r_0", "r"))))
-    within(max(abs(float(disc[name]) / float(coin[name]) - 1) for name in ("J_x", "J_y", "J_z")), 1e-9, "moments")
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -205,23 +198,6 @@ def test_a_ready_wheel_has_a_source_is_a_body_that_can_exist_and_rolls(root, nam
     start = {key: value for key, value in p.items() if key not in ("stop_time", "output_interval")}
     end = simulate_fmu(str(root / "wheel.fmu"), start_values=start, stop_time=0.1, output=["E"])
     assert end["time"][-1] == 0.1 and end["E"][-1] < end["E"][0]
-
-
-def test_the_hoop_thrown_with_backspin_slides_grips_at_the_closed_forms_instant_and_comes_back(root):
-    def error(scale: float) -> float:
-        p = {key: float(value) for key, value in given(ask(root, "backspin", f"mu_slide={0.3 * scale}")).items()}
-        wheel = Wheel(**{name: p[name] for name in ("m", "r_0", "r", "J_x", "J_y", "J_z")})
-        t, v, way = sliding.backspin(wheel, 0.3, 2.0, 10.0)
-        assert v < -1 and t < p["stop_time"] / 2
-        start = {n: x for n, x in p.items() if n not in ("stop_time", "output_interval")} | {"s": 0}
-        grid = {"stop_time": t + 1, "output_interval": t + 1, "relative_tolerance": 1e-11}
-        rows = simulate_fmu(str(root / "wheel.fmu"), start_values=start, output=["X_O", "X_O_dot", "omega_z"], **grid)
-        assert tuple(rows[0])[1:] == pytest.approx((0, 2, 10), abs=1e-14)
-        off = np.array(list(rows[-1])[1:]) - [way + v, v, -v / (wheel.r_0 + wheel.r)]
-        return float(abs(off).max())
-
-    within(error(1), 1e-9, "place, velocity and spin 1 s after the grip")
-    beyond(error(1.001), 1e-5, "with a coefficient 0.1 % larger")
 
 
 def test_a_name_given_beside_a_ready_wheel_prevails(root):

@@ -1,13 +1,9 @@
 """Tests that name a kind run for each formulation by each method; `played` plays inputs to a new instance."""
 
-import os
-import subprocess
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from support.driver import OK, FMU2Wheel, Value, Values
-from support.paths import ROOT
 from support.scenes import FORCED
 from support.schedule import Piece, play
 

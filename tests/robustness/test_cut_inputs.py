@@ -9,8 +9,7 @@ from math import nextafter
 
 import numpy as np
 import pytest
-from contract.properties import quick, some
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.bounds import absolute_error, beyond, within
 from support.driver import OK, Values, shifted
@@ -30,7 +29,7 @@ HELD: list[Piece] = [(0.0, {"M_3": (0.5,), "F_Z": (3.0,)}), (0.5, {"M_3": (-0.5,
 GAPS = (1e-3, 1e-6, 1e-9, 1e-12, 1e-13, 0.0)  # s, 0: to the next number
 BOUND = 1  # tolerance of the range of each state over the run
 
-random_cuts = st.lists(st.tuples(some(1e-3, STOP - 1e-3), st.sampled_from(GAPS)), max_size=12)
+random_cuts = st.lists(st.tuples(st.floats(1e-3, STOP - 1e-3), st.sampled_from(GAPS)), max_size=12)
 
 
 @pytest.fixture
@@ -59,7 +58,7 @@ def with_gaps(drawn):
 def test_random_cuts_change_nothing(defect, kind, pieces):
     worst = []
 
-    @quick(8)
+    @settings(max_examples=8)
     @given(random_cuts)
     def check(drawn):
         worst.append(defect(kind, pieces, with_gaps(drawn)))

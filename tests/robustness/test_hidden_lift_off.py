@@ -9,6 +9,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from scipy.optimize import root_scalar
 from support.bounds import EPSILON, beyond, within
 from support.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK
 from support.scenes import FORCED, PAPER
@@ -124,29 +125,20 @@ def least_normal_force(wheel, force, s):
     By a parabola through three points of a fine grid.
     """
     w = wheel().start(tolerance=1e-10, keep_contact=True, F_Z=force, s=s, **ROCKING)
-    times, found = np.linspace(0, SWING, 401), []
-    for t in times[1:]:
+    times, found = np.linspace(0, SWING, 401)[1:], []
+    for t in times:
         w.to(t)
         found += w.get("lambda_3")
     w.close()
     k = int(np.argmin(found))
-    left, mid, right = found[k - 1 : k + 2]
-    bend = left - 2 * mid + right
-    x = 0.5 * (left - right) / bend
-    return times[k + 1] + x * times[1], mid - 0.25 * (left - right) * x, bend / times[1] ** 2
+    a, b, c = np.polyfit(times[k - 1 : k + 2] - times[k], found[k - 1 : k + 2], 2)
+    return times[k] - b / (2 * a), c - b * b / (4 * a), 2 * a
 
 
 def grazing_force(wheel, least, s):
-    """F_Z, N, for which the least N is `least`, by the secant method; its instant and the bend of N there."""
-    a, b = 100.0, 120.0
-    n_a = least_normal_force(wheel, a, s)[1] - least
-    for _ in range(12):
-        instant, n_b, bend = least_normal_force(wheel, b, s)
-        n_b -= least
-        if abs(n_b) < 1e-7:
-            return b, instant, bend
-        a, b, n_a = b, b - n_b * (b - a) / (n_b - n_a), n_b
-    raise AssertionError("no force found")
+    """F_Z, N, for which the least N is `least`; its instant and the bend of N there."""
+    found = root_scalar(lambda force: least_normal_force(wheel, force, s)[1] - least, x0=100.0, x1=120.0, xtol=1e-8)
+    return found.root, *least_normal_force(wheel, found.root, s)[::2]
 
 
 @pytest.mark.parametrize("s", [0.0, 0.03])

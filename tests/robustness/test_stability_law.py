@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from robustness import regularized
-from robustness.regularized import FRICTION, TOLERANCE_FACTOR, WIDTH_FACTOR
+from robustness.judges import FRICTION, TIMES, error_against, law_bound
 from support.bounds import absolute_error, beyond, within
 from support.driver import OK, Values
 from support.motion import Library, Run, run
@@ -11,12 +10,12 @@ from support.motion import Library, Run, run
 
 @pytest.fixture(scope="module")
 def truth(library: Library) -> Run:
-    return run(library, FRICTION, regularized.TIMES, 1e-12)
+    return run(library, FRICTION, TIMES, 1e-12)
 
 
 def law_error(library: Library, truth: Run, omega_s: float, tolerance: float, method: str = "automatic") -> float:
     values = {**FRICTION, "friction_law": "regularized", "omega_s": omega_s, "method": method}
-    return regularized.error_against(truth, run(library, values, regularized.TIMES, tolerance))
+    return error_against(truth, run(library, values, TIMES, tolerance))
 
 
 # BDF alone steps through a layer narrower than a loose tolerance and may miss a whole slip, by the last bits of a sine.
@@ -25,17 +24,10 @@ def law_error(library: Library, truth: Run, omega_s: float, tolerance: float, me
 )
 @pytest.mark.parametrize("omega_s", [1e-3, 1e-5, 1e-7, 1e-8])
 def test_no_width_is_quietly_wrong(library: Library, truth: Run, omega_s: float, method: str, tolerance: float) -> None:
-    bound = WIDTH_FACTOR * omega_s + TOLERANCE_FACTOR * tolerance
+    bound = law_bound(omega_s, tolerance)
     within(law_error(library, truth, omega_s, tolerance, method), bound, "law error")
-    lighter = run(library, {"s": 0.025}, regularized.TIMES, tolerance)
-    beyond(regularized.error_against(truth, lighter), bound, "error against")  # another friction
-
-
-@pytest.mark.parametrize(("factor", "layered"), [(0.5, False), (2.0, True)])
-def test_the_automatic_method_follows_the_decay_number(library: Library, factor: float, layered: bool) -> None:
-    at_one = regularized.decay_number({**FRICTION, "omega_s": 1.0})
-    law = {**FRICTION, "friction_law": "regularized", "omega_s": at_one / (factor * regularized.THRESHOLD)}
-    assert regularized.is_layered(library, law) == layered
+    lighter = run(library, {"s": 0.025}, TIMES, tolerance)
+    beyond(error_against(truth, lighter), bound, "error against")  # another friction
 
 
 @pytest.mark.parametrize("x", [3.0, 6.5, 9.0, 12.0])
@@ -70,7 +62,7 @@ def test_a_stiff_law_is_solved_within_its_tolerance(library: Library) -> None:
         start, omega_s = random_law(seed)
         law = {**start, "keep_contact": True, "friction_law": "regularized", "omega_s": omega_s}
         exact = run(library, {**law, "method": "bdf"}, times, 1e-12)
-        errors.append(regularized.error_against(exact, run(library, law, times, tolerance)) / tolerance)
+        errors.append(error_against(exact, run(library, law, times, tolerance)) / tolerance)
     within(float(np.nanmedian(errors)), 5, "median error over tolerance")
     within(float(np.nanmax(errors)), 5000, "largest error over tolerance")
 
@@ -82,14 +74,10 @@ def test_ten_minutes_of_weak_releases_keep_energy_spin_and_cost(library: Library
     within(np.diff(done["E"]).max() / done["E"][0], 1e-8, "rise")  # it never rises between two readings
     free = run(library, {"method": "adams"}, times, 1e-4)
     beyond(np.diff(free["E"]).max() / free["E"][0], 9e-8, "rise")  # nothing dissipates, a looser tolerance
-    within(abs(sum(t > 500 for t, _ in done.events) - 562), 6, "events of the last 100 s")
+    looser = run(library, FRICTION, [0.0, 600.0], 1e-6)
+    assert looser.counters["n_events"] == done.counters["n_events"] == len(done.events) > 3000
     rhs = [run(library, FRICTION, [0.0, stop], 1e-8).counters["n_rhs"] for stop in (50.0, 150.0, 500.0, 600.0)]
     within((rhs[3] - rhs[2]) / (rhs[1] - rhs[0]), 1.1, "evaluations, late over early")
-
-
-def test_the_releases_of_ten_minutes_do_not_depend_on_the_tolerance(library: Library) -> None:
-    counts = {run(library, FRICTION, [0.0, 600.0], tolerance).counters["n_events"] for tolerance in (1e-6, 1e-9)}
-    assert counts == {3353}
 
 
 @pytest.mark.parametrize("omega_s", [1e-5, 1e-7])
@@ -97,8 +85,7 @@ def test_bdf_has_only_the_time_in_which_omega_z_sticks(library: Library, omega_s
     """The paper's wheel sticks for a sixth of its time."""
     law = {**FRICTION, "friction_law": "regularized", "omega_s": omega_s}
     steps, of_bdf = (
-        run(library, {**law, "method": method}, regularized.TIMES, 1e-8).counters["n_steps"]
-        for method in ("automatic", "bdf")
+        run(library, {**law, "method": method}, TIMES, 1e-8).counters["n_steps"] for method in ("automatic", "bdf")
     )
     within(steps / of_bdf, 0.6, "steps over those of BDF")
 
@@ -143,16 +130,6 @@ def test_a_coefficient_that_is_tuned_later_costs_no_more_steps(wheel, omega_s, t
     tuned, of_tuned = counted(wheel, omega_s, tune)
     within(tuned / steps, 1.1, "tuned")
     assert min(jacobians, of_tuned) > 0  # with the first choice kept, 36
-
-
-def test_a_brake_that_grows_along_one_polynomial_makes_the_law_stiff(wheel):
-    """The inputs do not change, only their values do."""
-    w = wheel().start(friction_law="regularized", omega_s=1e-4)
-    for k in range(40):
-        w.give({"M_brake": (1e-6 + 2.0 * k, 20.0)}).to((k + 1) / 10)
-    assert w.get("n_jac")[0] > 0
-    loose = wheel().start(friction_law="regularized", omega_s=1.0).to(4.0)
-    assert loose.get("n_jac") == [0]  # the partner: never stiff
 
 
 WITHOUT_WEIGHT = {"g": 0.0, "omega_s": 1e-6}, {"M_brake": 30.0}, 1.0

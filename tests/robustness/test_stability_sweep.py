@@ -9,9 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from robustness import judges
-from robustness.case import Case, Expectation
 from robustness.judges import judge, judge_case
-from robustness.sweep import sweep
+from robustness.sweep import Case, Expectation, sweep
 from support.bounds import beyond, within
 from support.motion import Library, run
 

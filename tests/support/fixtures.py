@@ -8,10 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import extract, read_model_description
+from hypothesis import HealthCheck, settings
 from reference.tables import read_table
 from support.driver import FMU2Wheel
 from support.motion import Library
 from support.paths import ROOT, build_folder
+
+# hypothesis: the same examples in every run.
+UNCHECKED = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
+settings.register_profile("same", derandomize=True, deadline=None, database=None, suppress_health_check=UNCHECKED)
+settings.load_profile("same")
 
 LARGEST = 4 << 30  # bytes that a test may take, many times what one needs
 

@@ -27,3 +27,9 @@ def build_target(name: str) -> Path:
         fcntl.flock(lock, fcntl.LOCK_EX)
         subprocess.run(["cmake", "--build", folder, "--target", name], check=True, capture_output=True)
     return folder
+
+
+def copy_checkout(place: Path) -> None:
+    """The files of the project, without anything that is built or installed."""
+    copy = f"git ls-files -coz --exclude-standard | xargs -0 cp --parents -t '{place}'"
+    subprocess.run(["bash", "-c", copy], cwd=ROOT, check=False)  # a file may be deleted

@@ -15,10 +15,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
-from robustness.case import Case
-from robustness.judges import TOLERANCES, Verdict, judge_case
-from robustness.regularized import FRICTION, TIMES, TOLERANCE_FACTOR, WIDTH_FACTOR, error_against
-from robustness.sweep import sweep
+from robustness.judges import FRICTION, TIMES, TOLERANCES, Verdict, error_against, judge_case, law_bound
+from robustness.sweep import Case, sweep
 from support.driver import WARNING, Values
 from support.motion import Library, run
 
@@ -98,7 +96,7 @@ def law(report: Report, tolerance: float, omega_s: float, method: str) -> Row:
     truth, found = (run(report.library, v, TIMES, t) for v, t in ((FRICTION, 1e-12), (values, tolerance)))
     in_one_step, error = report.master.made(values, TIMES[-1], 1, tolerance), error_against(truth, found)
     row = {"error": error, "ms": 1e3 * min(in_one_step()[0] for _ in range(5)), "steps": found.counters["n_steps"]}
-    return row | ({"error / bound": error / (WIDTH_FACTOR * omega_s + TOLERANCE_FACTOR * tolerance)} if omega_s else {})
+    return row | ({"error / bound": error / law_bound(omega_s, tolerance)} if omega_s else {})
 
 
 def draw_law(tables: Tables) -> Sheet:

@@ -1,10 +1,12 @@
 // Arguments of one call, drawn by their types: arrays of a few variables and as many values, or rarely no array at all.
 #pragma once
 
+#include <fuzzer/FuzzedDataProvider.h>
+
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <list>
 #include <tuple>
@@ -16,20 +18,16 @@
 namespace fuzz {
 
 // The fuzzer's bytes read as choices and numbers. When they run out every choice is 0 and every number 0.
-class Bytes {
+class Bytes : public FuzzedDataProvider {
  public:
-  Bytes(const std::uint8_t* data, std::size_t size) : at_(data), end_(data + size) {}
-
-  bool empty() const { return at_ == end_; }
-  unsigned byte() { return empty() ? 0 : *at_++; }
-  unsigned below(unsigned n) { return byte() % n; }
-  unsigned word() {
-    const unsigned high = byte();
-    return high << 8 | byte();
-  }
+  using FuzzedDataProvider::FuzzedDataProvider;
+  bool empty() { return remaining_bytes() == 0; }
+  unsigned byte() { return ConsumeIntegral<std::uint8_t>(); }
+  unsigned word() { return ConsumeIntegral<std::uint16_t>(); }
+  unsigned below(unsigned n) { return ConsumeIntegralInRange(0u, n - 1); }
   int signed_byte() { return static_cast<int>(byte()) - 128; }
   // True in `sixteenths` of 16 cases.
-  bool chance(unsigned sixteenths) { return byte() % 16 < sixteenths; }
+  bool chance(unsigned sixteenths) { return below(16) < sixteenths; }
 
   // One byte: a factor between 2^-4 and 2^4 around 1.
   double factor() { return std::exp2(signed_byte() / 32.0); }
@@ -49,20 +47,24 @@ class Bytes {
     const unsigned kind = byte();
     if (kind < 32) return limits[kind % (sizeof limits / sizeof *limits)];
     if (kind < 224) return signed_byte() * std::pow(10.0, static_cast<int>(kind % 9) - 5);
-    std::uint64_t raw = 0;
-    for (int i = 0; i < 8; ++i) raw = raw << 8 | byte();
-    double number;
-    std::memcpy(&number, &raw, sizeof number);
-    return number;
+    return std::bit_cast<double>(ConsumeIntegral<std::uint64_t>());
   }
-
- private:
-  const std::uint8_t* at_;
-  const std::uint8_t* end_;
 };
 
-// A value of ordinary or extreme size for a variable.
-double value_for(unsigned reference, Bytes& in);
+// A value of ordinary or extreme size for a variable: sizes that matter are the start values of the parameters as
+// modelDescription.xml has them, and what moves a wheel.
+inline double value_for(unsigned reference, Bytes& in) {
+  if (reference >= ref_first_output || in.chance(2)) {
+    // Extreme loads are limited: CVODE would honestly follow them through the million steps that a call may take.
+    const double value = in.any();
+    return reference >= ref_first_input && std::isfinite(value) ? std::remainder(value, 1e4) : value;
+  }
+  if (in.chance(2)) return 0;
+  const Row& row = row_of(reference);
+  const double size = row.role == Role::input ? 10 : row.start == 0 ? 0.1 : row.start;
+  const double value = size * in.factor();
+  return in.chance(4) ? -value : value;
+}
 
 class Arguments {
  public:
@@ -87,9 +89,30 @@ class Arguments {
   template <class Entry>
   using Arrays = std::list<std::vector<Entry>>;
 
-  void fill(std::vector<unsigned>& references);
-  void fill(std::vector<double>& values);
-  void fill(std::vector<int>& values);
+  void fill(std::vector<unsigned>& references) {
+    constexpr unsigned choices[] = {ref_formulation, ref_friction_law, ref_method, ref_keep_contact};
+    constexpr unsigned firsts[] = {0, ref_first_input, ref_first_output};
+    constexpr unsigned counts[] = {ref_count, input_count, output_count};
+    const unsigned kind = in_.below(4);
+    for (std::size_t k = 0; k < count_; ++k) {
+      const unsigned choice = in_.byte();
+      references[k] = kind == 3 ? choices[choice % 4] : firsts[kind] + choice % counts[kind];
+      if (choice >= 250) references[k] = choice * 0x01010101u;
+      trace("  variable %u\n", references[k]);
+    }
+  }
+  void fill(std::vector<double>& values) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      values[k] = value_for(std::get<Arrays<unsigned>>(arrays_).back()[k], in_);
+      trace("  %.17g\n", values[k]);
+    }
+  }
+  void fill(std::vector<int>& values) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      values[k] = static_cast<int>(in_.chance(14) ? in_.below(5) : in_.byte() * 0x01010101u);
+      trace("  %d\n", values[k]);
+    }
+  }
   void fill(std::vector<fmi2String>& texts) { texts.assign(most, ""); }
 
   Bytes& in_;

@@ -42,26 +42,10 @@ void choose(fmi2Component c, Bytes& in) {
 }
 
 void Session::instantiate() {
-  if (now_->component) return;
-  const unsigned flaw = in_.below(8);
-  const fmi2CallbackFunctions functions = callbacks(), silent = {};
-  const char* const names[] = {"100 % #1#", " \t", nullptr, ""};
-  const char* const name = names[flaw < 4 ? flaw : 0];
-  const char* const guid = flaw == 4 ? "{0}" : flaw == 5 ? nullptr : WHEEL_GUID;
-  const fmi2Component component =
-      fmi2Instantiate(name, fmi2CoSimulation, guid, "file:///x", flaw == 6 ? &silent : &functions, fmi2False, log().on);
-  expect((component == nullptr) == (flaw >= 1 && flaw <= 5), "only sound arguments give an instance");
-  if (flaw == 6)
-    fmi2FreeInstance(component);
-  else
-    *now_ = {component, {}};
+  if (!now_->component) *now_ = {make_instance(), {}};
 }
 
 void Session::free_instance() {
-  for (const Saved& saved : saved_) {
-    expect(fmi2Terminate(saved.state) == fmi2Error, "a state, or none, is no instance");
-    fmi2FreeInstance(saved.state);
-  }
   fmi2FreeInstance(now_->component);
   *now_ = {};
 }

@@ -15,12 +15,10 @@ bool all_finite(const double* values, int count) {
 
 void save_and_restore(fmi2Component c) {
   fmi2FMUstate state = nullptr;
-  double before[states], after[states];
-  const fmi2Status first = fmi2GetDerivatives(c, before, states);
+  const Digest before = digest(c);
   expect(fmi2GetFMUstate(c, &state) == fmi2OK, "a state can be taken");
   expect(fmi2SetFMUstate(c, state) == fmi2OK, "a state that was handed out is restored");
-  expect(fmi2GetDerivatives(c, after, states) == first, "a restored state gives the same answer");
-  if (first == fmi2OK) expect(std::equal(before, before + states, after), "a restored state gives the same bits");
+  expect(digest(c) == before, "a restored state has the same bytes");
   expect(fmi2FreeFMUstate(c, &state) == fmi2OK, "a state can be freed");
 }
 

@@ -1,6 +1,8 @@
 // Forged states: a state of an instance, some of its words changed and its checksums made right again, brought to
 // another instance. It is refused with a message and the instance is as it was, or it is taken and whatever follows
 // ends soon and without harm.
+#include <cstring>
+
 #include "bytes.hpp"
 #include "session.hpp"
 

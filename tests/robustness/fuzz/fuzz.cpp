@@ -1,38 +1,19 @@
-// The fuzzer's entry: bytes to a sequence of calls. An input that takes too much processor time is a finding, however
-// busy the machine is: libFuzzer's own limit counts the time on the clock.
-#include <sys/time.h>
-#include <unistd.h>
-
-#include <csignal>
-#include <cstdlib>
+// The fuzzer's entry: bytes to a sequence of calls.
 #include <iterator>
 
 #include "session.hpp"
-
-namespace {
-
-// A call may take a million internal steps: two minutes of the multibody form under the sanitizers.
-constexpr long most_seconds = 300;
-
-void give_up(int) {
-  constexpr char sentence[] = "Expectation broken: an input ends within its processor time.\n";
-  (void)!write(STDERR_FILENO, sentence, sizeof sentence - 1);
-  std::abort();
-}
-
-}  // namespace
 
 namespace fuzz {
 
 Session::Session(const std::uint8_t* data, std::size_t size) : in_(data, size) {
   const unsigned watched = in_.byte();
-  log_.digests = watched & 1;
-  log_.calls_back = watched & 2;
-  log_.on = !(watched & 4);
+  log() = {};
+  log().digests = watched & 1;
+  log().calls_back = watched & 2;
+  log().on = !(watched & 4);
 }
 
 Session::~Session() {
-  use(log_);
   for (Saved& saved : saved_) {
     const fmi2Component any = make_instance();
     expect(fmi2FreeFMUstate(any, &saved.state) == fmi2OK, "a state outlives its instance");
@@ -52,7 +33,6 @@ const Session::Action& Session::action(unsigned choice) const {
 
 bool Session::go_on() {
   if (in_.empty() || actions_left_ == 0) return false;
-  use(log_);
   --actions_left_;
   const unsigned choice = in_.byte();
   now_ = slots_ + (choice & 1);
@@ -64,17 +44,9 @@ bool Session::go_on() {
 
 }  // namespace fuzz
 
-extern "C" int LLVMFuzzerInitialize(int*, char***) {
-  std::signal(SIGVTALRM, give_up);
-  return 0;
-}
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const itimerval limit = {{}, {most_seconds, 0}}, none = {};
-  setitimer(ITIMER_VIRTUAL, &limit, nullptr);
   fuzz::Session session(data, size);
   while (session.go_on()) {
   }
-  setitimer(ITIMER_VIRTUAL, &none, nullptr);
   return 0;
 }

@@ -11,8 +11,6 @@
 namespace fuzz {
 namespace {
 
-thread_local Log* present = nullptr;
-
 // A message is a printf format to the master, and # opens a reference to a variable: both are doubled.
 void check_message(const char* text) {
   const std::size_t length = std::strlen(text);
@@ -73,8 +71,10 @@ bool may_do_work(unsigned reference) {
   return row.role == Role::input || (switches && reference != ref_slope && reference != ref_mu_max);
 }
 
-Log& log() { return *present; }
-void use(Log& log) { present = &log; }
+Log& log() {
+  static Log of_this_session;
+  return of_this_session;
+}
 
 void trace(const char* format, ...) {
   static const bool wanted = std::getenv("WHEEL_FUZZ_TRACE");

@@ -63,8 +63,7 @@ struct Log {
   fmi2Component caller = nullptr;  // while one of its calls is under way
   bool digests = false;            // serialize before and after every call that must change nothing
 };
-Log& log();  // of the session that this thread plays
-void use(Log& log);
+Log& log();  // of the session that is played
 
 // With WHEEL_FUZZ_TRACE in the environment: a line on stderr, so that an artifact can be read as a sequence of calls.
 [[gnu::format(printf, 1, 2)]] void trace(const char* format, ...);

@@ -18,40 +18,8 @@ void Session::restore_state() {
 }
 
 void Session::free_state() {
-  fmi2FMUstate no_state = now_->component;
-  expect(call(anywhere, fmi2SetFMUstate, no_state) == fmi2Error, "an instance is no state");
-  expect(call(anywhere, fmi2FreeFMUstate, &no_state) == fmi2OK && no_state, "an instance is not freed as a state");
   fmi2FMUstate* const state = &saved_[in_.below(3)].state;
   expect(call(anywhere, fmi2FreeFMUstate, in_.chance(2) ? nullptr : state) == fmi2OK, "freeing a state succeeds");
-}
-
-void Session::serialize() {
-  const Saved& saved = saved_[in_.below(3)];
-  std::size_t size = 0;
-  Digest bytes(1u << 17u);
-  const fmi2Status sized = call(anywhere, fmi2SerializedFMUstateSize, saved.state, &size);
-  expect(sized == (saved.state ? fmi2OK : fmi2Error), "the size of a state is known");
-  expect(size <= bytes.size(), "a state is small");
-  const std::size_t given = in_.chance(4) ? size / 2 : size;
-  const fmi2Status status = call(anywhere, fmi2SerializeFMUstate, saved.state, bytes.data(), given);
-  expect(status == (saved.state && given == size ? fmi2OK : fmi2Error), "a state fits into its size, and no less");
-}
-
-// Any changed, missing or added byte is noticed.
-void Session::deserialize_damaged() {
-  Digest bytes = digest(now_->component);
-  const std::size_t place = in_.word() % bytes.size();
-  const unsigned change = in_.byte();
-  if (change == 0)
-    bytes.resize(place);
-  else if (change == 1)
-    bytes.push_back(0);
-  else
-    bytes[place] = static_cast<fmi2Byte>(static_cast<unsigned char>(bytes[place]) ^ change);
-  fmi2FMUstate state = nullptr;
-  const bool refused = call(anywhere, fmi2DeSerializeFMUstate, bytes.data(), bytes.size(), &state) != fmi2OK;
-  if (!refused) fmi2FreeFMUstate(now_->component, &state);
-  expect(refused && !state, "damaged bytes are refused");
 }
 
 void Session::repeat_step_after_rollback() {

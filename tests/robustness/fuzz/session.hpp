@@ -12,7 +12,7 @@
   ONCE(repeat_step_after_rollback) ONCE(repeat_step_in_new_instance) AGAIN(pass_values) AGAIN(pass_values) \
   ONCE(take_state) ONCE(restore_state) ONCE(set_up_experiment) ONCE(enter_initialization) ONCE(exit_initialization) \
   AGAIN(pass_values) AGAIN(pass_values) ONCE(terminate) ONCE(reset) ONCE(compare_reset_with_new) ONCE(free_state) \
-  ONCE(serialize) ONCE(deserialize_damaged) ONCE(switch_logging) ONCE(exchange) ONCE(forge_state) ONCE(instantiate) \
+  AGAIN(take_state) AGAIN(restore_state) ONCE(switch_logging) ONCE(exchange) ONCE(forge_state) ONCE(instantiate) \
   ONCE(free_instance)
 /* clang-format on */
 
@@ -56,7 +56,6 @@ class Session {
   template <class... Parameters>
   void with_drawn(unsigned legal_in, fmi2Status (*function)(fmi2Component, Parameters...));
 
-  Log log_;
   Bytes in_;
   unsigned actions_left_ = 40;
   Slot slots_[2];
