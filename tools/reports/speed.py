@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from reference import Inputs
+from support import sliding as slides
 from support.driver import HEADLINE, Values
 from support.paths import build_folder
 from support.scenes import SCENES, Scene, sines
@@ -191,6 +192,28 @@ def inputs_held(report: Report, spin: float) -> Row:
 def inputs_linear(report: Report, spin: float) -> Row:
     """steps of 1 ms, six inputs that change, with first derivatives"""
     return timed_inputs(report, spin, 1)
+
+
+# Start, what makes it slide, and s; the reduced equations are stepped, not unfolded.
+STEPPED: Values = {"formulation": "reduced"}
+ROLLING: Values = {**STEPPED, **slides.UPRIGHT, "phi_dot_start": -20.0}
+LOCKED: Values = {**slides.ROAD, "M_brake": 1e3, "phi_dot_start": 0.0, "slip_x_start": 7.0}
+SLIDES = {
+    "free, mu_max = 0.45, mu_slide = 0.4": (STEPPED, slides.ROAD, 10.0),
+    "free, both 0.4": (STEPPED, slides.EQUAL, 10.0),
+    "locked, 7 m/s": (ROLLING, LOCKED, 2.0),
+}
+
+
+@part(3, {"wheel": SLIDES})
+def sliding(report: Report, case: tuple[Values, Values, float]) -> Row:
+    """wheels that slide, over the same wheels that are stepped without sliding"""
+    start, more, duration = case
+    solves = [report.master.made(values, 0.1, round(duration / 0.1)) for values in (start, start | more)]
+    found = [repeated(solve, 0.1 if report.quick else 0.5) for solve in solves]
+    times, steps = zip(*((1e6 * min(costs), counts["steps"]) for costs, _, counts in found), strict=True)
+    row = {"rolls, µs": times[0], "slides, µs": times[1], "ratio of times": times[1] / times[0]}
+    return row | {"steps, rolls": steps[0], "steps, slides": steps[1], "ratio of steps": steps[1] / steps[0]}
 
 
 def timed_inputs(report: Report, spin: float, orders: int) -> Row:

@@ -10,7 +10,7 @@ from vehicles import axle, balance, car_judges, layout, suspended
 from vehicles.car import CAR
 from vehicles.drawing import draw, draw_orders
 from vehicles.layout import MANOEUVRES
-from vehicles.options import EXCHANGES, Manoeuvre
+from vehicles.options import EXCHANGES, Manoeuvre, manoeuvres
 from vehicles.vehicle import STEPS, Table, orders
 
 from .page import Report, Row, Tables, part
@@ -19,6 +19,7 @@ GRID = 0.25  # s, where runs of the car are compared
 COMPARED = tuple(name for name in MANOEUVRES if name not in (layout.TOO_FAST.name, layout.SPLIT.name))
 # How the inputs behave over a step: the exchange, and whether positions follow the velocities.
 OVER = {"held, positions lag": ("held", {"follow": 0.0}), **{exchange: (exchange, {}) for exchange in EXCHANGES}}
+WAYS = {"locked": "way, locked wheel", "ideal": "way, ideal brake", "abs": "way, anti-lock; closed form: the shortest"}
 KINDS = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
 
 
@@ -48,6 +49,19 @@ def suspended_wheel(report: Report) -> dict[str, object]:
     slope = np.polyfit(truth["time"][late], truth["X_B_dot"][late], 1)[0]
     figures = {"order": 2 - min(orders(found["derivatives"]))}
     return {"suspended": table, "launch": abs(slope / suspended.acceleration(150.0) - 1)} | figures
+
+
+@part(60)
+def sliding(report: Report) -> pd.DataFrame:
+    """wheels that slide: three ways to stop the suspended wheel; a car on a road that is slippery on the right"""
+    run, split = manoeuvres("suspended")["abs"], layout.SPLIT
+    table = suspended.SUSPENDED.drive(report.fmus, run, run.h, run.exchange, run.grid).whole
+    forms = {"locked": suspended.sliding_way, "ideal": suspended.gripping_way, "abs": suspended.shortest}
+    rows = [(WAYS[name], "m", suspended.way(table, run, name), form(table, run)) for name, form in forms.items()]
+    found = car_judges.judge(CAR.drive(report.fmus, split).whole, split, *split.judges)
+    rows += [(f"car: {f.what}", f.unit, f.measured, f.exact) for f in found]
+    judged = pd.DataFrame(rows, columns=["quantity", "unit", "measured", "closed form"])
+    return judged.assign(**{"relative difference": (judged["measured"] / judged["closed form"] - 1).abs()})
 
 
 @part(30, {"inputs over the step": OVER})
