@@ -7,7 +7,7 @@ import pytest
 from support.bounds import beyond, within
 from support.motion import Library
 
-from .problems import INSTANTS, OUTPUTS, PROBLEMS, RESULTS, Problem, by_fmu, by_reference, errors, table, transitions
+from .problems import DATA, INSTANTS, OUTPUTS, PROBLEMS, by_fmu, by_reference, errors, table, transitions
 
 each = pytest.mark.parametrize("name", PROBLEMS)
 
@@ -29,16 +29,15 @@ def test_the_fmu_its_papers_system_and_the_reference_have_the_reference_values(l
 
 @each
 def test_a_parameter_that_is_off_by_a_billionth_shows(library: Library, name: str) -> None:
-    off: Problem = replace(PROBLEMS[name], start={**PROBLEMS[name].start, "r": 0.05 * (1 + 1e-9)})
+    off = replace(PROBLEMS[name], start={**PROBLEMS[name].start, "r": 0.05 * (1 + 1e-9)})
     beyond(errors(name, by_fmu(library, off, 1e-14))[0], 6e-10, f"{name}: error / range")
 
 
 def test_the_tables_have_thirteen_digits_and_all_transitions() -> None:
-    for name in PROBLEMS:
-        text = (RESULTS / "data" / f"benchmark_{name}.csv").read_text(encoding="utf-8").splitlines()
-        assert len(text) == 1 + len(INSTANTS)
-        for cell in text[1].split(",")[1:]:
+    for row in (DATA / "benchmark.csv").read_text(encoding="utf-8").splitlines()[1 :: len(INSTANTS)]:
+        for cell in row.split(",")[2:]:
             assert len(cell.lstrip("-0.").replace(".", "")) == 13
+    for name in PROBLEMS:
         assert table(name).shape == (len(INSTANTS), len(OUTPUTS))
     instants = [t for t, _ in transitions("friction")]
     assert len(instants) == 37
