@@ -43,7 +43,7 @@ def rig(report: Report) -> dict[str, object]:
     means = again.groupby(KEYS)[["C", "C again"]].mean()
     forces = loads[loads["speed"] > loads["speed"].min()].groupby("load")["force"].mean()
     (least, most), (weak, strong) = forces.index, forces
-    found = {"runs": len(rows.drop_duplicates(KEYS)), "left_out": len(left_out), "tyres": rows["tyre"].nunique()}
+    found = {"runs": len(rows.drop_duplicates(KEYS)), "left_out": len(left_out)}
     for name, sign in (("light", -1), ("heavy", 1)):
         tilted = rows.assign(C=rows["C"] + sign * rows["C_inertia"]).groupby(KEYS)["C"]
         found[f"spread_{name}"] = 100 * tilted.agg(lambda C: (C / C.mean() - 1).abs().max()).median()
@@ -131,8 +131,8 @@ def steady_circle(report: Report, degrees: float) -> Row:
 @part(1)
 def disks(report: Report) -> dict[str, object]:
     """Euler's disk: the energy that the paper's friction takes"""
-    off, loss = held_disk(report.library, np.radians(10), DISK_TIME, s=1e-3 * DISK["r_0"])
-    return {"disk_loss": loss, "disk_falls": off}
+    _, loss = held_disk(report.library, np.radians(10), DISK_TIME, s=1e-3 * DISK["r_0"])
+    return {"disk_loss": loss}
 
 
 def views(tables: Tables) -> Tables:

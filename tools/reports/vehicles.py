@@ -30,7 +30,7 @@ def balanced(report: Report) -> dict[str, float]:
     draw(balance.BALANCE, balance.CIRCLE, drive, report.folder / "vehicles_balance.png")
     found = balance.judge(drive)
     radius = abs(found["circle_radius"] - balance.RADIUS)
-    of_line = {"alone": found["fall"], "tilt": found["line_tilt"], "circle": radius}
+    of_line = {"tilt": found["line_tilt"], "circle": radius}
     return of_line | {"scatter": found["circle_scatter"], "spin": found["speed_error"]}
 
 

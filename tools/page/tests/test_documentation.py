@@ -83,15 +83,3 @@ def test_a_formula_that_is_wider_than_a_telephone_scrolls_in_its_frame(window, s
     style.write_text(text.replace(".formula { overflow-x: auto; overflow-y: hidden;", ".formula {"))
     assert ask(window, small_site / "right.html", SCROLLED, width=390)[1] is False
     style.write_text(text)
-
-
-def test_the_search_finds_the_pages_with_all_words_without_a_server(window, small_site):
-    page = window.new_page()
-    faults: list[str] = []
-    page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
-    for question, found in (("critical+spin", {"The answer", "Much of both"}), ("gravity", {"The answer"})):
-        page.goto(f"{(small_site / 'search.html').as_uri()}?q={question}")
-        page.wait_for_selector(f"#search-results li:nth-child({len(found)}) a")
-        assert {*page.locator("#search-results li a").all_inner_texts()} == found
-    page.close()
-    assert faults == []

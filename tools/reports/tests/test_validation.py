@@ -1,4 +1,4 @@
-"""Published measurements on the FMU: a coast-down of known rolling resistance, a disk on its steady circle."""
+"""A coast-down of known rolling resistance on the FMU."""
 
 from __future__ import annotations
 
@@ -47,15 +47,3 @@ def test_a_coast_down_of_the_fmu_is_that_of_drum_and_wheel(library: Library, mon
     within(apart(), 0.01, "speed")  # m/s; the drag is held over steps of 0.1 s
     monkeypatch.setattr(validation, "LOAD", 0.95 * LOAD)
     beyond(apart(), 0.1, "speed at 95 % of the load")
-
-
-def test_a_thin_disk_on_its_steady_circle_keeps_inclination_and_energy(
-    library: Library, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    inclination, rate = np.radians(10), validation.turn_rate
-    off, loss = validation.held_disk(library, inclination, 5.0, s=1e-5)
-    within(off, 1e-8, "inclination")
-    within(loss, 1e-9, "energy")
-    monkeypatch.setattr(validation, "turn_rate", lambda at: 1.01 * rate(at))
-    off, _ = validation.held_disk(library, inclination, 5.0)
-    beyond(off, 1e-3, "inclination at 101 % of the precession")
