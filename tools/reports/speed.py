@@ -115,15 +115,15 @@ def steps(report: Report, scene: str) -> Row:
 
 
 @part(6, {"spin, rad/s": SPINS})
-def inputs_held(report: Report, spin: float) -> Row:
+def inputs_held(report: Report, spin: float, orders: int = 0) -> Row:
     """steps of 1 ms, six inputs that change, held"""
-    return timed_inputs(report, spin, 0)
+    return timed_steps(report, {"theta_start": 1.4, "phi_dot_start": -spin}, 1000, sine_table(1000, orders))
 
 
 @part(6, {"spin, rad/s": SPINS})
 def inputs_linear(report: Report, spin: float) -> Row:
     """steps of 1 ms, six inputs that change, with first derivatives"""
-    return timed_inputs(report, spin, 1)
+    return inputs_held.measure(report, spin, 1)
 
 
 # Start, what makes it slide, and s; the reduced equations are stepped, not unfolded.
@@ -146,11 +146,6 @@ def sliding(report: Report, case: tuple[Values, Values, float]) -> Row:
     times, steps = zip(*((1e6 * min(costs), counts["steps"]) for costs, _, counts in found), strict=True)
     row = {"rolls, µs": times[0], "slides, µs": times[1], "ratio of times": times[1] / times[0]}
     return row | {"steps, rolls": steps[0], "steps, slides": steps[1], "ratio of steps": steps[1] / steps[0]}
-
-
-def timed_inputs(report: Report, spin: float, orders: int) -> Row:
-    start = {"theta_start": 1.4, "phi_dot_start": -spin}
-    return timed_steps(report, start, 1000, sine_table(1000, orders))
 
 
 # ---- cost and accuracy of inputs: the free wheel pushed by six sines, or by constants, in steps of 1 ms ----
