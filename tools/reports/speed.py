@@ -25,7 +25,6 @@ from .page import Report, Row, Tables, number, part
 from .plots import Sheet, style
 from .truth import Array, headline, range_error
 
-TARGETS = (1e-4, 1e-6, 1e-8)  # errors at which methods are compared
 POINTS = 101
 METHODS = ("automatic", "adams", "bdf", "runge_kutta")
 TITLES = {
@@ -71,11 +70,6 @@ def runs(report: Report, name: str) -> list[Row]:
         row["best_us"] = 1e6 * min(costs)
     columns = ("method", "tolerance", "error", "best_us", "steps", "rhs", "events", "note")
     return [{name: row.get(name) for name in columns} for row in rows]
-
-
-def time_at(runs: pd.DataFrame, method: str, error: float) -> float:
-    """The least time of a run with this error or a smaller one, µs; nan where there is none."""
-    return runs[(runs["method"] == method) & (runs["error"] <= error)]["best_us"].min()
 
 
 def at_default(runs: pd.DataFrame, method: str) -> pd.Series:
@@ -238,19 +232,9 @@ def views(tables: Tables) -> Tables:
     scenes = [(TITLES[name], runs) for name, runs in tables["runs"].groupby("scene", sort=False)]
     failed = tables["runs"][tables["runs"]["error"].isna()].drop_duplicates(["scene", "method"])
     return tables | {
-        "fastest": pd.DataFrame([{"scene": title} | fastest(runs) for title, runs in scenes]),
         "methods": pd.DataFrame([{"scene": title} | price_of_choice(runs) for title, runs in scenes]),
         "failed": failed.assign(scene=failed["scene"].map(TITLES)),
     }
-
-
-def fastest(runs: pd.DataFrame) -> Row:
-    """The fastest method at each error, and its time."""
-    row = {}
-    for error in TARGETS:
-        times = pd.Series({method: time_at(runs, method, error) for method in METHODS}).dropna()
-        row[f"at {number(error)}"] = f"{times.idxmin()} ({number(times.min())} µs)" if len(times) else "none"
-    return row
 
 
 def price_of_choice(runs: pd.DataFrame) -> Row:

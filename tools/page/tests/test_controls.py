@@ -54,20 +54,6 @@ def test_arrow_keys_turn_the_scene_that_has_the_focus(either):
     assert either.evaluate("page.player.t") == 0.25
 
 
-def test_after_a_click_the_space_bar_plays_and_by_keyboard_it_presses_the_button(either):
-    theme = either.locator("#theme")
-    for _ in range(3):
-        theme.click()
-    either.keyboard.press(" ")
-    assert either.evaluate("page.player.playing")
-    either.evaluate("page.player.pause(); document.querySelector('#theme').focus()")
-    before = theme.get_attribute("title")
-    either.keyboard.press(" ")
-    assert theme.get_attribute("title") != before and not either.evaluate("page.player.playing")
-    theme.click()
-    theme.click()
-
-
 TOOLTIPS = """all => all.map((x) => [x.title || x.closest('label')?.title || '', x.outerHTML])"""
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.driver import FMU2Wheel
 
-from page.tests.pages import TURN, column, do, listed, start
+from page.tests.pages import TURN, column, do, start
 
 NAMES = ("X_O", "Y_O", "psi", "theta", "phi", "omega_z", "lambda_3", "E")
 STEP = 0.01  # s
@@ -162,18 +162,3 @@ def test_on_a_slope_the_ground_tilts_and_the_wheel_rolls_down(live):
     start(live)
     live.evaluate("page.draw()")
     assert live.evaluate(TURN, up) == pytest.approx(up)
-
-
-def test_another_wheel_fills_the_scene_and_its_values_are_listed(live):
-    start(live, s=0.03)
-    disc = {"m": 0.0085, "r_0": 0.0118, "r": 0.001, "J_x": 3.5e-7, "J_y": 3.5e-7, "J_z": 7e-7}
-    live.evaluate("(parameters) => { page.live.setWheel({parameters}); page.live.compute(); page.draw(); }", disc)
-    assert live.evaluate("page.live.trouble ?? page.stage.scale") == pytest.approx(0.35 / 0.0128)
-    assert live.evaluate("page.live.value('s')") == pytest.approx(0.03 * 0.0128 / 0.35, rel=1e-2)
-    rows = {row[0]: row[1] for row in listed(live)}
-    assert {name: float(rows[name]) for name in disc} == disc
-    assert live.evaluate("page.live.link.write()").startswith("s=0.0011&m=0.0085&r_0=0.0118&r=0.001&J_x=3.5e-7")
-    live.evaluate("page.live.frame()")
-    assert float(live.locator("#live [name=m]").input_value()) == pytest.approx(np.log10(disc["m"]), abs=0.01)
-    start(live)
-    assert live.evaluate("page.stage.scale") == 1
