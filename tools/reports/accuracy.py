@@ -11,9 +11,9 @@ import pandas as pd
 from orbit.orbit import Halves
 from physics import cases, measure
 from physics.exact_motions import UPRIGHT, circle_error, fall_error, lift_off_error, straight_error
-from physics.leaning import TORUS, measured_critical_spin
+from physics.leaning import TORUS
 from reference import Start, Wheel
-from support.closed_forms import critical_spin, upright_deceleration
+from support.closed_forms import upright_deceleration
 from support.scenes import Scene
 
 from . import plots
@@ -107,13 +107,6 @@ def stop_error(library, form: int) -> float:
 def closed_forms(report: Report, measure) -> Row:
     """closed forms"""
     return {name: measure(report.library, form) for name, form in FORMS.items()}
-
-
-@part(4)
-def stability_limit(report: Report) -> Row:
-    """the stability limit of upright rolling"""
-    found = measured_critical_spin(report.library)
-    return {"critical_spin": found, "critical": abs(found / critical_spin(TORUS) - 1)}
 
 
 PICTURES = {"tolerances": draw_tolerances}

@@ -169,7 +169,8 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
     values = {f.Index: number(float(f.measured)) for f in figures.itertuples()}
-    given = {"name": name, "f": values, "t": views(read_tables(name, folder)), "run": run}
+    short = (folder / "data" / f"{name}.txt").exists()
+    given = {"name": name, "short": short, "f": values, "t": views(read_tables(name, folder)), "run": run}
     return page(f"{name}.md.j2", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
 
 
