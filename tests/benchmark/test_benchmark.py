@@ -6,7 +6,7 @@ import pytest
 from support.bounds import beyond, within
 from support.motion import Library
 
-from .problems import PROBLEMS, Problem, by_fmu, by_reference, errors
+from .problems import PROBLEMS, by_fmu, by_reference, errors
 
 each = pytest.mark.parametrize("name", PROBLEMS)
 
@@ -28,5 +28,5 @@ def test_the_fmu_its_papers_system_and_the_reference_have_the_reference_values(l
 
 @each
 def test_a_parameter_that_is_off_by_a_billionth_shows(library: Library, name: str) -> None:
-    off: Problem = replace(PROBLEMS[name], start={**PROBLEMS[name].start, "r": 0.05 * (1 + 1e-9)})
+    off = replace(PROBLEMS[name], start={**PROBLEMS[name].start, "r": 0.05 * (1 + 1e-9)})
     beyond(errors(name, by_fmu(library, off, 1e-14))[0], 6e-10, f"{name}: error / range")

@@ -76,7 +76,7 @@ def main() -> None:
         platforms.by_fmpy(released, scratch)
         step("ten scenes on every platform that runs here")
         subprocess.run(["./scripts/build", "release"], check=True)
-        scenes = platforms.scenes(OUT, scratch / "glibc")
+        scenes = platforms.scenes(OUT)
     write_report(released, libraries=table, twice=twice, **scenes)
     step("the site and the folder")
     subprocess.run(["./scripts/site"], check=True)

@@ -7,7 +7,6 @@ from __future__ import annotations
 import contextlib
 import io
 import os
-import re
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -76,23 +75,12 @@ def run_wasm(program: Path) -> str:
     return printed.read_text()
 
 
-def old_glibc(folder: Path) -> str:
-    """The version of the C library of an older Debian, fetched into a folder; nothing if it cannot be had."""
-    command = [ROOT / "tools" / "release" / "old_glibc", "bullseye", folder]
-    if subprocess.run(command, check=False).returncode:
-        return ""
-    (package,) = folder.glob("libc6_*.deb")
-    return f"glibc {re.match(r'libc6_([0-9.]*)', package.name)[1]}"
-
-
-def printed(out: Path, glibc: str, libc: Path) -> Iterator[tuple[str, str]]:
+def printed(out: Path) -> Iterator[tuple[str, str]]:
     """The name of each place where a library runs, and what the driver prints there."""
     for platform in (LINUX, ARM, WINDOWS, WASM):
         build(out / platform, platform, "wheel_driver")
     driver, library = out / LINUX / "wheel_driver", out / LINUX / "wheel.so"
     yield "linux64", run(driver, library)
-    if glibc:
-        yield f"linux64, {glibc}", run(libc / "ld-linux-x86-64.so.2", "--library-path", libc, driver, library)
     yield "this machine's compiler", run(driver, ROOT / "build" / "release" / "wheel.so")
     yield "win64, wine", run(WINE, out / WINDOWS / "wheel_driver.exe", out / WINDOWS / "wheel.dll")
     arm = ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", out / ARM / "wheel_driver", out / ARM / "wheel.so")
@@ -100,15 +88,13 @@ def printed(out: Path, glibc: str, libc: Path) -> Iterator[tuple[str, str]]:
     yield "wasm32, wasmtime", run_wasm(out / WASM / "wheel_driver.wasm")
 
 
-def scenes(out: Path, scratch: Path) -> dict[str, object]:
+def scenes(out: Path) -> dict[str, object]:
     """For the page: a row for each scene, with the digest on the first platform and whether the others are equal."""
-    glibc = old_glibc(scratch)
-    places = printed(out, glibc, scratch / "root" / "lib" / "x86_64-linux-gnu")
-    digests = {place: dict(line.split("\t") for line in text.splitlines()) for place, text in places}
+    digests = {place: dict(line.split("\t") for line in text.splitlines()) for place, text in printed(out)}
     first, *others = digests.values()
     rows = [
         [scene, digest, *("equal" if other[scene] == digest else other[scene] for other in others)]
         for scene, digest in first.items()
     ]
     different = [scene for scene, _, *equal in rows if {*equal} != {"equal"}]
-    return {"old": glibc, "run": markdown.table(["scene", *digests], rows), "different": different}
+    return {"run": markdown.table(["scene", *digests], rows), "different": different}

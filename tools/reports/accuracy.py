@@ -1,4 +1,4 @@
-"""How exact the FMU is: the paper's scenes, tolerances, fast spin, long runs, other scenes, closed forms, equations.
+"""How exact the FMU is: the paper's scenes, tolerances, fast spin, long runs, other scenes, closed forms.
 
 Judged by the independent reference of tests/reference and by closed forms; the tests under tests/physics bound what is
 shown here.
@@ -8,13 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from equations import pointwise
 from orbit.orbit import Halves
 from physics import cases, measure
 from physics import exact_motions as exact
 from reference import Start, Wheel
-from support import equations as eq
-from support.closed_forms import critical_spin, upright_deceleration
+from support.closed_forms import upright_deceleration
 from support.scenes import PAPER as TORUS
 from support.scenes import Scene
 
@@ -109,25 +107,6 @@ def stop_error(library, form: int) -> float:
 def closed_forms(report: Report, measure) -> Row:
     """closed forms"""
     return {name: measure(report.library, form) for name, form in FORMS.items()}
-
-
-@part(20, {"friction": eq.LAWS})
-def equations(report: Report, kind: int) -> Row:
-    """the equations, pointwise"""
-    row = {}
-    for words, symmetric in (("J_x = J_y", True), ("any J", False)):
-        drawn, motions = pointwise.draw(6, kind, symmetric=symmetric)
-        reduced, multibody = (pointwise.dynamics(form, drawn, motions) for form in (eq.REDUCED, eq.MULTIBODY))
-        row[f"reduced − multibody, {words}"] = pointwise.distance(reduced, multibody, drawn)
-    apart = pointwise.distance(multibody, pointwise.referenced(drawn, motions), drawn)
-    return row | {"multibody − reference, any J": apart}
-
-
-@part(4)
-def stability_limit(report: Report) -> Row:
-    """the stability limit of upright rolling"""
-    found = exact.measured_critical_spin(report.library)
-    return {"critical_spin": found, "critical": abs(found / critical_spin(TORUS) - 1)}
 
 
 PICTURES = {"tolerances": draw_tolerances}

@@ -13,7 +13,7 @@ from cffi import FFI
 from support.driver import COUNTERS, HEADLINE, Values
 from support.motion import Library
 from support.paths import ROOT, build_target
-from support.scenes import SINES, Scene
+from support.scenes import SINES
 
 from .truth import Array
 
@@ -91,8 +91,3 @@ def repeated(solve: Solve, seconds: float) -> tuple[list[float], Array, dict[str
         costs.append(cost)
         spent += cost
     return costs, rows, counts
-
-
-def width(scene: Scene) -> float:
-    """Of the regularized law, rad/s; 0: the law is exact."""
-    return float(scene.start.get("omega_s", 1e-3)) if scene.start.get("friction_law") == "regularized" else 0.0

@@ -18,7 +18,6 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("names", nargs="+", metavar="NAME", choices=(*NAMES, "all"), help=", ".join((*NAMES, "all")))
     target = parser.add_mutually_exclusive_group()
     target.add_argument("--publish", action="store_true", help="write into docs/results")
-    parser.add_argument("--peers", action="store_true", help="first install the programs named peers in pyproject.toml")
     target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick: to try it out")
     parser.add_argument("--render", action="store_true", help="measure nothing: publish what the data in docs/ say")
     parser.add_argument("--check", action="store_true", help="change nothing: are the pages those of the data?")

@@ -5,8 +5,6 @@ Each comparison is a row: source, scene, both values, their difference, and its 
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pandas as pd
 from others import wheel_sets as sets
@@ -14,9 +12,7 @@ from others import wheels
 from others.kane import distance
 from others.wheels import read
 from physics.exact_motions import measured_critical_spin
-from reference import Start, Wheel
 from support.motion import Library
-from support.schedule import Schedule
 
 from .page import Report, Row, number, part
 
@@ -57,12 +53,6 @@ def modelica_own(library: Library) -> float:
     return wheels.apart({"x": true["X_O"], "y": true["Y_O"]}, wheels.modelica(library))
 
 
-def multibody_jl(library: Library) -> Compared:
-    ours, whose = wheels.modelica(library), "the test: Modelica's values, to 1e-3"
-    who, printed = "Multibody.jl, test_wheels.jl", ends(ours, "X_O", "Y_O")
-    return who, "the same wheel", "0.162547, -2.23778", printed, float(ours["X_O"][-1] - 0.162547), whose
-
-
 def coin(library: Library) -> Compared:
     ours, table = wheels.coin(library, 1e-12), read("exudyn_coin")
     limit, off = wheels.coin_limit(table), float(abs(table["x"][0] - ours[0]))
@@ -92,34 +82,6 @@ def legendre(library: Library) -> Compared:
     return who, scene, "Legendre functions", "same", worst, "wheel.fmu: its solver at tolerance 1e-13"
 
 
-def ramp(library: Library) -> Compared:
-    start = Start(psi=0.0, theta=np.pi / 2, phi_dot=0.0, X_O=0.0)
-    wheel = Wheel(m=2.0, r_0=0.3, r=0.0, J_x=0.12, J_y=0.12, J_z=0.06)
-    pull = wheel.g * np.sin(np.pi / 4)  # the ramp's axes: the weight tilts
-    inputs, tilted = Schedule(((0.0, {"F_X": [wheel.m * pull]}),)), replace(wheel, g=wheel.g * np.cos(np.pi / 4))
-    gained = np.abs(np.diff(wheels.motion(library, tilted, start, np.linspace(0, 4, 9), inputs=inputs)["omega_z"]))
-    off = np.abs(gained - pull / wheel.r_0 / (1 + wheel.J_z / (wheel.m * wheel.r_0**2)) / 2)
-    scene, whose = (
-        "wheel on a ramp of 45°: spin gained in each 0.5 s, rad/s",
-        "rounding; wheel.fmu against g sin α / R (…)",
-    )
-    return "Multibody.jl, test_wheels.jl", scene, "between 5 and 9.81", digits(gained[0], places=6), off.max(), whose
-
-
-def printed_instants() -> Compared:
-    printed = read("multibody_jl_driving")
-    exact = sets.rigid_at("driving", printed["time"])
-    apart = float(np.hypot(printed["x"] - exact["x"], printed["y"] - exact["y"]).max())
-    who, scene = "Multibody.jl, test_wheels.jl", "DrivingWheelSet, 11 instants, 1 s: x, y"
-    return (
-        who,
-        scene,
-        *(ends(source, "x", "y", places=6) for source in (printed, exact)),
-        apart,
-        "the printed digits: 1e-3",
-    )
-
-
 def wheel_set(report: Report, scene: str, factors: tuple[int, ...]) -> tuple[Compared, Row]:
     """Modelica's wheel set: axle.fmu with ever stiffer links, and the limit of rigid ones."""
     table, rigid = sets.table(scene), sets.rigid(scene)
@@ -137,8 +99,8 @@ def wheel_set(report: Report, scene: str, factors: tuple[int, ...]) -> tuple[Com
 @part(100)
 def numbers(report: Report) -> dict[str, object]:
     """results of other programs"""
-    singles = [f(report.library) for f in (kane, modelica, multibody_jl, coin, thrown, critical, legendre, ramp)]
+    singles = [f(report.library) for f in (kane, modelica, coin, thrown, critical, legendre)]
     rows, stiffness = zip(*(wheel_set(report, *scene) for scene in STIFFNESSES.items()), strict=True)
-    found = pd.DataFrame([*singles, *rows, printed_instants()], columns=HEAD)
+    found = pd.DataFrame([*singles, *rows], columns=HEAD)
     own = {"modelica_energy": modelica_drift(), "modelica_own": modelica_own(report.library)}
     return {"numbers": found, "stiffness": stiffness} | own

@@ -33,7 +33,7 @@ RESULTS = ROOT / "docs" / "results"
 Row = Mapping[str, object]
 Tables = dict[str, pd.DataFrame]
 Axis = Mapping[str, Any] | Sequence[Any] | Callable  # of the report
-PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib", "heyoka")
+PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib")
 SHORT = 15  # rows
 REDUCTIONS = ("max", "min", "median", "sum")
 REQUIREMENTS = pd.read_csv(Path(__file__).with_name("requirements.csv")).set_index(["report", "figure"])
@@ -168,9 +168,9 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     table = {"figure": asked["what"], "required": bounds, "measured": measured}
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
     run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
-    values = dict.fromkeys(REQUIREMENTS.loc[name].index, "–")  # without a solver that is not installed
-    values |= {f.Index: number(float(f.measured)) for f in figures.itertuples()}
-    given = {"name": name, "f": values, "t": views(read_tables(name, folder)), "run": run}
+    values = {f.Index: number(float(f.measured)) for f in figures.itertuples()}
+    short = (folder / "data" / f"{name}.txt").exists()
+    given = {"name": name, "short": short, "f": values, "t": views(read_tables(name, folder)), "run": run}
     return page(f"{name}.md.j2", asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
 
 
@@ -181,7 +181,7 @@ def made(name: str) -> Row:
     (processor, *_) = [*models, platform.processor() or platform.machine()]
     build = dict(re.findall(r"^(\w+):[A-Z]+=(.*)$", (build_folder() / "CMakeCache.txt").read_text(), re.MULTILINE))
     installed = {found.name.lower(): found.version for found in distributions()}
-    versions = [f"{p} {installed[p.lower()]}" if p.lower() in installed else f"no {p}" for p in PACKAGES]
+    versions = [f"{p} {installed[p.lower()]}" for p in PACKAGES]
     changed = said("git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs", ":!*.md", ":!*.html")
     return {
         "report": name,

@@ -1,35 +1,32 @@
-"""Error against run time, compared with other solvers, and the cost of a step, an instance and the automatic rule.
+"""Error against run time, and the cost of the automatic rule, of a step, of inputs, of sliding and of an instance.
 
-Races: every set-up at every tolerance, FMU and heyoka in turns in one process. What fails stays in the list with its
-reason. The requirements are ratios to heyoka or to an empty call of the FMU, which hold on other machines, too.
+Races: every method at every tolerance, in turns in one process. The requirements are ratios to another method or to an
+empty call of the FMU, which hold on other machines, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, field, replace
-from functools import cached_property, partial
-from math import exp, log, nan
+from dataclasses import replace
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from benchmark.problems import PROBLEMS, by_fmu, by_reference, errors
 from reference import Inputs
-from support.driver import HEADLINE, Values
-from support.paths import build_folder
-from support.scenes import SCENES, Scene, sines
+from support import sliding as slides
+from support.driver import Values
+from support.scenes import SCENES, sines
 
 from . import plots
-from .native import Master, Solve, bytes_in_use, ffi, repeated, width
+from .native import bytes_in_use, ffi, repeated
 from .options import EXAMPLES
 from .page import Report, Row, Tables, number, part
 from .plots import Sheet, style
 from .truth import Array, headline, range_error
 
-TARGETS = {4: 1e-4, 6: 1e-6, 8: 1e-8}  # errors at which set-ups are compared
 POINTS = 101
-HEYOKA = "heyoka"
-OURS, METHODS = "FMU automatic", ("automatic", "adams", "bdf", "runge_kutta")
+METHODS = ("automatic", "adams", "bdf", "runge_kutta")
 TITLES = {
     "free": "Free wheel, the paper's scene, 10 s",
     "friction": "Rolling friction, exact law, s = 0.03 m, 10 s",
@@ -39,124 +36,54 @@ TITLES = {
     "near flat": "Near flat, θ from 30° down to 1°, 2 s",
 }
 SPINS = (2.0, 10.0, 100.0)  # rad/s
+PRICE = "automatic over the fastest fixed one"
 SLOW = 0.05  # s: what takes longer is measured once
-
-
-@dataclass
-class Entry:
-    """One set-up at one tolerance; seconds of every repetition; why it has no error."""
-
-    setup: str
-    tolerance: float
-    make: Callable[[], Solve]
-    error: float = nan
-    note: str = ""
-    counts: dict[str, int] = field(default_factory=dict)
-    seconds: list[float] = field(default_factory=list)
-
-    @cached_property
-    def solve(self) -> Solve:
-        """Compiled and warmed up."""
-        solve = self.make()
-        solve()
-        return solve
-
-    def take_turn(self, seconds: float, want: Array) -> None:
-        try:
-            costs, rows, self.counts = repeated(self.solve, seconds)
-            self.seconds += costs
-            error = range_error(rows, want)
-            self.error, self.note = (error, "") if np.isfinite(error) else (nan, "no finite result")
-        except (RuntimeError, ImportError, ValueError, ArithmeticError) as trouble:
-            self.note = str(trouble).split("\n")[0]
-
-    def row(self) -> Row:
-        micro = 1e6 * np.array(self.seconds or [nan])
-        row = {"setup": self.setup, "tolerance": self.tolerance, "error": self.error}
-        row |= {"best_us": micro.min(), "median_us": np.median(micro)}
-        return row | {name: self.counts.get(name) for name in ("steps", "rhs", "events")} | {"note": self.note}
-
-
-def in_fmu(master: Master, method: str, scene: Scene, tolerance: float, points: int) -> Solve:
-    steps = points - 1
-    return master.made({**scene.start, "method": method}, scene.duration / steps, steps, tolerance)
-
-
-def in_heyoka(scene: Scene, tolerance: float, points: int) -> Solve:
-    """Or an ImportError, where it is not installed."""
-    from . import taylor
-
-    wheel = taylor.Wheel(asdict(scene.wheel) | asdict(scene.motion), "angles", tolerance, omega_s=width(scene))
-    grid, shown = np.linspace(0, scene.duration, points), [taylor.OUTPUTS.index(name) for name in HEADLINE]
-
-    def solve() -> tuple[float, Array, dict[str, int]]:
-        found = wheel.solve(grid)
-        return found.seconds, found.rows[:, shown], {"steps": found.steps, "events": len(found.transitions)}
-
-    return solve
-
-
-PEERS = {HEYOKA: in_heyoka}
 
 
 @part(108, {"scene": tuple(TITLES)})
 def runs(report: Report, name: str) -> list[Row]:
     """error against run time, scene by scene
 
-    In rounds, so that noise of the machine meets all alike. A peer that failed at a looser tolerance is not asked
-    again: it is missing, or takes too long.
+    In rounds, so that noise of the machine meets all alike; the first compares with the reference. A run that fails
+    stays in the list with its reason.
     """
-    scene, entries = SCENES[name], []
-    want = headline(scene, POINTS)
-    setups = {f"FMU {method}": partial(in_fmu, report.master, method) for method in METHODS} | PEERS
-    for setup, make in setups.items():
-        slow = name == "stiff law" and setup in ("FMU adams", "FMU runge_kutta")
-        tolerances = [10.0**-k for k in ((4, 6, 8, 10) if report.quick or slow else range(3, 14))]
-        entries += [Entry(setup, tolerance, partial(make, scene, tolerance, POINTS)) for tolerance in tolerances]
-    for turn in range(1 if report.quick else 5):
-        reasons: dict[str, str] = {}
-        for entry in entries:
-            entry.note = entry.note or reasons.get(entry.setup, "")
-            if not entry.note and not (turn and min(entry.seconds) > SLOW):
-                entry.take_turn(0.004 if report.quick else 0.01, want)
-            if entry.note and entry.setup in PEERS:
-                reasons[entry.setup] = entry.note
-    return [entry.row() for entry in entries]
+    scene, steps, seconds = SCENES[name], POINTS - 1, 0.004 if report.quick else 0.01
+    want, rows, solves = headline(scene, POINTS), [], []
+    for method in METHODS:
+        slow = name == "stiff law" and method in ("adams", "runge_kutta")
+        for tolerance in [10.0**-k for k in ((4, 6, 8, 10) if report.quick or slow else range(3, 14))]:
+            solve = report.master.made({**scene.start, "method": method}, scene.duration / steps, steps, tolerance)
+            row = {"method": method, "tolerance": tolerance, "note": ""}
+            try:
+                solve()  # warms up
+                costs, found, counts = repeated(solve, seconds)
+                row |= {"error": range_error(found, want)} | {n: counts[n] for n in ("steps", "rhs", "events")}
+                solves.append((row, solve, costs))
+            except RuntimeError as trouble:
+                row["note"] = str(trouble).split("\n")[0]
+            rows.append(row)
+    for _ in range(0 if report.quick else 4):
+        for _, solve, costs in solves:
+            if min(costs) < SLOW:
+                costs += repeated(solve, seconds)[0]
+    for row, _, costs in solves:
+        row["best_us"] = 1e6 * min(costs)
+    columns = ("method", "tolerance", "error", "best_us", "steps", "rhs", "events", "note")
+    return [{name: row.get(name) for name in columns} for row in rows]
 
 
-def time_at(runs: pd.DataFrame, setup: str, error: float) -> float:
-    """Microseconds to this error or a smaller one, by lines through log(time) over log(error); nan out of reach.
-
-    A run that another one beats in both is left out.
-    """
-    points = runs[(runs["setup"] == setup) & runs["error"].notna()].sort_values(["error", "best_us"])
-    points = points[points["best_us"] < points["best_us"].cummin().shift(fill_value=np.inf)]
-    if points.empty:
-        return nan
-    return exp(np.interp(log(error), *np.log(points[["error", "best_us"]].to_numpy(float)).T, left=nan))
-
-
-def at_default(runs: pd.DataFrame, setup: str) -> pd.Series:
+def at_default(runs: pd.DataFrame, method: str) -> pd.Series:
     """The run at the FMU's default tolerance."""
-    return runs[(runs["setup"] == setup) & np.isclose(runs["tolerance"], 1e-8, rtol=1e-6, atol=0)].iloc[0]
+    return runs[(runs["method"] == method) & np.isclose(runs["tolerance"], 1e-8, rtol=1e-6, atol=0)].iloc[0]
 
 
 @part(1)
 def compare(report: Report) -> Row:
-    """the races side by side"""
-    return {**compared(report.tables["runs"]), "archive": (build_folder() / "wheel.fmu").stat().st_size / 1024}
-
-
-def compared(table: pd.DataFrame) -> Row:
-    """Times and errors at the default tolerance; the FMU's time over heyoka's at the same error."""
-    runs = dict(list(table.groupby("scene", sort=False)))
-    found = {"heyoka": time_at(runs["free"], HEYOKA, 1e-6)}
-    for digits, error in TARGETS.items():
-        found[f"free_heyoka_{digits}"] = time_at(runs["free"], OURS, error) / time_at(runs["free"], HEYOKA, error)
-    for name in ("free", "friction"):
-        ours = at_default(runs[name], OURS)
-        found |= {f"{name}_time": ours.best_us, f"{name}_error": ours.error}
-    return found | {"friction_heyoka": ours.best_us / time_at(runs["friction"], HEYOKA, ours.error)}
+    """the races side by side: times and errors at the default tolerance"""
+    scenes = dict(list(report.tables["runs"].groupby("scene", sort=False)))
+    ratios = pd.Series({name: price_of_choice(runs)[PRICE] for name, runs in scenes.items()})
+    found = {f"{name}_time": at_default(scenes[name], "automatic").best_us for name in ("free", "friction")}
+    return found | {"rule": ratios.max(), "free_rule": ratios["free"]}
 
 
 def sine_table(steps: int, orders: int, shift: float = 0.0) -> Array:
@@ -182,20 +109,37 @@ def steps(report: Report, scene: str) -> Row:
 
 
 @part(6, {"spin, rad/s": SPINS})
-def inputs_held(report: Report, spin: float) -> Row:
+def inputs_held(report: Report, spin: float, orders: int = 0) -> Row:
     """steps of 1 ms, six inputs that change, held"""
-    return timed_inputs(report, spin, 0)
+    return timed_steps(report, {"theta_start": 1.4, "phi_dot_start": -spin}, 1000, sine_table(1000, orders))
 
 
 @part(6, {"spin, rad/s": SPINS})
 def inputs_linear(report: Report, spin: float) -> Row:
     """steps of 1 ms, six inputs that change, with first derivatives"""
-    return timed_inputs(report, spin, 1)
+    return inputs_held.measure(report, spin, 1)
 
 
-def timed_inputs(report: Report, spin: float, orders: int) -> Row:
-    start = {"theta_start": 1.4, "phi_dot_start": -spin}
-    return timed_steps(report, start, 1000, sine_table(1000, orders))
+# Start, what makes it slide, and s; the reduced equations are stepped, not unfolded.
+STEPPED: Values = {"formulation": "reduced"}
+ROLLING: Values = {**STEPPED, **slides.UPRIGHT, "phi_dot_start": -20.0}
+LOCKED: Values = {**slides.ROAD, "M_brake": 1e3, "phi_dot_start": 0.0, "slip_x_start": 7.0}
+SLIDES = {
+    "free, mu_max = 0.45, mu_slide = 0.4": (STEPPED, slides.ROAD, 10.0),
+    "free, both 0.4": (STEPPED, slides.EQUAL, 10.0),
+    "locked, 7 m/s": (ROLLING, LOCKED, 2.0),
+}
+
+
+@part(3, {"wheel": SLIDES})
+def sliding(report: Report, case: tuple[Values, Values, float]) -> Row:
+    """wheels that slide, over the same wheels that are stepped without sliding"""
+    start, more, duration = case
+    solves = [report.master.made(values, 0.1, round(duration / 0.1)) for values in (start, start | more)]
+    found = [repeated(solve, 0.1 if report.quick else 0.5) for solve in solves]
+    times, steps = zip(*((1e6 * min(costs), counts["steps"]) for costs, _, counts in found), strict=True)
+    row = {"rolls, µs": times[0], "slides, µs": times[1], "ratio of times": times[1] / times[0]}
+    return row | {"steps, rolls": steps[0], "steps, slides": steps[1], "ratio of steps": steps[1] / steps[0]}
 
 
 # ---- cost and accuracy of inputs: the free wheel pushed by six sines, or by constants, in steps of 1 ms ----
@@ -222,17 +166,13 @@ CASES = {
 }
 
 
-@part(20, {"inputs": CASES, "method": ("automatic", "adams", "bdf")})
-def inputs(report: Report, case: tuple, method: str) -> Row:
+@part(8, {"inputs": CASES})
+def inputs(report: Report, case: tuple) -> Row:
     """cost of inputs, and their error"""
     scene, (judge, table_of) = replace(SCENES["free"], duration=2.0 if report.quick else 10.0), case
     steps = round(scene.duration / STEP)
     want = headline(scene, steps // EVERY + 1, judge, TRUTHS[judge])
-    solve = report.master.made({"method": method}, STEP, steps, None, table_of(steps))
-    try:
-        costs, rows, counts = repeated(solve, 0.05)
-    except RuntimeError:
-        return {"µs per step": np.nan, "error / range": np.inf}
+    costs, rows, counts = repeated(report.master.made({}, STEP, steps, None, table_of(steps)), 0.05)
     found = {name: counts[name] for name in ("steps", "rhs", "restarts")}
     return found | {"µs per step": 1e6 * min(costs) / steps, "error / range": range_error(rows[::EVERY], want)}
 
@@ -262,41 +202,53 @@ def empty_call(report: Report) -> float:
         return min(report.master.code.empty_call(component, 10_000) for _ in range(20))
 
 
+@part(20, {"scene": tuple(PROBLEMS)})
+def programs(report: Report, name: str) -> list[Row]:
+    """error against run time in the scenes of docs/benchmark.md, against its reference values"""
+    rows, problem = [], PROBLEMS[name]
+    multibody = replace(problem, start={**problem.start, "formulation": 3})
+    cases = [("wheel.fmu", problem, f"1e-{n}", 3 if report.quick else 20) for n in (6, 8, 10, 12, 13)]
+    cases.append(("wheel.fmu, the paper's (24)", multibody, "1e-12", 1))
+    for program, scene, tolerance, repeats in cases:
+        found = [by_fmu(report.library, scene, float(tolerance)) for _ in range(repeats)]
+        rows.append((program, tolerance, *errors(name, found[0]), 1e3 * min(run.seconds for run in found)))
+    for tolerance in ("1e-10", "1e-13"):
+        begin = perf_counter()
+        solution = by_reference(problem, float(tolerance))
+        spent = 1e3 * (perf_counter() - begin)
+        rows.append(("tests/reference", tolerance, *errors(name, solution), spent))
+    return [dict(zip(("program", "tolerance", "error / range", "instants, s", "ms"), row, strict=True)) for row in rows]
+
+
+@part(1)
+def benchmark(report: Report) -> Row:
+    """the errors of wheel.fmu in the benchmark"""
+    programs = report.tables["programs"].query("program == 'wheel.fmu' and tolerance == '1e-13'")
+    return {"benchmark": programs["error / range"].max(), "instants": programs["instants, s"].max()}
+
+
 def views(tables: Tables) -> Tables:
     """The tables that follow from the runs."""
     scenes = [(TITLES[name], runs) for name, runs in tables["runs"].groupby("scene", sort=False)]
-    failed = tables["runs"][tables["runs"]["error"].isna()].drop_duplicates(["scene", "setup"])
+    failed = tables["runs"][tables["runs"]["error"].isna()].drop_duplicates(["scene", "method"])
     return tables | {
-        "fastest": pd.DataFrame([{"scene": title} | fastest(runs) for title, runs in scenes]),
         "methods": pd.DataFrame([{"scene": title} | price_of_choice(runs) for title, runs in scenes]),
         "failed": failed.assign(scene=failed["scene"].map(TITLES)),
     }
 
 
-def fastest(runs: pd.DataFrame) -> Row:
-    """The fastest set-up at each error, and the FMU's time over that of heyoka, if it reaches the error."""
-    row = {}
-    for error in TARGETS.values():
-        times = pd.Series({setup: time_at(runs, setup, error) for setup in runs["setup"].unique()}).dropna()
-        ratio = f"{times[OURS] / times[HEYOKA]:.2f}" if {HEYOKA, OURS} <= set(times.index) else "–"
-        row[f"at {number(error)}"] = f"{times.idxmin() if len(times) else 'none'} ({ratio})"
-    return row
-
-
 def price_of_choice(runs: pd.DataFrame) -> Row:
     """At the default tolerance: automatic, and beside the fastest fixed method."""
-    automatic, *fixed = (at_default(runs, f"FMU {method}") for method in METHODS)
+    automatic, *fixed = (at_default(runs, method) for method in METHODS)
     ratio = automatic.best_us / np.nanmin([run.best_us for run in fixed])
-    shown = f"{automatic.best_us:.0f} µs ({number(automatic.error)})"
-    return {"automatic": shown, "automatic over the fastest fixed one": ratio}
+    return {"automatic": f"{automatic.best_us:.0f} µs ({number(automatic.error)})", PRICE: ratio}
 
 
 LOOKS = {  # colour, marker and line
-    OURS: (style.BLUE, "o-"),
-    "FMU adams": (style.SKY, "v-"),
-    "FMU bdf": (style.SKY, "<--"),
-    "FMU runge_kutta": (style.SKY, ">:"),
-    HEYOKA: (style.GREEN, "^-"),
+    "automatic": (style.BLUE, "o-"),
+    "adams": (style.GREEN, "v-"),
+    "bdf": (style.SKY, "<--"),
+    "runge_kutta": (style.ORANGE, ">:"),
 }
 
 
@@ -305,14 +257,14 @@ def draw_races(tables: Tables) -> Sheet:
     figure, axes = plots.sheet("ab;cd;ef", 68)
     solved = tables["runs"].dropna(subset="error")
     for ax, (scene, title) in zip(axes, TITLES.items(), strict=True):
-        for setup, points in solved[solved["scene"] == scene].groupby("setup", sort=False):
-            colour, mark = LOOKS[setup]
-            look = {"lw": 3.5, "alpha": 0.55, "ms": 5} if setup == OURS else {"lw": 1, "ms": 3}
-            ax.plot(points["best_us"], points["error"].clip(lower=1e-14), mark, color=colour, label=setup, **look)
+        for method, points in solved[solved["scene"] == scene].groupby("method", sort=False):
+            colour, mark = LOOKS[method]
+            look = {"lw": 3.5, "alpha": 0.55, "ms": 5} if method == "automatic" else {"lw": 1, "ms": 3}
+            ax.plot(points["best_us"], points["error"].clip(lower=1e-14), mark, color=colour, label=method, **look)
         plots.label(ax, "best time [µs]", "error / range", title, "xy", ylim=(1e-14, 3))
-    plots.legend_below(figure, axes, 3)
+    plots.legend_below(figure, axes)
     return figure
 
 
-FURTHER = ("benchmark", *["studies"] * (EXAMPLES / "studies").exists())
+FURTHER = ("studies",) * (EXAMPLES / "studies").exists()
 PICTURES = {"races": draw_races}

@@ -58,7 +58,7 @@ def cases(report: Report) -> dict[str, object]:
     faults = rows[~rows["as expected"]]
     found = {"sweep": rows, "faults": faults}
     found["loose"] = [{"case": str(c), "needs": c.loosest, "why": c.remark} for c in chosen if c.loosest < 1e-4]
-    return found | {"cases": len(chosen), "runs": len(rows), "faults_found": len(faults)}
+    return found | {"cases": len(chosen), "faults_found": len(faults)}
 
 
 def row_of(case: Case, verdict: Verdict) -> Row:

@@ -11,7 +11,7 @@ import pandas as pd
 from support.motion import Library
 
 from . import plots
-from .page import Report, Row, Tables, part, read_tables
+from .page import Report, Tables, part, read_tables
 from .plots import Sheet
 
 LOAD = 557.4  # N, the rig's own value
@@ -43,7 +43,7 @@ def rig(report: Report) -> dict[str, object]:
     means = again.groupby(KEYS)[["C", "C again"]].mean()
     forces = loads[loads["speed"] > loads["speed"].min()].groupby("load")["force"].mean()
     (least, most), (weak, strong) = forces.index, forces
-    found = {"runs": len(rows.drop_duplicates(KEYS)), "left_out": len(left_out), "tyres": rows["tyre"].nunique()}
+    found = {"runs": len(rows.drop_duplicates(KEYS)), "left_out": len(left_out)}
     for name, sign in (("light", -1), ("heavy", 1)):
         tilted = rows.assign(C=rows["C"] + sign * rows["C_inertia"]).groupby(KEYS)["C"]
         found[f"spread_{name}"] = 100 * tilted.agg(lambda C: (C / C.mean() - 1).abs().max()).median()
@@ -106,33 +106,19 @@ def tyres(report: Report) -> dict[str, object]:
     return {"by_run": found, "coasts": pd.concat(curves)} | figures
 
 
-def turn_rate(inclination: float) -> float:
-    """psi_dot of a thin disk whose centre rests: psi_dot^2 sin(theta) = m g R / J_x = 4 g / R."""
-    return np.sqrt(4 * GRAVITY / (DISK["r_0"] * np.sin(inclination)))
-
-
-def held_disk(library: Library, inclination: float, stop: float, s: float = 0.0) -> tuple[float, float]:
-    """How far inclination and energy change, relative, of a disk that starts on the steady circle of psi_dot."""
-    rate = turn_rate(inclination)
-    start = {"theta_start": inclination, "psi_dot_start": rate, "phi_dot_start": -rate * np.cos(inclination)}
-    found = library.simulate(np.linspace(0, stop, 201), 1e-10, s=s, keep_contact=True, **DISK, **start)
-    assert found.end is None, found.ended
-    theta, energy = found["theta"], found["E"]
-    return float(np.ptp(theta) / inclination), float(np.ptp(energy) / energy[0])
-
-
-@part(4, {"inclination [deg]": (5, 10, 20, 40, 60)})
-def steady_circle(report: Report, degrees: float) -> Row:
-    """Euler's disk on a steady circle"""
-    angle = np.radians(degrees)
-    return {"ψ̇ [rad/s]": turn_rate(angle), "it changes by": held_disk(report.library, angle, 5.0)[0]}
-
-
 @part(1)
 def disks(report: Report) -> dict[str, object]:
-    """Euler's disk: the energy that the paper's friction takes"""
-    off, loss = held_disk(report.library, np.radians(10), DISK_TIME, s=1e-3 * DISK["r_0"])
-    return {"disk_loss": loss, "disk_falls": off}
+    """Euler's disk: the energy that the paper's friction takes
+
+    The centre of a thin disk on a steady circle rests where psi_dot^2 sin(theta) = m g R / J_x = 4 g / R.
+    """
+    theta = np.radians(10)
+    rate = np.sqrt(4 * GRAVITY / (DISK["r_0"] * np.sin(theta)))
+    start = {"theta_start": theta, "psi_dot_start": rate, "phi_dot_start": -rate * np.cos(theta)}
+    start |= DISK | {"s": 1e-3 * DISK["r_0"], "keep_contact": True}
+    found = report.library.simulate(np.linspace(0, DISK_TIME, 201), 1e-10, **start)
+    assert found.end is None, found.ended
+    return {"disk_loss": np.ptp(found["E"]) / found["E"][0]}
 
 
 def views(tables: Tables) -> Tables:

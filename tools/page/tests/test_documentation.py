@@ -1,4 +1,4 @@
-"""Documents in a browser: the FMU's own page is read without scrolling sideways; the site's formulas and its search."""
+"""Documents in a browser: the FMU's own page is read without scrolling sideways; the site's formulas."""
 
 import subprocess
 import sys
@@ -34,12 +34,7 @@ def test_formulas_tables_and_commands_fit_a_screen_and_a_telephone_and_no_narrow
     assert overflowing >= parts and bool(overflowing) == bool(parts)
 
 
-WRITTEN = {
-    "README": "# Start\n\n```{toctree}\nlong\nright\n```\n",
-    "long": "# Much of both\n\nWhat is critical. A spin.\n\n" + "It is critical. So is spin.\n\n" * 3,
-    "right": "# The answer\n\nAbove the critical spin $r_0$ it stays up; the critical spin follows from gravity.\n"
-    "\n```math\n" + "a + b + " * 40 + "c\n```\n",
-}
+WRITTEN = "# A page\n\nThe radius $r_0$.\n\n```math\n" + "a + b + " * 40 + "c\n```\n"
 # How far a subscript stands below its letter, in heights of the letter.
 SUNK = """() => {
   const [base, low] = [...document.querySelector('msub').children].map((part) => part.getBoundingClientRect());
@@ -50,18 +45,17 @@ SUNK = """() => {
 @pytest.fixture(scope="module")
 def small_site(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("site")
-    for name, text in WRITTEN.items():
-        (folder / f"{name}.md").write_text(text)
-    settings = ["-c", ROOT / "tools" / "publishing" / "site", "-D", "html_favicon="]
+    (folder / "page.md").write_text(WRITTEN)
+    settings = ["-c", ROOT / "tools" / "publishing" / "site", "-D", "html_favicon=", "-D", "root_doc=page"]
     command = ["sphinx", "-q", *settings, "-b", "html", folder]
     subprocess.run([sys.executable, "-m", *map(str, command), str(folder / "out")], check=True)
     return folder / "out"
 
 
 def test_a_digit_below_a_letter_is_lowered(window, small_site):
-    beyond(ask(window, small_site / "right.html", SUNK), 0.1, "subscript below its letter, heights of the letter")
+    beyond(ask(window, small_site / "page.html", SUNK), 0.1, "subscript below its letter, heights of the letter")
     (small_site / "_static" / "math.woff").rename(small_site / "math.woff")
-    without = ask(window, small_site / "right.html", SUNK)
+    without = ask(window, small_site / "page.html", SUNK)
     (small_site / "math.woff").rename(small_site / "_static" / "math.woff")
     within(without, 0.1, "subscript without a font for mathematics, heights of the letter")
 
@@ -77,21 +71,9 @@ SCROLLED = """() => {
 
 
 def test_a_formula_that_is_wider_than_a_telephone_scrolls_in_its_frame(window, small_site):
-    assert ask(window, small_site / "right.html", SCROLLED, width=390) == [True, True]
+    assert ask(window, small_site / "page.html", SCROLLED, width=390) == [True, True]
     style = small_site / "_static" / "site.css"
     text = style.read_text()
     style.write_text(text.replace(".formula { overflow-x: auto; overflow-y: hidden;", ".formula {"))
-    assert ask(window, small_site / "right.html", SCROLLED, width=390)[1] is False
+    assert ask(window, small_site / "page.html", SCROLLED, width=390)[1] is False
     style.write_text(text)
-
-
-def test_the_search_finds_the_pages_with_all_words_without_a_server(window, small_site):
-    page = window.new_page()
-    faults: list[str] = []
-    page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
-    for question, found in (("critical+spin", {"The answer", "Much of both"}), ("gravity", {"The answer"})):
-        page.goto(f"{(small_site / 'search.html').as_uri()}?q={question}")
-        page.wait_for_selector(f"#search-results li:nth-child({len(found)}) a")
-        assert {*page.locator("#search-results li a").all_inner_texts()} == found
-    page.close()
-    assert faults == []

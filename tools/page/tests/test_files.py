@@ -106,44 +106,6 @@ def test_without_a_name_the_page_stands_beside_the_first_file_and_the_command_sa
         assert one.with_name(path).stat().st_size > 1e5
 
 
-PLACES = """[...document.querySelectorAll('.plot:not([hidden]):not(.portrait)')].map((figure) => {
-  const box = (node) => (({left, right, top, bottom}) => [left, right, top, bottom])(node.getBoundingClientRect());
-  const values = [...figure.querySelectorAll('output span')];
-  return [box(figure), ...[figure.querySelector('b'), ...values, figure.querySelector('canvas')].map(box)];
-})"""
-
-
-def apart(a: list[float], b: list[float]) -> bool:
-    """Whether two boxes [left, right, top, bottom] share no pixel."""
-    return a[1] <= b[0] + 1 or b[1] <= a[0] + 1 or a[3] <= b[2] + 1 or b[3] <= a[2] + 1
-
-
-def outside(figure: list[float], part: list[float]) -> bool:
-    return part[0] < figure[0] - 1 or part[1] > figure[1] + 1
-
-
-@pytest.mark.parametrize("width", [1000, 1400])
-def test_the_values_of_four_wheels_stand_within_their_diagram_and_over_nothing(window, scenes, tmp_path, width):
-    rows, columns = scenes["friction"], ("time", *POSE, "omega_z", "lambda_3", "E")
-    table = {"time": rows["time"]}
-    for k, name in enumerate(("wheel_fl", "wheel_fr", "wheel_rl", "wheel_rr")):
-        driven = {"omega_z": -14.285 - k + 0 * rows["time"], "lambda_3": 4321.0 + rows["E"]}
-        own = columns_of(rows, columns[1:]) | driven
-        table |= {f"{name}.{column}": values for column, values in own.items()}
-    view(write_csv(tmp_path / "car.csv", table))
-    with opened(window, tmp_path / "car.html") as page:
-        page.set_viewport_size({"width": width, "height": 700})
-        page.wait_for_function("!page.stage.dirty")
-        page.evaluate("page.draw()")
-        figures = page.evaluate(PLACES)
-        assert len(figures) == 4
-        for figure, *parts in figures:
-            assert len(parts) == 6 and not any(outside(figure, part) for part in parts)
-            assert all(apart(a, b) for k, a in enumerate(parts) for b in parts[:k])
-        page.add_style_tag(content=".plot output span { min-width: 90px }")  # the partner
-        assert any(outside(figure, part) for figure, *parts in page.evaluate(PLACES) for part in parts)
-
-
 def test_wheels_of_one_file_open_together_and_those_of_several_side_by_side(window, one, tmp_path):
     both = {f"{name}.{column}": UPRIGHT[column] for name in ("fl", "wheel_rr") for column in POSE}
     path = write_csv(tmp_path / "axle.csv", {"time": T} | both)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.driver import FMU2Wheel
 
-from page.tests.pages import TURN, column, do, listed, start
+from page.tests.pages import column, do, start
 
 NAMES = ("X_O", "Y_O", "psi", "theta", "phi", "omega_z", "lambda_3", "E")
 STEP = 0.01  # s
@@ -144,36 +144,3 @@ def test_a_kept_motion_stays_beside_the_next(live):
     assert column(live, "E")[-1] < 60
     live.locator("#keep").click()
     assert live.evaluate("page.wheels.length") == 1
-
-
-def test_on_a_slope_the_ground_tilts_and_the_wheel_rolls_down(live):
-    slope, uphill = 0.2, 2.0  # rad; upright, and headed straight down
-    upright = {"psi_start": np.pi + uphill, "theta_start": np.pi / 2, "phi_dot_start": 0.0}
-    start(live, slope=slope, slope_direction=uphill, **upright)
-    live.evaluate("page.draw()")
-    up = [np.sin(slope) * np.cos(uphill), np.sin(slope) * np.sin(uphill), np.cos(slope)]
-    assert live.evaluate(TURN, up) == pytest.approx([0, 0, 1])
-    t, X, Y = (column(live, name) for name in ("time", "X_O", "Y_O"))
-    distance = np.hypot(X - X[0], Y - Y[0])
-    downhill = 9.81 * np.sin(slope) * INERTIA[1] / INERTIA[0]  # m/s2, g sin(slope) / (1 + J_z / (m R^2))
-    early = t < 2  # a wheel that starts at rest is unstable: rounding grows
-    assert distance[early] == pytest.approx(downhill * t[early] ** 2 / 2, abs=1e-6)
-    assert live.evaluate(TURN, [X[200], Y[200], 0])[2] == pytest.approx(-distance[200] * np.sin(slope), abs=0.02)
-    start(live)
-    live.evaluate("page.draw()")
-    assert live.evaluate(TURN, up) == pytest.approx(up)
-
-
-def test_another_wheel_fills_the_scene_and_its_values_are_listed(live):
-    start(live, s=0.03)
-    disc = {"m": 0.0085, "r_0": 0.0118, "r": 0.001, "J_x": 3.5e-7, "J_y": 3.5e-7, "J_z": 7e-7}
-    live.evaluate("(parameters) => { page.live.setWheel({parameters}); page.live.compute(); page.draw(); }", disc)
-    assert live.evaluate("page.live.trouble ?? page.stage.scale") == pytest.approx(0.35 / 0.0128)
-    assert live.evaluate("page.live.value('s')") == pytest.approx(0.03 * 0.0128 / 0.35, rel=1e-2)
-    rows = {row[0]: row[1] for row in listed(live)}
-    assert {name: float(rows[name]) for name in disc} == disc
-    assert live.evaluate("page.live.link.write()").startswith("s=0.0011&m=0.0085&r_0=0.0118&r=0.001&J_x=3.5e-7")
-    live.evaluate("page.live.frame()")
-    assert float(live.locator("#live [name=m]").input_value()) == pytest.approx(np.log10(disc["m"]), abs=0.01)
-    start(live)
-    assert live.evaluate("page.stage.scale") == 1

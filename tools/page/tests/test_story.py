@@ -4,7 +4,6 @@ import re
 
 import numpy as np
 import pytest
-from support.bounds import beyond, within
 
 from page.tests.pages import column, do
 
@@ -128,18 +127,3 @@ def test_beside_another_motion_the_text_is_faint_and_leads_back(live, story):
     assert f"{live.evaluate('page.wheels[0].table.end'):.4g} s computed" in live.locator("#message").inner_text()
     live.get_by_role("button", name="Back to the story's wheel").click()
     assert live.evaluate(faint)[0] is False and live.evaluate("page.live.value('slope')") == 0
-
-
-def turn(points: np.ndarray) -> float:
-    """The largest turn of a path from point to point, rad."""
-    heading = np.unwrap(np.arctan2(*np.diff(points, axis=0).T))
-    return abs(np.diff(heading)).max()
-
-
-def test_a_path_that_turns_fast_is_round(live, story):
-    story(8)
-    live.evaluate("page.live.setStart('phi_dot_start', -0.5); page.live.compute()")  # nearly flat it runs round fast
-    times, points = map(np.array, live.evaluate("(({times, points}) => [times, points])(page.wheels[0].trace)"))
-    rows = abs(times * 100 - np.round(times * 100)) < 1e-6
-    within(turn(points), 0.15, "largest turn from point to point, rad")
-    beyond(turn(points[rows]), 0.15, "the same of the rows")

@@ -1,5 +1,5 @@
 // The commands that make the same run outside of the page: fmpy's command line, Python with FMPy, and C.
-import {variables} from '#data';
+import {variables} from '#dom';
 import {STEP} from '#fmu';
 
 const instant = (t) => Number(t.toFixed(4));  // s, a communication point in plain digits

@@ -1,6 +1,12 @@
-// Elements of the page: found, made, and rows of buttons of which one is on; the colours of style.css.
+// Elements of the page: found, made, and rows of buttons of which one is on; the colours of style.css; the data.
 
 export const $ = (selector, host = document) => host.querySelector(selector);
+
+/**
+ * What the page was made with: recorded bodies and how many files they come from, the variables of the description by
+ * name, and of the live page the wheel itself.
+ */
+export const {bodies, sources, variables, live} = JSON.parse($('#data').textContent);
 
 /** A new element with these properties and children. */
 export function make(tag, properties, ...children) {

@@ -77,8 +77,8 @@ function element(id, ...content) {
   return new Blob([bytes(id).slice(id < 256 ? 7 : id < 65536 ? 6 : id < 2 ** 24 ? 5 : 4), length, body]);
 }
 
-/** A WebM file of pictures [{data, time: ms, key}] in a codec, `duration` ms long. */
-function webm(codec, {width, height}, pictures, duration) {
+/** A WebM file of pictures [{data, time: ms, key}] in VP9, `duration` ms long. */
+function webm({width, height}, pictures, duration) {
   const clusters = pictures.map(({data, time, key}) => {
     const head = Uint8Array.of(0x81, 0, 0, key ? 0x80 : 0);  // track 1, at the time of the cluster, whether a key
     return element(0x1f43b675, element(0xe7, time), element(0xa3, head, data));
@@ -87,16 +87,14 @@ function webm(codec, {width, height}, pictures, duration) {
   const names = [element(0x4d80, 'wheel'), element(0x5741, 'wheel')];
   const info = element(0x1549a966, element(0x2ad7b1, 1_000_000), element(0x4489, bytes(duration, true)), ...names);
   const video = element(0xe0, element(0xb0, width), element(0xba, height));
-  const track = [element(0xd7, 1), element(0x73c5, 1), element(0x83, 1), element(0x86, codec), video];
+  const track = [element(0xd7, 1), element(0x73c5, 1), element(0x83, 1), element(0x86, 'V_VP9'), video];
   const segment = element(0x18538067, info, element(0x1654ae6b, element(0xae, ...track)), ...clusters);
   return new Blob([header, segment], {type: 'video/webm'});
 }
 
-/** A canvas encoded by WebCodecs: {codec, add(k), end(), pictures}; null where the browser cannot. */
-async function streamOf(canvas, rate) {
+/** A canvas encoded by WebCodecs: {add(k), end(), pictures}. */
+function streamOf(canvas, rate) {
   const {width, height} = canvas;
-  const settings = {codec: 'vp09.00.51.08', width, height, bitrate: BITS, framerate: rate};
-  if (!(await window.VideoEncoder?.isConfigSupported(settings))?.supported) return null;
   const pictures = [];
   const output = (chunk) => {
     const data = new Uint8Array(chunk.byteLength);
@@ -104,32 +102,14 @@ async function streamOf(canvas, rate) {
     pictures.push({data, time: Math.round(chunk.timestamp / 1000), key: chunk.type === 'key'});
   };
   const encoder = new VideoEncoder({output, error: console.error});
-  encoder.configure(settings);
+  encoder.configure({codec: 'vp09.00.51.08', width, height, bitrate: BITS, framerate: rate});
   const add = (k) => {
     const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / rate)});
     encoder.encode(picture, {keyFrame: k % KEY === 0});
     picture.close();
   };
-  return {codec: 'V_VP9', add, end: () => encoder.flush(), pictures};
+  return {add, end: () => encoder.flush(), pictures};
 }
-
-/** The same as single pictures: a WebP file holds a key frame of VP8. */
-function stillsOf(canvas, rate) {
-  const pictures = [];
-  const add = async (k) => {
-    const blob = await new Promise((done) => canvas.toBlob(done, 'image/webp', 0.9));
-    const file = new DataView(await blob.arrayBuffer());
-    let at = 12;  // chunks: a name, a length, an even number of bytes
-    const length = () => file.getUint32(at + 4, true);
-    while (file.getUint32(at) !== 0x56503820) at += 8 + length() + (length() % 2);  // 'VP8 '
-    pictures.push({data: blob.slice(at + 8, at + 8 + length()), time: Math.round(1000 * k / rate), key: true});
-  };
-  return {codec: 'V_VP8', add, end: () => {}, pictures};
-}
-
-/** Whether this browser makes films. */
-export const films = () =>
-    Boolean(window.VideoEncoder) || make('canvas').toDataURL('image/webp').startsWith('data:image/webp');
 
 /**
  * A film of the motion from its start to its end at the speed of the clock, as a Blob, however long a picture takes to
@@ -147,17 +127,17 @@ export async function film(page, {width, rate}, left) {
   player.pause();
   renderer.setPixelRatio(Math.min(ratio, width / scene.clientWidth));
   show(start);
-  const {codec, add, end: finish, pictures} = await streamOf(canvas, rate) ?? stillsOf(canvas, rate);
+  const {add, end: finish, pictures} = streamOf(canvas, rate);
   const count = Math.floor((end - start) / speed * rate) + 1;
   const begin = performance.now();
   let k = 0;
   for (; k < count && left((performance.now() - begin) / 1000 / k * (count - k)); ++k) {
     show(start + k * speed / rate);
-    await add(k);
+    add(k);
     await new Promise((next) => setTimeout(next));  // the page stays alive
   }
   renderer.setPixelRatio(ratio);
   player.seek(t);
   await finish();
-  return webm(codec, canvas, pictures, 1000 * k / rate);
+  return webm(canvas, pictures, 1000 * k / rate);
 }

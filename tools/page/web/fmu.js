@@ -1,6 +1,6 @@
 // The FMU inside the page: wheel.fmu's own sources as WebAssembly, called as any master calls them (FMI 2.0
 // co-simulation). Variables are found by name in the description, which is made from modelDescription.xml.
-import {variables} from '#data';
+import {variables} from '#dom';
 import {bytesOf, Table} from '#table';
 
 export const STEP = 0.01;  // s, between two communication points

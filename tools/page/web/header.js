@@ -1,6 +1,5 @@
 // The header: the parameters of what is shown in the card "Values", and the button for light, dark, or as the system.
-import {variables} from '#data';
-import {$, make} from '#dom';
+import {$, make, variables} from '#dom';
 
 const THEMES = [['as the system', '◐'], ['light', '☀'], ['dark', '☾']];
 

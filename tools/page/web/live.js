@@ -1,10 +1,9 @@
 // The live page: the wheel itself computes the whole motion anew, within some milliseconds, whenever the reader changes
 // its start, or s or M_3 while it rolls. A change while it rolls leaves the past alone and makes a new future.
-import {derive, EMPTY, sameMotions} from '#address';
-import {variables} from '#data';
+import {derive, EMPTY, Link, sameMotions} from '#address';
+import {variables} from '#dom';
 import {STEP} from '#fmu';
 import {limitsOf} from '#knobs';
-import {Link} from '#link';
 import {MOMENTS} from '#mechanics';
 import {setUpPanel} from '#panel';
 import {chapters} from '#scenes';

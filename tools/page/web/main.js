@@ -1,9 +1,8 @@
 // The page: recorded wheels, a car's body, or the wheel itself (live), shown on one stage with one clock.
 import {ChassisModel, WheelModel} from '#bodies';
 import {Player, setUpKeys, setUpSwitches, setUpTransport, showBands} from '#clock';
-import * as data from '#data';
 import {Plots} from '#diagrams';
-import {$, colour, makeChoice} from '#dom';
+import {$, bodies, colour, live, makeChoice, sources} from '#dom';
 import {Fmu} from '#fmu';
 import {setUpValues, watchTheme} from '#header';
 import {endingOf, layOutLabels, showStates} from '#labels';
@@ -34,7 +33,7 @@ class Page {
     this.player = new Player();
     this.choice = 0;
     this.plots = new Plots($('#plots'), this.player);
-    this.bodies = data.bodies.map((body) => ({...body, table: Table.decode(body.columns)}));
+    this.bodies = bodies.map((body) => ({...body, table: Table.decode(body.columns)}));
     const latest = Math.max(...this.bodies.map(({table}) => table.end));
     for (const wheel of this.wheels) {
       this.exchange(wheel, wheel.table);
@@ -56,13 +55,13 @@ class Page {
   }
 
   async start() {
-    if (data.live) this.live = new LiveWheel(this, await Fmu.load(data.live), data.live.wheels);
+    if (live) this.live = new LiveWheel(this, await Fmu.load(live), live.wheels);
     this.stage = new Stage($('#stage'), this.size);
     this.switches = setUpSwitches(this.stage);
     setUpTransport(this.player);
     setUpKeys(this);
     setUpTaking(this);
-    this.offer(data.sources);
+    this.offer(sources);
     setUpValues(this);
     watchTheme(() => this.dress());
     this.player.addEventListener('change', () => (this.stage.dirty = true));

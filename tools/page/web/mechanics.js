@@ -1,7 +1,7 @@
 // The wheel's mechanics as far as the page itself computes it. Moments of inertia: those of ready bodies
 // (examples/bodies.json), which follow from mass and radii, and whether any mass within the wheel's outline has the
 // given ones, as in examples/python/values.py; the critical spin. SI.
-import {live} from '#data';
+import {live} from '#dom';
 
 const HUB = 0.1;        // of the radius: how far hub and spokes may be from the plane of a wheel with a thin tube
 const ROUNDING = 1e-9;  // of a moment: an excess that is no fault

@@ -1,12 +1,10 @@
-"""The release folder: right sums, notes of the version, equal bytes for equal content; the bill of materials."""
+"""The release: notes of the version; the bill of materials."""
 
 from __future__ import annotations
 
 import json
 import os
 import re
-import subprocess
-import tarfile
 from pathlib import Path
 
 import fmpy
@@ -24,21 +22,6 @@ def test_the_files_name_one_version_which_is_that_of_the_newest_changes() -> Non
     with pytest.raises(SystemExit, match="not with one of version 3"):
         folder.notes(CHANGES, "3.0.0")
     assert folder.notes((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), folder.version())[0].count("\n- ") > 0
-
-
-def test_the_folder_holds_what_its_sums_say_and_the_same_bytes_each_time(tmp_path: Path) -> None:
-    fmu, site = tmp_path / "built.fmu", tmp_path / "site"
-    fmu.write_bytes(b"archive")
-    site.mkdir()
-    (site / "index.html").write_text("page")
-    folder.write(tmp_path / "one", fmu, site, "notes\n")
-    (site / "index.html").touch()
-    folder.write(tmp_path / "two", fmu, site, "notes\n")
-    sums = tmp_path / "one" / "SHA256SUMS"
-    assert sums.read_text().split()[1::2] == ["NOTES.md", "wheel-site.tar.gz", "wheel.fmu"]
-    subprocess.run(["sha256sum", "--check", "--quiet", sums], cwd=tmp_path / "two", check=True)
-    with tarfile.open(tmp_path / "one" / "wheel-site.tar.gz") as tar:
-        assert "wheel-site/index.html" in tar.getnames()
 
 
 BILL = ROOT / "fmu-src" / "archive" / "extra" / "org.fmi-standard.fmi-ls-ref" / "sbom.cdx.json"

@@ -1,1 +1,0 @@
-"""What ./scripts/run draws, and the look of every picture; nothing here computes dynamics."""

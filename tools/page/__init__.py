@@ -1,1 +1,0 @@
-"""Pages in three dimensions, each one file that works offline: recorded motions, or the wheel itself (docs/page.md)."""
