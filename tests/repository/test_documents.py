@@ -70,6 +70,36 @@ def test_every_file_that_a_document_names_exists_and_every_decision_is_listed() 
     assert set(listed) == {f"decisions/{path.name}" for path in (ROOT / "docs" / "decisions").glob("*.md")}
 
 
+def words(*patterns: str) -> set[str]:
+    """Of files and their names."""
+    files = run("git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", *patterns).stdout.split("\0")
+    found = (path.read_text(encoding="utf-8", errors="ignore") for path in map(ROOT.joinpath, files) if path.is_file())
+    return {word for text in (*found, *files) for word in re.findall(r"\w+", text)}
+
+
+# Of other programs, and of examples in the text.
+FOREIGN = """CosimLogLevel addConnection carRollingDiscTest createRollingDiscTest rollingCoinPenaltyTest dask_jobqueue
+fmi_CommunicationStepSize fmi_StopTime fmi_loggingOn frame_a kind_CS load_fmu relTol setReal set_input_derivatives
+I_axis I_long J_hub allocateMemory analyze_mutants der_angles my_study noSetFMUStatePriorToCurrentPoint v_1
+terminateSimulation"""
+
+
+def unknown(text: str, known: set[str]) -> set[str]:
+    """Identifiers in backticks, words with an underscore or a capital inside, that neither code nor the page's own
+    lines of code have."""
+    shown = {word for block in re.findall(r"```.*?```", text, re.DOTALL) for word in re.findall(r"\w+", block)}
+    marked = re.findall(r"(?<!`)`([^`\n]+)`(?!`)", text)
+    names = {word for span in marked for word in re.findall(r"(?<!\w)[A-Za-z]\w*", span)}
+    return {name for name in names - known - shown if re.search(r"\w_\w|[a-z][A-Z]", name)}
+
+
+def test_every_identifier_in_backticks_stands_in_the_code() -> None:
+    known = words(":!*.md", ":!CHANGELOG.md", ":!docs", ":!tests/repository/test_documents.py") | {*FOREIGN.split()}
+    found = {name: unknown(text, known) for name, text in PAGES.items() if name != "CHANGELOG.md"}
+    assert {name: names for name, names in found.items() if names} == {}
+    assert unknown("`error_scales` of `slope`, `fmi2DoStep(...)`", known) == {"error_scales"}
+
+
 PRINTED = re.compile(r"""\./scripts/(\w+)((?: +(?:'[^'\n]*'|[^\s`#'"|)&;]+))*)""")
 
 
@@ -98,6 +128,15 @@ MADE_UP = re.compile(r"…|\b(?:NAME|FILE|FOLDER|PRESET|SECONDS|results|upright|
 def test_every_printed_command_takes_its_arguments(command: tuple[str, ...]) -> None:
     """Those of the README, of the guides for FMPy, of studies and vehicles are run as well, by other tests."""
     assert MADE_UP.search(" ".join(command)) or accepted(*command)
+
+
+PYTEST = re.compile(r"\.venv/bin/python -m pytest ([^`\n]+)`")
+
+
+@pytest.mark.parametrize("arguments", sorted({found for text in PAGES.values() for found in PYTEST.findall(text)}))
+def test_every_printed_command_of_pytest_selects_tests(arguments: str) -> None:
+    done = run(sys.executable, "-m", "pytest", "--collect-only", "-q", *shlex.split(arguments))
+    assert done.returncode == 0, done.stdout[-2000:]
 
 
 def test_a_wrong_command_would_be_noticed() -> None:
