@@ -10,14 +10,17 @@ namespace {
 
 const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
 
+// Of few states are only the equations of a wheel that grips.
+template <int states>
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
-  const WheelFormulation& formulation = formulation_of(setup, now.scene);
+  const WheelFormulation& formulation =
+      states < WHEEL_SLIDING_STATES ? *setup.formulation : formulation_of(setup, now.scene);
   const auto rates = [&](const WheelScene& scene) { return formulation.derivative(&scene, y, y_dot); };
   const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
   double sum = 0;
-  for (int i = 0; i < formulation.states; ++i) sum += y_dot[i];
+  for (int i = 0; i < states; ++i) sum += y_dot[i];
   if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
   return least_margin(setup, now, y, N);
 }
@@ -84,7 +87,8 @@ solver::Problem problem_of(Wheel& wheel) {
   solver::Problem problem = {};
   problem.states = formulation_of(setup, now.scene).states;
   problem.owner = &wheel;
-  problem.derivative = derivative;
+  problem.derivative =
+      problem.states == WHEEL_REDUCED_STATES ? derivative<WHEEL_REDUCED_STATES> : derivative<WHEEL_MAX_STATES>;
   problem.weights = weights;
   problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
