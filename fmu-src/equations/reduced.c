@@ -35,28 +35,19 @@ typedef struct AxleLaw {
   double brake;    /* N m, capacity of the brake times kappa */
 } AxleLaw;
 
-/* Without the forces along the road and the load's. */
 static inline Drift drift_of(const WheelScene* scene, const Inertia* I, const Carrier* c) {
   const WheelParameters* w = &scene->wheel;
+  double F_1, F_h, F_Z = scene->load.F[2]; /* {F} of (15): along e1, across it, and across the road */
   double b_1 = c->omega_1 * (w->r_0 * c->omega_2 - c->eta * c->phi_dot);
   double b_2 = w->r * c->sin_theta * (c->omega_1 * c->omega_1) + c->Omega_3 * c->v_1 - c->omega_1 * c->v_3;
   double b_3 = c->eta * (c->omega_1 * c->omega_1) + c->omega_1 * c->v_2 - c->omega_2 * c->v_1;
+  road_force(scene, c, &F_1, &F_h);
   return (Drift){
-      .k_1 = w->m * b_1,
-      .k_2 = w->m * (b_2 + w->g * c->sin_theta),
-      .k_3 = w->m * (b_3 + w->g * c->cos_theta),
+      .k_1 = w->m * b_1 - F_1,
+      .k_2 = w->m * (b_2 + w->g * c->sin_theta) - (c->cos_theta * F_h + c->sin_theta * F_Z),
+      .k_3 = w->m * (b_3 + w->g * c->cos_theta) - (c->cos_theta * F_Z - c->sin_theta * F_h),
       .M = moment_of(scene, I, c),
   };
-}
-
-/* Adds F of (15) and the weight along the road, turned from fixed axes into the carrier. */
-static inline void add_load(Drift* d, const Carrier* c, const WheelScene* scene) {
-  const WheelLoad* load = &scene->load;
-  double F_1, F_h;
-  road_force(scene, c, &F_1, &F_h);
-  d->k_1 -= F_1;
-  d->k_2 -= c->cos_theta * F_h + c->sin_theta * load->F[2];
-  d->k_3 -= c->cos_theta * load->F[2] - c->sin_theta * F_h;
 }
 
 static inline System system_of(const WheelParameters* w, const Inertia* I, const Carrier* c, const Drift* d) {
@@ -127,7 +118,6 @@ __attribute__((always_inline)) static inline Instant instant_of(const WheelScene
   Inertia inertia = inertia_of(w, y[PHI]);
   Instant now = {.carrier = carrier_of(w, y)};
   now.drift = drift_of(scene, &inertia, &now.carrier);
-  add_load(&now.drift, &now.carrier, scene);
   now.system = system_of(w, &inertia, &now.carrier, &now.drift);
   return now;
 }
