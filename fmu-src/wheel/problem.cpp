@@ -44,10 +44,11 @@ void weigh_slip(const Setup& setup, double tolerance, bool settled, const double
 
 // The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
 // turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a fraction of that width.
+template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
-  const int states = formulation_of(setup, now.scene).states, spin = setup.formulation->spin_index;
+  const int spin = setup.formulation->spin_index;
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const double slow = share * setup.tolerance;
   const double tolerance = std::fmax(slow * share_at(setup, y[spin]), std::fmin(slow, rounding));
@@ -87,9 +88,9 @@ solver::Problem problem_of(Wheel& wheel) {
   solver::Problem problem = {};
   problem.states = formulation_of(setup, now.scene).states;
   problem.owner = &wheel;
-  problem.derivative =
-      problem.states == WHEEL_REDUCED_STATES ? derivative<WHEEL_REDUCED_STATES> : derivative<WHEEL_MAX_STATES>;
-  problem.weights = weights;
+  const bool few = problem.states == WHEEL_REDUCED_STATES;
+  problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<WHEEL_MAX_STATES>;
+  problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<WHEEL_MAX_STATES>;
   problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
