@@ -33,6 +33,12 @@ typedef struct Moment {
   double M_1, M_2, M_3;
 } Moment;
 
+typedef struct Accelerations {
+  double omega_1_dot, omega_2_dot, omega_3_dot;
+  double N;   /* normal force */
+  double tau; /* moment of ground and brake about the axle */
+} Accelerations;
+
 /* Inlined: what a caller does not read is not computed. */
 __attribute__((always_inline)) static inline Carrier carrier_of(const WheelParameters* w, const double* y) {
   Carrier c = {.sin_theta = sin(y[THETA]), .cos_theta = cos(y[THETA])};
@@ -59,8 +65,9 @@ static inline Inertia inertia_of(const WheelParameters* w, double phi) {
   return (Inertia){.I_11 = mean + q, .I_22 = mean - q, .p = p, .q = q};
 }
 
-/* The moment by which the wheel resists being turned with its axle; H: angular momentum about O. */
-static inline Moment gyroscopic_moment(const WheelParameters* w, const Inertia* I, const Carrier* c) {
+/* The external moment, and that by which the wheel resists being turned with its axle; H: angular momentum about O. */
+static inline Moment moment_of(const WheelScene* scene, const Inertia* I, const Carrier* c) {
+  const WheelParameters* w = &scene->wheel;
   double H_1 = I->I_11 * c->omega_1 + I->p * c->omega_2;
   double H_2 = I->p * c->omega_1 + I->I_22 * c->omega_2;
   double H_3 = w->J_z * c->omega_3;
@@ -73,6 +80,9 @@ static inline Moment gyroscopic_moment(const WheelParameters* w, const Inertia* 
     M.M_1 += 2.0 * c->phi_dot * (I->p * c->omega_1 - I->q * c->omega_2);
     M.M_2 -= 2.0 * c->phi_dot * (I->q * c->omega_1 + I->p * c->omega_2);
   }
+  M.M_1 += scene->load.M[0];
+  M.M_2 += scene->load.M[1];
+  M.M_3 += scene->load.M[2];
   return M;
 }
 
@@ -87,14 +97,33 @@ static inline void from_fixed(const Carrier* c, double X, double Y, double* alon
   *left = Y * c->cos_psi - X * c->sin_psi;
 }
 
-/* All of `out` but the reactions, which are set, from omega_dot; m a = lambda + F + weight. */
-static inline void set_accelerations(const WheelScene* scene, const Carrier* c, double omega_1_dot, double omega_2_dot,
-                                     double omega_3_dot, WheelDynamics* out) {
+/* External force along the road, load and weight. Sine and cosine of psi are needed only where there is one. */
+static inline void road_force(const WheelScene* scene, const Carrier* c, double* along, double* left) {
   const WheelParameters* w = &scene->wheel;
-  out->omega_z_dot = omega_3_dot;
-  out->theta_ddot = omega_1_dot;
-  out->psi_ddot = (omega_2_dot - c->omega_1 * c->Omega_3) / c->sin_theta;
-  out->phi_ddot = omega_3_dot - out->psi_ddot * c->cos_theta + c->omega_1 * c->omega_2;
+  double F_X = scene->load.F[0] + w->m * w->g_X, F_Y = scene->load.F[1] + w->m * w->g_Y;
+  *along = *left = 0;
+  if (F_X != 0 || F_Y != 0) from_fixed(c, F_X, F_Y, along, left);
+}
+
+/* All of y_dot but the velocity of O and the slip. */
+static inline void set_rates(const Carrier* c, const Accelerations* a, double* y_dot) {
+  y_dot[THETA] = c->omega_1;
+  y_dot[OMEGA_1] = a->omega_1_dot;
+  y_dot[OMEGA_2] = a->omega_2_dot;
+  y_dot[OMEGA_3] = a->omega_3_dot;
+  y_dot[PSI] = c->psi_dot;
+  y_dot[PHI] = c->phi_dot;
+}
+
+/* All of `out` but the horizontal reaction, which is set; m a = lambda + F + weight. */
+static inline void set_dynamics(const WheelScene* scene, const Carrier* c, const Accelerations* a, WheelDynamics* out) {
+  const WheelParameters* w = &scene->wheel;
+  out->lambda[2] = a->N;
+  out->tau = a->tau;
+  out->omega_z_dot = a->omega_3_dot;
+  out->theta_ddot = a->omega_1_dot;
+  out->psi_ddot = (a->omega_2_dot - c->omega_1 * c->Omega_3) / c->sin_theta;
+  out->phi_ddot = a->omega_3_dot - out->psi_ddot * c->cos_theta + c->omega_1 * c->omega_2;
   out->X_O_ddot = (out->lambda[0] + scene->load.F[0]) / w->m + w->g_X;
   out->Y_O_ddot = (out->lambda[1] + scene->load.F[1]) / w->m + w->g_Y;
   out->Z_O_ddot = (out->lambda[2] + scene->load.F[2]) / w->m - w->g;

@@ -12,7 +12,7 @@
  * its part in omega_dot, F: external force, weight included), and the external less the gyroscopic moment, N m. */
 typedef struct Drift {
   double k_1, k_2, k_3;
-  double M_1, M_2, M_3;
+  Moment M;
 } Drift;
 
 /* The equations of motion of (omega_1, omega_2, omega_3):
@@ -35,51 +35,31 @@ typedef struct AxleLaw {
   double brake;    /* N m, capacity of the brake times kappa */
 } AxleLaw;
 
-typedef struct Accelerations {
-  double omega_1_dot, omega_2_dot, omega_3_dot;
-  double N;   /* normal force */
-  double tau; /* moment of ground and brake about the axle */
-} Accelerations;
-
-/* Drift under the weight's part across the road alone. */
-static inline Drift drift_of(const WheelParameters* w, const Inertia* I, const Carrier* c) {
+static inline Drift drift_of(const WheelScene* scene, const Inertia* I, const Carrier* c) {
+  const WheelParameters* w = &scene->wheel;
+  double F_1, F_h, F_Z = scene->load.F[2]; /* {F} of (15): along e1, across it, and across the road */
   double b_1 = c->omega_1 * (w->r_0 * c->omega_2 - c->eta * c->phi_dot);
   double b_2 = w->r * c->sin_theta * (c->omega_1 * c->omega_1) + c->Omega_3 * c->v_1 - c->omega_1 * c->v_3;
   double b_3 = c->eta * (c->omega_1 * c->omega_1) + c->omega_1 * c->v_2 - c->omega_2 * c->v_1;
-  Moment M = gyroscopic_moment(w, I, c);
+  road_force(scene, c, &F_1, &F_h);
   return (Drift){
-      .k_1 = w->m * b_1,
-      .k_2 = w->m * (b_2 + w->g * c->sin_theta),
-      .k_3 = w->m * (b_3 + w->g * c->cos_theta),
-      .M_1 = M.M_1,
-      .M_2 = M.M_2,
-      .M_3 = M.M_3,
+      .k_1 = w->m * b_1 - F_1,
+      .k_2 = w->m * (b_2 + w->g * c->sin_theta) - (c->cos_theta * F_h + c->sin_theta * F_Z),
+      .k_3 = w->m * (b_3 + w->g * c->cos_theta) - (c->cos_theta * F_Z - c->sin_theta * F_h),
+      .M = moment_of(scene, I, c),
   };
-}
-
-/* Adds {F} of (15), F turned from fixed axes into the carrier, M already there; and a weight (N) along the road. */
-static inline void add_load(Drift* d, const Carrier* c, const WheelLoad* load, double weight_X, double weight_Y) {
-  double F_X = load->F[0] + weight_X, F_Y = load->F[1] + weight_Y;
-  double F_1 = 0, F_h = 0;                                       /* in the road's plane: along e1 and across it */
-  if (F_X != 0 || F_Y != 0) from_fixed(c, F_X, F_Y, &F_1, &F_h); /* else sine and cosine of psi are not needed */
-  d->k_1 -= F_1;
-  d->k_2 -= c->cos_theta * F_h + c->sin_theta * load->F[2];
-  d->k_3 -= c->cos_theta * load->F[2] - c->sin_theta * F_h;
-  d->M_1 += load->M[0];
-  d->M_2 += load->M[1];
-  d->M_3 += load->M[2];
 }
 
 static inline System system_of(const WheelParameters* w, const Inertia* I, const Carrier* c, const Drift* d) {
   double rho_2 = w->m * (c->rho * c->rho), eta_2 = w->m * (c->eta * c->eta);
   double inverse = 1.0 / (I->I_11 + (rho_2 + eta_2)); /* 1 / a_11 */
-  double h_1 = d->M_1 - c->rho * d->k_3 + c->eta * d->k_2;
-  double h_2 = d->M_2 - c->eta * d->k_1;
+  double h_1 = d->M.M_1 - c->rho * d->k_3 + c->eta * d->k_2;
+  double h_2 = d->M.M_2 - c->eta * d->k_1;
   System s = {
       .a_23 = -(w->m * (c->eta * c->rho)),
       .a_33 = w->J_z + rho_2,
       .b_2 = h_2,
-      .h_3 = d->M_3 + c->rho * d->k_1,
+      .h_3 = d->M.M_3 + c->rho * d->k_1,
       .omega_1_dot = h_1 * inverse,
   };
   double lift = w->m * w->r_0 * c->cos_theta; /* what a unit of omega_1_dot adds to N */
@@ -137,13 +117,12 @@ __attribute__((always_inline)) static inline Instant instant_of(const WheelScene
   const WheelParameters* w = &scene->wheel;
   Inertia inertia = inertia_of(w, y[PHI]);
   Instant now = {.carrier = carrier_of(w, y)};
-  now.drift = drift_of(w, &inertia, &now.carrier);
-  add_load(&now.drift, &now.carrier, &scene->load, w->m * w->g_X, w->m * w->g_Y);
+  now.drift = drift_of(scene, &inertia, &now.carrier);
   now.system = system_of(w, &inertia, &now.carrier, &now.drift);
   return now;
 }
 
-/* The reaction R = m a - F turned into fixed axes: lambda_1, lambda_2, lambda_3. */
+/* The horizontal reaction, of R = m a - F turned into fixed axes: lambda_1, lambda_2. */
 static inline void reaction_of(const WheelParameters* w, const Instant* now, const Accelerations* a, double lambda[3]) {
   const Carrier* c = &now->carrier;
   double R_1 = now->drift.k_1 + w->m * (c->eta * a->omega_2_dot - c->rho * a->omega_3_dot);
@@ -151,7 +130,6 @@ static inline void reaction_of(const WheelParameters* w, const Instant* now, con
   double R_3 = now->drift.k_3 + w->m * (c->rho * a->omega_1_dot);
   double R_h = c->cos_theta * R_2 - c->sin_theta * R_3; /* horizontal, across e1 */
   to_fixed(c, R_1, R_h, &lambda[0], &lambda[1]);
-  lambda[2] = a->N;
 }
 
 static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
@@ -184,12 +162,7 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   Instant now = instant_of(scene, y);
   Accelerations a = move(&now.system, law_of(scene, y[OMEGA_3]));
-  y_dot[THETA] = now.carrier.omega_1;
-  y_dot[OMEGA_1] = a.omega_1_dot;
-  y_dot[OMEGA_2] = a.omega_2_dot;
-  y_dot[OMEGA_3] = a.omega_3_dot;
-  y_dot[PSI] = now.carrier.psi_dot;
-  y_dot[PHI] = now.carrier.phi_dot;
+  set_rates(&now.carrier, &a, y_dot);
   set_velocity(&scene->wheel, &now.carrier, &y_dot[X_O], &y_dot[Y_O]);
   return a.N;
 }
@@ -221,13 +194,10 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
 }
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  const WheelParameters* w = &scene->wheel;
   Instant now = instant_of(scene, y);
-  const Carrier* c = &now.carrier;
   Accelerations a = move(&now.system, law_of(scene, y[OMEGA_3]));
-  reaction_of(w, &now, &a, out->lambda);
-  out->tau = a.tau;
-  set_accelerations(scene, c, a.omega_1_dot, a.omega_2_dot, a.omega_3_dot, out);
+  reaction_of(&scene->wheel, &now, &a, out->lambda);
+  set_dynamics(scene, &now.carrier, &a, out);
 }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {

@@ -29,8 +29,7 @@ typedef struct Body {
 
 /* What follows. */
 typedef struct Motion {
-  double N, tau;
-  double omega_1_dot, omega_2_dot, omega_3_dot;
+  Accelerations a;
   double u_x, u_y; /* m/s2, rate of the slip without the turning of the axes */
 } Motion;
 
@@ -38,18 +37,20 @@ typedef struct Motion {
  *   [ I_11 + m l^2  p    ]                [ M_1 - l N_rest + h f_y ]
  *   [ p             I_22 ] {omega_dot} =  [ M_2 - eta f_x          ]
  *   J_z omega_3_dot = M_3 + rho f_x + tau,    N = N_rest + m l omega_1_dot */
-static inline Motion motion_of(const WheelParameters* w, const Body* b, const Action* a, double f_x, double f_y) {
+static inline Motion motion_of(const WheelParameters* w, const Body* b, const Action* on, double f_x, double f_y) {
   const Carrier* c = &b->carrier;
-  double p = b->inertia.p, M_2 = a->M.M_2 - c->eta * f_x, M_3 = a->M.M_3 + c->rho * f_x;
-  Motion m;
-  m.omega_1_dot = (a->M.M_1 - b->l * a->N_rest + b->h * f_y - p * b->per_22 * M_2) * b->per_tilt;
-  m.omega_2_dot = (M_2 - p * m.omega_1_dot) * b->per_22;
-  m.N = a->N_rest + w->m * b->l * m.omega_1_dot;
-  m.tau = b->held ? -M_3 : -(b->s * m.N + a->brake) * b->kappa;
-  m.omega_3_dot = b->held ? 0 : (M_3 + m.tau) / w->J_z;
-  m.u_x = a->a_x + f_x * b->per_mass - c->eta * m.omega_2_dot + c->rho * m.omega_3_dot;
-  m.u_y = a->a_y + f_y * b->per_mass + b->h * m.omega_1_dot;
-  return m;
+  double p = b->inertia.p, M_2 = on->M.M_2 - c->eta * f_x, M_3 = on->M.M_3 + c->rho * f_x;
+  Accelerations a;
+  a.omega_1_dot = (on->M.M_1 - b->l * on->N_rest + b->h * f_y - p * b->per_22 * M_2) * b->per_tilt;
+  a.omega_2_dot = (M_2 - p * a.omega_1_dot) * b->per_22;
+  a.N = on->N_rest + w->m * b->l * a.omega_1_dot;
+  a.tau = b->held ? -M_3 : -(b->s * a.N + on->brake) * b->kappa;
+  a.omega_3_dot = b->held ? 0 : (M_3 + a.tau) / w->J_z;
+  return (Motion){
+      .a = a,
+      .u_x = on->a_x + f_x * b->per_mass - c->eta * a.omega_2_dot + c->rho * a.omega_3_dot,
+      .u_y = on->a_y + f_y * b->per_mass + b->h * a.omega_1_dot,
+  };
 }
 
 __attribute__((always_inline)) static inline Body body_of(const WheelScene* scene, const double* y) {
@@ -58,9 +59,8 @@ __attribute__((always_inline)) static inline Body body_of(const WheelScene* scen
   Body b = {.carrier = carrier_of(w, y), .inertia = inertia_of(w, y[PHI])};
   const Carrier* c = &b.carrier;
   Action* a = &b.given;
-  double F_X = load->F[0] + w->m * w->g_X, F_Y = load->F[1] + w->m * w->g_Y, F_x = 0, F_y = 0;
-  double omega_1_2 = c->omega_1 * c->omega_1, p = b.inertia.p;
-  if (F_X != 0 || F_Y != 0) from_fixed(c, F_X, F_Y, &F_x, &F_y);
+  double omega_1_2 = c->omega_1 * c->omega_1, p = b.inertia.p, F_x, F_y;
+  road_force(scene, c, &F_x, &F_y);
   b.h = w->r_0 * c->sin_theta + w->r;
   b.l = w->r_0 * c->cos_theta;
   b.per_mass = 1 / w->m;
@@ -68,17 +68,14 @@ __attribute__((always_inline)) static inline Body body_of(const WheelScene* scen
   b.per_tilt = 1 / (b.inertia.I_11 - p * p * b.per_22 + w->m * b.l * b.l);
   b.g_x = w->m * b.l * b.per_tilt * (c->eta * p * b.per_22);
   b.g_y = w->m * b.l * b.per_tilt * b.h;
-  a->M = gyroscopic_moment(w, &b.inertia, c);
-  a->M.M_1 += load->M[0];
-  a->M.M_2 += load->M[1];
-  a->M.M_3 += load->M[2];
+  a->M = moment_of(scene, &b.inertia, c);
   a->N_rest = w->m * (w->g - w->r_0 * c->sin_theta * omega_1_2) - load->F[2];
   a->a_x = F_x * b.per_mass + c->omega_1 * (w->r * c->sin_theta * c->omega_2 + c->eta * c->omega_3 - c->psi_dot * b.h);
   a->a_y = F_y * b.per_mass + b.l * omega_1_2 - c->psi_dot * c->v_1;
   a->brake = load->brake;
   b.kappa = wheel_kappa(&scene->friction, c->omega_3);
   b.held = scene->friction.kind == WHEEL_HELD;
-  b.N_free = motion_of(w, &b, a, 0, 0).N;
+  b.N_free = motion_of(w, &b, a, 0, 0).a.N;
   /* The sign of N is that without sliding friction as long as there is room. */
   if (scene->ground == WHEEL_GROUND_PULLS || (scene->ground == WHEEL_GROUND_BY_FORCE && b.N_free <= 0)) return b;
   b.mu = scene->mu_slide;
@@ -100,11 +97,11 @@ static WheelSlip slip_of(const WheelParameters* w, const Body* b, double chi) {
   static const Action none = {.brake = 0};
   double d_x = cos(chi), d_y = sin(chi), room = room_of(b, d_x, d_y);
   Motion m = slide(w, b, d_x, d_y);
-  double N_turn = b->mu * m.N * (b->g_x * d_y - b->g_y * d_x) / room; /* dN/d(chi) */
-  Motion turned = motion_of(w, b, &none, -b->mu * (N_turn * d_x - m.N * d_y), -b->mu * (N_turn * d_y + m.N * d_x));
+  double N = m.a.N, N_turn = b->mu * N * (b->g_x * d_y - b->g_y * d_x) / room; /* dN/d(chi) */
+  Motion turned = motion_of(w, b, &none, -b->mu * (N_turn * d_x - N * d_y), -b->mu * (N_turn * d_y + N * d_x));
   double growth = m.u_x * d_x + m.u_y * d_y;
   return (WheelSlip){
-      .N = m.N,
+      .N = N,
       .room = room,
       .growth = growth,
       .turn = m.u_y * d_x - m.u_x * d_y,
@@ -173,17 +170,12 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
   const Carrier* c = &b.carrier;
   double d_x = cos(y[CHI]), d_y = sin(y[CHI]);
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
-  y_dot[THETA] = c->omega_1;
-  y_dot[OMEGA_1] = m.omega_1_dot;
-  y_dot[OMEGA_2] = m.omega_2_dot;
-  y_dot[OMEGA_3] = m.omega_3_dot;
-  y_dot[PSI] = c->psi_dot;
-  y_dot[PHI] = c->phi_dot;
+  set_rates(c, &m.a, y_dot);
   set_velocity(c, b.h, y[SPEED] * d_x, y[SPEED] * d_y, &y_dot[X_O], &y_dot[Y_O]);
   y_dot[SPEED] = m.u_x * d_x + m.u_y * d_y;
   y_dot[CHI] = y[SPEED] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[SPEED] - c->psi_dot;
   y_dot[CHI + 1] = y_dot[CHI + 2] = 0;
-  return room_of(&b, d_x, d_y) > WHEEL_LEAST_ROOM ? m.N : INFINITY;
+  return room_of(&b, d_x, d_y) > WHEEL_LEAST_ROOM ? m.a.N : INFINITY;
 }
 
 static void pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
@@ -200,11 +192,9 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   Body b = body_of(scene, y);
   double d_x = cos(y[CHI]), d_y = sin(y[CHI]);
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
-  out->lambda[0] = -b.mu * m.N * (d_x * b.carrier.cos_psi - d_y * b.carrier.sin_psi);
-  out->lambda[1] = -b.mu * m.N * (d_x * b.carrier.sin_psi + d_y * b.carrier.cos_psi);
-  out->lambda[2] = m.N;
-  out->tau = m.tau;
-  set_accelerations(scene, &b.carrier, m.omega_1_dot, m.omega_2_dot, m.omega_3_dot, out);
+  to_fixed(&b.carrier, d_x, d_y, &out->lambda[0], &out->lambda[1]);
+  for (int i = 0; i < 2; ++i) out->lambda[i] *= -b.mu * m.a.N;
+  set_dynamics(scene, &b.carrier, &m.a, out);
 }
 
 static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_SLIDING_STATES); }

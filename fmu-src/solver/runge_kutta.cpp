@@ -40,7 +40,8 @@ struct RungeKutta::Work {
   double h = engine.size_;  // s
   alignas(16) double weights[width] = {}, at[width] = {};
 
-  double norm(const double* x) const { return weighted_norm<width>(x, weights); }
+  // Inlined, it would keep the loops before it from being vectorised.
+  [[gnu::noinline]] double norm(const double* x) const { return weighted_norm<width>(x, weights); }
 
   // f at t and y as stage i; returns the margin, NaN where the rates are not finite.
   double evaluate(int i, double t, const double* y) {

@@ -10,14 +10,17 @@ namespace {
 
 const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
 
+// Of few states are only the equations of a wheel that grips.
+template <int states>
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
-  const WheelFormulation& formulation = formulation_of(setup, now.scene);
+  const WheelFormulation& formulation =
+      states < WHEEL_SLIDING_STATES ? *setup.formulation : formulation_of(setup, now.scene);
   const auto rates = [&](const WheelScene& scene) { return formulation.derivative(&scene, y, y_dot); };
   const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
   double sum = 0;
-  for (int i = 0; i < formulation.states; ++i) sum += y_dot[i];
+  for (int i = 0; i < states; ++i) sum += y_dot[i];
   if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
   return least_margin(setup, now, y, N);
 }
@@ -41,10 +44,11 @@ void weigh_slip(const Setup& setup, double tolerance, bool settled, const double
 
 // The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
 // turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a fraction of that width.
+template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
-  const int states = formulation_of(setup, now.scene).states, spin = setup.formulation->spin_index;
+  const int spin = setup.formulation->spin_index;
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const double slow = share * setup.tolerance;
   const double tolerance = std::fmax(slow * share_at(setup, y[spin]), std::fmin(slow, rounding));
@@ -84,8 +88,9 @@ solver::Problem problem_of(Wheel& wheel) {
   solver::Problem problem = {};
   problem.states = formulation_of(setup, now.scene).states;
   problem.owner = &wheel;
-  problem.derivative = derivative;
-  problem.weights = weights;
+  const bool few = problem.states == WHEEL_REDUCED_STATES;
+  problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<WHEEL_MAX_STATES>;
+  problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<WHEEL_MAX_STATES>;
   problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
