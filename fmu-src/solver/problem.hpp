@@ -5,7 +5,7 @@
 
 namespace solver {
 
-inline constexpr int max_states = 12, max_extremes = 16, max_degree = 12, max_watched = 12;
+inline constexpr int max_states = 12, max_extremes = 16, max_degree = 12, max_watched = 13;
 
 enum class Method : int { adams, bdf, runge_kutta, collocation };
 

@@ -159,7 +159,10 @@ void Session::with_drawn(unsigned legal_in, fmi2Status (*function)(fmi2Component
   if constexpr ((std::is_same_v<Parameters, const double*> || ...)) {
     constexpr bool derivatives = (std::is_same_v<Parameters, const int*> || ...);  // their orders
     if (legal_in == settable && (derivatives || now_->model.state == step_complete))
-      for (const double value : arguments.reals()) now_->model.free = now_->model.free && value == 0;
+      for (const double value : arguments.reals()) {
+        Model& model = now_->model;
+        model.free = model.free && value == 0 && model.level;
+      }
   }
   if (legal_in & finite)
     for (const double value : arguments.reals()) expect(std::isfinite(value), "a derivative is finite");

@@ -135,6 +135,7 @@ void check_after_start(Slot& slot) {
   const std::vector<double> values = readings(slot);
   check_finite(values);
   slot.model.start_energy = values[ref_E];
+  slot.model.level = values[ref_slope] == 0;
   slot.model.energy_scale =
       std::fabs(values[ref_E]) + values[ref_m] * values[ref_g] * (values[ref_r_0] + values[ref_r]);
   for (unsigned reference = 0; reference < ref_first_output; ++reference)

@@ -44,7 +44,8 @@ constexpr unsigned may_fail = 1u << 16, finite = 1u << 17;
 // What the harness knows of an instance; saved and restored together with the FMU's own state.
 struct Model {
   State state = instantiated;
-  bool free = true;  // neither inputs nor friction since the start: the energy stays
+  bool free = true;   // neither inputs, friction nor another slope since the start: the energy stays
+  bool level = true;  // at the start
   bool has_stop = false;
   double stop = 0, tolerance = 1e-8;
   double start_energy = 0;  // J, at the end of initialization
