@@ -139,6 +139,34 @@ def test_a_solver_that_stops_a_little_early_still_passes_the_event(library: Libr
         assert wheel.get("friction_mode") == [before]
 
 
+SOON = 1e-7 * (0.35 / 9.81) ** 0.5  # s: an event that lies ahead by less has happened
+ENDS, CHANGES = "terminateSimulation", "valuesOfContinuousStatesChanged"
+PULLED = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}
+FALL = {"phi_dot_start": 0.0}
+AHEAD = {  # start values, which event of the run, what it calls for
+    "release": ({"s": 0.03}, 1, CHANGES),
+    "lift-off": (RIM, 0, ENDS),
+    "a ground that presses again": (PULLED, 0, CHANGES),
+    "a ground that begins to pull": (PULLED, 1, CHANGES),
+    "loss of grip": ({"mu_max": 0.3}, 0, ENDS),
+    "flat": (FALL, 0, ENDS),
+    "flat on the other side": ({**FALL, "theta_start": 1.8}, 0, ENDS),
+}
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+@pytest.mark.parametrize("event", AHEAD)
+def test_an_event_counts_that_lies_ahead_by_less_than_the_wheels_own_tenmillionth(library, event: str, share: float):
+    values, number, what = AHEAD[event]
+    with exchange(library, **values) as whole, exchange(library, **values) as wheel:
+        run, early = (Run(w, 1e-12, no_inputs) for w in (whole, wheel))
+        while len(run.events) <= number:
+            run.to(run.t + 0.1)
+        early.to(run.events[number] - share * SOON)
+        happened = len(early.events) > number or bool(getattr(wheel.event(), what))
+        assert happened == (share < 1)
+
+
 def test_a_driven_wheel_on_a_slope_agrees_with_the_reference(library: Library) -> None:
     wheel, start = Wheel(J_x=0.7, J_y=1.2, s=0.02, slope=0.1, slope_direction=0.5), Start(psi_dot=0.4)
     times = list(np.linspace(0, 3, 7))

@@ -80,16 +80,6 @@ def test_ten_minutes_of_weak_releases_keep_energy_spin_and_cost(library: Library
     within((rhs[3] - rhs[2]) / (rhs[1] - rhs[0]), 1.1, "evaluations, late over early")
 
 
-@pytest.mark.parametrize("omega_s", [1e-5, 1e-7])
-def test_bdf_has_only_the_time_in_which_omega_z_sticks(library: Library, omega_s: float) -> None:
-    """The paper's wheel sticks for a sixth of its time."""
-    law = {**FRICTION, "friction_law": "regularized", "omega_s": omega_s}
-    steps, of_bdf = (
-        run(library, {**law, "method": method}, TIMES, 1e-8).counters["n_steps"] for method in ("automatic", "bdf")
-    )
-    within(steps / of_bdf, 0.6, "steps over those of BDF")
-
-
 def steps_to_and_fro(wheel, **law: str | float) -> int:
     """Of an upright wheel that a moment turns back twenty times."""
     w = wheel().start(theta_start=np.pi / 2, s=0.01, keep_contact=True, tolerance=1e-8, **law)
