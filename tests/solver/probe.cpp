@@ -23,7 +23,7 @@ struct Setting {
   Kind kind;
   solver::Method method;
   double tolerance, longest_step, y[states];
-  Watch each_step, by_margin;  // events 1 and 2; null: not watched
+  Watch watched;  // null: nothing
   const double* extremes;
   int extreme_count;
 };
@@ -45,13 +45,9 @@ void rates(const Setting& s, double t, const double* y, double* d) {
 
 int states_of(const Setting& s) { return s.kind == harmonic ? 2 : 1; }
 
-double margin(void* owner, int, double t, const double* y) {
-  return of(owner).by_margin ? of(owner).by_margin(t, y) : 1;
-}
-
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   rates(of(owner), t, y, y_dot);
-  return std::isfinite(y_dot[0]) ? margin(owner, 0, t, y) : NAN;
+  return std::isfinite(y_dot[0]) ? 1 : NAN;
 }
 
 void weights(void* owner, double share, const double* y, double* w) {
@@ -59,7 +55,7 @@ void weights(void* owner, double share, const double* y, double* w) {
   for (int i = 0; i < states; ++i) w[i] = per_state / (share * of(owner).tolerance * (1 + std::fabs(y[i])));
 }
 
-double watched(void* owner, int, double t, const double* y) { return of(owner).each_step(t, y); }
+double watched(void* owner, int, double t, const double* y) { return of(owner).watched(t, y); }
 
 int extremes_inside(void* owner, double t_lo, double t_hi, double* instants) {
   const Setting& s = of(owner);
@@ -71,9 +67,8 @@ solver::Problem problem_of(Probe* probe) {
   Setting& s = probe->setting;
   solver::Problem p = {};
   p.states = states, p.owner = &s, p.derivative = derivative, p.weights = weights;
-  if (s.each_step) p.watch({1, watched, false});
-  if (s.by_margin) p.watch({2, margin, true});
-  p.extremes = s.extreme_count ? extremes_inside : nullptr, p.near = 0.1, p.longest_step = s.longest_step;
+  if (s.watched) p.watch({1, watched, false});
+  p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = s.longest_step;
   return p;
 }
 
@@ -104,11 +99,11 @@ PUBLIC void probe_restart(Probe* probe, double t, const double* y) {
   (void)probe->solver.restart(problem_of(probe), probe->setting.method, t, y);
 }
 
-// Begin of the last step, time known, instant and name of the event; steps, evaluations, roots.
-PUBLIC void probe_progress(const Probe* probe, double now[7]) {
+// Begin of the last step, time known, instant of the event; steps, evaluations, roots.
+PUBLIC void probe_progress(const Probe* probe, double now[6]) {
   const solver::Solver& s = probe->solver;
   const solver::Counters& n = s.counters();
   const double times[] = {s.step_start(), s.known_until(), s.event_time()};
-  const long long counts[] = {s.event(), n.steps, n.rhs, n.roots};
-  std::copy_n(counts, 4, std::copy_n(times, 3, now));
+  const long long counts[] = {n.steps, n.rhs, n.roots};
+  std::copy_n(counts, 3, std::copy_n(times, 3, now));
 }

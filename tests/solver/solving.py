@@ -11,30 +11,29 @@ PROBLEMS = {"harmonic": (1.0, 0.0), "clock": (0.0,), "explosive": (1.0,), "endin
 STATES = 8  # those beyond the problem's own rest at zero
 STEPPED, EVENT, FAILED = range(3)
 WATCH = CFUNCTYPE(c_double, c_double, POINTER(c_double))
-# Begin of the last step, time known, instant and name of the event; counts since the start.
-Progress = namedtuple("Progress", "begin known instant event steps rhs roots")
+# Begin of the last step, time known, instant of the event; counts since the start.
+Progress = namedtuple("Progress", "begin known instant steps rhs roots")
 
 
 class Setting(Structure):
     _fields_ = (
         *(("kind", c_int), ("method", c_int), ("tolerance", c_double)),
-        *(("longest_step", c_double), ("y", c_double * STATES), ("each_step", WATCH), ("by_margin", WATCH)),
+        *(("longest_step", c_double), ("y", c_double * STATES), ("watched", WATCH)),
         *(("extremes", POINTER(c_double)), ("extreme_count", c_int)),
     )
 
 
 class Solver:
-    """At t = 0. each_step, by_margin: functions of (t, y) that are watched, events 1 and 2; extremes: instants."""
+    """At t = 0. each_step: a function of (t, y) that is watched; extremes: instants."""
 
     def __init__(
-        self, library, method, problem="harmonic", tolerance=1e-8, longest_step=1.0,
-        each_step=None, by_margin=None, extremes=(),
-    ):  # fmt: skip
+        self, library, method, problem="harmonic", tolerance=1e-8, longest_step=1.0, each_step=None, extremes=()
+    ):
         self.library, y = library, PROBLEMS[problem]
         self.states = len(y)
         self.setting = Setting(
             list(PROBLEMS).index(problem), METHODS[method], tolerance, longest_step, (c_double * STATES)(*y),
-            WATCH(each_step or 0), WATCH(by_margin or 0), (c_double * len(extremes))(*extremes), len(extremes),
+            WATCH(each_step or 0), (c_double * len(extremes))(*extremes), len(extremes),
         )  # fmt: skip
         for name, result in (("new", c_void_p), ("failure", c_char_p)):
             getattr(library, f"probe_{name}").restype = result
