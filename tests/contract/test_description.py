@@ -17,7 +17,7 @@ from support.paths import ROOT
 
 sys.path.insert(0, str(ROOT / "cmake"))
 from description.measuring import event_indicators, measured
-from description.numbering import guid_of, numbered
+from description.numbering import numbered
 
 FULL_TURN = 2 * np.pi
 SCHEMAS = Path(validation.__file__).parent / "schema"
@@ -164,8 +164,7 @@ def test_log_categories_are_those_the_library_knows(wheel, description):
     assert w.ask("SetDebugLogging", 1, 1, [b"logNothing"]) == OK and "logNothing" in w.said()  # the partner
 
 
-# The numbers: ModelStructure lists what was measured and nothing else, and whoever adds, moves or removes a variable
-# numbers nothing by hand.
+# The numbers: ModelStructure lists what was measured and nothing else.
 
 
 @pytest.fixture(scope="module")
@@ -182,19 +181,6 @@ def test_the_description_lists_exactly_the_dependencies_that_are_measured_which_
     assert numbered(TEXT, depends) == TEXT, "run scripts/variables"
     without = {**depends, "Outputs": {**depends["Outputs"], "theta": {"M_1"}}}
     assert numbered(TEXT, without) != TEXT  # a false algebraic loop would be seen
-
-
-NEW = """    <ScalarVariable name="of_this_test" causality="parameter" variability="fixed" initial="exact"
-      description="Added first"><Real unit="m" start="0"/></ScalarVariable>
-"""
-
-
-def test_a_variable_that_comes_and_goes_again_leaves_the_numbers_and_the_guid_as_they_were(description):
-    assert description.guid == guid_of(TEXT), "run ./scripts/variables"
-    added = numbered(TEXT.replace("  <ModelVariables>\n", f"  <ModelVariables>\n{NEW}"))
-    assert 'name="of_this_test" valueReference="0"' in added and guid_of(added) != guid_of(TEXT)
-    removed = re.sub(r' *<ScalarVariable name="of_this_test".*?</ScalarVariable>\n', "", added, flags=re.DOTALL)
-    assert numbered(removed) == TEXT != removed
 
 
 def test_the_terminal_of_the_hub_is_valid_and_a_bus_of_signals(fmu, description):

@@ -276,75 +276,6 @@ def test_the_indicator_of_contact_is_the_normal_force_over_the_weight(library: L
         assert wheel.indicator("lost_contact") == pytest.approx(np.cos(slope) + 10 / WEIGHT, abs=1e-8)
 
 
-SOON = 1e-7 * (0.35 / 9.81) ** 0.5  # s: an event that lies ahead by less has happened
-
-
-def aimed(wheel: FMU2Wheel, t: float, x: np.ndarray, event: str, known: str, ahead: float) -> bool:
-    """Sets an input so that the event's indicator falls to zero in `ahead` seconds at its present rate, a difference
-    along the motion. False where it rises, or where no such input is found."""
-    d = 1e-5
-    for _ in range(9):
-        sides, rate = [], wheel.derivatives()
-        for step in (d, -d):
-            wheel.place(t, x + step * rate)
-            sides.append(wheel.indicator(event))
-        fall = (sides[1] - sides[0]) / (2 * d)
-        wheel.place(t, x)
-        (value,), here = wheel.get(known), wheel.indicator(event)
-        if fall > 1e-3 and abs(here / (fall * ahead) - 1) < 0.02:
-            return True
-        assert wheel.set(**{known: value + 1.0}) == OK
-        slope = wheel.indicator(event) - here
-        assert wheel.set(**{known: value + (fall * ahead - here) / slope}) == OK
-    return False
-
-
-@pytest.mark.parametrize("share", [0.9, 1.1])
-def test_a_release_counts_that_lies_ahead_by_less_than_the_wheels_own_tenmillionth(library: Library, share) -> None:
-    """Whatever falls to the release: the capacity with N, or the moment that holds, of either sign."""
-    rng, found = np.random.default_rng(8), {-1.0: 0, 1.0: 0}
-    while min(found.values()) < 6:
-        s, side = 10 ** rng.uniform(-3, -0.5), rng.choice([-1.0, 1.0])
-        with exchange(library, s=s, **AT_REST) as wheel:
-            x = wheel.x() + [0, 0, 0, rng.uniform(-0.6, 0.6), 0, *rng.uniform(-2, 2, 2), 0]
-            wheel.place(0.0, x)
-            assert wheel.set(M_3=side * (20 + 200 * s)) == OK  # beyond what holds, on its side of the corner at tau = 0
-            if wheel.get("lambda_3")[0] < 50 or not aimed(wheel, 0.0, x, "spin_changes", "M_3", share * SOON):
-                continue
-            assert wheel.get("friction_mode") == [0] and wheel.get("tau")[0] * side < 0
-            assert bool(wheel.event().valuesOfContinuousStatesChanged) == (share < 1)
-            assert wheel.get("friction_mode") == [side if share < 1 else 0]
-            found[side] += 1
-
-
-ENDS, CHANGES = "terminateSimulation", "valuesOfContinuousStatesChanged"
-AHEAD = [
-    ("lost_contact", "F_Z", {"keep_contact": True}, CHANGES),
-    ("lost_contact", "F_Z", {"keep_contact": True, "F_Z": 1e4}, CHANGES),  # a ground that pulls
-    ("lost_contact", "F_Z", {}, ENDS),
-    ("lost_grip", "F_X", {"mu_max": 0.5}, ENDS),
-    ("lost_grip", "M_1", {"mu_max": 0.2}, ENDS),
-]
-
-
-@pytest.mark.parametrize("share", [0.9, 1.1])
-@pytest.mark.parametrize(("event", "known", "values", "what"), AHEAD)
-def test_a_change_of_contact_or_grip_counts_that_lies_ahead_by_less_than_that(
-    library: Library, event: str, known: str, values: dict, what: str, share: float
-) -> None:
-    rng, found = np.random.default_rng(11), 0
-    while found < 8:
-        with exchange(library, theta_start=np.pi / 2, phi_dot_start=-3.0, **values) as wheel:
-            x = wheel.x() + [0, 0, 0, rng.uniform(-0.6, 0.6), 0, *rng.uniform(-2, 2, 3)]
-            wheel.place(0.0, x)
-            if not aimed(wheel, 0.0, x, event, known, share * SOON):
-                continue
-            if what == ENDS and wheel.get("lambda_3")[0] < -1e-3 * WEIGHT:  # a load under which nothing presses
-                continue
-            assert bool(getattr(wheel.event(), what)) == (share < 1)
-            found += 1
-
-
 @pytest.mark.parametrize(("mu_max", "ends"), [(0.3, True), (0.6, False), (0.0, False)])
 def test_another_limit_of_the_grip_is_decided_in_the_event_mode_that_sets_it(library: Library, mu_max, ends) -> None:
     """An upright wheel that F_X pushes requires |lambda_x| / N = 0.4 with F_X = 0.4 m g (1 + m R^2 / J_z)."""
@@ -366,17 +297,6 @@ def test_a_held_wheel_is_released_in_the_event_mode_in_which_the_road_becomes_to
         assert wheel.enterEventMode() == OK
         wheel.put(slope=np.arctan(0.03 / 0.35) * share).decide()
         assert wheel.get("friction_mode") == [mode] and (wheel.get("omega_z_dot")[0] > 0) == (mode > 0)
-
-
-@pytest.mark.parametrize("share", [0.9, 1.1])
-@pytest.mark.parametrize("side", [1, -1])
-def test_a_wheel_counts_as_flat_that_is_so_soon(library: Library, side: int, share: float) -> None:
-    for rate in (0.1, 1.0, 10.0):
-        with exchange(library) as wheel:
-            x = wheel.x()
-            x[3], x[5:] = np.pi / 2 - side * (np.pi / 2 - 1e-7 - share * SOON * rate), [-side * rate, 0, 0]
-            wheel.place(0.1, x)
-            assert bool(wheel.event().terminateSimulation) == (share < 1), rate
 
 
 def test_nominal_values_are_the_scales_of_the_error(library: Library) -> None:

@@ -208,15 +208,6 @@ def test_a_start_at_a_turning_point_or_beside_it_is_the_same_motion(library: cty
     within(error(got, want) / (1e-8 + 3 * abs(theta_dot)), 1, "error over that of the start")
 
 
-@pytest.mark.parametrize("t", [1e6, 1e9, 1e15, 1e300])
-def test_any_time_can_be_read(library: ctypes.CDLL, t: float) -> None:
-    orbit = Orbit(library, tolerance=1e-12)
-    y = orbit([t])[0]
-    assert np.isfinite(y).all()
-    one = orbit(np.linspace(0, orbit.half_period, 20_001))
-    within(np.abs(one[:, [0, 2, 3]] - y[[0, 2, 3]]).sum(axis=1).min(), 1e-3, "distance to a state of the nutation")
-
-
 # In the order of probe.cpp. The last three of the rates change psi, phi and Y_O alone, with the rate of theta.
 DISTURBANCES = ["drag", "towards north", "towards east", "beside a line", "unbalanced", "growing"]
 DISTURBANCES += ["wind", "turning", "rolling", "drifting"]

@@ -1,16 +1,14 @@
-"""A lift-off inside one step, of which neither of its ends shows anything.
+"""A lift-off inside one step by a varying input, of which neither of its ends shows anything.
 
-By a varying input: the wheel rolls upright, F_Z only carries it, N = m g - F_Z; the lift-off is at the first root of
-a polynomial. Or without one: N grazes zero as the wheel rocks, where a constant F_Z carries so much of the weight
-that the least N of the first swing lies just below zero, or just above.
+The wheel rolls upright, F_Z only carries it, N = m g - F_Z; the lift-off is at the first root of a polynomial.
+test_stability_sweep.py has the lift-off without an input, where N grazes zero.
 """
 
 from math import pi
 
 import numpy as np
 import pytest
-from scipy.optimize import root_scalar
-from support.bounds import EPSILON, beyond, within
+from support.bounds import EPSILON, within
 from support.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK
 from support.scenes import FORCED, PAPER
 from support.schedule import play
@@ -83,12 +81,7 @@ def test_a_wheel_of_next_to_no_mass_lifts_off_at_the_same_instant(wheel, kind):
 def test_two_inputs_that_nearly_cancel_hide_nothing(wheel, ramp, s):
     """At theta = 1.2 rad a moment M_1 presses as well. Every kind of run sees the lift-off that 400 short steps see."""
     start = {"theta_start": 1.2, "phi_dot_start": -8.0, "s": s}
-    probe = wheel().start(**start).to(BEGIN)
-    pressed = probe.get("lambda_3")[0]
-    probe.set(F_Z=1.0)
-    by_force = probe.get("lambda_3")[0] - pressed
-    probe.set(F_Z=0.0, M_1=1.0)
-    by_moment = probe.get("lambda_3")[0] - pressed
+    ((by_force, by_moment),) = wheel().start(**start).to(BEGIN).jacobian(["lambda_3"], ["F_Z", "M_1"])
     force = [WEIGHT * c for c in cubic(60.0)]
     slope = ramp * WEIGHT / STEP
     inputs = {"F_Z": [force[0], force[1] + slope, *force[2:]], "M_1": [0.0, -slope * by_force / by_moment]}
@@ -113,46 +106,3 @@ def test_a_brake_that_gives_way_inside_one_step_lets_the_wheel_turn_at_its_insta
     assert w.get("phi")[0] != 0
     inputs["M_brake"][0] = 6.1  # the partner: it sinks to 2.1
     assert held.give(inputs).to(STEP).get("phi") == [0.0]
-
-
-ROCKING = {"theta_start": 1.2, "psi_dot_start": 1.0, "phi_dot_start": -8.0}
-SWING = 0.4  # s, with one dip; half a dozen steps of Runge-Kutta
-
-
-def least_normal_force(wheel, force, s):
-    """Of a wheel that is kept on the ground: the instant at which N is least, N there and its bend, N/s^2.
-
-    By a parabola through three points of a fine grid.
-    """
-    w = wheel().start(tolerance=1e-10, keep_contact=True, F_Z=force, s=s, **ROCKING)
-    times, found = np.linspace(0, SWING, 401)[1:], []
-    for t in times:
-        w.to(t)
-        found += w.get("lambda_3")
-    w.close()
-    k = int(np.argmin(found))
-    a, b, c = np.polyfit(times[k - 1 : k + 2] - times[k], found[k - 1 : k + 2], 2)
-    return times[k] - b / (2 * a), c - b * b / (4 * a), 2 * a
-
-
-def grazing_force(wheel, least, s):
-    """F_Z, N, for which the least N is `least`; its instant and the bend of N there."""
-    found = root_scalar(lambda force: least_normal_force(wheel, force, s)[1] - least, x0=100.0, x1=120.0, xtol=1e-8)
-    return found.root, *least_normal_force(wheel, found.root, s)[::2]
-
-
-@pytest.mark.parametrize("s", [0.0, 0.03])
-@pytest.mark.parametrize("depth", [1e-1, 1e-3])
-def test_a_dip_of_the_normal_force_inside_one_step_ends_the_run(wheel, depth, s):
-    force, instant, bend = grazing_force(wheel, -depth, s)
-    above, _, _ = grazing_force(wheel, depth, s)
-    half = np.sqrt(2 * depth / bend)  # s, from the begin of the dip to its middle: 19 ms and 1.9 ms
-    for forced in FORCED:
-        kind = {**forced, "tolerance": 1e-8, "s": s}
-        w = wheel().start(F_Z=force, **kind, **ROCKING)
-        assert w.step_to(SWING) == DISCARD and "lifted off" in w.sentences[-1], kind
-        found = w.status(LAST_SUCCESSFUL_TIME)
-        within(abs(found - (instant - half)) / half, 0.04, "difference")
-        beyond(abs(found - instant) / half, 0.9, "difference")  # the partner
-        w = wheel().start(F_Z=above, **kind, **ROCKING)  # another: N stays as far above zero
-        assert w.step_to(SWING) == OK, kind

@@ -29,27 +29,13 @@ def test_the_log_of_a_ground_that_pulls_often_does_not_depend_on_the_grid(wheel,
     for step in (0.25, 4.0, 100.0):
         w = wheel().start(method=method, **PULLING).to(*np.arange(step, 100.0 + step / 2, step))
         assert len(pulls_of(w)) == MANY
-        assert w.terminate() == OK
+        restored = wheel().back(w.serialized())
+        assert w.terminate() == restored.terminate() == OK
         logs.append(pulls_of(w))
+        assert pulls_of(restored) == pulls_of(w)[MANY:]  # that the run sums up
     assert logs[0] == logs[1] == logs[2] and len(logs[0]) == MANY + 1
     times, last = logs[0][-1].split(" times, "), logs[0][-1].split(" last at t = ")
     assert int(times[0]) > 300 and 99 < float(last[1].split()[0]) < 100
-
-
-@pytest.mark.parametrize("method", [1, 4], ids=["unfolded", "stepped"])
-def test_a_restored_run_that_ends_before_the_next_pull_sums_up_as_the_one_that_was_saved(wheel, method):
-    w, other = wheel().start(method=method, **PULLING).to(100.0), wheel()
-    other.back(w.serialized())
-    assert w.terminate() == other.terminate() == OK
-    (summary,) = pulls_of(other)
-    assert summary == pulls_of(w)[-1]
-    beyond(float(summary.split(" last at t = ")[1].split()[0]), 99, "instant of the last pull, s")
-
-
-def test_few_pulls_are_not_summed_up(wheel):
-    w = wheel().start(**PULLING).to(1.0)
-    assert 0 < len(pulls_of(w)) < MANY and w.terminate() == OK
-    assert not any(" times, " in sentence for sentence in pulls_of(w))
 
 
 @pytest.mark.parametrize("phi_dot", [-2.0, -2e4])
@@ -67,8 +53,9 @@ def test_a_restored_run_logs_the_same_pulls(wheel, method, t):
     other = wheel().back(w.serialized())
     w.take_messages()
     for each in (w, other):
-        each.put(M_1=1e-6).to(1.0, 3.0)
+        assert each.put(M_1=1e-6).to(1.0, 3.0).terminate() == OK
     assert pulls_of(w) == pulls_of(other) and len(pulls_of(w)) > 5
+    assert not any(" times, " in sentence for sentence in pulls_of(w))  # few are not summed up
     assert w.bits() == other.bits()
     assert min(instants_of_pulls(w)) > t  # a pull that had begun before is not logged again
 
@@ -114,17 +101,6 @@ def test_a_start_after_many_turns_does_not_shorten_how_far_a_free_wheel_goes(whe
     """Only what psi and phi turn from there on takes digits."""
     for far, status in ((1e5, OK), (1e12, ERROR)):
         assert wheel().start(psi_start=1e9, phi_start=-1e9).step(far) == status
-
-
-BEFORE = [({"psi_start": 0.3, "X_O_start": 7.0}, {}), ({"phi_start": -2.0, "Y_O_start": 0.1}, {})]
-BEFORE += [({"tolerance": 1e-5}, {"tolerance": 1e-10})]
-
-
-@pytest.mark.parametrize(("first", "then"), BEFORE, ids=["place and heading", "place and roll angle", "tolerance"])
-def test_after_another_start_and_a_reset_the_orbit_is_the_one_built_here(wheel, first, then):
-    w = wheel().start(**first).to(3.0)
-    assert w.reset() == OK
-    assert w.start(**then).to(5.0).bits() == wheel().start(**then).to(5.0).bits()
 
 
 def test_the_time_of_the_last_change_is_part_of_a_state(wheel):
@@ -175,25 +151,17 @@ def test_the_rate_of_a_reaction_follows_all_orders_of_the_input(wheel):
             w.to(0.5 * (k + 1))
 
 
-@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("order", [0, 1, 2, 3])
 @pytest.mark.parametrize("method", [1, 2, 3, 4])
-def test_a_change_of_one_derivative_alone_is_taken(wheel, method, order):
-    """M_3 goes on with the same value and the same other derivatives."""
+def test_a_small_change_of_the_value_or_of_one_derivative_alone_is_taken(wheel, method, order):
+    """M_3 goes on with all else as it was."""
     ends = []
-    for change in (0.0, 1e-3):
+    for change in (0.0, 1e-6):
         shape = [0.3 + 0.1 + 0.025 + 0.00625, 0.2 + 0.1 + 0.0375, 0.1 + 0.075, 0.05]
         shape[order] += change
         w = wheel().start(theta_start=1.2, s=0.0, method=method).give({"M_3": (0.3, 0.2, 0.1, 0.05)}).to(0.5)
         ends += w.give({"M_3": shape}).to(1.0).get("phi_dot")
-    beyond(abs(ends[1] - ends[0]), 1e-6, "ends")
-
-
-def test_a_small_change_of_a_value_is_taken(wheel):
-    ends = []
-    for torque in (1.0, 1.0 + 1e-6):
-        w = wheel().start(theta_start=pi / 2, phi_dot_start=0.0, method=2)
-        ends += w.put(M_3=1.0).to(0.5).put(M_3=torque).to(1.0).get("phi_dot")
-    assert ends[1] > ends[0]
+    beyond(abs(ends[1] - ends[0]), 1e-9, "ends")
 
 
 @pytest.mark.parametrize("kind", [(2, 1, 0.03), (2, 2, 0.0), (3, 2, 0.0), (3, 4, 0.03)], ids=str)
@@ -222,18 +190,3 @@ def test_a_ground_that_pulls_from_the_start_is_logged_once_by_the_unfolded_wheel
     assert logged[0][0] == 0.0 and len(logged[0]) == 7
     for other in logged[1:]:
         within(absolute_error(other, logged[0]), 2e-8, "other")
-
-
-def test_a_sensitivity_belongs_to_the_friction_that_was_just_set(wheel):
-    """d tau / d F_Z: the friction moment is s N."""
-    w = wheel().start(theta_start=1.2, phi_dot_start=-5.0, s=0.05).to(0.1)
-    known, unknown = [w.references["F_Z"]], [w.references["tau"]]
-    for s, least in ((0.05, 1e-3), (0.0, 0.0), (0.1, 2e-3)):
-        w.set(s=s)
-        slope = w.getDirectionalDerivative(unknown, known, [1.0])[0]
-        ends = []
-        for force in (1.0, 0.0):
-            w.set(F_Z=force)
-            ends += w.get("tau")
-        within(abs(slope - (ends[0] - ends[1])), 64 * 10 * EPSILON, "slope")  # moments of 10 N m
-        assert abs(slope) >= least  # the partner: they differ by far more than that bound

@@ -27,6 +27,17 @@ def test_an_extreme_wheel_goes_as_stated_at_every_tolerance(library: Library, ca
     assert [v.faults for v in verdicts if not v.holds] == []
 
 
+GRAZING = [case for name, case in CASES.items() if name.startswith("lift-off: just")]  # leaves, and stays
+
+
+@pytest.mark.parametrize("s", [0.0, 0.03])
+@pytest.mark.parametrize("case", GRAZING, ids=str)
+def test_a_dip_of_the_normal_force_inside_one_step_ends_the_run_only_below_zero(library, kind, case, s) -> None:
+    """Least N = -1e-6 m g, or 1e-6 m g, by any method and formulation."""
+    forced = replace(case, start={**case.start, **kind, "s": s}, judges=())
+    assert [verdict.faults for verdict in judge_case(library, forced, (1e-8,))] == [[]]
+
+
 def faults_of(library: Library, name: str, changed: dict | None = None, **columns: np.ndarray) -> str:
     """Of a run at a tolerance of 1e-8, judged as another case, or with some columns changed (factors)."""
     case = CASES[name]

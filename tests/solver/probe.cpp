@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
-#include <utility>
 
 #include "solver.hpp"
 
@@ -11,11 +10,11 @@
 
 namespace {
 
-// harmonic: y = (cos t, -sin t) from (1, 0); stiff: van der Pol's with `parameter`; clock: y = t; explosive: y' = y^2;
-// ending: y' = 1 up to t = 1, then no number.
+// harmonic: y = (cos t, -sin t) from (1, 0); clock: y = t; explosive: y' = y^2; ending: y' = 1 up to t = 1, then no
+// number.
 constexpr int states = 8;
 
-enum Kind : int { harmonic, stiff, clock, explosive, ending };
+enum Kind : int { harmonic, clock, explosive, ending };
 using Watch = double (*)(double t, const double* y);
 
 // A problem has one state or two, and others that rest at zero: a solver takes eight.
@@ -23,8 +22,8 @@ using Watch = double (*)(double t, const double* y);
 struct Setting {
   Kind kind;
   solver::Method method;
-  double parameter, tolerance, longest_step, y[states];
-  Watch each_step, by_margin;  // events 1 and 2; null: not watched
+  double tolerance, longest_step, y[states];
+  Watch watched;  // null: nothing
   const double* extremes;
   int extreme_count;
 };
@@ -32,7 +31,6 @@ struct Setting {
 struct Probe {
   Setting setting;
   solver::Solver solver;
-  double stop = solver::never;  // of the next step
 };
 
 const Setting& of(void* owner) { return *static_cast<Setting*>(owner); }
@@ -40,21 +38,16 @@ const Setting& of(void* owner) { return *static_cast<Setting*>(owner); }
 void rates(const Setting& s, double t, const double* y, double* d) {
   std::fill_n(d, states, 0.0);
   if (s.kind == harmonic) d[0] = y[1], d[1] = -y[0];
-  if (s.kind == stiff) d[0] = y[1], d[1] = s.parameter * (1 - y[0] * y[0]) * y[1] - y[0];
   if (s.kind == clock) d[0] = 1;
   if (s.kind == explosive) d[0] = y[0] * y[0];
   if (s.kind == ending) d[0] = t > 1 ? NAN : 1;
 }
 
-int states_of(const Setting& s) { return s.kind <= stiff ? 2 : 1; }
-
-double margin(void* owner, int, double t, const double* y) {
-  return of(owner).by_margin ? of(owner).by_margin(t, y) : 1;
-}
+int states_of(const Setting& s) { return s.kind == harmonic ? 2 : 1; }
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   rates(of(owner), t, y, y_dot);
-  return std::isfinite(y_dot[0]) ? margin(owner, 0, t, y) : NAN;
+  return std::isfinite(y_dot[0]) ? 1 : NAN;
 }
 
 void weights(void* owner, double share, const double* y, double* w) {
@@ -62,7 +55,7 @@ void weights(void* owner, double share, const double* y, double* w) {
   for (int i = 0; i < states; ++i) w[i] = per_state / (share * of(owner).tolerance * (1 + std::fabs(y[i])));
 }
 
-double watched(void* owner, int, double t, const double* y) { return of(owner).each_step(t, y); }
+double watched(void* owner, int, double t, const double* y) { return of(owner).watched(t, y); }
 
 int extremes_inside(void* owner, double t_lo, double t_hi, double* instants) {
   const Setting& s = of(owner);
@@ -74,19 +67,18 @@ solver::Problem problem_of(Probe* probe) {
   Setting& s = probe->setting;
   solver::Problem p = {};
   p.states = states, p.owner = &s, p.derivative = derivative, p.weights = weights;
-  if (s.each_step) p.watch({1, watched, false});
-  if (s.by_margin) p.watch({2, margin, true});
-  p.extremes = s.extreme_count ? extremes_inside : nullptr, p.near = 0.1, p.longest_step = s.longest_step;
+  if (s.watched) p.watch({1, watched, false});
+  p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = s.longest_step;
   return p;
 }
 
 }  // namespace
 
-PUBLIC Probe* probe_new(const Setting* setting) { return new (std::nothrow) Probe{*setting, {}, solver::never}; }
-
 // At t = 0.
-PUBLIC void probe_start(Probe* probe) {
-  (void)probe->solver.start(problem_of(probe), probe->setting.method, 0, probe->setting.y);
+PUBLIC Probe* probe_new(const Setting* setting) {
+  Probe* probe = new (std::nothrow) Probe{*setting, {}};
+  (void)probe->solver.start(problem_of(probe), setting->method, 0, setting->y);
+  return probe;
 }
 
 PUBLIC void probe_free(Probe* probe) { delete probe; }
@@ -95,37 +87,23 @@ PUBLIC void probe_free(Probe* probe) { delete probe; }
 PUBLIC int probe_run(Probe* probe, double t, long long most) {
   solver::Outcome outcome = solver::Outcome::stepped;
   while (!probe->solver.reaches(t) && outcome == solver::Outcome::stepped && most-- > 0)
-    outcome = probe->solver.step(std::exchange(probe->stop, solver::never));
+    outcome = probe->solver.step(solver::never);
   return static_cast<int>(outcome);
 }
 
 PUBLIC void probe_read(const Probe* probe, double t, double* y) { probe->solver.read(t, y); }
 PUBLIC const char* probe_failure(const Probe* probe) { return probe->solver.failure(); }
-PUBLIC void probe_stop_before(Probe* probe, double t) { probe->stop = t; }
-PUBLIC void probe_resume(Probe* probe) { probe->solver.resume(); }
 PUBLIC void probe_limit_first_step(Probe* probe, double dt) { probe->solver.limit_first_step(dt); }
 
 PUBLIC void probe_restart(Probe* probe, double t, const double* y) {
   (void)probe->solver.restart(problem_of(probe), probe->setting.method, t, y);
 }
 
-// Begin of the last step, time known, instant and name of the event; steps, evaluations, Jacobians, roots, restarts.
-PUBLIC void probe_progress(const Probe* probe, double now[9]) {
+// Begin of the last step, time known, instant of the event; steps, evaluations, roots.
+PUBLIC void probe_progress(const Probe* probe, double now[6]) {
   const solver::Solver& s = probe->solver;
   const solver::Counters& n = s.counters();
   const double times[] = {s.step_start(), s.known_until(), s.event_time()};
-  const long long counts[] = {s.event(), n.steps, n.rhs, n.jacobians, n.roots, n.restarts};
-  std::copy_n(counts, 6, std::copy_n(times, 3, now));
-}
-
-// The history as bytes; their number.
-PUBLIC std::size_t probe_save(Probe* probe, unsigned char* bytes) {
-  support::Archive archive = bytes ? support::Archive::writing(bytes) : support::Archive::counting();
-  probe->solver.save_history(archive);
-  return archive.bytes();
-}
-
-PUBLIC bool probe_restore(Probe* probe, const unsigned char* bytes, std::size_t size) {
-  support::Archive archive = support::Archive::reading(bytes, size);
-  return probe->solver.restore_history(problem_of(probe), archive);
+  const long long counts[] = {n.steps, n.rhs, n.roots};
+  std::copy_n(counts, 3, std::copy_n(times, 3, now));
 }

@@ -6,9 +6,8 @@ The scripts are ECMAScript modules, each a data: address in an import map, so th
 import base64
 import json
 import re
-import sys
 from dataclasses import replace
-from importlib.metadata import PackageNotFoundError, distribution
+from importlib.metadata import distribution
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
@@ -30,14 +29,11 @@ def base64_of(data: bytes) -> str:
 
 def library() -> tuple[str, str]:
     """three.js as the text of a module, and its notice."""
-    try:
-        package = distribution("nicegui")
-    except PackageNotFoundError:
-        sys.exit("three.js is missing: run ./scripts/setup, which fetches it with the package nicegui.")
+    package = distribution("nicegui")
     text = Path(package.locate_file(THREE)).read_text(encoding="utf-8")
     revision = re.search(r'const \w+="(1\d\d)"', text)
-    name = f"three.js r{revision.group(1)}" if revision else "three.js"
-    notice = f"{name}, Copyright (c) 2010-2025 three.js authors, as bundled by NiceGUI {package.version}:\n"
+    notice = f"three.js r{revision[1]}, Copyright (c) 2010-2025 three.js authors, "
+    notice += f"as bundled by NiceGUI {package.version}:\n"
     notice += package.read_text("licenses/LICENSE")
     return re.sub(r"\n//# sourceMappingURL=.*", "", text), notice.replace("--", "-")
 

@@ -11,8 +11,6 @@ import tempfile
 import time
 from pathlib import Path
 
-import fmpy
-
 from publishing.markdown import ROOT, page, said
 from release import compiling, fmu, folder, libraries, platforms
 
@@ -47,7 +45,6 @@ def write_report(released: Path, **found: object) -> None:
         commit=said("git", "describe", "--always", "--dirty"),
         size=released.stat().st_size / 1e3,
         outputs=len(platforms.OUTPUTS),
-        fmpy=fmpy.__version__,
         compiler=said("c++", "--version"),
         wine=said(platforms.WINE, "--version"),
         qemu=said("qemu-aarch64", "--version").replace("qemu-aarch64 version", "qemu"),
@@ -71,9 +68,6 @@ def main() -> None:
         subprocess.run([sys.executable, "-m", "pytest", *tests], env=os.environ | {"WHEEL_BUILD": str(OUT)}, check=True)
         step("the same again in another folder")
         twice = build_elsewhere(released, scratch)
-        step("FMPy, with the Windows library under wine")
-        platforms.start_wine(OUT, scratch)
-        platforms.by_fmpy(released, scratch)
         step("ten scenes on every platform that runs here")
         subprocess.run(["./scripts/build", "release"], check=True)
         scenes = platforms.scenes(OUT)

@@ -4,8 +4,6 @@ wasmtime. macOS is only built. Scenes of the paper, SI units.
 
 from __future__ import annotations
 
-import contextlib
-import io
 import os
 import shutil
 import subprocess
@@ -14,8 +12,6 @@ from pathlib import Path
 
 import fmpy
 import wasmtime
-from fmpy.util import add_remoting
-from fmpy.validation import validate_fmu
 
 from publishing import markdown
 from release.compiling import ROOT, WASM, build
@@ -24,32 +20,6 @@ from release.fmu import ARM, LINUX, WINDOWS
 DESCRIPTION = fmpy.read_model_description(str(ROOT), validate=False)
 OUTPUTS = [v.name for v in DESCRIPTION.modelVariables if v.causality == "output"]
 WINE = shutil.which("wine64") or "/usr/lib/wine/wine64"
-# FMPy's server ends itself when it can write to its lock file, as root always can: it is started without one.
-WITHOUT_LOCK = f'#!/bin/sh\nexec {WINE} "$1" "$2"\n'
-
-
-def start_wine(out: Path, scratch: Path) -> None:
-    # Only in a UTF-8 locale does wine find a folder whose name is not ASCII.
-    os.environ |= {"WINEPREFIX": f"{out}/wine", "WINEDEBUG": "-all", "LC_ALL": "C.UTF-8"}
-    os.environ["PATH"] = f"{scratch}:{os.environ['PATH']}"
-    # Its first start makes a folder, which takes a while.
-    subprocess.run([WINE, "wineboot", "--init"], capture_output=True, check=False)
-    (scratch / "wine64").write_text(WITHOUT_LOCK)
-    (scratch / "wine64").chmod(0o755)
-
-
-def by_fmpy(fmu: Path, scratch: Path) -> None:
-    """FMPy's remoting starts the Windows library under wine and talks to it by TCP."""
-    if problems := validate_fmu(str(fmu)):
-        raise SystemExit(f"{fmu}: {problems}")
-    windows = fmpy.extract(fmu, scratch / "windows")
-    shutil.rmtree(scratch / "windows" / "binaries" / "linux64")
-    add_remoting(windows, "linux64", "win64")
-    for scene, s in {"free": 0.0, "friction": 0.03}.items():
-        with contextlib.redirect_stdout(io.StringIO()):  # the remoting prints each attempt to connect
-            runs = [fmpy.simulate_fmu(place, start_values={"s": s}, output=OUTPUTS) for place in (str(fmu), windows)]
-        if len(runs[0]) != 1001 or runs[0].tobytes() != runs[1].tobytes():
-            raise SystemExit(f"FMPy under wine gives another {scene} wheel than on Linux.")
 
 
 def run(*command: str | Path) -> str:
@@ -82,6 +52,9 @@ def printed(out: Path) -> Iterator[tuple[str, str]]:
     driver, library = out / LINUX / "wheel_driver", out / LINUX / "wheel.so"
     yield "linux64", run(driver, library)
     yield "this machine's compiler", run(driver, ROOT / "build" / "release" / "wheel.so")
+    # Only in a UTF-8 locale does wine find a folder whose name is not ASCII. Its first start makes its own.
+    os.environ |= {"WINEPREFIX": f"{out}/wine", "WINEDEBUG": "-all", "LC_ALL": "C.UTF-8"}
+    subprocess.run([WINE, "wineboot", "--init"], capture_output=True, check=False)
     yield "win64, wine", run(WINE, out / WINDOWS / "wheel_driver.exe", out / WINDOWS / "wheel.dll")
     arm = ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", out / ARM / "wheel_driver", out / ARM / "wheel.so")
     yield "aarch64-linux, qemu", run(*arm)

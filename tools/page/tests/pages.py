@@ -91,7 +91,7 @@ def listed(page: Page) -> list[list[str]]:
 
 def start(page: Page, at: float = 0.0, **values: float) -> None:
     """The live page with the paper's wheel, but for these start values, and its clock standing at `at`."""
-    load = "([values, t]) => { page.player.pause(); page.live.load({values}); page.player.seek(t); }"
+    load = "([values, t]) => { page.player.pause(); page.live.load({values}); page.player.seek(t); page.live.frame(); }"
     page.evaluate(load, [values, at])
 
 

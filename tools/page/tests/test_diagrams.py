@@ -7,7 +7,7 @@ from support.bounds import EPSILON, absolute_error, beyond, within
 from page.tests.pages import start
 
 POINTS = """(name) => {
-  page.plots.portrait.choose(name);
+  document.querySelector(`.portrait [name=${name}]`).click();
   const {lines, wheels} = page.plots.portrait;  // those of the rows
   return lines.map(({times, points}, k) => points.filter((_, i) => wheels[k].table.time.includes(times[i])));
 }"""
@@ -26,11 +26,12 @@ def expected(rows: np.ndarray) -> dict[str, list[np.ndarray]]:
 
 
 @pytest.mark.parametrize(("name", "bound"), [("phase", 1e-9), ("spin", 512 * EPSILON), ("path", 64 * EPSILON)])
-def test_a_portrait_shows_rates_over_tilt_or_along_e3_over_e2_or_the_path_of_the_contact_point(
+def test_a_button_chooses_rates_over_tilt_or_along_e3_over_e2_or_the_path_of_the_contact_point(
     recorded, simulate, name, bound
 ):
     names = ("psi_dot", "phi_dot", "theta_dot", "theta", "X_C", "Y_C")
     found = points(recorded, name)
+    assert recorded.locator(".portrait [aria-checked=true]").get_attribute("name") == name
     wanted = np.column_stack(expected(simulate(output_interval=0.01, output=names, start_values={"s": 0.03}))[name])
     within(absolute_error(found["friction"], wanted), bound, "points off")
     beyond(absolute_error(found["free"], wanted), 1, "points of the other wheel off")
@@ -44,40 +45,10 @@ def test_the_path_from_above_has_one_scale(recorded):
     assert (right - left) / width == pytest.approx((high - low) / height)
 
 
-PIXEL = """([name, t]) => {
-  const {plots, player} = page;
-  player.seek(t);
-  plots.draw(t);
-  const plot = plots.all.find((one) => one.name === name);
-  const place = plot.at(plot.wheels[0], t);
-  const [x, y] = [plot.x(place[0]), plot.y(place[1])].map((edge) => edge * devicePixelRatio);
-  const colour = [...plot.pen.getImageData(x, y, 1, 1).data].slice(0, 3);
-  return ['#' + colour.map((part) => part.toString(16).padStart(2, '0')).join(''), plot.wheels[0].colour];
-}"""
-
-
-@pytest.mark.parametrize("name", ["spin", "path", "phase"])
-def test_a_button_chooses_the_diagram_and_the_present_is_marked(recorded, name):
-    recorded.locator(f".portrait [name={name}]").click()
-    assert recorded.locator(".portrait [aria-checked=true]").get_attribute("name") == name
-    recorded.evaluate("page.choose(2)")
-    colour, wanted = recorded.evaluate(PIXEL, [name, 3.0])
-    assert colour == wanted
-
-
-def test_the_label_and_the_diagram_say_that_the_wheel_sticks(recorded):
-    state = """(t) => {
-      page.choose(3);
-      page.player.seek(t);
-      page.draw();
-      const plot = page.plots.curves[1];
-      const [x, y] = [plot.x(t), plot.y(-1.5) + 3].map((edge) => edge * devicePixelRatio);
-      const pixel = plot.layers.faint.getContext('2d').getImageData(x, y, 1, 1);
-      return [document.querySelector('.label').dataset.state, pixel.data[3]];
-    }"""
-    (before, clear), (during, band) = (recorded.evaluate(state, t) for t in (1.15, 1.26))
-    assert (before, during) == ("rolls", "sticks")
-    assert clear == 0 < band
+@pytest.mark.parametrize(("t", "state"), [(1.15, "rolls"), (1.26, "sticks")])
+def test_the_label_says_whether_the_wheel_sticks(recorded, t, state):
+    recorded.evaluate("(t) => { page.choose(3); page.player.seek(t); page.draw(); }", t)
+    assert recorded.locator(".label").get_attribute("data-state") == state
 
 
 def test_a_click_into_a_diagram_goes_there(recorded):

@@ -1,8 +1,5 @@
 """The live page in headless Chromium: the wheel itself in WebAssembly, and the FMU beside it."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 import numpy as np
 import pytest
 from support.driver import FMU2Wheel
@@ -24,7 +21,6 @@ RUN = """([values, changes, record]) => {
   return [record.map((name) => [...table.columns[name]]), ended];
 }"""
 CHANGES = "page.live.plan.changes.map(({t, name, value}) => [t, name, value])"
-INERTIA = (1.8 + 20 * 0.35**2, 20 * 0.35**2)  # kg m2: J_z + m R^2, m R^2
 
 
 def by_fmu(fmu: FMU2Wheel, values: dict, changes: list) -> np.ndarray:
@@ -58,10 +54,9 @@ def test_dragging_s_changes_the_motion_from_now_on_and_not_before(live):
     slider.hover(position={"x": 0.4 * width, "y": height / 2})
     live.mouse.up()
     live.wait_for_function("page.live.plan.changes.length > 0 && !page.live.wanted")
-    after = column(live, "theta")
-    assert 0.02 < float(live.evaluate("page.live.present('s')")) < 0.06
-    assert (before[:301] == after[:301]).all()
-    assert abs(before - after)[400:].max() > 0.1
+    assert 0.02 < live.evaluate("page.live.present('s')") < 0.06
+    same = before == column(live, "theta")
+    assert same[:301].all() and not same[400:].any()
 
 
 def test_the_future_after_a_push_is_that_of_a_run_with_that_input(live):
@@ -75,38 +70,15 @@ def test_the_future_after_a_push_is_that_of_a_run_with_that_input(live):
     assert live.evaluate(CHANGES) == [[1, "M_3", 0]]
 
 
-@pytest.mark.parametrize("by", ["mouse", "keyboard"])
-def test_a_push_lasts_as_long_as_the_button_is_held(live, by):
+def test_a_push_lasts_as_long_as_the_key_is_held(live):
     start(live, at=1)
-    button, device, which = live.locator(".push").first, getattr(live, by), [" "] * (by == "keyboard")
-    button.hover() if by == "mouse" else button.focus()
-    device.down(*which)
+    live.locator(".push").first.focus()
+    live.keyboard.down(" ")
     live.wait_for_function("page.player.t > 1.1")
-    device.up(*which)
+    live.keyboard.up(" ")
     (begin, *pushed), (end, *released) = live.evaluate(CHANGES)
     assert (pushed, released) == (["M_3", 6], ["M_3", 0])
     assert end > begin == pytest.approx(1.0)
-
-
-@contextmanager
-def held(page, text: str) -> Iterator[None]:
-    """While a button is held, the clock stands, and the motion is that which is to come."""
-    button = page.locator(".push", has_text=text)
-    button.dispatch_event("pointerdown", {"pointerId": 1})
-    page.evaluate("page.player.pause(); page.live.compute()")
-    yield
-    button.dispatch_event("pointerup", {"pointerId": 1})
-
-
-def test_the_brake_stops_a_wheel_and_holds_it_as_long_as_the_button_is_held(live):
-    start(live, at=1, theta_start=np.pi / 2)
-    with held(live, "brake"):
-        omega, t = column(live, "omega_z"), column(live, "time")
-        assert (omega[t <= 1] == -2).all()
-        stop = 1 + 2 * INERTIA[0] / 6  # s: (J_z + m R^2) omega_z / M_brake after it is pressed
-        assert (omega[t > stop] == 0).all()
-        assert live.evaluate("page.wheels[0].phases.sticks") == [pytest.approx([stop, 10])]
-    assert live.evaluate(CHANGES)[-1][1:] == ["M_brake", 0]
 
 
 @pytest.mark.parametrize("spin", [-2.0, 3.0])
@@ -114,8 +86,11 @@ def test_forward_is_the_way_the_wheel_rolls_and_back_is_against_it(live, spin):
     energy = {}
     for way in ("forward", "back"):
         start(live, at=1, theta_start=np.pi / 2, phi_dot_start=spin)
-        with held(live, way):
-            energy[way] = column(live, "E")[[100, 120]]
+        button = live.locator(".push", has_text=way)
+        button.dispatch_event("pointerdown", {"pointerId": 1})
+        live.evaluate("page.player.pause(); page.live.compute()")
+        energy[way] = column(live, "E")[[100, 120]]
+        button.dispatch_event("pointerup", {"pointerId": 1})
     assert energy["forward"][1] > energy["forward"][0] == energy["back"][0] > energy["back"][1]
 
 
@@ -137,10 +112,10 @@ def test_every_scene_runs_to_its_end(live):
 
 def test_a_kept_motion_stays_beside_the_next(live):
     start(live)
+    kept = column(live, "E")
     live.locator("#keep").click()
     do(live, 0, s=0.03)
     assert live.evaluate("page.views.length") == 2
-    assert column(live, "E", wheel=1)[-1] == pytest.approx(75.117, abs=1e-2)
-    assert column(live, "E")[-1] < 60
+    assert (column(live, "E", wheel=1) == kept).all() and column(live, "E")[-1] < 0.9 * kept[-1]
     live.locator("#keep").click()
     assert live.evaluate("page.wheels.length") == 1

@@ -20,7 +20,6 @@ MATRIX = """([t, name]) => {
   part.updateWorldMatrix(true, false);
   return part.matrixWorld.clone().premultiply(road.matrixWorld.clone().invert()).elements;
 }"""
-SPOT = "(t) => { page.player.seek(t); page.pose(); return page.stage.models[1].spot.position.toArray().slice(0, 2); }"
 
 
 def pose(place: list[float], axes: str, angles: list[float]) -> np.ndarray:
@@ -143,14 +142,6 @@ def test_a_stick_shorter_than_the_rows_begins_and_ends_where_the_spin_is_zero(re
     (stick,) = phases(recorded, rows)["sticks"]
     within(absolute_error(stick, [0.523, 0.527]), 1e-12, "instants, s")
     assert phases(recorded, rows, leave_out="n_events")["sticks"] == []
-
-
-def test_the_path_on_the_ground_is_that_of_the_contact_point(recorded, simulate):
-    rows = simulate(output_interval=0.005, output=("X_C", "Y_C", "X_O", "Y_O"), start_values={"s": 0.03})
-    rows = rows[1:2000:111]  # some lie between the file's
-    spots = [recorded.evaluate(SPOT, t) for t in rows["time"]]
-    within(absolute_error(spots, np.column_stack([rows["X_C"], rows["Y_C"]])), 1e-6, "contact point, m")
-    beyond(absolute_error(spots, np.column_stack([rows["X_O"], rows["Y_O"]])), 0.1, "centre, m")
 
 
 def test_the_force_points_along_lambda(recorded, scenes):

@@ -8,8 +8,14 @@ export const FILMS = {
   large: {text: 'as large as on the screen', width: Infinity, rate: 30},
 };
 const BITS = 8_000_000;  // per second
-const KEY = 60;          // pictures from one that stands alone to the next
-const GAP = 10;          // CSS pixels
+const CODEC = 'vp09.00.51.08';
+const KEY = 60;  // pictures from one that stands alone to the next
+const GAP = 10;  // CSS pixels
+
+/** Whether this browser encodes films. */
+export async function encodes() {
+  return (await window.VideoEncoder?.isConfigSupported({codec: CODEC, width: 640, height: 360}))?.supported;
+}
 
 /** A text such as "ω_z rad/s" with its subscript. */
 function write(pen, text, x, y, size) {
@@ -102,7 +108,7 @@ function streamOf(canvas, rate) {
     pictures.push({data, time: Math.round(chunk.timestamp / 1000), key: chunk.type === 'key'});
   };
   const encoder = new VideoEncoder({output, error: console.error});
-  encoder.configure({codec: 'vp09.00.51.08', width, height, bitrate: BITS, framerate: rate});
+  encoder.configure({codec: CODEC, width, height, bitrate: BITS, framerate: rate});
   const add = (k) => {
     const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / rate)});
     encoder.encode(picture, {keyFrame: k % KEY === 0});

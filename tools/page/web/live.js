@@ -105,22 +105,15 @@ export class LiveWheel {
    * Another wheel: its spin and friction follow those of the paper's in proportion to its size, or a case's `start`.
    */
   setWheel({parameters, start}) {
-    if (start) {
-      const known = Object.entries(start).filter(([name]) => limitsOf(name));
-      Object.assign(this.plan.values, parameters, Object.fromEntries(known));
-      this.plan.body = null;
-      this.change('fitted');
-      return this.page.player.seek(0);
-    }
     const size = (parameters.r_0 + parameters.r) / PAPER_RADIUS;
-    Object.assign(this.plan.values, parameters);
-    this.plan.body = null;
     const [spin, s] = [-2 / Math.sqrt(size), 0.03 * size].map((value) => Number(value.toPrecision(3)));
     const friction = this.value('s') > 0;
-    if (friction) this.plan.values.s = s;
-    this.setStart('phi_dot_start', spin);
-    const set = `φ̇ is ${spin} rad/s now${friction ? `, and s is ${s} m` : ''}.`;
-    this.scaled = `As fast for its size as the paper's wheel: ${set.replace('-', '−')}`;
+    const own = Object.entries(start ?? {phi_dot_start: spin, ...(friction && {s})}).filter(([name]) => limitsOf(name));
+    Object.assign(this.plan.values, parameters, Object.fromEntries(own));
+    this.plan.body = null;
+    this.change('fitted');
+    const set = `φ̇ is ${spin} rad/s now${friction ? `, and s is ${s} m` : ''}.`.replace('-', '−');
+    this.scaled = start ? null : `As fast for its size as the paper's wheel: ${set}`;
     this.page.player.seek(0);
   }
 

@@ -180,23 +180,22 @@ function setUpCritical(live) {
 /** What the page says of the last run and of a wrong address, and the box that keeps a motion. */
 function setUpNotes(live) {
   $('#keep').addEventListener('change', ({target}) => live.keep(target.checked));
-  const write = onChange((text) => ($('#message').textContent = text));
-  const refuse = onChange((text) => ($('#refusal').textContent = text));
-  const doubt = onChange((text) => {
-    $('#doubt').hidden = !text;
-    $('#doubt').replaceChildren(...subscripted(text ? `${text} Choose a body: its moments follow.` : ''));
+  const [message, refusal, doubt, scaled] = ['#message', '#refusal', '#doubt', '#scaled'].map((place) => {
+    const host = $(place);
+    return onChange((text) => {
+      host.hidden = !text;
+      host.replaceChildren(...(place === '#doubt' ? subscripted(text ?? '') : [text ?? '']));
+    });
   });
-  const scaled = onChange((text) => ($('#scaled').textContent = text ?? ''));
   return (wheel) => {
     const seconds = Number(live.wheel.table.end.toPrecision(4));
-    write(live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`);
+    message(live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`);
     $('#message').classList.toggle('trouble', Boolean(live.trouble));
     $('#keep').checked = Boolean(live.kept);
-    $('#refusal').hidden = !live.refusal;
-    refuse(live.refusal);
-    doubt(doubtOf(wheel));
+    refusal(live.refusal);
+    const fault = doubtOf(wheel);
+    doubt(fault && `${fault} Choose a body: its moments follow.`);
     scaled(live.scaled);
-    $('#scaled').hidden = !live.scaled;
   };
 }
 

@@ -2,7 +2,7 @@
 // same run.
 import {commands} from '#commands';
 import {$, make, makeChoice} from '#dom';
-import {compose, film, FILMS} from '#film';
+import {compose, encodes, film, FILMS} from '#film';
 
 const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
 const FIXED = ['r_0', 'r', 'slope', 'slope_direction'];
@@ -75,8 +75,8 @@ export function setUpTaking(page) {
     button.textContent = 'Film (WebM)';
     save('wheel.webm', blob);
   });
-  if (!window.VideoEncoder)
-    Object.assign($('[name=film]', host), {disabled: true, title: 'This browser makes no WebM'});
+  const title = 'Films need Chrome or Edge 94, Firefox 130, or later: this browser encodes no VP9';
+  encodes().then((can) => can || Object.assign($('[name=film]', host), {disabled: true, title}));
   if (!live) return;
   on('link', (event) => copy(live.link.href, event));
   on('copy', (event) => copy($('pre', host).textContent, event));
