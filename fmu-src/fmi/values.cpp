@@ -54,12 +54,12 @@ bool check_settable(const Instance& i, fmi2ValueReference variable) {
 // together at the end of initialization.
 bool check_value(Instance& i, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
-  const bool bounded = variable < wheel::stored_count, open = variable == wheel::variable::slope;
-  const bool low = bounded && value < row.min, high = bounded && (open ? value >= row.max : value > row.max);
+  const bool bounded = variable < wheel::stored_count, low = bounded && value < row.min;
+  const bool high = bounded && wheel::is_above(variable, value);
   const bool switches = variable == wheel::variable::mu_slide && (value > 0) != i.simulation.can_slide();
   if (!is_running(i.simulation.phase()) || (std::isfinite(value) && !low && !high && !switches)) return true;
   const double kept = i.simulation.value(variable);
-  const char* const bound = low ? "at least" : open ? "less than" : "at most";
+  const char* const bound = low ? "at least" : variable == wheel::variable::slope ? "less than" : "at most";
   if (!std::isfinite(value))
     i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", row.name, value, kept);
   else if (low || high)

@@ -23,7 +23,7 @@ enum class Outcome { stepped, event, failed };
 class Solver {
  public:
   Solver() = default;
-  Solver(const Solver&) = delete;  // it points to engines of its own
+  Solver(const Solver&) = delete;  // it points to its own engines
   Solver& operator=(const Solver&) = delete;
 
   // Starts, or starts anew, from y at time t (s); history is dropped. The first start sets the counters to zero, later

@@ -71,7 +71,7 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
     limit = largest_angle;
   } else if (is_positive(v) ? value <= row.min : value < row.min) {
     fault = is_positive(v) ? "%s = %s: it must be greater than %s." : "%s = %s: it must be at least %s.";
-  } else if (v == slope ? value >= row.max : value > row.max) {
+  } else if (is_above(v, value)) {
     fault = v == slope ? "%s = %s rad: it must be less than %s." : "%s = %s: it must be at most %s.";
     limit = row.max;
   }

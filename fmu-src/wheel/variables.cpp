@@ -97,6 +97,8 @@ static_assert(std::all_of(std::begin(rows), std::end(rows), has_rate));
 
 const Row& row_of(unsigned variable) { return rows[variable]; }
 
+bool is_above(unsigned v, double value) { return v == variable::slope ? value >= rows[v].max : value > rows[v].max; }
+
 bool is_variable(unsigned variable, Type type) { return variable < variable_count && rows[variable].type == type; }
 
 }  // namespace wheel

@@ -49,6 +49,8 @@ struct Row {
 };
 
 const Row& row_of(unsigned variable);
+// Whether a value lies above the limit of a stored variable; a road is never upright.
+bool is_above(unsigned variable, double value);
 // Whether the value reference names a variable of this type.
 bool is_variable(unsigned variable, Type type);
 
