@@ -120,7 +120,7 @@ def inputs_linear(report: Report, spin: float) -> Row:
     return inputs_held.measure(report, spin, 1)
 
 
-# Start, what makes it slide, and s; the reduced equations are stepped, not unfolded.
+# Start, what makes it slide, and the duration, s. The reduced equations are stepped, not unfolded.
 STEPPED: Values = {"formulation": "reduced"}
 ROLLING: Values = {**STEPPED, **slides.UPRIGHT, "phi_dot_start": -20.0}
 LOCKED: Values = {**slides.ROAD, "M_brake": 1e3, "phi_dot_start": 0.0, "slip_x_start": 7.0}
