@@ -55,11 +55,12 @@ constexpr Table make_table() {
 constexpr Table radau = make_table();
 
 // The error that one step may make, as a fraction of the tolerance of the whole solution.
-constexpr double part_of_tolerance = 0.03;
-// How far the sweeps may be from their limit, and the error of the polynomial against its last term.
-constexpr double last_change = 0.3, error_of_last = 0.005;
+constexpr double part_of_tolerance = 0.2;
+// How far the sweeps may be from their limit, over the error of the step; the error of the polynomial against its last
+// term.
+constexpr double distance = 0.1, error_of_last = 0.005;
 constexpr int most_sweeps = 30, most_tries = 40;
-constexpr double longer = 1.01, first_part = 0.1;  // of the stop; of the longest step
+constexpr double longer = 1.01;  // of the stop
 
 // At the point j of a step of this size.
 Row state_at(int j, const Step& step, double size, const double (&f)[radau_points][max_states]) {
@@ -69,14 +70,25 @@ Row state_at(int j, const Step& step, double size, const double (&f)[radau_point
 
 }  // namespace
 
-// The change of the states by one sweep, in units of the weights; infinite where rates are not finite. The slopes are
-// those of the first sweep.
-double Collocation::sweep(const Problem& problem, const double* weights, bool first, double* slopes, Counters* counters,
+// Newton's matrix for the rates of the settling state at the points, at the predicted states; its inverse is kept for
+// all sweeps.
+void Collocation::prepare(const Problem& problem, const Step& step, double* inverse) const {
+  const auto [state, speed, slope] = problem.settling;
+  const Eigen::Map<const Square> integral(&radau.integral[0][0]);
+  const Row y_end = state_at(radau_points - 1, step, size_, f_);
+  Square matrix = size_ * slope(problem.owner, step.end, y_end.data()) * integral;
+  matrix.diagonal() -= size_ * integral * Eigen::Map<const Rates>(&f_[0][0]).col(speed);
+  matrix.diagonal().array() -= step.y_start[speed];
+  const Square inverted = matrix.inverse();
+  std::copy_n(inverted.data(), inverted.size(), inverse);
+}
+
+// The change of the states by one sweep, in units of the weights; infinite where rates are not finite.
+double Collocation::sweep(const Problem& problem, const double* weights, const double* inverse, Counters* counters,
                           Step* step) {
-  const int turned = problem.settling.state, speed = problem.settling.speed;
+  const int turned = problem.settling.state;
   Eigen::Map<Rates> before(&f_[0][0]);
   Rates f = Rates::Zero();
-  Square jacobian = size_ * Eigen::Map<const Square>(&radau.integral[0][0]);
   Eigen::Matrix<double, radau_points, 1> turning;
   for (int j = 0; j < radau_points; ++j) {
     const Row y = state_at(j, *step, size_, f_);
@@ -85,13 +97,9 @@ double Collocation::sweep(const Problem& problem, const double* weights, bool fi
     ++counters->rhs;
     if (std::isnan(margin)) return INFINITY;
     step->lowest_margin = j == 0 ? margin : std::fmin(step->lowest_margin, margin);
-    turning[j] = y[speed] * (f(j, turned) - f_[j][turned]);
-    if (first) slopes[j] = problem.settling.slope(problem.owner, t, y.data());
-    jacobian.row(j) *= slopes[j];
-    jacobian(j, j) -= y[speed];
+    turning[j] = y[problem.settling.speed] * (f(j, turned) - f_[j][turned]);
   }
-  ++counters->jacobians;
-  f.col(turned) = before.col(turned) - jacobian.partialPivLu().solve(turning);
+  f.col(turned) = before.col(turned) - Eigen::Map<const Square>(inverse) * turning;
   double largest = 0;
   for (int j = 0; j < radau_points; ++j) {
     const Row change = size_ * (f.row(j) - before.row(j));
@@ -121,12 +129,17 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
 
 // The error of the step over size_ in units of the weights; infinite where the sweeps do not converge.
 double Collocation::try_size(const Problem& problem, const double* weights, Counters* counters, Step* step) {
-  double change = INFINITY, slopes[radau_points];
-  for (int sweeps = 0; sweeps < most_sweeps && !(change < last_change); ++sweeps) {
-    change = sweep(problem, weights, sweeps == 0, slopes, counters, step);
-    if (!std::isfinite(change)) return INFINITY;
+  double change = INFINITY, inverse[radau_points * radau_points];
+  prepare(problem, *step, inverse);
+  ++counters->jacobians;
+  bool converged = false;
+  for (int sweeps = 0; !converged; ++sweeps) {
+    const double before = change;
+    change = sweep(problem, weights, inverse, counters, step);
+    if (sweeps == most_sweeps || !(change < before)) return INFINITY;
+    // The changes that would follow sum to change^2 / (before - change).
+    converged = change < distance || (sweeps > 0 && change * change < distance * (before - change));
   }
-  if (!(change < last_change)) return INFINITY;
   const Row last =
       error_of_last * size_ *
       (Eigen::Map<const Eigen::Matrix<double, 1, radau_points>>(radau.last) * Eigen::Map<Rates>(&f_[0][0]));
@@ -136,7 +149,6 @@ double Collocation::try_size(const Problem& problem, const double* weights, Coun
 bool Collocation::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
   double weights[max_states] = {};
   problem.weights(problem.owner, part_of_tolerance * problem.share, step->y_start, weights);
-  if (liked_ == 0) liked_ = first_part * problem.longest_step;
   Step last = {};
   last.start = step->start - size_;
   last.end = step->start;
@@ -149,12 +161,17 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     step->end = stops ? stop : step->start + size_;
     const bool finite = predict(problem, last, counters, step);
     const double error = finite ? try_size(problem, weights, counters, step) : INFINITY;
-    const double next = size_ * std::clamp(0.8 / eighth_root(std::fmax(error, 1e-6)), 0.25, 3.0);
+    const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
     known_ = error <= 1;
+    // Where the direction starts off its limit, errors hardly depend on the size of long steps.
+    const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.25, 3.0) : 0.25);
     if (!known_ || !stops || next < liked_) liked_ = next;
     if (!known_) continue;
     const Row y_end = state_at(radau_points - 1, *step, size_, f_);
     std::copy_n(y_end.data(), max_states, step->y_end);
+    // The settling state changes as 1 / speed.
+    const int speed = problem.settling.speed;
+    liked_ *= std::clamp(y_end[speed] / step->y_start[speed], 0.4, 1.0);
     failure_ = nullptr;
     return true;
   }

@@ -1,6 +1,6 @@
-// Collocation at the six points of Radau IIA, order 11: for a problem in which one state settles, however fast, on
-// where its turning vanishes. The points leave out the start of the step, so the step may begin where the settling is
-// infinitely fast (Problem::settling).
+// Collocation at the six points of Radau IIA, order 11: for a problem in which one state settles, however fast,
+// where its turning vanishes (Problem::settling). The error of the polynomial is kept below the tolerance; that at the
+// end of the step, of order 11, is far smaller.
 //
 // From step to step it keeps the wanted size of the next step, and the rates of the last one, which predict the next.
 #pragma once
@@ -13,8 +13,9 @@ inline constexpr int radau_points = 6;
 
 class Collocation final : public Engine {
  public:
-  bool start(const Problem&) override {
+  bool start(const Problem& problem) override {
     known_ = false;
+    liked_ = problem.longest_step;
     return true;
   }
   bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
@@ -24,11 +25,11 @@ class Collocation final : public Engine {
  private:
   bool predict(const Problem& problem, const Step& last, Counters* counters, Step* step);
   double try_size(const Problem& problem, const double* weights, Counters* counters, Step* step);
-  double sweep(const Problem& problem, const double* weights, bool first, double* slopes, Counters* counters,
-               Step* step);
+  void prepare(const Problem& problem, const Step& step, double* inverse) const;
+  double sweep(const Problem& problem, const double* weights, const double* inverse, Counters* counters, Step* step);
   bool fits(const Problem& problem, const Step* step) const;
 
-  double liked_ = 0, size_ = 0;              // size of the next step and of the last, s; 0: none was made
+  double liked_ = 0, size_ = 0;              // size of the next step and of the last, s
   bool known_ = false;                       // the rates are those of the last step
   double f_[radau_points][max_states] = {};  // at its points
 };

@@ -22,8 +22,8 @@ struct Watched {
   bool by_margin;
 };
 
-// A state whose rate is turning / y[speed] + ...: where the speed is small, or zero at the start of a step, it settles
-// at once where the turning vanishes.
+// A state whose rate is turning / y[speed] + ...: where the speed is small, it settles at once where the turning
+// vanishes.
 struct Settling {
   int state, speed;
   double (*slope)(void* owner, double t, const double* y);  // of the turning by the state

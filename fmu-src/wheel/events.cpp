@@ -63,7 +63,7 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
 Consequence change_spin(const Setup& setup, Event, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
   if (law != WHEEL_FRICTIONLESS) formulation_of(setup, now.scene).stop_spin(&now.scene.wheel, y);
-  if (now.slides() && y[setup.sliding->slip_index] <= least_slip(setup, t))
+  if (now.slides() && y[setup.sliding->slip_index] <= first_slip(setup, t))
     decide_contact(setup, t, y, now);  // a slip that begins has the direction of the new law
   else
     decide_law(setup, t, y, now, law == WHEEL_HELD);
@@ -77,25 +77,16 @@ Consequence lose_grip(const Setup& setup, Event, double t, double* y, InForce& n
 
 bool is_sliding(const Setup&, const InForce& now) { return now.slides(); }
 
-double way_to_settle(const Setup& setup, const InForce& now, double t, const double* y) {
-  return settling_left(setup, now.scene_at(t), now.contact == Contact::settled, y);
-}
-
-Consequence change_settling(const Setup&, Event, double, double*, InForce& now) {
-  now.set_contact(now.contact == Contact::settled ? Contact::slides : Contact::settled);
-  return Consequence::bends;
-}
-
-// What is left of the slip at its end falls at once. A settled slip may grow from zero with no acceleration.
+// What is left of the slip at its end falls at once.
 double slip_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  constexpr double rounding = 1e-14, near = 1e3;
+  constexpr double near = 1e3;
   const int slip = setup.sliding->slip_index;
-  double least = now.contact == Contact::settled ? -rounding * setup.slip_scale : least_slip(setup, t);
+  double least = least_slip(setup, t);
   if (y[slip] < near * least) {  // a slip that falls faster than by g needs more digits of the instant
     const WheelScene scene = now.scene_at(t);
     double y_dot[WHEEL_MAX_STATES];
     setup.sliding->derivative(&scene, y, y_dot);
-    least *= std::fmax(1, std::fabs(y_dot[slip]) * setup.own_time * setup.own_time / setup.length);
+    least *= std::fmax(1, -y_dot[slip] * setup.own_time * setup.own_time / setup.length);
   }
   return (y[slip] - least) / setup.slip_scale;
 }
@@ -144,11 +135,6 @@ constexpr EventRow event_rows[] = {
      .follow = lose_grip,
      .ending = "needs a coefficient of friction above mu_max",
      .limit = [](const InForce& now) { return now.road.mu_max; }},
-    {.event = Event::settles,
-     .can_occur = is_sliding,
-     .value = way_to_settle,
-     .exchanged = false,
-     .follow = change_settling},
     {.event = Event::slip_ends, .can_occur = is_sliding, .value = slip_left, .exchanged = false, .follow = end_slip},
     {.event = Event::lost_contact,
      .can_occur = always,

@@ -61,11 +61,6 @@ bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
   return scene.friction.sigma * dynamics.omega_z_dot >= 0;
 }
 
-void settle(const Setup& setup, double t, const double* y, InForce& now) {
-  const bool settled = settling_left(setup, now.scene_at(t), false, y) < 0;
-  now.set_contact(settled ? Contact::settled : Contact::slides);
-}
-
 }  // namespace
 
 void let_act(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
@@ -85,35 +80,30 @@ void put_in_force(const Setup& setup, const Demand& demand, double t, double* y,
 }
 
 void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
-  if (now.slides() && y[setup.sliding->slip_index] > least_slip(setup, t)) {
-    decide_law(setup, t, y, now);
-    return settle(setup, t, y, now);
-  }
+  if (now.slides() && y[setup.sliding->slip_index] > least_slip(setup, t)) return decide_law(setup, t, y, now);
   if (now.slides()) setup.sliding->grip(&now.scene.wheel, y);
-  now.set_contact(Contact::grips);
+  now.scene.contact = WHEEL_GRIPS;
   decide_law(setup, t, y, now);
   if (now.road.mu_max > 0 && !(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
 }
 
-// Without a direction a slip of no account is there already: the event that ends the run follows at once, or the ground
-// begins to pull. Where it pulls, the slip begins along the forces.
+// Without a direction the event that ends the run follows at once, or the ground begins to pull: where it pulls, the
+// slip begins along the forces.
 void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
   double reduced[WHEEL_MAX_STATES];
   setup.formulation->reduce(y, reduced);
-  now.set_contact(Contact::settled);
+  now.scene.contact = WHEEL_SLIDES;
   WheelScene scene = now.scene_at(t);
   const auto take = [&](const WheelFriction& law) {
     scene.friction = now.scene.friction = law;
     double chi = wheel_slip_direction(&scene, reduced);
-    const bool begins = !std::isnan(chi);
-    if (!begins) {
-      WheelScene slippery = scene;
-      slippery.mu_slide = 0;
-      const WheelSlip free = wheel_slip(&slippery, reduced, 0);
+    if (std::isnan(chi)) {
+      WheelScene pulled = scene;
+      pulled.ground = WHEEL_GROUND_PULLS;
+      const WheelSlip free = wheel_slip(&pulled, reduced, 0);
       chi = wheel_angle_of(free.growth, free.turn);
     }
-    now.set_contact(begins || now.pulls() ? Contact::settled : Contact::slides);
-    y[setup.sliding->slip_index] = now.contact == Contact::settled ? 0 : least_slip(setup, t);
+    y[setup.sliding->slip_index] = first_slip(setup, t);
     y[setup.sliding->slip_index + 1] = chi;
   };
   if (may_be_held(setup, now, y)) {
@@ -132,6 +122,8 @@ double least_slip(const Setup& setup, double t) {
   return setup.slip_scale * (part * setup.tolerance + roundings * solver::rounding_at(t) / setup.own_time);
 }
 
+double first_slip(const Setup& setup, double t) { return 2 * least_slip(setup, t); }
+
 // Rounding is relative to mu_max N, and that of a tangential force of zero.
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
   constexpr double rounding = 1e-12, rounding_of_zero = 1e-15;
@@ -143,21 +135,6 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
   const double X = lambda[0] / full / mu_max, Y = lambda[1] / full / mu_max;
   const double N = lambda[2] / full * (1 + rounding) + std::fmin(rounding_of_zero / mu_max, 1);
   return N * std::fabs(N) - (X * X + Y * Y);
-}
-
-// settling^2 - (rates |u| / own_time)^2 - (ratio growth)^2 over the scale of accelerations squared. A settled slide
-// stays so up to a smaller ratio, and while it is near zero its growth does not count; its fall does.
-double settling_left(const Setup& setup, const WheelScene& scene, bool settled, const double* y) {
-  constexpr double rates = 100, ratio = 15, looser = 0.25;
-  double reduced[WHEEL_MAX_STATES];
-  setup.sliding->reduce(y, reduced);
-  const double* const slip = y + setup.sliding->slip_index;
-  const WheelSlip now = wheel_slip(&scene, reduced, slip[1]);
-  const double scale = setup.length / (setup.own_time * setup.own_time), settling = now.settling / scale;
-  const double begun = settled && now.growth > 0 ? slip[0] / (slip[0] + setup.slip_scale) : 1;
-  const double turning = rates * slip[0] / setup.own_time / scale, growth = ratio * begun * now.growth / scale;
-  const double left = settling * std::fabs(settling) - (settled ? looser : 1) * (turning * turning + growth * growth);
-  return settled ? left : -left;
 }
 
 void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
@@ -191,7 +168,7 @@ double holding_reserve(const Setup& setup, const WheelScene& scene, const double
 solver::Method method_of(const Setup& setup, const InForce& now) {
   const bool regularized = now.scene.friction.kind == WHEEL_REGULARIZED;
   if (now.layer == Layer::sticking || (setup.method == bdf_method && regularized)) return solver::Method::bdf;
-  if (now.slides()) return now.contact == Contact::settled ? solver::Method::collocation : solver::Method::runge_kutta;
+  if (now.slides()) return solver::Method::collocation;
   if (setup.method == bdf_method) return solver::Method::bdf;
   return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
 }

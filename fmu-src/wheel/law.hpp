@@ -14,22 +14,19 @@ void let_act(const Setup& setup, const Road& road, double t, const Polynomials& 
 void put_in_force(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
 // Decides contact and law from t and y on. A slip that is more than nothing goes on; else the wheel grips where it can,
-// and begins to slide where it cannot. Writes the slip in y: zero, in the direction in which it begins.
+// and begins to slide where it cannot. Writes the slip in y.
 void decide_contact(const Setup& setup, double t, double* y, InForce& in_force);
 
 // The wheel, without slip at y, loses its grip: Coulomb's law, in the direction in which it lets a slip grow and stay.
 void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
 
-// m/s, the slip at which one ends that is not settled: its direction turns ever faster. Errors of it do not count, and
-// instants have digits for it.
+// m/s, the slip at which one ends, since its direction may turn ever faster, and that at which one begins. Errors of
+// them do not count, and instants have digits for them.
 double least_slip(const Setup& setup, double t);
+double first_slip(const Setup& setup, double t);
 
 // N^2 - (lambda_t / mu_max)^2 over the weight squared, of a wheel that grips; below zero too where the ground pulls.
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y);
-
-// Above zero while a slide stays settled, or while it stays unsettled: the rate at which its direction settles against
-// the wheel's own rate and the growth of the slip.
-double settling_left(const Setup& setup, const WheelScene& scene, bool settled, const double* y);
 
 // Decides the law of friction from t and y on. At omega_z = 0 after Filippov: held where the moment that holds the
 // wheel is within s N + M_brake, else rolling against that moment. `released`: friction and brake can no longer hold
@@ -52,7 +49,7 @@ bool can_stiffen(const Setup& setup, const InForce& in_force);
 double softness_of(const Setup& setup, const WheelScene& scene, const double* y);
 
 // What solves the motion that is not unfolded. CVODE's history and Jacobian do not follow a direction of slip that
-// turns ever faster: collocation and Runge-Kutta solve a slide.
+// turns ever faster: collocation solves a slide.
 solver::Method method_of(const Setup& setup, const InForce& in_force);
 
 // Whether the motion repeats and can be unfolded from half a nutation.

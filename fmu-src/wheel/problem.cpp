@@ -25,23 +25,6 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   return least_margin(setup, now, y, N);
 }
 
-// Outside of a settled slide the error of a small slip is smaller still, so that the polynomial of a step does not pass
-// zero; its direction may have larger ones: they are errors of a small velocity, and of a force that acts briefly;
-// where the slip is not small either, they decay.
-void weigh_slip(const Setup& setup, double tolerance, bool settled, const double* y, double* weights) {
-  constexpr double larger = 10, largest = 0.01, part_of_slip = 1e-3,
-                   rounding = 32 * std::numeric_limits<double>::epsilon();
-  const int slip = setup.sliding->slip_index;
-  const double speed = std::fabs(y[slip]), part = 0.01 * setup.slip_scale / speed;
-  double of_speed = tolerance * setup.slip_scale, of_direction = tolerance;
-  if (!settled) {
-    of_speed = std::fmin(of_speed, part_of_slip * speed);
-    of_direction = std::clamp(part * larger * tolerance, larger * tolerance, largest);
-  }
-  weights[slip] = 1 / (of_speed + rounding * speed);
-  weights[slip + 1] = 1 / (of_direction + rounding * std::fabs(y[slip + 1]));
-}
-
 // The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
 // turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a fraction of that width.
 template <int states>
@@ -55,7 +38,6 @@ void weights(void* owner, double share, const double* y, double* weights) {
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
-  if (now.slides()) weigh_slip(setup, tolerance, now.contact == Contact::settled, y, weights);
   if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
   const double part = 10 * std::sqrt(tolerance);
   const double layer = part * setup.omega_s + tolerance * std::fabs(y[spin]);
@@ -94,7 +76,7 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
-  problem.passage = now.layer == Layer::passing || now.slides();
+  problem.passage = now.layer == Layer::passing;
   if (now.slides()) problem.settling = {setup.sliding->slip_index + 1, setup.sliding->slip_index, slope_of_turning};
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr});

@@ -39,7 +39,6 @@ enum class Event : int {
   crosses_layer,    // omega_z enters or leaves that layer
   spin_changes,     // omega_z reaches zero, or friction and brake can no longer hold it there
   lost_grip,        // the wheel needs a coefficient of friction above mu_max
-  settles,          // the direction of a slip begins to follow the forces stiffly, or ends to
   slip_ends,        // the slip falls to zero
   lost_contact,     // N falls below zero, or rises above it while the ground pulls
   jams,             // friction wedges the wheel that slides: no N holds
@@ -51,10 +50,6 @@ inline constexpr int event_count = static_cast<int>(Event::count);
 // Where omega_z stands in the layer of a stiff regularized law: outside of it, where the law is the exact one; on its
 // way through; or kept inside by friction and brake, where alone the motion is stiff.
 enum class Layer : int { none, outside, passing, sticking };
-
-// How the wheel meets the ground. A slide that is settled has a direction of slip that follows the forces so much
-// faster than the slip grows or falls that the motion is stiff: near zero slip, and where the slip hardly grows.
-enum class Contact : int { grips, settled, slides };
 
 // The road, which may change during a run. Its variables stand together, in this order.
 struct Road {
@@ -72,12 +67,11 @@ inline Road road_asked(const Demand& demand) {
 struct InForce {
   Road road = {};
   // Its wheel and mu_slide follow from `road`; its load is that at the origin of the inputs; `ground` follows from
-  // `below`, `contact` from that below.
+  // `below`.
   WheelScene scene = {
       .wheel = {}, .friction = {}, .load = {}, .ground = WHEEL_GROUND_PRESSES, .contact = WHEEL_GRIPS, .mu_slide = 0};
   Inputs inputs;
   Layer layer = Layer::none;
-  Contact contact = Contact::grips;
   bool below[event_count] = {};  // for each observed event: its value has fallen below zero and has not risen since
 
   bool is_below(Event event) const { return below[static_cast<int>(event)]; }
@@ -87,11 +81,7 @@ struct InForce {
     scene.ground = pulls() ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
   }
 
-  bool slides() const { return contact != Contact::grips; }
-  void set_contact(Contact mode) {
-    contact = mode;
-    scene.contact = slides() ? WHEEL_SLIDES : WHEEL_GRIPS;
-  }
+  bool slides() const { return scene.contact == WHEEL_SLIDES; }
 
   WheelScene scene_at(double t) const {
     WheelScene scene_then = scene;

@@ -49,6 +49,7 @@ void set_error_scales(Setup& setup) {
   const double euler[] = {3 * length, 3 * length, 3, 1, 3, turn, turn, turn};
   std::fill_n(setup.slow_scales, WHEEL_MAX_STATES, 1.0);  // also of states that rest while the wheel slides
   std::copy_n(f == &wheel_reduced ? reduced : f == &wheel_euler ? euler : multibody, f->states, setup.slow_scales);
+  if (setup.sliding == &wheel_sliding) setup.slow_scales[setup.sliding->slip_index] = speed;
 }
 
 bool is_positive(unsigned v) {

@@ -52,7 +52,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
   archive("place in the layer of a stiff law").count(now.layer, 0, static_cast<int>(Layer::sticking));
-  archive("contact with the ground").count(now.contact, 0, static_cast<int>(Contact::slides));
+  archive("contact with the ground").count(now.scene.contact, WHEEL_GRIPS, WHEEL_SLIDES);
   archive("origin of the inputs in force, s").number(now.inputs.origin);
   archive("inputs in force");
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
@@ -107,7 +107,7 @@ bool starts_there(const Setup& setup, const Run& run) {
   double y[WHEEL_MAX_STATES];
   std::copy_n(setup.start, WHEEL_MAX_STATES, y);
   InForce now = run.in_force;
-  now.set_contact(setup.starts_sliding ? Contact::slides : Contact::grips);
+  now.scene.contact = setup.starts_sliding ? WHEEL_SLIDES : WHEEL_GRIPS;
   if (setup.sliding) decide_contact(setup, 0, y, now);
   return std::equal(y, y + WHEEL_MAX_STATES, run.y);
 }
@@ -125,7 +125,6 @@ const char* complete(const Demand& demand, Setup& setup, Run& run) {
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
   now.set_below(Event::lost_contact, now.pulls());
   if (now.slides() && !setup.sliding) return "the wheel slides without mu_slide";
-  now.set_contact(now.contact);
   if (!end_fits(setup, run)) return "no such event ends a run";
   if (!law_fits(setup, now)) return "the law of friction does not fit s and the brake";
   if (!observed_fit(setup, run)) return "an event is counted that cannot be observed";

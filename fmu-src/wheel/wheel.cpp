@@ -45,7 +45,7 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   if (!check_values(w.demand, reporter, true)) return false;
   w.setup = setup_of(w.demand);
   std::copy_n(w.setup.start, WHEEL_MAX_STATES, run.y);
-  run.in_force.set_contact(w.setup.starts_sliding ? Contact::slides : Contact::grips);
+  run.in_force.scene.contact = w.setup.starts_sliding ? WHEEL_SLIDES : WHEEL_GRIPS;
   put_in_force(w.setup, w.demand, 0, run.y, run.in_force);
   w.demand.changed = false;
   Reading start;
