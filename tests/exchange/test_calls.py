@@ -229,6 +229,7 @@ LIFTED = {"F_Z": 500.0, **AT_REST}
 NO_START = {
     "At the start the wheel lifted off the ground (N = -303.8 N, mu_required = inf)": LIFTED,
     "formulation = 3 (multibody): model exchange needs": {"formulation": "multibody"},
+    "mu_slide = 0.4: model exchange has no states for a slip": {"mu_max": 0.45, "mu_slide": 0.4},
 }
 
 
