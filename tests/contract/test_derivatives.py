@@ -49,15 +49,6 @@ def test_output_derivatives_are_those_of_the_motion(wheel, scene):
         w.back(blob)
 
 
-def test_derivatives_of_pose_are_the_velocities_to_the_bit(wheel):
-    w = wheel().start(s=0.03).by(0.6)
-    names = outputs(w)
-    rate = dict(zip(names, rates(w), strict=True))
-    for pose in ("X_O", "Y_O", "Z_O", "psi", "theta", "phi"):
-        assert [rate[pose]] == w.get(f"{pose}_dot")
-    assert rate["omega_z"] != w.get("phi_dot")[0]
-
-
 def jacobian(w: FMU2Wheel) -> np.ndarray:
     return w.jacobian(outputs(w), INPUTS)
 
