@@ -7,7 +7,7 @@ from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel
 from support.scenes import AT_REST, KINDS
 
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
-H = 2.0**-8  # s, between the points of the difference
+H = 2.0**-9  # s, between the points of the difference
 # d/dt at the first of seven points: coefficients of the one-sided difference of order 6.
 FORWARD = np.array([-49 / 20, 6, -15 / 2, 20 / 3, -15 / 4, 6 / 5, -1 / 6])
 
@@ -36,26 +36,17 @@ def push(w: FMU2Wheel, slope: float) -> None:
 def test_output_derivatives_are_those_of_the_motion(wheel, scene):
     """Left alone, under inputs that jump, and under inputs with a slope, which the rates of the reactions contain."""
     w = wheel().start(tolerance=1e-12, **KINDS[scene])
-    for t in (0.25, 0.9, 2.8):  # no transition of the friction within 24 ms
+    for t in (0.25, 0.9, 2.8):  # no transition of the friction within 12 ms
         blob = w.to(t).serialized()
         for slope in (None, 0.0, 5.0):
             if slope is not None:
                 push(w, slope)
             exact, difference = rates(w), forward_difference(w)
             errors = np.abs(exact - difference) / (1 + np.abs(exact))
-            within(dict(zip(outputs(w), errors, strict=True)), 2e-6, "error")
+            within(dict(zip(outputs(w), errors, strict=True)), 2e-7, "error")
         push(w, 5.001)  # the partner: another slope of the inputs is seen in the reactions
-        beyond(np.max(np.abs(rates(w) - difference) / (1 + np.abs(exact))), 2e-6, "rates")
+        beyond(np.max(np.abs(rates(w) - difference) / (1 + np.abs(exact))), 2e-7, "rates")
         w.back(blob)
-
-
-def test_derivatives_of_pose_are_the_velocities_to_the_bit(wheel):
-    w = wheel().start(s=0.03).by(0.6)
-    names = outputs(w)
-    rate = dict(zip(names, rates(w), strict=True))
-    for pose in ("X_O", "Y_O", "Z_O", "psi", "theta", "phi"):
-        assert [rate[pose]] == w.get(f"{pose}_dot")
-    assert rate["omega_z"] != w.get("phi_dot")[0]
 
 
 def jacobian(w: FMU2Wheel) -> np.ndarray:

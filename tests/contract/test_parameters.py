@@ -29,6 +29,7 @@ ALONE = [
     ("theta_start", 0.0, f"theta_start = 0 rad: {STANDS}", 3.1),
     ("theta_start", np.pi, f"theta_start = 3.14159265 rad: {STANDS}", 3.1),
     ("J_x", 3.0, f"J_x, J_y, J_z = 3, 0.9, 1.8 {TRIANGLE}", 0.95),
+    ("slope", np.pi / 2, "slope = 1.57079633 rad: it must be less than 1.5708.", 1.5),
     ("J_z", 1.8 * (1 + 1e-11), f"J_x, J_y, J_z = 0.9, 0.9, 1.8 {TRIANGLE}", 1.8 * (1 + 2e-16)),
 ]
 

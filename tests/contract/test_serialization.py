@@ -156,7 +156,6 @@ RUNS: dict[str, tuple[Values, dict[str, tuple[float, ...]]]] = {
     "braked, Adams": ({"method": 2}, {"M_brake": (1.0, 2.0)}),
     "held": ({"s": 0.2, "theta_start": np.pi / 2, "phi_dot_start": 0.0}, {"M_3": (0.1,)}),
     "contact kept": ({"s": 0.03, "keep_contact": True}, {}),
-    "sliding": ({"s": 0.03, "mu_max": 0.3, "mu_slide": 0.2}, {}),
     "ended": ({"theta_start": 0.3, "phi_dot_start": 0.0}, {}),
 }
 

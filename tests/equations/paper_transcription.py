@@ -245,11 +245,6 @@ def states() -> np.ndarray:
     return y
 
 
-def derivative(wheel: np.ndarray, y: np.ndarray, name: str, direction: np.ndarray) -> np.ndarray:
-    """Of a matrix of the paper when the state moves along `direction`: a complex step, exact to rounding."""
-    return getattr(Paper(wheel, y + 1e-40j * direction), name).imag / 1e-40
-
-
 def paper_table(**changes: float) -> np.ndarray:
     """The paper's wheel (27)-(31) as one row of a table of constants."""
     return np.array([eq.values(eq.paper_wheel(**changes))]).view(np.dtype(eq.Parameters))[0, 0]

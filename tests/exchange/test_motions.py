@@ -103,16 +103,6 @@ def test_a_brake_put_on_by_a_continuous_input_stops_and_holds(library: Library) 
     beyond(abs(late.events[-1] - stop), 1e-5, "instant with a trace of rolling friction, s")
 
 
-def test_a_held_wheel_is_let_go_where_a_growing_force_exceeds_the_brake(library: Library) -> None:
-    def push(t: float) -> dict[str, float]:
-        return {"M_brake": 20.0, "F_X": 200.0 * t}
-
-    run, _, sentences = moved(library, [0.4], inputs=push, **{**UPRIGHT, "phi_dot_start": 0.0})
-    assert "release" in sentences[-1]
-    within(abs(run.events[-1] - 20.0 / (0.35 * 200.0)), 2e-11, "instant, s")
-    beyond(abs(run.events[-1] - 20.0 / (0.34 * 200.0)), 1e-3, "instant of a smaller wheel, s")
-
-
 SOON = 1e-7 * (0.35 / 9.81) ** 0.5  # s: an event that lies ahead by less has happened
 ENDS, CHANGES = "terminateSimulation", "valuesOfContinuousStatesChanged"
 PULLED = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}

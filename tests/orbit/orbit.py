@@ -4,7 +4,8 @@ State: theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O (wheel_equations.h).
 """
 
 import ctypes
-from ctypes import c_double, c_longlong, c_uint, c_void_p
+from collections.abc import Callable
+from ctypes import CFUNCTYPE, POINTER, c_double, c_longlong, c_uint, c_void_p
 from xml.etree import ElementTree
 
 import numpy as np
@@ -20,6 +21,7 @@ from support.paths import ROOT
 
 Array = NDArray[np.float64]
 KINDS = ("refused", "folded", "ended")
+ADDED = CFUNCTYPE(c_double, c_double, POINTER(c_double))
 VARIABLES = ElementTree.parse(ROOT / "modelDescription.xml").iter("ScalarVariable")
 REFERENCES = {variable.get("name"): int(variable.get("valueReference")) for variable in VARIABLES}
 
@@ -44,8 +46,9 @@ class Orbit:
     def __del__(self) -> None:
         self.library.probe_free(self.probe)
 
-    def build(self) -> str:
-        kind = KINDS[self.library.probe_build(self.probe)]
+    def build(self, place: int = 0, size: float = 0, added: Callable | None = None) -> str:
+        """added: a function of (t, y), to the rate of the state at `place` or to what is watched for an event."""
+        kind = KINDS[self.library.probe_build(self.probe, place, c_double(size), ADDED(added or 0))]
         self.half_period, self.steps = self.library.probe_half_period(self.probe), self.library.probe_steps(self.probe)
         return kind
 

@@ -1,5 +1,4 @@
 // One free wheel and its orbit behind a C interface, for ctypes. State and units as in wheel_equations.h.
-#include <cmath>
 #include <new>
 
 #include "law.hpp"
@@ -24,40 +23,29 @@ double force(const Probe& probe, const double* y) {
   return wheel_reduced.derivative(&probe.wheel.run.in_force.scene, y, y_dot);
 }
 
-// What is added to the rates of the wheel, of size `added`: no wheel with such a force may be unfolded.
-enum { drag, towards_north, towards_east, beside_a_line, unbalanced, growing, wind, turning, rolling, drifting };
-// Or to what is watched for an event: the limit depends on heading, place, roll angle or time.
-enum { limit_by_heading = drifting + 1, limit_by_place, limit_by_roll, limit_by_time };
-int kind = 0;
-double added = 0;
+// What Python adds to the rate of the state at `place`, or beyond the last to what is watched for an event: no wheel
+// with such a force or such a limit may be unfolded.
+using Added = double (*)(double t, const double* y);
+Added added = nullptr;
+double size = 0;
+int place = 0;
 decltype(solver::Problem::derivative) rates_of_wheel = nullptr;
 decltype(solver::Watched::value) value_of_wheel = nullptr;
 
 double disturbed(void* owner, double t, const double* y, double* y_dot) {
   const double margin = rates_of_wheel(owner, t, y, y_dot);
-  if (kind == drag)
-    for (int i = 1; i < 4; ++i) y_dot[i] -= added * y[i];
-  if (kind == towards_north) y_dot[2] += added * std::cos(y[4]);
-  if (kind == towards_east) y_dot[2] += added * std::sin(y[4]);
-  if (kind == beside_a_line) y_dot[2] += added * y[6];
-  if (kind == unbalanced) y_dot[3] += added * std::cos(y[5]);
-  if (kind == growing) y_dot[3] += added * t;
-  if (kind == wind) y_dot[6] += added;
-  if (kind == turning) y_dot[4] += added * y[1];
-  if (kind == rolling) y_dot[5] += added * y[1];
-  if (kind == drifting) y_dot[7] += added * y[1];
+  y_dot[place] += size * added(t, y);
   return margin;
 }
 
 double other_limit(void* owner, int event, double t, const double* y) {
-  const double by[] = {std::cos(y[4]), y[6], std::cos(y[5]), t};
-  return value_of_wheel(owner, event, t, y) + added * by[kind - limit_by_heading];
+  return value_of_wheel(owner, event, t, y) + size * added(t, y);
 }
 
 void disturb(solver::Problem& problem) {
   rates_of_wheel = problem.derivative;
   value_of_wheel = problem.watched[0].value;  // one function for all events
-  if (kind < limit_by_heading)
+  if (place < problem.states)
     problem.derivative = disturbed;
   else
     for (solver::Watched& watched : problem.watched) watched.value = other_limit;
@@ -79,14 +67,12 @@ PUBLIC Probe* probe_make(const unsigned* references, const double* values, int c
 
 PUBLIC void probe_free(Probe* probe) { delete probe; }
 
-// For all builds that follow.
-PUBLIC void probe_disturb(int what, double size) { kind = what, added = size; }
-
-// 0 refused, 1 folded, 2 ended.
-PUBLIC int probe_build(Probe* probe) {
+// 0 refused, 1 folded, 2 ended. `by`: a disturbance, or null.
+PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   const wheel::InForce at_start = probe->wheel.run.in_force;
   solver::Problem problem = wheel::problem_of(probe->wheel);
-  if (added != 0) disturb(problem);
+  place = at, size = so_much, added = by;
+  if (added) disturb(problem);
   const wheel::Setup& setup = probe->wheel.setup;
   const auto kind = probe->orbit.build(problem, setup.tolerance, wheel::pass_on_orbit, setup.start, probe->solver);
   const bool starts = kind != orbit::Orbit::Kind::refused && probe->orbit.start_at(problem, setup.start);

@@ -4,7 +4,8 @@ J_x = J_y, no friction, no load; scaled errors: angles 1 rad, rates the largest 
 """
 
 import ctypes
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from math import cos, sin
 
 import numpy as np
 import pytest
@@ -208,40 +209,37 @@ def test_a_start_at_a_turning_point_or_beside_it_is_the_same_motion(library: cty
     within(error(got, want) / (1e-8 + 3 * abs(theta_dot)), 1, "error over that of the start")
 
 
-# In the order of probe.cpp. The last three of the rates change psi, phi and Y_O alone, with the rate of theta.
-DISTURBANCES = ["drag", "towards north", "towards east", "beside a line", "unbalanced", "growing"]
-DISTURBANCES += ["wind", "turning", "rolling", "drifting"]
-LIMITS = ["limit by heading", "limit by place", "limit by roll angle", "limit by time"]
+# A place in the state, and what is added to its rate: forces by heading, place, roll angle, time and rate; a wind; psi,
+# phi and Y_O alone, with the rate of theta.
+DISTURBANCES = {"towards north": (2, lambda t, y: cos(y[4])), "towards east": (2, lambda t, y: sin(y[4]))}
+DISTURBANCES |= {"beside a line": (2, lambda t, y: y[6]), "unbalanced": (3, lambda t, y: cos(y[5]))}
+DISTURBANCES |= {"growing": (3, lambda t, y: t), "drag": (3, lambda t, y: -y[3]), "wind": (6, lambda t, y: 1)}
+DISTURBANCES |= {name: (place, lambda t, y: y[1]) for name, place in (("turning", 4), ("rolling", 5), ("drifting", 7))}
+WATCHED = 8  # the place after the last of the state: added to what is watched for an event
+LIMITS = {"heading": lambda t, y: cos(y[4]), "place": lambda t, y: y[6], "roll angle": lambda t, y: cos(y[5])}
+LIMITS |= {"time": lambda t, y: t}
 STEADY = Start(psi=0.4, theta=np.pi / 2, phi_dot=-9.0, X_O=2.0)  # a steady wind keeps straight rolling straight
-BROKEN = {f"{name}, swinging": (name, PAPER) for name in DISTURBANCES}
-BROKEN |= {f"{name}, steady": (name, STEADY) for name in DISTURBANCES[:6]}
-REFUSED = ["refused"] * 3
+BROKEN = [(name, PAPER) for name in DISTURBANCES]
+BROKEN += [(name, STEADY) for name, (place, _) in DISTURBANCES.items() if place < 4]
 
 
-def built_with(library: ctypes.CDLL, kind: int, start: Start, sizes: tuple[float, ...]) -> list[str]:
-    """What comes of the orbit under disturbances of these sizes."""
+def built_with(library: ctypes.CDLL, start: Start, place: int, added: Callable, sizes: tuple[float, ...]) -> list[str]:
+    """What comes of the orbit under disturbances of these sizes, the last below what the tolerance resolves."""
     orbit = Orbit(library, start=start)
     assert orbit.kind == "folded"
-    try:
-        found = []
-        for size in sizes:
-            library.probe_disturb(kind, ctypes.c_double(size))
-            found.append(orbit.build())
-        return found
-    finally:
-        library.probe_disturb(kind, ctypes.c_double(0))
+    return [orbit.build(place, size, added) for size in sizes]
 
 
-@pytest.mark.parametrize(("name", "start"), BROKEN.values(), ids=BROKEN)
+@pytest.mark.parametrize(("name", "start"), BROKEN)
 def test_what_breaks_the_symmetry_is_noticed_whatever_it_is(library: ctypes.CDLL, name: str, start: Start) -> None:
     """The orbit has no list of what acts on the wheel: a force that such a list forgets must not be lost."""
-    # The last size is below what the tolerance resolves.
-    assert built_with(library, DISTURBANCES.index(name), start, (1e-2, 1e-5, 1e-7, 1e-12)) == [*REFUSED, "folded"]
+    found = built_with(library, start, *DISTURBANCES[name], (1e-2, 1e-5, 1e-7, 1e-12))
+    assert found == ["refused"] * 3 + ["folded"]
 
 
-@pytest.mark.parametrize("name", LIMITS)
+@pytest.mark.parametrize("by", LIMITS)
 @pytest.mark.parametrize("start", [PAPER, STEADY], ids=["swinging", "steady"])
-def test_an_event_whose_limit_breaks_the_symmetry_is_noticed_too(library: ctypes.CDLL, name: str, start: Start) -> None:
+def test_an_event_whose_limit_breaks_the_symmetry_is_noticed_too(library: ctypes.CDLL, by: str, start: Start) -> None:
     """The motion repeats, the event does not: what happens in the first nutation shows nothing of later ones."""
-    number = len(DISTURBANCES) + LIMITS.index(name)
-    assert built_with(library, number, start, (0.1, 1e-2, 1e-3, 1e-12)) == [*REFUSED, "folded"]
+    found = built_with(library, start, WATCHED, LIMITS[by], (0.1, 1e-2, 1e-3, 1e-12))
+    assert found == ["refused"] * 3 + ["folded"]

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from reference import Wheel
 from support.bounds import EPSILON, beyond, within
-from support.closed_forms import critical_spin, rolling_inertia, tipping_inertia, upright_stiffness
+from support.closed_forms import critical_spin, tipping_inertia, upright_stiffness
 from support.motion import Library
-from support.schedule import Schedule
 
 from . import exact_motions as exact
 
@@ -35,20 +34,6 @@ def test_a_standing_wheel_tips_by_the_hyperbolic_cosine(library: Library) -> Non
 
     within(gap(Wheel()), 2e-8, "gap")  # the second order is lean^2
     beyond(gap(THIN), 0.1, "gap")
-
-
-def test_drive_and_brake_torque_move_an_upright_wheel_as_a_roller(library: Library) -> None:
-    torque = Schedule(((0.0, {"M_3": (3.0, -4.0, 1.5)}), (1.0, {"M_3": -2.0})))
-
-    def gap(judged: Wheel) -> float:
-        times = np.linspace(0, 2, 41)
-        run = library.simulate(times, inputs=torque, **{**exact.UPRIGHT, "phi_dot_start": -10.0})
-        smooth, late = np.minimum(times, 1), np.maximum(times - 1, 0)
-        impulse = 3 * smooth - 2 * smooth**2 + 0.5 * smooth**3 - 2 * late
-        return float(np.abs(run["omega_z"] + 10 - impulse / rolling_inertia(judged)).max())
-
-    within(gap(Wheel()), 128 * 10 * EPSILON, "gap")  # of 10 rad/s; the method is exact for a cubic
-    beyond(gap(THIN), 0.01, "gap")
 
 
 def test_the_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library, formulation: int) -> None:

@@ -14,7 +14,7 @@ import pytest
 from reference import Solution, Start, Wheel, solve
 from support.bounds import beyond, within
 from support.closed_forms import circle_spin, rolling_inertia
-from support.driver import DISCARD, ERROR, OK
+from support.driver import ERROR, OK
 from support.exchange import INDICATORS, exchange, loaded, no_inputs
 from support.exchange import Run as ExchangeRun
 from support.motion import Library, start_values
@@ -159,17 +159,6 @@ def test_every_way_of_running_ends_at_the_same_instant(library: Library) -> None
         later = ExchangeRun(wheel, 1e-11, no_inputs)
         later.to(3.0)
         beyond(abs((later.ended or 3.0) - ends[0]), 1e-4, "instant with another mu_max, s")
-
-
-def test_model_exchange_refuses_a_start_without_grip_and_co_simulation_ends_there(library: Library) -> None:
-    wheel = loaded(library).new()
-    assert wheel.set(mu_max=0.01, **FAST) == OK
-    assert wheel.initialise() == ERROR
-    refusal = "At the start the wheel needs a coefficient of friction above mu_max = 0.01 (N = "
-    assert wheel.sentences[-1].startswith(refusal)
-    run = library.simulate([0.0, 1.0], mu_max=0.01, **FAST)
-    assert (run.status, run.end) == (DISCARD, 0.0)
-    assert run.ended == MESSAGE.format(0.01, 0) + ", theta = 1.2 rad: the model ends there."
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -91,13 +91,6 @@ def test_forty_random_slopes_agree_with_the_independent_reference(library: Libra
     beyond(max(steeper for _, steeper in gaps), 1e-7, "gap to a steeper road")
 
 
-def test_a_road_of_ninety_degrees_is_refused_with_a_message(library: Library) -> None:
-    with library.wheel(logging=True) as wheel:
-        wheel.set(slope=pi / 2)
-        wheel.initialise()
-        assert any("slope = 1.57079633 rad: it must be less than 1.5708." in sentence for sentence in wheel.sentences)
-
-
 def on_a_hill(library: Library, slope: float, **values: float) -> np.ndarray:
     """X_O after 0, 1 and 2 s on a hill that begins after 0.5 s on a level road, at 2.8 m/s."""
     with library.wheel() as wheel:

@@ -14,7 +14,7 @@ from support.sliding import jamming
 
 from reference import Inputs, Road, Start, Wheel, solve
 from reference.model import Options
-from reference.modes import GRIPS, SLIDES, Contacts, Mode
+from reference.modes import SLIDES, Contacts, Mode
 from reference.motion import initial_state
 from reference.sliding_contact import resting_directions
 
@@ -24,26 +24,6 @@ PAPER = Wheel()
 def lost(road: Road) -> float:
     """The instant at which the paper's wheel begins to slide."""
     return next(t for t, slides in solve(PAPER, Start(), [0.0, 1.0], road=road).contacts if slides)
-
-
-def test_the_slip_starts_in_the_direction_of_its_own_acceleration() -> None:
-    """One-sided sixth-order differences of the slip after the loss, along X and Y."""
-    road, h = Road(0.45, 0.4), 1e-4
-    t = lost(road)
-    got = solve(PAPER, Start(), [0.0, *(t + h * np.arange(1, 7))], road=road)
-    c, s = np.cos(got["psi"]), np.sin(got["psi"])
-    u = np.array([got["slip_x"] * c - got["slip_y"] * s, got["slip_x"] * s + got["slip_y"] * c])[:, 1:]
-    acceleration = u @ np.array([6, -15 / 2, 20 / 3, -15 / 4, 6 / 5, -1 / 6]) / h
-    at = solve(PAPER, Start(), [0.0, t])  # without a loss
-    names = ("psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot", "X_O", "Y_O")
-    y = initial_state(PAPER, Start(**{name: float(at[name][-1]) for name in names}), road, t)
-    contacts = Contacts(PAPER, road, Inputs(), Options())
-    (mode, chi) = contacts.choose(y, gone=GRIPS)  # type: ignore[misc]
-    push = contacts.sliding_at(mode, y).push(0.4, chi)
-    within(abs(hypot(*acceleration) - push.grow), 1e-9, "acceleration, m/s2")
-    within(abs(np.arctan2(acceleration[1], acceleration[0]) - chi), 1e-9, "direction, rad")
-    X, Y = contacts.sliding_at(mode, y).grip()
-    beyond(abs(np.arctan2(-Y, -X) - chi), 5e-3, "direction off the one against the grip's force, rad")
 
 
 @pytest.mark.parametrize(("mu_slide", "power"), [(0.4, 2), (0.36, 1)])

@@ -108,7 +108,7 @@ def sines(t: float, order: int = 0) -> tuple[float, ...]:
     return tuple(a * w**order * sin(w * t + p + order * pi / 2) for a, w, p in SINES.values())
 
 
-# Start values of one scene of every kind: every formulation, every method, every law of friction.
+# Start values of one scene of every kind: every formulation, every method, every law of friction, and a slide.
 KINDS: dict[str, Values] = {
     name: SCENES[name].start
     for name in ("free", "friction", "general inertia", "general inertia, friction", "regularized")
@@ -118,6 +118,7 @@ KINDS: dict[str, Values] = {
     "multibody, bdf": {"formulation": "multibody", "method": "bdf", "friction_law": "regularized", "s": 0.03},
     "adams": {"method": "adams", "s": 0.03},
     "runge_kutta": {"method": "runge_kutta"},
+    "sliding": {"mu_max": 0.45, "mu_slide": 0.4},  # from 0.57 to 0.96 s and from 1.87 to 2.19 s
 }
 
 # Every formulation by every method, forced.
