@@ -10,14 +10,13 @@ import math
 import sys
 import tempfile
 import uuid
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext, suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 
 import dask
-import numpy as np
 import xarray as xr
 import zarr
 from dask.array.core import normalize_chunks, slices_from_chunks
@@ -29,12 +28,12 @@ from tqdm import tqdm
 
 from .dataset import TITLE, axes_of, doubtful, open_results, points, provenance, template
 from .plan import Status, Study, StudyError
-from .worker import MARK, Region, Result, pack, run_chunk, write
+from .worker import MARK, Region, pack, run_chunk, write
 
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
 STEPS = 10_000_000  # between communication points, in a chunk
 BATCH = 100  # chunks that the scheduler gets at a time; it hands them out as workers become free
-PIECES = 16  # a chunk during which a worker died is divided into so many
+DIED = {"status": Status.failed, "message": "The worker processes died during the runs of this chunk."}
 PATIENCE = 60  # s for the first worker to appear
 # Workers that a LocalCluster starts ignore Ctrl-C, which is for the caller; Dask runs this text in each of them.
 DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
@@ -66,13 +65,15 @@ def run(
     fingerprint = hashlib.sha256(json.dumps([asdict(study), sha256]).encode()).hexdigest()
     place, mark = str(out) if "://" in str(out) else str(Path(out).resolve()), uuid.uuid4().hex
     group = kept(place, fingerprint, overwrite)
-    if group and not missing(group):
-        return open_results(place)
+    if there := int((group["status"][:] != Status.not_computed).sum()) if group else 0:
+        print(f"{there} of {group['status'].size} wheels are there already.", file=sys.stderr)
+        if there == group["status"].size:
+            return open_results(place)
     axes = axes_of(study)
     if doubt := doubtful(study, axes, description):
         print(f"study: warning: {doubt}", file=sys.stderr)
-    there = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
-    with there as running, Client(running, timeout="30s") as client:
+    crew = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
+    with crew as running, Client(running, timeout="30s") as client:
         with tempfile.TemporaryDirectory() as folder:
             # A new name per run: workers still read modules from the file of an earlier run, which must not change.
             upload = pack(fmu, Path(folder) / f"wheel-{mark}.zip")
@@ -85,24 +86,19 @@ def run(
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = mark
-        status, common = group["status"][:], replace(study, grid={}, list={}, measures=study.restated({}))
-        task = partial(run_chunk, upload.name, common, place, mark)
-        if done := int((status != Status.not_computed).sum()):
-            print(f"{done} of {status.size} wheels are there already.", file=sys.stderr)
-        every = 0.2 if sys.stderr.isatty() else 10.0  # s
-        with tqdm(total=status.size, initial=done, unit=" wheels", mininterval=every) as bar:
-            for region, result in finished(client, task, partial(points, axes), missing(group)):
-                if result is not None:
+        common = replace(study, grid={}, list={}, measures=study.restated({}))
+        task, regions = partial(run_chunk, upload.name, common, place, mark), missing(group)
+        futures = client.map(task, regions, [points(axes, one) for one in regions], pure=False, batch_size=BATCH)
+        waiting, every = dict(zip(futures, regions, strict=True)), 0.2 if sys.stderr.isatty() else 10.0  # s
+        with tqdm(total=group["status"].size, initial=there, unit=" wheels", mininterval=every) as bar:
+            for future in as_completed(futures, loop=client.loop):
+                region = waiting[future]
+                # Dask gives the chunk of a worker that died to others, a few times.
+                died = isinstance(future.exception(), KilledWorker)
+                if result := DIED if died else future.result():
                     write(place, mark, region, result)
-                bar.update(status[region].size)
+                bar.update(math.prod(part.stop - part.start for part in region))
     return open_results(place)
-
-
-def computed(out: str | Path) -> int:
-    """How many wheels have been run in a place, a folder or a URL; 0 if there are no results."""
-    with suppress(FileNotFoundError, KeyError, ValueError):
-        return int((zarr.open_group(str(out), mode="r")["status"][:] != Status.not_computed).sum())
-    return 0
 
 
 def kept(place: str, fingerprint: str, overwrite: bool) -> zarr.Group | None:
@@ -130,35 +126,6 @@ def missing(group: zarr.Group) -> list[Region]:
     return [region for region in chunks if (codes[region] == Status.not_computed).any()]
 
 
-def finished(
-    client: Client, task: Callable[..., Result | None], points_of: Callable[[Region], dict], regions: list[Region]
-) -> Iterator[tuple[Region, Result | None]]:
-    """The regions as they are finished, with the results that are not written yet.
-
-    Those during which a worker died come last, in pieces and each alone, until the wheels that kill it are known.
-    """
-    batches = [regions]
-    while batches:
-        batch = batches.pop()
-        futures = client.map(task, batch, [*map(points_of, batch)], pure=False, batch_size=BATCH)
-        waiting = dict(zip(futures, batch, strict=True))
-        for future in as_completed(futures, loop=client.loop):
-            region = waiting.pop(future)
-            if not isinstance(future.exception(), KilledWorker):
-                yield region, future.result()
-            elif len(pieces := divided(region)) > 1 or len(batch) > 1:
-                batches += [[piece] for piece in pieces]
-            else:
-                yield region, {"status": Status.failed, "message": "The worker process died during this run."}
-
-
-def divided(region: Region) -> list[Region]:
-    """The region in pieces along its longest side; one wheel is one piece."""
-    k = int(np.argmax([part.stop - part.start for part in region]))
-    parts = [part.tolist() for part in np.array_split(range(region[k].start, region[k].stop), PIECES) if part.size]
-    return [(*region[:k], slice(part[0], part[-1] + 1), *region[k + 1 :]) for part in parts]
-
-
 def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
     """Wheels in a chunk: some seconds of work, with more than 100 workers longer, so that the caller keeps up; at least
     four chunks for each worker, so that they end together."""
@@ -171,7 +138,7 @@ def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
 @contextmanager
 def cluster(workers: int | None = None) -> Iterator[LocalCluster]:
     """A LocalCluster with one thread per process."""
-    options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
+    options = {"distributed.worker.profile.enabled": False}
     # Dask inspects itself so rarely that the caller's processor is free for a worker.
     options |= {"distributed.admin.tick.interval": "1s", "distributed.admin.system-monitor.interval": "10s"}
     # A nanny restarts a worker that died. LocalCluster would close it for good if, this long after a death, it happened

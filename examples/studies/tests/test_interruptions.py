@@ -71,11 +71,8 @@ def test_a_study_continues_after(space, stop, code, words, tmp_path, fmu_path, c
     kept, done = chunks(tmp_path), int((open_results(tmp_path / "z")["status"] != Status.not_computed).sum())
     assert 0 < done < len(SPINS) and not list(tmp_path.rglob("*.partial"))
     assert main([*options, "--scheduler", crew.scheduler_address]) == 0
-    printed = capsys.readouterr()
-    assert f"{done} of {len(SPINS)} wheels are there already" in printed.err
-    count, fresh = len(SPINS), len(SPINS) - done
-    assert re.match(rf"{count} wheels, {fresh} of them in [\d.]+ s, the others earlier:\n", printed.out)
-    assert main(options) == 0 and capsys.readouterr().out.startswith(f"{len(SPINS)} wheels, all run earlier:\n")
+    assert f"{done} of {len(SPINS)} wheels are there already" in capsys.readouterr().err
+    assert main(options) == 0 and f"{len(SPINS)} of {len(SPINS)} wheels are there already" in capsys.readouterr().err
     assert kept.items() <= chunks(tmp_path).items()
     assert same(whole, open_results(tmp_path / "z"))
 
@@ -87,11 +84,12 @@ def die_at_upright(*task: object) -> Result | None:
     return run_chunk(*task)
 
 
-def test_a_worker_that_dies_costs_one_wheel(conduct, crew: LocalCluster, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_chunk_that_kills_its_workers_fails_and_the_study_goes_on(conduct, crew: LocalCluster, monkeypatch) -> None:
     monkeypatch.setattr(crew.scheduler, "allowed_failures", 0)
-    study = Study(grid={"theta_start": np.r_[1.2:1.4:32j, 1.5, 1.41:1.49:7j]}, stop_time=1.0)
-    results = conduct(study, chunk=40, work=die_at_upright)
-    died = results["theta_start"] == 1.5
+    results = conduct(
+        Study(grid={"theta_start": [*np.r_[1.2:1.4:39j], 1.5]}, stop_time=1.0), chunk=20, work=die_at_upright
+    )
+    died = np.arange(40) >= 20
     assert (results["status"] == np.where(died, Status.failed, Status.reached)).all()
-    assert "died" in results["message"].values[died].item()
+    assert all("died" in text for text in results["message"].values[died])
     assert (np.isfinite(results["theta_end"]) == ~died).all()
