@@ -10,13 +10,14 @@ import math
 import sys
 import tempfile
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 
 import dask
+import numpy as np
 import xarray as xr
 import zarr
 from dask.array.core import normalize_chunks, slices_from_chunks
@@ -28,12 +29,12 @@ from tqdm import tqdm
 
 from .dataset import TITLE, axes_of, doubtful, open_results, points, provenance, template
 from .plan import Status, Study, StudyError
-from .worker import MARK, Region, pack, run_chunk, write
+from .worker import MARK, Region, Result, pack, run_chunk, write
 
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
 STEPS = 10_000_000  # between communication points, in a chunk
 BATCH = 100  # chunks that the scheduler gets at a time; it hands them out as workers become free
-DIED = {"status": Status.failed, "message": "The worker processes died during the runs of this chunk."}
+PIECES = 16  # a chunk during which a worker died is divided into so many
 PATIENCE = 60  # s for the first worker to appear
 # Workers that a LocalCluster starts ignore Ctrl-C, which is for the caller; Dask runs this text in each of them.
 DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
@@ -87,15 +88,10 @@ def run(
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = mark
         common = replace(study, grid={}, list={}, measures=study.restated({}))
-        task, regions = partial(run_chunk, upload.name, common, place, mark), missing(group)
-        futures = client.map(task, regions, [points(axes, one) for one in regions], pure=False, batch_size=BATCH)
-        waiting, every = dict(zip(futures, regions, strict=True)), 0.2 if sys.stderr.isatty() else 10.0  # s
+        task, every = partial(run_chunk, upload.name, common, place, mark), 0.2 if sys.stderr.isatty() else 10.0  # s
         with tqdm(total=group["status"].size, initial=there, unit=" wheels", mininterval=every) as bar:
-            for future in as_completed(futures, loop=client.loop):
-                region = waiting[future]
-                # Dask gives the chunk of a worker that died to others, a few times.
-                died = isinstance(future.exception(), KilledWorker)
-                if result := DIED if died else future.result():
+            for region, result in finished(client, task, partial(points, axes), missing(group)):
+                if result is not None:
                     write(place, mark, region, result)
                 bar.update(math.prod(part.stop - part.start for part in region))
     return open_results(place)
@@ -126,6 +122,35 @@ def missing(group: zarr.Group) -> list[Region]:
     return [region for region in chunks if (codes[region] == Status.not_computed).any()]
 
 
+def finished(
+    client: Client, task: Callable[..., Result | None], points_of: Callable[[Region], dict], regions: list[Region]
+) -> Iterator[tuple[Region, Result | None]]:
+    """The regions as they are finished, with the results that are not written yet.
+
+    Those during which a worker died come last, in pieces and each alone, until the wheels that kill it are known.
+    """
+    batches = [regions]
+    while batches:
+        batch = batches.pop()
+        futures = client.map(task, batch, [*map(points_of, batch)], pure=False, batch_size=BATCH)
+        waiting = dict(zip(futures, batch, strict=True))
+        for future in as_completed(futures, loop=client.loop):
+            region = waiting.pop(future)
+            if not isinstance(future.exception(), KilledWorker):
+                yield region, future.result()
+            elif len(pieces := divided(region)) > 1 or len(batch) > 1:
+                batches += [[piece] for piece in pieces]
+            else:
+                yield region, {"status": Status.failed, "message": "The worker process died during this run."}
+
+
+def divided(region: Region) -> list[Region]:
+    """The region in pieces along its longest side; one wheel is one piece."""
+    k = int(np.argmax([part.stop - part.start for part in region]))
+    parts = [part.tolist() for part in np.array_split(range(region[k].start, region[k].stop), PIECES) if part.size]
+    return [(*region[:k], slice(part[0], part[-1] + 1), *region[k + 1 :]) for part in parts]
+
+
 def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
     """Wheels in a chunk: some seconds of work, with more than 100 workers longer, so that the caller keeps up; at least
     four chunks for each worker, so that they end together."""
@@ -138,7 +163,7 @@ def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
 @contextmanager
 def cluster(workers: int | None = None) -> Iterator[LocalCluster]:
     """A LocalCluster with one thread per process."""
-    options = {"distributed.worker.profile.enabled": False}
+    options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
     # Dask inspects itself so rarely that the caller's processor is free for a worker.
     options |= {"distributed.admin.tick.interval": "1s", "distributed.admin.system-monitor.interval": "10s"}
     # A nanny restarts a worker that died. LocalCluster would close it for good if, this long after a death, it happened

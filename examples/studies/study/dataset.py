@@ -164,7 +164,7 @@ def summarize(results: xr.Dataset, seconds: float) -> str:
     seconds: of this call, with the start of workers and writing. The speed is that of the runs themselves.
     """
     status = results["status"].values
-    lines = [f"{status.size} wheels in {seconds:.1f} s:"]
+    lines = [f"{status.size} wheels; this call took {seconds:.1f} s:"]
     for code, found in zip(*np.unique(status, return_counts=True), strict=True):
         lines.append(f"  {found:8d} {Status(code).name.replace('_', ' ')}")
         if code in (Status.refused, Status.failed):

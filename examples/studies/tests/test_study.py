@@ -108,8 +108,8 @@ def test_the_command_reads_a_list_and_exports_tables(crew: LocalCluster, fmu_pat
     where = "--list", starts, "--fmu", fmu_path, "--out", tmp_path / "list.zarr", "--scheduler", crew.scheduler_address
     assert main([*map(str, where), "--csv", "--netcdf"]) == 0
     printed = capsys.readouterr().out
-    assert re.match(r"2 wheels in [\d.]+ s:\n", printed)
-    assert re.search(r"1 flat\n", printed)
+    assert re.match(r"2 wheels; this call took [\d.]+ s:\n", printed)
+    assert "1 flat\n" in printed
     names, *rows = (tmp_path / "list.csv").read_text().splitlines()
     assert names.startswith("wheel,") and len(rows) == 2
     assert xr.open_dataset(tmp_path / "list.nc")["theta_start"].values[0] == np.radians(75)
