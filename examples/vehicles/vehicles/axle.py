@@ -8,7 +8,6 @@ middle and the yaw rate:
 """
 
 from collections.abc import Callable
-from itertools import takewhile
 from types import SimpleNamespace
 from typing import Any
 
@@ -24,8 +23,6 @@ WHEELS = {"left": "left", "right": "right"}
 COMPARED = options.file("axle")["compared"]
 SCENES = manoeuvres("axle")
 STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT = SCENES.values()
-LIMIT_STEPS = (0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
-GRID = 0.048  # s, which all of them divide
 OF_WHEEL = {"m": 20.0, "J_x": 0.9, "J_z": 1.8}  # the wheels' defaults
 
 
@@ -167,10 +164,3 @@ def energy_gain(table: Table) -> float:
     """Of wheels, beam and dampers together over a run without drive and rolling friction, J: added by the coupling."""
     total = table["E"] + table["left.E"] + table["right.E"] + table["W_loss"]
     return float(total[-1] - total[0])
-
-
-def longest_step(fmus: Fmus, scene: Manoeuvre, exchange: str) -> float:
-    """The longest of LIMIT_STEPS up to which a run neither ends early nor strays beyond 10 % of the range, s."""
-    truth = rigid(scene, np.arange(int(scene.stop / GRID) + 1) * GRID)
-    scene = scene.changed(stop=float(truth["time"][-1]))
-    return [0.0, *takewhile(lambda h: AXLE.error(fmus, scene, truth, h, exchange) < 0.1, LIMIT_STEPS)][-1]
