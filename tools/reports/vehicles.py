@@ -9,7 +9,7 @@ import pandas as pd
 from vehicles import axle, balance, car_judges, suspended
 from vehicles.car import CAR
 from vehicles.car_judges import MANOEUVRES
-from vehicles.drawing import draw, draw_orders
+from vehicles.drawing import draw
 from vehicles.options import EXCHANGES, Manoeuvre, manoeuvres
 from vehicles.vehicle import STEPS, orders
 
@@ -44,7 +44,7 @@ def suspended_wheel(report: Report) -> dict[str, object]:
     table.insert(0, "step, ms", 1000 * np.array(steps))
     table["share lost to the lag of a held position"] = [suspended.drag_share(h) for h in steps]
     launch = suspended.SUSPENDED.drive(report.fmus, suspended.LAUNCH, 0.000625, grid=0.005).whole
-    draw(suspended.SUSPENDED, suspended.LAUNCH, launch, report.folder / "vehicles_suspended.png", errors=found)
+    draw(suspended.SUSPENDED, suspended.LAUNCH, launch, report.folder / "vehicles_suspended.png")
     late = truth["time"] > 2.5  # s
     slope = np.polyfit(truth["time"][late], truth["X_B_dot"][late], 1)[0]
     figures = {"order": 2 - min(orders(found["derivatives"]))}
@@ -126,11 +126,8 @@ def largest(tables: Tables) -> pd.DataFrame:
 
 @part(1)
 def rollback(report: Report) -> dict[str, float]:
-    """the car: the largest error where no wheel stops; a picture of the orders"""
-    found, ms = largest(report.tables), [1000 * h for h in STEPS]
-    of = {name: {e: dict(zip(STEPS, row[e][ms], strict=True)) for e in EXCHANGES} for name, row in found.iterrows()}
-    draw_orders(of, report.folder / "vehicles_orders.png")
-    moving = found.drop(["straight", "hill"], errors="ignore")
+    """the car: the largest error where no wheel stops"""
+    moving = largest(report.tables).drop(["straight", "hill"], errors="ignore")
     return {"rollback": moving["rollback", 1000 * STEPS[0]].max()}
 
 
