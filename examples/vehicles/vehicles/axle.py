@@ -132,7 +132,7 @@ def beside_rigid(table: Table, scene: Manoeuvre, _fmus: Fmus) -> Table:
 
 def verdict(table: Table, scene: Manoeuvre) -> tuple[bool, list[str]]:
     """How near the run is to the rigid axle; no road has the grip for wheels that require more than a dry one."""
-    if (most := grip(table)) > DRY_ROAD:
+    if (most := AXLE.grip(table)) > DRY_ROAD:
         return False, [f"Failed: a wheel requires a friction coefficient of {beyond_dry(most)}."]
     if why := without_closed_form(scene):
         return True, [f"No closed form to compare with: {why}."]
@@ -140,12 +140,7 @@ def verdict(table: Table, scene: Manoeuvre) -> tuple[bool, list[str]]:
     return True, [f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."]
 
 
-def grip(table: Table) -> float:
-    """Of the wheel that requires most."""
-    return max(float(np.nanmax(table[f"{wheel}.mu_required"])) for wheel in WHEELS)
-
-
-AXLE = Vehicle("axle", starts, verdict, wheels=WHEELS, complete=beside_rigid, grip=grip)
+AXLE = Vehicle("axle", starts, verdict, wheels=WHEELS, complete=beside_rigid)
 
 
 def step_errors(fmus: Fmus, scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = STEPS) -> dict:
