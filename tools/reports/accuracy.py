@@ -7,7 +7,6 @@ shown here.
 from __future__ import annotations
 
 import numpy as np
-import pandas as pd
 from orbit.orbit import Halves
 from physics import cases, measure
 from physics import exact_motions as exact
@@ -34,13 +33,6 @@ MOTIONS = {
     "steady circle, thin disc, 5 s": lambda fmu, form: exact.circle_error(fmu, THIN, THIN, form, 1.0, 1.1),
     "steady circle, torus, 5 s": lambda fmu, form: exact.circle_error(fmu, TORUS, TORUS, form, 1.0, 1.1),
 }
-
-
-@part(2)
-def paper(report: Report) -> pd.DataFrame:
-    """the paper's scenes at the default tolerance"""
-    errors = pd.DataFrame({scene: measure.table_errors(report.library, scene) for scene in measure.FRICTION})
-    return errors.rename_axis("output").reset_index()
 
 
 @part(10, {"tolerance": TOLERANCES})
