@@ -25,7 +25,6 @@ SUBDIVISION = 4  # drawn points per row among the rates
 MOST = 2.0  # coefficient of friction that no road has; without a normal force no coefficient would do
 DENSE, SOLID = 60, 400  # turns of a curve over time: from here on a thin line; from here on its envelope
 BAR = 0.025  # of the axes: the height of the bar of a slide
-LEADER = 10.0  # points: from here on a thin line leads from a text to what it names
 PSI_DOT = r"$\dot\psi$"
 PHI_DOT = r"$\dot\varphi$"
 
@@ -150,19 +149,12 @@ def write_rates(ax: Axes, scene: Scene) -> None:
 
 
 def write_beside(ax: Axes, texts: dict[tuple[float, float], str], lines: list[Array]) -> None:
-    """Texts beside points of data, clear of the lines and of each other; a thin line leads to what is far."""
+    """Texts beside points of data, clear of the lines and of each other."""
     ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())  # no line moves them any more
     (x, y), (xs, ys) = zip(*texts, strict=True), zip(*(line.T for line in lines), strict=True)
-    look = {"textsize": style.NOTE, "textcolor": style.INK, "linecolor": style.GREY, "linewidth": 0.5}
+    look = {"textsize": style.NOTE, "textcolor": style.INK, "draw_lines": False}
     place = {"min_distance": 0.015, "max_distance": 0.25, "nbr_candidates": 200}
-    _, _, _, leaders = textalloc.allocate(
-        ax, x, y, [*texts.values()], x_scatter=x, y_scatter=y, x_lines=xs, y_lines=ys, **look, **place
-    )
-    leader: Any
-    for leader in filter(None, leaders):
-        (left, bottom), (right, top) = leader.get_transform().transform(leader.get_xydata())
-        if np.hypot(right - left, top - bottom) * 72 < LEADER * ax.figure.dpi:
-            leader.remove()
+    textalloc.allocate(ax, x, y, [*texts.values()], x_scatter=x, y_scatter=y, x_lines=xs, y_lines=ys, **look, **place)
 
 
 def _rates(scene: Scene) -> tuple[Array, Array, Array]:
