@@ -25,23 +25,21 @@ SUBDIVISION = 4  # drawn points per row among the rates
 MOST = 2.0  # coefficient of friction that no road has; without a normal force no coefficient would do
 DENSE, SOLID = 60, 400  # turns of a curve over time: from here on a thin line; from here on its envelope
 BAR = 0.025  # of the axes: the height of the bar of a slide
-LEADER = 10.0  # points: from here on a thin line leads from a text to what it names
 PSI_DOT = r"$\dot\psi$"
 PHI_DOT = r"$\dot\varphi$"
 
 
 def draw_position(ax: Axes, scene: Scene) -> list[str]:
     """Fig. 1, 4: X_O over time."""
-    _time_axis(ax, scene)
+    marks = _time_axis(ax, scene)
     ax.set_ylabel(r"position $X_O$ [m]")
     _scale(ax.yaxis, 5, scene["X_O"], 1e-3 * scene.value("r_0"))
-    return _over_time(ax, scene["time"], scene["X_O"])
+    return marks + _over_time(ax, scene["time"], scene["X_O"])
 
 
 def draw_tilt(ax: Axes, scene: Scene) -> list[str]:
     """Fig. 2, 5: theta over time, rad on the left and degrees on the right."""
-    _time_axis(ax, scene)
-    theta = scene["theta"]
+    marks, theta = _time_axis(ax, scene), scene["theta"]
     ax.set_ylabel(r"angle $\theta$ [rad]")
     degrees = ax.secondary_yaxis("right", functions=(np.degrees, np.radians))
     degrees.set_ylabel(r"$\theta$ [deg]")
@@ -50,7 +48,7 @@ def draw_tilt(ax: Axes, scene: Scene) -> list[str]:
     _scale(degrees.yaxis, 6, steps=(1, 1.5, 2, 3, 5, 10))
     if np.ptp(theta) >= np.pi / 6:
         ax.set_ylim(0.0, np.pi if theta.max() > np.pi / 2 - 0.02 else np.pi / 2)  # a line at the frame cannot be seen
-    return _over_time(ax, scene["time"], theta)
+    return marks + _over_time(ax, scene["time"], theta)
 
 
 def draw_path(ax: Axes, scene: Scene) -> list[str]:
@@ -69,18 +67,18 @@ def draw_path(ax: Axes, scene: Scene) -> list[str]:
         arrow = {"arrowstyle": "<|-", "color": style.GREY, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", (0.12, 0.83), step, "axes fraction", "offset points", arrowprops=arrow)
         ax.text(0.02, 0.93, "downhill", transform=ax.transAxes, color=style.GREY, fontsize=style.NOTE)
-    return []
+    return ["Purple: it slides."] * bool(scene.slides.any())
 
 
 def draw_ground(ax: Axes, scene: Scene) -> list[str]:
     """Above, the normal force; below, the coefficient of friction that rolling needs, and mu_max if it is set."""
-    _time_axis(ax, scene)
+    marks = _time_axis(ax, scene)
     right, force, limit = ax.twinx(), scene["lambda_3"], scene.value("mu_max")
     needed = np.clip(np.nan_to_num(scene["mu_required"], nan=MOST), 0.0, MOST)
     right.spines["right"].set_visible(True)
     ax.set_ylabel("normal force $N$ [N]", color=style.BLUE)
     right.set_ylabel(r"$\mu$ required", color=style.VERMILLION)
-    remarks = _over_time(ax, scene["time"], force) + _over_time(right, scene["time"], needed, style.VERMILLION)
+    marks += _over_time(ax, scene["time"], force) + _over_time(right, scene["time"], needed, style.VERMILLION)
     right.set_ylim(0.0, 1.1 * max(needed.max(), limit, 0.05))
     _scale(ax.yaxis, 5, force, 0.02 * scene.value("m") * scene.value("g"))
     _scale(right.yaxis, 5)
@@ -93,23 +91,22 @@ def draw_ground(ax: Axes, scene: Scene) -> list[str]:
         right.axhline(limit, color=style.VERMILLION, linewidth=0.8, linestyle=(0, (4, 2)))
         place = {"color": style.VERMILLION, "xycoords": right.get_yaxis_transform()}
         style.note(right, r"$\mu_\mathrm{max}$", (0.02, limit), (0, 2), **place)
-    return remarks + [rf"$\mu$ is drawn up to {MOST:g}."] * int(needed.max() == MOST)
+    return marks + [rf"$\mu$ is drawn up to {MOST:g}."] * int(needed.max() == MOST)
 
 
 def draw_slip(ax: Axes, scene: Scene) -> list[str]:
     """The slip along and across the rolling direction."""
-    _time_axis(ax, scene)
     ax.set_ylabel("slip [m/s]")
-    remarks, parts = [], {"slip_x": (style.BLUE, "along"), "slip_y": (style.GREEN, "across")}
+    marks, parts = _time_axis(ax, scene), {"slip_x": (style.BLUE, "along"), "slip_y": (style.GREEN, "across")}
     for name, (color, text) in parts.items():
-        remarks += _over_time(ax, scene["time"], scene[name], color)
+        marks += _over_time(ax, scene["time"], scene[name], color)
         most = int(np.argmax(abs(scene[name])))
         if abs(scene[name][most]) > 1e-3 * scene.slip.max():
             place = {"color": color, "textcoords": "offset points", "va": "center", "fontsize": style.NOTE}
             ax.annotate(text, (scene["time"][most], scene[name][most]), xytext=(5, 0), **place)
     _scale(ax.yaxis, 5, np.array([scene[name] for name in parts]), 0.01)
     ax.margins(y=0.12)
-    return remarks
+    return marks
 
 
 def draw_rates(ax: Axes, scene: Scene) -> list[str]:
@@ -130,10 +127,11 @@ def draw_rates(ax: Axes, scene: Scene) -> list[str]:
         return [r"Both rates depend on $\theta$ alone, so the curve is a single arc, traced back and forth."]
     # omega_z = phi_dot + psi_dot cos(theta) is small, and so is the angle at which a narrow bundle lies.
     shear = float(-np.sign(np.cos(scene["theta"].mean())) or -1.0)
+    marks = [r"Thick: stick ($\omega_z$ held at zero)."] * bool(stick.any())
     if scene.still or np.ptp(y - shear * x) >= NARROW * np.ptp(y):
-        return []
+        return marks
     _draw_inset(ax, x, y, stick, shear)
-    return ["Inset: the same motion sheared, which opens the narrow bundle."]
+    return [*marks, "Inset: the same motion sheared, which opens the narrow bundle."]
 
 
 def write_rates(ax: Axes, scene: Scene) -> None:
@@ -151,19 +149,12 @@ def write_rates(ax: Axes, scene: Scene) -> None:
 
 
 def write_beside(ax: Axes, texts: dict[tuple[float, float], str], lines: list[Array]) -> None:
-    """Texts beside points of data, clear of the lines and of each other; a thin line leads to what is far."""
+    """Texts beside points of data, clear of the lines and of each other."""
     ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())  # no line moves them any more
     (x, y), (xs, ys) = zip(*texts, strict=True), zip(*(line.T for line in lines), strict=True)
-    look = {"textsize": style.NOTE, "textcolor": style.INK, "linecolor": style.GREY, "linewidth": 0.5}
+    look = {"textsize": style.NOTE, "textcolor": style.INK, "draw_lines": False}
     place = {"min_distance": 0.015, "max_distance": 0.25, "nbr_candidates": 200}
-    _, _, _, leaders = textalloc.allocate(
-        ax, x, y, [*texts.values()], x_scatter=x, y_scatter=y, x_lines=xs, y_lines=ys, **look, **place
-    )
-    leader: Any
-    for leader in filter(None, leaders):
-        (left, bottom), (right, top) = leader.get_transform().transform(leader.get_xydata())
-        if np.hypot(right - left, top - bottom) * 72 < LEADER * ax.figure.dpi:
-            leader.remove()
+    textalloc.allocate(ax, x, y, [*texts.values()], x_scatter=x, y_scatter=y, x_lines=xs, y_lines=ys, **look, **place)
 
 
 def _rates(scene: Scene) -> tuple[Array, Array, Array]:
@@ -225,17 +216,21 @@ def _track(ax: Axes, x: Array, y: Array, thick: Array | bool = False, color: str
     ax.plot(x[-1], y[-1], "s", color=style.INK, markersize=4, fillstyle="none")
 
 
-def _time_axis(ax: Axes, scene: Scene) -> None:
-    """Time in s over the whole scene, the marks of friction and of slides behind the curve."""
+def _time_axis(ax: Axes, scene: Scene) -> list[str]:
+    """Time in s over the whole scene, and behind the curve the marks of friction and of slides, which it explains."""
     ax.set(xlim=scene["time"][[0, -1]], xlabel="time $t$ [s]")
     _scale(ax.xaxis, 6)
     place = {"transform": ax.get_xaxis_transform()}
     ax.add_artist(StepPatch(scene.mode == 0, scene.edges, fill=True, color=style.BAND, linewidth=0, zorder=0, **place))
     ax.vlines(scene.reversals, 0.955, 1.0, color=style.VERMILLION, linewidth=0.8, zorder=1, **place)
+    marks = [r"Bands: stick ($\omega_z$ held at zero)."] * bool((scene.mode == 0).any())
+    marks += [r"Ticks at the top: $\omega_z$ changes sign."] * bool(scene.reversals.size)
     if scene.slides.any():
         bars = np.where(scene.slides, BAR, 0.0)
         ax.add_artist(StepPatch(bars, scene.edges, fill=True, color=style.PURPLE, linewidth=0, zorder=1, **place))
         ax.vlines(scene.transitions, 0.0, 1.0, color=style.PURPLE, linewidth=0.5, alpha=0.6, zorder=0, **place)
+        marks.append("Purple bars: it slides; thin lines: grip is lost and returns.")
+    return marks
 
 
 def _over_time(ax: Axes, time: Array, values: Array, color: str = style.BLUE) -> list[str]:

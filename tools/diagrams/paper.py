@@ -33,27 +33,26 @@ PITCH = 3.4  # mm from one line of a caption to the next
 
 @dataclass(frozen=True)
 class Panel:
-    """One row of a sheet; height in mm in all; `timed`: whether it is over time, with the marks of friction; `figures`:
-    its numbers in the paper, without and with friction."""
+    """One row of a sheet; height in mm in all; `draw` returns what the caption explains; `figures`: its numbers in
+    the paper, without and with friction."""
 
     name: str
     subject: str
     height: float
     draw: Callable[[Axes, Scene], list[str]]
-    timed: bool
     figures: tuple[int, int] | None = None
 
 
 PAPERS = (
-    Panel("position", r"$X_O(t)$", 57.0, panels.draw_position, True, (1, 4)),
-    Panel("tilt", r"$\theta(t)$", 57.0, panels.draw_tilt, True, (2, 5)),
-    Panel("rates", r"$\dot\varphi(\dot\psi)$", 75.0, panels.draw_rates, False, (3, 6)),
+    Panel("position", r"$X_O(t)$", 57.0, panels.draw_position, (1, 4)),
+    Panel("tilt", r"$\theta(t)$", 57.0, panels.draw_tilt, (2, 5)),
+    Panel("rates", r"$\dot\varphi(\dot\psi)$", 75.0, panels.draw_rates, (3, 6)),
 )
 OTHERS = (
-    Panel("path", "Path of the contact point", 67.0, panels.draw_path, False),
-    Panel("ground", r"$N(t)$ and required $\mu(t)$", 67.0, panels.draw_ground, True),
+    Panel("path", "Path of the contact point", 67.0, panels.draw_path),
+    Panel("ground", r"$N(t)$ and required $\mu(t)$", 67.0, panels.draw_ground),
 )
-SLIDES = (Panel("slip", "Slip at the contact", 57.0, panels.draw_slip, True),)
+SLIDES = (Panel("slip", "Slip at the contact", 57.0, panels.draw_slip),)
 
 
 def unlike_paper(scene: Scene) -> list[str]:
@@ -108,34 +107,17 @@ def title_of(scene: Scene) -> str:
     return rf"Rolling friction, $s = {s:.4g}$ m" if s > 0 else r"No rolling friction, $s = 0$"
 
 
-def events_of(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
-    """The action of friction and brake, and its marks in the panels that are drawn: over time, among the rates."""
-    sticks, count = (scene.mode == 0).any(), int(scene["n_events"][-1])
-    if not scene.resisted:
-        return []
-    if sticks and not count:
-        return [r"$\omega_z$ is held at zero all the time (stick)."]
-    timed, rates = any(panel.timed for panel in drawn), any(panel.draw is panels.draw_rates for panel in drawn)
-    marks = ["Bands"] * timed + ["thick among the rates" if timed else "Thick"] * rates
-    bands = [rf"{', '.join(marks)}: stick ($\omega_z$ held at zero)."] * bool(sticks and marks)
-    ticks = [r"Ticks at the top: $\omega_z$ changes sign."] * bool(timed and len(scene.reversals))
-    return [f"{count or 'No'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s.", *bands, *ticks]
+def events_of(scene: Scene) -> list[str]:
+    """How often friction or brake hold, release or reverse the spin, and how often the wheel slides."""
+    count, slides = int(scene["n_events"][-1]), int((np.diff(scene.slides.astype(int), prepend=0) > 0).sum())
+    said = [f"{count or 'No'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s."] * scene.resisted
+    if not slides:
+        return said + ["It never slides."] * (scene.value("mu_slide") > 0)
+    often = "once" if slides == 1 else f"{slides} times"
+    return [*said, f"It slides {often}, at up to {scene.slip.max():.3g} m/s."]
 
 
-def slides_of(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
-    """How often the wheel slides, and its marks in the panels that are drawn: over time, on the path."""
-    if not scene.slides.any():
-        return ["It never slides."] * (scene.value("mu_slide") > 0)
-    count, most = int((np.diff(scene.slides.astype(int), prepend=0) > 0).sum()), scene.slip.max()
-    often = "once" if count == 1 else f"{count} times"
-    marks = ["purple"] * any(panel.timed or panel.draw is panels.draw_path for panel in drawn)
-    marks += ["thin lines: grip is lost and returns"] * any(panel.timed for panel in drawn)
-    return [f"It slides {often}, at up to {most:.3g} m/s" + (f" ({'; '.join(marks)})." if marks else ".")]
-
-
-def caption(
-    scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], drawn: Sequence[Panel], width: float, size: float
-) -> list[str]:
+def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], width: float, size: float) -> list[str]:
     """The parameters, all that is not the paper's, and the remarks on each scene; lines of at most `width` mm."""
     texts = [f"Torus wheel: {wheel_of(scenes[-1])}. {start_of(scenes[-1])}."]
     if other := unlike_paper(scenes[-1]):
@@ -143,7 +125,7 @@ def caption(
     for scene, of_panels in zip(scenes, remarks, strict=True):
         name = [f"{title_of(scene).split(',')[0]}:"] * (len(scenes) > 1)
         ends = [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
-        said = [*dict.fromkeys([*events_of(scene, drawn), *slides_of(scene, drawn), *of_panels]), *ends]
+        said = [*dict.fromkeys([*events_of(scene), *of_panels]), *ends]
         texts += [" ".join([*name, *said])] * bool(said)
     return [line for text in texts for line in wrapped(text, width, size)]
 
@@ -181,7 +163,7 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
                 style.note(ax, title_of(scene), (0, 1), (0, 24), xycoords="axes fraction", fontsize=10.5)
             rates += [(ax, scene)] * (panel.draw is panels.draw_rates)
     (width, height), size = fig.get_size_inches(), 7.5 if sheet else 7.0
-    lines = caption(scenes, remarks, drawn, width / style.MM - 2 * MARGIN, size)
+    lines = caption(scenes, remarks, width / style.MM - 2 * MARGIN, size)
     foot = (3.0 + PITCH * len(lines)) * style.MM
     fig.set_size_inches(width, height + foot)
     fig.set_layout_engine("constrained", rect=(0, foot / (height + foot), 1, height / (height + foot)))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import re
 import subprocess
-from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from math import isfinite
 from pathlib import Path
@@ -49,14 +48,8 @@ def number(value: object) -> str:
     return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """A table of Markdown, without padding."""
-    cells = [list(head), ["---"] * len(head), *([number(cell) for cell in row] for row in rows)]
-    return "\n".join(f"| {' | '.join(row)} |" for row in cells)
-
-
-def frame_table(frame: Any) -> str:
-    """A pandas table, the first column to the left, the others to the right; what it does not know stays empty."""
+def table(frame: Any) -> str:
+    """Of a pandas table, the first column to the left, the others to the right; what it does not know stays empty."""
     if frame.empty:
         return "None."
     cells = frame.convert_dtypes().astype(object)
@@ -80,5 +73,5 @@ def page(template: str, **values: object) -> str:
     """A page out of a template; an unknown name is an error."""
     loader = FileSystemLoader(TEMPLATES)
     pages = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    pages.filters["table"] = frame_table
+    pages.filters["table"] = table
     return re.sub(r"\n{3,}", "\n\n", pages.get_template(template).render(**values)).strip() + "\n"

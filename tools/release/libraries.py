@@ -12,8 +12,8 @@ import struct
 from pathlib import Path
 
 import lief
+from tabulate import tabulate
 
-from publishing import markdown
 from release.fmu import BINARIES, UNIVERSAL
 
 GLIBC_FLOOR = (2, 17)
@@ -99,4 +99,5 @@ def table(folder: Path) -> str:
     """What was found of each library, all of them judged."""
     lief.logging.disable()
     rows = [judged(name, folder / file, processor) for name, file, processor in LIBRARIES]
-    return markdown.table(["library", "size", "loads from", "needs", "functions of the system's libm"], rows)
+    head = ("library", "size", "loads from", "needs", "functions of the system's libm")
+    return tabulate(rows, head, "pipe", disable_numparse=True)

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import fmpy
 import wasmtime
+from tabulate import tabulate
 
-from publishing import markdown
 from release.compiling import ROOT, WASM, build
 from release.fmu import ARM, LINUX, WINDOWS
 
@@ -70,4 +70,4 @@ def scenes(out: Path) -> dict[str, object]:
         for scene, digest in first.items()
     ]
     different = [scene for scene, _, *equal in rows if {*equal} != {"equal"}]
-    return {"run": markdown.table(["scene", *digests], rows), "different": different}
+    return {"run": tabulate(rows, ["scene", *digests], "pipe", disable_numparse=True), "different": different}

@@ -1,4 +1,4 @@
-"""wheel.fmu beside published measurements: bicycle tyres that coast down on a drum, and disks that spin to rest.
+"""wheel.fmu beside published measurements: bicycle tyres that coast down on a drum.
 
 The raw files of the drum carry no licence and stay outside. What coast_down.py, in the reports of version 2.1.0, made
 of them, docs/results/data/validation_rig.csv and the tables beside it, is the measurement.
@@ -21,9 +21,6 @@ SHOWN = {"Michelin 4575r16": (40, "Left"), "Vittoria Corsa Open": (100, "Right")
 SHOWN |= {"Grandprix": (140, "Right")}
 TUBE = 0.0125  # m, radius of a tyre of 25 mm
 GRAVITY = 9.81  # m/s^2
-DISK = {"m": 0.4, "r_0": 0.0375, "r": 0.0, "J_x": 0.4 * 0.0375**2 / 4, "J_y": 0.4 * 0.0375**2 / 4}
-DISK |= {"J_z": 0.4 * 0.0375**2 / 2, "g": GRAVITY}  # a thin disk of the size of the toy, SI
-DISK_TIME = 100.0  # s
 RIG = ("rig", "runs_left_out", "trials_again", "loads")  # tables
 
 
@@ -44,9 +41,6 @@ def rig(report: Report) -> dict[str, object]:
     forces = loads[loads["speed"] > loads["speed"].min()].groupby("load")["force"].mean()
     (least, most), (weak, strong) = forces.index, forces
     found = {"runs": len(rows.drop_duplicates(KEYS)), "left_out": len(left_out)}
-    for name, sign in (("light", -1), ("heavy", 1)):
-        tilted = rows.assign(C=rows["C"] + sign * rows["C_inertia"]).groupby(KEYS)["C"]
-        found[f"spread_{name}"] = 100 * tilted.agg(lambda C: (C / C.mean() - 1).abs().max()).median()
     found |= {"repeat": 100 * repeat.max(), "inertia": 100 * (rows["C_inertia"].abs() / rows["C"]).max()}
     found |= {"again": 100 * (means["C again"] / means["C"] - 1).abs().max(), "load_least": least, "load_most": most}
     found |= {"load_exponent": np.log(strong / weak) / np.log(most / least)}
@@ -104,21 +98,6 @@ def tyres(report: Report) -> dict[str, object]:
     found = pd.DataFrame(rows)
     figures = {"slow_end": -found["at 3 m/s [%]"].min(), "coast": found["error of the duration [%]"].abs().max()}
     return {"by_run": found, "coasts": pd.concat(curves)} | figures
-
-
-@part(1)
-def disks(report: Report) -> dict[str, object]:
-    """Euler's disk: the energy that the paper's friction takes
-
-    The centre of a thin disk on a steady circle rests where psi_dot^2 sin(theta) = m g R / J_x = 4 g / R.
-    """
-    theta = np.radians(10)
-    rate = np.sqrt(4 * GRAVITY / (DISK["r_0"] * np.sin(theta)))
-    start = {"theta_start": theta, "psi_dot_start": rate, "phi_dot_start": -rate * np.cos(theta)}
-    start |= DISK | {"s": 1e-3 * DISK["r_0"], "keep_contact": True}
-    found = report.library.simulate(np.linspace(0, DISK_TIME, 201), 1e-10, **start)
-    assert found.end is None, found.ended
-    return {"disk_loss": np.ptp(found["E"]) / found["E"][0]}
 
 
 def views(tables: Tables) -> Tables:

@@ -9,7 +9,7 @@ import pandas as pd
 from vehicles import axle, balance, car_judges, suspended
 from vehicles.car import CAR
 from vehicles.car_judges import MANOEUVRES
-from vehicles.drawing import draw, draw_orders
+from vehicles.drawing import draw
 from vehicles.options import EXCHANGES, Manoeuvre, manoeuvres
 from vehicles.vehicle import STEPS, orders
 
@@ -17,8 +17,8 @@ from .page import Report, Row, Tables, part
 
 GRID = 0.25  # s, where runs of the car are compared
 COMPARED = tuple(name for name in MANOEUVRES if name not in (car_judges.TOO_FAST.name, car_judges.SPLIT.name))
-# How the inputs behave over a step: the exchange, and whether positions follow the velocities.
-OVER = {"held, positions lag": ("held", {"follow": 0.0}), **{exchange: (exchange, {}) for exchange in EXCHANGES}}
+# How the inputs behave over a step: whether positions follow the velocities, and the exchange.
+OVER = {"held, positions lag": ({"follow": 0.0}, "held"), **{exchange: ({}, exchange) for exchange in EXCHANGES}}
 WAYS = {"locked": "way, locked wheel", "ideal": "way, ideal brake", "abs": "way, anti-lock; closed form: the shortest"}
 KINDS = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
 
@@ -44,7 +44,7 @@ def suspended_wheel(report: Report) -> dict[str, object]:
     table.insert(0, "step, ms", 1000 * np.array(steps))
     table["share lost to the lag of a held position"] = [suspended.drag_share(h) for h in steps]
     launch = suspended.SUSPENDED.drive(report.fmus, suspended.LAUNCH, 0.000625, grid=0.005).whole
-    draw(suspended.SUSPENDED, suspended.LAUNCH, launch, report.folder / "vehicles_suspended.png", errors=found)
+    draw(suspended.SUSPENDED, suspended.LAUNCH, launch, report.folder / "vehicles_suspended.png")
     late = truth["time"] > 2.5  # s
     slope = np.polyfit(truth["time"][late], truth["X_B_dot"][late], 1)[0]
     figures = {"order": 2 - min(orders(found["derivatives"]))}
@@ -64,12 +64,13 @@ def sliding(report: Report) -> pd.DataFrame:
     return judged.assign(**{"relative difference": (judged["measured"] / judged["closed form"] - 1).abs()})
 
 
-@part(30, {"inputs over the step": OVER})
-def axle_steps(report: Report, over: tuple) -> list[Row]:
+@part(120)
+def axle_steps(report: Report) -> pd.DataFrame:
     """the axle: error against the step"""
-    exchange, more = over
-    found = axle.step_errors(report.fmus, axle.TRAILING.changed(stop=2.0, **more), exchange, STEPS)
-    return [{"step, ms": 1000 * h, "error / range": error} for h, error in found.items()]
+    scene = axle.TRAILING.changed(stop=2.0)
+    over = {name: axle.step_errors(report.fmus, scene.changed(**more), *how) for name, (more, *how) in OVER.items()}
+    found = pd.DataFrame(over).rename_axis("step, ms").reset_index()
+    return found.assign(**{"step, ms": 1000 * found["step, ms"]})
 
 
 @part(10)
@@ -89,30 +90,18 @@ def axle_stiffness(report: Report, scene: Manoeuvre) -> Row:
     return row | {"order in 1/k": float(-orders(found)[-1])}
 
 
-@part(30, {"stiffness x": (0.5, 1.0, 2.0, 4.0)})
-def axle_limits(report: Report, factor: float) -> Row:
-    """the axle: the longest step for each stiffness, compared with 2 J_x / c_a"""
-    scene = axle.CLOTHOID.changed(stop=1.0, stiffness=factor)
-    found = {f"{e}, ms": 1000 * axle.longest_step(report.fmus, scene, e) for e in EXCHANGES}
-    return found | {"2 J_x / c_a, ms": 1000 * 2 * axle.constants(scene).J_x / (500.0 * factor)}
-
-
 @part(120)
 def car_runs(report: Report) -> dict[str, object]:
-    """the car: closed forms and characteristic values; the road that each manoeuvre needs"""
-    judged, demands = [], []
+    """the car: closed forms and characteristic values, two pictures"""
+    judged = []
     for name in ("step",) if report.quick else COMPARED:
         manoeuvre = MANOEUVRES[name]
         table = CAR.drive(report.fmus, manoeuvre).table
         draw(CAR, manoeuvre, table, report.folder / f"vehicles_{name}.png") if name in ("lane", "hill") else None
         found = car_judges.judge(table, manoeuvre)
         judged += [(name, f.what, f.unit, f.measured, f.exact) for f in found]
-        *_, at = car_judges.worst(table)
-        where = [round(float(table[n][at]), 6) for n in ("time", "X_R", "Y_R")]
-        demands.append((manoeuvre.title, *car_judges.demand(table).values(), *where))
-    most = ["manoeuvre", *(f"{axle} axle" for axle in car_judges.AXLES), "most at t [s]", "X [m]", "Y [m]"]
     forms = ["manoeuvre", "quantity", "unit", "measured", "closed form"]
-    return {"car_values": pd.DataFrame(judged, columns=forms), "car_demand": pd.DataFrame(demands, columns=most)}
+    return {"car_values": pd.DataFrame(judged, columns=forms)}
 
 
 @part(600, {"manoeuvre": lambda report: ("step",) if report.quick else COMPARED})
@@ -128,28 +117,24 @@ def car_errors(report: Report, name: str) -> list[Row]:
     return rows
 
 
+def largest(tables: Tables) -> pd.DataFrame:
+    """The car's largest error by manoeuvre, over the exchange and the step."""
+    found = tables["car_errors"]
+    by = found.pivot(index="manoeuvre", columns=["inputs over the step", "step [ms]"], values="largest")
+    return by.loc[found["manoeuvre"].unique()]
+
+
 @part(1)
 def rollback(report: Report) -> dict[str, float]:
-    """the car: the largest error where no wheel stops; a picture of the orders"""
-    found = report.tables["car_errors"].groupby(["manoeuvre", "inputs over the step"], sort=False)["largest"].agg(list)
-    of = {
-        name: {e: dict(zip(STEPS, largest, strict=True)) for e, largest in found[name].items()}
-        for name in found.index.unique("manoeuvre")
-    }
-    draw_orders(of, report.folder / "vehicles_orders.png")
-    return {"rollback": max(of[name]["rollback"][STEPS[0]] for name in of if name not in ("straight", "hill"))}
+    """the car: the largest error where no wheel stops"""
+    moving = largest(report.tables).drop(["straight", "hill"], errors="ignore")
+    return {"rollback": moving["rollback", 1000 * STEPS[0]].max()}
 
 
 def views(tables: Tables) -> Tables:
-    """Of the car the largest error and the order at 1 ms, by manoeuvre; of the axle the errors by step."""
-    found = tables["car_errors"]
-    halved = np.log2(found["largest"]).groupby([found["manoeuvre"], found["inputs over the step"]]).diff()
-    found = found.assign(order=-halved)
-    at_1_ms = found[found["step [ms]"] == 1].rename(columns={"largest": "error"})
-    by_name = at_1_ms.pivot(index="manoeuvre", columns="inputs over the step", values=["error", "order"])
-    by_name = by_name[[(what, exchange) for exchange in EXCHANGES for what in ("error", "order")]]
-    by_name.columns = [f"{exchange}: {what}" for what, exchange in by_name.columns]
-    axle = tables["axle_steps"].pivot(index="step, ms", columns="inputs over the step", values="error / range")
-    axle = axle[tables["axle_steps"]["inputs over the step"].unique()].sort_index(ascending=False)
-    by_name = by_name.loc[found["manoeuvre"].unique()]
-    return tables | {"car_orders": by_name.reset_index(), "axle_by_step": axle.reset_index()}
+    """Of the car the largest error and the order at 1 ms, by manoeuvre."""
+    found, columns = largest(tables), {}
+    for exchange in EXCHANGES:
+        coarse, fine = found[exchange, 2.0], found[exchange, 1.0]
+        columns |= {f"{exchange}: error": fine, f"{exchange}: order": np.log2(coarse / fine)}
+    return tables | {"car_orders": pd.DataFrame(columns).reset_index()}

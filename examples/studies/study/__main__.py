@@ -155,17 +155,17 @@ def conduct(arguments: argparse.Namespace) -> None:
     content = {"study": arguments.study, "name": "study"}
     if isinstance(arguments.study, Path):
         content = study_file(arguments.study, arguments.wheel, arguments.body)
-    from .compute import computed, run
+    from .compute import run
     from .dataset import export, summarize
 
     stem = ROOT / "results" / "studies" / content["name"]
     arguments.out = out = arguments.out or str(stem.with_suffix(".zarr"))
     if "://" not in out:
         stem = Path(out).with_suffix("")
-    begin, there = time.perf_counter(), 0 if arguments.overwrite else computed(out)
+    begin = time.perf_counter()
     workers = arguments.scheduler or arguments.workers
     results = run(content["study"], out, fmu=arguments.fmu, workers=workers, overwrite=arguments.overwrite)
-    print(summarize(results, time.perf_counter() - begin, there))
+    print(summarize(results, time.perf_counter() - begin))
     asked = {".nc": arguments.netcdf, ".csv": arguments.csv}
     written = [out, *(export(results, stem.with_suffix(end)) for end in asked if asked[end])]
     if "table" in content:  # an example's own table and figure

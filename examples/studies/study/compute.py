@@ -11,7 +11,7 @@ import sys
 import tempfile
 import uuid
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
@@ -66,13 +66,15 @@ def run(
     fingerprint = hashlib.sha256(json.dumps([asdict(study), sha256]).encode()).hexdigest()
     place, mark = str(out) if "://" in str(out) else str(Path(out).resolve()), uuid.uuid4().hex
     group = kept(place, fingerprint, overwrite)
-    if group and not missing(group):
-        return open_results(place)
+    if there := int((group["status"][:] != Status.not_computed).sum()) if group else 0:
+        print(f"{there} of {group['status'].size} wheels are there already.", file=sys.stderr)
+        if there == group["status"].size:
+            return open_results(place)
     axes = axes_of(study)
     if doubt := doubtful(study, axes, description):
         print(f"study: warning: {doubt}", file=sys.stderr)
-    there = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
-    with there as running, Client(running, timeout="30s") as client:
+    crew = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
+    with crew as running, Client(running, timeout="30s") as client:
         with tempfile.TemporaryDirectory() as folder:
             # A new name per run: workers still read modules from the file of an earlier run, which must not change.
             upload = pack(fmu, Path(folder) / f"wheel-{mark}.zip")
@@ -85,24 +87,14 @@ def run(
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = mark
-        status, common = group["status"][:], replace(study, grid={}, list={}, measures=study.restated({}))
-        task = partial(run_chunk, upload.name, common, place, mark)
-        if done := int((status != Status.not_computed).sum()):
-            print(f"{done} of {status.size} wheels are there already.", file=sys.stderr)
-        every = 0.2 if sys.stderr.isatty() else 10.0  # s
-        with tqdm(total=status.size, initial=done, unit=" wheels", mininterval=every) as bar:
+        common = replace(study, grid={}, list={}, measures=study.restated({}))
+        task, every = partial(run_chunk, upload.name, common, place, mark), 0.2 if sys.stderr.isatty() else 10.0  # s
+        with tqdm(total=group["status"].size, initial=there, unit=" wheels", mininterval=every) as bar:
             for region, result in finished(client, task, partial(points, axes), missing(group)):
                 if result is not None:
                     write(place, mark, region, result)
-                bar.update(status[region].size)
+                bar.update(math.prod(part.stop - part.start for part in region))
     return open_results(place)
-
-
-def computed(out: str | Path) -> int:
-    """How many wheels have been run in a place, a folder or a URL; 0 if there are no results."""
-    with suppress(FileNotFoundError, KeyError, ValueError):
-        return int((zarr.open_group(str(out), mode="r")["status"][:] != Status.not_computed).sum())
-    return 0
 
 
 def kept(place: str, fingerprint: str, overwrite: bool) -> zarr.Group | None:

@@ -8,13 +8,11 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
-from resource import RUSAGE_CHILDREN, RUSAGE_SELF, getrusage
 
 import dask.array as da
 import numpy as np
 import xarray as xr
 from fmpy.model_description import ModelDescription
-from fsspec.core import url_to_fs
 
 from .plan import OWN, PLANE_ANGLE, POINT, SLIP, Status, Study, counters_of
 from .worker import Array, Region
@@ -160,22 +158,17 @@ def export(results: xr.Dataset, path: Path) -> Path:
     return path
 
 
-def summarize(results: xr.Dataset, seconds: float, there: int = 0) -> str:
-    """Counts per status, the first message of those that were not run, speed, the largest memory, and disk space.
+def summarize(results: xr.Dataset, seconds: float) -> str:
+    """Counts per status, the first message of those that were not run, and speed.
 
-    seconds: of this call, with workers' start and writing; there: wheels that earlier calls had run. The speed is of
-    the runs themselves, summed over the workers.
+    seconds: of this call, with the start of workers and writing. The speed is that of the runs themselves.
     """
     status = results["status"].values
-    fresh = f"{status.size - there} of them in {seconds:.1f} s, the others earlier" if there else f"in {seconds:.1f} s"
-    lines = [f"{status.size} wheels{',' * bool(there)} {fresh if there < status.size else 'all run earlier'}:"]
+    lines = [f"{status.size} wheels; this call took {seconds:.1f} s:"]
     for code, found in zip(*np.unique(status, return_counts=True), strict=True):
         lines.append(f"  {found:8d} {Status(code).name.replace('_', ' ')}")
         if code in (Status.refused, Status.failed):
             lines.append(f"           first: {results['message'].values[status == code][0]}")
     speed, share = 1 / results["wall_time"].mean(), 100 * results["fmu_time"].sum() / results["wall_time"].sum()
     lines.append(f"{speed:.0f} wheels per second and worker, {share:.0f} % of the time inside the FMU.")
-    files, place = url_to_fs(results.encoding["source"])
-    memory = max(getrusage(processes).ru_maxrss // 1000 for processes in (RUSAGE_SELF, RUSAGE_CHILDREN))
-    lines.append(f"{memory} MB of memory in the largest process here, {files.du(place) / 1e6:.3g} MB of disk.")
     return "\n".join(lines)

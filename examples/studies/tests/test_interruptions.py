@@ -71,11 +71,8 @@ def test_a_study_continues_after(space, stop, code, words, tmp_path, fmu_path, c
     kept, done = chunks(tmp_path), int((open_results(tmp_path / "z")["status"] != Status.not_computed).sum())
     assert 0 < done < len(SPINS) and not list(tmp_path.rglob("*.partial"))
     assert main([*options, "--scheduler", crew.scheduler_address]) == 0
-    printed = capsys.readouterr()
-    assert f"{done} of {len(SPINS)} wheels are there already" in printed.err
-    count, fresh = len(SPINS), len(SPINS) - done
-    assert re.match(rf"{count} wheels, {fresh} of them in [\d.]+ s, the others earlier:\n", printed.out)
-    assert main(options) == 0 and capsys.readouterr().out.startswith(f"{len(SPINS)} wheels, all run earlier:\n")
+    assert f"{done} of {len(SPINS)} wheels are there already" in capsys.readouterr().err
+    assert main(options) == 0 and f"{len(SPINS)} of {len(SPINS)} wheels are there already" in capsys.readouterr().err
     assert kept.items() <= chunks(tmp_path).items()
     assert same(whole, open_results(tmp_path / "z"))
 

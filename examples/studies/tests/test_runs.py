@@ -120,30 +120,11 @@ def test_an_impossible_study_is_refused_with_a_message() -> None:
     for words, fields in [*FAULTS.items(), *(("not a measure", {"measures": {"low": text}}) for text in NO_MEASURES)]:
         with pytest.raises(StudyError, match=words):
             Study(**(good | fields)).check(known)
+    with pytest.raises(ValueError, match="takes no unit but"):
+        parse_measure("first(theta < 30kg)")
     Study(**good).check(known)
     Study(grid={"m": [10.0], "M_3": [0.0, 1.0]}, branch_at=1.0).check(known)
     assert [name for name in BRANCHING.grid if can_change(known[name])] == ["s", "M_3"]
-
-
-UNITS = {"first(theta<30deg)": np.radians(30), "first( theta > -2e1 deg )": -np.radians(20), "first(X_O > 5 cm)": 0.05}
-UNITS |= {"first(omega_z<-30rpm)": -np.pi, "first(plane_angle < 0.5)": 0.5, "first(theta < 1rad)": 1.0}
-
-
-@pytest.mark.parametrize(("text", "limit"), UNITS.items())
-def test_the_limit_of_a_passage_takes_the_units_of_its_quantity(text: str, limit: float) -> None:
-    study = Study(grid={"s": [0.0]}, measures={"down": text})
-    within(abs(study.parsed["down"].limit / limit - 1), 4 * EPSILON, "limit in SI, relative")
-    assert study.parsed["down"].kind == ("<" if "<" in text else ">")
-    with pytest.raises(ValueError, match="takes no unit but"):
-        parse_measure("first(theta < 30kg)")
-
-
-def test_a_passage_in_degrees_is_run_as_the_same_in_radians(conduct) -> None:
-    limits = {"degrees": "first(theta < 60deg)", "radians": f"first(theta < {float(np.radians(60))!r})"}
-    limits["other"] = "first(theta < 61deg)"
-    results = conduct(Study(grid={"s": [0.0, 0.03]}, measures=limits, stop_time=1.0))
-    assert (results["degrees"] == results["radians"]).all() and (results["other"] < results["degrees"]).all()
-    assert results["degrees"].attrs["long_name"] == "first(θ < 60deg)"
 
 
 def test_a_sample_is_drawn_by_its_seed_and_within_its_bounds() -> None:

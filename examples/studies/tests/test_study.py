@@ -55,7 +55,7 @@ def test_results_have_short_labels_and_carry_all_that_repeats_them(conduct) -> N
     begun = results.sel(theta_start=np.radians(75.0), s=0.03, phi_dot_start=-2.0)
     assert float(begun["theta"][0]) == np.radians(75.0)
     labels = {name: values.attrs["long_name"] for name, values in results.variables.items()}
-    expected = {"theta_start": "θ at the start", "s": "s", "down": "first(θ < 0.5)"}
+    expected = {"theta_start": "θ at the start", "s": "s", "down": "first(θ < 30deg)"}
     assert (expected | {"phi_dot_start": "φ\N{COMBINING DOT ABOVE} at the start"}).items() <= labels.items()
     turned = in_degrees(results)
     assert (results["lowest"].attrs["units"], turned["lowest"].attrs["units"]) == ("rad", "deg")
@@ -108,8 +108,8 @@ def test_the_command_reads_a_list_and_exports_tables(crew: LocalCluster, fmu_pat
     where = "--list", starts, "--fmu", fmu_path, "--out", tmp_path / "list.zarr", "--scheduler", crew.scheduler_address
     assert main([*map(str, where), "--csv", "--netcdf"]) == 0
     printed = capsys.readouterr().out
-    assert re.match(r"2 wheels in [\d.]+ s:\n", printed)
-    assert re.search(r"1 flat\n(.*\n)*\d+ MB of memory in .*, .* MB of disk", printed)
+    assert re.match(r"2 wheels; this call took [\d.]+ s:\n", printed)
+    assert "1 flat\n" in printed
     names, *rows = (tmp_path / "list.csv").read_text().splitlines()
     assert names.startswith("wheel,") and len(rows) == 2
     assert xr.open_dataset(tmp_path / "list.nc")["theta_start"].values[0] == np.radians(75)

@@ -8,7 +8,6 @@ middle and the yaw rate:
 """
 
 from collections.abc import Callable
-from itertools import takewhile
 from types import SimpleNamespace
 from typing import Any
 
@@ -24,8 +23,6 @@ WHEELS = {"left": "left", "right": "right"}
 COMPARED = options.file("axle")["compared"]
 SCENES = manoeuvres("axle")
 STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT = SCENES.values()
-LIMIT_STEPS = (0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008, 0.012, 0.016)  # s
-GRID = 0.048  # s, which all of them divide
 OF_WHEEL = {"m": 20.0, "J_x": 0.9, "J_z": 1.8}  # the wheels' defaults
 
 
@@ -135,7 +132,7 @@ def beside_rigid(table: Table, scene: Manoeuvre, _fmus: Fmus) -> Table:
 
 def verdict(table: Table, scene: Manoeuvre) -> tuple[bool, list[str]]:
     """How near the run is to the rigid axle; no road has the grip for wheels that require more than a dry one."""
-    if (most := grip(table)) > DRY_ROAD:
+    if (most := AXLE.grip(table)) > DRY_ROAD:
         return False, [f"Failed: a wheel requires a friction coefficient of {beyond_dry(most)}."]
     if why := without_closed_form(scene):
         return True, [f"No closed form to compare with: {why}."]
@@ -143,12 +140,7 @@ def verdict(table: Table, scene: Manoeuvre) -> tuple[bool, list[str]]:
     return True, [f"Largest departure from the rigid axle in closed form: {100 * off:.2g} % of the range."]
 
 
-def grip(table: Table) -> float:
-    """Of the wheel that requires most."""
-    return max(float(np.nanmax(table[f"{wheel}.mu_required"])) for wheel in WHEELS)
-
-
-AXLE = Vehicle("axle", starts, verdict, wheels=WHEELS, complete=beside_rigid, grip=grip)
+AXLE = Vehicle("axle", starts, verdict, wheels=WHEELS, complete=beside_rigid)
 
 
 def step_errors(fmus: Fmus, scene: Manoeuvre, exchange: str, steps: tuple[float, ...] = STEPS) -> dict:
@@ -167,10 +159,3 @@ def energy_gain(table: Table) -> float:
     """Of wheels, beam and dampers together over a run without drive and rolling friction, J: added by the coupling."""
     total = table["E"] + table["left.E"] + table["right.E"] + table["W_loss"]
     return float(total[-1] - total[0])
-
-
-def longest_step(fmus: Fmus, scene: Manoeuvre, exchange: str) -> float:
-    """The longest of LIMIT_STEPS up to which a run neither ends early nor strays beyond 10 % of the range, s."""
-    truth = rigid(scene, np.arange(int(scene.stop / GRID) + 1) * GRID)
-    scene = scene.changed(stop=float(truth["time"][-1]))
-    return [0.0, *takewhile(lambda h: AXLE.error(fmus, scene, truth, h, exchange) < 0.1, LIMIT_STEPS)][-1]

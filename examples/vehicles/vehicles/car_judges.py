@@ -85,11 +85,6 @@ def per_axle(asked: dict[str, float]) -> str:
     return ", ".join(f"{axle} {mu:.2f}" for axle, mu in asked.items())
 
 
-def worst(table: Table) -> tuple[float, str, int]:
-    """Largest friction coefficient required; the axle that requires it, and the row in which it does."""
-    return max((float(np.nanmax(mu)), axle, int(np.nanargmax(mu))) for axle, mu in friction(table).items())
-
-
 def load_moved(table: Table, axle: str, cause: str, at: np.ndarray, moment: float) -> Finding:
     """Mean normal force of an axle over some instants, above that at the start. `moment` [N m] moves load to the rear
     axle, together with that of the chassis' weight as it pitches about its hubs."""
@@ -215,7 +210,7 @@ def step(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
 
 def lane(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """How hard the change of lanes is, and where it asks most of the road."""
-    most, axle, at = worst(table)
+    most, axle, at = max((float(np.nanmax(mu)), axle, int(np.nanargmax(mu))) for axle, mu in friction(table).items())
     largest = (("lateral acceleration", "m/s2", "a_y"), ("yaw rate", "rad/s", "omega"), ("roll angle", "rad", "roll"))
     yield from (Finding(f"largest {what}", unit, float(np.abs(table[name]).max())) for what, unit, name in largest)
     yield Finding(f"largest friction required, at the {axle} axle", "1", most)

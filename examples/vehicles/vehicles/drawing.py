@@ -1,5 +1,4 @@
-"""A run drawn as its manoeuvre declares it: the path from above with the wheels, and panels over time; errors over the
-step, for the reports."""
+"""A run drawn as its manoeuvre declares it: the path from above with the wheels, and panels over time."""
 
 from itertools import cycle
 from pathlib import Path
@@ -10,30 +9,21 @@ from matplotlib.axes import Axes
 from diagrams import style
 
 from .options import Manoeuvre, file
-from .vehicle import Errors, Table, Vehicle
+from .vehicle import Table, Vehicle
 
 COLOURS = (style.BLUE, style.VERMILLION, style.SKY, style.ORANGE, style.PURPLE, style.GREY)
-MARKS = {
-    "positions held": ("d-", style.ORANGE, 1),
-    "held": ("o-", style.VERMILLION, 1),
-    "derivatives": ("s-", style.BLUE, 2),
-    "rollback": ("^-", style.GREEN, None),
-}  # look, colour, order
 DASHES = ("-", "--", ":", "-.")  # a curve that has the values of the one before is seen through its gaps
-GUIDES = {1: (0, (4, 2)), 2: (0, (1, 1))}  # lines of an order
 SCALES = {"deg": 180 / np.pi, "deg/s": 180 / np.pi, "km/h": 3.6, "kN": 1e-3, "mm": 1e3}  # of a label's unit
 LEAST = 1e-3  # of a label's unit: what differs by less is a line, not its rounding
 ABOVE = {"loc": "lower left", "bbox_to_anchor": (0, 0.98)}  # the axes
 
 
-def draw(
-    vehicle: Vehicle, manoeuvre: Manoeuvre, table: Table, path: Path, remark: str = "", errors: Errors | None = None
-) -> Path:
+def draw(vehicle: Vehicle, manoeuvre: Manoeuvre, table: Table, path: Path, remark: str = "") -> Path:
     """The manoeuvre's plot: "path", and panels [label [unit], column...]; *.NAME is a column per wheel, %.NAME per
     axle, "NAME: TEXT" a column with its text."""
     style.use_style()
     panels = {n: panel for n, panel in enumerate(manoeuvre.plot) if panel != "path"}
-    cells = [*panels, *(["errors"] if errors else []), "."]
+    cells = [*panels, "."]
     rows = [*([["path"] * 2] if len(panels) < len(manoeuvre.plot) else []), *zip(cells[::2], cells[1::2], strict=False)]
     fig = style.figure_mm(style.PAGE, 6 + 50 * len(rows))
     fig.set_layout_engine("constrained", h_pad=0.06, wspace=0.06)
@@ -42,9 +32,6 @@ def draw(
     for cell, ax in fig.subplot_mosaic([list(row) for row in rows]).items():
         if cell == "path":
             draw_path(ax, table, vehicle.wheels, file(vehicle.name).get("tracks", {}))
-        elif cell == "errors":
-            draw_errors(ax, errors)
-            ax.legend(**ABOVE, ncols=3)
         else:
             draw_panel(ax, table, *panels[cell], names=vehicle.wheels)
     return style.save_png(fig, path)
@@ -91,30 +78,3 @@ def draw_path(ax: Axes, table: Table, names: dict[str, str], tracks: dict[str, t
         ax.set_aspect("equal", adjustable="datalim")
     ax.legend(**ABOVE, ncols=6, borderaxespad=0.2)
     ax.set(xlabel="X [m]", ylabel=f"Y [m], stretched {stretch:.0f} times" if stretch > 2.5 else "Y [m]")
-
-
-def draw_orders(errors: dict[str, Errors], path: Path) -> Path:
-    """The errors of several runs, one panel each."""
-    style.use_style()
-    fig = style.figure_mm(style.PAGE, 62)
-    fig.set_layout_engine("constrained")
-    for ax, (name, of) in zip(fig.subplots(1, len(errors), sharey=True, squeeze=False)[0], errors.items(), strict=True):
-        draw_errors(ax, of)
-        ax.set(title=name, ylim=(1e-10, 0.1))
-        ax.label_outer()
-    fig.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=5)
-    return style.save_png(fig, path)
-
-
-def draw_errors(ax: Axes, errors: Errors) -> None:
-    """Error against the step, with a line of each order that is expected."""
-    for exchange, by_step in errors.items():
-        h, values, (mark, colour, order) = 1000 * np.array([*by_step]), [*by_step.values()], MARKS[exchange]
-        ax.loglog(h, values, mark, color=colour, markersize=3, label=exchange)
-        if order and np.isfinite(values[-1]):
-            known = f"order {order}" in ax.get_legend_handles_labels()[1]
-            guide = {"color": style.GREY, "linestyle": GUIDES[order], "label": None if known else f"order {order}"}
-            ax.loglog(h, values[-1] * (h / h[-1]) ** order, **guide)
-    ax.set_xticks(h, [f"{x:g}" for x in h])
-    ax.minorticks_off()
-    ax.set(xlabel="step [ms]", ylabel="error / range")

@@ -61,7 +61,7 @@ def filled(x: np.ndarray, rows: int) -> np.ndarray:
 
 def verdict(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
     """Its state at the end; no road has the grip for a wheel that requires more than a dry one."""
-    least, most = table["lambda_3"].min(), grip(table)
+    least, most = table["lambda_3"].min(), SUSPENDED.grip(table)
     if most > DRY_ROAD:
         return False, [f"Failed: the wheel requires a friction coefficient of {beyond_dry(most)}."]
     if run.name == "abs":
@@ -131,12 +131,7 @@ def begins(table: Table, run: Manoeuvre) -> int:
     return int(np.searchsorted(table["time"], run["t_brake"] - 1e-9))
 
 
-def grip(table: Table) -> float:
-    """Of the wheel."""
-    return float(np.nanmax(table["mu_required"]))
-
-
-SUSPENDED = Vehicle("suspended", start, verdict, complete=beside_others, grip=grip)
+SUSPENDED = Vehicle("suspended", start, verdict, complete=beside_others)
 
 
 def package_distance(package: Path, step: float, truth: Table, stop: float = LAUNCH.stop) -> float:

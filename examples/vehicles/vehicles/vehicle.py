@@ -66,6 +66,11 @@ class Run:
         return self.table
 
 
+def largest_grip(table: Table) -> float:
+    """The largest friction coefficient that a wheel requires in a run; 0 where it is not recorded."""
+    return max((float(np.nanmax(x)) for name, x in table.items() if name.endswith("mu_required")), default=0.0)
+
+
 @dataclass(frozen=True)
 class Vehicle:
     """`name`: of the command line; manoeuvres.toml has connections, columns, tracks. `wheels`: what pictures call the
@@ -76,7 +81,7 @@ class Vehicle:
     verdict: Callable[[Table, Manoeuvre], tuple[bool, list[str]]]  # of a run that reached its end
     wheels: dict[str, str] = field(default_factory=dict)
     complete: Callable[[Table, Manoeuvre, Fmus], Table] = lambda table, _manoeuvre, _fmus: table
-    grip: Callable[[Table], float] = lambda _table: 0.0  # largest friction coefficient that a run requires
+    grip: Callable[[Table], float] = largest_grip
     subtitle: Callable[[Manoeuvre], str] = lambda _manoeuvre: ""
 
     def parts(self, fmus: Fmus, of: Manoeuvre) -> list[Component]:

@@ -28,9 +28,10 @@ def scene(s: float = 0.0, time: np.ndarray = TIME, **columns: np.ndarray | float
     return Scene(Path("scene.csv"), {name: np.broadcast_to(value, len(TIME)) for name, value in everything.items()})
 
 
-def caption(one: Scene, drawn: tuple[paper.Panel, ...] = paper.PAPERS) -> str:
+def caption(one: Scene, *drawn: paper.Panel) -> str:
     """Of a sheet with these panels, in one line."""
-    return " ".join(paper.caption([one], [[]], drawn, 175.0, 7.5)).replace(paper.NO_BREAK, " ")
+    remarks = [said for panel in drawn for said in panel.draw(style.figure_mm(80, 80).subplots(), one)]
+    return " ".join(paper.caption([one], [remarks], 175.0, 7.5)).replace(paper.NO_BREAK, " ")
 
 
 def test_nothing_is_cut_off_and_no_power_of_ten_stands_over_a_title(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -70,13 +71,11 @@ def test_nothing_is_cut_off_and_no_power_of_ten_stands_over_a_title(monkeypatch:
 def test_a_caption_names_the_marks_of_friction_where_they_are() -> None:
     """Bands and ticks over time, thick lines among the rates, none on the path."""
     modes = np.where(abs(TIME - 3) < 1, 0, np.where(TIME < 7, -1, 1))
-    held = scene(0.03, friction_mode=modes, n_events=3)
-    by_name = {panel.name: caption(held, (panel,)) for panel in paper.PAPERS + paper.OTHERS}
-    for name, said in by_name.items():
-        timed = name in ("position", "tilt", "ground")
+    held = scene(0.03, friction_mode=modes, n_events=3, psi_dot=TIME)
+    for panel in paper.PAPERS + paper.OTHERS:
+        said, timed = caption(held, panel), panel.name in ("position", "tilt", "ground")
         assert ("Ticks at the top" in said) is timed and ("Bands: stick" in said) is timed
-        assert ("Thick: stick" in said) is (name == "rates") and "3 transitions" in said
-    assert "Bands, thick among the rates: stick" in caption(held)
+        assert ("Thick: stick" in said) is (panel.name == "rates") and "3 transitions" in said
 
 
 def test_swings_are_drawn_one_by_one_until_they_lie_too_close_and_then_as_two_lines() -> None:
@@ -201,9 +200,9 @@ def test_the_slip_has_a_panel_and_the_caption_its_size_where_a_scene_slides() ->
         return {panel.name for _, _, drawn, _ in paper.pictures(scenes, Path("results")) for panel in drawn}
 
     assert "slip" in names(slid(), slid()) and "slip" not in names(scene(mu_max=0.45), scene(0.03))
-    by_name = {panel.name: caption(slid(), (panel,)) for panel in paper.PAPERS + paper.OTHERS}
+    by_name = {panel.name: caption(slid(), panel) for panel in paper.PAPERS + paper.OTHERS}
     assert all("slides 2 times, at up to 0.5 m/s" in text for text in by_name.values())
     assert {name for name, text in by_name.items() if "thin lines" in text} == {"position", "tilt", "ground"}
-    assert {name for name, text in by_name.items() if "purple" not in text} == {"rates"}
+    assert {name for name, text in by_name.items() if "Purple" not in text} == {"rates"}
     assert "never slides" in caption(scene(mu_max=0.45, mu_slide=0.4))
     assert "slides" not in caption(scene())

@@ -7,7 +7,6 @@ import pytest
 from support.bounds import EPSILON, absolute_error, within
 
 from page.bodies import read_bodies
-from page.options import arguments
 from page.tests.pages import POSE, opened, view, write_csv
 
 T = np.linspace(0, 1, 11)
@@ -28,11 +27,6 @@ def shape(path, columns: dict[str, np.ndarray]) -> tuple[float, float]:
 @pytest.fixture
 def one(scenes, tmp_path):
     return write_csv(tmp_path / "one.csv", columns_of(scenes["free"]))
-
-
-def test_slope_and_radii_take_units(one):
-    given = arguments([str(one), "--slope", "10%", "--r_0", "30cm", "--r", "0.05"])
-    within(absolute_error((given.slope, given.r_0, given.r), (np.arctan(0.1), 0.3, 0.05)), EPSILON, "slope, r_0, r, SI")
 
 
 @pytest.mark.parametrize(("r_0", "r"), [(0.3, 0.05), (0.2, 0.0)])

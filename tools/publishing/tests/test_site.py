@@ -88,10 +88,7 @@ GONE = ["[gone](gone.md)", "[gone](#gone)", "[gone](gone.py)", "[gone](gone/)", 
 
 
 def test_links_that_lead_nowhere_stop_the_site(tmp_path: Path) -> None:
-    (tmp_path / "start.md").write_text("# A page\n\n[another](page0.md)\n")
-    for number, link in enumerate(GONE):
-        (tmp_path / f"page{number}.md").write_text(f"# Page {number}\n\n{link}\n")
+    (tmp_path / "start.md").write_text("\n\n".join(["# A page", *GONE]))
     done = build(tmp_path, tmp_path / "out", "-Dhtml_favicon=", "-Droot_doc=start", "-Dsuppress_warnings=myst.header")
-    assert done.returncode != 0 and "start.md" not in done.stderr
-    warned = {int(number) for number in re.findall(r"page(\d)\.md:\d+: WARNING.*gone", done.stderr)}
-    assert warned == set(range(len(GONE)))
+    assert done.returncode != 0
+    assert {*re.findall(r"start\.md:(\d+): WARNING.*gone", done.stderr)} == {"3", "5", "7", "9", "11"}
