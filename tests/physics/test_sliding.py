@@ -273,6 +273,17 @@ def test_a_slide_costs_some_tens_of_steps_and_the_rest_what_it_costs_without(lib
 # ---- endings ----
 
 
+def test_friction_jams_a_wheel_that_it_rights_and_the_run_ends_there(library: Library) -> None:
+    scene = SLIDES["jams"]
+    ended = scene.solved([0.0, scene.duration]).ended
+    assert ended and ended.kind == "jams"
+    run = simulate(library, scene, [0.0, scene.duration])
+    assert run.end is not None and "jam" in str(run.ended)
+    within(abs(run.end - ended.time), 1e-6, "instant, s")  # N grows without bound there
+    light = simulate(library, scene, [0.0, scene.duration], mu_slide=0.4, mu_max=0.4)  # below 2 sqrt(0.05 * 1.05)
+    assert light.end is None
+
+
 def test_a_wheel_on_the_upright_side_of_the_jam_is_pushed_back(library: Library) -> None:
     start = {**HUB, "theta_start": radians(88.0), "theta_dot_start": -2.0, "slip_y_start": -5.0}
 
