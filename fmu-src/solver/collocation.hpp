@@ -18,6 +18,7 @@ class Collocation final : public Engine {
     liked_ = problem.longest_step;
     return true;
   }
+  void limit_first_step(double dt) { liked_ = std::fmin(liked_, dt); }
   bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
   void expand(const Problem& problem, Counters* counters, Step* step) override;
   void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) override;

@@ -35,9 +35,13 @@ class Solver {
   // After an event that changes nothing of the motion, only what is watched: the same step goes on.
   void resume();
 
-  // Runge-Kutta: the first step after a restart is at most dt, s (the time between the last two changes). Two changes
-  // at the same instant limit nothing.
-  void limit_first_step(double dt) { runge_kutta_.limit_first_step(dt > rounding_at(known_until_) ? dt : 0); }
+  // Runge-Kutta and collocation: the first step after a restart is at most dt, s (the time between the last two
+  // changes). Two changes at the same instant limit nothing.
+  void limit_first_step(double dt) {
+    const bool counts = dt > rounding_at(known_until_);
+    runge_kutta_.limit_first_step(counts ? dt : 0);
+    if (counts) collocation_.limit_first_step(dt);
+  }
 
   // One internal step, or the rest of one that was resumed. After an event known_until() is event_time(), and the owner
   // restarts from there, resumes or ends.

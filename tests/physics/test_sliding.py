@@ -323,6 +323,21 @@ def test_a_road_that_cannot_be_is_rejected_and_names_the_parameter(library: Libr
     assert attempt(library, {**wrong, "mu_max": 0.4, "mu_slide": 0.4}, [0.0, 0.1]).status == OK
 
 
+def test_inputs_that_change_at_every_step_of_a_slide_cost_a_short_step_each(library: Library) -> None:
+    def evaluations_per_change(every: float) -> float:
+        changes = 50
+        with library.wheel() as wheel:
+            wheel.start(**{**ROAD, "theta_start": 1.4, "phi_dot_start": -20.0, "slip_x_start": 9.0})
+            for k in range(changes):
+                assert wheel.set(M_brake=5.0 + k % 2) == OK and wheel.step_to(every * (k + 1)) == OK
+            count, mode = wheel.get("n_rhs", "contact_mode")
+        assert mode == SLIDING
+        return count / changes
+
+    within(evaluations_per_change(1e-3), 40, "evaluations at each step of 1 ms")
+    beyond(evaluations_per_change(2e-2), 40, "evaluations at each step of 20 ms")
+
+
 # ---- snapshots, hard scenes ----
 
 
