@@ -70,21 +70,23 @@ Row state_at(int j, const Step& step, double size, const double (&f)[radau_point
 
 }  // namespace
 
-// Newton's matrix for the rates of the settling state at the points, at the predicted states; its inverse is kept for
-// all sweeps.
-void Collocation::prepare(const Problem& problem, const Step& step, double* inverse) const {
+// Newton's matrix for the rates of the settling state at the points, at the predicted states, for all sweeps.
+struct Collocation::Newton {
+  Eigen::PartialPivLU<Square> matrix;
+};
+
+Collocation::Newton Collocation::prepare(const Problem& problem, const Step& step) const {
   const auto [state, speed, slope] = problem.settling;
   const Eigen::Map<const Square> integral(&radau.integral[0][0]);
   const Row y_end = state_at(radau_points - 1, step, size_, f_);
   Square matrix = size_ * slope(problem.owner, step.end, y_end.data()) * integral;
   matrix.diagonal() -= size_ * integral * Eigen::Map<const Rates>(&f_[0][0]).col(speed);
   matrix.diagonal().array() -= step.y_start[speed];
-  const Square inverted = matrix.inverse();
-  std::copy_n(inverted.data(), inverted.size(), inverse);
+  return {matrix.partialPivLu()};
 }
 
 // The change of the states by one sweep, in units of the weights; infinite where rates are not finite.
-double Collocation::sweep(const Problem& problem, const double* weights, const double* inverse, Counters* counters,
+double Collocation::sweep(const Problem& problem, const double* weights, const Newton& newton, Counters* counters,
                           Step* step) {
   const int turned = problem.settling.state;
   Eigen::Map<Rates> before(&f_[0][0]);
@@ -99,7 +101,7 @@ double Collocation::sweep(const Problem& problem, const double* weights, const d
     step->lowest_margin = j == 0 ? margin : std::fmin(step->lowest_margin, margin);
     turning[j] = y[problem.settling.speed] * (f(j, turned) - f_[j][turned]);
   }
-  f.col(turned) = before.col(turned) - Eigen::Map<const Square>(inverse) * turning;
+  f.col(turned) = before.col(turned) - newton.matrix.solve(turning);
   double largest = 0;
   for (int j = 0; j < radau_points; ++j) {
     const Row change = size_ * (f.row(j) - before.row(j));
@@ -129,13 +131,13 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
 
 // The error of the step over size_ in units of the weights; infinite where the sweeps do not converge.
 double Collocation::try_size(const Problem& problem, const double* weights, Counters* counters, Step* step) {
-  double change = INFINITY, inverse[radau_points * radau_points];
-  prepare(problem, *step, inverse);
+  const Newton newton = prepare(problem, *step);
+  double change = INFINITY;
   ++counters->jacobians;
   bool converged = false;
   for (int sweeps = 0; !converged; ++sweeps) {
     const double before = change;
-    change = sweep(problem, weights, inverse, counters, step);
+    change = sweep(problem, weights, newton, counters, step);
     if (sweeps == most_sweeps || !(change < before)) return INFINITY;
     // The changes that would follow sum to change^2 / (before - change).
     converged = change < distance || (sweeps > 0 && change * change < distance * (before - change));

@@ -26,8 +26,9 @@ class Collocation final : public Engine {
  private:
   bool predict(const Problem& problem, const Step& last, Counters* counters, Step* step);
   double try_size(const Problem& problem, const double* weights, Counters* counters, Step* step);
-  void prepare(const Problem& problem, const Step& step, double* inverse) const;
-  double sweep(const Problem& problem, const double* weights, const double* inverse, Counters* counters, Step* step);
+  struct Newton;
+  Newton prepare(const Problem& problem, const Step& step) const;
+  double sweep(const Problem& problem, const double* weights, const Newton& newton, Counters* counters, Step* step);
   bool fits(const Problem& problem, const Step* step) const;
 
   double liked_ = 0, size_ = 0;              // size of the next step and of the last, s
