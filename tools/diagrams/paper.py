@@ -172,7 +172,8 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     for ax, scene in rates:
         panels.write_rates(ax, scene)
     for i, line in enumerate(reversed(lines)):
-        style.text_mm(fig, MARGIN, 1.8 + PITCH * i, line, fontsize=size)
+        place = MARGIN * style.MM, (1.8 + PITCH * i) * style.MM
+        fig.text(*place, line, transform=fig.dpi_scale_trans, fontsize=size)
     return style.save(fig, stem)
 
 

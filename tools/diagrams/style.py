@@ -47,11 +47,6 @@ def axes_mm(fig: Figure, left: float, bottom: float, width: float, height: float
     return fig.add_axes((left / w, bottom / h, width / w, height / h))
 
 
-def text_mm(fig: Figure, x: float, y: float, text: str, **how: object) -> None:
-    """Text whose anchor lies at this place in mm from the figure's lower left corner."""
-    fig.text(x * MM, y * MM, text, transform=fig.dpi_scale_trans, **how)
-
-
 def note(ax: Axes, text: str, at: Sequence[float], shift: Sequence[float], **how: object) -> None:
     """Small text beside the data point `at`, moved by `shift` in typographic points."""
     look = {"fontsize": NOTE, "textcoords": "offset points"} | how

@@ -81,14 +81,6 @@ def column(page: Page, name: str, wheel: int = 0) -> np.ndarray:
     return np.array(page.evaluate("([i, name]) => [...page.wheels[i].table.columns[name]]", [wheel, name]))
 
 
-def listed(page: Page) -> list[list[str]]:
-    """The rows of the card "Values"."""
-    page.locator("[popovertarget=values]").click()
-    rows = [row.split("\t") for row in page.locator("#values tr").all_inner_texts()]
-    page.keyboard.press("Escape")
-    return rows
-
-
 def start(page: Page, at: float = 0.0, **values: float) -> None:
     """The live page with the paper's wheel, but for these start values, and its clock standing at `at`."""
     load = "([values, t]) => { page.player.pause(); page.live.load({values}); page.player.seek(t); page.live.frame(); }"
