@@ -20,8 +20,8 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& in_force);
 // The wheel, without slip at y, loses its grip: Coulomb's law, in the direction in which it lets a slip grow and stay.
 void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
 
-// m/s, the slip at which one ends, since its direction may turn ever faster, and that at which one begins. Errors of
-// them do not count, and instants have digits for them.
+// m/s. A slide begins with the first slip and ends at the least one, below which its direction turns ever faster. Both
+// are small parts of the tolerance, and large enough for the digits of an instant.
 double least_slip(const Setup& setup, double t);
 double first_slip(const Setup& setup, double t);
 
