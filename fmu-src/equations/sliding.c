@@ -143,7 +143,8 @@ double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
   double found = NAN, least = -rounding * (fabs(free.u_x) + fabs(free.u_y));
   for (int i = 0; i < parts; ++i) { /* from `against` to both sides in turn */
     double lo = against + part * ((i % 2 ? -(i + 1) / 2 : i / 2) - 0.5), hi = lo + part;
-    if (part * (i / 2 - 1) > fabs(found - against)) break; /* the others are farther away */
+    int nearest = i / 2 - 1;
+    if (part * nearest > fabs(found - against)) break; /* the others are farther away */
     if (!(turning(w, &b, lo) > 0 && turning(w, &b, hi) <= 0)) continue;
     double chi = zero_of_turning(w, &b, lo, hi);
     WheelSlip slip = slip_of(w, &b, chi);

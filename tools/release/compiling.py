@@ -1,7 +1,7 @@
 """The project's sources compiled for another platform by PyPI's ziglang: clang, every target's libc, and the linkers.
 
 python -m release.compiling FOLDER TARGET: WebAssembly in a build folder, wheel_page (the module of the live page) or
-wheel_driver (the release's ten scenes). It prints the file, which is made anew only where a source has changed.
+wheel_driver (the release's scenes). It prints the file, which is made anew only where a source has changed.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from release.compiling import ROOT, WASM, build
 from release.fmu import ARM, LINUX, WINDOWS
 
 DESCRIPTION = fmpy.read_model_description(str(ROOT), validate=False)
-OUTPUTS = [v.name for v in DESCRIPTION.modelVariables if v.causality == "output"]
+OUTPUTS = [v.name for v in DESCRIPTION.modelVariables if v.causality == "output" and v.type == "Real"]
 WINE = shutil.which("wine64") or "/usr/lib/wine/wine64"
 
 
