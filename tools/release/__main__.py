@@ -68,7 +68,7 @@ def main() -> None:
         subprocess.run([sys.executable, "-m", "pytest", *tests], env=os.environ | {"WHEEL_BUILD": str(OUT)}, check=True)
         step("the same again in another folder")
         twice = build_elsewhere(released, scratch)
-        step("eleven scenes on every platform that runs here")
+        step("the scenes on every platform that runs here")
         subprocess.run(["./scripts/build", "release"], check=True)
         scenes = platforms.scenes(OUT)
     write_report(released, libraries=table, twice=twice, **scenes)

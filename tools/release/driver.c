@@ -1,5 +1,5 @@
-/* The C driver of the FMU. As a program, `driver LIBRARY GUID`, it prints a hash of the bits of eleven trajectories,
-   the same source for every platform. The reports load it as a library and time its functions
+/* The C driver of the FMU. As a program, `driver LIBRARY GUID`, it prints a hash of the bits of each scene's
+   trajectory, the same source for every platform. The reports load it as a library and time its functions
    (tools/reports/native.py). The paper's equations are not here. */
 #include <stdint.h>
 #include <stdio.h>
@@ -112,12 +112,14 @@ static fmi2Component start(const struct scene* scene, const char* guid) {
   const fmi2Component c = fmu.Instantiate("wheel", fmi2CoSimulation, guid, "", &functions, 0, 0);
   if (!c) exit(1);
   const fmi2Boolean kept = fmi2True;
-  fmu.SetupExperiment(c, 1, scene->tolerance, 0, 0, 0);
-  fmu.SetReal(c, reals, 7, scene->reals);
-  fmu.SetInteger(c, choices, 3, scene->choices);
-  fmu.SetBoolean(c, &contact, 1, &kept);
-  fmu.EnterInitializationMode(c);
-  if (fmu.ExitInitializationMode(c) != fmi2OK) exit(1);
+  const fmi2Status statuses[] = {fmu.SetupExperiment(c, 1, scene->tolerance, 0, 0, 0),
+                                 fmu.SetReal(c, reals, sizeof reals / sizeof *reals, scene->reals),
+                                 fmu.SetInteger(c, choices, sizeof choices / sizeof *choices, scene->choices),
+                                 fmu.SetBoolean(c, &contact, 1, &kept),
+                                 fmu.EnterInitializationMode(c),
+                                 fmu.ExitInitializationMode(c)};
+  for (size_t i = 0; i < sizeof statuses / sizeof *statuses; ++i)
+    if (statuses[i] != fmi2OK) exit(1);
   return c;
 }
 

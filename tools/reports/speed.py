@@ -138,8 +138,8 @@ def sliding(report: Report, case: tuple[Values, Values, float]) -> Row:
     solves = [report.master.made(values, 0.1, round(duration / 0.1)) for values in (start, start | more)]
     steps = [solve()[2]["steps"] for solve in solves]
     rounds = [[min(repeated(solve, 0.05)[0]) for solve in solves] for _ in range(2 if report.quick else 20)]
-    rolling, sliding = 1e6 * np.median(rounds, axis=0)
-    row = {"rolls, µs": rolling, "slides, µs": sliding, "ratio of times": sliding / rolling}
+    rolls, slips = 1e6 * np.median(rounds, axis=0)
+    row = {"rolls, µs": rolls, "slides, µs": slips, "ratio of times": slips / rolls}
     return row | {"steps, rolls": steps[0], "steps, slides": steps[1], "ratio of steps": steps[1] / steps[0]}
 
 
