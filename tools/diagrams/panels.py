@@ -67,7 +67,7 @@ def draw_path(ax: Axes, scene: Scene) -> list[str]:
         arrow = {"arrowstyle": "<|-", "color": style.GREY, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", (0.12, 0.83), step, "axes fraction", "offset points", arrowprops=arrow)
         ax.text(0.02, 0.93, "downhill", transform=ax.transAxes, color=style.GREY, fontsize=style.NOTE)
-    return ["Purple: it slides."] * bool(scene.slides.any())
+    return ["Purple on the path: it slides."] * bool(scene.slides.any())
 
 
 def draw_ground(ax: Axes, scene: Scene) -> list[str]:
