@@ -6,7 +6,7 @@ file(STRINGS modelDescription.xml guid_line REGEX "guid=")
 string(REGEX REPLACE ".*guid=\"([^\"]*)\".*" "\\1" WHEEL_GUID "${guid_line}")
 
 # The folder under binaries/ in which masters look on the machine that it is built for, whatever its processor:
-# docs/decisions/compiled_in.md.
+# docs/decisions/package.md.
 string(TOLOWER ${CMAKE_SYSTEM_NAME}64 wheel_platform)
 string(REPLACE windows win wheel_platform ${wheel_platform})
 

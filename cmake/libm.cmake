@@ -1,5 +1,5 @@
 # One libm for every build: sin, cos and the rest from newlib's sources (FDLIBM, and Arm's exp and pow), compiled in, so
-# that trajectories have the same bits on every processor and system: docs/decisions/compiled_in.md. Debian's package
+# that trajectories have the same bits on every processor and system: docs/decisions/package.md. Debian's package
 # newlib-source has them; its versions in Debian 12 and 13 give the same bits. Alternatives:
 #   -DWHEEL_LIBM_SOURCE=<newlib's source tree, or its archive>
 #   -DWHEEL_LIBM_SOURCE=system   the system's libm, whose last bits depend on the processor

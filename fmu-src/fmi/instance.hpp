@@ -13,7 +13,7 @@ namespace fmi {
 struct Instance : Handle {
   static constexpr std::uint64_t own_mark = 0x495f554d46484557;  // "WEHFMU_I"
 
-  // One block of memory, the name included. What takes memory later: docs/decisions/others.md. Null if there is none.
+  // One block of memory, the name included. What takes memory later: docs/decisions/package.md. Null if there is none.
   static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind);
 
   // Passes a message to the master, if its category is switched on: printf-like, the name of the function under way

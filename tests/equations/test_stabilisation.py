@@ -1,8 +1,8 @@
 """The multibody state and its stabilisation: omega_z is a state, and errors of the constraints decay.
 
 (24) fixes the constraints as accelerations: alone it keeps an error of [B]{q_dot} and lets that of the height grow. The
-product's derivative draws both to zero at the rate a = 5 sqrt(|g| / (r_0 + r) + |omega|^2): docs/decisions/
-multibody_state.md. Fixed axes for O.
+product's derivative draws both to zero at the rate a = 5 sqrt(|g| / (r_0 + r) + |omega|^2):
+docs/decisions/solver.md. Fixed axes for O.
 """
 
 import numpy as np

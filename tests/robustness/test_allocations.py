@@ -10,7 +10,7 @@ from support.driver import ERROR, OK
 from support.paths import ROOT
 
 # formulation, friction law, method (4: Runge-Kutta): here every allocation is our own. SUNDIALS does not survive each
-# failure of one it makes (docs/decisions/others.md), so its methods are not played with.
+# failure of one it makes (docs/decisions/package.md), so its methods are not played with.
 SCENES = {"reduced": (2, 1, 4), "multibody": (3, 1, 4), "reduced, regularized": (2, 2, 4)}
 
 
