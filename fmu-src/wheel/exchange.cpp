@@ -142,7 +142,7 @@ bool starts_inside(const Wheel& w) {
   if (!fault) return true;
   WheelDynamics dynamics;
   w.setup.formulation->dynamics(&w.run.in_force.scene, w.run.y, &dynamics);
-  w.reporter.log(Topic::error, "At the start the wheel %s (N = %s N, mu_required = %s): the model ends there.",
+  w.reporter.log(Topic::error, "At the start the wheel %s (N = %s N, mu_required = %s): the run ends there.",
                  ending_of(w.run.in_force, fault->event).text, Digits{dynamics.lambda[2], 6},
                  Digits{wheel_required_friction(dynamics.lambda), 6});
   return false;

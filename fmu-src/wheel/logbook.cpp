@@ -55,9 +55,9 @@ void log_contact(Wheel& wheel, bool slid, bool goes_on) {
   if (slides == slid && (goes_on || !slides)) return;
   ++wheel.run.transitions;
   wheel.reporter.log(Topic::event, "t = %s s: the wheel %s.", instant_of(wheel.setup, wheel.run.t),
-                     !slides ? "grips"
+                     !slides ? "stops sliding"
                      : slid  ? "slides in another direction"
-                             : "slides");
+                             : "starts to slide");
 }
 
 void warn_of_grip(Wheel& wheel, double t, const double* y) {
@@ -78,11 +78,11 @@ void warn_of_grip(Wheel& wheel, double t, const double* y) {
 void log_ending(Wheel& wheel, Event event) {
   const Run& run = wheel.run;
   if (wheel.endings++ >= logged_one_by_one) return;
-  wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the model ends there.",
+  wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the run ends there.",
                      ending_of(run.in_force, event).text, wheel.setup.start_time + run.t,
                      Digits{run.y[wheel.setup.formulation->tilt_index], 6});
   if (wheel.endings == logged_one_by_one)
-    wheel.reporter.log(Topic::discard, "%s endings were logged; further ones are not, until a reset.",
+    wheel.reporter.log(Topic::discard, "%s ends were logged; further ones are not logged until a reset.",
                        static_cast<double>(logged_one_by_one));
 }
 

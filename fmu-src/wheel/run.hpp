@@ -38,7 +38,7 @@ enum class Event : int {
   sticks_in_layer,  // omega_z begins to stick in the layer of a stiff regularized law
   crosses_layer,    // omega_z enters or leaves that layer
   spin_changes,     // omega_z reaches zero, or friction and brake can no longer hold it there
-  lost_grip,        // the wheel needs a coefficient of friction above mu_max
+  lost_grip,        // the wheel needs a friction coefficient above mu_max
   slip_ends,        // the slip falls to zero
   lost_contact,     // N falls below zero, or rises above it while the ground pulls
   jams,             // friction wedges the wheel that slides: no N holds

@@ -95,9 +95,9 @@ bool check_sliding(const Reporter& reporter, const Demand& demand, bool at_start
   bool sound =
       reporter.check(!at_start || !(mu_slide > mu_max), "mu_slide = %s: mu_max must be at least as large, and is %s.",
                      Digits{mu_slide, 9}, Digits{mu_max, 9});
-  sound &= reporter.check(!slips || mu_slide > 0,
-                          "slip_x_start, slip_y_start = %s, %s m/s: a start with slip needs mu_slide.",
-                          Digits{slip_x, 9}, Digits{slip_y, 9});
+  sound &=
+      reporter.check(!slips || mu_slide > 0, "slip_x_start, slip_y_start = %s, %s m/s: an initial slip needs mu_slide.",
+                     Digits{slip_x, 9}, Digits{slip_y, 9});
   sound &= reporter.check(mu_slide == 0 || demand.kind == Kind::co_simulation,
                           "mu_slide = %s: model exchange has no states for a slip and needs 0.", Digits{mu_slide, 9});
   return sound;

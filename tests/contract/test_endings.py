@@ -28,7 +28,7 @@ def test_the_end_does_not_depend_on_the_communication_grid(wheel):
     assert at_once.bits() != wheel().start(**DROP).run([0.59])[0]
 
 
-@pytest.mark.parametrize(("values", "what"), [(DROP, "fell flat"), (LIFT, "lifted off the ground")])
+@pytest.mark.parametrize(("values", "what"), [(DROP, "lies flat"), (LIFT, "lifted off the ground")])
 def test_an_ending_is_logged_with_every_digit_of_its_instant_and_no_later_step_is_answered_with_ok(wheel, values, what):
     w = wheel().start(start=0.1, **values)
     assert w.step(10.0) == DISCARD
@@ -36,7 +36,7 @@ def test_an_ending_is_logged_with_every_digit_of_its_instant_and_no_later_step_i
     logged = f"{what} at t = {np.format_float_positional(end, trim='-')} s"  # the shortest decimal that is this number
     (message,) = w.take_messages()
     assert (message.status, message.category) == (WARNING, "logStatusDiscard")
-    assert message.text == f"The wheel {logged}, theta = {w.get('theta')[0]:.6g} rad: the model ends there."
+    assert message.text == f"The wheel {logged}, theta = {w.get('theta')[0]:.6g} rad: the run ends there."
     w.time = end
     for h in (0.0, 1e-300, 1e-12, 0.1, 1e6):
         assert w.step(h) == ERROR
@@ -57,7 +57,7 @@ def test_a_restored_ending_is_still_an_ending_in_any_instance(wheel):
     end, bits = ended(w), w.bits()
     other.back(w.serialized()).take_messages()
     assert (other.bits(), other.step(0.0), other.status(TERMINATED)) == (bits, ERROR, 1)
-    assert "fell flat" in other.said()
+    assert "lies flat" in other.said()
     other.back(before)  # the partner: a state from before leads on, to the same end
     assert (other.status(TERMINATED), other.step(0.0), other.step(0.05)) == (0, OK, OK)
     assert (other.step(1.0), other.status(LAST_SUCCESSFUL_TIME), other.bits()) == (DISCARD, end, bits)
@@ -138,10 +138,10 @@ def test_of_very_many_endings_that_a_master_goes_back_from_the_first_hundred_are
     for _ in range(120):
         assert w.back(before).step(1.0) == DISCARD
     texts = w.texts()
-    assert sum("fell flat" in text for text in texts) == 100
-    assert texts[-1] == "100 endings were logged; further ones are not, until a reset."
+    assert sum("lies flat" in text for text in texts) == 100
+    assert texts[-1] == "100 ends were logged; further ones are not logged until a reset."
     assert w.reset() == OK and w.start(**DROP).step(1.0) == DISCARD  # the partner
-    assert "fell flat" in w.said()
+    assert "lies flat" in w.said()
 
 
 def onto(w: FMU2Wheel, mu_max: float, before: float) -> FMU2Wheel:
@@ -154,7 +154,7 @@ def test_a_road_that_becomes_too_slippery_ends_the_run_at_once_and_one_with_the_
         w = onto(wheel(), 0.3, before)
         w.take_messages()
         assert (w.step(0.01), w.status(LAST_SUCCESSFUL_TIME)) == (DISCARD, 0.25)
-        assert "needs a coefficient of friction above mu_max = 0.3 at t = 0.25 s" in w.said()
+        assert "needs a friction coefficient above mu_max = 0.3 at t = 0.25 s" in w.said()
     w = onto(wheel(), 0.6, 0.9)
     assert (w.step(0.5), w.status(TERMINATED)) == (OK, 0)
     w.put(M_brake=0.62 * FULL)

@@ -37,7 +37,7 @@ def straight_error(library: Library, formulation: int, s: float, judged: Wheel) 
 def fall_error(library: Library, formulation: int, judged: Wheel) -> float:
     """Instant at which the wheel released from rest lies flat, s; nan if it does not."""
     run = library.simulate([0.0, 2.0], formulation=formulation, phi_dot_start=0.0)
-    if run.ended is None or "fell flat" not in run.ended:
+    if run.ended is None or "lies flat" not in run.ended:
         return np.nan
     return abs(run.t[-1] - fall_time(judged, 5 * pi / 12, 1e-7))  # the model ends at sin(theta) = 1e-7
 

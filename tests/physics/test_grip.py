@@ -26,7 +26,7 @@ PAPER = Wheel()
 UPRIGHT = {"theta_start": pi / 2, "psi_start": 0.0, "phi_dot_start": -20.0}
 RAMP = 40.0  # N m/s, of the brake
 SOON = Schedule(((0.0, {"M_brake": (0.0, RAMP)}),))
-MESSAGE = "The wheel needs a coefficient of friction above mu_max = {} at t = {} s"
+MESSAGE = "The wheel needs a friction coefficient above mu_max = {} at t = {} s"
 
 
 def braked_instant(mu: float) -> float:

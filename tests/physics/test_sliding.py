@@ -395,7 +395,7 @@ def test_a_wheel_that_slides_and_grips_hundreds_of_times_is_counted_and_logged_e
     torque = 1.05 * sliding.gripping_torque(PAPER, 0.45)
     pieces = tuple((0.005 * k, {"M_3": 0.0 if k % 4 else -torque}) for k in range(400))
     run = straight(library, [0.0, 2.0], Schedule(pieces))
-    said = [message for message in run.messages if "slides" in message or "grips" in message]
+    said = [message for message in run.messages if "slide" in message or "sliding" in message]
     assert run.counters["n_events"] >= 190
     assert len(said) == run.counters["n_events"] and not any("another direction" in message for message in said)
     within(run.counters["n_steps"] / run.counters["n_events"], 30, "steps per transition")

@@ -75,7 +75,7 @@ def test_the_commands_for_fmpy_run_as_written_and_do_what_their_comments_say(roo
     assert all(line.startswith(("fmpy ", "#", "printf ")) for line in commands.splitlines())
     log = bash(commands, root)
     assert "No problems found" in log
-    for word in ("stick", "release", "reversal", "fell flat"):
+    for word in ("stick", "release", "reversal", "lies flat"):
         assert word in log, word
     friction, reference = table(root / "results" / "friction_again.csv"), reference_tables["friction"]
     error = np.abs(friction["X_O"][::10] - reference["X_O"]).max()

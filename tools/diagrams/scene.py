@@ -36,7 +36,7 @@ class Scene:
 
     @cached_property
     def ending(self) -> str:
-        """What ended the run before its time, such as `fell flat at t = 0.593 s`: from the log beside the table."""
+        """What ended the run before its time, such as `lies flat at t = 0.593 s`: from the log beside the table."""
         log = self.path.with_suffix(".log")
         said = re.search(r"The wheel (.+?) at t = (\S+) s", log.read_text(encoding="utf-8")) if log.exists() else None
         return f"{said[1]} at $t$ = {float(said[2]):.3g} s" if said else ""

@@ -147,7 +147,7 @@ def tipping(report: Report) -> Row:
     return {"tips": found.t[-1], "tipping_rate": TIPPING, "tips_rolling_tilted": np.degrees(tilted)}
 
 
-CONTACT = re.compile(r"t = (\S+) s: the wheel (?:slides|grips)\.")
+CONTACT = re.compile(r"t = (\S+) s: the wheel (?:starts to slide|stops sliding)\.")
 WET, SLIPPERY = {"mu_max": 0.45, "mu_slide": 0.4}, {"mu_max": 0.3, "mu_slide": 0.25}
 
 

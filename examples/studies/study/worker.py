@@ -44,9 +44,9 @@ MARK = "caller"  # the attribute by which a worker recognizes the caller's store
 _turn = Lock()  # a worker's threads take turns at the instance
 # Words of the FMU's message, for each way in which a run ends early.
 ENDINGS = {
-    "fell flat": Status.flat,
+    "lies flat": Status.flat,
     "lifted off": Status.lifted_off,
-    "needs a coefficient of friction": Status.grip,
+    "needs a friction coefficient": Status.grip,
     "jams": Status.jammed,
 }
 

@@ -155,7 +155,7 @@ class Vehicle:
         """A second line for the title of a picture, where a run ended early."""
         if not end:
             return ""
-        what = re.search("lifted off|fell flat", end.message)
+        what = re.search("lifted off|lies flat", end.message)
         how = what[0] if what else "ended the run"
         return f"\nThe {self.who(end)} {how} at t = {end.time:.2f} s, where the curves end."
 

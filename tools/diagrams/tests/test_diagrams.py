@@ -130,7 +130,7 @@ def written(folder: Path, name: str, one: Scene, rows: int) -> None:
     table, names = np.column_stack(list(columns.values())), ",".join(columns)
     np.savetxt(folder / f"{name}.csv", table, delimiter=",", header=names, comments="")
     (folder / f"{name}.log").write_text(
-        "[WARNING] The wheel lifted off the ground at t = 0.5927504 s: the model ends there.\n"
+        "[WARNING] The wheel lifted off the ground at t = 0.5927504 s: the run ends there.\n"
     )
 
 

@@ -158,8 +158,8 @@ def test_the_force_points_along_lambda(recorded, scenes):
 @pytest.mark.parametrize(
     ("theta", "N", "end", "sentence"),
     [
-        (0.0, 196, 0.59282, "fell flat at 0.5928 s"),
-        (np.pi, 196, 0.7, "fell flat at 0.7 s"),
+        (0.0, 196, 0.59282, "lies flat at 0.5928 s"),
+        (np.pi, 196, 0.7, "lies flat at 0.7 s"),
         (1.0, 0, 1.25, "lifted off at 1.25 s"),
         (1.0, 196, 1.25, "its record ends at 1.25 s"),
         (0.3, 196, 10.0, None),

@@ -14,7 +14,7 @@ export function short(text) {
 export function endingOf(table, latest) {
   const last = (name) => table.columns[name].at(-1);
   const when = `${short(String(table.end.toFixed(4)))} s`;
-  if (Math.min(last('theta'), Math.PI - last('theta')) < FLAT) return `fell flat at ${when}`;
+  if (Math.min(last('theta'), Math.PI - last('theta')) < FLAT) return `lies flat at ${when}`;
   const N = table.columns.lambda_3;
   if (N && N.at(-1) < LIFTED * extent(N)[1]) return `lifted off at ${when}`;
   return table.end < latest - 1e-9 ? `its record ends at ${when}` : null;
