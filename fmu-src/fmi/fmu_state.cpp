@@ -1,6 +1,4 @@
 // FMI 2.0 functions: rollback. An FMU state is its own serialization: portable bytes that hold no pointers.
-//
-// Bytes from elsewhere become a state only after a scratch instance has taken them.
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
@@ -8,7 +6,7 @@
 
 #include "instance.hpp"
 
-using fmi::guarded, fmi::handle_of, fmi::Instance, fmi::no_fault, wheel::Topic;
+using fmi::guarded, fmi::handle_of, fmi::Instance, fmi::no_fault;
 namespace legality = fmi::legality;
 
 namespace {
@@ -61,7 +59,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
   return with_state(c, "fmi2SetFMUstate", state, true, [](Instance& i, Snapshot& snapshot) {
-    return i.simulation.load_state(snapshot.bytes(), snapshot.size, false);
+    return i.simulation.load_state(snapshot.bytes(), snapshot.size);
   });
 }
 
@@ -91,17 +89,12 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
   return guarded(c, legality::always, "fmi2DeSerializeFMUstate", [=](Instance& i) {
-    if (!state || !bytes) return i.fail(null_pointer);
-    Instance* scratch = Instance::create("scratch", nullptr, false, i.simulation.kind());
-    if (!scratch) return i.fail(no_memory);
-    const char* fault = scratch->simulation.load_state(reinterpret_cast<const unsigned char*>(bytes), size, true);
-    fmi::release(scratch);
-    if (fault)
-      return i.log(Topic::error, "%s: the bytes are damaged or not a state of this FMU and version (%s).", fault);
-    Snapshot* snapshot = allocate(state, size);
-    if (!snapshot) return i.fail(no_memory);
+    if (!state || !bytes) return null_pointer;
+    const char* fault = wheel::fault_of(i.simulation.kind(), reinterpret_cast<const unsigned char*>(bytes), size);
+    Snapshot* snapshot = fault ? nullptr : allocate(state, size);
+    if (!snapshot) return fault ? fault : no_memory;
     std::memcpy(snapshot->bytes(), bytes, size);
-    return fmi2OK;
+    return no_fault;
   });
 }
 

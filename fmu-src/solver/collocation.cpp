@@ -190,20 +190,10 @@ void Collocation::expand(const Problem&, Counters*, Step* step) {
     Eigen::Map<Row>(step->c[m + 1]) = size_ / (m + 1) * (power.col(m).transpose() * f);
 }
 
-void Collocation::visit(support::Archive& archive, const Problem& problem, Step* step, bool active) {
-  archive("step sizes of collocation");
+void Collocation::visit(support::Archive& archive, const Problem& problem, const Step&) {
   for (double* size : {&liked_, &size_}) archive.range(*size, 0, archive.greatest);
-  archive("rates of collocation").count(known_, 0, 1);
+  archive.count(known_, 0, 1);
   for (int j = 0; known_ && j < radau_points; ++j) archive.numbers(f_[j], problem.states);
-  if (active && archive.reads() && !fits(problem, step)) archive.refuse();
-}
-
-// Whether the restored numbers are those of the step, to the bit.
-bool Collocation::fits(const Problem& problem, const Step* step) const {
-  if (!known_) return step->start == step->end;
-  const Row y_end = state_at(radau_points - 1, *step, size_, f_);
-  return std::fabs(step->end - step->start - size_) <= rounding_at(step->end) &&
-         std::equal(step->y_end, step->y_end + problem.states, y_end.data());
 }
 
 }  // namespace solver

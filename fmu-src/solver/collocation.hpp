@@ -21,7 +21,7 @@ class Collocation final : public Engine {
   void limit_first_step(double dt) { liked_ = std::fmin(liked_, dt); }
   bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
   void expand(const Problem& problem, Counters* counters, Step* step) override;
-  void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) override;
+  void visit(support::Archive& archive, const Problem& problem, const Step& step) override;
 
  private:
   bool predict(const Problem& problem, const Step& last, Counters* counters, Step* step);
@@ -29,7 +29,6 @@ class Collocation final : public Engine {
   struct Newton;
   Newton prepare(const Problem& problem, const Step& step) const;
   double sweep(const Problem& problem, const double* weights, const Newton& newton, Counters* counters, Step* step);
-  bool fits(const Problem& problem, const Step* step) const;
 
   double liked_ = 0, size_ = 0;              // size of the next step and of the last, s
   bool known_ = false;                       // the rates are those of the last step

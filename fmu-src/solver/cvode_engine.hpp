@@ -19,13 +19,12 @@ class Cvode final : public Engine {
   bool start(const Problem& problem) override;
   bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
   void expand(const Problem& problem, Counters* counters, Step* step) override;
-  void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) override;
+  void visit(support::Archive& archive, const Problem& problem, const Step& step) override;
 
  private:
   static void free_objects(CvodeObjects* objects);
   // cvode_history.cpp
   bool imitate_step(const Problem& problem, const Step& step);
-  bool fits(const Step& step) const;
 
   const Method method_;  // adams or bdf
   std::unique_ptr<CvodeObjects, void (*)(CvodeObjects*)> objects_{nullptr, free_objects};

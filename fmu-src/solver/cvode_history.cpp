@@ -88,24 +88,12 @@ bool Cvode::imitate_step(const Problem& problem, const Step& step) {
   return start(still) && advance(still, never, &uncounted, &imitation);
 }
 
-// Whether the history is that of the step.
-bool Cvode::fits(const Step& step) const {
-  const auto& m = *static_cast<CVodeMem>(objects_->cvode);
-  const double rounding = 200 * m.cv_uround * (std::fabs(m.cv_tn) + m.cv_hu);
-  bool fits = std::fabs(m.cv_tn - step.end) <= rounding && std::fabs(step.end - step.start - m.cv_hu) <= rounding &&
-              std::fabs(m.cv_hprime - m.cv_h * m.cv_eta) <= 1e-10 * m.cv_hprime;
-  for (int i = 0; method_ == Method::bdf && i < objects_->states; ++i)
-    fits = fits && SUNDenseMatrix_Column(objects_->matrix, i)[i] != 0;
-  return fits;
-}
-
-void Cvode::visit(Archive& archive, const Problem& problem, Step* step, bool active) {
-  if (!active) return;
+void Cvode::visit(Archive& archive, const Problem& problem, const Step& step) {
   Next next = next_;
-  archive("history of CVODE").count(next, 0, static_cast<int>(Next::starts_after_stop));
-  const bool has_history = step->end > step->start;
+  archive.count(next, 0, static_cast<int>(Next::starts_after_stop));
+  const bool has_history = step.end > step.start;
   if (archive.reads()) {
-    const bool ready = has_history ? imitate_step(problem, *step) : next != Next::goes_on && start(problem);
+    const bool ready = has_history ? imitate_step(problem, step) : next != Next::goes_on && start(problem);
     if (!ready) return archive.refuse();
     next_ = next;
   }
@@ -115,8 +103,7 @@ void Cvode::visit(Archive& archive, const Problem& problem, Step* step, bool act
   visit_steps(archive, m);
   for (int j = 0; j <= m.cv_qmax; ++j) archive.numbers(data(m.cv_zn[j]), o.states);
   if (method_ == Method::bdf) visit_newton(archive, o, m);
-  if (archive.reads() && !fits(*step)) archive.refuse();
-  if (archive.fault()) objects_.reset();  // nothing stays of numbers that no solver wrote
+  if (!archive.fits()) objects_.reset();  // nothing stays of numbers that no solver wrote
 }
 
 }  // namespace solver

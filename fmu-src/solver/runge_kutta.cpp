@@ -228,27 +228,18 @@ void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) 
   if (rates_ >= 12) with_work(problem, counters, step, [](auto work) { work.expand(); });
 }
 
-// `rates` holds the evaluations of the last step that were made, 0, 12 or 16.
-void RungeKutta::visit(support::Archive& archive, const Problem& problem, Step* step, bool active) {
-  archive("step sizes of Runge-Kutta");
-  for (double* size : {&liked_[0], &liked_[1], &limit_, &size_}) archive.range(*size, 0, archive.greatest);
-  archive.range(last_error_, 0, 1);
-  archive.number(margin_);
-  archive("stages of Runge-Kutta").count(rates_, 0, 16);
-  for (int k = 0; k < rates_; ++k) archive.numbers(f_[k], problem.states);
-  if (active && archive.reads() && !fits(problem, step)) archive.refuse();
+void RungeKutta::visit_sizes(support::Archive& archive) {
+  for (double& size : liked_) archive.range(size, 0, archive.greatest);
 }
 
-// Whether the restored numbers are those of the step, to the bit; then the step has its polynomial again.
-bool RungeKutta::fits(const Problem& problem, Step* step) {
-  if (rates_ == 0) return step->start == step->end;
-  if (rates_ != 12 && rates_ != 16) return false;
-  if (!(size_ > 0) || std::fabs(step->end - step->start - size_) > rounding_at(step->end)) return false;
-  Step same = *step;
-  with_work(problem, nullptr, &same, [](auto work) { work.end_step(); });
-  const bool fits = std::equal(step->y_end, step->y_end + problem.states, same.y_end);
-  *step = same;
-  return fits;
+// `rates` holds the evaluations of the last step that were made, 0, 12 or 16.
+void RungeKutta::visit(support::Archive& archive, const Problem& problem, const Step&) {
+  archive.range(limit_, 0, archive.greatest);
+  archive.range(size_, 0, archive.greatest);
+  archive.range(last_error_, 0, 1);
+  archive.number(margin_);
+  archive.count(rates_, 0, 16);
+  for (int k = 0; k < rates_; ++k) archive.numbers(f_[k], problem.states);
 }
 
 }  // namespace solver

@@ -17,7 +17,9 @@ class RungeKutta final : public Engine {
   // output and the next step need: most often the problem changes there, and nothing in it is read. The next step does
   // not use them, so that it costs the same whatever was read.
   void expand(const Problem& problem, Counters* counters, Step* step) override;
-  void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) override;
+  void visit(support::Archive& archive, const Problem& problem, const Step& step) override;
+  // The sizes that are kept while another engine steps.
+  void visit_sizes(support::Archive& archive);
 
   // The first step after the last start is at most dt, s.
   void limit_first_step(double dt) { limit_ = dt; }
@@ -27,7 +29,6 @@ class RungeKutta final : public Engine {
   struct Work;
   template <class Body>
   auto with_work(const Problem& problem, Counters* counters, Step* step, const Body& body);
-  bool fits(const Problem& problem, Step* step);
 
   double liked_[2] = {};   // size of the next step, s, outside of passages and inside; 0: none was made
   double limit_ = 0;       // of the first step after the last start, s; 0: none

@@ -3,7 +3,6 @@
 #include "solver.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace solver {
 
@@ -12,7 +11,6 @@ bool Solver::start(const Problem& problem, Method method, double t, const double
   runge_kutta_ = {};
   collocation_ = {};
   step_ = {};  // nothing that is saved is left of an earlier solution
-  event_ = 0;
   std::fill_n(values_, max_watched, 0.0);
   counters_ = {};
   counters_.restarts = -1;  // the restart below does not count
@@ -23,7 +21,8 @@ bool Solver::restart(const Problem& problem, Method method, double t, const doub
   first_stop_ = time_to_look_again(t);
   problem_ = problem;
   method_ = method;
-  known_until_ = event_time_ = t;
+  known_until_ = t;
+  fallen_ = 0;
   ++counters_.restarts;
   pending_ = Outcome::failed;
   failure_ = nullptr;
@@ -49,7 +48,7 @@ void Solver::resume() {
 // between them, and the next one has to be shorter. Its latest end, s.
 double Solver::time_to_look_again(double t) const {
   const double length = step_.end - step_.start;
-  if (pending_ != Outcome::event || t != event_time_ || !(t - step_.start < 1e-6 * length)) return never;
+  if (pending_ != Outcome::event || t != known_until_ || !(t - step_.start < 1e-6 * length)) return never;
   return t + std::fmax(1e-3 * length, 0.5 * rounding_at(t));
 }
 
@@ -111,8 +110,8 @@ void Solver::look_for_events(double from) {
     if (hi.t != known_until_) hi = search.sample(known_until_);
     const auto fall = search.find_first_fall(lo, hi);
     if (!fall) continue;
-    known_until_ = event_time_ = *fall;
-    event_ = watched.event;
+    known_until_ = *fall;
+    fallen_ = i;
     pending_ = Outcome::event;
   }
 }
@@ -143,43 +142,29 @@ void Solver::read(double t, double* y) const {
 
 // Fields are written only when they are read; a solver that is saved stays as it is.
 void Solver::visit(support::Archive& archive) {
-  archive("method").count(method_, 0, static_cast<int>(Method::collocation));
-  archive("outcome of the last step").count(pending_, 0, static_cast<int>(Outcome::failed));
-  archive("event").count(event_, 0, std::numeric_limits<int>::max());
-  archive("time known, s").number(known_until_);
-  archive("time of the event, s").number(event_time_);
-  archive("values of watched functions").numbers(values_, max_watched);
-  archive("latest end of the first step, s").range(first_stop_, -archive.greatest, never);
-  archive("counters");
-  for (long long* count : counters_.all()) archive.tally(*count);
   step_.visit(archive, problem_.states);
-  if (archive.reads() && !restored_fits()) archive.refuse();
-  for (Engine* one : engines_)
-    if (!archive.fault()) one->visit(archive, problem_, &step_, one == &engine());
+  archive.range(known_until_, step_.start, step_.end);
+  archive.range(first_stop_, known_until_, never);
+  archive.count(pending_, 0, static_cast<int>(Outcome::event));
+  archive.count(fallen_, 0, std::max(problem_.watched_count - 1, 0));
+  archive.numbers(values_, max_watched);
+  for (long long* count : counters_.all()) archive.tally(*count);
+  runge_kutta_.visit_sizes(archive);
+  if (archive.fits()) engine().visit(archive, problem_, step_);
 }
 
-bool Solver::restore_history(const Problem& problem, support::Archive& archive) {
+bool Solver::restore_history(const Problem& problem, Method method, support::Archive& archive) {
   problem_ = problem;
+  method_ = method;
   step_ = {};
   runge_kutta_ = {};
   visit(archive);
-  failure_ = pending_ == Outcome::failed ? "the solver had failed before the state was saved" : nullptr;
+  failure_ = nullptr;
   if (archive.is_sound()) return true;
-  failure_ = "the solver's history could not be restored";
   const double none[max_states] = {};
   step_.set_point(0, none, problem.states);  // reading it is harmless
   pending_ = Outcome::failed;
   return false;
-}
-
-// Times in order, and those that one outcome goes with; an event that is watched.
-bool Solver::restored_fits() const {
-  bool watched = false;
-  for (int i = 0; i < problem_.watched_count; ++i) watched = watched || problem_.watched[i].event == event_;
-  if (pending_ == Outcome::event && !watched) return false;
-  if (!(step_.start <= known_until_ && known_until_ <= step_.end)) return false;
-  if (pending_ == Outcome::failed) return step_.start == step_.end;
-  return known_until_ == event_time_ || (pending_ == Outcome::stepped && known_until_ == step_.end);
 }
 
 }  // namespace solver

@@ -58,16 +58,16 @@ class Solver {
 
   double step_start() const { return step_.start; }
   double known_until() const { return known_until_; }
-  double event_time() const { return event_time_; }
-  int event() const { return event_; }
+  double event_time() const { return known_until_; }
+  int event() const { return problem_.watched[fallen_].event; }
   Method method() const { return method_; }
   const char* failure() const { return failure_ ? failure_ : engine().failure(); }
   const Counters& counters() const { return counters_; }
 
   // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on bit-identically. It is
-  // the last part of an archive; restore refuses what could not have been saved (false; no solution then until start).
+  // the last part of an archive; false where a number is out of its bounds (no solution then until start).
   void save_history(support::Archive& archive) { visit(archive); }
-  [[nodiscard]] bool restore_history(const Problem& problem, support::Archive& archive);
+  [[nodiscard]] bool restore_history(const Problem& problem, Method method, support::Archive& archive);
 
  private:
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }
@@ -78,15 +78,14 @@ class Solver {
   bool comes_near(const Search& search);
   bool stays_above(const Search& search, Sample lo, Sample hi) const;
   void visit(support::Archive& archive);
-  bool restored_fits() const;
 
   Problem problem_ = {};
   Method method_ = Method::adams;
   Outcome pending_ = Outcome::failed;
   const char* failure_ = "the solver was not started";  // null: the engine knows
-  double known_until_ = 0, event_time_ = 0;             // s
-  int event_ = 0;
-  double first_stop_ = never;        // s, latest end of the first step after a start
+  double known_until_ = 0;                              // s
+  int fallen_ = 0;                                      // which of the watched functions fell below zero last
+  double first_stop_ = never;                           // s, latest end of the first step after a start
   double values_[max_watched] = {};  // of what is watched at each step, at its end or where the solution was resumed
   Counters counters_ = {};
   // The dense output of the last step is computed when it is first needed: a pure function of the step.

@@ -32,12 +32,12 @@ void Step::set_point(double t, const double* y, int states) {
 
 void Step::visit(support::Archive& archive, int states) {
   if (archive.reads()) degree = unknown;
-  archive("start of the step, s").number(start);
-  archive("end of the step, s").number(end);
-  archive("states at the ends of the step").numbers(y_start, states);
+  archive.number(start);
+  archive.range(end, start, archive.greatest);
+  archive.numbers(y_start, states);
   archive.numbers(y_end, states);
-  archive("lowest margin in the step").range(lowest_margin, -archive.greatest, never);
-  archive("state inside the step, and where").range(inside_share, 0, 1);
+  archive.range(lowest_margin, -archive.greatest, never);
+  archive.range(inside_share, 0, 1);
   archive.numbers(y_inside, states);
 }
 

@@ -67,9 +67,8 @@ class Engine {
   // The polynomial of the step, which is not known yet; of degree zero where rates inside the step are not finite.
   virtual void expand(const Problem& problem, Counters* counters, Step* step) = 0;
 
-  // All that is needed to go on after the step, saved or read; `active`: the step is this engine's. What is read and
-  // could not belong to the step is refused.
-  virtual void visit(support::Archive& archive, const Problem& problem, Step* step, bool active) = 0;
+  // All that is needed to go on after the step, which is this engine's, saved or read.
+  virtual void visit(support::Archive& archive, const Problem& problem, const Step& step) = 0;
 
   const char* failure() const { return failure_; }
 

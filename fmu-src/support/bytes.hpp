@@ -1,8 +1,8 @@
 // Numbers to bytes and back: how snapshots are written, read and measured.
 //
 // Every number takes 8 bytes, a double or a 64-bit integer, whatever the platform's own integers are; little endian, as
-// all platforms of this FMU are. Bytes to be read may come from anywhere: reading never leaves them, checks each
-// number against what it may be, and says afterwards whether all of them could have been written.
+// all platforms of this FMU are. Bytes to be read may come from anywhere: reading never leaves them, and each number
+// stays within its bounds.
 #pragma once
 
 #include <bit>
@@ -24,16 +24,10 @@ class Archive {
 
   bool reads() const { return from_ != nullptr; }
   std::size_t bytes() const { return bytes_; }  // of the fields so far
-  const char* fault() const { return fault_; }  // the first row that could not have been written
-  void refuse() { fault_ = fault_ ? fault_ : row_; }
-  // All bytes are read, and each could have been written.
-  bool is_sound() const { return !fault_ && bytes_ == size_; }
+  bool fits() const { return fits_; }           // so far each number lies within its bounds
+  void refuse() { fits_ = false; }
+  bool is_sound() const { return fits_ && bytes_ == size_; }  // and no byte is left
 
-  // What the fields that follow are, in words.
-  Archive& operator()(const char* row) {
-    row_ = row;
-    return *this;
-  }
   void range(double& x, double least, double most) { put(x, least, most); }
   template <class... Doubles>
   void number(Doubles&... x) {  // finite
@@ -75,18 +69,18 @@ class Archive {
     const bool complete = bytes_ <= size_;
     if (complete) std::memcpy(&read, from_ + at, sizeof read);
     const bool sound = complete && read >= least && read <= most;
-    if (!sound) refuse();
+    fits_ &= sound;
     word = sound ? read : least;
   }
 
   unsigned char* to_;
   const unsigned char* from_;
   std::size_t size_, bytes_ = 0;
-  const char *row_ = "", *fault_ = nullptr;
+  bool fits_ = true;
 };
 
 // Each word of 64 bits is multiplied in and mixed by a shift; a snapshot is a whole number of words. A change of any
-// one word changes the sum. It guards against accidents; forged numbers are met by their own checks.
+// one word changes the sum. It guards against accidents, not against forgery.
 inline std::uint64_t checksum_of(const unsigned char* bytes, std::size_t size) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (std::size_t i = 0; i < size; i += 8) {

@@ -89,7 +89,7 @@ void log_ending(Wheel& wheel, Event event) {
 void log_summaries(const Wheel& wheel) {
   for (const EventRow& row : event_rows) {
     const Tally& tally = wheel.run.tallies[static_cast<int>(row.event)];
-    if (tally.count > logged_one_by_one)
+    if (row.observed && tally.count > logged_one_by_one)
       wheel.reporter.log(Topic::warning, "%s times, of which the first %s were logged, last at t = %s s: %s.",
                          static_cast<double>(tally.count), static_cast<double>(logged_one_by_one),
                          instant_of(wheel.setup, tally.last), row.observed);

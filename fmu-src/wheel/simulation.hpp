@@ -79,8 +79,8 @@ class Simulation {
   // See snapshot.hpp.
   std::size_t state_size() { return wheel::state_size(wheel_); }
   void save_state(unsigned char* bytes) { wheel::save_state(wheel_, bytes); }
-  const char* load_state(const unsigned char* bytes, std::size_t size, bool foreign) {
-    return wheel::load_state(change(), bytes, size, foreign);
+  const char* load_state(const unsigned char* bytes, std::size_t size) {
+    return wheel::load_state(change(), bytes, size);
   }
 
  private:

@@ -1,143 +1,83 @@
-// Bytes may come from anywhere: each number is checked before it is used.
+// Bytes may come from anywhere: whatever they are, reading them is harmless.
 #include "snapshot.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
+#include <string_view>
 
 #include "bytes.hpp"
 #include "events.hpp"
-#include "exchange.hpp"
 #include "law.hpp"
-#include "motion.hpp"
 #include "problem.hpp"
 
 namespace wheel {
 namespace {
 
-// Of this FMU and version: its GUID, which follows from the description.
-constexpr std::uint64_t mark = [] {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char letter : WHEEL_GUID) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3u;
-  return hash;
-}();
+constexpr const char* forged = "a number is out of its bounds";
+
+// Of this FMU and version, by its GUID, which follows from the description, and of a kind of instance.
+std::uint64_t mark_of(Kind kind) {
+  constexpr std::string_view guid = WHEEL_GUID;
+  return support::checksum_of(reinterpret_cast<const unsigned char*>(guid.data()), guid.size()) +
+         static_cast<std::uint64_t>(kind);
+}
 
 struct Header {
   std::uint64_t mark, size, checksum;
 };
 
-// The table of what is saved: what the caller has set, and what of the run does not follow from it. A row names the
-// field and gives its kind and its bounds.
+// What the caller has set, and what of the run does not follow from it. The bounds keep forged numbers harmless, not
+// meaningful.
 void visit(support::Archive& archive, Demand& demand, Run& run) {
   InForce& now = run.in_force;
-  archive("parameters as they were set, those asked for among them");
   for (double& parameter : demand.parameters) archive.anything(parameter);
-  archive("start time, s").number(demand.start_time);
-  archive("stop time, s; infinite for none").range(demand.stop_time, -archive.greatest, Demand::never);
-  archive("tolerance").range(demand.tolerance, tightest_tolerance, loosest_tolerance);
-  archive("inputs asked for, with their derivatives");
+  archive.number(demand.start_time);
+  archive.range(demand.stop_time, -archive.greatest, Demand::never);
+  archive.range(demand.tolerance, tightest_tolerance, loosest_tolerance);
   for (auto& input : demand.inputs) {
     archive.anything(input[0]);
     archive.numbers(input + 1, max_order);
   }
-  archive("whose solver moves the wheel").count(demand.kind, 0, 1);
-  archive("something was set since the last step").count(demand.changed, 0, 1);
-  archive("phase").count(run.phase, 0, phase_count - 1);
-  archive("event that ended the model").count(run.ended_by, 0, event_count - 1);
-  archive("s in force, m").range(now.road.s, 0, archive.greatest);
-  archive("mu_max in force").range(now.road.mu_max, 0, archive.greatest);
-  archive("mu_slide in force").range(now.road.mu_slide, 0, archive.greatest);
-  archive("slope in force, rad").range(now.road.slope, 0, upright);
-  archive("direction of the slope in force, rad").number(now.road.slope_direction);
-  archive("kind of the law of friction").count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
-  archive("sign of omega_z in the law of friction").range(now.scene.friction.sigma, -1, 1);
-  archive("place in the layer of a stiff law").count(now.layer, 0, static_cast<int>(Layer::sticking));
-  archive("contact with the ground").count(now.scene.contact, WHEEL_GRIPS, WHEEL_SLIDES);
-  archive("origin of the inputs in force, s").number(now.inputs.origin);
-  archive("inputs in force");
+  archive.count(demand.changed, 0, 1);
+  archive.count(run.phase, 0, phase_count - 1);
+  archive.count(run.ended_by, 0, event_count - 1);
+  archive.range(now.road.s, 0, archive.greatest);
+  archive.range(now.road.mu_max, 0, archive.greatest);
+  archive.range(now.road.mu_slide, 0, archive.greatest);
+  archive.range(now.road.slope, 0, upright);
+  archive.number(now.road.slope_direction);
+  archive.count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
+  archive.range(now.scene.friction.sigma, -1, 1);
+  archive.count(now.layer, 0, static_cast<int>(Layer::sticking));
+  archive.count(now.scene.contact, WHEEL_GRIPS, WHEEL_SLIDES);
+  archive.number(now.inputs.origin);
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
-  archive("time reached, s").number(run.t);
-  archive("time of the last change, s").range(run.last_change, 0, archive.greatest);
-  archive("when mu_required is looked at, s; infinite for never").range(run.grip_due, 0, Demand::never);
-  archive("state").numbers(run.y, WHEEL_MAX_STATES);
+  archive.number(run.t, run.last_change);
+  archive.range(run.grip_due, 0, Demand::never);
+  archive.numbers(run.y, WHEEL_MAX_STATES);
   for (int i = 0; i < event_count; ++i) {
-    archive("whether an observed event lies below zero").count(now.below[i], 0, 1);
-    archive("occurrences of an observed event").tally(run.tallies[i].count);
-    archive("time of its last occurrence, s").number(run.tallies[i].last);
+    archive.count(now.below[i], 0, 1);
+    archive.tally(run.tallies[i].count);
+    archive.number(run.tallies[i].last);
   }
-  archive("transitions of the friction").tally(run.transitions);
-  archive("counts before the solver was started");
+  archive.tally(run.transitions);
   for (long long* count : run.counted.all()) archive.tally(*count);
 }
 
-// Whether the law is one that put_in_force could have chosen.
-bool law_fits(const Setup& setup, const InForce& now) {
-  const bool exact = setup.friction_law == exact_law, outside = now.layer == Layer::outside;
-  const bool waits = setup.kind == Kind::model_exchange;  // the law waits for the next event
-  const bool none = now.scene.wheel.s == 0 && !now.inputs.braked, some = waits || !none;
-  if (now.layer != Layer::none && (none || waits || exact || setup.method != automatic_method)) return false;
-  const WheelFriction& law = now.scene.friction;
-  if (law.kind == WHEEL_FRICTIONLESS) return none || waits;
-  if (law.kind == WHEEL_REGULARIZED) return some && !exact && !outside;
-  if (law.kind == WHEEL_ROLLING) return some && exact != outside && std::fabs(law.sigma) == 1;
-  return law.kind == WHEEL_HELD && some && exact;
-}
-
-// Whether the run has ended by an event exactly where its phase says so.
-bool end_fits(const Setup& setup, const Run& run) {
-  const bool over = run.phase == Phase::ended || run.phase == Phase::closed;
-  if (run.ended_by == Event::none) return run.phase != Phase::ended;
-  const EventRow& row = row_of(run.ended_by);
-  constexpr double rounding = 1e-3;  // of a margin, where an instant has been found
-  return over && ends_run(row, setup) && row.can_occur(setup, run.in_force) &&
-         (has_occurred(row, setup, run) || margin_of(row, setup, run.in_force, run.t, run.y) < rounding);
-}
-
-// Events that are observed, and no others, may lie below zero and be counted.
-bool observed_fit(const Setup& setup, const Run& run) {
-  for (int i = 0; i < event_count; ++i) {
-    const bool observed = i > 0 && is_observed(row_of(static_cast<Event>(i)), setup);
-    if (!observed && (run.in_force.below[i] || run.tallies[i].count != 0)) return false;
-  }
-  return true;
-}
-
-// Whether the state is that of the start, with the slip that follows from what is in force.
-bool starts_there(const Setup& setup, const Run& run) {
-  double y[WHEEL_MAX_STATES];
-  std::copy_n(setup.start, WHEEL_MAX_STATES, y);
-  InForce now = run.in_force;
-  now.scene.contact = setup.starts_sliding ? WHEEL_SLIDES : WHEEL_GRIPS;
-  if (setup.sliding) decide_contact(setup, 0, y, now);
-  return std::equal(y, y + WHEEL_MAX_STATES, run.y);
-}
-
-// Completes a run that was read by what follows from its demand. Null where a run can have been in this state, else
-// what is wrong with it.
-const char* complete(const Demand& demand, Setup& setup, Run& run) {
+// Completes a run that was read by what follows from its demand. False where the demand describes no wheel, or the run
+// names an equation or an event that does not exist.
+bool complete(const Demand& demand, Setup& setup, Run& run) {
   if (run.phase == Phase::faulty) run.phase = Phase::initializing;  // the faults are logged again
-  if (!has_state(run.phase)) return run.ended_by == Event::none ? nullptr : "no such event ends a run";
-  if (!check_values(demand, Reporter(), false)) return "parameters and inputs describe no wheel";
+  const bool ended = run.ended_by != Event::none;
+  if (ended ? !row_of(run.ended_by).ending : run.phase == Phase::ended) return false;
+  if (!has_state(run.phase)) return true;
+  if (!check_values(demand, Reporter(), false)) return false;
   setup = setup_of(demand);
   run.y_time = run.t;
   InForce& now = run.in_force;
   let_act(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c, now);
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
   now.set_below(Event::lost_contact, now.pulls());
-  if (now.slides() && !setup.sliding) return "the wheel slides without mu_slide";
-  if (!end_fits(setup, run)) return "no such event ends a run";
-  if (!law_fits(setup, now)) return "the law of friction does not fit s and the brake";
-  if (!observed_fit(setup, run)) return "an event is counted that cannot be observed";
-  if (run.phase == Phase::unfolded && !is_unfoldable(setup, now)) return "what acts cannot be unfolded";
-  const bool goes_back = demand.kind == Kind::model_exchange;  // the caller's solver takes trial steps back
-  if (!goes_back && (run.last_change > run.t || now.inputs.origin > run.t))
-    return "a change lies ahead of the time reached";
-  const bool exchanged = run.phase == Phase::event_mode || run.phase == Phase::continuous_time;
-  const bool stepped = run.phase == Phase::at_start || run.phase == Phase::stepping || run.phase == Phase::unfolded;
-  if (demand.kind == Kind::model_exchange ? stepped : exchanged) return "the phase is one of the other kind of run";
-  const bool at_start = run.phase == Phase::initial || run.phase == Phase::at_start;
-  if (at_start && !(run.t == 0 && starts_there(setup, run))) return "a run that has not begun stands at its start";
-  return nullptr;
+  return setup.sliding || !now.slides();
 }
 
 void write(Wheel& w, support::Archive& archive) {
@@ -158,40 +98,37 @@ void save_state(Wheel& w, unsigned char* bytes) {
   support::Archive archive = support::Archive::writing(bytes + sizeof(Header));
   write(w, archive);
   const std::size_t size = archive.bytes();
-  const Header header = {mark, sizeof header + size, support::checksum_of(bytes + sizeof header, size)};
+  const Header header = {mark_of(w.demand.kind), sizeof header + size,
+                         support::checksum_of(bytes + sizeof header, size)};
   std::memcpy(bytes, &header, sizeof header);
 }
 
-const char* load_state(Wheel& w, const unsigned char* bytes, std::size_t size, bool foreign) {
+const char* fault_of(Kind kind, const unsigned char* bytes, std::size_t size) {
   Header header;
-  if (size < sizeof header) return "they are too few";
+  if (size < sizeof header) return "the bytes are too few";
   std::memcpy(&header, bytes, sizeof header);
-  const unsigned char* fields = bytes + sizeof header;
-  support::Archive archive = support::Archive::reading(fields, size - sizeof header);
-  if (header.mark != mark) return "the mark of this version is missing";
-  if (header.size != size) return "the size is another";
-  if (support::checksum_of(fields, size - sizeof header) != header.checksum) return "the checksum is wrong";
-  Demand demand;
+  if (header.mark != mark_of(kind)) return "the bytes are no state of this FMU, its version and kind of instance";
+  const std::uint64_t checksum = support::checksum_of(bytes + sizeof header, size - sizeof header);
+  return header.size == size && header.checksum == checksum ? nullptr : "the bytes are damaged";
+}
+
+const char* load_state(Wheel& w, const unsigned char* bytes, std::size_t size) {
+  if (const char* fault = fault_of(w.demand.kind, bytes, size)) return fault;
+  support::Archive archive = support::Archive::reading(bytes + sizeof(Header), size - sizeof(Header));
+  Demand demand(w.demand.kind);
   Setup setup = {};
   Run run;
   visit(archive, demand, run);
-  if (archive.fault()) return archive.fault();
-  if (const char* fault = complete(demand, setup, run)) return fault;
-  Reading reading;
-  reading.set({&setup, run.y, run.in_force.scene_at(run.t), nullptr});
-  if (foreign && has_state(run.phase) && !is_inside(reading)) return "the state is outside the model";
-  if (demand.kind != w.demand.kind) return "they belong to an instance of the other kind";
-  if (run.phase != Phase::stepping && !archive.is_sound()) return "bytes are left over";
+  const bool stepping = run.phase == Phase::stepping;
+  if (!archive.fits() || !complete(demand, setup, run) || (!stepping && !archive.is_sound())) return forged;
   w.demand = demand;
   w.setup = setup;
   w.run = run;
   w.solution.orbit_until = Solution::none;
-  solver::Solver& solver = w.solution.solver;
-  if (run.phase != Phase::stepping ||
-      (solver.restore_history(problem_of(w), archive) && solver.step_start() <= run.t && solver.reaches(run.t)))
+  if (!stepping || w.solution.solver.restore_history(problem_of(w), method_of(setup, run.in_force), archive))
     return nullptr;
   w.run.phase = Phase::failed;
-  return "the history of the solver could not be restored";
+  return forged;
 }
 
 }  // namespace wheel

@@ -16,7 +16,7 @@ struct Shape {
 
 // Steps of the solver, or the orbit of a wheel that is unfolded.
 struct Solution {
-  static constexpr double none = -1;
+  static constexpr double none = -Demand::never;
 
   solver::Solver solver;
   orbit::Orbit orbit;

@@ -1,4 +1,4 @@
-"""States and their bytes: without pointers, the same in every process; what no instance wrote is refused or harmless.
+"""States and their bytes: without pointers, the same in every process; damaged ones are refused.
 
 A checksum guards against accidents, not against bytes from elsewhere: here it is made right again after each change.
 Run under the sanitizers with the contract tests.
@@ -7,20 +7,17 @@ Run under the sanitizers with the contract tests.
 import struct
 from ctypes import POINTER, addressof, byref, c_char, c_size_t, cast
 from multiprocessing import get_context
-from time import process_time
 
 import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2FMUstate
-from support.driver import ERROR, OK, FMU2Wheel, State, Values
+from support.driver import ERROR, OK, FMU2Wheel
 from support.motion import Library
 from support.scenes import KINDS
-from support.schedule import play
 
 UNKNOWN = "this FMU did not create the state"
 HEADER, SUM = 3, 2  # words: mark, size, checksum of what follows; the place of the last
-DAMAGED = "fmi2DeSerializeFMUstate: the bytes are damaged or not a state of this FMU and version ({})."
-SOON = 5.0  # s of computing for what follows a state that was taken
+DAMAGED = "fmi2DeSerializeFMUstate: the bytes are"
 
 
 def test_damaged_truncated_and_foreign_bytes_are_refused_and_the_instance_is_untouched(wheel):
@@ -32,7 +29,7 @@ def test_damaged_truncated_and_foreign_bytes_are_refused_and_the_instance_is_unt
     foreign = blob + b"\0", bytes(len(blob)), rng.bytes(len(blob)), blob[::-1], blob[8:] + blob[:8]
     for wrong in (*flipped, *(blob[:size] for size in places), *foreign):
         assert w.restore(wrong) == ERROR
-        assert w.said().startswith(DAMAGED.split("{")[0])
+        assert w.said().startswith(DAMAGED)
     assert w.serialized() == blob
     assert w.run([3.0]) == other.run([3.0])
 
@@ -148,25 +145,6 @@ def test_in_another_process_a_restored_wheel_goes_on_with_the_same_bits(wheel, f
     assert len({state for _, state in expected}) == len(KINDS)  # the partner: no two scenes have the same bits
 
 
-RUNS: dict[str, tuple[Values, dict[str, tuple[float, ...]]]] = {
-    **{name: (start, {}) for name, start in KINDS.items()},
-    "multibody, bdf": ({"formulation": 3, "method": 3}, {}),  # its law would take minutes under the sanitizers
-    "stiff law": ({"friction_law": 2, "s": 0.03, "omega_s": 1e-3}, {}),
-    "loaded": ({"s": 0.03}, {"M_3": (0.0, 0.5), "F_Z": (1.0, 2.0, 3.0, 4.0)}),
-    "braked, Adams": ({"method": 2}, {"M_brake": (1.0, 2.0)}),
-    "held": ({"s": 0.2, "theta_start": np.pi / 2, "phi_dot_start": 0.0}, {"M_3": (0.1,)}),
-    "contact kept": ({"s": 0.03, "keep_contact": True}, {}),
-    "ended": ({"theta_start": 0.3, "phi_dot_start": 0.0}, {}),
-}
-
-
-def saved(wheel, run: str, stop: float = 0.7) -> State:
-    start, inputs = RUNS[run]
-    w = wheel().start(**start)
-    play(w, [(0.0, inputs)], stop, [0.3])
-    return w.serialized()
-
-
 def checksum(data: bytes) -> int:
     """FNV-1a over words of 64 bits with a mixing shift, as support/bytes.hpp has it."""
     total = 0xCBF29CE484222325
@@ -186,34 +164,21 @@ def signed(words) -> bytes:
     return struct.pack("<3Q", *words[:SUM], checksum(body)) + body
 
 
-def what_follows(w: FMU2Wheel) -> list[tuple[int, bytes]]:
-    """Two steps from 0.7 s on, which end soon, whatever their status."""
-    begin, seen, w.time = process_time(), [], 0.7
-    for h in (0.05, 0.1):
-        seen.append((w.step(h), w.bits()))
-        if seen[-1][0] != OK:
-            break
-    assert process_time() - begin < SOON
-    return seen
-
-
 NAN = struct.unpack("<Q", struct.pack("<d", np.nan))[0]
 
 
-@pytest.mark.parametrize("run", RUNS)
-def test_a_state_in_which_one_word_is_no_number_is_refused_or_goes_on_as_if_nothing_had_changed(wheel, run):
+@pytest.mark.parametrize("start", [{}, {"s": 0.03}, {"s": 0.03, "method": 2}, {"s": 0.03, "method": 3}])
+def test_a_state_in_which_one_word_is_no_number_is_refused(wheel, start):
     """The fuzzer forges states at random."""
-    blob = saved(wheel, run)
+    w = wheel().start(**start).to(0.7)
+    blob, ahead = w.serialized(), w.run([1.0])
     words = words_of(blob)
     assert signed(words) == blob  # the partner: the layout is as this test believes, and the bytes are taken
-    w = wheel().start(s=0.01).back(blob)
-    expected, refused = what_follows(w), 0
-    assert (expected[0][0] == OK) == (run != "ended")
     for place in range(HEADER, len(words)):
-        status = w.restore(signed([*words[:place], NAN, *words[place + 1 :]]))
-        assert status == ERROR or what_follows(w) == expected, place
-        refused += status == ERROR
-    assert refused > len(words) // 2
+        other = wheel().start(s=0.01)
+        assert other.restore(signed([*words[:place], NAN, *words[place + 1 :]])) == ERROR, place
+        assert other.said() == "fmi2SetFMUstate: a number is out of its bounds."
+    assert wheel().start().back(blob).run([1.0]) == ahead
 
 
 def test_a_state_of_another_version_is_refused_with_a_message(wheel):
@@ -222,4 +187,4 @@ def test_a_state_of_another_version_is_refused_with_a_message(wheel):
     words = list(words_of(w.serialized()))
     for old in ([2, NAN, 77, 0x3430554D46484557, *words[1:]], [words[0] - (1 << 56), *words[1:]]):
         assert w.restore(struct.pack(f"<{len(old)}Q", *old)) == ERROR
-        assert w.said() == DAMAGED.format("the mark of this version is missing")
+        assert w.said() == f"{DAMAGED} no state of this FMU, its version and kind of instance."

@@ -43,7 +43,7 @@ def test_a_state_of_one_kind_is_refused_by_the_other(library: Library) -> None:
     with exchange(library) as wheel, library.wheel(logging=True) as slave:
         blob = wheel.serialized()
         assert slave.start().restore(blob) == ERROR
-        assert "other kind" in slave.sentences[-1]
+        assert "kind of instance" in slave.sentences[-1]
         assert wheel.restore(slave.serialized()) == ERROR
         assert wheel.restore(blob) == OK  # the partner
 
