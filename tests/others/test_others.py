@@ -50,6 +50,22 @@ def test_exudyns_thrown_disc_converges_to_ours_as_its_regularization_narrows(lib
     beyond(by_zone[-1, 2:].max(), 1e-6, "centre apart at the narrowest zone, m")
 
 
+@pytest.mark.parametrize("scene", ["rolls", "slides", "backspin"])
+def test_siconos_converges_to_ours_at_first_order_in_its_step(library: Library, scene: str) -> None:
+    steps, ours = wheels.siconos(read("siconos"), scene), wheels.siconos_ours(library, scene, 1e-11)
+    within(np.abs(steps.limit - ours).max(), 4e-7, "centre, extrapolated from five steps, m")
+    within(abs(steps.order - 1), 0.01, "order of convergence less 1")
+    beyond(np.abs(steps.places[-1] - ours).max(), 1e-4, "centre at the smallest step, without extrapolation, m")
+    other = {"mu_max": 0.3003, "mu_slide": 0.3003} if scene != "rolls" else {"m": 20.02}
+    beyond(np.abs(steps.limit - wheels.siconos_ours(library, scene, 1e-11, **other)).max(), 4e-6, "another wheel, m")
+
+
+def test_siconos_rolling_friction_is_ours(library: Library) -> None:
+    steps, ours = wheels.siconos(read("siconos"), "resists"), wheels.siconos_ours(library, "resists", 1e-11)
+    within(np.abs(steps.places - ours).max(), 1e-9, "centre at any step, m")
+    beyond(np.abs(steps.places - wheels.siconos_ours(library, "resists", 1e-11, s=0.01001)).max(), 1e-5, "other s, m")
+
+
 def test_the_critical_spin_is_that_of_sympys_disc(library: Library) -> None:
     off = measured_critical_spin(library, wheels.SYMPY_DISC) - wheels.SYMPY_CRITICAL_SPIN
     within(abs(off), 4e-9, "critical spin, rad/s")

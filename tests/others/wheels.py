@@ -1,8 +1,9 @@
-"""One wheel of other people: Modelica's RollingWheel, Exudyn's coin, SymPy's disc, and the disc by Legendre functions.
+"""One wheel of other people: Modelica's RollingWheel, Exudyn's coin, Siconos' steps, SymPy's disc, Legendre functions.
 
 What they found, the same by wheel.fmu and by the independent reference, and how far they are apart; SI units.
 """
 
+from dataclasses import dataclass
 from functools import cache
 from math import pi, sin
 from pathlib import Path
@@ -29,16 +30,28 @@ DISCS = (Wheel(r=0.0), MODELICA, SYMPY_DISC, Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.
 DISC_START = Start(theta=1.2, theta_dot=0.3, psi_dot=1.0, phi_dot=-4.0)
 THROW = {"mu_max": 0.4, "mu_slide": 0.4, "slip_x_start": -1.5, "slip_y_start": 0.8}  # slides, then grips
 READ_AT = (0.15, 0.5)  # s
+# The scenes of siconos_wheel.py; each lasts SICONOS_END, s.
+SICONOS_END, SICONOS_THROW = 1.0, 2.0 + 10.0 * (0.3 + 0.05 * sin(4 * pi / 9))
+SICONOS: dict[str, tuple[Wheel, Start, dict[str, float]]] = {
+    "rolls": (Wheel(), Start(X_O=0.0), {}),
+    "slides": (Wheel(), Start(X_O=0.0), {"mu_max": 0.3, "mu_slide": 0.3}),
+    "backspin": (
+        Wheel(),
+        Start(theta=4 * pi / 9, phi_dot=10.0, X_O=0.0),
+        {"mu_max": 0.3, "mu_slide": 0.3, "slip_x_start": SICONOS_THROW},
+    ),
+    "resists": (Wheel(s=0.01), Start(theta=pi / 2, X_O=0.0), {}),
+}
 
 
 def read(name: str) -> dict[str, Array]:
     """A small table of other people's numbers, columns by name; its lines that begin with # name the source."""
-    table = pd.read_csv(Path(__file__).with_name(f"{name}.csv"), comment="#", dtype=float)
+    table = pd.read_csv(Path(__file__).with_name(f"{name}.csv"), comment="#")
     return {column: table[column].to_numpy() for column in table}
 
 
 def motion(library: Library, wheel: Wheel, start: Start, times: Array, tolerance=None, **more: float) -> Run:
-    return library.simulate(times, tolerance, keep_contact=True, **start_values(wheel, start), **more)
+    return library.simulate(times, tolerance, keep_contact=True, **(start_values(wheel, start) | more))
 
 
 def modelica(library: Library, tolerance: float | None = None) -> Run:
@@ -105,6 +118,50 @@ def thrown(library: Library, tolerance: float | None = None) -> Array:
     """The same by wheel.fmu."""
     at = motion(library, Wheel(r=0.0), Start(phi_dot=-6.0), np.array([0.0, *READ_AT]), tolerance, **THROW)
     return np.array([at["X_O"][1:], at["Y_O"][1:]]).T.ravel()
+
+
+@dataclass(frozen=True)
+class Steps:
+    """A scene of Siconos at steps h that halve, s: the centres, m, and the processor time, s."""
+
+    h: Array
+    places: Array
+    seconds: Array
+
+    @property
+    def limit(self) -> Array:
+        """Richardson's, of the order 1, then 2, 3 ...; (X_O, Y_O)."""
+        places = self.places
+        for order in range(1, len(self.h)):
+            places = (2**order * places[1:] - places[:-1]) / (2**order - 1)
+        return places[0]
+
+    @property
+    def errors(self) -> Array:
+        return np.hypot(*(self.places - self.limit).T)
+
+    @property
+    def order(self) -> float:
+        """Of convergence, from the two smallest steps."""
+        return float(np.log2(self.errors[-2] / self.errors[-1]))
+
+    @property
+    def time(self) -> float:
+        """Processor time for an error of 1e-4 m, s, from the smallest step: the error is of first order in h."""
+        return float(self.seconds[-1] * self.errors[-1] / 1e-4)
+
+
+def siconos(table: dict[str, Array], scene: str) -> Steps:
+    """One scene of the table that siconos_wheel.py writes."""
+    rows = table["scene"] == scene
+    return Steps(table["h"][rows], np.column_stack([table["x"][rows], table["y"][rows]]), table["seconds"][rows])
+
+
+def siconos_ours(library: Library, scene: str, tolerance: float | None = None, **other: float) -> Array:
+    """(X_O, Y_O) at the end of a scene of Siconos, m; other: parameters that replace the scene's."""
+    wheel, start, values = SICONOS[scene]
+    run = motion(library, wheel, start, np.array([0.0, SICONOS_END]), tolerance, **(values | other))
+    return np.array([run["X_O"][-1], run["Y_O"][-1]])
 
 
 def degree(wheel: Wheel) -> complex:

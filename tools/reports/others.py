@@ -5,6 +5,10 @@ Each comparison is a row: source, scene, both values, their difference, and its 
 
 from __future__ import annotations
 
+import subprocess
+from io import StringIO
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 from others import wheel_sets as sets
@@ -17,6 +21,13 @@ from support.motion import Library
 from .page import Report, number, part
 
 HEAD = ["source", "scene", "reference", "wheel.fmu", "difference", "cause of the difference"]
+DEBIANS_PYTHON = "/usr/bin/python3"  # with python3-siconos, which no index of Python packages has
+SICONOS = {
+    "rolls": "the paper's free wheel rolls",
+    "slides": "the same slides, mu_max = mu_slide = 0.3",
+    "backspin": "thrown with backspin, 10° of lean, 0.3",
+    "resists": "upright, s = 0.01 m",
+}
 Compared = tuple[object, ...]  # a row of HEAD
 STIFFNESSES = {"driving": (40, 80, 160), "pulling": (10, 20, 40)}  # times that of the bushings of axle.fmu
 
@@ -92,6 +103,31 @@ def wheel_set(report: Report, scene: str, factors: tuple[int, ...]) -> tuple[Com
     whose = f"the table; wheel.fmu is within {number(own)} of the rigid wheel set"
     printed = (ends(source, *sets.COMPARED, places=7) for source in (table, limit))
     return ("Modelica Standard Library 4.0", name, *printed, sets.distance(limit, table), whose), own
+
+
+def siconos_table() -> dict[str, np.ndarray]:
+    """Siconos run here where its package is installed, else the table of tests/others."""
+    program = Path(wheels.__file__).with_name("siconos_wheel.py")
+    try:
+        told = subprocess.run([DEBIANS_PYTHON, program], capture_output=True, text=True, check=True).stdout
+    except (OSError, subprocess.CalledProcessError):
+        return read("siconos")
+    return {name: column.to_numpy() for name, column in pd.read_csv(StringIO(told)).items()}
+
+
+@part(30)
+def siconos(report: Report) -> dict[str, object]:
+    """Siconos' steps"""
+    table, rows = siconos_table(), []
+    for scene, words in SICONOS.items():
+        steps, ours = wheels.siconos(table, scene), wheels.siconos_ours(report.library, scene, 1e-11)
+        limit = steps.limit if steps.errors[0] > 1e-6 else steps.places[-1]  # rounding is not extrapolated
+        apart = float(np.abs(limit - ours).max())
+        ordered = steps.errors[0] > 1e-6
+        row = (words, digits(*limit, places=8), digits(*ours, places=8), apart)
+        rows.append((*row, f"{steps.order:.3f}" if ordered else "exact", f"{steps.time:.2g}" if ordered else "–"))
+    head = ["scene", "Siconos", "wheel.fmu", "difference, m", "order in h", "time for 1e-4 m, s"]
+    return {"siconos": pd.DataFrame(rows, columns=head)}
 
 
 @part(100)
