@@ -53,7 +53,7 @@ class ResistingContact(sk.NewtonEuler5DR):
 
 
 def start(theta, omega_z, slip):
-    """Position and quaternion; velocity in fixed axes and angular velocity in the wheel's: psi_dot = theta_dot = phi = 0."""
+    """Position and quaternion; velocity, fixed axes, and angular velocity, body axes; psi_dot = theta_dot = phi = 0."""
     half_psi, half_theta = PSI / 2, theta / 2
     turned = [
         cos(half_psi) * cos(half_theta),

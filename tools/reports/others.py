@@ -33,7 +33,7 @@ STIFFNESSES = {"driving": (40, 80, 160), "pulling": (10, 20, 40)}  # times that 
 
 
 def digits(*values: float, places: int = 12) -> str:
-    return ", ".join(f"{value:.{places}f}" for value in values)
+    return ", ".join(f"{round(value, places) + 0.0:.{places}f}" for value in values)  # no -0
 
 
 def ends(table: dict, *names: str, places: int = 8) -> str:
