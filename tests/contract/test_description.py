@@ -70,6 +70,7 @@ def test_variables_are_those_of_the_contract_in_its_order_with_its_units_and_kin
         assert (v.displayUnit or (v.declaredType and v.declaredType.displayUnit)) in (None, "deg")
         assert (v.displayUnit == "deg") == (unit_of(v) == "rad"), v.name
         assert v.description and not v.description.endswith("."), v.name
+    assert {v.type for v in description.modelVariables if v.causality == "output"} == {"Real"}  # importers assume it
 
 
 def test_every_start_value_of_the_description_is_what_the_library_starts_with(wheel, description):

@@ -17,7 +17,7 @@ from diagrams.start_values import variables
 Array = NDArray[np.float64]
 POSE = ("X_O", "Y_O", "psi", "theta", "phi")
 SHOWN = ("Z_O", "omega_z", "friction_mode", "n_events", "lambda_1", "lambda_2", "lambda_3", "E")
-SLIDING = ("slip_x", "slip_y", "contact_mode")
+SLIDING = ("slip_x", "slip_y")
 RATES = tuple(f"{name}_dot" for name in (*POSE, "Z_O"))
 PARAMETERS = tuple(variables("parameter"))
 BODY_POSE = ("X", "Y", "Z", "yaw", "pitch", "roll")

@@ -14,7 +14,7 @@ enum {
 #define COMPUTED(name, ...) ref_##name,
 #include "variables.inc"
 };
-enum { first_output = ref_X_O, output_count = ref_contact_mode - ref_X_O }; /* the real ones */
+enum { first_output = ref_X_O, output_count = ref_theta_ddot - ref_X_O }; /* up to the first local variable */
 
 static const fmi2ValueReference choices[] = {ref_formulation, ref_friction_law, ref_method},
                                 reals[] = {ref_s, ref_J_y, ref_r, ref_psi_dot_start, ref_M_3, ref_mu_max, ref_mu_slide},

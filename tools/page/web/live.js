@@ -9,9 +9,7 @@ import {setUpPanel} from '#panel';
 import {chapters} from '#scenes';
 
 const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
-const SIGNALS = [
-  'omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode', 'n_events', 'slip_x', 'slip_y', 'contact_mode'
-];
+const SIGNALS = ['omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode', 'n_events', 'slip_x', 'slip_y'];
 const RECORD = [...POSE, ...POSE.map((name) => `${name}_dot`), ...SIGNALS];
 const HOLDING = ['s', 'M_brake'];  // may hold the wheel at omega_z = 0
 const PAPER_RADIUS = 0.35;         // m, r_0 + r

@@ -38,15 +38,20 @@ function zeroBetween(table, k, first) {
  * of grip, else one where the mode changes.
  */
 function countBetween(table, k) {
-  const {n_events: count, contact_mode: contact} = table.columns;
+  const {n_events: count} = table.columns;
   if (!count) return Number(modeAt(table, k) !== modeAt(table, k + 1));
-  return count[k + 1] - count[k] - Number(contact !== undefined && contact[k] !== contact[k + 1]);
+  return count[k + 1] - count[k] - Number(slidesAt(table, k) !== slidesAt(table, k + 1));
 }
 
+/** Whether the wheel slides: its slip is exactly zero while it grips. */
+function slidesAt({columns: {slip_x: along, slip_y: across}}, row) { return Boolean(along?.[row] || across?.[row]); }
+
 /** [[begin, end], ...] in s in which it slides, true to half a row. */
-function slidesOf({columns: {contact_mode: contact = []}, time, end}) {
-  const turnAt = (t, k) => (contact[k] === (contact[k - 1] ?? 0) ? [] : [k ? 0.5 * (time[k - 1] + t) : t]);
-  const turns = Array.from(contact, (_, k) => turnAt(time[k], k)).flat();
+function slidesOf(table) {
+  const {time, end} = table;
+  const turnAt = (t, k) =>
+      (slidesAt(table, k) === (k > 0 && slidesAt(table, k - 1)) ? [] : [k ? 0.5 * (time[k - 1] + t) : t]);
+  const turns = Array.from(time, turnAt).flat();
   return turns.flatMap((t, i) => (i % 2 ? [] : [[t, turns[i + 1] ?? end]]));
 }
 
