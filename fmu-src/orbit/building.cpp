@@ -12,7 +12,7 @@ namespace {
 
 // The error of the half period is added once for every half. The half is therefore integrated to a fraction of the
 // tolerance, but not more exactly than rounding allows.
-constexpr double finer = 0.1, finest = 1e-14;
+constexpr double finer = 0.05, finest = 1e-14;
 // A looser tolerance than this would save little, since one nutation costs little, and its long steps would not be as
 // accurate as they estimate.
 constexpr double loosest = 1e-8;
@@ -45,7 +45,7 @@ Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, c
   double own[states] = {y0[theta], y0[omega_1], y0[omega_2], y0[omega_3]};  // psi, phi, X_O and Y_O are zero
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   *this = Orbit();
-  if (rests(problem, own)) return kind_ = Kind::folded;
+  if (rests(problem, own)) return kind_ = Kind::steady;
   kind_ = follow(problem, pass, own, solver);
   counters_ = solver.counters();
   return kind_;
@@ -53,21 +53,17 @@ Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, c
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
 Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
-  double y[states], rate[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1], t = 0;
+  double y[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1], t = 0;
   bool turned = before == 0;
-  problem.derivative(problem.owner, 0, y0, rate);
-  if (!track_.begin(0, y0, rate) || !solver.start(problem, solver::Method::adams, 0, y0)) return Kind::refused;
+  if (!track_.begin() || !solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Kind::refused;
   for (;;) {
     const solver::Outcome outcome = step(problem, pass, solver);
-    if (outcome == solver::Outcome::failed) return Kind::refused;
+    if (outcome == solver::Outcome::failed || !track_.add(solver.last_step())) return Kind::refused;
     const double t_before = t;
     t = solver.known_until();
     solver.read(t, y);
-    problem.derivative(problem.owner, t, y, rate);
-    if (!track_.add(t, y, rate)) return Kind::refused;
     if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
       if (turned) {
-        track_.finish();
         T1_ = turning_point(T1[0], T1[1]);
         T2_ = turning_point(t_before, t);
         return fold(problem, swing) ? Kind::folded : Kind::refused;
@@ -78,8 +74,7 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const doubl
       swing = 0;
     }
     if (outcome == solver::Outcome::event) {
-      track_.finish();
-      end_time_ = t;
+      T2_ = end_time_ = t;
       event_ = solver.event();
       return Kind::ended;
     }
@@ -185,32 +180,22 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   return keep_rest(problem, y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
 }
 
-// The circle (or straight line) of a steady motion over `length`, s, in which psi turns by 0.2 rad at most; false where
-// the right-hand side leads off it.
+// Keeps the circle (or straight line) of a steady motion; false where within `length`, s, the right-hand side leads off it.
 bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length) {
   constexpr int parts = 5;
-  double y[states], y_dot[states] = {}, expected[states];
-  std::copy_n(y0, states, y);
-  y[omega_1] = 0;
-  y_dot[psi] = rate[psi];
-  y_dot[phi] = rate[phi];
-  const Complex start = place_of(y0), velocity = place_of(rate);
+  double y[states], expected[states] = {};
+  std::copy_n(y0, states, first_);
+  first_[omega_1] = 0;
+  std::copy_n(rate, states, steady_rate_);
+  for (const State i : {omega_1, psi, phi}) expected[i] = rate[i];  // `rests` has seen to that of omega_1
   for (int i = 0; i <= parts; ++i) {
-    const double t = length * i / parts, turn = rate[psi] * t;
-    const double shortened = turn == 0 ? 1 : std::sin(0.5 * turn) / (0.5 * turn);  // chord over arc
-    y[psi] = y0[psi] + turn;
-    y[phi] = y0[phi] + rate[phi] * t;
-    set_place(y, start + velocity * (t * shortened) * std::polar(1.0, 0.5 * turn));
-    set_place(y_dot, velocity * std::polar(1.0, turn));
-    std::copy_n(y_dot, states, expected);
-    expected[omega_1] = rate[omega_1];  // `rests` has seen to it
+    const double t = length * i / parts;
+    read_circle(t, y);
+    set_place(expected, place_of(rate) * std::polar(1.0, rate[psi] * t));
     if (!maps(problem, 0, y0, t, y, expected)) return false;
-    if (!(i == 0 ? track_.begin(t, y, y_dot) : track_.add(t, y, y_dot))) return false;
   }
-  track_.finish();
-  T1_ = 0;
   T2_ = length;
-  take_half();
+  read_circle(T2_, second_);
   return true;
 }
 

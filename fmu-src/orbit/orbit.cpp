@@ -14,9 +14,9 @@ bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
   lead_.place = place_of(y0);
   lead_.turn = std::polar(1.0, y0[psi]);
   // On the way, since a straight line that starts where a watched function is the same may lead elsewhere.
-  const double t = 0.6 * (kind_ == Kind::folded ? T2_ : end_time_);
+  const double t = 0.6 * T2_;
   double own[states], rate[states], y[states];
-  track_.read(t, own);
+  read_own(t, own);
   read(t, y);
   problem.derivative(problem.owner, t, own, rate);
   set_place(rate, lead_.turn * place_of(rate));
@@ -74,9 +74,21 @@ void Orbit::turn_by(const Half& half, Complex way, double* y) {
   set_place(y, half.place + half.turn * way);
 }
 
+// psi, phi and the way of O are proportional to the time, along a chord that turns half as fast as the wheel.
+void Orbit::read_circle(double t, double* y) const {
+  const double half = 0.5 * steady_rate_[psi] * t, shortened = half == 0 ? 1 : std::sin(half) / half;  // chord over arc
+  std::copy_n(first_, states, y);
+  y[psi] = steady_rate_[psi] * t;
+  y[phi] = steady_rate_[phi] * t;
+  set_place(y, place_of(steady_rate_) * (t * shortened) * std::polar(1.0, half));
+}
+
+// In the frame of the integrated motion.
+void Orbit::read_own(double t, double* y) const { kind_ == Kind::steady ? read_circle(t, y) : track_.read(t, y); }
+
 void Orbit::read(double t, double* y) const {
   if (kind_ != Kind::folded || t <= T2_) {
-    track_.read(t, y);
+    read_own(t, y);
     return turn_by(lead_, place_of(y), y);
   }
   const Half& half = half_of(t);

@@ -33,18 +33,19 @@ namespace orbit {
 class Orbit {
  public:
   // folded:  read() is valid at every t >= 0: the motion never ends.
+  // steady:  a circle or a straight line for ever.
   // ended:   event() happened at end_time(), in the first nutation; read() is valid up to there.
   // refused: no two turning points within a fixed number of steps, a swing no larger than errors, or rates
   //          that have not the symmetry. The caller then steps through the motion from its start.
-  enum class Kind { refused, folded, ended };
+  enum class Kind { refused, folded, steady, ended };
 
   // What follows from an event at t and y, for the owner to decide. One after which the motion goes on recurs: it is
   // the fall of a function that rises at the next such event and falls again at the third, as N does. Where the motion
   // bends it cannot be unfolded.
   using Pass = solver::Consequence (*)(void* owner, int event, double t, double* y);
 
-  // Integrates `problem` (the reduced form of a wheel) from y0 by CVODE's Adams method. The solver has to be
-  // started anew before anything else is asked of it; its counters are those of this run. A function of problem,
+  // Integrates `problem` (the reduced form of a wheel) from y0 by DOP853. The solver has to be started
+  // anew before anything else is asked of it; its counters are those of this run. A function of problem,
   // tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and heading.
   Kind build(solver::Problem problem, double tolerance, Pass pass, const double* y0, solver::Solver& solver);
   // From here on the motion that is read starts with psi, phi, X_O and Y_O of y0 (after build, with zeros). False where
@@ -58,7 +59,7 @@ class Orbit {
   // What the integration took; zero for a wheel in steady motion.
   const solver::Counters& counters() const { return counters_; }
   double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; folded only
-  // rad/s, the larger of the mean rates of psi and phi; folded only.
+  // rad/s, the larger of the mean rates of psi and phi; folded or steady.
   double fastest_turn() const;
 
   // Whether some event recurs, and the instants at which one does.
@@ -96,6 +97,8 @@ class Orbit {
   bool is_mirrored(const solver::Problem& problem, double since) const;
   // orbit.cpp
   void take_half();
+  void read_circle(double t, double* y) const;
+  void read_own(double t, double* y) const;
   static void turn_by(const Half& half, Complex way, double* y);
 
   double begin_of(double k) const { return T1_ + k * (T2_ - T1_); }
@@ -108,8 +111,9 @@ class Orbit {
   double end_time_ = std::numeric_limits<double>::infinity();
   int event_ = 0;
   solver::Counters counters_ = {};
-  double T1_ = 0, T2_ = 0;
+  double T1_ = 0, T2_ = 0;                           // T2: where the motion ends, if it does
   double first_[states] = {}, second_[states] = {};  // at T1 and T2
+  double steady_rate_[states] = {};                  // at the start
   double delta_ = 0;                                 // psi(T2) - psi(T1) less the nearest multiple of pi
   double pair_ = 0;                                  // factor of the sum over pairs of halves
   Complex first_turn_, mirror_turn_;                 // exp(i psi(T1)), exp(2 i psi(T2))

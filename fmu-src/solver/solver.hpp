@@ -56,6 +56,11 @@ class Solver {
   // Dense output y(t), step_start() <= t <= known_until(), clamped; t within a few roundings of an end is that end.
   void read(double t, double* y) const;
 
+  // With its polynomial.
+  const Step& last_step() {
+    expand(&counters_);
+    return step_;
+  }
   double step_start() const { return step_.start; }
   double known_until() const { return known_until_; }
   double event_time() const { return known_until_; }

@@ -4,23 +4,6 @@
 #include <algorithm>
 
 namespace solver {
-namespace {
-
-// Even and odd powers apart: two Horner schemes that the processor can compute side by side. A master pays for this at
-// each communication point.
-template <int width>
-void evaluate(const double (*c)[max_states], int degree, double s, double* y) {
-  const int even = degree - degree % 2, odd = degree - 1 + degree % 2;
-  double sum[2][width] = {};
-  for (int k = even; k >= 0; k -= 2)
-    for (int i = 0; i < width; ++i) sum[0][i] = sum[0][i] * (s * s) + c[k][i];
-  for (int k = odd; k > 0; k -= 2)
-    for (int i = 0; i < width; ++i) sum[1][i] = sum[1][i] * (s * s) + c[k][i];
-  for (int i = 0; i < width; ++i) y[i] = sum[0][i] + sum[1][i] * s;
-}
-
-}  // namespace
-
 void Step::set_point(double t, const double* y, int states) {
   start = end = t;
   lowest_margin = never;

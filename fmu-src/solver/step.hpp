@@ -31,6 +31,19 @@ double weighted_norm(const double* x, const double* weights) {
   return std::sqrt((even + odd) / width);
 }
 
+// sum of c_k s^k, even and odd powers apart: two Horner schemes that the processor can compute side by side. A master
+// pays for this at each communication point.
+template <int width, int row>
+void evaluate(const double (*c)[row], int degree, double s, double* y) {
+  const int even = degree - degree % 2, odd = degree - 1 + degree % 2;
+  double sum[2][width] = {};
+  for (int k = even; k >= 0; k -= 2)
+    for (int i = 0; i < width; ++i) sum[0][i] = sum[0][i] * (s * s) + c[k][i];
+  for (int k = odd; k > 0; k -= 2)
+    for (int i = 0; i < width; ++i) sum[1][i] = sum[1][i] * (s * s) + c[k][i];
+  for (int i = 0; i < width; ++i) y[i] = sum[0][i] + sum[1][i] * s;
+}
+
 struct Step {
   double start, end;  // s
   alignas(16) double y_start[max_states], y_end[max_states];

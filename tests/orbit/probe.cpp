@@ -67,7 +67,7 @@ PUBLIC Probe* probe_make(const unsigned* references, const double* values, int c
 
 PUBLIC void probe_free(Probe* probe) { delete probe; }
 
-// 0 refused, 1 folded, 2 ended. `by`: a disturbance, or null.
+// A number of Orbit::Kind, 0 where it is refused. `by`: a disturbance, or null.
 PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   const wheel::InForce at_start = probe->wheel.run.in_force;
   solver::Problem problem = wheel::problem_of(probe->wheel);
