@@ -74,27 +74,6 @@ Shape shape_of(const Demand& demand) {
   return shape;
 }
 
-// Whether a wheel that may slide loses its grip in its first swing, by a coarse solution: an orbit built in vain costs
-// far more. Where it errs, the motion is stepped through.
-bool slides_soon(Wheel& w) {
-  constexpr double coarser = 1e6;
-  constexpr int most_steps = 100;
-  solver::Solver& solver = w.solution.solver;
-  solver::Problem problem = problem_of(w);
-  problem.share *= coarser;
-  if (!solver.start(problem, solver::Method::runge_kutta, 0, w.setup.start)) return true;
-  double y[WHEEL_MAX_STATES], y_dot[WHEEL_MAX_STATES], before = 0;
-  const int tilt = w.setup.formulation->tilt_index;
-  for (int steps = 0, turns = 0; steps < most_steps && turns < 2; ++steps) {
-    if (solver.step() != Outcome::stepped) return true;
-    solver.read(solver.known_until(), y);
-    w.setup.formulation->derivative(&w.run.in_force.scene, y, y_dot);
-    turns += before * y_dot[tilt] < 0;
-    before = y_dot[tilt];
-  }
-  return false;
-}
-
 // Whether the motion is unfolded. Builds the orbit of the run, or keeps that of an earlier run of the same shape.
 // False: the solver has to step through the motion.
 bool enter_orbit(Wheel& w) {
@@ -102,7 +81,6 @@ bool enter_orbit(Wheel& w) {
   const Shape asked = shape_of(w.demand);
   const solver::Problem problem = problem_of(w);
   if (w.solution.orbit_shape != asked) {
-    if (w.setup.sliding && slides_soon(w)) return false;
     const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
     const auto kind = orbit.build(problem, w.demand.tolerance, pass_on_orbit, w.setup.start, w.solution.solver);
     w.run.in_force = at_start;
