@@ -16,9 +16,9 @@ constexpr double finer = 0.05, finest = 1e-14;
 // A looser tolerance than this would save little, since one nutation costs little, and its long steps would not be as
 // accurate as they estimate.
 constexpr double loosest = 1e-8;
-// In units of that fraction: a swing of omega_1 below least_swing cannot be separated from the errors of a few steps
-// (each may be 0.003), and a wheel that swings less than largest_rest is in steady motion. largest_break: how much a
-// state may change within the longest step by what breaks the symmetry, which rounding does too.
+// In units of that fraction: a swing of omega_1 below least_swing cannot be separated from the errors of a few steps,
+// and a wheel that swings less than largest_rest is in steady motion. largest_break: how much a state may change within
+// the longest step by what breaks the symmetry, which rounding does too.
 constexpr double least_swing = 0.01, largest_rest = 0.003, largest_break = 0.1;
 
 }  // namespace
@@ -55,7 +55,7 @@ Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, c
 Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
   double y[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1], t = 0;
   bool turned = before == 0;
-  if (!track_.begin() || !solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Kind::refused;
+  if (!solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Kind::refused;
   for (;;) {
     const solver::Outcome outcome = step(problem, pass, solver);
     if (outcome == solver::Outcome::failed || !track_.add(solver.last_step())) return Kind::refused;
@@ -180,7 +180,8 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   return keep_rest(problem, y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
 }
 
-// Keeps the circle (or straight line) of a steady motion; false where within `length`, s, the right-hand side leads off it.
+// Keeps the circle (or straight line) of a steady motion; false where the right-hand side leads off it within `length`
+// (s).
 bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length) {
   constexpr int parts = 5;
   double y[states], expected[states] = {};

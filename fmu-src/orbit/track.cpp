@@ -5,14 +5,14 @@
 
 namespace orbit {
 
-bool Track::begin() {
-  if (!pieces_) pieces_.reset(static_cast<Piece*>(std::malloc(most_pieces * sizeof(Piece))));
-  count_ = latest_ = 0;
-  return pieces_ != nullptr;
-}
-
 bool Track::add(const solver::Step& step) {
   if (count_ == most_pieces || step.degree > degree) return false;
+  if (count_ % more_pieces == 0) {
+    void* const longer = std::realloc(pieces_.get(), (count_ + more_pieces) * sizeof(Piece));
+    if (!longer) return false;
+    (void)pieces_.release();
+    pieces_.reset(static_cast<Piece*>(longer));
+  }
   Piece& piece = pieces_.get()[count_++] = {step.start, step.end, {}};
   for (int k = 0; k <= step.degree; ++k) std::copy_n(step.c[k], states, piece.c[k]);
   return true;

@@ -14,16 +14,14 @@ class Track {
  public:
   static constexpr int states = 8;
 
-  // An empty track; false without memory for it.
-  bool begin();
-  // The next step, with its polynomial; false where the track is full.
+  // The next step, with its polynomial; false where the track is full or there is no memory for it.
   bool add(const solver::Step& step);
 
   // y (out) at t, between the first instant and the last.
   void read(double t, double* y) const;
 
  private:
-  static constexpr int most_pieces = 200, degree = 7;
+  static constexpr int more_pieces = 32, most_pieces = 32 * more_pieces, degree = 7;
 
   struct Piece {
     double start, end, c[degree + 1][states];  // as in Step
