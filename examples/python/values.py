@@ -123,7 +123,12 @@ class Variable(NamedTuple):
             raise Fault("slope must be at least 0: slope_direction=180deg turns uphill into downhill.")
         above = self.description.endswith("above 0") or ", above 0;" in self.description
         low, high = float(self.low or "-inf"), float(self.high or "inf")
-        limited(self.name, value, self.unit, low, high, above=above)
+        try:
+            limited(self.name, value, self.unit, low, high, above=above)
+        except Fault as fault:
+            if self.unit != "rad" or parted(self.name, text)[1] or not low <= value * DEGREE <= high:
+                raise
+            raise Fault(f"{fault} Do you mean {text.strip()}deg?") from None
         if self.type == "Integer" and value != int(value):
             raise Fault(f"{self.name} = {value:g} must be a whole number.")
         return repr(int(value)) if value == int(value) else repr(value)
@@ -158,12 +163,12 @@ def wheels() -> dict[str, dict[str, Any]]:
 
 
 def ready(name: str) -> dict[str, float]:
-    """The parameters of a ready wheel, and the paper's spin in proportion to its radius."""
+    """The parameters of a ready wheel, and the paper's spin and start in proportion to its radius."""
     if name not in wheels():
         meant = suggestion(name, {n: str(wheel["title"]) for n, wheel in wheels().items()})
         raise Fault(f'There is no wheel "{name}"; there are {", ".join(wheels())}.{meant}')
     body = {n: float(value) for n, value in wheels()[name]["parameters"].items()}
-    return body | {"phi_dot_start": -2 * scale(body, s=-1)}
+    return body | {"phi_dot_start": -2 * scale(body, s=-1), "X_O_start": -body["r_0"] * math.cos(5 * math.pi / 12)}
 
 
 def thrown(name: str) -> dict[str, float]:

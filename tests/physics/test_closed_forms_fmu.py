@@ -41,6 +41,22 @@ def test_the_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library
     beyond(exact.fall_error(library, formulation, THIN), 1e-2, "fall error")
 
 
+def test_a_wheel_released_without_spin_falls_as_printed(library: Library, formulation: int) -> None:
+    """The row "released from rest without spin" of docs/equations.md, along the whole fall; the torus has a term more."""
+
+    def gap(s: float, carried: float) -> float:
+        run = library.simulate(np.linspace(0, 0.59, 60), 1e-11, formulation=formulation, phi_dot_start=0.0, s=s)
+        theta, rate = run["theta"], run["theta_dot"]
+        assert theta[-1] < 0.05
+        inertia = 0.9 + 20 * (0.3**2 + 2 * 0.3 * 0.05 * np.sin(theta) + 0.05**2)
+        printed = -20 * 0.3 * np.cos(theta) * (9.81 + carried * 0.05 * rate**2) / inertia
+        return float(np.abs(run["theta_ddot"] - printed).max())
+
+    for s in (0.0, 0.03):  # free, held
+        within(gap(s, 1), 1e-9, "theta_ddot, rad/s2")
+        beyond(gap(s, 0), 1, "theta_ddot without the term in theta_dot^2, rad/s2")
+
+
 def test_a_light_rim_lifts_off_where_the_normal_force_of_the_fall_vanishes(library: Library, formulation: int) -> None:
     within(exact.lift_off_error(library, formulation, 0.0), 2e-8, "lift off error")
     beyond(exact.lift_off_error(library, formulation, 1e-5), 1e-6, "lift off error")

@@ -6,7 +6,7 @@ omega_2 = psi_dot sin(theta), omega_3 = omega_z; R = r_0 + r is the height of O 
 
 from collections.abc import Callable
 from itertools import pairwise
-from math import cos, exp, sin, sqrt
+from math import asin, cos, exp, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,7 +84,7 @@ def fall_inertia(wheel: Wheel, theta: float) -> float:
 
 def fall_rate_squared(wheel: Wheel, theta_0: float, gone: float) -> float:
     """theta_dot^2 after the fall from rest through the angle `gone`: energy; the drop as a product keeps its digits."""
-    drop = 2 * wheel.r_0 * cos(theta_0 - gone / 2) * sin(gone / 2)
+    drop = 2 * wheel.r_0 * sin(asin(cos(theta_0)) + gone / 2) * sin(gone / 2)  # from a lean of 6e-17 rad, too
     return 2 * wheel.m * wheel.g * drop / fall_inertia(wheel, theta_0 - gone)
 
 

@@ -101,9 +101,10 @@ def draw_slip(ax: Axes, scene: Scene) -> list[str]:
     for name, (color, text) in parts.items():
         marks += _over_time(ax, scene["time"], scene[name], color)
         most = int(np.argmax(abs(scene[name])))
-        if abs(scene[name][most]) > 1e-3 * scene.slip.max():
-            place = {"color": color, "textcoords": "offset points", "va": "center", "fontsize": style.NOTE}
-            ax.annotate(text, (scene["time"][most], scene[name][most]), xytext=(5, 0), **place)
+        place, shift = {"va": "center"}, (5, 0)
+        if abs(scene[name][most]) <= 1e-3 * scene.slip.max():  # a line along the axis, which the other one may cover
+            most, place, shift = -1, {"va": "bottom", "ha": "right"}, (-2, 2)
+        style.note(ax, text, (scene["time"][most], scene[name][most]), shift, color=color, **place)
     _scale(ax.yaxis, 5, np.array([scene[name] for name in parts]), 0.01)
     ax.margins(y=0.12)
     return marks
@@ -228,7 +229,7 @@ def _time_axis(ax: Axes, scene: Scene) -> list[str]:
     if scene.slides.any():
         bars = np.where(scene.slides, BAR, 0.0)
         ax.add_artist(StepPatch(bars, scene.edges, fill=True, color=style.PURPLE, linewidth=0, zorder=1, **place))
-        ax.vlines(scene.transitions, 0.0, 1.0, color=style.PURPLE, linewidth=0.5, alpha=0.6, zorder=0, **place)
+        ax.vlines(scene.turns, 0.0, 1.0, color=style.PURPLE, linewidth=0.5, alpha=0.6, zorder=0, **place)
         marks.append("Purple bars: it slides; thin lines: grip is lost and returns.")
     return marks
 

@@ -29,6 +29,7 @@ SETTINGS = variables("parameter", "input")
 NO_BREAK = "\u00a0"  # a space at which no line ends
 MARGIN = 2.0  # mm beside a caption
 PITCH = 3.4  # mm from one line of a caption to the next
+FALL_BY_ROUNDING = "An exactly upright wheel tips: rounding decides when, and to which side."
 
 
 @dataclass(frozen=True)
@@ -66,11 +67,12 @@ def unlike_paper(scene: Scene) -> list[str]:
     return said + ["no mass within this outline has these moments of inertia"] * bool(doubt(own))
 
 
-def warnings_of(scene: Scene) -> list[str]:
-    """A wheel that cannot exist, which the model rolls all the same."""
-    own = {name: scene.value(name) for name in ("m", "r_0", "r", *MOMENTS)}
+def warnings_of(scenes: Sequence[Scene]) -> list[str]:
+    """A wheel that cannot exist, which the model rolls all the same; a fall that hangs on rounding."""
+    own = {name: scenes[0].value(name) for name in ("m", "r_0", "r", *MOMENTS)}
     found = ["r > r_0: this torus intersects itself."] * (own["r"] > own["r_0"])
     about = doubt(own)
+    found += [FALL_BY_ROUNDING] * any(scene.by_rounding for scene in scenes)
     return found + [f"{about} Give J_x, J_y and J_z too, or a body that has them, such as body=torus."] * bool(about)
 
 
@@ -109,7 +111,7 @@ def title_of(scene: Scene) -> str:
 
 def events_of(scene: Scene) -> list[str]:
     """How often friction or brake hold, release or reverse the spin, and how often the wheel slides."""
-    count, slides = int(scene["n_events"][-1]), int((np.diff(scene.slides.astype(int), prepend=0) > 0).sum())
+    count, slides = scene.transitions, int((np.diff(scene.slides.astype(int), prepend=0) > 0).sum())
     said = [f"{count or 'No'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s."] * scene.resisted
     if not slides:
         return said + ["It never slides."] * (scene.value("mu_slide") > 0)
@@ -119,12 +121,13 @@ def events_of(scene: Scene) -> list[str]:
 
 def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], width: float, size: float) -> list[str]:
     """The parameters, all that is not the paper's, and the remarks on each scene; lines of at most `width` mm."""
-    texts = [f"Torus wheel: {wheel_of(scenes[-1])}. {start_of(scenes[-1])}."]
+    texts = [f"Parameters: {wheel_of(scenes[-1])}. {start_of(scenes[-1])}."]
     if other := unlike_paper(scenes[-1]):
         texts.append(f"Unlike the paper: {', '.join(said.replace(' ', NO_BREAK) for said in other)}.")
     for scene, of_panels in zip(scenes, remarks, strict=True):
         name = [f"{title_of(scene).split(',')[0]}:"] * (len(scenes) > 1)
         ends = [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
+        ends += ["Rounding alone tips it: when, and to which side, is chance."] * scene.by_rounding
         said = [*dict.fromkeys([*events_of(scene), *of_panels]), *ends]
         texts += [" ".join([*name, *said])] * bool(said)
     return [line for text in texts for line in wrapped(text, width, size)]
@@ -205,7 +208,7 @@ def main() -> None:
             raise SceneError("Neither scene has a motion to draw.")
         with Pool() as processes:
             print(*chain(*processes.starmap(draw, pictures(scenes, RESULTS), chunksize=1)), sep="\n")
-        for warning in [*warnings_of(scenes[0]), *faults]:
+        for warning in [*warnings_of(scenes), *faults]:
             print(f"run: warning: {warning}", file=sys.stderr)
     except SceneError as fault:
         sys.exit(f"run: {fault}")

@@ -71,9 +71,20 @@ class Scene:
         return self["contact_mode"] == 1
 
     @property
-    def transitions(self) -> Array:
+    def turns(self) -> Array:
         """Instants in s at which grip is lost or returns."""
         return self.edges[1:-1][self.slides[:-1] != self.slides[1:]]
+
+    @property
+    def transitions(self) -> int:
+        """How often friction or brake hold, release or reverse the spin: the wheel's events but those of its grip."""
+        return int(self["n_events"][-1]) - len(self.turns)
+
+    @property
+    def by_rounding(self) -> bool:
+        """Whether rounding alone tips the wheel: exactly upright, its lean grows from 1e-16 rad to a thousandth."""
+        lean = abs(self["theta"] - np.pi / 2)
+        return bool(lean[0] < 1e-12 and lean[1] < 1e-9 and lean.max() > 1e-3)
 
     @property
     def slip(self) -> Array:

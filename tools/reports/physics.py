@@ -12,7 +12,7 @@ from contextlib import contextmanager
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from support.closed_forms import critical_spin
+from support.closed_forms import critical_spin, fall_time
 from support.motion import Run
 from support.scenes import PAPER
 from support.schedule import Schedule
@@ -144,7 +144,10 @@ def tipping(report: Report) -> Row:
         title, limits = "At rest, theta_start = the number nearest to $\\pi/2$", {"xlim": (0, 10), "ylim": (1e-17, 3)}
         label(ax, TIME, "size of the lean [rad]", title, "y", "upper left", **limits)
     tilted = lean(run(report, 15, theta_start=UPRIGHT - 1e-9, **rolling)).max()
-    return {"tips": found.t[-1], "tipping_rate": TIPPING, "tips_rolling_tilted": np.degrees(tilted)}
+    by_method = [run(report, 12, 5e-3, method=method, **rest).t[-1] for method in (2, 3, 4)]
+    tips = {"tips": found.t[-1], "tips_first": min(by_method), "tips_last": max(by_method)}
+    tips |= {"tips_exact": fall_time(PAPER, UPRIGHT)}
+    return tips | {"tipping_rate": TIPPING, "tips_rolling_tilted": np.degrees(tilted)}
 
 
 CONTACT = re.compile(r"t = (\S+) s: the wheel (?:starts to slide|stops sliding)\.")

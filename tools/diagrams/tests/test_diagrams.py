@@ -95,11 +95,11 @@ DOUBTED = [({"m": 12}, "J_z = 1.8 kg m2 is more than"), ({"r": 0.4}, "this torus
 
 @pytest.mark.parametrize(("values", "words"), DOUBTED)
 def test_a_wheel_that_cannot_exist_is_drawn_with_a_warning(values: dict[str, float], words: str) -> None:
-    (said,) = paper.warnings_of(scene(**values))
+    (said,) = paper.warnings_of([scene(**values)])
     assert words in said
     remark = caption(scene(**values))
     assert "intersects itself" in remark or "no mass within this outline has these moments" in remark
-    assert paper.warnings_of(scene()) == []
+    assert paper.warnings_of([scene()]) == []
     assert paper.unlike_paper(scene(s=0.02)) == []
 
 
@@ -179,7 +179,7 @@ def test_a_slide_is_marked_on_the_path_and_on_the_axes_of_time_between_loss_and_
     style.use_style()
     for one in (slid(), scene()):
         expected = [1, 2, 4.5, 5] if one.slides.any() else []
-        assert one.transitions == pytest.approx(expected, abs=0.01)
+        assert one.turns == pytest.approx(expected, abs=0.01)
         path, tilt = style.figure_mm(80, 160).subplots(2)
         panels.draw_path(path, one)
         panels.draw_tilt(tilt, one)
@@ -206,3 +206,25 @@ def test_the_slip_has_a_panel_and_the_caption_its_size_where_a_scene_slides() ->
     assert {name for name, text in by_name.items() if "Purple" not in text} == {"rates"}
     assert "never slides" in caption(scene(mu_max=0.45, mu_slide=0.4))
     assert "slides" not in caption(scene())
+
+
+def test_loss_and_return_of_grip_are_no_transitions_of_friction() -> None:
+    rough = {"s": 0.03, "mu_max": 0.45, "mu_slide": 0.4, "n_events": 43}
+    assert "41 transitions" in caption(scene(contact_mode=(TIME > 1) & (TIME < 2), **rough))
+    assert "42 transitions" in caption(scene(contact_mode=TIME < 2, **rough))  # it slides at first
+    assert "43 transitions" in caption(scene(**rough))
+
+
+def test_the_parts_of_the_slip_have_labels_also_where_one_is_zero() -> None:
+    for one in (slid(), scene(contact_mode=SLIDES, slip_x=0.3 * SLIDES), scene()):
+        ax = style.figure_mm(80, 80).subplots()
+        panels.draw_slip(ax, one)
+        assert [text.get_text() for text in ax.texts] == ["along", "across"]
+
+
+@pytest.mark.parametrize(("lean", "chance"), [(6e-17, True), (1e-9, False), (0.26, False)])
+def test_a_fall_from_exactly_upright_hangs_on_rounding_and_caption_and_log_say_so(lean: float, chance: bool) -> None:
+    fall = scene(theta=np.maximum(np.pi / 2 - lean * np.cosh(4.19 * TIME), 0.0))
+    assert ("Rounding" in caption(fall)) is chance and len(paper.warnings_of([scene(), fall])) == chance
+    pushed = scene(theta=np.pi / 2 - 0.1 * TIME**2)
+    assert "Rounding" not in caption(pushed) + caption(scene(theta=np.pi / 2))
