@@ -42,7 +42,7 @@ def test_the_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library
 
 
 def test_a_wheel_released_without_spin_falls_as_printed(library: Library, formulation: int) -> None:
-    """The row "released from rest without spin" of docs/equations.md, along the whole fall; the torus has a term more."""
+    """The row of docs/equations.md along the whole fall; a torus has a term more than a thin disc."""
 
     def gap(s: float, carried: float) -> float:
         run = library.simulate(np.linspace(0, 0.59, 60), 1e-11, formulation=formulation, phi_dot_start=0.0, s=s)
