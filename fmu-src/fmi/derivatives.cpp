@@ -78,8 +78,9 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
       if (!check_known(i, knowns[k])) return fmi2Error;
     for (std::size_t u = 0; u < n_unknowns; ++u)
       if (!check_unknown(i, unknowns[u])) return fmi2Error;
-    if (const fmi2Status status = i.prepare_reading(unknowns, n_unknowns)) return status;
     std::fill_n(values, n_unknowns, 0.0);
+    if (!n_unknowns || !n_knowns) return fmi2OK;
+    if (const fmi2Status status = i.prepare_reading(unknowns, n_unknowns)) return status;
     for (std::size_t k = 0; k < n_knowns; ++k)
       if (!i.simulation.add_slopes(knowns[k], seeds[k], unknowns, n_unknowns, values))
         return i.log(Topic::error, "%s: no valid initial values near %s = %s for a derivative.",

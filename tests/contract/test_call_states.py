@@ -8,6 +8,8 @@ from support.driver import CO_SIMULATION, DISCARD, ERROR, OK
 from support.exchange import loaded
 from support.scenes import KINDS as SCENES
 
+TYPES = ("Real", "Integer", "Boolean", "String")
+
 each = pytest.mark.parametrize("situation", SITUATIONS, ids=lambda s: f"{s[1]}, {KINDS[s[0]]}")
 
 
@@ -67,6 +69,32 @@ def test_a_null_pointer_is_an_error_in_the_place_of_any_array_result_or_state(br
                 assert ["null pointer" in text for text in w.texts()] == [True] * (not freed), (function, k)
                 refused += 1
         assert w.serialized() == before and refused > 10
+
+
+# Of each function with lists: the places of the arguments that make one list, its count among them.
+LISTS = dict.fromkeys((f"fmi2{way}{kind}" for way in ("Get", "Set") for kind in TYPES), ((0, 1, 2),))
+LISTS |= dict.fromkeys(("fmi2SetRealInputDerivatives", "fmi2GetRealOutputDerivatives"), ((0, 1, 2, 3),))
+LISTS |= {"fmi2GetDirectionalDerivative": ((0, 1, 5), (2, 3, 4), (0, 1, 5, 2, 3, 4))}
+LISTS |= {"fmi2SetDebugLogging": ((1, 2),)}  # last: no categories are all, and their messages end
+
+
+@each
+@pytest.mark.parametrize("mass", [20.0, -1.0])
+def test_empty_lists_ask_for_nothing_in_any_state(brought, situation, mass):
+    """Whatever else a call names, and where no initial state exists (or the mass that is set has none)."""
+    with brought(situation) as w:
+        if situation[1] in ("instantiated", "initialization mode"):
+            w.put(m=mass)
+        w.take_messages()
+        for function, lists in LISTS.items():
+            for places in lists:
+                before, arguments = w.serialized(), [*sound_arguments(w)[function]]
+                for k in places:
+                    arguments[k] = 0 if isinstance(arguments[k], int) else None
+                status = w.ask(function.removeprefix("fmi2"), *arguments)
+                legal = situation in TABLE[function]
+                assert (status == OK, bool(w.take_messages())) == (legal, not legal), (function, places)
+                assert w.serialized() == before, function
 
 
 def test_from_every_state_a_reset_instance_is_a_new_one_to_the_last_byte_and_runs_as_one(wheel):
