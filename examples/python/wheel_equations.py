@@ -50,8 +50,8 @@ def fields_of(body: str, types: dict[str, type]) -> Iterator[tuple[str, type]]:
 TYPES = read_header(HEADER.read_text(encoding="utf-8"))
 Parameters, Load, Friction = map(TYPES.__getitem__, ("Parameters", "Load", "Friction"))
 Scene, Motion = TYPES["Scene"], TYPES["Motion"]
-Kinematics, Dynamics, ReactionRates = map(TYPES.__getitem__, ("Kinematics", "Dynamics", "ReactionRates"))
-Contact, Slip, Formulation = map(TYPES.__getitem__, ("Contact", "Slip", "Formulation"))
+Kinematics, Dynamics, Contact = map(TYPES.__getitem__, ("Kinematics", "Dynamics", "Contact"))
+Slip, Formulation = map(TYPES.__getitem__, ("Slip", "Formulation"))
 DOUBLES = POINTER(c_double)
 
 BUILD = Path(os.environ.get("WHEEL_BUILD", Path(__file__).resolve().parents[2] / "build" / "release"))
@@ -72,7 +72,6 @@ LIBRARY.wheel_slip.restype, LIBRARY.wheel_slip_direction.restype = Slip, c_doubl
 LIBRARY.wheel_slip.argtypes = [POINTER(Scene), DOUBLES, c_double]
 LIBRARY.wheel_slip_direction.argtypes = [POINTER(Scene), DOUBLES]
 LIBRARY.wheel_scene.argtypes = [POINTER(Parameters), POINTER(Load), Friction]
-LIBRARY.wheel_reaction_rates.argtypes = [POINTER(t) for t in (Formulation, Scene, Load, c_double, ReactionRates)]
 
 
 def paper_wheel(**changes: float) -> Parameters:
@@ -114,11 +113,6 @@ def kinematics(formulation: Formulation, wheel: Parameters, y: np.ndarray) -> Ki
 
 def dynamics(formulation: Formulation, scene: Scene, y: np.ndarray) -> Dynamics:
     return _filled(Dynamics(), formulation.dynamics, scene, y)
-
-
-def rates(formulation: Formulation, scene: Scene, y: np.ndarray, load_dot: Load | None = None) -> ReactionRates:
-    """Rates of lambda and tau along the motion; without load_dot the load is constant."""
-    return _filled(ReactionRates(), LIBRARY.wheel_reaction_rates, formulation, scene, load_dot, y)
 
 
 def energy(wheel: Parameters, motion: Kinematics) -> float:

@@ -116,12 +116,6 @@ typedef struct WheelDynamics {
   double tau;                            /* N m, moment of ground and brake about the axle */
 } WheelDynamics;
 
-/* Time derivatives of the reactions. */
-typedef struct WheelReactionRates {
-  double lambda_dot[3]; /* N/s, fixed axes */
-  double tau_dot;       /* N m/s */
-} WheelReactionRates;
-
 /* One formulation: how its state vector y is started, moved and read. */
 typedef struct WheelFormulation {
   const char* name;
@@ -189,11 +183,6 @@ WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi)
  * does not press, or friction wedges the wheel. */
 double wheel_slip_direction(const WheelScene* scene, const double* reduced);
 
-/* Time derivatives of lambda and tau along the motion, while the law and the sign of N last; load_dot is the rate of
- * the load (NULL: constant). */
-void wheel_reaction_rates(const WheelFormulation* formulation, const WheelScene* scene, const WheelLoad* load_dot,
-                          const double* y, WheelReactionRates* out);
-
 /* Total energy, J: translation, rotation, height of O against gravity, zero at the origin. */
 double wheel_energy(const WheelParameters* wheel, const WheelKinematics* motion);
 
@@ -227,11 +216,8 @@ typedef struct WheelContact {
 WheelContact wheel_contact(const WheelParameters* wheel, const WheelKinematics* motion);
 
 /* The ground's horizontal force in wheel axes, N: force[0] along e1 (lambda_x), force[1] across it, to the left of
- * somebody who looks along e1 (lambda_y). And its rates, N/s, from those of lambda; the wheel axes turn with psi_dot.
- */
+ * somebody who looks along e1 (lambda_y). */
 void wheel_horizontal_force(const WheelKinematics* motion, const double lambda[3], double force[2]);
-void wheel_horizontal_force_rates(const WheelKinematics* motion, const double lambda[3], const double lambda_dot[3],
-                                  double force_dot[2]);
 
 /* The same angle, rad, less whole turns: from -pi to pi, exact to the last digit however large it is. */
 double wheel_less_turns(double angle);

@@ -63,8 +63,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
                    wheel::row_of(v[k]).name))
         return fmi2Error;
     const fmi2Status status = i.prepare_reading(v, n);
-    for (std::size_t k = 0; k < n && status == fmi2OK; ++k)
-      values[k] = wheel::row_of(v[k]).read_rate(i.simulation.reading());
+    if (status == fmi2OK) i.simulation.read_rates(v, n, values);
     return status;
   });
 }

@@ -39,15 +39,6 @@ double Reading::slip(int axis) const {
   return u[0] * (axis == 0 ? std::cos(u[1]) : std::sin(u[1]));
 }
 
-double Reading::slip_rate(int axis) const {
-  if (contact_mode() == WHEEL_GRIPS) return 0;
-  double y_dot[WHEEL_MAX_STATES];
-  formulation().derivative(&now_.scene, now_.y, y_dot);
-  const double *const u = now_.y + formulation().slip_index, *const u_dot = y_dot + formulation().slip_index;
-  const double c = std::cos(u[1]), s = std::sin(u[1]), across = u[0] * u_dot[1];
-  return axis == 0 ? u_dot[0] * c - across * s : u_dot[0] * s + across * c;
-}
-
 Force Reading::force() {
   const WheelDynamics& now = dynamics();
   const WheelScene& scene = now_.scene;
@@ -57,25 +48,6 @@ Force Reading::force() {
 double Reading::brake_moment() {
   const WheelAxleMoment axle = force().axle;
   return wheel_brake_moment(&axle);
-}
-
-double Reading::brake_moment_rate() {
-  const WheelAxleMoment axle = force().axle;
-  const ReactionRates& rates = reaction_rates();
-  const WheelAxleMoment rate = {rates.tau_dot, rates.lambda_dot[2], 0, load_rate_of(*now_.inputs).brake};
-  return wheel_brake_moment_rate(&axle, &rate);
-}
-
-const ReactionRates& Reading::reaction_rates() {
-  if (missing(have_rates)) {
-    WheelReactionRates rates;
-    double force_dot[2];
-    const WheelLoad load_rate = load_rate_of(*now_.inputs);
-    wheel_reaction_rates(&formulation(), &now_.scene, &load_rate, now_.y, &rates);
-    wheel_horizontal_force_rates(&pose(), dynamics().lambda, rates.lambda_dot, force_dot);
-    rates_ = {rates, force_dot[0], force_dot[1]};
-  }
-  return rates_;
 }
 
 const WheelContact& Reading::contact() {

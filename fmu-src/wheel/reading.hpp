@@ -1,4 +1,4 @@
-// What can be read at one instant: positions, velocities, accelerations, reactions and their rates. Each group is
+// What can be read at one instant: positions, velocities, accelerations, reactions. Each group is
 // computed when it is first asked for and kept until the instant or the inputs change; nothing is computed for an
 // output that nobody reads. Fixed axes unless said.
 #pragma once
@@ -8,20 +8,13 @@
 
 namespace wheel {
 
-// The instant to read; scene and inputs are those that hold for what follows it.
+// The instant to read; the scene is that which holds for what follows it.
 struct Present {
   const Setup* setup;
   const double* y;
   WheelScene scene;
-  const Polynomials* inputs;
   const Run* run = nullptr;  // its counts, with those of the solver
   const solver::Solver* solver = nullptr;
-};
-
-// Rates along the motion: of the ground's force in fixed axes and of the moment about the axle, N/s and N m/s, and of
-// the force along e1 and across it.
-struct ReactionRates : WheelReactionRates {
-  double lambda_x_dot, lambda_y_dot;
 };
 
 class Reading {
@@ -42,14 +35,11 @@ class Reading {
   const WheelDynamics& dynamics();
   // N, the ground's: along e1 (0) or across it (1).
   double horizontal_force(int axis);
-  // m/s and m/s2, of the wheel's material point at the contact: along e1 (0) or across it (1).
+  // m/s, of the wheel's material point at the contact: along e1 (0) or across it (1).
   double slip(int axis) const;
-  double slip_rate(int axis) const;
   int contact_mode() const { return now_.scene.contact; }
   Force force();
-  double brake_moment();       // N m, the brake's part of tau
-  double brake_moment_rate();  // N m/s
-  const ReactionRates& reaction_rates();
+  double brake_moment();          // N m, the brake's part of tau
   const WheelContact& contact();  // X_C and Y_C as the state counts X_O and Y_O
   double energy();                // J, of the whole X_O and Y_O
   int friction_mode();
@@ -57,7 +47,7 @@ class Reading {
   long long transitions() const { return now_.run->transitions; }  // of the friction
 
  private:
-  enum : unsigned { have_pose = 1, have_kinematics = 2, have_dynamics = 4, have_rates = 8, have_contact = 16 };
+  enum : unsigned { have_pose = 1, have_kinematics = 2, have_dynamics = 4, have_contact = 8 };
   bool missing(unsigned part);
   const WheelFormulation& formulation() const { return formulation_of(*now_.setup, now_.scene); }
 
@@ -66,7 +56,6 @@ class Reading {
   unsigned have_ = 0;
   WheelKinematics kinematics_ = {};
   WheelDynamics dynamics_ = {};
-  ReactionRates rates_ = {};
   WheelContact contact_ = {};
 };
 

@@ -65,6 +65,9 @@ class Simulation {
   bool add_slopes(unsigned known, double seed, const unsigned* unknowns, std::size_t count, double* sums) {
     return wheel::add_slopes(change(), known, seed, unknowns, count, sums);
   }
+  void read_rates(const unsigned* outputs, std::size_t count, double* out) {
+    wheel::read_rates(wheel_, outputs, count, out);
+  }
 
   // Model exchange: see exchange.hpp.
   void set_time(double t);

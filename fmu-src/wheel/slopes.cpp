@@ -1,11 +1,12 @@
 // Difference quotients of fourth order. The reactions are linear in the load, so those by an input are exact up to
-// rounding; a variable that is not linear in the forces follows from those of the forces (Row::by_force).
+// rounding; a variable that is not linear in the forces follows from those of the forces (Row::by_force), and a rate
+// that another variable has is read there (Row::read_rate).
 #include "slopes.hpp"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "exchange.hpp"
 #include "law.hpp"
@@ -23,49 +24,46 @@ constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12,
                                 {{1, 2, 3, 4}, {4, -3, 4.0 / 3, -1.0 / 4}},
                                 {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}}};
 
-// sum + weight (at - centre), number by number.
-Force sum_of(const Force& sum, double weight, const Force& at, const Force& centre) {
-  constexpr std::size_t count = sizeof(Force) / sizeof(double);
-  using Numbers = std::array<double, count>;
-  Numbers total = std::bit_cast<Numbers>(sum);
-  const Numbers there = std::bit_cast<Numbers>(at), here = std::bit_cast<Numbers>(centre);
-  for (std::size_t i = 0; i < count; ++i) total[i] += weight * (there[i] - here[i]);
-  return std::bit_cast<Force>(total);
-}
-
-// Of the variables that are asked for: the value at x, and the derivative.
+// The derivatives of the variables that are asked for, and behind them those of the forces.
 struct Pass {
-  bool asked[variable_count] = {}, forces_asked = false;
-  double centre[variable_count], slope[variable_count];
+  static constexpr std::size_t computed = variable_count - stored_count,
+                               count = computed + sizeof(Force) / sizeof(double);
+  using Numbers = std::array<double, count>;
+  bool asked[computed] = {};
+  Numbers slope = {};
 
-  void ask(unsigned variable) {
-    asked[variable] = true;
-    forces_asked = forces_asked || row_of(variable).by_force;
+  double of(unsigned variable) const { return slope[variable - stored_count]; }
+
+  Numbers sample(Reading& reading) const {
+    Numbers numbers = {};
+    for (unsigned k = 0; k < computed; ++k)
+      if (asked[k]) numbers[k] = row_of(stored_count + k).read(reading);
+    const Force force = reading.force();
+    std::memcpy(&numbers[computed], &force, sizeof force);
+    return numbers;
   }
 
   // Differences from the value at x itself, so that what does not depend on x has the derivative zero. `read_at` gives
-  // the reading at a place, null where there is none.
+  // the reading at a place, null where there is none. tau_rate: the part of the rate of tau that it leaves out.
   template <class ReadAt>
-  bool take(const Stencil& stencil, double x, double h, const ReadAt& read_at) {
-    Force force = {}, rate = {};
-    for (int k = -1; k < 4; ++k) {
-      Reading* const reading = read_at(k < 0 ? x : x + stencil.places[k] * h);
+  bool take(const Stencil& stencil, double x, double h, const ReadAt& read_at, double tau_rate = 0) {
+    Reading* reading = read_at(x);
+    if (!reading) return false;
+    const Numbers centre = sample(*reading);
+    slope = {};
+    for (int k = 0; k < 4; ++k) {
+      reading = read_at(x + stencil.places[k] * h);
       if (!reading) return false;
-      for (unsigned v = stored_count; v < variable_count; ++v) {
-        if (!asked[v]) continue;
-        const double value = row_of(v).read(*reading);
-        slope[v] = k < 0 ? 0 : slope[v] + stencil.weights[k] * (value - centre[v]) / h;
-        if (k < 0) centre[v] = value;
-      }
-      if (!forces_asked) continue;
-      const Force there = reading->force();
-      if (k < 0)
-        force = there;
-      else
-        rate = sum_of(rate, stencil.weights[k] / h, there, force);
+      const Numbers at = sample(*reading);
+      for (std::size_t i = 0; i < count; ++i) slope[i] += stencil.weights[k] * (at[i] - centre[i]) / h;
     }
-    for (unsigned v = stored_count; v < variable_count; ++v)
-      if (asked[v] && row_of(v).by_force) slope[v] = row_of(v).by_force(force, rate);
+    slope[variable::tau - stored_count] += tau_rate;
+    Force force, rate;
+    std::memcpy(&force, &centre[computed], sizeof force);
+    std::memcpy(&rate, &slope[computed], sizeof rate);
+    rate.axle.tau += tau_rate;
+    for (unsigned k = 0; k < computed; ++k)
+      if (asked[k] && row_of(stored_count + k).by_force) slope[k] = row_of(stored_count + k).by_force(force, rate);
     return true;
   }
 };
@@ -106,6 +104,13 @@ Present present_for(Wheel& w, unsigned known) {
   return now;
 }
 
+// The ground as it is at this instant, by the sign of N.
+void keep_ground(Present& now) {
+  double y_dot[WHEEL_MAX_STATES];
+  const double N = formulation_of(*now.setup, now.scene).derivative(&now.scene, now.y, y_dot);
+  now.scene.ground = N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
+}
+
 // The law and the sign of N are kept. Steps are small parts of what each known turns on, those of a load of the whole
 // weight or of the load.
 bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
@@ -114,8 +119,7 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   double y[WHEEL_MAX_STATES], scales[WHEEL_MAX_STATES];
   Present now = present_for(w, known);
   Reading reading;
-  reading.set(now);
-  now.scene.ground = reading.dynamics().lambda[2] > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
+  keep_ground(now);
   std::copy_n(now.y, WHEEL_MAX_STATES, y);
   now.y = y;
   scales_at(setup, 0, scales);
@@ -136,7 +140,69 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   return pass.take(stencils[0], place, 1e-3 * h, read_at);
 }
 
+// 1/s, how fast the wheel moves, of states of the reduced forms.
+double pace_of(const double* y, const double* y_dot, bool slides) {
+  const double swing = std::fabs(y_dot[1]) + std::fabs(y_dot[2]) + std::fabs(y_dot[3]);
+  const double tilting = (std::fabs(y[1]) + std::fabs(y[2])) / std::sin(y[0]);
+  return tilting + std::fabs(y[3]) + std::sqrt(swing) + (slides ? std::fabs(y_dot[9]) : 0);
+}
+
+// In the reduced form and a small part of the time in which the wheel itself moves. kappa of a regularized law is kept:
+// its own rate can be large, and acts as a moment about the axle.
+void take_along_motion(Wheel& w, Pass& pass) {
+  Present now = present(w);
+  Setup setup = w.setup;
+  setup.formulation = &wheel_reduced;
+  if (setup.sliding) setup.sliding = &wheel_sliding;
+  double start[WHEEL_MAX_STATES], y[WHEEL_MAX_STATES], y_dot[WHEEL_MAX_STATES];
+  formulation_of(w.setup, now.scene).reduce(now.y, start);
+  for (const int angle : {4, 5})  // a small step must not vanish in the rounding of a large angle
+    start[angle] = wheel_less_turns(start[angle]);
+  now.setup = &setup;
+  now.y = start;
+  keep_ground(now);
+  const WheelFormulation& formulation = formulation_of(setup, now.scene);
+  const double N = formulation.derivative(&now.scene, start, y_dot);
+  WheelLoad rate = load_rate_of(w.demand.inputs);
+  WheelFriction& law = now.scene.friction;
+  double tau_rate = 0;
+  if (law.kind == WHEEL_REGULARIZED) {
+    const double s = now.scene.ground == WHEEL_GROUND_PULLS ? 0 : now.scene.wheel.s;
+    const double steepness = std::cosh(start[formulation.spin_index] / law.omega_s);
+    const double kappa_dot = y_dot[formulation.spin_index] / law.omega_s / steepness / steepness;
+    tau_rate = -kappa_dot * (s * N + now.scene.load.brake);
+    rate.M[2] += tau_rate;
+    law = {WHEEL_ROLLING, wheel_kappa(&law, start[formulation.spin_index]), 0};
+  }
+  now.y = y;
+  const WheelLoad load = now.scene.load;
+  Reading reading;
+  const auto read_at = [&](double t) {
+    for (int i = 0; i < formulation.states; ++i) y[i] = start[i] + t * y_dot[i];
+    now.scene.load = load;
+    for (int i = 0; i < inputs_count; ++i) *load_entry(now.scene.load, i) += t * *load_entry(rate, i);
+    reading.set(now);
+    return &reading;
+  };
+  const double pace = pace_of(start, y_dot, now.scene.contact == WHEEL_SLIDES);
+  pass.take(stencils[0], 0, pace > 0 ? 1e-3 / pace : 1, read_at, tau_rate);
+}
+
 }  // namespace
+
+void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* out) {
+  Pass pass;
+  Reading reading;
+  reading.set(present(w));
+  bool missing = false;
+  for (std::size_t k = 0; k < count; ++k)
+    missing |= pass.asked[outputs[k] - stored_count] = !row_of(outputs[k]).read_rate;
+  if (missing) take_along_motion(w, pass);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Row& row = row_of(outputs[k]);
+    out[k] = row.read_rate ? row.read_rate(reading) : pass.of(outputs[k]);
+  }
+}
 
 bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns, std::size_t count, double* sums) {
   const bool parameter = known < first_input;
@@ -145,9 +211,9 @@ bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns,
       known == variable::slip_x_start || known == variable::slip_y_start || known == variable::mu_slide;
   if (of_slip && !w.setup.sliding) return true;  // a wheel that never slides has no slip
   Pass pass;
-  for (std::size_t k = 0; k < count; ++k) pass.ask(unknowns[k]);
+  for (std::size_t k = 0; k < count; ++k) pass.asked[unknowns[k] - stored_count] = true;
   if (!(parameter ? take_by_parameter(w, known, pass) : take_at_instant(w, known, pass))) return false;
-  for (std::size_t k = 0; k < count; ++k) sums[k] += seed * pass.slope[unknowns[k]];
+  for (std::size_t k = 0; k < count; ++k) sums[k] += seed * pass.of(unknowns[k]);
   return true;
 }
 

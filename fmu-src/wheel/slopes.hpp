@@ -1,5 +1,5 @@
-// Derivatives of calculated variables by one known: an input or a state at the present instant, or, before the run, a
-// parameter.
+// Derivatives of calculated variables: by time along the motion, or by one known, which is an input or a state at the
+// present instant, or, before the run, a parameter.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,9 @@
 #include "wheel.hpp"
 
 namespace wheel {
+
+// d/dt at the present instant, while the law and the sign of N last, under inputs that follow their polynomials.
+void read_rates(Wheel& wheel, const unsigned* outputs, std::size_t count, double* out);
 
 // Adds seed times the derivative by `known` to sums[k] of each of the unknowns, `count` of them. All unknowns are read
 // in one pass. What depends on inputs only through time has the derivative zero. False where no initial states lie near

@@ -37,18 +37,18 @@ constexpr Access readers[] = {
     {variable::theta_dot, AT(now.pose().theta_dot), AT(now.dynamics().theta_ddot)},
     {variable::phi_dot, AT(now.pose().phi_dot), AT(now.dynamics().phi_ddot)},
     {variable::omega_z, AT(now.pose().omega_z), AT(now.dynamics().omega_z_dot)},
-    {variable::lambda_1, AT(now.dynamics().lambda[0]), AT(now.reaction_rates().lambda_dot[0])},
-    {variable::lambda_2, AT(now.dynamics().lambda[1]), AT(now.reaction_rates().lambda_dot[1])},
-    {variable::lambda_3, AT(now.dynamics().lambda[2]), AT(now.reaction_rates().lambda_dot[2])},
+    {variable::lambda_1, AT(now.dynamics().lambda[0])},
+    {variable::lambda_2, AT(now.dynamics().lambda[1])},
+    {variable::lambda_3, AT(now.dynamics().lambda[2])},
     {variable::X_C, AT(now.setup().X_O.whole(now.contact().X_C)), AT(now.contact().X_C_dot)},
     {variable::Y_C, AT(now.setup().Y_O.whole(now.contact().Y_C)), AT(now.contact().Y_C_dot)},
-    {variable::lambda_x, AT(now.horizontal_force(0)), AT(now.reaction_rates().lambda_x_dot)},
-    {variable::lambda_y, AT(now.horizontal_force(1)), AT(now.reaction_rates().lambda_y_dot)},
-    {variable::tau, AT(now.dynamics().tau), AT(now.reaction_rates().tau_dot)},
-    {variable::tau_brake, AT(now.brake_moment()), AT(now.brake_moment_rate()),
+    {variable::lambda_x, AT(now.horizontal_force(0))},
+    {variable::lambda_y, AT(now.horizontal_force(1))},
+    {variable::tau, AT(now.dynamics().tau)},
+    {variable::tau_brake, AT(now.brake_moment()), nullptr,
      [](const Force& force, const Force& rate) { return wheel_brake_moment_rate(&force.axle, &rate.axle); }},
-    {variable::slip_x, AT(now.slip(0)), AT(now.slip_rate(0))},
-    {variable::slip_y, AT(now.slip(1)), AT(now.slip_rate(1))},
+    {variable::slip_x, AT(now.slip(0))},
+    {variable::slip_y, AT(now.slip(1))},
     {variable::theta_ddot, AT(now.dynamics().theta_ddot)},
     {variable::psi_ddot, AT(now.dynamics().psi_ddot)},
     {variable::phi_ddot, AT(now.dynamics().phi_ddot)},
@@ -87,11 +87,7 @@ constexpr Row rows[] = {
 #include "variables.inc"
 };
 
-constexpr auto has_rate = [](const Row& row) {
-  return row.role != Role::output || row.type != Type::real || row.read_rate;
-};
 static_assert(std::size(rows) == variable_count && std::size(readers) == variable_count - stored_count);
-static_assert(std::all_of(std::begin(rows), std::end(rows), has_rate));
 
 }  // namespace
 

@@ -43,7 +43,7 @@ struct Row {
   Role role;
   double start, min, max;         // stored variables
   double (*read)(Reading&);       // computed variables, else null
-  double (*read_rate)(Reading&);  // d/dt of an output, else null
+  double (*read_rate)(Reading&);  // d/dt where another variable has it, else null: see slopes.hpp
   // The derivative of what is not linear in the forces, from forces and derivatives of the forces; else null.
   double (*by_force)(const Force& force, const Force& rate);
 };

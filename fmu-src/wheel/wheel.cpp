@@ -65,7 +65,7 @@ Present present(Wheel& w) {
   const double* y = state_now(w);
   if (w.demand.changed) y = std::copy_n(y, WHEEL_MAX_STATES, w.y_ahead) - WHEEL_MAX_STATES;
   const WheelScene scene = w.demand.changed ? in_force_now(w, w.y_ahead).scene : w.run.in_force.scene_at(w.run.t);
-  Present now = {&w.setup, y, scene, &w.demand.inputs, &w.run, &w.solution.solver};
+  Present now = {&w.setup, y, scene, &w.run, &w.solution.solver};
   now.scene.ground = WHEEL_GROUND_BY_FORCE;
   return now;
 }

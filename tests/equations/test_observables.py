@@ -73,11 +73,10 @@ def contacts(scenes: Table, k: Table) -> Table:
     return np.array([eq.values(eq.LIBRARY.wheel_contact(byref(wheel), byref(motion))) for wheel, motion in rows])
 
 
-def horizontal(k: Table, *lambdas: Table) -> Table:
-    """wheel_horizontal_force(lambda), or ..._rates(lambda, lambda_dot), row by row."""
-    function = (eq.LIBRARY.wheel_horizontal_force, eq.LIBRARY.wheel_horizontal_force_rates)[len(lambdas) - 1]
+def horizontal(k: Table, force: Table) -> Table:
+    """wheel_horizontal_force row by row."""
     out = np.zeros((len(k), 2))
-    eq.each(function, k, *(np.ascontiguousarray(x) for x in lambdas), out)
+    eq.each(eq.LIBRARY.wheel_horizontal_force, k, np.ascontiguousarray(force), out)
     return out
 
 
@@ -117,20 +116,3 @@ def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
     within(np.abs(found - expected).max() / size, 64 * EPSILON, "relative error")
     beyond(np.abs(found - expected * [1, -1]).max() / size, 0.1, "relative error")  # to the right
     within(relative_error(np.hypot(*found.T), np.hypot(*d["lambda_"][:, :2].T)), 64 * EPSILON, "difference")
-
-
-def test_the_rates_of_the_force_in_wheel_axes_know_that_the_axes_turn() -> None:
-    _, k, d = rolling()
-    random, h = np.random.default_rng(92), 1e-6
-    lambda_dot = d["lambda_"] * random.normal(size=(ROWS, 3))
-
-    def after(time: float) -> Table:
-        moved = k.copy()
-        moved["psi"] += time * k["psi_dot"]
-        return horizontal(moved, d["lambda_"] + time * lambda_dot)
-
-    slope = (after(h) - after(-h)) / (2 * h)
-    found = horizontal(k, d["lambda_"], lambda_dot)
-    size = np.abs(slope).max()
-    within(np.abs(found - slope).max() / size, 1e-9, "relative error")
-    beyond(np.abs(horizontal(k, lambda_dot) - slope).max() / size, 0.1, "horizontal")  # axes that stand still

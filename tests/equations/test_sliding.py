@@ -171,30 +171,3 @@ def test_a_slip_begins_in_the_direction_that_grows_and_is_kept(rows: Rows) -> No
         worst = max(worst, abs(np.remainder(got + psi - starts[0] + pi, 2 * pi) - pi))
     assert none == count > 100 and ROWS - count > 500
     within(worst, 1e-6, "direction, rad")
-
-
-def test_reactions_of_a_sliding_wheel_have_their_rates(rows: Rows) -> None:
-    """Central differences of sixth order along state, load and law."""
-    random, h = np.random.default_rng(8), 1e-4
-    load_dot = rows.scenes["load"].copy()
-    for part in ("F", "M", "brake"):
-        load_dot[part] *= random.normal(size=load_dot[part].shape)
-    rows.scenes["friction"]["omega_s"] = 5
-    for form in (eq.SLIDING, eq.MULTIBODY_SLIDING):
-        y = states(form, rows)
-        slow = np.hypot(rows.motions["slip_x"], rows.motions["slip_y"]) < 0.3
-        y_dot, N = eq.derivative_each(form, rows.scenes, y)
-        seen = rows.judged & ~slow & (np.abs(y_dot).max(axis=1) < 300)
-        seen &= np.abs(N) > 0.1 * np.abs(N[np.isfinite(N)]).mean()
-        seen &= (rows.scenes["mu_slide"] < 0.5) & (rows.motions["theta"] > 0.3) & (rows.motions["theta"] < 2.8)
-        assert seen.sum() > 100
-        total = np.zeros((ROWS, 4))
-        for k, weight in zip((-3, -2, -1, 1, 2, 3), np.array([-1, 9, -45, 45, -9, 1]) / 60, strict=True):
-            scenes = rows.scenes.copy()
-            for part in ("F", "M", "brake"):
-                scenes["load"][part] += k * h * load_dot[part]
-            moved = eq.dynamics_each(form, scenes, y + k * h * y_dot)
-            total += weight / h * np.column_stack([moved["lambda_"], moved["tau"]])
-        got = eq.rates_each(form, rows.scenes, load_dot, y)
-        within(relative(got[seen], total[seen]), 1e-4, "rates")
-        beyond(relative(1.001 * got[seen], total[seen]), 9e-4, "rates, 0.1 % off")

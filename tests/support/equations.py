@@ -14,7 +14,7 @@ from .paths import ROOT
 sys.path.insert(0, str(ROOT / "examples" / "python"))
 
 from wheel_equations import *  # noqa: E402, F403
-from wheel_equations import LIBRARY, Dynamics, Formulation, Kinematics, Motion  # noqa: E402
+from wheel_equations import Dynamics, Formulation, Kinematics, Motion  # noqa: E402
 
 PAPER_START = Motion(np.pi / 2, 5 * np.pi / 12, 0, 0, 0, -2, -0.3 * np.cos(5 * np.pi / 12), 0)
 
@@ -64,11 +64,6 @@ def kinematics_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray)
 
 def dynamics_each(formulation: Formulation, scenes: np.ndarray, y: np.ndarray) -> np.ndarray:
     return filled(table(Dynamics, len(y)), formulation.dynamics, scenes, y)
-
-
-def rates_each(formulation: Formulation, scenes: np.ndarray, load_dots: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """lambda_dot and tau_dot, row by row."""
-    return filled(np.zeros((len(y), 4)), LIBRARY.wheel_reaction_rates, scenes, load_dots, y, of=(formulation,))
 
 
 def columns(records: np.ndarray, *names: str) -> np.ndarray:
