@@ -1,16 +1,19 @@
-"""Values as a user types them, v=40km/h, slope=12%, m=12kg, in SI: for the command lines of all examples.
+"""Values as a user types them, v=40km/h, slope=12%, m=12kg, in SI: for the command lines of all programs.
 
-Standard library alone, so that a command can refuse a typing error before anything is installed.
+A value is taken as it is typed or refused: one number, a word or a whole number where the variable asks for one, within
+the limits of modelDescription.xml, given once. Standard library alone, so that a command can refuse a typing error
+before anything is installed.
 """
 
+import argparse
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 from xml.etree import ElementTree
 
 DEGREE = math.pi / 180
@@ -36,8 +39,45 @@ HUB = 0.1  # of the radius: how far hub and spokes may be from the plane of a wh
 ROUNDING = 1e-9  # of a moment: an excess that is no fault
 
 
-class Fault(ValueError):
+class Fault(argparse.ArgumentTypeError, ValueError):
     """A value that cannot be meant; the message is one sentence for the user."""
+
+
+class Once(argparse.Action):
+    """An option with a value, which may be given once."""
+
+    def __call__(self, parser, namespace, values, option_string=None) -> None:  # noqa: ANN001 - as argparse calls it
+        before = getattr(namespace, self.dest, self.default)
+        if option_string and before is not self.default:
+            raise argparse.ArgumentError(self, f"it is given twice, as {shown(before)} and as {shown(values)}")
+        setattr(namespace, self.dest, values)
+
+
+def shown(value: Any) -> str:
+    """An option's value or values, as they are typed."""
+    return " ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+class Parser(argparse.ArgumentParser):
+    """Options are written out and given once; a fault is one sentence on stderr and exit status 2."""
+
+    def __init__(self, **how: Any) -> None:
+        super().__init__(allow_abbrev=False, **how)
+        self.register("action", None, Once)
+
+    def error(self, message: str) -> NoReturn:
+        name = self.prog.rpartition("/")[2]
+        self.exit(2, f"{name}: {message.rstrip('.')}. ./scripts/{name} --help explains it.\n")
+
+
+def single(given: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """Pairs as a dictionary; Fault where a name comes twice."""
+    found: dict[str, Any] = {}
+    for name, value in given:
+        if name in found:
+            raise Fault(f"{name} is given twice, as {found[name]} and as {value}: leave one of the two out.")
+        found[name] = value
+    return found
 
 
 def number(name: str, text: str, unit: str = "1") -> float:
@@ -56,8 +96,10 @@ def number(name: str, text: str, unit: str = "1") -> float:
 
 def parted(name: str, text: str) -> tuple[float, str]:
     """The number and the unit behind it, empty if there is none."""
-    match = re.fullmatch(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*(.*)", text.strip(), re.IGNORECASE)
-    if not match:
+    if "," in text:
+        raise Fault(f'{name} = "{text}" is not one number: the decimal mark is a point, not a comma.')
+    match = re.fullmatch(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[-+]?[0-9]+)?)\s*(.*)", text.strip(), re.IGNORECASE)
+    if not match or not math.isfinite(float(match[1])):
         raise Fault(f'{name} = "{text}" is not a number.')
     return float(match[1]), _plain(match[2])
 
@@ -106,31 +148,52 @@ class Variable(NamedTuple):
         """The start value; 1 is true."""
         return float(self.start == "true") if self.type == "Boolean" else float(self.start)
 
-    def value_of(self, text: str) -> str:
-        """The value in SI as text for FMPy; Fault outside of the limits that the description sets."""
+    @property
+    def words(self) -> dict[str, float]:
+        """Those that stand for its values, none of a number; the numbers are taken too."""
         if self.type == "Boolean":
-            if text not in ("true", "false"):
-                raise Fault(f'{self.name} = "{text}" must be true or false.')
-            return text
-        if self.type == "Integer" and (words := dict(re.findall(r"\b(\d) ([a-z]\w*)", self.description))):
-            numbers = {word: number for number, word in words.items()}
-            if text not in words and text not in numbers:
-                listed = ", ".join(f"{number} ({word})" for number, word in words.items())
-                raise Fault(f'{self.name} = "{text}" is not one of {listed}.')
-            return numbers.get(text, text)
+            return {"false": 0.0, "true": 1.0}
+        named = re.findall(r"\b(\d) ([a-z]\w*)", self.description) if self.type == "Integer" else ()
+        return {word: float(number) for number, word in named}
+
+    def number_of(self, text: str) -> float:
+        """The value in SI, that of a word too; Fault outside of the limits that the description sets."""
+        words = self.words
+        if (word := text.strip().lower()) in words:
+            return words[word]
+        if words and not re.fullmatch(r"[-+.,0-9]+", text.strip()):
+            raise self._no_word(f'"{text}"')
         value = number(self.name, text, self.unit or "1")
+        try:
+            return self.checked(value)
+        except Fault as fault:
+            bare = self.unit == "rad" and not parted(self.name, text)[1]
+            if not bare or not float(self.low or "-inf") <= value * DEGREE <= float(self.high or "inf"):
+                raise
+            raise Fault(f"{fault} Do you mean {text.strip()}deg?") from None
+
+    def checked(self, value: float) -> float:
+        """A value in SI; Fault where the variable cannot have it."""
+        if self.words and value not in self.words.values():
+            raise self._no_word(f"{value:g}")
         if self.name == "slope" and value < 0:
             raise Fault("slope must be at least 0: slope_direction=180deg turns uphill into downhill.")
         above = self.description.endswith("above 0") or ", above 0;" in self.description
-        low, high = float(self.low or "-inf"), float(self.high or "inf")
-        try:
-            limited(self.name, value, self.unit, low, high, above=above)
-        except Fault as fault:
-            if self.unit != "rad" or parted(self.name, text)[1] or not low <= value * DEGREE <= high:
-                raise
-            raise Fault(f"{fault} Do you mean {text.strip()}deg?") from None
+        limited(self.name, value, self.unit, float(self.low or "-inf"), float(self.high or "inf"), above=above)
         if self.type == "Integer" and value != int(value):
             raise Fault(f"{self.name} = {value:g} must be a whole number.")
+        return value
+
+    def _no_word(self, given: str) -> Fault:
+        bare = self.type == "Boolean"
+        listed = (word if bare else f"{number:g} ({word})" for word, number in self.words.items())
+        return Fault(f"{self.name} = {given} is not one of {', '.join(listed)}.")
+
+    def value_of(self, text: str) -> str:
+        """The value in SI as text for FMPy."""
+        value = self.number_of(text)
+        if self.type == "Boolean":
+            return "true" if value else "false"
         return repr(int(value)) if value == int(value) else repr(value)
 
     def said(self, value: float) -> str:

@@ -79,7 +79,7 @@ REFUSED |= {"output_interval=20": "too long", "wheel=tank": "There is no wheel",
 @pytest.mark.parametrize(("argument", "words"), REFUSED.items())
 def test_what_cannot_be_meant_is_refused_with_one_sentence(root, argument, words):
     done = ask(root, argument)
-    assert done.returncode == 1 and done.stdout == ""
+    assert done.returncode == 2 and done.stdout == ""
     assert words in done.stderr and done.stderr.count("\n") == 1
 
 
@@ -114,12 +114,12 @@ def test_a_speed_is_that_of_the_centre_along_the_heading_of_a_leaning_wheel_too(
 
 def test_a_speed_and_a_spin_are_not_given_together(root):
     done = ask(root, "v=3", "phi_dot_start=-2")
-    assert done.returncode == 1 and "phi_dot_start follows from v" in done.stderr
+    assert done.returncode == 2 and "phi_dot_start follows from v" in done.stderr
 
 
 def test_of_a_ready_body_and_its_moments_one_is_given(root):
     done = ask(root, "body=torus", "m=12kg", "J_z=1")
-    assert done.returncode == 1 and "J_z follows from m, r_0 and r with body=torus" in done.stderr
+    assert done.returncode == 2 and "J_z follows from m, r_0 and r with body=torus" in done.stderr
 
 
 def rings(rho: np.ndarray, z: np.ndarray, masses: np.ndarray) -> dict[str, float]:

@@ -194,20 +194,22 @@ def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
     return wanted
 
 
-def main() -> None:
-    """Draw everything, or the one scene that has a motion; else one line on stderr and exit status 1."""
+def main(folder: Path = RESULTS) -> None:
+    """Draw everything in a folder, or the one scene that has a motion; else one line on stderr and exit status 1. The
+    paths that are printed are those in the folder of the results."""
     style.use_style()
     scenes, faults = [], []
     for name in ("free", "friction"):
         try:
-            scenes.append(read_scene(RESULTS / f"{name}.csv"))
+            scenes.append(read_scene(folder / f"{name}.csv"))
         except SceneError as fault:
             faults.append(str(fault))
     try:
         if not scenes:
             raise SceneError("Neither scene has a motion to draw.")
         with Pool() as processes:
-            print(*chain(*processes.starmap(draw, pictures(scenes, RESULTS), chunksize=1)), sep="\n")
+            drawn = chain(*processes.starmap(draw, pictures(scenes, folder), chunksize=1))
+            print(*(RESULTS / path.name for path in drawn), sep="\n")
         for warning in [*warnings_of(scenes), *faults]:
             print(f"run: warning: {warning}", file=sys.stderr)
     except SceneError as fault:
@@ -215,4 +217,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(*map(Path, sys.argv[1:]))

@@ -23,6 +23,7 @@ from values import (  # noqa: E402
     moments,
     ready,
     scale,
+    single,
     spin,
     suggestion,
     thrown,
@@ -65,16 +66,13 @@ def usage() -> str:
 def values(arguments: list[str]) -> dict[str, str]:
     """What is given, by name, in SI; of a ready wheel also friction and times, in proportion to its radius."""
     takes, names = known(), wheels()
-    found, given, solid = {}, {}, ""
+    found, typed = {}, []
     for argument in arguments:
         name, equals, text = argument.partition("=")
         if name == "wheel" or (not equals and name in names):
-            body = ready(text or name)
-            body |= {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
-            body["stop_time"] = float(f"{10 * scale(body, s=1):.2g}")
-            found = {name: repr(value) for name, value in (body | thrown(text or name)).items()}
+            typed.append(("A ready wheel", text or name))
         elif name == "body" or (not equals and name in bodies()):
-            solid = text or name
+            typed.append(("A body", text or name))
         elif not equals:
             meant = suggestion(name, dict.fromkeys([*names, *bodies()], ""))
             kinds = "neither name=value nor a ready wheel or body"
@@ -83,7 +81,15 @@ def values(arguments: list[str]) -> dict[str, str]:
             meant = suggestion(name, {n: v.description for n, v in takes.items()})
             raise Fault(f'wheel.fmu has no parameter or input "{name}".{meant} ./scripts/run --help lists them.')
         else:
-            given[name] = takes[name].value_of(text)
+            typed.append((name, text))
+    given = single(typed)
+    wheel, solid = (given.pop(kind, "") for kind in ("A ready wheel", "A body"))
+    given = {name: takes[name].value_of(text) for name, text in given.items()}
+    if wheel:
+        body = ready(wheel)
+        body |= {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
+        body["stop_time"] = float(f"{10 * scale(body, s=1):.2g}")
+        found = {name: repr(value) for name, value in (body | thrown(wheel)).items()}
     if solid and (both := [name for name in MOMENTS if name in given]):
         raise Fault(f"{both[0]} follows from m, r_0 and r with body={solid}: leave one of the two out.")
     found |= rolling(given, takes, found)
@@ -123,7 +129,8 @@ def main(arguments: list[str]) -> None:
     try:
         print(usage() if {"-h", "--help"} & {*arguments} else "\n".join(command(values(arguments))))
     except Fault as fault:
-        sys.exit(f"run: {fault}")
+        print(f"run: {fault}", file=sys.stderr)
+        sys.exit(2)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,9 @@ from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
 
+from outputs import check
+from values import Fault
+
 from page import document, options
 from page.bodies import Body, ViewError, read_bodies
 
@@ -16,13 +19,16 @@ PLACES = {"fl": "front left", "fr": "front right", "rl": "rear left", "rr": "rea
 def main(kind: str, *words: str) -> None:
     """Write a page; a fault of the input ends the program with one sentence."""
     try:
-        output, size = live(*map(Path, words)) if kind == "live" else recorded(options.arguments(words))
-    except ViewError as fault:
-        sys.exit(f"view: {fault}")
+        output, size = live(*words) if kind == "live" else recorded(options.arguments(words))
+    except (ViewError, Fault) as fault:
+        print(f"view: {fault}", file=sys.stderr)
+        sys.exit(2)
     print(f"{output} ({size / 1e6:.1f} MB): open it in a browser.")
 
 
-def live(wasm: Path, output: Path) -> tuple[Path, int]:
+def live(module: str, page: str, overwrite: str = "") -> tuple[Path, int]:
+    wasm, output = Path(module), Path(page)
+    check([output], [wasm], options.is_page, overwrite=overwrite == "--overwrite")
     return output, document.write(output, "The wheel, live", [], wasm=wasm)
 
 

@@ -4,13 +4,14 @@ SI units, fixed axes X, Y, Z, Z up, angles in rad and not wrapped. A column `nam
 columns without such a prefix are one wheel, called as the file.
 """
 
-import csv
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
+from csv_file import Table, read_table
 from numpy.typing import NDArray
+from values import Fault
 
 from diagrams.start_values import variables
 
@@ -21,7 +22,6 @@ SLIDING = ("slip_x", "slip_y")
 RATES = tuple(f"{name}_dot" for name in (*POSE, "Z_O"))
 PARAMETERS = tuple(variables("parameter"))
 BODY_POSE = ("X", "Y", "Z", "yaw", "pitch", "roll")
-BOOLEANS = {"False": "0", "True": "1"}  # as FMPy writes them
 ALIASES = {"psi": "yaw", "theta": "pitch", "phi": "roll"}  # of a car's body
 PAPER_WHEEL = (0.3, 0.05)  # r_0, r in m, (27)
 
@@ -44,47 +44,44 @@ class Body:
     label: str = ""
 
 
-def read_columns(path: Path) -> dict[str, list[str]]:
-    """The columns of a CSV file with a header, as texts."""
+def read_columns(path: Path) -> Table:
+    """The table of a CSV file that has a motion."""
     try:
-        with path.open(newline="", encoding="utf-8") as file:
-            header, *rows = [row for row in csv.reader(file) if row] or [[]]
-    except (OSError, UnicodeDecodeError) as fault:
-        reason = getattr(fault, "strerror", None) or "it is no text file"
-        raise ViewError(f"{path} cannot be read: {reason}.") from fault
-    if "time" not in header:
+        table = read_table(path)
+    except Fault as fault:
+        raise ViewError(str(fault)) from None
+    if "time" not in table.columns:
         raise ViewError(f"{path} has no column time; a file as `fmpy simulate --output-file` writes it is needed.")
-    if len(rows) < 2:
-        raise ViewError(f"{path} has {len(rows)} rows of data; a motion needs at least two.")
-    if wrong := [number for number, row in enumerate(rows, 2) if len(row) != len(header)]:
-        raise ViewError(f"{path}, line {wrong[0]}: not as many values as the {len(header)} names of the first line.")
-    return dict(zip(header, map(list, zip(*rows, strict=True)), strict=True))
+    if len(table.lines) < 2:
+        raise ViewError(f"{path} has {len(table.lines)} rows of data; a motion needs at least two.")
+    return table
 
 
-def numbers(path: Path, name: str, texts: list[str]) -> Array:
+def numbers(table: Table, name: str) -> Array:
     """One column as finite numbers."""
     try:
-        values = np.array([BOOLEANS.get(text, text) for text in texts], dtype=float)
-    except ValueError:
-        values = np.array([np.nan])
+        values = np.array(table.numbers(name))
+    except Fault as fault:
+        raise ViewError(str(fault)) from None
     if not np.isfinite(values).all():
-        raise ViewError(f"{path}: the column {name} holds something that is no finite number.")
+        line = table.lines[int(np.argmin(np.isfinite(values)))]
+        raise ViewError(f"{table.path}, line {line}: {name} is not finite.")
     return values
 
 
 def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | None = None) -> list[Body]:
     """All bodies of one file. given: parameters in the place of the file's; box: size of a car's body in m."""
-    texts = read_columns(path)
-    time = numbers(path, "time", texts.pop("time"))
+    table = read_columns(path)
+    time = numbers(table, "time")
     if not (np.diff(time) >= 0).all():
         raise ViewError(f"{path}: the column time does not rise.")
     if time[-1] == time[0]:
         raise ViewError(f"{path} has no motion to show: all rows are of one instant.")
     kept = np.append(np.diff(time) > 0, True)  # of two rows at one instant the later
-    groups: dict[str, dict[str, list[str]]] = defaultdict(dict)
-    for name, column in texts.items():
+    groups: dict[str, dict[str, str]] = defaultdict(dict)
+    for name in filter("time".__ne__, table.columns):
         prefix, _, short = name.rpartition(".")
-        groups[prefix][short] = column
+        groups[prefix][short] = name
     bodies = []
     for prefix, group in groups.items():
         rolls = group.keys() >= set(POSE)
@@ -92,7 +89,7 @@ def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | 
             group = {ALIASES.get(short, short): column for short, column in group.items()}
         wanted = (*POSE, *SHOWN, *SLIDING, *RATES, *PARAMETERS) if rolls else BODY_POSE
         if rolls or group.keys() >= {"X", "Y", "Z"}:
-            columns = {short: numbers(path, short, group[short])[kept] for short in wanted if short in group}
+            columns = {short: numbers(table, group[short])[kept] for short in wanted if short in group}
             body = Body(prefix or path.stem, {"time": time[kept]} | columns)
             bodies.append(make_wheel(body, given or {}) if rolls else body)
         elif not prefix and len(groups) == 1:

@@ -11,6 +11,7 @@ from importlib.metadata import distribution
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
+from outputs import fresh
 
 from diagrams.start_values import ROOT, wheels
 from diagrams.start_values import bodies as ready_bodies
@@ -80,6 +81,6 @@ def write(output: Path, title: str, bodies: list[Body], sources: int = 1, wasm: 
     data |= {"live": wheel_itself(wasm) if wasm else None}
     parts = {"licences": notice, "data": json.dumps(data).replace("<", "\\u003c"), "modules": modules(three)}
     page = Environment(loader=FileSystemLoader(WEB)).get_template("page.html").render(title=title, **parts)
-    output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_text(page, encoding="utf-8")
+    with fresh(output) as new:
+        new.write_text(page, encoding="utf-8")
     return len(page.encode())

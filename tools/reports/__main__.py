@@ -43,7 +43,7 @@ def parts_of(module: ModuleType) -> list[Part]:
 def measure(names: list[str], folder: Path, options: Namespace) -> None:
     library = Library.unpacked(build_folder() / "wheel.fmu")
     parts = {name: parts_of(module(name)) for name in names}
-    with tqdm(total=sum(part.seconds for of in parts.values() for part in of), bar_format=BAR) as bar:
+    with tqdm(total=sum(part.seconds for of in parts.values() for part in of), bar_format=BAR, disable=None) as bar:
         for name in names:
             report = Report(name, library, folder, options.quick)
             for part in parts[name]:

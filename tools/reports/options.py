@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "examples" / "python"))
+from values import Parser  # noqa: E402
 
 DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its data into build/report/latest, or with
 --publish into docs/results, which is kept under version control."""
@@ -14,7 +18,7 @@ NAMES = tuple(name for name in EVERY.split() if (EXAMPLES / OF.get(name, "")).ex
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="scripts/report", description=DESCRIPTION)
+    parser = Parser(prog="scripts/report", description=DESCRIPTION)
     parser.add_argument("names", nargs="+", metavar="NAME", choices=(*NAMES, "all"), help=", ".join((*NAMES, "all")))
     target = parser.add_mutually_exclusive_group()
     target.add_argument("--publish", action="store_true", help="write into docs/results")

@@ -11,7 +11,8 @@ zarr, to write its results itself), the caller also xarray.
 import sys
 from pathlib import Path
 
-from .plan import Status, Study, StudyError
-
 sys.path.append(str(Path(__file__).resolve().parents[2] / "python"))  # of the values that a user types
+
+from .plan import Status, Study, StudyError  # noqa: E402
+
 __all__ = ["Status", "Study", "StudyError"]

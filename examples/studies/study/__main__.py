@@ -1,20 +1,11 @@
 """The command ./scripts/study: a study from a file, one of the examples by name, or one written as options.
 
 Arguments are read, and refused where wrong, by Python alone, before anything is installed. Names are checked against
-the FMU's modelDescription.xml. Values are in SI units, or have a unit behind them. --help ends with these
-
-examples:
-  ./scripts/study fates                     one of the examples: {names}
-  ./scripts/study fates --wheel coin        with a ready wheel: {wheels}
-  ./scripts/study fates --body disc         with a homogeneous body of the same m, r_0 and r
-  ./scripts/study my_study.py               a file that defines study = Study(...); see docs/studies.md
-  ./scripts/study --vary theta_start=60deg:90deg:31 --vary s=0,0.01,0.03 --set phi_dot_start=-3 \\
-      --measure lowest=lowest --out results/studies/lean.zarr --csv
-  ./scripts/study --list starts.csv         one wheel per row; the first row has the names
+the FMU's modelDescription.xml. Values are in SI units, or have a unit behind them.
 """
 
 import argparse
-import csv
+import re
 import runpy
 import sys
 import time
@@ -24,62 +15,86 @@ from pathlib import Path
 EXAMPLES = Path(__file__).resolve().parent.parent
 if not __package__:  # run as a file, by scripts/help
     sys.path[:0] = [str(EXAMPLES), str(EXAMPLES.parent / "python")]
-from values import MOMENTS, Fault, bodies, number, parted, ready, suggestion, variables, wheels  # noqa: E402
+import outputs  # noqa: E402
+from csv_file import read_table  # noqa: E402
+from values import (  # noqa: E402
+    MOMENTS,
+    Fault,
+    Parser,
+    Variable,
+    bodies,
+    number,
+    parted,
+    ready,
+    single,
+    suggestion,
+    variables,
+    wheels,
+)
 
 from study.plan import ROOT, SETTABLE, Study, StudyError, check_names, description  # noqa: E402
 
 NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))  # the studies that lie beside this package
+SHOWN = """examples:
+  ./scripts/study fates                     one of the examples: {names}
+  ./scripts/study fates --wheel coin        with a ready wheel: {wheels}
+  ./scripts/study fates --body disc         with a homogeneous body of the same m, r_0 and r
+  ./scripts/study my_study.py               a file that defines study = Study(...); see docs/studies.md
+  ./scripts/study --vary theta_start=60deg:90deg:31 --vary s=0,0.01,0.03 --set phi_dot_start=-3 \\
+      --measure lowest=lowest --out results/studies/lean.zarr --csv
+  ./scripts/study --list starts.csv         one wheel per row; the first row has the names
+"""
 
 
-def numbers(name: str, text: str, unit: str) -> list[float]:
+def numbers(variable: Variable, text: str) -> list[float]:
     """`1,2,3` or `first:last:count`; a range of angles in degrees is even in degrees, to the last digit."""
+    name, unit = variable.name, variable.unit or "1"
     if ":" not in text:
-        return [number(name, part, unit) for part in text.split(",")]
+        parts = text.split(",")
+        if any(re.match(r"\s*0[0-9]", part) for part in parts[1:]):
+            raise Fault(f"--vary {name}={text}: commas part the values; the decimal mark is a point.")
+        return [variable.number_of(part) for part in parts]
     first, last, count = [*text.split(":"), "", ""][:3]
-    if not count.isdigit() or int(count) < 2:
+    if not re.fullmatch(r"[0-9]{1,9}", count) or int(count) < 2 or text.count(":") > 2:
         raise StudyError(f"--vary {name}={text}: write --vary NAME=1,2,3 or NAME=first:last:count.")
     (begin, given), (end, other) = parted(name, first), parted(name, last)
     if given != other:
         begin, end, given = number(name, first, unit), number(name, last, unit), ""
     step = (end - begin) / (int(count) - 1)
     evenly = [*(begin + k * step for k in range(int(count) - 1)), end]
-    return [number(name, f"{value!r}{given}", unit) for value in evenly]
+    return [variable.number_of(f"{value!r}{given}") for value in evenly]
 
 
-def pairs(texts: list[str]) -> dict[str, str]:
+def pairs(option: str, texts: list[str]) -> dict[str, str]:
     """NAME=VALUE options as a dictionary."""
-    return dict(text.partition("=")[::2] for text in texts)
+    parts = [text.partition("=") for text in texts]
+    if bare := [name for name, equals, text in parts if not (name and equals and text)]:
+        raise Fault(f'{option} "{bare[0]}" is not of the form NAME=VALUE.')
+    return single((name, text) for name, _, text in parts)
 
 
 def study_of(arguments: argparse.Namespace) -> Study:
     """The study that the options describe, checked."""
     known = variables(description(arguments.fmu))
 
-    def unit(name: str) -> str:
+    def typed(name: str) -> Variable:
         check_names([name], SETTABLE, known)
-        return known[name].unit or "1"
+        return known[name]
 
-    grid = {name: numbers(name, text, unit(name)) for name, text in pairs(arguments.vary).items()}
-    rows = {name: numbers(name, ",".join(column), unit(name)) for name, *column in columns(arguments.list)}
+    grid = {name: numbers(typed(name), text) for name, text in pairs("--vary", arguments.vary).items()}
+    table = read_table(arguments.list) if arguments.list else None
+    rows = {name: table.read(name, typed(name).number_of) for name in table.columns} if table else {}
     if bool(grid) == bool(rows):
         raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
     derived = MOMENTS if arguments.body else ()
     values = {name: x for name, x in arguments.ready.items() if name not in {*grid, *rows, *derived}}
-    values |= {name: number(name, text, unit(name)) for name, text in pairs(arguments.set).items()}
+    values |= {name: typed(name).number_of(text) for name, text in pairs("--set", arguments.set).items()}
     names = ("history", "stop_time", "interval", "tolerance", "branch_at", "body")
     fields = {name: getattr(arguments, name) for name in names}
-    fields |= {"measures": pairs(arguments.measure)} if arguments.measure else {}
+    fields |= {"measures": pairs("--measure", arguments.measure)} if arguments.measure else {}
     study = Study(grid=grid, list=rows, values=values, **fields)
     study.check(known)
     return study
-
-
-def columns(path: Path | None) -> list[tuple[str, ...]]:
-    """Of a CSV file: each begins with a name."""
-    try:
-        return [*zip(*filter(None, csv.reader(path.open(newline=""))), strict=True)] if path else []
-    except (OSError, ValueError) as fault:
-        raise StudyError(f"--list {path}: a row of names, then rows of numbers, are expected ({fault}).") from None
 
 
 def seconds(text: str) -> float:
@@ -98,10 +113,10 @@ def file_of(name: str) -> Path:
 
 def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     """The arguments, `study` as the path of a file or as the Study that the others describe; Fault, StudyError."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="./scripts/study",
         description="Runs many wheels on all cores or on a Dask cluster. Started again, it continues where it stopped.",
-        epilog=__doc__[__doc__.index("examples:") :].format(names=", ".join(NAMES), wheels=", ".join(wheels())),
+        epilog=SHOWN.format(names=", ".join(NAMES), wheels=", ".join(wheels())),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add, several = parser.add_argument, {"action": "append", "default": []}
@@ -127,7 +142,7 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--scheduler", metavar="tcp://HOST:PORT", help="a running Dask scheduler instead")
     add("--fmu", type=Path, default=ROOT / "wheel.fmu")
     add("--out", metavar="PLACE", help="Zarr folder of the results, or its URL (results/studies/NAME.zarr)")
-    add("--overwrite", action="store_true", help="discard the results that are there")
+    add("--overwrite", action="store_true", help="discard the results and files that are there")
     add("--netcdf", action="store_true", help="a copy as NetCDF beside the Zarr folder")
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
     add("--publish", action="store_true", help="write an example's figure into docs/figures")
@@ -156,24 +171,35 @@ def conduct(arguments: argparse.Namespace) -> None:
     if isinstance(arguments.study, Path):
         content = study_file(arguments.study, arguments.wheel, arguments.body)
     from .compute import run
-    from .dataset import export, summarize
+    from .dataset import export, exported, summarize
 
     stem = ROOT / "results" / "studies" / content["name"]
-    arguments.out = out = arguments.out or str(stem.with_suffix(".zarr"))
+    arguments.out = out = arguments.out or f"{stem}.zarr"
     if "://" not in out:
-        stem = Path(out).with_suffix("")
+        stem = Path(out.removesuffix(".zarr"))
+    if "table" in content and arguments.netcdf:
+        raise StudyError("--netcdf: this study has a table of its own, which is written as NetCDF.")
+    asked = {".nc": arguments.netcdf, ".csv": arguments.csv}
+    exports = {Path(f"{stem}{end}"): end for end in asked if asked[end]}
+    written = [*exports, *[Path(f"{stem}.nc")] * ("table" in content)]
+    if "draw" in content and not arguments.publish:
+        written.append(Path(f"{stem}.png"))
+    folder = [Path(out)] * ("://" not in out)
+    inputs = [arguments.fmu, *filter(None, [arguments.list]), *[arguments.study] * isinstance(arguments.study, Path)]
+    before = exported(out)
+    outputs.check([*folder, *written], inputs, lambda path: path.name in before, overwrite=arguments.overwrite)
     begin = time.perf_counter()
     workers = arguments.scheduler or arguments.workers
     results = run(content["study"], out, fmu=arguments.fmu, workers=workers, overwrite=arguments.overwrite)
+    exported(out, {path.name for path in written})
     print(summarize(results, time.perf_counter() - begin))
-    asked = {".nc": arguments.netcdf, ".csv": arguments.csv}
-    written = [out, *(export(results, stem.with_suffix(end)) for end in asked if asked[end])]
+    paths = [out, *(export(results, path) for path in exports)]
     if "table" in content:  # an example's own table and figure
         table = content["table"](results)
-        written.append(export(table, stem.with_suffix(".nc")))
+        paths.append(export(table, Path(f"{stem}.nc")))
         figure = ROOT / "docs" / "figures" / f"study_{stem.name}" if arguments.publish else stem
-        written += [content["draw"](table, figure)] if "draw" in content else []
-    print("\n".join(f"Wrote {path}" for path in written))
+        paths += [content["draw"](table, figure)] if "draw" in content else []
+    print("\n".join(f"Wrote {path}" for path in paths))
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -25,6 +25,8 @@ from distributed import Client, LocalCluster, as_completed
 from distributed.deploy import Cluster
 from distributed.scheduler import KilledWorker
 from fmpy import read_model_description
+from fmpy.model_description import ModelDescription
+from outputs import alone
 from tqdm import tqdm
 
 from .dataset import TITLE, axes_of, doubtful, open_results, points, provenance, template
@@ -56,16 +58,30 @@ def run(
     chunk      wheels that are run and written together; by the size of the study if None
     overwrite  discards the results that are there, also those of another study
 
-    The environment variable TQDM_DISABLE=1 hides the progress bar.
+    The progress bar is for terminals; the environment variable TQDM_DISABLE=1 hides it there.
     """
     if not Path(fmu).is_file():
         raise StudyError(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
     description = read_model_description(str(fmu), validate=False)
     study.check({v.name: v for v in description.modelVariables})
-    sha256 = hashlib.sha256(Path(fmu).read_bytes()).hexdigest()
+    place = str(out) if "://" in str(out) else str(Path(out).resolve())
+    with nullcontext() if "://" in place else alone(Path(place)):
+        return fill(study, place, Path(fmu), description, workers, chunk, overwrite)
+
+
+def fill(
+    study: Study,
+    place: str,
+    fmu: Path,
+    description: ModelDescription,
+    workers: int | str | Cluster | None,
+    chunk: int | None,
+    overwrite: bool,
+) -> xr.Dataset:
+    """The results with all their wheels, by one caller at a time."""
+    sha256 = hashlib.sha256(fmu.read_bytes()).hexdigest()
     fingerprint = hashlib.sha256(json.dumps([asdict(study), sha256]).encode()).hexdigest()
-    place, mark = str(out) if "://" in str(out) else str(Path(out).resolve()), uuid.uuid4().hex
-    group = kept(place, fingerprint, overwrite)
+    mark, group = uuid.uuid4().hex, kept(place, fingerprint, overwrite)
     if there := int((group["status"][:] != Status.not_computed).sum()) if group else 0:
         print(f"{there} of {group['status'].size} wheels are there already.", file=sys.stderr)
         if there == group["status"].size:
@@ -88,8 +104,9 @@ def run(
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = mark
         common = replace(study, grid={}, list={}, measures=study.restated({}))
-        task, every = partial(run_chunk, upload.name, common, place, mark), 0.2 if sys.stderr.isatty() else 10.0  # s
-        with tqdm(total=group["status"].size, initial=there, unit=" wheels", mininterval=every) as bar:
+        task = partial(run_chunk, upload.name, common, place, mark)
+        quiet = {} if sys.stderr.isatty() else {"disable": True}  # else as TQDM_DISABLE says
+        with tqdm(total=group["status"].size, initial=there, unit=" wheels", mininterval=0.2, **quiet) as bar:
             for region, result in finished(client, task, partial(points, axes), missing(group)):
                 if result is not None:
                     write(place, mark, region, result)

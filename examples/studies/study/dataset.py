@@ -4,14 +4,16 @@ import json
 import math
 import platform
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
 import dask.array as da
 import numpy as np
+import outputs
 import xarray as xr
+import zarr
 from fmpy.model_description import ModelDescription
 
 from .plan import OWN, PLANE_ANGLE, POINT, SLIP, Status, Study, counters_of
@@ -146,15 +148,27 @@ def curves(values: xr.DataArray, x: str, hue: str) -> list:
     return lines
 
 
+def exported(place: str, more: Collection[str] = ()) -> set[str]:
+    """The names of the files that were written beside these results, with those that will be."""
+    try:
+        group = zarr.open_group(place, mode="r+" if more else "r")
+    except (OSError, ValueError):  # nothing is there, or nothing of zarr's
+        return set()
+    names = {*group.attrs.get("exports", ()), *more}
+    if more:
+        group.attrs["exports"] = sorted(names)
+    return names
+
+
 def export(results: xr.Dataset, path: Path) -> Path:
     """Writes a copy as NetCDF (.nc), or as a table (.csv) with one row per wheel (and time)."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    if path.suffix == ".nc":
-        packed = {n: {"zlib": True} for n in results.data_vars if results[n].dtype.kind in "fiu"}
-        results.drop_encoding().to_netcdf(path, encoding=packed)
-    else:
-        rows = results.to_dataframe().reset_index()
-        rows.assign(status=[Status(code).name for code in rows["status"]]).to_csv(path, index=False)
+    with outputs.fresh(path) as new:
+        if path.suffix == ".nc":
+            packed = {n: {"zlib": True} for n in results.data_vars if results[n].dtype.kind in "fiu"}
+            results.drop_encoding().to_netcdf(new, encoding=packed)
+        else:
+            rows = results.to_dataframe().reset_index()
+            rows.assign(status=[Status(code).name for code in rows["status"]]).to_csv(new, index=False)
     return path
 
 

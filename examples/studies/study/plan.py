@@ -113,6 +113,16 @@ def parse_measure(text: str) -> Measure:
     return Measure(kind, of) if kind else Measure(side, quantity, in_si(quantity, limit))
 
 
+def value_in_si(name: str, value: float | str) -> float:
+    """A value, or a text as a user types it: `60deg`, `bdf`, `true`."""
+    if not isinstance(value, str):
+        return float(value)
+    from values import variables
+
+    known = variables(description(ROOT / "wheel.fmu"))
+    return known[name].number_of(value) if name in known else float(value)
+
+
 def in_si(quantity: str, limit: str) -> float:
     """A limit, which may have a unit; those that a worker gets have none."""
     with suppress(ValueError):
@@ -197,10 +207,11 @@ class Study:
 
     def __post_init__(self) -> None:
         try:  # Python's numbers: equal studies have equal fields, whatever types they were given in
-            plain = {kind: {n: [*map(float, x)] for n, x in getattr(self, kind).items()} for kind in KINDS}
+            columns = {kind: getattr(self, kind).items() for kind in KINDS}
+            plain = {kind: {n: [value_in_si(n, x) for x in xs] for n, xs in of} for kind, of in columns.items()}
+            plain |= {"values": {n: value_in_si(n, x) for n, x in self.values.items()}, "history": [*self.history]}
         except (TypeError, ValueError) as fault:
             raise StudyError(f"A name that varies needs a list of numbers ({fault}).") from None
-        plain |= {"values": {n: float(x) for n, x in self.values.items()}, "history": [*self.history]}
         for name, value in plain.items():
             object.__setattr__(self, name, value)
 
@@ -277,6 +288,9 @@ class Study:
         check_names([*(n for m in self.parsed.values() for n in m.variables), *self.history], READABLE, variables)
         lengths = {name: len(column) for name, column in self.list.items()}
         empty = quoted(name for name, values in self.varied.items() if not values)
+        every = {name: [*values] for name, values in self.varied.items()} | {n: [x] for n, x in self.values.items()}
+        parts = quoted(n for n, xs in every.items() if variables[n].type != "Real" and any(x % 1 for x in xs))
+        words = quoted(n for n, xs in every.items() if variables[n].type == "Boolean" and {*xs} - {0, 1})
         both = quoted(name for name in self.varied if name in self.values and self.branch_at is None)
         integers = quoted(name for name in self.sampled if variables[name].type != "Real")
         derived = MOMENTS if self.body else ()
@@ -291,6 +305,8 @@ class Study:
             (bool(self.grid) == bool(self.list), "Give either grid or list: it lists the wheels."),
             (self.body not in (None, *bodies()), f"There is no body '{self.body}'; there are {', '.join(bodies())}."),
             (fixed, f"{fixed} follows from m, r_0 and r with body {self.body}: leave one of the two out."),
+            (parts, f"The values of {parts} must be whole numbers."),
+            (words, f"The values of {words} must be true or false, 1 or 0."),
             (empty, f"The values of {empty} must be a list of numbers, at least one."),
             (both, f"{both} is in values and among the names that vary."),
             (len({*lengths.values()}) > 1, f"The columns of a list must have one length; these have: {lengths}."),

@@ -115,6 +115,45 @@ def test_the_command_reads_a_list_and_exports_tables(crew: LocalCluster, fmu_pat
     assert xr.open_dataset(tmp_path / "list.nc")["theta_start"].values[0] == np.radians(75)
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("--list starts.csv --out starts.zarr --csv", "is read"),
+        ("--list starts.csv --out ./link.zarr --csv", "is read"),
+        ("--list inner.zarr/starts.csv --out inner.zarr --overwrite", "is read"),
+        ("--vary s=0,0.1 --out thesis.zarr --csv", "thesis.csv is there and is not of this command"),
+        ("--vary s=0,0.1 --out thesis.zarr --netcdf", "thesis.nc is there and is not of this command"),
+        ("fates --out thesis.zarr", "thesis.nc is there and is not of this command"),
+    ],
+)
+def test_what_is_read_or_is_somebody_elses_is_not_overwritten(
+    words: str, said: str, tmp_path: Path, fmu_path: Path, capsys, monkeypatch
+) -> None:
+    text = "theta_start\n1.2\n"
+    (tmp_path / "inner.zarr").mkdir()
+    for name in ("starts.csv", "inner.zarr/starts.csv", "thesis.csv", "thesis.nc"):
+        (tmp_path / name).write_text(text)
+    (tmp_path / "link.csv").symlink_to("starts.csv")
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*.*") if path.is_file()}
+    monkeypatch.chdir(tmp_path)
+    assert main([*words.split(), "--fmu", str(fmu_path)]) == 2
+    errors = capsys.readouterr().err
+    assert said in errors and errors.count("\n") == 1
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*.*") if path.is_file()} == before
+
+
+def test_its_own_tables_are_written_again_and_on_request_those_of_others(
+    crew: LocalCluster, fmu_path: Path, tmp_path: Path, capsys
+) -> None:
+    (tmp_path / "a.csv").write_text("years of work")
+    where = ["--fmu", str(fmu_path), "--out", str(tmp_path / "a.zarr"), "--scheduler", crew.scheduler_address, "--csv"]
+    line = ["--vary", "s=0,0.1", "--stop-time", "0.1", *where]
+    assert main(line) == 2 and main([*line, "--overwrite"]) == 0
+    written = (tmp_path / "a.csv").read_text()
+    assert main(line) == 0 and (tmp_path / "a.csv").read_text() == written
+    assert "%|" not in capsys.readouterr().err  # a progress bar, which is for terminals
+
+
 VARY = {"theta_start=60deg:90deg:3": np.radians([60, 75, 90]), "slope=0%:10%:3": np.arctan([0, 0.05, 0.1])}
 VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3]}
 

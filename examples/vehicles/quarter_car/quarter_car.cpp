@@ -4,10 +4,12 @@
  *
  *   F   = k (r_B - r_O - (0, 0, l_0)) + c (v_B - v_O)         link force on the wheel, each axis its own k, c
  *   M_1 = -k_theta (theta - theta_0) - c_theta theta_dot      camber, M_2 alike with psi (toe)
- *   m_B a_B = -F - (0, 0, m_B g)
+ *   m_B a_B = -F - m_B g (sin(slope) cos(slope_direction), sin(slope) sin(slope_direction), cos(slope))
  *
  * Before t_couple the links carry nothing and B only runs on: a master that begins with all inputs at zero, as fmpy's
  * SSP simulation does, then does no harm. From t_drive on the hub motor gives M_drive. */
+#include <cmath>
+
 #include "model.hpp"
 
 using Eigen::Vector3d;
@@ -33,7 +35,10 @@ States model_rates(const Now& now, const States& x) {
   States x_dot = States::Zero();
   x_dot.head<3>() = x.segment<3>(3);
   if (!reached(now, t_couple)) return x_dot;
-  x_dot.segment<3>(3) = -link_force(now, x) / now.u[m_B] - Vector3d(0, 0, now.u[g]);
+  const double* u = now.u;
+  const double along = std::sin(u[slope]) * std::cos(u[slope_direction]);
+  const double across = std::sin(u[slope]) * std::sin(u[slope_direction]);
+  x_dot.segment<3>(3) = -link_force(now, x) / u[m_B] - u[g] * Vector3d(along, across, std::cos(u[slope]));
   return x_dot;
 }
 

@@ -10,21 +10,21 @@ import numpy as np
 from fmpy import simulate_fmu
 
 from .options import Manoeuvre, file, manoeuvres
-from .vehicle import Fmus, Table, Vehicle
+from .vehicle import Fmus, Table, Vehicle, road
 
 CIRCLE = manoeuvres("balance")["circle"]
 STEP = 0.005  # s
 T_CIRCLE, RADIUS, SPEED = CIRCLE["t_circle"], CIRCLE["R"], 0.7  # s, m, m/s
 TURN = 2 * pi * RADIUS / SPEED  # s
 # theta_dot_start is the push.
-START = {"s": 2e-3, "psi_start": 0, "theta_start": pi / 2, "phi_dot_start": -2, "theta_dot_start": 0.1, "X_O_start": 0}
+START = {"psi_start": 0, "theta_start": pi / 2, "phi_dot_start": -2, "theta_dot_start": 0.1, "X_O_start": 0}
 OF_WHEEL = file("balance")["record"][0][1:]  # the columns of the wheel
 
 
 def beside_alone(table: Table, course: Manoeuvre, fmus: Fmus) -> Table:
     """With the wheel without the controller, up to where its model ends, in columns alone.NAME."""
-    rows = len(table["time"])
-    how = {"fmi_type": "CoSimulation", "output": OF_WHEEL, "start_values": START, "output_interval": STEP}
+    rows, how = len(table["time"]), {"fmi_type": "CoSimulation", "output": OF_WHEEL, "output_interval": STEP}
+    how["start_values"] = START | road(course)
     alone = simulate_fmu(str(fmus["wheel"]), stop_time=course.stop, **how)[:rows]
     return table | {f"alone.{n}": np.pad(alone[n], (0, rows - len(alone)), constant_values=np.nan) for n in OF_WHEEL}
 
@@ -75,7 +75,7 @@ def verdict(table: Table, course: Manoeuvre) -> tuple[bool, list[str]]:
     return False, [single, f"Failed: the controller keeps it from falling over, {held}, not of {wanted:g} m."]
 
 
-BALANCE = Vehicle("balance", lambda _course: {"wheel": START}, verdict, complete=beside_alone)
+BALANCE = Vehicle("balance", lambda course: {"wheel": START | road(course)}, verdict, complete=beside_alone)
 
 
 def drive(fmus: Fmus, course: Manoeuvre = CIRCLE) -> Table:

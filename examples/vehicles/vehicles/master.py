@@ -160,7 +160,7 @@ class Master:
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
         try:
-            for i in tqdm(range(count + 1), disable=not progress, leave=False):
+            for i in tqdm(range(count + 1), disable=None if progress else True, leave=False):
                 t, to = (k * h if k < count else stop for k in (i, i + 1))
                 self._exchange(t, rates=exchange != "held")
                 if i % every == 0 or i == count:

@@ -6,6 +6,7 @@ the tables of variables. It needs the standard library alone; numbers may carry 
 """
 
 import math
+import re
 import sys
 import tomllib
 from dataclasses import dataclass, field, replace
@@ -16,8 +17,11 @@ from typing import Self
 EXAMPLES = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(EXAMPLES / "skeleton"), str(EXAMPLES.parent / "python")]
 from describe import Variable, read  # noqa: E402
-from values import Fault, limited, number, suggestion  # noqa: E402
+from values import Fault, limited, number, single, suggestion, variables  # noqa: E402
 
+# Of the road, as the wheel checks them; every vehicle takes them.
+ROAD = ("s", "slope", "slope_direction", "mu_max", "mu_slide")
+WHEEL = variables((EXAMPLES.parents[1] / "modelDescription.xml").read_bytes(), "parameter")
 EXCHANGES = ("held", "derivatives", "rollback")
 FOLDERS = {"axle": "axle", "car": "car", "suspended": "quarter_car", "balance": "balance"}
 
@@ -39,9 +43,13 @@ def parameters(model: str) -> dict[str, Variable]:
 
 @cache
 def every(vehicle: str) -> dict[str, Variable]:
-    """All parameters of a vehicle: of the run and the wheels first, then those of its models."""
+    """All parameters of a vehicle: of the run and the road first, then those of its models."""
     rows, models = file(vehicle).get("parameters", {}).items(), file(vehicle).get("models", ())
     own = {name: Variable("parameter", name, unit, x, limit, (), about) for name, (unit, x, limit, about) in rows}
+    if models:  # road = {...} of the file: the start values that are its own
+        starts = {name: WHEEL[name].preset for name in ROAD} | file(vehicle).get("road", {})
+        for name, x in starts.items():
+            own[name] = Variable("parameter", name, WHEEL[name].unit, x, "", (), WHEEL[name].description)
     return own | {n: v for model in models for n, v in parameters(model).items() if n not in own}
 
 
@@ -61,6 +69,8 @@ class Manoeuvre:
     exchange: str = "derivatives"
     h: float = 0.001  # s
     grid: float | None = None  # s, of the table
+    positive: tuple[str, ...] = ()  # parameters that have to be above zero
+    zero: tuple[str, ...] = ()  # that have to be zero
 
     @property
     def called(self) -> str:
@@ -100,6 +110,15 @@ def takes(vehicle: str) -> tuple[dict[str, tuple[str, ...]], dict[str, Variable]
     return words | ({"exchange": EXCHANGES} if "h" in numbers else {}), numbers
 
 
+def checked(of: Variable, value: float) -> float:
+    """A value within the limit of its table, and one of those that the description lists as `0: ...; 1: ...`."""
+    limited(of.name, value, of.unit, 0 if of.limit else -math.inf, above=of.limit == ">0")
+    listed = re.findall(r"(?:^|; )([0-9]): ", of.description)
+    if len(listed) > 1 and value not in map(float, listed):
+        raise Fault(f"{of.name} = {value:g} is not one of {', '.join(sorted(listed))}.")
+    return value
+
+
 def value(vehicle: str, argument: str) -> tuple[str, str | float]:
     """The name, and the word or number, of an argument."""
     (words, numbers), (name, equals, text) = takes(vehicle), argument.partition("=")
@@ -107,11 +126,10 @@ def value(vehicle: str, argument: str) -> tuple[str, str | float]:
         raise Fault(f'"{argument}" is not of the form name=value; --help lists the names.')
     if name in words:
         if text not in words[name]:
-            raise Fault(f"{name} is one of {', '.join(words[name])}, not {text}.")
+            raise Fault(f"{name} = {text} is not one of {', '.join(words[name])}.")
         return name, text
     if of := numbers.get(name):
-        low = 0 if of.limit else -math.inf
-        return name, limited(name, number(name, text, of.unit), of.unit, low, above=of.limit == ">0")
+        return name, WHEEL[name].number_of(text) if name in ROAD else checked(of, number(name, text, of.unit))
     if not numbers:
         raise Fault(f"{argument}: this example takes no parameters.")
     meant = suggestion(name, dict.fromkeys(words, "") | {n: v.description for n, v in numbers.items()})
@@ -126,12 +144,17 @@ def asked(vehicle: str = "", *rest: str) -> Manoeuvre | None:
     if vehicle not in ABOUT:
         meant = suggestion(vehicle, dict.fromkeys(ABOUT, ""))
         raise Fault(f'"{vehicle}" is no example; there are {", ".join(ABOUT)}.{meant}' if vehicle else usage())
+    single((argument.partition("=")[0], argument.partition("=")[2]) for argument in rest)
     given, of, described = dict(value(vehicle, argument) for argument in rest), manoeuvres(vehicle), file(vehicle)
     if not of:
         return None
     run = of[given.pop(described.get("word"), described.get("first", next(iter(of))))].changed(**given)
     if run.stop < run.h:
         raise Fault(f"stop = {run.stop:g}: it must be at least the step h, {run.h:g} s.")
+    if lacking := [name for name in run.positive if run[name] <= 0]:
+        raise Fault(f"{lacking[0]} = {run[lacking[0]]:g}: it must be above 0 in the manoeuvre {run.name}.")
+    if present := [name for name in run.zero if run[name]]:
+        raise Fault(f"{present[0]} = {run[present[0]]:g}: it must be 0 in the manoeuvre {run.name}.")
     for side in ("", "_right"):
         if f"mu_slide{side}" not in every(vehicle):
             continue

@@ -18,7 +18,7 @@ from support.paths import ROOT, build_folder
 
 from . import ssp
 from .master import Component, Connection, Ended, Master, Signal, loaded
-from .options import EXAMPLES, Manoeuvre, file
+from .options import EXAMPLES, ROAD, Manoeuvre, file
 
 Fmus = dict[str, Path]
 Table = dict[str, np.ndarray]
@@ -175,5 +175,5 @@ def upright(x: float, y: float, heading: float, speed: float, turn: float, R: fl
 
 
 def road(manoeuvre: Manoeuvre) -> dict[str, float]:
-    """The wheels' parameters that a manoeuvre gives: friction, slope, and the grip that a wheel checks, if any."""
-    return {n: manoeuvre[n] for n in ("s", "slope", "slope_direction", "mu_max", "mu_slide") if manoeuvre.given.get(n)}
+    """The wheels' parameters of the road: slope, friction, and the grip that a wheel checks, if any."""
+    return {name: manoeuvre[name] for name in ROAD}
