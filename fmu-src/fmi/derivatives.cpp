@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "instance.hpp"
+#include "slopes.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic;
 namespace legality = fmi::legality;
@@ -29,7 +30,7 @@ bool check_unknown(const Instance& i, fmi2ValueReference variable) {
 // During the run outputs depend on inputs alone, in model exchange on the states too; in initialization mode they
 // depend on the parameters.
 bool check_known(const Instance& i, fmi2ValueReference variable) {
-  const bool exchanged = i.simulation.kind() == wheel::Kind::model_exchange, begun = has_begun(i.simulation.phase());
+  const bool exchanged = i.wheel.kind() == wheel::Kind::model_exchange, begun = has_begun(i.wheel.phase());
   if (begun ? exchanged && wheel::state_index_of(variable) >= 0 : variable < wheel::stored_count) return true;
   return check_input(i, variable);
 }
@@ -48,7 +49,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
         return i.log(Topic::error, "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed.",
                      orders[k], values[k], wheel::row_of(v[k]).name, wheel::max_order);
     }
-    for (std::size_t k = 0; k < n; ++k) i.simulation.set(v[k], values[k], orders[k]);
+    for (std::size_t k = 0; k < n; ++k) wheel::set(i.wheel, v[k], values[k], orders[k]);
     return fmi2OK;
   });
 }
@@ -63,7 +64,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
                    wheel::row_of(v[k]).name))
         return fmi2Error;
     const fmi2Status status = i.prepare_reading(v, n);
-    if (status == fmi2OK) i.simulation.read_rates(v, n, values);
+    if (status == fmi2OK) wheel::read_rates(i.wheel, v, n, values);
     return status;
   });
 }
@@ -81,9 +82,9 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     if (!n_unknowns || !n_knowns) return fmi2OK;
     if (const fmi2Status status = i.prepare_reading(unknowns, n_unknowns)) return status;
     for (std::size_t k = 0; k < n_knowns; ++k)
-      if (!i.simulation.add_slopes(knowns[k], seeds[k], unknowns, n_unknowns, values))
+      if (!wheel::add_slopes(i.wheel, knowns[k], seeds[k], unknowns, n_unknowns, values))
         return i.log(Topic::error, "%s: no valid initial values near %s = %s for a derivative.",
-                     wheel::row_of(knowns[k]).name, i.simulation.value(knowns[k]));
+                     wheel::row_of(knowns[k]).name, wheel::value_of(i.wheel, knowns[k]));
     if (std::all_of(values, values + n_unknowns, [](double value) { return std::isfinite(value); })) return fmi2OK;
     return i.log(Topic::discard, "%s: a derivative is not finite here.");
   });

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "instance.hpp"
+#include "snapshot.hpp"
 
 using fmi::guarded, fmi::handle_of, fmi::Instance, fmi::no_fault;
 namespace legality = fmi::legality;
@@ -50,16 +51,16 @@ extern "C" {
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, legality::always, "fmi2GetFMUstate", [=](Instance& i) {
     if (!state) return null_pointer;
-    Snapshot* snapshot = allocate(state, i.simulation.state_size());
+    Snapshot* snapshot = allocate(state, wheel::state_size(i.wheel));
     if (!snapshot) return no_memory;
-    i.simulation.save_state(snapshot->bytes());
+    wheel::save_state(i.wheel, snapshot->bytes());
     return no_fault;
   });
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
   return with_state(c, "fmi2SetFMUstate", state, true, [](Instance& i, Snapshot& snapshot) {
-    return i.simulation.load_state(snapshot.bytes(), snapshot.size);
+    return wheel::load_state(i.wheel, snapshot.bytes(), snapshot.size);
   });
 }
 
@@ -90,7 +91,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
   return guarded(c, legality::always, "fmi2DeSerializeFMUstate", [=](Instance& i) {
     if (!state || !bytes) return null_pointer;
-    const char* fault = wheel::fault_of(i.simulation.kind(), reinterpret_cast<const unsigned char*>(bytes), size);
+    const char* fault = wheel::fault_of(i.wheel.kind(), reinterpret_cast<const unsigned char*>(bytes), size);
     Snapshot* snapshot = fault ? nullptr : allocate(state, size);
     if (!snapshot) return fault ? fault : no_memory;
     std::memcpy(snapshot->bytes(), bytes, size);

@@ -1,5 +1,6 @@
 // Instances: creation, logging, the checks that many functions share.
 #include "instance.hpp"
+#include "logbook.hpp"
 
 #include <cstdlib>
 #include <cstring>
@@ -56,7 +57,7 @@ const char* name_of_state(Phase phase) {
 const char* category_of(Topic topic) { return topics[static_cast<unsigned>(topic)].category; }
 
 Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind)
-    : Handle{.mark = own_mark}, reporter{.owner = this, .listens = listens, .take = take}, simulation(reporter, kind) {
+    : Handle{.mark = own_mark}, reporter{.owner = this, .listens = listens, .take = take}, wheel(reporter, kind) {
   if (!callbacks) return;
   logger_ = callbacks->logger;
   environment_ = callbacks->componentEnvironment;
@@ -87,22 +88,22 @@ Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callba
 
 // After the end of a run the message says what happened to the wheel, which helps a user more than a call state.
 fmi2Status Instance::refuse(const Rule& rule) {
-  const bool slave = simulation.kind() == wheel::Kind::co_simulation;
-  if (!rule.is_for(simulation.kind()))
+  const bool slave = wheel.kind() == wheel::Kind::co_simulation;
+  if (!rule.is_for(wheel.kind()))
     return log(Topic::error, "%s belongs to %s; this instance was made for %s.",
                slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
-  if (simulation.phase() == Phase::ended)
-    return log(Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.", simulation.ending().text,
-               simulation.time());
-  return log(Topic::error, "%s is not allowed in the state \"%s\".", name_of_state(simulation.phase()));
+  if (wheel.phase() == Phase::ended)
+    return log(Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.",
+               wheel::ending_of(wheel.run.in_force, wheel.run.ended_by).text, wheel.time());
+  return log(Topic::error, "%s is not allowed in the state \"%s\".", name_of_state(wheel.phase()));
 }
 
 fmi2Status Instance::prepare_reading(const fmi2ValueReference variables[], std::size_t count) {
   const fmi2ValueReference *const end = variables + count, *computed = variables;
   while (computed != end && *computed < wheel::stored_count) ++computed;
-  if (computed == end || has_state(simulation.phase())) return fmi2OK;
-  if (!simulation.is_prepared()) return fmi2Discard;
-  const bool readable = has_state(simulation.phase());
+  if (computed == end || has_state(wheel.phase())) return fmi2OK;
+  if (!wheel::is_prepared(wheel)) return fmi2Discard;
+  const bool readable = has_state(wheel.phase());
   const char* const name = wheel::row_of(*computed).name;
   return check(readable, "%s: \"%s\" has no value before a successful initialization.", name) ? fmi2OK : fmi2Error;
 }

@@ -1,4 +1,4 @@
-// One FMU instance: the master's callbacks and the simulation. And the guard every call passes.
+// One FMU instance: the master's callbacks and the wheel. And the guard every call passes.
 #pragma once
 
 #include <type_traits>
@@ -6,7 +6,7 @@
 #include "fmi2Functions.h"
 #include "handle.hpp"
 #include "legality.hpp"
-#include "simulation.hpp"
+#include "wheel.hpp"
 
 namespace fmi {
 
@@ -41,7 +41,7 @@ struct Instance : Handle {
   fmi2Status refuse(const Rule& rule);
 
   const wheel::Reporter reporter;
-  wheel::Simulation simulation;
+  wheel::Wheel wheel;
   // The function that is under way, for messages; null: none is. The logger must not call back into the instance.
   const char* called = nullptr;
   unsigned logged_topics = 0;
@@ -69,8 +69,9 @@ fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, 
   auto* const instance = handle_of<Instance>(component);
   if (!instance || instance->called) return fmi2Error;
   instance->called = name;
+  if (!rule.reads) instance->wheel.reading.forget();
   fmi2Status status = fmi2OK;
-  if (!rule.allows(instance->simulation.kind(), instance->simulation.phase()))
+  if (!rule.allows(instance->wheel.kind(), instance->wheel.phase()))
     status = instance->refuse(rule);
   else if constexpr (std::is_void_v<decltype(body(*instance))>)
     body(*instance);

@@ -84,27 +84,27 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
                    "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
                    "positive.",
                    start, stop, tolerance);
-    i.simulation.set_experiment(start, has_stop ? stop : wheel::Demand::never, has_tolerance ? tolerance : 0);
+    wheel::set_experiment(i.wheel, start, has_stop ? stop : wheel::Demand::never, has_tolerance ? tolerance : 0);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
   return guarded(c, legality::before_initialization, "fmi2EnterInitializationMode",
-                 [](Instance& i) { i.simulation.enter(wheel::Phase::initializing); });
+                 [](Instance& i) { i.wheel.run.phase = wheel::Phase::initializing; });
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
   return guarded(c, legality::exit_initialization, "fmi2ExitInitializationMode",
-                 [](Instance& i) { return i.simulation.start() ? fmi2OK : fmi2Error; });
+                 [](Instance& i) { return wheel::start(i.wheel) ? fmi2OK : fmi2Error; });
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-  return guarded(c, legality::terminate, "fmi2Terminate", [](Instance& i) { i.simulation.close(); });
+  return guarded(c, legality::terminate, "fmi2Terminate", [](Instance& i) { wheel::close(i.wheel); });
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-  return guarded(c, legality::always, "fmi2Reset", [](Instance& i) { i.simulation.reset(); });
+  return guarded(c, legality::always, "fmi2Reset", [](Instance& i) { wheel::reset(i.wheel); });
 }
 
 }  // extern "C"

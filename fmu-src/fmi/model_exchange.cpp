@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exchange.hpp"
 #include "instance.hpp"
 
-using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Simulation, wheel::Topic;
+using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Topic, wheel::Wheel;
 namespace legality = fmi::legality;
 
 namespace {
@@ -20,20 +21,20 @@ bool are_finite(const double* values, std::size_t count) {
 
 // Reads as many numbers as are needed, in initialization mode from the start values; Discard where they are not finite.
 fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], std::size_t count, int needed,
-                        const char* what, void (Simulation::*read)(double*)) {
+                        const char* what, void (*read)(Wheel&, double*)) {
   return guarded(c, legality::get_states, name, [=](Instance& i) {
     if (!check_count(i, values, count, needed)) return fmi2Error;
-    if (!i.simulation.is_prepared() || !has_state(i.simulation.phase())) return fmi2Discard;
-    (i.simulation.*read)(values);
+    if (!wheel::is_prepared(i.wheel) || !has_state(i.wheel.phase())) return fmi2Discard;
+    read(i.wheel, values);
     if (are_finite(values, count)) return fmi2OK;
-    return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.simulation.time(), what);
+    return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.wheel.time(), what);
   });
 }
 
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
 fmi2Status enter(fmi2Component c, const fmi::Rule& rule, const char* name, Phase mode) {
   return guarded(c, rule, name, [=](Instance& i) {
-    if (i.simulation.phase() != Phase::ended) i.simulation.enter(mode);
+    if (i.wheel.phase() != Phase::ended) i.wheel.run.phase = mode;
   });
 }
 
@@ -54,8 +55,8 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
   return guarded(c, legality::new_discrete_states, "fmi2NewDiscreteStates", [=](Instance& i) {
     if (!info) return "the event info is a null pointer";
     *info = {};
-    info->valuesOfContinuousStatesChanged = i.simulation.decide() ? fmi2True : fmi2False;
-    info->terminateSimulation = i.simulation.has_ended() ? fmi2True : fmi2False;
+    info->valuesOfContinuousStatesChanged = wheel::decide(i.wheel) ? fmi2True : fmi2False;
+    info->terminateSimulation = i.wheel.has_ended() ? fmi2True : fmi2False;
     return no_fault;
   });
 }
@@ -64,7 +65,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean
                                        fmi2Boolean* terminate) {
   return guarded(c, legality::while_integrating, "fmi2CompletedIntegratorStep", [=](Instance& i) {
     if (!enter_event_mode || !terminate) return "a result is a null pointer";
-    *enter_event_mode = i.simulation.has_event() ? fmi2True : fmi2False;
+    *enter_event_mode = wheel::has_event(i.wheel) ? fmi2True : fmi2False;
     *terminate = fmi2False;
     return no_fault;
   });
@@ -73,7 +74,8 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
   return guarded(c, legality::set_time, "fmi2SetTime", [=](Instance& i) {
     if (!std::isfinite(t)) return i.log(Topic::error, "%s: %s s: the time must be finite.", t);
-    i.simulation.set_time(t);
+    wheel::Run& run = i.wheel.run;
+    run.t = run.y_time = t - i.wheel.demand.start_time;
     return fmi2OK;
   });
 }
@@ -82,27 +84,25 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
   return guarded(c, legality::while_integrating, "fmi2SetContinuousStates", [=](Instance& i) {
     if (!check_count(i, x, n, wheel::state_count)) return fmi2Error;
     if (!are_finite(x, n)) return i.log(Topic::discard, "%s: a state is not finite.");
-    i.simulation.set_states(x);
+    std::copy_n(x, n, i.wheel.run.y);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_numbers(c, "fmi2GetContinuousStates", x, n, wheel::state_count, "states", &Simulation::states);
+  return read_numbers(c, "fmi2GetContinuousStates", x, n, wheel::state_count, "states", wheel::states);
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_numbers(c, "fmi2GetNominalsOfContinuousStates", x, n, wheel::state_count, "nominals",
-                      &Simulation::nominals);
+  return read_numbers(c, "fmi2GetNominalsOfContinuousStates", x, n, wheel::state_count, "nominals", wheel::nominals);
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
-  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count, "derivatives", &Simulation::derivatives);
+  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count, "derivatives", wheel::derivatives);
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count(), "indicators",
-                      &Simulation::indicators);
+  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count(), "indicators", wheel::indicators);
 }
 
 }  // extern "C"

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "instance.hpp"
+#include "motion.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Topic;
 namespace legality = fmi::legality;
@@ -23,7 +24,7 @@ bool same_time(double a, double b, double step) {
 bool is_past(double t, double stop) { return t - stop > step_rounding * (std::fabs(t) + std::fabs(stop)); }
 
 bool check_step(const Instance& i, double t, double h) {
-  const double reached = i.simulation.time(), stop = i.simulation.stop_time();
+  const double reached = i.wheel.time(), stop = i.wheel.demand.stop_time;
   return i.check(std::isfinite(t) && std::isfinite(h) && h >= 0,
                  "%s from %s s by %s s: times must be finite and the step not negative.", t, h) &&
          i.check(std::fabs(t + h - t - h) <= step_digits * h,
@@ -33,7 +34,7 @@ bool check_step(const Instance& i, double t, double h) {
 }
 
 // Of the last step, where its status may be asked for.
-fmi2Status last_status(const Instance& i) { return i.simulation.has_ended() ? fmi2Discard : fmi2OK; }
+fmi2Status last_status(const Instance& i) { return i.wheel.has_ended() ? fmi2Discard : fmi2OK; }
 
 constexpr long long no_status = 0x100000000;  // beyond what a caller can pass
 
@@ -58,7 +59,7 @@ extern "C" {
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
   return guarded(c, legality::do_step, "fmi2DoStep", [=](Instance& i) {
     if (!check_step(i, t, h)) return fmi2Error;
-    const solver::Outcome outcome = i.simulation.advance(t + h);
+    const solver::Outcome outcome = wheel::advance(i.wheel, t + h - i.wheel.demand.start_time);
     if (outcome == solver::Outcome::failed) return fmi2Error;
     return outcome == solver::Outcome::event ? fmi2Discard : fmi2OK;
   });
@@ -74,7 +75,7 @@ fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status*
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
   return get_status(c, "fmi2GetRealStatus", kind, fmi2LastSuccessfulTime, value,
-                    [](Instance& i) { return i.simulation.time(); });
+                    [](Instance& i) { return i.wheel.time(); });
 }
 
 fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer* value) {

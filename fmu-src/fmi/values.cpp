@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exchange.hpp"
 #include "instance.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic, wheel::Type;
@@ -35,7 +36,7 @@ fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
     if (!check_variables(i, type, variables, count, values)) return fmi2Error;
     const fmi2Status status = i.prepare_reading(variables, count);
     for (std::size_t k = 0; k < count && status == fmi2OK; ++k)
-      values[k] = represented<Value>(i.simulation.value(variables[k]));
+      values[k] = represented<Value>(wheel::value_of(i.wheel, variables[k]));
     return status;
   });
 }
@@ -43,10 +44,10 @@ fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
 // Parameters before the run, inputs and the road at any time, the states while another solver moves them.
 bool check_settable(const Instance& i, fmi2ValueReference variable) {
   const wheel::Row& row = wheel::row_of(variable);
-  const bool running = is_running(i.simulation.phase());
+  const bool running = is_running(i.wheel.phase());
   if (variable < wheel::stored_count)
     return i.check(!running || row.role != Role::parameter, "%s: \"%s\" cannot be set after initialization.", row.name);
-  return i.check(running && i.simulation.kind() == wheel::Kind::model_exchange && wheel::state_index_of(variable) >= 0,
+  return i.check(running && i.wheel.kind() == wheel::Kind::model_exchange && wheel::state_index_of(variable) >= 0,
                  "%s: \"%s\" is calculated and cannot be set.", row.name);
 }
 
@@ -56,9 +57,9 @@ bool check_value(Instance& i, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
   const bool bounded = variable < wheel::stored_count, low = bounded && value < row.min;
   const bool high = bounded && wheel::is_above(variable, value);
-  const bool switches = variable == wheel::variable::mu_slide && (value > 0) != i.simulation.can_slide();
-  if (!is_running(i.simulation.phase()) || (std::isfinite(value) && !low && !high && !switches)) return true;
-  const double kept = i.simulation.value(variable);
+  const bool switches = variable == wheel::variable::mu_slide && (value > 0) == !i.wheel.setup.sliding;
+  if (!is_running(i.wheel.phase()) || (std::isfinite(value) && !low && !high && !switches)) return true;
+  const double kept = wheel::value_of(i.wheel, variable);
   const char* const bound = low ? "at least" : variable == wheel::variable::slope ? "less than" : "at most";
   if (!std::isfinite(value))
     i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", row.name, value, kept);
@@ -80,7 +81,7 @@ fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
       if (!check_settable(i, variables[k])) return fmi2Error;
     for (std::size_t k = 0; k < count; ++k)
       if (!check_value(i, variables[k], static_cast<double>(values[k]))) return fmi2Discard;
-    for (std::size_t k = 0; k < count; ++k) i.simulation.set(variables[k], static_cast<double>(values[k]));
+    for (std::size_t k = 0; k < count; ++k) wheel::set(i.wheel, variables[k], static_cast<double>(values[k]));
     return fmi2OK;
   });
 }

@@ -86,6 +86,10 @@ void take_at_once(Wheel& w) {
   if (now.road != before) decide_law(w.setup, w.run.t, w.run.y, now);
 }
 
+void states(Wheel& w, double* x) { std::copy_n(w.run.y, state_count, x); }
+
+void nominals(Wheel& w, double* x) { scales_at(w.setup, w.run.y[w.setup.formulation->spin_index], x); }
+
 void derivatives(Wheel& w, double* x_dot) {
   ++w.run.counted.rhs;
   w.setup.formulation->derivative(&w.run.in_force.scene, above_ground(w.setup, w.run.y).data(), x_dot);

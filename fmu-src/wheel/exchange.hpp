@@ -20,6 +20,8 @@ int state_index_of(unsigned variable);
 // Writes run.in_force and demand.changed.
 void take_at_once(Wheel& wheel);
 
+void states(Wheel& wheel, double* x);
+void nominals(Wheel& wheel, double* x);
 // Out: state_count rates. A solver may try states beyond flat: there rates and margins are those of the flat wheel,
 // which are finite. These three write run.counted.
 void derivatives(Wheel& wheel, double* x_dot);

@@ -205,6 +205,7 @@ void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* ou
 }
 
 bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns, std::size_t count, double* sums) {
+  w.reading.forget();
   const bool parameter = known < first_input;
   if (parameter && row_of(known).type != Type::real) return true;
   const bool of_slip =

@@ -1,9 +1,12 @@
-// A wheel's initial state, and its present.
+// A wheel's initial state, its present, and its run from the parameters to the end.
 #include "wheel.hpp"
 
 #include <algorithm>
 
+#include "exchange.hpp"
 #include "law.hpp"
+#include "logbook.hpp"
+#include "motion.hpp"
 
 namespace wheel {
 namespace {
@@ -68,6 +71,61 @@ Present present(Wheel& w) {
   Present now = {&w.setup, y, scene, &w.run, &w.solution.solver};
   now.scene.ground = WHEEL_GROUND_BY_FORCE;
   return now;
+}
+
+void reset(Wheel& w) {
+  w.demand = Demand(w.kind());
+  w.run = Run();
+  w.endings = 0;
+}
+
+void set_experiment(Wheel& w, double start_time, double stop_time, double tolerance) {
+  const double taken = tolerance > 0 ? std::clamp(tolerance, tightest_tolerance, loosest_tolerance) : default_tolerance;
+  w.demand.start_time = start_time;
+  w.demand.stop_time = stop_time;
+  w.demand.tolerance = taken;
+  if (tolerance > 0 && tolerance != taken)
+    w.reporter.log(Topic::warning, "The tolerance %s is outside [%s, %s]; %s is used.", Digits{tolerance, 6},
+                   Digits{tightest_tolerance, 6}, Digits{loosest_tolerance, 6}, Digits{taken, 6});
+}
+
+void set(Wheel& w, unsigned variable, double value, int order) {
+  if (variable >= stored_count) {
+    w.run.y[state_index_of(variable)] = value;
+    return decide_law(w.setup, w.run.t, w.run.y, w.run.in_force);
+  }
+  if (w.phase() == Phase::faulty || w.phase() == Phase::initial) w.run.phase = Phase::initializing;
+  double& asked = w.demand.value(variable, order);
+  if (asked == value / factorial[order]) return;
+  asked = value / factorial[order];
+  w.demand.changed = true;
+  if (w.kind() == Kind::model_exchange && is_running(w.phase())) take_at_once(w);
+}
+
+bool is_prepared(Wheel& w) {
+  const bool faulty = w.phase() == Phase::faulty;
+  return (w.phase() != Phase::initializing && !faulty) || prepare(w, faulty ? Reporter() : w.reporter);
+}
+
+bool start(Wheel& w) {
+  const bool exchanged = w.kind() == Kind::model_exchange;
+  const bool sound = prepare(w, w.reporter) && (!exchanged || starts_inside(w));
+  w.run.phase = !sound ? Phase::without_start : exchanged ? Phase::event_mode : Phase::at_start;
+  return sound;
+}
+
+void close(Wheel& w) {
+  if (w.phase() != Phase::ended) log_summaries(w);
+  freeze(w, Phase::closed);
+}
+
+Reading& reading_of(Wheel& w) {
+  if (!w.reading.is_set()) w.reading.set(present(w));
+  return w.reading;
+}
+
+double value_of(Wheel& w, unsigned variable) {
+  return variable < stored_count ? w.demand.value(variable) : row_of(variable).read(reading_of(w));
 }
 
 }  // namespace wheel

@@ -1,5 +1,6 @@
 // One wheel: what the caller has set, what follows from it, what is in force and how far it has come, and the solution
-// as far as it is known. Each function that changes a wheel names in its header what it writes.
+// as far as it is known; and its run from the parameters to the end. Each function that changes a wheel names in its
+// header what it writes. The run has its own clock, zero at the start, so that a start time of 1e9 s costs no digits.
 #pragma once
 
 #include "orbit.hpp"
@@ -35,6 +36,12 @@ struct Wheel {
   Solution solution;
   double y_ahead[WHEEL_MAX_STATES] = {};  // of a reading: run.y with the slip that follows from what was set
   long long endings = 0;  // logged, of all runs since the last reset, those that a state led back from included
+  Reading reading;        // of the instant reached; forgotten by each call that may change the wheel
+
+  Phase phase() const { return run.phase; }
+  Kind kind() const { return demand.kind; }
+  double time() const { return demand.start_time + run.t; }  // the caller's
+  bool has_ended() const { return run.ended_by != Event::none; }
 };
 
 // The state at the instant reached; writes run.y.
@@ -51,5 +58,24 @@ bool prepare(Wheel& wheel, const Reporter& reporter);
 Present present(Wheel& wheel);
 // What acts there; y: a copy of run.y, whose slip it writes.
 InForce in_force_now(const Wheel& wheel, double* y);
+
+// As new: start values, nothing computed.
+void reset(Wheel& wheel);
+// stop_time: infinite for none. tolerance <= 0: the default one.
+void set_experiment(Wheel& wheel, double start_time, double stop_time, double tolerance);
+// Parameters and inputs, with their derivatives, which are checked as a whole by prepare; in a run of model exchange a
+// state too, and the law of friction is decided for it.
+void set(Wheel& wheel, unsigned variable, double value, int order = 0);
+// Before the end of the initialization: the initial state from the present parameters, where it has not been computed,
+// true if it exists. Else one message per fault, once.
+bool is_prepared(Wheel& wheel);
+// The end of initialization: false if there is no initial state.
+bool start(Wheel& wheel);
+// The caller ends the run.
+void close(Wheel& wheel);
+
+// The calculated variables now; inputs just set take effect at once. Valid until the wheel changes.
+Reading& reading_of(Wheel& wheel);
+double value_of(Wheel& wheel, unsigned variable);
 
 }  // namespace wheel
