@@ -154,7 +154,7 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
   Step last = {};
   last.start = step->start - size_;
   last.end = step->start;
-  if (known_) expand(problem, counters, &last);
+  if (known_) expand(problem, &last);
   for (int attempts = 0; attempts < most_tries; ++attempts) {
     size_ = std::fmin(liked_, problem.longest_step);
     const bool stops = step->start + longer * size_ >= stop;
@@ -181,7 +181,7 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
   return false;
 }
 
-void Collocation::expand(const Problem&, Counters*, Step* step) {
+void Collocation::expand(const Problem&, Step* step) {
   const Eigen::Map<const Square> power(&radau.power[0][0]);
   const Eigen::Map<const Rates> f(&f_[0][0]);
   step->degree = known_ ? radau_points : 0;

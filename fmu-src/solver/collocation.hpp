@@ -20,7 +20,7 @@ class Collocation final : public Engine {
   }
   void limit_first_step(double dt) { liked_ = std::fmin(liked_, dt); }
   bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
-  void expand(const Problem& problem, Counters* counters, Step* step) override;
+  void expand(const Problem& problem, Step* step) override;
   void visit(support::Archive& archive, const Problem& problem, const Step& step) override;
 
  private:

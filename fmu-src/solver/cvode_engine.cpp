@@ -148,7 +148,7 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
   return true;
 }
 
-void Cvode::expand(const Problem& problem, Counters*, Step* step) {
+void Cvode::expand(const Problem& problem, Step* step) {
   int order = 0;
   if (CVodeGetLastOrder(objects_->cvode, &order) != CV_SUCCESS) order = 0;
   const double h = step->end - step->start;

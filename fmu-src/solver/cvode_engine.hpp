@@ -18,7 +18,7 @@ class Cvode final : public Engine {
   // SUNDIALS's objects are made at the first start.
   bool start(const Problem& problem) override;
   bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
-  void expand(const Problem& problem, Counters* counters, Step* step) override;
+  void expand(const Problem& problem, Step* step) override;
   void visit(support::Archive& archive, const Problem& problem, const Step& step) override;
 
  private:

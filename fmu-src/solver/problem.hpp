@@ -57,8 +57,8 @@ struct Problem {
   void watch(const Watched& function) { watched[watched_count++] = function; }
 };
 
-// Of all steps since the first start. `rhs` counts every evaluation of f, those for difference quotients included, and
-// of the functions that are watched by the margin; `roots` those of the others.
+// Of all steps since the first start. `rhs` counts the evaluations of f, those for difference quotients included but
+// not those of a dense output, and of the functions that are watched by the margin; `roots` those of the others.
 struct Counters {
   long long steps, rhs, jacobians, roots, restarts;
 

@@ -80,11 +80,10 @@ struct RungeKutta::Work {
 
   void end_step() { advance<table::b>(step.y_end); }
 
-  // The four evaluations that only the dense output and the next step need.
-  bool evaluate_rest(double* margin) {
-    *margin = evaluate(12, step.end, step.y_end);
-    return !std::isnan(*margin) && stage<13, table::a_13>(at) && stage<14, table::a_14>(at) &&
-           stage<15, table::a_15>(at);
+  // The rate at the end of the step, with which the next one begins.
+  bool evaluate_end() {
+    engine.margin_ = evaluate(12, step.end, step.y_end);
+    return !std::isnan(engine.margin_);
   }
 
   // Both estimates together, as DOP853 weighs them.
@@ -132,7 +131,7 @@ struct RungeKutta::Work {
 
   // Null, or the reason why no step is accepted.
   const char* make_step(double stop) {
-    if (engine.rates_ == 16)
+    if (engine.rates_ == 13)
       std::copy_n(engine.f_[12], width, engine.f_[0]);
     else
       engine.margin_ = evaluate(0, step.start, step.y_start);
@@ -158,7 +157,7 @@ struct RungeKutta::Work {
       step.end = stops ? stop : t + h;
       step.lowest_margin = engine.margin_;
       double error = try_size();
-      if (error <= 1 && !waits && !evaluate_rest(&engine.margin_)) error = INFINITY;
+      if (error <= 1 && !waits && !evaluate_end()) error = INFINITY;
       if (!(error <= 1)) {
         h = *liked = h * std::fmax(0.2, safety / eighth_root(error));
         rejected = true;
@@ -169,7 +168,7 @@ struct RungeKutta::Work {
       // grow.
       *liked = rejected ? std::fmin(h, next) : h < *liked ? std::fmax(*liked, next) : next;
       engine.size_ = h;
-      engine.rates_ = waits ? 12 : 16;
+      engine.rates_ = waits ? 12 : 13;
       return nullptr;
     }
     return "the step size became too small";
@@ -179,8 +178,11 @@ struct RungeKutta::Work {
   //   y = y_0 + x (p_0 + (1 - x) (p_1 + x (p_2 + (1 - x) (p_3 + x (p_4 + (1 - x) (p_5 + x p_6)))))).
   // Here it is sorted by the powers of s = x - 1.
   void expand() {
-    double p_3[width], p_4[width], p_5[width], p_6[width], margin;
-    const bool finite = engine.rates_ == 16 || evaluate_rest(&margin);
+    double p_3[width], p_4[width], p_5[width], p_6[width];
+    const double lowest_margin = step.lowest_margin;  // may not depend on what is read
+    const bool finite = (engine.rates_ == 13 || !std::isnan(evaluate(12, step.end, step.y_end))) &&
+                        stage<13, table::a_13>(at) && stage<14, table::a_14>(at) && stage<15, table::a_15>(at);
+    step.lowest_margin = lowest_margin;
     combine<table::d_3>(p_3);
     combine<table::d_4>(p_4);
     combine<table::d_5>(p_5);
@@ -224,21 +226,21 @@ bool RungeKutta::advance(const Problem& problem, double stop, Counters* counters
   return !failure_;
 }
 
-void RungeKutta::expand(const Problem& problem, Counters* counters, Step* step) {
-  if (rates_ >= 12) with_work(problem, counters, step, [](auto work) { work.expand(); });
+void RungeKutta::expand(const Problem& problem, Step* step) {
+  Counters uncounted = {};  // else the counts would depend on the instants that are read
+  if (rates_ > 0) with_work(problem, &uncounted, step, [](auto work) { work.expand(); });
 }
 
 void RungeKutta::visit_sizes(support::Archive& archive) {
   for (double& size : liked_) archive.range(size, 0, archive.greatest);
 }
 
-// `rates` holds the evaluations of the last step that were made, 0, 12 or 16.
 void RungeKutta::visit(support::Archive& archive, const Problem& problem, const Step&) {
   archive.range(limit_, 0, archive.greatest);
   archive.range(size_, 0, archive.greatest);
   archive.range(last_error_, 0, 1);
   archive.number(margin_);
-  archive.count(rates_, 0, 16);
+  archive.count(rates_, 0, 13);
   for (int k = 0; k < rates_; ++k) archive.numbers(f_[k], problem.states);
 }
 

@@ -13,10 +13,10 @@ class RungeKutta final : public Engine {
   bool start(const Problem& problem) override;
   bool advance(const Problem& problem, double stop, Counters* counters, Step* step) override;
 
-  // A step that ends at a stop or at the limit of a first step leaves out the four evaluations that only the dense
-  // output and the next step need: most often the problem changes there, and nothing in it is read. The next step does
-  // not use them, so that it costs the same whatever was read.
-  void expand(const Problem& problem, Counters* counters, Step* step) override;
+  // Makes the evaluations that only the dense output needs: three, and that at the end of a step that ends at a stop or
+  // at the limit of a first step, where most often the problem changes. The next step does not use them, so that it
+  // costs the same whatever was read.
+  void expand(const Problem& problem, Step* step) override;
   void visit(support::Archive& archive, const Problem& problem, const Step& step) override;
   // The sizes that are kept while another engine steps.
   void visit_sizes(support::Archive& archive);
@@ -35,7 +35,7 @@ class RungeKutta final : public Engine {
   double size_ = 0;        // of the last step, s
   double last_error_ = 0;  // of the last step, in units of the weights; 0: there was none
   double margin_ = 0;      // at the end of the last step
-  int rates_ = 0;          // evaluations of the last step that the next one knows
+  int rates_ = 0;          // evaluations of the last step: 12; 13 with that at its end; 0: there was none
   alignas(16) double f_[16][max_states] = {};
 };
 

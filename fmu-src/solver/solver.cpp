@@ -84,8 +84,8 @@ bool Solver::make_step(double stop) {
   return done;
 }
 
-void Solver::expand(Counters* counters) const {
-  if (step_.degree == Step::unknown && step_.end > step_.start) engine().expand(problem_, counters, &step_);
+void Solver::expand() const {
+  if (step_.degree == Step::unknown && step_.end > step_.start) engine().expand(problem_, &step_);
 }
 
 // Looks from `from` to the end of the step for the first event.
@@ -99,13 +99,13 @@ void Solver::look_for_events(double from) {
     Sample lo = {from, values_[i]}, hi = {};
     if (watched.by_margin) {
       if (!comes_near(search)) continue;
-      expand(&counters_);
+      expand();
       lo = search.sample(from);
     } else {
       hi = search.sample(step_.end, step_.y_end);
       values_[i] = hi.g;
       if (extremes.empty() && stays_above(search, lo, hi)) continue;
-      expand(&counters_);
+      expand();
     }
     if (hi.t != known_until_) hi = search.sample(known_until_);
     const auto fall = search.find_first_fall(lo, hi);
@@ -120,7 +120,7 @@ void Solver::look_for_events(double from) {
 // evaluated there too, because none of the step's own evaluations may have come near it.
 bool Solver::comes_near(const Search& search) {
   if (step_.lowest_margin < problem_.near) return true;
-  if (!search.extremes.empty()) expand(&counters_);
+  if (!search.extremes.empty()) expand();
   const auto is_near = [&](double t) { return t < known_until_ && search.sample(t).g < problem_.near; };
   return std::any_of(search.extremes.begin(), search.extremes.end(), is_near);
 }
@@ -134,9 +134,8 @@ bool Solver::stays_above(const Search& search, Sample lo, Sample hi) const {
 
 void Solver::read(double t, double* y) const {
   t = std::clamp(t, step_.start, known_until_);
-  Counters uncounted = {};  // else the counts would depend on the instants that are read
   const double rounding = rounding_at(t);
-  if (t > step_.start + rounding && t < step_.end - rounding) expand(&uncounted);
+  if (t > step_.start + rounding && t < step_.end - rounding) expand();
   step_.read(t, problem_.states, y);
 }
 

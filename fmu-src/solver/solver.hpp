@@ -58,7 +58,7 @@ class Solver {
 
   // With its polynomial.
   const Step& last_step() {
-    expand(&counters_);
+    expand();
     return step_;
   }
   double step_start() const { return step_.start; }
@@ -78,7 +78,7 @@ class Solver {
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }
   double time_to_look_again(double t) const;
   bool make_step(double stop);
-  void expand(Counters* counters) const;
+  void expand() const;
   void look_for_events(double from);
   bool comes_near(const Search& search);
   bool stays_above(const Search& search, Sample lo, Sample hi) const;

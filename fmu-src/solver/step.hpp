@@ -78,7 +78,7 @@ class Engine {
   [[nodiscard]] virtual bool advance(const Problem& problem, double stop, Counters* counters, Step* step) = 0;
 
   // The polynomial of the step, which is not known yet; of degree zero where rates inside the step are not finite.
-  virtual void expand(const Problem& problem, Counters* counters, Step* step) = 0;
+  virtual void expand(const Problem& problem, Step* step) = 0;
 
   // All that is needed to go on after the step, which is this engine's, saved or read.
   virtual void visit(support::Archive& archive, const Problem& problem, const Step& step) = 0;
