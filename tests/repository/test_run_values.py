@@ -1,4 +1,4 @@
-"""The values that ./scripts/run takes: parameters, inputs, units, ready wheels; a fault is one sentence."""
+"""The values that ./scripts/run takes: parameters, inputs, units, presets; a fault is one sentence."""
 
 import json
 import re
@@ -70,7 +70,7 @@ def test_parameters_and_inputs_take_units(root, argument, value):
 
 
 REFUSED = {"theta=1": "theta_start", "speed=3": "Do you mean", "slope=-8deg": "slope_direction"}
-REFUSED |= {"s": "neither name=value nor a ready wheel", "s=0": "above 0", "m=heavy": "not a number", "m=3m": "kg or g"}
+REFUSED |= {"s": "neither name=value nor a preset", "s=0": "above 0", "m=heavy": "not a number", "m=3m": "kg or g"}
 REFUSED |= {"method=euler": "1 (automatic), 2 (adams), 3 (bdf), 4 (runge_kutta)", "friction_law=0": "1 (exact), 2 ("}
 REFUSED |= {"v=3furlong": "it takes no unit but m/s or km/h", "body=ball": "There is no body", "hopp": "hoop"}
 REFUSED |= {"output_interval=20": "too long", "wheel=tank": "There is no wheel", "slope_direction=10%": "rad or deg"}

@@ -230,7 +230,7 @@ def _time_axis(ax: Axes, scene: Scene) -> list[str]:
         bars = np.where(scene.slides, BAR, 0.0)
         ax.add_artist(StepPatch(bars, scene.edges, fill=True, color=style.PURPLE, linewidth=0, zorder=1, **place))
         ax.vlines(scene.turns, 0.0, 1.0, color=style.PURPLE, linewidth=0.5, alpha=0.6, zorder=0, **place)
-        marks.append("Purple bars: it slides; thin lines: grip is lost and returns.")
+        marks.append("Purple bars: it slides; thin lines: it starts and stops sliding.")
     return marks
 
 

@@ -72,7 +72,7 @@ class Scene:
 
     @property
     def turns(self) -> Array:
-        """Instants in s at which grip is lost or returns."""
+        """Instants in s at which the wheel starts or stops sliding."""
         return self.edges[1:-1][self.slides[:-1] != self.slides[1:]]
 
     @property

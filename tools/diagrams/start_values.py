@@ -75,7 +75,7 @@ def values(arguments: list[str]) -> dict[str, str]:
             typed.append(("A body", text or name))
         elif not equals:
             meant = suggestion(name, dict.fromkeys([*names, *bodies()], ""))
-            kinds = "neither name=value nor a ready wheel or body"
+            kinds = "neither name=value nor a preset wheel or body"
             raise Fault(f'"{argument}" is {kinds}.{meant} See ./scripts/run --help.')
         elif name not in takes:
             meant = suggestion(name, {n: v.description for n, v in takes.items()})

@@ -3,8 +3,7 @@
 requirements.csv lists every figure in its report's order: the cell of a table (its row by the first column) or the
 reduction of a column that it is, unless a part measures it; unit, what is asked of it (an upper bound, zero included,
 or nothing), and words. In docs/results/data, figures.csv has the figures of all reports as measured, made.csv machine,
-versions, commit and date, NAME_TABLE.csv each long table, NAME.txt the short ones, which are on the page, one below the
-other.
+versions, commit and date, NAME_TABLE.csv each long table, NAME.txt the short ones, one below the other.
 """
 
 from __future__ import annotations

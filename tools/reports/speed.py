@@ -96,8 +96,8 @@ def timed_steps(report: Report, values: Values, count: int, table: Array | None 
     solve, paces = report.master.made(values, 1e-3, count, None, table), np.zeros(count)
     costs, *_ = repeated(solve, 0.1 if report.quick else 0.5)
     solve(paces)
-    best = min(costs) / count
-    row = {"per step, best run, ns": 1e9 * best, "in empty calls": best / empty_call(report)}
+    best, empty = min(costs) / count, empty_call(report)
+    row = {"per step, best run, ns": 1e9 * best, "in empty calls": best / empty, "empty call, ns": 1e9 * empty}
     row |= {"median single step, ns": 1e9 * np.median(paces), "99.9th percentile, µs": 1e6 * np.percentile(paces, 99.9)}
     return row | {"longest, µs": 1e6 * paces.max()}
 

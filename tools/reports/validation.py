@@ -100,24 +100,6 @@ def tyres(report: Report) -> dict[str, object]:
     return {"by_run": found, "coasts": pd.concat(curves)} | figures
 
 
-def views(tables: Tables) -> Tables:
-    """Each tyre in one row."""
-    runs = tables["by_run"].groupby("tyre")
-    by_tyre = {
-        "psi": runs["psi"].agg(between, digits=0),
-        "runs": runs.size(),
-        "1000 C": runs["1000 C"].agg(between, digits=2),
-        "largest deviation of C [%]": runs["largest deviation of C [%]"].max(),
-        "at 3 m/s [%]": runs["at 3 m/s [%]"].min(),
-        "largest speed error of wheel.fmu [m/s]": runs["largest speed error [m/s]"].max(),
-    }
-    return tables | {"by_tyre": pd.DataFrame(by_tyre).reset_index()}
-
-
-def between(values: pd.Series, digits: int) -> str:
-    return " to ".join(dict.fromkeys(f"{value:.{digits}f}" for value in (values.min(), values.max())))
-
-
 def picture(tables: Tables) -> Sheet:
     """C over the speed with its uncertainty, and the measured coast-down beside the one of wheel.fmu."""
     sheet, (left, right) = plots.sheet("ab", 80)

@@ -19,7 +19,7 @@ GRID = 0.25  # s, where runs of the car are compared
 COMPARED = tuple(name for name in MANOEUVRES if name not in (car_judges.TOO_FAST.name, car_judges.SPLIT.name))
 # How the inputs behave over a step: whether positions follow the velocities, and the exchange.
 OVER = {"held, positions lag": ({"follow": 0.0}, "held"), **{exchange: ({}, exchange) for exchange in EXCHANGES}}
-WAYS = {"locked": "way, locked wheel", "ideal": "way, ideal brake", "abs": "way, anti-lock; closed form: the shortest"}
+WAYS = {"locked": "locked wheel", "ideal": "ideal brake", "abs": "anti-lock; closed form: the shortest"}
 KINDS = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
 
 
@@ -57,7 +57,9 @@ def sliding(report: Report) -> pd.DataFrame:
     run, split = manoeuvres("suspended")["abs"], car_judges.SPLIT
     table = suspended.SUSPENDED.drive(report.fmus, run, run.h, run.exchange, run.grid).whole
     forms = {"locked": suspended.sliding_way, "ideal": suspended.gripping_way, "abs": suspended.shortest}
-    rows = [(WAYS[name], "m", suspended.way(table, run, name), form(table, run)) for name, form in forms.items()]
+    rows = []
+    for name, form in forms.items():
+        rows.append((f"stopping distance, {WAYS[name]}", "m", suspended.way(table, run, name), form(table, run)))
     found = car_judges.judge(CAR.drive(report.fmus, split).whole, split)
     rows += [(f"car: {f.what}", f.unit, f.measured, f.exact) for f in found]
     judged = pd.DataFrame(rows, columns=["quantity", "unit", "measured", "closed form"])
@@ -129,12 +131,3 @@ def rollback(report: Report) -> dict[str, float]:
     """the car: the largest error where no wheel stops"""
     moving = largest(report.tables).drop(["straight", "hill"], errors="ignore")
     return {"rollback": moving["rollback", 1000 * STEPS[0]].max()}
-
-
-def views(tables: Tables) -> Tables:
-    """Of the car the largest error and the order at 1 ms, by manoeuvre."""
-    found, columns = largest(tables), {}
-    for exchange in EXCHANGES:
-        coarse, fine = found[exchange, 2.0], found[exchange, 1.0]
-        columns |= {f"{exchange}: error": fine, f"{exchange}: order": np.log2(coarse / fine)}
-    return tables | {"car_orders": pd.DataFrame(columns).reset_index()}

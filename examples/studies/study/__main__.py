@@ -121,7 +121,7 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     )
     add, several = parser.add_argument, {"action": "append", "default": []}
     add("study", nargs="?", help="an example's name or a Python file")
-    add("--wheel", metavar="NAME", help="a ready wheel, to which lengths, times and rates of a study's file are scaled")
+    add("--wheel", metavar="NAME", help="a preset, to which lengths, times and rates of a study's file are scaled")
     add("--body", metavar="NAME", help=f"{', '.join(bodies())}: J_x, J_y, J_z follow from m, r_0, r of each wheel")
     add("--vary", **several, metavar="NAME=VALUES", help="an axis of the grid: 1,2,3 or first:last:count")
     add("--list", type=Path, metavar="CSV", help="one wheel per row instead of a grid")

@@ -35,7 +35,7 @@ SYMBOLS = {  # in labels, by the text of a measure
 }
 PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
 
-SPEED = "Speed of the slip: of the wheel's material point at the contact over the ground, 0 while it grips"
+SPEED = "Speed of the slip: of the wheel's material point at the contact over the ground, 0 while it rolls"
 
 
 def axes_of(study: Study) -> xr.Dataset:

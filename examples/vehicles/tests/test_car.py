@@ -80,7 +80,7 @@ def test_the_stopping_distance_is_that_of_the_closed_form(fmus: Fmus) -> None:
         within(error(finding), 0.05 if finding.what.startswith("load") else 0.02, f"{finding.what}, relative")
 
 
-def test_on_a_split_road_the_car_keeps_its_course_at_the_closed_forms_retardation_and_moment(fmus: Fmus) -> None:
+def test_on_a_split_road_the_car_keeps_its_course_at_the_closed_forms_deceleration_and_moment(fmus: Fmus) -> None:
     table = drive(fmus, SPLIT)
     assert {*car_judges.slid(table)} == {"fr", "rr"} and car.verdict(table, SPLIT)[0]
     other = SPLIT.changed(mu_slide_right=0.16)

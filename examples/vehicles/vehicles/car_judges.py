@@ -227,7 +227,7 @@ def slid(table: Table) -> dict[str, float]:
 
 def split(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
     """Straight braking while the right wheels slide, locked, and the left ones roll: m_t counts these two alone. What
-    the brakes turn the car by, forces across hold, which the gripping wheels share out as their course demands."""
+    the brakes turn the car by, lateral forces hold, which the rolling wheels share as their course demands."""
     t, begin = table["time"], manoeuvre["t_brake"] + manoeuvre["ramp_M"]
     locked = np.all([table[f"{w}.omega_z"] == 0 for w in RIGHT], axis=0)
     window = (t > begin + 1) & locked & (table["v"] > 2)
@@ -237,9 +237,9 @@ def split(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
     a = (slides + rolls) / (MASS + wheels)
     across = sum(float(np.mean(table[f"{w}.lambda_2"][window])) * of["x"] for w, of in WHEELS.items())
     measured = -float(np.polyfit(t[window], table["v"][window], 1)[0])
-    yield Finding("retardation, the right wheels locked", "m/s2", measured, a)
+    yield Finding("deceleration, the right wheels locked", "m/s2", measured, a)
     turning = (rolls - wheels * a - slides) * TRACK / 2
-    yield Finding("moment of the forces across about the vertical", "N m", across, -turning)
+    yield Finding("yaw moment of the lateral forces", "N m", across, -turning)
     yield Finding("largest angle of the heading", "rad", float(np.abs(table["psi"]).max()))
 
 

@@ -77,7 +77,7 @@ def stops(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
         return False, [f"Failed: it does not stand by {run.stop:g} s: {', '.join(late)}."]
     exact = {"locked": sliding_way(table, run), "ideal": gripping_way(table, run)}
     slid = {name: bool(np.any(table[f"{name}.slip_x"])) for name in exact}
-    lines = [f"Way from {run['v']:g} m/s, of all masses together:"]
+    lines = [f"Stopping distance from {run['v']:g} m/s:"]
     lines += [f"  {name}: {ways[name]:.2f} m (closed form: {exact[name]:.2f} m)" for name in exact]
     lines.append(f"  anti-lock: {ways['abs']:.2f} m, {100 * (1 - ways['abs'] / ways['locked']):.0f} % less than locked")
     off = {name: abs(ways[name] / exact[name] - 1) for name in exact}
@@ -99,19 +99,19 @@ def way(table: Table, run: Manoeuvre, name: str) -> float:
 
 
 def stopping(v: float, before: float, a: float, lag: float) -> float:
-    """Way from v under a retardation that goes from `before` to a with a lag: a - (a - before) exp(-t / lag)."""
+    """Stopping distance from v under a deceleration that goes from `before` to a: a - (a - before) exp(-t / lag)."""
     late = (a - before) * lag
     return (v + late) ** 2 / (2 * a) - late * lag
 
 
 def gripping_way(table: Table, run: Manoeuvre) -> float:
-    """Under the ideal brake: from the retardation s m g / (R (m + J_z / R^2)) to share mu_max g."""
+    """Under the ideal brake: from the deceleration s m g / (R (m + J_z / R^2)) to share mu_max g."""
     before, v = -acceleration(0.0, run["s"], HUB_RADIUS), float(table["ideal.v"][begins(table, run)])
     return stopping(v, before, run["share"] * run["mu_max"] * GRAVITY, run["T_brake"])
 
 
 def sliding_way(table: Table, run: Manoeuvre) -> float:
-    """Of the wheel that locks: as measured until grip is lost, then at mu_slide g."""
+    """Of the wheel that locks: as measured until it slides, then at mu_slide g."""
     time, slip, v = (table[n] for n in ("time", "locked.slip_x", "locked.v"))
     lost = int(np.argmax((time >= run["t_brake"]) & (slip > 0)))
     begin = begins(table, run)

@@ -94,11 +94,11 @@ def test_a_film_shows_the_time_that_it_still_takes_and_ends_at_a_second_click(li
     live.locator("[popovertarget=take]").click()
     with live.expect_download() as download:
         button.click()
-        live.wait_for_function(f"/End the film: \\d+ s left/.test({TEXT})")
+        live.wait_for_function(f"/End the video: \\d+ s left/.test({TEXT})")
         button.click()
     download.value.save_as(tmp_path / "short.webm")
     assert (tmp_path / "short.webm").stat().st_size > 0
-    assert button.inner_text() == "Film (WebM)"
+    assert button.inner_text() == "Video (WebM)"
     live.keyboard.press("Escape")
 
 

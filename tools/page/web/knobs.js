@@ -40,8 +40,8 @@ export const START = [
   knob('psi_dot_start', 'ψ̇', 'rad/s', 'precession', [-1000, 1000], spins),
   knob('slope', 'α', '°', 'slope', [0, 60], () => [0, 30, 0.5]),
   knob('slope_direction', 'β', '°', 'uphill', [-360, 360], () => [-180, 180, 1]),
-  knob('mu_max', 'μ', '', 'grip, 0: any', [0, 10], () => upTo(2)),
-  knob('mu_slide', 'μ_s', '', 'sliding, 0: ends', [0, 10], () => upTo(2)),
+  knob('mu_max', 'μ', '', 'static, 0: any', [0, 10], () => upTo(2)),
+  knob('mu_slide', 'μ_s', '', 'kinetic, 0: ends', [0, 10], () => upTo(2)),
   knob('slip_x_start', 'u', 'm/s', 'slip, with μ_s', [-100, 100], () => both(10)),
 ];
 export const WHEEL = [

@@ -142,9 +142,8 @@ function setUpReady(live, wheels) {
   const option = (kind) => ([name, {title, source}]) =>
       make('option', {value: `${kind}:${name}`, title: source}, title);
   const group = (label, kind, list) => make('optgroup', {label}, ...Object.entries(list).map(option(kind)));
-  const none = make('option', {value: ''}, 'Bodies and ready wheels …');
-  host.append(
-      none, group('Bodies: J follows from m, r₀ and r', 'body', bodies), group('Ready wheels', 'wheel', wheels));
+  const none = make('option', {value: ''}, 'Preset bodies and wheels …');
+  host.append(none, group('Bodies: J follows from m, r₀ and r', 'body', bodies), group('Wheels', 'wheel', wheels));
   host.addEventListener('change', ({target: {value}}) => {
     const [kind, name] = value.split(':');
     if (kind === 'body') live.setBody(name);
@@ -152,7 +151,7 @@ function setUpReady(live, wheels) {
   });
   const shown = onChange((value) => {
     host.value = value;
-    host.title = host.selectedOptions[0].title || 'Ready bodies and wheels, with their sources';
+    host.title = host.selectedOptions[0].title || 'Preset bodies and wheels, with their sources';
   });
   const same = ([, {parameters}]) => Object.entries(parameters).every(([name, value]) => live.value(name) === value);
   return () => {

@@ -73,10 +73,11 @@ export function chapters(parameters) {
           ${joules(wheel, 7.5)} J. Between them, and after, the energy stays what it is.`,
         'Hold a button anywhere on the way: the past stays, and a new future is computed at once.'),
     step(
-        'Where the model ends', 'phi_dot=0',
+        'What ends a run', 'phi_dot=0',
         ({table}) => `Let go without spin, it falls. At ${table.end.toFixed(2)} s it lies flat and touches the ground
           along a circle instead of a point: the equations end there, and so does the run. It also ends where the wheel
-          would lift off (N = 0), and, with a grip μ, where rolling would need more: this model does not slide.`,
+          would lift off (N = 0), and, with a static friction coefficient μ but no kinetic one μ_s, where rolling would
+          need more.`,
         'Give it a little spin φ̇. How little lets it come up again?'),
   ];
 }

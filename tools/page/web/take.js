@@ -1,4 +1,4 @@
-// The card "Take with you": the values, a picture, a film, and of the live page its link and the commands that make the
+// The card "Export": the values, a picture, a video, and of the live page its link and the commands that make the
 // same run.
 import {commands} from '#commands';
 import {$, make, makeChoice} from '#dom';
@@ -67,15 +67,15 @@ export function setUpTaking(page) {
     filming = !filming;
     if (!filming) return;
     const left = (seconds) => {
-      button.textContent = `End the film${seconds < Infinity ? `: ${Math.ceil(seconds)} s left` : ''}`;
+      button.textContent = `End the video${seconds < Infinity ? `: ${Math.ceil(seconds)} s left` : ''}`;
       return filming;
     };
     const blob = await film(page, FILMS[$('[name=size]', host).value], left);
     filming = false;
-    button.textContent = 'Film (WebM)';
+    button.textContent = 'Video (WebM)';
     save('wheel.webm', blob);
   });
-  const title = 'Films need Chrome or Edge 94, Firefox 130, or later: this browser encodes no VP9';
+  const title = 'Videos need Chrome or Edge 94, Firefox 130, or later: this browser encodes no VP9';
   encodes().then((can) => can || Object.assign($('[name=film]', host), {disabled: true, title}));
   if (!live) return;
   on('link', (event) => copy(live.link.href, event));
