@@ -70,7 +70,7 @@ def values(arguments: list[str]) -> dict[str, str]:
     for argument in arguments:
         name, equals, text = argument.partition("=")
         if name == "wheel" or (not equals and name in names):
-            typed.append(("A ready wheel", text or name))
+            typed.append(("A preset wheel", text or name))
         elif name == "body" or (not equals and name in bodies()):
             typed.append(("A body", text or name))
         elif not equals:
@@ -83,7 +83,7 @@ def values(arguments: list[str]) -> dict[str, str]:
         else:
             typed.append((name, text))
     given = single(typed)
-    wheel, solid = (given.pop(kind, "") for kind in ("A ready wheel", "A body"))
+    wheel, solid = (given.pop(kind, "") for kind in ("A preset wheel", "A body"))
     given = {name: takes[name].value_of(text) for name, text in given.items()}
     if wheel:
         body = ready(wheel)

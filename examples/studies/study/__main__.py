@@ -37,7 +37,7 @@ from study.plan import ROOT, SETTABLE, Study, StudyError, check_names, descripti
 NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))  # the studies that lie beside this package
 SHOWN = """examples:
   ./scripts/study fates                     one of the examples: {names}
-  ./scripts/study fates --wheel coin        with a ready wheel: {wheels}
+  ./scripts/study fates --wheel coin        with a preset wheel: {wheels}
   ./scripts/study fates --body disc         with a homogeneous body of the same m, r_0 and r
   ./scripts/study my_study.py               a file that defines study = Study(...); see docs/studies.md
   ./scripts/study --vary theta_start=60deg:90deg:31 --vary s=0,0.01,0.03 --set phi_dot_start=-3 \\
