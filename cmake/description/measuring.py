@@ -3,7 +3,7 @@ inputs and continuous states, by model exchange.
 
 No paper equation. One known is changed at a time and all unknowns are read again, in wheels off every symmetry, so that
 no dependency hides behind a zero: each real start value of zero is set to 0.1, unless the wheel then does not start, as
-with a limit that 0 switches off.
+with a limit that 0 switches off. What one scene does not let change, as `guided` the rates of the axle, another does.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ GENERAL = {
 UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 # omega_z below omega_s, where the regularized law is neither zero nor one
 LAW = {"s": 0.03, "friction_law": 2, "phi_dot_start": -GENERAL["psi_dot_start"] * cos(GENERAL["theta_start"]) + 5e-4}
-SCENES = ({}, {**UNEQUAL, "s": 0.03}, LAW, {**UNEQUAL, **LAW})
+GUIDED = {"guided": 1, "psi_dot_start": 0.0, "theta_dot_start": 0.0}
+SCENES = ({}, {**UNEQUAL, "s": 0.03}, LAW, {**UNEQUAL, **LAW}, {**LAW, **GUIDED, "phi_dot_start": 5e-4})
 # Co-simulation alone slides: a slip changes what the force of the ground depends on.
 ROAD = {"mu_max": 9.0, "mu_slide": 0.1}
 SLIPS = ({"slip_x_start": 0.0, "slip_y_start": 0.0}, {"slip_x_start": 0.1, "slip_y_start": 0.1})
@@ -71,7 +72,8 @@ class Unit:
             getattr(self.fmu, f"set{v.type}")([v.valueReference], [value if v.type == "Real" else int(value)])
 
     def depends(self, unknowns: list[Unknown], *causalities: str) -> dict[str, set[str]]:
-        """Of each unknown: the states and the variables of these causalities that move it."""
+        """Of each unknown: the states and the variables of these causalities that move it. Under "": those of them that
+        can be changed."""
         knowns = [name for name, v in self.variables.items() if v.causality in causalities or name in self.states]
         names = [row.variable.name for row in unknowns]
         found: dict[str, set[str]] = {name: set() for name in names}
@@ -80,13 +82,16 @@ class Unit:
             (value,) = self.get([known])
             after = self.get_with(known, value, names)
             self.set(known, value)
+            if after is None:
+                continue
+            found.setdefault("", set()).add(known)
             for k in np.flatnonzero(np.abs(after - before) > ROUNDING * (1 + np.abs(before))):
                 found[names[k]].add(known)
         return found
 
-    def get_with(self, known: str, value: float, names: list[str]) -> np.ndarray:
-        """These variables with another value of one. A real number is changed a little, downwards where it can be no
-        larger; a choice to its last value or from there to its first."""
+    def get_with(self, known: str, value: float, names: list[str]) -> np.ndarray | None:
+        """These variables with another value of one; None where the wheel starts with no other. A real number changes a
+        little, downwards where it can be no larger; a choice changes to its last value or from there to its first."""
         v = self.variables[known]
         first, last = float(v.min or 0), float(v.max or 1)
         others = (value * 1.01 + 1e-3, value * 0.99 - 1e-3) if v.type == "Real" else (first if value == last else last,)
@@ -94,7 +99,7 @@ class Unit:
             with suppress(FMICallException):
                 self.set(known, other)
                 return self.get(names)
-        raise SystemExit(f"{known} cannot be measured: the wheel starts with {value:g} alone.")
+        return None
 
 
 @contextmanager
@@ -146,4 +151,10 @@ def measured(fmu: Path) -> Dependencies:
             for section, unknowns in parts:
                 for name, moved in unknowns.items():
                     found[section][name] |= moved
+        variables = read_model_description(folder, validate=False).modelVariables
+    knowns = {v.name for v in variables if v.causality in ("parameter", "input")}
+    if stuck := knowns - found["InitialUnknowns"][""]:
+        raise SystemExit(f"No scene lets {', '.join(sorted(stuck))} be changed.")
+    for section in found.values():
+        del section[""]
     return found

@@ -39,8 +39,8 @@ def fields_of(body: str, types: dict[str, type]) -> Iterator[tuple[str, type]]:
             yield rest, c_char_p
         elif rest.startswith("("):
             name, arguments = re.fullmatch(r"\(\*(\w+)\)\((.*)\)", rest, re.DOTALL).groups()
-            kinds = re.findall(r"(?:Wheel)?(\w+)\*", arguments)
-            yield name, CFUNCTYPE(types[kind], *(POINTER(types[of]) for of in kinds))
+            kinds = re.findall(r"(?:Wheel)?(\w+)(\*?) \w+(?:,|$)", arguments)
+            yield name, CFUNCTYPE(types[kind], *(POINTER(types[of]) if star else types[of] for of, star in kinds))
         else:
             for name, length in re.findall(r"(\w+)(?:\[(\d)\])?", rest):
                 member = types[kind] * int(length) if length else types[kind]
@@ -61,6 +61,11 @@ LIBRARY = ctypes.CDLL(str(found[0]))
 FORMULATIONS = ("reduced", "euler", "multibody", "sliding", "multibody_sliding")
 REDUCED, EULER, MULTIBODY, SLIDING, MULTIBODY_SLIDING = (
     Formulation.in_dll(LIBRARY, f"wheel_{name}") for name in FORMULATIONS
+)
+# The same on a hub carrier.
+GUIDED, GUIDED_EULER, GUIDED_MULTIBODY, GUIDED_SLIDING, GUIDED_MULTIBODY_SLIDING = (
+    Formulation.in_dll(LIBRARY, f"wheel_guided{name}".removesuffix("_reduced"))
+    for name in ("_reduced", *(f"_{name}" for name in FORMULATIONS[1:]))
 )
 for function in (LIBRARY.wheel_energy, LIBRARY.wheel_required_friction, LIBRARY.wheel_height):
     function.restype = c_double

@@ -39,8 +39,10 @@ typedef struct Accelerations {
   double tau; /* moment of ground and brake about the axle */
 } Accelerations;
 
-/* Inlined: what a caller does not read is not computed. */
-__attribute__((always_inline)) static inline Carrier carrier_of(const WheelParameters* w, const double* y) {
+/* What a caller does not read is not computed, and what it gives as a constant is not asked for. */
+#define INLINED __attribute__((always_inline)) static inline
+
+INLINED Carrier carrier_of(const WheelParameters* w, const double* y) {
   Carrier c = {.sin_theta = sin(y[THETA]), .cos_theta = cos(y[THETA])};
   c.sin_psi = sin(y[PSI]);
   c.cos_psi = cos(y[PSI]);

@@ -24,10 +24,10 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 }
 
 /* psi_dot = omega_2 / sin(theta), differentiated. */
-static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+static inline double rate(const WheelScene* scene, const double* y, double* y_dot, int guided) {
   double reduced[WHEEL_REDUCED_STATES], rates[WHEEL_REDUCED_STATES];
   reduce(y, reduced);
-  double N = wheel_reduced.derivative(scene, reduced, rates);
+  double N = (guided ? &wheel_guided : &wheel_reduced)->derivative(scene, reduced, rates);
   y_dot[X_O] = rates[R_X_O];
   y_dot[Y_O] = rates[R_Y_O];
   y_dot[PSI] = y[PSI_DOT];
@@ -39,6 +39,9 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
   return N;
 }
 
+static double free_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 0); }
+static double guided_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 1); }
+
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   double reduced[WHEEL_REDUCED_STATES];
   reduce(y, reduced);
@@ -47,16 +50,22 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
   out->phi_dot = y[SPIN] - y[PSI_DOT] * cos(y[THETA]);
 }
 
-static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
+static inline void forces(const WheelScene* scene, const double* y, WheelDynamics* out, int guided) {
   double reduced[WHEEL_REDUCED_STATES];
   reduce(y, reduced);
-  wheel_reduced.dynamics(scene, reduced, out);
+  (guided ? &wheel_guided : &wheel_reduced)->dynamics(scene, reduced, out);
 }
+
+static void free_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 0); }
+static void guided_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 1); }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {
   (void)wheel;
   y[SPIN] = 0;
 }
 
-const WheelFormulation wheel_euler = {"euler",    WHEEL_REDUCED_STATES, start,    derivative, SPIN,      THETA, -1,
-                                      kinematics, kinematics,           dynamics, reduce,     stop_spin, 0};
+/* clang-format off */
+const WheelFormulation wheel_euler = {"euler", WHEEL_REDUCED_STATES, start, free_rates, SPIN, THETA, -1,
+    kinematics, kinematics, free_forces, reduce, stop_spin, 0, 0, 0};
+const WheelFormulation wheel_guided_euler = {"guided_euler", WHEEL_REDUCED_STATES, start, guided_rates, SPIN, THETA, -1,
+    kinematics, kinematics, guided_forces, reduce, stop_spin, 0, 0, 0};

@@ -68,6 +68,15 @@ double wheel_brake_moment_rate(const WheelAxleMoment* now, const WheelAxleMoment
   return rate->tau * share + now->tau * share_rate;
 }
 
+/* Euler's first two equations where omega_1 = omega_2 = 0: no moment about O is left across the axle. */
+void wheel_guide_moment(const WheelParameters* wheel, const WheelKinematics* k, const double lambda[3],
+                        const double M[3], double out[2]) {
+  double force[2], cos_theta = cos(k->theta);
+  wheel_horizontal_force(k, lambda, force);
+  out[0] = wheel->r_0 * cos_theta * lambda[2] - wheel_height(wheel, k->theta) * force[1] - M[0];
+  out[1] = wheel->r * cos_theta * force[0] - M[1];
+}
+
 void wheel_constraint_residuals(const WheelParameters* wheel, const WheelKinematics* k, double* velocity,
                                 double* height) {
   double s = sin(k->theta), c = cos(k->theta), sin_psi = sin(k->psi), cos_psi = cos(k->psi);

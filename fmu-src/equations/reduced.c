@@ -50,6 +50,18 @@ static inline Drift drift_of(const WheelScene* scene, const Inertia* I, const Ca
   };
 }
 
+/* On its hub carrier: spin is all that is left to move. */
+static inline System guided_system_of(const WheelParameters* w, const Carrier* c, const Drift* d) {
+  double a_33 = w->J_z + w->m * (c->rho * c->rho);
+  return (System){
+      .a_33 = a_33,
+      .b_22 = 1.0,
+      .h_3 = d->M.M_3 + c->rho * d->k_1,
+      .inverse_determinant = 1.0 / a_33,
+      .N = d->k_2 * c->sin_theta + d->k_3 * c->cos_theta,
+  };
+}
+
 static inline System system_of(const WheelParameters* w, const Inertia* I, const Carrier* c, const Drift* d) {
   double rho_2 = w->m * (c->rho * c->rho), eta_2 = w->m * (c->eta * c->eta);
   double inverse = 1.0 / (I->I_11 + (rho_2 + eta_2)); /* 1 / a_11 */
@@ -113,12 +125,13 @@ typedef struct Instant {
   System system;
 } Instant;
 
-__attribute__((always_inline)) static inline Instant instant_of(const WheelScene* scene, const double* y) {
+INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided) {
   const WheelParameters* w = &scene->wheel;
   Inertia inertia = inertia_of(w, y[PHI]);
   Instant now = {.carrier = carrier_of(w, y)};
   now.drift = drift_of(scene, &inertia, &now.carrier);
-  now.system = system_of(w, &inertia, &now.carrier, &now.drift);
+  now.system =
+      guided ? guided_system_of(w, &now.carrier, &now.drift) : system_of(w, &inertia, &now.carrier, &now.drift);
   return now;
 }
 
@@ -159,16 +172,18 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
   y[Y_O] = motion->Y_O;
 }
 
-static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  Instant now = instant_of(scene, y);
+INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, int guided) {
+  Instant now = instant_of(scene, y, guided);
   Accelerations a = move(&now.system, law_of(scene, y[OMEGA_3]));
   set_rates(&now.carrier, &a, y_dot);
   set_velocity(&scene->wheel, &now.carrier, &y_dot[X_O], &y_dot[Y_O]);
   return a.N;
 }
 
-__attribute__((always_inline)) static inline Carrier read_pose(const WheelParameters* wheel, const double* y,
-                                                               WheelKinematics* out) {
+static double free_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 0); }
+static double guided_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 1); }
+
+INLINED Carrier read_pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
   out->theta = y[THETA];
   out->psi = y[PSI];
@@ -193,12 +208,15 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
   set_velocity(wheel, &c, &out->X_O_dot, &out->Y_O_dot);
 }
 
-static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  Instant now = instant_of(scene, y);
+INLINED void forces(const WheelScene* scene, const double* y, WheelDynamics* out, int guided) {
+  Instant now = instant_of(scene, y, guided);
   Accelerations a = move(&now.system, law_of(scene, y[OMEGA_3]));
   reaction_of(&scene->wheel, &now, &a, out->lambda);
   set_dynamics(scene, &now.carrier, &a, out);
 }
+
+static void free_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 0); }
+static void guided_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 1); }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {
   (void)wheel;
@@ -207,6 +225,8 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
 
 static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_REDUCED_STATES); }
 
-const WheelFormulation wheel_reduced = {"reduced", WHEEL_REDUCED_STATES, start, derivative, OMEGA_3, THETA,
-                                        -1,        kinematics,           pose,  dynamics,   reduce,  stop_spin,
-                                        0};
+/* clang-format off */
+const WheelFormulation wheel_reduced = {"reduced", WHEEL_REDUCED_STATES, start, free_rates, OMEGA_3, THETA, -1,
+    kinematics, pose, free_forces, reduce, stop_spin, 0, 0, 0};
+const WheelFormulation wheel_guided = {"guided", WHEEL_REDUCED_STATES, start, guided_rates, OMEGA_3, THETA, -1,
+    kinematics, pose, guided_forces, reduce, stop_spin, 0, 0, 0};

@@ -53,7 +53,8 @@ static inline Motion motion_of(const WheelParameters* w, const Body* b, const Ac
   };
 }
 
-__attribute__((always_inline)) static inline Body body_of(const WheelScene* scene, const double* y) {
+/* yield: 1, or 0 on a hub carrier, where no moment turns the wheel across its axle. */
+INLINED Body body_of(const WheelScene* scene, const double* y, double yield) {
   const WheelParameters* w = &scene->wheel;
   const WheelLoad* load = &scene->load;
   Body b = {.carrier = carrier_of(w, y), .inertia = inertia_of(w, y[PHI])};
@@ -64,8 +65,8 @@ __attribute__((always_inline)) static inline Body body_of(const WheelScene* scen
   b.h = w->r_0 * c->sin_theta + w->r;
   b.l = w->r_0 * c->cos_theta;
   b.per_mass = 1 / w->m;
-  b.per_22 = 1 / b.inertia.I_22;
-  b.per_tilt = 1 / (b.inertia.I_11 - p * p * b.per_22 + w->m * b.l * b.l);
+  b.per_22 = yield / b.inertia.I_22;
+  b.per_tilt = yield / (b.inertia.I_11 - p * p * b.per_22 + w->m * b.l * b.l);
   b.g_x = w->m * b.l * b.per_tilt * (c->eta * p * b.per_22);
   b.g_y = w->m * b.l * b.per_tilt * b.h;
   a->M = moment_of(scene, &b.inertia, c);
@@ -110,7 +111,12 @@ static WheelSlip slip_of(const WheelParameters* w, const Body* b, double chi) {
 }
 
 WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi) {
-  Body b = body_of(scene, reduced);
+  Body b = body_of(scene, reduced, 1);
+  return slip_of(&scene->wheel, &b, chi);
+}
+
+WheelSlip wheel_guided_slip(const WheelScene* scene, const double* reduced, double chi) {
+  Body b = body_of(scene, reduced, 0);
   return slip_of(&scene->wheel, &b, chi);
 }
 
@@ -131,12 +137,12 @@ static double zero_of_turning(const WheelParameters* w, const Body* b, double lo
   return 0.5 * (lo + hi);
 }
 
-double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
+INLINED double direction_of(const WheelScene* scene, const double* reduced, double yield) {
   const int parts = 180;
   static const Action none = {.brake = 0};
   const double part = 2 * 3.141592653589793 / parts, rounding = 1e-9;
   const WheelParameters* w = &scene->wheel;
-  Body b = body_of(scene, reduced);
+  Body b = body_of(scene, reduced, yield);
   Motion free = motion_of(w, &b, &b.given, 0, 0), x = motion_of(w, &b, &none, 1, 0), y = motion_of(w, &b, &none, 0, 1);
   /* against the force of grip, for which u_x = u_y = 0; its size does not matter */
   double against = wheel_angle_of(y.u_y * free.u_x - y.u_x * free.u_y, x.u_x * free.u_y - x.u_y * free.u_x);
@@ -154,6 +160,12 @@ double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
   return found;
 }
 
+double wheel_slip_direction(const WheelScene* scene, const double* reduced) { return direction_of(scene, reduced, 1); }
+
+double wheel_guided_slip_direction(const WheelScene* scene, const double* reduced) {
+  return direction_of(scene, reduced, 0);
+}
+
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
   memset(y, 0, sizeof(double) * WHEEL_SLIDING_STATES);
   wheel_reduced.start(wheel, motion, y);
@@ -166,9 +178,9 @@ static inline void set_velocity(const Carrier* c, double h, double u_x, double u
   to_fixed(c, c->v_1 + u_x, u_y - h * c->omega_1, X_dot, Y_dot);
 }
 
-/* N is infinite where friction wedges the wheel. */
-static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  Body b = body_of(scene, y);
+/* Returns N, infinite where friction wedges the wheel. */
+INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, double yield) {
+  Body b = body_of(scene, y, yield);
   const Carrier* c = &b.carrier;
   double d_x = cos(y[CHI]), d_y = sin(y[CHI]);
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
@@ -180,6 +192,9 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
   return room_of(&b, d_x, d_y) > WHEEL_LEAST_ROOM ? m.a.N : INFINITY;
 }
 
+static double free_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 1); }
+static double guided_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 0); }
+
 static void pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   wheel_reduced.pose(wheel, y, out);
 }
@@ -190,14 +205,17 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
   set_velocity(&c, out->Z_O, y[SPEED] * cos(y[CHI]), y[SPEED] * sin(y[CHI]), &out->X_O_dot, &out->Y_O_dot);
 }
 
-static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  Body b = body_of(scene, y);
+INLINED void forces(const WheelScene* scene, const double* y, WheelDynamics* out, double yield) {
+  Body b = body_of(scene, y, yield);
   double d_x = cos(y[CHI]), d_y = sin(y[CHI]);
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
   to_fixed(&b.carrier, d_x, d_y, &out->lambda[0], &out->lambda[1]);
   for (int i = 0; i < 2; ++i) out->lambda[i] *= -b.mu * m.a.N;
   set_dynamics(scene, &b.carrier, &m.a, out);
 }
+
+static void free_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 1); }
+static void guided_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 0); }
 
 static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_SLIDING_STATES); }
 
@@ -208,6 +226,9 @@ static void grip(const WheelParameters* wheel, double* y) {
   y[SPEED] = y[CHI] = 0;
 }
 
-const WheelFormulation wheel_sliding = {"sliding", WHEEL_SLIDING_STATES, start, derivative, OMEGA_3, THETA,
-                                        SPEED,     kinematics,           pose,  dynamics,   reduce,  stop_spin,
-                                        grip};
+/* clang-format off */
+const WheelFormulation wheel_sliding = {"sliding", WHEEL_SLIDING_STATES, start, free_rates, OMEGA_3, THETA, SPEED,
+    kinematics, pose, free_forces, reduce, stop_spin, grip, wheel_slip, wheel_slip_direction};
+const WheelFormulation wheel_guided_sliding = {"guided_sliding", WHEEL_SLIDING_STATES, start, guided_rates, OMEGA_3,
+    THETA, SPEED, kinematics, pose, guided_forces, reduce, stop_spin, grip, wheel_guided_slip,
+    wheel_guided_slip_direction};

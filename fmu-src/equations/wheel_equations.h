@@ -6,6 +6,7 @@
  *              the Euler angles' rates in the place of the angular velocity
  *   multibody  the paper's system (24); unknowns q and q_dot, constraints held at acceleration level; 12 states
  * While the wheel slides, two constraints are released; the slip joins the state of `sliding` and `multibody_sliding`.
+ * Each has a twin, `guided...`, for a wheel on its hub carrier, which keeps the direction of the axle.
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
  *
  * Frames (docs/variables.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the carrier e1 (along
@@ -116,6 +117,19 @@ typedef struct WheelDynamics {
   double tau;                            /* N m, moment of ground and brake about the axle */
 } WheelDynamics;
 
+/* A slip in the direction chi, at a state of `wheel_reduced` under the scene's laws, whatever its `contact` is: its own
+ * rate without the turning of e1 is (growth d + turn t), d along the slip and t a quarter turn ahead, whatever |u| is.
+ * So |u| chi_dot = turn - |u| psi_dot: near |u| = 0 chi settles where turn falls through zero. */
+typedef struct WheelSlip {
+  double N;            /* N, normal force */
+  double room;         /* 1 without sliding friction; where it falls to zero, friction wedges the wheel: no N holds */
+  double growth, turn; /* m/s2 */
+  double settling;     /* m/s2, -d(turn)/d(chi) */
+} WheelSlip;
+
+/* Below this WheelSlip.room friction wedges the wheel: no normal force holds it. */
+#define WHEEL_LEAST_ROOM 1e-5
+
 /* One formulation: how its state vector y is started, moved and read. */
 typedef struct WheelFormulation {
   const char* name;
@@ -141,6 +155,9 @@ typedef struct WheelFormulation {
   void (*stop_spin)(const WheelParameters* wheel, double* y);
   /* The end of the slip: y becomes a state of the form that grips; null in these. */
   void (*grip)(const WheelParameters* wheel, double* y);
+  /* See wheel_slip. */
+  WheelSlip (*slip)(const WheelScene* scene, const double* reduced, double chi);
+  double (*slip_direction)(const WheelScene* scene, const double* reduced);
 } WheelFormulation;
 
 /* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Where J_x = J_y, phi enters nothing, and a
@@ -164,24 +181,19 @@ extern const WheelFormulation wheel_sliding;
  * the place of the two horizontal constraints. */
 extern const WheelFormulation wheel_multibody_sliding;
 
-/* Below this WheelSlip.room friction wedges the wheel: no normal force holds it. */
-#define WHEEL_LEAST_ROOM 1e-5
+/* On a hub carrier psi and theta stay, so omega_1 = omega_2 = 0: the limit of infinite moments of inertia across the
+ * axle, with any J_x and J_y. `wheel_guide_moment` is the carrier's. */
+extern const WheelFormulation wheel_guided, wheel_guided_euler, wheel_guided_multibody;
+extern const WheelFormulation wheel_guided_sliding, wheel_guided_multibody_sliding;
 
-/* A slip in the direction chi, at a state of `wheel_reduced` under the scene's laws, whatever its `contact` is: its own
- * rate without the turning of e1 is (growth d + turn t), d along the slip and t a quarter turn ahead, whatever |u| is.
- * So |u| chi_dot = turn - |u| psi_dot: near |u| = 0 chi settles where turn falls through zero. */
-typedef struct WheelSlip {
-  double N;            /* N, normal force */
-  double room;         /* 1 without sliding friction; where it falls to zero, friction wedges the wheel: no N holds */
-  double growth, turn; /* m/s2 */
-  double settling;     /* m/s2, -d(turn)/d(chi) */
-} WheelSlip;
 WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi);
+WheelSlip wheel_guided_slip(const WheelScene* scene, const double* reduced, double chi);
 
 /* The direction chi in which a slip from |u| = 0 begins: it grows and its direction is kept (turn = 0, settling > 0).
  * Of several that nearest to the direction against the force that grip would need. NaN where there is none: the ground
  * does not press, or friction wedges the wheel. */
 double wheel_slip_direction(const WheelScene* scene, const double* reduced);
+double wheel_guided_slip_direction(const WheelScene* scene, const double* reduced);
 
 /* Total energy, J: translation, rotation, height of O against gravity, zero at the origin. */
 double wheel_energy(const WheelParameters* wheel, const WheelKinematics* motion);
@@ -218,6 +230,11 @@ WheelContact wheel_contact(const WheelParameters* wheel, const WheelKinematics* 
 /* The ground's horizontal force in wheel axes, N: force[0] along e1 (lambda_x), force[1] across it, to the left of
  * somebody who looks along e1 (lambda_y). */
 void wheel_horizontal_force(const WheelKinematics* motion, const double lambda[3], double force[2]);
+
+/* The moment of the hub carrier on a guided wheel, N m, along e1 and e2 (out), under the ground's force lambda and the
+ * load's moment M. */
+void wheel_guide_moment(const WheelParameters* wheel, const WheelKinematics* motion, const double lambda[3],
+                        const double M[3], double out[2]);
 
 /* The same angle, rad, less whole turns: from -pi to pi, exact to the last digit however large it is. */
 double wheel_less_turns(double angle);

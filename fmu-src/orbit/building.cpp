@@ -148,7 +148,7 @@ bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
 }
 
 // Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing,
-// and no event occurs.
+// and no event occurs; or it leans without consequence.
 // With omega_2 and omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the initial
 // state repeats for ever.
 bool Orbit::rests(const solver::Problem& problem, const double* y0) {
@@ -171,6 +171,8 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   };
   lean(h, ahead);
   lean(-h, behind);
+  const bool indifferent = y0[omega_1] == 0 && rate[omega_1] == 0 && ahead[omega_1] == 0 && behind[omega_1] == 0;
+  if (indifferent) return keep_rest(problem, y0, rate, problem.longest_step);
   const double stiffness = (behind[omega_1] - ahead[omega_1]) / (2 * h);
   if (!(stiffness > 1e-3 * slowest * slowest)) return false;
   const double swing = std::fabs(rate[omega_1]) / stiffness + std::fabs(y0[omega_1]) / std::sqrt(stiffness);

@@ -96,11 +96,11 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
   WheelScene scene = now.scene_at(t);
   const auto take = [&](const WheelFriction& law) {
     scene.friction = now.scene.friction = law;
-    double chi = wheel_slip_direction(&scene, reduced);
+    double chi = setup.sliding->slip_direction(&scene, reduced);
     if (std::isnan(chi)) {
       WheelScene pulled = scene;
       pulled.ground = WHEEL_GROUND_PULLS;
-      const WheelSlip free = wheel_slip(&pulled, reduced, 0);
+      const WheelSlip free = setup.sliding->slip(&pulled, reduced, 0);
       chi = wheel_angle_of(free.growth, free.turn);
     }
     y[setup.sliding->slip_index] = first_slip(setup, t);

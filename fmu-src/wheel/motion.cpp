@@ -156,7 +156,7 @@ void look_at_grip(Wheel& w, double t) {
 // Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.
 Outcome step_to(Wheel& w, double t) {
   solver::Solver& solver = w.solution.solver;
-  const long long work_per_step = w.setup.formulation == &wheel_multibody ? work_per_multibody_step : 1;
+  const long long work_per_step = w.setup.formulation->states == WHEEL_MULTIBODY_STATES ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work) {
       w.solution.failure = "one call may take no more internal steps; use shorter communication steps";

@@ -54,7 +54,7 @@ double slope_of_turning(void* owner, double t, const double* y) {
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
   double reduced[WHEEL_MAX_STATES];
   setup.sliding->reduce(y, reduced);
-  return -wheel_slip(&scene, reduced, y[setup.sliding->slip_index + 1]).settling;
+  return -setup.sliding->slip(&scene, reduced, y[setup.sliding->slip_index + 1]).settling;
 }
 
 int extremes(void* owner, double t_lo, double t_hi, double* instants) {

@@ -50,6 +50,13 @@ double Reading::brake_moment() {
   return wheel_brake_moment(&axle);
 }
 
+double Reading::guide_moment(int axis) {
+  double moment[2] = {};
+  const WheelScene& scene = now_.scene;
+  if (setup().guided) wheel_guide_moment(&scene.wheel, &pose(), dynamics().lambda, scene.load.M, moment);
+  return moment[axis];
+}
+
 const WheelContact& Reading::contact() {
   if (missing(have_contact)) contact_ = wheel_contact(&now_.scene.wheel, &kinematics());
   return contact_;

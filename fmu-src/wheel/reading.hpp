@@ -40,6 +40,7 @@ class Reading {
   int contact_mode() const { return now_.scene.contact; }
   Force force();
   double brake_moment();          // N m, the brake's part of tau
+  double guide_moment(int axis);  // N m, the hub carrier's on the wheel: about e1 (0) or e2 (1)
   const WheelContact& contact();  // X_C and Y_C as the state counts X_O and Y_O
   double energy();                // J, of the whole X_O and Y_O
   int friction_mode();

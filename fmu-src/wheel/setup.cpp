@@ -48,8 +48,9 @@ void set_error_scales(Setup& setup) {
   const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, turn};
   const double euler[] = {3 * length, 3 * length, 3, 1, 3, turn, turn, turn};
   std::fill_n(setup.slow_scales, WHEEL_MAX_STATES, 1.0);  // also of states that rest while the wheel slides
-  std::copy_n(f == &wheel_reduced ? reduced : f == &wheel_euler ? euler : multibody, f->states, setup.slow_scales);
-  if (setup.sliding == &wheel_sliding) setup.slow_scales[setup.sliding->slip_index] = speed;
+  const bool by_paper = f->states == WHEEL_MULTIBODY_STATES, exchanged = setup.kind == Kind::model_exchange;
+  std::copy_n(by_paper ? multibody : exchanged ? euler : reduced, f->states, setup.slow_scales);
+  if (setup.sliding && !by_paper) setup.slow_scales[setup.sliding->slip_index] = speed;
 }
 
 bool is_positive(unsigned v) {
@@ -113,6 +114,13 @@ bool check_inertia(const Reporter& reporter, const double* v) {
                         Digits{J_y, 9}, Digits{J_z, 9});
 }
 
+bool check_carrier(const Reporter& reporter, const double* v) {
+  const double psi_dot = v[variable::psi_dot_start], theta_dot = v[variable::theta_dot_start];
+  return reporter.check(v[variable::guided] == 0 || (psi_dot == 0 && theta_dot == 0),
+                        "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both.",
+                        Digits{psi_dot, 9}, Digits{theta_dot, 9});
+}
+
 }  // namespace
 
 bool check_values(const Demand& demand, const Reporter& reporter, bool at_start) {
@@ -120,6 +128,7 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
   for (unsigned v = 0; v < stored_count; ++v) sound &= check_value(reporter, v, demand.value(v));
   sound &= check_inertia(reporter, demand.parameters);
   sound &= check_kind(reporter, demand);
+  sound &= check_carrier(reporter, demand.parameters);
   sound &= check_sliding(reporter, demand, at_start);
   return sound;
 }
@@ -132,14 +141,20 @@ Setup setup_of(const Demand& demand) {
   setup.start_time = demand.start_time;
   const bool multibody = choice_of(v[formulation]) == multibody_formulation,
              exchanged = setup.kind == Kind::model_exchange;
-  setup.formulation = exchanged ? &wheel_euler : multibody ? &wheel_multibody : &wheel_reduced;
-  if (v[mu_slide] > 0) setup.sliding = multibody ? &wheel_multibody_sliding : &wheel_sliding;
+  setup.guided = v[guided] != 0;
+  const auto choose = [&](auto& free, auto& on_carrier) { return setup.guided ? &on_carrier : &free; };
+  setup.formulation = exchanged   ? choose(wheel_euler, wheel_guided_euler)
+                      : multibody ? choose(wheel_multibody, wheel_guided_multibody)
+                                  : choose(wheel_reduced, wheel_guided);
+  if (v[mu_slide] > 0)
+    setup.sliding = multibody ? choose(wheel_multibody_sliding, wheel_guided_multibody_sliding)
+                              : choose(wheel_sliding, wheel_guided_sliding);
   setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
   setup.omega_s = v[omega_s];
   setup.method = static_cast<SolverMethod>(choice_of(v[method]));
-  setup.unfolds =
-      v[J_x] == v[J_y] && choice_of(v[formulation]) == automatic_formulation && setup.method == automatic_method;
+  setup.unfolds = (v[J_x] == v[J_y] || setup.guided) && choice_of(v[formulation]) == automatic_formulation &&
+                  setup.method == automatic_method;
   setup.keep_contact = v[keep_contact] != 0;
   setup.tolerance = demand.tolerance;
   setup.psi = {v[psi_start], exchanged ? v[psi_start] : wheel_less_turns(v[psi_start])};

@@ -55,7 +55,8 @@ struct Setup {
   FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
   SolverMethod method = automatic_method;
-  bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y, choices automatic
+  bool guided;   // a hub carrier keeps psi and theta
+  bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y or guided, choices automatic
   bool keep_contact;
   double tolerance;                // relative, of the whole solution
   bool starts_sliding;             // with a slip

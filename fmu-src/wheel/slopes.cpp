@@ -152,8 +152,8 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
 void take_along_motion(Wheel& w, Pass& pass) {
   Present now = present(w);
   Setup setup = w.setup;
-  setup.formulation = &wheel_reduced;
-  if (setup.sliding) setup.sliding = &wheel_sliding;
+  setup.formulation = setup.guided ? &wheel_guided : &wheel_reduced;
+  if (setup.sliding) setup.sliding = setup.guided ? &wheel_guided_sliding : &wheel_sliding;
   double start[WHEEL_MAX_STATES], y[WHEEL_MAX_STATES], y_dot[WHEEL_MAX_STATES];
   formulation_of(w.setup, now.scene).reduce(now.y, start);
   for (const int angle : {4, 5})  // a small step must not vanish in the rounding of a large angle
@@ -211,6 +211,8 @@ bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns,
   const bool of_slip =
       known == variable::slip_x_start || known == variable::slip_y_start || known == variable::mu_slide;
   if (of_slip && !w.setup.sliding) return true;  // a wheel that never slides has no slip
+  const bool of_carrier = known == variable::psi_dot_start || known == variable::theta_dot_start;
+  if (of_carrier && w.demand.value(variable::guided) != 0) return true;  // it stays
   Pass pass;
   for (std::size_t k = 0; k < count; ++k) pass.asked[unknowns[k] - stored_count] = true;
   if (!(parameter ? take_by_parameter(w, known, pass) : take_at_instant(w, known, pass))) return false;

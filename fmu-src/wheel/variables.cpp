@@ -49,6 +49,8 @@ constexpr Access readers[] = {
      [](const Force& force, const Force& rate) { return wheel_brake_moment_rate(&force.axle, &rate.axle); }},
     {variable::slip_x, AT(now.slip(0))},
     {variable::slip_y, AT(now.slip(1))},
+    {variable::M_guide_1, AT(now.guide_moment(0))},
+    {variable::M_guide_2, AT(now.guide_moment(1))},
     {variable::theta_ddot, AT(now.dynamics().theta_ddot)},
     {variable::psi_ddot, AT(now.dynamics().psi_ddot)},
     {variable::phi_ddot, AT(now.dynamics().phi_ddot)},

@@ -23,6 +23,8 @@ TIMES = np.linspace(0, 4, 81)
 UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 WHEELS = {"J_x = J_y": {}, "J_x != J_y": UNEQUAL, "J_x != J_y, multibody": {**UNEQUAL, "formulation": 3}}
 WHEELS |= {"J_x != J_y, slides at times": {**UNEQUAL, "mu_max": 0.3, "mu_slide": 0.25}}
+STEADY = {"guided": True, "psi_dot_start": 0.0, "theta_dot_start": 0.0}
+WHEELS |= {"guided, slides at times": {**STEADY, "mu_max": 0.03, "mu_slide": 0.025}}
 wheels = pytest.mark.parametrize("inertia", WHEELS.values(), ids=WHEELS)
 
 
@@ -90,6 +92,8 @@ def image_of_motion(symmetry: Symmetry, run: Run) -> dict[str, NDArray[np.float6
     for vector in ("lambda", "slip"):
         out[f"{vector}_x"] = turned * run[f"{vector}_x"]
         out[f"{vector}_y"] = turned * np.linalg.det(symmetry.plane) * run[f"{vector}_y"]
+    for axis in (1, 2):
+        out[f"M_guide_{axis}"] = symmetry.moment[axis - 1] * run[f"M_guide_{axis}"]
     return out
 
 
@@ -103,12 +107,12 @@ def difference(expected: dict[str, NDArray[np.float64]], found: Run) -> float:
 def test_the_motion_keeps_the_symmetries_of_plane_and_wheel(library: Library, name: str, inertia: dict) -> None:
     symmetry = SYMMETRIES[name]
     plain = Symmetry(np.eye(2))
-    before = library.simulate(TIMES, 1e-11, image_of_load(plain, (1, 1, 1)), **START, **inertia)
+    before = library.simulate(TIMES, 1e-11, image_of_load(plain, (1, 1, 1)), **{**START, **inertia})
     expected = image_of_motion(symmetry, before)
 
     def gap(moment: tuple[int, int, int]) -> float:
         load = image_of_load(symmetry, moment)
-        return difference(expected, library.simulate(TIMES, 1e-11, load, **image_of_start(symmetry), **inertia))
+        return difference(expected, library.simulate(TIMES, 1e-11, load, **{**image_of_start(symmetry), **inertia}))
 
     within(gap(symmetry.moment), 1e-10, "gap")  # ten tolerances
     beyond(gap(tuple(-sign for sign in symmetry.moment)), 0.1, "gap")  # the moments mapped wrongly

@@ -118,6 +118,7 @@ KINDS: dict[str, Values] = {
     "multibody, bdf": {"formulation": "multibody", "method": "bdf", "friction_law": "regularized", "s": 0.03},
     "adams": {"method": "adams", "s": 0.03},
     "runge_kutta": {"method": "runge_kutta"},
+    "guided": {"guided": True, **GENERAL, "s": 0.03},  # stops after 1.4 s
     "sliding": {"mu_max": 0.45, "mu_slide": 0.4},  # from 0.57 to 0.96 s and from 1.87 to 2.19 s
 }
 
