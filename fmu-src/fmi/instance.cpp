@@ -72,7 +72,9 @@ void Instance::take(const void* instance, Topic topic, const char* message) {
   const Instance& i = *static_cast<const Instance*>(instance);
   char escaped[2 * wheel::Reporter::longest];
   escape(message, escaped, sizeof escaped);
+  i.arithmetic.give_back();
   i.logger_(i.environment_, i.name_, topics[static_cast<unsigned>(topic)].message, category_of(topic), escaped);
+  i.arithmetic.take();
 }
 
 Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind) {

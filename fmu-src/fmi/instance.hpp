@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "arithmetic.hpp"
 #include "fmi2Functions.h"
 #include "handle.hpp"
 #include "legality.hpp"
@@ -45,6 +46,7 @@ struct Instance : Handle {
   // The function that is under way, for messages; null: none is. The logger must not call back into the instance.
   const char* called = nullptr;
   unsigned logged_topics = 0;
+  mutable Arithmetic arithmetic;  // given back to the host while its logger runs
 
  private:
   Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind);
@@ -70,6 +72,7 @@ fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, 
   if (!instance || instance->called) return fmi2Error;
   instance->called = name;
   if (!rule.reads) instance->wheel.reading.forget();
+  instance->arithmetic.take();
   fmi2Status status = fmi2OK;
   if (!rule.allows(instance->wheel.kind(), instance->wheel.phase()))
     status = instance->refuse(rule);
@@ -79,6 +82,7 @@ fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, 
     status = instance->fail(body(*instance));
   else
     status = body(*instance);
+  instance->arithmetic.give_back();
   instance->called = nullptr;
   return status;
 }
