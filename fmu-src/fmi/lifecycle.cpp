@@ -84,7 +84,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
                    "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
                    "positive.",
                    start, stop, tolerance);
-    wheel::set_experiment(i.wheel, start, has_stop ? stop : wheel::Demand::never, has_tolerance ? tolerance : 0);
+    wheel::set_experiment(i.wheel, start, has_stop ? stop : solver::never, has_tolerance ? tolerance : 0);
     return fmi2OK;
   });
 }

@@ -89,10 +89,10 @@ solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::S
     const solver::Outcome outcome = solver.step();
     if (outcome != solver::Outcome::event) return outcome;
     double y[states];
-    solver.read(solver.event_time(), y);
-    const solver::Consequence consequence = pass(problem.owner, solver.event(), solver.event_time(), y);
+    solver.read(solver.known_until(), y);
+    const solver::Consequence consequence = pass(problem.owner, solver.event(), solver.known_until(), y);
     if (consequence == solver::Consequence::ends) return outcome;
-    if (consequence == solver::Consequence::bends || !recurrences_[solver.event()].take(solver.event_time()))
+    if (consequence == solver::Consequence::bends || !recurrences_[solver.event()].take(solver.known_until()))
       return solver::Outcome::failed;
     recurs_ = true;
     solver.resume();

@@ -16,7 +16,7 @@
 
 namespace solver {
 
-// stepped: one step was made;  event: a watched function fell below zero at event_time(), which event() names;
+// stepped: one step was made;  event: a watched function, event(), fell below zero at known_until();
 // failed: see failure(); the solution stays known until known_until().
 enum class Outcome { stepped, event, failed };
 
@@ -43,7 +43,7 @@ class Solver {
     if (counts) collocation_.limit_first_step(dt);
   }
 
-  // One internal step, or the rest of one that was resumed. After an event known_until() is event_time(), and the owner
+  // One internal step, or the rest of one that was resumed. After an event the owner
   // restarts from there, resumes or ends.
   // A new step ends at `stop`, s, at the latest; one that would end within a few roundings of it ends there. CVODE
   // starts anew at a stop: the short step would leave a history over nodes that lie close together, which rounding
@@ -63,7 +63,6 @@ class Solver {
   }
   double step_start() const { return step_.start; }
   double known_until() const { return known_until_; }
-  double event_time() const { return known_until_; }
   int event() const { return problem_.watched[fallen_].event; }
   Method method() const { return method_; }
   const char* failure() const { return failure_ ? failure_ : engine().failure(); }

@@ -26,10 +26,13 @@ void Step::visit(support::Archive& archive, int states) {
 
 void Step::read(double t, int states, double* y) const {
   const double rounding = rounding_at(t);
-  if (t >= end - rounding) return void(std::copy_n(y_end, states, y));
-  if (t <= start + rounding) return void(std::copy_n(y_start, states, y));
   const double s = (t - end) / (end - start);
-  states == 8 ? evaluate<8>(c, degree, s, y) : evaluate<max_states>(c, degree, s, y);
+  if (t >= end - rounding)
+    std::copy_n(y_end, states, y);
+  else if (t <= start + rounding)
+    std::copy_n(y_start, states, y);
+  else
+    states == 8 ? evaluate<8>(c, degree, s, y) : evaluate<max_states>(c, degree, s, y);
 }
 
 }  // namespace solver

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "law.hpp"
@@ -187,7 +186,7 @@ double margin_of(const EventRow& row, const Setup& setup, const InForce& now, do
 }
 
 double least_margin(const Setup& setup, const InForce& now, const double* y, double N) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = solver::never;
   const auto take = [&]<std::size_t i>() {
     constexpr const EventRow& row = event_rows[i];
     if constexpr (row.quick_value != nullptr) {
@@ -195,6 +194,7 @@ double least_margin(const Setup& setup, const InForce& now, const double* y, dou
       if (const double own = signed_margin(row, now, row.quick_value(setup, y, N)); own < least) least = own;
     }
   };
+  // By index, so that the compiler inlines the values: a plain loop costs 2 % of a motion's instructions.
   [&]<std::size_t... i>(std::index_sequence<i...>) {
     (take.template operator()<i>(), ...);
   }(std::make_index_sequence<row_count>());

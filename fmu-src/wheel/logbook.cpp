@@ -68,7 +68,7 @@ void warn_of_grip(Wheel& wheel, double t, const double* y) {
   setup.formulation->dynamics(&scene, y, &dynamics);
   const double mu = wheel_required_friction(dynamics.lambda);
   const bool exceeds = std::isfinite(mu) && mu > dry_road;
-  wheel.run.grip_due = exceeds ? Demand::never : t + setup.own_time / looks;
+  wheel.run.grip_due = exceeds ? solver::never : t + setup.own_time / looks;
   if (exceeds)
     wheel.reporter.log(Topic::warning,
                        "t = %s s: mu_required = %s, more than a dry road gives; mu_max = 0 sets no limit.",

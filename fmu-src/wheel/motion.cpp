@@ -38,9 +38,12 @@ bool has_changed(const Wheel& w) {
 
 // Starts the solver at the present instant, from nothing or, again, where it goes on counting.
 Outcome start_solver(Wheel& w, bool again) {
-  const auto start = again ? &solver::Solver::restart : &solver::Solver::start;
+  solver::Solver& solver = w.solution.solver;
+  const solver::Problem problem = problem_of(w);
   const auto method = method_of(w.setup, w.run.in_force);
-  return (w.solution.solver.*start)(problem_of(w), method, w.run.t, w.run.y) ? Outcome::stepped : Outcome::failed;
+  const bool done =
+      again ? solver.restart(problem, method, w.run.t, w.run.y) : solver.start(problem, method, w.run.t, w.run.y);
+  return done ? Outcome::stepped : Outcome::failed;
 }
 
 // Stage 1: what was set since the last step takes effect.
@@ -169,7 +172,7 @@ Outcome step_to(Wheel& w, double t) {
     const long long steps = std::max((solver.counters().rhs - before) / evaluations_per_step, 1LL);
     work += (outcome == Outcome::event ? work_per_event : steps) * work_per_step;
     if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event after t waits until it is reached
-    move_to(w, solver.event_time());
+    move_to(w, solver.known_until());
     state_now(w);
     const auto event = static_cast<Event>(solver.event());
     if (ends_run(row_of(event), w.setup)) return outcome;

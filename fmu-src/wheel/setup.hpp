@@ -8,6 +8,7 @@
 
 #include "inputs.hpp"
 #include "reporter.hpp"
+#include "step.hpp"
 #include "variables.hpp"
 
 namespace wheel {
@@ -22,11 +23,9 @@ enum class Kind : int { co_simulation, model_exchange };
 // Parameters and tolerance make the setup when initialization ends; inputs, their derivatives and the road may be set
 // again later and are in force from the next step on.
 struct Demand {
-  static constexpr double never = std::numeric_limits<double>::infinity();
-
   double parameters[first_input];  // in the order of the variables; the road is the one asked for
   Polynomials inputs = {};         // from the instant at which they take effect
-  double start_time = 0, stop_time = never, tolerance = default_tolerance;
+  double start_time = 0, stop_time = solver::never, tolerance = default_tolerance;
   Kind kind;
   bool changed = false;  // something has been set since the last step
 

@@ -31,7 +31,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   InForce& now = run.in_force;
   for (double& parameter : demand.parameters) archive.anything(parameter);
   archive.number(demand.start_time);
-  archive.range(demand.stop_time, -archive.greatest, Demand::never);
+  archive.range(demand.stop_time, -archive.greatest, solver::never);
   archive.range(demand.tolerance, tightest_tolerance, loosest_tolerance);
   for (auto& input : demand.inputs) {
     archive.anything(input[0]);
@@ -52,7 +52,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive.number(now.inputs.origin);
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
   archive.number(run.t, run.last_change);
-  archive.range(run.grip_due, 0, Demand::never);
+  archive.range(run.grip_due, 0, solver::never);
   archive.numbers(run.y, WHEEL_MAX_STATES);
   for (int i = 0; i < event_count; ++i) {
     archive.count(now.below[i], 0, 1);

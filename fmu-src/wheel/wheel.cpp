@@ -65,10 +65,14 @@ InForce in_force_now(const Wheel& w, double* y) {
 
 // Where nothing was set, without a copy of all that is in force.
 Present present(Wheel& w) {
-  const double* y = state_now(w);
-  if (w.demand.changed) y = std::copy_n(y, WHEEL_MAX_STATES, w.y_ahead) - WHEEL_MAX_STATES;
-  const WheelScene scene = w.demand.changed ? in_force_now(w, w.y_ahead).scene : w.run.in_force.scene_at(w.run.t);
-  Present now = {&w.setup, y, scene, &w.run, &w.solution.solver};
+  Present now = {&w.setup, state_now(w), {}, &w.run, &w.solution.solver};
+  if (w.demand.changed) {
+    std::copy_n(now.y, WHEEL_MAX_STATES, w.y_ahead);
+    now.y = w.y_ahead;
+    now.scene = in_force_now(w, w.y_ahead).scene;
+  } else {
+    now.scene = w.run.in_force.scene_at(w.run.t);
+  }
   now.scene.ground = WHEEL_GROUND_BY_FORCE;
   return now;
 }

@@ -17,7 +17,7 @@ struct Shape {
 
 // Steps of the solver, or the orbit of a wheel that is unfolded.
 struct Solution {
-  static constexpr double none = -Demand::never;
+  static constexpr double none = -solver::never;
 
   solver::Solver solver;
   orbit::Orbit orbit;

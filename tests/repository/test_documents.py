@@ -53,28 +53,38 @@ def test_another_figure_in_prose_would_be_noticed() -> None:
         with_figures("1<!--physics.nothing-->")
 
 
-NAMED = re.compile(r"`((?:cmake|docs|examples|fmu-src|publishing|release|reports|scripts|tests|tools)/[\w./-]*)`")
+def files(*patterns: str) -> list[str]:
+    """Of the project, from its root."""
+    command = ("git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", *patterns)
+    return [name for name in run(*command).stdout.split("\0") if (ROOT / name).is_file()]
 
 
-def missing(text: str, beside: Path = ROOT) -> list[str]:
-    """Places that the text names and the project has not."""
-    named = [name for name in NAMED.findall(text) if "NAME" not in name]
-    return [name for name in named if not (ROOT / name).exists() and not (beside / name).exists()]
+NAMED = re.compile(r"`(?:\./)?((?:[\w.-]+/)+[\w.-]*)`")
+WRITTEN = ("build/", "results/")  # by commands
+
+
+def missing(text: str) -> list[str]:
+    """Places that the text names, from whatever folder on, and the project has not."""
+    places = {place for name in files() for place in (f"/{name}", *(f"/{folder}/" for folder in Path(name).parents))}
+    named = [name for name in NAMED.findall(text) if "NAME" not in name and not name.startswith(WRITTEN)]
+    return [name for name in named if not any(place.endswith((f"/{name}", f"/{name}/")) for place in places)]
 
 
 def test_every_file_that_a_document_names_exists_and_every_decision_is_listed() -> None:
-    found = {name: missing(text, (ROOT / name).parent) for name, text in PAGES.items()}
+    found = {name: missing(text) for name, text in PAGES.items()}
     assert {name: gone for name, gone in found.items() if gone} == {}
-    assert missing("`tests/support/bounds.py`, `fmu-src/`, `tests/support/bounds.cpp`") == ["tests/support/bounds.cpp"]
+    wrong = ["tests/support/bounds.cpp", "wheel/advance.cpp", "support/wheel/"]
+    right = ["tests/support/bounds.py", "fmu-src/", "wheel/motion.cpp"]
+    assert missing(" ".join(f"`{name}`" for name in (*right, *wrong))) == wrong
     listed = re.findall(r"\]\((decisions/\w+\.md)\)", TEXTS["docs/README.md"])
     assert set(listed) == {f"decisions/{path.name}" for path in (ROOT / "docs" / "decisions").glob("*.md")}
 
 
 def words(*patterns: str) -> set[str]:
     """Of files and their names."""
-    files = run("git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", *patterns).stdout.split("\0")
-    found = (path.read_text(encoding="utf-8", errors="ignore") for path in map(ROOT.joinpath, files) if path.is_file())
-    return {word for text in (*found, *files) for word in re.findall(r"\w+", text)}
+    names = files(*patterns)
+    found = ((ROOT / name).read_text(encoding="utf-8", errors="ignore") for name in names)
+    return {word for text in (*found, *names) for word in re.findall(r"\w+", text)}
 
 
 # Of other programs, and of examples in the text.

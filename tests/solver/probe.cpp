@@ -99,11 +99,11 @@ PUBLIC void probe_restart(Probe* probe, double t, const double* y) {
   (void)probe->solver.restart(problem_of(probe), probe->setting.method, t, y);
 }
 
-// Begin of the last step, time known, instant of the event; steps, evaluations, roots.
-PUBLIC void probe_progress(const Probe* probe, double now[6]) {
+// Begin of the last step, time known; steps, evaluations, roots.
+PUBLIC void probe_progress(const Probe* probe, double now[5]) {
   const solver::Solver& s = probe->solver;
   const solver::Counters& n = s.counters();
-  const double times[] = {s.step_start(), s.known_until(), s.event_time()};
+  const double times[] = {s.step_start(), s.known_until()};
   const long long counts[] = {n.steps, n.rhs, n.roots};
-  std::copy_n(counts, 3, std::copy_n(times, 3, now));
+  std::copy_n(counts, 3, std::copy_n(times, 2, now));
 }

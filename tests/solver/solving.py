@@ -12,7 +12,7 @@ STATES = 8  # those beyond the problem's own rest at zero
 STEPPED, EVENT, FAILED = range(3)
 WATCH = CFUNCTYPE(c_double, c_double, POINTER(c_double))
 # Begin of the last step, time known, instant of the event; counts since the start.
-Progress = namedtuple("Progress", "begin known instant steps rhs roots")
+Progress = namedtuple("Progress", "begin known steps rhs roots")
 
 
 class Setting(Structure):

@@ -12,7 +12,7 @@ def dips(solver, method, depth):
     """Instants of the falls of g = 1 + sin t - depth below zero up to t = 20."""
     one, found = solver(method, tolerance=1e-6, each_step=lambda t, y: 1 - y[1] - depth), []
     while one.run(20.0) == EVENT:
-        found.append(one.now.instant)
+        found.append(one.now.known)
         past = found[-1] + 2 * acos(1 - depth) + 0.1
         one.restart(past, harmonic(past))
     return found
@@ -38,7 +38,7 @@ def test_of_a_dip_however_brief_the_first_instant_is_found(solver, method):
         one = solver(method, "clock", each_step=lambda t, y, c=centre, w=half: (t - c) ** 2 - w**2)
         assert one.run(1.0) == EVENT
         # five digits of the width, down to the last that the time has
-        within(abs(one.now.instant - (centre - half)) / half, 1e-5, "error over half the width")
+        within(abs(one.now.known - (centre - half)) / half, 1e-5, "error over half the width")
         roots += one.now.roots
     assert roots < 60 * 100  # a halved step costs two values, and at most 48 are spent between two extremes
 
@@ -69,7 +69,7 @@ def test_of_two_dips_between_bends_the_first_is_found(solver, method, depth):
     outcome, now = double_dip(solver, method, depth)
     assert outcome == EVENT
     # The first root: (t - 0.3) (0.7 - t) = -sqrt(depth).
-    within(absolute_error(now.instant, 0.5 - sqrt(0.04 + sqrt(depth))), 64 * EPSILON, "time")
+    within(absolute_error(now.known, 0.5 - sqrt(0.04 + sqrt(depth))), 64 * EPSILON, "time")
 
 
 def test_above_zero_two_dips_end_nothing(solver, method):
@@ -89,7 +89,7 @@ def test_each_piece_between_bends_is_searched_by_itself(solver, method, depth):
         method, "clock", each_step=lambda t, y: 1 if t < 0.5 else 25 * (t - 0.7) ** 2 - depth, extremes=(0.5,)
     )  # fmt: skip
     assert one.run(1.0) == EVENT
-    assert one.now.instant == pytest.approx(0.7 - sqrt(depth) / 5, abs=1e-9)
+    assert one.now.known == pytest.approx(0.7 - sqrt(depth) / 5, abs=1e-9)
 
 
 @pytest.mark.parametrize("last", [0.5, 1e-2, 1e-3, 1e-5])
@@ -97,4 +97,4 @@ def test_a_release_with_rate_zero_is_no_event_but_the_fall_after_it_is(solver, m
     """g = t^2 (last - t): zero with zero rate at the start, and down through zero at `last`."""
     one = solver(method, "clock", each_step=lambda t, y: y[0] ** 2 * (last - y[0]))
     assert one.run(10 * last) == EVENT
-    within(relative_error(one.now.instant, last), 2e-12, "time")
+    within(relative_error(one.now.known, last), 2e-12, "time")

@@ -14,7 +14,16 @@ enum {
 #define COMPUTED(name, ...) ref_##name,
 #include "variables.inc"
 };
-enum { first_output = ref_X_O, output_count = ref_theta_ddot - ref_X_O }; /* up to the first local variable */
+/* All outputs: of each calculated variable by its role and type. */
+#define output_real(reference) reference,
+#define local_real(reference)
+#define local_integer(reference)
+static const fmi2ValueReference outputs[] = {
+#define STORED(...)
+#define COMPUTED(name, type, role) role##_##type(ref_##name)
+#include "variables.inc"
+};
+enum { output_count = sizeof outputs / sizeof *outputs };
 
 static const fmi2ValueReference choices[] = {ref_formulation, ref_friction_law, ref_method},
                                 reals[] = {ref_s, ref_J_y, ref_r, ref_psi_dot_start, ref_M_3, ref_mu_max, ref_mu_slide},
@@ -134,8 +143,6 @@ double life(const char* guid, int scene) {
 static void print_hash(const struct scene* scene, const char* guid) {
   enum { steps = 500 };
   static double pushes[2 * steps], rows[steps * output_count];
-  static fmi2ValueReference outputs[output_count];
-  for (unsigned i = 0; i < output_count; ++i) outputs[i] = first_output + i;
   for (int i = 0; i < steps; ++i) pushes[2 * i] = scene->slope * 0.02 * i, pushes[2 * i + 1] = scene->slope;
   const Run run = {&force, outputs, scene->slope != 0, output_count, 1, pushes, 0.02, steps};
   const fmi2Component c = start(scene, guid);
