@@ -10,6 +10,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -255,6 +256,26 @@ def test_the_fmus_page_is_well_formed_and_complete_offline(fmu: str) -> None:
         assert known, reference
     with pytest.raises(etree.XMLSyntaxError):
         etree.fromstring(b"<p><b>crossed</p></b>", strict)
+
+
+EXTRA = ROOT / "fmu-src" / "archive" / "extra" / "org.fmi-standard.fmi-ls-ref"
+
+
+def watched(page: str) -> set[str]:
+    """Variables in the last column of the table of assumptions."""
+    _, _, table = page.partition("| assumption |")
+    rows = re.findall(r"^\|.*\| ([^|]*) \|$", table.partition("\n\n")[0], re.MULTILINE)
+    return {name for cell in rows for name in re.findall(r"`(\w+)`", cell)} - {"mu_max"}
+
+
+def test_the_credibility_in_the_fmu_watches_what_its_page_does_and_names_every_parameter_set() -> None:
+    data = etree.parse(EXTRA / "credibility.srmd").getroot()
+    (found,) = data.xpath("//*[@keyword='to-watch']/text()")
+    page = PAGES["docs/credibility.md"]
+    assert watched(page) == {*found.split()} != watched(page.replace("`slip_x`", ""))
+    said = (ROOT / "fmu-src" / "archive" / "documentation" / "fmi-ls-ref.txt").read_text(encoding="utf-8")
+    sets = tomllib.loads((ROOT / "tools" / "release" / "parameter_sets.toml").read_text(encoding="utf-8"))
+    assert re.search(r"parameter sets: (.*)", said)[1].split(", ") == sorted(sets, key=said.find) and len(sets) > 5
 
 
 def signals(page: str) -> list[str]:
