@@ -110,6 +110,69 @@ def draw_slip(ax: Axes, scene: Scene) -> list[str]:
     return marks
 
 
+def draw_speeds(ax: Axes, scene: Scene) -> list[str]:
+    """The speed of O along e1, and that at which the spin would roll without slip."""
+    ax.set_ylabel("speed [m/s]")
+    marks = _time_axis(ax, scene)
+    speeds = {r"$-R\,\omega_z$": (scene.rolling_speed, style.VERMILLION), "$v$": (scene.speed, style.BLUE)}
+    marks += _curves(ax, scene, speeds)
+    return [*marks, r"$R = r_0 + r \sin\theta$; forward is positive."]
+
+
+def draw_slip_ratio(ax: Axes, scene: Scene) -> list[str]:
+    """kappa from -1, locked; drawn up to 1."""
+    ax.set_ylabel(r"slip ratio $\kappa$")
+    marks = _time_axis(ax, scene)
+    ax.plot(scene["time"], np.clip(scene.slip_ratio, -1.0, 1.0), color=style.BLUE, linewidth=1.0)
+    _scale(ax.yaxis, 5, [-1.0, 0.0], steps=(1, 5, 10))
+    ax.margins(y=0.08)
+    over = bool((abs(scene.slip_ratio) > 1).any())
+    return [*marks, r"$\kappa = (-R\,\omega_z - v)/v$: braking negative, $-1$ locked."] + [
+        r"$\kappa$ is drawn from $-1$ to 1."
+    ] * over
+
+
+def draw_forces(ax: Axes, scene: Scene) -> list[str]:
+    """The ground's force in the wheel's axes; what stays zero is left out."""
+    ax.set_ylabel("force of the ground [N]")
+    marks = _time_axis(ax, scene)
+    forces = {"$N$": ("lambda_3", style.BLUE), "along $e_1$": ("lambda_x", style.VERMILLION)}
+    forces["left of $e_1$"] = ("lambda_y", style.GREEN)
+    weight = scene.value("m") * scene.value("g")
+    shown = {text: (scene[n], color) for text, (n, color) in forces.items() if abs(scene[n]).max() > 1e-6 * weight}
+    return marks + _curves(ax, scene, shown)
+
+
+def draw_distance(ax: Axes, scene: Scene) -> list[str]:
+    """How far O has come along its path."""
+    ax.set_ylabel("distance travelled [m]")
+    marks = _time_axis(ax, scene)
+    ways = np.hypot(np.diff(scene["X_O"]), np.diff(scene["Y_O"]))
+    distance = np.concatenate([[0.0], np.cumsum(ways)])
+    marks += _over_time(ax, scene["time"], distance)
+    _scale(ax.yaxis, 5, distance, 1e-3)
+    style.note(ax, f"{distance[-1]:.4g} m", (scene["time"][-1], distance[-1]), (-2, 3), ha="right", va="bottom")
+    ax.margins(y=0.12)
+    return marks
+
+
+def _curves(ax: Axes, scene: Scene, curves: dict[str, tuple[Array, str]]) -> list[str]:
+    """Curves over time, each with its name where it is farthest from the others."""
+    marks, values = [], np.array([curve for curve, _ in curves.values()])
+    for k, (text, (curve, color)) in enumerate(curves.items()):
+        marks += _over_time(ax, scene["time"], curve, color)
+        others = np.delete(values, k, axis=0)
+        gap = abs(others - curve).min(axis=0) if len(others) else np.ones(len(curve))
+        inside = slice(len(gap) // 20, max(-len(gap) // 8, 1 - len(gap)))
+        at = inside.start + int(np.argmax(gap[inside]))
+        above = curve[at] >= others[:, at].max() if len(others) else True
+        place = {"va": "bottom" if above else "top", "color": color}
+        style.note(ax, text, (scene["time"][at], curve[at]), (3, 2 if above else -2), **place)
+    _scale(ax.yaxis, 5, values, 1e-3)
+    ax.margins(y=0.14)
+    return marks
+
+
 def draw_rates(ax: Axes, scene: Scene) -> list[str]:
     """Fig. 3, 6: phi_dot over psi_dot; stick phases are thick. The texts beside the curve come with write_rates."""
     ax.set_xlabel(rf"precession rate {PSI_DOT} [rad/s]")

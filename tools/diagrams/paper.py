@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, forces of the ground, slip.
 
-Reads free.csv (s = 0) and friction.csv (s > 0), which hold all that was set as columns: titles and captions come from
-there. The paper's two scenes make paper_diagrams, paper_path_and_ground and fig_1 ... fig_6; others make diagrams and
-diagram_NAME_SCENE, and leave those of the paper in place. All as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees
-beside.
+A guided wheel has speeds, slip ratio, forces and distance in their place. Reads free.csv (s = 0) and friction.csv
+(s > 0), which hold all that was set as columns: titles and captions come from there. The paper's two scenes make
+paper_diagrams, paper_path_and_ground and fig_1 ... fig_6; others make diagrams and diagram_NAME_SCENE, and leave those
+of the paper in place. All as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees beside.
 """
 
 import re
@@ -54,6 +54,13 @@ OTHERS = (
     Panel("ground", r"$N(t)$ and required $\mu(t)$", 67.0, panels.draw_ground),
 )
 SLIDES = (Panel("slip", "Slip at the contact", 57.0, panels.draw_slip),)
+# A guided wheel's tilt and heading stay: in their place what a vehicle's engineer reads.
+SPEEDS = Panel("speeds", r"Speed $v$ and rolling speed $-R\,\omega_z$", 57.0, panels.draw_speeds)
+RATIO = Panel("slip_ratio", "Slip ratio", 50.0, panels.draw_slip_ratio)
+LOADS = (
+    Panel("forces", "Forces of the ground", 57.0, panels.draw_forces),
+    Panel("distance", "Distance travelled", 57.0, panels.draw_distance),
+)
 
 
 def unlike_paper(scene: Scene) -> list[str]:
@@ -180,15 +187,24 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     return style.save(fig, stem)
 
 
+def panels_of(scenes: Sequence[Scene]) -> tuple[tuple[Panel, ...], tuple[Panel, ...]]:
+    """Of runs that are not the paper's: the first ones, and those that follow on the same sheet."""
+    slides = any(scene.slides.any() for scene in scenes)
+    across = any(abs(scene["slip_y"]).max() > 1e-9 * scene.slip.max() for scene in scenes)
+    if not scenes[0].guided:
+        return PAPERS, OTHERS + SLIDES * slides
+    return (SPEEDS, *[RATIO] * slides), LOADS + OTHERS[:1] * across
+
+
 def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
     """Arguments of draw for sheets, then each panel of each scene; names show whether the scenes are the paper's."""
     paper = is_paper(scenes)
-    others = OTHERS + SLIDES * any(scene.slides.any() for scene in scenes)
-    sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": PAPERS + others}
+    first, others = panels_of(scenes)
+    sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": first + others}
     wanted = [(out / name, scenes, drawn, paper) for name, drawn in sheets.items()]
     for scene in scenes:
         friction = int(scene.value("s") > 0)
-        for panel in PAPERS + others * (not paper):
+        for panel in first + others * (not paper):
             name = f"diagram_{panel.name}_{('free', 'friction')[friction]}"
             wanted.append((out / (f"fig_{panel.figures[friction]}" if paper else name), [scene], [panel], paper))
     return wanted

@@ -91,6 +91,28 @@ class Scene:
         """Speed of the slip in m/s."""
         return np.hypot(self["slip_x"], self["slip_y"])
 
+    @property
+    def guided(self) -> bool:
+        """Whether a hub carrier keeps the direction of its axle."""
+        return self.value("guided") > 0
+
+    @property
+    def speed(self) -> Array:
+        """v of O along e1 in m/s."""
+        psi = self["psi"]
+        return self["X_O_dot"] * np.cos(psi) + self["Y_O_dot"] * np.sin(psi)
+
+    @property
+    def rolling_speed(self) -> Array:
+        """The speed in m/s at which the wheel would not slip along e1: of a guided wheel R |omega_z|."""
+        return self.speed - self["slip_x"]
+
+    @property
+    def slip_ratio(self) -> Array:
+        """kappa = -slip_x / v, braking negative; nan where the wheel stands."""
+        still = abs(self.speed) < 1e-6 * abs(self.speed).max(initial=1e-300)
+        return np.divide(-self["slip_x"], self.speed, out=np.full(len(still), np.nan), where=~still)
+
     def rows_at(self, time: Array) -> NDArray[np.int64]:
         """The row next to each instant."""
         return np.searchsorted(self.edges[1:-1], time)

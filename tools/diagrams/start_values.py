@@ -118,7 +118,7 @@ def rolling(given: dict[str, str], takes: dict[str, Variable], wheel: dict[str, 
 
 def command(found: dict[str, str]) -> list[str]:
     """Arguments of `fmpy simulate`; the figures and the page need outputs, energy, friction, and all that was set."""
-    wanted = ("E", "mu_required", "friction_mode", "n_events")
+    wanted = ("E", "mu_required", "contact_mode", "friction_mode", "n_events")
     outputs = [v.name for v in variables().values() if v.causality != "local" or v.name in wanted]
     start = {"s": str(PAPER_S)} | found
     times = [f"--{name.replace('_', '-')}={start.pop(name, v.start)}" for name, v in RUN.items()]

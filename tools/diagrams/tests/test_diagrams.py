@@ -124,6 +124,26 @@ def test_figure_numbers_and_file_names_of_the_paper_belong_to_its_two_scenes() -
     assert "stop_time = 20 s" in " ".join(paper.unlike_paper(longer[0]))
 
 
+def test_a_guided_wheel_has_speeds_slip_ratio_forces_and_distance_in_the_place_of_what_stays() -> None:
+    """Locked after 2 s, it stands after 8 s: 8 m/s falls evenly, the spin four times as fast."""
+    v, rolling = np.maximum(8 - TIME, 0), np.maximum(8 - 4 * TIME, 0)
+    course = {"X_O_dot": v, "Y_O_dot": 0, "psi": 0, "slip_x": v - rolling, "theta": np.pi / 2, "Y_O": 0}
+    way = np.where(TIME < 8, 8 * TIME - TIME**2 / 2, 32)
+    braked = scene(guided=1, contact_mode=v > 0, X_O=way, lambda_1=-20, lambda_x=-20, lambda_y=0, **course)
+    drawn = [panel for panels in paper.panels_of([braked]) for panel in panels]
+    assert [panel.name for panel in drawn] == ["speeds", "slip_ratio", "forces", "distance"]
+    assert np.allclose(braked.rolling_speed, rolling) and np.isnan(braked.slip_ratio[TIME >= 8]).all()
+    assert np.allclose(braked.slip_ratio[TIME < 8], (rolling / np.where(v > 0, v, 1) - 1)[TIME < 8])
+    said = caption(braked, *drawn)
+    assert "braking negative" in said and "guided = true" in said
+    ax = style.figure_mm(80, 80).subplots()
+    panels.draw_forces(ax, braked)
+    assert [text.get_text() for text in ax.texts] == ["$N$", "along $e_1$"]  # none to the left
+    across = scene(guided=1, contact_mode=1, slip_y=1.0, X_O=way, lambda_x=0, lambda_y=-20, **{**course, "slip_x": v})
+    assert [panel.name for panel in paper.panels_of([across])[1]] == ["forces", "distance", "path"]
+    assert paper.panels_of([scene()])[0] == paper.PAPERS  # the partner
+
+
 def written(folder: Path, name: str, one: Scene, rows: int) -> None:
     columns = {n: values[:rows] for n, values in one.columns.items()}
     columns["time"] = np.arange(rows) * 0.01 if rows > 2 else np.zeros(rows)
