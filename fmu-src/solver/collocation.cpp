@@ -61,6 +61,9 @@ constexpr double part_of_tolerance = 0.2;
 constexpr double distance = 0.1, error_of_last = 0.005;
 constexpr int most_sweeps = 30, most_tries = 40;
 constexpr double longer = 1.01;  // of the stop
+// The shortest step, in roundings of time: whatever the settling state does in it, the others hardly move. Its sweeps
+// converge where the speed lasts for many such steps.
+constexpr double roundings = 2;
 
 // At the point j of a step of this size.
 Row state_at(int j, const Step& step, double size, const double (&f)[radau_points][max_states]) {
@@ -138,9 +141,10 @@ double Collocation::try_size(const Problem& problem, const double* weights, Coun
   for (int sweeps = 0; !converged; ++sweeps) {
     const double before = change;
     change = sweep(problem, weights, newton, counters, step);
-    if (sweeps == most_sweeps || !(change < before)) return INFINITY;
-    // The changes that would follow sum to change^2 / (before - change).
-    converged = change < distance || (sweeps > 0 && change * change < distance * (before - change));
+    const bool falls = sweeps < most_sweeps && change < before;
+    if (!falls && !(change < 1)) return INFINITY;
+    // The changes that would follow sum to change^2 / (before - change). Small ones that do not fall are rounding.
+    converged = !falls || change < distance || (sweeps > 0 && change * change < distance * (before - change));
   }
   const Row last =
       error_of_last * size_ *
@@ -155,19 +159,20 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
   last.start = step->start - size_;
   last.end = step->start;
   if (known_) expand(problem, &last);
+  const double shortest = roundings * rounding_at(step->start);
   for (int attempts = 0; attempts < most_tries; ++attempts) {
-    size_ = std::fmin(liked_, problem.longest_step);
+    size_ = std::fmin(std::fmax(liked_, shortest), problem.longest_step);
     const bool stops = step->start + longer * size_ >= stop;
     if (stops) size_ = stop - step->start;
-    if (!stops && size_ <= rounding_at(step->start)) break;
     step->end = stops ? stop : step->start + size_;
     const bool finite = predict(problem, last, counters, step);
     const double error = finite ? try_size(problem, weights, counters, step) : INFINITY;
     const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
-    known_ = error <= 1;
+    known_ = error <= 1 || (size_ <= shortest && std::isfinite(error));
     // Where the direction starts off its limit, errors hardly depend on the size of long steps.
     const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.25, 3.0) : 0.25);
     if (!known_ || !stops || next < liked_) liked_ = next;
+    if (!known_ && size_ <= shortest) break;
     if (!known_) continue;
     const Row y_end = state_at(radau_points - 1, *step, size_, f_);
     std::copy_n(y_end.data(), max_states, step->y_end);

@@ -47,10 +47,9 @@ int weights(N_Vector y, N_Vector w, void* user) {
 
 // In words of our own: SUNDIALS's messages give times of the solver's clock.
 const char* reason_of(int flag) {
-  if (flag == CV_ERR_FAILURE) return "the error stays too large at the smallest step";
-  if (flag == CV_CONV_FAILURE) return "the corrector does not converge at the smallest step";
-  for (const int of_rates : {CV_RHSFUNC_FAIL, CV_FIRST_RHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR, CV_UNREC_RHSFUNC_ERR})
-    if (flag == of_rates) return "the rates of the states are not finite";
+  if (flag == CV_FIRST_RHSFUNC_ERR) return "the rates of the states are not finite";
+  for (const int at_smallest : {CV_ERR_FAILURE, CV_CONV_FAILURE, CV_REPTD_RHSFUNC_ERR})
+    if (flag == at_smallest) return "the step size became too small";
   return "CVODE failed";
 }
 
@@ -125,6 +124,8 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
       next_ = Next::goes_on;
     }
     if (flag >= 0) flag = std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
+    // At a state that is zero CVODE's first step is next to nothing, and shorter than the rounding of time.
+    if (flag >= 0) flag = CVodeSetMinStep(o.cvode, std::fmin(rounding_at(step->end), problem.longest_step));
     if (flag < 0) break;
     const long jacobians = first ? 0 : jacobians_of(o);  // CVODE's own count starts anew with its first step
     // The size of CVODE's first step depends on the time it is asked for, so it is always asked for the same time
@@ -134,10 +135,8 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
     if (flag >= 0 || first || (flag != CV_ERR_FAILURE && flag != CV_CONV_FAILURE)) break;
     next_ = Next::starts_after_stop;
   }
-  // CVODE reports success for steps so small that the time no longer changes.
-  const bool stands = flag >= 0 && flag != CV_TSTOP_RETURN && t - step->end <= rounding_at(t);
-  failure_ = stands ? "the step size became too small" : reason_of(flag);
-  if (flag < 0 || stands) {
+  failure_ = reason_of(flag);
+  if (flag < 0) {
     next_ = Next::starts;
     return false;
   }

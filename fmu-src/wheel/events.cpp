@@ -81,11 +81,12 @@ double slip_left(const Setup& setup, const InForce& now, double t, const double*
   constexpr double near = 1e3;
   const int slip = setup.sliding->slip_index;
   double least = least_slip(setup, t);
-  if (y[slip] < near * least) {  // a slip that falls faster than by g needs more digits of the instant
+  if (y[slip] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
     const WheelScene scene = now.scene_at(t);
     double y_dot[WHEEL_MAX_STATES];
     setup.sliding->derivative(&scene, y, y_dot);
-    least *= std::fmax(1, -y_dot[slip] * setup.own_time * setup.own_time / setup.length);
+    const double rate = std::hypot(std::fmin(y_dot[slip], 0), y[slip] * y_dot[slip + 1]);
+    least *= std::fmax(1, rate * setup.own_time * setup.own_time / setup.length);
   }
   return (y[slip] - least) / setup.slip_scale;
 }

@@ -118,7 +118,7 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
 }
 
 double least_slip(const Setup& setup, double t) {
-  constexpr double part = 0.01, roundings = 64;
+  constexpr double part = 0.01, roundings = 128;
   return setup.slip_scale * (part * setup.tolerance + roundings * solver::rounding_at(t) / setup.own_time);
 }
 

@@ -25,18 +25,28 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   return least_margin(setup, now, y, N);
 }
 
+// The rounding of the rates near flat, relative. psi_dot = omega_2 / sin(theta) magnifies that of theta, of which a tenth
+// is left over many steps; where psi_dot is a state, accelerations of the size of r_0 psi_dot^2 cancel.
+double rounding_of_rates(double theta, double turns) {
+  return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), turns * turns);
+}
+
 // The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
 // turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a fraction of that width.
 template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
-  const int spin = setup.formulation->spin_index;
+  const int spin = setup.formulation->spin_index, psi_dot = spin - 2;  // psi_dot is a state of the multibody form
+  const bool multibody = setup.formulation == &wheel_multibody;
+  const double theta = y[setup.formulation->tilt_index];
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  const double slow = share * setup.tolerance;
-  const double tolerance = std::fmax(slow * share_at(setup, y[spin]), std::fmin(slow, rounding));
+  const double slow = share * setup.tolerance, turns = multibody ? y[psi_dot] * setup.own_time : 0;
+  const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, turns));
+  const double tolerance = std::fmax(slow * share_at(setup, y[spin]), least);
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, y[spin], scales);
+  if (multibody) scales[psi_dot] /= std::sin(theta);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
   const double part = 10 * std::sqrt(tolerance);

@@ -1,0 +1,164 @@
+"""Every method reaches the end of every scene at every tolerance, and what is tight is as exact as rounding allows.
+
+Where a slip ends while its direction turns, where omega_z is zero at a start of CVODE, and near flat, where psi_dot =
+omega_2 / sin(theta) magnifies rounding. SI.
+"""
+
+from math import pi
+
+import numpy as np
+import pytest
+from support.bounds import beyond, within
+from support.driver import OK
+from support.motion import Library, start_values
+from support.motion import run as attempt
+from support.scenes import SCENES
+from support.schedule import Schedule
+from support.sliding import SLIDES, random_slide
+
+from .cases import random_scene
+
+TOLERANCES = [10.0**-k for k in range(4, 14)]
+ADAMS, BDF, RUNGE_KUTTA = 2, 3, 4
+each_method = pytest.mark.parametrize("method", [ADAMS, BDF, RUNGE_KUTTA], ids=["adams", "bdf", "runge_kutta"])
+
+
+def stopped(library: Library, times, tolerance: float, inputs: Schedule | None = None, **values) -> list[str]:
+    """The message of a solver that gave up."""
+    done = attempt(library, values, times, tolerance, inputs)
+    return [] if done.status <= OK + 1 or done.end is not None else done.messages[-1:]
+
+
+# ---- every method ----
+
+
+@each_method
+@pytest.mark.parametrize("name", [*SCENES, *(f"slide: {name}" for name in SLIDES)])
+def test_every_scene_runs_to_its_end_by_every_method_at_every_tolerance(library, name: str, method: int) -> None:
+    scene = SLIDES[name[7:]] if name.startswith("slide: ") else SCENES[name]
+    times = np.linspace(0, scene.duration, 101)
+    for tolerance in TOLERANCES:
+        assert stopped(library, times, tolerance, scene.inputs, **{**scene.start, "method": method}) == []
+
+
+@each_method
+def test_random_wheels_with_friction_run_to_their_end_at_the_tightest_tolerances(library, method: int) -> None:
+    random = np.random.default_rng(57)
+    for _ in range(25):
+        wheel, start = random_scene(random)
+        values = {**start_values(wheel, start), "s": 10 ** random.uniform(-4, -1), "keep_contact": True}
+        values |= {"formulation": int(random.choice([2, 3])), "method": method}
+        assert stopped(library, [0.0, 2.0, 4.0], float(10 ** -random.uniform(11, 13)), **values) == []
+
+
+# ---- the end of a slip ----
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES[4:])
+def test_a_slip_that_falls_while_it_turns_ends(library: Library, tolerance: float) -> None:
+    wheel = {"m": 12.9, "r_0": 0.228, "r": 0.134, "J_x": 0.408, "J_y": 0.557, "J_z": 0.375, "s": 0.0111}
+    start = {"psi_start": 0.0, "theta_start": 2.24, "phi_start": 0.414, "psi_dot_start": -1.13}
+    start |= {"theta_dot_start": 0.975, "phi_dot_start": -1.86, "mu_max": 0.211, "mu_slide": 0.159}
+    run = library.simulate(np.arange(0, 3.01, 0.1), tolerance, **wheel, **start)
+    grips = [message for message in run.messages if message.startswith("t = 2.4495") and "grips" in message]
+    assert len(grips) == 1
+
+
+@pytest.mark.parametrize("formulation", [2, 3])
+def test_slips_of_random_wheels_end_at_the_tightest_tolerances(library: Library, formulation: int) -> None:
+    """3 s under loads that go on."""
+    random, slides = np.random.default_rng(4), 0
+    for _ in range(60):
+        scene = random_slide(random)
+        done = attempt(
+            library, {**scene.start, "formulation": formulation, "method": int(random.choice([1, ADAMS, BDF]))},
+            np.linspace(0, 3, 11), float(10 ** -random.uniform(11, 13)), scene.inputs,
+        )  # fmt: skip
+        assert done.status <= OK + 1 or done.end is not None, done.messages[-1:]
+        slides += sum("slides" in message for message in done.messages)
+    beyond(slides, 60, "slides")
+
+
+@pytest.mark.parametrize("late", [20.0, 128.0, 300.0])
+def test_slips_end_however_late_they_begin(library: Library, late: float) -> None:
+    """The rounding of time grows with it: a wheel that rolls upright on a good road is pushed about on a bad one."""
+    random, slides = np.random.default_rng(128), 0
+    for _ in range(12):
+        mu, torque = random.uniform(0.1, 0.6), lambda: float(random.normal(0, 30))
+        start = {"theta_start": pi / 2 - 1e-3, "phi_dot_start": -random.uniform(5, 9), "keep_contact": True}
+        with library.wheel(logging=True) as wheel:
+            wheel.start(tolerance=float(10 ** -random.uniform(9, 13)), mu_max=20.0, mu_slide=0.9 * mu, **start).to(late)
+            wheel.put(mu_max=mu, s=float(random.choice([0.0, 0.02])))
+            for k in range(20):
+                if k % 3 == 0:
+                    push = dict(zip(("F_X", "F_Y"), random.normal(0, 100, 2).tolist(), strict=True))
+                    wheel.put(**push, M_3=torque(), M_brake=abs(torque()))
+                if wheel.step_to(late + 0.1 * (k + 1)) != OK:
+                    assert "fell flat" in wheel.sentences[-1], wheel.sentences[-1]
+                    break
+            slides += sum("slides" in sentence for sentence in wheel.sentences)
+    beyond(slides, 10, "slides")
+
+
+# ---- near flat ----
+
+
+FALLING = {"m": 9.67, "r_0": 0.539, "r": 0.213, "J_x": 0.751, "J_y": 0.555, "J_z": 0.818, "s": 0.00967}
+FALLING |= {"mu_max": 0.2527, "mu_slide": 0.2396, "friction_law": 2, "omega_s": 0.01587}
+TO_ZERO = {"psi_start": 1.84, "theta_start": 1.083, "phi_start": -2.817, "psi_dot_start": -1.158}
+TO_ZERO |= {"theta_dot_start": 0.4337, "phi_dot_start": -2.528, "slip_x_start": -0.0955, "slip_y_start": -0.1726}
+REVERSED = {name: -1.0 for name in ("phi_start", "theta_dot_start", "phi_dot_start", "slip_x_start", "slip_y_start")}
+BRAKED = Schedule(((0.0, {}), (0.8, {"M_brake": 16.75})))
+
+
+def from_the_other_side(start: dict[str, float]) -> dict[str, float]:
+    """The same wheel, its axle named the other way round."""
+    turned = {name: REVERSED.get(name, 1.0) * value for name, value in start.items()}
+    return turned | {"theta_start": pi - start["theta_start"], "psi_start": start["psi_start"] + pi}
+
+
+def falls(library: Library, tolerance: float, **values) -> tuple[float, int]:
+    """The instant at which it lies flat, and the steps."""
+    run = library.simulate(np.arange(0, 3.1, 0.05), tolerance, BRAKED, **FALLING, **values)
+    assert run.end is not None and "flat" in str(run.ended)
+    return run.end, run.counters["n_steps"]
+
+
+def test_however_tight_the_tolerance_a_wheel_that_slides_74_times_falls_flat_at_the_same_instant(library) -> None:
+    """Near theta = pi the rounding of theta is 4e-9 of the angle that is left, and tight steps are lost in it."""
+    exact, _ = falls(library, 1e-13, **TO_ZERO)
+    assert abs(falls(library, 1e-10, **{**TO_ZERO, "theta_dot_start": 0.4338})[0] - exact) > 1e-6
+    for start, formulations in ((TO_ZERO, (2, 3)), (from_the_other_side(TO_ZERO), (2, 3))):
+        for formulation in formulations:
+            for tolerance in (1e-8, 1e-10, 1e-12):
+                instant, steps = falls(library, tolerance, **start, formulation=formulation)
+                within(abs(instant - exact), 5e-9, "instant, s")
+                within(steps, 2e4, "steps")
+
+
+def braked_wheel(random: np.random.Generator) -> tuple[dict[str, float], Schedule]:
+    """Under a soft regularized law, thrown; a brake from 0.45 s on, under which most fall flat within 4 s."""
+    a, b, c = random.uniform(0.2, 0.5, 3)
+    mu = random.uniform(0.15, 0.4)
+    start = {"r": random.uniform(0.1, 0.2), "J_x": b + c, "J_y": a + c, "J_z": a + b, "mu_max": mu}
+    start |= {"mu_slide": mu * random.uniform(0.7, 1), "friction_law": 2, "omega_s": random.uniform(0.1, 0.3)}
+    start |= {"theta_start": pi / 2 + random.choice([-1, 1]) * random.uniform(0.2, 0.6)}
+    rates = ("psi_dot_start", "theta_dot_start", "phi_dot_start", "slip_x_start", "slip_y_start")
+    start |= dict(zip(rates, random.normal(0, 1, 5), strict=True))
+    return start, Schedule(((0.0, {}), (0.45, {"M_brake": float(random.uniform(10, 25))})))
+
+
+def test_the_multibody_form_slides_and_falls_flat_as_the_reduced_one_in_hardly_more_steps(library: Library) -> None:
+    """psi_dot grows as 1 / theta, and 1e-7 rad from flat accelerations of 1e8 g cancel in it."""
+    random, ends = np.random.default_rng(61), []
+    for k in range(10):
+        start, brake = braked_wheel(random)
+        tolerance, times = (1e-8, 1e-9)[k % 2], np.arange(0, 4, 0.05)
+        runs = [library.simulate(times, tolerance, brake, **start, formulation=form) for form in (2, 3)]
+        within(runs[1].counters["n_steps"] / runs[0].counters["n_steps"], 4, "steps over those of the reduced form")
+        assert (runs[0].end is None) == (runs[1].end is None)
+        if runs[0].end is not None and runs[1].end is not None:
+            ends.append(abs(runs[1].end - runs[0].end))
+    beyond(len(ends), 4, "wheels that fall flat")
+    within(max(ends), 1e-4, "largest distance of the instants, s")
+    within(float(np.median(ends)), 1e-6, "middle distance of the instants, s")
