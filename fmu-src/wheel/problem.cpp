@@ -25,8 +25,8 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   return least_margin(setup, now, y, N);
 }
 
-// The rounding of the rates near flat, relative. psi_dot = omega_2 / sin(theta) magnifies that of theta, of which a tenth
-// is left over many steps; where psi_dot is a state, accelerations of the size of r_0 psi_dot^2 cancel.
+// The rounding of the rates near flat, relative. psi_dot = omega_2 / sin(theta) magnifies that of theta, of which a
+// tenth is left over many steps; where psi_dot is a state, accelerations of the size of r_0 psi_dot^2 cancel.
 double rounding_of_rates(double theta, double turns) {
   return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), turns * turns);
 }
