@@ -15,6 +15,7 @@ from typing import Any
 import latex2mathml.converter
 from docutils import nodes
 from fontTools import subset
+from PIL import Image
 from sphinx.application import Sphinx
 
 HERE = Path(__file__).resolve().parent
@@ -48,6 +49,8 @@ templates_path = ["_templates"]
 html_additional_pages = {"index": "front.html"}
 html_math_renderer = "mathml"
 
+PANELS = 1.7  # width over height, from which on a picture has panels side by side
+
 # A letter with a subscript in prose, such as r_0, X_O, ω_crit, 1/m_1, and no part of a path; a name of a variable
 # begins with more letters.
 SYMBOL = re.compile(r"(?<![\w.'])(?<![a-z]{2}/)([A-Za-zα-ωΑ-Ω])(\u0307?)_(\w+)")
@@ -58,6 +61,14 @@ KEPT = (nodes.literal, nodes.literal_block, nodes.raw, nodes.math, nodes.math_bl
 BAR = '<mo stretchy="false">&#x0007C;</mo>'
 THIN = '<mspace width="0.17em"/>'
 HEADER = "```{literalinclude} /fmu-src/equations/wheel_equations.h\n:language: c\n:start-after: '#endif'\n```\n"
+NAMED = {
+    '<p class="caption" role="heading">': '<p class="caption" role="heading" aria-level="2">',
+    '<aside class="sidebar-drawer">': '<aside class="sidebar-drawer" aria-label="All pages">',
+    '<aside class="toc-drawer': '<aside aria-label="This page" class="toc-drawer',
+    '<div class="table-wrapper': '<div tabindex="0" class="table-wrapper',
+    '<div class="formula">': '<div tabindex="0" class="formula">',
+    "<pre>": '<pre tabindex="0">',
+}
 MORE = {root_doc: (HERE / "contents.txt").read_text(encoding="utf-8"), "docs/c_header": f"\n## Reference\n\n{HEADER}"}
 
 
@@ -103,7 +114,13 @@ def set_symbols(app: Sphinx, document: nodes.document) -> None:
 
 
 def widen(app: Sphinx, document: nodes.document) -> None:
-    """Marks the cells of prose, which a table must not squeeze beside names that cannot be broken."""
+    """Marks pictures with panels side by side, and cells of prose, which a table must not squeeze beside names that
+    cannot be broken."""
+    for image in document.findall(nodes.image):
+        path = Path(app.srcdir) / image["uri"]
+        if path.suffix == ".png" and path.is_file():
+            width, height = Image.open(path).size
+            image["classes"] += ["panels"] * (width > PANELS * height)
     for cell in document.findall(nodes.entry):
         if len(cell.astext()) > 45:
             cell["classes"].append("prose")
@@ -118,9 +135,19 @@ def bring_font(app: Sphinx, fault: Exception | None) -> None:
         subset.main([str(font), f"--output-file={made}", *options])
 
 
+def make_accessible(app: Sphinx, fault: Exception | None) -> None:
+    """What the theme leaves out: the level of a heading, names of landmarks, the keyboard's way into what scrolls."""
+    for page in Path(app.outdir).rglob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        for tag, named in NAMED.items():
+            text = text.replace(tag, named)
+        page.write_text(text, encoding="utf-8")
+
+
 def setup(app: Sphinx) -> None:
     app.connect("source-read", read)
     app.connect("doctree-read", widen)
     app.connect("doctree-read", set_symbols)
     app.connect("build-finished", bring_font)
+    app.connect("build-finished", make_accessible)
     app.add_html_math_renderer("mathml", (formula, None), (formula, None))

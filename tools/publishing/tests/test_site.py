@@ -40,6 +40,17 @@ def test_the_site_holds_every_document_and_asks_for_nothing_from_elsewhere(site:
     assert LOADED.findall('<script src="https://example.org/x.js"></script>') == ["https://example.org/x.js"]
 
 
+def test_headings_have_levels_landmarks_names_and_what_scrolls_takes_the_focus(site: Path) -> None:
+    texts = {page.relative_to(site): page.read_text(encoding="utf-8") for page in site.rglob("*.html")}
+    for name, text in texts.items():
+        page = html.fromstring(text)
+        assert not page.xpath("//*[@role='heading'][not(@aria-level)] | //*[@role='main']//*[@role='main']"), name
+        assert not page.xpath("//aside[not(@aria-label)]"), name
+        scrolls = "//pre[not(@tabindex)] | //*[contains(@class, 'table-wrapper') or @class='formula'][not(@tabindex)]"
+        assert not page.xpath(scrolls), name
+    assert texts[Path("docs/equations.html")].count('aria-level="2"') > 3
+
+
 # Signs of LaTeX that no formula shows: of an alignment, of a command.
 UNREAD = re.compile(r"[&\\]")
 IN_PROSE = re.compile(r"(?<!\w)(?<!\w{3}/)[A-Za-zα-ω]\u0307?_\w+")
