@@ -33,7 +33,7 @@ def follow(page, text: str) -> None:
     page.wait_for_function("(text) => page.live.link.text === text || page.live.refusal", arg=text)
 
 
-@pytest.mark.parametrize("step", [2, 8])
+@pytest.mark.parametrize("step", [2, 10])
 def test_the_address_names_the_step_of_the_story_that_is_shown(live, step):
     follow(live, f"step={step}")
     assert live.evaluate("page.live.step") == step - 1
@@ -47,6 +47,24 @@ def test_the_page_writes_what_the_reader_does_into_its_address(live):
     live.wait_for_function("location.hash.startsWith('#s=0.03') && location.hash.endsWith('&t=2.5')")
     live.evaluate("page.player.play()")
     live.wait_for_function("/&t=(2.[6-9]|3)/.test(location.hash)")  # while it plays, too
+
+
+def test_steps_of_the_story_and_scenes_are_places_to_which_the_browser_goes_back(live):
+    follow(live, "step=1")
+    for _ in range(2):
+        live.locator("#story [name=next]").click()
+    live.locator("#live [name=scenes]").click()
+    live.locator("#presets button").first.click()
+    live.evaluate("page.player.pause()")
+    assert live.evaluate("page.live.value('phi_dot_start')") == -2
+    back = "page.live.link.text === page.live.link.write() && (history.back() ?? true)"  # a change would cancel it
+    live.wait_for_function(back)
+    live.wait_for_function("page.live.value('phi_dot_start') === -6")  # of the third step, beside the scenes
+    for step in (2, 1):
+        live.wait_for_function(back)
+        live.wait_for_function("(step) => page.live.step === step - 1 && page.live.open", arg=step)
+    live.evaluate("history.forward()")
+    live.wait_for_function("page.live.step === 1 && page.live.open")
 
 
 WRONG = {

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 
-from page.tests.pages import start
+from page.tests.pages import opened, start, window_of
 
 POINTS = """(name) => {
   document.querySelector(`.portrait [name=${name}]`).click();
@@ -43,6 +43,50 @@ def test_the_path_from_above_has_one_scale(recorded):
         "(({ranges, sizes}) => [...ranges, sizes])(page.plots.portrait)"
     )
     assert (right - left) / width == pytest.approx((high - low) / height)
+
+
+WRITTEN = """() => {
+  const pen = CanvasRenderingContext2D.prototype;
+  const write = pen.fillText;
+  const found = [];
+  pen.fillText = function (text, x, y) {
+    const {width} = this.measureText(text);
+    found.push([text, x - {right: width, center: width / 2}[this.textAlign] || x]);
+    write.call(this, text, x, y);
+  };
+  page.plots.prepare();
+  pen.fillText = write;
+  return found;
+}"""
+
+
+def test_no_number_at_an_axis_is_cut_off_and_minus_is_no_hyphen(live):
+    start(live, phi_dot_start=-120)
+    texts = live.evaluate(WRITTEN)
+    assert min(left for _, left in texts) >= 0
+    assert any(text.startswith("−12") for text, _ in texts) and not any("-" in text for text, _ in texts)
+
+
+def test_the_critical_spin_is_a_line_in_the_diagram_of_the_spin_where_it_is_seen(live):
+    for spin, seen in ((-2.0, True), (-9.0, False)):
+        start(live, phi_dot_start=spin)
+        assert ("crit" in [text for text, _ in live.evaluate(WRITTEN)]) is seen
+
+
+@pytest.mark.parametrize("width", [1400, 1024, 768])
+def test_title_and_values_of_a_diagram_do_not_overlap(browser, recorded_file, width):
+    with opened(window_of(browser, viewport={"width": width, "height": 900}), recorded_file) as page:
+        page.evaluate("page.player.seek(0.3); page.draw()")
+        assert page.evaluate(OVERLAPS) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+OVERLAPS = """() => [...document.querySelectorAll('figcaption')].filter((caption) => {
+  const boxes = [...caption.querySelectorAll('b, .unit, .segments, output span')].map((x) => x.getBoundingClientRect());
+  return boxes.some((a, i) => boxes.some((b, j) => i < j && a.width && b.width && a.left < b.right - 1 &&
+      b.left < a.right - 1 && a.top < b.bottom - 6 && b.top < a.bottom - 6)) ||
+      boxes.some(({right}) => right > innerWidth);
+}).map(({textContent}) => textContent)"""
 
 
 @pytest.mark.parametrize(("t", "state"), [(1.15, "rolls"), (1.26, "sticks")])

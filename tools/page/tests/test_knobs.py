@@ -26,7 +26,7 @@ def choose(page, name: str) -> None:
 
 def write(page, name: str, text: str) -> None:
     """What a reader types into the number of a quantity, and Enter."""
-    page.evaluate("document.querySelector('#wheel').open = true")
+    page.evaluate("for (const part of document.querySelectorAll('#live details')) part.open = true")
     field = page.locator(f"#live [name={name}_number]")
     field.fill(text)
     field.press("Enter")
@@ -41,7 +41,8 @@ def write(page, name: str, text: str) -> None:
         ("theta_start", "61.23", np.radians(61.23)),
         ("m", "12.3456", 12.3456),
         ("s", "0.01234", 0.01234),
-        ("r_0", "0", 1e-3),  # the nearest limit
+        ("theta_start", "89.5°", np.radians(89.5)),
+        ("slip_y_start", "−0.25", -0.25),
     ],
 )
 def test_any_number_within_the_limits_can_be_typed(live, name, text, value):
@@ -49,7 +50,32 @@ def test_any_number_within_the_limits_can_be_typed(live, name, text, value):
     write(live, name, text)
     within(abs(live.evaluate("(name) => page.live.present(name)", name) / value - 1), 1e-12, f"{name}, relative")
     shown = float(live.locator(f"#live [name={name}_number]").input_value())
-    assert shown == pytest.approx(float(text) or 1e-3, rel=1e-6)
+    assert shown == pytest.approx(float(text.replace("−", "-").rstrip("°")), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "sentence"),
+    [
+        ("theta_start", "500", "500° is not between 1° and 179°."),
+        ("r_0", "0", "0 is not between 0.001 and 10 m."),
+        ("mu_max", "-1", "-1 is not between 0 and 10."),
+        ("theta_start", "abc", "abc is no number."),
+        ("theta_start", "89,5", "89,5 is no number: decimals follow a point, 89.5."),
+        ("s", "0.01 mm", "0.01 mm is no number."),
+        ("m", "", "Nothing is no number."),
+    ],
+)
+def test_what_cannot_be_meant_is_answered_beside_its_field_and_changes_nothing(live, name, text, sentence):
+    start(live)
+    before = live.evaluate("page.live.plan")
+    write(live, name, text)
+    field = live.locator(f"#live [name={name}_number]")
+    answer = field.locator("xpath=../p")
+    assert (answer.inner_text(), field.input_value()) == (sentence, text)
+    assert live.evaluate("page.live.plan") == before and field.get_attribute("aria-invalid") == "true"
+    live.evaluate("([name, value]) => page.live.setStart(name, value)", [name, 1.25])
+    live.evaluate("page.live.frame()")
+    assert not answer.is_visible() and field.get_attribute("aria-invalid") == "false"
 
 
 def test_a_number_keeps_its_keys_from_the_page_and_escape_leaves_it_as_it_was(live):
@@ -88,6 +114,48 @@ def test_the_critical_spin_is_shown_and_on_which_side_the_present_spin_is(live):
         said = live.locator("#critical").inner_text()
         assert f"|ωz| = {spin:.2f} rad/s, {side} ωcrit = {limit:.2f} rad/s" in said
     assert omega[500] < limit
+
+
+APART = {
+    "leans by 62°": {"theta_start": np.radians(28), "phi_dot_start": -3.0},
+    "slides": {"theta_start": np.pi / 2, "phi_dot_start": 10.0, "slip_x_start": 5.5, "mu_max": 0.35, "mu_slide": 0.3},
+}
+
+
+@pytest.mark.parametrize("words", APART)
+def test_the_critical_spin_is_no_measure_of_a_wheel_that_leans_or_slides(live, words):
+    start(live, **APART[words])
+    said = live.locator("#critical")
+    assert words in said.inner_text() and said.get_attribute("data-side") == "none"
+    assert "stable" not in said.inner_text()
+
+
+def test_the_friction_that_rolling_needs_is_shown_beside_the_grip_and_else_the_slip(live):
+    start(live, at=0.5, mu_max=0.45, mu_slide=0.4)
+    force = [column(live, f"lambda_{k}")[50] for k in (1, 2, 3)]
+    said = live.locator("#grip-now")
+    assert f"μ = {np.hypot(*force[:2]) / force[2]:.3f} now, of 0.45" in said.inner_text()
+    live.evaluate("page.player.seek(0.75); page.live.frame(); page.draw()")
+    slip = [column(live, name)[75] for name in ("slip_x", "slip_y")]
+    words = f"at {np.hypot(*slip):.2f} m/s ({slip[0]:.2f} along, {slip[1]:.2f} across)".replace("-", "−")
+    assert words in said.inner_text() and "μs = 0.4" in said.inner_text()
+    assert live.locator(".label span").inner_text() == f"slides at {np.hypot(*slip):.2f} m/s"
+    assert "slides" in live.locator("#legend").inner_text() and "held" not in live.locator("#legend").inner_text()
+
+
+def test_a_jammed_wheel_shows_no_force_that_pulls(live):
+    """Painlevé's paradox: the normal force grows without bound, and beyond has the other sign."""
+    start(live, theta_start=1.0, phi_dot_start=0.0, mu_max=2.0, mu_slide=1.8, slip_y_start=-3.0)
+    assert "jams" in live.evaluate("page.wheels[0].ended") and column(live, "lambda_3")[-1] < 0
+    live.evaluate("page.player.seek(10); page.draw()")
+    assert live.locator(".plot output").nth(2).inner_text() == "–"
+
+
+def test_a_fall_that_hangs_on_rounding_says_so(live):
+    start(live, theta_start=np.pi / 2, phi_dot_start=0.0)
+    assert "Rounding" in live.locator("#doubt").inner_text()
+    start(live, theta_start=np.pi / 2 - 1e-9, phi_dot_start=0.0)
+    assert not live.locator("#doubt").is_visible()
 
 
 def test_a_ready_wheel_says_which_spin_and_friction_it_has_set(live):

@@ -102,7 +102,7 @@ def test_the_values_that_a_file_holds_are_listed(window, scenes, tmp_path):
     with opened(window, path.with_suffix(".html")) as page:
         page.locator("[popovertarget=values]").click()
         found = [row.replace("\t", "|") for row in page.locator("#values tr").all_inner_texts()]
-    assert found == ["|one|", "m|20|kg", "r_0|0.3|m", "r|0.05|m", "s|0.03|m", "keep_contact|0|"]
+    assert found == ["parameter|one|unit", "m|20|kg", "r_0|0.3|m", "r|0.05|m", "s|0.03|m", "keep_contact|0|"]
 
 
 TABLE = """const {Table} = await import('#table');

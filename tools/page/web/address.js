@@ -31,6 +31,20 @@ function textOf(name, value) {
   return variables[name]?.unit === 'rad' && degrees(angle) === value ? `${angle}deg` : String(value);
 }
 
+/** The number in SI that a reader types into the field of a quantity of knobs.js; throws one sentence. */
+export function typed(text, {name, unit, limits}) {
+  const plain = text.trim().replace('−', '-').replace(/\s*(°|deg)$/, '');
+  if (/^[-+]?\d+,\d+$/.test(plain))
+    refuse(`${plain} is no number: decimals follow a point, ${plain.replace(',', '.')}.`);
+  if (!NUMBER.test(plain)) refuse(`${text.trim().slice(0, 20) || 'Nothing'} is no number.`);
+  const [low, high] = limits;
+  if (Number(plain) < low || Number(plain) > high) {
+    const [value, from, to] = [plain, low, high].map((part) => `${part}${unit === '°' ? unit : ''}`);
+    refuse(`${value} is not between ${from} and ${to}${unit && unit !== '°' ? ` ${unit}` : ''}.`);
+  }
+  return unit === '°' ? degrees(Number(plain)) : Number(plain);
+}
+
 /** The number of a text, within limits [lowest, highest]. */
 function numberOf(text, name, limits) {
   const [, digits, unit] = NUMBER.exec(text) ?? refuse(`${name} = ${text.slice(0, 20)} is no number.`);
@@ -157,6 +171,17 @@ export class Link {
 
   /** The whole link. */
   get href() { return `${location.href.split('#')[0]}#${this.write()}`; }
+
+  /** What is shown now stays a place of the browser's history, and what comes next is another. */
+  leave() {
+    const place = `#${this.write()}`;
+    try {
+      history.replaceState(null, '', place);
+      history.pushState(null, '', place);
+      this.text = location.hash.slice(1);
+    } catch {  // as below
+    }
+  }
 
   /** Shows what the address says; a wrong one gives the first step of the story and a sentence. */
   follow() {

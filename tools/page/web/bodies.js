@@ -3,8 +3,9 @@
 // axes and the ground's force. A car's body: a box with its centre at X, Y, Z in m, turned by yaw, pitch, roll in rad
 // (in this order about z, y, x; x forward, y to the left, z up).
 import {colour} from '#dom';
+import {gyroscope} from '#mechanics';
 import {dispose, makeArrow, makeLabel, makeRibbon, makeSolid, makeTexture, pointArrow, showRibbon} from '#shapes';
-import {before, contactOf} from '#table';
+import {before, contactOf, extent, slipOf} from '#table';
 import {THREE} from 'three';
 
 const [METAL, FACE] = [['#9aa2ac', '#6a7078', 40], ['#8d949f', '#8a9098', 60]].map(
@@ -84,7 +85,13 @@ export class WheelModel {
           `e_${i + 1}`, along, 0.022 * r_0, 0.3 * r_0, colour(`--e${i + 1}`), 1 + 0.12 / (length * radius)));
     }
     this.carrier = new THREE.Group().add(this.body, this.axes);
-    this.force = makeArrow(0.03 * r_0, colour('--force'));
+    [this.force, this.slip, this.moment] =
+        ['--force', '--slide', '--moment'].map((name) => makeArrow(0.03 * r_0, colour(name)));
+    this.carrier.add(this.moment);
+    for (const part of this.moment.children) {  // within the wheel, and seen through it
+      Object.assign(part, {renderOrder: 910, castShadow: false});
+      Object.assign(part.material, {depthTest: false, transparent: true});
+    }
     const skin = {color: colour('--force'), transparent: true, side: THREE.DoubleSide, depthWrite: false};
     this.spot = new THREE.Mesh(new THREE.RingGeometry(0.07 * r_0, 0.11 * r_0, 40), new THREE.MeshBasicMaterial(skin));
     this.spot.renderOrder = 900;
@@ -92,10 +99,11 @@ export class WheelModel {
         makeNamed('uphill', new THREE.Vector3(0.8 * radius, 0, 0), 0.03 * radius, 0.24 * radius, colour('--line'), 0.5);
     [arrow.position.z, label.position.z] = [0.03 * radius, 0.24 * radius];
     this.uphill = new THREE.Group().add(arrow, label);
-    this.group.add(this.carrier, this.force, this.spot, this.uphill, this.path);
+    this.group.add(this.carrier, this.force, this.slip, this.spot, this.uphill, this.path);
     this.drawPath();
-    const N = table.columns.lambda_3 ?? [1];
+    const N = (table.shown.lambda_3 ?? [1]).filter(Number.isFinite);
     this.weight = N.reduce((sum, value) => sum + value, 0) / N.length || 1;
+    this.fastest = extent(table.time.map((t) => slipOf(table, t)))[1];
   }
 
   /**
@@ -121,7 +129,7 @@ export class WheelModel {
   /** The last point of the path at or before t. */
   point(t) { return Math.max(0, before(this.wheel.trace.times, t + 1e-9)); }
 
-  /** Pose, path and force at t. show: {path, axes, force}. */
+  /** Pose, path, slip, force and gyroscopic moment at t. show: {path, axes, force, moment}. */
   update(t, show) {
     const {wheel: {table, parameters: {slope = 0, slope_direction: direction = 0}}, r_0, r} = this;
     const at = (name) => table.value(name, t);
@@ -141,10 +149,19 @@ export class WheelModel {
     const reach = 1.2 * (r_0 + r);
     this.uphill.rotation.z = direction;
     this.uphill.position.set(contact[0] + reach * Math.cos(direction), contact[1] + reach * Math.sin(direction), 0);
+    const long = 1.1 * (r_0 + r);
+    this.slip.position.set(...contact, 0.03 * r_0);
+    const [along, across] = this.fastest > 0 ? [at('slip_x'), at('slip_y')] : [0, 0];
+    const turned = new THREE.Vector3(along, across, 0).applyAxisAngle(THREE.Object3D.DEFAULT_UP, psi);
+    pointArrow(this.slip, turned.multiplyScalar(long / this.fastest || 0));
+    // As long as the radius where it balances the weight at a lean of 15 degrees.
+    const moment = show.moment ? gyroscope(this.wheel.parameters, at) : [0, 0];
+    const {m, g = 9.81} = this.wheel.parameters;
+    pointArrow(this.moment, new THREE.Vector3(...moment, 0).multiplyScalar(long / (0.26 * m * g * r_0) || 0));
     this.force.visible = show.force && FORCE.every((name) => table.has(name));
     if (!this.force.visible) return;
     this.force.position.set(...contact, 0);
-    pointArrow(this.force, new THREE.Vector3(...FORCE.map(at)).multiplyScalar((1.1 * (r_0 + r)) / this.weight));
+    pointArrow(this.force, new THREE.Vector3(...FORCE.map(at)).multiplyScalar(long / this.weight));
   }
 }
 

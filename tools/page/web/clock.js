@@ -94,7 +94,7 @@ export function setUpKeys({player, stage, plots}) {
   addEventListener('keydown', (event) => {
     const key = event.key === ' ' ? 'space' : event.key.toLowerCase();
     const kept = key === 'space' ? PRESSED : key.length > 1 ? MOVED : '_';
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.(`${kept}, [type=number]`)) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.(`${kept}, .number`)) return;
     const button = $(`[aria-keyshortcuts="${CSS.escape(key)}" i]`);
     if (!button && !keys[key]) return;
     button ? button.click() : keys[key](event);

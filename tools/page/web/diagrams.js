@@ -2,13 +2,20 @@
 // angular velocity along the carrier axes e2 and e3, or the path of the contact point from above. They share the clock,
 // and keep their axes while the reader pushes the wheel. The future is drawn faintly. Angles in degrees, all else SI.
 import {clearCanvas, colour, make, makeChoice, subscripted} from '#dom';
+import {criticalSpin} from '#mechanics';
 import {before, contactOf, extent} from '#table';
 
 const DEGREES = 180 / Math.PI;
-const [LEFT, RIGHT, TOP, BOTTOM] = [46, 8, 10, 20];  // margins, CSS pixels
+const [LEFT, RIGHT, TOP, BOTTOM] = [46, 8, 10, 20];  // margins, CSS pixels; on the left at the least
 const MANY = 3;                                      // wheels, whose values still fit beside the title
+const [TITLE, VALUE] = [60, 52];                     // CSS pixels, of the title and of a value beside it
 const LETTER = 7.5;  // CSS pixels, of a digit below the title, with a share of the gap between values
+const BAR = 4;       // CSS pixels, of a slide
+const FONT = '11px system-ui, sans-serif';
 const POSE = ['X_O', 'Y_O', 'psi', 'theta'];
+
+/** A number's text with the sign of mathematics. */
+const signed = (text) => text.replace('-', '−');
 
 /** A kind of diagram: the columns it needs, and its point [x, y] from their values and the wheel. */
 const kind = (symbol, units, columns, what, point, more) => ({symbol, units, columns, what, point, ...more});
@@ -17,7 +24,10 @@ const curve = (symbol, unit, digits, column, what, scale = 1) => kind(
     ([t, value]) => [t, scale * value], {digits});
 const CURVES = [
   curve('θ', '°', 1, 'theta', 'Tilt: angle between axle and vertical', DEGREES),
-  curve('ω_z', 'rad/s', 3, 'omega_z', 'Angular velocity about the axle'),
+  {
+    ...curve('ω_z', 'rad/s', 3, 'omega_z', 'Angular velocity about the axle'),
+    level: (wheel) => (wheel.J_x === wheel.J_y ? criticalSpin(wheel) : NaN)
+  },
   curve('N', 'N', 0, 'lambda_3', 'Normal force of the ground'),
   curve('E', 'J', 2, 'E', 'Total energy'),
 ];
@@ -102,7 +112,6 @@ class Diagram {
     const showing = (kind) => wheels.filter(({table}) => kind.columns.every((column) => table.has(column)));
     this.possible = Object.keys(this.kinds).filter((other) => showing(this.kinds[other]).length);
     this.figure.hidden = !this.possible.length;
-    this.figure.classList.toggle('many', wheels.length > MANY);
     this.name = this.possible.includes(name) ? name : this.possible[0] ?? this.name;
     Object.assign(this, {all: wheels, wheels: showing(this.kind)});
     const [across, up] = this.kind.units;
@@ -133,7 +142,7 @@ class Diagram {
   /** All points of a wheel with their instants {times, points}: its rows, or its path, which is denser. */
   line(wheel) {
     if (this.kind.even) return wheel.trace;
-    const columns = this.kind.columns.map((name) => wheel.table.columns[name]);
+    const columns = this.kind.columns.map((name) => wheel.table.shown[name]);
     const point = (t, i) => this.kind.point(columns.map((column) => column[i]), wheel);
     return {times: wheel.table.time, points: Array.from(wheel.table.time, point)};
   }
@@ -142,16 +151,23 @@ class Diagram {
   prepare(axis) {
     const {clientWidth: width, clientHeight: height} = this.canvas;
     if (this.figure.hidden || !width) return;
+    this.many = this.wheels.length > MANY || width < TITLE + VALUE * this.wheels.length;
+    this.figure.classList.toggle('many', this.many);
     Object.assign(this, {width, height, pen: clearCanvas(this.canvas, width, height)});
     Object.assign(this, {ink: colour('--ink'), paper: colour('--paper')});
-    this.sizes = [width - LEFT - RIGHT, height - TOP - BOTTOM];
     this.lines = this.wheels.map((wheel) => this.line(wheel));
-    this.range(axis);
+    this.left = LEFT;
+    for (const again of this.kind.even ? [false, true] : [false]) {  // one scale: the limits follow the margin
+      this.sizes = [width - this.left - RIGHT, height - TOP - BOTTOM];
+      this.range(axis);
+      if (!again) this.makeRoom();
+    }
+    this.sizes = [width - this.left - RIGHT, height - TOP - BOTTOM];
     for (const [name, canvas] of Object.entries(this.layers)) {
       const pen = clearCanvas(canvas, width, height);
       const faint = name === 'faint';
       if (faint) this.grid(pen);
-      pen.rect(LEFT, 0, this.sizes[0] + RIGHT, height - BOTTOM + 2);
+      pen.rect(this.left, 0, this.sizes[0] + RIGHT, height - BOTTOM + 2);
       pen.clip();
       if (this.timed) this.bands(pen, faint ? 0.16 : 0.34);
       pen.globalAlpha = faint ? 0.35 : 1;
@@ -179,44 +195,79 @@ class Diagram {
     });
   }
 
+  /** The numbers along the upper axis, [value, text]. */
+  get marks() {
+    const {ticks, digits} = ticksOf(this.ranges[1], Math.min(5, this.height / 26));
+    return ticks.map((tick) => [tick, signed(tick.toFixed(digits))]);
+  }
+
+  /** The margin on the left takes the widest of them. */
+  makeRoom() {
+    this.pen.font = FONT;
+    this.left = Math.max(LEFT, ...this.marks.map(([, text]) => Math.ceil(this.pen.measureText(text).width) + 8));
+  }
+
   /** How far along the axis across (0) or up (1) a value lies, in CSS pixels. */
   along(side, value) {
     return (value - this.ranges[side][0]) * (this.sizes[side] / (this.ranges[side][1] - this.ranges[side][0]));
   }
 
-  x(value) { return LEFT + this.along(0, value); }
+  x(value) { return this.left + this.along(0, value); }
 
   y(value) { return TOP + this.sizes[1] - this.along(1, value); }
 
   timeAt(x) {
     const {start, end} = this.player;
-    return start + ((x - LEFT) / this.sizes[0]) * (end - start);
+    return start + ((x - this.left) / this.sizes[0]) * (end - start);
   }
 
   /** Lines and numbers of both axes; over time the last number has the unit, and there are no lines across. */
   grid(pen) {
     const across = ticksOf(this.ranges[0], Math.min(6, this.width / 48));
-    const up = ticksOf(this.ranges[1], Math.min(5, this.height / 26));
     pen.fillStyle = colour('--rule');
-    for (const tick of up.ticks) pen.fillRect(LEFT, Math.round(this.y(tick)), this.sizes[0], 1);
+    for (const [tick] of this.marks) pen.fillRect(this.left, Math.round(this.y(tick)), this.sizes[0], 1);
     for (const tick of this.timed ? [] : across.ticks) pen.fillRect(Math.round(this.x(tick)), TOP, 1, this.sizes[1]);
-    Object.assign(pen, {font: '11px system-ui, sans-serif', fillStyle: colour('--soft')});
-    Object.assign(pen, {textAlign: 'right', textBaseline: 'middle'});
-    for (const tick of up.ticks) pen.fillText(tick.toFixed(up.digits), LEFT - 6, Math.round(this.y(tick)) + 0.5);
+    Object.assign(pen, {font: FONT, fillStyle: colour('--soft'), textAlign: 'right', textBaseline: 'middle'});
+    for (const [tick, text] of this.marks) pen.fillText(text, this.left - 6, Math.round(this.y(tick)) + 0.5);
     Object.assign(pen, {textAlign: 'center', textBaseline: 'top'});
     for (const tick of across.ticks) {
       const unit = this.timed && tick === across.ticks.at(-1) ? ' s' : '';
-      pen.fillText(tick.toFixed(across.digits) + unit, Math.min(this.x(tick), this.width - 14), this.height - 15);
+      pen.fillText(
+          signed(tick.toFixed(across.digits)) + unit, Math.min(this.x(tick), this.width - 14), this.height - 15);
     }
+    this.drawLevels(pen);
   }
 
-  /** Stick phases as bands, transitions as ticks at the top. */
+  /** A level of each wheel whose parameters are known, with both signs: dashed lines across, where they are seen. */
+  drawLevels(pen) {
+    const values = this.wheels.map(({parameters}) => this.kind.level?.(parameters)).filter(Number.isFinite);
+    const levels = [...new Set(values)].flatMap((value) => [-value, value]);
+    Object.assign(pen, {strokeStyle: colour('--soft'), lineWidth: 1, textAlign: 'left', textBaseline: 'bottom'});
+    pen.setLineDash([5, 4]);
+    for (const value of levels.filter((level) => level > this.ranges[1][0] && level < this.ranges[1][1])) {
+      const y = Math.round(this.y(value)) + 0.5;
+      pen.beginPath();
+      pen.moveTo(this.left, y);
+      pen.lineTo(this.left + this.sizes[0], y);
+      pen.stroke();
+      for (const [i, text] of ['ω', 'crit'].entries()) {
+        pen.font = i ? FONT.replace('11', '8') : FONT;
+        pen.fillText(text, this.left + 3 + 9 * i, y + 2 * i);
+      }
+    }
+    pen.setLineDash([]);
+  }
+
+  /** Stick phases as bands, slides as bars on the axis, transitions as ticks at the top. */
   bands(pen, strength) {
     for (const {phases} of this.wheels) {
       Object.assign(pen, {globalAlpha: strength, fillStyle: colour('--stick')});
       const spans = phases.sticks.map((span) => span.map((t) => this.x(t)));
       for (const [left, right] of spans) pen.fillRect(left, TOP, right - left, this.sizes[1]);
-      Object.assign(pen, {globalAlpha: Math.min(1, 2.4 * strength), fillStyle: colour('--force')});
+      Object.assign(pen, {globalAlpha: Math.min(1, 2.4 * strength), fillStyle: colour('--slide')});
+      for (const [begin, end] of phases.slides)
+        pen.fillRect(this.x(begin), TOP + this.sizes[1] - BAR, Math.max(1, this.x(end) - this.x(begin)), BAR);
+      pen.fillStyle = colour('--force');
       for (const t of phases.transitions) pen.fillRect(this.x(t) - 0.5, TOP - 7, 1, 7);
     }
   }
@@ -257,15 +308,16 @@ class Diagram {
 
   /** The values as numbers in the caption; of many wheels in a line below the title, with the digits that have room. */
   show(values) {
-    const many = values.length > MANY;
+    const {many} = this;
     const size = Math.max(...this.ranges[1].map(Math.abs));  // what is small has more digits
     const least = size < 1 ? Math.min(8, Math.ceil(2 - Math.log10(size))) : 0;
     const texts = (digits) =>
-        values.map((value) => value.toFixed(digits).replace(/^-([0.]+)$/, '$1').replace('-', '−'));
+        values.map((value) => (isFinite(value) ? signed(value.toFixed(digits).replace(/^-([0.]+)$/, '$1')) : '–'));
     let digits = Math.max(0, this.kind.digits - Number(many), least);
     while (many && digits > 0 && LETTER * texts(digits).join(' ').length > this.width) digits -= 1;
-    this.values.replaceChildren(
-        ...texts(digits).map((text, i) => make('span', {style: `color:${this.wheels[i].colour}`}, text)));
+    this.values.replaceChildren(...texts(digits).map(
+        (text, i) =>
+            make('span', {style: `color: color-mix(in srgb, ${this.wheels[i].colour} 70%, var(--ink))`}, text)));
   }
 }
 

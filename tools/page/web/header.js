@@ -3,6 +3,9 @@ import {$, make, variables} from '#dom';
 
 const THEMES = [['as the system', '◐'], ['light', '☀'], ['dark', '☾']];
 
+/** A unit as one writes it: kg m², nothing for 1. */
+const written = (unit) => (unit === '1' ? '' : unit.replace('.', ' ').replace(/2$/, '²'));
+
 export function setUpValues(page) {
   const row = (title, kind, first, ...cells) =>
       make('tr', {title}, make('th', {}, first), ...cells.map((text) => make(kind, {}, text)));
@@ -13,9 +16,10 @@ export function setUpValues(page) {
     const known = Object.entries(variables).filter(([name]) => shown.some(({parameters}) => name in parameters));
     const rows = known.map(([name, {description, unit}]) => {
       const values = shown.map(({parameters}) => parameters[name]?.toPrecision(6));
-      return row(description, 'td', name, ...values.map((text) => (text ? String(Number(text)) : '')), unit);
+      return row(description, 'td', name, ...values.map((text) => (text ? String(Number(text)) : '')), written(unit));
     });
-    $('#values').replaceChildren(make('table', {}, row('', 'th', '', ...shown.map(({label}) => label), ''), ...rows));
+    $('#values').replaceChildren(
+        make('table', {}, row('', 'th', 'parameter', ...shown.map(({label}) => label), 'unit'), ...rows));
   });
 }
 

@@ -40,9 +40,13 @@ export const START = [
   knob('psi_dot_start', 'ψ̇', 'rad/s', 'precession', [-1000, 1000], spins),
   knob('slope', 'α', '°', 'slope', [0, 60], () => [0, 30, 0.5]),
   knob('slope_direction', 'β', '°', 'uphill', [-360, 360], () => [-180, 180, 1]),
+];
+/** Of the road, and how the wheel is thrown onto it. */
+export const GRIP = [
   knob('mu_max', 'μ', '', 'static, 0: any', [0, 10], () => upTo(2)),
   knob('mu_slide', 'μ_s', '', 'kinetic, 0: ends', [0, 10], () => upTo(2)),
-  knob('slip_x_start', 'u', 'm/s', 'slip, with μ_s', [-100, 100], () => both(10)),
+  knob('slip_x_start', 'u_x', 'm/s', 'slip along', [-100, 100], () => both(10)),
+  knob('slip_y_start', 'u_y', 'm/s', 'slip across', [-100, 100], () => both(10)),
 ];
 export const WHEEL = [
   knob('m', 'm', 'kg', 'mass', [1e-4, 1e4], () => [1e-3, 1e3, 'log']),
@@ -69,12 +73,12 @@ export const torqueOf = (wheel) => Number((6 * strength(wheel)).toPrecision(6));
 /** Lowest and highest, in SI, of what has no slider. */
 const OTHERS = new Map([
   ['g', [0.5, 30]], ['J_y', [1e-10, 1e6]], ['psi_start', [-10, 10]], ['phi_start', [-10, 10]],
-  ['slip_y_start', [-100, 100]]
+  ['X_O_start', [-100, 100]], ['Y_O_start', [-100, 100]]
 ]);
 
 /** [lowest, highest] in SI of what may be set at the start, or (now) while it rolls; undefined for all else. */
 export function limitsOf(name, now = false) {
-  const found = (now ? NOW : [...START, ...WHEEL, ...NOW]).find((one) => one.name === name);
+  const found = (now ? NOW : [...START, ...GRIP, ...WHEEL, ...NOW]).find((one) => one.name === name);
   if (!found) return now ? undefined : OTHERS.get(name);
   return found.limits.map((value) => (found.unit === '°' ? degrees(value) : value));
 }

@@ -1,6 +1,6 @@
 // The wheels' names over their views, with what each does at the present: rolls, is held, or why its motion has ended.
 import {make, subscripted} from '#dom';
-import {extent} from '#table';
+import {extent, slipOf} from '#table';
 
 const FLAT = 1e-4;    // rad from lying flat
 const LIFTED = 1e-3;  // of the largest normal force
@@ -15,6 +15,7 @@ export function endingOf(table, latest) {
   const last = (name) => table.columns[name].at(-1);
   const when = `${short(String(table.end.toFixed(4)))} s`;
   if (Math.min(last('theta'), Math.PI - last('theta')) < FLAT) return `lies flat at ${when}`;
+  if (table.jams) return `jams at ${when}`;
   const N = table.columns.lambda_3;
   if (N && N.at(-1) < LIFTED * extent(N)[1]) return `lifted off at ${when}`;
   return table.end < latest - 1e-9 ? `its record ends at ${when}` : null;
@@ -29,6 +30,15 @@ export function layOutLabels(host, views) {
   host.replaceChildren(...views.map((wheels) => make('div', {className: 'view'}, ...wheels.map(({tag}) => tag))));
 }
 
+const MARKS = [['sticks', '--stick', 'held: ω_z = 0'], ['slides', '--slide', 'slides; the arrow is the slip']];
+
+/** What the colours of path, bars and names mean, of those that occur. */
+export function showLegend(host, wheels) {
+  const found = MARKS.filter(([name]) => wheels.some(({phases}) => phases[name].length));
+  host.replaceChildren(...found.map(
+      ([, name, text]) => make('span', {}, make('i', {style: `background:var(${name})`}), ...subscripted(text))));
+}
+
 /** Writes beside each wheel's name how it moves at t. */
 export function showStates(wheels, t) {
   for (const {tag, ended, table, phases} of wheels) {
@@ -36,9 +46,9 @@ export function showStates(wheels, t) {
     const [held, slides] =
         [phases.sticks, phases.slides].map((all) => all.some(([begin, end]) => begin <= t && t < end));
     const [state, title] = over ? ['ended', short(ended)] :
-        slides                  ? ['slides', held ? 'slides, held: ω_z = 0' : 'slides'] :
-        held                    ? ['sticks', 'held: ω_z = 0'] :
-                                  ['rolls', ''];
+        slides ? ['slides', `slides at ${slipOf(table, t).toFixed(2)} m/s${held ? ', held: ω_z = 0' : ''}`] :
+        held ? ['sticks', 'held: ω_z = 0'] :
+               ['rolls', ''];
     if (tag.title === title && tag.dataset.state) continue;
     Object.assign(tag, {title}).dataset.state = state;
     tag.lastChild.replaceChildren(...(held ? subscripted(title) : [title]));

@@ -50,6 +50,17 @@ export class LiveWheel {
   /** The present as a communication point. */
   now() { return Math.round(this.page.player.t / STEP) * STEP; }
 
+  /** The present of the motion, which may have ended. */
+  instant() { return Math.min(this.page.player.t, this.wheel.table.end); }
+
+  /** Whether the wheel slides at the present. */
+  get slides() {
+    return this.wheel.phases.slides.some(([begin, end]) => begin <= this.instant() && this.instant() < end);
+  }
+
+  /** Whether the step of the story that is open draws the gyroscopic moment. */
+  get drawsMoment() { return this.open && Boolean(this.steps[this.step].moment); }
+
   /** The sign of the present spin omega_z: negative rolls towards +e1, 0 does not roll. */
   spin() { return Math.sign(this.wheel.table.value('omega_z', this.page.player.t)); }
 
@@ -106,7 +117,9 @@ export class LiveWheel {
     const size = (parameters.r_0 + parameters.r) / PAPER_RADIUS;
     const [spin, s] = [-2 / Math.sqrt(size), 0.03 * size].map((value) => Number(value.toPrecision(3)));
     const friction = this.value('s') > 0;
-    const own = Object.entries(start ?? {phi_dot_start: spin, ...(friction && {s})}).filter(([name]) => limitsOf(name));
+    const X_O_start = -parameters.r_0 * Math.cos(5 * Math.PI / 12);  // the paper's start: the contact at the origin
+    const own = Object.entries(start ?? {X_O_start, phi_dot_start: spin, ...(friction && {s})})
+                    .filter(([name]) => limitsOf(name));
     Object.assign(this.plan.values, parameters, Object.fromEntries(own));
     this.plan.body = null;
     this.change('fitted');
@@ -168,6 +181,7 @@ export class LiveWheel {
   turn(by) {
     const step = this.open ? this.step + by : this.step;
     if (!this.steps[step]) return;
+    this.link?.leave();
     const {state, speed = 1} = this.steps[step];
     this.apply(state, step);
     this.page.player.set({speed});

@@ -5,7 +5,7 @@ import {Plots} from '#diagrams';
 import {$, bodies, colour, live, makeChoice, sources} from '#dom';
 import {Fmu} from '#fmu';
 import {setUpValues, watchTheme} from '#header';
-import {endingOf, layOutLabels, showStates} from '#labels';
+import {endingOf, layOutLabels, showLegend, showStates} from '#labels';
 import {LiveWheel} from '#live';
 import {phasesOf} from '#phases';
 import {Stage} from '#stage';
@@ -120,7 +120,9 @@ class Page {
   layOut() {
     if (!this.views) return;
     showBands(this.shown, this.player);
+    showLegend($('#legend'), this.shown);
     layOutLabels($('#labels'), this.views.map((view) => view.filter(({size}) => !size)));
+    showStates(this.shown, this.player.t);
     this.stage.resize([...$('#labels').children]);
   }
 
@@ -159,8 +161,8 @@ class Page {
 
   /** The bodies where they are at the present instant; nothing is drawn. */
   pose() {
-    for (const model of this.stage.models)
-      model.update(Math.min(this.player.t, model.wheel.table.end), this.switches.show);
+    const show = {...this.switches.show, moment: Boolean(this.live?.drawsMoment)};
+    for (const model of this.stage.models) model.update(Math.min(this.player.t, model.wheel.table.end), show);
   }
 
   /** Everything at the present instant. */

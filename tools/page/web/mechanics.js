@@ -52,3 +52,19 @@ export function doubtOf({m, r_0, r, J_x, J_y, J_z}) {
 export function criticalSpin({m, g, r_0, r, J_x, J_z}) {
   return Math.sqrt((m * g * r_0 * J_x) / (J_z * (J_z + m * (r_0 + r) ** 2)));
 }
+
+/**
+ * The gyroscopic moment -Omega x H of a wheel with J_x = J_y along the carrier axes e1 and e2, N m; at(name): a
+ * variable at one instant.
+ */
+export function gyroscope({J_x, J_z}, at) {
+  const [theta, theta_dot, psi_dot, omega_z] = ['theta', 'theta_dot', 'psi_dot', 'omega_z'].map(at);
+  const excess = J_z * omega_z - J_x * psi_dot * Math.cos(theta);  // kg m2/s
+  return [-excess * psi_dot * Math.sin(theta), excess * theta_dot];
+}
+
+/** The ground's moment about e2 through the centre, N m: -eta lambda_x, eta = r cos theta. */
+export function groundMoment({r}, at) {
+  const [theta, psi, lambda_1, lambda_2] = ['theta', 'psi', 'lambda_1', 'lambda_2'].map(at);
+  return -r * Math.cos(theta) * (lambda_1 * Math.cos(psi) + lambda_2 * Math.sin(psi));
+}

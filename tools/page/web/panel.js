@@ -1,9 +1,13 @@
 // The controls of the live page: the story or the scenes to begin with, the start, and what the reader does to the
 // wheel while it rolls. Each sets up its elements and returns a function that shows the present state.
+import {typed} from '#address';
 import {$, make, makeButton, makeChoice, onChange, subscripted} from '#dom';
-import {HELD, NOW, START, torqueOf, WHEEL} from '#knobs';
-import {bodies, criticalSpin, doubtOf} from '#mechanics';
+import {GRIP, HELD, NOW, START, torqueOf, WHEEL} from '#knobs';
+import {bodies, criticalSpin, doubtOf, groundMoment, gyroscope} from '#mechanics';
 import {scenes} from '#scenes';
+import {slipOf, tipsByRounding} from '#table';
+
+const NEAR = 10;  // degrees of lean, up to which the critical spin of upright rolling is a measure
 
 /** The card with the story beside the picture: text, something to try, one step on or back. */
 function setUpStory(live) {
@@ -13,7 +17,7 @@ function setUpStory(live) {
   const write = onChange((words) => {
     const {steps, step, steps: {[step]: {title, attempt}}} = live;
     const html = [`${step + 1} of ${steps.length}`, title, words, `<b>Try</b> ${attempt}`];
-    ['.count', 'h3', '.text', '.try'].forEach((place, i) => ($(place, host).innerHTML = html[i]));
+    ['.count', 'h2', '.text', '.try'].forEach((place, i) => ($(place, host).innerHTML = html[i]));
     [back.disabled, next.disabled] = [step === 0, step === steps.length - 1];
   });
   return () => {
@@ -38,6 +42,7 @@ function setUpScenes(live) {
   const options =
       all.map(({label, about = 'A scene of the paper'}, name) => ({name, textContent: label, title: about}));
   const mark = makeChoice($('#presets'), options, (scene) => {
+    live.link.leave();
     $('#about').textContent = all[scene].about ?? '';
     live.page.player.seek(0);
     live.load(all[scene].plan);
@@ -55,23 +60,29 @@ function setUpScenes(live) {
  * One quantity's slider, and its number to be typed: take(name, value in SI) when one is set, hold(on) while the slider
  * is dragged, present(name) for what they show.
  */
-function makeKnob(host, {name, symbol, unit, what, limits, range}, {take, present, hold = () => {}}) {
+function makeKnob(host, knob, {take, present, hold = () => {}}) {
+  const {name, symbol, unit, what, limits: [low, high], range} = knob;
   const scale = unit === '°' ? 180 / Math.PI : 1;
   const about = what.replace('_', '');
-  const [low, high] = limits;
   const slider = make('input', {type: 'range', name, id: `slider_${name}`});
   const title = `${about}: type a number from ${low} to ${high} ${unit}`;
-  const number = make('input', {type: 'number', name: `${name}_number`, min: low, max: high, title, ariaLabel: title});
+  const number = make('input', {className: 'number', inputMode: 'decimal', autocomplete: 'off', spellcheck: false});
+  Object.assign(number, {name: `${name}_number`, title, ariaLabel: title});
+  const answer = make('p', {className: 'note trouble', role: 'alert', hidden: true});
   const words = make(
       'label', {htmlFor: slider.id}, make('b', {}, make('i', {}, ...subscripted(symbol))), ' ',
       make('small', {}, ...subscripted(what)));
-  host.append(make('div', {className: 'knob'}, words, slider, number, make('span', {}, unit)));
+  host.append(make('div', {className: 'knob'}, words, slider, number, make('span', {}, unit), answer));
   let ratios = false;
   const place = (value) => (ratios ? Math.log10(value) : value * scale);
   const at = (position) => (ratios ? Number((10 ** position).toPrecision(3)) : position / scale);
+  const reply = (sentence) => {
+    [answer.textContent, answer.hidden, number.ariaInvalid] = [sentence, !sentence, String(Boolean(sentence))];
+  };
   const write = () => {
     const value = Number((present(name) * scale).toPrecision(6));
     number.value = value && Math.abs(value) < 1e-3 ? value.toExponential() : value;  // as short as the field is wide
+    reply('');
   };
   let before = 0;  // a finger that scrolls the page has first moved the slider that it began on
   slider.oninput = () => take(name, at(Number(slider.value)));
@@ -85,10 +96,14 @@ function makeKnob(host, {name, symbol, unit, what, limits, range}, {take, presen
     hold(false);
   };
   number.onchange = () => {
-    if (number.value) take(name, Math.min(high, Math.max(low, Number(number.value))) / scale);
-    write();
+    try {
+      take(name, typed(number.value, knob));
+      write();
+    } catch ({message}) {  // the text stays, to be mended
+      reply(message);
+    }
   };
-  number.onblur = write;
+  number.onblur = () => answer.hidden && write();
   number.onkeydown = ({key}) => {
     if (key === 'Escape') write();
     if (['Enter', 'Escape'].includes(key)) number.blur();
@@ -102,7 +117,6 @@ function makeKnob(host, {name, symbol, unit, what, limits, range}, {take, presen
     const [min, max] = ratios ? [from, to].map(place) : [from, to];
     Object.assign(slider, {min, max, step: ratios ? 0.01 : step, title: `${about}: ${from} to ${to} ${unit}`});
     slider.value = place(value);
-    number.step = ratios ? 'any' : step;
     if (document.activeElement !== number) write();
   };
 }
@@ -166,13 +180,58 @@ function setUpCritical(live) {
   const host = $('#critical');
   const write = onChange((text) => host.replaceChildren(...subscripted(text)));
   return (wheel) => {
-    const [spin, limit] = [Math.abs(live.wheel.table.value('omega_z', live.page.player.t)), criticalSpin(wheel)];
+    const [now, limit] = [(name) => live.wheel.table.value(name, live.instant()), criticalSpin(wheel)];
+    const [spin, lean] = [Math.abs(now('omega_z')), Math.abs(now('theta') * 180 / Math.PI - 90)];
+    const apart = live.slides ? 'slides' : lean > NEAR ? `leans by ${lean.toFixed(0)}°` : null;
     const side = spin > limit ? 'above' : 'below';
-    host.dataset.side = side;
+    host.dataset.side = apart ? 'none' : side;
+    const [is, needed] = [`Now |ω_z| = ${spin.toFixed(2)} rad/s`, `ω_crit = ${limit.toFixed(2)} rad/s`];
     write(
-        `Now |ω_z| = ${spin.toFixed(2)} rad/s, ${side} ω_crit = ${
-            limit.toFixed(2)} rad/s: upright rolling on a level ` +
-        `road is ${spin > limit ? 'stable' : 'unstable'}.`);
+        apart ?
+            `${is}. ${needed} is for a wheel that rolls nearly upright; this one ${apart}.` :
+            `${is}, ${side} ${needed}: upright rolling on a level road is ${spin > limit ? 'stable' : 'unstable'}.`);
+  };
+}
+
+/** The friction that rolling needs beside the grip that there is, or the slip. */
+function setUpGrip(live) {
+  const host = $('#grip-now');
+  const write = onChange((text) => host.replaceChildren(...subscripted(text)));
+  const open = onChange((limited) => ($('#grip').open = limited));
+  return ({mu_max, mu_slide}) => {
+    open(mu_max > 0);
+    const {wheel: {table}} = live;
+    const now = (name) => table.value(name, live.instant());
+    const needed = Math.hypot(now('lambda_1'), now('lambda_2')) / now('lambda_3');
+    host.hidden = !(needed >= 0);
+    if (host.hidden) return;
+    const [along, across] = ['slip_x', 'slip_y'].map((name) => now(name).toFixed(2).replace('-', '−'));
+    const slip = slipOf(table, live.instant()).toFixed(2);
+    host.dataset.state = live.slides ? 'slides' : 'rolls';
+    write(
+        live.slides ?
+            `It slides at ${slip} m/s (${along} along, ${across} across); the road gives μ_s = ${mu_slide} of N.` :
+            `Rolling needs μ = ${needed.toFixed(3)} now${mu_max > 0 ? `, of ${mu_max}` : ''}.`);
+  };
+}
+
+/** The terms of the equation for omega_2 beside the picture of what rights the wheel. */
+function setUpTerms(live) {
+  const host = $('#terms');
+  const formula = ['J_x ω̇_2 = ', '(J_z ω_z − J_x ψ̇ cos θ) θ̇', ' − ', 'r cos θ λ_x'];
+  const parts = ['', 'moment', '', 'force'].map((className) => make('span', {className}));
+  host.append(
+      make('p', {}, ...formula.map((text, i) => make('span', {className: parts[i].className}, ...subscripted(text)))),
+      make('p', {}, ...parts));
+  return (wheel) => {
+    host.hidden = !live.drawsMoment || wheel.J_x !== wheel.J_y;
+    if (host.hidden) return;
+    const at = (name) => live.wheel.table.value(name, live.instant());
+    const [[, gyro], ground] = [gyroscope(wheel, at), groundMoment(wheel, at)];
+    const [sum, first, second] =
+        [gyro + ground, gyro, Math.abs(ground)].map((value) => value.toFixed(2).replace('-', '−'));
+    const texts = [`${sum} N m = `, `${first} N m`, ground < 0 ? ' − ' : ' + ', `${second} N m`];
+    parts.forEach((part, i) => part.textContent !== texts[i] && (part.textContent = texts[i]));
   };
 }
 
@@ -193,7 +252,9 @@ function setUpNotes(live) {
     $('#keep').checked = Boolean(live.kept);
     refusal(live.refusal);
     const fault = doubtOf(wheel);
-    doubt(fault && `${fault} Choose a body: its moments follow.`);
+    const chance = tipsByRounding(live.wheel.table) &&
+        'Rounding alone tips this exactly upright wheel: when, and to which side, is chance.';
+    doubt(fault ? `${fault} Choose a body: its moments follow.` : chance || null);
     scaled(live.scaled);
   };
 }
@@ -204,11 +265,15 @@ export function setUpPanel(live, wheels) {
   document.body.classList.add('live');
   const start = {take: live.setStart.bind(live), present: live.value.bind(live)};
   const now = {take: live.setNow.bind(live), present: live.present.bind(live), hold: live.hold.bind(live)};
-  const knobs = [['#start', START, start], ['#wheel', WHEEL, start], ['#now', NOW, now]].flatMap(
-      ([place, list, acts]) => list.map((knob) => makeKnob($(place), knob, acts)));
+  const knobs = [
+    ['#start', START, start], ['#grip', GRIP, start], ['#wheel', WHEEL, start], ['#now', NOW, now]
+  ].flatMap(([place, list, acts]) => list.map((knob) => makeKnob($(place), knob, acts)));
   $('#push').append(...HELD.map((held) => makeHeld(held, live)));
   const ready = setUpReady(live, wheels);
-  const all = [setUpStory(live), setUpScenes(live), ready, setUpCritical(live), setUpNotes(live), ...knobs];
+  const all = [
+    setUpStory(live), setUpScenes(live), ready, setUpCritical(live), setUpGrip(live), setUpTerms(live),
+    setUpNotes(live), ...knobs
+  ];
   return () => {
     const wheel = live.parameters();
     all.forEach((show) => show(wheel));

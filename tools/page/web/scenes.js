@@ -10,12 +10,16 @@ const angle = (value) => (DEGREES * value).toFixed(1);
 /** The largest lean of a motion from upright, in degrees. */
 const lean = ({table}) => angle(extent(table.columns.theta.map((theta) => Math.abs(theta - Math.PI / 2)))[1]);
 const spin = ({table}) => Math.abs(table.value('omega_z', 0)).toFixed(0);
+const grips = ({phases: {slides: [[, end]]}}) => end;
 const joules = ({table}, t) => table.value('E', t).toFixed(1);
+/** The largest rate of the turn about e2, rad/s. */
+const turn = ({table: {columns: {psi_dot, theta}}}) =>
+    extent(psi_dot.map((rate, i) => Math.abs(rate * Math.sin(theta[i]))))[1].toFixed(2);
 /** By how much a quantity changes while friction holds the wheel for the first time. */
 const whileHeld = ({table, phases: {sticks: [[begin, end]]}}, name) =>
     Math.abs(table.value(name, end) - table.value(name, begin));
 
-/** A step of the story. more: {names: labels of both wheels, speed: of the clock}. */
+/** A step of the story. more: {names: labels of both wheels, speed: of the clock, moment: whether it is drawn}. */
 const step = (title, address, text, attempt, more) => ({title, state: read(address).state, text, attempt, ...more});
 
 /** The steps [{title, state, text(wheel, other), attempt, names?, speed?}] for the wheel's parameters by name. */
@@ -23,7 +27,7 @@ export function chapters(parameters) {
   const {m, r_0, r} = parameters;
   const limit = criticalSpin(parameters);
   const [slower, faster] = [0.9, 1.1].map((part) => (-part * limit).toFixed(3));
-  const speed = ({table}) => Math.hypot(table.value('X_O_dot', 0), table.value('Y_O_dot', 0)).toFixed(2);
+  const speed = ({table}, t = 0) => Math.hypot(table.value('X_O_dot', t), table.value('Y_O_dot', t)).toFixed(2);
   return [
     step(
         'It rolls', 'theta=90deg&phi_dot=-5&diagram=path',
@@ -37,6 +41,15 @@ export function chapters(parameters) {
           leans turns towards its lean, and the turn rights it. So it does not fall but runs in a circle, and nods a
           little.`,
         'Take its spin away: set φ̇ to 0. Nothing turns it now, and it falls.'),
+    step(
+        'What rights it', 'theta=75deg&phi_dot=-6&diagram=spin&show=follow+path+axes+force',
+        (wheel) =>
+            `The same wheel, with the ground's force (red) and the gyroscopic moment of its spin (brown). While it
+          tips, the moment points along e<sub>2</sub> and turns it: ω<sub>2</sub> grows to ${turn(wheel)} rad/s. Once it
+          turns, the moment points along e<sub>1</sub>, and with the ground's force, which bends its path, rights it. Below
+          stands the equation of the turn with its terms.`,
+        'Pause where it leans most: θ̇ is zero, so is the first term, and the moment lies along e<sub>1</sub>.',
+        {speed: 0.25, moment: true}),
     step(
         'The critical spin, from both sides',
         `theta=89.5deg&phi_dot=${slower}&kept.theta=89.5deg&kept.phi_dot=${faster}`,
@@ -73,19 +86,30 @@ export function chapters(parameters) {
           ${joules(wheel, 7.5)} J. Between them, and after, the energy stays what it is.`,
         'Hold a button anywhere on the way: the past stays, and a new future is computed at once.'),
     step(
+        'Thrown with backspin',
+        'theta=90deg&phi_dot=10&slip_x=5.5&mu_max=0.35&mu_slide=0.3&stop=4&diagram=path&show=follow+path+force',
+        (wheel) =>
+            `Thrown forward at ${speed(wheel)} m/s and spinning backward at ${spin(wheel)} rad/s, the wheel slides
+          (purple): its point at the contact moves over the road by the slip, the purple arrow, and the road brakes it with
+          μ<sub>s</sub> N. At ${grips(wheel).toFixed(1)} s the slip is used up. It grips, and comes back at ${
+                speed(wheel, 1)} m/s.`,
+        'Give it less backspin: φ̇ = 4 rad/s, u<sub>x</sub> = 3.4 m/s. It grips while it still goes forward.',
+        {speed: 0.5}),
+    step(
         'What ends a run', 'phi_dot=0',
         ({table}) => `Let go without spin, it falls. At ${table.end.toFixed(2)} s it lies flat and touches the ground
           along a circle instead of a point: the equations end there, and so does the run. It also ends where the wheel
-          would lift off (N = 0), and, with a static friction coefficient μ but no kinetic one μ_s, where rolling would
-          need more.`,
+          would lift off (N = 0), where it jams while it slides, and, with a static friction coefficient μ but no
+          kinetic one μ<sub>s</sub>, where rolling would need more.`,
         'Give it a little spin φ̇. How little lets it come up again?'),
   ];
 }
 
-/** The scenes {label, plan, about}: those of the story's steps, and a disc; for the wheel's parameters. */
+/** The scenes {label, plan, about}: those of the story's steps, a disc, and a wet road; for the wheel's parameters. */
 export function scenes(parameters, steps) {
-  const [, , critical, free, friction, , driven] = steps.map(({state}) => state);
+  const [, , , critical, free, friction, , driven, thrown] = steps.map(({state}) => state);
   const limit = `Upright rolling is stable above ${criticalSpin(parameters).toFixed(2)} rad/s; this wheel is 10 %`;
+  const wet = read('mu_max=0.45&mu_slide=0.4&show=follow+path+force').state;
   const disc = read('body=disc&r=0&theta=20deg&psi_dot=9&phi_dot=-9').state;
   return [
     ['Paper, no friction', free.plan],
@@ -96,6 +120,8 @@ export function scenes(parameters, steps) {
       'Thin disc', disc.plan,
       'No tube (r = 0), homogeneous: the rolling disc of the textbooks, low and wobbling like a coin.'
     ],
+    ['Wet road', wet.plan, 'The paper\'s wheel with μ = 0.45 for grip and μ_s = 0.4 for sliding: it slides twice.'],
+    ['Backspin', thrown.plan, 'Thrown forward at 2 m/s, spinning backward: it slides, grips and comes back.'],
     ['Driven', driven.plan, 'A motor pushes with M₃ = −4 N m from 1 s to 3 s, the brake with 4 N m from 6 s to 7.5 s.'],
   ].map(([label, plan, about]) => ({label, plan, about}));
 }

@@ -5,9 +5,10 @@
 /** Bytes of a base64 text. */
 export const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 
-/** The smallest and the largest of some values, or [Infinity, -Infinity]. */
+/** The smallest and the largest of some values, NaN aside, or [Infinity, -Infinity]. */
 export function extent(values) {
-  return values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+  const both = ([low, high], value) => [value < low ? value : low, value > high ? value : high];
+  return values.reduce(both, [Infinity, -Infinity]);
 }
 
 /** The index of the last of rising instants at or before t, or -1. */
@@ -21,11 +22,20 @@ export function before(times, t) {
 }
 
 export class Table {
-  /** columns: {name: Float64Array}, all of one length, `time` rising. */
+  /**
+   * columns: {name: Float64Array}, all of one length, `time` rising. shown: the same, but where the sliding wheel jams
+   * its force, which grows without bound, is no number.
+   */
   constructor(columns) {
     this.columns = columns;
     this.time = columns.time;
     this.rows = this.time.length;
+    const {lambda_1, lambda_3: N, slip_x, slip_y} = columns;
+    const slides = slip_x?.at(-1) || slip_y?.at(-1);
+    this.jams = Boolean(slides) && N?.at(-1) < 0 && lambda_1?.at(-1) !== 0;  // a ground that pulls gives no friction
+    const forces = Object.entries(columns).filter(([name]) => this.jams && name.startsWith('lambda_'));
+    const known = ([name, values]) => [name, values.map((value, row) => (N[row] < 0 ? NaN : value))];
+    this.shown = {...columns, ...Object.fromEntries(forces.map(known))};
   }
 
   /** From base64 of little-endian doubles, as the page carries them. */
@@ -47,7 +57,7 @@ export class Table {
    * A column at t: the cubic through both rows' values and rates where the column `<name>_dot` is there, else a line.
    */
   value(name, t) {
-    const values = this.columns[name];
+    const values = this.shown[name];
     const i = this.row(t);
     const h = this.time[i + 1] - this.time[i];
     const x = h > 0 ? Math.min(1, Math.max(0, (t - this.time[i]) / h)) : 1;
@@ -59,11 +69,21 @@ export class Table {
   }
 }
 
+/** Whether rounding alone tips the wheel: exactly upright, its lean grows from 1e-16 rad to a thousandth. */
+export function tipsByRounding({columns: {theta}}) {
+  const lean = theta.map((angle) => Math.abs(angle - Math.PI / 2));
+  return lean[0] < 1e-12 && lean[1] < 1e-9 && extent(lean)[1] > 1e-3;
+}
+
 /** Contact with the ground, O - (r_0 + r sin theta) e2 - r cos theta e3, seen from above; r drops out. */
 export function contactOf(r_0, X_O, Y_O, psi, theta) {
   const across = r_0 * Math.cos(theta);
   return [X_O + across * Math.sin(psi), Y_O - across * Math.cos(psi)];
 }
+
+/** Speed of the slip in m/s; 0 where none is recorded. */
+export const slipOf = (table, t) =>
+    Math.hypot(...['slip_x', 'slip_y'].map((name) => (table.has(name) ? table.value(name, t) : 0)));
 
 const FINEST = 64;  // points of the path between two rows, at most
 const TURN = 0.06;  // rad, of the heading from point to point
