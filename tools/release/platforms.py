@@ -62,12 +62,8 @@ def printed(out: Path) -> Iterator[tuple[str, str]]:
 
 
 def scenes(out: Path) -> dict[str, object]:
-    """For the page: a row for each scene, with the digest on the first platform and whether the others are equal."""
+    """For the page: the platforms, each scene's digest on the first of them, and where another one has another."""
     digests = {place: dict(line.split("\t") for line in text.splitlines()) for place, text in printed(out)}
-    first, *others = digests.values()
-    rows = [
-        [scene, digest, *("equal" if other[scene] == digest else other[scene] for other in others)]
-        for scene, digest in first.items()
-    ]
-    different = [scene for scene, _, *equal in rows if {*equal} != {"equal"}]
-    return {"run": tabulate(rows, ["scene", *digests], "pipe", disable_numparse=True), "different": different}
+    first = next(iter(digests.values()))
+    different = [f"{s} on {place}" for place, found in digests.items() for s in first if found[s] != first[s]]
+    return {"run": tabulate(first.items(), ["scene", "hash"], "pipe", disable_numparse=True), "places": [*digests], "different": different}

@@ -67,7 +67,7 @@ def modelica_own(library: Library) -> float:
 def coin(library: Library) -> Compared:
     ours, table = wheels.coin(library, 1e-12), read("exudyn_coin")
     limit, off = wheels.coin_limit(table), float(abs(table["x"][0] - ours[0]))
-    whose = f"rounding; at its step of 0.5 ms Exudyn is {number(off)} m off"
+    whose = f"rounding; at its step of 0.5 ms Exudyn deviates by {number(off)} m"
     who, scene = "Exudyn 1.13.6, extrapolated to h = 0", "rollingCoinTest, 0.5 s: X_C, Y_C"
     return who, scene, digits(*limit, places=15), digits(*ours, places=15), float(np.abs(limit - ours).max()), whose
 
@@ -75,8 +75,8 @@ def coin(library: Library) -> Compared:
 def thrown(library: Library) -> Compared:
     ours, table = wheels.thrown(library, 1e-12), read("exudyn_slide")
     limit, off = wheels.thrown_limit(table), np.abs(wheels.thrown_in_steps(table)[-1] - ours).max()
-    whose = f"its regularization's: at a slip of {table['zone'][-1] * 1e6:.3g} µm/s it is {number(float(off))} m off"
-    who, scene = "Exudyn 1.13.6, extrapolated to no regularization", "thrown disc slides, grips; 0.5 s: X_O, Y_O"
+    whose = f"Exudyn's: at a slip of {table['zone'][-1] * 1e6:.3g} µm/s it deviates by {number(float(off))} m"
+    who, scene = "Exudyn 1.13.6, extrapolated to no regularization", "thrown disc slides, rolls; 0.5 s: X_O, Y_O"
     apart = float(np.abs(limit - ours).max())
     return who, scene, digits(*limit[2:]), digits(*ours[2:]), apart, whose
 
