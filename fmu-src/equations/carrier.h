@@ -4,8 +4,11 @@
 #define WHEEL_CARRIER_H
 
 #include <math.h>
+#include <string.h>
 
 #include "wheel_equations.h"
+
+typedef double Two __attribute__((vector_size(2 * sizeof(double)))); /* side by side in the processor */
 
 /* The state; the last two while the wheel slides. */
 enum { THETA, OMEGA_1, OMEGA_2, OMEGA_3, PSI, PHI, X_O, Y_O, SPEED, CHI };
@@ -39,13 +42,18 @@ typedef struct Accelerations {
   double tau; /* moment of ground and brake about the axle */
 } Accelerations;
 
+/* Sine and cosine of an angle. */
+typedef struct Sines {
+  double sine, cosine;
+} Sines;
+Sines wheel_sines(double angle);
+
 /* What a caller does not read is not computed, and what it gives as a constant is not asked for. */
 #define INLINED __attribute__((always_inline)) static inline
 
 INLINED Carrier carrier_of(const WheelParameters* w, const double* y) {
-  Carrier c = {.sin_theta = sin(y[THETA]), .cos_theta = cos(y[THETA])};
-  c.sin_psi = sin(y[PSI]);
-  c.cos_psi = cos(y[PSI]);
+  Sines theta = wheel_sines(y[THETA]), psi = wheel_sines(y[PSI]);
+  Carrier c = {theta.sine, theta.cosine, psi.sine, psi.cosine};
   c.omega_1 = y[OMEGA_1];
   c.omega_2 = y[OMEGA_2];
   c.omega_3 = y[OMEGA_3];
@@ -63,7 +71,8 @@ INLINED Carrier carrier_of(const WheelParameters* w, const double* y) {
 static inline Inertia inertia_of(const WheelParameters* w, double phi) {
   if (w->J_x == w->J_y) return (Inertia){.I_11 = w->J_x, .I_22 = w->J_x};
   double mean = 0.5 * (w->J_x + w->J_y), D = 0.5 * (w->J_x - w->J_y);
-  double q = D * cos(2.0 * phi), p = D * sin(2.0 * phi);
+  Sines twice = wheel_sines(2.0 * phi);
+  double q = D * twice.cosine, p = D * twice.sine;
   return (Inertia){.I_11 = mean + q, .I_22 = mean - q, .p = p, .q = q};
 }
 
@@ -107,14 +116,17 @@ static inline void road_force(const WheelScene* scene, const Carrier* c, double*
   if (F_X != 0 || F_Y != 0) from_fixed(c, F_X, F_Y, along, left);
 }
 
+/* Two numbers in one store: a solver reads them so, and a processor waits where it reads two stores at once. */
+static inline void put_pair(double first, double second, double* out) {
+  const Two pair = {first, second};
+  memcpy(out, &pair, sizeof pair);
+}
+
 /* All of y_dot but the velocity of O and the slip. */
 static inline void set_rates(const Carrier* c, const Accelerations* a, double* y_dot) {
-  y_dot[THETA] = c->omega_1;
-  y_dot[OMEGA_1] = a->omega_1_dot;
-  y_dot[OMEGA_2] = a->omega_2_dot;
-  y_dot[OMEGA_3] = a->omega_3_dot;
-  y_dot[PSI] = c->psi_dot;
-  y_dot[PHI] = c->phi_dot;
+  put_pair(c->omega_1, a->omega_1_dot, y_dot + THETA);
+  put_pair(a->omega_2_dot, a->omega_3_dot, y_dot + OMEGA_2);
+  put_pair(c->psi_dot, c->phi_dot, y_dot + PSI);
 }
 
 /* All of `out` but the horizontal reaction, which is set; m a = lambda + F + weight. */

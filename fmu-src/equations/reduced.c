@@ -146,7 +146,7 @@ static inline void reaction_of(const WheelParameters* w, const Instant* now, con
 }
 
 static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
-  double kappa = wheel_kappa(&scene->friction, omega_3);
+  double kappa = scene->friction.kind == WHEEL_ROLLING ? scene->friction.sigma : wheel_kappa(&scene->friction, omega_3);
   return (AxleLaw){
       .held = scene->friction.kind == WHEEL_HELD,
       .branch_kept = scene->ground == WHEEL_GROUND_PRESSES,
@@ -173,10 +173,13 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 }
 
 INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, int guided) {
+  AxleLaw law = law_of(scene, y[OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
   Instant now = instant_of(scene, y, guided);
-  Accelerations a = move(&now.system, law_of(scene, y[OMEGA_3]));
+  Accelerations a = move(&now.system, law);
+  double X_dot, Y_dot;
+  set_velocity(&scene->wheel, &now.carrier, &X_dot, &Y_dot);
   set_rates(&now.carrier, &a, y_dot);
-  set_velocity(&scene->wheel, &now.carrier, &y_dot[X_O], &y_dot[Y_O]);
+  put_pair(X_dot, Y_dot, y_dot + X_O);
   return a.N;
 }
 

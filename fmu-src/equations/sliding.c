@@ -182,13 +182,14 @@ static inline void set_velocity(const Carrier* c, double h, double u_x, double u
 INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, double yield) {
   Body b = body_of(scene, y, yield);
   const Carrier* c = &b.carrier;
-  double d_x = cos(y[CHI]), d_y = sin(y[CHI]);
+  double d_x = cos(y[CHI]), d_y = sin(y[CHI]), X_dot, Y_dot;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
+  double chi_dot = y[SPEED] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[SPEED] - c->psi_dot;
+  set_velocity(c, b.h, y[SPEED] * d_x, y[SPEED] * d_y, &X_dot, &Y_dot);
   set_rates(c, &m.a, y_dot);
-  set_velocity(c, b.h, y[SPEED] * d_x, y[SPEED] * d_y, &y_dot[X_O], &y_dot[Y_O]);
-  y_dot[SPEED] = m.u_x * d_x + m.u_y * d_y;
-  y_dot[CHI] = y[SPEED] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[SPEED] - c->psi_dot;
-  y_dot[CHI + 1] = y_dot[CHI + 2] = 0;
+  put_pair(X_dot, Y_dot, y_dot + X_O);
+  put_pair(m.u_x * d_x + m.u_y * d_y, chi_dot, y_dot + SPEED);
+  put_pair(0, 0, y_dot + CHI + 1);
   return room_of(&b, d_x, d_y) > WHEEL_LEAST_ROOM ? m.a.N : INFINITY;
 }
 

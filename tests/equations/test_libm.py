@@ -1,6 +1,7 @@
-"""The compiled-in sine and cosine (cmake/libm): sincos has the bits of both, and both are right to the last digit.
+"""The compiled-in sine and cosine (cmake/libm): sincos has the bits of both, and both are right to the last digit. They
+are compiled here alone, because the libraries hide them. The equations' own (sines.c) are right to the last digit too.
 
-They are compiled here alone, because the libraries hide them. No part of the paper.
+No part of the paper.
 """
 
 import ctypes
@@ -10,6 +11,7 @@ from ctypes import byref, c_double
 
 import numpy as np
 import pytest
+from support import equations as eq
 from support.bounds import beyond, within
 from support.paths import ROOT, build_folder
 
@@ -64,3 +66,18 @@ def test_sine_and_cosine_are_those_of_the_system_but_for_the_last_digit(libm, na
     # Each of the two is less than a unit from the truth.
     within(units([function(value) for value in x], known), 2, f"{name} beside the system's, units in the last place")
     beyond(units([function(value) for value in np.nextafter(x, np.inf)], known), 2, f"{name} of the next double")
+
+
+class Sines(ctypes.Structure):
+    _fields_ = (("sine", c_double), ("cosine", c_double))
+
+
+def test_those_of_the_equations_are_those_of_the_system_but_for_the_last_digit():
+    sines = eq.LIBRARY.wheel_sines
+    sines.restype, sines.argtypes = Sines, [c_double]
+    x = angles()
+    for name, known in (("sine", np.vectorize(math.sin)), ("cosine", np.vectorize(math.cos))):
+        found = [getattr(sines(value), name) for value in x]
+        within(units(found, known(x)), 2, f"{name} beside the system's, units in the last place")
+        beyond(units(found, known(np.nextafter(x, np.inf))), 2, f"{name} of the next double")
+    assert all(math.isnan(getattr(sines(value), name)) for value in (math.inf, math.nan) for name in ("sine", "cosine"))

@@ -1,0 +1,61 @@
+/* Sine and cosine of one angle side by side: a processor computes two numbers at the cost of one. Reduction to
+ * [-pi/4, pi/4] and polynomials of FDLIBM (Sun Microsystems, 1993: e_rem_pio2.c, k_sin.c, k_cos.c). */
+#include <math.h>
+#include <stdint.h>
+
+#include "carrier.h"
+
+typedef uint64_t Bits __attribute__((vector_size(sizeof(Two))));
+#define ALL UINT64_MAX
+#define SIGN ((uint64_t)1 << 63)
+
+/* An angle less n quarter turns, and what `angle` rounds off. */
+typedef struct Reduced {
+  double angle, rest;
+  int n;
+} Reduced;
+
+/* False, rarely, where the quarter turns need more digits of pi. */
+static inline int reduce_angle(double x, Reduced* out) {
+  const double quarter = 1.57079632673412561417e+00, quarter_rest = 6.07710050650619224932e-11; /* 33 + 53 bits */
+  const double size = fabs(x), per_rad = 6.36619772367581382433e-01;
+  double r, w;
+  int n = 1;
+  *out = (Reduced){x, 0, 0};
+  if (size < 0x1.921fbp-1) return 1; /* pi/4 */
+  if (!(size < 0x1p19)) return 0;
+  if (size < 0x1.2d97cp1) { /* 3 pi/4: the tilt of most wheels */
+    r = size - quarter;
+    w = quarter_rest;
+  } else {
+    n = (int)(size * per_rad + 0.5);
+    r = size - n * quarter;
+    w = n * quarter_rest;
+  }
+  double angle = r - w, rest = (r - angle) - w;
+  *out = x < 0 ? (Reduced){-angle, -rest, -n} : (Reduced){angle, rest, n};
+  return fabs(angle) > size * 0x1p-16;
+}
+
+/* With z = x^2: sin x = x + z x P(z), cos x = (1 - z/2) + z^2 Q(z), and the parts of first order in the rest of x. */
+Sines wheel_sines(double angle) {
+  static const Two PQ[] = {{-1.66666666666666324348e-01, 4.16666666666666019037e-02},
+                           {8.33333333332248946124e-03, -1.38888888888741095749e-03},
+                           {-1.98412698298579493134e-04, 2.48015872894767294178e-05},
+                           {2.75573137070700676789e-06, -2.75573143513906633035e-07},
+                           {-2.50507602534068634195e-08, 2.08757232129817482790e-09},
+                           {1.58969099521155010221e-10, -1.13596475577881948265e-11}};
+  static const Bits exchanged[] = {{0, 0}, {ALL, ALL}, {0, 0}, {ALL, ALL}};
+  static const Bits signs[] = {{0, 0}, {0, SIGN}, {SIGN, SIGN}, {SIGN, 0}};
+  Reduced of;
+  if (!reduce_angle(angle, &of)) return (Sines){sin(angle), cos(angle)};
+  const double x = of.angle, z = x * x, half = 0.5 * z, most = 1 - half;
+  const Two large = {x, most}, small = {of.rest - half * of.rest, ((1 - most) - half) - x * of.rest};
+  const Two zz = {z, z}, z_4 = zz * zz, factor = {z * x, z * z};
+  const Two pq = (PQ[0] + zz * PQ[1]) + z_4 * ((PQ[2] + zz * PQ[3]) + z_4 * (PQ[4] + zz * PQ[5]));
+  const Two sines = large + (factor * pq + small), turned = {sines[1], sines[0]};
+  /* A quarter turn exchanges sine and cosine, and one of them changes its sign. */
+  const Bits mask = exchanged[of.n & 3];
+  const Two out = (Two)((((Bits)sines & ~mask) | ((Bits)turned & mask)) ^ signs[of.n & 3]);
+  return (Sines){out[0], out[1]};
+}
