@@ -66,4 +66,5 @@ def scenes(out: Path) -> dict[str, object]:
     digests = {place: dict(line.split("\t") for line in text.splitlines()) for place, text in printed(out)}
     first = next(iter(digests.values()))
     different = [f"{s} on {place}" for place, found in digests.items() for s in first if found[s] != first[s]]
-    return {"run": tabulate(first.items(), ["scene", "hash"], "pipe", disable_numparse=True), "places": [*digests], "different": different}
+    run = tabulate(first.items(), ["scene", "hash"], "pipe", disable_numparse=True)
+    return {"run": run, "places": [*digests], "different": different}
