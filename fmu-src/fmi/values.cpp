@@ -57,7 +57,7 @@ bool check_value(Instance& i, fmi2ValueReference variable, double value) {
   const wheel::Row& row = wheel::row_of(variable);
   const bool bounded = variable < wheel::stored_count, low = bounded && value < row.min;
   const bool high = bounded && wheel::is_above(variable, value);
-  const bool switches = variable == wheel::variable::mu_slide && (value > 0) == !i.wheel.setup.sliding;
+  const bool switches = variable == wheel::variable::mu_slide && value > 0 && !i.wheel.setup.sliding;
   if (!is_running(i.wheel.phase()) || (std::isfinite(value) && !low && !high && !switches)) return true;
   const double kept = wheel::value_of(i.wheel, variable);
   const char* const bound = low ? "at least" : variable == wheel::variable::slope ? "less than" : "at most";

@@ -129,7 +129,7 @@ constexpr EventRow event_rows[] = {
     layer_event(Event::crosses_layer, is_layered, way_to_edge),
     {.event = Event::spin_changes, .can_occur = can_change_spin, .value = spin_left, .follow = change_spin},
     {.event = Event::lost_grip,
-     .can_occur = [](const Setup&, const InForce& now) { return now.road.mu_max > 0 && !now.slides(); },
+     .can_occur = [](const Setup& setup, const InForce& now) { return is_limited(setup, now.road) && !now.slides(); },
      .value = grip_left,
      .ends = [](const Setup& setup) { return !setup.sliding; },
      .follow = lose_grip,

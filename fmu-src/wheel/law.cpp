@@ -68,7 +68,7 @@ void let_act(const Setup& setup, const Road& road, double t, const Polynomials& 
   now.scene.wheel = setup.wheel;
   now.scene.wheel.s = road.s;
   if (road.slope != 0) wheel_set_slope(&now.scene.wheel, setup.wheel.g, road.slope, road.slope_direction);
-  now.scene.mu_slide = road.mu_max > 0 ? std::fmin(road.mu_slide, road.mu_max) : road.mu_slide;
+  now.scene.mu_slide = std::fmin(road.mu_slide, road.mu_max);
   now.scene.load = load_of(inputs);
   now.inputs.take_over(t, inputs);
 }
@@ -84,7 +84,7 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   if (now.slides()) setup.sliding->grip(&now.scene.wheel, y);
   now.scene.contact = WHEEL_GRIPS;
   decide_law(setup, t, y, now);
-  if (now.road.mu_max > 0 && !(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
+  if (!(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
 }
 
 // Without a direction the event that ends the run follows at once, or the ground begins to pull: where it pulls, the
@@ -131,9 +131,9 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
   WheelDynamics dynamics;
   setup.formulation->dynamics(&scene, y, &dynamics);
   const double* lambda = dynamics.lambda;
-  const double mu_max = now.road.mu_max, full = setup.weight;
+  const double mu_max = std::fmax(now.road.mu_max, rounding_of_zero), full = setup.weight;
   const double X = lambda[0] / full / mu_max, Y = lambda[1] / full / mu_max;
-  const double N = lambda[2] / full * (1 + rounding) + std::fmin(rounding_of_zero / mu_max, 1);
+  const double N = lambda[2] / full * (1 + rounding) + rounding_of_zero / mu_max;
   return N * std::fabs(N) - (X * X + Y * Y);
 }
 

@@ -25,6 +25,9 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
 double least_slip(const Setup& setup, double t);
 double first_slip(const Setup& setup, double t);
 
+// Whether the road limits the force of grip: mu_max = 0 is no limit, and of a wheel that can slide no friction.
+inline bool is_limited(const Setup& setup, const Road& road) { return setup.sliding || road.mu_max > 0; }
+
 // N^2 - (lambda_t / mu_max)^2 over the weight squared, of a wheel that grips; below zero too where the ground pulls.
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y);
 

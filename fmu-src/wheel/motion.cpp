@@ -71,7 +71,7 @@ Outcome take_demand(Wheel& w) {
 
 // The orbit of a run, from its start.
 Shape shape_of(const Demand& demand) {
-  Shape shape = {{}, demand.tolerance};
+  Shape shape = {{}, demand.tolerance, demand.slides};
   std::copy_n(demand.parameters, first_input, shape.parameters);
   for (const unsigned v : {variable::psi_start, variable::phi_start}) shape.parameters[v] = 0;
   return shape;
@@ -150,7 +150,7 @@ double stop_of(const Wheel& w, double t) {
 // Of a loaded wheel on a road without a limit.
 void look_at_grip(Wheel& w, double t) {
   const Inputs& inputs = w.run.in_force.inputs;
-  if (t < w.run.grip_due || w.run.in_force.road.mu_max > 0 || !(inputs.loaded || inputs.braked)) return;
+  if (t < w.run.grip_due || is_limited(w.setup, w.run.in_force.road) || !(inputs.loaded || inputs.braked)) return;
   double y[WHEEL_MAX_STATES];
   w.solution.solver.read(t, y);
   warn_of_grip(w, t, y);

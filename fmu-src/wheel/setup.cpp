@@ -96,10 +96,10 @@ bool check_sliding(const Reporter& reporter, const Demand& demand, bool at_start
   bool sound =
       reporter.check(!at_start || !(mu_slide > mu_max), "mu_slide = %s: mu_max must be at least as large, and is %s.",
                      Digits{mu_slide, 9}, Digits{mu_max, 9});
-  sound &=
-      reporter.check(!slips || mu_slide > 0, "slip_x_start, slip_y_start = %s, %s m/s: an initial slip needs mu_slide.",
-                     Digits{slip_x, 9}, Digits{slip_y, 9});
-  sound &= reporter.check(mu_slide == 0 || demand.kind == Kind::co_simulation,
+  sound &= reporter.check(!slips || demand.slides,
+                          "slip_x_start, slip_y_start = %s, %s m/s: an initial slip needs mu_slide.", Digits{slip_x, 9},
+                          Digits{slip_y, 9});
+  sound &= reporter.check(!demand.slides || demand.kind == Kind::co_simulation,
                           "mu_slide = %s: model exchange has no states for a slip and needs 0.", Digits{mu_slide, 9});
   return sound;
 }
@@ -146,7 +146,7 @@ Setup setup_of(const Demand& demand) {
   setup.formulation = exchanged   ? choose(wheel_euler, wheel_guided_euler)
                       : multibody ? choose(wheel_multibody, wheel_guided_multibody)
                                   : choose(wheel_reduced, wheel_guided);
-  if (v[mu_slide] > 0)
+  if (demand.slides)
     setup.sliding = multibody ? choose(wheel_multibody_sliding, wheel_guided_multibody_sliding)
                               : choose(wheel_sliding, wheel_guided_sliding);
   setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};

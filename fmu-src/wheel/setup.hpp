@@ -28,6 +28,7 @@ struct Demand {
   double start_time = 0, stop_time = solver::never, tolerance = default_tolerance;
   Kind kind;
   bool changed = false;  // something has been set since the last step
+  bool slides = false;   // mu_slide was above 0 at the start: whatever it is later, the wheel can slide
 
   // Of a variable below stored_count, or of an input's polynomial.
   double& value(unsigned v, int k = 0) { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }

@@ -38,6 +38,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
     archive.numbers(input + 1, max_order);
   }
   archive.count(demand.changed, 0, 1);
+  archive.count(demand.slides, 0, 1);
   archive.count(run.phase, 0, phase_count - 1);
   archive.count(run.ended_by, 0, event_count - 1);
   archive.range(now.road.s, 0, archive.greatest);

@@ -45,6 +45,7 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   run = Run();
   run.phase = Phase::faulty;
   w.solution.orbit_until = Solution::none;
+  w.demand.slides = w.demand.parameters[variable::mu_slide] > 0;
   if (!check_values(w.demand, reporter, true)) return false;
   w.setup = setup_of(w.demand);
   std::copy_n(w.setup.start, WHEEL_MAX_STATES, run.y);

@@ -12,6 +12,7 @@ namespace wheel {
 // and the tolerance.
 struct Shape {
   double parameters[first_input] = {}, tolerance = 0;  // 0: no orbit
+  bool slides = false;
   bool operator==(const Shape&) const = default;
 };
 

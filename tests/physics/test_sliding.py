@@ -420,12 +420,55 @@ def test_a_locked_wheel_slides_over_roads_that_change_with_the_deceleration_of_e
     within(absolute_error(slowing, [0.4, 0.1, 0.4, 0.15, *hill]), 1e-9, "deceleration over g")
 
 
-def test_whether_the_wheel_can_slide_is_decided_at_the_start(library: Library) -> None:
-    for start, later in ((0.4, 0.0), (0.0, 0.4)):
-        with library.wheel(logging=True) as wheel:
-            wheel.start(**{**UPRIGHT, **ROAD, "mu_slide": start}).to(0.1)
-            assert wheel.set(mu_slide=later) == DISCARD
-            assert f"mu_slide = {later:.9g}: whether the wheel can slide is decided at the start" in wheel.sentences[-1]
-            assert wheel.sentences[-1].endswith(f"the value stays {start:.9g}.")
-            assert wheel.get("mu_slide") == [start]
-            wheel.put(mu_slide=0.9 * start)
+ICE = [{"mu_max": 0.0}, {"mu_slide": 0.0, "mu_max": 0.0}]
+
+
+def speed_after(library: Library, before: float, *roads: dict[str, float], **start: float) -> float:
+    """Of O, braked for 0.2 s on each of the roads; each of their states is saved and taken over by another instance."""
+    with library.wheel() as wheel, library.wheel() as other:
+        wheel.start(**{**UPRIGHT, **ROAD, "phi_dot_start": -40.0, **start}).to(before).put(M_brake=1e3)
+        for k, road in enumerate(roads, 1):
+            wheel.back(other.back(wheel.put(**road).serialized()).serialized()).to(before + 0.1 * k, before + 0.2 * k)
+        return float(wheel.get("X_O_dot")[0])
+
+
+@pytest.mark.parametrize("ice", ICE)
+@pytest.mark.parametrize("before", [0.0, 0.1])
+@pytest.mark.parametrize("start", [{}, {"slip_x_start": 2.0}, {"formulation": 3}], ids=str)
+def test_a_wheel_that_can_slide_has_no_friction_at_all_where_mu_max_becomes_zero(library, ice, before, start) -> None:
+    """As in the limit of small coefficients. On the road behind the ice it slows down as before it."""
+    free, least = 40 * R + start.get("slip_x_start", 0.0), speed_after(library, before, {"mu_max": 1e-9}, **start)
+    rolls = 0.4 * PAPER.g * before if "slip_x_start" in start else 0.0
+    within(abs(speed_after(library, before, ice, **start) - least), 1e-8, "speed, m/s")
+    within(abs(least + rolls - free), 1e-2, "speed lost on ice, m/s")
+    slower = speed_after(library, before, ice, ROAD, **start)
+    within(abs(least - slower - 0.4 * PAPER.g * 0.2), 1e-6, "speed lost behind the ice, m/s")
+
+
+@pytest.mark.parametrize("ice", ICE)
+def test_on_ice_a_wheel_grips_only_while_it_needs_no_force_and_a_driven_one_slips_at_once(library: Library, ice) -> None:
+    with library.wheel() as wheel:
+        wheel.start(**{**UPRIGHT, **ROAD, "phi_dot_start": -2.0}).put(**ice).to(0.5)
+        assert wheel.get("contact_mode", "slip_x", "omega_z") == [GRIPS, 0.0, -2.0]
+        wheel.put(M_3=-0.9).to(0.7)
+        within(abs(wheel.get("omega_z")[0] + 2 + 0.9 * 0.2 / PAPER.J_z), 1e-8, "omega_z, rad/s")
+        assert wheel.get("contact_mode", "lambda_x") == [SLIDING, 0.0]
+
+
+def test_the_paper_s_wheel_loses_no_energy_on_ice(library: Library) -> None:
+    with library.wheel() as wheel:
+        before = wheel.start(**ROAD).to(0.3).get("E")[0]
+        wheel.put(mu_max=0.0).to(0.5)
+        within(abs(wheel.get("E")[0] / before - 1), 1e-7, "energy, relative")
+        assert wheel.get("contact_mode", "lambda_1", "lambda_2") == [SLIDING, 0.0, 0.0]
+        wheel.back(wheel.serialized()).put(mu_max=0.01).to(0.7)
+        beyond(abs(wheel.get("E")[0] / before - 1), 1e-7, "energy on mu_max = 0.01, relative")
+
+
+def test_a_wheel_that_starts_without_mu_slide_never_slides(library: Library) -> None:
+    with library.wheel(logging=True) as wheel:
+        wheel.start(**{**UPRIGHT, **ROAD, "mu_slide": 0.0}).to(0.1)
+        assert wheel.set(mu_slide=0.4) == DISCARD
+        assert "mu_slide = 0.4: whether the wheel can slide is decided at the start" in wheel.sentences[-1]
+        assert wheel.sentences[-1].endswith("the value stays 0.")
+        assert wheel.put(mu_slide=0.0).get("mu_slide") == [0.0]
