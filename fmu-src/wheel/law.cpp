@@ -87,8 +87,15 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   if (!(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
 }
 
-// Without a direction the event that ends the run follows at once, or the ground begins to pull: where it pulls, the
-// slip begins along the forces.
+double first_direction(const Setup& setup, const WheelScene& scene, const double* reduced) {
+  const double chi = setup.sliding->slip_direction(&scene, reduced);
+  if (!std::isnan(chi)) return chi;
+  WheelScene pulled = scene;
+  pulled.ground = WHEEL_GROUND_PULLS;
+  const WheelSlip free = setup.sliding->slip(&pulled, reduced, 0);
+  return wheel_angle_of(free.growth, free.turn);
+}
+
 void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
   double reduced[WHEEL_MAX_STATES];
   setup.formulation->reduce(y, reduced);
@@ -96,15 +103,8 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
   WheelScene scene = now.scene_at(t);
   const auto take = [&](const WheelFriction& law) {
     scene.friction = now.scene.friction = law;
-    double chi = setup.sliding->slip_direction(&scene, reduced);
-    if (std::isnan(chi)) {
-      WheelScene pulled = scene;
-      pulled.ground = WHEEL_GROUND_PULLS;
-      const WheelSlip free = setup.sliding->slip(&pulled, reduced, 0);
-      chi = wheel_angle_of(free.growth, free.turn);
-    }
     y[setup.sliding->slip_index] = first_slip(setup, t);
-    y[setup.sliding->slip_index + 1] = chi;
+    y[setup.sliding->slip_index + 1] = first_direction(setup, scene, reduced);
   };
   if (may_be_held(setup, now, y)) {
     for (const WheelFriction& law : {WheelFriction{WHEEL_HELD, 0, 0}, {WHEEL_ROLLING, 1, 0}, {WHEEL_ROLLING, -1, 0}}) {

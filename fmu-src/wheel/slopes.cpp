@@ -132,8 +132,13 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   double h = state >= 0 ? scales[state] : std::fmax(setup.weight, std::fabs(place));
   if (state == f.tilt_index) h *= std::sin(place);
   if (state == f.spin_index && now.scene.friction.kind == WHEEL_REGULARIZED) h = std::fmin(h, setup.omega_s);
+  const bool begun = has_begun(w.phase()) ? w.run.in_force.slides() : setup.starts_sliding;
+  const bool turns = now.scene.contact == WHEEL_SLIDES && !begun;  // the loads decide the direction of the slip
+  double reduced[WHEEL_MAX_STATES];
+  if (turns) setup.sliding->reduce(y, reduced);
   const auto read_at = [&](double x) {
     place = x;
+    if (turns) y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, reduced);
     reading.set(now);
     return &reading;
   };

@@ -11,11 +11,14 @@
 namespace wheel {
 namespace {
 
-// Whether the initial state is inside the model, with a message: values that are sound one by one can have products
-// that are not finite.
-bool check_start(const Demand& demand, Reading& start, const Reporter& reporter) {
+// Whether the initial state is inside the model, with a message: no force of the ground holds a wheel that jams, and
+// values that are sound one by one can have products that are not finite.
+bool check_start(const Wheel& w, Reading& start, const Reporter& reporter) {
+  const InForce& now = w.run.in_force;
+  if (now.slides() && margin_of(row_of(Event::jams), w.setup, now, 0, w.run.y) < 0)
+    return reporter.check(false, "At the start the wheel %s: the run ends there.", ending_of(now, Event::jams).text);
   if (is_inside(start)) return true;
-  const auto set = [&](variable::Reference v) { return Digits{demand.parameters[v], 3}; };
+  const auto set = [&](variable::Reference v) { return Digits{w.demand.parameters[v], 3}; };
   reporter.log(Topic::error,
                "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, g = %s m/s2, "
                "omega_z = %s rad/s.",
@@ -54,7 +57,7 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   w.demand.changed = false;
   Reading start;
   start.set(present(w));
-  if (check_start(w.demand, start, reporter)) run.phase = Phase::initial;
+  if (check_start(w, start, reporter)) run.phase = Phase::initial;
   return run.phase == Phase::initial;
 }
 

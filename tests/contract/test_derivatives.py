@@ -1,5 +1,7 @@
 """Derivatives: of outputs in time, of outputs by inputs, of the start by parameters; against differences of the FMU."""
 
+import re
+
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
@@ -263,3 +265,63 @@ def test_a_brake_about_to_be_put_on_has_the_derivative_of_its_capacity(wheel):
         w = wheel().start(theta_start=np.pi / 2, phi_dot_start=-5.0, s=s).to(0.01)
         within(abs(w.jacobian(["tau_brake"], ["M_brake"])[0, 0] - 1), 1e-10, "derivative")
         assert w.get("tau_brake") == [0]
+
+
+UPRIGHT = {"theta_start": np.pi / 2, "psi_start": 0.0}
+ROADS = {
+    "driven": {**UPRIGHT, "mu_max": 0.5, "mu_slide": 0.45},
+    "driven, leaning": {"mu_max": 0.5, "mu_slide": 0.45, "formulation": 3},
+    "driven, braked": {**UPRIGHT, "phi_dot_start": 0.0, "s": 0.01, "mu_max": 0.5, "mu_slide": 0.45},
+}
+ANSWERS = ("lambda_x", "lambda_y", "lambda_3", "tau", "theta_ddot", "psi_ddot", "omega_z_dot", "mu_required")
+
+
+def quotients(w: FMU2Wheel, known: str, h: float) -> list[np.ndarray]:
+    """Of the outputs: central, to the right, to the left."""
+    (value,), blob, found = w.get(known), w.serialized(), []
+    for place in (-h, 0.0, h):
+        found.append(np.array(w.back(blob).put(**{known: value + place}).get(*ANSWERS)))
+    w.back(blob)
+    low, here, high = found
+    return [(high - low) / (2 * h), (high - here) / h, (here - low) / h]
+
+
+def furthest(w: FMU2Wheel, h: float = 1e-3) -> float:
+    """Largest error of a derivative by an input, against the nearest of its quotients."""
+    exact = w.jacobian(ANSWERS, INPUTS).T
+    return max(
+        min(np.max(np.abs(slopes - quotient) / (1 + np.abs(slopes))) for quotient in quotients(w, known, h))
+        for known, slopes in zip(INPUTS, exact, strict=True)
+    )
+
+
+@pytest.mark.parametrize("road", ROADS)
+@pytest.mark.parametrize("when", ["initializing", "at the start", "during the run"])
+def test_derivatives_are_quotients_of_the_outputs_where_the_loads_decide_how_a_slip_begins(wheel, road, when):
+    w = wheel().initializing(**ROADS[road])
+    if when != "initializing":
+        assert w.exitInitializationMode() == OK
+    if when == "during the run":
+        w.by(0.1)
+    assert w.get("contact_mode") == [0]
+    w.put(M_3=-80.0, M_1=2.0)
+    assert w.get("contact_mode") == [1] and w.get("slip_x", "slip_y") != [0.0, 0.0]
+    within(furthest(w), 1e-5, "error")
+    beyond(furthest(w, 20.0), 1e-5, "error of coarse quotients")
+
+
+CHANGES = {name: KINDS[name] for name in ("friction", "multibody", "sliding")}
+CHANGES |= {"sliding, friction": {"mu_max": 0.3, "mu_slide": 0.25, "s": 0.03}}
+CHANGES |= {"sliding, multibody": {"mu_max": 0.45, "mu_slide": 0.4, "formulation": 3}}
+CHANGES |= {"pulled": {"keep_contact": True, "theta_start": 0.5, "psi_dot_start": 0.1, "phi_dot_start": 0.0, "s": 0.02}}
+
+
+@pytest.mark.parametrize("scene", CHANGES)
+def test_derivatives_are_quotients_of_the_outputs_at_the_instant_of_every_transition(wheel, scene):
+    """Two nanoseconds before it, at it as it is logged, and two after it: of one of the two laws."""
+    logged = wheel(logging=True).start(**CHANGES[scene]).to(2.0)
+    found = {float(t) for text in logged.sentences for t in re.findall(r"^t = (\S+) s", text)}
+    assert found
+    for t in sorted(found)[:8]:
+        for near in (t - 2e-9, t, t + 2e-9):
+            within(furthest(wheel().start(**CHANGES[scene]).to(near)), 1e-5, "error")

@@ -354,6 +354,26 @@ def test_a_state_saved_anywhere_in_a_slide_goes_on_with_the_same_bits(library: L
         assert len(found) == 1
 
 
+@pytest.mark.parametrize("formulation", [2, 3])
+def test_a_start_in_which_the_wheel_jams_is_rejected_and_has_no_forces(library: Library, formulation: int) -> None:
+    """With the slip that is set, and with that which the loads begin; without a jam the ground presses."""
+    jams = {"J_x": 0.1, "J_y": 0.1, "J_z": 0.1, "theta_start": 1.0, "slip_y_start": -0.5, "formulation": formulation}
+
+    def begin(mu: float) -> tuple[int, float, str]:
+        with library.wheel() as wheel:
+            wheel.initializing(**jams, mu_max=mu, mu_slide=mu)
+            status, N = wheel.get_one("lambda_3")
+            assert wheel.exitInitializationMode() == (OK if status == OK else ERROR)
+            return status, N, "".join({*wheel.texts()})
+
+    for mu in (5.0, 2.0):
+        status, _, said = begin(mu)
+        assert status == DISCARD
+        assert said == f"At the start the wheel jams (Painleve's paradox) with mu_slide = {mu:.0f}: the run ends there."
+    status, N, said = begin(0.5)
+    assert (status, said) == (OK, "") and N > 0
+
+
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-12])
 @pytest.mark.parametrize("formulation", [2, 3])
 def test_a_jam_is_the_same_at_every_tolerance(library: Library, tolerance: float, formulation: int) -> None:
@@ -446,7 +466,7 @@ def test_a_wheel_that_can_slide_has_no_friction_at_all_where_mu_max_becomes_zero
 
 
 @pytest.mark.parametrize("ice", ICE)
-def test_on_ice_a_wheel_grips_only_while_it_needs_no_force_and_a_driven_one_slips_at_once(library: Library, ice) -> None:
+def test_on_ice_a_wheel_grips_only_while_it_needs_no_force_and_a_driven_one_slips(library: Library, ice) -> None:
     with library.wheel() as wheel:
         wheel.start(**{**UPRIGHT, **ROAD, "phi_dot_start": -2.0}).put(**ice).to(0.5)
         assert wheel.get("contact_mode", "slip_x", "omega_z") == [GRIPS, 0.0, -2.0]

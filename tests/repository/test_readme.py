@@ -39,7 +39,7 @@ def root(tmp_path: Path) -> Path:
 def run(*command: str | Path, folder: Path) -> str:
     """What the command prints. The environment is that of an activated .venv, without a screen."""
     environment = os.environ | {"MPLBACKEND": "Agg", "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=1800)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 

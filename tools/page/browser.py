@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 FLAGS = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
 FLAGS += ["--no-first-run", "--disable-component-update", "--disable-sync", "--disable-quic"]
 FLAGS += ["--no-sandbox"] if os.geteuid() == 0 else []
-PATIENCE = 120_000  # ms; a page is drawn by the processor
+PATIENCE = 1_800_000  # ms; a page is drawn by the processor
 
 
 @contextmanager

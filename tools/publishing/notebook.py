@@ -22,7 +22,7 @@ def executed(fmu: str = "../wheel.fmu", results: str = "../results") -> nbformat
         cell.source = source.replace("../wheel.fmu", fmu).replace("../results", results)
     place = {"metadata": {"path": NOTEBOOK.parent}}
     # The output of a cell comes in pieces, more of them on a busy machine: each stream becomes one.
-    NotebookClient(notebook, timeout=120, record_timing=False, coalesce_streams=True, resources=place).execute()
+    NotebookClient(notebook, timeout=1800, record_timing=False, coalesce_streams=True, resources=place).execute()
     for number, (cell, source) in enumerate(cells):
         cell.source, cell.metadata, cell.id = source, {}, f"cell-{number}"
         if cell.cell_type == "code":

@@ -59,14 +59,14 @@ def test_a_study_continues_after(space, stop, code, words, tmp_path, fmu_path, c
     how = {"cwd": place, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
     how |= {"preexec_fn": partial(at_a_terminal, space)}
     process = subprocess.Popen([sys.executable, "-m", "study", *options, "--workers", "1"], **how)
-    give_up = time.monotonic() + 60
+    give_up = time.monotonic() + 1800
     while not chunks(tmp_path) and time.monotonic() < give_up:
         time.sleep(0.01)
     workers = psutil.Process(process.pid).children(recursive=True)
     stop(process.pid)
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=1800)
     assert process.returncode == code and re.search(words, errors, re.MULTILINE)
-    gone, alive = psutil.wait_procs(workers, timeout=30)
+    gone, alive = psutil.wait_procs(workers, timeout=1800)
     assert (gone or code == 2) and not alive
     kept, done = chunks(tmp_path), int((open_results(tmp_path / "z")["status"] != Status.not_computed).sum())
     assert 0 < done < len(SPINS) and not list(tmp_path.rglob("*.partial"))
