@@ -65,7 +65,11 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
 }
 
 /* clang-format off */
-const WheelFormulation wheel_euler = {"euler", WHEEL_REDUCED_STATES, start, free_rates, SPIN, THETA, -1,
-    kinematics, kinematics, free_forces, reduce, stop_spin, 0, 0, 0};
-const WheelFormulation wheel_guided_euler = {"guided_euler", WHEEL_REDUCED_STATES, start, guided_rates, SPIN, THETA, -1,
-    kinematics, kinematics, guided_forces, reduce, stop_spin, 0, 0, 0};
+const WheelFormulation wheel_euler = {
+    .states = WHEEL_REDUCED_STATES, .spin_index = SPIN, .tilt_index = THETA, .slip_index = -1, .start = start,
+    .derivative = free_rates, .kinematics = kinematics, .dynamics = free_forces, .reduce = reduce,
+    .stop_spin = stop_spin};
+const WheelFormulation wheel_guided_euler = {
+    .states = WHEEL_REDUCED_STATES, .spin_index = SPIN, .tilt_index = THETA, .slip_index = -1, .start = start,
+    .derivative = guided_rates, .kinematics = kinematics, .dynamics = guided_forces, .reduce = reduce,
+    .stop_spin = stop_spin};

@@ -26,6 +26,10 @@ using States = std::array<double, WHEEL_MULTIBODY_STATES>;
 // While the wheel slides, |u| and chi stand in the place of X_O_dot and Y_O_dot.
 enum SlipState { speed = X_O_dot, chi = Y_O_dot };
 
+// The unknowns of (24), behind q_ddot in the order of q; and its row of the moment about the axle.
+enum Unknown { lambda_1 = 6, lambda_2, lambda_3 };
+constexpr int about_axle = 5;
+
 // The state with the matrices that (16)-(24) share.
 struct Multibody {
   const WheelParameters& wheel;
@@ -156,9 +160,6 @@ void guide(Matrix9& K, Vector9& column) {
   column.segment<2>(3).setZero();
 }
 
-constexpr int about_axle = 5;                       // row of the moment about the axle in (24)
-enum Unknown { lambda_1 = 6, lambda_2, lambda_3 };  // behind q_ddot in the order of q
-
 // Solution of (24) and the moment of ground and brake about the axle.
 struct Solution {
   Vector9 unknowns;  // q_ddot, lambda
@@ -277,17 +278,17 @@ template <bool slides>
 void reduce(const double* y, double* reduced) {
   Eigen::Map<Eigen::Vector<double, WHEEL_REDUCED_STATES>>(reduced) << y[theta], y[theta_dot],
       y[psi_dot] * std::sin(y[theta]), y[spin], y[psi], y[phi], y[X_O], y[Y_O];
-  if (slides) Eigen::Map<Eigen::Vector4d>(reduced + WHEEL_REDUCED_STATES) << y[speed], y[chi], 0, 0;
+  if (slides) Eigen::Map<Vector2>(reduced + WHEEL_REDUCED_STATES) << y[speed], y[chi];
 }
 
-// Its velocities are states: the pose takes no more than they do.
 // clang-format off
 template <bool slides, bool guided>
 constexpr WheelFormulation formulation = {
-    slides ? "multibody_sliding" : "multibody", WHEEL_MULTIBODY_STATES, start<slides>, derivative<slides, guided>,
-    spin, theta, slides ? int{speed} : -1, kinematics<slides>, kinematics<slides>, dynamics<slides, guided>,
-    reduce<slides>, stop_spin<slides>, slides ? set_rolling_velocity : nullptr,
-    guided ? wheel_guided_slip : wheel_slip, guided ? wheel_guided_slip_direction : wheel_slip_direction};
+    .states = WHEEL_MULTIBODY_STATES, .start = start<slides>, .derivative = derivative<slides, guided>,
+    .spin_index = spin, .tilt_index = theta, .slip_index = slides ? int{speed} : -1, .kinematics = kinematics<slides>,
+    .dynamics = dynamics<slides, guided>, .reduce = reduce<slides>, .stop_spin = stop_spin<slides>,
+    .grip = slides ? set_rolling_velocity : nullptr, .slip = guided ? wheel_guided_slip : wheel_slip,
+    .slip_direction = guided ? wheel_guided_slip_direction : wheel_slip_direction};
 // clang-format on
 
 }  // namespace

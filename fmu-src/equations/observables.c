@@ -1,6 +1,5 @@
 /* Quantities read off a motion, whatever formulation computed it: energy, contact point, force of the ground in wheel
- * axes, required friction coefficient, residuals of the constraints (19) and (32). Fixed axes
- * unless said. */
+ * axes, required friction coefficient. Fixed axes unless said. */
 #include <math.h>
 
 #include "carrier.h"
@@ -75,16 +74,4 @@ void wheel_guide_moment(const WheelParameters* wheel, const WheelKinematics* k, 
   wheel_horizontal_force(k, lambda, force);
   out[0] = wheel->r_0 * cos_theta * lambda[2] - wheel_height(wheel, k->theta) * force[1] - M[0];
   out[1] = wheel->r * cos_theta * force[0] - M[1];
-}
-
-void wheel_constraint_residuals(const WheelParameters* wheel, const WheelKinematics* k, double* velocity,
-                                double* height) {
-  double s = sin(k->theta), c = cos(k->theta), sin_psi = sin(k->psi), cos_psi = cos(k->psi);
-  double along = wheel->r * c * (k->psi_dot * s) - (wheel->r_0 + wheel->r * s) * k->omega_z;
-  double across = (wheel->r_0 * s + wheel->r) * k->theta_dot;
-  double X = fabs(k->X_O_dot - (along * cos_psi + across * sin_psi));
-  double Y = fabs(k->Y_O_dot - (along * sin_psi - across * cos_psi));
-  double Z = fabs(k->Z_O_dot - wheel->r_0 * c * k->theta_dot);
-  *velocity = fmax(X, fmax(Y, Z));
-  *height = fabs(k->Z_O - wheel_height(wheel, k->theta));
 }

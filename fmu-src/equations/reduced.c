@@ -186,7 +186,7 @@ INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, int
 static double free_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 0); }
 static double guided_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 1); }
 
-INLINED Carrier read_pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
+static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
   out->theta = y[THETA];
   out->psi = y[PSI];
@@ -199,15 +199,6 @@ INLINED Carrier read_pose(const WheelParameters* wheel, const double* y, WheelKi
   out->phi_dot = c.phi_dot;
   out->omega_z = c.omega_3;
   out->Z_O_dot = wheel->r_0 * c.cos_theta * c.omega_1;
-  return c;
-}
-
-static void pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  (void)read_pose(wheel, y, out);
-}
-
-static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  Carrier c = read_pose(wheel, y, out);
   set_velocity(wheel, &c, &out->X_O_dot, &out->Y_O_dot);
 }
 
@@ -229,7 +220,11 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
 static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_REDUCED_STATES); }
 
 /* clang-format off */
-const WheelFormulation wheel_reduced = {"reduced", WHEEL_REDUCED_STATES, start, free_rates, OMEGA_3, THETA, -1,
-    kinematics, pose, free_forces, reduce, stop_spin, 0, 0, 0};
-const WheelFormulation wheel_guided = {"guided", WHEEL_REDUCED_STATES, start, guided_rates, OMEGA_3, THETA, -1,
-    kinematics, pose, guided_forces, reduce, stop_spin, 0, 0, 0};
+const WheelFormulation wheel_reduced = {
+    .states = WHEEL_REDUCED_STATES, .spin_index = OMEGA_3, .tilt_index = THETA, .slip_index = -1, .start = start,
+    .derivative = free_rates, .kinematics = kinematics, .dynamics = free_forces, .reduce = reduce,
+    .stop_spin = stop_spin};
+const WheelFormulation wheel_guided = {
+    .states = WHEEL_REDUCED_STATES, .spin_index = OMEGA_3, .tilt_index = THETA, .slip_index = -1, .start = start,
+    .derivative = guided_rates, .kinematics = kinematics, .dynamics = guided_forces, .reduce = reduce,
+    .stop_spin = stop_spin};

@@ -189,20 +189,15 @@ INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, dou
   set_rates(c, &m.a, y_dot);
   put_pair(X_dot, Y_dot, y_dot + X_O);
   put_pair(m.u_x * d_x + m.u_y * d_y, chi_dot, y_dot + SPEED);
-  put_pair(0, 0, y_dot + CHI + 1);
   return room_of(&b, d_x, d_y) > WHEEL_LEAST_ROOM ? m.a.N : INFINITY;
 }
 
 static double free_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 1); }
 static double guided_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 0); }
 
-static void pose(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  wheel_reduced.pose(wheel, y, out);
-}
-
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
-  wheel_reduced.pose(wheel, y, out);
+  wheel_reduced.kinematics(wheel, y, out);
   set_velocity(&c, out->Z_O, y[SPEED] * cos(y[CHI]), y[SPEED] * sin(y[CHI]), &out->X_O_dot, &out->Y_O_dot);
 }
 
@@ -228,8 +223,11 @@ static void grip(const WheelParameters* wheel, double* y) {
 }
 
 /* clang-format off */
-const WheelFormulation wheel_sliding = {"sliding", WHEEL_SLIDING_STATES, start, free_rates, OMEGA_3, THETA, SPEED,
-    kinematics, pose, free_forces, reduce, stop_spin, grip, wheel_slip, wheel_slip_direction};
-const WheelFormulation wheel_guided_sliding = {"guided_sliding", WHEEL_SLIDING_STATES, start, guided_rates, OMEGA_3,
-    THETA, SPEED, kinematics, pose, guided_forces, reduce, stop_spin, grip, wheel_guided_slip,
-    wheel_guided_slip_direction};
+const WheelFormulation wheel_sliding = {
+    .states = WHEEL_SLIDING_STATES, .spin_index = OMEGA_3, .tilt_index = THETA, .slip_index = SPEED, .start = start,
+    .derivative = free_rates, .kinematics = kinematics, .dynamics = free_forces, .reduce = reduce,
+    .stop_spin = stop_spin, .grip = grip, .slip = wheel_slip, .slip_direction = wheel_slip_direction};
+const WheelFormulation wheel_guided_sliding = {
+    .states = WHEEL_SLIDING_STATES, .spin_index = OMEGA_3, .tilt_index = THETA, .slip_index = SPEED, .start = start,
+    .derivative = guided_rates, .kinematics = kinematics, .dynamics = guided_forces, .reduce = reduce,
+    .stop_spin = stop_spin, .grip = grip, .slip = wheel_guided_slip, .slip_direction = wheel_guided_slip_direction};

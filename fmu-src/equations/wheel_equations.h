@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-enum { WHEEL_REDUCED_STATES = 8, WHEEL_SLIDING_STATES = 12, WHEEL_MULTIBODY_STATES = 12, WHEEL_MAX_STATES = 12 };
+enum { WHEEL_REDUCED_STATES = 8, WHEEL_SLIDING_STATES = 10, WHEEL_MULTIBODY_STATES = 12, WHEEL_MAX_STATES = 12 };
 
 /* Constants of one wheel, (1), (2), (27)-(31). */
 typedef struct WheelParameters {
@@ -132,7 +132,6 @@ typedef struct WheelSlip {
 
 /* One formulation: how its state vector y is started, moved and read. */
 typedef struct WheelFormulation {
-  const char* name;
   int states;
   /* y (out, `states` entries) from the free initial values. */
   void (*start)(const WheelParameters* wheel, const WheelMotion* motion, double* y);
@@ -145,8 +144,6 @@ typedef struct WheelFormulation {
    * chi is written as zero: it is any, or infinite. */
   int slip_index;
   void (*kinematics)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
-  /* The same without X_O_dot and Y_O_dot, which cost the sine and cosine of psi. */
-  void (*pose)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
   void (*dynamics)(const WheelScene* scene, const double* y, WheelDynamics* out);
   /* The state of `wheel_reduced` (out) with the same position and angular velocity; with a slip, that of
    * `wheel_sliding`. */
@@ -173,7 +170,7 @@ extern const WheelFormulation wheel_euler;
  * [B]{q_dot} and of Z_O - height decays, on the true motion nothing changes. */
 extern const WheelFormulation wheel_multibody;
 
-/* y = that of `wheel_reduced`, |u|, chi, and two zeros that rest: Newton and Euler, with the ground's horizontal force
+/* y = that of `wheel_reduced`, |u| and chi: Newton and Euler, with the ground's horizontal force
  * -mu_slide N u / |u| given and the vertical constraint alone solved in advance. */
 extern const WheelFormulation wheel_sliding;
 
@@ -244,10 +241,6 @@ double wheel_angle_of(double x, double y);
 
 /* Height of O, m: r_0 sin(theta) + r, (32). */
 double wheel_height(const WheelParameters* wheel, double theta);
-
-/* Largest entry of |[B]{q_dot}|, m/s, (19), and |Z_O - height|, m: how far a state is off the constraints. */
-void wheel_constraint_residuals(const WheelParameters* wheel, const WheelKinematics* motion, double* velocity,
-                                double* height);
 
 #ifdef __cplusplus
 }

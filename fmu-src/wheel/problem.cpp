@@ -10,15 +10,16 @@ namespace {
 
 const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
 
-// Of few states are only the equations of a wheel that grips.
+// Of few states are only the equations of a wheel that grips. States beyond those of the equations rest.
 template <int states>
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
   const WheelFormulation& formulation =
-      states < WHEEL_SLIDING_STATES ? *setup.formulation : formulation_of(setup, now.scene);
+      states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, now.scene);
   const auto rates = [&](const WheelScene& scene) { return formulation.derivative(&scene, y, y_dot); };
   const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
+  std::fill(y_dot + std::min(formulation.states, states), y_dot + states, 0.0);
   double sum = 0;
   for (int i = 0; i < states; ++i) sum += y_dot[i];
   if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
@@ -78,9 +79,9 @@ solver::Problem problem_of(Wheel& wheel) {
   const Setup& setup = wheel.setup;
   const InForce& now = wheel.run.in_force;
   solver::Problem problem = {};
-  problem.states = formulation_of(setup, now.scene).states;
+  const bool few = formulation_of(setup, now.scene).states == WHEEL_REDUCED_STATES;
+  problem.states = few ? WHEEL_REDUCED_STATES : WHEEL_MAX_STATES;
   problem.owner = &wheel;
-  const bool few = problem.states == WHEEL_REDUCED_STATES;
   problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<WHEEL_MAX_STATES>;
   problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<WHEEL_MAX_STATES>;
   problem.extremes = extremes;

@@ -12,11 +12,6 @@ bool Reading::missing(unsigned part) {
   return absent;
 }
 
-const WheelKinematics& Reading::pose() {
-  if (!(have_ & have_kinematics) && missing(have_pose)) formulation().pose(&now_.scene.wheel, now_.y, &kinematics_);
-  return kinematics_;
-}
-
 const WheelKinematics& Reading::kinematics() {
   if (missing(have_kinematics)) formulation().kinematics(&now_.scene.wheel, now_.y, &kinematics_);
   return kinematics_;
@@ -29,7 +24,7 @@ const WheelDynamics& Reading::dynamics() {
 
 double Reading::horizontal_force(int axis) {
   double force[2];
-  wheel_horizontal_force(&pose(), dynamics().lambda, force);
+  wheel_horizontal_force(&kinematics(), dynamics().lambda, force);
   return force[axis];
 }
 
@@ -53,7 +48,7 @@ double Reading::brake_moment() {
 double Reading::guide_moment(int axis) {
   double moment[2] = {};
   const WheelScene& scene = now_.scene;
-  if (setup().guided) wheel_guide_moment(&scene.wheel, &pose(), dynamics().lambda, scene.load.M, moment);
+  if (setup().guided) wheel_guide_moment(&scene.wheel, &kinematics(), dynamics().lambda, scene.load.M, moment);
   return moment[axis];
 }
 
@@ -73,7 +68,7 @@ int Reading::friction_mode() {
   const WheelFriction& friction = now_.scene.friction;
   if (friction.kind == WHEEL_HELD) return 0;
   if (friction.kind == WHEEL_ROLLING) return friction.sigma > 0 ? 1 : -1;
-  const double omega_z = pose().omega_z;
+  const double omega_z = kinematics().omega_z;
   return (omega_z > 0) - (omega_z < 0);
 }
 

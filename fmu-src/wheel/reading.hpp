@@ -30,7 +30,6 @@ class Reading {
 
   const Setup& setup() const { return *now_.setup; }
   // psi, phi, X_O and Y_O as the state counts them.
-  const WheelKinematics& pose();  // all of the kinematics but X_O_dot and Y_O_dot
   const WheelKinematics& kinematics();
   const WheelDynamics& dynamics();
   // N, the ground's: along e1 (0) or across it (1).
@@ -48,7 +47,7 @@ class Reading {
   long long transitions() const { return now_.run->transitions; }  // of the friction
 
  private:
-  enum : unsigned { have_pose = 1, have_kinematics = 2, have_dynamics = 4, have_contact = 8 };
+  enum : unsigned { have_kinematics = 1, have_dynamics = 2, have_contact = 4 };
   bool missing(unsigned part);
   const WheelFormulation& formulation() const { return formulation_of(*now_.setup, now_.scene); }
 

@@ -149,7 +149,10 @@ Setup setup_of(const Demand& demand) {
   if (demand.slides)
     setup.sliding = multibody ? choose(wheel_multibody_sliding, wheel_guided_multibody_sliding)
                               : choose(wheel_sliding, wheel_guided_sliding);
-  setup.wheel = {v[m], v[r_0], v[r], v[J_x], v[J_y], v[J_z], v[g], 0, 0, 0};
+  // clang-format off
+  setup.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g = v[g],
+                 .s = 0, .g_X = 0, .g_Y = 0};
+  // clang-format on
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
   setup.omega_s = v[omega_s];
   setup.method = static_cast<SolverMethod>(choice_of(v[method]));
@@ -179,7 +182,7 @@ Setup setup_of(const Demand& demand) {
 
 void scales_at(const Setup& setup, double omega_z, double* out) {
   const WheelFormulation& f = *setup.formulation;
-  std::copy_n(setup.slow_scales, std::max(f.states, setup.sliding ? setup.sliding->states : 0), out);
+  std::copy_n(setup.slow_scales, setup.sliding ? WHEEL_MAX_STATES : f.states, out);
   const double spin = std::fabs(omega_z), own_rate = 1 / setup.own_time;
   if (!(spin > own_rate)) return;
   const double turn = own_rate * own_rate / spin + setup.tilting;  // rad/s, of a nutation

@@ -40,7 +40,7 @@ const double* state_now(Wheel& w) {
 bool is_inside(Reading& now) {
   double sum = now.energy() + now.dynamics().tau;
   for (const double force : now.dynamics().lambda) sum += force;
-  return angle_from_flat(now.pose().theta) > 0 && std::isfinite(sum);
+  return angle_from_flat(now.kinematics().theta) > 0 && std::isfinite(sum);
 }
 
 bool prepare(Wheel& w, const Reporter& reporter) {

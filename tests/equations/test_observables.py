@@ -1,4 +1,4 @@
-"""Required friction, constraint residuals, contact point and force in wheel axes against their definitions.
+"""Required friction, contact point and force in wheel axes against their definitions.
 
 Judged by the numpy transcription of the paper's matrices and by differences; fixed axes.
 """
@@ -43,24 +43,6 @@ def test_a_ground_that_does_not_press_needs_infinite_friction(normal: float) -> 
     assert required_friction(3, 4, normal) == np.inf
     assert required_friction(0, 0, normal) == np.inf
     assert np.isfinite(required_friction(3, 4, 1e-300 - normal))
-
-
-def test_residuals_are_the_slip_B_q_dot_and_the_error_in_height() -> None:
-    scenes, k, _ = rolling()
-    wheels = scenes["wheel"].copy()
-    random = np.random.default_rng(45)
-    for name in k.dtype.names[6:12]:
-        k[name] += random.normal(size=ROWS)
-    k["Z_O"] += random.normal(size=ROWS)
-    k["omega_z"] = k["phi_dot"] + k["psi_dot"] * np.cos(k["theta"])
-    paper = Paper(wheels, state(k))
-    velocity, height = np.zeros(ROWS), np.zeros(ROWS)
-    eq.each(eq.LIBRARY.wheel_constraint_residuals, wheels, k, velocity, height)
-    slip = np.abs(paper.slip).max(axis=1)
-    off = np.abs(k["Z_O"] - wheels["r_0"] * paper.sin_theta - wheels["r"])
-    within(np.abs(velocity - slip).max() / slip.max(), 64 * EPSILON, "slip")
-    assert height == pytest.approx(off, rel=1e-12, abs=64 * EPSILON)
-    beyond(np.abs(velocity - np.linalg.norm(paper.slip, axis=1)).max(), 0.2, "norm")
 
 
 # ---- the contact ----

@@ -40,10 +40,11 @@ def instants_error(found: list[tuple[float, int]]) -> float:
 def constraint_drift(library: Library, times: NDArray[np.float64], tolerance: float | None, **start: float) -> tuple:
     """How far the FMU is off the constraints at each instant: |[B]{q_dot}| (largest entry, m/s), (19), and the error of
     the height (m), (32)."""
-    run = library.simulate(times, tolerance, **start)
-    velocity, height = np.zeros(len(times)), np.zeros(len(times))
-    motions = eq.table(eq.Kinematics, len(times))
-    for name in motions.dtype.names:
-        motions[name] = run[name]
-    eq.each(eq.LIBRARY.wheel_constraint_residuals, motions, velocity, height, of=(eq.paper_wheel(),))
-    return velocity, height
+    run, wheel = library.simulate(times, tolerance, **start), eq.paper_wheel()
+    sine, cosine = np.sin(run["theta"]), np.cos(run["theta"])
+    height = wheel.r_0 * sine + wheel.r
+    along = wheel.r * cosine * run["psi_dot"] * sine - (wheel.r_0 + wheel.r * sine) * run["omega_z"]
+    velocity = (along - 1j * height * run["theta_dot"]) * np.exp(1j * run["psi"])
+    off = run["X_O_dot"] + 1j * run["Y_O_dot"] - velocity
+    sinking = run["Z_O_dot"] - wheel.r_0 * cosine * run["theta_dot"]
+    return np.abs([off.real, off.imag, sinking]).max(axis=0), np.abs(run["Z_O"] - height)

@@ -16,7 +16,8 @@ from support.schedule import Schedule
 
 VARIABLES = read_model_description(str(ROOT / "modelDescription.xml"), validate=False).modelVariables
 PARAMETERS = {v.name: float(v.start) for v in VARIABLES if v.causality == "parameter" and v.type == "Real"}
-PUSH = Schedule(((0.0, {"F_X": (1.0, 2.0), "F_Y": (-2.0,), "M_1": (0.3,), "M_2": (-0.2,), "M_3": (0.5,), "M_brake": (0.4,)}),))
+FORCES = {"F_X": (1.0, 2.0), "F_Y": (-2.0,), "M_1": (0.3,), "M_2": (-0.2,), "M_3": (0.5,), "M_brake": (0.4,)}
+PUSH = Schedule(((0.0, FORCES),))
 ROLLS = {
     **{"J_x": 0.7, "J_y": 1.2, "s": 0.03, "slope": 0.1, "slope_direction": 0.5, "keep_contact": True},
     **{"psi_start": 0.4, "theta_start": 1.2, "phi_start": 0.3, "psi_dot_start": 0.5, "theta_dot_start": -0.3},

@@ -32,9 +32,9 @@ LINE = {
         """bool has_line(const Setup& setup, const InForce&) { return setup.keep_contact; }
 
 double short_of_line(const Setup& setup, const InForce&, double, const double* y) {
-  WheelKinematics pose;
-  setup.formulation->pose(&setup.wheel, y, &pose);
-  return (setup.Y_O.whole(pose.Y_O) + 0.1) / setup.length;
+  WheelKinematics now;
+  setup.formulation->kinematics(&setup.wheel, y, &now);
+  return (setup.Y_O.whole(now.Y_O) + 0.1) / setup.length;
 }
 """,
         """    {.event = Event::crosses_line,
