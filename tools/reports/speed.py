@@ -1,12 +1,14 @@
 """Error against run time, and the cost of the automatic rule, of a step, of inputs, of sliding and of an instance.
 
-Races: every method at every tolerance, in turns in one process. The requirements are ratios to another method or to an
-empty call of the FMU, which hold on other machines, too.
+Races: every method, and heyoka in the FMU's place, at every tolerance, in turns in one process. The requirements are
+ratios to another program, another method or an empty call of the FMU, which hold on other machines, too.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
+from math import exp, log, nan
 from time import perf_counter
 from typing import Any
 
@@ -16,10 +18,10 @@ from benchmark.problems import PROBLEMS, by_fmu, by_reference, errors
 from reference import Inputs
 from support import sliding as slides
 from support.driver import Values
-from support.scenes import SCENES, sines
+from support.scenes import SCENES, Scene, sines
 
 from . import plots
-from .native import bytes_in_use, ffi, repeated
+from .native import Solve, bytes_in_use, ffi, repeated
 from .options import EXAMPLES
 from .page import Report, Row, Tables, number, part
 from .plots import Sheet, style
@@ -27,6 +29,8 @@ from .truth import Array, headline, range_error
 
 POINTS = 101
 METHODS = ("automatic", "adams", "bdf", "runge_kutta")
+HEYOKA = "heyoka"
+ERRORS = (1e-4, 1e-6, 1e-8, 1e-10)  # at which the FMU is compared with heyoka
 TITLES = {
     "free": "Free wheel, the paper's scene, 10 s",
     "friction": "Rolling friction, exact law, s = 0.03 m, 10 s",
@@ -47,17 +51,17 @@ def runs(report: Report, name: str) -> list[Row]:
     In rounds, so that noise of the machine meets all alike; the first compares with the reference. A run that fails
     stays in the list with its reason.
     """
-    scene, steps, seconds = SCENES[name], POINTS - 1, 0.004 if report.quick else 0.01
+    scene, seconds = SCENES[name], 0.004 if report.quick else 0.01
     want, rows, solves = headline(scene, POINTS), [], []
-    for method in METHODS:
+    for method in METHODS if name == "stiff law" else (*METHODS, HEYOKA):
         slow = name == "stiff law" and method in ("adams", "runge_kutta")
         for tolerance in [10.0**-k for k in ((4, 6, 8, 10) if report.quick or slow else range(3, 14))]:
-            solve = report.master.made({**scene.start, "method": method}, scene.duration / steps, steps, tolerance)
+            solve = made(report, scene, method, tolerance)
             row = {"method": method, "tolerance": tolerance, "note": ""}
             try:
                 solve()  # warms up
                 costs, found, counts = repeated(solve, seconds)
-                row |= {"error": range_error(found, want)} | {n: counts[n] for n in ("steps", "rhs", "events")}
+                row |= {"error": range_error(found, want)} | {n: counts.get(n) for n in ("steps", "rhs", "events")}
                 solves.append((row, solve, costs))
             except RuntimeError as trouble:
                 row["note"] = str(trouble).split("\n")[0]
@@ -72,6 +76,33 @@ def runs(report: Report, name: str) -> list[Row]:
     return [{name: row.get(name) for name in columns} for row in rows]
 
 
+def made(report: Report, scene: Scene, method: str, tolerance: float) -> Solve:
+    if method == HEYOKA:
+        from .taylor import Wheel
+
+        return partial(Wheel(scene, tolerance).solve, np.linspace(0, scene.duration, POINTS))
+    steps = POINTS - 1
+    return report.master.made({**scene.start, "method": method}, scene.duration / steps, steps, tolerance)
+
+
+def time_at(runs: pd.DataFrame, method: str, error: float) -> float:
+    """Microseconds to this error or a smaller one, by lines through log(time) over log(error); nan out of reach.
+
+    A run that another one beats in both is left out.
+    """
+    points = runs[(runs["method"] == method) & runs["error"].notna()].sort_values(["error", "best_us"])
+    points = points[points["best_us"] < points["best_us"].cummin().shift(fill_value=np.inf)]
+    if points.empty:
+        return nan
+    return exp(np.interp(log(error), *np.log(points[["error", "best_us"]].to_numpy(float)).T, left=nan))
+
+
+def over_heyoka(runs: pd.DataFrame) -> float:
+    """The FMU's time over heyoka's at equal error, the largest of all errors; nan where heyoka was not asked."""
+    ratios = [time_at(runs, "automatic", error) / time_at(runs, HEYOKA, error) for error in ERRORS]
+    return nan if np.isnan(ratios).all() else np.nanmax(ratios)
+
+
 def at_default(runs: pd.DataFrame, method: str) -> pd.Series:
     """The run at the FMU's default tolerance."""
     return runs[(runs["method"] == method) & np.isclose(runs["tolerance"], 1e-8, rtol=1e-6, atol=0)].iloc[0]
@@ -83,6 +114,9 @@ def compare(report: Report) -> Row:
     scenes = dict(list(report.tables["runs"].groupby("scene", sort=False)))
     ratios = pd.Series({name: price_of_choice(runs)[PRICE] for name, runs in scenes.items()})
     found = {f"{name}_time": at_default(scenes[name], "automatic").best_us for name in ("free", "friction")}
+    beside = {name: over_heyoka(runs) for name, runs in scenes.items()}
+    found["heyoka_unfolded"] = max(beside[name] for name in ("free", "fast rolling", "near flat"))
+    found["heyoka_stepped"] = max(beside[name] for name in ("friction", "general inertia"))
     return found | {"rule": ratios.max(), "free_rule": ratios["free"]}
 
 
@@ -242,7 +276,8 @@ def price_of_choice(runs: pd.DataFrame) -> Row:
     """At the default tolerance: automatic, and beside the fastest fixed method."""
     automatic, *fixed = (at_default(runs, method) for method in METHODS)
     ratio = automatic.best_us / np.nanmin([run.best_us for run in fixed])
-    return {"automatic": f"{automatic.best_us:.0f} µs ({number(automatic.error)})", PRICE: ratio}
+    row = {"automatic": f"{automatic.best_us:.0f} µs ({number(automatic.error)})", PRICE: ratio}
+    return row | {"over heyoka at equal error, at most": over_heyoka(runs)}
 
 
 LOOKS = {  # colour, marker and line
@@ -250,6 +285,7 @@ LOOKS = {  # colour, marker and line
     "adams": (style.GREEN, "v-"),
     "bdf": (style.SKY, "<--"),
     "runge_kutta": (style.ORANGE, ">:"),
+    HEYOKA: (style.VERMILLION, "s-"),
 }
 
 
