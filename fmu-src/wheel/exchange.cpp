@@ -83,7 +83,10 @@ void take_at_once(Wheel& w) {
   const Road before = now.road;
   let_act(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
   w.demand.changed = false;
-  if (now.road != before) decide_law(w.setup, w.run.t, w.run.y, now);
+  if (now.road == before || w.phase() == Phase::event_mode) return;
+  const WheelFriction law = now.scene.friction;
+  decide_law(w.setup, w.run.t, w.run.y, now);
+  log_transition(w, law);
 }
 
 void states(Wheel& w, double* x) { std::copy_n(w.run.y, state_count, x); }

@@ -16,8 +16,8 @@ int indicator_count();
 // The place of a variable among the states, or -1.
 int state_index_of(unsigned variable);
 
-// What was set takes effect: at once, except for the law. Another road asks for another law, whatever the mode is.
-// Writes run.in_force and demand.changed.
+// What was set takes effect: at once, except for the law, which the event mode decides. Outside of it another road asks
+// for another law at once. Writes run.in_force, run.transitions and demand.changed.
 void take_at_once(Wheel& wheel);
 
 void states(Wheel& wheel, double* x);

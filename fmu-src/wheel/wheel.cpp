@@ -118,6 +118,7 @@ bool is_prepared(Wheel& w) {
 bool start(Wheel& w) {
   const bool exchanged = w.kind() == Kind::model_exchange;
   const bool sound = prepare(w, w.reporter) && (!exchanged || starts_inside(w));
+  if (sound) log_contact(w, w.setup.starts_sliding, true);
   w.run.phase = !sound ? Phase::without_start : exchanged ? Phase::event_mode : Phase::at_start;
   return sound;
 }

@@ -302,6 +302,22 @@ def test_a_held_wheel_is_released_in_the_event_mode_in_which_the_road_becomes_to
         assert wheel.get("friction_mode") == [mode] and (wheel.get("omega_z_dot")[0] > 0) == (mode > 0)
 
 
+@pytest.mark.parametrize("mode", ["event", "continuous-time"])
+def test_a_parked_wheel_that_the_slope_releases_and_stops_again_is_logged_and_counted(library, mode) -> None:
+    with exchange(library, logging=True, **AT_REST, psi_start=0.0, s=0.03) as wheel:
+        for slope, text in ((0.2, "release, omega_z becomes positive."), (0.0, "stick, omega_z is held at zero.")):
+            wheel.take_messages()
+            if mode == "event":
+                assert wheel.enterEventMode() == OK
+                wheel.put(slope=slope, slope_direction=slope)
+                assert wheel.texts() == [] and wheel.decide().valuesOfContinuousStatesChanged
+                assert wheel.enterContinuousTimeMode() == OK
+            else:
+                wheel.put(slope=slope)
+            assert wheel.texts() == [f"t = 0 s: {text}"]
+        assert wheel.get("n_events", "friction_mode") == [2, 0]
+
+
 def test_nominal_values_are_the_scales_of_the_error(library: Library) -> None:
     """m: three heights of the upright wheel; rad. A fast wheel hardly tilts."""
     for start, tilt in (({}, 1), ({"phi_dot_start": -100.0}, 9.81 / 0.35 / 100**2)):

@@ -440,6 +440,26 @@ def test_a_locked_wheel_slides_over_roads_that_change_with_the_deceleration_of_e
     within(absolute_error(slowing, [0.4, 0.1, 0.4, 0.15, *hill]), 1e-9, "deceleration over g")
 
 
+@pytest.mark.parametrize("when", ["initializing", "at the start", "by parameters"])
+def test_a_loss_of_grip_at_the_start_is_logged_and_counted_once(library: Library, when: str) -> None:
+    with library.wheel(logging=True) as wheel:
+        if when == "by parameters":  # a swing that needs more than a tenth
+            wheel.start(mu_max=0.1, mu_slide=0.1)
+        else:
+            wheel.initializing(**{**UPRIGHT, **ROAD})
+            assert when == "initializing" or wheel.exitInitializationMode() == OK
+            wheel.put(M_3=-80.0).get("lambda_3")
+            assert when != "initializing" or wheel.exitInitializationMode() == OK
+        assert wheel.by(0.01).texts() == ["t = 0 s: the wheel starts to slide."]
+        assert wheel.get("n_events", "contact_mode") == [1, SLIDING]
+
+
+def test_a_start_with_slip_is_no_loss_of_grip(library: Library) -> None:
+    with library.wheel(logging=True) as wheel:
+        wheel.start(**ROAD, slip_x_start=1.0).by(0.01)
+        assert wheel.texts() == [] and wheel.get("n_events", "contact_mode") == [0, SLIDING]
+
+
 ICE = [{"mu_max": 0.0}, {"mu_slide": 0.0, "mu_max": 0.0}]
 
 
