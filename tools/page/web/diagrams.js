@@ -252,7 +252,7 @@ class Diagram {
       pen.stroke();
       for (const [i, text] of ['ω', 'crit'].entries()) {
         pen.font = i ? FONT.replace('11', '8') : FONT;
-        pen.fillText(text, this.left + 3 + 9 * i, y + 2 * i);
+        pen.fillText(text, this.left + this.sizes[0] - 26 + 9 * i, y + 2 * i);
       }
     }
     pen.setLineDash([]);

@@ -43,10 +43,10 @@ export const START = [
 ];
 /** Of the road, and how the wheel is thrown onto it. */
 export const GRIP = [
-  knob('mu_max', 'μ', '', 'static, 0: any', [0, 10], () => upTo(2)),
-  knob('mu_slide', 'μ_s', '', 'kinetic, 0: ends', [0, 10], () => upTo(2)),
-  knob('slip_x_start', 'u_x', 'm/s', 'slip along', [-100, 100], () => both(10)),
-  knob('slip_y_start', 'u_y', 'm/s', 'slip across', [-100, 100], () => both(10)),
+  knob('mu_max', 'μ', '', 'static', [0, 10], () => upTo(2)),
+  knob('mu_slide', 'μ_s', '', 'kinetic', [0, 10], () => upTo(2)),
+  knob('slip_x_start', 'u_x', 'm/s', 'along', [-100, 100], () => both(10)),
+  knob('slip_y_start', 'u_y', 'm/s', 'across', [-100, 100], () => both(10)),
 ];
 export const WHEEL = [
   knob('m', 'm', 'kg', 'mass', [1e-4, 1e4], () => [1e-3, 1e3, 'log']),

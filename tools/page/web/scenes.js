@@ -44,7 +44,7 @@ export function chapters(parameters) {
     step(
         'What rights it', 'theta=75deg&phi_dot=-6&diagram=spin&show=follow+path+axes+force',
         (wheel) =>
-            `The same wheel, with the ground's force (red) and the gyroscopic moment of its spin (brown). While it
+            `The same wheel, with the ground's force (red, from the contact) and the gyroscopic moment of its spin (from the centre). While it
           tips, the moment points along e<sub>2</sub> and turns it: ω<sub>2</sub> grows to ${turn(wheel)} rad/s. Once it
           turns, the moment points along e<sub>1</sub>, and with the ground's force, which bends its path, rights it. Below
           stands the equation of the turn with its terms.`,
