@@ -253,7 +253,7 @@ function setUpNotes(live) {
     refusal(live.refusal);
     const fault = doubtOf(wheel);
     const chance = tipsByRounding(live.wheel.table) &&
-        'Rounding alone tips this exactly upright wheel: when, and to which side, is chance.';
+        'Rounding alone tips this exactly upright wheel: when, and to which side, is chance. On its hub carrier (guided) it stays.';
     doubt(fault ? `${fault} Choose a body: its moments follow.` : chance || null);
     scaled(live.scaled);
   };
