@@ -1,6 +1,6 @@
-"""CONTRIBUTING's recipes for an event and for one with its own parameter, carried out on a copy with a third event.
-Each crossing is logged in every way of running, and the tests of the contract hold. The crossings are those of theta,
-the normal force and Y_O, read on a fine grid."""
+"""CONTRIBUTING's recipes for a parameter, an output, an event and one with its own parameter, carried out on a copy
+with a third event. Each crossing is logged in every way of running, and the tests of the contract hold. They are those
+of theta, the normal force and Y_O, read on a fine grid."""
 
 import os
 import re
@@ -13,17 +13,19 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from support import exchange as exchanging
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
+from support.driver import FMU2Wheel
 from support.motion import Library, Run
 from support.paths import ROOT, copy_checkout
 
 sys.path.insert(0, str(ROOT / "cmake"))
+from description.measuring import measured
 from description.numbering import numbered, with_event_indicators
 
 LEAN = 1.29  # rad: the level of the recipe
 WAYS = {"unfolded": {}, "Runge-Kutta": {"method": 4}, "Adams": {"method": 2}, "multibody": {"formulation": 3}}
 STOP = 6.0
-pytestmark = pytest.mark.xdist_group("event recipe")  # one build for all
+pytestmark = pytest.mark.xdist_group("recipes")  # one build for all
 
 # Another observed event: it depends on the place of the wheel, which is no symmetry of the unfolded motion.
 LINE = {
@@ -56,28 +58,34 @@ PLACES = {
         "};\n\nnamespace {\n\nconstexpr bool is_sound",
     ],
 }
+OF_OUTPUTS = {
+    "modelDescription.xml": ['    <ScalarVariable name="theta_ddot"'],
+    "fmu-src/wheel/variables.cpp": ["};\n\n#undef AT"],
+    "docs/equations.md": ["\nThe rate of an output that is no variable itself"],
+}
 Blocks = dict[str, list[str]]  # of code, by file
 
 
-def recipes() -> list[Blocks]:
+def recipes(title: str = "Add an event") -> list[Blocks]:
     """Of CONTRIBUTING.md: the blocks of code, each of the file that was named last."""
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    section = re.search(r"^## Add an event\n(.*?)^## ", text, re.DOTALL | re.MULTILINE)[1]
+    section = re.search(rf"^## {title}\n(.*?)^## ", text, re.DOTALL | re.MULTILINE)[1]
     found: list[Blocks] = []
     for part in section.split("\nAn event with its own parameter"):
         blocks, file = Blocks(), ""
         for said, block in re.findall(r"(.*?)```\w+\n(.*?) *```", part, re.DOTALL):
-            named = [place for name in re.findall(r"`([\w./-]+)`", said) for place in PLACES if place.endswith(name)]
+            names = re.findall(r"`([\w./-]+)`", said)
+            named = [place for name in names for place in {**PLACES, **OF_OUTPUTS} if place.endswith(name)]
             file = named[-1] if named else file
             blocks.setdefault(file, []).append(re.sub(r"^   ", "", block, flags=re.MULTILINE))
         found.append(blocks)
     return found
 
 
-def patch(folder: Path, blocks: Blocks) -> None:
+def patch(folder: Path, blocks: Blocks, places: Blocks = PLACES) -> None:
     for file, texts in blocks.items():
         path = folder / file
-        for before, text in zip(PLACES[file], texts, strict=True):
+        for before, text in zip(places[file], texts, strict=True):
             old = path.read_text(encoding="utf-8")
             assert old.count(before) == 1, (path, before)
             path.write_text(old.replace(before, text + before), encoding="utf-8")
@@ -96,11 +104,12 @@ class Patched(NamedTuple):
 
 @pytest.fixture(scope="module")
 def patched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
-    """All events in the place of the recipes; numbered and built."""
+    """Parameter, output and all events in the place of the recipes; numbered and built."""
     root, events = tmp_path_factory.mktemp("checkout"), [*recipes(), LINE]
     copy_checkout(root)
-    for blocks in events:
+    for blocks in [*recipes("Add a parameter"), *events]:
         patch(root, blocks)
+    patch(root, *recipes("Add an output"), OF_OUTPUTS)
     description = root / "modelDescription.xml"
     text = description.read_text(encoding="utf-8")
     count = int(re.search(r'numberOfEventIndicators="(\d+)"', text)[1]) + len(events)
@@ -109,11 +118,13 @@ def patched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
     options = {"CMAKE_BUILD_TYPE": "Release", "CMAKE_UNITY_BUILD": "ON", "Python3_EXECUTABLE": sys.executable}
     options |= {"WHEEL_SUNDIALS_SOURCE": sundials}
     configure = ["cmake", "-S", root, "-B", root / "build", *(f"-D{name}={value}" for name, value in options.items())]
-    for command in (configure, ["cmake", "--build", root / "build", "--target", "fmu", "-j2"]):
+    make, fmu = ["cmake", "--build", root / "build", "--target", "fmu", "-j2"], root / "build" / "wheel.fmu"
+    for command in (configure, make):
         subprocess.run(command, check=True, capture_output=True)
+    description.write_text(numbered(description.read_text(encoding="utf-8"), measured(fmu)), encoding="utf-8")
+    subprocess.run(make, check=True, capture_output=True)
     rows = [blocks["fmu-src/wheel/events.cpp"][1] for blocks in events]
     texts = [re.search(r'observed = "([^"]*)', row)[1] for row in rows]
-    fmu = root / "build" / "wheel.fmu"
     library = Library.unpacked(fmu)
     yield Patched(root, fmu, library, *texts)
     library.remove()
@@ -148,6 +159,20 @@ def limit(fine: Run) -> dict[str, float]:
     """The parameter, halfway between the least and the largest normal force."""
     (name,) = re.findall(r'<ScalarVariable name="(\w+)"', recipes()[1]["modelDescription.xml"][0])
     return {name: 0.5 * float(fine["lambda_3"].min() + fine["lambda_3"].max())}
+
+
+def test_the_parameter_and_the_output_do_what_the_recipes_say(library: Library, patched: Patched) -> None:
+    def turned(J_z: float, J_hub: float) -> FMU2Wheel:
+        return patched.library.wheel().start(J_z=J_z, J_hub=J_hub, s=0.03).to(1.0)
+
+    with turned(1.5, 0.25) as wheel, turned(1.75, 0.0) as same, turned(1.5, 0.0) as other:
+        assert wheel.bits() == same.bits() != other.bits()
+        (v_1, psi, psi_dot, X_dot, Y_dot), rates = wheel.get("v_1", "psi", "psi_dot", "X_O_dot", "Y_O_dot"), wheel.rates
+        e1, across = np.array([np.cos(psi), np.sin(psi)]), np.array([-np.sin(psi), np.cos(psi)])
+        within(abs(v_1 - e1 @ (X_dot, Y_dot)), 8 * EPSILON, "velocity")
+        (rate, *accelerations) = rates(["v_1", "X_O_dot", "Y_O_dot"])()
+        within(abs(rate - e1 @ accelerations - psi_dot * across @ (X_dot, Y_dot)), 1e-10, "rate")
+        beyond(abs(rate - e1 @ accelerations), 1e-3, "rate in axes that stand still")
 
 
 def test_the_tests_of_the_contract_hold_with_these_events_too(patched: Patched) -> None:
