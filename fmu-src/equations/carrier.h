@@ -53,7 +53,7 @@ Sines wheel_sines(double angle);
 
 INLINED Carrier carrier_of(const WheelParameters* w, const double* y) {
   Sines theta = wheel_sines(y[THETA]), psi = wheel_sines(y[PSI]);
-  Carrier c = {theta.sine, theta.cosine, psi.sine, psi.cosine};
+  Carrier c = {.sin_theta = theta.sine, .cos_theta = theta.cosine, .sin_psi = psi.sine, .cos_psi = psi.cosine};
   c.omega_1 = y[OMEGA_1];
   c.omega_2 = y[OMEGA_2];
   c.omega_3 = y[OMEGA_3];
