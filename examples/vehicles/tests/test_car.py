@@ -11,7 +11,7 @@ import pytest
 from support.bounds import EPSILON, beyond, relative_error, within
 from support.paths import ROOT
 from vehicles import car, car_judges
-from vehicles.car_judges import CIRCLE, EIGHT, HILL, LANE, LAYOUT, SPLIT, STEP, STRAIGHT, WHEELS
+from vehicles.car_judges import CIRCLE, EIGHT, HILL, LANE, LAYOUT, SPLIT, STEP, STRAIGHT, WHEELS, constants
 from vehicles.options import Manoeuvre
 from vehicles.vehicle import Fmus, Table
 
@@ -32,7 +32,7 @@ def test_the_car_stands_starts_and_parks_on_the_hill_without_rolling_back(fmus: 
     start = table["time"] < HILL["t_brake"]
     assert car.rolled_back({name: values[start] for name, values in table.items()}) == 0
     within(car.rolled_back(table), car.LIMITS["roll_back"], "rolls back, m")
-    for finding in car_judges.standing(table, HILL):
+    for finding in car_judges.standing(table, HILL, constants(HILL)):
         within(error(finding), 0.01 if finding.what.startswith("load") else 1e-3, f"{finding.what}, relative")
     weak = HILL.changed(B_hold=400.0)  # partner: below m g R sin(slope), 652 N m
     beyond(car.rolled_back(drive(fmus, weak)), 0.1, "rolls back with weak brakes, m")
@@ -68,7 +68,8 @@ def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
 ) -> None:
     """rest: roll squared, as after a step, does not fall as 1 / k."""
     tables = (drive(fmus, stiffer(manoeuvre, k), 0.0005) for k in (1.0, 3.0))
-    soft, stiff = ([f for f in car_judges.JUDGES[judge](table, manoeuvre) if f.exact] for table in tables)
+    found, c = car_judges.JUDGES[judge], constants(manoeuvre)
+    soft, stiff = ([f for f in found(table, manoeuvre, c) if f.exact] for table in tables)
     assert len(soft) == count
     for finding, nearer in zip(soft, stiff, strict=True):
         within(error(finding), 0.04, "error, relative")
@@ -76,7 +77,7 @@ def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
 
 
 def test_the_stopping_distance_is_that_of_the_closed_form(fmus: Fmus) -> None:
-    for finding in car_judges.braking(drive(fmus, STRAIGHT), STRAIGHT):
+    for finding in car_judges.braking(drive(fmus, STRAIGHT), STRAIGHT, constants(STRAIGHT)):
         within(error(finding), 0.05 if finding.what.startswith("load") else 0.02, f"{finding.what}, relative")
 
 
@@ -84,27 +85,28 @@ def test_on_a_split_road_the_car_keeps_its_course_at_the_closed_forms_decelerati
     table = drive(fmus, SPLIT)
     assert {*car_judges.slid(table)} == {"fr", "rr"} and car.verdict(table, SPLIT)[0]
     other = SPLIT.changed(mu_slide_right=0.16)
-    for found, wrong in zip(car_judges.split(table, SPLIT), car_judges.split(table, other), strict=True):
+    for found, wrong in zip(*(car_judges.split(table, run, constants(run)) for run in (SPLIT, other)), strict=True):
         if found.exact:
             within(error(found), 1e-3, f"{found.what}, relative")
             beyond(error(wrong), 5e-3, f"{found.what}, by another friction on the right, relative")
 
 
 def test_wheels_that_never_slip_do_not_understeer(fmus: Fmus) -> None:
-    found = {f.what: f for f in car_judges.circle(drive(fmus, CIRCLE.changed(stop=12.0, ramp_v=7.0), 0.002), CIRCLE)}
+    table = drive(fmus, CIRCLE.changed(stop=12.0, ramp_v=7.0), 0.002)
+    found = {f.what: f for f in car_judges.circle(table, CIRCLE, constants(CIRCLE))}
     within(abs(found["understeer gradient"].measured), 3e-5, "rad s2/m")  # a road car: 2e-3 to 5e-3
 
 
 def test_the_figure_of_eight_closes(fmus: Fmus) -> None:
     for eight, check in ((EIGHT, within), (EIGHT.changed(k_y=0.0, k_psi=0.0), beyond)):  # after 105 m
-        (gap,) = car_judges.closure(drive(fmus, eight, 0.002), eight)
+        gap, _ = car_judges.closure(drive(fmus, eight, 0.002), eight, constants(eight))
         check(gap.measured, 0.02, "gap, m")
 
 
 def test_a_step_of_the_steering_overshoots_and_needs_the_friction_of_an_axle_not_of_a_wheel(fmus: Fmus) -> None:
     """A lateral acceleration a needs about a / g; partner: the wheel inside the bend."""
     table = drive(fmus, STEP.changed(v=60 / 3.6, delta_0=np.radians(3)), 0.002)
-    found = {finding.what: finding.measured for finding in car_judges.step(table, STEP)}
+    found = {finding.what: finding.measured for finding in car_judges.step(table, STEP, constants(STEP))}
     beyond(found["overshoot of the lateral acceleration"], 0.01, "overshoot")
     least = float(np.abs(table["a_y"]).max()) / car_judges.G
     within(abs(max(car_judges.demand(table).values()) / least - 1), 0.1, "friction over a / g, off 1")
@@ -116,7 +118,7 @@ import sys
 from vehicles import car, car_judges as of, vehicle
 fmus = vehicle.build_c(vehicle.Path(sys.argv[1])) | {"wheel": vehicle.Path(sys.argv[2])}
 table = car.CAR.drive(fmus, of.LANE.changed(stop=1.0)).table
-print(*(table[f"{w}.lambda_3"][0] / (of.MASS * of.G) for w in of.WHEELS))
+print(*(table[f"{w}.lambda_3"][0] / (of.constants(of.LANE).mass * of.G) for w in of.WHEELS))
 """
 
 

@@ -4,13 +4,14 @@ The wheel rolls at 2 rad/s (0.7 m/s), below the speed at which upright rolling i
 starts with a small push to the side. Fixed axes; theta is 90 degrees upright.
 """
 
+from dataclasses import replace
 from math import inf, pi
 
 import numpy as np
 from fmpy import simulate_fmu
 
 from .options import Manoeuvre, file, manoeuvres
-from .vehicle import Fmus, Table, Vehicle, road
+from .vehicle import Fmus, Run, Table, Vehicle, road
 
 CIRCLE = manoeuvres("balance")["circle"]
 STEP = 0.005  # s
@@ -21,12 +22,13 @@ START = {"psi_start": 0, "theta_start": pi / 2, "phi_dot_start": -2, "theta_dot_
 OF_WHEEL = file("balance")["record"][0][1:]  # the columns of the wheel
 
 
-def beside_alone(table: Table, course: Manoeuvre, fmus: Fmus) -> Table:
+def beside_alone(run: Run, course: Manoeuvre, fmus: Fmus) -> Run:
     """With the wheel without the controller, up to where its model ends, in columns alone.NAME."""
-    rows, how = len(table["time"]), {"fmi_type": "CoSimulation", "output": OF_WHEEL, "output_interval": STEP}
+    rows, how = len(run.table["time"]), {"fmi_type": "CoSimulation", "output": OF_WHEEL, "output_interval": STEP}
     how["start_values"] = START | road(course)
     alone = simulate_fmu(str(fmus["wheel"]), stop_time=course.stop, **how)[:rows]
-    return table | {f"alone.{n}": np.pad(alone[n], (0, rows - len(alone)), constant_values=np.nan) for n in OF_WHEEL}
+    more = {f"alone.{n}": np.pad(alone[n], (0, rows - len(alone)), constant_values=np.nan) for n in OF_WHEEL}
+    return replace(run, table=run.table | more)
 
 
 def fall_time(table: Table, of: str = "") -> float:

@@ -5,13 +5,14 @@ car/manoeuvres.toml is compared with closed forms (car_judges.py).
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import cos, pi, sin, tan
 
 import numpy as np
 
-from .car_judges import MASS, NAMES, RIGHT, WHEELBASE, WHEELS, R, demand, findings, force, friction, per_axle, slid
+from .car_judges import NAMES, RIGHT, WHEELS, R, constants, demand, findings, force, friction, per_axle, slid
 from .options import Manoeuvre, file
-from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, road, upright
+from .vehicle import DRY_ROAD, Fmus, Run, Table, Vehicle, road, upright
 
 LIMITS = file("car")["limits"]
 
@@ -19,7 +20,7 @@ LIMITS = file("car")["limits"]
 def starts(manoeuvre: Manoeuvre) -> dict[str, dict[str, float]]:
     """Of wheels and driver; the chassis starts at the origin unless its parameters say otherwise."""
     X, Y, psi, v = (manoeuvre[name] for name in ("X_start", "Y_start", "psi_start", "v"))
-    found = {"driver": {"L": manoeuvre.given.get("L", WHEELBASE)}}
+    found = {"driver": {"L": manoeuvre.given.get("L", constants(manoeuvre).wheelbase)}}
     for name in WHEELS:
         x, y = (manoeuvre[f"{axis}_{name}"] for axis in "xy")
         place = X + x * cos(psi) - y * sin(psi), Y + x * sin(psi) + y * cos(psi)
@@ -33,17 +34,19 @@ def beneath(manoeuvre: Manoeuvre, wheel: str) -> dict[str, float]:
     return {name: value for name, value in of.items() if value}
 
 
-def complete(table: Table, _manoeuvre: Manoeuvre, _fmus: Fmus) -> Table:
+def complete(run: Run, manoeuvre: Manoeuvre, _fmus: Fmus) -> Run:
     """With a_y, the acceleration of the whole car's centre of mass to the left of the heading [m/s2], from the ground's
     forces; beta, the sideslip angle of the chassis' centre of mass [rad], from differences of its place; and mu, the
     friction that each axle requires."""
+    table = run.table
     if len(table["time"]) < 3:
-        return table
+        return run
     back = np.exp(-1j * table["psi"])  # from X + i Y to along + i across
-    pushed = back * (force(table, WHEELS, 1) + 1j * force(table, WHEELS, 2)) / MASS
+    pushed = back * (force(table, WHEELS, 1) + 1j * force(table, WHEELS, 2)) / constants(manoeuvre).mass
     moved = back * np.gradient(table["X"] + 1j * table["Y"], table["time"], edge_order=2)
     required = {f"{axle}.mu": mu for axle, mu in friction(table).items()}
-    return {**table, "a_y": pushed.imag, "beta": np.arctan2(moved.imag, np.abs(moved.real)), **required}
+    angles = {"a_y": pushed.imag, "beta": np.arctan2(moved.imag, np.abs(moved.real))}
+    return replace(run, table=table | angles | required)
 
 
 def subtitle(manoeuvre: Manoeuvre) -> str:
@@ -97,7 +100,9 @@ def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
         needs, note = "slides at the " + ", the ".join(f"{NAMES[w]} wheel for {t:.2f} s" for w, t in times.items()), ""
     least, name = min((table[f"{w}.lambda_3"].min(), name) for w, name in NAMES.items())
     lowest = f"Smallest normal force: {least:.0f} N at the {name} wheel."
-    return True, [f"Possible: it {needs}.", *filter(None, [note]), lowest, *findings(table, manoeuvre)]
+    values, faults = findings(table, manoeuvre)
+    head = [f"Failed: {fault}." for fault in faults[:1]] or [f"Possible: it {needs}.", *filter(None, [note])]
+    return not faults, [*head, lowest, *values]
 
 
 CAR = Vehicle("car", starts, verdict, wheels=NAMES, complete=complete, subtitle=subtitle, grip=grip)

@@ -13,10 +13,14 @@ leans by the roll angle the masses move outwards from the wheels' centres, and t
 Characteristic values in the manner of ISO 4138 (constant steer angle, rising speed), ISO 7401 (step input), ISO 3888
 (two changes of lane); steer angles are those of the bicycle's wheel, not of a steering wheel. A table has time, v,
 omega, psi, roll, delta, a_y and beta, and the ground's forces on each wheel.
+
+A closed form is printed where what it assumes holds (ASSUMES), and a run beyond its bound has failed.
 """
 
 import tomllib
-from collections.abc import Iterator
+import warnings
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
@@ -25,42 +29,61 @@ from scipy.integrate import cumulative_trapezoid, trapezoid
 from .options import EXAMPLES, Manoeuvre, manoeuvres
 from .vehicle import Table
 
-# The layout, car/car.toml, and what follows from it; SI, from the chassis' centre of mass.
-LAYOUT = tomllib.loads((EXAMPLES / "car" / "car.toml").read_text())
+LAYOUT = tomllib.loads((EXAMPLES / "car" / "car.toml").read_text())  # SI, from the chassis' centre of mass
 WHEELS: dict[str, dict[str, float | str]] = LAYOUT["wheel"]
 NAMES = {wheel: str(of["name"]) for wheel, of in WHEELS.items()}
-X_REAR = float(np.mean([w["x"] for w in WHEELS.values() if not w["steer"]]))  # rear point
-WHEELBASE = float(np.mean([w["x"] for w in WHEELS.values() if w["steer"]])) - X_REAR
-TRACK = float(np.ptp([w["y"] for w in WHEELS.values() if w["steer"]]))  # of the steered wheels
 R_0, R, M_WHEEL, J_Z, G = 0.3, 0.35, 20.0, 1.8, 9.81  # the wheels' defaults
-MASS = LAYOUT["chassis"]["m_B"] + M_WHEEL * len(WHEELS)
 MANOEUVRES = manoeuvres("car")
 STRAIGHT, CIRCLE, STEP, EIGHT, LANE, HILL, TOO_FAST, SPLIT = MANOEUVRES.values()
 AXLES = {w["axle"]: [n for n, other in WHEELS.items() if other["axle"] == w["axle"]] for w in WHEELS.values()}
-N, H_B, M_B = len(WHEELS), LAYOUT["chassis"]["h_B"], LAYOUT["chassis"]["m_B"]
-M_T = MASS + N * J_Z / R**2
-HEIGHTS = M_B * H_B + N * M_WHEEL * R  # kg m
-INERTIA = HEIGHTS + N * J_Z / R  # kg m
-LEANING = M_B * (H_B - (R - R_0)) + N * M_WHEEL * R_0  # kg m, about the contact points, per roll angle
 LEFT, RIGHT = ([name for name, wheel in WHEELS.items() if side * wheel["y"] > 0] for side in (1, -1))
-STRUTS = sum(w["k"] * w["y"] ** 2 for w in WHEELS.values())  # N m/rad, as the bars; wheels stand on the ground
-BARS = sum(w["k_bar"] * (w["y"] - WHEELS[w["bar_to"]]["y"]) ** 2 for w in WHEELS.values() if "bar_to" in w)
-# Roll angle per lateral acceleration, rad s2/m: the chassis leans outwards by its height, the contact inwards.
-ROLL_GRADIENT = INERTIA / (STRUTS + BARS - G * LEANING)
+KINEMATIC, LOADED = 0.02, 0.08  # bounds, relative: what links that yield change of paths and speeds, and of loads
+
+
+def constants(manoeuvre: Manoeuvre) -> SimpleNamespace:
+    """The car of a manoeuvre: its masses, lengths and stiffnesses, and what follows from them."""
+    c = SimpleNamespace(m_B=manoeuvre["m_B"], h_B=manoeuvre["h_B"], g=G * np.cos(manoeuvre["slope"]))
+    for name in ("x", "y", "k", "k_bar", "steer", "drive", "brake"):
+        setattr(c, name, {w: manoeuvre[f"{name}_{w}"] for w in WHEELS})
+    steered = [w for w in WHEELS if c.steer[w] > 0.5]
+    c.x_rear = float(np.mean([c.x[w] for w in WHEELS if w not in steered]))  # rear point
+    c.wheelbase = float(np.mean([c.x[w] for w in steered])) - c.x_rear
+    c.track = float(np.ptp([c.y[w] for w in steered]))
+    c.mass = c.m_B + M_WHEEL * len(WHEELS)
+    c.m_t = c.mass + len(WHEELS) * J_Z / R**2
+    c.heights = c.m_B * c.h_B + len(WHEELS) * M_WHEEL * R  # kg m
+    c.inertia = c.heights + len(WHEELS) * J_Z / R  # kg m
+    c.leaning = c.m_B * (c.h_B - (R - R_0)) + len(WHEELS) * M_WHEEL * R_0  # kg m, about the contacts, per roll angle
+    struts = sum(c.k[w] * c.y[w] ** 2 for w in WHEELS)  # N m/rad, as the bars; wheels stand on the ground
+    ends = {w: str(of["bar_to"]) for w, of in WHEELS.items() if "bar_to" in of}
+    bars = sum(c.k_bar[w] * (c.y[w] - c.y[other]) ** 2 for w, other in ends.items())
+    # Roll angle per lateral acceleration, rad s2/m: the chassis leans outwards by its height, the contact inwards.
+    c.roll_gradient = c.inertia / (struts + bars - G * c.leaning)
+    return c
 
 
 class Finding(NamedTuple):
-    """One quantity as measured in a run, and of rigid links and wheels that never slip, where that is known."""
+    """One quantity as measured in a run, and of rigid links and wheels that never slip, where that is known; `share` of
+    it, and no less than of `least`, is the bound of the difference."""
 
     what: str
     unit: str
     measured: float
     exact: float | None = None
+    share: float = KINEMATIC
+    least: float = 0.0
 
     def __str__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         exact = "" if self.exact is None else f" (closed form: {self.exact:.4g})"
         return f"{self.what}: {self.measured:.4g}{unit}{exact}"
+
+    @property
+    def fault(self) -> str:
+        """A difference beyond the bound, in words; empty where there is none."""
+        if self.exact is None or abs(self.measured - self.exact) <= self.share * max(abs(self.exact), self.least):
+            return ""
+        return f"the {self.what} departs from its closed form by more than {100 * self.share:g} %"
 
 
 def force(table: Table, wheels: list[str], k: int = 3) -> np.ndarray:
@@ -85,37 +108,47 @@ def per_axle(asked: dict[str, float]) -> str:
     return ", ".join(f"{axle} {mu:.2f}" for axle, mu in asked.items())
 
 
-def load_moved(table: Table, axle: str, cause: str, at: np.ndarray, moment: float) -> Finding:
+def load_moved(table: Table, c: SimpleNamespace, axle: str, cause: str, at: np.ndarray, moment: float) -> Finding:
     """Mean normal force of an axle over some instants, above that at the start. `moment` [N m] moves load to the rear
     axle, together with that of the chassis' weight as it pitches about its hubs."""
     normal, pitch = force(table, AXLES[axle]), float(np.mean(table["pitch"][at]))
-    exact = (moment - M_B * G * (H_B - R) * pitch) / WHEELBASE * (1 if axle == "rear" else -1)
-    return Finding(f"load moved to the {axle} axle by the {cause}", "N", float(np.mean(normal[at]) - normal[0]), exact)
+    exact = (moment - c.m_B * c.g * (c.h_B - R) * pitch) / c.wheelbase * (1 if axle == "rear" else -1)
+    moved = float(np.mean(normal[at]) - normal[0])
+    return Finding(f"load moved to the {axle} axle by the {cause}", "N", moved, exact, LOADED, 0.03 * c.mass * G)
 
 
-def resistance(manoeuvre: Manoeuvre) -> tuple[float, float]:
+def resistance(manoeuvre: Manoeuvre, c: SimpleNamespace) -> tuple[float, float]:
     """Moment of rolling friction about all axles, N m, and gravity down the slope, m/s2."""
-    return manoeuvre["s"] * MASS * G * np.cos(manoeuvre["slope"]), G * np.sin(manoeuvre["slope"])
+    return manoeuvre["s"] * c.mass * c.g, G * np.sin(manoeuvre["slope"]) * np.cos(manoeuvre["slope_direction"])
 
 
-def launch(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
+def pulling(table: Table, manoeuvre: Manoeuvre) -> np.ndarray:
+    """The last second of full torque."""
+    return (table["time"] > manoeuvre["t_off"] - 1) & (table["time"] < manoeuvre["t_off"])
+
+
+def launch(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
     """Acceleration and load transfer in the last second of full torque."""
-    t, off = table["time"], manoeuvre["t_off"]
-    window = (t > off - 1) & (t < off)
-    drag, grade = resistance(manoeuvre)
-    a = (manoeuvre["M_0"] - drag - R * MASS * grade) / (R * M_T)
-    yield Finding("acceleration of the launch", "m/s2", float(np.polyfit(t[window], table["v"][window], 1)[0]), a)
-    yield load_moved(table, "rear", "launch", window, a * INERTIA + drag + grade * HEIGHTS)
+    t, window, (drag, grade) = table["time"], pulling(table, manoeuvre), resistance(manoeuvre, c)
+    a = (manoeuvre["M_0"] * sum(c.drive.values()) - drag - R * c.mass * grade) / (R * c.m_t)
+    measured = float(np.polyfit(t[window], table["v"][window], 1)[0])
+    yield Finding("acceleration of the launch", "m/s2", measured, a, KINEMATIC, 0.5)
+    yield load_moved(table, c, "rear", "launch", window, a * c.inertia + drag + grade * c.heights)
 
 
-def standing(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
+def before_drive(table: Table, manoeuvre: Manoeuvre) -> np.ndarray:
+    """The last tenth of a second before the drive torque comes."""
+    return (table["time"] > manoeuvre["t_on"] - 0.1) & (table["time"] < manoeuvre["t_on"])
+
+
+def standing(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
     """A car that its brakes hold on a slope, just before the drive torque comes, and at the end of the run."""
-    t, (_, grade) = table["time"], resistance(manoeuvre)
-    window = (t > manoeuvre["t_on"] - 0.1) & (t < manoeuvre["t_on"])
-    for at, when in ((window, "by the brakes"), (t > t[-1] - 0.1, "parked")):
+    t, (_, grade) = table["time"], resistance(manoeuvre, c)
+    for at, when in ((before_drive(table, manoeuvre), "by the brakes"), (t > t[-1] - 0.1, "parked")):
         push = float(np.mean(force(table, list(WHEELS), 1)[at]))
-        yield Finding(f"force of the road that holds the car, {when}", "N", push, MASS * grade)
-        yield load_moved(table, "rear", f"slope, {when}", at, grade * HEIGHTS)
+        weight = c.mass * grade
+        yield Finding(f"force of the road that holds the car, {when}", "N", push, weight, KINEMATIC, 0.03 * c.mass * G)
+        yield load_moved(table, c, "rear", f"slope, {when}", at, grade * c.heights)
 
 
 def rise(t: float | np.ndarray, begin: float, duration: float) -> float | np.ndarray:
@@ -124,63 +157,74 @@ def rise(t: float | np.ndarray, begin: float, duration: float) -> float | np.nda
     return z**3 * (10 - 15 * z + 6 * z**2)
 
 
-def braking(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
+def stopped(table: Table, begin: float) -> int:
+    """The row at which all wheels first stand after an instant; 0 where they never do."""
+    spins = np.max([np.abs(table[f"{w}.omega_z"]) for w in WHEELS], axis=0)
+    return int(np.argmax((table["time"] > begin) & (spins == 0)))
+
+
+def braking(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
     """Instant and distance of the stop from the state at t_brake, and the load moved forwards."""
     t, begin, ramp = table["time"], manoeuvre["t_brake"], manoeuvre["ramp_M"]
     i, fine = int(np.searchsorted(t, begin - 1e-9)), np.linspace(begin, t[-1], 200001)
-    drag, grade = resistance(manoeuvre)
-    a = (rise(fine, begin, ramp) * manoeuvre["B_0"] + drag + R * MASS * grade) / (R * M_T)
+    (drag, grade), brakes = resistance(manoeuvre, c), manoeuvre["B_0"] * sum(c.brake.values())
+    a = (rise(fine, begin, ramp) * brakes + drag + R * c.mass * grade) / (R * c.m_t)
     v = table["v"][i] - cumulative_trapezoid(a, fine, initial=0)
     end = int(np.argmax(v <= 0))
     full = (t > begin + ramp + 0.5 * (fine[end] - begin - ramp)) & (t < fine[end] - 0.05)
-    spins = np.max([np.abs(table[f"{w}.omega_z"]) for w in WHEELS], axis=0)
-    stopped, way = int(np.argmax((t > begin) & (spins == 0))), float(trapezoid(v[: end + 1], fine[: end + 1]))
-    yield Finding("instant of the stop after the brakes come", "s", float(t[stopped] - begin), float(fine[end] - begin))
-    yield Finding("stopping distance", "m", float(table["X"][-1] - table["X"][i]), way)
-    if full.any():
-        yield load_moved(table, "front", "brakes", full, drag + grade * HEIGHTS - a[-1] * INERTIA)
+    way, later = float(trapezoid(v[: end + 1], fine[: end + 1])), float(t[stopped(table, begin)] - begin)
+    yield Finding("instant of the stop after the brakes come", "s", later, float(fine[end] - begin), KINEMATIC, 1.0)
+    yield Finding("stopping distance", "m", float(table["X"][-1] - table["X"][i]), way, KINEMATIC, 2.0)
+    if np.count_nonzero(full) * (t[1] - t[0]) > 0.4:  # s: the chassis has ceased to pitch
+        moment = drag + grade * c.heights - a[-1] * c.inertia
+        yield load_moved(table, c, "front", "brakes", full, moment)
 
 
-def bend(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
+def settled(table: Table) -> np.ndarray:
+    """The last half second of a run."""
+    return table["time"] > table["time"][-1] - 0.5
+
+
+def bend(table: Table, _manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
     """Steady state at the end of a run with a constant steer angle. Ackermann: cot delta_outer - cot delta_inner of the
     foremost steered wheels."""
-    last = table["time"] > table["time"][-1] - 0.5
+    last = settled(table)
     delta, v, omega, roll = (float(np.mean(table[name][last])) for name in ("delta", "v", "omega", "roll"))
     moved = float(np.mean((force(table, RIGHT) - force(table, LEFT))[last])) / 2
-    x = max(w["x"] for w in WHEELS.values() if w["steer"])
-    inner, outer = sorted((n for n in WHEELS if WHEELS[n]["x"] == x), key=lambda n: -WHEELS[n]["y"])
-    turned = {n: float(np.mean((table[f"{n}.psi"] - table["psi"])[last])) for n in (inner, outer)}
+    x = max(c.x[w] for w in WHEELS if c.steer[w] > 0.5)
+    inner, outer = sorted((w for w in WHEELS if c.x[w] == x), key=lambda w: -c.y[w])
+    turned = {w: float(np.mean((table[f"{w}.psi"] - table["psi"])[last])) for w in (inner, outer)}
     apart = 1 / np.tan(turned[outer]) - 1 / np.tan(turned[inner])
-    across = (WHEELS[inner]["y"] - WHEELS[outer]["y"]) / (x - X_REAR)
-    yield Finding("radius of the rear point's circle", "m", v / omega, WHEELBASE / np.tan(delta))
+    across, exact = (c.y[inner] - c.y[outer]) / (x - c.x_rear), (v * omega * c.inertia + G * c.leaning * roll) / c.track
+    yield Finding("radius of the rear point's circle", "m", v / omega, c.wheelbase / np.tan(delta))
     yield Finding("Ackermann, from the wheels' headings", "1", apart, across)
-    yield Finding("load moved outwards", "N", moved, (v * omega * INERTIA + G * LEANING * roll) / TRACK)
+    yield Finding("load moved outwards", "N", moved, exact, LOADED, 0.03 * c.mass * G)
 
 
-def closure(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
-    """The figure of eight after one lap: distance of the rear point from its start beside the way driven."""
+def closure(table: Table, _manoeuvre: Manoeuvre, _c: SimpleNamespace) -> Iterator[Finding]:
+    """The figure of eight after one lap: distance of the rear point from its start, and the way driven."""
     p, at = table["p"], table["X_R"] + 1j * table["Y_R"]
-    way = float(np.abs(np.diff(at))[p[1:] <= 2 * np.pi].sum())
     gap = float(np.abs(np.interp(2 * np.pi, p, at) - at[0]))
-    yield Finding("figure of eight: gap after one lap, and its length", "m", gap, way)
+    yield Finding("figure of eight: gap after one lap", "m", gap)
+    yield Finding("figure of eight: its length", "m", float(np.abs(np.diff(at))[p[1:] <= 2 * np.pi].sum()))
 
 
-def circle(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
+def circle(table: Table, _manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
     """Gradients over lateral acceleration while the speed rises at a constant steer angle; the sideslip angle beside
-    that of a rear axle without any."""
+    that of a rear axle without any. A passenger car's gradients are some 100 times the bounds of those that are 0."""
     steady = (table["time"] > 5.0) & (table["time"] < 22.0)
     a, omega, v, delta, beta, roll = (table[n][steady] for n in ("a_y", "omega", "v", "delta", "beta", "roll"))
 
-    def gradient(of: str, unit: str, y: np.ndarray, exact: float = 0.0) -> Finding:
-        return Finding(of, unit, float(np.polyfit(a, y, 1)[0]), exact)
+    def gradient(of: str, unit: str, y: np.ndarray, exact: float = 0.0, share: float = KINEMATIC) -> Finding:
+        return Finding(of, unit, float(np.polyfit(a, y, 1)[0]), exact, share, 0.01)
 
-    drift = float(np.arctan(-X_REAR * np.tan(delta[0]) / WHEELBASE))
+    drift = float(np.arctan(-c.x_rear * np.tan(delta[0]) / c.wheelbase))
     yield Finding("largest lateral acceleration", "m/s2", float(a.max()))
-    yield gradient("understeer gradient", "rad s2/m", delta - np.arctan(WHEELBASE * (omega / v)))
+    yield gradient("understeer gradient", "rad s2/m", delta - np.arctan(c.wheelbase * (omega / v)))
     yield gradient("gradient of the curvature", "s2/m2", omega / v)
     yield Finding("sideslip angle where the speed is least", "rad", float(beta[0]), drift)
     yield gradient("gradient of the sideslip angle", "rad s2/m", beta)
-    yield gradient("gradient of the roll angle", "rad s2/m", roll, ROLL_GRADIENT)
+    yield gradient("gradient of the roll angle", "rad s2/m", roll, c.roll_gradient, LOADED)
 
 
 def _first(t: np.ndarray, x: np.ndarray, level: float) -> float:
@@ -189,26 +233,27 @@ def _first(t: np.ndarray, x: np.ndarray, level: float) -> float:
     return float(np.interp(level, x[i - 1 : i + 1], t[i - 1 : i + 1]))
 
 
-def step(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
+def step(table: Table, _manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
     """Response times from the instant at which the steering has gone half its way, overshoot and gains."""
-    t, last = table["time"], table["time"] > table["time"][-1] - 0.5
+    t, last = table["time"], settled(table)
     end = {name: float(np.mean(table[name][last])) for name in ("delta", "v", "omega", "a_y", "roll")}
     half, tenth, most = (_first(t, table["delta"], share * end["delta"]) for share in (0.5, 0.1, 0.9))
-    yaw = end["v"] * np.tan(end["delta"]) / WHEELBASE
+    yaw = end["v"] * np.tan(end["delta"]) / c.wheelbase
     yield Finding("time of the steer angle from 10 to 90 %", "s", most - tenth)
     for name, what, unit, theory in (
         ("omega", "yaw rate", "1/s", yaw),
         ("a_y", "lateral acceleration", "m/s2/rad", end["v"] * yaw),
-        ("roll", "roll angle", "1", ROLL_GRADIENT * end["v"] * yaw),
+        ("roll", "roll angle", "1", c.roll_gradient * end["v"] * yaw),
     ):
         x, level = table[name], end[name]
-        yield Finding(f"gain of the {what}", unit, level / end["delta"], float(theory / end["delta"]))
+        share = LOADED if name == "roll" else KINEMATIC
+        yield Finding(f"gain of the {what}", unit, level / end["delta"], float(theory / end["delta"]), share)
         yield Finding(f"response time of the {what} (90 %)", "s", _first(t, x, 0.9 * level) - half)
         yield Finding(f"time to the peak of the {what}", "s", float(t[np.argmax(x)]) - half)
         yield Finding(f"overshoot of the {what}", "1", float(x.max()) / level - 1)
 
 
-def lane(table: Table, _manoeuvre: Manoeuvre) -> Iterator[Finding]:
+def lane(table: Table, _manoeuvre: Manoeuvre, _c: SimpleNamespace) -> Iterator[Finding]:
     """How hard the change of lanes is, and where it asks most of the road."""
     most, axle, at = max((float(np.nanmax(mu)), axle, int(np.nanargmax(mu))) for axle, mu in friction(table).items())
     largest = (("lateral acceleration", "m/s2", "a_y"), ("yaw rate", "rad/s", "omega"), ("roll angle", "rad", "roll"))
@@ -225,36 +270,154 @@ def slid(table: Table) -> dict[str, float]:
     return {w: float(np.gradient(t)[at].sum()) for w, at in moves.items() if at.any()}
 
 
-def split(table: Table, manoeuvre: Manoeuvre) -> Iterator[Finding]:
+def sliding_on_the_right(table: Table, manoeuvre: Manoeuvre) -> np.ndarray:
+    """The instants a second and more after the full brakes at which the right wheels are locked and the car moves."""
+    locked = np.all([table[f"{w}.omega_z"] == 0 for w in RIGHT], axis=0)
+    return (table["time"] > manoeuvre["t_brake"] + manoeuvre["ramp_M"] + 1) & locked & (table["v"] > 2)
+
+
+def split(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
     """Straight braking while the right wheels slide, locked, and the left ones roll: m_t counts these two alone. What
     the brakes turn the car by, lateral forces hold, which the rolling wheels share as their course demands."""
-    t, begin = table["time"], manoeuvre["t_brake"] + manoeuvre["ramp_M"]
-    locked = np.all([table[f"{w}.omega_z"] == 0 for w in RIGHT], axis=0)
-    window = (t > begin + 1) & locked & (table["v"] > 2)
-    load, wheels = MASS * G / 2, J_Z / R**2 * len(LEFT)
-    brakes = manoeuvre["B_0"] * sum(manoeuvre[f"brake_{w}"] for w in LEFT)
-    slides, rolls = manoeuvre["mu_slide_right"] * load, (brakes + manoeuvre["s"] * load) / R
-    a = (slides + rolls) / (MASS + wheels)
-    across = sum(float(np.mean(table[f"{w}.lambda_2"][window])) * of["x"] for w, of in WHEELS.items())
+    t, window, (_, grade) = table["time"], sliding_on_the_right(table, manoeuvre), resistance(manoeuvre, c)
+    load, wheels = c.mass * c.g / 2, J_Z / R**2 * len(LEFT)
+    brakes = manoeuvre["B_0"] * sum(c.brake[w] for w in LEFT)
+    slippery = manoeuvre["mu_slide_right"] or manoeuvre["mu_slide"]
+    slides, rolls = slippery * load, (brakes + manoeuvre["s"] * load) / R
+    a = (slides + rolls + c.mass * grade) / (c.mass + wheels)
+    across = sum(float(np.mean(table[f"{w}.lambda_2"][window])) * c.x[w] for w in WHEELS)
     measured = -float(np.polyfit(t[window], table["v"][window], 1)[0])
-    yield Finding("deceleration, the right wheels locked", "m/s2", measured, a)
-    turning = (rolls - wheels * a - slides) * TRACK / 2
-    yield Finding("yaw moment of the lateral forces", "N m", across, -turning)
+    turning = (rolls - wheels * a - slides) * c.track / 2
+    yield Finding("deceleration, the right wheels locked", "m/s2", measured, a, KINEMATIC, 1.0)
+    moment = 0.03 * c.mass * G * c.track / 2
+    yield Finding("yaw moment of the lateral forces", "N m", across, -turning, LOADED, moment)
     yield Finding("largest angle of the heading", "rad", float(np.abs(table["psi"]).max()))
 
 
 JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure, circle, step, lane, split)}
 
 
+# ---- what the closed forms assume: by its words where it does not hold, whether it does ----
+
+
+def still(table: Table, at: np.ndarray, *names: str) -> bool:
+    """Whether columns keep their values at some instants, to a fiftieth of their largest values."""
+    return bool(at.any()) and all(np.ptp(table[n][at]) <= 0.02 * np.abs(table[n]).max() for n in names)
+
+
+def gone(run: Manoeuvre, size: str, end: str, at: float) -> bool:
+    """Whether a torque is not there any more at an instant, or not at all."""
+    return not run[size] or run[end] + run["ramp_M"] <= at
+
+
+def alike(c: SimpleNamespace) -> bool:
+    """Whether left and right are mirror images, of one track."""
+    sides = [[of[w] * c.y[w] for w in WHEELS] for of in (dict.fromkeys(WHEELS, 1.0), c.k, c.drive, c.brake)]
+    even = all(abs(sum(side)) <= 1e-9 * sum(map(abs, side)) for side in sides)
+    return even and np.ptp(np.abs([*c.y.values()])) < 1e-9
+
+
+def stiff(run: Manoeuvre) -> bool:
+    """Whether bushings have at least half the layout's stiffness."""
+    return all(run[name] >= 0.5 * LAYOUT["chassis"][name] for name in ("k_h", "k_a"))
+
+
+def full_torque(table: Table, run: Manoeuvre) -> bool:
+    """Whether the drive torque alone acts on a car that moves forward."""
+    begin, end, at = run["t_off"] - 1, run["t_off"], pulling(table, run)
+    there = run["t_on"] + run["ramp_M"] + 0.3 <= begin and end <= run.stop and not run["k_v"]
+    alone = gone(run, "B_hold", "t_release", begin) and (not run["B_0"] or run["t_brake"] >= end)
+    return bool(there and alone and at.any() and table["v"][at].min() > 0)
+
+
+def full_brakes(table: Table, run: Manoeuvre) -> bool:
+    """Whether the brakes alone act, and stop a car that moves forward."""
+    begin = run["t_brake"]
+    alone = gone(run, "M_0", "t_off", begin) and gone(run, "B_hold", "t_release", begin) and not run["k_v"]
+    moves = np.interp(begin, table["time"], table["v"]) > 0
+    return bool(alone and moves and begin < run.stop and stopped(table, begin))
+
+
+def held(table: Table, run: Manoeuvre) -> bool:
+    """Whether no wheel turns in the two spans of `standing`."""
+    at = before_drive(table, run) | (table["time"] > table["time"][-1] - 1)
+    return run["t_on"] >= 1 and not any(table[f"{w}.omega_z"][at].any() for w in WHEELS)
+
+
+def rises(table: Table, run: Manoeuvre) -> bool:
+    """Whether the lateral acceleration rises from 5 s to 22 s at one steer angle."""
+    at = (table["time"] > 5) & (table["time"] < 22)
+    return run.stop >= 22 and still(table, at, "delta") and np.ptp(table["a_y"][at]) > 1.0
+
+
+def locks(table: Table, run: Manoeuvre) -> bool:
+    """Whether the right wheels slide, locked, for half a second and more, and the left ones never."""
+    rows = np.count_nonzero(sliding_on_the_right(table, run))
+    return {*slid(table)} == {*RIGHT} and rows * (table["time"][1] - table["time"][0]) > 0.5
+
+
+Holds = Callable[[Table, Manoeuvre, SimpleNamespace], bool]
+ASSUMPTIONS: dict[str, Holds] = {
+    "the links begin later": lambda _t, run, _c: not run["t_couple"],
+    "the bushings are softer than half the layout's": lambda _t, run, _c: stiff(run),
+    "left and right are not alike": lambda _t, _run, c: alike(c),
+    "a strut reaches its stop": lambda t, run, _c: max(np.abs(t[f"d_{w}"]).max() for w in WHEELS) < run["travel"],
+    "a wheel slides": lambda t, _run, _c: not slid(t),
+    "the road is not level": lambda _t, run, _c: not run["slope"],
+    "the road rises across the car": lambda _t, run, _c: abs(run["slope"] * np.sin(run["slope_direction"])) < 1e-9,
+    "the car turns": lambda t, _run, _c: np.ptp(t["psi"]) < 1e-3,
+    "it follows a path": lambda _t, run, _c: not run["path"],
+    "the full drive torque does not act alone for a second": lambda t, run, _c: full_torque(t, run),
+    "the chassis still pitches": lambda t, run, _c: still(t, pulling(t, run), "pitch"),
+    "the brakes alone do not stop it": lambda t, run, _c: full_brakes(t, run),
+    "it does not stand": lambda t, run, _c: held(t, run),
+    "it is not steady at the end": lambda t, _run, _c: still(t, settled(t), "delta", "v", "omega", "roll"),
+    "the speed does not rise from 5 s to 22 s at one steer angle": lambda t, run, _c: rises(t, run),
+    "the right wheels do not lock, or a left one slides": lambda t, run, _c: locks(t, run),
+    "more than the brakes acts": lambda _t, run, _c: not (run["M_0"] or run["delta_0"] or run["k_v"]),
+}
+LINKS = ("the links begin later", "the bushings are softer than half the layout's", "left and right are not alike")
+ROLLS = (*LINKS, "a strut reaches its stop", "a wheel slides")
+AHEAD = (*ROLLS, "the road rises across the car", "the car turns", "it follows a path")
+AROUND = (*ROLLS, "the road is not level", "it follows a path")
+ASSUMES: dict[str, tuple[str, ...]] = {
+    "launch": (*AHEAD, "the full drive torque does not act alone for a second", "the chassis still pitches"),
+    "standing": (*AHEAD, "it does not stand"),
+    "braking": (*AHEAD, "the brakes alone do not stop it"),
+    "bend": (*AROUND, "it is not steady at the end"),
+    "circle": (*AROUND, "the speed does not rise from 5 s to 22 s at one steer angle"),
+    "step": (*AROUND, "it is not steady at the end"),
+    "split": (
+        *(*LINKS, "a strut reaches its stop", "the road rises across the car", "it follows a path"),
+        *("the right wheels do not lock, or a left one slides", "more than the brakes acts"),
+    ),
+}
+
+
 def judge(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
-    """The findings of a manoeuvre's judges."""
-    return [finding for name in manoeuvre.judges for finding in JUDGES[name](table, manoeuvre)]
+    """The findings of a manoeuvre's judges; closed forms where they hold."""
+    return [finding for name in manoeuvre.judges for finding in judged(name, table, manoeuvre)[0]]
 
 
-def findings(table: Table, manoeuvre: Manoeuvre) -> list[str]:
-    """Characteristic values of a manoeuvre, beside those of rigid links where these are known."""
-    with np.errstate(all="ignore"):
+def judged(name: str, table: Table, manoeuvre: Manoeuvre) -> tuple[list[Finding], str]:
+    """The findings of one judge, and why they have no closed form."""
+    c = constants(manoeuvre)
+    broken = next((words for words in ASSUMES.get(name, ()) if not ASSUMPTIONS[words](table, manoeuvre, c)), "")
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("error")
         try:
-            return [f"  {finding}" for finding in judge(table, manoeuvre)]
-        except (ValueError, IndexError, TypeError, np.linalg.LinAlgError):
-            return ["The closed forms do not apply to these parameters."]
+            found = list(JUDGES[name](table, manoeuvre, c))
+        except (ValueError, IndexError, TypeError, np.linalg.LinAlgError, Warning):
+            return [], broken or "the run is too short for it"
+    return [finding._replace(exact=None) for finding in found] if broken else found, broken
+
+
+def findings(table: Table, manoeuvre: Manoeuvre) -> tuple[list[str], list[str]]:
+    """Characteristic values of a manoeuvre in words, beside the closed forms that hold; what is beyond a bound."""
+    lines, faults = [], []
+    for name in manoeuvre.judges:
+        found, broken = judged(name, table, manoeuvre)
+        lines += [f"  {finding}" for finding in found if np.isfinite(finding.measured)]
+        lines += [f"  No closed form ({name}): {broken}."] * bool(broken)
+        faults += filter(None, (finding.fault for finding in found))
+    return lines, faults

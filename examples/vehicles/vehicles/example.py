@@ -6,7 +6,9 @@ command line before anything else. The exit status is 0 for a run that is the ma
 
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -25,12 +27,13 @@ def diverged(fmus: Fmus, asked: Manoeuvre, run: Run) -> str:
     """Whether an ending, or a friction that no road has, comes from the coupling: with a much shorter step it comes
     elsewhere, or not at all."""
     of, h = VEHICLES[asked.vehicle], min(asked.h / 4, max(asked.h / 16, 1e-4))  # s, which is short for every link here
-    end = run.ending.time if run.ending else asked.stop
+    end = run.endings[0].time if run.endings else asked.stop
     again = of.drive(fmus, asked.changed(stop=min(asked.stop, 1.1 * end + 10 * asked.h)), h, asked.exchange, asked.h)
-    if again.ending and abs(again.ending.time - end) < 2 * asked.h + 0.02 * end:
+    other = again.endings[0].time if again.endings else None
+    if other is not None and abs(other - end) < 2 * asked.h + 0.02 * end:
         return ""
-    instead = f"ends at t = {again.ending.time:.3f} s" if again.ending else "goes on"
-    if not run.ending and not again.ending:
+    instead = "goes on" if other is None else f"ends at t = {other:.3f} s"
+    if not run.endings and other is None:
         if of.grip(again.table) > DRY_ROAD:
             return ""
         instead = f"requires {of.grip(again.table):.2f}"
@@ -41,11 +44,11 @@ def diverged(fmus: Fmus, asked: Manoeuvre, run: Run) -> str:
 def judged(fmus: Fmus, asked: Manoeuvre, run: Run) -> tuple[bool, list[str]]:
     """Whether the run is the manoeuvre, and why."""
     of = VEHICLES[asked.vehicle]
-    if not run.ending:
+    if not run.endings:
         passed, lines = of.verdict(run.table, asked)
         cause = diverged(fmus, asked, run) if of.grip(run.table) > DRY_ROAD else ""
         return passed, [*lines, *filter(None, [cause])]
-    how, cause = of.describe(run.ending), diverged(fmus, asked, run)
+    how, cause = "\n".join(map(of.describe, run.endings)), diverged(fmus, asked, run)
     if not cause and "lifts_off" in asked.ends and "lifted off" in how:
         return True, [f"As intended: {how}"]
     if not cause and asked["mu_max"] and of is car.CAR:
@@ -61,7 +64,7 @@ def example(fmus: Fmus, asked: Manoeuvre, folder: Path) -> bool:
     if run.ending:  # early, perhaps within the first rows: more of them, the last where all FMUs reach one instant
         before = asked.changed(stop=run.ending.time * (1 - 1e-9))
         again = of.drive(fmus, before, asked.h, asked.exchange, before.stop / PER_PICTURE)
-        run = Run(again.table, run.ending)
+        run = replace(run, table=again.table)
     passed, lines = judged(fmus, asked, run)
     print(f"{asked.called[0].upper()}{asked.called[1:]}.", *lines, sep="\n")
     table = {n: x for n, x in run.table.items() if not n.startswith("alone.")}
@@ -80,9 +83,12 @@ def main() -> int:
     try:
         asked = options.asked(*sys.argv[1:])
         fmus, folder = build_all(), RESULTS / asked.vehicle
-        shutil.rmtree(folder, ignore_errors=True)  # an earlier run's
-        folder.mkdir(parents=True)
-        passed = example(fmus, asked, folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(dir=RESULTS, prefix=".new-") as new:
+            passed = example(fmus, asked, Path(new))
+            (folder / f"{asked.vehicle}.png").unlink(missing_ok=True)  # a run without rows has none
+            for file in Path(new).iterdir():
+                file.replace(folder / file.name)
     except ValueError as reason:
         print(reason, file=sys.stderr)
         return 1

@@ -16,42 +16,52 @@ import numpy as np
 
 from . import ssp
 from .options import Manoeuvre, manoeuvres
-from .vehicle import DRY_ROAD, Errors, Fmus, Table, Vehicle, beyond_dry, road, upright
+from .vehicle import DRY_ROAD, Errors, Fmus, Run, Table, Vehicle, beyond_dry, road, upright
 
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
 STEPS = (0.005, 0.0025, 0.00125, 0.000625, 0.0003125)  # s
 START = {"psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_start": 0.0, "X_O_start": 0.0}
 M_WHEEL, HUB_RADIUS = 20.0, 0.3 + 0.05  # of the wheel, upright; SI
-MASS, J_Z, RADIUS, GRAVITY = 300.0 + M_WHEEL, 1.8, 0.3 + 0.05 * sin(START["theta_start"]), 9.81  # SI
+J_Z, RADIUS, GRAVITY = 1.8, 0.3 + 0.05 * sin(START["theta_start"]), 9.81  # SI
 CONTROLS = ("locked", "ideal")  # brakes beside the anti-lock controller, by their numbers in brakes.csv
 CENTRE = (("X", "X_O", "X_B"), ("v", "X_O_dot", "X_B_dot"))
+BRAKES = {"abs": "the anti-lock controller", "ideal": "the ideal brake", "locked": "a brake that locks it"}
 OF_BRAKE = ("X", "v", "X_O_dot", "X_B_dot", "omega_z", "M_brake", "slip_x")
 CLOSE = 0.002  # a way this near to its closed form, relative, agrees with it: a row of the table is 0.05 %
+
+
+def mass(run: Manoeuvre = LAUNCH) -> float:
+    """Of all, kg."""
+    return run["m_B"] + M_WHEEL
 
 
 def start(run: Manoeuvre) -> dict[str, dict[str, float]]:
     """Of the wheel; of the brake what follows from the wheel."""
     upright_at_v = upright(0.0, 0.0, 0.0, run["v"], 0.0, HUB_RADIUS) if run["v"] else {}
-    per_N = run["share"] * run["mu_max"] * (HUB_RADIUS + J_Z / (MASS * HUB_RADIUS)) - run["s"]
+    per_N = run["share"] * run["mu_max"] * (HUB_RADIUS + J_Z / (mass(run) * HUB_RADIUS)) - run["s"]
     control = {"control": float(CONTROLS.index(run.name)) if run.name in CONTROLS else 2.0, "R": HUB_RADIUS}
     return {"wheel": START | road(run) | upright_at_v, "brakes": control | {"M_per_N": max(per_N, 0.0)}}
 
 
-def beside_others(table: Table, run: Manoeuvre, fmus: Fmus) -> Table:
+def beside_others(run: Run, asked: Manoeuvre, fmus: Fmus) -> Run:
     """Of the anti-lock controller's run: with those of the other brakes, in columns locked.NAME and ideal.NAME; X and v
     of all masses' centre. A wheel that rolls counts with J_z / R^2 more: the links' swing is not in them."""
-    rows = len(table["time"])
-    if run.name != "abs" or rows < 2:
-        return table
-    found = dict(table)
-    for name in (*CONTROLS, "abs"):
-        brake = replace(run, name=name)
-        one = table if name == "abs" else SUSPENDED.drive(fmus, brake, run.h, run.exchange, table["time"][1]).table
-        sprung, wheel = MASS - M_WHEEL, M_WHEEL + (J_Z / HUB_RADIUS**2 if name == "ideal" else 0.0)
-        centre = {n: (wheel * one[of] + sprung * one[body]) / (wheel + sprung) for n, of, body in CENTRE}
-        found |= {f"{name}.{n}": filled(x, rows) for n, x in (one | centre).items() if n in OF_BRAKE}
-    return found
+    rows = len(run.table["time"])
+    if asked.name != "abs" or rows < 2:
+        return run
+    runs = {"abs": run}
+    for name in CONTROLS:
+        brake = replace(asked, name=name)
+        runs[name] = SUSPENDED.drive(fmus, brake, asked.h, asked.exchange, run.table["time"][1])
+    table = dict(run.table)
+    for name, of in runs.items():
+        wheel = M_WHEEL + (J_Z / HUB_RADIUS**2 if name == "ideal" else 0.0)
+        whole = wheel + asked["m_B"]
+        centre = {n: (wheel * of.table[o] + asked["m_B"] * of.table[body]) / whole for n, o, body in CENTRE}
+        table |= {f"{name}.{n}": filled(x, rows) for n, x in (of.table | centre).items() if n in OF_BRAKE}
+    ends = {n: of.ending and replace(of.ending, component=f"wheel with {BRAKES[n]}") for n, of in runs.items()}
+    return Run(table, ends.pop("abs"), tuple(filter(None, ends.values())))
 
 
 def filled(x: np.ndarray, rows: int) -> np.ndarray:
@@ -70,22 +80,37 @@ def verdict(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
     return True, [f"{speed}; friction required: {most:.2f}."]
 
 
+ASSUMED = {  # by the closed forms of a stop: by its words where it does not hold
+    "the road is not level": lambda run: not run["slope"],
+    "the wheel is not upright, ahead": lambda run: abs(run["theta_0"] - pi / 2) < 1e-9 and not run["psi_0"],
+    "the links carry from too late on": lambda run: run["t_couple"] + 0.3 <= run["t_brake"],
+    "a link is softer than half the standard one": lambda run: run["k_h"] >= 30e3 and run["k_v"] >= 10e3,
+    "a damper is weaker than half the standard one": lambda run: run["c_h"] >= 1e3 and run["c_v"] >= 750,
+}
+
+
 def stops(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
     """The three ways to stop beside the closed forms, and whether the controller does what it is for."""
     ways = {name: way(table, run, name) for name in ("locked", "ideal", "abs")}
     if late := [name for name, found in ways.items() if not np.isfinite(found)]:
         return False, [f"Failed: it does not stand by {run.stop:g} s: {', '.join(late)}."]
-    exact = {"locked": sliding_way(table, run), "ideal": gripping_way(table, run)}
-    slid = {name: bool(np.any(table[f"{name}.slip_x"])) for name in exact}
+    broken = next((words for words, holds in ASSUMED.items() if not holds(run)), "")
+    exact = {} if broken else {"locked": sliding_way(table, run), "ideal": gripping_way(table, run)}
+    slid = {name: bool(np.any(table[f"{name}.slip_x"])) for name in CONTROLS}
+    forms = {name: f" (closed form: {found:.2f} m)" for name, found in exact.items()}
     lines = [f"Stopping distance from {run['v']:g} m/s:"]
-    lines += [f"  {name}: {ways[name]:.2f} m (closed form: {exact[name]:.2f} m)" for name in exact]
-    lines.append(f"  anti-lock: {ways['abs']:.2f} m, {100 * (1 - ways['abs'] / ways['locked']):.0f} % less than locked")
-    off = {name: abs(ways[name] / exact[name] - 1) for name in exact}
+    lines += [f"  {name}: {ways[name]:.2f} m{forms.get(name, '')}" for name in CONTROLS]
+    less = 100 * (1 - ways["abs"] / ways["locked"])
+    lines.append(f"  anti-lock: {ways['abs']:.2f} m, {abs(less):.1f} % {'less' if less >= 0 else 'more'} than locked")
+    lines += [f"No closed form: {broken}."] * bool(broken)
+    off = {name: abs(ways[name] / found - 1) for name, found in exact.items()}
     faults = ["under the ideal brake the wheel slides"] * slid["ideal"]
     faults += [f"{name}: {100 * off[name]:.1f} % off the closed form" for name in off if off[name] > CLOSE]
     faults += ["the pedal does not lock the wheel"] * (not slid["locked"])
-    faults += ["the anti-lock controller stops no shorter than a locked wheel"] * (ways["abs"] >= ways["locked"])
-    faults += ["the anti-lock controller stops shorter than grip allows"] * (ways["abs"] < shortest(table, run))
+    gains = run["mu_slide"] < run["mu_max"]  # else a locked wheel has all the grip there is
+    faults += ["the anti-lock controller stops no shorter than a locked wheel"] * (gains and less <= 0)
+    best = not broken and ways["abs"] < shortest(table, run)
+    faults += ["the anti-lock controller stops shorter than grip allows"] * best
     return not faults, [*lines, *(f"Failed: {fault}." for fault in faults[:1])]
 
 
@@ -141,7 +166,7 @@ def package_distance(package: Path, step: float, truth: Table, stop: float = LAU
 
 def acceleration(torque: float, s: float = LAUNCH["s"], radius: float = RADIUS) -> float:
     """Of wheel and sprung mass together, m/s2."""
-    return (torque - s * MASS * GRAVITY) / radius / (MASS + J_Z / radius**2)
+    return (torque - s * mass() * GRAVITY) / radius / (mass() + J_Z / radius**2)
 
 
 def fine(fmus: Fmus, step: float) -> Table:

@@ -53,10 +53,16 @@ def orders(errors: dict[float, float]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Run:
-    """Columns on a grid; how it ended, if early."""
+    """Columns on a grid; how it ended, if early, and how the runs beside it did."""
 
     table: Table
-    ending: Ended | None
+    ending: Ended | None = None
+    others: tuple[Ended, ...] = ()
+
+    @property
+    def endings(self) -> list[Ended]:
+        """All of them, the earliest first."""
+        return sorted(filter(None, (self.ending, *self.others)), key=lambda end: end.time)
 
     @property
     def whole(self) -> Table:
@@ -80,7 +86,7 @@ class Vehicle:
     starts: Callable[[Manoeuvre], dict[str, dict[str, float]]]  # start values of its wheels, and more of its models
     verdict: Callable[[Table, Manoeuvre], tuple[bool, list[str]]]  # of a run that reached its end
     wheels: dict[str, str] = field(default_factory=dict)
-    complete: Callable[[Table, Manoeuvre, Fmus], Table] = lambda table, _manoeuvre, _fmus: table
+    complete: Callable[[Run, Manoeuvre, Fmus], Run] = lambda run, _manoeuvre, _fmus: run
     grip: Callable[[Table], float] = largest_grip
     subtitle: Callable[[Manoeuvre], str] = lambda _manoeuvre: ""
 
@@ -122,7 +128,7 @@ class Vehicle:
                 ending = end
         names = ["time", *(f"{part}.{name}" if part in self.wheels else name for part, name in self.record)]
         columns = np.reshape(rows, (-1, len(names))).T
-        return Run(self.complete(dict(zip(names, columns, strict=True)), of, fmus), ending)
+        return self.complete(Run(dict(zip(names, columns, strict=True)), ending), of, fmus)
 
     def package(self, fmus: Fmus, manoeuvre: Manoeuvre, step: float, folder: Path) -> Path:
         """Its SSP package. A master that begins with zero inputs finds the body free until t_couple."""
