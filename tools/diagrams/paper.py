@@ -135,7 +135,8 @@ def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], width: fl
         name = [f"{title_of(scene).split(',')[0]}:"] * (len(scenes) > 1)
         ends = [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
         ends += ["Rounding alone tips it, at a time and to a side of chance; guided=true holds it."] * scene.by_rounding
-        said = [*dict.fromkeys([*events_of(scene), *of_panels]), *ends]
+        trust = [f"{scene.trust[0].upper()}{scene.trust[1:]}."] if scene.trust else []
+        said = [*dict.fromkeys([*events_of(scene), *of_panels]), *ends, *trust]
         texts += [" ".join([*name, *said])] * bool(said)
     return [line for text in texts for line in wrapped(text, width, size)]
 

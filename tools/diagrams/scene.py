@@ -41,6 +41,12 @@ class Scene:
         said = re.search(r"The wheel (.+?) at t = (\S+) s", log.read_text(encoding="utf-8")) if log.exists() else None
         return f"{said[1]} at $t$ = {float(said[2]):.3g} s" if said else ""
 
+    @property
+    def trust(self) -> str:
+        """How far it can be trusted, of diagrams.trust: from the file beside the table."""
+        file = self.path.with_suffix(".error")
+        return file.read_text(encoding="utf-8").splitlines()[1] if file.exists() else ""
+
     def value(self, name: str) -> float:
         """A parameter of the run, which the file holds as a column of equal numbers."""
         return float(self[name][0])

@@ -38,6 +38,9 @@ RUN = {
     "stop_time": Variable("stop_time", "run", "Real", "s", "10", "0", "", "End of the runs, above 0"),
     "output_interval": Variable("output_interval", "run", "Real", "s", "0.01", "0", "", "Time between rows, above 0"),
 }
+CHECKS = {"estimate": "1", "methods": "2", "no": "3"}
+ABOUT_CHECK = "After the run: 1 estimate of its error, 2 methods: error over time of each, 3 no estimate"
+CHECK = Variable("error", "run", "Integer", "", CHECKS["estimate"], "", "", ABOUT_CHECK)
 ABOUT_SPEED = "Speed at the start, forward: upright, along X, from the origin, unless the start values are given"
 SPEED = Variable("v", "run", "Real", "m/s", "", "", "", ABOUT_SPEED)
 
@@ -48,7 +51,7 @@ def variables(*causalities: str) -> dict[str, Variable]:
 
 
 def known() -> dict[str, Variable]:
-    return variables("parameter", "input") | RUN | {"v": SPEED}
+    return variables("parameter", "input") | RUN | {"v": SPEED, "error": CHECK}
 
 
 def usage() -> str:
@@ -120,7 +123,7 @@ def command(found: dict[str, str]) -> list[str]:
     """Arguments of `fmpy simulate`; the figures and the page need outputs, energy, friction, and all that was set."""
     wanted = ("E", "mu_required", "contact_mode", "friction_mode", "n_events")
     outputs = [v.name for v in variables().values() if v.causality != "local" or v.name in wanted]
-    start = {"s": str(PAPER_S)} | found
+    start = {"s": str(PAPER_S)} | {name: x for name, x in found.items() if name != "error"}
     times = [f"--{name.replace('_', '-')}={start.pop(name, v.start)}" for name, v in RUN.items()]
     return [*times, "--output-variables", *outputs, "--start-values", *chain(*start.items())]
 

@@ -20,11 +20,13 @@ from support import sliding as slides
 from support.driver import Values
 from support.scenes import SCENES, Scene, sines
 
+from diagrams import races
+
 from . import plots
 from .native import Solve, bytes_in_use, ffi, repeated
 from .options import EXAMPLES
 from .page import Report, Row, Tables, number, part
-from .plots import Sheet, style
+from .plots import Sheet
 from .truth import Array, headline, range_error
 
 POINTS = 101
@@ -280,25 +282,14 @@ def price_of_choice(runs: pd.DataFrame) -> Row:
     return row | {"over heyoka at equal error, at most": over_heyoka(runs)}
 
 
-LOOKS = {  # colour, marker and line
-    "automatic": (style.BLUE, "o-"),
-    "adams": (style.GREEN, "v-"),
-    "bdf": (style.SKY, "<--"),
-    "runge_kutta": (style.ORANGE, ">:"),
-    HEYOKA: (style.VERMILLION, "s-"),
-}
-
-
 def draw_races(tables: Tables) -> Sheet:
-    """A sheet for each scene, one legend; automatic lies on top, half transparent, so that what it equals shows."""
+    """A panel for each scene, one legend."""
     figure, axes = plots.sheet("ab;cd;ef", 68)
     solved = tables["runs"].dropna(subset="error")
     for ax, (scene, title) in zip(axes, TITLES.items(), strict=True):
         for method, points in solved[solved["scene"] == scene].groupby("method", sort=False):
-            colour, mark = LOOKS[method]
-            look = {"lw": 3.5, "alpha": 0.55, "ms": 5} if method == "automatic" else {"lw": 1, "ms": 3}
-            ax.plot(points["best_us"], points["error"].clip(lower=1e-14), mark, color=colour, label=method, **look)
-        plots.label(ax, "best time [µs]", "error / range", title, "xy", ylim=(1e-14, 3))
+            races.curve(ax, method, points["best_us"], points["error"])
+        races.dress(ax, title)
     plots.legend_below(figure, axes)
     return figure
 

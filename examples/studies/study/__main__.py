@@ -23,6 +23,7 @@ from values import (  # noqa: E402
     Parser,
     Variable,
     bodies,
+    limited,
     number,
     parted,
     ready,
@@ -97,6 +98,16 @@ def study_of(arguments: argparse.Namespace) -> Study:
     return study
 
 
+def count(text: str) -> int:
+    """A whole number of wheels or processes."""
+    return int(Variable("count", "", "Integer", "", "", "1", "", "").number_of(text))
+
+
+def tolerance(text: str) -> float:
+    """A number above 0."""
+    return limited("tolerance", number("tolerance", text), "", 0.0, above=True)
+
+
 def seconds(text: str) -> float:
     """A time, such as 2min."""
     return number("time", text, "s")
@@ -136,15 +147,16 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--history", nargs="+", default=[], metavar="NAME", help="variables to keep at every communication point")
     add("--stop-time", type=seconds, default=10.0, help="s (10)")
     add("--interval", type=seconds, default=0.01, help="s between communication points (0.01)")
-    add("--tolerance", type=float, help="relative tolerance of the FMU")
+    add("--tolerance", type=tolerance, help="relative tolerance of the FMU")
     add("--branch-at", type=seconds, metavar="T", help="a shared start: tunable parameters and inputs vary from T s on")
-    add("--workers", type=int, help="processes on this machine; all cores if not given")
+    add("--workers", type=count, help="processes on this machine; all cores if not given")
     add("--scheduler", metavar="tcp://HOST:PORT", help="a running Dask scheduler instead")
     add("--fmu", type=Path, default=ROOT / "wheel.fmu")
     add("--out", metavar="PLACE", help="Zarr folder of the results, or its URL (results/studies/NAME.zarr)")
     add("--overwrite", action="store_true", help="discard the results and files that are there")
     add("--netcdf", action="store_true", help="a copy as NetCDF beside the Zarr folder")
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
+    add("--check", type=count, metavar="N", help="run N wheels again at the tightest tolerance; states their error")
     add("--publish", action="store_true", help="write an example's figure into docs/figures")
     arguments = parser.parse_args(argv)
     arguments.ready = ready(arguments.wheel) if arguments.wheel else {}
@@ -193,6 +205,11 @@ def conduct(arguments: argparse.Namespace) -> None:
     results = run(content["study"], out, fmu=arguments.fmu, workers=workers, overwrite=arguments.overwrite)
     exported(out, {path.name for path in written})
     print(summarize(results, time.perf_counter() - begin))
+    if arguments.check:
+        from .checking import checked
+
+        results, said = checked(content["study"], results, arguments.fmu, out, arguments.check)
+        print(said)
     paths = [out, *(export(results, path) for path in exports)]
     if "table" in content:  # an example's own table and figure
         table = content["table"](results)

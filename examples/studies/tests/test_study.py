@@ -154,6 +154,28 @@ def test_its_own_tables_are_written_again_and_on_request_those_of_others(
     assert "%|" not in capsys.readouterr().err  # a progress bar, which is for terminals
 
 
+def test_a_check_states_the_error_of_some_wheels_and_keeps_it_in_two_columns(
+    crew: LocalCluster, fmu_path: Path, tmp_path: Path, capsys
+) -> None:
+    """Partner: at a loose tolerance the error is another; two wheels of three are drawn."""
+    where = ["--fmu", str(fmu_path), "--scheduler", crew.scheduler_address, "--stop-time", "2", "--check", "2"]
+    found = []
+    for name, tolerance in (("a", "1e-8"), ("b", "1e-5")):
+        out = tmp_path / f"{name}.zarr"
+        assert main(["--vary", "s=0,0.01,0.03", "--tolerance", tolerance, "--out", str(out), "--csv", *where]) == 0
+        said = capsys.readouterr().out
+        stated = float(re.search(r"Of 2 wheels run again at the tightest tolerance .* is at most (\S+) of", said)[1])
+        error = xr.open_zarr(out, consolidated=False)["check_error"].values
+        assert np.isfinite(error).sum() == 2
+        within(abs(stated / np.nanmax(error) - 1), 0.1, "stated, relative")
+        assert "check_error,check_shift" in (tmp_path / f"{name}.csv").read_text()
+        found.append(np.nanmax(error))
+    within(found[0], 1e-7, "error / range")
+    beyond(found[1] / found[0], 10, "error at a loose tolerance over it")
+    with pytest.raises(SystemExit, match="2"):
+        main(["--vary", "s=0,0.01", *where[:2], "--check", "0"])
+
+
 VARY = {"theta_start=60deg:90deg:3": np.radians([60, 75, 90]), "slope=0%:10%:3": np.arctan([0, 0.05, 0.1])}
 VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3]}
 

@@ -76,13 +76,19 @@ def verdict(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
         return False, [f"Failed: the wheel requires a friction coefficient of {beyond_dry(most)}."]
     if run.name == "abs":
         return stops(table, run)
-    speed = f"Speed at the end: {-HUB_RADIUS * table['omega_z'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
+    speed = f"Speed at the end: {table['X_O_dot'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
     return True, [f"{speed}; friction required: {most:.2f}."]
+
+
+def rest(run: Manoeuvre) -> float:
+    """Height at which the spring bears the sprung mass over an upright wheel, m."""
+    return HUB_RADIUS + run["l_0"] - run["m_B"] * GRAVITY / run["k_v"] if run["k_v"] else np.inf
 
 
 ASSUMED = {  # by the closed forms of a stop: by its words where it does not hold
     "the road is not level": lambda run: not run["slope"],
     "the wheel is not upright, ahead": lambda run: abs(run["theta_0"] - pi / 2) < 1e-9 and not run["psi_0"],
+    "the sprung mass starts off its rest": lambda run: abs(run["Z_B_start"] - rest(run)) < 1e-3,
     "the links carry from too late on": lambda run: run["t_couple"] + 0.3 <= run["t_brake"],
     "a link is softer than half the standard one": lambda run: run["k_h"] >= 30e3 and run["k_v"] >= 10e3,
     "a damper is weaker than half the standard one": lambda run: run["c_h"] >= 1e3 and run["c_v"] >= 750,
