@@ -1,19 +1,22 @@
-"""Error over run time, method by method: the look of all such races, and those of the scenes of ./scripts/run."""
+"""Error over run time: the look of all such races, and those of the scenes of ./scripts/run.
+
+    python -m diagrams.races FOLDER [argument of ./scripts/run]...
+
+writes FOLDER/SCENE.error for both scenes: the line for the user, then the words for the captions. With error=methods it
+also writes the table and the picture error_time of all methods and tolerances.
+"""
 
 import csv
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from statistics import median
-from typing import TYPE_CHECKING
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from diagrams import style
-
-if TYPE_CHECKING:
-    from diagrams.trust import Race
+from diagrams.start_values import CHECKS, PAPER_S, ROOT, RUN, values, variables
 
 LEAST = 1e-14  # of the range: what is drawn for less
 LOOKS = {  # colour, marker and line
@@ -42,43 +45,73 @@ def dress(ax: Axes, title: str, time: str = "best time") -> None:
     ax.grid(alpha=0.3, linewidth=0.4)
 
 
-def measured(race: "Race") -> list[dict]:
-    """A row per method and tolerance; times are medians of repetitions in turns."""
+def measured(wheel, start: dict[str, str], times: np.ndarray, truth, scales: np.ndarray) -> list[dict]:  # noqa: ANN001
+    """A row per method and tolerance, with its error or why it has none; times are medians of repetitions in turns."""
+    from trust import trust
+
     rows = []
-    for method, values in METHODS.items():
+    for method, more in METHODS.items():
         for tolerance in TOLERANCES:
-            rows.append({"method": method, "tolerance": tolerance} | race.run(values, tolerance))
-    costs: list[list[float]] = [[] for _ in rows]
-    for _ in range(TURNS):
-        for row, spent in zip(rows, costs, strict=True):
-            if not row["note"] and not (spent and spent[0] > SLOW):
-                spent.append(race.seconds(METHODS[row["method"]], row["tolerance"]))
-    for row, spent in zip(rows, costs, strict=True):
-        row["median_us"] = 1e6 * median(spent) if spent else np.nan
-    return rows
+            found = wheel.motion(start | more, times, tolerance)
+            failed = abs(len(found.rows) - len(truth.rows)) > 1
+            error, note = (np.nan, found.message) if failed else (trust(found, truth, scales).error, "")
+            row = {"method": method, "tolerance": tolerance, "error": error, "note": note}
+            rows.append(row | {"costs": [found.seconds]})
+    for _ in range(TURNS - 1):
+        for row in rows:
+            if not row["note"] and row["costs"][0] < SLOW:
+                row["costs"].append(wheel.timed(start | METHODS[row["method"]], truth.times, row["tolerance"]))
+    return [row | {"median_us": 1e6 * np.median(row.pop("costs"))} for row in rows]
 
 
-def write(races: Mapping[str, "Race"], folder: Path) -> None:
-    """error_time.csv and error_time.png, a panel for each scene; what failed goes to stdout."""
+def write(races: dict[str, list[dict]], folder: Path) -> None:
+    """error_time.csv and error_time.png, a panel for each scene; what failed is printed."""
     style.use_style()
     figure = style.figure_mm(style.PAGE, 80.0)
     figure.set_layout_engine("constrained")
-    table = []
-    for ax, (label, race) in zip(np.ravel(figure.subplots(1, len(races))), races.items(), strict=True):
-        rows = measured(race)
-        table += [{"scene": label} | row for row in rows]
+    for ax, (label, rows) in zip(np.ravel(figure.subplots(1, len(races))), races.items(), strict=True):
         for method in METHODS:
             done = [row for row in rows if row["method"] == method and not row["note"]]
-            if done:
-                curve(ax, method, [row["median_us"] for row in done], [row["error"] for row in done])
+            curve(ax, method, [row["median_us"] for row in done], [row["error"] for row in done])
         dress(ax, label, "median time")
-    handles = {text: h for ax in figure.axes for h, text in zip(*ax.get_legend_handles_labels(), strict=True)}
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=5)
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     style.save_png(figure, folder / "error_time.png")
     with (folder / "error_time.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, ("scene", "method", "tolerance", "error", "median_us", "note"))
-        writer.writeheader()
-        writer.writerows(row | {n: f"{row[n]:.4g}" for n in ("tolerance", "error", "median_us")} for row in table)
-    for row in table:
-        if row["note"]:
-            print(f"{row['scene']}, {row['method']}, {row['tolerance']:.0e}: {row['note']}", file=sys.stderr)
+        writer = csv.writer(file)
+        writer.writerow(names := ("scene", "method", "tolerance", "error", "median_us", "note"))
+        for label, rows in races.items():
+            for row in rows:
+                texts = {n: f"{x:.4g}" if isinstance(x, float) else x for n, x in row.items()} | {"scene": label}
+                writer.writerow(texts[name] for name in names)
+                if row["note"]:
+                    print(f"{label}, {row['method']}, tolerance {texts['tolerance']}: {row['note']}")
+
+
+def main(folder: Path, given: dict[str, str]) -> None:
+    """Both scenes of ./scripts/run."""
+    asked = given.pop("error", CHECKS["estimate"])
+    if asked == CHECKS["no"]:
+        return
+    from trust import DEFAULT, REPEATS, TIGHTEST, Wheel, trust
+
+    stop, interval = (float(given.pop(name, v.start)) for name, v in RUN.items())
+    times, races = np.append(np.arange(0, stop * (1 - 1e-9), interval), stop), {}
+    r_0, r, g = (float(given.get(name, variables("parameter")[name].start)) for name in ("r_0", "r", "g"))
+    fall = np.sqrt(g / (r_0 + r))  # rad/s
+    scales = np.array([r_0 + r, 1.0, fall, fall])
+    with TemporaryDirectory() as unpacked:
+        wheel = Wheel(ROOT / "wheel.fmu", unpacked)
+        for name, label in (("free", "No friction"), ("friction", "With friction")):
+            start = {"s": str(PAPER_S)} | given | ({"s": "0"} if name == "free" else {})
+            truth = wheel.motion(start, times, TIGHTEST)
+            if len(truth.rows) > 1:
+                found = trust(wheel.motion(start, times, DEFAULT, REPEATS), truth, scales)
+                (folder / f"{name}.error").write_text(f"{found.said(label)}\n{found.short}\n", encoding="utf-8")
+                if asked == CHECKS["methods"]:
+                    races[label] = measured(wheel, start, times, truth, scales)
+    if races:
+        write(races, folder)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), values(sys.argv[2:]))

@@ -43,7 +43,7 @@ class Scene:
 
     @property
     def trust(self) -> str:
-        """How far it can be trusted, of diagrams.trust: from the file beside the table."""
+        """How far it can be trusted, of diagrams.races: from the file beside the table."""
         file = self.path.with_suffix(".error")
         return file.read_text(encoding="utf-8").splitlines()[1] if file.exists() else ""
 

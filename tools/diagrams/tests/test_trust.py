@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +12,9 @@ from support import sliding
 from support.bounds import beyond, within
 from support.paths import build_folder
 from support.scenes import SCENES, Scene
+from trust import DEFAULT, HEADLINE, ROUNDING, TIGHTEST, Motion, Wheel, differences, trust
 
-from diagrams import races, trust
-from diagrams.trust import DEFAULT, HEADLINE, ROUNDING, TIGHTEST, Motion, Wheel, differences, scales_of
+from diagrams import races
 
 WORDS = {"regularized": "2", "True": "true", "False": "false"}
 NAMES = ("free", "friction", "general inertia", "fast rolling", "near flat", "past upright")
@@ -38,54 +37,55 @@ def values_of(scene: Scene) -> dict[str, str]:
 def test_the_estimated_error_is_the_true_one(wheel: Wheel, scene: Scene) -> None:
     """Beside the reference; partner: of a run ten times as exact the error is another."""
     given, times = values_of(scene), np.linspace(0, scene.duration, 51)
-    solved, scales = scene.solved(times, rtol=1e-13), scales_of(values_of(scene))
+    solved = scene.solved(times, rtol=1e-13)
     exact = np.column_stack([solved[name] for name in HEADLINE])
     run, other, truth = (wheel.motion(given, times, tolerance) for tolerance in (DEFAULT, 1e-5, TIGHTEST))
-    estimated, true = (differences(run.rows, rows, scales).max() for rows in (truth.rows, exact))
+    estimated, true = (differences(run.rows, rows).max() for rows in (truth.rows, exact))
     beyond(true, ROUNDING, "true error / range")
     within(abs(np.log2(estimated / true)), 1, "estimated over true error, off 1 by a factor of 2")
-    beyond(abs(np.log2(differences(other.rows, truth.rows, scales).max() / true)), 1, "of a looser run")
+    beyond(abs(np.log2(differences(other.rows, truth.rows).max() / true)), 1, "of a looser run")
 
 
 def test_the_shift_of_events_is_the_true_one(wheel: Wheel) -> None:
     want = read_table("paper_friction_events")["t"][1:]
     run, truth = (wheel.motion({"s": "0.03"}, np.linspace(0, 10, 1001), t, 1) for t in (1e-6, TIGHTEST))
-    found = trust.trust(run, truth, scales_of({}))
+    found = trust(run, truth)
     true = np.abs(np.array([t for t, _ in run.events]) - want).max()
     assert found.counts == (37, 37)
     within(abs(np.log2(found.shift / true)), 1, "shift estimated over true, off 1 by a factor of 2")
     assert "37 events, shifted by up to" in found.said("A") and "computing time" in found.said("A")
-    few = replace(run, events=run.events[:-1])
-    assert "36 events, 37 at the tightest tolerance" in trust.trust(few, truth, scales_of({})).said("A")
+    few = run._replace(events=run.events[:-1])
+    assert "36 events, 37 at the tightest tolerance" in trust(few, truth).said("A")
 
 
 def test_an_upright_start_and_runs_that_part_are_named_with_the_instant_up_to_which_digits_hold(wheel: Wheel) -> None:
     times = np.linspace(0, 20, 2001)
     falls = [wheel.motion({"theta_start": str(np.pi / 2), "phi_dot_start": "0"}, times, t) for t in (DEFAULT, TIGHTEST)]
-    found = trust.trust(*falls, scales_of({}))
+    found = trust(*falls)
     assert found.until is not None and "unstable or chaotic: three digits hold up to" in found.said("A")
     beyond(found.until, 5, "s, of the fall from 6e-17 rad")
     grown = 1e-9 * np.exp(np.minimum(2 * times, 20.5))  # of two runs that part
     swing = np.column_stack([np.sin(times + 0.1 * k) for k in range(4)])
     truth, other = (Motion(times, rows) for rows in (swing, swing + grown[:, None]))
-    found = trust.trust(other, truth, np.ones(4))
+    found = trust(other, truth)
     within(abs(found.until - np.log(2e6) / 2), 0.02, "s, of the thousandth part of the range")
-    assert trust.trust(Motion(times, swing + 1e-5), truth, np.ones(4)).until is None
+    assert trust(Motion(times, swing + 1e-5), truth).until is None
 
 
 def test_errors_of_rounding_are_named_as_such_and_a_column_without_range_has_its_scale() -> None:
     times, flat = np.linspace(0, 1, 11), np.column_stack([np.linspace(0, 5, 11), np.full((11, 3), 1.5)])
-    found = trust.trust(Motion(times, flat + 1e-15), Motion(times, flat), np.ones(4))
+    found = trust(Motion(times, flat + 1e-15), Motion(times, flat))
     within(found.error, 2e-15, "error")
     assert found.short == "error below 1e-11 of the range"
-    beyond(trust.trust(Motion(times, flat + 1e-3), Motion(times, flat), np.ones(4)).error, 0.9e-3, "error")
+    beyond(trust(Motion(times, flat + 1e-3), Motion(times, flat)).error, 0.9e-3, "error")
 
 
 def test_the_race_of_all_methods_is_a_picture_and_a_table(wheel: Wheel, tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(races, "TOLERANCES", (1e-4, 1e-8))
     times, given = np.linspace(0, 2, 201), {"s": "0.03"}
-    race = trust.Race(wheel, given, wheel.motion(given, times, TIGHTEST), times, scales_of({}))
-    races.write({"With friction": race}, tmp_path)
+    truth = wheel.motion(given, times, TIGHTEST)
+    found = races.measured(wheel, given, times, truth, np.ones(4))
+    races.write({"With friction": found}, tmp_path)
     header, *rows = (tmp_path / "error_time.csv").read_text().splitlines()
     assert header == "scene,method,tolerance,error,median_us,note" and len(rows) == 2 * len(races.METHODS)
     errors = {tuple(row.split(",")[1:3]): float(row.split(",")[3]) for row in rows}

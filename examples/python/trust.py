@@ -1,0 +1,145 @@
+"""How far a run can be trusted: by the same motion at the tightest tolerance, of wheel.fmu itself.
+
+The error is the largest difference of the four headline outputs over the run, relative to each output's range. Events
+are compared by their logged instants. Where both runs part, as near an upright start, the instant is given up to which
+their first three digits agree.
+"""
+
+import re
+from ctypes import CFUNCTYPE, c_double, c_int, c_uint, c_void_p, cast
+from pathlib import Path
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+from fmpy import extract, read_model_description
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.simulation import apply_start_values
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+HEADLINE = ("X_O", "theta", "phi_dot", "psi_dot")
+DEFAULT, TIGHTEST, WARNING = 1e-8, 1e-13, 1  # tolerances; fmi2Warning
+REPEATS, LONG = 5, 0.1  # of a run to be timed, and seconds after which none is begun
+LEVEL = 1e-9  # of an output's scale: less is no range
+ROUNDING = 1e-11  # of the range: errors below are those of rounding and of the tightest tolerance too
+DIGITS, PARTED = 1e-3, 1e6  # a difference that spoils three digits; its growth where both runs part
+STEP = CFUNCTYPE(c_int, c_void_p, c_double, c_double, c_int)  # fmi2DoStep
+EVENT = re.compile(r"(.*?)\bt = (\S+) s\b(.*)")
+
+
+class Motion(NamedTuple):
+    """Rows of the headline outputs at `times`, events by instant and words, seconds in fmi2DoStep, the last message."""
+
+    times: Array
+    rows: Array
+    events: tuple[tuple[float, str], ...] = ()
+    seconds: float = np.nan
+    message: str = ""
+
+
+class Wheel:
+    """wheel.fmu, unpacked and loaded once."""
+
+    def __init__(self, fmu: Path, folder: str) -> None:
+        extract(str(fmu), folder)
+        self.description = read_model_description(folder, validate=False)
+        number = {v.name: v.valueReference for v in self.description.modelVariables}
+        self.read = (c_uint * 4)(*(number[name] for name in HEADLINE)), 4
+        of = {"guid": self.description.guid, "modelIdentifier": self.description.coSimulation.modelIdentifier}
+        self.fmu, self.log = FMU2Slave(unzipDirectory=folder, instanceName="wheel", **of), []
+        self.callbacks = fmi2CallbackFunctions()
+        self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
+
+    def begin(self, start: dict[str, str], tolerance: float, logging: bool) -> None:
+        """A new instance after its initialization."""
+        self.log.clear()
+        self.fmu.instantiate(callbacks=self.callbacks, loggingOn=logging)
+        self.fmu.setupExperiment(tolerance=tolerance, startTime=0.0)
+        apply_start_values(self.fmu, self.description, start)
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+
+    def end(self) -> None:
+        """Of the instance; FMPy's freeInstance would unload the library."""
+        self.fmu.fmi2FreeInstance(self.fmu.component)
+
+    def motion(self, start: dict[str, str], times: Array, tolerance: float, repeats: int = 1) -> Motion:
+        """A run, read at `times`, and the least time of its repetitions."""
+        dll, rows, values = self.fmu.dll, [], (c_double * 4)()
+        try:
+            self.begin(start, tolerance, logging=True)
+            for t, h in zip(times.tolist(), [*np.diff(times).tolist(), 0.0], strict=True):
+                dll.fmi2GetReal(self.fmu.component, *self.read, values)
+                rows.append(tuple(values))
+                if h and dll.fmi2DoStep(self.fmu.component, t, h, 1) > WARNING:
+                    break
+        except FMICallException:  # a start that is refused
+            pass
+        self.end()
+        found = [(float(m[2]), re.sub(r" = [-+.\de]+", "", m[1] + m[3])) for m in map(EVENT.match, self.log) if m]
+        message, times = "".join(self.log[-1:]), times[: len(rows)]
+        seconds = self.timed(start, times, tolerance, repeats) if rows else np.nan
+        return Motion(times, np.array(rows), tuple(found), seconds, message)
+
+    def timed(self, start: dict[str, str], times: Array, tolerance: float, repeats: int = 1) -> float:
+        """Least time of a run's calls of fmi2DoStep, less that of as many empty calls, which is Python's."""
+        functions = [STEP(cast(f, c_void_p).value) for f in (self.fmu.dll.fmi2DoStep, self.fmu.dll.fmi2GetVersion)]
+        plan, costs = [*zip(times.tolist(), np.diff(times).tolist(), strict=False)], []
+        while len(costs) < repeats and sum(map(sum, costs)) < LONG:
+            self.begin(start, tolerance, logging=False)
+            marks = [perf_counter()]
+            for function in functions:  # the second ignores what it is given
+                for t, h in plan:
+                    function(self.fmu.component, t, h, 1)
+                marks.append(perf_counter())
+            self.end()
+            costs.append((marks[1] - marks[0], marks[2] - marks[1]))
+        step, empty = np.min(costs, axis=0)
+        return max(float(step - empty), 0.0)
+
+
+def differences(rows: Array, truth: Array, scales: Array | float = 1.0) -> Array:
+    """By instant: the largest difference of a column, over its range; over its scale where it has hardly any range."""
+    span = np.ptp(truth, axis=0)
+    return (np.abs(rows - truth) / np.where(span > LEVEL * scales, span, scales)).max(axis=1)
+
+
+class Trust(NamedTuple):
+    """What the comparison of a run with the one at the tightest tolerance gives."""
+
+    error: float
+    shift: float | None  # s, of the events' instants; None where not all are there in both
+    counts: tuple[int, int]  # events, there and in the run at the tightest tolerance
+    seconds: float
+    until: float | None  # s, up to where three digits hold in a motion whose runs part
+
+    @property
+    def short(self) -> str:
+        """For a caption."""
+        if self.until is not None:
+            return f"three digits hold up to {self.until:.3g} s"
+        return f"error {self.error:.1e} of the range" if self.error > ROUNDING else "error below 1e-11 of the range"
+
+    def said(self, label: str) -> str:
+        """One line for the user."""
+        events = f"; {self.counts[0]} events, {self.counts[1]} at the tightest tolerance" * (self.shift is None)
+        if self.shift is not None and self.counts[0]:
+            events = f"; {self.counts[0]} event{'s' * (self.counts[0] > 1)}, shifted by up to {self.shift:.1e} s"
+        unstable = "unstable or chaotic: " * (self.until is not None)
+        return f"{label}: {unstable}{self.short}{events}; computing time {1e3 * self.seconds:.3g} ms."
+
+
+def trust(run: Motion, truth: Motion, scales: Array | float = 1.0) -> Trust:
+    """Of a run, by the same at the tightest tolerance."""
+    few = min(len(run.rows), len(truth.rows))
+    apart, lean = differences(run.rows[:few], truth.rows[:few], scales), np.abs(truth.rows[:few, 1] - np.pi / 2)
+    grows = apart.max() > PARTED * max(apart[: max(2, few // 10)].max(), 1e-16)
+    tips = lean[0] < 1e-12  # exactly upright: by rounding
+    parts = (apart > DIGITS) & grows | (lean > DIGITS) & tips
+    kinds = [[words for _, words in motion.events] for motion in (run, truth)]
+    shifts = (abs(a - b) for (a, _), (b, _) in zip(run.events, truth.events, strict=False))
+    shift = max(shifts, default=0.0) if kinds[0] == kinds[1] else None
+    until = float(run.times[np.argmax(parts)]) if parts.any() else None
+    return Trust(float(apart.max()), shift, (len(kinds[0]), len(kinds[1])), run.seconds, until)
