@@ -126,6 +126,7 @@ def test_a_fifth_wheel_is_a_change_of_one_file(fmus: Fmus, tmp_path: Path) -> No
     without = shutil.ignore_patterns("__pycache__", "axle.csv", "quarter_car.csv")  # FMUs that are not built again
     for folder in ("examples/vehicles", "examples/python", "cmake"):
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=without)
+    shutil.copy(ROOT / "modelDescription.xml", tmp_path)
     fifth = WHEELS["rr"] | {"name": "fifth", "y": 0.0}
     with (tmp_path / "examples" / "vehicles" / "car" / "car.toml").open("a") as file:
         file.write("\n".join(["[wheel.spare]", *(f"{n} = {x!r}" for n, x in fifth.items())]))
