@@ -61,8 +61,7 @@ constexpr double part_of_tolerance = 0.2;
 constexpr double distance = 0.1, error_of_last = 0.005;
 constexpr int most_sweeps = 30, most_tries = 40;
 constexpr double longer = 1.01;  // of the stop
-// The shortest step, in roundings of time: whatever the settling state does in it, the others hardly move. Its sweeps
-// converge where the speed lasts for many such steps.
+// The shortest step, in roundings of time: the settling state may do in it what it will, the others hardly move.
 constexpr double roundings = 2;
 
 // At the point j of a step of this size.
@@ -160,19 +159,25 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
   last.end = step->start;
   if (known_) expand(problem, &last);
   const double shortest = roundings * rounding_at(step->start);
+  failure_ = "the step size became too small";
   for (int attempts = 0; attempts < most_tries; ++attempts) {
     size_ = std::fmin(std::fmax(liked_, shortest), problem.longest_step);
     const bool stops = step->start + longer * size_ >= stop;
     if (stops) size_ = stop - step->start;
     step->end = stops ? stop : step->start + size_;
-    const bool finite = predict(problem, last, counters, step);
-    const double error = finite ? try_size(problem, weights, counters, step) : INFINITY;
+    if (!predict(problem, last, counters, step)) {
+      failure_ = "the rates of the states are not finite";
+      break;
+    }
+    const bool is_shortest = size_ <= shortest;
+    if (is_shortest) weights[problem.settling.state] = 0;
+    const double error = try_size(problem, weights, counters, step);
     const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
-    known_ = error <= 1 || (size_ <= shortest && std::isfinite(error));
+    known_ = error <= 1;
     // Where the direction starts off its limit, errors hardly depend on the size of long steps.
     const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.25, 3.0) : 0.25);
     if (!known_ || !stops || next < liked_) liked_ = next;
-    if (!known_ && size_ <= shortest) break;
+    if (!known_ && is_shortest) break;
     if (!known_) continue;
     const Row y_end = state_at(radau_points - 1, *step, size_, f_);
     std::copy_n(y_end.data(), max_states, step->y_end);
@@ -182,7 +187,7 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     failure_ = nullptr;
     return true;
   }
-  failure_ = "the step size became too small";
+  known_ = false;
   return false;
 }
 

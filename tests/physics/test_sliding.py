@@ -16,7 +16,7 @@ from support.closed_forms import circle_spin
 from support.driver import DISCARD, ERROR, OK
 from support.motion import Library, Run, start_values
 from support.motion import run as attempt
-from support.scenes import Scene
+from support.scenes import THETA_0, Scene
 from support.schedule import Schedule
 from support.sliding import HUB, LOCK, ROAD, SLIDES, UPRIGHT, random_slide
 
@@ -197,6 +197,32 @@ def test_every_output_agrees_with_the_independent_reference(library: Library, na
     beyond(
         error(library, scene, 1e-11, 1.0, formulation=formulation, mu_slide=mu), 1e-6, "error with another coefficient"
     )
+
+
+def growth(library: Library, scene: Scene) -> float:
+    """Of errors of the start: the largest change of an output over that of theta, spin or slip."""
+    off, times, sizes = 1e-8, np.linspace(0, scene.duration, 51), [1.0]
+    start = {"theta_start": THETA_0, "phi_dot_start": -2.0, "slip_x_start": 0.0} | scene.start
+    moved = [name for name in ("theta_start", "phi_dot_start", "slip_x_start") if name in scene.start or start[name]]
+    ends = [simulate(library, scene, times, 1e-12, **{name: start[name] + off}) for name in moved]
+    exact = simulate(library, scene, times, 1e-12)
+    for kind in KINDS:
+        size = max(1.0, *(float(np.abs(exact[column]).max()) for column in kind))
+        sizes += [absolute_error(end[column], exact[column]) / size / off for end in ends for column in kind]
+    return max(sizes)
+
+
+@all_slides
+def test_the_error_of_a_slide_stays_below_three_tolerances(library: Library, name: str) -> None:
+    """Where an error of the start grows more than a hundredfold, by so much more."""
+    scene = SLIDES[name]
+    bound = 3 * max(1.0, growth(library, scene) / 100)
+    for formulation in (2, 3):
+        for tolerance in (1e-5, 1e-8, 1e-10):
+            off = error(library, scene, tolerance, 1.0, formulation=formulation)
+            within(off / tolerance, bound, f"error over the tolerance {tolerance:g} of formulation {formulation}")
+    slower = {"mu_slide": scene.road.mu_slide * (1 - 1e-6)}
+    beyond(error(library, scene, 1e-10, 1.0, **slower) / 1e-10, 100, "error with another coefficient, in tolerances")
 
 
 def moments(scene: Scene) -> list[tuple[float, int]]:

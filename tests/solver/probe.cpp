@@ -1,8 +1,10 @@
 // One solver and its problem behind a C interface, for ctypes: problems with closed forms, no wheel, no frame. What is
 // watched are functions of Python.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <new>
+#include <vector>
 
 #include "solver.hpp"
 
@@ -11,10 +13,13 @@
 namespace {
 
 // harmonic: y = (cos t, -sin t) from (1, 0); clock: y = t; explosive: y' = y^2; ending: y' = 1 up to t = 1, then no
-// number.
+// number; wave: y = sin(5 t) / 5.
+// settling, falling: the speed u = t or 1 - t; the direction chi settles to sin t, u (chi - sin t)' = -4.5 (chi - sin
+// t): their difference goes as u^-4.5 or u^4.5; two states as the harmonic ones, pushed by the difference.
 constexpr int states = 8;
+constexpr double stiffness = 4.5;
 
-enum Kind : int { harmonic, clock, explosive, ending };
+enum Kind : int { harmonic, clock, explosive, ending, wave, settling, falling };
 using Watch = double (*)(double t, const double* y);
 
 // A problem has one state or two, and others that rest at zero: a solver takes eight.
@@ -41,9 +46,17 @@ void rates(const Setting& s, double t, const double* y, double* d) {
   if (s.kind == clock) d[0] = 1;
   if (s.kind == explosive) d[0] = y[0] * y[0];
   if (s.kind == ending) d[0] = t > 1 ? NAN : 1;
+  if (s.kind == wave) d[0] = std::cos(5 * t);
+  if (s.kind < settling) return;
+  const double off = y[1] - std::sin(t);
+  d[0] = s.kind == settling ? 1 : -1;
+  d[1] = y[0] == 0 ? 0 : std::cos(t) - stiffness * off / y[0];
+  d[2] = y[3] + off, d[3] = -y[2];
 }
 
-int states_of(const Setting& s) { return s.kind == harmonic ? 2 : 1; }
+int states_of(const Setting& s) { return s.kind >= settling ? 4 : s.kind == harmonic ? 2 : 1; }
+
+double slope_of_turning(void*, double, const double*) { return -stiffness; }
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   rates(of(owner), t, y, y_dot);
@@ -69,7 +82,17 @@ solver::Problem problem_of(Probe* probe) {
   p.states = states, p.owner = &s, p.derivative = derivative, p.weights = weights;
   if (s.watched) p.watch({1, watched, false});
   p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = s.longest_step;
+  // Of the other problems the last state, which rests, at a speed of one.
+  p.settling = s.kind >= settling ? solver::Settling{1, 0, slope_of_turning} : solver::Settling{7, 6, slope_of_turning};
   return p;
+}
+
+// The state with all that rests.
+std::array<double, states> whole(const Setting& s, const double* y) {
+  std::array<double, states> all;
+  std::copy_n(y, states, all.begin());
+  if (s.method == solver::Method::collocation && s.kind < settling) all[6] = 1;
+  return all;
 }
 
 }  // namespace
@@ -77,7 +100,7 @@ solver::Problem problem_of(Probe* probe) {
 // At t = 0.
 PUBLIC Probe* probe_new(const Setting* setting) {
   Probe* probe = new (std::nothrow) Probe{*setting, {}};
-  (void)probe->solver.start(problem_of(probe), setting->method, 0, setting->y);
+  (void)probe->solver.start(problem_of(probe), setting->method, 0, whole(*setting, setting->y).data());
   return probe;
 }
 
@@ -96,7 +119,8 @@ PUBLIC const char* probe_failure(const Probe* probe) { return probe->solver.fail
 PUBLIC void probe_limit_first_step(Probe* probe, double dt) { probe->solver.limit_first_step(dt); }
 
 PUBLIC void probe_restart(Probe* probe, double t, const double* y) {
-  (void)probe->solver.restart(problem_of(probe), probe->setting.method, t, y);
+  const Setting& s = probe->setting;
+  (void)probe->solver.restart(problem_of(probe), s.method, t, whole(s, y).data());
 }
 
 // Begin of the last step, time known; steps, evaluations, roots.
@@ -106,4 +130,15 @@ PUBLIC void probe_progress(const Probe* probe, double now[5]) {
   const double times[] = {s.step_start(), s.known_until()};
   const long long counts[] = {n.steps, n.rhs, n.roots};
   std::copy_n(counts, 3, std::copy_n(times, 2, now));
+}
+
+// The history of one into another, of the same setting, by way of bytes; false where it was refused.
+PUBLIC int probe_copy(Probe* from, Probe* to) {
+  support::Archive size = support::Archive::counting();
+  from->solver.save_history(size);
+  std::vector<unsigned char> bytes(size.bytes());
+  support::Archive writing = support::Archive::writing(bytes.data());
+  from->solver.save_history(writing);
+  support::Archive reading = support::Archive::reading(bytes.data(), bytes.size());
+  return to->solver.restore_history(problem_of(to), to->setting.method, reading);
 }

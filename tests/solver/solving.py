@@ -2,12 +2,15 @@
 
 import ctypes
 from collections import namedtuple
+from copy import copy
 from ctypes import CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_int, c_longlong, c_void_p
 
 import numpy as np
 
-METHODS = {"adams": 0, "bdf": 1, "runge_kutta": 2}
-PROBLEMS = {"harmonic": (1.0, 0.0), "clock": (0.0,), "explosive": (1.0,), "ending": (1.0,)}  # the state at t = 0
+METHODS = {"adams": 0, "bdf": 1, "runge_kutta": 2, "collocation": 3}
+# The state at t = 0.
+PROBLEMS = {"harmonic": (1.0, 0.0), "clock": (0.0,), "explosive": (1.0,), "ending": (1.0,), "wave": (0.0,)}
+PROBLEMS |= {"settling": (0.0, 0.0, 1.0, 0.0), "falling": (1.0, 0.0, 1.0, 0.0)}
 STATES = 8  # those beyond the problem's own rest at zero
 STEPPED, EVENT, FAILED = range(3)
 WATCH = CFUNCTYPE(c_double, c_double, POINTER(c_double))
@@ -59,6 +62,13 @@ class Solver:
 
     def restart(self, t, y):
         self.library.probe_restart(self.probe, c_double(t), (c_double * STATES)(*y))
+
+    def copied(self):
+        """Another solver of the same setting with this one's history, by way of bytes."""
+        other = copy(self)
+        other.probe = c_void_p(self.library.probe_new(ctypes.byref(self.setting)))
+        assert self.library.probe_copy(self.probe, other.probe)
+        return other
 
     @property
     def now(self):
