@@ -1,7 +1,7 @@
 """Collocation at the points of Radau IIA: order, error estimate, the state that settles, restart, dense output.
 
-The problems of probe.cpp: |u| = t or 1 - t, a direction that settles to sin t at the rate 4.5 / |u|, two states that the
-difference pushes. test_steps.py and test_search.py run for collocation too.
+The problems of probe.cpp: |u| = t or 1 - t, a direction that settles to sin t at the rate 4.5 / |u|, two states that it
+pushes. test_steps.py and test_search.py run for collocation too.
 """
 
 from functools import partial
