@@ -69,14 +69,17 @@ SOLUTIONS = re.findall(
 )
 
 
-@pytest.mark.parametrize("number", "123456")
+@pytest.mark.parametrize("number", "1234567")
 def test_every_exercise_has_a_hidden_solution_that_gives_its_numbers(lesson, number: str) -> None:
-    assert [found for found, *_ in SOLUTIONS] == list("123456")
+    assert [found for found, *_ in SOLUTIONS] == list("1234567")
     ((_, words, code),) = (found for found in SOLUTIONS if found[0] == number)
     with contextlib.redirect_stdout(io.StringIO()) as printed, contextlib.chdir(NOTEBOOK.parent):
         exec(code, dict(lesson))
     values = np.array(re.findall(r"-?\d+\.\d+(?:e-?\d+)?", printed.getvalue()), dtype=float)
     if number in "15":  # beside the closed form; of two masses
         within(relative_error(values[::2], values[1::2]), 1e-9, "apart, relative")
+    elif number == "7":  # coefficient, farthest place, speed at the end, of two roads
+        within(relative_error(values[2::3], np.full(2, -1.0)), 1e-9, "speed at the end off 1 m/s back, relative")
+        beyond(relative_error(values[1::3], values[1]), 0.1, "places apart, relative")
     else:
         assert f"{values[0]:.2g}" in words or f"{values[0]:.3g}" in words
