@@ -74,8 +74,8 @@ def draw_ground(ax: Axes, scene: Scene) -> list[str]:
     """Above, the normal force; below, the coefficient of friction that rolling needs, and mu_max if it is set."""
     marks = _time_axis(ax, scene)
     right, force, limit = ax.twinx(), scene["lambda_3"], scene.value("mu_max")
-    if "jams" in scene.ending:  # there it grows without bound, and beyond has the other sign
-        force = np.where(force < 0, np.nan, force)
+    if "jams" in scene.ending:  # there it grows without bound
+        force = np.append(force[:-1], np.nan)
     needed = np.clip(np.nan_to_num(scene["mu_required"], nan=MOST), 0.0, MOST)
     right.spines["right"].set_visible(True)
     ax.set_ylabel("normal force $N$ [N]", color=style.BLUE)

@@ -236,13 +236,13 @@ def test_loss_and_return_of_grip_are_no_transitions_of_friction() -> None:
 
 
 def test_a_jammed_wheel_is_drawn_without_the_force_beyond_the_jam(tmp_path: Path) -> None:
-    one = scene(lambda_3=np.where(TIME < 10, 200 + 100 * TIME, -123.0), contact_mode=1)
-    for words, least in (("jams (Painlevé's paradox) with mu_slide = 1.8", 200), ("lies flat", -123)):
+    one = scene(lambda_3=np.where(TIME < 10, 200 + 10 * TIME, 7e5), contact_mode=1)
+    for words, most in (("jams (Painleve's paradox) with mu_slide = 1.8", 300), ("lies flat", 7e5)):
         there = Scene(tmp_path / "free.csv", one.columns)
         (tmp_path / "free.log").write_text(f"The wheel {words} at t = 10 s, theta = 1 rad: the run ends there.\n")
         ax = style.figure_mm(80, 80).subplots()
         panels.draw_ground(ax, there)
-        assert np.nanmin(ax.lines[0].get_ydata()) == least
+        assert np.nanmax(ax.lines[0].get_ydata()) == pytest.approx(most, rel=1e-3)
 
 
 def test_the_parts_of_the_slip_have_labels_also_where_one_is_zero() -> None:

@@ -8,6 +8,7 @@ from support.bounds import beyond, within
 from support.closed_forms import critical_spin
 from support.paths import ROOT
 from support.scenes import PAPER
+from support.sliding import SLIDES
 
 from page.tests.pages import column, start
 
@@ -143,12 +144,17 @@ def test_the_friction_that_rolling_needs_is_shown_beside_the_grip_and_else_the_s
     assert "slides" in live.locator("#legend").inner_text() and "held" not in live.locator("#legend").inner_text()
 
 
-def test_a_jammed_wheel_shows_no_force_that_pulls(live):
-    """Painlevé's paradox: the normal force grows without bound, and beyond has the other sign."""
-    start(live, theta_start=1.0, phi_dot_start=0.0, mu_max=2.0, mu_slide=1.8, slip_y_start=-3.0)
-    assert "jams" in live.evaluate("page.wheels[0].ended") and column(live, "lambda_3")[-1] < 0
+def test_the_force_of_a_jam_which_grows_without_bound_is_no_number(live):
+    """Painlevé's paradox; the same wheel beyond the jam lies flat, with its last normal force."""
+    start(live, theta_start=1.2, phi_dot_start=0.0, mu_max=2.0, mu_slide=1.6, slip_y_start=3.0)
     live.evaluate("page.player.seek(10); page.draw()")
-    assert live.locator(".plot output").nth(2).inner_text() == "–"
+    force = live.locator(".plot output").nth(2)
+    assert "lies flat" in live.evaluate("page.wheels[0].ended") and float(force.inner_text()) > 0
+    start(live, **SLIDES["jams"].start)
+    assert "jams" in live.evaluate("page.wheels[0].ended") and column(live, "lambda_3")[-1] > 1e5
+    live.evaluate("page.player.seek(10); page.draw()")
+    assert force.inner_text() == "–" and live.evaluate("page.plots.curves[2].ranges[1][1]") < 1e3
+    live.evaluate("page.player.seek(0)")
 
 
 def test_a_fall_that_hangs_on_rounding_says_so(live):
@@ -222,6 +228,10 @@ def test_the_ready_case_backspin_slides_grips_and_comes_back(live):
     assert begin == 0 and 0.9 < end < 1.2 and not others
     X_O = column(live, "X_O")
     assert max(X_O) > X_O[-1] and X_O[-1] < X_O[0]
+    choose(live, "wheel:coin")
+    assert live.evaluate("['slip_x_start', 'mu_max', 'theta_start'].map((name) => page.live.value(name))") == [
+        0, 0, pytest.approx(5 * np.pi / 12)]  # fmt: skip
+    assert live.evaluate("page.live.value('X_O_start')") == pytest.approx(-0.011775 * np.cos(5 * np.pi / 12))
 
 
 SAME = """async ([sizes, wheels]) => {

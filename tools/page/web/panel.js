@@ -161,7 +161,11 @@ function setUpReady(live, wheels) {
   host.addEventListener('change', ({target: {value}}) => {
     const [kind, name] = value.split(':');
     if (kind === 'body') live.setBody(name);
-    if (kind === 'wheel') live.setWheel(wheels[name]);
+    if (kind !== 'wheel') return;
+    const [, before] = Object.entries(wheels).find(same) ?? [];
+    Object.keys(before?.start ?? {})
+        .forEach((other) => delete live.plan.values[other]);  // the throw goes with its wheel
+    live.setWheel(wheels[name]);
   });
   const shown = onChange((value) => {
     host.value = value;

@@ -21,6 +21,8 @@ export function before(times, t) {
   return low;
 }
 
+const POLE = 10;  // the last step of a normal force that grows without bound: many times the force before
+
 export class Table {
   /**
    * columns: {name: Float64Array}, all of one length, `time` rising. shown: the same, but where the sliding wheel jams
@@ -30,11 +32,11 @@ export class Table {
     this.columns = columns;
     this.time = columns.time;
     this.rows = this.time.length;
-    const {lambda_1, lambda_3: N, slip_x, slip_y} = columns;
-    const slides = slip_x?.at(-1) || slip_y?.at(-1);
-    this.jams = Boolean(slides) && N?.at(-1) < 0 && lambda_1?.at(-1) !== 0;  // a ground that pulls gives no friction
+    const {lambda_3: N, slip_x, slip_y} = columns;
+    const slides = Boolean(slip_x?.at(-1) || slip_y?.at(-1));
+    this.jams = slides && N !== undefined && !(Math.abs(N.at(-1)) <= POLE * Math.abs(N.at(-2)));
     const forces = Object.entries(columns).filter(([name]) => this.jams && name.startsWith('lambda_'));
-    const known = ([name, values]) => [name, values.map((value, row) => (N[row] < 0 ? NaN : value))];
+    const known = ([name, values]) => [name, values.map((value, row) => (row < this.rows - 1 ? value : NaN))];
     this.shown = {...columns, ...Object.fromEntries(forces.map(known))};
   }
 
