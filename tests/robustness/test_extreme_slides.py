@@ -1,0 +1,173 @@
+"""Slides at the extremes: hardly any friction to 20, light and heavy wheels, thin discs and fat tori, fast spins, far
+times, tiny slips; cut inputs, failing steps.
+
+What must hold of any slide without inputs: the energy falls, the road pushes against the slip with mu_slide N, both
+formulations take the same way. SI; a wheel's own time is sqrt((r_0 + r) / g).
+"""
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+from support.bounds import absolute_error, beyond, within
+from support.driver import DISCARD, ERROR, OK
+from support.motion import Library, Run
+from support.motion import run as attempt
+from support.schedule import play
+from support.sliding import random_slide
+
+from .sweep import similar
+
+TOLERANCE = 1e-8
+THROWN = {"slip_x_start": -1.5, "slip_y_start": 0.8, "phi_dot_start": -6.0}
+STATES = ("X_O", "Y_O", "theta", "psi_dot", "phi_dot", "slip_x", "slip_y")
+
+EXTREMES: dict[str, dict[str, float]] = {
+    **{f"mu = {mu:g}": {"mu_max": mu, "mu_slide": mu, **THROWN} for mu in (1e-9, 1e-4, 0.05, 2.0, 20.0)},
+    **{f"mu_max = {mu:g}": {"mu_max": mu, "mu_slide": 0.5 * mu, **THROWN} for mu in (1e-6, 1.0)},
+    **{f"m = {m:g} kg": {**THROWN, **similar(1.0, m)} for m in (1e-6, 1e6)},
+    **{f"m = {m:g} kg, the paper's J": {**THROWN, "m": m} for m in (1e-3, 1e4)},
+    "thin disc": {**THROWN, "r": 0.0},
+    "fat torus": {**THROWN, "r": 3.0, "J_x": 90.0, "J_y": 90.0, "J_z": 90.0},
+    "rod": {**THROWN, "J_x": 1.8, "J_y": 0.9, "J_z": 0.9},
+    **{f"spin {spin:g} rad/s": {**THROWN, "phi_dot_start": -spin} for spin in (1e-9, 100.0, 1e3)},
+    **{f"slip {u:g} m/s": {**THROWN, "slip_x_start": u, "slip_y_start": -u} for u in (1e-10, 1e-5, 100.0)},
+    "across alone": {"slip_y_start": -3.0},
+    "rolling friction": {**THROWN, "s": 0.1},
+    "steep": {**THROWN, "slope": 1.2, "slope_direction": 0.7},
+    "near flat": {**THROWN, "theta_start": 0.05},
+}
+
+
+def thrown(library: Library, name: str, formulation: int, start: float = 0.0) -> Run:
+    """1 s, or until it ends."""
+    values = {"mu_max": 0.4, "mu_slide": 0.35, **EXTREMES[name], "formulation": formulation}
+    return library.simulate(start + np.linspace(0, 1, 101), TOLERANCE, **values)
+
+
+def force_error(run: Run, mu: float) -> float:
+    """Of the road's force beside mu N against the slip, over mu N."""
+    slides = (run["contact_mode"] == 1) & (np.hypot(run["slip_x"], run["slip_y"]) > 0)
+    slip, force = (np.array([run[f"{what}_x"], run[f"{what}_y"]])[:, slides] for what in ("slip", "lambda"))
+    N = run["lambda_3"][slides]
+    return float(np.abs((force / N + mu * slip / np.hypot(*slip)) / mu).max(initial=0.0))
+
+
+@pytest.mark.parametrize("name", EXTREMES)
+def test_an_extreme_slide_loses_energy_obeys_coulomb_and_is_the_same_in_both_formulations(library, name: str) -> None:
+    mu = EXTREMES[name].get("mu_slide", 0.35)
+    runs = [thrown(library, name, formulation) for formulation in (2, 3)]
+    for run in runs:
+        assert run.status in (OK, DISCARD), run.messages[-1:]
+        assert (run["contact_mode"] == 1).any()
+        if "slope" not in EXTREMES[name]:  # where E takes no account of the height along the road
+            E = run["E"]
+            within(float(np.diff(E).max(initial=0.0)) / np.abs(E).max(), 10 * TOLERANCE, "gain of energy, relative")
+        within(force_error(run, mu), 1e-9, "force beside friction, relative")
+        beyond(force_error(run, 0.9 * mu), 1e-2, "force beside nine tenths of it")
+        within(run.counters["n_steps"], 2e4, "steps")
+    assert (runs[0].end is None) == (runs[1].end is None)
+    last = min(len(run.t) for run in runs) - 1
+    for column in STATES:
+        size = max(1.0, float(np.abs(runs[0][column]).max()))
+        apart = absolute_error(runs[1][column][:last], runs[0][column][:last]) / size
+        within(apart, 3e-5, f"{column} of the formulations apart, relative")
+
+
+@pytest.mark.parametrize("start", [-1e9, 1e3, 1e9])
+@pytest.mark.parametrize("name", ["mu = 0.05", "thin disc", "slip 1e-05 m/s"])
+def test_a_slide_is_the_same_at_any_start_time(library: Library, name: str, start: float) -> None:
+    """To the rounding of the caller's times, 1e-7 s at 1e9 s."""
+    early, late = thrown(library, name, 2), thrown(library, name, 2, start)
+    rounding = float(np.spacing(abs(start)))
+    for column in STATES:
+        rate = float(np.abs(np.diff(early[column])).max()) / 0.01
+        within(absolute_error(late[column], early[column]), 4 * rate * rounding + 1e-12, f"{column} apart")
+    moments = [[float(m.split(" = ")[1].split()[0]) for m in run.messages if " slid" in m] for run in (early, late)]
+    assert len(moments[0]) == len(moments[1]) and (moments[0] or name == "mu = 0.05")
+    apart = max((abs(b - start - a) for a, b in zip(*moments, strict=True)), default=0.0)
+    within(apart, 4 * rounding + 1e-9, "instants apart, s")
+
+
+# ---- inputs that are cut ----
+
+
+def test_communication_points_inside_a_slide_change_no_more_than_the_tolerance(wheel) -> None:
+    """Random wheels on random roads under polynomials, with 20 random cuts."""
+    random, slides = np.random.default_rng(10), 0
+    for _ in range(12):
+        scene = random_slide(random)
+        pieces = [(0.0, {"F_X": random.normal(0, 20, 3), "F_Y": random.normal(0, 20, 3), "M_3": random.normal(0, 9, 3)})]
+        ends = []
+        for count in (0, 20):
+            w = wheel(logging=True).start(**scene.start, formulation=2)
+            if play(w, pieces, 0.6, random.uniform(0, 0.6, count)) != OK:
+                break
+            ends.append(np.array(w.get(*STATES)))
+            slides += sum("slid" in sentence for sentence in w.sentences)
+        if len(ends) == 2:
+            within(absolute_error(*ends) / max(1.0, np.abs(ends[0]).max()), 300 * TOLERANCE, "states apart")
+    beyond(slides, 5, "slides")
+
+
+def test_an_input_set_to_what_it_is_changes_no_bit_of_a_slide(wheel) -> None:
+    values = {"mu_max": 0.4, "mu_slide": 0.35, **THROWN, "M_brake": 5.0}
+    w, other = (wheel().start(**values) for _ in range(2))
+    for t in np.linspace(0.01, 0.6, 60):
+        other.put(M_brake=5.0).to(t)
+    assert w.to(0.6).bits() == other.bits()
+    assert w.bits() != wheel().start(**values | {"M_brake": 5.001}).to(0.6).bits()
+
+
+# ---- steps that fail ----
+
+
+@pytest.mark.parametrize("load", [{"M_3": 1e80}, {"F_X": 1e80}, {"M_1": 1e200}], ids=str)
+@pytest.mark.parametrize("formulation", [2, 3])
+def test_a_slide_under_an_enormous_load_fails_soon_with_a_reason_and_stays_as_it_was(wheel, load, formulation) -> None:
+    w = wheel().start(mu_max=0.4, mu_slide=0.35, keep_contact=True, formulation=formulation, **THROWN).to(0.05)
+    assert w.get("contact_mode") == [1]
+    saved = w.serialized()
+    after, bits = w.by(0.05).bits(), w.back(saved).put(**load).bits()
+    assert w.step(0.05) == ERROR
+    assert w.sentences[-1].startswith("The solver stopped at t = ")
+    assert w.bits() == bits
+    assert w.back(saved).by(0.05).bits() == after
+
+
+# ---- random wheels, every kind of extreme at once ----
+
+
+def extreme_slide(random: np.random.Generator) -> dict[str, float]:
+    """Sizes over six decades, a coefficient over ten, slips over twelve; rates in the wheel's own."""
+    scale, mass = 10 ** random.uniform(-3, 3), 10 ** random.uniform(-3, 3)
+    a, b, c = random.uniform(0.05, 0.9, 3)
+    r_0 = 0.3 * scale
+    r = r_0 * random.choice([0.0, 10 ** random.uniform(-2, 0.5)])
+    own, I = sqrt((r_0 + r) / 9.81), mass * (r_0 + r) ** 2  # noqa: E741
+    mu = 10 ** random.uniform(-8, 1.3)
+    start = {"m": mass, "r_0": r_0, "r": r, "J_x": I * (b + c), "J_y": I * (a + c), "J_z": I * (a + b)}
+    start |= {"mu_max": mu, "mu_slide": mu * random.choice([1.0, random.uniform(0.3, 1)])}
+    start |= {"s": r_0 * random.choice([0.0, 10 ** random.uniform(-6, -1)]), "theta_start": random.uniform(0.3, pi - 0.3)}
+    rates = ("psi_dot_start", "theta_dot_start", "phi_dot_start")
+    start |= dict(zip(rates, random.normal(0, 1, 3) / own, strict=True))
+    slip = (r_0 + r) / own * 10 ** random.uniform(-12, 1)
+    start |= dict(zip(("slip_x_start", "slip_y_start"), slip * random.normal(0, 1, 2), strict=True))
+    return {name: float(value) for name, value in start.items()} | {"own": own}
+
+
+@pytest.mark.parametrize("block", range(4))
+def test_random_extreme_slides_end_or_go_on_in_bounded_steps(library: Library, block: int) -> None:
+    random, slid = np.random.default_rng(60 + block), 0
+    for k in range(40):
+        start = extreme_slide(random)
+        own, choice = start.pop("own"), {"formulation": 2 + k % 2, "keep_contact": bool(k % 4 > 1)}
+        tolerance = float(10 ** -random.uniform(4, 12))
+        done = attempt(library, start | choice, np.linspace(0, 4 * own, 9), tolerance)
+        if not done.columns:  # jammed, or lifted off, at the start
+            continue
+        assert done.status <= OK + 1 or done.end is not None, (start | choice, tolerance, done.messages[-1:])
+        assert done.counters["n_steps"] < 1e5, (start | choice, tolerance)
+        assert all(np.isfinite(done[name]).all() for name in STATES)
+        slid += bool((done["contact_mode"] == 1).any())
+    beyond(slid, 20, "wheels that slide")
