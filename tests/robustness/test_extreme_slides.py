@@ -148,7 +148,8 @@ def extreme_slide(random: np.random.Generator) -> dict[str, float]:
     mu = 10 ** random.uniform(-8, 1.3)
     start = {"m": mass, "r_0": r_0, "r": r, "J_x": I * (b + c), "J_y": I * (a + c), "J_z": I * (a + b)}
     start |= {"mu_max": mu, "mu_slide": mu * random.choice([1.0, random.uniform(0.3, 1)])}
-    start |= {"s": r_0 * random.choice([0.0, 10 ** random.uniform(-6, -1)]), "theta_start": random.uniform(0.3, pi - 0.3)}
+    start |= {"s": r_0 * random.choice([0.0, 10 ** random.uniform(-6, -1)])}
+    start |= {"theta_start": random.uniform(0.3, pi - 0.3)}
     rates = ("psi_dot_start", "theta_dot_start", "phi_dot_start")
     start |= dict(zip(rates, random.normal(0, 1, 3) / own, strict=True))
     slip = (r_0 + r) / own * 10 ** random.uniform(-12, 1)
