@@ -85,7 +85,8 @@ double slip_left(const Setup& setup, const InForce& now, double t, const double*
     const WheelScene scene = now.scene_at(t);
     double y_dot[WHEEL_MAX_STATES];
     setup.sliding->derivative(&scene, y, y_dot);
-    const double rate = std::hypot(std::fmin(y_dot[slip], 0), y[slip] * y_dot[slip + 1]);
+    const double fall = std::fmin(y_dot[slip], 0), turning = y[slip] * y_dot[slip + 1];
+    const double rate = std::sqrt(fall * fall + turning * turning);
     least *= std::fmax(1, rate * setup.own_time * setup.own_time / setup.length);
   }
   return (y[slip] - least) / setup.slip_scale;
