@@ -47,24 +47,24 @@ double wheel_required_friction_rate(const double lambda[3], const double lambda_
   return (lambda[0] * lambda_dot[0] + lambda[1] * lambda_dot[1]) / (mu * N) / N - mu * lambda_dot[2] / N;
 }
 
-/* brake / (brake + s N); a ground that pulls has no friction. Without any capacity there is no tau, and the share is
+/* brake / (brake + s N); a ground that pulls has no friction. Without any capacity there is no tau, and the part is
  * that of the first brake to come. */
-static double brake_share(const WheelAxleMoment* now, double* capacity) {
+static double brake_part(const WheelAxleMoment* now, double* capacity) {
   *capacity = now->brake + now->s * fmax(now->N, 0);
   return *capacity > 0 ? now->brake / *capacity : 1;
 }
 
 double wheel_brake_moment(const WheelAxleMoment* now) {
-  double capacity, share = brake_share(now, &capacity);
-  return now->tau * share;
+  double capacity, part = brake_part(now, &capacity);
+  return now->tau * part;
 }
 
 double wheel_brake_moment_rate(const WheelAxleMoment* now, const WheelAxleMoment* rate) {
-  double capacity, share = brake_share(now, &capacity);
+  double capacity, part = brake_part(now, &capacity);
   if (!(capacity > 0)) return rate->tau;
   double rolling_rate = now->N > 0 ? rate->s * now->N + now->s * rate->N : 0;
-  double share_rate = (rate->brake * (1 - share) - share * rolling_rate) / capacity;
-  return rate->tau * share + now->tau * share_rate;
+  double part_rate = (rate->brake * (1 - part) - part * rolling_rate) / capacity;
+  return rate->tau * part + now->tau * part_rate;
 }
 
 /* Euler's first two equations where omega_1 = omega_2 = 0: no moment about O is left across the axle. */

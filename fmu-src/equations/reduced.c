@@ -24,14 +24,14 @@ typedef struct System {
   double a_23, a_33, b_22, b_2, h_3;
   double inverse_determinant; /* of the 2 x 2 system */
   double omega_1_dot, N;      /* for tau = 0 */
-  double tilting, alpha;      /* change of omega_1_dot and of N per unit of tau: 0 where p = 0 */
+  double tilt_per_tau, alpha; /* change of omega_1_dot and of N per unit of tau: 0 where p = 0 */
 } System;
 
-/* The law of friction at one instant: tau = -(grip N + brake), or, if held, the tau that keeps omega_3 constant. */
+/* The law of friction at one instant: tau = -(lever N + brake), or, if held, the tau that keeps omega_3 constant. */
 typedef struct AxleLaw {
   int held;
   int branch_kept; /* where N < 0 too */
-  double grip;     /* m, s kappa */
+  double lever;    /* m, s kappa */
   double brake;    /* N m, capacity of the brake times kappa */
 } AxleLaw;
 
@@ -84,25 +84,25 @@ static inline System system_of(const WheelParameters* w, const Inertia* I, const
   s.inverse_determinant = 1.0 / (s.b_22 * w->J_z + turned * rho_2); /* b_22 a_33 - a_23^2: nothing cancels */
   if (I->p != 0) {
     s.omega_1_dot -= I->p * inverse * ((s.a_33 * s.b_2 - s.a_23 * s.h_3) * s.inverse_determinant);
-    s.tilting = I->p * inverse * (s.a_23 * s.inverse_determinant);
-    s.alpha = lift * s.tilting;
+    s.tilt_per_tau = I->p * inverse * (s.a_23 * s.inverse_determinant);
+    s.alpha = lift * s.tilt_per_tau;
   }
   s.N = d->k_2 * c->sin_theta + d->k_3 * c->cos_theta + lift * s.omega_1_dot;
   return s;
 }
 
-/* Moment about the axle. Rolling: tau = -(grip N + brake) and N = N_free + alpha tau. Held: omega_3_dot = 0. */
+/* Moment about the axle. Rolling: tau = -(lever N + brake) and N = N_free + alpha tau. Held: omega_3_dot = 0. */
 static inline double axle_moment(const System* s, const AxleLaw* law) {
   if (law->held) return s->a_23 * (s->b_2 / s->b_22) - s->h_3;
   double N = s->N;
-  if (s->alpha != 0) N = (N - s->alpha * law->brake) / (1.0 + s->alpha * law->grip);
-  return -(law->grip * N + law->brake);
+  if (s->alpha != 0) N = (N - s->alpha * law->brake) / (1.0 + s->alpha * law->lever);
+  return -(law->lever * N + law->brake);
 }
 
 static inline Accelerations solve(const System* s, const AxleLaw* law) {
   double tau = axle_moment(s, law), h_3 = s->h_3 + tau;
   return (Accelerations){
-      .omega_1_dot = s->omega_1_dot + s->tilting * tau,
+      .omega_1_dot = s->omega_1_dot + s->tilt_per_tau * tau,
       .omega_2_dot = (s->a_33 * s->b_2 - s->a_23 * h_3) * s->inverse_determinant,
       .omega_3_dot = law->held ? 0.0 : (s->b_22 * h_3 - s->a_23 * s->b_2) * s->inverse_determinant,
       .N = s->N + s->alpha * tau,
@@ -113,8 +113,8 @@ static inline Accelerations solve(const System* s, const AxleLaw* law) {
 /* The same where the ground may pull (N <= 0): then the ground's part of the friction is zero, in the law too. */
 static inline Accelerations move(const System* s, AxleLaw law) {
   Accelerations a = solve(s, &law);
-  if (a.N > 0 || law.branch_kept || law.grip == 0) return a;
-  law.grip = 0;
+  if (a.N > 0 || law.branch_kept || law.lever == 0) return a;
+  law.lever = 0;
   return solve(s, &law);
 }
 
@@ -150,7 +150,7 @@ static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
   return (AxleLaw){
       .held = scene->friction.kind == WHEEL_HELD,
       .branch_kept = scene->ground == WHEEL_GROUND_PRESSES,
-      .grip = scene->ground == WHEEL_GROUND_PULLS ? 0.0 : scene->wheel.s * kappa,
+      .lever = scene->ground == WHEEL_GROUND_PULLS ? 0.0 : scene->wheel.s * kappa,
       .brake = scene->load.brake * kappa,
   };
 }

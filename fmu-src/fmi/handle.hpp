@@ -15,17 +15,17 @@ struct Handle {
 };
 
 // Null unless the pointer is one of this kind. If not null, it must point to memory that can be read.
-template <class Kind>
-Kind* handle_of(void* passed) {
+template <class Handled>
+Handled* handle_of(void* passed) {
   auto* const handle = static_cast<Handle*>(passed);
   if (!handle || std::bit_cast<std::uintptr_t>(handle) % alignof(Handle) != 0) return nullptr;
-  return handle->mark == Kind::own_mark ? static_cast<Kind*>(handle) : nullptr;
+  return handle->mark == Handled::own_mark ? static_cast<Handled*>(handle) : nullptr;
 }
 
-template <class Kind>
-void release(Kind* handle) {
+template <class Handled>
+void release(Handled* handle) {
   handle->mark = 0;
-  handle->~Kind();
+  handle->~Handled();
   std::free(handle);
 }
 

@@ -32,7 +32,7 @@ inline constexpr unsigned instantiated = bits(Phase::created),
                           step_complete = bits(Phase::at_start, Phase::stepping, Phase::unfolded),
                           event_mode = bits(Phase::event_mode), continuous_time = bits(Phase::continuous_time),
                           step_failed = bits(Phase::ended), terminated = bits(Phase::closed),
-                          error = bits(Phase::failed, Phase::without_start);
+                          error = bits(Phase::broken, Phase::without_start);
 inline constexpr unsigned running = step_complete | event_mode | continuous_time,
                           stopped = step_failed | terminated | error,
                           any_state = instantiated | initialization | running | stopped;

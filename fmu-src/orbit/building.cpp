@@ -40,25 +40,25 @@ bool Orbit::maps(const solver::Problem& problem, double t, const double* y, doub
   });
 }
 
-Orbit::Kind Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
-                         solver::Solver& solver) {
+Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
+                           solver::Solver& solver) {
   double own[states] = {y0[theta], y0[omega_1], y0[omega_2], y0[omega_3]};  // psi, phi, X_O and Y_O are zero
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   *this = Orbit();
-  if (rests(problem, own)) return kind_ = Kind::steady;
-  kind_ = follow(problem, pass, own, solver);
+  if (rests(problem, own)) return result_ = Result::steady;
+  result_ = follow(problem, pass, own, solver);
   counters_ = solver.counters();
-  return kind_;
+  return result_;
 }
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
-Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
+Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
   double y[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1], t = 0;
   bool turned = before == 0;
-  if (!solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Kind::refused;
+  if (!solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Result::refused;
   for (;;) {
     const solver::Outcome outcome = step(problem, pass, solver);
-    if (outcome == solver::Outcome::failed || !track_.add(solver.last_step())) return Kind::refused;
+    if (outcome == solver::Outcome::failed || !track_.add(solver.last_step())) return Result::refused;
     const double t_before = t;
     t = solver.known_until();
     solver.read(t, y);
@@ -66,7 +66,7 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const doubl
       if (turned) {
         T1_ = turning_point(T1[0], T1[1]);
         T2_ = turning_point(t_before, t);
-        return fold(problem, swing) ? Kind::folded : Kind::refused;
+        return fold(problem, swing) ? Result::folded : Result::refused;
       }
       T1[0] = t_before;
       T1[1] = t;
@@ -76,7 +76,7 @@ Orbit::Kind Orbit::follow(const solver::Problem& problem, Pass pass, const doubl
     if (outcome == solver::Outcome::event) {
       T2_ = end_time_ = t;
       event_ = solver.event();
-      return Kind::ended;
+      return Result::ended;
     }
     if (y[omega_1] != 0) before = y[omega_1];
     swing = std::fmax(swing, std::fabs(y[omega_1]));
@@ -130,7 +130,7 @@ bool Orbit::fold(const solver::Problem& problem, double swing) {
   take_half();
   problem.weights(problem.owner, problem.share, second_, weights);
   if (!(T2_ > T1_) || swing * weights[omega_1] < least_swing) return false;
-  kind_ = Kind::folded;
+  result_ = Result::folded;
   for (int i = 0; i < samples; ++i)
     if (!is_mirrored(problem, (i + 0.5) / samples * (T2_ - T1_))) return false;
   return true;

@@ -84,10 +84,10 @@ void Orbit::read_circle(double t, double* y) const {
 }
 
 // In the frame of the integrated motion.
-void Orbit::read_own(double t, double* y) const { kind_ == Kind::steady ? read_circle(t, y) : track_.read(t, y); }
+void Orbit::read_own(double t, double* y) const { result_ == Result::steady ? read_circle(t, y) : track_.read(t, y); }
 
 void Orbit::read(double t, double* y) const {
-  if (kind_ != Kind::folded || t <= T2_) {
+  if (result_ != Result::folded || t <= T2_) {
     read_own(t, y);
     return turn_by(lead_, place_of(y), y);
   }

@@ -37,7 +37,7 @@ class Orbit {
   // ended:   event() happened at end_time(), in the first nutation; read() is valid up to there.
   // refused: no two turning points within a fixed number of steps, a swing no larger than errors, or rates
   //          that have not the symmetry. The caller then steps through the motion from its start.
-  enum class Kind { refused, folded, steady, ended };
+  enum class Result { refused, folded, steady, ended };
 
   // What follows from an event at t and y, for the owner to decide. One after which the motion goes on recurs: it is
   // the fall of a function that rises at the next such event and falls again at the third, as N does. Where the motion
@@ -47,7 +47,7 @@ class Orbit {
   // Integrates `problem` (the reduced form of a wheel) from y0 by DOP853. The solver has to be started
   // anew before anything else is asked of it; its counters are those of this run. A function of problem,
   // tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and heading.
-  Kind build(solver::Problem problem, double tolerance, Pass pass, const double* y0, solver::Solver& solver);
+  Result build(solver::Problem problem, double tolerance, Pass pass, const double* y0, solver::Solver& solver);
   // From here on the motion that is read starts with psi, phi, X_O and Y_O of y0 (after build, with zeros). False where
   // the right-hand side depends on them.
   bool start_at(const solver::Problem& problem, const double* y0);
@@ -90,7 +90,7 @@ class Orbit {
                    const double* expected);
   bool rests(const solver::Problem& problem, const double* y0);
   bool keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length);
-  Kind follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
+  Result follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
   solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
   double turning_point(double t_lo, double t_hi) const;
   bool fold(const solver::Problem& problem, double swing);
@@ -107,7 +107,7 @@ class Orbit {
 
   Track track_;  // from the start past T2, in its frame
   Half lead_;    // the motion up to T2: psi, phi and place of the start
-  Kind kind_ = Kind::refused;
+  Result result_ = Result::refused;
   double end_time_ = std::numeric_limits<double>::infinity();
   int event_ = 0;
   solver::Counters counters_ = {};

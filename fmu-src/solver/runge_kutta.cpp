@@ -102,7 +102,7 @@ struct RungeKutta::Work {
                       stage<7, table::a_7>(at) && stage<8, table::a_8>(at) && stage<9, table::a_9>(step.y_inside) &&
                       stage<10, table::a_10>(at) && stage<11, table::a_11>(at);
     if (!done) return INFINITY;
-    step.inside_share = time_of<table::a_9>();
+    step.inside_at = time_of<table::a_9>();
     end_step();
     return error();
   }

@@ -13,17 +13,17 @@ namespace {
 // Halvings of a step, and evaluations in the search for a value below zero between two extremes.
 constexpr int most_halvings = 7, most_samples = 48;
 
-// g = lo.g + x (slope + bend (x - share)), x = (t - lo.t) / (hi.t - lo.t), through three samples.
+// g = lo.g + x (slope + bend (x - middle)), x = (t - lo.t) / (hi.t - lo.t), through three samples.
 struct Parabola {
-  double share, slope, bend;
+  double middle, slope, bend;
   Parabola(Sample lo, Sample mid, Sample hi) {
-    share = (mid.t - lo.t) / (hi.t - lo.t);
-    slope = (mid.g - lo.g) / share;
-    bend = (hi.g - mid.g) / (1 - share) - slope;
+    middle = (mid.t - lo.t) / (hi.t - lo.t);
+    slope = (mid.g - lo.g) / middle;
+    bend = (hi.g - mid.g) / (1 - middle) - slope;
   }
   // x of the minimum; outside (0, 1) where an end is the lowest.
-  double lowest_at() const { return bend > 0 ? 0.5 * (share - slope / bend) : -1; }
-  double value(double g_lo, double x) const { return g_lo + x * (slope + bend * (x - share)); }
+  double lowest_at() const { return bend > 0 ? 0.5 * (middle - slope / bend) : -1; }
+  double value(double g_lo, double x) const { return g_lo + x * (slope + bend * (x - middle)); }
 };
 
 }  // namespace

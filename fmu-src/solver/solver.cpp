@@ -72,7 +72,7 @@ bool Solver::make_step(double stop) {
   }
   step_.start = step_.end;
   std::copy_n(step_.y_end, max_states, step_.y_start);
-  step_.inside_share = 0;
+  step_.inside_at = 0;
   step_.degree = Step::unknown;
   const bool done = engine().advance(problem_, stop, &counters_, &step_);
   if (done) {
@@ -127,8 +127,8 @@ bool Solver::comes_near(const Search& search) {
 
 // Most steps are far from an event, which a value inside the step that is known anyway is enough to show.
 bool Solver::stays_above(const Search& search, Sample lo, Sample hi) const {
-  if (!(step_.inside_share > 0) || lo.t != step_.start) return false;
-  const double t = step_.start + step_.inside_share * (step_.end - step_.start);
+  if (!(step_.inside_at > 0) || lo.t != step_.start) return false;
+  const double t = step_.start + step_.inside_at * (step_.end - step_.start);
   return Search::stays_above(lo, search.sample(t, step_.y_inside), hi);
 }
 

@@ -7,7 +7,7 @@ namespace solver {
 void Step::set_point(double t, const double* y, int states) {
   start = end = t;
   lowest_margin = never;
-  inside_share = 0;
+  inside_at = 0;
   degree = 0;
   std::copy_n(y, states, y_start);
   std::copy_n(y_start, states, y_end);
@@ -20,7 +20,7 @@ void Step::visit(support::Archive& archive, int states) {
   archive.numbers(y_start, states);
   archive.numbers(y_end, states);
   archive.range(lowest_margin, -archive.greatest, never);
-  archive.range(inside_share, 0, 1);
+  archive.range(inside_at, 0, 1);
   archive.numbers(y_inside, states);
 }
 

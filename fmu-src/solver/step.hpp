@@ -48,9 +48,9 @@ struct Step {
   double start, end;  // s
   alignas(16) double y_start[max_states], y_end[max_states];
   double lowest_margin;  // of the evaluations in the step
-  // An approximation of y at start + inside_share (end - start), known without further work; share 0 where there is
+  // An approximation of y at start + inside_at (end - start), known without further work; 0 where there is
   // none.
-  double inside_share;
+  double inside_at;
   alignas(16) double y_inside[max_states];
   // y(t) = sum of c_k s^k, s = (t - end) / (end - start) from -1 to 0.
   static constexpr int unknown = -1;

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "contact.hpp"
 #include "law.hpp"
 
 namespace wheel {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contact.hpp"
 #include "law.hpp"
 #include "logbook.hpp"
 #include "problem.hpp"
@@ -85,9 +86,9 @@ bool enter_orbit(Wheel& w) {
   const solver::Problem problem = problem_of(w);
   if (w.solution.orbit_shape != asked) {
     const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
-    const auto kind = orbit.build(problem, w.demand.tolerance, pass_on_orbit, w.setup.start, w.solution.solver);
+    const auto result = orbit.build(problem, w.demand.tolerance, pass_on_orbit, w.setup.start, w.solution.solver);
     w.run.in_force = at_start;
-    w.solution.orbit_shape = kind == orbit::Orbit::Kind::refused ? Shape() : asked;
+    w.solution.orbit_shape = result == orbit::Orbit::Result::refused ? Shape() : asked;
   }
   if (w.solution.orbit_shape != asked || !orbit.start_at(problem, w.setup.start)) return false;
   w.run.counted = orbit.counters();
@@ -218,7 +219,7 @@ void fail(Wheel& w, const Run& before) {
                  w.setup.start_time + w.run.t, Digits{state_now(w)[w.setup.formulation->spin_index], 4},
                  w.solution.failure ? w.solution.failure : w.solution.solver.failure());
   w.run = before;
-  w.run.phase = Phase::failed;
+  w.run.phase = Phase::broken;
 }
 
 Outcome advance_by_stages(Wheel& w, double t) {

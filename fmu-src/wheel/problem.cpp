@@ -103,4 +103,17 @@ Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
   return row.follow(wheel.setup, row.event, t, state, wheel.run.in_force);
 }
 
+solver::Method method_of(const Setup& setup, const InForce& now) {
+  const bool regularized = now.scene.friction.kind == WHEEL_REGULARIZED;
+  if (now.layer == Layer::sticking || (setup.method == bdf_method && regularized)) return solver::Method::bdf;
+  if (now.slides()) return solver::Method::collocation;
+  if (setup.method == bdf_method) return solver::Method::bdf;
+  return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
+}
+
+bool is_unfoldable(const Setup& setup, const InForce& in_force) {
+  return setup.unfolds && in_force.scene.friction.kind == WHEEL_FRICTIONLESS && !in_force.inputs.loaded &&
+         !in_force.slides() && in_force.road.slope == 0;
+}
+
 }  // namespace wheel

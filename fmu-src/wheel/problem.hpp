@@ -14,4 +14,11 @@ solver::Problem problem_of(Wheel& wheel);
 // What follows from an event for the motion alone: what is in force is changed, nothing is counted or logged.
 Consequence pass_on_orbit(void* wheel, int event, double t, double* y);
 
+// What solves the motion that is not unfolded. CVODE's history and Jacobian do not follow a direction of slip that
+// turns ever faster: collocation solves a slide.
+solver::Method method_of(const Setup& setup, const InForce& in_force);
+
+// Whether the motion repeats and can be unfolded from half a nutation.
+bool is_unfoldable(const Setup& setup, const InForce& in_force);
+
 }  // namespace wheel

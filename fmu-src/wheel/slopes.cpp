@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "contact.hpp"
 #include "exchange.hpp"
 #include "law.hpp"
 
@@ -84,8 +85,8 @@ bool take_by_parameter(Wheel& w, unsigned parameter, Pass& pass) {
     return &reading;
   };
   bool done = false;
-  for (const double share : {1e-3, 1e-6, 1e-9})
-    for (const Stencil& stencil : stencils) done = done || pass.take(stencil, x, share * scale, read_at);
+  for (const double fraction : {1e-3, 1e-6, 1e-9})
+    for (const Stencil& stencil : stencils) done = done || pass.take(stencil, x, fraction * scale, read_at);
   return read_at(set) && done;
 }
 

@@ -128,7 +128,7 @@ const char* load_state(Wheel& w, const unsigned char* bytes, std::size_t size) {
   w.solution.orbit_until = Solution::none;
   if (!stepping || w.solution.solver.restore_history(problem_of(w), method_of(setup, run.in_force), archive))
     return nullptr;
-  w.run.phase = Phase::failed;
+  w.run.phase = Phase::broken;
   return forged;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "contact.hpp"
 #include "exchange.hpp"
 #include "law.hpp"
 #include "logbook.hpp"

@@ -1,7 +1,7 @@
 // One free wheel and its orbit behind a C interface, for ctypes. State and units as in wheel_equations.h.
 #include <new>
 
-#include "law.hpp"
+#include "contact.hpp"
 #include "problem.hpp"
 
 #ifdef _WIN32
@@ -67,7 +67,7 @@ PUBLIC Probe* probe_make(const unsigned* references, const double* values, int c
 
 PUBLIC void probe_free(Probe* probe) { delete probe; }
 
-// A number of Orbit::Kind, 0 where it is refused. `by`: a disturbance, or null.
+// A number of Orbit::Result, 0 where it is refused. `by`: a disturbance, or null.
 PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   const wheel::InForce at_start = probe->wheel.run.in_force;
   solver::Problem problem = wheel::problem_of(probe->wheel);
@@ -75,7 +75,7 @@ PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   if (added) disturb(problem);
   const wheel::Setup& setup = probe->wheel.setup;
   const auto kind = probe->orbit.build(problem, setup.tolerance, wheel::pass_on_orbit, setup.start, probe->solver);
-  const bool starts = kind != orbit::Orbit::Kind::refused && probe->orbit.start_at(problem, setup.start);
+  const bool starts = kind != orbit::Orbit::Result::refused && probe->orbit.start_at(problem, setup.start);
   probe->wheel.run.in_force = at_start;
   return starts ? static_cast<int>(kind) : 0;
 }
