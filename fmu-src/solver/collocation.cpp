@@ -159,7 +159,7 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
   last.end = step->start;
   if (known_) expand(problem, &last);
   const double shortest = roundings * rounding_at(step->start);
-  failure_ = "the step size became too small";
+  failure_ = step_too_small;
   for (int attempts = 0; attempts < most_tries; ++attempts) {
     size_ = std::fmin(std::fmax(liked_, shortest), problem.longest_step);
     const bool stops = step->start + longer * size_ >= stop;

@@ -49,7 +49,7 @@ int weights(N_Vector y, N_Vector w, void* user) {
 const char* reason_of(int flag) {
   if (flag == CV_FIRST_RHSFUNC_ERR) return "the rates of the states are not finite";
   for (const int at_smallest : {CV_ERR_FAILURE, CV_CONV_FAILURE, CV_REPTD_RHSFUNC_ERR})
-    if (flag == at_smallest) return "the step size became too small";
+    if (flag == at_smallest) return step_too_small;
   return "CVODE failed";
 }
 

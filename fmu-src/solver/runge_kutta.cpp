@@ -171,7 +171,7 @@ struct RungeKutta::Work {
       engine.rates_ = waits ? 12 : 13;
       return nullptr;
     }
-    return "the step size became too small";
+    return step_too_small;
   }
 
   // DOP853 gives the dense output as nested products, x = (t - start) / h:

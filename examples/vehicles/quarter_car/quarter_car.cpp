@@ -1,9 +1,8 @@
 /* Quarter car: a sprung mass B above the wheel's centre O, linked to it by springs and dampers without mass. B does not
- * turn; the hub carrier gives the moments M_1 (camber) and M_2 (toe) along the wheel's carrier axes, the hub motor M_3
- * about the axle. Fixed axes X, Y, Z, Z up.
+ * turn; the wheel's own hub carrier (`guided`) keeps the axle, the hub motor gives M_3 about it. Fixed axes X, Y, Z, Z
+ * up.
  *
  *   F   = k (r_B - r_O - (0, 0, l_0)) + c (v_B - v_O)         link force on the wheel, each axis its own k, c
- *   M_1 = -k_theta (theta - theta_0) - c_theta theta_dot      camber, M_2 alike with psi (toe)
  *   m_B a_B = -F - m_B g (sin(slope) cos(slope_direction), sin(slope) sin(slope_direction), cos(slope))
  *
  * Before t_couple the links carry nothing and B only runs on: a master that begins with all inputs at zero, as fmpy's
@@ -44,11 +43,8 @@ States model_rates(const Now& now, const States& x) {
 
 void model_outputs(const Now& now, const States& x, double* y) {
   const double* u = now.u;
-  const double coupled = reached(now, t_couple);
   Vector3d::Map(y + F_X) = link_force(now, x);
   Vector3d::Map(y + X_B) = x.head<3>();
   Vector3d::Map(y + X_B_dot) = x.segment<3>(3);
-  y[M_1] = -coupled * (u[k_theta] * (u[theta] - u[theta_0]) + u[c_theta] * u[theta_dot]);
-  y[M_2] = -coupled * (u[k_psi] * (u[psi] - u[psi_0]) + u[c_psi] * u[psi_dot]);
   y[M_3] = reached(now, t_drive) ? u[M_drive] : 0;
 }

@@ -54,24 +54,23 @@ def test_a_run_ends_at_its_stop_whether_or_not_the_step_divides_it(
     within(abs(table["X_O_dot"][-1] / speed - 1), 0.05, "speed at the end, relative")
 
 
-@pytest.mark.parametrize("exchange", ["held", "derivatives"])
-def test_the_step_may_not_exceed_twice_the_inertia_over_the_damping(fmus: Fmus, exchange: str) -> None:
-    """2 (J_x + m R^2) / (c_theta + c_h R^2) = 17 ms for the lean of this wheel on its suspension. With a longer one the
-    hopping wheel leaves the ground, and its FMU ends the step."""
-    below, above = (SUSPENDED.drive(fmus, LAUNCH, h, exchange, h).ending for h in (0.015, 0.02))
-    assert above and not below
+ROLLS = {"wheel": upright(0.0, 0.0, 0.0, 1.0, 0.0, 0.35)}
+LOCKED = {**upright(0.0, 0.0, 0.0, 0.0, 0.0, 0.35), "guided": True, "slip_x_start": 20.0, "M_brake": 1e4}
+SLIDES = {"wheel": {**LOCKED, "mu_max": 0.1, "mu_slide": 0.1}}
+LIMITS = [(ROLLS, 0.031, within), (ROLLS, 0.033, beyond), (SLIDES, 0.0185, within), (SLIDES, 0.0195, beyond)]
 
 
-@pytest.mark.parametrize(("h", "check"), [(0.031, within), (0.033, beyond)])
-def test_a_damper_bounds_the_step_by_the_reduced_mass_of_both_partners(fmus: Fmus, h: float, check) -> None:
-    """2 m / c = 31.1 ms for 34.7 kg of wheel and 300 kg of body; the wheel's inertia alone would allow 34.7 ms."""
+@pytest.mark.parametrize(("start", "h", "check"), LIMITS)
+def test_a_damper_bounds_the_step_by_the_reduced_mass_of_both_partners(fmus: Fmus, start, h: float, check) -> None:
+    """2 m / c = 31.1 ms for 34.7 kg of wheel and 300 kg of body; the wheel's inertia alone would allow 34.7 ms. Of a
+    wheel that slides with its spin held, 20 kg count: 18.75 ms."""
     free = {"k_h": 0.0, "k_v": 0.0, "c_v": 0.0, "t_couple": 0.0, "M_drive": 0.0}
-    damper = replace(SUSPENDED, starts=lambda _run: {"wheel": upright(0.0, 0.0, 0.0, 1.0, 0.0, 0.35)})
+    damper = replace(SUSPENDED, starts=lambda _run: start)
     # The damper along X alone is left of what manoeuvres.toml connects.
     vars(damper)["connections"] = [c for c in SUSPENDED.connections if c[0][1] in ("X_O", "X_O_dot", "F_X")]
     table = damper.drive(fmus, LAUNCH.changed(stop=300 * h, **free), h, "held", h).table
     apart = np.abs(table["X_O_dot"] - table["X_B_dot"])[-10:].max()
-    check(apart, 1, "relative speed, 1 m/s at the start")
+    check(apart, 1, "relative speed, 1 or 20 m/s at the start")
 
 
 ABS = manoeuvres("suspended")["abs"]

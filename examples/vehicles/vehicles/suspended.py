@@ -1,15 +1,15 @@
 """Suspended wheel: a quarter car, launched from rest by a step of the drive torque, or stopped on a wet road.
 
-Coupled through F_X, F_Y, F_Z, M_1, M_2, M_3 and the pose and velocity of O, by values held over the communication
-step or by straight lines (derivatives of first order). In the end both move on together: with m all masses, R the
-wheel's rolling radius,
+Coupled through F_X, F_Y, F_Z, M_3 and position and velocity of O, by values held over the communication step or by
+straight lines (derivatives of first order); the guided wheel has its own hub carrier. In the end both move on together:
+with m all masses, R the wheel's rolling radius,
 
     (m + J_z / R^2) a = (M_drive - s m g) / R
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import exp, pi, sin
+from math import exp, pi
 from pathlib import Path
 
 import numpy as np
@@ -21,9 +21,8 @@ from .vehicle import DRY_ROAD, Errors, Fmus, Run, Table, Vehicle, beyond_dry, ro
 LAUNCH = manoeuvres("suspended")["launch"]
 GRID = 0.05  # s, where runs are compared; every step below divides it
 STEPS = (0.005, 0.0025, 0.00125, 0.000625, 0.0003125)  # s
-START = {"psi_start": 0.0, "theta_start": 88 * pi / 180, "phi_dot_start": 0.0, "X_O_start": 0.0}
-M_WHEEL, HUB_RADIUS = 20.0, 0.3 + 0.05  # of the wheel, upright; SI
-J_Z, RADIUS, GRAVITY = 1.8, 0.3 + 0.05 * sin(START["theta_start"]), 9.81  # SI
+START = {"guided": True, "psi_start": 0.0, "theta_start": pi / 2, "phi_dot_start": 0.0, "X_O_start": 0.0}
+M_WHEEL, J_Z, RADIUS, GRAVITY = 20.0, 1.8, 0.3 + 0.05, 9.81  # of the wheel; SI
 CONTROLS = ("locked", "ideal")  # brakes beside the anti-lock controller, by their numbers in brakes.csv
 CENTRE = (("X", "X_O", "X_B"), ("v", "X_O_dot", "X_B_dot"))
 BRAKES = {"abs": "the anti-lock controller", "ideal": "the ideal brake", "locked": "a brake that locks it"}
@@ -38,9 +37,9 @@ def mass(run: Manoeuvre = LAUNCH) -> float:
 
 def start(run: Manoeuvre) -> dict[str, dict[str, float]]:
     """Of the wheel; of the brake what follows from the wheel."""
-    upright_at_v = upright(0.0, 0.0, 0.0, run["v"], 0.0, HUB_RADIUS) if run["v"] else {}
-    per_N = run["share"] * run["mu_max"] * (HUB_RADIUS + J_Z / (mass(run) * HUB_RADIUS)) - run["s"]
-    control = {"control": float(CONTROLS.index(run.name)) if run.name in CONTROLS else 2.0, "R": HUB_RADIUS}
+    upright_at_v = upright(0.0, 0.0, 0.0, run["v"], 0.0, RADIUS) if run["v"] else {}
+    per_N = run["share"] * run["mu_max"] * (RADIUS + J_Z / (mass(run) * RADIUS)) - run["s"]
+    control = {"control": float(CONTROLS.index(run.name)) if run.name in CONTROLS else 2.0, "R": RADIUS}
     return {"wheel": START | road(run) | upright_at_v, "brakes": control | {"M_per_N": max(per_N, 0.0)}}
 
 
@@ -56,7 +55,7 @@ def beside_others(run: Run, asked: Manoeuvre, fmus: Fmus) -> Run:
         runs[name] = SUSPENDED.drive(fmus, brake, asked.h, asked.exchange, run.table["time"][1])
     table = dict(run.table)
     for name, of in runs.items():
-        wheel = M_WHEEL + (J_Z / HUB_RADIUS**2 if name == "ideal" else 0.0)
+        wheel = M_WHEEL + (J_Z / RADIUS**2 if name == "ideal" else 0.0)
         whole = wheel + asked["m_B"]
         centre = {n: (wheel * of.table[o] + asked["m_B"] * of.table[body]) / whole for n, o, body in CENTRE}
         table |= {f"{name}.{n}": filled(x, rows) for n, x in (of.table | centre).items() if n in OF_BRAKE}
@@ -82,12 +81,11 @@ def verdict(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
 
 def rest(run: Manoeuvre) -> float:
     """Height at which the spring bears the sprung mass over an upright wheel, m."""
-    return HUB_RADIUS + run["l_0"] - run["m_B"] * GRAVITY / run["k_v"] if run["k_v"] else np.inf
+    return RADIUS + run["l_0"] - run["m_B"] * GRAVITY / run["k_v"] if run["k_v"] else np.inf
 
 
 ASSUMED = {  # by the closed forms of a stop: by its words where it does not hold
     "the road is not level": lambda run: not run["slope"],
-    "the wheel is not upright, ahead": lambda run: abs(run["theta_0"] - pi / 2) < 1e-9 and not run["psi_0"],
     "the sprung mass starts off its rest": lambda run: abs(run["Z_B_start"] - rest(run)) < 1e-3,
     "the links carry from too late on": lambda run: run["t_couple"] + 0.3 <= run["t_brake"],
     "a link is softer than half the standard one": lambda run: run["k_h"] >= 30e3 and run["k_v"] >= 10e3,
@@ -137,7 +135,7 @@ def stopping(v: float, before: float, a: float, lag: float) -> float:
 
 def gripping_way(table: Table, run: Manoeuvre) -> float:
     """Under the ideal brake: from the deceleration s m g / (R (m + J_z / R^2)) to share mu_max g."""
-    before, v = -acceleration(0.0, run["s"], HUB_RADIUS), float(table["ideal.v"][begins(table, run)])
+    before, v = -acceleration(0.0, run["s"]), float(table["ideal.v"][begins(table, run)])
     return stopping(v, before, run["share"] * run["mu_max"] * GRAVITY, run["T_brake"])
 
 
@@ -164,15 +162,15 @@ SUSPENDED = Vehicle("suspended", start, verdict, complete=beside_others)
 
 
 def package_distance(package: Path, step: float, truth: Table, stop: float = LAUNCH.stop) -> float:
-    """Largest difference over time of X_O, theta and psi_dot in fmpy's run of the package, relative to their ranges."""
-    run, names = ssp.run(package, step, stop, GRID), ("X_O", "theta", "psi_dot")
+    """Largest difference over time of X_O and phi_dot in fmpy's run of the package, relative to their ranges."""
+    run, names = ssp.run(package, step, stop, GRID), ("X_O", "phi_dot")
     driven = slice(1, 1 + len(run["time"]))
     return max(float(np.abs(run[f"wheel.{n}"] - truth[n][driven]).max() / np.ptp(truth[n])) for n in names)
 
 
-def acceleration(torque: float, s: float = LAUNCH["s"], radius: float = RADIUS) -> float:
+def acceleration(torque: float, s: float = LAUNCH["s"]) -> float:
     """Of wheel and sprung mass together, m/s2."""
-    return (torque - s * mass() * GRAVITY) / radius / (mass() + J_Z / radius**2)
+    return (torque - s * mass() * GRAVITY) / RADIUS / (mass() + J_Z / RADIUS**2)
 
 
 def fine(fmus: Fmus, step: float) -> Table:
