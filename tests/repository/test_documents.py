@@ -210,7 +210,7 @@ COMMENT = re.compile(
     rf"({PIECE})|//[^\n]*|/\*.*?\*/|^\s*#\s*include[^\n]*|\bstatic_assert\(.*?;", re.DOTALL | re.MULTILINE
 )
 LITERAL = re.compile(rf"{PIECE}(?:\s*(?:[A-Z_]+\s*)?{PIECE})*")
-REASON = re.compile(rf"(?:\breturn|\bfailure_ =)\s+({PIECE})")
+REASON = re.compile(rf"(?:\breturn|\bfailure_ =|\bconst char\* \w+ =)\s+({PIECE})")
 
 
 def bare(code: str) -> str:

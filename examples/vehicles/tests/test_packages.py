@@ -24,7 +24,7 @@ def test_the_package_is_valid_ssp_and_its_parameters_are_bound_at_the_component(
     bound = {c.name: [b.source for b in c.parameterBindings] for c in structure.system.elements}
     assert bound == {"wheel": ["resources/wheel.ssv"], "quarter_car": [], "brakes": ["resources/brakes.ssv"]}
     written = read_ssv(str(package), "resources/wheel.ssv", validate=True).parameters
-    assert {p.name: json.loads(p.value) for p in written} == suspended.START
+    assert {p.name: json.loads(p.value) for p in written} == suspended.start(suspended.LAUNCH)["wheel"]
 
 
 def test_fmpy_runs_the_package_and_converges_with_order_one(package: Path, truth: Table) -> None:
