@@ -1,0 +1,125 @@
+"""What a master changes and reads while the wheel slides: the road, the brake, states of two sizes, start times."""
+
+import resource
+from ctypes import byref
+from math import pi
+
+import numpy as np
+import pytest
+from support.bounds import absolute_error, beyond, within
+from support.driver import DISCARD, ERROR, OK, FMU2Wheel
+from support.sliding import HUB, ROAD, UPRIGHT
+
+WEIGHT, g = 20 * 9.81, 9.81
+LOCKED = {**UPRIGHT, **ROAD, "slip_x_start": 7.0, "M_brake": 1e3}
+THROWN = {**ROAD, "slip_x_start": -1.5, "slip_y_start": 0.8, "phi_dot_start": -6.0, "s": 0.01}
+
+
+def test_mu_slide_set_alone_acts_at_once_and_is_pending_in_a_state(wheel) -> None:
+    w, restored = wheel().start(**LOCKED).to(0.2), wheel()
+    before = w.get("X_O_dot")[0]
+    w.put(mu_slide=0.25)
+    assert w.get("mu_slide", "mu_max") == [0.25, 0.45]
+    within(abs(w.get("lambda_x")[0] + 0.25 * WEIGHT), 1e-10, "force read before the step, N")
+    restored.back(w.serialized())
+    ends = [each.to(0.4).bits() for each in (w, restored)]
+    assert ends[0] == ends[1]
+    within(abs(w.get("X_O_dot")[0] - before + 0.25 * g * 0.2), 1e-9, "velocity, m/s")
+    in_force = wheel().back(w.serialized())
+    assert in_force.to(0.6).bits() == w.to(0.6).bits()
+    within(abs(w.get("X_O_dot")[0] - before + 0.25 * g * 0.4), 1e-9, "velocity later, m/s")
+
+
+def test_another_limit_after_a_reset_is_that_of_the_next_run(wheel) -> None:
+    """The orbit of the run before is the same."""
+    w, fresh = wheel(), wheel()
+    for mu_max, status in ((0.6, OK), (0.45, DISCARD), (0.6, OK)):
+        w.start(mu_max=mu_max)
+        assert w.step(2.0) == status
+        assert w.reset() == OK
+        w.take_messages()
+    assert w.start(mu_max=0.6, mu_slide=0.4).to(2.0).bits() == fresh.start(mu_max=0.6, mu_slide=0.4).to(2.0).bits()
+
+
+@pytest.mark.parametrize("start", [7.0, -100.0])
+def test_every_message_of_a_slide_has_the_callers_time_and_its_own_number(wheel, start: float) -> None:
+    w, early = (wheel(logging=True).start(start=t, **ROAD).to(t + 2.5) for t in (start, 0.0))
+
+    def moments(one: FMU2Wheel) -> list[float]:
+        return [float(sentence.split()[2]) for sentence in one.sentences if "slid" in sentence]
+
+    assert len(moments(early)) == 4
+    within(absolute_error(np.array(moments(w)) - start, moments(early)), 1e-6, "instants apart, s")
+    jam = {**HUB, "theta_start": 0.87, "theta_dot_start": 2.0, "slip_x_start": 2.0, "slip_y_start": -5.0}
+    jammed = wheel().start(start=start, **jam, mu_max=0.9, mu_slide=0.8)
+    assert jammed.step(0.2) == DISCARD
+    text = jammed.sentences[-1]
+    assert "jam" in text and "mu_slide = 0.8 at" in text
+    assert start < float(text.split(" t = ")[1].split()[0]) < start + 0.2
+
+
+def test_while_it_slides_the_derivatives_by_the_brake_are_quotients_of_the_outputs(wheel) -> None:
+    w = wheel().start(**THROWN, M_brake=5.0).to(0.1)
+    assert w.get("contact_mode") == [1]
+    names = [n for n, v in w.variables.items() if v.causality == "output" and v.type == "Real"]
+    found = w.jacobian(names, ["M_brake"])[:, 0]
+    ends = [np.frombuffer(w.put(M_brake=5.0 + d).read(names)) for d in (0.5, -0.5)]
+    within(dict(zip(names, np.abs(ends[0] - ends[1] - found), strict=True)), 1e-11, "derivative beside the quotient")
+    beyond(abs(found[names.index("tau")]), 0.9, "derivative of tau")
+
+
+def test_a_state_of_a_wheel_that_rolls_and_one_of_a_wheel_that_slides_take_each_others_place(wheel) -> None:
+    """They differ in size; 20,000 alternations take no more memory than the first ones."""
+    rolls, slides = wheel().start(**ROAD).to(0.3), wheel().start(**ROAD).to(0.7)
+    assert [w.get("contact_mode") for w in (rolls, slides)] == [[0], [1]]
+    ends = [wheel().back(w.serialized()).to(2.0).bits() for w in (rolls, slides)]
+    other, state, size = wheel(), rolls.snapshot(), []
+    for k in range(20000):
+        assert (slides if k % 2 == 0 else rolls).ask("GetFMUstate", byref(state)) == OK
+        if k in (999, 19999):
+            size.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+    within(size[1] - size[0], 2000, "memory, kB")
+    for w, end in ((slides, ends[1]), (rolls, ends[0]), (slides, ends[1])):
+        assert w.ask("GetFMUstate", byref(state)) == OK
+        assert other.ask("SetFMUstate", state) == OK
+        other.time = w.time
+        assert other.to(2.0).bits() == end
+    other.free(state)
+
+
+def test_states_saved_within_microseconds_of_a_passage_through_the_layer_go_on_with_the_same_bits(wheel) -> None:
+    """omega_z of the paper's wheel passes the layer of a stiff law, 4e-5 rad/s wide, at 1.74 s, in 5e-6 s."""
+    stiff = {"s": 0.03, "friction_law": 2, "omega_s": 1e-6}
+    w, lo, hi = wheel().start(**stiff).to(1.7), 1.7, 1.8
+    saved = w.serialized()
+    while hi - lo > 1e-7:
+        middle = 0.5 * (lo + hi)
+        lo, hi = (middle, hi) if w.back(saved).to(middle).get("omega_z")[0] < 0 else (lo, middle)
+    beyond(w.back(saved).to(1.8).get("omega_z")[0], 1e-3, "spin after the passage, rad/s")
+    w.back(saved).to(t := hi - 1e-5)
+    end = wheel().start(**stiff).to(2.5).get("theta", "psi", "X_O")
+    for k in range(40):
+        saved = w.to(t + 5e-7 * k).serialized()
+        other = wheel().back(saved)
+        assert other.to(2.5).bits() == wheel().back(saved).to(2.5).bits()
+        within(absolute_error(other.get("theta", "psi", "X_O"), end), 1e-6, "end apart")
+        other.close()
+
+
+def test_fast_straight_rolling_stops_where_phi_alone_has_too_few_digits(wheel) -> None:
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=-1e4).to(1e7)
+    assert w.get("psi", "psi_dot") == [w.get("psi_start")[0], 0.0]
+    assert w.step(2e8) == ERROR and "too few digits" in w.sentences[-1]
+    within(abs(w.get("phi")[0] / -1e11 - 1), 1e-9, "angle, relative")
+
+
+@pytest.mark.parametrize("name", ["psi_start", "phi_start"])
+def test_after_many_turns_the_derivatives_by_an_angle_are_those_of_the_first_turn(wheel, name: str) -> None:
+    turns, names = 2 * pi * 10**6, ["X_O_dot", "Y_O_dot", "lambda_1", "lambda_2", "theta_ddot", "psi_ddot"]
+    start = {**THROWN, "J_x": 0.7, "J_y": 1.2}
+    near, far, off = (
+        wheel().initializing(**{**start, name: angle}).jacobian(names, [name])[:, 0]
+        for angle in (0.4, 0.4 + turns, 0.5 + turns)
+    )
+    within(absolute_error(far, near), 1e-5, "derivatives apart")
+    beyond(absolute_error(off, near), 1e-3, "derivatives at another angle")
