@@ -97,7 +97,7 @@ def test_communication_points_inside_a_slide_change_no_more_than_the_tolerance(w
     random, slides = np.random.default_rng(10), 0
     for _ in range(12):
         scene = random_slide(random)
-        pieces = [(0.0, {"F_X": random.normal(0, 20, 3), "F_Y": random.normal(0, 20, 3), "M_3": random.normal(0, 9, 3)})]
+        pieces = [(0.0, {name: random.normal(0, size, 3) for name, size in (("F_X", 20), ("F_Y", 20), ("M_3", 9))})]
         ends = []
         for count in (0, 20):
             w = wheel(logging=True).start(**scene.start, formulation=2)
