@@ -72,7 +72,7 @@ function makeNamed(name, vector, radius, height, colour, beyond) {
 export class WheelModel {
   /** wheel: {name, parameters, colour, table, trace, phases}; size of the scene in m. */
   constructor(wheel, size) {
-    const {name, parameters: {r_0, r}, table} = wheel;
+    const {name, parameters: {r_0, r}} = wheel;
     const radius = r_0 + r;
     Object.assign(
         this, {wheel, size, r_0, r, group: new THREE.Group(), path: new THREE.Group(), axes: new THREE.Group()});
@@ -88,7 +88,7 @@ export class WheelModel {
     [this.force, this.slip, this.moment] =
         ['--force', '--slide', '--moment'].map((name) => makeArrow(0.03 * r_0, colour(name)));
     this.carrier.add(this.moment);
-    for (const part of this.moment.children) {  // within the wheel, and seen through it
+    for (const part of [...this.moment.children, ...this.slip.children]) {  // seen through the wheel
       Object.assign(part, {renderOrder: 910, castShadow: false});
       Object.assign(part.material, {depthTest: false, transparent: true});
     }
@@ -101,13 +101,11 @@ export class WheelModel {
     this.uphill = new THREE.Group().add(arrow, label);
     this.group.add(this.carrier, this.force, this.slip, this.spot, this.uphill, this.path);
     this.drawPath();
-    const N = (table.shown.lambda_3 ?? [1]).filter(Number.isFinite);
-    this.weight = N.reduce((sum, value) => sum + value, 0) / N.length || 1;
-    this.fastest = extent(table.time.map((t) => slipOf(table, t)))[1];
   }
 
   /**
-   * The contact path anew: all of it faintly, up to now strongly, stick phases and skid marks in other colours.
+   * The contact path anew: all of it faintly, up to now strongly, stick phases and skid marks in other colours; and the
+   * scales of force and slip.
    */
   drawPath() {
     const {wheel: {trace: {points}, table, phases, colour: accent}, size, r_0} = this;
@@ -122,6 +120,9 @@ export class WheelModel {
     const marks = (spans, name, width) => spans.map((span) => ribbon(span, colour(name), width, 2, 0.9));
     this.past =
         [ribbon(all, accent, 1, 3, 0.95), ...marks(phases.slides, '--slide', 4), ...marks(phases.sticks, '--stick', 5)];
+    const N = (table.shown.lambda_3 ?? [1]).filter(Number.isFinite);
+    this.weight = N.reduce((sum, value) => sum + value, 0) / N.length || 1;
+    this.fastest = extent(table.time.map((t) => slipOf(table, t)))[1];
     dispose(this.path);
     this.path.clear().add(ribbon(all, accent, 0.5, 1, 0.3), ...this.past);
   }
