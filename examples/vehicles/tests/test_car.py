@@ -137,3 +137,32 @@ def test_a_fifth_wheel_is_a_change_of_one_file(fmus: Fmus, tmp_path: Path) -> No
     shares = [float(share) for share in done.stdout.split()]
     assert len(shares) == 5
     within(abs(sum(shares) - 1), 32 * EPSILON, "shares of the weight off 1")
+
+
+BROKEN = {  # what the closed form of a launch assumes, by a parameter that breaks it
+    "the links begin later": {"t_couple": 0.5},
+    "the bushings are softer than half the layout's": {"k_h": 100e3},
+    "left and right are not alike": {"drive_rl": 0.2},
+    "the road rises across the car": {"slope": 0.1, "slope_direction": 1.0},
+    "it follows a path": {"path": 2.0},
+    "the full drive torque does not act alone for a second": {"t_off": 1.0},
+    "a strut reaches its stop": {"travel": 0.001},
+}
+
+
+def test_a_closed_form_is_printed_where_what_it_assumes_holds_and_a_run_beyond_its_bound_has_failed(fmus: Fmus) -> None:
+    table = drive(fmus, LAUNCH, 0.002)
+    found, broken = car_judges.judged("launch", table, LAUNCH)
+    assert not broken and [f.fault for f in found] == ["", ""] and all("closed form" in str(f) for f in found)
+    for words, changed in BROKEN.items():
+        found, broken = car_judges.judged("launch", table, LAUNCH.changed(**changed))
+        assert broken == words and not any("closed form" in str(f) or f.fault for f in found)
+    slides = table | {"fl.slip_x": np.ones_like(table["time"])}
+    assert car_judges.judged("launch", slides, LAUNCH)[1] == "a wheel slides"
+    turns = table | {"psi": 0.01 * table["time"]}
+    assert car_judges.judged("launch", turns, LAUNCH)[1] == "the car turns"
+    heavier = LAUNCH.changed(m_B=1300.0, B_0=0.0)  # of which the run is not
+    found, _ = car_judges.judged("launch", table, heavier)
+    assert "acceleration of the launch departs from its closed form by more than 2 %" in found[0].fault
+    lines, faults = car_judges.findings(table, heavier.changed(t_brake=1e6))
+    assert faults and any("closed form" in line for line in lines)
