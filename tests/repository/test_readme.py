@@ -108,6 +108,11 @@ def test_the_recipe_for_a_speed_starts_at_that_speed(root):
     beyond(abs(0.3 / 0.35 * speed - 5), 0.5, "speed")  # r_0 in the place of r_0 + r
 
 
+def test_the_quarter_car_prints_what_its_recipe_shows(root):
+    (shown,) = blocks("text", RECIPES)
+    assert run("python", EXAMPLES / "quarter_car.py", folder=root) == shown
+
+
 def test_the_c_example_compiles_anywhere_and_prints_what_the_python_example_prints(root, tmp_path_factory):
     (commands,) = blocks("bash", HEADER_PAGE)
     assert "wheel=/path/to/this/project\n" in commands
@@ -155,8 +160,10 @@ def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_it
 
 def test_one_newton_step_keeps_the_brake_within_the_grip_and_stops_in_the_shortest_way(root):
     page = (ROOT / "docs" / "vehicle.md").read_text(encoding="utf-8")
-    (lines,), (shown,) = blocks("python", page), blocks("text", page)
+    lines, (shown,) = (EXAMPLES / "brake_limit.py").read_text(encoding="utf-8"), blocks("text", page)
     assert python(lines, root) == shown
+    (essential,) = blocks("python", page)
+    assert all(line.split("  #")[0].strip() in lines for line in essential.splitlines())
     way, shortest = map(float, re.findall(r"([\d.]+) m[;.]", shown))
     within(abs(shortest - 25**2 / (2 * 0.4 * 9.81)), 0.005, "v^2 / (2 mu g), m")  # as printed
     within(abs(way - shortest), 0.01, "stopping distance, m")
