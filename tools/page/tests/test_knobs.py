@@ -54,6 +54,18 @@ def test_any_number_within_the_limits_can_be_typed(live, name, text, value):
     assert shown == pytest.approx(float(text.replace("−", "-").rstrip("°")), rel=1e-6)
 
 
+def test_on_its_carrier_a_wheel_keeps_heading_and_tilt(live):
+    start(live, psi_dot_start=0.7)
+    beyond(np.ptp(column(live, "theta")), 0.1, "tilt of the free wheel, range in rad")
+    live.locator("#guided").check()
+    live.evaluate("page.live.frame()")
+    assert np.ptp(column(live, "theta")) == 0 and np.ptp(column(live, "psi")) == 0
+    assert live.locator("#live [name=psi_dot_start]").is_disabled() and live.locator("#critical").is_hidden()
+    live.locator("#guided").uncheck()
+    live.evaluate("page.live.frame()")
+    beyond(np.ptp(column(live, "theta")), 0.1, "tilt without the carrier, range in rad")
+
+
 @pytest.mark.parametrize(
     ("name", "text", "sentence"),
     [

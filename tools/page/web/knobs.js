@@ -73,7 +73,7 @@ export const torqueOf = (wheel) => Number((6 * strength(wheel)).toPrecision(6));
 /** Lowest and highest, in SI, of what has no slider. */
 const OTHERS = new Map([
   ['g', [0.5, 30]], ['J_y', [1e-10, 1e6]], ['psi_start', [-10, 10]], ['phi_start', [-10, 10]],
-  ['X_O_start', [-100, 100]], ['Y_O_start', [-100, 100]]
+  ['X_O_start', [-100, 100]], ['Y_O_start', [-100, 100]], ['guided', [0, 1]]
 ]);
 
 /** [lowest, highest] in SI of what may be set at the start, or (now) while it rolls; undefined for all else. */

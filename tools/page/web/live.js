@@ -99,6 +99,7 @@ export class LiveWheel {
     const {plan} = this;
     plan.values[name] = value;
     if (name === 'J_x') plan.values.J_y = value;
+    if (name === 'guided') Object.assign(plan.values, {psi_dot_start: 0, theta_dot_start: 0});  // the axle rests
     if (MOMENTS.includes(name)) plan.body = null;
     derive(plan);
     this.change('fitted');

@@ -179,11 +179,22 @@ function setUpReady(live, wheels) {
   };
 }
 
-/** Where the present spin is beside the critical one. */
+/** The switch of the hub carrier, on which the wheel does not turn about the vertical. */
+function setUpCarrier(live) {
+  const box = $('#guided');
+  box.onchange = () => live.setStart('guided', Number(box.checked));
+  return () => {
+    box.checked = live.value('guided') > 0;
+    for (const part of document.querySelectorAll('#start [name^=psi_dot_start]')) part.disabled = box.checked;
+  };
+}
+
+/** Where the present spin is beside the critical one, which a guided wheel has not. */
 function setUpCritical(live) {
   const host = $('#critical');
   const write = onChange((text) => host.replaceChildren(...subscripted(text)));
   return (wheel) => {
+    host.hidden = live.value('guided') > 0;
     const [now, limit] = [(name) => live.wheel.table.value(name, live.instant()), criticalSpin(wheel)];
     const [spin, lean] = [Math.abs(now('omega_z')), Math.abs(now('theta') * 180 / Math.PI - 90)];
     const apart = live.slides ? 'slides' : lean > NEAR ? `leans by ${lean.toFixed(0)}°` : null;
@@ -275,8 +286,8 @@ export function setUpPanel(live, wheels) {
   $('#push').append(...HELD.map((held) => makeHeld(held, live)));
   const ready = setUpReady(live, wheels);
   const all = [
-    setUpStory(live), setUpScenes(live), ready, setUpCritical(live), setUpGrip(live), setUpTerms(live),
-    setUpNotes(live), ...knobs
+    setUpStory(live), setUpScenes(live), ready, setUpCarrier(live), setUpCritical(live), setUpGrip(live),
+    setUpTerms(live), setUpNotes(live), ...knobs
   ];
   return () => {
     const wheel = live.parameters();
