@@ -78,10 +78,10 @@ def test_two_thousand_random_starts_end_in_their_first_nutation_or_fold(library:
         assert (N > -1e-6 * 196.2).all()  # never lifts off later
         again = orbit(np.linspace(2 * L, 9 * L, 150))
         differences.append(np.abs(again - y)[:, :4].max() / np.abs(y[:, :4]).max())
-    within(abs(ended - 1000), 900, "ended")
+    beyond(min(ended, 2000 - ended), 100, "wheels of either kind")
     # One period later tilt and rates are the same, from the direct part to the unfolded one.
-    within(np.percentile(differences, 99), 1e-9, "differences")
-    within(max(differences), 1e-5, "differences, 2")  # beside an unstable rest errors grow
+    within(np.percentile(differences, 99), 1e-9, "change of tilt and rates over a period, relative, of all but 1 %")
+    within(max(differences), 1e-5, "the largest")  # beside an unstable rest errors grow
 
 
 @pytest.mark.parametrize(("tolerance", "share"), [(1e-9, 100), (1e-10, 100), (1e-12, 90)])
