@@ -77,10 +77,17 @@ void warn_of_grip(Wheel& wheel, double t, const double* y) {
 
 void log_ending(Wheel& wheel, Event event) {
   const Run& run = wheel.run;
+  const Setup& setup = wheel.setup;
   if (wheel.endings++ >= logged_one_by_one) return;
+  constexpr double rounding = 1e-15;  // of the cosine of a right angle
+  if (event == Event::fell_flat && setup.tilting == 0 &&
+      std::fabs(std::cos(setup.start[setup.formulation->tilt_index])) < rounding)
+    wheel.reporter.log(Topic::warning,
+                       "The wheel started exactly upright: unless a load tipped it, rounding decided when and to which "
+                       "side; guided = true keeps it upright.");
   wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the run ends there.",
-                     ending_of(run.in_force, event).text, wheel.setup.start_time + run.t,
-                     Digits{run.y[wheel.setup.formulation->tilt_index], 6});
+                     ending_of(run.in_force, event).text, setup.start_time + run.t,
+                     Digits{run.y[setup.formulation->tilt_index], 6});
   if (wheel.endings == logged_one_by_one)
     wheel.reporter.log(Topic::discard, "%s ends were logged; further ones are not logged until a reset.",
                        static_cast<double>(logged_one_by_one));
