@@ -182,6 +182,7 @@ def conduct(arguments: argparse.Namespace) -> None:
     content = {"study": arguments.study, "name": "study"}
     if isinstance(arguments.study, Path):
         content = study_file(arguments.study, arguments.wheel, arguments.body)
+    from .checking import checked  # before a run: Dask's scheduler reloads this package in its own process
     from .compute import run
     from .dataset import export, exported, summarize
 
@@ -206,8 +207,6 @@ def conduct(arguments: argparse.Namespace) -> None:
     exported(out, {path.name for path in written})
     print(summarize(results, time.perf_counter() - begin))
     if arguments.check:
-        from .checking import checked
-
         results, said = checked(content["study"], results, arguments.fmu, out, arguments.check)
         print(said)
     paths = [out, *(export(results, path) for path in exports)]

@@ -45,6 +45,7 @@ def checked(study: Study, results: xr.Dataset, fmu: Path, place: str, count: int
     if not found.size:
         return results.assign(about), f"None of the {len(drawn)} wheels to be checked runs."
     said = f"Of {found.size} wheels run again at the tightest tolerance the error is at most {found.max():.1e} of the"
-    said += f" range (median {np.median(found):.1e}); the end of a run shifts by up to {late.max():.1e} s."
+    shifted = f"shifts by up to {late.max():.1e} s" if late.any() else "is not shifted"
+    said += f" range (median {np.median(found):.1e}); the end of a run {shifted}."
     parted = int((found > DIGITS).sum())
     return results.assign(about), said + f" In {parted} of them both runs part: unstable or chaotic." * bool(parted)

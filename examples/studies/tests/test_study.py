@@ -176,6 +176,15 @@ def test_a_check_states_the_error_of_some_wheels_and_keeps_it_in_two_columns(
         main(["--vary", "s=0,0.01", *where[:2], "--check", "0"])
 
 
+def test_a_check_runs_with_own_workers_in_a_process_of_its_own(fmu_path: Path, tmp_path: Path) -> None:
+    """There Dask's scheduler reloads the package from a file that is deleted before the check."""
+    words = ["--vary", "s=0,0.01", "--stop-time", "0.1", "--check", "2", "--workers", "1"]
+    command = [sys.executable, "-m", "study", *words, "--fmu", str(fmu_path), "--out", str(tmp_path / "z")]
+    done = subprocess.run(command, cwd=ROOT / "examples" / "studies", capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "Of 2 wheels run again" in done.stdout and "the end of a run is not shifted." in done.stdout
+
+
 VARY = {"theta_start=60deg:90deg:3": np.radians([60, 75, 90]), "slope=0%:10%:3": np.arctan([0, 0.05, 0.1])}
 VARY |= {"s=0,1cm": [0, 0.01], "phi_dot_start=-30rpm:-3:2": [-np.pi, -3]}
 
