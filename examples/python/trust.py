@@ -27,6 +27,10 @@ ROUNDING = 1e-11  # of the range: errors below are those of rounding and of the 
 DIGITS, PARTED = 1e-3, 1e6  # a difference that spoils three digits; its growth where both runs part
 STEP = CFUNCTYPE(c_int, c_void_p, c_double, c_double, c_int)  # fmi2DoStep
 EVENT = re.compile(r"(.*?)\bt = (\S+) s\b(.*)")
+LOCATED = (b"logEvents", b"logStatusDiscard")  # categories whose instants are located; a warning has that of a look
+    b"logEvents",
+    b"logStatusDiscard",
+)  # categories of messages at an event's instant; warnings have that of a look
 
 
 class Motion(NamedTuple):
@@ -50,7 +54,7 @@ class Wheel:
         of = {"guid": self.description.guid, "modelIdentifier": self.description.coSimulation.modelIdentifier}
         self.fmu, self.log = FMU2Slave(unzipDirectory=folder, instanceName="wheel", **of), []
         self.callbacks = fmi2CallbackFunctions()
-        self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
+        self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda *of: self.log.append((of[3], of[4].decode())))
 
     def begin(self, start: dict[str, str], tolerance: float, logging: bool) -> None:
         """A new instance after its initialization."""
@@ -78,8 +82,9 @@ class Wheel:
         except FMICallException:  # a start that is refused
             pass
         self.end()
-        found = [(float(m[2]), re.sub(r" = [-+.\de]+", "", m[1] + m[3])) for m in map(EVENT.match, self.log) if m]
-        message, times = "".join(self.log[-1:]), times[: len(rows)]
+        located = [EVENT.match(text) for kind, text in self.log if kind in LOCATED]
+        found = [(float(m[2]), re.sub(r" = [-+.\de]+", "", m[1] + m[3])) for m in located if m]
+        message, times = "".join(text for _, text in self.log[-1:]), times[: len(rows)]
         seconds = float(-np.diff(self.timed(start, times, tolerance, repeats))[0]) if rows else np.nan
         return Motion(times, np.array(rows), tuple(found), seconds, message)
 

@@ -58,6 +58,17 @@ def test_the_shift_of_events_is_the_true_one(wheel: Wheel) -> None:
     assert "36 events, 37 at the tightest tolerance" in trust(few, truth).said("A")
 
 
+def test_a_warning_is_no_event(wheel: Wheel) -> None:
+    """Partner: the wheel gives one, with the instant of a look at it, which depends on the step."""
+    given = {"m": "12", "J_x": "0.559", "J_y": "0.559", "J_z": "1.1", "slope": "0.12", "M_brake": "20"}
+    wheel.begin(given, DEFAULT, logging=True)
+    wheel.fmu.doStep(0.0, 1.0)
+    assert any("mu_required" in text for _, text in wheel.log)
+    wheel.end()
+    run = wheel.motion(given, np.linspace(0, 1, 101), DEFAULT)
+    assert run.events and not any("mu_required" in words for _, words in run.events)
+
+
 def test_an_upright_start_and_runs_that_part_are_named_with_the_instant_up_to_which_digits_hold(wheel: Wheel) -> None:
     times = np.linspace(0, 20, 2001)
     falls = [wheel.motion({"theta_start": str(np.pi / 2), "phi_dot_start": "0"}, times, t) for t in (DEFAULT, TIGHTEST)]
