@@ -28,9 +28,6 @@ DIGITS, PARTED = 1e-3, 1e6  # a difference that spoils three digits; its growth 
 STEP = CFUNCTYPE(c_int, c_void_p, c_double, c_double, c_int)  # fmi2DoStep
 EVENT = re.compile(r"(.*?)\bt = (\S+) s\b(.*)")
 LOCATED = (b"logEvents", b"logStatusDiscard")  # categories whose instants are located; a warning has that of a look
-    b"logEvents",
-    b"logStatusDiscard",
-)  # categories of messages at an event's instant; warnings have that of a look
 
 
 class Motion(NamedTuple):
