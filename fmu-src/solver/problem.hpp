@@ -20,6 +20,7 @@ struct Watched {
   // Whether the margins that `derivative` returns count this function in. It is then looked at only in steps in which
   // a margin came near zero, else at each step. It must be scaled as they are.
   bool by_margin;
+  int state = -1;  // the only one that `value` reads; below zero: it reads all
 };
 
 // A state whose rate is turning / y[speed] + ...: where the speed is small, it settles at once where the turning

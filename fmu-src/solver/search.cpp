@@ -30,7 +30,10 @@ struct Parabola {
 
 Sample Search::sample(double t) const {
   double y[max_states];
-  step.read(t, problem.states, y);
+  if (watched.state < 0)
+    step.read(t, problem.states, y);
+  else
+    y[watched.state] = step.read_state(t, watched.state);
   return sample(t, y);
 }
 

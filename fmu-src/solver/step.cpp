@@ -35,4 +35,13 @@ void Step::read(double t, int states, double* y) const {
     states == 8 ? evaluate<8>(c, degree, s, y) : evaluate<max_states>(c, degree, s, y);
 }
 
+double Step::read_state(double t, int state) const {
+  const double rounding = rounding_at(t);
+  if (t >= end - rounding) return y_end[state];
+  if (t <= start + rounding) return y_start[state];
+  double y = 0;
+  evaluate<1>(c, degree, (t - end) / (end - start), &y, state);
+  return y;
+}
+
 }  // namespace solver

@@ -35,16 +35,16 @@ double weighted_norm(const double* x, const double* weights) {
   return std::sqrt((even + odd) / width);
 }
 
-// sum of c_k s^k, even and odd powers apart: two Horner schemes that the processor can compute side by side. A master
-// pays for this at each communication point.
+// sum of c_k s^k of `width` states from `first` on, even and odd powers apart: two Horner schemes that the processor
+// can compute side by side. A master pays for this at each communication point.
 template <int width, int row>
-void evaluate(const double (*c)[row], int degree, double s, double* y) {
+void evaluate(const double (*c)[row], int degree, double s, double* y, int first = 0) {
   const int even = degree - degree % 2, odd = degree - 1 + degree % 2;
   double sum[2][width] = {};
   for (int k = even; k >= 0; k -= 2)
-    for (int i = 0; i < width; ++i) sum[0][i] = sum[0][i] * (s * s) + c[k][i];
+    for (int i = 0; i < width; ++i) sum[0][i] = sum[0][i] * (s * s) + c[k][first + i];
   for (int k = odd; k > 0; k -= 2)
-    for (int i = 0; i < width; ++i) sum[1][i] = sum[1][i] * (s * s) + c[k][i];
+    for (int i = 0; i < width; ++i) sum[1][i] = sum[1][i] * (s * s) + c[k][first + i];
   for (int i = 0; i < width; ++i) y[i] = sum[0][i] + sum[1][i] * s;
 }
 
@@ -67,8 +67,9 @@ struct Step {
   // What is saved of the step: all but its polynomial.
   void visit(support::Archive& archive, int states);
 
-  // y (states entries) at t inside the step; at its ends, up to a few roundings of t, what is kept there.
+  // y at t inside the step; at its ends, up to a few roundings of t, what is kept there: all states, or one alone.
   void read(double t, int states, double* y) const;
+  double read_state(double t, int state) const;
 };
 
 // Keeps what it needs from step to step; the step itself belongs to the solver.

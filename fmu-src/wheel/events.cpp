@@ -60,6 +60,10 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
   return -now.scene.load.brake / setup.moment_scale;
 }
 
+int spin_alone(const Setup& setup, const InForce& now) {
+  return now.scene.friction.kind == WHEEL_ROLLING ? setup.formulation->spin_index : -1;
+}
+
 Consequence change_spin(const Setup& setup, Event, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
   if (law != WHEEL_FRICTIONLESS) formulation_of(setup, now.scene).stop_spin(&now.scene.wheel, y);
@@ -129,7 +133,11 @@ constexpr EventRow event_rows[] = {
     layer_event(Event::stiffens, varies_and_can_stiffen, softness),
     layer_event(Event::sticks_in_layer, is_passing, holding_lacks),
     layer_event(Event::crosses_layer, is_layered, way_to_edge),
-    {.event = Event::spin_changes, .can_occur = can_change_spin, .value = spin_left, .follow = change_spin},
+    {.event = Event::spin_changes,
+     .can_occur = can_change_spin,
+     .value = spin_left,
+     .state = spin_alone,
+     .follow = change_spin},
     {.event = Event::lost_grip,
      .can_occur = [](const Setup& setup, const InForce& now) { return is_limited(setup, now.road) && !now.slides(); },
      .value = grip_left,

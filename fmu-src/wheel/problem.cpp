@@ -90,7 +90,10 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.passage = now.layer == Layer::passing;
   if (now.slides()) problem.settling = {setup.sliding->slip_index + 1, setup.sliding->slip_index, slope_of_turning};
   for (const EventRow& row : event_rows)
-    if (row.can_occur(setup, now)) problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr});
+    if (row.can_occur(setup, now)) {
+      const int state = row.state ? row.state(setup, now) : -1;
+      problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr, state});
+    }
   return problem;
 }
 
