@@ -60,7 +60,7 @@ def read_table(path: Path) -> Table:
     header, rows = (rows[0][1] if rows else []), rows[1:]
     for mark, word in {";": "semicolons", "\t": "tabs"}.items():
         if any(mark in name for name in header):
-            raise Fault(f"{path}: {word} part its columns; write commas, and points as decimal marks.")
+            raise Fault(f"{path}: {word} separate its columns; write commas, and points as decimal marks.")
     width = max((k for k, name in enumerate(header, 1) if name), default=0)
     if nameless := [k for k, name in enumerate(header[:width], 1) if not name]:
         raise Fault(f"{path}: column {nameless[0]} has no name in the first row.")
