@@ -67,7 +67,7 @@ def test_the_rate_of_tau_counts_the_brake(wheel, braked, slope):
     w = wheel().start(theta_start=pi / 2, phi_dot_start=-2.0).to(0.1).give({"M_brake": (braked, slope)})
     assert abs(w.get("tau")[0]) == braked
     expected = 0.0 if braked == 0 and slope < 0 else slope
-    assert abs(w.rates(["tau"])()[0]) == abs(expected)
+    assert abs(w.rates(["tau"])()[0]) == pytest.approx(abs(expected), rel=1e-11, abs=0)
 
 
 # Of a step of 1.3 units in the last place of the time a quarter is lost, of 1.6 a quarter is added, of 7.5 a fifteenth.

@@ -40,7 +40,7 @@ def test_each_fate_is_a_status_with_the_message_of_the_fmu(alone) -> None:
         ("reached", {}, ""),
         ("flat", {"phi_dot_start": 0}, "flat"),
         ("lifted_off", {"theta_start": 0.26, "phi_dot_start": -40, "s": 0.03}, "lifted off"),
-        ("grip", {"mu_max": 0.4}, "friction above mu_max"),
+        ("grip", {"mu_max": 0.4}, "friction coefficient above mu_max"),
         ("jammed", JAMS, "jams"),
         ("refused", {"theta_start": 4}, "theta_start"),
         ("refused", {"s": -1}, "s"),

@@ -159,11 +159,10 @@ def test_of_two_scenes_the_one_that_moves_is_drawn_and_the_other_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, free: int, friction: int
 ) -> None:
     drawn = []
-    monkeypatch.setattr(paper, "RESULTS", tmp_path)
     monkeypatch.setattr(paper, "pictures", lambda scenes, out: drawn.extend(scenes) or PICTURES(scenes, out)[:1])
     written(tmp_path, "free", scene(), free)
     written(tmp_path, "friction", scene(0.03), friction)
-    paper.main()
+    paper.main(tmp_path)
     still, moving = ("free", "friction") if free < friction else ("friction", "free")
     assert (
         f'The scene "{still}" has no motion to draw: the wheel lifted off the ground at t = 0.593 s.'
@@ -172,7 +171,7 @@ def test_of_two_scenes_the_one_that_moves_is_drawn_and_the_other_named(
     assert [one.path.stem for one in drawn] == [moving] and (tmp_path / "diagrams.png").stat().st_size > 1e5
     (tmp_path / f"{moving}.csv").write_text((tmp_path / f"{still}.csv").read_text())
     with pytest.raises(SystemExit, match="^run: Neither scene has a motion to draw"):
-        paper.main()
+        paper.main(tmp_path)
 
 
 NO_ARC = {
