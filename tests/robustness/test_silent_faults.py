@@ -161,7 +161,7 @@ def test_a_small_change_of_the_value_or_of_one_derivative_alone_is_taken(wheel, 
         shape[order] += change
         w = wheel().start(theta_start=1.2, s=0.0, method=method).give({"M_3": (0.3, 0.2, 0.1, 0.05)}).to(0.5)
         ends += w.give({"M_3": shape}).to(1.0).get("phi_dot")
-    beyond(abs(ends[1] - ends[0]), 1e-9, "ends")
+    beyond(abs(ends[1] - ends[0]), 1e-10, "change of phi_dot, rad/s")  # not taken: 0
 
 
 @pytest.mark.parametrize("kind", [(2, 1, 0.03), (2, 2, 0.0), (3, 2, 0.0), (3, 4, 0.03)], ids=str)
