@@ -27,9 +27,11 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
 }
 
 // The rounding of the rates near flat, relative. psi_dot = omega_2 / sin(theta) magnifies that of theta, of which a
-// tenth is left over many steps; where psi_dot is a state, accelerations of the size of r_0 psi_dot^2 cancel.
-double rounding_of_rates(double theta, double turns) {
-  return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), turns * turns);
+// tenth is left over many steps. Where psi_dot is a state, accelerations of the size of r_0 psi_dot^2 cancel: their
+// rounding acts for less than 1 / psi_dot in a step, but whole on the direction of a slip, which follows them at once.
+double rounding_of_rates(double theta, double turns, bool slides) {
+  const double cancels = slides ? turns * turns : turns;
+  return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), cancels);
 }
 
 // The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
@@ -42,8 +44,8 @@ void weights(void* owner, double share, const double* y, double* weights) {
   const bool multibody = setup.formulation == &wheel_multibody;
   const double theta = y[setup.formulation->tilt_index];
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  const double slow = share * setup.tolerance, turns = multibody ? y[psi_dot] * setup.own_time : 0;
-  const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, turns));
+  const double slow = share * setup.tolerance, turns = multibody ? std::fabs(y[psi_dot]) * setup.own_time : 0;
+  const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, turns, now.slides()));
   const double tolerance = std::fmax(slow * share_at(setup, y[spin]), least);
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, y[spin], scales);
