@@ -7,7 +7,7 @@
 
 typedef uint64_t Bits __attribute__((vector_size(sizeof(Two))));
 #define ALL UINT64_MAX
-#define SIGN ((uint64_t)1 << 63)
+#define SIGN UINT64_C(0x8000000000000000)
 
 /* An angle less n quarter turns, and what `angle` rounds off. */
 typedef struct Reduced {
@@ -55,7 +55,8 @@ Sines wheel_sines(double angle) {
   const Two pq = (PQ[0] + zz * PQ[1]) + z_4 * ((PQ[2] + zz * PQ[3]) + z_4 * (PQ[4] + zz * PQ[5]));
   const Two sines = large + (factor * pq + small), turned = {sines[1], sines[0]};
   /* A quarter turn exchanges sine and cosine, and one of them changes its sign. */
-  const Bits mask = exchanged[of.n & 3];
-  const Two out = (Two)((((Bits)sines & ~mask) | ((Bits)turned & mask)) ^ signs[of.n & 3]);
+  const unsigned quarters = (unsigned)of.n & 3u;
+  const Bits mask = exchanged[quarters];
+  const Two out = (Two)((((Bits)sines & ~mask) | ((Bits)turned & mask)) ^ signs[quarters]);
   return (Sines){out[0], out[1]};
 }

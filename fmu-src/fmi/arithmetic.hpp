@@ -7,10 +7,11 @@
 namespace fmi {
 
 // The control words. On x86 the x87's too: some C libraries print by it. Its precision differs from system to system,
-// and the lowest bits of the other word are flags of what has happened.
+// and the lowest bits of the other word are flags of what has happened. No library has access to all of them.
+// NOLINTBEGIN(portability-no-assembler)
 #if defined(__x86_64__)
 struct ControlWords {
-  static constexpr std::uint16_t traps_and_rounding = 0xc3f, x87_default = 0x3f;
+  static constexpr unsigned traps_and_rounding = 0xc3f, x87_default = 0x3f;
   static constexpr std::uint32_t flags = 0x3f, sse_default = 0x1f80;
   std::uint32_t sse;
   std::uint16_t x87;
@@ -20,7 +21,7 @@ struct ControlWords {
   bool is_default() const { return (sse & ~flags) == sse_default && (x87 & traps_and_rounding) == x87_default; }
   void set_default() {
     sse = sse_default;
-    x87 = static_cast<std::uint16_t>((x87 & ~traps_and_rounding) | x87_default);
+    x87 = static_cast<std::uint16_t>((static_cast<unsigned>(x87) & ~traps_and_rounding) | x87_default);
   }
 };
 #elif defined(__aarch64__)
@@ -40,6 +41,7 @@ struct ControlWords {
   void set_default() {}
 };
 #endif
+// NOLINTEND(portability-no-assembler)
 
 class Arithmetic {
  public:

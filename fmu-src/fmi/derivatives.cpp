@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exchange.hpp"
 #include "instance.hpp"
 #include "slopes.hpp"
 

@@ -8,10 +8,10 @@ namespace orbit {
 bool Track::add(const solver::Step& step) {
   if (count_ == most_pieces || step.degree > degree) return false;
   if (count_ % more_pieces == 0) {
-    void* const longer = std::realloc(pieces_.get(), (count_ + more_pieces) * sizeof(Piece));
+    Piece* const shorter = pieces_.release();
+    void* const longer = std::realloc(shorter, (count_ + more_pieces) * sizeof(Piece));
+    pieces_.reset(longer ? static_cast<Piece*>(longer) : shorter);
     if (!longer) return false;
-    (void)pieces_.release();
-    pieces_.reset(static_cast<Piece*>(longer));
   }
   Piece& piece = pieces_.get()[count_++] = {step.start, step.end, {}};
   for (int k = 0; k <= step.degree; ++k) std::copy_n(step.c[k], states, piece.c[k]);

@@ -121,6 +121,19 @@ bool check_carrier(const Reporter& reporter, const double* v) {
                         Digits{psi_dot, 9}, Digits{theta_dot, 9});
 }
 
+// Those of the kind of run and the formulation, rolling and sliding, free or on a hub carrier.
+void choose_equations(Setup& setup, const Demand& demand) {
+  const bool multibody = choice_of(demand.parameters[variable::formulation]) == multibody_formulation,
+             exchanged = setup.kind == Kind::model_exchange;
+  const auto choose = [&](auto& free, auto& on_carrier) { return setup.guided ? &on_carrier : &free; };
+  setup.formulation = exchanged   ? choose(wheel_euler, wheel_guided_euler)
+                      : multibody ? choose(wheel_multibody, wheel_guided_multibody)
+                                  : choose(wheel_reduced, wheel_guided);
+  if (demand.slides)
+    setup.sliding = multibody ? choose(wheel_multibody_sliding, wheel_guided_multibody_sliding)
+                              : choose(wheel_sliding, wheel_guided_sliding);
+}
+
 }  // namespace
 
 bool check_values(const Demand& demand, const Reporter& reporter, bool at_start) {
@@ -138,17 +151,10 @@ Setup setup_of(const Demand& demand) {
   const double* v = demand.parameters;
   Setup setup = {};
   setup.kind = demand.kind;
+  const bool exchanged = setup.kind == Kind::model_exchange;
   setup.start_time = demand.start_time;
-  const bool multibody = choice_of(v[formulation]) == multibody_formulation,
-             exchanged = setup.kind == Kind::model_exchange;
   setup.guided = v[guided] != 0;
-  const auto choose = [&](auto& free, auto& on_carrier) { return setup.guided ? &on_carrier : &free; };
-  setup.formulation = exchanged   ? choose(wheel_euler, wheel_guided_euler)
-                      : multibody ? choose(wheel_multibody, wheel_guided_multibody)
-                                  : choose(wheel_reduced, wheel_guided);
-  if (demand.slides)
-    setup.sliding = multibody ? choose(wheel_multibody_sliding, wheel_guided_multibody_sliding)
-                              : choose(wheel_sliding, wheel_guided_sliding);
+  choose_equations(setup, demand);
   // clang-format off
   setup.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g = v[g],
                  .s = 0, .g_X = 0, .g_Y = 0};

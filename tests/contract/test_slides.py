@@ -68,6 +68,7 @@ def test_while_it_slides_the_derivatives_by_the_brake_are_quotients_of_the_outpu
     beyond(abs(found[names.index("tau")]), 0.9, "derivative of tau")
 
 
+@pytest.mark.local  # sanitizers keep what is freed
 def test_a_state_of_a_wheel_that_rolls_and_one_of_a_wheel_that_slides_take_each_others_place(wheel) -> None:
     """They differ in size; 20,000 alternations take no more memory than the first ones."""
     rolls, slides = wheel().start(**ROAD).to(0.3), wheel().start(**ROAD).to(0.7)
