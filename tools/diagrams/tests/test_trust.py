@@ -46,6 +46,17 @@ def test_the_estimated_error_is_the_true_one(wheel: Wheel, scene: Scene) -> None
     beyond(abs(np.log2(differences(other.rows, truth.rows).max() / true)), 1, "of a looser run")
 
 
+def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel: Wheel) -> None:
+    """Upright under the regularized law: sinh(omega_z / omega_s) decays as exp(-s m g t / ((J_z + m R^2) omega_s))."""
+    start = {"s": 0.03, "friction_law": "regularized", "omega_s": 0.1, "theta_start": np.pi / 2, "guided": True}
+    times, decay = np.linspace(0, 4, 51), 0.03 * 20 * 9.81 / (1.8 + 20 * 0.35**2) / 0.1  # 1/s
+    exact = 0.1 * np.arcsinh(np.sinh(-2 / 0.1) * np.exp(-decay * times))
+    run, truth = (wheel.motion(values_of(Scene(start, 4.0)), times, tolerance) for tolerance in (1e-5, TIGHTEST))
+    estimated, true = (np.abs(run.rows[:, 2] - spin).max() for spin in (truth.rows[:, 2], exact))
+    beyond(true, ROUNDING * np.ptp(exact), "true error, rad/s")
+    within(abs(np.log2(estimated / true)), 1, "estimated over true error, off 1 by a factor of 2")
+
+
 def test_the_shift_of_events_is_the_true_one(wheel: Wheel) -> None:
     want = read_table("paper_friction_events")["t"][1:]
     run, truth = (wheel.motion({"s": "0.03"}, np.linspace(0, 10, 1001), t, 1) for t in (1e-6, TIGHTEST))
