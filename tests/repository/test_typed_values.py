@@ -240,7 +240,7 @@ def simulated(tmp_path: Path) -> Path:
     for file in ("modelDescription.xml", "examples/wheels.json", "examples/bodies.json"):
         shutil.copy(ROOT / file, tmp_path / file)
     stubs = {"scripts/setup": "", "scripts/build": "", ".venv/bin/fmpy": FMPY}
-    stubs[".venv/bin/python"] = f'[ "$1" != -B ] || exec {sys.executable} "$@"'
+    stubs[".venv/bin/python"] = f'[ "$1" != -B ] || exec "{sys.executable}" "$@"'
     for name, text in stubs.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(f"#!/usr/bin/env bash\n{text}\n")
