@@ -16,6 +16,7 @@ from support.scenes import PAPER
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 TOOLS = (ROOT / "docs" / "in_your_tool.md").read_text(encoding="utf-8")
 RECIPES = (ROOT / "docs" / "recipes.md").read_text(encoding="utf-8")
+VEHICLE = (ROOT / "docs" / "vehicle.md").read_text(encoding="utf-8")
 HEADER_PAGE = (ROOT / "docs" / "c_header.md").read_text(encoding="utf-8")
 EXAMPLES = ROOT / "examples" / "python"
 
@@ -159,10 +160,9 @@ def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_it
 
 
 def test_one_newton_step_keeps_the_brake_within_the_grip_and_stops_in_the_shortest_way(root):
-    page = (ROOT / "docs" / "vehicle.md").read_text(encoding="utf-8")
-    lines, (shown,) = (EXAMPLES / "brake_limit.py").read_text(encoding="utf-8"), blocks("text", page)
+    lines, shown = (EXAMPLES / "brake_limit.py").read_text(encoding="utf-8"), blocks("text", VEHICLE)[0]
     assert python(lines, root) == shown
-    (essential,) = blocks("python", page)
+    (essential,) = blocks("python", VEHICLE)
     assert all(line.split("  #")[0].strip() in lines for line in essential.splitlines())
     way, shortest = map(float, re.findall(r"([\d.]+) m[;.]", shown))
     within(abs(shortest - 25**2 / (2 * 0.4 * 9.81)), 0.005, "v^2 / (2 mu g), m")  # as printed
@@ -171,6 +171,15 @@ def test_one_newton_step_keeps_the_brake_within_the_grip_and_stops_in_the_shorte
     beyond(shortest - float(re.search(r"([\d.]+) m;", locked)[1]), 50, "stopping distance, m")
     ending = lines.replace('"s": 0.004', '"s": 0.004, "mu_max": 0.41')
     assert python(ending, root) == shown  # the grip is never exceeded within a step
+
+
+def test_a_wheel_rolls_onto_a_hill_as_far_as_its_energy_takes_it(root):
+    lines, (_, shown) = (EXAMPLES / "hill.py").read_text(encoding="utf-8"), blocks("text", VEHICLE)
+    assert python(lines, root) == shown
+    way, height = map(float, re.findall(r"([\d.]+) m[;.]", shown))
+    within(abs(way - height), 0.005, "distance uphill, m")  # as printed
+    flat = python(lines.replace("[SLOPE])", "[SLOPE / 2])"), root)  # the partner: half the slope
+    beyond(float(re.search(r"([\d.]+) m;", flat)[1]) - height, 500, "distance uphill, m")
 
 
 TUTORIAL = (ROOT / "docs" / "first_suspension.md").read_text(encoding="utf-8")

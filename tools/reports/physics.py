@@ -12,10 +12,12 @@ from contextlib import contextmanager
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from reference import Wheel
 from support.closed_forms import critical_spin, fall_time
 from support.motion import Run
 from support.scenes import PAPER
 from support.schedule import Schedule
+from support.sliding import jamming
 
 from . import plots
 from .page import Report, Row, part
@@ -63,7 +65,9 @@ def stays_up(report: Report) -> Row:
         style.note(right, f"critical spin\n{CRITICAL:.4g} rad/s", (CRITICAL, 60), (4, 0), color=style.GREY)
         title, x = "Below the limit any lean grows, but nothing falls flat", r"spin $|\omega_z|$ at the start [rad/s]"
         label(right, x, "largest lean in 20 s [deg]", title, legend="lower left", ylim=(0, 95))
-    return {"critical_spin": CRITICAL}
+    fast = run(report, 4, 2e-3, theta_start=start, phi_dot_start=-20.0)
+    turns = np.flatnonzero(np.diff(np.sign(fast["theta_dot"])))  # two in each period
+    return {"critical_spin": CRITICAL, "nutation": (len(turns) - 1) / 2 / (fast.t[turns[-1]] - fast.t[turns[0]])}
 
 
 @part(1)
@@ -151,6 +155,7 @@ def tipping(report: Report) -> Row:
 
 
 CONTACT = re.compile(r"t = (\S+) s: the wheel (?:starts to slide|stops sliding)\.")
+DISC = Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.25, J_y=0.25, J_z=0.5)  # thin, homogeneous
 WET, SLIPPERY = {"mu_max": 0.45, "mu_slide": 0.4}, {"mu_max": 0.3, "mu_slide": 0.25}
 
 
@@ -177,7 +182,13 @@ def slides(report: Report) -> Row:
     count = int((np.diff(slippery["contact_mode"]) == 1).sum())
     most = float(np.hypot(wet["slip_x"], wet["slip_y"]).max())
     left_over = {f"energy_{road}": value for road, value in energy.items()}
-    return ways | {"slide_X": X, "slide_Y": Y, "slip": most, "slides_slippery": count} | left_over
+    jams = {"jam_paper": least_jamming(PAPER), "jam_disc": least_jamming(DISC)}
+    return ways | {"slide_X": X, "slide_Y": Y, "slip": most, "slides_slippery": count} | left_over | jams
+
+
+def least_jamming(wheel: Wheel) -> float:
+    """The least friction coefficient at which the wheel can jam, over all leans."""
+    return min(jamming(wheel, theta) for theta in np.linspace(0.1, UPRIGHT - 0.1, 2001))
 
 
 @part(3)
