@@ -1,8 +1,8 @@
 """How far a run can be trusted: by the same motion at the tightest tolerance, of wheel.fmu itself.
 
-The error is the largest difference of the four headline outputs over the run, relative to each output's range. Events
-are compared by their logged instants. Where both runs part, as near an upright start, the instant is given up to which
-their first three digits agree.
+The error is the largest difference of the four headline outputs over the run, relative to each output's range.
+Transitions and an early end are compared by their logged instants. Where both runs part, as near an upright start, the
+instant is given up to which their first three digits agree.
 """
 
 import re
@@ -28,10 +28,12 @@ DIGITS, PARTED = 1e-3, 1e6  # a difference that spoils three digits; its growth 
 STEP = CFUNCTYPE(c_int, c_void_p, c_double, c_double, c_int)  # fmi2DoStep
 EVENT = re.compile(r"(.*?)\bt = (\S+) s\b(.*)")
 LOCATED = (b"logEvents", b"logStatusDiscard")  # categories whose instants are located; a warning has that of a look
+END = "the run ends there"
 
 
 class Motion(NamedTuple):
-    """Rows of the headline outputs at `times`, events by instant and words, seconds in fmi2DoStep, the last message."""
+    """Rows of the headline outputs at `times`, transitions and the end by instant and words, seconds in fmi2DoStep, the
+    last message."""
 
     times: Array
     rows: Array
@@ -111,8 +113,9 @@ class Trust(NamedTuple):
     """What the comparison of a run with the one at the tightest tolerance gives."""
 
     error: float
-    shift: float | None  # s, of the events' instants; None where not all are there in both
-    counts: tuple[int, int]  # events, there and in the run at the tightest tolerance
+    shift: float | None  # s, of transitions and end; None where not all are there in both
+    counts: tuple[int, int]  # transitions, there and in the run at the tightest tolerance
+    ends: bool  # early
     seconds: float
     until: float | None  # s, up to where three digits hold in a motion whose runs part
 
@@ -125,12 +128,15 @@ class Trust(NamedTuple):
 
     def said(self, label: str) -> str:
         """One line for the user."""
-        events = f"; {self.counts[0]} events, {self.counts[1]} at the tightest tolerance" * (self.shift is None)
-        if self.shift is not None and self.counts[0]:
+        (count, other), located = self.counts, ""
+        if self.shift is None:
+            located = f"; {count} transitions, {other} at the tightest tolerance"
+        elif count or self.ends:
+            found = [f"{count} transition{'s' * (count > 1)}"] * (count > 0) + ["the end"] * self.ends
             shifted = f"shifted by up to {self.shift:.1e} s" if self.shift else "not shifted"
-            events = f"; {self.counts[0]} event{'s' * (self.counts[0] > 1)}, {shifted}"
+            located = f"; {' and '.join(found)}, {shifted}"
         unstable = "unstable or chaotic: " * (self.until is not None)
-        return f"{label}: {unstable}{self.short}{events}; computing time {1e3 * self.seconds:.3g} ms."
+        return f"{label}: {unstable}{self.short}{located}; computing time {1e3 * self.seconds:.3g} ms."
 
 
 def trust(run: Motion, truth: Motion, scales: Array | float = 1.0) -> Trust:
@@ -144,4 +150,6 @@ def trust(run: Motion, truth: Motion, scales: Array | float = 1.0) -> Trust:
     shifts = (abs(a - b) for (a, _), (b, _) in zip(run.events, truth.events, strict=False))
     shift = max(shifts, default=0.0) if kinds[0] == kinds[1] else None
     until = float(run.times[np.argmax(parts)]) if parts.any() else None
-    return Trust(float(apart.max()), shift, (len(kinds[0]), len(kinds[1])), run.seconds, until)
+    ends = [any(END in words for words in kind) for kind in kinds]
+    counts = len(kinds[0]) - ends[0], len(kinds[1]) - ends[1]
+    return Trust(float(apart.max()), shift, counts, ends[0], run.seconds, until)

@@ -2,7 +2,7 @@
 
 Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta. Friction and brake leave marks: a band
 per stick phase, a tick at the top for each change of sign of omega_z. A slide has a bar on the time axis between thin
-lines where grip is lost and returns. A panel returns what the caption has to explain.
+lines where grip is lost and returns. A panel returns the clauses by which the caption explains it.
 """
 
 from typing import Any
@@ -45,8 +45,9 @@ def draw_tilt(ax: Axes, scene: Scene) -> list[str]:
     degrees.set_ylabel(r"$\theta$ [deg]")
     degrees.spines["right"].set_visible(True)
     _scale(ax.yaxis, 7, theta, 1e-3, steps=(1, 2, 5, 10))
-    _scale(degrees.yaxis, 6, steps=(1, 1.5, 2, 3, 5, 10))
-    if np.ptp(theta) >= np.pi / 6:
+    wide = np.ptp(theta) >= np.pi / 6
+    _scale(degrees.yaxis, 6, steps=(1, 1.5, 3, 10) if wide else (1, 2, 5, 10))
+    if wide:
         ax.set_ylim(0.0, np.pi if theta.max() > np.pi / 2 - 0.02 else np.pi / 2)  # a line at the frame cannot be seen
     return marks + _over_time(ax, scene["time"], theta)
 
@@ -67,7 +68,7 @@ def draw_path(ax: Axes, scene: Scene) -> list[str]:
         arrow = {"arrowstyle": "<|-", "color": style.GREY, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", (0.12, 0.83), step, "axes fraction", "offset points", arrowprops=arrow)
         ax.text(0.02, 0.93, "downhill", transform=ax.transAxes, color=style.GREY, fontsize=style.NOTE)
-    return ["Purple on the path: it slides."] * bool(scene.slides.any())
+    return ["purple on the path: it slides"] * bool(scene.slides.any())
 
 
 def draw_ground(ax: Axes, scene: Scene) -> list[str]:
@@ -93,7 +94,7 @@ def draw_ground(ax: Axes, scene: Scene) -> list[str]:
         right.axhline(limit, color=style.VERMILLION, linewidth=0.8, linestyle=(0, (4, 2)))
         place = {"color": style.VERMILLION, "xycoords": right.get_yaxis_transform()}
         style.note(right, r"$\mu_\mathrm{max}$", (0.02, limit), (0, 2), **place)
-    return marks + [rf"$\mu$ is drawn up to {MOST:g}."] * int(needed.max() == MOST)
+    return marks + [rf"$\mu$ is drawn up to {MOST:g}"] * int(needed.max() == MOST)
 
 
 def draw_slip(ax: Axes, scene: Scene) -> list[str]:
@@ -118,7 +119,7 @@ def draw_speeds(ax: Axes, scene: Scene) -> list[str]:
     marks = _time_axis(ax, scene)
     speeds = {r"$-R\,\omega_z$": (scene.rolling_speed, style.VERMILLION), "$v$": (scene.speed, style.BLUE)}
     marks += _curves(ax, scene, speeds)
-    return [*marks, r"$R = r_0 + r \sin\theta$; forward is positive."]
+    return [*marks, r"$R = r_0 + r \sin\theta$, forward is positive"]
 
 
 def draw_slip_ratio(ax: Axes, scene: Scene) -> list[str]:
@@ -129,9 +130,8 @@ def draw_slip_ratio(ax: Axes, scene: Scene) -> list[str]:
     _scale(ax.yaxis, 5, [-1.0, 0.0], steps=(1, 5, 10))
     ax.margins(y=0.08)
     over = bool((abs(scene.slip_ratio) > 1).any())
-    return [*marks, r"$\kappa = (-R\,\omega_z - v)/v$: braking negative, $-1$ locked."] + [
-        r"$\kappa$ is drawn from $-1$ to 1."
-    ] * over
+    marks.append(r"$\kappa = (-R\,\omega_z - v)/v$: braking negative, $-1$ locked")
+    return marks + [r"$\kappa$ is drawn from $-1$ to 1"] * over
 
 
 def draw_forces(ax: Axes, scene: Scene) -> list[str]:
@@ -190,14 +190,14 @@ def draw_rates(ax: Axes, scene: Scene) -> list[str]:
     for axis, rate in ((ax.xaxis, x), (ax.yaxis, y)):
         _scale(axis, 5, rate, 1.0 if scene.still else 1e-3 + 1e-5 * abs(rate).max())
     if scene.one_arc and not scene.still:
-        return [r"Both rates depend on $\theta$ alone, so the curve is a single arc, traced back and forth."]
+        return [r"both rates depend on $\theta$ alone, so the curve is a single arc, traced back and forth"]
     # omega_z = phi_dot + psi_dot cos(theta) is small, and so is the angle at which a narrow bundle lies.
     shear = float(-np.sign(np.cos(scene["theta"].mean())) or -1.0)
-    marks = [r"Thick: stick ($\omega_z$ held at zero)."] * bool(stick.any())
+    marks = [r"thick: stick ($\omega_z$ held at zero)"] * bool(stick.any())
     if scene.still or np.ptp(y - shear * x) >= NARROW * np.ptp(y):
         return marks
     _draw_inset(ax, x, y, stick, shear)
-    return [*marks, "Inset: the same motion sheared, which opens the narrow bundle."]
+    return [*marks, "inset: the same motion sheared, which opens the narrow bundle"]
 
 
 def write_rates(ax: Axes, scene: Scene) -> None:
@@ -289,13 +289,13 @@ def _time_axis(ax: Axes, scene: Scene) -> list[str]:
     place = {"transform": ax.get_xaxis_transform()}
     ax.add_artist(StepPatch(scene.mode == 0, scene.edges, fill=True, color=style.BAND, linewidth=0, zorder=0, **place))
     ax.vlines(scene.reversals, 0.955, 1.0, color=style.VERMILLION, linewidth=0.8, zorder=1, **place)
-    marks = [r"Bands: stick ($\omega_z$ held at zero)."] * bool((scene.mode == 0).any())
-    marks += [r"Ticks at the top: $\omega_z$ changes sign."] * bool(scene.reversals.size)
+    marks = [r"bands: stick ($\omega_z$ held at zero)"] * bool((scene.mode == 0).any())
+    marks += [r"ticks at the top: $\omega_z$ changes sign"] * bool(scene.reversals.size)
     if scene.slides.any():
         bars = np.where(scene.slides, BAR, 0.0)
         ax.add_artist(StepPatch(bars, scene.edges, fill=True, color=style.PURPLE, linewidth=0, zorder=1, **place))
         ax.vlines(scene.turns, 0.0, 1.0, color=style.PURPLE, linewidth=0.5, alpha=0.6, zorder=0, **place)
-        marks.append("Purple bars: it slides; thin lines: it starts and stops sliding.")
+        marks.append("purple bars: it slides; thin lines: it starts and stops sliding")
     return marks
 
 
@@ -313,7 +313,7 @@ def _over_time(ax: Axes, time: Array, values: Array, color: str = style.BLUE) ->
         ax.plot(middle, edge, color=color, linewidth=0.7)
     look = {"ha": "right", "va": "bottom", "color": color}
     style.note(ax, "swings between two lines", (middle[-1], high[-1]), (-2, 3), **look)
-    return ["Swings too close to be drawn: their highest and lowest values."]
+    return ["swings too close to be drawn: their highest and lowest values"]
 
 
 def _turns(values: Array) -> int:

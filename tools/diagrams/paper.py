@@ -12,7 +12,6 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import chain
 from multiprocessing import Pool
 from pathlib import Path
 
@@ -106,9 +105,10 @@ def wheel_of(scene: Scene) -> str:
 def start_of(scene: Scene) -> str:
     """The start, (32) and (33), as the run had it."""
     angles = (("psi", r"\psi"), ("theta", r"\theta"), ("phi", r"\varphi"))
-    places = [rf"${symbol} = {np.degrees(scene.value(f'{name}_start')):.5g}°$" for name, symbol in angles]
+    turned = [rf"${symbol} = {np.degrees(scene.value(f'{name}_start')):.5g}°$" for name, symbol in angles]
     rates = [rf"$\dot{symbol} = {scene.value(f'{name}_dot_start'):.4g}$" for name, symbol in angles]
-    return f"At $t = 0$: {', '.join(places)}; {', '.join(rates)} rad/s"
+    place = [rf"${axis}_O = {scene.value(f'{axis}_O_start'):.4g}$" for axis in "XY"]
+    return f"At $t = 0$: {', '.join(turned)}; {', '.join(rates)} rad/s; {', '.join(place)} m"
 
 
 def title_of(scene: Scene) -> str:
@@ -116,29 +116,39 @@ def title_of(scene: Scene) -> str:
     return rf"Rolling friction, $s = {s:.4g}$ m" if s > 0 else r"No rolling friction, $s = 0$"
 
 
-def events_of(scene: Scene) -> list[str]:
-    """How often friction or brake hold, release or reverse the spin, and how often the wheel slides."""
+def fate_of(scene: Scene) -> list[str]:
+    """Clauses: its transitions, slides, rest or end, and how far the run can be trusted."""
     count, slides = scene.transitions, int((np.diff(scene.slides.astype(int), prepend=0) > 0).sum())
-    said = [f"{count or 'No'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s."] * scene.resisted
-    if not slides:
-        return said + ["It never slides."] * (scene.value("mu_slide") > 0)
-    often = "once" if slides == 1 else f"{slides} times"
-    return [*said, f"It slides {often}, at up to {scene.slip.max():.3g} m/s."]
+    can_slide = scene.value("mu_slide") > 0
+    said = [f"{count or 'no'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s"]
+    said *= scene.resisted or can_slide
+    often = ("", "once", "twice")[slides] if slides < 3 else f"{slides} times"
+    fastest = f"it slides {often}, at up to {scene.slip.max():.3g} m/s"
+    said += [fastest if slides else "it never slides"] * can_slide
+    said += [] if scene.rest is None else [f"it stands from {scene.rest:.3g} s on"]
+    said += [f"the wheel {scene.ending}, where the model ends"] * bool(scene.ending)
+    said += ["rounding alone tips it, at a time and to a side of chance; guided=true holds it"] * scene.by_rounding
+    return said + [scene.trust] * bool(scene.trust)
+
+
+def paragraph(clauses: Sequence[str], subject: str = "") -> str:
+    """Sentences, none without clauses: the first may follow a subject and a colon."""
+    whole = [f"{clause[0].upper()}{clause[1:]}." for clause in clauses]
+    whole[:1] = [f"{subject}: {clause}." for clause in clauses[:1]] if subject else whole[:1]
+    return " ".join(whole)
 
 
 def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], width: float, size: float) -> list[str]:
-    """The parameters, all that is not the paper's, and the remarks on each scene; lines of at most `width` mm."""
+    """The parameters, all that is not the paper's, each scene's fate, and the remarks, those on all scenes once; lines
+    of at most `width` mm."""
     texts = [f"Parameters: {wheel_of(scenes[-1])}. {start_of(scenes[-1])}."]
     if other := unlike_paper(scenes[-1]):
         texts.append(f"Unlike the paper: {', '.join(said.replace(' ', NO_BREAK) for said in other)}.")
-    for scene, of_panels in zip(scenes, remarks, strict=True):
-        name = [f"{title_of(scene).split(',')[0]}:"] * (len(scenes) > 1)
-        ends = [f"The wheel {scene.ending}, where the model ends."] * bool(scene.ending)
-        ends += ["Rounding alone tips it, at a time and to a side of chance; guided=true holds it."] * scene.by_rounding
-        trust = [f"{scene.trust[0].upper()}{scene.trust[1:]}."] if scene.trust else []
-        said = [*dict.fromkeys([*events_of(scene), *of_panels]), *ends, *trust]
-        texts += [" ".join([*name, *said])] * bool(said)
-    return [line for text in texts for line in wrapped(text, width, size)]
+    shared = [one for one in dict.fromkeys(remarks[0]) if all(one in said for said in remarks)]
+    for scene, said in zip(scenes, remarks, strict=True):
+        own = [one for one in dict.fromkeys(said) if one not in shared]
+        texts.append(paragraph([*fate_of(scene), *own], title_of(scene).split(",")[0] if len(scenes) > 1 else ""))
+    return [line for text in [*texts, paragraph(shared)] if text for line in wrapped(text, width, size)]
 
 
 @cache
@@ -166,7 +176,7 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     rates, remarks = [], [[] for _ in scenes]
     for row, panel in zip(axes, drawn, strict=True):
         for ax, scene, said in zip(row, scenes, remarks, strict=True):
-            said += panel.draw(ax, scene)
+            said += panel.draw(ax, scene.moving)
             number = panel.figures[scene.value("s") > 0] if paper and panel.figures else 0
             title = rf"$\mathbf{{Fig.\,{number}}}$   {panel.subject}" if number else panel.subject
             ax.set_title(title if sheet else f"{title}, {title_of(scene).lower()}", loc="left", fontsize=9)
@@ -181,7 +191,7 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     fig.get_layout_engine().execute(fig)
     fig.set_layout_engine("none")  # the texts beside a curve need the places of the panels
     for ax, scene in rates:
-        panels.write_rates(ax, scene)
+        panels.write_rates(ax, scene.moving)
     for i, line in enumerate(reversed(lines)):
         place = MARGIN * style.MM, (1.8 + PITCH * i) * style.MM
         fig.text(*place, line, transform=fig.dpi_scale_trans, fontsize=size)
@@ -212,8 +222,8 @@ def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
 
 
 def main(folder: Path = RESULTS) -> None:
-    """Draw everything in a folder, or the one scene that has a motion; else one line on stderr and exit status 1. The
-    paths that are printed are those in the folder of the results."""
+    """Draw everything in a folder, or the one scene that has a motion, and print a line of the pictures; else one line
+    on stderr and exit status 1."""
     style.use_style()
     scenes, faults = [], []
     for name in ("free", "friction"):
@@ -225,8 +235,11 @@ def main(folder: Path = RESULTS) -> None:
         if not scenes:
             raise SceneError("Neither scene has a motion to draw.")
         with Pool() as processes:
-            drawn = chain(*processes.starmap(draw, pictures(scenes, folder), chunksize=1))
-            print(*(RESULTS / path.name for path in drawn), sep="\n")
+            drawn = processes.starmap(draw, wanted := pictures(scenes, folder), chunksize=1)
+        sheets = sum(len(panels) > 1 for _, _, panels, _ in wanted)
+        names = [png.name for _, png in drawn]
+        ends = [*names[sheets:][:1], *names[sheets:][-1:]]
+        print(f"{', '.join(names[:sheets])}, and panel by panel {' to '.join(ends)}; each also as .svg.")
         for warning in [*warnings_of(scenes), *faults]:
             print(f"run: warning: {warning}", file=sys.stderr)
     except SceneError as fault:

@@ -105,7 +105,7 @@ def main(folder: Path, given: dict[str, str]) -> None:
     scales = np.array([r_0 + r, 1.0, fall, fall])
     with TemporaryDirectory() as unpacked:
         wheel = Wheel(ROOT / "wheel.fmu", unpacked)
-        for name, label in (("free", "No friction"), ("friction", "With friction")):
+        for name, label in (("free", "No rolling friction"), ("friction", "Rolling friction")):
             start = {"s": str(PAPER_S)} | given | ({"s": "0"} if name == "free" else {})
             truth = wheel.motion(start, times, TIGHTEST)
             if len(truth.rows) > 1:

@@ -3,6 +3,8 @@
 Names and units are those of the model's variables: SI, fixed axes X, Y, Z, Z up; angles in rad.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -83,8 +85,22 @@ class Scene:
 
     @property
     def transitions(self) -> int:
-        """How often friction or brake hold, release or reverse the spin: the wheel's events but those of its grip."""
-        return int(self["n_events"][-1]) - len(self.turns)
+        """How often friction or brake hold, release or reverse the spin, or the wheel starts or stops sliding."""
+        return int(self["n_events"][-1])
+
+    @property
+    def rest(self) -> float | None:
+        """The instant in s from which it stands, after it has moved; None if there is none."""
+        moves = self.slides | (np.abs([self["phi_dot"], self["psi_dot"]]).max(axis=0) > STILL)
+        moves |= abs(self["theta"] - self["theta"][-1]) > STILL
+        last = int(np.flatnonzero(moves)[-1]) if moves.any() else len(moves)
+        return float(self["time"][last + 1]) if last < len(moves) - 2 else None
+
+    @property
+    def moving(self) -> Scene:
+        """Its rows until a little after it has come to rest."""
+        shown = self["time"] <= (np.inf if self.rest is None else 1.1 * self.rest)
+        return Scene(self.path, {name: column[shown] for name, column in self.columns.items()})
 
     @property
     def by_rounding(self) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -220,18 +222,55 @@ def test_the_slip_has_a_panel_and_the_caption_its_size_where_a_scene_slides() ->
 
     assert "slip" in names(slid(), slid()) and "slip" not in names(scene(mu_max=0.45), scene(0.03))
     by_name = {panel.name: caption(slid(), panel) for panel in paper.PAPERS + paper.OTHERS}
-    assert all("slides 2 times, at up to 0.5 m/s" in text for text in by_name.values())
+    assert all("slides twice, at up to 0.5 m/s" in text for text in by_name.values())
     assert {name for name, text in by_name.items() if "thin lines" in text} == {"position", "tilt", "ground"}
     assert {name for name, text in by_name.items() if "Purple" not in text} == {"rates"}
     assert "never slides" in caption(scene(mu_max=0.45, mu_slide=0.4))
     assert "slides" not in caption(scene())
 
 
-def test_loss_and_return_of_grip_are_no_transitions_of_friction() -> None:
+def test_a_caption_has_the_wheels_own_count_of_transitions() -> None:
     rough = {"s": 0.03, "mu_max": 0.45, "mu_slide": 0.4, "n_events": 43}
-    assert "41 transitions" in caption(scene(contact_mode=(TIME > 1) & (TIME < 2), **rough))
-    assert "42 transitions" in caption(scene(contact_mode=TIME < 2, **rough))  # it slides at first
-    assert "43 transitions" in caption(scene(**rough))
+    for slides in ((TIME > 1) & (TIME < 2), TIME < 2, 0):
+        assert "43 transitions in 10 s." in caption(scene(contact_mode=slides, **rough))
+    assert "1 transition in 10 s." in caption(scene(0.03, n_events=1)) and "transition" not in caption(scene())
+
+
+def test_a_sheet_explains_once_what_both_scenes_have_and_no_capital_follows_a_colon() -> None:
+    scenes, panel = [slid(), replace(slid(), columns=slid().columns | {"s": np.full(len(TIME), 0.03)})], paper.PAPERS[0]
+    remarks = [panel.draw(style.figure_mm(80, 80).subplots(), one) for one in scenes]
+    said = " ".join(paper.caption(scenes, [remarks[0], [*remarks[1], "thick: stick"]], 175.0, 7.5))
+    assert said.count("Purple bars: it slides") == 1 == said.count("Thick: stick")
+    assert said.index("Rolling friction: no transitions") < said.index("Thick") < said.index("Purple")
+    assert "friction: it slides twice, at" in paper.paragraph(["it slides twice, at 1 m/s"], "No rolling friction")
+    assert not re.search(r": [A-Z]", said)
+
+
+def test_a_wheel_that_stands_is_drawn_until_a_little_after_it_has_come_to_rest() -> None:
+    spin = np.minimum(TIME - 3, 0)
+    stopped = {"theta": np.pi / 2, "psi_dot": 0.0, "phi_dot": spin, "X_O": spin}
+    for moves, rest in (({}, 3), ({"theta": np.pi / 2 - np.maximum(4 - TIME, 0)}, 4), ({"contact_mode": TIME < 5}, 5)):
+        one = scene(**stopped | moves)
+        assert one.rest == pytest.approx(rest, abs=0.02)
+        assert one.moving["time"][-1] == pytest.approx(1.1 * rest, abs=0.03)
+        assert f"It stands from {one.rest:.3g} s on." in caption(one) and "stop_time" not in caption(one)
+    for one in (scene(), scene(**stopped | {"phi_dot": 0.0}), scene(**stopped | {"contact_mode": 1})):
+        assert one.rest is None and len(one.moving["time"]) == len(TIME) and "stands" not in caption(one)
+
+
+@pytest.mark.parametrize("half", [0.001, 0.04, 0.2, 0.3, 0.6, 1.2])
+def test_degrees_are_marked_at_round_values(half: float) -> None:
+    """One digit after which zeros follow; 15, 30 ... where the whole quadrant is shown."""
+    style.use_style()
+    fig = style.figure_mm(style.COLUMN, 60.0)
+    ax = fig.subplots()
+    panels.draw_tilt(ax, scene(theta=1.375 + half * np.cos(TIME)))
+    fig.canvas.draw()
+    (degrees,) = ax.child_axes
+    ticks = degrees.get_yticks()
+    step = ticks[1] - ticks[0]
+    digit = step / 10 ** np.floor(np.log10(step) + 1e-9)
+    assert round(digit, 9) in ((1.5, 3) if half > 0.27 else (1, 2, 5)) and abs(ticks / step % 1).max() < 1e-6
 
 
 def test_a_jammed_wheel_is_drawn_without_the_force_beyond_the_jam(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fmpy import simulate_fmu
 from reference.tables import read_table
 from support import sliding
 from support.bounds import beyond, within
@@ -57,16 +58,35 @@ def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel:
     within(abs(np.log2(estimated / true)), 1, "estimated over true error, off 1 by a factor of 2")
 
 
-def test_the_shift_of_events_is_the_true_one(wheel: Wheel) -> None:
+def test_the_shift_of_transitions_is_the_true_one(wheel: Wheel) -> None:
     want = read_table("paper_friction_events")["t"][1:]
     run, truth = (wheel.motion({"s": "0.03"}, np.linspace(0, 10, 1001), t, 1) for t in (1e-6, TIGHTEST))
     found = trust(run, truth)
     true = np.abs(np.array([t for t, _ in run.events]) - want).max()
     assert found.counts == (37, 37)
     within(abs(np.log2(found.shift / true)), 1, "shift estimated over true, off 1 by a factor of 2")
-    assert "37 events, shifted by up to" in found.said("A") and "computing time" in found.said("A")
+    assert "37 transitions, shifted by up to" in found.said("A") and "computing time" in found.said("A")
     few = run._replace(events=run.events[:-1])
-    assert "36 events, 37 at the tightest tolerance" in trust(few, truth).said("A")
+    assert "36 transitions, 37 at the tightest tolerance" in trust(few, truth).said("A")
+
+
+WET = {"mu_max": "0.5", "mu_slide": "0.4"}
+LOCKED = {"guided": "true", "theta_start": "1.5707963", "phi_dot_start": "-10", "M_brake": "400"}
+COUNTED = {
+    "friction": ({"s": "0.03"}, 37, "37 transitions, "),
+    "slides at once, locks, stands": (LOCKED | WET, 3, "3 transitions, "),
+    "lies flat": ({"phi_dot_start": "0"}, 0, "; the end, "),
+    "slides, lies flat": (WET | {"phi_dot_start": "0"}, 1, "; 1 transition and the end, "),
+}
+
+
+@pytest.mark.parametrize(("start", "count", "words"), COUNTED.values(), ids=COUNTED)
+def test_the_transitions_of_the_line_are_those_that_the_wheel_counts(wheel: Wheel, start, count, words) -> None:
+    """n_events, which the captions have; the end is none."""
+    times = np.linspace(0, 10, 1001)
+    found = trust(*(wheel.motion(start, times, tolerance) for tolerance in (DEFAULT, TIGHTEST)))
+    table = simulate_fmu(str(build_folder() / "wheel.fmu"), stop_time=10, output=["n_events"], start_values=start)
+    assert found.counts[0] == table["n_events"][-1] == count and words in found.said("A")
 
 
 def test_a_warning_is_no_event(wheel: Wheel) -> None:
@@ -107,7 +127,7 @@ def test_the_race_of_all_methods_is_a_picture_and_a_table(wheel: Wheel, tmp_path
     times, given = np.linspace(0, 2, 201), {"s": "0.03"}
     truth = wheel.motion(given, times, TIGHTEST)
     found = races.measured(wheel, given, times, truth, np.ones(4))
-    races.write({"With friction": found}, tmp_path)
+    races.write({"Rolling friction": found}, tmp_path)
     header, *rows = (tmp_path / "error_time.csv").read_text().splitlines()
     assert header == "scene,method,tolerance,error,median_us,note" and len(rows) == 2 * len(races.METHODS)
     errors = {tuple(row.split(",")[1:3]): float(row.split(",")[3]) for row in rows}
